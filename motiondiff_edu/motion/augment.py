@@ -1,0 +1,49 @@
+"""Mirroring and time reversal, with the velocities that belong to them.
+
+Both are exact here: bones keep their length and the control still integrates to the figure's path.
+Where we differ: the public preprocessing of the corpus mirrors the limbs but not the x of the central joints, and
+negates the velocities of a reversed clip without shifting them by the frame that a forward difference needs.
+Source: MoDiff III-E, IV-A.  Notebook: 01
+"""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from .clip import Clip
+from .skeleton import MIRROR
+
+_FLIP_X = np.array([-1.0, 1.0, 1.0])  # positions: x points to the left
+_FLIP_CONTROL = np.array([1.0, -1.0, -1.0])  # control: forward stays, left and yaw change sign
+
+
+def mirror(clip: Clip) -> Clip:
+    """The clip seen in a mirror: every joint's x is negated, left and right swap names; so do the contacts.
+
+    Twice is the identity.  Notebook: 01
+    """
+    contacts = None if clip.contacts is None else clip.contacts[:, ::-1]
+    return replace(clip, poses=clip.poses[:, MIRROR] * _FLIP_X, control=clip.control * _FLIP_CONTROL, contacts=contacts)
+
+
+def reverse_time(clip: Clip) -> Clip:
+    """The clip played backwards: control'[t] = -control[T-2-t], since control[t] leads from frame t to t+1.
+
+    Twice is the identity but for the last row of control, which repeats its neighbour by convention.
+    Source: MoDiff III-E.  Notebook: 01
+    """
+    control = np.empty_like(clip.control)
+    control[:-1] = -clip.control[:-1][::-1]
+    control[-1] = control[-2] if len(clip) > 1 else -clip.control[-1]
+    contacts = None if clip.contacts is None else clip.contacts[::-1]
+    return replace(clip, poses=clip.poses[::-1], control=control, contacts=contacts)
+
+
+def augment(clips: Sequence[Clip]) -> list[Clip]:
+    """Four clips from each: as it is, mirrored, reversed, both. The source stays, so splits stay clean.
+
+    Source: MoDiff III-E.  Notebook: 01
+    """
+    both = [version for clip in clips for version in (clip, mirror(clip))]
+    return both + [reverse_time(clip) for clip in both]

@@ -1,0 +1,78 @@
+"""A clip: root-frame poses with their control; cutting clips into windows, and splitting by source.
+
+Source: MoDiff IV-A (4-second clips, 20 frames/s, 50 % overlap).  Notebook: 01
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+from jaxtyping import Bool, Float
+
+from .root_frame import FPS, to_world
+
+
+@dataclass(frozen=True, eq=False)
+class Clip:
+    """Poses in the root frame (metres), control (m/s, m/s, rad/s), and what is known about them.
+
+    `source` names the recording (or the seed) that the clip was cut from; splits are made by it.  Notebook: 01
+    """
+
+    poses: Float[np.ndarray, "T 21 3"]
+    control: Float[np.ndarray, "T 3"]
+    fps: float = FPS
+    contacts: Bool[np.ndarray, "T 2"] | None = None  # left, right foot planted
+    source: str = ""
+    info: dict = field(default_factory=dict)
+
+    def __post_init__(self):
+        if len(self.poses) != len(self.control):
+            raise ValueError(f"clip {self.source!r}: {len(self.poses)} poses but {len(self.control)} rows of control")
+
+    def __len__(self) -> int:
+        return len(self.poses)
+
+    def world(self, start: tuple[float, float, float] = (0.0, 0.0, 0.0)) -> Float[np.ndarray, "T 21 3"]:
+        """Positions in the world, the root starting at `start` = (x, z, heading)."""
+        return to_world(self.poses, self.control, start, self.fps)
+
+    def features(self) -> Float[np.ndarray, "T 63"]:
+        """The 63 numbers a frame that the networks see, float32."""
+        return self.poses.reshape(len(self), -1).astype(np.float32)
+
+    def cut(self, first: int, last: int) -> "Clip":
+        """Frames first..last-1 as a clip of the same source; `info` stays that of the whole clip."""
+        contacts = None if self.contacts is None else self.contacts[first:last]
+        return replace(self, poses=self.poses[first:last], control=self.control[first:last], contacts=contacts)
+
+
+def slice_clips(clips: Sequence[Clip], seconds: float = 4.0, overlap: float = 0.5) -> list[Clip]:
+    """Cut clips into pieces of `seconds` that overlap by the share `overlap`; a shorter rest is left out.
+
+    Raises ValueError unless 0 <= overlap < 1.  Source: MoDiff IV-A.  Notebook: 01
+    """
+    if not 0 <= overlap < 1:
+        raise ValueError(f"overlap must lie in [0, 1), got {overlap}")
+    pieces = []
+    for clip in clips:
+        length = round(seconds * clip.fps)
+        stride = max(1, round(length * (1 - overlap)))
+        pieces += [clip.cut(first, first + length) for first in range(0, len(clip) - length + 1, stride)]
+    return pieces
+
+
+def split_by_source(
+    clips: Sequence[Clip], fractions: Sequence[float], rng: np.random.Generator
+) -> tuple[list[Clip], ...]:
+    """Split into groups so that no source stands in two of them: slices of one recording share frames.
+
+    `fractions` are shares of the sources and sum to 1. Raises ValueError otherwise.  Notebook: 01
+    """
+    if abs(sum(fractions) - 1) > 1e-9:
+        raise ValueError(f"fractions must sum to 1, these sum to {sum(fractions)}")
+    sources = np.array(sorted({clip.source for clip in clips}))
+    rng.shuffle(sources)
+    bounds = np.round(np.cumsum([0.0, *fractions]) * len(sources)).astype(int)
+    groups = [set(sources[a:b]) for a, b in zip(bounds[:-1], bounds[1:], strict=True)]
+    return tuple([clip for clip in clips if clip.source in group] for group in groups)

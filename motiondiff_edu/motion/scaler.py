@@ -1,0 +1,38 @@
+"""Standardisation: zero mean and unit spread for every feature, and back.
+
+Poses and control have a scaler each. A missing input is zero *after* standardisation: the average pose.
+Source: MoDiff IV-A leaves it open; per-column z-scores are the corpus' own habit.  Notebook: 01
+"""
+
+from dataclasses import dataclass
+
+import torch
+from jaxtyping import Float
+from torch import Tensor
+
+_SMALLEST = 1e-4  # a column that never moves would be divided by zero (metres, m/s or rad/s: a tenth of a millimetre)
+
+
+@dataclass(frozen=True, eq=False)
+class Scaler:
+    """x -> (x - mean) / std, column by column."""
+
+    mean: Float[Tensor, "D"]
+    std: Float[Tensor, "D"]
+
+    @classmethod
+    def fit(cls, x: Float[Tensor, "*N D"]) -> "Scaler":
+        """Mean and (population) standard deviation of the training data.  Raises ValueError on NaN or infinity."""
+        flat = x.reshape(-1, x.shape[-1]).double()
+        if not torch.isfinite(flat).all():
+            bad = int((~torch.isfinite(flat)).any(-1).nonzero()[0])
+            raise ValueError(f"row {bad} of the data to be scaled is not finite; clean it first")
+        return cls(flat.mean(0).float(), flat.std(0, correction=0).clamp_min(_SMALLEST).float())
+
+    def transform(self, x: Float[Tensor, "*N D"]) -> Float[Tensor, "*N D"]:
+        """To the network's units."""
+        return (x - self.mean) / self.std
+
+    def inverse(self, x: Float[Tensor, "*N D"]) -> Float[Tensor, "*N D"]:
+        """Back to metres (or m/s, rad/s)."""
+        return x * self.std + self.mean

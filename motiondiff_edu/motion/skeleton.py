@@ -1,0 +1,64 @@
+"""The one skeleton of the course: the 21 joints of MoDiff's data, with constant bones.
+
+Metres; y up, x to the figure's left, z forward. A planted toe joint lies on the floor, y = 0.
+The names are those of the locomotion corpus that MoDiff uses; the bone lengths are ours, for a person of 1.70 m.
+Source: MoDiff IV-A.  Notebook: 01
+"""
+
+import numpy as np
+
+# name, parent, offset from the parent in the rest pose (standing, arms out sideways)
+_TABLE = [
+    ("Hips", -1, (0.0, 0.97, 0.0)),
+    ("LeftUpLeg", 0, (0.085, -0.06, 0.0)),
+    ("LeftLeg", 1, (0.0, -0.41, 0.0)),
+    ("LeftFoot", 2, (0.0, -0.425, 0.0)),
+    ("LeftToeBase", 3, (0.0, -0.075, 0.115)),
+    ("RightUpLeg", 0, (-0.085, -0.06, 0.0)),
+    ("RightLeg", 5, (0.0, -0.41, 0.0)),
+    ("RightFoot", 6, (0.0, -0.425, 0.0)),
+    ("RightToeBase", 7, (0.0, -0.075, 0.115)),
+    ("Spine", 0, (0.0, 0.12, 0.0)),
+    ("Spine1", 9, (0.0, 0.14, 0.0)),
+    ("Neck1", 10, (0.0, 0.22, 0.0)),
+    ("Head", 11, (0.0, 0.11, 0.02)),
+    ("LeftArm", 11, (0.18, -0.05, 0.0)),
+    ("LeftForeArm", 13, (0.28, 0.0, 0.0)),
+    ("LeftHand", 14, (0.25, 0.0, 0.0)),
+    ("LeftHandIndex1", 15, (0.09, 0.0, 0.0)),
+    ("RightArm", 11, (-0.18, -0.05, 0.0)),
+    ("RightForeArm", 17, (-0.28, 0.0, 0.0)),
+    ("RightHand", 18, (-0.25, 0.0, 0.0)),
+    ("RightHandIndex1", 19, (-0.09, 0.0, 0.0)),
+]
+
+JOINTS: tuple[str, ...] = tuple(name for name, _, _ in _TABLE)
+J: int = len(JOINTS)
+PARENTS: np.ndarray = np.array([parent for _, parent, _ in _TABLE])
+OFFSETS: np.ndarray = np.array([offset for _, _, offset in _TABLE])  # (21, 3), metres
+
+BONES: tuple[tuple[int, int], ...] = tuple((int(PARENTS[j]), j) for j in range(1, J))  # (parent, child)
+BONE_LENGTHS: np.ndarray = np.linalg.norm(OFFSETS[1:], axis=-1)  # (20,), metres, in the order of BONES
+
+HIPS = 0
+HEELS = (3, 7)  # the Foot joints: the ankle, which the corpus calls heel
+TOES = (4, 8)
+LEFT: tuple[int, ...] = tuple(j for j, name in enumerate(JOINTS) if name.startswith("Left"))
+RIGHT: tuple[int, ...] = tuple(j for j, name in enumerate(JOINTS) if name.startswith("Right"))
+CENTRE: tuple[int, ...] = tuple(j for j in range(J) if j not in LEFT + RIGHT)
+
+
+def _mirror_permutation() -> np.ndarray:
+    swap = {"Left": "Right", "Right": "Left"}
+    partner = [next((swap[s] + n[len(s) :] for s in swap if n.startswith(s)), n) for n in JOINTS]
+    return np.array([JOINTS.index(name) for name in partner])
+
+
+MIRROR: np.ndarray = _mirror_permutation()  # MIRROR[j] is the joint on the other side (a central joint is its own)
+
+
+def joint_index(name: str) -> int:
+    """The index of a joint by its name; the error lists the names there are."""
+    if name not in JOINTS:
+        raise KeyError(f"no joint is called {name!r}; the skeleton has {', '.join(JOINTS)}")
+    return JOINTS.index(name)
