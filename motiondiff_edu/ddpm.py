@@ -1,0 +1,205 @@
+"""Denoising diffusion (MoDiff, III-B and III-C): noise is added by a rule, and taken away by a learnt one.
+
+Steps are numbered s = 1..S, and every table has S + 1 entries, so that `alpha_bar[s]` is the paper's; `alpha_bar[0]` is 1.
+A *denoiser* is any callable `denoise(x_s, s) -> eps_hat`, with s of shape (B,).
+"""
+import math
+import warnings
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+
+import torch
+from jaxtyping import Float, Int
+from torch import Tensor
+
+Steps = Int[Tensor, "B"] | int
+Denoiser = Callable[[Tensor, Tensor], Tensor]
+
+
+# ---- schedules -------------------------------------------------------------------------------------------------------
+@dataclass(frozen=True, eq=False)
+class Schedule:
+    """How much noise each step adds: beta, alpha = 1 - beta and its running product alpha_bar, indexed by s = 0..S."""
+
+    beta: Float[Tensor, "S+1"]
+    alpha: Float[Tensor, "S+1"]
+    alpha_bar: Float[Tensor, "S+1"]
+    name: str = "schedule"
+
+    @property
+    def S(self) -> int:
+        return len(self.beta) - 1
+
+    @property
+    def signal_left(self) -> float:
+        """sqrt(alpha_bar[S]): the share of the clean sample's amplitude that is still there after the last step."""
+        return math.sqrt(float(self.alpha_bar[-1]))
+
+
+def make_schedule(beta: Float[Tensor, "S"], name: str = "schedule") -> Schedule:
+    """Build a schedule from beta_1..beta_S: alpha_s = 1 - beta_s, alpha_bar_s = alpha_1 * ... * alpha_s.
+
+    Raises ValueError unless every beta lies strictly between 0 and 1; warns where more than 10 % of the signal is left.
+    Source: MoDiff eq. 1-2. Notebook: 02.
+    """
+    beta = torch.cat([torch.zeros(1, dtype=torch.float64), beta.double()])
+    bad = [s for s in range(1, len(beta)) if not 0 < beta[s] < 1]
+    if bad or len(beta) < 2:
+        where = f"beta_{bad[0]} = {float(beta[bad[0]]):g}" if bad else "there is no step at all"
+        raise ValueError(f"{name}: every beta must lie between 0 and 1, but {where}. More steps make each beta smaller.")
+    schedule = Schedule(beta, 1 - beta, torch.cumprod(1 - beta, 0), name)
+    if schedule.signal_left > 0.1:
+        warnings.warn(f"{schedule_card(schedule)} Sampling starts from pure noise, which this schedule never reaches: "
+                      "take more steps or larger betas.", stacklevel=3)
+    return schedule
+
+
+def linear_schedule(S: int = 100, beta_1: float = 1e-4, beta_S: float = 0.1) -> Schedule:
+    """beta grows evenly from beta_1 to beta_S. MoDiff gives no schedule: these are TimeGrad's numbers. Notebook: 02."""
+    return make_schedule(torch.linspace(beta_1, beta_S, S, dtype=torch.float64), f"linear {beta_1:g} to {beta_S:g}")
+
+
+def scaled_linear_schedule(S: int = 100) -> Schedule:
+    """DDPM's 1e-4 to 0.02 over 1000 steps, scaled by 1000 / S so that fewer steps remove as much. Notebook: 02."""
+    beta = torch.linspace(0.1 / S, 20 / S, S, dtype=torch.float64)
+    return make_schedule(beta, "scaled linear")
+
+
+def cosine_schedule(S: int = 1000, cap: float = 0.999) -> Schedule:
+    """alpha_bar follows cos^2((s / S + .008) / 1.008 * pi / 2), with beta capped. Notebook: 02."""
+    u = torch.arange(S + 1, dtype=torch.float64) / S
+    curve = torch.cos((u + 0.008) / 1.008 * math.pi / 2) ** 2
+    return make_schedule((1 - curve[1:] / curve[:-1]).clamp(max=cap), "cosine")
+
+
+def schedule_card(schedule: Schedule) -> str:
+    """Say in one line what a schedule leaves of the signal at its last step: sqrt(alpha_bar[S]). Notebook: 02."""
+    return (f"{schedule.name}, S = {schedule.S}: after the last step {100 * schedule.signal_left:.2g} % "
+            "of the signal's amplitude is left.")
+
+
+def at(table: Float[Tensor, "S+1"], s: Steps, x: Float[Tensor, "B *shape"]) -> Tensor:
+    """Look up table[s], shaped so that it multiplies x: one number, or one for each sample of the batch."""
+    if isinstance(s, int):
+        return table[s].to(x)
+    return table.to(x.device)[s].to(x).reshape(-1, *[1] * (x.dim() - 1))
+
+
+# ---- forward: adding noise -------------------------------------------------------------------------------------------
+def q_step(x_prev: Float[Tensor, "B *shape"], s: Steps, schedule: Schedule,
+           noise: Float[Tensor, "B *shape"]) -> Float[Tensor, "B *shape"]:
+    """Add one step of noise: x_s = sqrt(1 - beta_s) x_{s-1} + sqrt(beta_s) noise. Source: MoDiff eq. 1. Notebook: 02."""
+    beta = at(schedule.beta, s, x_prev)
+    return (1 - beta).sqrt() * x_prev + beta.sqrt() * noise
+
+
+def q_sample(x0: Float[Tensor, "B *shape"], s: Steps, schedule: Schedule,
+             noise: Float[Tensor, "B *shape"]) -> Float[Tensor, "B *shape"]:
+    """Add s steps of noise at once: x_s = sqrt(alpha_bar_s) x0 + sqrt(1 - alpha_bar_s) noise.
+
+    Source: MoDiff eq. 2. Notebook: 02.
+    """
+    alpha_bar = at(schedule.alpha_bar, s, x0)
+    return alpha_bar.sqrt() * x0 + (1 - alpha_bar).sqrt() * noise
+
+
+def posterior_variance(schedule: Schedule) -> Float[Tensor, "S+1"]:
+    """beta_tilde_s = beta_s (1 - alpha_bar_{s-1}) / (1 - alpha_bar_s), zero at s = 1. Source: MoDiff eq. 7. Notebook: 02."""
+    left = 1 - schedule.alpha_bar
+    variance = torch.zeros_like(left)
+    variance[1:] = schedule.beta[1:] * left[:-1] / left[1:]
+    return variance
+
+
+def q_posterior(x0: Float[Tensor, "B *shape"], x_s: Float[Tensor, "B *shape"], s: Steps,
+                schedule: Schedule) -> tuple[Float[Tensor, "B *shape"], Tensor]:
+    """Mean and variance of x_{s-1} when x_s and the clean x0 are both known.
+
+    mean = sqrt(ab_{s-1}) beta_s / (1 - ab_s) x0 + sqrt(alpha_s) (1 - ab_{s-1}) / (1 - ab_s) x_s
+    Source: MoDiff eq. 6-7. Notebook: 02.
+    """
+    beta, alpha = at(schedule.beta, s, x_s), at(schedule.alpha, s, x_s)
+    left, left_before = at(1 - schedule.alpha_bar, s, x_s), at(1 - schedule.alpha_bar, s - 1, x_s)
+    mean = (1 - left_before).sqrt() * beta / left * x0 + alpha.sqrt() * left_before / left * x_s
+    return mean, at(posterior_variance(schedule), s, x_s)
+
+
+# ---- reverse: taking it away -----------------------------------------------------------------------------------------
+@dataclass(frozen=True, eq=False)
+class Step:
+    """One moment of sampling: x_s, and what the denoiser says about it. At s = 0, x_s is the sample itself."""
+
+    s: int
+    x_s: Tensor
+    x0_hat: Tensor
+    eps_hat: Tensor
+
+
+def p_variance(schedule: Schedule, variance: str = "beta") -> Float[Tensor, "S+1"]:
+    """Variance of p(x_{s-1} | x_s): "beta" is the paper's beta_s, "posterior" its lower bound beta_tilde_s.
+
+    Source: MoDiff eq. 3. Notebook: 03.
+    """
+    if variance not in ("beta", "posterior"):
+        raise ValueError(f'variance must be "beta" or "posterior", not {variance!r}')
+    return schedule.beta if variance == "beta" else posterior_variance(schedule)
+
+
+def p_mean(x_s: Float[Tensor, "B *shape"], s: Steps, eps_hat: Float[Tensor, "B *shape"],
+           schedule: Schedule) -> Float[Tensor, "B *shape"]:
+    """Mean of x_{s-1}: (x_s - beta_s / sqrt(1 - alpha_bar_s) eps_hat) / sqrt(alpha_s). Source: MoDiff eq. 9. Notebook: 03."""
+    share = at(schedule.beta / (1 - schedule.alpha_bar).clamp(min=1e-300).sqrt(), s, x_s)
+    return (x_s - share * eps_hat) / at(schedule.alpha, s, x_s).sqrt()
+
+
+def p_sample(x_s: Float[Tensor, "B *shape"], s: int, eps_hat: Float[Tensor, "B *shape"], schedule: Schedule,
+             noise: Float[Tensor, "B *shape"], variance: str = "beta") -> Float[Tensor, "B *shape"]:
+    """Take one step back, x_{s-1} = p_mean + sigma_s noise; the last step (s = 1) adds none.
+
+    Source: MoDiff eq. 11. Notebook: 03.
+    """
+    mean = p_mean(x_s, s, eps_hat, schedule)
+    return mean if s == 1 else mean + at(p_variance(schedule, variance), s, x_s).sqrt() * noise
+
+
+@torch.no_grad()
+def sample_steps(denoise: Denoiser, start: Tensor | tuple[int, ...], schedule: Schedule, *,
+                 generator: torch.Generator | None = None, noise: Float[Tensor, "S *any"] | None = None,
+                 variance: str = "beta", clip: float | None = None) -> Iterator[Step]:
+    """Walk from x_S back to x0, yielding S + 1 records, s = S..0; `start` is x_S, or its shape.
+
+    noise[s - 1], when given, is the noise of step s; clip bounds x0_hat to [-clip, clip].
+    Source: MoDiff Alg. 2. Notebook: 03.
+    """
+    x_s = start if isinstance(start, Tensor) else torch.randn(start, generator=generator)
+    for s in range(schedule.S, 0, -1):
+        eps_hat = denoise(x_s, torch.full((len(x_s),), s, device=x_s.device))
+        x0_hat, eps_hat = _clean_guess(x_s, s, eps_hat, schedule, clip)
+        yield Step(s, x_s, x0_hat, eps_hat)
+        z = torch.zeros_like(x_s) if s == 1 else _draw(x_s, generator) if noise is None else noise[s - 1]
+        x_s = p_sample(x_s, s, eps_hat, schedule, z, variance)
+    yield Step(0, x_s, x_s, torch.zeros_like(x_s))
+
+
+def _draw(like: Tensor, generator: torch.Generator | None) -> Tensor:
+    return torch.randn(like.shape, generator=generator, dtype=like.dtype, device=like.device)
+
+
+def _clean_guess(x_s: Tensor, s: int, eps_hat: Tensor, schedule: Schedule, clip: float | None) -> tuple[Tensor, Tensor]:
+    """x0_hat, bounded if asked, and the eps_hat that goes with it."""
+    signal, sigma = at(schedule.alpha_bar, s, x_s).sqrt(), at(1 - schedule.alpha_bar, s, x_s).sqrt()
+    x0_hat = (x_s - sigma * eps_hat) / signal
+    if clip is None:
+        return x0_hat, eps_hat
+    x0_hat = x0_hat.clamp(-clip, clip)
+    return x0_hat, (x_s - signal * x0_hat) / sigma
+
+
+# ---- the objective ---------------------------------------------------------------------------------------------------
+def simple_loss(denoise: Denoiser, x0: Float[Tensor, "B *shape"], s: Int[Tensor, "B"], schedule: Schedule,
+                noise: Float[Tensor, "B *shape"]) -> Float[Tensor, ""]:
+    """Mean squared error of the noise, ||eps - eps_hat(x_s, s)||^2, averaged over batch and entries.
+
+    Source: MoDiff eq. 10, Alg. 1 (which forgets the square). Notebook: 04, 05.
+    """
+    return (noise - denoise(q_sample(x0, s, schedule, noise), s)).square().mean()

@@ -1,0 +1,86 @@
+"""What a network may predict: the noise eps, the clean sample x0, or v. Each can be turned into the others.
+
+With a = sqrt(alpha_bar_s) and b = sqrt(1 - alpha_bar_s), x_s = a x0 + b eps and v = a eps - b x0: (x_s, v) is (x0, eps) turned
+by an angle, so every conversion is a line of algebra.
+"""
+from jaxtyping import Float
+from torch import Tensor
+
+from motiondiff_edu.ddpm import Schedule, Steps, at
+
+TARGETS = ("eps", "x0", "v")
+
+
+def _ab(x: Tensor, s: Steps, schedule: Schedule) -> tuple[Tensor, Tensor]:
+    return at(schedule.alpha_bar.sqrt(), s, x), at((1 - schedule.alpha_bar).sqrt(), s, x)
+
+
+def x0_from_eps(x_s: Float[Tensor, "B *shape"], s: Steps, eps: Float[Tensor, "B *shape"],
+                schedule: Schedule) -> Float[Tensor, "B *shape"]:
+    """x0 = x_s / a - (b / a) eps. Source: MoFusion eq. 5. Notebook: 03, 05."""
+    a, b = _ab(x_s, s, schedule)
+    return (x_s - b * eps) / a
+
+
+def eps_from_x0(x_s: Float[Tensor, "B *shape"], s: Steps, x0: Float[Tensor, "B *shape"],
+                schedule: Schedule) -> Float[Tensor, "B *shape"]:
+    """eps = (x_s - a x0) / b. Source: MoFusion eq. 5, solved for eps. Notebook: 03, 05."""
+    a, b = _ab(x_s, s, schedule)
+    return (x_s - a * x0) / b
+
+
+def v_from_x0_eps(x0: Float[Tensor, "B *shape"], s: Steps, eps: Float[Tensor, "B *shape"],
+                  schedule: Schedule) -> Float[Tensor, "B *shape"]:
+    """v = a eps - b x0. Notebook: 05."""
+    a, b = _ab(x0, s, schedule)
+    return a * eps - b * x0
+
+
+def eps_from_v(x_s: Float[Tensor, "B *shape"], s: Steps, v: Float[Tensor, "B *shape"],
+               schedule: Schedule) -> Float[Tensor, "B *shape"]:
+    """eps = a v + b x_s. Notebook: 05."""
+    a, b = _ab(x_s, s, schedule)
+    return a * v + b * x_s
+
+
+def x0_from_v(x_s: Float[Tensor, "B *shape"], s: Steps, v: Float[Tensor, "B *shape"],
+              schedule: Schedule) -> Float[Tensor, "B *shape"]:
+    """x0 = a x_s - b v. Notebook: 05."""
+    a, b = _ab(x_s, s, schedule)
+    return a * x_s - b * v
+
+
+def to_eps(output: Float[Tensor, "B *shape"], x_s: Float[Tensor, "B *shape"], s: Steps, schedule: Schedule,
+           target: str) -> Float[Tensor, "B *shape"]:
+    """Turn a network's output into eps_hat; `target` says what the network was trained to predict. Notebook: 05."""
+    _check(target)
+    if target == "eps":
+        return output
+    return (eps_from_x0 if target == "x0" else eps_from_v)(x_s, s, output, schedule)
+
+
+def to_x0(output: Float[Tensor, "B *shape"], x_s: Float[Tensor, "B *shape"], s: Steps, schedule: Schedule,
+          target: str) -> Float[Tensor, "B *shape"]:
+    """Turn a network's output into x0_hat; `target` says what the network was trained to predict. Notebook: 05."""
+    _check(target)
+    if target == "x0":
+        return output
+    return (x0_from_eps if target == "eps" else x0_from_v)(x_s, s, output, schedule)
+
+
+def target_of(x0: Float[Tensor, "B *shape"], eps: Float[Tensor, "B *shape"], s: Steps, schedule: Schedule,
+              target: str) -> Float[Tensor, "B *shape"]:
+    """What the network should have said: eps, x0 or v. Notebook: 05."""
+    _check(target)
+    return {"eps": eps, "x0": x0}[target] if target != "v" else v_from_x0_eps(x0, s, eps, schedule)
+
+
+def denoiser_of(network, schedule: Schedule, target: str):
+    """Wrap a network that predicts `target` as a denoiser, which always answers with eps_hat. Notebook: 05."""
+    _check(target)
+    return lambda x_s, s: to_eps(network(x_s, s), x_s, s, schedule, target)
+
+
+def _check(target: str) -> None:
+    if target not in TARGETS:
+        raise ValueError(f"target must be one of {', '.join(TARGETS)}, not {target!r}")
