@@ -1,0 +1,74 @@
+# Two commands matter: `make lab` opens the course, `make test` runs everything. `make help` lists the rest.
+# Nothing is needed beforehand but Python 3.11 or newer with its venv module.
+VENV := .venv
+BIN  := $(VENV)/bin
+NB   ?= 07
+
+# The first interpreter that runs and is new enough; choose another with `make lab PYTHON=/path/to/python`.
+PYTHON ?= $(shell for p in python3 python3.13 python3.12 python3.11 python3.14; do \
+	$$p -c 'import sys; sys.exit(sys.version_info < (3, 11))' >/dev/null 2>&1 && { echo $$p; break; }; done)
+
+.PHONY: help lab demo doctor test unit notebooks browser lint results bench pretrained student clean
+.DEFAULT_GOAL := help
+
+help: ## this list
+	@grep -hE '^[a-z]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z]+):.*## /\1|/' | awk -F'|' '{printf "  make %-11s %s\n", $$1, $$2}'
+
+$(BIN)/python:
+	@test -n "$(PYTHON)" || { echo "No Python 3.11 or newer found. Install one, or say where it is: make lab PYTHON=..."; exit 1; }
+	@$(PYTHON) -m venv $(VENV) || { rm -rf $(VENV); \
+		echo "$(PYTHON) cannot make virtual environments. On Debian or Ubuntu: apt-get install python3-venv"; exit 1; }
+
+# A stamp each, so that the second `make lab` starts at once and a changed requirement installs again.
+$(VENV)/.lab: pyproject.toml constraints.txt setup.py | $(BIN)/python
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt -e .
+	@touch $@
+
+$(VENV)/.test: pyproject.toml constraints.txt setup.py | $(BIN)/python
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt -e '.[test]'
+	@touch $@ $(VENV)/.lab
+
+$(VENV)/.bench: pyproject.toml constraints.txt setup.py | $(BIN)/python
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt -e '.[bench]'
+	@touch $@
+
+lab: $(VENV)/.lab ## set up .venv and open JupyterLab at notebook 00
+	$(BIN)/python -m motiondiff_edu lab
+
+demo: $(VENV)/.lab ## open one notebook ready to show: make demo NB=07
+	$(BIN)/python -m motiondiff_edu demo $(NB)
+
+doctor: $(VENV)/.lab ## one page: what works here, and what to do about the rest
+	$(BIN)/python -m motiondiff_edu doctor
+
+test: unit notebooks browser ## set up .venv and run everything: unit tests, notebooks, browser
+
+unit: $(VENV)/.test ## only the unit tests
+	$(BIN)/python -m pytest -q -m "not browser"
+
+# One after the other: two notebooks at once on two cores take four times as long as in turn.
+notebooks: $(VENV)/.test ## only the notebooks, and their student edition
+	$(BIN)/python -m pytest -q --nbmake --nbmake-timeout=300 --durations=0 notebooks
+
+browser: $(VENV)/.test ## only the tests that need Chromium
+	$(BIN)/python -m pytest -q -m browser
+
+lint: $(VENV)/.test ## ruff, the form of the notebooks, the student edition
+	$(BIN)/python -m ruff check .
+	$(BIN)/python tools/check_notebooks.py
+	$(BIN)/python tools/build_student.py --check
+
+student: $(VENV)/.test ## rebuild notebooks/student from notebooks
+	$(BIN)/python tools/build_student.py
+
+results: $(VENV)/.lab ## recompute the tables and figures into docs/results and docs/RESULTS.md
+	$(BIN)/python tools/results.py
+
+bench: $(VENV)/.bench ## measure against the public peers into benchmarks/results
+	$(BIN)/python -m benchmarks
+
+pretrained: $(VENV)/.lab ## train all shipped weights again (hours)
+	$(BIN)/python tools/pretrained.py
+
+clean: ## remove .venv and what the build left
+	rm -rf $(VENV) build dist *.egg-info .pytest_cache .ruff_cache
