@@ -1,0 +1,103 @@
+"""Weights on disk: safetensors (no code in them) with a card that says what they are and how they were made.
+
+A damaged or foreign file is refused with the reason.  Notebook: 00, 07
+"""
+
+import json
+import os
+from dataclasses import fields
+from pathlib import Path
+
+import torch
+from safetensors import SafetensorError, safe_open
+from safetensors.torch import save_file
+
+from .ddpm import make_schedule
+from .modiff import MoDiff, MoDiffConfig
+from .motion.scaler import Scaler
+from .walker import Walker
+
+FORMAT = "motiondiff_edu walker 1"
+FOLDER = Path(__file__).parent / "pretrained"
+
+
+class CheckpointError(ValueError):
+    """A weights file that cannot be used, with the reason and what to do."""
+
+
+def save_walker(walker: Walker, path: str | Path, half: bool = True) -> Path:
+    """Write a walker: weights (float16 unless half=False), scalers, schedule, card. A card.json is laid beside it.
+
+    Written to a temporary name and renamed.  Notebook: 07
+    """
+    path = Path(path)
+    weights = {f"model.{k}": v.half() if half else v for k, v in walker.model.state_dict().items()}
+    scalers = {"pose": walker.pose_scaler, "control": walker.control_scaler}
+    weights |= {f"{name}.{part}": getattr(s, part) for name, s in scalers.items() for part in ("mean", "std")}
+    weights["schedule.beta"] = walker.schedule.beta[1:]
+    config = json.dumps(walker.config.as_dict())
+    metadata = {"format": FORMAT, "config": config, "schedule": walker.schedule.name, "card": json.dumps(walker.card)}
+    temporary = path.with_suffix(".part")
+    save_file({k: v.detach().clone().contiguous() for k, v in weights.items()}, temporary, metadata)
+    os.replace(temporary, path)
+    card = path.with_suffix(".json.part")
+    card.write_text(json.dumps(walker.card | {"config": walker.config.as_dict()}, indent=1) + "\n")
+    os.replace(card, path.with_suffix(".json"))
+    return path
+
+
+def load_walker(path: str | Path) -> Walker:
+    """Read a walker.  Raises CheckpointError for a file that is missing, damaged, or not one of ours."""
+    path = Path(path)
+    if not path.is_file():
+        raise CheckpointError(f"there is no weights file {path}")
+    try:
+        with safe_open(path, "pt") as file:
+            metadata, tensors = file.metadata() or {}, {name: file.get_tensor(name) for name in file.keys()}
+    except (SafetensorError, OSError, ValueError) as error:
+        raise CheckpointError(f"{path.name} is damaged or is no safetensors file ({error}); fetch it again") from error
+    if metadata.get("format") != FORMAT:
+        raise CheckpointError(f"{path.name} is a safetensors file, but not a walker of this project ({_looks_like(tensors)})")
+    model = MoDiff(_config(metadata, path))
+    try:
+        model.load_state_dict({k[6:]: v.float() for k, v in tensors.items() if k.startswith("model.")})
+        pose, control = (Scaler(tensors[f"{n}.mean"], tensors[f"{n}.std"]) for n in ("pose", "control"))
+        schedule = make_schedule(tensors["schedule.beta"], metadata["schedule"])
+    except (RuntimeError, KeyError, ValueError) as error:
+        raise CheckpointError(f"{path.name}: its weights do not fit its own configuration ({error}); fetch it again") from error
+    bad = [name for name, tensor in tensors.items() if not torch.isfinite(tensor.float()).all()]
+    if bad:
+        raise CheckpointError(f"{path.name}: {bad[0]} holds NaN or infinity; the training that wrote it had failed")
+    return Walker(model.eval().requires_grad_(False), schedule, pose, control, json.loads(metadata.get("card", "{}")))
+
+
+def _config(metadata: dict, path: Path) -> MoDiffConfig:
+    values = json.loads(metadata["config"])
+    unknown = set(values) - {field.name for field in fields(MoDiffConfig)}
+    if unknown:
+        raise CheckpointError(f"{path.name} has settings this version does not know: {', '.join(sorted(unknown))}; upgrade")
+    return MoDiffConfig(**values)
+
+
+def _looks_like(tensors: dict) -> str:
+    first = ", ".join(sorted(tensors)[:3])
+    return f"its tensors begin with {first}" if first else "it holds no tensors"
+
+
+def available() -> dict[str, Path]:
+    """The shipped weights: {name: file}; an alias stands beside the name it points to."""
+    files = {path.stem: path for path in sorted(FOLDER.glob("*.safetensors"))}
+    aliases = FOLDER / "aliases.json"
+    named = json.loads(aliases.read_text()) if aliases.is_file() else {}
+    return files | {alias: files[name] for alias, name in named.items() if name in files}
+
+
+def pretrained(name: str = "walker") -> Walker:
+    """A shipped walker by name: "walker" is the better one of "walker-eps" and "walker-x0".
+
+    Raises CheckpointError with the names there are.  Notebook: 00
+    """
+    files = available()
+    if name not in files:
+        raise CheckpointError(f"no weights are called {name!r}; there are: {', '.join(files) or 'none (run make pretrained)'}")
+    return load_walker(files[name])

@@ -1,0 +1,156 @@
+"""Cross-modal attention: queries from motion, keys and values from the condition; its maps can be watched.
+
+weights = softmax(Q K^T / sqrt(d) + bias),   out = weights V
+Source: MoFusion eq. 8-9; MoDiff III-F (T5-style relative positions).  Notebook: 06
+"""
+
+import math
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+import torch
+from jaxtyping import Float, Int
+from torch import Tensor, nn
+from torch.nn import functional as F
+
+
+def attention_weights(
+    q: Float[Tensor, "B H T d"], k: Float[Tensor, "B H M d"], bias: Float[Tensor, "#B H T M"] | None = None
+) -> Float[Tensor, "B H T M"]:
+    """softmax(Q K^T / sqrt(d) + bias): each query's row is a distribution over the M keys.
+
+    Source: MoFusion eq. 9.  Notebook: 06
+    """
+    scores = q @ k.transpose(-1, -2) / math.sqrt(q.shape[-1])
+    return torch.softmax(scores if bias is None else scores + bias, dim=-1)
+
+
+def attention(
+    q: Float[Tensor, "B H T d"],
+    k: Float[Tensor, "B H M d"],
+    v: Float[Tensor, "B H M d"],
+    bias: Float[Tensor, "#B H T M"] | None = None,
+) -> Float[Tensor, "B H T d"]:
+    """weights V, every query's weighted mean of the values.  Source: MoFusion eq. 8-9.  Notebook: 06"""
+    return attention_weights(q, k, bias) @ v
+
+
+def relative_position_bucket(
+    distance: Int[Tensor, "*N"], buckets: int = 32, farthest: int = 128, bidirectional: bool = True
+) -> Int[Tensor, "*N"]:
+    """T5's bucket of a distance (key time minus query time): exact when near, logarithmic when far.
+
+    Half of the buckets for each direction; in each, half are exact. Beyond `farthest` all share the last one.
+    Source: MoDiff III-F names T5.  Notebook: 06
+    """
+    if bidirectional:
+        buckets //= 2
+        offset = (distance > 0).long() * buckets
+        distance = distance.abs()
+    else:
+        offset, distance = torch.zeros_like(distance), (-distance).clamp_min(0)
+    exact = buckets // 2
+    far = torch.log(distance.clamp_min(1).float() / exact) / math.log(farthest / exact) * (buckets - exact)
+    far = (exact + far.long()).clamp_max(buckets - 1)
+    return offset + torch.where(distance < exact, distance, far)
+
+
+class RelativeBias(nn.Module):
+    """One learned number for each head and bucket of time distance, added to the scores; all layers share it.
+
+    The times of queries and keys are in frames and may belong to different modalities.  Notebook: 06
+    """
+
+    def __init__(self, heads: int, query_times: Int[Tensor, "T"], key_times: Int[Tensor, "M"]):
+        super().__init__()
+        self.table = nn.Parameter(torch.zeros(32, heads))
+        buckets = relative_position_bucket(key_times[None, :] - query_times[:, None])
+        self.register_buffer("buckets", buckets, persistent=False)
+
+    def forward(self) -> Float[Tensor, "1 H T M"]:
+        return F.embedding(self.buckets, self.table).permute(2, 0, 1)[None]
+
+
+class CrossModalAttention(nn.Module):
+    """Multi-head attention: `x` asks, `context` answers; with context = x it is self-attention.
+
+    Ordinarily the maps are never formed (fused kernel); inside `watch(model)` they are, and kept.
+    Source: MoFusion eq. 8-9.  Notebook: 06
+    """
+
+    def __init__(self, width: int, heads: int, context_width: int | None = None):
+        super().__init__()
+        if width % heads:
+            raise ValueError(f"width {width} cannot be shared evenly by {heads} heads")
+        self.heads = heads
+        self.q = nn.Linear(width, width)
+        self.kv = nn.Linear(context_width or width, 2 * width)
+        self.out = nn.Linear(width, width)
+        self.watcher = None  # a list while somebody watches
+
+    def split(self, x: Float[Tensor, "B T C"]) -> Float[Tensor, "B H T d"]:
+        """Cut the channels into heads: head h owns channels h*d ... (h+1)*d - 1."""
+        return x.unflatten(-1, (self.heads, -1)).transpose(1, 2)
+
+    def forward(
+        self,
+        x: Float[Tensor, "B T C"],
+        context: Float[Tensor, "B M C2"],
+        bias: Float[Tensor, "#B H T M"] | None = None,
+    ) -> Float[Tensor, "B T C"]:
+        q = self.split(self.q(x))
+        k, v = (self.split(part) for part in self.kv(context).chunk(2, dim=-1))
+        if self.watcher is None:
+            out = F.scaled_dot_product_attention(q, k, v, attn_mask=bias)
+        else:
+            weights = attention_weights(q, k, bias)
+            self.watcher.append(weights.detach())
+            out = weights @ v
+        return self.out(out.transpose(1, 2).flatten(-2))
+
+
+class Block(nn.Module):
+    """A transformer block, normalised first: self-attention, then (with_context) cross-attention, then feed-forward.
+
+    Source: MoDiff III-F; MoFusion 3.3.  Notebook: 06
+    """
+
+    def __init__(self, width: int, heads: int, hidden: int, with_context: bool = False, dropout: float = 0.0):
+        super().__init__()
+        self.norm_self, self.self_attention = nn.LayerNorm(width), CrossModalAttention(width, heads)
+        self.with_context = with_context
+        if with_context:
+            self.norm_cross, self.cross_attention = nn.LayerNorm(width), CrossModalAttention(width, heads)
+        self.norm_ff = nn.LayerNorm(width)
+        self.ff = nn.Sequential(nn.Linear(width, hidden), nn.GELU(), nn.Linear(hidden, width))
+        self.drop = nn.Dropout(dropout)
+
+    def forward(
+        self,
+        x: Float[Tensor, "B T C"],
+        bias: Float[Tensor, "1 H T T"] | None = None,
+        context: Float[Tensor, "B M C"] | None = None,
+        context_bias: Float[Tensor, "1 H T M"] | None = None,
+    ) -> Float[Tensor, "B T C"]:
+        normed = self.norm_self(x)
+        x = x + self.drop(self.self_attention(normed, normed, bias))
+        if self.with_context:
+            x = x + self.drop(self.cross_attention(self.norm_cross(x), context, context_bias))
+        return x + self.drop(self.ff(self.norm_ff(x)))
+
+
+@contextmanager
+def watch(model: nn.Module) -> Iterator[dict[str, list[Float[Tensor, "B H T M"]]]]:
+    """Collect the attention maps of every layer while the block runs: {layer name: [one map per call]}.
+
+    Outside of it nothing is computed or kept.  Notebook: 06
+    """
+    layers = {name: m for name, m in model.named_modules() if isinstance(m, CrossModalAttention)}
+    maps = {name: [] for name in layers}
+    try:
+        for name, layer in layers.items():
+            layer.watcher = maps[name]
+        yield maps
+    finally:
+        for layer in layers.values():
+            layer.watcher = None

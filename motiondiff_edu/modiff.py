@@ -1,0 +1,142 @@
+"""MoDiff's network: two encoders, a cross-modal transformer, and a decoder that predicts the noise of the future.
+
+    past poses  --2 layers--+
+                            +--concatenated in time--6 cross-modal layers--> memory
+    control     --2 layers--+                                                  |
+    (noised future, step) ----------------------------------3 decoder layers--+--> eps_hat
+Source: MoDiff III-F, IV-A, Fig. 2.  Notebook: 07
+"""
+
+import math
+from dataclasses import asdict, dataclass
+
+import torch
+from jaxtyping import Float, Int
+from torch import Tensor, nn
+
+from .cross_modal_attention import Block, RelativeBias
+
+
+@dataclass(frozen=True)
+class MoDiffConfig:
+    """Sizes of the network. `target` says what its output means; `skip` adds w(s) x_s to it.
+
+    The paper gives width, heads, layers, T_h and S; T_p, the feed-forward width and dropout are ours (FIELD of choices
+    in docs/NOTATION.md).  Source: MoDiff III-F, IV-A
+    """
+
+    D: int = 63  # motion features
+    C: int = 3  # control features
+    T_h: int = 10  # past frames given
+    T_p: int = 10  # future frames predicted
+    S: int = 100  # diffusion steps
+    width: int = 256
+    heads: int = 4
+    hidden: int = 1024  # feed-forward width
+    motion_layers: int = 2
+    control_layers: int = 2
+    cross_layers: int = 6
+    decoder_layers: int = 3
+    dropout: float = 0.0
+    target: str = "eps"
+    skip: bool = True
+
+    def as_dict(self) -> dict:
+        return asdict(self)
+
+
+MODIFF_PAPER = MoDiffConfig(dropout=0.1)
+MODIFF_SMALL = MoDiffConfig(width=96, hidden=384)
+
+
+def step_embedding(s: Int[Tensor, "B"], width: int) -> Float[Tensor, "B W"]:
+    """Sines and cosines of the diffusion step, wavelengths from 2 pi to 10000 * 2 pi steps.  Notebook: 07"""
+    frequencies = torch.exp(-math.log(1e4) * torch.arange(width // 2, device=s.device) / (width // 2))
+    angles = s[:, None].float() * frequencies
+    return torch.cat([angles.sin(), angles.cos()], dim=-1)
+
+
+class Encoder(nn.Module):
+    """Blocks of self-attention over tokens whose times (in frames) are known.  Source: MoDiff III-F.  Notebook: 07"""
+
+    def __init__(self, config: MoDiffConfig, layers: int, times: Int[Tensor, "T"]):
+        super().__init__()
+        self.bias = RelativeBias(config.heads, times, times)
+        sizes = (config.width, config.heads, config.hidden)
+        self.blocks = nn.ModuleList(Block(*sizes, dropout=config.dropout) for _ in range(layers))
+
+    def forward(self, x: Float[Tensor, "B T C"]) -> Float[Tensor, "B T C"]:
+        bias = self.bias()
+        for block in self.blocks:
+            x = block(x, bias)
+        return x
+
+
+class MoDiff(nn.Module):
+    """eps_hat = net(x_s, s, past, control) + w(s) x_s.
+
+    w(s) is learned, one number a step, and starts at 1: at high noise eps is nearly x_s itself, and the skip spares the
+    network from carrying 63 independent noise values through its width (ours; the paper has none).
+    Times in frames: the past ends at 0, the future is 1..T_p, control has one row for each of both.
+    Source: MoDiff III-F, Fig. 2.  Notebook: 07
+    """
+
+    def __init__(self, config: MoDiffConfig = MODIFF_SMALL):
+        super().__init__()
+        self.config, width = config, config.width
+        past, future = torch.arange(1 - config.T_h, 1), torch.arange(1, config.T_p + 1)
+        both = torch.cat([past, future])  # the control's times
+        memory = torch.cat([past, both])
+        self.past_in, self.control_in = nn.Linear(config.D, width), nn.Linear(config.C, width)
+        self.modality = nn.Parameter(0.02 * torch.randn(2, width))  # which of the two a token is
+        self.motion_encoder = Encoder(config, config.motion_layers, past)
+        self.control_encoder = Encoder(config, config.control_layers, both)
+        self.cross_encoder = Encoder(config, config.cross_layers, memory)
+        self.memory_norm = nn.LayerNorm(width)
+
+        self.step_in = nn.Sequential(nn.Linear(width, width), nn.SiLU(), nn.Linear(width, width))
+        self.future_in = nn.Linear(config.D + width, width)
+        self.self_bias = RelativeBias(config.heads, future, future)
+        self.memory_bias = RelativeBias(config.heads, future, memory)
+        sizes = (width, config.heads, config.hidden)
+        self.decoder = nn.ModuleList(Block(*sizes, True, config.dropout) for _ in range(config.decoder_layers))
+        self.head = nn.Sequential(nn.LayerNorm(width), nn.Linear(width, width), nn.GELU(), nn.Linear(width, config.D))
+        self.skip = nn.Parameter(torch.ones(config.S + 1)) if config.skip else None
+
+    def encode(
+        self, past: Float[Tensor, "B T_h D"], control: Float[Tensor, "B T C"]
+    ) -> Float[Tensor, "B M width"]:
+        """The memory: past poses and control, encoded apart and then together; it does not depend on s.
+
+        Raises ValueError when past or control have another number of frames than the network was built for.
+        """
+        frames = (self.config.T_h, self.config.T_h + self.config.T_p)
+        if (past.shape[1], control.shape[1]) != frames:
+            raise ValueError(
+                f"this network takes {frames[0]} past poses and {frames[1]} rows of control "
+                f"(past and future), got {past.shape[1]} and {control.shape[1]}"
+            )
+        motion = self.motion_encoder(self.past_in(past) + self.modality[0])
+        control = self.control_encoder(self.control_in(control) + self.modality[1])
+        return self.memory_norm(self.cross_encoder(torch.cat([motion, control], dim=1)))
+
+    def decode(
+        self, x_s: Float[Tensor, "B T_p D"], s: Int[Tensor, "B"], memory: Float[Tensor, "B M width"]
+    ) -> Float[Tensor, "B T_p D"]:
+        """One look at the noised future: what the target (eps, x0 or v) is thought to be."""
+        step = self.step_in(step_embedding(s, self.config.width))
+        x = self.future_in(torch.cat([x_s, step[:, None].expand(-1, x_s.shape[1], -1)], dim=-1))
+        self_bias, memory_bias = self.self_bias(), self.memory_bias()
+        for block in self.decoder:
+            x = block(x, self_bias, memory, memory_bias)
+        out = self.head(x)
+        return out if self.skip is None else out + self.skip[s][:, None, None] * x_s
+
+    def forward(
+        self,
+        x_s: Float[Tensor, "B T_p D"],
+        s: Int[Tensor, "B"],
+        past: Float[Tensor, "B T_h D"],
+        control: Float[Tensor, "B T C"],
+    ) -> Float[Tensor, "B T_p D"]:
+        return self.decode(x_s, s, self.encode(past, control))

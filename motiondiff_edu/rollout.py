@@ -1,0 +1,109 @@
+"""Autoregression: predict T_p poses, keep the first few, move on; the control may change at every frame.
+
+A *window sampler* is a callable `sample(past (B, T_h, D), control (B, T_h + T_p, C), generator) -> (B, T_p, D)` in the
+network's units. `rollout_steps` repeats it; `generate` does so for a trained walker, in metres and m/s.
+Source: MoDiff III-C, Alg. 2.  Notebook: 08
+"""
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+
+import torch
+from jaxtyping import Float
+from torch import Tensor
+
+WindowSampler = Callable[[Tensor, Tensor, torch.Generator], Tensor]
+Control = Tensor | Callable[[int], Tensor]
+
+
+@dataclass(frozen=True, eq=False)
+class Frame:
+    """One new frame: its number after the past (from 0), its pose, and the whole window it was taken from."""
+
+    t: int
+    pose: Float[Tensor, "B D"]
+    window: Float[Tensor, "B T_p D"]
+
+
+def held_window(
+    control: Float[Tensor, "B T C"], T_p: int
+) -> Float[Tensor, "B T+{T_p} C"]:
+    """The control of a window whose future is not known: the last known row is held over T_p more frames.
+
+    Notebook: 07
+    """
+    return torch.cat([control, control[:, -1:].expand(-1, T_p, -1)], dim=1)
+
+
+def _rows(control: Control, first: int, last: int) -> Float[Tensor, "B T C"]:
+    """Rows first..last-1 of the control; past its end the last row is repeated."""
+    if callable(control):
+        return torch.stack([control(t) for t in range(first, last)], dim=1)
+    rows = control[:, first:last]
+    missing = last - first - rows.shape[1]
+    return rows if missing == 0 else torch.cat([rows, control[:, -1:].expand(-1, missing, -1)], dim=1)
+
+
+def rollout_steps(
+    sample: WindowSampler,
+    past: Float[Tensor, "B T_h D"],
+    control: Control,
+    frames: int,
+    T_p: int,
+    *,
+    generator: torch.Generator,
+    keep: int = 1,
+    hold: bool = True,
+) -> Iterator[Frame]:
+    """Yield `frames` new poses, one by one; of every predicted window the first `keep` are kept.
+
+    `control` is (B, T, C), row 0 beside past[:, 0], or a callable t -> (B, C) that is asked when a row is needed, so that
+    it can be changed on the fly. hold=True: the network sees the control up to the step it is about to take, held over
+    the future; hold=False (look-ahead): it sees what comes.
+    Raises ValueError unless 1 <= keep <= T_p.  Source: MoDiff III-C, Alg. 2.  Notebook: 08
+    """
+    if not 1 <= keep <= T_p:
+        raise ValueError(f"keep must lie between 1 and T_p = {T_p}, got {keep}")
+    T_h = past.shape[1]
+    for t in range(0, frames, keep):
+        known = _rows(control, t, t + T_h)
+        window_control = held_window(known, T_p) if hold else torch.cat([known, _rows(control, t + T_h, t + T_h + T_p)], 1)
+        window = sample(past, window_control, generator)
+        for k in range(min(keep, frames - t)):
+            yield Frame(t + k, window[:, k], window)
+        past = torch.cat([past, window[:, :keep]], dim=1)[:, -T_h:]
+
+
+def generate(
+    walker,
+    past: Float[Tensor, "*B T_h D"],
+    control: Float[Tensor, "*B T C"],
+    *,
+    seed: int = 0,
+    generator: torch.Generator | None = None,
+    steps: int | None = None,
+    keep: int = 1,
+    hold: bool = True,
+) -> Float[Tensor, "*B n D"]:
+    """Continue `past` (root-frame poses, metres) under `control` (m/s, m/s, rad/s): n = T - T_h new poses, metres.
+
+    Rows 0..T_h-1 of the control belong to the past. steps=None is DDPM with all S steps, a number is DDIM with so many.
+    A past and control without a batch axis give poses without one.
+    Raises ValueError when past and control do not fit the walker or hold NaN.  Source: MoDiff Alg. 2.  Notebook: 08
+    """
+    single = past.dim() == 2
+    past, control = (x[None] if single else x for x in (past, control))
+    T_h, frames = walker.config.T_h, control.shape[1] - past.shape[1]
+    if past.shape[1] != T_h:
+        raise ValueError(f"the walker continues {T_h} past poses, got {past.shape[1]}: pass past[..., -{T_h}:, :]")
+    if frames < 1:
+        raise ValueError(f"control has {control.shape[1]} rows, {T_h} of them beside the past: none is left to walk under")
+    if not (torch.isfinite(past).all() and torch.isfinite(control).all()):
+        raise ValueError("past or control holds NaN or infinity; fill the holes first")
+    generator = generator or torch.Generator().manual_seed(seed)
+    poses, velocities = walker.pose_scaler.transform(past.float()), walker.control_scaler.transform(control.float())
+    loop = rollout_steps(
+        walker.window_sampler(steps), poses, velocities, frames, walker.config.T_p, generator=generator, keep=keep, hold=hold
+    )
+    new = walker.pose_scaler.inverse(torch.stack([frame.pose for frame in loop], dim=1))
+    return new[0] if single else new

@@ -1,0 +1,160 @@
+"""One training loop, a generator: it yields after every step, keeps an averaged copy, and can be killed and resumed.
+
+Nothing here knows what is trained: `loss_fn(model, generator)` draws its own batch and noise from the generator, which
+is why a resumed run continues bit for bit.  Source: MoDiff Alg. 1.  Notebook: 05, 07
+"""
+
+import copy
+import json
+import math
+import os
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+import torch
+from safetensors import safe_open
+from safetensors.torch import save_file
+from torch import Tensor, nn
+from tqdm.auto import tqdm
+
+LossFn = Callable[[nn.Module, torch.Generator], Tensor]
+
+
+class NonFiniteLoss(RuntimeError):
+    """The loss became NaN or infinite; the weights are still those of the last good step."""
+
+
+@dataclass(eq=False)
+class TrainState:
+    """Everything that a run consists of: what `save` writes and `resume` reads."""
+
+    model: nn.Module
+    average: nn.Module  # exponential moving average of the weights: what is used after training
+    optimizer: torch.optim.Optimizer
+    generator: torch.Generator
+    step: int = 0
+
+    @classmethod
+    def start(cls, model: nn.Module, seed: int = 0) -> "TrainState":
+        """A fresh run of this model. Every random number of the run comes from `seed`."""
+        average = copy.deepcopy(model).requires_grad_(False).eval()
+        optimizer = torch.optim.Adam(model.parameters(), fused=True)
+        return cls(model, average, optimizer, torch.Generator().manual_seed(seed))
+
+    def save(self, path: str | Path) -> None:
+        """Write the run (safetensors: no code in it) to a temporary name, then rename: a kill leaves the old file."""
+        tensors = {f"model.{k}": v for k, v in self.model.state_dict().items()}
+        tensors |= {f"average.{k}": v for k, v in self.average.state_dict().items()}
+        for i, moments in self.optimizer.state_dict()["state"].items():
+            tensors |= {f"adam.{i}.{k}": v for k, v in moments.items()}
+        tensors |= {"random.generator": self.generator.get_state(), "random.torch": torch.get_rng_state()}
+        temporary = f"{path}.part"
+        save_file({k: v.contiguous().clone() for k, v in tensors.items()}, temporary, {"step": json.dumps(self.step)})
+        os.replace(temporary, path)
+
+    def resume(self, path: str | Path) -> "TrainState":
+        """Continue the run saved at `path`; it must be of the same model (else load_state_dict says what differs)."""
+        with safe_open(path, "pt") as file:
+            tensors = {name: file.get_tensor(name) for name in file.keys()}
+            self.step = json.loads(file.metadata()["step"])
+        parts = {}
+        for name, tensor in tensors.items():
+            part, key = name.split(".", 1)
+            parts.setdefault(part, {})[key] = tensor
+        self.model.load_state_dict(parts["model"])
+        self.average.load_state_dict(parts["average"])
+        adam = {}
+        for name, tensor in parts.get("adam", {}).items():
+            index, key = name.split(".")
+            adam.setdefault(int(index), {})[key] = tensor
+        self.optimizer.load_state_dict(self.optimizer.state_dict() | {"state": adam})
+        self.generator.set_state(parts["random"]["generator"])
+        torch.set_rng_state(parts["random"]["torch"])
+        return self
+
+
+@dataclass(frozen=True)
+class TrainStep:
+    """What one step of training reports."""
+
+    step: int
+    loss: float
+    grad_norm: float
+    lr: float
+
+
+def cosine_lr(peak: float, steps: int, warmup: int = 100) -> Callable[[int], float]:
+    """Learning rate: rises evenly for `warmup` steps, then falls to zero along a half cosine.  Notebook: 05"""
+
+    def lr(step: int) -> float:
+        if step < warmup:
+            return peak * (step + 1) / warmup
+        return peak * 0.5 * (1 + math.cos(math.pi * min(1.0, (step - warmup) / max(1, steps - warmup))))
+
+    return lr
+
+
+def train_steps(
+    state: TrainState,
+    loss_fn: LossFn,
+    steps: int,
+    *,
+    lr: float | Callable[[int], float] = 1e-3,
+    clip: float = 1.0,
+    decay: float = 0.999,
+    save_to: str | Path | None = None,
+    save_every: int = 1000,
+    progress: bool = True,
+) -> Iterator[TrainStep]:
+    """Train until `state.step == steps`, yielding after each step.
+
+    Gradients are clipped to the norm `clip`; the average follows with `decay` (less in the first steps). With `save_to`
+    the run is saved every `save_every` steps and at the end.
+    Raises NonFiniteLoss with what to do; the weights of the last good step stay in `state` and, with `save_to`, on disk.
+    Source: MoDiff Alg. 1 (the loop).  Notebook: 05, 07
+    """
+    bar = tqdm(total=steps, initial=state.step, disable=not progress, desc="training", unit="step", mininterval=1.0)
+    state.model.train()
+    with bar:
+        while state.step < steps:
+            rate = lr(state.step) if callable(lr) else lr
+            loss = loss_fn(state.model, state.generator)
+            state.optimizer.zero_grad(set_to_none=True)
+            loss.backward()
+            norm = nn.utils.clip_grad_norm_(state.model.parameters(), clip)
+            if not (torch.isfinite(loss) and torch.isfinite(norm)):
+                _stop(state, float(loss), float(norm), rate, save_to)
+            for group in state.optimizer.param_groups:
+                group["lr"] = rate
+            state.optimizer.step()
+            _follow(state, decay)
+            state.step += 1
+            if save_to and (state.step % save_every == 0 or state.step == steps):
+                state.save(save_to)
+            bar.update()
+            report = TrainStep(state.step, float(loss), float(norm), rate)
+            if state.step % 20 == 0:
+                bar.set_postfix_str(f"loss {report.loss:.4f}", refresh=False)
+            yield report
+    state.model.eval()
+
+
+@torch.no_grad()
+def _follow(state: TrainState, decay: float) -> None:
+    """average <- decay average + (1 - decay) model, with a shorter memory at the start."""
+    decay = min(decay, (1 + state.step) / (10 + state.step))
+    for mean, new in zip(state.average.state_dict().values(), state.model.state_dict().values(), strict=True):
+        mean.lerp_(new, 1 - decay) if mean.is_floating_point() else mean.copy_(new)
+
+
+def _stop(state: TrainState, loss: float, norm: float, rate: float, save_to: str | Path | None) -> None:
+    kept = ""
+    if save_to:
+        state.save(save_to)
+        kept = f" They are saved in {save_to}."
+    raise NonFiniteLoss(
+        f"step {state.step}: the loss is {loss}, the gradient's norm {norm}, at learning rate {rate:g}. "
+        f"The weights are those of the last good step.{kept} Usual causes: a learning rate too high (try a tenth), "
+        "or NaN in the data (Scaler.fit refuses those)."
+    )

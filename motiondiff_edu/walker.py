@@ -1,0 +1,61 @@
+"""A walker: a trained MoDiff with all that it needs to be used: schedule, scalers, and the card that says what it is.
+
+`rollout.generate(walker, past, control)` lets it walk.  Notebook: 00, 07
+"""
+
+from dataclasses import dataclass, field
+from functools import cached_property
+
+import torch
+from jaxtyping import Float
+from torch import Tensor
+
+from .ddpm import Schedule
+from .fast.modiff import FastMoDiff
+from .fast.samplers import ddim_steps, ddpm_steps
+from .modiff import MoDiff, MoDiffConfig
+from .motion.scaler import Scaler
+from .prediction import denoiser_of
+from .rollout import WindowSampler
+
+
+@dataclass(frozen=True, eq=False)
+class Walker:
+    """The network, in its own units, and the scalers that lead there from metres and m/s."""
+
+    model: MoDiff
+    schedule: Schedule
+    pose_scaler: Scaler
+    control_scaler: Scaler
+    card: dict = field(default_factory=dict)
+
+    @property
+    def config(self) -> MoDiffConfig:
+        return self.model.config
+
+    @cached_property
+    def fast(self) -> FastMoDiff:
+        """The fast twin, built at first use."""
+        return FastMoDiff(self.model)
+
+    def denoiser(self, past: Float[Tensor, "B T_h D"], control: Float[Tensor, "B T C"]):
+        """`denoise(x_s, s) -> eps_hat` for this past and control, in the network's units."""
+        context = self.fast.encode(past, control)
+        return denoiser_of(lambda x_s, s: self.fast.denoise(x_s, s, context), self.schedule, self.config.target)
+
+    def window_sampler(self, steps: int | None = None) -> WindowSampler:
+        """Draw a window of T_p poses: DDPM with all steps, or DDIM with `steps` of them.  Notebook: 08"""
+
+        @torch.inference_mode()
+        def sample(past: Tensor, control: Tensor, generator: torch.Generator) -> Tensor:
+            denoise = self.denoiser(past, control)
+            x_S = torch.randn(len(past), self.config.T_p, self.config.D, generator=generator)
+            if steps is None:
+                loop = ddpm_steps(denoise, x_S, self.schedule, generator=generator)
+            else:
+                loop = ddim_steps(denoise, x_S, self.schedule, steps=steps, generator=generator)
+            for step in loop:
+                last = step
+            return last.x_s
+
+        return sample

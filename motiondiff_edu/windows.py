@@ -1,0 +1,97 @@
+"""Training windows of MoDiff: ten past poses, ten future poses, the control of all twenty frames; and the loss on them.
+
+Half of the windows hold the control of the step about to be taken over the future: whoever steers does not know what
+comes. Source: MoDiff III-A, Alg. 1; the held half is ours.  Notebook: 07
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import torch
+from jaxtyping import Float, Int
+from torch import Tensor, nn
+
+from .ddpm import Schedule, q_sample
+from .motion.clip import Clip
+from .motion.scaler import Scaler
+from .prediction import target_of
+
+
+@dataclass(frozen=True, eq=False)
+class Windows:
+    """All frames of a data set, standardised, and where a window may start; a window never crosses two clips."""
+
+    poses: Float[Tensor, "N D"]
+    control: Float[Tensor, "N C"]
+    starts: Int[Tensor, "K"]
+    T_h: int
+    T_p: int
+    pose_scaler: Scaler
+    control_scaler: Scaler
+
+    @classmethod
+    def of(
+        cls,
+        clips: Sequence[Clip],
+        T_h: int = 10,
+        T_p: int = 10,
+        scalers: tuple[Scaler, Scaler] | None = None,
+    ) -> "Windows":
+        """Collect clips; the scalers are fitted on them unless given (pose, control).
+
+        Raises ValueError when no clip is as long as a window.  Notebook: 07
+        """
+        length, starts, first = T_h + T_p, [], 0
+        for clip in clips:
+            starts.append(np.arange(first, first + len(clip) - length + 1))
+            first += len(clip)
+        starts = np.concatenate(starts) if starts else np.zeros(0, int)
+        if not len(starts):
+            raise ValueError(f"no clip has the {length} frames of a window; pass longer clips")
+        poses = torch.from_numpy(np.concatenate([clip.features() for clip in clips]))
+        control = torch.from_numpy(np.concatenate([clip.control for clip in clips]).astype(np.float32))
+        pose_scaler, control_scaler = scalers or (Scaler.fit(poses), Scaler.fit(control))
+        return cls(
+            pose_scaler.transform(poses),
+            control_scaler.transform(control),
+            torch.from_numpy(starts),
+            T_h,
+            T_p,
+            pose_scaler,
+            control_scaler,
+        )
+
+    def draw(
+        self, batch: int, generator: torch.Generator, held: float = 0.5
+    ) -> tuple[Float[Tensor, "B T_h D"], Float[Tensor, "B T_p D"], Float[Tensor, "B T C"]]:
+        """A random batch (past, future, control); a share `held` of it holds control[T_h - 1] over the future."""
+        chosen = torch.randint(len(self.starts), (batch,), generator=generator)
+        rows = self.starts[chosen][:, None] + torch.arange(self.T_h + self.T_p)
+        poses, control = self.poses[rows], self.control[rows]
+        hold = torch.rand(batch, generator=generator) < held
+        control[:, self.T_h :] = torch.where(
+            hold[:, None, None], control[:, self.T_h - 1 : self.T_h], control[:, self.T_h :]
+        )
+        return poses[:, : self.T_h], poses[:, self.T_h :], control
+
+
+def window_loss(
+    windows: Windows, schedule: Schedule, *, batch: int = 32, noises: int = 4, held: float = 0.5
+) -> Callable[[nn.Module, torch.Generator], Tensor]:
+    """Algorithm 1 as a `loss_fn` for `training.train_steps`: mean squared error of the network's target.
+
+    Every window is encoded once and denoised at `noises` different steps: the encoder is the dear part.
+    Source: MoDiff eq. 10, Alg. 1.  Notebook: 07
+    """
+
+    def loss_fn(model: nn.Module, generator: torch.Generator) -> Tensor:
+        past, future, control = windows.draw(batch, generator, held)
+        memory = model.encode(past, control).repeat_interleave(noises, dim=0)
+        x0 = future.repeat_interleave(noises, dim=0)
+        s = torch.randint(1, schedule.S + 1, (batch * noises,), generator=generator)
+        eps = torch.randn(x0.shape, generator=generator)
+        wanted = target_of(x0, eps, s, schedule, model.config.target)
+        return (wanted - model.decode(q_sample(x0, s, schedule, eps), s, memory)).square().mean()
+
+    return loss_fn
