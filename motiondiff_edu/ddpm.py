@@ -1,6 +1,6 @@
 """Denoising diffusion (MoDiff, III-B and III-C): noise is added by a rule, and taken away by a learnt one.
 
-Steps are numbered s = 1..S, and every table has S + 1 entries, so that `alpha_bar[s]` is the paper's; `alpha_bar[0]` is 1.
+Steps are numbered s = 1..S, and every table has S + 1 entries, so that `alpha_bar[s]` is the paper's (and [0] is 1).
 A *denoiser* is any callable `denoise(x_s, s) -> eps_hat`, with s of shape (B,).
 """
 import math
@@ -20,10 +20,9 @@ Denoiser = Callable[[Tensor, Tensor], Tensor]
 @dataclass(frozen=True, eq=False)
 class Schedule:
     """How much noise each step adds: beta, alpha = 1 - beta and its running product alpha_bar, indexed by s = 0..S."""
-
-    beta: Float[Tensor, "S+1"]
-    alpha: Float[Tensor, "S+1"]
-    alpha_bar: Float[Tensor, "S+1"]
+    beta: Float[Tensor, "S_plus_1"]
+    alpha: Float[Tensor, "S_plus_1"]
+    alpha_bar: Float[Tensor, "S_plus_1"]
     name: str = "schedule"
 
     @property
@@ -45,8 +44,8 @@ def make_schedule(beta: Float[Tensor, "S"], name: str = "schedule") -> Schedule:
     beta = torch.cat([torch.zeros(1, dtype=torch.float64), beta.double()])
     bad = [s for s in range(1, len(beta)) if not 0 < beta[s] < 1]
     if bad or len(beta) < 2:
-        where = f"beta_{bad[0]} = {float(beta[bad[0]]):g}" if bad else "there is no step at all"
-        raise ValueError(f"{name}: every beta must lie between 0 and 1, but {where}. More steps make each beta smaller.")
+        where = f"beta_{bad[0]} = {float(beta[bad[0]]):g}" if bad else "there is none"
+        raise ValueError(f"{name}: every beta must lie between 0 and 1, but {where}; take more steps or smaller betas")
     schedule = Schedule(beta, 1 - beta, torch.cumprod(1 - beta, 0), name)
     if schedule.signal_left > 0.1:
         warnings.warn(f"{schedule_card(schedule)} Sampling starts from pure noise, which this schedule never reaches: "
@@ -61,8 +60,7 @@ def linear_schedule(S: int = 100, beta_1: float = 1e-4, beta_S: float = 0.1) -> 
 
 def scaled_linear_schedule(S: int = 100) -> Schedule:
     """DDPM's 1e-4 to 0.02 over 1000 steps, scaled by 1000 / S so that fewer steps remove as much. Notebook: 02."""
-    beta = torch.linspace(0.1 / S, 20 / S, S, dtype=torch.float64)
-    return make_schedule(beta, "scaled linear")
+    return make_schedule(torch.linspace(0.1 / S, 20 / S, S, dtype=torch.float64), "scaled linear")
 
 
 def cosine_schedule(S: int = 1000, cap: float = 0.999) -> Schedule:
@@ -78,37 +76,36 @@ def schedule_card(schedule: Schedule) -> str:
             "of the signal's amplitude is left.")
 
 
-def at(table: Float[Tensor, "S+1"], s: Steps, x: Float[Tensor, "B *shape"]) -> Tensor:
+def at(table: Float[Tensor, "S_plus_1"], s: Steps, x: Float[Tensor, "B *shape"]) -> Tensor:
     """Look up table[s], shaped so that it multiplies x: one number, or one for each sample of the batch."""
-    if isinstance(s, int):
-        return table[s].to(x)
-    return table.to(x.device)[s].to(x).reshape(-1, *[1] * (x.dim() - 1))
+    return table[s].to(x) if isinstance(s, int) else table.to(x.device)[s].to(x).reshape(-1, *[1] * (x.dim() - 1))
+
+
+def draw(like: Float[Tensor, "*shape"], generator: torch.Generator | None = None) -> Float[Tensor, "*shape"]:
+    """Standard normal noise in the shape of `like`; drawn where the generator lives, so that seeds travel."""
+    device = generator.device if generator else like.device
+    return torch.randn(like.shape, generator=generator, dtype=like.dtype, device=device).to(like.device)
 
 
 # ---- forward: adding noise -------------------------------------------------------------------------------------------
 def q_step(x_prev: Float[Tensor, "B *shape"], s: Steps, schedule: Schedule,
            noise: Float[Tensor, "B *shape"]) -> Float[Tensor, "B *shape"]:
-    """Add one step of noise: x_s = sqrt(1 - beta_s) x_{s-1} + sqrt(beta_s) noise. Source: MoDiff eq. 1. Notebook: 02."""
+    """Add one step: x_s = sqrt(1 - beta_s) x_{s-1} + sqrt(beta_s) noise. Source: MoDiff eq. 1. Notebook: 02."""
     beta = at(schedule.beta, s, x_prev)
     return (1 - beta).sqrt() * x_prev + beta.sqrt() * noise
 
 
 def q_sample(x0: Float[Tensor, "B *shape"], s: Steps, schedule: Schedule,
              noise: Float[Tensor, "B *shape"]) -> Float[Tensor, "B *shape"]:
-    """Add s steps of noise at once: x_s = sqrt(alpha_bar_s) x0 + sqrt(1 - alpha_bar_s) noise.
-
-    Source: MoDiff eq. 2. Notebook: 02.
-    """
+    """Add s steps: x_s = sqrt(alpha_bar_s) x0 + sqrt(1 - alpha_bar_s) noise. Source: MoDiff eq. 2. Notebook: 02."""
     alpha_bar = at(schedule.alpha_bar, s, x0)
     return alpha_bar.sqrt() * x0 + (1 - alpha_bar).sqrt() * noise
 
 
-def posterior_variance(schedule: Schedule) -> Float[Tensor, "S+1"]:
-    """beta_tilde_s = beta_s (1 - alpha_bar_{s-1}) / (1 - alpha_bar_s), zero at s = 1. Source: MoDiff eq. 7. Notebook: 02."""
+def posterior_variance(schedule: Schedule) -> Float[Tensor, "S_plus_1"]:
+    """beta_tilde_s = beta_s (1 - alpha_bar_{s-1}) / (1 - alpha_bar_s), 0 at s = 1. Source: MoDiff eq. 7. Notebook: 02."""
     left = 1 - schedule.alpha_bar
-    variance = torch.zeros_like(left)
-    variance[1:] = schedule.beta[1:] * left[:-1] / left[1:]
-    return variance
+    return torch.cat([left[:1], schedule.beta[1:] * left[:-1] / left[1:]])
 
 
 def q_posterior(x0: Float[Tensor, "B *shape"], x_s: Float[Tensor, "B *shape"], s: Steps,
@@ -128,14 +125,13 @@ def q_posterior(x0: Float[Tensor, "B *shape"], x_s: Float[Tensor, "B *shape"], s
 @dataclass(frozen=True, eq=False)
 class Step:
     """One moment of sampling: x_s, and what the denoiser says about it. At s = 0, x_s is the sample itself."""
-
     s: int
     x_s: Tensor
     x0_hat: Tensor
     eps_hat: Tensor
 
 
-def p_variance(schedule: Schedule, variance: str = "beta") -> Float[Tensor, "S+1"]:
+def p_variance(schedule: Schedule, variance: str = "beta") -> Float[Tensor, "S_plus_1"]:
     """Variance of p(x_{s-1} | x_s): "beta" is the paper's beta_s, "posterior" its lower bound beta_tilde_s.
 
     Source: MoDiff eq. 3. Notebook: 03.
@@ -147,17 +143,14 @@ def p_variance(schedule: Schedule, variance: str = "beta") -> Float[Tensor, "S+1
 
 def p_mean(x_s: Float[Tensor, "B *shape"], s: Steps, eps_hat: Float[Tensor, "B *shape"],
            schedule: Schedule) -> Float[Tensor, "B *shape"]:
-    """Mean of x_{s-1}: (x_s - beta_s / sqrt(1 - alpha_bar_s) eps_hat) / sqrt(alpha_s). Source: MoDiff eq. 9. Notebook: 03."""
-    share = at(schedule.beta / (1 - schedule.alpha_bar).clamp(min=1e-300).sqrt(), s, x_s)
+    """mean = (x_s - beta_s / sqrt(1 - alpha_bar_s) eps_hat) / sqrt(alpha_s). Source: MoDiff eq. 9. Notebook: 03."""
+    share = at(schedule.beta, s, x_s) / at(1 - schedule.alpha_bar, s, x_s).sqrt()
     return (x_s - share * eps_hat) / at(schedule.alpha, s, x_s).sqrt()
 
 
 def p_sample(x_s: Float[Tensor, "B *shape"], s: int, eps_hat: Float[Tensor, "B *shape"], schedule: Schedule,
              noise: Float[Tensor, "B *shape"], variance: str = "beta") -> Float[Tensor, "B *shape"]:
-    """Take one step back, x_{s-1} = p_mean + sigma_s noise; the last step (s = 1) adds none.
-
-    Source: MoDiff eq. 11. Notebook: 03.
-    """
+    """x_{s-1} = p_mean + sigma_s noise; the last step, s = 1, adds none. Source: MoDiff eq. 11. Notebook: 03."""
     mean = p_mean(x_s, s, eps_hat, schedule)
     return mean if s == 1 else mean + at(p_variance(schedule, variance), s, x_s).sqrt() * noise
 
@@ -176,13 +169,9 @@ def sample_steps(denoise: Denoiser, start: Tensor | tuple[int, ...], schedule: S
         eps_hat = denoise(x_s, torch.full((len(x_s),), s, device=x_s.device))
         x0_hat, eps_hat = _clean_guess(x_s, s, eps_hat, schedule, clip)
         yield Step(s, x_s, x0_hat, eps_hat)
-        z = torch.zeros_like(x_s) if s == 1 else _draw(x_s, generator) if noise is None else noise[s - 1]
+        z = draw(x_s, generator) if noise is None else noise[s - 1]
         x_s = p_sample(x_s, s, eps_hat, schedule, z, variance)
     yield Step(0, x_s, x_s, torch.zeros_like(x_s))
-
-
-def _draw(like: Tensor, generator: torch.Generator | None) -> Tensor:
-    return torch.randn(like.shape, generator=generator, dtype=like.dtype, device=like.device)
 
 
 def _clean_guess(x_s: Tensor, s: int, eps_hat: Tensor, schedule: Schedule, clip: float | None) -> tuple[Tensor, Tensor]:
@@ -203,3 +192,58 @@ def simple_loss(denoise: Denoiser, x0: Float[Tensor, "B *shape"], s: Int[Tensor,
     Source: MoDiff eq. 10, Alg. 1 (which forgets the square). Notebook: 04, 05.
     """
     return (noise - denoise(q_sample(x0, s, schedule, noise), s)).square().mean()
+
+
+def dropped_weight(schedule: Schedule) -> Float[Tensor, "S_plus_1"]:
+    """What eq. 10 leaves out before ||eps - eps_hat||^2: 1 / (2 beta_s) * beta_s^2 / (alpha_s (1 - alpha_bar_s)).
+
+    Source: MoDiff eq. 8-10. Notebook: 04.
+    """
+    return (schedule.beta / (2 * schedule.alpha * (1 - schedule.alpha_bar))).nan_to_num(0)
+
+
+# ---- the variational bound, in nats, one number for each sample of the batch ---------------------------------------
+def gaussian_kl(mean_1: Tensor, variance_1: Tensor, mean_2: Tensor, variance_2: Tensor) -> Float[Tensor, "B"]:
+    """KL(N(mean_1, variance_1 I) || N(mean_2, variance_2 I)), summed over all entries but the batch. Notebook: 02."""
+    each = (variance_2 / variance_1).log() + (variance_1 + (mean_1 - mean_2).square()) / variance_2 - 1
+    return each.flatten(1).sum(1) / 2
+
+
+def prior_kl(x0: Float[Tensor, "B *shape"], schedule: Schedule) -> Float[Tensor, "B"]:
+    """KL(q(x_S | x0) || N(0, I)): nothing to learn here. Source: MoDiff eq. 5. Notebook: 04."""
+    alpha_bar, one = at(schedule.alpha_bar, schedule.S, x0), torch.ones((), dtype=x0.dtype)
+    return gaussian_kl(alpha_bar.sqrt() * x0, 1 - alpha_bar, torch.zeros_like(x0), one)
+
+
+def step_kl(x0: Float[Tensor, "B *shape"], x_s: Float[Tensor, "B *shape"], s: int, eps_hat: Float[Tensor, "B *shape"],
+            schedule: Schedule) -> Float[Tensor, "B"]:
+    """KL(q(x_{s-1} | x_s, x0) || p(x_{s-1} | x_s)), s >= 2: ||difference of the means||^2 / (2 beta_s) + a constant.
+
+    Source: MoDiff eq. 5, 8. Notebook: 04.
+    """
+    mean, variance = q_posterior(x0, x_s, s, schedule)
+    return gaussian_kl(mean, variance, p_mean(x_s, s, eps_hat, schedule), at(schedule.beta, s, x_s))
+
+
+def reconstruction_nll(x0: Float[Tensor, "B *shape"], x_1: Float[Tensor, "B *shape"],
+                       eps_hat: Float[Tensor, "B *shape"], schedule: Schedule) -> Float[Tensor, "B"]:
+    """-log p(x0 | x_1), with variance beta_1. Source: MoDiff eq. 5. Notebook: 04."""
+    variance = at(schedule.beta, 1, x_1)
+    each = (x0 - p_mean(x_1, 1, eps_hat, schedule)).square() / variance + (2 * math.pi * variance).log()
+    return each.flatten(1).sum(1) / 2
+
+
+@torch.no_grad()
+def bound_terms(denoise: Denoiser, x0: Float[Tensor, "B *shape"], schedule: Schedule,
+                generator: torch.Generator | None = None) -> Float[Tensor, "S_plus_1 B"]:
+    """Estimate every term of the negative bound with one draw each: their sum over s is at least -log p(x0) on average.
+
+    Row 0 is the prior's term, row 1 -log p(x0 | x_1), rows 2..S the KL of step s. Source: MoDiff eq. 4-5. Notebook: 04.
+    """
+    terms = [prior_kl(x0, schedule)]
+    for s in range(1, schedule.S + 1):
+        x_s = q_sample(x0, s, schedule, draw(x0, generator))
+        eps_hat = denoise(x_s, torch.full((len(x0),), s, device=x0.device))
+        terms.append(reconstruction_nll(x0, x_s, eps_hat, schedule) if s == 1
+                     else step_kl(x0, x_s, s, eps_hat, schedule))
+    return torch.stack(terms)

@@ -1,0 +1,122 @@
+"""The exact denoiser of a known distribution: sampling with nothing trained, and a right answer to compare with.
+
+Adding Gaussian noise to a Gaussian mixture gives a Gaussian mixture, so the density of x_s and the mean of x0
+given x_s can be written down. A finite data set is a mixture whose parts have no width.
+"""
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import torch
+from jaxtyping import Float, Int
+from torch import Tensor
+
+from motiondiff_edu.ddpm import Denoiser, Schedule
+
+
+@dataclass(frozen=True, eq=False)
+class Mixture:
+    """A mixture of K Gaussians in D dimensions, kept in float64; covariances are held by their axes and variances."""
+
+    weights: Float[Tensor, "K"]
+    means: Float[Tensor, "K D"]
+    axes: Float[Tensor, "K D D"]
+    variances: Float[Tensor, "K D"]
+
+    def mean(self) -> Float[Tensor, "D"]:
+        return self.weights @ self.means
+
+    def covariance(self) -> Float[Tensor, "D D"]:
+        """Spread inside the parts plus spread between their means."""
+        inside = torch.einsum("k,kia,ka,kja->ij", self.weights, self.axes, self.variances, self.axes)
+        off = self.means - self.mean()
+        return inside + torch.einsum("k,ki,kj->ij", self.weights, off, off)
+
+
+def mixture(weights: Float[Tensor, "K"], means: Float[Tensor, "K D"], covariances: Float[Tensor, "K D D"]) -> Mixture:
+    """Make a mixture from its weights (scaled to sum to 1), means and covariance matrices.
+
+    Raises ValueError for a weight that is not positive or a matrix that is no covariance.
+    """
+    variances, axes = torch.linalg.eigh(covariances.double())
+    if (weights <= 0).any() or (variances < -1e-9).any():
+        raise ValueError("a mixture needs positive weights, and covariances without negative eigenvalues")
+    weights = weights.double()
+    return Mixture(weights / weights.sum(), means.double(), axes, variances.clamp(min=0))
+
+
+def sample_mixture(given: Mixture, n: int, generator: torch.Generator | None = None) -> Float[Tensor, "n D"]:
+    """Draw n points: first the part, then a point of it."""
+    k = torch.multinomial(given.weights, n, replacement=True, generator=generator)
+    z = torch.randn(n, given.means.shape[1], generator=generator, dtype=torch.float64)
+    return given.means[k] + torch.einsum("nij,nj->ni", given.axes[k], given.variances[k].sqrt() * z)
+
+
+def noised(given: Mixture, s: int, schedule: Schedule) -> Mixture:
+    """The mixture that q(x_s) is: means times sqrt(alpha_bar_s), variances alpha_bar_s var + 1 - alpha_bar_s."""
+    alpha_bar = schedule.alpha_bar[s]
+    return Mixture(given.weights, alpha_bar.sqrt() * given.means, given.axes,
+                   alpha_bar * given.variances + 1 - alpha_bar)
+
+
+def log_density(given: Mixture, x: Float[Tensor, "B D"]) -> Float[Tensor, "B"]:
+    """The exact log-density, in nats: log sum_k w_k N(x; m_k, C_k). Notebook: 03, 04."""
+    off = along_axes(given, x.double()[:, None] - given.means)
+    return part_log_densities(given.weights, off, given.variances).logsumexp(1)
+
+
+def along_axes(given: Mixture, off: Float[Tensor, "B K D"]) -> Float[Tensor, "B K D"]:
+    """Coordinates of each offset along the axes of its part, where a covariance is diagonal."""
+    return torch.einsum("kij,bki->bkj", given.axes, off)
+
+
+def part_log_densities(weights: Float[Tensor, "K"], off: Float[Tensor, "B K D"],
+                       variances: Float[Tensor, "*B K D"]) -> Float[Tensor, "B K"]:
+    """log w_k N(x; m_k, C_k) for every part k, from the offsets x - m_k along the axes."""
+    return weights.log() - (off.square() / variances + (2 * torch.pi * variances).log()).sum(-1) / 2
+
+
+def posterior_mean(given: Mixture, x_s: Float[Tensor, "B D"], s: Int[Tensor, "B"],
+                   schedule: Schedule) -> Float[Tensor, "B D"]:
+    """E[x0 | x_s] of a mixture: each part's own answer, weighed by the share it has in q(x_s).
+
+    One part: m + a C (a^2 C + (1 - a^2) I)^-1 (x_s - a m), with a = sqrt(alpha_bar_s). Notebook: 03.
+    """
+    alpha_bar = schedule.alpha_bar[s][:, None, None]
+    off = along_axes(given, x_s.double()[:, None] - alpha_bar.sqrt() * given.means)
+    variances = alpha_bar * given.variances + 1 - alpha_bar
+    share = part_log_densities(given.weights, off, variances).softmax(1)
+    gain = alpha_bar.sqrt() * given.variances / variances
+    return torch.einsum("bk,bki->bi", share, given.means + torch.einsum("kij,bkj->bki", given.axes, gain * off))
+
+
+def dataset_mean(data: Float[Tensor, "N D"], x_s: Float[Tensor, "B D"], s: Int[Tensor, "B"],
+                 schedule: Schedule) -> Float[Tensor, "B D"]:
+    """E[x0 | x_s] when x0 is one of N known samples: their mean, weighed by who could have become x_s.
+
+    weights = softmax(-||x_s - a x_n||^2 / (2 (1 - a^2))), with a = sqrt(alpha_bar_s). Notebook: 03.
+    """
+    alpha_bar, data = schedule.alpha_bar[s][:, None], data.double()
+    closeness = alpha_bar.sqrt() * x_s.double() @ data.T - alpha_bar * data.square().sum(1) / 2
+    return (closeness / (1 - alpha_bar)).softmax(1) @ data
+
+
+def exact_denoiser(given: Mixture, schedule: Schedule) -> Denoiser:
+    """The best denoiser there is for a mixture, eps_hat = E[eps | x_s]; x_s has D entries a sample, in any shape.
+
+    Notebook: 03.
+    """
+    return _denoiser(lambda x_s, s: posterior_mean(given, x_s, s, schedule), schedule)
+
+
+def dataset_denoiser(data: Float[Tensor, "N *shape"], schedule: Schedule) -> Denoiser:
+    """The best denoiser there is for a finite data set: it can only give back what it holds. Notebook: 03."""
+    return _denoiser(lambda x_s, s: dataset_mean(data.flatten(1), x_s, s, schedule), schedule)
+
+
+def _denoiser(mean_of_x0: Callable[[Tensor, Tensor], Tensor], schedule: Schedule) -> Denoiser:
+    """eps_hat = (x_s - a E[x0 | x_s]) / sqrt(1 - a^2), in float64 inside, in the caller's shape and dtype outside."""
+    def denoise(x_s: Tensor, s: Tensor) -> Tensor:
+        x, alpha_bar = x_s.flatten(1).double(), schedule.alpha_bar[s][:, None]
+        eps_hat = (x - alpha_bar.sqrt() * mean_of_x0(x, s)) / (1 - alpha_bar).sqrt()
+        return eps_hat.reshape(x_s.shape).to(x_s.dtype)
+    return denoise
