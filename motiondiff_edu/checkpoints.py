@@ -57,14 +57,14 @@ def load_walker(path: str | Path) -> Walker:
     except (SafetensorError, OSError, ValueError) as error:
         raise CheckpointError(f"{path.name} is damaged or is no safetensors file ({error}); fetch it again") from error
     if metadata.get("format") != FORMAT:
-        raise CheckpointError(f"{path.name} is a safetensors file, but not a walker of this project ({_looks_like(tensors)})")
+        raise CheckpointError(f"{path.name} is no walker of this project ({_looks_like(tensors)})")
     model = MoDiff(_config(metadata, path))
     try:
         model.load_state_dict({k[6:]: v.float() for k, v in tensors.items() if k.startswith("model.")})
         pose, control = (Scaler(tensors[f"{n}.mean"], tensors[f"{n}.std"]) for n in ("pose", "control"))
         schedule = make_schedule(tensors["schedule.beta"], metadata["schedule"])
     except (RuntimeError, KeyError, ValueError) as error:
-        raise CheckpointError(f"{path.name}: its weights do not fit its own configuration ({error}); fetch it again") from error
+        raise CheckpointError(f"{path.name}: weights and configuration disagree ({error}); fetch it again") from error
     bad = [name for name, tensor in tensors.items() if not torch.isfinite(tensor.float()).all()]
     if bad:
         raise CheckpointError(f"{path.name}: {bad[0]} holds NaN or infinity; the training that wrote it had failed")
@@ -75,7 +75,7 @@ def _config(metadata: dict, path: Path) -> MoDiffConfig:
     values = json.loads(metadata["config"])
     unknown = set(values) - {field.name for field in fields(MoDiffConfig)}
     if unknown:
-        raise CheckpointError(f"{path.name} has settings this version does not know: {', '.join(sorted(unknown))}; upgrade")
+        raise CheckpointError(f"{path.name} has unknown settings ({', '.join(sorted(unknown))}); upgrade")
     return MoDiffConfig(**values)
 
 
@@ -99,5 +99,6 @@ def pretrained(name: str = "walker") -> Walker:
     """
     files = available()
     if name not in files:
-        raise CheckpointError(f"no weights are called {name!r}; there are: {', '.join(files) or 'none (run make pretrained)'}")
+        there = ", ".join(files) or "none (run make pretrained)"
+        raise CheckpointError(f"no weights are called {name!r}; there are: {there}")
     return load_walker(files[name])

@@ -103,9 +103,7 @@ class MoDiff(nn.Module):
         self.head = nn.Sequential(nn.LayerNorm(width), nn.Linear(width, width), nn.GELU(), nn.Linear(width, config.D))
         self.skip = nn.Parameter(torch.ones(config.S + 1)) if config.skip else None
 
-    def encode(
-        self, past: Float[Tensor, "B T_h D"], control: Float[Tensor, "B T C"]
-    ) -> Float[Tensor, "B M width"]:
+    def encode(self, past: Float[Tensor, "B T_h D"], control: Float[Tensor, "B T C"]) -> Float[Tensor, "B M width"]:
         """The memory: past poses and control, encoded apart and then together; it does not depend on s.
 
         Raises ValueError when past or control have another number of frames than the network was built for.

@@ -25,16 +25,6 @@ class Frame:
     window: Float[Tensor, "B T_p D"]
 
 
-def held_window(
-    control: Float[Tensor, "B T C"], T_p: int
-) -> Float[Tensor, "B T+{T_p} C"]:
-    """The control of a window whose future is not known: the last known row is held over T_p more frames.
-
-    Notebook: 07
-    """
-    return torch.cat([control, control[:, -1:].expand(-1, T_p, -1)], dim=1)
-
-
 def _rows(control: Control, first: int, last: int) -> Float[Tensor, "B T C"]:
     """Rows first..last-1 of the control; past its end the last row is repeated."""
     if callable(control):
@@ -57,9 +47,9 @@ def rollout_steps(
 ) -> Iterator[Frame]:
     """Yield `frames` new poses, one by one; of every predicted window the first `keep` are kept.
 
-    `control` is (B, T, C), row 0 beside past[:, 0], or a callable t -> (B, C) that is asked when a row is needed, so that
-    it can be changed on the fly. hold=True: the network sees the control up to the step it is about to take, held over
-    the future; hold=False (look-ahead): it sees what comes.
+    `control` is (B, T, C), row 0 beside past[:, 0], or a callable t -> (B, C), asked when a row is needed, so that it
+    can be changed on the fly. hold=True: the network sees the control up to the step it is about to take, held over the
+    future; hold=False (look-ahead): it sees what comes.
     Raises ValueError unless 1 <= keep <= T_p.  Source: MoDiff III-C, Alg. 2.  Notebook: 08
     """
     if not 1 <= keep <= T_p:
@@ -67,8 +57,8 @@ def rollout_steps(
     T_h = past.shape[1]
     for t in range(0, frames, keep):
         known = _rows(control, t, t + T_h)
-        window_control = held_window(known, T_p) if hold else torch.cat([known, _rows(control, t + T_h, t + T_h + T_p)], 1)
-        window = sample(past, window_control, generator)
+        ahead = known[:, -1:].expand(-1, T_p, -1) if hold else _rows(control, t + T_h, t + T_h + T_p)
+        window = sample(past, torch.cat([known, ahead], dim=1), generator)
         for k in range(min(keep, frames - t)):
             yield Frame(t + k, window[:, k], window)
         past = torch.cat([past, window[:, :keep]], dim=1)[:, -T_h:]
@@ -97,13 +87,12 @@ def generate(
     if past.shape[1] != T_h:
         raise ValueError(f"the walker continues {T_h} past poses, got {past.shape[1]}: pass past[..., -{T_h}:, :]")
     if frames < 1:
-        raise ValueError(f"control has {control.shape[1]} rows, {T_h} of them beside the past: none is left to walk under")
+        raise ValueError(f"control has {control.shape[1]} rows, {T_h} of them beside the past: none is left")
     if not (torch.isfinite(past).all() and torch.isfinite(control).all()):
         raise ValueError("past or control holds NaN or infinity; fill the holes first")
     generator = generator or torch.Generator().manual_seed(seed)
     poses, velocities = walker.pose_scaler.transform(past.float()), walker.control_scaler.transform(control.float())
-    loop = rollout_steps(
-        walker.window_sampler(steps), poses, velocities, frames, walker.config.T_p, generator=generator, keep=keep, hold=hold
-    )
+    sample, T_p = walker.window_sampler(steps), walker.config.T_p
+    loop = rollout_steps(sample, poses, velocities, frames, T_p, generator=generator, keep=keep, hold=hold)
     new = walker.pose_scaler.inverse(torch.stack([frame.pose for frame in loop], dim=1))
     return new[0] if single else new

@@ -111,7 +111,7 @@ def train_steps(
 
     Gradients are clipped to the norm `clip`; the average follows with `decay` (less in the first steps). With `save_to`
     the run is saved every `save_every` steps and at the end.
-    Raises NonFiniteLoss with what to do; the weights of the last good step stay in `state` and, with `save_to`, on disk.
+    Raises NonFiniteLoss with what to do; the last good weights stay in `state` and, with `save_to`, on disk.
     Source: MoDiff Alg. 1 (the loop).  Notebook: 05, 07
     """
     bar = tqdm(total=steps, initial=state.step, disable=not progress, desc="training", unit="step", mininterval=1.0)

@@ -86,11 +86,12 @@ def window_loss(
     """
 
     def loss_fn(model: nn.Module, generator: torch.Generator) -> Tensor:
-        past, future, control = windows.draw(batch, generator, held)
+        device = next(model.parameters()).device  # batch and noise are drawn on the CPU: the same numbers everywhere
+        past, future, control = (x.to(device) for x in windows.draw(batch, generator, held))
         memory = model.encode(past, control).repeat_interleave(noises, dim=0)
         x0 = future.repeat_interleave(noises, dim=0)
-        s = torch.randint(1, schedule.S + 1, (batch * noises,), generator=generator)
-        eps = torch.randn(x0.shape, generator=generator)
+        s = torch.randint(1, schedule.S + 1, (batch * noises,), generator=generator).to(device)
+        eps = torch.randn(x0.shape, generator=generator).to(device)
         wanted = target_of(x0, eps, s, schedule, model.config.target)
         return (wanted - model.decode(q_sample(x0, s, schedule, eps), s, memory)).square().mean()
 

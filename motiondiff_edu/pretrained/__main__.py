@@ -1,0 +1,40 @@
+"""`python -m motiondiff_edu.pretrained [NAME ...]`: train the shipped walkers (hours), or those named."""
+
+import argparse
+import json
+import os
+from pathlib import Path
+
+import torch
+
+from ..checkpoints import FOLDER, save_walker
+from .recipes import RECIPES, SHIPPED
+from .train import train
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(prog="python -m motiondiff_edu.pretrained", description=__doc__)
+    parser.add_argument("names", nargs="*", choices=[*RECIPES, []], help="which recipes; none: all that are shipped")
+    parser.add_argument("--runs", type=Path, default=Path("build/runs"), help="where runs are saved and resumed from")
+    parser.add_argument("--out", type=Path, default=FOLDER, help="where the weights go")
+    parser.add_argument("--threads", type=int, default=torch.get_num_threads())
+    parser.add_argument("--alias", metavar="NAME", help="only let `walker` stand for NAME, and train nothing")
+    arguments = parser.parse_args()
+    if arguments.alias:
+        return point_alias(arguments.out, arguments.alias)
+    torch.set_num_threads(arguments.threads)
+    arguments.runs.mkdir(parents=True, exist_ok=True)
+    for name in arguments.names or [recipe.name for recipe in SHIPPED]:
+        walker = train(RECIPES[name], arguments.runs / f"{name}.safetensors", log=lambda line: print(line, flush=True))
+        print("wrote", save_walker(walker, arguments.out / f"{name}.safetensors"))
+
+
+def point_alias(folder: Path, name: str) -> None:
+    """Let the name `walker` stand for `name`."""
+    temporary = folder / "aliases.json.part"
+    temporary.write_text(json.dumps({"walker": name}) + "\n")
+    os.replace(temporary, folder / "aliases.json")
+
+
+if __name__ == "__main__":
+    main()

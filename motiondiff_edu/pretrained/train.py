@@ -1,0 +1,94 @@
+"""Train a recipe into a walker: data, windows, loop, card. A killed run continues where it was saved last."""
+
+import datetime
+import platform
+import subprocess
+import time
+from dataclasses import asdict
+from pathlib import Path
+
+import numpy as np
+import torch
+
+from ..ddpm import linear_schedule
+from ..modiff import MoDiff
+from ..motion.augment import mirror, reverse_time
+from ..motion.clip import Clip
+from ..training import TrainState, cosine_lr, train_steps
+from ..walker import Walker
+from ..windows import Windows, window_loss
+from .recipes import Recipe
+
+
+def training_clips(recipe: Recipe) -> list[Clip]:
+    """The recipe's data: made from its seed, every clip mirrored as well, a share of both reversed in time."""
+    from data_synth.walking import dataset  # data_synth lies beside the package, and imports it
+
+    clips = dataset(recipe.clips, recipe.seconds, seed=recipe.data_seed, styles=recipe.styles)
+    both = [version for clip in clips for version in (clip, mirror(clip))]
+    chosen = np.random.default_rng(recipe.data_seed).random(len(both)) < recipe.reversed_share
+    return both + [reverse_time(clip) for clip, take in zip(both, chosen, strict=True) if take]
+
+
+def train(recipe: Recipe, run_file: Path, clips: list[Clip] | None = None, log=print) -> Walker:
+    """Train (or continue) a recipe; `run_file` holds the run.  Returns the averaged network as a walker."""
+    torch.manual_seed(recipe.seed)
+    config = recipe.config
+    windows = Windows.of(clips or training_clips(recipe), config.T_h, config.T_p)
+    schedule = linear_schedule(config.S)
+    device = "cuda" if torch.cuda.is_available() else "cpu"
+    state = TrainState.start(MoDiff(config).to(device), recipe.seed)
+    if run_file.exists():
+        state.resume(run_file)
+        log(f"{recipe.name}: continuing at step {state.step}")
+    loss_fn = window_loss(windows, schedule, batch=recipe.batch, noises=recipe.noises)
+    if recipe.bf16:
+        loss_fn = _in_bf16(loss_fn, device)
+    began, cpu, losses = time.monotonic(), time.process_time(), []
+    loop = train_steps(
+        state,
+        loss_fn,
+        recipe.steps,
+        lr=cosine_lr(recipe.lr, recipe.steps, 500),
+        decay=recipe.decay,
+        save_to=run_file,
+        save_every=2000,
+        progress=False,
+    )
+    for report in loop:
+        losses.append(report.loss)
+        if report.step % 1000 == 0:
+            log(
+                f"{recipe.name} {report.step}/{recipe.steps}: loss {np.mean(losses[-1000:]):.5f}, "
+                f"{(time.monotonic() - began) / 60:.1f} min"
+            )
+    card = card_of(recipe, windows, (time.monotonic() - began) / 60, (time.process_time() - cpu) / 60)
+    card["final_loss"] = round(float(np.mean(losses[-1000:])), 6) if losses else None
+    return Walker(state.average.cpu().eval(), schedule, windows.pose_scaler, windows.control_scaler, card)
+
+
+def _in_bf16(loss_fn, device: str):
+    def run(model, generator):
+        with torch.autocast(device, torch.bfloat16):
+            return loss_fn(model, generator)
+
+    return run
+
+
+def card_of(recipe: Recipe, windows: Windows, minutes: float, cpu_minutes: float) -> dict:
+    """What a reader of the weights wants to know; the figures are added by `make results`."""
+    settings = {k: v for k, v in asdict(recipe).items() if k not in ("config", "name")}
+    git = subprocess.run(["git", "rev-parse", "--short", "HEAD"], capture_output=True, text=True, check=False)
+    return {
+        "name": recipe.name,
+        "target": recipe.config.target,
+        "recipe": settings,
+        "parameters": sum(p.numel() for p in MoDiff(recipe.config).parameters()),
+        "frames": len(windows.poses),
+        "minutes": round(minutes, 1),
+        "cpu_minutes": round(cpu_minutes, 1),
+        "machine": f"{platform.machine()}, {torch.get_num_threads()} threads, torch {torch.__version__}",
+        "commit": git.stdout.strip() or "not in a checkout",
+        "date": datetime.date.today().isoformat(),
+        "data": "data_synth.walking, synthetic",
+    }
