@@ -21,8 +21,8 @@ from .cross_modal_attention import Block, RelativeBias
 class MoDiffConfig:
     """Sizes of the network. `target` says what its output means; `skip` adds w(s) x_s to it.
 
-    The paper gives width, heads, layers, T_h and S; T_p, the feed-forward width and dropout are ours (FIELD of choices
-    in docs/NOTATION.md).  Source: MoDiff III-F, IV-A
+    The paper gives width, heads, layers, T_h and S; T_p, the feed-forward width and dropout are ours.
+    Source: MoDiff III-F, IV-A
     """
 
     D: int = 63  # motion features

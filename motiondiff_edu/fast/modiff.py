@@ -1,7 +1,7 @@
-"""MoDiff for use: the context is encoded once a frame; keys, values and step embeddings are kept over the denoising loop.
+"""MoDiff for use: the context is encoded once a frame; keys, values and step embeddings are kept over the loop.
 
-The same numbers as the plain network in the core, to 1e-5 (tested). The plain one runs encoder and decoder at each of the
-S steps although past and control do not change meanwhile.  Source: MoDiff III-F, Fig. 2.  Notebook: 07
+The same numbers as the plain network in the core, to 1e-5 (tested). The plain one runs encoder and decoder at each of
+the S steps although past and control do not change meanwhile.  Source: MoDiff III-F, Fig. 2.  Notebook: 07
 """
 
 from dataclasses import dataclass
