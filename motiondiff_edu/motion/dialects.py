@@ -1,0 +1,113 @@
+"""Joint names over the dialects of BVH: which joint of a file plays which part of the course's figure.
+
+Notebook: 00
+"""
+
+import re
+from collections.abc import Mapping
+
+from .bvh import Bvh
+from .bvh_tokens import BvhError
+from .skeleton import JOINTS
+
+# The joints of one side, best spelling first; the side stands before or after, a word or a letter (LeftKnee, Knee_L).
+# One word can mean two joints (LeftHip a thigh or a corner of the pelvis, LeftFoot an ankle or a toe), hence the order.
+SIDED = {
+    "UpLeg": "upleg upperleg thigh hip femur",
+    "Leg": "leg lowleg lowerleg shin knee calf tibia",
+    "Foot": "ankle foot",
+    "ToeBase": "toebase toe toes toe0 ball foot",
+    "Arm": "arm shldr uparm upperarm shoulder humerus",
+    "ForeArm": "forearm lowarm lowerarm elbow radius",
+    "Hand": "wrist hand",
+    "HandIndex1": "handindex1 handmiddle1 mid1 middle1 index1 fingers finger1 finger handend handtip palm hand",
+}
+CENTRAL = {
+    "Hips": "hips hip pelvis root",
+    "Head": "head",
+    "Neck1": "neck1 neck neck01 lowerneck upperneck",
+    "Spine": "spine chest abdomen spine01 spine0 lowerback torso",
+    "Spine1": "spine1 chest2 chest upperchest spine02 spine2 spine3 thorax",
+}
+PREFIX = re.compile(r"^(bip\d+|mixamorig\d*|character\d*)")
+# What a figure must have; the others can be made up from these.
+NEEDED = ["Hips", "Head"]
+NEEDED += [side + part for side in ("Left", "Right") for part in ("UpLeg", "Leg", "Foot", "Arm", "ForeArm", "Hand")]
+
+
+def plain(name: str) -> str:
+    """A name without prefix, blanks and punctuation: 'mixamorig:Left_Up Leg' is 'leftupleg'."""
+    bare = re.sub(r"[^a-z0-9]", "", name.split(":")[-1].lower())
+    return PREFIX.sub("", bare) or bare
+
+
+def spellings(joint: str) -> list[str]:
+    """The plain names under which files know a joint of the course, best first."""
+    if joint in CENTRAL:
+        return CENTRAL[joint].split()
+    side, part = ("Left", joint[4:]) if joint.startswith("Left") else ("Right", joint[5:])
+    sides = (side.lower(), side[0].lower())
+    return [name for word in SIDED[part].split() for s in sides for name in (s + word, word + s)]
+
+
+def guess_mapping(bvh: Bvh) -> dict[str, str]:
+    """{course joint: node of the file}, guessed from the joint names; end sites serve as toe, hand tip.
+
+    Joints that no spelling fits are left out (only those that can be made up).
+    Raises BvhError when the figure lacks a needed joint; the message lists the file's joints.
+    """
+    known = {plain(name): name for name in reversed(bvh.joints)}
+    mapping: dict[str, str] = {}
+    for joint in JOINTS:
+        taken = set(mapping.values())
+        fits = [known[word] for word in spellings(joint) if word in known and known[word] not in taken]
+        if fits:
+            mapping[joint] = fits[0]
+    for tip, base in [(side + tip, side + base) for side in ("Left", "Right") for tip, base in TIPS]:
+        ends = end_of(bvh, mapping[base]) if base in mapping else []
+        if tip not in mapping and ends:
+            mapping[tip] = ends[0]
+    refuse_incomplete(mapping, bvh)
+    return mapping
+
+
+TIPS = (("ToeBase", "Foot"), ("HandIndex1", "Hand"))
+
+
+def end_of(bvh: Bvh, joint: str) -> list[str]:
+    """The end site of a joint, or nothing."""
+    parent = bvh.names.index(joint)
+    children = [n for n, own in enumerate(bvh.parents) if own == parent and bvh.is_end[n]]
+    return [bvh.names[n] for n in children[:1]]
+
+
+def check_mapping(mapping: Mapping[str, str], bvh: Bvh) -> dict[str, str]:
+    """A mapping given by hand, completed by the guess where it says nothing.
+
+    Raises BvhError for names that neither the course nor the file knows.
+    """
+    wrong = [name for name in mapping if name not in JOINTS]
+    if wrong:
+        raise BvhError(f"the mapping names '{wrong[0]}', which is no joint of the course: {', '.join(JOINTS)}.")
+    missing = [name for name in mapping.values() if name not in bvh.names]
+    if missing:
+        raise BvhError(f"the mapping names '{missing[0]}', but the file has: {', '.join(bvh.names)}.", bvh.source)
+    try:
+        guess = guess_mapping(bvh)
+    except BvhError:
+        guess = {}
+    used = set(mapping.values())
+    merged = {joint: name for joint, name in guess.items() if name not in used} | dict(mapping)
+    refuse_incomplete(merged, bvh)
+    return merged
+
+
+def refuse_incomplete(mapping: Mapping[str, str], bvh: Bvh) -> None:
+    """Raise BvhError when a needed joint has no counterpart; show what there is and how to name it."""
+    lacking = [joint for joint in NEEDED if joint not in mapping]
+    if lacking:
+        raise BvhError(
+            f"no joint found for {', '.join(lacking)}. The file has: {', '.join(bvh.joints)}. Give the missing ones, "
+            f"for instance load_clip(path, mapping={{'{lacking[0]}': '<its joint>', ...}}).",
+            bvh.source,
+        )

@@ -1,0 +1,145 @@
+"""The pose of another skeleton on the course's bones: bone directions are kept, bone lengths are ours.
+
+Hips and chest are taken as rigid blocks, since every dialect places its spine joints elsewhere.
+Notebook: 00
+"""
+
+import numpy as np
+from jaxtyping import Float
+from scipy.spatial.transform import Rotation
+
+from .skeleton import BONE_LENGTHS, BONES, HEELS, OFFSETS, PARENTS, TOES, joint_index
+
+HIPS, SPINE, SPINE1, NECK, HEAD = (joint_index(name) for name in ("Hips", "Spine", "Spine1", "Neck1", "Head"))
+UPLEGS, ARMS = (1, 5), (13, 17)
+FLAT_PITCH = float(np.arctan2(-OFFSETS[4, 1], OFFSETS[4, 2]))  # of our foot on the floor, downwards
+
+
+def unit(vector: Float[np.ndarray, "... 3"]) -> Float[np.ndarray, "... 3"]:
+    """Vectors of length one."""
+    return vector / np.maximum(np.linalg.norm(vector, axis=-1, keepdims=True), 1e-12)
+
+
+def frame_of(left: Float[np.ndarray, "T 3"], up: Float[np.ndarray, "T 3"]) -> Float[np.ndarray, "T 3 3"]:
+    """Rotation matrices whose columns are left (kept), up (made perpendicular) and ahead."""
+    x = unit(left)
+    z = unit(np.cross(x, up))
+    return np.stack([x, np.cross(z, x), z], axis=-1)
+
+
+def calibrated(
+    direction: Float[np.ndarray, "T 3"], frame: Float[np.ndarray, "T 3 3"], target: Float[np.ndarray, "3"]
+) -> Float[np.ndarray, "T 3"]:
+    """Turn directions by one constant rotation in a body frame, so that their mean there is `target`.
+
+    This removes how a dialect places a joint and keeps how the person moves it.
+    """
+    local = np.einsum("tji,tj->ti", frame, unit(direction))
+    turn = between(unit(local.mean(0)), unit(target))
+    return np.einsum("tij,tj->ti", frame, local @ turn.T)
+
+
+def between(start: Float[np.ndarray, "3"], end: Float[np.ndarray, "3"]) -> Float[np.ndarray, "3 3"]:
+    """The smallest rotation that takes one unit vector to another."""
+    axis = np.cross(start, end)
+    sine = np.linalg.norm(axis)
+    angle = np.arctan2(sine, start @ end)
+    return Rotation.from_rotvec(axis / max(sine, 1e-12) * angle).as_matrix()
+
+
+def complete(points: Float[np.ndarray, "T 21 3"]) -> Float[np.ndarray, "T 21 3"]:
+    """Fill joints that a file lacks: neck and spine on the line from hips to head, hand tips along the forearm."""
+    points = points.copy()
+    hips, shoulders = points[:, UPLEGS].mean(1), points[:, ARMS].mean(1)
+    made_up = {
+        NECK: shoulders + 0.25 * (points[:, HEAD] - shoulders),
+        SPINE: hips + 0.3 * (shoulders - hips),
+        SPINE1: hips + 0.55 * (shoulders - hips),
+        16: points[:, 15] + 0.3 * (points[:, 15] - points[:, 14]),
+        20: points[:, 19] + 0.3 * (points[:, 19] - points[:, 18]),
+    }
+    for joint, place in made_up.items():
+        if np.isnan(points[:, joint]).any():
+            points[:, joint] = place
+    return points
+
+
+def has_our_bones(points: Float[np.ndarray, "T 21 3"]) -> bool:
+    """True when every bone has the course's length within 5 %, as in files that this course wrote."""
+    lengths = np.array([np.median(np.linalg.norm(points[:, c] - points[:, p], axis=-1)) for p, c in BONES])
+    return bool(np.all(np.abs(lengths / BONE_LENGTHS - 1) < 0.05))
+
+
+def bone_directions(points: Float[np.ndarray, "T 21 3"], standing: Float[np.ndarray, "T 2"]) -> np.ndarray:
+    """Unit direction of every bone (row 0 unused) for our figure, from another figure's joints.
+
+    `standing` is true where a foot lies flat; it tells which pitch of that foot means flat.
+    """
+    directions = np.zeros_like(points)
+    directions[:, 1:] = unit(points[:, 1:] - points[:, PARENTS[1:]])
+    if has_our_bones(points):
+        return directions
+    pelvis, chest = trunk_frames(points)
+    for joint in (*UPLEGS, SPINE):
+        directions[:, joint] = pelvis @ unit(OFFSETS[joint])
+    directions[:, SPINE1] = unit(pelvis[..., 1] + chest[..., 1])
+    directions[:, NECK] = chest[..., 1]
+    for joint in (HEAD, *ARMS):
+        directions[:, joint] = calibrated(points[:, joint] - points[:, NECK], chest, OFFSETS[joint])
+    for side, (heel, toe) in enumerate(zip(HEELS, TOES, strict=True)):
+        shank = points[:, heel - 1] - points[:, heel]
+        directions[:, toe] = foot_direction(points[:, toe] - points[:, heel], shank, pelvis, standing[:, side])
+    return directions
+
+
+def trunk_frames(points: Float[np.ndarray, "T 21 3"]) -> tuple[np.ndarray, np.ndarray]:
+    """Frames of pelvis and chest: across from hip and shoulder line, up from the lower and the upper trunk.
+
+    The trunk bends where the file has a spine joint near its middle; its mean shape is straightened.
+    """
+    hips, shoulders = points[:, UPLEGS].mean(1), points[:, ARMS].mean(1)
+    across_hips = points[:, UPLEGS[0]] - points[:, UPLEGS[1]]
+    across_chest = points[:, ARMS[0]] - points[:, ARMS[1]]
+    trunk = shoulders - hips
+    middle = mid_trunk(points, hips, trunk)
+    up = np.array([0.0, 1.0, 0.0])
+    lower = calibrated(middle - hips, frame_of(across_hips, trunk), up)
+    upper = calibrated(shoulders - middle, frame_of(across_chest, trunk), up)
+    return frame_of(across_hips, lower), frame_of(across_chest, upper)
+
+
+def mid_trunk(points: np.ndarray, hips: np.ndarray, trunk: np.ndarray) -> Float[np.ndarray, "T 3"]:
+    """The spine joint nearest to half way up the trunk, or the point half way where none is near."""
+    height = np.einsum("tji,ti->tj", points[:, [SPINE, SPINE1, NECK]] - hips[:, None], trunk)
+    share = np.median(height / (trunk**2).sum(-1)[:, None], axis=0)
+    best = int(np.abs(share - 0.5).argmin())
+    return points[:, [SPINE, SPINE1, NECK][best]] if abs(share[best] - 0.5) < 0.25 else hips + trunk / 2
+
+
+def foot_direction(
+    foot: Float[np.ndarray, "T 3"],
+    shank: Float[np.ndarray, "T 3"],
+    pelvis: Float[np.ndarray, "T 3 3"],
+    standing: Float[np.ndarray, " T"],
+) -> Float[np.ndarray, "T 3"]:
+    """Direction ankle to toe, pitched by a constant so that a foot flat on the floor is flat with our ankle height.
+
+    A foot that is missing, or points straight down from the shank, becomes a flat foot square to the shank.
+    """
+    lengthwise = np.abs(np.einsum("ti,ti->t", unit(foot), unit(shank)))
+    if np.isnan(foot).any() or np.median(lengthwise) > 0.9:
+        return frame_of(pelvis[..., 0], shank) @ unit(OFFSETS[TOES[0]])
+    foot = unit(foot)
+    pitch = -np.arcsin(np.clip(foot[:, 1], -1, 1))
+    flat = np.median(pitch[standing > 0.5] if standing.sum() > 3 else pitch)
+    across = unit(np.cross(shank, foot))
+    return Rotation.from_rotvec(across * (FLAT_PITCH - flat)).apply(foot)
+
+
+def build(hips: Float[np.ndarray, "T 3"], directions: Float[np.ndarray, "T 21 3"]) -> Float[np.ndarray, "T 21 3"]:
+    """Positions of our figure from the place of its hips and its bone directions."""
+    world = np.empty_like(directions)
+    world[:, HIPS] = hips
+    for (parent, child), length in zip(BONES, BONE_LENGTHS, strict=True):
+        world[:, child] = world[:, parent] + length * directions[:, child]
+    return world

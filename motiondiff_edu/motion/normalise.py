@@ -1,0 +1,153 @@
+"""A figure from a BVH file in the course's terms: metres, y up, 20 frames/s, no T-pose, floor at 0.
+
+Nothing of this stands in the file; each rule is read off the body or the motion.
+Notebook: 00
+"""
+
+import warnings
+from collections.abc import Mapping
+
+import numpy as np
+from jaxtyping import Float
+from scipy.interpolate import CubicSpline
+from scipy.signal import butter, sosfiltfilt
+
+from .bvh import Bvh
+from .bvh_tokens import BvhError
+from .skeleton import HEELS, JOINTS, TOES, joint_index
+
+LEG = 0.835  # m, thigh plus shank of the course's figure
+SLOW = 0.35  # m/s, a toe slower than this stands
+STEEPEST = 0.06  # a floor tilted more than this is no fault of the capture
+CUT_HZ = 8.0  # walking and dancing keep 99 % of their velocity power below
+
+
+class MotionWarning(UserWarning):
+    """Something in a file was put right or looks wrong; the clip is usable."""
+
+
+def pick_points(bvh: Bvh, mapping: Mapping[str, str]) -> Float[np.ndarray, "T 21 3"]:
+    """World positions of the course's 21 joints in file units; NaN where the file has no counterpart."""
+    world = bvh.world_positions()
+    points = np.full((len(world), len(JOINTS), 3), np.nan)
+    for joint, name in mapping.items():
+        points[:, joint_index(joint)] = world[:, bvh.names.index(name)]
+    return points
+
+
+def leg_length(points: Float[np.ndarray, "T 21 3"]) -> float:
+    """Median thigh plus shank, both sides averaged, in the unit of `points`."""
+    thigh_shank = [np.linalg.norm(points[:, j] - points[:, j - 1], axis=-1) for j in (2, 3, 6, 7)]
+    return float(np.median(thigh_shank, axis=1).sum() / 2)
+
+
+def to_metres(points: Float[np.ndarray, "T 21 3"], source: str = "") -> tuple[Float[np.ndarray, "T 21 3"], float]:
+    """Scale so that thigh plus shank is 0.835 m; returns metres per unit too.
+
+    Raises BvhError for a figure without legs.  Source: the stature behind the course's bones (1.70 m).
+    """
+    length = leg_length(points)
+    if not length > 1e-9:
+        raise BvhError(
+            "the legs have no length, so the unit cannot be told; check the mapping of UpLeg, Leg, Foot.", source
+        )
+    return points * (LEG / length), LEG / length
+
+
+def up_axis(points: Float[np.ndarray, "T 21 3"], rest: Float[np.ndarray, "21 3"]) -> str:
+    """ "+y" or "+z" and so on: the axis along which the head is above the feet.
+
+    The motion decides while it is clear (upright for most of the clip), else the rest pose.
+    """
+    upright = np.median(body_axis(points), axis=0)
+    if np.abs(upright).max() < 0.8:
+        upright = body_axis(rest[None])[0]
+    axis = int(np.abs(upright).argmax())
+    return "+-"[int(upright[axis] < 0)] + "xyz"[axis]
+
+
+def body_axis(points: Float[np.ndarray, "T 21 3"]) -> Float[np.ndarray, "T 3"]:
+    """Unit vector from between the feet to the head."""
+    axis = points[:, joint_index("Head")] - points[:, list(HEELS)].mean(1)
+    return axis / np.linalg.norm(axis, axis=-1, keepdims=True)
+
+
+def turn_up(points: Float[np.ndarray, "... 3"], up: str) -> Float[np.ndarray, "... 3"]:
+    """Turn (never mirror) so that the axis `up` becomes +y."""
+    sign = -1.0 if up[0] == "-" else 1.0
+    first, second = {"x": (1, 2), "y": (2, 0), "z": (0, 1)}[up[1]]
+    turned = points[..., [second, "xyz".index(up[1]), first]] * np.array([1.0, sign, sign])
+    return turned
+
+
+def unmirror(points: Float[np.ndarray, "T 21 3"]) -> tuple[Float[np.ndarray, "T 21 3"], bool]:
+    """Reflect x when left and right are exchanged against the toes: left x up must point ahead."""
+    left = points[:, joint_index("LeftUpLeg")] - points[:, joint_index("RightUpLeg")]
+    ahead = (points[:, list(TOES)] - points[:, list(HEELS)]).mean(1)
+    agreement = np.sign(np.einsum("ti,ti->t", np.cross(left, body_axis(points)), ahead))
+    if np.nanmean(agreement) > -0.5:  # toes unknown: nothing to compare with
+        return points, False
+    return points * np.array([-1.0, 1.0, 1.0]), True
+
+
+def first_frame_jumps(points: Float[np.ndarray, "T 21 3"]) -> bool:
+    """True when frame 0 is a calibration pose: a joint leaps 20 cm and five times what it does afterwards."""
+    if len(points) < 4:
+        return False
+    leap = np.nanmax(np.linalg.norm(np.diff(points[:40], axis=0), axis=-1), axis=1)
+    return bool(leap[0] > 0.2 and leap[0] > 5 * np.median(leap[1:]))
+
+
+def resample(points: Float[np.ndarray, "T 21 3"], from_fps: float, to_fps: float) -> Float[np.ndarray, "F 21 3"]:
+    """Cubic spline to another rate, after a zero-phase low-pass of 8 Hz when at least half of the frames go."""
+    times = np.arange(len(points)) / from_fps
+    if from_fps >= 2 * to_fps - 1e-6 and len(points) > 30:
+        points = sosfiltfilt(butter(4, CUT_HZ * to_fps / 20, fs=from_fps, output="sos"), points, axis=0)
+    count = int(np.floor(times[-1] * to_fps + 1e-6)) + 1
+    return CubicSpline(times, points)(np.arange(count) / to_fps) if abs(from_fps - to_fps) > 1e-6 else points.copy()
+
+
+def speed(points: Float[np.ndarray, "T ... 3"], fps: float) -> Float[np.ndarray, "T ..."]:
+    """|p(t+1) - p(t-1)| fps / 2, one-sided at the ends."""
+    return np.linalg.norm(np.gradient(points, 1 / fps, axis=0), axis=-1)
+
+
+def floor_plane(toes: Float[np.ndarray, "T 2 3"], fps: float) -> Float[np.ndarray, "3"]:
+    """(height at the origin, slope along x, slope along z) of the floor, through the toes that stand.
+
+    Least squares, repeated without the points more than 3 cm above (a toe held still in the air).
+    """
+    stand = toes[speed(toes, fps) < SLOW]
+    if len(stand) < 10:
+        return np.array([np.percentile(toes[..., 1], 2), 0.0, 0.0])
+    middle = stand.mean(0)
+    for _ in range(6):
+        x, z = (stand - middle)[:, [0, 2]].T
+        design = np.stack([np.ones_like(x), x, z], 1)
+        calm = np.diag([0.0, 0.01, 0.01]) * len(stand)  # a figure on the spot tells nothing of the slope
+        plane = np.linalg.solve(design.T @ design + calm, design.T @ stand[:, 1])
+        above = stand[:, 1] - design @ plane
+        keep = above < max(0.03, np.percentile(above, 50))
+        if keep.all():
+            break
+        stand = stand[keep]
+    if np.hypot(*plane[1:]) > STEEPEST:
+        return np.array([np.percentile(stand[:, 1], 10), 0.0, 0.0])
+    return np.array([plane[0] - plane[1:] @ middle[[0, 2]], *plane[1:]])
+
+
+def level(points: Float[np.ndarray, "T 21 3"], plane: Float[np.ndarray, "3"]) -> Float[np.ndarray, "T 21 3"]:
+    """Turn and shift everything so that the plane becomes y = 0."""
+    normal = np.array([-plane[1], 1.0, -plane[2]])
+    normal /= np.linalg.norm(normal)
+    across = np.cross(normal, [0.0, 1.0, 0.0])
+    cosine = normal[1]
+    cross = np.array([[0, -across[2], across[1]], [across[2], 0, -across[0]], [-across[1], across[0], 0]])
+    turn = np.eye(3) + cross + cross @ cross / (1 + cosine)
+    return (points - np.array([0.0, plane[0], 0.0])) @ turn.T
+
+
+def tell(message: str, source: str) -> str:
+    """Warn, and hand the words on for the clip's record."""
+    warnings.warn(f"{source}: {message}", MotionWarning, stacklevel=2)
+    return message

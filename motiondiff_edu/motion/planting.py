@@ -1,0 +1,120 @@
+"""Feet that stay where they stand: contacts, pinned toes, and legs that follow by two-bone inverse kinematics.
+
+Notebook: 00
+"""
+
+import numpy as np
+from jaxtyping import Bool, Float
+from scipy.ndimage import gaussian_filter1d, maximum_filter1d
+
+from .directions import unit
+from .normalise import speed
+from .skeleton import BONE_LENGTHS, HEELS, TOES
+
+THIGH, SHANK = float(BONE_LENGTHS[1]), float(BONE_LENGTHS[2])
+REACH = 0.9995 * (THIGH + SHANK)
+LOW, STILL = 0.05, 0.5  # m and m/s: a toe lower and slower than this is planted
+
+
+def find_contacts(toes: Float[np.ndarray, "T 2 3"], fps: float) -> Bool[np.ndarray, "T 2"]:
+    """Toes that are low and slow; gaps and contacts of a single frame are flipped."""
+    contact = (toes[..., 1] < LOW) & (speed(toes, fps) < STILL)
+    for value in (False, True):  # first fill single gaps, then drop single contacts
+        alone = (contact[1:-1] == value) & (contact[:-2] != value) & (contact[2:] != value)
+        contact[1:-1][alone] = not value
+    return contact
+
+
+def flat_feet(points: Float[np.ndarray, "T 21 3"], fps: float) -> Bool[np.ndarray, "T 2"]:
+    """Feet whose toe and ankle both stand still: the sole lies on the floor."""
+    toes, heels = points[:, list(TOES)], points[:, list(HEELS)]
+    return (speed(toes, fps) < 0.3) & (speed(heels, fps) < 0.3) & (toes[..., 1] < 2 * LOW)
+
+
+def spans(contact: Bool[np.ndarray, " T"]) -> list[tuple[int, int]]:
+    """(first, last + 1) of each run of True."""
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], contact, [False]]).astype(int)))
+    return [(int(a), int(b)) for a, b in edges.reshape(-1, 2)]
+
+
+def shift_to_pins(toe: Float[np.ndarray, "T 3"], contact: Bool[np.ndarray, " T"]) -> Float[np.ndarray, "T 3"]:
+    """What to add to a toe so that it rests on one point of the floor during each contact.
+
+    Between contacts the shift passes smoothly (3u^2 - 2u^3) from one to the next; outside it is held.
+    """
+    shift = np.zeros_like(toe)
+    pinned = spans(contact)
+    for first, last in pinned:
+        pin = np.median(toe[first:last], axis=0) * np.array([1.0, 0.0, 1.0])
+        shift[first:last] = pin - toe[first:last]
+    if not pinned:
+        return shift
+    shift[: pinned[0][0]], shift[pinned[-1][1] :] = shift[pinned[0][0]], shift[pinned[-1][1] - 1]
+    for (_, left), (right, _) in zip(pinned[:-1], pinned[1:], strict=True):
+        u = (np.arange(left, right) - (left - 1))[:, None] / (right - left + 1)
+        shift[left:right] = shift[left - 1] + (shift[right] - shift[left - 1]) * (3 * u**2 - 2 * u**3)
+    return shift
+
+
+def plant(
+    world: Float[np.ndarray, "T 21 3"], contacts: Bool[np.ndarray, "T 2"], fps: float
+) -> Float[np.ndarray, "T 21 3"]:
+    """Move toes to their pins and keep every bone: the body follows the mean shift, the legs take up the rest.
+
+    Between contacts no toe goes below the floor. Where a leg would have to be too long, the hips come down.
+    """
+    shift = np.stack([shift_to_pins(world[:, toe], contacts[:, side]) for side, toe in enumerate(TOES)], axis=1)
+    lifted = np.maximum(world[:, list(TOES), 1] + shift[..., 1], 0)
+    shift[..., 1] = lifted - world[:, list(TOES), 1]
+    ankles = world[:, list(HEELS)] + shift
+    body = gaussian_filter1d(shift.mean(1), 0.15 * fps, axis=0, mode="nearest")
+    moved = world + body[:, None]
+    moved[..., 1] -= needed_drop(moved[:, [1, 5]], ankles, fps)[:, None]
+    for side, heel in enumerate(HEELS):
+        foot = world[:, TOES[side]] - world[:, heel]
+        ahead = unit(unit(foot) + pelvis_ahead(world))
+        knee, ankle = solve_leg(moved[:, heel - 2], ankles[:, side], moved[:, heel - 1], ahead)
+        moved[:, heel - 1], moved[:, heel], moved[:, heel + 1] = knee, ankle, ankle + foot
+    return moved
+
+
+def pelvis_ahead(world: Float[np.ndarray, "T 21 3"]) -> Float[np.ndarray, "T 3"]:
+    """Where the hips face."""
+    return unit(np.cross(world[:, 1] - world[:, 5], world[:, 9] - world[:, 0]))
+
+
+def needed_drop(
+    hips: Float[np.ndarray, "T 2 3"], ankles: Float[np.ndarray, "T 2 3"], fps: float
+) -> Float[np.ndarray, " T"]:
+    """How far the hips must come down so that both ankles are in reach, smooth in time."""
+    apart = ankles - hips
+    flat = np.minimum((apart[..., [0, 2]] ** 2).sum(-1), (0.95 * REACH) ** 2)
+    drop = np.maximum(-apart[..., 1] - np.sqrt(REACH**2 - flat), 0).max(1)
+    wide = maximum_filter1d(drop, 2 * round(0.15 * fps) + 1, mode="nearest")
+    return gaussian_filter1d(wide, 0.075 * fps, mode="nearest")
+
+
+def solve_leg(
+    hip: Float[np.ndarray, "T 3"],
+    ankle: Float[np.ndarray, "T 3"],
+    knee: Float[np.ndarray, "T 3"],
+    ahead: Float[np.ndarray, "T 3"],
+) -> tuple[Float[np.ndarray, "T 3"], Float[np.ndarray, "T 3"]]:
+    """Knee and ankle with thigh and shank at their lengths; the knee bends to the side where it was, never back.
+
+    An ankle out of reach is drawn in along the line from the hip.
+    """
+    line = unit(ankle - hip)
+    distance = np.clip(np.linalg.norm(ankle - hip, axis=-1), 0.2, REACH)
+    along = (THIGH**2 - SHANK**2 + distance**2) / (2 * distance)
+    height = np.sqrt(np.maximum(THIGH**2 - along**2, 0))
+    side = perpendicular(knee - hip, line)
+    front = unit(perpendicular(ahead, line))
+    forward = np.einsum("ti,ti->t", side, front)
+    side = unit(side + np.maximum(0.02 - forward, 0)[:, None] * front)
+    return hip + along[:, None] * line + height[:, None] * side, hip + distance[:, None] * line
+
+
+def perpendicular(vector: Float[np.ndarray, "T 3"], line: Float[np.ndarray, "T 3"]) -> Float[np.ndarray, "T 3"]:
+    """The part of a vector at right angles to a unit line."""
+    return vector - np.einsum("ti,ti->t", vector, line)[:, None] * line

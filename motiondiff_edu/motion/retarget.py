@@ -1,0 +1,115 @@
+"""Any humanoid BVH as a clip of the course: `load_clip("walk.bvh")`.
+
+The chain: find the joints, metres from the leg length, y up, drop a T-pose, 20 frames/s, level floor,
+bone directions onto our bones, feet planted, root frame and control.
+Notebook: 00
+"""
+
+from collections.abc import Mapping
+from pathlib import Path
+
+import numpy as np
+from jaxtyping import Float
+
+from .bvh import Bvh, BvhError, read_bvh
+from .clip import Clip
+from .dialects import check_mapping, guess_mapping
+from .directions import UPLEGS, bone_directions, build, complete, has_our_bones
+from .normalise import (
+    first_frame_jumps,
+    floor_plane,
+    level,
+    pick_points,
+    resample,
+    speed,
+    tell,
+    to_metres,
+    turn_up,
+    unmirror,
+    up_axis,
+)
+from .planting import find_contacts, flat_feet, plant
+from .root_frame import estimate_root, to_root_frame
+from .skeleton import HEELS, HIPS, JOINTS, TOES
+
+SHORTEST = 0.5  # s; less has no gait and no heading
+WILD = 15.0  # m/s; no limb of an actor moves faster, a swapped marker does
+
+
+def load_clip(path: str | Path, mapping: Mapping[str, str] | None = None, fps: float | None = None) -> Clip:
+    """Read a BVH file and retarget it; `mapping` {course joint: joint of the file} where names are not guessed.
+
+    `fps` overrules the file's frame time. Raises BvhError; warns (MotionWarning) about what was put right.
+    """
+    return retarget(read_bvh(path, fps=fps), mapping)
+
+
+def retarget(bvh: Bvh, mapping: Mapping[str, str] | None = None, fps: float = 20.0) -> Clip:
+    """A motion on the course's 21 joints and bones, `fps` frames/s, metres, feet on floor 0.
+
+    Bone directions are the source's; toes stay still while planted. `clip.info` records what was found.
+    Raises BvhError when joints are missing or the motion is shorter than half a second.
+    """
+    mapping = guess_mapping(bvh) if mapping is None else check_mapping(mapping, bvh)
+    points, info = normalised(bvh, mapping, fps)
+    world, contacts = onto_our_bones(points, fps)
+    root, heading = estimate_root(world, fps)
+    poses, control = to_root_frame(world, root, heading, fps)
+    return Clip(poses, control, fps=fps, contacts=contacts, source=bvh.source, info=info | {"mapping": dict(mapping)})
+
+
+def normalised(bvh: Bvh, mapping: Mapping[str, str], fps: float) -> tuple[Float[np.ndarray, "T 21 3"], dict]:
+    """The figure in metres, y up, at `fps`, on a level floor; and a record of what had to be done."""
+    points, notes = pick_points(bvh, mapping), []
+    rest = np.full((len(JOINTS), 3), np.nan)
+    for joint, name in mapping.items():
+        rest[JOINTS.index(joint)] = bvh.rest_positions()[bvh.names.index(name)]
+    up = up_axis(points, rest)
+    points, unit = to_metres(turn_up(points, up), bvh.source)
+    points, mirrored = unmirror(points)
+    if mirrored:
+        notes.append(tell("left and right are exchanged; the figure was mirrored", bvh.source))
+    dropped = int(first_frame_jumps(points))
+    if dropped:
+        notes.append(tell("frame 0 is a calibration pose, far from frame 1; it was dropped", bvh.source))
+    points = complete(points[dropped:])
+    refuse_short(len(points), bvh)
+    warn_wild(points, bvh, dropped, notes)
+    points = resample(points, bvh.fps, fps)
+    plane = floor_plane(ground_points(points), fps)
+    info = dict(file_fps=bvh.fps, unit_m=unit, up=up, dropped_frames=dropped, floor_slope=tuple(plane[1:]), notes=notes)
+    return level(points, plane), info
+
+
+def ground_points(points: Float[np.ndarray, "T 21 3"]) -> Float[np.ndarray, "T 2 3"]:
+    """Toes, or ankles where a file has no toes."""
+    toes = points[:, list(TOES)]
+    return points[:, list(HEELS)] if np.isnan(toes).any() else toes
+
+
+def onto_our_bones(points: Float[np.ndarray, "T 21 3"], fps: float) -> tuple[np.ndarray, np.ndarray]:
+    """World positions with the course's bones and planted feet, and the contacts."""
+    contacts = find_contacts(ground_points(points), fps)
+    directions = bone_directions(points, flat_feet(points, fps).astype(float))
+    raw = build(points[:, HIPS], directions)
+    if not has_our_bones(points):
+        raw += (points[:, UPLEGS].mean(1) - raw[:, UPLEGS].mean(1))[:, None]
+    standing = raw[:, list(TOES), 1][contacts]
+    raw[..., 1] -= np.median(standing) if len(standing) else np.percentile(raw[:, list(TOES), 1], 2)
+    return plant(raw, contacts, fps), contacts
+
+
+def refuse_short(count: int, bvh: Bvh) -> None:
+    if count / bvh.fps < SHORTEST:
+        problem = f"{count} frames at {bvh.fps:g} frames/s are {count / bvh.fps:.2f} s; {SHORTEST} s are needed."
+        raise BvhError(problem + " If the frame time is wrong, pass fps=.", bvh.source)
+
+
+def warn_wild(points: Float[np.ndarray, "T 21 3"], bvh: Bvh, dropped: int, notes: list[str]) -> None:
+    """Warn about joints faster than any actor's: the capture has a fault there."""
+    wild = np.flatnonzero(np.nanmax(speed(points, bvh.fps), axis=1) > WILD)
+    if len(wild):
+        where = f"frames {wild[0] + dropped} to {wild[-1] + dropped}"
+        notes.append(
+            tell(f"a joint moves faster than {WILD:g} m/s within {where}: a fault of the capture?", bvh.source)
+        )
