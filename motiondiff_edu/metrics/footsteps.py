@@ -1,0 +1,130 @@
+"""Counting footsteps as MoDiff's Tables I, II and Fig. 3 do, the whole curve, and what makes the count break.
+
+A step is an interval in which a heel is slower over the ground than a tolerance v. Too small a tolerance finds no step;
+noise or sliding near the tolerance cuts each step into crumbs, and the paper's count is then a count of crumbs.
+Speeds in cm/s, durations in seconds.  Source: MoDiff IV-B, Fig. 3.  Notebook: 08
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Bool, Float, Int
+
+from ..motion.root_frame import FPS
+from ..motion.skeleton import HEELS
+from .skating import ground_velocity
+
+TOLERANCES = np.arange(1.0, 61.0)  # cm/s; the paper's own are the integers 5 and 6
+
+
+@dataclass(frozen=True)
+class StepRule:
+    """What counts as a step. The default is the paper's; every other setting is ours.
+
+    min_duration_s: shorter steps are dropped; merge_gap_s: gaps up to this long are closed first;
+    hysteresis: a step begins below v and ends only above v + hysteresis (cm/s);
+    drop_edge_runs: steps cut by the clip's ends, whose duration is not known, are dropped.  Notebook: 08
+    """
+
+    min_duration_s: float = 0.0
+    merge_gap_s: float = 0.0
+    hysteresis: float = 0.0
+    drop_edge_runs: bool = False
+
+
+PAPER = StepRule()
+ROBUST = StepRule(min_duration_s=0.1, merge_gap_s=0.05)
+
+
+@dataclass(frozen=True)
+class Footsteps:
+    """The curve f_est(v), and the row of MoDiff's Table I that is read from it: count, v95, mean_s, std_s."""
+
+    tolerances: Float[np.ndarray, "V"]
+    counts: Float[np.ndarray, "V"]
+    count: float
+    v95: float
+    mean_s: float
+    std_s: float
+
+
+def heel_speed(
+    poses: Float[np.ndarray, "*B T J 3"], control: Float[np.ndarray, "*B T 3"], fps: float = FPS
+) -> Float[np.ndarray, "*B T-1 2"]:
+    """Horizontal speed over the ground of the left and the right heel joint, in cm/s.  Source: MoDiff IV-B.
+
+    Notebook: 08
+    """
+    return 100 * np.linalg.norm(ground_velocity(poses[..., HEELS, :], control, fps), axis=-1)
+
+
+def runs(mask: Bool[np.ndarray, "N"]) -> Int[np.ndarray, "n 2"]:
+    """First frame and first frame after of every longest stretch of True.  Notebook: 08"""
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], mask, [False]]).astype(int)))
+    return edges.reshape(-1, 2)
+
+
+def steps_of_heel(
+    speed: Float[np.ndarray, "N"], tolerance: float, rule: StepRule = PAPER, fps: float = FPS
+) -> Int[np.ndarray, "n 2"]:
+    """The steps of one heel: runs of speed < tolerance (cm/s), then what `rule` changes.  Notebook: 08"""
+    found = runs(speed < tolerance)
+    if rule.hysteresis > 0:
+        found = _holding(runs(speed < tolerance + rule.hysteresis), found)
+    if rule.merge_gap_s > 0:
+        found = _merged(found, rule.merge_gap_s * fps)
+    if rule.drop_edge_runs:
+        found = found[(found[:, 0] > 0) & (found[:, 1] < len(speed))]
+    return found[(found[:, 1] - found[:, 0]) >= rule.min_duration_s * fps - 1e-9]
+
+
+def _holding(wide: Int[np.ndarray, "a 2"], narrow: Int[np.ndarray, "b 2"]) -> Int[np.ndarray, "c 2"]:
+    """From each first frame in `narrow` to the end of its run in `wide`."""
+    kept = [[narrow[inside, 0].min(), end] for start, end in wide if (inside := _within(narrow, start, end)).any()]
+    return np.array(kept, dtype=int).reshape(-1, 2)
+
+
+def _within(found: Int[np.ndarray, "n 2"], start: int, end: int) -> Bool[np.ndarray, "n"]:
+    return (found[:, 0] >= start) & (found[:, 1] <= end)
+
+
+def _merged(found: Int[np.ndarray, "a 2"], gap: float) -> Int[np.ndarray, "b 2"]:
+    if len(found) == 0:
+        return found
+    breaks = np.flatnonzero(found[1:, 0] - found[:-1, 1] > gap + 1e-9)
+    return np.stack([found[np.append(0, breaks + 1), 0], found[np.append(breaks, len(found) - 1), 1]], -1)
+
+
+def step_durations(
+    speeds: Sequence[Float[np.ndarray, "_ 2"]], tolerance: float, rule: StepRule = PAPER, fps: float = FPS
+) -> Float[np.ndarray, "n"]:
+    """Duration in seconds of every step of both heels in all clips.  Notebook: 08"""
+    found = [steps_of_heel(clip[:, heel], tolerance, rule, fps) for clip in speeds for heel in (0, 1)]
+    return np.diff(np.concatenate(found), axis=-1)[:, 0] / fps
+
+
+def footsteps(
+    speeds: Sequence[Float[np.ndarray, "_ 2"]],
+    rule: StepRule = PAPER,
+    tolerances: Float[np.ndarray, "V"] = TOLERANCES,
+    per_clip_average: bool = False,
+    fps: float = FPS,
+) -> Footsteps:
+    """Footsteps of a set of clips, each given by its `heel_speed`; the row of Table I at v95, and the whole curve.
+
+    f_est(v) = number of steps at tolerance v;  v95 = min{ v : f_est(v) >= 0.95 max_u f_est(u) };
+    count, mean_s, std_s: number, mean and population deviation of the step durations at v95.
+    No step at any tolerance gives count 0 and NaN. Raises ValueError for no clips.
+    Source: MoDiff IV-B, Tables I and II, Fig. 3.  Notebook: 08
+    """
+    if len(speeds) == 0:
+        raise ValueError("footsteps needs at least one clip's heel speeds")
+    durations = [step_durations(speeds, float(v), rule, fps) for v in tolerances]
+    counts = np.array([float(len(d)) for d in durations])
+    if counts.max() == 0:
+        return Footsteps(tolerances, counts, 0.0, np.nan, np.nan, np.nan)
+    at = int(np.argmax(counts >= 0.95 * counts.max()))
+    counts = counts / (len(speeds) if per_clip_average else 1)
+    mean, std = float(durations[at].mean()), float(durations[at].std())
+    return Footsteps(tolerances, counts, float(counts[at]), float(tolerances[at]), mean, std)
