@@ -26,9 +26,7 @@ def bone_lengths(positions: Float[np.ndarray, "*B T J 3"]) -> Float[np.ndarray, 
     return np.linalg.norm(positions[..., 1:, :] - positions[..., PARENTS[1:], :], axis=-1)
 
 
-def bone_rmse(
-    positions: Float[np.ndarray, "*B T J 3"], reference: Float[np.ndarray, "bones"] = BONE_LENGTHS
-) -> float:
+def bone_rmse(positions: Float[np.ndarray, "*B T J 3"], reference: Float[np.ndarray, "bones"] = BONE_LENGTHS) -> float:
     """The paper's bone-length error in cm, over all clips, frames and bones together.
 
     RMSE = 100 * sqrt( mean over clips, t, b of (l_b(t) - reference_b)^2 ), lengths in metres.
