@@ -1,0 +1,192 @@
+"""The player: moving figures, live in JupyterLab, alive in exported HTML, a picture where nothing runs.
+
+Space plays, arrows step (up and down by ten), Home and End jump, + and - zoom, F follows, R resets; drag to turn.
+Notebook: 00
+"""
+
+import base64
+import html
+import json
+import os
+from pathlib import Path
+
+import anywidget
+import numpy as np
+import traitlets
+
+from ..viz import body
+from . import packing, poster
+
+MODULE = Path(__file__).with_suffix(".js")
+_TRAITS = ("joints", "roots", "contacts")
+
+_PAGE = """<!doctype html><html lang="en"><head><meta charset="utf-8"><title>{title}</title>
+<style>html,body{{margin:0;height:100%}}@media print{{html,body{{height:auto}}}}</style></head><body>
+<script type="module">
+{module}
+document.body.style.background = "#fff";
+mount(staticModel({record}), document.body, {{ fill: true }});
+</script></body></html>"""
+
+_STACK = """<div style="position:relative;width:100%;max-width:{width}px">
+<img alt="{alt}" src="data:image/png;base64,{png}" style="width:100%;min-height:{height}px;object-fit:contain">
+<iframe title="{title}" sandbox="allow-scripts" loading="lazy" srcdoc="{page}"
+ style="position:absolute;inset:0;width:100%;height:100%;border:0"></iframe></div>"""
+
+
+class Player(anywidget.AnyWidget):
+    """Show one motion (T, J, 3), a batch (N, T, J, 3) or a list of motions, world positions in metres, y up.
+
+    `past` frames were given and are drawn paler; `contacts` (T, 2) bool marks planted feet; `path` (n, 2) [x, z] is
+    drawn on the floor; each may be one value for all figures or a list. `layout` is "side" (a field each) or
+    "together" (one floor; `offset` = (x, z) metres between figures). `frame` and `playing` can be read and set.
+    Raises ValueError with figure, frame and joint where a position is not finite or beyond reach.  Notebook: 00
+    """
+
+    _esm = MODULE
+    scene = traitlets.Dict().tag(sync=True)
+    joints = traitlets.Bytes().tag(sync=True)
+    roots = traitlets.Bytes().tag(sync=True)
+    contacts = traitlets.Bytes().tag(sync=True)
+    frame = traitlets.Int(0).tag(sync=True)
+    playing = traitlets.Bool(False).tag(sync=True)
+
+    def __init__(self, positions, fps=20.0, past=None, contacts=None, labels=None, path=None, **options):
+        super().__init__()
+        self._options = {"fps": float(fps), "past": past, "contacts": contacts, "labels": labels, "path": path}
+        self._look = _look(**options)
+        self.show(positions)
+
+    def show(self, positions, **changes) -> None:
+        """Show another motion in the same place; `changes` replaces past, contacts, labels, path or fps."""
+        unknown = set(changes) - set(self._options)
+        if unknown:
+            raise TypeError(f"show() does not know {sorted(unknown)}; it takes {sorted(self._options)}")
+        options = self._options | changes
+        arrays = packing.as_figures(positions)
+        packed = packing.pack(arrays)
+        self._figures = _figures(arrays, options, self._look["parents"])
+        self._options = options
+        with self.hold_sync():
+            self.joints, self.roots = packed.joints, packed.roots
+            self.contacts = packing.pack_contacts([f.contacts for f in self._figures], packed.frames)
+            self.frame = min(self.frame, max(packed.frames) - 1)
+            self.scene = _scene(self._figures, options["fps"], self._look)
+
+    @property
+    def description(self) -> str:
+        """What is to be seen, in one sentence: the alternative text."""
+        return self.scene["description"]
+
+    @traitlets.validate("frame")
+    def _frame_exists(self, proposal):
+        last = max((f["frames"] for f in self.scene.get("figures", [])), default=1) - 1
+        if self.scene and not 0 <= proposal["value"] <= last:
+            raise traitlets.TraitError(f"frame {proposal['value']} does not exist; frames are 0 to {last}")
+        return proposal["value"]
+
+    def page(self) -> str:
+        """A whole HTML page with the module and the motion in it: needs no kernel and no network."""
+        record = {name: base64.b64encode(getattr(self, name)).decode() for name in _TRAITS}
+        record |= {"scene": self.scene, "frame": self.frame, "playing": False}
+        text = json.dumps(record, allow_nan=False).replace("<", "\\u003c")
+        return _PAGE.format(title=html.escape(self.description), module=MODULE.read_text("utf-8"), record=text)
+
+    def poster(self, n: int = 6):
+        """A strip of n poses as a pillow image: what is shown where nothing runs."""
+        return poster.filmstrip(self._figures, self._options["fps"], n)
+
+    def _repr_mimebundle_(self, **kwargs):
+        live = super()._repr_mimebundle_(**kwargs)
+        bundle, metadata = live if isinstance(live, tuple) else (live or {}, {})
+        png = base64.b64encode(poster.as_png(self.poster())).decode()
+        stack = _STACK.format(
+            width=1200, height=self.scene["height"] + 90, alt=html.escape(self.description, quote=True), png=png,
+            title="motion player", page=html.escape(self.page(), quote=True),
+        )  # fmt: skip
+        return {**bundle, "text/html": stack, "image/png": png, "text/plain": self.description}, metadata
+
+    def save_html(self, path: str | os.PathLike) -> Path:
+        """Write the figure as one HTML file that plays anywhere, offline."""
+        return _replace(path, lambda part: part.write_text(self.page(), "utf-8"))
+
+    def save_gif(self, path: str | os.PathLike, size: tuple[int, int] = (400, 360)) -> Path:
+        """Write the figure as an endless GIF, each figure `size` pixels."""
+        palette = poster.film_palette(self._figures, size)
+        pictures = poster.film(self._figures, self._options["fps"], size)
+        first, *rest = (p.quantize(palette=palette, dither=0) for p in pictures)
+        pause = round(100 / self._options["fps"]) * 10  # GIF counts in hundredths of a second
+        return _replace(path, lambda part: first.save(
+            part, "GIF", save_all=True, append_images=rest, duration=pause, loop=0, optimize=False))  # fmt: skip
+
+    def save_mp4(self, path: str | os.PathLike, size: tuple[int, int] = (480, 432)) -> Path:
+        """Write the figure as MP4, each figure `size` pixels; needs imageio-ffmpeg, whose absence is an ImportError."""
+        try:
+            import imageio_ffmpeg
+        except ImportError as error:
+            raise ImportError("save_mp4 needs imageio-ffmpeg (pip install imageio-ffmpeg); save_gif does not") from error
+        width = size[0] * len(self._figures)
+
+        def write(part: Path) -> None:
+            writer = imageio_ffmpeg.write_frames(
+                str(part), (width, size[1]), fps=self._options["fps"], macro_block_size=2, output_params=["-f", "mp4"]
+            )
+            writer.send(None)
+            for picture in poster.film(self._figures, self._options["fps"], size):
+                writer.send(np.ascontiguousarray(picture))
+            writer.close()
+
+        return _replace(path, write)
+
+
+def _look(layout="side", offset=(1.2, 0.0), height=430, autoplay=True, follow=True, parents=None) -> dict:
+    if layout not in ("side", "together"):
+        raise ValueError(f'layout is "side" or "together", not {layout!r}')
+    offset = [float(v) for v in (offset if layout == "together" else (0, 0))]
+    return {"layout": layout, "offset": offset, "height": int(height), "autoplay": bool(autoplay),
+            "follow": bool(follow), "parents": None if parents is None else [int(p) for p in parents]}  # fmt: skip
+
+
+def _figures(arrays: list, options: dict, parents: list | None) -> list[poster.Figure]:
+    count = len(arrays)
+    parts = body.parts_for(arrays[0].shape[1], parents)
+    contacts = packing.as_contacts(options["contacts"], [len(a) for a in arrays])
+    labels = packing.per_figure(options["labels"] or "", count, "labels")
+    pasts = packing.per_figure(options["past"], count, "past")
+    paths = options["path"] if isinstance(options["path"], list | tuple) else [options["path"]] * count
+    paths = [None if p is None else np.asarray(p, dtype=np.float64) for p in packing.per_figure(paths, count, "path")]
+    columns = zip(arrays, labels, pasts, contacts, paths, strict=True)
+    return [poster.Figure(a, label, past, c, p, parts) for a, label, past, c, p in columns]
+
+
+def _scene(figures: list[poster.Figure], fps: float, look: dict) -> dict:
+    records = [
+        {"frames": len(f), "label": f.label, "past": f.past, "contacts": f.contacts is not None,
+         "path": None if f.path is None else f.path.round(4).tolist()}
+        for f in figures
+    ]  # fmt: skip
+    parts = body.parts_record(figures[0].parts)
+    return {**look, "fps": fps, "figures": records, "joints": figures[0].positions.shape[1], "parts": parts,
+            "description": describe(figures, fps)}  # fmt: skip
+
+
+def describe(figures: list[poster.Figure], fps: float) -> str:
+    """One sentence for those who cannot see it: how many figures, how long, how far they go, what was given."""
+    words = []
+    for i, f in enumerate(figures, 1):
+        way = np.linalg.norm(f.positions[-1, 0, [0, 2]] - f.positions[0, 0, [0, 2]])
+        given = "" if f.past is None else f", the first {f.past / fps:.1f} s given and drawn paler"
+        words.append(f"{f.label or f'figure {i}'}: {len(f) / fps:.1f} s, ends {way:.1f} m from its start{given}")
+    return "Moving skeletons, left limbs blue and right limbs orange. " + "; ".join(words) + "."
+
+
+def _replace(path: str | os.PathLike, write) -> Path:
+    """Write to a temporary name beside `path`, then rename: no half-written file is ever left under the real name."""
+    path = Path(path)
+    part = path.with_name(path.name + ".part")
+    try:
+        write(part)
+        os.replace(part, path)
+    finally:
+        part.unlink(missing_ok=True)
+    return path

@@ -1,0 +1,170 @@
+"""Still pictures of the player's scene, with pillow: the filmstrip where nothing runs, and the frames of a GIF or MP4.
+
+Notebook: 01
+"""
+
+import io
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Bool, Float
+from PIL import Image, ImageDraw, ImageFont
+
+from ..motion.skeleton import HEELS, TOES
+from ..viz import body
+
+SMOOTH = 2  # pictures are drawn this much larger, then shrunk: pillow has no smooth edges
+GROUND, LINE = "#F1F3F5", "#9AA3AE"
+
+
+@dataclass(frozen=True, eq=False)
+class Figure:
+    """One figure of a scene; `past` frames were given, `path` is drawn on the floor ((n, 2) metres, [x, z])."""
+
+    positions: Float[np.ndarray, "T J 3"]
+    label: str = ""
+    past: int | None = None
+    contacts: Bool[np.ndarray, "T 2"] | None = None
+    path: Float[np.ndarray, "n 2"] | None = None
+    parts: tuple[body.Part, ...] = body.BODY
+
+    def __len__(self) -> int:
+        return len(self.positions)
+
+    def tense(self, t: int) -> str:
+        """Whether frame t was given or generated, in words; empty where no past is known."""
+        return "" if self.past is None else ("past" if t < self.past else "future")
+
+
+def camera_at(positions: Float[np.ndarray, "T J 3"], t: int, camera: body.Camera) -> body.Camera:
+    """The camera over the root, averaged over a second around frame t, so that it does not bob."""
+    around = positions[np.clip(np.arange(t - 10, t + 11), 0, len(positions) - 1), 0]
+    return camera.at(*around[:, [0, 2]].mean(0))
+
+
+def floor_lines(camera: body.Camera, reach: int = 5) -> Iterator[tuple[np.ndarray, float]]:
+    """Segments of a 1 m grid around the camera's target, with their strength 0..1, which fades outwards."""
+    centre = np.round([camera.x, camera.z])
+    for i in range(-reach, reach + 1):
+        for k in range(-reach, reach):
+            for ends in ([(i, k), (i, k + 1)], [(k, i), (k + 1, i)]):
+                ground = centre + np.array(ends, dtype=float)
+                away = np.linalg.norm(ground.mean(0) - [camera.x, camera.z]) / reach
+                if away < 1:
+                    yield np.insert(ground, 1, 0.0, axis=1), 1 - away**2
+
+
+def _floor_points(xz: np.ndarray) -> np.ndarray:
+    return np.insert(np.asarray(xz, dtype=np.float64), 1, 0.0, axis=1)
+
+
+def _line(pen: ImageDraw.ImageDraw, points: np.ndarray, camera: body.Camera, size: tuple, colour: str, width: int):
+    if len(points) < 2:
+        return
+    right, up, ahead = camera.axes()
+    depth = (points - [camera.x, camera.height, camera.z]) @ ahead + camera.distance
+    pixels, _ = body.project(points, camera, size)
+    pixels = np.clip(pixels, -9 * size[0], 9 * size[0])
+    for i in np.flatnonzero((depth[1:] > 0.3) & (depth[:-1] > 0.3)):
+        pen.line([*pixels[i], *pixels[i + 1]], fill=colour, width=width)
+
+
+def _ground(pen: ImageDraw.ImageDraw, figure: Figure, t: int, camera: body.Camera, size: tuple) -> None:
+    """Floor grid, given path, trail of the root, marks under planted feet."""
+    for segment, strength in floor_lines(camera):
+        _line(pen, segment, camera, size, body.mix(GROUND, LINE, 0.55 * strength), SMOOTH)
+    if figure.path is not None:
+        _line(pen, _floor_points(figure.path), camera, size, body.PATH_COLOUR, 2 * SMOOTH)
+    trail = _floor_points(figure.positions[: t + 1, 0][:, [0, 2]])
+    _line(pen, trail, camera, size, LINE, 2 * SMOOTH)
+    if figure.contacts is None or t >= len(figure):
+        return
+    for side in np.flatnonzero(figure.contacts[t]):
+        foot = figure.positions[t, [HEELS[side], TOES[side]]].mean(0)
+        ring = foot * [1, 0, 1] + 0.17 * np.stack([np.cos(body.ANGLES), 0 * body.ANGLES, np.sin(body.ANGLES)], -1)
+        colour = body.COLOURS["LR"[side]]
+        pixels = [tuple(p) for p in body.project(ring, camera, size)[0]]
+        pen.polygon(pixels, fill=body.mix(colour, GROUND, 0.75), outline=colour, width=SMOOTH)
+
+
+def render(figure: Figure, t: int, size: tuple[int, int], camera: body.Camera | None = None) -> Image.Image:
+    """Frame t of one figure (the last one once it has ended), `size` pixels, the camera following."""
+    t = min(t, len(figure) - 1)
+    big = (size[0] * SMOOTH, size[1] * SMOOTH)
+    camera = camera_at(figure.positions, t, camera or body.Camera())
+    picture = Image.new("RGB", big, GROUND)
+    _ground(ImageDraw.Draw(picture), figure, t, camera, big)
+    shade = Image.new("L", big, 0)
+    for polygon in body.shadow_polygons(figure.positions[t], camera, big, figure.parts):
+        ImageDraw.Draw(shade).polygon([tuple(p) for p in polygon], fill=46)
+    picture.paste("#1E2837", mask=shade)
+    pen = ImageDraw.Draw(picture)
+    wash = body.PAST_WASH if figure.tense(t) == "past" else 0.0
+    for polygon, colour, is_outline in body.body_polygons(figure.positions[t], camera, big, figure.parts, wash):
+        points = [tuple(p) for p in polygon]
+        if is_outline:
+            pen.line([*points, points[0]], fill=GROUND, width=2 * SMOOTH, joint="curve")
+        pen.polygon(points, fill=colour)
+    return picture.resize(size, Image.Resampling.LANCZOS)
+
+
+def _write(pen: ImageDraw.ImageDraw, at: tuple[float, float], text: str, size: int, anchor: str = "la") -> None:
+    pen.text(at, text, fill=body.INK, font=ImageFont.load_default(size), anchor=anchor)
+
+
+def _legend(pen: ImageDraw.ImageDraw, right: int, y: int, text_size: int) -> None:
+    for word, colour in (("right", body.RIGHT_COLOUR), ("left", body.LEFT_COLOUR)):
+        width = pen.textlength(word, font=ImageFont.load_default(text_size))
+        _write(pen, (right - width, y), word, text_size)
+        pen.ellipse([right - width - text_size, y + 2, right - width - 4, y + text_size - 2], fill=colour)
+        right -= int(width) + 2 * text_size
+
+
+def filmstrip(figures: list[Figure], fps: float, n: int = 6, width: int = 960) -> Image.Image:
+    """n poses from first to last, a row for each figure (the first three of them), times above."""
+    shown = figures[:3]
+    cell, head = width // n, 30
+    tall = {1: int(cell * 2.1), 2: int(cell * 1.45), 3: int(cell * 1.2)}[len(shown)]
+    picture = Image.new("RGB", (width, head + tall * len(shown)), body.PAPER)
+    pen = ImageDraw.Draw(picture)
+    moments = np.linspace(0, max(map(len, shown)) - 1, n).round().astype(int)
+    for row, figure in enumerate(shown):
+        for column, t in enumerate(moments):
+            picture.paste(render(figure, int(t), (cell, tall)), (column * cell, head + row * tall))
+            _write(pen, (column * cell + 6, head + row * tall + 5), figure.tense(int(t)), 15)
+        if figure.label:
+            _write(pen, (6, head + (row + 1) * tall - 22), figure.label, 16)
+    for column, t in enumerate(moments):
+        _write(pen, (column * cell + 6, 7), f"{t / fps:.1f} s", 16)
+    _legend(pen, width - 8, 7, 16)
+    return picture
+
+
+def as_png(picture: Image.Image) -> bytes:
+    """PNG bytes of a picture, in 128 colours: a third of the size, no difference to the eye."""
+    buffer = io.BytesIO()
+    picture.quantize(128, dither=Image.Dither.NONE).save(buffer, "PNG", optimize=True)
+    return buffer.getvalue()
+
+
+def film(figures: list[Figure], fps: float, size: tuple[int, int] = (400, 360)) -> Iterator[Image.Image]:
+    """Every frame, the figures side by side, each in a field of `size` with label, tense and time."""
+    for t in range(max(map(len, figures))):
+        picture = Image.new("RGB", (size[0] * len(figures), size[1]), body.PAPER)
+        pen = ImageDraw.Draw(picture)
+        for i, figure in enumerate(figures):
+            picture.paste(render(figure, t, size), (i * size[0], 0))
+            words = " · ".join(w for w in (figure.label, figure.tense(t)) if w)
+            _write(pen, (i * size[0] + 10, 8), words, 18)
+        _write(pen, (10, size[1] - 28), f"{t / fps:.1f} s", 18)
+        _legend(pen, picture.width - 10, size[1] - 28, 18)
+        yield picture
+
+
+def film_palette(figures: list[Figure], size: tuple[int, int]) -> Image.Image:
+    """One palette of 96 colours for all frames: from the first and the last, which hold past and future shades."""
+    both = Image.new("RGB", (2 * size[0], size[1]))
+    for i, t in enumerate((0, len(figures[0]) - 1)):
+        both.paste(render(figures[0], t, size), (i * size[0], 0))
+    return both.quantize(96)
