@@ -81,7 +81,9 @@ def steps_of_heel(
 
 def _holding(wide: Int[np.ndarray, "a 2"], narrow: Int[np.ndarray, "b 2"]) -> Int[np.ndarray, "c 2"]:
     """From each first frame in `narrow` to the end of its run in `wide`."""
-    kept = [[narrow[inside, 0].min(), end] for start, end in wide if (inside := _within(narrow, start, end)).any()]
+    kept = [
+        [narrow[inside, 0].min(), end] for start, end in wide.tolist() if (inside := _within(narrow, start, end)).any()
+    ]
     return np.array(kept, dtype=int).reshape(-1, 2)
 
 
