@@ -3,6 +3,7 @@
 A damaged or foreign file is refused with the reason.  Notebook: 00, 07
 """
 
+import hashlib
 import json
 import os
 from dataclasses import fields
@@ -11,6 +12,7 @@ from pathlib import Path
 import torch
 from safetensors import SafetensorError, safe_open
 from safetensors.torch import save_file
+from torch import Tensor
 
 from .ddpm import make_schedule
 from .modiff import MoDiff, MoDiffConfig
@@ -37,8 +39,9 @@ def save_walker(walker: Walker, path: str | Path, half: bool = True) -> Path:
     weights["schedule.beta"] = walker.schedule.beta[1:]
     config = json.dumps(walker.config.as_dict())
     metadata = {"format": FORMAT, "config": config, "schedule": walker.schedule.name, "card": json.dumps(walker.card)}
+    weights = {k: v.detach().clone().contiguous() for k, v in weights.items()}
     temporary = path.with_suffix(".part")
-    save_file({k: v.detach().clone().contiguous() for k, v in weights.items()}, temporary, metadata)
+    save_file(weights, temporary, metadata | {"sha256": _digest(weights)})
     os.replace(temporary, path)
     card = path.with_suffix(".json.part")
     card.write_text(json.dumps(walker.card | {"config": walker.config.as_dict()}, indent=1) + "\n")
@@ -58,24 +61,52 @@ def load_walker(path: str | Path) -> Walker:
         raise CheckpointError(f"{path.name} is damaged or is no safetensors file ({error}); fetch it again") from error
     if metadata.get("format") != FORMAT:
         raise CheckpointError(f"{path.name} is no walker of this project ({_looks_like(tensors)})")
-    model = MoDiff(_config(metadata, path))
-    try:
-        model.load_state_dict({k[6:]: v.float() for k, v in tensors.items() if k.startswith("model.")})
-        pose, control = (Scaler(tensors[f"{n}.mean"], tensors[f"{n}.std"]) for n in ("pose", "control"))
-        schedule = make_schedule(tensors["schedule.beta"], metadata["schedule"])
-    except (RuntimeError, KeyError, ValueError) as error:
-        raise CheckpointError(f"{path.name}: weights and configuration disagree ({error}); fetch it again") from error
+    if metadata.get("sha256", _digest(tensors)) != _digest(tensors):
+        raise CheckpointError(f"{path.name} is damaged: its tensors are not those that were written; fetch it again")
     bad = [name for name, tensor in tensors.items() if not torch.isfinite(tensor.float()).all()]
     if bad:
         raise CheckpointError(f"{path.name}: {bad[0]} holds NaN or infinity; the training that wrote it had failed")
+    config = _config(metadata, path)
+    try:
+        return _assemble(config, tensors, metadata)
+    except (RuntimeError, KeyError, ValueError, AssertionError) as error:
+        raise CheckpointError(f"{path.name}: weights and configuration disagree ({error}); fetch it again") from error
+
+
+def _digest(tensors: dict[str, Tensor]) -> str:
+    """SHA-256 of all tensors, in the order of their names: safetensors itself checks only the header."""
+    digest = hashlib.sha256()
+    for name in sorted(tensors):
+        digest.update(name.encode() + tensors[name].numpy().tobytes())
+    return digest.hexdigest()
+
+
+def _assemble(config: MoDiffConfig, tensors: dict[str, Tensor], metadata: dict) -> Walker:
+    """Build the walker, checking the sizes that `load_state_dict` does not."""
+    model = MoDiff(config)
+    model.load_state_dict({k[6:]: v.float() for k, v in tensors.items() if k.startswith("model.")})
+    pose, control = (Scaler(tensors[f"{n}.mean"], tensors[f"{n}.std"]) for n in ("pose", "control"))
+    schedule = make_schedule(tensors["schedule.beta"], metadata["schedule"])
+    sizes = {"pose.mean": config.D, "pose.std": config.D, "control.mean": config.C, "control.std": config.C}
+    for name, size in (sizes | {"schedule.beta": config.S}).items():
+        if tuple(tensors[name].shape) != (size,):
+            raise ValueError(f"{name} has the shape {tuple(tensors[name].shape)} where ({size},) belongs")
     return Walker(model.eval().requires_grad_(False), schedule, pose, control, json.loads(metadata.get("card", "{}")))
 
 
 def _config(metadata: dict, path: Path) -> MoDiffConfig:
-    values = json.loads(metadata["config"])
-    unknown = set(values) - {field.name for field in fields(MoDiffConfig)}
+    """The configuration, every setting known and of its default's type."""
+    try:
+        values = dict(json.loads(metadata["config"]))
+    except (KeyError, ValueError, TypeError) as error:
+        raise CheckpointError(f"{path.name}: its configuration cannot be read ({error}); fetch it again") from error
+    defaults = {field.name: field.default for field in fields(MoDiffConfig)}
+    unknown = set(values) - set(defaults)
     if unknown:
         raise CheckpointError(f"{path.name} has unknown settings ({', '.join(sorted(unknown))}); upgrade")
+    for name, value in values.items():
+        if type(value) is not type(defaults[name]):
+            raise CheckpointError(f"{path.name}: its setting {name} = {value!r} makes no sense; fetch it again")
     return MoDiffConfig(**values)
 
 

@@ -124,7 +124,7 @@ def train_steps(
             loss.backward()
             norm = nn.utils.clip_grad_norm_(state.model.parameters(), clip)
             if not (torch.isfinite(loss) and torch.isfinite(norm)):
-                _stop(state, float(loss), float(norm), rate, save_to)
+                _stop(state, loss.item(), norm.item(), rate, save_to)
             for group in state.optimizer.param_groups:
                 group["lr"] = rate
             state.optimizer.step()
@@ -133,7 +133,7 @@ def train_steps(
             if save_to and (state.step % save_every == 0 or state.step == steps):
                 state.save(save_to)
             bar.update()
-            report = TrainStep(state.step, float(loss), float(norm), rate)
+            report = TrainStep(state.step, loss.item(), norm.item(), rate)
             if state.step % 20 == 0:
                 bar.set_postfix_str(f"loss {report.loss:.4f}", refresh=False)
             yield report

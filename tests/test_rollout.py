@@ -1,0 +1,110 @@
+"""Rollout: which rows of control are seen, when the sampler is asked, what is refused. The samplers here are fakes."""
+
+import pytest
+import torch
+
+from motiondiff_edu.rollout import rollout_steps
+
+B, T_H, T_P, D, C = 2, 4, 3, 5, 1
+
+
+def generator() -> torch.Generator:
+    return torch.Generator().manual_seed(0)
+
+
+def numbered_control(frames: int) -> torch.Tensor:
+    """Row t holds t (and t + 100 in the second walk)."""
+    return torch.arange(frames).float()[None, :, None] + torch.tensor([0.0, 100.0])[:, None, None]
+
+
+class Echo:
+    """A sampler that returns the control of the future frames as poses, and remembers what it was given."""
+
+    def __init__(self):
+        self.calls = []
+
+    def __call__(self, past, control, generator):
+        self.calls.append((past.clone(), control.clone()))
+        return control[:, T_H:].expand(-1, -1, D)
+
+
+def roll(sample, control, frames: int, **options) -> torch.Tensor:
+    past = torch.zeros(B, T_H, D)
+    loop = rollout_steps(sample, past, control, frames, T_P, generator=generator(), **options)
+    return torch.stack([frame.pose for frame in loop], 1)
+
+
+def test_hold_sees_only_the_step_about_to_be_taken():
+    echo = Echo()
+    poses = roll(echo, numbered_control(T_H + 6), 6)
+    assert poses.shape == (B, 6, D)
+    # the frame T_h + t is reached by control[T_h - 1 + t]
+    assert poses[0, :, 0].tolist() == [3, 4, 5, 6, 7, 8]
+    assert poses[1, :, 0].tolist() == [103, 104, 105, 106, 107, 108]
+    assert [call[1][0, :, 0].tolist() for call in echo.calls[:2]] == [[0, 1, 2, 3, 3, 3, 3], [1, 2, 3, 4, 4, 4, 4]]
+
+
+def test_look_ahead_sees_what_comes_and_repeats_the_last_row():
+    echo = Echo()
+    poses = roll(echo, numbered_control(T_H + 6), 6, hold=False)
+    assert poses[0, :, 0].tolist() == [4, 5, 6, 7, 8, 9]
+    assert echo.calls[0][1][0, :, 0].tolist() == [0, 1, 2, 3, 4, 5, 6]
+    assert echo.calls[-1][1][0, :, 0].tolist() == [5, 6, 7, 8, 9, 9, 9]
+
+
+@pytest.mark.parametrize("keep", [1, 2, 3])
+def test_keep_asks_the_sampler_every_keep_frames_and_feeds_back_what_was_kept(keep: int):
+    """The same as calling the sampler by hand."""
+
+    def sample(past, control, generator):
+        return past[:, -1:] + control[:, T_H:] + torch.randn(B, T_P, D, generator=generator)
+
+    calls, control = [], numbered_control(T_H + 7)
+    poses = roll(lambda *given: calls.append(1) or sample(*given), control, 7, keep=keep)
+    past, random, expected = torch.zeros(B, T_H, D), generator(), []
+    for t in range(0, 7, keep):
+        known = control[:, t : t + T_H]
+        window = sample(past, torch.cat([known, known[:, -1:].repeat(1, T_P, 1)], 1), random)[:, :keep]
+        expected.append(window)
+        past = torch.cat([past, window], 1)[:, -T_H:]
+    assert torch.equal(poses, torch.cat(expected, 1)[:, :7])
+    assert len(calls) == -(-7 // keep)
+
+
+def test_a_frame_carries_its_number_and_the_window_it_was_taken_from():
+    loop = rollout_steps(
+        Echo(), torch.zeros(B, T_H, D), numbered_control(12), 5, T_P, generator=generator(), keep=2, hold=False
+    )
+    frames = list(loop)
+    assert [frame.t for frame in frames] == [0, 1, 2, 3, 4]
+    assert torch.equal(frames[3].pose, frames[3].window[:, 1])
+    assert frames[2].window is frames[3].window
+
+
+@pytest.mark.parametrize(("hold", "asked_first"), [(True, range(T_H)), (False, range(T_H + T_P))])
+def test_control_as_a_function_is_asked_when_needed_and_can_change_on_the_fly(hold: bool, asked_first: range):
+    asked, speed = [], 1.0
+
+    def control(t: int) -> torch.Tensor:
+        asked.append(t)
+        return torch.full((B, C), speed)
+
+    echo = Echo()
+    loop = rollout_steps(echo, torch.zeros(B, T_H, D), control, 4, T_P, generator=generator(), hold=hold)
+    assert asked == []
+    assert next(loop).pose[0, 0] == 1
+    assert sorted(set(asked)) == list(asked_first)
+    speed = 7.0
+    assert next(loop).pose[0, 0] == 7
+    assert max(asked) == max(asked_first) + 1
+
+
+def test_a_function_and_a_table_say_the_same():
+    table = numbered_control(T_H + 5)
+    assert torch.equal(roll(Echo(), table, 5), roll(Echo(), lambda t: table[:, t], 5))
+
+
+@pytest.mark.parametrize("keep", [0, 4, -1])
+def test_keep_beyond_the_window_is_refused(keep: int):
+    with pytest.raises(ValueError, match=f"keep must lie between 1 and T_p = 3, got {keep}"):
+        roll(Echo(), numbered_control(9), 2, keep=keep)

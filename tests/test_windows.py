@@ -1,0 +1,96 @@
+"""Windows never cross clips, half of them are held, the scalers lead back to metres, and the loss is Algorithm 1."""
+
+import numpy as np
+import pytest
+import torch
+
+from motiondiff_edu.ddpm import linear_schedule, q_sample
+from motiondiff_edu.modiff import MoDiff, MoDiffConfig
+from motiondiff_edu.motion.clip import Clip
+from motiondiff_edu.prediction import target_of
+from motiondiff_edu.windows import Windows, window_loss
+
+T_H, T_P = 4, 3
+
+
+def ramp_clip(number: int, frames: int) -> Clip:
+    """Every pose coordinate and control of frame t is 1000 number + t."""
+    t = 1000.0 * number + np.arange(frames)
+    poses = t[:, None, None] + np.zeros((frames, 21, 3))
+    return Clip(poses, np.repeat(t[:, None], 3, 1), source=f"ramp {number}")
+
+
+@pytest.fixture()
+def windows() -> Windows:
+    return Windows.of([ramp_clip(n, frames) for n, frames in enumerate([9, 5, 13, 7, 30])], T_H, T_P)
+
+
+def metres(windows: Windows, batch: int = 400, held: float = 0.5):
+    past, future, control = windows.draw(batch, torch.Generator().manual_seed(1), held)
+    back = windows.pose_scaler.inverse
+    return back(past)[..., 0], back(future)[..., 0], windows.control_scaler.inverse(control)[..., 0]
+
+
+def test_a_window_never_crosses_two_clips(windows: Windows):
+    assert len(windows.starts) == (9 - 6) + 0 + (13 - 6) + 1 + (30 - 6)
+    past, future, _ = metres(windows)
+    frames = torch.cat([past, future], 1)
+    assert frames.shape == (400, T_H + T_P)
+    assert torch.allclose(frames.diff(dim=1), torch.ones(1), atol=0.01)  # 1 a frame; a border would jump by 1000
+    assert len({int(n) for n in (frames[:, 0] / 1000).floor()}) == 4  # the clip of 5 frames is too short
+
+
+def test_control_lies_beside_its_pose_and_half_is_held(windows: Windows):
+    past, future, control = metres(windows)
+    assert torch.allclose(control[:, :T_H], past, atol=0.01)
+    held = (control[:, T_H:] - control[:, T_H - 1 : T_H]).abs().amax(1) < 0.01
+    assert torch.allclose(control[~held][:, T_H:], future[~held], atol=0.01)
+    assert 0.4 < held.float().mean() < 0.6
+    for share in (0.0, 1.0):
+        _, _, control = metres(windows, held=share)
+        is_held = (control[:, T_H:] - control[:, T_H - 1 : T_H]).abs().amax(1) < 0.01
+        assert is_held.float().mean() == share
+
+
+def test_drawing_a_held_batch_leaves_the_data_alone(windows: Windows):
+    before = windows.control.clone()
+    windows.draw(50, torch.Generator().manual_seed(2), held=1.0)
+    assert torch.equal(windows.control, before)
+
+
+def test_scalers_standardise_and_lead_back(windows: Windows):
+    assert torch.allclose(windows.poses.mean(0), torch.zeros(63), atol=1e-4)
+    assert torch.allclose(windows.poses.std(0, correction=0), torch.ones(63), atol=1e-4)
+    raw = ramp_clip(4, 30).features()
+    assert np.allclose(windows.pose_scaler.inverse(windows.poses[-30:]), raw, atol=0.01)
+
+
+def test_given_scalers_are_used(windows: Windows):
+    scalers = (windows.pose_scaler, windows.control_scaler)
+    other = Windows.of([ramp_clip(7, 20)], T_H, T_P, scalers)
+    assert other.pose_scaler is scalers[0] and other.control_scaler is scalers[1]
+    assert np.allclose(scalers[0].inverse(other.poses)[0, 0], 7000, atol=0.01)
+
+
+def test_clips_that_are_too_short_are_refused():
+    with pytest.raises(ValueError, match="no clip has the 7 frames of a window"):
+        Windows.of([ramp_clip(0, 6)], T_H, T_P)
+    with pytest.raises(ValueError, match="no clip"):
+        Windows.of([], T_H, T_P)
+
+
+@pytest.mark.parametrize("target", ["eps", "x0", "v"])
+def test_the_loss_is_algorithm_1(windows: Windows, target: str):
+    """The same draws, in the same order, one noise for each window, the whole network called."""
+    config = MoDiffConfig(T_h=T_H, T_p=T_P, S=6, width=16, heads=2, hidden=24, target=target)
+    torch.manual_seed(0)
+    model, schedule = MoDiff(config), linear_schedule(6, 0.2, 0.95)
+    loss = window_loss(windows, schedule, batch=5, noises=2, held=0.3)(model, torch.Generator().manual_seed(8))
+    generator = torch.Generator().manual_seed(8)
+    past, x0, control = windows.draw(5, generator, 0.3)
+    past, x0, control = (x.repeat_interleave(2, 0) for x in (past, x0, control))
+    s = torch.randint(1, 7, (10,), generator=generator)
+    eps = torch.randn(10, T_P, 63, generator=generator)
+    output = model(q_sample(x0, s, schedule, eps), s, past, control)
+    expected = (target_of(x0, eps, s, schedule, target) - output).square().mean()
+    assert loss.item() == pytest.approx(expected.item(), rel=1e-5)
