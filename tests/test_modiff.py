@@ -1,0 +1,135 @@
+"""MoDiff's network: the paper's sizes, its inputs, the skip, and the fast twin that gives the same numbers."""
+
+import math
+from dataclasses import replace
+
+import pytest
+import torch
+
+from motiondiff_edu.fast.modiff import FastMoDiff
+from motiondiff_edu.modiff import MODIFF_PAPER, MODIFF_SMALL, MoDiff, step_embedding
+
+TINY = replace(MODIFF_SMALL, D=9, T_h=4, T_p=5, S=20, width=16, heads=2, hidden=24)
+B = 3
+
+
+def lively(config, seed=0):
+    """A network whose zero-initialised tables have values too: else a missing bias would go unnoticed."""
+    torch.manual_seed(seed)
+    model = MoDiff(config).eval()
+    with torch.no_grad():
+        for name, weight in model.named_parameters():
+            if name.endswith("table") or name == "skip":
+                weight.add_(0.5 * torch.randn_like(weight))
+    return model
+
+
+def inputs(config, batch=B, seed=1):
+    g = torch.Generator().manual_seed(seed)
+    x_s = torch.randn(batch, config.T_p, config.D, generator=g)
+    past = torch.randn(batch, config.T_h, config.D, generator=g)
+    control = torch.randn(batch, config.T_h + config.T_p, config.C, generator=g)
+    return x_s, torch.full((batch,), 7), past, control
+
+
+@pytest.mark.parametrize("config", [MODIFF_PAPER, MODIFF_SMALL], ids=["paper", "small"])
+def test_layers_are_the_papers(config):
+    model = MoDiff(config)
+    encoders = (model.motion_encoder, model.control_encoder, model.cross_encoder)
+    assert [len(e.blocks) for e in encoders] == [2, 2, 6]
+    assert len(model.decoder) == 3 and all(block.with_context for block in model.decoder)
+    assert (config.T_h, config.S, config.heads, config.D, config.C) == (10, 100, 4, 63, 3)
+
+
+def test_paper_sizes():
+    assert (MODIFF_PAPER.width, MODIFF_PAPER.heads, MODIFF_PAPER.target) == (256, 4, "eps")
+    paper, small = (sum(p.numel() for p in MoDiff(c).parameters()) for c in (MODIFF_PAPER, MODIFF_SMALL))
+    assert 11e6 < paper < 13e6 and small < 2e6  # a paper-width block has 12 * 256^2 weights and a bit
+
+
+@pytest.mark.parametrize("config", [TINY, MODIFF_SMALL], ids=["tiny", "small"])
+def test_output_has_the_shape_of_the_future(config):
+    x_s, s, past, control = inputs(config)
+    assert lively(config)(x_s, s, past, control).shape == x_s.shape
+
+
+@pytest.mark.parametrize("frames", [(3, 9), (4, 8), (4, 10), (5, 9)])
+def test_wrong_numbers_of_frames_are_told(frames):
+    x_s, s, past, control = inputs(TINY)
+    with pytest.raises(ValueError, match=rf"4 past poses and 9 rows.*got {frames[0]}.* and {frames[1]}"):
+        MoDiff(TINY)(x_s, s, torch.zeros(B, frames[0], TINY.D), torch.zeros(B, frames[1], TINY.C))
+
+
+@pytest.mark.parametrize("which", ["x_s", "s", "past", "control"])
+def test_every_input_is_heard(which):
+    model, args = lively(TINY), dict(zip(("x_s", "s", "past", "control"), inputs(TINY), strict=True))
+    before = model(**args)
+    args[which] = args[which] + (1 if which == "s" else 0.5)
+    assert not torch.allclose(model(**args), before, atol=1e-4)
+
+
+def test_rows_of_a_batch_do_not_talk():
+    model, (x_s, _, past, control) = lively(TINY), inputs(TINY)
+    s = torch.tensor([1, 9, 20])
+    together = model(x_s, s, past, control)
+    for b in range(B):
+        alone = model(x_s[b : b + 1], s[b : b + 1], past[b : b + 1], control[b : b + 1])
+        torch.testing.assert_close(together[b : b + 1], alone, atol=1e-5, rtol=1e-5)
+
+
+def test_time_is_known_only_through_the_relative_bias():
+    """Without their tables the layers see a set of frames: turning the future round turns the output round."""
+    torch.manual_seed(0)
+    model, (x_s, s, past, control) = MoDiff(TINY).eval(), inputs(TINY)
+    turned = model(x_s.flip(1), s, past, control).flip(1)
+    torch.testing.assert_close(turned, model(x_s, s, past, control), atol=1e-5, rtol=1e-5)
+    model = lively(TINY)
+    assert not torch.allclose(model(x_s.flip(1), s, past, control).flip(1), model(x_s, s, past, control), atol=1e-3)
+
+
+def test_skip_adds_w_of_s_times_the_input():
+    with_skip = lively(TINY)
+    without = MoDiff(replace(TINY, skip=False)).eval()
+    without.load_state_dict({k: v for k, v in with_skip.state_dict().items() if k != "skip"})
+    x_s, _, past, control = inputs(TINY)
+    s = torch.tensor([2, 11, 20])
+    wanted = without(x_s, s, past, control) + with_skip.skip[s].view(B, 1, 1) * x_s
+    torch.testing.assert_close(with_skip(x_s, s, past, control), wanted)
+    assert torch.equal(MoDiff(TINY).skip, torch.ones(TINY.S + 1))
+
+
+def test_step_embedding_by_hand():
+    out = step_embedding(torch.tensor([0, 3]), 6)
+    frequencies = [1.0, 1e4 ** (-1 / 3), 1e4 ** (-2 / 3)]
+    wanted = [math.sin(3 * f) for f in frequencies] + [math.cos(3 * f) for f in frequencies]
+    torch.testing.assert_close(out, torch.tensor([[0.0, 0, 0, 1, 1, 1], wanted]))
+
+
+@pytest.mark.parametrize("config", [TINY, MODIFF_SMALL, MODIFF_PAPER, replace(TINY, skip=False)],
+                         ids=["tiny", "small", "paper", "no skip"])  # fmt: skip
+def test_fast_twin_gives_the_same_numbers(config):
+    plain = lively(config)
+    fast = FastMoDiff(plain)
+    x_s, _, past, control = inputs(config, batch=2)
+    context = fast.encode(past, control)
+    for step in (1, config.S // 2, config.S):
+        with torch.no_grad():
+            wanted = plain(x_s, torch.full((2,), step), past, control)
+        torch.testing.assert_close(fast.denoise(x_s, torch.full((2,), step), context), wanted, atol=1e-5, rtol=1e-5)
+        torch.testing.assert_close(fast.denoise(x_s, step, context), wanted, atol=1e-5, rtol=1e-5)
+
+
+def test_fast_twin_keeps_the_context_it_was_given():
+    """Another past or control needs another context: the kept one must not leak into it."""
+    fast = FastMoDiff(lively(TINY))
+    x_s, _, past, control = inputs(TINY)
+    first, second = fast.encode(past, control), fast.encode(past, control + 1)
+    before = fast.denoise(x_s, 5, first)
+    assert not torch.allclose(fast.denoise(x_s, 5, second), before, atol=1e-4)
+    assert torch.equal(fast.denoise(x_s, 5, first), before)
+
+
+def test_fast_twin_refuses_the_same_shapes():
+    _, _, past, control = inputs(TINY)
+    with pytest.raises(ValueError, match="past poses"):
+        FastMoDiff(lively(TINY)).encode(past[:, 1:], control)
