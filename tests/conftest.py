@@ -1,0 +1,71 @@
+"""What the tests share: the real recordings and the browser, skipped visibly, or demanded where the build says so.
+
+MOTIONDIFF_REAL_DATA   folder of real recordings; when it is set, a test that cannot use it fails
+MOTIONDIFF_REQUIRE_BROWSER   when it is set, a test that finds no Chromium fails
+"""
+
+import os
+import shutil
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parent.parent
+BROWSERS = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
+
+
+def demanded(name: str) -> bool:
+    """Whether the environment variable `name` is set to something other than 0."""
+    return os.environ.get(name, "") not in ("", "0")
+
+
+def missing(what: str, variable: str) -> None:
+    """Skip, or fail where the build demanded it."""
+    if demanded(variable):
+        pytest.fail(f"{what}, and {variable} is set: this test must not be skipped", pytrace=False)
+    pytest.skip(what)
+
+
+@pytest.fixture(scope="session")
+def root() -> Path:
+    """The root of the checkout."""
+    return ROOT
+
+
+@pytest.fixture(scope="session")
+def real_data() -> Path:
+    """The folder of real recordings (bvh/, bvh_odd_and_broken/, oracle/ ...): never part of the project."""
+    folder = os.environ.get("MOTIONDIFF_REAL_DATA", "")
+    if not folder:
+        pytest.skip("real recordings not given: set MOTIONDIFF_REAL_DATA to their folder")
+    if not Path(folder).is_dir():
+        missing(f"there is no folder {folder}", "MOTIONDIFF_REAL_DATA")
+    return Path(folder)
+
+
+@pytest.fixture(scope="session")
+def chromium() -> str:
+    """The path of the system's Chromium, for playwright's executable_path."""
+    found = next((path for name in BROWSERS if (path := shutil.which(name))), None)
+    if found is None:
+        missing("no Chromium found: install it (Debian: apt-get install chromium)", "MOTIONDIFF_REQUIRE_BROWSER")
+    return found
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Every test that uses the browser is marked so, and `make test` runs those last."""
+    for item in items:
+        if "chromium" in getattr(item, "fixturenames", ()):
+            item.add_marker(pytest.mark.browser)
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_makereport(item: pytest.Item, call: pytest.CallInfo):
+    """A skip from anywhere (importorskip, a mark) in a browser or real-data test is a failure where it was demanded."""
+    report = yield
+    names = getattr(item, "fixturenames", ())
+    for fixture, variable in (("chromium", "MOTIONDIFF_REQUIRE_BROWSER"), ("real_data", "MOTIONDIFF_REAL_DATA")):
+        if report.skipped and not hasattr(report, "wasxfail") and fixture in names and demanded(variable):
+            report.outcome = "failed"
+            report.longrepr = f"skipped, although {variable} is set: {report.longrepr}"
+    return report
