@@ -103,7 +103,7 @@ def q_sample(x0: Float[Tensor, "B *shape"], s: Steps, schedule: Schedule,
 
 
 def posterior_variance(schedule: Schedule) -> Float[Tensor, "S_plus_1"]:
-    """beta_tilde_s = beta_s (1 - alpha_bar_{s-1}) / (1 - alpha_bar_s), 0 at s = 1. Source: MoDiff eq. 7. Notebook: 02."""
+    """beta_tilde_s = beta_s (1 - alpha_bar_{s-1}) / (1 - alpha_bar_s). Source: MoDiff eq. 7. Notebook: 02."""
     left = 1 - schedule.alpha_bar
     return torch.cat([left[:1], schedule.beta[1:] * left[:-1] / left[1:]])
 

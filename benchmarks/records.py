@@ -1,0 +1,43 @@
+"""Records of measured figures: {name, value, low, high, seeds, unit, paper, command}, kept in lists in JSON files."""
+import json
+import os
+import tempfile
+from pathlib import Path
+
+import numpy as np
+
+KEYS = ("name", "value", "low", "high", "seeds", "unit", "paper", "command")
+
+
+def record(name: str, values, *, unit: str, command: str, seeds=None, paper=None, center=np.median) -> dict:
+    """Summarise repeated measurements: their median, and the 95 % bootstrap interval of it.
+
+    `seeds` lists what was repeated (default 0..n-1); `paper` is the paper's own figure, or None.
+    """
+    values = np.asarray(values, float).ravel()
+    if not len(values) or not np.isfinite(values).all():
+        raise ValueError(f"{name}: {len(values)} measurements, not all of them finite numbers")
+    draws = np.random.default_rng(0).choice(values, (2000, len(values)))
+    low, high = np.percentile(center(draws, axis=1), [2.5, 97.5])
+    seeds = list(range(len(values)) if seeds is None else seeds)
+    return dict(name=name, value=float(center(values)), low=float(low), high=float(high), seeds=seeds, unit=unit,
+                paper=paper, command=command)
+
+
+def write_records(path: str | Path, records: list[dict]) -> None:
+    """Write records as JSON, to a temporary name first; raises ValueError where one lacks a key."""
+    for one in records:
+        if set(one) != set(KEYS):
+            raise ValueError(f"record {one.get('name')!r} must have exactly the keys {', '.join(KEYS)}")
+    path = Path(path)
+    path.parent.mkdir(parents=True, exist_ok=True)
+    with tempfile.NamedTemporaryFile("w", dir=path.parent, suffix=".tmp", delete=False) as file:
+        json.dump(records, file, indent=1)
+        file.write("\n")
+    os.replace(file.name, path)
+
+
+def show(records: list[dict]) -> None:
+    """Print one line a record."""
+    for one in records:
+        print(f"{one['name']:44s} {one['value']:9.3g}  [{one['low']:.3g}, {one['high']:.3g}] {one['unit']}")

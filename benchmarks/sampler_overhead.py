@@ -1,0 +1,112 @@
+"""What a sampler costs around a model that costs nothing: ours beside diffusers and smalldiffusion, in one run.
+
+Each repeat times all of them one after the other, in changing order; a figure is the median of the ratios of repeats.
+Run: python benchmarks/sampler_overhead.py [--repeats 40] [--out benchmarks/results/sampler_overhead.json]
+"""
+import argparse
+import importlib.util
+import time
+from types import SimpleNamespace
+
+import numpy as np
+import torch
+from diffusers import DDIMScheduler, DDPMScheduler
+from records import record, show, write_records
+
+from motiondiff_edu.ddpm import linear_schedule, sample_steps
+from motiondiff_edu.fast.samplers import ddim_steps, ddpm_steps
+
+S, SHAPE = 100, (1, 10, 63)
+COMMAND = "python benchmarks/sampler_overhead.py"
+ANSWER = torch.zeros(SHAPE)
+
+
+def trivial(x, s):
+    """A model that costs nothing, so that what is timed is the sampler."""
+    return ANSWER
+
+
+def run_ours(sampler):
+    schedule = linear_schedule(S)
+
+    def run(x):
+        for step in sampler(trivial, x, schedule):
+            x = step.x_s
+        return x
+    return run
+
+
+def run_diffusers(kind):
+    scheduler = kind(num_train_timesteps=S, beta_start=1e-4, beta_end=0.1, clip_sample=False)
+    scheduler.set_timesteps(S)
+
+    @torch.no_grad()
+    def run(x):
+        for t in scheduler.timesteps:
+            x = scheduler.step(trivial(x, t), t, x).prev_sample
+        return x
+    return run
+
+
+def smalldiffusion_sampler():
+    """Its sampling module from its own file: importing the whole package would need torchvision."""
+    spec = importlib.util.find_spec("smalldiffusion")
+    path = spec.submodule_search_locations[0] + "/diffusion.py"
+    spec = importlib.util.spec_from_file_location("smalldiffusion_sampling", path)
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+def run_smalldiffusion():
+    theirs = smalldiffusion_sampler()
+    sigmas = theirs.ScheduleDDPM(S, 1e-4, 0.1).sample_sigmas(S)
+    model = SimpleNamespace(eval=lambda: None, rand_input=lambda n: torch.randn(n, *SHAPE[1:]),
+                            predict_eps_cfg=lambda x, sigma, cond, scale: trivial(x, sigma))
+    here = SimpleNamespace(device=torch.device("cpu"))
+
+    def run(x):
+        for out in theirs.samples(model, sigmas, gam=1, mu=0.5, xt=x * float(sigmas[0]), accelerator=here):
+            x = out
+        return x
+    return run
+
+
+def measure(runs: dict, repeats: int) -> dict[str, np.ndarray]:
+    """Microseconds a step of every sampler in every repeat: the best of three within each, in changing order."""
+    times, x = {name: [] for name in runs}, torch.randn(SHAPE)
+    rng = np.random.default_rng(0)
+    for repeat in range(-3, repeats):
+        for name in rng.permutation(list(runs)):
+            best = min(_time(runs[name], x) for _ in range(3))
+            if repeat >= 0:
+                times[name].append(best / S * 1e6)
+    return {name: np.array(values) for name, values in times.items()}
+
+
+def _time(run, x) -> float:
+    start = time.perf_counter()
+    run(x)
+    return time.perf_counter() - start
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--repeats", type=int, default=40)
+    parser.add_argument("--out", default="benchmarks/results/sampler_overhead.json")
+    args = parser.parse_args()
+    torch.set_num_threads(1)
+    times = measure({"ours": run_ours(ddpm_steps), "plain": run_ours(sample_steps),
+                     "ours_ddim": run_ours(lambda m, x, sch: ddim_steps(m, x, sch, steps=S)),
+                     "diffusers": run_diffusers(DDPMScheduler), "diffusers_ddim": run_diffusers(DDIMScheduler),
+                     "smalldiffusion": run_smalldiffusion()}, args.repeats)
+    records = [record(f"bench.sampler_us.{name}", values, unit="us a step", command=COMMAND)
+               for name, values in times.items()]
+    for peer in ("diffusers", "smalldiffusion"):
+        records.append(record(f"bench.sampler_over_{peer}", times["ours"] / times[peer], unit="ratio", command=COMMAND))
+    show(records)
+    write_records(args.out, records)
+
+
+if __name__ == "__main__":
+    main()

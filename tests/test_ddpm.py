@@ -1,0 +1,211 @@
+"""The diffusion core against numbers that are not ours, and against itself taken step by step."""
+import warnings
+
+import numpy as np
+import pytest
+import torch
+
+from motiondiff_edu.ddpm import (
+    cosine_schedule,
+    draw,
+    linear_schedule,
+    make_schedule,
+    p_mean,
+    p_sample,
+    p_variance,
+    posterior_variance,
+    q_posterior,
+    q_sample,
+    q_step,
+    sample_steps,
+    scaled_linear_schedule,
+    schedule_card,
+    simple_loss,
+)
+from motiondiff_edu.exact import exact_denoiser, mixture, sample_mixture
+from motiondiff_edu.prediction import to_eps
+
+S_REF = 1000
+
+
+@pytest.fixture(scope="module")
+def reference():
+    """The schedule, the start and the dummy model of the published reference run (diffusers' scheduler tests)."""
+    start = (torch.arange(768).reshape(3, 8, 8, 4) / 768).permute(3, 0, 1, 2)
+    return linear_schedule(S_REF, 1e-4, 0.02), start, lambda x, s: x * ((s - 1) / s).float().reshape(-1, 1, 1, 1)
+
+
+def run(reference, target="eps", **kwargs):
+    schedule, start, model = reference
+    generator = torch.Generator().manual_seed(0)
+    steps = sample_steps(lambda x, s: to_eps(model(x, s), x, s, schedule, target), start, schedule,
+                         generator=generator, variance="posterior", clip=1.0, **kwargs)
+    return {step.s: step.x_s for step in steps}
+
+
+@pytest.mark.parametrize("target, total", [("eps", 258.9606), ("v", 202.0296)])
+def test_ddpm_sum_equals_the_published_run(reference, target, total):
+    assert run(reference, target)[0].abs().sum().item() == pytest.approx(total, abs=0.1)
+
+
+def test_two_steps_from_lightly_noised_data_equal_the_published_run(reference):
+    schedule, start, model = reference
+    noise = (torch.arange(768).flip(-1).reshape(3, 8, 8, 4) / 768).permute(3, 0, 1, 2)
+    x, generator = q_sample(start, 2, schedule, noise), torch.Generator().manual_seed(0)
+    for s in (2, 1):
+        a, b = schedule.alpha_bar[s].sqrt().float(), (1 - schedule.alpha_bar[s]).sqrt().float()
+        x0_hat = ((x - b * model(x, torch.full((4,), s))) / a).clamp(-1, 1)
+        mean, variance = q_posterior(x0_hat, x, s, schedule)
+        x = mean + variance.sqrt() * draw(x, generator)
+    assert x.abs().sum().item() == pytest.approx(387.9466, abs=0.1)
+
+
+def test_trajectory_equals_the_stored_one_frame_by_frame(reference, real_data):
+    stored = np.load(real_data / "oracle/diffusers_ddpm_trajectory_eps_linear_fixed_small_seed0.npz")
+    ours = run(reference)
+    np.testing.assert_allclose(reference[0].alpha_bar[1:], stored["alphas_cumprod"], rtol=1e-4, atol=1e-7)
+    for t in (999, 900, 500, 100, 10, 1, 0):  # the stored x_t is what step t leaves behind, ours is labelled with it
+        np.testing.assert_allclose(ours[t].numpy(), stored[f"x{t}"], atol=2e-3, err_msg=f"t = {t}")
+
+
+def test_cosine_schedule_equals_published_values():
+    schedule = cosine_schedule(1000)
+    index = torch.tensor([0, 10, 100, 250, 500, 750, 900, 999]) + 1
+    published = [0.999959, 0.999279, 0.971576, 0.845888, 0.492285, 0.143179, 0.0236161, 2.42873e-9]
+    np.testing.assert_allclose(schedule.alpha_bar[index], published, rtol=2e-5)
+    np.testing.assert_allclose(schedule.beta[[1, 501, 999, 1000]], [4.128e-5, 0.00315569, 0.7499994, 0.999], rtol=2e-4)
+
+
+def test_posterior_variances_equal_published_values(reference):
+    variance = posterior_variance(reference[0])[torch.tensor([0, 487, 999]) + 1]
+    np.testing.assert_allclose(variance, [0, 0.00979, 0.02], atol=5e-6)
+
+
+@pytest.mark.parametrize("make", [linear_schedule, scaled_linear_schedule, cosine_schedule])
+@pytest.mark.parametrize("S", [21, 50, 400])
+def test_schedule_contract(make, S):
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        schedule = make(S)
+    assert schedule.S == S and len(schedule.alpha_bar) == S + 1
+    assert schedule.beta[0] == 0 and schedule.alpha_bar[0] == 1
+    assert ((schedule.beta[1:] > 0) & (schedule.beta[1:] < 1)).all()
+    assert (schedule.alpha_bar.diff() < 0).all()
+
+
+@pytest.mark.parametrize("beta", [[0.1, 0.0], [0.1, 1.0], [0.1, float("nan")], []])
+def test_impossible_schedules_are_refused(beta):
+    with pytest.raises(ValueError, match="between 0 and 1"):
+        make_schedule(torch.tensor(beta))
+
+
+def test_too_few_steps_are_refused_with_the_remedy():
+    with pytest.raises(ValueError, match="more steps"):
+        scaled_linear_schedule(10)
+
+
+@pytest.mark.parametrize("make, percent", [(linear_schedule, "7.5 %"), (lambda: cosine_schedule(100), "0.049 %"),
+                                           (scaled_linear_schedule, "0.45 %")])
+def test_schedule_card_tells_the_signal_left(make, percent):
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        assert f" {percent} of the signal" in schedule_card(make())
+
+
+@pytest.mark.parametrize("beta_S, left", [(0.05, "28 %"), (0.02, "60 %")])
+def test_schedule_that_leaves_signal_warns_in_words(beta_S, left):
+    with pytest.warns(UserWarning, match=f"{left} of the signal.*pure noise"):
+        linear_schedule(100, 1e-4, beta_S)
+
+
+def test_iterated_single_steps_match_the_closed_form():
+    schedule, generator = linear_schedule(30, 1e-3, 0.3), torch.Generator().manual_seed(1)
+    x0 = torch.tensor([0.7, -1.2]).expand(40_000, 2)
+    x = x0
+    for s in range(1, 23):
+        x = q_step(x, s, schedule, draw(x, generator))
+    at_once = q_sample(x0, 22, schedule, torch.zeros_like(x0))
+    torch.testing.assert_close(x.mean(0), at_once[0], atol=0.02, rtol=0)
+    torch.testing.assert_close(x.var(0), (1 - schedule.alpha_bar[22]).float().expand(2), atol=0.02, rtol=0)
+
+
+def test_q_sample_takes_a_step_for_each_sample():
+    schedule, x0, noise = linear_schedule(), torch.randn(2, 5, 7), torch.randn(2, 5, 7)
+    both = q_sample(x0, torch.tensor([3, 90]), schedule, noise)
+    for i, s in enumerate((3, 90)):
+        torch.testing.assert_close(both[i:i + 1], q_sample(x0[i:i + 1], s, schedule, noise[i:i + 1]))
+
+
+def test_posterior_is_bayes_rule_on_a_grid():
+    """q(x_{s-1} | x_s, x0) from eq. 7 against the product of two densities, normalised by a sum."""
+    schedule, s, x0, x_s = linear_schedule(20, 0.01, 0.4), 9, 0.8, -0.3
+    grid = torch.linspace(-6, 6, 20_001, dtype=torch.float64)
+    log_p = (-(grid - schedule.alpha_bar[s - 1].sqrt() * x0) ** 2 / (2 * (1 - schedule.alpha_bar[s - 1]))
+             - (x_s - schedule.alpha[s].sqrt() * grid) ** 2 / (2 * schedule.beta[s]))
+    weight = log_p.softmax(0)
+    mean = (weight * grid).sum()
+    ours, variance = q_posterior(torch.tensor([[x0]]).double(), torch.tensor([[x_s]]).double(), s, schedule)
+    assert ours.item() == pytest.approx(mean.item(), abs=1e-6)
+    assert variance.item() == pytest.approx((weight * (grid - mean) ** 2).sum().item(), abs=1e-6)
+
+
+def test_p_mean_with_the_true_noise_is_the_posterior_mean():
+    schedule, x0, eps, s = linear_schedule(), torch.randn(4, 3, 2).double(), torch.randn(4, 3, 2).double(), 37
+    x_s = q_sample(x0, s, schedule, eps)
+    torch.testing.assert_close(p_mean(x_s, s, eps, schedule), q_posterior(x0, x_s, s, schedule)[0])
+
+
+def test_variances_are_the_papers_and_its_lower_bound():
+    schedule = linear_schedule()
+    assert torch.equal(p_variance(schedule), schedule.beta)
+    assert (p_variance(schedule, "posterior")[1:] < schedule.beta[1:]).all()
+    with pytest.raises(ValueError, match="posterior"):
+        p_variance(schedule, "fixed_small")
+
+
+@pytest.mark.parametrize("variance", ["beta", "posterior"])
+def test_last_step_adds_no_noise(variance):
+    schedule, x, eps = linear_schedule(), torch.randn(2, 5, 7), torch.randn(2, 5, 7)
+    loud = torch.full_like(x, 1e6)
+    torch.testing.assert_close(p_sample(x, 1, eps, schedule, loud, variance), p_mean(x, 1, eps, schedule))
+    assert (p_sample(x, 2, eps, schedule, loud, variance) - p_mean(x, 2, eps, schedule)).min() > 1e3
+
+
+def test_sampling_yields_every_step_and_repeats_with_its_seed():
+    schedule = linear_schedule(13, 1e-3, 0.6)
+    denoise = exact_denoiser(mixture(torch.ones(1), torch.zeros(1, 3), torch.eye(3)[None]), schedule)
+
+    def walk():
+        return list(sample_steps(denoise, (4, 3), schedule, generator=torch.Generator().manual_seed(5)))
+    first, second = walk(), walk()
+    assert [step.s for step in first] == list(range(13, -1, -1))
+    for a, b in zip(first, second, strict=True):
+        assert torch.equal(a.x_s, b.x_s)
+    assert torch.equal(first[-1].x_s, first[-1].x0_hat)
+    torch.testing.assert_close(first[-1].x_s, first[-2].x0_hat)  # without noise, the last mean is the last guess of x0
+
+
+def test_clip_bounds_the_guess():
+    schedule = linear_schedule()
+    steps = list(sample_steps(lambda x, s: torch.zeros_like(x), 5 * torch.ones(2, 3), schedule, clip=0.5))
+    assert max(step.x0_hat.abs().max() for step in steps) <= 0.5
+
+
+def test_exact_denoiser_samples_have_the_mixtures_mean_variance_and_weights():
+    truth = mixture(torch.tensor([0.3, 0.7]), torch.tensor([[-1.0, 0.5], [1.0, -0.2]]),
+                    torch.tensor([[[0.04, 0.02], [0.02, 0.05]], [[0.09, 0.0], [0.0, 0.02]]]))
+    schedule, generator = cosine_schedule(200), torch.Generator().manual_seed(2)
+    *_, last = sample_steps(exact_denoiser(truth, schedule), (8000, 2), schedule, generator=generator)
+    x = last.x_s.double()
+    torch.testing.assert_close(x.mean(0), truth.mean(), atol=0.04, rtol=0)
+    torch.testing.assert_close(x.T.cov(), truth.covariance(), atol=0.05, rtol=0)
+    assert (x[:, 0] < 0).double().mean().item() == pytest.approx(0.3, abs=0.025)
+    drawn = sample_mixture(truth, 8000, generator)
+    torch.testing.assert_close(drawn.T.cov(), truth.covariance(), atol=0.05, rtol=0)
+
+
+def test_simple_loss_is_the_mean_square_and_zero_for_the_true_noise():
+    schedule, x0, noise, s = linear_schedule(), torch.randn(2, 5, 7), torch.randn(2, 5, 7), torch.tensor([4, 60])
+    assert simple_loss(lambda x, s: noise, x0, s, schedule, noise) == 0
+    zero = simple_loss(lambda x, s: torch.zeros_like(x), x0, s, schedule, noise)
+    assert zero.item() == pytest.approx((noise ** 2).mean().item(), rel=1e-6)
