@@ -83,14 +83,14 @@ def _digest(tensors: dict[str, Tensor]) -> str:
 
 def _assemble(config: MoDiffConfig, tensors: dict[str, Tensor], metadata: dict) -> Walker:
     """Build the walker, checking the sizes that `load_state_dict` does not."""
-    model = MoDiff(config)
-    model.load_state_dict({k[6:]: v.float() for k, v in tensors.items() if k.startswith("model.")})
-    pose, control = (Scaler(tensors[f"{n}.mean"], tensors[f"{n}.std"]) for n in ("pose", "control"))
-    schedule = make_schedule(tensors["schedule.beta"], metadata["schedule"])
     sizes = {"pose.mean": config.D, "pose.std": config.D, "control.mean": config.C, "control.std": config.C}
     for name, size in (sizes | {"schedule.beta": config.S}).items():
         if tuple(tensors[name].shape) != (size,):
             raise ValueError(f"{name} has the shape {tuple(tensors[name].shape)} where ({size},) belongs")
+    model = MoDiff(config)
+    model.load_state_dict({k[6:]: v.float() for k, v in tensors.items() if k.startswith("model.")})
+    pose, control = (Scaler(tensors[f"{n}.mean"], tensors[f"{n}.std"]) for n in ("pose", "control"))
+    schedule = make_schedule(tensors["schedule.beta"], metadata["schedule"])
     return Walker(model.eval().requires_grad_(False), schedule, pose, control, json.loads(metadata.get("card", "{}")))
 
 
