@@ -1,0 +1,87 @@
+"""What walking and running do over one cycle, and how that depends on speed: curves and relations, no state.
+
+Phase p = 0 is the heel strike of one's own foot, p = 1 the next one. `run` is 0 for walking, 1 for running.
+Relations and curves follow published measurements of motion-capture walks in shape (Source: README.md, "What it copies").
+"""
+
+import numpy as np
+from jaxtyping import Float
+from scipy.interpolate import PchipInterpolator
+
+RUN_SPEED = 2.25  # m/s where walking gives way to running
+
+Frames = Float[np.ndarray, "*T"]
+
+
+def running(speed: Frames) -> Frames:
+    """Share of running at this forward speed (m/s): 0 below about 2, 1 above about 2.5."""
+    return 0.5 + 0.5 * np.tanh((speed - RUN_SPEED) / 0.13)
+
+
+def cadence(forward: Frames, left: Frames, yaw: Frames) -> Frames:
+    """Steps per second: (74 + 27 v) / 60 walking straight; sideways, back and turning steps come quicker; runs 140 + 4.5 v."""
+    ahead = np.where(forward < 0, -1.5 * forward, forward)
+    v = np.hypot(ahead, 1.7 * left)
+    walk = 74 + 27 * v + 17 * np.abs(yaw) * np.exp(-v)
+    return (walk + (140 + 4.5 * v - walk) * running(forward)) / 60
+
+
+def stance_fraction(forward: Frames) -> Frames:
+    """Share of the cycle that a foot is down: 0.688 - 0.044 v walking, below one half (flight) in a run."""
+    walk = 0.688 - 0.044 * np.abs(forward)
+    run = np.clip(0.44 - 0.126 * (forward - 2.61), 0.32, 0.47)
+    return walk + (run - walk) * running(forward)
+
+
+def fourier(table: list[float], harmonics: int) -> tuple[np.ndarray, np.ndarray]:
+    """Coefficients (cosines, sines) of a periodic curve given at equal steps of phase; the mean comes first."""
+    c = np.fft.rfft(table) / len(table)
+    c = c[: harmonics + 1] * np.where(np.arange(harmonics + 1) == 0, 1, 2)
+    return c.real, -c.imag
+
+
+def periodic(coefficients: tuple[np.ndarray, np.ndarray], p: Frames) -> Frames:
+    """The curve with these Fourier coefficients at phase p (cycles)."""
+    cos, sin = coefficients
+    angle = 2 * np.pi * np.asarray(p)[..., None] * np.arange(len(cos))
+    return np.cos(angle) @ cos + np.sin(angle) @ sin
+
+
+# Foot pitch in degrees, heel up positive. Abscissa: 0..1 through stance, 1..2 through swing, then again from 0.
+_WALK_PITCH = [(0, -15), (0.08, -6.5), (0.17, 0), (0.5, 0), (0.66, 3), (0.8, 14), (0.92, 36), (1.0, 52), (1.1, 52)]
+_WALK_PITCH += [(1.28, 34), (1.5, 13), (1.7, -8), (1.88, -17), (2, -15)]
+_RUN_PITCH = [(0, -7), (0.1, -3), (0.2, 0), (0.45, 0), (0.6, 6), (0.8, 28), (1.0, 58), (1.15, 78), (1.4, 88), (1.65, 48)]
+_RUN_PITCH += [(1.85, 4), (2, -7)]
+
+
+def _loop(knots: list[tuple[float, float]]) -> PchipInterpolator:
+    x, y = np.array(knots).T
+    return PchipInterpolator(np.concatenate([x - 2, x[1:], x[1:] + 2]), np.concatenate([y, y[1:], y[1:]]))
+
+
+_WALK, _RUN = _loop(_WALK_PITCH), _loop(_RUN_PITCH)
+
+
+def foot_pitch(x: Frames, run: Frames) -> Frames:
+    """Pitch of the foot (degrees, heel up positive) at x = 0..1 of stance, 1..2 of swing."""
+    walk = _WALK(x)
+    return walk + (_RUN(x) - walk) * run
+
+
+def swing_progress(u: float, run: float) -> float:
+    """How far a swinging foot has come, 0..1, standing still at both ends."""
+    return u * u * (3 - 2 * u) + (0.9 - 0.9 * run) * u**2 * (1 - u) ** 3
+
+
+def swing_lift(u: Frames, run: Frames) -> Frames:
+    """Height of the swinging foot's pivot, as a share of its largest."""
+    u = np.clip(u, 0, 1)
+    walk = u**1.5 * (1 - u) ** 3.5 / 0.0545
+    return walk + (u**1.7 * (1 - u) ** 2.3 / 0.0651 - walk) * run
+
+
+# Curves over the cycle at steps of 10 %: own hand and elbow (degrees), own hip up (degrees), pelvis height (share of its range)
+HAND = fourier([-14, -8, 5, 20, 33, 36, 26, 12, 0, -10], 2)
+ELBOW = fourier([13.5, 14, 21, 32, 43, 47, 39, 24, 19, 16], 3)
+ROLL = fourier([-1.5, 2, 3, 1.5, 2, 1.5, -2, -3, -1.5, -2], 3)
+HEIGHT = fourier([-0.41, -0.46, 0.07, 0.5, 0.26], 2)  # over one step, half a cycle

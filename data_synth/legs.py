@@ -1,0 +1,119 @@
+"""From footprints to legs: the feet roll over heel and toe, the pelvis rides above, knees bend to fit.
+
+Everything here is per frame, in the root frame (x left, y up, z ahead), metres and radians.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Float
+
+from motiondiff_edu.motion.kinematics import rot_x, rot_y, rot_z
+from motiondiff_edu.motion.root_frame import forward_left
+from motiondiff_edu.motion.skeleton import OFFSETS
+
+from .footsteps import TOE_AHEAD, Steps
+from .gait_curves import HEIGHT, ROLL, foot_pitch, periodic, swing_lift
+from .styles import Style
+
+ANKLE = 0.075  # height of the Foot joint over the floor, foot flat
+HEEL_BEHIND = 0.04  # of the ankle
+THIGH, SHANK = 0.41, 0.425
+REACH = 0.985 * (THIGH + SHANK)
+
+
+@dataclass(frozen=True)
+class Feet:
+    """Ankle and toe joints, left then right, and the direction of each foot."""
+
+    ankle: Float[np.ndarray, "T 2 3"]
+    toe: Float[np.ndarray, "T 2 3"]
+    yaw: Float[np.ndarray, "T 2"]
+
+
+def softplus(x: np.ndarray, width: float) -> np.ndarray:
+    """max(x, 0), rounded over about `width`."""
+    return width * np.logaddexp(0.0, x / width)
+
+
+def heel_rise(behind: np.ndarray) -> np.ndarray:
+    """Degrees that the heel must rise when the toe is this far behind the hip (metres)."""
+    return 190 * softplus(behind - 0.16, 0.02)
+
+
+def place_feet(steps: Steps, root_xz, heading, forward, run, style: Style) -> Feet:
+    """Roll each foot about its heel (after landing) or its toe (before leaving), and lift it in between."""
+    to_forward, to_left = (v[:, None] for v in forward_left(heading))
+    offset = steps.ground - root_xz[:, None]
+    x, z = (offset * to_left).sum(-1), (offset * to_forward).sum(-1)
+    yaw = steps.yaw - heading[:, None]
+    pitch, pivot, lift = _roll(steps, x, z, yaw, forward[:, None], run[:, None], style)
+    back = TOE_AHEAD - (TOE_AHEAD + HEEL_BEHIND) * pivot  # of the pivot, seen from the ankle
+    sin, cos = np.sin(pitch), np.cos(pitch)
+    ahead_ankle, up_ankle = back - back * cos + ANKLE * sin, back * sin + ANKLE * cos + lift
+    rest = TOE_AHEAD - back
+    ahead_toe, up_toe = back + rest * cos, lift - rest * sin
+    s, c = np.sin(yaw), np.cos(yaw)
+    ankle = np.stack([x + ahead_ankle * s, up_ankle, z + ahead_ankle * c], -1)
+    toe = np.stack([x + ahead_toe * s, up_toe, z + ahead_toe * c], -1)
+    return Feet(ankle, toe, yaw)
+
+
+def _roll(steps: Steps, x, z, yaw, forward, run, style: Style):
+    """Pitch (radians, heel up), pivot (0 toe, 1 heel) and height of the pivot, for both feet."""
+    progress = steps.progress
+    curve = foot_pitch(progress, run)
+    heel_off = np.clip(forward / 1.1, 0, 1.0) ** 0.7 * steps.amount[:, None]
+    degrees = np.where(curve > 0, curve * heel_off, curve * steps.toe_up)
+    late = np.clip((progress - 0.4) / 0.2, 0, 1) * np.clip((1.45 - progress) / 0.4, 0, 1)
+    forced, up = heel_rise(-(z + TOE_AHEAD * np.cos(yaw))) * late, np.maximum(degrees, 0)
+    degrees = degrees + softplus(forced - up, 1.5) - softplus(-up, 1.5)
+    u = np.clip(progress - 1, 0, 1)
+    pivot = np.where(progress > 1, u * u * (3 - 2 * u), (progress < 0.35) * 1.0)
+    size = np.clip(0.30 + 0.75 * steps.stride, 0, 1.1) * style.lift
+    lift = swing_lift(u, run) * (progress > 1) * size * (0.078 + (0.33 - 0.078) * run)
+    return np.radians(degrees), pivot, lift
+
+
+def pelvis_height(clock, amount, forward, run, speed, style: Style) -> Float[np.ndarray, "T"]:
+    """Height of the Hips joint before the legs have their say: highest at mid-stance, lower when faster."""
+    swing = np.clip(0.055 * speed - 0.031, 0.012, 0.06) * style.bounce
+    walk = 0.957 - 0.02 * amount - 0.008 * np.clip(speed - 1.2, -1.2, 1.0) * amount
+    wave = periodic(HEIGHT, 2 * clock) * amount
+    bounce = 0.066 * np.cos(4 * np.pi * (clock - 0.445)) * amount
+    return walk + wave * swing * (1 - run) + (bounce + 0.005) * run - style.crouch
+
+
+def pelvis_rotation(yaw, roll, pitch) -> Float[np.ndarray, "T 3 3"]:
+    """Yaw counter-clockwise, roll left side up, pitch forward (radians)."""
+    return rot_y(yaw) @ rot_z(roll) @ rot_x(pitch)
+
+
+def own_roll(clock: np.ndarray, amount: np.ndarray) -> np.ndarray:
+    """Roll of the pelvis in radians, left side up: half the difference of both sides' curves."""
+    return np.radians(periodic(ROLL, clock) - periodic(ROLL, clock + 0.5)) / 2 * amount
+
+
+def hips_within_reach(hips: np.ndarray, rotation: np.ndarray, feet: Feet) -> np.ndarray:
+    """Lower the pelvis, smoothly, where a leg would have to be longer than it is."""
+    lower = hips.copy()
+    for side, joint in enumerate((1, 5)):
+        socket = rotation @ OFFSETS[joint]
+        gap = feet.ankle[:, side] - (hips + socket)
+        level = np.hypot(gap[:, 0], gap[:, 2])
+        highest = feet.ankle[:, side, 1] + np.sqrt(np.maximum(REACH**2 - level**2, 0.3)) - socket[:, 1]
+        lower[:, 1] -= softplus(lower[:, 1] - highest, 0.006)
+    return lower
+
+
+def bend_knee(
+    hip: Float[np.ndarray, "T 3"], ankle: Float[np.ndarray, "T 3"], toward: Float[np.ndarray, "T 3"]
+) -> Float[np.ndarray, "T 3"]:
+    """The knee of a two-bone leg from hip to ankle, on the side of `toward`; the ankle must be within reach."""
+    gap = ankle - hip
+    distance = np.linalg.norm(gap, axis=-1, keepdims=True)
+    along = gap / distance
+    a = (distance**2 + THIGH**2 - SHANK**2) / (2 * distance)
+    out = toward - (toward * along).sum(-1, keepdims=True) * along
+    out /= np.linalg.norm(out, axis=-1, keepdims=True)
+    return hip + a * along + np.sqrt(np.maximum(THIGH**2 - a * a, 0)) * out

@@ -1,0 +1,51 @@
+"""The command line of walking.py: walks as BVH for Blender and as npz for everything else."""
+
+import argparse
+import os
+from pathlib import Path
+
+import numpy as np
+
+from motiondiff_edu.motion.clip import Clip
+
+from .controls import KINDS
+from .styles import STYLES
+from .walking import dataset
+
+
+def save_npz(clip: Clip, path: Path) -> None:
+    """Poses, control, contacts, fps and source as plain arrays, no pickle; written aside, then renamed."""
+    aside = path.with_name(path.name + ".part")
+    with open(aside, "wb") as f:
+        np.savez_compressed(
+            f,
+            poses=clip.poses.astype(np.float32),
+            control=clip.control,
+            contacts=clip.contacts,
+            fps=clip.fps,
+            source=np.array(clip.source),
+            style=np.array(clip.info.get("style", "")),
+        )
+    os.replace(aside, path)
+
+
+def main(arguments: list[str] | None = None) -> None:
+    """python -m data_synth.walking --out FOLDER"""
+    parser = argparse.ArgumentParser(prog="python -m data_synth.walking", description="Write synthetic walks.")
+    parser.add_argument("--out", type=Path, required=True, help="folder for walk_000.bvh, walk_000.npz, ...")
+    parser.add_argument("--clips", type=int, default=8)
+    parser.add_argument("--seconds", type=float, default=12.0)
+    parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument("--style", choices=list(STYLES), help="one style only; without it, all by their shares")
+    given = parser.parse_args(arguments)
+    from motiondiff_edu.motion.bvh_write import write_bvh
+
+    given.out.mkdir(parents=True, exist_ok=True)
+    styles = None if given.style is None else [given.style]
+    for k, clip in enumerate(dataset(given.clips, given.seconds, given.seed, styles)):
+        save_npz(clip, given.out / f"walk_{k:03d}.npz")
+        write_bvh(given.out / f"walk_{k:03d}.bvh", clip.world(), clip.fps)
+    print(f"{given.clips} walks of {given.seconds:g} s ({', '.join(KINDS)}) in {given.out}")
+
+
+__all__ = ["main", "save_npz"]
