@@ -1,0 +1,1 @@
+"""What the networks are compared with, each on the same windows and walked by the same rollout."""
