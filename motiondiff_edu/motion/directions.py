@@ -5,9 +5,10 @@ Notebook: 00
 """
 
 import numpy as np
-from jaxtyping import Float
+from jaxtyping import Bool, Float
 from scipy.spatial.transform import Rotation
 
+from .kinematics import rot_x
 from .skeleton import BONE_LENGTHS, BONES, HEELS, OFFSETS, PARENTS, TOES, joint_index
 
 HIPS, SPINE, SPINE1, NECK, HEAD = (joint_index(name) for name in ("Hips", "Spine", "Spine1", "Neck1", "Head"))
@@ -65,21 +66,28 @@ def complete(points: Float[np.ndarray, "T 21 3"]) -> Float[np.ndarray, "T 21 3"]
 
 
 def has_our_bones(points: Float[np.ndarray, "T 21 3"]) -> bool:
-    """True when every bone has the course's length within 5 %, as in files that this course wrote."""
+    """True when every bone has the course's length within 2 %, as in files that this course wrote."""
     lengths = np.array([np.median(np.linalg.norm(points[:, c] - points[:, p], axis=-1)) for p, c in BONES])
-    return bool(np.all(np.abs(lengths / BONE_LENGTHS - 1) < 0.05))
+    return bool(np.all(np.abs(lengths / BONE_LENGTHS - 1) < 0.02))
 
 
-def bone_directions(points: Float[np.ndarray, "T 21 3"], standing: Float[np.ndarray, "T 2"]) -> np.ndarray:
+def plain_directions(points: Float[np.ndarray, "T 21 3"]) -> Float[np.ndarray, "T 21 3"]:
+    """Unit vector along every bone, from parent to child (row 0 is zero)."""
+    directions = np.zeros_like(points)
+    directions[:, 1:] = unit(points[:, 1:] - points[:, PARENTS[1:]])
+    return directions
+
+
+def bone_directions(
+    points: Float[np.ndarray, "T 21 3"], standing: Bool[np.ndarray, "T 2"], lean: float = 0.0
+) -> Float[np.ndarray, "T 21 3"]:
     """Unit direction of every bone (row 0 unused) for our figure, from another figure's joints.
 
     `standing` is true where a foot lies flat; it tells which pitch of that foot means flat.
+    `lean` (radians, backwards) is the slope of the trunk, from hip joints to shoulders, when the figure stands upright.
     """
-    directions = np.zeros_like(points)
-    directions[:, 1:] = unit(points[:, 1:] - points[:, PARENTS[1:]])
-    if has_our_bones(points):
-        return directions
-    pelvis, chest = trunk_frames(points)
+    directions = plain_directions(points)
+    pelvis, chest = trunk_frames(points, lean)
     for joint in (*UPLEGS, SPINE):
         directions[:, joint] = pelvis @ unit(OFFSETS[joint])
     directions[:, SPINE1] = unit(pelvis[..., 1] + chest[..., 1])
@@ -92,7 +100,19 @@ def bone_directions(points: Float[np.ndarray, "T 21 3"], standing: Float[np.ndar
     return directions
 
 
-def trunk_frames(points: Float[np.ndarray, "T 21 3"]) -> tuple[np.ndarray, np.ndarray]:
+def rest_lean(rest: Float[np.ndarray, "21 3"]) -> float:
+    """How far the trunk slopes backwards in a rest pose (radians): a matter of where joints are placed, not of posture.
+
+    Zero when the rest pose does not stand, or slopes more than a standing figure does.
+    """
+    across = unit(rest[UPLEGS[0]] - rest[UPLEGS[1]])
+    trunk = rest[list(ARMS)].mean(0) - rest[list(UPLEGS)].mean(0)
+    ahead = unit(np.cross(across, [0.0, 1.0, 0.0]))
+    lean = float(np.arctan2(-trunk @ ahead, trunk[1]))
+    return lean if abs(lean) < np.radians(25) else 0.0
+
+
+def trunk_frames(points: Float[np.ndarray, "T 21 3"], lean: float) -> tuple[np.ndarray, np.ndarray]:
     """Frames of pelvis and chest: across from hip and shoulder line, up from the lower and the upper trunk.
 
     The trunk bends where the file has a spine joint near its middle; its mean shape is straightened.
@@ -102,7 +122,7 @@ def trunk_frames(points: Float[np.ndarray, "T 21 3"]) -> tuple[np.ndarray, np.nd
     across_chest = points[:, ARMS[0]] - points[:, ARMS[1]]
     trunk = shoulders - hips
     middle = mid_trunk(points, hips, trunk)
-    up = np.array([0.0, 1.0, 0.0])
+    up = rot_x(lean)[:, 1]
     lower = calibrated(middle - hips, frame_of(across_hips, trunk), up)
     upper = calibrated(shoulders - middle, frame_of(across_chest, trunk), up)
     return frame_of(across_hips, lower), frame_of(across_chest, upper)
@@ -120,7 +140,7 @@ def foot_direction(
     foot: Float[np.ndarray, "T 3"],
     shank: Float[np.ndarray, "T 3"],
     pelvis: Float[np.ndarray, "T 3 3"],
-    standing: Float[np.ndarray, " T"],
+    standing: Bool[np.ndarray, " T"],
 ) -> Float[np.ndarray, "T 3"]:
     """Direction ankle to toe, pitched by a constant so that a foot flat on the floor is flat with our ankle height.
 
@@ -131,7 +151,7 @@ def foot_direction(
         return frame_of(pelvis[..., 0], shank) @ unit(OFFSETS[TOES[0]])
     foot = unit(foot)
     pitch = -np.arcsin(np.clip(foot[:, 1], -1, 1))
-    flat = np.median(pitch[standing > 0.5] if standing.sum() > 3 else pitch)
+    flat = np.percentile(pitch[standing] if standing.sum() > 3 else pitch, 20)  # the rest may kneel on its toes
     across = unit(np.cross(shank, foot))
     return Rotation.from_rotvec(across * (FLAT_PITCH - flat)).apply(foot)
 

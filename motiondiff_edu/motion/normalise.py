@@ -26,9 +26,8 @@ class MotionWarning(UserWarning):
     """Something in a file was put right or looks wrong; the clip is usable."""
 
 
-def pick_points(bvh: Bvh, mapping: Mapping[str, str]) -> Float[np.ndarray, "T 21 3"]:
-    """World positions of the course's 21 joints in file units; NaN where the file has no counterpart."""
-    world = bvh.world_positions()
+def pick(world: Float[np.ndarray, "T N 3"], bvh: Bvh, mapping: Mapping[str, str]) -> Float[np.ndarray, "T 21 3"]:
+    """The course's 21 joints out of all nodes of a file; NaN where the file has no counterpart."""
     points = np.full((len(world), len(JOINTS), 3), np.nan)
     for joint, name in mapping.items():
         points[:, joint_index(joint)] = world[:, bvh.names.index(name)]
@@ -90,12 +89,17 @@ def unmirror(points: Float[np.ndarray, "T 21 3"]) -> tuple[Float[np.ndarray, "T 
     return points * np.array([-1.0, 1.0, 1.0]), True
 
 
-def first_frame_jumps(points: Float[np.ndarray, "T 21 3"]) -> bool:
-    """True when frame 0 is a calibration pose: a joint leaps 20 cm and five times what it does afterwards."""
-    if len(points) < 4:
-        return False
+def calibration_frames(points: Float[np.ndarray, "T 21 3"]) -> int:
+    """How many first frames are no motion: a T-pose from which a joint leaps 20 cm, five times its usual step.
+
+    Further leaps of 12 cm that follow at once (a blend into the take) go too.
+    """
     leap = np.nanmax(np.linalg.norm(np.diff(points[:40], axis=0), axis=-1), axis=1)
-    return bool(leap[0] > 0.2 and leap[0] > 5 * np.median(leap[1:]))
+    usual = np.median(leap) if len(leap) > 3 else np.inf
+    if not leap[:1].max(initial=0) > max(0.2, 5 * usual):
+        return 0
+    wild = leap > max(0.12, 5 * usual)
+    return int(wild.argmin()) if not wild.all() else 1
 
 
 def resample(points: Float[np.ndarray, "T 21 3"], from_fps: float, to_fps: float) -> Float[np.ndarray, "F 21 3"]:

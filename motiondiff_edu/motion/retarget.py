@@ -9,17 +9,17 @@ from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
-from jaxtyping import Float
+from jaxtyping import Bool, Float
 
 from .bvh import Bvh, BvhError, read_bvh
 from .clip import Clip
 from .dialects import check_mapping, guess_mapping
-from .directions import UPLEGS, bone_directions, build, complete, has_our_bones
+from .directions import UPLEGS, bone_directions, build, complete, has_our_bones, plain_directions, rest_lean
 from .normalise import (
-    first_frame_jumps,
+    calibration_frames,
     floor_plane,
     level,
-    pick_points,
+    pick,
     resample,
     speed,
     tell,
@@ -30,7 +30,7 @@ from .normalise import (
 )
 from .planting import find_contacts, flat_feet, plant
 from .root_frame import estimate_root, to_root_frame
-from .skeleton import HEELS, HIPS, JOINTS, TOES
+from .skeleton import HEELS, HIPS, TOES
 
 SHORTEST = 0.5  # s; less has no gait and no heading
 WILD = 15.0  # m/s; no limb of an actor moves faster, a swapped marker does
@@ -52,7 +52,7 @@ def retarget(bvh: Bvh, mapping: Mapping[str, str] | None = None, fps: float = 20
     """
     mapping = guess_mapping(bvh) if mapping is None else check_mapping(mapping, bvh)
     points, info = normalised(bvh, mapping, fps)
-    world, contacts = onto_our_bones(points, fps)
+    world, contacts = onto_our_bones(points, info["rest_lean"], fps)
     root, heading = estimate_root(world, fps)
     poses, control = to_root_frame(world, root, heading, fps)
     return Clip(poses, control, fps=fps, contacts=contacts, source=bvh.source, info=info | {"mapping": dict(mapping)})
@@ -60,25 +60,25 @@ def retarget(bvh: Bvh, mapping: Mapping[str, str] | None = None, fps: float = 20
 
 def normalised(bvh: Bvh, mapping: Mapping[str, str], fps: float) -> tuple[Float[np.ndarray, "T 21 3"], dict]:
     """The figure in metres, y up, at `fps`, on a level floor; and a record of what had to be done."""
-    points, notes = pick_points(bvh, mapping), []
-    rest = np.full((len(JOINTS), 3), np.nan)
-    for joint, name in mapping.items():
-        rest[JOINTS.index(joint)] = bvh.rest_positions()[bvh.names.index(name)]
-    up = up_axis(points, rest)
+    points, notes = pick(bvh.world_positions(), bvh, mapping), []
+    rest = pick(bvh.rest_positions()[None], bvh, mapping)
+    up = up_axis(points, rest[0])
     points, unit = to_metres(turn_up(points, up), bvh.source)
     points, mirrored = unmirror(points)
     if mirrored:
         notes.append(tell("left and right are exchanged; the figure was mirrored", bvh.source))
-    dropped = int(first_frame_jumps(points))
+    dropped = calibration_frames(points)
     if dropped:
-        notes.append(tell("frame 0 is a calibration pose, far from frame 1; it was dropped", bvh.source))
+        which = "frame 0 is" if dropped == 1 else f"frames 0 to {dropped - 1} are"
+        notes.append(tell(f"{which} a calibration pose, far from the motion, and dropped", bvh.source))
     points = complete(points[dropped:])
     refuse_short(len(points), bvh)
     warn_wild(points, bvh, dropped, notes)
     points = resample(points, bvh.fps, fps)
-    plane = floor_plane(ground_points(points), fps)
+    ours = has_our_bones(points)
+    plane = np.zeros(3) if ours else floor_plane(ground_points(points), fps)
     info = dict(file_fps=bvh.fps, unit_m=unit, up=up, dropped_frames=dropped, floor_slope=tuple(plane[1:]), notes=notes)
-    return level(points, plane), info
+    return level(points, plane), info | {"rest_lean": rest_lean(turn_up(rest, up)[0])}
 
 
 def ground_points(points: Float[np.ndarray, "T 21 3"]) -> Float[np.ndarray, "T 2 3"]:
@@ -87,13 +87,18 @@ def ground_points(points: Float[np.ndarray, "T 21 3"]) -> Float[np.ndarray, "T 2
     return points[:, list(HEELS)] if np.isnan(toes).any() else toes
 
 
-def onto_our_bones(points: Float[np.ndarray, "T 21 3"], fps: float) -> tuple[np.ndarray, np.ndarray]:
-    """World positions with the course's bones and planted feet, and the contacts."""
+def onto_our_bones(
+    points: Float[np.ndarray, "T 21 3"], lean: float, fps: float
+) -> tuple[Float[np.ndarray, "T 21 3"], Bool[np.ndarray, "T 2"]]:
+    """World positions with the course's bones and planted feet, and the contacts.
+
+    A figure that has the course's bones already, as in the files we write, is taken as it stands.
+    """
     contacts = find_contacts(ground_points(points), fps)
-    directions = bone_directions(points, flat_feet(points, fps).astype(float))
-    raw = build(points[:, HIPS], directions)
-    if not has_our_bones(points):
-        raw += (points[:, UPLEGS].mean(1) - raw[:, UPLEGS].mean(1))[:, None]
+    if has_our_bones(points):
+        return build(points[:, HIPS], plain_directions(points)), contacts
+    raw = build(points[:, HIPS], bone_directions(points, flat_feet(points, fps), lean))
+    raw += (points[:, UPLEGS].mean(1) - raw[:, UPLEGS].mean(1))[:, None]
     standing = raw[:, list(TOES), 1][contacts]
     raw[..., 1] -= np.median(standing) if len(standing) else np.percentile(raw[:, list(TOES), 1], 2)
     return plant(raw, contacts, fps), contacts
