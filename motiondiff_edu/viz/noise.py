@@ -1,0 +1,150 @@
+"""Pictures of noise going in and coming out: curves, densities, paths and terms, each from plain arrays.
+
+Every function returns a closed Figure, so that a notebook shows it once; the caption under it says what to see.
+"""
+import textwrap
+
+import matplotlib.pyplot as plt
+import numpy as np
+from matplotlib.figure import Figure
+
+BLUE, ORANGE, GREEN, PURPLE, SKY, INK, GREY = (
+    "#0072B2", "#D55E00", "#009E73", "#AA4499", "#56B4E9", "#222222", "#8A8A8A")
+COLOURS = (BLUE, ORANGE, GREEN, PURPLE, SKY, INK)
+DASHES = ("-", "--", "-.", (0, (1, 1)), (0, (5, 1, 1, 1)), "-")
+LOOK = {"font.size": 13, "axes.spines.top": False, "axes.spines.right": False, "lines.linewidth": 2.2,
+        "axes.titlesize": 13, "legend.frameon": False, "figure.dpi": 90}
+
+
+def panels(n: int = 1, width: float = 9.0, height: float = 3.6, **kwargs):
+    """A figure of n panels side by side, and its axes."""
+    with plt.rc_context(LOOK):
+        figure, axes = plt.subplots(1, n, figsize=(width, height), layout="constrained", squeeze=False, **kwargs)
+    return figure, axes[0]
+
+
+def finish(figure: Figure, caption: str, labels: tuple[str, str] | None = None) -> Figure:
+    """Write the caption under the figure, name the axes, and close it."""
+    for axis in figure.axes if labels else ():
+        axis.set_xlabel(labels[0])
+    if labels:
+        figure.axes[0].set_ylabel(labels[1])
+    wide = int(figure.get_size_inches()[0] * 11.5)
+    figure.supxlabel("\n".join(textwrap.wrap(caption, wide)), fontsize=11.5, color="#444444", x=0.01, ha="left")
+    figure.set_label(caption)
+    plt.close(figure)
+    return figure
+
+
+def lines(x, curves: dict, caption: str, labels: tuple[str, str], *, log=(False, False), marks: dict | None = None,
+          ylim=None) -> Figure:
+    """Several named curves over x; `marks` are named horizontal levels."""
+    figure, (axis,) = panels()
+    for i, (name, y) in enumerate(curves.items()):
+        axis.plot(x, y, label=name, color=COLOURS[i % 6], ls=DASHES[i % 6], marker="o" if len(x) < 12 else None)
+    for name, level in (marks or {}).items():
+        axis.axhline(level, color=GREY, lw=1.3, ls=":")
+        axis.annotate(name, (1, level), xycoords=("axes fraction", "data"), ha="right", va="bottom", color="#555555")
+    axis.set_xscale("log" if log[0] else "linear")
+    axis.set_yscale("log" if log[1] else "linear")
+    if ylim:
+        axis.set_ylim(*ylim)
+    if len(curves) > 1:
+        axis.legend(handlelength=2.6)
+    return finish(figure, caption, labels)
+
+
+def noised_curve(seconds, clean, noised, s: int, signal: float, caption: str | None = None) -> Figure:
+    """One coordinate over time, clean and at diffusion step s, with the share of its amplitude that is left."""
+    figure, (axis,) = panels(height=3.2)
+    axis.plot(seconds, noised, color=ORANGE, lw=1.4, marker=".", label=f"x_s at s = {s}")
+    axis.plot(seconds, signal * np.asarray(clean), color=BLUE, label=f"what is left of x0: {100 * signal:.0f} %")
+    axis.set_ylim(-3.6, 3.6)
+    axis.legend(loc="upper right", ncol=2)
+    caption = caption or (f"Step {s}: the blue curve is the clean one times {signal:.2f}; the orange one adds noise of "
+                          f"standard deviation {np.sqrt(1 - signal ** 2):.2f}.")
+    return finish(figure, caption, ("time (s)", "left heel (standardised)"))
+
+
+def noise_ladder(seconds, clean, noised: dict, caption: str) -> Figure:
+    """The same curve at several diffusion steps, side by side: {s: x_s}."""
+    figure, axes = panels(len(noised), width=11, height=2.9, sharey=True)
+    for axis, (s, curve) in zip(axes, noised.items(), strict=True):
+        axis.plot(seconds, clean, color=SKY, lw=1.2)
+        axis.plot(seconds, curve, color=ORANGE, lw=1.2)
+        axis.set_title(f"s = {s}")
+    return finish(figure, caption, ("time (s)", "left heel"))
+
+
+def densities(grid, curves: dict, caption: str, labels=("value", "density"), *, points: dict | None = None) -> Figure:
+    """Named densities over one grid, filled lightly; `points` are named values marked on the axis."""
+    figure, (axis,) = panels()
+    for i, (name, y) in enumerate(curves.items()):
+        axis.plot(grid, y, label=name, color=COLOURS[i], ls=DASHES[i])
+        axis.fill_between(grid, y, color=COLOURS[i], alpha=0.10)
+    for i, (name, value) in enumerate((points or {}).items()):
+        axis.plot([value], [0], marker="^", ms=11, color=INK if i == 0 else GREY, ls="none", label=name, clip_on=False)
+    axis.set_ylim(bottom=0)
+    axis.legend()
+    return finish(figure, caption, labels)
+
+
+def histograms(samples: dict, grid, density, caption: str, label: str = "value", bins: int = 80) -> Figure:
+    """A histogram for each named set of samples, each under the same exact density."""
+    figure, axes = panels(len(samples), width=4.2 * max(len(samples), 2), height=3.4, sharey=True)
+    for i, (axis, (name, values)) in enumerate(zip(axes, samples.items(), strict=True)):
+        inside = np.clip(np.asarray(values).ravel(), grid[0], grid[-1])
+        axis.hist(inside, bins=bins, range=(grid[0], grid[-1]), density=True, color=COLOURS[i], alpha=0.45)
+        axis.plot(grid, density, color=INK, lw=1.8)
+        axis.set_title(name)
+        axis.set_ylim(0, 2.2 * np.max(density))
+    return finish(figure, caption, (label, "density"))
+
+
+def paths(steps, x, grid, at_start, at_end, caption: str, show: int = 60) -> Figure:
+    """Sampling paths x (steps, n) from noise on the left to samples on the right, a density at either end."""
+    figure, (left, middle, right) = panels(3, 10.5, 4, sharey=True, gridspec_kw={"width_ratios": [1, 5, 1]})
+    middle.plot(steps, x[:, :show], color=BLUE, lw=0.8, alpha=0.45)
+    middle.plot(steps, x[:, 0], color=ORANGE, lw=2)
+    middle.invert_xaxis()
+    bars = {"bins": 60, "range": (grid[0], grid[-1]), "density": True, "alpha": 0.6}
+    for axis, density, values, name in ((left, at_start, x[0], "at S"), (right, at_end, x[-1], "at 0")):
+        axis.hist(values, orientation="horizontal", color=SKY, **bars)
+        axis.plot(density, grid, color=INK, lw=1.6)
+        axis.set_title(name)
+        axis.set_xticks([])
+    left.invert_xaxis()
+    left.set_ylim(grid[0], grid[-1])
+    middle.set_xlabel("diffusion step s")
+    left.set_ylabel("x_s")
+    return finish(figure, caption)
+
+
+def one_moment(grid, density, values, guesses, s: int, caption: str) -> Figure:
+    """All samples at one step: where x_s lies, and what the denoiser answers for x0."""
+    figure, (left, right) = panels(2, width=10, height=3.4, sharey=True)
+    shown = {"bins": 90, "range": (grid[0], grid[-1]), "density": True, "alpha": 0.5}
+    for axis, data, colour, name in ((left, values, BLUE, f"x_s at s = {s}"), (right, guesses, ORANGE, "x0_hat there")):
+        axis.hist(np.clip(data, grid[0], grid[-1]), color=colour, **shown)
+        axis.plot(grid, density, color=INK, lw=1.6)
+        axis.set_title(name)
+        axis.set_ylim(0, 2.4)
+    return finish(figure, caption, ("value", "density"))
+
+
+def bound(terms, exact: float, caption: str) -> Figure:
+    """Terms of the negative bound over s (terms[0] is the prior's), and their running sum beside -E log q(x0)."""
+    figure, (left, right) = panels(2, width=10.5, height=4)
+    s = np.arange(1, len(terms))
+    left.bar(s, terms[1:], width=1.0, color=np.where(s == 1, ORANGE, BLUE))
+    left.bar([len(terms)], [terms[0]], width=1.0, color=GREEN)
+    left.set_yscale("symlog", linthresh=0.02)
+    left.axhline(0, color=INK, lw=0.8)
+    left.set_title("each term, in nats")
+    total = np.cumsum(np.concatenate([terms[:1], terms[:0:-1]]))
+    right.plot(np.arange(len(terms), 0, -1), total, color=BLUE, label="sum so far, from S down")
+    right.plot([1], total[-1:], "o", color=ORANGE, ms=9, label=f"negative bound {total[-1]:.3f}")
+    right.axhline(exact, color=INK, ls="--", lw=1.6, label=f"exact -E log q(x0) {exact:.3f}")
+    right.invert_xaxis()
+    right.legend()
+    return finish(figure, caption, ("diffusion step s", "nats"))

@@ -1,0 +1,49 @@
+"""Sliders for a figure function: turn a knob, see the same figure again. No arithmetic here."""
+import base64
+import html
+import io
+
+import ipywidgets
+
+
+def explore(draw, **start) -> ipywidgets.VBox:
+    """Show draw(**values) with a slider, a list or a tick box for each argument, and a button that resets them all.
+
+    explore(draw, s=(1, 100, 50), name=["linear", "cosine"], noise=True): (low, high, start), the choices, or on/off.
+    `draw` returns a matplotlib Figure, whose label becomes the picture's alternative text. Errors in `draw` are raised.
+    """
+    controls = {name: _control(name, value) for name, value in start.items()}
+    first = {name: control.value for name, control in controls.items()}
+    picture, reset = ipywidgets.HTML(), ipywidgets.Button(description="Reset", tooltip="back to the start")
+
+    def refresh(_=None):
+        picture.value = _image(draw(**{name: control.value for name, control in controls.items()}))
+
+    def back(_):
+        for name, control in controls.items():
+            control.value = first[name]
+
+    for control in controls.values():
+        control.observe(refresh, names="value")
+    reset.on_click(back)
+    refresh()
+    return ipywidgets.VBox([ipywidgets.HBox([*controls.values(), reset]), picture])
+
+
+def _control(name: str, value) -> ipywidgets.Widget:
+    if isinstance(value, bool):
+        return ipywidgets.Checkbox(value=value, description=name)
+    if isinstance(value, list):
+        return ipywidgets.Dropdown(options=value, value=value[0], description=name)
+    low, high, begin = value
+    kind = ipywidgets.IntSlider if isinstance(begin, int) else ipywidgets.FloatSlider
+    extra = {} if isinstance(begin, int) else {"step": (high - low) / 50}
+    return kind(value=begin, min=low, max=high, description=name, continuous_update=False, **extra)
+
+
+def _image(figure) -> str:
+    buffer = io.BytesIO()
+    figure.savefig(buffer, format="png", dpi=90)
+    alt = html.escape(str(figure.get_label()), quote=True)
+    data = base64.b64encode(buffer.getvalue()).decode()
+    return f'<img alt="{alt}" style="max-width:100%" src="data:image/png;base64,{data}">'
