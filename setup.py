@@ -1,4 +1,4 @@
-"""Everything is in pyproject.toml; here a wheel takes the notebooks and constraints along, so that `lab` works without a checkout."""
+"""Everything is in pyproject.toml; here a wheel takes notebooks and constraints along, for `lab` without a checkout."""
 
 import shutil
 from pathlib import Path

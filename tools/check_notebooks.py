@@ -1,0 +1,169 @@
+"""The form of a notebook: length, opening, tags, exercises, closing, nothing that ties it to one machine.
+
+    python tools/check_notebooks.py [NOTEBOOK ...]     lists what is wrong; exit 1 when anything is
+"""
+
+import ast
+import re
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import build_student
+import notebook_cells
+from notebook_cells import code, markdown, tags
+
+CELLS, WORDS = (25, 45), 1800
+LINES, LONG_SHARE, LINES_AT_MOST = 8, 0.10, 16
+NO_TWINS = {"00"}  # start here: nothing is built by hand
+
+OPENING = {  # what the cells before the imports must say
+    "what you will be able to do": r"you (will|can).{0,20} be able to|be able to",
+    "what it needs": r"\bneeds?\b",
+    "the paper's section": r"\b(MoDiff|MoFusion|paper)\b",
+    "its minutes": r"\bminutes\b",
+    "the symbols": r"\bsymbols?\b",
+}
+CLOSING = {
+    "three things to keep": r"three things|to keep\b|take away",
+    "what to read next": r"\bnext\b",
+}
+FORBIDDEN = {
+    "pip": r"(?m)^\s*[!%]\s*(pip|conda)\b|\bpip install\b",
+    "a magic or shell line": r"(?m)^\s*[!%]",
+    "a path edit": r"sys\.path",
+    "os.chdir": r"\bchdir\b",
+    "a download": r"urlopen|urlretrieve|requests\.get|wget|curl ",
+    "an absolute path": r"""["'](/(?!/)[a-z]+/|[A-Z]:\\)""",
+}
+
+
+def lines(source: str) -> int:
+    """Lines of code: blank lines and whole-line comments are not counted."""
+    return sum(bool(line.strip()) and not line.strip().startswith("#") for line in source.splitlines())
+
+
+def length(notebook: dict) -> Iterator[str]:
+    """25-45 cells, most code cells of at most 8 lines, under 1,800 words."""
+    count = len(notebook["cells"])
+    if not CELLS[0] <= count <= CELLS[1]:
+        yield f"{count} cells; one sitting has {CELLS[0]} to {CELLS[1]}"
+    words = sum(len(re.findall(r"[^\W_][\w'-]*", cell["source"])) for cell in markdown(notebook))
+    if words >= WORDS:
+        yield f"{words} words; keep under {WORDS}"
+    sizes = [lines(cell["source"]) for cell in code(notebook)]
+    long = sum(size > LINES for size in sizes)
+    if long > LONG_SHARE * len(sizes):
+        yield f"{long} of {len(sizes)} code cells have more than {LINES} lines; one in ten may"
+    if max(sizes, default=0) > LINES_AT_MOST:
+        yield f"a code cell of {max(sizes)} lines; {LINES_AT_MOST} at most"
+
+
+def storage(notebook: dict) -> Iterator[str]:
+    """No outputs, stable cell ids, code that parses."""
+    if any(cell.get("outputs") or cell.get("execution_count") for cell in code(notebook)):
+        yield "outputs are stored; strip them (nbstripout)"
+    ids = [cell.get("id") for cell in notebook["cells"]]
+    if None in ids or len(set(ids)) < len(ids):
+        yield "cell ids are missing or repeated"
+    for cell in code(notebook):
+        try:
+            ast.parse(cell["source"])
+        except SyntaxError as error:
+            yield f"cell {cell.get('id')} does not parse: {error}"
+
+
+def opening(notebook: dict) -> Iterator[str]:
+    """Before the imports: aim, needs, paper, minutes, symbols; then one imports cell that starts the run."""
+    imports = code(notebook, "imports")
+    if len(imports) != 1 or "runtime.start(" not in imports[0]["source"]:
+        yield "there must be one cell tagged `imports`, which calls runtime.start(...)"
+        return
+    if code(notebook)[0] is not imports[0]:
+        yield "the cell tagged `imports` must be the first code cell"
+    before = notebook["cells"][: notebook["cells"].index(imports[0])]
+    text = "\n".join(cell["source"] for cell in before)
+    yield from (f"the opening does not say {what}" for what, p in OPENING.items() if not re.search(p, text, re.I))
+    if not text.lstrip().startswith("# "):
+        yield "the first cell must begin with a title (# ...)"
+    for cell in code(notebook)[1:]:
+        if any(isinstance(node, ast.Import | ast.ImportFrom) for node in parsed(cell).body):
+            yield f"cell {cell.get('id')} imports; all imports belong into the cell tagged `imports`"
+
+
+def parsed(cell: dict) -> ast.Module:
+    try:
+        return ast.parse(cell["source"])
+    except SyntaxError:
+        return ast.Module([], [])
+
+
+def closing(notebook: dict) -> Iterator[str]:
+    """The last cells: what to keep, what to read next."""
+    text = "\n".join(cell["source"] for cell in notebook["cells"][-4:] if cell["cell_type"] == "markdown")
+    yield from (f"the closing does not say {what}" for what, p in CLOSING.items() if not re.search(p, text, re.I))
+
+
+def exercises(notebook: dict, name: str) -> Iterator[str]:
+    """Two or more exercises, each with minutes and difficulty before it, a hint, and a check in the same cell."""
+    cells = notebook["cells"]
+    found = [index for index, cell in enumerate(cells) if cell["cell_type"] == "code" and "solution" in tags(cell)]
+    if len(found) < 2:
+        yield f"{len(found)} cells tagged `solution`; a notebook has two exercises or more"
+    for index in found:
+        where, told = f"exercise in cell {cells[index].get('id')}", before(cells, index)
+        if not re.search(r"\bmin(utes?)?\b", told) or not re.search(r"difficulty|easy|medium|hard|[★☆●○]", told, re.I):
+            yield f"{where}: the text before it must give minutes and difficulty"
+        if "<details" not in told or not re.search("hint", told, re.I):
+            yield f"{where}: the text before it must fold a hint into <details>"
+        if not re.search(r"^checks\.\w+\(", cells[index]["source"], re.M):
+            yield f"{where}: the same cell must call its check"
+        try:
+            build_student.stub(cells[index]["source"], where)
+        except build_student.StudentError as error:
+            yield str(error)
+
+
+def before(cells: list[dict], index: int) -> str:
+    """The markdown directly before a cell, down to the next code cell upwards."""
+    text = []
+    while index and cells[index - 1]["cell_type"] == "markdown":
+        index -= 1
+        text.append(cells[index]["source"])
+    return "\n".join(reversed(text))
+
+
+def lesson(notebook: dict, name: str) -> Iterator[str]:
+    """Two to four predictions, step-by-step cells, pictures that say what they show."""
+    text = "\n".join(cell["source"] for cell in markdown(notebook))
+    predictions = len(re.findall(r"\*\*Predict", text))
+    if not 2 <= predictions <= 4:
+        yield f"{predictions} times **Predict**; two to four"
+    if name[:2] not in NO_TWINS and not code(notebook, "twin"):
+        yield "no cell tagged `twin`: where is the step-by-step version?"
+    if re.search(r"!\[\s*\]\(", text) or any("alt=" not in image for image in re.findall(r"<img\b[^>]*>", text)):
+        yield "an image without alt text"
+
+
+def portable(notebook: dict) -> Iterator[str]:
+    """Nothing that installs, downloads, edits paths or knows one machine."""
+    text = "\n".join(cell["source"] for cell in code(notebook))
+    yield from (f"{what} in a code cell" for what, pattern in FORBIDDEN.items() if re.search(pattern, text))
+
+
+def faults(path: Path) -> list[str]:
+    """All that is wrong with the form of one notebook."""
+    notebook = notebook_cells.read(path)
+    plain = [rule(notebook) for rule in (length, storage, opening, closing, portable)]
+    return [fault for rule in [*plain, exercises(notebook, path.name), lesson(notebook, path.name)] for fault in rule]
+
+
+def main(arguments: list[str]) -> int:
+    paths = [Path(argument) for argument in arguments] or notebook_cells.sources()
+    told = [f"{path.name}: {fault}" for path in paths for fault in faults(path)]
+    print("\n".join(told) or f"{len(paths)} notebooks have the form")
+    return 1 if told else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
