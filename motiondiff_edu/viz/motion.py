@@ -1,0 +1,117 @@
+"""Figures of what motion is made of: the joints by number, poses in between, paths seen from above, control, windows.
+
+Plain arrays in, a matplotlib Figure with its caption out.  Notebook: 01
+"""
+
+from collections.abc import Mapping, Sequence
+
+import matplotlib.pyplot as plt
+import numpy as np
+from jaxtyping import Float
+from matplotlib.figure import Figure
+
+from ..motion.skeleton import BONES, JOINTS, LEFT, RIGHT
+from .body import CENTRE_COLOUR, INK, LEFT_COLOUR, PATH_COLOUR, RIGHT_COLOUR
+from .noise import LOOK, finish
+
+SERIES = (INK, "#E69F00", LEFT_COLOUR, PATH_COLOUR)  # told apart by colour-blind readers, and by marker and label
+CONTROL_NAMES = ("forward (m/s)", "left (m/s)", "yaw (rad/s)")
+
+
+def _axes(width: float, height: float, rows: int = 1, columns: int = 1, **kwargs):
+    with plt.rc_context(LOOK):
+        return plt.subplots(rows, columns, figsize=(width, height), layout="constrained", squeeze=False, **kwargs)
+
+
+def _side_colour(joint: int) -> str:
+    return LEFT_COLOUR if joint in LEFT else RIGHT_COLOUR if joint in RIGHT else CENTRE_COLOUR
+
+
+def _bones_2d(axes, pose: np.ndarray, **line) -> None:
+    """The bones of one pose (J, 2) on the given axes; the child's side gives the colour."""
+    for parent, child in BONES:
+        style = {"color": _side_colour(child), "lw": 3, "solid_capstyle": "round"} | line
+        axes.plot(*pose[[parent, child]].T, **style)
+
+
+def joint_map(pose: Float[np.ndarray, "21 3"], caption: str) -> Figure:
+    """The skeleton seen from the front, every joint with its number; a list of names beside it."""
+    figure, ((drawn, listed),) = _axes(9, 5, 1, 2, width_ratios=[3, 1.3])
+    _bones_2d(drawn, pose[:, :2])
+    drawn.plot(*pose[:, :2].T, "o", ms=13, mfc="white", mec=INK)
+    for j, (x, y) in enumerate(pose[:, :2]):
+        drawn.text(x, y, str(j), ha="center", va="center", fontsize=8)
+    drawn.set(aspect="equal", xlabel="x: to the figure's left (m)", ylabel="y: up (m)")
+    listed.axis("off")
+    for j, name in enumerate(JOINTS):
+        row = 1 - j / len(JOINTS)
+        listed.text(0, row, f"{j:2d} {name}", color=_side_colour(j), fontsize=9, family="monospace", va="top")
+    return finish(figure, caption)
+
+
+def limb_steps(
+    ways: Mapping[str, Float[np.ndarray, "U K 2"]],
+    lengths: Mapping[str, Float[np.ndarray, "N"]],
+    true_length: float,
+    caption: str,
+) -> Figure:
+    """A limb of K joints at U moments between two poses, one panel for each way of going; below, its length (m)."""
+    figure, (above, below) = _axes(3.2 * len(ways), 5.6, 2, len(ways), height_ratios=[2.4, 1], sharey="row", sharex="row")
+    for axes, curve, (name, limb) in zip(above, below, ways.items(), strict=True):
+        for u, pose in zip(np.linspace(0, 1, len(limb)), limb, strict=True):
+            axes.plot(*pose.T, "o-", color=INK, alpha=0.25 + 0.75 * (u in (0, 1)), ms=4, lw=2)
+            axes.text(*(pose[-1] + 0.03), f"{u:.2g}", fontsize=8, color=RIGHT_COLOUR)
+        axes.set(aspect="equal", title=name)
+        curve.plot(np.linspace(0, 1, len(lengths[name])), lengths[name], color=LEFT_COLOUR)
+        curve.axhline(true_length, color=INK, lw=0.8, ls="--")
+        curve.set(xlabel="share of the way, u", ylim=(0, 1.15 * true_length))
+    below[0].set_ylabel("bone (m)")
+    return finish(figure, caption)
+
+
+def paths_from_above(
+    paths: Mapping[str, tuple[Float[np.ndarray, "_ 2"], Float[np.ndarray, "_"]]], caption: str, every: int = 10
+) -> Figure:
+    """Root paths (x, z) with their headings (radians) as arrows, seen from above with the figure's left on the left."""
+    figure, ((axes,),) = _axes(8, 4.8)
+    for k, (name, (root, heading)) in enumerate(paths.items()):
+        colour = SERIES[k % len(SERIES)]
+        axes.plot(*root.T, color=colour, lw=2, label=name, ls="-" if k == 0 else "--")
+        axes.plot(*root[0], "o", color=colour, ms=8)
+        axes.quiver(*root[::every].T, np.sin(heading[::every]), np.cos(heading[::every]), color=colour,
+                    angles="xy", scale_units="xy", scale=3.2, width=0.005)  # fmt: skip
+    axes.invert_xaxis()  # from above, and looking along z, left is on the left
+    axes.set(aspect="equal", xlabel="x: left (m)", ylabel="z: forward (m)")
+    axes.legend(loc="center left", bbox_to_anchor=(1.02, 0.5), fontsize=11)
+    return finish(figure, caption)
+
+
+def control_curves(controls: Mapping[str, Float[np.ndarray, "_ 3"]], caption: str, fps: float = 20.0) -> Figure:
+    """The three columns of control over time (s), one line for each of the given controls."""
+    figure, (panels,) = _axes(9, 2.9, 1, 3)
+    for column, axes in enumerate(panels):
+        for k, (name, control) in enumerate(controls.items()):
+            style = {"color": SERIES[k % len(SERIES)], "ls": "-" if k == 0 else "--"}
+            axes.plot(np.arange(len(control)) / fps, control[:, column], label=name, **style)
+        axes.axhline(0, color="0.7", lw=0.7, zorder=0)
+        axes.set(title=CONTROL_NAMES[column], xlabel="s")
+    axes.legend(fontsize=10)
+    return finish(figure, caption)
+
+
+def windows_in_time(
+    starts: Sequence[Sequence[int]], length: int, groups: Sequence[Sequence[str]], caption: str, fps: float = 20.0
+) -> Figure:
+    """Windows as bars: starts[k] are the first frames of the windows of recording k, groups[k] "train" or "test"."""
+    figure, ((axes,),) = _axes(9, 1.3 + 0.6 * len(starts))
+    colours = {"train": LEFT_COLOUR, "test": RIGHT_COLOUR}
+    for k, (firsts, names) in enumerate(zip(starts, groups, strict=True)):
+        for n, (first, name) in enumerate(zip(firsts, names, strict=True)):
+            axes.barh(k + 0.38 * (n % 2), length / fps, 0.34, first / fps, color=colours[name], edgecolor="white")
+    for name, colour in colours.items():
+        axes.bar(0, 0, color=colour, label=name)
+    names = [f"recording {k}" for k in range(len(starts))]
+    axes.set(yticks=np.arange(len(starts)) + 0.19, yticklabels=names, xlabel="s")
+    axes.legend(ncols=2, loc="lower right", fontsize=11, bbox_to_anchor=(1, 1))
+    axes.invert_yaxis()
+    return finish(figure, caption)
