@@ -104,7 +104,7 @@ class Camera:
 
 
 def project(
-    points: Float[np.ndarray, "*N 3"], camera: Camera, size: tuple[float, float]
+    points: Float[np.ndarray, "*N 3"], camera: Camera, size: tuple[int, int]
 ) -> tuple[Float[np.ndarray, "*N 2"], Float[np.ndarray, "*N"]]:
     """Pixels (x to the right, y down) and pixels per metre at each point, in a picture of `size` (width, height)."""
     right, up, ahead = camera.axes()
@@ -153,7 +153,7 @@ def mix(colour: str, other: str, share: float) -> str:
 def body_polygons(
     pose: Float[np.ndarray, "J 3"],
     camera: Camera,
-    size: tuple[float, float],
+    size: tuple[int, int],
     parts: tuple[Part, ...] = BODY,
     wash: float = 0.0,
 ) -> list[tuple[Float[np.ndarray, "_ 2"], str, bool]]:
@@ -174,7 +174,7 @@ def body_polygons(
 
 
 def shadow_polygons(
-    pose: Float[np.ndarray, "J 3"], camera: Camera, size: tuple[float, float], parts: tuple[Part, ...] = BODY
+    pose: Float[np.ndarray, "J 3"], camera: Camera, size: tuple[int, int], parts: tuple[Part, ...] = BODY
 ) -> list[Float[np.ndarray, "_ 2"]]:
     """What the body darkens on the floor, under a light from above, a little aside."""
     shadows = []

@@ -35,6 +35,10 @@ def _where(bad: Bool[np.ndarray, "T J"], figure: int) -> str:
     return f"figure {figure}, frame {frame}, {_joint_name(joint, bad.shape[1])}"
 
 
+def _relative_units(positions: Float[np.ndarray, "T J 3"]) -> Float[np.ndarray, "T J 3"]:
+    return np.rint((positions - positions[:, :1]) * UNITS_PER_METRE)
+
+
 def check_positions(positions: Float[np.ndarray, "T J 3"], figure: int = 0) -> None:
     """Raise ValueError with figure, frame and joint where a position is not finite or too far from the root."""
     if not len(positions):
@@ -45,7 +49,7 @@ def check_positions(positions: Float[np.ndarray, "T J 3"], figure: int = 0) -> N
             f"{_where(bad, figure)}: the position is not finite ({int(bad.sum())} such joints in all). "
             "Look where the motion was computed; a diverged rollout is the usual cause"
         )
-    far = (np.abs(positions - positions[:, :1]) > REACH).any(-1)
+    far = (np.abs(_relative_units(positions)) > 32767).any(-1)
     if far.any():
         raise ValueError(
             f"{_where(far, figure)}: more than {REACH:.0f} m from joint 0. Positions are in metres: are these cm?"
@@ -78,8 +82,7 @@ def pack(figures: Sequence[Float[np.ndarray, "_ J 3"]]) -> Packed:
     for i, positions in enumerate(figures):
         check_positions(positions, i)
         root = positions[:, 0].astype("<f4")
-        relative = np.rint((positions - positions[:, :1]) * UNITS_PER_METRE)
-        joints.append(relative.astype("<i2").tobytes())
+        joints.append(_relative_units(positions).astype("<i2").tobytes())
         roots.append(root.tobytes())
     frames = tuple(len(f) for f in figures)
     return Packed(b"".join(joints), b"".join(roots), frames, figures[0].shape[1])

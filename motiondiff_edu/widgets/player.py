@@ -124,7 +124,7 @@ class Player(anywidget.AnyWidget):
         try:
             import imageio_ffmpeg
         except ImportError as error:
-            raise ImportError("save_mp4 needs imageio-ffmpeg (pip install imageio-ffmpeg); save_gif does not") from error
+            raise ImportError("save_mp4 needs the package imageio-ffmpeg; save_gif does not") from error
         width = size[0] * len(self._figures)
 
         def write(part: Path) -> None:

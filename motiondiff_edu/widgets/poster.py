@@ -109,16 +109,16 @@ def render(figure: Figure, t: int, size: tuple[int, int], camera: body.Camera | 
     return picture.resize(size, Image.Resampling.LANCZOS)
 
 
-def _write(pen: ImageDraw.ImageDraw, at: tuple[float, float], text: str, size: int, anchor: str = "la") -> None:
+def _write(pen: ImageDraw.ImageDraw, at: tuple[int, int], text: str, size: int, anchor: str = "la") -> None:
     pen.text(at, text, fill=body.INK, font=ImageFont.load_default(size), anchor=anchor)
 
 
 def _legend(pen: ImageDraw.ImageDraw, right: int, y: int, text_size: int) -> None:
     for word, colour in (("right", body.RIGHT_COLOUR), ("left", body.LEFT_COLOUR)):
-        width = pen.textlength(word, font=ImageFont.load_default(text_size))
+        width = round(pen.textlength(word, font=ImageFont.load_default(text_size)))
         _write(pen, (right - width, y), word, text_size)
         pen.ellipse([right - width - text_size, y + 2, right - width - 4, y + text_size - 2], fill=colour)
-        right -= int(width) + 2 * text_size
+        right -= width + 2 * text_size
 
 
 def filmstrip(figures: list[Figure], fps: float, n: int = 6, width: int = 960) -> Image.Image:
@@ -137,7 +137,7 @@ def filmstrip(figures: list[Figure], fps: float, n: int = 6, width: int = 960) -
             _write(pen, (6, head + (row + 1) * tall - 22), figure.label, 16)
     for column, t in enumerate(moments):
         _write(pen, (column * cell + 6, 7), f"{t / fps:.1f} s", 16)
-    _legend(pen, width - 8, 7, 16)
+    _legend(pen, width - 10, picture.height - 24, 16)
     return picture
 
 

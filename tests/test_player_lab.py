@@ -1,0 +1,111 @@
+"""The whole path: JupyterLab, a kernel and a browser; the figure has ink, plays when asked, and Python hears of it."""
+
+import json
+import os
+import socket
+import subprocess
+import sys
+import urllib.request
+
+import pytest
+from browser import coloured, ink, open_page, start_browser
+
+CELL = """import sys; sys.path.insert(0, {tests!r})
+from synthetic_walk import walk
+from motiondiff_edu.widgets.player import Player
+positions, contacts = walk(frames=40)
+player = Player(positions, contacts=contacts, past=10, labels="walker", autoplay=False)
+player"""
+ASK = """async (code) => {
+  const panel = window.jupyterapp.shell.currentWidget, kernel = panel.sessionContext.session.kernel;
+  let text = "";
+  const future = kernel.requestExecute({ code });
+  future.onIOPub = (m) => { if (m.header.msg_type === "stream") text += m.content.text; };
+  await future.done;
+  return text.trim();
+}"""
+IDLE = """() => {
+  const panel = window.jupyterapp?.shell.currentWidget;
+  return panel?.sessionContext?.isReady && panel.sessionContext.session?.kernel?.status === "idle";
+}"""
+SHOWN = "Number(document.querySelector('.mde-player').dataset.frame)"
+
+
+def notebook(path, code: str) -> None:
+    cell = {"cell_type": "code", "id": "player", "metadata": {}, "source": code, "outputs": [], "execution_count": None}
+    spec = {"name": "python3", "display_name": "Python 3", "language": "python"}
+    content = {"cells": [cell], "metadata": {"kernelspec": spec}, "nbformat": 4, "nbformat_minor": 5}
+    path.write_text(json.dumps(content), "utf-8")
+
+
+def free_port() -> int:
+    with socket.socket() as s:
+        s.bind(("127.0.0.1", 0))
+        return s.getsockname()[1]
+
+
+@pytest.fixture
+def lab(chromium, root, tmp_path):
+    """The address of a JupyterLab that serves one notebook with a player in it."""
+    pytest.importorskip("jupyterlab")
+    notebook(tmp_path / "walk.ipynb", CELL.format(tests=str(root / "tests")))
+    port, token = free_port(), "test"
+    command = [sys.executable, "-m", "jupyter", "lab", "--no-browser", "--expose-app-in-browser", "--allow-root"]
+    command += [f"--ServerApp.port={port}", "--ServerApp.port_retries=0", f"--IdentityProvider.token={token}"]
+    command += [f"--ServerApp.root_dir={tmp_path}", "--LabApp.news_url=None"]
+    command += ["--LabApp.check_for_updates_class=jupyterlab.NeverCheckForUpdate"]
+    settings = {f"JUPYTERLAB_{name}_DIR": str(tmp_path / name) for name in ("SETTINGS", "WORKSPACES")}
+    settings["PYTHONPATH"] = os.pathsep.join([str(root), os.environ.get("PYTHONPATH", "")])
+    with open(tmp_path / "lab.log", "w") as log:
+        server = subprocess.Popen(command, stdout=log, stderr=log, env=os.environ | settings, cwd=tmp_path)
+    try:
+        _wait_until_answering(f"http://127.0.0.1:{port}/api/status?token={token}", server, tmp_path / "lab.log")
+        yield f"http://127.0.0.1:{port}/lab/tree/walk.ipynb?token={token}"
+    finally:
+        server.terminate()
+        server.wait(20)
+
+
+def _wait_until_answering(address: str, server, log, attempts: int = 240) -> None:
+    for _ in range(attempts):
+        if server.poll() is not None:
+            break
+        try:
+            urllib.request.urlopen(address, timeout=2).read()
+            return
+        except OSError:
+            try:
+                server.wait(0.25)
+            except subprocess.TimeoutExpired:
+                continue
+    pytest.fail(f"JupyterLab did not start:\n{log.read_text()[-3000:]}")
+
+
+def test_figure_plays_in_jupyterlab_and_python_sees_it(chromium, lab, tmp_path):
+    size = {"width": 1300, "height": 900}
+    with start_browser(chromium) as browser, open_page(browser, offline=False, viewport=size) as page:
+        page.set_default_timeout(60_000)
+        page.goto(lab)
+        page.wait_for_function(IDLE)
+        page.evaluate("window.jupyterapp.commands.execute('notebook:run-all-cells')")
+        canvas = page.locator(".mde-player canvas")
+        canvas.wait_for()
+        page.wait_for_function(IDLE)
+        first = ink(canvas)
+        assert min(coloured(canvas).values()) > 200
+        page.locator(".mde-player").get_by_role("button", name="Play").click()
+        page.wait_for_function(f"{SHOWN} > 5")
+        canvas.focus()
+        page.keyboard.press(" ")
+        frame = page.evaluate(SHOWN)
+        assert ink(canvas) != first
+        page.keyboard.press("ArrowRight")
+        assert page.evaluate(SHOWN) == frame + 1, "the arrow key did not reach the player"
+        assert page.locator(".jp-Cell").count() == 1, "a key reached JupyterLab"
+        heard = (page.evaluate(ASK, "print(player.frame, player.playing)") for _ in range(40))
+        assert f"{frame + 1} False" in heard, "Python was not told the frame"
+        page.evaluate(ASK, "player.frame = 33")
+        page.wait_for_function(f"{SHOWN} === 33")
+        if folder := os.environ.get("MOTIONDIFF_SCREENSHOTS"):
+            page.screenshot(path=os.path.join(folder, "player_lab.png"))
+        assert page.problems == []
