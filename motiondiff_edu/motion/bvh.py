@@ -96,7 +96,7 @@ class Bvh:
         return forward_kinematics(still, self.offsets[:1], self.offsets, self.parents)[0][0]
 
 
-def read_bvh(path: str | Path, fps: float | None = None) -> Bvh:
+def read_bvh(path: str | Path, fps: float | int | None = None) -> Bvh:
     """Read a BVH file; `fps` overrules its frame time, for files that state a wrong one.
 
     Raises BvhError (a ValueError) with file, line, joint and what to do, for anything that is not
@@ -107,7 +107,7 @@ def read_bvh(path: str | Path, fps: float | None = None) -> Bvh:
     found, motion = statements(lines, path)
     nodes = read_nodes(found, path)
     declared, declared_line, time, time_line, first = header(lines, motion, path)
-    seconds = frame_time(time, time_line, path, fps)
+    seconds = frame_time(time, time_line, path, None if fps is None else float(fps))
     columns = [(node.name, channel) for node in nodes for channel in node.channels]
     frames = frame_rows(lines, first, declared, columns, path, declared_line)
     return assemble(nodes, frames, seconds, Path(path).stem or Path(path).name)

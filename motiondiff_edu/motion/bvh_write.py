@@ -19,7 +19,7 @@ CM = 100.0
 TURN = "Zrotation Xrotation Yrotation"
 
 
-def write_bvh(path: str | Path, positions: Float[np.ndarray, "T 21 3"], fps: float = 20.0) -> FitReport:
+def write_bvh(path: str | Path, positions: Float[np.ndarray, "T 21 3"], fps: float | int = 20.0) -> FitReport:
     """Write world positions (metres) as a BVH file; prints and returns the joint shift of the constant-bone fit.
 
     The file appears whole or not at all. Raises BvhError for an empty or non-finite motion.
@@ -32,7 +32,7 @@ def write_bvh(path: str | Path, positions: Float[np.ndarray, "T 21 3"], fps: flo
     if not fps > 0:
         raise BvhError(f"fps must be positive, not {fps}; nothing was written.", path)
     fitted = fit(positions)
-    write_whole(path, text(fitted, fps))
+    write_whole(path, text(fitted, float(fps)))
     report = FitReport(fitted.report.positions, fitted.report.shift_mm, fitted.report.bone_mm, path.name)
     print(report)
     return report

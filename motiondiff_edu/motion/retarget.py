@@ -36,7 +36,7 @@ SHORTEST = 0.5  # s; less has no gait and no heading
 WILD = 15.0  # m/s; no limb of an actor moves faster, a swapped marker does
 
 
-def load_clip(path: str | Path, mapping: Mapping[str, str] | None = None, fps: float | None = None) -> Clip:
+def load_clip(path: str | Path, mapping: Mapping[str, str] | None = None, fps: float | int | None = None) -> Clip:
     """Read a BVH file and retarget it; `mapping` {course joint: joint of the file} where names are not guessed.
 
     `fps` overrules the file's frame time. Raises BvhError; warns (MotionWarning) about what was put right.
@@ -44,12 +44,13 @@ def load_clip(path: str | Path, mapping: Mapping[str, str] | None = None, fps: f
     return retarget(read_bvh(path, fps=fps), mapping)
 
 
-def retarget(bvh: Bvh, mapping: Mapping[str, str] | None = None, fps: float = 20.0) -> Clip:
+def retarget(bvh: Bvh, mapping: Mapping[str, str] | None = None, fps: float | int = 20.0) -> Clip:
     """A motion on the course's 21 joints and bones, `fps` frames/s, metres, feet on floor 0.
 
     Bone directions are the source's; toes stay still while planted. `clip.info` records what was found.
     Raises BvhError when joints are missing or the motion is shorter than half a second.
     """
+    fps = float(fps)
     mapping = guess_mapping(bvh) if mapping is None else check_mapping(mapping, bvh)
     points, info = normalised(bvh, mapping, fps)
     world, contacts = onto_our_bones(points, info["rest_lean"], fps)
