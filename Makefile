@@ -62,7 +62,7 @@ student: $(VENV)/.test ## rebuild notebooks/student from notebooks
 	$(BIN)/python tools/build_student.py
 
 results: $(VENV)/.lab ## recompute the tables and figures into docs/results and docs/RESULTS.md
-	$(BIN)/python tools/results.py
+	$(BIN)/python -m tools.results
 
 bench: $(VENV)/.bench ## measure against the public peers into benchmarks/results
 	$(BIN)/python -m benchmarks

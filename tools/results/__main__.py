@@ -1,0 +1,65 @@
+"""Measure into docs/results, and write docs/RESULTS.md from it.
+
+    python -m tools.results [--only PART ...] [--quick] [--weights NAME=FILE] [--render]
+
+Parts: walker-eps, walker-x0, walker-ddim10, their -lookahead lines, footsteps. --quick measures little, into
+build/quick, and is for trying the code; --render only writes docs/RESULTS.md from the records that are there.
+"""
+
+import argparse
+import sys
+import time
+from pathlib import Path
+
+from benchmarks.records import show, write_records
+from motiondiff_edu.viz.metrics import footstep_curves
+
+from .parts import FULL, LINES, QUICK, Bench, Walks, footstep_records, walker_records
+from .render import render
+
+DOCS = Path("docs")
+
+
+def arguments() -> argparse.Namespace:
+    parser = argparse.ArgumentParser(prog="python -m tools.results", description=__doc__)
+    parser.add_argument("--only", nargs="+", default=[], metavar="PART", help="only these parts")
+    parser.add_argument("--quick", action="store_true", help="few clips; written to build/quick")
+    parser.add_argument("--weights", nargs="+", default=[], metavar="NAME=FILE", help="weights that are not shipped")
+    parser.add_argument("--render", action="store_true", help="only docs/RESULTS.md, from the records there")
+    return parser.parse_args()
+
+
+def main() -> None:
+    asked = arguments()
+    docs = Path("build/quick") if asked.quick else DOCS
+    if not asked.render:
+        weights = {name: Path(file) for name, file in (item.split("=", 1) for item in asked.weights)}
+        measure(asked.only, Bench(QUICK if asked.quick else FULL, weights), docs / "results", weights)
+    render(docs)
+    print(f"written: {docs / 'RESULTS.md'}")
+
+
+def measure(only: list[str], bench: Bench, folder: Path, extra: dict[str, Path]) -> None:
+    """Run the parts asked for (all that have weights, when none is named) and write their records."""
+    lines = LINES | {name: Walks(name, name) for name in extra}
+    there = [prefix for prefix, line in lines.items() if line.name in bench.weights]
+    parts = only or [*there, "footsteps"]
+    unknown = set(parts) - set(lines) - {"footsteps"}
+    if unknown:
+        sys.exit(f"no part is called {', '.join(sorted(unknown))}; there are: {', '.join(lines)}, footsteps")
+    for part in parts:
+        began, command = time.monotonic(), f"python -m tools.results --only {part}"
+        if part == "footsteps":
+            records, curves = footstep_records(bench, command)
+            figure = footstep_curves({k: v for k, v in curves.items() if not k.endswith("-robust")})
+            folder.mkdir(parents=True, exist_ok=True)
+            figure.savefig(folder / "footsteps.png", dpi=110)
+        else:
+            records = walker_records(bench, lines[part], command)
+        show([one for one in records if one["value"] is not None])
+        write_records(folder / f"{part}.json", records)
+        print(f"{part}: {time.monotonic() - began:.0f} s")
+
+
+if __name__ == "__main__":
+    main()

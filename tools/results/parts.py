@@ -1,0 +1,149 @@
+"""What `make results` measures, in parts that can be run alone; each part is a list of records and one JSON file."""
+
+import hashlib
+import json
+from dataclasses import asdict, dataclass
+from functools import cached_property
+from pathlib import Path
+
+import numpy as np
+
+from motiondiff_edu import checkpoints
+from motiondiff_edu.metrics.footsteps import PAPER, ROBUST
+
+from . import steps_table
+from .scores import Figure, diversity, score
+from .trials import UNSEEN, Choices, Trials, choices, rollouts_of, unseen, walker_generate
+
+CACHE = Path("build/results")  # rollouts, so that a new metric needs no new rollouts
+PAPER_BONES = {"walker-eps.bone_rmse_cm": 0.089, "walker-x0.bone_rmse_cm": 0.089, "walker.bone_rmse_cm": 0.089}
+
+
+@dataclass(frozen=True)
+class Size:
+    """How much is measured: the bars' 100 controls and 20 x 50 continuations, or a quick look."""
+
+    clips: int = 100
+    pasts: int = 20
+    each: int = 50
+    seconds: int = 12
+
+
+FULL, QUICK = Size(), Size(clips=12, pasts=3, each=8, seconds=7)
+
+
+class Bench:
+    """The trials, made once, and the rollouts on them, kept on disk by the weights they come from."""
+
+    def __init__(self, size: Size, weights: dict[str, Path] | None = None):
+        self.size, self.weights = size, checkpoints.available() | (weights or {})
+
+    @cached_property
+    def trials(self) -> Trials:
+        return unseen(self.size.clips, self.size.seconds)
+
+    @cached_property
+    def choices(self) -> Choices:
+        return choices(self.size.pasts, self.size.each)
+
+    def rollouts(self, name: str, steps: int | None, hold: bool, what: str) -> np.ndarray:
+        """Poses of the walker `name` on the trials (what="walks") or on the choices (what="choices")."""
+        path = self.weights.get(name) or checkpoints.available().get(name)
+        if path is None:
+            raise SystemExit(f"no weights are called {name!r}; there are: {', '.join(self.weights) or 'none'}")
+        key = f"{_digest(path)}-{steps}-{hold}-{what}-{json.dumps(asdict(self.size))}-{_digest(self._inputs(what))}"
+        kept = CACHE / f"{name}-{hashlib.sha256(key.encode()).hexdigest()[:12]}.npy"
+        if not kept.exists():
+            generate = walker_generate(checkpoints.load_walker(path), steps, hold)
+            asked = self.trials if what == "walks" else self.choices
+            new = rollouts_of(generate, asked) if what == "choices" else generate(asked.past, asked.control, 0)
+            kept.parent.mkdir(parents=True, exist_ok=True)
+            np.save(kept.with_suffix(".part.npy"), new.astype(np.float32))
+            kept.with_suffix(".part.npy").rename(kept)
+        return np.load(kept).astype(np.float64)
+
+    def _inputs(self, what: str) -> np.ndarray:
+        return self.trials.control if what == "walks" else self.choices.control
+
+
+def _digest(thing: Path | np.ndarray) -> str:
+    data = thing.read_bytes() if isinstance(thing, Path) else np.ascontiguousarray(thing).tobytes()
+    return hashlib.sha256(data).hexdigest()[:16]
+
+
+@dataclass(frozen=True)
+class Walks:
+    """One line of the bars: which weights, which sampler, what control it sees."""
+
+    prefix: str
+    name: str
+    steps: int | None = None
+    hold: bool = True
+    choose: bool = True  # measure the diversity too
+
+    def figures(self, bench: Bench) -> list[Figure]:
+        trials = bench.trials
+        walks = bench.rollouts(self.name, self.steps, self.hold, "walks")
+        found = score(walks, trials.asked, trials.truth)
+        if self.choose:
+            found += diversity(bench.rollouts(self.name, self.steps, self.hold, "choices"), bench.choices.drawn)
+        return found
+
+
+LINES = {
+    line.prefix: line
+    for line in (
+        Walks("walker-eps", "walker-eps"),
+        Walks("walker-x0", "walker-x0"),
+        Walks("walker-ddim10", "walker", steps=10),
+        Walks("walker-eps-lookahead", "walker-eps", hold=False, choose=False),
+        Walks("walker-x0-lookahead", "walker-x0", hold=False, choose=False),
+    )
+}
+
+
+def alias_of(name: str = "walker") -> str:
+    """Which of the shipped weights `walker` stands for."""
+    files = checkpoints.available()
+    return next((other for other, path in files.items() if other != name and path == files.get(name)), name)
+
+
+def walker_records(bench: Bench, line: Walks, command: str) -> list[dict]:
+    """The figures of one line as records; the line that `walker` is an alias of is written under that name too."""
+    figures = line.figures(bench)
+    prefixes = [line.prefix] + (["walker"] if line.prefix == alias_of() else [])
+    return [as_record(f"{prefix}.", figure, bench, command) for prefix in prefixes for figure in figures]
+
+
+def as_record(prefix: str, figure: Figure, bench: Bench, command: str) -> dict:
+    name = prefix + figure.name
+    seeds = {"data": UNSEEN, "rollouts": 0, "clips": bench.size.clips}
+    if figure.name.startswith("diversity"):
+        seeds = {"data": UNSEEN + 500_000, "rollouts": 0, "pasts": bench.size.pasts, "each": bench.size.each}
+    value, low, high = (float(f"{x:.5g}") if np.isfinite(x) else None for x in (figure.value, figure.low, figure.high))
+    return dict(name=name, value=value, low=low, high=high, seeds=seeds, unit=figure.unit,
+                paper=PAPER_BONES.get(name), command=command)  # fmt: skip
+
+
+def footstep_records(bench: Bench, command: str) -> tuple[list[dict], dict[str, np.ndarray]]:
+    """Table I on our data: the recorded walks and every line of walkers; and the curves of Fig. 3."""
+    sets = {"data": bench.trials.truth}
+    for line in LINES.values():
+        if line.name in bench.weights and line.hold:
+            sets[line.prefix] = bench.rollouts(line.name, line.steps, line.hold, "walks")
+    records, curves = [], {}
+    for name, poses in sets.items():
+        for suffix, rule in (("", PAPER), ("-robust", ROBUST)):
+            table = steps_table.tables(poses, bench.trials.asked, rule)
+            curves[name + suffix] = steps_table.curve(table)
+            records += [as_record(f"footsteps{suffix}.{name}.", f, bench, command) for f in steps_table.figures(table)]
+    for one in records:
+        one["paper"] = _paper_figure(one["name"])
+    return records, curves
+
+
+def _paper_figure(name: str) -> float | None:
+    kind, who, what = name.split(".")
+    row = {"data": "Recorded data", "walker-eps": "MoDiff (no drop)"}.get(who)
+    column = ("f_est", "v95_cmps", "mean_s", "std_s").index(what)
+    return steps_table.PAPER_TABLE[row][column] if row and kind == "footsteps" else None

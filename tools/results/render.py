@@ -1,0 +1,115 @@
+"""docs/RESULTS.md, made from the records in docs/results/*.json and benchmarks/results/*.json; nothing is typed in."""
+
+import json
+import os
+from pathlib import Path
+
+from .bars import BARS, Bar
+from .steps_table import PAPER_TABLE
+
+HEAD = """# Results
+
+Made by `make results` (and `make bench`) from the records in `docs/results` and `benchmarks/results`. Do not edit.
+
+The course's data are synthetic, and neither paper's code nor its prepared data is public: figures stand beside the
+paper's for orientation, not as a reproduction. **[low, high]** is the 95 % interval over clips (bootstrap), for one
+training run: it does not hold what another training seed would change.
+"""
+
+
+def read_records(*folders: Path) -> dict[str, dict]:
+    """All records by name; a name that stands in two files is an error, for then one of them is old."""
+    found, where = {}, {}
+    for path in sorted(path for folder in folders for path in folder.glob("*.json")):
+        for one in json.loads(path.read_text()):
+            if one["name"] in found:
+                raise ValueError(f"{one['name']} stands in {where[one['name']]} and in {path}: delete the older file")
+            found[one["name"]], where[one["name"]] = one, path
+    return found
+
+
+def number(x: float | None) -> str:
+    """Three digits; a dash where there is none."""
+    if x is None or isinstance(x, str):
+        return x or "-"
+    if abs(x) < 1e-9:
+        return "0"
+    return f"{x:.0f}" if abs(x) >= 100 else f"{x:.3g}"
+
+
+def span(one: dict) -> str:
+    return "-" if one["low"] is None else f"[{number(one['low'])}, {number(one['high'])}]"
+
+
+def table(head: list[str], rows: list[list[str]]) -> str:
+    lines = ["| " + " | ".join(row) + " |" for row in (head, ["---"] * len(head), *rows)]
+    return "\n".join(lines) + "\n"
+
+
+def bars(records: dict[str, dict]) -> str:
+    """Every bar with the measured figure: met, missed, or not measured."""
+    rows = [[f"`{bar.name}`", bar.text, *_verdict(bar, records.get(bar.name))] for bar in BARS]
+    return "## The bars\n\n" + table(["figure", "bar", "measured", "interval", ""], rows)
+
+
+def _verdict(bar: Bar, one: dict | None) -> list[str]:
+    if one is None or one["value"] is None:
+        return ["-", "-", "not measured"]
+    return [number(one["value"]), span(one), "met" if bar.met(one["value"]) else "**missed**"]
+
+
+def walkers(records: dict[str, dict]) -> str:
+    """One column for each walker, one row for each figure, value and interval in a cell."""
+    names = [n for n in records if n.split(".")[0].startswith("walker") and n.count(".") == 1]
+    columns = sorted({n.split(".")[0] for n in names}, key=lambda c: (c != "walker", len(c), c))
+    kinds = list(dict.fromkeys(n.split(".")[1] for n in names))
+    rows = [[f"`{kind}`", *(_cell(records.get(f"{column}.{kind}")) for column in columns)] for kind in kinds]
+    if not names:
+        return "## The walkers\n\nNot measured yet.\n"
+    return (
+        "## The walkers\n\n100 unseen pasts and controls of 12 s, raw output, DDPM with S = 100 (`ddim10`: ten DDIM "
+        "steps), control held over the window (`lookahead`: the window sees the control to come). `_data` rows judge "
+        "the recorded motion under the same control.\n\n" + table(["figure", *columns], rows)
+    )
+
+
+def _cell(one: dict | None) -> str:
+    return "-" if one is None or one["value"] is None else f"{number(one['value'])} {span(one)} {one['unit']}"
+
+
+def footsteps(records: dict[str, dict], folder: Path) -> str:
+    """MoDiff's Table I: the paper's rows, then ours."""
+    head = ["motion", "f_est", "v95, cm/s", "mean step, s", "std, s", "bone RMSE, cm"]
+    rows = [[f"{who} (the paper, other data)", *map(number, row)] for who, row in PAPER_TABLE.items()]
+    for kind, note in (("footsteps", ""), ("footsteps-robust", ", robust count")):
+        for who in dict.fromkeys(n.split(".")[1] for n in records if n.startswith(f"{kind}.")):
+            bone = records.get(f"{who}.bone_rmse_cm")
+            cells = [records[f"{kind}.{who}.{what}"] for what in ("f_est", "v95_cmps", "mean_s", "std_s")]
+            bones = number(bone["value"]) if bone else ("0" if who == "data" else "-")
+            rows.append([f"**{who}**{note}", *(f"{number(c['value'])} {span(c)}" for c in cells), bones])
+    text = (
+        "## Footsteps: MoDiff's Table I and Fig. 3\n\nOur clips are others, and more of them: compare rows within "
+        "a block, never across. Notebook 08 shows why the paper's count follows noise; the robust count closes gaps of "
+        "one frame and drops steps shorter than 0.1 s.\n\n"
+    )
+    picture = ""
+    if (folder / "footsteps.png").exists():
+        picture = "\n![Number of footsteps against the velocity tolerance, data and walkers](results/footsteps.png)\n"
+    return text + table(head, rows) + picture
+
+
+def others(records: dict[str, dict]) -> str:
+    """Everything that stands in no table above, with what makes it."""
+    shown = ("walker", "footsteps")
+    rest = [one for name, one in sorted(records.items()) if not name.startswith(shown)]
+    rows = [[f"`{r['name']}`", number(r["value"]), span(r), r["unit"], f"`{r['command']}`"] for r in rest]
+    return "## Further figures\n\n" + table(["figure", "value", "interval", "unit", "made by"], rows) if rows else ""
+
+
+def render(docs: Path, benchmarks: Path = Path("benchmarks/results")) -> None:
+    """Write RESULTS.md beside the records, to a temporary name first."""
+    records = read_records(docs / "results", benchmarks)
+    parts = [HEAD, bars(records), walkers(records), footsteps(records, docs / "results"), others(records)]
+    docs.mkdir(parents=True, exist_ok=True)
+    (docs / "RESULTS.md.tmp").write_text("\n".join(part for part in parts if part))
+    os.replace(docs / "RESULTS.md.tmp", docs / "RESULTS.md")
