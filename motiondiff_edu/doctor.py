@@ -1,0 +1,181 @@
+"""`python -m motiondiff_edu doctor`: one page that says what works on this machine, and what to do about the rest."""
+
+import importlib
+import importlib.metadata
+import io
+import os
+import re
+import subprocess
+import sys
+import tempfile
+import webbrowser
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from pathlib import Path
+
+PACKAGE = Path(__file__).parent
+INSTALL = "python -m pip install -c constraints.txt -e . (in the checkout), or make lab"
+
+
+@dataclass(frozen=True)
+class Finding:
+    """One line of the page; `remedy` is empty when all is well. A note is worth knowing and no failure."""
+
+    name: str
+    told: str
+    remedy: str = ""
+    note: bool = False
+
+    def __str__(self) -> str:
+        mark = "ok  " if not self.remedy else "note" if self.note else "FAIL"
+        return f"{mark}  {self.name:<9} {self.told}" + (f"\n{'':16}-> {self.remedy}" if self.remedy else "")
+
+
+def python() -> Finding:
+    """Python itself: 3.11 or newer."""
+    told = f"{sys.version.split()[0]} at {sys.executable}"
+    return Finding("python", told, "" if sys.version_info >= (3, 11) else "install Python 3.11 or newer, then make lab")
+
+
+def constraints() -> dict[str, str]:
+    """The pinned versions: of the checkout, or those that came with the wheel. Empty when the file is nowhere."""
+    found = [path for path in (PACKAGE.parent / "constraints.txt", PACKAGE / "constraints.txt") if path.is_file()]
+    lines = found[0].read_text(encoding="utf-8").splitlines() if found else []
+    pins = (re.match(r"([\w.-]+)==([\w.]+)", line) for line in lines)
+    return {pin[1].lower(): pin[2] for pin in pins if pin}
+
+
+def required() -> list[str]:
+    """The packages that the course itself asks for."""
+    asked = importlib.metadata.requires("motiondiff-edu") or []
+    return [re.match(r"[\w.-]+", line)[0].lower() for line in asked if "extra ==" not in line]
+
+
+def versions() -> Finding:
+    """What is installed, against constraints.txt."""
+    try:
+        names = required()
+    except importlib.metadata.PackageNotFoundError:
+        return Finding("versions", "motiondiff-edu is not installed", INSTALL)
+    pins, missing, other = constraints(), [], []
+    for name in names:
+        try:
+            version = importlib.metadata.version(name).split("+")[0]
+        except importlib.metadata.PackageNotFoundError:
+            missing.append(name)
+            continue
+        if version != pins.get(name, version):
+            other.append(f"{name} {version} (tested: {pins[name]})")
+    if missing:
+        return Finding("versions", "missing: " + ", ".join(missing), INSTALL)
+    if other:
+        return Finding("versions", ", ".join(other), f"usually fine; for the tested ones: {INSTALL}", note=True)
+    return Finding("versions", f"all {len(names)} packages as in constraints.txt")
+
+
+def compute() -> Finding:
+    """torch computes, and with how many threads."""
+    import torch
+
+    a = torch.eye(3) * 2
+    right = torch.equal(a @ a, torch.eye(3) * 4)
+    cores, wanted, gpu = os.cpu_count() or 1, torch.get_num_threads(), torch.cuda.is_available()
+    told = f"torch {torch.__version__}, {wanted} threads on {cores} cores, GPU: {'yes' if gpu else 'no'}"
+    if not right:
+        return Finding("torch", told + "; a product of matrices came out wrong", INSTALL)
+    if wanted > cores:
+        return Finding("torch", told, "more threads than cores are slow: set OMP_NUM_THREADS", note=True)
+    return Finding("torch", told)
+
+
+def kernel() -> Finding:
+    """A notebook kernel starts, and it is this Python with this package."""
+    from jupyter_client.manager import start_new_kernel
+
+    manager, client = start_new_kernel(kernel_name="python3", startup_timeout=60, stderr=subprocess.DEVNULL)
+    try:
+        reply = client.execute_interactive("import motiondiff_edu", timeout=60, store_history=False)
+    finally:
+        client.stop_channels()
+        manager.shutdown_kernel(now=True)
+    if reply["content"]["status"] == "ok":
+        return Finding("kernel", "starts, and finds motiondiff_edu")
+    return Finding("kernel", f"starts, but cannot import motiondiff_edu ({reply['content'].get('evalue')})", INSTALL)
+
+
+def canvas() -> Finding:
+    """The moving figure: anywidget, the ES module of the package, and a browser to show it."""
+    importlib.import_module("anywidget")
+    modules = sorted(path.name for path in (PACKAGE / "widgets").glob("*.js"))
+    if not modules:
+        return Finding("canvas", "the package has no ES module in widgets/", INSTALL)
+    try:
+        browser = webbrowser.get()
+    except webbrowser.Error:
+        return Finding("canvas", "no browser found here", "open the address that lab prints elsewhere", note=True)
+    return Finding("canvas", f"{', '.join(modules)}; opens in {getattr(browser, 'name', 'the default browser')}")
+
+
+def sound() -> Finding:
+    """A sound is written and read back."""
+    import numpy as np
+
+    soundfile = importlib.import_module("soundfile")
+    file = io.BytesIO()
+    soundfile.write(file, np.linspace(-0.5, 0.5, 220), 22050, format="WAV")
+    file.seek(0)
+    samples, rate = soundfile.read(file)
+    if len(samples) == 220 and rate == 22050:
+        return Finding("sound", f"soundfile {soundfile.__version__} writes and reads")
+    return Finding("sound", "a sound did not read back as written", INSTALL)
+
+
+def weights() -> Finding:
+    """The shipped weights can be read."""
+    from .checkpoints import available, pretrained
+
+    if "walker" not in available():
+        return Finding("weights", "no walker in pretrained/", "get the file again, or make pretrained (hours)")
+    numbers = sum(parameter.numel() for parameter in pretrained("walker").model.parameters())
+    return Finding("weights", f"walker, {numbers / 1e6:.1f} million numbers")
+
+
+def writing() -> Finding:
+    """Notebooks and results can be written here."""
+    here = Path.cwd()
+    try:
+        with tempfile.TemporaryFile(dir=here):
+            return Finding("writing", f"allowed in {here}")
+    except OSError as error:
+        return Finding("writing", f"not allowed in {here} ({error.strerror})", "start from a folder of your own")
+
+
+def notebooks() -> Finding:
+    """The notebooks are where `lab` looks."""
+    from .__main__ import notebook_folder
+
+    folder = notebook_folder()
+    count = len(list((folder / "student").glob("[0-9][0-9]*.ipynb")))
+    return Finding("notebooks", f"{count} in {folder / 'student'}", "" if count else "make student")
+
+
+CHECKS = (python, versions, compute, kernel, canvas, sound, weights, writing, notebooks)
+
+
+def guarded(check: Callable[[], Finding]) -> Finding:
+    """What the check finds; when it breaks, that is the finding."""
+    try:
+        return check()
+    except Exception as error:
+        return Finding(check.__name__, f"{type(error).__name__}: {error}".splitlines()[0], INSTALL)
+
+
+def main(checks: Iterable[Callable[[], Finding]] = CHECKS) -> int:
+    """Print the page; 1 when anything failed."""
+    failed = 0
+    for check in checks:
+        finding = guarded(check)
+        failed += bool(finding.remedy) and not finding.note
+        print(finding, flush=True)
+    print("\nAll well: python -m motiondiff_edu lab" if not failed else f"\n{failed} to mend, see the arrows above.")
+    return int(failed > 0)
