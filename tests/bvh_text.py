@@ -57,3 +57,21 @@ def random_bvh(rng: np.random.Generator, frames: int = 4) -> str:
     rows = rng.normal(scale=60, size=(frames, columns[0]))
     body = [" ".join(repr(float(v)) for v in row) for row in rows]
     return "\n".join(lines + ["MOTION", f"Frames: {frames}", "Frame Time: 0.0083333", *body]) + "\n"
+
+
+def dump(names, parents, offsets, channels, rows, frame_time: float, is_end) -> str:
+    """Any hierarchy as BVH text; the columns of `rows` are the nodes' channels in order."""
+    lines = ["HIERARCHY"]
+
+    def write(node: int) -> None:
+        lines.extend(["End Site" if is_end[node] else f"{'JOINT' if node else 'ROOT'} {names[node]}", "{"])
+        lines.append("OFFSET " + " ".join(f"{v:.9f}" for v in offsets[node]))
+        if not is_end[node]:
+            lines.append(" ".join([f"CHANNELS {len(channels[node])}", *channels[node]]))
+        for child in (n for n, parent in enumerate(parents) if parent == node):
+            write(child)
+        lines.append("}")
+
+    write(0)
+    body = [" ".join(f"{v:.9f}" for v in row) for row in rows]
+    return "\n".join(lines + ["MOTION", f"Frames: {len(rows)}", f"Frame Time: {frame_time}", *body]) + "\n"
