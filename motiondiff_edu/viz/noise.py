@@ -29,7 +29,9 @@ def finish(figure: Figure, caption: str, labels: tuple[str, str] | None = None) 
         axis.set_xlabel(labels[0])
     if labels:
         figure.axes[0].set_ylabel(labels[1])
-    wide = int(figure.get_size_inches()[0] * 11.5)
+    for legend in filter(None, (axis.get_legend() for axis in figure.axes)):
+        legend.set_frame_on(False)
+    wide = int(figure.get_size_inches()[0] * 12.5)
     figure.supxlabel("\n".join(textwrap.wrap(caption, wide)), fontsize=11.5, color="#444444", x=0.01, ha="left")
     figure.set_label(caption)
     plt.close(figure)
@@ -50,7 +52,7 @@ def lines(x, curves: dict, caption: str, labels: tuple[str, str], *, log=(False,
     if ylim:
         axis.set_ylim(*ylim)
     if len(curves) > 1:
-        axis.legend(handlelength=2.6)
+        axis.legend(handlelength=2.6, fontsize=12)
     return finish(figure, caption, labels)
 
 
@@ -60,7 +62,7 @@ def noised_curve(seconds, clean, noised, s: int, signal: float, caption: str | N
     axis.plot(seconds, noised, color=ORANGE, lw=1.4, marker=".", label=f"x_s at s = {s}")
     axis.plot(seconds, signal * np.asarray(clean), color=BLUE, label=f"what is left of x0: {100 * signal:.0f} %")
     axis.set_ylim(-3.6, 3.6)
-    axis.legend(loc="upper right", ncol=2)
+    axis.legend(loc="upper right", ncol=2, fontsize=12)
     caption = caption or (f"Step {s}: the blue curve is the clean one times {signal:.2f}; the orange one adds noise of "
                           f"standard deviation {np.sqrt(1 - signal ** 2):.2f}.")
     return finish(figure, caption, ("time (s)", "left heel (standardised)"))
@@ -85,7 +87,7 @@ def densities(grid, curves: dict, caption: str, labels=("value", "density"), *, 
     for i, (name, value) in enumerate((points or {}).items()):
         axis.plot([value], [0], marker="^", ms=11, color=INK if i == 0 else GREY, ls="none", label=name, clip_on=False)
     axis.set_ylim(bottom=0)
-    axis.legend()
+    axis.legend(fontsize=12)
     return finish(figure, caption, labels)
 
 
@@ -146,5 +148,5 @@ def bound(terms, exact: float, caption: str) -> Figure:
     right.plot([1], total[-1:], "o", color=ORANGE, ms=9, label=f"negative bound {total[-1]:.3f}")
     right.axhline(exact, color=INK, ls="--", lw=1.6, label=f"exact -E log q(x0) {exact:.3f}")
     right.invert_xaxis()
-    right.legend()
+    right.legend(fontsize=12)
     return finish(figure, caption, ("diffusion step s", "nats"))
