@@ -1,0 +1,78 @@
+"""What 80 CPU-seconds of training give: a small walker on the walks of one style, on unseen controls of 12 s.
+
+One thread; the budget counts only the training loop. Raw output, DDPM with S = 100, held control.
+Run: python benchmarks/walker_80s.py [--seconds 80] [--style neutral] [--out benchmarks/results/walker_80s.json]
+"""
+
+import argparse
+import math
+import sys
+import time
+from dataclasses import replace
+from pathlib import Path
+
+import torch
+from records import show, write_records
+
+sys.path.insert(0, str(Path(__file__).parents[1]))  # tools, beside this folder
+
+from data_synth.walking import dataset  # noqa: E402
+from motiondiff_edu.ddpm import linear_schedule  # noqa: E402
+from motiondiff_edu.modiff import MODIFF_SMALL, MoDiff, MoDiffConfig  # noqa: E402
+from motiondiff_edu.motion.augment import augment  # noqa: E402
+from motiondiff_edu.training import TrainState, train_steps  # noqa: E402
+from motiondiff_edu.walker import Walker  # noqa: E402
+from motiondiff_edu.windows import Windows, window_loss  # noqa: E402
+from tools.results.scores import score  # noqa: E402
+from tools.results.trials import FPS, SECONDS, T_H, UNSEEN, Trials, walker_generate  # noqa: E402
+
+COMMAND = "python -m benchmarks walker"
+PEAK, BATCH, NOISES, CLIPS = 3e-3, 32, 4, 120
+CONFIG = replace(MODIFF_SMALL, target="x0", skip=False, width=64, hidden=128, cross_layers=1, decoder_layers=2)
+NAMES = {"bone_rmse_cm", "adherence_excess_mps", "adherence_mps", "adherence_data_mps", "adherence_shuffled_over_own"}
+
+
+def train(clips: list, seconds: float, config: MoDiffConfig = CONFIG, seed: int = 0) -> tuple[Walker, int]:
+    """Train until the CPU-seconds are spent; the learning rate follows a half cosine over them."""
+    torch.manual_seed(seed)
+    windows, schedule = Windows.of(clips), linear_schedule(config.S)
+    state, start = TrainState.start(MoDiff(config), seed), time.process_time()
+
+    def spent() -> float:
+        return (time.process_time() - start) / seconds
+
+    def rate(step: int) -> float:
+        return PEAK * min(1, (step + 1) / 100) * 0.5 * (1 + math.cos(math.pi * min(1.0, spent())))
+
+    loss = window_loss(windows, schedule, batch=BATCH, noises=NOISES)
+    for _ in train_steps(state, loss, 10**9, lr=rate, decay=0.99, progress=False):
+        if spent() >= 1:
+            break
+    return Walker(state.average.eval(), schedule, windows.pose_scaler, windows.control_scaler), state.step
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--seconds", type=float, default=80)
+    parser.add_argument("--style", default="neutral")
+    parser.add_argument("--clips", type=int, default=50, help="unseen controls to walk")
+    parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument("--out", default="benchmarks/results/walker_80s.json")
+    args = parser.parse_args()
+    torch.set_num_threads(1)
+    clips = augment(dataset(CLIPS, 20, seed=11, styles=[args.style]))
+    trials = Trials.of(dataset(args.clips, SECONDS + T_H / FPS, seed=UNSEEN, styles=[args.style]))
+    walker, steps = train(clips, args.seconds, seed=args.seed)
+    print(f"{steps} steps in {args.seconds:g} CPU-seconds, {sum(p.numel() for p in walker.model.parameters())} weights")
+    walks = walker_generate(walker)(trials.past, trials.control, 0)
+    records = [
+        dict(name=f"bench.walker_80s_{f.name}", value=f.value, low=f.low, high=f.high, unit=f.unit, paper=None,
+             seeds={"data": UNSEEN, "training": args.seed, "clips": args.clips}, command=COMMAND)
+        for f in score(walks, trials.asked, trials.truth) if f.name in NAMES
+    ]  # fmt: skip
+    show(records)
+    write_records(args.out, records)
+
+
+if __name__ == "__main__":
+    main()
