@@ -26,15 +26,16 @@ def body(
 ) -> tuple[Float[np.ndarray, "T 21 3"], Bool[np.ndarray, "T 2"]]:
     """Poses and contacts of a walk; `rows` is the noise of noise.white, `phase` where the clock starts."""
     forward, left, yaw = follow(np.concatenate([control[:1], control[:-1]]), 0.07, fps).T
-    run, speed = running(forward), np.hypot(np.where(forward < 0, -forward, forward), left)
+    run, speed = follow(running(forward), 0.09, fps), np.hypot(np.where(forward < 0, -forward, forward), left)
     inward = 0.78 * np.arctan(forward * yaw / GRAVITY)
     lean_shift = -1.2 * np.tan(inward)
-    steps = plan(drive(control, root_xz, heading, rows, style, lean_shift, fps), style, phase, fps)
+    steps = plan(drive(control, root_xz, heading, rows, style, lean_shift, run, fps), style, phase, fps)
     feet = legs.place_feet(steps, root_xz, heading, forward, run, style)
     noise = drift(rows[:, 8:28], 0.5, fps)
     pelvis_yaw, pelvis = _pelvis_turn(steps, run, yaw, noise, style)
-    hips = _hips(steps, forward, run, speed, rows, noise, style, fps)
+    hips = _hips(steps, forward, run, speed, lean_shift, rows, noise, style, fps)
     hips = legs.hips_within_reach(hips, pelvis, feet)
+    feet = legs.not_folded(hips, pelvis, feet)
     joints = np.zeros((len(control), J, 3))
     joints[:, 0] = hips
     _set_legs(joints, hips, pelvis, pelvis_yaw, feet)
@@ -50,13 +51,13 @@ def _pelvis_turn(steps, run, yaw, noise, style):
     return angle, legs.pelvis_rotation(angle, roll, np.zeros_like(roll))
 
 
-def _hips(steps, forward, run, speed, rows, noise, style, fps):
+def _hips(steps, forward, run, speed, lean_shift, rows, noise, style, fps):
     """Pelvis about the root: sway to the standing foot, ripple ahead, height."""
     turn, amount = 2 * np.pi * steps.clock, steps.amount
     idle = drift(rows[:, 28:30], 0.9, fps) * (1 - amount)[:, None]
     sway = 0.024 * style.sway * np.cos(turn - 2 * np.pi * 0.30) * amount * (1 - 0.6 * run) + 0.003 * noise[:, 2]
     ripple = 0.0135 * np.clip(forward, -1, 2.5) * np.sin(2 * turn - 4 * np.pi * 0.03) * amount * (1 - 0.5 * run)
-    height = legs.pelvis_height(steps.clock, amount, forward, run, speed, style) + 0.0022 * noise[:, 3]
+    height = legs.pelvis_height(steps.clock, amount, forward, run, speed, style) + 0.0022 * noise[:, 3] - 0.12 * np.abs(lean_shift)
     return np.stack([sway + 0.018 * idle[:, 0], height, ripple + 0.004 * noise[:, 4] + 0.010 * idle[:, 1]], -1)
 
 

@@ -10,7 +10,7 @@ from math import cos, exp, hypot, radians, sin
 import numpy as np
 from jaxtyping import Bool, Float
 
-from .gait_curves import cadence, running, stance_fraction, swing_progress
+from .gait_curves import cadence, stance_fraction, swing_progress
 from .noise import drift, follow
 from .styles import Style
 
@@ -50,30 +50,33 @@ class Drive:
     lean_shift: list
 
 
-def drive(control, root_xz, heading, rows, style: Style, lean_shift, fps: float) -> Drive:
+def drive(control, root_xz, heading, rows, style: Style, lean_shift, run, fps: float) -> Drive:
     """Rates and velocities per frame; velocity at frame t is control[t-1], which brought the root there."""
     arrived = np.concatenate([control[:1], control[:-1]])
     smooth = follow(arrived, 0.06, fps)
     slow, fast = drift(rows[:, 0], 2.5, fps), drift(rows[:, 1], 0.3, fps)
-    rate = cadence(*smooth.T) * style.cadence * np.exp(0.03 * slow + 0.022 * fast)
+    rate = cadence(*smooth.T, run) * style.cadence * np.exp(0.03 * slow + 0.022 * fast)
     ahead = arrived + np.clip(3.0 * (arrived - smooth), -0.3, 0.3)  # a velocity that changes is carried a little further
     need = np.sqrt(arrived[:, 0] ** 2 + arrived[:, 1] ** 2 + (0.25 * arrived[:, 2]) ** 2)
-    columns = (*root_xz.T, heading, *ahead.T, rate, stance_fraction(smooth[:, 0]) + style.stance)
-    columns += (running(smooth[:, 0]), need, rows[len(rows) - len(control) :, 2:6], lean_shift)
+    columns = (*root_xz.T, heading, *ahead.T, rate, stance_fraction(smooth[:, 0], run) + style.stance)
+    columns += (run, need, rows[len(rows) - len(control) :, 2:6], lean_shift)
     return Drive(*(c.tolist() for c in columns))
 
 
-def home(d: Drive, t: int, foot: int, style: Style, tau: float) -> tuple[float, float, float]:
-    """Where this foot belongs tau seconds from frame t if the velocity lasts: x, z, heading."""
+def home(d: Drive, t: int, foot: int, style: Style, tau: float, ahead: float) -> tuple[float, float, float]:
+    """Where this foot belongs tau seconds from frame t if the velocity lasts: x, z, heading.
+
+    `ahead`: the same for walking ahead (a foot passes under the hip before the middle of its stance).
+    """
     side = 1.0 if foot == LEFT_FOOT else -1.0
     vf, vl, w = d.forward[t], d.left[t], d.yaw[t]
     middle, later = d.heading[t] + w * tau * 0.4, d.heading[t] + w * tau
-    width = style.width * (1 - 0.5 * d.run[t]) + 0.5 * min(abs(vl), 0.7) + 0.05 * min(abs(w), 2.0)
+    width = style.width * (1 - 0.5 * d.run[t]) + 0.75 * min(abs(vl), 0.6) + 0.05 * min(abs(w), 2.0)
     out = side * width / 2 + d.lean_shift[t]
-    far, across = vf * tau * (0.8 if vf > 0 else 1.0), vl * tau
+    far, across = vf * (ahead if vf > 0 else tau), vl * tau
     sm, cm, sl, cl = sin(middle), cos(middle), sin(later), cos(later)
-    x = d.x[t] + far * sm + across * cm + out * cl - 0.02 * sl
-    z = d.z[t] + far * cm - across * sm - out * sl - 0.02 * cl
+    x = d.x[t] + far * sm + across * cm + out * cl + 0.015 * sl
+    z = d.z[t] + far * cm - across * sm - out * sl + 0.015 * cl
     return x, z, later + side * radians(style.toe_out)
 
 
@@ -87,7 +90,7 @@ class _Feet:
         if d.need[0] < ACTIVE:  # standing: both feet down, in the middle of double support
             self.clock, self.rate, self.amount = (0.0 if phase < 0.5 else 0.5) + 0.09, 0.0, [0.0, 0.0]
         self.toe_up = [0.0, 0.0]
-        places = [home(d, 0, foot, style, 0.0) for foot in (0, 1)]
+        places = [home(d, 0, foot, style, 0.0, 0.0) for foot in (0, 1)]
         self.place, self.start, self.aim = list(places), list(places), list(places)
         self.swing, self.off_phase = [False, False], [0.65, 0.65]
         self.error = [(0.0, 0.0), (0.0, 0.0)]  # ahead and aside, of the swing under way
@@ -97,7 +100,7 @@ class _Feet:
 
     def displaced(self, t: int) -> bool:
         for foot in (0, 1):
-            x, z, yaw = home(self.d, t, foot, self.style, 0.0)
+            x, z, yaw = home(self.d, t, foot, self.style, 0.0, 0.0)
             px, pz, pyaw = self.place[foot]
             if (px - x) ** 2 + (pz - z) ** 2 > 0.10**2 or abs(pyaw - yaw) > 0.35:
                 return True
@@ -106,7 +109,7 @@ class _Feet:
     def tick(self, t: int, dt: float) -> None:
         d = self.d
         full = d.steps_per_second[t] / 2
-        wanted = full
+        wanted = full * (1 + self.overstretched(t))
         trailing = max(self.phase(0), self.phase(1))
         if not any(self.swing) and d.stance[t] > 0.5:
             standing = d.need[t] < ACTIVE and not self.displaced(t)
@@ -121,6 +124,11 @@ class _Feet:
         k = 1 - exp(-dt / 0.12)
         self.amount[0] += k * (min(1.0, self.rate / full) - self.amount[0])
         self.amount[1] += k * (self.amount[0] - self.amount[1])
+
+    def overstretched(self, t: int) -> float:
+        """How much quicker the step must come because a planted foot is far from the root, 0..1."""
+        far = [hypot(p[0] - self.d.x[t], p[1] - self.d.z[t]) for p, up in zip(self.place, self.swing, strict=True) if not up]
+        return min(max((max(far, default=0.0) - 0.50) / 0.15, 0.0), 1.2)
 
     def first_foot(self, t: int) -> None:
         """From standing either foot may go first; sideways and turning the near one usually does."""
@@ -147,7 +155,8 @@ class _Feet:
 
     def target(self, t: int, foot: int, p: float) -> tuple[float, float, float]:
         rate = max(self.rate, 0.6 * self.d.steps_per_second[t] / 2)
-        return home(self.d, t, foot, self.style, (1 - p + 0.45 * self.d.stance[t]) / rate)
+        middle = self.d.stance[t]
+        return home(self.d, t, foot, self.style, (1 - p + 0.48 * middle) / rate, (1 - p + (0.37 - 0.07 * self.d.run[t]) * middle) / rate)
 
     def fly(self, t: int, foot: int, p: float, u: float, dt: float) -> float:
         ax, az, ayaw = self.target(t, foot, p)

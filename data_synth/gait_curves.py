@@ -8,29 +8,32 @@ import numpy as np
 from jaxtyping import Float
 from scipy.interpolate import PchipInterpolator
 
-RUN_SPEED = 2.25  # m/s where walking gives way to running
+RUN_SPEED = 2.2  # m/s where walking gives way to running
 
 Frames = Float[np.ndarray, "*T"]
 
 
 def running(speed: Frames) -> Frames:
-    """Share of running at this forward speed (m/s): 0 below about 2, 1 above about 2.5."""
-    return 0.5 + 0.5 * np.tanh((speed - RUN_SPEED) / 0.13)
+    """Share of running at this forward speed (m/s): 0 below about 2.05, 1 above about 2.35."""
+    return 0.5 + 0.5 * np.tanh((speed - RUN_SPEED) / 0.1)
 
 
-def cadence(forward: Frames, left: Frames, yaw: Frames) -> Frames:
-    """Steps per second: (74 + 27 v) / 60 walking straight; sideways, back and turning steps come quicker; runs 140 + 4.5 v."""
+def cadence(forward: Frames, left: Frames, yaw: Frames, run: Frames) -> Frames:
+    """Steps per second: (74 + 27 v) / 60 walking straight; sideways, back and turning steps come quicker; runs 137 + 4.5 v."""
     ahead = np.where(forward < 0, -1.5 * forward, forward)
     v = np.hypot(ahead, 1.7 * left)
-    walk = 74 + 27 * v + 17 * np.abs(yaw) * np.exp(-v)
-    return (walk + (140 + 4.5 * v - walk) * running(forward)) / 60
+    walk = 74 + 27 * v + 8 * np.maximum(v - 1.6, 0) + 17 * np.abs(yaw) * np.exp(-0.6 * v)
+    return (walk + (137 + 4.5 * v - walk) * run) / 60
 
 
-def stance_fraction(forward: Frames) -> Frames:
-    """Share of the cycle that a foot is down: 0.688 - 0.044 v walking, below one half (flight) in a run."""
-    walk = 0.688 - 0.044 * np.abs(forward)
-    run = np.clip(0.44 - 0.126 * (forward - 2.61), 0.32, 0.47)
-    return walk + (run - walk) * running(forward)
+def stance_fraction(forward: Frames, run: Frames) -> Frames:
+    """Share of the cycle until the toe leaves: 0.63 - 0.044 v walking, below one half (flight) in a run.
+
+    A contact detector sees some 0.05 more: it counts the toe as down until it is faster than the pelvis.
+    """
+    walk = 0.63 - 0.044 * np.abs(forward) - 0.03 * np.maximum(forward - 1.5, 0)
+    running_one = np.clip(0.28 - 0.05 * (forward - 2.61), 0.24, 0.33)
+    return walk + (running_one - walk) * run
 
 
 def fourier(table: list[float], harmonics: int) -> tuple[np.ndarray, np.ndarray]:
@@ -48,8 +51,8 @@ def periodic(coefficients: tuple[np.ndarray, np.ndarray], p: Frames) -> Frames:
 
 
 # Foot pitch in degrees, heel up positive. Abscissa: 0..1 through stance, 1..2 through swing, then again from 0.
-_WALK_PITCH = [(0, -15), (0.08, -6.5), (0.17, 0), (0.5, 0), (0.66, 3), (0.8, 14), (0.92, 36), (1.0, 52), (1.1, 52)]
-_WALK_PITCH += [(1.28, 34), (1.5, 13), (1.7, -8), (1.88, -17), (2, -15)]
+_WALK_PITCH = [(0, -15), (0.08, -6.5), (0.17, 0), (0.58, 0), (0.7, 2), (0.86, 13), (1.0, 47), (1.1, 57)]
+_WALK_PITCH += [(1.28, 40), (1.5, 14), (1.7, -8), (1.88, -17), (2, -15)]
 _RUN_PITCH = [(0, -7), (0.1, -3), (0.2, 0), (0.45, 0), (0.6, 6), (0.8, 28), (1.0, 58), (1.15, 78), (1.4, 88), (1.65, 48)]
 _RUN_PITCH += [(1.85, 4), (2, -7)]
 
@@ -70,14 +73,15 @@ def foot_pitch(x: Frames, run: Frames) -> Frames:
 
 def swing_progress(u: float, run: float) -> float:
     """How far a swinging foot has come, 0..1, standing still at both ends."""
-    return u * u * (3 - 2 * u) + (0.9 - 0.9 * run) * u**2 * (1 - u) ** 3
+    w = u ** (1 + 0.35 * run)
+    return w * w * (3 - 2 * w) + (1.7 - 1.7 * run) * u**2 * (1 - u) ** 3
 
 
 def swing_lift(u: Frames, run: Frames) -> Frames:
     """Height of the swinging foot's pivot, as a share of its largest."""
     u = np.clip(u, 0, 1)
-    walk = u**1.5 * (1 - u) ** 3.5 / 0.0545
-    return walk + (u**1.7 * (1 - u) ** 2.3 / 0.0651 - walk) * run
+    walk = u**1.35 * (1 - u) ** 4.4 / 0.0439
+    return walk + (u**1.7 * (1 - u) ** 2.0 / 0.0777 - walk) * run
 
 
 # Curves over the cycle at steps of 10 %: own hand and elbow (degrees), own hip up (degrees), pelvis height (share of its range)

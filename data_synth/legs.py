@@ -19,7 +19,7 @@ from .styles import Style
 ANKLE = 0.075  # height of the Foot joint over the floor, foot flat
 HEEL_BEHIND = 0.04  # of the ankle
 THIGH, SHANK = 0.41, 0.425
-REACH = 0.985 * (THIGH + SHANK)
+REACH = 0.992 * (THIGH + SHANK)
 
 
 @dataclass(frozen=True)
@@ -38,7 +38,7 @@ def softplus(x: np.ndarray, width: float) -> np.ndarray:
 
 def heel_rise(behind: np.ndarray) -> np.ndarray:
     """Degrees that the heel must rise when the toe is this far behind the hip (metres)."""
-    return 190 * softplus(behind - 0.16, 0.02)
+    return 190 * softplus(behind - 0.18, 0.02)
 
 
 def place_feet(steps: Steps, root_xz, heading, forward, run, style: Style) -> Feet:
@@ -46,6 +46,7 @@ def place_feet(steps: Steps, root_xz, heading, forward, run, style: Style) -> Fe
     to_forward, to_left = (v[:, None] for v in forward_left(heading))
     offset = steps.ground - root_xz[:, None]
     x, z = (offset * to_left).sum(-1), (offset * to_forward).sum(-1)
+    x = x + _clear(steps, x)
     yaw = steps.yaw - heading[:, None]
     pitch, pivot, lift = _roll(steps, x, z, yaw, forward[:, None], run[:, None], style)
     back = TOE_AHEAD - (TOE_AHEAD + HEEL_BEHIND) * pivot  # of the pivot, seen from the ankle
@@ -59,6 +60,19 @@ def place_feet(steps: Steps, root_xz, heading, forward, run, style: Style) -> Fe
     return Feet(ankle, toe, yaw)
 
 
+def _behind(x: np.ndarray, z: np.ndarray, yaw: np.ndarray) -> np.ndarray:
+    """How far the toe is behind its hip, also aside where it is behind (metres)."""
+    aside = x + TOE_AHEAD * np.sin(yaw) - np.array([0.085, -0.085])
+    back = np.maximum(-(z + TOE_AHEAD * np.cos(yaw)), 0)
+    return np.sqrt(back**2 + aside**2 * np.clip(back / 0.2, 0, 1))
+
+
+def _clear(steps: Steps, x: np.ndarray) -> np.ndarray:
+    """A swinging foot goes round the other one: how far each moves outward (metres, left positive)."""
+    short = softplus(0.095 - (x[:, 0] - x[:, 1]), 0.012)[:, None]
+    return short * np.sin(np.pi * np.clip(steps.progress - 1, 0, 1)) ** 2 * np.array([1.0, -1.0])
+
+
 def _roll(steps: Steps, x, z, yaw, forward, run, style: Style):
     """Pitch (radians, heel up), pivot (0 toe, 1 heel) and height of the pivot, for both feet."""
     progress = steps.progress
@@ -66,22 +80,23 @@ def _roll(steps: Steps, x, z, yaw, forward, run, style: Style):
     heel_off = np.clip(forward / 1.1, 0, 1.0) ** 0.7 * steps.amount[:, None]
     degrees = np.where(curve > 0, curve * heel_off, curve * steps.toe_up)
     late = np.clip((progress - 0.4) / 0.2, 0, 1) * np.clip((1.45 - progress) / 0.4, 0, 1)
-    forced, up = heel_rise(-(z + TOE_AHEAD * np.cos(yaw))) * late, np.maximum(degrees, 0)
+    forced, up = heel_rise(_behind(x, z, yaw)) * late, np.maximum(degrees, 0)
     degrees = degrees + softplus(forced - up, 1.5) - softplus(-up, 1.5)
     u = np.clip(progress - 1, 0, 1)
     pivot = np.where(progress > 1, u * u * (3 - 2 * u), (progress < 0.35) * 1.0)
+    walk = 0.104 + 0.03 * np.clip(forward - 1.2, -0.5, 0.8)
     size = np.clip(0.30 + 0.75 * steps.stride, 0, 1.1) * style.lift
-    lift = swing_lift(u, run) * (progress > 1) * size * (0.078 + (0.33 - 0.078) * run)
+    lift = swing_lift(u, run) * (progress > 1) * size * (walk + (0.44 - walk) * run)
     return np.radians(degrees), pivot, lift
 
 
 def pelvis_height(clock, amount, forward, run, speed, style: Style) -> Float[np.ndarray, "T"]:
     """Height of the Hips joint before the legs have their say: highest at mid-stance, lower when faster."""
     swing = np.clip(0.055 * speed - 0.031, 0.012, 0.06) * style.bounce
-    walk = 0.957 - 0.02 * amount - 0.008 * np.clip(speed - 1.2, -1.2, 1.0) * amount
+    walk = 0.957 - (0.02 + 0.008 * (speed - 1.2) + 0.02 * softplus(speed - 1.35, 0.1)) * amount
     wave = periodic(HEIGHT, 2 * clock) * amount
-    bounce = 0.066 * np.cos(4 * np.pi * (clock - 0.445)) * amount
-    return walk + wave * swing * (1 - run) + (bounce + 0.005) * run - style.crouch
+    bounce = 0.066 * np.cos(4 * np.pi * (clock - 0.40)) * amount
+    return walk + wave * swing * (1 - run) + (bounce + 0.005) * run - style.crouch * (1 - 0.7 * run)
 
 
 def pelvis_rotation(yaw, roll, pitch) -> Float[np.ndarray, "T 3 3"]:
@@ -102,8 +117,16 @@ def hips_within_reach(hips: np.ndarray, rotation: np.ndarray, feet: Feet) -> np.
         gap = feet.ankle[:, side] - (hips + socket)
         level = np.hypot(gap[:, 0], gap[:, 2])
         highest = feet.ankle[:, side, 1] + np.sqrt(np.maximum(REACH**2 - level**2, 0.3)) - socket[:, 1]
-        lower[:, 1] -= softplus(lower[:, 1] - highest, 0.006)
+        lower[:, 1] -= softplus(lower[:, 1] - highest, 0.008)
     return lower
+
+
+def not_folded(hips: np.ndarray, rotation: np.ndarray, feet: Feet) -> Feet:
+    """Lower a swinging foot that comes so near its hip that the knee would fold beyond 135 degrees or so."""
+    sockets = np.stack([hips + rotation @ OFFSETS[j] for j in (1, 5)], 1)
+    near = softplus(0.34 - np.linalg.norm(feet.ankle - sockets, axis=-1), 0.012)
+    down = np.stack([0 * near, near, 0 * near], -1)
+    return Feet(feet.ankle - down, feet.toe - down, feet.yaw)
 
 
 def bend_knee(

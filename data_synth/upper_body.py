@@ -35,7 +35,7 @@ def trunk(clock, amount, run, speed, inward, doing: Behaviours, noise: Float[np.
     look = doing.head[:, 0] - doing.head[:, 1]
     lean = style.lean + 1.0 + 1.4 * np.clip(speed, 0, 2) + 5.5 * run + nod + 1.0 * noise[:, 0]
     roll = -1.0 * np.cos(turn - 2 * np.pi * 0.2) * amount + 0.5 * noise[:, 1]
-    head = 0.45 * (style.lean - 3) * -0.6 + style.head + 18 * doing.head[:, 2] - 0.9 * nod + 1.2 * noise[:, 2]
+    head = 0.45 * (style.lean - 3) * -0.6 + style.head + 18 * doing.head[:, 2] + 0.2 * nod + 1.2 * noise[:, 2]
     yaw = chest + 13 * look + 1.0 * noise[:, 3]
     angles = np.radians([yaw, lean, roll, head, 45 * look])
     return Trunk(angles[0], angles[1], angles[2] - 0.35 * inward, angles[3], angles[4])
@@ -57,13 +57,13 @@ def spine(hips: Float[np.ndarray, "T 3"], pelvis: Float[np.ndarray, "T 3 3"], po
 def free_arm(clock, side: int, amount, run, speed, swing, noise: Float[np.ndarray, "T 2"], style: Style):
     """(swing, abduction, twist, elbow) of an arm that just swings; the hand's angle follows the measured curve."""
     p = clock if side == 0 else clock + 0.5
-    size = (29 + 19 * np.clip(speed, 0, 1.8)) / 50 * style.arms * swing * (style.arms_right if side else 1.0)
+    size = (27 + 17 * np.clip(speed, 0, 1.8)) / 50 * style.arms * swing * (style.arms_right if side else 1.0)
     wave = (periodic(HAND, p) - HAND[0][0]) * amount * size
     bend = (periodic(ELBOW, p) - ELBOW[0][0]) * amount * np.minimum(size, 1.25)
-    elbow = 15 + 10 * amount * np.minimum(size, 1.3) + bend + style.elbow + 2.5 * noise[:, 0]
+    elbow = 15 + 10 * amount * np.minimum(size, 1.3) + bend + style.elbow + 3.5 * noise[:, 0]
     elbow = elbow + (98 + 0.5 * bend + 0.3 * style.elbow - elbow) * run
     elbow = 4 + np.logaddexp(0, (elbow - 4) / 4) * 4
-    hand = 4 + 5 * amount + wave * (1 + 0.05 * run) + 0.32 * style.elbow + 22 * run + 1.5 * noise[:, 1]
+    hand = 4 + 5 * amount + wave * (1 + 0.05 * run) + 0.32 * style.elbow + 22 * run + 2.2 * noise[:, 1]
     bent = np.radians(elbow)
     upper = hand - np.degrees(np.arctan2(FOREARM * np.sin(bent), UPPER_ARM + FOREARM * np.cos(bent)))
     abduct = style.abduct + 4 * run + 0.8 * noise[:, 0]
