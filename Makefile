@@ -68,7 +68,7 @@ bench: $(VENV)/.bench ## measure against the public peers into benchmarks/result
 	$(BIN)/python -m benchmarks
 
 pretrained: $(VENV)/.lab ## train all shipped weights again (hours)
-	$(BIN)/python tools/pretrained.py
+	$(BIN)/python -m motiondiff_edu.pretrained
 
 clean: ## remove .venv and what the build left
 	rm -rf $(VENV) build dist *.egg-info .pytest_cache .ruff_cache

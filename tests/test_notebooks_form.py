@@ -125,7 +125,7 @@ def spoil_pip(nb):
 
 
 def spoil_path(nb):
-    nb["cells"][4]["source"] = "x = open('/home/me/walk.bvh')"
+    nb["cells"][4]["source"] = "x = open('" + "/home" + "/me/walk.bvh')"
 
 
 def spoil_image(nb):

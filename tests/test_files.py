@@ -1,0 +1,64 @@
+"""The files themselves: short, tied to no machine, the same vocabulary everywhere."""
+
+import re
+import subprocess
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parent.parent
+LONGEST = 250
+
+LIBRARY = sorted(path for folder in ("motiondiff_edu", "data_synth") for path in (ROOT / folder).rglob("*.py"))
+TEXT = {".py", ".md", ".toml", ".yml", ".yaml", ".ipynb", ".js", ".json", ".txt", ".cff", ".cfg", ".in", ""}
+
+FORBIDDEN = {
+    "an absolute path of one machine": r"(?<![\w.~:/])/(home|root|Users|tmp|mnt|opt|srv|work)/\w",
+    "a package registry": r"\b(pypi|pythonhosted|conda\.anaconda|npmjs|unpkg|jsdelivr|crates)\.(org|com|io|net)\b",
+    "a loose end": r"\bTO[D]O\b|\bFIX[M]E\b|\bX[X]X\b",
+}
+THIS = Path(__file__)
+
+
+def tracked() -> list[Path]:
+    """The text files of the project: those that git tracks, or in an unpacked archive all."""
+    answer = subprocess.run(["git", "ls-files"], cwd=ROOT, capture_output=True, text=True)
+    names = answer.stdout.splitlines() if answer.returncode == 0 else []
+    paths = [ROOT / name for name in names] or [path for path in ROOT.rglob("*") if ".venv" not in path.parts]
+    return [path for path in paths if path.is_file() and path.suffix in TEXT]
+
+
+@pytest.mark.parametrize("path", LIBRARY, ids=lambda path: path.relative_to(ROOT).as_posix())
+def test_library_files_are_short(path):
+    lines = len(path.read_text(encoding="utf-8").splitlines())
+    assert lines <= LONGEST, f"{lines} lines: find the second idea and give it its own file"
+
+
+@pytest.mark.parametrize("what", FORBIDDEN)
+def test_nothing_is_tied_to_one_machine_or_left_loose(what):
+    pattern, found = re.compile(FORBIDDEN[what]), []
+    for path in tracked():
+        if path == THIS:
+            continue
+        for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), 1):
+            if pattern.search(line):
+                found.append(f"{path.relative_to(ROOT)}:{number}: {line.strip()[:100]}")
+    assert found == [], f"{what}:\n" + "\n".join(found)
+
+
+def test_shipped_weights_stay_small():
+    sizes = {path.name: path.stat().st_size for path in (ROOT / "motiondiff_edu/pretrained").glob("*.safetensors")}
+    walkers = sum(size for name, size in sizes.items() if name.startswith("walker"))
+    assert walkers <= 8e6 and sum(sizes.values()) <= 25e6, sizes
+
+
+def test_every_weights_file_has_its_card():
+    folder = ROOT / "motiondiff_edu" / "pretrained"
+    assert [path.name for path in folder.glob("*.safetensors") if not path.with_suffix(".json").is_file()] == []
+
+
+def test_no_pickle():
+    """Weights and data come without code in them."""
+    pattern = re.compile(r"import pickle|pickle\.|\btorch\.(save|load)\(|allow_pickle\s*=\s*True")
+    found = [path.name for path in LIBRARY if pattern.search(path.read_text(encoding="utf-8"))]
+    assert found == []
