@@ -36,16 +36,17 @@ def _bones_2d(axes, pose: np.ndarray, **line) -> None:
 
 def joint_map(pose: Float[np.ndarray, "21 3"], caption: str) -> Figure:
     """The skeleton seen from the front, every joint with its number; a list of names beside it."""
-    figure, ((drawn, listed),) = _axes(9, 5, 1, 2, width_ratios=[3, 1.3])
+    figure, ((drawn, listed),) = _axes(9, 5.6, 1, 2, width_ratios=[2, 1])
     _bones_2d(drawn, pose[:, :2])
-    drawn.plot(*pose[:, :2].T, "o", ms=13, mfc="white", mec=INK)
+    drawn.plot(*pose[:, :2].T, "o", ms=14, mfc="white", mec=INK)
+    drawn.margins(0.12, 0.05)
     for j, (x, y) in enumerate(pose[:, :2]):
         drawn.text(x, y, str(j), ha="center", va="center", fontsize=8)
     drawn.set(aspect="equal", xlabel="x: to the figure's left (m)", ylabel="y: up (m)")
     listed.axis("off")
     for j, name in enumerate(JOINTS):
         row = 1 - j / len(JOINTS)
-        listed.text(0, row, f"{j:2d} {name}", color=_side_colour(j), fontsize=9, family="monospace", va="top")
+        listed.text(0, row, f"{j:2d} {name}", color=_side_colour(j), fontsize=11, family="monospace", va="top")
     return finish(figure, caption)
 
 
@@ -56,12 +57,14 @@ def limb_steps(
     caption: str,
 ) -> Figure:
     """A limb of K joints at U moments between two poses, one panel for each way of going; below, its length (m)."""
-    figure, (above, below) = _axes(3.2 * len(ways), 5.6, 2, len(ways), height_ratios=[2.4, 1], sharey="row", sharex="row")
+    figure, (above, below) = _axes(3.2 * len(ways), 5.6, 2, len(ways), height_ratios=[2.4, 1], sharey="row")
+    reach = 1.3 * max(np.abs(limb).max() for limb in ways.values())
     for axes, curve, (name, limb) in zip(above, below, ways.items(), strict=True):
         for u, pose in zip(np.linspace(0, 1, len(limb)), limb, strict=True):
             axes.plot(*pose.T, "o-", color=INK, alpha=0.25 + 0.75 * (u in (0, 1)), ms=4, lw=2)
-            axes.text(*(pose[-1] + 0.03), f"{u:.2g}", fontsize=8, color=RIGHT_COLOUR)
-        axes.set(aspect="equal", title=name)
+            beyond = pose[-1] + 0.08 * pose[-1] / np.linalg.norm(pose[-1])
+            axes.text(*beyond, f"{u:.2g}", fontsize=10, color=RIGHT_COLOUR, ha="center", va="center")
+        axes.set(aspect="equal", title=name, xlim=(-reach, reach), ylim=(-reach, reach), xlabel="x (m)")
         curve.plot(np.linspace(0, 1, len(lengths[name])), lengths[name], color=LEFT_COLOUR)
         curve.axhline(true_length, color=INK, lw=0.8, ls="--")
         curve.set(xlabel="share of the way, u", ylim=(0, 1.15 * true_length))
@@ -73,16 +76,18 @@ def paths_from_above(
     paths: Mapping[str, tuple[Float[np.ndarray, "_ 2"], Float[np.ndarray, "_"]]], caption: str, every: int = 10
 ) -> Figure:
     """Root paths (x, z) with their headings (radians) as arrows, seen from above with the figure's left on the left."""
-    figure, ((axes,),) = _axes(8, 4.8)
+    spread = np.ptp(np.concatenate([root for root, _ in paths.values()]), axis=0)
+    figure, ((axes,),) = _axes(9, 1.4 + 6.5 * min(max(spread[1] / max(spread[0], 1e-3), 0.3), 0.75))
     for k, (name, (root, heading)) in enumerate(paths.items()):
         colour = SERIES[k % len(SERIES)]
         axes.plot(*root.T, color=colour, lw=2, label=name, ls="-" if k == 0 else "--")
         axes.plot(*root[0], "o", color=colour, ms=8)
         axes.quiver(*root[::every].T, np.sin(heading[::every]), np.cos(heading[::every]), color=colour,
-                    angles="xy", scale_units="xy", scale=3.2, width=0.005)  # fmt: skip
+                    angles="xy", scale_units="xy", scale=1.7, width=0.005, zorder=3)  # fmt: skip
     axes.invert_xaxis()  # from above, and looking along z, left is on the left
     axes.set(aspect="equal", xlabel="x: left (m)", ylabel="z: forward (m)")
-    axes.legend(loc="center left", bbox_to_anchor=(1.02, 0.5), fontsize=11)
+    if len(paths) > 1:
+        axes.legend(loc="center left", bbox_to_anchor=(1.02, 0.5))
     return finish(figure, caption)
 
 
