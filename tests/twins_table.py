@@ -13,9 +13,12 @@ Sizes pairwise different, numbers from an own generator. Every notebook with twi
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
+import numpy as np
 import torch
+from scipy.spatial.transform import Rotation, Slerp
 
 from motiondiff_edu import ddpm
+from motiondiff_edu.motion import kinematics, root_frame, skeleton
 
 
 class Twin(NamedTuple):
@@ -62,4 +65,35 @@ TWINS["02"] = {
     "product": Twin(_product_on_a_grid, lambda: (0.3, 0.5, -0.4, 0.2)),
     "between": Twin(ddpm.q_posterior, lambda: (_normal(2, 5), _normal(2, 5, seed=1), 20, LINEAR)),
     "kl": Twin(_kl, lambda: (_normal(7), _normal(7, seed=1).exp(), _normal(7, seed=2), _normal(7, seed=3).exp())),
+}
+
+
+def _walk_angles() -> tuple:
+    rng = np.random.default_rng(1)
+    local = kinematics.euler_to_matrix(rng.uniform(-3, 3, (skeleton.J, 3)), "ZXY")
+    return local, rng.normal(size=3), skeleton.OFFSETS, skeleton.PARENTS
+
+
+def _one_frame(local, root, offsets, parents) -> np.ndarray:
+    return kinematics.forward_kinematics(local[None], root[None], offsets, parents)[0][0]
+
+
+def _scipy_slerp(a, b, u) -> np.ndarray:
+    """SciPy's slerp, with the sign of the quaternion that lies nearer to a."""
+    found = Slerp([0, 1], Rotation.from_quat([a, b]))(u).as_quat()
+    return found if found @ a > 0 else -found
+
+
+def _two_quaternions(seed: int) -> tuple:
+    a, b = Rotation.random(2, rng=np.random.default_rng(seed)).as_quat()
+    return a, b, 0.3
+
+
+TWINS["01"] = {
+    "fk_loop": Twin(_one_frame, _walk_angles),
+    "root_loop": Twin(
+        lambda control: np.column_stack(root_frame.root_path(control)),
+        lambda: (np.random.default_rng(2).normal(size=(57, 3)),),
+    ),
+    "slerp": Twin(_scipy_slerp, lambda: _two_quaternions(5)),
 }
