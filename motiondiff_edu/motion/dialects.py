@@ -50,15 +50,15 @@ def spellings(joint: str) -> list[str]:
     return [name for word in SIDED[part].split() for s in sides for name in (s + word, word + s)]
 
 
-def guess_mapping(bvh: Bvh) -> dict[str, str]:
-    """{course joint: node of the file}, guessed from the joint names; end sites serve as toe, hand tip.
+def guess_mapping(bvh: Bvh, given: Mapping[str, str] | None = None) -> dict[str, str]:
+    """{course joint: node of the file}: what is `given`, the rest guessed from the joint names.
 
-    Joints that no spelling fits are left out (only those that can be made up).
+    End sites serve as toe and hand tip. Joints that no spelling fits are left out (only those that can be made up).
     Raises BvhError when the figure lacks a needed joint; the message lists the file's joints.
     """
     known = {plain(name): name for name in reversed(bvh.joints)}
-    mapping: dict[str, str] = {}
-    for joint in JOINTS:
+    mapping = dict(given or {})
+    for joint in (joint for joint in JOINTS if joint not in mapping):
         taken = set(mapping.values())
         fits = [known[word] for word in spellings(joint) if word in known and known[word] not in taken]
         if fits:
@@ -92,14 +92,7 @@ def check_mapping(mapping: Mapping[str, str], bvh: Bvh) -> dict[str, str]:
     missing = [name for name in mapping.values() if name not in bvh.names]
     if missing:
         raise BvhError(f"the mapping names '{missing[0]}', but the file has: {', '.join(bvh.names)}.", bvh.source)
-    try:
-        guess = guess_mapping(bvh)
-    except BvhError:
-        guess = {}
-    used = set(mapping.values())
-    merged = {joint: name for joint, name in guess.items() if name not in used} | dict(mapping)
-    refuse_incomplete(merged, bvh)
-    return merged
+    return guess_mapping(bvh, given=mapping)
 
 
 def refuse_incomplete(mapping: Mapping[str, str], bvh: Bvh) -> None:

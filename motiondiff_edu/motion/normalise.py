@@ -80,11 +80,12 @@ def turn_up(points: Float[np.ndarray, "... 3"], up: str) -> Float[np.ndarray, ".
 
 
 def unmirror(points: Float[np.ndarray, "T 21 3"]) -> tuple[Float[np.ndarray, "T 21 3"], bool]:
-    """Reflect x when left and right are exchanged against the toes: left x up must point ahead."""
+    """Reflect x when left and right are exchanged against the toes: left x up must point where the toes do."""
     left = points[:, joint_index("LeftUpLeg")] - points[:, joint_index("RightUpLeg")]
-    ahead = (points[:, list(TOES)] - points[:, list(HEELS)]).mean(1)
-    agreement = np.sign(np.einsum("ti,ti->t", np.cross(left, body_axis(points)), ahead))
-    if np.nanmean(agreement) > -0.5:  # toes unknown: nothing to compare with
+    ahead = np.cross(left, body_axis(points))
+    feet = (points[:, list(TOES)] - points[:, list(HEELS)]).sum(1)
+    cosine = np.einsum("ti,ti->t", ahead, feet) / (np.linalg.norm(ahead, axis=-1) * np.linalg.norm(feet, axis=-1))
+    if not np.median(cosine) < -0.3:  # NaN where the toes are unknown
         return points, False
     return points * np.array([-1.0, 1.0, 1.0]), True
 

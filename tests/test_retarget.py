@@ -1,0 +1,296 @@
+"""Any humanoid BVH as a clip of the course: dialects, units, axes, feet; and real files."""
+
+import warnings
+
+import numpy as np
+import pytest
+from bvh_text import dump
+from synthetic_walk import walk
+
+from motiondiff_edu.motion.bvh import BvhError, read_bvh
+from motiondiff_edu.motion.bvh_fit import fit
+from motiondiff_edu.motion.clip import Clip
+from motiondiff_edu.motion.dialects import check_mapping, guess_mapping, plain, spellings
+from motiondiff_edu.motion.directions import rest_lean
+from motiondiff_edu.motion.normalise import (
+    MotionWarning,
+    calibration_frames,
+    floor_plane,
+    level,
+    resample,
+    turn_up,
+    unmirror,
+)
+from motiondiff_edu.motion.planting import find_contacts, plant, shift_to_pins, solve_leg, spans
+from motiondiff_edu.motion.retarget import load_clip, retarget
+from motiondiff_edu.motion.root_frame import forward_left
+from motiondiff_edu.motion.skeleton import BONE_LENGTHS, HEELS, JOINTS, OFFSETS, PARENTS, TOES
+
+CHANNELS = ("Zrotation", "Xrotation", "Yrotation")
+SMPL = dict(zip(JOINTS, "Pelvis L_Hip L_Knee L_Ankle L_Foot R_Hip R_Knee R_Ankle R_Foot Spine1 Spine2 Neck Head "
+    "L_Shoulder L_Elbow L_Wrist L_Hand R_Shoulder R_Elbow R_Wrist R_Hand".split(), strict=True))  # fmt: skip
+SMPL |= {"LeftShoulder": "L_Collar", "RightShoulder": "R_Collar"}
+HUMANOIDS = (
+    "animdraw_cmu1_jumping_jacks animdraw_fair1_dab bvhpython_test_freebvh bvhpython_test_mocapbank bvhtoolbox_walk01 "
+    "cmu_02_01_walk cmu_05_06_dance cmu_12_01_walk_pybvh cmu_acrnn_salsa_10 cmu_max_131_01 pybvh_bvh_test1 "
+    "pymo_AV_8Walk_Meredith_HVHA_Rep1"
+).split()
+
+
+def foreign(path, frames=361, fps=120, unit=0.0254, z_up=False, t_pose=False, names=None, **motion):
+    """A walk on another body (other proportions, unit, names), below a static root; returns the file."""
+    world, _ = walk(frames=frames, fps=fps, **motion)
+    fitted = fit(world)
+    offsets = fitted.offsets / unit
+    for name, factor in {"LeftLeg": 1.15, "RightLeg": 1.15, "LeftFoot": 0.8, "RightFoot": 0.8, "Spine1": 0.7}.items():
+        offsets[fitted.names.index(name)] *= factor
+    rows = np.concatenate([fitted.root / unit, *np.moveaxis(fitted.angles, 1, 0)], axis=1)
+    rows = np.concatenate([np.tile([0.0, 0, 0, 0, 90.0 * z_up, 0], (len(rows), 1)), rows], axis=1)
+    if t_pose:
+        rows = np.concatenate([rows[:1] * 0, rows])
+    nodes = ["Scene", *((names or {}).get(name, name) for name in fitted.names)]
+    six = tuple(axis + "position" for axis in "XYZ") + CHANNELS
+    channels = [six, six] + [CHANNELS] * (len(nodes) - 2)
+    parents = np.concatenate([[-1], fitted.parents + 1])
+    table = np.concatenate([np.zeros((1, 3)), offsets])
+    path.write_text(dump(nodes, parents, table, channels, rows, 1 / fps, np.zeros(len(nodes), bool)))
+    return path
+
+
+def sound(clip: Clip) -> np.ndarray:
+    """Check what must hold for every clip; returns its world positions."""
+    world = clip.world()
+    bones = np.linalg.norm(world[:, 1:] - world[:, PARENTS[1:]], axis=-1)
+    assert np.abs(bones - BONE_LENGTHS).max() < 1e-6
+    assert clip.fps == 20 and np.isfinite(world).all()
+    toes = world[:, list(TOES)]
+    assert toes[..., 1].min() > -1e-6
+    assert np.abs(toes[clip.contacts][:, 1]).max() < 0.02
+    steps = np.linalg.norm(np.diff(toes, axis=0), axis=-1)[clip.contacts[1:] & clip.contacts[:-1]]
+    assert steps.mean() < 5e-4  # metres a frame
+    return world
+
+
+def cruise(clip: Clip) -> float:
+    """Mean speed of the root without the first and last second, m/s."""
+    return float(np.hypot(*clip.control[20:-20, :2].T).mean())
+
+
+def test_another_body_walks_at_its_own_pace(tmp_path):
+    clip = load_clip(foreign(tmp_path / "walk.bvh", speed=1.3))
+    sound(clip)
+    assert len(clip) == 61 and clip.info["dropped_frames"] == 0 and clip.info["up"] == "+y"
+    legs = 0.41 * 1.15 + 0.425 * 0.8  # m, of the other body
+    assert clip.info["unit_m"] == pytest.approx(0.0254 * 0.835 / legs, rel=1e-3)
+    assert clip.control[:, 0].mean() == pytest.approx(1.3 * 0.835 / legs, rel=0.02)
+    assert np.abs(clip.control[:, 1:]).max() < 0.08
+
+
+@pytest.mark.parametrize("options", [{"unit": 0.01}, {"unit": 1.0}, {"z_up": True}, {"t_pose": True}, {"names": SMPL}])
+def test_units_axes_names_and_t_pose_make_no_difference(tmp_path, options):
+    plain_clip = load_clip(foreign(tmp_path / "a.bvh", turn=0.3))
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", MotionWarning)
+        clip = load_clip(foreign(tmp_path / "b.bvh", turn=0.3, **options))
+    assert clip.poses.shape == plain_clip.poses.shape
+    assert np.abs(clip.poses - plain_clip.poses).max() < 2e-3
+    assert np.abs(clip.control - plain_clip.control).max() < 5e-3
+    assert clip.info["up"] == ("+z" if "z_up" in options else "+y")
+    assert clip.info["dropped_frames"] == int("t_pose" in options)
+
+
+def test_a_turn_to_the_left_is_positive_yaw(tmp_path):
+    clip = load_clip(foreign(tmp_path / "walk.bvh", turn=0.5))
+    assert clip.control[10:-10, 2].mean() == pytest.approx(0.5, abs=0.03)
+    ahead, _ = forward_left(np.zeros(len(clip)))
+    feet = clip.poses[:, 4, [0, 2]] - clip.poses[:, 3, [0, 2]]
+    assert (feet * ahead).sum(-1).mean() > 0.05  # toes point where the figure heads
+
+
+def test_a_dropped_t_pose_is_told(tmp_path):
+    with pytest.warns(MotionWarning, match="calibration pose"):
+        clip = load_clip(foreign(tmp_path / "walk.bvh", t_pose=True))
+    assert "calibration" in clip.info["notes"][0]
+
+
+def test_unknown_names_are_shown_and_can_be_given(tmp_path):
+    strange = {name: f"joint_{i:02d}" for i, name in enumerate(JOINTS)}
+    path = foreign(tmp_path / "walk.bvh", names=strange)
+    with pytest.raises(BvhError, match="joint_07.*mapping="):
+        load_clip(path)
+    mapped = load_clip(path, mapping=strange)
+    usual = load_clip(foreign(tmp_path / "usual.bvh"))
+    assert np.abs(mapped.poses - usual.poses).max() < 1e-6
+
+
+def test_a_wrong_mapping_is_refused(tmp_path):
+    bvh = read_bvh(foreign(tmp_path / "walk.bvh"))
+    with pytest.raises(BvhError, match="no joint of the course"):
+        check_mapping({"Tail": "Hips"}, bvh)
+    with pytest.raises(BvhError, match="'Knee'.*the file has"):
+        check_mapping({"LeftLeg": "Knee"}, bvh)
+    with pytest.raises(BvhError, match="no joint found for LeftHand"):
+        check_mapping({"LeftHandIndex1": "LeftHand"}, bvh)  # one joint cannot be two
+    moved = check_mapping({"Spine1": "Spine"}, bvh)
+    assert (moved["Spine1"], moved["Spine"], moved["Head"]) == ("Spine", "LowerBack", "Head")
+
+
+def test_a_short_file_is_refused(tmp_path):
+    with pytest.raises(BvhError, match="0.5 s"):
+        load_clip(foreign(tmp_path / "walk.bvh", frames=31))
+
+
+def test_names_are_compared_bare():
+    assert plain("mixamorig:Left_Up Leg") == "leftupleg" and plain("Bip01 L Thigh") == "lthigh"
+    assert "kneel" in spellings("LeftLeg") and "rightshldr" in spellings("RightArm")
+
+
+def test_turning_up_keeps_handedness():
+    axes = np.eye(3)
+    for up in ("+x", "-x", "+y", "-y", "+z", "-z"):
+        turned = turn_up(axes, up)
+        sign = -1 if up[0] == "-" else 1
+        assert np.linalg.det(turned) == pytest.approx(1) and turned["xyz".index(up[1]), 1] == sign
+
+
+def test_a_mirrored_figure_is_told_by_its_feet():
+    world, _ = walk(frames=30)
+    assert not unmirror(world)[1]
+    back, mirrored = unmirror(world * [-1, 1, 1])
+    assert mirrored and np.allclose(back, world)
+    world[:, list(TOES)] = world[:, list(HEELS)] - [0, 0.1, 0]  # feet straight down tell nothing
+    assert not unmirror(world)[1]
+
+
+def test_a_tilted_floor_is_found_and_levelled():
+    world, _ = walk(frames=200, turn=0.4)
+    tilt = np.array([0.12, 0.03, -0.02])  # height, slope along x and z
+    lifted = world.copy()
+    lifted[..., 1] += tilt[0] + world[..., 0] * tilt[1] + world[..., 2] * tilt[2]
+    toes = lifted[:, list(TOES)]
+    assert np.allclose(floor_plane(toes, 20.0), tilt, atol=0.012)
+    flat = level(lifted, tilt)
+    assert np.allclose(flat[:, list(TOES), 1], world[:, list(TOES), 1], atol=3e-3)
+    apart = np.linalg.norm(lifted[:, 3] - lifted[:, 11], axis=-1)
+    assert np.allclose(np.linalg.norm(flat[:, 3] - flat[:, 11], axis=-1), apart)  # turned, not sheared
+
+
+def test_resampling_keeps_slow_motion_and_drops_fast():
+    t = np.arange(481) / 120
+    slow, fast = np.sin(2 * np.pi * 1.0 * t), 0.1 * np.sin(2 * np.pi * 30 * t)
+    points = np.broadcast_to((slow + fast)[:, None, None], (481, 21, 3)).copy()
+    out = resample(points, 120.0, 20.0)
+    assert out.shape == (81, 21, 3)
+    assert np.abs(out[10:-10, 0, 0] - np.sin(2 * np.pi * np.arange(81) / 20)[10:-10]).max() < 0.01
+
+
+def test_calibration_frames_are_counted():
+    rng = np.random.default_rng(0)
+    points = np.cumsum(rng.normal(scale=0.01, size=(50, 21, 3)), axis=0)
+    assert calibration_frames(points) == 0
+    points[0] += 1.0
+    assert calibration_frames(points) == 1
+    points[1] += 0.5
+    assert calibration_frames(points) == 2
+
+
+def test_contacts_and_pins():
+    toe = np.zeros((9, 3))
+    toe[:, 0] = [0, 0.001, 0.002, 0.2, 0.4, 0.6, 0.8, 0.801, 0.802]
+    contact = np.array([1, 1, 1, 0, 0, 0, 1, 1, 1], bool)
+    assert spans(contact) == [(0, 3), (6, 9)]
+    moved = toe + shift_to_pins(toe, contact)
+    assert np.allclose(moved[:3], moved[0]) and np.allclose(moved[6:], moved[6])
+    both = np.stack([toe, toe + [0, 0.2, 0]], axis=1)
+    assert find_contacts(both, 20.0).tolist() == [[c, False] for c in (1, 1, 0, 0, 0, 0, 0, 1, 1)]
+
+
+def test_planting_stills_the_toes_and_keeps_the_bones():
+    world, _ = walk(frames=70)
+    rng = np.random.default_rng(1)
+    contacts = find_contacts(world[:, list(TOES)], 20.0)
+    contacts[20:30, 0] = contacts[35:45, 1] = True
+    world = world + 0.02 * np.cumsum(rng.normal(size=(70, 1, 3)), axis=0) * [1, 0.1, 1]
+    planted = plant(world, contacts, 20.0)
+    bones = np.linalg.norm(planted[:, 1:] - planted[:, PARENTS[1:]], axis=-1)
+    assert np.abs(bones - BONE_LENGTHS).max() < 1e-9
+    steps = np.linalg.norm(np.diff(planted[:, list(TOES)], axis=0), axis=-1)
+    assert np.median(steps[contacts[1:] & contacts[:-1]]) < 1e-6
+
+
+def test_knees_bend_forward_even_where_they_did_not():
+    hip, ankle = np.array([[0.0, 0.9, 0.0]]), np.array([[0.0, 0.12, 0.1]])
+    for behind in (0.05, 0.0, -0.05):
+        knee, reached = solve_leg(hip, ankle, np.array([[0.0, 0.5, behind]]), np.array([[0.0, 0.0, 1.0]]))
+        assert np.allclose(reached, ankle)
+        assert knee[0, 2] > 0.05 and np.linalg.norm(knee - hip) == pytest.approx(0.41)
+    _, far = solve_leg(hip, ankle - [[0, 1, 0]], hip - [[0, 0.4, 0]], np.array([[0.0, 0.0, 1.0]]))
+    assert np.linalg.norm(far - hip) == pytest.approx(0.9995 * 0.835)
+
+
+def test_the_rest_pose_tells_the_lean_of_joint_placement():
+    standing = np.zeros((21, 3))
+    for joint in range(21):
+        standing[joint] = OFFSETS[joint] + (standing[PARENTS[joint]] if joint else 0)
+    assert rest_lean(standing) == pytest.approx(0, abs=1e-9)
+    back = standing.copy()
+    back[9:, 2] -= 0.2 * (back[9:, 1] - back[1, 1])
+    assert np.degrees(rest_lean(back)) == pytest.approx(np.degrees(np.arctan(0.2)), abs=0.1)
+
+
+# ---- real files
+
+
+@pytest.mark.filterwarnings("ignore::motiondiff_edu.motion.normalise.MotionWarning")
+@pytest.mark.parametrize("name", HUMANOIDS)
+def test_real_figures_stand_on_our_bones(real_data, name):
+    clip = load_clip(real_data / "bvh" / f"{name}.bvh")
+    world = sound(clip)
+    assert set(guess_mapping(read_bvh(real_data / "bvh" / f"{name}.bvh"))) >= {"LeftToeBase", "RightToeBase"}
+    assert clip.source == name and clip.contacts.shape == (len(clip), 2)
+    assert 0.6 < np.median(world[:, 0, 1]) < 1.0  # hips
+    assert np.median(world[:, 12, 1]) > np.median(world[:, 0, 1]) + 0.2  # the head is above
+
+
+@pytest.mark.filterwarnings("ignore::motiondiff_edu.motion.normalise.MotionWarning")
+@pytest.mark.parametrize(
+    ("name", "speed"), [("cmu_02_01_walk", 1.27), ("cmu_12_01_walk_pybvh", 0.96), ("bvhtoolbox_walk01", 1.33)]
+)
+def test_real_walks(real_data, name, speed):
+    clip = load_clip(real_data / "bvh" / f"{name}.bvh")
+    world = clip.world()
+    assert cruise(clip) == pytest.approx(speed, rel=0.03)
+    thigh, shank = world[:, [2, 6]] - world[:, [1, 5]], world[:, [3, 7]] - world[:, [2, 6]]
+    left = (world[:, 1] - world[:, 5])[:, None]
+    bend = np.degrees(np.arctan2((np.cross(thigh, shank) * left).sum(-1) / np.linalg.norm(left, axis=-1),
+        (thigh * shank).sum(-1)))  # fmt: skip
+    assert bend.min() > -5 and 55 < bend.max() < 85
+    lift = world[:, list(TOES), 1].max(0)
+    assert (0.05 < lift).all() and (lift < 0.25).all()
+    trunk = world[:, 11] - world[:, 0]
+    ahead = np.cross(left[:, 0], [0, 1, 0])
+    lean = np.degrees(np.arctan2((trunk * ahead).sum(-1) / np.linalg.norm(ahead, axis=-1), trunk[:, 1]))
+    assert -8 < lean.mean() < 12
+    assert 0.35 < clip.contacts.mean() < 0.75
+
+
+def test_the_fast_walk_is_fast(real_data):
+    place = load_clip(real_data / "bvh/pymo_AV_8Walk_Meredith_HVHA_Rep1.bvh").control[:, 0]
+    assert np.percentile(place, 90) == pytest.approx(2.0, abs=0.08)
+
+
+def test_t_pose_of_cgspeed_files_is_dropped_and_glitches_are_told(real_data):
+    with pytest.warns(MotionWarning, match="calibration pose"):
+        assert load_clip(real_data / "bvh/cmu_12_01_walk_pybvh.bvh").info["dropped_frames"] == 1
+    with pytest.warns(MotionWarning, match="faster than"):
+        load_clip(real_data / "bvh/cmu_acrnn_salsa_10.bvh")
+    with warnings.catch_warnings():
+        warnings.simplefilter("error", MotionWarning)
+        assert load_clip(real_data / "bvh/cmu_02_01_walk.bvh").info["dropped_frames"] == 0
+
+
+def test_what_is_no_figure_is_refused_with_its_joints(real_data):
+    with pytest.raises(BvhError, match="base, child1, child2, child3"):
+        load_clip(real_data / "bvh/fairmotion_sinusoidal.bvh")
+    with pytest.raises(BvhError, match="2 frames"):
+        retarget(read_bvh(real_data / "bvh/bvhio_example.bvh"))
