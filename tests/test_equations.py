@@ -1,0 +1,118 @@
+"""docs/EQUATIONS.md is true: each numbered item of MoDiff once; functions, notebooks, tests exist; tags both ways."""
+
+import ast
+import importlib
+import inspect
+import pkgutil
+import re
+from pathlib import Path
+
+import pytest
+
+import motiondiff_edu
+
+ROOT = Path(__file__).parent.parent
+PAGE = (ROOT / "docs" / "EQUATIONS.md").read_text(encoding="utf-8")
+NUMBERED = [*(f"eq. {n}" for n in range(1, 13)), "Alg. 1", "Alg. 2", *(f"Fig. {n}" for n in range(1, 7))]
+NUMBERED += ["Table I", "Table II"]
+KINDS = {"eq": "eq. {}", "Alg": "Alg. {}", "Fig": "Fig. {}"}
+
+
+def rows(paper: str) -> list[list[str]]:
+    """The table below the paper's heading: item, what, functions, notebooks, tests."""
+    section = re.search(rf"^## {paper}.*?\n(.*?)(?=^## |\Z)", PAGE, re.M | re.S)[1]
+    lines = [line for line in section.splitlines() if line.startswith("|")]
+    return [[cell.strip() for cell in line.strip("|").split("|")] for line in lines[2:]]
+
+
+MODIFF, MOFUSION = rows("MoDiff"), rows("MoFusion")
+PAPERS = {"MoDiff": MODIFF, "MoFusion": MOFUSION}
+DONE = [(paper, *row) for paper, table in PAPERS.items() for row in table if "not yet" not in row]
+
+
+def ticked(cell: str) -> list[str]:
+    return re.findall(r"`([^`]+)`", cell)
+
+
+def items(docstring: str, paper: str) -> set[str]:
+    """What the `Source:` of a docstring names: `Source: MoDiff eq. 1-2, Alg. 1` -> eq. 1, eq. 2, Alg. 1."""
+    found = set()
+    for source in re.findall(r"Source:(.*?)(?=Notebooks?:|\n\s*\n|\Z)", docstring or "", re.S):
+        for part in re.findall(rf"{paper}(.*?)(?=MoDiff|MoFusion|\Z)", source, re.S):
+            for kind, numbers in re.findall(r"\b(eq|Alg|Fig)\.\s*([\d, and-]+)", part):
+                for first, last in re.findall(r"(\d+)(?:-(\d+))?", numbers):
+                    found |= {KINDS[kind].format(n) for n in range(int(first), int(last or first) + 1)}
+            for numbers in re.findall(r"\bTables?\s+([IV]+(?: and [IV]+)*)", part):
+                found |= {f"Table {n}" for n in numbers.split(" and ")}
+    return found
+
+
+def resolve(name: str):
+    module, _, attribute = f"motiondiff_edu.{name}".rpartition(".")
+    return getattr(importlib.import_module(module), attribute)
+
+
+def test_items_are_read_out_of_a_source_line():
+    text = "Noise. Source: MoDiff eq. 1-2, Alg. 1 (which errs), Tables I and II; MoFusion eq. 8-9.  Notebook: 02, 03"
+    assert items(text, "MoDiff") == {"eq. 1", "eq. 2", "Alg. 1", "Table I", "Table II"}
+    assert items(text, "MoFusion") == {"eq. 8", "eq. 9"}
+
+
+def test_every_numbered_item_of_modiff_is_listed_once():
+    assert [row[0] for row in MODIFF] == NUMBERED
+
+
+def test_a_row_is_all_not_yet_or_all_there():
+    for row in MODIFF + MOFUSION:
+        waiting = [cell == "not yet" for cell in row[2:]]
+        assert len(row) == 5 and all(row) and len(set(waiting)) == 1, row
+
+
+@pytest.mark.parametrize("row", DONE, ids=lambda row: f"{row[0]} {row[1]}")
+def test_functions_exist_and_carry_the_item(row):
+    paper, item, _, functions = row[:4]
+    assert ticked(functions)
+    for name in ticked(functions):
+        function = resolve(name)
+        told = items(inspect.getdoc(function), paper) | items(inspect.getmodule(function).__doc__, paper)
+        assert item in told, f"the docstring of {name} does not say `Source: {paper} {item}`"
+
+
+@pytest.mark.parametrize("row", DONE, ids=lambda row: f"{row[0]} {row[1]}")
+def test_notebooks_exist_and_use_a_function_or_name_the_item(row):
+    names = [name.rpartition(".")[2] for name in ticked(row[3])] + [row[1]]
+    for number in re.findall(r"\d\d", row[4]):
+        found = sorted((ROOT / "notebooks").glob(f"{number}*.ipynb"))
+        assert len(found) == 1, f"there is no notebook {number}"
+        text = found[0].read_text(encoding="utf-8")
+        assert any(re.search(rf"\b{re.escape(name)}\b", text) for name in names), f"notebook {number}: none of {names}"
+
+
+@pytest.mark.parametrize("row", DONE, ids=lambda row: f"{row[0]} {row[1]}")
+def test_tests_exist(row):
+    assert ticked(row[5])
+    for name in ticked(row[5]):
+        file, _, function = name.partition("::")
+        text = (ROOT / "tests" / file).read_text(encoding="utf-8")
+        assert re.search(rf"^def {function or 'test_'}", text, re.M), name
+
+
+def documented() -> list[tuple[str, str]]:
+    """Public functions and classes of the library: (dotted name below the package, its own docstring)."""
+    found = []
+    for module in pkgutil.walk_packages(motiondiff_edu.__path__):
+        path = Path(module.module_finder.path) / f"{module.name}.py"
+        inside = Path(module.module_finder.path).relative_to(ROOT / "motiondiff_edu").parts
+        if not path.is_file():
+            continue
+        for node in ast.parse(path.read_text(encoding="utf-8")).body:
+            if isinstance(node, ast.FunctionDef | ast.ClassDef) and not node.name.startswith("_"):
+                found.append((".".join([*inside, module.name, node.name]), ast.get_docstring(node) or ""))
+    return found
+
+
+@pytest.mark.parametrize("paper, table", PAPERS.items())
+def test_no_source_line_is_missing_from_the_page(paper, table):
+    listed = {(name, row[0]) for row in table for name in ticked(row[2])}
+    kept = [(name, item) for name, text in documented() for item in items(text, paper) if item[:2] in ("eq", "Al")]
+    assert kept and [f"{name}: {item}" for name, item in kept if (name, item) not in listed] == []
