@@ -1,0 +1,117 @@
+"""Attention maps: who looks where. A row is a query and sums to one; groups of keys are named and parted by lines.
+
+A map says where values were read, not why: a weight is not an explanation.  Notebook: 06
+"""
+
+from collections.abc import Sequence
+
+import numpy as np
+from jaxtyping import Float
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from .style import MEDIUM, OKABE_ITO, SMALL, figure
+
+Groups = Sequence[tuple[str, int]]  # (name, how many keys), in the order of the keys
+
+
+def modiff_groups(T_h: int = 10, T_p: int = 10) -> list[tuple[str, int]]:
+    """The keys of MoDiff's memory, in order: past poses, control of the past, control of the future."""
+    return [("past poses", T_h), ("control, past", T_h), ("control, future", T_p)]
+
+
+def attention_map(
+    weights: Float[np.ndarray, "T M"],
+    groups: Groups | None = None,
+    query_labels: Sequence[str] | None = None,
+    key_labels: Sequence[str] | None = None,
+    title: str = "",
+    query_name: str = "future frame (query)",
+    key_name: str = "key",
+) -> Figure:
+    """One map, dark where much is read. `weights` of several heads: take one, or their mean, or `attention_heads`.
+
+    Raises ValueError where groups or labels do not fit the map.
+    """
+    _check(weights.shape, groups, query_labels, key_labels)
+    T, M = weights.shape
+    words = f"Attention of {T} queries over {M} keys; each row sums to one, darker is more."
+    fig, (axis,) = figure(min(12, 3.2 + 0.3 * M), min(9, 2.4 + 0.3 * T), f"{title}: {words}" if title else words)
+    image = _paint(axis, weights, groups, float(weights.max()))
+    axis.set(xlabel=key_name, ylabel=query_name)
+    axis.set_title(title, pad=34 if groups else 8)
+    _label(axis.set_xticks, M, key_labels)
+    _label(axis.set_yticks, T, query_labels)
+    fig.colorbar(image, ax=axis, label="weight", shrink=0.85)
+    return fig
+
+
+def attention_heads(
+    weights: Float[np.ndarray, "H T M"], groups: Groups | None = None, titles: Sequence[str] | None = None
+) -> Figure:
+    """A map for each head, all on one scale."""
+    _check(weights.shape[1:], groups, None, None)
+    heads = len(weights)
+    columns = min(heads, 4)
+    rows = -(-heads // columns)
+    words = f"Attention maps of {heads} heads on one scale; rows are queries, darker is more."
+    fig, axes = figure(3.6 * columns, 3.4 * rows + 0.4, words, rows, columns)
+    for i, axis in enumerate(axes):
+        if i >= heads:
+            axis.set_axis_off()
+            continue
+        image = _paint(axis, weights[i], groups, float(weights.max()), short=True)
+        axis.set_title(titles[i] if titles else f"head {i + 1}", pad=36 if groups else 6)
+        _label(axis.set_xticks, weights.shape[2], None)
+        _label(axis.set_yticks, weights.shape[1], None)
+    fig.colorbar(image, ax=axes, label="weight", shrink=0.8)
+    fig.supxlabel("key", fontsize=MEDIUM)
+    fig.supylabel("query", fontsize=MEDIUM)
+    return fig
+
+
+def group_shares(weights: Float[np.ndarray, "T M"], groups: Groups, title: str = "") -> Figure:
+    """How much of each query's attention goes to each group of keys: stacked bars that reach one."""
+    _check(weights.shape, groups, None, None)
+    words = "Share of each query's attention that goes to " + ", ".join(name for name, _ in groups) + "."
+    fig, (axis,) = figure(9, 3.8, words)
+    bottom, first = np.zeros(len(weights)), 0
+    hatches = ("", "//", "..", "xx", "\\\\")
+    for k, (name, count) in enumerate(groups):
+        share = weights[:, first : first + count].sum(1)
+        style = {"color": OKABE_ITO[k % 7], "hatch": hatches[k % 5], "edgecolor": "white"}
+        axis.bar(np.arange(1, len(weights) + 1), share, bottom=bottom, label=name, width=0.85, **style)
+        bottom, first = bottom + share, first + count
+    axis.set(xlabel="future frame (query)", ylabel="share", ylim=(0, 1), title=title)
+    axis.set_xticks(np.arange(1, len(weights) + 1, -(-len(weights) // 20)))
+    axis.legend(frameon=False, fontsize=SMALL, loc="center left", bbox_to_anchor=(1, 0.5))
+    return fig
+
+
+def _check(shape: tuple, groups: Groups | None, query_labels: Sequence | None, key_labels: Sequence | None) -> None:
+    T, M = shape
+    if groups is not None and sum(count for _, count in groups) != M:
+        raise ValueError(f"the groups have {sum(c for _, c in groups)} keys, the map has {M}")
+    for labels, size, what in ((query_labels, T, "query"), (key_labels, M, "key")):
+        if labels is not None and len(labels) != size:
+            raise ValueError(f"{len(labels)} {what} labels for {size} {what} positions")
+
+
+def _paint(axis: Axes, weights: np.ndarray, groups: Groups | None, top: float, short: bool = False):
+    image = axis.imshow(weights, cmap="Blues", vmin=0, vmax=top, aspect="auto", interpolation="nearest")
+    axis.grid(False)
+    first = 0
+    for name, count in groups or []:
+        if first:
+            axis.axvline(first - 0.5, color="#1F2933", lw=1.2)
+        words = name.replace(", ", "\n").replace(" ", "\n") if short else name
+        axis.text(first + count / 2 - 0.5, -0.75, words, ha="center", va="bottom", fontsize=9 if short else SMALL)
+        first += count
+    return image
+
+
+def _label(set_ticks, size: int, labels: Sequence[str] | None) -> None:
+    """All labels where they fit, else every few; frames are counted from 1."""
+    every = 1 if size <= 12 else 2 if size <= 24 else 5
+    ticks = np.arange(0 if every == 1 or labels is not None else every - 1, size, every)
+    set_ticks(ticks, [labels[i] if labels is not None else str(i + 1) for i in ticks], fontsize=10)

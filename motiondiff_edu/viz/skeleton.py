@@ -1,0 +1,127 @@
+"""Skeletons on paper: a strip of poses, several motions side by side, a path from above with its footprints.
+
+Positions are world positions in metres, (T, 21, 3), y up.  Notebook: 01
+"""
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+from jaxtyping import Bool, Float
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.patches import Patch, Polygon
+
+from ..motion.skeleton import HEELS, HIPS, TOES
+from . import body
+from .style import LARGE, MEDIUM, OKABE_ITO, SMALL, figure, legend
+
+SIDES = [Patch(color=body.LEFT_COLOUR, label="left"), Patch(color=body.RIGHT_COLOUR, label="right")]
+
+
+def pose_strip(
+    positions: Float[np.ndarray, "T 21 3"],
+    n: int = 8,
+    fps: float | int = 20.0,
+    past: int | None = None,
+    title: str = "",
+    camera: body.Camera | None = None,
+) -> Figure:
+    """n poses, evenly spaced from the first frame to the last; the first `past` frames paler: they were given."""
+    words = f"{n} poses over {len(positions) / fps:.1f} s, left limbs blue, right limbs orange"
+    words += "." if past is None else f"; the paler ones, up to {past / fps:.1f} s, were given."
+    fig, axes = figure(1.35 * n, 2.1 + 0.7 * bool(title) + 0.45, f"{title}: {words}" if title else words, 1, n)
+    for axis, t in zip(axes, np.linspace(0, len(positions) - 1, n).round().astype(int), strict=True):
+        draw_pose(axis, positions[t], camera, washed=past is not None and t < past)
+        axis.set_title(f"{t / fps:.1f} s", fontsize=SMALL)
+    if title:
+        fig.suptitle(title, fontsize=LARGE)
+    fig.legend(handles=SIDES, loc="outside lower right", ncols=2, frameon=False, fontsize=SMALL)
+    return fig
+
+
+def side_by_side(
+    motions: Sequence[Float[np.ndarray, "_ 21 3"]],
+    labels: Sequence[str] | None = None,
+    n: int = 6,
+    fps: float | int = 20.0,
+    past: int | None = None,
+) -> Figure:
+    """A row of n poses for each motion, at the same times; a motion that has ended shows nothing."""
+    names = list(labels) if labels is not None else [f"motion {i}" for i in range(1, len(motions) + 1)]
+    frames = np.linspace(0, max(map(len, motions)) - 1, n).round().astype(int)
+    words = f"{n} poses of {', '.join(names)} at the same times, left limbs blue, right limbs orange."
+    fig, axes = figure(1.4 * n, 2.2 * len(motions) + 0.8, words, len(motions), n)
+    for i, axis in enumerate(axes):
+        row, t = i // n, frames[i % n]
+        if t < len(motions[row]):
+            draw_pose(axis, motions[row][t], None, washed=past is not None and t < past)
+        else:
+            axis.set_axis_off()
+        if row == 0:
+            axis.set_title(f"{t / fps:.1f} s", fontsize=SMALL)
+        if i % n == 0:
+            axis.text(
+                -0.05, 0.5, names[row], rotation=90, va="center", ha="right", transform=axis.transAxes, fontsize=MEDIUM
+            )
+    fig.legend(handles=SIDES, loc="outside lower right", ncols=2, frameon=False, fontsize=SMALL)
+    return fig
+
+
+def draw_pose(
+    axis: Axes, pose: Float[np.ndarray, "21 3"], camera: body.Camera | None = None, washed: bool = False
+) -> None:
+    """One figure in one axis, seen from its right and a little ahead, standing on a bit of floor."""
+    size = (270, 420)
+    camera = (camera or body.Camera(focal=2.3)).at(*pose[HIPS, [0, 2]])
+    for polygon in body.shadow_polygons(pose, camera, size):
+        axis.add_patch(Polygon(polygon, color="#D5D9DF", lw=0, zorder=1))
+    wash = body.PAST_WASH if washed else 0.0
+    for order, (polygon, colour, is_outline) in enumerate(body.body_polygons(pose, camera, size, wash=wash)):
+        edge = {"ec": body.PAPER, "lw": 0.8} if is_outline else {"lw": 0}
+        axis.add_patch(Polygon(polygon, fc=colour, zorder=2 + order / 100, **edge))
+    axis.set(xlim=(0, size[0]), ylim=(size[1], 0), aspect="equal")
+    axis.set_axis_off()
+
+
+def top_view(
+    positions: Float[np.ndarray, "T 21 3"] | None = None,
+    contacts: Bool[np.ndarray, "T 2"] | None = None,
+    paths: Mapping[str, Float[np.ndarray, "_ 2"]] | None = None,
+    title: str = "",
+) -> Figure:
+    """The floor from above, x to the left: where the hips went, a footprint for each step, and given paths [x, z]."""
+    words = "The floor seen from above, one square a metre; the start is at the bottom arrow."
+    fig, (axis,) = figure(6.2, 6.2, words if positions is None else words + " Footprints: left blue, right orange.")
+    styles = zip(("-", "--", ":"), (OKABE_ITO[2], OKABE_ITO[4], OKABE_ITO[3]), strict=True)
+    for (name, path), (dash, colour) in zip((paths or {}).items(), list(styles) * 3, strict=False):
+        axis.plot(path[:, 0], path[:, 1], dash, color=colour, lw=3, label=name)
+    start = np.zeros(2)
+    if positions is not None:
+        hips = positions[:, HIPS][:, [0, 2]]
+        axis.plot(*hips.T, color="#5B6472", lw=1.5, label="hips")
+        start = hips[0]
+        if contacts is not None:
+            _footprints(axis, positions, contacts)
+    axis.plot(*start, marker="^", color="#1F2933", ms=11, ls="none")
+    _floor(axis, title)
+    return fig
+
+
+def _floor(axis: Axes, title: str) -> None:
+    axis.set_aspect("equal", adjustable="datalim")
+    axis.margins(0.08)
+    axis.update_datalim([(-1.2, -0.6), (1.2, 1.2)])
+    axis.autoscale_view()
+    axis.invert_xaxis()  # x is the figure's left, so it grows to the left
+    axis.set(xlabel="x, left (m)", ylabel="z, ahead (m)", title=title)
+    legend(axis, loc="best")
+
+
+def _footprints(axis: Axes, positions: np.ndarray, contacts: np.ndarray) -> None:
+    """Ankle to toe on the floor, in the middle of every run of contact."""
+    for side, colour in enumerate((body.LEFT_COLOUR, body.RIGHT_COLOUR)):
+        edges = np.flatnonzero(np.diff(np.concatenate([[0], contacts[:, side].astype(int), [0]])))
+        for i, (begin, end) in enumerate(edges.reshape(-1, 2)):
+            foot = positions[(begin + end - 1) // 2][[HEELS[side], TOES[side]]][:, [0, 2]]
+            name = f"{('left', 'right')[side]} foot" if i == 0 else None
+            axis.plot(*foot.T, color=colour, lw=7, solid_capstyle="round", alpha=0.75, label=name)

@@ -1,0 +1,66 @@
+"""How all figures look: large type, Okabe-Ito colours, and a caption that goes with the picture as its alt text."""
+
+import base64
+import html
+import io
+
+import matplotlib
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+OKABE_ITO = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000", "#F0E442")
+MARKERS = ("o", "s", "^", "D", "v", "P", "X", "*")
+DASHES = ("-", "--", "-.", ":", (0, (5, 1)), (0, (1, 1)), (0, (8, 2, 1, 2)), (0, (3, 3)))
+LARGE, MEDIUM, SMALL = 16, 14, 12
+DPI = 100
+
+_RC = {
+    "font.size": MEDIUM, "axes.titlesize": LARGE, "axes.labelsize": MEDIUM, "xtick.labelsize": SMALL,
+    "ytick.labelsize": SMALL, "legend.fontsize": SMALL, "axes.spines.top": False, "axes.spines.right": False,
+    "axes.prop_cycle": matplotlib.cycler(color=OKABE_ITO[:7]), "lines.linewidth": 2.2, "axes.grid": True,
+    "grid.alpha": 0.25,
+}  # fmt: skip
+
+
+class CaptionedFigure(Figure):
+    """A matplotlib figure that shows itself, once, with its caption below it and as its alternative text."""
+
+    def _repr_mimebundle_(self, include=None, exclude=None) -> dict:
+        png = base64.b64encode(self.as_png()).decode()
+        words = html.escape(caption(self), quote=True)
+        picture = f'<img alt="{words}" style="max-width:100%" src="data:image/png;base64,{png}">'
+        below = f'<figcaption style="max-width:60em">{words}</figcaption>'
+        return {"text/html": f'<figure style="margin:0">{picture}{below}</figure>', "image/png": png,
+                "text/plain": caption(self)}  # fmt: skip
+
+    def as_png(self) -> bytes:
+        """The figure as PNG bytes."""
+        buffer = io.BytesIO()
+        self.savefig(buffer, format="png", dpi=DPI)
+        return buffer.getvalue()
+
+
+def figure(width: float | int, height: float | int, words: str, rows: int = 1, columns: int = 1, **options):
+    """A figure of `width` x `height` inches with its caption, and its axes, always as a list."""
+    with matplotlib.rc_context(_RC):
+        fig = CaptionedFigure(figsize=(width, height), layout="constrained")
+        axes = fig.subplots(rows, columns, squeeze=False, **options)
+    fig.set_label(words)
+    return fig, list(axes.flat)
+
+
+def caption(fig: Figure) -> str:
+    """What the figure shows, in a sentence or two: its caption, and the text for those who cannot see it."""
+    return str(fig.get_label())
+
+
+def add_caption(fig: Figure, words: str) -> Figure:
+    """Replace the caption, to say what is to be seen here; returns the figure."""
+    fig.set_label(words)
+    return fig
+
+
+def legend(axis: Axes, **options) -> None:
+    """A legend, where there is something to explain."""
+    if axis.get_legend_handles_labels()[0]:
+        axis.legend(**{"frameon": False, "fontsize": SMALL} | options)

@@ -1,0 +1,91 @@
+"""The path pad: draw on the floor where a figure shall walk; by mouse, keyboard or a ready-made path.
+
+Arrows add half a metre, Backspace takes it back, C clears, R resets.  Notebook: 00
+"""
+
+import base64
+import html
+import io
+from collections.abc import Callable
+from pathlib import Path
+
+import anywidget
+import numpy as np
+import traitlets
+from jaxtyping import Float
+
+from ..conditions import control as walks
+from ..viz.skeleton import top_view
+
+
+class PathPad(anywidget.AnyWidget):
+    """A floor seen from above, in metres; the figure starts at the origin, facing up (z); its left (x) is to the left.
+
+    `points` (n, 2) [x, z], `speed` (m/s) and `stops` (metres along the path) can be read and set;
+    `control()` is what walks along them; `on_change(f)` calls f(pad) after each change.  Notebook: 00
+    """
+
+    _esm = Path(__file__).with_suffix(".js")
+    line = traitlets.List().tag(sync=True)
+    stops = traitlets.List(traitlets.Float()).tag(sync=True)
+    speed = traitlets.Float(1.2, min=0.3, max=3.0).tag(sync=True)
+    preset = traitlets.Unicode("").tag(sync=True)
+    presets = traitlets.List(list(walks.PRESETS)).tag(sync=True)
+    height = traitlets.Int(460).tag(sync=True)
+
+    def __init__(self, points=None, speed=1.2, preset="slalom", height=460):
+        super().__init__(speed=float(speed), height=int(height))
+        if points is None:
+            self.preset = preset
+        else:
+            self.points = points
+
+    @property
+    def points(self) -> Float[np.ndarray, "n 2"]:
+        """The drawn path, (n, 2) [x, z] in metres; n is 0 where nothing is drawn."""
+        return np.array(self.line, dtype=np.float64).reshape(-1, 2)
+
+    @points.setter
+    def points(self, value) -> None:
+        points = np.asarray(value, dtype=np.float64)
+        if points.ndim != 2 or points.shape[1] != 2 or not np.isfinite(points).all():
+            raise ValueError(f"points are (n, 2) finite numbers [x, z] in metres, got shape {points.shape}")
+        with self.hold_trait_notifications():
+            self.preset, self.stops, self.line = "", [], points.tolist()
+
+    @traitlets.validate("preset")
+    def _known_preset(self, proposal):
+        if proposal["value"] and proposal["value"] not in walks.PRESETS:
+            raise traitlets.TraitError(f"no path is called {proposal['value']!r}; there are {', '.join(walks.PRESETS)}")
+        return proposal["value"]
+
+    @traitlets.observe("preset")
+    def _take_preset(self, change):
+        if change["new"]:
+            points, self.stops = walks.preset(change["new"])
+            self.line = points.round(4).tolist()
+
+    def control(self, fps: float | int = 20.0) -> Float[np.ndarray, "T 3"]:
+        """The control that walks along the path at the chosen speed, from rest to rest; see `path_to_control`."""
+        return walks.path_to_control(self.points, self.speed, fps, self.stops)
+
+    def on_change(self, callback: Callable[["PathPad"], object]) -> None:
+        """Call `callback(pad)` whenever path, stops or speed have changed."""
+        self.observe(lambda change: callback(self), names=["line", "speed"])
+
+    @property
+    def description(self) -> str:
+        """What is drawn, in one sentence: the alternative text."""
+        if not self.line:
+            return "A floor seen from above, nothing drawn on it."
+        x, z = self.points[-1]
+        return f"A path seen from above: {len(self.line)} points, from the origin to {z:.1f} m ahead, {x:.1f} m left."
+
+    def _repr_mimebundle_(self, **kwargs):
+        live = super()._repr_mimebundle_(**kwargs)
+        bundle, metadata = live if isinstance(live, tuple) else (live or {}, {})
+        buffer = io.BytesIO()
+        top_view(paths={"path": self.points}).savefig(buffer, format="png", dpi=70)
+        png = base64.b64encode(buffer.getvalue()).decode()
+        still = f'<img alt="{html.escape(self.description, quote=True)}" src="data:image/png;base64,{png}">'
+        return {**bundle, "text/html": still, "image/png": png, "text/plain": self.description}, metadata
