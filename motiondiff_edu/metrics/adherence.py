@@ -15,8 +15,8 @@ from .skating import PLANTED_BELOW, mean_where, planted_velocity
 def implied_root_velocity(
     poses: Float[np.ndarray, "*B T J 3"],
     control: Float[np.ndarray, "*B T 3"],
-    fps: float = FPS,
-    below: float = PLANTED_BELOW,
+    fps: float | int = FPS,
+    below: float | int = PLANTED_BELOW,
 ) -> Float[np.ndarray, "*B T-1 2"]:
     """The root velocity, (forward, left) in m/s at the halfway heading, that would keep the planted toe still.
 
@@ -30,8 +30,8 @@ def implied_root_velocity(
 def residual_velocity(
     poses: Float[np.ndarray, "*B T J 3"],
     control: Float[np.ndarray, "*B T 3"],
-    fps: float = FPS,
-    below: float = PLANTED_BELOW,
+    fps: float | int = FPS,
+    below: float | int = PLANTED_BELOW,
 ) -> Float[np.ndarray, "*B T-1 2"]:
     """What the feet say minus what the control says: implied root velocity - control, (forward, left) in m/s.
 
@@ -43,8 +43,8 @@ def residual_velocity(
 def adherence(
     poses: Float[np.ndarray, "*B T J 3"],
     control: Float[np.ndarray, "*B T 3"],
-    fps: float = FPS,
-    below: float = PLANTED_BELOW,
+    fps: float | int = FPS,
+    below: float | int = PLANTED_BELOW,
 ) -> float | Float[np.ndarray, "*B"]:
     """Distance from the control in m/s (small is good): |mean of the residual over a second|, averaged over seconds.
 
@@ -57,7 +57,7 @@ def adherence(
     return mean_where(np.linalg.norm(means, axis=-1))
 
 
-def _seconds(values: Float[np.ndarray, "*B N 2"], fps: float) -> list[Float[np.ndarray, "*B n 2"]]:
+def _seconds(values: Float[np.ndarray, "*B N 2"], fps: float | int) -> list[Float[np.ndarray, "*B n 2"]]:
     length, steps = round(fps), values.shape[-2]
     firsts = [first for first in range(0, steps, length) if first == 0 or steps - first >= length / 2]
     return [values[..., first : first + length, :] for first in firsts]

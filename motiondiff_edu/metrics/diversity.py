@@ -10,7 +10,7 @@ from ..motion.root_frame import FPS
 
 
 def spread(
-    rollouts: Float[np.ndarray, "*B n T J 3"], fps: float = FPS, skip_s: float = 1.0
+    rollouts: Float[np.ndarray, "*B n T J 3"], fps: float | int = FPS, skip_s: float | int = 1.0
 ) -> float | Float[np.ndarray, "*B"]:
     """Root-frame RMS spread of n rollouts, in metres, from `skip_s` seconds on (before, the shared past still rules).
 

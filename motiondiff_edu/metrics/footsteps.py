@@ -27,9 +27,9 @@ class StepRule:
     drop_edge_runs: steps cut by the clip's ends, whose duration is not known, are dropped.  Notebook: 08
     """
 
-    min_duration_s: float = 0.0
-    merge_gap_s: float = 0.0
-    hysteresis: float = 0.0
+    min_duration_s: float | int = 0.0
+    merge_gap_s: float | int = 0.0
+    hysteresis: float | int = 0.0
     drop_edge_runs: bool = False
 
 
@@ -50,7 +50,7 @@ class Footsteps:
 
 
 def heel_speed(
-    poses: Float[np.ndarray, "*B T J 3"], control: Float[np.ndarray, "*B T 3"], fps: float = FPS
+    poses: Float[np.ndarray, "*B T J 3"], control: Float[np.ndarray, "*B T 3"], fps: float | int = FPS
 ) -> Float[np.ndarray, "*B T-1 2"]:
     """Horizontal speed over the ground of the left and the right heel joint, in cm/s.  Source: MoDiff IV-B.
 
@@ -66,7 +66,7 @@ def runs(mask: Bool[np.ndarray, "N"]) -> Int[np.ndarray, "n 2"]:
 
 
 def steps_of_heel(
-    speed: Float[np.ndarray, "N"], tolerance: float, rule: StepRule = PAPER, fps: float = FPS
+    speed: Float[np.ndarray, "N"], tolerance: float | int, rule: StepRule = PAPER, fps: float | int = FPS
 ) -> Int[np.ndarray, "n 2"]:
     """The steps of one heel: runs of speed < tolerance (cm/s), then what `rule` changes.  Notebook: 08"""
     found = runs(speed < tolerance)
@@ -91,7 +91,7 @@ def _within(found: Int[np.ndarray, "n 2"], start: int, end: int) -> Bool[np.ndar
     return (found[:, 0] >= start) & (found[:, 1] <= end)
 
 
-def _merged(found: Int[np.ndarray, "a 2"], gap: float) -> Int[np.ndarray, "b 2"]:
+def _merged(found: Int[np.ndarray, "a 2"], gap: float | int) -> Int[np.ndarray, "b 2"]:
     if len(found) == 0:
         return found
     breaks = np.flatnonzero(found[1:, 0] - found[:-1, 1] > gap + 1e-9)
@@ -99,7 +99,7 @@ def _merged(found: Int[np.ndarray, "a 2"], gap: float) -> Int[np.ndarray, "b 2"]
 
 
 def step_durations(
-    speeds: Sequence[Float[np.ndarray, "_ 2"]], tolerance: float, rule: StepRule = PAPER, fps: float = FPS
+    speeds: Sequence[Float[np.ndarray, "_ 2"]], tolerance: float | int, rule: StepRule = PAPER, fps: float | int = FPS
 ) -> Float[np.ndarray, "n"]:
     """Duration in seconds of every step of both heels in all clips.  Notebook: 08"""
     found = [steps_of_heel(clip[:, heel], tolerance, rule, fps) for clip in speeds for heel in (0, 1)]
@@ -111,7 +111,7 @@ def footsteps(
     rule: StepRule = PAPER,
     tolerances: Float[np.ndarray, "V"] = TOLERANCES,
     per_clip_average: bool = False,
-    fps: float = FPS,
+    fps: float | int = FPS,
 ) -> Footsteps:
     """Footsteps of a set of clips, each given by its `heel_speed`; the row of Table I at v95, and the whole curve.
 

@@ -14,7 +14,7 @@ PLANTED_BELOW = 0.03  # metres
 
 
 def ground_velocity(
-    points: Float[np.ndarray, "*B T K 3"], control: Float[np.ndarray, "*B T 3"], fps: float = FPS
+    points: Float[np.ndarray, "*B T K 3"], control: Float[np.ndarray, "*B T 3"], fps: float | int = FPS
 ) -> Float[np.ndarray, "*B T-1 K 2"]:
     """Velocity over the ground, (left, forward) in m/s, of points that are given in the root frame.
 
@@ -35,7 +35,7 @@ def _turn(xz: Float[np.ndarray, "*B K 2"], angle: Float[np.ndarray, "*B 1"]) -> 
 
 
 def planted_toe(
-    poses: Float[np.ndarray, "*B T J 3"], below: float = PLANTED_BELOW
+    poses: Float[np.ndarray, "*B T J 3"], below: float | int = PLANTED_BELOW
 ) -> tuple[Int[np.ndarray, "*B T-1"], Bool[np.ndarray, "*B T-1"]]:
     """For the step from t to t+1: which toe is lower (0 left, 1 right; left if equal), and is it under `below` metres.
 
@@ -49,8 +49,8 @@ def planted_toe(
 def planted_velocity(
     poses: Float[np.ndarray, "*B T J 3"],
     control: Float[np.ndarray, "*B T 3"],
-    fps: float = FPS,
-    below: float = PLANTED_BELOW,
+    fps: float | int = FPS,
+    below: float | int = PLANTED_BELOW,
 ) -> Float[np.ndarray, "*B T-1 2"]:
     """Velocity over the ground of the planted toe, (left, forward) in m/s; NaN in steps where no toe is planted.
 
@@ -65,8 +65,8 @@ def planted_velocity(
 def skating(
     poses: Float[np.ndarray, "*B T J 3"],
     control: Float[np.ndarray, "*B T 3"],
-    fps: float = FPS,
-    below: float = PLANTED_BELOW,
+    fps: float | int = FPS,
+    below: float | int = PLANTED_BELOW,
 ) -> float | Float[np.ndarray, "*B"]:
     """How fast the planted toe slides, in m/s, mean over the steps where one is planted; one figure for each clip.
 
@@ -77,7 +77,7 @@ def skating(
 
 
 def planted_share(
-    poses: Float[np.ndarray, "*B T J 3"], below: float = PLANTED_BELOW
+    poses: Float[np.ndarray, "*B T J 3"], below: float | int = PLANTED_BELOW
 ) -> float | Float[np.ndarray, "*B"]:
     """The share of steps with a planted toe: 1 in a walk, less in a run, 0 for a figure that floats.  Notebook: 08"""
     return planted_toe(poses, below)[1].mean(-1)
