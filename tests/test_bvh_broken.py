@@ -3,6 +3,7 @@
 import signal
 from pathlib import Path
 
+import numpy as np
 import pytest
 from bvh_text import SMALL
 
@@ -117,6 +118,39 @@ def test_foreign_content_never_hangs(tmp_path):
     ):
         refused(tmp_path, content)
     assert "braces" not in str(refused(tmp_path, b"HIERARCHY\n" + b"JOINT a {" * 9000))
+
+
+def test_random_damage_is_read_or_refused(tmp_path):
+    rng = np.random.default_rng(7)
+    scraps = [
+        "{",
+        "}",
+        "JOINT a",
+        "ROOT b",
+        "End Site",
+        "OFFSET",
+        "CHANNELS 3",
+        "MOTION",
+        "nan",
+        "\n",
+        "-",
+        "",
+        "é",
+        "0 1",
+    ]
+    outcomes = set()
+    for _ in range(400):
+        text = SMALL
+        for _ in range(rng.integers(1, 4)):
+            at = int(rng.integers(len(text)))
+            text = text[:at] + scraps[rng.integers(len(scraps))] + text[at + int(rng.integers(0, 20)) :]
+        path = tmp_path / "damaged.bvh"
+        path.write_text(text)
+        try:
+            outcomes.add(bool(np.isfinite(read_bvh(path).world_positions()).all()))
+        except BvhError as error:
+            outcomes.add(error.path.endswith("damaged.bvh") and len(str(error)) > 30)
+    assert outcomes == {True}
 
 
 def test_a_missing_file_is_a_missing_file(tmp_path):

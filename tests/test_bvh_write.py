@@ -11,7 +11,7 @@ from synthetic_walk import walk
 from motiondiff_edu.motion.bvh import BvhError, read_bvh
 from motiondiff_edu.motion.bvh_fit import euler_zxy, fit, kabsch, least_turn
 from motiondiff_edu.motion.bvh_write import write_bvh
-from motiondiff_edu.motion.kinematics import euler_to_matrix
+from motiondiff_edu.motion.kinematics import euler_to_matrix, rot_x, rot_z
 from motiondiff_edu.motion.retarget import load_clip
 from motiondiff_edu.motion.skeleton import BONE_LENGTHS, BONES, JOINTS
 
@@ -34,6 +34,14 @@ def test_constant_bones_come_back_exactly(tmp_path, turning, capsys):
     assert report.max_mm < 0.01 and report.bone_mm < 1e-9
     assert np.abs(joints_of(tmp_path / "walk.bvh") - turning).max() < 1e-5
     assert "shifted by 0.00 mm" in capsys.readouterr().out
+
+
+def test_spine_and_collars_turn_freely(tmp_path, turning):
+    bent = turning.copy()
+    upper = [j for j in range(9, 21)]
+    bent[:, upper] = (bent[:, upper] - bent[:, :1]) @ rot_x(0.3).T + bent[:, :1]  # the trunk leans, the hips do not
+    bent[:, 13:17] = (bent[:, 13:17] - bent[:, 11:12]) @ rot_z(0.2).T + bent[:, 11:12]  # one shoulder is shrugged
+    assert write_bvh(tmp_path / "bent.bvh", bent).max_mm < 0.01
 
 
 def test_raw_output_reads_back_as_its_fit(tmp_path, turning):

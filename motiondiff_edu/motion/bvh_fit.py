@@ -144,9 +144,8 @@ def global_turns(
 
 
 def guides(node: int, names: tuple[str, ...], parents: np.ndarray) -> list[int]:
-    """The joints a node's rotation is read from: its children, and at the hips the spine beyond its helper."""
-    children = [c for c in range(len(names)) if parents[c] == node and names[c] not in HELPERS]
-    return children + [names.index("Spine")] if node == 0 else children
+    """The joints that a node's rotation is read from: its children, without those that a helper turns."""
+    return [c for c in range(len(names)) if parents[c] == node and names[c] not in HELPERS]
 
 
 def kabsch(rest: Float[np.ndarray, "K 3"], aims: Float[np.ndarray, "T K 3"]) -> Float[np.ndarray, "T 3 3"]:
