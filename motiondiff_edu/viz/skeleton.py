@@ -31,7 +31,7 @@ def pose_strip(
     words += "." if past is None else f"; the paler ones, up to {past / fps:.1f} s, were given."
     fig, axes = figure(1.35 * n, 2.1 + 0.7 * bool(title) + 0.45, f"{title}: {words}" if title else words, 1, n)
     for axis, t in zip(axes, np.linspace(0, len(positions) - 1, n).round().astype(int), strict=True):
-        draw_pose(axis, positions[t], camera, washed=past is not None and t < past)
+        draw_pose(axis, positions[t], camera, washed=bool(past is not None and t < past))
         axis.set_title(f"{t / fps:.1f} s", fontsize=SMALL)
     if title:
         fig.suptitle(title, fontsize=LARGE)
@@ -54,7 +54,7 @@ def side_by_side(
     for i, axis in enumerate(axes):
         row, t = i // n, frames[i % n]
         if t < len(motions[row]):
-            draw_pose(axis, motions[row][t], None, washed=past is not None and t < past)
+            draw_pose(axis, motions[row][t], None, washed=bool(past is not None and t < past))
         else:
             axis.set_axis_off()
         if row == 0:
