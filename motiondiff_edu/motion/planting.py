@@ -13,7 +13,7 @@ from .skeleton import BONE_LENGTHS, HEELS, TOES
 
 THIGH, SHANK = float(BONE_LENGTHS[1]), float(BONE_LENGTHS[2])
 REACH = 0.9995 * (THIGH + SHANK)
-LOW, STILL = 0.05, 0.5  # m and m/s: a toe lower and slower than this is planted
+LOW, STILL = 0.04, 0.4  # m and m/s: a toe lower and slower than this is planted
 
 
 def find_contacts(toes: Float[np.ndarray, "T 2 3"], fps: float) -> Bool[np.ndarray, "T 2"]:
