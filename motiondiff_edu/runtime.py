@@ -1,6 +1,7 @@
 """Where a notebook runs: fast or full, the seed, the device, the threads. The one place that reads MOTIONDIFF_PROFILE.
 
-A notebook's first code cell calls `run = runtime.start(notebook="03", seed=0)` and uses `run.fast`, `run.generator`, `run.pick(...)`.
+A notebook's first code cell calls `run = runtime.start(notebook="03", seed=0)`; later ones use `run.fast`,
+`run.generator` and `run.pick(400, 20_000)`.
 """
 
 import os
@@ -79,7 +80,7 @@ class Run:
 def start(notebook: str, seed: int = 0) -> Run:
     """Seed everything, say in one line where the notebook runs, and return the record.
 
-    Also seeds torch's, numpy's and Python's global generators, because the initial weights of a network come from there.
+    Also seeds the global generators of torch, numpy and Python: the initial weights of a network come from there.
     """
     torch.manual_seed(seed)
     random.seed(seed)
