@@ -17,7 +17,8 @@ import numpy as np
 import torch
 from scipy.spatial.transform import Rotation, Slerp
 
-from motiondiff_edu import ddpm
+from motiondiff_edu import ddpm, exact
+from motiondiff_edu.fast.samplers import ddim_steps
 from motiondiff_edu.motion import kinematics, root_frame, skeleton
 
 
@@ -96,4 +97,32 @@ TWINS["01"] = {
         lambda: (np.random.default_rng(2).normal(size=(57, 3)),),
     ),
     "slerp": Twin(_scipy_slerp, lambda: _two_quaternions(5)),
+}
+
+
+def _shrink(x: torch.Tensor, s: torch.Tensor) -> torch.Tensor:
+    """A denoiser that depends on x and on s, and on nothing that is tested."""
+    return torch.tanh(x) * (s / 100).sqrt()[:, None]
+
+
+def _means(x_s, alpha_bar, data) -> torch.Tensor:
+    x_s, data = x_s.reshape(len(x_s), -1), data.reshape(len(data), -1)
+    return exact.dataset_mean(data, x_s, torch.full((len(x_s),), 40), LINEAR)
+
+
+def _last(steps) -> torch.Tensor:
+    *_, step = steps
+    return step.x_s
+
+
+TWINS["03"] = {
+    "mean_by_loops": Twin(
+        lambda *args: _means(*args)[:, 0], lambda: (_normal(7), LINEAR.alpha_bar[40], _normal(5, seed=1))
+    ),
+    "mean_at_once": Twin(_means, lambda: (_normal(2, 5), LINEAR.alpha_bar[40], _normal(7, 5, seed=1))),
+    "algorithm_2": Twin(
+        lambda denoise, x, schedule, noises: _last(ddpm.sample_steps(denoise, x, schedule, noise=noises[1:])),
+        lambda: (_shrink, _normal(2, 5), LINEAR, _normal(101, 2, 5, seed=1)),
+    ),
+    "ddim": Twin(lambda *args: _last(ddim_steps(*args)), lambda: (_shrink, _normal(2, 5), LINEAR, [100, 60, 25, 3])),
 }

@@ -46,7 +46,8 @@ def lines(x, curves: dict, caption: str, labels: tuple[str, str], *, log=(False,
         axis.plot(x, y, label=name, color=COLOURS[i % 6], ls=DASHES[i % 6], marker="o" if len(x) < 12 else None)
     for name, level in (marks or {}).items():
         axis.axhline(level, color=GREY, lw=1.3, ls=":")
-        axis.annotate(name, (1, level), xycoords=("axes fraction", "data"), ha="right", va="bottom", color="#555555")
+        axis.annotate(name, (1, level), xycoords=("axes fraction", "data"), ha="right", va="bottom", color="#555555",
+                      bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.75, "pad": 1})
     axis.set_xscale("log" if log[0] else "linear")
     axis.set_yscale("log" if log[1] else "linear")
     if ylim:
@@ -95,28 +96,30 @@ def histograms(samples: dict, grid, density, caption: str, label: str = "value",
     """A histogram for each named set of samples, each under the same exact density."""
     figure, axes = panels(len(samples), width=4.2 * max(len(samples), 2), height=3.4, sharey=True)
     for i, (axis, (name, values)) in enumerate(zip(axes, samples.items(), strict=True)):
-        inside = np.clip(np.asarray(values).ravel(), grid[0], grid[-1])
-        axis.hist(inside, bins=bins, range=(grid[0], grid[-1]), density=True, color=COLOURS[i], alpha=0.45)
+        ends = float(grid[0]), float(grid[-1])
+        inside = np.clip(np.asarray(values).ravel(), *ends)
+        axis.hist(inside, bins=bins, range=ends, density=True, color=COLOURS[i], alpha=0.45)
         axis.plot(grid, density, color=INK, lw=1.8)
         axis.set_title(name)
-        axis.set_ylim(0, 2.2 * np.max(density))
+        axis.set_ylim(0, 2.2 * float(max(density)))
     return finish(figure, caption, (label, "density"))
 
 
 def paths(steps, x, grid, at_start, at_end, caption: str, show: int = 60) -> Figure:
     """Sampling paths x (steps, n) from noise on the left to samples on the right, a density at either end."""
+    x = np.asarray(x)
     figure, (left, middle, right) = panels(3, 10.5, 4, sharey=True, gridspec_kw={"width_ratios": [1, 5, 1]})
     middle.plot(steps, x[:, :show], color=BLUE, lw=0.8, alpha=0.45)
     middle.plot(steps, x[:, 0], color=ORANGE, lw=2)
     middle.invert_xaxis()
-    bars = {"bins": 60, "range": (grid[0], grid[-1]), "density": True, "alpha": 0.6}
+    bars = {"bins": 60, "range": (float(grid[0]), float(grid[-1])), "density": True, "alpha": 0.6}
     for axis, density, values, name in ((left, at_start, x[0], "at S"), (right, at_end, x[-1], "at 0")):
         axis.hist(values, orientation="horizontal", color=SKY, **bars)
         axis.plot(density, grid, color=INK, lw=1.6)
         axis.set_title(name)
         axis.set_xticks([])
     left.invert_xaxis()
-    left.set_ylim(grid[0], grid[-1])
+    left.set_ylim(float(grid[0]), float(grid[-1]))
     middle.set_xlabel("diffusion step s")
     left.set_ylabel("x_s")
     return finish(figure, caption)
@@ -125,9 +128,9 @@ def paths(steps, x, grid, at_start, at_end, caption: str, show: int = 60) -> Fig
 def one_moment(grid, density, values, guesses, s: int, caption: str) -> Figure:
     """All samples at one step: where x_s lies, and what the denoiser answers for x0."""
     figure, (left, right) = panels(2, width=10, height=3.4, sharey=True)
-    shown = {"bins": 90, "range": (grid[0], grid[-1]), "density": True, "alpha": 0.5}
+    shown = {"bins": 90, "range": (float(grid[0]), float(grid[-1])), "density": True, "alpha": 0.5}
     for axis, data, colour, name in ((left, values, BLUE, f"x_s at s = {s}"), (right, guesses, ORANGE, "x0_hat there")):
-        axis.hist(np.clip(data, grid[0], grid[-1]), color=colour, **shown)
+        axis.hist(np.clip(np.asarray(data), float(grid[0]), float(grid[-1])), color=colour, **shown)
         axis.plot(grid, density, color=INK, lw=1.6)
         axis.set_title(name)
         axis.set_ylim(0, 2.4)
@@ -150,3 +153,12 @@ def bound(terms, exact: float, caption: str) -> Figure:
     right.invert_xaxis()
     right.legend(fontsize=12)
     return finish(figure, caption, ("diffusion step s", "nats"))
+
+
+def maps(start, ends: dict, caption: str) -> Figure:
+    """Where each starting noise ended, for several samplers side by side: {name: ends}."""
+    figure, axes = panels(len(ends), width=4.4 * len(ends), height=3.6, sharey=True)
+    for axis, (name, end), colour in zip(axes, ends.items(), COLOURS, strict=False):
+        axis.plot(start, end, ".", ms=3, alpha=0.4, color=colour)
+        axis.set_title(name)
+    return finish(figure, caption, ("x_S, the starting noise", "x_0, the sample"))
