@@ -26,6 +26,15 @@ def test_presets_bring_their_stops_and_drawing_takes_them_away():
     assert pad.points.shape == (2, 2)
 
 
+def test_the_pad_says_how_long_the_walk_takes():
+    pad = PathPad(preset="stop and go")
+    assert pad.seconds == len(pad.control()) / 20 > 7.5 / 1.2 + 3
+    pad.speed = 2.4
+    assert pad.seconds == len(pad.control()) / 20
+    pad.points = np.zeros((0, 2))
+    assert pad.seconds == 0
+
+
 def test_changes_are_told_once_each():
     pad, told = PathPad(), []
     pad.on_change(lambda p: told.append((len(p.line), p.speed)))
@@ -60,7 +69,7 @@ def browser(chromium):
 @pytest.fixture
 def page(browser, root, tmp_path):
     pad = PathPad(preset="straight")
-    record = {name: getattr(pad, name) for name in ("line", "stops", "speed", "preset", "presets", "height")}
+    record = {name: getattr(pad, name) for name in ("line", "stops", "speed", "preset", "presets", "height", "seconds")}
     with open_page(browser, viewport={"width": 700, "height": 620}) as page:
         page.goto(bare_page(tmp_path, root / "motiondiff_edu/widgets/path.js", record, []))
         yield page

@@ -70,12 +70,14 @@ export function mount(model, el) {
     pen.textAlign = "left";
     for (let z = Math.ceil(frame.z - halfH); z <= frame.z + halfH; z++) {
       line([frame.x - halfW, z], [frame.x + halfW, z], z === 0);
-      if (z % every === 0 && z !== 0) pen.fillText(`${z} m`, 6, toPixel([0, z])[1] - 9);
+      if (z % every === 0 && z !== 0 && toPixel([0, z])[1] < frame.h - 30) pen.fillText(`${z} m`, 6, toPixel([0, z])[1] - 9);
     }
     pen.textAlign = "center";
     for (let x = Math.ceil(frame.x - halfW); x <= frame.x + halfW; x++) {
-      if (x % every === 0 && x !== 0) pen.fillText(`${Math.abs(x)} m ${x > 0 ? "left" : "right"}`, toPixel([x, 0])[0], frame.h - 10);
+      if (x % every === 0 && x !== 0) pen.fillText(`${Math.abs(x)} m`, toPixel([x, 0])[0], frame.h - 10);
     }
+    const middle = toPixel([0, 0])[0];
+    pen.fillText("\u2190 left", middle - 0.5 * frame.scale, frame.h - 28); pen.fillText("right \u2192", middle + 0.5 * frame.scale, frame.h - 28);
   }
 
   function arrow([x, y], angle, size, colour) {
@@ -122,7 +124,7 @@ export function mount(model, el) {
     const metres = lengthOf(points), pace = Number(speed.value);
     told.textContent = `${pace.toFixed(1)} m/s`;
     words.textContent = points.length < 2 ? "No path yet: draw one, or choose one." :
-      `${metres.toFixed(1)} m, about ${(metres / pace).toFixed(0)} s`;
+      `${metres.toFixed(1)} m` + (!drawing && model.get("seconds") ? `, ${model.get("seconds").toFixed(1)} s from rest to rest` : "");
     canvas.setAttribute("aria-label", `Floor seen from above. ${words.textContent}`);
     root.dataset.points = String(points.length);
   }
@@ -166,7 +168,7 @@ export function mount(model, el) {
   const onLine = () => { if (!drawing) { points = model.get("line"); draw(); } };
   const onPreset = () => { presets.value = model.get("preset"); };
   const onSpeed = () => { speed.value = String(model.get("speed")); draw(); };
-  const changes = { "change:line": onLine, "change:stops": onLine, "change:preset": onPreset, "change:speed": onSpeed };
+  const changes = { "change:line": onLine, "change:stops": onLine, "change:preset": onPreset, "change:speed": onSpeed, "change:seconds": draw };
   for (const [name, f] of Object.entries(changes)) model.on(name, f);
   const sizes = new ResizeObserver(draw), themes = new MutationObserver(draw);
   canvas.style.height = `${model.get("height")}px`;

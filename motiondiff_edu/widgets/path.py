@@ -29,6 +29,7 @@ class PathPad(anywidget.AnyWidget):
     line = traitlets.List().tag(sync=True)
     stops = traitlets.List(traitlets.Float()).tag(sync=True)
     speed = traitlets.Float(1.2, min=0.3, max=3.0).tag(sync=True)
+    seconds = traitlets.Float(0.0).tag(sync=True)  # what the walk takes; 0 where no path is drawn
     preset = traitlets.Unicode("").tag(sync=True)
     presets = traitlets.List(list(walks.PRESETS)).tag(sync=True)
     height = traitlets.Int(460).tag(sync=True)
@@ -64,6 +65,13 @@ class PathPad(anywidget.AnyWidget):
         if change["new"]:
             points, self.stops = walks.preset(change["new"])
             self.line = points.round(4).tolist()
+
+    @traitlets.observe("line", "speed", "stops")
+    def _time_it(self, change):
+        try:
+            self.seconds = len(self.control()) / 20
+        except ValueError:  # too short to walk along, said by control()
+            self.seconds = 0.0
 
     def control(self, fps: float | int = 20.0) -> Float[np.ndarray, "T 3"]:
         """The control that walks along the path at the chosen speed, from rest to rest; see `path_to_control`."""

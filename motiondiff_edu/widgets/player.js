@@ -296,8 +296,8 @@ export function mount(model, el, { fill = false } = {}) {
     sky.addColorStop(0, rgba(mix(theme.bg, theme.fg, 0.03))); sky.addColorStop(1, rgba(mix(theme.bg, theme.fg, 0.09)));
     ctx.fillStyle = sky; ctx.fillRect(0, 0, w, h);
     const panels = scene.layout === "side" ? figures.map((f) => [f]) : [figures];
-    const columns = Math.min(panels.length, Math.max(1, Math.round(Math.sqrt(panels.length * w / h * 1.5))));
-    const rows = Math.ceil(panels.length / columns), pw = w / columns, ph = h / rows;
+    const most = clamp(Math.round(Math.sqrt(panels.length * w / h * 1.5)), 1, panels.length);
+    const rows = Math.ceil(panels.length / most), columns = Math.ceil(panels.length / rows), pw = w / columns, ph = h / rows;
     panels.forEach((group, i) => {
       ctx.save(); ctx.translate((i % columns) * pw, Math.floor(i / columns) * ph);
       ctx.beginPath(); ctx.rect(0, 0, pw, ph); ctx.clip();
