@@ -71,9 +71,9 @@ def random_control(
 
 
 def _possible(control: np.ndarray) -> np.ndarray:
-    """Turning and stepping aside are limited by speed: |v w| at most 3 m/s2, no fast sideways running."""
+    """Turning and stepping aside are limited by speed: |v w| at most 2.3 m/s2, no fast sideways running."""
     speed = np.abs(control[:, 0])
-    most = np.minimum(MAX_YAW, 3.0 / np.maximum(speed, 0.5))
+    most = np.minimum(MAX_YAW, 2.3 / np.maximum(speed, 0.5))
     yaw = most * np.tanh(control[:, 2] / most) if len(control) else control[:, 2]
     yaw = np.where(most < MAX_YAW, yaw, np.clip(control[:, 2], -MAX_YAW, MAX_YAW))
     aside = control[:, 1] * np.clip((2.0 - speed) / 0.8, 0, 1)

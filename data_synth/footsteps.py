@@ -56,7 +56,7 @@ def drive(control, root_xz, heading, rows, style: Style, lean_shift, run, fps: f
     smooth = follow(arrived, 0.06, fps)
     slow, fast = drift(rows[:, 0], 2.5, fps), drift(rows[:, 1], 0.3, fps)
     rate = cadence(*smooth.T, run) * style.cadence * np.exp(0.03 * slow + 0.022 * fast)
-    ahead = arrived + np.clip(3.0 * (arrived - smooth), -0.3, 0.3)  # a velocity that changes is carried a little further
+    ahead = arrived + np.clip(1.2 * (arrived - smooth), -0.15, 0.15)  # a velocity that changes is carried a little further
     need = np.sqrt(arrived[:, 0] ** 2 + arrived[:, 1] ** 2 + (0.25 * arrived[:, 2]) ** 2)
     columns = (*root_xz.T, heading, *ahead.T, rate, stance_fraction(smooth[:, 0], run) + style.stance)
     columns += (run, need, rows[len(rows) - len(control) :, 2:6], lean_shift)
@@ -71,7 +71,7 @@ def home(d: Drive, t: int, foot: int, style: Style, tau: float, ahead: float) ->
     side = 1.0 if foot == LEFT_FOOT else -1.0
     vf, vl, w = d.forward[t], d.left[t], d.yaw[t]
     middle, later = d.heading[t] + w * tau * 0.4, d.heading[t] + w * tau
-    width = style.width * (1 - 0.5 * d.run[t]) + 0.75 * min(abs(vl), 0.6) + 0.05 * min(abs(w), 2.0)
+    width = style.width * (1 - 0.5 * d.run[t]) + 0.6 * min(abs(vl), 0.6) * (1 - 0.7 * min(abs(vf) / 0.8, 1.0)) + 0.05 * min(abs(w), 2.0)
     out = side * width / 2 + d.lean_shift[t]
     far, across = vf * (ahead if vf > 0 else tau), vl * tau
     sm, cm, sl, cl = sin(middle), cos(middle), sin(later), cos(later)
@@ -127,8 +127,11 @@ class _Feet:
 
     def overstretched(self, t: int) -> float:
         """How much quicker the step must come because a planted foot is far from the root, 0..1."""
-        far = [hypot(p[0] - self.d.x[t], p[1] - self.d.z[t]) for p, up in zip(self.place, self.swing, strict=True) if not up]
-        return min(max((max(far, default=0.0) - 0.50) / 0.15, 0.0), 1.2)
+        far = 0.0
+        for foot in (0, 1):
+            if not self.swing[foot] and self.phase(foot) > 0.25:
+                far = max(far, hypot(self.place[foot][0] - self.d.x[t], self.place[foot][1] - self.d.z[t]))
+        return min(max((far - 0.50) / 0.15, 0.0), 1.2)
 
     def first_foot(self, t: int) -> None:
         """From standing either foot may go first; sideways and turning the near one usually does."""
@@ -162,8 +165,9 @@ class _Feet:
         ax, az, ayaw = self.target(t, foot, p)
         ex, ez = self.error[foot]
         s, c = sin(ayaw), cos(ayaw)
+        ez += self.uncrossed(t, foot, ax, az, s, c)
         ax, az = ax + ex * s + ez * c, az + ex * c - ez * s
-        keep = min(max((u - 0.45) / 0.35, 0.0), 1.0)
+        keep = min(max((u - 0.52) / 0.36, 0.0), 1.0)
         gain = 1 - keep * keep * (3 - 2 * keep)
         self.aim[foot] = tuple(a + gain * (b - a) for a, b in zip(self.aim[foot], (ax, az, ayaw), strict=True))
         share = swing_progress(min(u, 1.0), self.d.run[t])
@@ -172,6 +176,12 @@ class _Feet:
         want = min(max(self.d.forward[t] / 1.1, 0.0), 1.15)
         self.toe_up[foot] += (want - self.toe_up[foot]) * (1 - exp(-dt / 0.1))
         return float(hypot(self.aim[foot][0] - self.start[foot][0], self.aim[foot][1] - self.start[foot][1]))
+
+    def uncrossed(self, t: int, foot: int, x: float, z: float, s: float, c: float) -> float:
+        """How far the aim must move aside (left positive) so that slow feet do not cross."""
+        side, (ox, oz, _) = (1.0 if foot == LEFT_FOOT else -1.0), self.place[1 - foot]
+        apart = side * ((x - ox) * c - (z - oz) * s)
+        return side * max(0.0, 0.10 - apart) * (1 - min(abs(self.d.forward[t]) / 0.5, 1.0))
 
     def pivot(self, t: int, foot: int, r: float, dt: float) -> None:
         """Late in stance a turning figure pivots about the planted toe."""

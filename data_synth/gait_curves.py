@@ -21,7 +21,7 @@ def running(speed: Frames) -> Frames:
 def cadence(forward: Frames, left: Frames, yaw: Frames, run: Frames) -> Frames:
     """Steps per second: (74 + 27 v) / 60 walking straight; sideways, back and turning steps come quicker; runs 137 + 4.5 v."""
     ahead = np.where(forward < 0, -1.5 * forward, forward)
-    v = np.hypot(ahead, 1.7 * left)
+    v = np.hypot(ahead, 2.2 * left)
     walk = 74 + 27 * v + 8 * np.maximum(v - 1.6, 0) + 17 * np.abs(yaw) * np.exp(-0.6 * v)
     return (walk + (137 + 4.5 * v - walk) * run) / 60
 

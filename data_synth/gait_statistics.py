@@ -5,6 +5,7 @@ Lengths mm except step length (m), angles degrees, times seconds unless the name
 
 import numpy as np
 from jaxtyping import Float
+from scipy.ndimage import gaussian_filter1d
 from scipy.signal import welch
 
 from .gait_cycles import GRID, Cycle, Walk, analyse, curves, cycles, over_cycle
@@ -34,6 +35,18 @@ def mean_curves(world: Float[np.ndarray, "T 21 3"], fps: float = 20.0) -> dict[s
     out = {n: np.mean([over_cycle(c[f"{n}{k.side}"], k) for k in found], 0) for n in names}
     y = np.mean([over_cycle(c["hips_y"], k) for k in found], 0)
     return out | {"hips_y": y - y.mean()}
+
+
+def turning_lean(world: Float[np.ndarray, "T 21 3"], fps: float = 20.0) -> tuple[float, float]:
+    """Slope and correlation of the whole body's lean (mid-ankles to neck) against atan(v w / g), inward positive."""
+    walk = analyse(world, fps)
+    body = gaussian_filter1d(world[:, 11] - (world[:, 3] + world[:, 7]) / 2, 0.4 * fps, axis=0, mode="nearest")
+    turn = np.gradient(np.unwrap(np.arctan2(walk.travel[:, 0], walk.travel[:, 1]))) * fps
+    turn = gaussian_filter1d(turn, 0.4 * fps, mode="nearest")
+    left = body[:, 0] * walk.travel[:, 1] - body[:, 2] * walk.travel[:, 0]
+    lean, needed = np.arctan2(left, body[:, 1]), np.arctan(walk.speed * turn / 9.81)
+    on = slice(round(fps), -round(fps))
+    return float(np.polyfit(needed[on], lean[on], 1)[0]), float(np.corrcoef(needed[on], lean[on])[0, 1])
 
 
 def _of_cycle(walk: Walk, k: Cycle, c: dict) -> dict[str, float]:

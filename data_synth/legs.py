@@ -19,7 +19,7 @@ from .styles import Style
 ANKLE = 0.075  # height of the Foot joint over the floor, foot flat
 HEEL_BEHIND = 0.04  # of the ankle
 THIGH, SHANK = 0.41, 0.425
-REACH = 0.992 * (THIGH + SHANK)
+REACH = 0.9935 * (THIGH + SHANK)
 
 
 @dataclass(frozen=True)
@@ -110,15 +110,18 @@ def own_roll(clock: np.ndarray, amount: np.ndarray) -> np.ndarray:
 
 
 def hips_within_reach(hips: np.ndarray, rotation: np.ndarray, feet: Feet) -> np.ndarray:
-    """Lower the pelvis, smoothly, where a leg would have to be longer than it is."""
-    lower = hips.copy()
-    for side, joint in enumerate((1, 5)):
-        socket = rotation @ OFFSETS[joint]
-        gap = feet.ankle[:, side] - (hips + socket)
-        level = np.hypot(gap[:, 0], gap[:, 2])
-        highest = feet.ankle[:, side, 1] + np.sqrt(np.maximum(REACH**2 - level**2, 0.3)) - socket[:, 1]
-        lower[:, 1] -= softplus(lower[:, 1] - highest, 0.008)
-    return lower
+    """Lower the pelvis, smoothly, where a leg would have to be longer than it is; very long steps also pull it along."""
+    hips = hips.copy()
+    sockets = [rotation @ OFFSETS[joint] for joint in (1, 5)]
+    for side, socket in enumerate(sockets):
+        gap = (feet.ankle[:, side] - hips - socket)[:, [0, 2]]
+        level = np.linalg.norm(gap, axis=-1, keepdims=True)
+        hips[:, [0, 2]] += softplus(level - 0.53, 0.015) * gap / level
+    for side, socket in enumerate(sockets):
+        gap = feet.ankle[:, side] - hips - socket
+        highest = feet.ankle[:, side, 1] + np.sqrt(np.maximum(REACH**2 - gap[:, 0] ** 2 - gap[:, 2] ** 2, 0.2)) - socket[:, 1]
+        hips[:, 1] -= softplus(hips[:, 1] - highest, 0.008)
+    return hips
 
 
 def not_folded(hips: np.ndarray, rotation: np.ndarray, feet: Feet) -> Feet:

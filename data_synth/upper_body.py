@@ -27,10 +27,12 @@ class Trunk:
     head_yaw: Float[np.ndarray, "T"]
 
 
-def trunk(clock, amount, run, speed, inward, doing: Behaviours, noise: Float[np.ndarray, "T 4"], style: Style) -> Trunk:
+def trunk(
+    clock, amount, ahead, run, speed, inward, doing: Behaviours, noise: Float[np.ndarray, "T 4"], style: Style
+) -> Trunk:
     """Chest and head angles; `inward` is the lean into a turn (radians, left positive)."""
     turn = 2 * np.pi * clock
-    chest = -4.6 * style.chest_yaw * (1 + 0.9 * run) * np.cos(turn - np.radians(11 + 105 + 35 * run)) * amount
+    chest = -4.6 * style.chest_yaw * (1 + 0.9 * run) * np.cos(turn - np.radians(11 + 105 + 35 * run)) * amount * ahead
     nod = 1.45 * np.cos(2 * turn - 4 * np.pi * 0.10) * amount
     look = doing.head[:, 0] - doing.head[:, 1]
     lean = style.lean + 1.0 + 1.4 * np.clip(speed, 0, 2) + 5.5 * run + nod + 1.0 * noise[:, 0]
@@ -38,7 +40,7 @@ def trunk(clock, amount, run, speed, inward, doing: Behaviours, noise: Float[np.
     head = 0.45 * (style.lean - 3) * -0.6 + style.head + 18 * doing.head[:, 2] + 0.2 * nod + 1.2 * noise[:, 2]
     yaw = chest + 13 * look + 1.0 * noise[:, 3]
     angles = np.radians([yaw, lean, roll, head, 45 * look])
-    return Trunk(angles[0], angles[1], angles[2] - 0.35 * inward, angles[3], angles[4])
+    return Trunk(angles[0], angles[1], angles[2] - 0.45 * inward, angles[3], angles[4])
 
 
 def spine(hips: Float[np.ndarray, "T 3"], pelvis: Float[np.ndarray, "T 3 3"], pose: Trunk, pelvis_yaw: np.ndarray):
