@@ -17,8 +17,9 @@ import numpy as np
 import torch
 from scipy.spatial.transform import Rotation, Slerp
 
-from motiondiff_edu import ddpm, exact
+from motiondiff_edu import ddpm, exact, rollout
 from motiondiff_edu.fast.samplers import ddim_steps
+from motiondiff_edu.metrics import adherence, bone_lengths, footsteps
 from motiondiff_edu.motion import kinematics, root_frame, skeleton
 
 
@@ -125,4 +126,35 @@ TWINS["03"] = {
         lambda: (_shrink, _normal(2, 5), LINEAR, _normal(101, 2, 5, seed=1)),
     ),
     "ddim": Twin(lambda *args: _last(ddim_steps(*args)), lambda: (_shrink, _normal(2, 5), LINEAR, [100, 60, 25, 3])),
+}
+
+
+def _sway(past, control, generator) -> torch.Tensor:
+    """A window sampler that depends on everything it is given: (B, 7, D)."""
+    drift = 0.1 * control[:, -7:].mean(-1, keepdim=True) + 0.05 * past.mean((1, 2), keepdim=True)
+    return past[:, -1:] + drift + 0.1 * torch.randn(len(past), 7, past.shape[-1], generator=generator)
+
+
+def _rolled(sample, past, control, frames, T_p, generator) -> torch.Tensor:
+    loop = rollout.rollout_steps(sample, past, control, frames, T_p, generator=generator)
+    return torch.stack([frame.pose for frame in loop], 1)
+
+
+def _two_walkers() -> tuple:
+    return _sway, _normal(2, 5, 4).float(), _normal(2, 30, 3, seed=1).float(), 11, 7, torch.Generator().manual_seed(1)
+
+
+def _planted_walk() -> tuple:
+    """Twelve frames whose toes are always under 3 cm, and a control with a turn."""
+    rng = np.random.default_rng(3)
+    poses = rng.normal(0, 0.1, (12, skeleton.J, 3))
+    poses[:, skeleton.TOES, 1] = rng.uniform(0, 0.02, (12, 2))
+    return poses, rng.normal(size=(12, 3))
+
+
+TWINS["08"] = {
+    "roll": Twin(_rolled, _two_walkers),
+    "bone_rmse_loop": Twin(bone_lengths.bone_rmse, lambda: _planted_walk()[:1]),
+    "residual_loop": Twin(adherence.residual_velocity, _planted_walk),
+    "runs_loop": Twin(footsteps.runs, lambda: (np.array([1, 0, 0, 1, 1, 1, 0, 1], dtype=bool),)),
 }
