@@ -1,4 +1,4 @@
-"""What 80 CPU-seconds of training give: a small walker on the walks of one style, on unseen controls of 12 s.
+"""What 80 CPU-seconds of training give: a small walker on the walks of one style (and of all), on unseen controls.
 
 One thread; the budget counts only the training loop. Raw output, DDPM with S = 100, held control.
 Run: python benchmarks/walker_80s.py [--seconds 80] [--style neutral] [--out benchmarks/results/walker_80s.json]
@@ -51,26 +51,37 @@ def train(clips: list, seconds: float, config: MoDiffConfig = CONFIG, seed: int 
     return Walker(state.average.eval(), schedule, windows.pose_scaler, windows.control_scaler), state.step
 
 
+def measure(style: str | None, seconds: float, unseen: int, seed: int) -> list[dict]:
+    """Train on one style (None: all of them), walk unseen controls of the same, and score the raw output."""
+    styles, name = ([style], "bench.walker_80s_") if style else (None, "bench.walker_80s_all_styles_")
+    clips = augment(dataset(CLIPS, 20, seed=11, styles=styles))
+    trials = Trials.of(dataset(unseen, SECONDS + T_H / FPS, seed=UNSEEN, styles=styles))
+    walker, steps = train(clips, seconds, seed=seed)
+    weights = sum(p.numel() for p in walker.model.parameters())
+    print(f"{style or 'all styles'}: {steps} steps in {seconds:g} CPU-seconds, {weights} weights", flush=True)
+    walks = walker_generate(walker)(trials.past, trials.control, 0)
+    seeds = {"data": UNSEEN, "training": seed, "clips": unseen}
+    return [
+        dict(name=name + f.name, value=f.value, low=f.low, high=f.high, seeds=seeds, unit=f.unit, paper=None,
+             command=COMMAND)
+        for f in score(walks, trials.asked, trials.truth) if f.name in NAMES
+    ]  # fmt: skip
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--seconds", type=float, default=80)
     parser.add_argument("--style", default="neutral")
     parser.add_argument("--clips", type=int, default=50, help="unseen controls to walk")
     parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument("--one-style", action="store_true", help="leave out the run on all styles")
     parser.add_argument("--out", default="benchmarks/results/walker_80s.json")
     args = parser.parse_args()
     torch.set_num_threads(1)
-    clips = augment(dataset(CLIPS, 20, seed=11, styles=[args.style]))
-    trials = Trials.of(dataset(args.clips, SECONDS + T_H / FPS, seed=UNSEEN, styles=[args.style]))
-    walker, steps = train(clips, args.seconds, seed=args.seed)
-    print(f"{steps} steps in {args.seconds:g} CPU-seconds, {sum(p.numel() for p in walker.model.parameters())} weights")
-    walks = walker_generate(walker)(trials.past, trials.control, 0)
-    records = [
-        dict(name=f"bench.walker_80s_{f.name}", value=f.value, low=f.low, high=f.high, unit=f.unit, paper=None,
-             seeds={"data": UNSEEN, "training": args.seed, "clips": args.clips}, command=COMMAND)
-        for f in score(walks, trials.asked, trials.truth) if f.name in NAMES
-    ]  # fmt: skip
-    show(records)
+    records = []
+    for style in (args.style, None)[: 1 if args.one_style else 2]:
+        records += measure(style, args.seconds, args.clips, args.seed)
+        show(records[-len(NAMES) :])
     write_records(args.out, records)
 
 

@@ -66,7 +66,7 @@ class Choices:
     drawn: Float[np.ndarray, "P n frames J 3"]
 
 
-def choices(pasts: int = 20, n: int = 50, seconds: float = 4.0) -> Choices:
+def choices(pasts: int = 20, n: int = 50, seconds: float = 3.0) -> Choices:
     """Pasts that have several right continuations, with `n` of them drawn from the data."""
     clips, frames = dataset(pasts, seconds + T_H / FPS, seed=UNSEEN + 500_000), round(seconds * FPS)
     drawn = [continuations(c.cut(0, T_H), c.control[T_H:], n, seed=UNSEEN + i) for i, c in enumerate(clips)]
