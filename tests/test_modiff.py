@@ -77,16 +77,16 @@ def test_rows_of_a_batch_do_not_talk():
         torch.testing.assert_close(together[b : b + 1], alone, atol=1e-5, rtol=1e-5)
 
 
-def test_time_is_known_only_where_it_is_put_in():
-    """Without it the layers see a set of frames: turning the future round turns the output round."""
+def test_order_in_time_matters_and_the_relative_bias_is_used():
     model, (x_s, s, past, control) = lively(TINY), inputs(TINY)
-    assert not torch.allclose(model(x_s.flip(1), s, past, control).flip(1), model(x_s, s, past, control), atol=1e-3)
-    with torch.no_grad():
-        for name, weight in model.named_parameters():
-            if name.endswith("table") or name == "time":
-                weight.zero_()
-    turned = model(x_s.flip(1), s, past, control).flip(1)
-    torch.testing.assert_close(turned, model(x_s, s, past, control), atol=1e-5, rtol=1e-5)
+    before = model(x_s, s, past, control)
+    assert not torch.allclose(model(x_s.flip(1), s, past, control).flip(1), before, atol=1e-3)
+    for bias in (model.self_bias, model.memory_bias, model.cross_encoder.bias, model.control_encoder.bias):
+        kept = bias.table.detach().clone()
+        with torch.no_grad():
+            bias.table.zero_()
+            assert not torch.allclose(model(x_s, s, past, control), before, atol=1e-5)
+            bias.table.copy_(kept)
 
 
 def test_skip_adds_w_of_s_times_the_input():
