@@ -11,7 +11,7 @@ from jaxtyping import Float
 from .noise import follow
 
 # kind -> pose of (left, right) arm, or None where the arm just goes on swinging
-_WAVE, _HIP, _HELD = (12.0, 62.0, -78.0, 88.0), (-22.0, 42.0, 68.0, 96.0), (14.0, 10.0, 22.0, 96.0)
+_WAVE, _HIP, _HELD = (12.0, 62.0, -78.0, 88.0), (-20.0, 41.0, 62.0, 84.0), (14.0, 10.0, 22.0, 96.0)
 ARM_POSES = {
     "wave left": (_WAVE, None),
     "wave right": (None, _WAVE),
@@ -56,7 +56,9 @@ def behaviours(u: Float[np.ndarray, "T 4"], per_minute: float, calm: np.ndarray,
     return Behaviours(follow(arms, 0.12, fps, 3), follow(head, 0.12, fps, 3))
 
 
-def pose_arm(free: Float[np.ndarray, "T 4"], side: int, doing: Behaviours, wave: np.ndarray) -> Float[np.ndarray, "T 4"]:
+def pose_arm(
+    free: Float[np.ndarray, "T 4"], side: int, doing: Behaviours, wave: np.ndarray
+) -> Float[np.ndarray, "T 4"]:
     """Mix the freely swinging arm (side 0 left, 1 right) with the poses that are going on; `wave` in -1..1."""
     pose = free.copy()
     for k, name in enumerate(ARM_POSES):

@@ -7,7 +7,8 @@ from motiondiff_edu.motion.skeleton import OFFSETS, J
 
 from . import legs, upper_body
 from .behaviours import behaviours
-from .footsteps import drive, plan, planted
+from .drive import drive
+from .footsteps import plan, planted
 from .gait_curves import running
 from .noise import drift, follow, uniform
 from .styles import Style
@@ -46,7 +47,9 @@ def body(
 
 def _pelvis_turn(steps, ahead, run, yaw, noise, style):
     turn = 2 * np.pi * steps.clock
-    angle = -np.radians(9.3 * style.pelvis_yaw) * np.cos(turn - 2 * np.pi * 0.03) * steps.amount * ahead * (1 + 0.1 * run)
+    angle = (
+        -np.radians(9.3 * style.pelvis_yaw) * np.cos(turn - 2 * np.pi * 0.03) * steps.amount * ahead * (1 + 0.1 * run)
+    )
     angle = angle + 0.05 * yaw + np.radians(0.7) * noise[:, 0]
     roll = legs.own_roll(steps.clock, steps.amount) * (1 + 0.9 * run) + np.radians(0.35) * noise[:, 1]
     return angle, legs.pelvis_rotation(angle, roll, np.zeros_like(roll))
@@ -59,7 +62,11 @@ def _hips(steps, forward, run, speed, lean_shift, rows, noise, style, fps):
     idle = drift(rows[:, 28:30], 0.9, fps) * (1 - amount)[:, None]
     sway = 0.024 * style.sway * np.cos(turn - 2 * np.pi * 0.30) * amount * (1 - 0.6 * run) + 0.003 * noise[:, 2]
     ripple = 0.0135 * np.clip(forward, -1, 2.5) * np.sin(2 * turn - 4 * np.pi * 0.03) * amount * (1 - 0.5 * run)
-    height = legs.pelvis_height(steps.clock, amount, forward, run, speed, style) + 0.0022 * noise[:, 3] - 0.14 * np.abs(lean_shift)
+    height = (
+        legs.pelvis_height(steps.clock, amount, forward, run, speed, style)
+        + 0.0022 * noise[:, 3]
+        - 0.14 * np.abs(lean_shift)
+    )
     return np.stack([sway + early + 0.018 * idle[:, 0], height, ripple + 0.004 * noise[:, 4] + 0.010 * idle[:, 1]], -1)
 
 

@@ -6,7 +6,15 @@ from scipy.ndimage import gaussian_filter1d
 
 FPS = 20.0
 # kinds and their shares in a dataset
-KINDS = {"mixed": 0.3, "straight": 0.16, "turn": 0.16, "run": 0.12, "start_stop": 0.12, "sidestep": 0.07, "backward": 0.04}
+KINDS = {
+    "mixed": 0.3,
+    "straight": 0.16,
+    "turn": 0.16,
+    "run": 0.12,
+    "start_stop": 0.12,
+    "sidestep": 0.07,
+    "backward": 0.04,
+}
 KINDS |= {"spot": 0.02, "stand": 0.01}
 MAX_YAW = np.radians(120.0)
 
@@ -21,9 +29,17 @@ def _target(kind: str, rng: np.random.Generator) -> tuple[float, float, float]:
     if kind == "run":
         return float(rng.uniform(1.8, 3.0)), 0.0, 0.9 * some * (rng.random() < 0.6)
     if kind == "sidestep":
-        return float(rng.uniform(-0.1, 0.7)) * (rng.random() < 0.5), 0.6 * some, 0.3 * float(rng.uniform(-1, 1)) * (rng.random() < 0.3)
+        return (
+            float(rng.uniform(-0.1, 0.7)) * (rng.random() < 0.5),
+            0.6 * some,
+            0.3 * float(rng.uniform(-1, 1)) * (rng.random() < 0.3),
+        )
     if kind == "backward":
-        return float(rng.uniform(-0.5, -0.15)), 0.15 * some * (rng.random() < 0.3), 0.5 * float(rng.uniform(-1, 1)) * (rng.random() < 0.4)
+        return (
+            float(rng.uniform(-0.5, -0.15)),
+            0.15 * some * (rng.random() < 0.3),
+            0.5 * float(rng.uniform(-1, 1)) * (rng.random() < 0.4),
+        )
     if kind == "spot":
         return 0.0, 0.0, MAX_YAW * some
     return 0.0, 0.0, 0.0  # stand

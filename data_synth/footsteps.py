@@ -1,22 +1,21 @@
 """When and where the feet go: a gait clock driven by the control, and footprints that never move once made.
 
-Causal: frame t depends on the root path up to t and on the noise up to t, so a held control decides everything.
-A swinging foot aims at where its middle of stance will be if the present velocity lasts; the aim freezes before it lands.
+Causal: frame t depends on the root path up to t and on the noise up to t; so a held control decides everything.
+A swinging foot aims at its middle of stance, should the present velocity last; the aim freezes before it lands.
 """
 
 from dataclasses import dataclass
-from math import cos, exp, hypot, radians, sin
+from math import cos, exp, hypot, sin
 
 import numpy as np
 from jaxtyping import Bool, Float
 
-from .gait_curves import cadence, stance_fraction, swing_progress
-from .noise import drift, follow
+from .drive import LEFT_FOOT, RIGHT_FOOT, Drive, home
+from .gait_curves import swing_progress
 from .styles import Style
 
 TOE_AHEAD = 0.115  # of the ankle, foot flat (metres)
 ACTIVE = 0.09  # m/s below which a figure with its feet in place stands
-LEFT_FOOT, RIGHT_FOOT = 0, 1
 
 
 @dataclass(frozen=True)
@@ -30,54 +29,6 @@ class Steps:
     progress: Float[np.ndarray, "T 2"]  # 0..1 through stance, 1..2 through swing
     stride: Float[np.ndarray, "T 2"]  # length of the swing under way, metres (0 in stance)
     toe_up: Float[np.ndarray, "T 2"]  # how much the toe is raised at heel strike, 0..1
-
-
-@dataclass(frozen=True)
-class Drive:
-    """Per frame: what the clock and the feet are driven by."""
-
-    x: list
-    z: list
-    heading: list
-    forward: list
-    left: list
-    yaw: list
-    steps_per_second: list
-    stance: list
-    run: list
-    need: list
-    noise: list
-    lean_shift: list
-
-
-def drive(control, root_xz, heading, rows, style: Style, lean_shift, run, fps: float) -> Drive:
-    """Rates and velocities per frame; velocity at frame t is control[t-1], which brought the root there."""
-    arrived = np.concatenate([control[:1], control[:-1]])
-    smooth = follow(arrived, 0.06, fps)
-    slow, fast = drift(rows[:, 0], 2.5, fps), drift(rows[:, 1], 0.3, fps)
-    rate = cadence(*smooth.T, run) * style.cadence * np.exp(0.03 * slow + 0.022 * fast)
-    ahead = arrived + np.clip(1.2 * (arrived - smooth), -0.15, 0.15)  # a velocity that changes is carried a little further
-    need = np.sqrt(arrived[:, 0] ** 2 + arrived[:, 1] ** 2 + (0.25 * arrived[:, 2]) ** 2)
-    columns = (*root_xz.T, heading, *ahead.T, rate, stance_fraction(smooth[:, 0], run) + style.stance)
-    columns += (run, need, rows[len(rows) - len(control) :, 2:6], lean_shift)
-    return Drive(*(c.tolist() for c in columns))
-
-
-def home(d: Drive, t: int, foot: int, style: Style, tau: float, ahead: float) -> tuple[float, float, float]:
-    """Where this foot belongs tau seconds from frame t if the velocity lasts: x, z, heading.
-
-    `ahead`: the same for walking ahead (a foot passes under the hip before the middle of its stance).
-    """
-    side = 1.0 if foot == LEFT_FOOT else -1.0
-    vf, vl, w = d.forward[t], d.left[t], d.yaw[t]
-    middle, later = d.heading[t] + w * tau * 0.4, d.heading[t] + w * tau
-    width = style.width * (1 - 0.5 * d.run[t]) + 0.6 * min(abs(vl), 0.6) * (1 - 0.7 * min(abs(vf) / 0.8, 1.0)) + 0.05 * min(abs(w), 2.0)
-    out = side * width / 2 + d.lean_shift[t]
-    far, across = vf * (ahead if vf > 0 else tau), vl * tau
-    sm, cm, sl, cl = sin(middle), cos(middle), sin(later), cos(later)
-    x = d.x[t] + far * sm + across * cm + out * cl + 0.015 * sl
-    z = d.z[t] + far * cm - across * sm - out * sl + 0.015 * cl
-    return x, z, later + side * radians(style.toe_out)
 
 
 class _Feet:
@@ -149,7 +100,7 @@ class _Feet:
         if not self.swing[foot] and d.stance[t] <= p:
             self.swing[foot], self.off_phase[foot], self.start[foot] = True, min(p, d.stance[t]), self.place[foot]
             self.aim[foot] = self.target(t, foot, p)
-            self.error[foot] = (0.014 * d.noise[t][1], 0.011 * d.noise[t][2])
+            self.error[foot] = (0.009 * d.noise[t][1], 0.009 * d.noise[t][2])
         if not self.swing[foot]:
             self.pivot(t, foot, p / d.stance[t], dt)
             return min(p / d.stance[t], 1.0), 0.0
@@ -159,7 +110,14 @@ class _Feet:
     def target(self, t: int, foot: int, p: float) -> tuple[float, float, float]:
         rate = max(self.rate, 0.6 * self.d.steps_per_second[t] / 2)
         middle = self.d.stance[t]
-        return home(self.d, t, foot, self.style, (1 - p + 0.48 * middle) / rate, (1 - p + (0.37 - 0.07 * self.d.run[t]) * middle) / rate)
+        return home(
+            self.d,
+            t,
+            foot,
+            self.style,
+            (1 - p + 0.48 * middle) / rate,
+            (1 - p + (0.37 - 0.07 * self.d.run[t]) * middle) / rate,
+        )
 
     def fly(self, t: int, foot: int, p: float, u: float, dt: float) -> float:
         ax, az, ayaw = self.target(t, foot, p)

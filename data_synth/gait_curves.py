@@ -1,7 +1,7 @@
 """What walking and running do over one cycle, and how that depends on speed: curves and relations, no state.
 
 Phase p = 0 is the heel strike of one's own foot, p = 1 the next one. `run` is 0 for walking, 1 for running.
-Relations and curves follow published measurements of motion-capture walks in shape (Source: README.md, "What it copies").
+Relations and curves follow published measurements of motion-capture walks in shape (README.md says which).
 """
 
 import numpy as np
@@ -19,7 +19,10 @@ def running(speed: Frames) -> Frames:
 
 
 def cadence(forward: Frames, left: Frames, yaw: Frames, run: Frames) -> Frames:
-    """Steps per second: (74 + 27 v) / 60 walking straight; sideways, back and turning steps come quicker; runs 137 + 4.5 v."""
+    """Steps per second: (74 + 27 v) / 60 walking straight, (137 + 4.5 v) / 60 running.
+
+    Sideways, backward and turning steps come quicker.
+    """
     ahead = np.where(forward < 0, -1.5 * forward, forward)
     v = np.hypot(ahead, 2.2 * left)
     walk = 74 + 27 * v + 8 * np.maximum(v - 1.6, 0) + 17 * np.abs(yaw) * np.exp(-0.6 * v)
@@ -51,9 +54,20 @@ def periodic(coefficients: tuple[np.ndarray, np.ndarray], p: Frames) -> Frames:
 
 
 # Foot pitch in degrees, heel up positive. Abscissa: 0..1 through stance, 1..2 through swing, then again from 0.
-_WALK_PITCH = [(0, -15), (0.08, -6.5), (0.17, 0), (0.58, 0), (0.7, 2), (0.86, 13), (1.0, 47), (1.1, 57)]
+_WALK_PITCH = [(0, -15), (0.065, -6.5), (0.14, 0), (0.58, 0), (0.7, 2), (0.86, 13), (1.0, 47), (1.1, 57)]
 _WALK_PITCH += [(1.28, 40), (1.5, 14), (1.7, -8), (1.88, -17), (2, -15)]
-_RUN_PITCH = [(0, -7), (0.1, -3), (0.2, 0), (0.45, 0), (0.6, 6), (0.8, 28), (1.0, 58), (1.15, 78), (1.4, 88), (1.65, 48)]
+_RUN_PITCH = [
+    (0, -7),
+    (0.1, -3),
+    (0.2, 0),
+    (0.45, 0),
+    (0.6, 6),
+    (0.8, 28),
+    (1.0, 58),
+    (1.15, 78),
+    (1.4, 88),
+    (1.65, 48),
+]
 _RUN_PITCH += [(1.85, 4), (2, -7)]
 
 
@@ -81,10 +95,10 @@ def swing_lift(u: Frames, run: Frames) -> Frames:
     """Height of the swinging foot's pivot, as a share of its largest."""
     u = np.clip(u, 0, 1)
     walk = u**1.35 * (1 - u) ** 4.4 / 0.0439
-    return walk + (u**1.7 * (1 - u) ** 2.0 / 0.0777 - walk) * run
+    return walk + (u**1.3 * (1 - u) ** 1.7 / 0.1314 - walk) * run
 
 
-# Curves over the cycle at steps of 10 %: own hand and elbow (degrees), own hip up (degrees), pelvis height (share of its range)
+# Curves over the cycle at steps of 10 %: own hand, elbow and hip up (degrees), pelvis height (share of its range)
 HAND = fourier([-14, -8, 5, 20, 33, 36, 26, 12, 0, -10], 2)
 ELBOW = fourier([13.5, 14, 21, 32, 43, 47, 39, 24, 19, 16], 3)
 ROLL = fourier([-1.5, 2, 3, 1.5, 2, 1.5, -2, -3, -1.5, -2], 3)

@@ -1,6 +1,6 @@
 """Gait cycles of a walk given as world positions: foot contact by height and speed, angles over the cycle.
 
-Works on real clips and synthetic ones alike, at 20 frames/s; contact is found from the motion, not taken from the truth.
+Works on real clips and synthetic ones alike; contact is found from the motion, not taken from the truth.
 """
 
 from dataclasses import dataclass
@@ -62,12 +62,12 @@ def _tidy(down: np.ndarray) -> np.ndarray:
 
 
 def analyse(world: Float[np.ndarray, "T 21 3"], fps: float = 20.0) -> Walk:
-    """Directions and contacts of a clip (REALISM's definitions: a foot is down when low and slower than the pelvis)."""
+    """Directions and contacts of a clip (a foot is down when it is low and slower than the pelvis)."""
     hips = world[:, 0][:, [0, 2]]
     v = gaussian_filter1d(np.gradient(hips, axis=0) * fps, 0.25 * fps, axis=0, mode="nearest")
     speed = np.linalg.norm(v, axis=-1)
     j = joint_index
-    across = (world[:, j("LeftUpLeg")] - world[:, j("RightUpLeg")] + world[:, j("LeftArm")] - world[:, j("RightArm")])
+    across = world[:, j("LeftUpLeg")] - world[:, j("RightUpLeg")] + world[:, j("LeftArm")] - world[:, j("RightArm")]
     across = gaussian_filter1d(across[:, [0, 2]], 0.1 * fps, axis=0, mode="nearest")
     facing = np.stack([-across[:, 1], across[:, 0]], -1)
     facing /= np.linalg.norm(facing, axis=-1, keepdims=True)
@@ -91,7 +91,10 @@ def cycles(walk: Walk, steady: bool = True) -> list[Cycle]:
     found = []
     for s in (0, 1):
         for a, b in zip(strikes[s][:-1], strikes[s][1:], strict=True):
-            off, other = offs[s][(offs[s] > a) & (offs[s] < b)], strikes[1 - s][(strikes[1 - s] > a) & (strikes[1 - s] < b)]
+            off, other = (
+                offs[s][(offs[s] > a) & (offs[s] < b)],
+                strikes[1 - s][(strikes[1 - s] > a) & (strikes[1 - s] < b)],
+            )
             ok = 0.45 < (b - a) / walk.fps < 1.9 and len(off) == len(other) == 1 and walk.speed[a:b].mean() > 0.4
             if ok and (not steady or _steady(walk, a, b)):
                 found.append(Cycle(s, int(a), int(off[0]), int(other[0]), int(b)))
@@ -121,7 +124,9 @@ def curves(walk: Walk) -> dict[str, np.ndarray]:
             d = walk.joint(side + joints) - walk.joint(SIDES[1 - s] + joints)
             own = 1.0 if s == 0 else -1.0  # ahead of a line that runs to one's own side
             line = np.arctan2(d[:, 0] * own, d[:, 2] * own) - np.pi / 2
-            out[f"{name}_yaw{s}"] = -own * np.degrees((line - _smooth_heading(heading, walk.fps) + np.pi) % (2 * np.pi) - np.pi)
+            out[f"{name}_yaw{s}"] = -own * np.degrees(
+                (line - _smooth_heading(heading, walk.fps) + np.pi) % (2 * np.pi) - np.pi
+            )
             out[f"{name}_roll{s}"] = np.degrees(np.arcsin(d[:, 1] / np.linalg.norm(d, axis=-1)))
     return out
 

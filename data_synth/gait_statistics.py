@@ -115,8 +115,10 @@ def _pelvis(walk: Walk, k: Cycle, hips: np.ndarray, hips_y: np.ndarray, own: dic
 
 def _width(walk: Walk, found: list[Cycle]) -> float:
     """Distance of the other foot's 30 % point from the line through two successive own ones, mm."""
-    at = {s: [(k.start + 0.3 * (k.end - k.start), walk.world[k.start + round(0.3 * (k.end - k.start)), 3 + 4 * s][[0, 2]])
-              for k in found if k.side == s] for s in (0, 1)}  # fmt: skip
+    at = {0: [], 1: []}
+    for k in found:
+        t = k.start + round(0.3 * (k.end - k.start))
+        at[k.side].append((t, walk.world[t, 3 + 4 * k.side][[0, 2]]))
     widths = []
     for s in (0, 1):
         for (t0, a), (t1, b) in zip(at[s][:-1], at[s][1:], strict=True):
@@ -127,6 +129,7 @@ def _width(walk: Walk, found: list[Cycle]) -> float:
 
 def _variation(walk: Walk, found: list[Cycle], rows: list[dict], c: dict) -> dict[str, float]:
     """Spread between cycles, sides centred separately, and the difference of the sides."""
+
     def spread(name):
         return [np.mean([np.std([over_cycle(c[f"{name}{s}"], k) for k in found if k.side == s], 0)]) for s in (0, 1)]
 
@@ -136,7 +139,10 @@ def _variation(walk: Walk, found: list[Cycle], rows: list[dict], c: dict) -> dic
     time = split([(k.other_strike - k.start) / walk.fps for k in found])
     foot = walk.world[:, [3, 7]][..., [0, 2]]
     length = split([np.linalg.norm(foot[k.end, k.side] - foot[k.start, k.side]) / 2 for k in found])
-    out = {"step_time_sd": np.mean([t.std() for t in time if len(t)]), "step_length_sd": 1e3 * np.mean([x.std() for x in length if len(x)])}
+    out = {
+        "step_time_sd": np.mean([t.std() for t in time if len(t)]),
+        "step_length_sd": 1e3 * np.mean([x.std() for x in length if len(x)]),
+    }
     if all(len(t) for t in time):
         out["asymmetry_time"] = abs(time[0].mean() - time[1].mean()) / np.mean([t.mean() for t in time])
     out |= {f"sd_{n}": float(np.mean(spread(n))) for n in ("thigh", "knee", "hand") if all(len(t) for t in time)}

@@ -96,7 +96,7 @@ def pelvis_height(clock, amount, forward, run, speed, style: Style) -> Float[np.
     walk = 0.957 - (0.02 + 0.008 * (speed - 1.2) + 0.02 * softplus(speed - 1.35, 0.1)) * amount
     wave = periodic(HEIGHT, 2 * clock) * amount
     bounce = 0.066 * np.cos(4 * np.pi * (clock - 0.40)) * amount
-    return walk + wave * swing * (1 - run) + (bounce + 0.005) * run - style.crouch * (1 - 0.7 * run)
+    return walk + wave * swing * (1 - run) + (bounce + 0.024) * run - style.crouch * (1 - 0.7 * run)
 
 
 def pelvis_rotation(yaw, roll, pitch) -> Float[np.ndarray, "T 3 3"]:
@@ -110,7 +110,7 @@ def own_roll(clock: np.ndarray, amount: np.ndarray) -> np.ndarray:
 
 
 def hips_within_reach(hips: np.ndarray, rotation: np.ndarray, feet: Feet) -> np.ndarray:
-    """Lower the pelvis, smoothly, where a leg would have to be longer than it is; very long steps also pull it along."""
+    """Lower the pelvis, smoothly, where a leg would have to be longer than it is; long steps pull it along."""
     hips = hips.copy()
     sockets = [rotation @ OFFSETS[joint] for joint in (1, 5)]
     for side, socket in enumerate(sockets):
@@ -119,7 +119,9 @@ def hips_within_reach(hips: np.ndarray, rotation: np.ndarray, feet: Feet) -> np.
         hips[:, [0, 2]] += softplus(level - 0.53, 0.015) * gap / level
     for side, socket in enumerate(sockets):
         gap = feet.ankle[:, side] - hips - socket
-        highest = feet.ankle[:, side, 1] + np.sqrt(np.maximum(REACH**2 - gap[:, 0] ** 2 - gap[:, 2] ** 2, 0.2)) - socket[:, 1]
+        highest = (
+            feet.ankle[:, side, 1] + np.sqrt(np.maximum(REACH**2 - gap[:, 0] ** 2 - gap[:, 2] ** 2, 0.2)) - socket[:, 1]
+        )
         hips[:, 1] -= softplus(hips[:, 1] - highest, 0.008)
     return hips
 

@@ -2,7 +2,7 @@
 
     python -m data_synth.walking --out FOLDER [--clips 20] [--seconds 12] [--seed 0]
 
-The root is the commanded path, exactly; the pelvis sways about it. Everything is a causal function of control and noise.
+The root is the commanded path, exactly; the pelvis sways about it. All is a causal function of control and noise.
 """
 
 from collections.abc import Sequence
@@ -17,7 +17,7 @@ from motiondiff_edu.motion.root_frame import FPS, root_path
 from .body import body
 from .controls import KINDS, random_control
 from .noise import white
-from .styles import SHARES, STYLES, Style, draw_style, person
+from .styles import STYLES, Style, draw_style, person
 
 WARM_UP = 60  # frames walked before the first one, the first control held
 
@@ -46,7 +46,9 @@ def continuations(past: Clip, control: Float[np.ndarray, "n 3"], n: int, seed: i
     """
     made, control = past.info.get("made"), _checked(control)
     if made is None:
-        raise ValueError(f"clip {past.source!r} was not made by data_synth.walking, so its own continuations are unknown")
+        raise ValueError(
+            f"clip {past.source!r} was not made by data_synth.walking, so its own continuations are unknown"
+        )
     end = _end_in(past)
     whole = np.concatenate([made["control"][:end], control])
     redraw = [(f, s) for f, s in made["redraw"] if f < end]
@@ -71,7 +73,9 @@ def _checked(control: np.ndarray) -> np.ndarray:
     if control.ndim != 2 or control.shape[1] != 3 or len(control) == 0:
         raise ValueError(f"a control is (frames, 3): ahead m/s, left m/s, yaw rad/s; got shape {control.shape}")
     if not np.isfinite(control).all():
-        raise ValueError(f"control has a value that is not finite in frame {int(np.argmin(np.isfinite(control).all(1)))}")
+        raise ValueError(
+            f"control has a value that is not finite in frame {int(np.argmin(np.isfinite(control).all(1)))}"
+        )
     if (np.abs(control) > (4.5, 1.5, 4.5)).any():
         t = int(np.argmax((np.abs(control) > (4.5, 1.5, 4.5)).any(1)))
         raise ValueError(f"control in frame {t} is {control[t]}: at most 4.5 m/s ahead, 1.5 m/s aside, 4.5 rad/s")
@@ -84,7 +88,14 @@ def _clip(control: np.ndarray, seed: int, style: Style, phase: float, redraw: li
     root_xz, heading = root_path(led)
     rows = white(seed, len(led), [(f + WARM_UP, s) for f, s in redraw])
     poses, contacts = body(led, root_xz, heading, rows, style, phase, FPS)
-    made = {"control": control, "seed": seed, "style": style, "phase": phase, "redraw": redraw, "poses": poses[WARM_UP:]}
+    made = {
+        "control": control,
+        "seed": seed,
+        "style": style,
+        "phase": phase,
+        "redraw": redraw,
+        "poses": poses[WARM_UP:],
+    }
     info = {"style": style.name, "latents": asdict(style), "made": made}
     name = f"walk-{seed}" + "".join(f"-{f}.{s}" for f, s in redraw)
     return Clip(poses[WARM_UP:], control, FPS, contacts[WARM_UP:], name, info)
