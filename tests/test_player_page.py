@@ -181,6 +181,21 @@ def test_exported_html_is_alive_offline(browser, player, tmp_path):
         assert page.problems == [] and page.asked == []
 
 
+def test_a_notebook_exported_by_nbconvert_is_alive_offline(browser, player, tmp_path):
+    nbformat, nbconvert = pytest.importorskip("nbformat"), pytest.importorskip("nbconvert")
+    data, metadata = player._repr_mimebundle_()
+    output = nbformat.v4.new_output("execute_result", data, metadata=metadata, execution_count=1)
+    notebook = nbformat.v4.new_notebook(cells=[nbformat.v4.new_code_cell("player", outputs=[output])])
+    page_path = tmp_path / "notebook.html"
+    page_path.write_text(nbconvert.HTMLExporter().from_notebook_node(notebook)[0], "utf-8")
+    with open_page(browser) as page:
+        page.goto(page_path.as_uri())
+        inside = page.frame_locator("iframe")
+        inside.get_by_role("button", name="Play").click()
+        inside.locator(".mde-player:not([data-frame='0'])").wait_for()
+        assert min(coloured(inside.locator("canvas")).values()) > 200
+
+
 def test_where_no_script_runs_the_poster_is_seen(browser, player, tmp_path):
     page_path = tmp_path / "export.html"
     page_path.write_text(f"<!doctype html><body>{player._repr_mimebundle_()[0]['text/html']}", "utf-8")

@@ -29,7 +29,7 @@ def pose_strip(
     """n poses, evenly spaced from the first frame to the last; the first `past` frames paler: they were given."""
     words = f"{n} poses over {len(positions) / fps:.1f} s, left limbs blue, right limbs orange"
     words += "." if past is None else f"; the paler ones, up to {past / fps:.1f} s, were given."
-    fig, axes = figure(1.35 * n, 2.1 + 0.7 * bool(title) + 0.45, f"{title}: {words}" if title else words, 1, n)
+    fig, axes = figure(1.35 * n, 2.75 + 0.4 * bool(title), f"{title}: {words}" if title else words, 1, n)
     for axis, t in zip(axes, np.linspace(0, len(positions) - 1, n).round().astype(int), strict=True):
         draw_pose(axis, positions[t], camera, washed=bool(past is not None and t < past))
         axis.set_title(f"{t / fps:.1f} s", fontsize=SMALL)

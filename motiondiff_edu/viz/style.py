@@ -45,6 +45,7 @@ def figure(width: float | int, height: float | int, words: str, rows: int = 1, c
     with matplotlib.rc_context(_RC):
         fig = CaptionedFigure(figsize=(width, height), layout="constrained")
         axes = fig.subplots(rows, columns, squeeze=False, **options)
+    fig.get_layout_engine().set(h_pad=0.1)
     fig.set_label(words)
     return fig, list(axes.flat)
 

@@ -77,7 +77,7 @@ export function mount(model, el) {
       if (x % every === 0 && x !== 0) pen.fillText(`${Math.abs(x)} m`, toPixel([x, 0])[0], frame.h - 10);
     }
     const middle = toPixel([0, 0])[0];
-    pen.fillText("\u2190 left", middle - 0.5 * frame.scale, frame.h - 28); pen.fillText("right \u2192", middle + 0.5 * frame.scale, frame.h - 28);
+    pen.fillText("\u2190 left", middle - 36, frame.h - 28); pen.fillText("right \u2192", middle + 36, frame.h - 28);
   }
 
   function arrow([x, y], angle, size, colour) {

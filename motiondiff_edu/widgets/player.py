@@ -1,5 +1,6 @@
 """The player: moving figures, live in JupyterLab, alive in exported HTML, a picture where nothing runs.
 
+Notebooks are to be saved without widget state: with it, exported pages look for the module on the network.
 Space plays, arrows step (up and down by ten), Home and End jump, + and - zoom, F follows, R resets; drag to turn.
 Notebook: 00
 """
@@ -28,8 +29,8 @@ document.body.style.background = "#fff";
 mount(staticModel({record}), document.body, {{ fill: true }});
 </script></body></html>"""
 
-_STACK = """<div style="position:relative;width:100%;max-width:{width}px">
-<img alt="{alt}" src="data:image/png;base64,{png}" style="width:100%;min-height:{height}px;object-fit:contain">
+_STACK = """<div style="position:relative;width:100%;max-width:{width}px;min-height:{height}px">
+<img alt="{alt}" src="data:image/png;base64,{png}" style="width:100%">
 <iframe title="{title}" sandbox="allow-scripts" loading="lazy" srcdoc="{page}"
  style="position:absolute;inset:0;width:100%;height:100%;border:0"></iframe></div>"""
 
