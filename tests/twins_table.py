@@ -158,3 +158,55 @@ TWINS["08"] = {
     "residual_loop": Twin(adherence.residual_velocity, _planted_walk),
     "runs_loop": Twin(footsteps.runs, lambda: (np.array([1, 0, 0, 1, 1, 1, 0, 1], dtype=bool),)),
 }
+
+
+def _column(terms: torch.Tensor) -> torch.Tensor:
+    """The library keeps one number for each sample; the notebook has one for each entry, here the same."""
+    return terms[..., None]
+
+
+def _one_by_one(n: int, size: int) -> list[torch.Tensor | None]:
+    """Noises of steps 1..n as the library draws them from seed 5."""
+    generator = torch.Generator().manual_seed(5)
+    return [None] + [torch.randn(size, 1, generator=generator, dtype=torch.float64) for _ in range(n)]
+
+
+TWINS["04"] = {
+    "prior_term": Twin(
+        lambda x0, alpha_bar: _column(ddpm.prior_kl(x0, LINEAR)), lambda: (_normal(7, 1), LINEAR.alpha_bar[-1])
+    ),
+    "step_term": Twin(
+        lambda *args: _column(ddpm.step_kl(*args)),
+        lambda: (_normal(7, 1), _normal(7, 1, seed=1), 30, _normal(7, 1, seed=2), LINEAR),
+    ),
+    "last_term": Twin(
+        lambda *args: _column(ddpm.reconstruction_nll(*args)),
+        lambda: (_normal(7, 1), _normal(7, 1, seed=1), _normal(7, 1, seed=2), LINEAR),
+    ),
+    "all_terms": Twin(
+        lambda denoise, x0, schedule, noises: ddpm.bound_terms(
+            denoise, x0, schedule, torch.Generator().manual_seed(5)
+        ),
+        lambda: (_shrink, _normal(7, 1), LINEAR, _one_by_one(100, 7)),
+    ),
+    "weight": Twin(lambda s, schedule: ddpm.dropped_weight(schedule)[s], lambda: (30, LINEAR)),
+}
+
+
+def _small_block() -> tuple:
+    torch.manual_seed(3)
+    block = cross.Block(width=12, heads=3, hidden=20, with_context=True).double().requires_grad_(False)
+    return block, _normal(2, 5, 12), _normal(2, 7, 12, seed=1)
+
+
+TWINS["06"] = {
+    "attention_loop": Twin(
+        lambda q, k, v: cross.attention(*(x[None, None] for x in (q, k, v)))[0, 0],
+        lambda: (_normal(5, 4), _normal(7, 4, seed=1), _normal(7, 3, seed=2)),
+    ),
+    "heads_loop": Twin(
+        lambda layer, x, context: layer(x, context), lambda: (_small_block()[0].cross_attention, *_small_block()[1:])
+    ),
+    "bucket_loop": Twin(lambda distance: cross.relative_position_bucket(torch.tensor(distance)), lambda: (-46,)),
+    "block_by_hand": Twin(lambda block, x, context: block(x, context=context), _small_block),
+}

@@ -92,16 +92,16 @@ def densities(grid, curves: dict, caption: str, labels=("value", "density"), *, 
     return finish(figure, caption, labels)
 
 
-def histograms(samples: dict, grid, density, caption: str, label: str = "value", bins: int = 80) -> Figure:
-    """A histogram for each named set of samples, each under the same exact density."""
+def histograms(samples: dict, grid, density, caption: str, label: str = "value", top: float = 1.35) -> Figure:
+    """A histogram for each named set of samples, each under the same exact density; cut off at `top` times its peak."""
     figure, axes = panels(len(samples), width=4.2 * max(len(samples), 2), height=3.4, sharey=True)
     for i, (axis, (name, values)) in enumerate(zip(axes, samples.items(), strict=True)):
         ends = float(grid[0]), float(grid[-1])
         inside = np.clip(np.asarray(values).ravel(), *ends)
-        axis.hist(inside, bins=bins, range=ends, density=True, color=COLOURS[i], alpha=0.45)
+        axis.hist(inside, bins=80, range=ends, density=True, color=COLOURS[i], alpha=0.45)
         axis.plot(grid, density, color=INK, lw=1.8)
         axis.set_title(name)
-        axis.set_ylim(0, 2.2 * float(max(density)))
+        axis.set_ylim(0, top * float(max(density)))
     return finish(figure, caption, (label, "density"))
 
 
@@ -140,7 +140,7 @@ def one_moment(grid, density, values, guesses, s: int, caption: str) -> Figure:
 def bound(terms, exact: float, caption: str) -> Figure:
     """Terms of the negative bound over s (terms[0] is the prior's), and their running sum beside -E log q(x0)."""
     figure, (left, right) = panels(2, width=10.5, height=4)
-    s = np.arange(1, len(terms))
+    terms, s = np.asarray(terms), np.arange(1, len(terms))
     left.bar(s, terms[1:], width=1.0, color=np.where(s == 1, ORANGE, BLUE))
     left.bar([len(terms)], [terms[0]], width=1.0, color=GREEN)
     left.set_yscale("symlog", linthresh=0.02)

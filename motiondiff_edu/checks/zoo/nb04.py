@@ -1,0 +1,76 @@
+"""Wrong answers to the exercises of notebook 04."""
+import math
+
+import torch
+
+
+def _each(x0, alpha_bar):
+    left = 1 - alpha_bar
+    return (alpha_bar * x0 ** 2 + left - 1 - torch.log(left)) / 2
+
+
+def variance_forgotten(x0, alpha_bar):
+    return (alpha_bar * x0 ** 2).sum((1, 2)) / 2
+
+
+def logarithm_forgotten(x0, alpha_bar):
+    return (alpha_bar * x0 ** 2 - alpha_bar).sum((1, 2)) / 2
+
+
+def root_dropped(x0, alpha_bar):
+    left = 1 - alpha_bar
+    return ((alpha_bar * x0) ** 2 + left - 1 - torch.log(left)).sum((1, 2)) / 2
+
+
+def directions_swapped(x0, alpha_bar):
+    left = 1 - alpha_bar
+    return ((alpha_bar * x0 ** 2 + 1) / left - 1 + torch.log(left)).sum((1, 2)) / 2
+
+
+def _of_eps(beta, alpha_bar):
+    b, a = beta[1:], alpha_bar[1:]
+    return b / (2 * (1 - b) * (1 - a)), a
+
+
+def weight_of_eps(beta, alpha_bar):
+    return _of_eps(beta, alpha_bar)[0]
+
+
+def not_squared(beta, alpha_bar):
+    weight, a = _of_eps(beta, alpha_bar)
+    return weight * (a / (1 - a)) ** 0.5
+
+
+def upside_down(beta, alpha_bar):
+    weight, a = _of_eps(beta, alpha_bar)
+    return weight * (1 - a) / a
+
+
+def one_row_too_many(beta, alpha_bar):
+    weight, a = _of_eps(beta, alpha_bar)
+    return torch.cat([torch.zeros(1), weight * a / (1 - a)])
+
+
+ZOO = {
+    "prior_term": {
+        "variance forgotten": variance_forgotten,
+        "logarithm forgotten": logarithm_forgotten,
+        "square root dropped": root_dropped,
+        "directions swapped": directions_swapped,
+        "mean over entries": lambda x0, alpha_bar: _each(x0, alpha_bar).mean((1, 2)),
+        "summed over the batch": lambda x0, alpha_bar: _each(x0, alpha_bar).sum(),
+        "factor one half dropped": lambda x0, alpha_bar: 2 * _each(x0, alpha_bar).sum((1, 2)),
+    },
+    "x0_weight": {
+        "weight of eps": weight_of_eps,
+        "factor not squared": not_squared,
+        "factor upside down": upside_down,
+        "a row for s = 0": one_row_too_many,
+    },
+    "tighter_bound": {
+        "mean of the logs": lambda log_ratio: log_ratio.mean(0),
+        "log of the sum": lambda log_ratio: log_ratio.logsumexp(0),
+        "mean over the samples": lambda log_ratio: log_ratio.logsumexp(1) - math.log(log_ratio.shape[1]),
+        "underflow": lambda log_ratio: log_ratio.exp().mean(0).log(),
+    },
+}
