@@ -17,6 +17,7 @@ import numpy as np
 import torch
 from scipy.spatial.transform import Rotation, Slerp
 
+from motiondiff_edu import cross_modal_attention as cross
 from motiondiff_edu import ddpm, exact, rollout
 from motiondiff_edu.fast.samplers import ddim_steps
 from motiondiff_edu.metrics import adherence, bone_lengths, footsteps

@@ -5,22 +5,15 @@ Plain arrays in, a matplotlib Figure with its caption out.  Notebook: 01
 
 from collections.abc import Mapping, Sequence
 
-import matplotlib.pyplot as plt
 import numpy as np
 from jaxtyping import Float
 from matplotlib.figure import Figure
 
 from ..motion.skeleton import BONES, JOINTS, LEFT, RIGHT
 from .body import CENTRE_COLOUR, INK, LEFT_COLOUR, PATH_COLOUR, RIGHT_COLOUR
-from .noise import LOOK, finish
+from .style import figure as captioned
 
 SERIES = (INK, "#E69F00", LEFT_COLOUR, PATH_COLOUR)  # told apart by colour-blind readers, and by marker and label
-CONTROL_NAMES = ("forward (m/s)", "left (m/s)", "yaw (rad/s)")
-
-
-def _axes(width: float, height: float, rows: int = 1, columns: int = 1, **kwargs):
-    with plt.rc_context(LOOK):
-        return plt.subplots(rows, columns, figsize=(width, height), layout="constrained", squeeze=False, **kwargs)
 
 
 def _side_colour(joint: int) -> str:
@@ -36,7 +29,8 @@ def _bones_2d(axes, pose: np.ndarray, **line) -> None:
 
 def joint_map(pose: Float[np.ndarray, "21 3"], caption: str) -> Figure:
     """The skeleton seen from the front, every joint with its number; a list of names beside it."""
-    figure, ((drawn, listed),) = _axes(9, 5.6, 1, 2, width_ratios=[2, 1])
+    figure, (drawn, listed) = captioned(9, 5.6, caption, 1, 2, width_ratios=[2, 1])
+    drawn.grid(False)
     _bones_2d(drawn, pose[:, :2])
     drawn.plot(*pose[:, :2].T, "o", ms=14, mfc="white", mec=INK)
     drawn.margins(0.12, 0.05)
@@ -47,7 +41,7 @@ def joint_map(pose: Float[np.ndarray, "21 3"], caption: str) -> Figure:
     for j, name in enumerate(JOINTS):
         row = 1 - j / len(JOINTS)
         listed.text(0, row, f"{j:2d} {name}", color=_side_colour(j), fontsize=11, family="monospace", va="top")
-    return finish(figure, caption)
+    return figure
 
 
 def limb_steps(
@@ -57,19 +51,20 @@ def limb_steps(
     caption: str,
 ) -> Figure:
     """A limb of K joints at U moments between two poses, one panel for each way of going; below, its length (m)."""
-    figure, (above, below) = _axes(3.2 * len(ways), 5.6, 2, len(ways), height_ratios=[2.4, 1], sharey="row")
+    n = len(ways)
+    figure, axes = captioned(3.2 * n, 5.8, caption, 2, n, height_ratios=[2.4, 1], sharey="row")
     reach = 1.3 * max(np.abs(limb).max() for limb in ways.values())
-    for axes, curve, (name, limb) in zip(above, below, ways.items(), strict=True):
+    for panel, curve, (name, limb) in zip(axes[:n], axes[n:], ways.items(), strict=True):
         for u, pose in zip(np.linspace(0, 1, len(limb)), limb, strict=True):
-            axes.plot(*pose.T, "o-", color=INK, alpha=0.25 + 0.75 * (u in (0, 1)), ms=4, lw=2)
+            panel.plot(*pose.T, "o-", color=INK, alpha=0.25 + 0.75 * (u in (0, 1)), ms=4, lw=2)
             beyond = pose[-1] + 0.08 * pose[-1] / np.linalg.norm(pose[-1])
-            axes.text(*beyond, f"{u:.2g}", fontsize=10, color=RIGHT_COLOUR, ha="center", va="center")
-        axes.set(aspect="equal", title=name, xlim=(-reach, reach), ylim=(-reach, reach), xlabel="x (m)")
+            panel.text(*beyond, f"{u:.2g}", fontsize=10, color=RIGHT_COLOUR, ha="center", va="center")
+        panel.set(aspect="equal", title=name, xlim=(-reach, reach), ylim=(-reach, reach), xlabel="x (m)")
         curve.plot(np.linspace(0, 1, len(lengths[name])), lengths[name], color=LEFT_COLOUR)
         curve.axhline(true_length, color=INK, lw=0.8, ls="--")
         curve.set(xlabel="share of the way, u", ylim=(0, 1.15 * true_length))
-    below[0].set_ylabel("bone (m)")
-    return finish(figure, caption)
+    axes[n].set_ylabel("bone (m)")
+    return figure
 
 
 def paths_from_above(
@@ -77,7 +72,7 @@ def paths_from_above(
 ) -> Figure:
     """Root paths (x, z) with their headings (radians) as arrows, seen from above with the figure's left on the left."""
     spread = np.ptp(np.concatenate([root for root, _ in paths.values()]), axis=0)
-    figure, ((axes,),) = _axes(9, 1.4 + 6.5 * min(max(spread[1] / max(spread[0], 1e-3), 0.3), 0.75))
+    figure, (axes,) = captioned(9, 1.4 + 6.5 * min(max(spread[1] / max(spread[0], 1e-3), 0.3), 0.75), caption)
     for k, (name, (root, heading)) in enumerate(paths.items()):
         colour = SERIES[k % len(SERIES)]
         axes.plot(*root.T, color=colour, lw=2, label=name, ls="-" if k == 0 else "--")
@@ -87,28 +82,16 @@ def paths_from_above(
     axes.invert_xaxis()  # from above, and looking along z, left is on the left
     axes.set(aspect="equal", xlabel="x: left (m)", ylabel="z: forward (m)")
     if len(paths) > 1:
-        axes.legend(loc="center left", bbox_to_anchor=(1.02, 0.5))
-    return finish(figure, caption)
-
-
-def control_curves(controls: Mapping[str, Float[np.ndarray, "_ 3"]], caption: str, fps: float = 20.0) -> Figure:
-    """The three columns of control over time (s), one line for each of the given controls."""
-    figure, (panels,) = _axes(9, 2.9, 1, 3)
-    for column, axes in enumerate(panels):
-        for k, (name, control) in enumerate(controls.items()):
-            style = {"color": SERIES[k % len(SERIES)], "ls": "-" if k == 0 else "--"}
-            axes.plot(np.arange(len(control)) / fps, control[:, column], label=name, **style)
-        axes.axhline(0, color="0.7", lw=0.7, zorder=0)
-        axes.set(title=CONTROL_NAMES[column], xlabel="s")
-    axes.legend(fontsize=10)
-    return finish(figure, caption)
+        axes.legend(loc="center left", bbox_to_anchor=(1.02, 0.5), frameon=False)
+    return figure
 
 
 def windows_in_time(
     starts: Sequence[Sequence[int]], length: int, groups: Sequence[Sequence[str]], caption: str, fps: float = 20.0
 ) -> Figure:
     """Windows as bars: starts[k] are the first frames of the windows of recording k, groups[k] "train" or "test"."""
-    figure, ((axes,),) = _axes(9, 1.3 + 0.6 * len(starts))
+    figure, (axes,) = captioned(9, 1.3 + 0.6 * len(starts), caption)
+    axes.grid(False)
     colours = {"train": LEFT_COLOUR, "test": RIGHT_COLOUR}
     for k, (firsts, names) in enumerate(zip(starts, groups, strict=True)):
         for n, (first, name) in enumerate(zip(firsts, names, strict=True)):
@@ -117,6 +100,6 @@ def windows_in_time(
         axes.bar(0, 0, color=colour, label=name)
     names = [f"recording {k}" for k in range(len(starts))]
     axes.set(yticks=np.arange(len(starts)) + 0.19, yticklabels=names, xlabel="s")
-    axes.legend(ncols=2, loc="lower right", fontsize=11, bbox_to_anchor=(1, 1))
+    axes.legend(ncols=2, loc="lower right", fontsize=11, bbox_to_anchor=(1, 1), frameon=False)
     axes.invert_yaxis()
-    return finish(figure, caption)
+    return figure

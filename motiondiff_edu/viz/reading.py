@@ -1,0 +1,53 @@
+"""What attention reads, and what it is worth: buckets of time, sharpness, and weight against measured effect.
+
+Plain arrays in, a captioned Figure out.  Notebook: 06
+"""
+
+from collections.abc import Mapping
+
+import numpy as np
+from jaxtyping import Float, Int
+from matplotlib.figure import Figure
+
+from .style import OKABE_ITO, figure, legend
+
+
+def bucket_map(distance: Int[np.ndarray, "N"], bucket: Int[np.ndarray, "N"], window: int, words: str) -> Figure:
+    """Bucket over time distance (frames, key minus query); the distances within +-window are shaded."""
+    fig, (axis,) = figure(9, 3.8, words)
+    for past, colour, name in ((True, OKABE_ITO[0], "key in the past"), (False, OKABE_ITO[1], "key in the future")):
+        side = distance <= 0 if past else distance > 0
+        axis.plot(distance[side], bucket[side], "o" if past else "s", color=colour, ms=3, label=name)
+    axis.axvspan(-window, window, color="#5B6472", alpha=0.12, label="within MoDiff's window")
+    axis.set(xlabel="time of the key minus time of the query (frames)", ylabel="bucket")
+    legend(axis, loc="center right")
+    return fig
+
+
+def sharpness(
+    sizes: Int[np.ndarray, "N"], curves: Mapping[str, Float[np.ndarray, "N"]], floor: float, words: str
+) -> Figure:
+    """The largest weight of a row over the size d of queries and keys; `floor` is that of equal weights."""
+    fig, (axis,) = figure(9, 3.8, words)
+    for k, (name, values) in enumerate(curves.items()):
+        axis.plot(sizes, values, color=OKABE_ITO[k], marker="os"[k % 2], ls=("-", "--")[k % 2], label=name)
+    axis.axhline(floor, color="#5B6472", lw=1.2, ls=":", label="all weights equal")
+    axis.set(xlabel="size d of queries and keys", ylabel="largest weight (mean)", ylim=(0, 1.02))
+    axis.set_xscale("log", base=2)
+    legend(axis)
+    return fig
+
+
+def weight_against_effect(
+    weight: Float[np.ndarray, "B M"], effect: Float[np.ndarray, "B M"], groups: list[tuple[str, int]], words: str
+) -> Figure:
+    """Each key of each example: the attention that it got, and how far the output moves when it is hidden (cm)."""
+    fig, axes = figure(4.4 * len(groups), 3.9, words, 1, len(groups), sharey=True)
+    first = 0
+    for k, (axis, (name, count)) in enumerate(zip(axes, groups, strict=True)):
+        part = slice(first, first + count)
+        axis.plot(100 * weight[:, part].ravel(), effect[:, part].ravel(), ".", color=OKABE_ITO[k], alpha=0.35, ms=6)
+        axis.set(title=name, xlabel="attention (%)", yscale="log")
+        first += count
+    axes[0].set_ylabel("output moves by (cm)")
+    return fig
