@@ -28,9 +28,9 @@ def attention_weights(
 def attention(
     q: Float[Tensor, "B H T d"],
     k: Float[Tensor, "B H M d"],
-    v: Float[Tensor, "B H M d"],
+    v: Float[Tensor, "B H M e"],
     bias: Float[Tensor, "#B H T M"] | None = None,
-) -> Float[Tensor, "B H T d"]:
+) -> Float[Tensor, "B H T e"]:
     """weights V, every query's weighted mean of the values.  Source: MoFusion eq. 8-9.  Notebook: 06"""
     return attention_weights(q, k, bias) @ v
 
