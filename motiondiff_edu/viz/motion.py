@@ -8,6 +8,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 from jaxtyping import Float
 from matplotlib.figure import Figure
+from matplotlib.patches import Patch
 
 from ..motion.skeleton import BONES, JOINTS, LEFT, RIGHT
 from .body import CENTRE_COLOUR, INK, LEFT_COLOUR, PATH_COLOUR, RIGHT_COLOUR
@@ -96,10 +97,9 @@ def windows_in_time(
     for k, (firsts, names) in enumerate(zip(starts, groups, strict=True)):
         for n, (first, name) in enumerate(zip(firsts, names, strict=True)):
             axes.barh(k + 0.38 * (n % 2), length / fps, 0.34, first / fps, color=colours[name], edgecolor="white")
-    for name, colour in colours.items():
-        axes.bar(0, 0, color=colour, label=name)
+    keys = [Patch(color=colour, label=name) for name, colour in colours.items()]
     names = [f"recording {k}" for k in range(len(starts))]
     axes.set(yticks=np.arange(len(starts)) + 0.19, yticklabels=names, xlabel="s")
-    axes.legend(ncols=2, loc="lower right", fontsize=11, bbox_to_anchor=(1, 1), frameon=False)
+    axes.legend(handles=keys, ncols=2, loc="lower right", fontsize=11, bbox_to_anchor=(1, 1), frameon=False)
     axes.invert_yaxis()
     return figure
