@@ -25,7 +25,7 @@ def _target(kind: str, rng: np.random.Generator) -> tuple[float, float, float]:
     if kind == "straight":
         return float(rng.uniform(0.6, 1.9)), 0.0, 0.25 * some * (rng.random() < 0.5)
     if kind == "turn":
-        return float(rng.uniform(0.4, 1.7)), 0.0, MAX_YAW * some
+        return float(rng.uniform(0.4, 1.7)), 0.0, 1.1 * MAX_YAW * some
     if kind == "run":
         return float(rng.uniform(1.8, 3.0)), 0.0, 0.9 * some * (rng.random() < 0.6)
     if kind == "sidestep":
@@ -41,7 +41,7 @@ def _target(kind: str, rng: np.random.Generator) -> tuple[float, float, float]:
             0.5 * float(rng.uniform(-1, 1)) * (rng.random() < 0.4),
         )
     if kind == "spot":
-        return 0.0, 0.0, MAX_YAW * some
+        return 0.0, 0.0, 1.1 * MAX_YAW * some
     return 0.0, 0.0, 0.0  # stand
 
 
@@ -90,7 +90,6 @@ def _possible(control: np.ndarray) -> np.ndarray:
     """Turning and stepping aside are limited by speed: |v w| at most 2.3 m/s2, no fast sideways running."""
     speed = np.abs(control[:, 0])
     most = np.minimum(MAX_YAW, 2.3 / np.maximum(speed, 0.5))
-    yaw = most * np.tanh(control[:, 2] / most) if len(control) else control[:, 2]
-    yaw = np.where(most < MAX_YAW, yaw, np.clip(control[:, 2], -MAX_YAW, MAX_YAW))
+    yaw = control[:, 2] / (1 + (np.abs(control[:, 2]) / most) ** 12) ** (1 / 12)
     aside = control[:, 1] * np.clip((2.0 - speed) / 0.8, 0, 1)
     return np.stack([control[:, 0], aside, yaw], -1)

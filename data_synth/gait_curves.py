@@ -10,7 +10,7 @@ from scipy.interpolate import PchipInterpolator
 
 RUN_SPEED = 2.2  # m/s where walking gives way to running
 
-Frames = Float[np.ndarray, "*T"]
+Frames = Float[np.ndarray, "*#T"]
 
 
 def running(speed: Frames) -> Frames:
@@ -39,7 +39,7 @@ def stance_fraction(forward: Frames, run: Frames) -> Frames:
     return walk + (running_one - walk) * run
 
 
-def fourier(table: list[float], harmonics: int) -> tuple[np.ndarray, np.ndarray]:
+def fourier(table: list, harmonics: int) -> tuple[np.ndarray, np.ndarray]:
     """Coefficients (cosines, sines) of a periodic curve given at equal steps of phase; the mean comes first."""
     c = np.fft.rfft(table) / len(table)
     c = c[: harmonics + 1] * np.where(np.arange(harmonics + 1) == 0, 1, 2)
