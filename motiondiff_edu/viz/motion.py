@@ -60,7 +60,7 @@ def limb_steps(
             panel.plot(*pose.T, "o-", color=INK, alpha=0.25 + 0.75 * (u in (0, 1)), ms=4, lw=2)
             beyond = pose[-1] + 0.08 * pose[-1] / np.linalg.norm(pose[-1])
             panel.text(*beyond, f"{u:.2g}", fontsize=10, color=RIGHT_COLOUR, ha="center", va="center")
-        panel.set(aspect="equal", title=name, xlim=(-reach, reach), ylim=(-reach, reach), xlabel="x (m)")
+        panel.set(aspect="equal", title=name, xlim=(-reach, reach), ylim=(-reach, reach), xlabel="x (m)", xticks=(-0.5, 0, 0.5))
         curve.plot(np.linspace(0, 1, len(lengths[name])), lengths[name], color=LEFT_COLOUR)
         curve.axhline(true_length, color=INK, lw=0.8, ls="--")
         curve.set(xlabel="share of the way, u", ylim=(0, 1.15 * true_length))
