@@ -9,6 +9,7 @@ import numpy as np
 from jaxtyping import Bool, Float
 from matplotlib.figure import Figure
 
+from ..metrics.footsteps import runs
 from .body import INK, LEFT_COLOUR, RIGHT_COLOUR
 from .style import DASHES, MARKERS, figure, legend
 
@@ -49,8 +50,8 @@ def toe_heights(
     """Height of the left and right toe over time, in cm; grey where the lower one counts as planted."""
     fig, (axis,) = figure(9, 3.4, words)
     seconds = np.arange(len(height)) / fps
-    grey = np.append(planted, False)[: len(seconds)]
-    axis.fill_between(seconds, 0, 1, where=grey, transform=axis.get_xaxis_transform(), color="0.9", step="post")
+    for begin, end in runs(planted):
+        axis.axvspan(begin / fps, end / fps, color="0.9", lw=0)
     for side, (label, colour) in enumerate((("left toe", LEFT_COLOUR), ("right toe", RIGHT_COLOUR))):
         axis.plot(seconds, 100 * height[:, side], "-" if side == 0 else "--", label=label, color=colour)
     axis.axhline(3, color=INK, lw=1, ls=":", label="3 cm")
