@@ -7,6 +7,7 @@ import argparse
 import json
 import os
 import shutil
+import signal
 import subprocess
 import sys
 import tempfile
@@ -14,8 +15,9 @@ from pathlib import Path
 
 PACKAGE = Path(__file__).parent
 # what a projector wants: matplotlib's type, and JupyterLab's
-LARGE_FIGURES = "font.size: 16\nlines.linewidth: 2.5\nfigure.dpi: 110\n"
-LARGE_TYPE = {"overrides": {"code-font-size": "19px", "content-font-size1": "21px", "ui-font-size1": "15px"}}
+LARGE_FIGURES = "figure.dpi: 150\nfont.size: 13\nlines.linewidth: 2.2\n"
+LARGE_TYPE = {"overrides": {"code-font-size": "19px", "content-font-size1": "21px", "ui-font-size1": "17px"}}
+QUIET = {"fetchNews": "false", "checkForUpdates": False}
 
 
 class NotebookError(ValueError):
@@ -65,9 +67,10 @@ def place_for_demo(folder: Path, home: Path) -> Path:
 
 def demo_environment(home: Path) -> dict[str, str]:
     """What makes a notebook ready to show: MOTIONDIFF_DEMO for runtime, large type in figures and in JupyterLab."""
-    themes = home / "settings" / "@jupyterlab" / "apputils-extension" / "themes.jupyterlab-settings"
-    themes.parent.mkdir(parents=True)
-    themes.write_text(json.dumps(LARGE_TYPE))
+    folder = home / "settings" / "@jupyterlab" / "apputils-extension"
+    folder.mkdir(parents=True)
+    (folder / "themes.jupyterlab-settings").write_text(json.dumps(LARGE_TYPE))
+    (folder / "notification.jupyterlab-settings").write_text(json.dumps(QUIET))
     (home / "matplotlibrc").write_text(LARGE_FIGURES)
     settings = {"JUPYTERLAB_SETTINGS_DIR": home / "settings", "MATPLOTLIBRC": home / "matplotlibrc"}
     return {"MOTIONDIFF_DEMO": "1"} | {name: str(path) for name, path in settings.items()}
@@ -80,10 +83,21 @@ def open_lab(root: Path, notebook: Path, options: list[str], environment: dict[s
     if hasattr(os, "geteuid") and os.geteuid() == 0:
         command.append("--allow-root")  # in a container everyone is root, and JupyterLab would refuse
     print(f"opening {notebook.name} in {root} (stop with Ctrl-C)", flush=True)
+    return serve([*command, *options], environment or {})
+
+
+def serve(command: list[str], environment: dict[str, str]) -> int:
+    """Run the server; its exit status. Ctrl-C and SIGTERM end it in good order, so that no kernel is left behind."""
+    server = subprocess.Popen(command, env=os.environ | environment)
+    before = signal.signal(signal.SIGTERM, lambda *_: server.terminate())
     try:
-        return subprocess.call([*command, *options], env=os.environ | (environment or {}))
+        return server.wait()
     except KeyboardInterrupt:
+        server.terminate()
+        server.wait()
         return 0
+    finally:
+        signal.signal(signal.SIGTERM, before)
 
 
 def lab(options: list[str]) -> int:

@@ -5,6 +5,7 @@ import re
 import subprocess
 import sys
 import time
+import urllib.error
 import urllib.request
 from pathlib import Path
 
@@ -32,13 +33,13 @@ def calls(monkeypatch):
     """Instead of starting JupyterLab: (command, what the demo's files and environment held)."""
     seen = []
 
-    def call(arguments, env):
+    def serve(arguments, env):
         root = next(a.split("=")[1] for a in arguments if "root_dir" in a)
         files = sorted(p.relative_to(root).as_posix() for p in Path(root).rglob("*") if p.is_file())
         seen.append((arguments, env, files))
         return 0
 
-    monkeypatch.setattr(subprocess, "call", call)
+    monkeypatch.setattr(command, "serve", serve)
     return seen
 
 
@@ -84,7 +85,19 @@ def test_matplotlib_takes_the_large_type(tmp_path):
     import matplotlib
 
     values = matplotlib.rc_params_from_file(environment["MATPLOTLIBRC"], use_default_template=False)
-    assert values["font.size"] == 16
+    assert values["figure.dpi"] == 150
+
+
+def ask(address: str, attempts: int = 60) -> dict:
+    """The JSON at an address; a server tells its address a moment before it listens there."""
+    for _ in range(attempts):
+        try:
+            with urllib.request.urlopen(address, timeout=30) as answer:
+                return json.load(answer)
+        except urllib.error.URLError as error:
+            reason = error
+            time.sleep(0.5)
+    raise reason
 
 
 def test_jupyterlab_really_starts_and_serves_the_notebook(checkout):
@@ -105,11 +118,11 @@ def test_jupyterlab_really_starts_and_serves_the_notebook(checkout):
         port, page = address
         assert page == "/lab/tree/notebooks/student/00_start.ipynb"
         served = f"http://127.0.0.1:{port}/api/contents/{page.removeprefix('/lab/tree/')}?token=walk"
-        with urllib.request.urlopen(served, timeout=30) as answer:
-            assert json.load(answer)["type"] == "notebook"
-        stop = f"http://127.0.0.1:{port}/api/shutdown?token=walk"
-        urllib.request.urlopen(urllib.request.Request(stop, method="POST"), timeout=30)
-        assert server.wait(timeout=60) == 0
+        assert ask(served)["type"] == "notebook"
+        server.terminate()
+        server.wait(timeout=60)
+        with pytest.raises(urllib.error.URLError):  # ending the command ended JupyterLab, too
+            urllib.request.urlopen(served, timeout=5)
     finally:
         server.kill()
         server.stderr.close()
