@@ -46,7 +46,7 @@ class MoDiffConfig:
 
 
 MODIFF_PAPER = MoDiffConfig(dropout=0.1)
-MODIFF_SMALL = MoDiffConfig(width=96, hidden=384)
+MODIFF_SMALL = MoDiffConfig(width=120, hidden=240)
 
 
 def step_embedding(s: Int[Tensor, "B"], width: int) -> Float[Tensor, "B W"]:
@@ -89,6 +89,7 @@ class MoDiff(nn.Module):
         memory = torch.cat([past, both])
         self.past_in, self.control_in = nn.Linear(config.D, width), nn.Linear(config.C, width)
         self.modality = nn.Parameter(0.02 * torch.randn(2, width))  # which of the two a token is
+        self.time = nn.Parameter(step_embedding(8 * torch.arange(len(both)), width))  # and when: 8 tells frames apart
         self.motion_encoder = Encoder(config, config.motion_layers, past)
         self.control_encoder = Encoder(config, config.control_layers, both)
         self.cross_encoder = Encoder(config, config.cross_layers, memory)
@@ -114,8 +115,8 @@ class MoDiff(nn.Module):
                 f"this network takes {frames[0]} past poses and {frames[1]} rows of control "
                 f"(past and future), got {past.shape[1]} and {control.shape[1]}"
             )
-        motion = self.motion_encoder(self.past_in(past) + self.modality[0])
-        control = self.control_encoder(self.control_in(control) + self.modality[1])
+        motion = self.motion_encoder(self.past_in(past) + self.time[: self.config.T_h] + self.modality[0])
+        control = self.control_encoder(self.control_in(control) + self.time + self.modality[1])
         return self.memory_norm(self.cross_encoder(torch.cat([motion, control], dim=1)))
 
     def decode(
@@ -124,6 +125,7 @@ class MoDiff(nn.Module):
         """One look at the noised future: what the target (eps, x0 or v) is thought to be."""
         step = self.step_in(step_embedding(s, self.config.width))
         x = self.future_in(torch.cat([x_s, step[:, None].expand(-1, x_s.shape[1], -1)], dim=-1))
+        x = x + self.time[self.config.T_h :]
         self_bias, memory_bias = self.self_bias(), self.memory_bias()
         for block in self.decoder:
             x = block(x, self_bias, memory, memory_bias)

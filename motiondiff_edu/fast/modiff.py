@@ -60,7 +60,8 @@ class FastMoDiff:
         weight = model.future_in.weight
         self.x_weight = weight[:, :D].contiguous()  # the noised poses' half of the input layer
         steps = model.step_in(step_embedding(torch.arange(model.config.S + 1), width))
-        self.step_part = F.linear(steps, weight[:, D:], model.future_in.bias)  # the step's half, for every s
+        step_part = F.linear(steps, weight[:, D:], model.future_in.bias)  # the step's half, for every s
+        self.start = step_part[:, None] + model.time[model.config.T_h :]  # and when each frame is
         self.layers = [_Layer(block) for block in model.decoder]
         self.self_bias, self.memory_bias = model.self_bias().contiguous(), model.memory_bias().contiguous()
         self.skip = None if model.skip is None else model.skip.tolist()
@@ -83,7 +84,7 @@ class FastMoDiff:
     ) -> Float[Tensor, "B T_p D"]:
         """The network's output at step s (one step for the whole batch): eps, x0 or v, as its target says."""
         step = s if isinstance(s, int) else int(s[0])
-        x = F.linear(x_s, self.x_weight, self.step_part[step])
+        x = F.linear(x_s, self.x_weight).add_(self.start[step])
         for layer, keys, values in zip(self.layers, context.keys, context.values, strict=True):
             x = layer(x, self.self_bias, keys, values, self.memory_bias)
         out = self.model.head(x)

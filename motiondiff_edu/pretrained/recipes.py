@@ -15,9 +15,11 @@ class Recipe:
     name: str
     config: MoDiffConfig
     steps: int
-    lr: float = 1.5e-3
+    lr: float = 1e-3
     batch: int = 32  # windows a step
-    noises: int = 4  # diffusion steps drawn for each window
+    noises: int = 2  # diffusion steps drawn for each window
+    jitter: float = 0.02  # of the past, in standard deviations
+    metres: float = 1.0  # columns of the loss are weighted by their standard deviation to this power
     decay: float = 0.999
     clips: int = 720
     seconds: float = 20.0
@@ -25,12 +27,12 @@ class Recipe:
     data_seed: int = 1
     seed: int = 0
     styles: tuple[str, ...] | None = None
-    bf16: bool = False
+    bf16_share: float = 0.8  # of the steps in bfloat16 arithmetic, the rest in float32
 
 
-WALKER_X0 = Recipe("walker-x0", replace(MODIFF_SMALL, target="x0", skip=False), steps=40_000)
-WALKER_EPS = Recipe("walker-eps", MODIFF_SMALL, steps=40_000)
-WALKER_PAPER = Recipe("walker-paper", MODIFF_PAPER, steps=200_000, lr=2e-4, batch=64, clips=2400, bf16=True)
+WALKER_X0 = Recipe("walker-x0", replace(MODIFF_SMALL, target="x0", skip=False), steps=18_000)
+WALKER_EPS = Recipe("walker-eps", MODIFF_SMALL, steps=18_000)
+WALKER_PAPER = Recipe("walker-paper", MODIFF_PAPER, steps=200_000, lr=2e-4, batch=64, clips=2400)
 
 SHIPPED = (WALKER_X0, WALKER_EPS)
 RECIPES = {recipe.name: recipe for recipe in (*SHIPPED, WALKER_PAPER)}

@@ -1,6 +1,7 @@
 """Train a recipe into a walker: data, windows, loop, card. A killed run continues where it was saved last."""
 
 import datetime
+import itertools
 import platform
 import subprocess
 import time
@@ -41,19 +42,14 @@ def train(recipe: Recipe, run_file: Path, clips: list[Clip] | None = None, log=p
     if run_file.exists():
         state.resume(run_file)
         log(f"{recipe.name}: continuing at step {state.step}")
-    loss_fn = window_loss(windows, schedule, batch=recipe.batch, noises=recipe.noises)
-    if recipe.bf16:
-        loss_fn = _in_bf16(loss_fn, device)
+    sizes = {"batch": recipe.batch, "noises": recipe.noises, "jitter": recipe.jitter, "metres": recipe.metres}
+    loss_fn = window_loss(windows, schedule, **sizes)
     began, cpu, losses = time.monotonic(), time.process_time(), []
-    loop = train_steps(
-        state,
-        loss_fn,
-        recipe.steps,
-        lr=cosine_lr(recipe.lr, recipe.steps, 500),
-        decay=recipe.decay,
-        save_to=run_file,
-        save_every=2000,
-        progress=False,
+    settings = {"lr": cosine_lr(recipe.lr, recipe.steps, 500), "decay": recipe.decay, "save_to": run_file}
+    settings |= {"save_every": 2000, "progress": False}
+    loop = itertools.chain(
+        train_steps(state, _in_bf16(loss_fn, device), int(recipe.bf16_share * recipe.steps), **settings),
+        train_steps(state, loss_fn, recipe.steps, **settings),
     )
     for report in loop:
         losses.append(report.loss)
