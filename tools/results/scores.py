@@ -86,6 +86,7 @@ def diversity(rollouts: Float[np.ndarray, "P n T J 3"], drawn: Float[np.ndarray,
         _figure("diversity_m", "m", np.mean, own),
         _figure("diversity_data_m", "m", np.mean, data),
         _figure("diversity_over_data", "ratio", _ratio, own, data),
+        _figure("diversity_over_data_median", "ratio", lambda a, b: np.median(a / b), own, data),
     ]
 
 
