@@ -66,8 +66,10 @@ def walkers(records: dict[str, dict]) -> str:
     rows = [[f"`{kind}`", *(_cell(records.get(f"{column}.{kind}")) for column in columns)] for kind in kinds]
     if not names:
         return "## The walkers\n\nNot measured yet.\n"
+    clips = sorted({records[n]["seeds"]["clips"] for n in names if "clips" in records[n]["seeds"]})
     return (
-        "## The walkers\n\n100 unseen pasts and controls of 12 s, raw output, DDPM with S = 100 (`ddim10`: ten DDIM "
+        f"## The walkers\n\n{' or '.join(map(str, clips))} unseen pasts and controls of 12 s, "
+        "raw output, DDPM with S = 100 (`ddim10`: ten DDIM "
         "steps), control held over the window (`lookahead`: the window sees the control to come). `_data` rows judge "
         "the recorded motion under the same control.\n\n" + table(["figure", *columns], rows)
     )
