@@ -5,16 +5,11 @@ is why a resumed run continues bit for bit.  Source: MoDiff Alg. 1.  Notebook: 0
 """
 
 import copy
-import json
 import math
-import os
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from pathlib import Path
 
 import torch
-from safetensors import safe_open
-from safetensors.torch import save_file
 from torch import Tensor, nn
 from tqdm.auto import tqdm
 
@@ -27,7 +22,7 @@ class NonFiniteLoss(RuntimeError):
 
 @dataclass(eq=False)
 class TrainState:
-    """Everything that a run consists of: what `save` writes and `resume` reads."""
+    """Everything that a run consists of: what `runs.save_run` writes and `runs.resume_run` reads."""
 
     model: nn.Module
     average: nn.Module  # exponential moving average of the weights: what is used after training
@@ -41,37 +36,6 @@ class TrainState:
         average = copy.deepcopy(model).requires_grad_(False).eval()
         optimizer = torch.optim.Adam(model.parameters(), fused=True)
         return cls(model, average, optimizer, torch.Generator().manual_seed(seed))
-
-    def save(self, path: str | Path) -> None:
-        """Write the run (safetensors: no code in it) to a temporary name, then rename: a kill leaves the old file."""
-        tensors = {f"model.{k}": v for k, v in self.model.state_dict().items()}
-        tensors |= {f"average.{k}": v for k, v in self.average.state_dict().items()}
-        for i, moments in self.optimizer.state_dict()["state"].items():
-            tensors |= {f"adam.{i}.{k}": v for k, v in moments.items()}
-        tensors |= {"random.generator": self.generator.get_state(), "random.torch": torch.get_rng_state()}
-        temporary = f"{path}.part"
-        save_file({k: v.contiguous().clone() for k, v in tensors.items()}, temporary, {"step": json.dumps(self.step)})
-        os.replace(temporary, path)
-
-    def resume(self, path: str | Path) -> "TrainState":
-        """Continue the run saved at `path`; it must be of the same model (else load_state_dict says what differs)."""
-        with safe_open(path, "pt") as file:
-            tensors = {name: file.get_tensor(name) for name in file.keys()}
-            self.step = json.loads(file.metadata()["step"])
-        parts = {}
-        for name, tensor in tensors.items():
-            part, key = name.split(".", 1)
-            parts.setdefault(part, {})[key] = tensor
-        self.model.load_state_dict(parts["model"])
-        self.average.load_state_dict(parts["average"])
-        adam = {}
-        for name, tensor in parts.get("adam", {}).items():
-            index, key = name.split(".")
-            adam.setdefault(int(index), {})[key] = tensor
-        self.optimizer.load_state_dict(self.optimizer.state_dict() | {"state": adam})
-        self.generator.set_state(parts["random"]["generator"])
-        torch.set_rng_state(parts["random"]["torch"])
-        return self
 
 
 @dataclass(frozen=True)
@@ -103,15 +67,15 @@ def train_steps(
     lr: float | Callable[[int], float] = 1e-3,
     clip: float = 1.0,
     decay: float = 0.999,
-    save_to: str | Path | None = None,
+    save: Callable[[TrainState], object] | None = None,
     save_every: int = 1000,
     progress: bool = True,
 ) -> Iterator[TrainStep]:
     """Train until `state.step == steps`, yielding after each step.
 
-    Gradients are clipped to the norm `clip`; the average follows with `decay` (less in the first steps). With `save_to`
-    the run is saved every `save_every` steps and at the end.
-    Raises NonFiniteLoss with what to do; the last good weights stay in `state` and, with `save_to`, on disk.
+    Gradients are clipped to the norm `clip`; the average follows with `decay` (less in the first steps). `save`, if
+    given, is called with the state every `save_every` steps and at the end (`runs.saver` makes one).
+    Raises NonFiniteLoss with what to do; the last good weights stay in `state`, and are saved.
     Source: MoDiff Alg. 1 (the loop).  Notebook: 05, 07
     """
     bar = tqdm(total=steps, initial=state.step, disable=not progress, desc="training", unit="step", mininterval=1.0)
@@ -124,14 +88,14 @@ def train_steps(
             loss.backward()
             norm = nn.utils.clip_grad_norm_(state.model.parameters(), clip)
             if not (torch.isfinite(loss) and torch.isfinite(norm)):
-                _stop(state, loss.item(), norm.item(), rate, save_to)
+                _stop(state, loss.item(), norm.item(), rate, save)
             for group in state.optimizer.param_groups:
                 group["lr"] = rate
             state.optimizer.step()
             _follow(state, decay)
             state.step += 1
-            if save_to and (state.step % save_every == 0 or state.step == steps):
-                state.save(save_to)
+            if save and (state.step % save_every == 0 or state.step == steps):
+                save(state)
             bar.update()
             report = TrainStep(state.step, loss.item(), norm.item(), rate)
             if state.step % 20 == 0:
@@ -148,11 +112,8 @@ def _follow(state: TrainState, decay: float) -> None:
         mean.lerp_(new, 1 - decay) if mean.is_floating_point() else mean.copy_(new)
 
 
-def _stop(state: TrainState, loss: float, norm: float, rate: float, save_to: str | Path | None) -> None:
-    kept = ""
-    if save_to:
-        state.save(save_to)
-        kept = f" They are saved in {save_to}."
+def _stop(state: TrainState, loss: float, norm: float, rate: float, save: Callable | None) -> None:
+    kept = f" They are saved: {save(state)}." if save else ""
     raise NonFiniteLoss(
         f"step {state.step}: the loss is {loss}, the gradient's norm {norm}, at learning rate {rate:g}. "
         f"The weights are those of the last good step.{kept} Usual causes: a learning rate too high (try a tenth), "

@@ -13,6 +13,7 @@ import torch
 from safetensors.torch import load_file
 from torch import nn
 
+from motiondiff_edu.runs import resume_run, saver
 from motiondiff_edu.training import NonFiniteLoss, TrainState, cosine_lr, train_steps
 
 
@@ -32,9 +33,9 @@ def run(path, steps, resume=False, pause=0):
     state = TrainState.start(network(), seed=4)
     torch.manual_seed(5)
     if resume:
-        state.resume(path)
+        resume_run(state, path)
     lr = cosine_lr(1e-2, 40, warmup=6)
-    for report in train_steps(state, toy_loss, steps, lr=lr, save_to=path, save_every=8, progress=False):
+    for report in train_steps(state, toy_loss, steps, lr=lr, save=saver(path), save_every=8, progress=False):
         if report.step == pause:
             print("paused", flush=True)
             sys.stdin.read()  # until killed
@@ -104,7 +105,7 @@ def test_a_run_of_another_network_is_refused(tmp_path: Path):
     path = tmp_path / "run.safetensors"
     run(path, 8)
     with pytest.raises(RuntimeError, match="size mismatch|Missing key"):
-        TrainState.start(nn.Linear(5, 2)).resume(path)
+        resume_run(TrainState.start(nn.Linear(5, 2)), path)
 
 
 def bad_at(step: int, value: float):
@@ -123,7 +124,7 @@ def bad_at(step: int, value: float):
 def test_a_non_finite_loss_stops_and_keeps_the_last_good_weights(tmp_path: Path, value: float):
     path, state, good = tmp_path / "run.safetensors", TrainState.start(nn.Linear(3, 2), seed=1), []
     with pytest.raises(NonFiniteLoss, match=r"^step 6: the loss is (nan|inf).*learning rate.*run\.safetensors"):
-        for _ in train_steps(state, bad_at(6, value), 20, save_to=path, save_every=100, progress=False):
+        for _ in train_steps(state, bad_at(6, value), 20, save=saver(path), save_every=100, progress=False):
             good.append(state.model.weight.detach().clone())
     assert len(good) == state.step == 6
     assert torch.equal(state.model.weight, good[-1])

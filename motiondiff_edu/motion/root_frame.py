@@ -87,10 +87,18 @@ def estimate_root(
 ) -> tuple[Float[np.ndarray, "T 2"], Float[np.ndarray, "T"]]:
     """Root path and heading of a real clip: the pelvis on the ground and the facing of hips and shoulders, smoothed.
 
-    Gaussians of 0.25 s and 0.33 s, the ends held. Shorter ones leak the gait into the control.  Notebook: 01
+    Gaussians of 0.25 s and 0.33 s; shorter ones leak the gait into the control. Beyond its ends the clip is continued by
+    point reflection, so that a figure that walks does not seem to slow down there.  Notebook: 01
     """
     left, right = (world[:, [joint_index(s + "UpLeg"), joint_index(s + "Arm")]].sum(1) for s in ("Left", "Right"))
     across = (left - right)[:, [0, 2]]
     heading = np.unwrap(np.arctan2(-across[:, 1], across[:, 0]))
-    root = gaussian_filter1d(world[:, HIPS][:, [0, 2]], ROOT_SMOOTHING * fps, axis=0, mode="nearest")
-    return root, gaussian_filter1d(heading, HEADING_SMOOTHING * fps, mode="nearest")
+    root = _smooth(world[:, HIPS][:, [0, 2]], ROOT_SMOOTHING * fps)
+    return root, _smooth(heading, HEADING_SMOOTHING * fps)
+
+
+def _smooth(x: np.ndarray, sigma: float) -> np.ndarray:
+    """Gaussian along time; before the first and after the last frame x goes on point-reflected: 2 x[0] - x[t]."""
+    reach = min(len(x) - 1, int(4 * sigma) + 1)
+    before, after = 2 * x[:1] - x[reach:0:-1], 2 * x[-1:] - x[-2 : -2 - reach : -1]
+    return gaussian_filter1d(np.concatenate([before, x, after]), sigma, axis=0)[reach : reach + len(x)]

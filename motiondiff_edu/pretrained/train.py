@@ -15,6 +15,7 @@ from ..ddpm import linear_schedule
 from ..modiff import MoDiff
 from ..motion.augment import mirror, reverse_time
 from ..motion.clip import Clip
+from ..runs import resume_run, saver
 from ..training import TrainState, cosine_lr, train_steps
 from ..walker import Walker
 from ..windows import Windows, window_loss
@@ -40,12 +41,12 @@ def train(recipe: Recipe, run_file: Path, clips: list[Clip] | None = None, log=p
     device = "cuda" if torch.cuda.is_available() else "cpu"
     state = TrainState.start(MoDiff(config).to(device), recipe.seed)
     if run_file.exists():
-        state.resume(run_file)
+        resume_run(state, run_file)
         log(f"{recipe.name}: continuing at step {state.step}")
     sizes = {"batch": recipe.batch, "noises": recipe.noises, "jitter": recipe.jitter, "metres": recipe.metres}
     loss_fn = window_loss(windows, schedule, **sizes)
     began, cpu, losses = time.monotonic(), time.process_time(), []
-    settings = {"lr": cosine_lr(recipe.lr, recipe.steps, 500), "decay": recipe.decay, "save_to": run_file}
+    settings = {"lr": cosine_lr(recipe.lr, recipe.steps, 500), "decay": recipe.decay, "save": saver(run_file)}
     settings |= {"save_every": 2000, "progress": False}
     loop = itertools.chain(
         train_steps(state, _in_bf16(loss_fn, device), int(recipe.bf16_share * recipe.steps), **settings),
