@@ -89,6 +89,17 @@ def test_order_in_time_matters_and_the_relative_bias_is_used():
             bias.table.copy_(kept)
 
 
+def test_without_time_the_future_is_a_set_of_frames():
+    """Neither biases nor clocks: turning the future round turns the output round."""
+    model, (x_s, s, past, control) = lively(TINY), inputs(TINY)
+    with torch.no_grad():
+        for name, weight in model.named_parameters():
+            if name.endswith("table") or name == "time":
+                weight.zero_()
+        turned = model(x_s.flip(1), s, past, control).flip(1)
+        torch.testing.assert_close(turned, model(x_s, s, past, control), atol=1e-5, rtol=1e-5)
+
+
 def test_skip_adds_w_of_s_times_the_input():
     with_skip = lively(TINY)
     without = MoDiff(replace(TINY, skip=False)).eval()
