@@ -42,6 +42,7 @@ def save_walker(walker: Walker, path: str | Path, half: bool = True) -> Path:
     weights = {k: v.detach().clone().contiguous() for k, v in weights.items()}
     temporary = path.with_suffix(".part")
     save_file(weights, temporary, metadata | {"sha256": _digest(weights)})
+    os.chmod(temporary, 0o644)  # safetensors writes for its owner alone; weights are for everybody
     os.replace(temporary, path)
     card = path.with_suffix(".json.part")
     card.write_text(json.dumps(walker.card | {"config": walker.config.as_dict()}, indent=1) + "\n")

@@ -87,8 +87,8 @@ def estimate_root(
 ) -> tuple[Float[np.ndarray, "T 2"], Float[np.ndarray, "T"]]:
     """Root path and heading of a real clip: the pelvis on the ground and the facing of hips and shoulders, smoothed.
 
-    Gaussians of 0.25 s and 0.33 s; shorter ones leak the gait into the control. Beyond its ends the clip is continued by
-    point reflection, so that a figure that walks does not seem to slow down there.  Notebook: 01
+    Gaussians of 0.25 s and 0.33 s; shorter ones leak the gait into the control. Beyond its ends the clip is continued
+    by point reflection, so that a figure that walks does not seem to slow down there.  Notebook: 01
     """
     left, right = (world[:, [joint_index(s + "UpLeg"), joint_index(s + "Arm")]].sum(1) for s in ("Left", "Right"))
     across = (left - right)[:, [0, 2]]
