@@ -90,7 +90,7 @@ def cycles(walk: Walk, steady: bool = True) -> list[Cycle]:
     offs = [np.flatnonzero(walk.down[:-1, s] & ~walk.down[1:, s]) + 1 for s in (0, 1)]
     found = []
     for s in (0, 1):
-        for a, b in zip(strikes[s][:-1], strikes[s][1:], strict=True):
+        for a, b in zip(strikes[s][:-1].tolist(), strikes[s][1:].tolist(), strict=True):
             off, other = (
                 offs[s][(offs[s] > a) & (offs[s] < b)],
                 strikes[1 - s][(strikes[1 - s] > a) & (strikes[1 - s] < b)],

@@ -75,7 +75,7 @@ def test_the_data_obey_their_own_control():
 
 
 def test_continuations_spread_by_what_the_card_says():
-    assert 0.03 < spreads(4, 6, 5.0).mean() < 0.15
+    assert 0.03 < spreads(3, 5, 4.0).mean() < 0.15
 
 
 def test_a_walk_that_stands_has_no_cycle():
