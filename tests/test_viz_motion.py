@@ -62,5 +62,7 @@ def test_weight_against_effect_has_a_panel_for_each_group():
     weight, effect = rng.random((4, 7)), rng.random((4, 7))
     figure = reading.weight_against_effect(weight, effect, [("past", 2), ("control", 5)], "against")
     assert [axes.get_title() for axes in figure.axes] == ["past", "control"]
-    assert [len(axes.lines[0].get_xdata()) for axes in figure.axes] == [8, 20]
-    np.testing.assert_allclose(figure.axes[1].lines[0].get_xdata(), 100 * weight[:, 2:].ravel())
+    dots = [axes.lines[1].get_xydata() for axes in figure.axes]
+    assert [len(d) for d in dots] == [8, 20]
+    np.testing.assert_allclose(dots[1][:5, 0], weight[0, 2:] / weight[0, 2:].mean())
+    np.testing.assert_allclose(dots[0][:2, 1], effect[0, :2] / effect[0, :2].mean())

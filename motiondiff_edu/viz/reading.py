@@ -41,13 +41,18 @@ def sharpness(
 def weight_against_effect(
     weight: Float[np.ndarray, "B M"], effect: Float[np.ndarray, "B M"], groups: list[tuple[str, int]], words: str
 ) -> Figure:
-    """Each key of each example: the attention that it got, and how far the output moves when it is hidden (cm)."""
-    fig, axes = figure(4.4 * len(groups), 3.9, words, 1, len(groups), sharey=True)
+    """The attention that each key of each example got, and the effect of hiding it, both over their group's mean there.
+
+    The mean is taken in each example: some examples move more than others whatever is hidden.
+    """
+    fig, axes = figure(4.4 * len(groups), 4.2, words, 1, len(groups), sharey=True)
     first = 0
     for k, (axis, (name, count)) in enumerate(zip(axes, groups, strict=True)):
-        part = slice(first, first + count)
-        axis.plot(100 * weight[:, part].ravel(), effect[:, part].ravel(), ".", color=OKABE_ITO[k], alpha=0.35, ms=6)
-        axis.set(title=name, xlabel="attention (%)", yscale="log")
+        x, y = (values[:, first : first + count] for values in (weight, effect))
+        x, y = x / x.mean(1, keepdims=True), y / y.mean(1, keepdims=True)
+        axis.plot([0, x.max()], [0, x.max()], color="#5B6472", lw=1.2, ls=":")
+        axis.plot(x.ravel(), y.ravel(), ".", color=OKABE_ITO[k], alpha=0.35, ms=6)
+        axis.set(title=name, xlabel="attention / mean", ylim=(0, None))
         first += count
-    axes[0].set_ylabel("output moves by (cm)")
+    axes[0].set_ylabel("effect of hiding / mean")
     return fig
