@@ -44,7 +44,7 @@ doctor: $(VENV)/.lab ## one page: what works here, and what to do about the rest
 test: unit notebooks browser ## set up .venv and run everything: unit tests, notebooks, browser
 
 unit: $(VENV)/.test ## only the unit tests
-	$(BIN)/python -m pytest -q -m "not browser"
+	OMP_NUM_THREADS=1 $(BIN)/python -m pytest -q -n auto --dist loadfile -m "not browser"
 
 # One after the other: two notebooks at once on two cores take four times as long as in turn.
 notebooks: $(VENV)/.test ## only the notebooks, and their student edition
