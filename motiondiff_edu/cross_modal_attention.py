@@ -1,7 +1,7 @@
 """Cross-modal attention: queries from motion, keys and values from the condition; its maps can be watched.
 
 weights = softmax(Q K^T / sqrt(d) + bias),   out = weights V
-Source: MoFusion eq. 8-9; MoDiff III-F (T5-style relative positions).  Notebook: 06
+Source: MoFusion eq. 8-9; MoDiff IV-A (T5-style relative positions).  Notebook: 06
 """
 
 import math
@@ -41,7 +41,7 @@ def relative_position_bucket(
     """T5's bucket of a distance (key time minus query time): exact when near, logarithmic when far.
 
     Half of the buckets for each direction; in each, half are exact. Beyond `farthest` all share the last one.
-    Source: MoDiff III-F names T5.  Notebook: 06
+    Source: MoDiff IV-A names T5.  Notebook: 06
     """
     if bidirectional:
         buckets //= 2
