@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+import torch
 
 from motiondiff_edu.motion.augment import augment, mirror, reverse_time
 from motiondiff_edu.motion.clip import Clip
@@ -70,6 +71,12 @@ def test_reversal_plays_the_same_world_backwards(walk):
     world, (root, heading) = walk.world(), root_path(walk.control)
     backwards = reverse_time(walk).world((*root[-1], heading[-1]))
     np.testing.assert_allclose(backwards, world[::-1], atol=1e-12)
+
+
+def test_reversed_arrays_go_into_torch(walk):
+    backwards = reverse_time(walk)
+    assert torch.equal(torch.from_numpy(backwards.poses).flip(0), torch.from_numpy(walk.poses))
+    assert torch.equal(torch.from_numpy(backwards.contacts).flip(0), torch.from_numpy(walk.contacts))
 
 
 def test_reversed_walk_integrates_back_to_its_start(walk):

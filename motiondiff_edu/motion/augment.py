@@ -36,8 +36,8 @@ def reverse_time(clip: Clip) -> Clip:
     control = np.empty_like(clip.control)
     control[:-1] = -clip.control[:-1][::-1]
     control[-1] = control[-2] if len(clip) > 1 else -clip.control[-1]
-    contacts = None if clip.contacts is None else clip.contacts[::-1]
-    return replace(clip, poses=clip.poses[::-1], control=control, contacts=contacts)
+    contacts = None if clip.contacts is None else clip.contacts[::-1].copy()  # torch takes no view that runs backwards
+    return replace(clip, poses=clip.poses[::-1].copy(), control=control, contacts=contacts)
 
 
 def augment(clips: Sequence[Clip]) -> list[Clip]:
