@@ -8,7 +8,7 @@ import pytest
 from bvh_text import SMALL, random_bvh
 from scipy.spatial.transform import Rotation
 
-from motiondiff_edu.motion.bvh import Bvh, read_bvh
+from motiondiff_edu.motion.bvh import Bvh, BvhError, read_bvh
 from motiondiff_edu.motion.bvh_motion import rate
 from motiondiff_edu.motion.kinematics import euler_to_matrix
 
@@ -120,6 +120,9 @@ def test_rounded_frame_times_are_understood(seconds, fps):
 
 def test_fps_overrules_the_file(tmp_path):
     assert read(tmp_path, SMALL.replace("0.04", "24"), fps=24).fps == 24
+    for wrong in (0, -24, float("nan")):
+        with pytest.raises(BvhError, match="fps must be a positive number"):
+            read(tmp_path, SMALL, fps=wrong)
 
 
 # ---- real files

@@ -45,6 +45,8 @@ def frame_time(text: str, line: int, path: str | Path, fps: float | None) -> flo
     Accepted: 0.001 to 0.5 s. A frame time of 24 or 1 is a rate, or a place-holder, in the wrong field.
     """
     if fps is not None:
+        if not 0 < fps < np.inf:
+            raise BvhError(f"fps must be a positive number of frames a second, not {fps:g}.", path)
         return 1.0 / fps
     value = to_number(text, path, line)
     if value <= 0:
