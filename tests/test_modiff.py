@@ -146,3 +146,16 @@ def test_fast_twin_refuses_the_same_shapes():
     _, _, past, control = inputs(TINY)
     with pytest.raises(ValueError, match="past poses"):
         FastMoDiff(lively(TINY)).encode(past[:, 1:], control)
+
+
+def test_fast_twin_stays_as_it_was_built_and_leaves_the_model_in_training():
+    """Half of its weights kept and half shared would be a network that nobody trained."""
+    model = lively(TINY).train()
+    fast = FastMoDiff(model)
+    assert model.training
+    x_s, _, past, control = inputs(TINY)
+    before = fast.denoise(x_s, 5, fast.encode(past, control))
+    with torch.no_grad():
+        for weight in model.parameters():
+            weight.add_(0.3)
+    assert torch.equal(fast.denoise(x_s, 5, fast.encode(past, control)), before)

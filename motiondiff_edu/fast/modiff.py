@@ -4,6 +4,7 @@ The same numbers as the plain network in the core, to 1e-5 (tested). The plain o
 the S steps although past and control do not change meanwhile.  Source: MoDiff III-F, Fig. 2.  Notebook: 07
 """
 
+import copy
 from dataclasses import dataclass
 
 import torch
@@ -50,16 +51,18 @@ class _Layer:
 class FastMoDiff:
     """A trained MoDiff, read once: `encode` a frame's context, then `denoise` as often as the sampler asks.
 
-    The weights are those of `model` at the time of building; build it anew after training on.  Notebook: 07
+    It works on a copy: `model` may train on, in its own mode, and this twin keeps the weights of the time of building.
+    Notebook: 07
     """
 
     @torch.inference_mode()
     def __init__(self, model: MoDiff):
-        self.model, self.config = model.eval(), model.config
+        model = copy.deepcopy(model).eval()
+        self.model, self.config = model, model.config
         width, D = model.config.width, model.config.D
         weight = model.future_in.weight
         self.x_weight = weight[:, :D].contiguous()  # the noised poses' half of the input layer
-        steps = model.step_in(step_embedding(torch.arange(model.config.S + 1), width))
+        steps = model.step_in(step_embedding(torch.arange(model.config.S + 1, device=weight.device), width))
         step_part = F.linear(steps, weight[:, D:], model.future_in.bias)  # the step's half, for every s
         self.start = step_part[:, None] + model.time[model.config.T_h :]  # and when each frame is
         self.layers = [_Layer(block) for block in model.decoder]
