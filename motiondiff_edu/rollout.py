@@ -86,6 +86,11 @@ def generate(
     T_h, frames = walker.config.T_h, control.shape[1] - past.shape[1]
     if past.shape[1] != T_h:
         raise ValueError(f"the walker continues {T_h} past poses, got {past.shape[1]}: pass past[..., -{T_h}:, :]")
+    if past.shape[0] != control.shape[0] or past.shape[2] != walker.config.D:
+        raise ValueError(
+            f"past {tuple(past.shape)} and control {tuple(control.shape)} do not go together: the walker takes "
+            f"(B, {T_h}, {walker.config.D}) and (B, T, 3), or both without B; flatten positions (T, 21, 3) to (T, 63)"
+        )
     if frames < 1:
         raise ValueError(f"control has {control.shape[1]} rows, {T_h} of them beside the past: none is left")
     if not (torch.isfinite(past).all() and torch.isfinite(control).all()):

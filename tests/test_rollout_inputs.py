@@ -1,0 +1,26 @@
+"""What does not fit a walker is refused in its own words, before the network sees it."""
+
+from types import SimpleNamespace
+
+import pytest
+import torch
+
+from motiondiff_edu.rollout import generate
+
+WALKER = SimpleNamespace(config=SimpleNamespace(T_h=4, T_p=2, D=6))
+
+
+@pytest.mark.parametrize(
+    "past, control, told",
+    [
+        ((2, 4, 6), (3, 9, 3), r"past \(2, 4, 6\) and control \(3, 9, 3\) do not go together"),
+        ((2, 4, 5), (2, 9, 3), r"the walker takes \(B, 4, 6\)"),
+        ((4, 5), (9, 3), r"the walker takes \(B, 4, 6\)"),
+        ((2, 5, 6), (2, 9, 3), "continues 4 past poses, got 5"),
+        ((2, 4, 6), (2, 4, 3), "none is left"),
+    ],
+)
+def test_past_and_control_that_do_not_fit_are_named(past, control, told):
+    unchecked = getattr(generate, "__wrapped__", generate)  # as a user calls it, without the tests' type check
+    with pytest.raises(ValueError, match=told):
+        unchecked(WALKER, torch.zeros(past), torch.zeros(control))
