@@ -42,6 +42,11 @@ def test_changes_are_told_once_each():
     pad.speed = 2.0
     pad.preset = "circle"
     assert told == [(3, 1.2), (3, 2.0), (81, 2.0)]
+    pad.preset = "stop and go"  # path and stops change together
+    assert len(told) == 4
+    pad.stops = [1.0]
+    pad.stops = [1.0]
+    assert len(told) == 5
 
 
 def test_what_cannot_be_a_path_is_refused():

@@ -63,8 +63,9 @@ class PathPad(anywidget.AnyWidget):
     @traitlets.observe("preset")
     def _take_preset(self, change):
         if change["new"]:
-            points, self.stops = walks.preset(change["new"])
-            self.line = points.round(4).tolist()
+            points, stops = walks.preset(change["new"])
+            with self.hold_trait_notifications():
+                self.stops, self.line = stops, points.round(4).tolist()
 
     @traitlets.observe("line", "speed", "stops")
     def _time_it(self, change):
@@ -78,8 +79,16 @@ class PathPad(anywidget.AnyWidget):
         return walks.path_to_control(self.points, self.speed, fps, self.stops)
 
     def on_change(self, callback: Callable[["PathPad"], object]) -> None:
-        """Call `callback(pad)` whenever path, stops or speed have changed."""
-        self.observe(lambda change: callback(self), names=["line", "speed"])
+        """Call `callback(pad)` whenever path, stops or speed have changed; once, when they change together."""
+        told = [(self.line, self.stops, self.speed)]
+
+        def tell(change):
+            now = (self.line, self.stops, self.speed)
+            if now != told[0]:
+                told[0] = now
+                callback(self)
+
+        self.observe(tell, names=["line", "stops", "speed"])
 
     @property
     def description(self) -> str:
