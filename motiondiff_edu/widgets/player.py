@@ -39,7 +39,8 @@ class Player(anywidget.AnyWidget):
     """Show one motion (T, J, 3), a batch (N, T, J, 3) or a list of motions, world positions in metres, y up.
 
     `past` frames were given and are drawn paler; `contacts` (T, 2) bool marks planted feet; `path` (n, 2) [x, z] is
-    drawn on the floor; each may be one value for all figures or a list. `layout` is "side" (a field each) or
+    drawn on the floor; each may be one value for all figures or a list (one array of contacts belongs to the first
+    figure). `layout` is "side" (a field each) or
     "together" (one floor; `offset` = (x, z) metres between figures). `frame` and `playing` can be read and set.
     Raises ValueError with figure, frame and joint where a position is not finite or beyond reach.  Notebook: 00
     """
