@@ -1,7 +1,6 @@
 """Records of measured figures: {name, value, low, high, seeds, unit, paper, command}, kept in lists in JSON files."""
 import json
 import os
-import tempfile
 from pathlib import Path
 
 import numpy as np
@@ -31,10 +30,9 @@ def write_records(path: str | Path, records: list[dict]) -> None:
             raise ValueError(f"record {one.get('name')!r} must have exactly the keys {', '.join(KEYS)}")
     path = Path(path)
     path.parent.mkdir(parents=True, exist_ok=True)
-    with tempfile.NamedTemporaryFile("w", dir=path.parent, suffix=".tmp", delete=False) as file:
-        json.dump(records, file, indent=1)
-        file.write("\n")
-    os.replace(file.name, path)
+    temporary = path.with_name(path.name + ".tmp")  # not tempfile: its files are for their owner alone
+    temporary.write_text(json.dumps(records, indent=1) + "\n", encoding="utf-8")
+    os.replace(temporary, path)
 
 
 def show(records: list[dict]) -> None:

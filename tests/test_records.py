@@ -27,6 +27,9 @@ def test_written_records_read_back(tmp_path):
     records.write_records(tmp_path / "new" / "x.json", made)
     assert json.loads((tmp_path / "new" / "x.json").read_text()) == made
     assert [p.name for p in (tmp_path / "new").iterdir()] == ["x.json"]
+    plain = tmp_path / "plain"
+    plain.touch()
+    assert (tmp_path / "new" / "x.json").stat().st_mode == plain.stat().st_mode  # readable by whom the umask says
 
 
 def test_an_incomplete_record_is_not_written(tmp_path):
