@@ -93,3 +93,14 @@ def test_estimated_root_finds_path_and_heading_of_a_swaying_figure():
     assert np.abs(heading - true_heading - (heading - true_heading)[120])[inner].max() < 0.03
     across = ((root - true_root) * rf.forward_left(true_heading)[1]).sum(-1)[inner]
     assert across.std() < 0.01 < (0.03 * np.sin(2 * np.pi * t)).std()
+
+
+@pytest.mark.parametrize("frames", [11, 19, 47])
+def test_estimated_root_of_a_short_clip_keeps_its_speed(frames):
+    """Half a second is shorter than the Gaussian: a steady walk must not seem to slow down at its ends."""
+    control = np.tile([1.3, 0.2, 0.0], (frames, 1))
+    poses = np.tile(long_run(seconds=1)[0].mean(0), (frames, 1, 1))
+    root, heading = rf.estimate_root(rf.to_world(poses, control))
+    found = rf.control_from_path(root, heading - heading[0])
+    speed = np.linalg.norm(found[:, :2], axis=1)
+    np.testing.assert_allclose(speed, np.hypot(1.3, 0.2), rtol=1e-9)

@@ -54,7 +54,7 @@ def retarget(bvh: Bvh, mapping: Mapping[str, str] | None = None, fps: float | in
     mapping = guess_mapping(bvh) if mapping is None else check_mapping(mapping, bvh)
     points, info = normalised(bvh, mapping, fps)
     world, contacts = onto_our_bones(points, info["rest_lean"], fps)
-    root, heading = root_of(world, fps)
+    root, heading = estimate_root(world, fps)
     poses, control = to_root_frame(world, root, heading, fps)
     return Clip(poses, control, fps=fps, contacts=contacts, source=bvh.source, info=info | {"mapping": dict(mapping)})
 
@@ -103,17 +103,6 @@ def onto_our_bones(
     standing = raw[:, list(TOES), 1][contacts]
     raw[..., 1] -= np.median(standing) if len(standing) else np.percentile(raw[:, list(TOES), 1], 2)
     return plant(raw, contacts, fps), contacts
-
-
-def root_of(world: Float[np.ndarray, "T 21 3"], fps: float) -> tuple[np.ndarray, np.ndarray]:
-    """The smoothed root, the motion continued at both ends by its point reflection.
-
-    Held ends would make the root stop there while the figure walks on, and a clip is continued from its end.
-    """
-    pad = min(len(world) - 1, round(1.5 * fps))
-    before, after = 2 * world[0] - world[pad:0:-1], 2 * world[-1] - world[-2 : -pad - 2 : -1]
-    root, heading = estimate_root(np.concatenate([before, world, after]), fps)
-    return root[pad:-pad], heading[pad:-pad]
 
 
 def refuse_short(count: int, bvh: Bvh) -> None:

@@ -98,7 +98,10 @@ def estimate_root(
 
 
 def _smooth(x: np.ndarray, sigma: float) -> np.ndarray:
-    """Gaussian along time; before the first and after the last frame x goes on point-reflected: 2 x[0] - x[t]."""
-    reach = min(len(x) - 1, int(4 * sigma) + 1)
-    before, after = 2 * x[:1] - x[reach:0:-1], 2 * x[-1:] - x[-2 : -2 - reach : -1]
-    return gaussian_filter1d(np.concatenate([before, x, after]), sigma, axis=0)[reach : reach + len(x)]
+    """Gaussian along time; before the first and after the last frame x goes on point-reflected: 2 x[0] - x[t].
+
+    A clip shorter than the Gaussian is reflected again and again, so that it goes on at its own speed.
+    """
+    reach = int(4 * sigma) + 1
+    width = [(reach, reach)] + [(0, 0)] * (x.ndim - 1)
+    return gaussian_filter1d(np.pad(x, width, "reflect", reflect_type="odd"), sigma, axis=0)[reach : reach + len(x)]
