@@ -1,4 +1,5 @@
 """Records of measured figures: {name, value, low, high, seeds, unit, paper, command}, kept in lists in JSON files."""
+
 import json
 import os
 from pathlib import Path
@@ -19,8 +20,16 @@ def record(name: str, values, *, unit: str, command: str, seeds=None, paper=None
     draws = np.random.default_rng(0).choice(values, (2000, len(values)))
     low, high = np.percentile(center(draws, axis=1), [2.5, 97.5])
     seeds = list(range(len(values)) if seeds is None else seeds)
-    return dict(name=name, value=float(center(values)), low=float(low), high=float(high), seeds=seeds, unit=unit,
-                paper=paper, command=command)
+    return dict(
+        name=name,
+        value=float(center(values)),
+        low=float(low),
+        high=float(high),
+        seeds=seeds,
+        unit=unit,
+        paper=paper,
+        command=command,
+    )
 
 
 def write_records(path: str | Path, records: list[dict]) -> None:

@@ -3,6 +3,7 @@
 Each repeat times all of them one after the other, in changing order; a figure is the median of the ratios of repeats.
 Run: python benchmarks/sampler_overhead.py [--repeats 40] [--out benchmarks/results/sampler_overhead.json]
 """
+
 import argparse
 import importlib.util
 import time
@@ -33,6 +34,7 @@ def run_ours(sampler):
         for step in sampler(trivial, x, schedule):
             x = step.x_s
         return x
+
     return run
 
 
@@ -45,6 +47,7 @@ def run_diffusers(kind):
         for t in scheduler.timesteps:
             x = scheduler.step(trivial(x, t), t, x).prev_sample
         return x
+
     return run
 
 
@@ -61,14 +64,18 @@ def smalldiffusion_sampler():
 def run_smalldiffusion():
     theirs = smalldiffusion_sampler()
     sigmas = theirs.ScheduleDDPM(S, 1e-4, 0.1).sample_sigmas(S)
-    model = SimpleNamespace(eval=lambda: None, rand_input=lambda n: torch.randn(n, *SHAPE[1:]),
-                            predict_eps_cfg=lambda x, sigma, cond, scale: trivial(x, sigma))
+    model = SimpleNamespace(
+        eval=lambda: None,
+        rand_input=lambda n: torch.randn(n, *SHAPE[1:]),
+        predict_eps_cfg=lambda x, sigma, cond, scale: trivial(x, sigma),
+    )
     here = SimpleNamespace(device=torch.device("cpu"))
 
     def run(x):
         for out in theirs.samples(model, sigmas, gam=1, mu=0.5, xt=x * float(sigmas[0]), accelerator=here):
             x = out
         return x
+
     return run
 
 
@@ -96,12 +103,20 @@ def main() -> None:
     parser.add_argument("--out", default="benchmarks/results/sampler_overhead.json")
     args = parser.parse_args()
     torch.set_num_threads(1)
-    times = measure({"ours": run_ours(ddpm_steps), "plain": run_ours(sample_steps),
-                     "ours_ddim": run_ours(lambda m, x, sch: ddim_steps(m, x, sch, steps=S)),
-                     "diffusers": run_diffusers(DDPMScheduler), "diffusers_ddim": run_diffusers(DDIMScheduler),
-                     "smalldiffusion": run_smalldiffusion()}, args.repeats)
-    records = [record(f"bench.sampler_us.{name}", values, unit="us a step", command=COMMAND)
-               for name, values in times.items()]
+    times = measure(
+        {
+            "ours": run_ours(ddpm_steps),
+            "plain": run_ours(sample_steps),
+            "ours_ddim": run_ours(lambda m, x, sch: ddim_steps(m, x, sch, steps=S)),
+            "diffusers": run_diffusers(DDPMScheduler),
+            "diffusers_ddim": run_diffusers(DDIMScheduler),
+            "smalldiffusion": run_smalldiffusion(),
+        },
+        args.repeats,
+    )
+    records = [
+        record(f"bench.sampler_us.{name}", values, unit="us a step", command=COMMAND) for name, values in times.items()
+    ]
     for peer in ("diffusers", "smalldiffusion"):
         records.append(record(f"bench.sampler_over_{peer}", times["ours"] / times[peer], unit="ratio", command=COMMAND))
     show(records)

@@ -1,4 +1,5 @@
 """Small Gaussian mixtures whose density is known exactly: the laboratory of notebooks 02 to 04."""
+
 import math
 
 import torch
@@ -29,12 +30,12 @@ def ring(parts: int = 6, radius: float = 1.5, std: float = 0.2) -> Mixture:
     """Equal round hills on a circle in the plane."""
     angle = torch.arange(parts, dtype=torch.float64) * (2 * math.pi / parts)
     means = radius * torch.stack([angle.cos(), angle.sin()], 1)
-    return mixture(torch.ones(parts), means, std ** 2 * torch.eye(2, dtype=torch.float64).expand(parts, 2, 2))
+    return mixture(torch.ones(parts), means, std**2 * torch.eye(2, dtype=torch.float64).expand(parts, 2, 2))
 
 
 def crossed_bars(length: float = 1.0, width: float = 0.15) -> Mixture:
     """Two long hills in the plane that lean towards each other: the coordinates depend on one another."""
-    bar = torch.tensor([[length ** 2 + width ** 2, length ** 2 - width ** 2]], dtype=torch.float64) / 2
+    bar = torch.tensor([[length**2 + width**2, length**2 - width**2]], dtype=torch.float64) / 2
     rising = torch.stack([bar[0], bar[0].flip(0)])
     falling = rising * torch.tensor([[1.0, -1.0], [-1.0, 1.0]], dtype=torch.float64)
     means = torch.tensor([[-1.2, 0.0], [1.2, 0.0]])
@@ -49,5 +50,8 @@ def nearest_part(given: Mixture, x: Float[Tensor, "B D"]) -> Int[Tensor, "B"]:
 
 def _on_a_line(weights: list[float], means: list[float], stds: list[float]) -> Mixture:
     variances = torch.tensor(stds, dtype=torch.float64) ** 2
-    return mixture(torch.tensor(weights, dtype=torch.float64), torch.tensor(means, dtype=torch.float64)[:, None],
-                   variances[:, None, None])
+    return mixture(
+        torch.tensor(weights, dtype=torch.float64),
+        torch.tensor(means, dtype=torch.float64)[:, None],
+        variances[:, None, None],
+    )

@@ -3,6 +3,7 @@
 Adding Gaussian noise to a Gaussian mixture gives a Gaussian mixture, so the density of x_s and the mean of x0
 given x_s can be written down. A finite data set is a mixture whose parts have no width.
 """
+
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -54,8 +55,9 @@ def sample_mixture(given: Mixture, n: int, generator: torch.Generator | None = N
 def noised(given: Mixture, s: int, schedule: Schedule) -> Mixture:
     """The mixture that q(x_s) is: means times sqrt(alpha_bar_s), variances alpha_bar_s var + 1 - alpha_bar_s."""
     alpha_bar = schedule.alpha_bar[s]
-    return Mixture(given.weights, alpha_bar.sqrt() * given.means, given.axes,
-                   alpha_bar * given.variances + 1 - alpha_bar)
+    return Mixture(
+        given.weights, alpha_bar.sqrt() * given.means, given.axes, alpha_bar * given.variances + 1 - alpha_bar
+    )
 
 
 def log_density(given: Mixture, x: Float[Tensor, "B D"]) -> Float[Tensor, "B"]:
@@ -69,14 +71,16 @@ def along_axes(given: Mixture, off: Float[Tensor, "B K D"]) -> Float[Tensor, "B 
     return torch.einsum("kij,bki->bkj", given.axes, off)
 
 
-def part_log_densities(weights: Float[Tensor, "K"], off: Float[Tensor, "B K D"],
-                       variances: Float[Tensor, "*B K D"]) -> Float[Tensor, "B K"]:
+def part_log_densities(
+    weights: Float[Tensor, "K"], off: Float[Tensor, "B K D"], variances: Float[Tensor, "*B K D"]
+) -> Float[Tensor, "B K"]:
     """log w_k N(x; m_k, C_k) for every part k, from the offsets x - m_k along the axes."""
     return weights.log() - (off.square() / variances + (2 * torch.pi * variances).log()).sum(-1) / 2
 
 
-def posterior_mean(given: Mixture, x_s: Float[Tensor, "B D"], s: Int[Tensor, "B"],
-                   schedule: Schedule) -> Float[Tensor, "B D"]:
+def posterior_mean(
+    given: Mixture, x_s: Float[Tensor, "B D"], s: Int[Tensor, "B"], schedule: Schedule
+) -> Float[Tensor, "B D"]:
     """E[x0 | x_s] of a mixture: each part's own answer, weighed by the share it has in q(x_s).
 
     One part: m + a C (a^2 C + (1 - a^2) I)^-1 (x_s - a m), with a = sqrt(alpha_bar_s). Notebook: 03.
@@ -89,8 +93,9 @@ def posterior_mean(given: Mixture, x_s: Float[Tensor, "B D"], s: Int[Tensor, "B"
     return torch.einsum("bk,bki->bi", share, given.means + torch.einsum("kij,bkj->bki", given.axes, gain * off))
 
 
-def dataset_mean(data: Float[Tensor, "N D"], x_s: Float[Tensor, "B D"], s: Int[Tensor, "B"],
-                 schedule: Schedule) -> Float[Tensor, "B D"]:
+def dataset_mean(
+    data: Float[Tensor, "N D"], x_s: Float[Tensor, "B D"], s: Int[Tensor, "B"], schedule: Schedule
+) -> Float[Tensor, "B D"]:
     """E[x0 | x_s] when x0 is one of N known samples: their mean, weighed by who could have become x_s.
 
     weights = softmax(-||x_s - a x_n||^2 / (2 (1 - a^2))), with a = sqrt(alpha_bar_s). Notebook: 03.
@@ -115,8 +120,10 @@ def dataset_denoiser(data: Float[Tensor, "N *shape"], schedule: Schedule) -> Den
 
 def _denoiser(mean_of_x0: Callable[[Tensor, Tensor], Tensor], schedule: Schedule) -> Denoiser:
     """eps_hat = (x_s - a E[x0 | x_s]) / sqrt(1 - a^2), in float64 inside, in the caller's shape and dtype outside."""
+
     def denoise(x_s: Tensor, s: Tensor) -> Tensor:
         x, alpha_bar = x_s.flatten(1).double(), schedule.alpha_bar[s][:, None]
         eps_hat = (x - alpha_bar.sqrt() * mean_of_x0(x, s)) / (1 - alpha_bar).sqrt()
         return eps_hat.reshape(x_s.shape).to(x_s.dtype)
+
     return denoise

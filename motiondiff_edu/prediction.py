@@ -3,6 +3,7 @@
 With a = sqrt(alpha_bar_s) and b = sqrt(1 - alpha_bar_s), x_s = a x0 + b eps and v = a eps - b x0: (x_s, v) is (x0, eps)
 turned by an angle, so every conversion is a line of algebra.
 """
+
 from jaxtyping import Float
 from torch import Tensor
 
@@ -15,43 +16,49 @@ def _ab(x: Tensor, s: Steps, schedule: Schedule) -> tuple[Tensor, Tensor]:
     return at(schedule.alpha_bar.sqrt(), s, x), at((1 - schedule.alpha_bar).sqrt(), s, x)
 
 
-def x0_from_eps(x_s: Float[Tensor, "B *shape"], s: Steps, eps: Float[Tensor, "B *shape"],
-                schedule: Schedule) -> Float[Tensor, "B *shape"]:
+def x0_from_eps(
+    x_s: Float[Tensor, "B *shape"], s: Steps, eps: Float[Tensor, "B *shape"], schedule: Schedule
+) -> Float[Tensor, "B *shape"]:
     """x0 = x_s / a - (b / a) eps. Source: MoFusion eq. 5. Notebook: 03, 05."""
     a, b = _ab(x_s, s, schedule)
     return (x_s - b * eps) / a
 
 
-def eps_from_x0(x_s: Float[Tensor, "B *shape"], s: Steps, x0: Float[Tensor, "B *shape"],
-                schedule: Schedule) -> Float[Tensor, "B *shape"]:
+def eps_from_x0(
+    x_s: Float[Tensor, "B *shape"], s: Steps, x0: Float[Tensor, "B *shape"], schedule: Schedule
+) -> Float[Tensor, "B *shape"]:
     """eps = (x_s - a x0) / b. Source: MoFusion eq. 5, solved for eps. Notebook: 03, 05."""
     a, b = _ab(x_s, s, schedule)
     return (x_s - a * x0) / b
 
 
-def v_from_x0_eps(x0: Float[Tensor, "B *shape"], s: Steps, eps: Float[Tensor, "B *shape"],
-                  schedule: Schedule) -> Float[Tensor, "B *shape"]:
+def v_from_x0_eps(
+    x0: Float[Tensor, "B *shape"], s: Steps, eps: Float[Tensor, "B *shape"], schedule: Schedule
+) -> Float[Tensor, "B *shape"]:
     """v = a eps - b x0. Notebook: 05."""
     a, b = _ab(x0, s, schedule)
     return a * eps - b * x0
 
 
-def eps_from_v(x_s: Float[Tensor, "B *shape"], s: Steps, v: Float[Tensor, "B *shape"],
-               schedule: Schedule) -> Float[Tensor, "B *shape"]:
+def eps_from_v(
+    x_s: Float[Tensor, "B *shape"], s: Steps, v: Float[Tensor, "B *shape"], schedule: Schedule
+) -> Float[Tensor, "B *shape"]:
     """eps = a v + b x_s. Notebook: 05."""
     a, b = _ab(x_s, s, schedule)
     return a * v + b * x_s
 
 
-def x0_from_v(x_s: Float[Tensor, "B *shape"], s: Steps, v: Float[Tensor, "B *shape"],
-              schedule: Schedule) -> Float[Tensor, "B *shape"]:
+def x0_from_v(
+    x_s: Float[Tensor, "B *shape"], s: Steps, v: Float[Tensor, "B *shape"], schedule: Schedule
+) -> Float[Tensor, "B *shape"]:
     """x0 = a x_s - b v. Notebook: 05."""
     a, b = _ab(x_s, s, schedule)
     return a * x_s - b * v
 
 
-def to_eps(output: Float[Tensor, "B *shape"], x_s: Float[Tensor, "B *shape"], s: Steps, schedule: Schedule,
-           target: str) -> Float[Tensor, "B *shape"]:
+def to_eps(
+    output: Float[Tensor, "B *shape"], x_s: Float[Tensor, "B *shape"], s: Steps, schedule: Schedule, target: str
+) -> Float[Tensor, "B *shape"]:
     """Turn a network's output into eps_hat; `target` says what the network was trained to predict. Notebook: 05."""
     _check(target)
     if target == "eps":
@@ -59,8 +66,9 @@ def to_eps(output: Float[Tensor, "B *shape"], x_s: Float[Tensor, "B *shape"], s:
     return (eps_from_x0 if target == "x0" else eps_from_v)(x_s, s, output, schedule)
 
 
-def to_x0(output: Float[Tensor, "B *shape"], x_s: Float[Tensor, "B *shape"], s: Steps, schedule: Schedule,
-          target: str) -> Float[Tensor, "B *shape"]:
+def to_x0(
+    output: Float[Tensor, "B *shape"], x_s: Float[Tensor, "B *shape"], s: Steps, schedule: Schedule, target: str
+) -> Float[Tensor, "B *shape"]:
     """Turn a network's output into x0_hat; `target` says what the network was trained to predict. Notebook: 05."""
     _check(target)
     if target == "x0":
@@ -68,8 +76,9 @@ def to_x0(output: Float[Tensor, "B *shape"], x_s: Float[Tensor, "B *shape"], s: 
     return (x0_from_eps if target == "eps" else x0_from_v)(x_s, s, output, schedule)
 
 
-def target_of(x0: Float[Tensor, "B *shape"], eps: Float[Tensor, "B *shape"], s: Steps, schedule: Schedule,
-              target: str) -> Float[Tensor, "B *shape"]:
+def target_of(
+    x0: Float[Tensor, "B *shape"], eps: Float[Tensor, "B *shape"], s: Steps, schedule: Schedule, target: str
+) -> Float[Tensor, "B *shape"]:
     """What the network should have said: eps, x0 or v. Notebook: 05."""
     _check(target)
     return {"eps": eps, "x0": x0}[target] if target != "v" else v_from_x0_eps(x0, s, eps, schedule)

@@ -1,4 +1,5 @@
 """The variational bound, term by term, where the log-density is known exactly."""
+
 import math
 
 import pytest
@@ -29,7 +30,7 @@ def gap(truth, schedule, denoise=None, seed=13):
     x0 = sample_mixture(truth, N, generator)
     terms = bound_terms(denoise or exact_denoiser(truth, schedule), x0, schedule, generator)
     difference = log_density(truth, x0) + terms.sum(0)
-    return difference.mean().item(), difference.std().item() / N ** 0.5
+    return difference.mean().item(), difference.std().item() / N**0.5
 
 
 def test_gaussian_kl_is_torchs():
@@ -119,14 +120,14 @@ def test_bound_lies_below_the_models_own_density():
     truth, schedule = two_hills(std=0.4), linear_schedule(3, 0.5, 0.97)
     denoise = exact_denoiser(truth, schedule)
     grid = torch.linspace(-6, 6, 3001, dtype=torch.float64)[:, None]
-    density = torch.exp(-grid[:, 0] ** 2 / 2) / (2 * torch.pi) ** 0.5
+    density = torch.exp(-(grid[:, 0] ** 2) / 2) / (2 * torch.pi) ** 0.5
     for s in (3, 2, 1):
         mean = p_mean(grid, s, denoise(grid, torch.full((3001,), s)), schedule)[:, 0]
-        kernel = torch.exp(-(grid - mean) ** 2 / (2 * schedule.beta[s])) / (2 * torch.pi * schedule.beta[s]) ** 0.5
+        kernel = torch.exp(-((grid - mean) ** 2) / (2 * schedule.beta[s])) / (2 * torch.pi * schedule.beta[s]) ** 0.5
         density = kernel @ density * 0.004
     for at in (-1.0, 0.2, 1.1):
         x0 = torch.full((N, 1), at, dtype=torch.float64)
         terms = bound_terms(denoise, x0, schedule, torch.Generator().manual_seed(16)).sum(0)
         own = density[(grid[:, 0] - at).abs().argmin()].log().item()
-        assert -terms.mean().item() < own + 3 * terms.std().item() / N ** 0.5
+        assert -terms.mean().item() < own + 3 * terms.std().item() / N**0.5
     assert density.sum().item() * 0.004 == pytest.approx(1, abs=1e-3)

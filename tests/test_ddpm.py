@@ -1,4 +1,5 @@
 """The diffusion core against numbers that are not ours, and against itself taken step by step."""
+
 import warnings
 
 import numpy as np
@@ -38,8 +39,15 @@ def reference():
 def run(reference, target="eps", **kwargs):
     schedule, start, model = reference
     generator = torch.Generator().manual_seed(0)
-    steps = sample_steps(lambda x, s: to_eps(model(x, s), x, s, schedule, target), start, schedule,
-                         generator=generator, variance="posterior", clip=1.0, **kwargs)
+    steps = sample_steps(
+        lambda x, s: to_eps(model(x, s), x, s, schedule, target),
+        start,
+        schedule,
+        generator=generator,
+        variance="posterior",
+        clip=1.0,
+        **kwargs,
+    )
     return {step.s: step.x_s for step in steps}
 
 
@@ -104,8 +112,10 @@ def test_too_few_steps_are_refused_with_the_remedy():
         scaled_linear_schedule(10)
 
 
-@pytest.mark.parametrize("make, percent", [(linear_schedule, "7.5 %"), (lambda: cosine_schedule(100), "0.049 %"),
-                                           (scaled_linear_schedule, "0.45 %")])
+@pytest.mark.parametrize(
+    "make, percent",
+    [(linear_schedule, "7.5 %"), (lambda: cosine_schedule(100), "0.049 %"), (scaled_linear_schedule, "0.45 %")],
+)
 def test_schedule_card_tells_the_signal_left(make, percent):
     with warnings.catch_warnings():
         warnings.simplefilter("error")
@@ -133,15 +143,16 @@ def test_q_sample_takes_a_step_for_each_sample():
     schedule, x0, noise = linear_schedule(), torch.randn(2, 5, 7), torch.randn(2, 5, 7)
     both = q_sample(x0, torch.tensor([3, 90]), schedule, noise)
     for i, s in enumerate((3, 90)):
-        torch.testing.assert_close(both[i:i + 1], q_sample(x0[i:i + 1], s, schedule, noise[i:i + 1]))
+        torch.testing.assert_close(both[i : i + 1], q_sample(x0[i : i + 1], s, schedule, noise[i : i + 1]))
 
 
 def test_posterior_is_bayes_rule_on_a_grid():
     """q(x_{s-1} | x_s, x0) from eq. 7 against the product of two densities, normalised by a sum."""
     schedule, s, x0, x_s = linear_schedule(20, 0.01, 0.4), 9, 0.8, -0.3
     grid = torch.linspace(-6, 6, 20_001, dtype=torch.float64)
-    log_p = (-(grid - schedule.alpha_bar[s - 1].sqrt() * x0) ** 2 / (2 * (1 - schedule.alpha_bar[s - 1]))
-             - (x_s - schedule.alpha[s].sqrt() * grid) ** 2 / (2 * schedule.beta[s]))
+    log_p = -((grid - schedule.alpha_bar[s - 1].sqrt() * x0) ** 2) / (2 * (1 - schedule.alpha_bar[s - 1])) - (
+        x_s - schedule.alpha[s].sqrt() * grid
+    ) ** 2 / (2 * schedule.beta[s])
     weight = log_p.softmax(0)
     mean = (weight * grid).sum()
     ours, variance = q_posterior(torch.tensor([[x0]]).double(), torch.tensor([[x_s]]).double(), s, schedule)
@@ -177,6 +188,7 @@ def test_sampling_yields_every_step_and_repeats_with_its_seed():
 
     def walk():
         return list(sample_steps(denoise, (4, 3), schedule, generator=torch.Generator().manual_seed(5)))
+
     first, second = walk(), walk()
     assert [step.s for step in first] == list(range(13, -1, -1))
     for a, b in zip(first, second, strict=True):
@@ -192,8 +204,11 @@ def test_clip_bounds_the_guess():
 
 
 def test_exact_denoiser_samples_have_the_mixtures_mean_variance_and_weights():
-    truth = mixture(torch.tensor([0.3, 0.7]), torch.tensor([[-1.0, 0.5], [1.0, -0.2]]),
-                    torch.tensor([[[0.04, 0.02], [0.02, 0.05]], [[0.09, 0.0], [0.0, 0.02]]]))
+    truth = mixture(
+        torch.tensor([0.3, 0.7]),
+        torch.tensor([[-1.0, 0.5], [1.0, -0.2]]),
+        torch.tensor([[[0.04, 0.02], [0.02, 0.05]], [[0.09, 0.0], [0.0, 0.02]]]),
+    )
     schedule, generator = cosine_schedule(200), torch.Generator().manual_seed(2)
     *_, last = sample_steps(exact_denoiser(truth, schedule), (8000, 2), schedule, generator=generator)
     x = last.x_s.double()
@@ -208,4 +223,4 @@ def test_simple_loss_is_the_mean_square_and_zero_for_the_true_noise():
     schedule, x0, noise, s = linear_schedule(), torch.randn(2, 5, 7), torch.randn(2, 5, 7), torch.tensor([4, 60])
     assert simple_loss(lambda x, s: noise, x0, s, schedule, noise) == 0
     zero = simple_loss(lambda x, s: torch.zeros_like(x), x0, s, schedule, noise)
-    assert zero.item() == pytest.approx((noise ** 2).mean().item(), rel=1e-6)
+    assert zero.item() == pytest.approx((noise**2).mean().item(), rel=1e-6)

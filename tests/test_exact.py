@@ -1,4 +1,5 @@
 """The exact denoiser, against integrals on a grid and against a data set counted by hand."""
+
 import pytest
 import torch
 
@@ -20,7 +21,7 @@ GRID = torch.linspace(-8, 8, 16_001, dtype=torch.float64)[:, None]
 
 
 def normal(x, mean, variance):
-    return torch.exp(-(x - mean) ** 2 / (2 * variance)) / (2 * torch.pi * variance) ** 0.5
+    return torch.exp(-((x - mean) ** 2) / (2 * variance)) / (2 * torch.pi * variance) ** 0.5
 
 
 @pytest.mark.parametrize("s", [1, 20, 60, 100])
@@ -59,7 +60,7 @@ def test_denoiser_is_the_score_of_the_noised_density():
     x = torch.randn(6, 2, dtype=torch.float64, requires_grad=True)
     log_density(noised(truth, s, SCHEDULE), x).sum().backward()
     eps_hat = exact_denoiser(truth, SCHEDULE)(x.detach(), torch.full((6,), s))
-    torch.testing.assert_close(eps_hat, -(1 - SCHEDULE.alpha_bar[s]) ** 0.5 * x.grad)
+    torch.testing.assert_close(eps_hat, -((1 - SCHEDULE.alpha_bar[s]) ** 0.5) * x.grad)
 
 
 def test_denoiser_beats_every_other_guess():
@@ -88,7 +89,7 @@ def test_dataset_denoiser_counts_by_hand():
     x = torch.tensor([[-0.4], [0.1], [1.3]], dtype=torch.float64)
     eps_hat = dataset_denoiser(data, SCHEDULE)(x, torch.full((3,), s))
     a = SCHEDULE.alpha_bar[s] ** 0.5
-    torch.testing.assert_close(x0_from_eps(x, s, eps_hat, SCHEDULE), torch.tanh(a * x / (1 - a ** 2)))
+    torch.testing.assert_close(x0_from_eps(x, s, eps_hat, SCHEDULE), torch.tanh(a * x / (1 - a**2)))
 
 
 def test_dataset_denoiser_gives_back_its_data():

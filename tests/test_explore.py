@@ -1,4 +1,5 @@
 """The sliders under the figures: they call the figure function, reset, and let errors through."""
+
 import pytest
 
 from motiondiff_edu.viz.noise import lines
@@ -15,6 +16,7 @@ def test_turning_a_knob_draws_again_and_reset_goes_back():
     def draw(s, name, noise):
         seen.append((s, name, noise))
         return lines([0, 1], {"a": [s, s]}, f"at <{s}>", ("x", "y"))
+
     box = explore(draw, s=(1, 9, 5), name=["linear", "cosine"], noise=True)
     before = box.children[1].value
     controls(box)["s"].value = 7

@@ -1,4 +1,5 @@
 """The named mixtures are what their docstrings say."""
+
 import pytest
 import torch
 
@@ -16,7 +17,7 @@ def test_lines_integrate_to_one(make):
 def test_planes_integrate_to_one(make):
     axis = torch.linspace(-6, 6, 601, dtype=torch.float64)
     grid = torch.cartesian_prod(axis, axis)
-    assert log_density(make(), grid).exp().sum().item() * 0.02 ** 2 == pytest.approx(1, abs=1e-5)
+    assert log_density(make(), grid).exp().sum().item() * 0.02**2 == pytest.approx(1, abs=1e-5)
 
 
 @pytest.mark.parametrize("make", [M.gaussian, M.two_hills, M.three_hills, M.ring, M.crossed_bars])

@@ -1,4 +1,5 @@
 """The pictures of noise: they show what they are given, close themselves, and say in words what to see."""
+
 import matplotlib.pyplot as plt
 import numpy as np
 import torch
@@ -9,8 +10,8 @@ X = np.linspace(-2, 2, 31)
 
 
 def figures():
-    bell, rng = np.exp(-X ** 2), np.random.default_rng(0)
-    yield viz.lines(X, {"a": X, "b": X ** 2}, "caption", ("x", "y"), marks={"level": 1.0}, ylim=(-1, 4))
+    bell, rng = np.exp(-(X**2)), np.random.default_rng(0)
+    yield viz.lines(X, {"a": X, "b": X**2}, "caption", ("x", "y"), marks={"level": 1.0}, ylim=(-1, 4))
     yield viz.noised_curve(X, X, -X, 7, 0.6)
     yield viz.noise_ladder(X, X, {1: X, 9: -X}, "caption")
     yield viz.densities(X, {"p": bell, "q": bell / 2}, "caption", points={"x0": 0.3})
@@ -28,8 +29,8 @@ def test_every_figure_is_closed_and_has_its_words():
 
 
 def test_lines_show_the_numbers_they_were_given():
-    axis = viz.lines(X, {"a": X, "b": X ** 2}, "caption", ("x", "y")).axes[0]
-    np.testing.assert_allclose(axis.lines[1].get_ydata(), X ** 2)
+    axis = viz.lines(X, {"a": X, "b": X**2}, "caption", ("x", "y")).axes[0]
+    np.testing.assert_allclose(axis.lines[1].get_ydata(), X**2)
     assert [text.get_text() for text in axis.get_legend().get_texts()] == ["a", "b"]
     assert (axis.get_xlabel(), axis.get_ylabel()) == ("x", "y")
 

@@ -1,4 +1,5 @@
 """Every prediction target says the same thing, and tells it exactly."""
+
 import pytest
 import torch
 
@@ -31,7 +32,7 @@ def test_targets_differ(case):
 def test_v_keeps_the_length_of_the_pair(case):
     x0, eps, s, schedule, x_s = case
     v = P.v_from_x0_eps(x0, s, eps, schedule)
-    torch.testing.assert_close(x_s ** 2 + v ** 2, x0 ** 2 + eps ** 2)
+    torch.testing.assert_close(x_s**2 + v**2, x0**2 + eps**2)
 
 
 def test_mofusion_eq_5_with_its_index():
@@ -39,7 +40,7 @@ def test_mofusion_eq_5_with_its_index():
     schedule, s = linear_schedule(), 70
     x_s, eps = torch.randn(2, 5, 7).double(), torch.randn(2, 5, 7).double()
     alpha_bar = schedule.alpha_bar[s]
-    as_written = x_s / alpha_bar ** 0.5 - (1 / alpha_bar - 1) ** 0.5 * eps
+    as_written = x_s / alpha_bar**0.5 - (1 / alpha_bar - 1) ** 0.5 * eps
     torch.testing.assert_close(P.x0_from_eps(x_s, s, eps, schedule), as_written)
 
 
@@ -53,7 +54,11 @@ def test_denoiser_of_turns_any_network_into_eps(case):
 
 def test_unknown_target_is_named(case):
     x0, eps, s, schedule, x_s = case
-    for call in (lambda: P.to_eps(eps, x_s, s, schedule, "noise"), lambda: P.to_x0(eps, x_s, s, schedule, "epsilon"),
-                 lambda: P.target_of(x0, eps, s, schedule, "x_0"), lambda: P.denoiser_of(None, schedule, "score")):
+    for call in (
+        lambda: P.to_eps(eps, x_s, s, schedule, "noise"),
+        lambda: P.to_x0(eps, x_s, s, schedule, "epsilon"),
+        lambda: P.target_of(x0, eps, s, schedule, "x_0"),
+        lambda: P.denoiser_of(None, schedule, "score"),
+    ):
         with pytest.raises(ValueError, match="eps, x0, v"):
             call()

@@ -1,4 +1,5 @@
 """Records of measured figures: complete, honest about their spread, never half written."""
+
 import json
 import sys
 from pathlib import Path

@@ -1,4 +1,5 @@
 """Fast samplers: equal to the plain loop, to published runs, and honest about what few steps lose."""
+
 import math
 
 import pytest
@@ -28,8 +29,10 @@ def test_fast_ddpm_equals_the_plain_loop_for_the_same_noise(variance, clip):
     schedule, generator = linear_schedule(40, 1e-4, 0.3), torch.Generator().manual_seed(9)
     start = torch.randn(2, 5, 3, generator=generator, dtype=torch.float64)
     noise = torch.randn(40, 2, 5, 3, generator=generator, dtype=torch.float64)
+
     def model(x, s):
         return torch.tanh(x + s.reshape(-1, 1, 1) / 40)
+
     kwargs = {"noise": noise, "variance": variance, "clip": clip}
     pair = [list(f(model, start, schedule, **kwargs)) for f in (sample_steps, ddpm_steps)]
     assert len(pair[0]) == len(pair[1]) == 41
@@ -42,8 +45,10 @@ def test_fast_ddpm_equals_the_plain_loop_for_the_same_noise(variance, clip):
 def test_fast_ddpm_equals_the_plain_loop_for_the_same_seed():
     schedule = linear_schedule()
     denoise = exact_denoiser(three_hills(), schedule)
-    pair = [last_of(f(denoise, (6, 1), schedule, generator=torch.Generator().manual_seed(10)))
-            for f in (sample_steps, ddpm_steps)]
+    pair = [
+        last_of(f(denoise, (6, 1), schedule, generator=torch.Generator().manual_seed(10)))
+        for f in (sample_steps, ddpm_steps)
+    ]
     torch.testing.assert_close(*pair, atol=1e-5, rtol=0)
 
 
@@ -53,12 +58,15 @@ def test_the_last_step_draws_nothing():
     assert last_of(ddpm_steps(lambda x, s: 0 * x, torch.ones(2, 3), schedule, noise=noise)).abs().max() < 100
 
 
-@pytest.mark.parametrize("target, beta_1, total", [("eps", 1e-4, 172.0067), ("v", 1e-4, 52.5302),
-                                                   ("eps", 0.01, 149.8295)])
+@pytest.mark.parametrize(
+    "target, beta_1, total", [("eps", 1e-4, 172.0067), ("v", 1e-4, 52.5302), ("eps", 0.01, 149.8295)]
+)
 def test_ddim_sum_equals_the_published_run(target, beta_1, total):
     schedule = linear_schedule(1000, beta_1, 0.02)
+
     def denoise(x, s):
         return to_eps(dummy(x, s), x, s, schedule, target)
+
     x = last_of(ddim_steps(denoise, START, schedule, list(range(901, 0, -100)), clip=1.0))
     assert x.abs().sum().item() == pytest.approx(total, abs=0.1)
 
@@ -91,7 +99,7 @@ def test_ddim_under_disperses_as_its_own_algebra_says(steps, lost):
     predicted, visited = 1.0, timesteps(100, steps) + [0]
     for now, then in zip(visited[:-1], visited[1:], strict=True):
         (a, b), (a2, b2) = (((ab := schedule.alpha_bar[s].item()) ** 0.5, (1 - ab) ** 0.5) for s in (now, then))
-        predicted *= (a * a2 * std ** 2 + b * b2) / (a * a * std ** 2 + b * b)
+        predicted *= (a * a2 * std**2 + b * b2) / (a * a * std**2 + b * b)
     start = torch.randn(40_000, 1, generator=torch.Generator().manual_seed(11))
     denoise = exact_denoiser(gaussian(0.0, std), schedule)
     ddim = last_of(ddim_steps(denoise, start, schedule, steps))

@@ -185,9 +185,7 @@ TWINS["04"] = {
         lambda: (_normal(7, 1), _normal(7, 1, seed=1), _normal(7, 1, seed=2), LINEAR),
     ),
     "all_terms": Twin(
-        lambda denoise, x0, schedule, noises: ddpm.bound_terms(
-            denoise, x0, schedule, torch.Generator().manual_seed(5)
-        ),
+        lambda denoise, x0, schedule, noises: ddpm.bound_terms(denoise, x0, schedule, torch.Generator().manual_seed(5)),
         lambda: (_shrink, _normal(7, 1), LINEAR, _one_by_one(100, 7)),
     ),
     "weight": Twin(lambda s, schedule: ddpm.dropped_weight(schedule)[s], lambda: (30, LINEAR)),

@@ -1,6 +1,6 @@
 """The form of a notebook: length, opening, tags, exercises, closing, nothing that ties it to one machine.
 
-    python tools/check_notebooks.py [NOTEBOOK ...]     lists what is wrong; exit 1 when anything is
+python tools/check_notebooks.py [NOTEBOOK ...]     lists what is wrong; exit 1 when anything is
 """
 
 import ast

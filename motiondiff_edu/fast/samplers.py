@@ -3,6 +3,7 @@
 Every sampler here is one rule, x_next = keep * x_s + turn * eps_hat + sigma * noise, with three numbers for each step.
 They are Python floats made before the loop: around a small network it is a scheduler's own arithmetic that takes time.
 """
+
 import math
 from collections.abc import Iterator, Sequence
 
@@ -35,8 +36,9 @@ def timesteps(S: int, steps: int) -> list[int]:
     return [S - (i * S) // steps for i in range(steps)]
 
 
-def warm_start(guess: Float[Tensor, "B *shape"], s: int, schedule: Schedule, *,
-               generator: torch.Generator | None = None) -> Float[Tensor, "B *shape"]:
+def warm_start(
+    guess: Float[Tensor, "B *shape"], s: int, schedule: Schedule, *, generator: torch.Generator | None = None
+) -> Float[Tensor, "B *shape"]:
     """Start from a guess of x0 instead of pure noise: noise it to step s, then walk on with steps=timesteps(s, n).
 
     A low s is fast and stays close to the guess; what the guess gets wrong is mended only as far as step s can reach.
@@ -44,9 +46,16 @@ def warm_start(guess: Float[Tensor, "B *shape"], s: int, schedule: Schedule, *,
     return q_sample(guess, s, schedule, draw(guess, generator))
 
 
-def ddpm_steps(denoise: Denoiser, start: Tensor | tuple[int, ...], schedule: Schedule, *,
-               generator: torch.Generator | None = None, noise: Float[Tensor, "S *any"] | None = None,
-               variance: str = "beta", clip: float | None = None) -> Iterator[FastStep]:
+def ddpm_steps(
+    denoise: Denoiser,
+    start: Tensor | tuple[int, ...],
+    schedule: Schedule,
+    *,
+    generator: torch.Generator | None = None,
+    noise: Float[Tensor, "S *any"] | None = None,
+    variance: str = "beta",
+    clip: float | None = None,
+) -> Iterator[FastStep]:
     """`ddpm.sample_steps`, faster: the same records for the same noise. Source: MoDiff Alg. 2. Notebook: 03."""
     beta, alpha_bar = schedule.beta.tolist(), schedule.alpha_bar.tolist()
     sigma = p_variance(schedule, variance).sqrt().tolist()
@@ -58,9 +67,17 @@ def ddpm_steps(denoise: Denoiser, start: Tensor | tuple[int, ...], schedule: Sch
     return _walk(denoise, start, alpha_bar, plan, generator, noise, clip)
 
 
-def ddim_steps(denoise: Denoiser, start: Tensor | tuple[int, ...], schedule: Schedule,
-               steps: int | Sequence[int] = 10, eta: float = 0.0, *, generator: torch.Generator | None = None,
-               noise: Float[Tensor, "S *any"] | None = None, clip: float | None = None) -> Iterator[FastStep]:
+def ddim_steps(
+    denoise: Denoiser,
+    start: Tensor | tuple[int, ...],
+    schedule: Schedule,
+    steps: int | Sequence[int] = 10,
+    eta: float = 0.0,
+    *,
+    generator: torch.Generator | None = None,
+    noise: Float[Tensor, "S *any"] | None = None,
+    clip: float | None = None,
+) -> Iterator[FastStep]:
     """Leap from step to step: x_next = sqrt(ab_next) x0_hat + sqrt(1 - ab_next - sigma^2) eps_hat + sigma noise.
 
     sigma^2 = eta^2 (1 - ab_next) / (1 - ab_s) (1 - ab_s / ab_next). With eta = 0 no noise is drawn.
@@ -72,13 +89,20 @@ def ddim_steps(denoise: Denoiser, start: Tensor | tuple[int, ...], schedule: Sch
     for s, after in zip(visited, [*visited[1:], 0], strict=True):
         now, then = alpha_bar[s], alpha_bar[after]
         sigma = eta * math.sqrt((1 - then) / (1 - now) * (1 - now / then))
-        plan.append((s, math.sqrt(then), 0.0, math.sqrt(max(1 - then - sigma ** 2, 0.0)), sigma))
+        plan.append((s, math.sqrt(then), 0.0, math.sqrt(max(1 - then - sigma**2, 0.0)), sigma))
     return _walk(denoise, start, alpha_bar, plan, generator, noise, clip)
 
 
 @torch.no_grad()
-def _walk(denoise: Denoiser, start: Tensor | tuple[int, ...], alpha_bar: list[float], plan: list[tuple],
-          generator: torch.Generator | None, noise: Tensor | None, clip: float | None) -> Iterator[FastStep]:
+def _walk(
+    denoise: Denoiser,
+    start: Tensor | tuple[int, ...],
+    alpha_bar: list[float],
+    plan: list[tuple],
+    generator: torch.Generator | None,
+    noise: Tensor | None,
+    clip: float | None,
+) -> Iterator[FastStep]:
     """Follow a plan of (s, weight of x0_hat, weight of x_s, weight of eps_hat, sigma)."""
     x = start if isinstance(start, Tensor) else torch.randn(start, generator=generator)
     labels = torch.tensor([p[0] for p in plan], device=x.device)[:, None].repeat(1, len(x)).unbind(0)

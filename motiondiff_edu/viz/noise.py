@@ -2,18 +2,26 @@
 
 Every function returns a closed Figure, so that a notebook shows it once; the caption under it says what to see.
 """
+
 import textwrap
 
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.figure import Figure
 
-BLUE, ORANGE, GREEN, PURPLE, SKY, INK, GREY = (
-    "#0072B2", "#D55E00", "#009E73", "#AA4499", "#56B4E9", "#222222", "#8A8A8A")
+BLUE, ORANGE, GREEN, PURPLE = "#0072B2", "#D55E00", "#009E73", "#AA4499"
+SKY, INK, GREY = "#56B4E9", "#222222", "#8A8A8A"
 COLOURS = (BLUE, ORANGE, GREEN, PURPLE, SKY, INK)
 DASHES = ("-", "--", "-.", (0, (1, 1)), (0, (5, 1, 1, 1)), "-")
-LOOK = {"font.size": 13, "axes.spines.top": False, "axes.spines.right": False, "lines.linewidth": 2.2,
-        "axes.titlesize": 13, "legend.frameon": False, "figure.dpi": 90}
+LOOK = {
+    "font.size": 13,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "lines.linewidth": 2.2,
+    "axes.titlesize": 13,
+    "legend.frameon": False,
+    "figure.dpi": 90,
+}
 
 
 def panels(n: int = 1, width: float = 9.0, height: float = 3.6, **kwargs):
@@ -38,16 +46,24 @@ def finish(figure: Figure, caption: str, labels: tuple[str, str] | None = None) 
     return figure
 
 
-def lines(x, curves: dict, caption: str, labels: tuple[str, str], *, log=(False, False), marks: dict | None = None,
-          ylim=None) -> Figure:
+def lines(
+    x, curves: dict, caption: str, labels: tuple[str, str], *, log=(False, False), marks: dict | None = None, ylim=None
+) -> Figure:
     """Several named curves over x; `marks` are named horizontal levels."""
     figure, (axis,) = panels()
     for i, (name, y) in enumerate(curves.items()):
         axis.plot(x, y, label=name, color=COLOURS[i % 6], ls=DASHES[i % 6], marker="o" if len(x) < 12 else None)
     for name, level in (marks or {}).items():
         axis.axhline(level, color=GREY, lw=1.3, ls=":")
-        axis.annotate(name, (1, level), xycoords=("axes fraction", "data"), ha="right", va="bottom", color="#555555",
-                      bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.75, "pad": 1})
+        axis.annotate(
+            name,
+            (1, level),
+            xycoords=("axes fraction", "data"),
+            ha="right",
+            va="bottom",
+            color="#555555",
+            bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.75, "pad": 1},
+        )
     axis.set_xscale("log" if log[0] else "linear")
     axis.set_yscale("log" if log[1] else "linear")
     if ylim:
@@ -64,8 +80,10 @@ def noised_curve(seconds, clean, noised, s: int, signal: float, caption: str | N
     axis.plot(seconds, signal * np.asarray(clean), color=BLUE, label=f"what is left of x0: {100 * signal:.0f} %")
     axis.set_ylim(-3.6, 3.6)
     axis.legend(loc="upper right", ncol=2, fontsize=12)
-    caption = caption or (f"Step {s}: the blue curve is the clean one times {signal:.2f}; the orange one adds noise of "
-                          f"standard deviation {np.sqrt(1 - signal ** 2):.2f}.")
+    caption = caption or (
+        f"Step {s}: the blue curve is the clean one times {signal:.2f}; the orange one adds noise of "
+        f"standard deviation {np.sqrt(1 - signal**2):.2f}."
+    )
     return finish(figure, caption, ("time (s)", "left heel (standardised)"))
 
 

@@ -1,4 +1,5 @@
 """Sliders for a figure function: turn a knob, see the same figure again. No arithmetic here."""
+
 import base64
 import html
 import io

@@ -1,4 +1,5 @@
 """Wrong answers to the exercises of notebook 02."""
+
 import torch
 
 
@@ -13,22 +14,22 @@ def root_dropped(x0, s, alpha_bar, noise):
 
 def root_dropped_from_the_noise(x0, s, alpha_bar, noise):
     kept = _shaped(alpha_bar, s)
-    return kept ** 0.5 * x0 + (1 - kept) * noise
+    return kept**0.5 * x0 + (1 - kept) * noise
 
 
 def one_step_for_all(x0, s, alpha_bar, noise):
     kept = alpha_bar[s[0]]
-    return kept ** 0.5 * x0 + (1 - kept) ** 0.5 * noise
+    return kept**0.5 * x0 + (1 - kept) ** 0.5 * noise
 
 
 def row_too_low(x0, s, alpha_bar, noise):
     kept = _shaped(alpha_bar, s - 1)
-    return kept ** 0.5 * x0 + (1 - kept) ** 0.5 * noise
+    return kept**0.5 * x0 + (1 - kept) ** 0.5 * noise
 
 
 def signal_and_noise_swapped(x0, s, alpha_bar, noise):
     kept = _shaped(alpha_bar, s)
-    return (1 - kept) ** 0.5 * x0 + kept ** 0.5 * noise
+    return (1 - kept) ** 0.5 * x0 + kept**0.5 * noise
 
 
 def returns_nothing(x0, s, alpha_bar, noise):
@@ -42,13 +43,13 @@ def _product(mean_1, variance_1, mean_2, variance_2):
 
 def step_variance(x0, x_s, s, alpha_bar):
     alpha = alpha_bar[s] / alpha_bar[s - 1]
-    mean, _ = _product(alpha_bar[s - 1] ** 0.5 * x0, 1 - alpha_bar[s - 1], x_s / alpha ** 0.5, (1 - alpha) / alpha)
+    mean, _ = _product(alpha_bar[s - 1] ** 0.5 * x0, 1 - alpha_bar[s - 1], x_s / alpha**0.5, (1 - alpha) / alpha)
     return mean, 1 - alpha
 
 
 def wrong_row_for_x0(x0, x_s, s, alpha_bar):
     alpha = alpha_bar[s] / alpha_bar[s - 1]
-    return _product(alpha_bar[s] ** 0.5 * x0, 1 - alpha_bar[s], x_s / alpha ** 0.5, (1 - alpha) / alpha)
+    return _product(alpha_bar[s] ** 0.5 * x0, 1 - alpha_bar[s], x_s / alpha**0.5, (1 - alpha) / alpha)
 
 
 def last_step_not_undone(x0, x_s, s, alpha_bar):
@@ -58,7 +59,7 @@ def last_step_not_undone(x0, x_s, s, alpha_bar):
 
 def deviation_for_variance(x0, x_s, s, alpha_bar):
     alpha = alpha_bar[s] / alpha_bar[s - 1]
-    mean, var = _product(alpha_bar[s - 1] ** 0.5 * x0, 1 - alpha_bar[s - 1], x_s / alpha ** 0.5, (1 - alpha) / alpha)
+    mean, var = _product(alpha_bar[s - 1] ** 0.5 * x0, 1 - alpha_bar[s - 1], x_s / alpha**0.5, (1 - alpha) / alpha)
     return mean, torch.as_tensor(var) ** 0.5
 
 
@@ -86,6 +87,6 @@ ZOO = {
         "variance for amplitude": lambda S, left: 1 - left ** (1 / S),
         "noise shared out evenly": lambda S, left: (1 - left) / S,
         "alpha for beta": lambda S, left: left ** (2 / S),
-        "only one step": lambda S, left: 1 - left ** 2,
+        "only one step": lambda S, left: 1 - left**2,
     },
 }

@@ -1,10 +1,11 @@
 """Wrong answers to the exercises of notebook 03."""
+
 import torch
 
 
 def _guess(x_s, alpha_bar, data, shrink=0.5, spread=None):
     a = alpha_bar[:, None, None]
-    distance = (x_s[:, None] - a ** shrink * data).square().sum(-1)
+    distance = (x_s[:, None] - a**shrink * data).square().sum(-1)
     spread = 2 * (1 - alpha_bar[:, None]) if spread is None else spread
     return torch.softmax(-distance / spread, dim=1) @ data
 
@@ -69,13 +70,13 @@ def noise_added_instead(x_s, s, eps_hat, beta, alpha_bar, z):
 
 
 def _leap(x, eps_hat, now, then, variance, z, kept=None):
-    x0_hat = (x - (1 - now) ** 0.5 * eps_hat) / now ** 0.5
+    x0_hat = (x - (1 - now) ** 0.5 * eps_hat) / now**0.5
     kept = (1 - then - variance) ** 0.5 if kept is None else kept
-    return then ** 0.5 * x0_hat + kept * eps_hat + variance ** 0.5 * z
+    return then**0.5 * x0_hat + kept * eps_hat + variance**0.5 * z
 
 
 def _variance(now, then, eta):
-    return eta ** 2 * (1 - then) / (1 - now) * (1 - now / then)
+    return eta**2 * (1 - then) / (1 - now) * (1 - now / then)
 
 
 def noise_kept_at_its_old_size(x, eps_hat, now, then, eta, z):
@@ -87,13 +88,13 @@ def too_much_variance(x, eps_hat, now, then, eta, z):
 
 
 def eta_not_squared(x, eps_hat, now, then, eta, z):
-    return _leap(x, eps_hat, now, then, _variance(now, then, eta ** 0.5), z)
+    return _leap(x, eps_hat, now, then, _variance(now, then, eta**0.5), z)
 
 
 def x0_not_rescaled(x, eps_hat, now, then, eta, z):
     variance = _variance(now, then, eta)
     x0_hat = x - (1 - now) ** 0.5 * eps_hat
-    return then ** 0.5 * x0_hat + (1 - then - variance) ** 0.5 * eps_hat + variance ** 0.5 * z
+    return then**0.5 * x0_hat + (1 - then - variance) ** 0.5 * eps_hat + variance**0.5 * z
 
 
 def eta_ignored(x, eps_hat, now, then, eta, z):

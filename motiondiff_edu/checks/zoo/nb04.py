@@ -1,4 +1,5 @@
 """Wrong answers to the exercises of notebook 04."""
+
 import math
 
 import torch
@@ -6,15 +7,15 @@ import torch
 
 def _each(x0, alpha_bar):
     left = 1 - alpha_bar
-    return (alpha_bar * x0 ** 2 + left - 1 - torch.log(left)) / 2
+    return (alpha_bar * x0**2 + left - 1 - torch.log(left)) / 2
 
 
 def variance_forgotten(x0, alpha_bar):
-    return (alpha_bar * x0 ** 2).sum((1, 2)) / 2
+    return (alpha_bar * x0**2).sum((1, 2)) / 2
 
 
 def logarithm_forgotten(x0, alpha_bar):
-    return (alpha_bar * x0 ** 2 - alpha_bar).sum((1, 2)) / 2
+    return (alpha_bar * x0**2 - alpha_bar).sum((1, 2)) / 2
 
 
 def root_dropped(x0, alpha_bar):
@@ -24,7 +25,7 @@ def root_dropped(x0, alpha_bar):
 
 def directions_swapped(x0, alpha_bar):
     left = 1 - alpha_bar
-    return ((alpha_bar * x0 ** 2 + 1) / left - 1 + torch.log(left)).sum((1, 2)) / 2
+    return ((alpha_bar * x0**2 + 1) / left - 1 + torch.log(left)).sum((1, 2)) / 2
 
 
 def _of_eps(beta, alpha_bar):
