@@ -33,6 +33,7 @@ def save_walker(walker: Walker, path: str | Path, half: bool = True) -> Path:
     Written to a temporary name and renamed.  Notebook: 07
     """
     path = Path(path)
+    path.parent.mkdir(parents=True, exist_ok=True)
     weights = {f"model.{k}": v.half() if half else v for k, v in walker.model.state_dict().items()}
     scalers = {"pose": walker.pose_scaler, "control": walker.control_scaler}
     weights |= {f"{name}.{part}": getattr(s, part) for name, s in scalers.items() for part in ("mean", "std")}

@@ -85,13 +85,15 @@ def window_loss(
     held: float = 0.5,
     jitter: float = 0.0,
     metres: float = 0.0,
+    velocity: float = 0.0,
 ) -> Callable[[nn.Module, torch.Generator], Tensor]:
     """Algorithm 1 as a `loss_fn` for `training.train_steps`: mean squared error of the network's target.
 
     Every window is encoded once and denoised at `noises` different steps: the encoder is the dear part. `jitter` shakes
     the past by up to that share of a standard deviation, so that a rollout's own small errors are no news to it.
     Columns are weighted by std^metres: 0 counts errors in standard deviations, 2 in metres (a toe moves tenfold a hip).
-    Source: MoDiff eq. 10, Alg. 1; repeated steps, jitter and column weights are ours.  Notebook: 07
+    `velocity` weights a second term: the same error between neighbouring frames, the first counted from the past.
+    Source: MoDiff eq. 10, Alg. 1; all but the squared error itself is ours.  Notebook: 07
     """
     columns = windows.pose_scaler.std**metres
     columns = columns / columns.mean()
@@ -108,7 +110,11 @@ def window_loss(
         eps = torch.randn(x0.shape, generator=generator).to(device)
         wanted = target_of(x0, eps, s, schedule, model.config.target)
         error = wanted - model.decode(q_sample(x0, s, schedule, eps), s, memory)
-        return (columns.to(device) * error.square()).mean()
+        loss = (columns.to(device) * error.square()).mean()
+        if velocity:
+            change = torch.diff(torch.cat([torch.zeros_like(error[:, :1]), error], dim=1), dim=1)
+            loss = loss + velocity * (columns.to(device) * change.square()).mean()
+        return loss
 
     return loss_fn
 

@@ -9,6 +9,17 @@ from ..modiff import MODIFF_PAPER, MODIFF_SMALL, MoDiffConfig
 
 
 @dataclass(frozen=True)
+class Polish:
+    """A second, shorter training of the averaged network, with a past shaken as much as long rollouts shake it."""
+
+    steps: int = 4500
+    lr: float = 6e-4
+    jitter: float = 0.15
+    velocity: float = 10.0  # weight of the error between neighbouring frames
+    decay: float = 0.995
+
+
+@dataclass(frozen=True)
 class Recipe:
     """One training run. `seconds` of each of `clips` clips are made with the data seed; mirrored and reversed later."""
 
@@ -27,10 +38,11 @@ class Recipe:
     data_seed: int = 1
     seed: int = 0
     styles: tuple[str, ...] | None = None
+    polish: Polish | None = None
     bf16_share: float = 0.8  # of the steps in bfloat16 arithmetic, the rest in float32
 
 
-WALKER_X0 = Recipe("walker-x0", replace(MODIFF_SMALL, target="x0", skip=False), steps=18_000)
+WALKER_X0 = Recipe("walker-x0", replace(MODIFF_SMALL, target="x0", skip=False), steps=18_000, polish=Polish())
 WALKER_EPS = Recipe("walker-eps", MODIFF_SMALL, steps=18_000)
 WALKER_PAPER = Recipe("walker-paper", MODIFF_PAPER, steps=200_000, lr=2e-4, batch=64, clips=2400)
 

@@ -1,5 +1,6 @@
 """Train a recipe into a walker: data, windows, loop, card. A killed run continues where it was saved last."""
 
+import copy
 import datetime
 import itertools
 import platform
@@ -45,23 +46,40 @@ def train(recipe: Recipe, run_file: Path, clips: list[Clip] | None = None, log=p
         log(f"{recipe.name}: continuing at step {state.step}")
     sizes = {"batch": recipe.batch, "noises": recipe.noises, "jitter": recipe.jitter, "metres": recipe.metres}
     loss_fn = window_loss(windows, schedule, **sizes)
-    began, cpu, losses = time.monotonic(), time.process_time(), []
-    settings = {"lr": cosine_lr(recipe.lr, recipe.steps, 500), "decay": recipe.decay, "save": saver(run_file)}
-    settings |= {"save_every": 2000, "progress": False}
+    began, cpu = time.monotonic(), time.process_time()
+    schedule_of_lr = cosine_lr(recipe.lr, recipe.steps, 500)
+    losses = _run(recipe, state, loss_fn, recipe.steps, schedule_of_lr, recipe.decay, device, log, saver(run_file))
+    if recipe.polish:
+        state = _polished(recipe, state.average, windows, schedule, device, log)
+    card = card_of(recipe, windows, (time.monotonic() - began) / 60, (time.process_time() - cpu) / 60)
+    card["final_loss"] = round(float(np.mean(losses[-1000:])), 6) if losses else None
+    return Walker(state.average.cpu().eval(), schedule, windows.pose_scaler, windows.control_scaler, card)
+
+
+def _run(recipe, state, loss_fn, steps, lr, decay, device, log, save=None) -> list[float]:
+    """Train to `steps`, the first share of them in bfloat16; the losses."""
+    settings = {"lr": lr, "decay": decay, "save": save, "save_every": 2000, "progress": False}
+    began, losses = time.monotonic(), []
     loop = itertools.chain(
-        train_steps(state, _in_bf16(loss_fn, device), int(recipe.bf16_share * recipe.steps), **settings),
-        train_steps(state, loss_fn, recipe.steps, **settings),
+        train_steps(state, _in_bf16(loss_fn, device), int(recipe.bf16_share * steps), **settings),
+        train_steps(state, loss_fn, steps, **settings),
     )
     for report in loop:
         losses.append(report.loss)
         if report.step % 1000 == 0:
-            log(
-                f"{recipe.name} {report.step}/{recipe.steps}: loss {np.mean(losses[-1000:]):.5f}, "
-                f"{(time.monotonic() - began) / 60:.1f} min"
-            )
-    card = card_of(recipe, windows, (time.monotonic() - began) / 60, (time.process_time() - cpu) / 60)
-    card["final_loss"] = round(float(np.mean(losses[-1000:])), 6) if losses else None
-    return Walker(state.average.cpu().eval(), schedule, windows.pose_scaler, windows.control_scaler, card)
+            mean, minutes = np.mean(losses[-1000:]), (time.monotonic() - began) / 60
+            log(f"{recipe.name} {report.step}/{steps}: loss {mean:.5f}, {minutes:.1f} min")
+    return losses
+
+
+def _polished(recipe, average, windows, schedule, device, log) -> TrainState:
+    """The second training: it starts from the average of the first, with Adam's memory empty."""
+    polish = recipe.polish
+    state = TrainState.start(copy.deepcopy(average).requires_grad_(True), recipe.seed + 1)
+    sizes = {"batch": recipe.batch, "noises": recipe.noises, "metres": recipe.metres}
+    loss_fn = window_loss(windows, schedule, jitter=polish.jitter, velocity=polish.velocity, **sizes)
+    _run(recipe, state, loss_fn, polish.steps, cosine_lr(polish.lr, polish.steps, 50), polish.decay, device, log)
+    return state
 
 
 def _in_bf16(loss_fn, device: str):
