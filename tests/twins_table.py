@@ -18,9 +18,10 @@ import torch
 from scipy.spatial.transform import Rotation, Slerp
 
 from motiondiff_edu import cross_modal_attention as cross
-from motiondiff_edu import ddpm, exact, rollout
+from motiondiff_edu import ddpm, exact, prediction, rollout, training
 from motiondiff_edu.fast.samplers import ddim_steps
 from motiondiff_edu.metrics import adherence, bone_lengths, footsteps
+from motiondiff_edu.modiff import MoDiff, MoDiffConfig
 from motiondiff_edu.motion import kinematics, root_frame, skeleton
 
 
@@ -208,4 +209,68 @@ TWINS["06"] = {
     ),
     "bucket_loop": Twin(lambda distance: cross.relative_position_bucket(torch.tensor(distance)), lambda: (-46,)),
     "block_by_hand": Twin(lambda block, x, context: block(x, context=context), _small_block),
+}
+
+
+def _batch_of_plane() -> tuple:
+    x0, eps = _normal(7, 3, seed=51), _normal(7, 3, seed=52)
+    return x0, eps, torch.tensor([1, 12, 30, 55, 70, 95, 100]), LINEAR
+
+
+def _all_targets(x0, eps, s, schedule) -> tuple[torch.Tensor, ...]:
+    return tuple(prediction.target_of(x0, eps, s, schedule, target) for target in ("eps", "x0", "v"))
+
+
+def _toy_training() -> tuple:
+    torch.manual_seed(53)
+
+    def loss_fn(model, generator):
+        x = torch.randn(11, 5, generator=generator)
+        return (model(x) - x[:, :2] * x[:, 3:]).square().mean()
+
+    return torch.nn.Linear(5, 2), loss_fn, 6, torch.Generator().manual_seed(54)
+
+
+def _train_by_library(model, loss_fn, steps, generator) -> torch.Tensor:
+    state = training.TrainState.start(model)
+    state.generator = generator
+    list(training.train_steps(state, loss_fn, steps, clip=1e9, progress=False))
+    return torch.cat([p.detach().flatten() for p in model.parameters()])
+
+
+TWINS["05"] = {
+    "targets_loop": Twin(_all_targets, _batch_of_plane),
+    "train_by_hand": Twin(_train_by_library, _toy_training),
+}
+
+
+def _ridge(inputs, outputs, ridge) -> torch.Tensor:
+    """The same by the singular values of the inputs: no normal equations."""
+    u, d, v = torch.linalg.svd(inputs, full_matrices=False)
+    return v.T @ ((d / (d**2 + ridge * len(inputs)))[:, None] * (u.T @ outputs))
+
+
+def _windows_of_walking() -> tuple:
+    """A tiny network, and five windows with their steps and noise."""
+    torch.manual_seed(55)
+    network = MoDiff(MoDiffConfig(T_h=4, T_p=3, S=100, width=16, heads=2, hidden=24))
+    past, future, eps = (_normal(5, frames, 63, seed=n).float() for n, frames in ((56, 4), (57, 3), (58, 3)))
+    return (
+        network,
+        past,
+        future,
+        _normal(5, 7, 3, seed=59).float(),
+        torch.tensor([1, 30, 55, 80, 100]),
+        eps,
+        LINEAR.alpha_bar,
+    )
+
+
+def _algorithm_1(network, past, future, control, s, eps, alpha_bar) -> torch.Tensor:
+    return ddpm.simple_loss(lambda x_s, s: network(x_s, s, past, control), future, s, LINEAR, eps)
+
+
+TWINS["07"] = {
+    "ridge_loop": Twin(_ridge, lambda: (_normal(40, 7, seed=60), _normal(40, 3, seed=61), 0.02), atol=1e-9),
+    "algorithm_1": Twin(_algorithm_1, _windows_of_walking),
 }

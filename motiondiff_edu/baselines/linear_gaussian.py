@@ -37,8 +37,11 @@ class LinearGaussian:
         """The expected next pose; of the control, the rows beside the past are used.  Notebook: 07"""
         return regressors(past, control[:, : self.T_h]) @ self.weight
 
-    def window_sampler(self, steps: None = None, spread: float = 1.0) -> WindowSampler:
-        """Draw the next pose; `spread` scales the noise (0: the mean). There are no steps to choose.  Notebook: 07"""
+    def window_sampler(self, steps: int | None = None, spread: float = 1.0) -> WindowSampler:
+        """Draw the next pose; `spread` scales the noise (0: the mean). Without diffusion, `steps` changes nothing.
+
+        Notebook: 07
+        """
 
         def sample(past: Tensor, control: Tensor, generator: torch.Generator) -> Tensor:
             noise = torch.randn(len(past), self.weight.shape[1], generator=generator)
