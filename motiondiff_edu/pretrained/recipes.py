@@ -12,9 +12,9 @@ from ..modiff import MODIFF_PAPER, MODIFF_SMALL, MoDiffConfig
 class Polish:
     """A second, shorter training of the averaged network, with a past shaken as much as long rollouts shake it."""
 
-    steps: int = 4500
+    steps: int = 4000
     lr: float = 6e-4
-    jitter: float = 0.15
+    jitter: float = 0.3
     velocity: float = 10.0  # weight of the error between neighbouring frames
     decay: float = 0.995
 
