@@ -41,7 +41,7 @@ demo: $(VENV)/.lab ## open one notebook ready to show: make demo NB=07
 doctor: $(VENV)/.lab ## one page: what works here, and what to do about the rest
 	$(BIN)/python -m motiondiff_edu doctor
 
-test: unit notebooks browser ## set up .venv and run everything: unit tests, notebooks, browser
+test: lint unit notebooks browser ## set up .venv and run everything: lint, unit tests, notebooks, browser
 
 unit: $(VENV)/.test ## only the unit tests
 	OMP_NUM_THREADS=1 $(BIN)/python -m pytest -q -n auto --dist loadfile -m "not browser"
@@ -55,6 +55,7 @@ browser: $(VENV)/.test ## only the tests that need Chromium
 
 lint: $(VENV)/.test ## ruff, the form of the notebooks, the student edition
 	$(BIN)/python -m ruff check .
+	$(BIN)/python -m ruff format --check --quiet motiondiff_edu data_synth tools benchmarks tests
 	$(BIN)/python tools/check_notebooks.py
 	$(BIN)/python tools/build_student.py --check
 

@@ -3,6 +3,7 @@
 Steps are numbered s = 1..S, and every table has S + 1 entries, so that `alpha_bar[s]` is the paper's (and [0] is 1).
 A *denoiser* is any callable `denoise(x_s, s) -> eps_hat`, with s of shape (B,).
 """
+
 import math
 import warnings
 from collections.abc import Callable, Iterator
@@ -20,6 +21,7 @@ Denoiser = Callable[[Tensor, Tensor], Tensor]
 @dataclass(frozen=True, eq=False)
 class Schedule:
     """How much noise each step adds: beta, alpha = 1 - beta and its running product alpha_bar, indexed by s = 0..S."""
+
     beta: Float[Tensor, "S_plus_1"]
     alpha: Float[Tensor, "S_plus_1"]
     alpha_bar: Float[Tensor, "S_plus_1"]
@@ -48,8 +50,11 @@ def make_schedule(beta: Float[Tensor, "S"], name: str = "schedule") -> Schedule:
         raise ValueError(f"{name}: every beta must lie between 0 and 1, but {where}; take more steps or smaller betas")
     schedule = Schedule(beta, 1 - beta, torch.cumprod(1 - beta, 0), name)
     if schedule.signal_left > 0.1:
-        warnings.warn(f"{schedule_card(schedule)} Sampling starts from pure noise, which this schedule never reaches: "
-                      "take more steps or larger betas.", stacklevel=3)
+        warnings.warn(
+            f"{schedule_card(schedule)} Sampling starts from pure noise, which this schedule never reaches: "
+            "take more steps or larger betas.",
+            stacklevel=3,
+        )
     return schedule
 
 
@@ -72,8 +77,10 @@ def cosine_schedule(S: int = 1000, cap: float = 0.999) -> Schedule:
 
 def schedule_card(schedule: Schedule) -> str:
     """Say in one line what a schedule leaves of the signal at its last step: sqrt(alpha_bar[S]). Notebook: 02."""
-    return (f"{schedule.name}, S = {schedule.S}: after the last step {100 * schedule.signal_left:.2g} % "
-            "of the signal's amplitude is left.")
+    return (
+        f"{schedule.name}, S = {schedule.S}: after the last step {100 * schedule.signal_left:.2g} % "
+        "of the signal's amplitude is left."
+    )
 
 
 def at(table: Float[Tensor, "S_plus_1"], s: Steps, x: Float[Tensor, "B *shape"]) -> Tensor:
@@ -88,18 +95,20 @@ def draw(like: Float[Tensor, "*shape"], generator: torch.Generator | None = None
 
 
 # ---- forward: adding noise -------------------------------------------------------------------------------------------
-def q_step(x_prev: Float[Tensor, "B *shape"], s: Steps, schedule: Schedule,
-           noise: Float[Tensor, "B *shape"]) -> Float[Tensor, "B *shape"]:
+def q_step(
+    x_prev: Float[Tensor, "B *shape"], s: Steps, schedule: Schedule, noise: Float[Tensor, "B *shape"]
+) -> Float[Tensor, "B *shape"]:
     """Add one step: x_s = sqrt(1 - beta_s) x_{s-1} + sqrt(beta_s) noise. Source: MoDiff eq. 1. Notebook: 02."""
     beta = at(schedule.beta, s, x_prev)
     return (1 - beta).sqrt() * x_prev + beta.sqrt() * noise
 
 
-def q_sample(x0: Float[Tensor, "B *shape"], s: Steps, schedule: Schedule,
-             noise: Float[Tensor, "B *shape"]) -> Float[Tensor, "B *shape"]:
+def q_sample(
+    x0: Float[Tensor, "B *shape"], s: Steps, schedule: Schedule, noise: Float[Tensor, "B *shape"]
+) -> Float[Tensor, "B *shape"]:
     """Add s steps: x_s = sqrt(alpha_bar_s) x0 + sqrt(1 - alpha_bar_s) noise. Source: MoDiff eq. 2. Notebook: 02."""
-    alpha_bar = at(schedule.alpha_bar, s, x0)
-    return alpha_bar.sqrt() * x0 + (1 - alpha_bar).sqrt() * noise
+    signal, noise_share = at(schedule.alpha_bar, s, x0), at(1 - schedule.alpha_bar, s, x0)
+    return signal.sqrt() * x0 + noise_share.sqrt() * noise
 
 
 def posterior_variance(schedule: Schedule) -> Float[Tensor, "S_plus_1"]:
@@ -108,8 +117,9 @@ def posterior_variance(schedule: Schedule) -> Float[Tensor, "S_plus_1"]:
     return torch.cat([left[:1], schedule.beta[1:] * left[:-1] / left[1:]])
 
 
-def q_posterior(x0: Float[Tensor, "B *shape"], x_s: Float[Tensor, "B *shape"], s: Steps,
-                schedule: Schedule) -> tuple[Float[Tensor, "B *shape"], Tensor]:
+def q_posterior(
+    x0: Float[Tensor, "B *shape"], x_s: Float[Tensor, "B *shape"], s: Steps, schedule: Schedule
+) -> tuple[Float[Tensor, "B *shape"], Tensor]:
     """Mean and variance of x_{s-1} when x_s and the clean x0 are both known.
 
     mean = sqrt(ab_{s-1}) beta_s / (1 - ab_s) x0 + sqrt(alpha_s) (1 - ab_{s-1}) / (1 - ab_s) x_s
@@ -125,6 +135,7 @@ def q_posterior(x0: Float[Tensor, "B *shape"], x_s: Float[Tensor, "B *shape"], s
 @dataclass(frozen=True, eq=False)
 class Step:
     """One moment of sampling: x_s, and what the denoiser says about it. At s = 0, x_s is the sample itself."""
+
     s: int
     x_s: Tensor
     x0_hat: Tensor
@@ -141,24 +152,38 @@ def p_variance(schedule: Schedule, variance: str = "beta") -> Float[Tensor, "S_p
     return schedule.beta if variance == "beta" else posterior_variance(schedule)
 
 
-def p_mean(x_s: Float[Tensor, "B *shape"], s: Steps, eps_hat: Float[Tensor, "B *shape"],
-           schedule: Schedule) -> Float[Tensor, "B *shape"]:
+def p_mean(
+    x_s: Float[Tensor, "B *shape"], s: Steps, eps_hat: Float[Tensor, "B *shape"], schedule: Schedule
+) -> Float[Tensor, "B *shape"]:
     """mean = (x_s - beta_s / sqrt(1 - alpha_bar_s) eps_hat) / sqrt(alpha_s). Source: MoDiff eq. 9. Notebook: 03."""
     share = at(schedule.beta, s, x_s) / at(1 - schedule.alpha_bar, s, x_s).sqrt()
     return (x_s - share * eps_hat) / at(schedule.alpha, s, x_s).sqrt()
 
 
-def p_sample(x_s: Float[Tensor, "B *shape"], s: int, eps_hat: Float[Tensor, "B *shape"], schedule: Schedule,
-             noise: Float[Tensor, "B *shape"], variance: str = "beta") -> Float[Tensor, "B *shape"]:
+def p_sample(
+    x_s: Float[Tensor, "B *shape"],
+    s: int,
+    eps_hat: Float[Tensor, "B *shape"],
+    schedule: Schedule,
+    noise: Float[Tensor, "B *shape"],
+    variance: str = "beta",
+) -> Float[Tensor, "B *shape"]:
     """x_{s-1} = p_mean + sigma_s noise; the last step, s = 1, adds none. Source: MoDiff eq. 11. Notebook: 03."""
     mean = p_mean(x_s, s, eps_hat, schedule)
     return mean if s == 1 else mean + at(p_variance(schedule, variance), s, x_s).sqrt() * noise
 
 
 @torch.no_grad()
-def sample_steps(denoise: Denoiser, start: Tensor | tuple[int, ...], schedule: Schedule, *,
-                 generator: torch.Generator | None = None, noise: Float[Tensor, "S *any"] | None = None,
-                 variance: str = "beta", clip: float | None = None) -> Iterator[Step]:
+def sample_steps(
+    denoise: Denoiser,
+    start: Tensor | tuple[int, ...],
+    schedule: Schedule,
+    *,
+    generator: torch.Generator | None = None,
+    noise: Float[Tensor, "S *any"] | None = None,
+    variance: str = "beta",
+    clip: float | None = None,
+) -> Iterator[Step]:
     """Walk from x_S back to x0, yielding S + 1 records, s = S..0; `start` is x_S, or its shape.
 
     noise[s - 1], when given, is the noise of step s; clip bounds x0_hat to [-clip, clip].
@@ -185,8 +210,13 @@ def _clean_guess(x_s: Tensor, s: int, eps_hat: Tensor, schedule: Schedule, clip:
 
 
 # ---- the objective ---------------------------------------------------------------------------------------------------
-def simple_loss(denoise: Denoiser, x0: Float[Tensor, "B *shape"], s: Int[Tensor, "B"], schedule: Schedule,
-                noise: Float[Tensor, "B *shape"]) -> Float[Tensor, ""]:
+def simple_loss(
+    denoise: Denoiser,
+    x0: Float[Tensor, "B *shape"],
+    s: Int[Tensor, "B"],
+    schedule: Schedule,
+    noise: Float[Tensor, "B *shape"],
+) -> Float[Tensor, ""]:
     """Mean squared error of the noise, ||eps - eps_hat(x_s, s)||^2, averaged over batch and entries.
 
     Source: MoDiff eq. 10, Alg. 1 (which forgets the square). Notebook: 04, 05.
@@ -215,8 +245,13 @@ def prior_kl(x0: Float[Tensor, "B *shape"], schedule: Schedule) -> Float[Tensor,
     return gaussian_kl(alpha_bar.sqrt() * x0, 1 - alpha_bar, torch.zeros_like(x0), one)
 
 
-def step_kl(x0: Float[Tensor, "B *shape"], x_s: Float[Tensor, "B *shape"], s: int, eps_hat: Float[Tensor, "B *shape"],
-            schedule: Schedule) -> Float[Tensor, "B"]:
+def step_kl(
+    x0: Float[Tensor, "B *shape"],
+    x_s: Float[Tensor, "B *shape"],
+    s: int,
+    eps_hat: Float[Tensor, "B *shape"],
+    schedule: Schedule,
+) -> Float[Tensor, "B"]:
     """KL(q(x_{s-1} | x_s, x0) || p(x_{s-1} | x_s)), s >= 2: ||difference of the means||^2 / (2 beta_s) + a constant.
 
     Source: MoDiff eq. 5, 8. Notebook: 04.
@@ -225,8 +260,12 @@ def step_kl(x0: Float[Tensor, "B *shape"], x_s: Float[Tensor, "B *shape"], s: in
     return gaussian_kl(mean, variance, p_mean(x_s, s, eps_hat, schedule), at(schedule.beta, s, x_s))
 
 
-def reconstruction_nll(x0: Float[Tensor, "B *shape"], x_1: Float[Tensor, "B *shape"],
-                       eps_hat: Float[Tensor, "B *shape"], schedule: Schedule) -> Float[Tensor, "B"]:
+def reconstruction_nll(
+    x0: Float[Tensor, "B *shape"],
+    x_1: Float[Tensor, "B *shape"],
+    eps_hat: Float[Tensor, "B *shape"],
+    schedule: Schedule,
+) -> Float[Tensor, "B"]:
     """-log p(x0 | x_1), with variance beta_1. Source: MoDiff eq. 5. Notebook: 04."""
     variance = at(schedule.beta, 1, x_1)
     each = (x0 - p_mean(x_1, 1, eps_hat, schedule)).square() / variance + (2 * math.pi * variance).log()
@@ -234,8 +273,9 @@ def reconstruction_nll(x0: Float[Tensor, "B *shape"], x_1: Float[Tensor, "B *sha
 
 
 @torch.no_grad()
-def bound_terms(denoise: Denoiser, x0: Float[Tensor, "B *shape"], schedule: Schedule,
-                generator: torch.Generator | None = None) -> Float[Tensor, "S_plus_1 B"]:
+def bound_terms(
+    denoise: Denoiser, x0: Float[Tensor, "B *shape"], schedule: Schedule, generator: torch.Generator | None = None
+) -> Float[Tensor, "S_plus_1 B"]:
     """Estimate every term of the negative bound with one draw each: their sum over s is at least -log p(x0) on average.
 
     Row 0 is the prior's term, row 1 -log p(x0 | x_1), rows 2..S the KL of step s. Source: MoDiff eq. 4-5. Notebook: 04.
@@ -244,6 +284,7 @@ def bound_terms(denoise: Denoiser, x0: Float[Tensor, "B *shape"], schedule: Sche
     for s in range(1, schedule.S + 1):
         x_s = q_sample(x0, s, schedule, draw(x0, generator))
         eps_hat = denoise(x_s, torch.full((len(x0),), s, device=x0.device))
-        terms.append(reconstruction_nll(x0, x_s, eps_hat, schedule) if s == 1
-                     else step_kl(x0, x_s, s, eps_hat, schedule))
+        terms.append(
+            reconstruction_nll(x0, x_s, eps_hat, schedule) if s == 1 else step_kl(x0, x_s, s, eps_hat, schedule)
+        )
     return torch.stack(terms)

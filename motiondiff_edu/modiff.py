@@ -46,7 +46,7 @@ class MoDiffConfig:
 
 
 MODIFF_PAPER = MoDiffConfig(dropout=0.1)
-MODIFF_SMALL = MoDiffConfig(width=120, hidden=240)
+MODIFF_SMALL = MoDiffConfig(width=128, hidden=256, cross_layers=2)
 
 
 def step_embedding(s: Int[Tensor, "B"], width: int) -> Float[Tensor, "B W"]:

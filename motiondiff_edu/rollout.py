@@ -7,6 +7,7 @@ Source: MoDiff III-C, Alg. 2.  Notebook: 08
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from typing import Any
 
 import torch
 from jaxtyping import Float
@@ -66,8 +67,8 @@ def rollout_steps(
 
 def generate(
     walker,
-    past: Float[Tensor, "*B T_h D"],
-    control: Float[Tensor, "*B T C"],
+    past: Float[Any, "*B T_h D"],
+    control: Float[Any, "*B T C"],
     *,
     seed: int = 0,
     generator: torch.Generator | None = None,
@@ -78,9 +79,10 @@ def generate(
     """Continue `past` (root-frame poses, metres) under `control` (m/s, m/s, rad/s): n = T - T_h new poses, metres.
 
     Rows 0..T_h-1 of the control belong to the past. steps=None is DDPM with all S steps, a number is DDIM with so many.
-    A past and control without a batch axis give poses without one.
+    A past and control without a batch axis give poses without one. Arrays of numpy are taken too; a tensor comes back.
     Raises ValueError when past and control do not fit the walker or hold NaN.  Source: MoDiff Alg. 2.  Notebook: 08
     """
+    past, control = torch.as_tensor(past), torch.as_tensor(control)
     single = past.dim() == 2
     past, control = (x[None] if single else x for x in (past, control))
     T_h, frames = walker.config.T_h, control.shape[1] - past.shape[1]

@@ -9,7 +9,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import torch
-from safetensors import safe_open
+from safetensors import SafetensorError, safe_open
 from safetensors.torch import save_file
 
 from .training import TrainState
@@ -21,34 +21,47 @@ def saver(path: str | Path) -> Callable[[TrainState], Path]:
 
 
 def save_run(state: TrainState, path: str | Path) -> Path:
-    """Write weights, their average, Adam's moments, both random generators and the step number."""
+    """Write weights, their average, the optimizer's moments, the random generators, and the step and seconds so far."""
     tensors = {f"model.{k}": v for k, v in state.model.state_dict().items()}
     tensors |= {f"average.{k}": v for k, v in state.average.state_dict().items()}
     for i, moments in state.optimizer.state_dict()["state"].items():
-        tensors |= {f"adam.{i}.{k}": v for k, v in moments.items()}
+        tensors |= {f"moments.{i}.{k}": v for k, v in moments.items()}
     tensors |= {"random.generator": state.generator.get_state(), "random.torch": torch.get_rng_state()}
-    temporary = f"{path}.part"
-    save_file({k: v.contiguous().clone() for k, v in tensors.items()}, temporary, {"step": json.dumps(state.step)})
+    if torch.cuda.is_available():
+        tensors["random.cuda"] = torch.cuda.get_rng_state()
+    temporary, counts = f"{path}.part", {"step": json.dumps(state.step), "seconds": json.dumps(state.seconds)}
+    save_file({k: v.contiguous().clone() for k, v in tensors.items()}, temporary, counts)
     os.replace(temporary, path)
     return Path(path)
 
 
 def resume_run(state: TrainState, path: str | Path) -> TrainState:
-    """Bring `state` to where the run at `path` was; of another model, load_state_dict says what differs."""
-    with safe_open(path, "pt") as file:
-        tensors = {name: file.get_tensor(name) for name in file.keys()}
-        state.step = json.loads(file.metadata()["step"])
+    """Bring `state` to where the run at `path` was; of another model, load_state_dict says what differs.
+
+    Raises ValueError when the file is damaged or no saved run.
+    """
+    try:
+        with safe_open(path, "pt") as file:
+            tensors, counts = {name: file.get_tensor(name) for name in file.keys()}, file.metadata() or {}
+    except (SafetensorError, OSError) as error:
+        raise ValueError(f"{path} cannot be resumed: damaged, or no safetensors file ({error}); delete it") from error
     parts: dict[str, dict] = {}
     for name, tensor in tensors.items():
-        part, key = name.split(".", 1)
+        part, _, key = name.partition(".")
         parts.setdefault(part, {})[key] = tensor
+    missing = {"model", "average", "random"} - set(parts) or {"step"} - set(counts)
+    if missing:
+        raise ValueError(f"{path} is no saved run: it has no {sorted(missing)[0]}; give another file, or delete it")
     state.model.load_state_dict(parts["model"])
     state.average.load_state_dict(parts["average"])
-    adam: dict[int, dict] = {}
-    for name, tensor in parts.get("adam", {}).items():
+    moments: dict[int, dict] = {}
+    for name, tensor in parts.get("moments", {}).items():
         index, key = name.split(".")
-        adam.setdefault(int(index), {})[key] = tensor
-    state.optimizer.load_state_dict(state.optimizer.state_dict() | {"state": adam})
+        moments.setdefault(int(index), {})[key] = tensor
+    state.optimizer.load_state_dict(state.optimizer.state_dict() | {"state": moments})
+    state.step, state.seconds = json.loads(counts["step"]), json.loads(counts.get("seconds", "0"))
     state.generator.set_state(parts["random"]["generator"])
     torch.set_rng_state(parts["random"]["torch"])
+    if "cuda" in parts["random"] and torch.cuda.is_available():
+        torch.cuda.set_rng_state(parts["random"]["cuda"])
     return state

@@ -6,8 +6,10 @@ is why a resumed run continues bit for bit.  Source: MoDiff Alg. 1.  Notebook: 0
 
 import copy
 import math
+import time
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from typing import Any
 
 import torch
 from torch import Tensor, nn
@@ -26,15 +28,16 @@ class TrainState:
 
     model: nn.Module
     average: nn.Module  # exponential moving average of the weights: what is used after training
-    optimizer: torch.optim.Optimizer
+    optimizer: Any  # a torch.optim.Optimizer, or muon.MuonAndAdam
     generator: torch.Generator
     step: int = 0
+    seconds: float = 0.0  # spent in training so far, by the clock on the wall
 
     @classmethod
-    def start(cls, model: nn.Module, seed: int = 0) -> "TrainState":
-        """A fresh run of this model. Every random number of the run comes from `seed`."""
+    def start(cls, model: nn.Module, seed: int = 0, optimizer=None) -> "TrainState":
+        """A fresh run of this model, with Adam unless told. Every random number of the run comes from `seed`."""
         average = copy.deepcopy(model).requires_grad_(False).eval()
-        optimizer = torch.optim.Adam(model.parameters(), fused=True)
+        optimizer = optimizer or torch.optim.Adam(model.parameters(), fused=True)
         return cls(model, average, optimizer, torch.Generator().manual_seed(seed))
 
 
@@ -82,7 +85,7 @@ def train_steps(
     state.model.train()
     with bar:
         while state.step < steps:
-            rate = lr(state.step) if callable(lr) else lr
+            began, rate = time.perf_counter(), lr(state.step) if callable(lr) else lr
             loss = loss_fn(state.model, state.generator)
             state.optimizer.zero_grad(set_to_none=True)
             loss.backward()
@@ -93,7 +96,7 @@ def train_steps(
                 group["lr"] = rate
             state.optimizer.step()
             _follow(state, decay)
-            state.step += 1
+            state.step, state.seconds = state.step + 1, state.seconds + time.perf_counter() - began
             if save and (state.step % save_every == 0 or state.step == steps):
                 save(state)
             bar.update()

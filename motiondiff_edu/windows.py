@@ -81,45 +81,62 @@ def window_loss(
     schedule: Schedule,
     *,
     batch: int = 32,
-    noises: int = 4,
+    noises: int = 2,
     held: float = 0.5,
     jitter: float = 0.0,
     metres: float = 0.0,
-    velocity: float = 0.0,
+    near: float = 0.0,
+    high_noise: float = 0.0,
 ) -> Callable[[nn.Module, torch.Generator], Tensor]:
     """Algorithm 1 as a `loss_fn` for `training.train_steps`: mean squared error of the network's target.
 
     Every window is encoded once and denoised at `noises` different steps: the encoder is the dear part. `jitter` shakes
-    the past by up to that share of a standard deviation, so that a rollout's own small errors are no news to it.
+    the past (see `shaken`), so that a rollout's own errors, small or large, are no news to the network.
     Columns are weighted by std^metres: 0 counts errors in standard deviations, 2 in metres (a toe moves tenfold a hip).
-    `velocity` weights a second term: the same error between neighbouring frames, the first counted from the past.
+    Frame k is weighted by 1 / (how far poses move in k frames)^near: a rollout keeps the first, which moves least.
+    `high_noise` = c weights step s by 1 + min((1 - alpha_bar) / alpha_bar, c): where eps is easy and the pose is not.
     Source: MoDiff eq. 10, Alg. 1; all but the squared error itself is ours.  Notebook: 07
     """
-    columns = windows.pose_scaler.std**metres
+    change = typical_change(windows)
+    std = windows.pose_scaler.std
+    columns = std**metres / (change * std).square().mean(1, keepdim=True).sqrt() ** near
     columns = columns / columns.mean()
+    noise_over_signal = ((1 - schedule.alpha_bar) / schedule.alpha_bar).float()
+    steps = 1 + noise_over_signal.clamp_max(high_noise)
 
     def loss_fn(model: nn.Module, generator: torch.Generator) -> Tensor:
         device = next(model.parameters()).device  # batch and noise are drawn on the CPU: the same numbers everywhere
         past, future, control = windows.draw(batch, generator, held)
-        if jitter:
-            past = past + jitter * torch.rand(batch, 1, 1, generator=generator) * _shake(past, generator)
+        past = shaken(past, jitter, change[0], generator) if jitter else past
         past, future, control = past.to(device), future.to(device), control.to(device)
         memory = model.encode(past, control).repeat_interleave(noises, dim=0)
         x0 = future.repeat_interleave(noises, dim=0)
-        s = torch.randint(1, schedule.S + 1, (batch * noises,), generator=generator).to(device)
-        eps = torch.randn(x0.shape, generator=generator).to(device)
+        s = torch.randint(1, schedule.S + 1, (batch * noises,), generator=generator)
+        weights = (steps[s][:, None, None] * columns).to(device)
+        s, eps = s.to(device), torch.randn(x0.shape, generator=generator).to(device)
         wanted = target_of(x0, eps, s, schedule, model.config.target)
         error = wanted - model.decode(q_sample(x0, s, schedule, eps), s, memory)
-        loss = (columns.to(device) * error.square()).mean()
-        if velocity:
-            change = torch.diff(torch.cat([torch.zeros_like(error[:, :1]), error], dim=1), dim=1)
-            loss = loss + velocity * (columns.to(device) * change.square()).mean()
-        return loss
+        return (weights * error.square()).mean()
 
     return loss_fn
 
 
-def _shake(past: Float[Tensor, "B T_h D"], generator: torch.Generator) -> Float[Tensor, "B T_h D"]:
-    """Noise as a rollout's errors are: half of its variance is the same in all frames of the past."""
-    steady = torch.randn(len(past), 1, past.shape[2], generator=generator)
-    return (steady + torch.randn(past.shape, generator=generator)) / 2**0.5
+def typical_change(windows: Windows, samples: int = 4096) -> Float[Tensor, "T_p D"]:
+    """How far poses move in 1 ... T_p frames: root mean square over windows, in standard deviations."""
+    past, future, _ = windows.draw(samples, torch.Generator().manual_seed(0))
+    return (future - past[:, -1:]).square().mean(0).sqrt()
+
+
+def shaken(
+    past: Float[Tensor, "B T_h D"], jitter: float, change: Float[Tensor, "D"], generator: torch.Generator
+) -> Float[Tensor, "B T_h D"]:
+    """The past with noise as a rollout's own errors are: one part the same in all frames, one part new in each.
+
+    The steady part is up to `jitter` standard deviations, the other up to jitter / 0.3 times what one frame changes.
+    Both levels are drawn evenly on a log scale over two decades: small errors must be kept small, large ones mended.
+    Ours; the papers' own remedy is diffusion dropout.  Notebook: 07
+    """
+    shape = (2, len(past), 1, 1)
+    steady, fresh = jitter * 10 ** (-2 * torch.rand(shape, generator=generator))
+    past = past + steady * torch.randn(len(past), 1, past.shape[2], generator=generator)
+    return past + fresh / 0.3 * change * torch.randn(past.shape, generator=generator)

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 import torch
-from safetensors.torch import load_file
+from safetensors.torch import load_file, save_file
 from torch import nn
 
 from motiondiff_edu.runs import resume_run, saver
@@ -106,6 +106,24 @@ def test_a_run_of_another_network_is_refused(tmp_path: Path):
     run(path, 8)
     with pytest.raises(RuntimeError, match="size mismatch|Missing key"):
         resume_run(TrainState.start(nn.Linear(5, 2)), path)
+
+
+def test_a_file_that_is_no_run_is_refused_with_what_to_do(tmp_path: Path):
+    path, state = tmp_path / "run.safetensors", TrainState.start(network())
+    path.write_bytes(b"not a run at all")
+    with pytest.raises(ValueError, match=r"run\.safetensors cannot be resumed: damaged.*delete it"):
+        resume_run(state, path)
+    save_file({"model.0.weight": torch.zeros(7, 5)}, path)
+    with pytest.raises(ValueError, match=r"run\.safetensors is no saved run: it has no average"):
+        resume_run(state, path)
+
+
+def test_the_seconds_of_a_run_go_on_counting(tmp_path: Path):
+    path = tmp_path / "run.safetensors"
+    before = run(path, 8).seconds
+    state = resume_run(TrainState.start(network()), path)
+    assert state.seconds == before > 0
+    assert run(path, 16, resume=True).seconds > before
 
 
 def bad_at(step: int, value: float):

@@ -3,12 +3,13 @@
 import numpy as np
 import pytest
 import torch
+from torch import nn
 
 from motiondiff_edu.ddpm import linear_schedule, q_sample
 from motiondiff_edu.modiff import MoDiff, MoDiffConfig
 from motiondiff_edu.motion.clip import Clip
 from motiondiff_edu.prediction import target_of
-from motiondiff_edu.windows import Windows, window_loss
+from motiondiff_edu.windows import Windows, shaken, typical_change, window_loss
 
 T_H, T_P = 4, 3
 
@@ -94,3 +95,60 @@ def test_the_loss_is_algorithm_1(windows: Windows, target: str):
     output = model(q_sample(x0, s, schedule, eps), s, past, control)
     expected = (target_of(x0, eps, s, schedule, target) - output).square().mean()
     assert loss.item() == pytest.approx(expected.item(), rel=1e-5)
+
+
+def gait_windows() -> Windows:
+    rng = np.random.default_rng(0)
+    poses = rng.normal(size=(300, 21, 3)).cumsum(0) * np.linspace(0.1, 1, 63).reshape(21, 3)
+    return Windows.of([Clip(poses, rng.normal(size=(300, 3)), source="drift")], T_H, T_P)
+
+
+def test_the_shaken_past_has_errors_of_every_size_steady_and_fresh():
+    past, change = torch.zeros(4000, 6, 3), torch.tensor([0.5, 1.0, 2.0])
+    noise = shaken(past, 0.3, change, torch.Generator().manual_seed(0))
+    steady, fresh = noise.mean(1), noise - noise.mean(1, keepdim=True)
+    assert fresh.std((0, 1)) == pytest.approx(change * fresh.std((0, 1))[1], rel=0.05)  # as each column changes
+    assert steady[:, 0].std() == pytest.approx(float(noise[:, :, 0].mean(1).std()))
+    sizes = fresh[..., 1].std(1)
+    for quantile, level in ((0.1, 10**-1.8), (0.5, 0.1), (0.9, 10**-0.2)):  # evenly on a log scale, 0.01 to 1
+        assert sizes.quantile(quantile) == pytest.approx(level, rel=0.25)
+    assert (shaken(past, 0.03, change, torch.Generator().manual_seed(0)) * 10).allclose(noise, atol=1e-6)
+
+
+def test_typical_change_grows_as_a_random_walk_does():
+    found, windows = typical_change(gait_windows()), gait_windows()
+    step = torch.diff(windows.poses, dim=0).square().mean(0).sqrt()
+    expected = step * torch.arange(1, T_P + 1)[:, None].sqrt()
+    assert found == pytest.approx(expected, rel=0.25)
+
+
+def test_columns_frames_and_steps_are_weighted_as_told():
+    """A network that is wrong in one number only: what each of its errors costs."""
+
+    class Wrong(nn.Module):
+        config = MoDiffConfig(T_h=T_H, T_p=T_P, S=6, target="x0")
+
+        def __init__(self):
+            super().__init__()
+            self.one = nn.Parameter(torch.zeros(1))
+
+        def encode(self, past, control):
+            return past
+
+        def decode(self, x_s, s, memory):
+            return torch.full_like(x_s, 0.0)
+
+    windows, schedule = gait_windows(), linear_schedule(6, 0.2, 0.95)
+    generator = torch.Generator().manual_seed(8)
+    _, x0, _ = windows.draw(5, generator)
+    s = torch.randint(1, 7, (5,), generator=generator)
+    found = window_loss(windows, schedule, batch=5, noises=1, metres=2.0, near=1.0, high_noise=3.0)(
+        Wrong(), torch.Generator().manual_seed(8)
+    )
+    std, change = windows.pose_scaler.std, typical_change(windows)
+    columns = std**2 / (change * std).square().mean(1, keepdim=True).sqrt()
+    ab = schedule.alpha_bar[s].float()
+    steps = 1 + ((1 - ab) / ab).clamp_max(3.0)
+    expected = (steps[:, None, None] * (columns / columns.mean()) * x0.square()).mean()
+    assert found.item() == pytest.approx(expected.item(), rel=1e-5)
+    assert columns[0].sum() > 1.5 * columns[-1].sum() and steps.max() > 2  # so the weights matter

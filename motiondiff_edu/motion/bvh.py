@@ -96,8 +96,8 @@ class Bvh:
         return forward_kinematics(still, self.offsets[:1], self.offsets, self.parents)[0][0]
 
 
-def read_bvh(path: str | Path, fps: float | int | None = None) -> Bvh:
-    """Read a BVH file; `fps` overrules its frame time, for files that state a wrong one.
+def read_bvh(path: str | Path, file_fps: float | int | None = None) -> Bvh:
+    """Read a BVH file; `file_fps` overrules its frame time, for files that state a wrong one.
 
     Raises BvhError (a ValueError) with file, line, joint and what to do, for anything that is not
     a whole, unambiguous BVH file; FileNotFoundError when there is none.
@@ -107,7 +107,7 @@ def read_bvh(path: str | Path, fps: float | int | None = None) -> Bvh:
     found, motion = statements(lines, path)
     nodes = read_nodes(found, path)
     declared, declared_line, time, time_line, first = header(lines, motion, path)
-    seconds = frame_time(time, time_line, path, None if fps is None else float(fps))
+    seconds = frame_time(time, time_line, path, None if file_fps is None else float(file_fps))
     columns = [(node.name, channel) for node in nodes for channel in node.channels]
     frames = frame_rows(lines, first, declared, columns, path, declared_line)
     return assemble(nodes, frames, seconds, Path(path).stem or Path(path).name)

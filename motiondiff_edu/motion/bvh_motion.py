@@ -39,23 +39,23 @@ def after_keyword(lines: list[str], index: int, keyword: str, path: str | Path) 
     return text[len(keyword) :].strip().removeprefix(":").strip()
 
 
-def frame_time(text: str, line: int, path: str | Path, fps: float | None) -> float:
-    """Seconds per frame; `fps` overrules what the file says.
+def frame_time(text: str, line: int, path: str | Path, file_fps: float | None) -> float:
+    """Seconds per frame; `file_fps` overrules what the file says.
 
     Accepted: 0.001 to 0.5 s. A frame time of 24 or 1 is a rate, or a place-holder, in the wrong field.
     """
-    if fps is not None:
-        if not 0 < fps < np.inf:
-            raise BvhError(f"fps must be a positive number of frames a second, not {fps:g}.", path)
-        return 1.0 / fps
+    if file_fps is not None:
+        if not 0 < file_fps < np.inf:
+            raise BvhError(f"file_fps must be a positive number of frames a second, not {file_fps:g}.", path)
+        return 1.0 / file_fps
     value = to_number(text, path, line)
     if value <= 0:
-        raise BvhError(f"the frame time is {text} s; it must be positive. Correct it, or pass fps=.", path, line)
+        raise BvhError(f"the frame time is {text} s; it must be positive. Correct it, or pass file_fps=.", path, line)
     if value > SLOWEST or value < FASTEST:
         hint = f" If {value:g} is the frame rate, write {1 / value:.6g}" if value > 1 else " Write seconds per frame"
         raise BvhError(
             f"a frame time of {text} s is not plausible ({FASTEST} to {SLOWEST} s are read)."
-            f"{hint}, or pass fps= to overrule the file.",
+            f"{hint}, or pass file_fps= to overrule the file.",
             path,
             line,
         )

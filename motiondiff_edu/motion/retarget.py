@@ -36,12 +36,12 @@ SHORTEST = 0.5  # s; less has no gait and no heading
 WILD = 15.0  # m/s; no limb of an actor moves faster, a swapped marker does
 
 
-def load_clip(path: str | Path, mapping: Mapping[str, str] | None = None, fps: float | int | None = None) -> Clip:
+def load_clip(path: str | Path, mapping: Mapping[str, str] | None = None, file_fps: float | int | None = None) -> Clip:
     """Read a BVH file and retarget it; `mapping` {course joint: joint of the file} where names are not guessed.
 
-    `fps` overrules the file's frame time. Raises BvhError; warns (MotionWarning) about what was put right.
+    `file_fps` overrules the file's frame time. Raises BvhError; warns (MotionWarning) about what was put right.
     """
-    return retarget(read_bvh(path, fps=fps), mapping)
+    return retarget(read_bvh(path, file_fps), mapping)
 
 
 def retarget(bvh: Bvh, mapping: Mapping[str, str] | None = None, fps: float | int = 20.0) -> Clip:
@@ -108,7 +108,7 @@ def onto_our_bones(
 def refuse_short(count: int, bvh: Bvh) -> None:
     if count / bvh.fps < SHORTEST:
         problem = f"{count} frames at {bvh.fps:g} frames/s are {count / bvh.fps:.2f} s; {SHORTEST} s are needed."
-        raise BvhError(problem + " If the frame time is wrong, pass fps=.", bvh.source)
+        raise BvhError(problem + " If the frame time is wrong, pass file_fps=.", bvh.source)
 
 
 def warn_wild(points: Float[np.ndarray, "T 21 3"], bvh: Bvh, dropped: int, notes: list[str]) -> None:

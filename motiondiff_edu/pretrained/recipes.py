@@ -9,28 +9,20 @@ from ..modiff import MODIFF_PAPER, MODIFF_SMALL, MoDiffConfig
 
 
 @dataclass(frozen=True)
-class Polish:
-    """A second, shorter training of the averaged network, with a past shaken as much as long rollouts shake it."""
-
-    steps: int = 4000
-    lr: float = 6e-4
-    jitter: float = 0.3
-    velocity: float = 10.0  # weight of the error between neighbouring frames
-    decay: float = 0.995
-
-
-@dataclass(frozen=True)
 class Recipe:
     """One training run. `seconds` of each of `clips` clips are made with the data seed; mirrored and reversed later."""
 
     name: str
     config: MoDiffConfig
     steps: int
-    lr: float = 1e-3
-    batch: int = 32  # windows a step
+    lr: float = 2e-3
+    optimizer: str = "muon"  # or "adam", the paper's
+    batch: int = 64  # windows a step
     noises: int = 2  # diffusion steps drawn for each window
-    jitter: float = 0.02  # of the past, in standard deviations
-    metres: float = 1.0  # columns of the loss are weighted by their standard deviation to this power
+    jitter: float = 0.3  # of the past, in standard deviations
+    metres: float = 2.0  # columns of the loss are weighted by their standard deviation to this power
+    near: float = 1.0  # its frames by one over how far poses move until then, to this power
+    high_noise: float = 0.0  # largest extra weight of steps that are mostly noise
     decay: float = 0.999
     clips: int = 720
     seconds: float = 20.0
@@ -38,12 +30,11 @@ class Recipe:
     data_seed: int = 1
     seed: int = 0
     styles: tuple[str, ...] | None = None
-    polish: Polish | None = None
     bf16_share: float = 0.8  # of the steps in bfloat16 arithmetic, the rest in float32
 
 
-WALKER_X0 = Recipe("walker-x0", replace(MODIFF_SMALL, target="x0", skip=False), steps=18_000, polish=Polish())
-WALKER_EPS = Recipe("walker-eps", MODIFF_SMALL, steps=18_000)
+WALKER_X0 = Recipe("walker-x0", replace(MODIFF_SMALL, target="x0", skip=False), steps=16_000)
+WALKER_EPS = Recipe("walker-eps", MODIFF_SMALL, steps=16_000, high_noise=3.0)
 WALKER_PAPER = Recipe("walker-paper", MODIFF_PAPER, steps=200_000, lr=2e-4, batch=64, clips=2400)
 
 SHIPPED = (WALKER_X0, WALKER_EPS)

@@ -1,11 +1,9 @@
 """Train a recipe into a walker: data, windows, loop, card. A killed run continues where it was saved last."""
 
-import copy
 import datetime
 import itertools
 import platform
 import subprocess
-import time
 from dataclasses import asdict
 from pathlib import Path
 
@@ -16,6 +14,7 @@ from ..ddpm import linear_schedule
 from ..modiff import MoDiff
 from ..motion.augment import mirror, reverse_time
 from ..motion.clip import Clip
+from ..muon import MuonAndAdam
 from ..runs import resume_run, saver
 from ..training import TrainState, cosine_lr, train_steps
 from ..walker import Walker
@@ -40,46 +39,34 @@ def train(recipe: Recipe, run_file: Path, clips: list[Clip] | None = None, log=p
     windows = Windows.of(clips or training_clips(recipe), config.T_h, config.T_p)
     schedule = linear_schedule(config.S)
     device = "cuda" if torch.cuda.is_available() else "cpu"
-    state = TrainState.start(MoDiff(config).to(device), recipe.seed)
+    model = MoDiff(config).to(device)
+    state = TrainState.start(model, recipe.seed, MuonAndAdam(model) if recipe.optimizer == "muon" else None)
     if run_file.exists():
         resume_run(state, run_file)
         log(f"{recipe.name}: continuing at step {state.step}")
-    sizes = {"batch": recipe.batch, "noises": recipe.noises, "jitter": recipe.jitter, "metres": recipe.metres}
+    sizes = {name: getattr(recipe, name) for name in ("batch", "noises", "jitter", "metres", "near", "high_noise")}
     loss_fn = window_loss(windows, schedule, **sizes)
-    began, cpu = time.monotonic(), time.process_time()
-    schedule_of_lr = cosine_lr(recipe.lr, recipe.steps, 500)
-    losses = _run(recipe, state, loss_fn, recipe.steps, schedule_of_lr, recipe.decay, device, log, saver(run_file))
-    if recipe.polish:
-        state = _polished(recipe, state.average, windows, schedule, device, log)
-    card = card_of(recipe, windows, (time.monotonic() - began) / 60, (time.process_time() - cpu) / 60)
+    losses = _run(recipe, state, loss_fn, device, saver(run_file), log)
+    card = card_of(recipe, windows, state.seconds / 60)
     card["final_loss"] = round(float(np.mean(losses[-1000:])), 6) if losses else None
     return Walker(state.average.cpu().eval(), schedule, windows.pose_scaler, windows.control_scaler, card)
 
 
-def _run(recipe, state, loss_fn, steps, lr, decay, device, log, save=None) -> list[float]:
-    """Train to `steps`, the first share of them in bfloat16; the losses."""
-    settings = {"lr": lr, "decay": decay, "save": save, "save_every": 2000, "progress": False}
-    began, losses = time.monotonic(), []
+def _run(recipe: Recipe, state: TrainState, loss_fn, device: str, save, log) -> list[float]:
+    """Train to the last step, the first share of them in bfloat16; the losses."""
+    lr = cosine_lr(recipe.lr, recipe.steps, warmup=500)
+    settings = {"lr": lr, "decay": recipe.decay, "save": save, "save_every": 2000, "progress": False}
     loop = itertools.chain(
-        train_steps(state, _in_bf16(loss_fn, device), int(recipe.bf16_share * steps), **settings),
-        train_steps(state, loss_fn, steps, **settings),
+        train_steps(state, _in_bf16(loss_fn, device), int(recipe.bf16_share * recipe.steps), **settings),
+        train_steps(state, loss_fn, recipe.steps, **settings),
     )
+    losses = []
     for report in loop:
         losses.append(report.loss)
         if report.step % 1000 == 0:
-            mean, minutes = np.mean(losses[-1000:]), (time.monotonic() - began) / 60
-            log(f"{recipe.name} {report.step}/{steps}: loss {mean:.5f}, {minutes:.1f} min")
+            mean, minutes = np.mean(losses[-1000:]), state.seconds / 60
+            log(f"{recipe.name} {report.step}/{recipe.steps}: loss {mean:.5f}, {minutes:.1f} min")
     return losses
-
-
-def _polished(recipe, average, windows, schedule, device, log) -> TrainState:
-    """The second training: it starts from the average of the first, with Adam's memory empty."""
-    polish = recipe.polish
-    state = TrainState.start(copy.deepcopy(average).requires_grad_(True), recipe.seed + 1)
-    sizes = {"batch": recipe.batch, "noises": recipe.noises, "metres": recipe.metres}
-    loss_fn = window_loss(windows, schedule, jitter=polish.jitter, velocity=polish.velocity, **sizes)
-    _run(recipe, state, loss_fn, polish.steps, cosine_lr(polish.lr, polish.steps, 50), polish.decay, device, log)
-    return state
 
 
 def _in_bf16(loss_fn, device: str):
@@ -90,7 +77,7 @@ def _in_bf16(loss_fn, device: str):
     return run
 
 
-def card_of(recipe: Recipe, windows: Windows, minutes: float, cpu_minutes: float) -> dict:
+def card_of(recipe: Recipe, windows: Windows, minutes: float) -> dict:
     """What a reader of the weights wants to know; the figures are added by `make results`."""
     settings = {k: v for k, v in asdict(recipe).items() if k not in ("config", "name")}
     git = subprocess.run(["git", "rev-parse", "--short", "HEAD"], capture_output=True, text=True, check=False)
@@ -101,7 +88,6 @@ def card_of(recipe: Recipe, windows: Windows, minutes: float, cpu_minutes: float
         "parameters": sum(p.numel() for p in MoDiff(recipe.config).parameters()),
         "frames": len(windows.poses),
         "minutes": round(minutes, 1),
-        "cpu_minutes": round(cpu_minutes, 1),
         "machine": f"{platform.machine()}, {torch.get_num_threads()} threads, torch {torch.__version__}",
         "commit": git.stdout.strip() or "not in a checkout",
         "date": datetime.date.today().isoformat(),

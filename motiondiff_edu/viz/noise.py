@@ -1,56 +1,37 @@
 """Pictures of noise going in and coming out: curves, densities, paths and terms, each from plain arrays.
 
-Every function returns a closed Figure, so that a notebook shows it once; the caption under it says what to see.
+Every function returns a figure that shows itself once; the caption under it says what to see.
 """
 
-import textwrap
-
-import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.figure import Figure
 
-BLUE, ORANGE, GREEN, PURPLE = "#0072B2", "#D55E00", "#009E73", "#AA4499"
-SKY, INK, GREY = "#56B4E9", "#222222", "#8A8A8A"
+from .style import DASHES, OKABE_ITO, add_caption, figure, legend
+
+BLUE, ORANGE, GREEN, PURPLE, _, SKY, INK = OKABE_ITO[:7]
 COLOURS = (BLUE, ORANGE, GREEN, PURPLE, SKY, INK)
-DASHES = ("-", "--", "-.", (0, (1, 1)), (0, (5, 1, 1, 1)), "-")
-LOOK = {
-    "font.size": 13,
-    "axes.spines.top": False,
-    "axes.spines.right": False,
-    "lines.linewidth": 2.2,
-    "axes.titlesize": 13,
-    "legend.frameon": False,
-    "figure.dpi": 90,
-}
+GREY = "#767676"
 
 
 def panels(n: int = 1, width: float = 9.0, height: float = 3.6, **kwargs):
-    """A figure of n panels side by side, and its axes."""
-    with plt.rc_context(LOOK):
-        figure, axes = plt.subplots(1, n, figsize=(width, height), layout="constrained", squeeze=False, **kwargs)
-    return figure, axes[0]
+    """A figure of n panels side by side, and its axes; `finish` gives it its caption."""
+    return figure(width, height, "", 1, n, **kwargs)
 
 
-def finish(figure: Figure, caption: str, labels: tuple[str, str] | None = None) -> Figure:
-    """Write the caption under the figure, name the axes, and close it."""
-    for axis in figure.axes if labels else ():
+def finish(fig: Figure, words: str, labels: tuple[str, str] | None = None) -> Figure:
+    """Give the figure its caption, and name the axes."""
+    for axis in fig.axes if labels else ():
         axis.set_xlabel(labels[0])
     if labels:
-        figure.axes[0].set_ylabel(labels[1])
-    for legend in filter(None, (axis.get_legend() for axis in figure.axes)):
-        legend.set_frame_on(False)
-    wide = int(figure.get_size_inches()[0] * 12.5)
-    figure.supxlabel("\n".join(textwrap.wrap(caption, wide)), fontsize=11.5, color="#444444", x=0.01, ha="left")
-    figure.set_label(caption)
-    plt.close(figure)
-    return figure
+        fig.axes[0].set_ylabel(labels[1])
+    return add_caption(fig, words)
 
 
 def lines(
     x, curves: dict, caption: str, labels: tuple[str, str], *, log=(False, False), marks: dict | None = None, ylim=None
 ) -> Figure:
     """Several named curves over x; `marks` are named horizontal levels."""
-    figure, (axis,) = panels()
+    fig, (axis,) = panels()
     for i, (name, y) in enumerate(curves.items()):
         axis.plot(x, y, label=name, color=COLOURS[i % 6], ls=DASHES[i % 6], marker="o" if len(x) < 12 else None)
     for name, level in (marks or {}).items():
@@ -69,50 +50,50 @@ def lines(
     if ylim:
         axis.set_ylim(*ylim)
     if len(curves) > 1:
-        axis.legend(handlelength=2.6, fontsize=12)
-    return finish(figure, caption, labels)
+        legend(axis, handlelength=2.6)
+    return finish(fig, caption, labels)
 
 
 def noised_curve(seconds, clean, noised, s: int, signal: float, caption: str | None = None) -> Figure:
     """One coordinate over time, clean and at diffusion step s, with the share of its amplitude that is left."""
-    figure, (axis,) = panels(height=3.2)
+    fig, (axis,) = panels(height=3.2)
     axis.plot(seconds, noised, color=ORANGE, lw=1.4, marker=".", label=f"x_s at s = {s}")
     axis.plot(seconds, signal * np.asarray(clean), color=BLUE, label=f"what is left of x0: {100 * signal:.0f} %")
     axis.set_ylim(-3.6, 3.6)
-    axis.legend(loc="upper right", ncol=2, fontsize=12)
+    legend(axis, loc="upper right", ncol=2)
     caption = caption or (
         f"Step {s}: the blue curve is the clean one times {signal:.2f}; the orange one adds noise of "
         f"standard deviation {np.sqrt(1 - signal**2):.2f}."
     )
-    return finish(figure, caption, ("time (s)", "left heel (standardised)"))
+    return finish(fig, caption, ("time (s)", "left heel (standardised)"))
 
 
 def noise_ladder(seconds, clean, noised: dict, caption: str) -> Figure:
     """The same curve at several diffusion steps, side by side: {s: x_s}."""
-    figure, axes = panels(len(noised), width=11, height=2.9, sharey=True)
+    fig, axes = panels(len(noised), width=11, height=2.9, sharey=True)
     for axis, (s, curve) in zip(axes, noised.items(), strict=True):
         axis.plot(seconds, clean, color=SKY, lw=1.2)
         axis.plot(seconds, curve, color=ORANGE, lw=1.2)
         axis.set_title(f"s = {s}")
-    return finish(figure, caption, ("time (s)", "left heel"))
+    return finish(fig, caption, ("time (s)", "left heel"))
 
 
 def densities(grid, curves: dict, caption: str, labels=("value", "density"), *, points: dict | None = None) -> Figure:
     """Named densities over one grid, filled lightly; `points` are named values marked on the axis."""
-    figure, (axis,) = panels()
+    fig, (axis,) = panels()
     for i, (name, y) in enumerate(curves.items()):
         axis.plot(grid, y, label=name, color=COLOURS[i], ls=DASHES[i])
         axis.fill_between(grid, y, color=COLOURS[i], alpha=0.10)
     for i, (name, value) in enumerate((points or {}).items()):
         axis.plot([value], [0], marker="^", ms=11, color=INK if i == 0 else GREY, ls="none", label=name, clip_on=False)
     axis.set_ylim(bottom=0)
-    axis.legend(fontsize=12)
-    return finish(figure, caption, labels)
+    legend(axis)
+    return finish(fig, caption, labels)
 
 
 def histograms(samples: dict, grid, density, caption: str, label: str = "value", top: float = 1.35) -> Figure:
     """A histogram for each named set of samples, each under the same exact density; cut off at `top` times its peak."""
-    figure, axes = panels(len(samples), width=4.2 * max(len(samples), 2), height=3.4, sharey=True)
+    fig, axes = panels(len(samples), width=4.2 * max(len(samples), 2), height=3.4, sharey=True)
     for i, (axis, (name, values)) in enumerate(zip(axes, samples.items(), strict=True)):
         ends = float(grid[0]), float(grid[-1])
         inside = np.clip(np.asarray(values).ravel(), *ends)
@@ -120,13 +101,13 @@ def histograms(samples: dict, grid, density, caption: str, label: str = "value",
         axis.plot(grid, density, color=INK, lw=1.8)
         axis.set_title(name)
         axis.set_ylim(0, top * float(max(density)))
-    return finish(figure, caption, (label, "density"))
+    return finish(fig, caption, (label, "density"))
 
 
 def paths(steps, x, grid, at_start, at_end, caption: str, show: int = 60) -> Figure:
     """Sampling paths x (steps, n) from noise on the left to samples on the right, a density at either end."""
     x = np.asarray(x)
-    figure, (left, middle, right) = panels(3, 10.5, 4, sharey=True, gridspec_kw={"width_ratios": [1, 5, 1]})
+    fig, (left, middle, right) = panels(3, 10.5, 4, sharey=True, gridspec_kw={"width_ratios": [1, 5, 1]})
     middle.plot(steps, x[:, :show], color=BLUE, lw=0.8, alpha=0.45)
     middle.plot(steps, x[:, 0], color=ORANGE, lw=2)
     middle.invert_xaxis()
@@ -140,24 +121,24 @@ def paths(steps, x, grid, at_start, at_end, caption: str, show: int = 60) -> Fig
     left.set_ylim(float(grid[0]), float(grid[-1]))
     middle.set_xlabel("diffusion step s")
     left.set_ylabel("x_s")
-    return finish(figure, caption)
+    return finish(fig, caption)
 
 
 def one_moment(grid, density, values, guesses, s: int, caption: str) -> Figure:
     """All samples at one step: where x_s lies, and what the denoiser answers for x0."""
-    figure, (left, right) = panels(2, width=10, height=3.4, sharey=True)
+    fig, (left, right) = panels(2, width=10, height=3.4, sharey=True)
     shown = {"bins": 90, "range": (float(grid[0]), float(grid[-1])), "density": True, "alpha": 0.5}
     for axis, data, colour, name in ((left, values, BLUE, f"x_s at s = {s}"), (right, guesses, ORANGE, "x0_hat there")):
         axis.hist(np.clip(np.asarray(data), float(grid[0]), float(grid[-1])), color=colour, **shown)
         axis.plot(grid, density, color=INK, lw=1.6)
         axis.set_title(name)
         axis.set_ylim(0, 2.4)
-    return finish(figure, caption, ("value", "density"))
+    return finish(fig, caption, ("value", "density"))
 
 
 def bound(terms, exact: float, caption: str) -> Figure:
     """Terms of the negative bound over s (terms[0] is the prior's), and their running sum beside -E log q(x0)."""
-    figure, (left, right) = panels(2, width=10.5, height=4)
+    fig, (left, right) = panels(2, width=10.5, height=4)
     terms, s = np.asarray(terms), np.arange(1, len(terms))
     left.bar(s, terms[1:], width=1.0, color=np.where(s == 1, ORANGE, BLUE))
     left.bar([len(terms)], [terms[0]], width=1.0, color=GREEN)
@@ -169,14 +150,14 @@ def bound(terms, exact: float, caption: str) -> Figure:
     right.plot([1], total[-1:], "o", color=ORANGE, ms=9, label=f"negative bound {total[-1]:.3f}")
     right.axhline(exact, color=INK, ls="--", lw=1.6, label=f"exact -E log q(x0) {exact:.3f}")
     right.invert_xaxis()
-    right.legend(fontsize=12)
-    return finish(figure, caption, ("diffusion step s", "nats"))
+    legend(right)
+    return finish(fig, caption, ("diffusion step s", "nats"))
 
 
 def maps(start, ends: dict, caption: str) -> Figure:
     """Where each starting noise ended, for several samplers side by side: {name: ends}."""
-    figure, axes = panels(len(ends), width=4.4 * len(ends), height=3.6, sharey=True)
+    fig, axes = panels(len(ends), width=4.4 * len(ends), height=3.6, sharey=True)
     for axis, (name, end), colour in zip(axes, ends.items(), COLOURS, strict=False):
         axis.plot(start, end, ".", ms=3, alpha=0.4, color=colour)
         axis.set_title(name)
-    return finish(figure, caption, ("x_S, the starting noise", "x_0, the sample"))
+    return finish(fig, caption, ("x_S, the starting noise", "x_0, the sample"))

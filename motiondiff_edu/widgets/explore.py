@@ -47,4 +47,5 @@ def _image(figure) -> str:
     figure.savefig(buffer, format="png", dpi=90)
     alt = html.escape(str(figure.get_label()), quote=True)
     data = base64.b64encode(buffer.getvalue()).decode()
-    return f'<img alt="{alt}" style="max-width:100%" src="data:image/png;base64,{data}">'
+    picture = f'<img alt="{alt}" style="max-width:100%" src="data:image/png;base64,{data}">'
+    return f'<figure style="margin:0">{picture}<figcaption style="max-width:60em">{alt}</figcaption></figure>'
