@@ -20,6 +20,7 @@ from data_synth.walking import dataset  # noqa: E402
 from motiondiff_edu.ddpm import linear_schedule  # noqa: E402
 from motiondiff_edu.modiff import MODIFF_SMALL, MoDiff, MoDiffConfig  # noqa: E402
 from motiondiff_edu.motion.augment import augment  # noqa: E402
+from motiondiff_edu.muon import MuonAndAdam  # noqa: E402
 from motiondiff_edu.training import TrainState, train_steps  # noqa: E402
 from motiondiff_edu.walker import Walker  # noqa: E402
 from motiondiff_edu.windows import Windows, window_loss  # noqa: E402
@@ -27,8 +28,12 @@ from tools.results.scores import score  # noqa: E402
 from tools.results.trials import FPS, SECONDS, T_H, UNSEEN, Trials, walker_generate  # noqa: E402
 
 COMMAND = "python -m benchmarks walker"
-PEAK, BATCH, NOISES, CLIPS = 3e-3, 32, 4, 120
-CONFIG = replace(MODIFF_SMALL, target="x0", skip=False, width=64, hidden=128, cross_layers=1, decoder_layers=2)
+PEAK, CLIPS = 3e-3, 120
+LOSS = {"batch": 32, "noises": 2, "jitter": 0.3, "metres": 2.0, "near": 1.0}
+CONFIG = replace(
+    MODIFF_SMALL, target="x0", skip=False, width=96, hidden=192, motion_layers=1, control_layers=1, cross_layers=1,
+    decoder_layers=2,
+)  # fmt: skip
 NAMES = {"bone_rmse_cm", "adherence_excess_mps", "adherence_mps", "adherence_data_mps", "adherence_shuffled_over_own"}
 
 
@@ -36,7 +41,8 @@ def train(clips: list, seconds: float, config: MoDiffConfig = CONFIG, seed: int 
     """Train until the CPU-seconds are spent; the learning rate follows a half cosine over them."""
     torch.manual_seed(seed)
     windows, schedule = Windows.of(clips), linear_schedule(config.S)
-    state, start = TrainState.start(MoDiff(config), seed), time.process_time()
+    model = MoDiff(config)
+    state, start = TrainState.start(model, seed, MuonAndAdam(model)), time.process_time()
 
     def spent() -> float:
         return (time.process_time() - start) / seconds
@@ -44,7 +50,7 @@ def train(clips: list, seconds: float, config: MoDiffConfig = CONFIG, seed: int 
     def rate(step: int) -> float:
         return PEAK * min(1, (step + 1) / 100) * 0.5 * (1 + math.cos(math.pi * min(1.0, spent())))
 
-    loss = window_loss(windows, schedule, batch=BATCH, noises=NOISES)
+    loss = window_loss(windows, schedule, **LOSS)
     for _ in train_steps(state, loss, 10**9, lr=rate, decay=0.99, progress=False):
         if spent() >= 1:
             break

@@ -14,6 +14,8 @@ from jaxtyping import Float, Int
 from torch import Tensor
 
 Steps = Int[Tensor, "B"] | int
+X = Float[Tensor, "B *shape"]  # a batch of anything: points, poses, windows
+Table = Float[Tensor, "S_plus_1"]  # one number for each step
 Denoiser = Callable[[Tensor, Tensor], Tensor]
 
 
@@ -22,9 +24,9 @@ Denoiser = Callable[[Tensor, Tensor], Tensor]
 class Schedule:
     """How much noise each step adds: beta, alpha = 1 - beta and its running product alpha_bar, indexed by s = 0..S."""
 
-    beta: Float[Tensor, "S_plus_1"]
-    alpha: Float[Tensor, "S_plus_1"]
-    alpha_bar: Float[Tensor, "S_plus_1"]
+    beta: Table
+    alpha: Table
+    alpha_bar: Table
     name: str = "schedule"
 
     @property
@@ -50,11 +52,8 @@ def make_schedule(beta: Float[Tensor, "S"], name: str = "schedule") -> Schedule:
         raise ValueError(f"{name}: every beta must lie between 0 and 1, but {where}; take more steps or smaller betas")
     schedule = Schedule(beta, 1 - beta, torch.cumprod(1 - beta, 0), name)
     if schedule.signal_left > 0.1:
-        warnings.warn(
-            f"{schedule_card(schedule)} Sampling starts from pure noise, which this schedule never reaches: "
-            "take more steps or larger betas.",
-            stacklevel=3,
-        )
+        what = "Sampling starts from pure noise, which this schedule never reaches: take more steps or larger betas."
+        warnings.warn(f"{schedule_card(schedule)} {what}", stacklevel=3)
     return schedule
 
 
@@ -77,13 +76,11 @@ def cosine_schedule(S: int = 1000, cap: float = 0.999) -> Schedule:
 
 def schedule_card(schedule: Schedule) -> str:
     """Say in one line what a schedule leaves of the signal at its last step: sqrt(alpha_bar[S]). Notebook: 02."""
-    return (
-        f"{schedule.name}, S = {schedule.S}: after the last step {100 * schedule.signal_left:.2g} % "
-        "of the signal's amplitude is left."
-    )
+    left = f"{100 * schedule.signal_left:.2g} % of the signal's amplitude is left."
+    return f"{schedule.name}, S = {schedule.S}: after the last step {left}"
 
 
-def at(table: Float[Tensor, "S_plus_1"], s: Steps, x: Float[Tensor, "B *shape"]) -> Tensor:
+def at(table: Table, s: Steps, x: X) -> Tensor:
     """Look up table[s], shaped so that it multiplies x: one number, or one for each sample of the batch."""
     return table[s].to(x) if isinstance(s, int) else table.to(x.device)[s].to(x).reshape(-1, *[1] * (x.dim() - 1))
 
@@ -95,31 +92,25 @@ def draw(like: Float[Tensor, "*shape"], generator: torch.Generator | None = None
 
 
 # ---- forward: adding noise -------------------------------------------------------------------------------------------
-def q_step(
-    x_prev: Float[Tensor, "B *shape"], s: Steps, schedule: Schedule, noise: Float[Tensor, "B *shape"]
-) -> Float[Tensor, "B *shape"]:
+def q_step(x_prev: X, s: Steps, schedule: Schedule, noise: X) -> X:
     """Add one step: x_s = sqrt(1 - beta_s) x_{s-1} + sqrt(beta_s) noise. Source: MoDiff eq. 1. Notebook: 02."""
     beta = at(schedule.beta, s, x_prev)
     return (1 - beta).sqrt() * x_prev + beta.sqrt() * noise
 
 
-def q_sample(
-    x0: Float[Tensor, "B *shape"], s: Steps, schedule: Schedule, noise: Float[Tensor, "B *shape"]
-) -> Float[Tensor, "B *shape"]:
+def q_sample(x0: X, s: Steps, schedule: Schedule, noise: X) -> X:
     """Add s steps: x_s = sqrt(alpha_bar_s) x0 + sqrt(1 - alpha_bar_s) noise. Source: MoDiff eq. 2. Notebook: 02."""
     signal, noise_share = at(schedule.alpha_bar, s, x0), at(1 - schedule.alpha_bar, s, x0)
     return signal.sqrt() * x0 + noise_share.sqrt() * noise
 
 
-def posterior_variance(schedule: Schedule) -> Float[Tensor, "S_plus_1"]:
+def posterior_variance(schedule: Schedule) -> Table:
     """beta_tilde_s = beta_s (1 - alpha_bar_{s-1}) / (1 - alpha_bar_s). Source: MoDiff eq. 7. Notebook: 02."""
     left = 1 - schedule.alpha_bar
     return torch.cat([left[:1], schedule.beta[1:] * left[:-1] / left[1:]])
 
 
-def q_posterior(
-    x0: Float[Tensor, "B *shape"], x_s: Float[Tensor, "B *shape"], s: Steps, schedule: Schedule
-) -> tuple[Float[Tensor, "B *shape"], Tensor]:
+def q_posterior(x0: X, x_s: X, s: Steps, schedule: Schedule) -> tuple[X, Tensor]:
     """Mean and variance of x_{s-1} when x_s and the clean x0 are both known.
 
     mean = sqrt(ab_{s-1}) beta_s / (1 - ab_s) x0 + sqrt(alpha_s) (1 - ab_{s-1}) / (1 - ab_s) x_s
@@ -142,32 +133,20 @@ class Step:
     eps_hat: Tensor
 
 
-def p_variance(schedule: Schedule, variance: str = "beta") -> Float[Tensor, "S_plus_1"]:
-    """Variance of p(x_{s-1} | x_s): "beta" is the paper's beta_s, "posterior" its lower bound beta_tilde_s.
-
-    Source: MoDiff eq. 3. Notebook: 03.
-    """
+def p_variance(schedule: Schedule, variance: str = "beta") -> Table:
+    """Variance of p(x_{s-1} | x_s): beta_s, or the lower bound beta_tilde_s. Source: MoDiff eq. 3. Notebook: 03."""
     if variance not in ("beta", "posterior"):
         raise ValueError(f'variance must be "beta" or "posterior", not {variance!r}')
     return schedule.beta if variance == "beta" else posterior_variance(schedule)
 
 
-def p_mean(
-    x_s: Float[Tensor, "B *shape"], s: Steps, eps_hat: Float[Tensor, "B *shape"], schedule: Schedule
-) -> Float[Tensor, "B *shape"]:
+def p_mean(x_s: X, s: Steps, eps_hat: X, schedule: Schedule) -> X:
     """mean = (x_s - beta_s / sqrt(1 - alpha_bar_s) eps_hat) / sqrt(alpha_s). Source: MoDiff eq. 9. Notebook: 03."""
     share = at(schedule.beta, s, x_s) / at(1 - schedule.alpha_bar, s, x_s).sqrt()
     return (x_s - share * eps_hat) / at(schedule.alpha, s, x_s).sqrt()
 
 
-def p_sample(
-    x_s: Float[Tensor, "B *shape"],
-    s: int,
-    eps_hat: Float[Tensor, "B *shape"],
-    schedule: Schedule,
-    noise: Float[Tensor, "B *shape"],
-    variance: str = "beta",
-) -> Float[Tensor, "B *shape"]:
+def p_sample(x_s: X, s: int, eps_hat: X, schedule: Schedule, noise: X, variance: str = "beta") -> X:
     """x_{s-1} = p_mean + sigma_s noise; the last step, s = 1, adds none. Source: MoDiff eq. 11. Notebook: 03."""
     mean = p_mean(x_s, s, eps_hat, schedule)
     return mean if s == 1 else mean + at(p_variance(schedule, variance), s, x_s).sqrt() * noise
@@ -203,28 +182,19 @@ def _clean_guess(x_s: Tensor, s: int, eps_hat: Tensor, schedule: Schedule, clip:
     """x0_hat, bounded if asked, and the eps_hat that goes with it."""
     signal, sigma = at(schedule.alpha_bar, s, x_s).sqrt(), at(1 - schedule.alpha_bar, s, x_s).sqrt()
     x0_hat = (x_s - sigma * eps_hat) / signal
-    if clip is None:
-        return x0_hat, eps_hat
-    x0_hat = x0_hat.clamp(-clip, clip)
-    return x0_hat, (x_s - signal * x0_hat) / sigma
+    if clip is not None:
+        x0_hat = x0_hat.clamp(-clip, clip)
+        eps_hat = (x_s - signal * x0_hat) / sigma
+    return x0_hat, eps_hat
 
 
 # ---- the objective ---------------------------------------------------------------------------------------------------
-def simple_loss(
-    denoise: Denoiser,
-    x0: Float[Tensor, "B *shape"],
-    s: Int[Tensor, "B"],
-    schedule: Schedule,
-    noise: Float[Tensor, "B *shape"],
-) -> Float[Tensor, ""]:
-    """Mean squared error of the noise, ||eps - eps_hat(x_s, s)||^2, averaged over batch and entries.
-
-    Source: MoDiff eq. 10, Alg. 1 (which forgets the square). Notebook: 04, 05.
-    """
+def simple_loss(denoise: Denoiser, x0: X, s: Int[Tensor, "B"], schedule: Schedule, noise: X) -> Float[Tensor, ""]:
+    """Mean of ||eps - eps_hat(x_s, s)||^2. Source: MoDiff eq. 10, Alg. 1 (which forgets the square). Notebook: 04."""
     return (noise - denoise(q_sample(x0, s, schedule, noise), s)).square().mean()
 
 
-def dropped_weight(schedule: Schedule) -> Float[Tensor, "S_plus_1"]:
+def dropped_weight(schedule: Schedule) -> Table:
     """What eq. 10 leaves out before ||eps - eps_hat||^2: 1 / (2 beta_s) * beta_s^2 / (alpha_s (1 - alpha_bar_s)).
 
     Source: MoDiff eq. 8-10. Notebook: 04.
@@ -239,19 +209,13 @@ def gaussian_kl(mean_1: Tensor, variance_1: Tensor, mean_2: Tensor, variance_2: 
     return each.flatten(1).sum(1) / 2
 
 
-def prior_kl(x0: Float[Tensor, "B *shape"], schedule: Schedule) -> Float[Tensor, "B"]:
+def prior_kl(x0: X, schedule: Schedule) -> Float[Tensor, "B"]:
     """KL(q(x_S | x0) || N(0, I)): nothing to learn here. Source: MoDiff eq. 5. Notebook: 04."""
     alpha_bar, one = at(schedule.alpha_bar, schedule.S, x0), torch.ones((), dtype=x0.dtype)
     return gaussian_kl(alpha_bar.sqrt() * x0, 1 - alpha_bar, torch.zeros_like(x0), one)
 
 
-def step_kl(
-    x0: Float[Tensor, "B *shape"],
-    x_s: Float[Tensor, "B *shape"],
-    s: int,
-    eps_hat: Float[Tensor, "B *shape"],
-    schedule: Schedule,
-) -> Float[Tensor, "B"]:
+def step_kl(x0: X, x_s: X, s: int, eps_hat: X, schedule: Schedule) -> Float[Tensor, "B"]:
     """KL(q(x_{s-1} | x_s, x0) || p(x_{s-1} | x_s)), s >= 2: ||difference of the means||^2 / (2 beta_s) + a constant.
 
     Source: MoDiff eq. 5, 8. Notebook: 04.
@@ -260,12 +224,7 @@ def step_kl(
     return gaussian_kl(mean, variance, p_mean(x_s, s, eps_hat, schedule), at(schedule.beta, s, x_s))
 
 
-def reconstruction_nll(
-    x0: Float[Tensor, "B *shape"],
-    x_1: Float[Tensor, "B *shape"],
-    eps_hat: Float[Tensor, "B *shape"],
-    schedule: Schedule,
-) -> Float[Tensor, "B"]:
+def reconstruction_nll(x0: X, x_1: X, eps_hat: X, schedule: Schedule) -> Float[Tensor, "B"]:
     """-log p(x0 | x_1), with variance beta_1. Source: MoDiff eq. 5. Notebook: 04."""
     variance = at(schedule.beta, 1, x_1)
     each = (x0 - p_mean(x_1, 1, eps_hat, schedule)).square() / variance + (2 * math.pi * variance).log()
@@ -274,7 +233,7 @@ def reconstruction_nll(
 
 @torch.no_grad()
 def bound_terms(
-    denoise: Denoiser, x0: Float[Tensor, "B *shape"], schedule: Schedule, generator: torch.Generator | None = None
+    denoise: Denoiser, x0: X, schedule: Schedule, generator: torch.Generator | None = None
 ) -> Float[Tensor, "S_plus_1 B"]:
     """Estimate every term of the negative bound with one draw each: their sum over s is at least -log p(x0) on average.
 
@@ -284,7 +243,6 @@ def bound_terms(
     for s in range(1, schedule.S + 1):
         x_s = q_sample(x0, s, schedule, draw(x0, generator))
         eps_hat = denoise(x_s, torch.full((len(x0),), s, device=x0.device))
-        terms.append(
-            reconstruction_nll(x0, x_s, eps_hat, schedule) if s == 1 else step_kl(x0, x_s, s, eps_hat, schedule)
-        )
+        last, step = reconstruction_nll(x0, x_s, eps_hat, schedule), step_kl(x0, x_s, s, eps_hat, schedule)
+        terms.append(last if s == 1 else step)
     return torch.stack(terms)

@@ -26,15 +26,6 @@ class Frame:
     window: Float[Tensor, "B T_p D"]
 
 
-def _rows(control: Control, first: int, last: int) -> Float[Tensor, "B T C"]:
-    """Rows first..last-1 of the control; past its end the last row is repeated."""
-    if callable(control):
-        return torch.stack([control(t) for t in range(first, last)], dim=1)
-    rows = control[:, first:last]
-    missing = last - first - rows.shape[1]
-    return rows if missing == 0 else torch.cat([rows, control[:, -1:].expand(-1, missing, -1)], dim=1)
-
-
 def rollout_steps(
     sample: WindowSampler,
     past: Float[Tensor, "B T_h D"],
@@ -48,18 +39,20 @@ def rollout_steps(
 ) -> Iterator[Frame]:
     """Yield `frames` new poses, one by one; of every predicted window the first `keep` are kept.
 
-    `control` is (B, T, C), row 0 beside past[:, 0], or a callable t -> (B, C), asked when a row is needed, so that it
-    can be changed on the fly. hold=True: the network sees the control up to the step it is about to take, held over the
-    future; hold=False (look-ahead): it sees what comes.
+    `control` is (B, T, C), row 0 beside past[:, 0] and the last repeated past its end; or a callable t -> (B, C) that
+    is asked for a row when it is walked under, once: it can change on the fly, and the past is not rewritten.
+    hold=True: the network sees the control up to the step it is about to take, held over the future;
+    hold=False (look-ahead): it sees what comes, as far as is known now.
     Raises ValueError unless 1 <= keep <= T_p.  Source: MoDiff III-C, Alg. 2.  Notebook: 08
     """
     if not 1 <= keep <= T_p:
         raise ValueError(f"keep must lie between 1 and T_p = {T_p}, got {keep}")
-    T_h = past.shape[1]
+    T_h, rows = past.shape[1], []
+    ask = control if callable(control) else lambda t: control[:, min(t, control.shape[1] - 1)]
     for t in range(0, frames, keep):
-        known = _rows(control, t, t + T_h)
-        ahead = known[:, -1:].expand(-1, T_p, -1) if hold else _rows(control, t + T_h, t + T_h + T_p)
-        window = sample(past, torch.cat([known, ahead], dim=1), generator)
+        rows += [ask(i) for i in range(len(rows), t + T_h)]
+        ahead = rows[-1:] * T_p if hold else [ask(i) for i in range(t + T_h, t + T_h + T_p)]
+        window = sample(past, torch.stack(rows[t : t + T_h] + ahead, dim=1), generator)
         for k in range(min(keep, frames - t)):
             yield Frame(t + k, window[:, k], window)
         past = torch.cat([past, window[:, :keep]], dim=1)[:, -T_h:]

@@ -119,10 +119,10 @@ def test_rounded_frame_times_are_understood(seconds, fps):
 
 
 def test_fps_overrules_the_file(tmp_path):
-    assert read(tmp_path, SMALL.replace("0.04", "24"), fps=24).fps == 24
+    assert read(tmp_path, SMALL.replace("0.04", "24"), file_fps=24).fps == 24
     for wrong in (0, -24, float("nan")):
         with pytest.raises(BvhError, match="fps must be a positive number"):
-            read(tmp_path, SMALL, fps=wrong)
+            read(tmp_path, SMALL, file_fps=wrong)
 
 
 # ---- real files

@@ -32,11 +32,11 @@ def inputs(config, batch=B, seed=1):
     return x_s, torch.full((batch,), 7), past, control
 
 
-@pytest.mark.parametrize("config", [MODIFF_PAPER, MODIFF_SMALL], ids=["paper", "small"])
-def test_layers_are_the_papers(config):
+@pytest.mark.parametrize(("config", "cross"), [(MODIFF_PAPER, 6), (MODIFF_SMALL, 2)], ids=["paper", "small"])
+def test_layers_are_the_papers_but_for_the_small_ones_cross_modal_layers(config, cross):
     model = MoDiff(config)
     encoders = (model.motion_encoder, model.control_encoder, model.cross_encoder)
-    assert [len(e.blocks) for e in encoders] == [2, 2, 6]
+    assert [len(e.blocks) for e in encoders] == [2, 2, cross]
     assert len(model.decoder) == 3 and all(block.with_context for block in model.decoder)
     assert (config.T_h, config.S, config.heads, config.D, config.C) == (10, 100, 4, 63, 3)
 
@@ -130,6 +130,16 @@ def test_fast_twin_gives_the_same_numbers(config):
             wanted = plain(x_s, torch.full((2,), step), past, control)
         torch.testing.assert_close(fast.denoise(x_s, torch.full((2,), step), context), wanted, atol=1e-5, rtol=1e-5)
         torch.testing.assert_close(fast.denoise(x_s, step, context), wanted, atol=1e-5, rtol=1e-5)
+
+
+@pytest.mark.parametrize("skip", [True, False])
+def test_fast_twin_takes_another_step_for_each_row(skip):
+    plain = lively(replace(TINY, skip=skip))
+    fast, (x_s, _, past, control) = FastMoDiff(plain), inputs(TINY)
+    s = torch.tensor([3, 20, 11])
+    with torch.no_grad():
+        wanted = plain(x_s, s, past, control)
+    torch.testing.assert_close(fast.denoise(x_s, s, fast.encode(past, control)), wanted, atol=1e-5, rtol=1e-5)
 
 
 def test_fast_twin_keeps_the_context_it_was_given():

@@ -67,7 +67,8 @@ class FastMoDiff:
         self.start = step_part[:, None] + model.time[model.config.T_h :]  # and when each frame is
         self.layers = [_Layer(block) for block in model.decoder]
         self.self_bias, self.memory_bias = model.self_bias().contiguous(), model.memory_bias().contiguous()
-        self.skip = None if model.skip is None else model.skip.tolist()
+        self.skip = model.skip
+        self.skips = None if model.skip is None else model.skip.tolist()
 
     @torch.inference_mode()
     def encode(self, past: Float[Tensor, "B T_h D"], control: Float[Tensor, "B T C"]) -> Context:
@@ -85,10 +86,11 @@ class FastMoDiff:
     def denoise(
         self, x_s: Float[Tensor, "B T_p D"], s: Int[Tensor, "B"] | int, context: Context
     ) -> Float[Tensor, "B T_p D"]:
-        """The network's output at step s (one step for the whole batch): eps, x0 or v, as its target says."""
-        step = s if isinstance(s, int) else int(s[0])
-        x = F.linear(x_s, self.x_weight).add_(self.start[step])
+        """The network's output at step s, one for the whole batch or one for each: eps, x0 or v, as its target says."""
+        x = F.linear(x_s, self.x_weight).add_(self.start[s])
         for layer, keys, values in zip(self.layers, context.keys, context.values, strict=True):
             x = layer(x, self.self_bias, keys, values, self.memory_bias)
         out = self.model.head(x)
-        return out if self.skip is None else out.add(x_s, alpha=self.skip[step])
+        if self.skip is None:
+            return out
+        return out.add(x_s, alpha=self.skips[s]) if isinstance(s, int) else out + self.skip[s][:, None, None] * x_s
