@@ -4,19 +4,16 @@ import warnings
 
 import numpy as np
 import pytest
-from bvh_text import dump
-from synthetic_walk import walk
+from foreign_walk import foreign, sound
 
 from motiondiff_edu.motion.bvh import BvhError, read_bvh
-from motiondiff_edu.motion.bvh_fit import fit
 from motiondiff_edu.motion.clip import Clip
 from motiondiff_edu.motion.dialects import check_mapping, guess_mapping, plain, spellings
 from motiondiff_edu.motion.normalise import MotionWarning
 from motiondiff_edu.motion.retarget import load_clip, retarget
 from motiondiff_edu.motion.root_frame import forward_left
-from motiondiff_edu.motion.skeleton import BONE_LENGTHS, JOINTS, PARENTS, TOES
+from motiondiff_edu.motion.skeleton import JOINTS, TOES
 
-CHANNELS = ("Zrotation", "Xrotation", "Yrotation")
 SMPL = dict(zip(JOINTS, "Pelvis L_Hip L_Knee L_Ankle L_Foot R_Hip R_Knee R_Ankle R_Foot Spine1 Spine2 Neck Head "
     "L_Shoulder L_Elbow L_Wrist L_Hand R_Shoulder R_Elbow R_Wrist R_Hand".split(), strict=True))  # fmt: skip
 SMPL |= {"LeftShoulder": "L_Collar", "RightShoulder": "R_Collar"}
@@ -25,40 +22,6 @@ HUMANOIDS = (
     "cmu_02_01_walk cmu_05_06_dance cmu_12_01_walk_pybvh cmu_acrnn_salsa_10 cmu_max_131_01 pybvh_bvh_test1 "
     "pymo_AV_8Walk_Meredith_HVHA_Rep1"
 ).split()
-
-
-def foreign(path, frames=361, fps=120, unit=0.0254, z_up=False, t_pose=False, names=None, **motion):
-    """A walk on another body (other proportions, unit, names), below a static root; returns the file."""
-    world, _ = walk(frames=frames, fps=fps, **motion)
-    fitted = fit(world)
-    offsets = fitted.offsets / unit
-    for name, factor in {"LeftLeg": 1.15, "RightLeg": 1.15, "LeftFoot": 0.8, "RightFoot": 0.8, "Spine1": 0.7}.items():
-        offsets[fitted.names.index(name)] *= factor
-    rows = np.concatenate([fitted.root / unit, *np.moveaxis(fitted.angles, 1, 0)], axis=1)
-    rows = np.concatenate([np.tile([0.0, 0, 0, 0, 90.0 * z_up, 0], (len(rows), 1)), rows], axis=1)
-    if t_pose:
-        rows = np.concatenate([rows[:1] * 0, rows])
-    nodes = ["Scene", *((names or {}).get(name, name) for name in fitted.names)]
-    six = tuple(axis + "position" for axis in "XYZ") + CHANNELS
-    channels = [six, six] + [CHANNELS] * (len(nodes) - 2)
-    parents = np.concatenate([[-1], fitted.parents + 1])
-    table = np.concatenate([np.zeros((1, 3)), offsets])
-    path.write_text(dump(nodes, parents, table, channels, rows, 1 / fps, np.zeros(len(nodes), bool)))
-    return path
-
-
-def sound(clip: Clip) -> np.ndarray:
-    """Check what must hold for every clip; returns its world positions."""
-    world = clip.world()
-    bones = np.linalg.norm(world[:, 1:] - world[:, PARENTS[1:]], axis=-1)
-    assert np.abs(bones - BONE_LENGTHS).max() < 1e-6
-    assert clip.fps == 20 and np.isfinite(world).all()
-    toes = world[:, list(TOES)]
-    assert toes[..., 1].min() > -1e-6
-    assert np.abs(toes[clip.contacts][:, 1]).max() < 0.02
-    steps = np.linalg.norm(np.diff(toes, axis=0), axis=-1)[clip.contacts[1:] & clip.contacts[:-1]]
-    assert steps.mean() < 5e-4  # metres a frame
-    return world
 
 
 def cruise(clip: Clip) -> float:

@@ -104,12 +104,20 @@ def calibration_frames(points: Float[np.ndarray, "T 21 3"]) -> int:
 
 
 def resample(points: Float[np.ndarray, "T 21 3"], from_fps: float, to_fps: float) -> Float[np.ndarray, "F 21 3"]:
-    """Cubic spline to another rate, after a zero-phase low-pass of 8 Hz when at least half of the frames go."""
-    times = np.arange(len(points)) / from_fps
+    """Cubic spline to another rate, after a zero-phase low-pass of 8 Hz when at least half of the frames go.
+
+    A joint that the file lacks (NaN) stays unknown.
+    """
+    known = np.isfinite(points).all((0, 2))  # a spline takes no NaN
+    times, moving = np.arange(len(points)) / from_fps, points[:, known]
     if from_fps >= 2 * to_fps - 1e-6 and len(points) > 30:
-        points = sosfiltfilt(butter(4, CUT_HZ * to_fps / 20, fs=from_fps, output="sos"), points, axis=0)
-    count = int(np.floor(times[-1] * to_fps + 1e-6)) + 1
-    return CubicSpline(times, points)(np.arange(count) / to_fps) if abs(from_fps - to_fps) > 1e-6 else points.copy()
+        moving = sosfiltfilt(butter(4, CUT_HZ * to_fps / 20, fs=from_fps, output="sos"), moving, axis=0)
+    if abs(from_fps - to_fps) > 1e-6:
+        count = int(np.floor(times[-1] * to_fps + 1e-6)) + 1
+        moving = CubicSpline(times, moving)(np.arange(count) / to_fps)
+    out = np.full((len(moving), *points.shape[1:]), np.nan)
+    out[:, known] = moving
+    return out
 
 
 def speed(points: Float[np.ndarray, "T ... 3"], fps: float) -> Float[np.ndarray, "T ..."]:
