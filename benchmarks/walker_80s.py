@@ -5,9 +5,7 @@ Run: python benchmarks/walker_80s.py [--seconds 80] [--style neutral] [--out ben
 """
 
 import argparse
-import math
 import sys
-import time
 from dataclasses import replace
 from pathlib import Path
 
@@ -17,13 +15,9 @@ from records import show, write_records
 sys.path.insert(0, str(Path(__file__).parents[1]))  # tools, beside this folder
 
 from data_synth.walking import dataset  # noqa: E402
-from motiondiff_edu.ddpm import linear_schedule  # noqa: E402
-from motiondiff_edu.modiff import MODIFF_SMALL, MoDiff, MoDiffConfig  # noqa: E402
+from motiondiff_edu.modiff import MODIFF_SMALL  # noqa: E402
 from motiondiff_edu.motion.augment import augment  # noqa: E402
-from motiondiff_edu.muon import MuonAndAdam  # noqa: E402
-from motiondiff_edu.training import TrainState, train_steps  # noqa: E402
-from motiondiff_edu.walker import Walker  # noqa: E402
-from motiondiff_edu.windows import Windows, window_loss  # noqa: E402
+from motiondiff_edu.pretrained.budget import train_for  # noqa: E402
 from tools.results.scores import score  # noqa: E402
 from tools.results.trials import FPS, SECONDS, T_H, UNSEEN, Trials, walker_generate  # noqa: E402
 
@@ -37,32 +31,12 @@ CONFIG = replace(
 NAMES = {"bone_rmse_cm", "adherence_excess_mps", "adherence_mps", "adherence_data_mps", "adherence_shuffled_over_own"}
 
 
-def train(clips: list, seconds: float, config: MoDiffConfig = CONFIG, seed: int = 0) -> tuple[Walker, int]:
-    """Train until the CPU-seconds are spent; the learning rate follows a half cosine over them."""
-    torch.manual_seed(seed)
-    windows, schedule = Windows.of(clips), linear_schedule(config.S)
-    model = MoDiff(config)
-    state, start = TrainState.start(model, seed, MuonAndAdam(model)), time.process_time()
-
-    def spent() -> float:
-        return (time.process_time() - start) / seconds
-
-    def rate(step: int) -> float:
-        return PEAK * min(1, (step + 1) / 100) * 0.5 * (1 + math.cos(math.pi * min(1.0, spent())))
-
-    loss = window_loss(windows, schedule, **LOSS)
-    for _ in train_steps(state, loss, 10**9, lr=rate, decay=0.99, progress=False):
-        if spent() >= 1:
-            break
-    return Walker(state.average.eval(), schedule, windows.pose_scaler, windows.control_scaler), state.step
-
-
 def measure(style: str | None, seconds: float, unseen: int, seed: int) -> list[dict]:
     """Train on one style (None: all of them), walk unseen controls of the same, and score the raw output."""
     styles, name = ([style], "bench.walker_80s_") if style else (None, "bench.walker_80s_all_styles_")
     clips = augment(dataset(CLIPS, 20, seed=11, styles=styles))
     trials = Trials.of(dataset(unseen, SECONDS + T_H / FPS, seed=UNSEEN, styles=styles))
-    walker, steps = train(clips, seconds, seed=seed)
+    walker, steps = train_for(seconds, clips, CONFIG, lr=PEAK, seed=seed, **LOSS)
     weights = sum(p.numel() for p in walker.model.parameters())
     print(f"{style or 'all styles'}: {steps} steps in {seconds:g} CPU-seconds, {weights} weights", flush=True)
     walks = walker_generate(walker)(trials.past, trials.control, 0)

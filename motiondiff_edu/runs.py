@@ -15,12 +15,12 @@ from safetensors.torch import save_file
 from .training import TrainState
 
 
-def saver(path: str | Path) -> Callable[[TrainState], Path]:
-    """A `save` for `training.train_steps`: writes the run to this file."""
-    return lambda state: save_run(state, path)
+def saver(path: str | Path, about: dict | None = None) -> Callable[[TrainState], Path]:
+    """A `save` for `training.train_steps`: writes the run to this file, with what it is `about` (see resume_run)."""
+    return lambda state: save_run(state, path, about)
 
 
-def save_run(state: TrainState, path: str | Path) -> Path:
+def save_run(state: TrainState, path: str | Path, about: dict | None = None) -> Path:
     """Write weights, their average, the optimizer's moments, the random generators, and the step and seconds so far."""
     tensors = {f"model.{k}": v for k, v in state.model.state_dict().items()}
     tensors |= {f"average.{k}": v for k, v in state.average.state_dict().items()}
@@ -29,16 +29,18 @@ def save_run(state: TrainState, path: str | Path) -> Path:
     tensors |= {"random.generator": state.generator.get_state(), "random.torch": torch.get_rng_state()}
     if torch.cuda.is_available():
         tensors["random.cuda"] = torch.cuda.get_rng_state()
-    temporary, counts = f"{path}.part", {"step": json.dumps(state.step), "seconds": json.dumps(state.seconds)}
+    counts = {"step": state.step, "seconds": state.seconds, "about": about}
+    temporary, counts = f"{path}.part", {name: json.dumps(value) for name, value in counts.items()}
     save_file({k: v.contiguous().clone() for k, v in tensors.items()}, temporary, counts)
     os.replace(temporary, path)
     return Path(path)
 
 
-def resume_run(state: TrainState, path: str | Path) -> TrainState:
+def resume_run(state: TrainState, path: str | Path, about: dict | None = None) -> TrainState:
     """Bring `state` to where the run at `path` was; of another model, load_state_dict says what differs.
 
-    Raises ValueError when the file is damaged or no saved run.
+    Raises ValueError when the file is damaged or no saved run, or when the run is about something else than `about`
+    (its settings, say): continued, it would be neither the one nor the other.
     """
     try:
         with safe_open(path, "pt") as file:
@@ -52,6 +54,7 @@ def resume_run(state: TrainState, path: str | Path) -> TrainState:
     missing = {"model", "average", "random"} - set(parts) or {"step"} - set(counts)
     if missing:
         raise ValueError(f"{path} is no saved run: it has no {sorted(missing)[0]}; give another file, or delete it")
+    _same(about, json.loads(counts.get("about", "null")), path)
     state.model.load_state_dict(parts["model"])
     state.average.load_state_dict(parts["average"])
     moments: dict[int, dict] = {}
@@ -65,3 +68,16 @@ def resume_run(state: TrainState, path: str | Path) -> TrainState:
     if "cuda" in parts["random"] and torch.cuda.is_available():
         torch.cuda.set_rng_state(parts["random"]["cuda"])
     return state
+
+
+def _same(asked: dict | None, found: dict | None, path: str | Path) -> None:
+    """Compare what a run should be about with what it is about."""
+    asked = json.loads(json.dumps(asked))  # as the file has it: lists for tuples
+    if asked is None or asked == found:
+        return
+    found = found or {}
+    name = next(key for key in [*asked, *found] if asked.get(key) != found.get(key))
+    raise ValueError(
+        f"{path} was begun with {name} = {found.get(name)!r}, and {asked.get(name)!r} is asked for: "
+        "delete the file to start anew, or ask for what it was begun with"
+    )

@@ -13,7 +13,7 @@ import torch
 from safetensors.torch import load_file, save_file
 from torch import nn
 
-from motiondiff_edu.runs import resume_run, saver
+from motiondiff_edu.runs import resume_run, save_run, saver
 from motiondiff_edu.training import NonFiniteLoss, TrainState, cosine_lr, train_steps
 
 
@@ -116,6 +116,17 @@ def test_a_file_that_is_no_run_is_refused_with_what_to_do(tmp_path: Path):
     save_file({"model.0.weight": torch.zeros(7, 5)}, path)
     with pytest.raises(ValueError, match=r"run\.safetensors is no saved run: it has no average"):
         resume_run(state, path)
+
+
+def test_a_run_begun_with_other_settings_is_refused(tmp_path: Path):
+    path, state = tmp_path / "run.safetensors", TrainState.start(network())
+    save_run(state, path, {"jitter": 0.3, "styles": ("old", "tired")})
+    assert resume_run(state, path, {"jitter": 0.3, "styles": ("old", "tired")}) is state
+    with pytest.raises(ValueError, match=r"begun with jitter = 0\.3, and 0\.1 is asked for: delete the file"):
+        resume_run(state, path, {"jitter": 0.1, "styles": ("old", "tired")})
+    save_run(state, path)
+    with pytest.raises(ValueError, match="begun with jitter = None"):
+        resume_run(state, path, {"jitter": 0.1})
 
 
 def test_the_seconds_of_a_run_go_on_counting(tmp_path: Path):

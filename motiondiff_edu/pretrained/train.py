@@ -33,21 +33,24 @@ def training_clips(recipe: Recipe) -> list[Clip]:
 
 
 def train(recipe: Recipe, run_file: Path, clips: list[Clip] | None = None, log=print) -> Walker:
-    """Train (or continue) a recipe; `run_file` holds the run.  Returns the averaged network as a walker."""
+    """Train (or continue) a recipe; `run_file` holds the run.  Returns the averaged network as a walker.
+
+    Raises ValueError when the run in `run_file` was begun with other settings.
+    """
     torch.manual_seed(recipe.seed)
-    config = recipe.config
+    config, commit, about = recipe.config, commit_of(Path(__file__).parent), asdict(recipe)
     windows = Windows.of(clips or training_clips(recipe), config.T_h, config.T_p)
     schedule = linear_schedule(config.S)
     device = "cuda" if torch.cuda.is_available() else "cpu"
     model = MoDiff(config).to(device)
     state = TrainState.start(model, recipe.seed, MuonAndAdam(model) if recipe.optimizer == "muon" else None)
     if run_file.exists():
-        resume_run(state, run_file)
+        resume_run(state, run_file, about)
         log(f"{recipe.name}: continuing at step {state.step}")
     sizes = {name: getattr(recipe, name) for name in ("batch", "noises", "jitter", "metres", "near", "high_noise")}
     loss_fn = window_loss(windows, schedule, **sizes)
-    losses = _run(recipe, state, loss_fn, device, saver(run_file), log)
-    card = card_of(recipe, windows, state.seconds / 60)
+    losses = _run(recipe, state, loss_fn, device, saver(run_file, about), log)
+    card = card_of(recipe, windows, state.seconds / 60, commit, device)
     card["final_loss"] = round(float(np.mean(losses[-1000:])), 6) if losses else None
     return Walker(state.average.cpu().eval(), schedule, windows.pose_scaler, windows.control_scaler, card)
 
@@ -77,10 +80,20 @@ def _in_bf16(loss_fn, device: str):
     return run
 
 
-def card_of(recipe: Recipe, windows: Windows, minutes: float) -> dict:
+def commit_of(folder: Path) -> str:
+    """The commit of the checkout that `folder` lies in, "-dirty" when files differ from it."""
+    command = ["git", "-C", str(folder), "describe", "--always", "--dirty"]
+    try:
+        done = subprocess.run(command, capture_output=True, text=True, check=False)
+    except OSError:  # no git here
+        return "unknown"
+    return done.stdout.strip() or "not in a checkout"
+
+
+def card_of(recipe: Recipe, windows: Windows, minutes: float, commit: str, device: str) -> dict:
     """What a reader of the weights wants to know; the figures are added by `make results`."""
     settings = {k: v for k, v in asdict(recipe).items() if k not in ("config", "name")}
-    git = subprocess.run(["git", "rev-parse", "--short", "HEAD"], capture_output=True, text=True, check=False)
+    threads = f"{torch.get_num_threads()} threads"
     return {
         "name": recipe.name,
         "target": recipe.config.target,
@@ -88,8 +101,9 @@ def card_of(recipe: Recipe, windows: Windows, minutes: float) -> dict:
         "parameters": sum(p.numel() for p in MoDiff(recipe.config).parameters()),
         "frames": len(windows.poses),
         "minutes": round(minutes, 1),
-        "machine": f"{platform.machine()}, {torch.get_num_threads()} threads, torch {torch.__version__}",
-        "commit": git.stdout.strip() or "not in a checkout",
+        "machine": f"{torch.cuda.get_device_name() if device == 'cuda' else platform.machine()}, {threads}",
+        "torch": torch.__version__,
+        "commit": commit,
         "date": datetime.date.today().isoformat(),
         "data": "data_synth.walking, synthetic",
     }

@@ -2,8 +2,9 @@
 
     python -m tools.results [--only PART ...] [--quick] [--weights NAME=FILE] [--render]
 
-Parts: walker-eps, walker-x0, walker-ddim10, their -lookahead lines, footsteps. --quick measures little, into
-build/quick, and is for trying the code; --render only writes docs/RESULTS.md from the records that are there.
+Parts: walker-eps, walker-x0, walker-ddim10, their -lookahead lines, footsteps, horizons (which trains). --quick
+measures little, into build/quick, and is for trying the code; --render only writes docs/RESULTS.md from the records
+that are there.
 """
 
 import argparse
@@ -14,10 +15,12 @@ from pathlib import Path
 from benchmarks.records import show, write_records
 from motiondiff_edu.viz.metrics import footstep_curves
 
+from . import horizons
+from .horizons import horizon_records
 from .parts import FULL, LINES, QUICK, Bench, Walks, footstep_records, walker_records
 from .render import render
 
-DOCS = Path("docs")
+DOCS, OTHERS = Path("docs"), ("footsteps", "horizons")
 
 
 def arguments() -> argparse.Namespace:
@@ -43,10 +46,10 @@ def measure(only: list[str], bench: Bench, folder: Path, extra: dict[str, Path])
     """Run the parts asked for (all that have weights, when none is named) and write their records."""
     lines = LINES | {name: Walks(name, name) for name in extra}
     there = [prefix for prefix, line in lines.items() if line.name in bench.weights]
-    parts = only or [*there, "footsteps"]
-    unknown = set(parts) - set(lines) - {"footsteps"}
+    parts = only or [*there, *OTHERS]
+    unknown = set(parts) - set(lines) - set(OTHERS)
     if unknown:
-        sys.exit(f"no part is called {', '.join(sorted(unknown))}; there are: {', '.join(lines)}, footsteps")
+        sys.exit(f"no part is called {', '.join(sorted(unknown))}; there are: {', '.join([*lines, *OTHERS])}")
     for part in parts:
         began, command = time.monotonic(), f"python -m tools.results --only {part}"
         if part == "footsteps":
@@ -54,6 +57,8 @@ def measure(only: list[str], bench: Bench, folder: Path, extra: dict[str, Path])
             figure = footstep_curves({k: v for k, v in curves.items() if not k.endswith("-robust")})
             folder.mkdir(parents=True, exist_ok=True)
             figure.savefig(folder / "footsteps.png", dpi=110)
+        elif part == "horizons":
+            records = horizon_records(horizons.FULL if bench.size == FULL else horizons.QUICK, command)
         else:
             records = walker_records(bench, lines[part], command)
         show([one for one in records if one["value"] is not None])

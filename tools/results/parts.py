@@ -16,7 +16,10 @@ from .scores import Figure, diversity, score
 from .trials import UNSEEN, Choices, Trials, choices, rollouts_of, unseen, walker_generate
 
 CACHE = Path("build/results")  # rollouts, so that a new metric needs no new rollouts
-PAPER_BONES = {"walker-eps.bone_rmse_cm": 0.089, "walker-x0.bone_rmse_cm": 0.089, "walker.bone_rmse_cm": 0.089}
+PACKAGE = Path(checkpoints.__file__).parent
+ROLLING = ("cross_modal_attention.py", "ddpm.py", "modiff.py", "prediction.py", "rollout.py", "walker.py",
+           "checkpoints.py", "motion/scaler.py")  # fmt: skip
+PAPER_BONES = {"walker-eps.bone_rmse_cm": 0.089, "walker-paper.bone_rmse_cm": 0.089}  # Table I, without dropout
 
 
 @dataclass(frozen=True)
@@ -51,7 +54,8 @@ class Bench:
         path = self.weights.get(name) or checkpoints.available().get(name)
         if path is None:
             raise SystemExit(f"no weights are called {name!r}; there are: {', '.join(self.weights) or 'none'}")
-        key = f"{_digest(path)}-{steps}-{hold}-{what}-{json.dumps(asdict(self.size))}-{_digest(self._inputs(what))}"
+        inputs = "-".join(_digest(x) for x in self._inputs(what))
+        key = f"{_digest(path)}-{steps}-{hold}-{what}-{json.dumps(asdict(self.size))}-{inputs}-{code_digest()}"
         kept = CACHE / f"{name}-{hashlib.sha256(key.encode()).hexdigest()[:12]}.npy"
         if not kept.exists():
             generate = walker_generate(checkpoints.load_walker(path), steps, hold)
@@ -62,13 +66,20 @@ class Bench:
             kept.with_suffix(".part.npy").rename(kept)
         return np.load(kept).astype(np.float64)
 
-    def _inputs(self, what: str) -> np.ndarray:
-        return self.trials.control if what == "walks" else self.choices.control
+    def _inputs(self, what: str) -> tuple[np.ndarray, np.ndarray]:
+        asked = self.trials if what == "walks" else self.choices
+        return asked.past, asked.control
 
 
 def _digest(thing: Path | np.ndarray) -> str:
     data = thing.read_bytes() if isinstance(thing, Path) else np.ascontiguousarray(thing).tobytes()
     return hashlib.sha256(data).hexdigest()[:16]
+
+
+def code_digest() -> str:
+    """Of all code that turns weights and inputs into poses: when it changes, no old rollout is taken for a new one."""
+    files = [PACKAGE / name for name in ROLLING] + sorted((PACKAGE / "fast").glob("*.py"))
+    return hashlib.sha256(b"".join(path.read_bytes() for path in files)).hexdigest()[:16]
 
 
 @dataclass(frozen=True)

@@ -12,8 +12,9 @@ HEAD = """# Results
 Made by `make results` (and `make bench`) from the records in `docs/results` and `benchmarks/results`. Do not edit.
 
 The course's data are synthetic, and neither paper's code nor its prepared data is public: figures stand beside the
-paper's for orientation, not as a reproduction. **[low, high]** is the 95 % interval over clips (bootstrap), for one
-training run: it does not hold what another training seed would change.
+paper's for orientation, not as a reproduction. **[low, high]** is a 95 % interval (bootstrap) over clips; over pasts
+for diversity; over repeats for times. It is that of one training run: it does not hold what another training seed
+would change.
 """
 
 
@@ -71,7 +72,8 @@ def walkers(records: dict[str, dict]) -> str:
         f"## The walkers\n\n{' or '.join(map(str, clips))} unseen pasts and controls of 12 s, "
         "raw output, DDPM with S = 100 (`ddim10`: ten DDIM "
         "steps), control held over the window (`lookahead`: the window sees the control to come). `_data` rows judge "
-        "the recorded motion under the same control.\n\n" + table(["figure", *columns], rows)
+        "the recorded motion under the same control. `diversity`: 50 rollouts of 3 s for each of 20 pasts, "
+        "from the end of the first second on.\n\n" + table(["figure", *columns], rows)
     )
 
 
@@ -100,9 +102,23 @@ def footsteps(records: dict[str, dict], folder: Path) -> str:
     return text + table(head, rows) + picture
 
 
+def horizons(records: dict[str, dict]) -> str:
+    """One row for each T_p."""
+    columns = sorted({n.split(".")[0] for n in records if n.startswith("horizon-")}, key=lambda c: int(c[8:]))
+    if not columns:
+        return ""
+    kinds = list(dict.fromkeys(n.split(".")[1] for n in records if n.startswith("horizon-")))
+    rows = [[c[8:], *(_cell(records.get(f"{c}.{kind}")) for kind in kinds)] for c in columns]
+    text = (
+        "## How many poses at once: T_p\n\nMoDiff (III-A) says that predicting more than one pose helps. The small "
+        "network with target x0, trained for the same CPU-seconds each; every rollout keeps one pose of a window.\n\n"
+    )
+    return text + table(["T_p", *(f"`{kind}`" for kind in kinds)], rows)
+
+
 def others(records: dict[str, dict]) -> str:
     """Everything that stands in no table above, with what makes it."""
-    shown = ("walker", "footsteps")
+    shown = ("walker", "footsteps", "horizon-")
     rest = [one for name, one in sorted(records.items()) if not name.startswith(shown)]
     rows = [[f"`{r['name']}`", number(r["value"]), span(r), r["unit"], f"`{r['command']}`"] for r in rest]
     return "## Further figures\n\n" + table(["figure", "value", "interval", "unit", "made by"], rows) if rows else ""
@@ -111,7 +127,8 @@ def others(records: dict[str, dict]) -> str:
 def render(docs: Path, benchmarks: Path = Path("benchmarks/results")) -> None:
     """Write RESULTS.md beside the records, to a temporary name first."""
     records = read_records(docs / "results", benchmarks)
-    parts = [HEAD, bars(records), walkers(records), footsteps(records, docs / "results"), others(records)]
+    parts = [HEAD, bars(records), walkers(records), footsteps(records, docs / "results")]
+    parts += [horizons(records), others(records)]
     docs.mkdir(parents=True, exist_ok=True)
     (docs / "RESULTS.md.tmp").write_text("\n".join(part for part in parts if part))
     os.replace(docs / "RESULTS.md.tmp", docs / "RESULTS.md")
