@@ -62,3 +62,10 @@ def without(bvh: Bvh, dropped: Collection[str]) -> Bvh:
         frames=bvh.frames[:, columns],
         is_end=bvh.is_end[keep],
     )
+
+
+def seen_in_a_mirror(bvh: Bvh) -> Bvh:
+    """The same motion with left and right exchanged, as careless exports have it: x and turns about y and z flip."""
+    flips = {"Xposition", "Yrotation", "Zrotation"}
+    signs = [-1.0 if channel in flips else 1.0 for channels in bvh.channels for channel in channels]
+    return replace(bvh, offsets=bvh.offsets * [-1, 1, 1], frames=bvh.frames * signs)

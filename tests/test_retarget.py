@@ -4,7 +4,7 @@ import warnings
 
 import numpy as np
 import pytest
-from foreign_walk import foreign, sound
+from foreign_walk import foreign, seen_in_a_mirror, sound
 
 from motiondiff_edu.motion.bvh import BvhError, read_bvh
 from motiondiff_edu.motion.clip import Clip
@@ -58,6 +58,18 @@ def test_a_turn_to_the_left_is_positive_yaw(tmp_path):
     ahead, _ = forward_left(np.zeros(len(clip)))
     feet = clip.poses[:, 4, [0, 2]] - clip.poses[:, 3, [0, 2]]
     assert (feet * ahead).sum(-1).mean() > 0.05  # toes point where the figure heads
+
+
+def test_left_and_right_exchanged_make_no_difference(tmp_path):
+    bvh = read_bvh(foreign(tmp_path / "walk.bvh", turn=0.3))
+    bvh.offsets[bvh.names.index("Neck1"), 2] -= 0.05 / 0.0254  # shoulders that lie behind the hips
+    usual = retarget(bvh)
+    with pytest.warns(MotionWarning, match="left and right are exchanged"):
+        clip = retarget(seen_in_a_mirror(bvh))
+    assert np.degrees(usual.info["rest_lean"]) > 4
+    assert clip.info["rest_lean"] == pytest.approx(usual.info["rest_lean"])
+    np.testing.assert_allclose(clip.poses, usual.poses, atol=1e-9)
+    np.testing.assert_allclose(clip.control, usual.control, atol=1e-9)
 
 
 def test_a_dropped_t_pose_is_told(tmp_path):

@@ -20,6 +20,7 @@ LEG = 0.835  # m, thigh plus shank of the course's figure
 SLOW = 0.35  # m/s, a toe slower than this stands
 STEEPEST = 0.06  # a floor tilted more than this is no fault of the capture
 CUT_HZ = 8.0  # walking and dancing keep 99 % of their velocity power below
+FLIP_X = np.array([-1.0, 1.0, 1.0])  # positions seen in a mirror
 
 
 class MotionWarning(UserWarning):
@@ -87,7 +88,7 @@ def unmirror(points: Float[np.ndarray, "T 21 3"]) -> tuple[Float[np.ndarray, "T 
     cosine = np.einsum("ti,ti->t", ahead, feet) / (np.linalg.norm(ahead, axis=-1) * np.linalg.norm(feet, axis=-1))
     if not np.median(cosine) < -0.3:  # NaN where the toes are unknown
         return points, False
-    return points * np.array([-1.0, 1.0, 1.0]), True
+    return points * FLIP_X, True
 
 
 def calibration_frames(points: Float[np.ndarray, "T 21 3"]) -> int:

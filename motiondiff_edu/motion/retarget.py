@@ -16,6 +16,7 @@ from .clip import Clip
 from .dialects import check_mapping, guess_mapping
 from .directions import UPLEGS, bone_directions, build, complete, has_our_bones, plain_directions, rest_lean
 from .normalise import (
+    FLIP_X,
     calibration_frames,
     floor_plane,
     level,
@@ -66,7 +67,9 @@ def normalised(bvh: Bvh, mapping: Mapping[str, str], fps: float) -> tuple[Float[
     up = up_axis(points, rest[0])
     points, unit = to_metres(turn_up(points, up), bvh.source)
     points, mirrored = unmirror(points)
+    rest = turn_up(rest, up)[0]
     if mirrored:
+        rest = rest * FLIP_X  # else its left and right would tell the wrong front
         notes.append(tell("left and right are exchanged; the figure was mirrored", bvh.source))
     dropped = calibration_frames(points)
     if dropped:
@@ -79,7 +82,7 @@ def normalised(bvh: Bvh, mapping: Mapping[str, str], fps: float) -> tuple[Float[
     ours = has_our_bones(points)
     plane = np.zeros(3) if ours else floor_plane(ground_points(points), fps)
     info = dict(file_fps=bvh.fps, unit_m=unit, up=up, dropped_frames=dropped, floor_slope=tuple(plane[1:]), notes=notes)
-    return level(points, plane), info | {"rest_lean": rest_lean(turn_up(rest, up)[0])}
+    return level(points, plane), info | {"rest_lean": rest_lean(rest)}
 
 
 def ground_points(points: Float[np.ndarray, "T 21 3"]) -> Float[np.ndarray, "T 2 3"]:
