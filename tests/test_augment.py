@@ -73,10 +73,13 @@ def test_reversal_plays_the_same_world_backwards(walk):
     np.testing.assert_allclose(backwards, world[::-1], atol=1e-12)
 
 
-def test_reversed_arrays_go_into_torch(walk):
+def test_arrays_read_backwards_go_into_torch(walk):
     backwards = reverse_time(walk)
     assert torch.equal(torch.from_numpy(backwards.poses).flip(0), torch.from_numpy(walk.poses))
-    assert torch.equal(torch.from_numpy(backwards.contacts).flip(0), torch.from_numpy(walk.contacts))
+    for other, axis in ((backwards, 0), (mirror(walk), 1)):
+        assert torch.equal(torch.from_numpy(other.contacts).flip(axis), torch.from_numpy(walk.contacts))
+    for clip in augment([walk]):
+        assert [len(torch.from_numpy(part)) for part in (clip.poses, clip.control, clip.contacts)] == [57, 57, 57]
 
 
 def test_reversed_walk_integrates_back_to_its_start(walk):

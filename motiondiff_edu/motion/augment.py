@@ -23,7 +23,7 @@ def mirror(clip: Clip) -> Clip:
 
     Twice is the identity.  Notebook: 01
     """
-    contacts = None if clip.contacts is None else clip.contacts[:, ::-1]
+    contacts = None if clip.contacts is None else clip.contacts[:, ::-1].copy()  # torch takes no backward view
     return replace(clip, poses=clip.poses[:, MIRROR] * _FLIP_X, control=clip.control * _FLIP_CONTROL, contacts=contacts)
 
 
@@ -36,7 +36,7 @@ def reverse_time(clip: Clip) -> Clip:
     control = np.empty_like(clip.control)
     control[:-1] = -clip.control[:-1][::-1]
     control[-1] = control[-2] if len(clip) > 1 else -clip.control[-1]
-    contacts = None if clip.contacts is None else clip.contacts[::-1].copy()  # torch takes no view that runs backwards
+    contacts = None if clip.contacts is None else clip.contacts[::-1].copy()
     return replace(clip, poses=clip.poses[::-1].copy(), control=control, contacts=contacts)
 
 
