@@ -31,11 +31,24 @@ def test_fit_by_hand():
     torch.testing.assert_close(scaler.std, torch.tensor([(8 / 3) ** 0.5, 10 * (8 / 3) ** 0.5]))
 
 
-def test_a_column_that_never_moves_stays_finite():
+@pytest.mark.parametrize("rounding", [0.0, 1e-8])
+def test_a_column_that_never_moves_stays_in_its_own_unit(data, rounding):
+    """Walks without a step to the side, then the first one at 0.6 m/s: 0.6, and not thousands."""
+    seen = data.double()
+    seen[..., 2] = rounding * seen[..., 2]
+    scaler = Scaler.fit(seen.float())
+    torch.testing.assert_close(scaler.std[2], torch.tensor(1.0))
+    assert scaler.transform(seen.float())[..., 2].abs().max() < 1e-6
+    aside = scaler.mean + torch.tensor([0.0, 0.0, 0.6, 0.0, 0.0])
+    torch.testing.assert_close(scaler.transform(aside), torch.tensor([0.0, 0.0, 0.6, 0.0, 0.0]))
+    torch.testing.assert_close(scaler.inverse(scaler.transform(aside)), aside)
+
+
+def test_a_constant_far_from_zero_becomes_zero():
     constant = torch.full((6, 2), 0.97)
     scaler = Scaler.fit(constant)
-    assert torch.equal(scaler.transform(constant), torch.zeros(6, 2))
-    assert torch.isfinite(scaler.transform(constant + 0.01)).all()
+    torch.testing.assert_close(scaler.transform(constant), torch.zeros(6, 2))
+    torch.testing.assert_close(scaler.transform(constant + 0.5), torch.full((6, 2), 0.5))
 
 
 @pytest.mark.parametrize("bad", [float("nan"), float("inf")])

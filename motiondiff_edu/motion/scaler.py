@@ -10,7 +10,7 @@ import torch
 from jaxtyping import Float
 from torch import Tensor
 
-_SMALLEST = 1e-4  # a column that never moves would be divided by zero (metres, m/s or rad/s: a tenth of a millimetre)
+_STILL = 1e-4  # m, m/s or rad/s: a column that moves less, moves by rounding only
 
 
 @dataclass(frozen=True, eq=False)
@@ -22,12 +22,17 @@ class Scaler:
 
     @classmethod
     def fit(cls, x: Float[Tensor, "*N D"]) -> "Scaler":
-        """Mean and (population) standard deviation of the training data.  Raises ValueError on NaN or infinity."""
+        """Mean and (population) standard deviation of the training data.  Raises ValueError on NaN or infinity.
+
+        A column that never moves gets std 1: it stays in its own unit, so that a value unseen in training (the first
+        step to the side) arrives as itself and not as thousands of standard deviations.
+        """
         flat = x.reshape(-1, x.shape[-1]).double()
         if not torch.isfinite(flat).all():
             bad = int((~torch.isfinite(flat)).any(-1).nonzero()[0])
             raise ValueError(f"row {bad} of the data to be scaled is not finite; clean it first")
-        return cls(flat.mean(0).float(), flat.std(0, correction=0).clamp_min(_SMALLEST).float())
+        std = flat.std(0, correction=0)
+        return cls(flat.mean(0).float(), std.where(std > _STILL, 1.0).float())
 
     def transform(self, x: Float[Tensor, "*N D"]) -> Float[Tensor, "*N D"]:
         """To the network's units."""
