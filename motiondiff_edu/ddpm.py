@@ -168,7 +168,8 @@ def sample_steps(
     noise[s - 1], when given, is the noise of step s; clip bounds x0_hat to [-clip, clip].
     Source: MoDiff Alg. 2. Notebook: 03.
     """
-    x_s = start if isinstance(start, Tensor) else torch.randn(start, generator=generator)
+    home = generator.device if generator else None
+    x_s = start if isinstance(start, Tensor) else torch.randn(start, generator=generator, device=home)
     for s in range(schedule.S, 0, -1):
         eps_hat = denoise(x_s, torch.full((len(x_s),), s, device=x_s.device))
         x0_hat, eps_hat = _clean_guess(x_s, s, eps_hat, schedule, clip)

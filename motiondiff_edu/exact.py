@@ -11,7 +11,7 @@ import torch
 from jaxtyping import Float, Int
 from torch import Tensor
 
-from motiondiff_edu.ddpm import Denoiser, Schedule
+from motiondiff_edu.ddpm import Denoiser, Schedule, at
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,6 +66,10 @@ def log_density(given: Mixture, x: Float[Tensor, "B D"]) -> Float[Tensor, "B"]:
     return part_log_densities(given.weights, off, given.variances).logsumexp(1)
 
 
+def _on(device: torch.device, given: Mixture) -> Mixture:
+    return Mixture(*(part.to(device) for part in (given.weights, given.means, given.axes, given.variances)))
+
+
 def along_axes(given: Mixture, off: Float[Tensor, "B K D"]) -> Float[Tensor, "B K D"]:
     """Coordinates of each offset along the axes of its part, where a covariance is diagonal."""
     return torch.einsum("kij,bki->bkj", given.axes, off)
@@ -85,8 +89,9 @@ def posterior_mean(
 
     One part: m + a C (a^2 C + (1 - a^2) I)^-1 (x_s - a m), with a = sqrt(alpha_bar_s). Notebook: 03.
     """
-    alpha_bar = schedule.alpha_bar[s][:, None, None]
-    off = along_axes(given, x_s.double()[:, None] - alpha_bar.sqrt() * given.means)
+    given, x = _on(x_s.device, given), x_s.double()[:, None]
+    alpha_bar = at(schedule.alpha_bar, s, x)
+    off = along_axes(given, x - alpha_bar.sqrt() * given.means)
     variances = alpha_bar * given.variances + 1 - alpha_bar
     share = part_log_densities(given.weights, off, variances).softmax(1)
     gain = alpha_bar.sqrt() * given.variances / variances
@@ -100,8 +105,9 @@ def dataset_mean(
 
     weights = softmax(-||x_s - a x_n||^2 / (2 (1 - a^2))), with a = sqrt(alpha_bar_s). Notebook: 03.
     """
-    alpha_bar, data = schedule.alpha_bar[s][:, None], data.double()
-    closeness = alpha_bar.sqrt() * x_s.double() @ data.T - alpha_bar * data.square().sum(1) / 2
+    x, data = x_s.double(), data.to(x_s.device).double()
+    alpha_bar = at(schedule.alpha_bar, s, x)
+    closeness = alpha_bar.sqrt() * x @ data.T - alpha_bar * data.square().sum(1) / 2
     return (closeness / (1 - alpha_bar)).softmax(1) @ data
 
 
@@ -122,7 +128,8 @@ def _denoiser(mean_of_x0: Callable[[Tensor, Tensor], Tensor], schedule: Schedule
     """eps_hat = (x_s - a E[x0 | x_s]) / sqrt(1 - a^2), in float64 inside, in the caller's shape and dtype outside."""
 
     def denoise(x_s: Tensor, s: Tensor) -> Tensor:
-        x, alpha_bar = x_s.flatten(1).double(), schedule.alpha_bar[s][:, None]
+        x = x_s.flatten(1).double()
+        alpha_bar = at(schedule.alpha_bar, s, x)
         eps_hat = (x - alpha_bar.sqrt() * mean_of_x0(x, s)) / (1 - alpha_bar).sqrt()
         return eps_hat.reshape(x_s.shape).to(x_s.dtype)
 

@@ -5,9 +5,9 @@ import math
 import pytest
 import torch
 
-from data_synth.mixtures import gaussian, three_hills
+from data_synth.mixtures import crossed_bars, gaussian, three_hills
 from motiondiff_edu.ddpm import cosine_schedule, linear_schedule, sample_steps
-from motiondiff_edu.exact import exact_denoiser
+from motiondiff_edu.exact import dataset_denoiser, exact_denoiser
 from motiondiff_edu.fast.samplers import ddim_steps, ddpm_steps, timesteps, warm_start
 from motiondiff_edu.prediction import to_eps
 
@@ -50,6 +50,22 @@ def test_fast_ddpm_equals_the_plain_loop_for_the_same_seed():
         for f in (sample_steps, ddpm_steps)
     ]
     torch.testing.assert_close(*pair, atol=1e-5, rtol=0)
+
+
+class FarGenerator(torch.Generator):
+    """Stands for the generator of another device, with the one device that is everywhere and not the CPU."""
+
+    device = torch.device("meta")
+
+
+@pytest.mark.parametrize("sample", [sample_steps, ddpm_steps, ddim_steps])
+def test_a_shape_is_drawn_and_walked_where_the_generator_lives(sample):
+    schedule = linear_schedule(11, 1e-3, 0.7)
+    for denoise in (exact_denoiser(crossed_bars(), schedule), dataset_denoiser(torch.randn(4, 2), schedule)):
+        steps = list(sample(denoise, (3, 2), schedule, generator=FarGenerator()))
+        assert {(step.x_s.device.type, tuple(step.x_s.shape)) for step in steps} == {("meta", (3, 2))}
+        near = sample(denoise, (3, 2), schedule)
+        assert next(near).x_s.device.type == "cpu"
 
 
 def test_the_last_step_draws_nothing():

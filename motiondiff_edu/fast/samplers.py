@@ -104,7 +104,8 @@ def _walk(
     clip: float | None,
 ) -> Iterator[FastStep]:
     """Follow a plan of (s, weight of x0_hat, weight of x_s, weight of eps_hat, sigma)."""
-    x = start if isinstance(start, Tensor) else torch.randn(start, generator=generator)
+    home = generator.device if generator else None
+    x = start if isinstance(start, Tensor) else torch.randn(start, generator=generator, device=home)
     labels = torch.tensor([p[0] for p in plan], device=x.device)[:, None].repeat(1, len(x)).unbind(0)
     for label, (s, to_x0, to_x, to_eps, sigma) in zip(labels, plan, strict=True):
         a, b = math.sqrt(alpha_bar[s]), math.sqrt(1 - alpha_bar[s])
