@@ -1,6 +1,8 @@
 """Do synthetic walks lie where real ones do? The table: ours over many walkers, beside the range of real clips.
 
 python -m data_synth.acceptance [--walks 24]
+
+Prints this table, then the data's own figures and limits: what README.md shows.
 """
 
 import argparse
@@ -9,7 +11,7 @@ from dataclasses import replace
 import numpy as np
 
 from .gait_statistics import statistics
-from .own_figures import own_figures
+from .own_figures import limits, own_figures
 from .styles import STYLES, person
 from .walking import walk
 
@@ -96,4 +98,4 @@ if __name__ == "__main__":
     parser.add_argument("--walks", type=int, default=24)
     for part in acceptance(parser.parse_args().walks):
         print(show(part))
-    print("\n".join(f"{name}: {value:.3g}" for name, value in own_figures().items()))
+    print("\n".join(f"{name}: {value:.3g}" for name, value in (own_figures() | limits()).items()))

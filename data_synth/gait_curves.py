@@ -1,7 +1,9 @@
 """What walking and running do over one cycle, and how that depends on speed: curves and relations, no state.
 
 Phase p = 0 is the heel strike of one's own foot, p = 1 the next one. `run` is 0 for walking, 1 for running.
-Relations and curves follow published measurements of motion-capture walks in shape (README.md says which).
+HAND, ELBOW, ROLL and HEIGHT follow mean curves measured on eight public recordings of straight walking, relations with
+speed follow straight lines through them; no recorded pose is here (README.md, "Licence and sources"). The rest is set
+by hand.
 """
 
 import numpy as np
@@ -98,7 +100,7 @@ def swing_lift(u: Frames, run: Frames) -> Frames:
     return walk + (u**1.3 * (1 - u) ** 1.7 / 0.1314 - walk) * run
 
 
-# Curves over the cycle at steps of 10 %: own hand, elbow and hip up (degrees), pelvis height (share of its range)
+# Measured means over the cycle, steps of 10 %: own hand, elbow and hip up (degrees), pelvis height (share of its range)
 HAND = fourier([-14, -8, 5, 20, 33, 36, 26, 12, 0, -10], 2)
 ELBOW = fourier([13.5, 14, 21, 32, 43, 47, 39, 24, 19, 16], 3)
 ROLL = fourier([-1.5, 2, 3, 1.5, 2, 1.5, -2, -3, -1.5, -2], 3)
