@@ -1,5 +1,6 @@
 """Do the synthetic walks lie where real ones do? The acceptance table, and the ruler it is measured with."""
 
+import re
 from pathlib import Path
 
 import numpy as np
@@ -8,7 +9,7 @@ import pytest
 from data_synth.acceptance import NEUTRAL, OUTSIDE, RUN, acceptance, means_outside, show, steady_walk
 from data_synth.gait_cycles import GRID, analyse, cycles
 from data_synth.gait_statistics import mean_curves, statistics, turning_lean
-from data_synth.own_figures import spreads
+from data_synth.own_figures import limits, own_figures
 from data_synth.walking import random_control, walk
 from motiondiff_edu.metrics.adherence import adherence
 from motiondiff_edu.metrics.skating import skating
@@ -74,8 +75,39 @@ def test_the_data_obey_their_own_control():
     assert np.nanmean([skating(c.poses, c.control) for c in clips]) < 0.01
 
 
-def test_continuations_spread_by_what_the_card_says():
-    assert 0.03 < spreads(3, 5, 4.0).mean() < 0.15
+def card(row: str) -> list[float]:
+    """The numbers in the second column of a row of the card's own figures."""
+    line = re.search(rf"^\| {row} \|([^|]*)\|", CARD.split("## Its own figures")[1].split("\n## ")[0], re.MULTILINE)
+    return [float(number) for number in re.findall(r"-?\d[\d.]*(?:e-\d+)?", line[1])]
+
+
+def test_the_data_score_what_the_card_says():
+    """Ten pasts with five continuations each, not twenty with fifty: their spread is 0.078 m."""
+    found = own_figures(clips=20, pasts=10, n=5)
+    mean, smallest, largest = card("spread of continuations")
+    assert smallest < mean < largest and found["spread_m"] == pytest.approx(mean, rel=0.25)
+    assert found["adherence_mps"] == pytest.approx(card("adherence")[0], abs=0.0005)
+    assert found["skating_mps"] == pytest.approx(card("skating")[0], abs=0.0005)
+    lean = found["turning_lean_slope"], found["turning_lean_r"]
+    assert lean == pytest.approx(card("lean in turns"), abs=0.006)
+
+
+def test_no_walk_exceeds_the_limits_of_the_card():
+    """Sixty of the card's 600 walks: within its limits, and not far from them."""
+    found = limits(clips=60, spots=20)
+    low, high = card("knees")
+    assert low - 0.5 < found["knee_smallest_deg"] < low + 0.5 and high - 3 < found["knee_largest_deg"] < high + 0.5
+    slowest, fastest, aside, turning = card("commanded")
+    assert slowest - 0.005 < found["ahead_slowest_mps"] < slowest + 0.02
+    assert fastest - 0.02 < found["ahead_fastest_mps"] < fastest + 0.005
+    assert aside - 0.02 < found["aside_mps"] < aside + 0.005
+    assert turning - 3 < found["turning_dps"] < turning + 0.5
+    assert found["speed_times_turning_mps2"] < card("speed x turning")[0]
+    assert found["planted_toe_mm_a_frame"] < card("planted toe")[0]
+    assert found["bone_error_m"] < card("bones")[0]
+    assert abs(found["lowest_joint_mm"] - card("lowest joint")[0]) < 1e-3
+    share = re.search(r"within 4 cm of each other in (\d+) %", CARD)
+    assert 100 * found["feet_within_4cm"] == pytest.approx(float(share[1]), abs=1)
 
 
 def test_a_walk_that_stands_has_no_cycle():
