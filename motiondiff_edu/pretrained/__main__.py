@@ -30,7 +30,10 @@ def main() -> None:
 
 
 def point_alias(folder: Path, name: str) -> None:
-    """Let the name `walker` stand for `name`."""
+    """Let the name `walker` stand for `name`; exits with the names there are when the folder has no such weights."""
+    there = sorted(path.stem for path in folder.glob("*.safetensors"))
+    if name not in there:
+        raise SystemExit(f"no weights in {folder} are called {name!r}; there are: {', '.join(there) or 'none'}")
     temporary = folder / "aliases.json.part"
     temporary.write_text(json.dumps({"walker": name}) + "\n")
     os.replace(temporary, folder / "aliases.json")
