@@ -175,6 +175,18 @@ def test_variances_are_the_papers_and_its_lower_bound():
 
 
 @pytest.mark.parametrize("variance", ["beta", "posterior"])
+def test_one_reverse_step_by_hand(variance):
+    """x_1 from x_2 in plain numbers: beta is 0.1, then 0.4, so alpha_bar_2 = 0.9 * 0.6 = 0.54."""
+    schedule = make_schedule(torch.tensor([0.1, 0.4, 0.75, 0.95], dtype=torch.float64))
+    x_2, eps_hat, z = [0.7, -1.2], [0.3, 0.5], [-0.8, 1.5]
+    sigma = {"beta": 0.4**0.5, "posterior": (0.4 * 0.1 / 0.46) ** 0.5}[variance]
+    x_1 = [(x - 0.4 / 0.46**0.5 * e) / 0.6**0.5 + sigma * n for x, e, n in zip(x_2, eps_hat, z, strict=True)]
+    tensors = [torch.tensor([values], dtype=torch.float64) for values in (x_2, eps_hat, z)]
+    ours = p_sample(tensors[0], 2, tensors[1], schedule, tensors[2], variance)
+    assert ours[0].tolist() == pytest.approx(x_1, rel=1e-12)
+
+
+@pytest.mark.parametrize("variance", ["beta", "posterior"])
 def test_last_step_adds_no_noise(variance):
     schedule, x, eps = linear_schedule(), torch.randn(2, 5, 7), torch.randn(2, 5, 7)
     loud = torch.full_like(x, 1e6)
