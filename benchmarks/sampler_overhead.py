@@ -18,7 +18,7 @@ from motiondiff_edu.ddpm import linear_schedule, sample_steps
 from motiondiff_edu.fast.samplers import ddim_steps, ddpm_steps
 
 S, SHAPE = 100, (1, 10, 63)
-COMMAND = "python benchmarks/sampler_overhead.py"
+COMMAND = "python -m benchmarks sampler"
 ANSWER = torch.zeros(SHAPE)
 
 
