@@ -103,15 +103,27 @@ def gait_windows() -> Windows:
     return Windows.of([Clip(poses, rng.normal(size=(300, 3)), source="drift")], T_H, T_P)
 
 
-def test_the_shaken_past_has_errors_of_every_size_steady_and_fresh():
+def assert_even_on_a_log_scale(sizes: torch.Tensor, largest: float):
+    """Over two decades, up to `largest`."""
+    for quantile, level in ((0.1, 10**-1.8), (0.5, 0.1), (0.9, 10**-0.2)):
+        assert sizes.quantile(quantile) == pytest.approx(level * largest, rel=0.25)
+
+
+def test_the_shaken_past_has_one_steady_error_of_any_size():
+    """Where nothing changes from frame to frame, only the steady part is left: the same noise in all frames."""
+    past = torch.zeros(4000, 6, 50)
+    noise = shaken(past, 0.3, torch.zeros(50), torch.Generator().manual_seed(0))
+    assert torch.equal(noise, noise[:, :1].expand_as(noise))
+    assert_even_on_a_log_scale(noise[:, 0].std(1), 0.3)  # one level for a window, in standard deviations
+    assert abs(torch.corrcoef(noise[:, 0].T)[0, 1]) < 0.1  # and each column its own error
+
+
+def test_the_shaken_past_has_fresh_errors_as_large_as_columns_change():
     past, change = torch.zeros(4000, 6, 3), torch.tensor([0.5, 1.0, 2.0])
     noise = shaken(past, 0.3, change, torch.Generator().manual_seed(0))
-    steady, fresh = noise.mean(1), noise - noise.mean(1, keepdim=True)
-    assert fresh.std((0, 1)) == pytest.approx(change * fresh.std((0, 1))[1], rel=0.05)  # as each column changes
-    assert steady[:, 0].std() == pytest.approx(float(noise[:, :, 0].mean(1).std()))
-    sizes = fresh[..., 1].std(1)
-    for quantile, level in ((0.1, 10**-1.8), (0.5, 0.1), (0.9, 10**-0.2)):  # evenly on a log scale, 0.01 to 1
-        assert sizes.quantile(quantile) == pytest.approx(level, rel=0.25)
+    fresh = noise - noise.mean(1, keepdim=True)
+    assert fresh.std((0, 1)) == pytest.approx(change * fresh.std((0, 1))[1], rel=0.05)
+    assert_even_on_a_log_scale(fresh[..., 1].std(1), 1.0)  # jitter 0.3 is once the change of a frame
     assert (shaken(past, 0.03, change, torch.Generator().manual_seed(0)) * 10).allclose(noise, atol=1e-6)
 
 
@@ -122,33 +134,61 @@ def test_typical_change_grows_as_a_random_walk_does():
     assert found == pytest.approx(expected, rel=0.25)
 
 
-def test_columns_frames_and_steps_are_weighted_as_told():
-    """A network that is wrong in one number only: what each of its errors costs."""
+SLOPES = np.linspace(0.1, 1, 63)  # metres a frame: each column moves steadily, so frame k is k times as far as frame 1
 
-    class Wrong(nn.Module):
-        config = MoDiffConfig(T_h=T_H, T_p=T_P, S=6, target="x0")
 
-        def __init__(self):
-            super().__init__()
-            self.one = nn.Parameter(torch.zeros(1))
+class OffByOne(nn.Module):
+    """Tells the future of steady motion exactly, but for one entry at one step: there it errs by 1."""
 
-        def encode(self, past, control):
-            return past
+    config = MoDiffConfig(T_h=T_H, T_p=T_P, S=6, target="x0")
 
-        def decode(self, x_s, s, memory):
-            return torch.full_like(x_s, 0.0)
+    def __init__(self, frame: int, column: int, step: int):
+        super().__init__()
+        self.where, self.times = (frame, column, step), 0
+        self.unused = nn.Parameter(torch.zeros(1))
 
-    windows, schedule = gait_windows(), linear_schedule(6, 0.2, 0.95)
-    generator = torch.Generator().manual_seed(8)
-    _, x0, _ = windows.draw(5, generator)
-    s = torch.randint(1, 7, (5,), generator=generator)
-    found = window_loss(windows, schedule, batch=5, noises=1, metres=2.0, near=1.0, high_noise=3.0)(
-        Wrong(), torch.Generator().manual_seed(8)
-    )
-    std, change = windows.pose_scaler.std, typical_change(windows)
-    columns = std**2 / (change * std).square().mean(1, keepdim=True).sqrt()
-    ab = schedule.alpha_bar[s].float()
-    steps = 1 + ((1 - ab) / ab).clamp_max(3.0)
-    expected = (steps[:, None, None] * (columns / columns.mean()) * x0.square()).mean()
-    assert found.item() == pytest.approx(expected.item(), rel=1e-5)
-    assert columns[0].sum() > 1.5 * columns[-1].sum() and steps.max() > 2  # so the weights matter
+    def encode(self, past, control):
+        return past[:, -1:] + torch.arange(1, T_P + 1)[:, None] * (past[:, -1:] - past[:, -2:-1])
+
+    def decode(self, x_s, s, memory):
+        frame, column, step = self.where
+        self.times = int((s == step).sum())
+        x0_hat = memory.clone()
+        x0_hat[s == step, frame, column] += 1
+        return x0_hat
+
+
+def cost(frame: int = 0, column: int = 0, step: int = 1, **weights) -> float:
+    """What one error of 1 costs there; without weights it is 1."""
+    poses = (np.arange(40)[:, None] * SLOPES).reshape(40, 21, 3)
+    windows = Windows.of([Clip(poses, np.zeros((40, 3)), source="steady")], T_H, T_P)
+    schedule, model = linear_schedule(6, 0.2, 0.95), OffByOne(frame, column, step)
+    loss = window_loss(windows, schedule, batch=40, noises=1, **weights)(model, torch.Generator().manual_seed(8))
+    return loss.item() * (40 * T_P * 63) / model.times
+
+
+def test_without_weights_every_error_costs_the_same():
+    assert [cost(), cost(2), cost(0, 50), cost(1, 20, 6)] == pytest.approx([1.0] * 4, rel=1e-3)
+
+
+def test_columns_are_weighted_by_how_far_they_move():
+    """In metres the squared error of a column that moves three times as far costs nine times as much."""
+    a, b = 12, 56
+    ratio = SLOPES[b] / SLOPES[a]
+    assert cost(column=b, metres=1.0) / cost(column=a, metres=1.0) == pytest.approx(ratio, rel=1e-3)
+    assert cost(column=b, metres=2.0) / cost(column=a, metres=2.0) == pytest.approx(ratio**2, rel=1e-3)
+    assert np.mean([cost(column=d, metres=2.0) for d in range(63)]) == pytest.approx(1, rel=1e-3)
+
+
+def test_frames_are_weighted_by_how_little_has_moved_till_then():
+    for metres in (0.0, 2.0):
+        first, second, third = (cost(frame, 5, near=1.0, metres=metres) for frame in range(3))
+        assert first / third == pytest.approx(3, rel=1e-3) and first / second == pytest.approx(2, rel=1e-3)
+    assert cost(0, near=0.5) / cost(2, near=0.5) == pytest.approx(3**0.5, rel=1e-3)
+    assert np.mean([cost(frame, near=1.0) for frame in range(T_P)]) == pytest.approx(1, rel=1e-3)
+
+
+def test_steps_are_weighted_by_their_noise():
+    """beta 0.2, 0.35, 0.5, 0.65 ... leave 0.8, 0.52, 0.26, 0.091 of the signal; noise / signal is capped at 3."""
+    wanted = [1 + 0.2 / 0.8, 1 + 0.48 / 0.52, 1 + 0.74 / 0.26, 1 + 3, 1 + 3, 1 + 3]
+    assert [cost(step=s, high_noise=3.0) for s in range(1, 7)] == pytest.approx(wanted, rel=1e-3)
