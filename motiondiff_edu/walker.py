@@ -10,13 +10,26 @@ import torch
 from jaxtyping import Float
 from torch import Tensor
 
-from .ddpm import Schedule
+from .ddpm import Schedule, linear_schedule, make_schedule
 from .fast.modiff import FastMoDiff
 from .fast.samplers import ddim_steps, ddpm_steps
 from .modiff import MoDiff, MoDiffConfig
 from .motion.scaler import Scaler
 from .prediction import denoiser_of
 from .rollout import WindowSampler
+
+
+def leap_schedule(S: int = 100, leap: float = 0.37, beta_2: float = 0.03, beta_S: float = 0.08) -> Schedule:
+    """beta_1 = leap, then evenly from beta_2 to beta_S: no step is spent below the noise of step 1 (0.8 of the signal).
+
+    A small network sees no more of a pose at lower noise than it guesses anyhow. Steps there draw its errors again
+    and again, and rollouts feed on them; one leap from step 1 to the clean pose does not. Ours.  Notebook: 08
+    """
+    rest = torch.linspace(beta_2, beta_S, S - 1, dtype=torch.float64)
+    return make_schedule(torch.cat([torch.tensor([leap], dtype=torch.float64), rest]), f"leap {leap:g}")
+
+
+SCHEDULES = {"linear": linear_schedule, "leap": leap_schedule}  # by the names that recipes use
 
 
 @dataclass(frozen=True, eq=False)

@@ -9,7 +9,7 @@ from motiondiff_edu.modiff import MoDiff, MoDiffConfig
 from motiondiff_edu.motion.scaler import Scaler
 from motiondiff_edu.prediction import to_eps
 from motiondiff_edu.rollout import generate
-from motiondiff_edu.walker import Walker
+from motiondiff_edu.walker import Walker, leap_schedule
 
 S, T_H, T_P = 6, 4, 3
 
@@ -108,3 +108,11 @@ def test_errors_say_what_is_wrong():
             generate(walker, *holed)
     with pytest.raises(ValueError, match="between 1 and 6 steps"):
         generate(walker, past, control, steps=7)
+
+
+def test_the_leap_schedule_spends_no_step_below_the_noise_of_its_first():
+    schedule = leap_schedule()
+    noise = ((1 - schedule.alpha_bar) / schedule.alpha_bar).sqrt()
+    assert schedule.S == 100 and schedule.signal_left < 0.1
+    assert noise[1] == pytest.approx((0.37 / 0.63) ** 0.5) and noise[0] == 0
+    assert (noise[1:].diff() > 0).all() and schedule.beta[2] == pytest.approx(0.03)

@@ -6,12 +6,11 @@ from dataclasses import replace
 
 import torch
 
-from ..ddpm import linear_schedule
 from ..modiff import MODIFF_SMALL, MoDiff, MoDiffConfig
 from ..motion.clip import Clip
 from ..muon import MuonAndAdam
 from ..training import TrainState, train_steps
-from ..walker import Walker
+from ..walker import Walker, leap_schedule
 from ..windows import Windows, window_loss
 
 X0_SMALL = replace(MODIFF_SMALL, target="x0", skip=False)
@@ -33,7 +32,7 @@ def train_for(
     `windows.window_loss`.  Notebook: 07
     """
     torch.manual_seed(seed)
-    windows, schedule, model = Windows.of(clips, config.T_h, config.T_p), linear_schedule(config.S), MoDiff(config)
+    windows, schedule, model = Windows.of(clips, config.T_h, config.T_p), leap_schedule(config.S), MoDiff(config)
     state = TrainState.start(model, seed, MuonAndAdam(model) if optimizer == "muon" else None)
     start = time.process_time()
 

@@ -16,6 +16,7 @@ class Recipe:
     name: str
     config: MoDiffConfig
     steps: int
+    schedule: str = "linear"  # or "leap", see walker.leap_schedule
     lr: float = 2e-3
     optimizer: str = "muon"  # or "adam", the paper's
     batch: int = 64  # windows a step
@@ -34,7 +35,7 @@ class Recipe:
     bf16_share: float = 0.8  # of the steps in bfloat16 arithmetic, the rest in float32
 
 
-WALKER_X0 = Recipe("walker-x0", replace(MODIFF_SMALL, target="x0", skip=False), steps=16_000)
+WALKER_X0 = Recipe("walker-x0", replace(MODIFF_SMALL, target="x0", skip=False), steps=24_000, schedule="leap")
 WALKER_EPS = Recipe("walker-eps", MODIFF_SMALL, steps=16_000, high_noise=3.0)
 # The paper's size, optimizer and loss; on our data, whose windows start at every frame (so 300,000 steps, not epochs).
 WALKER_PAPER = Recipe(

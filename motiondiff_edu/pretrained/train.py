@@ -10,14 +10,13 @@ from pathlib import Path
 import numpy as np
 import torch
 
-from ..ddpm import linear_schedule
 from ..modiff import MoDiff
 from ..motion.augment import mirror, reverse_time
 from ..motion.clip import Clip
 from ..muon import MuonAndAdam
 from ..runs import resume_run, saver
 from ..training import TrainState, cosine_lr, train_steps
-from ..walker import Walker
+from ..walker import SCHEDULES, Walker
 from ..windows import Windows, window_loss
 from .recipes import Recipe
 
@@ -40,7 +39,7 @@ def train(recipe: Recipe, run_file: Path, clips: list[Clip] | None = None, log=p
     torch.manual_seed(recipe.seed)
     config, commit, about = recipe.config, commit_of(Path(__file__).parent), asdict(recipe)
     windows = Windows.of(clips or training_clips(recipe), config.T_h, config.T_p)
-    schedule = linear_schedule(config.S)
+    schedule = SCHEDULES[recipe.schedule](config.S)
     device = "cuda" if torch.cuda.is_available() else "cpu"
     model = MoDiff(config).to(device)
     state = TrainState.start(model, recipe.seed, MuonAndAdam(model) if recipe.optimizer == "muon" else None)
