@@ -36,7 +36,7 @@ class Recipe:
 
 
 WALKER_X0 = Recipe("walker-x0", replace(MODIFF_SMALL, target="x0", skip=False), steps=24_000, schedule="leap")
-WALKER_EPS = Recipe("walker-eps", MODIFF_SMALL, steps=16_000, high_noise=3.0)
+WALKER_EPS = Recipe("walker-eps", MODIFF_SMALL, steps=24_000, schedule="leap", high_noise=3.0)
 # The paper's size, optimizer and loss; on our data, whose windows start at every frame (so 300,000 steps, not epochs).
 WALKER_PAPER = Recipe(
     "walker-paper", MODIFF_PAPER, steps=300_000, lr=5e-5, optimizer="adam", noises=1, jitter=0.0, metres=0.0, near=0.0,
