@@ -1,4 +1,4 @@
-"""Run the benchmarks, each in its own process: python -m benchmarks [import | frame | sampler | walker | optimizer ...]
+"""Run the benchmarks, each in its own process: python -m benchmarks [import | frame | sampler | walker ...]
 
 Records go to benchmarks/results/*.json; `python -m tools.results --render` puts them into docs/RESULTS.md.
 On a shared machine only the ratios mean something: both sides are timed in turn, in one run.
@@ -15,7 +15,6 @@ BENCHMARKS = {
     "frame": "modiff_frame.py",
     "sampler": "sampler_overhead.py",
     "walker": "walker_80s.py",
-    "optimizer": "optimizer.py",
 }
 
 

@@ -2,7 +2,7 @@
 
 Adam scales every number by itself. Muon replaces the averaged gradient of a whole matrix by the nearest matrix whose
 singular values are all one: directions that rarely show in the gradient learn as fast as the common ones. A step takes
-longer, and the walkers need far fewer of them; `python -m benchmarks optimizer` measures both for the same seconds.
+longer, and the walkers need far fewer of them; `python -m tools.results --only budget` compares both.
 Ours: the papers use Adam; Muon is torch.optim's.  Notebook: 07
 """
 

@@ -2,7 +2,7 @@
 
     python -m tools.results [--only PART ...] [--quick] [--weights NAME=FILE] [--render]
 
-Parts: walker-eps, walker-x0, walker-ddim10, their -lookahead lines, footsteps, horizons (which trains). --quick
+Parts: walker-eps, walker-x0, walker-ddim10, their -lookahead lines, footsteps, budget (which trains). --quick
 measures little, into build/quick, and is for trying the code; --render only writes docs/RESULTS.md from the records
 that are there.
 """
@@ -15,12 +15,11 @@ from pathlib import Path
 from benchmarks.records import show, write_records
 from motiondiff_edu.viz.metrics import footstep_curves
 
-from . import horizons
-from .horizons import horizon_records
+from . import budget
 from .parts import FULL, LINES, QUICK, Bench, Walks, footstep_records, walker_records
 from .render import render
 
-DOCS, OTHERS = Path("docs"), ("footsteps", "horizons")
+DOCS, OTHERS = Path("docs"), ("footsteps", "budget")
 
 
 def arguments() -> argparse.Namespace:
@@ -57,8 +56,8 @@ def measure(only: list[str], bench: Bench, folder: Path, extra: dict[str, Path])
             figure = footstep_curves({k: v for k, v in curves.items() if not k.endswith("-robust")})
             folder.mkdir(parents=True, exist_ok=True)
             figure.savefig(folder / "footsteps.png", dpi=110)
-        elif part == "horizons":
-            records = horizon_records(horizons.FULL if bench.size == FULL else horizons.QUICK, command)
+        elif part == "budget":
+            records = budget.budget_records(budget.FULL if bench.size == FULL else budget.QUICK, command)
         else:
             records = walker_records(bench, lines[part], command)
         show([one for one in records if one["value"] is not None])

@@ -5,6 +5,7 @@ import os
 from pathlib import Path
 
 from .bars import BARS, Bar
+from .budget import VARIANTS
 from .steps_table import PAPER_TABLE
 
 HEAD = """# Results
@@ -102,23 +103,30 @@ def footsteps(records: dict[str, dict], folder: Path) -> str:
     return text + table(head, rows) + picture
 
 
-def horizons(records: dict[str, dict]) -> str:
-    """One row for each T_p."""
-    columns = sorted({n.split(".")[0] for n in records if n.startswith("horizon-")}, key=lambda c: int(c[8:]))
-    if not columns:
+def budget(records: dict[str, dict]) -> str:
+    """One row for each choice that was tried at the same budget."""
+    mine = {n: r for n, r in records.items() if n.startswith("budget.")}
+    if not mine:
         return ""
-    kinds = list(dict.fromkeys(n.split(".")[1] for n in records if n.startswith("horizon-")))
-    rows = [[c[8:], *(_cell(records.get(f"{c}.{kind}")) for kind in kinds)] for c in columns]
+    kinds = list(dict.fromkeys(n.split(".")[2] for n in mine))
+    rows = [
+        [words, *(_cell(mine.get(f"budget.{name}.{kind}")) for kind in kinds)]
+        for name, (words, *_) in VARIANTS.items()
+        if f"budget.{name}.{kinds[0]}" in mine
+    ]
+    seconds = next(iter(mine.values()))["seeds"]["cpu_seconds"]
     text = (
-        "## How many poses at once: T_p\n\nMoDiff (III-A) says that predicting more than one pose helps. The small "
-        "network with target x0, trained for the same CPU-seconds each; every rollout keeps one pose of a window.\n\n"
+        f"## What each choice is worth\n\nSmall walkers trained for {seconds:g} CPU-seconds each, one thread; every row differs "
+        "from the first in one thing. MoDiff (III-A) says that predicting more than one pose at once helps: "
+        "see T_p. DDPM with S = 100, held control, one pose kept of every window. One training seed each: small "
+        "differences mean nothing.\n\n"
     )
-    return text + table(["T_p", *(f"`{kind}`" for kind in kinds)], rows)
+    return text + table(["differs by", *(f"`{kind}`" for kind in kinds)], rows)
 
 
 def others(records: dict[str, dict]) -> str:
     """Everything that stands in no table above, with what makes it."""
-    shown = ("walker", "footsteps", "horizon-")
+    shown = ("walker", "footsteps", "budget.")
     rest = [one for name, one in sorted(records.items()) if not name.startswith(shown)]
     rows = [[f"`{r['name']}`", number(r["value"]), span(r), r["unit"], f"`{r['command']}`"] for r in rest]
     return "## Further figures\n\n" + table(["figure", "value", "interval", "unit", "made by"], rows) if rows else ""
@@ -128,7 +136,7 @@ def render(docs: Path, benchmarks: Path = Path("benchmarks/results")) -> None:
     """Write RESULTS.md beside the records, to a temporary name first."""
     records = read_records(docs / "results", benchmarks)
     parts = [HEAD, bars(records), walkers(records), footsteps(records, docs / "results")]
-    parts += [horizons(records), others(records)]
+    parts += [budget(records), others(records)]
     docs.mkdir(parents=True, exist_ok=True)
     (docs / "RESULTS.md.tmp").write_text("\n".join(part for part in parts if part))
     os.replace(docs / "RESULTS.md.tmp", docs / "RESULTS.md")

@@ -1,0 +1,72 @@
+"""What is each choice worth? Small walkers trained for the same CPU-seconds, each unlike the first in one thing.
+
+How many future poses should be predicted at once (MoDiff says that T_p > 1 helps, and gives no number)? What do the
+schedule, the optimizer, the shaken past, the weights of the loss and the target do? Everything else is alike: network,
+data, seed, and the rollout, which keeps one pose of every window.  Source: MoDiff III-A; the rest is ours
+"""
+
+from dataclasses import dataclass, replace
+
+import torch
+
+from data_synth.walking import dataset
+from motiondiff_edu.motion.augment import augment
+from motiondiff_edu.pretrained.budget import X0_SMALL, train_for
+
+from .scores import Figure, score
+from .trials import T_H, UNSEEN, unseen, walker_generate
+
+SHOWN = ("bone_rmse_cm", "adherence_mps", "adherence_shuffled_over_own", "skating_mps", "drift_ratio")
+ALIKE = {"batch": 32, "noises": 2}
+VARIANTS = {  # name: (what differs from the first, in words, settings of the network, settings of the training)
+    "T_p-10": ("the walkers' recipe, T_p = 10", {}, {}),
+    "T_p-1": ("T_p = 1", {"T_p": 1}, {}),
+    "T_p-5": ("T_p = 5", {"T_p": 5}, {}),
+    "T_p-20": ("T_p = 20", {"T_p": 20}, {}),
+    "linear": ("linear schedule, 1e-4 to 0.1", {}, {"schedule": "linear"}),
+    "adam": ("Adam at 1e-3 instead of Muon", {}, {"optimizer": "adam", "lr": 1e-3}),
+    "unshaken": ("the past as it is", {}, {"jitter": 0.0}),
+    "spreads": ("errors in standard deviations, frames alike", {}, {"metres": 0.0, "near": 0.0}),
+    "eps": ("eps with the skip", {"target": "eps", "skip": True}, {"high_noise": 3.0}),
+}
+
+
+@dataclass(frozen=True)
+class Budget:
+    """CPU-seconds of training each, clips to train on, clips to walk, and for how long."""
+
+    seconds: float = 240
+    training: int = 300
+    clips: int = 40
+    walk_s: int = 8
+
+
+FULL, QUICK = Budget(), Budget(seconds=2, training=6, clips=8, walk_s=6)
+
+
+def measure(name: str, budget: Budget, clips: list) -> list[Figure]:
+    """The figures of one variant, and the steps its seconds were enough for."""
+    _, network, training = VARIANTS[name]
+    walker, steps = train_for(budget.seconds, clips, replace(X0_SMALL, **network), **(ALIKE | training))
+    trials = unseen(budget.clips, budget.walk_s)
+    walks = walker_generate(walker)(trials.past, trials.control, 0)
+    found = [figure for figure in score(walks, trials.asked, trials.truth) if figure.name in SHOWN]
+    print(f"{name}: {steps} steps in {budget.seconds:g} CPU-seconds, T_h = {T_H}", flush=True)
+    return [*found, Figure("steps", steps, steps, steps, "")]
+
+
+def budget_records(budget: Budget, command: str) -> list[dict]:
+    """One thread, whatever the machine has: CPU-seconds are the budget."""
+    before = torch.get_num_threads()
+    torch.set_num_threads(1)
+    clips, records = augment(dataset(budget.training, 20.0, seed=1)), []
+    seeds = {"data": UNSEEN, "training": 0, "rollouts": 0, "clips": budget.clips, "cpu_seconds": budget.seconds}
+    for name in VARIANTS:
+        for figure in measure(name, budget, clips):
+            value, low, high = (float(f"{x:.5g}") for x in (figure.value, figure.low, figure.high))
+            records.append(
+                dict(name=f"budget.{name}.{figure.name}", value=value, low=low, high=high, seeds=seeds,
+                     unit=figure.unit, paper=None, command=command)
+            )  # fmt: skip
+    torch.set_num_threads(before)
+    return records
