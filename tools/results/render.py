@@ -116,8 +116,8 @@ def budget(records: dict[str, dict]) -> str:
     ]
     seconds = next(iter(mine.values()))["seeds"]["cpu_seconds"]
     text = (
-        f"## What each choice is worth\n\nSmall walkers trained for {seconds:g} CPU-seconds each, one thread; every row "
-        "differs from the first in one thing. MoDiff (III-A) says that predicting more than one pose at once helps: see "
+        f"## What each choice is worth\n\nSmall walkers trained for {seconds:g} CPU-seconds each, one thread; each row "
+        "differs from the first in one thing. MoDiff (III-A) says that predicting more than one pose helps: see "
         "T_p. DDPM with S = 100, held control, one pose kept of every window. One training seed each: small "
         "differences mean nothing.\n\n"
     )
