@@ -15,19 +15,17 @@ from records import show, write_records
 sys.path.insert(0, str(Path(__file__).parents[1]))  # tools, beside this folder
 
 from data_synth.walking import dataset  # noqa: E402
-from motiondiff_edu.modiff import MODIFF_SMALL  # noqa: E402
 from motiondiff_edu.motion.augment import augment  # noqa: E402
 from motiondiff_edu.pretrained.budget import train_for  # noqa: E402
+from motiondiff_edu.pretrained.recipes import WALKER_X0  # noqa: E402
 from tools.results.scores import score  # noqa: E402
 from tools.results.trials import FPS, SECONDS, T_H, UNSEEN, Trials, walker_generate  # noqa: E402
 
 COMMAND = "python -m benchmarks walker"
-PEAK, CLIPS = 3e-3, 120
-LOSS = {"batch": 32, "noises": 2, "jitter": 0.3, "metres": 2.0, "near": 1.0}
+CLIPS = 120
 CONFIG = replace(
-    MODIFF_SMALL, target="x0", skip=False, width=96, hidden=192, motion_layers=1, control_layers=1, cross_layers=1,
-    decoder_layers=2,
-)  # fmt: skip
+    WALKER_X0.config, width=96, hidden=192, motion_layers=1, control_layers=1, cross_layers=1, decoder_layers=2
+)
 NAMES = {"bone_rmse_cm", "adherence_excess_mps", "adherence_mps", "adherence_data_mps", "adherence_shuffled_over_own"}
 
 
@@ -36,16 +34,13 @@ def measure(style: str | None, seconds: float, unseen: int, seed: int) -> list[d
     styles, name = ([style], "bench.walker_80s_") if style else (None, "bench.walker_80s_all_styles_")
     clips = augment(dataset(CLIPS, 20, seed=11, styles=styles))
     trials = Trials.of(dataset(unseen, SECONDS + T_H / FPS, seed=UNSEEN, styles=styles))
-    walker, steps = train_for(seconds, clips, CONFIG, lr=PEAK, seed=seed, **LOSS)
+    walker, steps = train_for(seconds, clips, CONFIG, seed=seed)
     weights = sum(p.numel() for p in walker.model.parameters())
     print(f"{style or 'all styles'}: {steps} steps in {seconds:g} CPU-seconds, {weights} weights", flush=True)
     walks = walker_generate(walker)(trials.past, trials.control, 0)
     seeds = {"data": UNSEEN, "training": seed, "clips": unseen}
-    return [
-        dict(name=name + f.name, value=f.value, low=f.low, high=f.high, seeds=seeds, unit=f.unit, paper=None,
-             command=COMMAND)
-        for f in score(walks, trials.asked, trials.truth) if f.name in NAMES
-    ]  # fmt: skip
+    found = score(walks, trials.asked, trials.truth)
+    return [figure.as_record(name, seeds, COMMAND) for figure in found if figure.name in NAMES]
 
 
 def main() -> None:
@@ -61,7 +56,7 @@ def main() -> None:
     records = []
     for style in (args.style, None)[: 1 if args.one_style else 2]:
         records += measure(style, args.seconds, args.clips, args.seed)
-        show(records[-len(NAMES) :])
+        show([one for one in records[-len(NAMES) :] if one["value"] is not None])
     write_records(args.out, records)
 
 

@@ -9,10 +9,11 @@ import numpy as np
 from jaxtyping import Float
 
 from motiondiff_edu.metrics.adherence import adherence
+from motiondiff_edu.metrics.bone_lengths import bone_lengths
 from motiondiff_edu.metrics.diversity import spread
 from motiondiff_edu.metrics.skating import skating
 from motiondiff_edu.motion.clip import Clip
-from motiondiff_edu.motion.skeleton import BONE_LENGTHS, BONES, TOES
+from motiondiff_edu.motion.skeleton import BONE_LENGTHS, TOES
 
 from .gait_statistics import turning_lean
 from .walking import continuations, dataset, random_control, walk
@@ -72,8 +73,7 @@ def planted_slip(clip: Clip) -> float:
 
 def bone_error(clip: Clip) -> float:
     """The largest difference of a bone from its length (m)."""
-    parent, child = np.array(BONES).T
-    return float(np.abs(np.linalg.norm(clip.poses[:, child] - clip.poses[:, parent], axis=-1) - BONE_LENGTHS).max())
+    return float(np.abs(bone_lengths(clip.poses) - BONE_LENGTHS).max())
 
 
 def feet_apart(clip: Clip) -> Float[np.ndarray, "T"]:

@@ -244,6 +244,6 @@ def bound_terms(
     for s in range(1, schedule.S + 1):
         x_s = q_sample(x0, s, schedule, draw(x0, generator))
         eps_hat = denoise(x_s, torch.full((len(x0),), s, device=x0.device))
-        last, step = reconstruction_nll(x0, x_s, eps_hat, schedule), step_kl(x0, x_s, s, eps_hat, schedule)
-        terms.append(last if s == 1 else step)
+        term = reconstruction_nll(x0, x_s, eps_hat, schedule) if s == 1 else step_kl(x0, x_s, s, eps_hat, schedule)
+        terms.append(term)
     return torch.stack(terms)

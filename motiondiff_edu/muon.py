@@ -12,6 +12,13 @@ from torch import nn
 from .cross_modal_attention import Block
 
 
+def optimizer_for(model: nn.Module, name: str):
+    """What `TrainState.start` needs for the optimizer a recipe names: "muon", or "adam" (None: it has its own)."""
+    if name not in ("muon", "adam"):
+        raise ValueError(f'optimizer must be "muon" or "adam", not {name!r}')
+    return MuonAndAdam(model) if name == "muon" else None
+
+
 class MuonAndAdam:
     """Two optimizers that look like one: what `training.train_steps` and `runs.save_run` ask of an optimizer."""
 

@@ -68,7 +68,6 @@ class FastMoDiff:
         self.layers = [_Layer(block) for block in model.decoder]
         self.self_bias, self.memory_bias = model.self_bias().contiguous(), model.memory_bias().contiguous()
         self.skip = model.skip
-        self.skips = None if model.skip is None else model.skip.tolist()
 
     @torch.inference_mode()
     def encode(self, past: Float[Tensor, "B T_h D"], control: Float[Tensor, "B T C"]) -> Context:
@@ -91,6 +90,4 @@ class FastMoDiff:
         for layer, keys, values in zip(self.layers, context.keys, context.values, strict=True):
             x = layer(x, self.self_bias, keys, values, self.memory_bias)
         out = self.model.head(x)
-        if self.skip is None:
-            return out
-        return out.add(x_s, alpha=self.skips[s]) if isinstance(s, int) else out + self.skip[s][:, None, None] * x_s
+        return out if self.skip is None else out + self.skip[s].view(-1, 1, 1) * x_s

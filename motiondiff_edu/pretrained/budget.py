@@ -2,39 +2,39 @@
 
 import math
 import time
-from dataclasses import replace
 
 import torch
 
-from ..modiff import MODIFF_SMALL, MoDiff, MoDiffConfig
+from ..modiff import MoDiff, MoDiffConfig
 from ..motion.clip import Clip
-from ..muon import MuonAndAdam
+from ..muon import optimizer_for
 from ..training import TrainState, train_steps
 from ..walker import SCHEDULES, Walker
 from ..windows import Windows, window_loss
+from .recipes import WALKER_X0
 
-X0_SMALL = replace(MODIFF_SMALL, target="x0", skip=False)
+SETTINGS = WALKER_X0.loss_settings | {"batch": 32}
 
 
 def train_for(
     seconds: float,
     clips: list[Clip],
-    config: MoDiffConfig = X0_SMALL,
+    config: MoDiffConfig = WALKER_X0.config,
     *,
     lr: float = 3e-3,
     seed: int = 0,
-    optimizer: str = "muon",
-    schedule: str = "leap",
+    optimizer: str = WALKER_X0.optimizer,
+    schedule: str = WALKER_X0.schedule,
     **loss,
 ) -> tuple[Walker, int]:
     """A walker trained until the CPU-seconds of the loop are spent, and the number of steps it took.
 
     The learning rate rises for 100 steps and falls to zero along a half cosine of the seconds. `loss` goes to
-    `windows.window_loss`.  Notebook: 07
+    `windows.window_loss`; what it does not name is walker-x0's, with half its batch.  Notebook: 07
     """
     torch.manual_seed(seed)
     windows, levels, model = Windows.of(clips, config.T_h, config.T_p), SCHEDULES[schedule](config.S), MoDiff(config)
-    state = TrainState.start(model, seed, MuonAndAdam(model) if optimizer == "muon" else None)
+    state = TrainState.start(model, seed, optimizer_for(model, optimizer))
     start = time.process_time()
 
     def spent() -> float:
@@ -43,8 +43,7 @@ def train_for(
     def rate(step: int) -> float:
         return lr * min(1, (step + 1) / 100) * 0.5 * (1 + math.cos(math.pi * min(1.0, spent())))
 
-    settings = {"jitter": 0.3, "metres": 2.0, "near": 1.0} | loss
-    loss_fn = window_loss(windows, levels, **settings)
+    loss_fn = window_loss(windows, levels, **(SETTINGS | loss))
     for _ in train_steps(state, loss_fn, 10**9, lr=rate, decay=0.99, progress=False):
         if spent() >= 1:
             break

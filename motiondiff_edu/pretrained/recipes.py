@@ -34,6 +34,12 @@ class Recipe:
     styles: tuple[str, ...] | None = None
     bf16_share: float = 0.8  # of the steps in bfloat16 arithmetic, the rest in float32
 
+    @property
+    def loss_settings(self) -> dict:
+        """What `windows.window_loss` is to be told."""
+        names = ("batch", "noises", "jitter", "metres", "near", "high_noise")
+        return {name: getattr(self, name) for name in names}
+
 
 WALKER_X0 = Recipe("walker-x0", replace(MODIFF_SMALL, target="x0", skip=False), steps=24_000, schedule="leap")
 WALKER_EPS = Recipe("walker-eps", MODIFF_SMALL, steps=24_000, schedule="leap", high_noise=3.0)

@@ -13,7 +13,7 @@ import torch
 from ..modiff import MoDiff
 from ..motion.augment import mirror, reverse_time
 from ..motion.clip import Clip
-from ..muon import MuonAndAdam
+from ..muon import optimizer_for
 from ..runs import resume_run, saver
 from ..training import TrainState, cosine_lr, train_steps
 from ..walker import SCHEDULES, Walker
@@ -42,12 +42,11 @@ def train(recipe: Recipe, run_file: Path, clips: list[Clip] | None = None, log=p
     schedule = SCHEDULES[recipe.schedule](config.S)
     device = "cuda" if torch.cuda.is_available() else "cpu"
     model = MoDiff(config).to(device)
-    state = TrainState.start(model, recipe.seed, MuonAndAdam(model) if recipe.optimizer == "muon" else None)
+    state = TrainState.start(model, recipe.seed, optimizer_for(model, recipe.optimizer))
     if run_file.exists():
         resume_run(state, run_file, about)
         log(f"{recipe.name}: continuing at step {state.step}")
-    sizes = {name: getattr(recipe, name) for name in ("batch", "noises", "jitter", "metres", "near", "high_noise")}
-    loss_fn = window_loss(windows, schedule, **sizes)
+    loss_fn = window_loss(windows, schedule, **recipe.loss_settings)
     losses = _run(recipe, state, loss_fn, device, saver(run_file, about), log)
     card = card_of(recipe, windows, state.seconds / 60, commit, device)
     card["final_loss"] = round(float(np.mean(losses[-1000:])), 6) if losses else None

@@ -27,17 +27,28 @@ class CaptionedFigure(Figure):
 
     def _repr_mimebundle_(self, include=None, exclude=None) -> dict:
         png = base64.b64encode(self.as_png()).decode()
-        words = html.escape(caption(self), quote=True)
-        picture = f'<img alt="{words}" style="max-width:100%" src="data:image/png;base64,{png}">'
-        below = f'<figcaption style="max-width:60em">{words}</figcaption>'
-        return {"text/html": f'<figure style="margin:0">{picture}{below}</figure>', "image/png": png,
-                "text/plain": caption(self)}  # fmt: skip
+        return {"text/html": _html(caption(self), png), "image/png": png, "text/plain": caption(self)}
 
     def as_png(self) -> bytes:
         """The figure as PNG bytes."""
-        buffer = io.BytesIO()
-        self.savefig(buffer, format="png", dpi=DPI)
-        return buffer.getvalue()
+        return _png(self, DPI)
+
+
+def as_html(fig: Figure, dpi: int = DPI) -> str:
+    """The picture, with its caption below it and as its alternative text."""
+    return _html(caption(fig), base64.b64encode(_png(fig, dpi)).decode())
+
+
+def _png(fig: Figure, dpi: int) -> bytes:
+    buffer = io.BytesIO()
+    fig.savefig(buffer, format="png", dpi=dpi)
+    return buffer.getvalue()
+
+
+def _html(words: str, png: str) -> str:
+    words = html.escape(words, quote=True)
+    picture = f'<img alt="{words}" style="max-width:100%" src="data:image/png;base64,{png}">'
+    return f'<figure style="margin:0">{picture}<figcaption style="max-width:60em">{words}</figcaption></figure>'
 
 
 def figure(width: float | int, height: float | int, words: str, rows: int = 1, columns: int = 1, **options):

@@ -1,10 +1,8 @@
 """Sliders for a figure function: turn a knob, see the same figure again. No arithmetic here."""
 
-import base64
-import html
-import io
-
 import ipywidgets
+
+from ..viz.style import as_html
 
 
 def explore(draw, **start) -> ipywidgets.VBox:
@@ -18,7 +16,7 @@ def explore(draw, **start) -> ipywidgets.VBox:
     picture, reset = ipywidgets.HTML(), ipywidgets.Button(description="Reset", tooltip="back to the start")
 
     def refresh(_=None):
-        picture.value = _image(draw(**{name: control.value for name, control in controls.items()}))
+        picture.value = as_html(draw(**{name: control.value for name, control in controls.items()}), dpi=90)
 
     def back(_):
         for name, control in controls.items():
@@ -40,12 +38,3 @@ def _control(name: str, value) -> ipywidgets.Widget:
     kind = ipywidgets.IntSlider if isinstance(begin, int) else ipywidgets.FloatSlider
     extra = {} if isinstance(begin, int) else {"step": (high - low) / 50}
     return kind(value=begin, min=low, max=high, description=name, continuous_update=False, **extra)
-
-
-def _image(figure) -> str:
-    buffer = io.BytesIO()
-    figure.savefig(buffer, format="png", dpi=90)
-    alt = html.escape(str(figure.get_label()), quote=True)
-    data = base64.b64encode(buffer.getvalue()).decode()
-    picture = f'<img alt="{alt}" style="max-width:100%" src="data:image/png;base64,{data}">'
-    return f'<figure style="margin:0">{picture}<figcaption style="max-width:60em">{alt}</figcaption></figure>'

@@ -11,13 +11,13 @@ import torch
 
 from data_synth.walking import dataset
 from motiondiff_edu.motion.augment import augment
-from motiondiff_edu.pretrained.budget import X0_SMALL, train_for
+from motiondiff_edu.pretrained.budget import train_for
+from motiondiff_edu.pretrained.recipes import WALKER_X0
 
 from .scores import Figure, score
-from .trials import T_H, UNSEEN, unseen, walker_generate
+from .trials import T_H, UNSEEN, Trials, unseen, walker_generate
 
 SHOWN = ("bone_rmse_cm", "adherence_mps", "adherence_shuffled_over_own", "skating_mps", "drift_ratio")
-ALIKE = {"batch": 32, "noises": 2}
 VARIANTS = {  # name: (what differs from the first, in words, settings of the network, settings of the training)
     "T_p-10": ("the walkers' recipe, T_p = 10", {}, {}),
     "T_p-1": ("T_p = 1", {"T_p": 1}, {}),
@@ -44,11 +44,10 @@ class Budget:
 FULL, QUICK = Budget(), Budget(seconds=2, training=6, clips=8, walk_s=6)
 
 
-def measure(name: str, budget: Budget, clips: list) -> list[Figure]:
+def measure(name: str, budget: Budget, clips: list, trials: Trials) -> list[Figure]:
     """The figures of one variant, and the steps its seconds were enough for."""
     _, network, training = VARIANTS[name]
-    walker, steps = train_for(budget.seconds, clips, replace(X0_SMALL, **network), **(ALIKE | training))
-    trials = unseen(budget.clips, budget.walk_s)
+    walker, steps = train_for(budget.seconds, clips, replace(WALKER_X0.config, **network), **training)
     walks = walker_generate(walker)(trials.past, trials.control, 0)
     found = [figure for figure in score(walks, trials.asked, trials.truth) if figure.name in SHOWN]
     print(f"{name}: {steps} steps in {budget.seconds:g} CPU-seconds, T_h = {T_H}", flush=True)
@@ -59,14 +58,12 @@ def budget_records(budget: Budget, command: str) -> list[dict]:
     """One thread, whatever the machine has: CPU-seconds are the budget."""
     before = torch.get_num_threads()
     torch.set_num_threads(1)
-    clips, records = augment(dataset(budget.training, 20.0, seed=1)), []
+    clips, trials = augment(dataset(budget.training, 20.0, seed=1)), unseen(budget.clips, budget.walk_s)
     seeds = {"data": UNSEEN, "training": 0, "rollouts": 0, "clips": budget.clips, "cpu_seconds": budget.seconds}
-    for name in VARIANTS:
-        for figure in measure(name, budget, clips):
-            value, low, high = (float(f"{x:.5g}") for x in (figure.value, figure.low, figure.high))
-            records.append(
-                dict(name=f"budget.{name}.{figure.name}", value=value, low=low, high=high, seeds=seeds,
-                     unit=figure.unit, paper=None, command=command)
-            )  # fmt: skip
+    records = [
+        figure.as_record(f"budget.{name}.", seeds, command)
+        for name in VARIANTS
+        for figure in measure(name, budget, clips, trials)
+    ]
     torch.set_num_threads(before)
     return records

@@ -127,13 +127,10 @@ def walker_records(bench: Bench, line: Walks, command: str) -> list[dict]:
 
 
 def as_record(prefix: str, figure: Figure, bench: Bench, command: str) -> dict:
-    name = prefix + figure.name
     seeds = {"data": UNSEEN, "rollouts": 0, "clips": bench.size.clips}
     if figure.name.startswith("diversity"):
         seeds = {"data": UNSEEN + 500_000, "rollouts": 0, "pasts": bench.size.pasts, "each": bench.size.each}
-    value, low, high = (float(f"{x:.5g}") if np.isfinite(x) else None for x in (figure.value, figure.low, figure.high))
-    return dict(name=name, value=value, low=low, high=high, seeds=seeds, unit=figure.unit,
-                paper=PAPER_BONES.get(name), command=command)  # fmt: skip
+    return figure.as_record(prefix, seeds, command, PAPER_BONES.get(prefix + figure.name))
 
 
 def footstep_records(bench: Bench, command: str) -> tuple[list[dict], dict[str, np.ndarray]]:

@@ -32,6 +32,12 @@ class Figure:
     high: float
     unit: str
 
+    def as_record(self, prefix: str, seeds: dict, command: str, paper: float | None = None) -> dict:
+        """As it is kept in docs/results: five digits, None where there is no number."""
+        value, low, high = (float(f"{x:.5g}") if np.isfinite(x) else None for x in (self.value, self.low, self.high))
+        return dict(name=prefix + self.name, value=value, low=low, high=high, seeds=seeds, unit=self.unit,
+                    paper=paper, command=command)  # fmt: skip
+
 
 def squared_bone_error(poses: Float[np.ndarray, "N T J 3"]) -> Float[np.ndarray, "N"]:
     """Mean squared bone-length error of each clip, cm^2: its mean's root is the paper's RMSE."""
