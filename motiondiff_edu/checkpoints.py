@@ -15,7 +15,8 @@ from safetensors.torch import save_file
 from torch import Tensor
 
 from .ddpm import make_schedule
-from .modiff import MoDiff, MoDiffConfig
+from .foothold import network
+from .modiff import MoDiffConfig
 from .motion.scaler import Scaler
 from .walker import Walker
 
@@ -89,9 +90,9 @@ def _assemble(config: MoDiffConfig, tensors: dict[str, Tensor], metadata: dict) 
     for name, size in (sizes | {"schedule.beta": config.S}).items():
         if tuple(tensors[name].shape) != (size,):
             raise ValueError(f"{name} has the shape {tuple(tensors[name].shape)} where ({size},) belongs")
-    model = MoDiff(config)
-    model.load_state_dict({k[6:]: v.float() for k, v in tensors.items() if k.startswith("model.")})
     pose, control = (Scaler(tensors[f"{n}.mean"], tensors[f"{n}.std"]) for n in ("pose", "control"))
+    model = network(config, pose, control)
+    model.load_state_dict({k[6:]: v.float() for k, v in tensors.items() if k.startswith("model.")})
     schedule = make_schedule(tensors["schedule.beta"], metadata["schedule"])
     return Walker(model.eval().requires_grad_(False), schedule, pose, control, json.loads(metadata.get("card", "{}")))
 

@@ -40,6 +40,7 @@ class MoDiffConfig:
     dropout: float = 0.0
     target: str = "eps"
     skip: bool = True
+    foothold: bool = False  # ankles and toes may stay where they stand: the network of foothold.py
 
     def as_dict(self) -> dict:
         return asdict(self)
@@ -123,14 +124,23 @@ class MoDiff(nn.Module):
         self, x_s: Float[Tensor, "B T_p D"], s: Int[Tensor, "B"], memory: Float[Tensor, "B M width"]
     ) -> Float[Tensor, "B T_p D"]:
         """One look at the noised future: what the target (eps, x0 or v) is thought to be."""
+        out = self.head(self.attend(self.embed(x_s, s), memory))
+        return out if self.skip is None else out + self.skip[s][:, None, None] * x_s
+
+    def embed(self, x_s: Float[Tensor, "B T_p D"], s: Int[Tensor, "B"]) -> Float[Tensor, "B T_p width"]:
+        """The decoder's tokens: each noised pose, how noised it is, and when."""
         step = self.step_in(step_embedding(s, self.config.width))
         x = self.future_in(torch.cat([x_s, step[:, None].expand(-1, x_s.shape[1], -1)], dim=-1))
-        x = x + self.time[self.config.T_h :]
+        return x + self.time[self.config.T_h :]
+
+    def attend(
+        self, x: Float[Tensor, "B T_p width"], memory: Float[Tensor, "B M width"]
+    ) -> Float[Tensor, "B T_p width"]:
+        """The decoder's layers."""
         self_bias, memory_bias = self.self_bias(), self.memory_bias()
         for block in self.decoder:
             x = block(x, self_bias, memory, memory_bias)
-        out = self.head(x)
-        return out if self.skip is None else out + self.skip[s][:, None, None] * x_s
+        return x
 
     def forward(
         self,

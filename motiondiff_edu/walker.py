@@ -11,6 +11,7 @@ from jaxtyping import Float
 from torch import Tensor
 
 from .ddpm import Schedule, linear_schedule, make_schedule
+from .fast.foothold import FastFoothold
 from .fast.modiff import FastMoDiff
 from .fast.samplers import ddim_steps, ddpm_steps
 from .modiff import MoDiff, MoDiffConfig
@@ -49,7 +50,7 @@ class Walker:
     @cached_property
     def fast(self) -> FastMoDiff:
         """The fast twin, built at first use."""
-        return FastMoDiff(self.model)
+        return (FastFoothold if self.config.foothold else FastMoDiff)(self.model)
 
     def denoiser(self, past: Float[Tensor, "B T_h D"], control: Float[Tensor, "B T C"]):
         """`denoise(x_s, s) -> eps_hat` for this past and control, in the network's units."""

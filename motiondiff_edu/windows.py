@@ -15,6 +15,7 @@ from torch import Tensor, nn
 from .ddpm import Schedule, q_sample
 from .motion.clip import Clip
 from .motion.scaler import Scaler
+from .motion.skeleton import BONES
 from .prediction import target_of
 
 
@@ -87,6 +88,8 @@ def window_loss(
     metres: float = 0.0,
     near: float = 0.0,
     high_noise: float = 0.0,
+    bones: float = 0.0,
+    doubt: float = 0.0,
 ) -> Callable[[nn.Module, torch.Generator], Tensor]:
     """Algorithm 1 as a `loss_fn` for `training.train_steps`: mean squared error of the network's target.
 
@@ -95,30 +98,45 @@ def window_loss(
     Columns are weighted by std^metres: 0 counts errors in standard deviations, 2 in metres (a toe moves tenfold a hip).
     Frame k is weighted by 1 / (how far poses move in k frames)^near: a rollout keeps the first, which moves least.
     `high_noise` = c weights step s by 1 + min((1 - alpha_bar) / alpha_bar, c): where eps is easy and the pose is not.
+    `bones` is the weight of a second error, that of each joint against its parent, in metres: a shin
+    keeps its length when knee and ankle err alike. `doubt` is the share of the shaking that reaches the feet which a
+    network with footholds may leave in place (see `foothold`): with all of it the gate would learn never to hold.
     Source: MoDiff eq. 10, Alg. 1; all but the squared error itself is ours.  Notebook: 07
     """
     change = typical_change(windows)
     std = windows.pose_scaler.std
-    columns = std**metres / (change * std).square().mean(1, keepdim=True).sqrt() ** near
-    columns = columns / columns.mean()
+    rows = 1 / (change * std).square().mean(1, keepdim=True).sqrt() ** near
+    columns = rows * std**metres
+    rows, columns = rows / columns.mean(), columns / columns.mean()
     noise_over_signal = ((1 - schedule.alpha_bar) / schedule.alpha_bar).float()
     steps = 1 + noise_over_signal.clamp_max(high_noise)
 
     def loss_fn(model: nn.Module, generator: torch.Generator) -> Tensor:
         device = next(model.parameters()).device  # batch and noise are drawn on the CPU: the same numbers everywhere
         past, future, control = windows.draw(batch, generator, held)
-        past = shaken(past, jitter, change[0], generator) if jitter else past
-        past, future, control = past.to(device), future.to(device), control.to(device)
-        memory = model.encode(past, control).repeat_interleave(noises, dim=0)
+        seen = shaken(past, jitter, change[0], generator) if jitter else past
+        feet = {"standing": torch.lerp(past, seen, doubt)[:, -1].to(device)} if model.config.foothold else {}
+        future, control = future.to(device), control.to(device)
+        memory = model.encode(seen.to(device), control, **feet).repeat_interleave(noises, dim=0)
         x0 = future.repeat_interleave(noises, dim=0)
         s = torch.randint(1, schedule.S + 1, (batch * noises,), generator=generator)
-        weights = (steps[s][:, None, None] * columns).to(device)
+        weight = steps[s][:, None, None].to(device)
         s, eps = s.to(device), torch.randn(x0.shape, generator=generator).to(device)
         wanted = target_of(x0, eps, s, schedule, model.config.target)
         error = wanted - model.decode(q_sample(x0, s, schedule, eps), s, memory)
-        return (weights * error.square()).mean()
+        loss = (weight * columns.to(device) * error.square()).mean()
+        if bones:
+            loss = loss + bones * (weight * rows.to(device) * bone_errors(error * std.to(device))).mean()
+        return loss
 
     return loss_fn
+
+
+def bone_errors(error: Float[Tensor, "B T D"]) -> Float[Tensor, "B T 20"]:
+    """Squared length of each joint's error against its parent's, a third for each axis; `error` is in metres."""
+    joints = error.unflatten(-1, (-1, 3))
+    parents, children = np.array(BONES).T
+    return (joints[..., children, :] - joints[..., parents, :]).square().mean(-1)
 
 
 def typical_change(windows: Windows, samples: int = 4096) -> Float[Tensor, "T_p D"]:

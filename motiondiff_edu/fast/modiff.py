@@ -72,7 +72,9 @@ class FastMoDiff:
     @torch.inference_mode()
     def encode(self, past: Float[Tensor, "B T_h D"], control: Float[Tensor, "B T C"]) -> Context:
         """Run the encoders once, and make every decoder layer's keys and values."""
-        memory = self.model.encode(past, control)
+        return self.context_of(self.model.encode(past, control))
+
+    def context_of(self, memory: Float[Tensor, "B M width"]) -> Context:
         keys, values = [], []
         for block in self.model.decoder:
             cross = block.cross_attention
@@ -86,8 +88,13 @@ class FastMoDiff:
         self, x_s: Float[Tensor, "B T_p D"], s: Int[Tensor, "B"] | int, context: Context
     ) -> Float[Tensor, "B T_p D"]:
         """The network's output at step s, one for the whole batch or one for each: eps, x0 or v, as its target says."""
-        x = F.linear(x_s, self.x_weight).add_(self.start[s])
+        out = self.model.head(self.attend(self.embed(x_s, s), context))
+        return out if self.skip is None else out + self.skip[s].view(-1, 1, 1) * x_s
+
+    def embed(self, x_s: Float[Tensor, "B T_p D"], s: Int[Tensor, "B"] | int) -> Float[Tensor, "B T_p width"]:
+        return F.linear(x_s, self.x_weight).add_(self.start[s])
+
+    def attend(self, x: Float[Tensor, "B T_p width"], context: Context) -> Float[Tensor, "B T_p width"]:
         for layer, keys, values in zip(self.layers, context.keys, context.values, strict=True):
             x = layer(x, self.self_bias, keys, values, self.memory_bias)
-        out = self.model.head(x)
-        return out if self.skip is None else out + self.skip[s].view(-1, 1, 1) * x_s
+        return x

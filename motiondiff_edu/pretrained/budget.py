@@ -5,7 +5,8 @@ import time
 
 import torch
 
-from ..modiff import MoDiff, MoDiffConfig
+from ..foothold import network
+from ..modiff import MoDiffConfig
 from ..motion.clip import Clip
 from ..muon import optimizer_for
 from ..training import TrainState, train_steps
@@ -33,7 +34,8 @@ def train_for(
     `windows.window_loss`; what it does not name is walker-x0's, with half its batch.  Notebook: 07
     """
     torch.manual_seed(seed)
-    windows, levels, model = Windows.of(clips, config.T_h, config.T_p), SCHEDULES[schedule](config.S), MoDiff(config)
+    windows, levels = Windows.of(clips, config.T_h, config.T_p), SCHEDULES[schedule](config.S)
+    model = network(config, windows.pose_scaler, windows.control_scaler)
     state = TrainState.start(model, seed, optimizer_for(model, optimizer))
     start = time.process_time()
 

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import torch
 
-from ..modiff import MoDiff
+from ..foothold import network
 from ..motion.augment import mirror, reverse_time
 from ..motion.clip import Clip
 from ..muon import optimizer_for
@@ -41,7 +41,7 @@ def train(recipe: Recipe, run_file: Path, clips: list[Clip] | None = None, log=p
     windows = Windows.of(clips or training_clips(recipe), config.T_h, config.T_p)
     schedule = SCHEDULES[recipe.schedule](config.S)
     device = "cuda" if torch.cuda.is_available() else "cpu"
-    model = MoDiff(config).to(device)
+    model = network(config, windows.pose_scaler, windows.control_scaler).to(device)
     state = TrainState.start(model, recipe.seed, optimizer_for(model, recipe.optimizer))
     if run_file.exists():
         resume_run(state, run_file, about)
@@ -49,6 +49,7 @@ def train(recipe: Recipe, run_file: Path, clips: list[Clip] | None = None, log=p
     loss_fn = window_loss(windows, schedule, **recipe.loss_settings)
     losses = _run(recipe, state, loss_fn, device, saver(run_file, about), log)
     card = card_of(recipe, windows, state.seconds / 60, commit, device)
+    card["parameters"] = sum(p.numel() for p in model.parameters())
     card["final_loss"] = round(float(np.mean(losses[-1000:])), 6) if losses else None
     return Walker(state.average.cpu().eval(), schedule, windows.pose_scaler, windows.control_scaler, card)
 
@@ -96,7 +97,6 @@ def card_of(recipe: Recipe, windows: Windows, minutes: float, commit: str, devic
         "name": recipe.name,
         "target": recipe.config.target,
         "recipe": settings,
-        "parameters": sum(p.numel() for p in MoDiff(recipe.config).parameters()),
         "frames": len(windows.poses),
         "minutes": round(minutes, 1),
         "machine": f"{torch.cuda.get_device_name() if device == 'cuda' else platform.machine()}, {threads}",

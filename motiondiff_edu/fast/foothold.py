@@ -1,0 +1,40 @@
+"""The network with footholds for use: where the feet would stay is worked out once a frame, too.
+
+The same numbers as the plain one, to 1e-5 (tested).  Notebook: 07
+"""
+
+from dataclasses import dataclass
+
+import torch
+from jaxtyping import Float, Int
+from torch import Tensor
+
+from ..foothold import FootholdMoDiff, blend
+from .modiff import Context, FastMoDiff
+
+
+@dataclass(frozen=True, eq=False)
+class StandingContext(Context):
+    """Keys and values, where the feet would stay, and what the decoder's tokens are told of it."""
+
+    held: Float[Tensor, "B T_p K"]
+    told: Float[Tensor, "B T_p width"]
+
+
+class FastFoothold(FastMoDiff):
+    """A trained network with footholds, read once; `encode` and `denoise` as FastMoDiff has them.  Notebook: 07"""
+
+    model: FootholdMoDiff
+
+    @torch.inference_mode()
+    def encode(self, past: Float[Tensor, "B T_h D"], control: Float[Tensor, "B T C"]) -> StandingContext:
+        standing = self.model.encode(past, control)
+        context = self.context_of(standing.memory)
+        return StandingContext(context.keys, context.values, standing.held, self.model.held_in(standing.held))
+
+    @torch.inference_mode()
+    def denoise(
+        self, x_s: Float[Tensor, "B T_p D"], s: Int[Tensor, "B"] | int, context: StandingContext
+    ) -> Float[Tensor, "B T_p D"]:
+        x = self.attend(self.embed(x_s, s).add_(context.told), context)
+        return blend(self.model.head(x), self.model.gate(x), context.held)

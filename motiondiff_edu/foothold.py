@@ -1,0 +1,118 @@
+"""A foot that stands: MoDiff whose ankles and toes may stay where they are in the world.
+
+A planted foot is at rest in the world, and moves in the root frame: backwards, as fast as the root goes forwards. A
+network that draws it anew in every frame misses by millimetres, and the foot slides. But where a joint of the last pose
+would be if it stayed is known exactly, from the control alone. So the network is told (`held`), and for each of these
+joints it chooses, between 0 and 1, how much of that to take:
+
+    x0_hat = gate * held + (1 - gate) * free
+Ours; neither paper has it.  Notebook: 07
+"""
+
+from dataclasses import dataclass
+
+import torch
+from jaxtyping import Float, Int
+from torch import Tensor, nn
+
+from .modiff import MoDiff, MoDiffConfig
+from .motion.scaler import Scaler
+from .motion.skeleton import joint_index
+
+FEET = [joint_index(name) for name in ("LeftFoot", "LeftToeBase", "RightFoot", "RightToeBase")]
+COLUMNS = [3 * joint + axis for joint in FEET for axis in range(3)]
+
+
+def held_positions(
+    joints: Float[Tensor, "B K 3"], control: Float[Tensor, "B T 3"], fps: float = 20.0
+) -> Float[Tensor, "B T K 3"]:
+    """Where joints (metres, root frame) come to lie in the root frames ahead, if they stay put in the world.
+
+    Row t of the control takes the root on to frame t + 1, at the halfway heading; result t is as seen from there.
+    Notebook: 07
+    """
+    forward, left, yaw = (control / fps).unbind(-1)
+    heading = yaw.cumsum(1)
+    halfway = heading - yaw / 2
+    root_x = (forward * halfway.sin() + left * halfway.cos()).cumsum(1)
+    root_z = (forward * halfway.cos() - left * halfway.sin()).cumsum(1)
+    x, y, z = joints[:, None].unbind(-1)
+    x, z = x - root_x[..., None], z - root_z[..., None]
+    sin, cos = heading.sin()[..., None], heading.cos()[..., None]
+    return torch.stack([x * cos - z * sin, y.expand_as(x), x * sin + z * cos], dim=-1)
+
+
+@dataclass(frozen=True, eq=False)
+class Standing:
+    """The memory of past and control, and where the feet would be if they stayed (standardised, COLUMNS only)."""
+
+    memory: Float[Tensor, "B M width"]
+    held: Float[Tensor, "B T_p K"]
+
+    def repeat_interleave(self, repeats: int, dim: int = 0) -> "Standing":
+        parts = (self.memory, self.held)
+        return Standing(*(part.repeat_interleave(repeats, dim) for part in parts))
+
+
+class FootholdMoDiff(MoDiff):
+    """MoDiff for x0 whose head may leave ankles and toes where they stood, joint by joint and frame by frame.
+
+    The scalers lead to metres and m/s: where a foot stays is a matter of metres. They are not among the weights.
+    Raises ValueError for another target, for a skip, or for another skeleton.  Notebook: 07
+    """
+
+    def __init__(self, config: MoDiffConfig, pose_scaler: Scaler, control_scaler: Scaler):
+        super().__init__(config)
+        if config.target != "x0" or config.skip:
+            raise ValueError('a foothold is a place: it needs target="x0" and skip=False')
+        if len(pose_scaler.mean) != config.D or config.D <= max(COLUMNS):
+            raise ValueError(f"a foothold needs all poses of the course's skeleton, D = 63, not {config.D}")
+        self.gate = nn.Linear(config.width, len(FEET))
+        nn.init.zeros_(self.gate.weight)
+        nn.init.constant_(self.gate.bias, -2.0)  # at first the feet are nearly free
+        self.held_in = nn.Linear(len(COLUMNS), config.width, bias=False)
+        nn.init.zeros_(self.held_in.weight)
+        units = {
+            "pose_mean": pose_scaler.mean[COLUMNS],
+            "pose_std": pose_scaler.std[COLUMNS],
+            "control_mean": control_scaler.mean,
+            "control_std": control_scaler.std,
+        }
+        for name, value in units.items():
+            self.register_buffer(name, value.clone(), persistent=False)
+
+    def held(self, pose: Float[Tensor, "B D"], control: Float[Tensor, "B T C"]) -> Float[Tensor, "B T_p K"]:
+        """`held_positions` of the feet of a pose (the last one given), everything standardised."""
+        feet = pose[:, COLUMNS] * self.pose_std + self.pose_mean
+        ahead = control[:, self.config.T_h - 1 : -1] * self.control_std + self.control_mean
+        places = held_positions(feet.unflatten(-1, (-1, 3)), ahead).flatten(-2)
+        return (places - self.pose_mean) / self.pose_std
+
+    def encode(
+        self,
+        past: Float[Tensor, "B T_h D"],
+        control: Float[Tensor, "B T C"],
+        standing: Float[Tensor, "B D"] | None = None,
+    ) -> Standing:
+        """The memory, and where the feet of the pose `standing` (by default the last one given) would stay."""
+        memory = super().encode(past, control)
+        return Standing(memory, self.held(past[:, -1] if standing is None else standing, control))
+
+    def decode(self, x_s: Float[Tensor, "B T_p D"], s: Int[Tensor, "B"], context: Standing) -> Float[Tensor, "B T_p D"]:
+        """x0_hat: free for most joints, between free and held for the feet."""
+        x = self.attend(self.embed(x_s, s) + self.held_in(context.held), context.memory)
+        return blend(self.head(x), self.gate(x), context.held)
+
+
+def blend(
+    free: Float[Tensor, "B T_p D"], gate: Float[Tensor, "B T_p F"], held: Float[Tensor, "B T_p K"]
+) -> Float[Tensor, "B T_p D"]:
+    """gate * held + (1 - gate) * free in the feet's columns, the gate as a logit for each joint."""
+    out = free.clone()
+    out[..., COLUMNS] = torch.lerp(free[..., COLUMNS], held, torch.sigmoid(gate).repeat_interleave(3, dim=-1))
+    return out
+
+
+def network(config: MoDiffConfig, pose_scaler: Scaler, control_scaler: Scaler) -> MoDiff:
+    """The network that a configuration asks for: MoDiff, or the one with footholds."""
+    return FootholdMoDiff(config, pose_scaler, control_scaler) if config.foothold else MoDiff(config)
