@@ -2,8 +2,8 @@
 
 A planted foot is at rest in the world, and moves in the root frame: backwards, as fast as the root goes forwards. A
 network that draws it anew in every frame misses by millimetres, and the foot slides. But where a joint of the last pose
-would be if it stayed is known exactly, from the control alone. So the network is told (`held`), and for each of these
-joints it chooses, between 0 and 1, how much of that to take:
+would be if it stayed is known exactly, from the control alone (`held`). So for each of these joints the network
+chooses, between 0 and 1, how much of that to take:
 
     x0_hat = gate * held + (1 - gate) * free
 Ours; neither paper has it.  Notebook: 07
@@ -70,8 +70,6 @@ class FootholdMoDiff(MoDiff):
         self.gate = nn.Linear(config.width, len(FEET))
         nn.init.zeros_(self.gate.weight)
         nn.init.constant_(self.gate.bias, -2.0)  # at first the feet are nearly free
-        self.held_in = nn.Linear(len(COLUMNS), config.width, bias=False)
-        nn.init.zeros_(self.held_in.weight)
         units = {
             "pose_mean": pose_scaler.mean[COLUMNS],
             "pose_std": pose_scaler.std[COLUMNS],
@@ -100,16 +98,16 @@ class FootholdMoDiff(MoDiff):
 
     def decode(self, x_s: Float[Tensor, "B T_p D"], s: Int[Tensor, "B"], context: Standing) -> Float[Tensor, "B T_p D"]:
         """x0_hat: free for most joints, between free and held for the feet."""
-        x = self.attend(self.embed(x_s, s) + self.held_in(context.held), context.memory)
+        x = self.attend(self.embed(x_s, s), context.memory)
         return blend(self.head(x), self.gate(x), context.held)
 
 
 def blend(
     free: Float[Tensor, "B T_p D"], gate: Float[Tensor, "B T_p F"], held: Float[Tensor, "B T_p K"]
 ) -> Float[Tensor, "B T_p D"]:
-    """gate * held + (1 - gate) * free in the feet's columns, the gate as a logit for each joint."""
-    out = free.clone()
-    out[..., COLUMNS] = torch.lerp(free[..., COLUMNS], held, torch.sigmoid(gate).repeat_interleave(3, dim=-1))
+    """gate * held + (1 - gate) * free in the feet's columns, the gate as a logit for each joint; in float32."""
+    out, share = free.float().clone(), torch.sigmoid(gate.float()).repeat_interleave(3, dim=-1)
+    out[..., COLUMNS] = torch.lerp(out[..., COLUMNS], held, share)
     return out
 
 

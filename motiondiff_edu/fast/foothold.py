@@ -15,10 +15,9 @@ from .modiff import Context, FastMoDiff
 
 @dataclass(frozen=True, eq=False)
 class StandingContext(Context):
-    """Keys and values, where the feet would stay, and what the decoder's tokens are told of it."""
+    """Keys and values, and where the feet would stay."""
 
     held: Float[Tensor, "B T_p K"]
-    told: Float[Tensor, "B T_p width"]
 
 
 class FastFoothold(FastMoDiff):
@@ -30,11 +29,11 @@ class FastFoothold(FastMoDiff):
     def encode(self, past: Float[Tensor, "B T_h D"], control: Float[Tensor, "B T C"]) -> StandingContext:
         standing = self.model.encode(past, control)
         context = self.context_of(standing.memory)
-        return StandingContext(context.keys, context.values, standing.held, self.model.held_in(standing.held))
+        return StandingContext(context.keys, context.values, standing.held)
 
     @torch.inference_mode()
     def denoise(
         self, x_s: Float[Tensor, "B T_p D"], s: Int[Tensor, "B"] | int, context: StandingContext
     ) -> Float[Tensor, "B T_p D"]:
-        x = self.attend(self.embed(x_s, s).add_(context.told), context)
+        x = self.attend(self.embed(x_s, s), context)
         return blend(self.model.head(x), self.model.gate(x), context.held)
