@@ -1,8 +1,8 @@
 """What is each choice worth? Small walkers trained for the same CPU-seconds, each unlike the first in one thing.
 
 How many future poses should be predicted at once (MoDiff says that T_p > 1 helps, and gives no number)? What do the
-schedule, the optimizer, the shaken past, the weights of the loss and the target do? Everything else is alike: network,
-data, seed, and the rollout, which keeps one pose of every window.  Source: MoDiff III-A; the rest is ours
+schedule, the optimizer, the shaken past, the weights of the loss, the footholds and the target do? All else is alike:
+network, data, seed, and the rollout, which keeps one pose of every window.  Source: MoDiff III-A; the rest is ours
 """
 
 from dataclasses import dataclass, replace
@@ -27,7 +27,9 @@ VARIANTS = {  # name: (what differs from the first, in words, settings of the ne
     "adam": ("Adam at 1e-3 instead of Muon", {}, {"optimizer": "adam", "lr": 1e-3}),
     "unshaken": ("the past as it is", {}, {"jitter": 0.0}),
     "spreads": ("errors in standard deviations, frames alike", {}, {"metres": 0.0, "near": 0.0}),
-    "eps": ("eps with the skip", {"target": "eps", "skip": True}, {"high_noise": 3.0}),
+    "free-feet": ("no footholds", {"foothold": False}, {}),
+    "joints": ("errors of joints alone, none of bones", {}, {"bones": 0.0}),
+    "eps": ("eps with the skip, no footholds", {"target": "eps", "skip": True, "foothold": False}, {"high_noise": 3.0}),
 }
 
 
@@ -37,7 +39,7 @@ class Budget:
 
     seconds: float = 240
     training: int = 300
-    clips: int = 40
+    clips: int = 24
     walk_s: int = 8
 
 
