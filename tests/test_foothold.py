@@ -186,3 +186,16 @@ def test_bones_add_their_errors_to_the_loss():
         return window_loss(windows, schedule, batch=6, bones=bones)(model, torch.Generator().manual_seed(5)).item()
 
     assert loss(1.0) > loss(0.0) and loss(2.0) - loss(1.0) == pytest.approx(loss(1.0) - loss(0.0), rel=1e-4)
+
+
+def test_gates_are_those_the_answer_was_made_with():
+    x_s, s, past, control = inputs()
+    model = tiny()
+    with torch.no_grad():
+        context = model.encode(past, control)
+        gates = model.gates(x_s, s, context)
+        free = model.head(model.attend(model.embed(x_s, s), context.memory))
+        out = model(x_s, s, past, control)
+    assert gates.shape == (B, T_P, 4) and 0 < gates.min() < 0.3 and 0.7 < gates.max() < 1
+    share = ((out - free)[..., COLUMNS] / (context.held - free[..., COLUMNS])).unflatten(-1, (4, 3)).median(-1).values
+    torch.testing.assert_close(share, gates, atol=1e-3, rtol=1e-3)

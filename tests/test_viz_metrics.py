@@ -32,6 +32,17 @@ def test_planted_steps_are_grey_for_as_long_as_they_last():
     np.testing.assert_allclose(fig.axes[0].lines[1].get_ydata(), 100 * height[:, 1])
 
 
+def test_gates_stand_on_the_contacts_of_their_own_foot():
+    gate = np.linspace(0, 1, 12).reshape(6, 2)
+    planted = np.array([[1, 1, 0, 0, 0, 0], [0, 0, 0, 1, 1, 0]], dtype=bool).T
+    fig = viz.gates(gate, planted, "words", fps=10)
+    for side, (begin, end) in enumerate(((0, 0.2), (0.3, 0.5))):
+        axis = fig.axes[side]
+        spans = [patch.get_extents().transformed(axis.transData.inverted()) for patch in axis.patches]
+        np.testing.assert_allclose([[s.x0, s.x1] for s in spans], [[begin, end]], atol=1e-9)
+        np.testing.assert_allclose(axis.lines[0].get_ydata(), gate[:, side])
+
+
 def test_a_table_says_none_where_there_is_no_figure_and_nought_for_rounding():
     fig = viz.score_table({"a": {"m": 1.234, "n": np.nan}, "b": {"m": 1e-12, "n": 0.5}}, "words")
     assert texts(fig.axes[0]) == ["1.23", "none", "0", "0.5"]

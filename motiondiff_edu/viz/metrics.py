@@ -61,6 +61,23 @@ def toe_heights(
     return fig
 
 
+def gates(
+    gate: Float[np.ndarray, "T 2"], planted: Bool[np.ndarray, "T 2"], words: str, fps: float | int = 20
+) -> Figure:
+    """How far two gates are open (0 to 1), left above right; grey where that foot stands in truth."""
+    fig, axes = figure(9, 3.8, words, rows=2, sharex=True, sharey=True)
+    seconds = np.arange(len(gate)) / fps
+    for side, (axis, label, colour) in enumerate(
+        zip(axes, ("left toe", "right toe"), (LEFT_COLOUR, RIGHT_COLOUR), strict=True)
+    ):
+        for begin, end in runs(planted[:, side]):
+            axis.axvspan(begin / fps, end / fps, color="0.88", lw=0)
+        axis.plot(seconds, gate[:, side], color=colour)
+        axis.set(ylabel=label, ylim=(-0.05, 1.05), yticks=(0, 0.5, 1))
+    axes[-1].set_xlabel("seconds")
+    return fig
+
+
 def score_table(scores: Mapping[str, Mapping[str, float]], words: str) -> Figure:
     """Rows of motions, columns of measures; a cell is darker the larger it is within its column."""
     rows, columns = list(scores), list(next(iter(scores.values())))
