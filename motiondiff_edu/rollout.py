@@ -73,7 +73,8 @@ def generate(
 
     Rows 0..T_h-1 of the control belong to the past. steps=None is DDPM with all S steps, a number is DDIM with so many.
     A past and control without a batch axis give poses without one. Arrays of numpy are taken too; a tensor comes back.
-    Raises ValueError when past and control do not fit the walker or hold NaN.  Source: MoDiff Alg. 2.  Notebook: 08
+    Raises ValueError when past and control do not fit the walker or hold NaN.
+    Source: MoDiff Alg. 2, Fig. 5.  Notebook: 07, 08
     """
     past, control = torch.as_tensor(past), torch.as_tensor(control)
     single = past.dim() == 2

@@ -71,6 +71,16 @@ def test_side_by_side_leaves_an_ended_motion_empty(motion):
     assert "data, walker" in caption(fig)
 
 
+def test_noise_to_motion_has_a_row_for_each_step_as_given(motion):
+    poses = motion[0][:10]
+    fig = skeleton.noise_to_motion({100: poses + 0.3, 7: poses, 0: poses}, "words", n=3)
+    assert len(fig.axes) == 9
+    assert [axis.get_title() for axis in fig.axes[:3]] == ["pose 1", "pose 5", "pose 10"]
+    assert [fig.axes[3 * row].texts[0].get_text() for row in range(3)] == ["s = 100", "s = 7", "s = 0"]
+    first, last = (fig.axes[k].patches[-1].get_xy() for k in (3, 5))
+    assert not np.allclose(first, last)  # other poses of the window
+
+
 def test_top_view_puts_left_on_the_left_and_one_print_per_step():
     positions, _ = walk(frames=31)
     contacts = np.zeros((31, 2), dtype=bool)

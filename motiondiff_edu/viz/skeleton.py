@@ -67,6 +67,24 @@ def side_by_side(
     return fig
 
 
+def noise_to_motion(moments: Mapping[int, Float[np.ndarray, "T 21 3"]], words: str, n: int = 4) -> Figure:
+    """A row for each diffusion step (as ordered in `moments`), n poses of the window in each.
+
+    Source: MoDiff Fig. 1.  Notebook: 07
+    """
+    fig, axes = figure(1.4 * n, 1.75 * len(moments) + 0.5, words, len(moments), n)
+    for row, (s, poses) in enumerate(moments.items()):
+        for column, t in enumerate(np.linspace(0, len(poses) - 1, n).round().astype(int)):
+            axis = axes[row * n + column]
+            draw_pose(axis, poses[t])
+            if row == 0:
+                axis.set_title(f"pose {t + 1}", fontsize=SMALL)
+        axes[row * n].text(-0.05, 0.5, f"s = {s}", rotation=90, va="center", ha="right",
+                           transform=axes[row * n].transAxes, fontsize=MEDIUM)  # fmt: skip
+    fig.legend(handles=SIDES, loc="outside lower right", ncols=2, frameon=False, fontsize=SMALL)
+    return fig
+
+
 def draw_pose(
     axis: Axes, pose: Float[np.ndarray, "21 3"], camera: body.Camera | None = None, washed: bool = False
 ) -> None:
