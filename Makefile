@@ -71,5 +71,5 @@ bench: $(VENV)/.bench ## measure against the public peers into benchmarks/result
 pretrained: $(VENV)/.lab ## train all shipped weights again (hours)
 	$(BIN)/python -m motiondiff_edu.pretrained
 
-clean: ## remove .venv and what the build left
-	rm -rf $(VENV) build dist *.egg-info .pytest_cache .ruff_cache
+clean: ## remove .venv and what the build left, but for trainings under way (build/runs) and rollouts (build/results)
+	rm -rf $(VENV) build/bdist* build/lib build/quick dist *.egg-info .pytest_cache .ruff_cache

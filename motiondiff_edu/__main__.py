@@ -123,6 +123,8 @@ def main(arguments: list[str] | None = None) -> int:
     commands.add_parser("demo", help="open one notebook ready to show").add_argument("number", metavar="NB")
     commands.add_parser("doctor", help="what works here, and what to do about the rest")
     chosen, options = parser.parse_known_args(arguments)
+    if options and chosen.command == "doctor":
+        parser.error(f"doctor takes no options, got {' '.join(options)}")
     try:
         if chosen.command == "lab":
             return lab(options)

@@ -15,13 +15,14 @@ from safetensors.torch import save_file
 from torch import Tensor
 
 from .ddpm import make_schedule
-from .foothold import network
+from .foothold import FootholdConfig, network
 from .modiff import MoDiffConfig
 from .motion.scaler import Scaler
 from .walker import Walker
 
 FORMAT = "motiondiff_edu walker 1"
 FOLDER = Path(__file__).parent / "pretrained"
+NETWORKS = {"MoDiff": MoDiffConfig, "FootholdMoDiff": FootholdConfig}  # by the name of the class
 
 
 class CheckpointError(ValueError):
@@ -40,8 +41,9 @@ def save_walker(walker: Walker, path: str | Path, half: bool = True) -> Path:
     weights |= {f"{name}.{part}": getattr(s, part) for name, s in scalers.items() for part in ("mean", "std")}
     weights["schedule.beta"] = walker.schedule.beta[1:]
     config = json.dumps(walker.config.as_dict())
-    metadata = {"format": FORMAT, "config": config, "schedule": walker.schedule.name, "card": json.dumps(walker.card)}
-    weights = {k: v.detach().clone().contiguous() for k, v in weights.items()}
+    metadata = {"format": FORMAT, "network": type(walker.model).__name__, "config": config}
+    metadata |= {"schedule": walker.schedule.name, "card": json.dumps(walker.card)}
+    weights = {k: v.detach().cpu().clone().contiguous() for k, v in weights.items()}
     temporary = path.with_suffix(".part")
     save_file(weights, temporary, metadata | {"sha256": _digest(weights)})
     os.chmod(temporary, 0o644)  # safetensors writes for its owner alone; weights are for everybody
@@ -94,7 +96,8 @@ def _assemble(config: MoDiffConfig, tensors: dict[str, Tensor], metadata: dict) 
     model = network(config, pose, control)
     model.load_state_dict({k[6:]: v.float() for k, v in tensors.items() if k.startswith("model.")})
     schedule = make_schedule(tensors["schedule.beta"], metadata["schedule"])
-    return Walker(model.eval().requires_grad_(False), schedule, pose, control, json.loads(metadata.get("card", "{}")))
+    card = json.loads(metadata.get("card", "{}")) or {}
+    return Walker(model.eval().requires_grad_(False), schedule, pose, control, card)
 
 
 def _config(metadata: dict, path: Path) -> MoDiffConfig:
@@ -103,14 +106,21 @@ def _config(metadata: dict, path: Path) -> MoDiffConfig:
         values = dict(json.loads(metadata["config"]))
     except (KeyError, ValueError, TypeError) as error:
         raise CheckpointError(f"{path.name}: its configuration cannot be read ({error}); fetch it again") from error
-    defaults = {field.name: field.default for field in fields(MoDiffConfig)}
+    kind = NETWORKS.get(metadata.get("network", "MoDiff"))
+    if kind is None:
+        raise CheckpointError(f"{path.name} holds an unknown network, {metadata['network']}; upgrade")
+    defaults = {field.name: field.default for field in fields(kind)}
     unknown = set(values) - set(defaults)
     if unknown:
         raise CheckpointError(f"{path.name} has unknown settings ({', '.join(sorted(unknown))}); upgrade")
     for name, value in values.items():
-        if type(value) is not type(defaults[name]):
+        whole = type(value) is int and type(defaults[name]) is float  # dropout = 0
+        if type(value) is not type(defaults[name]) and not whole:
             raise CheckpointError(f"{path.name}: its setting {name} = {value!r} makes no sense; fetch it again")
-    return MoDiffConfig(**values)
+    try:
+        return kind(**values)
+    except ValueError as error:
+        raise CheckpointError(f"{path.name}: its settings make no network ({error}); fetch it again") from error
 
 
 def _looks_like(tensors: dict) -> str:

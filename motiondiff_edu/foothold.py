@@ -17,7 +17,7 @@ from torch import Tensor, nn
 
 from .modiff import MoDiff, MoDiffConfig
 from .motion.scaler import Scaler
-from .motion.skeleton import joint_index
+from .motion.skeleton import J, joint_index
 
 FEET = [joint_index(name) for name in ("LeftFoot", "LeftToeBase", "RightFoot", "RightToeBase")]
 COLUMNS = [3 * joint + axis for joint in FEET for axis in range(3)]
@@ -42,6 +42,24 @@ def held_positions(
     return torch.stack([x * cos - z * sin, y.expand_as(x), x * sin + z * cos], dim=-1)
 
 
+@dataclass(frozen=True)
+class FootholdConfig(MoDiffConfig):
+    """Sizes of a network with footholds. It is asked for x0 and has no skip: a foothold is a place.
+
+    Raises ValueError for another target, for a skip, or for another skeleton than the course's.  Notebook: 07
+    """
+
+    target: str = "x0"
+    skip: bool = False
+
+    def __post_init__(self):
+        super().__post_init__()
+        if self.target != "x0" or self.skip:
+            raise ValueError('a foothold is a place: it needs target="x0" and skip=False')
+        if self.D != 3 * J:
+            raise ValueError(f"footholds are for the {J} joints of the course's skeleton, D = {3 * J}, not {self.D}")
+
+
 @dataclass(frozen=True, eq=False)
 class Standing:
     """The memory of past and control, and where the feet would be if they stayed (standardised, COLUMNS only)."""
@@ -58,15 +76,11 @@ class FootholdMoDiff(MoDiff):
     """MoDiff for x0 whose head may leave ankles and toes where they stood, joint by joint and frame by frame.
 
     The scalers lead to metres and m/s: where a foot stays is a matter of metres. They are not among the weights.
-    Raises ValueError for another target, for a skip, or for another skeleton.  Notebook: 07
+    Notebook: 07
     """
 
-    def __init__(self, config: MoDiffConfig, pose_scaler: Scaler, control_scaler: Scaler):
+    def __init__(self, config: FootholdConfig, pose_scaler: Scaler, control_scaler: Scaler):
         super().__init__(config)
-        if config.target != "x0" or config.skip:
-            raise ValueError('a foothold is a place: it needs target="x0" and skip=False')
-        if len(pose_scaler.mean) != config.D or config.D <= max(COLUMNS):
-            raise ValueError(f"a foothold needs all poses of the course's skeleton, D = 63, not {config.D}")
         self.gate = nn.Linear(config.width, len(FEET))
         nn.init.zeros_(self.gate.weight)
         nn.init.constant_(self.gate.bias, -2.0)  # at first the feet are nearly free
@@ -117,4 +131,5 @@ def blend(
 
 def network(config: MoDiffConfig, pose_scaler: Scaler, control_scaler: Scaler) -> MoDiff:
     """The network that a configuration asks for: MoDiff, or the one with footholds."""
-    return FootholdMoDiff(config, pose_scaler, control_scaler) if config.foothold else MoDiff(config)
+    footholds = isinstance(config, FootholdConfig)
+    return FootholdMoDiff(config, pose_scaler, control_scaler) if footholds else MoDiff(config)

@@ -15,6 +15,7 @@ from jaxtyping import Float, Int
 from torch import Tensor, nn
 
 from .cross_modal_attention import Block, RelativeBias
+from .prediction import TARGETS
 
 
 @dataclass(frozen=True)
@@ -40,7 +41,15 @@ class MoDiffConfig:
     dropout: float = 0.0
     target: str = "eps"
     skip: bool = True
-    foothold: bool = False  # ankles and toes may stay where they stand: the network of foothold.py
+
+    def __post_init__(self):
+        """Raises ValueError for sizes of which no network can be built, and for an unknown target."""
+        sizes = {name: value for name, value in asdict(self).items() if type(value) is int}
+        bad = next((name for name, value in sizes.items() if value < ("layers" not in name)), None)
+        if bad:
+            raise ValueError(f"{bad} = {sizes[bad]} makes no network")
+        if self.target not in TARGETS:
+            raise ValueError(f"target must be one of {', '.join(TARGETS)}, not {self.target!r}")
 
     def as_dict(self) -> dict:
         return asdict(self)

@@ -80,19 +80,21 @@ def generate(
     single = past.dim() == 2
     past, control = (x[None] if single else x for x in (past, control))
     T_h, frames = walker.config.T_h, control.shape[1] - past.shape[1]
-    if past.shape[1] != T_h:
-        raise ValueError(f"the walker continues {T_h} past poses, got {past.shape[1]}: pass past[..., -{T_h}:, :]")
-    if past.shape[0] != control.shape[0] or past.shape[2] != walker.config.D:
+    D, C = walker.config.D, walker.config.C
+    if past.dim() != 3 or past.shape[0] != control.shape[0] or (past.shape[2], control.shape[-1]) != (D, C):
         raise ValueError(
             f"past {tuple(past.shape)} and control {tuple(control.shape)} do not go together: the walker takes "
-            f"(B, {T_h}, {walker.config.D}) and (B, T, 3), or both without B; flatten positions (T, 21, 3) to (T, 63)"
+            f"(B, {T_h}, {D}) and (B, T, {C}), or both without B; flatten positions (T, 21, 3) to (T, 63)"
         )
+    if past.shape[1] != T_h:
+        raise ValueError(f"the walker continues {T_h} past poses, got {past.shape[1]}: pass past[..., -{T_h}:, :]")
     if frames < 1:
         raise ValueError(f"control has {control.shape[1]} rows, {T_h} of them beside the past: none is left")
     if not (torch.isfinite(past).all() and torch.isfinite(control).all()):
         raise ValueError("past or control holds NaN or infinity; fill the holes first")
     generator = generator or torch.Generator().manual_seed(seed)
-    poses, velocities = walker.pose_scaler.transform(past.float()), walker.control_scaler.transform(control.float())
+    past, control = (x.float().to(walker.pose_scaler.mean.device) for x in (past, control))
+    poses, velocities = walker.pose_scaler.transform(past), walker.control_scaler.transform(control)
     sample, T_p = walker.window_sampler(steps), walker.config.T_p
     loop = rollout_steps(sample, poses, velocities, frames, T_p, generator=generator, keep=keep, hold=hold)
     new = walker.pose_scaler.inverse(torch.stack([frame.pose for frame in loop], dim=1))

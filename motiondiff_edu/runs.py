@@ -15,13 +15,16 @@ from safetensors.torch import save_file
 from .training import TrainState
 
 
-def saver(path: str | Path, about: dict | None = None) -> Callable[[TrainState], Path]:
-    """A `save` for `training.train_steps`: writes the run to this file, with what it is `about` (see resume_run)."""
-    return lambda state: save_run(state, path, about)
+def saver(path: str | Path, about: dict | None = None, notes: list | None = None) -> Callable[[TrainState], Path]:
+    """A `save` for `training.train_steps`: writes the run to this file; `about` and `notes` as in save_run."""
+    return lambda state: save_run(state, path, about, notes)
 
 
-def save_run(state: TrainState, path: str | Path, about: dict | None = None) -> Path:
-    """Write weights, their average, the optimizer's moments, the random generators, and the step and seconds so far."""
+def save_run(state: TrainState, path: str | Path, about: dict | None = None, notes: list | None = None) -> Path:
+    """Write weights, their average, the optimizer's moments, the random generators, and the step and seconds so far.
+
+    `about` is what the run must be resumed with; `notes` are for the reader (see notes_of).
+    """
     tensors = {f"model.{k}": v for k, v in state.model.state_dict().items()}
     tensors |= {f"average.{k}": v for k, v in state.average.state_dict().items()}
     for i, moments in state.optimizer.state_dict()["state"].items():
@@ -29,7 +32,8 @@ def save_run(state: TrainState, path: str | Path, about: dict | None = None) -> 
     tensors |= {"random.generator": state.generator.get_state(), "random.torch": torch.get_rng_state()}
     if torch.cuda.is_available():
         tensors["random.cuda"] = torch.cuda.get_rng_state()
-    counts = {"step": state.step, "seconds": state.seconds, "about": about}
+    counts = {"step": state.step, "seconds": state.seconds, "about": about, "optimizer": _kind(state)}
+    counts["notes"] = notes or []
     temporary, counts = f"{path}.part", {name: json.dumps(value) for name, value in counts.items()}
     save_file({k: v.contiguous().clone() for k, v in tensors.items()}, temporary, counts)
     os.replace(temporary, path)
@@ -39,8 +43,8 @@ def save_run(state: TrainState, path: str | Path, about: dict | None = None) -> 
 def resume_run(state: TrainState, path: str | Path, about: dict | None = None) -> TrainState:
     """Bring `state` to where the run at `path` was; of another model, load_state_dict says what differs.
 
-    Raises ValueError when the file is damaged or no saved run, or when the run is about something else than `about`
-    (its settings, say): continued, it would be neither the one nor the other.
+    Raises ValueError when the file is damaged or no saved run, when another optimizer made it, or when the run is about
+    something else than `about` (its settings, say): continued, it would be neither the one nor the other.
     """
     try:
         with safe_open(path, "pt") as file:
@@ -55,6 +59,9 @@ def resume_run(state: TrainState, path: str | Path, about: dict | None = None) -
     if missing:
         raise ValueError(f"{path} is no saved run: it has no {sorted(missing)[0]}; give another file, or delete it")
     _same(about, json.loads(counts.get("about", "null")), path)
+    kind = json.loads(counts.get("optimizer", "null"))
+    if kind != _kind(state):
+        raise ValueError(f"{path} was trained by {kind}, not by {_kind(state)}: use that one, or delete the file")
     state.model.load_state_dict(parts["model"])
     state.average.load_state_dict(parts["average"])
     moments: dict[int, dict] = {}
@@ -68,6 +75,19 @@ def resume_run(state: TrainState, path: str | Path, about: dict | None = None) -
     if "cuda" in parts["random"] and torch.cuda.is_available():
         torch.cuda.set_rng_state(parts["random"]["cuda"])
     return state
+
+
+def notes_of(path: str | Path) -> list:
+    """The notes that a run was saved with; none when there is no such run."""
+    if not Path(path).is_file():
+        return []
+    with safe_open(path, "pt") as file:
+        return json.loads((file.metadata() or {}).get("notes", "[]"))
+
+
+def _kind(state: TrainState) -> str:
+    """Whose moments these are: the moments of one optimizer mean nothing to another."""
+    return type(state.optimizer).__name__
 
 
 def _same(asked: dict | None, found: dict | None, path: str | Path) -> None:

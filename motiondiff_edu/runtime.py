@@ -21,7 +21,7 @@ class ProfileError(ValueError):
 
 
 def profile() -> Profile:
-    """The profile in force: `fast` (small sizes, shipped weights; the default) or `full` (the papers' sizes).
+    """The profile in force: `fast` (the default) or `full`: longer trainings, more clips, a GPU where there is one.
 
     Raises ProfileError when the environment variable MOTIONDIFF_PROFILE holds anything else.
     """

@@ -3,6 +3,7 @@
 `rollout.generate(walker, past, control)` lets it walk.  Notebook: 00, 07
 """
 
+import copy
 from dataclasses import dataclass, field
 from functools import cached_property
 
@@ -14,6 +15,7 @@ from .ddpm import Schedule, linear_schedule, make_schedule
 from .fast.foothold import FastFoothold
 from .fast.modiff import FastMoDiff
 from .fast.samplers import ddim_steps, ddpm_steps
+from .foothold import FootholdMoDiff
 from .modiff import MoDiff, MoDiffConfig
 from .motion.scaler import Scaler
 from .prediction import denoiser_of
@@ -21,10 +23,11 @@ from .rollout import WindowSampler
 
 
 def leap_schedule(S: int = 100, leap: float = 0.37, beta_2: float = 0.03, beta_S: float = 0.08) -> Schedule:
-    """beta_1 = leap, then evenly from beta_2 to beta_S: no step is spent below the noise of step 1 (0.8 of the signal).
+    """beta_1 = leap, then evenly from beta_2 to beta_S: step 1 brings noise of sqrt(leap / (1 - leap)) of the signal.
 
-    A small network sees no more of a pose at lower noise than it guesses anyhow. Steps there draw its errors again
-    and again, and rollouts feed on them; one leap from step 1 to the clean pose does not. Ours.  Notebook: 08
+    By default 0.77 of it. A small network sees no more of a pose at lower noise than it guesses anyhow. Steps there
+    draw its errors again and again, and rollouts feed on them; one leap from step 1 to the clean pose does not.
+    Ours.  Notebook: 07
     """
     rest = torch.linspace(beta_2, beta_S, S - 1, dtype=torch.float64)
     return make_schedule(torch.cat([torch.tensor([leap], dtype=torch.float64), rest]), f"leap {leap:g}")
@@ -43,6 +46,11 @@ class Walker:
     control_scaler: Scaler
     card: dict = field(default_factory=dict)
 
+    def to(self, device: str | torch.device) -> "Walker":
+        """The same walker on another device; `rollout.generate` brings past and control there."""
+        model = copy.deepcopy(self.model).to(device)
+        return Walker(model, self.schedule, self.pose_scaler.to(device), self.control_scaler.to(device), self.card)
+
     @property
     def config(self) -> MoDiffConfig:
         return self.model.config
@@ -50,7 +58,7 @@ class Walker:
     @cached_property
     def fast(self) -> FastMoDiff:
         """The fast twin, built at first use."""
-        return (FastFoothold if self.config.foothold else FastMoDiff)(self.model)
+        return (FastFoothold if isinstance(self.model, FootholdMoDiff) else FastMoDiff)(self.model)
 
     def denoiser(self, past: Float[Tensor, "B T_h D"], control: Float[Tensor, "B T C"]):
         """`denoise(x_s, s) -> eps_hat` for this past and control, in the network's units."""
@@ -63,7 +71,8 @@ class Walker:
         @torch.inference_mode()
         def sample(past: Tensor, control: Tensor, generator: torch.Generator) -> Tensor:
             denoise = self.denoiser(past, control)
-            x_S = torch.randn(len(past), self.config.T_p, self.config.D, generator=generator)
+            shape = (len(past), self.config.T_p, self.config.D)
+            x_S = torch.randn(shape, generator=generator, device=generator.device).to(past.device)
             if steps is None:
                 loop = ddpm_steps(denoise, x_S, self.schedule, generator=generator)
             else:

@@ -13,7 +13,9 @@ from jaxtyping import Float, Int
 from torch import Tensor, nn
 
 from .ddpm import Schedule, q_sample
+from .foothold import FootholdMoDiff
 from .motion.clip import Clip
+from .motion.root_frame import FPS
 from .motion.scaler import Scaler
 from .motion.skeleton import BONES
 from .prediction import target_of
@@ -41,9 +43,12 @@ class Windows:
     ) -> "Windows":
         """Collect clips; the scalers are fitted on them unless given (pose, control).
 
-        Raises ValueError when no clip is as long as a window.  Notebook: 07
+        Raises ValueError when no clip is as long as a window, or one has not 20 frames/s.  Notebook: 07
         """
         length, starts, first = T_h + T_p, [], 0
+        other = next((clip for clip in clips if clip.fps != FPS), None)
+        if other:
+            raise ValueError(f"clip {other.source!r} has {other.fps:g} frames/s; bring it to {FPS:g} first")
         for clip in clips:
             starts.append(np.arange(first, first + len(clip) - length + 1))
             first += len(clip)
@@ -98,9 +103,10 @@ def window_loss(
     Columns are weighted by std^metres: 0 counts errors in standard deviations, 2 in metres (a toe moves tenfold a hip).
     Frame k is weighted by 1 / (how far poses move in k frames)^near: a rollout keeps the first, which moves least.
     `high_noise` = c weights step s by 1 + min((1 - alpha_bar) / alpha_bar, c): where eps is easy and the pose is not.
-    `bones` is the weight of a second error, that of each joint against its parent, in metres: a shin
-    keeps its length when knee and ankle err alike. `doubt` is the share of the shaking that reaches the feet which a
-    network with footholds may leave in place (see `foothold`): with all of it the gate would learn never to hold.
+    `bones` is the weight of a second error, that of each joint against its parent: a shin keeps its length when knee
+    and ankle err alike. It is the network's error times std, so it goes with metres=2 (for x0 it is in metres).
+    `doubt` is the share of the shaking that reaches the feet which a network with footholds may leave in place (see
+    `foothold`): with all of it the gate would learn never to hold.
     Source: MoDiff eq. 10, Alg. 1; all but the squared error itself is ours.  Notebook: 07
     """
     change = typical_change(windows)
@@ -115,7 +121,9 @@ def window_loss(
         device = next(model.parameters()).device  # batch and noise are drawn on the CPU: the same numbers everywhere
         past, future, control = windows.draw(batch, generator, held)
         seen = shaken(past, jitter, change[0], generator) if jitter else past
-        feet = {"standing": torch.lerp(past, seen, doubt)[:, -1].to(device)} if model.config.foothold else {}
+        feet = {}
+        if isinstance(model, FootholdMoDiff):
+            feet["standing"] = torch.lerp(past, seen, doubt)[:, -1].to(device)
         future, control = future.to(device), control.to(device)
         memory = model.encode(seen.to(device), control, **feet).repeat_interleave(noises, dim=0)
         x0 = future.repeat_interleave(noises, dim=0)

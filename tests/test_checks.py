@@ -60,6 +60,12 @@ def test_the_wrong_answer_is_refused(name, what):
 
 
 @pytest.mark.parametrize("name", CHECKS)
+def test_a_missing_return_is_named(name):
+    with pytest.raises(checks.CheckFailed, match="is a `return` missing"):
+        CHECKS[name](lambda *args, **kwargs: None)
+
+
+@pytest.mark.parametrize("name", CHECKS)
 def test_each_check_has_an_exercise_and_two_wrong_answers(name):
     assert name in {param.values[2] for param in EXERCISES}, f"no cell tagged `solution` calls checks.{name}"
     assert len(WRONG.get(name, {})) >= 2, f"checks.{name} needs two wrong answers in checks/zoo"

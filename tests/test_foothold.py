@@ -10,7 +10,7 @@ import torch
 from motiondiff_edu.checkpoints import load_walker, save_walker
 from motiondiff_edu.ddpm import linear_schedule
 from motiondiff_edu.fast.foothold import FastFoothold
-from motiondiff_edu.foothold import COLUMNS, FEET, FootholdMoDiff, blend, held_positions, network
+from motiondiff_edu.foothold import COLUMNS, FEET, FootholdConfig, FootholdMoDiff, blend, held_positions, network
 from motiondiff_edu.modiff import MoDiff, MoDiffConfig
 from motiondiff_edu.motion.clip import Clip
 from motiondiff_edu.motion.root_frame import to_world
@@ -20,7 +20,8 @@ from motiondiff_edu.walker import Walker
 from motiondiff_edu.windows import Windows, bone_errors, window_loss
 
 T_H, T_P, B = 4, 5, 3
-TINY = MoDiffConfig(T_h=T_H, T_p=T_P, S=8, width=16, heads=2, hidden=24, target="x0", skip=False, foothold=True)
+SIZES = dict(T_h=T_H, T_p=T_P, S=8, width=16, heads=2, hidden=24)
+TINY, FREE = FootholdConfig(**SIZES), MoDiffConfig(**SIZES, target="x0", skip=False)
 POSE = Scaler(torch.linspace(-2, 3, 63), torch.linspace(0.1, 0.6, 63))
 CONTROL = Scaler(torch.tensor([1.0, 0.1, -0.2]), torch.tensor([0.5, 0.2, 0.8]))
 
@@ -82,7 +83,7 @@ def test_an_open_gate_leaves_the_feet_where_they_are():
 
 
 def test_a_closed_gate_is_plain_modiff():
-    closed, plain = tiny(gate=-50.0), MoDiff(replace(TINY, foothold=False)).eval()
+    closed, plain = tiny(gate=-50.0), MoDiff(FREE).eval()
     plain.load_state_dict({k: v for k, v in closed.state_dict().items() if not k.startswith("gate")})
     x_s, s, past, control = inputs()
     torch.testing.assert_close(closed(x_s, s, past, control), plain(x_s, s, past, control), atol=1e-6, rtol=1e-6)
@@ -129,16 +130,16 @@ def test_the_weights_file_keeps_the_gate_and_the_walker_walks(tmp_path: Path):
 
 @pytest.mark.parametrize(
     ("settings", "reason"),
-    [({"target": "eps"}, "target"), ({"skip": True}, "skip"), ({"D": 9}, "63, not 9")],
+    [({"target": "eps"}, "target"), ({"skip": True}, "skip"), ({"D": 30}, "63, not 30")],
 )
 def test_what_has_no_place_is_refused(settings, reason):
     with pytest.raises(ValueError, match=reason):
-        network(replace(TINY, **settings), POSE, CONTROL)
+        replace(TINY, **settings)
 
 
 def test_the_configuration_names_the_network():
     assert type(network(TINY, POSE, CONTROL)) is FootholdMoDiff
-    assert type(network(replace(TINY, foothold=False), POSE, CONTROL)) is MoDiff
+    assert type(network(FREE, POSE, CONTROL)) is MoDiff
 
 
 def walk_windows() -> Windows:
@@ -180,7 +181,7 @@ def test_bone_errors_by_hand():
 
 def test_bones_add_their_errors_to_the_loss():
     windows, schedule = walk_windows(), linear_schedule(8, 0.2, 0.95)
-    model = MoDiff(replace(TINY, foothold=False))
+    model = MoDiff(FREE)
 
     def loss(bones: float) -> float:
         return window_loss(windows, schedule, batch=6, bones=bones)(model, torch.Generator().manual_seed(5)).item()

@@ -1,5 +1,6 @@
 """A recipe becomes a walker and a card; a killed training goes on, and with other settings it is refused."""
 
+import time
 from dataclasses import replace
 from pathlib import Path
 
@@ -7,10 +8,13 @@ import pytest
 import torch
 
 from motiondiff_edu.checkpoints import load_walker, save_walker
+from motiondiff_edu.foothold import FootholdConfig
 from motiondiff_edu.modiff import MODIFF_SMALL
+from motiondiff_edu.pretrained import train as train_module
 from motiondiff_edu.pretrained.budget import train_for
-from motiondiff_edu.pretrained.recipes import RECIPES, SHIPPED, Recipe
+from motiondiff_edu.pretrained.recipes import RECIPES, SHIPPED, WALKER_X0, Recipe
 from motiondiff_edu.pretrained.train import commit_of, train, training_clips
+from motiondiff_edu.windows import window_loss
 
 TINY = replace(MODIFF_SMALL, width=16, heads=2, hidden=24, T_p=5)
 SHORT = Recipe("short", TINY, steps=6, batch=3, clips=2, seconds=2.0, reversed_share=1.0)
@@ -31,16 +35,58 @@ def test_a_recipe_becomes_a_walker_with_its_card(tmp_path: Path):
     card = load_walker(save_walker(walker, tmp_path / "short.safetensors")).card
     assert card["name"] == "short" and card["target"] == "eps" and card["recipe"]["steps"] == 6
     assert card["frames"] == 8 * 40 and card["minutes"] >= 0 and card["final_loss"] > 0
-    assert card["commit"] and "threads" in card["machine"]
+    (sitting,) = card["sittings"]
+    assert sitting["from_step"] == 0 and sitting["commit"] and sitting["threads"] == torch.get_num_threads()
+    assert card["parameters"] == sum(p.numel() for p in walker.model.parameters())
 
 
-def test_a_training_goes_on_where_it_was_saved(tmp_path: Path):
-    whole = train(SHORT, tmp_path / "whole", log=quiet)
-    again = train(SHORT, tmp_path / "whole", log=quiet)  # nothing is left to do
+FEET = FootholdConfig(width=16, heads=2, hidden=24, T_p=5)
+LIKE_SHIPPED = replace(WALKER_X0, config=FEET, steps=8, batch=3, clips=2, seconds=2.0, save_every=3)
+
+
+class Killed(Exception):
+    pass
+
+
+def kill_at(step: int, monkeypatch):
+    """Let the training die in the middle of this step, once."""
+
+    def dying(windows, schedule, **settings):
+        inner, calls = window_loss(windows, schedule, **settings), iter(range(step))
+
+        def loss_fn(model, generator):
+            if next(calls, None) is None:
+                raise Killed
+            return inner(model, generator)
+
+        return loss_fn
+
+    monkeypatch.setattr(train_module, "window_loss", dying)
+
+
+@pytest.mark.parametrize("step", [4, 7], ids=["in bfloat16", "in float32"])
+def test_a_killed_training_goes_on_where_it_was_saved(tmp_path: Path, monkeypatch, step: int):
+    """What is shipped, in small: footholds, the leap, Muon, the change from bfloat16 to float32 after 6 of 8 steps."""
+    whole = train(LIKE_SHIPPED, tmp_path / "whole", log=quiet)
+    with monkeypatch.context() as patch:
+        kill_at(step, patch)
+        with pytest.raises(Killed):
+            train(LIKE_SHIPPED, tmp_path / "killed", log=quiet)
+    again = train(LIKE_SHIPPED, tmp_path / "killed", log=quiet)
     for name, weight in whole.model.state_dict().items():
-        assert torch.equal(weight, again.model.state_dict()[name])
+        assert torch.equal(weight, again.model.state_dict()[name]), name
+    assert [sitting["from_step"] for sitting in again.card["sittings"]] == [0, 3 * (step // 3)]
+    assert again.card["final_loss"] == whole.card["final_loss"] > 0
+
+
+def test_a_run_is_continued_with_its_own_settings_and_data_or_not_at_all(tmp_path: Path):
+    walker = train(SHORT, tmp_path / "run", log=quiet)
+    again = train(SHORT, tmp_path / "run", log=quiet)  # nothing is left to do
+    assert again.card == walker.card
     with pytest.raises(ValueError, match="begun with lr = 0.002, and 0.1 is asked for"):
-        train(replace(SHORT, lr=0.1), tmp_path / "whole", log=quiet)
+        train(replace(SHORT, lr=0.1), tmp_path / "run", log=quiet)
+    with pytest.raises(ValueError, match="begun with data = "):
+        train(SHORT, tmp_path / "run", clips=training_clips(replace(SHORT, data_seed=2)), log=quiet)
 
 
 def test_muon_and_adam_make_different_walkers(tmp_path: Path):
@@ -52,8 +98,10 @@ def test_muon_and_adam_make_different_walkers(tmp_path: Path):
 
 
 def test_a_budget_of_seconds_is_kept():
+    before = time.process_time()
     walker, steps = train_for(1.0, training_clips(SHORT), replace(TINY, target="x0", skip=False), batch=3)
-    assert steps >= 1 and walker.config.target == "x0"
+    assert 1 < time.process_time() - before < 4  # the data, the last step, the walker
+    assert steps > 5 and walker.config.target == "x0"
 
 
 def test_what_is_shipped_has_a_recipe_and_the_papers_one_is_the_papers():

@@ -11,7 +11,8 @@ from gaits import control_of, gait, rest_pose
 sys.path.insert(0, str(Path(__file__).parents[1]))  # tools and benchmarks are of the checkout, not of the package
 
 from motiondiff_edu.metrics.footsteps import footsteps, heel_speed  # noqa: E402
-from tools.results import steps_table  # noqa: E402
+from tools.results import cards, parts, steps_table  # noqa: E402
+from tools.results.__main__ import weights_of  # noqa: E402
 from tools.results.bars import BARS, Bar  # noqa: E402
 from tools.results.intervals import interval  # noqa: E402
 from tools.results.render import read_records, render  # noqa: E402
@@ -80,6 +81,27 @@ def test_the_page_is_made_from_the_records(tmp_path):
     path.with_name("old.json").write_text(path.read_text())
     with pytest.raises(ValueError, match="stands in"):
         read_records(tmp_path / "results")
+
+
+def test_walker_is_written_from_the_records_of_whom_it_stands_for(tmp_path, monkeypatch):
+    monkeypatch.setattr(parts, "alias_of", lambda: "walker-x0")
+    assert parts.alias_records(tmp_path) == []
+    (tmp_path / "walker-x0.json").write_text(json.dumps([{"name": "walker-x0.bone_rmse_cm", "value": 0.2}]))
+    assert parts.alias_records(tmp_path) == [{"name": "walker.bone_rmse_cm", "value": 0.2}]
+
+
+def test_a_card_tells_only_figures_of_its_own_weights(tmp_path):
+    record = {"name": "walker-x0.bone_rmse_cm", "value": 0.2, "seeds": {"weights": "abc"}}
+    (tmp_path / "walker-x0.json").write_text(json.dumps([record]))
+    assert cards.metrics(tmp_path, "walker-x0", "abc") == {"bone_rmse_cm": 0.2}
+    assert cards.metrics(tmp_path, "walker-x0", "other") == {} == cards.metrics(tmp_path, "walker-eps", "abc")
+
+
+def test_weights_to_measure_are_given_by_name_and_file(tmp_path):
+    (tmp_path / "w.safetensors").touch()
+    assert weights_of([f"mine={tmp_path}/w.safetensors"]) == {"mine": tmp_path / "w.safetensors"}
+    with pytest.raises(SystemExit, match="NAME=FILE"):
+        weights_of(["mine"])
 
 
 def test_bars_have_two_sides():

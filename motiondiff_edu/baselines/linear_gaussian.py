@@ -50,7 +50,7 @@ class LinearGaussian:
         return sample
 
     def growth(self) -> float:
-        """The factor by which the slowest error grows in a frame: above 1, the walk leaves the data for ever.
+        """The factor by which the longest-lived error changes in a frame: above 1 it grows for ever.
 
         The largest |eigenvalue| of the companion matrix, which moves T_h poses one frame on.  Notebook: 07
         """

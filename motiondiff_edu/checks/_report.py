@@ -58,7 +58,7 @@ def check(function: Callable[[Any], str | None]) -> Check:
     @functools.wraps(function)
     def run(mine: Any) -> None:
         try:
-            content = function(mine)
+            content = function(_answering(mine))
         except NotImplementedError:
             print(f"{name}: {NOT_ATTEMPTED}.")
         except CheckFailed as error:
@@ -70,6 +70,20 @@ def check(function: Callable[[Any], str | None]) -> Check:
 
     REGISTRY[name] = run
     return run
+
+
+def _answering(mine: Any) -> Any:
+    """`mine`, which fails with the likeliest reason when nothing comes back."""
+    if not callable(mine):
+        return mine
+
+    @functools.wraps(mine)
+    def answer(*args, **kwargs):
+        got = mine(*args, **kwargs)
+        expect(got is not None, "your answer returns nothing; is a `return` missing?")
+        return got
+
+    return answer
 
 
 def expect(condition: Any, message: str) -> None:

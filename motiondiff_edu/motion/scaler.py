@@ -34,6 +34,10 @@ class Scaler:
         std = flat.std(0, correction=0)
         return cls(flat.mean(0).float(), std.where(std > _STILL, 1.0).float())
 
+    def to(self, device) -> "Scaler":
+        """The same scaler on another device."""
+        return Scaler(self.mean.to(device), self.std.to(device))
+
     def transform(self, x: Float[Tensor, "*N D"]) -> Float[Tensor, "*N D"]:
         """To the network's units."""
         return (x - self.mean) / self.std

@@ -14,12 +14,15 @@ from .train import train
 
 def main() -> None:
     parser = argparse.ArgumentParser(prog="python -m motiondiff_edu.pretrained", description=__doc__)
-    parser.add_argument("names", nargs="*", choices=[*RECIPES, []], help="which recipes; none: all that are shipped")
+    parser.add_argument("names", nargs="*", help=f"which of {', '.join(RECIPES)}; none: all that are shipped")
     parser.add_argument("--runs", type=Path, default=Path("build/runs"), help="where runs are saved and resumed from")
     parser.add_argument("--out", type=Path, default=FOLDER, help="where the weights go")
     parser.add_argument("--threads", type=int, default=torch.get_num_threads())
     parser.add_argument("--alias", metavar="NAME", help="only let `walker` stand for NAME, and train nothing")
     arguments = parser.parse_args()
+    unknown = set(arguments.names) - set(RECIPES)
+    if unknown:
+        parser.error(f"no recipe is called {', '.join(sorted(unknown))}; there are: {', '.join(RECIPES)}")
     if arguments.alias:
         return point_alias(arguments.out, arguments.alias)
     torch.set_num_threads(arguments.threads)

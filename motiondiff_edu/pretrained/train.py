@@ -1,6 +1,7 @@
 """Train a recipe into a walker: data, windows, loop, card. A killed run continues where it was saved last."""
 
 import datetime
+import hashlib
 import itertools
 import platform
 import subprocess
@@ -14,7 +15,7 @@ from ..foothold import network
 from ..motion.augment import mirror, reverse_time
 from ..motion.clip import Clip
 from ..muon import optimizer_for
-from ..runs import resume_run, saver
+from ..runs import notes_of, resume_run, saver
 from ..training import TrainState, cosine_lr, train_steps
 from ..walker import SCHEDULES, Walker
 from ..windows import Windows, window_loss
@@ -37,8 +38,9 @@ def train(recipe: Recipe, run_file: Path, clips: list[Clip] | None = None, log=p
     Raises ValueError when the run in `run_file` was begun with other settings.
     """
     torch.manual_seed(recipe.seed)
-    config, commit, about = recipe.config, commit_of(Path(__file__).parent), asdict(recipe)
+    config = recipe.config
     windows = Windows.of(clips or training_clips(recipe), config.T_h, config.T_p)
+    about = asdict(recipe) | {"network": type(config).__name__, "data": digest(windows)}
     schedule = SCHEDULES[recipe.schedule](config.S)
     device = "cuda" if torch.cuda.is_available() else "cpu"
     model = network(config, windows.pose_scaler, windows.control_scaler).to(device)
@@ -46,18 +48,33 @@ def train(recipe: Recipe, run_file: Path, clips: list[Clip] | None = None, log=p
     if run_file.exists():
         resume_run(state, run_file, about)
         log(f"{recipe.name}: continuing at step {state.step}")
+    sittings = notes_of(run_file)
+    if state.step < recipe.steps:
+        sittings = [*sittings, {"from_step": state.step, **where(device)}]
     loss_fn = window_loss(windows, schedule, **recipe.loss_settings)
-    losses = _run(recipe, state, loss_fn, device, saver(run_file, about), log)
-    card = card_of(recipe, windows, state.seconds / 60, commit, device)
-    card["parameters"] = sum(p.numel() for p in model.parameters())
-    card["final_loss"] = round(float(np.mean(losses[-1000:])), 6) if losses else None
+    _run(recipe, state, loss_fn, device, saver(run_file, about, sittings), log)
+    card = card_of(recipe, windows, state, sittings)
+    card["final_loss"] = round(mean_loss(loss_fn, state.average), 6)
     return Walker(state.average.cpu().eval(), schedule, windows.pose_scaler, windows.control_scaler, card)
 
 
-def _run(recipe: Recipe, state: TrainState, loss_fn, device: str, save, log) -> list[float]:
-    """Train to the last step, the first share of them in bfloat16; the losses."""
-    lr = cosine_lr(recipe.lr, recipe.steps, warmup=500)
-    settings = {"lr": lr, "decay": recipe.decay, "save": save, "save_every": 2000, "progress": False}
+def digest(windows: Windows) -> str:
+    """Of the frames as the network sees them: a run goes on with the data it was begun with, or not at all."""
+    frames = (windows.poses.numpy(), windows.control.numpy())
+    return hashlib.sha256(b"".join(array.tobytes() for array in frames)).hexdigest()[:16]
+
+
+@torch.no_grad()
+def mean_loss(loss_fn, network: torch.nn.Module, batches: int = 50) -> float:
+    """Of the averaged network, on batches drawn with a seed of their own."""
+    generator = torch.Generator().manual_seed(1)
+    return float(np.mean([loss_fn(network, generator).item() for _ in range(batches)]))
+
+
+def _run(recipe: Recipe, state: TrainState, loss_fn, device: str, save, log) -> None:
+    """Train to the last step, the first share of them in bfloat16."""
+    lr = cosine_lr(recipe.lr, recipe.steps, warmup=min(500, recipe.steps // 4))
+    settings = {"lr": lr, "decay": recipe.decay, "save": save, "save_every": recipe.save_every, "progress": False}
     loop = itertools.chain(
         train_steps(state, _in_bf16(loss_fn, device), int(recipe.bf16_share * recipe.steps), **settings),
         train_steps(state, loss_fn, recipe.steps, **settings),
@@ -68,7 +85,6 @@ def _run(recipe: Recipe, state: TrainState, loss_fn, device: str, save, log) -> 
         if report.step % 1000 == 0:
             mean, minutes = np.mean(losses[-1000:]), state.seconds / 60
             log(f"{recipe.name} {report.step}/{recipe.steps}: loss {mean:.5f}, {minutes:.1f} min")
-    return losses
 
 
 def _in_bf16(loss_fn, device: str):
@@ -80,7 +96,9 @@ def _in_bf16(loss_fn, device: str):
 
 
 def commit_of(folder: Path) -> str:
-    """The commit of the checkout that `folder` lies in, "-dirty" when files differ from it."""
+    """The commit of the checkout whose top `folder` is, "-dirty" when files differ from it."""
+    if not (folder / ".git").exists():  # a package installed within somebody's own repository has no commit of ours
+        return "not in a checkout"
     command = ["git", "-C", str(folder), "describe", "--always", "--dirty"]
     try:
         done = subprocess.run(command, capture_output=True, text=True, check=False)
@@ -89,19 +107,27 @@ def commit_of(folder: Path) -> str:
     return done.stdout.strip() or "not in a checkout"
 
 
-def card_of(recipe: Recipe, windows: Windows, minutes: float, commit: str, device: str) -> dict:
-    """What a reader of the weights wants to know; the figures are added by `make results`."""
+def where(device: str) -> dict:
+    """The code and the machine of one sitting."""
+    return {
+        "commit": commit_of(Path(__file__).parents[2]),
+        "date": datetime.date.today().isoformat(),
+        "machine": torch.cuda.get_device_name() if device == "cuda" else platform.machine(),
+        "threads": torch.get_num_threads(),
+        "torch": torch.__version__,
+    }
+
+
+def card_of(recipe: Recipe, windows: Windows, state: TrainState, sittings: list[dict]) -> dict:
+    """What a reader of the weights wants to know; `make results` adds the measured figures."""
     settings = {k: v for k, v in asdict(recipe).items() if k not in ("config", "name")}
-    threads = f"{torch.get_num_threads()} threads"
     return {
         "name": recipe.name,
         "target": recipe.config.target,
         "recipe": settings,
+        "parameters": sum(p.numel() for p in state.model.parameters()),
         "frames": len(windows.poses),
-        "minutes": round(minutes, 1),
-        "machine": f"{torch.cuda.get_device_name() if device == 'cuda' else platform.machine()}, {threads}",
-        "torch": torch.__version__,
-        "commit": commit,
-        "date": datetime.date.today().isoformat(),
+        "minutes": round(state.seconds / 60, 1),
+        "sittings": sittings,
         "data": "data_synth.walking, synthetic",
     }

@@ -10,6 +10,7 @@ from jaxtyping import Bool, Float
 from matplotlib.figure import Figure
 
 from ..metrics.footsteps import runs
+from ..metrics.skating import PLANTED_BELOW
 from .body import INK, LEFT_COLOUR, RIGHT_COLOUR
 from .style import DASHES, MARKERS, figure, legend
 
@@ -45,16 +46,20 @@ def over_time(
 
 
 def toe_heights(
-    height: Float[np.ndarray, "T 2"], planted: Bool[np.ndarray, "_"], words: str, fps: float | int = 20
+    height: Float[np.ndarray, "T 2"],
+    planted: Bool[np.ndarray, "_"],
+    words: str,
+    fps: float | int = 20,
+    below: float = PLANTED_BELOW,
 ) -> Figure:
-    """Height of the left and right toe over time, in cm; grey where the lower one counts as planted."""
+    """Height of the toes over time, in cm; grey where the lower one, under `below` metres, is planted."""
     fig, (axis,) = figure(9, 3.4, words)
     seconds = np.arange(len(height)) / fps
     for begin, end in runs(planted):
         axis.axvspan(begin / fps, end / fps, color="0.9", lw=0)
     for side, (label, colour) in enumerate((("left toe", LEFT_COLOUR), ("right toe", RIGHT_COLOUR))):
         axis.plot(seconds, 100 * height[:, side], "-" if side == 0 else "--", label=label, color=colour)
-    axis.axhline(3, color=INK, lw=1, ls=":", label="3 cm")
+    axis.axhline(100 * below, color=INK, lw=1, ls=":", label=f"{100 * below:g} cm")
     axis.set(xlabel="seconds", ylabel="height (cm)")
     legend(axis, loc="upper right", ncols=3)
     axis.set_ylim(None, 1.35 * 100 * height.max())

@@ -16,7 +16,8 @@ from benchmarks.records import show, write_records
 from motiondiff_edu.viz.metrics import footstep_curves
 
 from . import budget
-from .parts import FULL, LINES, QUICK, Bench, Walks, footstep_records, walker_records
+from .cards import add_metrics
+from .parts import FULL, LINES, QUICK, Bench, Walks, alias_records, footstep_records, walker_records
 from .render import render
 
 DOCS, OTHERS = Path("docs"), ("footsteps", "budget")
@@ -35,22 +36,34 @@ def main() -> None:
     asked = arguments()
     docs = Path("build/quick") if asked.quick else DOCS
     if not asked.render:
-        weights = {name: Path(file) for name, file in (item.split("=", 1) for item in asked.weights)}
-        measure(asked.only, Bench(QUICK if asked.quick else FULL, weights), docs / "results", weights)
+        measure(asked.only, Bench(QUICK if asked.quick else FULL, weights_of(asked.weights)), docs / "results", asked)
+    write_records(docs / "results" / "walker.json", alias_records(docs / "results"))
+    if not asked.quick:
+        add_metrics(docs / "results")
     render(docs)
     print(f"written: {docs / 'RESULTS.md'}")
 
 
-def measure(only: list[str], bench: Bench, folder: Path, extra: dict[str, Path]) -> None:
+def weights_of(items: list[str]) -> dict[str, Path]:
+    """NAME=FILE, for weights that are not shipped."""
+    pairs = [item.partition("=") for item in items]
+    bad = next((item for item, (_, _, file) in zip(items, pairs, strict=True) if not Path(file).is_file()), None)
+    if bad:
+        sys.exit(f"--weights takes NAME=FILE with a weights file that exists, not {bad!r}")
+    return {name: Path(file) for name, _, file in pairs}
+
+
+def measure(only: list[str], bench: Bench, folder: Path, asked: argparse.Namespace) -> None:
     """Run the parts asked for (all that have weights, when none is named) and write their records."""
-    lines = LINES | {name: Walks(name, name) for name in extra}
+    lines = LINES | {name: Walks(name, name) for name in weights_of(asked.weights)}
+    options = " --quick" * asked.quick + "".join(f" --weights {item}" for item in asked.weights)
     there = [prefix for prefix, line in lines.items() if line.name in bench.weights]
     parts = only or [*there, *OTHERS]
     unknown = set(parts) - set(lines) - set(OTHERS)
     if unknown:
         sys.exit(f"no part is called {', '.join(sorted(unknown))}; there are: {', '.join([*lines, *OTHERS])}")
     for part in parts:
-        began, command = time.monotonic(), f"python -m tools.results --only {part}"
+        began, command = time.monotonic(), f"python -m tools.results --only {part}{options}"
         if part == "footsteps":
             records, curves = footstep_records(bench, command)
             figure = footstep_curves({k: v for k, v in curves.items() if not k.endswith("-robust")})

@@ -1,4 +1,4 @@
-"""What is each choice worth? Small walkers trained for the same CPU-seconds, each unlike the first in one thing.
+"""What is each choice worth? Small walkers trained for the same CPU-seconds, each unlike another in one choice.
 
 How many future poses should be predicted at once (MoDiff says that T_p > 1 helps, and gives no number)? What do the
 schedule, the optimizer, the shaken past, the weights of the loss, the footholds and the target do? All else is alike:
@@ -10,6 +10,7 @@ from dataclasses import dataclass, replace
 import torch
 
 from data_synth.walking import dataset
+from motiondiff_edu.modiff import MoDiffConfig
 from motiondiff_edu.motion.augment import augment
 from motiondiff_edu.pretrained.budget import train_for
 from motiondiff_edu.pretrained.recipes import WALKER_X0
@@ -18,18 +19,23 @@ from .scores import Figure, score
 from .trials import T_H, UNSEEN, Trials, unseen, walker_generate
 
 SHOWN = ("bone_rmse_cm", "adherence_mps", "adherence_shuffled_over_own", "skating_mps", "drift_ratio")
-VARIANTS = {  # name: (what differs from the first, in words, settings of the network, settings of the training)
-    "T_p-10": ("the walkers' recipe, T_p = 10", {}, {}),
-    "T_p-1": ("T_p = 1", {"T_p": 1}, {}),
-    "T_p-5": ("T_p = 5", {"T_p": 5}, {}),
-    "T_p-20": ("T_p = 20", {"T_p": 20}, {}),
-    "linear": ("linear schedule, 1e-4 to 0.1", {}, {"schedule": "linear"}),
-    "adam": ("Adam at 1e-3 instead of Muon", {}, {"optimizer": "adam", "lr": 1e-3}),
-    "unshaken": ("the past as it is", {}, {"jitter": 0.0}),
-    "spreads": ("errors in standard deviations, frames alike", {}, {"metres": 0.0, "near": 0.0}),
-    "free-feet": ("no footholds", {"foothold": False}, {}),
-    "joints": ("errors of joints alone, none of bones", {}, {"bones": 0.0}),
-    "eps": ("eps with the skip, no footholds", {"target": "eps", "skip": True, "foothold": False}, {"high_noise": 3.0}),
+FEET = WALKER_X0.config
+FREE = MoDiffConfig(width=FEET.width, hidden=FEET.hidden, cross_layers=FEET.cross_layers, target="x0", skip=False)
+EPS = replace(FREE, target="eps", skip=True)
+LIKE = "the walkers' choices, T_p = 10"
+VARIANTS = {  # name: (what differs, in words, from which other one, the network, settings of the training)
+    "T_p-10": (LIKE, "", FEET, {}),
+    "T_p-1": ("T_p = 1", "T_p-10", replace(FEET, T_p=1), {}),
+    "T_p-5": ("T_p = 5", "T_p-10", replace(FEET, T_p=5), {}),
+    "T_p-20": ("T_p = 20", "T_p-10", replace(FEET, T_p=20), {}),
+    "linear": ("linear schedule, 1e-4 to 0.1", "T_p-10", FEET, {"schedule": "linear"}),
+    "adam": ("Adam at 1e-3 instead of Muon at 3e-3", "T_p-10", FEET, {"optimizer": "adam", "lr": 1e-3}),
+    "unshaken": ("the past as it is", "T_p-10", FEET, {"jitter": 0.0}),
+    "joints": ("errors of joints alone, none of bones", "T_p-10", FEET, {"bones": 0.0}),
+    "alike": ("all ten poses alike", "T_p-10", FEET, {"near": 0.0}),
+    "spreads": ("errors in standard deviations", "joints", FEET, {"bones": 0.0, "metres": 0.0}),
+    "free-feet": ("no footholds", "T_p-10", FREE, {}),
+    "eps": ("eps with the skip, high noise weighted", "free-feet", EPS, {"high_noise": 3.0}),
 }
 
 
@@ -48,8 +54,8 @@ FULL, QUICK = Budget(), Budget(seconds=2, training=6, clips=8, walk_s=6)
 
 def measure(name: str, budget: Budget, clips: list, trials: Trials) -> list[Figure]:
     """The figures of one variant, and the steps its seconds were enough for."""
-    _, network, training = VARIANTS[name]
-    walker, steps = train_for(budget.seconds, clips, replace(WALKER_X0.config, **network), **training)
+    _, _, config, training = VARIANTS[name]
+    walker, steps = train_for(budget.seconds, clips, config, **training)
     walks = walker_generate(walker)(trials.past, trials.control, 0)
     found = [figure for figure in score(walks, trials.asked, trials.truth) if figure.name in SHOWN]
     print(f"{name}: {steps} steps in {budget.seconds:g} CPU-seconds, T_h = {T_H}", flush=True)

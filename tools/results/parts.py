@@ -7,6 +7,7 @@ from functools import cached_property
 from pathlib import Path
 
 import numpy as np
+from safetensors import safe_open
 
 from motiondiff_edu import checkpoints
 from motiondiff_edu.metrics.footsteps import PAPER, ROBUST
@@ -55,7 +56,7 @@ class Bench:
         if path is None:
             raise SystemExit(f"no weights are called {name!r}; there are: {', '.join(self.weights) or 'none'}")
         inputs = "-".join(_digest(x) for x in self._inputs(what))
-        key = f"{_digest(path)}-{steps}-{hold}-{what}-{json.dumps(asdict(self.size))}-{inputs}-{code_digest()}"
+        key = f"{weights_digest(path)}-{steps}-{hold}-{what}-{json.dumps(asdict(self.size))}-{inputs}-{code_digest()}"
         kept = CACHE / f"{name}-{hashlib.sha256(key.encode()).hexdigest()[:12]}.npy"
         if not kept.exists():
             generate = walker_generate(checkpoints.load_walker(path), steps, hold)
@@ -71,9 +72,14 @@ class Bench:
         return asked.past, asked.control
 
 
-def _digest(thing: Path | np.ndarray) -> str:
-    data = thing.read_bytes() if isinstance(thing, Path) else np.ascontiguousarray(thing).tobytes()
-    return hashlib.sha256(data).hexdigest()[:16]
+def _digest(array: np.ndarray) -> str:
+    return hashlib.sha256(np.ascontiguousarray(array).tobytes()).hexdigest()[:16]
+
+
+def weights_digest(path: Path) -> str:
+    """Of the tensors in a weights file, not of its card."""
+    with safe_open(path, "pt") as file:
+        return file.metadata()["sha256"][:16]
 
 
 def code_digest() -> str:
@@ -119,32 +125,44 @@ def alias_of(name: str = "walker") -> str:
     return next((other for other, path in files.items() if other != name and path == files.get(name)), name)
 
 
+def alias_records(folder: Path) -> list[dict]:
+    """The records of the walker that the name `walker` stands for, once more under that name."""
+    name = alias_of()
+    kept = folder / f"{name}.json"
+    records = json.loads(kept.read_text()) if kept.is_file() else []
+    return [one | {"name": f"walker.{one['name'].removeprefix(name + '.')}"} for one in records]
+
+
 def walker_records(bench: Bench, line: Walks, command: str) -> list[dict]:
-    """The figures of one line as records; the line that `walker` is an alias of is written under that name too."""
-    figures = line.figures(bench)
-    prefixes = [line.prefix] + (["walker"] if line.prefix == alias_of() else [])
-    return [as_record(f"{prefix}.", figure, bench, command) for prefix in prefixes for figure in figures]
+    """The figures of one line as records."""
+    return [as_record(f"{line.prefix}.", figure, bench, line, command) for figure in line.figures(bench)]
 
 
-def as_record(prefix: str, figure: Figure, bench: Bench, command: str) -> dict:
-    seeds = {"data": UNSEEN, "rollouts": 0, "clips": bench.size.clips}
+def as_record(prefix: str, figure: Figure, bench: Bench, line: Walks | None, command: str) -> dict:
+    """With all that settles the figure: seeds, how much was measured, which weights (none: the data's own)."""
+    size, seeds = bench.size, {"rollouts": 0}
     if figure.name.startswith("diversity"):
-        seeds = {"data": UNSEEN + 500_000, "rollouts": 0, "pasts": bench.size.pasts, "each": bench.size.each}
+        seeds |= {"data": UNSEEN + 500_000, "pasts": size.pasts, "each": size.each}
+    else:
+        seeds |= {"data": UNSEEN, "clips": size.clips, "seconds": size.seconds}
+    if line:
+        seeds |= {"weights": weights_digest(bench.weights[line.name]), "steps": line.steps or "all"}
     return figure.as_record(prefix, seeds, command, PAPER_BONES.get(prefix + figure.name))
 
 
 def footstep_records(bench: Bench, command: str) -> tuple[list[dict], dict[str, np.ndarray]]:
     """Table I on our data: the recorded walks and every line of walkers; and the curves of Fig. 3."""
-    sets = {"data": bench.trials.truth}
+    sets = {"data": (None, bench.trials.truth)}
     for line in LINES.values():
         if line.name in bench.weights and line.hold:
-            sets[line.prefix] = bench.rollouts(line.name, line.steps, line.hold, "walks")
+            sets[line.prefix] = line, bench.rollouts(line.name, line.steps, line.hold, "walks")
     records, curves = [], {}
-    for name, poses in sets.items():
+    for name, (line, poses) in sets.items():
         for suffix, rule in (("", PAPER), ("-robust", ROBUST)):
             table = steps_table.tables(poses, bench.trials.asked, rule)
             curves[name + suffix] = steps_table.curve(table)
-            records += [as_record(f"footsteps{suffix}.{name}.", f, bench, command) for f in steps_table.figures(table)]
+            found = steps_table.figures(table)
+            records += [as_record(f"footsteps{suffix}.{name}.", figure, bench, line, command) for figure in found]
     for one in records:
         one["paper"] = _paper_figure(one["name"])
     return records, curves

@@ -68,13 +68,13 @@ def walkers(records: dict[str, dict]) -> str:
     rows = [[f"`{kind}`", *(_cell(records.get(f"{column}.{kind}")) for column in columns)] for kind in kinds]
     if not names:
         return "## The walkers\n\nNot measured yet.\n"
-    clips = sorted({records[n]["seeds"]["clips"] for n in names if "clips" in records[n]["seeds"]})
+    seeds = {key: said for n in names for key, said in records[n]["seeds"].items()}
     return (
-        f"## The walkers\n\n{' or '.join(map(str, clips))} unseen pasts and controls of 12 s, "
-        "raw output, DDPM with S = 100 (`ddim10`: ten DDIM "
-        "steps), control held over the window (`lookahead`: the window sees the control to come). `_data` rows judge "
-        "the recorded motion under the same control. `diversity`: 50 rollouts of 3 s for each of 20 pasts, "
-        "from the end of the first second on.\n\n" + table(["figure", *columns], rows)
+        f"## The walkers\n\n{seeds.get('clips')} unseen pasts and controls of {seeds.get('seconds')} s, raw output, "
+        "DDPM with all steps (`ddim10`: ten DDIM steps), control held over the window (`lookahead`: the window sees "
+        "the control to come). `_data` rows judge the recorded motion under the same control. `diversity`: "
+        f"{seeds.get('each')} rollouts for each of {seeds.get('pasts')} pasts, from the end of the first second on."
+        "\n\n" + table(["figure", *columns], rows)
     )
 
 
@@ -88,9 +88,9 @@ def footsteps(records: dict[str, dict], folder: Path) -> str:
     rows = [[f"{who} (the paper, other data)", *map(number, row)] for who, row in PAPER_TABLE.items()]
     for kind, note in (("footsteps", ""), ("footsteps-robust", ", robust count")):
         for who in dict.fromkeys(n.split(".")[1] for n in records if n.startswith(f"{kind}.")):
-            bone = records.get(f"{who}.bone_rmse_cm")
+            bone = records.get("walker.bone_rmse_data_cm" if who == "data" else f"{who}.bone_rmse_cm")
             cells = [records[f"{kind}.{who}.{what}"] for what in ("f_est", "v95_cmps", "mean_s", "std_s")]
-            bones = number(bone["value"]) if bone else ("0" if who == "data" else "-")
+            bones = number(bone["value"]) if bone else "-"
             rows.append([f"**{who}**{note}", *(f"{number(c['value'])} {span(c)}" for c in cells), bones])
     text = (
         "## Footsteps: MoDiff's Table I and Fig. 3\n\nOur clips are others, and more of them: compare rows within "
@@ -110,18 +110,19 @@ def budget(records: dict[str, dict]) -> str:
         return ""
     kinds = list(dict.fromkeys(n.split(".")[2] for n in mine))
     rows = [
-        [words, *(_cell(mine.get(f"budget.{name}.{kind}")) for kind in kinds)]
-        for name, (words, *_) in VARIANTS.items()
+        [words, VARIANTS[base][0] if base else "-", *(_cell(mine.get(f"budget.{name}.{kind}")) for kind in kinds)]
+        for name, (words, base, *_) in VARIANTS.items()
         if f"budget.{name}.{kinds[0]}" in mine
     ]
-    seconds = next(iter(mine.values()))["seeds"]["cpu_seconds"]
+    seeds = next(iter(mine.values()))["seeds"]
     text = (
-        f"## What each choice is worth\n\nSmall walkers trained for {seconds:g} CPU-seconds each, one thread; each row "
-        "differs from the first in one thing. MoDiff (III-A) says that predicting more than one pose helps: see "
-        "T_p. DDPM with S = 100, held control, one pose kept of every window. One training seed each: small "
+        f"## What each choice is worth\n\nSmall walkers trained for {seeds['cpu_seconds']:g} CPU-seconds each, one "
+        "thread, with half the shipped walkers' batch and fewer clips; each row differs from the row named beside it "
+        "in one choice. MoDiff (III-A) says that predicting more than one pose helps: see T_p. DDPM with S = 100, "
+        f"held control, one pose kept of every window, {seeds['clips']} unseen controls. One training seed each: small "
         "differences mean nothing.\n\n"
     )
-    return text + table(["differs by", *(f"`{kind}`" for kind in kinds)], rows)
+    return text + table(["the choice", "compare with", *(f"`{kind}`" for kind in kinds)], rows)
 
 
 def others(records: dict[str, dict]) -> str:
