@@ -1,61 +1,89 @@
-"""What 80 CPU-seconds of training give: a small walker on the walks of one style (and of all), on unseen controls.
+"""What 80 CPU-seconds of training give: a small walker on three sets of walks, judged on unseen controls of the same.
+
+    one person   neutral, no waving and looking about, straight ahead and in curves: notebook 07's data (the bars)
+    one style    neutral walkers, all their behaviours, all kinds of control
+    all styles   the walkers' training data, fewer clips
 
 One thread; the budget counts only the training loop. Raw output, DDPM with S = 100, held control.
-Run: python benchmarks/walker_80s.py [--seconds 80] [--style neutral] [--out benchmarks/results/walker_80s.json]
+Run: python benchmarks/walker_80s.py [--seconds 80] [--only person] [--out benchmarks/results/walker_80s.json]
 """
 
 import argparse
 import sys
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import torch
 from records import show, write_records
 
 sys.path.insert(0, str(Path(__file__).parents[1]))  # tools, beside this folder
 
-from data_synth.walking import dataset  # noqa: E402
-from motiondiff_edu.motion.augment import augment  # noqa: E402
+from data_synth.styles import STYLES  # noqa: E402
+from data_synth.walking import dataset, random_control, walk  # noqa: E402
+from motiondiff_edu.motion.augment import mirror  # noqa: E402
+from motiondiff_edu.motion.clip import Clip  # noqa: E402
 from motiondiff_edu.pretrained.budget import train_for  # noqa: E402
 from motiondiff_edu.pretrained.recipes import WALKER_X0  # noqa: E402
 from tools.results.scores import score  # noqa: E402
 from tools.results.trials import FPS, SECONDS, T_H, UNSEEN, Trials, walker_generate  # noqa: E402
 
 COMMAND = "python -m benchmarks walker"
-CLIPS = 120
+CLIPS = 240
 CONFIG = replace(
-    WALKER_X0.config, width=96, hidden=192, motion_layers=1, control_layers=1, cross_layers=1, decoder_layers=2
+    WALKER_X0.config, width=64, hidden=256, motion_layers=1, control_layers=1, cross_layers=1, decoder_layers=2
 )
 NAMES = {"bone_rmse_cm", "adherence_excess_mps", "adherence_mps", "adherence_data_mps", "adherence_shuffled_over_own"}
 
 
-def measure(style: str | None, seconds: float, unseen: int, seed: int) -> list[dict]:
-    """Train on one style (None: all of them), walk unseen controls of the same, and score the raw output."""
-    styles, name = ([style], "bench.walker_80s_") if style else (None, "bench.walker_80s_all_styles_")
-    clips = augment(dataset(CLIPS, 20, seed=11, styles=styles))
-    trials = Trials.of(dataset(unseen, SECONDS + T_H / FPS, seed=UNSEEN, styles=styles))
-    walker, steps = train_for(seconds, clips, CONFIG, seed=seed)
+def one_person(clips: int, seconds: float, seed: int) -> list[Clip]:
+    rng, person = np.random.default_rng(seed), replace(STYLES["neutral"], behaviours=0.0)
+    kinds = ("straight", "turn") * clips
+    return [walk(random_control(seconds, rng, kinds[i]), seed + i, person) for i in range(clips)]
+
+
+def one_style(clips: int, seconds: float, seed: int) -> list[Clip]:
+    return dataset(clips, seconds, seed=seed, styles=["neutral"])
+
+
+def all_styles(clips: int, seconds: float, seed: int) -> list[Clip]:
+    return dataset(clips, seconds, seed=seed)
+
+
+SETS: dict[str, tuple[str, Callable]] = {  # name: (prefix of its records, what makes its clips)
+    "person": ("bench.walker_80s_", one_person),
+    "style": ("bench.walker_80s_one_style_", one_style),
+    "all": ("bench.walker_80s_all_styles_", all_styles),
+}
+
+
+def measure(name: str, seconds: float, unseen: int, seed: int) -> list[dict]:
+    """Train on one set of walks (each mirrored, too), walk unseen controls of the same, and score the raw output."""
+    prefix, make = SETS[name]
+    clips = [version for clip in make(CLIPS, 20.0, 11) for version in (clip, mirror(clip))]
+    trials = Trials.of(make(unseen, SECONDS + T_H / FPS, UNSEEN))
+    walker, steps = train_for(seconds, clips, CONFIG, seed=seed, batch=16)
     weights = sum(p.numel() for p in walker.model.parameters())
-    print(f"{style or 'all styles'}: {steps} steps in {seconds:g} CPU-seconds, {weights} weights", flush=True)
+    print(f"{name}: {steps} steps in {seconds:g} CPU-seconds, {weights} weights", flush=True)
     walks = walker_generate(walker)(trials.past, trials.control, 0)
     seeds = {"data": UNSEEN, "training": seed, "clips": unseen}
     found = score(walks, trials.asked, trials.truth)
-    return [figure.as_record(name, seeds, COMMAND) for figure in found if figure.name in NAMES]
+    return [figure.as_record(prefix, seeds, COMMAND) for figure in found if figure.name in NAMES]
 
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--seconds", type=float, default=80)
-    parser.add_argument("--style", default="neutral")
     parser.add_argument("--clips", type=int, default=50, help="unseen controls to walk")
     parser.add_argument("--seed", type=int, default=0)
-    parser.add_argument("--one-style", action="store_true", help="leave out the run on all styles")
+    parser.add_argument("--only", nargs="+", choices=SETS, default=list(SETS))
     parser.add_argument("--out", default="benchmarks/results/walker_80s.json")
     args = parser.parse_args()
     torch.set_num_threads(1)
     records = []
-    for style in (args.style, None)[: 1 if args.one_style else 2]:
-        records += measure(style, args.seconds, args.clips, args.seed)
+    for name in args.only:
+        records += measure(name, args.seconds, args.clips, args.seed)
         show([one for one in records[-len(NAMES) :] if one["value"] is not None])
     write_records(args.out, records)
 
