@@ -3,6 +3,7 @@
 import json
 import pickle
 import warnings
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -192,9 +193,35 @@ def test_a_schedule_out_of_range_or_of_another_length(saved: Path):
         load_walker(saved)
 
 
-@pytest.mark.parametrize("config", ['{"flow_steps": 3}', "{broken", '"a string"', '{"width": "wide"}', None])
+NONSENSE = [
+    '{"flow_steps": 3}',
+    "{broken",
+    '"a string"',
+    '{"width": "wide"}',
+    '{"heads": 0}',
+    '{"target": "foo"}',
+    None,
+]
+
+
+@pytest.mark.parametrize("config", NONSENSE)
 def test_a_configuration_that_makes_no_sense(saved: Path, config: str | None):
     metadata = {"format": checkpoints.FORMAT, "schedule": "linear", "card": "{}"}
     rewrite(saved, lambda tensors: None, metadata | ({"config": config} if config else {}))
     with pytest.raises(CheckpointError, match="tiny.safetensors"):
         load_walker(saved)
+
+
+def test_a_network_of_a_later_version_is_refused_by_name(saved: Path):
+    with safe_open(saved, "pt") as file:
+        metadata = {k: v for k, v in file.metadata().items() if k != "sha256"}
+    rewrite(saved, lambda tensors: None, metadata | {"network": "BetterMoDiff"})
+    with pytest.raises(CheckpointError, match="unknown network, BetterMoDiff; upgrade"):
+        load_walker(saved)
+
+
+def test_a_whole_number_for_a_share_comes_back(tmp_path: Path):
+    walker = tiny_walker()
+    model = MoDiff(replace(walker.config, dropout=0))
+    kept = save_walker(replace(walker, model=model), tmp_path / "whole.safetensors")
+    assert load_walker(kept).config.dropout == 0

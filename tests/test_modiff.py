@@ -47,6 +47,12 @@ def test_paper_sizes():
     assert 11e6 < paper < 13e6 and small < 2e6  # a paper-width block has 12 * 256^2 weights and a bit
 
 
+@pytest.mark.parametrize("wrong", [{"heads": 0}, {"S": -1}, {"target": "foo"}, {"decoder_layers": -1}])
+def test_sizes_that_make_no_network_are_refused(wrong):
+    with pytest.raises(ValueError, match=next(iter(wrong))):
+        replace(TINY, **wrong)
+
+
 @pytest.mark.parametrize("config", [TINY, MODIFF_SMALL], ids=["tiny", "small"])
 def test_output_has_the_shape_of_the_future(config):
     x_s, s, past, control = inputs(config)

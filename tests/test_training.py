@@ -13,7 +13,9 @@ import torch
 from safetensors.torch import load_file, save_file
 from torch import nn
 
-from motiondiff_edu.runs import resume_run, save_run, saver
+from motiondiff_edu.modiff import MoDiff, MoDiffConfig
+from motiondiff_edu.muon import MuonAndAdam
+from motiondiff_edu.runs import notes_of, resume_run, save_run, saver
 from motiondiff_edu.training import NonFiniteLoss, TrainState, cosine_lr, train_steps
 
 
@@ -127,6 +129,21 @@ def test_a_run_begun_with_other_settings_is_refused(tmp_path: Path):
     save_run(state, path)
     with pytest.raises(ValueError, match="begun with jitter = None"):
         resume_run(state, path, {"jitter": 0.1})
+
+
+def test_the_moments_of_one_optimizer_are_not_given_to_another(tmp_path: Path):
+    model = MoDiff(MoDiffConfig(T_h=4, T_p=3, S=6, width=16, heads=2, hidden=24))
+    path = tmp_path / "run.safetensors"
+    save_run(TrainState.start(model, optimizer=MuonAndAdam(model)), path)
+    with pytest.raises(ValueError, match="trained by MuonAndAdam, not by Adam"):
+        resume_run(TrainState.start(model), path)
+
+
+def test_notes_are_kept_and_do_not_hinder(tmp_path: Path):
+    path, state = tmp_path / "run.safetensors", TrainState.start(network())
+    assert notes_of(path) == []
+    save_run(state, path, notes=[{"from_step": 0}])
+    assert notes_of(path) == [{"from_step": 0}] and resume_run(state, path) is state
 
 
 def test_the_seconds_of_a_run_go_on_counting(tmp_path: Path):

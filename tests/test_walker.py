@@ -1,5 +1,7 @@
 """A walker samples with its own schedule in its own units, and `generate` leads in and out of metres."""
 
+import inspect
+
 import pytest
 import torch
 
@@ -99,6 +101,10 @@ def test_errors_say_what_is_wrong():
     walker, (past, control) = tiny_walker(), inputs()
     with pytest.raises(ValueError, match=r"continues 4 past poses, got 3.*past\[\.\.\., -4:, :\]"):
         generate(walker, past[:, :3], control)
+    with pytest.raises(ValueError, match=r"flatten positions \(T, 21, 3\)"):
+        inspect.unwrap(generate)(walker, past[0].unflatten(-1, (21, 3)), control[0])  # past the tests' own type checks
+    with pytest.raises(ValueError, match=r"and \(B, T, 3\)"):
+        generate(walker, past, control[..., :2])
     with pytest.raises(ValueError, match="4 rows, 4 of them beside the past: none is left"):
         generate(walker, past, control[:, :T_H])
     for broken in (0, 1):
@@ -108,6 +114,13 @@ def test_errors_say_what_is_wrong():
             generate(walker, *holed)
     with pytest.raises(ValueError, match="between 1 and 6 steps"):
         generate(walker, past, control, steps=7)
+
+
+def test_a_walker_moved_is_a_copy_that_walks_alike():
+    walker, (past, control) = tiny_walker(), inputs()
+    moved = walker.to("cpu")
+    assert moved.model is not walker.model and moved.card == walker.card
+    torch.testing.assert_close(generate(moved, past, control), generate(walker, past, control))
 
 
 def noise_over_signal(schedule):

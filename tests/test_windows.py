@@ -1,5 +1,7 @@
 """Windows never cross clips, half of them are held, the scalers lead back to metres, and the loss is Algorithm 1."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import torch
@@ -78,6 +80,11 @@ def test_clips_that_are_too_short_are_refused():
         Windows.of([ramp_clip(0, 6)], T_H, T_P)
     with pytest.raises(ValueError, match="no clip"):
         Windows.of([], T_H, T_P)
+
+
+def test_clips_of_another_frame_rate_are_refused():
+    with pytest.raises(ValueError, match="clip 'quick' has 60 frames/s; bring it to 20 first"):
+        Windows.of([ramp_clip(0, 30), replace(ramp_clip(1, 30), fps=60, source="quick")], T_H, T_P)
 
 
 @pytest.mark.parametrize("target", ["eps", "x0", "v"])
