@@ -10,7 +10,7 @@ from data_synth.walking import walk
 from motiondiff_edu.checkpoints import pretrained
 from motiondiff_edu.rollout import generate
 
-WALKER = SimpleNamespace(config=SimpleNamespace(T_h=4, T_p=2, D=6))
+WALKER = SimpleNamespace(config=SimpleNamespace(T_h=4, T_p=2, D=6, C=3))
 
 
 @pytest.mark.parametrize(

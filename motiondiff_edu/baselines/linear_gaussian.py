@@ -31,7 +31,7 @@ class LinearGaussian:
     @property
     def config(self) -> SimpleNamespace:
         """The sizes that `rollout.generate` asks for."""
-        return SimpleNamespace(T_h=self.T_h, T_p=1, D=self.weight.shape[1])
+        return SimpleNamespace(T_h=self.T_h, T_p=1, D=self.weight.shape[1], C=len(self.control_scaler.mean))
 
     def mean(self, past: Float[Tensor, "B T_h D"], control: Float[Tensor, "B T C"]) -> Float[Tensor, "B D"]:
         """The expected next pose; of the control, the rows beside the past are used.  Notebook: 07"""
