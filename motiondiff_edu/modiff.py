@@ -8,7 +8,7 @@ Source: MoDiff III-F, IV-A, Fig. 2.  Notebook: 07
 """
 
 import math
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, fields
 
 import torch
 from jaxtyping import Float, Int
@@ -44,7 +44,7 @@ class MoDiffConfig:
 
     def __post_init__(self):
         """Raises ValueError for sizes of which no network can be built, and for an unknown target."""
-        sizes = {name: value for name, value in asdict(self).items() if type(value) is int}
+        sizes = {field.name: getattr(self, field.name) for field in fields(self) if type(field.default) is int}
         bad = next((name for name, value in sizes.items() if value < ("layers" not in name)), None)
         if bad:
             raise ValueError(f"{bad} = {sizes[bad]} makes no network")

@@ -9,11 +9,16 @@ import pytest
 import torch
 
 from motiondiff_edu import rollout
+from motiondiff_edu.foothold import FootholdMoDiff
 
 
 def standing_still(walker, past, control, **options) -> torch.Tensor:
-    """Instead of `rollout.generate`: the last pose again and again."""
-    return past[..., -1:, :].repeat_interleave(control.shape[-2] - past.shape[-2], dim=-2)
+    """Instead of `rollout.generate`: the last pose again and again. Who listens to the gate hears ten calls a frame."""
+    frames = control.shape[-2] - past.shape[-2]
+    if isinstance(getattr(walker, "model", None), FootholdMoDiff):
+        for _ in range(10 * frames):
+            walker.fast.model.gate(torch.zeros(1, walker.config.T_p, walker.config.width))
+    return past[..., -1:, :].repeat_interleave(frames, dim=-2)
 
 
 @pytest.fixture

@@ -41,7 +41,8 @@ class CheckFailed(AssertionError):
         lines = [f"{type(self).__name__}: {self}"]
         if self.__cause__ is not None:
             frames = traceback.extract_tb(self.__cause__.__traceback__)
-            own = [frame for frame in frames if __package__.replace(".", "/") not in frame.filename.replace("\\", "/")]
+            ours = (__package__.replace(".", "/"), "site-packages")
+            own = [frame for frame in frames if not any(part in frame.filename.replace("\\", "/") for part in ours)]
             lines += [f"  line {frame.lineno} of {frame.name}: {frame.line}" for frame in own[:3]]
         return lines
 

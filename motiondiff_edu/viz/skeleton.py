@@ -90,6 +90,7 @@ def draw_pose(
 ) -> None:
     """One figure in one axis, seen from its right and a little ahead, standing on a bit of floor."""
     size = (270, 420)
+    pose = np.asarray(pose, np.float64)
     camera = (camera or body.Camera(focal=2.3)).at(*pose[HIPS, [0, 2]])
     for polygon in body.shadow_polygons(pose, camera, size):
         axis.add_patch(Polygon(polygon, color="#D5D9DF", lw=0, zorder=1))
