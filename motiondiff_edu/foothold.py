@@ -115,10 +115,6 @@ class FootholdMoDiff(MoDiff):
         x = self.attend(self.embed(x_s, s), context.memory)
         return blend(self.head(x), self.gate(x), context.held)
 
-    def gates(self, x_s: Float[Tensor, "B T_p D"], s: Int[Tensor, "B"], context: Standing) -> Float[Tensor, "B T_p F"]:
-        """How much of its place each of the four joints of FEET keeps, 0 to 1: for looking at.  Notebook: 07"""
-        return torch.sigmoid(self.gate(self.attend(self.embed(x_s, s), context.memory)))
-
 
 def blend(
     free: Float[Tensor, "B T_p D"], gate: Float[Tensor, "B T_p F"], held: Float[Tensor, "B T_p K"]

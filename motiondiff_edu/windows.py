@@ -109,11 +109,8 @@ def window_loss(
     `foothold`): with all of it the gate would learn never to hold.
     Source: MoDiff eq. 10, Alg. 1; all but the squared error itself is ours.  Notebook: 07
     """
-    change = typical_change(windows)
-    std = windows.pose_scaler.std
-    rows = 1 / (change * std).square().mean(1, keepdim=True).sqrt() ** near
-    columns = rows * std**metres
-    rows, columns = rows / columns.mean(), columns / columns.mean()
+    change, std = typical_change(windows), windows.pose_scaler.std
+    rows, columns = error_weights(change, std, metres, near)
     noise_over_signal = ((1 - schedule.alpha_bar) / schedule.alpha_bar).float()
     steps = 1 + noise_over_signal.clamp_max(high_noise)
 
@@ -138,6 +135,15 @@ def window_loss(
         return loss
 
     return loss_fn
+
+
+def error_weights(
+    change: Float[Tensor, "T_p D"], std: Float[Tensor, "D"], metres: float, near: float
+) -> tuple[Float[Tensor, "T_p 1"], Float[Tensor, "T_p D"]]:
+    """Weights of frames, and of frames and columns together, whose mean is 1; as `window_loss` says."""
+    rows = 1 / (change * std).square().mean(1, keepdim=True).sqrt() ** near
+    columns = rows * std**metres
+    return rows / columns.mean(), columns / columns.mean()
 
 
 def bone_errors(error: Float[Tensor, "B T D"]) -> Float[Tensor, "B T 20"]:

@@ -194,8 +194,8 @@ def test_gates_are_those_the_answer_was_made_with():
     model = tiny()
     with torch.no_grad():
         context = model.encode(past, control)
-        gates = model.gates(x_s, s, context)
-        free = model.head(model.attend(model.embed(x_s, s), context.memory))
+        x = model.attend(model.embed(x_s, s), context.memory)
+        gates, free = torch.sigmoid(model.gate(x)), model.head(x)
         out = model(x_s, s, past, control)
     assert gates.shape == (B, T_P, 4) and 0 < gates.min() < 0.3 and 0.7 < gates.max() < 1
     share = ((out - free)[..., COLUMNS] / (context.held - free[..., COLUMNS])).unflatten(-1, (4, 3)).median(-1).values

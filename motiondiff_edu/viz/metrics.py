@@ -7,6 +7,7 @@ from collections.abc import Mapping
 
 import numpy as np
 from jaxtyping import Bool, Float
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from ..metrics.footsteps import runs
@@ -55,8 +56,7 @@ def toe_heights(
     """Height of the toes over time, in cm; grey where the lower one, under `below` metres, is planted."""
     fig, (axis,) = figure(9, 3.4, words)
     seconds = np.arange(len(height)) / fps
-    for begin, end in runs(planted):
-        axis.axvspan(begin / fps, end / fps, color="0.9", lw=0)
+    _shade(axis, planted, fps)
     for side, (label, colour) in enumerate((("left toe", LEFT_COLOUR), ("right toe", RIGHT_COLOUR))):
         axis.plot(seconds, 100 * height[:, side], "-" if side == 0 else "--", label=label, color=colour)
     axis.axhline(100 * below, color=INK, lw=1, ls=":", label=f"{100 * below:g} cm")
@@ -75,12 +75,17 @@ def gates(
     for side, (axis, label, colour) in enumerate(
         zip(axes, ("left toe", "right toe"), (LEFT_COLOUR, RIGHT_COLOUR), strict=True)
     ):
-        for begin, end in runs(planted[:, side]):
-            axis.axvspan(begin / fps, end / fps, color="0.88", lw=0)
+        _shade(axis, planted[:, side], fps)
         axis.plot(seconds, gate[:, side], color=colour)
         axis.set(ylabel=label, ylim=(-0.05, 1.05), yticks=(0, 0.5, 1))
     axes[-1].set_xlabel("seconds")
     return fig
+
+
+def _shade(axis: Axes, planted: np.ndarray, fps: float | int) -> None:
+    """Grey for as long as a foot is planted."""
+    for begin, end in runs(planted):
+        axis.axvspan(begin / fps, end / fps, color="0.9", lw=0)
 
 
 def score_table(scores: Mapping[str, Mapping[str, float]], words: str) -> Figure:

@@ -60,9 +60,7 @@ def side_by_side(
         if row == 0:
             axis.set_title(f"{t / fps:.1f} s", fontsize=SMALL)
         if i % n == 0:
-            axis.text(
-                -0.05, 0.5, names[row], rotation=90, va="center", ha="right", transform=axis.transAxes, fontsize=MEDIUM
-            )
+            _name_row(axis, names[row])
     fig.legend(handles=SIDES, loc="outside lower right", ncols=2, frameon=False, fontsize=SMALL)
     return fig
 
@@ -79,10 +77,14 @@ def noise_to_motion(moments: Mapping[int, Float[np.ndarray, "T 21 3"]], words: s
             draw_pose(axis, poses[t])
             if row == 0:
                 axis.set_title(f"pose {t + 1}", fontsize=SMALL)
-        axes[row * n].text(-0.05, 0.5, f"s = {s}", rotation=90, va="center", ha="right",
-                           transform=axes[row * n].transAxes, fontsize=MEDIUM)  # fmt: skip
+        _name_row(axes[row * n], f"s = {s}")
     fig.legend(handles=SIDES, loc="outside lower right", ncols=2, frameon=False, fontsize=SMALL)
     return fig
+
+
+def _name_row(axis: Axes, name: str) -> None:
+    """Upright, to the left of the first axis of a row."""
+    axis.text(-0.05, 0.5, name, rotation=90, va="center", ha="right", transform=axis.transAxes, fontsize=MEDIUM)
 
 
 def draw_pose(

@@ -36,7 +36,7 @@ def main() -> None:
     asked = arguments()
     docs = Path("build/quick") if asked.quick else DOCS
     if not asked.render:
-        measure(asked.only, Bench(QUICK if asked.quick else FULL, weights_of(asked.weights)), docs / "results", asked)
+        measure(asked, docs / "results")
     write_records(docs / "results" / "walker.json", alias_records(docs / "results"))
     if not asked.quick:
         add_metrics(docs / "results")
@@ -53,12 +53,13 @@ def weights_of(items: list[str]) -> dict[str, Path]:
     return {name: Path(file) for name, _, file in pairs}
 
 
-def measure(only: list[str], bench: Bench, folder: Path, asked: argparse.Namespace) -> None:
+def measure(asked: argparse.Namespace, folder: Path) -> None:
     """Run the parts asked for (all that have weights, when none is named) and write their records."""
-    lines = LINES | {name: Walks(name, name) for name in weights_of(asked.weights)}
+    extra = weights_of(asked.weights)
+    bench, lines = Bench(QUICK if asked.quick else FULL, extra), LINES | {name: Walks(name, name) for name in extra}
     options = " --quick" * asked.quick + "".join(f" --weights {item}" for item in asked.weights)
     there = [prefix for prefix, line in lines.items() if line.name in bench.weights]
-    parts = only or [*there, *OTHERS]
+    parts = asked.only or [*there, *OTHERS]
     unknown = set(parts) - set(lines) - set(OTHERS)
     if unknown:
         sys.exit(f"no part is called {', '.join(sorted(unknown))}; there are: {', '.join([*lines, *OTHERS])}")

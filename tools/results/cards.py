@@ -1,20 +1,18 @@
 """The measured figures on the cards of the shipped weights: whoever opens a card sees how good the walker is."""
 
-import json
 from dataclasses import replace
 from pathlib import Path
 
 from motiondiff_edu import checkpoints
 
-from .parts import weights_digest
+from .parts import kept_records, weights_digest
 
 SHOWN = ("bone_rmse_cm", "adherence_mps", "adherence_excess_mps", "drift_ratio", "skating_mps", "diversity_over_data")
 
 
 def metrics(folder: Path, name: str, digest: str) -> dict[str, float]:
     """What the records of this walker say, where they are of these very weights."""
-    kept = folder / f"{name}.json"
-    records = {one["name"]: one for one in json.loads(kept.read_text())} if kept.is_file() else {}
+    records = {one["name"]: one for one in kept_records(folder, name)}
     mine = {kind: records.get(f"{name}.{kind}") for kind in SHOWN}
     return {kind: one["value"] for kind, one in mine.items() if one and one["seeds"]["weights"] == digest}
 

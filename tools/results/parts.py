@@ -128,9 +128,13 @@ def alias_of(name: str = "walker") -> str:
 def alias_records(folder: Path) -> list[dict]:
     """The records of the walker that the name `walker` stands for, once more under that name."""
     name = alias_of()
+    return [one | {"name": f"walker.{one['name'].removeprefix(name + '.')}"} for one in kept_records(folder, name)]
+
+
+def kept_records(folder: Path, name: str) -> list[dict]:
+    """The records of a part; none before it was measured."""
     kept = folder / f"{name}.json"
-    records = json.loads(kept.read_text()) if kept.is_file() else []
-    return [one | {"name": f"walker.{one['name'].removeprefix(name + '.')}"} for one in records]
+    return json.loads(kept.read_text()) if kept.is_file() else []
 
 
 def walker_records(bench: Bench, line: Walks, command: str) -> list[dict]:
