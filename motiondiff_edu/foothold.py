@@ -119,10 +119,19 @@ class FootholdMoDiff(MoDiff):
 def blend(
     free: Float[Tensor, "B T_p D"], gate: Float[Tensor, "B T_p F"], held: Float[Tensor, "B T_p K"]
 ) -> Float[Tensor, "B T_p D"]:
-    """gate * held + (1 - gate) * free in the feet's columns, the gate as a logit for each joint; in float32."""
-    out, share = free.float().clone(), torch.sigmoid(gate.float()).repeat_interleave(3, dim=-1)
+    """openness * held + (1 - openness) * free in the feet's columns, the gate as a logit for each joint; in float32."""
+    out, share = free.float().clone(), openness(gate).repeat_interleave(3, dim=-1)
     out[..., COLUMNS] = torch.lerp(out[..., COLUMNS], held, share)
     return out
+
+
+def openness(gate: Float[Tensor, "*B F"]) -> Float[Tensor, "*B F"]:
+    """How much of its place a joint keeps, 0 to 1, from the gate's logit: a sigmoid stretched by a tenth at both ends.
+
+    A plain sigmoid comes near 1 and never there, and the rest lets the foot creep; cut off at 1, it stands still.
+    Source: the stretch is that of the hard concrete distribution (Louizos et al. 2018).  Notebook: 07
+    """
+    return (1.2 * torch.sigmoid(gate.float()) - 0.1).clamp(0, 1)
 
 
 def network(config: MoDiffConfig, pose_scaler: Scaler, control_scaler: Scaler) -> MoDiff:

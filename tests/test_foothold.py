@@ -10,7 +10,16 @@ import torch
 from motiondiff_edu.checkpoints import load_walker, save_walker
 from motiondiff_edu.ddpm import linear_schedule
 from motiondiff_edu.fast.foothold import FastFoothold
-from motiondiff_edu.foothold import COLUMNS, FEET, FootholdConfig, FootholdMoDiff, blend, held_positions, network
+from motiondiff_edu.foothold import (
+    COLUMNS,
+    FEET,
+    FootholdConfig,
+    FootholdMoDiff,
+    blend,
+    held_positions,
+    network,
+    openness,
+)
 from motiondiff_edu.modiff import MoDiff, MoDiffConfig
 from motiondiff_edu.motion.clip import Clip
 from motiondiff_edu.motion.root_frame import to_world
@@ -91,7 +100,7 @@ def test_a_closed_gate_is_plain_modiff():
 
 def test_the_gate_shares_by_joint():
     held, free = torch.ones(1, 1, 12), torch.zeros(1, 1, 63)
-    out = blend(free, torch.logit(torch.tensor([[[0.1, 0.2, 0.3, 0.4]]])), held)[0, 0]
+    out = blend(free, torch.logit((torch.tensor([[[0.1, 0.2, 0.3, 0.4]]]) + 0.1) / 1.2), held)[0, 0]
     wanted = torch.zeros(21, 3)
     wanted[FEET] = torch.tensor([[0.1], [0.2], [0.3], [0.4]])
     torch.testing.assert_close(out.view(21, 3), wanted)
@@ -189,14 +198,20 @@ def test_bones_add_their_errors_to_the_loss():
     assert loss(1.0) > loss(0.0) and loss(2.0) - loss(1.0) == pytest.approx(loss(1.0) - loss(0.0), rel=1e-4)
 
 
+def test_a_gate_opens_and_closes_all_the_way():
+    """Where a plain sigmoid stops short of 0 and 1 the stretched one is there; halfway is halfway."""
+    gate = torch.tensor([-9.0, -2.4, 0.0, 2.4, 9.0])
+    torch.testing.assert_close(openness(gate), torch.tensor([0.0, 0.0, 0.5, 1.0, 1.0]))
+
+
 def test_gates_are_those_the_answer_was_made_with():
     x_s, s, past, control = inputs()
     model = tiny()
     with torch.no_grad():
         context = model.encode(past, control)
         x = model.attend(model.embed(x_s, s), context.memory)
-        gates, free = torch.sigmoid(model.gate(x)), model.head(x)
+        gates, free = openness(model.gate(x)), model.head(x)
         out = model(x_s, s, past, control)
-    assert gates.shape == (B, T_P, 4) and 0 < gates.min() < 0.3 and 0.7 < gates.max() < 1
+    assert gates.shape == (B, T_P, 4) and 0 <= gates.min() < 0.3 and 0.7 < gates.max() <= 1
     share = ((out - free)[..., COLUMNS] / (context.held - free[..., COLUMNS])).unflatten(-1, (4, 3)).median(-1).values
     torch.testing.assert_close(share, gates, atol=1e-3, rtol=1e-3)
