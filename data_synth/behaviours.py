@@ -6,7 +6,7 @@ A pose of an arm is (swing, abduction, twist, elbow) in degrees: swing forward +
 from dataclasses import dataclass
 
 import numpy as np
-from jaxtyping import Float
+from jaxtyping import Bool, Float
 
 from .noise import follow
 
@@ -49,7 +49,7 @@ def _states(u: np.ndarray, kinds: int, per_second: float, lasts: tuple[float, fl
     return on
 
 
-def behaviours(u: Float[np.ndarray, "T 4"], per_minute: float, calm: np.ndarray, fps: float) -> Behaviours:
+def behaviours(u: Float[np.ndarray, "T 4"], per_minute: float, calm: Bool[np.ndarray, "T"], fps: float) -> Behaviours:
     """Draw what happens from uniform numbers; nothing begins where `calm` is False (running fast)."""
     arms = _states(u[:, :2], len(ARM_KINDS), per_minute / 100, LASTS["arms"], calm, fps)
     head = _states(u[:, 2:], len(HEAD_KINDS), per_minute / 100, LASTS["head"], calm, fps)
@@ -57,7 +57,7 @@ def behaviours(u: Float[np.ndarray, "T 4"], per_minute: float, calm: np.ndarray,
 
 
 def pose_arm(
-    free: Float[np.ndarray, "T 4"], side: int, doing: Behaviours, wave: np.ndarray
+    free: Float[np.ndarray, "T 4"], side: int, doing: Behaviours, wave: Float[np.ndarray, "T"]
 ) -> Float[np.ndarray, "T 4"]:
     """Mix the freely swinging arm (side 0 left, 1 right) with the poses that are going on; `wave` in -1..1."""
     pose = free.copy()
@@ -72,7 +72,7 @@ def pose_arm(
     return pose
 
 
-def swing_factor(doing: Behaviours) -> np.ndarray:
+def swing_factor(doing: Behaviours) -> Float[np.ndarray, "T"]:
     """What the behaviours do to the arm swing: held nearly still, or swung wide."""
     k = len(ARM_POSES)
     return 1 - 0.8 * doing.arms[:, k] + 0.55 * doing.arms[:, k + 1]

@@ -28,10 +28,11 @@ class Walk:
     down: Bool[np.ndarray, "T 2"]
     level: Float[np.ndarray, "2"]  # stance height of the Foot joints
 
-    def joint(self, name: str) -> np.ndarray:
+    def joint(self, name: str) -> Float[np.ndarray, "T 3"]:
+        """Where this joint is, in the world."""
         return self.world[:, joint_index(name)]
 
-    def sagittal(self, frm: str, to: str, up: float = -1.0) -> np.ndarray:
+    def sagittal(self, frm: str, to: str, up: float = -1.0) -> Float[np.ndarray, "T"]:
         """Angle (degrees, forward positive) of a bone from the vertical in the facing plane."""
         d = self.joint(to) - self.joint(frm)
         ahead = (d[:, [0, 2]] * self.facing).sum(-1)
@@ -142,7 +143,7 @@ def _between(walk: Walk, a: str, b: str, c: str) -> np.ndarray:
     return np.degrees(np.arccos(np.clip(cos, -1, 1)))
 
 
-def over_cycle(values: np.ndarray, cycle: Cycle) -> np.ndarray:
+def over_cycle(values: Float[np.ndarray, "T *D"], cycle: Cycle) -> Float[np.ndarray, "P *D"]:
     """The curve at GRID phases of the cycle (cubic spline)."""
     a, b = max(cycle.start - 2, 0), min(cycle.end + 3, len(values))
     return CubicSpline(np.arange(a, b), values[a:b], axis=0)(cycle.start + GRID * (cycle.end - cycle.start))

@@ -31,12 +31,12 @@ class Feet:
     yaw: Float[np.ndarray, "T 2"]
 
 
-def softplus(x: np.ndarray, width: float) -> np.ndarray:
+def softplus(x: Float[np.ndarray, "*T"], width: float) -> Float[np.ndarray, "*T"]:
     """max(x, 0), rounded over about `width`."""
     return width * np.logaddexp(0.0, x / width)
 
 
-def heel_rise(behind: np.ndarray) -> np.ndarray:
+def heel_rise(behind: Float[np.ndarray, "*T"]) -> Float[np.ndarray, "*T"]:
     """Degrees that the heel must rise when the toe is this far behind the hip (metres)."""
     return 190 * softplus(behind - 0.18, 0.02)
 
@@ -104,12 +104,14 @@ def pelvis_rotation(yaw, roll, pitch) -> Float[np.ndarray, "T 3 3"]:
     return rot_y(yaw) @ rot_z(roll) @ rot_x(pitch)
 
 
-def own_roll(clock: np.ndarray, amount: np.ndarray) -> np.ndarray:
+def own_roll(clock: Float[np.ndarray, "T"], amount: Float[np.ndarray, "T"]) -> Float[np.ndarray, "T"]:
     """Roll of the pelvis in radians, left side up: half the difference of both sides' curves."""
     return np.radians(periodic(ROLL, clock) - periodic(ROLL, clock + 0.5)) / 2 * amount
 
 
-def hips_within_reach(hips: np.ndarray, rotation: np.ndarray, feet: Feet) -> np.ndarray:
+def hips_within_reach(
+    hips: Float[np.ndarray, "T 3"], rotation: Float[np.ndarray, "T 3 3"], feet: Feet
+) -> Float[np.ndarray, "T 3"]:
     """Lower the pelvis, smoothly, where a leg would have to be longer than it is; long steps pull it along."""
     hips = hips.copy()
     sockets = [rotation @ OFFSETS[joint] for joint in (1, 5)]
@@ -126,7 +128,7 @@ def hips_within_reach(hips: np.ndarray, rotation: np.ndarray, feet: Feet) -> np.
     return hips
 
 
-def not_folded(hips: np.ndarray, rotation: np.ndarray, feet: Feet) -> Feet:
+def not_folded(hips: Float[np.ndarray, "T 3"], rotation: Float[np.ndarray, "T 3 3"], feet: Feet) -> Feet:
     """Lower a swinging foot that comes so near its hip that the knee would fold beyond 135 degrees or so."""
     sockets = np.stack([hips + rotation @ OFFSETS[j] for j in (1, 5)], 1)
     near = softplus(0.34 - np.linalg.norm(feet.ankle - sockets, axis=-1), 0.012)

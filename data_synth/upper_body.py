@@ -43,7 +43,9 @@ def trunk(
     return Trunk(angles[0], angles[1], angles[2] - 0.45 * inward, angles[3], angles[4])
 
 
-def spine(hips: Float[np.ndarray, "T 3"], pelvis: Float[np.ndarray, "T 3 3"], pose: Trunk, pelvis_yaw: np.ndarray):
+def spine(
+    hips: Float[np.ndarray, "T 3"], pelvis: Float[np.ndarray, "T 3 3"], pose: Trunk, pelvis_yaw: Float[np.ndarray, "T"]
+):
     """Positions of Spine, Spine1, Neck1 and Head, and the rotation that carries the shoulders."""
     low = pelvis @ rot_x(0.5 * pose.lean) @ rot_z(0.5 * pose.roll)
     mid = rot_y(0.5 * pose.yaw + 0.5 * pelvis_yaw) @ rot_z(pose.roll) @ rot_x(1.0 * pose.lean)
@@ -72,7 +74,9 @@ def free_arm(clock, side: int, amount, run, speed, swing, noise: Float[np.ndarra
     return np.stack([upper, abduct, 14 + 14 * run + 0 * upper, elbow], -1)
 
 
-def arm(neck: np.ndarray, shoulders: np.ndarray, joint: int, pose: Float[np.ndarray, "T 4"]):
+def arm(
+    neck: Float[np.ndarray, "T 3"], shoulders: Float[np.ndarray, "T 3 3"], joint: int, pose: Float[np.ndarray, "T 4"]
+):
     """Shoulder, elbow, hand and finger positions of the arm that starts at `joint` (13 left, 17 right)."""
     side = 1.0 if joint == 13 else -1.0
     swing, abduct, twist, elbow = np.radians(pose).T

@@ -204,7 +204,7 @@ def dropped_weight(schedule: Schedule) -> Table:
 
 
 # ---- the variational bound, in nats, one number for each sample of the batch ---------------------------------------
-def gaussian_kl(mean_1: Tensor, variance_1: Tensor, mean_2: Tensor, variance_2: Tensor) -> Float[Tensor, "B"]:
+def gaussian_kl(mean_1: X, variance_1: Tensor, mean_2: X, variance_2: Tensor) -> Float[Tensor, "B"]:
     """KL(N(mean_1, variance_1 I) || N(mean_2, variance_2 I)), summed over all entries but the batch. Notebook: 02."""
     each = (variance_2 / variance_1).log() + (variance_1 + (mean_1 - mean_2).square()) / variance_2 - 1
     return each.flatten(1).sum(1) / 2

@@ -7,6 +7,7 @@ from ._report import check, expect, expect_close
 
 @check
 def right_turn(mine):
+    """mine() -> (100, 3): the control of five seconds with one turn to the right."""
     got = mine()
     expect(got is not None, "nothing comes back; is a `return` missing?")
     got = np.asarray(got, dtype=float)
@@ -28,6 +29,7 @@ def right_turn(mine):
 
 @check
 def splice_control(mine):
+    """mine(past, new, T_h): the last T_h rows of the past, its last one leading into the first new frame."""
     past, new = np.arange(18.0).reshape(6, 3), 100 + np.arange(12.0).reshape(4, 3)
     before = past.copy()
     got = mine(past, new, 5)

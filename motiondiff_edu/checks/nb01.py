@@ -7,6 +7,7 @@ from ._report import check, expect, expect_close
 
 @check
 def lengths_of_bones(mine):
+    """mine(positions, bones) on a small skeleton whose bones are 5, 12 and 3 long."""
     bones = [(0, 1), (1, 2), (0, 3)]
     positions = np.zeros((2, 4, 3))
     positions[:, 1:] = [[3, 4, 0], [3, 4, 12], [1, 2, 2]]  # bones of 5, 12 and 3
@@ -27,6 +28,7 @@ def lengths_of_bones(mine):
 
 @check
 def place_in_world(mine):
+    """mine(pose, x, z, heading): four joints, turned and moved, at headings whose sines are known."""
     pose = np.array([[0.0, 1.0, 0.0], [0.2, 1.5, 0.0], [0.0, 0.1, 0.3], [-0.1, 0.4, 0.05]])
     quarter = mine(pose, 2.0, 5.0, np.pi / 2)  # facing +x, so left is -z
     x, y, z = pose.T
@@ -66,6 +68,7 @@ def _expect_poses(seen, poses):
 
 @check
 def mirror_walk(mine):
+    """mine(poses, control): every joint changes side, and so do two columns of the control."""
     poses, control = _small_walk()
     before = poses.copy(), control.copy()
     answer = mine(poses, control)

@@ -7,6 +7,7 @@ from ._report import check, expect, expect_close
 
 @check
 def q_sample(mine):
+    """mine(x0, s, alpha_bar, noise) at two steps, where the roots are round numbers."""
     x0 = torch.arange(30.0).reshape(2, 5, 3) / 10 - 1
     noise = torch.linspace(2, -1, 30).reshape(2, 5, 3)
     s, alpha_bar = torch.tensor([2, 1]), torch.tensor([1.0, 0.64, 0.36])
@@ -64,6 +65,7 @@ def posterior(mine):
 
 @check
 def constant_beta(mine):
+    """mine(S, left) -> beta: S steps of it must leave that share of the amplitude."""
     for S, left in ((10, 0.1), (100, 0.05)):
         beta = float(mine(S, left))
         expect(0 < beta < 1, f"beta must lie between 0 and 1; for S = {S} and left = {left} yours is {beta:g}")

@@ -79,6 +79,7 @@ def step_back(mine):
 
 @check
 def leap(mine):
+    """mine(x_s, eps_hat, alpha_bar_s, alpha_bar_r, eta, z): one DDIM step, where the roots are round numbers."""
     now, then, eta = 0.36, 0.64, 0.5
     x, eps, z = torch.tensor([[1.0, -2.0, 0.5]]), torch.tensor([[0.4, 1.0, -1.0]]), torch.tensor([[2.0, -1.0, 3.0]])
     x0 = (x - 0.8 * eps) / 0.6

@@ -8,6 +8,7 @@ from ._report import check, expect, expect_close
 
 @check
 def back_to_x0(mine):
+    """mine(output, x_s, alpha_bar, target): each of eps, x0 and v leads back to the same x0, worked out by hand."""
     # a = 0.8, b = 0.6 and a = 0.6, b = 0.8; x0 = 2, -1 and eps = -1, 3 by hand
     alpha_bar = torch.tensor([0.64, 0.36])
     x0, x_s = torch.tensor([2.0, -1.0]), torch.tensor([1.0, 1.8])
@@ -33,6 +34,7 @@ def _convert(output, x_s, a, b) -> dict:
 
 @check
 def averaged_weights(mine):
+    """mine(means, new, decay) -> new averages; the old ones stay as they are."""
     means, new = [np.array([1.0, -2.0]), np.zeros(3)], [np.array([2.0, 2.0]), np.array([10.0, 0.0, -5.0])]
     got = mine(means, new, 0.9)
     expect(got is not None, "nothing comes back; return the new list of averages")
@@ -50,6 +52,7 @@ def averaged_weights(mine):
 
 @check
 def weight_between_losses(mine):
+    """mine(alpha_bar): the squared error of x0 over that of eps, for each alpha_bar."""
     alpha_bar = torch.tensor([0.9, 0.5, 0.2, 0.01])
     wanted = torch.tensor([1 / 9, 1.0, 4.0, 99.0])
     mistakes = {

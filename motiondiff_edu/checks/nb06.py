@@ -14,6 +14,7 @@ def _numbers(*shape: int, seed: int = 0) -> torch.Tensor:
 
 @check
 def attention_with_bias(mine):
+    """mine(q, k, v, bias) against attention in two lines of PyTorch."""
     q, k, v, bias = _numbers(3, 4), _numbers(5, 4, seed=1), _numbers(5, 2, seed=2), 2 * _numbers(3, 5, seed=3)
     raw, scaled = q @ k.T, q @ k.T / 2
     mistakes = {
@@ -38,6 +39,7 @@ def attention_with_bias(mine):
 
 @check
 def split_into_heads(mine):
+    """mine(x, heads): (B, T, width) to (B, heads, T, width / heads), each channel in its place."""
     x = torch.arange(2 * 5 * 12.0).reshape(2, 5, 12)  # batch 2, 5 frames, 12 channels; heads of 4 channels
     wanted = torch.stack([torch.stack([x[b, :, 4 * h : 4 * h + 4] for h in range(3)]) for b in range(2)])
     got = mine(x, 3)
@@ -54,6 +56,7 @@ def split_into_heads(mine):
 
 @check
 def relative_bias(mine):
+    """mine(table, query, key) against buckets that published code of T5 computed."""
     query, key = torch.tensor([0, 8]), torch.tensor([0, -8, 16, 1, 7])
     buckets = torch.tensor([[0, 8, 26, 17, 23], [8, 10, 24, 7, 1]])  # of T5, as published code has them
     turned = torch.tensor([[0, 24, 10, 1, 7], [24, 26, 8, 23, 17]])  # the same of query minus key

@@ -7,6 +7,7 @@ from ._report import check, expect, expect_close
 
 @check
 def hold_control(mine):
+    """mine(control, T_h): the row that takes the last past frame on, repeated to the end."""
     control = torch.arange(21.0).reshape(7, 3)
     before = control.clone()
     got = mine(control, 4)
@@ -42,6 +43,7 @@ class _Recorder:
 
 @check
 def rollout_by_hand(mine):
+    """mine(sample, past, control, frames, T_p) with a sampler that writes down what it was given."""
     B, T_h, T_p, D, C, frames = 2, 4, 3, 6, 1, 5
     past = torch.arange(T_h).float()[None, :, None].expand(B, T_h, D) * torch.tensor([1.0, -1.0])[:, None, None]
     control = (10.0 ** torch.arange(T_h + frames))[None, :, None].expand(B, -1, C).contiguous()

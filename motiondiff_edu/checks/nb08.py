@@ -14,6 +14,7 @@ def _toes() -> np.ndarray:
 
 @check
 def toe_slide(mine):
+    """mine(toes, fps, below): mean speed of planted toes, on steps whose slide is known."""
     toes = _toes()
     slides = np.array([0.05, 0.0, 0.0, 0.13])  # steps 0, 1: left; 3, 4: right; the others have no toe low at both ends
     answer = mine(toes, fps=10, below=0.03)
@@ -48,6 +49,7 @@ def toe_slide(mine):
 
 @check
 def merge_steps(mine):
+    """mine(runs, gap): runs with short gaps closed; the list given stays as it is."""
     runs = [(0, 3), (4, 5), (6, 9), (13, 14), (17, 20)]
 
     def pairs(answer):

@@ -8,7 +8,7 @@ Notebook: 00, 01
 from dataclasses import dataclass
 
 import numpy as np
-from jaxtyping import Float
+from jaxtyping import Float, Int
 from scipy.spatial.transform import Rotation
 
 from .kinematics import forward_kinematics
@@ -119,7 +119,7 @@ def hierarchy(offsets: Float[np.ndarray, "21 3"]) -> tuple[tuple[str, ...], np.n
 def global_turns(
     positions: Float[np.ndarray, "T 21 3"],
     names: tuple[str, ...],
-    parents: np.ndarray,
+    parents: Int[np.ndarray, "N"],
     offsets: Float[np.ndarray, "N 3"],
 ) -> tuple[Float[np.ndarray, "T N 3 3"], Float[np.ndarray, "T N 3"]]:
     """Global rotation and place of every node, root first.
@@ -143,7 +143,7 @@ def global_turns(
     return turns, points
 
 
-def guides(node: int, names: tuple[str, ...], parents: np.ndarray) -> list[int]:
+def guides(node: int, names: tuple[str, ...], parents: Int[np.ndarray, "N"]) -> list[int]:
     """The joints that a node's rotation is read from: its children, without those that a helper turns."""
     return [c for c in range(len(names)) if parents[c] == node and names[c] not in HELPERS]
 
@@ -179,6 +179,6 @@ def euler_zxy(local: Float[np.ndarray, "T N 3 3"]) -> Float[np.ndarray, "T N 3"]
     return np.degrees(angles)
 
 
-def wrap_to(angles: np.ndarray, reference: np.ndarray) -> np.ndarray:
-    """Add whole turns so that each angle is within half a turn of the reference."""
+def wrap_to(angles: Float[np.ndarray, "N 3"], reference: Float[np.ndarray, "N 3"]) -> Float[np.ndarray, "N 3"]:
+    """Add whole turns (radians) so that each angle is within half a turn of the reference."""
     return angles - 2 * np.pi * np.round((angles - reference) / (2 * np.pi))

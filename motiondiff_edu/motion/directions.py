@@ -128,7 +128,9 @@ def trunk_frames(points: Float[np.ndarray, "T 21 3"], lean: float) -> tuple[np.n
     return frame_of(across_hips, lower), frame_of(across_chest, upper)
 
 
-def mid_trunk(points: np.ndarray, hips: np.ndarray, trunk: np.ndarray) -> Float[np.ndarray, "T 3"]:
+def mid_trunk(
+    points: Float[np.ndarray, "T 21 3"], hips: Float[np.ndarray, "T 3"], trunk: Float[np.ndarray, "T 3"]
+) -> Float[np.ndarray, "T 3"]:
     """The spine joint nearest to half way up the trunk, or the point half way where none is near."""
     height = np.einsum("tji,ti->tj", points[:, [SPINE, SPINE1, NECK]] - hips[:, None], trunk)
     share = np.median(height / (trunk**2).sum(-1)[:, None], axis=0)
