@@ -65,6 +65,17 @@ def test_a_missing_return_is_named(name):
         CHECKS[name](lambda *args, **kwargs: None)
 
 
+def test_an_answer_that_raises_says_what_it_was_given():
+    def needs_a_first(runs, gap):
+        _ = runs[0]
+        return zoo.nb08._merge(runs, gap)
+
+    with pytest.raises(checks.CheckFailed, match=r"IndexError: list index out of range \(it was given \[\], 2\)"):
+        CHECKS["merge_steps"](needs_a_first)
+    with pytest.raises(checks.CheckFailed, match=r"it was given an array \(7, 3\), 4"):
+        CHECKS["hold_control"](lambda control, T_h: control[99])
+
+
 @pytest.mark.parametrize("name", CHECKS)
 def test_each_check_has_an_exercise_and_two_wrong_answers(name):
     assert name in {param.values[2] for param in EXERCISES}, f"no cell tagged `solution` calls checks.{name}"

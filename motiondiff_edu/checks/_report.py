@@ -21,6 +21,7 @@ A stub raises NotImplementedError: that is reported, never raised, so that Run A
 """
 
 import functools
+import reprlib
 import traceback
 from collections.abc import Callable, Mapping
 from typing import Any
@@ -65,7 +66,8 @@ def check(function: Callable[[Any], str | None]) -> Check:
         except CheckFailed as error:
             raise CheckFailed(f"{name}: {error}") from None
         except Exception as error:
-            raise CheckFailed(f"{name}: your answer raised {type(error).__name__}: {error}") from error
+            told = "".join(f" ({note})" for note in getattr(error, "__notes__", []))
+            raise CheckFailed(f"{name}: your answer raised {type(error).__name__}: {error}{told}") from error
         else:
             print(f"{name}: right. {content or ''}".rstrip())
 
@@ -80,11 +82,22 @@ def _answering(mine: Any) -> Any:
 
     @functools.wraps(mine)
     def answer(*args, **kwargs):
-        got = mine(*args, **kwargs)
+        try:
+            got = mine(*args, **kwargs)
+        except Exception as error:
+            error.add_note("it was given " + ", ".join(map(_shown, [*args, *kwargs.values()])))
+            raise
         expect(got is not None, "your answer returns nothing; is a `return` missing?")
         return got
 
     return answer
+
+
+def _shown(value: Any) -> str:
+    """An argument in a few words."""
+    if isinstance(value, torch.Tensor | np.ndarray) and value.ndim:
+        return f"an array {tuple(value.shape)}"
+    return reprlib.repr(value)
 
 
 def expect(condition: Any, message: str) -> None:

@@ -18,11 +18,15 @@ def right_turn(mine):
         "it turns left: counter-clockwise is positive, seen from above": np.tile([0.8, 0.0, quarter], (40, 1)),
         "these are degrees; the control wants radians": np.tile([0.8, 0.0, -45.0], (40, 1)),
         "90 degrees in one second; here the turn takes two": np.tile([0.8, 0.0, -2 * quarter], (40, 1)),
+        "90 is the whole turn in degrees; the control wants radians, and those of one second": np.tile(
+            [0.8, 0.0, -90.0], (40, 1)
+        ),
         "this is the turn of one frame; the control counts per second": np.tile([0.8, 0.0, -quarter / 20], (40, 1)),
         "the second column steps to the side, the third one turns": np.tile([0.8, -quarter, 0.0], (40, 1)),
         "it turns on the spot; it should go on at 0.8 m/s": np.tile([0.0, 0.0, -quarter], (40, 1)),
     }
-    expect_close(got[40:80], np.tile([0.8, 0.0, -quarter], (40, 1)), "seconds three and four (rows 40 to 79)", mistakes)
+    turning = np.tile([0.8, 0.0, -quarter], (40, 1))
+    expect_close(got[40:80], turning, "seconds three and four (rows 40 to 79)", mistakes, rtol=1e-3)
     expect_close(got[80:], np.zeros((20, 3)), "the last second (rows 80 to 99), which is at rest")
     return "Three columns and 20 rows a second: that is all the walker is ever told."
 

@@ -49,6 +49,10 @@ def posterior(mine):
         "the variance of x_2",
         mistakes={
             "that is beta_s, the variance of one step; what x0 knows must narrow it": 1 - alpha,
+            "x0 enters with the noise of step s; it is known how it became x_{s-1}, so use alpha_bar[s - 1]": 1
+            / (1 / 0.6 + alpha / (1 - alpha)),
+            "x_s speaks of sqrt(alpha_s) x_{s-1}: divide it by sqrt(alpha_s), and its variance by alpha_s": 1
+            / (1 / (1 - before) + 1 / (1 - alpha)),
             "that is the standard deviation": variance**0.5,
             "that is the precision, 1 / variance": 1 / variance,
         },

@@ -14,16 +14,17 @@ def best_guess(mine):
     data = torch.tensor([[-1, 0, 0.4], [1, 0.5, -1], [0.2, -0.6, 1], [0, 1, 1.2]], dtype=torch.float64)
     alpha_bar = torch.tensor([0.36, 0.81], dtype=torch.float64)
 
-    def answer(scale=lambda a: math.sqrt(a), spread=lambda a: 2 * (1 - a), order=(0, 1)):
-        rows = []
+    def answer(scale=lambda a: math.sqrt(a), spread=lambda a: 2 * (1 - a), order=(0, 1), over_data=True):
+        table = []
         for x, i in zip(x_s, order, strict=True):
             a = float(alpha_bar[i])
             w = [
                 math.exp(-sum((float(p) - scale(a) * float(q)) ** 2 for p, q in zip(x, d, strict=True)) / spread(a))
                 for d in data
             ]
-            rows.append(sum(k * d for k, d in zip(w, data, strict=True)) / sum(w))
-        return torch.stack(rows)
+            table.append(w)
+        weight = torch.tensor(table, dtype=torch.float64)
+        return weight / weight.sum(int(over_data), keepdim=True) @ data
 
     expect_close(
         mine(x_s, alpha_bar, data),
@@ -39,6 +40,7 @@ def best_guess(mine):
             "the exponent is divided by a standard deviation, not by the variance": answer(
                 spread=lambda a: 2 * math.sqrt(1 - a)
             ),
+            "the shares add up to 1 over the samples; they must over the candidates": answer(over_data=False),
             "both samples have the alpha_bar of the first": answer(order=(0, 0)),
             "that is the plain mean of the data: nobody was weighed": data.mean(0).expand(2, 3),
         },
@@ -48,8 +50,8 @@ def best_guess(mine):
 
 @check
 def step_back(mine):
-    """Tables chosen so that every root is a round number: 1 - alpha_bar is .25 and .64, beta .36 and .19."""
-    beta, alpha_bar = torch.tensor([0.0, 0.19, 0.36]), torch.tensor([1.0, 0.75, 0.36])
+    """mine(x_s, s, eps_hat, beta, alpha_bar, z), with tables whose roots at s = 2 are round numbers."""
+    beta, alpha_bar = torch.tensor([0.0, 0.4375, 0.36]), torch.tensor([1.0, 0.5625, 0.36])
     x, eps, z = torch.tensor([[1.0, -2.0, 0.5]]), torch.tensor([[0.4, 1.0, -1.0]]), torch.tensor([[10.0, -10.0, 5.0]])
     mean = (x - 0.36 / 0.8 * eps) / 0.8
     expect_close(
@@ -67,12 +69,12 @@ def step_back(mine):
             "the predicted noise was added; it is to be taken away": (x + 0.36 / 0.8 * eps) / 0.8 + 0.6 * z,
         },
     )
-    last = (x - 0.19 / 0.5 * eps) / 0.9
+    last = (x - 0.4375**0.5 * eps) / 0.75
     expect_close(
         mine(x, 1, eps, beta, alpha_bar, z),
         last,
         "x_0",
-        mistakes={"the last step adds no noise: samples would tremble": last + 0.19**0.5 * z},
+        mistakes={"the last step adds no noise: samples would tremble": last + 0.4375**0.5 * z},
     )
     return "and at s = 1 the step lands on x0_hat itself."
 

@@ -7,9 +7,25 @@ from ._report import check, expect, expect_close
 
 def _toes() -> np.ndarray:
     """Nine frames of two toes, every frame written out: x, height, z in centimetres."""
-    left = [(0, 0, 0), (3, 1, 4), (3, 2, 4), (7, 5, 4), (8, 9, 60), (9, 6, 99), (9, 7, 99), (9, 8, 99), (9, 1, 99)]
-    right = [(50, 6, 0), (50, 7, 0), (50, 6, 0), (50, 2, 0), (50, 1, 0), (62, 0, 5), (62, 9, 5), (62, 8, 5), (62, 2, 5)]
+    left = [(0, 0, 0), (3, 1, 4), (3, 2, 4), (7, 3.5, 4), (8, 9, 60), (9, 6, 99), (9, 7, 99), (9, 8, 99), (9, 1, 99)]
+    right = [
+        (50, 2.5, 0),
+        (50, 2.5, 0),
+        (50, 6, 0),
+        (50, 2, 0),
+        (50, 1, 0),
+        (62, 0, 5),
+        (62, 9, 5),
+        (62, 8, 5),
+        (62, 2, 5),
+    ]
     return np.stack([left, right], axis=1) / 100.0
+
+
+def slides_of(height: np.ndarray, slide: np.ndarray) -> float:
+    """Mean slide of the toe that is lower by this measure of height, where it is under 3 cm."""
+    rows, lower = np.arange(len(height)), height.argmin(1)
+    return slide[rows, lower][height[rows, lower] < 0.03].mean()
 
 
 @check
@@ -24,7 +40,7 @@ def toe_slide(mine):
     now = frame_low[np.arange(8), lower_now][toes[:-1, :, 1].min(1) < 0.03]
     whole = np.linalg.norm(np.diff(toes, axis=0), axis=-1)
     both = np.maximum(toes[1:, :, 1], toes[:-1, :, 1])
-    low = both.min(1) < 0.03
+    low, halfway = both.min(1) < 0.03, (toes[1:, :, 1] + toes[:-1, :, 1]) / 2
     expect_close(
         answer,
         10 * slides.mean(),
@@ -34,6 +50,9 @@ def toe_slide(mine):
             "fps came in as 20; the argument was 10": 20 * slides.mean(),
             "steps without a planted toe count as sliding by nothing; leave them out": 10 * slides.sum() / 8,
             "both toes count; only the lower one is judged": 10 * frame_low[low].mean(),
+            "each toe under `below` counts; where both are, only the lower one is judged": 10
+            * frame_low[both < 0.03].mean(),
+            "the height of a step is that of its higher end, not the mean of both": 10 * slides_of(halfway, frame_low),
             "the upper toe was judged": 10 * frame_low[np.arange(8), both.argmax(1)][low].mean(),
             "steps in the air count, too; is a toe under `below`?": 10 * frame_low[np.arange(8), both.argmin(1)].mean(),
             "the toe is looked up at the first end of the step only": 10 * now.mean(),
@@ -60,8 +79,12 @@ def merge_steps(mine):
     expect(one != [(0, 5), (6, 9), (13, 14), (17, 20)], "three crumbs in a row must become one step, yours made two")
     expect(one != runs, "a gap of exactly `gap` frames is closed as well")
     expect(one != [(0, 9), (17, 20)] and one != [(0, 9), (13, 14)], "a step is missing at the end")
-    expect(one == [(0, 9), (13, 14), (17, 20)], f"for gap 1 you return {one}")
-    expect(pairs(mine(list(runs), 3)) == [(0, 9), (13, 20)], f"for gap 3 you return {pairs(mine(list(runs), 3))}")
+    expect(
+        one == [(0, 9), (13, 14), (17, 20)],
+        f"of {runs} with gap 1 you make {one}; the gaps are 1, 1, 4 and 3 frames wide",
+    )
+    wide = pairs(mine(list(runs), 3))
+    expect(wide == [(0, 9), (13, 20)], f"of {runs} with gap 3 you make {wide}; the gaps are 1, 1, 4 and 3 frames wide")
     expect(pairs(mine(list(runs), 0)) == runs, "with gap 0 nothing here may be joined")
     expect(pairs(mine([], 2)) == [], "without runs there is nothing to join: return an empty list")
     kept = list(runs)

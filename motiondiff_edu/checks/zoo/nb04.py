@@ -72,6 +72,9 @@ ZOO = {
         "mean of the logs": lambda log_ratio: log_ratio.mean(0),
         "log of the sum": lambda log_ratio: log_ratio.logsumexp(0),
         "mean over the samples": lambda log_ratio: log_ratio.logsumexp(1) - math.log(log_ratio.shape[1]),
+        "largest of all columns taken out": lambda log_ratio: (
+            (log_ratio - log_ratio.max()).exp().mean(0).log() + log_ratio.max()
+        ),
         "underflow": lambda log_ratio: log_ratio.exp().mean(0).log(),
     },
 }

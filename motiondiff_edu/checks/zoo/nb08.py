@@ -32,6 +32,16 @@ def both_toes(toes, fps=20, below=0.03):
     return fps * speed[height.min(1) < below].mean()
 
 
+def each_planted_toe(toes, fps=20, below=0.03):
+    height, speed = _steps(toes)
+    return fps * speed[height < below].mean()
+
+
+def mean_height(toes, fps=20, below=0.03):
+    height, (_, speed) = (toes[1:, :, 1] + toes[:-1, :, 1]) / 2, _steps(toes)
+    return fps * _lower(speed, height)[height.min(1) < below].mean()
+
+
 def slower_toe(toes, fps=20, below=0.03):
     """The one that sounds right and judges itself."""
     height, speed = _steps(toes)
@@ -90,6 +100,8 @@ ZOO = {
         "toes in the air judged": in_the_air,
         "air counts as standing still": nothing_is_a_score,
         "both toes judged": both_toes,
+        "each planted toe judged": each_planted_toe,
+        "mean of both heights": mean_height,
         "slower toe judged": slower_toe,
         "going up counts": upwards_too,
         "planted at one end": first_end_only,
