@@ -12,6 +12,7 @@ from motiondiff_edu.conditions.control import (
     path_to_control,
     preset,
     round_path,
+    splice,
 )
 from motiondiff_edu.motion.root_frame import root_path
 
@@ -93,6 +94,16 @@ def test_constant_and_hold():
     assert ramp[4, 0] == 12, "the given control was changed"
     with pytest.raises(IndexError, match="rows 0 to 4, row 5"):
         hold(ramp, 5)
+
+
+def test_a_spliced_control_leads_into_the_first_new_frame():
+    past, new = constant_control(1.0, seconds=0.6), constant_control(0.0, 0.5, 0.2, seconds=0.2)
+    before = past.copy()
+    rows = splice(past, new, T_h=5)
+    assert rows.tolist() == [[1.0, 0.0, 0.0]] * 4 + [[0.0, 0.5, 0.2]] * 5
+    assert np.array_equal(past, before)
+    with pytest.raises(ValueError, match="13 past frames, this past has 12"):
+        splice(past, new, T_h=13)
 
 
 def test_joystick_reaches_each_target_smoothly():

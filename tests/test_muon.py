@@ -9,7 +9,7 @@ from torch import nn
 
 from motiondiff_edu.cross_modal_attention import Block
 from motiondiff_edu.modiff import MODIFF_SMALL, MoDiff
-from motiondiff_edu.muon import MuonAndAdam
+from motiondiff_edu.muon import Muon, MuonAndAdam
 from motiondiff_edu.runs import resume_run, saver
 from motiondiff_edu.training import TrainState, train_steps
 
@@ -43,7 +43,25 @@ def test_a_first_step_moves_every_direction_of_a_matrix_alike():
     optimizer.step()
     moved, expected = before - weight.detach(), 1e-2 * 0.2 * 24**0.5 * (u @ vt)
     cosine = nn.functional.cosine_similarity(moved.flatten(), expected.flatten(), dim=0)
-    assert cosine > 0.95 and 0.7 < moved.norm() / expected.norm() < 1.2  # the iteration is approximate, in bfloat16
+    assert cosine > 0.95 and 0.7 < moved.norm() / expected.norm() < 1.2  # the iteration is approximate
+
+
+@pytest.mark.parametrize("shape", [(24, 16), (16, 24), (20, 20)])
+def test_steps_are_those_of_torch(shape):
+    """torch.optim.Muon rounds to bfloat16 on the way: alike to a few per cent of a step, over several steps."""
+    torch.manual_seed(1)
+    ours, theirs = (nn.Parameter(torch.zeros(shape)) for _ in range(2))
+    optimizers = (
+        Muon([ours], lr=0.01),
+        torch.optim.Muon([theirs], lr=0.01, weight_decay=0.0, adjust_lr_fn="match_rms_adamw"),
+    )
+    for k in range(6):
+        gradient = torch.randn(shape) * 10.0 ** (k - 3)
+        ours.grad, theirs.grad = gradient.clone(), gradient.clone()
+        before = ours.detach().clone()
+        for optimizer in optimizers:
+            optimizer.step()
+        assert (ours - theirs).norm() < 0.05 * (k + 1) * (ours - before).norm() > 0
 
 
 def test_a_resumed_run_continues_bit_for_bit(tmp_path: Path):

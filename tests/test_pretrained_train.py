@@ -64,9 +64,9 @@ def kill_at(step: int, monkeypatch):
     monkeypatch.setattr(train_module, "window_loss", dying)
 
 
-@pytest.mark.parametrize("step", [4, 7], ids=["in bfloat16", "in float32"])
+@pytest.mark.parametrize("step", [4, 7])
 def test_a_killed_training_goes_on_where_it_was_saved(tmp_path: Path, monkeypatch, step: int):
-    """What is shipped, in small: footholds, the leap, Muon, the change from bfloat16 to float32 after 6 of 8 steps."""
+    """What is shipped, in small: footholds, the leap, Muon."""
     whole = train(LIKE_SHIPPED, tmp_path / "whole", log=quiet)
     with monkeypatch.context() as patch:
         kill_at(step, patch)
@@ -108,7 +108,7 @@ def test_what_is_shipped_has_a_recipe_and_the_papers_one_is_the_papers():
     assert [recipe.name for recipe in SHIPPED] == ["walker-x0", "walker-eps"]
     paper = RECIPES["walker-paper"]
     assert (paper.optimizer, paper.lr, paper.batch, paper.config.width) == ("adam", 5e-5, 64, 256)
-    assert paper.jitter == paper.metres == paper.near == paper.high_noise == paper.bf16_share == 0
+    assert paper.jitter == paper.metres == paper.near == paper.high_noise == 0
 
 
 def test_the_commit_of_a_folder_that_is_no_checkout(tmp_path: Path):

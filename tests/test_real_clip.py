@@ -5,7 +5,7 @@ import pytest
 import torch
 
 from motiondiff_edu.checkpoints import available, pretrained
-from motiondiff_edu.conditions.control import joystick
+from motiondiff_edu.conditions.control import joystick, splice
 from motiondiff_edu.metrics.bone_lengths import bone_rmse
 from motiondiff_edu.motion.bvh import read_bvh
 from motiondiff_edu.motion.bvh_write import write_bvh
@@ -22,7 +22,7 @@ def test_a_real_clip_goes_on_under_new_control_and_comes_back_from_its_file(real
     clip = load_clip(real_data / "bvh" / "cmu_02_01_walk.bvh")
     walker, T_h = pretrained("walker"), pretrained("walker").config.T_h
     ahead = joystick([(3, 1.2, 0.0, 0.0), (3, 1.0, 0.0, 0.5), (4, 1.4, 0.0, -0.3)])[: SECONDS * 20]
-    control = np.concatenate([clip.control[-T_h:], ahead])
+    control = splice(clip.control, ahead, T_h)
     past = torch.from_numpy(clip.features()[-T_h:])
     new = generate(walker, past, torch.from_numpy(control.astype(np.float32)), steps=10, seed=1)
     assert new.shape == (SECONDS * 20, 63)

@@ -7,7 +7,7 @@ import torch
 
 from data_synth.walking import walk
 from motiondiff_edu import checkpoints, rollout
-from motiondiff_edu.conditions.control import constant_control
+from motiondiff_edu.conditions.control import constant_control, splice
 from motiondiff_edu.motion.root_frame import root_path, to_world
 from motiondiff_edu.widgets.path import PathPad
 from motiondiff_edu.widgets.player import Player
@@ -18,7 +18,7 @@ OUT = Path(__file__).parents[1] / "docs" / "walk.gif"
 def main() -> None:
     standing = walk(constant_control(seconds=2), seed=1, style="neutral")
     ahead = PathPad(preset="slalom").control()[:130]
-    control = np.concatenate([standing.control[-10:-1], ahead[:1], ahead])
+    control = splice(standing.control, ahead, 10)
     past = torch.from_numpy(standing.features()[-10:])
     new = rollout.generate(checkpoints.pretrained("walker"), past, torch.tensor(control, dtype=torch.float32), seed=0)
     poses = np.concatenate([standing.poses[-10:], new.double().numpy().reshape(-1, 21, 3)])

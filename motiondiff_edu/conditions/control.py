@@ -40,6 +40,18 @@ def hold(control: Float[np.ndarray, "T 3"], t: int) -> Float[np.ndarray, "T 3"]:
     return held
 
 
+def splice(past: Float[np.ndarray, "T 3"], new: Float[np.ndarray, "n 3"], T_h: int) -> Float[np.ndarray, "m 3"]:
+    """The control of the last T_h past frames and of n new ones: what a rollout is told, m = T_h + n.
+
+    Nobody knows where a recording would have gone: its last row only repeats the one before. Here it leads into the
+    first new frame, so it becomes the first row of `new`.
+    Raises ValueError where the past has fewer than T_h frames.  Notebook: 00
+    """
+    if len(past) < T_h:
+        raise ValueError(f"the walker wants the control of {T_h} past frames, this past has {len(past)}")
+    return np.concatenate([past[len(past) - T_h : -1], new[:1], new])
+
+
 def joystick(segments: Sequence[tuple], fps: float | int = FPS, ramp: float | int = RAMP) -> Float[np.ndarray, "T 3"]:
     """Control from a list of (seconds, forward, left, yaw); each change takes `ramp` seconds, smoothly.
 

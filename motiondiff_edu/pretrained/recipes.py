@@ -35,7 +35,6 @@ class Recipe:
     data_seed: int = 1
     seed: int = 0
     styles: tuple[str, ...] | None = None
-    bf16_share: float = 0.8  # of the steps in bfloat16 arithmetic, the rest in float32
     save_every: int = 2000  # steps
 
     @property
@@ -52,7 +51,7 @@ WALKER_EPS = Recipe("walker-eps", MODIFF_SMALL, steps=20_000, schedule="leap", h
 # steps, not epochs) and hold the control in half of the cases; the skip; the warm-up and cosine of the rate.
 WALKER_PAPER = Recipe(
     "walker-paper", MODIFF_PAPER, steps=300_000, lr=5e-5, optimizer="adam", noises=1, jitter=0.0, metres=0.0, near=0.0,
-    bones=0.0, clips=2400, bf16_share=0.0,
+    bones=0.0, clips=2400,
 )  # fmt: skip
 
 SHIPPED = (WALKER_X0, WALKER_EPS)
