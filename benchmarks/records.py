@@ -1,10 +1,11 @@
 """Records of measured figures: {name, value, low, high, seeds, unit, paper, command}, kept in lists in JSON files."""
 
 import json
-import os
 from pathlib import Path
 
 import numpy as np
+
+from motiondiff_edu.files import replacing
 
 KEYS = ("name", "value", "low", "high", "seeds", "unit", "paper", "command")
 
@@ -37,11 +38,8 @@ def write_records(path: str | Path, records: list[dict]) -> None:
     for one in records:
         if set(one) != set(KEYS):
             raise ValueError(f"record {one.get('name')!r} must have exactly the keys {', '.join(KEYS)}")
-    path = Path(path)
-    path.parent.mkdir(parents=True, exist_ok=True)
-    temporary = path.with_name(path.name + ".tmp")  # not tempfile: its files are for their owner alone
-    temporary.write_text(json.dumps(records, indent=1) + "\n", encoding="utf-8")
-    os.replace(temporary, path)
+    with replacing(path) as aside:
+        aside.write_text(json.dumps(records, indent=1) + "\n", encoding="utf-8")
 
 
 def show(records: list[dict]) -> None:

@@ -1,11 +1,11 @@
 """The command line of walking.py: walks as BVH for Blender and as npz for everything else."""
 
 import argparse
-import os
 from pathlib import Path
 
 import numpy as np
 
+from motiondiff_edu.files import replacing
 from motiondiff_edu.motion.clip import Clip
 
 from .controls import KINDS
@@ -15,8 +15,7 @@ from .walking import dataset
 
 def save_npz(clip: Clip, path: Path) -> None:
     """Poses, control, contacts, fps and source as plain arrays, no pickle; written aside, then renamed."""
-    aside = path.with_name(path.name + ".part")
-    with open(aside, "wb") as f:
+    with replacing(path) as aside, open(aside, "wb") as f:
         np.savez_compressed(
             f,
             poses=clip.poses.astype(np.float32),
@@ -26,7 +25,6 @@ def save_npz(clip: Clip, path: Path) -> None:
             source=np.array(clip.source),
             style=np.array(clip.info.get("style", "")),
         )
-    os.replace(aside, path)
 
 
 def main(arguments: list[str] | None = None) -> None:

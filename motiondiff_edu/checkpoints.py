@@ -3,7 +3,6 @@
 A damaged or foreign file is refused with the reason.  Notebook: 00, 07
 """
 
-import hashlib
 import json
 import os
 from dataclasses import fields
@@ -15,12 +14,13 @@ from safetensors.torch import save_file
 from torch import Tensor
 
 from .ddpm import make_schedule
+from .files import digest_of_tensors, digest_of_texts, replacing
 from .foothold import FootholdConfig, network
 from .modiff import MoDiffConfig
 from .motion.scaler import Scaler
 from .walker import Walker
 
-FORMAT = "motiondiff_edu walker 1"
+FORMAT = "motiondiff_edu walker 2"
 FOLDER = Path(__file__).parent / "pretrained"
 NETWORKS = {"MoDiff": MoDiffConfig, "FootholdMoDiff": FootholdConfig}  # by the name of the class
 
@@ -35,7 +35,6 @@ def save_walker(walker: Walker, path: str | Path, half: bool = True) -> Path:
     Written to a temporary name and renamed.  Notebook: 07
     """
     path = Path(path)
-    path.parent.mkdir(parents=True, exist_ok=True)
     weights = {f"model.{k}": v.half() if half else v for k, v in walker.model.state_dict().items()}
     scalers = {"pose": walker.pose_scaler, "control": walker.control_scaler}
     weights |= {f"{name}.{part}": getattr(s, part) for name, s in scalers.items() for part in ("mean", "std")}
@@ -44,13 +43,11 @@ def save_walker(walker: Walker, path: str | Path, half: bool = True) -> Path:
     metadata = {"format": FORMAT, "network": type(walker.model).__name__, "config": config}
     metadata |= {"schedule": walker.schedule.name, "card": json.dumps(walker.card)}
     weights = {k: v.detach().cpu().clone().contiguous() for k, v in weights.items()}
-    temporary = path.with_suffix(".part")
-    save_file(weights, temporary, metadata | {"sha256": _digest(weights)})
-    os.chmod(temporary, 0o644)  # safetensors writes for its owner alone; weights are for everybody
-    os.replace(temporary, path)
-    card = path.with_suffix(".json.part")
-    card.write_text(json.dumps(walker.card | {"config": walker.config.as_dict()}, indent=1) + "\n")
-    os.replace(card, path.with_suffix(".json"))
+    with replacing(path) as aside:
+        save_file(weights, aside, metadata | _digests(weights, metadata))
+        os.chmod(aside, 0o644)  # safetensors writes for its owner alone; weights are for everybody
+    with replacing(path.with_suffix(".json")) as aside:
+        aside.write_text(json.dumps(walker.card | {"config": walker.config.as_dict()}, indent=1) + "\n")
     return path
 
 
@@ -66,8 +63,10 @@ def load_walker(path: str | Path) -> Walker:
         raise CheckpointError(f"{path.name} is damaged or is no safetensors file ({error}); fetch it again") from error
     if metadata.get("format") != FORMAT:
         raise CheckpointError(f"{path.name} is no walker of this project ({_looks_like(tensors)})")
-    if metadata.get("sha256", _digest(tensors)) != _digest(tensors):
-        raise CheckpointError(f"{path.name} is damaged: its tensors are not those that were written; fetch it again")
+    for what, digest in _digests(tensors, metadata).items():
+        if metadata.get(what) != digest:
+            part = "tensors" if what == "sha256" else "settings"
+            raise CheckpointError(f"{path.name} is damaged: its {part} are not those that were written; fetch it again")
     bad = [name for name, tensor in tensors.items() if not torch.isfinite(tensor.float()).all()]
     if bad:
         raise CheckpointError(f"{path.name}: {bad[0]} holds NaN or infinity; the training that wrote it had failed")
@@ -78,12 +77,10 @@ def load_walker(path: str | Path) -> Walker:
         raise CheckpointError(f"{path.name}: weights and configuration disagree ({error}); fetch it again") from error
 
 
-def _digest(tensors: dict[str, Tensor]) -> str:
-    """SHA-256 of all tensors, in the order of their names: safetensors itself checks only the header."""
-    digest = hashlib.sha256()
-    for name in sorted(tensors):
-        digest.update(name.encode() + tensors[name].numpy().tobytes())
-    return digest.hexdigest()
+def _digests(tensors: dict, metadata: dict[str, str]) -> dict[str, str]:
+    """Of the tensors alone (records of figures name the weights by it), and of what settles how they are used."""
+    settings = {name: metadata.get(name, "") for name in ("format", "network", "config", "schedule")}
+    return {"sha256": digest_of_tensors(tensors), "sha256_settings": digest_of_texts(settings)}
 
 
 def _assemble(config: MoDiffConfig, tensors: dict[str, Tensor], metadata: dict) -> Walker:

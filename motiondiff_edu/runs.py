@@ -4,7 +4,6 @@ Safetensors: reading one runs no code. Written to a temporary name and renamed, 
 """
 
 import json
-import os
 from collections.abc import Callable
 from pathlib import Path
 
@@ -12,6 +11,7 @@ import torch
 from safetensors import SafetensorError, safe_open
 from safetensors.torch import save_file
 
+from .files import digest_of_tensors, replacing
 from .training import TrainState
 
 
@@ -34,9 +34,10 @@ def save_run(state: TrainState, path: str | Path, about: dict | None = None, not
         tensors["random.cuda"] = torch.cuda.get_rng_state()
     counts = {"step": state.step, "seconds": state.seconds, "about": about, "optimizer": _kind(state)}
     counts["notes"] = notes or []
-    temporary, counts = f"{path}.part", {name: json.dumps(value) for name, value in counts.items()}
-    save_file({k: v.contiguous().clone() for k, v in tensors.items()}, temporary, counts)
-    os.replace(temporary, path)
+    tensors = {k: v.detach().cpu().contiguous().clone() for k, v in tensors.items()}
+    counts = {name: json.dumps(value) for name, value in counts.items()} | {"sha256": digest_of_tensors(tensors)}
+    with replacing(path) as aside:
+        save_file(tensors, aside, counts)
     return Path(path)
 
 
@@ -51,6 +52,8 @@ def resume_run(state: TrainState, path: str | Path, about: dict | None = None) -
             tensors, counts = {name: file.get_tensor(name) for name in file.keys()}, file.metadata() or {}
     except (SafetensorError, OSError) as error:
         raise ValueError(f"{path} cannot be resumed: damaged, or no safetensors file ({error}); delete it") from error
+    if counts.get("sha256", "") != digest_of_tensors(tensors) and "step" in counts:
+        raise ValueError(f"{path} cannot be resumed: damaged, its tensors are not those that were saved; delete it")
     parts: dict[str, dict] = {}
     for name, tensor in tensors.items():
         part, _, key = name.partition(".")

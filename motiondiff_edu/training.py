@@ -19,7 +19,7 @@ LossFn = Callable[[nn.Module, torch.Generator], Tensor]
 
 
 class NonFiniteLoss(RuntimeError):
-    """The loss became NaN or infinite; the weights are still those of the last good step."""
+    """The loss became NaN or infinite; the message says what the weights are."""
 
 
 @dataclass(eq=False)
@@ -78,7 +78,7 @@ def train_steps(
 
     Gradients are clipped to the norm `clip`; the average follows with `decay` (less in the first steps). `save`, if
     given, is called with the state every `save_every` steps and at the end (`runs.saver` makes one).
-    Raises NonFiniteLoss with what to do; the last good weights stay in `state`, and are saved.
+    Raises NonFiniteLoss with what to do; the last good weights stay in `state`, and are saved (broken ones are not).
     Source: MoDiff Alg. 1 (the loop).  Notebook: 05, 07
     """
     bar = tqdm(total=steps, initial=state.step, disable=not progress, desc="training", unit="step", mininterval=1.0)
@@ -116,9 +116,12 @@ def _follow(state: TrainState, decay: float) -> None:
 
 
 def _stop(state: TrainState, loss: float, norm: float, rate: float, save: Callable | None) -> None:
-    kept = f" They are saved: {save(state)}." if save else ""
+    weights = [*state.model.parameters(), *state.average.parameters()]
+    if all(torch.isfinite(weight).all() for weight in weights):
+        kept = "The weights are those of the last good step." + (f" They are saved: {save(state)}." if save else "")
+    else:
+        kept = "The update before had broken the weights already; they are not saved, and what was saved earlier stays."
     raise NonFiniteLoss(
-        f"step {state.step}: the loss is {loss}, the gradient's norm {norm}, at learning rate {rate:g}. "
-        f"The weights are those of the last good step.{kept} Usual causes: a learning rate too high (try a tenth), "
-        "or NaN in the data (Scaler.fit refuses those)."
+        f"step {state.step}: the loss is {loss}, the gradient's norm {norm}, at learning rate {rate:g}. {kept} "
+        "Usual causes: a learning rate too high (try a tenth), or NaN in the data (Scaler.fit refuses those)."
     )

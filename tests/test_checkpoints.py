@@ -33,12 +33,12 @@ def saved(tmp_path: Path) -> Path:
 
 
 def rewrite(path: Path, change, metadata=None) -> None:
-    """Change the tensors of a weights file; the metadata stay (unless others are given), the checksum goes."""
+    """Change the tensors of a weights file; the metadata stay (unless others are given), the checksums are right."""
     with safe_open(path, "pt") as file:
-        kept = {k: v for k, v in file.metadata().items() if k != "sha256"}
+        metadata = file.metadata() if metadata is None else metadata
     tensors = load_file(path)
     change(tensors)
-    save_file(tensors, path, metadata or kept)
+    save_file(tensors, path, metadata | checkpoints._digests(tensors, metadata))
 
 
 def test_round_trip_in_full_precision_is_exact(tmp_path: Path):
@@ -178,9 +178,32 @@ def test_a_tensor_of_another_size(saved: Path):
         load_walker(saved)
 
 
-def test_a_file_without_a_checksum_still_loads(saved: Path):
-    rewrite(saved, lambda tensors: None)
-    assert load_walker(saved).card["name"] == "tiny"
+@pytest.mark.parametrize("name", ["sha256", "sha256_settings"])
+def test_a_file_without_a_checksum_is_refused(saved: Path, name: str):
+    with safe_open(saved, "pt") as file:
+        metadata = {k: v for k, v in file.metadata().items() if k != name}
+        save_file({k: file.get_tensor(k) for k in file.keys()}, saved, metadata)
+    with pytest.raises(CheckpointError, match="tiny.safetensors is damaged"):
+        load_walker(saved)
+
+
+@pytest.mark.parametrize(
+    "name, old, new",
+    [
+        ("config", '"skip": true', '"skip": false'),
+        ("config", '"dropout": 0.0', '"dropout": 0.9'),
+        ("schedule", "", "x"),
+    ],
+)
+def test_a_changed_setting_is_damage(saved: Path, name: str, old: str, new: str):
+    """It would load, and walk like nobody."""
+    with safe_open(saved, "pt") as file:
+        metadata, tensors = file.metadata(), {k: file.get_tensor(k) for k in file.keys()}
+    changed = metadata[name].replace(old, new) if old else metadata[name] + new
+    assert changed != metadata[name]
+    save_file(tensors, saved, metadata | {name: changed})
+    with pytest.raises(CheckpointError, match="tiny.safetensors is damaged: its settings"):
+        load_walker(saved)
 
 
 def test_a_schedule_out_of_range_or_of_another_length(saved: Path):

@@ -100,7 +100,7 @@ def test_a_closed_gate_is_plain_modiff():
 
 def test_the_gate_shares_by_joint():
     held, free = torch.ones(1, 1, 12), torch.zeros(1, 1, 63)
-    out = blend(free, torch.logit((torch.tensor([[[0.1, 0.2, 0.3, 0.4]]]) + 0.1) / 1.2), held)[0, 0]
+    out = blend(free, torch.tensor([[[0.1, 0.2, 0.3, 0.4]]]), held)[0, 0]
     wanted = torch.zeros(21, 3)
     wanted[FEET] = torch.tensor([[0.1], [0.2], [0.3], [0.4]])
     torch.testing.assert_close(out.view(21, 3), wanted)
@@ -198,10 +198,26 @@ def test_bones_add_their_errors_to_the_loss():
     assert loss(1.0) > loss(0.0) and loss(2.0) - loss(1.0) == pytest.approx(loss(1.0) - loss(0.0), rel=1e-4)
 
 
-def test_a_gate_opens_and_closes_all_the_way():
-    """Where a plain sigmoid stops short of 0 and 1 the stretched one is there; halfway is halfway."""
-    gate = torch.tensor([-9.0, -2.4, 0.0, 2.4, 9.0])
+def test_in_use_a_gate_leans_towards_holding_and_goes_all_the_way():
+    """Where a sigmoid stops short of 0 and 1 the stretched one is there; halfway lies a quarter lower."""
+    gate = torch.tensor([-9.0, -2.65, -0.25, 2.15, 9.0])
     torch.testing.assert_close(openness(gate), torch.tensor([0.0, 0.0, 0.5, 1.0, 1.0]))
+    torch.testing.assert_close(openness(gate, leaning=False), torch.sigmoid(gate))
+
+
+def test_training_sees_the_plain_gate_and_use_the_leaning_one():
+    x_s, s, past, control = inputs()
+    model = tiny()
+    shares = []
+    for training in (True, False):
+        part = model.train(training)
+        with torch.no_grad():
+            context = part.encode(past, control)
+            x = part.attend(part.embed(x_s, s), context.memory)
+            gate, free, out = part.gate(x), part.head(x), part(x_s, s, past, control)
+        for leaning in (False, True):
+            shares.append(torch.allclose(out, blend(free, openness(gate, leaning), context.held), atol=1e-6))
+    assert shares == [True, False, False, True]
 
 
 def test_gates_are_those_the_answer_was_made_with():

@@ -178,6 +178,37 @@ def test_a_non_finite_loss_stops_and_keeps_the_last_good_weights(tmp_path: Path,
     assert torch.equal(load_file(path)["model.weight"], good[-1])
 
 
+def test_broken_weights_are_not_saved_over_good_ones(tmp_path: Path):
+    class Breaks(torch.optim.SGD):
+        def step(self):
+            for weight in (p for group in self.param_groups for p in group["params"]):
+                weight.data.fill_(math.nan)
+
+    path, model = tmp_path / "run.safetensors", nn.Linear(3, 2)
+    state, bad = TrainState.start(model, seed=1), bad_at(99, math.nan)
+    list(train_steps(state, bad, 5, save=saver(path), save_every=5, progress=False))
+    before, state.optimizer = path.read_bytes(), Breaks(model.parameters(), lr=0.1)
+    with pytest.raises(NonFiniteLoss, match="step 6: .* had broken the weights already; they are not saved"):
+        list(train_steps(state, bad, 20, save=saver(path), save_every=100, progress=False))
+    assert path.read_bytes() == before
+
+
+def test_the_last_step_is_saved_whatever_its_number(tmp_path: Path):
+    path, state = tmp_path / "run.safetensors", TrainState.start(nn.Linear(3, 2), seed=1)
+    list(train_steps(state, bad_at(99, math.nan), 7, save=saver(path), save_every=5, progress=False))
+    assert resume_run(TrainState.start(nn.Linear(3, 2), seed=1), path).step == 7
+
+
+def test_a_flipped_bit_in_a_saved_run_is_found(tmp_path: Path):
+    path, state = tmp_path / "run.safetensors", TrainState.start(nn.Linear(3, 2), seed=1)
+    list(train_steps(state, bad_at(99, math.nan), 3, save=saver(path), progress=False))
+    raw = bytearray(path.read_bytes())
+    raw[-1] ^= 0x40
+    path.write_bytes(raw)
+    with pytest.raises(ValueError, match="run.safetensors cannot be resumed: damaged"):
+        resume_run(TrainState.start(nn.Linear(3, 2), seed=1), path)
+
+
 def test_a_non_finite_gradient_stops_too():
     def loss_fn(model, generator):  # sqrt(0) is 0, its slope is not finite
         return (model(torch.zeros(2, 3)) * 0).square().sum().sqrt()

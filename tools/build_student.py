@@ -17,6 +17,8 @@ from pathlib import Path
 import notebook_cells
 from notebook_cells import NOTEBOOKS, tags
 
+from motiondiff_edu.files import replacing
+
 REGION = re.compile(r"^( *)# solution *\n(.*?\n)\1# end solution *$", re.MULTILINE | re.DOTALL)
 # a link that leaves the folder leaves one folder more from notebooks/student
 UPWARDS = re.compile(r'(\]\(|src="|href=")\.\./')
@@ -95,9 +97,8 @@ def write(folder: Path) -> int:
     for path in set((folder / "student").glob("*.ipynb")) - set(wanted):
         path.unlink()
     for path, content in wanted.items():
-        temporary = path.with_suffix(".tmp")
-        temporary.write_text(content, encoding="utf-8", newline="\n")
-        temporary.replace(path)
+        with replacing(path) as aside:
+            aside.write_text(content, encoding="utf-8", newline="\n")
     return len(wanted)
 
 

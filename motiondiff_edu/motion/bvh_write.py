@@ -6,12 +6,12 @@ add it to the position channels and programs which replace it by them agree. Thr
 Notebook: 00
 """
 
-import os
 from pathlib import Path
 
 import numpy as np
 from jaxtyping import Float
 
+from ..files import replacing
 from .bvh_fit import END_SITES, Fit, FitReport, fit
 from .bvh_tokens import BvhError
 
@@ -32,21 +32,11 @@ def write_bvh(path: str | Path, positions: Float[np.ndarray, "T 21 3"], fps: flo
     if not fps > 0:
         raise BvhError(f"fps must be positive, not {fps}; nothing was written.", path)
     fitted = fit(positions)
-    write_whole(path, text(fitted, float(fps)))
+    with replacing(path) as aside:
+        aside.write_text(text(fitted, float(fps)), encoding="ascii", newline="\n")
     report = FitReport(fitted.report.positions, fitted.report.shift_mm, fitted.report.bone_mm, path.name)
     print(report)
     return report
-
-
-def write_whole(path: Path, content: str) -> None:
-    """Write to a temporary name beside the target, then rename."""
-    path.parent.mkdir(parents=True, exist_ok=True)
-    temporary = path.with_name(f".{path.name}.{os.getpid()}.tmp")
-    try:
-        temporary.write_text(content, encoding="ascii", newline="\n")
-        temporary.replace(path)
-    finally:
-        temporary.unlink(missing_ok=True)
 
 
 def text(fitted: Fit, fps: float) -> str:

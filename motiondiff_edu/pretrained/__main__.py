@@ -2,12 +2,12 @@
 
 import argparse
 import json
-import os
 from pathlib import Path
 
 import torch
 
 from ..checkpoints import FOLDER, save_walker
+from ..files import replacing
 from .recipes import RECIPES, SHIPPED
 from .train import train
 
@@ -37,9 +37,8 @@ def point_alias(folder: Path, name: str) -> None:
     there = sorted(path.stem for path in folder.glob("*.safetensors"))
     if name not in there:
         raise SystemExit(f"no weights in {folder} are called {name!r}; there are: {', '.join(there) or 'none'}")
-    temporary = folder / "aliases.json.part"
-    temporary.write_text(json.dumps({"walker": name}) + "\n")
-    os.replace(temporary, folder / "aliases.json")
+    with replacing(folder / "aliases.json") as aside:
+        aside.write_text(json.dumps({"walker": name}) + "\n")
 
 
 if __name__ == "__main__":

@@ -45,7 +45,7 @@ class Recipe:
 
 
 SMALL_FEET = FootholdConfig(width=128, hidden=256, cross_layers=2)  # MODIFF_SMALL with footholds
-WALKER_X0 = Recipe("walker-x0", SMALL_FEET, steps=22_000, schedule="leap")
+WALKER_X0 = Recipe("walker-x0", SMALL_FEET, steps=20_000, schedule="leap")
 WALKER_EPS = Recipe("walker-eps", MODIFF_SMALL, steps=20_000, schedule="leap", high_noise=3.0)
 # The paper's sizes, Adam, 5e-5, batch 64, plain loss. Ours: the data, whose windows start at every frame (so 300,000
 # steps, not epochs) and hold the control in half of the cases; the skip; the warm-up and cosine of the rate.

@@ -15,6 +15,7 @@ import anywidget
 import numpy as np
 import traitlets
 
+from ..files import replacing
 from ..viz import body
 from . import packing, poster
 
@@ -110,7 +111,9 @@ class Player(anywidget.AnyWidget):
 
     def save_html(self, path: str | os.PathLike) -> Path:
         """Write the figure as one HTML file that plays anywhere, offline."""
-        return _replace(path, lambda part: part.write_text(self.page(), "utf-8"))
+        with replacing(path) as part:
+            part.write_text(self.page(), "utf-8")
+        return Path(path)
 
     def save_gif(self, path: str | os.PathLike, size: tuple[int, int] = (400, 360)) -> Path:
         """Write the figure as an endless GIF, each figure `size` pixels."""
@@ -118,8 +121,9 @@ class Player(anywidget.AnyWidget):
         pictures = poster.film(self._figures, self._options["fps"], size)
         first, *rest = (p.quantize(palette=palette, dither=0) for p in pictures)
         pause = round(100 / self._options["fps"]) * 10  # GIF counts in hundredths of a second
-        return _replace(path, lambda part: first.save(
-            part, "GIF", save_all=True, append_images=rest, duration=pause, loop=0, optimize=False))  # fmt: skip
+        with replacing(path) as part:
+            first.save(part, "GIF", save_all=True, append_images=rest, duration=pause, loop=0, optimize=False)
+        return Path(path)
 
     def save_mp4(self, path: str | os.PathLike, size: tuple[int, int] = (480, 432)) -> Path:
         """Write the figure as MP4, each figure `size` pixels; needs imageio-ffmpeg, whose absence is an ImportError."""
@@ -128,8 +132,7 @@ class Player(anywidget.AnyWidget):
         except ImportError as error:
             raise ImportError("save_mp4 needs the package imageio-ffmpeg; save_gif does not") from error
         width = size[0] * len(self._figures)
-
-        def write(part: Path) -> None:
+        with replacing(path) as part:
             writer = imageio_ffmpeg.write_frames(
                 str(part), (width, size[1]), fps=self._options["fps"], macro_block_size=2, output_params=["-f", "mp4"]
             )
@@ -137,8 +140,7 @@ class Player(anywidget.AnyWidget):
             for picture in poster.film(self._figures, self._options["fps"], size):
                 writer.send(np.ascontiguousarray(picture))
             writer.close()
-
-        return _replace(path, write)
+        return Path(path)
 
 
 def _look(layout="side", offset=(1.2, 0.0), height=430, autoplay=True, follow=True, parents=None) -> dict:
@@ -180,15 +182,3 @@ def describe(figures: list[poster.Figure], fps: float) -> str:
         given = "" if f.past is None else f", the first {f.past / fps:.1f} s given and drawn paler"
         words.append(f"{f.label or f'figure {i}'}: {len(f) / fps:.1f} s, ends {way:.1f} m from its start{given}")
     return "Moving skeletons, left limbs blue and right limbs orange. " + "; ".join(words) + "."
-
-
-def _replace(path: str | os.PathLike, write) -> Path:
-    """Write to a temporary name beside `path`, then rename: no half-written file is ever left under the real name."""
-    path = Path(path)
-    part = path.with_name(path.name + ".part")
-    try:
-        write(part)
-        os.replace(part, path)
-    finally:
-        part.unlink(missing_ok=True)
-    return path

@@ -13,6 +13,7 @@ import time
 from pathlib import Path
 
 from benchmarks.records import show, write_records
+from motiondiff_edu.files import replacing
 from motiondiff_edu.viz.metrics import footstep_curves
 
 from . import budget
@@ -68,8 +69,8 @@ def measure(asked: argparse.Namespace, folder: Path) -> None:
         if part == "footsteps":
             records, curves = footstep_records(bench, command)
             figure = footstep_curves({k: v for k, v in curves.items() if not k.endswith("-robust")})
-            folder.mkdir(parents=True, exist_ok=True)
-            figure.savefig(folder / "footsteps.png", dpi=110)
+            with replacing(folder / "footsteps.png") as aside:
+                figure.savefig(aside, dpi=110, format="png")
         elif part == "budget":
             records = budget.budget_records(budget.FULL if bench.size == FULL else budget.QUICK, command)
         else:

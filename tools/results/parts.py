@@ -10,6 +10,7 @@ import numpy as np
 from safetensors import safe_open
 
 from motiondiff_edu import checkpoints
+from motiondiff_edu.files import replacing
 from motiondiff_edu.metrics.footsteps import PAPER, ROBUST
 
 from . import steps_table
@@ -62,9 +63,8 @@ class Bench:
             generate = walker_generate(checkpoints.load_walker(path), steps, hold)
             asked = self.trials if what == "walks" else self.choices
             new = rollouts_of(generate, asked) if what == "choices" else generate(asked.past, asked.control, 0)
-            kept.parent.mkdir(parents=True, exist_ok=True)
-            np.save(kept.with_suffix(".part.npy"), new.astype(np.float32))
-            kept.with_suffix(".part.npy").rename(kept)
+            with replacing(kept) as aside, open(aside, "wb") as file:
+                np.save(file, new.astype(np.float32))
         return np.load(kept).astype(np.float64)
 
     def _inputs(self, what: str) -> tuple[np.ndarray, np.ndarray]:

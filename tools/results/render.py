@@ -1,8 +1,9 @@
 """docs/RESULTS.md, made from the records in docs/results/*.json and benchmarks/results/*.json; nothing is typed in."""
 
 import json
-import os
 from pathlib import Path
+
+from motiondiff_edu.files import replacing
 
 from .bars import BARS, Bar
 from .budget import VARIANTS
@@ -138,6 +139,5 @@ def render(docs: Path, benchmarks: Path = Path("benchmarks/results")) -> None:
     records = read_records(docs / "results", benchmarks)
     parts = [HEAD, bars(records), walkers(records), footsteps(records, docs / "results")]
     parts += [budget(records), others(records)]
-    docs.mkdir(parents=True, exist_ok=True)
-    (docs / "RESULTS.md.tmp").write_text("\n".join(part for part in parts if part))
-    os.replace(docs / "RESULTS.md.tmp", docs / "RESULTS.md")
+    with replacing(docs / "RESULTS.md") as aside:
+        aside.write_text("\n".join(part for part in parts if part))
