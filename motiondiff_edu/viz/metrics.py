@@ -41,7 +41,7 @@ def over_time(
             axis.plot(np.arange(len(values)) + 0.5, values, DASHES[i % 8], marker=MARKERS[i % 8], label=label)
         if shade_to:
             axis.axvspan(0, shade_to, color="0.9")
-        axis.set(xlabel="seconds of rollout", title=measure, ylim=(0, None))
+        axis.set(xlabel="time (s)", title=measure, ylim=(0, None))
     legend(axes[0])
     return fig
 
@@ -60,7 +60,7 @@ def toe_heights(
     for side, (label, colour) in enumerate((("left toe", LEFT_COLOUR), ("right toe", RIGHT_COLOUR))):
         axis.plot(seconds, 100 * height[:, side], "-" if side == 0 else "--", label=label, color=colour)
     axis.axhline(100 * below, color=INK, lw=1, ls=":", label=f"{100 * below:g} cm")
-    axis.set(xlabel="seconds", ylabel="height (cm)")
+    axis.set(xlabel="time (s)", ylabel="height (cm)")
     legend(axis, loc="upper right", ncols=3)
     axis.set_ylim(None, 1.35 * 100 * height.max())
     return fig
@@ -73,12 +73,12 @@ def gates(
     fig, axes = figure(9, 3.8, words, rows=2, sharex=True, sharey=True)
     seconds = np.arange(len(gate)) / fps
     for side, (axis, label, colour) in enumerate(
-        zip(axes, ("left toe", "right toe"), (LEFT_COLOUR, RIGHT_COLOUR), strict=True)
+        zip(axes, ("gate, left toe", "gate, right toe"), (LEFT_COLOUR, RIGHT_COLOUR), strict=True)
     ):
         _shade(axis, planted[:, side], fps)
         axis.plot(seconds, gate[:, side], color=colour)
         axis.set(ylabel=label, ylim=(-0.05, 1.05), yticks=(0, 0.5, 1))
-    axes[-1].set_xlabel("seconds")
+    axes[-1].set_xlabel("time (s)")
     return fig
 
 
@@ -96,7 +96,7 @@ def score_table(scores: Mapping[str, Mapping[str, float]], words: str) -> Figure
     fig, (axis,) = figure(2.6 + 1.75 * len(columns), 1.1 + 0.5 * len(rows), words)
     axis.imshow(np.nan_to_num(values) / np.maximum(largest, 1e-12), cmap="Blues", vmin=0, vmax=1.8, aspect="auto")
     for (i, j), value in np.ndenumerate(values):
-        text = "none" if np.isnan(value) else f"{0 if abs(value) < 5e-4 else value:.3g}"
+        text = "none" if np.isnan(value) else f"{0 if abs(value) < 5e-4 else value:.2g}"
         axis.text(j, i, text, ha="center", va="center", color=INK)
     axis.set_xticks(range(len(columns)), columns)
     axis.set_yticks(range(len(rows)), rows)

@@ -65,6 +65,7 @@ def limb_steps(
         curve.plot(np.linspace(0, 1, len(lengths[name])), lengths[name], color=LEFT_COLOUR)
         curve.axhline(true_length, color=INK, lw=0.8, ls="--")
         curve.set(xlabel="share of the way, u", ylim=(0, 1.15 * true_length))
+    axes[0].set_ylabel("y (m)")
     axes[n].set_ylabel("bone (m)")
     return figure
 
@@ -100,7 +101,7 @@ def windows_in_time(
             axes.barh(k + 0.38 * (n % 2), length / fps, 0.34, first / fps, color=colours[name], edgecolor="white")
     keys = [Patch(color=colour, label=name) for name, colour in colours.items()]
     names = [f"recording {k}" for k in range(len(starts))]
-    axes.set(yticks=np.arange(len(starts)) + 0.19, yticklabels=names, xlabel="s")
+    axes.set(yticks=np.arange(len(starts)) + 0.19, yticklabels=names, xlabel="time (s)")
     axes.legend(handles=keys, ncols=2, loc="lower right", fontsize=11, bbox_to_anchor=(1, 1), frameon=False)
     axes.invert_yaxis()
     return figure

@@ -122,14 +122,13 @@ def _legend(pen: ImageDraw.ImageDraw, right: int, y: int, text_size: int) -> Non
 
 
 def filmstrip(figures: list[Figure], fps: float, n: int = 6, width: int = 960) -> Image.Image:
-    """n poses from first to last, a row for each figure (the first three of them), times above."""
-    shown = figures[:3]
+    """n poses from first to last, a row for each figure, times above."""
     cell, head = width // n, 30
-    tall = {1: int(cell * 2.1), 2: int(cell * 1.45), 3: int(cell * 1.2)}[len(shown)]
-    picture = Image.new("RGB", (width, head + tall * len(shown)), body.PAPER)
+    tall = int(cell * {1: 2.1, 2: 1.45}.get(len(figures), 1.2))
+    picture = Image.new("RGB", (width, head + tall * len(figures)), body.PAPER)
     pen = ImageDraw.Draw(picture)
-    moments = np.linspace(0, max(map(len, shown)) - 1, n).round().astype(int)
-    for row, figure in enumerate(shown):
+    moments = np.linspace(0, max(map(len, figures)) - 1, n).round().astype(int)
+    for row, figure in enumerate(figures):
         for column, t in enumerate(moments):
             picture.paste(render(figure, int(t), (cell, tall)), (column * cell, head + row * tall))
             _write(pen, (column * cell + 6, head + row * tall + 5), figure.tense(int(t)), 15)
