@@ -8,7 +8,6 @@ import numpy as np
 from motiondiff_edu.files import replacing
 from motiondiff_edu.motion.clip import Clip
 
-from .controls import KINDS
 from .styles import STYLES
 from .walking import dataset
 
@@ -36,14 +35,18 @@ def main(arguments: list[str] | None = None) -> None:
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--style", choices=list(STYLES), help="one style only; without it, all by their shares")
     given = parser.parse_args(arguments)
+    if given.clips < 1 or given.seconds < 0.5:
+        parser.error("write at least one clip (--clips) of at least half a second (--seconds)")
     from motiondiff_edu.motion.bvh_write import write_bvh
 
     given.out.mkdir(parents=True, exist_ok=True)
     styles = None if given.style is None else [given.style]
-    for k, clip in enumerate(dataset(given.clips, given.seconds, given.seed, styles)):
+    clips = dataset(given.clips, given.seconds, given.seed, styles)
+    for k, clip in enumerate(clips):
         save_npz(clip, given.out / f"walk_{k:03d}.npz")
         write_bvh(given.out / f"walk_{k:03d}.bvh", clip.world(), clip.fps)
-    print(f"{given.clips} walks of {given.seconds:g} s ({', '.join(KINDS)}) in {given.out}")
+    names = ", ".join(sorted({clip.info["style"] for clip in clips}))
+    print(f"{given.clips} walks of {given.seconds:g} s ({names}) in {given.out}")
 
 
 __all__ = ["main", "save_npz"]

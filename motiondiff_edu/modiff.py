@@ -48,6 +48,8 @@ class MoDiffConfig:
         bad = next((name for name, value in sizes.items() if value < ("layers" not in name)), None)
         if bad:
             raise ValueError(f"{bad} = {sizes[bad]} makes no network")
+        if self.width % self.heads or self.width % 2:
+            raise ValueError(f"width = {self.width} must be even, and shared evenly by {self.heads} heads")
         if self.target not in TARGETS:
             raise ValueError(f"target must be one of {', '.join(TARGETS)}, not {self.target!r}")
 

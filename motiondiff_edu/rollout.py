@@ -5,6 +5,7 @@ network's units. `rollout_steps` repeats it; `generate` does so for a trained wa
 Source: MoDiff III-C, Alg. 2.  Notebook: 08
 """
 
+import warnings
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Any
@@ -73,7 +74,8 @@ def generate(
 
     Rows 0..T_h-1 of the control belong to the past. steps=None is DDPM with all S steps, a number is DDIM with so many.
     A past and control without a batch axis give poses without one. Arrays of numpy are taken too; a tensor comes back.
-    Raises ValueError when past and control do not fit the walker or hold NaN.
+    Raises ValueError when past and control do not fit the walker or hold NaN; warns where the control asks for more
+    than the walker saw in training.
     Source: MoDiff Alg. 2, Fig. 5.  Notebook: 07, 08
     """
     past, control = torch.as_tensor(past), torch.as_tensor(control)
@@ -92,6 +94,7 @@ def generate(
         raise ValueError(f"control has {control.shape[1]} rows, {T_h} of them beside the past: none is left")
     if not (torch.isfinite(past).all() and torch.isfinite(control).all()):
         raise ValueError("past or control holds NaN or infinity; fill the holes first")
+    _warn_beyond(control, getattr(walker, "card", {}).get("control_range"))
     generator = generator or torch.Generator().manual_seed(seed)
     past, control = (x.float().to(walker.pose_scaler.mean.device) for x in (past, control))
     poses, velocities = walker.pose_scaler.transform(past), walker.control_scaler.transform(control)
@@ -99,3 +102,20 @@ def generate(
     loop = rollout_steps(sample, poses, velocities, frames, T_p, generator=generator, keep=keep, hold=hold)
     new = walker.pose_scaler.inverse(torch.stack([frame.pose for frame in loop], dim=1))
     return new[0] if single else new
+
+
+def _warn_beyond(control: Float[Tensor, "B T C"], seen: dict | None) -> None:
+    """Say which row asks for what no training clip asked for, by more than a tenth of the range."""
+    if not seen:
+        return
+    low, high = torch.tensor(seen["low"]), torch.tensor(seen["high"])
+    slack = 0.1 * (high - low)
+    beyond = ((control < low - slack) | (control > high + slack)).nonzero()
+    if len(beyond):
+        batch, row, column = beyond[0].tolist()
+        name = ("forward speed", "speed to the left", "turning rate")[column] if len(low) == 3 else f"column {column}"
+        warnings.warn(
+            f"row {row} of the control asks for {control[batch, row, column]:.3g} ({name}); this walker learnt from "
+            f"{low[column]:.3g} to {high[column]:.3g}, and will do something else",
+            stacklevel=3,
+        )

@@ -71,3 +71,10 @@ def test_a_short_rest_at_the_end_does_not_count_as_a_second():
     asked = control.copy()
     asked[40:, 0] += 5.0
     assert adherence(gait(control), asked) < 1e-9
+
+
+def test_half_a_second_at_the_end_counts():
+    control = control_of(2.65)  # 52 steps: two seconds and twelve steps
+    asked = control.copy()
+    asked[40:, 0] += 3.0
+    assert adherence(gait(control), asked) == pytest.approx(1.0, abs=1e-6)

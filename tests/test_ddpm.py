@@ -236,3 +236,12 @@ def test_simple_loss_is_the_mean_square_and_zero_for_the_true_noise():
     assert simple_loss(lambda x, s: noise, x0, s, schedule, noise) == 0
     zero = simple_loss(lambda x, s: torch.zeros_like(x), x0, s, schedule, noise)
     assert zero.item() == pytest.approx((noise**2).mean().item(), rel=1e-6)
+
+
+@pytest.mark.parametrize("left, warns", [(0.099, False), (0.101, True)])
+def test_a_tenth_of_the_signal_is_the_limit(left, warns):
+    beta = torch.full((50,), 1 - left ** (2 / 50), dtype=torch.float64)
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        make_schedule(beta, "constant")
+    assert bool(caught) == warns

@@ -72,6 +72,8 @@ def test_runs_and_each_change_of_the_rule_by_hand():
     assert steps_of_heel(speed, 5.0, StepRule(merge_gap_s=0.05)).tolist() == [[1, 8], [11, 12]]
     assert steps_of_heel(speed, 5.0, StepRule(min_duration_s=0.1)).tolist() == [[1, 3], [6, 8]]
     assert steps_of_heel(speed, 5.0, StepRule(hysteresis=2.0)).tolist() == [[1, 3], [4, 8], [11, 12]]
+    wide = np.array([9.0, 6, 9, 9, 3, 6, 9])  # slow twice, slow enough to begin a step once
+    assert steps_of_heel(wide, 5.0, StepRule(hysteresis=2.0)).tolist() == [[4, 6]]
     assert steps_of_heel(speed, 5.0, StepRule(drop_edge_runs=True)).tolist() == [[1, 3], [4, 5], [6, 8]]
     assert steps_of_heel(speed, 0.5, StepRule(merge_gap_s=1.0, hysteresis=0.1)).tolist() == []
 
@@ -90,3 +92,11 @@ def test_no_steps_and_no_clips():
     assert nothing.count == 0 and np.isnan(nothing.v95) and np.isnan(nothing.mean_s)
     with pytest.raises(ValueError, match="at least one clip"):
         footsteps([])
+
+
+def test_v95_is_where_95_of_100_are_found():
+    """90 steps below 1 cm/s, then 4, 2 and 4 more: 94 are too few, 96 enough."""
+    lowest = np.repeat([0.5, 1.5, 2.5, 3.5], [90, 4, 2, 4])
+    speed = np.stack([lowest, np.full(100, 99.0)], 1).ravel()  # slow for one frame, fast for one
+    found = footsteps([np.stack([speed, np.full(200, 99.0)], 1)])
+    assert found.counts[:4].tolist() == [90, 94, 96, 100] and found.v95 == 3 and found.count == 96

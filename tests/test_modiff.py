@@ -6,6 +6,7 @@ from dataclasses import replace
 import pytest
 import torch
 
+from motiondiff_edu.cross_modal_attention import relative_position_bucket
 from motiondiff_edu.fast.modiff import FastMoDiff
 from motiondiff_edu.modiff import MODIFF_PAPER, MODIFF_SMALL, MoDiff, step_embedding
 
@@ -175,3 +176,35 @@ def test_fast_twin_stays_as_it_was_built_and_leaves_the_model_in_training():
         for weight in model.parameters():
             weight.add_(0.3)
     assert torch.equal(fast.denoise(x_s, 5, fast.encode(past, control)), before)
+
+
+def test_the_wiring_by_hand():
+    """Which table goes where, and when everything happens: written out, with every time as a number.
+
+    T_h = 4, T_p = 5: poses are given at frames -3 to 0, control at -3 to 5, and the future is 1 to 5.
+    """
+    model, (x_s, s, past, control) = lively(TINY), inputs(TINY)
+    given, told, future = [-3, -2, -1, 0], [-3, -2, -1, 0, 1, 2, 3, 4, 5], [1, 2, 3, 4, 5]
+    clock = {t: model.time[t + 3] for t in told}
+
+    def encoder(part, times, x):
+        bias = part.bias.table[relative_position_bucket(torch.tensor(times)[None] - torch.tensor(times)[:, None])]
+        for block in part.blocks:
+            x = block(x, bias.permute(2, 0, 1)[None])
+        return x
+
+    with torch.no_grad():
+        motion = model.past_in(past) + torch.stack([clock[t] for t in given]) + model.modality[0]
+        steered = model.control_in(control) + torch.stack([clock[t] for t in told]) + model.modality[1]
+        tokens = [encoder(model.motion_encoder, given, motion), encoder(model.control_encoder, told, steered)]
+        memory = model.memory_norm(encoder(model.cross_encoder, given + told, torch.cat(tokens, 1)))
+        noised = torch.cat([x_s, model.step_in(step_embedding(s, 16))[:, None].expand(-1, 5, -1)], -1)
+        x = model.future_in(noised) + torch.stack([clock[t] for t in future])
+        gaps = {name: torch.tensor(times)[None] - torch.tensor(future)[:, None]
+                for name, times in (("self", future), ("memory", given + told))}  # fmt: skip
+        own = model.self_bias.table[relative_position_bucket(gaps["self"])].permute(2, 0, 1)[None]
+        other = model.memory_bias.table[relative_position_bucket(gaps["memory"])].permute(2, 0, 1)[None]
+        for block in model.decoder:
+            x = block(x, own, memory, other)
+        wanted = model.head(x) + model.skip[7] * x_s
+        torch.testing.assert_close(model(x_s, s, past, control), wanted, atol=1e-6, rtol=1e-5)

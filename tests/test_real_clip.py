@@ -6,6 +6,7 @@ import torch
 
 from motiondiff_edu.checkpoints import available, pretrained
 from motiondiff_edu.conditions.control import joystick, splice
+from motiondiff_edu.metrics.adherence import adherence
 from motiondiff_edu.metrics.bone_lengths import bone_rmse
 from motiondiff_edu.motion.bvh import read_bvh
 from motiondiff_edu.motion.bvh_write import write_bvh
@@ -28,7 +29,9 @@ def test_a_real_clip_goes_on_under_new_control_and_comes_back_from_its_file(real
     assert new.shape == (SECONDS * 20, 63)
 
     poses = torch.cat([past, new]).double().numpy().reshape(-1, len(JOINTS), 3)
-    assert bone_rmse(poses[T_h:]) < 2.0  # cm: a body, not a cloud
+    assert bone_rmse(poses[T_h:]) < 0.5  # cm: a body, not a cloud
+    own = adherence(poses[T_h:], ahead)  # m/s: the feet go where they are told, and not where others are told
+    assert own < 0.05 < 0.12 < adherence(poses[T_h:], ahead[::-1])
     first = np.abs(poses[T_h] - poses[T_h - 1]).max()
     assert first < 0.35  # metres: it goes on from where the clip ended
     lowest = poses[T_h:, :, 1].min(1)

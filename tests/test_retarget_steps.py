@@ -42,7 +42,7 @@ def test_a_tilted_floor_is_found_and_levelled():
 
 def test_resampling_keeps_slow_motion_and_drops_fast():
     t = np.arange(481) / 120
-    slow, fast = np.sin(2 * np.pi * 1.0 * t), 0.1 * np.sin(2 * np.pi * 30 * t)
+    slow, fast = np.sin(2 * np.pi * 1.0 * t), 0.1 * np.sin(2 * np.pi * 16 * t)  # 16 Hz would look like 4 Hz
     points = np.broadcast_to((slow + fast)[:, None, None], (481, 21, 3)).copy()
     out = resample(points, 120.0, 20.0)
     assert out.shape == (81, 21, 3)

@@ -5,7 +5,7 @@ import pytest
 
 from motiondiff_edu.motion import root_frame as rf
 from motiondiff_edu.motion.kinematics import rot_y
-from motiondiff_edu.motion.skeleton import OFFSETS, PARENTS, J
+from motiondiff_edu.motion.skeleton import OFFSETS, PARENTS, J, joint_index
 
 
 def long_run(seconds=60, fps=20, seed=3):
@@ -104,3 +104,29 @@ def test_estimated_root_of_a_short_clip_keeps_its_speed(frames):
     found = rf.control_from_path(root, heading - heading[0])
     speed = np.linalg.norm(found[:, :2], axis=1)
     np.testing.assert_allclose(speed, np.hypot(1.3, 0.2), rtol=1e-9)
+
+
+def test_the_estimated_root_is_smoothed_by_gaussians_of_these_lengths():
+    """A Gaussian of sigma seconds leaves exp(-(2 pi f sigma)^2 / 2) of a sine of f Hz: way .25 s, turns .33 s."""
+    t, pose = np.arange(400) / 20, long_run(seconds=1)[0].mean(0)
+    sway, turn = 0.05 * np.sin(2 * np.pi * 0.6 * t), 0.2 * np.sin(2 * np.pi * 0.6 * t)
+    world = np.tile(pose, (400, 1, 1))
+    still, heading = rf.estimate_root(world)
+    world[..., 0] += sway[:, None]
+    root, _ = rf.estimate_root(world)
+    kept = np.ptp((root - still)[60:-60, 0]) / np.ptp(sway)
+    assert kept == pytest.approx(np.exp(-((2 * np.pi * 0.6 * 0.25) ** 2) / 2), rel=0.02)
+    left, up, ahead = np.moveaxis(np.tile(pose - pose[0] * [1, 0, 1], (400, 1, 1)), -1, 0)
+    cos, sin = np.cos(turn)[:, None], np.sin(turn)[:, None]
+    turned = np.stack([left * cos + ahead * sin, up, ahead * cos - left * sin], -1)
+    kept = np.ptp(rf.estimate_root(turned)[1][60:-60]) / np.ptp(turn)
+    assert kept == pytest.approx(np.exp(-((2 * np.pi * 0.6 * 0.33) ** 2) / 2), rel=0.02)
+
+
+def test_the_heading_is_that_of_hips_and_shoulders_together():
+    pose = np.zeros((1, 21, 3))
+    for name, x, z in (("UpLeg", 0.1, 0.0), ("Arm", 0.3 * np.cos(0.4), -0.3 * np.sin(0.4))):
+        pose[0, joint_index("Left" + name)], pose[0, joint_index("Right" + name)] = (x, 1, z), (-x, 1, -z)
+    _, heading = rf.estimate_root(np.tile(pose, (60, 1, 1)))
+    by_hand = np.arctan2(0.3 * np.sin(0.4), 0.1 + 0.3 * np.cos(0.4))  # hips ahead, shoulders turned by 0.4
+    assert heading == pytest.approx(np.full(60, by_hand))

@@ -128,6 +128,7 @@ def test_ddim_under_disperses_as_its_own_algebra_says(steps, lost):
 def test_timesteps_start_at_the_top_and_do_not_repeat():
     assert timesteps(100, 4) == [100, 75, 50, 25]
     assert timesteps(100, 100) == list(range(100, 0, -1))
+    assert timesteps(100, 7) == [100, 86, 72, 58, 43, 29, 15]  # sevenths, rounded up
     for steps in (1, 3, 7, 60):
         chosen = timesteps(100, steps)
         assert chosen[0] == 100 and len(set(chosen)) == steps and chosen[-1] >= 1 and chosen == sorted(chosen)[::-1]
@@ -145,3 +146,12 @@ def test_warm_start_keeps_to_its_guess_only_from_low_steps():
         kept.append((x > 0.7).float().mean().item())
     assert kept[0] == 1 and kept[1] < 0.6
     assert math.isclose(start.mean().item(), 1.5 * schedule.alpha_bar[95] ** 0.5, abs_tol=0.05)
+
+
+def test_warm_start_is_its_guess_noised_to_that_very_step():
+    schedule, guess = linear_schedule(20, 1e-3, 0.5), torch.linspace(-1, 2, 15).reshape(3, 5)
+    noise = torch.randn(3, 5, generator=torch.Generator().manual_seed(3))
+    for s in (1, 7, 20):
+        kept = schedule.alpha_bar[s].item()
+        start = warm_start(guess, s, schedule, generator=torch.Generator().manual_seed(3))
+        torch.testing.assert_close(start, kept**0.5 * guess + (1 - kept) ** 0.5 * noise)

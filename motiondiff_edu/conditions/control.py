@@ -55,8 +55,12 @@ def splice(past: Float[np.ndarray, "T 3"], new: Float[np.ndarray, "n 3"], T_h: i
 def joystick(segments: Sequence[tuple], fps: float | int = FPS, ramp: float | int = RAMP) -> Float[np.ndarray, "T 3"]:
     """Control from a list of (seconds, forward, left, yaw); each change takes `ramp` seconds, smoothly.
 
-    r(u) = u^2 (3 - 2u) leads from the value left behind to the new one.  Notebook: 07
+    r(u) = u^2 (3 - 2u) leads from the value left behind to the new one.
+    Raises ValueError for no segment, or one that is not four finite numbers.  Notebook: 07
     """
+    bad = next((segment for segment in segments if len(segment) != 4 or not np.isfinite(segment).all()), None)
+    if bad is not None or not segments:
+        raise ValueError(f"a segment is (seconds, forward, left, yaw), four finite numbers, not {bad or 'nothing'}")
     rows, value = [], np.array(segments[0][1:], dtype=np.float64)
     for seconds, *target in segments:
         goal = np.array(target, dtype=np.float64)

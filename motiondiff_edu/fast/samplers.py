@@ -82,8 +82,13 @@ def ddim_steps(
 
     sigma^2 = eta^2 (1 - ab_next) / (1 - ab_s) (1 - ab_s / ab_next). With eta = 0 no noise is drawn.
     Few steps with eta = 0 give samples that lie too close together (notebook 03): DDIM is not DDPM, only faster.
+    Raises ValueError for steps that do not fall, or lie outside 1..S, and for an eta outside 0..1.
     """
     visited = timesteps(schedule.S, steps) if isinstance(steps, int) else list(steps)
+    if not visited or visited != sorted(set(visited), reverse=True) or not 1 <= visited[-1] <= visited[0] <= schedule.S:
+        raise ValueError(f"steps must fall, from {schedule.S} at most to 1 at least; these are {visited}")
+    if not 0 <= eta <= 1:
+        raise ValueError(f"eta must lie between 0 (no noise) and 1 (DDPM's), not {eta}")
     alpha_bar = schedule.alpha_bar.tolist()
     plan = []
     for s, after in zip(visited, [*visited[1:], 0], strict=True):

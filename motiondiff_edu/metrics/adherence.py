@@ -50,8 +50,11 @@ def adherence(
 
     The seconds follow each other without overlap; a last one shorter than half is left out. Flight is left out of a
     second's mean, a second all in flight out of the average; a clip with no planted toe at all gives NaN. Recorded
-    motion is not at 0 either: print the data's own value beside it.  Notebook: 08
+    motion is not at 0 either: print the data's own value beside it.
+    Raises ValueError for fewer than two frames.  Notebook: 08
     """
+    if poses.shape[-3] < 2:
+        raise ValueError("a velocity takes two frames, and this motion has one")
     residual = residual_velocity(poses, control, fps, below)
     means = np.stack([mean_where(np.moveaxis(second, -1, -2)) for second in _seconds(residual, fps)], -2)
     return mean_where(np.linalg.norm(means, axis=-1))

@@ -13,7 +13,9 @@ from jaxtyping import Float
 
 from ..files import replacing
 from .bvh_fit import END_SITES, Fit, FitReport, fit
+from .bvh_motion import FASTEST, SLOWEST
 from .bvh_tokens import BvhError
+from .skeleton import J
 
 CM = 100.0
 TURN = "Zrotation Xrotation Yrotation"
@@ -22,15 +24,23 @@ TURN = "Zrotation Xrotation Yrotation"
 def write_bvh(path: str | Path, positions: Float[np.ndarray, "T 21 3"], fps: float | int = 20.0) -> FitReport:
     """Write world positions (metres) as a BVH file; prints and returns the joint shift of the constant-bone fit.
 
-    The file appears whole or not at all. Raises BvhError for an empty or non-finite motion.
+    The file appears whole or not at all. Raises BvhError for an empty or non-finite motion, another shape, and
+    a frame rate that no reader takes for one.
     """
     path = Path(path)
     positions = np.asarray(positions, dtype=np.float64)
     if not len(positions) or not np.isfinite(positions).all():
         what = "has no frames" if not len(positions) else "holds values that are not finite"
         raise BvhError(f"the motion {what}; nothing was written.", path)
-    if not fps > 0:
-        raise BvhError(f"fps must be positive, not {fps}; nothing was written.", path)
+    if positions.shape[1:] != (J, 3):
+        raise BvhError(
+            f"positions are (T, {J}, 3), metres in the world; these are {positions.shape}. What a walker makes becomes "
+            f"that by root_frame.to_world(new.reshape(-1, {J}, 3), control). Nothing was written.",
+            path,
+        )
+    if not FASTEST <= 1 / fps <= SLOWEST:
+        limits = f"{1 / SLOWEST:g} to {1 / FASTEST:g}"
+        raise BvhError(f"fps must be {limits} frames a second, not {fps:g}; nothing was written.", path)
     fitted = fit(positions)
     with replacing(path) as aside:
         aside.write_text(text(fitted, float(fps)), encoding="ascii", newline="\n")

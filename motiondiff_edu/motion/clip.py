@@ -50,13 +50,15 @@ class Clip:
 def slice_clips(clips: Sequence[Clip], seconds: float = 4.0, overlap: float = 0.5) -> list[Clip]:
     """Cut clips into pieces of `seconds` that overlap by the share `overlap`; a shorter rest is left out.
 
-    Raises ValueError unless 0 <= overlap < 1.  Source: MoDiff IV-A.  Notebook: 01
+    Raises ValueError unless 0 <= overlap < 1 and a piece has a frame.  Source: MoDiff IV-A.  Notebook: 01
     """
     if not 0 <= overlap < 1:
         raise ValueError(f"overlap must lie in [0, 1), got {overlap}")
     pieces = []
     for clip in clips:
         length = round(seconds * clip.fps)
+        if length < 1:
+            raise ValueError(f"pieces of {seconds} s have no frame at {clip.fps:g} frames/s")
         stride = max(1, round(length * (1 - overlap)))
         pieces += [clip.cut(first, first + length) for first in range(0, len(clip) - length + 1, stride)]
     return pieces
@@ -69,8 +71,8 @@ def split_by_source(
 
     `fractions` are shares of the sources and sum to 1. Raises ValueError otherwise.  Notebook: 01
     """
-    if abs(sum(fractions) - 1) > 1e-9:
-        raise ValueError(f"fractions must sum to 1, these sum to {sum(fractions)}")
+    if min(fractions) < 0 or abs(sum(fractions) - 1) > 1e-9:
+        raise ValueError(f"fractions are shares that sum to 1, not {list(fractions)}")
     sources = np.array(sorted({clip.source for clip in clips}))
     rng.shuffle(sources)
     bounds = np.round(np.cumsum([0.0, *fractions]) * len(sources)).astype(int)

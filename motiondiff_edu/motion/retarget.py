@@ -52,6 +52,8 @@ def retarget(bvh: Bvh, mapping: Mapping[str, str] | None = None, fps: float | in
     Raises BvhError when joints are missing or the motion is shorter than half a second.
     """
     fps = float(fps)
+    if not 0 < fps < np.inf:
+        raise BvhError(f"fps must be a positive number of frames a second, not {fps:g}.", bvh.source)
     mapping = guess_mapping(bvh) if mapping is None else check_mapping(mapping, bvh)
     points, info = normalised(bvh, mapping, fps)
     world, contacts = onto_our_bones(points, info["rest_lean"], fps)

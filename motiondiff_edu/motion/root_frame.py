@@ -59,7 +59,12 @@ def to_world(
     start: tuple[float, float, float] = (0.0, 0.0, 0.0),
     fps: float = FPS,
 ) -> Float[np.ndarray, "T J 3"]:
-    """Place root-frame poses in the world, along the path that the control draws from `start`.  Notebook: 01"""
+    """Place root-frame poses in the world, along the path that the control draws from `start`.
+
+    Raises ValueError unless there is a row of control for each pose.  Notebook: 01
+    """
+    if len(poses) != len(control):
+        raise ValueError(f"{len(poses)} poses and {len(control)} rows of control: each pose needs its row")
     root_xz, heading = root_path(control, start, fps)
     forward, left = (v[:, None] for v in forward_left(heading))
     ground = root_xz[:, None] + poses[..., :1] * left + poses[..., 2:] * forward

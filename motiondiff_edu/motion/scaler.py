@@ -22,12 +22,14 @@ class Scaler:
 
     @classmethod
     def fit(cls, x: Float[Tensor, "*N D"]) -> "Scaler":
-        """Mean and (population) standard deviation of the training data.  Raises ValueError on NaN or infinity.
+        """Mean and (population) standard deviation of data.  Raises ValueError on NaN, infinity, or no rows.
 
         A column that never moves gets std 1: it stays in its own unit, so that a value unseen in training (the first
         step to the side) arrives as itself and not as thousands of standard deviations.
         """
         flat = x.reshape(-1, x.shape[-1]).double()
+        if not len(flat):
+            raise ValueError("there are no rows to take mean and deviation of")
         if not torch.isfinite(flat).all():
             bad = int((~torch.isfinite(flat)).any(-1).nonzero()[0])
             raise ValueError(f"row {bad} of the data to be scaled is not finite; clean it first")

@@ -57,6 +57,13 @@ def train(recipe: Recipe, run_file: Path, clips: list[Clip] | None = None, log=p
     return Walker(state.average.cpu().eval(), schedule, windows.pose_scaler, windows.control_scaler, card)
 
 
+def control_range(windows: Windows) -> dict[str, list[float]]:
+    """The smallest and the largest of each column of the control in the data; m/s, m/s, rad/s."""
+    control = windows.control_scaler.inverse(windows.control)
+    return {name: [round(float(x), 3) for x in values] for name, values in
+            (("low", control.amin(0)), ("high", control.amax(0)))}  # fmt: skip
+
+
 def digest(windows: Windows) -> str:
     """Of the frames as the network sees them: a run goes on with the data it was begun with, or not at all."""
     frames = (windows.poses.numpy(), windows.control.numpy())
@@ -114,6 +121,7 @@ def card_of(recipe: Recipe, windows: Windows, state: TrainState, sittings: list[
         "recipe": settings,
         "parameters": sum(p.numel() for p in state.model.parameters()),
         "frames": len(windows.poses),
+        "control_range": control_range(windows),
         "minutes": round(state.seconds / 60, 1),
         "sittings": sittings,
         "data": "data_synth.walking, synthetic",

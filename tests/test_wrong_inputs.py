@@ -1,0 +1,119 @@
+"""What somebody may hand over by mistake, and what they are told: no broadcast, no NaN, in this course's words."""
+
+import math
+import os
+import subprocess
+import sys
+import warnings
+
+import numpy as np
+import pytest
+import torch
+
+from data_synth.walking import walk
+from data_synth.write_walks import main as write_walks
+from motiondiff_edu import ddpm
+from motiondiff_edu.conditions.control import joystick
+from motiondiff_edu.fast.samplers import ddim_steps
+from motiondiff_edu.metrics.adherence import adherence
+from motiondiff_edu.modiff import MoDiff, MoDiffConfig
+from motiondiff_edu.motion.bvh_write import write_bvh
+from motiondiff_edu.motion.clip import slice_clips, split_by_source
+from motiondiff_edu.motion.scaler import Scaler
+from motiondiff_edu.rollout import generate
+from motiondiff_edu.walker import Walker
+
+SCHEDULE = ddpm.linear_schedule(20, 1e-3, 0.5)
+X = torch.zeros(2, 3)
+CLIP, RNG = walk(np.zeros((11, 3)), seed=0), np.random.default_rng(0)
+
+
+def ddim(**options):
+    return lambda: list(ddim_steps(lambda x, s: x, X, SCHEDULE, **options))
+
+
+MISTAKES = {
+    "steps that rise": (ddim(steps=[5, 10, 20]), "steps must fall, from 20 at most to 1 at least"),
+    "no steps": (ddim(steps=[]), "steps must fall"),
+    "a step 0": (ddim(steps=[20, 0]), "steps must fall"),
+    "a step beyond S": (ddim(steps=[21, 3]), "steps must fall"),
+    "eta beyond DDPM": (ddim(steps=4, eta=2.0), "eta must lie between 0"),
+    "a step back from clean data": (lambda: ddpm.p_sample(X, 0, X, SCHEDULE, X), "s = 0: this is for steps from 1 on"),
+    "a posterior of clean data": (lambda: ddpm.q_posterior(X, X, 0, SCHEDULE), "steps from 1 on"),
+    "the last step as a KL": (lambda: ddpm.step_kl(X, X, 1, X, SCHEDULE), "from 2 on .see reconstruction_nll"),
+    "pieces without a frame": (lambda: slice_clips([CLIP], seconds=0), "pieces of 0 s have no frame"),
+    "pieces of negative length": (lambda: slice_clips([CLIP], seconds=-1), "pieces of -1 s have no frame"),
+    "a negative share": (
+        lambda: split_by_source([CLIP], [1.5, -0.5], np.random.default_rng(0)),
+        "shares that sum to 1",
+    ),
+    "no data to scale": (lambda: Scaler.fit(torch.zeros(0, 3)), "there are no rows"),
+    "one frame": (lambda: adherence(CLIP.poses[:1], CLIP.control[:1]), "takes two frames"),
+    "no segments": (lambda: joystick([]), "four finite numbers, not nothing"),
+    "a short segment": (lambda: joystick([(1, 2)]), "four finite numbers"),
+    "a segment of NaN": (lambda: joystick([(1, math.nan, 0, 0)]), "four finite numbers"),
+    "an odd width": (lambda: MoDiffConfig(width=7, heads=7), "width = 7 must be even"),
+    "heads that do not fit": (lambda: MoDiffConfig(width=16, heads=3), "shared evenly by 3 heads"),
+}
+
+
+@pytest.mark.parametrize("what", MISTAKES)
+def test_it_is_refused_in_words(what):
+    call, words = MISTAKES[what]
+    with pytest.raises(ValueError, match=words):
+        call()
+
+
+@pytest.mark.parametrize("s", [-1, 21])
+def test_a_step_that_is_not_there(s):
+    with pytest.raises(IndexError, match=f"no step {s}: they go from 0, which is clean, to 20"):
+        ddpm.q_sample(X, s, SCHEDULE, X)
+
+
+@pytest.mark.parametrize("fps", [math.inf, 1, 2000])
+def test_a_rate_that_no_reader_takes_for_one_is_not_written(tmp_path, fps):
+    with pytest.raises(ValueError, match="fps must be 2 to 1000"):
+        write_bvh(tmp_path / "x.bvh", CLIP.world(), fps)
+    assert not list(tmp_path.iterdir())
+
+
+SHAPES = {  # in a process of its own: here the tests' own check of shapes would speak first
+    "write_bvh('x.bvh', np.zeros((5, 63)))": "positions are (T, 21, 3), metres in the world; these are (5, 63).",
+    "write_bvh('x.bvh', np.zeros((5, 20, 3)))": "these are (5, 20, 3)",
+    "to_world(np.zeros((5, 21, 3)), np.zeros((1, 3)))": "5 poses and 1 rows of control",
+}
+
+
+@pytest.mark.parametrize("call", SHAPES)
+def test_shapes_that_would_broadcast_are_told_apart(call, tmp_path, root):
+    code = f"""
+import numpy as np
+from motiondiff_edu.motion.bvh_write import write_bvh
+from motiondiff_edu.motion.root_frame import to_world
+{call}
+"""
+    environment = os.environ | {"PYTHONPATH": str(root)}
+    done = subprocess.run([sys.executable, "-c", code], cwd=tmp_path, env=environment, capture_output=True, text=True)
+    assert done.returncode == 1 and SHAPES[call] in done.stderr and not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize("arguments", [["--clips", "-1"], ["--seconds", "0.01"]])
+def test_no_walks_are_no_success(tmp_path, arguments, capsys):
+    with pytest.raises(SystemExit) as stopped:
+        write_walks(["--out", str(tmp_path), *arguments])
+    assert stopped.value.code == 2 and "at least one clip" in capsys.readouterr().err
+
+
+def test_a_control_beyond_the_training_data_is_named():
+    config = MoDiffConfig(T_h=4, T_p=3, S=6, width=16, heads=2, hidden=24)
+    plain = Scaler(torch.zeros(63), torch.ones(63)), Scaler(torch.zeros(3), torch.ones(3))
+    seen = {"control_range": {"low": [-0.5, -0.6, -2.0], "high": [3.0, 0.6, 2.0]}}
+    walker = Walker(MoDiff(config).eval(), ddpm.linear_schedule(6, 0.2, 0.95), *plain, seen)
+    past, control = torch.zeros(4, 63), torch.zeros(7, 3)
+    control[5, 2] = -45.0
+    with pytest.warns(UserWarning, match=r"row 5 of the control asks for -45 \(turning rate\); .* from -2 to 2"):
+        generate(walker, past, control)
+    control[5, 2] = -2.1
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        generate(walker, past, control)
