@@ -2,7 +2,8 @@
 
     python -m tools.results [--only PART ...] [--quick] [--weights NAME=FILE] [--render]
 
-Parts: walker-eps, walker-x0, walker-ddim10, their -lookahead lines, footsteps, budget (which trains). --quick
+Parts: walker-eps, walker-x0, walker-ddim10, their -lookahead lines, footsteps, budget (which trains; one row of it:
+budget.T_p-5). --quick
 measures little, into build/quick, and is for trying the code; --render only writes docs/RESULTS.md from the records
 that are there.
 """
@@ -60,8 +61,9 @@ def measure(asked: argparse.Namespace, folder: Path) -> None:
     bench, lines = Bench(QUICK if asked.quick else FULL, extra), LINES | {name: Walks(name, name) for name in extra}
     options = " --quick" * asked.quick + "".join(f" --weights {item}" for item in asked.weights)
     there = [prefix for prefix, line in lines.items() if line.name in bench.weights]
-    parts = asked.only or [*there, *OTHERS]
-    unknown = set(parts) - set(lines) - set(OTHERS)
+    rows = [f"budget.{name}" for name in budget.VARIANTS]
+    parts = [row for part in asked.only or [*there, *OTHERS] for row in (rows if part == "budget" else [part])]
+    unknown = set(parts) - set(lines) - set(OTHERS) - set(rows)
     if unknown:
         sys.exit(f"no part is called {', '.join(sorted(unknown))}; there are: {', '.join([*lines, *OTHERS])}")
     for part in parts:
@@ -71,8 +73,9 @@ def measure(asked: argparse.Namespace, folder: Path) -> None:
             figure = footstep_curves({k: v for k, v in curves.items() if not k.endswith("-robust")})
             with replacing(folder / "footsteps.png") as aside:
                 figure.savefig(aside, dpi=110, format="png")
-        elif part == "budget":
-            records = budget.budget_records(budget.FULL if bench.size == FULL else budget.QUICK, command)
+        elif part in rows:
+            size = budget.FULL if bench.size == FULL else budget.QUICK
+            records = budget.budget_records(part.removeprefix("budget."), size, command)
         else:
             records = walker_records(bench, lines[part], command)
         show([one for one in records if one["value"] is not None])

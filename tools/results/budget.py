@@ -6,12 +6,14 @@ network, data, seed, and the rollout, which keeps one pose of every window.  Sou
 """
 
 from dataclasses import dataclass, replace
+from functools import cache
 
 import torch
 
 from data_synth.walking import dataset
 from motiondiff_edu.modiff import MoDiffConfig
 from motiondiff_edu.motion.augment import augment
+from motiondiff_edu.motion.clip import Clip
 from motiondiff_edu.pretrained.budget import train_for
 from motiondiff_edu.pretrained.recipes import WALKER_X0
 
@@ -52,9 +54,16 @@ class Budget:
 FULL, QUICK = Budget(), Budget(seconds=2, training=6, clips=8, walk_s=6)
 
 
-def measure(name: str, budget: Budget, clips: list, trials: Trials) -> list[Figure]:
+@cache
+def material(budget: Budget) -> tuple[list[Clip], Trials]:
+    """What all variants train on and walk."""
+    return augment(dataset(budget.training, 20.0, seed=1)), unseen(budget.clips, budget.walk_s)
+
+
+def measure(name: str, budget: Budget) -> list[Figure]:
     """The figures of one variant, and the steps its seconds were enough for."""
     _, _, config, training = VARIANTS[name]
+    clips, trials = material(budget)
     walker, steps = train_for(budget.seconds, clips, config, **training)
     walks = walker_generate(walker)(trials.past, trials.control, 0)
     found = [figure for figure in score(walks, trials.asked, trials.truth) if figure.name in SHOWN]
@@ -62,16 +71,11 @@ def measure(name: str, budget: Budget, clips: list, trials: Trials) -> list[Figu
     return [*found, Figure("steps", steps, steps, steps, "")]
 
 
-def budget_records(budget: Budget, command: str) -> list[dict]:
-    """One thread, whatever the machine has: CPU-seconds are the budget."""
+def budget_records(name: str, budget: Budget, command: str) -> list[dict]:
+    """One thread, whatever the machine has: CPU-seconds are the budget. Compare what one machine measured."""
     before = torch.get_num_threads()
     torch.set_num_threads(1)
-    clips, trials = augment(dataset(budget.training, 20.0, seed=1)), unseen(budget.clips, budget.walk_s)
     seeds = {"data": UNSEEN, "training": 0, "rollouts": 0, "clips": budget.clips, "cpu_seconds": budget.seconds}
-    records = [
-        figure.as_record(f"budget.{name}.", seeds, command)
-        for name in VARIANTS
-        for figure in measure(name, budget, clips, trials)
-    ]
+    records = [figure.as_record(f"budget.{name}.", seeds, command) for figure in measure(name, budget)]
     torch.set_num_threads(before)
     return records
