@@ -36,4 +36,4 @@ class FastFoothold(FastMoDiff):
         self, x_s: Float[Tensor, "B T_p D"], s: Int[Tensor, "B"] | int, context: StandingContext
     ) -> Float[Tensor, "B T_p D"]:
         x = self.attend(self.embed(x_s, s), context)
-        return blend(self.model.head(x), openness(self.model.gate(x)), context.held)
+        return blend(self.head(x), openness(self.model.gate(x)), context.held)
