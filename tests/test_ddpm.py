@@ -1,6 +1,8 @@
 """The diffusion core against numbers that are not ours, and against itself taken step by step."""
 
+import re
 import warnings
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -25,6 +27,7 @@ from motiondiff_edu.ddpm import (
 )
 from motiondiff_edu.exact import exact_denoiser, mixture, sample_mixture
 from motiondiff_edu.prediction import to_eps
+from motiondiff_edu.walker import leap_schedule
 
 S_REF = 1000
 
@@ -245,3 +248,21 @@ def test_a_tenth_of_the_signal_is_the_limit(left, warns):
         warnings.simplefilter("always")
         make_schedule(beta, "constant")
     assert bool(caught) == warns
+
+
+def schedule_table() -> list[tuple[str, str]]:
+    """(call, what is left) of each row of the table in NOTATION.md."""
+    text = (Path(__file__).parents[1] / "docs" / "NOTATION.md").read_text(encoding="utf-8")
+    rows = re.findall(r"^\| `(\w+_schedule\(.*?\))`.*?\| \d+ \| ([\d.]+ %)(?: \(warns\))? \|$", text, re.MULTILINE)
+    assert len(rows) == 7
+    return rows
+
+
+@pytest.mark.filterwarnings("ignore:.*of the signal")
+@pytest.mark.parametrize("call, left", schedule_table())
+def test_the_table_in_the_docs_is_what_the_schedules_leave(call, left):
+    made = {"linear": linear_schedule, "scaled_linear": scaled_linear_schedule, "cosine": cosine_schedule}
+    name, arguments = call[:-1].split("_schedule(")
+    numbers = [float(x) if "e" in x or "." in x else int(x) for x in arguments.split(", ")]
+    schedule = (made | {"leap": leap_schedule})[name](*numbers)
+    assert f" {left} of the signal" in schedule_card(schedule)
