@@ -156,3 +156,12 @@ def test_random_damage_is_read_or_refused(tmp_path):
 def test_a_missing_file_is_a_missing_file(tmp_path):
     with pytest.raises(FileNotFoundError):
         read_bvh(tmp_path / "nowhere.bvh")
+
+
+def test_a_folder_is_no_file_and_a_tilde_is_home(tmp_path, monkeypatch):
+    with pytest.raises(BvhError, match="this is a folder; give one of the .bvh files in it"):
+        read_bvh(tmp_path)
+    monkeypatch.setenv("HOME", str(tmp_path))
+    with pytest.raises(BvhError, match="x.bvh: the file is empty"):
+        (tmp_path / "x.bvh").touch()
+        read_bvh("~/x.bvh")

@@ -82,7 +82,7 @@ def frame_rows(
     if not columns:
         raise BvhError("no joint has channels, so nothing can move; check the CHANNELS lines.", path, declared_line)
     values, counts = numbers(lines, first, columns, path)
-    check_frame_ends(counts, len(columns), path)
+    check_frame_ends(counts, columns, path)
     found = len(values) // len(columns)
     if found != declared:
         what = "frames were lost or the file is cut off" if found < declared else "the count is wrong"
@@ -122,9 +122,9 @@ def row_of(words: list[str], before: int, columns: list[tuple[str, str]], path: 
     return row
 
 
-def check_frame_ends(counts: list[tuple[int, int]], width: int, path: str | Path) -> None:
-    """Raise BvhError unless every frame of `width` numbers ends at the end of a line."""
-    held, begun = 0, 0
+def check_frame_ends(counts: list[tuple[int, int]], columns: list[tuple[str, str]], path: str | Path) -> None:
+    """Raise BvhError unless every frame, a number for each of `columns`, ends at the end of a line."""
+    held, begun, width = 0, 0, len(columns)
     for line, count in counts:
         begun = line if held == 0 else begun
         held += count
@@ -138,8 +138,9 @@ def check_frame_ends(counts: list[tuple[int, int]], width: int, path: str | Path
         held %= width
     if held:
         raise BvhError(
-            f"the last frame, begun on line {begun}, has {held} of {width} numbers; the file is cut off. "
-            "Fetch it again, or remove that frame and count 'Frames:' down.",
+            f"the last frame, begun on line {begun}, has {held} of {width} numbers and ends before this one; "
+            "the file is cut off. Fetch it again, or remove that frame and count 'Frames:' down.",
             path,
             counts[-1][0],
+            "{} ({})".format(*columns[held]),
         )

@@ -43,9 +43,11 @@ class Statement:
 def read_lines(path: str | Path) -> list[str]:
     """The lines of a BVH file, whatever its line ends; anything that cannot be BVH is refused unread.
 
-    Raises BvhError for an empty, binary, UTF-16, HTML or oversized file.
+    Raises BvhError for a folder, an empty, binary, UTF-16, HTML or oversized file.
     """
-    path = Path(path)
+    path = Path(path).expanduser()
+    if path.is_dir():
+        raise BvhError("this is a folder; give one of the .bvh files in it.", path)
     if path.stat().st_size > LARGEST:
         raise BvhError(f"the file is larger than {LARGEST // 1_000_000} MB; cut it into shorter takes.", path)
     with path.open("rb") as file:
@@ -65,10 +67,12 @@ def refuse_foreign(start: bytes, path: Path) -> None:
     if head[:1] == b"<":
         raise BvhError("this is a web page, not a BVH file; fetch the raw file (not its preview page).", path, 1)
     if b"\0" in start:
-        raise BvhError("this is a binary file; a BVH file is text and starts with HIERARCHY.", path)
+        raise BvhError(
+            "this is a binary file, and BVH is text that starts with HIERARCHY; export the take as BVH.", path
+        )
     if head.split(maxsplit=1)[0].lower() != b"hierarchy":
         shown = head[:40].decode("latin-1").split("\n")[0].strip()
-        raise BvhError(f"a BVH file starts with HIERARCHY, this one with '{shown}'.", path, 1)
+        raise BvhError(f"a BVH file starts with HIERARCHY, this one with '{shown}'; export the take as BVH.", path, 1)
 
 
 def decode(raw: bytes) -> str:
@@ -110,4 +114,4 @@ def why_no_number(text: str) -> str:
         return f"'{text}' has a decimal comma; export with decimal points (an English locale)."
     if RUN_TOGETHER.search(text):
         return f"'{text}' looks like two numbers without a blank between them; put a blank before the second sign."
-    return f"'{text[:40]}' is not a number; only numbers may stand here."
+    return f"'{text[:40]}' is not a number; only numbers may stand here. Remove the comment or repair the line."
