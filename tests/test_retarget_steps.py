@@ -5,9 +5,18 @@ import pytest
 from synthetic_walk import walk
 
 from motiondiff_edu.motion.directions import rest_lean
-from motiondiff_edu.motion.normalise import calibration_frames, floor_plane, level, resample, turn_up, unmirror
+from motiondiff_edu.motion.normalise import (
+    MotionWarning,
+    calibration_frames,
+    floor_plane,
+    level,
+    resample,
+    turn_up,
+    unmirror,
+)
 from motiondiff_edu.motion.planting import find_contacts, plant, shift_to_pins, solve_leg, spans
-from motiondiff_edu.motion.skeleton import BONE_LENGTHS, HEELS, OFFSETS, PARENTS, TOES
+from motiondiff_edu.motion.retarget import warn_sunk
+from motiondiff_edu.motion.skeleton import BONE_LENGTHS, HEELS, OFFSETS, PARENTS, TOES, joint_index
 
 
 def test_turning_up_keeps_handedness():
@@ -101,3 +110,15 @@ def test_the_rest_pose_tells_the_lean_of_joint_placement():
     back = standing.copy()
     back[9:, 2] -= 0.2 * (back[9:, 1] - back[1, 1])
     assert np.degrees(rest_lean(back)) == pytest.approx(np.degrees(np.arctan(0.2)), abs=0.1)
+
+
+def test_a_joint_deep_in_the_floor_is_told():
+    world = np.zeros((30, 21, 3))
+    notes = []
+    world[12, joint_index("LeftHand")] = [0.3, -0.04, 0.0]
+    warn_sunk(world, 20.0, "take", notes)
+    assert notes == []
+    world[12, joint_index("LeftHand"), 1] = -0.117
+    with pytest.warns(MotionWarning, match="take: LeftHand is 12 cm under the floor 0.60 s into the clip"):
+        warn_sunk(world, 20.0, "take", notes)
+    assert len(notes) == 1

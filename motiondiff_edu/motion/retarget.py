@@ -31,10 +31,11 @@ from .normalise import (
 )
 from .planting import find_contacts, flat_feet, plant
 from .root_frame import estimate_root, to_root_frame
-from .skeleton import HEELS, HIPS, TOES
+from .skeleton import HEELS, HIPS, JOINTS, TOES
 
 SHORTEST = 0.5  # s; less has no gait and no heading
 WILD = 15.0  # m/s; no limb of an actor moves faster, a swapped marker does
+SUNK = -0.05  # metres: no joint of somebody on their feet is so low
 
 
 def load_clip(path: str | Path, mapping: Mapping[str, str] | None = None, file_fps: float | int | None = None) -> Clip:
@@ -57,6 +58,7 @@ def retarget(bvh: Bvh, mapping: Mapping[str, str] | None = None, fps: float | in
     mapping = guess_mapping(bvh) if mapping is None else check_mapping(mapping, bvh)
     points, info = normalised(bvh, mapping, fps)
     world, contacts = onto_our_bones(points, info["rest_lean"], fps)
+    warn_sunk(world, fps, bvh.source, info["notes"])
     root, heading = estimate_root(world, fps)
     poses, control = to_root_frame(world, root, heading, fps)
     return Clip(poses, control, fps=fps, contacts=contacts, source=bvh.source, info=info | {"mapping": dict(mapping)})
@@ -110,7 +112,16 @@ def onto_our_bones(
     return plant(raw, contacts, fps), contacts
 
 
+def warn_sunk(world: Float[np.ndarray, "T 21 3"], fps: float, source: str, notes: list[str]) -> None:
+    """Warn about joints deep in the floor: a fault of the capture, or somebody who rolls on it."""
+    t, joint = np.unravel_index(world[..., 1].argmin(), world.shape[:2])
+    if world[t, joint, 1] < SUNK:
+        depth, when = -100 * world[t, joint, 1], t / fps
+        notes.append(tell(f"{JOINTS[joint]} is {depth:.0f} cm under the floor {when:.2f} s into the clip", source))
+
+
 def refuse_short(count: int, bvh: Bvh) -> None:
+    """Raise BvhError for a clip too short to tell a way from."""
     if count / bvh.fps < SHORTEST:
         problem = f"{count} frames at {bvh.fps:g} frames/s are {count / bvh.fps:.2f} s; {SHORTEST} s are needed."
         raise BvhError(problem + " If the frame time is wrong, pass file_fps=.", bvh.source)
