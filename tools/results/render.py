@@ -74,8 +74,27 @@ def walkers(records: dict[str, dict]) -> str:
         f"## The walkers\n\n{seeds.get('clips')} unseen pasts and controls of {seeds.get('seconds')} s, raw output, "
         "DDPM with all steps (`ddim10`: ten DDIM steps), control held over the window (`lookahead`: the window sees "
         "the control to come). `_data` rows judge the recorded motion under the same control. `diversity`: "
-        f"{seeds.get('each')} rollouts for each of {seeds.get('pasts')} pasts, from the end of the first second on."
-        "\n\n" + table(["figure", *columns], rows)
+        f"{seeds.get('each')} rollouts for each of {seeds.get('pasts')} pasts, from the end of the first second on. "
+        f"Seeds: pasts and controls {_seed(names, records, 'walk')}, those of the diversity "
+        f"{_seed(names, records, 'diversity')}, rollouts {seeds.get('rollouts')}."
+        "\n\n" + table(["figure", *columns], rows) + _beside_the_paper(records)
+    )
+
+
+def _seed(names: list[str], records: dict[str, dict], what: str) -> str:
+    """The data's seed of the figures of diversity, or of all others."""
+    found = {records[n]["seeds"].get("data") for n in names if ("diversity" in n) == (what == "diversity")}
+    return " and ".join(str(seed) for seed in sorted(found - {None})) or "-"
+
+
+def _beside_the_paper(records: dict[str, dict]) -> str:
+    one = records.get("walker-eps.bone_rmse_cm")
+    if one is None or one["paper"] is None:
+        return ""
+    return (
+        f"\nMoDiff prints a bone RMSE of {number(one['paper'])} cm (Table I, without dropout); `walker-eps`, which has "
+        f"the paper's target, has {number(one['value'])} cm. Data, skeleton and sizes of the networks differ: only the "
+        "order of size can be compared. Of adherence, drift and diversity the paper has no figures.\n"
     )
 
 
