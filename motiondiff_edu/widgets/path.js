@@ -74,7 +74,8 @@ export function mount(model, el) {
     }
     pen.textAlign = "center";
     for (let x = Math.ceil(frame.x - halfW); x <= frame.x + halfW; x++) {
-      if (x % every === 0 && x !== 0) pen.fillText(`${Math.abs(x)} m`, toPixel([x, 0])[0], frame.h - 10);
+      const across = toPixel([x, 0])[0], whole = across > 20 && across < frame.w - 20; // a label cut in half misleads
+      if (x % every === 0 && x !== 0 && whole) pen.fillText(`${Math.abs(x)} m`, across, frame.h - 10);
     }
     const middle = toPixel([0, 0])[0];
     pen.fillText("\u2190 left", middle - 36, frame.h - 28); pen.fillText("right \u2192", middle + 36, frame.h - 28);
