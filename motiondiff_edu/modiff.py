@@ -127,9 +127,10 @@ class MoDiff(nn.Module):
                 f"this network takes {frames[0]} past poses and {frames[1]} rows of control "
                 f"(past and future), got {past.shape[1]} and {control.shape[1]}"
             )
-        motion = self.motion_encoder(self.past_in(past) + self.time[: self.config.T_h] + self.modality[0])
-        control = self.control_encoder(self.control_in(control) + self.time + self.modality[1])
-        return self.memory_norm(self.cross_encoder(torch.cat([motion, control], dim=1)))
+        motion = self.past_in(past) + self.time[: self.config.T_h] + self.modality[0]  # (B, T_h, width)
+        control = self.control_in(control) + self.time + self.modality[1]  # (B, T, width)
+        both = torch.cat([self.motion_encoder(motion), self.control_encoder(control)], dim=1)  # (B, M, width)
+        return self.memory_norm(self.cross_encoder(both))
 
     def decode(
         self, x_s: Float[Tensor, "B T_p D"], s: Int[Tensor, "B"], memory: Float[Tensor, "B M width"]
@@ -140,8 +141,9 @@ class MoDiff(nn.Module):
 
     def embed(self, x_s: Float[Tensor, "B T_p D"], s: Int[Tensor, "B"]) -> Float[Tensor, "B T_p width"]:
         """The decoder's tokens: each noised pose, how noised it is, and when."""
-        step = self.step_in(step_embedding(s, self.config.width))
-        x = self.future_in(torch.cat([x_s, step[:, None].expand(-1, x_s.shape[1], -1)], dim=-1))
+        step = self.step_in(step_embedding(s, self.config.width))  # (B, width)
+        step = step[:, None].expand(-1, x_s.shape[1], -1)  # (B, T_p, width): alike for all poses
+        x = self.future_in(torch.cat([x_s, step], dim=-1))
         return x + self.time[self.config.T_h :]
 
     def attend(
