@@ -22,18 +22,15 @@ sys.path.insert(0, str(Path(__file__).parents[1]))  # tools, beside this folder
 
 from data_synth.styles import STYLES  # noqa: E402
 from data_synth.walking import dataset, random_control, walk  # noqa: E402
-from motiondiff_edu.modiff import MoDiffConfig  # noqa: E402
 from motiondiff_edu.motion.augment import mirror  # noqa: E402
 from motiondiff_edu.motion.clip import Clip  # noqa: E402
 from motiondiff_edu.pretrained.budget import train_for  # noqa: E402
+from tools.results.budget import SMALL  # noqa: E402
 from tools.results.scores import score  # noqa: E402
 from tools.results.trials import FPS, SECONDS, T_H, UNSEEN, Trials, walker_generate  # noqa: E402
 
 COMMAND = "python -m benchmarks walker"
 CLIPS = 240
-CONFIG = MoDiffConfig(  # no footholds: after so short a training, a foot that is held costs more bone than it saves
-    width=64, hidden=256, motion_layers=1, control_layers=1, cross_layers=1, decoder_layers=2, target="x0", skip=False
-)
 NAMES = {"bone_rmse_cm", "adherence_excess_mps", "adherence_mps", "adherence_data_mps", "adherence_shuffled_over_own"}
 
 
@@ -63,7 +60,7 @@ def measure(name: str, seconds: float, unseen: int, seed: int) -> list[dict]:
     prefix, make = SETS[name]
     clips = [version for clip in make(CLIPS, 20.0, 11) for version in (clip, mirror(clip))]
     trials = Trials.of(make(unseen, SECONDS + T_H / FPS, UNSEEN))
-    walker, steps = train_for(seconds, clips, CONFIG, seed=seed, batch=16)
+    walker, steps = train_for(seconds, clips, SMALL, seed=seed, batch=16)
     weights = sum(p.numel() for p in walker.model.parameters())
     print(f"{name}: {steps} steps in {seconds:g} CPU-seconds, {weights} weights", flush=True)
     walks = walker_generate(walker)(trials.past, trials.control, 0)

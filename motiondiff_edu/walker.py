@@ -46,6 +46,11 @@ class Walker:
     control_scaler: Scaler
     card: dict = field(default_factory=dict)
 
+    def __post_init__(self):
+        """Raises ValueError for a schedule with another number of steps than the network's."""
+        if self.schedule.S != self.model.config.S:
+            raise ValueError(f"the schedule has {self.schedule.S} steps, the network {self.model.config.S}")
+
     def to(self, device: str | torch.device) -> "Walker":
         """The same walker on another device; `rollout.generate` brings past and control there."""
         model = copy.deepcopy(self.model).to(device)

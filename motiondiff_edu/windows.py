@@ -107,8 +107,11 @@ def window_loss(
     and ankle err alike. It is the network's error times std, so it goes with metres=2 (for x0 it is in metres).
     `doubt` is the share of the shaking that reaches the feet which a network with footholds may leave in place (see
     `foothold`): with all of it the gate would learn never to hold.
+    Raises ValueError for batch or noises under 1.
     Source: MoDiff eq. 10, Alg. 1; all but the squared error itself is ours.  Notebook: 07
     """
+    if min(batch, noises) < 1:
+        raise ValueError(f"a batch needs a window and a noise at least, not batch = {batch}, noises = {noises}")
     change, std = typical_change(windows), windows.pose_scaler.std
     rows, columns = error_weights(change, std, metres, near)
     noise_over_signal = ((1 - schedule.alpha_bar) / schedule.alpha_bar).float()

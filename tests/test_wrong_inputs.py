@@ -22,10 +22,13 @@ from motiondiff_edu.motion.clip import slice_clips, split_by_source
 from motiondiff_edu.motion.scaler import Scaler
 from motiondiff_edu.rollout import generate
 from motiondiff_edu.walker import Walker
+from motiondiff_edu.windows import Windows, window_loss
 
 SCHEDULE = ddpm.linear_schedule(20, 1e-3, 0.5)
 X = torch.zeros(2, 3)
 CLIP, RNG = walk(np.zeros((11, 3)), seed=0), np.random.default_rng(0)
+SMALL = MoDiffConfig(T_h=4, T_p=3, S=6, width=16, heads=2, hidden=24)
+PLAIN = Scaler(torch.zeros(63), torch.ones(63)), Scaler(torch.zeros(3), torch.ones(3))
 
 
 def ddim(**options):
@@ -53,6 +56,8 @@ MISTAKES = {
     "a short segment": (lambda: joystick([(1, 2)]), "four finite numbers"),
     "a segment of NaN": (lambda: joystick([(1, math.nan, 0, 0)]), "four finite numbers"),
     "an odd width": (lambda: MoDiffConfig(width=7, heads=7), "width = 7 must be even"),
+    "a schedule of another length": (lambda: Walker(MoDiff(SMALL), SCHEDULE, *PLAIN), "has 20 steps, the network 6"),
+    "no noise to learn from": (lambda: window_loss(Windows.of([CLIP], 4, 3), SCHEDULE, noises=0), "noises = 0"),
     "heads that do not fit": (lambda: MoDiffConfig(width=16, heads=3), "shared evenly by 3 heads"),
 }
 
@@ -105,10 +110,8 @@ def test_no_walks_are_no_success(tmp_path, arguments, capsys):
 
 
 def test_a_control_beyond_the_training_data_is_named():
-    config = MoDiffConfig(T_h=4, T_p=3, S=6, width=16, heads=2, hidden=24)
-    plain = Scaler(torch.zeros(63), torch.ones(63)), Scaler(torch.zeros(3), torch.ones(3))
     seen = {"control_range": {"low": [-0.5, -0.6, -2.0], "high": [3.0, 0.6, 2.0]}}
-    walker = Walker(MoDiff(config).eval(), ddpm.linear_schedule(6, 0.2, 0.95), *plain, seen)
+    walker = Walker(MoDiff(SMALL).eval(), ddpm.linear_schedule(6, 0.2, 0.95), *PLAIN, seen)
     past, control = torch.zeros(4, 63), torch.zeros(7, 3)
     control[5, 2] = -45.0
     with pytest.warns(UserWarning, match=r"row 5 of the control asks for -45 \(turning rate\); .* from -2 to 2"):
