@@ -149,7 +149,7 @@ def p_variance(schedule: Schedule, variance: str = "beta") -> Table:
 
 
 def p_mean(x_s: X, s: Steps, eps_hat: X, schedule: Schedule) -> X:
-    """mean = (x_s - beta_s / sqrt(1 - alpha_bar_s) eps_hat) / sqrt(alpha_s). Source: MoDiff eq. 9. Notebook: 03."""
+    """mean = (x_s - beta_s / sqrt(1 - alpha_bar_s) eps_hat) / sqrt(alpha_s). Source: MoDiff eq. 9. Notebook: 03, 04."""
     _expect_from(1, s)
     share = at(schedule.beta, s, x_s) / at(1 - schedule.alpha_bar, s, x_s).sqrt()
     return (x_s - share * eps_hat) / at(schedule.alpha, s, x_s).sqrt()

@@ -62,14 +62,14 @@ MODIFF_SMALL = MoDiffConfig(width=128, hidden=256, cross_layers=2)
 
 
 def step_embedding(s: Int[Tensor, "B"], width: int) -> Float[Tensor, "B W"]:
-    """Sines and cosines of the diffusion step, wavelengths from 2 pi to 10000 * 2 pi steps.  Notebook: 07"""
+    """Sines and cosines of the diffusion step, wavelengths from 2 pi to 10000 * 2 pi steps.  Notebook: 05, 07"""
     frequencies = torch.exp(-math.log(1e4) * torch.arange(width // 2, device=s.device) / (width // 2))
     angles = s[:, None].float() * frequencies
     return torch.cat([angles.sin(), angles.cos()], dim=-1)
 
 
 class Encoder(nn.Module):
-    """Blocks of self-attention over tokens whose times (in frames) are known.  Source: MoDiff III-F.  Notebook: 07"""
+    """Blocks of self-attention over tokens whose times (in frames) are known.  Source: MoDiff III-F.  Notebook: 06, 07"""
 
     def __init__(self, config: MoDiffConfig, layers: int, times: Int[Tensor, "T"]):
         super().__init__()

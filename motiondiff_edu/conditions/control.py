@@ -24,7 +24,7 @@ def constant_control(
     seconds: float | int = 4.0,
     fps: float | int = FPS,
 ) -> Float[np.ndarray, "T 3"]:
-    """The same velocities for all of `seconds`; m/s, m/s, rad/s.  Notebook: 07"""
+    """The same velocities for all of `seconds`; m/s, m/s, rad/s.  Notebook: 00"""
     return np.tile([float(forward), float(left), float(yaw)], (round(seconds * fps), 1))
 
 
