@@ -69,7 +69,7 @@ def step_embedding(s: Int[Tensor, "B"], width: int) -> Float[Tensor, "B W"]:
 
 
 class Encoder(nn.Module):
-    """Blocks of self-attention over tokens whose times (in frames) are known.  Source: MoDiff III-F.  Notebook: 06, 07"""
+    """Self-attention over tokens whose times (in frames) are known.  Source: MoDiff III-F.  Notebook: 06, 07"""
 
     def __init__(self, config: MoDiffConfig, layers: int, times: Int[Tensor, "T"]):
         super().__init__()
