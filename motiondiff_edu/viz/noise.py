@@ -144,7 +144,7 @@ def bound(terms, exact: float, caption: str) -> Figure:
     left.bar([len(terms)], [terms[0]], width=1.0, color=GREEN)
     left.set_yscale("symlog", linthresh=0.02)
     left.axhline(0, color=INK, lw=0.8)
-    left.set_title("each term, in nats")
+    left.set_title("each term, in nats (log scale beyond 0.02)")
     total = np.cumsum(np.concatenate([terms[:1], terms[:0:-1]]))
     right.plot(np.arange(len(terms), 0, -1), total, color=BLUE, label="sum so far, from S down")
     right.plot([1], total[-1:], "o", color=ORANGE, ms=9, label=f"negative bound {total[-1]:.3f}")
