@@ -12,6 +12,7 @@ import argparse
 import sys
 from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -40,18 +41,10 @@ def one_person(clips: int, seconds: float, seed: int) -> list[Clip]:
     return [walk(random_control(seconds, rng, kinds[i]), seed + i, person) for i in range(clips)]
 
 
-def one_style(clips: int, seconds: float, seed: int) -> list[Clip]:
-    return dataset(clips, seconds, seed=seed, styles=["neutral"])
-
-
-def all_styles(clips: int, seconds: float, seed: int) -> list[Clip]:
-    return dataset(clips, seconds, seed=seed)
-
-
 SETS: dict[str, tuple[str, Callable]] = {  # name: (prefix of its records, what makes its clips)
     "person": ("bench.walker_80s_", one_person),
-    "style": ("bench.walker_80s_one_style_", one_style),
-    "all": ("bench.walker_80s_all_styles_", all_styles),
+    "style": ("bench.walker_80s_one_style_", partial(dataset, styles=["neutral"])),
+    "all": ("bench.walker_80s_all_styles_", dataset),
 }
 
 
