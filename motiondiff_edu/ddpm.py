@@ -80,16 +80,11 @@ def schedule_card(schedule: Schedule) -> str:
     return f"{schedule.name}, S = {schedule.S}: after the last step {left}"
 
 
-def at(table: Table, s: Steps, x: X) -> Tensor:
+def at(table: Table, s: Steps, x: X, first: int = 0) -> Tensor:
     """Look up table[s], shaped so that it multiplies x: one number, or one for each sample of the batch."""
-    if isinstance(s, int) and not 0 <= s < len(table):
-        raise IndexError(f"there is no step {s}: they go from 0, which is clean, to {len(table) - 1}")
+    if isinstance(s, int) and not first <= s < len(table):
+        raise IndexError(f"s = {s}: steps go from {first} to {len(table) - 1} here, and 0 is clean data")
     return table[s].to(x) if isinstance(s, int) else table.to(x.device)[s].to(x).reshape(-1, *[1] * (x.dim() - 1))
-
-
-def _expect_from(first: int, s: Steps) -> None:
-    if isinstance(s, int) and s < first:
-        raise ValueError(f"s = {s}: this is for steps from {first} on" + " (see reconstruction_nll)" * (first == 2))
 
 
 def draw(like: Float[Tensor, "*shape"], generator: torch.Generator | None = None) -> Float[Tensor, "*shape"]:
@@ -123,8 +118,7 @@ def q_posterior(x0: X, x_s: X, s: Steps, schedule: Schedule) -> tuple[X, Tensor]
     mean = sqrt(ab_{s-1}) beta_s / (1 - ab_s) x0 + sqrt(alpha_s) (1 - ab_{s-1}) / (1 - ab_s) x_s
     Source: MoDiff eq. 6-7. Notebook: 02.
     """
-    _expect_from(1, s)
-    beta, alpha = at(schedule.beta, s, x_s), at(schedule.alpha, s, x_s)
+    beta, alpha = at(schedule.beta, s, x_s, first=1), at(schedule.alpha, s, x_s)
     left, left_before = at(1 - schedule.alpha_bar, s, x_s), at(1 - schedule.alpha_bar, s - 1, x_s)
     mean = (1 - left_before).sqrt() * beta / left * x0 + alpha.sqrt() * left_before / left * x_s
     return mean, at(posterior_variance(schedule), s, x_s)
@@ -150,8 +144,7 @@ def p_variance(schedule: Schedule, variance: str = "beta") -> Table:
 
 def p_mean(x_s: X, s: Steps, eps_hat: X, schedule: Schedule) -> X:
     """mean = (x_s - beta_s / sqrt(1 - alpha_bar_s) eps_hat) / sqrt(alpha_s). Source: MoDiff eq. 9. Notebook: 03, 04."""
-    _expect_from(1, s)
-    share = at(schedule.beta, s, x_s) / at(1 - schedule.alpha_bar, s, x_s).sqrt()
+    share = at(schedule.beta, s, x_s, first=1) / at(1 - schedule.alpha_bar, s, x_s).sqrt()
     return (x_s - share * eps_hat) / at(schedule.alpha, s, x_s).sqrt()
 
 
@@ -230,9 +223,8 @@ def step_kl(x0: X, x_s: X, s: int, eps_hat: X, schedule: Schedule) -> Float[Tens
 
     Source: MoDiff eq. 5, 8. Notebook: 04.
     """
-    _expect_from(2, s)
     mean, variance = q_posterior(x0, x_s, s, schedule)
-    return gaussian_kl(mean, variance, p_mean(x_s, s, eps_hat, schedule), at(schedule.beta, s, x_s))
+    return gaussian_kl(mean, variance, p_mean(x_s, s, eps_hat, schedule), at(schedule.beta, s, x_s, first=2))
 
 
 def reconstruction_nll(x0: X, x_1: X, eps_hat: X, schedule: Schedule) -> Float[Tensor, "B"]:
@@ -254,6 +246,5 @@ def bound_terms(
     for s in range(1, schedule.S + 1):
         x_s = q_sample(x0, s, schedule, draw(x0, generator))
         eps_hat = denoise(x_s, torch.full((len(x0),), s, device=x0.device))
-        term = reconstruction_nll(x0, x_s, eps_hat, schedule) if s == 1 else step_kl(x0, x_s, s, eps_hat, schedule)
-        terms.append(term)
+        terms += [reconstruction_nll(x0, x_s, eps_hat, schedule) if s == 1 else step_kl(x0, x_s, s, eps_hat, schedule)]
     return torch.stack(terms)

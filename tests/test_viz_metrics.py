@@ -45,4 +45,4 @@ def test_gates_stand_on_the_contacts_of_their_own_foot():
 
 def test_a_table_says_none_where_there_is_no_figure_and_nought_for_rounding():
     fig = viz.score_table({"a": {"m": 1.234, "n": np.nan}, "b": {"m": 1e-12, "n": 0.5}}, "words")
-    assert texts(fig.axes[0]) == ["1.23", "none", "0", "0.5"]
+    assert texts(fig.axes[0]) == ["1.2", "none", "0", "0.5"]

@@ -41,9 +41,9 @@ MISTAKES = {
     "a step 0": (ddim(steps=[20, 0]), "steps must fall"),
     "a step beyond S": (ddim(steps=[21, 3]), "steps must fall"),
     "eta beyond DDPM": (ddim(steps=4, eta=2.0), "eta must lie between 0"),
-    "a step back from clean data": (lambda: ddpm.p_sample(X, 0, X, SCHEDULE, X), "s = 0: this is for steps from 1 on"),
-    "a posterior of clean data": (lambda: ddpm.q_posterior(X, X, 0, SCHEDULE), "steps from 1 on"),
-    "the last step as a KL": (lambda: ddpm.step_kl(X, X, 1, X, SCHEDULE), "from 2 on .see reconstruction_nll"),
+    "a step back from clean data": (lambda: ddpm.p_sample(X, 0, X, SCHEDULE, X), "s = 0: steps go from 1 to 20 here"),
+    "a posterior of clean data": (lambda: ddpm.q_posterior(X, X, 0, SCHEDULE), "steps go from 1 to 20"),
+    "the last step as a KL": (lambda: ddpm.step_kl(X, X, 1, X, SCHEDULE), "s = 1: steps go from 2 to 20"),
     "pieces without a frame": (lambda: slice_clips([CLIP], seconds=0), "pieces of 0 s have no frame"),
     "pieces of negative length": (lambda: slice_clips([CLIP], seconds=-1), "pieces of -1 s have no frame"),
     "a negative share": (
@@ -65,13 +65,13 @@ MISTAKES = {
 @pytest.mark.parametrize("what", MISTAKES)
 def test_it_is_refused_in_words(what):
     call, words = MISTAKES[what]
-    with pytest.raises(ValueError, match=words):
+    with pytest.raises((ValueError, IndexError), match=words):
         call()
 
 
 @pytest.mark.parametrize("s", [-1, 21])
 def test_a_step_that_is_not_there(s):
-    with pytest.raises(IndexError, match=f"no step {s}: they go from 0, which is clean, to 20"):
+    with pytest.raises(IndexError, match=f"s = {s}: steps go from 0 to 20 here, and 0 is clean"):
         ddpm.q_sample(X, s, SCHEDULE, X)
 
 

@@ -38,7 +38,7 @@ def write_bvh(path: str | Path, positions: Float[np.ndarray, "T 21 3"], fps: flo
             f"that by root_frame.to_world(new.reshape(-1, {J}, 3), control). Nothing was written.",
             path,
         )
-    if not FASTEST <= 1 / fps <= SLOWEST:
+    if not 1 / SLOWEST <= fps <= 1 / FASTEST:
         limits = f"{1 / SLOWEST:g} to {1 / FASTEST:g}"
         raise BvhError(f"fps must be {limits} frames a second, not {fps:g}; nothing was written.", path)
     fitted = fit(positions)
