@@ -1,7 +1,7 @@
 """How the shipped walkers are made: data, sizes, steps. One record each; nothing is tuned by hand afterwards.
 
 Source: MoDiff IV-A gives Adam, batch 64, 5e-5 and 1000 epochs on a GPU: WALKER_PAPER. The others are ours, for a core
-and an hour.  Notebook: 07
+and an hour; those that are shipped had four fifths of their steps in bfloat16, as their cards say.  Notebook: 07
 """
 
 from dataclasses import dataclass
