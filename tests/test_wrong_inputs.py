@@ -46,10 +46,7 @@ MISTAKES = {
     "the last step as a KL": (lambda: ddpm.step_kl(X, X, 1, X, SCHEDULE), "s = 1: steps go from 2 to 20"),
     "pieces without a frame": (lambda: slice_clips([CLIP], seconds=0), "pieces of 0 s have no frame"),
     "pieces of negative length": (lambda: slice_clips([CLIP], seconds=-1), "pieces of -1 s have no frame"),
-    "a negative share": (
-        lambda: split_by_source([CLIP], [1.5, -0.5], np.random.default_rng(0)),
-        "shares that sum to 1",
-    ),
+    "a negative share": (lambda: split_by_source([CLIP], [1.5, -0.5], RNG), "shares that sum to 1"),
     "no data to scale": (lambda: Scaler.fit(torch.zeros(0, 3)), "there are no rows"),
     "one frame": (lambda: adherence(CLIP.poses[:1], CLIP.control[:1]), "takes two frames"),
     "no segments": (lambda: joystick([]), "four finite numbers, not nothing"),
