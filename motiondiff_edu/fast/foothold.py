@@ -15,7 +15,7 @@ from .modiff import Context, FastMoDiff
 
 @dataclass(frozen=True, eq=False)
 class StandingContext(Context):
-    """Keys and values, and where the feet would stay."""
+    """The memory as the layers ask it, and where the feet would stay."""
 
     held: Float[Tensor, "B T_p K"]
 
@@ -28,8 +28,7 @@ class FastFoothold(FastMoDiff):
     @torch.inference_mode()
     def encode(self, past: Float[Tensor, "B T_h D"], control: Float[Tensor, "B T C"]) -> StandingContext:
         standing = self.model.encode(past, control)
-        context = self.context_of(standing.memory)
-        return StandingContext(context.keys, context.values, standing.held)
+        return StandingContext(self.context_of(standing.memory).layers, standing.held)
 
     @torch.inference_mode()
     def denoise(

@@ -5,6 +5,7 @@ the S steps although past and control do not change meanwhile.  Source: MoDiff I
 """
 
 import copy
+import math
 from dataclasses import dataclass
 
 import torch
@@ -17,11 +18,23 @@ from ..modiff import MoDiff, step_embedding
 
 
 @dataclass(frozen=True, eq=False)
-class Context:
-    """What the decoder needs of past and control: keys and values, one pair for each decoder layer."""
+class Folded:
+    """A memory as one decoder layer asks it: keys with the queries' weights in them, values with the outputs'.
 
-    keys: tuple[Float[Tensor, "B H M d"], ...]
-    values: tuple[Float[Tensor, "B H M d"], ...]
+    q K^T = (x W_q) K^T = x (W_q K^T), and the bracket stays the same at all S steps; likewise (A V) W_o = A (V W_o).
+    The heads lie side by side, as HM = H*M columns: a layer asks with one product and is answered with another.
+    """
+
+    keys: Float[Tensor, "B C HM"]
+    bias: Float[Tensor, "B T HM"]
+    values: Float[Tensor, "B HM C"]
+
+
+@dataclass(frozen=True, eq=False)
+class Context:
+    """What the decoder needs of past and control, layer by layer."""
+
+    layers: tuple[Folded, ...]
 
 
 class _Linear:
@@ -43,28 +56,35 @@ class _Layer:
 
     def __init__(self, block: Block):
         own, cross, (first, *_, last) = block.self_attention, block.cross_attention, block.ff
-        self.heads = own.heads
+        self.cross, self.heads = cross, own.heads
         self.norm_self, self.norm_cross, self.norm_ff = block.norm_self, block.norm_cross, block.norm_ff
         self.qkv, self.out = _Linear(own.q, own.kv), _Linear(own.out)
-        self.cross_q, self.cross_out = _Linear(cross.q), _Linear(cross.out)
         self.first, self.last = _Linear(first), _Linear(last)
 
+    def fold(self, memory: Float[Tensor, "B M C"], bias: Float[Tensor, "1 H T M"]) -> Folded:
+        """A memory's keys and values with this layer's weights in them; done once a frame."""
+        cross, (B, M, C), H = self.cross, memory.shape, self.heads
+        k, v = (part.reshape(B * M, H, -1).transpose(0, 1) for part in cross.kv(memory).chunk(2, dim=-1))
+        k = k / math.sqrt(C // H)  # (H, B*M, d), as v
+        asking = cross.q.weight.unflatten(0, (H, -1))  # (H, d, C)
+        answering = cross.out.weight.unflatten(1, (H, -1)).permute(1, 2, 0)  # (H, d, C)
+        keys, values = (
+            torch.bmm(part, weight).view(H, B, M, C).transpose(0, 1).reshape(B, H * M, C)
+            for part, weight in ((k, asking), (v, answering))
+        )
+        own = torch.bmm(k, cross.q.bias.view(H, -1, 1)).view(H, B, 1, M).transpose(0, 1)  # what q's bias asks
+        return Folded(keys.transpose(1, 2), (bias + own).transpose(1, 2).flatten(2), values)
+
     def __call__(
-        self,
-        x: Float[Tensor, "N C"],
-        frames: int,
-        self_bias: Float[Tensor, "1 H T T"],
-        keys: Float[Tensor, "B H M d"],
-        values: Float[Tensor, "B H M d"],
-        memory_bias: Float[Tensor, "1 H T M"],
+        self, x: Float[Tensor, "N C"], frames: int, self_bias: Float[Tensor, "1 H T T"], memory: Folded
     ) -> Float[Tensor, "N C"]:
         width, shape = x.shape[1], (-1, frames, self.heads, x.shape[1] // self.heads)
         q, k, v = (part.reshape(shape).transpose(1, 2) for part in self.qkv(self.norm_self(x)).chunk(3, dim=-1))
         mixed = F.scaled_dot_product_attention(q, k, v, attn_mask=self_bias)  # (B, H, T, d)
         x = self.out(mixed.transpose(1, 2).reshape(-1, width)).add_(x)
-        q = self.cross_q(self.norm_cross(x)).view(shape).transpose(1, 2)
-        mixed = F.scaled_dot_product_attention(q, keys, values, attn_mask=memory_bias)
-        x = self.cross_out(mixed.transpose(1, 2).reshape(-1, width)).add_(x)
+        scores = torch.baddbmm(memory.bias, self.norm_cross(x).view(-1, frames, width), memory.keys)  # (B, T, H*M)
+        weights = torch.softmax(scores.unflatten(-1, (self.heads, -1)), dim=-1).view_as(scores)
+        x = torch.baddbmm(x.view(-1, frames, width), weights, memory.values).view(-1, width).add_(self.cross.out.bias)
         return self.last(F.gelu(self.first(self.norm_ff(x)))).add_(x)
 
 
@@ -97,14 +117,8 @@ class FastMoDiff:
         return self.context_of(self.model.encode(past, control))
 
     def context_of(self, memory: Float[Tensor, "B M width"]) -> Context:
-        """Every decoder layer's keys and values of a memory."""
-        keys, values = [], []
-        for block in self.model.decoder:
-            cross = block.cross_attention
-            k, v = (cross.split(part).contiguous() for part in cross.kv(memory).chunk(2, dim=-1))
-            keys.append(k)
-            values.append(v)
-        return Context(tuple(keys), tuple(values))
+        """A memory as every decoder layer asks it."""
+        return Context(tuple(layer.fold(memory, self.memory_bias) for layer in self.layers))
 
     @torch.inference_mode()
     def denoise(
@@ -121,8 +135,8 @@ class FastMoDiff:
     def attend(self, x: Float[Tensor, "B T_p width"], context: Context) -> Float[Tensor, "B T_p width"]:
         """The decoder's layers, as MoDiff.attend has them."""
         rows = x.flatten(0, 1)
-        for layer, keys, values in zip(self.layers, context.keys, context.values, strict=True):
-            rows = layer(rows, x.shape[1], self.self_bias, keys, values, self.memory_bias)
+        for layer, memory in zip(self.layers, context.layers, strict=True):
+            rows = layer(rows, x.shape[1], self.self_bias, memory)
         return rows.view_as(x)
 
     def head(self, x: Float[Tensor, "B T_p width"]) -> Float[Tensor, "B T_p D"]:
