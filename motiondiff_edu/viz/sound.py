@@ -1,0 +1,156 @@
+"""Pictures of sound: waves, spectra, filters, spectrograms, onsets, tempo and beats, each from plain arrays."""
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.ticker import FuncFormatter
+
+from .style import DASHES, OKABE_ITO, figure, legend
+
+BLUE, ORANGE, GREEN, PURPLE, YELLOW, SKY, INK = OKABE_ITO[:7]
+HEAT = "magma"
+
+
+def _beats(axis: Axes, beats, low: float, high: float, colour: str, name: str) -> None:
+    """Dashed lines at the beats that lie in the picture, the first one named in the legend."""
+    for i, beat in enumerate(beat for beat in beats if low <= beat <= high):
+        axis.axvline(beat, color=colour, lw=1.5, ls="--", label=name if i == 0 else None)
+
+
+def waveform(seconds, audio, caption: str, beats: Sequence = ()) -> Figure:
+    """Samples over time, with the beats."""
+    fig, (axis,) = figure(10, 2.8, caption)
+    axis.plot(seconds, audio, color=BLUE, lw=0.7)
+    _beats(axis, beats, seconds[0], seconds[-1], ORANGE, "beat")
+    axis.set_xlim(seconds[0], seconds[-1])
+    axis.set_xlabel("time (s)")
+    axis.set_ylabel("sample")
+    legend(axis, loc="upper right", frameon=True)
+    return fig
+
+
+def spectra(hz, curves: Mapping[str, np.ndarray], caption: str, *, mark: float | None = None) -> Figure:
+    """Magnitude spectra in decibels below the loudest bin of each."""
+    fig, (axis,) = figure(9, 3.4, caption)
+    for i, (name, magnitude) in enumerate(curves.items()):
+        magnitude = np.asarray(magnitude)
+        level = 20 * np.log10(np.maximum(magnitude / magnitude.max(), 1e-6))
+        axis.plot(hz, level, color=OKABE_ITO[i], ls=DASHES[i], label=name, marker="." if len(hz) < 120 else None)
+    if mark is not None:
+        axis.axvline(mark, color=INK, lw=1, ls=":", label=f"{mark:g} Hz")
+    axis.set_ylim(-100, 6)
+    axis.set_xlabel("frequency (Hz)")
+    axis.set_ylabel("level (dB)")
+    legend(axis)
+    return fig
+
+
+def filters(hz, triangles, caption: str, every: int = 1) -> Figure:
+    """Filters (bands, bins) over frequency, every so many of them, each in a colour."""
+    fig, (axis,) = figure(10, 3.2, caption)
+    for i, band in enumerate(np.asarray(triangles)[::every]):
+        inside = np.flatnonzero(band)
+        reach = slice(max(inside[0] - 1, 0), inside[-1] + 2)
+        axis.plot(np.asarray(hz)[reach], band[reach], color=OKABE_ITO[i % 7], lw=1.6)
+    axis.set_xlabel("frequency (Hz)")
+    axis.set_ylabel("weight")
+    axis.set_ylim(bottom=0)
+    return fig
+
+
+def spectrogram(
+    seconds, frequencies, values, caption: str, *, beats: Sequence = (), top: float | None = None, title: str = ""
+) -> Figure:
+    """Values (M, bins) as colours over time and frequency (Hz, rising); `top` cuts the frequencies off."""
+    fig, (axis,) = figure(10, 3.6, caption)
+    _heat(fig, axis, seconds, frequencies, values)
+    _beats(axis, beats, seconds[0], seconds[-1], "white", "beat")
+    if top is not None:
+        axis.set_ylim(frequencies[0], top)
+    axis.set_title(title)
+    return fig
+
+
+def mel_spectrogram(seconds, centres, values, caption: str, *, beats: Sequence = (), title: str = "") -> Figure:
+    """Log-Mel values (M, bands) as colours, one row for each band; `centres` are the bands' middles in Hz."""
+    fig, (axis,) = figure(10, 3.6, caption)
+    rows, marks = np.arange(len(centres)), (100, 500, 1000, 2000, 4000, 7000)
+    _heat(fig, axis, seconds, rows, values)
+    axis.set_yticks(np.interp(marks, centres, rows), [str(hz) for hz in marks])
+    _beats(axis, beats, seconds[0], seconds[-1], "white", "beat")
+    axis.set_title(title)
+    return fig
+
+
+def _heat(fig: Figure, axis: Axes, seconds, rows, values) -> None:
+    image = axis.pcolormesh(seconds, rows, np.asarray(values).T, cmap=HEAT, shading="nearest", rasterized=True)
+    fig.colorbar(image, ax=axis, pad=0.01).set_label("log power")
+    axis.grid(False)
+    axis.set_xlabel("time (s)")
+    axis.set_ylabel("frequency (Hz)")
+
+
+def two_clocks(seconds, errors: Mapping[str, np.ndarray], caption: str) -> Figure:
+    """How many seconds too far each way of matching motion and sound looks, over time."""
+    fig, (axis,) = figure(9, 3.2, caption)
+    for i, (name, error) in enumerate(errors.items()):
+        axis.plot(seconds, error, color=OKABE_ITO[i], ls=DASHES[i], label=name)
+    axis.set_xlabel("time of the motion frame (s)")
+    axis.set_ylabel("sound heard then,\nminus that (s)")
+    legend(axis)
+    return fig
+
+
+def onsets(seconds, strength, caption: str, beats: Sequence = (), found: Sequence = ()) -> Figure:
+    """Onset strength over time; true beats as lines, the tracker's as triangles on top."""
+    fig, (axis,) = figure(10, 3, caption)
+    axis.plot(seconds, strength, color=BLUE, lw=1.3, label="onset strength")
+    _beats(axis, beats, seconds[0], seconds[-1], ORANGE, "beat, from the score")
+    inside = [beat for beat in found if seconds[0] <= beat <= seconds[-1]]
+    high = float(np.max(strength))
+    if inside:
+        axis.plot(inside, np.full(len(inside), 1.08 * high), "v", color=GREEN, ms=9, label="beat, from the tracker")
+    axis.set_ylim(0, 1.5 * high)
+    axis.set_xlim(seconds[0], seconds[-1])
+    axis.set_xlabel("time (s)")
+    axis.set_ylabel("strength")
+    legend(axis, ncol=3, loc="upper right", frameon=True)
+    return fig
+
+
+def tempogram(seconds, tempi, values, tempo: float, caption: str, lowest: float = 30, highest: float = 320) -> Figure:
+    """How strongly onsets recur at each tempo (values: tempi, M), over time and in the mean; the true one dashed."""
+    tempi, values = np.asarray(tempi), np.asarray(values)
+    keep = (tempi >= lowest) & (tempi <= highest)
+    fig, (left, right) = figure(10, 3.8, caption, 1, 2, sharey=True, gridspec_kw={"width_ratios": [3, 1]})
+    left.pcolormesh(seconds, tempi[keep], values[keep], cmap=HEAT, shading="nearest", rasterized=True)
+    left.grid(False)
+    left.axhline(tempo, color="white", ls="--", lw=1.5)
+    right.plot(values[keep].mean(1), tempi[keep], color=BLUE)
+    right.axhline(tempo, color=ORANGE, ls="--", lw=1.5, label=f"{tempo:.0f}, from the score")
+    left.set_yscale("log", base=2)
+    left.set_yticks([40, 60, 80, 120, 160, 240])
+    left.yaxis.set_major_formatter(FuncFormatter(lambda y, _: f"{y:g}"))
+    left.set_xlabel("time (s)")
+    left.set_ylabel("beats a minute")
+    right.set_xlabel("mean")
+    legend(right, loc="upper right")
+    return fig
+
+
+def lags(offsets: Mapping[str, np.ndarray], caption: str, lag: float, reach: float = 120) -> Figure:
+    """For each named song, how many milliseconds after the nearest true beat each found one comes; `lag` marked."""
+    fig, (axis,) = figure(9, 0.5 * len(offsets) + 1.6, caption)
+    for row, values in enumerate(offsets.values()):
+        values = np.clip(np.asarray(values), -reach, reach)
+        axis.plot(values, row + np.linspace(-0.2, 0.2, len(values)), ".", color=BLUE, ms=5, alpha=0.5)
+        axis.plot([np.median(values)], [row], "D", color=ORANGE, ms=9, label="median" if row == 0 else None)
+    axis.axvline(0, color=INK, lw=1)
+    axis.axvline(lag, color=GREEN, ls="--", label=f"{lag:.0f} ms")
+    axis.set_yticks(range(len(offsets)), list(offsets))
+    axis.set_xlim(-1.04 * reach, 1.04 * reach)
+    axis.set_xlabel(f"tracker's beat minus nearest true beat (ms, cut off at {reach:.0f})")
+    legend(axis, loc="lower right", frameon=True)
+    return fig
