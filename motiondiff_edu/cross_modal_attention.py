@@ -15,7 +15,7 @@ from torch.nn import functional as F
 
 
 def attention_weights(
-    q: Float[Tensor, "B H T d"], k: Float[Tensor, "B H M d"], bias: Float[Tensor, "#B H T M"] | None = None
+    q: Float[Tensor, "B H T d"], k: Float[Tensor, "B H M d"], bias: Float[Tensor, "#B #H T M"] | None = None
 ) -> Float[Tensor, "B H T M"]:
     """softmax(Q K^T / sqrt(d) + bias): each query's row is a distribution over the M keys.
 
@@ -29,7 +29,7 @@ def attention(
     q: Float[Tensor, "B H T d"],
     k: Float[Tensor, "B H M d"],
     v: Float[Tensor, "B H M e"],
-    bias: Float[Tensor, "#B H T M"] | None = None,
+    bias: Float[Tensor, "#B #H T M"] | None = None,
 ) -> Float[Tensor, "B H T e"]:
     """weights V, every query's weighted mean of the values.  Source: MoFusion eq. 8-9.  Notebook: 06"""
     return attention_weights(q, k, bias) @ v
@@ -71,6 +71,26 @@ class RelativeBias(nn.Module):
         return F.embedding(self.buckets, self.table).permute(2, 0, 1)[None]
 
 
+def angles_of(times: Float[Tensor, "T"], width: int, slowest: float, fastest: float) -> Float[Tensor, "T w"]:
+    """2 pi f t for width/2 frequencies f between `slowest` and `fastest` Hz, evenly on a log scale; times in seconds.
+
+    Queries and keys turned by them (see `turned`) know how far apart in time they are, and nothing else of time.
+    Source: rotary positions (Su and others, 2021), in seconds; MoFusion leaves positions open.  Notebook: 12
+    """
+    f = slowest * (fastest / slowest) ** torch.linspace(0, 1, width // 2, device=times.device)
+    return 2 * math.pi * times[:, None] * f
+
+
+def turned(x: Float[Tensor, "*B T d"], angles: Float[Tensor, "T w"]) -> Float[Tensor, "*B T d"]:
+    """Turn each pair (x[i], x[i + d/2]) by its angle: q_t . k_u then depends on the time between t and u.
+
+    Source: rotary positions (Su and others, 2021).  Notebook: 12
+    """
+    a, b = x.chunk(2, dim=-1)
+    cos, sin = angles.cos(), angles.sin()
+    return torch.cat([a * cos - b * sin, a * sin + b * cos], dim=-1)
+
+
 class CrossModalAttention(nn.Module):
     """Multi-head attention: `x` asks, `context` answers; with context = x it is self-attention.
 
@@ -96,10 +116,14 @@ class CrossModalAttention(nn.Module):
         self,
         x: Float[Tensor, "B T C"],
         context: Float[Tensor, "B M C2"],
-        bias: Float[Tensor, "#B H T M"] | None = None,
+        bias: Float[Tensor, "#B #H T M"] | None = None,
+        turns: tuple[Float[Tensor, "T w"], Float[Tensor, "M w"]] | None = None,
     ) -> Float[Tensor, "B T C"]:
+        """`bias` is added to the scores; `turns` are the angles of `turned` for queries and keys, if there are any."""
         q = self.split(self.q(x))
         k, v = (self.split(part) for part in self.kv(context).chunk(2, dim=-1))
+        if turns is not None:
+            q, k = turned(q, turns[0]), turned(k, turns[1])
         if self.watcher is None:
             out = F.scaled_dot_product_attention(q, k, v, attn_mask=bias)
         else:

@@ -95,13 +95,13 @@ def draw(like: Float[Tensor, "*shape"], generator: torch.Generator | None = None
 
 # ---- forward: adding noise -------------------------------------------------------------------------------------------
 def q_step(x_prev: X, s: Steps, schedule: Schedule, noise: X) -> X:
-    """Add one step: x_s = sqrt(1 - beta_s) x_{s-1} + sqrt(beta_s) noise. Source: MoDiff eq. 1. Notebook: 02."""
+    """Add one step: x_s = sqrt(1 - beta_s) x_{s-1} + sqrt(beta_s) noise. Source: MoDiff eq. 1; MoFusion eq. 1."""
     beta = at(schedule.beta, s, x_prev)
     return (1 - beta).sqrt() * x_prev + beta.sqrt() * noise
 
 
 def q_sample(x0: X, s: Steps, schedule: Schedule, noise: X) -> X:
-    """Add s steps: x_s = sqrt(alpha_bar_s) x0 + sqrt(1 - alpha_bar_s) noise. Source: MoDiff eq. 2. Notebook: 02."""
+    """Add s steps: x_s = sqrt(alpha_bar_s) x0 + sqrt(1 - alpha_bar_s) noise. Source: MoDiff eq. 2; MoFusion eq. 2."""
     signal, noise_share = at(schedule.alpha_bar, s, x0), at(1 - schedule.alpha_bar, s, x0)
     return signal.sqrt() * x0 + noise_share.sqrt() * noise
 
@@ -149,7 +149,7 @@ def p_mean(x_s: X, s: Steps, eps_hat: X, schedule: Schedule) -> X:
 
 
 def p_sample(x_s: X, s: int, eps_hat: X, schedule: Schedule, noise: X, variance: str = "beta") -> X:
-    """x_{s-1} = p_mean + sigma_s noise; the last step, s = 1, adds none. Source: MoDiff eq. 11. Notebook: 03."""
+    """x_{s-1} = p_mean + sigma_s noise; the last step, s = 1, adds none. Source: MoDiff eq. 11; MoFusion eq. 3."""
     mean = p_mean(x_s, s, eps_hat, schedule)
     return mean if s == 1 else mean + at(p_variance(schedule, variance), s, x_s).sqrt() * noise
 

@@ -11,6 +11,7 @@ from jaxtyping import Float
 from torch import Tensor, nn
 
 from .cross_modal_attention import Block
+from .mofusion import Ask, ResBlock
 
 
 def optimizer_for(model: nn.Module, name: str):
@@ -59,7 +60,7 @@ class MuonAndAdam:
     """Two optimizers that look like one: what `training.train_steps` and `runs.save_run` ask of an optimizer."""
 
     def __init__(self, model: nn.Module, lr: float = 1e-3):
-        blocks = [module for module in model.modules() if isinstance(module, Block)]
+        blocks = [module for module in model.modules() if isinstance(module, (Block, ResBlock, Ask))]
         matrices = {id(p) for block in blocks for p in block.parameters() if p.ndim == 2}
         first = [p for p in model.parameters() if id(p) in matrices]
         others = [p for p in model.parameters() if id(p) not in matrices]

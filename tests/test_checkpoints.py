@@ -11,7 +11,7 @@ import torch
 from safetensors import safe_open
 from safetensors.torch import load_file, save_file
 
-from motiondiff_edu import checkpoints
+from motiondiff_edu import checkpoints, weights_file
 from motiondiff_edu.checkpoints import CheckpointError, available, load_walker, pretrained, save_walker
 from motiondiff_edu.ddpm import linear_schedule
 from motiondiff_edu.modiff import MoDiff, MoDiffConfig
@@ -38,7 +38,7 @@ def rewrite(path: Path, change, metadata=None) -> None:
         metadata = file.metadata() if metadata is None else metadata
     tensors = load_file(path)
     change(tensors)
-    save_file(tensors, path, metadata | checkpoints._digests(tensors, metadata))
+    save_file(tensors, path, metadata | weights_file._digests(tensors, metadata))
 
 
 def test_round_trip_in_full_precision_is_exact(tmp_path: Path):
@@ -229,7 +229,7 @@ NONSENSE = [
 
 @pytest.mark.parametrize("config", NONSENSE)
 def test_a_configuration_that_makes_no_sense(saved: Path, config: str | None):
-    metadata = {"format": checkpoints.FORMAT, "schedule": "linear", "card": "{}"}
+    metadata = {"format": checkpoints.WALKER, "schedule": "linear", "card": "{}"}
     rewrite(saved, lambda tensors: None, metadata | ({"config": config} if config else {}))
     with pytest.raises(CheckpointError, match="tiny.safetensors"):
         load_walker(saved)

@@ -1,4 +1,4 @@
-"""`python -m motiondiff_edu.pretrained [NAME ...]`: train the shipped walkers (hours), or those named."""
+"""`python -m motiondiff_edu.pretrained [NAME ...]`: train the shipped walkers and dancers (hours), or those named."""
 
 import argparse
 import json
@@ -6,30 +6,44 @@ from pathlib import Path
 
 import torch
 
-from ..checkpoints import FOLDER, save_walker
+from ..checkpoints import FOLDER, save_dancer, save_walker
 from ..files import replacing
+from .dance_recipes import DANCE_RECIPES, SHIPPED_DANCERS
 from .recipes import RECIPES, SHIPPED
 from .train import train
+from .train_dance import train_dancer
+
+ALL = RECIPES | DANCE_RECIPES
 
 
 def main() -> None:
     parser = argparse.ArgumentParser(prog="python -m motiondiff_edu.pretrained", description=__doc__)
-    parser.add_argument("names", nargs="*", help=f"which of {', '.join(RECIPES)}; none: all that are shipped")
+    parser.add_argument("names", nargs="*", help=f"which of {', '.join(ALL)}; none: all that are shipped")
     parser.add_argument("--runs", type=Path, default=Path("build/runs"), help="where runs are saved and resumed from")
     parser.add_argument("--out", type=Path, default=FOLDER, help="where the weights go")
     parser.add_argument("--threads", type=int, default=torch.get_num_threads())
     parser.add_argument("--alias", metavar="NAME", help="only let `walker` stand for NAME, and train nothing")
     arguments = parser.parse_args()
-    unknown = set(arguments.names) - set(RECIPES)
+    unknown = set(arguments.names) - set(ALL)
     if unknown:
-        parser.error(f"no recipe is called {', '.join(sorted(unknown))}; there are: {', '.join(RECIPES)}")
+        parser.error(f"no recipe is called {', '.join(sorted(unknown))}; there are: {', '.join(ALL)}")
     if arguments.alias:
         return point_alias(arguments.out, arguments.alias)
     torch.set_num_threads(arguments.threads)
     arguments.runs.mkdir(parents=True, exist_ok=True)
-    for name in arguments.names or [recipe.name for recipe in SHIPPED]:
-        walker = train(RECIPES[name], arguments.runs / f"{name}.safetensors", log=lambda line: print(line, flush=True))
-        print("wrote", save_walker(walker, arguments.out / f"{name}.safetensors"))
+    for name in arguments.names or [recipe.name for recipe in (*SHIPPED, *SHIPPED_DANCERS)]:
+        print("wrote", build(name, arguments.runs / f"{name}.safetensors", arguments.out / f"{name}.safetensors"))
+
+
+def build(name: str, run: Path, out: Path) -> Path:
+    """Train a recipe by its name, continuing `run` where there is one; write what comes of it."""
+
+    def log(line: str) -> None:
+        print(line, flush=True)
+
+    if name in RECIPES:
+        return save_walker(train(RECIPES[name], run, log=log), out)
+    return save_dancer(train_dancer(DANCE_RECIPES[name], run, log=log), out)
 
 
 def point_alias(folder: Path, name: str) -> None:

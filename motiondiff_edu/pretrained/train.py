@@ -51,7 +51,8 @@ def train(recipe: Recipe, run_file: Path, clips: list[Clip] | None = None, log=p
     if state.step < recipe.steps:
         sittings = [*sittings, {"from_step": state.step, **where(device)}]
     loss_fn = window_loss(windows, schedule, **recipe.loss_settings)
-    _run(recipe, state, loss_fn, saver(run_file, about, sittings), log)
+    rate = cosine_lr(recipe.lr, recipe.steps, warmup=min(500, recipe.steps // 4))
+    run_to_end(recipe.name, recipe, rate, state, loss_fn, saver(run_file, about, sittings), log)
     card = card_of(recipe, windows, state, sittings)
     card["final_loss"] = round(mean_loss(loss_fn, state.average), 6)
     return Walker(state.average.cpu().eval(), schedule, windows.pose_scaler, windows.control_scaler, card)
@@ -77,16 +78,15 @@ def mean_loss(loss_fn, network: torch.nn.Module, batches: int = 50) -> float:
     return float(np.mean([loss_fn(network, generator).item() for _ in range(batches)]))
 
 
-def _run(recipe: Recipe, state: TrainState, loss_fn, save, log) -> None:
-    """Train to the last step, with a word every thousand."""
-    lr = cosine_lr(recipe.lr, recipe.steps, warmup=min(500, recipe.steps // 4))
-    settings = {"lr": lr, "decay": recipe.decay, "save": save, "save_every": recipe.save_every, "progress": False}
-    losses = []
+def run_to_end(name: str, recipe, rate, state: TrainState, loss_fn, save, log) -> None:
+    """Train to the last step, with a word every thousand steps, or twenty times."""
+    settings = {"lr": rate, "decay": recipe.decay, "save": save, "save_every": recipe.save_every, "progress": False}
+    losses, every = [], min(1000, max(1, recipe.steps // 20))
     for report in train_steps(state, loss_fn, recipe.steps, **settings):
         losses.append(report.loss)
-        if report.step % 1000 == 0:
-            mean, minutes = np.mean(losses[-1000:]), state.seconds / 60
-            log(f"{recipe.name} {report.step}/{recipe.steps}: loss {mean:.5f}, {minutes:.1f} min")
+        if report.step % every == 0:
+            mean, minutes = np.mean(losses[-every:]), state.seconds / 60
+            log(f"{name} {report.step}/{recipe.steps}: loss {mean:.5f}, {minutes:.1f} min")
 
 
 def commit_of(folder: Path) -> str:

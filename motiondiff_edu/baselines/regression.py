@@ -1,0 +1,29 @@
+"""Dance by regression: one right answer for each song, the mean of all the dances it might have had.
+
+No noise goes in, so the same song gives the same dance; where many continuations are right, the mean of them is what
+minimises the squared error, and a mean of dances hardly dances.
+Source: the idea of AI Choreographer, as MoFusion's Table 1 has it for a baseline.  Notebook: 14
+"""
+
+from collections.abc import Callable
+
+import torch
+from torch import Tensor, nn
+
+from ..dance_windows import DanceWindows
+from .transformer import TransformerConfig
+
+REGRESSION = TransformerConfig(deterministic=True)
+
+
+def regression_loss(windows: DanceWindows, *, batch: int = 32) -> Callable[[nn.Module, torch.Generator], Tensor]:
+    """Mean squared error of the motion itself, as a `loss_fn` for `training.train_steps`.  Notebook: 14"""
+
+    def loss_fn(model: nn.Module, generator: torch.Generator) -> Tensor:
+        device = next(model.parameters()).device
+        x0, mel, _ = (part.to(device) for part in windows.draw(batch, generator))
+        s = torch.zeros(batch, dtype=torch.long, device=device)
+        out = model(torch.zeros_like(x0), s, model.listen(mel, windows.mel_times.to(device)))
+        return (out - x0).square().mean()
+
+    return loss_fn

@@ -1,0 +1,97 @@
+"""A plain transformer that dances: frames attend to frames, and to the music; no U-Net.
+
+Told the noised motion and the step, it is a denoiser of the U-Net's size (is the U-Net light?). Given nothing but the
+music it is a regression: see `regression.py`.  Source: AI Choreographer's cross-modal transformer (cited by MoFusion
+4.1), made small; sizes are ours.  Notebook: 14
+"""
+
+from dataclasses import asdict, dataclass
+
+import torch
+from jaxtyping import Bool, Float, Int
+from torch import Tensor, nn
+
+from ..cross_modal_attention import CrossModalAttention, angles_of
+from ..modiff import step_embedding
+from ..mofusion import Ask, Music, MusicEncoder
+from ..prediction import TARGETS
+
+
+@dataclass(frozen=True)
+class TransformerConfig:
+    """Sizes of the network; `deterministic` leaves x_s and s out: the motion then follows from the music alone."""
+
+    D: int = 63
+    C: int = 80
+    S: int = 1000
+    width: int = 192
+    heads: int = 4
+    layers: int = 6
+    music_layers: int = 4
+    fps: float = 20.0
+    slowest: float = 0.05  # Hz, of the position code
+    fastest: float = 8.0
+    target: str = "x0"
+    deterministic: bool = False
+
+    def __post_init__(self):
+        """Raises ValueError for sizes of which no network can be built, and for an unknown target."""
+        if min(self.D, self.C, self.S, self.heads, self.layers) < 1 or self.music_layers < 0:
+            raise ValueError("D, C, S, heads and layers must be 1 at least")
+        if self.width % (2 * self.heads):
+            raise ValueError(f"the width must be a multiple of 2 x {self.heads} heads, not {self.width}")
+        if self.target not in TARGETS:
+            raise ValueError(f"target must be one of {', '.join(TARGETS)}, not {self.target!r}")
+
+    def as_dict(self) -> dict:
+        return asdict(self)
+
+
+class Layer(nn.Module):
+    """Self-attention between frames, then what MoFusion's blocks have: attention to the music and a feed-forward."""
+
+    def __init__(self, width: int, heads: int):
+        super().__init__()
+        self.norm, self.attention = nn.LayerNorm(width), CrossModalAttention(width, heads)
+        self.ask = Ask(width, heads, width)
+
+    def forward(self, x: Float[Tensor, "B T C"], music: Music, between, to_music) -> Float[Tensor, "B T C"]:
+        normed = self.norm(x)
+        x = x + self.attention(normed, normed, None, between)
+        return self.ask(x, music.tokens, None, to_music)
+
+
+class DanceTransformer(nn.Module):
+    """The same call as MoFusion's: (x_s, s, music) -> the target; with `deterministic`, x_s only says how long.
+
+    Notebook: 14
+    """
+
+    def __init__(self, config: TransformerConfig):
+        super().__init__()
+        self.config, width = config, config.width
+        self.music = MusicEncoder(config.C, width, config.music_layers)
+        self.step_in = nn.Sequential(nn.Linear(width, width), nn.SiLU(), nn.Linear(width, width))
+        self.into = nn.Linear(config.D, width)
+        self.layers = nn.ModuleList(Layer(width, config.heads) for _ in range(config.layers))
+        self.out = nn.Sequential(nn.LayerNorm(width), nn.Linear(width, config.D))
+
+    def listen(
+        self, mel: Float[Tensor, "B M C"], times: Float[Tensor, "M"], mask: Bool[Tensor, "B M"] | None = None
+    ) -> Music:
+        """As MoFusion.listen."""
+        present = mel.new_ones(1, mel.shape[1], 1) if mask is None else mask[..., None].to(mel.dtype)
+        step = 2 if self.config.music_layers else 1
+        return Music(self.music(mel, present), times[::step], None if mask is None else mask[:, ::step])
+
+    def forward(self, x_s: Float[Tensor, "B T D"], s: Int[Tensor, "B"], music: Music) -> Float[Tensor, "B T D"]:
+        config = self.config
+        if config.deterministic:
+            x_s, s = torch.zeros_like(x_s), torch.zeros_like(s)
+        times = torch.arange(x_s.shape[1], device=x_s.device) / config.fps
+        code = (config.width // config.heads, config.slowest, config.fastest)
+        frames, heard = angles_of(times, *code), angles_of(music.times, *code)
+        x = self.into(x_s) + self.step_in(step_embedding(s, config.width))[:, None]
+        for layer in self.layers:
+            x = layer(x, music, (frames, frames), (frames, heard))
+        return self.out(x)

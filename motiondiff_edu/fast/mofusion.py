@@ -1,0 +1,103 @@
+"""MoFusion for use: music is heard once a song; keys, values and what the step says are kept over the sampling loop.
+
+The same numbers as the plain network in the core, to 1e-5 (tested).  Notebook: 12
+"""
+
+import copy
+from dataclasses import dataclass
+
+import torch
+from jaxtyping import Float, Int
+from torch import Tensor
+from torch.nn import functional as F
+
+from ..cross_modal_attention import turned
+from ..modiff import step_embedding
+from ..mofusion import Ask, MoFusion, ResBlock, View
+
+
+@dataclass(frozen=True, eq=False)
+class Listening:
+    """What the blocks need of a song, for motions of one length: keys and values block by block, and the views."""
+
+    frames: int
+    views: list[View]
+    keys: tuple[Float[Tensor, "B H M _"], ...]
+    values: tuple[Float[Tensor, "B H M _"], ...]
+
+
+class FastMoFusion:
+    """A trained MoFusion, read once: `listen` to the music, then `denoise` as often as the sampler asks.
+
+    It works on a copy, as FastMoDiff does; without music (C = 0) there is nothing to keep: use the plain network.
+    Notebook: 12
+    """
+
+    @torch.inference_mode()
+    def __init__(self, model: MoFusion):
+        if model.music is None:
+            raise ValueError("a network without music has no keys and values to keep: use the plain one")
+        self.model = model = copy.deepcopy(model).eval()
+        self.config = model.config
+        self.levels = len(self.config.widths)
+        self.blocks = [*model.down, model.middle, *model.up]
+        self.level_of = [*range(self.levels), self.levels, *range(self.levels - 1, -1, -1)]
+        device = model.into.mix.weight.device
+        steps = model.step_in(step_embedding(torch.arange(self.config.S + 1, device=device), 4 * self.config.widths[0]))
+        self.told = [block["res"].step(steps).chunk(2, dim=-1) for block in self.blocks]  # scale, shift for every s
+
+    @torch.inference_mode()
+    def listen(self, mel: Float[Tensor, "B M C"], times: Float[Tensor, "M"], frames: int) -> Listening:
+        """The keys and values of a song, turned by their times, for a dance of so many frames."""
+        music = self.model.listen(mel, times)
+        padded = frames + -frames % 2**self.levels
+        lengths = torch.full((1,), frames, device=mel.device)
+        views = [View.of(padded, lengths, level, music, self.config) for level in range(self.levels + 1)]
+        keys, values = [], []
+        for block, level in zip(self.blocks, self.level_of, strict=True):
+            attention = block["ask"].attention
+            k, v = (attention.split(part) for part in attention.kv(music.tokens).chunk(2, dim=-1))
+            keys.append(turned(k, views[level].turns[attention.q.out_features][1]).contiguous())
+            values.append(v.contiguous())
+        return Listening(frames, views, tuple(keys), tuple(values))
+
+    @torch.inference_mode()
+    def denoise(
+        self, x_s: Float[Tensor, "B T D"], s: Int[Tensor, "B"] | int, song: Listening
+    ) -> Float[Tensor, "B T D"]:
+        """The network's output at step s, one for the whole batch or one for each: eps, x0 or v, as its target says."""
+        model, levels, views = self.model, self.levels, song.views
+        x = F.pad(x_s, (0, 0, 0, -song.frames % 2**levels))
+        h, kept = model.into(x), []
+        for level in range(levels):
+            h = self._block(level, h, s, song)
+            kept.append(h)
+            h = model.shorten[level](h * views[level].mask)
+        h = self._block(levels, h, s, song)
+        for up, level in enumerate(range(levels - 1, -1, -1)):
+            h = model.lengthen[up](h.repeat_interleave(2, dim=1) * views[level].mask)
+            h = self._block(levels + 1 + up, torch.cat([h, kept[level]], dim=-1), s, song)
+        out = model.out(h[:, : song.frames])
+        return out if model.skip is None else out + model.skip[s].view(-1, 1, 1) * x_s
+
+    def _block(self, k: int, h: Tensor, s, song: Listening) -> Tensor:
+        view = song.views[self.level_of[k]]
+        scale, shift = (part[s].view(-1, 1, part.shape[-1]) for part in self.told[k])
+        h = _res(self.blocks[k]["res"], h, scale, shift, view.mask)
+        return _ask(self.blocks[k]["ask"], h, song.keys[k], song.values[k], view)
+
+
+def _res(block: ResBlock, x: Tensor, scale: Tensor, shift: Tensor, mask: Tensor) -> Tensor:
+    """ResBlock.forward, with what the step says already worked out."""
+    h = block.conv_in(F.silu(block.norm_in(x)).mul_(mask))
+    h = torch.addcmul(shift, block.norm_out(h), 1 + scale)
+    return block.conv_out(F.silu(h).mul_(mask)).add_(block.around(x))
+
+
+def _ask(block: Ask, x: Tensor, keys: Tensor, values: Tensor, view: View) -> Tensor:
+    """Ask.forward, with keys and values at hand."""
+    attention = block.attention
+    q = turned(attention.split(attention.q(block.norm(x))), view.turns[x.shape[-1]][0])
+    mixed = F.scaled_dot_product_attention(q, keys, values, attn_mask=view.bias)
+    x = attention.out(mixed.transpose(1, 2).flatten(-2)).add_(x)
+    return block.ff(block.norm_ff(x)).add_(x)

@@ -1,0 +1,52 @@
+"""Dance as the network sees it: where the pelvis is, and the other joints about it; no turning from frame to frame.
+
+Columns 0:3 are the pelvis (x, y, z), which starts at x = z = 0, facing z; then x, y, z of each of the 20 other joints
+minus the pelvis, same axes. Metres.  Source: MoFusion 3 (root-relative joints and the root's path).  Notebook: 12
+"""
+
+import numpy as np
+import torch
+from jaxtyping import Float
+from torch import Tensor
+
+from .skeleton import HIPS, MIRROR, J, joint_index
+
+HIP_LEFT, HIP_RIGHT = joint_index("LeftUpLeg"), joint_index("RightUpLeg")
+
+
+def facing(positions: Float[np.ndarray, "*B 21 3"]) -> Float[np.ndarray, "*B"]:
+    """Which way the pelvis faces: radians, counter-clockwise seen from above, 0 along z."""
+    across = positions[..., HIP_LEFT, :] - positions[..., HIP_RIGHT, :]
+    return np.arctan2(-across[..., 2], across[..., 0])
+
+
+def at_origin(positions: Float[np.ndarray, "*B T 21 3"]) -> Float[np.ndarray, "*B T 21 3"]:
+    """The same motion, moved and turned so that it starts with the pelvis over x = z = 0, facing z."""
+    first = positions[..., :1, :, :]
+    moved = positions - first[..., HIPS : HIPS + 1, :] * np.array([1.0, 0.0, 1.0])
+    angle = facing(first)[..., None]
+    sin, cos = np.sin(angle), np.cos(angle)
+    x, y, z = np.moveaxis(moved, -1, 0)
+    return np.stack([x * cos - z * sin, y, x * sin + z * cos], -1)
+
+
+def to_features(positions: Float[np.ndarray, "*B T J 3"]) -> Float[np.ndarray, "*B T 63"]:
+    """World positions as the network's 63 numbers.  Raises ValueError for another skeleton.  Notebook: 12"""
+    if positions.shape[-2:] != (J, 3):
+        raise ValueError(f"the course's skeleton has {J} joints with 3 coordinates, got {positions.shape[-2:]}")
+    placed = at_origin(positions)
+    about = placed[..., HIPS + 1 :, :] - placed[..., HIPS : HIPS + 1, :]
+    whole = np.concatenate([placed[..., HIPS : HIPS + 1, :], about], axis=-2)
+    return whole.reshape(*whole.shape[:-2], 3 * J)
+
+
+def to_positions(features: Float[Tensor, "*B T 63"]) -> Float[Tensor, "*B T 21 3"]:
+    """The network's 63 numbers as world positions, differentiable (the losses need it).  Notebook: 12, 13"""
+    joints = features.unflatten(-1, (J, 3))
+    pelvis = joints[..., :1, :]
+    return torch.cat([pelvis, joints[..., 1:, :] + pelvis], dim=-2)
+
+
+def mirror(positions: Float[np.ndarray, "*B T 21 3"]) -> Float[np.ndarray, "*B T 21 3"]:
+    """The same dance in a mirror: left is right, every joint included."""
+    return positions[..., MIRROR, :] * np.array([-1.0, 1.0, 1.0])

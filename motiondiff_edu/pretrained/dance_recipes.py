@@ -1,0 +1,50 @@
+"""How the shipped dancers are made: data, sizes, losses, steps. One record each.
+
+The paper gives neither widths nor steps nor the weights of its losses: all numbers are ours.  Notebook: 12, 13
+"""
+
+from dataclasses import dataclass, replace
+
+from ..baselines.regression import REGRESSION
+from ..baselines.transformer import TransformerConfig
+from ..kinematic_loss import KinematicWeights
+from ..mofusion import MOFUSION_FULL, MOFUSION_SMALL, MoFusionConfig
+
+KINEMATIC = KinematicWeights(skeleton=300.0, asymmetry=5.0, motion=0.0, slide=2.0, over_time="alpha_bar")
+
+
+@dataclass(frozen=True)
+class DanceRecipe:
+    """One training run on `songs` songs of `seconds` each, danced to once, every dance mirrored as well."""
+
+    name: str
+    config: MoFusionConfig | TransformerConfig
+    steps: int
+    kinematic: KinematicWeights | None = None
+    high_noise: float = 0.0  # largest extra weight of steps that are mostly noise
+    changes: float = 5.0  # weight of the errors of changes from frame to frame, beside those of poses
+    frames: int = 100  # of a window
+    lr: float = 3e-3
+    optimizer: str = "muon"
+    batch: int = 32
+    decay: float = 0.999
+    songs: int = 240
+    seconds: float = 30.0
+    data_seed: int = 1
+    seed: int = 0
+    save_every: int = 250  # steps
+
+    @property
+    def loss_settings(self) -> dict:
+        """What `dance_windows.dance_loss` is to be told."""
+        return {name: getattr(self, name) for name in ("batch", "high_noise", "changes")}
+
+
+X0 = replace(MOFUSION_SMALL, target="x0", skip=False)
+DANCER = DanceRecipe("dancer", X0, steps=3600, kinematic=KINEMATIC)
+DANCER_PLAIN = DanceRecipe("dancer-plain", X0, steps=3600)
+REGRESSED = DanceRecipe("regression", REGRESSION, steps=1500)
+DANCER_FULL = DanceRecipe("dancer-full", MOFUSION_FULL, steps=200_000, kinematic=KINEMATIC, lr=2e-4, batch=64)
+
+SHIPPED_DANCERS = (DANCER, DANCER_PLAIN, REGRESSED)
+DANCE_RECIPES = {recipe.name: recipe for recipe in (*SHIPPED_DANCERS, DANCER_FULL)}

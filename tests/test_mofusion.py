@@ -1,0 +1,172 @@
+"""MoFusion's U-Net: lengths, the batch, time in seconds, and its fast twin."""
+
+import pytest
+import torch
+
+from motiondiff_edu.cross_modal_attention import angles_of, turned
+from motiondiff_edu.fast.mofusion import FastMoFusion
+from motiondiff_edu.mofusion import MOFUSION_FULL, MOFUSION_SMALL, FrameConv, MoFusion, MoFusionConfig
+
+TINY = MoFusionConfig(D=7, C=5, S=30, widths=(16, 24, 32), heads=2, music_layers=2, target="x0", skip=False)
+MEL_FPS = 31.25
+
+
+def shaken(config: MoFusionConfig, seed: int = 0) -> MoFusion:
+    """A network whose every weight counts: as it is made, its blocks change nothing."""
+    torch.manual_seed(seed)
+    model = MoFusion(config).eval()
+    with torch.no_grad():
+        for weight in model.parameters():
+            weight.add_(0.15 * torch.randn(weight.shape))
+    return model
+
+
+def music(B: int, M: int, C: int = 5, seed: int = 1):
+    return torch.randn(B, M, C, generator=torch.Generator().manual_seed(seed)), torch.arange(M) / MEL_FPS
+
+
+@torch.no_grad()
+def test_any_length_comes_back_as_long_as_it_was():
+    model = shaken(TINY)
+    for T in (1, 2, 7, 8, 9, 41):
+        mel, times = music(3, 70)
+        out = model(torch.randn(3, T, 7), torch.tensor([1, 15, 30]), model.listen(mel, times))
+        assert out.shape == (3, T, 7)
+
+
+@torch.no_grad()
+def test_lengths_in_one_batch_do_not_influence_one_another():
+    model, lengths = shaken(TINY), torch.tensor([33, 12, 25])
+    mel, times = music(3, 60)
+    heard = torch.arange(60) < torch.tensor([60, 22, 41])[:, None]
+    x, s = torch.randn(3, 33, 7), torch.tensor([4, 17, 29])
+    together = model(x, s, model.listen(mel, times, heard), lengths)
+    for i, (n, m) in enumerate(zip(lengths, heard.sum(1), strict=True)):
+        alone = model(x[i : i + 1, :n], s[i : i + 1], model.listen(mel[i : i + 1, :m], times[:m]))
+        torch.testing.assert_close(together[i, :n], alone[0], atol=2e-5, rtol=1e-4)
+        assert (together[i, n:] == 0).all()
+    assert together[:, :12].std() > 0.05  # else the comparison says nothing
+
+
+@torch.no_grad()
+def test_what_lies_in_the_padding_does_not_matter():
+    model, lengths = shaken(TINY), torch.tensor([19, 11])
+    mel, times = music(2, 40)
+    x = torch.randn(2, 19, 7)
+    first = model(x, torch.tensor([3, 9]), model.listen(mel, times), lengths)
+    x[1, 11:] = 100.0
+    assert torch.equal(first, model(x, torch.tensor([3, 9]), model.listen(mel, times), lengths))
+
+
+@torch.no_grad()
+def test_the_network_hears_the_music_and_when_it_sounds():
+    model = shaken(TINY)
+    mel, times = music(1, 50)
+    x, s = torch.randn(1, 30, 7), torch.tensor([20])
+    out = model(x, s, model.listen(mel, times))
+    other = model(x, s, model.listen(mel.flip(1), times))
+    later = model(x, s, model.listen(mel, times + 0.3))
+    assert (out - other).abs().max() > 1e-3 and (out - later).abs().max() > 1e-3
+
+
+@torch.no_grad()
+def test_only_the_distance_in_time_counts():
+    """Dance and music a minute later: the same attention, up to rounding."""
+    q, k = torch.randn(2, 3, 9, 8), torch.randn(2, 3, 13, 8)
+    frames, heard = torch.arange(9) / 20, torch.arange(13) / 15.625
+
+    def scores(shift: float):
+        turn = [angles_of(t + shift, 8, 0.05, 8.0) for t in (frames, heard)]
+        return turned(q, turn[0]) @ turned(k, turn[1]).mT
+
+    torch.testing.assert_close(scores(0.0), scores(60.0), atol=2e-3, rtol=1e-3)
+    assert (scores(0.0) - q @ k.mT).abs().max() > 0.1
+
+
+def test_a_turn_keeps_lengths_and_zero_turns_nothing():
+    x = torch.randn(2, 5, 8)
+    angles = angles_of(torch.arange(5) / 20, 8, 0.05, 8.0)
+    torch.testing.assert_close(turned(x, angles).norm(dim=-1), x.norm(dim=-1))
+    assert torch.equal(turned(x, torch.zeros(5, 4)), x)
+    assert angles[3].tolist() == pytest.approx([2 * torch.pi * 0.15 * f for f in (0.05, 0.2714, 1.4736, 8.0)], rel=1e-3)
+
+
+@torch.no_grad()
+def test_attention_reaches_no_further_than_asked():
+    model = shaken(MoFusionConfig(**{**TINY.as_dict(), "reach": 0.5, "music_layers": 0}))
+    mel, times = music(1, 100)
+    x, s = torch.randn(1, 16, 7), torch.tensor([20])
+    out = model(x, s, model.listen(mel, times))
+    mel[:, times > 0.5 + 16 / 20] += 3.0
+    assert torch.equal(out, model(x, s, model.listen(mel, times)))
+    mel[:, times < 0.5] += 3.0
+    assert not torch.equal(out, model(x, s, model.listen(mel, times)))
+
+
+@torch.no_grad()
+def test_without_music_the_motion_attends_to_itself():
+    config = MoFusionConfig(**{**TINY.as_dict(), "C": 0})
+    model, lengths = shaken(config), torch.tensor([21, 13])
+    x, s = torch.randn(2, 21, 7), torch.tensor([3, 9])
+    out = model(x, s, None, lengths)
+    torch.testing.assert_close(out[1, :13], model(x[1:, :13], s[1:])[0], atol=2e-5, rtol=1e-4)
+    far = x.clone()
+    far[:, -1] += 5.0
+    assert (model(far, s) - model(x, s))[:, 0].abs().max() > 1e-5  # 20 frames away: through attention, or the depth
+    with pytest.raises(ValueError, match="hears nothing"):
+        model(x, s, shaken(TINY).listen(*music(2, 30)))
+    with pytest.raises(ValueError, match="give it"):
+        shaken(TINY)(x, s)
+
+
+@torch.no_grad()
+@pytest.mark.parametrize("change", [{}, {"skip": True, "target": "eps"}, {"reach": 0.6}, {"music_layers": 0}])
+def test_fast_twin_gives_the_same_numbers(change):
+    model = shaken(MoFusionConfig(**{**TINY.as_dict(), **change}))
+    fast = FastMoFusion(model)
+    mel, times = music(3, 64)
+    x, song = torch.randn(3, 37, 7), fast.listen(mel, times, 37)
+    for s in (1, 15, 30):
+        labels = torch.full((3,), s)
+        plain = model(x, labels, model.listen(mel, times))
+        torch.testing.assert_close(fast.denoise(x, labels, song), plain, atol=1e-5, rtol=1e-5)
+        torch.testing.assert_close(fast.denoise(x, s, song), plain, atol=1e-5, rtol=1e-5)
+    labels = torch.tensor([2, 9, 28])
+    plain = model(x, labels, model.listen(mel, times))
+    torch.testing.assert_close(fast.denoise(x, labels, song), plain, atol=1e-5, rtol=1e-5)
+
+
+def test_fast_twin_needs_music():
+    with pytest.raises(ValueError, match="plain"):
+        FastMoFusion(MoFusion(MoFusionConfig(**{**TINY.as_dict(), "C": 0})))
+
+
+def test_a_frame_convolution_is_torchs():
+    for stride, dilation in ((1, 1), (2, 1), (1, 4)):
+        conv = FrameConv(3, 5, stride, dilation)
+        kernel = conv.mix.weight.view(5, 3, 3).transpose(1, 2)  # (out, tap, in) -> (out, in, tap)
+        x = torch.randn(2, 11, 3)
+        wanted = torch.conv1d(x.mT, kernel, conv.mix.bias, stride, dilation, dilation).mT
+        torch.testing.assert_close(conv(x), wanted)
+
+
+def test_a_new_network_changes_nothing_between_its_ends():
+    """Residual blocks start as what leads around them: so a deep network trains from the first step."""
+    torch.manual_seed(0)
+    block = MoFusion(TINY).down[0]["res"]
+    x = torch.randn(2, 9, 16)
+    assert torch.equal(block(x, torch.randn(2, 64), torch.ones(1, 9, 1)), x)
+
+
+def test_sizes_are_checked():
+    for wrong in ({"widths": (18,)}, {"widths": ()}, {"target": "y"}, {"S": 0}, {"reach": -1.0}):
+        with pytest.raises(ValueError):
+            MoFusionConfig(**wrong)
+    assert len(MOFUSION_SMALL.widths) == len(MOFUSION_FULL.widths) == 3  # the paper's levels
+
+
+def test_gradients_reach_every_weight():
+    model = shaken(MoFusionConfig(**{**TINY.as_dict(), "skip": True, "target": "eps"}))
+    mel, times = music(2, 30)
+    model(torch.randn(2, 18, 7), torch.tensor([3, 20]), model.listen(mel, times)).square().mean().backward()
+    assert [name for name, p in model.named_parameters() if p.grad is None or not p.grad.abs().sum() > 0] == []

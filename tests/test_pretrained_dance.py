@@ -1,0 +1,65 @@
+"""Dancers' recipes: a small one is trained, killed and continued; what comes of it dances, and its card tells how."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+import torch
+
+from motiondiff_edu.checkpoints import load_dancer
+from motiondiff_edu.pretrained import __main__ as command
+from motiondiff_edu.pretrained.dance_recipes import DANCE_RECIPES, DANCER, DANCER_PLAIN, REGRESSED
+from motiondiff_edu.pretrained.train_dance import train_dancer, training_windows
+
+SIZES = {"steps": 6, "songs": 2, "seconds": 8.0, "batch": 3, "save_every": 2, "frames": 40}
+TINY = replace(DANCER, name="tiny", config=replace(DANCER.config, widths=(16, 24), music_layers=1, S=20), **SIZES)
+
+
+@pytest.fixture(scope="module")
+def windows():
+    return training_windows(TINY)
+
+
+def test_data_are_songs_and_dances_to_them(windows):
+    assert windows.motion.shape[1:] == (40, 63) and len(windows.motion) >= 2 * 2 * 7
+    assert windows.mel.shape[1] == 80 and torch.isfinite(windows.mel).all()
+    again = training_windows(TINY)
+    assert torch.equal(again.motion, windows.motion) and torch.equal(again.mel, windows.mel)
+    other = training_windows(replace(TINY, data_seed=2))
+    assert other.motion.shape != windows.motion.shape or not torch.equal(other.motion, windows.motion)
+
+
+def test_a_killed_training_continues_bit_for_bit(windows, tmp_path: Path):
+    whole = train_dancer(TINY, tmp_path / "whole.safetensors", windows, log=lambda line: None)
+
+    def stop(line: str) -> None:
+        if " 3/6" in line:
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        train_dancer(TINY, tmp_path / "killed.safetensors", windows, log=stop)
+    again = train_dancer(TINY, tmp_path / "killed.safetensors", windows, log=lambda line: None)
+    assert all(torch.equal(a, b) for a, b in zip(whole.model.parameters(), again.model.parameters(), strict=True))
+    assert [sitting["from_step"] for sitting in again.card["sittings"]] == [0, 2]
+    with pytest.raises(ValueError, match="begun with lr"):
+        train_dancer(replace(TINY, lr=1e-4), tmp_path / "whole.safetensors", windows, log=lambda line: None)
+
+
+def test_the_command_trains_a_recipe_into_a_file(monkeypatch, tmp_path: Path, capsys):
+    small = replace(REGRESSED, config=replace(REGRESSED.config, width=16, heads=2, layers=1, music_layers=1), **SIZES)
+    monkeypatch.setitem(command.DANCE_RECIPES, "regression", small)
+    arguments = ["pretrained", "regression", "--runs", str(tmp_path / "runs"), "--out", str(tmp_path)]
+    monkeypatch.setattr("sys.argv", arguments)
+    command.main()
+    dancer = load_dancer(tmp_path / "regression.safetensors")
+    assert "wrote" in capsys.readouterr().out
+    assert dancer.card["recipe"]["steps"] == 6 and dancer.card["target"] == "x0" and dancer.card["windows"] > 0
+    mel = torch.zeros(1, 70, 80)
+    assert dancer.dance(mel, 40).shape == (1, 40, 21, 3)
+
+
+def test_with_and_without_kinematic_losses_all_else_is_alike():
+    assert DANCER.kinematic and not DANCER_PLAIN.kinematic
+    assert replace(DANCER_PLAIN, name="dancer", kinematic=DANCER.kinematic) == DANCER
+    assert DANCER.kinematic.over_time == "alpha_bar"  # the paper's
+    assert set(DANCE_RECIPES) == {"dancer", "dancer-plain", "regression", "dancer-full"}
