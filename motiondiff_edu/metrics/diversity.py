@@ -1,6 +1,6 @@
-"""How different are several continuations of one past under one control? More is not better: the data have a spread.
+"""How different are several motions with the same past and control, or the same music? More is not better.
 
-Notebook: 08
+Whatever is measured here, noise scores highest: set it beside the data's own value.  Notebook: 08, 14
 """
 
 import numpy as np
@@ -26,3 +26,25 @@ def spread(
     late = np.asarray(rollouts, np.float64)[..., first:, :, :]
     deviation = late - late.mean(-4, keepdims=True)
     return np.sqrt((deviation**2).sum(-1).mean((-2, -1)).sum(-1) / (n - 1))
+
+
+def diversity(features: Float[np.ndarray, "*B N F"]) -> float | Float[np.ndarray, "*B"]:
+    """Mean distance over all N (N - 1) / 2 pairs of (normalised) feature vectors: the papers' Div.
+
+    Normalise by the data first: `frechet.normalise(features, data)`. Raises ValueError for fewer than two vectors.
+    Source: MoFusion 4.1, Table 1.  Notebook: 14
+    """
+    n = features.shape[-2]
+    if n < 2:
+        raise ValueError(f"a distance takes two motions, and there is {n}")
+    first, second = np.triu_indices(n, 1)
+    return np.linalg.norm(features[..., first, :] - features[..., second, :], axis=-1).mean(-1)[()]
+
+
+def multimodality(features: Float[np.ndarray, "B K F"]) -> float:
+    """How different the K dances to one piece of music are: the mean distance of their pairs, averaged over B pieces.
+
+    The paper takes K = 50 and leaves the rest open; here: all pairs, features normalised by the data before.
+    Raises ValueError for fewer than two dances a piece.  Source: MoFusion 4.1, Table 1.  Notebook: 14
+    """
+    return float(np.mean(diversity(features)))
