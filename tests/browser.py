@@ -1,11 +1,14 @@
 """A Chromium for the tests of widgets: started without network services, offline where a test says so."""
 
+import base64
 import hashlib
 import json
 from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
+
+from motiondiff_edu.widgets.player import MODULE
 
 FLAGS = (
     "--no-sandbox --disable-gpu --disable-quic --no-first-run --disable-background-networking "
@@ -85,14 +88,25 @@ window.cleanup = widget.render({ model: window.model, el: document.getElementByI
 """
 
 
-def bare_page(folder: Path, module: Path, record: dict, binary: list[str]) -> str:
-    """Write a page that runs an ES module with a fake model on `record`; return its address.
+def bare_page(folder: Path, module: Path | str, record: dict, binary: list[str]) -> str:
+    """Write a page that runs an ES module (its file or its text) with a fake model on `record`; return its address.
 
     In the page: model, saved (states sent to Python), leaked (keys that reached the document), cleanup.
     """
-    source = module.read_text("utf-8").replace("export default", "const widget =", 1)
+    text = module if isinstance(module, str) else module.read_text("utf-8")
+    source = text.replace("export default", "const widget =", 1)
     script = FAKE_MODEL.replace("RECORD", json.dumps(record)).replace("BINARY", json.dumps(binary))
     page = folder / "page.html"
     body = f'<div id="here"></div><script type="module">\n{source}\n{script}</script>'
     page.write_text(f'<!doctype html><meta charset="utf-8"><body>{body}', "utf-8")
     return page.as_uri()
+
+
+BINARY = ["joints", "roots", "contacts", "sound", "strips"]
+
+
+def player_page(folder: Path, player) -> str:
+    """A bare page with a player as it runs in JupyterLab; return its address."""
+    record = {name: base64.b64encode(getattr(player, name)).decode() for name in BINARY}
+    record |= {"scene": player.scene, "music": player.music, "frame": player.frame, "playing": player.playing}
+    return bare_page(folder, MODULE, record, BINARY)

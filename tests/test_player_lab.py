@@ -1,4 +1,4 @@
-"""The whole path: JupyterLab, a kernel and a browser; the figure has ink, plays when asked, and Python hears of it."""
+"""The whole path: JupyterLab, a kernel, a browser; the figure has ink, plays with its sound, and Python hears of it."""
 
 import json
 import os
@@ -11,10 +11,11 @@ import pytest
 from browser import coloured, ink, open_page, start_browser
 
 CELL = """import sys; sys.path.insert(0, {tests!r})
+from click_track import clicks
 from synthetic_walk import walk
 from motiondiff_edu.widgets.player import Player
 positions, contacts = walk(frames=40)
-player = Player(positions, contacts=contacts, past=10, labels="walker", autoplay=False)
+player = Player(positions, contacts=contacts, past=10, labels="walker", audio=clicks([0.5, 1, 1.5], 2))
 player"""
 ASK = """async (code) => {
   const panel = window.jupyterapp.shell.currentWidget, kernel = panel.sessionContext.session.kernel;
@@ -28,6 +29,7 @@ IDLE = """() => {
   const panel = window.jupyterapp?.shell.currentWidget;
   return panel?.sessionContext?.isReady && panel.sessionContext.session?.kernel?.status === "idle";
 }"""
+HEARD = "document.querySelector('.mde-player audio').currentTime"
 SHOWN = "Number(document.querySelector('.mde-player').dataset.frame)"
 
 
@@ -88,13 +90,13 @@ def test_figure_plays_in_jupyterlab_and_python_sees_it(chromium, lab, tmp_path):
         page.goto(lab)
         page.wait_for_function(IDLE)
         page.evaluate("window.jupyterapp.commands.execute('notebook:run-all-cells')")
-        canvas = page.locator(".mde-player canvas")
+        canvas = page.locator(".mde-player canvas").first
         canvas.wait_for()
         page.wait_for_function(IDLE)
         first = ink(canvas)
         assert min(coloured(canvas).values()) > 200
         page.locator(".mde-player").get_by_role("button", name="Play").click()
-        page.wait_for_function(f"{SHOWN} > 5")
+        page.wait_for_function(f"{SHOWN} > 5 && {HEARD} > 0.25")
         canvas.focus()
         page.keyboard.press(" ")
         frame = page.evaluate(SHOWN)
@@ -105,7 +107,7 @@ def test_figure_plays_in_jupyterlab_and_python_sees_it(chromium, lab, tmp_path):
         heard = (page.evaluate(ASK, "print(player.frame, player.playing)") for _ in range(40))
         assert f"{frame + 1} False" in heard, "Python was not told the frame"
         page.evaluate(ASK, "player.frame = 33")
-        page.wait_for_function(f"{SHOWN} === 33")
+        page.wait_for_function(f"{SHOWN} === 33 && Math.abs({HEARD} - 1.65) < 0.001")
         if folder := os.environ.get("MOTIONDIFF_SCREENSHOTS"):
             page.screenshot(path=os.path.join(folder, "player_lab.png"))
         assert page.problems == []

@@ -1,12 +1,10 @@
 """The player's ES module in a browser: with a fake model in a bare page, and exported, offline, without a kernel."""
 
-import base64
-
 import pytest
-from browser import bare_page, coloured, ink, open_page, start_browser
+from browser import coloured, ink, open_page, player_page, start_browser
 from synthetic_walk import walk
 
-from motiondiff_edu.widgets.player import MODULE, Player
+from motiondiff_edu.widgets.player import Player
 
 ANOTHER_FRAME = "() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))"
 ORANGE_HALVES = """() => {
@@ -18,7 +16,6 @@ ORANGE_HALVES = """() => {
     return n;
   });
 }"""
-BINARY = ["joints", "roots", "contacts"]
 
 
 @pytest.fixture(scope="module")
@@ -33,18 +30,13 @@ def player():
     return Player(positions, contacts=contacts, past=20, labels="walker", autoplay=False)
 
 
-def address(folder, player) -> str:
-    record = {name: base64.b64encode(getattr(player, name)).decode() for name in BINARY}
-    return bare_page(folder, MODULE, record | {"scene": player.scene, "frame": 0, "playing": False}, BINARY)
-
-
 def shown(page) -> int:
     return int(page.locator(".mde-player").get_attribute("data-frame"))
 
 
 def test_keys_move_the_figure_and_do_not_leak(browser, player, tmp_path):
     with open_page(browser) as page:
-        page.goto(address(tmp_path, player))
+        page.goto(player_page(tmp_path, player))
         canvas = page.locator("canvas")
         assert min(coloured(canvas).values()) > 200
         canvas.focus()
@@ -60,7 +52,7 @@ def test_keys_move_the_figure_and_do_not_leak(browser, player, tmp_path):
 
 def test_zoom_orbit_follow_and_reset_change_the_view_and_reset_brings_it_back(browser, player, tmp_path):
     with open_page(browser) as page:
-        page.goto(address(tmp_path, player))
+        page.goto(player_page(tmp_path, player))
         canvas = page.locator("canvas")
         canvas.focus()
         page.wait_for_function("document.activeElement.tagName === 'CANVAS'")
@@ -84,7 +76,7 @@ def test_zoom_orbit_follow_and_reset_change_the_view_and_reset_brings_it_back(br
 
 def test_wheel_scrolls_the_page_until_the_figure_was_clicked(browser, player, tmp_path):
     with open_page(browser) as page:
-        page.goto(address(tmp_path, player))
+        page.goto(player_page(tmp_path, player))
         canvas = page.locator("canvas")
         first, box = ink(canvas), canvas.bounding_box()
         page.mouse.move(box["x"] + 200, box["y"] + 200)
@@ -99,7 +91,7 @@ def test_wheel_scrolls_the_page_until_the_figure_was_clicked(browser, player, tm
 
 def test_play_advances_pauses_and_tells_python(browser, player, tmp_path):
     with open_page(browser) as page:
-        page.goto(address(tmp_path, player))
+        page.goto(player_page(tmp_path, player))
         canvas, first = page.locator("canvas"), ink(page.locator("canvas"))
         page.get_by_role("button", name="Play").click()
         page.wait_for_function("document.querySelector('.mde-player').dataset.frame > 3")
@@ -114,7 +106,7 @@ def test_play_advances_pauses_and_tells_python(browser, player, tmp_path):
 
 def test_python_sets_the_frame_and_another_motion(browser, player, tmp_path):
     with open_page(browser) as page:
-        page.goto(address(tmp_path, player))
+        page.goto(player_page(tmp_path, player))
         canvas, first = page.locator("canvas"), ink(page.locator("canvas"))
         page.evaluate("model.set('frame', 31)")
         assert shown(page) == 31 and ink(canvas) != first
@@ -131,7 +123,7 @@ def test_past_is_paler_and_contacts_leave_marks(browser, tmp_path):
 
     def at(frame, **options):
         with open_page(browser) as page:
-            page.goto(address(tmp_path, Player(positions, autoplay=False, **options)))
+            page.goto(player_page(tmp_path, Player(positions, autoplay=False, **options)))
             page.evaluate(f"model.set('frame', {frame})")
             return coloured(page.locator("canvas")), ink(page.locator("canvas"))
 
@@ -145,7 +137,7 @@ def test_several_figures_are_all_drawn(browser, tmp_path, layout):
     positions, _ = walk(frames=53, turn=0.3)
     several = Player([positions, positions[:20]], layout=layout, labels=["long", "short"], autoplay=False)
     with open_page(browser) as page:
-        page.goto(address(tmp_path, several))
+        page.goto(player_page(tmp_path, several))
         page.evaluate("model.set('frame', 40)")
         assert min(page.evaluate(ORANGE_HALVES)) > 100
         assert page.problems == []
@@ -154,7 +146,7 @@ def test_several_figures_are_all_drawn(browser, tmp_path, layout):
 @pytest.mark.parametrize("motion, playing", [("reduce", False), ("no-preference", True)])
 def test_autoplay_unless_motion_is_unwanted(browser, tmp_path, motion, playing):
     with open_page(browser, reduced_motion=motion) as page:
-        page.goto(address(tmp_path, Player(walk(frames=30)[0])))
+        page.goto(player_page(tmp_path, Player(walk(frames=30)[0])))
         assert page.locator(".mde-player").get_attribute("data-playing") == str(playing).lower()
         if playing:
             page.wait_for_function("document.querySelector('.mde-player').dataset.frame > 2")

@@ -68,7 +68,7 @@ def side_by_side(
 def noise_to_motion(moments: Mapping[int, Float[np.ndarray, "T 21 3"]], words: str, n: int = 4) -> Figure:
     """A row for each diffusion step (as ordered in `moments`), n poses of the window in each.
 
-    Source: MoDiff Fig. 1.  Notebook: 07
+    Source: MoDiff Fig. 1; MoFusion Fig. 2.  Notebook: 07
     """
     fig, axes = figure(1.4 * n, 1.75 * len(moments) + 0.5, words, len(moments), n)
     for row, (s, poses) in enumerate(moments.items()):

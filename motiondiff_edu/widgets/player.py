@@ -1,14 +1,16 @@
 """The player: moving figures, live in JupyterLab, alive in exported HTML, a picture where nothing runs.
 
 Notebooks are to be saved without widget state: with it, exported pages look for the module on the network.
-Space plays, arrows step (up and down by ten), Home and End jump, + and - zoom, F follows, R resets; drag to turn.
-Notebook: 00
+Space plays, arrows step (up and down by ten), Home and End jump, + and - zoom, F follows, M mutes, R resets; drag to
+turn. With a sound, the sound is the clock: the frame shown is floor(time heard x fps), at any speed.
+Notebook: 00, 12
 """
 
 import base64
 import html
 import json
 import os
+import tempfile
 from pathlib import Path
 
 import anywidget
@@ -17,10 +19,10 @@ import traitlets
 
 from ..files import replacing
 from ..viz import body
-from . import packing, poster
+from . import lane, module, packing, poster, sound
 
-MODULE = Path(__file__).with_suffix(".js")
-_TRAITS = ("joints", "roots", "contacts")
+MODULE = module.joined()
+_TRAITS = ("joints", "roots", "contacts", "sound", "strips")
 
 _PAGE = """<!doctype html><html lang="en"><head><meta charset="utf-8"><title>{title}</title>
 <style>html,body{{margin:0;height:100%}}@media print{{html,body{{height:auto}}}}</style></head><body>
@@ -43,7 +45,10 @@ class Player(anywidget.AnyWidget):
     drawn on the floor; each may be one value for all figures or a list (one array of contacts belongs to the first
     figure). `layout` is "side" (a field each) or
     "together" (one floor; `offset` = (x, z) metres between figures). `frame` and `playing` can be read and set.
-    Raises ValueError with figure, frame and joint where a position is not finite or beyond reach.  Notebook: 00
+    `audio` (N,) from -1 to 1 at `sample_rate` Hz, or the bytes of a sound file, is played with the motion, cut or
+    filled up to its length (with a warning), above a waveform with `beats` and `downbeats` (seconds) marked; `codec`
+    is "ogg", "flac" or "wav". Such a player waits for a click, unless `autoplay` is True and the browser allows it.
+    Raises ValueError with figure, frame and joint where a position is not finite or beyond reach.  Notebook: 00, 12
     """
 
     _esm = MODULE
@@ -51,30 +56,42 @@ class Player(anywidget.AnyWidget):
     joints = traitlets.Bytes().tag(sync=True)
     roots = traitlets.Bytes().tag(sync=True)
     contacts = traitlets.Bytes().tag(sync=True)
+    music = traitlets.Dict().tag(sync=True)
+    sound = traitlets.Bytes().tag(sync=True)
+    strips = traitlets.Bytes().tag(sync=True)
     frame = traitlets.Int(0).tag(sync=True)
     playing = traitlets.Bool(False).tag(sync=True)
 
-    def __init__(self, positions, fps=20.0, past=None, contacts=None, labels=None, path=None, **options):
+    def __init__(
+        self, positions, fps=20.0, past=None, contacts=None, labels=None, path=None,
+        audio=None, sample_rate=16_000, beats=None, downbeats=None, codec="ogg", **options,
+    ):  # fmt: skip
         super().__init__()
-        self._options = {"fps": float(fps), "past": past, "contacts": contacts, "labels": labels, "path": path}
+        self._options = {"fps": float(fps), "past": past, "contacts": contacts, "labels": labels, "path": path,
+                         "audio": audio, "sample_rate": sample_rate, "beats": beats, "downbeats": downbeats,
+                         "codec": codec, "strips": None}  # fmt: skip
         self._look = _look(**options)
+        self._editions = 0
         self.show(positions)
 
     def show(self, positions, **changes) -> None:
-        """Show another motion in the same place; `changes` replaces past, contacts, labels, path or fps."""
+        """Show another motion in the same place; `changes` replaces past, contacts, labels, path, fps, audio ..."""
         unknown = set(changes) - set(self._options)
         if unknown:
             raise TypeError(f"show() does not know {sorted(unknown)}; it takes {sorted(self._options)}")
         options = self._options | changes
         arrays = packing.as_figures(positions)
         packed = packing.pack(arrays)
-        self._figures = _figures(arrays, options, self._look["parents"])
-        self._options = options
+        figures = _figures(arrays, options, self._look["parents"])
+        music = lane.from_options(options, max(packed.frames))
+        self._figures, self._options, self._music = figures, options, music
+        self._editions += 1  # another motion may have the same scene: this tells the page of it
         with self.hold_sync():
             self.joints, self.roots = packed.joints, packed.roots
-            self.contacts = packing.pack_contacts([f.contacts for f in self._figures], packed.frames)
+            self.contacts = packing.pack_contacts([f.contacts for f in figures], packed.frames)
             self.frame = min(self.frame, max(packed.frames) - 1)
-            self.scene = _scene(self._figures, options["fps"], self._look)
+            self.sound, self.strips, self.music = (b"", b"", {}) if music is None else music.traits()
+            self.scene = _scene(figures, options["fps"], self._look, music) | {"edition": self._editions}
 
     @property
     def description(self) -> str:
@@ -91,20 +108,22 @@ class Player(anywidget.AnyWidget):
     def page(self) -> str:
         """A whole HTML page with the module and the motion in it: needs no kernel and no network."""
         record = {name: base64.b64encode(getattr(self, name)).decode() for name in _TRAITS}
-        record |= {"scene": self.scene, "frame": self.frame, "playing": False}
+        record |= {"scene": self.scene, "music": self.music, "frame": self.frame, "playing": False}
         text = json.dumps(record, allow_nan=False).replace("<", "\\u003c")
-        return _PAGE.format(title=html.escape(self.description), module=MODULE.read_text("utf-8"), record=text)
+        return _PAGE.format(title=html.escape(self.description), module=MODULE, record=text)
 
     def poster(self, n: int = 6):
-        """A strip of n poses as a pillow image: what is shown where nothing runs."""
-        return poster.filmstrip(self._figures, self._options["fps"], n)
+        """A strip of n poses as a pillow image, the music lane below: what is shown where nothing runs."""
+        strip = poster.filmstrip(self._figures, self._options["fps"], n)
+        return strip if self._music is None else self._music.under(strip)
 
     def _repr_mimebundle_(self, **kwargs):
         live = super()._repr_mimebundle_(**kwargs)
         bundle, metadata = live if isinstance(live, tuple) else (live or {}, {})
         png = base64.b64encode(poster.as_png(self.poster())).decode()
+        height = self.scene["height"] + 90 + (self._music.height if self._music else 0)
         stack = _STACK.format(
-            width=1200, height=self.scene["height"] + 90, alt=html.escape(self.description, quote=True), png=png,
+            width=1200, height=height, alt=html.escape(self.description, quote=True), png=png,
             title="motion player", page=html.escape(self.page(), quote=True),
         )  # fmt: skip
         return {**bundle, "text/html": stack, "image/png": png, "text/plain": self.description}, metadata
@@ -126,16 +145,22 @@ class Player(anywidget.AnyWidget):
         return Path(path)
 
     def save_mp4(self, path: str | os.PathLike, size: tuple[int, int] = (480, 432)) -> Path:
-        """Write the figure as MP4, each figure `size` pixels; needs imageio-ffmpeg, whose absence is an ImportError."""
+        """Write the figure as MP4, each figure `size` pixels, with its sound; ImportError without imageio-ffmpeg."""
         try:
             import imageio_ffmpeg
         except ImportError as error:
             raise ImportError("save_mp4 needs the package imageio-ffmpeg; save_gif does not") from error
         width = size[0] * len(self._figures)
-        with replacing(path) as part:
+        with replacing(path) as part, tempfile.TemporaryDirectory() as folder:
+            extra = {}
+            if self._music is not None:
+                heard, file = self._music.sound, Path(folder) / "sound.wav"
+                file.write_bytes(sound.encode(heard.samples, heard.sample_rate, "wav")[0])
+                extra = {"audio_path": str(file), "audio_codec": "aac", "ffmpeg_log_level": "error"}
             writer = imageio_ffmpeg.write_frames(
-                str(part), (width, size[1]), fps=self._options["fps"], macro_block_size=2, output_params=["-f", "mp4"]
-            )
+                str(part), (width, size[1]), fps=self._options["fps"], macro_block_size=2,
+                output_params=["-f", "mp4"], **extra,
+            )  # fmt: skip
             writer.send(None)
             for picture in poster.film(self._figures, self._options["fps"], size):
                 writer.send(np.ascontiguousarray(picture))
@@ -143,11 +168,11 @@ class Player(anywidget.AnyWidget):
         return Path(path)
 
 
-def _look(layout="side", offset=(1.2, 0.0), height=430, autoplay=True, follow=True, parents=None) -> dict:
+def _look(layout="side", offset=(1.2, 0.0), height=430, autoplay=None, follow=True, parents=None) -> dict:
     if layout not in ("side", "together"):
         raise ValueError(f'layout is "side" or "together", not {layout!r}')
     offset = [float(v) for v in (offset if layout == "together" else (0, 0))]
-    return {"layout": layout, "offset": offset, "height": int(height), "autoplay": bool(autoplay),
+    return {"layout": layout, "offset": offset, "height": int(height), "autoplay": autoplay,
             "follow": bool(follow), "parents": None if parents is None else [int(p) for p in parents]}  # fmt: skip
 
 
@@ -163,15 +188,17 @@ def _figures(arrays: list, options: dict, parents: list | None) -> list[poster.F
     return [poster.Figure(a, label, past, c, p, parts) for a, label, past, c, p in columns]
 
 
-def _scene(figures: list[poster.Figure], fps: float, look: dict) -> dict:
+def _scene(figures: list[poster.Figure], fps: float, look: dict, music: lane.Lane | None) -> dict:
     records = [
         {"frames": len(f), "label": f.label, "past": f.past, "contacts": f.contacts is not None,
          "path": None if f.path is None else f.path.round(4).tolist()}
         for f in figures
     ]  # fmt: skip
+    words = describe(figures, fps) if music is None else f"{describe(figures, fps)} {music.description}"
     parts = body.parts_record(figures[0].parts)
+    autoplay = music is None if look["autoplay"] is None else bool(look["autoplay"])
     return {**look, "fps": fps, "figures": records, "joints": figures[0].positions.shape[1], "parts": parts,
-            "description": describe(figures, fps)}  # fmt: skip
+            "autoplay": autoplay, "description": words}  # fmt: skip
 
 
 def describe(figures: list[poster.Figure], fps: float) -> str:

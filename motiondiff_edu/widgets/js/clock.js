@@ -1,0 +1,64 @@
+// What the dance is timed by: the sound where there is one, else the page's own clock. Seconds from the motion's start.
+// A clock has start(), stop(), seek(seconds), rate(factor) and now().
+
+export function silentClock(length, visible) { // stands still while the figure is out of sight
+  let at = 0, before = 0, factor = 1, going = false;
+  return {
+    start() { before = performance.now(); going = true; },
+    stop() { going = false; },
+    seek(seconds) { at = seconds; before = performance.now(); },
+    rate(value) { factor = value; },
+    now() {
+      const time = performance.now();
+      if (going && visible()) at = (at + Math.min(0.5, (time - before) / 1000) * factor) % length;
+      before = time;
+      return at;
+    },
+  };
+}
+
+// The sound's own time moves in steps, coarse ones in some browsers, and starts late. Between two readings the page's
+// clock runs on; a new reading puts it right. A reading may be late but not early: one that is ahead is taken as it is,
+// one a little behind is approached, one far off (a jump, the loop, a stall) is taken at once.
+const FAR = 0.06, STALLED = 0.3, PULL = 0.1;
+
+export function soundClock(audio) {
+  let heard = audio.currentTime, at = heard, before = 0, fresh = 0, waiting = true;
+  const hold = () => { heard = at = audio.currentTime; waiting = true; return at; };
+  return {
+    start() { hold(); return audio.play(); },
+    stop() { audio.pause(); hold(); },
+    seek(seconds) { audio.currentTime = seconds; hold(); },
+    rate(value) { audio.preservesPitch = true; audio.defaultPlaybackRate = audio.playbackRate = value; hold(); },
+    now() {
+      if (audio.paused || audio.seeking) return hold();
+      const time = performance.now() / 1000, reading = audio.currentTime;
+      let guess = at + (time - before) * audio.playbackRate;
+      if (reading !== heard) {
+        const off = reading - guess;
+        guess = waiting || off > 0 || off < -FAR ? reading : guess + PULL * off;
+        heard = reading; fresh = time; waiting = false;
+      } else if (waiting || time - fresh > STALLED) {
+        return hold();
+      }
+      at = guess; before = time;
+      return at;
+    },
+  };
+}
+
+// An <audio> element that plays bytes from memory, by an address the page has for them, or spelled out where a page
+// forbids that; `fail` is called when neither can be played. Returns what frees the address.
+export function feed(audio, view, mime, fail) {
+  const blob = new Blob([view], { type: mime }), address = URL.createObjectURL(blob);
+  audio.loop = true;
+  audio.onerror = () => {
+    audio.onerror = fail;
+    if (audio.currentTime > 0) return fail(); // it played, then broke off
+    const reader = new FileReader();
+    reader.onload = () => { audio.src = reader.result; };
+    reader.readAsDataURL(blob);
+  };
+  audio.src = address;
+  return () => { audio.onerror = null; audio.pause(); audio.removeAttribute("src"); audio.load(); URL.revokeObjectURL(address); };
+}

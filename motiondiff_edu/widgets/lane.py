@@ -1,0 +1,99 @@
+"""The music lane under the figure: what is heard, where its beats are, and the strips above and below it.
+
+Notebook: 12
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from PIL import Image, ImageDraw, ImageFont
+
+from ..viz import body
+from .sound import Sound, as_sound, as_times, peaks
+from .strips import Strips
+
+PURPLE, GREEN = "#CC79A7", "#009E73"
+TICKS, WAVE, AXIS, CURVE = 14, 56, 20, 36  # pixels
+
+
+@dataclass(frozen=True, eq=False)
+class Lane:
+    """A sound as long as `frames` frames of motion, its beats and downbeats (seconds), and the strips."""
+
+    sound: Sound
+    beats: list[float]
+    downbeats: list[float]
+    strips: Strips
+    frames: int
+    fps: float
+
+    @property
+    def description(self) -> str:
+        """What is heard and seen of the music, in one sentence: the alternative text."""
+        beats = f"{len(self.beats)} beats marked" if self.beats else ""
+        said = [f"Music: {self.sound.seconds:.1f} s, its waveform below the figure", beats, self.strips.words()]
+        return "; ".join(filter(None, said)) + "."
+
+    @property
+    def height(self) -> int:
+        """Pixels that the lane takes in the page, with the line of words below it."""
+        more = bool(self.strips.levels) or self.strips.moved is not None
+        return 96 + 36 * more + (54 if self.strips.moved is not None else 0)
+
+    def traits(self) -> tuple[bytes, bytes, dict]:
+        """What the page needs: the sound file, the bytes of waveform and attention, and the record explaining them."""
+        wave = peaks(self.sound.samples)
+        record = {"mime": self.sound.mime, "seconds": self.frames / self.fps, "fps": self.fps, "frames": self.frames,
+                  "peaks": len(wave), "beats": self.beats, "downbeats": self.downbeats,
+                  "description": self.description, **self.strips.record()}  # fmt: skip
+        return self.sound.data, wave.tobytes() + self.strips.codes(), record
+
+    def under(self, picture: Image.Image) -> Image.Image:
+        """The picture with the lane drawn below it; of attention, the mean over the motion."""
+        width, moved = picture.width, self.strips.moved
+        tall = TICKS + WAVE + AXIS + (0 if moved is None else CURVE)
+        whole = Image.new("RGB", (width, picture.height + tall), body.PAPER)
+        whole.paste(picture, (0, 0))
+        pen, top = ImageDraw.Draw(whole), picture.height + TICKS
+
+        def across(t):
+            return np.clip(np.asarray(t) / (self.frames / self.fps), 0, 1) * width
+
+        if self.strips.levels:
+            level = self.strips.levels[0]
+            mean, ends = level.weights().mean(0), across(level.edges)
+            for k, share in enumerate(mean / mean.max()):
+                box = [ends[k], top, max(ends[k], ends[k + 1] - 1), top + WAVE]
+                pen.rectangle(box, fill=body.mix(PURPLE, body.PAPER, 1 - float(share)))
+        for low_high, x in zip(peaks(self.sound.samples, width), range(width), strict=False):
+            low, high = (WAVE / 2 * (1 - v / 127) for v in low_high[::-1].astype(float))
+            pen.line([x, top + low, x, top + high], fill=body.INK)
+        for times, tall, wide in ((self.beats, 5, 1), (self.downbeats, 12, 2)):
+            for x in across(times):
+                pen.line([x, top - 1 - tall, x, top - 1], fill=body.INK, width=wide)
+        if moved is not None:
+            foot = whole.height - 1
+            x = (np.arange(len(moved)) + 0.5) / len(moved) * width
+            curve = np.stack([x, foot - moved / max(moved.max(), 1e-6) * (CURVE - 4)], 1)
+            outline = [(0, foot), *map(tuple, curve), (width, foot)]
+            pen.polygon(outline, fill=body.mix(GREEN, body.PAPER, 0.5), outline=GREEN)
+        font = ImageFont.load_default(13)
+        pen.text((6, top + WAVE + 3), "0 s", fill=body.INK, font=font)
+        pen.text((width - 6, top + WAVE + 3), f"{self.sound.seconds:.1f} s", fill=body.INK, font=font, anchor="ra")
+        return whole
+
+
+def from_options(options: dict, frames: int) -> Lane | None:
+    """The lane of a player's options, for a motion of so many frames; None without a sound.
+
+    Raises ValueError for beats or strips without a sound, and where `as_sound` and `as_times` do.
+    """
+    if options["audio"] is None:
+        if any(options[name] is not None for name in ("beats", "downbeats", "strips")):
+            raise ValueError("beats and attention are drawn over a waveform: give `audio` too")
+        return None
+    seconds = frames / options["fps"]
+    sound = as_sound(options["audio"], options["sample_rate"], seconds, options["codec"])
+    beats, downbeats = (as_times(options[name], name, seconds) for name in ("beats", "downbeats"))
+    strips = Strips() if options["strips"] is None else options["strips"](frames)
+    return Lane(sound, beats, downbeats, strips, frames, options["fps"])

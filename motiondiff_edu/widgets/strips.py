@@ -1,0 +1,132 @@
+"""What the music lane shows besides the waveform, packed small: attention over the music, and how far a figure moved.
+
+Attention is kept in 8 bits, each row scaled by its own largest weight, which goes along: wrong by at most 1/510 of it.
+Notebook: 12
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Float, UInt8
+
+from .sound import as_times
+
+
+@dataclass(frozen=True, eq=False)
+class Level:
+    """One attention map: rows over the motion's time, columns over `edges` (seconds), `tops` the rows' largest."""
+
+    name: str
+    codes: UInt8[np.ndarray, "T M"]
+    tops: Float[np.ndarray, "T"]
+    edges: Float[np.ndarray, "M1"]
+    full: float | None  # the weight that is painted in full colour; None: the row's largest
+
+    def weights(self) -> Float[np.ndarray, "T M"]:
+        """The map again, as the browser reads it."""
+        return self.codes / 255 * self.tops[:, None]
+
+
+@dataclass(frozen=True, eq=False)
+class Strips:
+    """Attention maps and the curve of how far the figure moved (metres) when the sound at `hits` was silenced."""
+
+    levels: tuple[Level, ...] = ()
+    moved: Float[np.ndarray, "T"] | None = None
+    hits: tuple[float, ...] = ()
+
+    def record(self) -> dict:
+        """What the module needs besides the codes; equal edges are written once."""
+        edges = [level.edges.round(4).tolist() for level in self.levels]
+        once = [e for i, e in enumerate(edges) if e not in edges[:i]]
+        levels = [
+            {"name": level.name, "rows": len(level.codes), "edges": once.index(own), "full": level.full,
+             "tops": [float(f"{v:.5g}") for v in level.tops]}
+            for level, own in zip(self.levels, edges, strict=True)
+        ]  # fmt: skip
+        moved = None
+        if self.moved is not None:
+            values = self.moved.round(4).tolist()
+            moved = {"values": values, "top": max(values), "hits": list(self.hits)}
+        return {"levels": levels, "edges": once, "moved": moved}
+
+    def codes(self) -> bytes:
+        """The codes of all levels, row after row, one level after the other."""
+        return b"".join(level.codes.tobytes() for level in self.levels)
+
+    def words(self) -> str:
+        """What is shown, for those who cannot see it."""
+        said = [f"attention of {', '.join(level.name for level in self.levels)} as colour"] if self.levels else []
+        if self.moved is not None:
+            said.append(f"how far the figure moves without a hit, up to {self.moved.max():.2f} m")
+        return "; ".join(said)
+
+
+def pack_levels(attention: object, token_times: object, scale: str = "map") -> tuple[Level, ...]:
+    """One map (T, M) or {name: map}, rows over the whole motion (a map may have fewer than frames), summing to one.
+
+    `token_times`: the time in seconds of each column (or {name: times}); a column reaches halfway to its neighbours.
+    Full colour is the largest weight of the whole map, or with `scale="frame"` of each row, which shows where it
+    looks but not how sharply. Raises ValueError for maps that are no attention, and where times do not fit.
+    """
+    if scale not in ("map", "frame"):
+        raise ValueError(f'scale is "map" or "frame", not {scale!r}')
+    maps = attention if isinstance(attention, Mapping) else {"attention": attention}
+    if not maps:
+        raise ValueError("attention is empty: give a map (T, M), or {name: map}")
+    return tuple(_level(str(name), m, _times_of(name, token_times), scale) for name, m in maps.items())
+
+
+def pack_moved(moved: object, frames: int, hit: object = None) -> tuple[np.ndarray, tuple[float, ...]]:
+    """The curve (T,) in metres, one value a frame, and the silenced hits' times in seconds (one or several)."""
+    curve = np.asarray(moved, dtype=np.float64)
+    if curve.shape != (frames,) or not np.isfinite(curve).all() or (curve < 0).any():
+        raise ValueError(f"`moved` is one finite distance in metres a frame, ({frames},); got shape {curve.shape}")
+    times = None if hit is None else np.atleast_1d(hit)
+    return curve, tuple(as_times(times, "hit", np.inf))
+
+
+def check_attention(weights: Float[np.ndarray, "..."], times: Float[np.ndarray, "_"], name: str = "attention") -> None:
+    """Raise ValueError unless rows are finite, not negative and sum to one, and times increase, one a column."""
+    if weights.ndim != 2 or not weights.size:
+        raise ValueError(f"{name}: a map is (motion rows, tokens), got {weights.shape}; of several heads take one")
+    if not np.isfinite(weights).all() or (weights < -1e-6).any():
+        raise ValueError(f"{name}: weights are finite and not negative; these are scores perhaps: softmax first")
+    off = np.abs(weights.sum(1) - 1)
+    if off.max() > 1e-2:
+        row = int(off.argmax())
+        raise ValueError(
+            f"{name}: row {row} sums to {weights[row].sum():.3g}, not 1. Is the map (motion, music), and after softmax?"
+        )
+    if times.shape != weights.shape[1:] or not np.isfinite(times).all() or (np.diff(times) <= 0).any():
+        raise ValueError(
+            f"{name}: token_times are increasing seconds, one for each of the {weights.shape[1]} columns; "
+            f"got shape {times.shape}"
+        )
+
+
+def edges_of(times: Float[np.ndarray, "M"]) -> Float[np.ndarray, "M1"]:
+    """Where columns begin and end: halfway between their times, the outer ones as wide as their neighbours."""
+    if len(times) == 1:
+        return np.array([times[0] - 0.5, times[0] + 0.5])
+    middle = (times[1:] + times[:-1]) / 2
+    return np.concatenate([[2 * times[0] - middle[0]], middle, [2 * times[-1] - middle[-1]]])
+
+
+def _times_of(name: object, token_times: object) -> object:
+    if not isinstance(token_times, Mapping):
+        return token_times
+    if name not in token_times:
+        raise ValueError(f"token_times has no times for {name!r}; it has {', '.join(map(str, token_times))}")
+    return token_times[name]
+
+
+def _level(name: str, weights: object, times: object, scale: str) -> Level:
+    weights = np.asarray(weights, dtype=np.float64)
+    times = np.asarray([] if times is None else times, dtype=np.float64)
+    check_attention(weights, times, name)
+    weights = weights.clip(0)
+    tops = weights.max(1)
+    codes = np.rint(weights / tops[:, None] * 255).astype(np.uint8)
+    return Level(name, codes, tops, edges_of(times), float(tops.max()) if scale == "map" else None)
