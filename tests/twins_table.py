@@ -18,10 +18,12 @@ import torch
 from scipy.spatial.transform import Rotation, Slerp
 
 from motiondiff_edu import cross_modal_attention as cross
-from motiondiff_edu import ddpm, exact, prediction, rollout, training
+from motiondiff_edu import ddpm, exact, kinematic_loss, prediction, rollout, training
+from motiondiff_edu.conditions import music
 from motiondiff_edu.fast.samplers import ddim_steps
-from motiondiff_edu.metrics import adherence, bone_lengths, footsteps
+from motiondiff_edu.metrics import adherence, beats, bone_lengths, footsteps, kinetic_features
 from motiondiff_edu.modiff import MoDiff, MoDiffConfig
+from motiondiff_edu.mofusion import ResBlock
 from motiondiff_edu.motion import kinematics, root_frame, skeleton
 
 
@@ -273,4 +275,92 @@ def _algorithm_1(network, past, future, control, s, eps, alpha_bar) -> torch.Ten
 TWINS["07"] = {
     "ridge_loop": Twin(_ridge, lambda: (_normal(40, 7, seed=60), _normal(40, 3, seed=61), 0.02), atol=1e-9),
     "algorithm_1": Twin(_algorithm_1, _windows_of_walking),
+}
+
+
+def _whole_stft(audio, n_fft, hop) -> torch.Tensor:
+    window = torch.hann_window(n_fft, dtype=audio.dtype)
+    return torch.stft(audio, n_fft, hop, window=window, pad_mode="constant", return_complex=True).mT
+
+
+def _librosas_onsets(mel) -> np.ndarray:
+    import librosa  # slow to import
+
+    return librosa.onset.onset_strength(S=mel.T, center=False)
+
+
+TWINS["11"] = {
+    "dft_loop": Twin(np.fft.rfft, lambda: (np.random.default_rng(62).normal(size=22),)),
+    "stft_loop": Twin(_whole_stft, lambda: (_normal(500, seed=63), 64, 20)),
+    "filters_loop": Twin(
+        lambda rate, *sizes: music.mel_filters(rate, *sizes, 0, rate / 2), lambda: (11_025, 512, 13), atol=1e-8
+    ),
+    "onset_loop": Twin(_librosas_onsets, lambda: (_normal(7, 5, seed=64).numpy(),)),
+}
+
+
+def _a_convolution() -> tuple:
+    """Seven frames of two numbers, answers of four."""
+    return _normal(7, 2, seed=120), _normal(4, 6, seed=121), _normal(4, seed=122)
+
+
+def _conv1d(x, weight, bias) -> torch.Tensor:
+    """PyTorch's own, whose weights have the frame last."""
+    kernel = weight.unflatten(1, (3, x.shape[1])).transpose(1, 2)
+    return torch.nn.functional.conv1d(x.T[None], kernel, bias, padding=1)[0].T
+
+
+def _told_block() -> tuple:
+    torch.manual_seed(123)
+    block = ResBlock(6, 8, 5).double().requires_grad_(False)
+    for weight in block.parameters():
+        weight.add_(0.3 * torch.randn(weight.shape))
+    return block, _normal(2, 7, 6, seed=124), _normal(2, 5, seed=125)
+
+
+TWINS["12"] = {
+    "conv_loop": Twin(_conv1d, _a_convolution),
+    "res_by_hand": Twin(lambda block, x, told: block(x, told, torch.ones(1, 7, 1, dtype=torch.float64)), _told_block),
+    "turn_loop": Twin(cross.turned, lambda: (_normal(5, 6, seed=126), _normal(5, 3, seed=127))),
+}
+
+
+def _shaken_chain() -> tuple:
+    """Two motions of five frames and four joints, and three bones."""
+    return _normal(2, 5, 4, 3, seed=70), ((0, 1), (1, 2), (0, 3))
+
+
+def _steps_of_toes() -> tuple:
+    stands = torch.tensor([[1, 1], [1, 0], [1, 1], [0, 1], [1, 1], [1, 1]], dtype=torch.bool)
+    return _normal(6, 4, 3, seed=71), stands, (1, 3)
+
+
+TWINS["13"] = {
+    "x0_hat_loop": Twin(
+        lambda x_s, s, eps_hat, alpha_bar: prediction.x0_from_eps(x_s, s, eps_hat, LINEAR),
+        lambda: (_normal(3, 5, 2), torch.tensor([1, 40, 100]), _normal(3, 5, 2, seed=72), LINEAR.alpha_bar),
+    ),
+    "lengths_loop": Twin(kinematic_loss.bone_lengths, _shaken_chain),
+    "skeleton_loop": Twin(kinematic_loss.skeleton_loss, lambda: (_normal(2, 5, 3, seed=73),)),
+    "asymmetry_loop": Twin(kinematic_loss.asymmetry_loss, lambda: (_normal(2, 5, 6, seed=74), ((0, 2), (1, 5)))),
+    "slide_loop": Twin(
+        lambda motion, planted, toes: kinematic_loss.slide_loss(motion[None], planted[None], toes)[0], _steps_of_toes
+    ),
+}
+
+
+def _short_dance() -> np.ndarray:
+    return np.random.default_rng(62).normal(size=(11, 3, 3)).cumsum(0) / 50 + 1.0
+
+
+def _stops_and_beats() -> tuple:
+    rng = np.random.default_rng(63)
+    return np.sort(rng.uniform(0, 9, 7)), np.sort(rng.uniform(0, 9, 13))
+
+
+TWINS["14"] = {
+    "speed_loop": Twin(beats.mean_speed, lambda: (_short_dance(), 25)),
+    "alignment_loop": Twin(beats.beat_alignment, lambda: (*_stops_and_beats(), 0.2)),
+    "chance_by_sum": Twin(beats.chance_level, lambda: (_stops_and_beats()[1], 9.0, 0.1), atol=1e-4),
+    "published_loop": Twin(lambda p: kinetic_features.published_kinetic_features(p, 60), lambda: (_short_dance(),)),
 }

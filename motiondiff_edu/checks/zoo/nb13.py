@@ -1,0 +1,113 @@
+"""Wrong answers to the exercises of notebook 13."""
+
+import torch
+
+
+def _guess(x_s, eps_hat, first, second):
+    first, second = (torch.as_tensor(x).reshape(-1, 1, 1) for x in (first, second))
+    return x_s / first**0.5 - (1 / second - 1) ** 0.5 * eps_hat
+
+
+def index_left_out(x_s, s, eps_hat, alpha_bar):
+    return _guess(x_s, eps_hat, alpha_bar[s], alpha_bar[-1])
+
+
+def last_step_for_all(x_s, s, eps_hat, alpha_bar):
+    return _guess(x_s, eps_hat, alpha_bar[-1], alpha_bar[-1])
+
+
+def one_step_earlier(x_s, s, eps_hat, alpha_bar):
+    return _guess(x_s, eps_hat, alpha_bar[s - 1], alpha_bar[s - 1])
+
+
+def first_step_for_all(x_s, s, eps_hat, alpha_bar):
+    return _guess(x_s, eps_hat, alpha_bar[s[0]], alpha_bar[s[0]])
+
+
+def no_roots(x_s, s, eps_hat, alpha_bar):
+    share = alpha_bar[s][:, None, None]
+    return x_s / share - (1 / share - 1) * eps_hat
+
+
+def second_root_forgotten(x_s, s, eps_hat, alpha_bar):
+    share = alpha_bar[s][:, None, None]
+    return x_s / share**0.5 - (1 / share - 1) * eps_hat
+
+
+def noise_added_again(x_s, s, eps_hat, alpha_bar):
+    return _guess(x_s, -eps_hat, alpha_bar[s], alpha_bar[s])
+
+
+def mean_over_bones(lengths):
+    return ((lengths - lengths.mean(1, keepdim=True)) ** 2).sum(1).div(lengths.shape[1] - 1).mean()
+
+
+def divided_by_n(lengths):
+    return ((lengths - lengths.mean(0)) ** 2).mean()
+
+
+def _joints(x0_hat, mean, std, add_pelvis=True):
+    joints = (x0_hat * std + mean).reshape(len(x0_hat), -1, 3)
+    return torch.cat([joints[:, :1], joints[:, 1:] + joints[:, :1]], 1) if add_pelvis else joints
+
+
+def _apart(joints, bones, pairs):
+    lengths = torch.stack([(joints[:, child] - joints[:, parent]).norm(dim=-1) for parent, child in bones], 1)
+    left, right = zip(*pairs, strict=True)
+    return lengths[:, list(left)] - lengths[:, list(right)]
+
+
+def standardised_units(x0_hat, mean, std, bones, pairs):
+    return _apart(_joints(x0_hat, 0.0, 1.0), bones, pairs).abs().mean()
+
+
+def mean_not_added(x0_hat, mean, std, bones, pairs):
+    return _apart(_joints(x0_hat, 0.0, std), bones, pairs).abs().mean()
+
+
+def root_dropped(x0_hat, mean, std, bones, pairs):
+    return _apart(_joints(x0_hat, mean, std, add_pelvis=False), bones, pairs).abs().mean()
+
+
+def left_with_left(x0_hat, mean, std, bones, pairs):
+    left = [i for i, _ in pairs]
+    return _apart(_joints(x0_hat, mean, std), bones, tuple(zip(left, left[1:] + left[:1], strict=True))).abs().mean()
+
+
+def sign_kept(x0_hat, mean, std, bones, pairs):
+    return _apart(_joints(x0_hat, mean, std), bones, pairs).mean()
+
+
+def squared(x0_hat, mean, std, bones, pairs):
+    return _apart(_joints(x0_hat, mean, std), bones, pairs).square().mean()
+
+
+ZOO = {
+    "x0_hat": {
+        "index left out": index_left_out,
+        "last step for all": last_step_for_all,
+        "one step earlier": one_step_earlier,
+        "first sample's step for all": first_step_for_all,
+        "no roots": no_roots,
+        "second root forgotten": second_root_forgotten,
+        "noise added again": noise_added_again,
+    },
+    "skeleton_loss": {
+        "variance over bones": mean_over_bones,
+        "N instead of N - 1": divided_by_n,
+        "standard deviation": lambda lengths: lengths.std(0).mean(),
+        "sum over bones": lambda lengths: lengths.var(0).sum(),
+        "all lengths together": lambda lengths: lengths.var(),
+        "one for each bone": lambda lengths: lengths.var(0),
+        "squared lengths": lambda lengths: (lengths**2).var(0).mean(),
+        "frame to frame": lambda lengths: (lengths[1:] - lengths[:-1]).square().mean(),
+    },
+    "asymmetry_from_features": {
+        "standardised units": standardised_units,
+        "mean not added": mean_not_added,
+        "root dropped": root_dropped,
+        "left with left": left_with_left,
+        "sign kept": sign_kept,
+        "squared": squared,
+    },
+}
