@@ -1,4 +1,4 @@
-"""Run the benchmarks, each in its own process: python -m benchmarks [import | frame | sampler | walker ...]
+"""Run the benchmarks, each in its own process: python -m benchmarks [import | frame | mel | unet | walker | player ...]
 
 Records go to benchmarks/results/*.json; `python -m tools.results --render` puts them into docs/RESULTS.md.
 On a shared machine only the ratios mean something: both sides are timed in turn, in one run.
@@ -13,8 +13,11 @@ HERE = Path(__file__).parent
 BENCHMARKS = {
     "import": "import_time.py",
     "frame": "modiff_frame.py",
+    "mel": "logmel.py",
     "sampler": "sampler_overhead.py",
+    "unet": "unet.py",
     "walker": "walker_80s.py",
+    "player": "player_audio.py",
 }
 
 

@@ -3,7 +3,7 @@
     python -m tools.results [--only PART ...] [--quick] [--weights NAME=FILE] [--render]
 
 Parts: walker-eps, walker-x0, walker-ddim10, their -lookahead lines, footsteps, budget (which trains; one row of it:
-budget.T_p-5). --quick
+budget.T_p-5), dancer, dancer-plain, regression, unheard (music like none in training). --quick
 measures little, into build/quick, and is for trying the code; --render only writes docs/RESULTS.md from the records
 that are there.
 """
@@ -19,6 +19,7 @@ from motiondiff_edu.viz.metrics import footstep_curves
 
 from . import budget
 from .cards import add_metrics
+from .dance_parts import DANCE_FULL, DANCE_QUICK, DANCES, Stage, dance_records
 from .parts import FULL, LINES, QUICK, Bench, Walks, alias_records, footstep_records, walker_records
 from .render import render
 
@@ -60,12 +61,15 @@ def measure(asked: argparse.Namespace, folder: Path) -> None:
     extra = weights_of(asked.weights)
     bench, lines = Bench(QUICK if asked.quick else FULL, extra), LINES | {name: Walks(name, name) for name in extra}
     options = " --quick" * asked.quick + "".join(f" --weights {item}" for item in asked.weights)
+    stage = Stage(DANCE_QUICK if asked.quick else DANCE_FULL, extra)
     there = [prefix for prefix, line in lines.items() if line.name in bench.weights]
+    there += [part for part, name in DANCES.items() if name in stage.weights]
     rows = [f"budget.{name}" for name in budget.VARIANTS]
     parts = [row for part in asked.only or [*there, *OTHERS] for row in (rows if part == "budget" else [part])]
-    unknown = set(parts) - set(lines) - set(OTHERS) - set(rows)
+    unknown = set(parts) - set(lines) - set(OTHERS) - set(rows) - set(DANCES)
     if unknown:
-        sys.exit(f"no part is called {', '.join(sorted(unknown))}; there are: {', '.join([*lines, *OTHERS])}")
+        there = ", ".join([*lines, *OTHERS, *DANCES])
+        sys.exit(f"no part is called {', '.join(sorted(unknown))}; there are: {there}")
     for part in parts:
         began, command = time.monotonic(), f"python -m tools.results --only {part}{options}"
         if part == "footsteps":
@@ -76,6 +80,8 @@ def measure(asked: argparse.Namespace, folder: Path) -> None:
         elif part in rows:
             size = budget.FULL if bench.size == FULL else budget.QUICK
             records = budget.budget_records(part.removeprefix("budget."), size, command)
+        elif part in DANCES:
+            records = dance_records(stage, part, command)
         else:
             records = walker_records(bench, lines[part], command)
         show([one for one in records if one["value"] is not None])

@@ -1,17 +1,19 @@
-"""The measured figures on the cards of the shipped weights: whoever opens a card sees how good the walker is."""
+"""The measured figures on the cards of the shipped weights: whoever opens a card sees how good they are."""
 
 from dataclasses import replace
 from pathlib import Path
 
 from motiondiff_edu import checkpoints
+from motiondiff_edu.weights_file import format_of
 
 from .parts import kept_records, weights_digest
 
-SHOWN = ("bone_rmse_cm", "adherence_mps", "adherence_excess_mps", "drift_ratio", "skating_mps", "diversity_over_data")
+SHOWN = ("bone_rmse_cm", "adherence_mps", "adherence_excess_mps", "drift_ratio", "skating_mps", "diversity_over_data",
+         "bas_share", "speed_over_data", "beats_per_beat_over_data", "multimodality_over_data")  # fmt: skip
 
 
 def metrics(folder: Path, name: str, digest: str) -> dict[str, float]:
-    """What the records of this walker say, where they are of these very weights."""
+    """What the records of a walker or dancer say, where they are of these very weights."""
     records = {one["name"]: one for one in kept_records(folder, name)}
     mine = {kind: records.get(f"{name}.{kind}") for kind in SHOWN}
     return {kind: one["value"] for kind, one in mine.items() if one and one["seeds"]["weights"] == digest}
@@ -20,6 +22,12 @@ def metrics(folder: Path, name: str, digest: str) -> dict[str, float]:
 def add_metrics(folder: Path) -> None:
     """Write the figures of `folder` into the cards; a file whose card says so already is left alone."""
     for path in set(checkpoints.available().values()):
-        walker, found = checkpoints.load_walker(path), metrics(folder, path.stem, weights_digest(path))
-        if walker.card.get("metrics", {}) != found:
-            checkpoints.save_walker(replace(walker, card=walker.card | {"metrics": found}), path)
+        dances = format_of(path) == checkpoints.DANCER
+        load, save = (
+            (checkpoints.load_dancer, checkpoints.save_dancer)
+            if dances
+            else (checkpoints.load_walker, checkpoints.save_walker)
+        )
+        figure, found = load(path), metrics(folder, path.stem, weights_digest(path))
+        if figure.card.get("metrics", {}) != found:
+            save(replace(figure, card=figure.card | {"metrics": found}), path)
