@@ -5,11 +5,11 @@ from dataclasses import dataclass
 import numpy as np
 import torch
 from jaxtyping import Float
-from motiondiff_edu.conditions.music import log_mel
 
 from data_synth.dance import dance
 from data_synth.music import songs
 from data_synth.song import Song
+from motiondiff_edu.conditions.music import log_mel
 from motiondiff_edu.dancer import Dancer
 
 UNSEEN, FPS, LONGEST = 900_000, 20, 400
