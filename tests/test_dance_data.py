@@ -276,6 +276,6 @@ def test_the_command_writes_files(tmp_path, capsys):
     with np.load(tmp_path / "dance_001.npz") as f:
         assert f["positions"].shape == (120, 21, 3) and f["contacts"].shape == (120, 2)
         assert len(f["beats"]) == len(f["bar_position"]) and str(f["genre"]) == "pop" and f["move_starts"][0] == 0
-    assert len(read_bvh(tmp_path / "dance_000.bvh")) == 120
+    assert len(read_bvh(tmp_path / "dance_000.bvh").frames) == 120
     with pytest.raises(SystemExit):
         main(["--out", str(tmp_path), "--dances", "0"])
