@@ -52,6 +52,11 @@ def ink(canvas) -> str:
     return hashlib.sha256(canvas.evaluate("c => c.toDataURL()").encode()).hexdigest()
 
 
+def shown(page) -> int:
+    """The frame that the player shows."""
+    return int(page.locator(".mde-player").get_attribute("data-frame"))
+
+
 COLOURED = """c => {
   const d = c.getContext('2d').getImageData(0, 0, c.width, c.height).data;
   let blue = 0, orange = 0;

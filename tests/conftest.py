@@ -52,6 +52,15 @@ def chromium() -> str:
     return found
 
 
+@pytest.fixture(scope="module")
+def browser(chromium):
+    """A running Chromium, one for all tests of a file."""
+    from browser import start_browser  # not above: what it imports is checked only once pytest has set that up
+
+    with start_browser(chromium) as running:
+        yield running
+
+
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """Every test that uses the browser is marked so, and `make test` runs those last."""
     for item in items:

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from browser import open_page, player_page, start_browser
+from browser import open_page, player_page
 from click_track import clicks, jumping
 from synthetic_walk import walk
 
@@ -125,12 +125,6 @@ COLOURS = """() => {  // per column of the lane: how purple the waveform's rows 
   }
   return [purple, green];
 }"""
-
-
-@pytest.fixture(scope="module")
-def browser(chromium):
-    with start_browser(chromium) as running:
-        yield running
 
 
 def seconds_at(column, width):

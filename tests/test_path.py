@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 import traitlets
-from browser import bare_page, ink, open_page, start_browser
+from browser import bare_page, ink, open_page
 
 from motiondiff_edu.conditions.control import PRESETS, path_to_control, preset
 from motiondiff_edu.motion.root_frame import root_path
@@ -63,12 +63,6 @@ def test_the_still_picture_has_words():
     bundle, _ = PathPad(preset="circle")._repr_mimebundle_()
     assert 'alt="A path seen from above: 81 points' in bundle["text/html"]
     assert {"image/png", "application/vnd.jupyter.widget-view+json"} <= set(bundle)
-
-
-@pytest.fixture(scope="module")
-def browser(chromium):
-    with start_browser(chromium) as running:
-        yield running
 
 
 @pytest.fixture

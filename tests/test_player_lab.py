@@ -8,7 +8,7 @@ import sys
 import urllib.request
 
 import pytest
-from browser import coloured, ink, open_page, start_browser
+from browser import coloured, ink, open_page
 
 CELL = """import sys; sys.path.insert(0, {tests!r})
 from click_track import clicks
@@ -83,9 +83,9 @@ def _wait_until_answering(address: str, server, log, attempts: int = 240) -> Non
     pytest.fail(f"JupyterLab did not start:\n{log.read_text()[-3000:]}")
 
 
-def test_figure_plays_in_jupyterlab_and_python_sees_it(chromium, lab, tmp_path):
+def test_figure_plays_in_jupyterlab_and_python_sees_it(browser, lab):
     size = {"width": 1300, "height": 900}
-    with start_browser(chromium) as browser, open_page(browser, offline=False, viewport=size) as page:
+    with open_page(browser, offline=False, viewport=size) as page:
         page.set_default_timeout(60_000)
         page.goto(lab)
         page.wait_for_function(IDLE)

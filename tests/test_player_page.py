@@ -1,7 +1,7 @@
 """The player's ES module in a browser: with a fake model in a bare page, and exported, offline, without a kernel."""
 
 import pytest
-from browser import coloured, ink, open_page, player_page, start_browser
+from browser import coloured, ink, open_page, player_page, shown
 from synthetic_walk import walk
 
 from motiondiff_edu.widgets.player import Player
@@ -19,19 +19,9 @@ ORANGE_HALVES = """() => {
 
 
 @pytest.fixture(scope="module")
-def browser(chromium):
-    with start_browser(chromium) as running:
-        yield running
-
-
-@pytest.fixture(scope="module")
 def player():
     positions, contacts = walk(frames=53, turn=0.3)
     return Player(positions, contacts=contacts, past=20, labels="walker", autoplay=False)
-
-
-def shown(page) -> int:
-    return int(page.locator(".mde-player").get_attribute("data-frame"))
 
 
 def test_keys_move_the_figure_and_do_not_leak(browser, player, tmp_path):

@@ -9,7 +9,7 @@ import wave
 import numpy as np
 import pytest
 import soundfile
-from browser import open_page, player_page, start_browser
+from browser import open_page, player_page, shown
 from click_track import RATE, clicks, jumping
 from synthetic_walk import walk
 
@@ -20,19 +20,9 @@ JUMPS = [22, 47, 71]  # frames; the clicks are at k/20 s
 
 
 @pytest.fixture(scope="module")
-def browser(chromium):
-    with start_browser(chromium) as running:
-        yield running
-
-
-@pytest.fixture(scope="module")
 def player():
     audio = clicks(np.array(JUMPS) / 20, 4.6)
     return Player(jumping(92, JUMPS), audio=audio, beats=np.array(JUMPS) / 20, follow=False)
-
-
-def shown(page) -> int:
-    return int(page.locator(".mde-player").get_attribute("data-frame"))
 
 
 HEARD = "document.querySelector('audio').currentTime"
