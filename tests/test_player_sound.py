@@ -57,8 +57,7 @@ def test_a_planted_beat_lands_on_its_click(browser, player, tmp_path):
     wrong = [t for t, row, want, sure in zip(heard, rows, wanted, clear, strict=True) if sure and row[1] != want]
     assert clear.sum() > 30 and {row[1] for row in rows} == {"left", "right"}
     assert len(wrong) <= 0.02 * clear.sum(), f"the figure stood elsewhere at {wrong[:5]} s"
-    steps = np.diff([row[2] for row in rows])
-    assert steps.min() >= -1 and steps.sum() > 60  # a frame back where the sound begins later than it was asked to
+    assert [row[2] for row in rows] == sorted(row[2] for row in rows)
 
 
 DECODED = """async () => {
@@ -195,38 +194,6 @@ def test_another_dance_brings_its_sound_and_none_takes_it_away(browser, player, 
         page.wait_for_function("document.querySelector('.mde-player').dataset.frame > 3")
         page.evaluate("cleanup()")
         assert page.evaluate("listening()") == 0 and page.problems == []
-
-
-COARSE = """async ({ step, seconds, stallAt }) => {  // a sound whose time is told in steps, and may stop going on
-  const begin = performance.now(), rows = [];
-  const truth = () => Math.min((performance.now() - begin) / 1000, stallAt);
-  const audio = { paused: false, seeking: false, playbackRate: 1, play() {}, pause() {},
-    get currentTime() { return Math.floor(truth() / step) * step; } };
-  const clock = soundClock(audio);
-  clock.start();
-  while (performance.now() - begin < 1000 * seconds) {
-    await new Promise(requestAnimationFrame);
-    rows.push([truth(), clock.now()]);
-  }
-  return rows;
-}"""
-
-
-def test_between_coarse_readings_the_clock_runs_on_and_a_stall_stops_it(browser, player, tmp_path):
-    with open_page(browser) as page:
-        address = player_page(tmp_path, player)
-        text = (
-            (tmp_path / "page.html")
-            .read_text("utf-8")
-            .replace("const state =", f"window.coarse = {COARSE};\nconst state =")
-        )
-        (tmp_path / "page.html").write_text(text, "utf-8")
-        page.goto(address)
-        truth, told = np.array(page.evaluate("coarse({ step: 0.2, seconds: 3, stallAt: 2.2 })")).T
-    going = (truth > 0.5) & (truth < 2.15)
-    assert np.abs(truth - told)[going].mean() < 0.04 < 0.1  # readings alone would be 0.1 s late on average
-    assert (np.diff(told[going]) >= -1e-6).all()
-    assert told[-1] == pytest.approx(2.2, abs=1e-6)
 
 
 # ---- in Python

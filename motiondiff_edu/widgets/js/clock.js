@@ -18,13 +18,14 @@ export function silentClock(length, visible) { // stands still while the figure 
 }
 
 // The sound's own time moves in steps, coarse ones in some browsers, and starts late. Between two readings the page's
-// clock runs on; a new reading puts it right. A reading may be late but not early: one that is ahead is taken as it is,
-// one a little behind is approached, one far off (a jump, the loop, a stall) is taken at once.
+// clock runs on, by no more than the longest step seen so far (60 ms at first); a new reading puts it right. A reading may
+// be late but not early: one that is ahead is taken as it is, one a little behind is approached. When the sound stutters,
+// nothing told is taken back: the picture waits for the sound. A jump, the loop and a stall are taken at once.
 const FAR = 0.06, STALLED = 0.3, PULL = 0.1;
 
 export function soundClock(audio) {
-  let heard = audio.currentTime, at = heard, before = 0, fresh = 0, waiting = true;
-  const hold = () => { heard = at = audio.currentTime; waiting = true; return at; };
+  let heard = audio.currentTime, at = heard, told = heard, lead = FAR, before = 0, fresh = 0, waiting = true;
+  const hold = () => { heard = at = told = audio.currentTime; waiting = true; return told; };
   return {
     start() { hold(); return audio.play(); },
     stop() { audio.pause(); hold(); },
@@ -32,17 +33,21 @@ export function soundClock(audio) {
     rate(value) { audio.preservesPitch = true; audio.defaultPlaybackRate = audio.playbackRate = value; hold(); },
     now() {
       if (audio.paused || audio.seeking) return hold();
-      const time = performance.now() / 1000, reading = audio.currentTime;
-      let guess = at + (time - before) * audio.playbackRate;
-      if (reading !== heard) {
-        const off = reading - guess;
-        guess = waiting || off > 0 || off < -FAR ? reading : guess + PULL * off;
-        heard = reading; fresh = time; waiting = false;
-      } else if (waiting || time - fresh > STALLED) {
-        return hold();
+      const time = performance.now() / 1000, reading = audio.currentTime, step = reading - heard;
+      if (waiting) { hold(); waiting = step === 0; before = fresh = time; return told; }
+      const stalled = step === 0 && time - fresh > STALLED && told - reading > FAR;
+      if (stalled || step < -FAR) return hold();
+      const passed = (time - before) * audio.playbackRate;
+      at = Math.min(at + passed, heard + lead);
+      if (step !== 0) {
+        if (step < STALLED * audio.playbackRate) lead = Math.max(lead, step - passed);
+        const off = reading - at;
+        at = off > 0 || off < -FAR ? reading : at + PULL * off;
+        heard = reading; fresh = time;
       }
-      at = guess; before = time;
-      return at;
+      before = time;
+      told = Math.max(told, at);
+      return told;
     },
   };
 }

@@ -32,7 +32,7 @@ export function mount(model, el, { fill = false } = {}) {
   const calm = matchMedia("(prefers-reduced-motion: reduce)").matches;
   const stop = new AbortController(), listen = (node, name, f, options = {}) => node.addEventListener(name, f, { signal: stop.signal, ...options });
   const lane = musicLane(listen, (seconds) => go(seconds * scene.fps), () => draw());
-  let scene, figures, last, clock, frame = 0, playing = false, visible = true, ticking = 0, before = 0, pace = 16, sent = 0, told = 0, loaded = null, sounding = false, unload = () => {};
+  let scene, figures, last, clock, frame = 0, playing = false, visible = true, ticking = 0, before = 0, at = 0, pace = 16, sent = 0, told = 0, loaded = null, sounding = false, unload = () => {};
 
   function load() {
     scene = model.get("scene"); figures = unpack(model);
@@ -135,8 +135,9 @@ export function mount(model, el, { fill = false } = {}) {
     if (before) pace += 0.1 * (Math.min(time - before, 100) - pace);
     before = time;
     const ahead = Math.min(pace / 2000 * Number(speeds.value), 0.5 / scene.fps);
-    const now = Math.floor((clock.now() + (sounding ? ahead : 0)) * scene.fps + 1e-3);
-    if (clamp(now, 0, last) !== frame) show(now, false);
+    const was = at; at = clock.now();
+    const next = clamp(Math.floor((at + (sounding ? ahead : 0)) * scene.fps + 1e-3), 0, last);
+    if (at < was ? next !== frame : next > frame) show(next, false); // a smaller `ahead` alone takes nothing back
     ticking = requestAnimationFrame(tick);
   }
   function setMuted(on) { sound.muted = on; mute.textContent = on ? "Muted" : "Mute"; mute.setAttribute("aria-pressed", String(on)); }
