@@ -6,7 +6,8 @@ from browser import open_page, player_page
 from click_track import clicks, jumping
 from synthetic_walk import walk
 
-from motiondiff_edu.viz.attention import attention_over_sound
+from motiondiff_edu.viz.listening import attention_over_sound
+from motiondiff_edu.viz.over_time import edges_of
 from motiondiff_edu.viz.style import caption
 from motiondiff_edu.widgets import strips
 from motiondiff_edu.widgets.listening import Listening
@@ -54,8 +55,8 @@ def test_packed_weights_are_within_one_part_in_510_of_the_rows_largest():
 
 
 def test_a_column_reaches_halfway_to_its_neighbours():
-    np.testing.assert_allclose(strips.edges_of(np.array([1.0, 2.0, 4.0])), [0.5, 1.5, 3.0, 5.0])
-    np.testing.assert_allclose(strips.edges_of(np.array([2.0])), [1.5, 2.5])
+    np.testing.assert_allclose(edges_of(np.array([1.0, 2.0, 4.0])), [0.5, 1.5, 3.0, 5.0])
+    np.testing.assert_allclose(edges_of(np.array([2.0])), [1.5, 2.5])
 
 
 def test_the_record_says_how_the_bytes_are_to_be_read(listening, maps, moved):

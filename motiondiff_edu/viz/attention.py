@@ -88,54 +88,6 @@ def group_shares(weights: Float[np.ndarray, "T M"], groups: Groups, title: str =
     return fig
 
 
-def attention_over_sound(
-    weights: Float[np.ndarray, "T M"],
-    token_times: Float[np.ndarray, "M"],
-    audio: Float[np.ndarray, "N"],
-    sample_rate: float | int = 16_000,
-    fps: float | int = 20.0,
-    beats: Float[np.ndarray, "K"] | None = None,
-    downbeats: Float[np.ndarray, "K2"] | None = None,
-    title: str = "",
-) -> Figure:
-    """The waveform with its beats above the map of who looks where in it, on one axis of time.
-
-    A row of the map is a moment of the motion (`fps` rows a second), a column a token at its time in seconds. On the
-    dashed line a moment looks at itself. Raises ValueError where times do not fit the map.
-    Source: MoFusion Fig. 4  Notebook: 12
-    """
-    if token_times.shape != weights.shape[1:] or len(token_times) < 2 or (np.diff(token_times) <= 0).any():
-        raise ValueError(f"token_times are {weights.shape[1]} (two or more) increasing seconds: {token_times!r:.80}")
-    T, seconds = len(weights), len(audio) / sample_rate
-    words = (
-        f"Attention of {T / fps:.1f} s of motion over {seconds:.1f} s of music, below its waveform; a row sums to one, "
-        "darker is more; on the dashed line motion and music are at the same moment; upright lines are beats."
-    )
-    fig, (wave, axis) = figure(10, 6.6, f"{title}: {words}" if title else words, 2, sharex=True, height_ratios=(1, 3))
-    _waveform(wave, audio, sample_rate)
-    middle = (token_times[1:] + token_times[:-1]) / 2
-    edges = np.concatenate([2 * token_times[:1] - middle[:1], middle, 2 * token_times[-1:] - middle[-1:]])
-    rows = np.arange(T + 1) / fps
-    image = axis.pcolormesh(edges, rows, weights, cmap="Blues", vmin=0, rasterized=True)
-    for panel, alpha in ((wave, 0.6), (axis, 0.3)):
-        panel.grid(False)
-        for times, width in ((beats, 0.8), (downbeats, 2.0)):
-            for t in () if times is None else times:
-                panel.axvline(t, color=OKABE_ITO[1], lw=width, alpha=alpha)
-    axis.plot([0, T / fps], [0, T / fps], "--", color="#1F2933", lw=1.2)
-    axis.set(xlabel="music, s", ylabel="motion, s", ylim=(T / fps, 0), xlim=(0, seconds))
-    wave.set_title(title)
-    fig.colorbar(image, ax=axis, label="weight", shrink=0.85)
-    return fig
-
-
-def _waveform(axis: Axes, audio: np.ndarray, sample_rate: float | int, bins: int = 1200) -> None:
-    starts = np.linspace(0, len(audio), min(bins, len(audio)) + 1).astype(int)[:-1]
-    low, high = np.minimum.reduceat(audio, starts), np.maximum.reduceat(audio, starts)
-    axis.fill_between(starts / sample_rate, low, high, color="#5B6472", lw=0.3)
-    axis.set(yticks=[], ylabel="sound")
-
-
 def _check(shape: tuple, groups: Groups | None, query_labels: Sequence | None, key_labels: Sequence | None) -> None:
     T, M = shape
     if groups is not None and sum(count for _, count in groups) != M:

@@ -7,10 +7,10 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 from jaxtyping import Float
-from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from .style import SMALL, figure
+from .over_time import time_map, waves
+from .style import OKABE_ITO, SMALL, figure
 
 GREY = "#5B6472"
 
@@ -27,19 +27,56 @@ def levels_over_sound(
     """A song with its beats, and below it where each level reads while the dance of `seconds` goes on, as in the paper.
 
     Across: the music's time. Downwards: the dance's. Each map has its own scale; one alone, larger, is drawn by
-    `attention.attention_over_sound`.  Source: MoFusion Fig. 4.
+    `attention_over_sound`.  Source: MoFusion Fig. 4.
     """
     fig, axes = figure(10, 1.6 + 2.3 * len(maps), words, 1 + len(maps), 1, sharex=True,
                        gridspec_kw={"height_ratios": [1.1, *[2] * len(maps)]})  # fmt: skip
     waves(axes[0], audio, sample_rate)
-    axes[0].set(title="the song; dotted lines are beats", yticks=[], xlim=(0, seconds))
+    axes[0].set(title="the song; dotted lines are beats", xlim=(0, seconds))
     for axis, (name, weights) in zip(axes[1:], maps.items(), strict=True):
-        paint(axis, weights, token_times, seconds)
+        time_map(axis, weights, token_times, seconds)
         axis.set(title=name, ylabel="dance (s)")
     for axis in axes:
         for beat in beats[beats < seconds]:
             axis.axvline(beat, color=GREY, lw=1, ls=":")
     axes[-1].set_xlabel("music (s)")
+    return fig
+
+
+def attention_over_sound(
+    weights: Float[np.ndarray, "T M"],
+    token_times: Float[np.ndarray, "M"],
+    audio: Float[np.ndarray, "N"],
+    sample_rate: float | int = 16_000,
+    fps: float | int = 20.0,
+    beats: Float[np.ndarray, "K"] | None = None,
+    downbeats: Float[np.ndarray, "K2"] | None = None,
+    title: str = "",
+) -> Figure:
+    """The waveform with its beats above the map of who looks where in it, on one axis of time.
+
+    A row of the map is a moment of the motion (`fps` rows a second), a column a token at its time in seconds. On the
+    dashed line a moment looks at itself. Raises ValueError where times do not fit the map.
+    Source: MoFusion Fig. 4  Notebook: 12
+    """
+    if token_times.shape != weights.shape[1:] or len(token_times) < 2 or (np.diff(token_times) <= 0).any():
+        raise ValueError(f"token_times are {weights.shape[1]} (two or more) increasing seconds: {token_times!r:.80}")
+    T, seconds = len(weights), len(audio) / sample_rate
+    words = (
+        f"Attention of {T / fps:.1f} s of motion over {seconds:.1f} s of music, below its waveform; a row sums to one, "
+        "darker is more; on the dashed line motion and music are at the same moment; upright lines are beats."
+    )
+    fig, (wave, axis) = figure(10, 6.6, f"{title}: {words}" if title else words, 2, sharex=True, height_ratios=(1, 3))
+    waves(wave, audio, sample_rate)
+    image = time_map(axis, weights, token_times, T / fps, "Blues")
+    for panel, alpha in ((wave, 0.6), (axis, 0.3)):
+        for times, width in ((beats, 0.8), (downbeats, 2.0)):
+            for t in () if times is None else times:
+                panel.axvline(t, color=OKABE_ITO[1], lw=width, alpha=alpha)
+    axis.plot([0, T / fps], [0, T / fps], "--", color="#1F2933", lw=1.2)
+    axis.set(xlabel="music, s", ylabel="motion, s", xlim=(0, seconds))
+    wave.set(ylabel="sound", title=title)
+    fig.colorbar(image, ax=axis, label="weight", shrink=0.85)
     return fig
 
 
@@ -53,7 +90,7 @@ def time_maps(
     """Maps side by side, each on its own scale: rows over `seconds`, columns at their times; dashed: one moment."""
     fig, axes = figure(4.6 * len(maps), 4.4, words, 1, len(maps), sharey=True)
     for axis, (name, values) in zip(axes, maps.items(), strict=True):
-        paint(axis, values, columns, seconds)
+        time_map(axis, values, columns, seconds)
         axis.plot([0, seconds], [0, seconds], color="#D55E00", lw=1.4, ls="--")
         axis.set(title=name, xlabel=labels[0], xlim=(columns[0], columns[-1]), ylim=(seconds, 0))
     axes[0].set_ylabel(labels[1])
@@ -72,7 +109,7 @@ def weight_and_effect(
     fig, axes = figure(11, 4.8, words, 1, 2, sharey=True)
     pictures = ((shares, "attention to the sound", "share"), (100 * moved.T, "moved when it is silenced", "cm"))
     for axis, (values, title, unit) in zip(axes, pictures, strict=True):
-        image = paint(axis, values, np.arange(float(len(times))), seconds)
+        image = time_map(axis, values, np.arange(float(len(times))), seconds)
         axis.plot(np.arange(len(times)), times, "D", color="#D55E00", ms=4, mew=0)
         every = -(-len(times) // 8)
         axis.set_xticks(np.arange(0, len(times), every), [f"{t:.1f}" for t in times[::every]])
@@ -101,24 +138,3 @@ def before_and_after(
         axis.set(title=name, xlabel="seconds")
     axes[0].set_ylabel("Mel band")
     return fig
-
-
-def waves(axis: Axes, audio: Float[np.ndarray, "N"], sample_rate: int, bins: int = 1200) -> None:
-    """A waveform: the lowest and highest sample of each of `bins` stretches."""
-    stretches = np.array_split(audio, min(bins, len(audio)))
-    low, high = (np.array([pick(part) for part in stretches]) for pick in (np.min, np.max))
-    axis.fill_between(np.linspace(0, len(audio) / sample_rate, len(low)), low, high, color="#1F2933", lw=0)
-    axis.grid(False)
-
-
-def paint(axis: Axes, values: Float[np.ndarray, "T M"], columns: Float[np.ndarray, "M"], seconds: float):
-    """A map whose rows share `seconds` evenly, from the top down; the larger, the darker."""
-    middle = (columns[1:] + columns[:-1]) / 2 if len(columns) > 1 else columns
-    edges = np.concatenate([[2 * columns[0] - middle[0]], middle, [2 * columns[-1] - middle[-1]]])
-    if len(columns) == 1:
-        edges = np.array([columns[0] - 0.5, columns[0] + 0.5])
-    rows = np.linspace(0, seconds, len(values) + 1)
-    image = axis.pcolormesh(edges, rows, values, cmap="Purples", vmin=min(0, values.min()), vmax=values.max())
-    axis.set_ylim(seconds, 0)
-    axis.grid(False)
-    return image

@@ -15,6 +15,8 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Float, Int8
 
+from ..viz.over_time import lows_and_highs
+
 CODECS = {"ogg": ("OGG", "OPUS"), "flac": ("FLAC", "PCM_16"), "wav": ("WAV", "PCM_16")}
 OPUS_RATES = (8_000, 12_000, 16_000, 24_000, 48_000)
 RATES = (8_000, 96_000)  # Hz: what browsers agree on
@@ -69,9 +71,7 @@ def encode(samples: Float[np.ndarray, "N"], sample_rate: int, codec: str = "ogg"
 
 def peaks(samples: Float[np.ndarray, "N"], bins: int = 1000) -> Int8[np.ndarray, "_ 2"]:
     """Lowest and highest sample of each of (at most) `bins` equal stretches, 127 the largest of all: the waveform."""
-    bins = min(bins, len(samples))
-    edges = np.linspace(0, len(samples), bins + 1).astype(int)[:-1]
-    both = np.stack([np.minimum.reduceat(samples, edges), np.maximum.reduceat(samples, edges)], 1)
+    both = np.stack(lows_and_highs(samples, bins)[1:], 1)
     return np.rint(both / max(np.abs(both).max(), 1e-9) * 127).astype(np.int8)
 
 

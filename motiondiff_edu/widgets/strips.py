@@ -10,6 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Float, UInt8
 
+from ..viz.over_time import edges_of
 from .sound import as_times
 
 
@@ -104,14 +105,6 @@ def check_attention(weights: Float[np.ndarray, "..."], times: Float[np.ndarray, 
             f"{name}: token_times are increasing seconds, one for each of the {weights.shape[1]} columns; "
             f"got shape {times.shape}"
         )
-
-
-def edges_of(times: Float[np.ndarray, "M"]) -> Float[np.ndarray, "M1"]:
-    """Where columns begin and end: halfway between their times, the outer ones as wide as their neighbours."""
-    if len(times) == 1:
-        return np.array([times[0] - 0.5, times[0] + 0.5])
-    middle = (times[1:] + times[:-1]) / 2
-    return np.concatenate([[2 * times[0] - middle[0]], middle, [2 * times[-1] - middle[-1]]])
 
 
 def _times_of(name: object, token_times: object) -> object:

@@ -1,0 +1,48 @@
+"""What figures and lanes of music are made of: a waveform's outline, and maps whose columns are moments in time."""
+
+import numpy as np
+from jaxtyping import Float
+from matplotlib.axes import Axes
+
+
+def edges_of(times: Float[np.ndarray, "M"]) -> Float[np.ndarray, "M1"]:
+    """Where columns begin and end: halfway between their times, the outer ones as wide as their neighbours.
+
+    A single column is one second wide.
+    """
+    if len(times) == 1:
+        return np.array([times[0] - 0.5, times[0] + 0.5])
+    middle = (times[1:] + times[:-1]) / 2
+    return np.concatenate([[2 * times[0] - middle[0]], middle, [2 * times[-1] - middle[-1]]])
+
+
+def lows_and_highs(
+    samples: Float[np.ndarray, "N"], bins: int
+) -> tuple[Float[np.ndarray, "K"], Float[np.ndarray, "K"], Float[np.ndarray, "K"]]:
+    """First index, lowest and highest sample of each of (at most) `bins` equal stretches."""
+    starts = np.linspace(0, len(samples), min(bins, len(samples)) + 1).astype(int)[:-1]
+    low, high = np.minimum.reduceat(samples, starts), np.maximum.reduceat(samples, starts)
+    return starts.astype(np.float64), low, high
+
+
+def waves(axis: Axes, audio: Float[np.ndarray, "N"], sample_rate: float | int, bins: int = 1200) -> None:
+    """A waveform over seconds: what lies between the lowest and the highest sample of each of `bins` stretches."""
+    starts, low, high = lows_and_highs(audio, bins)
+    axis.fill_between(starts / sample_rate, low, high, color="#1F2933", lw=0)
+    axis.set_yticks([])
+    axis.grid(False)
+
+
+def time_map(
+    axis: Axes,
+    values: Float[np.ndarray, "T M"],
+    columns: Float[np.ndarray, "M"],
+    seconds: float,
+    colours: str = "Purples",
+):
+    """A map whose rows share `seconds` evenly, from the top down, columns at their times; the larger, the darker."""
+    rows = np.linspace(0, seconds, len(values) + 1)
+    image = axis.pcolormesh(edges_of(columns), rows, values, cmap=colours, vmin=min(0, values.min()), vmax=values.max())
+    axis.set_ylim(seconds, 0)
+    axis.grid(False)
+    return image
