@@ -15,15 +15,18 @@ def _splice(past, new):
 
 
 def in_place(past_control, new, T_h):
+    """Right numbers, but the caller's control of the past is overwritten with them."""
     past_control[-1] = new[0]
     return np.concatenate([past_control[-T_h:], new])
 
 
 def row_missing(past_control, new, T_h):
+    """The row that leads into the first new frame is dropped, and all that follows comes a frame early."""
     return np.concatenate([past_control[-T_h:-1], new])
 
 
 def first_rows(past_control, new, T_h):
+    """Keeps the beginning of the past; what counts for going on is its end."""
     past = past_control[:T_h].copy()
     past[-1] = new[0]
     return np.concatenate([past, new])

@@ -25,22 +25,27 @@ def central_joints_stay(poses, control):
 
 
 def names_stay(poses, control):
+    """Mirrors the places but not the names: the left arm now hangs on the right side of the body."""
     return poses * _SEEN, control * _LED
 
 
 def control_stays(poses, control):
+    """The body steps for a turn to the other side, and its control leads it to the old one."""
     return poses[:, MIRROR] * _SEEN, control.copy()
 
 
 def yaw_stays(poses, control):
+    """Sidesteps are mirrored and turns are not, as if only one of them had a left and a right."""
     return poses[:, MIRROR] * _SEEN, control * [1, -1, 1]
 
 
 def walks_backwards(poses, control):
+    """Negates the forward speed, too, which a mirror leaves as it is."""
     return poses[:, MIRROR] * _SEEN, -control
 
 
 def in_place(poses, control):
+    """Right numbers, but the caller's poses are mirrored with them."""
     poses *= _SEEN
     return poses[:, MIRROR], control * _LED
 

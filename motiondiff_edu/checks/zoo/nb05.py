@@ -6,27 +6,33 @@ def _to_x0(output, x_s, a, b, target):
 
 
 def roots_dropped(output, x_s, alpha_bar, target):
+    """Signal and noise are weighted by their shares of the variance, not by the roots of these."""
     return _to_x0(output, x_s, alpha_bar, 1 - alpha_bar, target)
 
 
 def signal_and_noise_swapped(output, x_s, alpha_bar, target):
+    """Each weight stands where the other belongs; at alpha_bar = 0.5 nobody notices."""
     return _to_x0(output, x_s, (1 - alpha_bar) ** 0.5, alpha_bar**0.5, target)
 
 
 def sign_of_v(output, x_s, alpha_bar, target):
+    """Takes v for its negative: eps and x0 come out right, and v does not."""
     output = -output if target == "v" else output
     return _to_x0(output, x_s, alpha_bar**0.5, (1 - alpha_bar) ** 0.5, target)
 
 
 def not_divided(output, x_s, alpha_bar, target):
+    """Takes the noise away from x_s and leaves x0 at its shrunken size."""
     return x_s - (1 - alpha_bar) ** 0.5 * output if target == "eps" else output
 
 
 def shares_swapped(means, new, decay):
+    """With a decay of 0.999 the mean is almost the newest weights: it smooths nothing."""
     return [(1 - decay) * m + decay * n for m, n in zip(means, new, strict=True)]
 
 
 def changed_in_place(means, new, decay):
+    """Right numbers, but the means that were given change with them."""
     for m, n in zip(means, new, strict=True):
         m *= decay
         m += (1 - decay) * n
@@ -34,10 +40,12 @@ def changed_in_place(means, new, decay):
 
 
 def only_the_first(means, new, decay):
+    """A network has more than one array of weights."""
     return [decay * means[0] + (1 - decay) * new[0]]
 
 
 def new_ones_in_full(means, new, decay):
+    """The shares do not add up to one, so that the mean grows to many times the weights."""
     return [decay * m + n for m, n in zip(means, new, strict=True)]
 
 
