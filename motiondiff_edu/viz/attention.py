@@ -10,6 +10,7 @@ from jaxtyping import Float
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from .body import INK
 from .style import MEDIUM, OKABE_ITO, SMALL, figure
 
 Groups = Sequence[tuple[str, int]]  # (name, how many keys), in the order of the keys
@@ -103,7 +104,7 @@ def _paint(axis: Axes, weights: np.ndarray, groups: Groups | None, top: float, s
     first = 0
     for name, count in groups or []:
         if first:
-            axis.axvline(first - 0.5, color="#1F2933", lw=1.2)
+            axis.axvline(first - 0.5, color=INK, lw=1.2)
         words = name.replace(", ", "\n").replace(" ", "\n") if short else name
         axis.text(first + count / 2 - 0.5, -0.75, words, ha="center", va="bottom", fontsize=9 if short else SMALL)
         first += count

@@ -11,8 +11,9 @@ from jaxtyping import Float
 
 from ..motion.skeleton import J
 
-LEFT_COLOUR, RIGHT_COLOUR, CENTRE_COLOUR = "#0072B2", "#D55E00", "#5B6472"  # Okabe-Ito blue and vermillion
-PATH_COLOUR, INK, PAPER = "#009E73", "#1F2933", "#FFFFFF"
+GREY, INK, PAPER = "#5B6472", "#1F2933", "#FFFFFF"
+LEFT_COLOUR, RIGHT_COLOUR, CENTRE_COLOUR = "#0072B2", "#D55E00", GREY  # Okabe-Ito blue and vermillion
+PATH_COLOUR = "#009E73"
 COLOURS = {"L": LEFT_COLOUR, "R": RIGHT_COLOUR, "C": CENTRE_COLOUR}
 PAST_WASH = 0.55  # how far the colours of given frames are washed out towards the paper
 

@@ -10,6 +10,7 @@ from jaxtyping import Float
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from .body import GREY
 from .style import DASHES, LARGE, MEDIUM, OKABE_ITO, SMALL, figure, legend
 
 Curves = Mapping[str, tuple]  # name -> (x, y), equally long
@@ -78,7 +79,7 @@ def control_curves(controls: Mapping[str, Float[np.ndarray, "_ 3"]], fps: float 
         low, high = axis.get_ylim()
         axis.set_ylim(min(low, -0.3), max(high, 0.3))
         if past:
-            axis.axvspan(0, past / fps, color="#5B6472", alpha=0.15, label="past (given)" if k == 0 else None)
+            axis.axvspan(0, past / fps, color=GREY, alpha=0.15, label="past (given)" if k == 0 else None)
     axes[-1].set_xlabel("time (s)")
     if len(controls) > 1 or past:
         fig.legend(

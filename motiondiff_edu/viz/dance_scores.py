@@ -13,10 +13,8 @@ from matplotlib.ticker import FuncFormatter, LogLocator
 
 from ..metrics.beats import kinematic_beats, smooth_speed
 from ..motion.resample import DANCE_FPS, resample
-from .body import INK
+from .body import GREY, INK
 from .style import DASHES, MARKERS, OKABE_ITO, SMALL, figure, legend
-
-GREY = "#5B6472"
 
 
 def stops_and_beats(

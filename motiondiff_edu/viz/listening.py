@@ -9,10 +9,9 @@ import numpy as np
 from jaxtyping import Float
 from matplotlib.figure import Figure
 
+from .body import GREY, INK
 from .over_time import time_map, waves
 from .style import OKABE_ITO, SMALL, figure
-
-GREY = "#5B6472"
 
 
 def levels_over_sound(
@@ -73,7 +72,7 @@ def attention_over_sound(
         for times, width in ((beats, 0.8), (downbeats, 2.0)):
             for t in () if times is None else times:
                 panel.axvline(t, color=OKABE_ITO[1], lw=width, alpha=alpha)
-    axis.plot([0, T / fps], [0, T / fps], "--", color="#1F2933", lw=1.2)
+    axis.plot([0, T / fps], [0, T / fps], "--", color=INK, lw=1.2)
     axis.set(xlabel="music, s", ylabel="motion, s", xlim=(0, seconds))
     wave.set(ylabel="sound", title=title)
     fig.colorbar(image, ax=axis, label="weight", shrink=0.85)

@@ -15,6 +15,7 @@ from matplotlib.figure import Figure
 
 from ..metrics.bone_lengths import bone_lengths
 from ..motion.skeleton import BONE_LENGTHS, BONES, HIPS
+from .body import INK
 from .style import DASHES, MEDIUM, OKABE_ITO, SMALL, figure, legend
 
 SHORT_TO_LONG = matplotlib.colors.LinearSegmentedColormap.from_list("bones", ["#0072B2", "#C9CDD4", "#D55E00"])
@@ -52,7 +53,7 @@ def _sticks(axis: Axes, pose: Float[np.ndarray, "21 3"], reach: float) -> None:
     for (parent, child), much in zip(BONES, stretch, strict=True):
         colour = SHORT_TO_LONG(STRETCH(much))
         axis.plot(*about[[parent, child]].T, color=colour, lw=3.5, solid_capstyle="round")
-    axis.plot(*about.T, ".", color="#1F2933", ms=3)
+    axis.plot(*about.T, ".", color=INK, ms=3)
     axis.set(xlim=(reach, -reach), ylim=(-reach, reach), aspect="equal")  # x is the figure's left; we look at its face
     axis.set_axis_off()
 

@@ -4,6 +4,8 @@ import numpy as np
 from jaxtyping import Float
 from matplotlib.axes import Axes
 
+from .body import INK
+
 
 def edges_of(times: Float[np.ndarray, "M"]) -> Float[np.ndarray, "M1"]:
     """Where columns begin and end: halfway between their times, the outer ones as wide as their neighbours.
@@ -28,7 +30,7 @@ def lows_and_highs(
 def waves(axis: Axes, audio: Float[np.ndarray, "N"], sample_rate: float | int, bins: int = 1200) -> None:
     """A waveform over seconds: what lies between the lowest and the highest sample of each of `bins` stretches."""
     starts, low, high = lows_and_highs(audio, bins)
-    axis.fill_between(starts / sample_rate, low, high, color="#1F2933", lw=0)
+    axis.fill_between(starts / sample_rate, low, high, color=INK, lw=0)
     axis.set_yticks([])
     axis.grid(False)
 

@@ -9,6 +9,7 @@ import numpy as np
 from jaxtyping import Float, Int
 from matplotlib.figure import Figure
 
+from .body import GREY
 from .style import OKABE_ITO, figure, legend
 
 
@@ -18,7 +19,7 @@ def bucket_map(distance: Int[np.ndarray, "N"], bucket: Int[np.ndarray, "N"], win
     for past, colour, name in ((True, OKABE_ITO[0], "key in the past"), (False, OKABE_ITO[1], "key in the future")):
         side = distance <= 0 if past else distance > 0
         axis.plot(distance[side], bucket[side], "o" if past else "s", color=colour, ms=3, label=name)
-    axis.axvspan(-window, window, color="#5B6472", alpha=0.12, label="within MoDiff's window")
+    axis.axvspan(-window, window, color=GREY, alpha=0.12, label="within MoDiff's window")
     axis.set(xlabel="time of the key minus time of the query (frames)", ylabel="bucket")
     legend(axis, loc="center right")
     return fig
@@ -31,7 +32,7 @@ def sharpness(
     fig, (axis,) = figure(9, 3.8, words)
     for k, (name, values) in enumerate(curves.items()):
         axis.plot(sizes, values, color=OKABE_ITO[k], marker="os"[k % 2], ls=("-", "--")[k % 2], label=name)
-    axis.axhline(floor, color="#5B6472", lw=1.2, ls=":", label="all weights equal")
+    axis.axhline(floor, color=GREY, lw=1.2, ls=":", label="all weights equal")
     axis.set(xlabel="size d of queries and keys", ylabel="largest weight (mean)", ylim=(0, 1.02))
     axis.set_xscale("log", base=2)
     legend(axis)
@@ -50,7 +51,7 @@ def weight_against_effect(
     for k, (axis, (name, count)) in enumerate(zip(axes, groups, strict=True)):
         x, y = (values[:, first : first + count] for values in (weight, effect))
         x, y = x / x.mean(1, keepdims=True), y / y.mean(1, keepdims=True)
-        axis.plot([0, x.max()], [0, x.max()], color="#5B6472", lw=1.2, ls=":")
+        axis.plot([0, x.max()], [0, x.max()], color=GREY, lw=1.2, ls=":")
         axis.plot(x.ravel(), y.ravel(), ".", color=OKABE_ITO[k], alpha=0.35, ms=6)
         axis.set(title=name, xlabel="attention / mean", ylim=(0, None))
         first += count

@@ -11,6 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch, Polygon
 
+from ..metrics.footsteps import runs
 from ..motion.skeleton import HEELS, HIPS, TOES
 from . import body
 from .style import LARGE, MEDIUM, OKABE_ITO, SMALL, figure, legend
@@ -119,11 +120,11 @@ def top_view(
     start = np.zeros(2)
     if positions is not None:
         hips = positions[:, HIPS][:, [0, 2]]
-        axis.plot(*hips.T, color="#5B6472", lw=1.5, label="hips")
+        axis.plot(*hips.T, color=body.GREY, lw=1.5, label="hips")
         start = hips[0]
         if contacts is not None:
             _footprints(axis, positions, contacts)
-    axis.plot(*start, marker="^", color="#1F2933", ms=11, ls="none")
+    axis.plot(*start, marker="^", color=body.INK, ms=11, ls="none")
     _floor(axis, title)
     return fig
 
@@ -141,8 +142,7 @@ def _floor(axis: Axes, title: str) -> None:
 def _footprints(axis: Axes, positions: np.ndarray, contacts: np.ndarray) -> None:
     """Ankle to toe on the floor, in the middle of every run of contact."""
     for side, colour in enumerate((body.LEFT_COLOUR, body.RIGHT_COLOUR)):
-        edges = np.flatnonzero(np.diff(np.concatenate([[0], contacts[:, side].astype(int), [0]])))
-        for i, (begin, end) in enumerate(edges.reshape(-1, 2)):
+        for i, (begin, end) in enumerate(runs(contacts[:, side])):
             foot = positions[(begin + end - 1) // 2][[HEELS[side], TOES[side]]][:, [0, 2]]
             name = f"{('left', 'right')[side]} foot" if i == 0 else None
             axis.plot(*foot.T, color=colour, lw=7, solid_capstyle="round", alpha=0.75, label=name)
