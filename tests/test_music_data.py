@@ -15,6 +15,7 @@ from data_synth.music import SONGS_A_SEED, compose, songs
 from data_synth.song import DRUMS, GENRES, HELD_OUT_TIMBRE, SAMPLE_RATE, TIMBRES, TRAINING_TIMBRES
 from data_synth.voices import VOICES, note
 from data_synth.write_songs import main
+from motiondiff_edu.metrics.beats import f_measure
 
 
 @pytest.fixture(scope="module")
@@ -211,29 +212,13 @@ def test_a_note_has_its_pitch_and_length():
     assert np.abs(y[-80:]).max() < 0.01 * np.abs(y).max()
 
 
-def matched(truth, found, tolerance=0.07):
-    """F-measure of two sorted lists of times: pairs within the tolerance, each time in one pair at most."""
-    i = j = pairs = 0
-    while i < len(truth) and j < len(found):
-        gap = found[j] - truth[i]
-        if abs(gap) <= tolerance:
-            pairs, i, j = pairs + 1, i + 1, j + 1
-        else:
-            i, j = i + (gap > 0), j + (gap < 0)
-    return 2 * pairs / (len(truth) + len(found))
-
-
-def test_matched_by_hand():
-    assert matched([1.0, 2.0, 3.0], [1.05, 2.5, 3.0, 3.02]) == pytest.approx(4 / 7)
-
-
 @pytest.mark.slow
 def test_a_beat_tracker_hears_most_beats_and_not_all(made):
     librosa = pytest.importorskip("librosa")
     scores, tempi = [], []
     for song in made:
         found = librosa.beat.beat_track(y=song.audio, sr=SAMPLE_RATE, hop_length=256, units="time")[1]
-        scores.append(max(matched(song.beats, found - lag) for lag in np.arange(-0.06, 0.061, 0.01)))
+        scores.append(max(f_measure(found - lag, song.beats) for lag in np.arange(-0.06, 0.061, 0.01)))
         ratio = 60 / np.median(np.diff(found)) / song.tempo
         tempi.append(min(abs(ratio / r - 1) for r in (1 / 2, 2 / 3, 1, 3 / 2, 2)) < 0.05)
     assert 0.55 < np.mean(scores) < 0.95 and np.mean(tempi) > 0.8
