@@ -16,7 +16,7 @@ from matplotlib.figure import Figure
 from ..metrics.bone_lengths import bone_lengths
 from ..motion.skeleton import BONE_LENGTHS, BONES, HIPS
 from .body import INK
-from .style import DASHES, MEDIUM, OKABE_ITO, SMALL, figure, legend
+from .style import DASHES, MEDIUM, OKABE_ITO, SMALL, figure, legend, table
 
 SHORT_TO_LONG = matplotlib.colors.LinearSegmentedColormap.from_list("bones", ["#0072B2", "#C9CDD4", "#D55E00"])
 STRETCH = Normalize(-0.3, 0.3, clip=True)  # of a bone: its length over the true one, minus 1
@@ -58,19 +58,15 @@ def _sticks(axis: Axes, pose: Float[np.ndarray, "21 3"], reach: float) -> None:
     axis.set_axis_off()
 
 
-def noticed(table: Float[np.ndarray, "R C"], rows: Sequence[str], columns: Sequence[str], words: str) -> Figure:
+def noticed(values: Float[np.ndarray, "R C"], rows: Sequence[str], columns: Sequence[str], words: str) -> Figure:
     """A table of losses; in each column the shade goes from white (nothing) to the column's largest value."""
     fig, (axis,) = figure(2.6 + 1.9 * len(columns), 0.9 + 0.52 * len(rows), words)
-    share = table / np.maximum(table.max(axis=0), 1e-30)
+    share = values / np.maximum(values.max(axis=0), 1e-30)
     axis.imshow(np.sqrt(share), cmap="Oranges", vmin=0, vmax=1.6, aspect="auto")
-    for (i, j), value in np.ndenumerate(table):
+    for (i, j), value in np.ndenumerate(values):
         text = "0" if share[i, j] < 1e-3 else f"{value:.2g}"
         axis.text(j, i, text, ha="center", va="center", color="#999999" if text == "0" else "#111111")
-    axis.set_xticks(range(len(columns)), columns)
-    axis.set_yticks(range(len(rows)), rows)
-    axis.tick_params(top=True, labeltop=True, bottom=False, labelbottom=False, length=0)
-    axis.grid(False)
-    axis.spines[:].set_visible(False)
+    table(axis, rows, columns)
     return fig
 
 

@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 from ..metrics.footsteps import runs
 from ..metrics.skating import PLANTED_BELOW
 from .body import INK, LEFT_COLOUR, RIGHT_COLOUR
-from .style import DASHES, MARKERS, figure, legend
+from .style import DASHES, MARKERS, figure, legend, table
 
 
 def footstep_curves(
@@ -98,9 +98,5 @@ def score_table(scores: Mapping[str, Mapping[str, float]], words: str) -> Figure
     for (i, j), value in np.ndenumerate(values):
         text = "none" if np.isnan(value) else f"{0 if abs(value) < 5e-4 else value:.2g}"
         axis.text(j, i, text, ha="center", va="center", color=INK)
-    axis.set_xticks(range(len(columns)), columns)
-    axis.set_yticks(range(len(rows)), rows)
-    axis.tick_params(length=0, top=True, labeltop=True, bottom=False, labelbottom=False)
-    axis.grid(False)
-    axis.spines[:].set_visible(False)
+    table(axis, rows, columns)
     return fig

@@ -3,6 +3,7 @@
 import base64
 import html
 import io
+from collections.abc import Sequence
 
 import matplotlib
 from matplotlib.axes import Axes
@@ -51,7 +52,9 @@ def _html(words: str, png: str) -> str:
     return f'<figure style="margin:0">{picture}<figcaption style="max-width:60em">{words}</figcaption></figure>'
 
 
-def figure(width: float | int, height: float | int, words: str, rows: int = 1, columns: int = 1, **options):
+def figure(
+    width: float | int, height: float | int, words: str, rows: int = 1, columns: int = 1, **options
+) -> tuple[CaptionedFigure, list[Axes]]:
     """A figure of `width` x `height` inches with its caption, and its axes, always as a list."""
     with matplotlib.rc_context(_RC):
         fig = CaptionedFigure(figsize=(width, height), layout="constrained")
@@ -70,6 +73,15 @@ def add_caption(fig: Figure, words: str) -> Figure:
     """Replace the caption, to say what is to be seen here; returns the figure."""
     fig.set_label(words)
     return fig
+
+
+def table(axis: Axes, rows: Sequence[str], columns: Sequence[str]) -> None:
+    """Make a table of an axis with a cell at each whole number: names to the left and above, nothing else around."""
+    axis.set_xticks(range(len(columns)), columns)
+    axis.set_yticks(range(len(rows)), rows)
+    axis.tick_params(length=0, top=True, labeltop=True, bottom=False, labelbottom=False)
+    axis.grid(False)
+    axis.spines[:].set_visible(False)
 
 
 def legend(axis: Axes, **options) -> None:
