@@ -33,6 +33,12 @@ def test_fractions_get_a_fractional_slider():
     assert abs(controls(box)["u"].value - 1.25) < 0.021
 
 
+@pytest.mark.parametrize("value", [(1, 9), 5, "cosine", (1, 2, 3, 4)])
+def test_what_is_no_control_is_explained(value):
+    with pytest.raises(ValueError, match=r"s takes \(low, high, start\), a list of choices, or True or False; got "):
+        explore(lambda s: None, s=value)
+
+
 def test_an_error_in_the_figure_is_not_swallowed():
     box = explore(lambda s: lines([0, 1], {"a": [1 / (s - 3)] * 2}, "c", ("x", "y")), s=(1, 9, 5))
     with pytest.raises(ZeroDivisionError):

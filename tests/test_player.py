@@ -71,8 +71,13 @@ def test_wrong_extras_are_explained(motion):
         Player(motion[0], labels=["a", "b", "c"])
     with pytest.raises(ValueError, match="layout"):
         Player(motion[0], layout="diagonal")
+    for fps in (0, -20.0, float("nan")):
+        with pytest.raises(ValueError, match="fps are frames a second, more than 0: got"):
+            Player(motion[0], fps=fps)
     with pytest.raises(TypeError, match="colour"):
         Player(motion[0]).show(motion[0], colour="red")
+    with pytest.raises(TypeError, match="colour"):
+        Player(motion[0], colour="red")
 
 
 def test_batches_tensors_and_lists_are_the_same_figures(motion):

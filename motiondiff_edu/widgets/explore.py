@@ -10,6 +10,7 @@ def explore(draw, **start) -> ipywidgets.VBox:
 
     explore(draw, s=(1, 100, 50), name=["linear", "cosine"], noise=True): (low, high, start), the choices, or on/off.
     `draw` returns a matplotlib Figure, whose label becomes the picture's alternative text. Errors in `draw` are raised.
+    Raises ValueError for an argument that is none of these.
     """
     controls = {name: _control(name, value) for name, value in start.items()}
     first = {name: control.value for name, control in controls.items()}
@@ -34,6 +35,8 @@ def _control(name: str, value) -> ipywidgets.Widget:
         return ipywidgets.Checkbox(value=value, description=name)
     if isinstance(value, list):
         return ipywidgets.Dropdown(options=value, value=value[0], description=name)
+    if not (isinstance(value, tuple) and len(value) == 3):
+        raise ValueError(f"{name} takes (low, high, start), a list of choices, or True or False; got {value!r}")
     low, high, begin = value
     kind = ipywidgets.IntSlider if isinstance(begin, int) else ipywidgets.FloatSlider
     extra = {} if isinstance(begin, int) else {"step": (high - low) / 50}

@@ -51,8 +51,8 @@ class Lane:
     def under(self, picture: Image.Image) -> Image.Image:
         """The picture with the lane drawn below it; of attention, the mean over the motion."""
         width, moved = picture.width, self.strips.moved
-        tall = TICKS + WAVE + AXIS + (0 if moved is None else CURVE)
-        whole = Image.new("RGB", (width, picture.height + tall), body.PAPER)
+        height = TICKS + WAVE + AXIS + (0 if moved is None else CURVE)
+        whole = Image.new("RGB", (width, picture.height + height), body.PAPER)
         whole.paste(picture, (0, 0))
         pen, top = ImageDraw.Draw(whole), picture.height + TICKS
 
@@ -65,7 +65,7 @@ class Lane:
             for k, share in enumerate(mean / mean.max()):
                 box = [ends[k], top, max(ends[k], ends[k + 1] - 1), top + WAVE]
                 pen.rectangle(box, fill=body.mix(PURPLE, body.PAPER, 1 - float(share)))
-        for low_high, x in zip(peaks(self.sound.samples, width), range(width), strict=False):
+        for x, low_high in enumerate(peaks(self.sound.samples, width)):
             low, high = (WAVE / 2 * (1 - v / 127) for v in low_high[::-1].astype(float))
             pen.line([x, top + low, x, top + high], fill=body.INK)
         for times, tall, wide in ((self.beats, 5, 1), (self.downbeats, 12, 2)):

@@ -43,12 +43,13 @@ class Player(anywidget.AnyWidget):
 
     `past` frames were given and are drawn paler; `contacts` (T, 2) bool marks planted feet; `path` (n, 2) [x, z] is
     drawn on the floor; each may be one value for all figures or a list (one array of contacts belongs to the first
-    figure). `layout` is "side" (a field each) or
-    "together" (one floor; `offset` = (x, z) metres between figures). `frame` and `playing` can be read and set.
+    figure). `layout` is "side" (a field each) or "together" (one floor; `offset` = (x, z) metres between figures).
+    `parents` names each joint's parent where the skeleton is another one. `frame` and `playing` can be read and set.
     `audio` (N,) from -1 to 1 at `sample_rate` Hz, or the bytes of a sound file, is played with the motion, cut or
     filled up to its length (with a warning), above a waveform with `beats` and `downbeats` (seconds) marked; `codec`
     is "ogg", "flac" or "wav". Such a player waits for a click, unless `autoplay` is True and the browser allows it.
-    Raises ValueError with figure, frame and joint where a position is not finite or beyond reach.  Notebook: 00, 12
+    Raises ValueError with figure, frame and joint where a position is not finite or beyond reach, and for extras that
+    do not fit the motion.  Notebook: 00, 12
     """
 
     _esm = MODULE
@@ -64,13 +65,14 @@ class Player(anywidget.AnyWidget):
 
     def __init__(
         self, positions, fps=20.0, past=None, contacts=None, labels=None, path=None,
-        audio=None, sample_rate=16_000, beats=None, downbeats=None, codec="ogg", **options,
+        audio=None, sample_rate=16_000, beats=None, downbeats=None, codec="ogg",
+        layout="side", offset=(1.2, 0.0), height=430, autoplay=None, follow=True, parents=None,
     ):  # fmt: skip
         super().__init__()
-        self._options = {"fps": float(fps), "past": past, "contacts": contacts, "labels": labels, "path": path,
+        self._options = {"fps": fps, "past": past, "contacts": contacts, "labels": labels, "path": path,
                          "audio": audio, "sample_rate": sample_rate, "beats": beats, "downbeats": downbeats,
                          "codec": codec, "strips": None}  # fmt: skip
-        self._look = _look(**options)
+        self._look = _look(layout, offset, height, autoplay, follow, parents)
         self._editions = 0
         self.show(positions)
 
@@ -80,6 +82,9 @@ class Player(anywidget.AnyWidget):
         if unknown:
             raise TypeError(f"show() does not know {sorted(unknown)}; it takes {sorted(self._options)}")
         options = self._options | changes
+        options["fps"] = float(options["fps"])
+        if not 0 < options["fps"] < float("inf"):
+            raise ValueError(f"fps are frames a second, more than 0: got {options['fps']:g}")
         arrays = packing.as_figures(positions)
         packed = packing.pack(arrays)
         figures = _figures(arrays, options, self._look["parents"])
@@ -168,7 +173,7 @@ class Player(anywidget.AnyWidget):
         return Path(path)
 
 
-def _look(layout="side", offset=(1.2, 0.0), height=430, autoplay=None, follow=True, parents=None) -> dict:
+def _look(layout, offset, height, autoplay, follow, parents) -> dict:
     if layout not in ("side", "together"):
         raise ValueError(f'layout is "side" or "together", not {layout!r}')
     offset = [float(v) for v in (offset if layout == "together" else (0, 0))]

@@ -57,7 +57,7 @@ export function musicLane(listen, seek, redraw) {
     }
   }
 
-  function waveform(theme, width, height, ratio, alpha) { // a picture of it, drawn once: it does not change while playing
+  function waveform(theme, width, ratio, alpha) { // a picture of it, drawn once: it does not change while playing
     const picture = element("canvas"), middle = WAVE / 2, n = lane.peaks, inner = width - 2 * MARGIN;
     picture.width = Math.round(width * ratio); picture.height = Math.round(WAVE * ratio);
     const pen = picture.getContext("2d");
@@ -70,9 +70,9 @@ export function musicLane(listen, seek, redraw) {
     return picture;
   }
 
-  function paintWave(pen, theme, width, height, ratio, x) { // what has been heard is darker
-    const name = [width, height, ratio, theme.fg].join();
-    if (waves.name !== name) waves = { name, heard: waveform(theme, width, height, ratio, 0.9), ahead: waveform(theme, width, height, ratio, 0.5) };
+  function paintWave(pen, theme, width, ratio, x) { // what has been heard is darker
+    const name = [width, ratio, theme.fg].join();
+    if (waves.name !== name) waves = { name, heard: waveform(theme, width, ratio, 0.9), ahead: waveform(theme, width, ratio, 0.5) };
     for (const [picture, from, to] of [[waves.heard, 0, x], [waves.ahead, x, width]]) {
       if (to - from > 0.01) pen.drawImage(picture, from * ratio, 0, (to - from) * ratio, picture.height, from, TICKS, to - from, WAVE);
     }
@@ -141,7 +141,7 @@ export function musicLane(listen, seek, redraw) {
     pen.setTransform(ratio, 0, 0, ratio, 0, 0);
     pen.fillStyle = rgba(mix(theme.bg, theme.fg, 0.05)); pen.fillRect(0, 0, w, h);
     if (level) paintAttention(pen, theme, level, now, across);
-    paintBeats(pen, theme, across); paintWave(pen, theme, w, h, ratio, x); paintAxis(pen, theme, w, across);
+    paintBeats(pen, theme, across); paintWave(pen, theme, w, ratio, x); paintAxis(pen, theme, w, across);
     if (lane.moved) paintMoved(pen, theme, w, across);
     for (const [colour, wide] of [[theme.bg, 4], [theme.fg, 2]]) {
       pen.fillStyle = rgba(colour);

@@ -1,5 +1,6 @@
-// The player: one canvas that draws skeletons, and a music lane where there is sound. No dependencies; runs in JupyterLab (anywidget), in exported
-// HTML (an iframe with this same text) and in a bare page. `model` needs get, set, save_changes, on, off.
+// The player: one canvas that draws skeletons, and a music lane where there is sound. No dependencies; runs in
+// JupyterLab (anywidget), in exported HTML (an iframe with this same text) and in a bare page. `model` needs get, set,
+// save_changes, on, off.
 
 import { CSS, clamp, element, mix, readTheme, rgba } from "./dom.js";
 import { unpack } from "./figures.js";
@@ -19,7 +20,7 @@ export function mount(model, el, { fill = false } = {}) {
   const speeds = element("select", { "aria-label": "Speed" }, ...[0.1, 0.25, 0.5, 1, 2, 4].map((v) => element("option", { value: String(v) }, `${v}\u00d7`)));
   const follow = element("input", { type: "checkbox", checked: true });
   const reset = element("button", { type: "button", title: "First frame, first view, normal speed (R)" }, "Reset");
-  const mute = element("button", { type: "button", "aria-pressed": "false", title: "No sound (M)" }, "Mute");
+  const mute = element("button", { type: "button", "aria-label": "Mute", "aria-pressed": "false", title: "No sound (M)" }, "Mute");
   const note = element("output", { class: "mde-said", "aria-live": "polite" }), sound = element("audio", { preload: "auto" });
   const dots = { L: element("i"), R: element("i") };
   const key = (side, word) => element("span", { class: "mde-key" }, dots[side], word);
