@@ -62,8 +62,8 @@ lint: $(VENV)/.test ## ruff, the form of the notebooks, the student edition
 student: $(VENV)/.test ## rebuild notebooks/student from notebooks
 	$(BIN)/python tools/build_student.py
 
-results: $(VENV)/.lab ## recompute the tables and figures into docs/results and docs/RESULTS.md
-	$(BIN)/python -m tools.results
+results: $(VENV)/.lab ## recompute docs/results and docs/RESULTS.md; with FULL=1 train what is compared as well (hours)
+	$(BIN)/python -m tools.results $(if $(FULL),--full)
 
 bench: $(VENV)/.bench ## measure against the public peers into benchmarks/results
 	$(BIN)/python -m benchmarks

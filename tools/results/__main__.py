@@ -1,11 +1,13 @@
 """Measure into docs/results, and write docs/RESULTS.md from it.
 
-    python -m tools.results [--only PART ...] [--quick] [--weights NAME=FILE] [--render]
+    python -m tools.results [--only PART ...] [--full] [--quick] [--weights NAME=FILE] [--render]
 
-Parts: walker-eps, walker-x0, walker-ddim10, their -lookahead lines, footsteps, budget (which trains; one row of it:
-budget.T_p-5), dancer, dancer-plain, regression, unheard (music like none in training). --quick
-measures little, into build/quick, and is for trying the code; --render only writes docs/RESULTS.md from the records
-that are there.
+Parts: walker-eps, walker-x0, walker-ddim10, their -lookahead lines, footsteps; dancer, dancer-plain, regression,
+unheard (music like none in training), attention, dance-time. Those that train, for minutes a row: budget and
+dance-budget; one row of them: budget.T_p-5, dance-budget.v. Without --only, all are measured that the shipped weights
+allow; --full adds those that train, whose records are else kept as they are. A training that was killed goes on.
+--quick measures little, into build/quick, and is for trying the code; --render only writes docs/RESULTS.md from the
+records that are there.
 """
 
 import argparse
@@ -17,18 +19,26 @@ from benchmarks.records import show, write_records
 from motiondiff_edu.files import replacing
 from motiondiff_edu.viz.metrics import footstep_curves
 
-from . import budget
+from . import budget, dance_budget
+from .attention import attention_picture, attention_records
 from .cards import add_metrics
 from .dance_parts import DANCE_FULL, DANCE_QUICK, DANCES, Stage, dance_records
+from .dance_time import TIMED, time_records
 from .parts import FULL, LINES, QUICK, Bench, Walks, alias_records, footstep_records, walker_records
 from .render import render
 
-DOCS, OTHERS = Path("docs"), ("footsteps", "budget")
+DOCS, RUNS = Path("docs"), Path("build/runs/dance-budget")
+MEASURED = ("footsteps", "attention", "dance-time")  # by the shipped weights, or by none
+TRAINED = {"budget": tuple(budget.VARIANTS), "dance-budget": tuple(dance_budget.VARIANTS)}
+ROUNDS = 7  # of dance-time
 
 
 def arguments() -> argparse.Namespace:
-    parser = argparse.ArgumentParser(prog="python -m tools.results", description=__doc__)
+    parser = argparse.ArgumentParser(
+        prog="python -m tools.results", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     parser.add_argument("--only", nargs="+", default=[], metavar="PART", help="only these parts")
+    parser.add_argument("--full", action="store_true", help="what trains as well (hours)")
     parser.add_argument("--quick", action="store_true", help="few clips; written to build/quick")
     parser.add_argument("--weights", nargs="+", default=[], metavar="NAME=FILE", help="weights that are not shipped")
     parser.add_argument("--render", action="store_true", help="only docs/RESULTS.md, from the records there")
@@ -56,37 +66,65 @@ def weights_of(items: list[str]) -> dict[str, Path]:
     return {name: Path(file) for name, _, file in pairs}
 
 
+def parts_of(only: list[str], full: bool, lines: dict[str, Walks], weights: set[str]) -> list[str]:
+    """The parts asked for, row by row; none asked for: all that have weights, and with `full` what trains.
+
+    Leaves with the names there are when one is unknown.
+    """
+    there = [prefix for prefix, line in lines.items() if line.name in weights]
+    there += [part for part, name in DANCES.items() if name in weights]
+    there += [part for part in MEASURED if part != "attention" or "dancer" in weights]
+    rows = {part: [f"{part}.{name}" for name in names] for part, names in TRAINED.items()}
+    asked = only or [*there, *(rows if full else ())]
+    parts = [row for part in asked for row in rows.get(part, [part])]
+    known = {*lines, *DANCES, *MEASURED, *(row for group in rows.values() for row in group)}
+    unknown = sorted(set(parts) - known)
+    if unknown:
+        there = ", ".join([*lines, *DANCES, *MEASURED, *rows])
+        sys.exit(f"no part is called {', '.join(unknown)}; there are: {there}; rows: budget.T_p-5, dance-budget.v ...")
+    return parts
+
+
 def measure(asked: argparse.Namespace, folder: Path) -> None:
-    """Run the parts asked for (all that have weights, when none is named) and write their records."""
+    """Run the parts asked for and write their records; those of all other parts stay as they are."""
     extra = weights_of(asked.weights)
     bench, lines = Bench(QUICK if asked.quick else FULL, extra), LINES | {name: Walks(name, name) for name in extra}
-    options = " --quick" * asked.quick + "".join(f" --weights {item}" for item in asked.weights)
     stage = Stage(DANCE_QUICK if asked.quick else DANCE_FULL, extra)
-    there = [prefix for prefix, line in lines.items() if line.name in bench.weights]
-    there += [part for part, name in DANCES.items() if name in stage.weights]
-    rows = [f"budget.{name}" for name in budget.VARIANTS]
-    parts = [row for part in asked.only or [*there, *OTHERS] for row in (rows if part == "budget" else [part])]
-    unknown = set(parts) - set(lines) - set(OTHERS) - set(rows) - set(DANCES)
-    if unknown:
-        there = ", ".join([*lines, *OTHERS, *DANCES])
-        sys.exit(f"no part is called {', '.join(sorted(unknown))}; there are: {there}")
-    for part in parts:
+    options = " --quick" * asked.quick + "".join(f" --weights {item}" for item in asked.weights)
+    for part in parts_of(asked.only, asked.full, lines, set(bench.weights)):
         began, command = time.monotonic(), f"python -m tools.results --only {part}{options}"
-        if part == "footsteps":
-            records, curves = footstep_records(bench, command)
-            figure = footstep_curves({k: v for k, v in curves.items() if not k.endswith("-robust")})
-            with replacing(folder / "footsteps.png") as aside:
-                figure.savefig(aside, dpi=110, format="png")
-        elif part in rows:
-            size = budget.FULL if bench.size == FULL else budget.QUICK
-            records = budget.budget_records(part.removeprefix("budget."), size, command)
-        elif part in DANCES:
-            records = dance_records(stage, part, command)
-        else:
-            records = walker_records(bench, lines[part], command)
+        records = records_of(part, asked.quick, bench, stage, lines, folder, command)
         show([one for one in records if one["value"] is not None])
         write_records(folder / f"{part}.json", records)
-        print(f"{part}: {time.monotonic() - began:.0f} s")
+        print(f"{part}: {time.monotonic() - began:.0f} s", flush=True)
+
+
+def records_of(part: str, quick: bool, bench: Bench, stage: Stage, lines, folder: Path, command: str) -> list[dict]:
+    """The records of one part; its figure, where it has one, is written beside them."""
+    group, _, row = part.partition(".")
+    if group == "budget":
+        return budget.budget_records(row, budget.QUICK if quick else budget.FULL, command)
+    if group == "dance-budget":
+        size, runs = (dance_budget.QUICK, folder / "runs") if quick else (dance_budget.FULL, RUNS)
+        return dance_budget.budget_records(row, size, runs, command)
+    if part == "dance-time":
+        size, rounds = (dance_budget.QUICK, 2) if quick else (dance_budget.FULL, ROUNDS)
+        return time_records(TIMED, size, rounds, command)
+    if part == "footsteps":
+        records, curves = footstep_records(bench, command)
+        save(footstep_curves({k: v for k, v in curves.items() if not k.endswith("-robust")}), folder / "footsteps.png")
+        return records
+    if part == "attention":
+        save(attention_picture(stage), folder / "attention.png")
+        return attention_records(stage, command)
+    if part in DANCES:
+        return dance_records(stage, part, command)
+    return walker_records(bench, lines[part], command)
+
+
+def save(figure, path: Path) -> None:
+    with replacing(path) as aside:
+        figure.savefig(aside, dpi=110, format="png")
 
 
 if __name__ == "__main__":

@@ -1,6 +1,6 @@
 """What `make results` measures of the dancers: one part for each of the shipped weights, and one for unheard music."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 
@@ -19,7 +19,7 @@ from .dance_scores import (
     rows_of,
     variety_figures,
 )
-from .dance_trials import UNSEEN, Songs, dances_of, unseen_songs
+from .dance_trials import UNSEEN, Hear, Songs, dances_of, mel_of, unseen_songs
 from .parts import weights_digest
 from .scores import Figure
 
@@ -54,16 +54,16 @@ DANCE_FULL, DANCE_QUICK = DanceSize(), DanceSize(songs=6, seeds=1, pieces=3, eac
 class Stage:
     """The songs, made once, the data's own dances to them, and the dancers by name."""
 
-    def __init__(self, size: DanceSize, weights: dict[str, Path] | None = None):
-        self.size, self.weights = size, checkpoints.available() | (weights or {})
+    def __init__(self, size: DanceSize, weights: dict[str, Path] | None = None, hear: Hear = mel_of):
+        self.size, self.weights, self.hear = size, checkpoints.available() | (weights or {}), hear
 
     @cached_property
     def songs(self) -> Songs:
-        return unseen_songs(self.size.songs)
+        return unseen_songs(self.size.songs, hear=self.hear)
 
     @cached_property
     def pieces(self) -> Songs:
-        return unseen_songs(self.size.pieces, self.size.each, TRAINED, seed=UNSEEN + 1)
+        return unseen_songs(self.size.pieces, self.size.each, TRAINED, seed=UNSEEN + 1, hear=self.hear)
 
     @cached_property
     def data_features(self) -> np.ndarray:
@@ -82,32 +82,51 @@ def dances(stage: Stage, dancer: Dancer, frames: int, seeds: int) -> np.ndarray:
     return np.stack([dances_of(dancer, stage.songs.mel, frames, seed) for seed in range(seeds)])
 
 
-def dancer_figures(stage: Stage, name: str) -> list[Figure]:
-    """All figures of one of the weights."""
-    dancer = stage.dancer(name)
+@dataclass(frozen=True, eq=False)
+class Danced:
+    """One dancer's figures, and the rows (one for each song) behind them."""
+
+    figures: list[Figure]
+    own: dict[str, np.ndarray]
+    data: dict[str, np.ndarray]
+    squares: np.ndarray  # errors of bones, cm^2
+
+
+def danced(stage: Stage, dancer: Dancer) -> Danced:
+    """The figures that every dancer has."""
     made = dances(stage, dancer, TRAINED, stage.size.seeds)
     own, data = rows_of(made, stage.songs.beats(TRAINED)), stage.data_rows(TRAINED)
     bones, squares = bone_figure(made)
-    figures = [*beat_figures(own, data), bones, *variety(stage, dancer)]
-    if name == "dancer":
-        if "dancer-plain" in stage.weights:
-            plain = dances(stage, stage.dancer("dancer-plain"), TRAINED, stage.size.seeds)
-            figures.append(bone_gain(squares, bone_figure(plain)[1]))
-        figures += long_figures(stage, dancer, own, data)
-    return figures
+    return Danced([*beat_figures(own, data), bones, *variety(stage, dancer)], own, data, squares)
 
 
-def long_figures(stage: Stage, dancer: Dancer, own: dict, data: dict) -> list[Figure]:
+def dancer_figures(stage: Stage, name: str) -> list[Figure]:
+    """All figures of one of the weights."""
+    dancer = stage.dancer(name)
+    found = danced(stage, dancer)
+    if name != "dancer":
+        return found.figures + repeats(stage, dances(stage, dancer, max(LONG), 1)[0])
+    gain = []
+    if "dancer-plain" in stage.weights:
+        plain = dances(stage, stage.dancer("dancer-plain"), TRAINED, stage.size.seeds)
+        gain = [bone_gain(found.squares, bone_figure(plain)[1])]
+    return found.figures + gain + long_figures(stage, dancer, found)
+
+
+def long_figures(stage: Stage, dancer: Dancer, found: Danced) -> list[Figure]:
     """What is left of the alignment in dances two and four times as long as those trained on; how much they repeat."""
     names, figures = ("bas", "bas_shuffled"), []
-    short = [rows[name] for rows in (own, data) for name in names]
+    short = [rows[name] for rows in (found.own, found.data) for name in names]
     for frames in LONG:
         made = dances(stage, dancer, frames, 1)
         rows = rows_of(made, stage.songs.beats(frames)), stage.data_rows(frames)
         figures.append(longer(f"long{frames}_over_100", [row[name] for row in rows for name in names], short))
-    figures.append(repeat_figure(made[0]))
-    data_repeat = repeat_figure(stage.songs.truth[:, 0])
-    return [*figures, Figure("repeat_data", data_repeat.value, data_repeat.low, data_repeat.high, "")]
+    return figures + repeats(stage, made[0])
+
+
+def repeats(stage: Stage, made: np.ndarray) -> list[Figure]:
+    """How much the longest dances repeat themselves, and how much the data's do."""
+    return [repeat_figure(made), replace(repeat_figure(stage.songs.truth[:, 0]), name="repeat_data")]
 
 
 def variety(stage: Stage, dancer: Dancer) -> list[Figure]:

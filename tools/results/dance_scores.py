@@ -10,24 +10,35 @@ import numpy as np
 from jaxtyping import Float
 
 from motiondiff_edu.metrics.beat_scores import BeatScores, beat_scores
-from motiondiff_edu.metrics.beats import NoBeatsWarning
+from motiondiff_edu.metrics.beats import NoBeatsWarning, kinematic_beats, music_alignment
 from motiondiff_edu.metrics.diversity import diversity
-from motiondiff_edu.metrics.frechet import fid, normalise
+from motiondiff_edu.metrics.frechet import FewSamplesWarning, fid, normalise
 from motiondiff_edu.metrics.kinetic_features import kinetic_features
 from motiondiff_edu.metrics.repetition import repeat_score
 
-from .scores import Figure, _figure, _ratio, _root_mean, squared_bone_error
+from .scores import FPS, Figure, _figure, _ratio, _root_mean, squared_bone_error
 
 Beats = Sequence[Float[np.ndarray, "_"]]
 
 
 def rows_of(dances: Float[np.ndarray, "R N T J 3"], beats: Beats) -> dict[str, Float[np.ndarray, "N"]]:
-    """Of each song, the mean over R dances to it: score, score with other songs, chance, beats per beat, speed."""
+    """Of each song, the mean over R dances to it: score, score with other songs, chance, beats per beat, speed.
+
+    `bas_music` is the form of MoFusion's eq. 10, averaged over the music's beats.
+    """
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", NoBeatsWarning)
         scored: list[BeatScores] = [beat_scores(one, beats) for one in dances]
     names = ("bas_clips", "bas_shuffled_clips", "bas_chance_clips", "beats_per_beat_clips", "speed_clips")
-    return {name.removesuffix("_clips"): np.nanmean([getattr(s, name) for s in scored], axis=0) for name in names}
+    rows = {name.removesuffix("_clips"): np.nanmean([getattr(s, name) for s in scored], axis=0) for name in names}
+    return rows | {"bas_music": np.mean([_music_form(one, beats) for one in dances], axis=0)}
+
+
+def _music_form(dances: Float[np.ndarray, "N T J 3"], beats: Beats) -> Float[np.ndarray, "N"]:
+    """Beats within the clip only: none could be danced to outside of it."""
+    end = (dances.shape[1] - 1) / FPS
+    within = [music[(music >= 0) & (music <= end)] for music in beats]
+    return np.array([music_alignment(kinematic_beats(one), b) for one, b in zip(dances, within, strict=True)])
 
 
 def beat_figures(own: dict[str, np.ndarray], data: dict[str, np.ndarray]) -> list[Figure]:
@@ -38,6 +49,8 @@ def beat_figures(own: dict[str, np.ndarray], data: dict[str, np.ndarray]) -> lis
         "bas_chance": ("", np.nanmean, own["bas_chance"]),
         "bas_data": ("", np.nanmean, data["bas"]),
         "bas_data_shuffled": ("", np.nanmean, data["bas_shuffled"]),
+        "bas_music": ("", np.nanmean, own["bas_music"]),
+        "bas_music_data": ("", np.nanmean, data["bas_music"]),
         "bas_share": ("ratio", share, own["bas"], own["bas_shuffled"], data["bas"], data["bas_shuffled"]),
         "beats_per_beat": ("", np.nanmean, own["beats_per_beat"]),
         "beats_per_beat_over_data": ("ratio", _ratio, own["beats_per_beat"], data["beats_per_beat"]),
@@ -76,19 +89,28 @@ def features_of(dances: Float[np.ndarray, "N K T J 3"]) -> Float[np.ndarray, "N 
 def variety_figures(
     own: Float[np.ndarray, "N K F"], data: Float[np.ndarray, "N K F"], all_data: Float[np.ndarray, "P F"]
 ) -> list[Figure]:
-    """MultiModality (K dances to one song), Diversity and FID, on kinetic features normalised by `all_data`."""
+    """MultiModality (K dances to one song), Diversity and FID, on kinetic features normalised by `all_data`.
+
+    `fid_data`, of as many dances by the data, is what perfection gets: so few clips are never at 0.
+    """
     modes, modes_data = (diversity(normalise(x, all_data)) for x in (own, data))
-    pooled = own.reshape(-1, own.shape[-1])
+    pooled, pooled_data = (x.reshape(-1, x.shape[-1]) for x in (own, data))
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore")
-        found = fid(pooled, all_data)
+        warnings.simplefilter("ignore", FewSamplesWarning)
+        once = {"fid": fid(pooled, all_data), "fid_data": fid(pooled_data, all_data)}
+    once |= {"diversity": diversity(normalise(pooled, all_data))}
+    once |= {"diversity_data": diversity(normalise(pooled_data, all_data))}
     return [
         _figure("multimodality", "", np.mean, modes),
         _figure("multimodality_data", "", np.mean, modes_data),
         _figure("multimodality_over_data", "ratio", _ratio, modes, modes_data),
-        Figure("diversity", *(3 * [float(diversity(normalise(pooled, all_data)))]), ""),
-        Figure("fid", *(3 * [found]), ""),
+        *(Figure(name, *(3 * [float(value)]), "") for name, value in once.items()),
     ]
+
+
+def share_minus(name: str, own: list[np.ndarray], other: list[np.ndarray]) -> Figure:
+    """`share` of one dancer minus that of another, on the same songs; rows as `share` takes them."""
+    return _figure(name, "of the data's", lambda *rows: share(*rows[:4]) - share(*rows[4:]), *own, *other)
 
 
 def repeat_figure(dances: Float[np.ndarray, "N T J 3"]) -> Figure:

@@ -1,5 +1,6 @@
 """What a dancer is tried on: songs no dancer was trained on, their true beats, and the data's own dances to them."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -15,10 +16,17 @@ from motiondiff_edu.dancer import Dancer
 UNSEEN, FPS, LONGEST = 900_000, 20, 400
 MARGIN = 0.25  # s: beats just outside of a clip are kept, a stop may be near them
 
+Hear = Callable[[Song], Float[torch.Tensor, "M C"]]  # what a network is given of a song
+
+
+def mel_of(song: Song) -> Float[torch.Tensor, "M 80"]:
+    """The log-Mel spectrogram: all that the dancers hear."""
+    return log_mel(torch.from_numpy(song.audio).float())
+
 
 @dataclass(frozen=True, eq=False)
 class Songs:
-    """N songs: log-Mel, and for `draws` dances of the data to each."""
+    """N songs: log-Mel (or what is heard instead), and `draws` dances of the data to each."""
 
     songs: list[Song]
     mel: Float[torch.Tensor, "N M C"]
@@ -30,10 +38,12 @@ class Songs:
         return [song.beats[(song.beats > -MARGIN) & (song.beats < end + MARGIN)] for song in self.songs]
 
 
-def unseen_songs(n: int = 50, draws: int = 1, frames: int = LONGEST, seed: int = UNSEEN, **compose) -> Songs:
+def unseen_songs(
+    n: int = 50, draws: int = 1, frames: int = LONGEST, seed: int = UNSEEN, hear: Hear = mel_of, **compose
+) -> Songs:
     """n songs long enough for `frames`, with `draws` dances of the data to each; `compose` goes to the composer."""
     made = list(songs(n, seed, frames / FPS + 1.0, **compose))
-    mel = torch.stack([log_mel(torch.from_numpy(song.audio).float()) for song in made])
+    mel = torch.stack([hear(song) for song in made])
     truth = [[dance(song, seed + 1000 * k + i).positions[:frames] for k in range(draws)] for i, song in enumerate(made)]
     return Songs(made, mel, np.stack([np.stack(row) for row in truth]))
 

@@ -7,6 +7,9 @@ from motiondiff_edu.files import replacing
 
 from .bars import BARS, Bar
 from .budget import VARIANTS
+from .claims import claims
+from .dance_tables import choices, table_1
+from .markdown import cell, number, span, table
 from .steps_table import PAPER_TABLE
 
 HEAD = """# Results
@@ -31,24 +34,6 @@ def read_records(*folders: Path) -> dict[str, dict]:
     return found
 
 
-def number(x: float | None) -> str:
-    """Three digits; a dash where there is none."""
-    if x is None or isinstance(x, str):
-        return x or "-"
-    if abs(x) < 1e-9:
-        return "0"
-    return f"{x:.0f}" if abs(x) >= 100 else f"{x:.3g}"
-
-
-def span(one: dict) -> str:
-    return "-" if one["low"] is None else f"[{number(one['low'])}, {number(one['high'])}]"
-
-
-def table(head: list[str], rows: list[list[str]]) -> str:
-    lines = ["| " + " | ".join(row) + " |" for row in (head, ["---"] * len(head), *rows)]
-    return "\n".join(lines) + "\n"
-
-
 def bars(records: dict[str, dict]) -> str:
     """Every bar with the measured figure: met, missed, or not measured."""
     rows = [[f"`{bar.name}`", bar.text, *_verdict(bar, records.get(bar.name))] for bar in BARS]
@@ -66,7 +51,7 @@ def walkers(records: dict[str, dict]) -> str:
     names = [n for n in records if n.split(".")[0].startswith("walker") and n.count(".") == 1]
     columns = sorted({n.split(".")[0] for n in names}, key=lambda c: (c != "walker", len(c), c))
     kinds = list(dict.fromkeys(n.split(".")[1] for n in names))
-    rows = [[f"`{kind}`", *(_cell(records.get(f"{column}.{kind}")) for column in columns)] for kind in kinds]
+    rows = [[f"`{kind}`", *(cell(records.get(f"{column}.{kind}")) for column in columns)] for kind in kinds]
     if not names:
         return "## The walkers\n\nNot measured yet.\n"
     seeds = {key: said for n in names for key, said in records[n]["seeds"].items()}
@@ -98,10 +83,6 @@ def _beside_the_paper(records: dict[str, dict]) -> str:
     )
 
 
-def _cell(one: dict | None) -> str:
-    return "-" if one is None or one["value"] is None else f"{number(one['value'])} {span(one)} {one['unit']}"
-
-
 def footsteps(records: dict[str, dict], folder: Path) -> str:
     """MoDiff's Table I: the paper's rows, then ours."""
     head = ["motion", "f_est", "v95, cm/s", "mean step, s", "std, s", "bone RMSE, cm"]
@@ -130,7 +111,7 @@ def budget(records: dict[str, dict]) -> str:
         return ""
     kinds = list(dict.fromkeys(n.split(".")[2] for n in mine))
     rows = [
-        [words, VARIANTS[base][0] if base else "-", *(_cell(mine.get(f"budget.{name}.{kind}")) for kind in kinds)]
+        [words, VARIANTS[base][0] if base else "-", *(cell(mine.get(f"budget.{name}.{kind}")) for kind in kinds)]
         for name, (words, base, *_) in VARIANTS.items()
         if f"budget.{name}.{kinds[0]}" in mine
     ]
@@ -145,9 +126,29 @@ def budget(records: dict[str, dict]) -> str:
     return text + table(["the choice", "compare with", *(f"`{kind}`" for kind in kinds)], rows)
 
 
+def attention(records: dict[str, dict], folder: Path) -> str:
+    """MoFusion's Fig. 4 in numbers, level by level, and the picture."""
+    kinds = ("beat_mass", "beat_mass_over_shuffled", "beat_mass_over_shifted", "seconds_read")
+    levels = [n.split(".")[1] for n in records if n.startswith("attention.") and n.endswith(".beat_mass")]
+    places = {"": "all levels", **{f"{level}.": level for level in levels if level != "beat_mass"}}
+    rows = [
+        [words, *(cell(records.get(f"attention.{place}{kind}")) for kind in kinds)] for place, words in places.items()
+    ]
+    text = (
+        "## Attention over the beats: MoFusion's Fig. 4\n\nHow much of a level's attention lies within 0.1 s of a "
+        "beat, over the same near the beats of other songs (`shuffled`) and near its own beats moved together "
+        "(`shifted`): 1 is chance. `seconds_read`: how much music a frame reads. A level is named by its frames a "
+        "second; heads averaged, three diffusion steps. Seven levels are seven chances: one outlier is no finding.\n\n"
+    )
+    if "attention.beat_mass" not in records:
+        return text + "Not measured yet.\n"
+    picture = "\n![Attention of the levels over the sound, beats dotted](results/attention.png)\n"
+    return text + table(["level", *(f"`{k}`" for k in kinds)], rows) + picture * (folder / "attention.png").exists()
+
+
 def others(records: dict[str, dict]) -> str:
     """Everything that stands in no table above, with what makes it."""
-    shown = ("walker", "footsteps", "budget.")
+    shown = ("walker", "footsteps", "budget.", "dance-budget.", "dance-time.", "attention.")
     rest = [one for name, one in sorted(records.items()) if not name.startswith(shown)]
     rows = [[f"`{r['name']}`", number(r["value"]), span(r), r["unit"], f"`{r['command']}`"] for r in rest]
     return "## Further figures\n\n" + table(["figure", "value", "interval", "unit", "made by"], rows) if rows else ""
@@ -157,6 +158,7 @@ def render(docs: Path, benchmarks: Path = Path("benchmarks/results")) -> None:
     """Write RESULTS.md beside the records, to a temporary name first."""
     records = read_records(docs / "results", benchmarks)
     parts = [HEAD, bars(records), walkers(records), footsteps(records, docs / "results")]
-    parts += [budget(records), others(records)]
+    parts += [budget(records), table_1(records), choices(records), attention(records, docs / "results")]
+    parts += [claims(records), others(records)]
     with replacing(docs / "RESULTS.md") as aside:
         aside.write_text("\n".join(part for part in parts if part))

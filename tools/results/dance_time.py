@@ -1,0 +1,95 @@
+"""What a step of training and a dance cost, network beside network: is MoFusion's U-Net light?
+
+CPU-seconds of one thread, networks taking turns in every round, so that a ratio is of the same minutes. The networks
+are untrained: what the weights are does not matter here.  Source: MoFusion 1 (lightweight); the measure is ours
+"""
+
+import time
+from dataclasses import replace
+
+import torch
+
+from benchmarks.records import record
+from motiondiff_edu.baselines.regression import regression_loss
+from motiondiff_edu.baselines.transformer import DanceTransformer, TransformerConfig
+from motiondiff_edu.dance_windows import DanceWindows, dance_loss
+from motiondiff_edu.dancer import STEPS, Dancer
+from motiondiff_edu.ddpm import cosine_schedule
+from motiondiff_edu.mofusion import MoFusion
+from motiondiff_edu.muon import optimizer_for
+from motiondiff_edu.training import TrainState, train_steps
+
+from .dance_budget import HEARD, VARIANTS, Budget, material, recipe_of
+
+BASE, TIMED = "x0", ("x0", "alpha_bar", "linear-music", "transformer", "mfcc", "regression")
+DANCES = 8  # at once
+
+
+class Clock:
+    """One network with all that a step of training, a pass and a dance need; times are CPU-seconds of one call."""
+
+    def __init__(self, name: str, windows: DanceWindows, budget: Budget):
+        recipe, schedule = recipe_of(name, budget), cosine_schedule(VARIANTS[name][2].S)
+        torch.manual_seed(recipe.seed)
+        model = (DanceTransformer if isinstance(recipe.config, TransformerConfig) else MoFusion)(recipe.config)
+        if getattr(recipe.config, "deterministic", False):
+            loss = regression_loss(windows, batch=recipe.batch)
+        else:
+            loss = dance_loss(windows, schedule, recipe.kinematic, **recipe.loss_settings)
+        state = TrainState.start(model, recipe.seed, optimizer_for(model, recipe.optimizer))
+        self.training = train_steps(state, loss, 10**6, lr=1e-4, progress=False)
+        self.dancer = Dancer(state.average, schedule, windows.motion_scaler, windows.mel_scaler)
+        self.parameters = sum(p.numel() for p in model.parameters())
+        x0, self.mel, _ = windows.draw(DANCES, torch.Generator().manual_seed(0))
+        self.x_s, self.times = x0, windows.mel_times
+
+    def step(self) -> None:
+        next(self.training)
+
+    @torch.inference_mode()
+    def one_pass(self) -> None:
+        """One call of the plain network, music included."""
+        music = self.dancer.model.listen(self.mel, self.times)
+        self.dancer.model(self.x_s, torch.full((len(self.x_s),), 500), music)
+
+    def dance(self) -> None:
+        """As a user has it: DDIM, with the fast twin where there is one."""
+        heard = self.dancer.mel_scaler.inverse(self.mel)
+        self.dancer.dance(heard, self.x_s.shape[1], generator=torch.Generator().manual_seed(0))
+
+
+def spent(call) -> float:
+    """CPU-seconds of this process."""
+    began = time.process_time()
+    call()
+    return time.process_time() - began
+
+
+def time_records(names: tuple[str, ...], budget: Budget, rounds: int, command: str) -> list[dict]:
+    """Steps, passes and dances of all names in turns; of each the median, and its ratio to BASE in the same round."""
+    before = torch.get_num_threads()
+    torch.set_num_threads(1)
+    small = replace(budget, songs=2, seconds=8.0)  # how much there is to draw from costs nothing
+    clocks = {name: Clock(name, material(name if name in HEARD else "", small), budget) for name in names}
+    spans: dict[tuple[str, str], list[float]] = {}
+    for turn in range(rounds + 1):
+        for name, clock in clocks.items():
+            calls = {"step": clock.step, "pass": clock.one_pass, "dance": clock.dance}
+            for what, call in calls.items():
+                seconds = spent(call)
+                if turn:  # the first is for warming up
+                    spans.setdefault((name, what), []).append(seconds)
+    torch.set_num_threads(before)
+    about = {"rounds": rounds, "batch": budget.batch, "dances": DANCES, "frames": clock.x_s.shape[1], "steps": STEPS}
+    found = []
+    for name in names:
+        about_it = {"seeds": about, "command": command}
+        size = f"dance-time.{name}.parameters"
+        found.append(record(size, [clocks[name].parameters], unit="", **about_it))
+        for what in ("step", "pass", "dance"):
+            mine, base = spans[name, what], spans[BASE, what]
+            kind = f"dance-time.{name}.{what}"
+            found.append(record(f"{kind}_ms", [1000 * s for s in mine], unit="CPU ms", **about_it))
+            ratios = [a / b for a, b in zip(mine, base, strict=True)]
+            found.append(record(f"{kind}_over_{BASE}", ratios, unit="ratio", **about_it))
+    return found
