@@ -10,7 +10,7 @@ import torch
 from motiondiff_edu.baselines.transformer import DanceTransformer, TransformerConfig
 from motiondiff_edu.mofusion import MoFusion, MoFusionConfig
 from tools.results import __main__ as command
-from tools.results import dance_budget, dance_time, scores
+from tools.results import dance_budget, dance_tables, dance_time, scores
 from tools.results.dance_budget import FULL, QUICK, VARIANTS, budget_records, recipe_of
 from tools.results.dance_parts import Danced, DanceSize
 from tools.results.dance_scores import rows_of
@@ -139,6 +139,10 @@ def test_times_are_of_every_network_and_the_base_is_one(tiny):
     for name, kind in networks.items():
         size = sum(p.numel() for p in kind(VARIANTS[name][2]).parameters())
         assert found[f"dance-time.{name}.parameters"]["value"] == size
+    page = dance_tables.choices(found)
+    assert "a training step (batch 3)" in page and "8 dances of 100 frames" in page
+    (line,) = [line for line in page.splitlines() if line.startswith("| `transformer` | ")]
+    assert line.count(" | ") == 7
     # twenty passes against one
     assert found["dance-time.transformer.dance_ms"]["value"] > 3 * found["dance-time.regression.dance_ms"]["value"]
     assert torch.get_num_threads() >= 1

@@ -83,13 +83,11 @@ def time_records(names: tuple[str, ...], budget: Budget, rounds: int, command: s
     about = {"rounds": rounds, "batch": budget.batch, "dances": DANCES, "frames": clock.x_s.shape[1], "steps": STEPS}
     found = []
     for name in names:
-        about_it = {"seeds": about, "command": command}
-        size = f"dance-time.{name}.parameters"
-        found.append(record(size, [clocks[name].parameters], unit="", **about_it))
+        found.append(record(f"dance-time.{name}.parameters", [clocks[name].parameters], unit="", command=command))
         for what in ("step", "pass", "dance"):
             mine, base = spans[name, what], spans[BASE, what]
             kind = f"dance-time.{name}.{what}"
-            found.append(record(f"{kind}_ms", [1000 * s for s in mine], unit="CPU ms", **about_it))
+            found.append(record(f"{kind}_ms", [1000 * s for s in mine], unit="CPU ms", command=command))
             ratios = [a / b for a, b in zip(mine, base, strict=True)]
-            found.append(record(f"{kind}_over_{BASE}", ratios, unit="ratio", **about_it))
-    return found
+            found.append(record(f"{kind}_over_{BASE}", ratios, unit="ratio", command=command))
+    return [one | {"seeds": about} for one in found]
