@@ -5,84 +5,104 @@ Notebook: 00, 07, 12
 """
 
 import json
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 from torch import Tensor
 
-from .baselines.transformer import DanceTransformer, TransformerConfig
+from . import dancer, foothold
+from .baselines.transformer import TransformerConfig
 from .dancer import Dancer
 from .ddpm import make_schedule
-from .foothold import FootholdConfig, network
+from .foothold import FootholdConfig
 from .modiff import MoDiffConfig
-from .mofusion import MoFusion, MoFusionConfig
+from .mofusion import MoFusionConfig
 from .motion.scaler import Scaler
 from .walker import Walker
-from .weights_file import CheckpointError, check_sizes, config_of, format_of, read_weights, write_weights
+from .weights_file import CheckpointError, check_sizes, config_of, read_weights, write_weights
 
-__all__ = ["CheckpointError", "available", "load_dancer", "load_walker", "pretrained", "save_dancer", "save_walker"]
+__all__ = ["CheckpointError", "available", "load", "load_dancer", "load_walker", "pretrained", "save"]
 
-WALKER, DANCER = "motiondiff_edu walker 2", "motiondiff_edu dancer 1"
 FOLDER = Path(__file__).parent / "pretrained"
-NETWORKS = {"MoDiff": MoDiffConfig, "FootholdMoDiff": FootholdConfig}  # by the name of the class
-DANCING = {"MoFusion": (MoFusionConfig, MoFusion), "DanceTransformer": (TransformerConfig, DanceTransformer)}
 
 
-def save_walker(walker: Walker, path: str | Path, half: bool = True) -> Path:
-    """Write a walker: weights (float16 unless half=False), scalers, schedule, card. A card.json is laid beside it.
+@dataclass(frozen=True)
+class Kind:
+    """A kind of figure: its format in files, its scalers (of D and of C columns), and the networks it may have."""
 
-    Written to a temporary name and renamed.  Notebook: 07
+    format: str
+    figure: type
+    scalers: tuple[str, str]
+    networks: Mapping[str, type]  # the configuration, by the name of the network's class; the first is the usual one
+    network: Callable  # of a configuration and the two scalers
+
+
+WALKER = Kind(
+    "motiondiff_edu walker 2",
+    Walker,
+    ("pose", "control"),
+    {"MoDiff": MoDiffConfig, "FootholdMoDiff": FootholdConfig},
+    foothold.network,
+)
+DANCER = Kind(
+    "motiondiff_edu dancer 1",
+    Dancer,
+    ("motion", "mel"),
+    {"MoFusion": MoFusionConfig, "DanceTransformer": TransformerConfig},
+    lambda config, *scalers: dancer.network(config),
+)
+KINDS = (WALKER, DANCER)
+
+
+def save(figure: Walker | Dancer, path: str | Path, half: bool = True) -> Path:
+    """Write a walker or dancer: weights (float16 unless half=False), scalers, schedule, card.
+
+    A card.json is laid beside it. Written to a temporary name and renamed.  Notebook: 07, 12
     """
-    return _save(walker, path, WALKER, {"pose": walker.pose_scaler, "control": walker.control_scaler}, half)
-
-
-def save_dancer(dancer: Dancer, path: str | Path, half: bool = True) -> Path:
-    """Write a dancer, as `save_walker` writes a walker.  Notebook: 12"""
-    return _save(dancer, path, DANCER, {"motion": dancer.motion_scaler, "mel": dancer.mel_scaler}, half)
-
-
-def _save(figure: Walker | Dancer, path: str | Path, kind: str, scalers: dict[str, Scaler], half: bool) -> Path:
+    kind = DANCER if isinstance(figure, Dancer) else WALKER
+    scalers = {name: getattr(figure, f"{name}_scaler") for name in kind.scalers}
     tensors = {f"model.{k}": v.half() if half else v for k, v in figure.model.state_dict().items()}
     tensors |= {f"{name}.{part}": getattr(s, part) for name, s in scalers.items() for part in ("mean", "std")}
     tensors["schedule.beta"] = figure.schedule.beta[1:]
-    settings = {"format": kind, "network": type(figure.model).__name__, "schedule": figure.schedule.name}
+    settings = {"format": kind.format, "network": type(figure.model).__name__, "schedule": figure.schedule.name}
     return write_weights(path, tensors, settings, figure.config.as_dict(), figure.card)
 
 
+def load(path: str | Path) -> Walker | Dancer:
+    """Read a walker or a dancer, whichever it is.
+
+    Raises CheckpointError for a file that is missing, damaged, or not one of ours.  Notebook: 00
+    """
+    return _read(path, *KINDS)
+
+
 def load_walker(path: str | Path) -> Walker:
-    """Read a walker.  Raises CheckpointError for a file that is missing, damaged, or not one of ours."""
-    return read_weights(path, WALKER, _walker)
+    """Read a walker.  Raises CheckpointError as `load`, and for a dancer.  Notebook: 07"""
+    return _read(path, WALKER)
 
 
 def load_dancer(path: str | Path) -> Dancer:
-    """Read a dancer, or a baseline that dances.  Raises CheckpointError as `load_walker` does."""
-    return read_weights(path, DANCER, _dancer)
+    """Read a dancer, or a baseline that dances.  Raises CheckpointError as `load`, and for a walker.  Notebook: 12"""
+    return _read(path, DANCER)
 
 
-def _walker(tensors: dict[str, Tensor], metadata: dict[str, str]) -> Walker:
-    config = config_of(metadata, NETWORKS, "MoDiff")
-    check_sizes(tensors, {f"{n}.{part}": getattr(config, size) for n, size in (("pose", "D"), ("control", "C"))
-                          for part in ("mean", "std")} | {"schedule.beta": config.S})  # fmt: skip
-    scalers = [Scaler(tensors[f"{n}.mean"], tensors[f"{n}.std"]) for n in ("pose", "control")]
-    return Walker(_filled(network(config, *scalers), tensors), *_rest(tensors, metadata, scalers))
+def _read(path: str | Path, *kinds: Kind) -> Walker | Dancer:
+    return read_weights(path, {kind.format: partial(_assembled, kind) for kind in kinds})
 
 
-def _dancer(tensors: dict[str, Tensor], metadata: dict[str, str]) -> Dancer:
-    config = config_of(metadata, {name: kind for name, (kind, _) in DANCING.items()}, "MoFusion")
-    check_sizes(tensors, {f"{n}.{part}": getattr(config, size) for n, size in (("motion", "D"), ("mel", "C"))
-                          for part in ("mean", "std")} | {"schedule.beta": config.S})  # fmt: skip
-    scalers = [Scaler(tensors[f"{n}.mean"], tensors[f"{n}.std"]) for n in ("motion", "mel")]
-    model = DANCING[metadata.get("network", "MoFusion")][1](config)
-    return Dancer(_filled(model, tensors), *_rest(tensors, metadata, scalers))
-
-
-def _filled(model, tensors: dict[str, Tensor]):
+def _assembled(kind: Kind, tensors: dict[str, Tensor], metadata: dict[str, str]) -> Walker | Dancer:
+    config = config_of(metadata, kind.networks, next(iter(kind.networks)))
+    sizes = dict(zip(kind.scalers, (config.D, config.C), strict=True))
+    vectors = {f"{name}.{part}": size for name, size in sizes.items() for part in ("mean", "std")}
+    check_sizes(tensors, vectors | {"schedule.beta": config.S})
+    scalers = [Scaler(tensors[f"{name}.mean"], tensors[f"{name}.std"]) for name in kind.scalers]
+    model = kind.network(config, *scalers)
     model.load_state_dict({k[6:]: v.float() for k, v in tensors.items() if k.startswith("model.")})
-    return model.eval().requires_grad_(False)
-
-
-def _rest(tensors: dict[str, Tensor], metadata: dict[str, str], scalers: list[Scaler]) -> tuple:
+    schedule = make_schedule(tensors["schedule.beta"], metadata["schedule"])
     card = json.loads(metadata.get("card", "{}")) or {}
-    return make_schedule(tensors["schedule.beta"], metadata["schedule"]), *scalers, card
+    return kind.figure(model.eval().requires_grad_(False), schedule, *scalers, card)
 
 
 def available() -> dict[str, Path]:
@@ -102,4 +122,4 @@ def pretrained(name: str = "walker") -> Walker | Dancer:
     if name not in files:
         there = ", ".join(files) or "none (run make pretrained)"
         raise CheckpointError(f"no weights are called {name!r}; there are: {there}")
-    return (load_dancer if format_of(files[name]) == DANCER else load_walker)(files[name])
+    return load(files[name])

@@ -27,6 +27,11 @@ from .prediction import denoiser_of
 STEPS = 20  # of DDIM, unless told
 
 
+def network(config: MoFusionConfig | TransformerConfig) -> MoFusion | DanceTransformer:
+    """The network that a configuration asks for."""
+    return (DanceTransformer if isinstance(config, TransformerConfig) else MoFusion)(config)
+
+
 @dataclass(frozen=True, eq=False)
 class Dancer:
     """The network, in its own units, and the scalers that lead there from metres and log-Mel."""

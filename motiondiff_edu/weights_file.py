@@ -18,6 +18,7 @@ from torch import Tensor
 from .files import digest_of_tensors, digest_of_texts, replacing
 
 Config = TypeVar("Config")
+Assemble = Callable[[dict[str, Tensor], dict[str, str]], object]  # (tensors, metadata) -> what they are
 SETTINGS = ("format", "network", "config", "schedule")  # what settles how the tensors are used
 
 
@@ -38,23 +39,17 @@ def write_weights(path: str | Path, tensors: Mapping[str, Tensor], settings: dic
     return path
 
 
-def format_of(path: str | Path) -> str:
-    """What kind of weights a file holds, by its own words; "" when it says nothing."""
-    return _opened(Path(path))[0].get("format", "")
-
-
-def read_weights(
-    path: str | Path, wanted: str, assemble: Callable[[dict[str, Tensor], dict[str, str]], object]
-) -> object:
-    """Read a file of the format `wanted`, check it, and let `assemble(tensors, metadata)` make something of it.
+def read_weights(path: str | Path, kinds: Mapping[str, Assemble]) -> object:
+    """Read a file of one of the formats `kinds`, check it, and return kinds[format](tensors, metadata).
 
     Raises CheckpointError for a file that is missing, damaged, or of another format.
     """
     path = Path(path)
     metadata, tensors = _opened(path)
-    if metadata.get("format") != wanted:
-        kind = wanted.split()[1]
-        raise CheckpointError(f"{path.name} is no {kind} of this project ({_looks_like(metadata, tensors)})")
+    assemble = kinds.get(metadata.get("format", ""))
+    if assemble is None:
+        wanted = " or ".join(name.split()[1] for name in kinds)
+        raise CheckpointError(f"{path.name} is no {wanted} of this project ({_looks_like(metadata, tensors)})")
     for what, digest in _digests(tensors, metadata).items():
         if metadata.get(what) != digest:
             part = "tensors" if what == "sha256" else "settings"

@@ -12,7 +12,7 @@ from safetensors import safe_open
 from safetensors.torch import load_file, save_file
 
 from motiondiff_edu import checkpoints, weights_file
-from motiondiff_edu.checkpoints import CheckpointError, available, load_walker, pretrained, save_walker
+from motiondiff_edu.checkpoints import CheckpointError, available, load, load_walker, pretrained, save
 from motiondiff_edu.ddpm import linear_schedule
 from motiondiff_edu.modiff import MoDiff, MoDiffConfig
 from motiondiff_edu.motion.scaler import Scaler
@@ -29,7 +29,7 @@ def tiny_walker() -> Walker:
 
 @pytest.fixture()
 def saved(tmp_path: Path) -> Path:
-    return save_walker(tiny_walker(), tmp_path / "tiny.safetensors")
+    return save(tiny_walker(), tmp_path / "tiny.safetensors")
 
 
 def rewrite(path: Path, change, metadata=None) -> None:
@@ -43,7 +43,7 @@ def rewrite(path: Path, change, metadata=None) -> None:
 
 def test_round_trip_in_full_precision_is_exact(tmp_path: Path):
     walker = tiny_walker()
-    back = load_walker(save_walker(walker, tmp_path / "tiny.safetensors", half=False))
+    back = load_walker(save(walker, tmp_path / "tiny.safetensors", half=False))
     assert back.config == walker.config and back.card == walker.card
     for (name, old), new in zip(walker.model.state_dict().items(), back.model.state_dict().values(), strict=True):
         assert torch.equal(old, new), name
@@ -80,6 +80,13 @@ def test_aliases_and_unknown_names(saved: Path, monkeypatch: pytest.MonkeyPatch)
         pretrained("dancer")
 
 
+def test_shipped_weights_are_read_once(saved: Path, monkeypatch: pytest.MonkeyPatch):
+    reads, opened = [], weights_file._opened
+    monkeypatch.setattr(weights_file, "_opened", lambda path: reads.append(path) or opened(path))
+    monkeypatch.setattr(checkpoints, "FOLDER", saved.parent)
+    assert isinstance(pretrained("tiny"), Walker) and reads == [saved]
+
+
 def test_with_no_weights_at_all_it_says_how_to_make_them(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setattr(checkpoints, "FOLDER", tmp_path)
     with pytest.raises(CheckpointError, match="none .run make pretrained."):
@@ -89,6 +96,8 @@ def test_with_no_weights_at_all_it_says_how_to_make_them(tmp_path: Path, monkeyp
 def test_a_missing_file(tmp_path: Path):
     with pytest.raises(CheckpointError, match="there is no weights file .*gone.safetensors"):
         load_walker(tmp_path / "gone.safetensors")
+    with pytest.raises(CheckpointError, match="there is no weights file .*gone.safetensors"):
+        load(tmp_path / "gone.safetensors")
 
 
 @pytest.mark.parametrize("share", [0.0, 0.001, 0.1, 0.9, 0.9999])
@@ -122,6 +131,8 @@ def test_a_foreign_safetensors_file(tmp_path: Path):
     save_file({"encoder.weight": torch.zeros(2, 3), "bias": torch.zeros(3)}, path)
     with pytest.raises(CheckpointError, match="no walker of this project .its tensors begin with bias, encoder"):
         load_walker(path)
+    with pytest.raises(CheckpointError, match="no walker or dancer of this project"):
+        load(path)
 
 
 class Bomb:
@@ -172,7 +183,7 @@ def test_a_tensor_of_another_size(saved: Path):
     rewrite(saved, lambda tensors: tensors.update({"model.past_in.weight": torch.zeros(16, 62)}))
     with pytest.raises(CheckpointError, match="(?s)weights and configuration disagree.*past_in.weight"):
         load_walker(saved)
-    save_walker(tiny_walker(), saved)
+    save(tiny_walker(), saved)
     rewrite(saved, lambda tensors: tensors.update({"pose.mean": torch.zeros(62)}))
     with pytest.raises(CheckpointError, match="pose.mean has the shape .62,. where .63,. belongs"):
         load_walker(saved)
@@ -210,7 +221,7 @@ def test_a_schedule_out_of_range_or_of_another_length(saved: Path):
     rewrite(saved, lambda tensors: tensors["schedule.beta"].fill_(1.5))
     with pytest.raises(CheckpointError, match="every beta must lie between 0 and 1"):
         load_walker(saved)
-    save_walker(tiny_walker(), saved)
+    save(tiny_walker(), saved)
     rewrite(saved, lambda tensors: tensors.update({"schedule.beta": torch.full((9,), 0.4, dtype=torch.float64)}))
     with pytest.raises(CheckpointError, match="schedule.beta has the shape .9,. where .6,. belongs"):
         load_walker(saved)
@@ -229,7 +240,7 @@ NONSENSE = [
 
 @pytest.mark.parametrize("config", NONSENSE)
 def test_a_configuration_that_makes_no_sense(saved: Path, config: str | None):
-    metadata = {"format": checkpoints.WALKER, "schedule": "linear", "card": "{}"}
+    metadata = {"format": checkpoints.WALKER.format, "schedule": "linear", "card": "{}"}
     rewrite(saved, lambda tensors: None, metadata | ({"config": config} if config else {}))
     with pytest.raises(CheckpointError, match="tiny.safetensors"):
         load_walker(saved)
@@ -246,5 +257,5 @@ def test_a_network_of_a_later_version_is_refused_by_name(saved: Path):
 def test_a_whole_number_for_a_share_comes_back(tmp_path: Path):
     walker = tiny_walker()
     model = MoDiff(replace(walker.config, dropout=0))
-    kept = save_walker(replace(walker, model=model), tmp_path / "whole.safetensors")
+    kept = save(replace(walker, model=model), tmp_path / "whole.safetensors")
     assert load_walker(kept).config.dropout == 0

@@ -8,7 +8,7 @@ from synthetic_dance import windows
 
 from motiondiff_edu.baselines.regression import REGRESSION, regression_loss
 from motiondiff_edu.baselines.transformer import DanceTransformer, TransformerConfig
-from motiondiff_edu.checkpoints import CheckpointError, load_dancer, load_walker, save_dancer
+from motiondiff_edu.checkpoints import CheckpointError, load, load_dancer, load_walker, save
 from motiondiff_edu.dancer import Dancer
 from motiondiff_edu.ddpm import cosine_schedule
 from motiondiff_edu.mofusion import MoFusion, MoFusionConfig
@@ -88,15 +88,16 @@ def test_regression_learns_the_mean_of_what_it_sees():
 @pytest.mark.parametrize("config", [UNET, PLAIN])
 def test_a_file_gives_the_same_dancer_back(config, tmp_path: Path):
     one = dancer(config)
-    again = load_dancer(save_dancer(one, tmp_path / "one.safetensors", half=False))
+    again = load_dancer(save(one, tmp_path / "one.safetensors", half=False))
     assert again.config == config and again.card == {"name": "test"}
+    assert isinstance(load(tmp_path / "one.safetensors"), Dancer)
     start = torch.randn(2, 20, 63)
     both = [d.dance(mel(), start=start, frames=20, steps=3, eta=0.0) for d in (one, again)]
     torch.testing.assert_close(*both, atol=1e-6, rtol=1e-6)
 
 
 def test_a_dancer_is_no_walker(tmp_path: Path):
-    path = save_dancer(dancer(), tmp_path / "one.safetensors")
+    path = save(dancer(), tmp_path / "one.safetensors")
     with pytest.raises(CheckpointError, match="no walker .*dancer"):
         load_walker(path)
 

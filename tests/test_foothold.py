@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 import torch
 
-from motiondiff_edu.checkpoints import load_walker, save_walker
+from motiondiff_edu.checkpoints import load_walker, save
 from motiondiff_edu.ddpm import linear_schedule
 from motiondiff_edu.fast.foothold import FastFoothold
 from motiondiff_edu.foothold import (
@@ -129,7 +129,7 @@ def test_fast_twin_gives_the_same_numbers():
 
 def test_the_weights_file_keeps_the_gate_and_the_walker_walks(tmp_path: Path):
     walker = Walker(tiny(), linear_schedule(8, 0.2, 0.95), POSE, CONTROL)
-    back = load_walker(save_walker(walker, tmp_path / "tiny.safetensors", half=False))
+    back = load_walker(save(walker, tmp_path / "tiny.safetensors", half=False))
     assert isinstance(back.model, FootholdMoDiff)
     (_, _, past, control), seed = inputs(), lambda: torch.Generator().manual_seed(3)
     torch.testing.assert_close(

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 import torch
 
-from motiondiff_edu.checkpoints import load_walker, save_walker
+from motiondiff_edu.checkpoints import load_walker, save
 from motiondiff_edu.foothold import FootholdConfig
 from motiondiff_edu.modiff import MODIFF_SMALL
 from motiondiff_edu.pretrained import train as train_module
@@ -32,7 +32,7 @@ def test_the_data_hold_every_clip_four_times_when_all_are_reversed():
 
 def test_a_recipe_becomes_a_walker_with_its_card(tmp_path: Path):
     walker = train(SHORT, tmp_path / "run", log=quiet)
-    card = load_walker(save_walker(walker, tmp_path / "short.safetensors")).card
+    card = load_walker(save(walker, tmp_path / "short.safetensors")).card
     assert card["name"] == "short" and card["target"] == "eps" and card["recipe"]["steps"] == 6
     assert card["frames"] == 8 * 40 and card["minutes"] >= 0 and card["final_loss"] > 0
     (sitting,) = card["sittings"]

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import torch
 
-from ..checkpoints import FOLDER, save_dancer, save_walker
+from ..checkpoints import FOLDER, save
 from ..files import replacing
 from .dance_recipes import DANCE_RECIPES, SHIPPED_DANCERS
 from .recipes import RECIPES, SHIPPED
@@ -41,9 +41,8 @@ def build(name: str, run: Path, out: Path) -> Path:
     def log(line: str) -> None:
         print(line, flush=True)
 
-    if name in RECIPES:
-        return save_walker(train(RECIPES[name], run, log=log), out)
-    return save_dancer(train_dancer(DANCE_RECIPES[name], run, log=log), out)
+    figure = train(RECIPES[name], run, log=log) if name in RECIPES else train_dancer(DANCE_RECIPES[name], run, log=log)
+    return save(figure, out)
 
 
 def point_alias(folder: Path, name: str) -> None:

@@ -6,13 +6,11 @@ from pathlib import Path
 import torch
 
 from ..baselines.regression import regression_loss
-from ..baselines.transformer import DanceTransformer, TransformerConfig
 from ..conditions.music import log_mel
 from ..dance_windows import DanceWindows, dance_loss
-from ..dancer import Dancer
+from ..dancer import Dancer, network
 from ..ddpm import cosine_schedule
 from ..files import digest_of_tensors
-from ..mofusion import MoFusion
 from ..muon import optimizer_for
 from ..runs import notes_of, resume_run, saver
 from ..training import TrainState, cosine_lr
@@ -34,11 +32,6 @@ def training_windows(recipe: DanceRecipe) -> DanceWindows:
     return DanceWindows.of(dances, contacts, mels, recipe.frames)
 
 
-def network_of(config) -> MoFusion | DanceTransformer:
-    """The network that a configuration asks for."""
-    return (DanceTransformer if isinstance(config, TransformerConfig) else MoFusion)(config)
-
-
 def train_dancer(recipe: DanceRecipe, run_file: Path, windows: DanceWindows | None = None, log=print) -> Dancer:
     """Train (or continue) a recipe; `run_file` holds the run.  Returns the averaged network as a dancer.
 
@@ -48,7 +41,7 @@ def train_dancer(recipe: DanceRecipe, run_file: Path, windows: DanceWindows | No
     windows = windows or training_windows(recipe)
     schedule = cosine_schedule(recipe.config.S)
     device = "cuda" if torch.cuda.is_available() else "cpu"
-    model = network_of(recipe.config).to(device)
+    model = network(recipe.config).to(device)
     about = asdict(recipe) | {"network": type(model).__name__, "data": digest(windows)}
     state = TrainState.start(model, recipe.seed, optimizer_for(model, recipe.optimizer))
     if run_file.exists():

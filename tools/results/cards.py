@@ -4,7 +4,6 @@ from dataclasses import replace
 from pathlib import Path
 
 from motiondiff_edu import checkpoints
-from motiondiff_edu.weights_file import format_of
 
 from .parts import kept_records, weights_digest
 
@@ -22,12 +21,6 @@ def metrics(folder: Path, name: str, digest: str) -> dict[str, float]:
 def add_metrics(folder: Path) -> None:
     """Write the figures of `folder` into the cards; a file whose card says so already is left alone."""
     for path in set(checkpoints.available().values()):
-        dances = format_of(path) == checkpoints.DANCER
-        load, save = (
-            (checkpoints.load_dancer, checkpoints.save_dancer)
-            if dances
-            else (checkpoints.load_walker, checkpoints.save_walker)
-        )
-        figure, found = load(path), metrics(folder, path.stem, weights_digest(path))
+        figure, found = checkpoints.load(path), metrics(folder, path.stem, weights_digest(path))
         if figure.card.get("metrics", {}) != found:
-            save(replace(figure, card=figure.card | {"metrics": found}), path)
+            checkpoints.save(replace(figure, card=figure.card | {"metrics": found}), path)
