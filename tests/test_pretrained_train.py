@@ -13,7 +13,8 @@ from motiondiff_edu.modiff import MODIFF_SMALL
 from motiondiff_edu.pretrained import train as train_module
 from motiondiff_edu.pretrained.budget import train_for
 from motiondiff_edu.pretrained.recipes import RECIPES, SHIPPED, WALKER_X0, Recipe
-from motiondiff_edu.pretrained.train import commit_of, train, training_clips
+from motiondiff_edu.pretrained.train import train, training_clips
+from motiondiff_edu.pretrained.train_recipe import commit_of
 from motiondiff_edu.windows import window_loss
 
 TINY = replace(MODIFF_SMALL, width=16, heads=2, hidden=24, T_p=5)
