@@ -13,6 +13,8 @@ import torch
 from jaxtyping import Bool, Float, Int
 from torch import Tensor, nn
 
+from .conditions.music import FRAMES_PER_SECOND as MEL_FPS
+from .conditions.music import frame_times
 from .ddpm import Schedule, q_sample
 from .kinematic_loss import (
     KinematicWeights,
@@ -28,7 +30,7 @@ from .motion.scaler import Scaler
 from .motion.skeleton import BONES, JOINTS, TOES
 from .prediction import target_of, to_x0
 
-FPS, MEL_FPS = 20.0, 31.25
+FPS = 20.0
 MOTION_GRID, MEL_GRID = 16, 25  # frames in 0.8 s
 PAIRS = tuple(
     (k, next(i for i, (_, other) in enumerate(BONES) if JOINTS[other] == JOINTS[child].replace("Left", "Right")))
@@ -94,7 +96,7 @@ class DanceWindows:
     @property
     def mel_times(self) -> Float[Tensor, "M"]:
         """When the Mel frames of a window sound: seconds from its first frame."""
-        return torch.arange(mel_frames(self.motion.shape[1])) / MEL_FPS
+        return frame_times(mel_frames(self.motion.shape[1])).float()
 
     def draw(
         self, batch: int, generator: torch.Generator

@@ -14,7 +14,7 @@ from torch import Tensor
 
 from .baselines.transformer import DanceTransformer, TransformerConfig
 from .conditions.audio_files import read_audio
-from .conditions.music import SAMPLE_RATE, log_mel
+from .conditions.music import SAMPLE_RATE, frame_times, log_mel
 from .dance_windows import FPS, MEL_FPS, mel_frames
 from .ddpm import Schedule
 from .fast.mofusion import FastMoFusion
@@ -56,14 +56,17 @@ class Dancer:
         """The fast twin, built at first use (of the U-Net; a baseline has none)."""
         return FastMoFusion(self.model)
 
+    def heard(self, mel: Float[Tensor, "B M C"], frames: int) -> tuple[Float[Tensor, "B M2 C"], Float[Tensor, "M2"]]:
+        """What sounds during so many frames, in the network's units, and when: what it is to `listen` to."""
+        mel = self.mel_scaler.transform(mel[:, : mel_frames(frames)])
+        return mel, frame_times(mel.shape[1]).float()
+
     def denoiser(self, mel: Float[Tensor, "B M C"], frames: int):
         """`denoise(x_s, s) -> eps_hat` for this music, in the network's units."""
-        heard = self.mel_scaler.transform(mel[:, : mel_frames(frames)])
-        times = torch.arange(heard.shape[1]) / MEL_FPS
         if isinstance(self.model, MoFusion):
-            listening = self.fast.listen(heard, times, frames)
+            listening = self.fast.listen(*self.heard(mel, frames), frames)
             return self._as_eps(lambda x_s, s: self.fast.denoise(x_s, s, listening))
-        music = self.model.listen(heard, times)
+        music = self.model.listen(*self.heard(mel, frames))
         return self._as_eps(lambda x_s, s: self.model(x_s, s, music))
 
     def _as_eps(self, network):
@@ -118,8 +121,7 @@ class Dancer:
 
     def _regress(self, mel: Float[Tensor, "B M C"], frames: int) -> Float[Tensor, "B T 21 3"]:
         """The one dance that a regression has for each song."""
-        heard = self.mel_scaler.transform(mel[:, : mel_frames(frames)])
-        music = self.model.listen(heard, torch.arange(heard.shape[1]) / MEL_FPS)
-        nothing = heard.new_zeros(len(mel), frames, self.config.D)
+        music = self.model.listen(*self.heard(mel, frames))
+        nothing = mel.new_zeros(len(mel), frames, self.config.D)
         out = self.model(nothing, torch.zeros(len(mel), dtype=torch.long), music)
         return to_positions(self.motion_scaler.inverse(out))

@@ -18,7 +18,6 @@ from torch import Tensor
 from .conditions.audio_files import read_audio
 from .conditions.music import SAMPLE_RATE, log_mel
 from .cross_modal_attention import watch
-from .dance_windows import MEL_FPS, mel_frames
 from .dancer import STEPS, Dancer
 from .ddpm import q_sample
 from .mofusion import MoFusion, MoFusionConfig
@@ -64,9 +63,8 @@ def attention_maps(
         raise ValueError(f"this dancer's steps are 1 to {dancer.schedule.S}, not {s}")
     x0 = dancer.motion_scaler.transform(torch.from_numpy(to_features(dance)).float())[None]
     x_s = q_sample(x0, torch.tensor([s]), dancer.schedule, torch.randn(x0.shape, generator=generator))
-    heard = dancer.mel_scaler.transform(mel[None, : mel_frames(T)])
     with watch(model) as seen:
-        music = model.listen(heard, torch.arange(heard.shape[1]) / MEL_FPS)
+        music = model.listen(*dancer.heard(mel[None], T))
         model(x_s, torch.tensor([s]), music)
     maps = {
         name: seen[layer][0][0].mean(0)[: -(-T // 2**level)].numpy()  # rows beyond the dance are padding
