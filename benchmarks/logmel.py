@@ -6,12 +6,12 @@ Run: python benchmarks/logmel.py [--repeats 40] [--out benchmarks/results/logmel
 """
 
 import argparse
-import time
 
 import librosa
 import numpy as np
 import torch
 from records import record, show, write_records
+from timing import in_turn
 
 from motiondiff_edu.conditions import music
 
@@ -29,24 +29,6 @@ def theirs(audio: np.ndarray, n_fft: int) -> np.ndarray:
     return np.log(np.maximum(mel, music.FLOOR))
 
 
-def measure(runs: dict, repeats: int) -> dict[str, np.ndarray]:
-    """Milliseconds of every run in every repeat: the best of three within each."""
-    times = {name: [] for name in runs}
-    rng = np.random.default_rng(0)
-    for repeat in range(-3, repeats):
-        for name in rng.permutation(list(runs)):
-            best = min(_time(runs[name]) for _ in range(3))
-            if repeat >= 0:
-                times[name].append(1000 * best)
-    return {name: np.array(values) for name, values in times.items()}
-
-
-def _time(run) -> float:
-    start = time.perf_counter()
-    run()
-    return time.perf_counter() - start
-
-
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--repeats", type=int, default=40)
@@ -56,13 +38,15 @@ def main() -> None:
     audio = noise()
     sound = torch.from_numpy(audio)
     np.testing.assert_allclose(music.log_mel(sound).numpy(), theirs(audio, music.N_FFT).T, atol=1e-4)
-    times = measure(
+    times = in_turn(
         {
             "ours": lambda: music.log_mel(sound),
             "librosa": lambda: theirs(audio, music.N_FFT),
             "default_window": lambda: theirs(audio, 2048),
         },
         args.repeats,
+        best_of=3,
+        warmup=3,
     )
     milliseconds = {"unit": "ms", "command": COMMAND}
     records = [

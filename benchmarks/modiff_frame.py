@@ -7,13 +7,13 @@ Run: python benchmarks/modiff_frame.py [--repeats 12] [--threads 1 2] [--out ben
 
 import argparse
 import os
-import time
 from collections.abc import Callable
 
 import numpy as np
 import torch
 from diffusers import DDPMScheduler
 from records import record, show, write_records
+from timing import in_turn
 
 from motiondiff_edu.ddpm import linear_schedule
 from motiondiff_edu.modiff import MODIFF_PAPER, MODIFF_SMALL, MoDiff, MoDiffConfig
@@ -71,14 +71,9 @@ def check_equal(runs: dict[str, Sampler], past: torch.Tensor, control: torch.Ten
 
 def measure(runs: dict[str, Sampler], past, control, repeats: int) -> dict[str, np.ndarray]:
     """Milliseconds a frame of every sampler in every repeat."""
-    times, rng, generator = {name: [] for name in runs}, np.random.default_rng(0), torch.Generator()
-    for repeat in range(-1, repeats):
-        for name in rng.permutation(list(runs)):
-            start = time.perf_counter()
-            runs[name](past, control, generator.manual_seed(3))
-            if repeat >= 0:
-                times[name].append(1000 * (time.perf_counter() - start))
-    return {name: np.array(values) for name, values in times.items()}
+    generator = torch.Generator()
+    frames = {name: lambda run=run: run(past, control, generator.manual_seed(3)) for name, run in runs.items()}
+    return in_turn(frames, repeats)
 
 
 def records_of(size: str, threads: int, times: dict[str, np.ndarray], bar: bool) -> list[dict]:

@@ -6,13 +6,12 @@ Run: python benchmarks/sampler_overhead.py [--repeats 40] [--out benchmarks/resu
 
 import argparse
 import importlib.util
-import time
 from types import SimpleNamespace
 
-import numpy as np
 import torch
 from diffusers import DDIMScheduler, DDPMScheduler
 from records import record, show, write_records
+from timing import in_turn
 
 from motiondiff_edu.ddpm import linear_schedule, sample_steps
 from motiondiff_edu.fast.samplers import ddim_steps, ddpm_steps
@@ -79,41 +78,23 @@ def run_smalldiffusion():
     return run
 
 
-def measure(runs: dict, repeats: int) -> dict[str, np.ndarray]:
-    """Microseconds a step of every sampler in every repeat: the best of three within each, in changing order."""
-    times, x = {name: [] for name in runs}, torch.randn(SHAPE)
-    rng = np.random.default_rng(0)
-    for repeat in range(-3, repeats):
-        for name in rng.permutation(list(runs)):
-            best = min(_time(runs[name], x) for _ in range(3))
-            if repeat >= 0:
-                times[name].append(best / S * 1e6)
-    return {name: np.array(values) for name, values in times.items()}
-
-
-def _time(run, x) -> float:
-    start = time.perf_counter()
-    run(x)
-    return time.perf_counter() - start
-
-
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--repeats", type=int, default=40)
     parser.add_argument("--out", default="benchmarks/results/sampler_overhead.json")
     args = parser.parse_args()
     torch.set_num_threads(1)
-    times = measure(
-        {
-            "ours": run_ours(ddpm_steps),
-            "plain": run_ours(sample_steps),
-            "ours_ddim": run_ours(lambda m, x, sch: ddim_steps(m, x, sch, steps=S)),
-            "diffusers": run_diffusers(DDPMScheduler),
-            "diffusers_ddim": run_diffusers(DDIMScheduler),
-            "smalldiffusion": run_smalldiffusion(),
-        },
-        args.repeats,
-    )
+    runs = {
+        "ours": run_ours(ddpm_steps),
+        "plain": run_ours(sample_steps),
+        "ours_ddim": run_ours(lambda m, x, sch: ddim_steps(m, x, sch, steps=S)),
+        "diffusers": run_diffusers(DDPMScheduler),
+        "diffusers_ddim": run_diffusers(DDIMScheduler),
+        "smalldiffusion": run_smalldiffusion(),
+    }
+    x = torch.randn(SHAPE)
+    loops = {name: lambda run=run: run(x) for name, run in runs.items()}
+    times = {name: 1000 * ms / S for name, ms in in_turn(loops, args.repeats, best_of=3, warmup=3).items()}
     records = [
         record(f"bench.sampler_us.{name}", values, unit="us a step", command=COMMAND) for name, values in times.items()
     ]

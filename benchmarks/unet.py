@@ -9,15 +9,16 @@ import argparse
 import importlib
 import importlib.util
 import sys
-import time
 from functools import cache
 from types import ModuleType
 
 import numpy as np
 import torch
 from records import record, show, write_records
+from timing import in_turn
 
-from motiondiff_edu.dance_windows import MEL_FPS, mel_frames
+from motiondiff_edu.conditions.music import frame_times
+from motiondiff_edu.dance_windows import mel_frames
 from motiondiff_edu.dancer import Dancer
 from motiondiff_edu.ddpm import cosine_schedule
 from motiondiff_edu.mofusion import MOFUSION_SMALL, MoFusion
@@ -108,7 +109,7 @@ def samplers(dancer: Dancer, nets: dict[str, torch.nn.Module], B: int, N: int) -
 def trainers(dancer: Dancer, nets: dict[str, torch.nn.Module], B: int, N: int) -> dict:
     """One step of training of each."""
     model, peer = dancer.model, nets["lucidrains"]
-    mel, times = torch.randn(B, mel_frames(N), BANDS), torch.arange(mel_frames(N)) / MEL_FPS
+    mel, times = torch.randn(B, mel_frames(N), BANDS), frame_times(mel_frames(N)).float()
     x, s = torch.randn(B, N, D), torch.randint(1, 1000, (B,))
     channels_first = x.mT.contiguous()
     optimizers = {name: torch.optim.Adam(net.parameters(), fused=True) for name, net in (("o", model), ("p", peer))}
@@ -124,18 +125,6 @@ def trainers(dancer: Dancer, nets: dict[str, torch.nn.Module], B: int, N: int) -
     }
 
 
-def measure(runs: dict, repeats: int) -> dict[str, np.ndarray]:
-    """Milliseconds of each run in every repeat, the first thrown away."""
-    times, rng = {name: [] for name in runs}, np.random.default_rng(0)
-    for repeat in range(-1, repeats):
-        for name in rng.permutation(list(runs)):
-            start = time.perf_counter()
-            runs[name]()
-            if repeat >= 0:
-                times[name].append(1000 * (time.perf_counter() - start))
-    return {name: np.array(values) for name, values in times.items()}
-
-
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--repeats", type=int, default=12)
@@ -147,7 +136,7 @@ def main() -> None:
     print("parameters:", ", ".join(f"{name} {n / 1e6:.2f} M" for name, n in sizes.items()))
     worst = None
     for N in (64, 200):
-        times = measure(samplers(dancer, nets, 8, N), args.repeats)
+        times = in_turn(samplers(dancer, nets, 8, N), args.repeats)
         for name, values in times.items():
             records.append(record(f"bench.unet_sampling_n{N}.{name}_ms", values, unit="ms", command=COMMAND))
         ratio = times["lucidrains"] / times["ours"]
@@ -155,7 +144,7 @@ def main() -> None:
         if "diffusers" in times:
             ratio = times["diffusers"] / times["ours"]
             records.append(record("bench.unet_sampling_diffusers_x", ratio, unit="times", command=COMMAND))
-        times = measure(trainers(dancer, nets, 32, N), args.repeats)
+        times = in_turn(trainers(dancer, nets, 32, N), args.repeats)
         for name, values in times.items():
             records.append(record(f"bench.unet_training_n{N}.{name}_ms", values, unit="ms", command=COMMAND))
         ratio = times["lucidrains"] / times["ours"]
