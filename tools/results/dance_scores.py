@@ -16,7 +16,7 @@ from motiondiff_edu.metrics.frechet import FewSamplesWarning, fid, normalise
 from motiondiff_edu.metrics.kinetic_features import kinetic_features
 from motiondiff_edu.metrics.repetition import repeat_score
 
-from .scores import FPS, Figure, _figure, _ratio, _root_mean, squared_bone_error
+from .scores import FPS, Figure, figure_of, ratio, root_mean, squared_bone_error
 
 Beats = Sequence[Float[np.ndarray, "_"]]
 
@@ -53,11 +53,11 @@ def beat_figures(own: dict[str, np.ndarray], data: dict[str, np.ndarray]) -> lis
         "bas_music_data": ("", np.nanmean, data["bas_music"]),
         "bas_share": ("ratio", share, own["bas"], own["bas_shuffled"], data["bas"], data["bas_shuffled"]),
         "beats_per_beat": ("", np.nanmean, own["beats_per_beat"]),
-        "beats_per_beat_over_data": ("ratio", _ratio, own["beats_per_beat"], data["beats_per_beat"]),
+        "beats_per_beat_over_data": ("ratio", ratio, own["beats_per_beat"], data["beats_per_beat"]),
         "speed_mps": ("m/s", np.nanmean, own["speed"]),
-        "speed_over_data": ("ratio", _ratio, own["speed"], data["speed"]),
+        "speed_over_data": ("ratio", ratio, own["speed"], data["speed"]),
     }
-    return [_figure(name, unit, figure, *rows) for name, (unit, figure, *rows) in figures.items()]
+    return [figure_of(name, unit, figure, *rows) for name, (unit, figure, *rows) in figures.items()]
 
 
 def share(own, own_shuffled, data, data_shuffled) -> float:
@@ -67,18 +67,18 @@ def share(own, own_shuffled, data, data_shuffled) -> float:
 
 def longer(name: str, long: list[np.ndarray], short: list[np.ndarray]) -> Figure:
     """`share` of long dances over that of short ones; rows as `share` takes them."""
-    return _figure(name, "ratio", lambda *rows: share(*rows[:4]) / share(*rows[4:]), *long, *short)
+    return figure_of(name, "ratio", lambda *rows: share(*rows[:4]) / share(*rows[4:]), *long, *short)
 
 
 def bone_figure(dances: Float[np.ndarray, "R N T J 3"]) -> tuple[Figure, Float[np.ndarray, "N"]]:
     """Bone-length RMSE in cm, and the squared errors of each song behind it."""
     squares = np.mean([squared_bone_error(one) for one in dances], axis=0)
-    return _figure("bone_rmse_cm", "cm", _root_mean, squares), squares
+    return figure_of("bone_rmse_cm", "cm", root_mean, squares), squares
 
 
 def bone_gain(with_losses: Float[np.ndarray, "N"], without: Float[np.ndarray, "N"]) -> Figure:
     """1 - RMSE with / RMSE without kinematic losses."""
-    return _figure("bone_gain", "share", lambda a, b: 1 - _root_mean(a) / _root_mean(b), with_losses, without)
+    return figure_of("bone_gain", "share", lambda a, b: 1 - root_mean(a) / root_mean(b), with_losses, without)
 
 
 def features_of(dances: Float[np.ndarray, "N K T J 3"]) -> Float[np.ndarray, "N K F"]:
@@ -101,18 +101,18 @@ def variety_figures(
     once |= {"diversity": diversity(normalise(pooled, all_data))}
     once |= {"diversity_data": diversity(normalise(pooled_data, all_data))}
     return [
-        _figure("multimodality", "", np.mean, modes),
-        _figure("multimodality_data", "", np.mean, modes_data),
-        _figure("multimodality_over_data", "ratio", _ratio, modes, modes_data),
+        figure_of("multimodality", "", np.mean, modes),
+        figure_of("multimodality_data", "", np.mean, modes_data),
+        figure_of("multimodality_over_data", "ratio", ratio, modes, modes_data),
         *(Figure(name, *(3 * [float(value)]), "") for name, value in once.items()),
     ]
 
 
 def share_minus(name: str, own: list[np.ndarray], other: list[np.ndarray]) -> Figure:
     """`share` of one dancer minus that of another, on the same songs; rows as `share` takes them."""
-    return _figure(name, "of the data's", lambda *rows: share(*rows[:4]) - share(*rows[4:]), *own, *other)
+    return figure_of(name, "of the data's", lambda *rows: share(*rows[:4]) - share(*rows[4:]), *own, *other)
 
 
 def repeat_figure(dances: Float[np.ndarray, "N T J 3"]) -> Figure:
     """How much a dance repeats itself at some lag of 1 to 8 s."""
-    return _figure("repeat", "", np.mean, np.array([repeat_score(one) for one in dances]))
+    return figure_of("repeat", "", np.mean, np.array([repeat_score(one) for one in dances]))

@@ -49,10 +49,9 @@ def unseen_songs(
 
 
 def dances_of(
-    dancer: Dancer, mel: Float[torch.Tensor, "N M C"], frames: int, seed: int, steps: int | None = None, batch: int = 25
+    dancer: Dancer, mel: Float[torch.Tensor, "N M C"], frames: int, seed: int, batch: int = 25
 ) -> Float[np.ndarray, "N T 21 3"]:
     """One dance to each song; metres."""
     draw = torch.Generator().manual_seed(seed)
-    steps = {} if steps is None else {"steps": steps}
-    parts = [dancer.dance(part, frames, generator=draw, **steps) for part in mel.split(batch)]
+    parts = [dancer.dance(part, frames, generator=draw) for part in mel.split(batch)]
     return torch.cat(parts).double().numpy()

@@ -4,6 +4,7 @@
 """
 
 import warnings
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -66,15 +67,15 @@ def score(
     bones = [squared_bone_error(poses[:, part]) for part in (first, last)]
     kept = [adherence(poses[:, part], control[:, part]) for part in (first, last)]
     figures = {
-        "bone_rmse_cm": ("cm", _root_mean, squared_bone_error(poses)),
-        "bone_rmse_within_clip_cm": ("cm", _root_mean, squared_stretch(poses)),
-        "bone_rmse_data_cm": ("cm", _root_mean, squared_bone_error(truth)),
+        "bone_rmse_cm": ("cm", root_mean, squared_bone_error(poses)),
+        "bone_rmse_within_clip_cm": ("cm", root_mean, squared_stretch(poses)),
+        "bone_rmse_data_cm": ("cm", root_mean, squared_bone_error(truth)),
         "adherence_mps": ("m/s", np.nanmean, own),
         "adherence_data_mps": ("m/s", np.nanmean, data),
         "adherence_excess_mps": ("m/s", _difference, own, data),
-        "adherence_shuffled_over_own": ("ratio", _ratio, shuffled_adherence(poses, control), own),
-        "drift_bone_ratio": ("ratio", lambda a, b: _root_mean(a) / _root_mean(b), bones[1], bones[0]),
-        "drift_adherence_ratio": ("ratio", _ratio, kept[1], kept[0]),
+        "adherence_shuffled_over_own": ("ratio", ratio, shuffled_adherence(poses, control), own),
+        "drift_bone_ratio": ("ratio", lambda a, b: root_mean(a) / root_mean(b), bones[1], bones[0]),
+        "drift_adherence_ratio": ("ratio", ratio, kept[1], kept[0]),
         "drift_ratio": ("ratio", _larger, *bones, *kept),
         "skating_mps": ("m/s", np.nanmean, slide),
         "skating_data_mps": ("m/s", np.nanmean, slide_data),
@@ -82,36 +83,39 @@ def score(
         "planted_share": ("share", np.nanmean, planted_share(poses)),
         "planted_share_data": ("share", np.nanmean, planted_share(truth)),
     }
-    return [_figure(name, unit, figure, *rows) for name, (unit, figure, *rows) in figures.items()]
+    return [figure_of(name, unit, figure, *rows) for name, (unit, figure, *rows) in figures.items()]
 
 
 def diversity(rollouts: Float[np.ndarray, "P n T J 3"], drawn: Float[np.ndarray, "P n T J 3"]) -> list[Figure]:
     """Spread of the rollouts, of the data's continuations, and their ratio; the interval is over pasts."""
     own, data = spread(rollouts), spread(drawn)
     return [
-        _figure("diversity_m", "m", np.mean, own),
-        _figure("diversity_data_m", "m", np.mean, data),
-        _figure("diversity_over_data", "ratio", _ratio, own, data),
-        _figure("diversity_over_data_median", "ratio", lambda a, b: np.median(a / b), own, data),
+        figure_of("diversity_m", "m", np.mean, own),
+        figure_of("diversity_data_m", "m", np.mean, data),
+        figure_of("diversity_over_data", "ratio", ratio, own, data),
+        figure_of("diversity_over_data_median", "ratio", lambda a, b: np.median(a / b), own, data),
     ]
 
 
-def _figure(name, unit, figure, *rows) -> Figure:
+def figure_of(name: str, unit: str, figure: Callable[..., float], *rows: np.ndarray) -> Figure:
+    """The figure `figure(*rows)` with its interval over the rows; NaN, without a warning, where there is no number."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", RuntimeWarning)  # the mean of no number is NaN, and shown as such
         return Figure(name, *interval(figure, *rows), unit)
 
 
-def _root_mean(squares):
+def root_mean(squares: Float[np.ndarray, "N"]) -> float:
+    """sqrt(mean of squares): an RMSE, from each clip's mean squared error."""
     return np.sqrt(squares.mean())
+
+
+def ratio(over: Float[np.ndarray, "N"], under: Float[np.ndarray, "N"]) -> float:
+    """Mean over mean (not the mean of ratios), clips without a number left out of each."""
+    return np.nanmean(over) / np.nanmean(under)
 
 
 def _difference(own, data):
     return np.nanmean(own) - np.nanmean(data)
-
-
-def _ratio(over, under):
-    return np.nanmean(over) / np.nanmean(under)
 
 
 def _over_floor(own, data):
@@ -119,4 +123,4 @@ def _over_floor(own, data):
 
 
 def _larger(bones_first, bones_last, adherence_first, adherence_last):
-    return max(_root_mean(bones_last) / _root_mean(bones_first), _ratio(adherence_last, adherence_first))
+    return max(root_mean(bones_last) / root_mean(bones_first), ratio(adherence_last, adherence_first))
