@@ -9,11 +9,12 @@ import argparse
 
 import numpy as np
 
+from motiondiff_edu.metrics.beats import beat_alignment
 from motiondiff_edu.motion.skeleton import BONE_LENGTHS, BONES, HEELS, TOES
 
 from .acceptance import show, table
 from .dance import Dance, dance
-from .dance_statistics import alignment, kinematic_beats, repeats, statistics
+from .dance_statistics import kinematic_beats, repeats, statistics
 from .score import beat_song
 from .song import GENRES, Song
 
@@ -46,8 +47,8 @@ def figures(danced: Dance, song: Song, other: Song) -> dict[str, float]:
     """Statistics of one dance, with its alignment to its own song and to another."""
     moved = kinematic_beats(danced.positions, danced.fps)
     return statistics(danced.positions, danced.fps) | {
-        "own_song": alignment(moved, song.beats),
-        "other_song": alignment(moved, other.beats),
+        "own_song": beat_alignment(moved, song.beats),
+        "other_song": beat_alignment(moved, other.beats),
         "beats_per_beat": len(moved) / len(song.beats),
         "repeats": repeats(danced.positions, danced.fps),
     }

@@ -9,7 +9,7 @@ import pytest
 
 from data_synth.acceptance import table
 from data_synth.dance_acceptance import OUTSIDE, OWN, UPRIGHT, acceptance, limits, means_outside
-from data_synth.dance_statistics import alignment, joint_speed, kinematic_beats, repeats, root_frame, statistics
+from data_synth.dance_statistics import joint_speed, kinematic_beats, repeats, root_frame, statistics
 from motiondiff_edu.motion.kinematics import rot_y
 from motiondiff_edu.motion.retarget import load_clip
 
@@ -92,13 +92,6 @@ def test_speed_by_hand():
     world = np.zeros((5, 21, 3))
     world[:, 4, 1] = [0.0, 0.1, 0.2, 0.2, 0.2]
     assert joint_speed(world, 20.0) == pytest.approx(np.array([2.0, 1.0, 0.0]) / 21)
-
-
-def test_alignment_by_hand():
-    heard = np.array([1.0, 2.0, 3.0])
-    assert alignment(heard, heard) == 1.0
-    assert alignment(np.array([1.05, 2.9]), heard) == pytest.approx((np.exp(-0.5) + np.exp(-2.0)) / 2)
-    assert np.isnan(alignment(np.array([]), heard))
 
 
 def test_a_loop_repeats_and_turning_does_not_hide_it():

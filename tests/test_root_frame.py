@@ -79,6 +79,17 @@ def test_one_frame_has_no_velocity():
         rf.control_from_path(np.zeros((1, 2)), np.zeros(1))
 
 
+def test_the_body_faces_where_hips_and_shoulders_look_together():
+    """Hips turned by 0.4 and shoulders by 1.0: between them, by how wide each is."""
+    world = np.zeros((2, 21, 3))
+    for part, width, angle in (("UpLeg", 0.1, 0.4), ("Arm", 0.3, 1.0)):
+        left = width * np.array([np.cos(angle), 0.0, -np.sin(angle)])
+        world[0, joint_index("Left" + part)], world[0, joint_index("Right" + part)] = left, -left
+    world[1] = world[0] * [-1.0, 1.0, -1.0]  # half a turn
+    wanted = np.angle(0.1 * np.exp(0.4j) + 0.3 * np.exp(1.0j))
+    np.testing.assert_allclose(rf.body_heading(world), [wanted, wanted - np.pi], atol=1e-12)
+
+
 def test_estimated_root_finds_path_and_heading_of_a_swaying_figure():
     """The pelvis sways at gait frequency; the estimate has a tenth of the sway, and heading passes pi unbroken."""
     frames, fps = 240, 20

@@ -8,8 +8,8 @@ Source: MoFusion 4.1 (repetitive dances, judged there by eye).  Notebook: 14
 import numpy as np
 from jaxtyping import Float
 
-from ..motion.root_frame import FPS, to_root_frame
-from ..motion.skeleton import HIPS, joint_index
+from ..motion.root_frame import FPS, body_heading, to_root_frame
+from ..motion.skeleton import HIPS
 
 LAGS = (1.0, 8.0)  # s: what comes back sooner is a sway, later no short clip can show
 OVERLAP = 2.0  # s that must be compared at each lag: a short overlap agrees by chance
@@ -22,10 +22,7 @@ def pose_changes(positions: Float[np.ndarray, "T 21 3"]) -> Float[np.ndarray, "T
     """
     if not np.isfinite(positions).all():
         raise ValueError("positions hold NaN or infinity: fill or cut them before asking what repeats")
-    left, right = (positions[:, [joint_index(s + "UpLeg"), joint_index(s + "Arm")]].sum(1) for s in ("Left", "Right"))
-    across = left - right
-    heading = np.arctan2(-across[:, 2], across[:, 0])
-    poses, _ = to_root_frame(positions, positions[:, HIPS][:, [0, 2]], heading)
+    poses, _ = to_root_frame(positions, positions[:, HIPS][:, [0, 2]], body_heading(positions))
     flat = poses.reshape(len(poses), -1)
     return flat - flat.mean(0)
 
@@ -40,18 +37,25 @@ def self_similarity(positions: Float[np.ndarray, "T 21 3"]) -> Float[np.ndarray,
     return x @ x.T
 
 
-def lag_similarity(positions: Float[np.ndarray, "T 21 3"], fps: float | int = FPS) -> Float[np.ndarray, "L"]:
-    """How like the dance is to itself `lag` frames later, for lag = 0, 1, ... as long as 2 s are left to compare.
+def likeness(x: Float[np.ndarray, "T F"], lag: int) -> float:
+    """r = sum_t <x_t, x_{t+lag}> / sqrt(sum_t |x_t|^2 sum_t |x_{t+lag}|^2), t running over the overlap; 1 for a loop.
 
-    r[lag] = sum_t <x_t, x_{t+lag}> / sqrt(sum_t |x_t|^2 sum_t |x_{t+lag}|^2), t running over the overlap; 1 for a loop.
+    Notebook: 14
+    """
+    a, b = x[: len(x) - lag], x[lag:]
+    return float((a * b).sum() / np.sqrt(max((a**2).sum() * (b**2).sum(), 1e-24)))
+
+
+def lag_similarity(positions: Float[np.ndarray, "T 21 3"], fps: float | int = FPS) -> Float[np.ndarray, "L"]:
+    """The `likeness` of the dance to itself `lag` frames later, for lag = 0, 1, ... as long as 2 s are left to compare.
+
     Raises ValueError for a clip under 2 s, NaN, and a figure that keeps one pose.  Notebook: 14
     """
     x = _moving(pose_changes(positions))
     overlap = round(OVERLAP * fps)
     if len(x) < overlap:
         raise ValueError(f"{len(x) / fps:g} s are too short to look for repetition: {OVERLAP:g} s are compared")
-    pairs = [(x[: len(x) - lag], x[lag:]) for lag in range(len(x) - overlap + 1)]
-    return np.array([(a * b).sum() / np.sqrt(max((a**2).sum() * (b**2).sum(), 1e-24)) for a, b in pairs])
+    return np.array([likeness(x, lag) for lag in range(len(x) - overlap + 1)])
 
 
 def repeat_score(

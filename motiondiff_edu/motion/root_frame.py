@@ -87,6 +87,16 @@ def to_root_frame(
     return np.stack([x, world[..., 1], z], -1), control_from_path(root_xz, heading, fps)
 
 
+def body_heading(world: Float[np.ndarray, "T 21 3"]) -> Float[np.ndarray, "T"]:
+    """Which way hips and shoulders together face, in radians, -pi to pi (`dance_frame.facing` asks the hips alone).
+
+    Notebook: 01
+    """
+    left, right = (world[:, [joint_index(s + "UpLeg"), joint_index(s + "Arm")]].sum(1) for s in ("Left", "Right"))
+    across = left - right
+    return np.arctan2(-across[:, 2], across[:, 0])
+
+
 def estimate_root(
     world: Float[np.ndarray, "T 21 3"], fps: float = FPS
 ) -> tuple[Float[np.ndarray, "T 2"], Float[np.ndarray, "T"]]:
@@ -95,11 +105,8 @@ def estimate_root(
     Gaussians of 0.25 s and 0.33 s; shorter ones leak the gait into the control. Beyond its ends the clip is continued
     by point reflection, so that a figure that walks does not seem to slow down there.  Notebook: 01
     """
-    left, right = (world[:, [joint_index(s + "UpLeg"), joint_index(s + "Arm")]].sum(1) for s in ("Left", "Right"))
-    across = (left - right)[:, [0, 2]]
-    heading = np.unwrap(np.arctan2(-across[:, 1], across[:, 0]))
     root = _smooth(world[:, HIPS][:, [0, 2]], ROOT_SMOOTHING * fps)
-    return root, _smooth(heading, HEADING_SMOOTHING * fps)
+    return root, _smooth(np.unwrap(body_heading(world)), HEADING_SMOOTHING * fps)
 
 
 def _smooth(x: np.ndarray, sigma: float) -> np.ndarray:
