@@ -5,6 +5,7 @@
 What a dance depends on is the song's score and a seed: two seeds give two dances to one song.
 """
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -18,9 +19,11 @@ from .dance_script import ARM, LENGTHS, REST, STANCE, Script
 from .dance_steps import Track, track
 from .footsteps import TOE_AHEAD
 from .moves import MANNERS, Manner
+from .music import songs
 from .song import GENRES, Song
 
 FPS = 20.0
+DANCES_A_SEED = 100_000
 DAMPING, ARMS_LEAD = 0.6, 1.0  # of the arms' spring; the share of its delay that the arms set out earlier
 ARMS = [f"{side}_{name}" for side in "lr" for name in ARM]
 FASTEST = 250.0  # degrees a second, on average between two keys, that an arm's angle may change
@@ -60,6 +63,15 @@ def dance(song: Song, seed: int, only: str | None = None) -> Dance:
     positions, contacts = perform(script, song, seed)
     names = [(m.start, m.name, m.mirrored) for m in moves]
     return Dance(positions, contacts, names, song.genre, FPS, seed)
+
+
+def dances(n: int, seed: int, seconds: float = 30.0, *, genre: str | None = None) -> Iterator[tuple[Song, Dance]]:
+    """n songs as `music.songs` has them, with a dance to each: what dancers are trained on.
+
+    Different seeds share no song, and no dancer's seed.  Raises ValueError as `songs` and `dance` do.
+    """
+    made = songs(n, seed, seconds, genre=genre)
+    return ((song, dance(song, seed * DANCES_A_SEED + k)) for k, song in enumerate(made))
 
 
 def perform(script: Script, song: Song, seed: int) -> tuple[Float[np.ndarray, "T 21 3"], Bool[np.ndarray, "T 2"]]:
@@ -113,7 +125,7 @@ def _foot(script: Script, foot: int, t, seconds, number, channels, rng) -> Track
     return track(steps, START[foot], flat, t, heel)
 
 
-__all__ = ["Dance", "GENRES", "dance", "perform"]
+__all__ = ["Dance", "GENRES", "dance", "dances", "perform"]
 
 
 if __name__ == "__main__":

@@ -13,7 +13,7 @@ import numpy as np
 from .form import GROUPS, draw_form, energies
 from .grooves import write_drums
 from .harmony import draw_chords, write_bass, write_chords, write_melody
-from .mixing import mix, play
+from .mixing import Played, mix, play
 from .song import DRUMS, GENRES, SAMPLE_RATE, TIMBRES, TRAINING_TIMBRES, Song
 
 SLOWEST, FASTEST = 40.0, 240.0  # BPM that can be asked for
@@ -54,10 +54,7 @@ def compose(
     """
     _check(seed, genre, seconds, tempo, metre, timbre)
     rng = np.random.default_rng([seed, 7])
-    drawn = str(rng.choice(list(GENRES))), rng.random(), str(rng.choice(TRAINING_TIMBRES))
-    genre, timbre = genre or drawn[0], timbre or drawn[2]
-    slowest, fastest, usual = GENRES[genre]
-    tempo, metre = float(tempo or slowest + drawn[1] * (fastest - slowest)), int(metre or usual)
+    genre, tempo, metre, timbre = _chosen(genre, tempo, metre, timbre, rng)
     forming, drums, harmony, bass, keys, tune, player, studio, strength = rng.spawn(9)
     form = draw_form(forming, seconds, tempo, metre, _swing(genre, rng))
     chords = draw_chords(form, genre, harmony)
@@ -69,8 +66,6 @@ def compose(
     heard = np.flatnonzero((form.times >= 0) & (form.times < seconds))
     bars = [form.bars[b // metre] for b in heard]
     beats, phrase = form.times[heard], np.array([bar.phrase for bar in bars])
-    names = np.array([hit.drum for hit in played.hits])
-    sounds = (played.seconds >= 0) & (played.seconds < len(audio) / SAMPLE_RATE)
     mean = 60.0 * (len(beats) - 1) / (beats[-1] - beats[0]) if len(beats) > 1 else tempo
     return Song(
         audio=audio,
@@ -78,7 +73,7 @@ def compose(
         bar_position=heard % metre,
         phrase=phrase - phrase[0],
         energy=energies(form, strength)[heard],
-        hits={drum: np.sort(played.seconds[sounds & (names == drum)]) for drum in DRUMS},
+        hits=_hits(played, len(audio) / SAMPLE_RATE),
         genre=genre,
         tempo=float(mean),
         metre=metre,
@@ -86,6 +81,21 @@ def compose(
         seed=int(seed),
         info={"section": [bar.section for bar in bars], "swing": form.swing},
     )
+
+
+def _chosen(genre, tempo, metre, timbre, rng: np.random.Generator) -> tuple[str, float, int, str]:
+    """What is not given is drawn; all of it is drawn in any case, so that nothing given changes what comes after."""
+    drawn = str(rng.choice(list(GENRES))), rng.random(), str(rng.choice(TRAINING_TIMBRES))
+    genre, timbre = genre or drawn[0], timbre or drawn[2]
+    slowest, fastest, usual = GENRES[genre]
+    return genre, float(tempo or slowest + drawn[1] * (fastest - slowest)), int(metre or usual), timbre
+
+
+def _hits(played: Played, seconds: float) -> dict[str, np.ndarray]:
+    """When each drum is struck within the song, in seconds."""
+    names = np.array([hit.drum for hit in played.hits])
+    sounds = (played.seconds >= 0) & (played.seconds < seconds)
+    return {drum: np.sort(played.seconds[sounds & (names == drum)]) for drum in DRUMS}
 
 
 def _swing(genre: str, rng: np.random.Generator) -> tuple[float, float]:

@@ -48,16 +48,12 @@ def main(arguments: list[str] | None = None) -> None:
         parser.error("write at least one dance (--dances) of at least three seconds (--seconds)")
     from motiondiff_edu.motion.bvh_write import write_bvh
 
-    from .dance import dance
-    from .music import compose
+    from .dance import dances
 
-    given.out.mkdir(parents=True, exist_ok=True)
-    genres = list(GENRES) if given.genre is None else [given.genre]
-    for k in range(given.dances):
-        song = compose(seed=given.seed + k, seconds=given.seconds, genre=genres[k % len(genres)])
-        danced = dance(song, given.seed + k)
+    for k, (song, danced) in enumerate(dances(given.dances, given.seed, given.seconds, genre=given.genre)):
         save_npz(danced, song, given.out / f"dance_{k:03d}.npz")
         write_bvh(given.out / f"dance_{k:03d}.bvh", danced.positions, danced.fps)
+    genres = list(GENRES) if given.genre is None else [given.genre]
     print(f"{given.dances} dances of {given.seconds:g} s ({', '.join(genres[: given.dances])}) in {given.out}")
 
 

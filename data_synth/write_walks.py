@@ -39,7 +39,6 @@ def main(arguments: list[str] | None = None) -> None:
         parser.error("write at least one clip (--clips) of at least half a second (--seconds)")
     from motiondiff_edu.motion.bvh_write import write_bvh
 
-    given.out.mkdir(parents=True, exist_ok=True)
     styles = None if given.style is None else [given.style]
     clips = dataset(given.clips, given.seconds, given.seed, styles)
     for k, clip in enumerate(clips):

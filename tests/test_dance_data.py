@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from data_synth.choreography import choreograph, slots
-from data_synth.dance import dance
+from data_synth.dance import dance, dances
 from data_synth.dance_acceptance import knee_angle
 from data_synth.dance_curves import curve, felt_beats, least_jerk, springy, within_reach
 from data_synth.dance_script import REST, TURNS_SIGN, Script
@@ -276,6 +276,9 @@ def test_the_command_writes_files(tmp_path, capsys):
     with np.load(tmp_path / "dance_001.npz") as f:
         assert f["positions"].shape == (120, 21, 3) and f["contacts"].shape == (120, 2)
         assert len(f["beats"]) == len(f["bar_position"]) and str(f["genre"]) == "pop" and f["move_starts"][0] == 0
+        _, (song, danced) = dances(2, 3, 6.0, genre="pop")
+        assert f["song_seed"] == song.seed == 3_000_001 and f["seed"] == danced.seed == 300_001
+        np.testing.assert_array_equal(f["positions"], danced.positions.astype(np.float32))
     assert len(read_bvh(tmp_path / "dance_000.bvh").frames) == 120
     with pytest.raises(SystemExit):
         main(["--out", str(tmp_path), "--dances", "0"])

@@ -16,16 +16,14 @@ from .train_recipe import train_recipe
 
 def training_windows(recipe: DanceRecipe) -> DanceWindows:
     """The recipe's data, made from its seed: songs, a dance to each, and the Mel spectrograms."""
-    from data_synth.dance import dance  # data_synth lies beside the package, and imports it
-    from data_synth.music import songs
+    from data_synth.dance import dances  # data_synth lies beside the package, and imports it
 
-    dances, contacts, mels = [], [], []
-    for k, song in enumerate(songs(recipe.songs, recipe.data_seed, recipe.seconds)):
-        danced = dance(song, recipe.data_seed * 100_000 + k)
-        dances.append(danced.positions)
+    positions, contacts, mels = [], [], []
+    for song, danced in dances(recipe.songs, recipe.data_seed, recipe.seconds):
+        positions.append(danced.positions)
         contacts.append(danced.contacts)
         mels.append(log_mel(torch.from_numpy(song.audio).float()))
-    return DanceWindows.of(dances, contacts, mels, recipe.frames)
+    return DanceWindows.of(positions, contacts, mels, recipe.frames)
 
 
 def train_dancer(recipe: DanceRecipe, run_file: Path, windows: DanceWindows | None = None, log=print) -> Dancer:
