@@ -13,7 +13,6 @@ import torch
 from jaxtyping import Bool, Float, Int
 from torch import Tensor, nn
 
-from .conditions.music import FRAMES_PER_SECOND as MEL_FPS
 from .conditions.music import frame_times
 from .ddpm import Schedule, q_sample
 from .kinematic_loss import (
@@ -41,7 +40,7 @@ PAIRS = tuple(
 
 def mel_frames(n: int) -> int:
     """How many Mel frames sound during n frames of motion, the one at the start included."""
-    return int(np.floor(n / FPS * MEL_FPS)) + 1
+    return n * MEL_GRID // MOTION_GRID + 1
 
 
 @dataclass(frozen=True, eq=False)

@@ -14,8 +14,8 @@ from torch import Tensor
 
 from .baselines.transformer import DanceTransformer, TransformerConfig
 from .conditions.audio_files import read_audio
-from .conditions.music import SAMPLE_RATE, frame_times, log_mel
-from .dance_windows import FPS, MEL_FPS, mel_frames
+from .conditions.music import FRAMES_PER_SECOND, SAMPLE_RATE, frame_times, log_mel
+from .dance_windows import FPS, mel_frames
 from .ddpm import Schedule
 from .fast.mofusion import FastMoFusion
 from .fast.samplers import ddim_steps, ddpm_steps
@@ -103,7 +103,7 @@ class Dancer:
         `start`: the noise to begin with (by default drawn), so that two songs can be danced to from the same noise.
         Raises ValueError for more frames than there is music.  Notebook: 12
         """
-        longest = int((mel.shape[1] - 1) / MEL_FPS * FPS) + 1
+        longest = int((mel.shape[1] - 1) / FRAMES_PER_SECOND * FPS) + 1
         frames = longest if frames is None else frames
         if not 1 <= frames <= longest:
             raise ValueError(f"the music lasts {longest} frames of motion ({longest / FPS:.1f} s), not {frames}")

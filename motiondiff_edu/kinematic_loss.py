@@ -47,7 +47,7 @@ def skeleton_loss(lengths: Float[Tensor, "B T K"], present: Bool[Tensor, "B T"] 
     Notebook: 13
     """
     here = _share(present, lengths)
-    count = here.sum(1, keepdim=True)
+    count = here.sum(1, keepdim=True).clamp_min(1)
     mean = (lengths * here).sum(1, keepdim=True) / count
     return ((lengths - mean).square() * here).sum(1).div((count[:, 0] - 1).clamp_min(1)).mean(-1)
 

@@ -43,13 +43,15 @@ class MoFusionConfig:
 
     def __post_init__(self):
         """Raises ValueError for sizes of which no network can be built, and for an unknown target."""
+        if min(self.D, self.S, self.heads) < 1 or min(self.C, self.music_layers, self.reach) < 0:
+            raise ValueError("D, S and heads must be 1 at least; C, music_layers and reach 0 at least")
+        if min(self.fps, self.slowest, self.fastest) <= 0:
+            raise ValueError("fps, slowest and fastest are rates above 0")
         bad = next((w for w in self.widths if w < 2 * self.heads or w % (2 * self.heads)), None)
         if not self.widths or bad is not None:
             raise ValueError(f"each width must be a multiple of 2 x {self.heads} heads, not {bad}")
         if self.target not in TARGETS:
             raise ValueError(f"target must be one of {', '.join(TARGETS)}, not {self.target!r}")
-        if min(self.D, self.S, self.heads) < 1 or min(self.C, self.music_layers, self.reach) < 0:
-            raise ValueError("D, S and heads must be 1 at least; C, music_layers and reach 0 at least")
 
     def as_dict(self) -> dict:
         return asdict(self)

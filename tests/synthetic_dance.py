@@ -4,7 +4,8 @@ import numpy as np
 import torch
 
 from data_synth.walking import random_control, walk
-from motiondiff_edu.dance_windows import MEL_FPS, DanceWindows
+from motiondiff_edu.conditions.music import FRAMES_PER_SECOND
+from motiondiff_edu.dance_windows import DanceWindows
 from motiondiff_edu.motion.root_frame import to_world
 
 
@@ -15,8 +16,8 @@ def material(frames=(120, 90), seed: int = 0):
         clip = walk(random_control(T / 20, rng, "turn"), k)
         dances.append(to_world(clip.poses, clip.control)[:T])
         contacts.append(clip.contacts[:T])
-        M = int(T / 20 * MEL_FPS) + 1
-        mels.append((torch.arange(M) / MEL_FPS)[:, None].repeat(1, 5) + 100 * k)
+        M = int(T / 20 * FRAMES_PER_SECOND) + 1
+        mels.append((torch.arange(M) / FRAMES_PER_SECOND)[:, None].repeat(1, 5) + 100 * k)
     return dances, contacts, mels
 
 

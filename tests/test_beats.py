@@ -117,6 +117,14 @@ def test_what_is_empty_is_told():
         mean_speed(np.zeros((1, 2, 3)))
 
 
+@pytest.mark.parametrize("fps", [20, 60, 120])
+def test_a_hole_in_the_motion_is_told_at_every_frame_rate(fps):
+    dance = stopping_at(UNEVEN, 4.5, fps)
+    dance[30] = np.nan
+    with pytest.raises(ValueError, match="frame 30 is not finite|hold NaN"):
+        kinematic_beats(dance, fps)
+
+
 def test_f_measure_is_that_of_the_published_fixtures(real_data):
     import json
 

@@ -29,6 +29,11 @@ def test_music_and_motion_of_a_window_are_of_the_same_seconds():
     torch.testing.assert_close(seconds - seconds[:, :1], made.mel_times.expand(20, -1), atol=1e-3, rtol=0)
 
 
+def test_a_long_dance_hears_all_of_its_music():
+    """258.4 s are 8075 hops of 32 ms, and the frame at the start: 5168 / 20 * 31.25 falls short of it by rounding."""
+    assert mel_frames(5168) == 8076 and mel_frames(1) == 2 and mel_frames(16) == 26
+
+
 def test_every_second_window_is_a_mirrored_one():
     made = windows()
     motion = made.motion_scaler.inverse(made.motion).unflatten(-1, (21, 3))

@@ -63,6 +63,21 @@ def test_only_music_that_sounds_meanwhile_is_heard():
     assert torch.equal(*both)
 
 
+@torch.no_grad()
+def test_songs_of_several_lengths_in_one_batch_do_not_influence_one_another():
+    model, x, s = dancer(PLAIN).model, torch.randn(2, 30, 63), torch.tensor([3, 9])
+    heard, times = torch.arange(64) < torch.tensor([64, 41])[:, None], torch.arange(64) / 31.25
+    together = model(x, s, model.listen(mel(), times, heard))
+    alone = model(x[1:], s[1:], model.listen(mel()[1:, :41], times[:41]))
+    torch.testing.assert_close(together[1:], alone, atol=2e-5, rtol=1e-4)
+
+
+def test_sizes_of_the_transformer_are_checked():
+    for wrong in ({"width": 0}, {"width": 18}, {"heads": 0}, {"target": "y"}, {"fps": 0.0}, {"slowest": 0.0}):
+        with pytest.raises(ValueError):
+            TransformerConfig(**{**PLAIN.as_dict(), **wrong})
+
+
 def test_regression_has_one_dance_for_a_song():
     one = dancer(TransformerConfig(**{**PLAIN.as_dict(), "deterministic": True}))
     out = one.dance(mel(), 30, generator=seeded(0))

@@ -43,6 +43,14 @@ def test_numbers_one_by_one_in_one_dimension():
     assert fid(generated, data) == pytest.approx(3.0**2 + (np.sqrt(18.0) - np.sqrt(2.0)) ** 2)
 
 
+def test_a_single_feature_has_a_distance_in_every_form():
+    """Of numbers: (m1 - m2)^2 + (s1 - s2)^2, in units of the data's deviation."""
+    generated, data = np.array([[1.0], [2.0], [6.0], [3.0]]), np.array([[0.0], [4.0], [5.0]])
+    unbiased = [x.std(ddof=1) / data.std() for x in (generated, data)]
+    wanted = ((generated.mean() - data.mean()) / data.std()) ** 2 + (unbiased[0] - unbiased[1]) ** 2
+    assert fid(generated, data) == pytest.approx(wanted) and published_fid(generated, data) == pytest.approx(wanted)
+
+
 def test_equal_clouds_are_at_distance_nought_and_a_shift_is_counted_in_the_datas_deviations():
     data = cloud(60)
     assert abs(fid(data, data)) < 1e-9

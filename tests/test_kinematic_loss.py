@@ -73,6 +73,12 @@ def test_frames_that_are_not_there_do_not_count():
     torch.testing.assert_close(motion_loss(x, y, present)[1:], motion_loss(x[1:, :4], y[1:, :4]))
 
 
+def test_a_motion_of_padding_alone_costs_nothing():
+    lengths, nobody = torch.rand(2, 7, 4), torch.tensor([[True], [False]]).expand(2, 7)
+    found = (skeleton_loss(lengths, nobody), asymmetry_loss(lengths, ((0, 1), (2, 3)), nobody))
+    assert all(loss[0] > 0 and loss[1] == 0 for loss in found)
+
+
 def test_a_foot_slides_only_where_it_should_stand():
     T = 6
     positions = torch.zeros(1, T, 21, 3)

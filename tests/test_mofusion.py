@@ -159,7 +159,16 @@ def test_a_new_network_changes_nothing_between_its_ends():
 
 
 def test_sizes_are_checked():
-    for wrong in ({"widths": (18,)}, {"widths": ()}, {"target": "y"}, {"S": 0}, {"reach": -1.0}):
+    for wrong in (
+        {"widths": (18,)},
+        {"widths": ()},
+        {"target": "y"},
+        {"S": 0},
+        {"heads": 0},
+        {"reach": -1.0},
+        {"fps": 0.0},
+        {"slowest": 0.0},
+    ):
         with pytest.raises(ValueError):
             MoFusionConfig(**wrong)
     assert len(MOFUSION_SMALL.widths) == len(MOFUSION_FULL.widths) == 3  # the paper's levels

@@ -66,6 +66,13 @@ def test_a_floating_figure_has_no_figure_instead_of_a_good_one():
     assert np.isnan(skating(poses, control)) and planted_share(poses) == 0
 
 
+def test_a_single_pose_makes_no_step_and_has_no_figure(recwarn):
+    control = control_of(3)
+    poses = gait(control)
+    assert np.isnan(skating(poses[:1], control[:1])) and np.isnan(planted_share(poses[:1]))
+    assert not recwarn.list
+
+
 def test_flight_is_left_out():
     control = control_of(6)
     poses = gait(control)

@@ -38,7 +38,9 @@ class TransformerConfig:
         """Raises ValueError for sizes of which no network can be built, and for an unknown target."""
         if min(self.D, self.C, self.S, self.heads, self.layers) < 1 or self.music_layers < 0:
             raise ValueError("D, C, S, heads and layers must be 1 at least")
-        if self.width % (2 * self.heads):
+        if min(self.fps, self.slowest, self.fastest) <= 0:
+            raise ValueError("fps, slowest and fastest are rates above 0")
+        if self.width < 1 or self.width % (2 * self.heads):
             raise ValueError(f"the width must be a multiple of 2 x {self.heads} heads, not {self.width}")
         if self.target not in TARGETS:
             raise ValueError(f"target must be one of {', '.join(TARGETS)}, not {self.target!r}")
@@ -55,10 +57,10 @@ class Layer(nn.Module):
         self.norm, self.attention = nn.LayerNorm(width), CrossModalAttention(width, heads)
         self.ask = Ask(width, heads, width)
 
-    def forward(self, x: Float[Tensor, "B T C"], music: Music, between, to_music) -> Float[Tensor, "B T C"]:
+    def forward(self, x: Float[Tensor, "B T C"], music: Music, bias, between, to_music) -> Float[Tensor, "B T C"]:
         normed = self.norm(x)
         x = x + self.attention(normed, normed, None, between)
-        return self.ask(x, music.tokens, None, to_music)
+        return self.ask(x, music.tokens, bias, to_music)
 
 
 class DanceTransformer(nn.Module):
@@ -91,7 +93,10 @@ class DanceTransformer(nn.Module):
         times = torch.arange(x_s.shape[1], device=x_s.device) / config.fps
         code = (config.width // config.heads, config.slowest, config.fastest)
         frames, heard = angles_of(times, *code), angles_of(music.times, *code)
+        bias = None
+        if music.mask is not None:
+            bias = torch.where(music.mask[:, None, None], 0.0, -1e4).expand(-1, -1, len(times), -1)
         x = self.into(x_s) + self.step_in(step_embedding(s, config.width))[:, None]
         for layer in self.layers:
-            x = layer(x, music, (frames, frames), (frames, heard))
+            x = layer(x, music, bias, (frames, frames), (frames, heard))
         return self.out(x)

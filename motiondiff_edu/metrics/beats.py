@@ -55,6 +55,8 @@ def kinematic_beats(
     if fps < DANCE_FPS:
         positions, fps = resample(positions, fps), DANCE_FPS
     speed = smooth_speed(positions, fps, smoothing)
+    if not np.isfinite(speed).all():
+        raise ValueError("positions hold NaN or infinity: fill or cut them before looking for beats")
     low = find_peaks(-speed, prominence=DUST)[0]
     before, here, after = speed[low - 1], speed[low], speed[low + 1]
     bend = before - 2 * here + after

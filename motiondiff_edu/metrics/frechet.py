@@ -76,7 +76,7 @@ def fid(generated: Float[np.ndarray, "N F"], data: Float[np.ndarray, "M F"]) -> 
             FewSamplesWarning,
             stacklevel=2,
         )
-    parts = [part for x in (generated, data) for part in (x.mean(0), np.cov(x.T).reshape(x.shape[1], x.shape[1]))]
+    parts = [part for x in (generated, data) for part in (x.mean(0), _covariance(x))]
     return frechet_distance(*parts)
 
 
@@ -115,13 +115,18 @@ def published_fid(generated: Float[np.ndarray, "N F"], data: Float[np.ndarray, "
     complex number here. The real part then still agrees with `fid`.  Source: MoFusion 4.1.  Notebook: 14
     """
     generated, data = _checked(generated, data)
-    first, second = np.cov(generated.T), np.cov(data.T)
+    first, second = _covariance(generated), _covariance(data)
     root = sqrtm(first @ second)
     if not np.isfinite(root).all():
         more = 1e-6 * np.eye(len(first))
         root = sqrtm((first + more) @ (second + more))
     between = ((generated.mean(0) - data.mean(0)) ** 2).sum()
     return complex(between + np.trace(first) + np.trace(second) - 2 * np.trace(root))
+
+
+def _covariance(features: np.ndarray) -> np.ndarray:
+    """Unbiased; of a single feature it is a matrix, too."""
+    return np.atleast_2d(np.cov(features.T))
 
 
 def _checked(generated: np.ndarray, data: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -79,8 +79,11 @@ def skating(
 def planted_share(
     poses: Float[np.ndarray, "*B T J 3"], below: float | int = PLANTED_BELOW
 ) -> float | Float[np.ndarray, "*B"]:
-    """The share of steps with a planted toe: 1 in a walk, less in a run, 0 for a figure that floats.  Notebook: 08"""
-    return planted_toe(poses, below)[1].mean(-1)
+    """The share of steps with a planted toe: 1 in a walk, less in a run, 0 for a figure that floats; NaN for no step.
+
+    Notebook: 08
+    """
+    return mean_where(planted_toe(poses, below)[1].astype(np.float64))
 
 
 def mean_where(values: Float[np.ndarray, "*B N"]) -> float | Float[np.ndarray, "*B"]:
