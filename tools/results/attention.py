@@ -17,7 +17,7 @@ from motiondiff_edu.viz.listening import levels_over_sound
 from .dance_parts import TRAINED, Stage
 from .dance_trials import FPS, UNSEEN, Songs, dances_of
 from .parts import weights_digest
-from .scores import Figure, _figure, _ratio
+from .scores import Figure, figure_of, ratio
 
 NOISE = (0.25, 0.5, 0.75)  # of the diffusion steps: maps are averaged over these
 SHIFTS = 100
@@ -68,13 +68,13 @@ def attention_figures(rows: dict[str, dict[str, np.ndarray]]) -> list[Figure]:
     for level, row in rows.items():
         place = "" if level == "all" else f"{level}."
         figures += [
-            _figure(f"{place}beat_mass", "share", np.mean, row["own"]),
-            _figure(f"{place}beat_mass_over_shuffled", "ratio", _ratio, row["own"], row["shuffled"]),
-            _figure(f"{place}beat_mass_over_shifted", "ratio", _ratio, row["own"], row["shifted"]),
-            _figure(f"{place}seconds_read", "s", np.mean, row["read"]),
+            figure_of(f"{place}beat_mass", "share", np.mean, row["own"]),
+            figure_of(f"{place}beat_mass_over_shuffled", "ratio", ratio, row["own"], row["shuffled"]),
+            figure_of(f"{place}beat_mass_over_shifted", "ratio", ratio, row["own"], row["shifted"]),
+            figure_of(f"{place}seconds_read", "s", np.mean, row["read"]),
         ]
     top = next(level for level in rows if level.startswith("down"))
-    figures.append(_figure("bottom_over_top_seconds", "ratio", _ratio, rows["bottom"]["read"], rows[top]["read"]))
+    figures.append(figure_of("bottom_over_top_seconds", "ratio", ratio, rows["bottom"]["read"], rows[top]["read"]))
     return figures
 
 
