@@ -73,14 +73,19 @@ class Dancer:
         return denoiser_of(network, self.schedule, self.config.target)
 
     def dance_to(
-        self, sound: Float[Tensor, "N"] | str | Path, seconds: float | None = None, *, seed: int = 0, **options
+        self,
+        sound: Float[Tensor, "N"] | Float[np.ndarray, "N"] | str | Path,
+        seconds: float | None = None,
+        *,
+        seed: int = 0,
+        **options,
     ) -> tuple[Float[np.ndarray, "T 21 3"], Float[np.ndarray, "N2"]]:
         """Dance to a sound file, or to mono sound at 16 kHz; returns the dance (metres) and the sound danced to.
 
         `seconds`: of the sound, from its start, by default all; `options` as for `dance`.
         Raises AudioError for a file that cannot be read (`conditions.audio_files`).  Notebook: 00, 12
         """
-        heard = sound if isinstance(sound, Tensor) else read_audio(sound)
+        heard = read_audio(sound) if isinstance(sound, (str, Path)) else torch.as_tensor(sound).float()
         heard = heard if seconds is None else heard[: round(seconds * SAMPLE_RATE)]
         draw, frames = torch.Generator().manual_seed(seed), int(len(heard) / SAMPLE_RATE * FPS)
         dance = self.dance(log_mel(heard)[None], frames, generator=draw, **options)[0]

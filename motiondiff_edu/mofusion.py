@@ -25,7 +25,7 @@ from .prediction import TARGETS
 class MoFusionConfig:
     """Sizes of the network. The paper gives three levels and 80 Mel bands; widths, heads and the rest are ours.
 
-    `C` = 0 leaves the music out: keys and values then come from the motion itself.  Source: MoFusion 3.3
+    `C` = 0 leaves the music out: keys and values come from the motion itself.  Source: MoFusion 3.3
     """
 
     D: int = 63  # motion features
@@ -43,10 +43,9 @@ class MoFusionConfig:
 
     def __post_init__(self):
         """Raises ValueError for sizes of which no network can be built, and for an unknown target."""
-        if min(self.D, self.S, self.heads) < 1 or min(self.C, self.music_layers, self.reach) < 0:
-            raise ValueError("D, S and heads must be 1 at least; C, music_layers and reach 0 at least")
-        if min(self.fps, self.slowest, self.fastest) <= 0:
-            raise ValueError("fps, slowest and fastest are rates above 0")
+        counts, rates = (self.D, self.S, self.heads), (self.fps, self.slowest, self.fastest)
+        if min(counts) < 1 or min(rates) <= 0 or min(self.C, self.music_layers, self.reach) < 0:
+            raise ValueError("D, S, heads must be 1 at least; C, music_layers, reach 0 at least; rates above 0")
         bad = next((w for w in self.widths if w < 2 * self.heads or w % (2 * self.heads)), None)
         if not self.widths or bad is not None:
             raise ValueError(f"each width must be a multiple of 2 x {self.heads} heads, not {bad}")
@@ -239,8 +238,7 @@ class View:
     def of(cls, T: int, lengths: Int[Tensor, "B"], level: int, music: Music | None, config: MoFusionConfig) -> "View":
         """The frames of a level are every 2^level-th of the T frames at the top."""
         frames = torch.arange(0, T, 2**level, device=lengths.device)
-        inside = frames < lengths[:, None]  # (B, T)
-        times = frames / config.fps
+        inside, times = frames < lengths[:, None], frames / config.fps  # (B, T), and seconds
         heard, seen = (times, inside) if music is None else (music.times, music.mask)
         allowed = None if seen is None or bool(seen.all()) else seen[:, None, None]
         if config.reach:
