@@ -117,6 +117,7 @@ def demo(number: str, options: list[str]) -> int:
 
 
 def main(arguments: list[str] | None = None) -> int:
+    """python -m motiondiff_edu lab | demo NB | doctor; returns the exit code."""
     parser = argparse.ArgumentParser(prog="python -m motiondiff_edu", description=__doc__.splitlines()[0])
     commands = parser.add_subparsers(dest="command", required=True)
     commands.add_parser("lab", help="open JupyterLab at notebook 00")

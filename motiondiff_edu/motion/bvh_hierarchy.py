@@ -81,6 +81,7 @@ def end_site(reader: Reader, statement: Statement) -> None:
 
 
 def add(reader: Reader, node: Node) -> None:
+    """Take a node in; its '{' must follow."""
     if reader.waiting is not None:
         raise reader.error("'{' is missing after it.", node.line, reader.nodes[reader.waiting])
     reader.waiting = len(reader.nodes)
@@ -88,6 +89,7 @@ def add(reader: Reader, node: Node) -> None:
 
 
 def opened(reader: Reader, statement: Statement) -> None:
+    """'{': what comes now belongs to the node that was just named."""
     if reader.waiting is None:
         raise reader.error("'{' without ROOT, JOINT or End Site before it.", statement.line, current(reader))
     reader.open.append(reader.waiting)
@@ -95,6 +97,7 @@ def opened(reader: Reader, statement: Statement) -> None:
 
 
 def closed(reader: Reader, statement: Statement) -> None:
+    """'}': the innermost node ends, and must be complete."""
     node = current(reader)
     if node is None:
         raise reader.error("'}' closes nothing; there is one too many.", statement.line)
@@ -114,6 +117,7 @@ def inside(reader: Reader, statement: Statement) -> Node:
 
 
 def offset(reader: Reader, statement: Statement) -> None:
+    """OFFSET x y z: where the node lies from its parent."""
     node = inside(reader, statement)
     words = statement.rest.split()
     if len(words) != 3:

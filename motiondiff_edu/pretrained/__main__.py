@@ -17,6 +17,7 @@ ALL = RECIPES | DANCE_RECIPES
 
 
 def main() -> None:
+    """python -m motiondiff_edu.pretrained [NAME ...]"""
     parser = argparse.ArgumentParser(prog="python -m motiondiff_edu.pretrained", description=__doc__)
     parser.add_argument("names", nargs="*", help=f"which of {', '.join(ALL)}; none: all that are shipped")
     parser.add_argument("--runs", type=Path, default=Path("build/runs"), help="where runs are saved and resumed from")

@@ -1,14 +1,16 @@
 """Train a recipe into a dancer: songs, dances, windows, card. A killed run continues where it was saved last."""
 
+from collections.abc import Callable
 from pathlib import Path
 
 import torch
+from torch import Generator, Tensor, nn
 
 from ..baselines.regression import regression_loss
 from ..conditions.music import log_mel
 from ..dance_windows import DanceWindows, dance_loss
 from ..dancer import Dancer, network
-from ..ddpm import cosine_schedule
+from ..ddpm import Schedule, cosine_schedule
 from ..files import digest_of_tensors
 from .dance_recipes import DanceRecipe
 from .train_recipe import train_recipe
@@ -33,17 +35,13 @@ def train_dancer(recipe: DanceRecipe, run_file: Path, windows: DanceWindows | No
     """
     config, windows = recipe.config, windows or training_windows(recipe)
     schedule = cosine_schedule(config.S)
-    if getattr(config, "deterministic", False):
-        loss_fn = regression_loss(windows, batch=recipe.batch)
-    else:
-        loss_fn = dance_loss(windows, schedule, recipe.kinematic, **recipe.loss_settings)
     torch.manual_seed(recipe.seed)
     model = network(config)
     trained, card = train_recipe(
         recipe,
         run_file,
         model,
-        loss_fn,
+        loss_of(recipe, windows, schedule),
         about={"network": type(model).__name__, "data": digest(windows)},
         facts={"windows": len(windows.motion)},
         data="data_synth.music and data_synth.dance, synthetic",
@@ -51,6 +49,13 @@ def train_dancer(recipe: DanceRecipe, run_file: Path, windows: DanceWindows | No
         log=log,
     )
     return Dancer(trained, schedule, windows.motion_scaler, windows.mel_scaler, card)
+
+
+def loss_of(recipe: DanceRecipe, windows: DanceWindows, schedule: Schedule) -> Callable[[nn.Module, Generator], Tensor]:
+    """The loss that a recipe asks for: MoFusion's, or the regression's where the network is deterministic."""
+    if getattr(recipe.config, "deterministic", False):
+        return regression_loss(windows, batch=recipe.batch)
+    return dance_loss(windows, schedule, recipe.kinematic, **recipe.loss_settings)
 
 
 def digest(windows: DanceWindows) -> str:

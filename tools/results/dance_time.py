@@ -10,13 +10,11 @@ from dataclasses import replace
 import torch
 
 from benchmarks.records import record
-from motiondiff_edu.baselines.regression import regression_loss
-from motiondiff_edu.baselines.transformer import DanceTransformer, TransformerConfig
-from motiondiff_edu.dance_windows import DanceWindows, dance_loss
-from motiondiff_edu.dancer import STEPS, Dancer
+from motiondiff_edu.dance_windows import DanceWindows
+from motiondiff_edu.dancer import STEPS, Dancer, network
 from motiondiff_edu.ddpm import cosine_schedule
-from motiondiff_edu.mofusion import MoFusion
 from motiondiff_edu.muon import optimizer_for
+from motiondiff_edu.pretrained.train_dance import loss_of
 from motiondiff_edu.training import TrainState, train_steps
 
 from .dance_budget import HEARD, VARIANTS, Budget, material, recipe_of
@@ -31,13 +29,9 @@ class Clock:
     def __init__(self, name: str, windows: DanceWindows, budget: Budget):
         recipe, schedule = recipe_of(name, budget), cosine_schedule(VARIANTS[name][2].S)
         torch.manual_seed(recipe.seed)
-        model = (DanceTransformer if isinstance(recipe.config, TransformerConfig) else MoFusion)(recipe.config)
-        if getattr(recipe.config, "deterministic", False):
-            loss = regression_loss(windows, batch=recipe.batch)
-        else:
-            loss = dance_loss(windows, schedule, recipe.kinematic, **recipe.loss_settings)
+        model = network(recipe.config)
         state = TrainState.start(model, recipe.seed, optimizer_for(model, recipe.optimizer))
-        self.training = train_steps(state, loss, 10**6, lr=1e-4, progress=False)
+        self.training = train_steps(state, loss_of(recipe, windows, schedule), 10**6, lr=1e-4, progress=False)
         self.dancer = Dancer(state.average, schedule, windows.motion_scaler, windows.mel_scaler)
         self.parameters = sum(p.numel() for p in model.parameters())
         x0, self.mel, _ = windows.draw(DANCES, torch.Generator().manual_seed(0))

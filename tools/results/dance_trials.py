@@ -13,7 +13,10 @@ from data_synth.song import Song
 from motiondiff_edu.conditions.music import log_mel
 from motiondiff_edu.dancer import Dancer
 
-UNSEEN, FPS, LONGEST = 900_000, 20, 400
+from .scores import FPS
+from .trials import UNSEEN
+
+LONGEST = 400  # frames
 MARGIN = 0.25  # s: beats just outside of a clip are kept, a stop may be near them
 
 Hear = Callable[[Song], Float[torch.Tensor, "M C"]]  # what a network is given of a song

@@ -11,8 +11,10 @@ from data_synth.walking import continuations, dataset
 from motiondiff_edu import rollout
 from motiondiff_edu.motion.clip import Clip
 
+from .scores import FPS
+
 UNSEEN = 900_000  # seeds from here on belong to no training set
-SECONDS, FPS, T_H = 12, 20, 10
+SECONDS, T_H = 12, 10
 
 # (past (N, T_h, J, 3), control (N, T_h + n, 3), seed) -> new poses (N, n, J, 3), metres
 Generate = Callable[[np.ndarray, np.ndarray, int], np.ndarray]
