@@ -6,7 +6,7 @@ Source: MoFusion 4.1 (100 frames and more at a time; lengths are ours).  Noteboo
 """
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import torch
@@ -29,7 +29,8 @@ from .motion.scaler import Scaler
 from .motion.skeleton import BONES, JOINTS, TOES
 from .prediction import target_of, to_x0
 
-FPS = 20.0
+FPS, D = 20.0, 63
+FITTED = 5000  # windows, of which the motion's scaler is taken
 MOTION_GRID, MEL_GRID = 16, 25  # frames in 0.8 s
 PAIRS = tuple(
     (k, next(i for i, (_, other) in enumerate(BONES) if JOINTS[other] == JOINTS[child].replace("Left", "Right")))
@@ -45,12 +46,18 @@ def mel_frames(n: int) -> int:
 
 @dataclass(frozen=True, eq=False)
 class DanceWindows:
-    """Windows of n frames, standardised, with the Mel frames of the same seconds; contacts say which feet stand."""
+    """Windows of n frames, standardised, with the Mel frames of the same seconds; contacts say which feet stand.
 
-    motion: Float[Tensor, "W T D"]
-    contacts: Bool[Tensor, "W T 2"]
-    mel: Float[Tensor, "F C"]  # of all songs, one after the other
-    mel_starts: Int[Tensor, "W"]
+    Windows 2k and 2k + 1 are the same seconds, the second mirrored. They are cut when they are asked for: they overlap,
+    and would take a dozen times the memory of the dances.
+    """
+
+    n: int
+    dances: Float[Tensor, "F 21 3"]  # of all dances, one after the other; metres
+    feet: Bool[Tensor, "F 2"]
+    starts: Int[Tensor, "K"]  # in `dances`
+    mel: Float[Tensor, "G C"]  # of all songs, one after the other, standardised
+    song_starts: Int[Tensor, "K"]  # in `mel`
     motion_scaler: Scaler
     mel_scaler: Scaler
 
@@ -61,9 +68,8 @@ class DanceWindows:
         contacts: Sequence[Bool[np.ndarray, "_ 2"]],
         mels: Sequence[Float[Tensor, "_ C"]],
         n: int = 100,
-        scalers: tuple[Scaler, Scaler] | None = None,
     ) -> "DanceWindows":
-        """Cut dances and the log-Mel of their songs into windows of n frames, and mirror each dance as well.
+        """Windows of dances and the log-Mel of their songs; several dances in a row to one `mel` share it.
 
         Raises ValueError when no dance is long enough, or lists do not match.
         """
@@ -71,39 +77,49 @@ class DanceWindows:
             raise ValueError(
                 f"{len(dances)} dances, {len(contacts)} contacts and {len(mels)} songs: each needs its own"
             )
-        motion, stands, starts, first = [], [], [], 0
-        for dance, feet, mel in zip(dances, contacts, mels, strict=True):
-            for k in range(
-                0, min(len(dance) - n, (len(mel) - mel_frames(n)) // MEL_GRID * MOTION_GRID) + 1, MOTION_GRID
-            ):
-                window, standing = dance[k : k + n], feet[k : k + n]
-                motion += [to_features(window), to_features(mirror(window))]
-                stands += [standing, standing[:, ::-1]]
-                starts += 2 * [first + k // MOTION_GRID * MEL_GRID]
-            first += len(mel)
-        if not motion:
+        starts, song_starts, heard, first, song = [], [], [], 0, 0
+        for dance, mel in zip(dances, mels, strict=True):
+            if not heard or mel is not heard[-1]:
+                song += len(heard[-1]) if heard else 0
+                heard.append(mel)
+            last = min(len(dance) - n, (len(mel) - mel_frames(n)) // MEL_GRID * MOTION_GRID)
+            starts += range(first, first + last + 1, MOTION_GRID)
+            song_starts += range(song, song + last // MOTION_GRID * MEL_GRID + 1, MEL_GRID) if last >= 0 else ()
+            first += len(dance)
+        if not starts:
             raise ValueError(f"no dance has {n} frames with music")
-        motion = torch.from_numpy(np.stack(motion)).float()
-        mel = torch.cat(list(mels)).float()
-        motion_scaler, mel_scaler = scalers or (Scaler.fit(motion), Scaler.fit(mel))
-        contacts = torch.from_numpy(np.stack(stands))
-        starts = torch.tensor(starts)
-        return cls(
-            motion_scaler.transform(motion), contacts, mel_scaler.transform(mel), starts, motion_scaler, mel_scaler
-        )
+        positions = torch.from_numpy(np.concatenate(dances)).float()
+        feet, mel = torch.from_numpy(np.concatenate(contacts)), torch.cat(heard).float()
+        at, units = (torch.tensor(starts), torch.tensor(song_starts)), Scaler.fit(mel)
+        raw = cls(n, positions, feet, at[0], units.transform(mel), at[1], Scaler.nothing(D), units)
+        some = torch.linspace(0, len(raw) - 1, min(len(raw), FITTED)).long()
+        return replace(raw, motion_scaler=Scaler.fit(raw.take(some)[0]))
+
+    def __len__(self) -> int:
+        return 2 * len(self.starts)
 
     @property
     def mel_times(self) -> Float[Tensor, "M"]:
         """When the Mel frames of a window sound: seconds from its first frame."""
-        return frame_times(mel_frames(self.motion.shape[1])).float()
+        return frame_times(mel_frames(self.n)).float()
+
+    def take(
+        self, chosen: Int[Tensor, "B"]
+    ) -> tuple[Float[Tensor, "B T D"], Float[Tensor, "B M C"], Bool[Tensor, "B T 2"]]:
+        """The windows of these numbers: motion, music, and which feet stand."""
+        k, mirrored = chosen // 2, chosen % 2 == 1
+        frames = self.starts[k][:, None] + torch.arange(self.n)
+        positions, feet = self.dances[frames].double().numpy(), self.feet[frames]
+        positions[mirrored.numpy()] = mirror(positions[mirrored.numpy()])
+        motion = torch.from_numpy(to_features(positions)).float()
+        heard = self.mel[self.song_starts[k][:, None] + torch.arange(mel_frames(self.n))]
+        return self.motion_scaler.transform(motion), heard, feet.where(~mirrored[:, None, None], feet.flip(-1))
 
     def draw(
         self, batch: int, generator: torch.Generator
     ) -> tuple[Float[Tensor, "B T D"], Float[Tensor, "B M C"], Bool[Tensor, "B T 2"]]:
         """A random batch: motion, music, and which feet stand."""
-        chosen = torch.randint(len(self.motion), (batch,), generator=generator)
-        rows = self.mel_starts[chosen][:, None] + torch.arange(mel_frames(self.motion.shape[1]))
-        return self.motion[chosen], self.mel[rows], self.contacts[chosen]
+        return self.take(torch.randint(len(self), (batch,), generator=generator))
 
 
 def dance_loss(

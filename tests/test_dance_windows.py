@@ -16,12 +16,31 @@ from motiondiff_edu.motion.skeleton import BONES, JOINTS, MIRROR
 NONE = KinematicWeights(skeleton=0.0, asymmetry=0.0, motion=0.0, slide=0.0, over_time="constant")
 
 
+def everything(made: DanceWindows) -> tuple[torch.Tensor, torch.Tensor, torch.Tensor]:
+    return made.take(torch.arange(len(made)))
+
+
+def test_two_dances_to_one_song_share_its_music():
+    dances, contacts, mels = material()
+    both = DanceWindows.of(
+        [dances[0], dances[0][::-1].copy(), dances[1]],
+        [contacts[0], contacts[0], contacts[1]],
+        [mels[0], mels[0], mels[1]],
+        40,
+    )
+    assert len(both.mel) == len(mels[0]) + len(mels[1]) and len(both) == 2 * (6 + 6 + 4)
+    _, mel, _ = everything(both)
+    alone = DanceWindows.of(dances, contacts, mels, 40)
+    torch.testing.assert_close(mel[12:], everything(alone)[1])
+    assert torch.equal(mel[:12], mel[12:24])
+
+
 def test_music_and_motion_of_a_window_are_of_the_same_seconds():
     made = windows()
     # 120 frames: starts 0, 16, ... 80; 90 frames: 0, 16, 32, 48; each mirrored as well
-    assert made.motion.shape == (2 * (6 + 4), 40, 63) and mel_frames(40) == 63
-    rows = made.mel_starts[:, None] + torch.arange(63)
-    seconds = made.mel_scaler.inverse(made.mel)[rows][..., 0]
+    motion, mel, _ = everything(made)
+    assert motion.shape == (2 * (6 + 4), 40, 63) and mel_frames(40) == 63 and len(made) == 20
+    seconds = made.mel_scaler.inverse(mel)[..., 0]
     wanted = [0.8 * k for k in range(6)] + [100 + 0.8 * k for k in range(4)]
     torch.testing.assert_close(seconds[::2, 0], torch.tensor(wanted), atol=1e-3, rtol=0)
     torch.testing.assert_close(seconds[1::2, 0], seconds[::2, 0])
@@ -36,17 +55,19 @@ def test_a_long_dance_hears_all_of_its_music():
 
 def test_every_second_window_is_a_mirrored_one():
     made = windows()
-    motion = made.motion_scaler.inverse(made.motion).unflatten(-1, (21, 3))
+    standard, _, contacts = everything(made)
+    motion = made.motion_scaler.inverse(standard).unflatten(-1, (21, 3))
     flip = torch.tensor([-1.0, 1.0, 1.0])
     torch.testing.assert_close(motion[1::2], motion[::2][..., MIRROR, :] * flip, atol=2e-5, rtol=1e-4)
-    assert torch.equal(made.contacts[1::2], made.contacts[::2].flip(-1))
+    assert torch.equal(contacts[1::2], contacts[::2].flip(-1))
 
 
 def test_windows_start_at_the_origin_and_are_standardised():
     made = windows()
-    metres = made.motion_scaler.inverse(made.motion)
+    motion, _, _ = everything(made)
+    metres = made.motion_scaler.inverse(motion)
     assert metres[:, 0, [0, 2]].abs().max() < 1e-5
-    moved = made.motion.reshape(-1, 63)
+    moved = motion.reshape(-1, 63)
     torch.testing.assert_close(moved.mean(0), torch.zeros(63), atol=1e-3, rtol=0)
     torch.testing.assert_close(moved.std(0), torch.ones(63), atol=2e-2, rtol=0)
 
@@ -59,9 +80,8 @@ def test_draws_come_from_the_generator_and_belong_together():
     motion, mel, stands = first
     assert motion.shape == (7, 40, 63) and mel.shape == (7, 63, 5) and stands.shape == (7, 40, 2)
     for k in range(7):
-        row = next(i for i in range(len(made.motion)) if torch.equal(made.motion[i], motion[k]))
-        start = made.mel_starts[row]
-        assert torch.equal(made.mel[start : start + 63], mel[k]) and torch.equal(made.contacts[row], stands[k])
+        row = next(i for i in range(len(made)) if torch.equal(everything(made)[0][i], motion[k]))
+        assert torch.equal(everything(made)[1][row], mel[k]) and torch.equal(everything(made)[2][row], stands[k])
 
 
 def test_wrong_inputs():
@@ -117,7 +137,7 @@ def test_kinematic_losses_add_to_it_by_their_weights():
 
 def test_parts_are_in_metres_after_the_scaler_is_undone():
     made = windows()
-    truth, stands = made.motion[:3], made.contacts[:3]
+    truth, _, stands = made.take(torch.arange(3))
     parts = kinematic_parts(truth, truth, stands, made.motion_scaler)
     assert parts["skeleton"].max() < 1e-9 and parts["asymmetry"].max() < 1e-4 and parts["motion"].max() == 0
     assert parts["slide"].max() < 1e-3  # planted toes stand within a millimetre

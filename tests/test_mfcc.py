@@ -43,7 +43,7 @@ def test_the_same_windows_with_other_ears():
     recipe = replace(DANCER, songs=2, seconds=8.0, frames=40)
     windows = training_windows(recipe)
     other = heard_instead(windows, mfcc_and_beats, 2, recipe.data_seed, recipe.seconds)
-    assert torch.equal(other.motion, windows.motion) and torch.equal(other.mel_starts, windows.mel_starts)
+    assert torch.equal(other.dances, windows.dances) and torch.equal(other.song_starts, windows.song_starts)
     assert other.mel.shape == (len(windows.mel), 22)
     back = heard_instead(other, mel_of, 2, recipe.data_seed, recipe.seconds)
     torch.testing.assert_close(back.mel, windows.mel)

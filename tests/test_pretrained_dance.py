@@ -21,12 +21,12 @@ def windows():
 
 
 def test_data_are_songs_and_dances_to_them(windows):
-    assert windows.motion.shape[1:] == (40, 63) and len(windows.motion) >= 2 * 2 * 7
+    assert windows.n == 40 and len(windows) >= 2 * 2 * 7
     assert windows.mel.shape[1] == 80 and torch.isfinite(windows.mel).all()
     again = training_windows(TINY)
-    assert torch.equal(again.motion, windows.motion) and torch.equal(again.mel, windows.mel)
+    assert torch.equal(again.dances, windows.dances) and torch.equal(again.mel, windows.mel)
     other = training_windows(replace(TINY, data_seed=2))
-    assert other.motion.shape != windows.motion.shape or not torch.equal(other.motion, windows.motion)
+    assert other.dances.shape != windows.dances.shape or not torch.equal(other.dances, windows.dances)
 
 
 def test_a_killed_training_continues_bit_for_bit(windows, tmp_path: Path):

@@ -36,6 +36,11 @@ class Scaler:
         std = flat.std(0, correction=0)
         return cls(flat.mean(0).float(), std.where(std > _STILL, 1.0).float())
 
+    @classmethod
+    def nothing(cls, D: int) -> "Scaler":
+        """The scaler that leaves D columns as they are."""
+        return cls(torch.zeros(D), torch.ones(D))
+
     def to(self, device) -> "Scaler":
         """The same scaler on another device."""
         return Scaler(self.mean.to(device), self.std.to(device))

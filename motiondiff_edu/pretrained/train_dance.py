@@ -43,7 +43,7 @@ def train_dancer(recipe: DanceRecipe, run_file: Path, windows: DanceWindows | No
         model,
         loss_of(recipe, windows, schedule),
         about={"network": type(model).__name__, "data": digest(windows)},
-        facts={"windows": len(windows.motion)},
+        facts={"windows": len(windows)},
         data="data_synth.music and data_synth.dance, synthetic",
         warmup=300,
         log=log,
@@ -59,5 +59,5 @@ def loss_of(recipe: DanceRecipe, windows: DanceWindows, schedule: Schedule) -> C
 
 
 def digest(windows: DanceWindows) -> str:
-    """Of motion and music as the network sees them: a run goes on with the data it was begun with, or not at all."""
-    return digest_of_tensors({"motion": windows.motion, "mel": windows.mel})[:16]
+    """Of dances and music: a run goes on with the data it was begun with, or not at all."""
+    return digest_of_tensors({"dances": windows.dances, "mel": windows.mel})[:16]
