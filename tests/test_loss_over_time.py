@@ -17,7 +17,8 @@ from motiondiff_edu.viz.style import caption
 SCHEDULE, STEPS = cosine_schedule(50), (1, 17, 30, 44)
 WINDOWS = windows(n=24)
 SCALER = Scaler(WINDOWS.motion_scaler.mean.double(), WINDOWS.motion_scaler.std.double())
-X0, STANDS = WINDOWS.motion[:3].double(), WINDOWS.contacts[:3]
+X0, _, STANDS = WINDOWS.take(torch.arange(3))
+X0 = X0.double()
 EPS = torch.randn(X0.shape, generator=torch.Generator().manual_seed(1), dtype=torch.float64)
 
 
