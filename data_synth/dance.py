@@ -65,13 +65,17 @@ def dance(song: Song, seed: int, only: str | None = None) -> Dance:
     return Dance(positions, contacts, names, song.genre, FPS, seed)
 
 
-def dances(n: int, seed: int, seconds: float = 30.0, *, genre: str | None = None) -> Iterator[tuple[Song, Dance]]:
-    """n songs as `music.songs` has them, with a dance to each: what dancers are trained on.
+def dances(
+    n: int, seed: int, seconds: float = 30.0, *, each: int = 1, genre: str | None = None
+) -> Iterator[tuple[Song, Dance]]:
+    """n songs as `music.songs` has them, with `each` dances to every one: what dancers are trained on.
 
-    Different seeds share no song, and no dancer's seed.  Raises ValueError as `songs` and `dance` do.
+    The dances to one song follow one another. Different seeds share no song, and no dancer's seed.
+    Raises ValueError as `songs` and `dance` do.
     """
     made = songs(n, seed, seconds, genre=genre)
-    return ((song, dance(song, seed * DANCES_A_SEED + k)) for k, song in enumerate(made))
+    first = seed * DANCES_A_SEED
+    return ((song, dance(song, first + each * k + j)) for k, song in enumerate(made) for j in range(each))
 
 
 def perform(script: Script, song: Song, seed: int) -> tuple[Float[np.ndarray, "T 21 3"], Bool[np.ndarray, "T 2"]]:

@@ -116,10 +116,18 @@ class DanceWindows:
         return self.motion_scaler.transform(motion), heard, feet.where(~mirrored[:, None, None], feet.flip(-1))
 
     def draw(
-        self, batch: int, generator: torch.Generator
+        self, batch: int, generator: torch.Generator, shake: float = 0.0
     ) -> tuple[Float[Tensor, "B T D"], Float[Tensor, "B M C"], Bool[Tensor, "B T 2"]]:
-        """A random batch: motion, music, and which feet stand."""
-        return self.take(torch.randint(len(self), (batch,), generator=generator))
+        """A random batch: motion, music, and which feet stand.
+
+        `shake`: how much the music's level and its balance of low and high change from window to window (standard
+        deviation, of the standardised log-Mel), as they do from one loudspeaker to another.
+        """
+        motion, mel, stands = self.take(torch.randint(len(self), (batch,), generator=generator))
+        if shake:
+            level, tilt = shake * torch.randn(2, batch, 1, 1, generator=generator)
+            mel = mel + level + tilt * torch.linspace(-1, 1, mel.shape[-1])
+        return motion, mel, stands
 
 
 def dance_loss(
@@ -130,11 +138,13 @@ def dance_loss(
     batch: int = 32,
     high_noise: float = 0.0,
     changes: float = 0.0,
+    shake: float = 0.0,
 ) -> Callable[[nn.Module, torch.Generator], Tensor]:
     """MoFusion's loss as a `loss_fn` for `training.train_steps`: the target's squared error, and L_k on x0_hat.
 
     `high_noise` = c weights the squared error at step s by 1 + min((1 - alpha_bar) / alpha_bar, c): an eps network
-    would else hardly look where the beat is decided.
+    would else hardly look where the beat is decided. `changes` weights the errors of changes from frame to frame, and
+    `shake` is `DanceWindows.draw`'s.
     Source: MoFusion eq. 4.  Notebook: 12, 13
     """
     noise_over_signal = ((1 - schedule.alpha_bar) / schedule.alpha_bar).float()
@@ -143,7 +153,7 @@ def dance_loss(
 
     def loss_fn(model: nn.Module, generator: torch.Generator) -> Tensor:
         device = next(model.parameters()).device
-        x0, mel, stands = (part.to(device) for part in windows.draw(batch, generator))
+        x0, mel, stands = (part.to(device) for part in windows.draw(batch, generator, shake))
         s = torch.randint(1, schedule.S + 1, (batch,), generator=generator).to(device)
         eps = torch.randn(x0.shape, generator=generator).to(device)
         x_s = q_sample(x0, s, schedule, eps)

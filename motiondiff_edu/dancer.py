@@ -24,7 +24,7 @@ from .motion.dance_frame import to_positions
 from .motion.scaler import Scaler
 from .prediction import denoiser_of
 
-STEPS = 20  # of DDIM, unless told
+STEPS, ETA = 50, 0.5  # of DDIM, unless told
 
 
 def network(config: MoFusionConfig | TransformerConfig) -> MoFusion | DanceTransformer:
@@ -99,7 +99,7 @@ class Dancer:
         *,
         generator: torch.Generator | None = None,
         steps: int | None = STEPS,
-        eta: float = 1.0,
+        eta: float = ETA,
         start: Float[Tensor, "B T D"] | None = None,
     ) -> Float[Tensor, "B T 21 3"]:
         """Dance to log-Mel spectrograms (`conditions.music.log_mel`), one dance each; metres, 20 frames a second.

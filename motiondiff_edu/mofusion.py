@@ -31,7 +31,7 @@ class MoFusionConfig:
     D: int = 63  # motion features
     C: int = 80  # condition features (Mel bands)
     S: int = 1000  # diffusion steps
-    widths: tuple[int, ...] = (64, 128, 192)  # of the levels: all frames, every second, every fourth (then eighth)
+    widths: tuple[int, ...] = (96, 96, 128)  # of the levels: all frames, every second, every fourth (then eighth)
     heads: int = 4
     music_layers: int = 4  # convolutions over the music before anybody asks; 0: one linear layer, as the paper has it
     fps: float = 20.0  # of the motion
@@ -171,7 +171,7 @@ class MoFusion(nn.Module):
         self.middle = block(widths[-1], widths[-1])
         self.lengthen = nn.ModuleList(FrameConv(a, b) for a, b in pairwise((widths[-1], *reversed(widths))))
         self.up = nn.ModuleList(block(2 * w, w) for w in reversed(widths))
-        self.out = nn.Sequential(nn.LayerNorm(first), nn.SiLU(), nn.Linear(first, config.D))
+        self.out = nn.Linear(first, config.D)
         self.skip = nn.Parameter(torch.ones(config.S + 1)) if config.skip else None
 
     def listen(

@@ -268,6 +268,13 @@ def test_a_very_short_song_and_one_that_starts_late():
     assert len(moves) == 1 and script.keys["drop"]
 
 
+def test_several_dances_to_each_song():
+    made = list(dances(2, 3, 6.0, each=2))
+    assert [song.seed for song, _ in made] == [3_000_000, 3_000_000, 3_000_001, 3_000_001]
+    assert made[0][0] is made[1][0] and [d.seed for _, d in made] == [300_000, 300_001, 300_002, 300_003]
+    assert not np.array_equal(made[0][1].positions, made[1][1].positions)
+
+
 def test_the_command_writes_files(tmp_path, capsys):
     from data_synth.write_dances import main
 

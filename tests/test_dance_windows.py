@@ -84,6 +84,21 @@ def test_draws_come_from_the_generator_and_belong_together():
         assert torch.equal(everything(made)[1][row], mel[k]) and torch.equal(everything(made)[2][row], stands[k])
 
 
+def test_shaken_music_differs_in_level_and_balance_alone():
+    made = windows()
+    still, shaken = made.draw(400, seeded()), made.draw(400, seeded(), shake=0.3)
+    assert torch.equal(still[0], shaken[0]) and torch.equal(still[2], shaken[2])
+    change = shaken[1] - still[1]
+    torch.testing.assert_close(change, change[:, :1].expand_as(change), atol=1e-5, rtol=0)  # the same at all times
+    level, tilt = change[:, 0].mean(-1), (change[:, 0, -1] - change[:, 0, 0]) / 2
+    line = level[:, None] + tilt[:, None] * torch.linspace(-1, 1, 5)
+    torch.testing.assert_close(change[:, 0], line, atol=1e-5, rtol=0)
+    assert level.std().item() == pytest.approx(0.3, rel=0.15) and tilt.std().item() == pytest.approx(0.3, rel=0.15)
+    model, schedule = tiny(), cosine_schedule(20)
+    losses = [dance_loss(made, schedule, batch=9, shake=s)(model, seeded()).item() for s in (0.0, 0.3)]
+    assert losses[0] != losses[1]
+
+
 def test_wrong_inputs():
     dances, contacts, mels = material()
     with pytest.raises(ValueError, match="each needs its own"):
@@ -111,8 +126,8 @@ def tiny(target: str = "x0", skip: bool = False) -> MoFusion:
 def test_the_loss_of_a_network_that_says_zero():
     """The network is new: its last layer apart it changes nothing; with zeros there it says 0, and x0 has power 1."""
     model, made = tiny(), windows()
-    torch.nn.init.zeros_(model.out[-1].weight)
-    torch.nn.init.zeros_(model.out[-1].bias)
+    torch.nn.init.zeros_(model.out.weight)
+    torch.nn.init.zeros_(model.out.bias)
     loss = dance_loss(made, cosine_schedule(20), batch=64)(model, torch.Generator().manual_seed(0))
     drawn = made.draw(64, seeded())[0]
     assert loss.item() == pytest.approx(drawn.square().mean().item(), rel=1e-4)
@@ -167,8 +182,8 @@ def test_a_network_of_each_target_learns(target):
 def test_changes_from_frame_to_frame_weigh_extra():
     """A network that says 0 errs by x0: its changes are those of the motion."""
     model, made = tiny(), windows()
-    torch.nn.init.zeros_(model.out[-1].weight)
-    torch.nn.init.zeros_(model.out[-1].bias)
+    torch.nn.init.zeros_(model.out.weight)
+    torch.nn.init.zeros_(model.out.bias)
     both = [dance_loss(made, cosine_schedule(20), batch=64, changes=c)(model, seeded()).item() for c in (0.0, 3.0)]
     x0 = made.draw(64, seeded())[0]
     assert both[1] - both[0] == pytest.approx(3 * (x0[:, 1:] - x0[:, :-1]).square().mean().item(), rel=1e-4)

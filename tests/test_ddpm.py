@@ -87,6 +87,16 @@ def test_cosine_schedule_equals_published_values():
     np.testing.assert_allclose(schedule.beta[[1, 501, 999, 1000]], [4.128e-5, 0.00315569, 0.7499994, 0.999], rtol=2e-4)
 
 
+def test_shifting_the_cosine_schedule_multiplies_its_signal_to_noise_ratio():
+    plain, shifted = cosine_schedule(1000), cosine_schedule(1000, snr=0.02)
+    ratios = [s.alpha_bar[1:1000] / (1 - s.alpha_bar[1:1000]) for s in (plain, shifted)]
+    torch.testing.assert_close(ratios[1], 0.02 * ratios[0], rtol=1e-9, atol=0)
+    assert shifted.alpha_bar[0] == 1 and "x 0.02" in shifted.name
+    assert shifted.signal_left < plain.signal_left
+    with pytest.raises(ValueError, match="beta_1"):
+        cosine_schedule(10, snr=0.0)
+
+
 def test_posterior_variances_equal_published_values(reference):
     variance = posterior_variance(reference[0])[torch.tensor([0, 487, 999]) + 1]
     np.testing.assert_allclose(variance, [0, 0.00979, 0.02], atol=5e-6)

@@ -111,9 +111,10 @@ def test_squared_losses_level_off_under_the_papers_weight_and_the_others_fall():
 
 
 def test_the_ideal_guess_at_high_noise_is_a_mean_with_short_bones():
-    answer = answer_of(dataset_denoiser(WINDOWS.take(torch.arange(len(WINDOWS)))[0].double(), SCHEDULE))
+    windows = WINDOWS.take(torch.arange(len(WINDOWS)))[0].double()
+    answer = answer_of(dataset_denoiser(windows, SCHEDULE))
     guess = clean_guess(answer, X0, EPS, 50, SCHEDULE)
-    torch.testing.assert_close(guess[0], WINDOWS.motion.double().mean(0), rtol=0, atol=0.1)
+    torch.testing.assert_close(guess[0], windows.mean(0), rtol=0, atol=0.1)
     ideal, off = measured(answer, (49,)).value["skeleton"], measured(steps=(49,)).value["skeleton"]
     assert ideal < off / 100
 

@@ -129,11 +129,11 @@ def test_fast_twin_gives_the_same_numbers(change):
     for s in (1, 15, 30):
         labels = torch.full((3,), s)
         plain = model(x, labels, model.listen(mel, times))
-        torch.testing.assert_close(fast.denoise(x, labels, song), plain, atol=1e-5, rtol=1e-5)
-        torch.testing.assert_close(fast.denoise(x, s, song), plain, atol=1e-5, rtol=1e-5)
+        for steps in (labels, s):
+            torch.testing.assert_close(fast.denoise(x, steps, song), plain, atol=1e-5 * plain.std(), rtol=1e-4)
     labels = torch.tensor([2, 9, 28])
     plain = model(x, labels, model.listen(mel, times))
-    torch.testing.assert_close(fast.denoise(x, labels, song), plain, atol=1e-5, rtol=1e-5)
+    torch.testing.assert_close(fast.denoise(x, labels, song), plain, atol=1e-5 * plain.std(), rtol=1e-4)
 
 
 def test_fast_twin_needs_music():

@@ -23,10 +23,13 @@ def windows():
 def test_data_are_songs_and_dances_to_them(windows):
     assert windows.n == 40 and len(windows) >= 2 * 2 * 7
     assert windows.mel.shape[1] == 80 and torch.isfinite(windows.mel).all()
-    again = training_windows(TINY)
-    assert torch.equal(again.dances, windows.dances) and torch.equal(again.mel, windows.mel)
+    assert training_windows(replace(TINY, steps=7)) is windows  # the same data: shared
     other = training_windows(replace(TINY, data_seed=2))
     assert other.dances.shape != windows.dances.shape or not torch.equal(other.dances, windows.dances)
+    again = training_windows(TINY)
+    assert again is not windows and torch.equal(again.dances, windows.dances) and torch.equal(again.mel, windows.mel)
+    once = training_windows(replace(TINY, dances=1))
+    assert len(windows) == 2 * len(once) and torch.equal(once.mel, windows.mel)
 
 
 def test_a_killed_training_continues_bit_for_bit(windows, tmp_path: Path):

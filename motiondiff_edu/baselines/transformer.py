@@ -24,9 +24,9 @@ class TransformerConfig:
     D: int = 63
     C: int = 80
     S: int = 1000
-    width: int = 192
+    width: int = 160
     heads: int = 4
-    layers: int = 6
+    layers: int = 7
     music_layers: int = 4
     fps: float = 20.0
     slowest: float = 0.05  # Hz, of the position code

@@ -15,7 +15,7 @@ KINEMATIC = KinematicWeights(skeleton=300.0, asymmetry=5.0, motion=0.0, slide=2.
 
 @dataclass(frozen=True)
 class DanceRecipe:
-    """One training run on `songs` songs of `seconds` each, danced to once, every dance mirrored as well."""
+    """One training run on `songs` songs of `seconds` each, `dances` to each song, every dance mirrored as well."""
 
     name: str
     config: MoFusionConfig | TransformerConfig
@@ -23,13 +23,16 @@ class DanceRecipe:
     kinematic: KinematicWeights | None = None
     high_noise: float = 0.0  # largest extra weight of steps that are mostly noise
     changes: float = 5.0  # weight of the errors of changes from frame to frame, beside those of poses
+    shake: float = 0.3  # how much the music's level and balance vary (`DanceWindows.draw`)
+    snr: float = 0.02  # of the cosine schedule: its signal-to-noise ratio is multiplied by it
     frames: int = 100  # of a window
     lr: float = 3e-3
     optimizer: str = "muon"
     batch: int = 32
     decay: float = 0.999
-    songs: int = 240
-    seconds: float = 30.0
+    songs: int = 1500
+    seconds: float = 20.0
+    dances: int = 2  # to each song
     data_seed: int = 1
     seed: int = 0
     save_every: int = 250  # steps
@@ -37,12 +40,12 @@ class DanceRecipe:
     @property
     def loss_settings(self) -> dict:
         """What `dance_windows.dance_loss` is to be told."""
-        return {name: getattr(self, name) for name in ("batch", "high_noise", "changes")}
+        return {name: getattr(self, name) for name in ("batch", "high_noise", "changes", "shake")}
 
 
 X0 = replace(MOFUSION_SMALL, target="x0", skip=False)
-DANCER = DanceRecipe("dancer", X0, steps=3600, kinematic=KINEMATIC)
-DANCER_PLAIN = DanceRecipe("dancer-plain", X0, steps=3600)
+DANCER = DanceRecipe("dancer", X0, steps=8000, kinematic=KINEMATIC)
+DANCER_PLAIN = DanceRecipe("dancer-plain", X0, steps=8000)
 REGRESSED = DanceRecipe("regression", REGRESSION, steps=1500)
 DANCER_FULL = DanceRecipe("dancer-full", MOFUSION_FULL, steps=200_000, kinematic=KINEMATIC, lr=2e-4, batch=64)
 

@@ -1,6 +1,7 @@
 """Train a recipe into a dancer: songs, dances, windows, card. A killed run continues where it was saved last."""
 
 from collections.abc import Callable
+from functools import lru_cache
 from pathlib import Path
 
 import torch
@@ -17,15 +18,25 @@ from .train_recipe import train_recipe
 
 
 def training_windows(recipe: DanceRecipe) -> DanceWindows:
-    """The recipe's data, made from its seed: songs, a dance to each, and the Mel spectrograms."""
+    """The recipe's data, made from its seed: songs, dances to each, and the Mel spectrograms.
+
+    Recipes in a row that want the same data share it: it takes minutes to make.
+    """
+    return _made(recipe.songs, recipe.data_seed, recipe.seconds, recipe.dances, recipe.frames)
+
+
+@lru_cache(maxsize=1)
+def _made(songs: int, seed: int, seconds: float, each: int, frames: int) -> DanceWindows:
     from data_synth.dance import dances  # data_synth lies beside the package, and imports it
 
-    positions, contacts, mels = [], [], []
-    for song, danced in dances(recipe.songs, recipe.data_seed, recipe.seconds):
+    positions, contacts, mels, heard = [], [], [], None
+    for song, danced in dances(songs, seed, seconds, each=each):
+        if song is not heard:
+            heard, mel = song, log_mel(torch.from_numpy(song.audio).float())
         positions.append(danced.positions)
         contacts.append(danced.contacts)
-        mels.append(log_mel(torch.from_numpy(song.audio).float()))
-    return DanceWindows.of(positions, contacts, mels, recipe.frames)
+        mels.append(mel)
+    return DanceWindows.of(positions, contacts, mels, frames)
 
 
 def train_dancer(recipe: DanceRecipe, run_file: Path, windows: DanceWindows | None = None, log=print) -> Dancer:
@@ -34,7 +45,7 @@ def train_dancer(recipe: DanceRecipe, run_file: Path, windows: DanceWindows | No
     Raises ValueError when the run in `run_file` was begun with other settings.
     """
     config, windows = recipe.config, windows or training_windows(recipe)
-    schedule = cosine_schedule(config.S)
+    schedule = cosine_schedule(config.S, snr=recipe.snr)
     torch.manual_seed(recipe.seed)
     model = network(config)
     trained, card = train_recipe(
@@ -54,7 +65,7 @@ def train_dancer(recipe: DanceRecipe, run_file: Path, windows: DanceWindows | No
 def loss_of(recipe: DanceRecipe, windows: DanceWindows, schedule: Schedule) -> Callable[[nn.Module, Generator], Tensor]:
     """The loss that a recipe asks for: MoFusion's, or the regression's where the network is deterministic."""
     if getattr(recipe.config, "deterministic", False):
-        return regression_loss(windows, batch=recipe.batch)
+        return regression_loss(windows, batch=recipe.batch, shake=recipe.shake)
     return dance_loss(windows, schedule, recipe.kinematic, **recipe.loss_settings)
 
 

@@ -28,7 +28,7 @@ from .scores import Figure
 LENGTH = 700  # steps of training, the same for all
 LIKE = "target x0, no kinematic losses, changes weighted 5, convolutions over the Mel"
 KIN = {name: {"kinematic": replace(KINEMATIC, over_time=name)} for name in ("constant", "alpha_bar", "snr")}
-PLAIN = TransformerConfig(width=200, layers=6)  # 3.63 M numbers, the U-Net has 3.62 M
+PLAIN = TransformerConfig()  # 2.64 M numbers, the U-Net has 2.65 M
 EPS = replace(MOFUSION_SMALL, target="eps", skip=True)  # a network without it learns no eps in so few steps
 VARIANTS = {  # name: (what differs, in words, from which other one, the network, settings of the training)
     "x0": (LIKE, "", X0, {}),
