@@ -18,7 +18,7 @@ from torch import Tensor
 from .conditions.audio_files import read_audio
 from .conditions.music import SAMPLE_RATE, log_mel
 from .cross_modal_attention import watch
-from .dancer import STEPS, Dancer
+from .dancer import Dancer
 from .ddpm import q_sample
 from .mofusion import MoFusion, MoFusionConfig
 from .motion.dance_frame import to_features
@@ -194,7 +194,7 @@ def occlusion(
     *,
     generator: torch.Generator | None = None,
     width: float = WIDTH,
-    steps: int = STEPS,
+    steps: int = 20,
     together: int = 6,
 ) -> Occlusion:
     """Dance to the song, and again with the sound at each of `times` (seconds) silenced, always from the same noise.

@@ -24,7 +24,7 @@ class DanceRecipe:
     high_noise: float = 0.0  # largest extra weight of steps that are mostly noise
     changes: float = 5.0  # weight of the errors of changes from frame to frame, beside those of poses
     shake: float = 0.3  # how much the music's level and balance vary (`DanceWindows.draw`)
-    snr: float = 0.02  # of the cosine schedule: its signal-to-noise ratio is multiplied by it
+    snr: float = 0.1  # of the cosine schedule: its signal-to-noise ratio is multiplied by it
     frames: int = 100  # of a window
     lr: float = 3e-3
     optimizer: str = "muon"

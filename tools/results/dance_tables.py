@@ -1,5 +1,7 @@
 """MoFusion's Table 1 beside ours, and what each choice of a dancer is worth: sections of docs/RESULTS.md."""
 
+from motiondiff_edu.dancer import ETA, STEPS
+
 from .dance_budget import LENGTH, VARIANTS
 from .dance_time import BASE, TIMED
 from .markdown import cell, number, table
@@ -91,10 +93,10 @@ def choices(records: dict[str, dict]) -> str:
         rows.append([f"`{name}`: {words}", beside, *(cell(records.get(n), unit=False) for n in mine), said])
     text = (
         f"## What each choice of a dancer is worth\n\nTrained on the same songs with the same seed for {LENGTH} steps, "
-        "where nothing else is said; each row differs from the row named beside it in one choice. DDIM with 20 steps "
-        "for all. `share gained` and `bone error saved` are set against that row, on the same songs. The trainings are "
-        "short, one seed each: an order, not what a choice is worth in the end. `make results FULL=1` trains them; "
-        "`make results` keeps what is stored.\n\n"
+        "where nothing else is said; each row differs from the row named beside it in one choice. "
+        f"{STEPS} DDIM steps (eta = {ETA:g}) for all. `share gained` and `bone error saved` are set against that row, on "
+        "the same songs. The trainings are short, one seed each: an order, not what a choice is worth in the end. "
+        "`make results FULL=1` trains them; `make results` keeps what is stored.\n\n"
     )
     return text + table(head, rows) + _times(records)
 
