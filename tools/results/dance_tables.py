@@ -94,8 +94,8 @@ def choices(records: dict[str, dict]) -> str:
     text = (
         f"## What each choice of a dancer is worth\n\nTrained on the same songs with the same seed for {LENGTH} steps, "
         "where nothing else is said; each row differs from the row named beside it in one choice. "
-        f"{STEPS} DDIM steps (eta = {ETA:g}) for all. `share gained` and `bone error saved` are set against that row, on "
-        "the same songs. The trainings are short, one seed each: an order, not what a choice is worth in the end. "
+        f"{STEPS} DDIM steps (eta = {ETA:g}) for all. `share gained` and `bone error saved` are set against that row, "
+        "on the same songs. The trainings are short, one seed each: an order, not what a choice is worth in the end. "
         "`make results FULL=1` trains them; `make results` keeps what is stored.\n\n"
     )
     return text + table(head, rows) + _times(records)
