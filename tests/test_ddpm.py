@@ -264,7 +264,7 @@ def schedule_table() -> list[tuple[str, str]]:
     """(call, what is left) of each row of the table in NOTATION.md."""
     text = (Path(__file__).parents[1] / "docs" / "NOTATION.md").read_text(encoding="utf-8")
     rows = re.findall(r"^\| `(\w+_schedule\(.*?\))`.*?\| \d+ \| ([\d.]+ %)(?: \(warns\))? \|$", text, re.MULTILINE)
-    assert len(rows) == 7
+    assert len(rows) == 8
     return rows
 
 
@@ -273,6 +273,7 @@ def schedule_table() -> list[tuple[str, str]]:
 def test_the_table_in_the_docs_is_what_the_schedules_leave(call, left):
     made = {"linear": linear_schedule, "scaled_linear": scaled_linear_schedule, "cosine": cosine_schedule}
     name, arguments = call[:-1].split("_schedule(")
-    numbers = [float(x) if "e" in x or "." in x else int(x) for x in arguments.split(", ")]
-    schedule = (made | {"leap": leap_schedule})[name](*numbers)
+    numbers = [float(x) if "e" in x or "." in x else int(x) for x in re.sub("snr=.*", "0.999", arguments).split(", ")]
+    named = {"snr": float(arguments.split("snr=")[1])} if "snr=" in arguments else {}
+    schedule = (made | {"leap": leap_schedule})[name](*numbers, **named)
     assert f" {left} of the signal" in schedule_card(schedule)

@@ -25,8 +25,8 @@ from .dance_trials import UNSEEN, mel_of
 from .mfcc import CHANNELS, heard_instead, mfcc_and_beats
 from .scores import Figure
 
-LENGTH = 700  # steps of training, the same for all
-LIKE = "target x0, no kinematic losses, changes weighted 5, convolutions over the Mel"
+LENGTH = 1500  # steps of training, the same for all
+LIKE = "target x0, the shifted schedule, no kinematic losses, changes weighted 5, convolutions over the Mel"
 KIN = {name: {"kinematic": replace(KINEMATIC, over_time=name)} for name in ("constant", "alpha_bar", "snr")}
 PLAIN = TransformerConfig()  # 2.64 M numbers, the U-Net has 2.65 M
 EPS = replace(MOFUSION_SMALL, target="eps", skip=True)  # a network without it learns no eps in so few steps
@@ -38,6 +38,7 @@ VARIANTS = {  # name: (what differs, in words, from which other one, the network
     "constant": ("kinematic losses, all steps alike", "x0", X0, KIN["constant"]),
     "alpha_bar": ("kinematic losses weighted by alpha_bar", "x0", X0, KIN["alpha_bar"]),
     "snr": ("kinematic losses weighted by alpha_bar / (1 - alpha_bar), 5 at most", "x0", X0, KIN["snr"]),
+    "cosine": ("the cosine schedule as it is", "x0", X0, {"snr": 1.0}),
     "linear-music": ("one linear layer for the music", "x0", replace(X0, music_layers=0), {}),
     "changes-0": ("errors of poses alone, not of changes", "x0", X0, {"changes": 0.0}),
     "transformer": ("a plain transformer of equal size", "x0", PLAIN, {}),
@@ -59,8 +60,8 @@ class Budget:
     """How long is trained, on what, and how much is measured."""
 
     steps: int = LENGTH
-    songs: int = 120
-    seconds: float = 30.0
+    songs: int = 400
+    seconds: float = 20.0
     batch: int = 32
     save_every: int = 50
     measured: DanceSize = DanceSize(songs=30, seeds=2, pieces=10, each=8)
@@ -74,7 +75,7 @@ def recipe_of(name: str, budget: Budget) -> DanceRecipe:
     """The training of one variant, as `pretrained.train_dance` understands it."""
     _, _, config, settings = VARIANTS[name]
     sizes = {key: getattr(budget, key) for key in ("steps", "songs", "seconds", "batch", "save_every")}
-    return DanceRecipe(f"dance-budget.{name}", config, **sizes, **settings)
+    return DanceRecipe(f"dance-budget.{name}", config, shake=0.0, **sizes, **settings)
 
 
 @cache
