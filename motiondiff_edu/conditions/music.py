@@ -10,9 +10,11 @@ import numpy as np
 import torch
 from jaxtyping import Float
 from torch import Tensor
+from torch.nn import functional as F
 
 SAMPLE_RATE, HOP, BANDS, F_MIN, F_MAX = 16_000, 512, 80, 0.0, 8000.0  # MoFusion 3.3
 N_FFT = 1024  # 64 ms; the paper leaves it open. 512 = HOP would be deaf between two frames, 2048 would blur a beat more
+TOGETHER = 256  # frames at once: what lies between sound and bands then stays in the cache, 2 x faster
 FLOOR = 1e-5  # power: the log's floor, about 80 dB under a full-scale sine; the paper names none
 FRAMES_PER_SECOND = SAMPLE_RATE / HOP  # 31.25
 
@@ -80,10 +82,14 @@ def log_mel(audio: Samples) -> Float[Tensor, "*B M 80"]:
     if not audio.is_floating_point() or not audio.shape[-1]:
         raise ValueError(f"sound is float samples between -1 and 1, not {tuple(audio.shape)} of {audio.dtype}")
     window, filters = _tools(audio.device, audio.dtype)
-    flat = audio.reshape(-1, audio.shape[-1])
-    spectrum = torch.stft(flat, N_FFT, HOP, window=window, pad_mode="constant", return_complex=True).mT
-    power = spectrum.real.square() + spectrum.imag.square()
-    return (power @ filters).clamp(min=FLOOR).log().reshape(*audio.shape[:-1], -1, BANDS)
+    flat = F.pad(audio.reshape(-1, audio.shape[-1]), (N_FFT // 2, N_FFT // 2))
+    M, bands = 1 + audio.shape[-1] // HOP, []
+    for first in range(0, M, TOGETHER):
+        last = min(first + TOGETHER, M) - 1
+        piece = flat[:, first * HOP : last * HOP + N_FFT]
+        spectrum = torch.stft(piece, N_FFT, HOP, window=window, center=False, return_complex=True).mT
+        bands.append((spectrum.real.square() + spectrum.imag.square()) @ filters)
+    return torch.cat(bands, dim=1).clamp(min=FLOOR).log().reshape(*audio.shape[:-1], M, BANDS)
 
 
 def frame_times(M: int) -> Float[Tensor, "M"]:
