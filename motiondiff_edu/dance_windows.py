@@ -138,18 +138,21 @@ def dance_loss(
     batch: int = 32,
     high_noise: float = 0.0,
     changes: float = 0.0,
+    feet: float = 0.0,
     shake: float = 0.0,
 ) -> Callable[[nn.Module, torch.Generator], Tensor]:
     """MoFusion's loss as a `loss_fn` for `training.train_steps`: the target's squared error, and L_k on x0_hat.
 
     `high_noise` = c weights the squared error at step s by 1 + min((1 - alpha_bar) / alpha_bar, c): an eps network
-    would else hardly look where the beat is decided. `changes` weights the errors of changes from frame to frame, and
-    `shake` is `DanceWindows.draw`'s.
+    would else hardly look where the beat is decided. `changes` weights the errors of changes from frame to frame,
+    `feet` those of the toes in the world, as a share of how far toes move: for a foot to stand, pelvis and leg must err
+    alike. `shake` is `DanceWindows.draw`'s.
     Source: MoFusion eq. 4.  Notebook: 12, 13
     """
     noise_over_signal = ((1 - schedule.alpha_bar) / schedule.alpha_bar).float()
     data_weight = 1 + noise_over_signal.clamp_max(high_noise)
     lam = over_time(schedule, kinematic.over_time).float() if kinematic else None
+    std, stepped = windows.motion_scaler.std, toes_moved(windows) if feet else 1.0
 
     def loss_fn(model: nn.Module, generator: torch.Generator) -> Tensor:
         device = next(model.parameters()).device
@@ -161,6 +164,9 @@ def dance_loss(
         target = model.config.target
         wrong = out - target_of(x0, eps, s, schedule, target)
         error = wrong.square().mean((1, 2)) + changes * wrong.diff(dim=1).square().mean((1, 2))
+        if feet:
+            moved = to_positions(wrong * std.to(device))[:, :, list(TOES)].diff(dim=1)
+            error = error + feet / stepped * moved.square().mean((1, 2, 3))
         loss = (data_weight.to(device)[s] * error).mean()
         if kinematic:
             x0_hat = to_x0(out, x_s, s, schedule, target)
@@ -170,6 +176,13 @@ def dance_loss(
         return loss
 
     return loss_fn
+
+
+def toes_moved(windows: DanceWindows, samples: int = 1000) -> float:
+    """How far toes move in a frame of the data: the mean square of a coordinate's change, m^2."""
+    some = torch.linspace(0, len(windows) - 1, min(len(windows), samples)).long()
+    positions = to_positions(windows.motion_scaler.inverse(windows.take(some)[0]))
+    return float(positions[:, :, list(TOES)].diff(dim=1).square().mean())
 
 
 def kinematic_parts(

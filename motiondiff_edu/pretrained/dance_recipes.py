@@ -10,7 +10,7 @@ from ..baselines.transformer import TransformerConfig
 from ..kinematic_loss import KinematicWeights
 from ..mofusion import MOFUSION_FULL, MOFUSION_SMALL, MoFusionConfig
 
-KINEMATIC = KinematicWeights(skeleton=300.0, asymmetry=5.0, motion=0.0, slide=2.0, over_time="alpha_bar")
+KINEMATIC = KinematicWeights(skeleton=400.0, asymmetry=5.0, motion=0.0, slide=0.3, over_time="alpha_bar")
 
 
 @dataclass(frozen=True)
@@ -23,6 +23,7 @@ class DanceRecipe:
     kinematic: KinematicWeights | None = None
     high_noise: float = 0.0  # largest extra weight of steps that are mostly noise
     changes: float = 5.0  # weight of the errors of changes from frame to frame, beside those of poses
+    feet: float = 0.2  # weight of the errors of the toes' changes in the world
     shake: float = 0.3  # how much the music's level and balance vary (`DanceWindows.draw`)
     snr: float = 0.1  # of the cosine schedule: its signal-to-noise ratio is multiplied by it
     frames: int = 100  # of a window
@@ -40,12 +41,12 @@ class DanceRecipe:
     @property
     def loss_settings(self) -> dict:
         """What `dance_windows.dance_loss` is to be told."""
-        return {name: getattr(self, name) for name in ("batch", "high_noise", "changes", "shake")}
+        return {name: getattr(self, name) for name in ("batch", "high_noise", "changes", "feet", "shake")}
 
 
 X0 = replace(MOFUSION_SMALL, target="x0", skip=False)
-DANCER = DanceRecipe("dancer", X0, steps=8000, kinematic=KINEMATIC)
-DANCER_PLAIN = DanceRecipe("dancer-plain", X0, steps=8000)
+DANCER = DanceRecipe("dancer", X0, steps=10_000, kinematic=KINEMATIC)
+DANCER_PLAIN = DanceRecipe("dancer-plain", X0, steps=10_000)
 REGRESSED = DanceRecipe("regression", REGRESSION, steps=1500)
 DANCER_FULL = DanceRecipe("dancer-full", MOFUSION_FULL, steps=200_000, kinematic=KINEMATIC, lr=2e-4, batch=64)
 
