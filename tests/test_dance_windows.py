@@ -7,10 +7,11 @@ import pytest
 import torch
 from synthetic_dance import material, windows
 
-from motiondiff_edu.dance_windows import PAIRS, DanceWindows, dance_loss, kinematic_parts, mel_frames
+from motiondiff_edu.dance_windows import PAIRS, DanceWindows, dance_loss, kinematic_parts, mel_frames, toes_moved
 from motiondiff_edu.ddpm import cosine_schedule
 from motiondiff_edu.kinematic_loss import KinematicWeights
 from motiondiff_edu.mofusion import MoFusion, MoFusionConfig
+from motiondiff_edu.motion.dance_frame import to_positions
 from motiondiff_edu.motion.skeleton import BONES, JOINTS, MIRROR
 
 NONE = KinematicWeights(skeleton=0.0, asymmetry=0.0, motion=0.0, slide=0.0, over_time="constant")
@@ -177,6 +178,46 @@ def test_a_network_of_each_target_learns(target):
         optimizer.step()
         losses.append(loss.item())
     assert math.isfinite(losses[-1]) and np.mean(losses[-10:]) < 0.8 * np.mean(losses[:5])
+
+
+def test_the_toes_changes_in_the_world_weigh_extra():
+    """A network that says 0 (standardised: the mean pose) errs by the motion; its toes by all that toes move."""
+    model, made = tiny(), windows()
+    torch.nn.init.zeros_(model.out.weight)
+    torch.nn.init.zeros_(model.out.bias)
+    both = [dance_loss(made, cosine_schedule(20), batch=64, feet=f)(model, seeded()).item() for f in (0.0, 2.0)]
+    x0, positions = made.draw(64, seeded())[0], to_positions(made.motion_scaler.inverse(made.draw(64, seeded())[0]))
+    moved = positions[:, 1:, [4, 8]] - positions[:, :-1, [4, 8]]
+    wanted = 2 * moved.square().mean().item() / toes_moved(made)
+    assert both[1] - both[0] == pytest.approx(wanted, rel=1e-3) and wanted == pytest.approx(2, rel=0.2)
+    assert x0.shape == (64, 40, 63)
+
+
+def test_pelvis_and_leg_that_err_alike_cost_no_feet():
+    """A pelvis that drifts takes the toes along, unless the legs err the other way: then the feet stand."""
+    made, target = windows(), MoFusionConfig(target="x0")
+    drift = torch.zeros(4, 40, 63)
+    drift[..., 0] = torch.linspace(0, 0.5, 40) / made.motion_scaler.std[0]  # the pelvis, half a metre to the side
+
+    class Errs(torch.nn.Module):
+        def __init__(self, toes_too: bool):
+            super().__init__()
+            self.config, self.toes_too, self.bias = target, toes_too, torch.nn.Parameter(torch.zeros(()))
+
+        def listen(self, mel, times):
+            return None
+
+        def forward(self, x_s, s, music):
+            error = drift.clone()
+            if not self.toes_too:  # every joint below stays in the world: minus the drift, about the pelvis
+                error[..., 3::3] = -error[..., :1] * made.motion_scaler.std[0] / made.motion_scaler.std[3::3]
+            return made.draw(4, seeded())[0] + error + self.bias
+
+    def cost(toes_too):
+        both = [dance_loss(made, cosine_schedule(20), batch=4, feet=f)(Errs(toes_too), seeded()) for f in (0.0, 1.0)]
+        return (both[1] - both[0]).item()
+
+    assert cost(False) < 1e-5 < 0.01 < cost(True)
 
 
 def test_changes_from_frame_to_frame_weigh_extra():

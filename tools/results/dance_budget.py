@@ -26,7 +26,7 @@ from .mfcc import CHANNELS, heard_instead, mfcc_and_beats
 from .scores import Figure
 
 LENGTH = 1500  # steps of training, the same for all
-LIKE = "target x0, the shifted schedule, no kinematic losses, changes weighted 5, convolutions over the Mel"
+LIKE = "target x0, shifted schedule, no kinematic losses, changes weighted 5, feet 0.2, convolutions over the Mel"
 KIN = {name: {"kinematic": replace(KINEMATIC, over_time=name)} for name in ("constant", "alpha_bar", "snr")}
 PLAIN = TransformerConfig()  # 2.64 M numbers, the U-Net has 2.65 M
 EPS = replace(MOFUSION_SMALL, target="eps", skip=True)  # a network without it learns no eps in so few steps
@@ -40,7 +40,7 @@ VARIANTS = {  # name: (what differs, in words, from which other one, the network
     "snr": ("kinematic losses weighted by alpha_bar / (1 - alpha_bar), 5 at most", "x0", X0, KIN["snr"]),
     "cosine": ("the cosine schedule as it is", "x0", X0, {"snr": 1.0}),
     "linear-music": ("one linear layer for the music", "x0", replace(X0, music_layers=0), {}),
-    "changes-0": ("errors of poses alone, not of changes", "x0", X0, {"changes": 0.0}),
+    "changes-0": ("errors of poses alone, not of changes", "x0", X0, {"changes": 0.0, "feet": 0.0}),
     "transformer": ("a plain transformer of equal size", "x0", PLAIN, {}),
     "mfcc": ("MFCC and the true beats instead of Mel", "x0", replace(X0, C=CHANNELS), {}),
     "regression": (
