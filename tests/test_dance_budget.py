@@ -43,6 +43,7 @@ def test_each_variant_differs_from_its_base_in_what_its_words_say():
         "constant": {"kinematic"},
         "alpha_bar": {"kinematic"},
         "snr": {"kinematic"},
+        "slide": {"kinematic"},
         "cosine": {"snr"},
         "linear-music": {"config.music_layers"},
         "changes-0": {"changes", "feet"},

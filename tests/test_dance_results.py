@@ -38,6 +38,9 @@ def test_the_datas_own_dances_have_the_datas_figures(songs):
     beats = songs.beats(100)
     data = rows_of(songs.truth[:, 0][None], beats)
     found = named(beat_figures(data, data))
+    assert found["skating_mps"] == found["skating_data_mps"] < 0.05
+    slid = songs.truth[:, 1][None] + 0.01 * np.arange(songs.truth.shape[2])[:, None, None] * [1.0, 0.0, 0.0]
+    assert named(beat_figures(rows_of(slid, beats), data))["skating_mps"] == pytest.approx(0.2, abs=0.05)
     assert found["bas_share"] == found["speed_over_data"] == found["beats_per_beat_over_data"] == pytest.approx(1)
     assert found["bas"] > found["bas_shuffled"] + 0.15
     other = named(beat_figures(rows_of(songs.truth[:, 1][None], beats), data))

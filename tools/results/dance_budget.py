@@ -25,7 +25,7 @@ from .dance_trials import UNSEEN, mel_of
 from .mfcc import CHANNELS, heard_instead, mfcc_and_beats
 from .scores import Figure
 
-LENGTH = 1500  # steps of training, the same for all
+LENGTH = 1200  # steps of training, the same for all
 LIKE = "target x0, shifted schedule, no kinematic losses, changes weighted 5, feet 0.2, convolutions over the Mel"
 KIN = {name: {"kinematic": replace(KINEMATIC, over_time=name)} for name in ("constant", "alpha_bar", "snr")}
 PLAIN = TransformerConfig()  # 2.64 M numbers, the U-Net has 2.65 M
@@ -38,6 +38,7 @@ VARIANTS = {  # name: (what differs, in words, from which other one, the network
     "constant": ("kinematic losses, all steps alike", "x0", X0, KIN["constant"]),
     "alpha_bar": ("kinematic losses weighted by alpha_bar", "x0", X0, KIN["alpha_bar"]),
     "snr": ("kinematic losses weighted by alpha_bar / (1 - alpha_bar), 5 at most", "x0", X0, KIN["snr"]),
+    "slide": ("a foot loss of 2", "alpha_bar", X0, {"kinematic": replace(KINEMATIC, slide=2.0)}),
     "cosine": ("the cosine schedule as it is", "x0", X0, {"snr": 1.0}),
     "linear-music": ("one linear layer for the music", "x0", replace(X0, music_layers=0), {}),
     "changes-0": ("errors of poses alone, not of changes", "x0", X0, {"changes": 0.0, "feet": 0.0}),

@@ -15,6 +15,7 @@ from motiondiff_edu.metrics.diversity import diversity
 from motiondiff_edu.metrics.frechet import FewSamplesWarning, fid, normalise
 from motiondiff_edu.metrics.kinetic_features import kinetic_features
 from motiondiff_edu.metrics.repetition import repeat_score
+from motiondiff_edu.metrics.skating import skating
 
 from .scores import FPS, Figure, figure_of, ratio, root_mean, squared_bone_error
 
@@ -24,13 +25,16 @@ Beats = Sequence[Float[np.ndarray, "_"]]
 def rows_of(dances: Float[np.ndarray, "R N T J 3"], beats: Beats) -> dict[str, Float[np.ndarray, "N"]]:
     """Of each song, the mean over R dances to it: score, score with other songs, chance, beats per beat, speed.
 
-    `bas_music` is the form of MoFusion's eq. 10, averaged over the music's beats.
+    `bas_music` is the form of MoFusion's eq. 10, averaged over the music's beats; `skating` is how fast standing
+    toes slide, m/s.
     """
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", NoBeatsWarning)
         scored: list[BeatScores] = [beat_scores(one, beats) for one in dances]
     names = ("bas_clips", "bas_shuffled_clips", "bas_chance_clips", "beats_per_beat_clips", "speed_clips")
     rows = {name.removesuffix("_clips"): np.nanmean([getattr(s, name) for s in scored], axis=0) for name in names}
+    still = np.zeros((*dances.shape[1:3], 3))  # a dance has no control: its positions are the world's
+    rows["skating"] = np.nanmean([skating(one, still) for one in dances], axis=0)
     return rows | {"bas_music": np.mean([_music_form(one, beats) for one in dances], axis=0)}
 
 
@@ -56,6 +60,8 @@ def beat_figures(own: dict[str, np.ndarray], data: dict[str, np.ndarray]) -> lis
         "beats_per_beat_over_data": ("ratio", ratio, own["beats_per_beat"], data["beats_per_beat"]),
         "speed_mps": ("m/s", np.nanmean, own["speed"]),
         "speed_over_data": ("ratio", ratio, own["speed"], data["speed"]),
+        "skating_mps": ("m/s", np.nanmean, own["skating"]),
+        "skating_data_mps": ("m/s", np.nanmean, data["skating"]),
     }
     return [figure_of(name, unit, figure, *rows) for name, (unit, figure, *rows) in figures.items()]
 
