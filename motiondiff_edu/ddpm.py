@@ -67,19 +67,11 @@ def scaled_linear_schedule(S: int = 100) -> Schedule:
     return make_schedule(torch.linspace(0.1 / S, 20 / S, S, dtype=torch.float64), "scaled linear")
 
 
-def cosine_schedule(S: int = 1000, cap: float = 0.999, snr: float = 1.0) -> Schedule:
-    """alpha_bar follows cos^2((s / S + .008) / 1.008 * pi / 2), with beta capped.
-
-    `snr` multiplies the signal-to-noise ratio alpha_bar / (1 - alpha_bar) of every step: below 1, more of the steps are
-    spent where there is much noise.  Notebook: 02, 12
-    """
+def cosine_schedule(S: int = 1000, cap: float = 0.999) -> Schedule:
+    """alpha_bar follows cos^2((s / S + .008) / 1.008 * pi / 2), with beta capped. Notebook: 02."""
     u = torch.arange(S + 1, dtype=torch.float64) / S
     curve = torch.cos((u + 0.008) / 1.008 * math.pi / 2) ** 2
-    name = "cosine"
-    if snr != 1:
-        curve, name = curve / curve[0], f"cosine, signal-to-noise x {snr:g}"
-        curve = snr * curve / (1 - curve + snr * curve)
-    return make_schedule((1 - curve[1:] / curve[:-1]).clamp(max=cap), name)
+    return make_schedule((1 - curve[1:] / curve[:-1]).clamp(max=cap), "cosine")
 
 
 def schedule_card(schedule: Schedule) -> str:

@@ -70,12 +70,12 @@ def test_names_of_levels():
 @pytest.fixture(scope="module")
 def stage():
     made = Stage(DanceSize(songs=3, seeds=1, pieces=2, each=2))
-    made.dancer = lambda name: dancer(S=20)
+    made.dancer = lambda name: dancer(S=60)
     return made
 
 
 def test_maps_of_a_dancer_become_a_row_for_each_song(stage):
-    one = dancer(S=20)
+    one = dancer(S=60)
     rows = rows_of(one, stage.songs, frames=40)
     assert list(rows) == ["all", "down-20", "down-10", "bottom", "up-10", "up-20"]
     for kinds in rows.values():

@@ -93,7 +93,11 @@ def test_the_page_marks_what_is_stored(tmp_path):
     render(tmp_path, tmp_path / "bench")
     page = (tmp_path / "RESULTS.md").read_text()
     (line,) = [line for line in page.splitlines() if line.startswith("| `v`: target v")]
-    assert "| stored, 77 steps |" in line and "-0.15 [-0.2, -0.1]" in line and line.count("0.4 [0.2, 0.6]") == 6
+    assert (
+        "| stored, 77 steps |" in line
+        and "-0.15 [-0.2, -0.1]" in line
+        and line.count("0.4 [0.2, 0.6]") == len(dance_tables.SHOWN)
+    )
     assert "| down-20 | 1.2 [1, 1.4] ratio | 1.2 [1, 1.4] ratio | - | - |" in page and "attention.png" not in page
     (tmp_path / "results" / "attention.png").touch()
     render(tmp_path, tmp_path / "bench")

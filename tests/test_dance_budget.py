@@ -17,7 +17,7 @@ from tools.results.dance_scores import rows_of
 from tools.results.intervals import interval
 from tools.results.parts import Walks
 
-TINY = MoFusionConfig(widths=(16, 24), music_layers=1, S=30, target="x0", skip=False)
+TINY = MoFusionConfig(widths=(16, 24), music_layers=1, S=60, target="x0", skip=False)
 SMALL = replace(QUICK, measured=DanceSize(songs=3, seeds=1, pieces=2, each=2))
 
 
@@ -25,7 +25,7 @@ SMALL = replace(QUICK, measured=DanceSize(songs=3, seeds=1, pieces=2, each=2))
 def tiny(monkeypatch):
     """The same variants with networks that train in no time, and intervals of few draws."""
     monkeypatch.setattr(scores, "interval", partial(interval, draws=30))
-    transformer = TransformerConfig(width=16, heads=2, layers=1, music_layers=1, S=30)
+    transformer = TransformerConfig(width=16, heads=2, layers=1, music_layers=1, S=60)
     for name, (words, base, config, settings) in list(VARIANTS.items()):
         changes = {"target": config.target, "C": config.C}
         if isinstance(config, TransformerConfig):

@@ -27,6 +27,8 @@ from motiondiff_edu.ddpm import (
 )
 from motiondiff_edu.exact import exact_denoiser, mixture, sample_mixture
 from motiondiff_edu.prediction import to_eps
+from motiondiff_edu.pretrained.dance_recipes import DANCER
+from motiondiff_edu.shifted_schedule import shifted
 from motiondiff_edu.walker import leap_schedule
 
 S_REF = 1000
@@ -87,14 +89,15 @@ def test_cosine_schedule_equals_published_values():
     np.testing.assert_allclose(schedule.beta[[1, 501, 999, 1000]], [4.128e-5, 0.00315569, 0.7499994, 0.999], rtol=2e-4)
 
 
-def test_shifting_the_cosine_schedule_multiplies_its_signal_to_noise_ratio():
-    plain, shifted = cosine_schedule(1000), cosine_schedule(1000, snr=0.02)
-    ratios = [s.alpha_bar[1:1000] / (1 - s.alpha_bar[1:1000]) for s in (plain, shifted)]
+def test_shifting_a_schedule_multiplies_its_signal_to_noise_ratio():
+    plain, less = cosine_schedule(1000), shifted(cosine_schedule(1000), 0.02)
+    ratios = [s.alpha_bar[1:] / (1 - s.alpha_bar[1:]) for s in (plain, less)]
     torch.testing.assert_close(ratios[1], 0.02 * ratios[0], rtol=1e-9, atol=0)
-    assert shifted.alpha_bar[0] == 1 and "x 0.02" in shifted.name
-    assert shifted.signal_left < plain.signal_left
-    with pytest.raises(ValueError, match="beta_1"):
-        cosine_schedule(10, snr=0.0)
+    assert less.alpha_bar[0] == 1 and "x 0.02" in less.name and less.signal_left < plain.signal_left
+    assert shifted(plain, 1.0) is plain
+    torch.testing.assert_close(shifted(less, 50.0).alpha_bar, plain.alpha_bar, rtol=1e-9, atol=0)
+    with pytest.raises(ValueError, match="above 0"):
+        shifted(plain, 0.0)
 
 
 def test_posterior_variances_equal_published_values(reference):
@@ -264,7 +267,7 @@ def schedule_table() -> list[tuple[str, str]]:
     """(call, what is left) of each row of the table in NOTATION.md."""
     text = (Path(__file__).parents[1] / "docs" / "NOTATION.md").read_text(encoding="utf-8")
     rows = re.findall(r"^\| `(\w+_schedule\(.*?\))`.*?\| \d+ \| ([\d.]+ %)(?: \(warns\))? \|$", text, re.MULTILINE)
-    assert len(rows) == 8
+    assert len(rows) == 7
     return rows
 
 
@@ -273,7 +276,14 @@ def schedule_table() -> list[tuple[str, str]]:
 def test_the_table_in_the_docs_is_what_the_schedules_leave(call, left):
     made = {"linear": linear_schedule, "scaled_linear": scaled_linear_schedule, "cosine": cosine_schedule}
     name, arguments = call[:-1].split("_schedule(")
-    numbers = [float(x) if "e" in x or "." in x else int(x) for x in re.sub("snr=.*", "0.999", arguments).split(", ")]
-    named = {"snr": float(arguments.split("snr=")[1])} if "snr=" in arguments else {}
-    schedule = (made | {"leap": leap_schedule})[name](*numbers, **named)
+    numbers = [float(x) if "e" in x or "." in x else int(x) for x in arguments.split(", ")]
+    schedule = (made | {"leap": leap_schedule})[name](*numbers)
     assert f" {left} of the signal" in schedule_card(schedule)
+
+
+def test_the_dancers_row_of_the_table():
+    text = (Path(__file__).parents[1] / "docs" / "NOTATION.md").read_text(encoding="utf-8")
+    ((snr, left),) = re.findall(
+        r"^\| `shifted\(cosine_schedule\(1000\), (.*?)\)`.*?\| 1000 \| (.*?) \|$", text, re.MULTILINE
+    )
+    assert float(snr) == DANCER.snr and f" {left} of" in schedule_card(shifted(cosine_schedule(1000), DANCER.snr))

@@ -13,6 +13,7 @@ from ..dance_windows import DanceWindows, dance_loss
 from ..dancer import Dancer, network
 from ..ddpm import Schedule, cosine_schedule
 from ..files import digest_of_tensors
+from ..shifted_schedule import shifted
 from .dance_recipes import DanceRecipe
 from .train_recipe import train_recipe
 
@@ -45,7 +46,7 @@ def train_dancer(recipe: DanceRecipe, run_file: Path, windows: DanceWindows | No
     Raises ValueError when the run in `run_file` was begun with other settings.
     """
     config, windows = recipe.config, windows or training_windows(recipe)
-    schedule = cosine_schedule(config.S, snr=recipe.snr)
+    schedule = shifted(cosine_schedule(config.S), recipe.snr)
     torch.manual_seed(recipe.seed)
     model = network(config)
     trained, card = train_recipe(
