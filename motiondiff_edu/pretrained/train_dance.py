@@ -1,11 +1,9 @@
 """Train a recipe into a dancer: songs, dances, windows, card. A killed run continues where it was saved last."""
 
-from collections.abc import Callable
 from functools import lru_cache
 from pathlib import Path
 
 import torch
-from torch import Generator, Tensor, nn
 
 from ..baselines.regression import regression_loss
 from ..conditions.music import log_mel
@@ -14,6 +12,7 @@ from ..dancer import Dancer, network
 from ..ddpm import Schedule, cosine_schedule
 from ..files import digest_of_tensors
 from ..shifted_schedule import shifted
+from ..training import LossFn
 from .dance_recipes import DanceRecipe
 from .train_recipe import train_recipe
 
@@ -63,7 +62,7 @@ def train_dancer(recipe: DanceRecipe, run_file: Path, windows: DanceWindows | No
     return Dancer(trained, schedule, windows.motion_scaler, windows.mel_scaler, card)
 
 
-def loss_of(recipe: DanceRecipe, windows: DanceWindows, schedule: Schedule) -> Callable[[nn.Module, Generator], Tensor]:
+def loss_of(recipe: DanceRecipe, windows: DanceWindows, schedule: Schedule) -> LossFn:
     """The loss that a recipe asks for: MoFusion's, or the regression's where the network is deterministic."""
     if getattr(recipe.config, "deterministic", False):
         return regression_loss(windows, batch=recipe.batch, shake=recipe.shake)

@@ -17,7 +17,7 @@ from motiondiff_edu.muon import optimizer_for
 from motiondiff_edu.pretrained.train_dance import loss_of
 from motiondiff_edu.training import TrainState, train_steps
 
-from .dance_budget import HEARD, VARIANTS, Budget, material, recipe_of
+from .dance_budget import HEARD, Budget, material, recipe_of
 
 BASE, TIMED = "x0", ("x0", "alpha_bar", "linear-music", "transformer", "mfcc", "regression")
 DANCES = 8  # at once
@@ -27,7 +27,8 @@ class Clock:
     """One network with all that a step of training, a pass and a dance need; times are CPU-seconds of one call."""
 
     def __init__(self, name: str, windows: DanceWindows, budget: Budget):
-        recipe, schedule = recipe_of(name, budget), cosine_schedule(VARIANTS[name][2].S)
+        recipe = recipe_of(name, budget)
+        schedule = cosine_schedule(recipe.config.S)
         torch.manual_seed(recipe.seed)
         model = network(recipe.config)
         state = TrainState.start(model, recipe.seed, optimizer_for(model, recipe.optimizer))
