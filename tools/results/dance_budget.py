@@ -25,7 +25,6 @@ from .dance_trials import UNSEEN, mel_of
 from .mfcc import CHANNELS, heard_instead, mfcc_and_beats
 from .scores import Figure
 
-LENGTH = 1200  # steps of training, the same for all
 LIKE = "target x0, shifted schedule, no kinematic losses, changes weighted 5, feet 0.2, convolutions over the Mel"
 KIN = {name: {"kinematic": replace(KINEMATIC, over_time=name)} for name in ("constant", "alpha_bar", "snr")}
 PLAIN = TransformerConfig()  # 2.64 M numbers, the U-Net has 2.65 M
@@ -60,10 +59,10 @@ SHARE = ("bas", "bas_shuffled")
 class Budget:
     """How long is trained, on what, and how much is measured."""
 
-    steps: int = LENGTH
+    steps: int = 1200
     songs: int = 400
     seconds: float = 20.0
-    batch: int = 32
+    batch: int = 16
     save_every: int = 50
     measured: DanceSize = DanceSize(songs=30, seeds=2, pieces=10, each=8)
 

@@ -2,7 +2,7 @@
 
 from motiondiff_edu.dancer import ETA, STEPS
 
-from .dance_budget import LENGTH, VARIANTS
+from .dance_budget import FULL, VARIANTS
 from .dance_time import BASE, TIMED
 from .markdown import cell, number, table
 
@@ -100,8 +100,8 @@ def choices(records: dict[str, dict]) -> str:
         beside = f"`{base}`" if base else "-"
         rows.append([f"`{name}`: {words}", beside, *(cell(records.get(n), unit=False) for n in mine), said])
     text = (
-        f"## What each choice of a dancer is worth\n\nTrained on the same songs with the same seed for {LENGTH} steps, "
-        "where nothing else is said; each row differs from the row named beside it in one choice. "
+        f"## What each choice of a dancer is worth\n\nTrained on the same songs with the same seed for {FULL.steps} "
+        f"steps of {FULL.batch} windows; each row differs from the row named beside it in one choice. "
         f"{STEPS} DDIM steps (eta = {ETA:g}) for all. `share gained` and `bone error saved` are set against that row, "
         "on the same songs. The trainings are short, one seed each: an order, not what a choice is worth in the end. "
         "`make results FULL=1` trains them; `make results` keeps what is stored.\n\n"
