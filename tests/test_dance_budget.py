@@ -37,6 +37,7 @@ def tiny(monkeypatch):
 
 def test_each_variant_differs_from_its_base_in_what_its_words_say():
     differing = {
+        "poses": {"changes", "feet"},
         "eps": {"config.target", "config.skip"},
         "eps-weighted": {"high_noise"},
         "v": {"config.target", "config.skip"},
@@ -46,7 +47,6 @@ def test_each_variant_differs_from_its_base_in_what_its_words_say():
         "slide": {"kinematic"},
         "cosine": {"snr"},
         "linear-music": {"config.music_layers"},
-        "changes-0": {"changes", "feet"},
         "mfcc": {"config.C"},
         "regression": {"config.deterministic"},
     }
@@ -97,16 +97,19 @@ def test_a_row_is_trained_measured_and_set_beside_its_base(tiny, tmp_path, capsy
     assert seeds["weights"] != base["dance-budget.x0.bas"]["seeds"]["weights"]
 
 
-def test_rows_of_another_budget_are_not_set_beside_it(tiny, tmp_path):
+def test_rows_of_another_budget_or_sampler_are_not_set_beside_it(tiny, tmp_path, monkeypatch):
     rows, squares = {"bas": np.full(4, 0.5), "bas_shuffled": np.full(4, 0.2)}, np.full(4, 2.0)
     data = {"bas": np.full(4, 0.8), "bas_shuffled": np.full(4, 0.2)}
     worse = Danced([], {**rows, "bas": np.full(4, 0.35)}, data, 4 * squares)
-    dance_budget.keep("constant", worse, tmp_path, "one")
+    dance_budget.keep("constant", worse, tmp_path, SMALL)
     found = Danced([], rows, data, squares)
-    figures = {figure.name: figure.value for figure in dance_budget.gains("alpha_bar", found, tmp_path, "one")}
+    figures = {figure.name: figure.value for figure in dance_budget.gains("alpha_bar", found, tmp_path, SMALL)}
     assert figures["bas_share_minus_constant"] == pytest.approx(0.3 / 0.6 - 0.15 / 0.6)
     assert figures["bone_gain_over_constant"] == pytest.approx(0.5) and len(figures) == 2
-    assert dance_budget.gains("alpha_bar", found, tmp_path, "two") == []
+    for other in (replace(SMALL, steps=4), replace(SMALL, measured=DanceSize(songs=3, seeds=1, pieces=2, each=3))):
+        assert dance_budget.gains("alpha_bar", found, tmp_path, other) == []
+    monkeypatch.setattr(dance_budget, "ETA", 0.25)
+    assert dance_budget.gains("alpha_bar", found, tmp_path, SMALL) == []
 
 
 @pytest.mark.parametrize("name", ["eps-weighted", "mfcc", "regression"])

@@ -13,7 +13,7 @@ import numpy as np
 
 from motiondiff_edu.baselines.transformer import TransformerConfig
 from motiondiff_edu.dance_windows import DanceWindows
-from motiondiff_edu.dancer import STEPS, Dancer
+from motiondiff_edu.dancer import ETA, STEPS, Dancer
 from motiondiff_edu.files import digest_of_tensors, replacing
 from motiondiff_edu.mofusion import MOFUSION_SMALL
 from motiondiff_edu.pretrained.dance_recipes import KINEMATIC, X0, DanceRecipe
@@ -29,22 +29,23 @@ LIKE = "target x0, shifted schedule, no kinematic losses, changes weighted 5, fe
 KIN = {name: {"kinematic": replace(KINEMATIC, over_time=name)} for name in ("constant", "alpha_bar", "snr")}
 PLAIN = TransformerConfig()  # 2.64 M numbers, the U-Net has 2.65 M
 EPS = replace(MOFUSION_SMALL, target="eps", skip=True)  # a network without it learns no eps in so few steps
+POSES = {"changes": 0.0, "feet": 0.0}  # a squared error and no more, as the paper has it
 VARIANTS = {  # name: (what differs, in words, from which other one, the network, settings of the training)
     "x0": (LIKE, "", X0, {}),
-    "eps": ("target eps, with its skip", "x0", EPS, {}),
-    "eps-weighted": ("high noise weighted, up to 21 times", "eps", EPS, {"high_noise": 20.0}),
-    "v": ("target v, with the skip", "x0", replace(EPS, target="v"), {}),
+    "poses": ("errors of poses alone, neither of changes nor of feet", "x0", X0, POSES),
+    "eps": ("target eps, with its skip", "poses", EPS, POSES),
+    "eps-weighted": ("high noise weighted, up to 21 times", "eps", EPS, POSES | {"high_noise": 20.0}),
+    "v": ("target v, with the skip", "poses", replace(EPS, target="v"), POSES),
     "constant": ("kinematic losses, all steps alike", "x0", X0, KIN["constant"]),
     "alpha_bar": ("kinematic losses weighted by alpha_bar", "x0", X0, KIN["alpha_bar"]),
     "snr": ("kinematic losses weighted by alpha_bar / (1 - alpha_bar), 5 at most", "x0", X0, KIN["snr"]),
     "slide": ("a foot loss of 2", "alpha_bar", X0, {"kinematic": replace(KINEMATIC, slide=2.0)}),
     "cosine": ("the cosine schedule as it is", "x0", X0, {"snr": 1.0}),
     "linear-music": ("one linear layer for the music", "x0", replace(X0, music_layers=0), {}),
-    "changes-0": ("errors of poses alone, not of changes", "x0", X0, {"changes": 0.0, "feet": 0.0}),
     "transformer": ("a plain transformer of equal size", "x0", PLAIN, {}),
     "mfcc": ("MFCC and the true beats instead of Mel", "x0", replace(X0, C=CHANNELS), {}),
     "regression": (
-        "regression, errors of poses alone",
+        "regression: errors of poses alone",
         "transformer",
         replace(PLAIN, deterministic=True),
         {},
@@ -101,13 +102,18 @@ def trained(name: str, budget: Budget, runs: Path) -> Dancer:
     return train_dancer(recipe_of(name, budget), run, material(heard, budget), log)
 
 
-def gains(name: str, found: Danced, runs: Path, about: str) -> list[Figure]:
+def about(name: str, budget: Budget) -> str:
+    """What a row was measured under: training, songs and sampler."""
+    return repr((recipe_of(name, budget), budget.measured, STEPS, ETA))
+
+
+def gains(name: str, found: Danced, runs: Path, budget: Budget) -> list[Figure]:
     """Beside what a row is to be compared with, on the same songs: drawn together, so that their luck is shared."""
     figures, own = [], [rows[key] for rows in (found.own, found.data) for key in SHARE]
     for rival in filter(None, (VARIANTS[name][1], *RIVALS.get(name, ()))):
         kept = runs / f"{rival}.npz"
         other = dict(np.load(kept)) if kept.is_file() else {"about": ""}
-        if str(other["about"]) != about:
+        if str(other["about"]) != about(rival, budget):
             print(f"{name}: {rival} was not measured here under the same budget: no differences to it")
             continue
         figures.append(share_minus(f"bas_share_minus_{rival}", own, [other["own_" + k] for k in SHARE] + own[2:]))
@@ -115,9 +121,10 @@ def gains(name: str, found: Danced, runs: Path, about: str) -> list[Figure]:
     return figures
 
 
-def keep(name: str, found: Danced, runs: Path, about: str) -> None:
+def keep(name: str, found: Danced, runs: Path, budget: Budget) -> None:
     """The rows of each song, for those that are set beside this one."""
-    rows = {f"own_{key}": found.own[key] for key in SHARE} | {"squares": found.squares, "about": np.array(about)}
+    rows = {f"own_{key}": found.own[key] for key in SHARE} | {"squares": found.squares}
+    rows["about"] = np.array(about(name, budget))
     with replacing(runs / f"{name}.npz") as aside, open(aside, "wb") as file:
         np.savez(file, **rows)
 
@@ -125,11 +132,11 @@ def keep(name: str, found: Danced, runs: Path, about: str) -> None:
 def budget_records(name: str, budget: Budget, runs: Path, command: str) -> list[dict]:
     """Train (or continue) one variant, and measure it."""
     dancer, songs = trained(name, budget, runs), stage(name if name in HEARD else "", budget)
-    found, about = danced(songs, dancer), repr(budget)
-    keep(name, found, runs, about)
+    found = danced(songs, dancer)
+    keep(name, found, runs, budget)
     size, recipe = budget.measured, recipe_of(name, budget)
-    seeds = {"data": UNSEEN, "songs": size.songs, "sampling": list(range(size.seeds)), "steps": STEPS}
+    seeds = {"data": UNSEEN, "songs": size.songs, "sampling": list(range(size.seeds)), "steps": STEPS, "eta": ETA}
     seeds |= {"training": recipe.seed, "trained_steps": recipe.steps, "trained_songs": recipe.songs}
     seeds |= {"batch": recipe.batch, "weights": digest_of_tensors(dancer.model.state_dict())[:16]}
-    figures = [*found.figures, *gains(name, found, runs, about)]
+    figures = [*found.figures, *gains(name, found, runs, budget)]
     return [figure.as_record(f"dance-budget.{name}.", seeds, command) for figure in figures]
