@@ -71,8 +71,10 @@ def dances(
     """n songs as `music.songs` has them, with `each` dances to every one: what dancers are trained on.
 
     The dances to one song follow one another. Different seeds share no song, and no dancer's seed.
-    Raises ValueError as `songs` and `dance` do.
+    Raises ValueError as `songs` and `dance` do, for no dance to a song, and for more dances than a seed has.
     """
+    if each < 1 or n * each > DANCES_A_SEED:
+        raise ValueError(f"one dance to a song or more, {DANCES_A_SEED} in all; got {n} songs with {each} each")
     made = songs(n, seed, seconds, genre=genre)
     first = seed * DANCES_A_SEED
     return ((song, dance(song, first + each * k + j)) for k, song in enumerate(made) for j in range(each))

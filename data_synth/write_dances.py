@@ -1,6 +1,7 @@
 """The command line of dance.py: songs and their dances as BVH for Blender and as npz for everything else."""
 
 import argparse
+from itertools import islice
 from pathlib import Path
 
 import numpy as np
@@ -41,16 +42,19 @@ def main(arguments: list[str] | None = None) -> None:
     parser.add_argument("--out", type=Path, required=True, help="folder for dance_000.bvh, dance_000.npz, ...")
     parser.add_argument("--dances", type=int, default=10)
     parser.add_argument("--seconds", type=float, default=30.0)
+    parser.add_argument("--each", type=int, default=1, help="dances to one song")
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--genre", choices=list(GENRES), help="one genre only; without it, all in turn")
     given = parser.parse_args(arguments)
-    if given.dances < 1 or given.seconds < 3:
-        parser.error("write at least one dance (--dances) of at least three seconds (--seconds)")
+    if min(given.dances, given.each) < 1 or given.seconds < 3:
+        parser.error("write at least one dance (--dances, --each) of at least three seconds (--seconds)")
     from motiondiff_edu.motion.bvh_write import write_bvh
 
     from .dance import dances
 
-    for k, (song, danced) in enumerate(dances(given.dances, given.seed, given.seconds, genre=given.genre)):
+    songs = -(-given.dances // given.each)
+    made = dances(songs, given.seed, given.seconds, each=given.each, genre=given.genre)
+    for k, (song, danced) in enumerate(islice(made, given.dances)):
         save_npz(danced, song, given.out / f"dance_{k:03d}.npz")
         write_bvh(given.out / f"dance_{k:03d}.bvh", danced.positions, danced.fps)
     genres = list(GENRES) if given.genre is None else [given.genre]

@@ -54,7 +54,7 @@ class DanceWindows:
 
     n: int
     dances: Float[Tensor, "F 21 3"]  # of all dances, one after the other; metres
-    feet: Bool[Tensor, "F 2"]
+    contacts: Bool[Tensor, "F 2"]
     starts: Int[Tensor, "K"]  # in `dances`
     mel: Float[Tensor, "G C"]  # of all songs, one after the other, standardised
     song_starts: Int[Tensor, "K"]  # in `mel`
@@ -69,14 +69,18 @@ class DanceWindows:
         mels: Sequence[Float[Tensor, "_ C"]],
         n: int = 100,
     ) -> "DanceWindows":
-        """Windows of dances and the log-Mel of their songs; several dances in a row to one `mel` share it.
+        """Windows of dances and the log-Mel of their songs; dances in a row with the same tensor as `mel` share it.
 
-        Raises ValueError when no dance is long enough, or lists do not match.
+        Raises ValueError when no dance is long enough, or lists or lengths do not match.
         """
         if not len(dances) == len(contacts) == len(mels):
             raise ValueError(
                 f"{len(dances)} dances, {len(contacts)} contacts and {len(mels)} songs: each needs its own"
             )
+        lengths = enumerate(zip(map(len, dances), map(len, contacts), strict=True))
+        uneven = next(((k, *both) for k, both in lengths if both[0] != both[1]), None)
+        if uneven:
+            raise ValueError("dance {} has {} frames, and contacts for {}: one for each frame".format(*uneven))
         starts, song_starts, heard, first, song = [], [], [], 0, 0
         for dance, mel in zip(dances, mels, strict=True):
             if not heard or mel is not heard[-1]:
@@ -89,9 +93,9 @@ class DanceWindows:
         if not starts:
             raise ValueError(f"no dance has {n} frames with music")
         positions = torch.from_numpy(np.concatenate(dances)).float()
-        feet, mel = torch.from_numpy(np.concatenate(contacts)), torch.cat(heard).float()
+        stands, mel = torch.from_numpy(np.concatenate(contacts)), torch.cat(heard).float()
         at, units = (torch.tensor(starts), torch.tensor(song_starts)), Scaler.fit(mel)
-        raw = cls(n, positions, feet, at[0], units.transform(mel), at[1], Scaler.nothing(D), units)
+        raw = cls(n, positions, stands, at[0], units.transform(mel), at[1], Scaler.nothing(D), units)
         some = torch.linspace(0, len(raw) - 1, min(len(raw), FITTED)).long()
         return replace(raw, motion_scaler=Scaler.fit(raw.take(some)[0]))
 
@@ -109,11 +113,11 @@ class DanceWindows:
         """The windows of these numbers: motion, music, and which feet stand."""
         k, mirrored = chosen // 2, chosen % 2 == 1
         frames = self.starts[k][:, None] + torch.arange(self.n)
-        positions, feet = self.dances[frames].double().numpy(), self.feet[frames]
+        positions, stands = self.dances[frames].double().numpy(), self.contacts[frames]
         positions[mirrored.numpy()] = mirror(positions[mirrored.numpy()])
         motion = torch.from_numpy(to_features(positions)).float()
         heard = self.mel[self.song_starts[k][:, None] + torch.arange(mel_frames(self.n))]
-        return self.motion_scaler.transform(motion), heard, feet.where(~mirrored[:, None, None], feet.flip(-1))
+        return self.motion_scaler.transform(motion), heard, stands.where(~mirrored[:, None, None], stands.flip(-1))
 
     def draw(
         self, batch: int, generator: torch.Generator, shake: float = 0.0
@@ -146,8 +150,9 @@ def dance_loss(
     `high_noise` = c weights the squared error at step s by 1 + min((1 - alpha_bar) / alpha_bar, c): an eps network
     would else hardly look where the beat is decided. `changes` weights the errors of changes from frame to frame,
     `feet` those of the toes in the world, as a share of how far toes move: for a foot to stand, pelvis and leg must err
-    alike. `shake` is `DanceWindows.draw`'s.
-    Source: MoFusion eq. 4.  Notebook: 12, 13
+    alike. Both are of the target's errors: an eps network's are its x0_hat's, times sqrt(alpha_bar / (1 - alpha_bar)).
+    `shake` is `DanceWindows.draw`'s. Raises ValueError for `feet` where no toe moves.
+    Source: MoFusion eq. 4; changes, feet and shake are ours.  Notebook: 12, 13
     """
     noise_over_signal = ((1 - schedule.alpha_bar) / schedule.alpha_bar).float()
     data_weight = 1 + noise_over_signal.clamp_max(high_noise)
@@ -179,10 +184,16 @@ def dance_loss(
 
 
 def toes_moved(windows: DanceWindows, samples: int = 1000) -> float:
-    """How far toes move in a frame of the data: the mean square of a coordinate's change, m^2."""
+    """How far toes move in a frame of the data: the mean square of a coordinate's change, m^2.
+
+    Raises ValueError where none moves.
+    """
     some = torch.linspace(0, len(windows) - 1, min(len(windows), samples)).long()
     positions = to_positions(windows.motion_scaler.inverse(windows.take(some)[0]))
-    return float(positions[:, :, list(TOES)].diff(dim=1).square().mean())
+    moved = float(positions[:, :, list(TOES)].diff(dim=1).square().mean())
+    if not moved:
+        raise ValueError("no toe moves in these windows: errors of feet have no measure")
+    return moved
 
 
 def kinematic_parts(

@@ -1,7 +1,8 @@
 """Kinematic losses: what is asked of the clean motion that the network has in mind, and how much at which step.
 
     L = L_da + lambda(s) L_k,   L_k = w_s L_s + w_a L_a + w_m L_m (+ w_f L_f)
-L_da is the ordinary squared error of the target. L_k looks at x0_hat, the guess of the clean motion, in metres.
+L_da is the squared error of the target (to which `dance_windows.dance_loss` may add). L_k looks at x0_hat, the guess of
+the clean motion, in metres.
 Source: MoFusion 3.2, eq. 4-7.  Notebook: 13
 """
 

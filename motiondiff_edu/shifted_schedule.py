@@ -1,7 +1,7 @@
 """A schedule with more noise at every step: its signal-to-noise ratio, times a number.
 
 What many entries tell together survives noise that hides each of them: images of more pixels, dances of more frames.
-The steps of a schedule made for small things then leave nearly all decisions to the first few.
+A schedule made for small things then hurries through the noise at which much is decided.
 Source: Hoogeboom and others, 2023 (simple diffusion), for images; for dances, ours.  Notebook: 12
 """
 

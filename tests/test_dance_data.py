@@ -16,6 +16,7 @@ from data_synth.score import beat_song
 from data_synth.song import GENRES, SAMPLE_RATE
 from motiondiff_edu.motion.bvh import read_bvh
 from motiondiff_edu.motion.skeleton import BONE_LENGTHS, BONES, HEELS, MIRROR, TOES
+from motiondiff_edu.pretrained.dance_recipes import DANCER
 
 METRES = (3, 4, 5)
 TEMPI = {"house": 128, "hiphop": 92, "pop": 117, "latin": 104, "waltz": 101}
@@ -273,6 +274,27 @@ def test_several_dances_to_each_song():
     assert [song.seed for song, _ in made] == [3_000_000, 3_000_000, 3_000_001, 3_000_001]
     assert made[0][0] is made[1][0] and [d.seed for _, d in made] == [300_000, 300_001, 300_002, 300_003]
     assert not np.array_equal(made[0][1].positions, made[1][1].positions)
+    for n, each in ((2, 0), (50_001, 2)):
+        with pytest.raises(ValueError, match="one dance to a song or more, 100000 in all"):
+            dances(n, 3, 6.0, each=each)
+
+
+def test_the_command_writes_several_dances_to_a_song(tmp_path):
+    from data_synth.write_dances import main
+
+    main(["--out", str(tmp_path), "--dances", "3", "--each", "2", "--seconds", "4", "--seed", "1"])
+    wanted = list(dances(2, 1, 4.0, each=2))[:3]  # as training has them
+    assert len(list(tmp_path.glob("*.npz"))) == 3
+    for k, (song, danced) in enumerate(wanted):
+        with np.load(tmp_path / f"dance_{k:03d}.npz") as f:
+            assert f["song_seed"] == song.seed and f["seed"] == danced.seed
+            np.testing.assert_array_equal(f["positions"], danced.positions.astype(np.float32))
+
+
+def test_the_cards_training_data_are_the_dancers(root):
+    card = (root / "data_synth" / "README.md").read_text(encoding="utf-8")
+    said = f"`dances({DANCER.songs}, {DANCER.data_seed}, {DANCER.seconds:.1f}, each={DANCER.dances})`"
+    assert f"{DANCER.songs:,} songs of {DANCER.seconds:g} s" in card and said in card
 
 
 def test_the_command_writes_files(tmp_path, capsys):

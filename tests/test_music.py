@@ -88,12 +88,20 @@ def test_bands_that_cannot_be_are_refused(arguments):
 
 
 @pytest.mark.filterwarnings("ignore:n_fft=1024 is too large")  # librosa's word on less than one window
-@pytest.mark.parametrize("n", [1, 511, 512, 16000, 23457])
+@pytest.mark.parametrize("n", [1, 511, 512, 16000, 23457, 255 * 512, 256 * 512 - 1, 256 * 512, 600 * 512 + 7])
 def test_log_mel_is_librosas(n):
-    audio = loudness(1.5)[:n]
+    audio = loudness(1 + n / SAMPLE_RATE)[:n]
     ours = log_mel(torch.from_numpy(audio))
     assert ours.shape == (1 + n // 512, 80) and ours.dtype == torch.float32
     np.testing.assert_allclose(ours.numpy(), their_log_mel(audio), atol=1e-4)
+
+
+def test_a_batch_longer_than_one_piece_is_as_one_by_one():
+    audio = np.stack([loudness(10.0, f) for f in (200, 900)])
+    both = log_mel(torch.from_numpy(audio))
+    assert both.shape == (2, 313, 80)
+    for one, sound in zip(both, audio, strict=True):
+        torch.testing.assert_close(one, log_mel(torch.from_numpy(sound)), atol=1e-5, rtol=0)
 
 
 def test_batches_precision_and_arrays():

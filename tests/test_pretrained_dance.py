@@ -7,9 +7,12 @@ import pytest
 import torch
 
 from motiondiff_edu.checkpoints import load_dancer
+from motiondiff_edu.dancer import network
+from motiondiff_edu.ddpm import cosine_schedule
 from motiondiff_edu.pretrained import __main__ as command
 from motiondiff_edu.pretrained.dance_recipes import DANCE_RECIPES, DANCER, DANCER_PLAIN, REGRESSED
-from motiondiff_edu.pretrained.train_dance import train_dancer, training_windows
+from motiondiff_edu.pretrained.train_dance import loss_of, schedule_of, train_dancer, training_windows
+from motiondiff_edu.shifted_schedule import shifted
 
 SIZES = {"steps": 6, "songs": 2, "seconds": 8.0, "batch": 3, "save_every": 2, "frames": 40}
 TINY = replace(DANCER, name="tiny", config=replace(DANCER.config, widths=(16, 24), music_layers=1, S=20), **SIZES)
@@ -46,6 +49,23 @@ def test_a_killed_training_continues_bit_for_bit(windows, tmp_path: Path):
     assert [sitting["from_step"] for sitting in again.card["sittings"]] == [0, 2]
     with pytest.raises(ValueError, match="begun with lr"):
         train_dancer(replace(TINY, lr=1e-4), tmp_path / "whole.safetensors", windows, log=lambda line: None)
+
+
+def test_what_a_recipe_says_reaches_the_training(windows, tmp_path: Path):
+    trained = train_dancer(TINY, tmp_path / "one.safetensors", windows, log=lambda line: None)
+    usual = cosine_schedule(20)
+    assert torch.equal(trained.schedule.alpha_bar, shifted(usual, 0.1).alpha_bar)
+    assert not torch.equal(trained.schedule.alpha_bar, usual.alpha_bar)
+    torch.manual_seed(0)
+    model = network(TINY.config)
+
+    def loss(**changed) -> float:
+        recipe = replace(TINY, **changed)
+        return loss_of(recipe, windows, schedule_of(recipe))(model, torch.Generator().manual_seed(0)).item()
+
+    plain = {"kinematic": None, "high_noise": 2.0, "changes": 0.0, "feet": 0.0, "shake": 0.0, "snr": 1.0, "batch": 2}
+    for name, value in plain.items():
+        assert loss(**{name: value}) != loss(), name
 
 
 def test_the_command_trains_a_recipe_into_a_file(monkeypatch, tmp_path: Path, capsys):

@@ -44,8 +44,8 @@ def train_dancer(recipe: DanceRecipe, run_file: Path, windows: DanceWindows | No
 
     Raises ValueError when the run in `run_file` was begun with other settings.
     """
-    config, windows = recipe.config, windows or training_windows(recipe)
-    schedule = shifted(cosine_schedule(config.S), recipe.snr)
+    config, windows = recipe.config, training_windows(recipe) if windows is None else windows
+    schedule = schedule_of(recipe)
     torch.manual_seed(recipe.seed)
     model = network(config)
     trained, card = train_recipe(
@@ -62,6 +62,11 @@ def train_dancer(recipe: DanceRecipe, run_file: Path, windows: DanceWindows | No
     return Dancer(trained, schedule, windows.motion_scaler, windows.mel_scaler, card)
 
 
+def schedule_of(recipe: DanceRecipe) -> Schedule:
+    """The cosine schedule, shifted as the recipe says."""
+    return shifted(cosine_schedule(recipe.config.S), recipe.snr)
+
+
 def loss_of(recipe: DanceRecipe, windows: DanceWindows, schedule: Schedule) -> LossFn:
     """The loss that a recipe asks for: MoFusion's, or the regression's where the network is deterministic."""
     if getattr(recipe.config, "deterministic", False):
@@ -70,5 +75,8 @@ def loss_of(recipe: DanceRecipe, windows: DanceWindows, schedule: Schedule) -> L
 
 
 def digest(windows: DanceWindows) -> str:
-    """Of dances and music: a run goes on with the data it was begun with, or not at all."""
-    return digest_of_tensors({"dances": windows.dances, "mel": windows.mel})[:16]
+    """Of dances, music, and how windows are cut from them: a run goes on with what it was begun with, or not at all."""
+    some = torch.linspace(0, len(windows) - 1, min(len(windows), 100)).long()
+    motion, mel, stands = windows.take(some)
+    parts = {"dances": windows.dances, "mel": windows.mel, "starts": windows.starts, "songs": windows.song_starts}
+    return digest_of_tensors(parts | {"motion": motion, "heard": mel, "stands": stands})[:16]

@@ -12,9 +12,8 @@ import torch
 from benchmarks.records import record
 from motiondiff_edu.dance_windows import DanceWindows
 from motiondiff_edu.dancer import STEPS, Dancer, network
-from motiondiff_edu.ddpm import cosine_schedule
 from motiondiff_edu.muon import optimizer_for
-from motiondiff_edu.pretrained.train_dance import loss_of
+from motiondiff_edu.pretrained.train_dance import loss_of, schedule_of
 from motiondiff_edu.training import TrainState, train_steps
 
 from .dance_budget import HEARD, Budget, material, recipe_of
@@ -28,7 +27,7 @@ class Clock:
 
     def __init__(self, name: str, windows: DanceWindows, budget: Budget):
         recipe = recipe_of(name, budget)
-        schedule = cosine_schedule(recipe.config.S)
+        schedule = schedule_of(recipe)
         torch.manual_seed(recipe.seed)
         model = network(recipe.config)
         state = TrainState.start(model, recipe.seed, optimizer_for(model, recipe.optimizer))
