@@ -104,7 +104,8 @@ class Dancer:
     ) -> Float[Tensor, "B T 21 3"]:
         """Dance to log-Mel spectrograms (`conditions.music.log_mel`), one dance each; metres, 20 frames a second.
 
-        `frames`: how long, by default as long as the music. `steps`: of DDIM with `eta`, or None for DDPM with all.
+        `frames`: how long, by default as long as the music. `steps`: of DDIM with `eta` (S where there are no more), or
+        None for DDPM with all.
         `start`: the noise to begin with (by default drawn), so that two songs can be danced to from the same noise.
         Raises ValueError for more frames than there is music.  Notebook: 12
         """
@@ -119,7 +120,7 @@ class Dancer:
         if steps is None:
             loop = ddpm_steps(denoise, x_S, self.schedule, generator=generator, variance="posterior")
         else:
-            loop = ddim_steps(denoise, x_S, self.schedule, steps, eta, generator=generator)
+            loop = ddim_steps(denoise, x_S, self.schedule, min(steps, self.schedule.S), eta, generator=generator)
         for step in loop:
             last = step
         return to_positions(self.motion_scaler.inverse(last.x_s))

@@ -49,6 +49,15 @@ def test_dances_are_as_long_as_asked_and_come_from_the_seed(config, steps):
         one.dance(mel(), 42)
 
 
+def test_a_schedule_with_fewer_steps_than_the_usual_sampler_takes_is_danced_with_all_of_them():
+    one = dancer()
+    usual = one.dance(mel(), 30, generator=seeded())
+    assert torch.equal(usual, one.dance(mel(), 30, generator=seeded(), steps=12))
+    assert not torch.equal(usual, one.dance(mel(), 30, generator=seeded(), steps=11))
+    with pytest.raises(ValueError, match="between 1 and 12"):
+        one.dance(mel(), 30, steps=0)
+
+
 def test_the_same_noise_and_other_music_give_another_dance():
     one, start = dancer(), torch.randn(2, 30, 63)
     out = one.dance(mel(), start=start, frames=30, steps=3, eta=0.0)
