@@ -48,7 +48,8 @@ X0 = replace(MOFUSION_SMALL, target="x0", skip=False)
 DANCER = DanceRecipe("dancer", X0, steps=10_000, kinematic=KINEMATIC)
 DANCER_PLAIN = DanceRecipe("dancer-plain", X0, steps=10_000)
 REGRESSED = DanceRecipe("regression", REGRESSION, steps=3000)
-DANCER_FULL = DanceRecipe("dancer-full", MOFUSION_FULL, steps=200_000, kinematic=KINEMATIC, lr=2e-4, batch=64)
+FULL = replace(MOFUSION_FULL, target="x0", skip=False)  # never trained: it wants a GPU
+DANCER_FULL = replace(DANCER, name="dancer-full", config=FULL, steps=200_000, batch=64)
 
 SHIPPED_DANCERS = (DANCER, DANCER_PLAIN, REGRESSED)
 DANCE_RECIPES = {recipe.name: recipe for recipe in (*SHIPPED_DANCERS, DANCER_FULL)}
