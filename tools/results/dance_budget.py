@@ -45,7 +45,7 @@ VARIANTS = {  # name: (what differs, in words, from which other one, the network
     "transformer": ("a plain transformer of equal size", "x0", PLAIN, {}),
     "mfcc": ("MFCC and the true beats instead of Mel", "x0", replace(X0, C=CHANNELS), {}),
     "regression": (
-        "regression: errors of poses alone",
+        "regression, errors of poses alone",
         "transformer",
         replace(PLAIN, deterministic=True),
         {},
