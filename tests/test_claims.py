@@ -84,7 +84,7 @@ def test_the_page_marks_what_is_stored(tmp_path):
     (tmp_path / "results").mkdir()
     (tmp_path / "bench").mkdir()
     rows = [record(f"dance-budget.v.{kind}", 0.2, 0.6, trained_steps=77) for kind in dance_tables.SHOWN]
-    rows += [record("dance-budget.v.bas_share_minus_poses", -0.2, -0.1)]
+    rows += [record("dance-budget.v.bas_share_minus_no-feet", -0.2, -0.1)]
     (tmp_path / "results" / "dance-budget.v.json").write_text(json.dumps(rows))
     attention = [
         record(f"attention.{at}beat_mass{k}", 1, 1.4) for at in ("", "down-20.") for k in ("", "_over_shuffled")

@@ -37,7 +37,8 @@ def tiny(monkeypatch):
 
 def test_each_variant_differs_from_its_base_in_what_its_words_say():
     differing = {
-        "poses": {"changes", "feet"},
+        "no-feet": {"feet"},
+        "poses": {"changes"},
         "eps": {"config.target", "config.skip"},
         "eps-weighted": {"high_noise"},
         "v": {"config.target", "config.skip"},

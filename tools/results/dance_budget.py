@@ -29,13 +29,14 @@ LIKE = "target x0, shifted schedule, no kinematic losses, changes weighted 5, fe
 KIN = {name: {"kinematic": replace(KINEMATIC, over_time=name)} for name in ("constant", "alpha_bar", "snr")}
 PLAIN = TransformerConfig()  # 2.64 M numbers, the U-Net has 2.65 M
 EPS = replace(MOFUSION_SMALL, target="eps", skip=True)  # a network without it learns no eps in so few steps
-POSES = {"changes": 0.0, "feet": 0.0}  # a squared error and no more, as the paper has it
+NO_FEET = {"feet": 0.0}  # errors of eps or v are no positions: no toes could be followed in them
 VARIANTS = {  # name: (what differs, in words, from which other one, the network, settings of the training)
     "x0": (LIKE, "", X0, {}),
-    "poses": ("errors of poses alone, neither of changes nor of feet", "x0", X0, POSES),
-    "eps": ("target eps, with its skip", "poses", EPS, POSES),
-    "eps-weighted": ("high noise weighted, up to 21 times", "eps", EPS, POSES | {"high_noise": 20.0}),
-    "v": ("target v, with the skip", "poses", replace(EPS, target="v"), POSES),
+    "no-feet": ("errors of poses and of changes, not of feet", "x0", X0, NO_FEET),
+    "poses": ("errors of poses alone, as the paper has it", "no-feet", X0, NO_FEET | {"changes": 0.0}),
+    "eps": ("target eps, with its skip", "no-feet", EPS, NO_FEET),
+    "eps-weighted": ("high noise weighted, up to 21 times", "eps", EPS, NO_FEET | {"high_noise": 20.0}),
+    "v": ("target v, with the skip", "no-feet", replace(EPS, target="v"), NO_FEET),
     "constant": ("kinematic losses, all steps alike", "x0", X0, KIN["constant"]),
     "alpha_bar": ("kinematic losses weighted by alpha_bar", "x0", X0, KIN["alpha_bar"]),
     "snr": ("kinematic losses weighted by alpha_bar / (1 - alpha_bar), 5 at most", "x0", X0, KIN["snr"]),
