@@ -39,6 +39,12 @@ def frame_conv(mine):
             "it wraps around: before the first frame comes not the last one, but zeros": mixed(
                 x.roll(1, 0), x, x.roll(-1, 0)
             ),
+            "beyond both ends are zeros, and not the first and the last frame once more": mixed(
+                torch.cat([x[:1], x[:-1]]), x, torch.cat([x[1:], x[-1:]])
+            ),
+            "these columns go channel by channel; the weights want one frame whole, then the next": mixed(
+                torch.stack([before, x, after], -1).flatten(1)
+            ),
         }
         mistakes = {hint: wrong[::stride] for hint, wrong in same_length.items()} | {
             "the bias is missing": wanted - bias
@@ -48,6 +54,9 @@ def frame_conv(mine):
             mistakes |= {
                 "every second frame is kept, the *first* one included": whole[1::2],
                 "the stride is not used": whole,
+                "neighbours first, then every second answer: here the frames between were never seen": (
+                    mixed(_shifted(x[::2], -1), x[::2], _shifted(x[::2], 1))
+                ),
                 "the last frame got lost: of 7 frames, every second kept, 4 are left": whole[::2][:3],
             }
         expect_close(mine(x, weight, bias, stride), wanted, f"the answer for 7 frames and stride {stride}", mistakes)
@@ -56,33 +65,42 @@ def frame_conv(mine):
 
 @check
 def any_length(mine):
-    """mine(network, x, multiple) with a network that remembers where each frame lay."""
-    asked = []
+    """mine(network, x, multiple) with a network that knows where each frame lies, and what comes after it."""
 
-    def network(x):  # the running sum: what is put before the motion, or cut off it, shows
-        asked.append(x.shape[1])
-        expect(
-            x.shape[1] % 8 == 0,
-            f"the network was given {x.shape[1]} frames, and takes whole eights only: fill up before you ask",
-        )
-        return x.cumsum(1) + 3
+    def sums(x):  # what is put before the motion, cut off it, or filled in behind it shows
+        return x.cumsum(1) + x.sum(1, keepdim=True) + torch.arange(x.shape[1])[:, None]
 
-    for T in (13, 16, 1):
-        x = _numbers(2, T, 3, seed=T)
-        asked.clear()
-        got = torch.as_tensor(mine(network, x, 8))
-        more = -(-T // 8) * 8
-        whole = F.pad(x, (0, 0, 0, more - T)).cumsum(1) + 3
-        before = (F.pad(x, (0, 0, more - T, 0)).cumsum(1) + 3)[:, :T]
+    for T, multiple in ((13, 8), (16, 8), (1, 8), (3, 4)):
+        x, asked = _numbers(2, T, 3, seed=T), []
+
+        def network(x, asked=asked, multiple=multiple):
+            asked.append(x.shape[1])
+            expect(
+                x.shape[0] == 2 and x.shape[2] == 3,
+                f"the network was given {tuple(x.shape)}: it is the frames, axis 1 of (B, T, D), that are filled up",
+            )
+            expect(
+                x.shape[1] % multiple == 0,
+                f"the network was given {x.shape[1]} frames, no multiple of {multiple}: fill up before you ask",
+            )
+            return sums(x)
+
+        got = torch.as_tensor(mine(network, x, multiple))
+        more = -(-T // multiple) * multiple
+        whole, late = sums(F.pad(x, (0, 0, 0, more - T))), sums(F.pad(x, (0, 0, more - T, 0)))
+        held = sums(torch.cat([x, x[:, -1:].expand(-1, more - T, -1)], 1))[:, :T]
+        moved = "fill up behind the motion: before it, every frame moves to another time"
         expect(bool(asked), "the network was not asked at all")
         expect(got.shape[1] >= T, f"{T} frames came in and {got.shape[1]} went out: the last ones got lost")
         expect(got.shape[1] == T, f"{T} frames came in and {got.shape[1]} went out: crop what was filled up")
         expect(asked[-1] == more, f"{T} frames need {more - T} more, and not {asked[-1] - T}")
         mistakes = {
-            "fill up behind the motion: before it, every frame moves to another time": before,
+            moved: late[:, :T],
+            f"{moved}, also when the crop brings it back": late[:, more - T :],
             "crop at the end, not at the start": whole[:, more - T :],
+            "fill up with zeros: the last frame once more says that the dancer freezes": held,
         }
-        expect_close(got, x.cumsum(1) + 3, f"the answer for {T} frames", mistakes)
+        expect_close(got, sums(x), f"the answer for {T} frames and multiples of {multiple}", mistakes)
     return "In the library the filling is masked as well, so that attention and neighbours never see it."
 
 
@@ -106,12 +124,15 @@ def clocks(mine):
             turn * n, turn * m
         ),
         "both sides were counted by the motion's clock; the tokens have their own": weights(t, turn * m / fps_q),
+        "both sides were counted by the tokens' clock; the motion has its own": weights(turn * n / fps_k, u),
+        "frame n is at n / fps seconds: divide by the rate": weights(turn * n * fps_q, turn * m * fps_k),
         "the rates are exchanged": weights(turn * n / fps_k, turn * m / fps_q),
         "only the queries are turned": weights(t, 0 * u),
         "only the keys are turned": weights(0 * t, u),
         "queries and keys turn against one another: turn both the same way": weights(t, -u),
         "a whole turn is 2 pi": weights(t / turn, u / turn),
         "the scores are not divided by the root of d": weights(t, u, root=1.0),
+        "divide by the root of d, not by d": weights(t, u, root=4.0),
         "the softmax runs over the wrong axis: each query's weights must sum to one": weights(t, u, softmax=0),
         "these are scores; where is the softmax?": weights(t, u, softmax=None),
         "nothing was turned": weights(0 * t, 0 * u),

@@ -23,6 +23,8 @@ def x0_hat(mine):
         ),
         "every sample has its own step; this uses the first one's for all": (x_s - 0.6 * eps) / 0.8,
         "roots are missing": x_s / a**2 - (b / a) ** 2 * eps,
+        "the first root is missing": x_s / a**2 - b / a * eps,
+        "what is divided by the root of alpha_bar is x_s and the noise, not x_s alone": x_s / a - b * eps,
         "the root of 1 / alpha_bar - 1 is missing": x_s / a - (b / a) ** 2 * eps,
         "the noise came in with a plus, so it is taken away": x_s / a + b / a * eps,
         "undo the mixing completely: the signal was made smaller, too": x_s - b * eps,
@@ -34,7 +36,7 @@ def x0_hat(mine):
 @check
 def skeleton_loss(mine):
     """mine(lengths) of one motion (T, K): worked out by hand, and by torch.var."""
-    lengths = torch.tensor([[1.0, 2.0, 4.0], [3.0, 2.0, 4.5], [2.0, 5.0, 3.5], [2.0, 3.0, 4.0], [2.0, 3.0, 4.0]])
+    lengths = torch.tensor([[2.0, 5.0, 3.5], [1.0, 2.0, 4.0], [3.0, 2.0, 4.5], [2.0, 3.0, 4.0], [2.0, 3.0, 4.0]])
     # bone 0: 2 / 4, bone 1: 6 / 4, bone 2: 0.5 / 4
     wanted, off = torch.tensor((0.5 + 1.5 + 0.125) / 3), lengths - lengths.mean(0)
     mistakes = {
@@ -43,6 +45,7 @@ def skeleton_loss(mine):
         "this is the standard deviation; equation 6 has no root": lengths.std(0).mean(),
         "the bones are averaged, not added up": lengths.var(0).sum(),
         "this is the variance of all lengths together; each bone has a mean of its own": lengths.var(),
+        "one mean for all bones: each bone has a mean of its own": ((lengths - lengths.mean()) ** 2).sum(0).mean() / 4,
         "the bones' mean is missing: this is one number for each bone": lengths.var(0),
         "these are squared lengths; take the length itself": (lengths**2).var(0).mean(),
         "this compares with the first frame; compare with the mean": ((lengths - lengths[0]) ** 2).sum(0).mean() / 4,
@@ -84,8 +87,14 @@ def asymmetry_from_features(mine):
         "only half-way back to metres: the mean is missing": _asymmetry(
             _lengths(_placed((x0_hat * std).unflatten(1, (5, 3))), bones), pairs
         ),
-        "the pelvis is not added to the other joints, so bones that start there are wrong": _asymmetry(
+        "the pelvis is not added to the other joints, or is to itself as well: bones that start there err": _asymmetry(
             _lengths(about, bones), pairs
+        ),
+        "only half-way back to metres: the std is missing": _asymmetry(
+            _lengths(_placed((x0_hat + mean).unflatten(1, (5, 3))), bones), pairs
+        ),
+        "the mean is missing, and the pelvis is not added": _asymmetry(
+            _lengths((x0_hat * std).unflatten(1, (5, 3)), bones), pairs
         ),
         "the pelvis is left at the origin while the others are moved": _asymmetry(
             _lengths(torch.cat([0 * about[:, :1], world[:, 1:]], 1), bones), pairs
@@ -98,6 +107,8 @@ def asymmetry_from_features(mine):
         "longer and shorter must not cancel: take the size before the mean": gap.mean().abs(),
         "L_a is in metres: the difference itself, not its square": gap.square().mean(),
         "the mean over pairs and frames, not their sum": gap.abs().sum(),
+        "the mean over the pairs as well, not their sum": gap.abs().sum(1).mean(),
+        "the mean over the frames as well, not their sum": gap.abs().sum(0).mean(),
     }
     expect_close(mine(x0_hat, mean, std, bones, pairs), wanted, "L_a of two frames", mistakes)
     return "Bones are in metres: what the network says has to leave its own units before it can be judged."

@@ -22,7 +22,8 @@ def shuffled_score(mine):
     others = ~np.eye(n, dtype=bool)
     right = table[others].mean()
     own, all_pairs, next_only = np.diag(table).mean(), table.mean(), np.mean([table[i, (i + 1) % n] for i in range(n)])
-    once = table[np.triu_indices(n, 1)].mean()
+    once, once_below = table[np.triu_indices(n, 1)].mean(), table[np.tril_indices(n, -1)].mean()
+    before_only = np.mean([table[i, i - 1] for i in range(n)])
     music = np.array([[pair(song, stops) for song in SONGS] for stops in STOPS])[others].mean()
     expect_close(
         mine([s.copy() for s in STOPS], [s.copy() for s in SONGS], pair),
@@ -32,7 +33,10 @@ def shuffled_score(mine):
             "this is each dance with its *own* song": own,
             "a dance's own song is among the others; leave it out": all_pairs,
             "each dance met one other song only; let it meet all": next_only,
+            "every dance met the song before its own only; let it meet all": before_only,
             "dance 1 with song 2 is not dance 2 with song 1: both count": once,
+            "dance 2 with song 1 is not dance 1 with song 2: both count": once_below,
+            "this is divided by the number of dances; how many pairs are there?": table[others].sum() / n,
             "the own song counts as 0 here; leave it out of the number of pairs, too": table[others].sum() / n**2,
             "stops and beats are exchanged: score(stops, song)": music,
             "take the mean over all pairs, not their sum": table[others].sum(),
@@ -41,7 +45,7 @@ def shuffled_score(mine):
     )
     constant = mine([np.array([1.0])] * 5, [np.array([1.0])] * 5, lambda stops, song: 0.25)
     expect_close(constant, 0.25, "the shuffled score when every pair scores 0.25")
-    return "with songs shuffled, what is left is chance and a rhythm that all songs share."
+    return "With songs shuffled, what is left is chance and a rhythm that all songs share."
 
 
 @check
@@ -63,6 +67,11 @@ def expenditure(mine):
             ).mean(),
             "divide by the time of a frame twice, once for each difference": fps * sizes.mean(),
             "no frame's time is in it: metres a frame each frame": sizes.mean(),
+            "divide by a frame's time, 1 / fps, which is to multiply by fps": sizes.mean() / fps**2,
+            "the length of the vector, not the mean size of its coordinates": fps**2 * np.abs(second).mean(),
+            "the mean over the frames, not their sum": fps**2 * sizes.sum(),
+            "np.gradient looks over two frames at once; take each frame's difference to the next": fps**2
+            * np.linalg.norm(np.gradient(np.gradient(path, axis=0), axis=0), axis=1).mean(),
             "fps is taken as 60; the argument was 10": 60**2 * sizes.mean(),
             "the lengths are squared; this feature is not": fps**4 * (sizes**2).mean(),
             "take the length in each frame, then the mean: to and fro must not cancel": fps**2
@@ -76,4 +85,4 @@ def expenditure(mine):
     away = mine(path + [300.0, 0.0, 40.0], fps)
     expect_close(away, fps**2 * sizes.mean(), "the expenditure of the same path 300 m away", rtol=1e-4)
     expect_close(mine(np.tile(np.linspace(0, 7, 8)[:, None], 3), 4), 0.0, "that of a straight line at constant speed")
-    return "the same movement costs the same wherever it is danced."
+    return "The same movement costs the same wherever it is danced."

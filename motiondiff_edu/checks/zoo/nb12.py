@@ -44,6 +44,9 @@ ZOO = {
         "stride forgotten": lambda x, w, b, stride: _mix(x, w, b, (-1, 0, 1)),
         "halving begins with the second frame": lambda x, w, b, s: _mix(x, w, b, (-1, 0, 1))[s - 1 :: s],
         "halving drops the last frame": lambda x, w, b, s: _mix(x, w, b, (-1, 0, 1), s)[: len(x) // s],
+        "every second frame before its neighbours": lambda x, w, b, stride: _mix(x[::stride], w, b, (-1, 0, 1)),
+        "the ends repeated": lambda x, w, b, s: _mix(torch.cat([x[:1], x, x[-1:]]), w, b, (-1, 0, 1))[1:-1:s],
+        "channel by channel": lambda x, w, b, s: (F.pad(x, (0, 0, 1, 1)).unfold(0, 3, 1).flatten(1) @ w.T + b)[::s],
         "no zeros beyond the ends": lambda x, w, b, stride: _mix(x, w, b, (-1, 0, 1))[1:-1:stride],
     },
     "any_length": {
@@ -51,6 +54,16 @@ ZOO = {
         "the last frames dropped": lambda network, x, multiple: network(x[:, : x.shape[1] // multiple * multiple]),
         "not cropped": lambda network, x, multiple: network(_filled(x, multiple)),
         "filled up in front": lambda network, x, multiple: network(F.pad(x, (0, 0, -x.shape[1] % multiple, 0)))[
+            :, : x.shape[1]
+        ],
+        "filled up and cropped in front": lambda network, x, multiple: network(
+            F.pad(x, (0, 0, -x.shape[1] % multiple, 0))
+        )[:, -x.shape[1] :],
+        "eights whatever was asked": lambda network, x, multiple: network(_filled(x, 8))[:, : x.shape[1]],
+        "filled up with the last frame": lambda network, x, multiple: network(
+            torch.cat([x, x[:, -1:].expand(-1, -x.shape[1] % multiple, -1)], 1)
+        )[:, : x.shape[1]],
+        "the features filled up": lambda network, x, multiple: network(F.pad(x, (0, -x.shape[1] % multiple)))[
             :, : x.shape[1]
         ],
         "cropped in front": lambda network, x, multiple: network(_filled(x, multiple))[:, -x.shape[1] :],
@@ -61,6 +74,8 @@ ZOO = {
     "clocks": {
         "indices instead of seconds": lambda q, k, a, b, f: _weights(q, k, _times(q, 1), _times(k, 1), f),
         "one clock for both": lambda q, k, a, b, f: _weights(q, k, _times(q, a), _times(k, a), f),
+        "the tokens' clock for both": lambda q, k, a, b, f: _weights(q, k, _times(q, b), _times(k, b), f),
+        "times the rate": lambda q, k, a, b, f: _weights(q, k, _times(q, 1 / a), _times(k, 1 / b), f),
         "rates exchanged": lambda q, k, a, b, f: _weights(q, k, _times(q, b), _times(k, a), f),
         "only the queries turned": lambda q, k, a, b, f: _weights(q, k, _times(q, a), 0 * _times(k, b), f),
         "turned against one another": lambda q, k, a, b, f: _weights(q, k, _times(q, a), -_times(k, b), f),

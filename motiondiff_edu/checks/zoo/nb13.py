@@ -106,6 +106,9 @@ ZOO = {
         "no roots": no_roots,
         "second root forgotten": second_root_forgotten,
         "noise added again": noise_added_again,
+        "first root forgotten": lambda x_s, s, eps_hat, alpha_bar: _guess(
+            x_s, eps_hat, alpha_bar[s] ** 2, alpha_bar[s]
+        ),
     },
     "skeleton_loss": {
         "variance over bones": mean_over_bones,
@@ -115,6 +118,12 @@ ZOO = {
         "all lengths together": lambda lengths: lengths.var(),
         "one for each bone": lambda lengths: lengths.var(0),
         "squared lengths": lambda lengths: (lengths**2).var(0).mean(),
+        "one mean for all bones": lambda lengths: (
+            ((lengths - lengths.mean()) ** 2).sum(0) / (len(lengths) - 1)
+        ).mean(),
+        "the first frame for the mean": lambda lengths: (
+            ((lengths - lengths[0]) ** 2).sum(0) / (len(lengths) - 1)
+        ).mean(),
         "frame to frame": lambda lengths: (lengths[1:] - lengths[:-1]).square().mean(),
     },
     "asymmetry_from_features": {
@@ -123,6 +132,12 @@ ZOO = {
         "root dropped": root_dropped,
         "left with left": left_with_left,
         "sign kept": sign_kept,
+        "std forgotten": lambda x0_hat, mean, std, bones, pairs: (
+            _apart(_joints(x0_hat, mean, torch.ones_like(std)), bones, pairs).abs().mean()
+        ),
+        "summed over pairs": lambda x0_hat, mean, std, bones, pairs: (
+            _apart(_joints(x0_hat, mean, std), bones, pairs).abs().sum(1).mean()
+        ),
         "squared": squared,
     },
 }

@@ -31,6 +31,22 @@ def each_pair_once(stops, songs, score):
     return _table(stops, songs, score)[np.triu_indices(len(stops), 1)].mean()
 
 
+def half_of_the_pairs(stops, songs, score):
+    """The other half: each dance with the songs before its own."""
+    return _table(stops, songs, score)[np.tril_indices(len(stops), -1)].mean()
+
+
+def the_song_before(stops, songs, score):
+    """One stranger for each dance, the one before."""
+    return np.mean([score(s, songs[i - 1]) for i, s in enumerate(stops)])
+
+
+def divided_by_dances(stops, songs, score):
+    """The sum over pairs, divided by the number of dances."""
+    table = _table(stops, songs, score)
+    return table[~np.eye(len(table), dtype=bool)].sum() / len(table)
+
+
 def own_song_as_nothing(stops, songs, score):
     """Own songs count as zeros, which lowers the level the more, the fewer the dances."""
     return (_table(stops, songs, score) * (1 - np.eye(len(stops)))).mean()
@@ -90,6 +106,9 @@ ZOO = {
         "own song among the others": own_song_too,
         "next song only": next_song_only,
         "each pair once": each_pair_once,
+        "each pair once, the other half": half_of_the_pairs,
+        "the song before only": the_song_before,
+        "divided by the number of dances": divided_by_dances,
         "own song counted as nothing": own_song_as_nothing,
         "stops and beats exchanged": exchanged,
     },
@@ -97,6 +116,12 @@ ZOO = {
         "the published bracket": published_bracket,
         "frame time once": one_frame_time,
         "no frame time": no_frame_time,
+        "divided by fps": lambda path, fps: np.linalg.norm(_second(path), axis=1).mean() / fps**2,
+        "mean of the coordinates": lambda path, fps: np.abs(_second(path)).mean() * fps**2,
+        "sum over frames": lambda path, fps: np.linalg.norm(_second(path), axis=1).sum() * fps**2,
+        "gradient": lambda path, fps: (
+            np.linalg.norm(np.gradient(np.gradient(path, axis=0), axis=0), axis=1).mean() * fps**2
+        ),
         "squared": squared,
         "to and fro cancel": cancelled,
         "change of the speed": change_of_speed,
