@@ -25,6 +25,7 @@ from .motion.scaler import Scaler
 from .prediction import denoiser_of
 
 STEPS, ETA = 50, 0.5  # of DDIM, unless told
+FARTHEST = 5.0  # standard deviations from the mean pose: an eps network's x0_hat is held within, as DDPM's code does
 
 
 def network(config: MoFusionConfig | TransformerConfig) -> MoFusion | DanceTransformer:
@@ -117,10 +118,11 @@ class Dancer:
             return self._regress(mel, frames)
         denoise = self.denoiser(mel, frames)
         x_S = torch.randn(len(mel), frames, self.config.D, generator=generator) if start is None else start
+        options = {"generator": generator, "clip": FARTHEST if self.config.target == "eps" else None}
         if steps is None:
-            loop = ddpm_steps(denoise, x_S, self.schedule, generator=generator, variance="posterior")
+            loop = ddpm_steps(denoise, x_S, self.schedule, variance="posterior", **options)
         else:
-            loop = ddim_steps(denoise, x_S, self.schedule, min(steps, self.schedule.S), eta, generator=generator)
+            loop = ddim_steps(denoise, x_S, self.schedule, min(steps, self.schedule.S), eta, **options)
         for step in loop:
             last = step
         return to_positions(self.motion_scaler.inverse(last.x_s))

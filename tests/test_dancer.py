@@ -1,5 +1,6 @@
 """A dancer: lengths, seeds, samplers, the baselines that dance, and its file."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -9,7 +10,7 @@ from synthetic_dance import windows
 from motiondiff_edu.baselines.regression import REGRESSION, regression_loss
 from motiondiff_edu.baselines.transformer import DanceTransformer, TransformerConfig
 from motiondiff_edu.checkpoints import CheckpointError, load, load_dancer, load_walker, save
-from motiondiff_edu.dancer import Dancer
+from motiondiff_edu.dancer import FARTHEST, Dancer
 from motiondiff_edu.ddpm import cosine_schedule
 from motiondiff_edu.mofusion import MoFusion, MoFusionConfig
 from motiondiff_edu.motion.scaler import Scaler
@@ -56,6 +57,16 @@ def test_a_schedule_with_fewer_steps_than_the_usual_sampler_takes_is_danced_with
     assert not torch.equal(usual, one.dance(mel(), 30, generator=seeded(), steps=11))
     with pytest.raises(ValueError, match="between 1 and 12"):
         one.dance(mel(), 30, steps=0)
+
+
+@pytest.mark.parametrize("steps", [6, None])
+def test_an_eps_network_does_not_tear_the_figure_apart(steps):
+    """At s = S an error of eps is blown up by b / a; the guess is held within what dances are."""
+    wild = dancer(replace(UNET, target="eps"))
+    dance = wild.dance(mel(), 30, generator=seeded(), steps=steps, eta=0.0)
+    about = torch.cat([dance[:, :, :1], dance[:, :, 1:] - dance[:, :, :1]], dim=2)
+    features = wild.motion_scaler.transform(about.flatten(2))
+    assert features.abs().max() <= FARTHEST + 1e-3 and features.abs().max() > 0.5
 
 
 def test_the_same_noise_and_other_music_give_another_dance():
