@@ -59,13 +59,14 @@ def continuations(past: Clip, control: Float[np.ndarray, "n 3"], n: int, seed: i
 
 def dataset(n_clips: int, seconds: float, seed: int, styles: Sequence[str] | None = None) -> list[Clip]:
     """n_clips walks of `seconds`, controls of every kind, styles drawn by their shares or evenly from `styles`."""
-    clips = []
-    for k in range(n_clips):
-        rng = np.random.default_rng([seed, 4, k])
-        kind = str(rng.choice(list(KINDS), p=list(KINDS.values())))
-        name = draw_style(None, rng) if styles is None else str(rng.choice(list(styles)))
-        clips.append(walk(random_control(seconds, rng, kind), int(rng.integers(2**31)), name))
-    return clips
+    return [drawn_walk(seconds, np.random.default_rng([seed, 4, k]), styles) for k in range(n_clips)]
+
+
+def drawn_walk(seconds: float, rng: np.random.Generator, styles: Sequence[str] | None = None) -> Clip:
+    """A walk of `seconds`: kind of control, control, style and person are all drawn."""
+    kind = str(rng.choice(list(KINDS), p=list(KINDS.values())))
+    name = draw_style(None, rng) if styles is None else str(rng.choice(list(styles)))
+    return walk(random_control(seconds, rng, kind), int(rng.integers(2**31)), name)
 
 
 def _checked(control: np.ndarray) -> np.ndarray:

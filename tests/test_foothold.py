@@ -9,6 +9,7 @@ import torch
 
 from motiondiff_edu.checkpoints import load_walker, save
 from motiondiff_edu.ddpm import linear_schedule
+from motiondiff_edu.diffusion_dropout import Dropout
 from motiondiff_edu.fast.foothold import FastFoothold
 from motiondiff_edu.foothold import (
     COLUMNS,
@@ -129,7 +130,7 @@ def test_fast_twin_gives_the_same_numbers():
 
 def test_the_weights_file_keeps_the_gate_and_the_walker_walks(tmp_path: Path):
     walker = Walker(tiny(), linear_schedule(8, 0.2, 0.95), POSE, CONTROL)
-    back = load_walker(save(walker, tmp_path / "tiny.safetensors", half=False))
+    back = load_walker(save(walker, tmp_path / "tiny.safetensors", bits=32))
     assert isinstance(back.model, FootholdMoDiff)
     (_, _, past, control), seed = inputs(), lambda: torch.Generator().manual_seed(3)
     torch.testing.assert_close(
@@ -176,6 +177,26 @@ def test_doubt_is_the_share_of_the_shaking_under_the_feet(doubt: float):
     clean = windows.draw(6, torch.Generator().manual_seed(5))[0][:, -1]
     torch.testing.assert_close(seen["standing"], clean + doubt * (seen["past"] - clean))
     assert (seen["past"] - clean).abs().max() > 0.01
+
+
+def test_a_dropped_past_leaves_no_clean_feet_to_stand_on():
+    """Wherever the past was noised, the feet that may stay are those of the noised past."""
+    windows, schedule, seen = walk_windows(), linear_schedule(8, 0.2, 0.95), {}
+    model = FootholdMoDiff(TINY, windows.pose_scaler, windows.control_scaler)
+    encode = model.encode
+
+    def spy(past, control, standing):
+        seen.update(past=past[:, -1], standing=standing)
+        return encode(past, control, standing)
+
+    model.encode = spy
+    dropout = Dropout(schedule, lambda done: 0.5, steps=1)
+    loss_fn = window_loss(windows, schedule, batch=20, noises=2, jitter=0.3, doubt=0.5, dropout=dropout)
+    loss_fn(model, torch.Generator().manual_seed(5))
+    same = (seen["standing"] == seen["past"]).all(1)
+    clean = windows.draw(20, torch.Generator().manual_seed(5))[0][:, -1].repeat_interleave(2, 0)
+    torch.testing.assert_close(seen["standing"][~same], (clean + 0.5 * (seen["past"] - clean))[~same])
+    assert 8 < same.sum() < 32
 
 
 def test_bone_errors_by_hand():

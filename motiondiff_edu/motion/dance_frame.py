@@ -4,6 +4,8 @@ Columns 0:3 are the pelvis (x, y, z), which starts at x = z = 0, facing z; then 
 minus the pelvis, same axes. Metres.  Source: MoFusion 3 (root-relative joints and the root's path).  Notebook: 12
 """
 
+from dataclasses import dataclass
+
 import numpy as np
 import torch
 from jaxtyping import Float
@@ -20,21 +22,50 @@ def facing(positions: Float[np.ndarray, "*B 21 3"]) -> Float[np.ndarray, "*B"]:
     return np.arctan2(-across[..., 2], across[..., 0])
 
 
+@dataclass(frozen=True, eq=False)
+class Place:
+    """Where a figure stands and which way it faces: the way from the world to its own frame, and back."""
+
+    ground: Float[np.ndarray, "*B 3"]  # below the pelvis: x, 0, z
+    heading: Float[np.ndarray, "*B"]
+
+    @classmethod
+    def of(cls, pose: Float[np.ndarray, "*B 21 3"]) -> "Place":
+        return cls(pose[..., HIPS, :] * np.array([1.0, 0.0, 1.0]), facing(pose[..., None, :, :])[..., 0])
+
+    def enter(self, positions: Float[np.ndarray, "*B T J 3"]) -> Float[np.ndarray, "*B T J 3"]:
+        """World positions as seen from here."""
+        return _turned(positions - self.ground[..., None, None, :], self.heading)
+
+    def leave(self, positions: Float[np.ndarray, "*B T J 3"]) -> Float[np.ndarray, "*B T J 3"]:
+        """Back to the world."""
+        return _turned(positions, self.heading, back=True) + self.ground[..., None, None, :]
+
+
+def _turned(
+    positions: Float[np.ndarray, "*B T J 3"], heading: Float[np.ndarray, "*#B"], back: bool = False
+) -> Float[np.ndarray, "*B T J 3"]:
+    """Turned so that who faced `heading` faces z; `back` the other way."""
+    sin, cos = np.sin(heading)[..., None, None], np.cos(heading)[..., None, None]
+    sin = -sin if back else sin
+    x, y, z = np.moveaxis(positions, -1, 0)
+    return np.stack([x * cos - z * sin, y, x * sin + z * cos], -1)
+
+
 def at_origin(positions: Float[np.ndarray, "*B T 21 3"]) -> Float[np.ndarray, "*B T 21 3"]:
     """The same motion, moved and turned so that it starts with the pelvis over x = z = 0, facing z."""
-    first = positions[..., :1, :, :]
-    moved = positions - first[..., HIPS : HIPS + 1, :] * np.array([1.0, 0.0, 1.0])
-    angle = facing(first)[..., None]
-    sin, cos = np.sin(angle), np.cos(angle)
-    x, y, z = np.moveaxis(moved, -1, 0)
-    return np.stack([x * cos - z * sin, y, x * sin + z * cos], -1)
+    return Place.of(positions[..., 0, :, :]).enter(positions)
 
 
 def to_features(positions: Float[np.ndarray, "*B T J 3"]) -> Float[np.ndarray, "*B T 63"]:
     """World positions as the network's 63 numbers.  Raises ValueError for another skeleton.  Notebook: 12"""
     if positions.shape[-2:] != (J, 3):
         raise ValueError(f"the course's skeleton has {J} joints with 3 coordinates, got {positions.shape[-2:]}")
-    placed = at_origin(positions)
+    return placed_features(at_origin(positions))
+
+
+def placed_features(placed: Float[np.ndarray, "*B T J 3"]) -> Float[np.ndarray, "*B T 63"]:
+    """The 63 numbers of a motion that is where it should be already.  Notebook: 15"""
     about = placed[..., HIPS + 1 :, :] - placed[..., HIPS : HIPS + 1, :]
     whole = np.concatenate([placed[..., HIPS : HIPS + 1, :], about], axis=-2)
     return whole.reshape(*whole.shape[:-2], 3 * J)

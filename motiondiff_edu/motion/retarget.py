@@ -15,6 +15,7 @@ from .bvh import Bvh, BvhError, read_bvh
 from .clip import Clip
 from .dialects import check_mapping, guess_mapping
 from .directions import UPLEGS, bone_directions, build, complete, has_our_bones, plain_directions, rest_lean
+from .faults import WILD, wild_joints
 from .normalise import (
     FLIP_X,
     calibration_frames,
@@ -34,7 +35,6 @@ from .root_frame import estimate_root, to_root_frame
 from .skeleton import HEELS, HIPS, JOINTS, TOES
 
 SHORTEST = 0.5  # s; less has no gait and no heading
-WILD = 15.0  # m/s; no limb of an actor moves faster, a swapped marker does
 SUNK = -0.05  # metres: no joint of somebody on their feet is so low
 
 
@@ -81,12 +81,14 @@ def normalised(bvh: Bvh, mapping: Mapping[str, str], fps: float) -> tuple[Float[
         notes.append(tell(f"{which} a calibration pose, far from the motion, and dropped", bvh.source))
     points = complete(points[dropped:])
     refuse_short(len(points), bvh)
-    warn_wild(points, bvh, dropped, notes)
+    speeds = speed(points, bvh.fps)
+    warn_wild(speeds, bvh, dropped, notes)
     points = resample(points, bvh.fps, fps)
+    wild = wild_joints(speeds, bvh.fps, len(points), fps)
     ours = has_our_bones(points)
     plane = np.zeros(3) if ours else floor_plane(ground_points(points), fps)
     info = dict(file_fps=bvh.fps, unit_m=unit, up=up, dropped_frames=dropped, floor_slope=tuple(plane[1:]), notes=notes)
-    return level(points, plane), info | {"rest_lean": rest_lean(rest)}
+    return level(points, plane), info | {"rest_lean": rest_lean(rest), "wild": wild}
 
 
 def ground_points(points: Float[np.ndarray, "T 21 3"]) -> Float[np.ndarray, "T 2 3"]:
@@ -127,9 +129,9 @@ def refuse_short(count: int, bvh: Bvh) -> None:
         raise BvhError(problem + " If the frame time is wrong, pass file_fps=.", bvh.source)
 
 
-def warn_wild(points: Float[np.ndarray, "T 21 3"], bvh: Bvh, dropped: int, notes: list[str]) -> None:
-    """Warn about joints faster than any actor's: the capture has a fault there."""
-    wild = np.flatnonzero(np.nanmax(speed(points, bvh.fps), axis=1) > WILD)
+def warn_wild(speeds: Float[np.ndarray, "T 21"], bvh: Bvh, dropped: int, notes: list[str]) -> None:
+    """Warn about joints faster than any actor's: the capture has a fault there (`info["wild"]` says which joints)."""
+    wild = np.flatnonzero(np.nanmax(speeds, axis=1) > WILD)
     if len(wild):
         where = f"frames {wild[0] + dropped} to {wild[-1] + dropped}"
         notes.append(

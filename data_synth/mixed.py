@@ -1,0 +1,39 @@
+"""Motion without music: walks and dances in equal halves, for a network that is to know both.
+
+The dances follow silent scores (`score.beat_song`): the genres take turns, tempi are their own.
+"""
+
+from collections.abc import Iterator
+
+import numpy as np
+from jaxtyping import Bool, Float
+
+from .dance import dance
+from .score import beat_song
+from .song import GENRES
+from .walking import drawn_walk
+
+Motion = tuple[Float[np.ndarray, "T 21 3"], Bool[np.ndarray, "T 2"]]
+
+
+def motions(n: int, seed: int, seconds: float = 20.0) -> Iterator[Motion]:
+    """n motions, positions in the world (metres, 20 frames/s) and which feet stand: walk, dance, walk, dance ...
+
+    The same seed gives the same bytes; different seeds share none.
+    Raises ValueError as `beat_song` and `random_control` do.  Notebook: 15
+    """
+    for k in range(n):
+        rng = np.random.default_rng([seed, 6, k])
+        yield _danced(seconds, rng, k // 2) if k % 2 else _walked(seconds, rng)
+
+
+def _walked(seconds: float, rng: np.random.Generator) -> Motion:
+    clip = drawn_walk(seconds, rng)
+    return clip.world(), clip.contacts
+
+
+def _danced(seconds: float, rng: np.random.Generator, k: int) -> Motion:
+    genre, (slowest, fastest, metre) = list(GENRES.items())[k % len(GENRES)]
+    seed = int(rng.integers(2**31))
+    made = dance(beat_song(seconds, rng.uniform(slowest, fastest), metre, genre, seed, drift=0.02), seed)
+    return made.positions, made.contacts
