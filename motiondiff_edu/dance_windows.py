@@ -66,13 +66,15 @@ class DanceWindows:
         cls,
         dances: Sequence[Float[np.ndarray, "_ 21 3"]],
         contacts: Sequence[Bool[np.ndarray, "_ 2"]],
-        mels: Sequence[Float[Tensor, "_ C"]],
+        mels: Sequence[Float[Tensor, "_ C"]] | None,
         n: int = 100,
     ) -> "DanceWindows":
         """Windows of dances and the log-Mel of their songs; dances in a row with the same tensor as `mel` share it.
 
+        `mels` = None is for motion without music: nothing is heard, C = 0.
         Raises ValueError when no dance is long enough, or lists or lengths do not match.
         """
+        mels = [torch.zeros(mel_frames(len(dance)), 0) for dance in dances] if mels is None else mels
         if not len(dances) == len(contacts) == len(mels):
             raise ValueError(
                 f"{len(dances)} dances, {len(contacts)} contacts and {len(mels)} songs: each needs its own"
@@ -94,7 +96,8 @@ class DanceWindows:
             raise ValueError(f"no dance has {n} frames with music")
         positions = torch.from_numpy(np.concatenate(dances)).float()
         stands, mel = torch.from_numpy(np.concatenate(contacts)), torch.cat(heard).float()
-        at, units = (torch.tensor(starts), torch.tensor(song_starts)), Scaler.fit(mel)
+        units = Scaler.fit(mel) if mel.shape[1] else Scaler.nothing(0)
+        at = torch.tensor(starts), torch.tensor(song_starts)
         raw = cls(n, positions, stands, at[0], units.transform(mel), at[1], Scaler.nothing(D), units)
         some = torch.linspace(0, len(raw) - 1, min(len(raw), FITTED)).long()
         return replace(raw, motion_scaler=Scaler.fit(raw.take(some)[0]))
@@ -165,7 +168,8 @@ def dance_loss(
         s = torch.randint(1, schedule.S + 1, (batch,), generator=generator).to(device)
         eps = torch.randn(x0.shape, generator=generator).to(device)
         x_s = q_sample(x0, s, schedule, eps)
-        out = model(x_s, s, model.listen(mel, windows.mel_times.to(device)))
+        music = model.listen(mel, windows.mel_times.to(device)) if model.config.C else None
+        out = model(x_s, s, music)
         target = model.config.target
         wrong = out - target_of(x0, eps, s, schedule, target)
         error = wrong.square().mean((1, 2)) + changes * wrong.diff(dim=1).square().mean((1, 2))

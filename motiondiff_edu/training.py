@@ -72,12 +72,14 @@ def train_steps(
     decay: float = 0.999,
     save: Callable[[TrainState], object] | None = None,
     save_every: int = 1000,
+    before: Callable[[int], object] | None = None,
     progress: bool = True,
 ) -> Iterator[TrainStep]:
     """Train until `state.step == steps`, yielding after each step.
 
     Gradients are clipped to the norm `clip`; the average follows with `decay` (less in the first steps). `save`, if
-    given, is called with the state every `save_every` steps and at the end (`runs.saver` makes one).
+    given, is called with the state every `save_every` steps and at the end (`runs.saver` makes one); `before` with the
+    number of steps done, ahead of each one: for losses that change on the way (`diffusion_dropout.Dropout.now`).
     Raises NonFiniteLoss with what to do; the last good weights stay in `state`, and are saved (broken ones are not).
     Source: MoDiff Alg. 1 (the loop).  Notebook: 05, 07
     """
@@ -86,6 +88,8 @@ def train_steps(
     with bar:
         while state.step < steps:
             began, rate = time.perf_counter(), lr(state.step) if callable(lr) else lr
+            if before:
+                before(state.step)
             loss = loss_fn(state.model, state.generator)
             state.optimizer.zero_grad(set_to_none=True)
             loss.backward()

@@ -95,6 +95,7 @@ def window_loss(
     high_noise: float = 0.0,
     bones: float = 0.0,
     doubt: float = 0.0,
+    dropout: Callable[[Tensor, Tensor, torch.Generator], Tensor] | None = None,
 ) -> Callable[[nn.Module, torch.Generator], Tensor]:
     """Algorithm 1 as a `loss_fn` for `training.train_steps`: mean squared error of the network's target.
 
@@ -107,6 +108,8 @@ def window_loss(
     and ankle err alike. It is the network's error times std, so it goes with metres=2 (for x0 it is in metres).
     `doubt` is the share of the shaking that reaches the feet which a network with footholds may leave in place (see
     `foothold`): with all of it the gate would learn never to hold.
+    `dropout`(past, s, generator) is what becomes of the past at step s (`diffusion_dropout.Dropout`); the encoder then
+    reads a window once for each noise.
     Raises ValueError for batch or noises under 1.
     Source: MoDiff eq. 10, Alg. 1; all but the squared error itself is ours.  Notebook: 07
     """
@@ -121,13 +124,17 @@ def window_loss(
         device = next(model.parameters()).device  # batch and noise are drawn on the CPU: the same numbers everywhere
         past, future, control = windows.draw(batch, generator, held)
         seen = shaken(past, jitter, change[0], generator) if jitter else past
-        feet = {}
-        if isinstance(model, FootholdMoDiff):
-            feet["standing"] = torch.lerp(past, seen, doubt)[:, -1].to(device)
-        future, control = future.to(device), control.to(device)
-        memory = model.encode(seen.to(device), control, **feet).repeat_interleave(noises, dim=0)
-        x0 = future.repeat_interleave(noises, dim=0)
+        standing = torch.lerp(past, seen, doubt)[:, -1]
         s = torch.randint(1, schedule.S + 1, (batch * noises,), generator=generator)
+        if dropout:
+            seen, standing, control = (x.repeat_interleave(noises, dim=0) for x in (seen, standing, control))
+            dropped = dropout(seen, s, generator)
+            hit = (dropped != seen).flatten(1).any(1)
+            seen, standing = dropped, torch.where(hit[:, None], dropped[:, -1], standing)
+        feet = {"standing": standing.to(device)} if isinstance(model, FootholdMoDiff) else {}
+        memory = model.encode(seen.to(device), control.to(device), **feet)
+        memory = memory if dropout else memory.repeat_interleave(noises, dim=0)
+        x0 = future.to(device).repeat_interleave(noises, dim=0)
         weight = steps[s][:, None, None].to(device)
         s, eps = s.to(device), torch.randn(x0.shape, generator=generator).to(device)
         wanted = target_of(x0, eps, s, schedule, model.config.target)

@@ -8,6 +8,7 @@ import torch
 from torch import nn
 
 from motiondiff_edu.ddpm import linear_schedule, q_sample
+from motiondiff_edu.diffusion_dropout import Dropout
 from motiondiff_edu.modiff import MoDiff, MoDiffConfig
 from motiondiff_edu.motion.clip import Clip
 from motiondiff_edu.prediction import target_of
@@ -102,6 +103,27 @@ def test_the_loss_is_algorithm_1(windows: Windows, target: str):
     output = model(q_sample(x0, s, schedule, eps), s, past, control)
     expected = (target_of(x0, eps, s, schedule, target) - output).square().mean()
     assert loss.item() == pytest.approx(expected.item(), rel=1e-5)
+
+
+def test_the_past_is_dropped_at_the_step_of_its_own_target(windows: Windows):
+    """The same draws: two noises for each window, each with the past that dropout makes at its own step."""
+    config = MoDiffConfig(T_h=T_H, T_p=T_P, S=6, width=16, heads=2, hidden=24, target="x0")
+    torch.manual_seed(0)
+    model, schedule = MoDiff(config), linear_schedule(6, 0.2, 0.95)
+    dropout = Dropout(schedule, lambda done: 0.5, steps=1)
+    settings = {"batch": 5, "noises": 2, "held": 0.3}
+    loss = window_loss(windows, schedule, **settings, dropout=dropout)(model, torch.Generator().manual_seed(8))
+    generator = torch.Generator().manual_seed(8)
+    past, x0, control = (x.repeat_interleave(2, 0) for x in windows.draw(5, generator, 0.3))
+    s = torch.randint(1, 7, (10,), generator=generator)
+    hit = torch.rand(10, generator=generator) < 0.5
+    seen = q_sample(past, s, schedule, torch.randn(past.shape, generator=generator))
+    seen = seen.where(hit[:, None, None], past)
+    eps = torch.randn(x0.shape, generator=generator)
+    expected = (x0 - model(q_sample(x0, s, schedule, eps), s, seen, control)).square().mean()
+    assert 0 < hit.sum() < 10 and loss.item() == pytest.approx(expected.item(), rel=1e-5)
+    none = window_loss(windows, schedule, **settings, dropout=Dropout(schedule, lambda done: 0.0, steps=1))
+    assert none(model, torch.Generator().manual_seed(8)).item() != pytest.approx(loss.item(), rel=1e-4)
 
 
 def gait_windows() -> Windows:

@@ -66,19 +66,31 @@ def regressors(past: Float[Tensor, "B T_h D"], control: Float[Tensor, "B T_h C"]
     return torch.cat([past.flatten(1), control.flatten(1), torch.ones(len(past), 1).to(past)], dim=1)
 
 
-def fit(windows: Windows, ridge: float = 1e-3) -> LinearGaussian:
-    """Least squares over all windows: W = (X^T X + ridge K I)^-1 X^T Y, K windows; L from the residuals' covariance.
+def design(windows: Windows) -> tuple[Float[Tensor, "K F"], Float[Tensor, "K D"]]:
+    """All windows as least squares sees them: a row of regressors each, and the pose that follows.
 
-    Raises ValueError unless the windows predict one pose (T_p = 1).  Notebook: 07
+    Raises ValueError unless the windows predict one pose (T_p = 1).  Notebook: 07, 09
     """
     if windows.T_p != 1:
         raise ValueError(f"this model predicts one pose at a time; make the windows with T_p=1, not {windows.T_p}")
     rows = windows.starts[:, None] + torch.arange(windows.T_h + 1)
     poses, control = windows.poses.double()[rows], windows.control.double()[rows[:, :-1]]
-    X, Y = regressors(poses[:, :-1], control), poses[:, -1]
+    return regressors(poses[:, :-1], control), poses[:, -1]
+
+
+def fit(windows: Windows, ridge: float = 1e-3) -> LinearGaussian:
+    """Least squares over all windows: W = (X^T X + ridge K I)^-1 X^T Y, K windows; L from the residuals' covariance.
+
+    Raises ValueError unless the windows predict one pose (T_p = 1).  Notebook: 07
+    """
+    X, Y = design(windows)
     penalty = ridge * len(X) * torch.eye(X.shape[1], dtype=torch.float64)
     weight = torch.linalg.solve(X.T @ X + penalty, X.T @ Y)
     left = Y - X @ weight
-    covariance = left.T @ left / len(left) + 1e-12 * torch.eye(Y.shape[1], dtype=torch.float64)
-    spread = torch.linalg.cholesky(covariance)
+    return fitted(windows, weight, left.T @ left / len(left))
+
+
+def fitted(windows: Windows, weight: Float[Tensor, "F D"], covariance: Float[Tensor, "D D"]) -> LinearGaussian:
+    """The walker with these weights, whose noise has this covariance.  Notebook: 07, 09"""
+    spread = torch.linalg.cholesky(covariance + 1e-12 * torch.eye(len(covariance), dtype=torch.float64))
     return LinearGaussian(weight.float(), spread.float(), windows.T_h, windows.pose_scaler, windows.control_scaler)

@@ -1,0 +1,103 @@
+"""Diffusion dropout: now and then the past is noised as the future is, so that the control must do.
+
+    q(x_s | x) = N(sqrt(alpha_bar_s) x, (1 - alpha_bar_s) I),   with probability p_d for each sample of the batch
+Not nn.Dropout: nothing is set to zero, and nothing is rescaled. Rivals that set to zero stand beside it.
+Source: MoDiff III-D, eq. 12, Alg. 1.  Notebook: 09
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import torch
+from jaxtyping import Bool, Float, Int
+from torch import Tensor
+
+from .ddpm import Schedule, draw, q_sample
+
+P_D = (0.0, 0.05, 0.10, 0.15, 0.20, 0.25)  # MoDiff IV-A: the rates, one after the other
+CALM = 0.5  # share of the training before the first rise: 500 of the paper's 1000 epochs
+
+Past = Float[Tensor, "B T_h D"]
+
+
+def diffusion_dropout(
+    past: Past,
+    s: Int[Tensor, "B"],
+    schedule: Schedule,
+    rate: float,
+    generator: torch.Generator | None = None,
+    *,
+    shared: bool = True,
+) -> Past:
+    """Noise the past of some samples: each with probability `rate`, to its step s.
+
+    `s` is the step of the target (Algorithm 1); with shared=False each noised past gets a step of its own. Then the
+    network cannot tell from the past how noisy the target is.  The noise is always the past's own.
+    Raises ValueError for a rate outside 0..1.
+    Source: MoDiff eq. 12, Alg. 1; shared=False is ours.  Notebook: 09
+    """
+    hit = chosen(len(past), rate, generator).to(past.device)
+    if not shared:
+        s = torch.randint(1, schedule.S + 1, (len(past),), generator=generator).to(past.device)
+    noised = q_sample(past, s, schedule, draw(past, generator))
+    return noised.where(hit[:, None, None], past)
+
+
+def frame_dropout(past: Past, rate: float, generator: torch.Generator | None = None) -> Past:
+    """MoGlow's rival: each frame of each past is set to zero (the mean pose) with probability `rate`.  Notebook: 09"""
+    hit = chosen(past.shape[0] * past.shape[1], rate, generator).to(past.device)
+    return past.masked_fill(hit.view(*past.shape[:2], 1), 0.0)
+
+
+def zeroing(past: Past, rate: float, generator: torch.Generator | None = None) -> Past:
+    """The plain rival: the whole past of a sample is set to zero with probability `rate`.  Notebook: 09"""
+    return past.masked_fill(chosen(len(past), rate, generator).to(past.device)[:, None, None], 0.0)
+
+
+def chosen(n: int, rate: float, generator: torch.Generator | None = None) -> Bool[Tensor, "n"]:
+    """Which of n are hit, each with probability `rate`."""
+    if not 0 <= rate <= 1:
+        raise ValueError(f"a rate lies between 0 and 1, not {rate:g}")
+    return torch.rand(n, generator=generator) < rate
+
+
+@dataclass
+class Dropout:
+    """Diffusion dropout for one training: call it with (past, s, generator), and tell it how much is `done`, 0 to 1.
+
+    A training loop calls `now` before each step: `train_steps(..., before=dropout.now)`.
+    Source: MoDiff Alg. 1, III-D (the scheduler P_d).  Notebook: 09
+    """
+
+    schedule: Schedule
+    rate: Callable[[float], float]  # of what is done: `dropout_rate`
+    steps: int  # of the whole training
+    shared: bool = True
+    done: float = 0.0
+
+    def now(self, step: int) -> None:
+        """`step` of the steps are behind us."""
+        self.done = step / self.steps
+
+    def __call__(self, past: Past, s: Int[Tensor, "B"], generator: torch.Generator | None = None) -> Past:
+        return diffusion_dropout(past, s, self.schedule, self.rate(self.done), generator, shared=self.shared)
+
+
+def dropout_rate(rates: tuple[float, ...] = P_D, calm: float = CALM) -> Callable[[float], float]:
+    """The schedule P_d for a training of any length: `rate(done)`, where `done` goes from 0 to 1.
+
+    0 for the first `calm` of the training, then each of the rates for an equal share of what is left; a first rate of
+    0 is what the calm part has already had (in the paper: .05 from epoch 500 on, .25 from 900 to the end).
+    Raises ValueError unless the rates lie in 0..1 and calm in 0..1.  Source: MoDiff III-D, IV-A.  Notebook: 09
+    """
+    risen = rates[1:] if len(rates) > 1 and rates[0] == 0 else rates
+    if not risen or not all(0 <= rate <= 1 for rate in rates) or not 0 <= calm <= 1:
+        raise ValueError(f"rates and calm lie between 0 and 1, not {rates} and {calm:g}")
+
+    def rate(done: float) -> float:
+        if done < calm or calm == 1:
+            return 0.0
+        k = int((done - calm) / (1 - calm) * len(risen) + 1e-9)
+        return risen[min(k, len(risen) - 1)]
+
+    return rate
