@@ -1,0 +1,104 @@
+"""There and back: what is missing in the past is found by walking on, turning round, and walking back.
+
+    past with holes -> T_h new frames -> both reversed in time -> T_h new frames: the past, as it may have been
+The holes are filled from it, and again, until filling changes nothing. Nothing is trained for it.
+Where we differ: "reverse the order" is not enough for the control: velocities change their sign, and since control[t]
+leads from frame t to t + 1 they move by one frame.
+Source: MoDiff III-E.  Notebook: 10
+"""
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+
+import torch
+from jaxtyping import Bool, Float
+from torch import Tensor
+
+from .rollout import generate
+
+
+@dataclass(frozen=True, eq=False)
+class Round:
+    """One time there and back: the past as it is now, and how far the filled entries moved (metres, RMS per sample)."""
+
+    number: int
+    past: Float[Tensor, "B T_h D"]
+    change: Float[Tensor, "B"]
+
+
+def reverse_control(control: Float[Tensor, "*B T 3"]) -> Float[Tensor, "*B T 3"]:
+    """The control of the same walk played backwards: -control[T - 2 - t]; the last row repeats.
+
+    Source: MoDiff III-E, mended (sign and shift).  Notebook: 01, 10
+    """
+    back = -control[..., :-1, :].flip(-2)
+    return torch.cat([back, back[..., -1:, :]], dim=-2)
+
+
+# (walker, ahead, control, given, known, generator=, steps=) -> the frames before `ahead`; all turned round in time
+WayBack = Callable[..., Tensor]
+
+
+def walked_back(walker, ahead, control, given, known, **options) -> Float[Tensor, "B T_h D"]:
+    """The paper's way back: walk on from what was walked ahead; what is known plays no part on the way.
+
+    Others, for which it does, are in `ways_back`.  Source: MoDiff III-E.  Notebook: 10
+    """
+    return generate(walker, ahead, control, hold=False, **options)
+
+
+def repair_steps(
+    walker,
+    past: Float[Tensor, "B T_h D"],
+    known: Bool[Tensor, "B _ _"],
+    control: Float[Tensor, "B T C"],
+    *,
+    way_back: WayBack = walked_back,
+    guess: Float[Tensor, "B T_h D"] | None = None,
+    rounds: int = 5,
+    tolerance: float = 1e-3,
+    generator: torch.Generator,
+    steps: int | None = 10,
+    keep: int | None = None,
+    settle: Callable[[Tensor, Tensor, Tensor], Tensor] | None = None,
+) -> Iterator[Round]:
+    """Fill the holes of `past` (metres), round by round, until they move by less than `tolerance` metres (RMS).
+
+    `control` has T_h rows beside the past and T_h for the way there. What is missing is the mean pose at first (zero
+    once standardised), or `guess` (metres), from a regression, say. Stops after `rounds` at the latest: a sampler's
+    own spread may be above the tolerance.
+    `way_back`: the paper's, or one of `ways_back`, which heed what is known. Of every predicted window `keep` poses are
+    kept, by default all T_p. keep=1 is the paper's rollout, on its own errors (ten times dearer, and farther off).
+    `settle(past, known, ahead)` mends the filled past after each round: `mending.with_bones`, for one.
+    Raises ValueError when shapes do not fit, or no frame of a sample has anything known.
+    Source: MoDiff III-E, Fig. 6; the stop rule is ours.  Notebook: 10
+    """
+    T_h = past.shape[1]
+    if known.shape != past.shape or control.shape[1] != 2 * T_h:
+        raise ValueError(
+            f"known must be shaped like past {tuple(past.shape)}, not {tuple(known.shape)}, and the control must have "
+            f"{2 * T_h} rows (past and as many ahead), not {control.shape[1]}"
+        )
+    if not known.flatten(1).any(1).all():
+        raise ValueError(f"of sample {int((~known.flatten(1).any(1)).nonzero()[0])} nothing is known at all")
+    missing, mean = ~known, walker.pose_scaler.mean.to(past).expand_as(past)
+    filled = torch.where(known, past, mean if guess is None else guess.to(past))
+    options = {"generator": generator, "steps": steps, "keep": keep or walker.config.T_p}
+    for number in range(1, rounds + 1):
+        ahead = generate(walker, filled, control, hold=False, **options)
+        turned = [x.flip(1) for x in (ahead, past, known)]
+        back = way_back(walker, turned[0], reverse_control(control), *turned[1:], **options).flip(1).to(past)
+        moved = (back - filled).square().mul(missing).flatten(1).sum(1)
+        change = (moved / missing.flatten(1).sum(1).clamp(min=1)).sqrt()
+        filled = torch.where(known, past, back)
+        filled = settle(filled, known, ahead) if settle else filled
+        yield Round(number, filled, change)
+        if not (change > tolerance).any():
+            return
+
+
+def repair(walker, past, known, control, **options) -> Float[Tensor, "B T_h D"]:
+    """The last of `repair_steps`: known entries come back bit by bit as they were given.  Notebook: 10"""
+    for done in repair_steps(walker, past, known, control, **options):
+        last = done
+    return last.past

@@ -1,0 +1,49 @@
+"""Figures of what was mended: errors over the length of a gap, and a map of dropout's rate against what is missing.
+
+Notebook: 09, 15
+"""
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+from jaxtyping import Float
+from matplotlib.figure import Figure
+
+from .style import DASHES, MARKERS, MEDIUM, figure, legend, table
+
+Line = tuple[Sequence[float], Sequence[float], Sequence[float], Sequence[float]]  # x, value, low, high
+
+
+def over_gaps(
+    panels: Mapping[str, Mapping[str, Line]], words: str, xlabel: str = "length of the gap (frames of 1/20 s)"
+) -> Figure:
+    """One panel for each measure, a line in it for each method, its 95 % interval shaded.  Notebook: 15"""
+    fig, axes = figure(5.4 * len(panels), 4.6, words, 1, len(panels))
+    for axis, (measure, lines) in zip(axes, panels.items(), strict=True):
+        for i, (name, (x, value, low, high)) in enumerate(lines.items()):
+            line = axis.plot(x, value, ls=DASHES[i % 8], marker=MARKERS[i % 8], label=name)[0]
+            axis.fill_between(x, low, high, color=line.get_color(), alpha=0.15, lw=0)
+        axis.set(xlabel=xlabel, title=measure, ylim=(0, None))
+    legend(axes[0])
+    return fig
+
+
+def rate_map(
+    panels: Mapping[str, Float[np.ndarray, "R M"]], rates: Sequence[str], missing: Sequence[str], words: str
+) -> Figure:
+    """A map for each measure: rates of dropout in rows, shares of the past missing in columns; small is good.
+
+    Colours compare within a column (dark: the worst rate at that share), numbers are the errors.  Notebook: 09
+    """
+    fig, axes = figure(1.2 + 5.0 * len(panels), 1.4 + 0.5 * len(rates), words, 1, len(panels))
+    for axis, (measure, errors) in zip(axes, panels.items(), strict=True):
+        low, high = errors.min(0), errors.max(0)
+        shade = (errors - low) / np.maximum(high - low, 1e-12)
+        axis.imshow(shade, cmap="Oranges", vmin=0, vmax=1.6, aspect="auto")
+        for (row, column), error in np.ndenumerate(errors):
+            weight = "bold" if error == low[column] else "normal"
+            axis.text(column, row, f"{error:.3g}", ha="center", va="center", fontweight=weight)
+        table(axis, rates, missing)
+        axis.set_xlabel(f"share of the joints missing: {measure}", fontsize=MEDIUM)
+    axes[0].set_ylabel("rate of dropout", fontsize=MEDIUM)
+    return fig

@@ -1,0 +1,88 @@
+"""Figures of repairs: round by round, poses with all their repairs, and faults against methods.
+
+Notebook: 10
+"""
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+from jaxtyping import Bool, Float
+from matplotlib.figure import Figure
+from matplotlib.ticker import LogLocator, NullFormatter
+
+from ..motion.skeleton import BONES, HIPS
+from . import body
+from .skeleton import SIDES, draw_pose
+from .style import DASHES, LARGE, MARKERS, MEDIUM, OKABE_ITO, SMALL, figure, legend
+
+GHOST = "#009E73"
+_CAMERA, _SIZE = body.Camera(focal=2.3), (270, 420)  # those of `draw_pose`
+
+
+def by_round(
+    panels: Mapping[str, Mapping[str, Sequence[float]]],
+    words: str,
+    marks: Mapping[str, tuple[str, float]] | None = None,
+) -> Figure:
+    """One panel for each measure, a line in it for each fault, a point for each round; `marks` are dotted levels."""
+    fig, axes = figure(5.2 * len(panels), 4, words, 1, len(panels))
+    for axis, (measure, lines) in zip(axes, panels.items(), strict=True):
+        for i, (label, values) in enumerate(lines.items()):
+            axis.plot(np.arange(1, len(values) + 1), values, ls=DASHES[i % 8], marker=MARKERS[i % 8], label=label)
+        if measure in (marks or {}):
+            name, level = marks[measure]
+            axis.axhline(level, color=body.INK, ls=":", lw=1.2)
+            axis.annotate(name, (1, level), xycoords=("axes fraction", "data"), ha="right", va="bottom", fontsize=SMALL)
+        axis.set(xlabel="round", title=measure, ylim=(0, None))
+        axis.xaxis.get_major_locator().set_params(integer=True)
+    legend(axes[0])
+    return fig
+
+
+def with_ghosts(
+    poses: Mapping[str, Float[np.ndarray, "T 21 3"]],
+    samples: Mapping[str, Float[np.ndarray, "n T 21 3"]],
+    known: Bool[np.ndarray, "T 21"],
+    words: str,
+    n: int = 5,
+) -> Figure:
+    """A row of n poses of the window for each name; rows named in `samples` show all of them as thin green limbs."""
+    frames = np.linspace(0, len(known) - 1, n).round().astype(int)
+    fig, axes = figure(1.5 * n, 2.3 * len(poses) + 0.6, words, len(poses), n)
+    for i, axis in enumerate(axes):
+        name, t = list(poses)[i // n], frames[i % n]
+        pose = poses[name][t]
+        draw_pose(axis, pose)
+        camera = _CAMERA.at(*pose[HIPS, [0, 2]])
+        for sample in samples.get(name, ()):
+            pixels, _ = body.project(np.asarray(sample[t], np.float64), camera, _SIZE)
+            for a, b in BONES:
+                if not (known[t, a] and known[t, b]):
+                    axis.plot(*pixels[[a, b]].T, color=GHOST, lw=1, alpha=0.6, zorder=4)
+        if i < n:
+            axis.set_title(f"frame {t}", fontsize=SMALL)
+        if i % n == 0:
+            axis.text(-0.05, 0.5, name, rotation=90, va="center", ha="right", transform=axis.transAxes, fontsize=MEDIUM)
+    fig.legend(handles=SIDES, loc="outside lower right", ncols=2, frameon=False, fontsize=SMALL)
+    return fig
+
+
+def faults_and_methods(panels: Mapping[str, Mapping[str, Mapping[str, float]]], words: str, log: bool = True) -> Figure:
+    """A panel for each measure: a row for each fault, a mark in it for each method; NaN leaves a mark out."""
+    faults = list(next(iter(panels.values())))
+    fig, axes = figure(5.4 * len(panels), 1.4 + 0.62 * len(faults), words, 1, len(panels), sharey=True)
+    for axis, (measure, rows) in zip(axes, panels.items(), strict=True):
+        for k, method in enumerate(rows[faults[0]]):
+            values = [rows[fault][method] for fault in faults]
+            axis.plot(values, np.arange(len(faults)) + 0.1 * (k - 2), MARKERS[k % 8], color=OKABE_ITO[k % 7], ms=9,
+                      ls="none", label=method)  # fmt: skip
+        axis.set_title(measure, fontsize=LARGE)
+        axis.set_ylim(len(faults) - 0.5, -0.5)
+        if log:
+            axis.set_xscale("log")
+            axis.xaxis.set_major_locator(LogLocator(subs=(1, 2, 5)))
+            axis.xaxis.set_major_formatter("{x:g}")
+            axis.xaxis.set_minor_formatter(NullFormatter())
+    axes[0].set_yticks(range(len(faults)), faults)
+    fig.legend(*axes[0].get_legend_handles_labels(), loc="outside lower center", ncols=5, frameon=False, fontsize=SMALL)
+    return fig
