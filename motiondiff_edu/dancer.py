@@ -62,9 +62,19 @@ class Dancer:
         mel = self.mel_scaler.transform(mel[:, : mel_frames(frames)])
         return mel, frame_times(mel.shape[1]).float()
 
-    def denoiser(self, mel: Float[Tensor, "B M C"], frames: int):
-        """`denoise(x_s, s) -> eps_hat` for this music, in the network's units."""
-        if isinstance(self.model, MoFusion):
+    def denoiser(self, mel: Float[Tensor, "B M C"] | None, frames: int, fast: bool = True):
+        """`denoise(x_s, s) -> eps_hat` for this music (None for a network without), in the network's units.
+
+        `fast`: by the fast twin, where there is one; it cannot be differentiated.
+        Raises ValueError where a network that dances to music has none, or one without music is given some.
+        """
+        if (mel is None) != (self.config.C == 0):
+            raise ValueError(
+                "this network hears nothing" if mel is not None else "this network dances to music: give it"
+            )
+        if mel is None:
+            return self._as_eps(self.model)
+        if fast and isinstance(self.model, MoFusion):
             listening = self.fast.listen(*self.heard(mel, frames), frames)
             return self._as_eps(lambda x_s, s: self.fast.denoise(x_s, s, listening))
         music = self.model.listen(*self.heard(mel, frames))

@@ -4,6 +4,7 @@ With a = sqrt(alpha_bar_s) and b = sqrt(1 - alpha_bar_s), x_s = a x0 + b eps and
 turned by an angle, so every conversion is a line of algebra.
 """
 
+import torch
 from jaxtyping import Float
 from torch import Tensor
 
@@ -85,9 +86,19 @@ def target_of(
 
 
 def denoiser_of(network, schedule: Schedule, target: str):
-    """Wrap a network that predicts `target` as a denoiser, which always answers with eps_hat. Notebook: 05."""
+    """Wrap a network that predicts `target` as a denoiser, which always answers with eps_hat. Notebook: 05.
+
+    It raises ValueError where a gradient is asked for and the network has none (the formulas have: a wrong one).
+    """
     _check(target)
-    return lambda x_s, s: to_eps(network(x_s, s), x_s, s, schedule, target)
+
+    def denoise(x_s, s):
+        output = network(x_s, s)
+        if torch.is_grad_enabled() and x_s.requires_grad and not output.requires_grad:
+            raise ValueError("this network cannot be differentiated: take the plain one, not its fast twin")
+        return to_eps(output, x_s, s, schedule, target)
+
+    return denoise
 
 
 def _check(target: str) -> None:

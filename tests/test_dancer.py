@@ -123,7 +123,7 @@ def test_regression_learns_the_mean_of_what_it_sees():
 @pytest.mark.parametrize("config", [UNET, PLAIN])
 def test_a_file_gives_the_same_dancer_back(config, tmp_path: Path):
     one = dancer(config)
-    again = load_dancer(save(one, tmp_path / "one.safetensors", half=False))
+    again = load_dancer(save(one, tmp_path / "one.safetensors", bits=32))
     assert again.config == config and again.card == {"name": "test"}
     assert isinstance(load(tmp_path / "one.safetensors"), Dancer)
     start = torch.randn(2, 20, 63)

@@ -1,0 +1,66 @@
+"""In-betweens without a model: straight lines between what is given, or arcs that keep the bones.
+
+Before the first and after the last given frame its pose is held.  Source: what every paper on in-betweening compares
+with; arcs are spherical interpolation (slerp) of the bones' directions.  Notebook: 15
+"""
+
+import numpy as np
+from jaxtyping import Bool, Float
+
+from ..motion.skeleton import BONES
+
+
+def linear(positions: Float[np.ndarray, "T J 3"], known: Bool[np.ndarray, "T J"]) -> Float[np.ndarray, "T J 3"]:
+    """Each joint goes straight from one given place to the next.  Raises ValueError for a joint that is never given.
+
+    Notebook: 15
+    """
+    _each_is_given(known)
+    filled, times = np.array(positions, np.float64), np.arange(len(positions))
+    for joint in range(positions.shape[1]):
+        here = known[:, joint]
+        for axis in range(3):
+            filled[~here, joint, axis] = np.interp(times[~here], times[here], positions[here, joint, axis])
+    return filled
+
+
+def spherical(positions: Float[np.ndarray, "T J 3"], known: Bool[np.ndarray, "T J"]) -> Float[np.ndarray, "T J 3"]:
+    """The pelvis goes straight; every bone turns evenly from one given direction to the next, and keeps its length.
+
+    A bone counts as given where both of its ends are; given joints stay where they are.
+    Raises ValueError for a joint that is never given.  Notebook: 15
+    """
+    _each_is_given(known)
+    straight = linear(positions, known)
+    filled = np.array(straight)
+    for parent, child in BONES:
+        both = known[:, parent] & known[:, child]
+        if not both.any():
+            continue
+        bone = positions[both, child] - positions[both, parent]
+        turned = _slerp(bone, np.flatnonzero(both), np.arange(len(positions)))
+        filled[:, child] = np.where(known[:, child, None], positions[:, child], filled[:, parent] + turned)
+    return filled
+
+
+def _slerp(vectors: Float[np.ndarray, "K 3"], at: np.ndarray, times: np.ndarray) -> Float[np.ndarray, "T 3"]:
+    """Vectors between those at the frames `at`: directions on the great circle, lengths on a straight line."""
+    length = np.linalg.norm(vectors, axis=-1)
+    unit = vectors / np.maximum(length, 1e-12)[:, None]
+    after = np.clip(np.searchsorted(at, times, side="right"), 1, max(len(at) - 1, 1))
+    first, second = after - 1, np.minimum(after, len(at) - 1)
+    span = np.maximum(at[second] - at[first], 1)
+    share = np.clip((times - at[first]) / span, 0, 1)[:, None]
+    angle = np.arccos(np.clip((unit[first] * unit[second]).sum(-1), -1, 1))[:, None]
+    sin = np.sin(angle)
+    bent = sin > 1e-6
+    safe = np.where(bent, sin, 1.0)
+    ahead = np.where(bent, np.sin((1 - share) * angle) / safe, 1 - share)
+    behind = np.where(bent, np.sin(share * angle) / safe, share)
+    return (ahead * unit[first] + behind * unit[second]) * np.interp(times, at, length)[:, None]
+
+
+def _each_is_given(known: Bool[np.ndarray, "T J"]) -> None:
+    never = np.flatnonzero(~known.any(0))
+    if len(never):
+        raise ValueError(f"joint {int(never[0])} is never given: there is nothing to interpolate between")

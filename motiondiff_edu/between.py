@@ -1,0 +1,78 @@
+"""In-betweens of motions in metres: what is known of a walk or a dance is kept, bit by bit, and the rest is made.
+
+The sampling itself is `inbetweening.inpaint_steps`.  Source: MoFusion 4.4.  Notebook: 15
+"""
+
+import math
+from functools import partial
+
+import numpy as np
+import torch
+from jaxtyping import Bool, Float
+from torch import Tensor
+
+from .blending import blended
+from .dancer import Dancer
+from .inbetweening import inpaint_steps
+from .known import known_columns
+from .motion.dance_frame import HIP_LEFT, HIP_RIGHT, Place, placed_features, to_positions
+from .motion.skeleton import HIPS, J
+from .motion.steady_bones import given_lengths, steady_bones
+
+BLEND = 10  # frames within which a correction fades where nothing else is given
+GUIDANCE = 0.5  # more obeys sparse keyframes better, and jumps more at the seams of a gap
+
+
+def inbetween(
+    dancer: Dancer,
+    positions: Float[np.ndarray, "T 21 3"],
+    known: Bool[np.ndarray, "T 21"],
+    mel: Float[Tensor, "M C"] | None = None,
+    *,
+    samples: int = 1,
+    steps: int = 50,
+    eta: float = 1.0,
+    resample: int = 1,
+    blend: int | None = BLEND,
+    guidance: float = GUIDANCE,
+    bones: bool = True,
+    generator: torch.Generator | None = None,
+) -> Float[np.ndarray, "samples T 21 3"]:
+    """Find what is not known of a motion (metres, 20 frames/s), `samples` times; `mel` for a dancer that hears.
+
+    Known entries come back bit by bit as they were given; the others may be NaN. The motion is seen from the first
+    frame whose pelvis and hips are known (from its own origin where there is none).
+    `blend`: the network's guesses are drawn through what is given, at every step, and let go of within so many frames
+    where nothing more is given (`blending.blended`). `guidance`: they are moved by its gradient before
+    (`inbetweening.guided`), at twice the cost. None, and 0: masked sampling as in the paper.
+    `bones`: they get the lengths that they have where they are given (`motion.steady_bones`).
+    Raises ValueError where a joint is given without the pelvis.  Source: MoFusion 4.4.  Notebook: 15
+    """
+    columns, place = torch.from_numpy(known_columns(known)), seen_from(positions, known)
+    at_home = np.where(known[..., None], place.enter(np.nan_to_num(positions)), 0.0)
+    given = dancer.motion_scaler.transform(torch.from_numpy(placed_features(at_home)).float())
+    shape = (samples, *given.shape)
+    heard = None if mel is None else mel[None].expand(samples, -1, -1)
+    denoise = dancer.denoiser(heard, len(given), fast=not guidance)
+    blend_in = None if blend is None else partial(blended, fade=fading(blend))
+    options = {"steps": steps, "eta": eta, "resample": resample, "blend": blend_in, "guidance": guidance}
+    options["generator"] = generator
+    start = torch.randn(shape, generator=generator)
+    loop = inpaint_steps(denoise, start, dancer.schedule, given.expand(shape), columns.expand(shape), **options)
+    *_, last = loop
+    made = place.leave(to_positions(dancer.motion_scaler.inverse(last.x_s)).double().numpy())
+    whole = np.where(known[..., None], positions, made)
+    return steady_bones(whole, known, given_lengths(positions, known)) if bones else whole
+
+
+def fading(frames: int) -> Float[Tensor, "63"]:
+    """So many frames for every column, but for where the pelvis is in the room: there is no place to go back to."""
+    fade = torch.full((3 * J,), float(frames))
+    fade[[3 * HIPS, 3 * HIPS + 2]] = math.inf
+    return fade
+
+
+def seen_from(positions: Float[np.ndarray, "T 21 3"], known: Bool[np.ndarray, "T 21"]) -> Place:
+    """The place of the first frame whose pelvis and hips are given: near it the motion starts. Else the origin."""
+    whole = known[:, [HIPS, HIP_LEFT, HIP_RIGHT]].all(-1)
+    return Place.of(positions[whole.argmax()]) if whole.any() else Place(np.zeros(3), np.zeros(()))

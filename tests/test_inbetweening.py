@@ -1,0 +1,258 @@
+"""Masked sampling: what is given comes back, what is not follows the true conditional once it is resampled."""
+
+from functools import partial
+
+import numpy as np
+import pytest
+import torch
+
+from data_synth.mixtures import crossed_bars
+from data_synth.walking import random_control, walk
+from motiondiff_edu.between import inbetween
+from motiondiff_edu.blending import blended
+from motiondiff_edu.dancer import Dancer
+from motiondiff_edu.ddpm import cosine_schedule
+from motiondiff_edu.exact import conditional, exact_denoiser, log_density, mixture, sample_mixture
+from motiondiff_edu.fast.samplers import ddim_steps
+from motiondiff_edu.inbetweening import guided, inpaint_steps
+from motiondiff_edu.known import body_part, gap, keyframes, known_columns, known_frames, seed
+from motiondiff_edu.mofusion import MoFusion, MoFusionConfig
+from motiondiff_edu.motion.dance_frame import Place, to_positions
+from motiondiff_edu.motion.root_frame import to_world
+from motiondiff_edu.motion.scaler import Scaler
+
+SCHEDULE = cosine_schedule(100)
+
+
+def seeded(seed: int = 0) -> torch.Generator:
+    return torch.Generator().manual_seed(seed)
+
+
+def last(loop):
+    *_, end = loop
+    return end.x_s
+
+
+def correlated(rho: float = 0.9):
+    """One Gaussian in the plane whose coordinates agree: the second is rho times the first, and some noise."""
+    covariance = torch.tensor([[[1.0, rho], [rho, 1.0]]], dtype=torch.float64)
+    return mixture(torch.ones(1), torch.tensor([[0.3, -0.2]]), covariance)
+
+
+def test_the_conditional_is_the_joint_density_over_the_marginal_one():
+    truth, value, known = crossed_bars(), torch.tensor([-0.9, 9.0]), torch.tensor([True, False])
+    grid = torch.linspace(-4, 4, 8001, dtype=torch.float64)[:, None]
+    joint = log_density(truth, torch.cat([torch.full_like(grid, -0.9), grid], 1)).exp()
+    wanted = joint / (joint.sum() * (grid[1] - grid[0]))
+    ours = log_density(conditional(truth, value, known), grid).exp()
+    torch.testing.assert_close(ours, wanted, atol=1e-6, rtol=1e-5)
+
+
+def test_the_conditional_of_one_gaussian_is_the_textbook_s():
+    found = conditional(correlated(0.9), torch.tensor([1.3, 0.0]), torch.tensor([True, False]))
+    assert found.mean().item() == pytest.approx(-0.2 + 0.9 * (1.3 - 0.3))
+    assert found.covariance().item() == pytest.approx(1 - 0.9**2)
+    for known in (torch.tensor([True, True]), torch.tensor([False, False])):
+        with pytest.raises(ValueError, match="something must be known"):
+            conditional(correlated(), torch.zeros(2), known)
+
+
+def given_first(value: float, n: int):
+    known = torch.tensor([True, False]).expand(n, 2)
+    return torch.tensor([value, float("nan")]).expand(n, 2), known
+
+
+def test_masking_with_the_exact_denoiser_misses_the_conditional_until_it_resamples():
+    truth, n = correlated(0.9), 4000
+    given, known = given_first(1.8, n)
+    wanted = conditional(truth, given[0].nan_to_num(), known[0])
+    off = {}
+    for resample in (1, 10):
+        start = torch.randn(n, 2, generator=seeded(1))
+        loop = inpaint_steps(
+            exact_denoiser(truth, SCHEDULE),
+            start,
+            SCHEDULE,
+            given,
+            known,
+            steps=50,
+            resample=resample,
+            generator=seeded(2),
+        )
+        x = last(loop)
+        assert torch.equal(x[:, 0], given[:, 0])
+        off[resample] = abs(x[:, 1].mean().item() - wanted.mean().item())
+        if resample == 10:
+            assert x[:, 1].var().item() == pytest.approx(wanted.covariance().item(), rel=0.25)
+    assert off[1] > 0.1 and off[10] < 0.4 * off[1], off
+
+
+def test_nothing_known_is_plain_sampling_and_all_known_is_the_input():
+    truth, start = crossed_bars(), torch.randn(50, 2, generator=seeded(3))
+    denoise, nothing = exact_denoiser(truth, SCHEDULE), torch.zeros(50, 2, dtype=torch.bool)
+    for eta in (0.0, 1.0):
+        ours = last(inpaint_steps(denoise, start, SCHEDULE, start, nothing, eta=eta, resample=3, generator=seeded(4)))
+        plain = last(ddim_steps(denoise, start, SCHEDULE, 50, eta, generator=seeded(4)))
+        torch.testing.assert_close(ours, plain, atol=1e-5, rtol=1e-5)
+    given = sample_mixture(truth, 50, seeded(5)).float()
+    assert torch.equal(last(inpaint_steps(denoise, start, SCHEDULE, given, ~nothing, generator=seeded(6))), given)
+
+
+def test_the_known_part_is_a_snapshot_noised_for_the_step():
+    given, known = given_first(2.0, 3000)
+    denoise = exact_denoiser(correlated(), SCHEDULE)
+    start = torch.randn(3000, 2, generator=seeded(7))
+    for step in inpaint_steps(denoise, start, SCHEDULE, given, known, steps=10, generator=seeded(8)):
+        alpha_bar = SCHEDULE.alpha_bar[step.s].item()
+        assert step.x_s[:, 0].mean().item() == pytest.approx(2 * alpha_bar**0.5, abs=0.08)
+        assert step.x_s[:, 0].std().item() == pytest.approx((1 - alpha_bar) ** 0.5, abs=0.05)
+
+
+def test_wrong_inputs():
+    with pytest.raises(ValueError, match="once at least"):
+        start = torch.zeros(1, 2)
+        next(inpaint_steps(lambda x, s: x, start, SCHEDULE, start, start > 0, resample=0))
+
+
+HEARS = MoFusionConfig(C=5, S=30, widths=(16, 24), heads=2, music_layers=1, target="x0", skip=False)
+
+
+def dancer(C: int = 0) -> Dancer:
+    torch.manual_seed(0)
+    model = MoFusion(MoFusionConfig(**{**HEARS.as_dict(), "C": C})).eval().requires_grad_(False)
+    for weight in model.parameters():
+        weight.add_(0.1 * torch.randn(weight.shape))
+    scalers = Scaler(torch.zeros(63), torch.full((63,), 0.2)), Scaler.nothing(C)
+    return Dancer(model, cosine_schedule(30), *scalers)
+
+
+def clip(T: int = 40) -> np.ndarray:
+    """A real enough motion that starts somewhere, facing somewhere."""
+    walked = walk(random_control(T / 20 + 1, np.random.default_rng(0), "turn"), 0)
+    return to_world(walked.poses, walked.control, (3.0, -2.0, 0.7))[:T]
+
+
+@pytest.mark.parametrize("known", [seed(40, 10), keyframes(40, 12), gap(40, 5, 20), body_part(40, "lower body"),
+                                   body_part(40, "upper body"), body_part(40, "trajectory")])  # fmt: skip
+@pytest.mark.parametrize("C", [0, 5])
+def test_known_entries_come_back_bit_by_bit_and_the_rest_is_made(known, C):
+    truth, mel = clip(), torch.randn(64, 5, generator=seeded(9)) if C else None
+    holes = np.where(known[..., None], truth, np.nan)
+    made = inbetween(dancer(C), holes, known, mel, samples=3, steps=5, resample=2, generator=seeded(1))
+    assert made.shape == (3, 40, 21, 3) and np.isfinite(made).all()
+    assert all(np.array_equal(one[known], truth[known]) for one in made)
+    assert not np.allclose(made[0][~known], made[1][~known])
+    again = inbetween(dancer(C), holes, known, mel, samples=3, steps=5, resample=2, generator=seeded(1))
+    assert np.array_equal(made, again)
+
+
+def test_all_known_is_the_input_and_nothing_known_is_a_plain_sample():
+    truth, one = clip(), dancer()
+    everything = np.ones((40, 21), bool)
+    assert np.array_equal(inbetween(one, truth, everything, steps=5, generator=seeded())[0], truth)
+    made = inbetween(one, np.full_like(truth, np.nan), ~everything, samples=2, steps=5, generator=seeded(2))
+    draw = seeded(2)
+    plain = last(ddim_steps(one.denoiser(None, 40), torch.randn(2, 40, 63, generator=draw), one.schedule, 5, 1.0,
+                            generator=draw))  # fmt: skip
+    np.testing.assert_allclose(made, to_positions(one.motion_scaler.inverse(plain)), atol=1e-5)
+
+
+def test_where_the_motion_stands_and_faces_does_not_matter():
+    """The same motion elsewhere: what is made is the same, elsewhere."""
+    truth, known, one = clip(), seed(40, 10), dancer()
+    place = Place(np.array([1.0, 0.0, -5.0]), np.array(2.1))
+    here, there = (inbetween(one, x, known, steps=5, generator=seeded(3)) for x in (truth, place.leave(truth)))
+    np.testing.assert_allclose(place.enter(there), here, atol=1e-4)
+
+
+def test_blending_carries_the_correction_and_fades():
+    made, given = torch.zeros(1, 9, 2), torch.full((1, 9, 2), float("nan"))
+    given[0, 4, 0], given[0, 2, 1], given[0, 6, 1] = 1.0, 1.0, 3.0
+    out = blended(made, given, ~given.isnan(), 3)[0]
+    torch.testing.assert_close(out[:, 0], torch.tensor([0, 0.25, 0.5, 0.75, 1, 0.75, 0.5, 0.25, 0]))
+    torch.testing.assert_close(out[:, 1], torch.tensor([0.5, 0.75, 1, 1.5, 2, 2.5, 3, 2.25, 1.5]))
+    assert torch.equal(blended(made, given, torch.zeros(1, 9, 2, dtype=torch.bool), 3), made)
+    stays = blended(made, given, ~given.isnan(), torch.tensor([torch.inf, 0.0]))[0]
+    torch.testing.assert_close(stays[:, 0], torch.ones(9))
+    torch.testing.assert_close(stays[:, 1], torch.tensor([0, 0, 1, 1.5, 2, 2.5, 3, 0, 0]))
+    right = torch.randn(1, 9, 2)
+    assert torch.equal(blended(right, right, ~given.isnan(), 3), right)
+
+
+def test_blending_at_every_step_leaves_no_jump_where_masking_does():
+    """A denoiser that knows nothing of the given (its guess is 1 everywhere): masking pops, blending does not."""
+    given = torch.linspace(3, 5, 30).view(1, 30, 1)
+    known = torch.ones(1, 30, 1, dtype=torch.bool)
+    known[:, 10:20] = False
+
+    def denoise(x, s):
+        alpha_bar = SCHEDULE.alpha_bar[s].view(-1, 1, 1).float()
+        return (x - alpha_bar.sqrt()) / (1 - alpha_bar).sqrt()
+
+    options = {"steps": 10, "generator": seeded()}
+    plain, blent = (
+        last(inpaint_steps(denoise, torch.randn(1, 30, 1), SCHEDULE, given, known, blend=blend, **options))
+        for blend in (None, partial(blended, fade=3))
+    )
+    assert plain.diff(dim=1).abs().max() > 2 and blent.diff(dim=1).abs().max() < 0.2
+
+
+def test_guidance_moves_what_goes_with_the_given():
+    """With the exact denoiser of two numbers that agree, the unknown one comes nearer to where the known one says."""
+    truth, n = correlated(0.9), 2000
+    given, known = given_first(1.8, n)
+    wanted = conditional(truth, given[0].nan_to_num(), known[0]).mean().item()
+    start, denoise = torch.randn(n, 2, generator=seeded(1)), exact_denoiser(truth, SCHEDULE)
+    off = {}
+    for guidance in (0.0, 1.0):
+        loop = inpaint_steps(denoise, start, SCHEDULE, given, known, guidance=guidance, generator=seeded(2))
+        off[guidance] = abs(last(loop)[:, 1].mean().item() - wanted)
+    assert off[1.0] < 0.5 * off[0.0], off
+
+
+def test_one_guided_guess_by_hand():
+    """J is known for a linear denoiser: x0_hat = M x, so the pull is M^T r, as long as leaves least wrong."""
+    M, x, known = torch.tensor([[0.5, 0.3], [0.3, 0.5]]), torch.tensor([[1.0, 2.0]]), torch.tensor([[True, False]])
+    alpha_bar = SCHEDULE.alpha_bar[40].item()
+
+    def denoise(x, s):
+        return (x - alpha_bar**0.5 * x @ M.T) / (1 - alpha_bar) ** 0.5
+
+    out = guided(denoise, x, 40, alpha_bar, torch.tensor([[3.0, 0.0]]), known, 1.0)
+    x0_hat = torch.tensor([1.1, 1.3])
+    pull = M.T @ torch.tensor([3.0 - 1.1, 0.0])
+    torch.testing.assert_close(out[0], x0_hat + pull * (3.0 - 1.1) / pull[0])
+    assert out[0, 0] == pytest.approx(3.0)  # one given entry is met at once
+
+
+def test_guidance_through_a_fast_twin_is_refused():
+    who, mel = dancer(5), torch.randn(1, 64, 5, generator=seeded(9))
+    start = torch.zeros(1, 40, 63)
+    loop = inpaint_steps(who.denoiser(mel, 40), start, who.schedule, start, start == 0, steps=2, guidance=1.0)
+    with pytest.raises(ValueError, match="fast twin"):
+        next(loop)
+
+
+def test_masks():
+    assert seed(200).sum() == 40 * 21 and keyframes(100, 30).any(-1).nonzero()[0].tolist() == [0, 30, 60, 90, 99]
+    assert (~gap(100, 20, 15).any(-1)).nonzero()[0].tolist() == list(range(20, 35))
+    both = body_part(5, "upper body").sum() + body_part(5, "lower body").sum()
+    assert both == 5 * (21 + 1) and body_part(5, "trajectory").sum() == 5  # the pelvis is in each
+    assert known_columns(body_part(5, "trajectory")).sum() == 15
+
+
+def test_masks_refuse_what_is_not_there():
+    with pytest.raises(IndexError, match="frame 40"):
+        known_frames(40, [40])
+    with pytest.raises(ValueError, match="gap of 30"):
+        gap(40, 20, 30)
+    with pytest.raises(KeyError, match="lower body"):
+        body_part(40, "tail")
+    alone = np.zeros((40, 21), bool)
+    alone[7, 15] = True
+    with pytest.raises(ValueError, match="frame 7 gives LeftHand without the pelvis"):
+        inbetween(dancer(), clip(), alone)
+    with pytest.raises(ValueError, match="dances to music"):
+        inbetween(dancer(5), clip(), seed(40, 10))
+    with pytest.raises(ValueError, match="hears nothing"):
+        inbetween(dancer(), clip(), seed(40, 10), torch.zeros(64, 5))
