@@ -8,7 +8,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import torch
-from jaxtyping import Float, Int
+from jaxtyping import Bool, Float, Int
 from torch import Tensor
 
 from motiondiff_edu.ddpm import Denoiser, Schedule, at
@@ -96,6 +96,26 @@ def posterior_mean(
     share = part_log_densities(given.weights, off, variances).softmax(1)
     gain = alpha_bar.sqrt() * given.variances / variances
     return torch.einsum("bk,bki->bi", share, given.means + torch.einsum("kij,bkj->bki", given.axes, gain * off))
+
+
+def conditional(given: Mixture, values: Float[Tensor, "D"], known: Bool[Tensor, "D"]) -> Mixture:
+    """The unknown entries of a mixture when the known ones have these values: a mixture again.
+
+    Part k becomes N(m_u + G (x_k - m_k), C_uu - G C_ku) with G = C_uk C_kk^-1, and weighs w_k N(x_k; m_k, C_kk).
+    Raises ValueError when nothing is known, or everything.  Notebook: 15
+    """
+    if not known.any() or known.all():
+        raise ValueError("something must be known, and something not")
+    covariances = torch.einsum("kia,ka,kja->kij", given.axes, given.variances, given.axes)
+    inside, across = covariances[:, known][:, :, known], covariances[:, ~known][:, :, known]
+    gain = torch.linalg.solve(inside, across.mT).mT
+    seen = mixture(given.weights, given.means[:, known], inside)
+    value = values.double()[known]
+    off = along_axes(seen, (value - seen.means)[None])
+    shares = part_log_densities(seen.weights, off, seen.variances)[0].softmax(0)
+    means = given.means[:, ~known] + torch.einsum("kui,ki->ku", gain, value - seen.means)
+    left = covariances[:, ~known][:, :, ~known] - gain @ across.mT
+    return mixture(shares.clamp(min=1e-300), means, (left + left.mT) / 2)
 
 
 def dataset_mean(
