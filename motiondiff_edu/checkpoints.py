@@ -10,12 +10,14 @@ from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 
+from safetensors import safe_open
 from torch import Tensor
 
 from . import dancer, foothold
 from .baselines.transformer import TransformerConfig
 from .dancer import Dancer
 from .ddpm import make_schedule
+from .eight_bits import pack, unpack
 from .foothold import FootholdConfig
 from .modiff import MoDiffConfig
 from .mofusion import MoFusionConfig
@@ -54,20 +56,32 @@ DANCER = Kind(
     lambda config, *scalers: dancer.network(config),
 )
 KINDS = (WALKER, DANCER)
+STORED = {8: pack, 16: lambda weights: {k: v.half() for k, v in weights.items()}, 32: dict}
 
 
-def save(figure: Walker | Dancer, path: str | Path, half: bool = True) -> Path:
-    """Write a walker or dancer: weights (float16 unless half=False), scalers, schedule, card.
+def save(figure: Walker | Dancer, path: str | Path, bits: int = 16) -> Path:
+    """Write a walker or dancer: weights (in float16; `bits` = 32 as they are, 8 see `eight_bits`), scalers, schedule.
 
-    A card.json is laid beside it. Written to a temporary name and renamed.  Notebook: 07, 12
+    A card.json is laid beside it. Written to a temporary name and renamed.
+    Raises ValueError for other numbers of bits.  Notebook: 07, 12
     """
+    if bits not in STORED:
+        raise ValueError(f"weights are written in 8, 16 or 32 bits, not {bits}")
     kind = DANCER if isinstance(figure, Dancer) else WALKER
     scalers = {name: getattr(figure, f"{name}_scaler") for name in kind.scalers}
-    tensors = {f"model.{k}": v.half() if half else v for k, v in figure.model.state_dict().items()}
+    weights = STORED[bits](figure.model.state_dict())
+    tensors = {f"model.{k}": v for k, v in weights.items()}
     tensors |= {f"{name}.{part}": getattr(s, part) for name, s in scalers.items() for part in ("mean", "std")}
     tensors["schedule.beta"] = figure.schedule.beta[1:]
     settings = {"format": kind.format, "network": type(figure.model).__name__, "schedule": figure.schedule.name}
     return write_weights(path, tensors, settings, figure.config.as_dict(), figure.card)
+
+
+def bits_of(path: str | Path) -> int:
+    """In how many bits a file's matrices are written: 8, 16 or 32."""
+    with safe_open(path, "pt") as file:
+        kinds = {file.get_slice(name).get_dtype() for name in file.keys() if name.startswith("model.")}
+    return 8 if "I8" in kinds else 16 if "F16" in kinds else 32
 
 
 def load(path: str | Path) -> Walker | Dancer:
@@ -99,7 +113,7 @@ def _assembled(kind: Kind, tensors: dict[str, Tensor], metadata: dict[str, str])
     check_sizes(tensors, vectors | {"schedule.beta": config.S})
     scalers = [Scaler(tensors[f"{name}.mean"], tensors[f"{name}.std"]) for name in kind.scalers]
     model = kind.network(config, *scalers)
-    model.load_state_dict({k[6:]: v.float() for k, v in tensors.items() if k.startswith("model.")})
+    model.load_state_dict(unpack({k[6:]: v for k, v in tensors.items() if k.startswith("model.")}))
     schedule = make_schedule(tensors["schedule.beta"], metadata["schedule"])
     card = json.loads(metadata.get("card", "{}")) or {}
     return kind.figure(model.eval().requires_grad_(False), schedule, *scalers, card)

@@ -43,7 +43,8 @@ def rewrite(path: Path, change, metadata=None) -> None:
 
 def test_round_trip_in_full_precision_is_exact(tmp_path: Path):
     walker = tiny_walker()
-    back = load_walker(save(walker, tmp_path / "tiny.safetensors", half=False))
+    back = load_walker(path := save(walker, tmp_path / "tiny.safetensors", bits=32))
+    assert checkpoints.bits_of(path) == 32
     assert back.config == walker.config and back.card == walker.card
     for (name, old), new in zip(walker.model.state_dict().items(), back.model.state_dict().values(), strict=True):
         assert torch.equal(old, new), name
@@ -53,6 +54,37 @@ def test_round_trip_in_full_precision_is_exact(tmp_path: Path):
         assert torch.equal(getattr(back, name).mean, getattr(walker, name).mean)
         assert torch.equal(getattr(back, name).std, getattr(walker, name).std)
     assert not back.model.training and not any(p.requires_grad for p in back.model.parameters())
+
+
+def test_in_eight_bits_each_weight_is_off_by_half_a_step_of_its_row_at_most(tmp_path: Path):
+    walker = tiny_walker()
+    small, usual = (save(walker, tmp_path / f"{bits}.safetensors", bits=bits) for bits in (8, 16))
+    back, raw = load_walker(small), load_file(small)
+    assert small.stat().st_size < 0.9 * usual.stat().st_size  # vectors and the header do not shrink
+    assert [checkpoints.bits_of(path) for path in (small, usual)] == [8, 16]
+    matrices = 0
+    for (name, old), new in zip(walker.model.state_dict().items(), back.model.state_dict().values(), strict=True):
+        if old.dim() < 2:
+            assert torch.equal(new, old.half().float()), name
+            continue
+        matrices += 1
+        assert raw[f"model.{name}"].dtype == torch.int8
+        step = old.flatten(1).abs().amax(1) / 127
+        assert ((new - old).flatten(1).abs().amax(1) <= 0.5001 * step).all(), name
+        assert torch.allclose(new.flatten(1).abs().amax(1), old.flatten(1).abs().amax(1), rtol=1e-5), name
+    assert matrices > 10
+
+
+def test_no_other_number_of_bits_is_taken(tmp_path: Path):
+    with pytest.raises(ValueError, match="8, 16 or 32 bits, not 4"):
+        save(tiny_walker(), tmp_path / "tiny.safetensors", bits=4)
+
+
+def test_a_file_in_eight_bits_without_a_scale_is_refused(tmp_path: Path):
+    path = save(tiny_walker(), tmp_path / "tiny.safetensors", bits=8)
+    rewrite(path, lambda tensors: tensors.pop(next(name for name in tensors if name.endswith(".scale"))))
+    with pytest.raises(CheckpointError, match="disagree"):
+        load_walker(path)
 
 
 def test_shipped_files_are_float16_and_load_as_float32(saved: Path):

@@ -157,7 +157,7 @@ def test_times_are_of_every_network_and_the_base_is_one(tiny):
 def test_what_trains_is_run_when_asked_for_only():
     weights, lines = {"dancer"}, {"walker-x0": Walks("walker-x0", "walker-x0")}
     plain = command.parts_of([], False, lines, weights)  # there are no weights of that walker
-    assert plain == ["dancer", "unheard", "footsteps", "attention", "dance-time"]
+    assert plain == ["dancer", "unheard", "footsteps", "attention", "dance-time", "known-answer"]
     full = command.parts_of([], True, {}, weights)
     assert full[: len(plain)] == plain and {"dance-budget.v", "budget.T_p-1"} <= set(full)
     assert command.parts_of(["dance-budget"], False, {}, weights) == [f"dance-budget.{name}" for name in VARIANTS]

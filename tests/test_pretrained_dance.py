@@ -85,4 +85,4 @@ def test_with_and_without_kinematic_losses_all_else_is_alike():
     assert DANCER.kinematic and not DANCER_PLAIN.kinematic
     assert replace(DANCER_PLAIN, name="dancer", kinematic=DANCER.kinematic) == DANCER
     assert DANCER.kinematic.over_time == "alpha_bar"  # the paper's
-    assert set(DANCE_RECIPES) == {"dancer", "dancer-plain", "regression", "dancer-full"}
+    assert set(DANCE_RECIPES) == {"dancer", "dancer-plain", "regression", "dancer-full", "unconditional"}

@@ -8,6 +8,7 @@ import pytest
 import torch
 
 from motiondiff_edu.checkpoints import load_walker, save
+from motiondiff_edu.diffusion_dropout import P_D
 from motiondiff_edu.foothold import FootholdConfig
 from motiondiff_edu.modiff import MODIFF_SMALL
 from motiondiff_edu.pretrained import train as train_module
@@ -80,6 +81,23 @@ def test_a_killed_training_goes_on_where_it_was_saved(tmp_path: Path, monkeypatc
     assert again.card["final_loss"] == whole.card["final_loss"] > 0
 
 
+def test_a_training_with_diffusion_dropout_is_another_and_goes_on_bit_for_bit(tmp_path: Path, monkeypatch):
+    dropped = replace(SHORT, dropout=(0.0, 0.5, 1.0), calm=0.5, steps=8, save_every=3)
+    whole = train(dropped, tmp_path / "whole", log=quiet)
+    plain = train(replace(dropped, dropout=()), tmp_path / "plain", log=quiet)
+    assert whole.card["recipe"]["dropout"] and not plain.card["recipe"]["dropout"]
+    pairs = zip(whole.model.parameters(), plain.model.parameters(), strict=True)
+    assert not all(torch.equal(a, b) for a, b in pairs)
+    with monkeypatch.context() as patch:
+        kill_at(7, patch)
+        with pytest.raises(Killed):
+            train(dropped, tmp_path / "killed", log=quiet)
+    again = train(dropped, tmp_path / "killed", log=quiet)
+    assert [sitting["from_step"] for sitting in again.card["sittings"]] == [0, 6]
+    pairs = zip(whole.model.parameters(), again.model.parameters(), strict=True)
+    assert all(torch.equal(a, b) for a, b in pairs)
+
+
 def test_a_run_is_continued_with_its_own_settings_and_data_or_not_at_all(tmp_path: Path):
     walker = train(SHORT, tmp_path / "run", log=quiet)
     again = train(SHORT, tmp_path / "run", log=quiet)  # nothing is left to do
@@ -106,7 +124,9 @@ def test_a_budget_of_seconds_is_kept():
 
 
 def test_what_is_shipped_has_a_recipe_and_the_papers_one_is_the_papers():
-    assert [recipe.name for recipe in SHIPPED] == ["walker-x0", "walker-eps"]
+    pairs = [f"mend-{kind}-{k}" for k in range(3) for kind in ("plain", "dropout")]
+    assert [recipe.name for recipe in SHIPPED] == ["walker-x0", "walker-eps", *pairs]
+    assert all(RECIPES[name].dropout == (P_D if "dropout" in name else ()) for name in pairs)
     paper = RECIPES["walker-paper"]
     assert (paper.optimizer, paper.lr, paper.batch, paper.config.width) == ("adam", 5e-5, 64, 256)
     assert paper.jitter == paper.metres == paper.near == paper.high_noise == 0

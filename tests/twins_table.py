@@ -17,14 +17,28 @@ import numpy as np
 import torch
 from scipy.spatial.transform import Rotation, Slerp
 
+from data_synth.mixtures import crossed_bars
 from motiondiff_edu import cross_modal_attention as cross
-from motiondiff_edu import ddpm, exact, kinematic_loss, prediction, rollout, training
+from motiondiff_edu import (
+    ddpm,
+    diffusion_dropout,
+    exact,
+    inbetweening,
+    kinematic_loss,
+    prediction,
+    reconstruction,
+    rollout,
+    training,
+)
+from motiondiff_edu.baselines import linear_dropout, ridge
 from motiondiff_edu.conditions import music
 from motiondiff_edu.fast.samplers import ddim_steps
 from motiondiff_edu.metrics import adherence, beats, bone_lengths, footsteps, kinetic_features
 from motiondiff_edu.modiff import MoDiff, MoDiffConfig
 from motiondiff_edu.mofusion import ResBlock
 from motiondiff_edu.motion import kinematics, root_frame, skeleton
+from motiondiff_edu.motion.scaler import Scaler
+from motiondiff_edu.windows import Windows
 
 
 class Twin(NamedTuple):
@@ -289,6 +303,52 @@ def _librosas_onsets(mel) -> np.ndarray:
     return librosa.onset.onset_strength(S=mel.T, center=False)
 
 
+class _GoesOn:
+    """A walker without noise: its last pose plus the steps that the control gives. Called, it goes on by itself."""
+
+    class config:
+        T_h, T_p, D, C = 4, 4, 6, 3
+
+    pose_scaler = Scaler(torch.linspace(-1, 1, 6), torch.linspace(0.5, 2, 6))
+    control_scaler = Scaler.nothing(3)
+
+    def window_sampler(self, steps=None):
+        def sample(past, control, generator):
+            return past[:, -1:] + control[:, 3:7].cumsum(1).repeat(1, 1, 2)
+
+        return sample
+
+    def __call__(self, past, control):
+        return rollout.generate(self, past, control, keep=4, hold=False)
+
+
+def _broken_walk() -> tuple:
+    known = _normal(2, 4, 6, seed=80) > -0.5
+    past = _normal(2, 4, 6, seed=81).float().masked_fill(~known, float("nan"))
+    return _GoesOn(), past, known, _GoesOn.pose_scaler.mean, _normal(2, 8, 3, seed=82).float(), 3
+
+
+def _repaired(walker, past, known, mean, control, rounds) -> torch.Tensor:
+    generator = torch.Generator()
+    return reconstruction.repair(walker, past, known, control, rounds=rounds, tolerance=-1, generator=generator)
+
+
+def _conditional_mean(mean, covariance, x, known, rho) -> torch.Tensor:
+    return ridge.ConditionalMean(mean, covariance, rho).fill(x[None], known[None])[0]
+
+
+def _gaussian_of_seven() -> tuple:
+    root = _normal(7, 7, seed=83)
+    known = torch.tensor([1, 0, 1, 1, 0, 0, 1], dtype=torch.bool)
+    return _normal(7, seed=84), root @ root.T, _normal(7, seed=85), known, 0.3
+
+
+TWINS["10"] = {
+    "repair_loop": Twin(_repaired, _broken_walk, atol=1e-5),
+    "expected": Twin(_conditional_mean, _gaussian_of_seven),
+}
+
+
 TWINS["11"] = {
     "dft_loop": Twin(np.fft.rfft, lambda: (np.random.default_rng(62).normal(size=22),)),
     "stft_loop": Twin(_whole_stft, lambda: (_normal(500, seed=63), 64, 20)),
@@ -364,3 +424,55 @@ TWINS["14"] = {
     "chance_by_sum": Twin(beats.chance_level, lambda: (_stops_and_beats()[1], 9.0, 0.1), atol=1e-4),
     "published_loop": Twin(lambda p: kinetic_features.published_kinetic_features(p, 60), lambda: (_short_dance(),)),
 }
+
+
+def _dropped(past, s, alpha_bar, rate, u, noise) -> torch.Tensor:
+    return diffusion_dropout.diffusion_dropout(past, s, LINEAR, rate, torch.Generator().manual_seed(81))
+
+
+def _past_and_its_draws() -> tuple:
+    """Seven pasts, and the throws and noises that the library draws from the same seed."""
+    draw, past = torch.Generator().manual_seed(81), _normal(7, 5, 3, seed=80)
+    u, noise = torch.rand(7, generator=draw), torch.randn(past.shape, generator=draw, dtype=past.dtype)
+    return past, torch.arange(5, 75, 10), LINEAR.alpha_bar, 0.4, u, noise
+
+
+UNIT = Scaler(torch.zeros(1), torch.ones(1))
+
+
+def _ridge_by_dropout(xx, xy, past, alpha_bar) -> torch.Tensor:
+    """Least squares on pasts of `past` frames, one number each, that are always noised to one step."""
+    clip = Windows(torch.zeros(9, 1), torch.zeros(9, 3), torch.arange(2), past, 1, *[UNIT] * 2)
+    clean = linear_dropout.Products(xx, xy, torch.eye(1).double(), clip)
+    dropped = linear_dropout.expected(clean, linear_dropout.noised(1.0, torch.tensor([alpha_bar])))
+    return torch.linalg.solve(dropped.xx, dropped.xy)
+
+
+def _products_of_six() -> tuple:
+    inputs, weights = _normal(40, 6, seed=82), _normal(6, 1, seed=83)
+    return inputs.T @ inputs / 40, inputs.T @ (inputs @ weights) / 40, 4, 0.36
+
+
+TWINS["09"] = {
+    "dropout_loop": Twin(_dropped, _past_and_its_draws),
+    "ridge_of_one_step": Twin(_ridge_by_dropout, _products_of_six, atol=1e-5),
+}
+
+
+def _a_plane_half_known() -> tuple:
+    """Seven points of a plane; of three of them the first coordinate is given, of two the second."""
+    schedule, known = ddpm.cosine_schedule(30), torch.zeros(7, 2, dtype=torch.bool)
+    known[:3, 0], known[3:5, 1] = True, True
+    denoise = exact.exact_denoiser(crossed_bars(), schedule)
+    start, given = _normal(7, 2, seed=150), _normal(7, 2, seed=151)
+    return denoise, start, schedule, given, known, [30, 23, 15, 8], torch.Generator().manual_seed(152)
+
+
+def _inpainted(denoise, start, schedule, given, known, visited, generator) -> torch.Tensor:
+    """The library's, by the steps that four of thirty visits."""
+    loop = inbetweening.inpaint_steps(denoise, start, schedule, given, known, steps=len(visited), generator=generator)
+    *_, last = loop
+    return last.x_s
+
+
+TWINS["15"] = {"masked_loop": Twin(_inpainted, _a_plane_half_known)}

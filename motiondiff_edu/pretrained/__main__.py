@@ -9,11 +9,12 @@ import torch
 from ..checkpoints import FOLDER, save
 from ..files import replacing
 from .dance_recipes import DANCE_RECIPES, SHIPPED_DANCERS
-from .recipes import RECIPES, SHIPPED
+from .recipes import PAIRS, RECIPES, SHIPPED
 from .train import train
 from .train_dance import train_dancer
 
 ALL = RECIPES | DANCE_RECIPES
+EIGHT_BITS = {"regression", "unconditional", *(recipe.name for recipe in PAIRS)}  # so that all fit into 25 MB
 
 
 def main() -> None:
@@ -43,7 +44,7 @@ def build(name: str, run: Path, out: Path) -> Path:
         print(line, flush=True)
 
     figure = train(RECIPES[name], run, log=log) if name in RECIPES else train_dancer(DANCE_RECIPES[name], run, log=log)
-    return save(figure, out)
+    return save(figure, out, bits=8 if name in EIGHT_BITS else 16)
 
 
 def point_alias(folder: Path, name: str) -> None:

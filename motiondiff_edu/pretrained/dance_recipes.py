@@ -34,6 +34,7 @@ class DanceRecipe:
     songs: int = 1500
     seconds: float = 20.0
     dances: int = 2  # to each song
+    motions: int = 0  # walks and dances without music, in place of songs
     data_seed: int = 1
     seed: int = 0
     save_every: int = 250  # steps
@@ -51,5 +52,7 @@ REGRESSED = DanceRecipe("regression", REGRESSION, steps=3000)
 FULL = replace(MOFUSION_FULL, target="x0", skip=False)  # never trained: it wants a GPU
 DANCER_FULL = replace(DANCER, name="dancer-full", config=FULL, steps=200_000, batch=64)
 
-SHIPPED_DANCERS = (DANCER, DANCER_PLAIN, REGRESSED)
+UNCONDITIONAL = DanceRecipe("unconditional", replace(X0, C=0), steps=6000, kinematic=KINEMATIC, songs=0, motions=3000)
+
+SHIPPED_DANCERS = (DANCER, DANCER_PLAIN, REGRESSED, UNCONDITIONAL)
 DANCE_RECIPES = {recipe.name: recipe for recipe in (*SHIPPED_DANCERS, DANCER_FULL)}

@@ -4,8 +4,9 @@ Source: MoDiff IV-A gives Adam, batch 64, 5e-5 and 1000 epochs on a GPU: WALKER_
 and an hour; those that are shipped had four fifths of their steps in bfloat16, as their cards say.  Notebook: 07
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
+from ..diffusion_dropout import P_D
 from ..foothold import FootholdConfig
 from ..modiff import MODIFF_PAPER, MODIFF_SMALL, MoDiffConfig
 
@@ -28,6 +29,8 @@ class Recipe:
     high_noise: float = 0.0  # largest extra weight of steps that are mostly noise
     bones: float = 2.0  # weight of the errors of bones, beside those of joints
     doubt: float = 0.05  # share of the shaking that reaches the feet's places, see foothold.py
+    dropout: tuple[float, ...] = ()  # rates of diffusion dropout, one after the other; none: no dropout
+    calm: float = 0.5  # share of the training before the first of them
     decay: float = 0.999
     clips: int = 720
     seconds: float = 20.0
@@ -54,5 +57,16 @@ WALKER_PAPER = Recipe(
     bones=0.0, clips=2400,
 )  # fmt: skip
 
-SHIPPED = (WALKER_X0, WALKER_EPS)
+# Pairs of small walkers, alike but for diffusion dropout, each with three training seeds: notebooks 09 and 10. Their
+# pasts are not shaken: that is our remedy for what the paper's dropout is to mend.
+MEND_CONFIG = MoDiffConfig(
+    width=64, hidden=128, motion_layers=1, control_layers=1, cross_layers=2, decoder_layers=2, target="x0", skip=False
+)
+MEND_PLAIN = Recipe(
+    "mend-plain", MEND_CONFIG, steps=8000, schedule="leap", batch=32, lr=3e-3, jitter=0.0, clips=360, save_every=500
+)
+MEND_DROPOUT = replace(MEND_PLAIN, name="mend-dropout", dropout=P_D)
+PAIRS = tuple(replace(one, name=f"{one.name}-{k}", seed=k) for k in range(3) for one in (MEND_PLAIN, MEND_DROPOUT))
+
+SHIPPED = (WALKER_X0, WALKER_EPS, *PAIRS)
 RECIPES = {recipe.name: recipe for recipe in (*SHIPPED, WALKER_PAPER)}

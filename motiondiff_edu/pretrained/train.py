@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 import torch
 
+from ..diffusion_dropout import Dropout, dropout_rate
 from ..foothold import network
 from ..motion.augment import mirror, reverse_time
 from ..motion.clip import Clip
@@ -33,12 +34,14 @@ def train(recipe: Recipe, run_file: Path, clips: list[Clip] | None = None, log=p
     config = recipe.config
     windows = Windows.of(clips or training_clips(recipe), config.T_h, config.T_p)
     schedule, scalers = SCHEDULES[recipe.schedule](config.S), (windows.pose_scaler, windows.control_scaler)
+    dropout = Dropout(schedule, dropout_rate(recipe.dropout, recipe.calm), recipe.steps) if recipe.dropout else None
     torch.manual_seed(recipe.seed)
     trained, card = train_recipe(
         recipe,
         run_file,
         network(config, *scalers),
-        window_loss(windows, schedule, **recipe.loss_settings),
+        window_loss(windows, schedule, **recipe.loss_settings, dropout=dropout),
+        before=dropout.now if dropout else None,
         about={"network": type(config).__name__, "data": digest(windows)},
         facts={"frames": len(windows.poses), "control_range": control_range(windows)},
         data="data_synth.walking, synthetic",

@@ -22,6 +22,8 @@ def training_windows(recipe: DanceRecipe) -> DanceWindows:
 
     Recipes in a row that want the same data share it: it takes minutes to make.
     """
+    if recipe.motions:
+        return _unheard(recipe.motions, recipe.data_seed, recipe.seconds, recipe.frames)
     return _made(recipe.songs, recipe.data_seed, recipe.seconds, recipe.dances, recipe.frames)
 
 
@@ -37,6 +39,14 @@ def _made(songs: int, seed: int, seconds: float, each: int, frames: int) -> Danc
         contacts.append(danced.contacts)
         mels.append(mel)
     return DanceWindows.of(positions, contacts, mels, frames)
+
+
+@lru_cache(maxsize=1)
+def _unheard(count: int, seed: int, seconds: float, frames: int) -> DanceWindows:
+    from data_synth.mixed import motions
+
+    positions, contacts = zip(*motions(count, seed, seconds), strict=True)
+    return DanceWindows.of(positions, contacts, None, frames)
 
 
 def train_dancer(recipe: DanceRecipe, run_file: Path, windows: DanceWindows | None = None, log=print) -> Dancer:
@@ -55,7 +65,7 @@ def train_dancer(recipe: DanceRecipe, run_file: Path, windows: DanceWindows | No
         loss_of(recipe, windows, schedule),
         about={"network": type(model).__name__, "data": digest(windows)},
         facts={"windows": len(windows)},
-        data="data_synth.music and data_synth.dance, synthetic",
+        data=f"data_synth.{'mixed' if recipe.motions else 'music and data_synth.dance'}, synthetic",
         warmup=300,
         log=log,
     )

@@ -29,11 +29,13 @@ def train_recipe(
     data: str,
     warmup: int,
     log: Callable[[str], object],
+    before: Callable[[int], object] | None = None,
 ) -> tuple[nn.Module, dict]:
     """Train (or continue) a fresh network; `run_file` holds the run.  Returns the averaged network, and its card.
 
     A run goes on with the recipe and the `about` (which network, which data) that it was begun with; the card tells
-    `facts`, and where the `data` are from. The rate rises for `warmup` steps, but a quarter of all at most.
+    `facts`, and where the `data` are from. `before` is `train_steps`'s. The rate rises for
+    `warmup` steps, but a quarter of all at most.
     Raises ValueError when the run in `run_file` was begun with other settings.
     """
     device = "cuda" if torch.cuda.is_available() else "cpu"
@@ -47,7 +49,7 @@ def train_recipe(
     if state.step < recipe.steps:
         sittings = [*sittings, {"from_step": state.step, **where(device)}]
     rate = cosine_lr(recipe.lr, recipe.steps, warmup=min(warmup, recipe.steps // 4))
-    run_to_end(recipe, rate, state, loss_fn, saver(run_file, about, sittings), log)
+    run_to_end(recipe, rate, state, loss_fn, saver(run_file, about, sittings), log, before)
     card = {
         "name": recipe.name,
         "target": recipe.config.target,
@@ -62,9 +64,10 @@ def train_recipe(
     return state.average.cpu().eval(), card
 
 
-def run_to_end(recipe: Recipe | DanceRecipe, rate, state: TrainState, loss_fn: LossFn, save, log) -> None:
+def run_to_end(recipe: Recipe | DanceRecipe, rate, state: TrainState, loss_fn: LossFn, save, log, before=None) -> None:
     """Train to the last step, with a word every thousand steps, or twenty times."""
     settings = {"lr": rate, "decay": recipe.decay, "save": save, "save_every": recipe.save_every, "progress": False}
+    settings["before"] = before
     losses, every = [], min(1000, max(1, recipe.steps // 20))
     for report in train_steps(state, loss_fn, recipe.steps, **settings):
         losses.append(report.loss)
