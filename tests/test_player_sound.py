@@ -324,13 +324,13 @@ def test_the_same_scene_with_another_motion_is_told_to_the_page():
 
 def test_the_parts_of_the_module_fit_together():
     exported = {}
-    for name in module.PARTS:
+    for name in dict.fromkeys((*module.PARTS, *module.EDITOR, *module.BENCH)):
         text = (module.FOLDER / f"{name}.js").read_text("utf-8")
         for names, source in re.findall(r'^import \{ (.*) \} from "\./(\w+)\.js";$', text, re.MULTILINE):
             assert set(names.split(", ")) <= exported[source], f"{name}.js takes from {source}.js what is not there"
         names = re.findall(r"^export (?:function|const) (\w+)", text, re.MULTILINE)
         names += re.findall(r"^export const .*\}, (\w+) =", text, re.MULTILINE)
         exported[name] = set(names)
-    assert {path.stem for path in module.FOLDER.glob("*.js")} == set(module.PARTS)
+    assert {path.stem for path in module.FOLDER.glob("*.js")} == {*module.PARTS, *module.EDITOR, *module.BENCH}
     assert "\nimport " not in MODULE and Player._esm is not None and str(Player(walk(frames=3)[0])._esm) == MODULE
     assert re.findall(r"^export (?:default|function (\w+))", MODULE, re.MULTILINE) == ["mount", "staticModel", ""]

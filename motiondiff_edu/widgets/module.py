@@ -1,7 +1,7 @@
-"""The player's ES module: the parts in js/, written one after the other, are one module that imports nothing.
+"""The ES modules of player, editor, bench: parts in js/, one after the other, are one module that imports nothing.
 
 The parts name what they take from each other as any ES modules do; joined, these lines have done their duty.
-Notebook: 00
+Notebook: 00, 10, 15
 """
 
 import re
@@ -9,6 +9,8 @@ from pathlib import Path
 
 FOLDER = Path(__file__).parent / "js"
 PARTS = ("dom", "figures", "paint", "clock", "lane", "player")  # each takes from those before it only
+EDITOR = ("dom", "figures", "paint", "clock", "timeline", "stage", "editor")
+BENCH = ("dom", "figures", "paint", "clock", "bench_paint", "bench")
 
 _IMPORT = re.compile(r'^import \{.*\} from "\./\w+\.js";\n', re.MULTILINE)
 _EXPORT = re.compile(r"^export (?=function|const)", re.MULTILINE)

@@ -24,7 +24,7 @@ from . import lane, module, packing, poster, sound
 MODULE = module.joined()
 _TRAITS = ("joints", "roots", "contacts", "sound", "strips")
 
-_PAGE = """<!doctype html><html lang="en"><head><meta charset="utf-8"><title>{title}</title>
+PAGE = """<!doctype html><html lang="en"><head><meta charset="utf-8"><title>{title}</title>
 <style>html,body{{margin:0;height:100%}}@media print{{html,body{{height:auto}}}}</style></head><body>
 <script type="module">
 {module}
@@ -32,7 +32,7 @@ document.body.style.background = "#fff";
 mount(staticModel({record}), document.body, {{ fill: true }});
 </script></body></html>"""
 
-_STACK = """<div style="position:relative;width:100%;max-width:{width}px;min-height:{height}px">
+STACK = """<div style="position:relative;width:100%;max-width:{width}px;min-height:{height}px">
 <img alt="{alt}" src="data:image/png;base64,{png}" style="width:100%">
 <iframe title="{title}" sandbox="allow-scripts" loading="lazy" srcdoc="{page}"
  style="position:absolute;inset:0;width:100%;height:100%;border:0"></iframe></div>"""
@@ -115,7 +115,7 @@ class Player(anywidget.AnyWidget):
         record = {name: base64.b64encode(getattr(self, name)).decode() for name in _TRAITS}
         record |= {"scene": self.scene, "music": self.music, "frame": self.frame, "playing": False}
         text = json.dumps(record, allow_nan=False).replace("<", "\\u003c")
-        return _PAGE.format(title=html.escape(self.description), module=MODULE, record=text)
+        return PAGE.format(title=html.escape(self.description), module=MODULE, record=text)
 
     def poster(self, n: int = 6):
         """A strip of n poses as a pillow image, the music lane below: what is shown where nothing runs."""
@@ -127,7 +127,7 @@ class Player(anywidget.AnyWidget):
         bundle, metadata = live if isinstance(live, tuple) else (live or {}, {})
         png = base64.b64encode(poster.as_png(self.poster())).decode()
         height = self.scene["height"] + 90 + (self._music.height if self._music else 0)
-        stack = _STACK.format(
+        stack = STACK.format(
             width=1200, height=height, alt=html.escape(self.description, quote=True), png=png,
             title="motion player", page=html.escape(self.page(), quote=True),
         )  # fmt: skip

@@ -30,11 +30,12 @@ export function camera(view, target, distance, width, height) {
   const eye = target.map((v, k) => v - distance * ahead[k]);
   const focal = Math.min(2.05 * height, 2.9 * width);
   const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-  return (p) => {
+  const look = (p) => {
     const away = [p[0] - eye[0], p[1] - eye[1], p[2] - eye[2]], depth = dot(away, ahead);
     const scale = focal / Math.max(depth, 0.1);
     return { x: width / 2 + scale * dot(away, right), y: height / 2 - scale * dot(away, up), scale, seen: depth > 0.3 };
   };
+  return Object.assign(look, { right, up, ahead });
 }
 
 export function smoothRoot(figure, t) { // the root on the floor, averaged over a second: the camera does not bob
@@ -109,6 +110,7 @@ export function paintGround(ctx, look, figure, t, theme, off) { // path, trail, 
   });
 }
 
+// `wash`: how pale, 0 to 1, or a function that says it of each part
 export function paintBody(ctx, look, parts, pose, theme, wash, target, off) {
   const moved = pose.map(([x, y, z]) => [x + off[0], y, z + off[1]]);
   const centre = ([a, b, w]) => [0, 1, 2].map((k) => moved[a][k] + w * (moved[b][k] - moved[a][k]));
@@ -132,7 +134,8 @@ export function paintBody(ctx, look, parts, pose, theme, wash, target, off) {
   }).sort((p, q) => p.scale - q.scale);
   for (const { part, scale, outline, shine } of drawn) {
     const behind = clamp(4 * (1 - scale / middle), 0, 0.45);
-    const colour = mix(theme.body[part.side], theme.bg, wash + behind * (1 - wash));
+    const pale = typeof wash === "function" ? wash(part) : wash;
+    const colour = mix(theme.body[part.side], theme.bg, pale + behind * (1 - pale));
     fillPolygon(ctx, outline, rgba(colour), rgba(theme.bg, 0.9));
     fillPolygon(ctx, shine, rgba(mix(colour, [255, 255, 255], theme.dark ? 0.16 : 0.22)));
   }

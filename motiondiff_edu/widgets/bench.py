@@ -1,0 +1,150 @@
+"""The repair bench: knock joints and frames out of a walk, let the walker mend it, see how far off it is.
+
+Click a joint, or a frame below; the buttons bring ready-made faults. Keys: left and right choose a frame, up and down
+a joint, Space knocks out or restores; P plays, T shows or hides the truth, R resets; drag to turn.  Notebook: 10
+"""
+
+import base64
+import html
+import json
+from collections.abc import Mapping
+
+import anywidget
+import numpy as np
+import traitlets
+from jaxtyping import Bool
+
+from ..motion.skeleton import JOINTS, PARENTS, J
+from ..repair_bench import RepairBench
+from ..viz import body
+from . import module, packing, poster
+from .player import PAGE, STACK
+
+MODULE = module.joined(module.BENCH)
+_BYTES = ("joints", "roots", "mended_joints", "mended_roots")
+_STATE = ("scene", "first", "missing", "repaired", "said")
+
+
+class Bench(anywidget.AnyWidget):
+    """A walk (a Clip in the root frame) whose window of T_h frames can be broken, and is mended by `walker`.
+
+    `faults` are buttons: name -> mask (T_h, 21), True where known. `first` (the window's first frame) and `missing`
+    (numbers frame x 21 + joint) can be read and set; `repair()` is what the button does. The rest is as in RepairBench.
+    Raises ValueError for a mask of another shape, and where RepairBench does.  Notebook: 10
+    """
+
+    _esm = MODULE
+    scene = traitlets.Dict().tag(sync=True)
+    joints = traitlets.Bytes().tag(sync=True)
+    roots = traitlets.Bytes().tag(sync=True)
+    first = traitlets.Int(0).tag(sync=True)
+    missing = traitlets.List(traitlets.Int()).tag(sync=True)
+    asked = traitlets.Int(0).tag(sync=True)  # how often a repair was asked for, and how often answered
+    answered = traitlets.Int(0).tag(sync=True)
+    repaired = traitlets.Dict().tag(sync=True)  # of which window and holes the repairs below are
+    mended_joints = traitlets.Bytes().tag(sync=True)
+    mended_roots = traitlets.Bytes().tag(sync=True)
+    said = traitlets.Unicode("").tag(sync=True)
+
+    def __init__(self, walker, clip, first=None, faults: Mapping[str, Bool[np.ndarray, "T_h J"]] | None = None,
+                 samples=10, rounds=5, steps=10, seed=0, height=400):  # fmt: skip
+        super().__init__()
+        self.bench = RepairBench(walker, clip, samples, rounds, steps, seed)
+        self._truth = clip.world()
+        packed = packing.pack([self._truth])
+        self.joints, self.roots = packed.joints, packed.roots
+        self.outcome = None
+        buttons = [{"name": name, "missing": self._numbers(name, known)} for name, known in (faults or {}).items()]
+        self.scene = {
+            "fps": float(clip.fps), "frames": len(clip), "T_h": self.bench.T_h, "last_first": self.bench.last_first,
+            "names": list(JOINTS), "parents": PARENTS.tolist(), "parts": body.parts_record(body.BODY),
+            "faults": buttons, "height": int(height), "kernel": True,
+        }  # fmt: skip
+        self.first = self.bench.last_first // 2 if first is None else int(first)
+
+    def _numbers(self, name: str, known: Bool[np.ndarray, "_ _"]) -> list[int]:
+        if known.shape != (self.bench.T_h, J):
+            raise ValueError(f"the fault {name!r} is {known.shape}; a mask of the window is ({self.bench.T_h}, {J})")
+        return np.flatnonzero(~known).tolist()
+
+    def repair(self) -> None:
+        """Mend the window as it is now, and show it; each round is told as it is done.
+
+        Raises ValueError when nothing, or all, is missing.
+        """
+        asked = {"first": self.first, "missing": list(self.missing)}
+        for outcome in self.bench.mend(**asked):
+            self.said = outcome.words
+        packed = packing.pack(list(outcome.motions))
+        self.outcome = outcome
+        with self.hold_sync():
+            self.mended_joints, self.mended_roots = packed.joints, packed.roots
+            self.repaired = asked | {"figures": len(outcome.motions), "edition": self.repaired.get("edition", 0) + 1}
+
+    @traitlets.observe("asked")
+    def _answer(self, change):
+        try:
+            self.repair()
+        except Exception as error:  # nobody sees what a callback raises: it is told where it was asked
+            known = isinstance(error, ValueError)
+            self.said = f"Not repaired: {error}." if known else f"Not repaired, {type(error).__name__}: {error}."
+        finally:
+            self.answered = change["new"]
+
+    @traitlets.validate("first")
+    def _within_the_walk(self, proposal):
+        if not 0 <= proposal["value"] <= self.bench.last_first:
+            raise traitlets.TraitError(
+                f"the window may begin at frame 0 to {self.bench.last_first}, not {proposal['value']}"
+            )
+        return proposal["value"]
+
+    @traitlets.validate("missing")
+    def _within_the_window(self, proposal):
+        try:
+            self.bench.known(proposal["value"])
+        except IndexError as error:
+            raise traitlets.TraitError(str(error)) from None
+        return proposal["value"]
+
+    @property
+    def shows_repairs(self) -> bool:
+        """Whether what is shown is mended: nothing was knocked out, restored or moved since."""
+        return {"first": self.first, "missing": self.missing}.items() <= self.repaired.items()
+
+    @property
+    def description(self) -> str:
+        """What is to be seen, in a sentence or two: the alternative text."""
+        scene, last = self.scene, self.first + self.bench.T_h - 1
+        words = (
+            f"A walk of {scene['frames'] / scene['fps']:.1f} s. In the window, frames {self.first} to {last}, "
+            f"{len(self.missing)} of {self.bench.T_h * J} places of joints are missing."
+        )
+        return f"{words} {self.said}" if self.shows_repairs else words
+
+    def page(self) -> str:
+        """A whole HTML page that plays the walk, mended where it was mended; needs no kernel and no network."""
+        record = {name: base64.b64encode(getattr(self, name)).decode() for name in _BYTES}
+        record |= {name: getattr(self, name) for name in _STATE} | {"asked": 0, "answered": 0}
+        record["scene"] = self.scene | {"kernel": False}
+        text = json.dumps(record, allow_nan=False).replace("<", "\\u003c")
+        return PAGE.format(title=html.escape(self.description), module=MODULE, record=text)
+
+    def poster(self):
+        """The walk in six poses as a pillow image, below it the mended one: what is shown where nothing runs."""
+        figures = [poster.Figure(self._truth, "as recorded")]
+        if self.shows_repairs:
+            mended = self._truth.copy()
+            mended[self.first : self.first + self.bench.T_h] = self.outcome.motions[0]
+            figures.append(poster.Figure(mended, f"frames {self.first} to {self.first + self.bench.T_h - 1} mended"))
+        return poster.filmstrip(figures, self.scene["fps"])
+
+    def _repr_mimebundle_(self, **kwargs):
+        live = super()._repr_mimebundle_(**kwargs)
+        bundle, metadata = live if isinstance(live, tuple) else (live or {}, {})
+        png = base64.b64encode(poster.as_png(self.poster())).decode()
+        stack = STACK.format(
+            width=1200, height=self.scene["height"] + 330, alt=html.escape(self.description, quote=True), png=png,
+            title="repair bench", page=html.escape(self.page(), quote=True),
+        )  # fmt: skip
+        return {**bundle, "text/html": stack, "image/png": png, "text/plain": self.description}, metadata

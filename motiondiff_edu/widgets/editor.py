@@ -1,0 +1,250 @@
+"""The editor: pin frames of a motion, drag joints, keep a part of the body, and have the rest made anew.
+
+In the page: a figure and a timeline. Enter pins a frame, J chooses a joint, arrows move it (1 cm; 5 with Shift), Page
+Up and Page Down in depth; G generates, [ and ] choose among the in-betweens; Z undoes, R resets. Python holds the edit
+and does the inverse kinematics; the page draws, and says where a joint was dragged to.  Notebook: 15
+"""
+
+import time
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import anywidget
+import numpy as np
+import torch
+import traitlets
+from jaxtyping import Bool, Float
+
+from ..editing import Edit, Made, Make, drag_in_words, make_between, takes
+from ..motion.bvh_fit import FitReport
+from ..motion.bvh_write import write_bvh
+from ..motion.skeleton import JOINTS, J, joint_index
+from . import editor_page, packing
+from .editor_page import MODULE, MOST, complaint, listed
+
+
+@dataclass(frozen=True, eq=False)
+class _Step:
+    """What Undo goes back to."""
+
+    edit: Edit
+    made: Made | None = None
+    chosen: int = 0
+    presses: int = 0  # of Generate, up to here
+
+
+class Editor(anywidget.AnyWidget):
+    """Edit a motion (T, 21, 3), world positions in metres; `make(positions, known, generator)` finds the rest.
+
+    `make` returns (samples, T, 21, 3), metres; where it takes `samples` and `resample` it is told the page's numbers:
+    `functools.partial(inbetween, dancer)` is one. It runs in the kernel; the generator is seeded by `seed` + how often
+    Generate was pressed before. `names` are the 21 joints' names on the page.
+    `known`, `positions`, `samples` and `chosen` can be read; `pin`, `unpin`, `drag`, `keep`, `generate`, `undo`,
+    `reset` and `save` do what the page's controls do, and raise what these tell.
+    Raises ValueError for a motion of another shape, or not finite.  Notebook: 15
+    """
+
+    _esm = MODULE
+    scene = traitlets.Dict().tag(sync=True)
+    joints = traitlets.Bytes().tag(sync=True)
+    roots = traitlets.Bytes().tag(sync=True)
+    poses = traitlets.Bytes().tag(sync=True)
+    made_joints = traitlets.Bytes().tag(sync=True)
+    made_roots = traitlets.Bytes().tag(sync=True)
+    state = traitlets.Dict({}).tag(sync=True)
+    frame = traitlets.Int(0).tag(sync=True)
+    chosen = traitlets.Int(0).tag(sync=True)
+    count = traitlets.Int(3, min=1, max=MOST).tag(sync=True)
+    resample = traitlets.Int(1, min=1, max=10).tag(sync=True)
+    busy = traitlets.Bool(False).tag(sync=True)
+    file = traitlets.Unicode("in-between.bvh").tag(sync=True)
+
+    def __init__(self, motion, make: Make, *, fps=20.0, names=None, seed=0):
+        super().__init__()
+        motion = np.array(motion, np.float64)
+        if motion.ndim != 3 or motion.shape[1:] != (J, 3):
+            raise ValueError(f"a motion to edit is (frames, {J}, 3), world positions in metres, not {motion.shape}")
+        names = list(JOINTS if names is None else names)
+        if len(names) != J:
+            raise ValueError(f"{len(names)} names for the {J} joints")
+        self._fps, self._make, self._seed = float(fps), make, int(seed)
+        self._step, self._past, self._grip = _Step(Edit(motion)), [], None
+        self.error: Exception | None = None  # what `make` raised last when Generate was pressed, with its traceback
+        packed = packing.pack([motion])
+        with self.hold_sync():
+            self.joints, self.roots = packed.joints, packed.roots
+            self.scene = editor_page.scene_of(self.edit, self._fps, names, takes(make, "resample"))
+            self._tell("Pin frames (Enter), drag their joints, then Generate.")
+        self.on_msg(self._receive)
+
+    @property
+    def edit(self) -> Edit:
+        """The edit as it stands."""
+        return self._step.edit
+
+    @property
+    def known(self) -> Bool[np.ndarray, "T 21"]:
+        """True where a joint's place is given."""
+        return self.edit.known
+
+    @property
+    def positions(self) -> Float[np.ndarray, "T 21 3"]:
+        """The motion with the pinned poses as they were edited."""
+        return self.edit.positions
+
+    @property
+    def samples(self) -> Float[np.ndarray, "N T 21 3"] | None:
+        """The in-betweens made last; None before."""
+        return None if self._step.made is None else self._step.made.samples
+
+    @property
+    def description(self) -> str:
+        """What is to be seen, in one sentence: the alternative text."""
+        return self.state["description"]
+
+    def pin(self, *frames: int) -> str:
+        """Pin frames with the pose seen there: the chosen in-between's, or the motion's.  IndexError outside."""
+        edit = self.edit
+        for frame in frames:
+            if frame not in edit.pins:
+                edit = edit.pin(frame, None if self.samples is None else self.samples[self.chosen, frame])
+        return self._do(edit, f"Pinned {listed(frames)}.")
+
+    def unpin(self, *frames: int) -> str:
+        """Let frames go."""
+        edit = self.edit
+        for frame in frames:
+            edit = edit.unpin(frame)
+        return self._do(edit, f"Let go of {listed(frames)}.")
+
+    def drag(self, frame: int, joint: str, target) -> str:
+        """Move a joint of a pinned frame to a place (metres, world); the bones keep their lengths."""
+        return self._do(*self._dragged(self.edit, frame, joint, target))
+
+    def keep(self, part: str | None) -> str:
+        """Keep a part of the body in every frame, or None.  KeyError with the names there are."""
+        return self._do(self.edit.keep(part), f"The {part} is kept in every frame." if part else "No part is kept.")
+
+    def generate(self) -> str:
+        """Make `count` in-betweens; raises what `make` raises, and ValueError where there is nothing to make."""
+        begun, seed = time.perf_counter(), self._seed + self._step.presses
+        self.busy = True
+        try:
+            draw = torch.Generator().manual_seed(seed)
+            made = make_between(self.edit, self._make, draw, self.count, self.resample, self._fps)
+            packing.pack(list(made.samples))  # what cannot be shown is not taken
+        finally:
+            self.busy = False
+        free = "" if self.known.any() else " Nothing was pinned or kept: the result is free."
+        words = f"In-betweens made: {self.count}, in {time.perf_counter() - begun:.1f} s (seed {seed}).{free}"
+        return self._go(_Step(self.edit, made, 0, self._step.presses + 1), words)
+
+    def undo(self) -> str:
+        """Take the last thing done back.  IndexError where nothing was done."""
+        if not self._past:
+            raise IndexError("there is nothing to undo")
+        return self._go(self._past.pop(), "Undone.", remember=False)
+
+    def reset(self) -> str:
+        """Back to the motion as it was given."""
+        return self._go(_Step(Edit(self.edit.motion)), "Everything as at first; Undo brings the edit back.")
+
+    def save(self, path: str | Path) -> FitReport:
+        """Write the chosen in-between as BVH, whole or not at all; tells how far bones had to be evened out.
+
+        Raises ValueError before there is one, and what `write_bvh` raises.
+        """
+        if self.samples is None:
+            raise ValueError("there is no in-between yet: press Generate first")
+        return write_bvh(Path(path), self.samples[self.chosen], self._fps)
+
+    def _receive(self, _, content: dict, buffers) -> None:
+        acts = {
+            "pin": lambda c: self.pin(c["frame"]),
+            "unpin": lambda c: self.unpin(c["frame"]),
+            "drag": lambda c: self._pull(c["frame"], JOINTS[c["joint"]], c["to"], c["grip"]),
+            "keep": lambda c: self.keep(c["part"] or None),
+            "generate": lambda c: self._pressed(c["after"]),
+            "undo": lambda c: self.undo(),
+            "reset": lambda c: self.reset(),
+            "save": lambda c: editor_page.save_as(self, c["name"].strip()),
+        }
+        try:
+            words = acts[content["do"]](content)
+        except KeyboardInterrupt:
+            words = "Stopped."
+        except Exception as error:  # told in the page: a handler's error reaches nobody
+            words = complaint(error)
+        self._tell(words, content["number"])
+
+    def _pull(self, frame: int, joint: str, target: list, grip: int) -> str:
+        """One of many small drags: those of one grip start from the same pose, and are undone together."""
+        going = self._grip is not None and self._grip[0] == grip
+        edit, words = self._dragged(self._grip[1] if going else self.edit, frame, joint, target)
+        if not going:
+            self._past.append(self._here())
+            self._grip = (grip, self.edit)
+        self._step = replace(self._here(), edit=edit)
+        return words
+
+    def _dragged(self, before: Edit, frame: int, joint: str, target) -> tuple[Edit, str]:
+        target = np.asarray(target, np.float64)
+        edit, name = before.drag(frame, joint, target), self.scene["names"][joint_index(joint)]
+        return edit, f"{name} in frame {frame} {drag_in_words(before, edit, frame, joint, target)}."
+
+    def _pressed(self, after: int) -> str | None:
+        """Generate, unless the press is from before the last in-betweens came, or while others are made."""
+        if self.busy or after != self._step.presses:
+            return None
+        try:
+            return self.generate()
+        except Exception as error:
+            self.error = error
+            raise
+
+    def _here(self) -> _Step:
+        return replace(self._step, chosen=self.chosen)
+
+    def _do(self, edit: Edit, words: str) -> str:
+        return self._go(replace(self._here(), edit=edit), words)
+
+    def _go(self, step: _Step, words: str, remember: bool = True) -> str:
+        if remember:
+            self._past.append(self._here())
+        others, self._step, self._grip = step.made is not self._step.made, step, None
+        with self.hold_sync():
+            if others:
+                packed = None if step.made is None else packing.pack(list(step.made.samples))
+                self.made_joints, self.made_roots = (b"", b"") if packed is None else (packed.joints, packed.roots)
+            self.chosen = step.chosen
+            return self._tell(words)
+
+    def _tell(self, words: str | None, number: int | None = None) -> str:
+        """The page's copy of the edit; `number` is that of the message that is answered."""
+        edit, made, last = self.edit, self._step.made, self.state
+        words = last.get("message", "") if words is None else words
+        with self.hold_sync():
+            self.poses = editor_page.poses_of(edit)
+            self.state = editor_page.state_of(edit, made) | {
+                "message": words, "presses": self._step.presses, "undo": len(self._past),
+                "heard": last.get("heard", 0) if number is None else number, "edition": last.get("edition", 0) + 1,
+                "description": editor_page.described(edit, made, self._fps),
+            }  # fmt: skip
+        return words
+
+    @traitlets.validate("frame", "chosen")
+    def _is_there(self, proposal):
+        name, value = proposal["trait"].name, proposal["value"]
+        count = len(self.edit) if name == "frame" else 1 if self.samples is None else len(self.samples)
+        if not 0 <= value < count:
+            raise traitlets.TraitError(f"{name} is a number from 0 to {count - 1}, not {value}")
+        return value
+
+    def poster(self, n: int = 6):
+        """A strip of n poses as a pillow image: the motion with the pinned poses, and the chosen in-between."""
+        return editor_page.strip(self.edit, None if self.samples is None else self.samples[self.chosen], self._fps, n)
+
+    def _repr_mimebundle_(self, **kwargs):
+        live = super()._repr_mimebundle_(**kwargs)
+        live, metadata = live if isinstance(live, tuple) else (live or {}, {})
+        return editor_page.bundle(self, live), metadata

@@ -1,0 +1,113 @@
+"""What the page of the editor is told: its scene, the edit as it stands, words; and the page where no kernel runs.
+
+Notebook: 15
+"""
+
+import base64
+import contextlib
+import html
+import io
+import json
+from pathlib import Path
+
+import numpy as np
+
+from ..editing import KEPT, Edit, Made
+from ..known import body_part
+from ..motion.skeleton import J, joint_index
+from ..viz import body
+from . import module, poster
+from .player import PAGE, STACK
+
+MODULE = module.joined(module.EDITOR)
+MOST = 6  # in-betweens at once: more ghosts than that cannot be told apart
+BINARY = ("joints", "roots", "poses", "made_joints", "made_roots")
+PLAIN = ("scene", "state", "frame", "chosen", "count", "resample", "busy", "file")
+
+
+def scene_of(edit: Edit, fps: float, names: list[str], strength: bool) -> dict:
+    """What does not change: the length, the joints' names, the drawn body; `strength`: `make` takes a resampling."""
+    return {"frames": len(edit), "joints": J, "fps": fps, "names": names, "parts": body.parts_record(body.BODY),
+            "keep": list(KEPT), "most": MOST, "strength": strength, "height": 380}  # fmt: skip
+
+
+def state_of(edit: Edit, made: Made | None) -> dict:
+    """The edit and its in-betweens in numbers and words."""
+    pins = sorted(edit.pins)
+    kept = [] if edit.part is None else np.flatnonzero(body_part(1, edit.part)[0]).tolist()
+    return {
+        "pins": pins, "moved": [[joint_index(name) for name in edit.moved.get(f, ())] for f in pins],
+        "part": edit.part or "", "kept": kept, "held": held(edit),
+        "made": 0 if made is None else len(made.samples), "old": made is not None and made.edit is not edit,
+        "measured": [] if made is None else [made.measured(k) for k in range(len(made.samples))],
+    }  # fmt: skip
+
+
+def held(edit: Edit) -> str:
+    """What is known now, and where it contradicts itself."""
+    words = f"{edit}."
+    if edit.torn:
+        words += f" In {listed(edit.torn)} what is kept throughout is elsewhere than in the motion: expect a jump."
+    return words
+
+
+def poses_of(edit: Edit) -> bytes:
+    """float32, the pinned poses in the order of their frames."""
+    return np.array([edit.pins[frame] for frame in sorted(edit.pins)], "<f4").tobytes()
+
+
+def described(edit: Edit, made: Made | None, fps: float) -> str:
+    """One sentence for those who cannot see it."""
+    some = "" if made is None else f" {len(made.samples)} in-betweens made."
+    return f"Motion editor: a skeleton moves for {len(edit) / fps:.1f} s, {len(edit)} frames; {edit}.{some}"
+
+
+def listed(frames) -> str:
+    """Frames in words, the first six of them."""
+    frames = sorted(frames)
+    some = ", ".join(map(str, frames[:6])) + (" ..." if len(frames) > 6 else "")
+    return f"frame{'s' * (len(frames) != 1)} {some}"
+
+
+def complaint(error: Exception) -> str:
+    """An error in words; of one that is not ours, its kind as well."""
+    text = str(error.args[0]) if isinstance(error, KeyError) and error.args else str(error)
+    ours = isinstance(error, ValueError | IndexError | KeyError)
+    text = text if ours and text else f"{type(error).__name__}: {text}"
+    return text[:1].upper() + text[1:] + ("" if text.endswith(".") else ".")
+
+
+def save_as(editor, name: str) -> str:
+    """Save under a name typed on the page, and tell where.  ValueError for no name."""
+    if not name:
+        raise ValueError("give the file a name")
+    path = Path(name if name.lower().endswith(".bvh") else f"{name}.bvh").expanduser()
+    there = path.exists()
+    with contextlib.redirect_stdout(io.StringIO()):  # what it prints is told on the page
+        told = str(editor.save(path)).split(": ", 1)[1]
+    return f"Saved {path.resolve()}{' (over an older one)' * there}: {told}."
+
+
+def html_page(editor) -> str:
+    """A whole HTML page with the editor as it stands: needs no kernel and no network, and cannot generate."""
+    record = {name: base64.b64encode(getattr(editor, name)).decode() for name in BINARY}
+    record |= {name: getattr(editor, name) for name in PLAIN} | {"busy": False}
+    text = json.dumps(record, allow_nan=False).replace("<", "\\u003c")
+    return PAGE.format(title=html.escape(editor.description), module=MODULE, record=text)
+
+
+def strip(edit: Edit, sample: np.ndarray | None, fps: float, n: int = 6):
+    """n poses as a pillow image: the motion with the pinned poses, and below it the in-between that is shown."""
+    figures = [poster.Figure(edit.positions, "with the pinned poses" if edit.pins else "")]
+    figures += [] if sample is None else [poster.Figure(sample, "in-between")]
+    return poster.filmstrip(figures, fps, n)
+
+
+def bundle(editor, live: dict) -> dict:
+    """The live widget, and beside it a page over a picture, for wherever that does not run."""
+    png = base64.b64encode(poster.as_png(editor.poster())).decode()
+    stack = STACK.format(
+        width=1200, height=editor.scene["height"] + 330, alt=html.escape(editor.description, quote=True), png=png,
+        title="motion editor", page=html.escape(html_page(editor), quote=True),
+    )  # fmt: skip
+    return {**live, "text/html": stack, "image/png": png, "text/plain": editor.description}
