@@ -3,11 +3,12 @@
     python -m tools.results [--only PART ...] [--full] [--quick] [--weights NAME=FILE] [--render]
 
 Parts: walker-eps, walker-x0, walker-ddim10, their -lookahead lines, footsteps; dancer, dancer-plain, regression,
-unheard (music like none in training), attention, dance-time. Those that train, for minutes a row: budget and
-dance-budget; one row of them: budget.T_p-5, dance-budget.v. Without --only, all are measured that the shipped weights
-allow; --full adds those that train, whose records are else kept as they are. A training that was killed goes on.
---quick measures little, into build/quick, and is for trying the code; --render only writes docs/RESULTS.md from the
-records that are there.
+unheard (music like none in training), attention, dance-time; mend (dropout and repairs), mend-both (both papers'
+repairs), inbetween, known-answer (ways of filling in where the right one is a formula). Those that train, for minutes a
+row: budget, dance-budget and mend-map; one row of them: budget.T_p-5, dance-budget.v. Without --only,
+all are measured that the shipped weights allow; --full adds those that train, whose records are else kept as they are.
+A training that was killed goes on. --quick measures little, into build/quick, and is for trying the code; --render
+only writes docs/RESULTS.md from the records that are there.
 """
 
 import argparse
@@ -19,17 +20,27 @@ from benchmarks.records import show, write_records
 from motiondiff_edu.files import replacing
 from motiondiff_edu.viz.metrics import footstep_curves
 
-from . import budget, dance_budget
+from . import budget, dance_budget, inbetween, known_answer, mend, mend_both, mend_dropout, mend_repair
 from .attention import attention_picture, attention_records
 from .cards import add_metrics
 from .dance_parts import DANCE_FULL, DANCE_QUICK, DANCES, Stage, dance_records
 from .dance_time import TIMED, time_records
-from .parts import FULL, LINES, QUICK, Bench, Walks, alias_records, footstep_records, walker_records
+from .mend_trials import names_of
+from .parts import FULL, LINES, QUICK, Bench, Walks, alias_records, footstep_records, walker_records, weights_digest
 from .render import render
 
-DOCS, RUNS = Path("docs"), Path("build/runs/dance-budget")
-MEASURED = ("footsteps", "attention", "dance-time")  # by the shipped weights, or by none
-TRAINED = {"budget": tuple(budget.VARIANTS), "dance-budget": tuple(dance_budget.VARIANTS)}
+DOCS, RUNS = Path("docs"), Path("build/runs")
+MEASURED = ("footsteps", "attention", "dance-time", "known-answer")  # by the shipped weights, or by none
+MENDED = {  # by these weights
+    "mend": {*names_of("plain"), *names_of("dropout")},
+    "mend-both": {mend_both.WALKER, "unconditional"},
+    "inbetween": {"unconditional"},
+}
+TRAINED = {
+    "budget": tuple(budget.VARIANTS),
+    "dance-budget": tuple(dance_budget.VARIANTS),
+    "mend-map": tuple(mend_dropout.RATES),
+}
 ROUNDS = 7  # of dance-time
 
 
@@ -74,13 +85,14 @@ def parts_of(only: list[str], full: bool, lines: dict[str, Walks], weights: set[
     there = [prefix for prefix, line in lines.items() if line.name in weights]
     there += [part for part, name in DANCES.items() if name in weights]
     there += [part for part in MEASURED if part != "attention" or "dancer" in weights]
+    there += [part for part, names in MENDED.items() if names <= weights]
     rows = {part: [f"{part}.{name}" for name in names] for part, names in TRAINED.items()}
     asked = only or [*there, *(rows if full else ())]
     parts = [row for part in asked for row in rows.get(part, [part])]
-    known = {*lines, *DANCES, *MEASURED, *(row for group in rows.values() for row in group)}
+    known = {*lines, *DANCES, *MEASURED, *MENDED, *(row for group in rows.values() for row in group)}
     unknown = sorted(set(parts) - known)
     if unknown:
-        there = ", ".join([*lines, *DANCES, *MEASURED, *rows])
+        there = ", ".join([*lines, *DANCES, *MEASURED, *MENDED, *rows])
         sys.exit(f"no part is called {', '.join(unknown)}; there are: {there}; rows: budget.T_p-5, dance-budget.v ...")
     return parts
 
@@ -105,8 +117,21 @@ def records_of(part: str, quick: bool, bench: Bench, stage: Stage, lines, folder
     if group == "budget":
         return budget.budget_records(row, budget.QUICK if quick else budget.FULL, command)
     if group == "dance-budget":
-        size, runs = (dance_budget.QUICK, folder / "runs") if quick else (dance_budget.FULL, RUNS)
+        size, runs = (dance_budget.QUICK, folder / "runs") if quick else (dance_budget.FULL, RUNS / group)
         return dance_budget.budget_records(row, size, runs, command)
+    if group == "mend-map":
+        size, runs = (mend_dropout.MAP_QUICK, folder / "map") if quick else (mend_dropout.MAP_FULL, RUNS / group)
+        return mend_dropout.map_records(row, size, bench.trials, runs, command)
+    if part == "mend":
+        return mend.records(bench, mend_repair.QUICK if quick else mend_repair.FULL, command)
+    if part == "inbetween":
+        dancer, digest = stage.dancer("unconditional"), weights_digest(stage.weights["unconditional"])
+        return inbetween.inbetween_records(dancer, digest, inbetween.QUICK if quick else inbetween.FULL, command)
+    if part == "mend-both":
+        size = mend_repair.QUICK if quick else mend_repair.FULL
+        return mend_both.both_records(bench, stage.dancer("unconditional"), size, command)
+    if part == "known-answer":
+        return known_answer.known_answer_records(known_answer.QUICK if quick else known_answer.FULL, command)
     if part == "dance-time":
         size, rounds = (dance_budget.QUICK, 2) if quick else (dance_budget.FULL, ROUNDS)
         return time_records(TIMED, size, rounds, command)

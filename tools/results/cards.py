@@ -23,4 +23,4 @@ def add_metrics(folder: Path) -> None:
     for path in set(checkpoints.available().values()):
         figure, found = checkpoints.load(path), metrics(folder, path.stem, weights_digest(path))
         if figure.card.get("metrics", {}) != found:
-            checkpoints.save(replace(figure, card=figure.card | {"metrics": found}), path)
+            checkpoints.save(replace(figure, card=figure.card | {"metrics": found}), path, checkpoints.bits_of(path))

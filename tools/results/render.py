@@ -5,6 +5,7 @@ from pathlib import Path
 
 from motiondiff_edu.files import replacing
 
+from . import known_tables, mend_tables
 from .bars import BARS, Bar
 from .budget import VARIANTS
 from .claims import claims
@@ -149,6 +150,7 @@ def attention(records: dict[str, dict], folder: Path) -> str:
 def others(records: dict[str, dict]) -> str:
     """Everything that stands in no table above, with what makes it."""
     shown = ("walker", "footsteps", "budget.", "dance-budget.", "dance-time.", "attention.")
+    shown += ("mend", "known-answer.", "inbetween.")
     rest = [one for name, one in sorted(records.items()) if not name.startswith(shown)]
     rows = [[f"`{r['name']}`", number(r["value"]), span(r), r["unit"], f"`{r['command']}`"] for r in rest]
     return "## Further figures\n\n" + table(["figure", "value", "interval", "unit", "made by"], rows) if rows else ""
@@ -159,6 +161,9 @@ def render(docs: Path, benchmarks: Path = Path("benchmarks/results")) -> None:
     records = read_records(docs / "results", benchmarks)
     parts = [HEAD, bars(records), walkers(records), footsteps(records, docs / "results")]
     parts += [budget(records), table_1(records), choices(records), attention(records, docs / "results")]
-    parts += [claims(records), others(records)]
+    mend_tables.draw(records, docs / "results")
+    parts += [mend_tables.dropout(records, docs / "results"), mend_tables.repairs(records)]
+    parts += [known_tables.both(records), known_tables.known_answers(records)]
+    parts += [mend_tables.inbetweens(records, docs / "results"), claims(records), others(records)]
     with replacing(docs / "RESULTS.md") as aside:
         aside.write_text("\n".join(part for part in parts if part))

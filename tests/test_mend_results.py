@@ -1,0 +1,127 @@
+"""What menders are measured by: holes as they should be, figures by hand, intervals over trainings and clips."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+import torch
+
+from data_synth.imperfect import ARM, dead_joints, dropped_frames
+from motiondiff_edu.ddpm import cosine_schedule
+from motiondiff_edu.motion.scaler import Scaler
+from motiondiff_edu.motion.skeleton import JOINTS
+from motiondiff_edu.reconstruction import walked_back
+from motiondiff_edu.ways_back import masked_back
+from tools.results import mend_dropout, mend_repair, mend_rivals, mend_tables
+from tools.results.mend_rivals import rivals
+from tools.results.mend_trials import as_given, interval_over_seeds, names_of, without
+from tools.results.trials import unseen
+
+
+@pytest.fixture(scope="module")
+def trials():
+    return unseen(5, 2)
+
+
+class Standing:
+    """Predicts what its scaler has for a mean pose; counts its windows."""
+
+    schedule = cosine_schedule(20)
+
+    def __init__(self):
+        self.config = SimpleNamespace(T_h=10, T_p=10, D=63, C=3, S=20)
+        self.pose_scaler = Scaler(torch.linspace(-1, 1, 63), torch.full((63,), 0.5))
+        self.control_scaler, self.asked = Scaler.nothing(3), 0
+
+    def window_sampler(self, steps=None):
+        def sample(past, control, generator):
+            self.asked += 1
+            return torch.zeros(len(past), 10, 63)
+
+        return sample
+
+    def denoiser(self, past, control):
+        return lambda x, s: x / (1 - self.schedule.alpha_bar[s]).sqrt().view(-1, 1, 1).to(x)
+
+
+def test_missing_joints_are_zero_once_standardised(trials):
+    walker, broken = Standing(), without(trials.past, 0.3)
+    past, known = as_given(walker, broken)
+    lost = ~broken.known.all(1)
+    assert (lost.sum(1) == round(0.3 * 21)).all() and len({tuple(row) for row in lost}) == 5  # others in each
+    scaled = walker.pose_scaler.transform(past)
+    assert (scaled[~known] == 0).all() and known.sum() == 5 * 10 * 3 * 15
+    np.testing.assert_allclose(past[known].numpy(), trials.past.reshape(5, 10, 63)[known.numpy()], rtol=1e-5, atol=1e-6)
+
+
+def test_the_interval_is_over_trainings_as_well_as_clips():
+    alike = np.tile(np.linspace(0, 1, 40), (3, 1))
+    apart = alike + np.array([[-2.0], [0.0], [2.0]])
+    value, low, high = interval_over_seeds(np.mean, alike)
+    assert value == pytest.approx(0.5) and low < 0.5 < high and high - low < 0.3
+    wide = interval_over_seeds(np.mean, apart)
+    assert wide[0] == pytest.approx(0.5) and wide[1] < -0.5 and wide[2] > 1.5
+
+
+def test_gains_and_cost_by_hand():
+    plain = {"bone": np.full((3, 6), 9.0), "adherence": np.full((3, 6), 0.5)}
+    dropout = {"bone": np.full((3, 6), 4.0), "adherence": np.full((3, 6), 0.6)}
+    bone, adherence = mend_dropout.gains(plain, dropout)
+    assert (bone.name, bone.value, bone.low, bone.high) == ("dropout_gain_bone_cm", *[pytest.approx(1.0)] * 3)
+    assert adherence.value == pytest.approx(-0.1) and adherence.unit == "m/s"
+    assert mend_dropout.cost(plain, dropout).value == pytest.approx(1.2)  # the larger of 2/3 and 6/5
+
+
+def test_errors_of_a_repair_count_what_was_missing(trials):
+    broken = dropped_frames(trials.past, 3, 4)
+    made = trials.past + 0.0
+    made[:, 3:7] += [0.03, 0.0, 0.04]  # 5 cm off
+    made[:, 0] += 9.0  # known frames are not looked at
+    np.testing.assert_allclose(mend_repair.squared_errors(made, trials.past, broken), 25.0)
+    assert np.isnan(mend_repair.squared_errors(made, trials.past, without(trials.past, 0.0))).all()
+
+
+@pytest.fixture(autouse=True)
+def few_clips(monkeypatch):
+    monkeypatch.setattr(mend_rivals, "CLIPS", 16)
+
+
+def test_rivals_fill_what_they_can(trials):
+    arm = rivals(dead_joints(trials.past, ARM), trials)
+    assert set(arm) == {"ridge", "meanpose"}  # no straight line leads through a joint that is never seen
+    lines = rivals(dropped_frames(trials.past, 3, 4), trials)["interpolation"]
+    np.testing.assert_allclose(lines[:, 4], 0.6 * trials.past[:, 2] + 0.4 * trials.past[:, 7])
+    hidden = [JOINTS.index(name) for name in ARM]
+    errors = {name: np.linalg.norm((guess - trials.past)[:, :, hidden], axis=-1).mean() for name, guess in arm.items()}
+    assert errors["ridge"] < errors["meanpose"]
+    seen = np.delete(np.arange(21), hidden)
+    np.testing.assert_allclose(arm["ridge"][:, :, seen], trials.past[:, :, seen], atol=1e-6)
+
+
+def test_repairs_of_a_walker_that_stands_are_the_mean_pose(trials):
+    size = mend_repair.RepairSize(samples=2, rounds=1, steps=3)
+    found = {f.name: f for f in mend_repair.repair_figures("arm", Standing(), trials, size)}
+    assert found["arm_paper_rmse_cm"].value == pytest.approx(found["arm_paper_one_rmse_cm"].value)
+    broken = mend_repair.FAULTS["arm"](trials.past)
+    either = [mend_repair.repaired(Standing(), trials, broken, size, way) for way in (walked_back, masked_back)]
+    np.testing.assert_allclose(*either, atol=1e-3)
+    assert found["arm_rmse_over_ridge"].value == pytest.approx(
+        found["arm_rmse_cm"].value / found["arm_rmse_ridge_cm"].value
+    )
+
+
+def test_the_tables_say_what_the_records_say(tmp_path):
+    assert mend_tables.dropout({}, tmp_path) == mend_tables.repairs({}) == mend_tables.inbetweens({}, tmp_path) == ""
+    seeds = {"trainings": 3, "frames": 10, "clips": 7, "missing": 0.3}
+
+    def one(name, value):
+        return dict(name=name, value=value, low=value, high=value, seeds=seeds, unit="cm", paper=None, command="")
+
+    names = ["mend.dropout_cost_complete", "mend.plain_missing_bone_cm", "mend.dropout_missing_bone_cm"]
+    records = {name: one(name, 1.25 + k) for k, name in enumerate(names)}
+    said = mend_tables.dropout(records, tmp_path)
+    assert "| missing | bone | 2.25 cm | 3.25 cm |" in said and "7 unseen pasts" in said
+
+
+def test_the_pairs_are_shipped_names():
+    assert names_of("plain") == ["mend-plain-0", "mend-plain-1", "mend-plain-2"]

@@ -1,0 +1,80 @@
+"""Both papers' repairs on the same holes: there-and-back by a walker (III-E), masking by the unconditional net (4.4).
+
+Both see the same: what is left of ten past frames, and where the walk goes during them and the ten after. The walker
+has that as its control, the other network as the pelvis' path, in a window of 20 frames.
+Source: MoDiff III-E; MoFusion 4.4.  Notebook: 15
+"""
+
+import numpy as np
+import torch
+from jaxtyping import Bool, Float
+
+from motiondiff_edu import checkpoints
+from motiondiff_edu.between import BLEND, GUIDANCE, inbetween
+from motiondiff_edu.dancer import Dancer
+from motiondiff_edu.motion.root_frame import to_world
+from motiondiff_edu.motion.skeleton import HIPS, J
+from motiondiff_edu.reconstruction import walked_back
+from motiondiff_edu.walker import Walker
+from motiondiff_edu.ways_back import masked_back
+
+from .mend_repair import FAULTS, RepairSize, repaired, root_nanmean, squared_errors
+from .parts import Bench, weights_digest
+from .scores import Figure, figure_of
+from .trials import UNSEEN, Trials
+
+WALKER = "mend-dropout-0"
+WINDOW, CLIPS = 20, 40  # frames that the masking network sees; pasts that are repaired
+
+
+def masked_window(
+    trials: Trials, known: Bool[np.ndarray, "N T_h J"]
+) -> tuple[Float[np.ndarray, "N W J 3"], Bool[np.ndarray, "N W J"]]:
+    """The same pasts in the world, what is known of them, and the pelvis' path for as long as a walker has control."""
+    T_h = known.shape[1]
+    poses = np.concatenate([trials.past, trials.truth], 1)[:, :WINDOW]
+    world = np.stack([to_world(one, control[:WINDOW]) for one, control in zip(poses, trials.control, strict=True)])
+    seen = np.zeros((len(known), WINDOW, J), bool)
+    seen[:, :T_h] = known
+    seen[:, : 2 * T_h, HIPS] = True
+    return world, seen
+
+
+def masked(dancer: Dancer, trials: Trials, broken, size: RepairSize, blend: int | None) -> np.ndarray:
+    """So many repairs of each past by masked sampling; in the world, beside `masked_window`'s truth."""
+    world, known = masked_window(trials, broken.known)
+    draw = torch.Generator().manual_seed(0)
+    options = {"samples": size.samples, "steps": 25, "generator": draw}
+    options |= {"blend": blend, "guidance": GUIDANCE if blend else 0.0, "bones": blend is not None}
+    holes = np.where(known[..., None], world, np.nan)
+    made = [inbetween(dancer, one, seen, **options) for one, seen in zip(holes, known, strict=True)]
+    return np.stack(made, 1)[:, :, : broken.known.shape[1]]
+
+
+def both_figures(walker: Walker, dancer: Dancer, trials: Trials, size: RepairSize) -> list[Figure]:
+    """For each fault and way: the error of the mean of the repairs, and of one of them, cm."""
+    few = Trials(trials.past[:CLIPS], trials.control[:CLIPS], trials.truth[:CLIPS])
+    found = []
+    for fault, break_it in FAULTS.items():
+        broken = break_it(few.past)
+        in_world = masked_window(few, broken.known)[0][:, : few.past.shape[1]]
+        ways = {
+            "there_and_back": (repaired(walker, few, broken, size, walked_back), few.past),
+            "there_and_back_masked": (repaired(walker, few, broken, size, masked_back), few.past),
+            "masked": (masked(dancer, few, broken, size, None), in_world),
+            "masked_blended": (masked(dancer, few, broken, size, BLEND), in_world),
+        }
+        for way, (made, truth) in ways.items():
+            for kind, guess in (("mean", made.mean(0)), ("one", made[0])):
+                rows = squared_errors(guess, truth, broken)
+                found.append(figure_of(f"{fault}.{way}.{kind}_cm", "cm", root_nanmean, rows))
+    return found
+
+
+def both_records(bench: Bench, dancer: Dancer, size: RepairSize, command: str) -> list[dict]:
+    """The figures as records."""
+    walker = checkpoints.load_walker(bench.weights[WALKER])
+    seeds = {"data": UNSEEN, "clips": CLIPS, "samples": size.samples, "rounds": size.rounds}
+    seeds |= {"weights": [weights_digest(bench.weights[name]) for name in (WALKER, "unconditional")]}
+    found = both_figures(walker, dancer, bench.trials, size)
+    return [figure.as_record("mend-both.", seeds, command) for figure in found]

@@ -1,0 +1,127 @@
+"""Diffusion dropout, repairs and in-betweens: sections of docs/RESULTS.md, and their pictures, from the records."""
+
+from pathlib import Path
+
+import numpy as np
+
+from motiondiff_edu.files import replacing
+from motiondiff_edu.viz.mending import over_gaps, rate_map
+
+from .inbetween import GAPS
+from .markdown import cell, number, table
+from .mend_dropout import FIGURES, RATES, SHARES
+from .mend_repair import FAULTS
+
+UNITS = {kind: f"{kind}_{unit}" for kind, (unit, _) in FIGURES.items()}
+METHODS = {
+    "error_cm": "mean of the samples",
+    "error_one_cm": "one sample",
+    "error_best_cm": "best of the samples",
+    "error_lines_cm": "straight lines",
+    "error_arcs_cm": "arcs",
+    "error_free_cm": "sampled without the mask",
+}
+MASKED = {"error_masked_cm": "masked, as in the paper"}  # one sample
+
+
+def dropout(records: dict[str, dict], folder: Path) -> str:
+    """The pairs of walkers, then the map over rates."""
+    one = records.get("mend.dropout_cost_complete")
+    if one is None:
+        return ""
+    seeds = one["seeds"]
+    rows = [
+        [words, what, *(cell(records.get(f"mend.{kind}_{words}_{UNITS[what]}")) for kind in ("plain", "dropout"))]
+        for words in ("complete", "missing")
+        for what in FIGURES
+    ]
+    gains = [[f"`{n}`", cell(records.get(f"mend.{n}"))] for n in
+             ("dropout_gain_bone_cm", "dropout_gain_adherence_mps", "dropout_cost_complete")]  # fmt: skip
+    text = (
+        "## Diffusion dropout (MoDiff III-D)\n\nTwo kinds of small walkers: the same network, data and steps, without "
+        f"and with diffusion dropout, {seeds['trainings']} training seeds of each, all shipped. The next "
+        f"{seeds['frames']} frames of {seeds['clips']} unseen pasts, complete and with "
+        f"{seeds['missing']:.0%} of their joints missing throughout (zero after standardisation). Intervals are over "
+        "training seeds and clips; three seeds are few.\n\n"
+    )
+    text += table(["past", "error", "plain", "with dropout"], rows) + "\n" + table(["figure", "measured"], gains)
+    picture = folder / "dropout-map.png"
+    return (
+        text
+        + "\n![Errors by rate of dropout and share of the past missing](results/dropout-map.png)\n" * picture.exists()
+    )
+
+
+def repairs(records: dict[str, dict]) -> str:
+    """Each fault beside what needs no walker; then Table II."""
+    ours = tuple(f"mend.{fault}_" for fault in FAULTS)
+    kinds = list(dict.fromkeys(n.split("_", 1)[1] for n in records if n.startswith(ours)))
+    if not kinds:
+        return ""
+    rows = [[fault, *(cell(records.get(f"mend.{fault}_{kind}"), unit=False) for kind in kinds)] for fault in FAULTS]
+    text = (
+        "## Repairs (MoDiff III-E)\n\nErrors of what was missing of ten past frames, cm (root mean squared distance). "
+        "`rmse_cm`: of the mean of ten repairs; `one`: of one of them, which moves as the mean does not. Ours begin "
+        "with what ridge regression guesses, hold what is known on the way back, too, and keep bones; `paper`: from "
+        "the mean pose, and neither.\n\n"
+    )
+    text += table(["missing", *(f"`{kind}`" for kind in kinds)], rows)
+    second = [[f"`{n}`", cell(records[n])] for n in records if n.startswith(("mend.table2", "mend.footsteps"))]
+    return text + "\n### Table II\n\n" + table(["figure", "measured"], second) if second else text
+
+
+def inbetweens(records: dict[str, dict], folder: Path) -> str:
+    """Errors over the length of the gap, and what errors do not tell."""
+    if "inbetween.keyframe_error_cm" not in records:
+        return ""
+    seeds = records["inbetween.keyframe_error_cm"]["seeds"]
+    named = METHODS | MASKED
+    kinds = [*named, *(f"npss_{of}over_interpolation" for of in ("", "velocity_"))]
+    kinds += [*(f"seam_jump{of}_over_data" for of in ("", "_lines", "_masked"))]
+    rows = [[str(g), *(cell(records.get(f"inbetween.gap{g}.{kind}"), unit=False) for kind in kinds)] for g in GAPS]
+    text = (
+        f"## In-betweens (MoFusion 4.4)\n\nThe unconditional network; {seeds['motions']} unseen walks and dances in "
+        f"equal halves, 100 frames each, a gap in the middle; {seeds['samples']} samples of each, {seeds['steps']} "
+        "DDIM steps, every guess guided and drawn through the given frames (`between.inbetween`); `masked`: one sample "
+        "as in the paper, without that. A mean of samples beats any sample on error, and moves less than any: NPSS and "
+        "the jump at the seam are of single samples. Given frames are held exactly: "
+        f"`keyframe_error_cm` is {number(records['inbetween.keyframe_error_cm']['value'])}.\n\n"
+    )
+    picture = "\n![Errors, spectra and seams over the length of the gap](results/inbetween.png)\n"
+    head = ["gap, frames", *(named.get(kind, f"`{kind}`") for kind in kinds)]
+    return text + table(head, rows) + picture * (folder / "inbetween.png").exists()
+
+
+def draw(records: dict[str, dict], folder: Path) -> None:
+    """The pictures whose records are there."""
+    missing = [round(100 * share) for share in SHARES]
+    names = [name for name in RATES if f"mend-map.{name}.missing-0.{UNITS['bone']}" in records]
+    if names:
+        panels = {
+            words: np.array(
+                [[records[f"mend-map.{n}.missing-{m}.{UNITS[kind]}"]["value"] for m in missing] for n in names]
+            )
+            for kind, words in (("bone", "bone RMSE, cm"), ("adherence", "adherence, m/s"))
+        }
+        words = "Errors of the next ten frames, by the rate of dropout in training and the share of joints missing."
+        rates = [f"{RATES[name]:.0%}" for name in names]
+        _save(rate_map(panels, rates, [f"{m} %" for m in missing], words), folder / "dropout-map.png")
+    if "inbetween.keyframe_error_cm" in records:
+        measures = {
+            "error, cm": METHODS,
+            "NPSS": {"npss": "one sample", "npss_interpolation": "interpolation"},
+            "jump at the seam / data's": {"seam_jump_over_data": "one sample", "seam_jump_lines_over_data": "lines"},
+        }
+        panels = {title: {w: _line(records, kind) for kind, w in kinds.items()} for title, kinds in measures.items()}
+        words = "In-betweens at gaps of 5 to 60 frames: errors, spectra and seams, with 95 % intervals over motions."
+        _save(over_gaps(panels, words), folder / "inbetween.png")
+
+
+def _line(records: dict[str, dict], kind: str):
+    found = [records[f"inbetween.gap{g}.{kind}"] for g in GAPS]
+    return GAPS, *([one[side] for one in found] for side in ("value", "low", "high"))
+
+
+def _save(figure, path: Path) -> None:
+    with replacing(path) as aside:
+        figure.savefig(aside, dpi=110, format="png")
