@@ -21,6 +21,7 @@ from .motion.steady_bones import given_lengths, steady_bones
 
 BLEND = 10  # frames within which a correction fades where nothing else is given
 GUIDANCE = 0.5  # more obeys sparse keyframes better, and jumps more at the seams of a gap
+PAPER = {"blend": None, "guidance": 0.0, "bones": False}  # options of `inbetween`: masked sampling as in 4.4
 
 
 def inbetween(
@@ -44,8 +45,8 @@ def inbetween(
     frame whose pelvis and hips are known (from its own origin where there is none).
     `blend`: the network's guesses are drawn through what is given, at every step, and let go of within so many frames
     where nothing more is given (`blending.blended`). `guidance`: they are moved by its gradient before
-    (`inbetweening.guided`), at twice the cost. None, and 0: masked sampling as in the paper.
-    `bones`: they get the lengths that they have where they are given (`motion.steady_bones`).
+    (`inbetweening.guided`), at twice the cost. `bones`: they get the lengths that they have where they are given
+    (`motion.steady_bones`). `**PAPER`: none of the three, masked sampling as in the paper.
     Raises ValueError where a joint is given without the pelvis.  Source: MoFusion 4.4.  Notebook: 15
     """
     columns, place = torch.from_numpy(known_columns(known)), seen_from(positions, known)

@@ -88,4 +88,4 @@ def with_bones(
     joints, ahead = (x.double().unflatten(-1, (-1, 3)).numpy() for x in (past, walked))
     here = known.unflatten(-1, (-1, 3)).all(-1).numpy()
     lengths = np.median(bone_lengths(ahead), axis=-2)
-    return torch.from_numpy(steady_bones(joints, here, lengths)).flatten(-2).to(past).where(~known, past)
+    return torch.from_numpy(steady_bones(joints, here, lengths)).flatten(-2).to(past)

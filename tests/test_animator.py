@@ -5,7 +5,7 @@ import os
 import pytest
 import test_player_lab
 from browser import open_page
-from test_player_lab import ASK, IDLE, lab  # noqa: F401
+from test_player_lab import ASK, lab, run_all  # noqa: F401
 
 CELL = """import sys; sys.path.insert(0, {tests!r})
 from functools import partial
@@ -41,12 +41,7 @@ def address(monkeypatch, request, real_data):
 def test_a_real_walk_is_edited_and_saved(browser, address, tmp_path):
     with open_page(browser, offline=False, viewport={"width": 1300, "height": 1000}) as page:
         page.set_default_timeout(120_000)
-        page.goto(address)
-        page.wait_for_function(IDLE)
-        page.evaluate("window.jupyterapp.commands.execute('notebook:run-all-cells')")
-        canvas = page.locator(".mde-editor canvas").first
-        canvas.wait_for()
-        page.wait_for_function(IDLE)
+        canvas = run_all(page, address, "mde-editor")
         canvas.focus()
         for key in ("Home", "Enter", "End", "Enter"):
             page.keyboard.press(key)

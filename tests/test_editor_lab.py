@@ -5,7 +5,7 @@ import os
 import pytest
 import test_player_lab
 from browser import coloured, open_page
-from test_player_lab import ASK, IDLE, lab  # noqa: F401
+from test_player_lab import ASK, lab, run_all  # noqa: F401
 
 CELL = """import sys; sys.path.insert(0, {tests!r})
 import torch
@@ -29,12 +29,7 @@ def address(monkeypatch, request):
 def test_pins_drags_and_in_betweens_in_jupyterlab(browser, address):
     with open_page(browser, offline=False, viewport={"width": 1300, "height": 1000}) as page:
         page.set_default_timeout(60_000)
-        page.goto(address)
-        page.wait_for_function(IDLE)
-        page.evaluate("window.jupyterapp.commands.execute('notebook:run-all-cells')")
-        canvas = page.locator(".mde-editor canvas").first
-        canvas.wait_for()
-        page.wait_for_function(IDLE)
+        canvas = run_all(page, address, "mde-editor")
         canvas.focus()
         for key in ("Enter", "End", "Enter"):
             page.keyboard.press(key)

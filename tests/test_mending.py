@@ -6,10 +6,11 @@ import numpy as np
 import pytest
 import torch
 
-from data_synth.imperfect import dead_joints
+from data_synth.imperfect import ARM, dead_joints
 from data_synth.walking import walk
-from motiondiff_edu.mending import Mended, mend_steps
+from motiondiff_edu.mending import Mended, mend_steps, with_bones
 from motiondiff_edu.metrics import repair
+from motiondiff_edu.metrics.bone_lengths import bone_rmse
 from motiondiff_edu.motion.scaler import Scaler
 
 T_H = 10
@@ -66,6 +67,18 @@ def test_several_pasts_are_mended_as_each_alone_but_for_the_draws():
     # a walker that stands: the holes stay where they began, at the mean pose, but for its noise
     start = np.broadcast_to(CLIP.poses.mean(0), fault.positions.shape)
     assert np.abs(both.samples - start)[:, ~fault.known].max() < 0.3
+
+
+def test_bones_of_the_holes_get_the_lengths_that_they_have_where_it_walks():
+    """The elbow of the arm hangs on a given shoulder: shaken, its bones tear, and are mended; the given stays."""
+    truth = torch.from_numpy(CLIP.poses).flatten(-2)[None]
+    known = torch.from_numpy(dead_joints(CLIP.poses[:T_H], ARM).known).repeat_interleave(3, -1)[None]
+    shaken = truth[:, :T_H] + 0.05 * torch.randn(1, T_H, 63, generator=torch.Generator().manual_seed(0)) * ~known
+    settled = with_bones(shaken, known, truth[:, T_H:])
+    assert torch.equal(settled[known], shaken[known]) and settled.dtype == shaken.dtype
+    assert (
+        bone_rmse(settled.unflatten(-1, (21, 3)).numpy()) < 0.01 < 1 < bone_rmse(shaken.unflatten(-1, (21, 3)).numpy())
+    )
 
 
 def test_what_cannot_be_mended_is_said():

@@ -83,16 +83,22 @@ def _wait_until_answering(address: str, server, log, attempts: int = 240) -> Non
     pytest.fail(f"JupyterLab did not start:\n{log.read_text()[-3000:]}")
 
 
+def run_all(page, address: str, widget: str):
+    """Open the notebook, run its cell, and return the widget's canvas once the kernel rests."""
+    page.goto(address)
+    page.wait_for_function(IDLE)
+    page.evaluate("window.jupyterapp.commands.execute('notebook:run-all-cells')")
+    canvas = page.locator(f".{widget} canvas").first
+    canvas.wait_for()
+    page.wait_for_function(IDLE)
+    return canvas
+
+
 def test_figure_plays_in_jupyterlab_and_python_sees_it(browser, lab):
     size = {"width": 1300, "height": 900}
     with open_page(browser, offline=False, viewport=size) as page:
         page.set_default_timeout(60_000)
-        page.goto(lab)
-        page.wait_for_function(IDLE)
-        page.evaluate("window.jupyterapp.commands.execute('notebook:run-all-cells')")
-        canvas = page.locator(".mde-player canvas").first
-        canvas.wait_for()
-        page.wait_for_function(IDLE)
+        canvas = run_all(page, lab, "mde-player")
         first = ink(canvas)
         assert min(coloured(canvas).values()) > 200
         page.locator(".mde-player").get_by_role("button", name="Play").click()

@@ -5,12 +5,9 @@ import pytest
 
 from data_synth.walking import random_control, walk
 from motiondiff_edu.known import body_part, gap, keyframes
-from motiondiff_edu.motion.skeleton import BONES, joint_index
+from motiondiff_edu.metrics.bone_lengths import bone_lengths
+from motiondiff_edu.motion.skeleton import joint_index
 from motiondiff_edu.motion.steady_bones import given_lengths, steady_bones
-
-
-def lengths_of(x):
-    return np.stack([np.linalg.norm(x[..., child, :] - x[..., parent, :], axis=-1) for parent, child in BONES], -1)
 
 
 @pytest.fixture(scope="module")
@@ -34,13 +31,13 @@ def test_bones_are_as_long_as_where_they_are_given(clip, mask):
     fixed = steady_bones(np.stack([shaken, shaken]), known, lengths)
     assert np.array_equal(fixed[0][known], clip[known]) and np.array_equal(fixed[0], fixed[1])
     given = ~np.isnan(lengths)
-    off = np.abs(lengths_of(fixed)[..., given] - lengths_of(clip)[0][given])
-    assert off.max() < 0.002 < np.abs(lengths_of(shaken)[..., given] - lengths_of(clip)[0][given]).max()
+    off = np.abs(bone_lengths(fixed)[..., given] - bone_lengths(clip)[0][given])
+    assert off.max() < 0.002 < np.abs(bone_lengths(shaken)[..., given] - bone_lengths(clip)[0][given]).max()
     assert np.linalg.norm(fixed[0] - shaken, axis=-1).max() < 0.25  # and nobody is thrown about
 
 
 def test_a_motion_with_right_bones_stays_as_it_is(clip):
-    np.testing.assert_allclose(steady_bones(clip, gap(len(clip), 5, 9), lengths_of(clip)[0]), clip, atol=1e-9)
+    np.testing.assert_allclose(steady_bones(clip, gap(len(clip), 5, 9), bone_lengths(clip)[0]), clip, atol=1e-9)
 
 
 def test_bones_that_are_never_given_are_left_alone(clip):

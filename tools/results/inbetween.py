@@ -12,7 +12,7 @@ from jaxtyping import Bool, Float
 
 from data_synth.mixed import motions
 from motiondiff_edu.baselines.interpolation import linear, spherical
-from motiondiff_edu.between import inbetween
+from motiondiff_edu.between import PAPER, inbetween
 from motiondiff_edu.dancer import Dancer
 from motiondiff_edu.known import gap
 from motiondiff_edu.metrics.keyframes import keyframe_error, npss, seam_jump, unknown_error
@@ -68,7 +68,7 @@ def filled(dancer: Dancer, truth: Float[np.ndarray, "N T J 3"], length: int, siz
     options = {"steps": size.steps, "generator": draw}
     holes = np.where(known[..., None], truth, np.nan)
     made = [inbetween(dancer, one, known, samples=size.samples, **options) for one in holes]
-    masked = [inbetween(dancer, one, known, blend=None, guidance=0.0, bones=False, **options)[0] for one in holes]
+    masked = [inbetween(dancer, one, known, **PAPER, **options)[0] for one in holes]
     free = [inbetween(dancer, one, np.zeros_like(known), **options)[0] for one in truth]
     flat = [[fill(one, known) for one in truth] for fill in (linear, spherical)]
     return Filled(known, truth, np.stack(made, 1), *map(np.stack, (masked, free, *flat)))

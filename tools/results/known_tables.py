@@ -9,21 +9,21 @@ KINDS = {
 }
 
 
-def _names(records: dict[str, dict], prefix: str) -> tuple[list[str], list[str]]:
-    """What stands after the prefix: (columns, rows), each in the order of the records."""
-    found = [name.removeprefix(prefix) for name in records if name.startswith(prefix)]
-    columns = list(dict.fromkeys(name.split(".")[0] for name in found))
-    rows = list(dict.fromkeys(name.split(".", 1)[1].rsplit(".", 1)[0] for name in found))
-    return columns, rows
+def _part(records: dict[str, dict], prefix: str) -> tuple[list[str], list[str], dict]:
+    """What stands after the prefix: (columns, rows), each in the order of the records, and what they were made from."""
+    found = [name for name in records if name.startswith(prefix)]
+    names = [name.removeprefix(prefix) for name in found]
+    columns = list(dict.fromkeys(name.split(".")[0] for name in names))
+    rows = list(dict.fromkeys(name.split(".", 1)[1].rsplit(".", 1)[0] for name in names))
+    return columns, rows, records[found[0]]["seeds"] if found else {}
 
 
 def known_answers(records: dict[str, dict]) -> str:
     """A table for each kind of error: ways of filling in by what is missing."""
     prefix = "known-answer."
-    holes, ways = _names(records, prefix)
+    holes, ways, seeds = _part(records, prefix)
     if not holes:
         return ""
-    seeds = next(one["seeds"] for name, one in records.items() if name.startswith(prefix))
     text = (
         "## A known answer (MoFusion 4.4, MoDiff III-E)\n\nFive Gaussians fitted to windows of walking: how far each "
         "way of filling in is from their true conditional, "
@@ -41,10 +41,9 @@ def known_answers(records: dict[str, dict]) -> str:
 def both(records: dict[str, dict]) -> str:
     """Repairs of the same holes by there-and-back and by masking, with the trained networks."""
     prefix = "mend-both."
-    faults, ways = _names(records, prefix)
+    faults, ways, seeds = _part(records, prefix)
     if not faults:
         return ""
-    seeds = next(one["seeds"] for name, one in records.items() if name.startswith(prefix))
     columns = [(fault, kind) for fault in faults for kind in ("mean", "one")]
     rows = [
         [f"`{way}`", *(cell(records[f"{prefix}{fault}.{way}.{kind}_cm"], unit=False) for fault, kind in columns)]

@@ -10,7 +10,7 @@ import torch
 from jaxtyping import Bool, Float
 
 from motiondiff_edu import checkpoints
-from motiondiff_edu.between import BLEND, GUIDANCE, inbetween
+from motiondiff_edu.between import PAPER, inbetween
 from motiondiff_edu.dancer import Dancer
 from motiondiff_edu.motion.root_frame import to_world
 from motiondiff_edu.motion.skeleton import HIPS, J
@@ -40,15 +40,14 @@ def masked_window(
     return world, seen
 
 
-def masked(dancer: Dancer, trials: Trials, broken, size: RepairSize, blend: int | None) -> np.ndarray:
-    """So many repairs of each past by masked sampling; in the world, beside `masked_window`'s truth."""
-    world, known = masked_window(trials, broken.known)
-    draw = torch.Generator().manual_seed(0)
-    options = {"samples": size.samples, "steps": 25, "generator": draw}
-    options |= {"blend": blend, "guidance": GUIDANCE if blend else 0.0, "bones": blend is not None}
-    holes = np.where(known[..., None], world, np.nan)
+def masked(
+    dancer: Dancer, world: Float[np.ndarray, "N W J 3"], known: Bool[np.ndarray, "N W J"], samples: int, **how
+) -> Float[np.ndarray, "samples N W J 3"]:
+    """So many repairs of each of `masked_window`'s pasts by masked sampling; `how`: options of `inbetween`."""
+    draw, holes = torch.Generator().manual_seed(0), np.where(known[..., None], world, np.nan)
+    options = {"samples": samples, "steps": 25, "generator": draw, **how}
     made = [inbetween(dancer, one, seen, **options) for one, seen in zip(holes, known, strict=True)]
-    return np.stack(made, 1)[:, :, : broken.known.shape[1]]
+    return np.stack(made, 1)
 
 
 def both_figures(walker: Walker, dancer: Dancer, trials: Trials, size: RepairSize) -> list[Figure]:
@@ -57,12 +56,13 @@ def both_figures(walker: Walker, dancer: Dancer, trials: Trials, size: RepairSiz
     found = []
     for fault, break_it in FAULTS.items():
         broken = break_it(few.past)
-        in_world = masked_window(few, broken.known)[0][:, : few.past.shape[1]]
+        world, known = masked_window(few, broken.known)
+        T_h = few.past.shape[1]
         ways = {
             "there_and_back": (repaired(walker, few, broken, size, walked_back), few.past),
             "there_and_back_masked": (repaired(walker, few, broken, size, masked_back), few.past),
-            "masked": (masked(dancer, few, broken, size, None), in_world),
-            "masked_blended": (masked(dancer, few, broken, size, BLEND), in_world),
+            "masked": (masked(dancer, world, known, size.samples, **PAPER)[:, :, :T_h], world[:, :T_h]),
+            "masked_blended": (masked(dancer, world, known, size.samples)[:, :, :T_h], world[:, :T_h]),
         }
         for way, (made, truth) in ways.items():
             for kind, guess in (("mean", made.mean(0)), ("one", made[0])):
