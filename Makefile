@@ -43,12 +43,15 @@ doctor: $(VENV)/.lab ## one page: what works here, and what to do about the rest
 
 test: lint unit notebooks browser ## set up .venv and run everything: lint, unit tests, notebooks, browser
 
+# A worker that dies ends the run as a failure: pytest-xdist would start another one and may wait for ever.
+WORKERS := -n auto --max-worker-restart=0
+
 unit: $(VENV)/.test ## only the unit tests
-	OMP_NUM_THREADS=1 $(BIN)/python -m pytest -q -n auto --dist loadfile -m "not browser"
+	OMP_NUM_THREADS=1 $(BIN)/python -m pytest -q $(WORKERS) --dist loadfile -m "not browser"
 
 # Two at once with one thread each. With torch's own threads two at once would take four times as long as in turn.
 notebooks: $(VENV)/.test ## only the notebooks, and their student edition
-	OMP_NUM_THREADS=1 $(BIN)/python -m pytest -q -n auto --nbmake --nbmake-timeout=600 --durations=0 notebooks
+	OMP_NUM_THREADS=1 $(BIN)/python -m pytest -q $(WORKERS) --nbmake --nbmake-timeout=600 --durations=0 notebooks
 
 browser: $(VENV)/.test ## only the tests that need Chromium
 	$(BIN)/python -m pytest -q -m browser
@@ -72,4 +75,4 @@ pretrained: $(VENV)/.lab ## train all shipped weights again (hours)
 	$(BIN)/python -m motiondiff_edu.pretrained
 
 clean: ## remove .venv and what the build left, but for trainings under way (build/runs) and rollouts (build/results)
-	rm -rf $(VENV) build/bdist* build/lib build/quick dist *.egg-info .pytest_cache .ruff_cache
+	rm -rf $(VENV) build/bdist* build/numba build/lib build/quick dist *.egg-info .pytest_cache .ruff_cache
