@@ -52,7 +52,7 @@ def masked(
 
 def both_figures(walker: Walker, dancer: Dancer, trials: Trials, size: RepairSize) -> list[Figure]:
     """For each fault and way: the error of the mean of the repairs, and of one of them, cm."""
-    few = Trials(trials.past[:CLIPS], trials.control[:CLIPS], trials.truth[:CLIPS])
+    few = trials.first(CLIPS)
     found = []
     for fault, break_it in FAULTS.items():
         broken = break_it(few.past)

@@ -98,10 +98,13 @@ def repair_figures(fault: str, walker: Walker, trials: Trials, size: RepairSize)
     return found
 
 
-def table_2(walkers: list[Walker], trials: Trials, size: RepairSize) -> tuple[list[Figure], dict]:
+def table_2(
+    walkers: list[Walker], trials: Trials, size: RepairSize, who: str = ""
+) -> tuple[list[Figure], list[np.ndarray]]:
     """MoDiff's Table II: bone errors with 30 % of the past's joints missing, over those with a complete past.
 
-    `re`: of the repaired window, all bones, our way and (`paper`) the paper's; `ge`: of what follows the broken past.
+    `re`: of the repaired window, all bones, our way and (`paper`) the paper's; `ge`: of what follows the broken past,
+    which is returned as well, one set of walks for each walker. `who` names the walkers.
     """
     frames, broken = trials.truth.shape[1], without(trials.past, SHARE)
     whole = [continued(walker, trials, 0.0, frames, steps=size.steps) for walker in walkers]
@@ -113,11 +116,11 @@ def table_2(walkers: list[Walker], trials: Trials, size: RepairSize) -> tuple[li
     squares = {name: np.stack([squared_bone_error(x) for x in sets]) for name, sets in
                (("whole", whole), ("ge", after), ("re", window), ("re_paper", theirs))}  # fmt: skip
     figures = [
-        Figure(f"table2_bone_{name}_cm", *interval_over_seeds(root_mean, x), "cm") for name, x in squares.items()
+        Figure(f"table2_{who}bone_{name}_cm", *interval_over_seeds(root_mean, x), "cm") for name, x in squares.items()
     ]
     arrays = [squares[name] for name in ("whole", "ge", "re")]
     ratio = interval_over_seeds(lambda w, g, r: max(root_mean(g), root_mean(r)) / root_mean(w), *arrays)
-    return [*figures, Figure("table2_ratio", *ratio, "ratio")], {"complete": whole, "missing": after}
+    return [*figures, Figure(f"table2_{who}ratio", *ratio, "ratio")], after
 
 
 def footsteps(name: str, walks: list[np.ndarray], trials: Trials, rule) -> Figure:

@@ -34,6 +34,10 @@ class Trials:
         poses, control = np.stack([clip.poses for clip in clips]), np.stack([clip.control for clip in clips])
         return cls(poses[:, :T_h], control, poses[:, T_h:])
 
+    def first(self, n: int) -> "Trials":
+        """The first n of them."""
+        return Trials(self.past[:n], self.control[:n], self.truth[:n])
+
     @property
     def asked(self) -> Float[np.ndarray, "N n 3"]:
         """The control of the generated frames."""
