@@ -18,10 +18,12 @@ from .known import known_columns
 from .motion.dance_frame import HIP_LEFT, HIP_RIGHT, Place, placed_features, to_positions
 from .motion.skeleton import HIPS, J
 from .motion.steady_bones import given_lengths, steady_bones
+from .motion.steady_feet import steady_feet
 
 BLEND = 10  # frames within which a correction fades where nothing else is given
 GUIDANCE = 0.5  # more obeys sparse keyframes better, and jumps more at the seams of a gap
-PAPER = {"blend": None, "guidance": 0.0, "bones": False}  # options of `inbetween`: masked sampling as in 4.4
+# options of `inbetween` that make it masked sampling as in 4.4
+PAPER = {"blend": None, "guidance": 0.0, "bones": False, "feet": False}
 
 
 def inbetween(
@@ -37,6 +39,7 @@ def inbetween(
     blend: int | None = BLEND,
     guidance: float = GUIDANCE,
     bones: bool = True,
+    feet: bool = True,
     generator: torch.Generator | None = None,
 ) -> Float[np.ndarray, "samples T 21 3"]:
     """Find what is not known of a motion (metres, 20 frames/s), `samples` times; `mel` for a dancer that hears.
@@ -46,7 +49,8 @@ def inbetween(
     `blend`: the network's guesses are drawn through what is given, at every step, and let go of within so many frames
     where nothing more is given (`blending.blended`). `guidance`: they are moved by its gradient before
     (`inbetweening.guided`), at twice the cost. `bones`: they get the lengths that they have where they are given
-    (`motion.steady_bones`). `**PAPER`: none of the three, masked sampling as in the paper.
+    (`motion.steady_bones`). `feet`: theirs do not slide (`motion.steady_feet`). `**PAPER`: none of the four, masked
+    sampling as in the paper.
     Raises ValueError where a joint is given without the pelvis.  Source: MoFusion 4.4.  Notebook: 15
     """
     columns, place = torch.from_numpy(known_columns(known)), seen_from(positions, known)
@@ -63,7 +67,8 @@ def inbetween(
     *_, last = loop
     made = place.leave(to_positions(dancer.motion_scaler.inverse(last.x_s)).double().numpy())
     whole = np.where(known[..., None], positions, made)
-    return steady_bones(whole, known, given_lengths(positions, known)) if bones else whole
+    whole = steady_bones(whole, known, given_lengths(positions, known)) if bones else whole
+    return steady_feet(whole, known) if feet and known.any() else whole
 
 
 def fading(frames: int) -> Float[Tensor, "63"]:

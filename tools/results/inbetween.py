@@ -16,6 +16,7 @@ from motiondiff_edu.between import PAPER, inbetween
 from motiondiff_edu.dancer import Dancer
 from motiondiff_edu.known import gap
 from motiondiff_edu.metrics.keyframes import keyframe_error, npss, seam_jump, unknown_error
+from motiondiff_edu.metrics.skating import skating
 from motiondiff_edu.motion.dance_frame import at_origin
 
 from .scores import Figure, figure_of, ratio
@@ -102,8 +103,24 @@ def figures_of(one: Filled) -> list[Figure]:
         figure_of("seam_jump_masked_over_data", "ratio", ratio, masked_seam, own),
         figure_of("keyframe_error_cm", "cm", lambda x: 100 * np.max(x), kept),
         *spectra(one, rival),
+        *sliding(one),
     ]
     return found
+
+
+def within(one: Filled, positions: np.ndarray) -> np.ndarray:
+    """The gap, and a frame on either side of it."""
+    first, last = np.flatnonzero(~one.known.any(1))[[0, -1]]
+    return positions[..., first - 1 : last + 2, :, :]
+
+
+def sliding(one: Filled) -> list[Figure]:
+    """How fast planted toes slide within the gap, m/s, in one sample of each motion; clips without any are left out."""
+    made = {"": one.made[0], "_masked": one.masked, "_lines": one.lines, "_data": one.truth}
+    return [
+        figure_of(f"skating{name}_mps", "m/s", np.nanmean, skating(x, np.zeros((*x.shape[:2], 3))))
+        for name, x in ((name, within(one, x)) for name, x in made.items())
+    ]
 
 
 def spectra(one: Filled, rival: str) -> list[Figure]:
@@ -118,8 +135,7 @@ def spectra(one: Filled, rival: str) -> list[Figure]:
         return np.mean([npss(x, flat[0]) for x in flat[2:]]), npss(flat[1], flat[0])
 
     arrays = (one.truth, better, *one.made)
-    first, last = np.flatnonzero(~one.known.any(1))[[0, -1]]
-    velocities = [np.diff(x[:, first - 1 : last + 2], axis=1) for x in arrays]
+    velocities = [np.diff(within(one, x), axis=1) for x in arrays]
     return [
         figure_of("npss", "", lambda *x: scores(*x)[0], *arrays),
         figure_of("npss_interpolation", "", lambda *x: scores(*x)[1], *arrays),

@@ -84,13 +84,15 @@ def inbetweens(records: dict[str, dict], folder: Path) -> str:
     named = METHODS | MASKED
     kinds = [*named, *(f"npss_{of}over_interpolation" for of in ("", "velocity_"))]
     kinds += [*(f"seam_jump{of}_over_data" for of in ("", "_lines", "_masked"))]
+    kinds += [*(f"skating{of}_mps" for of in ("", "_lines", "_masked", "_data"))]
     rows = [[str(g), *(cell(records.get(f"inbetween.gap{g}.{kind}"), unit=False) for kind in kinds)] for g in GAPS]
     text = (
         f"## In-betweens (MoFusion 4.4)\n\nThe unconditional network; {seeds['motions']} unseen walks and dances in "
         f"equal halves, 100 frames each, a gap in the middle; {seeds['samples']} samples of each, {seeds['steps']} "
-        "DDIM steps, every guess guided and drawn through the given frames (`between.inbetween`); `masked`: one sample "
-        "as in the paper, without that. A mean of samples beats any sample on error, and moves less than any: NPSS and "
-        "the jump at the seam are of single samples. Given frames are held exactly: "
+        "DDIM steps, every guess guided and drawn through the given frames, bones kept and feet held at the end "
+        "(`between.inbetween`); `masked`: one sample as in the paper, without that. A mean of samples beats any sample "
+        "on error, and moves less than any: NPSS, the jump at the seam and the sliding of planted toes (`skating`) are "
+        "of single samples. Given frames are held exactly: "
         f"`keyframe_error_cm` is {number(records['inbetween.keyframe_error_cm']['value'])}.\n\n"
     )
     picture = "\n![Errors, spectra and seams over the length of the gap](results/inbetween.png)\n"
