@@ -16,12 +16,14 @@ from .dancer import Dancer
 from .inbetweening import inpaint_steps
 from .known import known_columns
 from .motion.dance_frame import HIP_LEFT, HIP_RIGHT, Place, placed_features, to_positions
-from .motion.skeleton import HIPS, J
+from .motion.directions import ARMS
+from .motion.skeleton import HIPS, JOINTS, J
 from .motion.steady_bones import given_lengths, steady_bones
-from .motion.steady_feet import steady_feet
+from .motion.steady_feet import GROUND, steady_feet
 
 BLEND = 10  # frames within which a correction fades where nothing else is given
 GUIDANCE = 0.5  # more obeys sparse keyframes better, and jumps more at the seams of a gap
+AHEAD = 20  # frames of the path that tell where it leads
 # options of `inbetween` that make it masked sampling as in 4.4
 PAPER = {"blend": None, "guidance": 0.0, "bones": False, "feet": False}
 
@@ -40,19 +42,23 @@ def inbetween(
     guidance: float = GUIDANCE,
     bones: bool = True,
     feet: bool = True,
+    seed: int = 0,
     generator: torch.Generator | None = None,
 ) -> Float[np.ndarray, "samples T 21 3"]:
     """Find what is not known of a motion (metres, 20 frames/s), `samples` times; `mel` for a dancer that hears.
 
-    Known entries come back bit by bit as they were given; the others may be NaN. The motion is seen from the first
-    frame whose pelvis and hips are known (from its own origin where there is none).
+    Known entries come back bit by bit as they were given; the others may be NaN. The motion is `seen_from` where it
+    begins to be known. Numbers are drawn from `generator`, or from a new one with this `seed`.
     `blend`: the network's guesses are drawn through what is given, at every step, and let go of within so many frames
     where nothing more is given (`blending.blended`). `guidance`: they are moved by its gradient before
     (`inbetweening.guided`), at twice the cost. `bones`: they get the lengths that they have where they are given
     (`motion.steady_bones`). `feet`: theirs do not slide (`motion.steady_feet`). `**PAPER`: none of the four, masked
     sampling as in the paper.
-    Raises ValueError where a joint is given without the pelvis.  Source: MoFusion 4.4.  Notebook: 15
+    Raises ValueError where a joint is given without the pelvis, or is given and not a number, and for shapes that do
+    not fit.  Source: MoFusion 4.4.  Notebook: 15
     """
+    positions, known = _checked(positions, known)
+    generator = generator or torch.Generator().manual_seed(seed)
     columns, place = torch.from_numpy(known_columns(known)), seen_from(positions, known)
     at_home = np.where(known[..., None], place.enter(np.nan_to_num(positions)), 0.0)
     given = dancer.motion_scaler.transform(torch.from_numpy(placed_features(at_home)).float())
@@ -79,6 +85,34 @@ def fading(frames: int) -> Float[Tensor, "63"]:
 
 
 def seen_from(positions: Float[np.ndarray, "T 21 3"], known: Bool[np.ndarray, "T 21"]) -> Place:
-    """The place of the first frame whose pelvis and hips are given: near it the motion starts. Else the origin."""
-    whole = known[:, [HIPS, HIP_LEFT, HIP_RIGHT]].all(-1)
-    return Place.of(positions[whole.argmax()]) if whole.any() else Place(np.zeros(3), np.zeros(()))
+    """Where the motion begins to be known, and which way it faces there: near it the network's motions start.
+
+    By the first frame that gives pelvis and hips, or else pelvis and shoulders; or else by the path of the pelvis,
+    which is taken to go forward. The world's origin where not even that is known.
+    """
+    for left, right in ((HIP_LEFT, HIP_RIGHT), ARMS):
+        whole = known[:, [HIPS, left, right]].all(-1)
+        if whole.any():
+            pose = positions[whole.argmax()]
+            across = pose[left] - pose[right]
+            return Place(pose[HIPS] * GROUND, np.array(np.arctan2(-across[2], across[0])))
+    path = positions[known[:, HIPS], HIPS]
+    if not len(path):
+        return Place(np.zeros(3), np.zeros(()))
+    ahead = path[min(AHEAD, len(path) - 1)] - path[0]
+    return Place(path[0] * GROUND, np.array(np.arctan2(ahead[0], ahead[2])))
+
+
+def _checked(positions, known) -> tuple[Float[np.ndarray, "T 21 3"], Bool[np.ndarray, "T 21"]]:
+    """Both as arrays of numpy, if they fit and what is given are numbers."""
+    positions, known = np.asarray(positions), np.asarray(known)
+    if positions.shape[1:] != (J, 3) or known.shape != positions.shape[:2] or known.dtype != bool:
+        raise ValueError(
+            f"it takes positions (T, {J}, 3) and a mask (T, {J}) of True and False, not {positions.shape} and "
+            f"{known.shape} of {known.dtype}"
+        )
+    wrong = np.argwhere(known & ~np.isfinite(positions).all(-1))
+    if len(wrong):
+        frame, joint = wrong[0]
+        raise ValueError(f"{JOINTS[joint]} in frame {frame} is given and not a number: mend it, or do not give it")
+    return positions, known

@@ -31,12 +31,22 @@ def known_frames(T: int, frames: Iterable[int], joints: Sequence[str] = JOINTS) 
 
 
 def seed(T: int, frames: int = 40) -> Bool[np.ndarray, "{T} J"]:
-    """The first frames are given, the rest is to be made: 40 frames, 2 s.  Source: MoFusion 4.4.  Notebook: 15"""
+    """The first frames are given, the rest is to be made: 40 frames, 2 s.  Source: MoFusion 4.4.  Notebook: 15
+
+    Raises ValueError for a seed that is longer than the motion.
+    """
+    if not 0 <= frames <= T:
+        raise ValueError(f"a seed of {frames} frames does not fit into {T}: say how many with frames=")
     return known_frames(T, range(frames))
 
 
 def keyframes(T: int, every: int) -> Bool[np.ndarray, "{T} J"]:
-    """Every so many frames one is given, the last one as well.  Notebook: 15"""
+    """Every so many frames one is given, the last one as well.  Notebook: 15
+
+    Raises ValueError for every < 1.
+    """
+    if every < 1:
+        raise ValueError(f"a keyframe every {every} frames: it takes 1 (all of them) or more")
     return known_frames(T, sorted({*range(0, T, every), T - 1}))
 
 

@@ -65,8 +65,13 @@ class Walker:
         """The fast twin, built at first use."""
         return (FastFoothold if isinstance(self.model, FootholdMoDiff) else FastMoDiff)(self.model)
 
-    def denoiser(self, past: Float[Tensor, "B T_h D"], control: Float[Tensor, "B T C"]):
-        """`denoise(x_s, s) -> eps_hat` for this past and control, in the network's units."""
+    def denoiser(self, past: Float[Tensor, "B T_h D"], control: Float[Tensor, "B T C"], fast: bool = True):
+        """`denoise(x_s, s) -> eps_hat` for this past and control, in the network's units.
+
+        `fast`: by the fast twin; it cannot be differentiated.
+        """
+        if not fast:
+            return denoiser_of(lambda x_s, s: self.model(x_s, s, past, control), self.schedule, self.config.target)
         context = self.fast.encode(past, control)
         return denoiser_of(lambda x_s, s: self.fast.denoise(x_s, s, context), self.schedule, self.config.target)
 

@@ -12,7 +12,7 @@ from torch import Tensor
 from .inbetweening import inpaint_steps
 from .rollout import rollout_steps
 
-RESAMPLE = 3  # of masked_back
+GUIDANCE = 0.5  # of masked_back
 Frames = Float[Tensor, "B T_h D"]
 
 
@@ -32,11 +32,13 @@ def held_back(
     return walker.pose_scaler.inverse(torch.stack(rows, 1))
 
 
-@torch.inference_mode()
+@torch.no_grad()
 def masked_back(
     walker, ahead: Frames, control: Float[Tensor, "B T C"], given: Frames, known: Bool[Tensor, "B _ _"], **options
 ) -> Frames:
-    """All at once: the walker's one window, sampled with its known entries held (`inbetweening.inpaint_steps`).
+    """All at once: the walker's one window, sampled with its known entries held and guided by them.
+
+    The sampling is `inbetweening.inpaint_steps`.
 
     Raises ValueError for a walker that predicts fewer poses than it is given.  Notebook: 10, 15
     """
@@ -45,9 +47,9 @@ def masked_back(
         raise ValueError(f"a window of {config.T_p} frames cannot hold the {config.T_h} of a past; use held_back")
     given, ahead = (walker.pose_scaler.transform(x.float()) for x in (given, ahead))
     given, known = _longer(given, config.T_p, 0.0), _longer(known, config.T_p, False)
-    denoise = walker.denoiser(ahead, walker.control_scaler.transform(control.float()))
+    denoise = walker.denoiser(ahead, walker.control_scaler.transform(control.float()), fast=False)
     start = torch.randn(given.shape, generator=options["generator"])
-    settings = {"steps": options["steps"] or config.S, "resample": RESAMPLE, "generator": options["generator"]}
+    settings = {"steps": options["steps"] or config.S, "guidance": GUIDANCE, "generator": options["generator"]}
     for step in inpaint_steps(denoise, start, walker.schedule, given, known, **settings):
         last = step
     return walker.pose_scaler.inverse(last.x_s[:, : config.T_h])

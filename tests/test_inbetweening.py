@@ -2,22 +2,26 @@
 
 from functools import partial
 
+import jaxtyping
 import numpy as np
 import pytest
 import torch
 
 from data_synth.mixtures import crossed_bars
 from data_synth.walking import random_control, walk
-from motiondiff_edu.between import inbetween
+from motiondiff_edu import checkpoints
+from motiondiff_edu.between import PAPER, fading, inbetween, seen_from
 from motiondiff_edu.blending import blended
 from motiondiff_edu.dancer import Dancer
 from motiondiff_edu.ddpm import cosine_schedule
 from motiondiff_edu.exact import conditional, exact_denoiser, log_density, mixture, sample_mixture
 from motiondiff_edu.fast.samplers import ddim_steps
 from motiondiff_edu.inbetweening import guided, inpaint_steps
-from motiondiff_edu.known import body_part, gap, keyframes, known_columns, known_frames, seed
+from motiondiff_edu.known import PARTS, body_part, gap, keyframes, known_columns, known_frames, seed
+from motiondiff_edu.metrics.bone_lengths import bone_lengths
+from motiondiff_edu.metrics.keyframes import seam_jump
 from motiondiff_edu.mofusion import MoFusion, MoFusionConfig
-from motiondiff_edu.motion.dance_frame import Place, to_positions
+from motiondiff_edu.motion.dance_frame import Place, facing, to_positions
 from motiondiff_edu.motion.root_frame import to_world
 from motiondiff_edu.motion.scaler import Scaler
 
@@ -157,12 +161,59 @@ def test_all_known_is_the_input_and_nothing_known_is_a_plain_sample():
     np.testing.assert_allclose(made, to_positions(one.motion_scaler.inverse(plain)), atol=1e-5)
 
 
-def test_where_the_motion_stands_and_faces_does_not_matter():
-    """The same motion elsewhere: what is made is the same, elsewhere."""
-    truth, known, one = clip(), seed(40, 10), dancer()
+@pytest.mark.parametrize("known", [seed(40, 10), *(body_part(40, part) for part in PARTS)])
+def test_where_the_motion_stands_and_faces_does_not_matter(known):
+    """The same motion elsewhere: what is made is the same, elsewhere; whatever part of the body is given."""
+    truth, one = clip(), dancer()
     place = Place(np.array([1.0, 0.0, -5.0]), np.array(2.1))
     here, there = (inbetween(one, x, known, steps=5, generator=seeded(3)) for x in (truth, place.leave(truth)))
     np.testing.assert_allclose(place.enter(there), here, atol=1e-4)
+
+
+def test_a_trajectory_is_walked_forward():
+    """Nothing tells where the figure faces but its path: it is seen from where it begins, along the path."""
+    path = np.full((40, 21, 3), np.nan)
+    path[:, 0] = np.array([7.0, 0.9, 1.0]) + np.linspace(0, 3, 40)[:, None] * [1.0, 0.0, 0.0]
+    place = seen_from(path, body_part(40, "trajectory"))
+    assert place.ground.tolist() == [7.0, 0.0, 1.0] and place.heading == pytest.approx(np.pi / 2)
+    shoulders = seen_from(clip() + [3.0, 0.0, 0.0], body_part(40, "upper body"))
+    assert shoulders.heading == pytest.approx(facing(clip())[0], abs=0.3)
+
+
+def test_what_sets_it_apart_from_the_papers_masking():
+    """Each option does what it is for; each is on by default but for resampling."""
+    truth, known, one = clip(), gap(40, 12, 14), checkpoints.pretrained("unconditional")
+
+    def made(**options):
+        return inbetween(one, truth, known, samples=2, steps=5, seed=4, **options)
+
+    usual, plain, torn = made(), made(**PAPER), made(bones=False, feet=False)
+    assert seam_jump(usual, known).mean() < 0.5 * seam_jump(plain, known).mean()
+    lengths = bone_lengths(truth)[0]
+    assert np.abs(bone_lengths(usual) - lengths).max() < 2e-3 < 0.02 < np.abs(bone_lengths(torn) - lengths).max()
+    changed = [made(**{name: value}) for name, value in (("guidance", 0.0), ("feet", False), ("resample", 2))]
+    assert all(np.abs(x - usual).max() > 1e-3 for x in (*changed, made(blend=None)))
+    ends = [inbetween(one, truth, seed(40, 10), steps=5, blend=frames) for frames in (2, 10)]
+    assert np.abs(ends[0] - ends[1])[:, 10:20].max() > 1e-3
+    other = inbetween(one, truth, known, samples=2, steps=5, seed=5)
+    assert np.array_equal(usual, made()) and not np.array_equal(usual, other)
+    fade = fading(10).reshape(21, 3)
+    assert np.isinf(fade[0, [0, 2]]).all() and (fade[1:] == 10).all() and fade[0, 1] == 10
+
+
+@pytest.mark.parametrize(
+    ("spoil", "message"),
+    [
+        (lambda x, k: (x, k[:-1]), r"\(40, 21, 3\) and \(39, 21\) of bool"),
+        (lambda x, k: (x.reshape(40, 63), k), r"positions \(T, 21, 3\)"),
+        (lambda x, k: (x, k.astype(int)), "of int64"),
+        (lambda x, k: (np.where(np.arange(21)[:, None] == 4, np.nan, x), k), "LeftToeBase in frame 0 is given"),
+    ],
+)
+def test_what_cannot_be_given_is_said(spoil, message, monkeypatch):
+    monkeypatch.setattr(jaxtyping.config, "jaxtyping_disable", True)  # as in a notebook, where no shape is checked
+    with pytest.raises(ValueError, match=message):
+        inbetween(dancer(), *spoil(clip(), seed(40, 10)), steps=5)
 
 
 def test_blending_carries_the_correction_and_fades():

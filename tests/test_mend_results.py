@@ -40,7 +40,7 @@ class Standing:
 
         return sample
 
-    def denoiser(self, past, control):
+    def denoiser(self, past, control, fast=True):
         return lambda x, s: x / (1 - self.schedule.alpha_bar[s]).sqrt().view(-1, 1, 1).to(x)
 
 

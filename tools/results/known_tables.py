@@ -53,7 +53,8 @@ def both(records: dict[str, dict]) -> str:
     return (
         "## Both papers' repairs (MoDiff III-E beside MoFusion 4.4)\n\nThe same holes in ten past frames, filled by a "
         "walker there and back (as in the paper; `_masked`: what is known held on the way back) and by the "
-        "unconditional network under a mask (as in the paper; `_blended`). Both know where the pelvis goes, then and "
-        f"for ten frames more. Errors in cm of what was missing, of the mean of {seeds['samples']} repairs and of one; "
+        "unconditional network under a mask (as in the paper; `_blended`: by `between.inbetween`). Both know where the "
+        "walk goes, then and for ten frames more: the one by its control, the other by the pelvis itself, which is not "
+        f"scored. Errors in cm of what was missing, of the mean of {seeds['samples']} repairs and of one; "
         f"{seeds['clips']} unseen pasts.\n\n" + table(head, rows)
     )

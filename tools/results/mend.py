@@ -9,25 +9,29 @@ from .mend_trials import SHARE, names_of
 from .parts import Bench, weights_digest
 from .trials import UNSEEN
 
-PAIRS_CLIPS = 40  # pasts from which the small walkers walk on for 12 s, three trainings of them
+KEEP = 5  # poses of every window of ten; frame by frame, each has noise of its own, and heels crawl
+FEW = 40  # pasts of what stands beside Table II
 
 
 def records(bench: Bench, size: RepairSize, command: str) -> list[dict]:
-    """Everything of the part: pairs of small walkers, repairs by the shipped walker, Table II by it and by the pairs.
+    """Everything of the part: pairs of small walkers, repairs by the shipped walker, Table II.
 
-    The pairs show what dropout does; whoever repairs a walk takes the walker that was trained for longer.
+    Table II is of the small walkers with dropout, frame by frame. Beside them: the same with half of every window kept,
+    and the shipped walker, which was trained for longer, without dropout.
     """
     trials, weights = bench.trials, bench.weights
     best, pairs = (
         [checkpoints.load_walker(weights[name]) for name in names] for names in (["walker"], names_of("dropout"))
     )
     figures = [one for fault in FAULTS for one in repair_figures(fault, best[0], trials, size)]
-    for who, walkers, asked in (("", best, trials), ("pairs_", pairs, trials.first(PAIRS_CLIPS))):
-        second, after = table_2(walkers, asked, size, who)
+    few = trials.first(FEW)
+    tried = (("", pairs, trials, 1), (f"keep{KEEP}_", pairs, trials, KEEP), ("walker_", best, few, 1))
+    for who, walkers, asked, keep in tried:
+        second, after = table_2(walkers, asked, size, who, keep)
         figures += second
         for suffix, rule in (("", ROBUST), ("_paper", PAPER)):
             figures.append(footsteps(f"footsteps_{who}over_data{suffix}", after, asked, rule))
     seeds = {"data": UNSEEN, "clips": len(trials.past), "missing": SHARE, "samples": size.samples}
-    seeds |= {"rounds": size.rounds, "steps": size.steps, "clips_of_pairs": PAIRS_CLIPS}
+    seeds |= {"rounds": size.rounds, "steps": size.steps, "keep": KEEP, "clips_beside": FEW}
     seeds |= {"weights": [weights_digest(weights[name]) for name in ("walker", *names_of("dropout"))]}
     return dropout_records(trials, weights, command) + [one.as_record("mend.", seeds, command) for one in figures]

@@ -4,7 +4,7 @@ Source: MoDiff III-E, IV-C, Table II, Fig. 6.  Notebook: 10
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import torch
@@ -41,6 +41,7 @@ class RepairSize:
 
 
 FULL, QUICK = RepairSize(), RepairSize(samples=2, rounds=1, steps=3)
+PAPER_SAMPLES = 3  # of the paper's own repairs, which stand beside
 
 
 def repaired(
@@ -81,12 +82,12 @@ def repair_figures(fault: str, walker: Walker, trials: Trials, size: RepairSize)
     """The mean of the repairs, one of them, the paper's repairs, and the rivals' guesses, all in cm; and over rivals.
 
     Ours begin with what ridge regression guesses, hold what is known on the way back, too, and keep bones; the paper's
-    begin with the mean pose and do neither. Intervals are over pasts.
+    begin with the mean pose and do neither (the mean is of fewer). Intervals are over pasts.
     """
     broken = FAULTS[fault](trials.past)
     guesses = rivals(broken, trials)
     ours = repaired(walker, trials, broken, size, masked_back, guesses["ridge"], bones=True)
-    theirs = repaired(walker, trials, broken, size)
+    theirs = repaired(walker, trials, broken, replace(size, samples=min(size.samples, PAPER_SAMPLES)))
     each = {"": ours.mean(0), "one_": ours[0], "paper_": theirs.mean(0), "paper_one_": theirs[0]}
     rows = {f"{name}rmse_cm": squared_errors(made, trials.past, broken) for name, made in each.items()}
     others = {name: squared_errors(guess, trials.past, broken) for name, guess in guesses.items()}
@@ -95,26 +96,32 @@ def repair_figures(fault: str, walker: Walker, trials: Trials, size: RepairSize)
     for name, row in others.items():
         over = f"{fault}_rmse_over_{name}", "ratio", lambda a, b: root_nanmean(a) / root_nanmean(b)
         found.append(figure_of(*over, rows["rmse_cm"], row))
+        won = f"{fault}_nearer_than_{name}", "share", lambda a, b: float(np.nanmean(np.where(np.isnan(b), b, a < b)))
+        found.append(figure_of(*won, rows["rmse_cm"], row))
     return found
 
 
 def table_2(
-    walkers: list[Walker], trials: Trials, size: RepairSize, who: str = ""
+    walkers: list[Walker], trials: Trials, size: RepairSize, who: str = "", keep: int = 1
 ) -> tuple[list[Figure], list[np.ndarray]]:
     """MoDiff's Table II: bone errors with 30 % of the past's joints missing, over those with a complete past.
 
-    `re`: of the repaired window, all bones, our way and (`paper`) the paper's; `ge`: of what follows the broken past,
-    which is returned as well, one set of walks for each walker. `who` names the walkers.
+    `re`: of the repaired window, all bones, our way as it comes from the network (`re_bones`: bones kept) and (`paper`)
+    the paper's; `ge`: of what follows the broken past, which is returned as well, one set of walks for each walker.
+    `who` names them; they keep `keep` poses of a window.
     """
     frames, broken = trials.truth.shape[1], without(trials.past, SHARE)
-    whole = [continued(walker, trials, 0.0, frames, steps=size.steps) for walker in walkers]
-    after = [continued(walker, trials, SHARE, frames, steps=size.steps) for walker in walkers]
+    whole = [continued(walker, trials, 0.0, frames, steps=size.steps, keep=keep) for walker in walkers]
+    after = [continued(walker, trials, SHARE, frames, steps=size.steps, keep=keep) for walker in walkers]
     once = RepairSize(1, size.rounds, size.steps)
     guess = rivals(broken, trials)["ridge"]
-    window = [repaired(walker, trials, broken, once, masked_back, guess, bones=True)[0] for walker in walkers]
+    window, settled = (
+        [repaired(walker, trials, broken, once, masked_back, guess, bones)[0] for walker in walkers]
+        for bones in (False, True)
+    )
     theirs = [repaired(walker, trials, broken, once)[0] for walker in walkers]
-    squares = {name: np.stack([squared_bone_error(x) for x in sets]) for name, sets in
-               (("whole", whole), ("ge", after), ("re", window), ("re_paper", theirs))}  # fmt: skip
+    sets = {"whole": whole, "ge": after, "re": window, "re_bones": settled, "re_paper": theirs}
+    squares = {name: np.stack([squared_bone_error(x) for x in each]) for name, each in sets.items()}
     figures = [
         Figure(f"table2_{who}bone_{name}_cm", *interval_over_seeds(root_mean, x), "cm") for name, x in squares.items()
     ]

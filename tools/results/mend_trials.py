@@ -41,12 +41,15 @@ def columns_of(known: Bool[np.ndarray, "N T J"]) -> Bool[torch.Tensor, "N T D"]:
 
 
 def continued(
-    walker: Walker, trials: Trials, share: float, frames: int, seed: int = 0, steps: int | None = None
+    walker: Walker, trials: Trials, share: float, frames: int, seed: int = 0, steps: int | None = None, keep: int = 1
 ) -> Float[np.ndarray, "N n J 3"]:
-    """The next `frames` after a past of which a share of the joints is missing; control held, as in all figures."""
+    """The next `frames` after a past of which a share of the joints is missing; control held, as in all figures.
+
+    `keep` poses of every predicted window are kept.
+    """
     past, _ = as_given(walker, without(trials.past, share))
     control = torch.from_numpy(trials.control[:, : past.shape[1] + frames]).float()
-    made = rollout.generate(walker, past, control, seed=seed, steps=steps)
+    made = rollout.generate(walker, past, control, seed=seed, steps=steps, keep=keep)
     return made.unflatten(-1, (-1, 3)).double().numpy()
 
 
