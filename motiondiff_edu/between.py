@@ -23,7 +23,7 @@ from .motion.steady_feet import GROUND, steady_feet
 
 BLEND = 10  # frames within which a correction fades where nothing else is given
 GUIDANCE = 0.5  # more obeys sparse keyframes better, and jumps more at the seams of a gap
-AHEAD = 20  # frames of the path that tell where it leads
+AHEAD, SOMEWHERE = 20, 0.5  # frames of the path that tell where it leads, if so far (metres)
 # options of `inbetween` that make it masked sampling as in 4.4
 PAPER = {"blend": None, "guidance": 0.0, "bones": False, "feet": False}
 
@@ -88,7 +88,7 @@ def seen_from(positions: Float[np.ndarray, "T 21 3"], known: Bool[np.ndarray, "T
     """Where the motion begins to be known, and which way it faces there: near it the network's motions start.
 
     By the first frame that gives pelvis and hips, or else pelvis and shoulders; or else by the path of the pelvis,
-    which is taken to go forward. The world's origin where not even that is known.
+    which is taken to go forward (along z where it goes nowhere at first). The world's origin where nothing is known.
     """
     for left, right in ((HIP_LEFT, HIP_RIGHT), ARMS):
         whole = known[:, [HIPS, left, right]].all(-1)
@@ -100,7 +100,8 @@ def seen_from(positions: Float[np.ndarray, "T 21 3"], known: Bool[np.ndarray, "T
     if not len(path):
         return Place(np.zeros(3), np.zeros(()))
     ahead = path[min(AHEAD, len(path) - 1)] - path[0]
-    return Place(path[0] * GROUND, np.array(np.arctan2(ahead[0], ahead[2])))
+    goes = np.hypot(ahead[0], ahead[2]) > SOMEWHERE
+    return Place(path[0] * GROUND, np.array(np.arctan2(ahead[0], ahead[2]) if goes else 0.0))
 
 
 def _checked(positions, known) -> tuple[Float[np.ndarray, "T 21 3"], Bool[np.ndarray, "T 21"]]:

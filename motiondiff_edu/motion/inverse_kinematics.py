@@ -12,12 +12,13 @@ from jaxtyping import Float
 
 from .bvh_fit import least_turn
 from .directions import ARMS, SPINE1, UPLEGS, unit
-from .planting import STRAIGHTEST, pelvis_ahead, perpendicular
+from .planting import pelvis_ahead, perpendicular
 from .skeleton import HEELS, HIPS, JOINTS, PARENTS, J
 
 Pose = Float[np.ndarray, "21 3"]
 Point = Float[np.ndarray, "3"]
 
+STRAIGHTEST = 0.9995  # of its length: a limb is not stretched further, or its bend would have no side
 STIFF = 0.03  # m: a joint so near to the line through its limb shows no side to bend to; the body's own is mixed in
 PELVIS = (HIPS, *UPLEGS)  # one rigid piece
 

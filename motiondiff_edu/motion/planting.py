@@ -12,8 +12,7 @@ from .normalise import speed
 from .skeleton import BONE_LENGTHS, HEELS, TOES
 
 THIGH, SHANK = float(BONE_LENGTHS[1]), float(BONE_LENGTHS[2])
-STRAIGHTEST = 0.9995  # of its length: a limb is not stretched further, or its bend would have no side
-REACH = STRAIGHTEST * (THIGH + SHANK)
+REACH = 0.9995 * (THIGH + SHANK)
 LOW, STILL = 0.04, 0.4  # m and m/s: a toe lower and slower than this is planted
 
 
@@ -100,17 +99,15 @@ def solve_leg(
     ankle: Float[np.ndarray, "T 3"],
     knee: Float[np.ndarray, "T 3"],
     ahead: Float[np.ndarray, "T 3"],
-    thigh: float = THIGH,
-    shank: float = SHANK,
 ) -> tuple[Float[np.ndarray, "T 3"], Float[np.ndarray, "T 3"]]:
     """Knee and ankle with thigh and shank at their lengths; the knee bends to the side where it was, never back.
 
     An ankle out of reach is drawn in along the line from the hip.
     """
     line = unit(ankle - hip)
-    distance = np.clip(np.linalg.norm(ankle - hip, axis=-1), 0.2, STRAIGHTEST * (thigh + shank))
-    along = (thigh**2 - shank**2 + distance**2) / (2 * distance)
-    height = np.sqrt(np.maximum(thigh**2 - along**2, 0))
+    distance = np.clip(np.linalg.norm(ankle - hip, axis=-1), 0.2, REACH)
+    along = (THIGH**2 - SHANK**2 + distance**2) / (2 * distance)
+    height = np.sqrt(np.maximum(THIGH**2 - along**2, 0))
     side = perpendicular(knee - hip, line)
     front = unit(perpendicular(ahead, line))
     forward = np.einsum("ti,ti->t", side, front)

@@ -8,8 +8,8 @@ Source: foot-skate cleanup for motion capture (Kovar and others, 2002), shortene
 import numpy as np
 from jaxtyping import Bool, Float
 
-from .directions import unit
-from .planting import pelvis_ahead, solve_leg, spans
+from .inverse_kinematics import bends_to, two_bones
+from .planting import spans
 from .skeleton import HEELS, TOES
 
 LOW, SLOW = 0.05, 1.0  # m above the floor and m/s: a toe under both is taken to stand, however it slides
@@ -28,24 +28,20 @@ def steady_feet(
     """
     every = np.array(positions, np.float64).reshape(-1, *positions.shape[-3:])
     for moved in every:
-        ahead = pelvis_ahead(moved)
         for toe, heel in zip(TOES, HEELS, strict=True):
-            _steady_leg(moved, known, toe, heel, ahead, fps)
+            _steady_leg(moved, known, toe, heel, fps)
     return np.where(known[..., None], positions, every.reshape(positions.shape))
 
 
-def _steady_leg(moved, known, toe: int, heel: int, ahead: Float[np.ndarray, "T 3"], fps: float) -> None:
-    """One leg, in place: hip, knee, ankle and toe are neighbours in the skeleton."""
-    knee, hip = heel - 1, heel - 2
-    free = ~known[:, [knee, heel, toe]].any(1)
-    if not free.any():
-        return
+def _steady_leg(moved, known, toe: int, heel: int, fps: float) -> None:
+    """One leg, in place: hip, knee, ankle and toe are neighbours in the skeleton. The foot keeps its direction."""
+    leg = [heel - 2, heel - 1, heel]
+    free = ~known[:, [*leg[1:], toe]].any(1)
     shift = to_stands(moved[:, toe], ~free, fps)
-    foot = moved[:, toe] - moved[:, heel]
-    bones = [np.median(np.linalg.norm(moved[:, a] - moved[:, b], axis=-1)) for a, b in ((hip, knee), (knee, heel))]
-    bent, ankle = solve_leg(moved[:, hip], moved[:, heel] + shift, moved[:, knee], unit(unit(foot) + ahead), *bones)
-    for joint, place in ((knee, bent), (heel, ankle), (toe, ankle + foot)):
-        moved[free, joint] = place[free]
+    for t in np.flatnonzero(free & shift.any(1)):
+        foot = moved[t, toe] - moved[t, heel]
+        moved[t, leg] = two_bones(moved[t, leg], moved[t, heel] + shift[t], bends_to(moved[t], leg[0]))
+        moved[t, toe] = moved[t, heel] + foot
 
 
 def to_stands(toe: Float[np.ndarray, "T 3"], given: Bool[np.ndarray, " T"], fps: float) -> Float[np.ndarray, "T 3"]:
