@@ -177,6 +177,8 @@ def test_blending_carries_the_correction_and_fades():
     torch.testing.assert_close(stays[:, 1], torch.tensor([0, 0, 1, 1.5, 2, 2.5, 3, 0, 0]))
     right = torch.randn(1, 9, 2)
     assert torch.equal(blended(right, right, ~given.isnan(), 3), right)
+    with torch.device("meta"):  # another default device: what is made must go by the inputs
+        assert torch.equal(blended(made, given, ~given.isnan(), 3)[0], out)
 
 
 def test_blending_at_every_step_leaves_no_jump_where_masking_does():
