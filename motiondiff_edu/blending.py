@@ -20,7 +20,7 @@ def blended(
     Ours: a network's guess and the given need not agree, and else the difference is a jump where they meet.
     """
     T = x0_hat.shape[1]
-    frames = torch.arange(T).view(1, T, 1).expand(known.shape)
+    frames = torch.arange(T, device=x0_hat.device).view(1, T, 1).expand(known.shape)
     before = torch.where(known, frames, -1).cummax(1).values  # the known frame behind each frame, -1 for none
     after = torch.where(known, frames, T).flip(1).cummin(1).values.flip(1)  # the one ahead, T for none
     wrong = (given - x0_hat).where(known, 0.0)

@@ -40,13 +40,13 @@ class Edit:
 
     def pin(self, frame: int, pose: Pose | None = None) -> "Edit":
         """A frame held as a keyframe: as it is in the motion, or in this pose.  Raises IndexError outside of it."""
-        frame = self._frame(frame)
-        pose = self.motion[frame] if pose is None else np.asarray(pose, np.float64)
+        frame = self.index(frame)
+        pose = np.array(self.motion[frame] if pose is None else pose, np.float64)  # a copy: a pin is nobody else's
         return replace(self, pins={**self.pins, frame: pose}, moved=_without(self.moved, frame))
 
     def unpin(self, frame: int) -> "Edit":
         """A frame is let go, and with it what was dragged there."""
-        frame = self._frame(frame)
+        frame = self.index(frame)
         return replace(self, pins=_without(self.pins, frame), moved=_without(self.moved, frame))
 
     def drag(self, frame: int, joint: str, target: Float[np.ndarray, "3"]) -> "Edit":
@@ -54,7 +54,7 @@ class Edit:
 
         Raises ValueError for a frame that is not pinned, KeyError for a name that no joint has.
         """
-        frame = self._frame(frame)
+        frame = self.index(frame)
         if frame not in self.pins:
             raise ValueError(f"frame {frame} is not pinned: pin it first, then drag its joints")
         pose = drag(self.pins[frame], joint_index(joint), np.asarray(target, np.float64))
@@ -99,7 +99,8 @@ class Edit:
             words[0] += f" ({len(self.moved)} edited)"
         return ", ".join(words + ([] if self.part is None else [f"{self.part} kept"]))
 
-    def _frame(self, frame: int) -> int:
+    def index(self, frame: int) -> int:
+        """A frame's number from 0 on; -1 is the last frame.  Raises IndexError outside of the motion."""
         if not -len(self) <= frame < len(self):
             raise IndexError(f"frame {frame} is not within a motion of {len(self)} frames (0 to {len(self) - 1})")
         return int(frame) % len(self)
@@ -184,7 +185,7 @@ def _asked(edit: Edit, make: Make, generator: torch.Generator, extra: dict) -> F
 
 def drag_in_words(before: Edit, after: Edit, frame: int, joint: str, target: Float[np.ndarray, "3"]) -> str:
     """How far a drag has moved a joint, and how far from its target it had to stop."""
-    j = joint_index(joint)
+    j, frame = joint_index(joint), after.index(frame)
     old, new = before.pins[frame][j], after.pins[frame][j]
     words = f"moved by {CM * np.linalg.norm(new - old):.0f} cm"
     short = CM * np.linalg.norm(np.asarray(target) - new)

@@ -9,6 +9,7 @@ import torch
 from jaxtyping import Bool, Float
 from torch import Tensor
 
+from .ddpm import draw
 from .inbetweening import inpaint_steps
 from .rollout import rollout_steps
 
@@ -48,7 +49,7 @@ def masked_back(
     given, ahead = (walker.pose_scaler.transform(x.float()) for x in (given, ahead))
     given, known = _longer(given, config.T_p, 0.0), _longer(known, config.T_p, False)
     denoise = walker.denoiser(ahead, walker.control_scaler.transform(control.float()), fast=False)
-    start = torch.randn(given.shape, generator=options["generator"])
+    start = draw(given, options["generator"])
     settings = {"steps": options["steps"] or config.S, "guidance": GUIDANCE, "generator": options["generator"]}
     for step in inpaint_steps(denoise, start, walker.schedule, given, known, **settings):
         last = step
@@ -57,4 +58,4 @@ def masked_back(
 
 def _longer(x: Tensor, frames: int, fill: float) -> Tensor:
     """As many frames as the walker's window has; the rest is not known."""
-    return torch.cat([x, torch.full((len(x), frames - x.shape[1], x.shape[2]), fill, dtype=x.dtype)], 1)
+    return torch.cat([x, x.new_full((len(x), frames - x.shape[1], x.shape[2]), fill)], 1)

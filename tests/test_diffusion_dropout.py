@@ -4,7 +4,7 @@ import pytest
 import torch
 
 from motiondiff_edu.ddpm import linear_schedule
-from motiondiff_edu.diffusion_dropout import P_D, diffusion_dropout, dropout_rate, frame_dropout, zeroing
+from motiondiff_edu.diffusion_dropout import P_D, Dropout, diffusion_dropout, dropout_rate, frame_dropout, zeroing
 
 SCHEDULE = linear_schedule(100)
 
@@ -41,6 +41,30 @@ def test_a_noised_past_has_the_target_s_step_or_one_of_its_own(shared):
         assert many == pytest.approx((1 - SCHEDULE.alpha_bar[95].item()) ** 0.5, rel=0.02)
     else:
         assert few == pytest.approx(many, abs=0.04)
+
+
+def test_steps_of_its_own_are_drawn_evenly_from_all():
+    """The variance of each noised past tells its step; in order, they are the schedule's."""
+    past = torch.zeros(4000, 40, 50)
+    out = diffusion_dropout(past, torch.ones(4000, dtype=torch.int64), SCHEDULE, 1.0, seeded(6), shared=False)
+    found, quantiles = out.flatten(1).var(1), torch.tensor([0.02, 0.25, 0.5, 0.75, 0.98])
+    wanted = (1 - SCHEDULE.alpha_bar[1:]).float()
+    torch.testing.assert_close(found.quantile(quantiles), wanted.quantile(quantiles), atol=0.01, rtol=0.08)
+    assert found.max() > 0.95 * wanted[-1]
+
+
+@pytest.mark.parametrize("shared", [True, False])
+def test_a_training_s_dropout_goes_by_what_is_done_and_by_its_own_choice_of_steps(shared):
+    dropout = Dropout(SCHEDULE, lambda done: float(done >= 0.5), steps=8, shared=shared)
+    past, s = torch.zeros(400, 40, 50), torch.full((400,), 10)
+    touched = []
+    for step in range(8):
+        dropout.now(step)
+        out = dropout(past, s, seeded(step))
+        touched.append((out != past).flatten(1).any(1).float().mean().item())
+    assert touched == [0.0] * 4 + [1.0] * 4
+    spread = out.flatten(1).var(1).std().item()  # of noise levels, not of noise: one level for all, or many
+    assert spread < 0.01 if shared else spread > 0.1
 
 
 def test_rivals_set_frames_or_whole_pasts_to_zero():

@@ -57,6 +57,20 @@ def test_a_dragged_joint_changes_its_frame_alone_and_the_edit_before_stays(motio
     assert "its bones reach no further" in drag_in_words(before, far, 7, "RightHand", motion[7, HAND] + [9.0, 0, 0])
 
 
+def test_a_pin_is_a_copy(motion):
+    mine, pose = np.array(motion), np.array(motion[9])
+    edit = Edit(mine).pin(3).pin(5, pose)
+    edit.pins[3][:] = edit.pins[5][:] = 0
+    assert np.array_equal(mine, motion) and np.array_equal(pose, motion[9])
+
+
+def test_frames_count_from_the_end_as_well(motion):
+    before, target = Edit(motion).pin(-1), motion[-1, HAND] + [0.1, 0.2, 0.0]
+    after = before.drag(-1, "RightHand", target)
+    assert (before.index(-1), before.index(0)) == (T - 1, 0) and list(after.moved) == [T - 1]
+    assert drag_in_words(before, after, -1, "RightHand", target) == "moved by 22 cm"
+
+
 def test_a_frame_can_be_pinned_in_another_pose_and_a_torn_one_is_told(motion):
     edit = Edit(motion).pin(5, motion[9])
     assert np.array_equal(edit.positions[5], motion[9]) and edit.torn == ()

@@ -55,6 +55,17 @@ def test_the_page_is_told_what_is_held(motion):
     assert editor.known[:, HAND].all() and editor.known.any(1).all() and editor.samples is None
 
 
+def test_the_last_frame_by_its_number_from_the_end_is_the_same_frame(motion):
+    editor, target = Editor(motion, guess), motion[-1, HAND] + [0, 0.2, 0.05]
+    assert editor.pin(-1) == f"Pinned frame {T - 1}."
+    assert editor.drag(-1, "LeftHand", target) == f"LeftHand in frame {T - 1} moved by 21 cm."
+    editor.pin(-1)  # pinned already: what was dragged there stays
+    np.testing.assert_allclose(editor.positions[-1, HAND], target, atol=1e-9)
+    assert editor.unpin(-1) == f"Let go of frame {T - 1}." and not editor.known.any()
+    with pytest.raises(IndexError, match=f"frame {T} is not within"):
+        editor.pin(T)
+
+
 def test_generating_tells_what_was_measured_and_the_same_seed_makes_the_same(motion):
     editors = [Editor(motion, guess, seed=s) for s in (5, 5, 6)]
     for editor in editors:

@@ -67,12 +67,22 @@ def test_fabrik_points_at_what_is_beyond():
     np.testing.assert_allclose(found, [[0, 0, 0], [1, 0, 0], [1 + np.sqrt(0.5), 0, 0]], atol=1e-3)
 
 
+def test_fabrik_with_the_end_on_its_neighbour_keeps_the_bone():
+    chain = np.array([[0.0, 0, 0], [0.1, 0.9, 0], [0, 1.5, 0.2], [0.2, 2.2, 0]])
+    found = fabrik(chain, chain[2])
+    np.testing.assert_allclose(found[-1], chain[2], atol=1e-6)
+    lengths = [np.linalg.norm(np.diff(c, axis=0), axis=1) for c in (chain, found)]
+    np.testing.assert_allclose(lengths[1], lengths[0], atol=1e-12)
+
+
 def test_a_towed_hand_points_along_the_shaft():
     limb = np.array([[0.0, 0, 0], [0.3, 0, 0], [0.5, 0.15, 0], [0.6, 0.15, 0]])
     target = np.array([0.2, 0.4, 0.2])
     found = towed(limb, target, BENDS)
     np.testing.assert_allclose(found[3], target, atol=1e-8)
     assert np.linalg.norm(found[3] - found[2]) == pytest.approx(0.1)
+    back = towed(limb, limb[2], BENDS)  # the tip to where the wrist is: the wrist makes way
+    np.testing.assert_allclose(back[2:], [[0.4, 0.15, 0], [0.5, 0.15, 0]], atol=1e-8)
 
 
 @pytest.mark.parametrize("joint", range(J), ids=JOINTS)
@@ -84,6 +94,14 @@ def test_every_joint_keeps_the_bones_comes_near_and_stays_where_it_is_dragged_to
         np.testing.assert_allclose(bones(moved), bones(start), atol=1e-9)
         assert np.linalg.norm(moved[joint] - target) < np.linalg.norm(start[joint] - target)
         np.testing.assert_allclose(bones(drag(start, joint, start[joint] + [3.0, 2, -4])), bones(start), atol=1e-9)
+
+
+@pytest.mark.parametrize("joint", range(J), ids=JOINTS)
+def test_a_joint_dragged_exactly_onto_another_keeps_the_bones(pose, joint):
+    for start in (pose, rest()):
+        for other in range(J):
+            moved = drag(start, joint, start[other])
+            np.testing.assert_allclose(bones(moved), bones(start), atol=1e-9, err_msg=f"onto {JOINTS[other]}")
 
 
 def test_a_hand_within_reach_arrives_and_only_its_arm_moves(pose):

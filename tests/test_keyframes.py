@@ -90,6 +90,19 @@ def test_an_arc_turns_evenly():
     np.testing.assert_allclose(angles, np.linspace(0, 90, 11), atol=1e-6)
 
 
+@pytest.mark.parametrize("down", [[0.0, -0.1, 0.0], [0.06, 0.0, -0.08], [0.1 / 3**0.5] * 3])
+def test_an_arc_between_opposite_directions_keeps_the_bone_and_turns_evenly(down):
+    positions = np.zeros((11, 21, 3))
+    positions[:, 1:] = down
+    positions[10, 1:] = -np.array(down)
+    known = np.zeros((11, 21), bool)
+    known[[0, 10]] = True
+    bone = spherical(positions, known)[:, 1]
+    np.testing.assert_allclose(np.linalg.norm(bone, axis=-1), 0.1, atol=1e-12)
+    angles = np.degrees(np.arccos(np.clip(bone @ down / 0.01, -1, 1)))
+    np.testing.assert_allclose(angles, np.linspace(0, 180, 11), atol=1e-5)
+
+
 def test_a_joint_that_is_never_given(walks):
     known = gap(60, 5, 10)
     known[:, 4] = False

@@ -72,6 +72,23 @@ def test_masked_sampling_of_a_gaussian_is_a_recursion_done_by_hand(steps, resamp
     assert x.var().item() == pytest.approx(variance, rel=0.12)
 
 
+def test_a_blended_way_draws_the_guess_through_what_is_given():
+    """One step of independent entries: the guess is next to nothing, and what is left is the correction, by hand."""
+    truth = mixture(torch.ones(1), torch.zeros(1, 6), torch.eye(6)[None])
+    asked = question(truth, [1.0, 0, 3.0, 0, 0, 0], [True, False, True, False, False, False])
+    asked = replace(asked, frames=6)
+    plain, blended = (answers(asked, Way("masked", 1, blend=b), 500, seeded(7)).mean(0).tolist() for b in (None, 3))
+    assert plain == pytest.approx([1, 0, 3, 0, 0, 0], abs=0.02)
+    assert blended == pytest.approx([1, 2, 3, 3 * 0.75, 3 * 0.5, 3 * 0.25], abs=0.02)
+
+
+def test_a_guided_way_hears_of_what_is_given():
+    asked = question(correlated(), [1.5, math.nan], [True, False])
+    ways = Way("masked", 40), Way("masked", 40, guidance=1.0)
+    plain, guided = (e.mean for _, _, e in conditional_errors(asked, ways, seeds=[8], n=1000))
+    assert guided < 0.5 * plain
+
+
 def test_by_hand_masking_misses_and_resampling_mends():
     wanted, deviation = 1.5 * RHO, math.sqrt(1 - RHO**2)
     every = list(range(40, 0, -1))
@@ -122,6 +139,17 @@ def test_there_and_back_hears_of_the_known_through_the_future_only_and_gibbs_doe
     assert found["there-and-back"].mean == pytest.approx(0.6 * 2 / deviation, rel=0.05)
     assert found["there-and-back"].spread == pytest.approx(1 / deviation, rel=0.05)
     assert found["gibbs"].mean < 0.06 and found["gibbs"].spread == pytest.approx(1, abs=0.06)
+
+
+@pytest.mark.parametrize("kind", ["there-and-back", "gibbs"])
+@pytest.mark.parametrize("past", [[True, False, False], [True, True, False]])
+def test_what_is_known_of_the_future_is_given_too(kind, past):
+    """The last entry is known: with nothing known of the past both ways are Gibbs sampling, and come to the wanted."""
+    asked = question(chain(), [math.nan, math.nan, 2.0], [False, False, True], past)
+    x = answers(asked, Way(kind), 4000, seeded(6))
+    assert (x[:, 2] == 2).all()
+    assert x.mean(0).tolist() == pytest.approx([2 * 0.36, 2 * 0.6, 2.0], abs=0.06)
+    assert x.var(0).tolist() == pytest.approx([1 - 0.36**2, 1 - 0.6**2, 0.0], abs=0.06)
 
 
 def test_exact_draws_have_no_error_but_that_of_counting():

@@ -44,6 +44,15 @@ def test_the_ridge_keeps_parts_wide_where_points_lie_on_a_line():
     torch.testing.assert_close(found.variances[:, 0], torch.full((2,), 0.01, dtype=torch.float64))
 
 
+def test_a_part_that_loses_its_points_stays_where_it_was():
+    same = fit_mixture(torch.full((10, 2), 100.0), 3, generator=seeded(17))
+    torch.testing.assert_close(same.means, torch.full((3, 2), 100.0, dtype=torch.float64))
+    crowd = torch.cat([50 + torch.randn(40, 2, generator=seeded(18)), torch.full((3, 2), 90.0)])
+    found = fit_mixture(crowd, 6, generator=seeded(19))
+    low, high = crowd.amin(0), crowd.amax(0)
+    assert ((found.means >= low) & (found.means <= high)).all()
+
+
 def test_responsibilities_are_bayes_rule():
     truth, x = crossed_bars(), torch.tensor([[0.3, -0.2], [-1.0, 0.5]], dtype=torch.float64)
     covariances = torch.einsum("kia,ka,kja->kij", truth.axes, truth.variances, truth.axes)

@@ -8,7 +8,7 @@ import pytest
 import torch
 
 from motiondiff_edu.checkpoints import load_walker, save
-from motiondiff_edu.diffusion_dropout import P_D
+from motiondiff_edu.diffusion_dropout import P_D, Dropout
 from motiondiff_edu.foothold import FootholdConfig
 from motiondiff_edu.modiff import MODIFF_SMALL
 from motiondiff_edu.pretrained import train as train_module
@@ -96,6 +96,20 @@ def test_a_training_with_diffusion_dropout_is_another_and_goes_on_bit_for_bit(tm
     assert [sitting["from_step"] for sitting in again.card["sittings"]] == [0, 6]
     pairs = zip(whole.model.parameters(), again.model.parameters(), strict=True)
     assert all(torch.equal(a, b) for a, b in pairs)
+
+
+def test_dropout_rises_within_a_training_when_its_time_has_come(tmp_path: Path, monkeypatch):
+    """Four steps, calm for two: no past is noised in those, and every past in the others."""
+    usual, seen = Dropout.__call__, []
+
+    def watched(self, past, s, generator):
+        after = usual(self, past, s, generator)
+        seen.append((after != past).flatten(1).any(1).float().mean().item())
+        return after
+
+    monkeypatch.setattr(Dropout, "__call__", watched)
+    train(replace(SHORT, dropout=(0.0, 1.0), calm=0.5, steps=4), tmp_path / "run", log=quiet)
+    assert seen[:4] == [0.0, 0.0, 1.0, 1.0]  # what follows is the final loss
 
 
 def test_a_run_is_continued_with_its_own_settings_and_data_or_not_at_all(tmp_path: Path):

@@ -41,6 +41,21 @@ def test_each_frame_goes_on_from_the_one_before_with_what_is_known_of_it_put_rig
     assert (walker.pose_scaler.transform(free)[:, 3] == 0.5).all()
 
 
+class Obedient(Halving):
+    """Its next pose is what the control says of that frame."""
+
+    def window_sampler(self, steps=None):
+        return lambda past, control, generator: control[:, T_H:, :D]
+
+
+def test_each_frame_is_walked_under_the_control_of_its_own_time():
+    walker, B = Obedient(), 3
+    control = torch.randn(B, 2 * T_H, 3, generator=torch.Generator().manual_seed(2))
+    zeros = torch.zeros(B, T_H, D)
+    made = walker.pose_scaler.transform(held_back(walker, zeros, control, zeros, zeros > 1, **options()))
+    torch.testing.assert_close(made, control[:, T_H:, :D])
+
+
 class Known(Halving):
     """A walker whose windows are Gaussian, whatever came before; the exact denoiser is its network."""
 
@@ -82,6 +97,19 @@ def test_a_mask_wants_a_window_as_long_as_the_past():
     with pytest.raises(ValueError, match="window of 4 frames cannot hold the 5"):
         zeros = torch.zeros(2, T_H, D)
         masked_back(Known(4), zeros, torch.zeros(2, 2 * T_H, 3), zeros, zeros > 1, **options())
+
+
+@pytest.mark.parametrize("way", [held_back, masked_back])
+def test_all_is_made_where_the_inputs_are_and_drawn_where_the_generator_is(way):
+    """With another default device, whatever is made without regard to the inputs lands beside them."""
+    walker, known = Known(), torch.zeros(2, T_H, D, dtype=torch.bool)
+    ahead, given = torch.zeros(2, T_H, D), torch.ones(2, T_H, D)
+    known[:, 2] = True
+    arguments = walker, ahead, torch.zeros(2, 2 * T_H, 3), given, known
+    here, draws = way(*arguments, **options()), options()
+    with torch.device("meta"):
+        there = way(*arguments, **draws)
+    assert torch.equal(here, there)
 
 
 @pytest.mark.parametrize("way", [walked_back, held_back])

@@ -44,20 +44,25 @@ def spherical(positions: Float[np.ndarray, "T J 3"], known: Bool[np.ndarray, "T 
 
 
 def _slerp(vectors: Float[np.ndarray, "K 3"], at: np.ndarray, times: np.ndarray) -> Float[np.ndarray, "T 3"]:
-    """Vectors between those at the frames `at`: directions on the great circle, lengths on a straight line."""
+    """Vectors between those at the frames `at`: directions on the great circle, lengths on a straight line.
+
+    Opposite directions turn by any of the great circles between them.
+    """
     length = np.linalg.norm(vectors, axis=-1)
     unit = vectors / np.maximum(length, 1e-12)[:, None]
     after = np.clip(np.searchsorted(at, times, side="right"), 1, max(len(at) - 1, 1))
     first, second = after - 1, np.minimum(after, len(at) - 1)
     span = np.maximum(at[second] - at[first], 1)
     share = np.clip((times - at[first]) / span, 0, 1)[:, None]
-    angle = np.arccos(np.clip((unit[first] * unit[second]).sum(-1), -1, 1))[:, None]
-    sin = np.sin(angle)
-    bent = sin > 1e-6
-    safe = np.where(bent, sin, 1.0)
-    ahead = np.where(bent, np.sin((1 - share) * angle) / safe, 1 - share)
-    behind = np.where(bent, np.sin(share * angle) / safe, share)
-    return (ahead * unit[first] + behind * unit[second]) * np.interp(times, at, length)[:, None]
+    start, end = unit[first], unit[second]
+    cos = (start * end).sum(-1, keepdims=True)
+    aside = end - cos * start  # at right angles to the start, as long as the sine
+    sin = np.linalg.norm(aside, axis=-1, keepdims=True)
+    any_side = np.cross(start, np.eye(3)[np.abs(start).argmin(-1)])
+    aside = np.where(sin > 1e-9, aside, any_side)
+    aside /= np.maximum(np.linalg.norm(aside, axis=-1, keepdims=True), 1e-12)
+    turn = share * np.arctan2(sin, cos)
+    return (np.cos(turn) * start + np.sin(turn) * aside) * np.interp(times, at, length)[:, None]
 
 
 def _each_is_given(known: Bool[np.ndarray, "T J"]) -> None:

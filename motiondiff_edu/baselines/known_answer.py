@@ -114,14 +114,15 @@ def there_and_back(
 ) -> Float[Tensor, "N D"]:
     """`rounds` times: the future drawn given the past, the past given the future, and the holes filled from that.
 
-    As in III-E the way back does not look at what is known of the past: it reaches the holes through the future only.
+    What is known of the future is given, too. As in III-E the way back does not look at what is known of the past: it
+    reaches the holes through the future only.
     `keep`: it does look, which makes this Gibbs sampling, with the true conditional for its end.
     Raises ValueError for a question that names no past.  Source: MoDiff III-E.  Notebook: 15
     """
     if question.past is None:
         raise ValueError("there-and-back needs a past to start from: name it in the question")
     known, past = question.known, question.past
-    ahead, back = Rest(question.truth, past), Rest(question.truth, (~past | known) if keep else ~past)
+    ahead, back = Rest(question.truth, past | known), Rest(question.truth, (~past | known) if keep else ~past)
     for _ in range(rounds):
         x = ahead.draw(x, generator)
         x = torch.where(known, x, back.draw(x, generator))

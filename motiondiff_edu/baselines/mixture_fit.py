@@ -30,17 +30,19 @@ def fit_mixture(
     """Fit K Gaussians by EM, from K of the points drawn far apart; every covariance gets `ridge` on its diagonal.
 
     Expectation: r_nk = share of part k in x_n. Maximisation: w_k = mean r_nk; m_k and C_k, means weighed by r_nk.
-    A part that loses its points keeps a point's weight, so that none vanishes.
+    A part that loses its points keeps a point's weight and stays where it was, so that none vanishes.
     Raises ValueError for fewer points than parts.  Notebook: 15
     """
     x, N = x.double(), len(x)
     if N < K:
         raise ValueError(f"{K} parts need as many points at least, not {N}")
-    share = torch.nn.functional.one_hot(torch.cdist(x, _far_apart(x, K, generator)).argmin(1), K).double()
+    means = _far_apart(x, K, generator)
+    share = torch.nn.functional.one_hot(torch.cdist(x, means).argmin(1), K).double()
     even = ridge * torch.eye(x.shape[1], dtype=torch.float64)
     for _ in range(rounds):
         mass = share.sum(0).clamp(min=1.0)
-        means = share.T @ x / mass[:, None]
+        missing = mass - share.sum(0)  # what a part lacks to a point's weight lies where the part is
+        means = (share.T @ x + missing[:, None] * means) / mass[:, None]
         off = x - means[:, None]
         covariances = (share.T[..., None] * off).mT @ off / mass[:, None, None]
         fitted = mixture(mass, means, covariances + even)

@@ -100,8 +100,8 @@ def towed(limb: Float[np.ndarray, "4 3"], target: Point, bends: Float[np.ndarray
     for _ in range(20):
         if np.linalg.norm(tip - target) < 1e-9:
             break
-        three = two_bones(limb[:3], target + last * unit(three[2] - target), bends)
-        tip = three[2] + last * unit(target - three[2])
+        three = two_bones(limb[:3], target + last * _aim(three[2] - target, limb[2] - limb[3]), bends)
+        tip = three[2] + last * _aim(target - three[2], limb[3] - limb[2])
     return np.concatenate([three, tip[None]])
 
 
@@ -109,7 +109,7 @@ def fabrik(chain: Float[np.ndarray, "N 3"], target: Point, rounds: int = 60) -> 
     """The chain with its end at the target, its start where it was: from the end and from the start by turns, each
     joint is put on the line to its neighbour's new place, at the bone's length.
 
-    A target out of reach leaves the chain straight.
+    A target out of reach leaves the chain straight. Two joints in one place leave their bone the direction it had.
     """
     lengths = np.linalg.norm(np.diff(chain, axis=0), axis=-1)
     places = np.array(chain)
@@ -118,10 +118,10 @@ def fabrik(chain: Float[np.ndarray, "N 3"], target: Point, rounds: int = 60) -> 
             break
         places[-1] = target
         for i in range(len(chain) - 2, -1, -1):
-            places[i] = places[i + 1] + lengths[i] * unit(places[i] - places[i + 1])
+            places[i] = places[i + 1] + lengths[i] * _aim(places[i] - places[i + 1], chain[i] - chain[i + 1])
         places[0] = chain[0]
         for i in range(len(chain) - 1):
-            places[i + 1] = places[i] + lengths[i] * unit(places[i + 1] - places[i])
+            places[i + 1] = places[i] + lengths[i] * _aim(places[i + 1] - places[i], chain[i + 1] - chain[i])
     return places
 
 
@@ -170,5 +170,9 @@ def pelvis_moved(pose: Pose, shift: Point) -> Pose:
 def _bone(pose: Pose, chain: list[int], target: Point) -> Point:
     """One bone, turned towards the target."""
     root, end = pose[chain]
-    aim = target - root
-    return np.linalg.norm(end - root) * unit(aim if np.linalg.norm(aim) > 1e-9 else end - root)
+    return np.linalg.norm(end - root) * _aim(target - root, end - root)
+
+
+def _aim(wanted: Point, before: Point) -> Point:
+    """The wanted direction, of length one; the one before where nothing tells which is wanted."""
+    return unit(wanted if np.linalg.norm(wanted) > 1e-9 else before)

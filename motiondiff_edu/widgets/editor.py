@@ -104,7 +104,7 @@ class Editor(anywidget.AnyWidget):
 
     def pin(self, *frames: int) -> str:
         """Pin frames with the pose seen there: the chosen in-between's, or the motion's.  IndexError outside."""
-        edit = self.edit
+        edit, frames = self.edit, [self.edit.index(frame) for frame in frames]
         for frame in frames:
             if frame not in edit.pins:
                 edit = edit.pin(frame, None if self.samples is None else self.samples[self.chosen, frame])
@@ -112,7 +112,7 @@ class Editor(anywidget.AnyWidget):
 
     def unpin(self, *frames: int) -> str:
         """Let frames go."""
-        edit = self.edit
+        edit, frames = self.edit, [self.edit.index(frame) for frame in frames]
         for frame in frames:
             edit = edit.unpin(frame)
         return self._do(edit, f"Let go of {listed(frames)}.")
@@ -188,7 +188,7 @@ class Editor(anywidget.AnyWidget):
         return words
 
     def _dragged(self, before: Edit, frame: int, joint: str, target) -> tuple[Edit, str]:
-        target = np.asarray(target, np.float64)
+        frame, target = before.index(frame), np.asarray(target, np.float64)
         edit, name = before.drag(frame, joint, target), self.scene["names"][joint_index(joint)]
         return edit, f"{name} in frame {frame} {drag_in_words(before, edit, frame, joint, target)}."
 
