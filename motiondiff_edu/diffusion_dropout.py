@@ -31,16 +31,16 @@ def diffusion_dropout(
 ) -> Past:
     """Noise the past of some samples: each with probability `rate`, to its step s.
 
-    `s` is the step of the target (Algorithm 1); with shared=False each noised past gets a step of its own. Then the
-    network cannot tell from the past how noisy the target is.  The noise is always the past's own.
-    Raises ValueError for a rate outside 0..1.
+    `s` is the target's step (Algorithm 1); with shared=False each past gets its own. The noise is the past's own.
+    Raises ValueError for a rate outside 0..1, and unless past is (B, T_h, D) and s (B,), within 0..S.
     Source: MoDiff eq. 12, Alg. 1; shared=False is ours.  Notebook: 09
     """
+    if past.ndim != 3 or s.shape != past.shape[:1] or (s < 0).any() or (s > schedule.S).any():
+        raise ValueError(f"past {tuple(past.shape)}, s {s.tolist()!r:.50}; pass (B, T_h, D), B steps 0..{schedule.S}")
     hit = chosen(len(past), rate, generator).to(past.device)
     if not shared:
         s = torch.randint(1, schedule.S + 1, (len(past),), generator=generator).to(past.device)
-    noised = q_sample(past, s, schedule, draw(past, generator))
-    return noised.where(hit[:, None, None], past)
+    return q_sample(past, s, schedule, draw(past, generator)).where(hit[:, None, None], past)
 
 
 def frame_dropout(past: Past, rate: float, generator: torch.Generator | None = None) -> Past:

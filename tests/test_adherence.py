@@ -78,3 +78,10 @@ def test_half_a_second_at_the_end_counts():
     asked = control.copy()
     asked[40:, 0] += 3.0
     assert adherence(gait(control), asked) == pytest.approx(1.0, abs=1e-6)
+
+
+@pytest.mark.parametrize("poses, control", [((20, 21, 3), (30, 3)), ((2, 20, 21, 3), (3, 20, 3)), ((20, 21, 3), (3,))])
+def test_a_control_of_another_length_is_named(poses, control):
+    unchecked = getattr(adherence, "__wrapped__", adherence)  # as in a notebook: no shape is checked
+    with pytest.raises(ValueError, match="a row of control for each pose"):
+        unchecked(np.zeros(poses), np.zeros(control))

@@ -104,3 +104,20 @@ def test_wrong_inputs():
     ):
         with pytest.raises(ValueError, match="between 0 and 1"):
             call()
+
+
+@pytest.mark.parametrize(
+    "past, s, told",
+    [
+        ((7, 63), [5] * 7, r"past \(7, 63\), s .* pass \(B, T_h, D\), B steps 0..100"),
+        ((7, 2, 3, 21), [5] * 7, r"past \(7, 2, 3, 21\), s .* pass \(B, T_h, D\)"),
+        ((2, 3, 4), [5], r"past \(2, 3, 4\), s \[5\]; pass .*, B steps"),
+        ((2, 3, 4), [5, -3], r"s \[5, -3\]; pass .*, B steps 0..100"),
+        ((2, 3, 4), [5, 101], r"s \[5, 101\]; pass .*, B steps 0..100"),
+    ],
+)
+@pytest.mark.parametrize("shared", [True, False])
+def test_a_past_or_a_step_that_does_not_fit_is_named(past, s, told, shared):
+    unchecked = getattr(diffusion_dropout, "__wrapped__", diffusion_dropout)  # as in a notebook: no shape is checked
+    with pytest.raises(ValueError, match=told):
+        unchecked(torch.zeros(past), torch.tensor(s), SCHEDULE, 1.0, seeded(), shared=shared)

@@ -104,3 +104,23 @@ def test_contributions_are_the_spread_of_either_part(windows, clean):
 def test_windows_of_several_futures_are_refused(windows):
     with pytest.raises(ValueError, match="make the windows with T_p=1, not 3"):
         ld.products(Windows(windows.poses, windows.control, windows.starts[:-3], T_H, 3, *[windows.pose_scaler] * 2))
+
+
+@pytest.mark.parametrize("rate", [-1.0, 1.5])
+@pytest.mark.parametrize(
+    "moments",
+    [
+        lambda rate: ld.noised(rate, SCHEDULE.alpha_bar[1:]),
+        ld.zeroed,
+        lambda rate: ld.frames_zeroed(rate, T_H, D),
+        lambda rate: ld.entries_rescaled(rate, T_H * D),
+    ],
+)
+def test_a_rate_that_is_no_probability_is_refused(moments, rate):
+    with pytest.raises(ValueError, match=f"a rate lies between 0 and 1, not {rate:g}"):
+        moments(rate)
+
+
+def test_entries_that_are_all_dropped_cannot_keep_their_mean():
+    with pytest.raises(ValueError, match="take a rate below 1"):
+        ld.entries_rescaled(1.0, T_H * D)

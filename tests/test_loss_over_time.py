@@ -157,6 +157,16 @@ def test_stretched_bones_are_coloured_and_a_torn_figure_is_told_its_width():
     assert low > high  # x is the figure's left, and we look at its face
 
 
+def test_poses_have_their_seconds_and_what_is_too_wide_is_cut():
+    poses = np.zeros((41, 21, 3))
+    poses[:, 5, 0] = 4.0  # a joint 4 m beside the hips
+    figure = viz.stretched({"torn": poses}, "words", n=3, fps=20, widest=3)
+    assert [axis.get_title() for axis in figure.axes[:3]] == ["0.0 s", "1.0 s", "2.0 s"]
+    assert figure.axes[0].get_xlim() == (1.5, -1.5)
+    assert [text.get_text() for text in figure.axes[0].texts] == ["torn\n(3.0 of 8.0 m)"]
+    assert [axis.get_title() for axis in viz.stretched({"torn": poses}, "words", n=3).axes[:3]] == ["", "", ""]
+
+
 def test_the_table_shows_what_it_was_given():
     figure = viz.noticed(np.array([[0.0, 2.0], [4.0, 0.5], [1e-9, 0.0]]), ["a", "b", "c"], ["L", "M"], "table")
     assert [text.get_text() for text in figure.axes[0].texts] == ["0", "2", "4", "0.5", "0", "0"]

@@ -46,3 +46,11 @@ def test_gates_stand_on_the_contacts_of_their_own_foot():
 def test_a_table_says_none_where_there_is_no_figure_and_nought_for_rounding():
     fig = viz.score_table({"a": {"m": 1.234, "n": np.nan}, "b": {"m": 1e-12, "n": 0.5}}, "words")
     assert texts(fig.axes[0]) == ["1.2", "none", "0", "0.5"]
+
+
+def test_shades_go_with_the_value_or_with_its_logarithm():
+    scores = {"a": {"m": 1.0, "n": 1.0}, "b": {"m": 10.0, "n": 10.0}, "c": {"m": 100.0, "n": np.nan}}
+    shades = viz.score_table(scores, "words", log=["m"]).axes[0].images[0].get_array()
+    np.testing.assert_allclose(shades, [[0, 0.1], [0.5, 1], [1, 0]])
+    nothing = viz.score_table({"a": {"m": -1.0}, "b": {"m": 0.0}}, "words", log=["m"]).axes[0].images[0].get_array()
+    np.testing.assert_allclose(nothing, 0)

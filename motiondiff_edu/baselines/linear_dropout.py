@@ -22,7 +22,10 @@ Drop = Callable[[Tensor, torch.Generator], Tensor]  # a past (B, T_h, D) and who
 
 @dataclass(frozen=True, eq=False)
 class Moments:
-    """What a dropout leaves of the past on average: E[x~] = keep x, E[x~ x~^T] = share * x x^T + floor I."""
+    """What a dropout leaves of the past on average: E[x~] = keep x, E[x~ x~^T] = share * x x^T + floor I.
+
+    Those made here raise ValueError for a rate outside 0..1.  Notebook: 09
+    """
 
     keep: float
     share: Float[Tensor, "*P"]  # a number, or one for each pair of entries
@@ -44,19 +47,28 @@ class Products:
         return self.windows.T_h * self.yy.shape[0]
 
 
+def check_rate(rate: float) -> None:
+    """Raises ValueError unless the rate is a probability."""
+    if not 0 <= rate <= 1:
+        raise ValueError(f"a rate lies between 0 and 1, not {rate:g}")
+
+
 def noised(rate: float, alpha_bar: Float[Tensor, "S"]) -> Moments:
     """Diffusion dropout; each of these alpha_bar is as likely.  keep: their roots' mean; floor: mean 1 - alpha_bar."""
+    check_rate(rate)
     keep, share = 1 - rate + rate * alpha_bar.sqrt().mean(), 1 - rate + rate * alpha_bar.mean()
     return Moments(float(keep), share.double(), float(rate * (1 - alpha_bar).mean()))
 
 
 def zeroed(rate: float) -> Moments:
     """Whole pasts set to zero: the penalty has the data's own shape, and shrinks all of the past alike."""
+    check_rate(rate)
     return Moments(1 - rate, torch.tensor(1 - rate, dtype=torch.float64))
 
 
 def frames_zeroed(rate: float, T_h: int, D: int) -> Moments:
     """MoGlow's frame dropout: two frames are both there with (1 - rate)^2, a frame and itself with 1 - rate."""
+    check_rate(rate)
     frame = torch.arange(T_h * D) // D
     alike = frame[:, None] == frame
     return Moments(1 - rate, torch.where(alike, 1 - rate, (1 - rate) ** 2).double())
@@ -64,6 +76,9 @@ def frames_zeroed(rate: float, T_h: int, D: int) -> Moments:
 
 def entries_rescaled(rate: float, entries: int) -> Moments:
     """nn.Dropout on the past: entries set to zero, the others divided by 1 - rate, so that the mean stays."""
+    check_rate(rate)
+    if rate == 1:
+        raise ValueError("nn.Dropout at rate 1 leaves nothing whose mean could stay; take a rate below 1")
     share = torch.ones(entries, entries, dtype=torch.float64)
     return Moments(1.0, share + rate / (1 - rate) * torch.eye(entries, dtype=torch.float64))
 

@@ -18,11 +18,17 @@ def batch_with_dropout(mine):
         0.3,
         torch.stack([first, second]),
     )
-    before = past.clone()
-    got = mine(past, future, s, ALPHA_BAR, rate, u, noise)
-    expect(torch.equal(past, before), "the data themselves were changed; put the noised past into an array of its own")
-    expect(isinstance(got, tuple) and len(got) == 2, "return two arrays: the past as it is seen, and the noised future")
-    seen, x_s = (torch.as_tensor(part) for part in got)
+    given = past.clone(), future.clone()
+    seen, x_s = _two(mine(*given, s, ALPHA_BAR, rate, u, noise))
+    expect(
+        torch.equal(given[0], past) and torch.equal(given[1], future),
+        "the data themselves were changed; put what is noised into arrays of its own",
+    )
+    again = _two(mine(past.clone(), future.clone(), s, ALPHA_BAR, rate, u, noise))
+    expect(
+        all(torch.equal(one.nan_to_num(), two.nan_to_num()) for one, two in zip((seen, x_s), again, strict=True)),
+        "what you return differs from call to call; `u` and `noise` are given, so draw nothing yourself",
+    )
     a = torch.tensor([0.6, 0.8, 0.28, 0.6]).double()[:, None, None]
     b = torch.tensor([0.8, 0.6, 0.96, 0.8]).double()[:, None, None]
     hit = torch.tensor([True, False, True, False])[:, None, None]
@@ -55,6 +61,16 @@ def batch_with_dropout(mine):
     return "Sample by sample, whole pasts, noise of their own: three things that are easily got wrong without a sound."
 
 
+def _two(got) -> list[torch.Tensor]:
+    """Past and future of an answer, however they are wrapped."""
+    pair = isinstance(got, tuple | list | torch.Tensor) and len(got) == 2
+    expect(pair, "return two arrays: the past as it is seen, and the noised future")
+    for part, what in zip(got, ("the past as the network sees it", "the noised future"), strict=True):
+        loose = isinstance(part, tuple | list) and any(isinstance(one, torch.Tensor) for one in part)
+        expect(not loose, f"{what} is a list of {len(part)} tensors; torch.stack makes one of them")
+    return [torch.as_tensor(part) for part in got]
+
+
 def _wrong_noise(x, noise, a, b) -> dict:
     """Eq. 12 on all samples, with one thing wrong in each."""
     early = torch.tensor([0.8, 1.0, 0.6, 0.8]).double()[:, None, None]
@@ -64,6 +80,7 @@ def _wrong_noise(x, noise, a, b) -> dict:
         "the root of 1 - alpha_bar is missing": a * x + b**2 * noise,
         "the signal is not shrunk: it is multiplied by the root of alpha_bar": x + b * noise,
         "the noise is missing": a * x,
+        "the noise is added, not subtracted": a * x - b * noise,
         "every sample has its own step; this uses the first one's for all": 0.6 * x + 0.8 * noise,
         "this takes alpha_bar one step too early; the table begins at s = 0": early * x + (1 - early**2).sqrt() * noise,
     }
@@ -86,6 +103,10 @@ def dropped_products(mine):
         "past times control has one factor sqrt(alpha_bar), not two": _products(xx, 0.75, 0.75, 0.25),
         "this is the root of the mean; take the mean of the roots": _products(xx, 0.5 + 0.5 * 0.5**0.5, 0.75, 0.25),
         "past times control shrinks as well": _products(xx, 1.0, 0.75, 0.25),
+        "past times past holds the mean of squares, not the square of the mean root": _products(
+            xx, 0.85, 0.85**2, 0.25
+        ),
+        "the variance of the noise is added, whatever the noise's sign": _products(xx, 0.85, 0.75, -0.25),
         "past times past is not shrunk": _products(xx, 0.85, 1.0, 0.25),
         "the noise is missing: its variance stands on the diagonal": _products(xx, 0.85, 0.75, 0.0),
         "only a share `rate` of the pasts is noised": _products(xx, 0.7, 0.5, 0.5),
@@ -132,4 +153,4 @@ def rate_schedule(mine):
     }
     expect_close(got, steps, "the rate at 0, .39, .41, .59, .61, .79, .81 and .999, calm until .4", mistakes)
     expect_close(mine(1.0, rates, 0.4), 0.4, "the rate when all is done", {"no rate comes after the last": 0.0})
-    return "With the paper's numbers, half of the training never meets a noised past."
+    return "With the paper's rates, .05 to .25, and calm = .5, half of the training never meets a noised past."

@@ -51,8 +51,11 @@ def adherence(
     The seconds follow each other without overlap; a last one shorter than half is left out. Flight is left out of a
     second's mean, a second all in flight out of the average; a clip with no planted toe at all gives NaN. Recorded
     motion is not at 0 either: print the data's own value beside it.
-    Raises ValueError for fewer than two frames.  Notebook: 08
+    Raises ValueError for fewer than two frames, or a control that has not a row for each frame.  Notebook: 08
     """
+    if poses.shape[:-2] != control.shape[:-1]:
+        frames, rows = (tuple(map(int, shape)) for shape in (poses.shape[:-2], control.shape[:-1]))
+        raise ValueError(f"poses for frames {frames} and control for {rows}: pass a row of control for each pose")
     if poses.shape[-3] < 2:
         raise ValueError("a velocity takes two frames, and this motion has one")
     residual = residual_velocity(poses, control, fps, below)

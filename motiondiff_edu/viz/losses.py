@@ -3,11 +3,12 @@
 Notebook: 13
 """
 
+import math
 from collections.abc import Mapping, Sequence
 
 import matplotlib
 import numpy as np
-from jaxtyping import Float
+from jaxtyping import Float, Int
 from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
 from matplotlib.colors import Normalize
@@ -24,26 +25,44 @@ ROUNDING = 1e-10  # what lies below is float32's rounding, and not drawn
 REACH = 1.15  # m from the hips to the edge of a picture, at least
 
 
-def stretched(rows: Mapping[str, Float[np.ndarray, "_ 21 3"]], words: str, n: int = 6) -> Figure:
-    """A row of n poses for each motion, seen from the front; bones are blue where too short, orange where too long."""
+def stretched(
+    rows: Mapping[str, Float[np.ndarray, "_ 21 3"]],
+    words: str,
+    n: int = 6,
+    fps: float | int | None = None,
+    widest: float | int = math.inf,
+) -> Figure:
+    """A row of n poses for each motion, seen from the front; bones are blue where too short, orange where too long.
+
+    With `fps` the seconds stand above the first row; what reaches out of a picture `widest` metres wide is cut off.
+    """
     fig, axes = figure(1.45 * n + 1.0, 1.5 * len(rows) + 0.3, words, len(rows), n)
     for row, (name, motion) in enumerate(rows.items()):
-        draw_row(axes[row * n : row * n + n], motion, name)
+        draw_row(axes[row * n : row * n + n], motion, name, widest)
+    if fps:
+        for axis, frame in zip(axes[:n], _spread(next(iter(rows.values())), n), strict=True):
+            axis.set_title(f"{frame / fps:.1f} s", fontsize=SMALL)
     colours = ScalarMappable(STRETCH, SHORT_TO_LONG)
     bar = fig.colorbar(colours, ax=axes, location="right", shrink=0.6, aspect=25, ticks=[-0.3, 0, 0.3])
     bar.ax.set_yticklabels(["30 % short", "right", "30 % long"], fontsize=SMALL)
     return fig
 
 
-def draw_row(axes: Sequence[Axes], motion: Float[np.ndarray, "_ 21 3"], name: str) -> None:
+def _spread(motion: Float[np.ndarray, "_ 21 3"], n: int) -> Int[np.ndarray, "n"]:
+    return np.linspace(0, len(motion) - 1, n).round().astype(int)
+
+
+def draw_row(
+    axes: Sequence[Axes], motion: Float[np.ndarray, "_ 21 3"], name: str, widest: float | int = math.inf
+) -> None:
     """One motion, a pose in each axis, all at one scale, which is told where it is not the usual one."""
-    chosen = np.linspace(0, len(motion) - 1, len(axes)).round().astype(int)
-    poses = np.asarray(motion, np.float64)[chosen]
+    poses = np.asarray(motion, np.float64)[_spread(motion, len(axes))]
     far = float(np.abs(poses - poses[:, HIPS : HIPS + 1])[..., :2].max())
-    reach = REACH if far <= REACH else 1.05 * far
+    reach = REACH if far <= REACH else min(1.05 * far, widest / 2)
     for axis, pose in zip(axes, poses, strict=True):
         _sticks(axis, pose, reach)
-    told = name if reach == REACH else f"{name}\n({2 * reach:.1f} m wide)"
+    shown = f"{2 * reach:.1f} m wide" if reach > far else f"{2 * reach:.1f} of {2 * far:.1f} m"
+    told = name if reach == REACH else f"{name}\n({shown})"
     axes[0].text(-0.04, 0.5, told, rotation=90, va="center", ha="right", transform=axes[0].transAxes, fontsize=SMALL)
 
 

@@ -3,7 +3,7 @@
 Notebook: 08
 """
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 from jaxtyping import Bool, Float
@@ -88,15 +88,29 @@ def _shade(axis: Axes, planted: np.ndarray, fps: float | int) -> None:
         axis.axvspan(begin / fps, end / fps, color="0.9", lw=0)
 
 
-def score_table(scores: Mapping[str, Mapping[str, float]], words: str) -> Figure:
-    """Rows of motions, columns of measures; a cell is darker the larger it is within its column."""
+def score_table(scores: Mapping[str, Mapping[str, float]], words: str, log: Sequence[str] = ()) -> Figure:
+    """Rows of motions, columns of measures; a cell is darker the larger it is within its column.
+
+    The shade goes with the value, from 0 on, or in the columns named in `log` with its logarithm, from the smallest on.
+    """
     rows, columns = list(scores), list(next(iter(scores.values())))
     values = np.array([[scores[row][column] for column in columns] for row in rows], dtype=float)
-    largest = np.nanmax(np.where(np.isnan(values), 0, values), axis=0)
+    shades = np.array([_shades(of, name in log) for name, of in zip(columns, values.T, strict=True)]).T
     fig, (axis,) = figure(2.6 + 1.75 * len(columns), 1.1 + 0.5 * len(rows), words)
-    axis.imshow(np.nan_to_num(values) / np.maximum(largest, 1e-12), cmap="Blues", vmin=0, vmax=1.8, aspect="auto")
+    axis.imshow(shades, cmap="Blues", vmin=0, vmax=1.8, aspect="auto")
     for (i, j), value in np.ndenumerate(values):
         text = "none" if np.isnan(value) else f"{0 if abs(value) < 5e-4 else value:.2g}"
         axis.text(j, i, text, ha="center", va="center", color=INK)
     table(axis, rows, columns)
     return fig
+
+
+def _shades(column: Float[np.ndarray, "R"], log: bool) -> Float[np.ndarray, "R"]:
+    """How dark each value is, 1 for the largest; nothing where there is no value, or none above 0 for a logarithm."""
+    if not log:
+        return np.nan_to_num(column) / max(float(np.nan_to_num(column).max()), 1e-12)
+    powers = np.log10(np.where(column > 0, column, np.nan))
+    if np.isnan(powers).all():
+        return np.zeros(len(column))
+    low, high = float(np.nanmin(powers)), float(np.nanmax(powers))
+    return np.nan_to_num((powers - low) / max(high - low, 1e-12))

@@ -80,6 +80,33 @@ def changed_in_place(past, future, s, alpha_bar, rate, u, noise):
     return past, x_s
 
 
+def future_changed_in_place(past, future, s, alpha_bar, rate, u, noise):
+    """The targets are noise from the second epoch on."""
+    seen, x_s = _batch(past, future, s, alpha_bar, rate, u, noise)
+    future[:] = x_s
+    return seen, future
+
+
+def noise_subtracted(past, future, s, alpha_bar, rate, u, noise):
+    """A minus before the noise: as likely a noise, but eps_hat is asked for the other sign."""
+    return _batch(past, future, s, alpha_bar, rate, u, -noise)
+
+
+def noise_subtracted_from_the_past(past, future, s, alpha_bar, rate, u, noise):
+    """The future is right; in the past the noise has a minus."""
+    return _batch(past, future, s, alpha_bar, rate, u, torch.stack([noise[0], -noise[1]]))
+
+
+def noise_of_its_own(past, future, s, alpha_bar, rate, u, noise):
+    """Draws anew where the noise is given: the loss does not know what was added."""
+    return _batch(past, future, s, alpha_bar, rate, u, torch.randn_like(noise))
+
+
+def lists_of_samples(past, future, s, alpha_bar, rate, u, noise):
+    """The right numbers, sample by sample, never stacked."""
+    return tuple(list(part) for part in _batch(past, future, s, alpha_bar, rate, u, noise))
+
+
 def _expected(xx, past, keep, share, floor):
     out = xx.clone()
     out[:past, :past] = share * xx[:past, :past] + floor * torch.eye(past)
@@ -103,6 +130,18 @@ def no_noise(xx, past, rate, alpha_bar):
     """Shrinks and adds nothing, so that there is no ridge."""
     share = 1 - rate + rate * alpha_bar.mean()
     return _expected(xx, past, 1 - rate + rate * alpha_bar.sqrt().mean(), share, 0.0)
+
+
+def variance_subtracted(xx, past, rate, alpha_bar):
+    """A minus before the noise's variance: the ridge is a pit."""
+    share, keep = 1 - rate + rate * alpha_bar.mean(), 1 - rate + rate * alpha_bar.sqrt().mean()
+    return _expected(xx, past, keep, share, -rate * (1 - alpha_bar).mean())
+
+
+def mean_squared(xx, past, rate, alpha_bar):
+    """Takes k * k for past times past, as if its two factors were drawn apart."""
+    keep = 1 - rate + rate * alpha_bar.sqrt().mean()
+    return _expected(xx, past, keep, keep**2, rate * (1 - alpha_bar).mean())
 
 
 def all_dropped(xx, past, rate, alpha_bar):
@@ -168,11 +207,18 @@ ZOO = {
         "the signal not shrunk": not_shrunk,
         "no roots": no_roots,
         "changed in place": changed_in_place,
+        "the future changed in place": future_changed_in_place,
+        "noise subtracted": noise_subtracted,
+        "noise subtracted from the past": noise_subtracted_from_the_past,
+        "noise of its own": noise_of_its_own,
+        "lists of samples": lists_of_samples,
     },
     "dropped_products": {
         "one root in past times past": one_root_in_the_past,
         "root of the mean": root_of_the_mean,
         "no noise": no_noise,
+        "noise subtracted": variance_subtracted,
+        "mean squared": mean_squared,
         "all dropped": all_dropped,
         "control dropped, too": control_dropped_too,
         "shares inverted": shares_inverted,
