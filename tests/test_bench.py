@@ -4,12 +4,14 @@ The walker of these tests goes on as the last pose was, but for noise: what it m
 """
 
 import base64
+import io
 
 import numpy as np
 import pytest
 import torch
 import traitlets
 from browser import bare_page, coloured, ink, open_page
+from PIL import Image
 
 from data_synth.walking import walk
 from motiondiff_edu.mending import mend_steps
@@ -19,7 +21,7 @@ from motiondiff_edu.motion.skeleton import JOINTS, J
 from motiondiff_edu.repair_bench import RepairBench
 from motiondiff_edu.viz import body
 from motiondiff_edu.widgets import packing, poster
-from motiondiff_edu.widgets.bench import _BYTES, GHOST, MISSING, MODULE, Bench
+from motiondiff_edu.widgets.bench import _BYTES, GHOST, MODULE, Bench
 
 T_H = 8
 CLIP = walk(np.tile([1.2, 0.0, 0.6], (31, 1)), seed=6)
@@ -155,6 +157,7 @@ def test_the_still_picture_shows_the_window_its_holes_and_the_repairs_against_th
 
     def near(picture, colour: str) -> int:
         wanted = np.array([int(colour[k : k + 2], 16) for k in (1, 3, 5)])
+        picture = Image.open(io.BytesIO(poster.as_png(picture))).convert("RGB")  # as it is shown, in few colours
         return int((np.abs(np.asarray(picture).astype(int) - wanted).sum(-1) < 60).sum())
 
     widget = bench()
@@ -162,11 +165,12 @@ def test_the_still_picture_shows_the_window_its_holes_and_the_repairs_against_th
     assert strips[-1]["between"] == (9, 9 + T_H - 1)
     widget.missing = np.flatnonzero(~ARM).tolist()
     holes = widget.poster()
-    assert near(holes, MISSING) > near(whole, MISSING) + 100
+    upper = [picture.crop((0, 30, picture.width, picture.height - 60)) for picture in (whole, holes)]  # without words
+    assert near(upper[1], body.INK) > near(upper[0], body.INK) + 100
     widget.repair()
     mended = widget.poster()
     lower = mended.crop((0, mended.height // 2, mended.width, mended.height - 30))  # without the words below
-    assert near(lower, GHOST) > 100
+    assert near(lower, GHOST) > 100 and near(lower, body.INK) > 100
     widget.first = 3  # moved: the repairs are old, and the strip shows the new window
     assert widget.poster().height < mended.height and strips[-1]["between"] == (3, 3 + T_H - 1)
 

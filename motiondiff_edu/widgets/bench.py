@@ -22,7 +22,7 @@ from .player import PAGE, STACK
 
 MODULE = module.joined(module.BENCH)
 _BYTES = ("joints", "roots", "mended_joints", "mended_roots")
-MISSING, GHOST = "#CC79A7", "#009E73"  # as in js/bench_paint.js
+GHOST = "#009E73"  # as in js/bench_paint.js
 _STATE = ("scene", "first", "missing", "repaired", "said")
 
 
@@ -136,13 +136,13 @@ class Bench(anywidget.AnyWidget):
         first, end = self.first, self.first + self.bench.T_h
         away = np.zeros(self._truth.shape[:2], bool)
         away[first:end] = ~self.bench.known(self.missing)
-        holes = poster.Thin(self._truth[None], away, MISSING)
-        words = "as recorded; purple: knocked out" if self.missing else "as recorded"
-        figures = [poster.Figure(self._truth, words, thin=(holes,))]
+        lost = poster.Thin(self._truth[None], away, body.INK, dashed=True)
+        words = "as recorded; dashed: knocked out" if self.missing else "as recorded"
+        figures = [poster.Figure(self._truth, words, thin=(lost,))]
         if self.shows_repairs:
             made = np.repeat(self._truth[None], len(self.outcome.motions), axis=0)
             made[:, first:end] = self.outcome.motions
-            thin = poster.Thin(made[1:], away, GHOST), poster.Thin(self._truth[None], away, body.INK, dashed=True)
+            thin = (poster.Thin(made[1:], away, GHOST), lost)
             words = f"the mean of {len(made) - 1} repairs; green: each; dashed: the truth"
             figures.append(poster.Figure(made[0], words, thin=thin))
         return poster.filmstrip(figures, self.scene["fps"], between=(first, end - 1))

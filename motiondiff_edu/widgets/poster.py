@@ -107,7 +107,7 @@ def _thin_limbs(pen: ImageDraw.ImageDraw, thin: Thin, t: int, camera: body.Camer
         for a, b in bones:
             for ends in shares:
                 dash = pose[a] + ends[:, None] * (pose[b] - pose[a])
-                _line(pen, dash, camera, size, thin.colour, (2 if thin.dashed else 1) * SMOOTH)
+                _line(pen, dash, camera, size, thin.colour, 2 * SMOOTH)
 
 
 def render(figure: Figure, t: int, size: tuple[int, int], camera: body.Camera | None = None) -> Image.Image:
@@ -161,7 +161,7 @@ def filmstrip(
         if figure.label:
             _write(pen, (6, head + (row + 1) * tall - 22), figure.label, 16)
     for column, t in enumerate(moments):
-        _write(pen, (column * cell + 6, 7), f"{t / fps:.1f} s", 16)
+        _write(pen, (column * cell + 6, 7), f"{t / fps:.{2 if between else 1}f} s", 16)
     _legend(pen, width - 10, picture.height - 24, 16)
     return picture
 
