@@ -9,9 +9,10 @@ Source: MoDiff III-E.  Notebook: 10
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from typing import Any
 
 import torch
-from jaxtyping import Bool, Float
+from jaxtyping import Float, Shaped
 from torch import Tensor
 
 from .rollout import generate
@@ -29,8 +30,10 @@ class Round:
 def reverse_control(control: Float[Tensor, "*B T 3"]) -> Float[Tensor, "*B T 3"]:
     """The control of the same walk played backwards: -control[T - 2 - t]; the last row repeats.
 
-    Source: MoDiff III-E, mended (sign and shift).  Notebook: 01, 10
+    Raises ValueError for a single row.  Source: MoDiff III-E, mended (sign and shift).  Notebook: 01, 10
     """
+    if control.shape[-2] < 2:
+        raise ValueError(f"the control {tuple(control.shape)} has one row in time; a way back takes 2 at least")
     back = -control[..., :-1, :].flip(-2)
     return torch.cat([back, back[..., -1:, :]], dim=-2)
 
@@ -40,18 +43,15 @@ WayBack = Callable[..., Tensor]
 
 
 def walked_back(walker, ahead, control, given, known, **options) -> Float[Tensor, "B T_h D"]:
-    """The paper's way back: walk on from what was walked ahead; what is known plays no part on the way.
-
-    Others, for which it does, are in `ways_back`.  Source: MoDiff III-E.  Notebook: 10
-    """
+    """The paper's: from what was walked ahead, no more (others: `ways_back`).  Source: MoDiff III-E.  Notebook: 10"""
     return generate(walker, ahead, control, hold=False, **options)
 
 
 def repair_steps(
     walker,
-    past: Float[Tensor, "B T_h D"],
-    known: Bool[Tensor, "B _ _"],
-    control: Float[Tensor, "B T C"],
+    past: Float[Any, "B _ _"],
+    known: Shaped[Any, "_ _ _"],
+    control: Float[Any, "_ _ _"],
     *,
     way_back: WayBack = walked_back,
     guess: Float[Tensor, "B T_h D"] | None = None,
@@ -64,23 +64,25 @@ def repair_steps(
 ) -> Iterator[Round]:
     """Fill the holes of `past` (metres), round by round, until they move by less than `tolerance` metres (RMS).
 
-    `control` has T_h rows beside the past and T_h for the way there. What is missing is the mean pose at first (zero
-    once standardised), or `guess` (metres), from a regression, say. Stops after `rounds` at the latest: a sampler's
-    own spread may be above the tolerance.
-    `way_back`: the paper's, or one of `ways_back`, which heed what is known. Of every predicted window `keep` poses are
-    kept, by default all T_p. keep=1 is the paper's rollout, on its own errors (ten times dearer, and farther off).
+    `control` has T_h rows beside the past and T_h for the way there. Holes are the mean pose at first (zero once
+    standardised), or `guess` (metres), from a regression, say. Stops after `rounds` at the latest: a sampler's own
+    spread may be above the tolerance. `way_back`: the paper's, or one of `ways_back`, which heed what is known. Of each
+    window `keep` poses are kept, by default all T_p; keep=1 is the paper's rollout (ten times dearer, and farther off).
     `settle(past, known, ahead)` mends the filled past after each round: `mending.with_bones`, for one.
-    Raises ValueError when shapes do not fit, or no frame of a sample has anything known.
-    Source: MoDiff III-E, Fig. 6; the stop rule is ours.  Notebook: 10
+    Raises ValueError for what does not fit.  Source: MoDiff III-E, Fig. 6; the stop rule is ours.  Notebook: 10
     """
-    T_h = past.shape[1]
-    if known.shape != past.shape or control.shape[1] != 2 * T_h:
-        raise ValueError(
-            f"known must be shaped like past {tuple(past.shape)}, not {tuple(known.shape)}, and the control must have "
-            f"{2 * T_h} rows (past and as many ahead), not {control.shape[1]}"
-        )
+    past, known, control = map(torch.as_tensor, (past, known, control))
+    T_h, D = walker.config.T_h, walker.config.D
+    if past.shape[1:] != (T_h, D):
+        raise ValueError(f"past is {tuple(past.shape)}; the walker takes (B, {T_h}, {D}): flatten (21, 3) to 63")
+    if known.shape != past.shape or known.dtype != torch.bool:
+        raise ValueError(f"known is {known.dtype} {tuple(known.shape)}; give bool, {tuple(past.shape)} as past is")
+    if control.shape[:2] != (len(past), 2 * T_h):
+        raise ValueError(f"control is {tuple(control.shape)}; give ({len(past)}, {2 * T_h}, 3): past + way there")
     if not known.flatten(1).any(1).all():
         raise ValueError(f"of sample {int((~known.flatten(1).any(1)).nonzero()[0])} nothing is known at all")
+    if rounds < 1:
+        raise ValueError(f"rounds = {rounds}: give 1 at least, to fill the holes")
     missing, mean = ~known, walker.pose_scaler.mean.to(past).expand_as(past)
     filled = torch.where(known, past, mean if guess is None else guess.to(past))
     options = {"generator": generator, "steps": steps, "keep": keep or walker.config.T_p}
@@ -99,6 +101,4 @@ def repair_steps(
 
 def repair(walker, past, known, control, **options) -> Float[Tensor, "B T_h D"]:
     """The last of `repair_steps`: known entries come back bit by bit as they were given.  Notebook: 10"""
-    for done in repair_steps(walker, past, known, control, **options):
-        last = done
-    return last.past
+    return list(repair_steps(walker, past, known, control, **options))[-1].past

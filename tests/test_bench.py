@@ -4,12 +4,14 @@ The walker of these tests goes on as the last pose was, but for noise: what it m
 """
 
 import base64
+import io
 
 import numpy as np
 import pytest
 import torch
 import traitlets
 from browser import bare_page, coloured, ink, open_page
+from PIL import Image
 
 from data_synth.walking import walk
 from motiondiff_edu.mending import mend_steps
@@ -19,7 +21,7 @@ from motiondiff_edu.motion.skeleton import JOINTS, J
 from motiondiff_edu.repair_bench import RepairBench
 from motiondiff_edu.viz import body
 from motiondiff_edu.widgets import packing, poster
-from motiondiff_edu.widgets.bench import _BYTES, MODULE, Bench
+from motiondiff_edu.widgets.bench import _BYTES, GHOST, MODULE, Bench
 
 T_H = 8
 CLIP = walk(np.tile([1.2, 0.0, 0.6], (31, 1)), seed=6)
@@ -146,6 +148,41 @@ def test_the_still_picture_has_words_and_a_second_row_once_mended():
     bundle, _ = widget._repr_mimebundle_()
     assert 'alt="A walk of 1.6 s. In the window, frames 9 to 16, 8 of 168' in bundle["text/html"]
     assert {"image/png", "application/vnd.jupyter.widget-view+json"} <= set(bundle)
+
+
+def test_the_still_picture_shows_the_window_its_holes_and_the_repairs_against_the_truth(monkeypatch):
+    strips = []
+    drawn = poster.filmstrip
+    monkeypatch.setattr(poster, "filmstrip", lambda *args, **options: strips.append(options) or drawn(*args, **options))
+
+    def near(picture, colour: str) -> int:
+        wanted = np.array([int(colour[k : k + 2], 16) for k in (1, 3, 5)])
+        picture = Image.open(io.BytesIO(poster.as_png(picture))).convert("RGB")  # as it is shown, in few colours
+        return int((np.abs(np.asarray(picture).astype(int) - wanted).sum(-1) < 60).sum())
+
+    widget = bench()
+    whole = widget.poster()
+    assert strips[-1]["between"] == (9, 9 + T_H - 1)
+    widget.missing = np.flatnonzero(~ARM).tolist()
+    holes = widget.poster()
+    upper = [picture.crop((0, 30, picture.width, picture.height - 60)) for picture in (whole, holes)]  # without words
+    assert near(upper[1], body.INK) > near(upper[0], body.INK) + 100
+    widget.repair()
+    mended = widget.poster()
+    lower = mended.crop((0, mended.height // 2, mended.width, mended.height - 30))  # without the words below
+    assert near(lower, GHOST) > 100 and near(lower, body.INK) > 100
+    widget.first = 3  # moved: the repairs are old, and the strip shows the new window
+    assert widget.poster().height < mended.height and strips[-1]["between"] == (3, 3 + T_H - 1)
+
+
+def test_thin_limbs_are_those_with_a_missing_end():
+    away = np.zeros((len(CLIP), J), bool)
+    away[5, JOINTS.index("RightHand")] = True
+    thin = poster.Thin(CLIP.world()[None], away, GHOST)
+    plain, marked = (poster.Figure(CLIP.world(), thin=limbs) for limbs in ((), (thin,)))
+    for t, differs in ((4, False), (5, True)):
+        pictures = [np.asarray(poster.render(figure, t, (120, 200))) for figure in (plain, marked)]
+        assert (pictures[0] != pictures[1]).any() == differs
 
 
 STATE = ("scene", "first", "missing", "repaired", "said", "asked", "answered")

@@ -111,13 +111,47 @@ def test_nothing_missing_is_returned_as_it_is():
     assert len(done) == 1 and torch.equal(done[0].past, past) and (done[0].change == 0).all()
 
 
-def test_wrong_inputs():
+def columns(x, D):
+    return x[..., :1].repeat(1, 1, D)
+
+
+MISTAKES = {
+    "a row too few": ({"control": lambda x: x[:, :-1]}, r"control is \(3, 11, 3\); give \(3, 12, 3\)"),
+    "control of another batch": ({"control": lambda x: x[:2]}, r"control is \(2, 12, 3\); give \(3, 12, 3\)"),
+    "a mask of joints": (
+        {"known": lambda x: columns(x, 3)},
+        r"known is torch.bool \(3, 6, 3\); give bool, \(3, 6, 8\)",
+    ),
+    "a mask of float": (
+        {"known": lambda x: x.float()},
+        r"known is torch.float32 .*; give bool",
+    ),
+    "columns missing": ({"past": lambda x: columns(x, 7), "known": lambda x: columns(x, 7)}, r"takes \(B, 6, 8\)"),
+    "a past too long": ({"past": lambda x: torch.cat([x, x], 1)}, r"past is \(3, 12, 8\)"),
+    "nothing known": ({"known": lambda x: x & (torch.arange(3) != 1)[:, None, None]}, "of sample 1 nothing is known"),
+    "no rounds": ({"rounds": lambda x: 0}, "rounds = 0: give 1 at least"),
+}
+
+
+@pytest.mark.parametrize("what", MISTAKES)
+def test_wrong_inputs(what):
+    past, control = material()
+    given = {"past": past, "known": torch.ones(past.shape, dtype=torch.bool), "control": control, "rounds": 5}
+    changes, words = MISTAKES[what]
+    given |= {name: change(given[name]) for name, change in changes.items()}
+    with pytest.raises(ValueError, match=words) as caught:
+        repair(Turning(), **given, generator=seeded())
+    assert ("control" in changes) == ("control" in str(caught.value))  # what is right is not spoken of
+
+
+def test_arrays_of_numpy_are_taken():
     past, control = material()
     known = torch.ones(past.shape, dtype=torch.bool)
-    with pytest.raises(ValueError, match="12 rows"):
-        repair(Turning(), past, known, control[:, :-1], generator=seeded())
-    with pytest.raises(ValueError, match="shaped like past"):
-        repair(Turning(), past, known[:, :2], control, generator=seeded())
-    known[1] = False
-    with pytest.raises(ValueError, match="of sample 1 nothing is known"):
-        repair(Turning(), past, known, control, generator=seeded())
+    known[:, 1:4] = False
+    ours = repair(Turning(), past.numpy(), known.numpy(), control.numpy(), generator=seeded())
+    assert torch.equal(ours, repair(Turning(), past, known, control, generator=seeded()))
+
+
+def test_a_single_row_of_control_cannot_be_reversed():
+    with pytest.raises(ValueError, match=r"\(3, 1, 3\) has one row in time; a way back takes 2"):
+        reverse_control(material()[1][:, :1])

@@ -14,6 +14,27 @@ def walk_on(past: torch.Tensor, control: torch.Tensor) -> torch.Tensor:
     return past[:, -1:] + steps.cumsum(1)
 
 
+class Watched:
+    """`walk_on`, which counts how often it is asked, and refuses a past or a control that is cut short."""
+
+    def __init__(self):
+        self.calls = 0
+
+    def __call__(self, past: torch.Tensor, control: torch.Tensor) -> torch.Tensor:
+        self.calls += 1
+        rows = control.shape[1]
+        call = f"call {self.calls} of walk_on got"
+        expect(
+            past.shape == (2, T_H, 2),
+            f"{call} a past {tuple(past.shape)}; it goes on from all T_h = {T_H} frames, (2, {T_H}, 2)",
+        )
+        expect(
+            control.shape == (2, 2 * T_H, 3),
+            f"{call} {rows} rows of control, and takes all {2 * T_H}: {T_H} beside the past, {T_H} for the new frames",
+        )
+        return walk_on(past, control)
+
+
 def back_in_time(control: torch.Tensor) -> torch.Tensor:
     """-control[T - 2 - t], the last row repeated."""
     reversed_ = -control[:, :-1].flip(1)
@@ -75,7 +96,8 @@ def there_and_back(mine):
     """mine(walk_on, past, known, mean, control): one round; past has NaN in its holes."""
     past, known, mean, control, wanted = material()
     given = past.clone()
-    answer = mine(walk_on, past, known, mean, control)
+    watched = Watched()
+    answer = mine(watched, past, known, mean, control)
     expect(np.shape(answer) == (2, 3, 2), f"the past has shape (2, 3, 2), your answer {np.shape(answer)}")
     expect(torch.equal(past.nan_to_num(-1), given.nan_to_num(-1)), "your function changes the past it was given")
     answer = torch.as_tensor(answer)
@@ -83,6 +105,10 @@ def there_and_back(mine):
         not torch.isnan(answer[~known]).any(),
         "there is NaN in the holes. The walker was given NaN, or the holes were not filled from the way back "
         "(known * past is NaN, too: use torch.where)",
+    )
+    expect(
+        watched.calls == 2,
+        f"calls of walk_on: {watched.calls}; one round takes two: there, and back from where that led",
     )
 
     def variant(**changes):
@@ -103,6 +129,12 @@ def there_and_back(mine):
             ),
             "the new frames go back into the walker in their old order": variant(flip_ahead=False),
             "what comes back runs backwards in time; turn it round before you fill": variant(flip_back=False),
+            "time was never turned round: walking on twice leads farther ahead": variant(
+                flip_ahead=False, flip_back=False
+            ),
+            "time was never turned round, nor the control: walking on twice leads farther ahead": variant(
+                reverse=lambda c: c, flip_ahead=False, flip_back=False
+            ),
             "the mask is the wrong way round: known is True where something was given": torch.where(
                 known, right, torch.where(known, past, mean)
             ),
@@ -127,8 +159,11 @@ def moved_by(mine):
     moved = (after - before).square()
     missing = ~known
     wanted = [(25 / 3) ** 0.5, 5.0]
+    given = {"before": before, "after": after, "known": known}
+    kept = {name: x.clone() for name, x in given.items()}
+    answer = mine(before, after, known)
     expect_close(
-        mine(before, after, known),
+        answer,
         wanted,
         "the change of two samples",
         mistakes={
@@ -144,6 +179,8 @@ def moved_by(mine):
             "that is the root of the sum; divide by the number of holes first": [5.0, 50.0**0.5],
         },
     )
+    for name, x in given.items():
+        expect(torch.equal(x, kept[name]), f"your function changes the `{name}` it was given; build a new tensor")
     whole = mine(before, after, torch.ones_like(known))
     expect(
         torch.equal(torch.as_tensor(whole), torch.zeros(2)),

@@ -88,8 +88,10 @@ def _shade(axis: Axes, planted: np.ndarray, fps: float | int) -> None:
         axis.axvspan(begin / fps, end / fps, color="0.9", lw=0)
 
 
-def score_table(scores: Mapping[str, Mapping[str, float]], words: str, log: Sequence[str] = ()) -> Figure:
-    """Rows of motions, columns of measures; a cell is darker the larger it is within its column.
+def score_table(
+    scores: Mapping[str, Mapping[str, float]], words: str, digits: int = 2, log: Sequence[str] = ()
+) -> Figure:
+    """Rows of motions, columns of measures, to so many digits; a cell is darker the larger it is in its column.
 
     The shade goes with the value, from 0 on, or in the columns named in `log` with its logarithm, from the smallest on.
     """
@@ -99,7 +101,7 @@ def score_table(scores: Mapping[str, Mapping[str, float]], words: str, log: Sequ
     fig, (axis,) = figure(2.6 + 1.75 * len(columns), 1.1 + 0.5 * len(rows), words)
     axis.imshow(shades, cmap="Blues", vmin=0, vmax=1.8, aspect="auto")
     for (i, j), value in np.ndenumerate(values):
-        text = "none" if np.isnan(value) else f"{0 if abs(value) < 5e-4 else value:.2g}"
+        text = "none" if np.isnan(value) else f"{0 if abs(value) < 5e-4 else value:.{digits}g}"
         axis.text(j, i, text, ha="center", va="center", color=INK)
     table(axis, rows, columns)
     return fig

@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 from jaxtyping import Bool, Float
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator, NullFormatter
 
@@ -31,8 +32,7 @@ def by_round(
             axis.plot(np.arange(1, len(values) + 1), values, ls=DASHES[i % 8], marker=MARKERS[i % 8], label=label)
         if measure in (marks or {}):
             name, level = marks[measure]
-            axis.axhline(level, color=body.INK, ls=":", lw=1.2)
-            axis.annotate(name, (1, level), xycoords=("axes fraction", "data"), ha="right", va="bottom", fontsize=SMALL)
+            axis.axhline(level, color=body.INK, ls=":", lw=1.2, label=name)  # told in the legend: points lie beside it
         axis.set(xlabel="round", title=measure, ylim=(0, None))
         axis.xaxis.get_major_locator().set_params(integer=True)
     legend(axes[0])
@@ -44,38 +44,48 @@ def with_ghosts(
     samples: Mapping[str, Float[np.ndarray, "n T 21 3"]],
     known: Bool[np.ndarray, "T 21"],
     words: str,
-    n: int = 5,
+    frames: Sequence[int],
 ) -> Figure:
-    """A row of n poses of the window for each name; rows named in `samples` show all of them as thin green limbs."""
-    frames = np.linspace(0, len(known) - 1, n).round().astype(int)
-    fig, axes = figure(1.5 * n, 2.3 * len(poses) + 0.6, words, len(poses), n)
+    """A row of poses for each name; below those in `samples` a row of their limbs with a missing end, thin and green.
+
+    So the pose that is to be judged is not covered.
+    """
+    rows = [row for name in poses for row in [(name, False), (name, True)][: 1 + (name in samples)]]
+    n = len(frames)
+    fig, axes = figure(1.5 * n, 2.3 * len(rows) + 0.6, words, len(rows), n)
     for i, axis in enumerate(axes):
-        name, t = list(poses)[i // n], frames[i % n]
-        pose = poses[name][t]
-        draw_pose(axis, pose)
-        camera = _CAMERA.at(*pose[HIPS, [0, 2]])
-        for sample in samples.get(name, ()):
-            pixels, _ = body.project(np.asarray(sample[t], np.float64), camera, _SIZE)
-            for a, b in BONES:
-                if not (known[t, a] and known[t, b]):
-                    axis.plot(*pixels[[a, b]].T, color=GHOST, lw=1, alpha=0.6, zorder=4)
+        (name, ghosts), t = rows[i // n], frames[i % n]
+        draw_pose(axis, poses[name][t], washed=ghosts)
+        if ghosts:
+            _haunt(axis, samples[name][:, t], known[t], _CAMERA.at(*poses[name][t, HIPS, [0, 2]]))
         if i < n:
             axis.set_title(f"frame {t}", fontsize=SMALL)
         if i % n == 0:
+            name = "each of them" if ghosts else name
             axis.text(-0.05, 0.5, name, rotation=90, va="center", ha="right", transform=axis.transAxes, fontsize=MEDIUM)
     fig.legend(handles=SIDES, loc="outside lower right", ncols=2, frameon=False, fontsize=SMALL)
     return fig
 
 
+def _haunt(axis: Axes, samples: Float[np.ndarray, "n 21 3"], known: Bool[np.ndarray, "21"], camera: body.Camera):
+    for sample in samples:
+        pixels, _ = body.project(np.asarray(sample, np.float64), camera, _SIZE)
+        for a, b in BONES:
+            if not (known[a] and known[b]):
+                axis.plot(*pixels[[a, b]].T, color=GHOST, lw=1, alpha=0.6, zorder=4)
+
+
 def faults_and_methods(panels: Mapping[str, Mapping[str, Mapping[str, float]]], words: str, log: bool = True) -> Figure:
     """A panel for each measure: a row for each fault, a mark in it for each method; NaN leaves a mark out."""
     faults = list(next(iter(panels.values())))
-    fig, axes = figure(5.4 * len(panels), 1.4 + 0.62 * len(faults), words, 1, len(panels), sharey=True)
+    fig, axes = figure(5.4 * len(panels), 1.4 + 0.8 * len(faults), words, 1, len(panels), sharey=True)
     for axis, (measure, rows) in zip(axes, panels.items(), strict=True):
+        methods = len(rows[faults[0]])
+        apart = min(0.2, 0.7 / methods)  # rows of marks within the row of a fault, so that none hides another
         for k, method in enumerate(rows[faults[0]]):
             values = [rows[fault][method] for fault in faults]
-            axis.plot(values, np.arange(len(faults)) + 0.1 * (k - 2), MARKERS[k % 8], color=OKABE_ITO[k % 7], ms=9,
-                      ls="none", label=method)  # fmt: skip
+            rows_at = np.arange(len(faults)) + apart * (k - (methods - 1) / 2)
+            axis.plot(values, rows_at, MARKERS[k % 8], color=OKABE_ITO[k % 7], ms=9, ls="none", label=method)
         axis.set_title(measure, fontsize=LARGE)
         axis.set_ylim(len(faults) - 0.5, -0.5)
         if log:

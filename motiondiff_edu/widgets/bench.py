@@ -22,6 +22,7 @@ from .player import PAGE, STACK
 
 MODULE = module.joined(module.BENCH)
 _BYTES = ("joints", "roots", "mended_joints", "mended_roots")
+GHOST = "#009E73"  # as in js/bench_paint.js
 _STATE = ("scene", "first", "missing", "repaired", "said")
 
 
@@ -131,13 +132,20 @@ class Bench(anywidget.AnyWidget):
         return PAGE.format(title=html.escape(self.description), module=MODULE, record=text)
 
     def poster(self):
-        """The walk in six poses as a pillow image, below it the mended one: what is shown where nothing runs."""
-        figures = [poster.Figure(self._truth, "as recorded")]
+        """Six poses of the window as a pillow image, what is missing marked; below it the repairs against the truth."""
+        first, end = self.first, self.first + self.bench.T_h
+        away = np.zeros(self._truth.shape[:2], bool)
+        away[first:end] = ~self.bench.known(self.missing)
+        lost = poster.Thin(self._truth[None], away, body.INK, dashed=True)
+        words = "as recorded; dashed: knocked out" if self.missing else "as recorded"
+        figures = [poster.Figure(self._truth, words, thin=(lost,))]
         if self.shows_repairs:
-            mended = self._truth.copy()
-            mended[self.first : self.first + self.bench.T_h] = self.outcome.motions[0]
-            figures.append(poster.Figure(mended, f"frames {self.first} to {self.first + self.bench.T_h - 1} mended"))
-        return poster.filmstrip(figures, self.scene["fps"])
+            made = np.repeat(self._truth[None], len(self.outcome.motions), axis=0)
+            made[:, first:end] = self.outcome.motions
+            thin = (poster.Thin(made[1:], away, GHOST), lost)
+            words = f"the mean of {len(made) - 1} repairs; green: each; dashed: the truth"
+            figures.append(poster.Figure(made[0], words, thin=thin))
+        return poster.filmstrip(figures, self.scene["fps"], between=(first, end - 1))
 
     def _repr_mimebundle_(self, **kwargs):
         live = super()._repr_mimebundle_(**kwargs)

@@ -4,18 +4,28 @@ Notebook: 01
 """
 
 import io
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from jaxtyping import Bool, Float
 from PIL import Image, ImageDraw, ImageFont
 
-from ..motion.skeleton import HEELS, TOES
+from ..motion.skeleton import BONES, HEELS, TOES
 from ..viz import body
 
 SMOOTH = 2  # pictures are drawn this much larger, then shrunk: pillow has no smooth edges
 GROUND, LINE = "#F1F3F5", "#9AA3AE"
+
+
+@dataclass(frozen=True, eq=False)
+class Thin:
+    """Thin limbs over a figure's body, of n motions: the bones that have an end in `away`, dashed or not."""
+
+    motions: Float[np.ndarray, "n T J 3"]
+    away: Bool[np.ndarray, "T J"]
+    colour: str
+    dashed: bool = False
 
 
 @dataclass(frozen=True, eq=False)
@@ -28,6 +38,7 @@ class Figure:
     contacts: Bool[np.ndarray, "T 2"] | None = None
     path: Float[np.ndarray, "n 2"] | None = None
     parts: tuple[body.Part, ...] = body.BODY
+    thin: tuple[Thin, ...] = ()
 
     def __len__(self) -> int:
         return len(self.positions)
@@ -88,6 +99,17 @@ def _ground(pen: ImageDraw.ImageDraw, figure: Figure, t: int, camera: body.Camer
         pen.polygon(pixels, fill=body.mix(colour, GROUND, 0.75), outline=colour, width=SMOOTH)
 
 
+def _thin_limbs(pen: ImageDraw.ImageDraw, thin: Thin, t: int, camera: body.Camera, size: tuple) -> None:
+    """Over a body; a dashed one is five dashes a bone."""
+    bones = [bone for bone in BONES if thin.away[t, list(bone)].any()]
+    shares = np.linspace(0, 1, 10 if thin.dashed else 2).reshape(-1, 2)
+    for pose in thin.motions[:, t]:
+        for a, b in bones:
+            for ends in shares:
+                dash = pose[a] + ends[:, None] * (pose[b] - pose[a])
+                _line(pen, dash, camera, size, thin.colour, 2 * SMOOTH)
+
+
 def render(figure: Figure, t: int, size: tuple[int, int], camera: body.Camera | None = None) -> Image.Image:
     """Frame t of one figure (the last one once it has ended), `size` pixels, the camera following."""
     t = min(t, len(figure) - 1)
@@ -106,6 +128,8 @@ def render(figure: Figure, t: int, size: tuple[int, int], camera: body.Camera | 
         if is_outline:
             pen.line([*points, points[0]], fill=GROUND, width=2 * SMOOTH, joint="curve")
         pen.polygon(points, fill=colour)
+    for thin in figure.thin:
+        _thin_limbs(pen, thin, t, camera, big)
     return picture.resize(size, Image.Resampling.LANCZOS)
 
 
@@ -121,13 +145,15 @@ def _legend(pen: ImageDraw.ImageDraw, right: int, y: int, text_size: int) -> Non
         right -= width + 2 * text_size
 
 
-def filmstrip(figures: list[Figure], fps: float, n: int = 6, width: int = 960) -> Image.Image:
-    """n poses from first to last, a row for each figure, times above."""
+def filmstrip(
+    figures: list[Figure], fps: float, n: int = 6, width: int = 960, between: Sequence[int] | None = None
+) -> Image.Image:
+    """n poses from first to last, or of the frames `between` (both inclusive); a row for each figure, times above."""
     cell, head = width // n, 30
     tall = int(cell * {1: 2.1, 2: 1.45}.get(len(figures), 1.2))
     picture = Image.new("RGB", (width, head + tall * len(figures)), body.PAPER)
     pen = ImageDraw.Draw(picture)
-    moments = np.linspace(0, max(map(len, figures)) - 1, n).round().astype(int)
+    moments = np.linspace(*(between or (0, max(map(len, figures)) - 1)), n).round().astype(int)
     for row, figure in enumerate(figures):
         for column, t in enumerate(moments):
             picture.paste(render(figure, int(t), (cell, tall)), (column * cell, head + row * tall))
@@ -135,7 +161,7 @@ def filmstrip(figures: list[Figure], fps: float, n: int = 6, width: int = 960) -
         if figure.label:
             _write(pen, (6, head + (row + 1) * tall - 22), figure.label, 16)
     for column, t in enumerate(moments):
-        _write(pen, (column * cell + 6, 7), f"{t / fps:.1f} s", 16)
+        _write(pen, (column * cell + 6, 7), f"{t / fps:.{2 if between else 1}f} s", 16)
     _legend(pen, width - 10, picture.height - 24, 16)
     return picture
 

@@ -81,6 +81,31 @@ def start_returned(walk_on, past, known, mean, control):
     return torch.where(known, past, mean)
 
 
+def two_rounds(walk_on, past, known, mean, control):
+    """Right where it ends, but it was asked for one round."""
+    once = torch.where(known, past, _round(walk_on, past, known, mean, control))
+    return torch.where(known, past, _round(walk_on, once, known, mean, control))
+
+
+def short_control(walk_on, past, known, mean, control):
+    """Only the rows beside the past go along: a walker then has no control for the frames it is to make."""
+    ahead = walk_on(torch.where(known, past, mean), control[:, : past.shape[1]])
+    back = walk_on(ahead.flip(1), -no_sign(control)).flip(1)
+    return torch.where(known, past, back)
+
+
+def last_pose_only(walk_on, past, known, mean, control):
+    """Walks back from one pose: the walker goes on from as many as it was trained with."""
+    ahead = walk_on(torch.where(known, past, mean), control)
+    back = walk_on(ahead.flip(1)[:, -1:], -no_sign(control)).flip(1)
+    return torch.where(known, past, back)
+
+
+def there_only(walk_on, past, known, mean, control):
+    """Fills the past with the future."""
+    return torch.where(known, past, walk_on(torch.where(known, past, mean), control))
+
+
 def _moved(before, after, known):
     return (after - before).square() * ~known, (~known).flatten(1).sum(1).clamp(min=1)
 
@@ -112,6 +137,19 @@ def mean_distance(before, after, known):
     return ((after - before).abs() * holes).flatten(1).sum(1) / holes.flatten(1).sum(1).clamp(min=1)
 
 
+def before_in_place(before, after, known):
+    """Right, but the holes as they were are lost to the next round."""
+    before -= after
+    moved = before.square() * ~known
+    return (moved.flatten(1).sum(1) / (~known).flatten(1).sum(1).clamp(min=1)).sqrt()
+
+
+def after_in_place(before, after, known):
+    """Right, but what was found is gone."""
+    after[known] = before[known]
+    return (((after - before).square()).flatten(1).sum(1) / (~known).flatten(1).sum(1).clamp(min=1)).sqrt()
+
+
 def nothing_by_nothing(before, after, known):
     """0 / 0 where nothing is missing: NaN is never below a tolerance, and the loop runs on."""
     holes = ~known
@@ -140,6 +178,12 @@ ZOO = {
         "holes start at raw zero": raw_zero,
         "NaN given to the walker": nan_to_the_walker,
         "start returned": start_returned,
+        "two rounds": two_rounds,
+        "control of the past only": short_control,
+        "back from one pose": last_pose_only,
+        "way there only": there_only,
+        "time never turned": _filled(flip_ahead=False, flip_back=False),
+        "neither time nor control turned": _filled(reverse=lambda control: control, flip_ahead=False, flip_back=False),
     },
     "moved_by": {
         "no root": no_root,
@@ -147,6 +191,8 @@ ZOO = {
         "divided by all entries": divided_by_all,
         "one number for all samples": one_for_all,
         "mean distance": mean_distance,
+        "changes before": before_in_place,
+        "changes after": after_in_place,
         "nothing by nothing": nothing_by_nothing,
     },
 }
