@@ -90,10 +90,10 @@ def repair_steps(
         ahead = generate(walker, filled, control, hold=False, **options)
         turned = [x.flip(1) for x in (ahead, past, known)]
         back = way_back(walker, turned[0], reverse_control(control), *turned[1:], **options).flip(1).to(past)
-        moved = (back - filled).square().mul(missing).flatten(1).sum(1)
-        change = (moved / missing.flatten(1).sum(1).clamp(min=1)).sqrt()
-        filled = torch.where(known, past, back)
+        before, filled = filled, torch.where(known, past, back)
         filled = settle(filled, known, ahead) if settle else filled
+        moved = (filled - before).square().flatten(1).sum(1)
+        change = (moved / missing.flatten(1).sum(1).clamp(min=1)).sqrt()
         yield Round(number, filled, change)
         if not (change > tolerance).any():
             return

@@ -10,6 +10,7 @@ from data_synth.walking import random_control, walk
 from motiondiff_edu.motion.augment import reverse_time
 from motiondiff_edu.motion.scaler import Scaler
 from motiondiff_edu.reconstruction import repair, repair_steps, reverse_control
+from motiondiff_edu.rollout import generate
 
 T_H, D = 6, 8
 
@@ -102,6 +103,51 @@ def test_it_stops_when_told_though_a_sampler_spreads():
     assert [d.number for d in done] == [1, 2, 3, 4] and torch.isfinite(done[-1].past).all()
     again = list(repair_steps(Turning(0.1), past, known, control, rounds=4, generator=seeded()))
     assert torch.equal(done[-1].past, again[-1].past)
+
+
+def test_one_sample_at_rest_does_not_end_the_others():
+    past, control = material(2)
+    known = torch.ones(past.shape, dtype=torch.bool)
+    known[1, 2:4] = False  # of sample 0 nothing is missing
+    found = list(repair_steps(Turning(0.5), past, known, control, rounds=3, generator=seeded()))
+    assert len(found) == 3 and found[0].change[0] == 0 < found[0].change[1]
+
+
+def test_what_settles_a_past_is_in_it_and_in_its_change():
+    past, control = material()
+    known = torch.ones(past.shape, dtype=torch.bool)
+    known[:, 1:3] = False
+
+    def raised(filled, mask, ahead):
+        assert torch.equal(mask, known) and ahead.shape == past.shape
+        return filled + 1.0 * ~mask
+
+    options = {"rounds": 1, "guess": past, "generator": seeded()}  # a walker that knows the way changes nothing
+    (plain,), (settled,) = (
+        list(repair_steps(Turning(), past, known, control, settle=s, **options)) for s in (None, raised)
+    )
+    torch.testing.assert_close(settled.past, plain.past + 1.0 * ~known)
+    torch.testing.assert_close(settled.change, torch.ones(3), atol=1e-4, rtol=0)
+    assert plain.change.max() < 1e-4
+
+
+def test_the_way_back_is_told_everything_turned_round_and_how_many_poses_to_keep():
+    past, control = material()
+    known = torch.ones(past.shape, dtype=torch.bool)
+    known[:, 4:] = False  # unlike itself turned round
+    told = {}
+
+    def way(walker, ahead, rows, given, seen, **options):
+        told.update(ahead=ahead, rows=rows, given=given, seen=seen, **options)
+        return given
+
+    repair(Turning(), past, known, control, rounds=1, guess=past, way_back=way, keep=1, generator=seeded())
+    assert torch.equal(told["given"], past.flip(1)) and torch.equal(told["seen"], known.flip(1))
+    assert torch.equal(told["rows"], reverse_control(control)) and told["keep"] == 1
+    walked = generate(Turning(), past, control, hold=False, generator=seeded(), steps=10, keep=1)
+    torch.testing.assert_close(told["ahead"], walked.flip(1))
+    repair(Turning(), past, known, control, rounds=1, way_back=way, generator=seeded())
+    assert told["keep"] == 2  # all of a window
 
 
 def test_nothing_missing_is_returned_as_it_is():
