@@ -38,10 +38,18 @@ def npss(made: Float[np.ndarray, "N T D"], truth: Float[np.ndarray, "N T D"]) ->
     For each motion and column the power spectra, scaled to sum to 1, are compared by the earth mover's distance (in
     frequency bins); the mean is weighted by the power of the truth.  Notebook: 15
     """
+    moved, weight = npss_parts(made, truth)
+    return float(moved.sum() / weight.sum())
+
+
+def npss_parts(
+    made: Float[np.ndarray, "N T D"], truth: Float[np.ndarray, "N T D"]
+) -> tuple[Float[np.ndarray, "N"], Float[np.ndarray, "N"]]:
+    """Of each motion the sum of its weighted distances, and of the weights: `npss` is the one over the other."""
     power = [np.abs(np.fft.rfft(x, axis=1)) ** 2 for x in (made, truth)]
     spread = [np.cumsum(p / np.maximum(p.sum(1, keepdims=True), 1e-12), axis=1) for p in power]
     moved, weight = np.abs(spread[0] - spread[1]).sum(1), power[1].sum(1)
-    return float((moved * weight).sum() / weight.sum())
+    return (moved * weight).sum(-1), weight.sum(-1)
 
 
 def seams(known: Bool[np.ndarray, "T J"]) -> Int[np.ndarray, "K"]:

@@ -4,6 +4,7 @@ The network's are guided and blended at every step (`between.inbetween`); the pa
 Source: MoFusion 4.4; what is measured, `metrics.keyframes`.  Notebook: 15
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -15,7 +16,7 @@ from motiondiff_edu.baselines.interpolation import linear, spherical
 from motiondiff_edu.between import PAPER, inbetween
 from motiondiff_edu.dancer import Dancer
 from motiondiff_edu.known import gap
-from motiondiff_edu.metrics.keyframes import keyframe_error, npss, seam_jump, unknown_error
+from motiondiff_edu.metrics.keyframes import keyframe_error, npss_parts, seam_jump, unknown_error
 from motiondiff_edu.metrics.skating import skating
 from motiondiff_edu.motion.dance_frame import at_origin
 
@@ -128,20 +129,29 @@ def spectra(one: Filled, rival: str) -> list[Figure]:
 
     There the mean place outweighs all movement, so the ratio stands once more for velocities within the gap.
     """
-    better = getattr(one, rival)
-
-    def scores(truth, other, *samples) -> tuple[float, float]:
-        flat = [x.reshape(*x.shape[:2], -1) for x in (truth, other, *samples)]
-        return np.mean([npss(x, flat[0]) for x in flat[2:]]), npss(flat[1], flat[0])
-
-    arrays = (one.truth, better, *one.made)
-    velocities = [np.diff(within(one, x), axis=1) for x in arrays]
+    arrays = (one.truth, getattr(one, rival), *one.made)
+    places, weight = parts(arrays)
+    velocities, weight_v = parts([np.diff(within(one, x), axis=1) for x in arrays])
     return [
-        figure_of("npss", "", lambda *x: scores(*x)[0], *arrays),
-        figure_of("npss_interpolation", "", lambda *x: scores(*x)[1], *arrays),
-        figure_of("npss_over_interpolation", "ratio", lambda *x: np.divide(*scores(*x)), *arrays),
-        figure_of("npss_velocity_over_interpolation", "ratio", lambda *x: np.divide(*scores(*x)), *velocities),
+        figure_of("npss", "", ratio_of_sums, places[1], weight),
+        figure_of("npss_interpolation", "", ratio_of_sums, places[0], weight),
+        figure_of("npss_over_interpolation", "ratio", ratio_of_sums, *places[::-1]),
+        figure_of("npss_velocity_over_interpolation", "ratio", ratio_of_sums, *velocities[::-1]),
     ]
+
+
+def parts(arrays: Sequence[np.ndarray]) -> tuple[tuple[np.ndarray, np.ndarray], np.ndarray]:
+    """Of the truth, interpolation and samples: NPSS' sums over each motion, (interpolation's, samples' mean); weights.
+
+    Sums can be drawn again a thousand times, spectra could not.
+    """
+    truth, *others = (x.reshape(*x.shape[:2], -1) for x in arrays)
+    sums = [npss_parts(x, truth) for x in others]
+    return (sums[0][0], np.mean([moved for moved, _ in sums[1:]], 0)), sums[0][1]
+
+
+def ratio_of_sums(above: np.ndarray, below: np.ndarray) -> float:
+    return float(above.sum() / below.sum())
 
 
 def inbetween_records(dancer: Dancer, weights: str, size: InbetweenSize, command: str) -> list[dict]:
