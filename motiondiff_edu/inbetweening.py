@@ -38,8 +38,8 @@ def inpaint_steps(
     """DDIM with `steps` steps from `start` (x_S) on which the known entries of x_s are given's, noised; yields `Step`s.
 
     `given` counts where `known` is True. Fresh noise is drawn for the snapshots at every step, and none where nothing
-    is known: then the same generator gives the same sample as `ddim_steps`. With `resample` = R each leap is made R
-    times: there, back again by as much noise, and there, so that the unknown entries can agree with the known ones.
+    is known: then the same generator gives the same sample as `ddim_steps`. With `resample` = R each leap but the last is
+    made R times: there, back again by as much noise, and there, so that the unknown entries can agree with the known ones.
     `blend`, say `blending.blended`, has every x0_hat agree with the given.
     With `guidance` (1, say) they are `guided` before: dearer, and `denoise` must be differentiable.
     The last record has the given entries themselves.
@@ -81,8 +81,8 @@ def guided(
 
         x0_hat + weight * length * pull,   pull = J^T (given - x0_hat)[known],   J = d x0_hat / d x_s
     J is, up to a factor, the covariance of what x_s leaves open (Tweedie): whatever goes with the given is moved along.
-    `length`, for each sample, leaves least wrong at the given entries, were the network linear: entries that say the
-    same must not pull twice. (The sources have a constant there.)  Notebook: 15
+    `length`, for each sample, leaves least wrong at the given entries of this guess: entries that say the same must
+    not pull twice. (The sources have a constant there.)  Notebook: 15
     Source: Ho and others, Video diffusion models (2022); Song and others, Pseudoinverse-guided diffusion (2023).
     """
     with torch.enable_grad():

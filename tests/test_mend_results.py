@@ -8,11 +8,12 @@ import torch
 
 from data_synth.imperfect import ARM, dead_joints, dropped_frames
 from motiondiff_edu.ddpm import cosine_schedule
+from motiondiff_edu.metrics.bone_lengths import bone_rmse
 from motiondiff_edu.motion.scaler import Scaler
 from motiondiff_edu.motion.skeleton import JOINTS
 from motiondiff_edu.reconstruction import walked_back
 from motiondiff_edu.ways_back import masked_back
-from tools.results import mend_dropout, mend_repair, mend_rivals, mend_tables
+from tools.results import mend_both, mend_dropout, mend_repair, mend_rivals, mend_tables
 from tools.results.mend_rivals import rivals
 from tools.results.mend_trials import as_given, interval_over_seeds, names_of, without
 from tools.results.trials import unseen
@@ -125,3 +126,36 @@ def test_the_tables_say_what_the_records_say(tmp_path):
 
 def test_the_pairs_are_shipped_names():
     assert names_of("plain") == ["mend-plain-0", "mend-plain-1", "mend-plain-2"]
+
+
+def test_table_2_measures_what_was_repaired_and_what_was_walked(trials):
+    """A walker that stands in the mean pose: its bones are that pose's, the repaired window's are of both."""
+    size, frames = mend_repair.RepairSize(samples=1, rounds=1, steps=3), trials.truth.shape[1]
+    found, after = mend_repair.table_2([Standing()], trials, size, "standing_", keep=10)
+    value = {one.name.removeprefix("table2_standing_"): one.value for one in found}
+    mean = Standing().pose_scaler.mean.double().numpy().reshape(21, 3)
+    stood = bone_rmse(np.broadcast_to(mean, (5, frames, 21, 3)))
+    assert value["bone_whole_cm"] == pytest.approx(stood) == pytest.approx(value["bone_ge_cm"])
+    np.testing.assert_allclose(after[0], np.broadcast_to(mean, (5, frames, 21, 3)), atol=1e-5)
+    broken = without(trials.past, mend_repair.SHARE)
+    filled = np.where(broken.known[..., None], trials.past, mean)
+    assert value["bone_re_paper_cm"] == pytest.approx(bone_rmse(filled), rel=1e-4)
+    assert value["bone_re_cm"] == pytest.approx(bone_rmse(filled), rel=1e-3)  # its window under a mask is the mean, too
+    assert value["bone_re_bones_cm"] != pytest.approx(value["bone_re_cm"], rel=1e-2)
+    assert value["ratio"] == pytest.approx(max(stood, value["bone_re_cm"]) / stood)
+
+
+def test_both_papers_repairs_are_scored_where_both_had_to_guess(trials, monkeypatch):
+    """One way 3 cm off, the other 5 cm, each in its own frame; the pelvis, which one of them is told, is not scored."""
+    side = np.array([0.0, 0.0, 0.03])
+
+    def repaired(walker, few, broken, size, way):
+        made = few.past + side + [9.0, 0.0, 0.0] * (np.arange(21) == 0)[:, None]  # the pelvis: anywhere
+        return np.stack([made, few.past + 0.0])
+
+    monkeypatch.setattr(mend_both, "repaired", repaired)
+    monkeypatch.setattr(mend_both, "masked", lambda dancer, world, known, n, **how: (world + 5 / 3 * side)[None])
+    found = {one.name: one.value for one in mend_both.both_figures(None, None, trials, mend_repair.QUICK)}
+    assert found["arm.there_and_back.one_cm"] == pytest.approx(3) and found["arm.there_and_back.mean_cm"] < 3
+    assert found["frames.there_and_back.one_cm"] == pytest.approx(3)
+    assert found["frames.masked.one_cm"] == found["frames.masked_blended.mean_cm"] == pytest.approx(5)
