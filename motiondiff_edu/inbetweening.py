@@ -38,8 +38,8 @@ def inpaint_steps(
     """DDIM with `steps` steps from `start` (x_S) on which the known entries of x_s are given's, noised; yields `Step`s.
 
     `given` counts where `known` is True. Fresh noise is drawn for the snapshots at every step, and none where nothing
-    is known: then the same generator gives the same sample as `ddim_steps`. With `resample` = R each leap but the last is
-    made R times: there, back again by as much noise, and there, so that the unknown entries can agree with the known ones.
+    is known: then the same generator gives the same sample as `ddim_steps`. With `resample` = R all leaps but the
+    last are made R times: there, back by as much noise, and there, so that unknown entries can agree with known ones.
     `blend`, say `blending.blended`, has every x0_hat agree with the given.
     With `guidance` (1, say) they are `guided` before: dearer, and `denoise` must be differentiable.
     The last record has the given entries themselves.
