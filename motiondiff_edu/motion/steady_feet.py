@@ -7,11 +7,13 @@ Source: foot-skate cleanup for motion capture (Kovar and others, 2002), shortene
 
 import numpy as np
 from jaxtyping import Bool, Float
+from scipy.ndimage import distance_transform_edt
 
 from .inverse_kinematics import bends_to, two_bones
 from .planting import spans
 from .skeleton import HEELS, TOES
 
+FADE = 6  # frames
 LOW, SLOW = 0.05, 1.0  # m above the floor and m/s: a toe under both is taken to stand, however it slides
 FLOOR = 5  # percentile of a toe's height
 GROUND = np.array([1.0, 0.0, 1.0])  # a toe is held over the ground; it rolls up and down as it did
@@ -46,22 +48,29 @@ def _steady_leg(moved, known, toe: int, heel: int, fps: float) -> None:
 
 def to_stands(toe: Float[np.ndarray, "T 3"], given: Bool[np.ndarray, " T"], fps: float) -> Float[np.ndarray, "T 3"]:
     """What to add to a toe so that it does not slide while it stands; zero where it is given."""
-    shift, anchored = np.zeros_like(toe), given.copy()
+    shift, anchored, frames = np.zeros_like(toe), given.copy(), np.arange(len(toe))
     for first, last in spans(stands(toe, fps)):
         inside = np.flatnonzero(given[first:last]) + first
         if len(inside):  # at the given places, and evenly from one to the next should they differ
             pin = np.stack([np.interp(np.arange(first, last), inside, toe[inside, k]) for k in range(3)], -1)
         else:
             pin = np.median(toe[first:last], axis=0)
-        shift[first:last], anchored[first:last] = (pin - toe[first:last]) * GROUND, True
+        pull = 1 - closeness(given & ((frames < first) | (frames >= last)))[first:last]
+        shift[first:last], anchored[first:last] = pull[:, None] * (pin - toe[first:last]) * GROUND, True
     at = np.flatnonzero(anchored)
     if len(at):
-        u = np.arange(len(toe))
-        before = at[np.clip(np.searchsorted(at, u, "right") - 1, 0, None)]
-        after = at[np.clip(np.searchsorted(at, u, "left"), None, len(at) - 1)]
-        u = np.clip((u - before) / np.maximum(after - before, 1), 0, 1)[:, None]
+        before = at[np.clip(np.searchsorted(at, frames, "right") - 1, 0, None)]
+        after = at[np.clip(np.searchsorted(at, frames, "left"), None, len(at) - 1)]
+        u = np.clip((frames - before) / np.maximum(after - before, 1), 0, 1)[:, None]
         shift = shift[before] + (shift[after] - shift[before]) * (3 * u**2 - 2 * u**3)
     return shift
+
+
+def closeness(given: Bool[np.ndarray, " T"]) -> Float[np.ndarray, " T"]:
+    """1 in given frames, 0 from `FADE` frames away, smooth between: no stand may jump to where a foot is given next."""
+    away = distance_transform_edt(~given) if given.any() else np.full(len(given), np.inf)
+    u = np.minimum(away / FADE, 1)
+    return 1 - (3 * u**2 - 2 * u**3)
 
 
 def stands(toe: Float[np.ndarray, "T 3"], fps: float) -> Bool[np.ndarray, " T"]:

@@ -10,7 +10,7 @@ from .parts import Bench, weights_digest
 from .trials import UNSEEN
 
 KEEP = 5  # poses of every window of ten; frame by frame, each has noise of its own, and heels crawl
-FEW = 40  # pasts of what stands beside Table II
+FEW = 20  # pasts of what stands beside Table II
 
 
 def records(bench: Bench, size: RepairSize, command: str) -> list[dict]:

@@ -27,7 +27,7 @@ from .scores import Figure, figure_of
 from .trials import UNSEEN, Trials
 
 WALKER = "mend-dropout-0"
-WINDOW, CLIPS = 20, 40  # frames that the masking network sees; pasts that are repaired
+WINDOW, CLIPS = 20, 20  # frames that the masking network sees; pasts that are repaired
 
 
 def masked_window(
