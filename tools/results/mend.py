@@ -10,7 +10,7 @@ from .parts import Bench, weights_digest
 from .trials import UNSEEN
 
 KEEP = 5  # poses of every window of ten; frame by frame, each has noise of its own, and heels crawl
-FEW = 20  # pasts of what stands beside Table II
+CLIPS, FEW = 60, 20  # pasts of Table II, and of the larger walker beside it
 
 
 def records(bench: Bench, size: RepairSize, command: str) -> list[dict]:
@@ -24,14 +24,20 @@ def records(bench: Bench, size: RepairSize, command: str) -> list[dict]:
         [checkpoints.load_walker(weights[name]) for name in names] for names in (["walker"], names_of("dropout"))
     )
     figures = [one for fault in FAULTS for one in repair_figures(fault, best[0], trials, size)]
-    few = trials.first(FEW)
-    tried = (("", pairs, trials, 1), (f"keep{KEEP}_", pairs, trials, KEEP), ("walker_", best, few, 1))
+    some, few = trials.first(CLIPS), trials.first(FEW)
+    tried = (("", pairs, some, 1), (f"keep{KEEP}_", pairs, some, KEEP), ("walker_", best, few, 1))
     for who, walkers, asked, keep in tried:
         second, after = table_2(walkers, asked, size, who, keep)
         figures += second
         for suffix, rule in (("", ROBUST), ("_paper", PAPER)):
             figures.append(footsteps(f"footsteps_{who}over_data{suffix}", after, asked, rule))
     seeds = {"data": UNSEEN, "clips": len(trials.past), "missing": SHARE, "samples": size.samples}
-    seeds |= {"rounds": size.rounds, "steps": size.steps, "keep": KEEP, "clips_beside": FEW}
+    seeds |= {
+        "rounds": size.rounds,
+        "steps": size.steps,
+        "keep": KEEP,
+        "table2_clips": CLIPS,
+        "table2_walker_clips": FEW,
+    }
     seeds |= {"weights": [weights_digest(weights[name]) for name in ("walker", *names_of("dropout"))]}
     return dropout_records(trials, weights, command) + [one.as_record("mend.", seeds, command) for one in figures]
