@@ -3,6 +3,7 @@
 import numpy as np
 
 from motiondiff_edu.viz import inbetween as viz
+from motiondiff_edu.viz.mending import over_gaps
 from motiondiff_edu.viz.style import caption
 
 RNG = np.random.default_rng(0)
@@ -61,3 +62,15 @@ def test_given_frames_are_shaded_from_half_a_frame_before_to_half_a_frame_after(
     assert [row.get_ydata().tolist() for row in thin] == samples.tolist()
     assert named.get_ydata().tolist() == line.tolist() and named.get_label() == "the data"
     np.testing.assert_allclose(named.get_xdata(), np.arange(8) / 10)
+
+
+def test_every_measure_over_gaps_names_its_own_lines():
+    line = ((5, 60), (1.0, 300.0), (0.5, 200.0), (2.0, 400.0))
+    fig = over_gaps({"error": {"mean": line, "lines": line}, "sliding": {"the data": line}}, "words", log=["error"])
+    error, sliding = fig.axes
+    assert (error.get_yscale(), sliding.get_yscale()) == ("log", "linear") and sliding.get_ylim()[0] == 0
+    assert [[text.get_text() for text in axis.get_legend().get_texts()] for axis in fig.axes] == [
+        ["mean", "lines"],
+        ["the data"],
+    ]
+    assert error.get_xticks().tolist() == [5, 60]

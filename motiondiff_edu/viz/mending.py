@@ -15,16 +15,23 @@ Line = tuple[Sequence[float], Sequence[float], Sequence[float], Sequence[float]]
 
 
 def over_gaps(
-    panels: Mapping[str, Mapping[str, Line]], words: str, xlabel: str = "length of the gap (frames of 1/20 s)"
+    panels: Mapping[str, Mapping[str, Line]],
+    words: str,
+    xlabel: str = "length of the gap (frames of 1/20 s)",
+    log: Sequence[str] = (),
 ) -> Figure:
-    """One panel for each measure, a line in it for each method, its 95 % interval shaded.  Notebook: 15"""
-    fig, axes = figure(5.4 * len(panels), 4.6, words, 1, len(panels))
+    """One panel for each measure, a line in it for each method, its 95 % interval shaded; `log`: measures by powers.
+
+    Notebook: 15
+    """
+    fig, axes = figure(4.8 * len(panels), 6.0, words, 1, len(panels))
     for axis, (measure, lines) in zip(axes, panels.items(), strict=True):
         for i, (name, (x, value, low, high)) in enumerate(lines.items()):
             line = axis.plot(x, value, ls=DASHES[i % 8], marker=MARKERS[i % 8], label=name)[0]
             axis.fill_between(x, low, high, color=line.get_color(), alpha=0.15, lw=0)
-        axis.set(xlabel=xlabel, title=measure, ylim=(0, None))
-    legend(axes[0])
+        axis.set(xlabel=xlabel, title=measure, **({"yscale": "log"} if measure in log else {"ylim": (0, None)}))
+        axis.set_xticks(x)
+        legend(axis, loc="upper center", bbox_to_anchor=(0.5, -0.16), fontsize=MEDIUM)
     return fig
 
 

@@ -21,6 +21,12 @@ METHODS = {
     "error_arcs_cm": "arcs",
     "error_free_cm": "sampled without the mask",
 }
+SLIDING = {
+    "skating_mps": "one sample",
+    "skating_masked_mps": "masked, as in the paper",
+    "skating_lines_mps": "lines",
+    "skating_data_mps": "the data",
+}
 MASKED = {"error_masked_cm": "masked, as in the paper"}  # one sample
 
 
@@ -100,7 +106,7 @@ def inbetweens(records: dict[str, dict], folder: Path) -> str:
         "of single samples. Given frames are held exactly: "
         f"`keyframe_error_cm` is {number(records['inbetween.keyframe_error_cm']['value'])}.\n\n"
     )
-    picture = "\n![Errors, spectra and seams over the length of the gap](results/inbetween.png)\n"
+    picture = "\n![Errors, spectra, seams and sliding over the length of the gap](results/inbetween.png)\n"
     head = ["gap, frames", *(named.get(kind, f"`{kind}`") for kind in kinds)]
     return text + table(head, rows) + picture * (folder / "inbetween.png").exists()
 
@@ -124,10 +130,11 @@ def draw(records: dict[str, dict], folder: Path) -> None:
             "error, cm": METHODS,
             "NPSS": {"npss": "one sample", "npss_interpolation": "interpolation"},
             "jump at the seam / data's": {"seam_jump_over_data": "one sample", "seam_jump_lines_over_data": "lines"},
+            "sliding of planted toes, m/s": SLIDING,
         }
         panels = {title: {w: _line(records, kind) for kind, w in kinds.items()} for title, kinds in measures.items()}
-        words = "In-betweens at gaps of 5 to 60 frames: errors, spectra and seams, with 95 % intervals over motions."
-        _save(over_gaps(panels, words), folder / "inbetween.png")
+        words = "In-betweens at gaps of 5 to 60 frames, with 95 % intervals over motions."
+        _save(over_gaps(panels, words, log=["error, cm"]), folder / "inbetween.png")
 
 
 def _line(records: dict[str, dict], kind: str):
