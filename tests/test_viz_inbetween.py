@@ -3,7 +3,7 @@
 import numpy as np
 
 from motiondiff_edu.viz import inbetween as viz
-from motiondiff_edu.viz.mending import over_gaps
+from motiondiff_edu.viz.mending import by_fault, over_gaps
 from motiondiff_edu.viz.style import caption
 
 RNG = np.random.default_rng(0)
@@ -74,3 +74,19 @@ def test_every_measure_over_gaps_names_its_own_lines():
         ["the data"],
     ]
     assert error.get_xticks().tolist() == [5, 60]
+
+
+def test_repairs_stand_in_the_row_of_their_way_with_their_interval():
+    fig = by_fault(
+        {"arm": {"ours": (2.0, 1.0, 4.0), "mean": (9.0, 8.0, 10.0)}, "leg": {"mean": (5.0, 4.0, 6.0)}}, "", "cm"
+    )
+    arm, leg = fig.axes
+    assert [label.get_text() for label in arm.get_yticklabels()] == ["ours", "mean"] and not leg.get_yticklabels()[
+        0
+    ].get_text()
+    where = [
+        [(float(one[0].get_xdata()[0]), int(one[0].get_ydata()[0])) for one in axis.containers] for axis in fig.axes
+    ]
+    assert where == [[(2.0, 0), (9.0, 1)], [(5.0, 1)]]
+    segments = [one[2][0].get_segments()[0][:, 0].tolist() for one in arm.containers]
+    assert segments == [[1.0, 4.0], [8.0, 10.0]]

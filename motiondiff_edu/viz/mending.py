@@ -9,7 +9,7 @@ import numpy as np
 from jaxtyping import Float
 from matplotlib.figure import Figure
 
-from .style import DASHES, MARKERS, MEDIUM, figure, legend, table
+from .style import DASHES, MARKERS, MEDIUM, OKABE_ITO, figure, legend, table
 
 Line = tuple[Sequence[float], Sequence[float], Sequence[float], Sequence[float]]  # x, value, low, high
 
@@ -32,6 +32,25 @@ def over_gaps(
         axis.set(xlabel=xlabel, title=measure, **({"yscale": "log"} if measure in log else {"ylim": (0, None)}))
         axis.set_xticks(x)
         legend(axis, loc="upper center", bbox_to_anchor=(0.5, -0.16), fontsize=MEDIUM)
+    return fig
+
+
+def by_fault(panels: Mapping[str, Mapping[str, tuple[float, float, float]]], words: str, xlabel: str) -> Figure:
+    """A panel for each fault, a row for each way of mending it: (value, low, high), by powers; further left is better.
+
+    Notebook: 10
+    """
+    fig, axes = figure(4.6 * len(panels), 4.2, words, 1, len(panels))
+    names = list(dict.fromkeys(name for ways in panels.values() for name in ways))
+    for axis, (fault, ways) in zip(axes, panels.items(), strict=True):
+        for name, (value, low, high) in ways.items():
+            row = names.index(name)
+            style = {"fmt": MARKERS[row % 8], "color": OKABE_ITO[row % 7], "capsize": 4}
+            axis.errorbar(value, row, xerr=[[value - low], [high - value]], **style)
+        axis.set(xscale="log", xlabel=xlabel, title=fault, yticks=range(len(names)), ylim=(len(names) - 0.5, -0.5))
+        axis.set_xticks([1, 2, 5, 10, 20], ["1", "2", "5", "10", "20"])
+        axis.set_xticks([], minor=True)
+        axis.set_yticklabels(names if axis is axes[0] else [])
     return fig
 
 

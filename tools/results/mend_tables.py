@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 
 from motiondiff_edu.files import replacing
-from motiondiff_edu.viz.mending import over_gaps, rate_map
+from motiondiff_edu.viz.mending import by_fault, over_gaps, rate_map
 
 from .inbetween import GAPS
 from .markdown import cell, number, table
@@ -26,6 +26,14 @@ SLIDING = {
     "skating_masked_mps": "masked, as in the paper",
     "skating_lines_mps": "lines",
     "skating_data_mps": "the data",
+}
+REPAIRS = {
+    "rmse_cm": "mean of ten repairs",
+    "one_rmse_cm": "one repair",
+    "paper_rmse_cm": "as in the paper, mean",
+    "rmse_ridge_cm": "ridge regression",
+    "rmse_interpolation_cm": "straight lines",
+    "rmse_meanpose_cm": "mean pose",
 }
 MASKED = {"error_masked_cm": "masked, as in the paper"}  # one sample
 
@@ -58,7 +66,7 @@ def dropout(records: dict[str, dict], folder: Path) -> str:
     )
 
 
-def repairs(records: dict[str, dict]) -> str:
+def repairs(records: dict[str, dict], folder: Path) -> str:
     """Each fault beside what needs no walker; then Table II."""
     ours = tuple(f"mend.{fault}_" for fault in FAULTS)
     kinds = list(dict.fromkeys(n.split("_", 1)[1] for n in records if n.startswith(ours)))
@@ -74,6 +82,9 @@ def repairs(records: dict[str, dict]) -> str:
         "repair.\n\n"
     )
     text += table(["missing", *(f"`{kind}`" for kind in kinds)], rows)
+    text += (
+        "\n![Errors of repairs and of what needs no walker](results/repairs.png)\n" * (folder / "repairs.png").exists()
+    )
     second = [[f"`{n}`", cell(records[n])] for n in records if n.startswith(("mend.table2", "mend.footsteps"))]
     said = (
         "\n### Table II\n\n30 % of the joints of the past missing throughout (zero; 6 of 21): the small walkers with "
@@ -125,6 +136,9 @@ def draw(records: dict[str, dict], folder: Path) -> None:
         words = "Errors of the next ten frames, by the rate of dropout in training and the share of joints missing."
         rates = [f"{RATES[name]:.0%}" for name in names]
         _save(rate_map(panels, rates, [f"{m} %" for m in missing], words), folder / "dropout-map.png")
+    if "mend.arm_rmse_cm" in records:
+        _save(by_fault(_repairs(records), "Errors of what was missing, with 95 % intervals over pasts.", "cm"),
+              folder / "repairs.png")  # fmt: skip
     if "inbetween.keyframe_error_cm" in records:
         measures = {
             "error, cm": METHODS,
@@ -135,6 +149,19 @@ def draw(records: dict[str, dict], folder: Path) -> None:
         panels = {title: {w: _line(records, kind) for kind, w in kinds.items()} for title, kinds in measures.items()}
         words = "In-betweens at gaps of 5 to 60 frames, with 95 % intervals over motions."
         _save(over_gaps(panels, words, log=["error, cm"]), folder / "inbetween.png")
+
+
+def _repairs(records: dict[str, dict]):
+    """Of each fault the ways that there are, in the order of REPAIRS."""
+    sides = ("value", "low", "high")
+    return {
+        fault: {
+            words: tuple(records[name][side] for side in sides)
+            for kind, words in REPAIRS.items()
+            if (name := f"mend.{fault}_{kind}") in records
+        }
+        for fault in FAULTS
+    }
 
 
 def _line(records: dict[str, dict], kind: str):

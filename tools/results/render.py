@@ -162,7 +162,7 @@ def render(docs: Path, benchmarks: Path = Path("benchmarks/results")) -> None:
     parts = [HEAD, bars(records), walkers(records), footsteps(records, docs / "results")]
     parts += [budget(records), table_1(records), choices(records), attention(records, docs / "results")]
     mend_tables.draw(records, docs / "results")
-    parts += [mend_tables.dropout(records, docs / "results"), mend_tables.repairs(records)]
+    parts += [mend_tables.dropout(records, docs / "results"), mend_tables.repairs(records, docs / "results")]
     parts += [known_tables.both(records), known_tables.known_answers(records)]
     parts += [mend_tables.inbetweens(records, docs / "results"), claims(records), others(records)]
     with replacing(docs / "RESULTS.md") as aside:
