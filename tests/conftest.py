@@ -70,9 +70,14 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
 
 @pytest.hookimpl(wrapper=True)
 def pytest_runtest_makereport(item: pytest.Item, call: pytest.CallInfo):
-    """A skip from anywhere (importorskip, a mark) in a browser or real-data test is a failure where it was demanded."""
+    """A skip from anywhere (importorskip, a mark) in a browser or real-data test is a failure where it was demanded.
+
+    What wants real recordings as well as a browser may be skipped where none are given.
+    """
     report = yield
     names = getattr(item, "fixturenames", ())
+    if "real_data" in names and not demanded("MOTIONDIFF_REAL_DATA"):
+        return report
     for fixture, variable in (("chromium", "MOTIONDIFF_REQUIRE_BROWSER"), ("real_data", "MOTIONDIFF_REAL_DATA")):
         if report.skipped and not hasattr(report, "wasxfail") and fixture in names and demanded(variable):
             report.outcome = "failed"
