@@ -15,11 +15,11 @@ from .blending import blended
 from .dancer import Dancer
 from .inbetweening import inpaint_steps
 from .known import known_columns
-from .motion.dance_frame import HIP_LEFT, HIP_RIGHT, Place, placed_features, to_positions
-from .motion.directions import ARMS
+from .motion.dance_frame import GROUND, Place, heading, placed_features, to_positions
+from .motion.directions import ARMS, UPLEGS
 from .motion.skeleton import HIPS, JOINTS, J
 from .motion.steady_bones import given_lengths, steady_bones
-from .motion.steady_feet import GROUND, steady_feet
+from .motion.steady_feet import steady_feet
 
 BLEND = 10  # frames within which a correction fades where nothing else is given
 GUIDANCE = 0.5  # more obeys sparse keyframes better, and jumps more at the seams of a gap
@@ -66,10 +66,9 @@ def inbetween(
     heard = None if mel is None else mel[None].expand(samples, -1, -1)
     denoise = dancer.denoiser(heard, len(given), fast=not guidance)
     blend_in = None if blend is None else partial(blended, fade=fading(blend))
-    options = {"steps": steps, "eta": eta, "resample": resample, "blend": blend_in, "guidance": guidance}
-    options["generator"] = generator
-    start = torch.randn(shape, generator=generator)
-    loop = inpaint_steps(denoise, start, dancer.schedule, given.expand(shape), columns.expand(shape), **options)
+    options = {"steps": steps, "eta": eta, "resample": resample, "guidance": guidance, "generator": generator}
+    start, held = torch.randn(shape, generator=generator), (given.expand(shape), columns.expand(shape))
+    loop = inpaint_steps(denoise, start, dancer.schedule, *held, blend=blend_in, **options)
     *_, last = loop
     made = place.leave(to_positions(dancer.motion_scaler.inverse(last.x_s)).double().numpy())
     whole = np.where(known[..., None], positions, made)
@@ -90,12 +89,11 @@ def seen_from(positions: Float[np.ndarray, "T 21 3"], known: Bool[np.ndarray, "T
     By the first frame that gives pelvis and hips, or else pelvis and shoulders; or else by the path of the pelvis,
     which is taken to go forward (along z where it goes nowhere at first). The world's origin where nothing is known.
     """
-    for left, right in ((HIP_LEFT, HIP_RIGHT), ARMS):
+    for left, right in (UPLEGS, ARMS):
         whole = known[:, [HIPS, left, right]].all(-1)
         if whole.any():
             pose = positions[whole.argmax()]
-            across = pose[left] - pose[right]
-            return Place(pose[HIPS] * GROUND, np.array(np.arctan2(-across[2], across[0])))
+            return Place(pose[HIPS] * GROUND, heading(pose[left] - pose[right]))
     path = positions[known[:, HIPS], HIPS]
     if not len(path):
         return Place(np.zeros(3), np.zeros(()))

@@ -13,13 +13,18 @@ from torch import Tensor
 
 from .skeleton import HIPS, MIRROR, J, joint_index
 
+GROUND = np.array([1.0, 0.0, 1.0])  # what of a place is on the floor
 HIP_LEFT, HIP_RIGHT = joint_index("LeftUpLeg"), joint_index("RightUpLeg")
 
 
 def facing(positions: Float[np.ndarray, "*B 21 3"]) -> Float[np.ndarray, "*B"]:
     """Which way the pelvis faces: radians, counter-clockwise seen from above, 0 along z."""
-    across = positions[..., HIP_LEFT, :] - positions[..., HIP_RIGHT, :]
-    return np.arctan2(-across[..., 2], across[..., 0])
+    return heading(positions[..., HIP_LEFT, :] - positions[..., HIP_RIGHT, :])
+
+
+def heading(across: Float[np.ndarray, "*B 3"]) -> Float[np.ndarray, "*B"]:
+    """Which way somebody faces whose hips, or shoulders, lie along this line from right to left."""
+    return np.asarray(np.arctan2(-across[..., 2], across[..., 0]))
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,7 +36,7 @@ class Place:
 
     @classmethod
     def of(cls, pose: Float[np.ndarray, "*B 21 3"]) -> "Place":
-        return cls(pose[..., HIPS, :] * np.array([1.0, 0.0, 1.0]), facing(pose[..., None, :, :])[..., 0])
+        return cls(pose[..., HIPS, :] * GROUND, facing(pose[..., None, :, :])[..., 0])
 
     def enter(self, positions: Float[np.ndarray, "*B T J 3"]) -> Float[np.ndarray, "*B T J 3"]:
         """World positions as seen from here."""

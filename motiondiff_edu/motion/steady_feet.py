@@ -9,6 +9,7 @@ import numpy as np
 from jaxtyping import Bool, Float
 from scipy.ndimage import distance_transform_edt
 
+from .dance_frame import GROUND
 from .inverse_kinematics import bends_to, two_bones
 from .planting import spans
 from .skeleton import HEELS, TOES
@@ -16,7 +17,6 @@ from .skeleton import HEELS, TOES
 FADE = 6  # frames
 LOW, SLOW = 0.05, 1.0  # m above the floor and m/s: a toe under both is taken to stand, however it slides
 FLOOR = 5  # percentile of a toe's height
-GROUND = np.array([1.0, 0.0, 1.0])  # a toe is held over the ground; it rolls up and down as it did
 
 
 def steady_feet(
@@ -56,6 +56,7 @@ def to_stands(toe: Float[np.ndarray, "T 3"], given: Bool[np.ndarray, " T"], fps:
         else:
             pin = np.median(toe[first:last], axis=0)
         pull = 1 - closeness(given & ((frames < first) | (frames >= last)))[first:last]
+        # held over the ground; up and down it rolls as it did
         shift[first:last], anchored[first:last] = pull[:, None] * (pin - toe[first:last]) * GROUND, True
     at = np.flatnonzero(anchored)
     if len(at):
