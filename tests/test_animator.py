@@ -3,7 +3,6 @@
 import os
 
 import pytest
-import test_player_lab
 from browser import open_page
 from test_player_lab import ASK, lab, run_all  # noqa: F401
 
@@ -34,7 +33,7 @@ print(np.array_equal(made[[0, 56]], walk[[0, 56]]), round(float(raised), 2),
 @pytest.fixture
 def address(monkeypatch, request, real_data):
     walk = real_data / "bvh" / "cmu_02_01_walk.bvh"
-    monkeypatch.setattr(test_player_lab, "CELL", CELL.replace("WALK", str(walk)))
+    monkeypatch.setattr(request.module, "CELL", CELL.replace("WALK", str(walk)))
     return request.getfixturevalue("lab")
 
 

@@ -2,8 +2,6 @@
 
 import os
 
-import pytest
-import test_player_lab
 from browser import coloured, open_page
 from test_player_lab import ASK, lab, run_all  # noqa: F401
 
@@ -26,16 +24,10 @@ print(bench.shows_repairs, [divmod(n, len(JOINTS)) for n in bench.missing] == [(
 ROOT = "document.querySelector('.mde-bench').dataset"
 
 
-@pytest.fixture
-def address(monkeypatch, request):
-    monkeypatch.setattr(test_player_lab, "CELL", CELL)
-    return request.getfixturevalue("lab")
-
-
-def test_a_hand_is_knocked_out_and_mended_in_jupyterlab(browser, address):
+def test_a_hand_is_knocked_out_and_mended_in_jupyterlab(browser, lab):  # noqa: F811
     with open_page(browser, offline=False, viewport={"width": 1300, "height": 1000}) as page:
         page.set_default_timeout(120_000)
-        canvas = run_all(page, address, "mde-bench")
+        canvas = run_all(page, lab, "mde-bench")
         page.get_by_label("A click on a joint counts for").select_option("one")
         canvas.focus()
         page.keyboard.press("Home")

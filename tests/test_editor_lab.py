@@ -2,8 +2,6 @@
 
 import os
 
-import pytest
-import test_player_lab
 from browser import coloured, open_page
 from test_player_lab import ASK, lab, run_all  # noqa: F401
 
@@ -20,16 +18,10 @@ editor"""
 ROOT = "document.querySelector('.mde-editor').dataset"
 
 
-@pytest.fixture
-def address(monkeypatch, request):
-    monkeypatch.setattr(test_player_lab, "CELL", CELL)
-    return request.getfixturevalue("lab")
-
-
-def test_pins_drags_and_in_betweens_in_jupyterlab(browser, address):
+def test_pins_drags_and_in_betweens_in_jupyterlab(browser, lab):  # noqa: F811
     with open_page(browser, offline=False, viewport={"width": 1300, "height": 1000}) as page:
         page.set_default_timeout(60_000)
-        canvas = run_all(page, address, "mde-editor")
+        canvas = run_all(page, lab, "mde-editor")
         canvas.focus()
         for key in ("Enter", "End", "Enter"):
             page.keyboard.press(key)

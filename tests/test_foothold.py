@@ -159,10 +159,8 @@ def walk_windows() -> Windows:
     )
 
 
-@pytest.mark.parametrize("doubt", [0.0, 0.4, 1.0])
-def test_doubt_is_the_share_of_the_shaking_under_the_feet(doubt: float):
-    """The pose whose feet may stay lies between the clean past and the one that is seen."""
-    windows, seen = walk_windows(), {}
+def watched(windows: Windows, seen: dict) -> FootholdMoDiff:
+    """A network that writes down the last poses it is shown, and those on which its feet may stand."""
     model = FootholdMoDiff(TINY, windows.pose_scaler, windows.control_scaler)
     encode = model.encode
 
@@ -171,6 +169,14 @@ def test_doubt_is_the_share_of_the_shaking_under_the_feet(doubt: float):
         return encode(past, control, standing)
 
     model.encode = spy
+    return model
+
+
+@pytest.mark.parametrize("doubt", [0.0, 0.4, 1.0])
+def test_doubt_is_the_share_of_the_shaking_under_the_feet(doubt: float):
+    """The pose whose feet may stay lies between the clean past and the one that is seen."""
+    windows, seen = walk_windows(), {}
+    model = watched(windows, seen)
     window_loss(windows, linear_schedule(8, 0.2, 0.95), batch=6, jitter=0.3, doubt=doubt)(
         model, torch.Generator().manual_seed(5)
     )
@@ -182,14 +188,7 @@ def test_doubt_is_the_share_of_the_shaking_under_the_feet(doubt: float):
 def test_a_dropped_past_leaves_no_clean_feet_to_stand_on():
     """Wherever the past was noised, the feet that may stay are those of the noised past."""
     windows, schedule, seen = walk_windows(), linear_schedule(8, 0.2, 0.95), {}
-    model = FootholdMoDiff(TINY, windows.pose_scaler, windows.control_scaler)
-    encode = model.encode
-
-    def spy(past, control, standing):
-        seen.update(past=past[:, -1], standing=standing)
-        return encode(past, control, standing)
-
-    model.encode = spy
+    model = watched(windows, seen)
     dropout = Dropout(schedule, lambda done: 0.5, steps=1)
     loss_fn = window_loss(windows, schedule, batch=20, noises=2, jitter=0.3, doubt=0.5, dropout=dropout)
     loss_fn(model, torch.Generator().manual_seed(5))

@@ -47,10 +47,10 @@ def free_port() -> int:
 
 
 @pytest.fixture
-def lab(chromium, root, tmp_path):
-    """The address of a JupyterLab that serves one notebook with a player in it."""
+def lab(chromium, root, tmp_path, request):
+    """The address of a JupyterLab that serves one notebook, whose cell is the CELL of the test's module."""
     pytest.importorskip("jupyterlab")
-    notebook(tmp_path / "walk.ipynb", CELL.format(tests=str(root / "tests")))
+    notebook(tmp_path / "walk.ipynb", request.module.CELL.format(tests=str(root / "tests")))
     port, token = free_port(), "test"
     command = [sys.executable, "-m", "jupyter", "lab", "--no-browser", "--expose-app-in-browser", "--allow-root"]
     command += [f"--ServerApp.port={port}", "--ServerApp.port_retries=0", f"--IdentityProvider.token={token}"]
