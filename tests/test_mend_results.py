@@ -132,7 +132,8 @@ def test_the_pairs_are_shipped_names():
 def test_table_2_measures_what_was_repaired_and_what_was_walked(trials):
     """A walker that stands in the mean pose: its bones are that pose's, the repaired window's are of both."""
     size, frames = mend_repair.RepairSize(samples=1, rounds=1, steps=3), trials.truth.shape[1]
-    found, after = mend_repair.table_2([Standing()], trials, size, "standing_", keep=10)
+    windows = mend_repair.repaired_windows([Standing()], trials, size)
+    found, after = mend_repair.table_2([Standing()], trials, size, windows, "standing_", keep=10)
     value = {one.name.removeprefix("table2_standing_"): one.value for one in found}
     mean = Standing().pose_scaler.mean.double().numpy().reshape(21, 3)
     stood = bone_rmse(np.broadcast_to(mean, (5, frames, 21, 3)))

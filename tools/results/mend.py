@@ -4,7 +4,7 @@ from motiondiff_edu import checkpoints
 from motiondiff_edu.metrics.footsteps import PAPER, ROBUST
 
 from .mend_dropout import dropout_records
-from .mend_repair import FAULTS, RepairSize, footsteps, repair_figures, table_2
+from .mend_repair import FAULTS, RepairSize, footsteps, repair_figures, repaired_windows, table_2
 from .mend_trials import SHARE, names_of
 from .parts import Bench, weights_digest
 from .trials import UNSEEN
@@ -25,12 +25,13 @@ def records(bench: Bench, size: RepairSize, command: str) -> list[dict]:
     )
     figures = [one for fault in FAULTS for one in repair_figures(fault, best[0], trials, size)]
     some, few = trials.first(CLIPS), trials.first(FEW)
-    tried = (("", pairs, some, 1), (f"keep{KEEP}_", pairs, some, KEEP), ("walker_", best, few, 1))
-    for who, walkers, asked, keep in tried:
-        second, after = table_2(walkers, asked, size, who, keep)
-        figures += second
-        for suffix, rule in (("", ROBUST), ("_paper", PAPER)):
-            figures.append(footsteps(f"footsteps_{who}over_data{suffix}", after, asked, rule))
+    for walkers, asked, names in ((pairs, some, {"": 1, f"keep{KEEP}_": KEEP}), (best, few, {"walker_": 1})):
+        windows = repaired_windows(walkers, asked, size)
+        for who, keep in names.items():
+            second, after = table_2(walkers, asked, size, windows, who, keep)
+            figures += second
+            for suffix, rule in (("", ROBUST), ("_paper", PAPER)):
+                figures.append(footsteps(f"footsteps_{who}over_data{suffix}", after, asked, rule))
     seeds = {"data": UNSEEN, "clips": len(trials.past), "missing": SHARE, "samples": size.samples}
     seeds |= {
         "rounds": size.rounds,

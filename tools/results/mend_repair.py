@@ -101,26 +101,35 @@ def repair_figures(fault: str, walker: Walker, trials: Trials, size: RepairSize)
     return found
 
 
+def repaired_windows(walkers: list[Walker], trials: Trials, size: RepairSize) -> dict[str, list[np.ndarray]]:
+    """Pasts with 30 % of their joints missing, repaired once by each walker.
+
+    `re`: our way as it comes from the network; `re_bones`: bones kept; `re_paper`: the paper's way.
+    """
+    broken, once = without(trials.past, SHARE), RepairSize(1, size.rounds, size.steps)
+    guess = rivals(broken, trials)["ridge"]
+    ours = {name: (masked_back, guess, bones) for name, bones in (("re", False), ("re_bones", True))}
+    ways = ours | {"re_paper": ()}
+    return {name: [repaired(walker, trials, broken, once, *how)[0] for walker in walkers] for name, how in ways.items()}
+
+
 def table_2(
-    walkers: list[Walker], trials: Trials, size: RepairSize, who: str = "", keep: int = 1
+    walkers: list[Walker],
+    trials: Trials,
+    size: RepairSize,
+    windows: dict[str, list[np.ndarray]],
+    who: str = "",
+    keep: int = 1,
 ) -> tuple[list[Figure], list[np.ndarray]]:
     """MoDiff's Table II: bone errors with 30 % of the past's joints missing, over those with a complete past.
 
-    `re`: of the repaired window, all bones, our way as it comes from the network (`re_bones`: bones kept) and (`paper`)
-    the paper's; `ge`: of what follows the broken past, which is returned as well, one set of walks for each walker.
-    `who` names them; they keep `keep` poses of a window.
+    Of `repaired_windows`, and of what follows the broken past (`ge`), which is returned as well, one set of walks for
+    each walker. `who` names them; they keep `keep` poses of a window.
     """
-    frames, broken = trials.truth.shape[1], without(trials.past, SHARE)
+    frames = trials.truth.shape[1]
     whole = [continued(walker, trials, 0.0, frames, steps=size.steps, keep=keep) for walker in walkers]
     after = [continued(walker, trials, SHARE, frames, steps=size.steps, keep=keep) for walker in walkers]
-    once = RepairSize(1, size.rounds, size.steps)
-    guess = rivals(broken, trials)["ridge"]
-    window, settled = (
-        [repaired(walker, trials, broken, once, masked_back, guess, bones)[0] for walker in walkers]
-        for bones in (False, True)
-    )
-    theirs = [repaired(walker, trials, broken, once)[0] for walker in walkers]
-    sets = {"whole": whole, "ge": after, "re": window, "re_bones": settled, "re_paper": theirs}
+    sets = {"whole": whole, "ge": after, **windows}
     squares = {name: np.stack([squared_bone_error(x) for x in each]) for name, each in sets.items()}
     figures = [
         Figure(f"table2_{who}bone_{name}_cm", *interval_over_seeds(root_mean, x), "cm") for name, x in squares.items()
