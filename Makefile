@@ -72,7 +72,7 @@ bench: $(VENV)/.bench ## measure against the public peers into benchmarks/result
 	$(BIN)/python -m benchmarks
 
 pretrained: $(VENV)/.lab ## train all shipped weights again (hours)
-	$(BIN)/python -m motiondiff_edu.pretrained
+	$(BIN)/python -m motiondiff_edu.recipes
 
 clean: ## remove .venv and what the build left, but for trainings under way (build/runs) and rollouts (build/results)
 	rm -rf $(VENV) build/bdist* build/numba build/lib build/quick dist *.egg-info .pytest_cache .ruff_cache

@@ -1,7 +1,9 @@
-"""Before any test: a cache of compiled functions for each of the workers that run tests and notebooks side by side.
+"""Before any test: a cache of compiled functions for each of the workers that run tests and
+notebooks side by side.
 
-librosa compiles with numba, which keeps what it compiled in files. Two processes that fill one folder at the same time
-leave halves that do not fit together, and who reads them next dies (numba issue 10128).
+librosa compiles with numba, which keeps what it compiled in files. Two processes that fill one
+folder at the same time leave halves that do not fit together, and who reads them next dies (numba
+issue 10128).
 """
 
 import os

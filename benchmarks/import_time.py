@@ -1,4 +1,5 @@
-"""How long `import motiondiff_edu` takes beside `import torch`: fresh processes, CPU seconds, in turn.
+"""How long `import motiondiff_edu` takes beside `import torch`: fresh processes, CPU seconds, in
+turn.
 
 Run: python benchmarks/import_time.py [--repeats 15] [--out benchmarks/results/import_time.json]
 """
@@ -17,12 +18,15 @@ TIMED = "import time; start = time.process_time(); import {}; print(time.process
 
 def cpu_seconds(module: str) -> float:
     """CPU seconds that importing a module takes in a process that has imported nothing."""
-    done = subprocess.run([sys.executable, "-c", TIMED.format(module)], capture_output=True, text=True, check=True)
+    done = subprocess.run(
+        [sys.executable, "-c", TIMED.format(module)], capture_output=True, text=True, check=True
+    )
     return float(done.stdout)
 
 
 def measure(repeats: int) -> dict[str, np.ndarray]:
-    """Both modules in every repeat, the order turned round each time; the first repeat only fills the disk cache."""
+    """Both modules in every repeat, the order turned round each time; the first repeat only fills
+    the disk cache."""
     times = {module: [] for module in MODULES}
     for repeat in range(repeats + 1):
         for module in MODULES[:: 1 if repeat % 2 else -1]:
@@ -38,7 +42,10 @@ def main() -> None:
     parser.add_argument("--out", default="benchmarks/results/import_time.json")
     args = parser.parse_args()
     times = measure(args.repeats)
-    records = [record(f"bench.import_{m}_s", values, unit="CPU s", command=COMMAND) for m, values in times.items()]
+    records = [
+        record(f"bench.import_{m}_s", values, unit="CPU s", command=COMMAND)
+        for m, values in times.items()
+    ]
     ratio = times["motiondiff_edu"] / times["torch"]
     records.append(record("bench.import_over_torch", ratio, unit="ratio", command=COMMAND))
     show(records)

@@ -1,8 +1,9 @@
 """Log-Mel of one minute of sound: ours beside warm librosa, on one thread, in one run.
 
-`bench.logmel_x` has librosa at our settings (window of 1024 samples), `bench.logmel_x_default_window` at its own 2048.
-Each repeat times all of them, the best of three, in changing order; a figure is the median of the ratios of repeats.
-Run: python benchmarks/logmel.py [--repeats 40] [--out benchmarks/results/logmel.json]
+`bench.logmel_x` has librosa at our settings (window of 1024 samples),
+`bench.logmel_x_default_window` at its own 2048. Each repeat times all of them, the best of three,
+in changing order; a figure is the median of the ratios of repeats. Run: python benchmarks/logmel.py
+[--repeats 40] [--out benchmarks/results/logmel.json]
 """
 
 import argparse
@@ -25,7 +26,9 @@ def noise() -> np.ndarray:
 
 def theirs(audio: np.ndarray, n_fft: int) -> np.ndarray:
     framing = {"sr": music.SAMPLE_RATE, "n_fft": n_fft, "hop_length": music.HOP}
-    mel = librosa.feature.melspectrogram(y=audio, n_mels=music.BANDS, fmin=music.F_MIN, fmax=music.F_MAX, **framing)
+    mel = librosa.feature.melspectrogram(
+        y=audio, n_mels=music.BANDS, fmin=music.F_MIN, fmax=music.F_MAX, **framing
+    )
     return np.log(np.maximum(mel, music.FLOOR))
 
 
@@ -37,7 +40,9 @@ def main() -> None:
     torch.set_num_threads(1)
     audio = noise()
     sound = torch.from_numpy(audio)
-    np.testing.assert_allclose(music.log_mel(sound).numpy(), theirs(audio, music.N_FFT).T, atol=1e-4)
+    np.testing.assert_allclose(
+        music.log_mel(sound).numpy(), theirs(audio, music.N_FFT).T, atol=1e-4
+    )
     times = in_turn(
         {
             "ours": lambda: music.log_mel(sound),
@@ -53,7 +58,12 @@ def main() -> None:
         record("bench.logmel_ms_per_minute", times["ours"], **milliseconds),
         record("bench.logmel_ms_per_minute.librosa", times["librosa"], **milliseconds),
         record("bench.logmel_x", times["librosa"] / times["ours"], unit="ratio", command=COMMAND),
-        record("bench.logmel_x_default_window", times["default_window"] / times["ours"], unit="ratio", command=COMMAND),
+        record(
+            "bench.logmel_x_default_window",
+            times["default_window"] / times["ours"],
+            unit="ratio",
+            command=COMMAND,
+        ),
     ]
     show(records)
     write_records(args.out, records)

@@ -1,8 +1,10 @@
-"""One autoregressive frame of MoDiff, S = 100, batch 1: ours beside the whole network under diffusers' DDPMScheduler.
+"""One autoregressive frame of MoDiff, S = 100, batch 1: ours beside the whole network under
+diffusers' DDPMScheduler.
 
-Both sides have the same weights and the same noise, and end at the same poses (checked first). Ours encodes past and
-control once a frame and keeps keys, values and step embeddings. Timed in turn, in changing order.
-Run: python benchmarks/modiff_frame.py [--repeats 12] [--threads 1 2] [--out benchmarks/results/modiff_frame.json]
+Both sides have the same weights and the same noise, and end at the same poses (checked first). Ours
+encodes past and control once a frame and keeps keys, values and step embeddings. Timed in turn, in
+changing order. Run: python benchmarks/modiff_frame.py [--repeats 12] [--threads 1 2] [--out
+benchmarks/results/modiff_frame.json]
 """
 
 import argparse
@@ -18,7 +20,7 @@ from timing import in_turn
 from motiondiff_edu.ddpm import linear_schedule
 from motiondiff_edu.modiff import MODIFF_PAPER, MODIFF_SMALL, MoDiff, MoDiffConfig
 from motiondiff_edu.motion.scaler import Scaler
-from motiondiff_edu.walker import Walker
+from motiondiff_edu.performers.walker import Walker
 
 COMMAND = "python -m benchmarks frame"
 SIZES = {"paper": MODIFF_PAPER, "small": MODIFF_SMALL}
@@ -26,7 +28,8 @@ Sampler = Callable[[torch.Tensor, torch.Tensor, torch.Generator], torch.Tensor]
 
 
 def network(config: MoDiffConfig) -> Walker:
-    """A MoDiff with random weights, with scalers that do nothing: what it predicts does not matter here."""
+    """A MoDiff with random weights, with scalers that do nothing: what it predicts does not matter
+    here."""
     torch.manual_seed(0)
     unit = [Scaler(torch.zeros(n), torch.ones(n)) for n in (config.D, config.C)]
     return Walker(MoDiff(config).eval().requires_grad_(False), linear_schedule(config.S), *unit)
@@ -35,7 +38,9 @@ def network(config: MoDiffConfig) -> Walker:
 def whole_network(walker: Walker) -> Sampler:
     """The naive loop: encoders and decoder at each of the S steps, driven by diffusers."""
     config = walker.config
-    scheduler = DDPMScheduler(config.S, beta_start=1e-4, beta_end=0.1, variance_type="fixed_large", clip_sample=False)
+    scheduler = DDPMScheduler(
+        config.S, beta_start=1e-4, beta_end=0.1, variance_type="fixed_large", clip_sample=False
+    )
     scheduler.set_timesteps(config.S)
 
     @torch.inference_mode()
@@ -62,30 +67,44 @@ def inputs(config: MoDiffConfig) -> tuple[torch.Tensor, torch.Tensor]:
 
 def check_equal(runs: dict[str, Sampler], past: torch.Tensor, control: torch.Tensor) -> None:
     """Both sides do the same work: the same noise leads to the same poses."""
-    ours, theirs = (runs[name](past, control, torch.Generator().manual_seed(2)) for name in ("ours", "diffusers"))
+    ours, theirs = (
+        runs[name](past, control, torch.Generator().manual_seed(2))
+        for name in ("ours", "diffusers")
+    )
     apart = float((ours - theirs).abs().max() / theirs.abs().max())
     print(f"  the same noise leads to the same poses, up to {apart:.1e} of their size")
     if not apart < 1e-3:
-        raise SystemExit("the two sides do not compute the same thing; their times cannot be compared")
+        raise SystemExit(
+            "the two sides do not compute the same thing; their times cannot be compared"
+        )
 
 
 def measure(runs: dict[str, Sampler], past, control, repeats: int) -> dict[str, np.ndarray]:
     """Milliseconds a frame of every sampler in every repeat."""
     generator = torch.Generator()
-    frames = {name: lambda run=run: run(past, control, generator.manual_seed(3)) for name, run in runs.items()}
+    frames = {
+        name: lambda run=run: run(past, control, generator.manual_seed(3))
+        for name, run in runs.items()
+    }
     return in_turn(frames, repeats)
 
 
 def records_of(size: str, threads: int, times: dict[str, np.ndarray], bar: bool) -> list[dict]:
-    """Milliseconds, median and least, and how many times faster; the bar's own name for the number of cores at hand."""
+    """Milliseconds, median and least, and how many times faster; the bar's own name for the number
+    of cores at hand."""
     stem, records = f"bench.modiff_frame_{size}", []
     middle = f"{stem}_{threads}thread{'s' * (threads > 1)}"
     for name, values in times.items():
         records.append(record(f"{middle}.{name}_ms", values, unit="ms", command=COMMAND))
-        least = record(f"{middle}.{name}_least_ms", values, unit="ms", command=COMMAND, center=np.min)
+        least = record(
+            f"{middle}.{name}_least_ms", values, unit="ms", command=COMMAND, center=np.min
+        )
         records.append(least)
     ratio = times["diffusers"] / times["ours"]
-    return [*records, record(f"{stem}_x" if bar else f"{middle}_x", ratio, unit="times", command=COMMAND)]
+    return [
+        *records,
+        record(f"{stem}_x" if bar else f"{middle}_x", ratio, unit="times", command=COMMAND),
+    ]
 
 
 def main() -> None:

@@ -1,9 +1,11 @@
-"""How far picture and sound are apart while the player plays: in a real Chromium, all that it can show being drawn.
+"""How far picture and sound are apart while the player plays: in a real Chromium, all that it can
+show being drawn.
 
-At random moments the sound's clock t and the painted frame k are read; their distance is that of t from the frame's
-interval [k/20, (k+1)/20), zero inside. A run's figure is the 95th percentile of its distances. The sizes of the
-exported page with and without sound are recorded beside it.
-Run: python benchmarks/player_audio.py [--runs 5] [--seconds 8] [--out benchmarks/results/player_audio.json]
+At random moments the sound's clock t and the painted frame k are read; their distance is that of t
+from the frame's interval [k/20, (k+1)/20), zero inside. A run's figure is the 95th percentile of
+its distances. The sizes of the exported page with and without sound are recorded beside it. Run:
+python benchmarks/player_audio.py [--runs 5] [--seconds 8] [--out
+benchmarks/results/player_audio.json]
 """
 
 import argparse
@@ -65,7 +67,9 @@ def players(seconds: float) -> dict[str, Player]:
     return {
         "silent": Player(positions),
         "sound": Player(positions, audio=audio, **marks),
-        "listening": Listening(positions, audio, weights, times, moved=0.2 * weights.max(1), hit=2.0, **marks),
+        "listening": Listening(
+            positions, audio, weights, times, moved=0.2 * weights.max(1), hit=2.0, **marks
+        ),
     }
 
 
@@ -78,7 +82,9 @@ def offsets_ms(browser: Browser, page_path: Path, seconds: float) -> np.ndarray:
     t, frame = np.array(page.evaluate(SAMPLE, seconds)).T
     page.close()
     if np.ptp(t) < 0.8 * seconds:
-        raise RuntimeError(f"the sound went on by {np.ptp(t):.1f} s in {seconds} s: it did not play")
+        raise RuntimeError(
+            f"the sound went on by {np.ptp(t):.1f} s in {seconds} s: it did not play"
+        )
     return 1000 * np.maximum(0, np.maximum(frame / FPS - t, t - (frame + 1) / FPS))
 
 
@@ -94,14 +100,20 @@ def main() -> None:
         sys.exit("no Chromium found: install it (Debian: apt-get install chromium)")
     shown, runs = players(args.seconds + 2), []
     with tempfile.TemporaryDirectory() as folder, sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=chromium, args=["--no-sandbox", "--disable-gpu"])
+        browser = playwright.chromium.launch(
+            executable_path=chromium, args=["--no-sandbox", "--disable-gpu"]
+        )
         saved = shown["listening"].save_html(Path(folder) / "listening.html")
         for _ in range(args.runs):
             runs.append(offsets_ms(browser, saved, args.seconds))
         browser.close()
     late = [np.percentile(run, 95) for run in runs]
     records = [record("player.audio_offset_ms", late, unit="ms", command=COMMAND)]
-    records.append(record("player.audio_offset_max_ms", [run.max() for run in runs], unit="ms", command=COMMAND))
+    records.append(
+        record(
+            "player.audio_offset_max_ms", [run.max() for run in runs], unit="ms", command=COMMAND
+        )
+    )
     for name, player in shown.items():
         size = len(player.page().encode()) / 1000
         records.append(record(f"player.page_{name}_kb", [size], unit="kB, 10 s", command=COMMAND))

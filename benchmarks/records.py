@@ -1,16 +1,19 @@
-"""Records of measured figures: {name, value, low, high, seeds, unit, paper, command}, kept in lists in JSON files."""
+"""Records of measured figures: {name, value, low, high, seeds, unit, paper, command}, kept in lists
+in JSON files."""
 
 import json
 from pathlib import Path
 
 import numpy as np
 
-from motiondiff_edu.files import replacing
+from motiondiff_edu._files import replacing
 
 KEYS = ("name", "value", "low", "high", "seeds", "unit", "paper", "command")
 
 
-def record(name: str, values, *, unit: str, command: str, seeds=None, paper=None, center=np.median) -> dict:
+def record(
+    name: str, values, *, unit: str, command: str, seeds=None, paper=None, center=np.median
+) -> dict:
     """Summarise repeated measurements: their median, and the 95 % bootstrap interval of it.
 
     `seeds` lists what was repeated (default 0..n-1); `paper` is the paper's own figure, or None.
@@ -37,7 +40,9 @@ def write_records(path: str | Path, records: list[dict]) -> None:
     """Write records as JSON, to a temporary name first; raises ValueError where one lacks a key."""
     for one in records:
         if set(one) != set(KEYS):
-            raise ValueError(f"record {one.get('name')!r} must have exactly the keys {', '.join(KEYS)}")
+            raise ValueError(
+                f"record {one.get('name')!r} must have exactly the keys {', '.join(KEYS)}"
+            )
     with replacing(path) as aside:
         aside.write_text(json.dumps(records, indent=1) + "\n", encoding="utf-8")
 
@@ -45,4 +50,6 @@ def write_records(path: str | Path, records: list[dict]) -> None:
 def show(records: list[dict]) -> None:
     """Print one line a record."""
     for one in records:
-        print(f"{one['name']:44s} {one['value']:9.3g}  [{one['low']:.3g}, {one['high']:.3g}] {one['unit']}")
+        print(
+            f"{one['name']:44s} {one['value']:9.3g}  [{one['low']:.3g}, {one['high']:.3g}] {one['unit']}"
+        )

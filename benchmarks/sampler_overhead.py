@@ -1,7 +1,9 @@
-"""What a sampler costs around a model that costs nothing: ours beside diffusers and smalldiffusion, in one run.
+"""What a sampler costs around a model that costs nothing: ours beside diffusers and smalldiffusion,
+in one run.
 
-Each repeat times all of them one after the other, in changing order; a figure is the median of the ratios of repeats.
-Run: python benchmarks/sampler_overhead.py [--repeats 40] [--out benchmarks/results/sampler_overhead.json]
+Each repeat times all of them one after the other, in changing order; a figure is the median of the
+ratios of repeats. Run: python benchmarks/sampler_overhead.py [--repeats 40] [--out
+benchmarks/results/sampler_overhead.json]
 """
 
 import argparse
@@ -71,7 +73,9 @@ def run_smalldiffusion():
     here = SimpleNamespace(device=torch.device("cpu"))
 
     def run(x):
-        for out in theirs.samples(model, sigmas, gam=1, mu=0.5, xt=x * float(sigmas[0]), accelerator=here):
+        for out in theirs.samples(
+            model, sigmas, gam=1, mu=0.5, xt=x * float(sigmas[0]), accelerator=here
+        ):
             x = out
         return x
 
@@ -94,12 +98,23 @@ def main() -> None:
     }
     x = torch.randn(SHAPE)
     loops = {name: lambda run=run: run(x) for name, run in runs.items()}
-    times = {name: 1000 * ms / S for name, ms in in_turn(loops, args.repeats, best_of=3, warmup=3).items()}
+    times = {
+        name: 1000 * ms / S
+        for name, ms in in_turn(loops, args.repeats, best_of=3, warmup=3).items()
+    }
     records = [
-        record(f"bench.sampler_us.{name}", values, unit="us a step", command=COMMAND) for name, values in times.items()
+        record(f"bench.sampler_us.{name}", values, unit="us a step", command=COMMAND)
+        for name, values in times.items()
     ]
     for peer in ("diffusers", "smalldiffusion"):
-        records.append(record(f"bench.sampler_over_{peer}", times["ours"] / times[peer], unit="ratio", command=COMMAND))
+        records.append(
+            record(
+                f"bench.sampler_over_{peer}",
+                times["ours"] / times[peer],
+                unit="ratio",
+                command=COMMAND,
+            )
+        )
     show(records)
     write_records(args.out, records)
 

@@ -1,8 +1,10 @@
-"""MoFusion's U-Net, music included, beside lucidrains' Unet1D and diffusers' UNet1DModel without any condition.
+"""MoFusion's U-Net, music included, beside lucidrains' Unet1D and diffusers' UNet1DModel without
+any condition.
 
-Networks of about as many parameters (widths are chosen for that), random weights: sampling is ten DDIM steps for eight
-motions, each side with its own sampler; training is a forward and a backward pass and a step of Adam. In turn.
-Run: python -m benchmarks unet [--repeats 12] [--out benchmarks/results/unet.json]
+Networks of about as many parameters (widths are chosen for that), random weights: sampling is ten
+DDIM steps for eight motions, each side with its own sampler; training is a forward and a backward
+pass and a step of Adam. In turn. Run: python -m benchmarks unet [--repeats 12] [--out
+benchmarks/results/unet.json]
 """
 
 import argparse
@@ -18,11 +20,11 @@ from records import record, show, write_records
 from timing import in_turn
 
 from motiondiff_edu.conditions.music import frame_times
-from motiondiff_edu.dance_windows import mel_frames
-from motiondiff_edu.dancer import Dancer
 from motiondiff_edu.ddpm import cosine_schedule
 from motiondiff_edu.mofusion import MOFUSION_SMALL, MoFusion
 from motiondiff_edu.motion.scaler import Scaler
+from motiondiff_edu.performers.dance_windows import mel_frames
+from motiondiff_edu.performers.dancer import Dancer
 
 COMMAND = "python -m benchmarks unet"
 D, BANDS, STEPS = 63, 80, 10
@@ -35,7 +37,8 @@ def count(model: torch.nn.Module) -> int:
 
 @cache
 def lucidrains():
-    """The module of Unet1D alone: the package as a whole imports torchvision, which it does not need here."""
+    """The module of Unet1D alone: the package as a whole imports torchvision, which it does not
+    need here."""
     spec = importlib.util.find_spec(PEER)
     if spec is None:
         raise SystemExit(
@@ -67,12 +70,17 @@ def theirs(wanted: int) -> dict[str, torch.nn.Module]:
 
     def diffusers_net(width):
         return UNet1DModel(
-            in_channels=D, out_channels=D, extra_in_channels=2 * width, block_out_channels=(width, 2 * width, 3 * width)
+            in_channels=D,
+            out_channels=D,
+            extra_in_channels=2 * width,
+            block_out_channels=(width, 2 * width, 3 * width),
         )
 
     return {
         "lucidrains": closest(
-            lambda dim: module.Unet1D(dim, dim_mults=(1, 2, 3), channels=D), range(32, 97, 8), wanted
+            lambda dim: module.Unet1D(dim, dim_mults=(1, 2, 3), channels=D),
+            range(32, 97, 8),
+            wanted,
         ),
         "diffusers": closest(diffusers_net, range(32, 257, 32), wanted),
     }
@@ -83,7 +91,9 @@ def samplers(dancer: Dancer, nets: dict[str, torch.nn.Module], B: int, N: int) -
     from diffusers import DDIMScheduler
 
     mel = torch.randn(B, mel_frames(N), BANDS)
-    diffusion = lucidrains().GaussianDiffusion1D(nets["lucidrains"], seq_length=N, sampling_timesteps=STEPS)
+    diffusion = lucidrains().GaussianDiffusion1D(
+        nets["lucidrains"], seq_length=N, sampling_timesteps=STEPS
+    )
     scheduler = DDIMScheduler(1000, beta_schedule="squaredcos_cap_v2", clip_sample=False)
 
     @torch.inference_mode()
@@ -103,7 +113,9 @@ def samplers(dancer: Dancer, nets: dict[str, torch.nn.Module], B: int, N: int) -
         return x
 
     runs = {"ours": ours_once, "lucidrains": lucidrains_once}
-    return runs | ({"diffusers": diffusers_once} if N == 64 else {})  # 200 frames are more than it can halve
+    return runs | (
+        {"diffusers": diffusers_once} if N == 64 else {}
+    )  # 200 frames are more than it can halve
 
 
 def trainers(dancer: Dancer, nets: dict[str, torch.nn.Module], B: int, N: int) -> dict:
@@ -112,7 +124,10 @@ def trainers(dancer: Dancer, nets: dict[str, torch.nn.Module], B: int, N: int) -
     mel, times = torch.randn(B, mel_frames(N), BANDS), frame_times(mel_frames(N)).float()
     x, s = torch.randn(B, N, D), torch.randint(1, 1000, (B,))
     channels_first = x.mT.contiguous()
-    optimizers = {name: torch.optim.Adam(net.parameters(), fused=True) for name, net in (("o", model), ("p", peer))}
+    optimizers = {
+        name: torch.optim.Adam(net.parameters(), fused=True)
+        for name, net in (("o", model), ("p", peer))
+    }
 
     def step(optimizer, out, wanted):
         optimizer.zero_grad()
@@ -138,15 +153,21 @@ def main() -> None:
     for N in (64, 200):
         times = in_turn(samplers(dancer, nets, 8, N), args.repeats)
         for name, values in times.items():
-            records.append(record(f"bench.unet_sampling_n{N}.{name}_ms", values, unit="ms", command=COMMAND))
+            records.append(
+                record(f"bench.unet_sampling_n{N}.{name}_ms", values, unit="ms", command=COMMAND)
+            )
         ratio = times["lucidrains"] / times["ours"]
         records.append(record(f"bench.unet_sampling_n{N}_x", ratio, unit="times", command=COMMAND))
         if "diffusers" in times:
             ratio = times["diffusers"] / times["ours"]
-            records.append(record("bench.unet_sampling_diffusers_x", ratio, unit="times", command=COMMAND))
+            records.append(
+                record("bench.unet_sampling_diffusers_x", ratio, unit="times", command=COMMAND)
+            )
         times = in_turn(trainers(dancer, nets, 32, N), args.repeats)
         for name, values in times.items():
-            records.append(record(f"bench.unet_training_n{N}.{name}_ms", values, unit="ms", command=COMMAND))
+            records.append(
+                record(f"bench.unet_training_n{N}.{name}_ms", values, unit="ms", command=COMMAND)
+            )
         ratio = times["lucidrains"] / times["ours"]
         worst = ratio if worst is None or np.median(ratio) < np.median(worst) else worst
     records.append(record("bench.unet_training_x", worst, unit="times", command=COMMAND))

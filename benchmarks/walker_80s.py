@@ -1,11 +1,13 @@
-"""What 80 CPU-seconds of training give: a small walker on three sets of walks, judged on unseen controls of the same.
+"""What 80 CPU-seconds of training give: a small walker on three sets of walks, judged on unseen
+controls of the same.
 
     one person   neutral, no waving and looking about, straight ahead and in curves: notebook 07's data (the bars)
     one style    neutral walkers, all their behaviours, all kinds of control
     all styles   the walkers' training data, fewer clips
 
 One thread; the budget counts only the training loop. Raw output, DDPM with S = 100, held control.
-Run: python benchmarks/walker_80s.py [--seconds 80] [--only person] [--out benchmarks/results/walker_80s.json]
+Run: python benchmarks/walker_80s.py [--seconds 80] [--only person] [--out
+benchmarks/results/walker_80s.json]
 """
 
 import argparse
@@ -21,18 +23,24 @@ from records import show, write_records
 
 sys.path.insert(0, str(Path(__file__).parents[1]))  # tools, beside this folder
 
-from data_synth.styles import STYLES  # noqa: E402
 from data_synth.walking import dataset, random_control, walk  # noqa: E402
+from data_synth.walking.styles import STYLES  # noqa: E402
 from motiondiff_edu.motion.augment import mirror  # noqa: E402
 from motiondiff_edu.motion.clip import Clip  # noqa: E402
-from motiondiff_edu.pretrained.budget import train_for  # noqa: E402
-from tools.results.budget import SMALL  # noqa: E402
-from tools.results.scores import score  # noqa: E402
-from tools.results.trials import FPS, SECONDS, T_H, UNSEEN, Trials, walker_generate  # noqa: E402
+from motiondiff_edu.recipes.budget import train_for  # noqa: E402
+from tools.results.walks.budget import SMALL  # noqa: E402
+from tools.results.walks.scores import score  # noqa: E402
+from tools.results.walks.trials import FPS, SECONDS, T_H, UNSEEN, Trials, walker_generate  # noqa: E402
 
 COMMAND = "python -m benchmarks walker"
 CLIPS = 240
-NAMES = {"bone_rmse_cm", "adherence_excess_mps", "adherence_mps", "adherence_data_mps", "adherence_shuffled_over_own"}
+NAMES = {
+    "bone_rmse_cm",
+    "adherence_excess_mps",
+    "adherence_mps",
+    "adherence_data_mps",
+    "adherence_shuffled_over_own",
+}
 
 
 def one_person(clips: int, seconds: float, seed: int) -> list[Clip]:
@@ -49,7 +57,8 @@ SETS: dict[str, tuple[str, Callable]] = {  # name: (prefix of its records, what 
 
 
 def measure(name: str, seconds: float, unseen: int, seed: int) -> list[dict]:
-    """Train on one set of walks (each mirrored, too), walk unseen controls of the same, and score the raw output."""
+    """Train on one set of walks (each mirrored, too), walk unseen controls of the same, and score
+    the raw output."""
     prefix, make = SETS[name]
     clips = [version for clip in make(CLIPS, 20.0, 11) for version in (clip, mirror(clip))]
     trials = Trials.of(make(unseen, SECONDS + T_H / FPS, UNSEEN))

@@ -1,7 +1,9 @@
-"""Faults as motion capture has them, with the truth known: dead joints, dropped frames, bursts, jitter.
+"""Faults as motion capture has them, with the truth known: dead joints, dropped frames, bursts,
+jitter.
 
-A fault takes clean positions and gives (faulty positions, known): what is missing is NaN and False in `known`; what
-trembles is there, and wrong.  Source: MoDiff III-E, IV-C names the first two.  Notebook: 10
+A fault takes clean positions and gives (faulty positions, known): what is missing is NaN and False
+in `known`; what trembles is there, and wrong.  Source: MoDiff III-E, IV-C names the first two.
+Notebook: 10
 """
 
 from collections.abc import Sequence
@@ -18,20 +20,24 @@ LEG = ("RightUpLeg", "RightLeg", "RightFoot", "RightToeBase")
 
 @dataclass(frozen=True, eq=False)
 class Imperfect:
-    """A motion with a fault: positions with NaN where nothing is known, and the mask that says so."""
+    """A motion with a fault: positions with NaN where nothing is known, and the mask that says
+    so."""
 
     positions: Float[np.ndarray, "*B T J 3"]
     known: Bool[np.ndarray, "*B T J"]
 
 
 def dead_joints(positions: Float[np.ndarray, "*B T J 3"], names: Sequence[str] = ARM) -> Imperfect:
-    """These joints are missing throughout.  Raises KeyError for a name that no joint has.  Notebook: 10"""
+    """These joints are missing throughout.  Raises KeyError for a name that no joint has.
+    Notebook: 10"""
     known = np.ones(positions.shape[:-1], bool)
     known[..., [joint_index(name) for name in names]] = False
     return _without(positions, known)
 
 
-def random_joints(positions: Float[np.ndarray, "*B T J 3"], share: float, rng: np.random.Generator) -> Imperfect:
+def random_joints(
+    positions: Float[np.ndarray, "*B T J 3"], share: float, rng: np.random.Generator
+) -> Imperfect:
     """In each motion a share of the joints is missing throughout, others in each: Table II's 30 %.
 
     Raises ValueError for a share outside 0..1.  Source: MoDiff IV-C, Table II.  Notebook: 10
@@ -50,21 +56,29 @@ def dropped_frames(positions: Float[np.ndarray, "*B T J 3"], first: int, count: 
     """
     T = positions.shape[-3]
     if not (0 <= first and 1 <= count and first + count <= T):
-        raise ValueError(f"frames {first} to {first + count - 1} are not within a motion of {T} frames")
+        raise ValueError(
+            f"frames {first} to {first + count - 1} are not within a motion of {T} frames"
+        )
     known = np.ones(positions.shape[:-1], bool)
     known[..., first : first + count, :] = False
     return _without(positions, known)
 
 
 def bursts(
-    positions: Float[np.ndarray, "*B T J 3"], rng: np.random.Generator, every: float = 20.0, longest: int = 6
+    positions: Float[np.ndarray, "*B T J 3"],
+    rng: np.random.Generator,
+    every: float = 20.0,
+    longest: int = 6,
 ) -> Imperfect:
-    """Now and then a joint is lost for a few frames, as when a marker is hidden: once in `every` frames and joint.
+    """Now and then a joint is lost for a few frames, as when a marker is hidden: once in `every`
+    frames and joint.
 
     Each loss lasts 1 to `longest` frames.  Notebook: 10
     """
     known = np.ones(positions.shape[:-1], bool)
-    flat = np.moveaxis(known, -2, -1).reshape(-1, positions.shape[-3])  # a copy: one row for each joint
+    flat = np.moveaxis(known, -2, -1).reshape(
+        -1, positions.shape[-3]
+    )  # a copy: one row for each joint
     for row in flat:
         for start in np.flatnonzero(rng.random(len(row)) < 1 / every):
             row[start : start + rng.integers(1, longest + 1)] = False
@@ -72,15 +86,22 @@ def bursts(
     return _without(positions, np.moveaxis(flat.reshape(shape), -1, -2))
 
 
-def jitter(positions: Float[np.ndarray, "*B T J 3"], size: float, rng: np.random.Generator) -> Imperfect:
-    """Every coordinate trembles by `size` metres (standard deviation); nothing is missing, so all is "known"."""
+def jitter(
+    positions: Float[np.ndarray, "*B T J 3"], size: float, rng: np.random.Generator
+) -> Imperfect:
+    """Every coordinate trembles by `size` metres (standard deviation); nothing is missing, so all
+    is "known"."""
     noisy = positions + size * rng.standard_normal(positions.shape)
     return Imperfect(noisy, np.ones(positions.shape[:-1], bool))
 
 
-def _without(positions: Float[np.ndarray, "*B T J 3"], known: Bool[np.ndarray, "*B T J"]) -> Imperfect:
+def _without(
+    positions: Float[np.ndarray, "*B T J 3"], known: Bool[np.ndarray, "*B T J"]
+) -> Imperfect:
     if positions.shape[-2] != len(JOINTS):
-        raise ValueError(f"the course's skeleton has {len(JOINTS)} joints, not {positions.shape[-2]}")
+        raise ValueError(
+            f"the course's skeleton has {len(JOINTS)} joints, not {positions.shape[-2]}"
+        )
     return Imperfect(np.where(known[..., None], positions, np.nan), known)
 
 

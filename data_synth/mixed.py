@@ -8,16 +8,17 @@ from collections.abc import Iterator
 import numpy as np
 from jaxtyping import Bool, Float
 
-from .dance import dance
-from .score import beat_song
-from .song import GENRES
+from .dancing import dance
+from .music.score import beat_song
+from .music.song import GENRES
 from .walking import drawn_walk
 
 Motion = tuple[Float[np.ndarray, "T 21 3"], Bool[np.ndarray, "T 2"]]
 
 
 def motions(n: int, seed: int, seconds: float = 20.0) -> Iterator[Motion]:
-    """n motions, positions in the world (metres, 20 frames/s) and which feet stand: walk, dance, walk, dance ...
+    """n motions, positions in the world (metres, 20 frames/s) and which feet stand: walk, dance,
+    walk, dance ...
 
     The same seed gives the same bytes; different seeds share none.
     Raises ValueError as `beat_song` and `random_control` do.  Notebook: 15
@@ -35,5 +36,7 @@ def _walked(seconds: float, rng: np.random.Generator) -> Motion:
 def _danced(seconds: float, rng: np.random.Generator, k: int) -> Motion:
     genre, (slowest, fastest, metre) = list(GENRES.items())[k % len(GENRES)]
     seed = int(rng.integers(2**31))
-    made = dance(beat_song(seconds, rng.uniform(slowest, fastest), metre, genre, seed, drift=0.02), seed)
+    made = dance(
+        beat_song(seconds, rng.uniform(slowest, fastest), metre, genre, seed, drift=0.02), seed
+    )
     return made.positions, made.contacts

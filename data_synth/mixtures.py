@@ -8,7 +8,15 @@ from torch import Tensor
 
 from motiondiff_edu.exact import Mixture, along_axes, mixture, part_log_densities, sample_mixture
 
-__all__ = ["gaussian", "two_hills", "three_hills", "ring", "crossed_bars", "sample_mixture", "nearest_part"]
+__all__ = [
+    "gaussian",
+    "two_hills",
+    "three_hills",
+    "ring",
+    "crossed_bars",
+    "sample_mixture",
+    "nearest_part",
+]
 
 
 def gaussian(mean: float = 0.0, std: float = 1.0) -> Mixture:
@@ -30,11 +38,14 @@ def ring(parts: int = 6, radius: float = 1.5, std: float = 0.2) -> Mixture:
     """Equal round hills on a circle in the plane."""
     angle = torch.arange(parts, dtype=torch.float64) * (2 * math.pi / parts)
     means = radius * torch.stack([angle.cos(), angle.sin()], 1)
-    return mixture(torch.ones(parts), means, std**2 * torch.eye(2, dtype=torch.float64).expand(parts, 2, 2))
+    return mixture(
+        torch.ones(parts), means, std**2 * torch.eye(2, dtype=torch.float64).expand(parts, 2, 2)
+    )
 
 
 def crossed_bars(length: float = 1.0, width: float = 0.15) -> Mixture:
-    """Two long hills in the plane that lean towards each other: the coordinates depend on one another."""
+    """Two long hills in the plane that lean towards each other: the coordinates depend on one
+    another."""
     bar = torch.tensor([[length**2 + width**2, length**2 - width**2]], dtype=torch.float64) / 2
     rising = torch.stack([bar[0], bar[0].flip(0)])
     falling = rising * torch.tensor([[1.0, -1.0], [-1.0, 1.0]], dtype=torch.float64)

@@ -1,4 +1,5 @@
-"""Cross-modal attention: queries from motion, keys and values from the condition; its maps can be watched.
+"""Cross-modal attention: queries from motion, keys and values from the condition; its maps can be
+watched.
 
 weights = softmax(Q K^T / sqrt(d) + bias),   out = weights V
 Source: MoFusion eq. 8-9; MoDiff IV-A (T5-style relative positions).  Notebook: 06
@@ -15,7 +16,9 @@ from torch.nn import functional as F
 
 
 def attention_weights(
-    q: Float[Tensor, "B H T d"], k: Float[Tensor, "B H M d"], bias: Float[Tensor, "#B #H T M"] | None = None
+    q: Float[Tensor, "B H T d"],
+    k: Float[Tensor, "B H M d"],
+    bias: Float[Tensor, "#B #H T M"] | None = None,
 ) -> Float[Tensor, "B H T M"]:
     """softmax(Q K^T / sqrt(d) + bias): each query's row is a distribution over the M keys.
 
@@ -31,7 +34,8 @@ def attention(
     v: Float[Tensor, "B H M e"],
     bias: Float[Tensor, "#B #H T M"] | None = None,
 ) -> Float[Tensor, "B H T e"]:
-    """weights V, every query's weighted mean of the values.  Source: MoFusion eq. 8-9.  Notebook: 06"""
+    """weights V, every query's weighted mean of the values.  Source: MoFusion eq. 8-9.   Notebook:
+    06"""
     return attention_weights(q, k, bias) @ v
 
 
@@ -40,7 +44,8 @@ def relative_position_bucket(
 ) -> Int[Tensor, "*N"]:
     """T5's bucket of a distance (key time minus query time): exact when near, logarithmic when far.
 
-    Half of the buckets for each direction; in each, half are exact. Beyond `farthest` all share the last one.
+    Half of the buckets for each direction; in each, half are exact. Beyond `farthest` all share the
+    last one.
     Source: MoDiff IV-A names T5.  Notebook: 06
     """
     if bidirectional:
@@ -50,15 +55,21 @@ def relative_position_bucket(
     else:
         offset, distance = torch.zeros_like(distance), (-distance).clamp_min(0)
     exact = buckets // 2
-    far = torch.log(distance.clamp_min(1).float() / exact) / math.log(farthest / exact) * (buckets - exact)
+    far = (
+        torch.log(distance.clamp_min(1).float() / exact)
+        / math.log(farthest / exact)
+        * (buckets - exact)
+    )
     far = (exact + far.long()).clamp_max(buckets - 1)
     return offset + torch.where(distance < exact, distance, far)
 
 
 class RelativeBias(nn.Module):
-    """One learned number for each head and bucket of time distance, added to the scores; all layers share it.
+    """One learned number for each head and bucket of time distance, added to the scores; all layers
+    share it.
 
-    The times of queries and keys are in frames and may belong to different modalities.  Notebook: 06
+    The times of queries and keys are in frames and may belong to different modalities.   Notebook:
+    06
     """
 
     def __init__(self, heads: int, query_times: Int[Tensor, "T"], key_times: Int[Tensor, "M"]):
@@ -71,18 +82,24 @@ class RelativeBias(nn.Module):
         return F.embedding(self.buckets, self.table).permute(2, 0, 1)[None]
 
 
-def angles_of(times: Float[Tensor, "T"], width: int, slowest: float, fastest: float) -> Float[Tensor, "T w"]:
-    """2 pi f t for width/2 frequencies f between `slowest` and `fastest` Hz, evenly on a log scale; times in seconds.
+def angles_of(
+    times: Float[Tensor, "T"], width: int, slowest: float, fastest: float
+) -> Float[Tensor, "T w"]:
+    """2 pi f t for width/2 frequencies f between `slowest` and `fastest` Hz, evenly on a log scale;
+    times in seconds.
 
-    Queries and keys turned by them (see `turned`) know how far apart in time they are, and nothing else of time.
-    Source: rotary positions (Su and others, 2021), in seconds; MoFusion leaves positions open.  Notebook: 12
+    Queries and keys turned by them (see `turned`) know how far apart in time they are, and nothing
+    else of time.
+    Source: rotary positions (Su and others, 2021), in seconds; MoFusion leaves positions open.
+    Notebook: 12
     """
     f = slowest * (fastest / slowest) ** torch.linspace(0, 1, width // 2, device=times.device)
     return 2 * math.pi * times[:, None] * f
 
 
 def turned(x: Float[Tensor, "*B T d"], angles: Float[Tensor, "T w"]) -> Float[Tensor, "*B T d"]:
-    """Turn each pair (x[i], x[i + d/2]) by its angle: q_t . k_u then depends on the time between t and u.
+    """Turn each pair (x[i], x[i + d/2]) by its angle: q_t . k_u then depends on the time between t
+    and u.
 
     Source: rotary positions (Su and others, 2021).  Notebook: 12
     """
@@ -119,7 +136,8 @@ class CrossModalAttention(nn.Module):
         bias: Float[Tensor, "#B #H T M"] | None = None,
         turns: tuple[Float[Tensor, "T w"], Float[Tensor, "M w"]] | None = None,
     ) -> Float[Tensor, "B T C"]:
-        """`bias` is added to the scores; `turns` are the angles of `turned` for queries and keys, if there are any."""
+        """`bias` is added to the scores; `turns` are the angles of `turned` for queries and keys,
+        if there are any."""
         q = self.split(self.q(x))
         k, v = (self.split(part) for part in self.kv(context).chunk(2, dim=-1))
         if turns is not None:
@@ -134,17 +152,23 @@ class CrossModalAttention(nn.Module):
 
 
 class Block(nn.Module):
-    """A transformer block, normalised first: self-attention, then (with_context) cross-attention, then feed-forward.
+    """A transformer block, normalised first: self-attention, then (with_context) cross-attention,
+    then feed-forward.
 
     Source: MoDiff III-F; MoFusion 3.3.  Notebook: 06
     """
 
-    def __init__(self, width: int, heads: int, hidden: int, with_context: bool = False, dropout: float = 0.0):
+    def __init__(
+        self, width: int, heads: int, hidden: int, with_context: bool = False, dropout: float = 0.0
+    ):
         super().__init__()
         self.norm_self, self.self_attention = nn.LayerNorm(width), CrossModalAttention(width, heads)
         self.with_context = with_context
         if with_context:
-            self.norm_cross, self.cross_attention = nn.LayerNorm(width), CrossModalAttention(width, heads)
+            self.norm_cross, self.cross_attention = (
+                nn.LayerNorm(width),
+                CrossModalAttention(width, heads),
+            )
         self.norm_ff = nn.LayerNorm(width)
         self.ff = nn.Sequential(nn.Linear(width, hidden), nn.GELU(), nn.Linear(hidden, width))
         self.drop = nn.Dropout(dropout)
@@ -165,7 +189,8 @@ class Block(nn.Module):
 
 @contextmanager
 def watch(model: nn.Module) -> Iterator[dict[str, list[Float[Tensor, "B H T M"]]]]:
-    """Collect the attention maps of every layer while the block runs: {layer name: [one map per call]}.
+    """Collect the attention maps of every layer while the block runs: {layer name: [one map per
+    call]}.
 
     Outside of it nothing is computed or kept.  Notebook: 06
     """

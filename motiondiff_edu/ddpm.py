@@ -1,7 +1,9 @@
-"""Denoising diffusion (MoDiff, III-B and III-C): noise is added by a rule, and taken away by a learnt one.
+"""Denoising diffusion (MoDiff, III-B and III-C): noise is added by a rule, and taken away by a
+learnt one.
 
-Steps are numbered s = 1..S, and every table has S + 1 entries, so that `alpha_bar[s]` is the paper's (and [0] is 1).
-A *denoiser* is any callable `denoise(x_s, s) -> eps_hat`, with s of shape (B,).
+Steps are numbered s = 1..S, and every table has S + 1 entries, so that `alpha_bar[s]` is the
+paper's (and [0] is 1). A *denoiser* is any callable `denoise(x_s, s) -> eps_hat`, with s of shape
+(B,).
 """
 
 import math
@@ -19,10 +21,11 @@ Table = Float[Tensor, "S_plus_1"]  # one number for each step
 Denoiser = Callable[[Tensor, Tensor], Tensor]
 
 
-# ---- schedules -------------------------------------------------------------------------------------------------------
+# ---- schedules -----------------------------------------------------------------------------------
 @dataclass(frozen=True, eq=False)
 class Schedule:
-    """How much noise each step adds: beta, alpha = 1 - beta and its running product alpha_bar, indexed by s = 0..S."""
+    """How much noise each step adds: beta, alpha = 1 - beta and its running product alpha_bar,
+    indexed by s = 0..S."""
 
     beta: Table
     alpha: Table
@@ -35,21 +38,26 @@ class Schedule:
 
     @property
     def signal_left(self) -> float:
-        """sqrt(alpha_bar[S]): the share of the clean sample's amplitude that is still there after the last step."""
+        """sqrt(alpha_bar[S]): the share of the clean sample's amplitude that is still there after
+        the last step."""
         return math.sqrt(float(self.alpha_bar[-1]))
 
 
 def make_schedule(beta: Float[Tensor, "S"], name: str = "schedule") -> Schedule:
-    """Build a schedule from beta_1..beta_S: alpha_s = 1 - beta_s, alpha_bar_s = alpha_1 * ... * alpha_s.
+    """Build a schedule from beta_1..beta_S: alpha_s = 1 - beta_s, alpha_bar_s = alpha_1 * ... *
+    alpha_s.
 
-    Raises ValueError unless every beta lies strictly between 0 and 1; warns where more than 10 % of the signal is left.
+    Raises ValueError unless every beta lies strictly between 0 and 1; warns where more than 10 % of
+    the signal is left.
     Source: MoDiff eq. 1-2. Notebook: 02.
     """
     beta = torch.cat([torch.zeros(1, dtype=torch.float64), beta.double()])
     bad = [s for s in range(1, len(beta)) if not 0 < beta[s] < 1]
     if bad or len(beta) < 2:
         where = f"beta_{bad[0]} = {float(beta[bad[0]]):g}" if bad else "there is none"
-        raise ValueError(f"{name}: every beta must lie between 0 and 1, but {where}; take more steps or smaller betas")
+        raise ValueError(
+            f"{name}: every beta must lie between 0 and 1, but {where}; take more steps or smaller betas"
+        )
     schedule = Schedule(beta, 1 - beta, torch.cumprod(1 - beta, 0), name)
     if schedule.signal_left > 0.1:
         what = "Sampling starts from pure noise, which this schedule never reaches: take more steps or larger betas."
@@ -58,12 +66,16 @@ def make_schedule(beta: Float[Tensor, "S"], name: str = "schedule") -> Schedule:
 
 
 def linear_schedule(S: int = 100, beta_1: float = 1e-4, beta_S: float = 0.1) -> Schedule:
-    """beta grows evenly from beta_1 to beta_S. MoDiff gives no schedule: these are TimeGrad's numbers. Notebook: 02."""
-    return make_schedule(torch.linspace(beta_1, beta_S, S, dtype=torch.float64), f"linear {beta_1:g} to {beta_S:g}")
+    """beta grows evenly from beta_1 to beta_S. MoDiff gives no schedule: these are TimeGrad's
+    numbers. Notebook: 02."""
+    return make_schedule(
+        torch.linspace(beta_1, beta_S, S, dtype=torch.float64), f"linear {beta_1:g} to {beta_S:g}"
+    )
 
 
 def scaled_linear_schedule(S: int = 100) -> Schedule:
-    """DDPM's 1e-4 to 0.02 over 1000 steps, scaled by 1000 / S so that fewer steps remove as much. Notebook: 02."""
+    """DDPM's 1e-4 to 0.02 over 1000 steps, scaled by 1000 / S so that fewer steps remove as much.
+    Notebook: 02."""
     return make_schedule(torch.linspace(0.1 / S, 20 / S, S, dtype=torch.float64), "scaled linear")
 
 
@@ -75,39 +87,55 @@ def cosine_schedule(S: int = 1000, cap: float = 0.999) -> Schedule:
 
 
 def schedule_card(schedule: Schedule) -> str:
-    """Say in one line what a schedule leaves of the signal at its last step: sqrt(alpha_bar[S]). Notebook: 02."""
+    """Say in one line what a schedule leaves of the signal at its last step: sqrt(alpha_bar[S]).
+    Notebook: 02."""
     left = f"{100 * schedule.signal_left:.2g} % of the signal's amplitude is left."
     return f"{schedule.name}, S = {schedule.S}: after the last step {left}"
 
 
 def at(table: Table, s: Steps, x: X, first: int = 0) -> Tensor:
-    """Look up table[s], shaped so that it multiplies x: one number, or one for each sample of the batch."""
+    """Look up table[s], shaped so that it multiplies x: one number, or one for each sample of the
+    batch."""
     if isinstance(s, int) and not first <= s < len(table):
-        raise IndexError(f"s = {s}: steps go from {first} to {len(table) - 1} here, and 0 is clean data")
-    return table[s].to(x) if isinstance(s, int) else table.to(x.device)[s].to(x).reshape(-1, *[1] * (x.dim() - 1))
+        raise IndexError(
+            f"s = {s}: steps go from {first} to {len(table) - 1} here, and 0 is clean data"
+        )
+    return (
+        table[s].to(x)
+        if isinstance(s, int)
+        else table.to(x.device)[s].to(x).reshape(-1, *[1] * (x.dim() - 1))
+    )
 
 
-def draw(like: Float[Tensor, "*shape"], generator: torch.Generator | None = None) -> Float[Tensor, "*shape"]:
-    """Standard normal noise in the shape of `like`; drawn where the generator lives, so that seeds travel."""
+def draw(
+    like: Float[Tensor, "*shape"], generator: torch.Generator | None = None
+) -> Float[Tensor, "*shape"]:
+    """Standard normal noise in the shape of `like`; drawn where the generator lives, so that seeds
+    travel."""
     device = generator.device if generator else like.device
-    return torch.randn(like.shape, generator=generator, dtype=like.dtype, device=device).to(like.device)
+    return torch.randn(like.shape, generator=generator, dtype=like.dtype, device=device).to(
+        like.device
+    )
 
 
-# ---- forward: adding noise -------------------------------------------------------------------------------------------
+# ---- forward: adding noise -----------------------------------------------------------------------
 def q_step(x_prev: X, s: Steps, schedule: Schedule, noise: X) -> X:
-    """Add one step: x_s = sqrt(1 - beta_s) x_{s-1} + sqrt(beta_s) noise. Source: MoDiff eq. 1; MoFusion eq. 1."""
+    """Add one step: x_s = sqrt(1 - beta_s) x_{s-1} + sqrt(beta_s) noise. Source: MoDiff eq. 1;
+    MoFusion eq. 1."""
     beta = at(schedule.beta, s, x_prev)
     return (1 - beta).sqrt() * x_prev + beta.sqrt() * noise
 
 
 def q_sample(x0: X, s: Steps, schedule: Schedule, noise: X) -> X:
-    """Add s steps: x_s = sqrt(alpha_bar_s) x0 + sqrt(1 - alpha_bar_s) noise. Source: MoDiff eq. 2; MoFusion eq. 2."""
+    """Add s steps: x_s = sqrt(alpha_bar_s) x0 + sqrt(1 - alpha_bar_s) noise. Source: MoDiff eq. 2;
+    MoFusion eq. 2."""
     signal, noise_share = at(schedule.alpha_bar, s, x0), at(1 - schedule.alpha_bar, s, x0)
     return signal.sqrt() * x0 + noise_share.sqrt() * noise
 
 
 def posterior_variance(schedule: Schedule) -> Table:
-    """beta_tilde_s = beta_s (1 - alpha_bar_{s-1}) / (1 - alpha_bar_s). Source: MoDiff eq. 7. Notebook: 02."""
+    """beta_tilde_s = beta_s (1 - alpha_bar_{s-1}) / (1 - alpha_bar_s). Source: MoDiff eq. 7.
+    Notebook: 02."""
     left = 1 - schedule.alpha_bar
     return torch.cat([left[:1], schedule.beta[1:] * left[:-1] / left[1:]])
 
@@ -124,10 +152,11 @@ def q_posterior(x0: X, x_s: X, s: Steps, schedule: Schedule) -> tuple[X, Tensor]
     return mean, at(posterior_variance(schedule), s, x_s)
 
 
-# ---- reverse: taking it away -----------------------------------------------------------------------------------------
+# ---- reverse: taking it away ---------------------------------------------------------------------
 @dataclass(frozen=True, eq=False)
 class Step:
-    """One moment of sampling: x_s, and what the denoiser says about it. At s = 0, x_s is the sample itself."""
+    """One moment of sampling: x_s, and what the denoiser says about it. At s = 0, x_s is the sample
+    itself."""
 
     s: int
     x_s: Tensor
@@ -136,20 +165,23 @@ class Step:
 
 
 def p_variance(schedule: Schedule, variance: str = "beta") -> Table:
-    """Variance of p(x_{s-1} | x_s): beta_s, or the lower bound beta_tilde_s. Source: MoDiff eq. 3. Notebook: 03."""
+    """Variance of p(x_{s-1} | x_s): beta_s, or the lower bound beta_tilde_s. Source: MoDiff eq. 3.
+    Notebook: 03."""
     if variance not in ("beta", "posterior"):
         raise ValueError(f'variance must be "beta" or "posterior", not {variance!r}')
     return schedule.beta if variance == "beta" else posterior_variance(schedule)
 
 
 def p_mean(x_s: X, s: Steps, eps_hat: X, schedule: Schedule) -> X:
-    """mean = (x_s - beta_s / sqrt(1 - alpha_bar_s) eps_hat) / sqrt(alpha_s). Source: MoDiff eq. 9. Notebook: 03, 04."""
+    """mean = (x_s - beta_s / sqrt(1 - alpha_bar_s) eps_hat) / sqrt(alpha_s). Source: MoDiff eq. 9.
+    Notebook: 03, 04."""
     share = at(schedule.beta, s, x_s, first=1) / at(1 - schedule.alpha_bar, s, x_s).sqrt()
     return (x_s - share * eps_hat) / at(schedule.alpha, s, x_s).sqrt()
 
 
 def p_sample(x_s: X, s: int, eps_hat: X, schedule: Schedule, noise: X, variance: str = "beta") -> X:
-    """x_{s-1} = p_mean + sigma_s noise; the last step, s = 1, adds none. Source: MoDiff eq. 11; MoFusion eq. 3."""
+    """x_{s-1} = p_mean + sigma_s noise; the last step, s = 1, adds none. Source: MoDiff eq. 11;
+    MoFusion eq. 3."""
     mean = p_mean(x_s, s, eps_hat, schedule)
     return mean if s == 1 else mean + at(p_variance(schedule, variance), s, x_s).sqrt() * noise
 
@@ -171,7 +203,9 @@ def sample_steps(
     Source: MoDiff Alg. 2. Notebook: 03.
     """
     home = generator.device if generator else None
-    x_s = start if isinstance(start, Tensor) else torch.randn(start, generator=generator, device=home)
+    x_s = (
+        start if isinstance(start, Tensor) else torch.randn(start, generator=generator, device=home)
+    )
     for s in range(schedule.S, 0, -1):
         eps_hat = denoise(x_s, torch.full((len(x_s),), s, device=x_s.device))
         x0_hat, eps_hat = _clean_guess(x_s, s, eps_hat, schedule, clip)
@@ -181,7 +215,9 @@ def sample_steps(
     yield Step(0, x_s, x_s, torch.zeros_like(x_s))
 
 
-def _clean_guess(x_s: Tensor, s: int, eps_hat: Tensor, schedule: Schedule, clip: float | None) -> tuple[Tensor, Tensor]:
+def _clean_guess(
+    x_s: Tensor, s: int, eps_hat: Tensor, schedule: Schedule, clip: float | None
+) -> tuple[Tensor, Tensor]:
     """x0_hat, bounded if asked, and the eps_hat that goes with it."""
     signal, sigma = at(schedule.alpha_bar, s, x_s).sqrt(), at(1 - schedule.alpha_bar, s, x_s).sqrt()
     x0_hat = (x_s - sigma * eps_hat) / signal
@@ -191,24 +227,31 @@ def _clean_guess(x_s: Tensor, s: int, eps_hat: Tensor, schedule: Schedule, clip:
     return x0_hat, eps_hat
 
 
-# ---- the objective ---------------------------------------------------------------------------------------------------
-def simple_loss(denoise: Denoiser, x0: X, s: Int[Tensor, "B"], schedule: Schedule, noise: X) -> Float[Tensor, ""]:
-    """Mean of ||eps - eps_hat(x_s, s)||^2. Source: MoDiff eq. 10, Alg. 1 (which forgets the square). Notebook: 04."""
+# ---- the objective -------------------------------------------------------------------------------
+def simple_loss(
+    denoise: Denoiser, x0: X, s: Int[Tensor, "B"], schedule: Schedule, noise: X
+) -> Float[Tensor, ""]:
+    """Mean of ||eps - eps_hat(x_s, s)||^2. Source: MoDiff eq. 10, Alg. 1 (which forgets the
+    square). Notebook: 04."""
     return (noise - denoise(q_sample(x0, s, schedule, noise), s)).square().mean()
 
 
 def dropped_weight(schedule: Schedule) -> Table:
-    """What eq. 10 leaves out before ||eps - eps_hat||^2: 1 / (2 beta_s) * beta_s^2 / (alpha_s (1 - alpha_bar_s)).
+    """What eq. 10 leaves out before ||eps - eps_hat||^2: 1 / (2 beta_s) * beta_s^2 / (alpha_s (1 -
+    alpha_bar_s)).
 
     Source: MoDiff eq. 8-10. Notebook: 04.
     """
     return (schedule.beta / (2 * schedule.alpha * (1 - schedule.alpha_bar))).nan_to_num(0)
 
 
-# ---- the variational bound, in nats, one number for each sample of the batch ---------------------------------------
+# ---- the variational bound, in nats, one number for each sample of the batch ---------------------
 def gaussian_kl(mean_1: X, variance_1: Tensor, mean_2: X, variance_2: Tensor) -> Float[Tensor, "B"]:
-    """KL(N(mean_1, variance_1 I) || N(mean_2, variance_2 I)), summed over all entries but the batch. Notebook: 02."""
-    each = (variance_2 / variance_1).log() + (variance_1 + (mean_1 - mean_2).square()) / variance_2 - 1
+    """KL(N(mean_1, variance_1 I) || N(mean_2, variance_2 I)), summed over all entries but the
+    batch. Notebook: 02."""
+    each = (
+        (variance_2 / variance_1).log() + (variance_1 + (mean_1 - mean_2).square()) / variance_2 - 1
+    )
     return each.flatten(1).sum(1) / 2
 
 
@@ -219,18 +262,23 @@ def prior_kl(x0: X, schedule: Schedule) -> Float[Tensor, "B"]:
 
 
 def step_kl(x0: X, x_s: X, s: int, eps_hat: X, schedule: Schedule) -> Float[Tensor, "B"]:
-    """KL(q(x_{s-1} | x_s, x0) || p(x_{s-1} | x_s)), s >= 2: ||difference of the means||^2 / (2 beta_s) + a constant.
+    """KL(q(x_{s-1} | x_s, x0) || p(x_{s-1} | x_s)), s >= 2: ||difference of the means||^2 / (2
+    beta_s) + a constant.
 
     Source: MoDiff eq. 5, 8. Notebook: 04.
     """
     mean, variance = q_posterior(x0, x_s, s, schedule)
-    return gaussian_kl(mean, variance, p_mean(x_s, s, eps_hat, schedule), at(schedule.beta, s, x_s, first=2))
+    return gaussian_kl(
+        mean, variance, p_mean(x_s, s, eps_hat, schedule), at(schedule.beta, s, x_s, first=2)
+    )
 
 
 def reconstruction_nll(x0: X, x_1: X, eps_hat: X, schedule: Schedule) -> Float[Tensor, "B"]:
     """-log p(x0 | x_1), with variance beta_1. Source: MoDiff eq. 5. Notebook: 04."""
     variance = at(schedule.beta, 1, x_1)
-    each = (x0 - p_mean(x_1, 1, eps_hat, schedule)).square() / variance + (2 * math.pi * variance).log()
+    each = (x0 - p_mean(x_1, 1, eps_hat, schedule)).square() / variance + (
+        2 * math.pi * variance
+    ).log()
     return each.flatten(1).sum(1) / 2
 
 
@@ -238,13 +286,19 @@ def reconstruction_nll(x0: X, x_1: X, eps_hat: X, schedule: Schedule) -> Float[T
 def bound_terms(
     denoise: Denoiser, x0: X, schedule: Schedule, generator: torch.Generator | None = None
 ) -> Float[Tensor, "S_plus_1 B"]:
-    """Estimate every term of the negative bound with one draw each: their sum over s is at least -log p(x0) on average.
+    """Estimate every term of the negative bound with one draw each: their sum over s is at least
+    -log p(x0) on average.
 
-    Row 0 is the prior's term, row 1 -log p(x0 | x_1), rows 2..S the KL of step s. Source: MoDiff eq. 4-5. Notebook: 04.
+    Row 0 is the prior's term, row 1 -log p(x0 | x_1), rows 2..S the KL of step s. Source: MoDiff
+    eq. 4-5. Notebook: 04.
     """
     terms = [prior_kl(x0, schedule)]
     for s in range(1, schedule.S + 1):
         x_s = q_sample(x0, s, schedule, draw(x0, generator))
         eps_hat = denoise(x_s, torch.full((len(x0),), s, device=x0.device))
-        terms += [reconstruction_nll(x0, x_s, eps_hat, schedule) if s == 1 else step_kl(x0, x_s, s, eps_hat, schedule)]
+        terms += [
+            reconstruction_nll(x0, x_s, eps_hat, schedule)
+            if s == 1
+            else step_kl(x0, x_s, s, eps_hat, schedule)
+        ]
     return torch.stack(terms)

@@ -1,7 +1,8 @@
 """Diffusion dropout: now and then the past is noised as the future is, so that the control must do.
 
     q(x_s | x) = N(sqrt(alpha_bar_s) x, (1 - alpha_bar_s) I),   with probability p_d for each sample of the batch
-Not nn.Dropout: nothing is set to zero, and nothing is rescaled. Rivals that set to zero stand beside it.
+Not nn.Dropout: nothing is set to zero, and nothing is rescaled. Rivals that set to zero stand
+beside it.
 Source: MoDiff III-D, eq. 12, Alg. 1.  Notebook: 09
 """
 
@@ -31,12 +32,16 @@ def diffusion_dropout(
 ) -> Past:
     """Noise the past of some samples: each with probability `rate`, to its step s.
 
-    `s` is the target's step (Algorithm 1); with shared=False each past gets its own. The noise is the past's own.
-    Raises ValueError for a rate outside 0..1, and unless past is (B, T_h, D) and s (B,), within 0..S.
+    `s` is the target's step (Algorithm 1); with shared=False each past gets its own. The noise is
+    the past's own.
+    Raises ValueError for a rate outside 0..1, and unless past is (B, T_h, D) and s (B,), within
+    0..S.
     Source: MoDiff eq. 12, Alg. 1; shared=False is ours.  Notebook: 09
     """
     if past.ndim != 3 or s.shape != past.shape[:1] or (s < 0).any() or (s > schedule.S).any():
-        raise ValueError(f"past {tuple(past.shape)}, s {s.tolist()!r:.50}; pass (B, T_h, D), B steps 0..{schedule.S}")
+        raise ValueError(
+            f"past {tuple(past.shape)}, s {s.tolist()!r:.50}; pass (B, T_h, D), B steps 0..{schedule.S}"
+        )
     hit = chosen(len(past), rate, generator).to(past.device)
     if not shared:
         s = torch.randint(1, schedule.S + 1, (len(past),), generator=generator).to(past.device)
@@ -44,13 +49,15 @@ def diffusion_dropout(
 
 
 def frame_dropout(past: Past, rate: float, generator: torch.Generator | None = None) -> Past:
-    """MoGlow's rival: each frame of each past is set to zero (the mean pose) with probability `rate`.  Notebook: 09"""
+    """MoGlow's rival: each frame of each past is set to zero (the mean pose) with probability
+    `rate`.   Notebook: 09"""
     hit = chosen(past.shape[0] * past.shape[1], rate, generator).to(past.device)
     return past.masked_fill(hit.view(*past.shape[:2], 1), 0.0)
 
 
 def zeroing(past: Past, rate: float, generator: torch.Generator | None = None) -> Past:
-    """The plain rival: the whole past of a sample is set to zero with probability `rate`.  Notebook: 09"""
+    """The plain rival: the whole past of a sample is set to zero with probability `rate`.
+    Notebook: 09"""
     return past.masked_fill(chosen(len(past), rate, generator).to(past.device)[:, None, None], 0.0)
 
 
@@ -63,7 +70,8 @@ def chosen(n: int, rate: float, generator: torch.Generator | None = None) -> Boo
 
 @dataclass
 class Dropout:
-    """Diffusion dropout for one training: call it with (past, s, generator), and tell it how much is `done`, 0 to 1.
+    """Diffusion dropout for one training: call it with (past, s, generator), and tell it how much
+    is `done`, 0 to 1.
 
     A training loop calls `now` before each step: `train_steps(..., before=dropout.now)`.
     Source: MoDiff Alg. 1, III-D (the scheduler P_d).  Notebook: 09
@@ -79,16 +87,22 @@ class Dropout:
         """`step` of the steps are behind us."""
         self.done = step / self.steps
 
-    def __call__(self, past: Past, s: Int[Tensor, "B"], generator: torch.Generator | None = None) -> Past:
-        return diffusion_dropout(past, s, self.schedule, self.rate(self.done), generator, shared=self.shared)
+    def __call__(
+        self, past: Past, s: Int[Tensor, "B"], generator: torch.Generator | None = None
+    ) -> Past:
+        return diffusion_dropout(
+            past, s, self.schedule, self.rate(self.done), generator, shared=self.shared
+        )
 
 
 def dropout_rate(rates: tuple[float, ...] = P_D, calm: float = CALM) -> Callable[[float], float]:
     """The schedule P_d for a training of any length: `rate(done)`, where `done` goes from 0 to 1.
 
-    0 for the first `calm` of the training, then each of the rates for an equal share of what is left; a first rate of
-    0 is what the calm part has already had (in the paper: .05 from epoch 500 on, .25 from 900 to the end).
-    Raises ValueError unless the rates lie in 0..1 and calm in 0..1.  Source: MoDiff III-D, IV-A.  Notebook: 09
+    0 for the first `calm` of the training, then each of the rates for an equal share of what is
+    left; a first rate of 0 is what the calm part has already had (in the paper: .05 from epoch 500
+    on, .25 from 900 to the end).
+    Raises ValueError unless the rates lie in 0..1 and calm in 0..1.  Source: MoDiff III-D, IV-A.
+    Notebook: 09
     """
     risen = rates[1:] if len(rates) > 1 and rates[0] == 0 else rates
     if not risen or not all(0 <= rate <= 1 for rate in rates) or not 0 <= calm <= 1:

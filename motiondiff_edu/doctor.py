@@ -1,4 +1,5 @@
-"""`python -m motiondiff_edu doctor`: one page that says what works on this machine, and what to do about the rest."""
+"""`python -m motiondiff_edu doctor`: one page that says what works on this machine, and what to do
+about the rest."""
 
 import importlib
 import importlib.metadata
@@ -19,7 +20,8 @@ INSTALL = "python -m pip install -c constraints.txt -e . (in the checkout), or m
 
 @dataclass(frozen=True)
 class Finding:
-    """One line of the page; `remedy` is empty when all is well. A note is worth knowing and no failure."""
+    """One line of the page; `remedy` is empty when all is well. A note is worth knowing and no
+    failure."""
 
     name: str
     told: str
@@ -28,18 +30,29 @@ class Finding:
 
     def __str__(self) -> str:
         mark = "ok  " if not self.remedy else "note" if self.note else "FAIL"
-        return f"{mark}  {self.name:<9} {self.told}" + (f"\n{'':16}-> {self.remedy}" if self.remedy else "")
+        return f"{mark}  {self.name:<9} {self.told}" + (
+            f"\n{'':16}-> {self.remedy}" if self.remedy else ""
+        )
 
 
 def python() -> Finding:
     """Python itself: 3.11 or newer."""
     told = f"{sys.version.split()[0]} at {sys.executable}"
-    return Finding("python", told, "" if sys.version_info >= (3, 11) else "install Python 3.11 or newer, then make lab")
+    return Finding(
+        "python",
+        told,
+        "" if sys.version_info >= (3, 11) else "install Python 3.11 or newer, then make lab",
+    )
 
 
 def constraints() -> dict[str, str]:
-    """The pinned versions: of the checkout, or those that came with the wheel. Empty when the file is nowhere."""
-    found = [path for path in (PACKAGE.parent / "constraints.txt", PACKAGE / "constraints.txt") if path.is_file()]
+    """The pinned versions: of the checkout, or those that came with the wheel. Empty when the file
+    is nowhere."""
+    found = [
+        path
+        for path in (PACKAGE.parent / "constraints.txt", PACKAGE / "constraints.txt")
+        if path.is_file()
+    ]
     lines = found[0].read_text(encoding="utf-8").splitlines() if found else []
     pins = (re.match(r"([\w.-]+)==([\w.]+)", line) for line in lines)
     return {pin[1].lower(): pin[2] for pin in pins if pin}
@@ -69,7 +82,9 @@ def versions() -> Finding:
     if missing:
         return Finding("versions", "missing: " + ", ".join(missing), INSTALL)
     if other:
-        return Finding("versions", ", ".join(other), f"usually fine; for the tested ones: {INSTALL}", note=True)
+        return Finding(
+            "versions", ", ".join(other), f"usually fine; for the tested ones: {INSTALL}", note=True
+        )
     return Finding("versions", f"all {len(names)} packages as in constraints.txt")
 
 
@@ -84,7 +99,9 @@ def compute() -> Finding:
     if not right:
         return Finding("torch", told + "; a product of matrices came out wrong", INSTALL)
     if wanted > cores:
-        return Finding("torch", told, "more threads than cores are slow: set OMP_NUM_THREADS", note=True)
+        return Finding(
+            "torch", told, "more threads than cores are slow: set OMP_NUM_THREADS", note=True
+        )
     return Finding("torch", told)
 
 
@@ -92,7 +109,9 @@ def kernel() -> Finding:
     """A notebook kernel starts, and it is this Python with this package."""
     from jupyter_client.manager import start_new_kernel
 
-    manager, client = start_new_kernel(kernel_name="python3", startup_timeout=60, stderr=subprocess.DEVNULL)
+    manager, client = start_new_kernel(
+        kernel_name="python3", startup_timeout=60, stderr=subprocess.DEVNULL
+    )
     try:
         reply = client.execute_interactive("import motiondiff_edu", timeout=60, store_history=False)
     finally:
@@ -100,7 +119,11 @@ def kernel() -> Finding:
         manager.shutdown_kernel(now=True)
     if reply["content"]["status"] == "ok":
         return Finding("kernel", "starts, and finds motiondiff_edu")
-    return Finding("kernel", f"starts, but cannot import motiondiff_edu ({reply['content'].get('evalue')})", INSTALL)
+    return Finding(
+        "kernel",
+        f"starts, but cannot import motiondiff_edu ({reply['content'].get('evalue')})",
+        INSTALL,
+    )
 
 
 def canvas() -> Finding:
@@ -112,8 +135,16 @@ def canvas() -> Finding:
     try:
         browser = webbrowser.get()
     except webbrowser.Error:
-        return Finding("canvas", "no browser found here", "open the address that lab prints elsewhere", note=True)
-    return Finding("canvas", f"{', '.join(modules)}; opens in {getattr(browser, 'name', 'the default browser')}")
+        return Finding(
+            "canvas",
+            "no browser found here",
+            "open the address that lab prints elsewhere",
+            note=True,
+        )
+    return Finding(
+        "canvas",
+        f"{', '.join(modules)}; opens in {getattr(browser, 'name', 'the default browser')}",
+    )
 
 
 def sound() -> Finding:
@@ -132,10 +163,12 @@ def sound() -> Finding:
 
 def weights() -> Finding:
     """The shipped weights can be read."""
-    from .checkpoints import available, pretrained
+    from .pretrained.checkpoints import available, pretrained
 
     if "walker" not in available():
-        return Finding("weights", "no walker in pretrained/", "get the file again, or make pretrained (hours)")
+        return Finding(
+            "weights", "no walker in pretrained/", "get the file again, or make pretrained (hours)"
+        )
     numbers = sum(parameter.numel() for parameter in pretrained("walker").model.parameters())
     return Finding("weights", f"walker, {numbers / 1e6:.1f} million numbers")
 
@@ -147,7 +180,11 @@ def writing() -> Finding:
         with tempfile.TemporaryFile(dir=here):
             return Finding("writing", f"allowed in {here}")
     except OSError as error:
-        return Finding("writing", f"not allowed in {here} ({error.strerror})", "start from a folder of your own")
+        return Finding(
+            "writing",
+            f"not allowed in {here} ({error.strerror})",
+            "start from a folder of your own",
+        )
 
 
 def notebooks() -> Finding:
@@ -177,5 +214,9 @@ def main(checks: Iterable[Callable[[], Finding]] = CHECKS) -> int:
         finding = guarded(check)
         failed += bool(finding.remedy) and not finding.note
         print(finding, flush=True)
-    print("\nAll well: python -m motiondiff_edu lab" if not failed else f"\n{failed} to mend, see the arrows above.")
+    print(
+        "\nAll well: python -m motiondiff_edu lab"
+        if not failed
+        else f"\n{failed} to mend, see the arrows above."
+    )
     return int(failed > 0)

@@ -1,7 +1,8 @@
-"""The exact denoiser of a known distribution: sampling with nothing trained, and a right answer to compare with.
+"""The exact denoiser of a known distribution: sampling with nothing trained, and a right answer to
+compare with.
 
-Adding Gaussian noise to a Gaussian mixture gives a Gaussian mixture, so the density of x_s and the mean of x0
-given x_s can be written down. A finite data set is a mixture whose parts have no width.
+Adding Gaussian noise to a Gaussian mixture gives a Gaussian mixture, so the density of x_s and the
+mean of x0 given x_s can be written down. A finite data set is a mixture whose parts have no width.
 """
 
 from collections.abc import Callable
@@ -11,12 +12,13 @@ import torch
 from jaxtyping import Bool, Float, Int
 from torch import Tensor
 
-from motiondiff_edu.ddpm import Denoiser, Schedule, at
+from .ddpm import Denoiser, Schedule, at
 
 
 @dataclass(frozen=True, eq=False)
 class Mixture:
-    """A mixture of K Gaussians in D dimensions, kept in float64; covariances are held by their axes and variances."""
+    """A mixture of K Gaussians in D dimensions, kept in float64; covariances are held by their axes
+    and variances."""
 
     weights: Float[Tensor, "K"]
     means: Float[Tensor, "K D"]
@@ -28,24 +30,32 @@ class Mixture:
 
     def covariance(self) -> Float[Tensor, "D D"]:
         """Spread inside the parts plus spread between their means."""
-        inside = torch.einsum("k,kia,ka,kja->ij", self.weights, self.axes, self.variances, self.axes)
+        inside = torch.einsum(
+            "k,kia,ka,kja->ij", self.weights, self.axes, self.variances, self.axes
+        )
         off = self.means - self.mean()
         return inside + torch.einsum("k,ki,kj->ij", self.weights, off, off)
 
 
-def mixture(weights: Float[Tensor, "K"], means: Float[Tensor, "K D"], covariances: Float[Tensor, "K D D"]) -> Mixture:
+def mixture(
+    weights: Float[Tensor, "K"], means: Float[Tensor, "K D"], covariances: Float[Tensor, "K D D"]
+) -> Mixture:
     """Make a mixture from its weights (scaled to sum to 1), means and covariance matrices.
 
     Raises ValueError for a weight that is not positive or a matrix that is no covariance.
     """
     variances, axes = torch.linalg.eigh(covariances.double())
     if (weights <= 0).any() or (variances < -1e-9).any():
-        raise ValueError("a mixture needs positive weights, and covariances without negative eigenvalues")
+        raise ValueError(
+            "a mixture needs positive weights, and covariances without negative eigenvalues"
+        )
     weights = weights.double()
     return Mixture(weights / weights.sum(), means.double(), axes, variances.clamp(min=0))
 
 
-def sample_mixture(given: Mixture, n: int, generator: torch.Generator | None = None) -> Float[Tensor, "n D"]:
+def sample_mixture(
+    given: Mixture, n: int, generator: torch.Generator | None = None
+) -> Float[Tensor, "n D"]:
     """Draw n points: first the part, then a point of it."""
     k = torch.multinomial(given.weights, n, replacement=True, generator=generator)
     z = torch.randn(n, given.means.shape[1], generator=generator, dtype=torch.float64)
@@ -53,10 +63,14 @@ def sample_mixture(given: Mixture, n: int, generator: torch.Generator | None = N
 
 
 def noised(given: Mixture, s: int, schedule: Schedule) -> Mixture:
-    """The mixture that q(x_s) is: means times sqrt(alpha_bar_s), variances alpha_bar_s var + 1 - alpha_bar_s."""
+    """The mixture that q(x_s) is: means times sqrt(alpha_bar_s), variances alpha_bar_s var + 1 -
+    alpha_bar_s."""
     alpha_bar = schedule.alpha_bar[s]
     return Mixture(
-        given.weights, alpha_bar.sqrt() * given.means, given.axes, alpha_bar * given.variances + 1 - alpha_bar
+        given.weights,
+        alpha_bar.sqrt() * given.means,
+        given.axes,
+        alpha_bar * given.variances + 1 - alpha_bar,
     )
 
 
@@ -67,7 +81,9 @@ def log_density(given: Mixture, x: Float[Tensor, "B D"]) -> Float[Tensor, "B"]:
 
 
 def _on(device: torch.device, given: Mixture) -> Mixture:
-    return Mixture(*(part.to(device) for part in (given.weights, given.means, given.axes, given.variances)))
+    return Mixture(
+        *(part.to(device) for part in (given.weights, given.means, given.axes, given.variances))
+    )
 
 
 def along_axes(given: Mixture, off: Float[Tensor, "B K D"]) -> Float[Tensor, "B K D"]:
@@ -87,7 +103,8 @@ def posterior_mean(
 ) -> Float[Tensor, "B D"]:
     """E[x0 | x_s] of a mixture: each part's own answer, weighed by the share it has in q(x_s).
 
-    One part: m + a C (a^2 C + (1 - a^2) I)^-1 (x_s - a m), with a = sqrt(alpha_bar_s). Notebook: 03.
+    One part: m + a C (a^2 C + (1 - a^2) I)^-1 (x_s - a m), with a = sqrt(alpha_bar_s). Notebook:
+    03.
     """
     given, x = _on(x_s.device, given), x_s.double()[:, None]
     alpha_bar = at(schedule.alpha_bar, s, x)
@@ -95,13 +112,16 @@ def posterior_mean(
     variances = alpha_bar * given.variances + 1 - alpha_bar
     share = part_log_densities(given.weights, off, variances).softmax(1)
     gain = alpha_bar.sqrt() * given.variances / variances
-    return torch.einsum("bk,bki->bi", share, given.means + torch.einsum("kij,bkj->bki", given.axes, gain * off))
+    return torch.einsum(
+        "bk,bki->bi", share, given.means + torch.einsum("kij,bkj->bki", given.axes, gain * off)
+    )
 
 
 def conditional(given: Mixture, values: Float[Tensor, "D"], known: Bool[Tensor, "D"]) -> Mixture:
     """The unknown entries of a mixture when the known ones have these values: a mixture again.
 
-    Part k becomes N(m_u + G (x_k - m_k), C_uu - G C_ku) with G = C_uk C_kk^-1, and weighs w_k N(x_k; m_k, C_kk).
+    Part k becomes N(m_u + G (x_k - m_k), C_uu - G C_ku) with G = C_uk C_kk^-1, and weighs w_k
+    N(x_k; m_k, C_kk).
     Raises ValueError when nothing is known, or everything.  Notebook: 15
     """
     if not known.any() or known.all():
@@ -121,7 +141,8 @@ def conditional(given: Mixture, values: Float[Tensor, "D"], known: Bool[Tensor, 
 def dataset_mean(
     data: Float[Tensor, "N D"], x_s: Float[Tensor, "B D"], s: Int[Tensor, "B"], schedule: Schedule
 ) -> Float[Tensor, "B D"]:
-    """E[x0 | x_s] when x0 is one of N known samples: their mean, weighed by who could have become x_s.
+    """E[x0 | x_s] when x0 is one of N known samples: their mean, weighed by who could have become
+    x_s.
 
     weights = softmax(-||x_s - a x_n||^2 / (2 (1 - a^2))), with a = sqrt(alpha_bar_s). Notebook: 03.
     """
@@ -132,7 +153,8 @@ def dataset_mean(
 
 
 def exact_denoiser(given: Mixture, schedule: Schedule) -> Denoiser:
-    """The best denoiser there is for a mixture, eps_hat = E[eps | x_s]; x_s has D entries a sample, in any shape.
+    """The best denoiser there is for a mixture, eps_hat = E[eps | x_s]; x_s has D entries a sample,
+    in any shape.
 
     Notebook: 03.
     """
@@ -140,12 +162,14 @@ def exact_denoiser(given: Mixture, schedule: Schedule) -> Denoiser:
 
 
 def dataset_denoiser(data: Float[Tensor, "N *shape"], schedule: Schedule) -> Denoiser:
-    """The best denoiser there is for a finite data set: it can only give back what it holds. Notebook: 03."""
+    """The best denoiser there is for a finite data set: it can only give back what it holds.
+    Notebook: 03."""
     return _denoiser(lambda x_s, s: dataset_mean(data.flatten(1), x_s, s, schedule), schedule)
 
 
 def _denoiser(mean_of_x0: Callable[[Tensor, Tensor], Tensor], schedule: Schedule) -> Denoiser:
-    """eps_hat = (x_s - a E[x0 | x_s]) / sqrt(1 - a^2), in float64 inside, in the caller's shape and dtype outside."""
+    """eps_hat = (x_s - a E[x0 | x_s]) / sqrt(1 - a^2), in float64 inside, in the caller's shape and
+    dtype outside."""
 
     def denoise(x_s: Tensor, s: Tensor) -> Tensor:
         x = x_s.flatten(1).double()

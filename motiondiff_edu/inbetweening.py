@@ -1,9 +1,11 @@
-"""Some entries of a motion are given, the others are to be found: seeds, keyframes, parts of the body.
+"""Some entries of a motion are given, the others are to be found: seeds, keyframes, parts of the
+body.
 
     at every step s:  x_s = known ? noised snapshot of the given : x_s;  then one step of sampling as ever
-at the end the given entries are put back as they were. A trained denoiser is enough: nothing is trained for it.
-Masking alone is not the conditional distribution (notebook 15): `resample` goes there and back at every step. Nor does
-a trained network's guess agree with what is given: `blend` and `guidance`. In metres: `between.inbetween`.
+at the end the given entries are put back as they were. A trained denoiser is enough: nothing is
+trained for it. Masking alone is not the conditional distribution (notebook 15): `resample` goes
+there and back at every step. Nor does a trained network's guess agree with what is given: `blend`
+and `guidance`. In metres: `editing.inbetween.inbetween`.
 Source: MoFusion 4.4; resampling after RePaint (Lugmayr and others, 2022).  Notebook: 15
 """
 
@@ -35,15 +37,17 @@ def inpaint_steps(
     guidance: float = 0.0,
     generator: torch.Generator | None = None,
 ) -> Iterator[Step]:
-    """DDIM with `steps` steps from `start` (x_S) on which the known entries of x_s are given's, noised; yields `Step`s.
+    """DDIM with `steps` steps from `start` (x_S) on which the known entries of x_s are given's,
+    noised; yields `Step`s.
 
-    `given` counts where `known` is True. Fresh noise is drawn for the snapshots at every step, and none where nothing
-    is known: then the same generator gives the same sample as `ddim_steps`. With `resample` = R all leaps but the
-    last are made R times: there, back by as much noise, and there, so that unknown entries can agree with known ones.
-    `blend`, say `blending.blended`, has every x0_hat agree with the given.
-    With `guidance` (1, say) they are `guided` before: dearer, and `denoise` must be differentiable.
-    The last record has the given entries themselves.
-    Raises ValueError for resample under 1, steps outside 1..S, or guidance through what cannot be differentiated.
+    `given` counts where `known` is True. Fresh noise is drawn for the snapshots at every step, and
+    none where nothing is known: then the same generator gives the same sample as `ddim_steps`. With
+    `resample` = R all leaps but the last are made R times: there, back by as much noise, and there,
+    so that unknown entries can agree with known ones. `blend`, say `beyond.guidance.blended`, has
+    every x0_hat agree with the given. With `guidance` (1, say) they are `guided` before: dearer,
+    and `denoise` must be differentiable. The last record has the given entries themselves.
+    Raises ValueError for resample under 1, steps outside 1..S, or guidance through what cannot be
+    differentiated.
     Source: MoFusion 4.4; RePaint's resampling.  Notebook: 15
     """
     if resample < 1:
@@ -75,15 +79,24 @@ def inpaint_steps(
 
 
 def guided(
-    denoise: Denoiser, x: X, s: int, alpha_bar: float, given: X, known: Bool[Tensor, "B *shape"], weight: float
+    denoise: Denoiser,
+    x: X,
+    s: int,
+    alpha_bar: float,
+    given: X,
+    known: Bool[Tensor, "B *shape"],
+    weight: float,
 ) -> X:
-    """x0_hat, with what is wrong at the given entries traced back to x_s, and from there to all others.
+    """x0_hat, with what is wrong at the given entries traced back to x_s, and from there to all
+    others.
 
         x0_hat + weight * length * pull,   pull = J^T (given - x0_hat)[known],   J = d x0_hat / d x_s
-    J is, up to a factor, the covariance of what x_s leaves open (Tweedie): whatever goes with the given is moved along.
-    `length`, for each sample, leaves least wrong at the given entries of this guess: entries that say the same must
-    not pull twice. (The sources have a constant there.)  Notebook: 15
-    Source: Ho and others, Video diffusion models (2022); Song and others, Pseudoinverse-guided diffusion (2023).
+    J is, up to a factor, the covariance of what x_s leaves open (Tweedie): whatever goes with the
+    given is moved along. `length`, for each sample, leaves least wrong at the given entries of this
+    guess: entries that say the same must not pull twice. (The sources have a constant there.)
+    Notebook: 15
+    Source: Ho and others, Video diffusion models (2022); Song and others, Pseudoinverse-guided
+    diffusion (2023).
     """
     with torch.enable_grad():
         x = x.detach().requires_grad_()
@@ -96,16 +109,22 @@ def guided(
 
 
 def _x0_hat(denoise: Denoiser, x: X, s: int, alpha_bar: float) -> X:
-    return (x - math.sqrt(1 - alpha_bar) * denoise(x, torch.full((len(x),), s, device=x.device))) / math.sqrt(alpha_bar)
+    return (
+        x - math.sqrt(1 - alpha_bar) * denoise(x, torch.full((len(x),), s, device=x.device))
+    ) / math.sqrt(alpha_bar)
 
 
-def _leap(x0_hat: X, eps_hat: X, now: float, then: float, eta: float, generator: torch.Generator | None) -> X:
-    """DDIM's step to less noise: sqrt(then) x0_hat + sqrt(1 - then - sigma^2) eps_hat + sigma noise."""
+def _leap(
+    x0_hat: X, eps_hat: X, now: float, then: float, eta: float, generator: torch.Generator | None
+) -> X:
+    """DDIM's step to less noise: sqrt(then) x0_hat + sqrt(1 - then - sigma^2) eps_hat + sigma
+    noise."""
     sigma = eta * math.sqrt((1 - then) / (1 - now) * (1 - now / then))
     x = math.sqrt(then) * x0_hat + math.sqrt(max(1 - then - sigma**2, 0.0)) * eps_hat
     return x + sigma * draw(x, generator) if sigma else x
 
 
 def _back(x: X, now: float, then: float, generator: torch.Generator | None) -> X:
-    """The forward process from alpha_bar = now to a smaller one: as much noise as the leap took away."""
+    """The forward process from alpha_bar = now to a smaller one: as much noise as the leap took
+    away."""
     return math.sqrt(then / now) * x + math.sqrt(1 - then / now) * draw(x, generator)

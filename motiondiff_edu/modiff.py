@@ -1,4 +1,5 @@
-"""MoDiff's network: two encoders, a cross-modal transformer, and a decoder that predicts the noise of the future.
+"""MoDiff's network: two encoders, a cross-modal transformer, and a decoder that predicts the noise
+of the future.
 
     past poses  --2 layers--+
                             +--concatenated in time--6 cross-modal layers--> memory
@@ -22,7 +23,8 @@ from .prediction import TARGETS
 class MoDiffConfig:
     """Sizes of the network. `target` says what its output means; `skip` adds w(s) x_s to it.
 
-    The paper gives width, heads, layers, T_h and S; T_p, the feed-forward width and dropout are ours.
+    The paper gives width, heads, layers, T_h and S; T_p, the feed-forward width and dropout are
+    ours.
     Source: MoDiff III-F, IV-A
     """
 
@@ -43,13 +45,20 @@ class MoDiffConfig:
     skip: bool = True
 
     def __post_init__(self):
-        """Raises ValueError for sizes of which no network can be built, and for an unknown target."""
-        sizes = {field.name: getattr(self, field.name) for field in fields(self) if type(field.default) is int}
+        """Raises ValueError for sizes of which no network can be built, and for an unknown
+        target."""
+        sizes = {
+            field.name: getattr(self, field.name)
+            for field in fields(self)
+            if type(field.default) is int
+        }
         bad = next((name for name, value in sizes.items() if value < ("layers" not in name)), None)
         if bad:
             raise ValueError(f"{bad} = {sizes[bad]} makes no network")
         if self.width % self.heads or self.width % 2:
-            raise ValueError(f"width = {self.width} must be even, and shared evenly by {self.heads} heads")
+            raise ValueError(
+                f"width = {self.width} must be even, and shared evenly by {self.heads} heads"
+            )
         if self.target not in TARGETS:
             raise ValueError(f"target must be one of {', '.join(TARGETS)}, not {self.target!r}")
 
@@ -62,14 +71,18 @@ MODIFF_SMALL = MoDiffConfig(width=128, hidden=256, cross_layers=2)
 
 
 def step_embedding(s: Int[Tensor, "B"], width: int) -> Float[Tensor, "B W"]:
-    """Sines and cosines of the diffusion step, wavelengths from 2 pi to 10000 * 2 pi steps.  Notebook: 05, 07"""
-    frequencies = torch.exp(-math.log(1e4) * torch.arange(width // 2, device=s.device) / (width // 2))
+    """Sines and cosines of the diffusion step, wavelengths from 2 pi to 10000 * 2 pi steps.
+    Notebook: 05, 07"""
+    frequencies = torch.exp(
+        -math.log(1e4) * torch.arange(width // 2, device=s.device) / (width // 2)
+    )
     angles = s[:, None].float() * frequencies
     return torch.cat([angles.sin(), angles.cos()], dim=-1)
 
 
 class Encoder(nn.Module):
-    """Self-attention over tokens whose times (in frames) are known.  Source: MoDiff III-F.  Notebook: 06, 07"""
+    """Self-attention over tokens whose times (in frames) are known.  Source: MoDiff III-F.
+    Notebook: 06, 07"""
 
     def __init__(self, config: MoDiffConfig, layers: int, times: Int[Tensor, "T"]):
         super().__init__()
@@ -87,9 +100,10 @@ class Encoder(nn.Module):
 class MoDiff(nn.Module):
     """eps_hat = net(x_s, s, past, control) + w(s) x_s.
 
-    w(s) is learned, one number a step, and starts at 1: at high noise eps is nearly x_s itself, and the skip spares the
-    network from carrying 63 independent noise values through its width (ours; the paper has none).
-    Times in frames: the past ends at 0, the future is 1..T_p, control has one row for each of both.
+    w(s) is learned, one number a step, and starts at 1: at high noise eps is nearly x_s itself, and
+    the skip spares the network from carrying 63 independent noise values through its width (ours;
+    the paper has none). Times in frames: the past ends at 0, the future is 1..T_p, control has one
+    row for each of both.
     Source: MoDiff III-F, Fig. 2.  Notebook: 07
     """
 
@@ -101,7 +115,9 @@ class MoDiff(nn.Module):
         memory = torch.cat([past, both])
         self.past_in, self.control_in = nn.Linear(config.D, width), nn.Linear(config.C, width)
         self.modality = nn.Parameter(0.02 * torch.randn(2, width))  # which of the two a token is
-        self.time = nn.Parameter(step_embedding(8 * torch.arange(len(both)), width))  # and when: 8 tells frames apart
+        self.time = nn.Parameter(
+            step_embedding(8 * torch.arange(len(both)), width)
+        )  # and when: 8 tells frames apart
         self.motion_encoder = Encoder(config, config.motion_layers, past)
         self.control_encoder = Encoder(config, config.control_layers, both)
         self.cross_encoder = Encoder(config, config.cross_layers, memory)
@@ -112,14 +128,22 @@ class MoDiff(nn.Module):
         self.self_bias = RelativeBias(config.heads, future, future)
         self.memory_bias = RelativeBias(config.heads, future, memory)
         sizes = (width, config.heads, config.hidden)
-        self.decoder = nn.ModuleList(Block(*sizes, True, config.dropout) for _ in range(config.decoder_layers))
-        self.head = nn.Sequential(nn.LayerNorm(width), nn.Linear(width, width), nn.GELU(), nn.Linear(width, config.D))
+        self.decoder = nn.ModuleList(
+            Block(*sizes, True, config.dropout) for _ in range(config.decoder_layers)
+        )
+        self.head = nn.Sequential(
+            nn.LayerNorm(width), nn.Linear(width, width), nn.GELU(), nn.Linear(width, config.D)
+        )
         self.skip = nn.Parameter(torch.ones(config.S + 1)) if config.skip else None
 
-    def encode(self, past: Float[Tensor, "B T_h D"], control: Float[Tensor, "B T C"]) -> Float[Tensor, "B M width"]:
-        """The memory: past poses and control, encoded apart and then together; it does not depend on s.
+    def encode(
+        self, past: Float[Tensor, "B T_h D"], control: Float[Tensor, "B T C"]
+    ) -> Float[Tensor, "B M width"]:
+        """The memory: past poses and control, encoded apart and then together; it does not depend
+        on s.
 
-        Raises ValueError when past or control have another number of frames than the network was built for.
+        Raises ValueError when past or control have another number of frames than the network was
+        built for.
         """
         frames = (self.config.T_h, self.config.T_h + self.config.T_p)
         if (past.shape[1], control.shape[1]) != frames:
@@ -127,9 +151,13 @@ class MoDiff(nn.Module):
                 f"this network takes {frames[0]} past poses and {frames[1]} rows of control "
                 f"(past and future), got {past.shape[1]} and {control.shape[1]}"
             )
-        motion = self.past_in(past) + self.time[: self.config.T_h] + self.modality[0]  # (B, T_h, width)
+        motion = (
+            self.past_in(past) + self.time[: self.config.T_h] + self.modality[0]
+        )  # (B, T_h, width)
         control = self.control_in(control) + self.time + self.modality[1]  # (B, T, width)
-        both = torch.cat([self.motion_encoder(motion), self.control_encoder(control)], dim=1)  # (B, M, width)
+        both = torch.cat(
+            [self.motion_encoder(motion), self.control_encoder(control)], dim=1
+        )  # (B, M, width)
         return self.memory_norm(self.cross_encoder(both))
 
     def decode(
@@ -139,7 +167,9 @@ class MoDiff(nn.Module):
         out = self.head(self.attend(self.embed(x_s, s), memory))
         return out if self.skip is None else out + self.skip[s][:, None, None] * x_s
 
-    def embed(self, x_s: Float[Tensor, "B T_p D"], s: Int[Tensor, "B"]) -> Float[Tensor, "B T_p width"]:
+    def embed(
+        self, x_s: Float[Tensor, "B T_p D"], s: Int[Tensor, "B"]
+    ) -> Float[Tensor, "B T_p width"]:
         """The decoder's tokens: each noised pose, how noised it is, and when."""
         step = self.step_in(step_embedding(s, self.config.width))  # (B, width)
         step = step[:, None].expand(-1, x_s.shape[1], -1)  # (B, T_p, width): alike for all poses

@@ -4,7 +4,8 @@
               halve -> [res, ask] ---------------------------------> [res, ask] -> double
                          halve -> [res, ask] -------> [res, ask] -> double
                                     halve -> [res, ask] -> double
-res: two convolutions over time, told the step s.  ask: cross-modal attention (`Ask`), keys and values from the music.
+res: two convolutions over time, told the step s.  ask: cross-modal attention (`Ask`), keys and
+values from the music.
 Source: MoFusion 3.1-3.3, Fig. 3.  Notebook: 12
 """
 
@@ -23,7 +24,8 @@ from .prediction import TARGETS
 
 @dataclass(frozen=True)
 class MoFusionConfig:
-    """Sizes of the network. The paper gives three levels and 80 Mel bands; widths, heads and the rest are ours.
+    """Sizes of the network. The paper gives three levels and 80 Mel bands; widths, heads and the
+    rest are ours.
 
     `C` = 0 leaves the music out: keys and values come from the motion itself.  Source: MoFusion 3.3
     """
@@ -31,9 +33,14 @@ class MoFusionConfig:
     D: int = 63  # motion features
     C: int = 80  # condition features (Mel bands)
     S: int = 1000  # diffusion steps
-    widths: tuple[int, ...] = (96, 96, 128)  # of the levels: all frames, every second, every fourth (then eighth)
+    widths: tuple[int, ...] = (
+        96,
+        96,
+        128,
+    )  # of the levels: all frames, every second, every fourth (then eighth)
     heads: int = 4
-    music_layers: int = 4  # convolutions over the music before anybody asks; 0: one linear layer, as the paper has it
+    # convolutions over the music before anybody asks; 0: one linear layer, as the paper has it
+    music_layers: int = 4
     fps: float = 20.0  # of the motion
     slowest: float = 0.05  # Hz, of the position code
     fastest: float = 8.0
@@ -42,10 +49,13 @@ class MoFusionConfig:
     skip: bool = True
 
     def __post_init__(self):
-        """Raises ValueError for sizes of which no network can be built, and for an unknown target."""
+        """Raises ValueError for sizes of which no network can be built, and for an unknown
+        target."""
         counts, rates = (self.D, self.S, self.heads), (self.fps, self.slowest, self.fastest)
         if min(counts) < 1 or min(rates) <= 0 or min(self.C, self.music_layers, self.reach) < 0:
-            raise ValueError("D, S, heads must be 1 at least; C, music_layers, reach 0 at least; rates above 0")
+            raise ValueError(
+                "D, S, heads must be 1 at least; C, music_layers, reach 0 at least; rates above 0"
+            )
         bad = next((w for w in self.widths if w < 2 * self.heads or w % (2 * self.heads)), None)
         if not self.widths or bad is not None:
             raise ValueError(f"each width must be a multiple of 2 x {self.heads} heads, not {bad}")
@@ -61,7 +71,8 @@ MOFUSION_SMALL = MoFusionConfig()
 
 
 class FrameConv(nn.Module):
-    """A convolution over time: one linear layer of a frame and its two neighbours; outside the motion there are zeros.
+    """A convolution over time: one linear layer of a frame and its two neighbours; outside the
+    motion there are zeros.
 
     With stride 2 it keeps every second frame, the first included.  Notebook: 12
     """
@@ -73,13 +84,16 @@ class FrameConv(nn.Module):
     def forward(self, x: Float[Tensor, "B T C"]) -> Float[Tensor, "B T2 C2"]:
         n = self.dilation
         padded = F.pad(x, (0, 0, n, n))
-        return self.mix(torch.cat([padded[:, : -2 * n], x, padded[:, 2 * n :]], dim=-1)[:, :: self.stride])
+        return self.mix(
+            torch.cat([padded[:, : -2 * n], x, padded[:, 2 * n :]], dim=-1)[:, :: self.stride]
+        )
 
 
 class ResBlock(nn.Module):
     """Two convolutions around which x goes unchanged; the step scales and shifts what lies between.
 
-    Each frame is normalised by itself, so that neither padding nor a neighbour in the batch can matter.
+    Each frame is normalised by itself, so that neither padding nor a neighbour in the batch can
+    matter.
     Source: MoFusion 3.3; scale and shift are usual, the paper does not say.  Notebook: 12
     """
 
@@ -103,15 +117,20 @@ class ResBlock(nn.Module):
 
 
 class Ask(nn.Module):
-    """Cross-modal attention, then a feed-forward layer: queries from the motion, keys and values from the music.
+    """Cross-modal attention, then a feed-forward layer: queries from the motion, keys and values
+    from the music.
 
     Without music (context=None) keys and values come from the motion: self-attention.
-    Source: MoFusion 3.3, eq. 8-9 (which has Q from x in the unconditional case; K and V are meant).  Notebook: 12
+    Source: MoFusion 3.3, eq. 8-9 (which has Q from x in the unconditional case; K and V are meant).
+    Notebook: 12
     """
 
     def __init__(self, width: int, heads: int, context_width: int):
         super().__init__()
-        self.norm, self.attention = nn.LayerNorm(width), CrossModalAttention(width, heads, context_width)
+        self.norm, self.attention = (
+            nn.LayerNorm(width),
+            CrossModalAttention(width, heads, context_width),
+        )
         self.norm_ff = nn.LayerNorm(width)
         self.ff = nn.Sequential(nn.Linear(width, 2 * width), nn.GELU(), nn.Linear(2 * width, width))
 
@@ -122,7 +141,8 @@ class Ask(nn.Module):
 
 
 class MusicEncoder(nn.Module):
-    """Mel frames to context: a linear layer, then (ours) convolutions that look ever further, up to a second or two.
+    """Mel frames to context: a linear layer, then (ours) convolutions that look ever further, up to
+    a second or two.
 
     Half of the frames are enough afterwards: 15.6 a second.
     Source: MoFusion 3.3 (the linear layer).  Notebook: 12
@@ -136,7 +156,9 @@ class MusicEncoder(nn.Module):
         self.norms = nn.ModuleList(nn.LayerNorm(width) for _ in range(layers))
         self.norm = nn.LayerNorm(width)
 
-    def forward(self, mel: Float[Tensor, "B M C"], mask: Float[Tensor, "#B M 1"]) -> Float[Tensor, "B M2 W"]:
+    def forward(
+        self, mel: Float[Tensor, "B M C"], mask: Float[Tensor, "#B M 1"]
+    ) -> Float[Tensor, "B M2 W"]:
         h = self.project(mel)
         if self.shorten is not None:
             h, mask = self.shorten(F.silu(h) * mask), mask[:, ::2]
@@ -148,8 +170,8 @@ class MusicEncoder(nn.Module):
 class MoFusion(nn.Module):
     """eps_hat = net(x_s, s, music) + w(s) x_s, for motions of any length.
 
-    Frame t of the motion lies at t / fps seconds; the music's frames say when they sound (`listen`). Queries and
-    keys are turned by these times (`turned`), alike on both sides.
+    Frame t of the motion lies at t / fps seconds; the music's frames say when they sound
+    (`listen`). Queries and keys are turned by these times (`turned`), alike on both sides.
     Source: MoFusion 3.3, Fig. 3; the skip w(s) and the position code are ours.  Notebook: 12
     """
 
@@ -157,7 +179,9 @@ class MoFusion(nn.Module):
         super().__init__()
         self.config, widths, first = config, config.widths, config.widths[0]
         width = 4 * first  # of the step's embedding
-        self.step_in = nn.Sequential(nn.Linear(width, width), nn.SiLU(), nn.Linear(width, width), nn.SiLU())
+        self.step_in = nn.Sequential(
+            nn.Linear(width, width), nn.SiLU(), nn.Linear(width, width), nn.SiLU()
+        )
         context = widths[1 if len(widths) > 1 else 0]
         self.music = MusicEncoder(config.C, context, config.music_layers) if config.C else None
         self.into = FrameConv(config.D, first)
@@ -169,19 +193,27 @@ class MoFusion(nn.Module):
         self.down = nn.ModuleList(block(a, b) for a, b in pairwise((first, *widths)))
         self.shorten = nn.ModuleList(FrameConv(w, w, stride=2) for w in widths)
         self.middle = block(widths[-1], widths[-1])
-        self.lengthen = nn.ModuleList(FrameConv(a, b) for a, b in pairwise((widths[-1], *reversed(widths))))
+        self.lengthen = nn.ModuleList(
+            FrameConv(a, b) for a, b in pairwise((widths[-1], *reversed(widths)))
+        )
         self.up = nn.ModuleList(block(2 * w, w) for w in reversed(widths))
         self.out = nn.Linear(first, config.D)
         self.skip = nn.Parameter(torch.ones(config.S + 1)) if config.skip else None
 
     def listen(
-        self, mel: Float[Tensor, "B M C"], times: Float[Tensor, "M"], mask: Bool[Tensor, "B M"] | None = None
+        self,
+        mel: Float[Tensor, "B M C"],
+        times: Float[Tensor, "M"],
+        mask: Bool[Tensor, "B M"] | None = None,
     ) -> "Music":
-        """The context of a piece of music: `mel` standardised, `times` in seconds from the first motion frame.
+        """The context of a piece of music: `mel` standardised, `times` in seconds from the first
+        motion frame.
 
         `mask` is True where there is music, for pieces of several lengths in one batch.
         """
-        present = mel.new_ones(1, mel.shape[1], 1) if mask is None else mask[..., None].to(mel.dtype)
+        present = (
+            mel.new_ones(1, mel.shape[1], 1) if mask is None else mask[..., None].to(mel.dtype)
+        )
         tokens, step = self.music(mel, present), 2 if self.config.music_layers else 1
         return Music(tokens, times[::step], None if mask is None else mask[:, ::step])
 
@@ -192,13 +224,20 @@ class MoFusion(nn.Module):
         music: "Music | None" = None,
         lengths: Int[Tensor, "B"] | None = None,
     ) -> Float[Tensor, "B T D"]:
-        """What the target (eps, x0 or v) is thought to be; frames from `lengths` on are padding, and come back as 0."""
+        """What the target (eps, x0 or v) is thought to be; frames from `lengths` on are padding,
+        and come back as 0."""
         if (music is None) != (self.music is None):
-            raise ValueError("this network dances to music: give it" if music is None else "this network hears nothing")
+            raise ValueError(
+                "this network dances to music: give it"
+                if music is None
+                else "this network hears nothing"
+            )
         T, levels = x_s.shape[1], len(self.config.widths)
         x = F.pad(x_s, (0, 0, 0, -T % 2**levels))
         lengths = torch.full((1,), T, device=x.device) if lengths is None else lengths
-        views = [View.of(x.shape[1], lengths, level, music, self.config) for level in range(levels + 1)]
+        views = [
+            View.of(x.shape[1], lengths, level, music, self.config) for level in range(levels + 1)
+        ]
         step = self.step_in(step_embedding(s, 4 * self.config.widths[0]))
         h, kept = self.into(x * views[0].mask), []
         for level, block in enumerate(self.down):
@@ -214,12 +253,15 @@ class MoFusion(nn.Module):
 
     def _block(self, block, h, step, music, view):
         h = block["res"](h, step, view.mask)
-        return block["ask"](h, None if music is None else music.tokens, view.bias, view.turns[h.shape[-1]])
+        return block["ask"](
+            h, None if music is None else music.tokens, view.bias, view.turns[h.shape[-1]]
+        )
 
 
 @dataclass(frozen=True, eq=False)
 class Music:
-    """The context that a network made of music: tokens, when each sounds (s), and which are there at all."""
+    """The context that a network made of music: tokens, when each sounds (s), and which are there
+    at all."""
 
     tokens: Float[Tensor, "B M W"]
     times: Float[Tensor, "M"]
@@ -228,14 +270,22 @@ class Music:
 
 @dataclass(frozen=True, eq=False)
 class View:
-    """One level of the U-Net: which of its frames are motion, what they may attend to, and when they are."""
+    """One level of the U-Net: which of its frames are motion, what they may attend to, and when
+    they are."""
 
     mask: Float[Tensor, "#B T 1"]
     bias: Float[Tensor, "#B 1 T M"] | None
     turns: dict[int, tuple[Tensor, Tensor]]  # by the width of the features
 
     @classmethod
-    def of(cls, T: int, lengths: Int[Tensor, "B"], level: int, music: Music | None, config: MoFusionConfig) -> "View":
+    def of(
+        cls,
+        T: int,
+        lengths: Int[Tensor, "B"],
+        level: int,
+        music: Music | None,
+        config: MoFusionConfig,
+    ) -> "View":
         """The frames of a level are every 2^level-th of the T frames at the top."""
         frames = torch.arange(0, T, 2**level, device=lengths.device)
         inside, times = frames < lengths[:, None], frames / config.fps  # (B, T), and seconds
@@ -244,7 +294,14 @@ class View:
         if config.reach:
             near = ((times[:, None] - heard).abs() <= config.reach)[None, None]
             allowed = near if allowed is None else allowed & near
-        bias = None if allowed is None else torch.where(allowed, 0.0, -1e4).expand(-1, -1, len(times), -1)
+        bias = (
+            None
+            if allowed is None
+            else torch.where(allowed, 0.0, -1e4).expand(-1, -1, len(times), -1)
+        )
         code = (config.slowest, config.fastest)
-        turns = {w: tuple(angles_of(t, w // config.heads, *code) for t in (times, heard)) for w in set(config.widths)}
+        turns = {
+            w: tuple(angles_of(t, w // config.heads, *code) for t in (times, heard))
+            for w in set(config.widths)
+        }
         return cls(inside[..., None].float(), bias, turns)

@@ -1,14 +1,15 @@
-"""What a network may predict: the noise eps, the clean sample x0, or v. Each can be turned into the others.
+"""What a network may predict: the noise eps, the clean sample x0, or v. Each can be turned into the
+others.
 
-With a = sqrt(alpha_bar_s) and b = sqrt(1 - alpha_bar_s), x_s = a x0 + b eps and v = a eps - b x0: (x_s, v) is (x0, eps)
-turned by an angle, so every conversion is a line of algebra.
+With a = sqrt(alpha_bar_s) and b = sqrt(1 - alpha_bar_s), x_s = a x0 + b eps and v = a eps - b x0:
+(x_s, v) is (x0, eps) turned by an angle, so every conversion is a line of algebra.
 """
 
 import torch
 from jaxtyping import Float
 from torch import Tensor
 
-from motiondiff_edu.ddpm import Schedule, Steps, at
+from .ddpm import Schedule, Steps, at
 
 TARGETS = ("eps", "x0", "v")
 
@@ -58,9 +59,14 @@ def x0_from_v(
 
 
 def to_eps(
-    output: Float[Tensor, "B *shape"], x_s: Float[Tensor, "B *shape"], s: Steps, schedule: Schedule, target: str
+    output: Float[Tensor, "B *shape"],
+    x_s: Float[Tensor, "B *shape"],
+    s: Steps,
+    schedule: Schedule,
+    target: str,
 ) -> Float[Tensor, "B *shape"]:
-    """Turn a network's output into eps_hat; `target` says what the network was trained to predict. Notebook: 05."""
+    """Turn a network's output into eps_hat; `target` says what the network was trained to predict.
+    Notebook: 05."""
     _check(target)
     if target == "eps":
         return output
@@ -68,9 +74,14 @@ def to_eps(
 
 
 def to_x0(
-    output: Float[Tensor, "B *shape"], x_s: Float[Tensor, "B *shape"], s: Steps, schedule: Schedule, target: str
+    output: Float[Tensor, "B *shape"],
+    x_s: Float[Tensor, "B *shape"],
+    s: Steps,
+    schedule: Schedule,
+    target: str,
 ) -> Float[Tensor, "B *shape"]:
-    """Turn a network's output into x0_hat; `target` says what the network was trained to predict. Notebook: 05."""
+    """Turn a network's output into x0_hat; `target` says what the network was trained to predict.
+    Notebook: 05."""
     _check(target)
     if target == "x0":
         return output
@@ -78,7 +89,11 @@ def to_x0(
 
 
 def target_of(
-    x0: Float[Tensor, "B *shape"], eps: Float[Tensor, "B *shape"], s: Steps, schedule: Schedule, target: str
+    x0: Float[Tensor, "B *shape"],
+    eps: Float[Tensor, "B *shape"],
+    s: Steps,
+    schedule: Schedule,
+    target: str,
 ) -> Float[Tensor, "B *shape"]:
     """What the network should have said: eps, x0 or v. Notebook: 05."""
     _check(target)
@@ -86,16 +101,20 @@ def target_of(
 
 
 def denoiser_of(network, schedule: Schedule, target: str):
-    """Wrap a network that predicts `target` as a denoiser, which always answers with eps_hat. Notebook: 05.
+    """Wrap a network that predicts `target` as a denoiser, which always answers with eps_hat.
+    Notebook: 05.
 
-    It raises ValueError where a gradient is asked for and the network has none (the formulas have: a wrong one).
+    It raises ValueError where a gradient is asked for and the network has none (the formulas have:
+    a wrong one).
     """
     _check(target)
 
     def denoise(x_s, s):
         output = network(x_s, s)
         if torch.is_grad_enabled() and x_s.requires_grad and not output.requires_grad:
-            raise ValueError("no gradient here: take the network, not its fast twin, outside torch.inference_mode()")
+            raise ValueError(
+                "no gradient here: take the network, not its fast twin, outside torch.inference_mode()"
+            )
         return to_eps(output, x_s, s, schedule, target)
 
     return denoise

@@ -1,7 +1,9 @@
-"""Autoregression: predict T_p poses, keep the first few, move on; the control may change at every frame.
+"""Autoregression: predict T_p poses, keep the first few, move on; the control may change at every
+frame.
 
-A *window sampler* is a callable `sample(past (B, T_h, D), control (B, T_h + T_p, C), generator) -> (B, T_p, D)` in the
-network's units. `rollout_steps` repeats it; `generate` does so for a trained walker, in metres and m/s.
+A *window sampler* is a callable `sample(past (B, T_h, D), control (B, T_h + T_p, C), generator) ->
+(B, T_p, D)` in the network's units. `rollout_steps` repeats it; `generate` does so for a trained
+walker, in metres and m/s.
 Source: MoDiff III-C, Alg. 2.  Notebook: 08
 """
 
@@ -20,7 +22,8 @@ Control = Tensor | Callable[[int], Tensor]
 
 @dataclass(frozen=True, eq=False)
 class Frame:
-    """One new frame: its number after the past (from 0), its pose, and the whole window it was taken from."""
+    """One new frame: its number after the past (from 0), its pose, and the whole window it was
+    taken from."""
 
     t: int
     pose: Float[Tensor, "B D"]
@@ -40,10 +43,11 @@ def rollout_steps(
 ) -> Iterator[Frame]:
     """Yield `frames` new poses, one by one; of every predicted window the first `keep` are kept.
 
-    `control` is (B, T, C), row 0 beside past[:, 0] and the last repeated past its end; or a callable t -> (B, C) that
-    is asked for a row when it is walked under, once: it can change on the fly, and the past is not rewritten.
-    hold=True: the network sees the control up to the step it is about to take, held over the future;
-    hold=False (look-ahead): it sees what comes, as far as is known now.
+    `control` is (B, T, C), row 0 beside past[:, 0] and the last repeated past its end; or a
+    callable t -> (B, C) that is asked for a row when it is walked under, once: it can change on the
+    fly, and the past is not rewritten. hold=True: the network sees the control up to the step it is
+    about to take, held over the future; hold=False (look-ahead): it sees what comes, as far as is
+    known now.
     Raises ValueError unless 1 <= keep <= T_p.  Source: MoDiff III-C, Alg. 2.  Notebook: 07, 08
     """
     if not 1 <= keep <= T_p:
@@ -70,12 +74,14 @@ def generate(
     keep: int = 1,
     hold: bool = True,
 ) -> Float[Tensor, "*B n D"]:
-    """Continue `past` (root-frame poses, metres) under `control` (m/s, m/s, rad/s): n = T - T_h new poses, metres.
+    """Continue `past` (root-frame poses, metres) under `control` (m/s, m/s, rad/s): n = T - T_h new
+    poses, metres.
 
-    Rows 0..T_h-1 of the control belong to the past. steps=None is DDPM with all S steps, a number is DDIM with so many.
-    A past and control without a batch axis give poses without one. Arrays of numpy are taken too; a tensor comes back.
-    Raises ValueError when past and control do not fit the walker or hold NaN; warns where the control asks for more
-    than the walker saw in training.
+    Rows 0..T_h-1 of the control belong to the past. steps=None is DDPM with all S steps, a number
+    is DDIM with so many. A past and control without a batch axis give poses without one. Arrays of
+    numpy are taken too; a tensor comes back.
+    Raises ValueError when past and control do not fit the walker or hold NaN; warns where the
+    control asks for more than the walker saw in training.
     Source: MoDiff Alg. 2, Fig. 5.  Notebook: 07, 08
     """
     past, control = torch.as_tensor(past), torch.as_tensor(control)
@@ -83,15 +89,23 @@ def generate(
     past, control = (x[None] if single else x for x in (past, control))
     T_h, frames = walker.config.T_h, control.shape[1] - past.shape[1]
     D, C = walker.config.D, walker.config.C
-    if past.dim() != 3 or past.shape[0] != control.shape[0] or (past.shape[2], control.shape[-1]) != (D, C):
+    if (
+        past.dim() != 3
+        or past.shape[0] != control.shape[0]
+        or (past.shape[2], control.shape[-1]) != (D, C)
+    ):
         raise ValueError(
             f"past {tuple(past.shape)} and control {tuple(control.shape)} do not go together: the walker takes "
             f"(B, {T_h}, {D}) and (B, T, {C}), or both without B; flatten positions (T, 21, 3) to (T, 63)"
         )
     if past.shape[1] != T_h:
-        raise ValueError(f"the walker continues {T_h} past poses, got {past.shape[1]}: pass past[..., -{T_h}:, :]")
+        raise ValueError(
+            f"the walker continues {T_h} past poses, got {past.shape[1]}: pass past[..., -{T_h}:, :]"
+        )
     if frames < 1:
-        raise ValueError(f"control has {control.shape[1]} rows, {T_h} of them beside the past: none is left")
+        raise ValueError(
+            f"control has {control.shape[1]} rows, {T_h} of them beside the past: none is left"
+        )
     if not (torch.isfinite(past).all() and torch.isfinite(control).all()):
         raise ValueError("past or control holds NaN or infinity; fill the holes first")
     _warn_beyond(control, getattr(walker, "card", {}).get("control_range"))
@@ -99,7 +113,9 @@ def generate(
     past, control = (x.float().to(walker.pose_scaler.mean.device) for x in (past, control))
     poses, velocities = walker.pose_scaler.transform(past), walker.control_scaler.transform(control)
     sample, T_p = walker.window_sampler(steps), walker.config.T_p
-    loop = rollout_steps(sample, poses, velocities, frames, T_p, generator=generator, keep=keep, hold=hold)
+    loop = rollout_steps(
+        sample, poses, velocities, frames, T_p, generator=generator, keep=keep, hold=hold
+    )
     new = walker.pose_scaler.inverse(torch.stack([frame.pose for frame in loop], dim=1))
     return new[0] if single else new
 
@@ -113,7 +129,11 @@ def _warn_beyond(control: Float[Tensor, "B T C"], seen: dict | None) -> None:
     beyond = ((control < low - slack) | (control > high + slack)).nonzero()
     if len(beyond):
         batch, row, column = beyond[0].tolist()
-        name = ("forward speed", "speed to the left", "turning rate")[column] if len(low) == 3 else f"column {column}"
+        name = (
+            ("forward speed", "speed to the left", "turning rate")[column]
+            if len(low) == 3
+            else f"column {column}"
+        )
         warnings.warn(
             f"row {row} of the control asks for {control[batch, row, column]:.3g} ({name}); this walker learnt from "
             f"{low[column]:.3g} to {high[column]:.3g}, and will do something else",

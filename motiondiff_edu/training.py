@@ -1,7 +1,9 @@
-"""One training loop, a generator: it yields after every step, keeps an averaged copy, and can be killed and resumed.
+"""One training loop, a generator: it yields after every step, keeps an averaged copy, and can be
+killed and resumed.
 
-Nothing here knows what is trained: `loss_fn(model, generator)` draws its own batch and noise from the generator, which
-is why a resumed run continues bit for bit.  Source: MoDiff Alg. 1.  Notebook: 05, 07
+Nothing here knows what is trained: `loss_fn(model, generator)` draws its own batch and noise from
+the generator, which is why a resumed run continues bit for bit.  Source: MoDiff Alg. 1.   Notebook:
+05, 07
 """
 
 import copy
@@ -24,7 +26,8 @@ class NonFiniteLoss(RuntimeError):
 
 @dataclass(eq=False)
 class TrainState:
-    """Everything that a run consists of: what `runs.save_run` writes and `runs.resume_run` reads."""
+    """Everything that a run consists of: what `recipes.runs.save_run` writes and
+    `recipes.runs.resume_run` reads."""
 
     model: nn.Module
     average: nn.Module  # exponential moving average of the weights: what is used after training
@@ -35,7 +38,8 @@ class TrainState:
 
     @classmethod
     def start(cls, model: nn.Module, seed: int = 0, optimizer=None) -> "TrainState":
-        """A fresh run of this model, with Adam unless told. Every random number of the run comes from `seed`."""
+        """A fresh run of this model, with Adam unless told. Every random number of the run comes
+        from `seed`."""
         average = copy.deepcopy(model).requires_grad_(False).eval()
         optimizer = optimizer or torch.optim.Adam(model.parameters(), fused=True)
         return cls(model, average, optimizer, torch.Generator().manual_seed(seed))
@@ -52,12 +56,17 @@ class TrainStep:
 
 
 def cosine_lr(peak: float, steps: int, warmup: int = 100) -> Callable[[int], float]:
-    """Learning rate: rises evenly for `warmup` steps, then falls to zero along a half cosine.  Notebook: 05"""
+    """Learning rate: rises evenly for `warmup` steps, then falls to zero along a half cosine.
+    Notebook: 05"""
 
     def lr(step: int) -> float:
         if step < warmup:
             return peak * (step + 1) / warmup
-        return peak * 0.5 * (1 + math.cos(math.pi * min(1.0, (step - warmup) / max(1, steps - warmup))))
+        return (
+            peak
+            * 0.5
+            * (1 + math.cos(math.pi * min(1.0, (step - warmup) / max(1, steps - warmup))))
+        )
 
     return lr
 
@@ -77,13 +86,22 @@ def train_steps(
 ) -> Iterator[TrainStep]:
     """Train until `state.step == steps`, yielding after each step.
 
-    Gradients are clipped to the norm `clip`; the average follows with `decay` (less in the first steps). `save`, if
-    given, is called with the state every `save_every` steps and at the end (`runs.saver` makes one); `before` with the
-    number of steps done, ahead of each one: for losses that change on the way (`diffusion_dropout.Dropout.now`).
-    Raises NonFiniteLoss with what to do; the last good weights stay in `state`, and are saved (broken ones are not).
+    Gradients are clipped to the norm `clip`; the average follows with `decay` (less in the first
+    steps). `save`, if given, is called with the state every `save_every` steps and at the end
+    (`recipes.runs.saver` makes one); `before` with the number of steps done, ahead of each one: for
+    losses that change on the way (`diffusion_dropout.Dropout.now`).
+    Raises NonFiniteLoss with what to do; the last good weights stay in `state`, and are saved
+    (broken ones are not).
     Source: MoDiff Alg. 1 (the loop).  Notebook: 05, 07
     """
-    bar = tqdm(total=steps, initial=state.step, disable=not progress, desc="training", unit="step", mininterval=1.0)
+    bar = tqdm(
+        total=steps,
+        initial=state.step,
+        disable=not progress,
+        desc="training",
+        unit="step",
+        mininterval=1.0,
+    )
     state.model.train()
     with bar:
         while state.step < steps:
@@ -115,14 +133,18 @@ def train_steps(
 def _follow(state: TrainState, decay: float) -> None:
     """average <- decay average + (1 - decay) model, with a shorter memory at the start."""
     decay = min(decay, (1 + state.step) / (10 + state.step))
-    for mean, new in zip(state.average.state_dict().values(), state.model.state_dict().values(), strict=True):
+    for mean, new in zip(
+        state.average.state_dict().values(), state.model.state_dict().values(), strict=True
+    ):
         mean.lerp_(new, 1 - decay) if mean.is_floating_point() else mean.copy_(new)
 
 
 def _stop(state: TrainState, loss: float, norm: float, rate: float, save: Callable | None) -> None:
     weights = [*state.model.parameters(), *state.average.parameters()]
     if all(torch.isfinite(weight).all() for weight in weights):
-        kept = "The weights are those of the last good step." + (f" They are saved: {save(state)}." if save else "")
+        kept = "The weights are those of the last good step." + (
+            f" They are saved: {save(state)}." if save else ""
+        )
     else:
         kept = "The update before had broken the weights already; they are not saved, and what was saved earlier stays."
     raise NonFiniteLoss(

@@ -1,4 +1,5 @@
-"""What the tests share: the real recordings and the browser, skipped visibly, or demanded where the build says so.
+"""What the tests share: the real recordings and the browser, skipped visibly, or demanded where the
+build says so.
 
 MOTIONDIFF_REAL_DATA   folder of real recordings; when it is set, a test that cannot use it fails
 MOTIONDIFF_REQUIRE_BROWSER   when it is set, a test that finds no Chromium fails
@@ -34,7 +35,8 @@ def root() -> Path:
 
 @pytest.fixture(scope="session")
 def real_data() -> Path:
-    """The folder of real recordings (bvh/, bvh_odd_and_broken/, oracle/ ...): never part of the project."""
+    """The folder of real recordings (bvh/, bvh_odd_and_broken/, oracle/ ...): never part of the
+    project."""
     folder = os.environ.get("MOTIONDIFF_REAL_DATA", "")
     if not folder:
         pytest.skip("real recordings not given: set MOTIONDIFF_REAL_DATA to their folder")
@@ -48,14 +50,19 @@ def chromium() -> str:
     """The path of the system's Chromium, for playwright's executable_path."""
     found = next((path for name in BROWSERS if (path := shutil.which(name))), None)
     if found is None:
-        missing("no Chromium found: install it (Debian: apt-get install chromium)", "MOTIONDIFF_REQUIRE_BROWSER")
+        missing(
+            "no Chromium found: install it (Debian: apt-get install chromium)",
+            "MOTIONDIFF_REQUIRE_BROWSER",
+        )
     return found
 
 
 @pytest.fixture(scope="module")
 def browser(chromium):
     """A running Chromium, one for all tests of a file."""
-    from browser import start_browser  # not above: what it imports is checked only once pytest has set that up
+    from browser import (
+        start_browser,  # not above: what it imports is checked only once pytest has set that up
+    )
 
     with start_browser(chromium) as running:
         yield running
@@ -70,7 +77,8 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
 
 @pytest.hookimpl(wrapper=True)
 def pytest_runtest_makereport(item: pytest.Item, call: pytest.CallInfo):
-    """A skip from anywhere (importorskip, a mark) in a browser or real-data test is a failure where it was demanded.
+    """A skip from anywhere (importorskip, a mark) in a browser or real-data test is a failure where
+    it was demanded.
 
     What wants real recordings as well as a browser may be skipped where none are given.
     """
@@ -78,8 +86,16 @@ def pytest_runtest_makereport(item: pytest.Item, call: pytest.CallInfo):
     names = getattr(item, "fixturenames", ())
     if "real_data" in names and not demanded("MOTIONDIFF_REAL_DATA"):
         return report
-    for fixture, variable in (("chromium", "MOTIONDIFF_REQUIRE_BROWSER"), ("real_data", "MOTIONDIFF_REAL_DATA")):
-        if report.skipped and not hasattr(report, "wasxfail") and fixture in names and demanded(variable):
+    for fixture, variable in (
+        ("chromium", "MOTIONDIFF_REQUIRE_BROWSER"),
+        ("real_data", "MOTIONDIFF_REAL_DATA"),
+    ):
+        if (
+            report.skipped
+            and not hasattr(report, "wasxfail")
+            and fixture in names
+            and demanded(variable)
+        ):
             report.outcome = "failed"
             report.longrepr = f"skipped, although {variable} is set: {report.longrepr}"
     return report

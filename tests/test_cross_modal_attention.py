@@ -1,4 +1,5 @@
-"""Attention against torch's own, the T5 buckets against published values, and watching that changes nothing."""
+"""Attention against torch's own, the T5 buckets against published values, and watching that changes
+nothing."""
 
 import pytest
 import torch
@@ -48,7 +49,9 @@ def test_order_of_keys_and_values_is_nothing(qkvb):
     q, k, v, bias = qkvb
     order = torch.randperm(M, generator=torch.Generator().manual_seed(4))
     torch.testing.assert_close(attention(q, k[..., order, :], v[..., order, :]), attention(q, k, v))
-    assert not torch.allclose(attention(q, k[..., order, :], v), attention(q, k, v))  # together, or not at all
+    assert not torch.allclose(
+        attention(q, k[..., order, :], v), attention(q, k, v)
+    )  # together, or not at all
 
 
 def test_a_key_that_is_masked_out_gets_nothing(qkvb):
@@ -61,12 +64,26 @@ def test_a_key_that_is_masked_out_gets_nothing(qkvb):
     torch.testing.assert_close(attention(q, k, changed, bias), attention(q, k, v, bias))
 
 
-# transformers 5.23.0, T5Attention._relative_position_bucket, 32 buckets, farthest 128; distance = key - query
+# transformers 5.23.0, T5Attention._relative_position_bucket, 32 buckets, farthest 128; distance =
+# key - query
 T5_BOTH = {
     -128: 15, -91: 15, -64: 14, -46: 13, -32: 12, -23: 11, -16: 10, -12: 9, -11: 8, -8: 8, -7: 7, -1: 1, 0: 0,
     1: 17, 7: 23, 8: 24, 12: 25, 16: 26, 23: 27, 32: 28, 46: 29, 64: 30, 91: 31, 200: 31,
 }  # fmt: skip
-T5_CAUSAL = {-128: 31, -91: 29, -64: 26, -46: 24, -32: 21, -23: 18, -16: 16, -12: 12, -7: 7, 0: 0, 1: 0, 40: 0}
+T5_CAUSAL = {
+    -128: 31,
+    -91: 29,
+    -64: 26,
+    -46: 24,
+    -32: 21,
+    -23: 18,
+    -16: 16,
+    -12: 12,
+    -7: 7,
+    0: 0,
+    1: 0,
+    40: 0,
+}
 
 
 @pytest.mark.parametrize("table, both", [(T5_BOTH, True), (T5_CAUSAL, False)])
@@ -99,7 +116,9 @@ def test_bias_depends_on_the_time_between_only():
 def test_layer_equals_multihead_attention_with_the_same_weights():
     width, context_width = 12, 10
     mine = random_layer(width, H, context_width)
-    theirs = nn.MultiheadAttention(width, H, kdim=context_width, vdim=context_width, batch_first=True).eval()
+    theirs = nn.MultiheadAttention(
+        width, H, kdim=context_width, vdim=context_width, batch_first=True
+    ).eval()
     with torch.no_grad():
         k_weight, v_weight = mine.kv.weight.chunk(2)
         theirs.q_proj_weight.copy_(mine.q.weight)
@@ -108,7 +127,10 @@ def test_layer_equals_multihead_attention_with_the_same_weights():
         theirs.in_proj_bias.copy_(torch.cat([mine.q.bias, mine.kv.bias]))
         theirs.out_proj.load_state_dict(mine.out.state_dict())
     g = torch.Generator().manual_seed(8)
-    x, context = torch.randn(B, T, width, generator=g), torch.randn(B, M, context_width, generator=g)
+    x, context = (
+        torch.randn(B, T, width, generator=g),
+        torch.randn(B, M, context_width, generator=g),
+    )
     wanted, weights = theirs(x, context, context, average_attn_weights=False)
     torch.testing.assert_close(mine(x, context), wanted, atol=1e-6, rtol=1e-5)
     with watch(mine) as maps:

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 import torch
 
+from motiondiff_edu.beyond.schedules import shifted
 from motiondiff_edu.ddpm import (
     cosine_schedule,
     draw,
@@ -26,19 +27,23 @@ from motiondiff_edu.ddpm import (
     simple_loss,
 )
 from motiondiff_edu.exact import exact_denoiser, mixture, sample_mixture
+from motiondiff_edu.performers.walker import leap_schedule
 from motiondiff_edu.prediction import to_eps
-from motiondiff_edu.pretrained.dance_recipes import DANCER
-from motiondiff_edu.shifted_schedule import shifted
-from motiondiff_edu.walker import leap_schedule
+from motiondiff_edu.recipes.dancers import DANCER
 
 S_REF = 1000
 
 
 @pytest.fixture(scope="module")
 def reference():
-    """The schedule, the start and the dummy model of the published reference run (diffusers' scheduler tests)."""
+    """The schedule, the start and the dummy model of the published reference run (diffusers'
+    scheduler tests)."""
     start = (torch.arange(768).reshape(3, 8, 8, 4) / 768).permute(3, 0, 1, 2)
-    return linear_schedule(S_REF, 1e-4, 0.02), start, lambda x, s: x * ((s - 1) / s).float().reshape(-1, 1, 1, 1)
+    return (
+        linear_schedule(S_REF, 1e-4, 0.02),
+        start,
+        lambda x, s: x * ((s - 1) / s).float().reshape(-1, 1, 1, 1),
+    )
 
 
 def run(reference, target="eps", **kwargs):
@@ -74,10 +79,22 @@ def test_two_steps_from_lightly_noised_data_equal_the_published_run(reference):
 
 
 def test_trajectory_equals_the_stored_one_frame_by_frame(reference, real_data):
-    stored = np.load(real_data / "oracle/diffusers_ddpm_trajectory_eps_linear_fixed_small_seed0.npz")
+    stored = np.load(
+        real_data / "oracle/diffusers_ddpm_trajectory_eps_linear_fixed_small_seed0.npz"
+    )
     ours = run(reference)
-    np.testing.assert_allclose(reference[0].alpha_bar[1:], stored["alphas_cumprod"], rtol=1e-4, atol=1e-7)
-    for t in (999, 900, 500, 100, 10, 1, 0):  # the stored x_t is what step t leaves behind, ours is labelled with it
+    np.testing.assert_allclose(
+        reference[0].alpha_bar[1:], stored["alphas_cumprod"], rtol=1e-4, atol=1e-7
+    )
+    for t in (
+        999,
+        900,
+        500,
+        100,
+        10,
+        1,
+        0,
+    ):  # the stored x_t is what step t leaves behind, ours is labelled with it
         np.testing.assert_allclose(ours[t].numpy(), stored[f"x{t}"], atol=2e-3, err_msg=f"t = {t}")
 
 
@@ -86,7 +103,9 @@ def test_cosine_schedule_equals_published_values():
     index = torch.tensor([0, 10, 100, 250, 500, 750, 900, 999]) + 1
     published = [0.999959, 0.999279, 0.971576, 0.845888, 0.492285, 0.143179, 0.0236161, 2.42873e-9]
     np.testing.assert_allclose(schedule.alpha_bar[index], published, rtol=2e-5)
-    np.testing.assert_allclose(schedule.beta[[1, 501, 999, 1000]], [4.128e-5, 0.00315569, 0.7499994, 0.999], rtol=2e-4)
+    np.testing.assert_allclose(
+        schedule.beta[[1, 501, 999, 1000]], [4.128e-5, 0.00315569, 0.7499994, 0.999], rtol=2e-4
+    )
 
 
 def test_shifting_a_schedule_multiplies_its_signal_to_noise_ratio():
@@ -130,7 +149,11 @@ def test_too_few_steps_are_refused_with_the_remedy():
 
 @pytest.mark.parametrize(
     "make, percent",
-    [(linear_schedule, "7.5 %"), (lambda: cosine_schedule(100), "0.049 %"), (scaled_linear_schedule, "0.45 %")],
+    [
+        (linear_schedule, "7.5 %"),
+        (lambda: cosine_schedule(100), "0.049 %"),
+        (scaled_linear_schedule, "0.45 %"),
+    ],
 )
 def test_schedule_card_tells_the_signal_left(make, percent):
     with warnings.catch_warnings():
@@ -152,32 +175,43 @@ def test_iterated_single_steps_match_the_closed_form():
         x = q_step(x, s, schedule, draw(x, generator))
     at_once = q_sample(x0, 22, schedule, torch.zeros_like(x0))
     torch.testing.assert_close(x.mean(0), at_once[0], atol=0.02, rtol=0)
-    torch.testing.assert_close(x.var(0), (1 - schedule.alpha_bar[22]).float().expand(2), atol=0.02, rtol=0)
+    torch.testing.assert_close(
+        x.var(0), (1 - schedule.alpha_bar[22]).float().expand(2), atol=0.02, rtol=0
+    )
 
 
 def test_q_sample_takes_a_step_for_each_sample():
     schedule, x0, noise = linear_schedule(), torch.randn(2, 5, 7), torch.randn(2, 5, 7)
     both = q_sample(x0, torch.tensor([3, 90]), schedule, noise)
     for i, s in enumerate((3, 90)):
-        torch.testing.assert_close(both[i : i + 1], q_sample(x0[i : i + 1], s, schedule, noise[i : i + 1]))
+        torch.testing.assert_close(
+            both[i : i + 1], q_sample(x0[i : i + 1], s, schedule, noise[i : i + 1])
+        )
 
 
 def test_posterior_is_bayes_rule_on_a_grid():
     """q(x_{s-1} | x_s, x0) from eq. 7 against the product of two densities, normalised by a sum."""
     schedule, s, x0, x_s = linear_schedule(20, 0.01, 0.4), 9, 0.8, -0.3
     grid = torch.linspace(-6, 6, 20_001, dtype=torch.float64)
-    log_p = -((grid - schedule.alpha_bar[s - 1].sqrt() * x0) ** 2) / (2 * (1 - schedule.alpha_bar[s - 1])) - (
-        x_s - schedule.alpha[s].sqrt() * grid
-    ) ** 2 / (2 * schedule.beta[s])
+    log_p = -((grid - schedule.alpha_bar[s - 1].sqrt() * x0) ** 2) / (
+        2 * (1 - schedule.alpha_bar[s - 1])
+    ) - (x_s - schedule.alpha[s].sqrt() * grid) ** 2 / (2 * schedule.beta[s])
     weight = log_p.softmax(0)
     mean = (weight * grid).sum()
-    ours, variance = q_posterior(torch.tensor([[x0]]).double(), torch.tensor([[x_s]]).double(), s, schedule)
+    ours, variance = q_posterior(
+        torch.tensor([[x0]]).double(), torch.tensor([[x_s]]).double(), s, schedule
+    )
     assert ours.item() == pytest.approx(mean.item(), abs=1e-6)
     assert variance.item() == pytest.approx((weight * (grid - mean) ** 2).sum().item(), abs=1e-6)
 
 
 def test_p_mean_with_the_true_noise_is_the_posterior_mean():
-    schedule, x0, eps, s = linear_schedule(), torch.randn(4, 3, 2).double(), torch.randn(4, 3, 2).double(), 37
+    schedule, x0, eps, s = (
+        linear_schedule(),
+        torch.randn(4, 3, 2).double(),
+        torch.randn(4, 3, 2).double(),
+        37,
+    )
     x_s = q_sample(x0, s, schedule, eps)
     torch.testing.assert_close(p_mean(x_s, s, eps, schedule), q_posterior(x0, x_s, s, schedule)[0])
 
@@ -196,7 +230,10 @@ def test_one_reverse_step_by_hand(variance):
     schedule = make_schedule(torch.tensor([0.1, 0.4, 0.75, 0.95], dtype=torch.float64))
     x_2, eps_hat, z = [0.7, -1.2], [0.3, 0.5], [-0.8, 1.5]
     sigma = {"beta": 0.4**0.5, "posterior": (0.4 * 0.1 / 0.46) ** 0.5}[variance]
-    x_1 = [(x - 0.4 / 0.46**0.5 * e) / 0.6**0.5 + sigma * n for x, e, n in zip(x_2, eps_hat, z, strict=True)]
+    x_1 = [
+        (x - 0.4 / 0.46**0.5 * e) / 0.6**0.5 + sigma * n
+        for x, e, n in zip(x_2, eps_hat, z, strict=True)
+    ]
     tensors = [torch.tensor([values], dtype=torch.float64) for values in (x_2, eps_hat, z)]
     ours = p_sample(tensors[0], 2, tensors[1], schedule, tensors[2], variance)
     assert ours[0].tolist() == pytest.approx(x_1, rel=1e-12)
@@ -206,28 +243,38 @@ def test_one_reverse_step_by_hand(variance):
 def test_last_step_adds_no_noise(variance):
     schedule, x, eps = linear_schedule(), torch.randn(2, 5, 7), torch.randn(2, 5, 7)
     loud = torch.full_like(x, 1e6)
-    torch.testing.assert_close(p_sample(x, 1, eps, schedule, loud, variance), p_mean(x, 1, eps, schedule))
+    torch.testing.assert_close(
+        p_sample(x, 1, eps, schedule, loud, variance), p_mean(x, 1, eps, schedule)
+    )
     assert (p_sample(x, 2, eps, schedule, loud, variance) - p_mean(x, 2, eps, schedule)).min() > 1e3
 
 
 def test_sampling_yields_every_step_and_repeats_with_its_seed():
     schedule = linear_schedule(13, 1e-3, 0.6)
-    denoise = exact_denoiser(mixture(torch.ones(1), torch.zeros(1, 3), torch.eye(3)[None]), schedule)
+    denoise = exact_denoiser(
+        mixture(torch.ones(1), torch.zeros(1, 3), torch.eye(3)[None]), schedule
+    )
 
     def walk():
-        return list(sample_steps(denoise, (4, 3), schedule, generator=torch.Generator().manual_seed(5)))
+        return list(
+            sample_steps(denoise, (4, 3), schedule, generator=torch.Generator().manual_seed(5))
+        )
 
     first, second = walk(), walk()
     assert [step.s for step in first] == list(range(13, -1, -1))
     for a, b in zip(first, second, strict=True):
         assert torch.equal(a.x_s, b.x_s)
     assert torch.equal(first[-1].x_s, first[-1].x0_hat)
-    torch.testing.assert_close(first[-1].x_s, first[-2].x0_hat)  # without noise, the last mean is the last guess of x0
+    torch.testing.assert_close(
+        first[-1].x_s, first[-2].x0_hat
+    )  # without noise, the last mean is the last guess of x0
 
 
 def test_clip_bounds_the_guess():
     schedule = linear_schedule()
-    steps = list(sample_steps(lambda x, s: torch.zeros_like(x), 5 * torch.ones(2, 3), schedule, clip=0.5))
+    steps = list(
+        sample_steps(lambda x, s: torch.zeros_like(x), 5 * torch.ones(2, 3), schedule, clip=0.5)
+    )
     assert max(step.x0_hat.abs().max() for step in steps) <= 0.5
 
 
@@ -238,7 +285,9 @@ def test_exact_denoiser_samples_have_the_mixtures_mean_variance_and_weights():
         torch.tensor([[[0.04, 0.02], [0.02, 0.05]], [[0.09, 0.0], [0.0, 0.02]]]),
     )
     schedule, generator = cosine_schedule(200), torch.Generator().manual_seed(2)
-    *_, last = sample_steps(exact_denoiser(truth, schedule), (8000, 2), schedule, generator=generator)
+    *_, last = sample_steps(
+        exact_denoiser(truth, schedule), (8000, 2), schedule, generator=generator
+    )
     x = last.x_s.double()
     torch.testing.assert_close(x.mean(0), truth.mean(), atol=0.04, rtol=0)
     torch.testing.assert_close(x.T.cov(), truth.covariance(), atol=0.05, rtol=0)
@@ -248,7 +297,12 @@ def test_exact_denoiser_samples_have_the_mixtures_mean_variance_and_weights():
 
 
 def test_simple_loss_is_the_mean_square_and_zero_for_the_true_noise():
-    schedule, x0, noise, s = linear_schedule(), torch.randn(2, 5, 7), torch.randn(2, 5, 7), torch.tensor([4, 60])
+    schedule, x0, noise, s = (
+        linear_schedule(),
+        torch.randn(2, 5, 7),
+        torch.randn(2, 5, 7),
+        torch.tensor([4, 60]),
+    )
     assert simple_loss(lambda x, s: noise, x0, s, schedule, noise) == 0
     zero = simple_loss(lambda x, s: torch.zeros_like(x), x0, s, schedule, noise)
     assert zero.item() == pytest.approx((noise**2).mean().item(), rel=1e-6)
@@ -266,7 +320,9 @@ def test_a_tenth_of_the_signal_is_the_limit(left, warns):
 def schedule_table() -> list[tuple[str, str]]:
     """(call, what is left) of each row of the table in NOTATION.md."""
     text = (Path(__file__).parents[1] / "docs" / "NOTATION.md").read_text(encoding="utf-8")
-    rows = re.findall(r"^\| `(\w+_schedule\(.*?\))`.*?\| \d+ \| ([\d.]+ %)(?: \(warns\))? \|$", text, re.MULTILINE)
+    rows = re.findall(
+        r"^\| `(\w+_schedule\(.*?\))`.*?\| \d+ \| ([\d.]+ %)(?: \(warns\))? \|$", text, re.MULTILINE
+    )
     assert len(rows) == 7
     return rows
 
@@ -274,7 +330,11 @@ def schedule_table() -> list[tuple[str, str]]:
 @pytest.mark.filterwarnings("ignore:.*of the signal")
 @pytest.mark.parametrize("call, left", schedule_table())
 def test_the_table_in_the_docs_is_what_the_schedules_leave(call, left):
-    made = {"linear": linear_schedule, "scaled_linear": scaled_linear_schedule, "cosine": cosine_schedule}
+    made = {
+        "linear": linear_schedule,
+        "scaled_linear": scaled_linear_schedule,
+        "cosine": cosine_schedule,
+    }
     name, arguments = call[:-1].split("_schedule(")
     numbers = [float(x) if "e" in x or "." in x else int(x) for x in arguments.split(", ")]
     schedule = (made | {"leap": leap_schedule})[name](*numbers)
@@ -284,6 +344,10 @@ def test_the_table_in_the_docs_is_what_the_schedules_leave(call, left):
 def test_the_dancers_row_of_the_table():
     text = (Path(__file__).parents[1] / "docs" / "NOTATION.md").read_text(encoding="utf-8")
     ((snr, left),) = re.findall(
-        r"^\| `shifted\(cosine_schedule\(1000\), (.*?)\)`.*?\| 1000 \| (.*?) \|$", text, re.MULTILINE
+        r"^\| `shifted\(cosine_schedule\(1000\), (.*?)\)`.*?\| 1000 \| (.*?) \|$",
+        text,
+        re.MULTILINE,
     )
-    assert float(snr) == DANCER.snr and f" {left} of" in schedule_card(shifted(cosine_schedule(1000), DANCER.snr))
+    assert float(snr) == DANCER.snr and f" {left} of" in schedule_card(
+        shifted(cosine_schedule(1000), DANCER.snr)
+    )

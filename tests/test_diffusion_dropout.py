@@ -1,10 +1,18 @@
-"""Diffusion dropout: eq. 12's mean and variance, its rate, who is hit, and the schedule of rates."""
+"""Diffusion dropout: eq. 12's mean and variance, its rate, who is hit, and the schedule of
+rates."""
 
 import pytest
 import torch
 
 from motiondiff_edu.ddpm import linear_schedule
-from motiondiff_edu.diffusion_dropout import P_D, Dropout, diffusion_dropout, dropout_rate, frame_dropout, zeroing
+from motiondiff_edu.diffusion_dropout import (
+    P_D,
+    Dropout,
+    diffusion_dropout,
+    dropout_rate,
+    frame_dropout,
+    zeroing,
+)
 
 SCHEDULE = linear_schedule(100)
 
@@ -16,7 +24,10 @@ def seeded(seed: int = 0) -> torch.Generator:
 def test_rate_zero_is_the_identity_and_rate_one_is_equation_12():
     past, s = torch.full((4000, 5, 3), 2.0), torch.full((4000,), 40)
     assert torch.equal(diffusion_dropout(past, s, SCHEDULE, 0.0, seeded()), past)
-    out, alpha_bar = diffusion_dropout(past, s, SCHEDULE, 1.0, seeded()), SCHEDULE.alpha_bar[40].item()
+    out, alpha_bar = (
+        diffusion_dropout(past, s, SCHEDULE, 1.0, seeded()),
+        SCHEDULE.alpha_bar[40].item(),
+    )
     assert out.mean().item() == pytest.approx(2 * alpha_bar**0.5, abs=0.02)
     assert out.var().item() == pytest.approx(1 - alpha_bar, rel=0.02)
     each = out.flatten(1)
@@ -46,10 +57,14 @@ def test_a_noised_past_has_the_target_s_step_or_one_of_its_own(shared):
 def test_steps_of_its_own_are_drawn_evenly_from_all():
     """The variance of each noised past tells its step; in order, they are the schedule's."""
     past = torch.zeros(4000, 40, 50)
-    out = diffusion_dropout(past, torch.ones(4000, dtype=torch.int64), SCHEDULE, 1.0, seeded(6), shared=False)
+    out = diffusion_dropout(
+        past, torch.ones(4000, dtype=torch.int64), SCHEDULE, 1.0, seeded(6), shared=False
+    )
     found, quantiles = out.flatten(1).var(1), torch.tensor([0.02, 0.25, 0.5, 0.75, 0.98])
     wanted = (1 - SCHEDULE.alpha_bar[1:]).float()
-    torch.testing.assert_close(found.quantile(quantiles), wanted.quantile(quantiles), atol=0.01, rtol=0.08)
+    torch.testing.assert_close(
+        found.quantile(quantiles), wanted.quantile(quantiles), atol=0.01, rtol=0.08
+    )
     assert found.max() > 0.95 * wanted[-1]
 
 
@@ -63,7 +78,9 @@ def test_a_training_s_dropout_goes_by_what_is_done_and_by_its_own_choice_of_step
         out = dropout(past, s, seeded(step))
         touched.append((out != past).flatten(1).any(1).float().mean().item())
     assert touched == [0.0] * 4 + [1.0] * 4
-    spread = out.flatten(1).var(1).std().item()  # of noise levels, not of noise: one level for all, or many
+    spread = (
+        out.flatten(1).var(1).std().item()
+    )  # of noise levels, not of noise: one level for all, or many
     assert spread < 0.01 if shared else spread > 0.1
 
 
@@ -74,7 +91,9 @@ def test_rivals_set_frames_or_whole_pasts_to_zero():
     assert frames.float().mean().item() == pytest.approx(0.3, abs=0.02)
     assert 0 < frames[:, :, 0].float().mean(1).std().item()  # some frames of a past, not all
     whole = (zeroing(past, 0.3, seeded(5)) == 0).flatten(1)
-    assert torch.equal(whole.any(1), whole.all(1)) and whole.float().mean().item() == pytest.approx(0.3, abs=0.03)
+    assert torch.equal(whole.any(1), whole.all(1)) and whole.float().mean().item() == pytest.approx(
+        0.3, abs=0.03
+    )
 
 
 def test_the_paper_s_schedule_of_a_thousand_epochs():
@@ -89,7 +108,10 @@ def test_the_paper_s_schedule_of_a_thousand_epochs():
 def test_other_schedules():
     high = dropout_rate((0.25,), calm=0.0)
     assert high(0.0) == high(1.0) == 0.25
-    assert dropout_rate((0.1, 0.2), calm=0.2)(0.19) == 0.0 and dropout_rate((0.1, 0.2), calm=0.2)(0.21) == 0.1
+    assert (
+        dropout_rate((0.1, 0.2), calm=0.2)(0.19) == 0.0
+        and dropout_rate((0.1, 0.2), calm=0.2)(0.21) == 0.1
+    )
 
 
 def test_wrong_inputs():
@@ -118,6 +140,8 @@ def test_wrong_inputs():
 )
 @pytest.mark.parametrize("shared", [True, False])
 def test_a_past_or_a_step_that_does_not_fit_is_named(past, s, told, shared):
-    unchecked = getattr(diffusion_dropout, "__wrapped__", diffusion_dropout)  # as in a notebook: no shape is checked
+    unchecked = getattr(
+        diffusion_dropout, "__wrapped__", diffusion_dropout
+    )  # as in a notebook: no shape is checked
     with pytest.raises(ValueError, match=told):
         unchecked(torch.zeros(past), torch.tensor(s), SCHEDULE, 1.0, seeded(), shared=shared)

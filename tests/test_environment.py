@@ -13,7 +13,10 @@ PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["
 
 
 def pins() -> dict[str, str]:
-    lines = [line.split("#")[0].strip() for line in (ROOT / "constraints.txt").read_text(encoding="utf-8").splitlines()]
+    lines = [
+        line.split("#")[0].strip()
+        for line in (ROOT / "constraints.txt").read_text(encoding="utf-8").splitlines()
+    ]
     return dict(line.lower().split("==") for line in lines if line)
 
 
@@ -28,11 +31,15 @@ def test_environment_installs_the_package_and_has_no_second_list():
 
 
 def test_every_requirement_is_pinned_within_its_bound():
-    lines = PROJECT["dependencies"] + [line for lines in PROJECT["optional-dependencies"].values() for line in lines]
+    lines = PROJECT["dependencies"] + [
+        line for lines in PROJECT["optional-dependencies"].values() for line in lines
+    ]
     for line in lines:
         name, bound = re.fullmatch(r"([\w-]+)>=([\d.]+)", line).groups()
         pinned = pins()[name.lower()]
-        assert [int(n) for n in pinned.split(".")[:3]] >= [int(n) for n in bound.split(".")], f"{line}, pinned {pinned}"
+        assert [int(n) for n in pinned.split(".")[:3]] >= [int(n) for n in bound.split(".")], (
+            f"{line}, pinned {pinned}"
+        )
 
 
 def test_torch_is_pinned_exactly():

@@ -1,4 +1,5 @@
-"""docs/EQUATIONS.md is true: each numbered item of both papers once; functions, notebooks, tests exist; both ways."""
+"""docs/EQUATIONS.md is true: each numbered item of both papers once; functions, notebooks, tests
+exist; both ways."""
 
 import ast
 import importlib
@@ -13,9 +14,19 @@ import motiondiff_edu
 
 ROOT = Path(__file__).parent.parent
 PAGE = (ROOT / "docs" / "EQUATIONS.md").read_text(encoding="utf-8")
-NUMBERED = [*(f"eq. {n}" for n in range(1, 13)), "Alg. 1", "Alg. 2", *(f"Fig. {n}" for n in range(1, 7))]
+NUMBERED = [
+    *(f"eq. {n}" for n in range(1, 13)),
+    "Alg. 1",
+    "Alg. 2",
+    *(f"Fig. {n}" for n in range(1, 7)),
+]
 NUMBERED += ["Table I", "Table II"]
-NUMBERED_MOFUSION = [*(f"eq. {n}" for n in range(1, 11)), *(f"Fig. {n}" for n in range(1, 7)), "Table 1", "Table 2"]
+NUMBERED_MOFUSION = [
+    *(f"eq. {n}" for n in range(1, 11)),
+    *(f"Fig. {n}" for n in range(1, 7)),
+    "Table 1",
+    "Table 2",
+]
 KINDS = {"eq": "eq. {}", "Alg": "Alg. {}", "Fig": "Fig. {}"}
 
 
@@ -36,13 +47,16 @@ def ticked(cell: str) -> list[str]:
 
 
 def items(docstring: str, paper: str) -> set[str]:
-    """What the `Source:` of a docstring names: `Source: MoDiff eq. 1-2, Alg. 1` -> eq. 1, eq. 2, Alg. 1."""
+    """What the `Source:` of a docstring names: `Source: MoDiff eq. 1-2, Alg. 1` -> eq. 1, eq. 2,
+    Alg. 1."""
     found = set()
     for source in re.findall(r"Source:(.*?)(?=Notebooks?:|\n\s*\n|\Z)", docstring or "", re.S):
         for part in re.findall(rf"{paper}(.*?)(?=MoDiff|MoFusion|\Z)", source, re.S):
             for kind, numbers in re.findall(r"\b(eq|Alg|Fig)\.\s*([\d, and-]+)", part):
                 for first, last in re.findall(r"(\d+)(?:-(\d+))?", numbers):
-                    found |= {KINDS[kind].format(n) for n in range(int(first), int(last or first) + 1)}
+                    found |= {
+                        KINDS[kind].format(n) for n in range(int(first), int(last or first) + 1)
+                    }
             for numbers in re.findall(r"\bTables?\s+((?:[IV]+|\d+)(?: and (?:[IV]+|\d+))*)", part):
                 found |= {f"Table {n}" for n in numbers.split(" and ")}
     return found
@@ -50,7 +64,11 @@ def items(docstring: str, paper: str) -> set[str]:
 
 def spoken(text: str) -> set[str]:
     """The items that prose names: `equations 3, 9 and 11`, `Algorithm 2`."""
-    short = {r"\b[Ee]q(?:uation)?s?\.? +(?=\d)": "eq. ", r"\bAlgorithms? +": "Alg. ", r"\bFigures? +": "Fig. "}
+    short = {
+        r"\b[Ee]q(?:uation)?s?\.? +(?=\d)": "eq. ",
+        r"\bAlgorithms? +": "Alg. ",
+        r"\bFigures? +": "Fig. ",
+    }
     for long, brief in short.items():
         text = re.sub(long, brief, text)
     return items(f"Source: MoDiff {text}", "MoDiff") | items(f"Source: MoFusion {text}", "MoFusion")
@@ -84,7 +102,9 @@ def test_functions_exist_and_carry_the_item(row):
     assert ticked(functions)
     for name in ticked(functions):
         function = resolve(name)
-        told = items(inspect.getdoc(function), paper) | items(inspect.getmodule(function).__doc__, paper)
+        told = items(inspect.getdoc(function), paper) | items(
+            inspect.getmodule(function).__doc__, paper
+        )
         assert item in told, f"the docstring of {name} does not say `Source: {paper} {item}`"
 
 
@@ -110,7 +130,8 @@ def test_tests_exist(row):
 
 
 def documented() -> list[tuple[str, str]]:
-    """Public functions and classes of the library: (dotted name below the package, its own docstring)."""
+    """Public functions and classes of the library: (dotted name below the package, its own
+    docstring)."""
     found = []
     for module in pkgutil.walk_packages(motiondiff_edu.__path__):
         path = Path(module.module_finder.path) / f"{module.name}.py"
@@ -119,12 +140,19 @@ def documented() -> list[tuple[str, str]]:
             continue
         for node in ast.parse(path.read_text(encoding="utf-8")).body:
             if isinstance(node, ast.FunctionDef | ast.ClassDef) and not node.name.startswith("_"):
-                found.append((".".join([*inside, module.name, node.name]), ast.get_docstring(node) or ""))
+                found.append(
+                    (".".join([*inside, module.name, node.name]), ast.get_docstring(node) or "")
+                )
     return found
 
 
 @pytest.mark.parametrize("paper, table", PAPERS.items())
 def test_no_source_line_is_missing_from_the_page(paper, table):
     listed = {(name, row[0]) for row in table for name in ticked(row[2])}
-    kept = [(name, item) for name, text in documented() for item in items(text, paper) if item[:2] in ("eq", "Al")]
+    kept = [
+        (name, item)
+        for name, text in documented()
+        for item in items(text, paper)
+        if item[:2] in ("eq", "Al")
+    ]
     assert kept and [f"{name}: {item}" for name, item in kept if (name, item) not in listed] == []

@@ -31,7 +31,9 @@ def test_density_of_x_s_is_the_blurred_density_of_x0(s):
     a, rest = SCHEDULE.alpha_bar[s] ** 0.5, 1 - SCHEDULE.alpha_bar[s]
     p0 = log_density(truth, GRID).exp()
     integral = (normal(x_s, a * GRID[:, 0], rest) * p0).sum(1) * (GRID[1, 0] - GRID[0, 0])
-    torch.testing.assert_close(log_density(noised(truth, s, SCHEDULE), x_s), integral.log(), atol=1e-5, rtol=1e-5)
+    torch.testing.assert_close(
+        log_density(noised(truth, s, SCHEDULE), x_s), integral.log(), atol=1e-5, rtol=1e-5
+    )
 
 
 @pytest.mark.parametrize("s", [2, 20, 60, 100])
@@ -68,9 +70,13 @@ def test_denoiser_beats_every_other_guess():
     truth, s, generator = two_hills(), 40, torch.Generator().manual_seed(4)
     x0 = sample_mixture(truth, 40_000, generator)
     eps = torch.randn(x0.shape, generator=generator, dtype=torch.float64)
-    guess = exact_denoiser(truth, SCHEDULE)(q_sample(x0, s, SCHEDULE, eps), torch.full((len(x0),), s))
+    guess = exact_denoiser(truth, SCHEDULE)(
+        q_sample(x0, s, SCHEDULE, eps), torch.full((len(x0),), s)
+    )
     best = (guess - eps).square().mean()
-    assert best < (0.95 * guess - eps).square().mean() and best < (guess + 0.05 - eps).square().mean()
+    assert (
+        best < (0.95 * guess - eps).square().mean() and best < (guess + 0.05 - eps).square().mean()
+    )
     assert best < 1
 
 
@@ -95,7 +101,9 @@ def test_dataset_denoiser_counts_by_hand():
 def test_dataset_denoiser_gives_back_its_data():
     generator, schedule = torch.Generator().manual_seed(6), cosine_schedule(60)
     data = torch.randn(7, 5, 3, generator=generator)
-    *_, last = sample_steps(dataset_denoiser(data, schedule), (40, 5, 3), schedule, generator=generator)
+    *_, last = sample_steps(
+        dataset_denoiser(data, schedule), (40, 5, 3), schedule, generator=generator
+    )
     distance = torch.cdist(last.x_s.flatten(1).double(), data.flatten(1).double()).min(1)
     assert distance.values.max() < 1e-3 and len(distance.indices.unique()) > 3
 
@@ -104,12 +112,16 @@ def test_dataset_denoiser_equals_a_mixture_without_width():
     data = torch.randn(7, 3, dtype=torch.float64)
     points = mixture(torch.ones(7), data, torch.zeros(7, 3, 3))
     x, s = torch.randn(4, 3, dtype=torch.float64), torch.tensor([1, 20, 60, 100])
-    torch.testing.assert_close(dataset_denoiser(data, SCHEDULE)(x, s), exact_denoiser(points, SCHEDULE)(x, s))
+    torch.testing.assert_close(
+        dataset_denoiser(data, SCHEDULE)(x, s), exact_denoiser(points, SCHEDULE)(x, s)
+    )
 
 
 def test_a_standard_gaussian_stays_itself():
     for s in (1, 50, 100):
-        torch.testing.assert_close(noised(gaussian(), s, SCHEDULE).variances, torch.ones(1, 1, dtype=torch.float64))
+        torch.testing.assert_close(
+            noised(gaussian(), s, SCHEDULE).variances, torch.ones(1, 1, dtype=torch.float64)
+        )
 
 
 def test_what_is_no_mixture_is_refused():

@@ -9,8 +9,24 @@ import pytest
 ROOT = Path(__file__).parent.parent
 LONGEST = 250
 
-LIBRARY = sorted(path for folder in ("motiondiff_edu", "data_synth") for path in (ROOT / folder).rglob("*.py"))
-TEXT = {".py", ".md", ".toml", ".yml", ".yaml", ".ipynb", ".js", ".json", ".txt", ".cff", ".cfg", ".in", ""}
+LIBRARY = sorted(
+    path for folder in ("motiondiff_edu", "data_synth") for path in (ROOT / folder).rglob("*.py")
+)
+TEXT = {
+    ".py",
+    ".md",
+    ".toml",
+    ".yml",
+    ".yaml",
+    ".ipynb",
+    ".js",
+    ".json",
+    ".txt",
+    ".cff",
+    ".cfg",
+    ".in",
+    "",
+}
 
 FORBIDDEN = {
     "an absolute path of one machine": r"(?<![\w.~:/])/(home|root|Users|tmp|mnt|opt|srv|work)/\w",
@@ -24,7 +40,9 @@ def tracked() -> list[Path]:
     """The text files of the project: those that git tracks, or in an unpacked archive all."""
     answer = subprocess.run(["git", "ls-files"], cwd=ROOT, capture_output=True, text=True)
     names = answer.stdout.splitlines() if answer.returncode == 0 else []
-    paths = [ROOT / name for name in names] or [path for path in ROOT.rglob("*") if ".venv" not in path.parts]
+    paths = [ROOT / name for name in names] or [
+        path for path in ROOT.rglob("*") if ".venv" not in path.parts
+    ]
     return [path for path in paths if path.is_file() and path.suffix in TEXT]
 
 
@@ -47,20 +65,31 @@ def test_nothing_is_tied_to_one_machine_or_left_loose(what):
 
 
 def test_shipped_weights_stay_small():
-    sizes = {path.name: path.stat().st_size for path in (ROOT / "motiondiff_edu/pretrained").glob("*.safetensors")}
+    sizes = {
+        path.name: path.stat().st_size
+        for path in (ROOT / "motiondiff_edu/pretrained").glob("*.safetensors")
+    }
     walkers = sum(size for name, size in sizes.items() if name.startswith("walker"))
     assert walkers <= 8e6 and sum(sizes.values()) <= 25e6, sizes
 
 
 def test_every_weights_file_has_its_card():
     folder = ROOT / "motiondiff_edu" / "pretrained"
-    assert [path.name for path in folder.glob("*.safetensors") if not path.with_suffix(".json").is_file()] == []
+    assert [
+        path.name
+        for path in folder.glob("*.safetensors")
+        if not path.with_suffix(".json").is_file()
+    ] == []
 
 
 def test_no_pickle():
-    """Weights and data come without code in them; AIST++'s pickles are read by an unpickler that knows only arrays."""
+    """Weights and data come without code in them; AIST++'s pickles are read by an unpickler that
+    knows only arrays."""
     pattern = re.compile(r"import pickle|pickle\.|\btorch\.(save|load)\(|allow_pickle\s*=\s*True")
     found = [path.name for path in LIBRARY if pattern.search(path.read_text(encoding="utf-8"))]
     assert found == ["aist.py"]
     (reader,) = (path.read_text(encoding="utf-8") for path in LIBRARY if path.name == "aist.py")
-    assert not re.search(r"pickle\.loads?\(|allow_pickle\s*=\s*True", reader) and "find_class" in reader
+    assert (
+        not re.search(r"pickle\.loads?\(|allow_pickle\s*=\s*True", reader)
+        and "find_class" in reader
+    )

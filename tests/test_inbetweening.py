@@ -1,4 +1,5 @@
-"""Masked sampling: what is given comes back, what is not follows the true conditional once it is resampled."""
+"""Masked sampling: what is given comes back, what is not follows the true conditional once it is
+resampled."""
 
 from functools import partial
 
@@ -6,24 +7,30 @@ import jaxtyping
 import numpy as np
 import pytest
 import torch
+from small_dancers import dancer_of_bands as dancer
 
 from data_synth.mixtures import crossed_bars
 from data_synth.walking import random_control, walk
-from motiondiff_edu import checkpoints
-from motiondiff_edu.between import PAPER, fading, inbetween, seen_from
-from motiondiff_edu.blending import blended
-from motiondiff_edu.dancer import Dancer
+from motiondiff_edu.beyond.guidance import blended
 from motiondiff_edu.ddpm import cosine_schedule
+from motiondiff_edu.editing.inbetween import PAPER, fading, inbetween, seen_from
+from motiondiff_edu.editing.masks import (
+    PARTS,
+    body_part,
+    gap,
+    keyframes,
+    known_columns,
+    known_frames,
+    seed,
+)
 from motiondiff_edu.exact import conditional, exact_denoiser, log_density, mixture, sample_mixture
 from motiondiff_edu.fast.samplers import ddim_steps
 from motiondiff_edu.inbetweening import guided, inpaint_steps
-from motiondiff_edu.known import PARTS, body_part, gap, keyframes, known_columns, known_frames, seed
 from motiondiff_edu.metrics.bone_lengths import bone_lengths
 from motiondiff_edu.metrics.keyframes import seam_jump
-from motiondiff_edu.mofusion import MoFusion, MoFusionConfig
 from motiondiff_edu.motion.dance_frame import Place, facing, to_positions
 from motiondiff_edu.motion.root_frame import to_world
-from motiondiff_edu.motion.scaler import Scaler
+from motiondiff_edu.pretrained import checkpoints
 
 SCHEDULE = cosine_schedule(100)
 
@@ -38,7 +45,8 @@ def last(loop):
 
 
 def correlated(rho: float = 0.9):
-    """One Gaussian in the plane whose coordinates agree: the second is rho times the first, and some noise."""
+    """One Gaussian in the plane whose coordinates agree: the second is rho times the first, and
+    some noise."""
     covariance = torch.tensor([[[1.0, rho], [rho, 1.0]]], dtype=torch.float64)
     return mixture(torch.ones(1), torch.tensor([[0.3, -0.2]]), covariance)
 
@@ -95,18 +103,26 @@ def test_nothing_known_is_plain_sampling_and_all_known_is_the_input():
     truth, start = crossed_bars(), torch.randn(50, 2, generator=seeded(3))
     denoise, nothing = exact_denoiser(truth, SCHEDULE), torch.zeros(50, 2, dtype=torch.bool)
     for eta in (0.0, 1.0):
-        ours = last(inpaint_steps(denoise, start, SCHEDULE, start, nothing, eta=eta, resample=3, generator=seeded(4)))
+        ours = last(
+            inpaint_steps(
+                denoise, start, SCHEDULE, start, nothing, eta=eta, resample=3, generator=seeded(4)
+            )
+        )
         plain = last(ddim_steps(denoise, start, SCHEDULE, 50, eta, generator=seeded(4)))
         torch.testing.assert_close(ours, plain, atol=1e-5, rtol=1e-5)
     given = sample_mixture(truth, 50, seeded(5)).float()
-    assert torch.equal(last(inpaint_steps(denoise, start, SCHEDULE, given, ~nothing, generator=seeded(6))), given)
+    assert torch.equal(
+        last(inpaint_steps(denoise, start, SCHEDULE, given, ~nothing, generator=seeded(6))), given
+    )
 
 
 def test_the_known_part_is_a_snapshot_noised_for_the_step():
     given, known = given_first(2.0, 3000)
     denoise = exact_denoiser(correlated(), SCHEDULE)
     start = torch.randn(3000, 2, generator=seeded(7))
-    for step in inpaint_steps(denoise, start, SCHEDULE, given, known, steps=10, generator=seeded(8)):
+    for step in inpaint_steps(
+        denoise, start, SCHEDULE, given, known, steps=10, generator=seeded(8)
+    ):
         alpha_bar = SCHEDULE.alpha_bar[step.s].item()
         assert step.x_s[:, 0].mean().item() == pytest.approx(2 * alpha_bar**0.5, abs=0.08)
         assert step.x_s[:, 0].std().item() == pytest.approx((1 - alpha_bar) ** 0.5, abs=0.05)
@@ -116,18 +132,6 @@ def test_wrong_inputs():
     with pytest.raises(ValueError, match="once at least"):
         start = torch.zeros(1, 2)
         next(inpaint_steps(lambda x, s: x, start, SCHEDULE, start, start > 0, resample=0))
-
-
-HEARS = MoFusionConfig(C=5, S=30, widths=(16, 24), heads=2, music_layers=1, target="x0", skip=False)
-
-
-def dancer(C: int = 0) -> Dancer:
-    torch.manual_seed(0)
-    model = MoFusion(MoFusionConfig(**{**HEARS.as_dict(), "C": C})).eval().requires_grad_(False)
-    for weight in model.parameters():
-        weight.add_(0.1 * torch.randn(weight.shape))
-    scalers = Scaler(torch.zeros(63), torch.full((63,), 0.2)), Scaler.nothing(C)
-    return Dancer(model, cosine_schedule(30), *scalers)
 
 
 def clip(T: int = 40) -> np.ndarray:
@@ -142,11 +146,15 @@ def clip(T: int = 40) -> np.ndarray:
 def test_known_entries_come_back_bit_by_bit_and_the_rest_is_made(known, C):
     truth, mel = clip(), torch.randn(64, 5, generator=seeded(9)) if C else None
     holes = np.where(known[..., None], truth, np.nan)
-    made = inbetween(dancer(C), holes, known, mel, samples=3, steps=5, resample=2, generator=seeded(1))
+    made = inbetween(
+        dancer(C), holes, known, mel, samples=3, steps=5, resample=2, generator=seeded(1)
+    )
     assert made.shape == (3, 40, 21, 3) and np.isfinite(made).all()
     assert all(np.array_equal(one[known], truth[known]) for one in made)
     assert not np.allclose(made[0][~known], made[1][~known])
-    again = inbetween(dancer(C), holes, known, mel, samples=3, steps=5, resample=2, generator=seeded(1))
+    again = inbetween(
+        dancer(C), holes, known, mel, samples=3, steps=5, resample=2, generator=seeded(1)
+    )
     assert np.array_equal(made, again)
 
 
@@ -154,7 +162,9 @@ def test_all_known_is_the_input_and_nothing_known_is_a_plain_sample():
     truth, one = clip(), dancer()
     everything = np.ones((40, 21), bool)
     assert np.array_equal(inbetween(one, truth, everything, steps=5, generator=seeded())[0], truth)
-    made = inbetween(one, np.full_like(truth, np.nan), ~everything, samples=2, steps=5, generator=seeded(2))
+    made = inbetween(
+        one, np.full_like(truth, np.nan), ~everything, samples=2, steps=5, generator=seeded(2)
+    )
     draw = seeded(2)
     plain = last(ddim_steps(one.denoiser(None, 40), torch.randn(2, 40, 63, generator=draw), one.schedule, 5, 1.0,
                             generator=draw))  # fmt: skip
@@ -163,15 +173,19 @@ def test_all_known_is_the_input_and_nothing_known_is_a_plain_sample():
 
 @pytest.mark.parametrize("known", [seed(40, 10), *(body_part(40, part) for part in PARTS)])
 def test_where_the_motion_stands_and_faces_does_not_matter(known):
-    """The same motion elsewhere: what is made is the same, elsewhere; whatever part of the body is given."""
+    """The same motion elsewhere: what is made is the same, elsewhere; whatever part of the body is
+    given."""
     truth, one = walk(np.tile([1.2, 0.1, 0.3], (40, 1)), 0).world(), dancer()
     place = Place(np.array([1.0, 0.0, -5.0]), np.array(2.1))
-    here, there = (inbetween(one, x, known, steps=5, generator=seeded(3)) for x in (truth, place.leave(truth)))
+    here, there = (
+        inbetween(one, x, known, steps=5, generator=seeded(3)) for x in (truth, place.leave(truth))
+    )
     np.testing.assert_allclose(place.enter(there), here, atol=1e-4)
 
 
 def test_a_trajectory_is_walked_forward():
-    """Nothing tells where the figure faces but its path: it is seen from where it begins, along the path."""
+    """Nothing tells where the figure faces but its path: it is seen from where it begins, along the
+    path."""
     path = np.full((40, 21, 3), np.nan)
     path[:, 0] = np.array([7.0, 0.9, 1.0]) + np.linspace(0, 3, 40)[:, None] * [1.0, 0.0, 0.0]
     place = seen_from(path, body_part(40, "trajectory"))
@@ -190,8 +204,16 @@ def test_what_sets_it_apart_from_the_papers_masking():
     usual, plain, torn = made(), made(**PAPER), made(bones=False, feet=False)
     assert seam_jump(usual, known).mean() < 0.5 * seam_jump(plain, known).mean()
     lengths = bone_lengths(truth)[0]
-    assert np.abs(bone_lengths(usual) - lengths).max() < 2e-3 < 5e-3 < np.abs(bone_lengths(torn) - lengths).max()
-    changed = [made(**{name: value}) for name, value in (("guidance", 0.0), ("feet", False), ("resample", 2))]
+    assert (
+        np.abs(bone_lengths(usual) - lengths).max()
+        < 2e-3
+        < 5e-3
+        < np.abs(bone_lengths(torn) - lengths).max()
+    )
+    changed = [
+        made(**{name: value})
+        for name, value in (("guidance", 0.0), ("feet", False), ("resample", 2))
+    ]
     assert all(np.abs(x - usual).max() > 1e-3 for x in (*changed, made(blend=None)))
     ends = [inbetween(one, truth, seed(40, 10), steps=5, blend=frames) for frames in (2, 10)]
     assert np.abs(ends[0] - ends[1])[:, 10:20].max() > 1e-3
@@ -207,11 +229,16 @@ def test_what_sets_it_apart_from_the_papers_masking():
         (lambda x, k: (x, k[:-1]), r"\(40, 21, 3\) and \(39, 21\) of bool"),
         (lambda x, k: (x.reshape(40, 63), k), r"positions \(T, 21, 3\)"),
         (lambda x, k: (x, k.astype(int)), "of int64"),
-        (lambda x, k: (np.where(np.arange(21)[:, None] == 4, np.nan, x), k), "LeftToeBase in frame 0 is given"),
+        (
+            lambda x, k: (np.where(np.arange(21)[:, None] == 4, np.nan, x), k),
+            "LeftToeBase in frame 0 is given",
+        ),
     ],
 )
 def test_what_cannot_be_given_is_said(spoil, message, monkeypatch):
-    monkeypatch.setattr(jaxtyping.config, "jaxtyping_disable", True)  # as in a notebook, where no shape is checked
+    monkeypatch.setattr(
+        jaxtyping.config, "jaxtyping_disable", True
+    )  # as in a notebook, where no shape is checked
     with pytest.raises(ValueError, match=message):
         inbetween(dancer(), *spoil(clip(), seed(40, 10)), steps=5)
 
@@ -233,7 +260,8 @@ def test_blending_carries_the_correction_and_fades():
 
 
 def test_blending_at_every_step_leaves_no_jump_where_masking_does():
-    """A denoiser that knows nothing of the given (its guess is 1 everywhere): masking pops, blending does not."""
+    """A denoiser that knows nothing of the given (its guess is 1 everywhere): masking pops,
+    blending does not."""
     given = torch.linspace(3, 5, 30).view(1, 30, 1)
     known = torch.ones(1, 30, 1, dtype=torch.bool)
     known[:, 10:20] = False
@@ -244,28 +272,40 @@ def test_blending_at_every_step_leaves_no_jump_where_masking_does():
 
     options = {"steps": 10, "generator": seeded()}
     plain, blent = (
-        last(inpaint_steps(denoise, torch.randn(1, 30, 1), SCHEDULE, given, known, blend=blend, **options))
+        last(
+            inpaint_steps(
+                denoise, torch.randn(1, 30, 1), SCHEDULE, given, known, blend=blend, **options
+            )
+        )
         for blend in (None, partial(blended, fade=3))
     )
     assert plain.diff(dim=1).abs().max() > 2 and blent.diff(dim=1).abs().max() < 0.2
 
 
 def test_guidance_moves_what_goes_with_the_given():
-    """With the exact denoiser of two numbers that agree, the unknown one comes nearer to where the known one says."""
+    """With the exact denoiser of two numbers that agree, the unknown one comes nearer to where the
+    known one says."""
     truth, n = correlated(0.9), 2000
     given, known = given_first(1.8, n)
     wanted = conditional(truth, given[0].nan_to_num(), known[0]).mean().item()
     start, denoise = torch.randn(n, 2, generator=seeded(1)), exact_denoiser(truth, SCHEDULE)
     off = {}
     for guidance in (0.0, 1.0):
-        loop = inpaint_steps(denoise, start, SCHEDULE, given, known, guidance=guidance, generator=seeded(2))
+        loop = inpaint_steps(
+            denoise, start, SCHEDULE, given, known, guidance=guidance, generator=seeded(2)
+        )
         off[guidance] = abs(last(loop)[:, 1].mean().item() - wanted)
     assert off[1.0] < 0.5 * off[0.0], off
 
 
 def test_one_guided_guess_by_hand():
-    """J is known for a linear denoiser: x0_hat = M x, so the pull is M^T r, as long as leaves least wrong."""
-    M, x, known = torch.tensor([[0.5, 0.3], [0.3, 0.5]]), torch.tensor([[1.0, 2.0]]), torch.tensor([[True, False]])
+    """J is known for a linear denoiser: x0_hat = M x, so the pull is M^T r, as long as leaves least
+    wrong."""
+    M, x, known = (
+        torch.tensor([[0.5, 0.3], [0.3, 0.5]]),
+        torch.tensor([[1.0, 2.0]]),
+        torch.tensor([[True, False]]),
+    )
     alpha_bar = SCHEDULE.alpha_bar[40].item()
 
     def denoise(x, s):
@@ -281,13 +321,21 @@ def test_one_guided_guess_by_hand():
 def test_guidance_through_a_fast_twin_is_refused():
     who, mel = dancer(5), torch.randn(1, 64, 5, generator=seeded(9))
     start = torch.zeros(1, 40, 63)
-    loop = inpaint_steps(who.denoiser(mel, 40), start, who.schedule, start, start == 0, steps=2, guidance=1.0)
+    loop = inpaint_steps(
+        who.denoiser(mel, 40), start, who.schedule, start, start == 0, steps=2, guidance=1.0
+    )
     with pytest.raises(ValueError, match="fast twin"):
         next(loop)
 
 
 def test_masks():
-    assert seed(200).sum() == 40 * 21 and keyframes(100, 30).any(-1).nonzero()[0].tolist() == [0, 30, 60, 90, 99]
+    assert seed(200).sum() == 40 * 21 and keyframes(100, 30).any(-1).nonzero()[0].tolist() == [
+        0,
+        30,
+        60,
+        90,
+        99,
+    ]
     assert (~gap(100, 20, 15).any(-1)).nonzero()[0].tolist() == list(range(20, 35))
     both = body_part(5, "upper body").sum() + body_part(5, "lower body").sum()
     assert both == 5 * (21 + 1) and body_part(5, "trajectory").sum() == 5  # the pelvis is in each

@@ -1,4 +1,5 @@
-"""Kinematic losses: by hand, on the truth, under what must not matter, and the identity behind their weight."""
+"""Kinematic losses: by hand, on the truth, under what must not matter, and the identity behind
+their weight."""
 
 import pytest
 import torch
@@ -54,7 +55,10 @@ def test_nothing_is_wrong_with_the_truth():
 
 
 def test_moving_and_turning_the_figure_changes_nothing_and_shaking_it_does():
-    truth, turn = walk(1), torch.tensor([[0.6, 0.0, 0.8], [0.0, 1.0, 0.0], [-0.8, 0.0, 0.6]], dtype=torch.float64)
+    truth, turn = (
+        walk(1),
+        torch.tensor([[0.6, 0.0, 0.8], [0.0, 1.0, 0.0], [-0.8, 0.0, 0.6]], dtype=torch.float64),
+    )
     rough = truth + 0.02 * torch.randn(truth.shape, generator=torch.Generator().manual_seed(0))
     moved = rough @ turn.T + torch.tensor([5.0, 1.0, -3.0])
     for loss in (skeleton_loss, lambda x: asymmetry_loss(x, ((0, 4), (1, 5)))):
@@ -103,11 +107,14 @@ def test_gradients_are_finite_even_where_a_bone_has_no_length():
 def test_gradient_of_the_skeleton_loss_pulls_a_long_frame_back():
     positions = chain([[1.0, 1.0], [1.0, 1.0], [1.5, 1.0]]).requires_grad_()
     skeleton_loss(bone_lengths(positions, CHAIN)).sum().backward()
-    assert positions.grad[0, 2, 1, 0] > 0 > positions.grad[0, 0, 1, 0]  # against the gradient: shorter, and longer
+    assert (
+        positions.grad[0, 2, 1, 0] > 0 > positions.grad[0, 0, 1, 0]
+    )  # against the gradient: shorter, and longer
 
 
 def test_the_identity_behind_the_papers_weight():
-    """alpha_bar |x0_hat - x0|^2 = (1 - alpha_bar) |eps_hat - eps|^2: with L_m the weight asks most at high noise."""
+    """alpha_bar |x0_hat - x0|^2 = (1 - alpha_bar) |eps_hat - eps|^2: with L_m the weight asks most
+    at high noise."""
     schedule, draw = cosine_schedule(1000), torch.Generator().manual_seed(0)
     x0, eps, wrong = (torch.randn(3, 8, 5, generator=draw, dtype=torch.float64) for _ in range(3))
     for s in (1, 250, 500, 900, 990):
@@ -117,7 +124,9 @@ def test_the_identity_behind_the_papers_weight():
         x0_hat = x0_from_eps(x_s, at, eps_hat, schedule)
         share = schedule.alpha_bar[s]
         left = share * motion_loss(x0_hat, x0)
-        torch.testing.assert_close(left, (1 - share) * motion_loss(eps_hat, eps), rtol=1e-6, atol=1e-12)
+        torch.testing.assert_close(
+            left, (1 - share) * motion_loss(eps_hat, eps), rtol=1e-6, atol=1e-12
+        )
 
 
 def test_weights_over_time():
@@ -125,7 +134,9 @@ def test_weights_over_time():
     assert torch.equal(over_time(schedule, "alpha_bar"), schedule.alpha_bar)
     assert (over_time(schedule, "none") == 0).all() and (over_time(schedule, "constant") == 1).all()
     snr = over_time(schedule, "snr")
-    assert snr[0] == 5 and snr[25] == pytest.approx(float(schedule.alpha_bar[25] / (1 - schedule.alpha_bar[25])))
+    assert snr[0] == 5 and snr[25] == pytest.approx(
+        float(schedule.alpha_bar[25] / (1 - schedule.alpha_bar[25]))
+    )
     assert all((table(schedule.alpha_bar).diff() <= 0).all() for table in OVER_TIME.values())
     with pytest.raises(ValueError, match="alpha_bar"):
         over_time(schedule, "linear")

@@ -1,4 +1,5 @@
-"""Who imports whom: core (torch) -> the rest -> viz (matplotlib) -> widgets (ipywidgets). Nothing imports upwards."""
+"""Who imports whom: core (torch) -> the rest -> viz (matplotlib) -> widgets (ipywidgets). Nothing
+imports upwards."""
 
 import ast
 import sys
@@ -16,7 +17,8 @@ CORE = {
 }  # fmt: skip
 CORE_LINES, CORE_FILES = 1800, 12
 LAYER = {"core": 0, "rest": 1, "viz": 2, "widgets": 3}
-# the commands open notebooks and look at the machine; they may reach everywhere, from within functions
+# the commands open notebooks and look at the machine; they may reach everywhere, from within
+# functions
 COMMANDS = {"__main__", "doctor"}
 
 FILES = sorted(path for path in PACKAGE.rglob("*.py"))
@@ -54,14 +56,23 @@ def third_party(path: Path) -> set[str]:
 
 
 def own(path: Path) -> set[str]:
-    """The modules of motiondiff_edu that a file imports, dotted below the package, names resolved to their file."""
-    names = {name.removeprefix("motiondiff_edu.") for name in imports(path) if name.startswith("motiondiff_edu.")}
+    """The modules of motiondiff_edu that a file imports, dotted below the package, names resolved
+    to their file."""
+    names = {
+        name.removeprefix("motiondiff_edu.")
+        for name in imports(path)
+        if name.startswith("motiondiff_edu.")
+    }
     modules = {module_of(file) for file in FILES}
     return {name if name in modules else name.rpartition(".")[0] for name in names} - {""}
 
 
 def by_layer(*names: str) -> list[Path]:
-    return [path for path in FILES if layer(module_of(path)) in names and module_of(path) not in COMMANDS]
+    return [
+        path
+        for path in FILES
+        if layer(module_of(path)) in names and module_of(path) not in COMMANDS
+    ]
 
 
 def named(paths: list[Path]):
@@ -77,7 +88,9 @@ def test_the_core_imports_torch_and_jaxtyping_only(path):
 def test_the_core_is_short():
     core = by_layer("core")
     lines = sum(len(path.read_text(encoding="utf-8").splitlines()) for path in core)
-    assert core and len(core) <= CORE_FILES and lines <= CORE_LINES, f"{len(core)} files, {lines} lines"
+    assert core and len(core) <= CORE_FILES and lines <= CORE_LINES, (
+        f"{len(core)} files, {lines} lines"
+    )
 
 
 @pytest.mark.parametrize("path", named(by_layer(*LAYER)))
@@ -103,8 +116,12 @@ def test_a_package_of_one_layer_stays_there(package, allowed):
 def test_the_data_need_no_pictures_and_no_network():
     for path in ALL:
         if path.is_relative_to(ROOT / "data_synth"):
-            assert not third_party(path) & {"matplotlib", "ipywidgets", "anywidget", "librosa"}, path.name
-            assert not {name for name in own(path) if name.startswith(("viz", "widgets"))}, path.name
+            assert not third_party(path) & {"matplotlib", "ipywidgets", "anywidget", "librosa"}, (
+                path.name
+            )
+            assert not {name for name in own(path) if name.startswith(("viz", "widgets"))}, (
+                path.name
+            )
 
 
 def test_every_third_party_import_is_declared():
@@ -112,13 +129,21 @@ def test_every_third_party_import_is_declared():
 
     project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
     extras = [line for lines in project["optional-dependencies"].values() for line in lines]
-    names = {line.split(">")[0].split("=")[0].replace("-", "_").lower() for line in project["dependencies"] + extras}
+    names = {
+        line.split(">")[0].split("=")[0].replace("-", "_").lower()
+        for line in project["dependencies"] + extras
+    }
     names |= {"PIL"}  # pillow
-    names |= {"jupyter_client", "IPython", "traitlets"}  # without these there is no JupyterLab and no ipywidgets
+    names |= {
+        "jupyter_client",
+        "IPython",
+        "traitlets",
+    }  # without these there is no JupyterLab and no ipywidgets
     used = set().union(*(third_party(path) for path in ALL))
     assert used <= names, f"imported, and not in pyproject.toml: {used - names}"
 
 
 def test_no_file_puts_annotations_off():
-    """`from __future__ import annotations` would turn the shapes into strings that nothing checks."""
+    """`from __future__ import annotations` would turn the shapes into strings that nothing
+    checks."""
     assert [path.name for path in ALL if "__future__.annotations" in imports(path)] == []

@@ -1,4 +1,5 @@
-"""`python -m motiondiff_edu`: which notebook opens where, what a demo sets, and a JupyterLab that really serves it."""
+"""`python -m motiondiff_edu`: which notebook opens where, what a demo sets, and a JupyterLab that
+really serves it."""
 
 import json
 import re
@@ -17,10 +18,16 @@ from motiondiff_edu import __main__ as command
 @pytest.fixture
 def checkout(tmp_path, monkeypatch):
     """A checkout with two notebooks, and the package in it."""
-    for name in ("notebooks/00_start.ipynb", "notebooks/student/00_start.ipynb", "notebooks/07_modiff.ipynb"):
+    for name in (
+        "notebooks/00_start.ipynb",
+        "notebooks/student/00_start.ipynb",
+        "notebooks/07_modiff.ipynb",
+    ):
         path = tmp_path / "repo" / name
         path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_text(json.dumps({"cells": [], "metadata": {}, "nbformat": 4, "nbformat_minor": 5}))
+        path.write_text(
+            json.dumps({"cells": [], "metadata": {}, "nbformat": 4, "nbformat_minor": 5})
+        )
     (tmp_path / "repo" / "docs").mkdir()
     (tmp_path / "repo" / "docs" / "walk.gif").write_bytes(b"GIF89a")
     (tmp_path / "repo" / "pyproject.toml").touch()
@@ -50,7 +57,9 @@ def test_lab_opens_notebook_00_of_the_student_edition(checkout, calls):
     assert "--LabApp.default_url=/lab/tree/notebooks/student/00_start.ipynb" in arguments
 
 
-def test_lab_from_a_wheel_opens_a_copy_and_keeps_what_is_there(checkout, calls, tmp_path, monkeypatch):
+def test_lab_from_a_wheel_opens_a_copy_and_keeps_what_is_there(
+    checkout, calls, tmp_path, monkeypatch
+):
     package = tmp_path / "site" / "motiondiff_edu"
     (checkout / "notebooks").rename(checkout / "elsewhere")
     package.mkdir(parents=True)
@@ -71,7 +80,9 @@ def test_demo_shows_a_copy_with_large_type_and_the_shipped_weights(checkout, cal
     assert "--LabApp.default_url=/lab/tree/notebooks/07_modiff.ipynb" in arguments
     assert {"notebooks/07_modiff.ipynb", "docs/walk.gif", "matplotlibrc"} <= set(files)
     assert not any("student" in name for name in files)
-    assert environment["MOTIONDIFF_DEMO"] == "1" and environment["MATPLOTLIBRC"].endswith("matplotlibrc")
+    assert environment["MOTIONDIFF_DEMO"] == "1" and environment["MATPLOTLIBRC"].endswith(
+        "matplotlibrc"
+    )
     assert not any(str(checkout) in argument for argument in arguments)
 
 
@@ -113,11 +124,15 @@ def test_jupyterlab_really_starts_and_serves_the_notebook(checkout):
         while address is None and time.monotonic() - start < 120:
             line = server.stderr.readline()
             assert line or server.poll() is None, "JupyterLab ended before it served anything"
-            found = re.search(r"http://(?:localhost|127\.0\.0\.1):(\d+)(/lab/tree/\S*?)\?token", line)
+            found = re.search(
+                r"http://(?:localhost|127\.0\.0\.1):(\d+)(/lab/tree/\S*?)\?token", line
+            )
             address = found and (found[1], found[2])
         port, page = address
         assert page == "/lab/tree/notebooks/student/00_start.ipynb"
-        served = f"http://127.0.0.1:{port}/api/contents/{page.removeprefix('/lab/tree/')}?token=walk"
+        served = (
+            f"http://127.0.0.1:{port}/api/contents/{page.removeprefix('/lab/tree/')}?token=walk"
+        )
         assert ask(served)["type"] == "notebook"
         server.terminate()
         server.wait(timeout=60)

@@ -1,4 +1,5 @@
-"""MoDiff's network: the paper's sizes, its inputs, the skip, and the fast twin that gives the same numbers."""
+"""MoDiff's network: the paper's sizes, its inputs, the skip, and the fast twin that gives the same
+numbers."""
 
 import math
 from dataclasses import replace
@@ -15,7 +16,8 @@ B = 3
 
 
 def lively(config, seed=0):
-    """A network whose zero-initialised tables have values too: else a missing bias would go unnoticed."""
+    """A network whose zero-initialised tables have values too: else a missing bias would go
+    unnoticed."""
     torch.manual_seed(seed)
     model = MoDiff(config).eval()
     with torch.no_grad():
@@ -33,7 +35,9 @@ def inputs(config, batch=B, seed=1):
     return x_s, torch.full((batch,), 7), past, control
 
 
-@pytest.mark.parametrize(("config", "cross"), [(MODIFF_PAPER, 6), (MODIFF_SMALL, 2)], ids=["paper", "small"])
+@pytest.mark.parametrize(
+    ("config", "cross"), [(MODIFF_PAPER, 6), (MODIFF_SMALL, 2)], ids=["paper", "small"]
+)
 def test_layers_are_the_papers_but_for_the_small_ones_cross_modal_layers(config, cross):
     model = MoDiff(config)
     encoders = (model.motion_encoder, model.control_encoder, model.cross_encoder)
@@ -44,11 +48,17 @@ def test_layers_are_the_papers_but_for_the_small_ones_cross_modal_layers(config,
 
 def test_paper_sizes():
     assert (MODIFF_PAPER.width, MODIFF_PAPER.heads, MODIFF_PAPER.target) == (256, 4, "eps")
-    paper, small = (sum(p.numel() for p in MoDiff(c).parameters()) for c in (MODIFF_PAPER, MODIFF_SMALL))
-    assert 11e6 < paper < 13e6 and small < 2e6  # a paper-width block has 12 * 256^2 weights and a bit
+    paper, small = (
+        sum(p.numel() for p in MoDiff(c).parameters()) for c in (MODIFF_PAPER, MODIFF_SMALL)
+    )
+    assert (
+        11e6 < paper < 13e6 and small < 2e6
+    )  # a paper-width block has 12 * 256^2 weights and a bit
 
 
-@pytest.mark.parametrize("wrong", [{"heads": 0}, {"S": -1}, {"target": "foo"}, {"decoder_layers": -1}])
+@pytest.mark.parametrize(
+    "wrong", [{"heads": 0}, {"S": -1}, {"target": "foo"}, {"decoder_layers": -1}]
+)
 def test_sizes_that_make_no_network_are_refused(wrong):
     with pytest.raises(ValueError, match=next(iter(wrong))):
         replace(TINY, **wrong)
@@ -63,13 +73,18 @@ def test_output_has_the_shape_of_the_future(config):
 @pytest.mark.parametrize("frames", [(3, 9), (4, 8), (4, 10), (5, 9)])
 def test_wrong_numbers_of_frames_are_told(frames):
     x_s, s, past, control = inputs(TINY)
-    with pytest.raises(ValueError, match=rf"4 past poses and 9 rows.*got {frames[0]}.* and {frames[1]}"):
+    with pytest.raises(
+        ValueError, match=rf"4 past poses and 9 rows.*got {frames[0]}.* and {frames[1]}"
+    ):
         MoDiff(TINY)(x_s, s, torch.zeros(B, frames[0], TINY.D), torch.zeros(B, frames[1], TINY.C))
 
 
 @pytest.mark.parametrize("which", ["x_s", "s", "past", "control"])
 def test_every_input_is_heard(which):
-    model, args = lively(TINY), dict(zip(("x_s", "s", "past", "control"), inputs(TINY), strict=True))
+    model, args = (
+        lively(TINY),
+        dict(zip(("x_s", "s", "past", "control"), inputs(TINY), strict=True)),
+    )
     before = model(**args)
     args[which] = args[which] + (1 if which == "s" else 0.5)
     assert not torch.allclose(model(**args), before, atol=1e-4)
@@ -88,7 +103,12 @@ def test_order_in_time_matters_and_the_relative_bias_is_used():
     model, (x_s, s, past, control) = lively(TINY), inputs(TINY)
     before = model(x_s, s, past, control)
     assert not torch.allclose(model(x_s.flip(1), s, past, control).flip(1), before, atol=1e-3)
-    for bias in (model.self_bias, model.memory_bias, model.cross_encoder.bias, model.control_encoder.bias):
+    for bias in (
+        model.self_bias,
+        model.memory_bias,
+        model.cross_encoder.bias,
+        model.control_encoder.bias,
+    ):
         kept = bias.table.detach().clone()
         with torch.no_grad():
             bias.table.zero_()
@@ -135,7 +155,9 @@ def test_fast_twin_gives_the_same_numbers(config):
     for step in (1, config.S // 2, config.S):
         with torch.no_grad():
             wanted = plain(x_s, torch.full((2,), step), past, control)
-        torch.testing.assert_close(fast.denoise(x_s, torch.full((2,), step), context), wanted, atol=1e-5, rtol=1e-5)
+        torch.testing.assert_close(
+            fast.denoise(x_s, torch.full((2,), step), context), wanted, atol=1e-5, rtol=1e-5
+        )
         torch.testing.assert_close(fast.denoise(x_s, step, context), wanted, atol=1e-5, rtol=1e-5)
 
 
@@ -146,7 +168,9 @@ def test_fast_twin_takes_another_step_for_each_row(skip):
     s = torch.tensor([3, 20, 11])
     with torch.no_grad():
         wanted = plain(x_s, s, past, control)
-    torch.testing.assert_close(fast.denoise(x_s, s, fast.encode(past, control)), wanted, atol=1e-5, rtol=1e-5)
+    torch.testing.assert_close(
+        fast.denoise(x_s, s, fast.encode(past, control)), wanted, atol=1e-5, rtol=1e-5
+    )
 
 
 def test_fast_twin_keeps_the_context_it_was_given():
@@ -179,31 +203,44 @@ def test_fast_twin_stays_as_it_was_built_and_leaves_the_model_in_training():
 
 
 def test_the_wiring_by_hand():
-    """Which table goes where, and when everything happens: written out, with every time as a number.
+    """Which table goes where, and when everything happens: written out, with every time as a
+    number.
 
-    T_h = 4, T_p = 5: poses are given at frames -3 to 0, control at -3 to 5, and the future is 1 to 5.
+    T_h = 4, T_p = 5: poses are given at frames -3 to 0, control at -3 to 5, and the future is 1 to
+    5.
     """
     model, (x_s, s, past, control) = lively(TINY), inputs(TINY)
     given, told, future = [-3, -2, -1, 0], [-3, -2, -1, 0, 1, 2, 3, 4, 5], [1, 2, 3, 4, 5]
     clock = {t: model.time[t + 3] for t in told}
 
     def encoder(part, times, x):
-        bias = part.bias.table[relative_position_bucket(torch.tensor(times)[None] - torch.tensor(times)[:, None])]
+        bias = part.bias.table[
+            relative_position_bucket(torch.tensor(times)[None] - torch.tensor(times)[:, None])
+        ]
         for block in part.blocks:
             x = block(x, bias.permute(2, 0, 1)[None])
         return x
 
     with torch.no_grad():
         motion = model.past_in(past) + torch.stack([clock[t] for t in given]) + model.modality[0]
-        steered = model.control_in(control) + torch.stack([clock[t] for t in told]) + model.modality[1]
-        tokens = [encoder(model.motion_encoder, given, motion), encoder(model.control_encoder, told, steered)]
+        steered = (
+            model.control_in(control) + torch.stack([clock[t] for t in told]) + model.modality[1]
+        )
+        tokens = [
+            encoder(model.motion_encoder, given, motion),
+            encoder(model.control_encoder, told, steered),
+        ]
         memory = model.memory_norm(encoder(model.cross_encoder, given + told, torch.cat(tokens, 1)))
-        noised = torch.cat([x_s, model.step_in(step_embedding(s, 16))[:, None].expand(-1, 5, -1)], -1)
+        noised = torch.cat(
+            [x_s, model.step_in(step_embedding(s, 16))[:, None].expand(-1, 5, -1)], -1
+        )
         x = model.future_in(noised) + torch.stack([clock[t] for t in future])
         gaps = {name: torch.tensor(times)[None] - torch.tensor(future)[:, None]
                 for name, times in (("self", future), ("memory", given + told))}  # fmt: skip
         own = model.self_bias.table[relative_position_bucket(gaps["self"])].permute(2, 0, 1)[None]
-        other = model.memory_bias.table[relative_position_bucket(gaps["memory"])].permute(2, 0, 1)[None]
+        other = model.memory_bias.table[relative_position_bucket(gaps["memory"])].permute(2, 0, 1)[
+            None
+        ]
         for block in model.decoder:
             x = block(x, own, memory, other)
         wanted = model.head(x) + model.skip[7] * x_s

@@ -5,9 +5,17 @@ import torch
 
 from motiondiff_edu.cross_modal_attention import angles_of, turned
 from motiondiff_edu.fast.mofusion import FastMoFusion
-from motiondiff_edu.mofusion import MOFUSION_FULL, MOFUSION_SMALL, FrameConv, MoFusion, MoFusionConfig
+from motiondiff_edu.mofusion import (
+    MOFUSION_FULL,
+    MOFUSION_SMALL,
+    FrameConv,
+    MoFusion,
+    MoFusionConfig,
+)
 
-TINY = MoFusionConfig(D=7, C=5, S=30, widths=(16, 24, 32), heads=2, music_layers=2, target="x0", skip=False)
+TINY = MoFusionConfig(
+    D=7, C=5, S=30, widths=(16, 24, 32), heads=2, music_layers=2, target="x0", skip=False
+)
 MEL_FPS = 31.25
 
 
@@ -22,7 +30,9 @@ def shaken(config: MoFusionConfig, seed: int = 0) -> MoFusion:
 
 
 def music(B: int, M: int, C: int = 5, seed: int = 1):
-    return torch.randn(B, M, C, generator=torch.Generator().manual_seed(seed)), torch.arange(M) / MEL_FPS
+    return torch.randn(B, M, C, generator=torch.Generator().manual_seed(seed)), torch.arange(
+        M
+    ) / MEL_FPS
 
 
 @torch.no_grad()
@@ -88,7 +98,9 @@ def test_a_turn_keeps_lengths_and_zero_turns_nothing():
     angles = angles_of(torch.arange(5) / 20, 8, 0.05, 8.0)
     torch.testing.assert_close(turned(x, angles).norm(dim=-1), x.norm(dim=-1))
     assert torch.equal(turned(x, torch.zeros(5, 4)), x)
-    assert angles[3].tolist() == pytest.approx([2 * torch.pi * 0.15 * f for f in (0.05, 0.2714, 1.4736, 8.0)], rel=1e-3)
+    assert angles[3].tolist() == pytest.approx(
+        [2 * torch.pi * 0.15 * f for f in (0.05, 0.2714, 1.4736, 8.0)], rel=1e-3
+    )
 
 
 @torch.no_grad()
@@ -112,7 +124,9 @@ def test_without_music_the_motion_attends_to_itself():
     torch.testing.assert_close(out[1, :13], model(x[1:, :13], s[1:])[0], atol=2e-5, rtol=1e-4)
     far = x.clone()
     far[:, -1] += 5.0
-    assert (model(far, s) - model(x, s))[:, 0].abs().max() > 1e-5  # 20 frames away: through attention, or the depth
+    assert (model(far, s) - model(x, s))[
+        :, 0
+    ].abs().max() > 1e-5  # 20 frames away: through attention, or the depth
     with pytest.raises(ValueError, match="hears nothing"):
         model(x, s, shaken(TINY).listen(*music(2, 30)))
     with pytest.raises(ValueError, match="give it"):
@@ -120,7 +134,9 @@ def test_without_music_the_motion_attends_to_itself():
 
 
 @torch.no_grad()
-@pytest.mark.parametrize("change", [{}, {"skip": True, "target": "eps"}, {"reach": 0.6}, {"music_layers": 0}])
+@pytest.mark.parametrize(
+    "change", [{}, {"skip": True, "target": "eps"}, {"reach": 0.6}, {"music_layers": 0}]
+)
 def test_fast_twin_gives_the_same_numbers(change):
     model = shaken(MoFusionConfig(**{**TINY.as_dict(), **change}))
     fast = FastMoFusion(model)
@@ -130,10 +146,14 @@ def test_fast_twin_gives_the_same_numbers(change):
         labels = torch.full((3,), s)
         plain = model(x, labels, model.listen(mel, times))
         for steps in (labels, s):
-            torch.testing.assert_close(fast.denoise(x, steps, song), plain, atol=1e-5 * plain.std(), rtol=1e-4)
+            torch.testing.assert_close(
+                fast.denoise(x, steps, song), plain, atol=1e-5 * plain.std(), rtol=1e-4
+            )
     labels = torch.tensor([2, 9, 28])
     plain = model(x, labels, model.listen(mel, times))
-    torch.testing.assert_close(fast.denoise(x, labels, song), plain, atol=1e-5 * plain.std(), rtol=1e-4)
+    torch.testing.assert_close(
+        fast.denoise(x, labels, song), plain, atol=1e-5 * plain.std(), rtol=1e-4
+    )
 
 
 def test_fast_twin_needs_music():
@@ -151,7 +171,8 @@ def test_a_frame_convolution_is_torchs():
 
 
 def test_a_new_network_changes_nothing_between_its_ends():
-    """Residual blocks start as what leads around them: so a deep network trains from the first step."""
+    """Residual blocks start as what leads around them: so a deep network trains from the first
+    step."""
     torch.manual_seed(0)
     block = MoFusion(TINY).down[0]["res"]
     x = torch.randn(2, 9, 16)
@@ -177,5 +198,9 @@ def test_sizes_are_checked():
 def test_gradients_reach_every_weight():
     model = shaken(MoFusionConfig(**{**TINY.as_dict(), "skip": True, "target": "eps"}))
     mel, times = music(2, 30)
-    model(torch.randn(2, 18, 7), torch.tensor([3, 20]), model.listen(mel, times)).square().mean().backward()
-    assert [name for name, p in model.named_parameters() if p.grad is None or not p.grad.abs().sum() > 0] == []
+    model(
+        torch.randn(2, 18, 7), torch.tensor([3, 20]), model.listen(mel, times)
+    ).square().mean().backward()
+    assert [
+        name for name, p in model.named_parameters() if p.grad is None or not p.grad.abs().sum() > 0
+    ] == []

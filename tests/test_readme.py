@@ -7,16 +7,18 @@ import soundfile
 
 from data_synth.music import compose
 from data_synth.walking import walk
-from motiondiff_edu import checkpoints
-from motiondiff_edu.checkpoints import available
 from motiondiff_edu.conditions.control import constant_control
 from motiondiff_edu.motion.bvh import read_bvh
-from motiondiff_edu.motion.bvh_write import write_bvh
+from motiondiff_edu.motion.bvh.write import write_bvh
 from motiondiff_edu.motion.retarget import load_clip
+from motiondiff_edu.pretrained import checkpoints
+from motiondiff_edu.pretrained.checkpoints import available
 
 
 def examples(root) -> list[str]:
-    return re.findall(r"^```python\n(.*?)^```", (root / "README.md").read_text(encoding="utf-8"), re.M | re.S)
+    return re.findall(
+        r"^```python\n(.*?)^```", (root / "README.md").read_text(encoding="utf-8"), re.M | re.S
+    )
 
 
 @pytest.mark.skipif("walker" not in available(), reason="no walker is shipped: run make pretrained")
@@ -43,9 +45,17 @@ def test_a_song_is_danced_to_as_the_readme_has_it(root, tmp_path, monkeypatch):
     assert len(read_bvh(tmp_path / "dance.bvh").frames) == 80
 
 
-@pytest.mark.skipif("unconditional" not in available(), reason="no such network is shipped: run make pretrained")
+@pytest.mark.skipif(
+    "unconditional" not in available(), reason="no such network is shipped: run make pretrained"
+)
 def test_in_betweens_are_made_as_the_readme_has_it(root):
     _, _, code = examples(root)
-    given = {"checkpoints": checkpoints, "clip": walk(constant_control(1.0, seconds=3), seed=5)}  # of the first example
+    given = {
+        "checkpoints": checkpoints,
+        "clip": walk(constant_control(1.0, seconds=3), seed=5),
+    }  # of the first example
     exec(compile(code.replace("samples=3)", "samples=3, steps=3)"), "README.md", "exec"), given)
-    assert given["made"].shape == (3, 60, 21, 3) and (given["made"][:, 20] == given["motion"][20]).all()
+    assert (
+        given["made"].shape == (3, 60, 21, 3)
+        and (given["made"][:, 20] == given["motion"][20]).all()
+    )

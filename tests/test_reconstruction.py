@@ -1,4 +1,5 @@
-"""There and back: what is known is untouched, holes are filled by a walker that knows the way, and then it stops."""
+"""There and back: what is known is untouched, holes are filled by a walker that knows the way, and
+then it stops."""
 
 from types import SimpleNamespace
 
@@ -16,7 +17,8 @@ T_H, D = 6, 8
 
 
 class Turning:
-    """A walker that turns pairs of numbers by the control's first column: right, and reversible; then some noise."""
+    """A walker that turns pairs of numbers by the control's first column: right, and reversible;
+    then some noise."""
 
     def __init__(self, noise: float = 0.0):
         self.config = SimpleNamespace(T_h=T_H, T_p=2, D=D, C=3)
@@ -25,13 +27,17 @@ class Turning:
 
     def window_sampler(self, steps=None):
         def sample(past, control, generator):
-            pairs = torch.view_as_complex((past[:, -1] * 2 + 0.3).reshape(len(past), D // 2, 2).contiguous())
+            pairs = torch.view_as_complex(
+                (past[:, -1] * 2 + 0.3).reshape(len(past), D // 2, 2).contiguous()
+            )
             new = []
             for k in range(2):
                 angle = control[:, T_H - 1 + k, 0]
                 pairs = pairs * torch.exp(1j * angle)[:, None]
                 made = torch.view_as_real(pairs).flatten(1)
-                new.append((made + self.noise * torch.randn(made.shape, generator=generator) - 0.3) / 2)
+                new.append(
+                    (made + self.noise * torch.randn(made.shape, generator=generator) - 0.3) / 2
+                )
             return torch.stack(new, 1)
 
         return sample
@@ -65,13 +71,17 @@ def test_missing_frames_are_found_by_a_walker_that_knows_the_way():
     done = list(repair_steps(Turning(), holes, known, control, generator=seeded()))
     torch.testing.assert_close(done[-1].past, past, atol=1e-4, rtol=1e-4)
     assert torch.equal(done[-1].past[known], past[known])
-    assert len(done) == 2 and (done[-1].change < 1e-3).all()  # found at once; the second round moves nothing
+    assert (
+        len(done) == 2 and (done[-1].change < 1e-3).all()
+    )  # found at once; the second round moves nothing
 
 
 def test_a_first_guess_is_where_the_way_begins():
     past, control = material()
     known = torch.ones(past.shape, dtype=torch.bool)
-    known[:, -1] = False  # the frame from which the walk goes on: nothing can make up for a wrong one
+    known[:, -1] = (
+        False  # the frame from which the walk goes on: nothing can make up for a wrong one
+    )
     settings = {"rounds": 1, "generator": seeded()}
     from_mean = repair(Turning(), past, known, control, **settings)
     from_truth = repair(Turning(), past, known, control, guess=past + 0.0, **settings)
@@ -122,9 +132,14 @@ def test_what_settles_a_past_is_in_it_and_in_its_change():
         assert torch.equal(mask, known) and ahead.shape == past.shape
         return filled + 1.0 * ~mask
 
-    options = {"rounds": 1, "guess": past, "generator": seeded()}  # a walker that knows the way changes nothing
+    options = {
+        "rounds": 1,
+        "guess": past,
+        "generator": seeded(),
+    }  # a walker that knows the way changes nothing
     (plain,), (settled,) = (
-        list(repair_steps(Turning(), past, known, control, settle=s, **options)) for s in (None, raised)
+        list(repair_steps(Turning(), past, known, control, settle=s, **options))
+        for s in (None, raised)
     )
     torch.testing.assert_close(settled.past, plain.past + 1.0 * ~known)
     torch.testing.assert_close(settled.change, torch.ones(3), atol=1e-4, rtol=0)
@@ -141,7 +156,17 @@ def test_the_way_back_is_told_everything_turned_round_and_how_many_poses_to_keep
         told.update(ahead=ahead, rows=rows, given=given, seen=seen, **options)
         return given
 
-    repair(Turning(), past, known, control, rounds=1, guess=past, way_back=way, keep=1, generator=seeded())
+    repair(
+        Turning(),
+        past,
+        known,
+        control,
+        rounds=1,
+        guess=past,
+        way_back=way,
+        keep=1,
+        generator=seeded(),
+    )
     assert torch.equal(told["given"], past.flip(1)) and torch.equal(told["seen"], known.flip(1))
     assert torch.equal(told["rows"], reverse_control(control)) and told["keep"] == 1
     walked = generate(Turning(), past, control, hold=False, generator=seeded(), steps=10, keep=1)
@@ -162,8 +187,14 @@ def columns(x, D):
 
 
 MISTAKES = {
-    "a row too few": ({"control": lambda x: x[:, :-1]}, r"control is \(3, 11, 3\); give \(3, 12, 3\)"),
-    "control of another batch": ({"control": lambda x: x[:2]}, r"control is \(2, 12, 3\); give \(3, 12, 3\)"),
+    "a row too few": (
+        {"control": lambda x: x[:, :-1]},
+        r"control is \(3, 11, 3\); give \(3, 12, 3\)",
+    ),
+    "control of another batch": (
+        {"control": lambda x: x[:2]},
+        r"control is \(2, 12, 3\); give \(3, 12, 3\)",
+    ),
     "a mask of joints": (
         {"known": lambda x: columns(x, 3)},
         r"known is torch.bool \(3, 6, 3\); give bool, \(3, 6, 8\)",
@@ -172,9 +203,15 @@ MISTAKES = {
         {"known": lambda x: x.float()},
         r"known is torch.float32 .*; give bool",
     ),
-    "columns missing": ({"past": lambda x: columns(x, 7), "known": lambda x: columns(x, 7)}, r"takes \(B, 6, 8\)"),
+    "columns missing": (
+        {"past": lambda x: columns(x, 7), "known": lambda x: columns(x, 7)},
+        r"takes \(B, 6, 8\)",
+    ),
     "a past too long": ({"past": lambda x: torch.cat([x, x], 1)}, r"past is \(3, 12, 8\)"),
-    "nothing known": ({"known": lambda x: x & (torch.arange(3) != 1)[:, None, None]}, "of sample 1 nothing is known"),
+    "nothing known": (
+        {"known": lambda x: x & (torch.arange(3) != 1)[:, None, None]},
+        "of sample 1 nothing is known",
+    ),
     "no rounds": ({"rounds": lambda x: 0}, "rounds = 0: give 1 at least"),
 }
 
@@ -182,12 +219,19 @@ MISTAKES = {
 @pytest.mark.parametrize("what", MISTAKES)
 def test_wrong_inputs(what):
     past, control = material()
-    given = {"past": past, "known": torch.ones(past.shape, dtype=torch.bool), "control": control, "rounds": 5}
+    given = {
+        "past": past,
+        "known": torch.ones(past.shape, dtype=torch.bool),
+        "control": control,
+        "rounds": 5,
+    }
     changes, words = MISTAKES[what]
     given |= {name: change(given[name]) for name, change in changes.items()}
     with pytest.raises(ValueError, match=words) as caught:
         repair(Turning(), **given, generator=seeded())
-    assert ("control" in changes) == ("control" in str(caught.value))  # what is right is not spoken of
+    assert ("control" in changes) == (
+        "control" in str(caught.value)
+    )  # what is right is not spoken of
 
 
 def test_arrays_of_numpy_are_taken():

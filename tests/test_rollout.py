@@ -1,4 +1,5 @@
-"""Rollout: which rows of control are seen, when the sampler is asked, what is refused. The samplers here are fakes."""
+"""Rollout: which rows of control are seen, when the sampler is asked, what is refused. The samplers
+here are fakes."""
 
 import pytest
 import torch
@@ -18,7 +19,8 @@ def numbered_control(frames: int) -> torch.Tensor:
 
 
 class Echo:
-    """A sampler that returns the control of the future frames as poses, and remembers what it was given."""
+    """A sampler that returns the control of the future frames as poses, and remembers what it was
+    given."""
 
     def __init__(self):
         self.calls = []
@@ -41,7 +43,10 @@ def test_hold_sees_only_the_step_about_to_be_taken():
     # the frame T_h + t is reached by control[T_h - 1 + t]
     assert poses[0, :, 0].tolist() == [3, 4, 5, 6, 7, 8]
     assert poses[1, :, 0].tolist() == [103, 104, 105, 106, 107, 108]
-    assert [call[1][0, :, 0].tolist() for call in echo.calls[:2]] == [[0, 1, 2, 3, 3, 3, 3], [1, 2, 3, 4, 4, 4, 4]]
+    assert [call[1][0, :, 0].tolist() for call in echo.calls[:2]] == [
+        [0, 1, 2, 3, 3, 3, 3],
+        [1, 2, 3, 4, 4, 4, 4],
+    ]
 
 
 def test_look_ahead_sees_what_comes_and_repeats_the_last_row():
@@ -64,7 +69,9 @@ def test_keep_asks_the_sampler_every_keep_frames_and_feeds_back_what_was_kept(ke
     past, random, expected = torch.zeros(B, T_H, D), generator(), []
     for t in range(0, 7, keep):
         known = control[:, t : t + T_H]
-        window = sample(past, torch.cat([known, known[:, -1:].repeat(1, T_P, 1)], 1), random)[:, :keep]
+        window = sample(past, torch.cat([known, known[:, -1:].repeat(1, T_P, 1)], 1), random)[
+            :, :keep
+        ]
         expected.append(window)
         past = torch.cat([past, window], 1)[:, -T_H:]
     assert torch.equal(poses, torch.cat(expected, 1)[:, :7])
@@ -73,7 +80,14 @@ def test_keep_asks_the_sampler_every_keep_frames_and_feeds_back_what_was_kept(ke
 
 def test_a_frame_carries_its_number_and_the_window_it_was_taken_from():
     loop = rollout_steps(
-        Echo(), torch.zeros(B, T_H, D), numbered_control(12), 5, T_P, generator=generator(), keep=2, hold=False
+        Echo(),
+        torch.zeros(B, T_H, D),
+        numbered_control(12),
+        5,
+        T_P,
+        generator=generator(),
+        keep=2,
+        hold=False,
     )
     frames = list(loop)
     assert [frame.t for frame in frames] == [0, 1, 2, 3, 4]
@@ -82,7 +96,9 @@ def test_a_frame_carries_its_number_and_the_window_it_was_taken_from():
 
 
 @pytest.mark.parametrize(("hold", "asked_first"), [(True, range(T_H)), (False, range(T_H + T_P))])
-def test_control_as_a_function_is_asked_when_needed_and_can_change_on_the_fly(hold: bool, asked_first: range):
+def test_control_as_a_function_is_asked_when_needed_and_can_change_on_the_fly(
+    hold: bool, asked_first: range
+):
     asked, speed = [], 1.0
 
     def control(t: int) -> torch.Tensor:
@@ -90,7 +106,9 @@ def test_control_as_a_function_is_asked_when_needed_and_can_change_on_the_fly(ho
         return torch.full((B, C), speed)
 
     echo = Echo()
-    loop = rollout_steps(echo, torch.zeros(B, T_H, D), control, 4, T_P, generator=generator(), hold=hold)
+    loop = rollout_steps(
+        echo, torch.zeros(B, T_H, D), control, 4, T_P, generator=generator(), hold=hold
+    )
     assert asked == []
     assert next(loop).pose[0, 0] == 1
     assert asked == list(asked_first)
@@ -100,7 +118,8 @@ def test_control_as_a_function_is_asked_when_needed_and_can_change_on_the_fly(ho
 
 
 def test_the_rows_already_walked_under_are_not_asked_again():
-    """A hand on a joystick only knows its present position: the network must be told what it was before."""
+    """A hand on a joystick only knows its present position: the network must be told what it was
+    before."""
     asked, seen = [], []
 
     def hand(t: int) -> torch.Tensor:

@@ -7,7 +7,7 @@ import pytest
 import torch
 
 from data_synth.walking import walk
-from motiondiff_edu.checkpoints import pretrained
+from motiondiff_edu.pretrained.checkpoints import pretrained
 from motiondiff_edu.rollout import generate
 
 WALKER = SimpleNamespace(config=SimpleNamespace(T_h=4, T_p=2, D=6, C=3))
@@ -24,7 +24,9 @@ WALKER = SimpleNamespace(config=SimpleNamespace(T_h=4, T_p=2, D=6, C=3))
     ],
 )
 def test_past_and_control_that_do_not_fit_are_named(past, control, told):
-    unchecked = getattr(generate, "__wrapped__", generate)  # as a user calls it, without the tests' type check
+    unchecked = getattr(
+        generate, "__wrapped__", generate
+    )  # as a user calls it, without the tests' type check
     with pytest.raises(ValueError, match=told):
         unchecked(WALKER, torch.zeros(past), torch.zeros(control))
 
@@ -33,5 +35,7 @@ def test_arrays_are_taken_as_they_are_and_the_same_walk_comes_back():
     clip = walk(np.tile([1.0, 0.0, 0.2], (14, 1)), seed=5)
     walker, past = pretrained("walker"), clip.features()[:10]
     new = generate(walker, past, clip.control, seed=1, steps=3)  # float32 poses, float64 control
-    same = generate(walker, torch.from_numpy(past), torch.from_numpy(clip.control).float(), seed=1, steps=3)
+    same = generate(
+        walker, torch.from_numpy(past), torch.from_numpy(clip.control).float(), seed=1, steps=3
+    )
     assert new.shape == (4, 63) and torch.equal(new, same)

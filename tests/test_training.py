@@ -1,4 +1,5 @@
-"""The training loop: it learns, averages, clips, saves no code, survives a kill, stops at a non-finite loss."""
+"""The training loop: it learns, averages, clips, saves no code, survives a kill, stops at a
+non-finite loss."""
 
 import math
 import os
@@ -14,13 +15,14 @@ from safetensors.torch import load_file, save_file
 from torch import nn
 
 from motiondiff_edu.modiff import MoDiff, MoDiffConfig
-from motiondiff_edu.muon import MuonAndAdam
-from motiondiff_edu.runs import notes_of, resume_run, save_run, saver
+from motiondiff_edu.recipes.muon import MuonAndAdam
+from motiondiff_edu.recipes.runs import notes_of, resume_run, save_run, saver
 from motiondiff_edu.training import NonFiniteLoss, TrainState, cosine_lr, train_steps
 
 
 def network():
-    """Dropout draws from torch's own generator, the batches from the run's: both must be resumed."""
+    """Dropout draws from torch's own generator, the batches from the run's: both must be
+    resumed."""
     torch.manual_seed(3)
     return nn.Sequential(nn.Linear(5, 7), nn.Tanh(), nn.Dropout(0.2), nn.Linear(7, 2))
 
@@ -37,7 +39,9 @@ def run(path, steps, resume=False, pause=0):
     if resume:
         resume_run(state, path)
     lr = cosine_lr(1e-2, 40, warmup=6)
-    for report in train_steps(state, toy_loss, steps, lr=lr, save=saver(path), save_every=8, progress=False):
+    for report in train_steps(
+        state, toy_loss, steps, lr=lr, save=saver(path), save_every=8, progress=False
+    ):
         if report.step == pause:
             print("paused", flush=True)
             sys.stdin.read()  # until killed
@@ -66,9 +70,15 @@ def environment() -> dict:
 def test_a_killed_run_resumes_bit_for_bit(tmp_path: Path):
     whole, killed = tmp_path / "whole.safetensors", tmp_path / "killed.safetensors"
     expected = run(whole, 40)
-    command = [sys.executable, __file__, str(killed)]  # this file, run as a script: see its last lines
+    command = [
+        sys.executable,
+        __file__,
+        str(killed),
+    ]  # this file, run as a script: see its last lines
     pipe = subprocess.PIPE
-    with subprocess.Popen(command, stdout=pipe, stdin=pipe, text=True, env=environment()) as process:
+    with subprocess.Popen(
+        command, stdout=pipe, stdin=pipe, text=True, env=environment()
+    ) as process:
         assert process.stdout.readline() == "paused\n"
         process.send_signal(signal.SIGKILL)
     assert process.returncode == -signal.SIGKILL
@@ -124,7 +134,9 @@ def test_a_run_begun_with_other_settings_is_refused(tmp_path: Path):
     path, state = tmp_path / "run.safetensors", TrainState.start(network())
     save_run(state, path, {"jitter": 0.3, "styles": ("old", "tired")})
     assert resume_run(state, path, {"jitter": 0.3, "styles": ("old", "tired")}) is state
-    with pytest.raises(ValueError, match=r"begun with jitter = 0\.3, and 0\.1 is asked for: delete the file"):
+    with pytest.raises(
+        ValueError, match=r"begun with jitter = 0\.3, and 0\.1 is asked for: delete the file"
+    ):
         resume_run(state, path, {"jitter": 0.1, "styles": ("old", "tired")})
     save_run(state, path)
     with pytest.raises(ValueError, match="begun with jitter = None"):
@@ -169,8 +181,12 @@ def bad_at(step: int, value: float):
 @pytest.mark.parametrize("value", [math.nan, math.inf])
 def test_a_non_finite_loss_stops_and_keeps_the_last_good_weights(tmp_path: Path, value: float):
     path, state, good = tmp_path / "run.safetensors", TrainState.start(nn.Linear(3, 2), seed=1), []
-    with pytest.raises(NonFiniteLoss, match=r"^step 6: the loss is (nan|inf).*learning rate.*run\.safetensors"):
-        for _ in train_steps(state, bad_at(6, value), 20, save=saver(path), save_every=100, progress=False):
+    with pytest.raises(
+        NonFiniteLoss, match=r"^step 6: the loss is (nan|inf).*learning rate.*run\.safetensors"
+    ):
+        for _ in train_steps(
+            state, bad_at(6, value), 20, save=saver(path), save_every=100, progress=False
+        ):
             good.append(state.model.weight.detach().clone())
     assert len(good) == state.step == 6
     assert torch.equal(state.model.weight, good[-1])
@@ -188,14 +204,18 @@ def test_broken_weights_are_not_saved_over_good_ones(tmp_path: Path):
     state, bad = TrainState.start(model, seed=1), bad_at(99, math.nan)
     list(train_steps(state, bad, 5, save=saver(path), save_every=5, progress=False))
     before, state.optimizer = path.read_bytes(), Breaks(model.parameters(), lr=0.1)
-    with pytest.raises(NonFiniteLoss, match="step 6: .* had broken the weights already; they are not saved"):
+    with pytest.raises(
+        NonFiniteLoss, match="step 6: .* had broken the weights already; they are not saved"
+    ):
         list(train_steps(state, bad, 20, save=saver(path), save_every=100, progress=False))
     assert path.read_bytes() == before
 
 
 def test_the_last_step_is_saved_whatever_its_number(tmp_path: Path):
     path, state = tmp_path / "run.safetensors", TrainState.start(nn.Linear(3, 2), seed=1)
-    list(train_steps(state, bad_at(99, math.nan), 7, save=saver(path), save_every=5, progress=False))
+    list(
+        train_steps(state, bad_at(99, math.nan), 7, save=saver(path), save_every=5, progress=False)
+    )
     assert resume_run(TrainState.start(nn.Linear(3, 2), seed=1), path).step == 7
 
 
@@ -241,7 +261,11 @@ def test_gradients_are_clipped_and_the_norm_is_reported():
 
     class Spy(torch.optim.SGD):
         def step(self, closure=None):
-            seen.append(torch.cat([p.grad.flatten() for g in self.param_groups for p in g["params"]]).norm().item())
+            seen.append(
+                torch.cat([p.grad.flatten() for g in self.param_groups for p in g["params"]])
+                .norm()
+                .item()
+            )
             super().step(closure)
 
     state = TrainState.start(nn.Linear(3, 2), seed=2)

@@ -1,4 +1,5 @@
-"""A wheel, built and installed elsewhere, has all that the checkout has: weights, ES module, data_synth, notebooks."""
+"""A wheel, built and installed elsewhere, has all that the checkout has: weights, ES module,
+data_synth, notebooks."""
 
 import json
 import os
@@ -15,7 +16,14 @@ import pytest
 from motiondiff_edu.widgets import module
 
 ROOT = Path(__file__).parent.parent
-BUILT_FROM = ["pyproject.toml", "setup.py", "MANIFEST.in", "README.md", "LICENSE", "constraints.txt"]
+BUILT_FROM = [
+    "pyproject.toml",
+    "setup.py",
+    "MANIFEST.in",
+    "README.md",
+    "LICENSE",
+    "constraints.txt",
+]
 FOLDERS = ["motiondiff_edu", "data_synth", "notebooks"]
 SHIPPED = {".py", ".js", ".css", ".safetensors", ".json"}
 
@@ -47,8 +55,20 @@ def wheel(tmp_path_factory) -> Path:
     for name in BUILT_FROM:
         shutil.copy(ROOT / name, folder / name)
     for name in FOLDERS:
-        shutil.copytree(ROOT / name, folder / name, ignore=shutil.ignore_patterns("__pycache__", ".ipynb_checkpoints"))
-    build = ["wheel", "--quiet", "--no-deps", "--no-build-isolation", "-w", str(folder / "dist"), str(folder)]
+        shutil.copytree(
+            ROOT / name,
+            folder / name,
+            ignore=shutil.ignore_patterns("__pycache__", ".ipynb_checkpoints"),
+        )
+    build = [
+        "wheel",
+        "--quiet",
+        "--no-deps",
+        "--no-build-isolation",
+        "-w",
+        str(folder / "dist"),
+        str(folder),
+    ]
     subprocess.run([sys.executable, "-m", "pip", *build], check=True, capture_output=True)
     (built,) = (folder / "dist").glob("*.whl")
     return built
@@ -56,15 +76,19 @@ def wheel(tmp_path_factory) -> Path:
 
 @pytest.fixture(scope="module")
 def elsewhere(wheel, tmp_path_factory) -> tuple[Path, dict]:
-    """A fresh environment with the wheel in it; torch and the others are borrowed. With what USE prints."""
+    """A fresh environment with the wheel in it; torch and the others are borrowed. With what USE
+    prints."""
     home = tmp_path_factory.mktemp("elsewhere")
     venv.create(home / "env", with_pip=False)
     python = home / "env" / ("Scripts/python.exe" if os.name == "nt" else "bin/python")
     install = ["--python", str(python), "install", "--quiet", "--no-deps", "--no-index", str(wheel)]
     subprocess.run([sys.executable, "-m", "pip", *install], check=True, capture_output=True)
     find = "import sysconfig; print(sysconfig.get_path('purelib'))"
-    site = subprocess.run([python, "-I", "-c", find], check=True, capture_output=True, text=True).stdout.strip()
-    # a path in a .pth file is searched last, and the .pth files there (an editable install) are not read
+    site = subprocess.run(
+        [python, "-I", "-c", find], check=True, capture_output=True, text=True
+    ).stdout.strip()
+    # a path in a .pth file is searched last, and the .pth files there (an editable install) are not
+    # read
     Path(site, "borrowed.pth").write_text(sysconfig.get_path("purelib") + "\n")
     answer = subprocess.run([python, "-I", "-c", USE], cwd=home, capture_output=True, text=True)
     assert answer.returncode == 0, answer.stderr
@@ -81,7 +105,10 @@ def test_the_wheel_holds_every_file_of_the_packages(wheel):
     }
     assert wanted - held == set()
     tops = {name.split("/")[0] for name in held}
-    assert {top for top in tops if not top.endswith(".dist-info")} == {"motiondiff_edu", "data_synth"}
+    assert {top for top in tops if not top.endswith(".dist-info")} == {
+        "motiondiff_edu",
+        "data_synth",
+    }
 
 
 def test_the_installed_package_is_the_wheels(elsewhere):

@@ -1,4 +1,5 @@
-"""`make test` with two workers: one that dies ends the run as a failure, and each has a numba cache of its own."""
+"""`make test` with two workers: one that dies ends the run as a failure, and each has a numba cache
+of its own."""
 
 import re
 import shutil
@@ -18,31 +19,51 @@ def test_after(): pass
 @pytest.fixture
 def run(root, tmp_path):
     """Runs pytest on the files of the test, with the workers of the Makefile."""
-    workers = re.search(r"^WORKERS := (.*)$", (root / "Makefile").read_text(), re.M).group(1).split()
+    workers = (
+        re.search(r"^WORKERS := (.*)$", (root / "Makefile").read_text(), re.M).group(1).split()
+    )
     assert "auto" in workers
 
     def run(**files: str) -> subprocess.CompletedProcess:
         for name, text in files.items():
             (tmp_path / f"test_{name}.py").write_text(text)
         flags = ["2" if flag == "auto" else flag for flag in workers]
-        command = [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", *flags, "--dist", "loadfile"]
-        return subprocess.run([*command, str(tmp_path)], cwd=tmp_path, capture_output=True, text=True, timeout=100)
+        command = [
+            sys.executable,
+            "-m",
+            "pytest",
+            "-q",
+            "-p",
+            "no:cacheprovider",
+            *flags,
+            "--dist",
+            "loadfile",
+        ]
+        return subprocess.run(
+            [*command, str(tmp_path)], cwd=tmp_path, capture_output=True, text=True, timeout=100
+        )
 
     return run
 
 
 def test_a_worker_that_dies_fails_the_run(run):
-    done = run(**{f"calm_{k}": "def test_a(): pass\ndef test_b(): pass" for k in range(5)}, dies=DIES)
+    done = run(
+        **{f"calm_{k}": "def test_a(): pass\ndef test_b(): pass" for k in range(5)}, dies=DIES
+    )
     assert done.returncode == 1 and "crashed while running" in done.stdout
 
 
 def test_workers_do_not_share_what_numba_compiled(run, root, tmp_path, monkeypatch):
-    """Else two of them write the halves of one function, and who reads it dies (numba issue 10128)."""
+    """Else two of them write the halves of one function, and who reads it dies (numba issue
+    10128)."""
     for inherited in ("NUMBA_CACHE_DIR", "PYTEST_XDIST_WORKER"):
         monkeypatch.delenv(inherited, raising=False)
     shutil.copy(root / "conftest.py", tmp_path)
-    seen = "from numba import config\ndef test_it():\n    open('NAME', 'w').write(config.CACHE_DIR)\n"
-    seen += "def test_more(): pass\ndef test_yet_more(): pass\n"  # one test alone would go to the other's worker
+    seen = (
+        "from numba import config\ndef test_it():\n    open('NAME', 'w').write(config.CACHE_DIR)\n"
+    )
+    # one test alone would go to the other's worker
+    seen += "def test_more(): pass\ndef test_yet_more(): pass\n"
     assert run(a=seen.replace("NAME", "a"), b=seen.replace("NAME", "b")).returncode == 0
     one, other = ((tmp_path / name).read_text() for name in "ab")
     assert one != other and {one[-3:], other[-3:]} == {"gw0", "gw1"}

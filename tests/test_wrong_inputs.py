@@ -1,4 +1,5 @@
-"""What somebody may hand over by mistake, and what they are told: no broadcast, no NaN, in this course's words."""
+"""What somebody may hand over by mistake, and what they are told: no broadcast, no NaN, in this
+course's words."""
 
 import math
 import os
@@ -11,18 +12,18 @@ import pytest
 import torch
 
 from data_synth.walking import walk
-from data_synth.write_walks import main as write_walks
+from data_synth.walking.write import main as write_walks
 from motiondiff_edu import ddpm
 from motiondiff_edu.conditions.control import joystick
 from motiondiff_edu.fast.samplers import ddim_steps
 from motiondiff_edu.metrics.adherence import adherence
 from motiondiff_edu.modiff import MoDiff, MoDiffConfig
-from motiondiff_edu.motion.bvh_write import write_bvh
+from motiondiff_edu.motion.bvh.write import write_bvh
 from motiondiff_edu.motion.clip import slice_clips, split_by_source
 from motiondiff_edu.motion.scaler import Scaler
+from motiondiff_edu.performers.walker import Walker
+from motiondiff_edu.performers.windows import Windows, window_loss
 from motiondiff_edu.rollout import generate
-from motiondiff_edu.walker import Walker
-from motiondiff_edu.windows import Windows, window_loss
 
 SCHEDULE = ddpm.linear_schedule(20, 1e-3, 0.5)
 X = torch.zeros(2, 3)
@@ -41,11 +42,26 @@ MISTAKES = {
     "a step 0": (ddim(steps=[20, 0]), "steps must fall"),
     "a step beyond S": (ddim(steps=[21, 3]), "steps must fall"),
     "eta beyond DDPM": (ddim(steps=4, eta=2.0), "eta must lie between 0"),
-    "a step back from clean data": (lambda: ddpm.p_sample(X, 0, X, SCHEDULE, X), "s = 0: steps go from 1 to 20 here"),
-    "a posterior of clean data": (lambda: ddpm.q_posterior(X, X, 0, SCHEDULE), "steps go from 1 to 20"),
-    "the last step as a KL": (lambda: ddpm.step_kl(X, X, 1, X, SCHEDULE), "s = 1: steps go from 2 to 20"),
-    "pieces without a frame": (lambda: slice_clips([CLIP], seconds=0), "pieces of 0 s have no frame"),
-    "pieces of negative length": (lambda: slice_clips([CLIP], seconds=-1), "pieces of -1 s have no frame"),
+    "a step back from clean data": (
+        lambda: ddpm.p_sample(X, 0, X, SCHEDULE, X),
+        "s = 0: steps go from 1 to 20 here",
+    ),
+    "a posterior of clean data": (
+        lambda: ddpm.q_posterior(X, X, 0, SCHEDULE),
+        "steps go from 1 to 20",
+    ),
+    "the last step as a KL": (
+        lambda: ddpm.step_kl(X, X, 1, X, SCHEDULE),
+        "s = 1: steps go from 2 to 20",
+    ),
+    "pieces without a frame": (
+        lambda: slice_clips([CLIP], seconds=0),
+        "pieces of 0 s have no frame",
+    ),
+    "pieces of negative length": (
+        lambda: slice_clips([CLIP], seconds=-1),
+        "pieces of -1 s have no frame",
+    ),
     "a negative share": (lambda: split_by_source([CLIP], [1.5, -0.5], RNG), "shares that sum to 1"),
     "no data to scale": (lambda: Scaler.fit(torch.zeros(0, 3)), "there are no rows"),
     "one frame": (lambda: adherence(CLIP.poses[:1], CLIP.control[:1]), "takes two frames"),
@@ -53,8 +69,14 @@ MISTAKES = {
     "a short segment": (lambda: joystick([(1, 2)]), "four finite numbers"),
     "a segment of NaN": (lambda: joystick([(1, math.nan, 0, 0)]), "four finite numbers"),
     "an odd width": (lambda: MoDiffConfig(width=7, heads=7), "width = 7 must be even"),
-    "a schedule of another length": (lambda: Walker(MoDiff(SMALL), SCHEDULE, *PLAIN), "has 20 steps, the network 6"),
-    "no noise to learn from": (lambda: window_loss(Windows.of([CLIP], 4, 3), SCHEDULE, noises=0), "noises = 0"),
+    "a schedule of another length": (
+        lambda: Walker(MoDiff(SMALL), SCHEDULE, *PLAIN),
+        "has 20 steps, the network 6",
+    ),
+    "no noise to learn from": (
+        lambda: window_loss(Windows.of([CLIP], 4, 3), SCHEDULE, noises=0),
+        "noises = 0",
+    ),
     "heads that do not fit": (lambda: MoDiffConfig(width=16, heads=3), "shared evenly by 3 heads"),
 }
 
@@ -95,7 +117,9 @@ from motiondiff_edu.motion.root_frame import to_world
 {call}
 """
     environment = os.environ | {"PYTHONPATH": str(root)}
-    done = subprocess.run([sys.executable, "-c", code], cwd=tmp_path, env=environment, capture_output=True, text=True)
+    done = subprocess.run(
+        [sys.executable, "-c", code], cwd=tmp_path, env=environment, capture_output=True, text=True
+    )
     assert done.returncode == 1 and SHAPES[call] in done.stderr and not list(tmp_path.iterdir())
 
 
@@ -111,7 +135,9 @@ def test_a_control_beyond_the_training_data_is_named():
     walker = Walker(MoDiff(SMALL).eval(), ddpm.linear_schedule(6, 0.2, 0.95), *PLAIN, seen)
     past, control = torch.zeros(4, 63), torch.zeros(7, 3)
     control[5, 2] = -45.0
-    with pytest.warns(UserWarning, match=r"row 5 of the control asks for -45 \(turning rate\); .* from -2 to 2"):
+    with pytest.warns(
+        UserWarning, match=r"row 5 of the control asks for -45 \(turning rate\); .* from -2 to 2"
+    ):
         generate(walker, past, control)
     control[5, 2] = -2.1
     with warnings.catch_warnings():

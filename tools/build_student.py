@@ -1,8 +1,9 @@
 """Make the student edition: notebooks/*.ipynb -> notebooks/student/*.ipynb.
 
-A code cell tagged `solution` holds a function whose body has lines `# solution` ... `# end solution`, then the call of
-its check. The student edition has `raise NotImplementedError("your turn")` there, and then the solution, folded.
-Everything else stays. The same input gives the same bytes.
+A code cell tagged `solution` holds a function whose body has lines `# solution` ... `# end
+solution`, then the call of its check. The student edition has `raise NotImplementedError("your
+turn")` there, and then the solution, folded. Everything else stays. The same input gives the same
+bytes.
 
     python tools/build_student.py            write
     python tools/build_student.py --check    write nothing; exit 1 when the edition is stale
@@ -17,7 +18,7 @@ from pathlib import Path
 import notebook_cells
 from notebook_cells import NOTEBOOKS, tags
 
-from motiondiff_edu.files import replacing
+from motiondiff_edu._files import replacing
 
 REGION = re.compile(r"^( *)# solution *\n(.*?\n)\1# end solution *$", re.MULTILINE | re.DOTALL)
 # a link that leaves the folder leaves one folder more from notebooks/student
@@ -31,10 +32,18 @@ class StudentError(ValueError):
 def stub(source: str, where: str) -> str:
     """The source with each solution region replaced by `raise NotImplementedError`."""
     regions = list(REGION.finditer(source))
-    if not regions or source.count("# solution") != len(regions) or source.count("# end solution") != len(regions):
-        raise StudentError(f"{where}: a cell tagged `solution` needs `# solution` ... `# end solution`, one indent")
+    if (
+        not regions
+        or source.count("# solution") != len(regions)
+        or source.count("# end solution") != len(regions)
+    ):
+        raise StudentError(
+            f"{where}: a cell tagged `solution` needs `# solution` ... `# end solution`, one indent"
+        )
     if any(not region[1] for region in regions):
-        raise StudentError(f"{where}: the solution must be the body of a function, or Run All stops at the stub")
+        raise StudentError(
+            f"{where}: the solution must be the body of a function, or Run All stops at the stub"
+        )
     return REGION.sub(lambda region: f'{region[1]}raise NotImplementedError("your turn")', source)
 
 
@@ -52,7 +61,10 @@ def student(notebook: dict, name: str) -> dict:
     """The student edition of one notebook."""
     cells = []
     for index, cell in enumerate(notebook["cells"]):
-        cell = {**cell, "metadata": {k: v for k, v in cell.get("metadata", {}).items() if k in ("tags", "alt")}}
+        cell = {
+            **cell,
+            "metadata": {k: v for k, v in cell.get("metadata", {}).items() if k in ("tags", "alt")},
+        }
         if cell["cell_type"] == "markdown":
             cells.append(cell | {"source": UPWARDS.sub(r"\1../../", cell["source"])})
             continue
@@ -61,9 +73,16 @@ def student(notebook: dict, name: str) -> dict:
             cells.append(cell)
             continue
         source, identity = cell["source"], cell.get("id", f"cell-{index}")
-        cell["metadata"] = {"tags": ["exercise" if tag == "solution" else tag for tag in tags(cell)]}
+        cell["metadata"] = {
+            "tags": ["exercise" if tag == "solution" else tag for tag in tags(cell)]
+        }
         cells.append(cell | {"source": stub(source, f"{name}, cell {index} ({identity})")})
-        told = {"cell_type": "markdown", "id": f"{identity[:55]}-solution", "metadata": {}, "source": folded(source)}
+        told = {
+            "cell_type": "markdown",
+            "id": f"{identity[:55]}-solution",
+            "metadata": {},
+            "source": folded(source),
+        }
         cells.append(told)
     kernel = {"display_name": "Python 3 (ipykernel)", "language": "python", "name": "python3"}
     metadata = {"kernelspec": kernel, "language_info": {"name": "python"}}
@@ -71,22 +90,38 @@ def student(notebook: dict, name: str) -> dict:
 
 
 def text(notebook: dict) -> str:
-    """The bytes of a notebook as Jupyter writes them: sources by line, keys sorted, one space of indent."""
-    cells = [cell | {"source": cell["source"].splitlines(keepends=True)} for cell in notebook["cells"]]
-    return json.dumps(notebook | {"cells": cells}, indent=1, ensure_ascii=False, sort_keys=True) + "\n"
+    """The bytes of a notebook as Jupyter writes them: sources by line, keys sorted, one space of
+    indent."""
+    cells = [
+        cell | {"source": cell["source"].splitlines(keepends=True)} for cell in notebook["cells"]
+    ]
+    return (
+        json.dumps(notebook | {"cells": cells}, indent=1, ensure_ascii=False, sort_keys=True) + "\n"
+    )
 
 
 def edition(folder: Path) -> dict[Path, str]:
     """What belongs into folder/student: {path: text}."""
     paths = sorted(path for path in folder.glob("*.ipynb") if re.match(r"\d\d", path.name))
-    return {folder / "student" / path.name: text(student(notebook_cells.read(path), path.name)) for path in paths}
+    return {
+        folder / "student" / path.name: text(student(notebook_cells.read(path), path.name))
+        for path in paths
+    }
 
 
 def stale(folder: Path) -> list[str]:
     """What is missing, changed or left over in folder/student."""
     wanted, there = edition(folder), set((folder / "student").glob("*.ipynb"))
-    changed = [path for path, content in wanted.items() if path in there and path.read_text("utf-8") != content]
-    kinds = {"missing": set(wanted) - there, "changed": set(changed), "left over": there - set(wanted)}
+    changed = [
+        path
+        for path, content in wanted.items()
+        if path in there and path.read_text("utf-8") != content
+    ]
+    kinds = {
+        "missing": set(wanted) - there,
+        "changed": set(changed),
+        "left over": there - set(wanted),
+    }
     return [f"{path.name}: {kind}" for kind, paths in kinds.items() for path in sorted(paths)]
 
 
@@ -104,7 +139,9 @@ def write(folder: Path) -> int:
 
 def main(arguments: list[str] | None = None) -> int:
     parser = argparse.ArgumentParser(description="Make the student edition of the notebooks.")
-    parser.add_argument("--check", action="store_true", help="write nothing; exit 1 when the edition is stale")
+    parser.add_argument(
+        "--check", action="store_true", help="write nothing; exit 1 when the edition is stale"
+    )
     parser.add_argument("--folder", type=Path, default=NOTEBOOKS)
     options = parser.parse_args(arguments)
     try:
@@ -116,7 +153,9 @@ def main(arguments: list[str] | None = None) -> int:
         print(error, file=sys.stderr)
         return 1
     if found:
-        print("\n".join(["the student edition is stale; run: make student", *found]), file=sys.stderr)
+        print(
+            "\n".join(["the student edition is stale; run: make student", *found]), file=sys.stderr
+        )
     return 1 if found else 0
 
 

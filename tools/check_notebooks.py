@@ -1,4 +1,5 @@
-"""The form of a notebook: length, opening, tags, exercises, closing, nothing that ties it to one machine.
+"""The form of a notebook: length, opening, tags, exercises, closing, nothing that ties it to one
+machine.
 
 python tools/check_notebooks.py [NOTEBOOK ...]     lists what is wrong; exit 1 when anything is
 """
@@ -40,7 +41,9 @@ FORBIDDEN = {
 
 def lines(source: str) -> int:
     """Lines of code: blank lines and whole-line comments are not counted."""
-    return sum(bool(line.strip()) and not line.strip().startswith("#") for line in source.splitlines())
+    return sum(
+        bool(line.strip()) and not line.strip().startswith("#") for line in source.splitlines()
+    )
 
 
 def length(notebook: dict) -> Iterator[str]:
@@ -74,7 +77,8 @@ def storage(notebook: dict) -> Iterator[str]:
 
 
 def opening(notebook: dict) -> Iterator[str]:
-    """Before the imports: aim, needs, paper, minutes, symbols; then one imports cell that starts the run."""
+    """Before the imports: aim, needs, paper, minutes, symbols; then one imports cell that starts
+    the run."""
     imports = code(notebook, "imports")
     if len(imports) != 1 or "runtime.start(" not in imports[0]["source"]:
         yield "there must be one cell tagged `imports`, which calls runtime.start(...)"
@@ -83,7 +87,11 @@ def opening(notebook: dict) -> Iterator[str]:
         yield "the cell tagged `imports` must be the first code cell"
     before = notebook["cells"][: notebook["cells"].index(imports[0])]
     text = "\n".join(cell["source"] for cell in before)
-    yield from (f"the opening does not say {what}" for what, p in OPENING.items() if not re.search(p, text, re.I))
+    yield from (
+        f"the opening does not say {what}"
+        for what, p in OPENING.items()
+        if not re.search(p, text, re.I)
+    )
     if not text.lstrip().startswith("# "):
         yield "the first cell must begin with a title (# ...)"
     for cell in code(notebook)[1:]:
@@ -100,19 +108,32 @@ def parsed(cell: dict) -> ast.Module:
 
 def closing(notebook: dict) -> Iterator[str]:
     """The last cells: what to keep, what to read next."""
-    text = "\n".join(cell["source"] for cell in notebook["cells"][-4:] if cell["cell_type"] == "markdown")
-    yield from (f"the closing does not say {what}" for what, p in CLOSING.items() if not re.search(p, text, re.I))
+    text = "\n".join(
+        cell["source"] for cell in notebook["cells"][-4:] if cell["cell_type"] == "markdown"
+    )
+    yield from (
+        f"the closing does not say {what}"
+        for what, p in CLOSING.items()
+        if not re.search(p, text, re.I)
+    )
 
 
 def exercises(notebook: dict, name: str) -> Iterator[str]:
-    """Two or more exercises, each with minutes and difficulty before it, a hint, and a check in the same cell."""
+    """Two or more exercises, each with minutes and difficulty before it, a hint, and a check in the
+    same cell."""
     cells = notebook["cells"]
-    found = [index for index, cell in enumerate(cells) if cell["cell_type"] == "code" and "solution" in tags(cell)]
+    found = [
+        index
+        for index, cell in enumerate(cells)
+        if cell["cell_type"] == "code" and "solution" in tags(cell)
+    ]
     if len(found) < 2:
         yield f"{len(found)} cells tagged `solution`; a notebook has two exercises or more"
     for index in found:
         where, told = f"exercise in cell {cells[index].get('id')}", before(cells, index)
-        if not re.search(r"\bmin(utes?)?\b", told) or not re.search(r"difficulty|easy|medium|hard|[★☆●○]", told, re.I):
+        if not re.search(r"\bmin(utes?)?\b", told) or not re.search(
+            r"difficulty|easy|medium|hard|[★☆●○]", told, re.I
+        ):
             yield f"{where}: the text before it must give minutes and difficulty"
         if "<details" not in told or not re.search("hint", told, re.I):
             yield f"{where}: the text before it must fold a hint into <details>"
@@ -141,21 +162,29 @@ def lesson(notebook: dict, name: str) -> Iterator[str]:
         yield f"{predictions} times **Predict**; two to four"
     if name[:2] not in NO_TWINS and not code(notebook, "twin"):
         yield "no cell tagged `twin`: where is the step-by-step version?"
-    if re.search(r"!\[\s*\]\(", text) or any("alt=" not in image for image in re.findall(r"<img\b[^>]*>", text)):
+    if re.search(r"!\[\s*\]\(", text) or any(
+        "alt=" not in image for image in re.findall(r"<img\b[^>]*>", text)
+    ):
         yield "an image without alt text"
 
 
 def portable(notebook: dict) -> Iterator[str]:
     """Nothing that installs, downloads, edits paths or knows one machine."""
     text = "\n".join(cell["source"] for cell in code(notebook))
-    yield from (f"{what} in a code cell" for what, pattern in FORBIDDEN.items() if re.search(pattern, text))
+    yield from (
+        f"{what} in a code cell" for what, pattern in FORBIDDEN.items() if re.search(pattern, text)
+    )
 
 
 def faults(path: Path) -> list[str]:
     """All that is wrong with the form of one notebook."""
     notebook = notebook_cells.read(path)
     plain = [rule(notebook) for rule in (length, storage, opening, closing, portable)]
-    return [fault for rule in [*plain, exercises(notebook, path.name), lesson(notebook, path.name)] for fault in rule]
+    return [
+        fault
+        for rule in [*plain, exercises(notebook, path.name), lesson(notebook, path.name)]
+        for fault in rule
+    ]
 
 
 def main(arguments: list[str]) -> int:

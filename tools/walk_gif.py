@@ -1,4 +1,5 @@
-"""The README's moving picture: the shipped walker along the slalom.  Run: python tools/walk_gif.py"""
+"""The README's moving picture: the shipped walker along the slalom.  Run: python
+tools/walk_gif.py"""
 
 from pathlib import Path
 
@@ -6,9 +7,10 @@ import numpy as np
 import torch
 
 from data_synth.walking import walk
-from motiondiff_edu import checkpoints, rollout
+from motiondiff_edu import rollout
 from motiondiff_edu.conditions.control import constant_control, splice
 from motiondiff_edu.motion.root_frame import root_path, to_world
+from motiondiff_edu.pretrained import checkpoints
 from motiondiff_edu.widgets.path import PathPad
 from motiondiff_edu.widgets.player import Player
 
@@ -20,7 +22,9 @@ def main() -> None:
     ahead = PathPad(preset="slalom").control()[:130]
     control = splice(standing.control, ahead, 10)
     past = torch.from_numpy(standing.features()[-10:])
-    new = rollout.generate(checkpoints.pretrained("walker"), past, torch.tensor(control, dtype=torch.float32), seed=0)
+    new = rollout.generate(
+        checkpoints.pretrained("walker"), past, torch.tensor(control, dtype=torch.float32), seed=0
+    )
     poses = np.concatenate([standing.poses[-10:], new.double().numpy().reshape(-1, 21, 3)])
     player = Player(to_world(poses, control), past=10, path=root_path(control)[0])
     print("written:", player.save_gif(OUT, (420, 320)))

@@ -1,7 +1,8 @@
 """In-betweens without a model: straight lines between what is given, or arcs that keep the bones.
 
-Before the first and after the last given frame its pose is held.  Source: what every paper on in-betweening compares
-with; arcs are spherical interpolation (slerp) of the bones' directions.  Notebook: 15
+Before the first and after the last given frame its pose is held.  Source: what every paper on
+in-betweening compares with; arcs are spherical interpolation (slerp) of the bones' directions.
+Notebook: 15
 """
 
 import numpy as np
@@ -10,8 +11,11 @@ from jaxtyping import Bool, Float
 from ..motion.skeleton import BONES
 
 
-def linear(positions: Float[np.ndarray, "T J 3"], known: Bool[np.ndarray, "T J"]) -> Float[np.ndarray, "T J 3"]:
-    """Each joint goes straight from one given place to the next.  Raises ValueError for a joint that is never given.
+def linear(
+    positions: Float[np.ndarray, "T J 3"], known: Bool[np.ndarray, "T J"]
+) -> Float[np.ndarray, "T J 3"]:
+    """Each joint goes straight from one given place to the next.  Raises ValueError for a joint
+    that is never given.
 
     Notebook: 15
     """
@@ -20,12 +24,17 @@ def linear(positions: Float[np.ndarray, "T J 3"], known: Bool[np.ndarray, "T J"]
     for joint in range(positions.shape[1]):
         here = known[:, joint]
         for axis in range(3):
-            filled[~here, joint, axis] = np.interp(times[~here], times[here], positions[here, joint, axis])
+            filled[~here, joint, axis] = np.interp(
+                times[~here], times[here], positions[here, joint, axis]
+            )
     return filled
 
 
-def spherical(positions: Float[np.ndarray, "T J 3"], known: Bool[np.ndarray, "T J"]) -> Float[np.ndarray, "T J 3"]:
-    """The pelvis goes straight; every bone turns evenly from one given direction to the next, and keeps its length.
+def spherical(
+    positions: Float[np.ndarray, "T J 3"], known: Bool[np.ndarray, "T J"]
+) -> Float[np.ndarray, "T J 3"]:
+    """The pelvis goes straight; every bone turns evenly from one given direction to the next, and
+    keeps its length.
 
     A bone counts as given where both of its ends are; given joints stay where they are.
     Raises ValueError for a joint that is never given.  Notebook: 15
@@ -39,12 +48,17 @@ def spherical(positions: Float[np.ndarray, "T J 3"], known: Bool[np.ndarray, "T 
             continue
         bone = positions[both, child] - positions[both, parent]
         turned = _slerp(bone, np.flatnonzero(both), np.arange(len(positions)))
-        filled[:, child] = np.where(known[:, child, None], positions[:, child], filled[:, parent] + turned)
+        filled[:, child] = np.where(
+            known[:, child, None], positions[:, child], filled[:, parent] + turned
+        )
     return filled
 
 
-def _slerp(vectors: Float[np.ndarray, "K 3"], at: np.ndarray, times: np.ndarray) -> Float[np.ndarray, "T 3"]:
-    """Vectors between those at the frames `at`: directions on the great circle, lengths on a straight line.
+def _slerp(
+    vectors: Float[np.ndarray, "K 3"], at: np.ndarray, times: np.ndarray
+) -> Float[np.ndarray, "T 3"]:
+    """Vectors between those at the frames `at`: directions on the great circle, lengths on a
+    straight line.
 
     Opposite directions turn by any of the great circles between them.
     """
@@ -68,4 +82,6 @@ def _slerp(vectors: Float[np.ndarray, "K 3"], at: np.ndarray, times: np.ndarray)
 def _each_is_given(known: Bool[np.ndarray, "T J"]) -> None:
     never = np.flatnonzero(~known.any(0))
     if len(never):
-        raise ValueError(f"joint {int(never[0])} is never given: there is nothing to interpolate between")
+        raise ValueError(
+            f"joint {int(never[0])} is never given: there is nothing to interpolate between"
+        )

@@ -1,9 +1,11 @@
-"""How far is each way of filling in from the true conditional? Judged where that is known: on Gaussian mixtures.
+"""How far is each way of filling in from the true conditional? Judged where that is known: on
+Gaussian mixtures.
 
     wanted: p(unknown | known) of a mixture (`exact.conditional`); asked: the exact denoiser, so the method alone errs
-Ways: masked sampling (MoFusion 4.4), with and without resampling, in few steps or many; there-and-back (MoDiff III-E),
-which draws the future from the past and the past from the future; the same with what is known kept in view, which is
-Gibbs sampling; and draws from the wanted itself, whose errors are those of counting.
+Ways: masked sampling (MoFusion 4.4), with and without resampling, in few steps or many;
+there-and-back (MoDiff III-E), which draws the future from the past and the past from the future;
+the same with what is known kept in view, which is Gibbs sampling; and draws from the wanted itself,
+whose errors are those of counting.
 Source: MoFusion 4.4; MoDiff III-E; the comparison is ours.  Notebook: 15
 """
 
@@ -15,7 +17,7 @@ import torch
 from jaxtyping import Bool, Float
 from torch import Tensor
 
-from ..blending import blended
+from ..beyond.guidance import blended
 from ..ddpm import Denoiser, Schedule
 from ..exact import Mixture, conditional, mixture, sample_mixture
 from ..inbetweening import inpaint_steps
@@ -24,9 +26,11 @@ from .mixture_fit import responsibilities
 
 @dataclass(frozen=True, eq=False)
 class Question:
-    """A mixture, its exact denoiser, and some of its entries given. `past` is what there-and-back starts from.
+    """A mixture, its exact denoiser, and some of its entries given. `past` is what there-and-back
+    starts from.
 
-    Only unknown entries of the past are judged where a past is named, so that all ways answer the same question.
+    Only unknown entries of the past are judged where a past is named, so that all ways answer the
+    same question.
     """
 
     truth: Mixture
@@ -50,7 +54,8 @@ class Question:
 
 @dataclass(frozen=True)
 class Way:
-    """How to fill in: "exact", "masked" (with what `inpaint_steps` takes), "there-and-back" or "gibbs" (`rounds`)."""
+    """How to fill in: "exact", "masked" (with what `inpaint_steps` takes), "there-and-back" or
+    "gibbs" (`rounds`)."""
 
     kind: str
     steps: int = 50
@@ -62,12 +67,16 @@ class Way:
     def __post_init__(self):
         """Raises ValueError for a kind that is none."""
         if self.kind not in ("exact", "masked", "there-and-back", "gibbs"):
-            raise ValueError(f"the ways are exact, masked, there-and-back and gibbs, not {self.kind!r}")
+            raise ValueError(
+                f"the ways are exact, masked, there-and-back and gibbs, not {self.kind!r}"
+            )
 
     @property
     def name(self) -> str:
         """As `masked.50.x5`: fifty steps, each made five times."""
-        turns = ("" if self.resample == 1 else f".x{self.resample}") + (".blended" if self.blend is not None else "")
+        turns = ("" if self.resample == 1 else f".x{self.resample}") + (
+            ".blended" if self.blend is not None else ""
+        )
         turns += ".guided" if self.guidance else ""
         ends = {"exact": "", "masked": f".{self.steps}{turns}"}
         return self.kind + ends.get(self.kind, f".{self.rounds}")
@@ -80,11 +89,16 @@ WAYS = (
     Way("masked", 50, blend=3),
     Way("masked", 50, guidance=1.0),
 )
-ROUNDS = (Way("there-and-back", rounds=1), Way("there-and-back", rounds=20), Way("gibbs", rounds=20))
+ROUNDS = (
+    Way("there-and-back", rounds=1),
+    Way("there-and-back", rounds=20),
+    Way("gibbs", rounds=20),
+)
 
 
 class Rest:
-    """Draws from p(the rest | these entries) of a mixture, for many values of these entries at once.  Notebook: 15"""
+    """Draws from p(the rest | these entries) of a mixture, for many values of these entries at
+    once.   Notebook: 15"""
 
     def __init__(self, given: Mixture, known: Bool[Tensor, "D"]):
         covariances = torch.einsum("kia,ka,kja->kij", given.axes, given.variances, given.axes)
@@ -97,39 +111,54 @@ class Rest:
         self.root = axes * variances.clamp(min=0).sqrt()[:, None]
 
     def draw(self, x: Float[Tensor, "N D"], generator: torch.Generator) -> Float[Tensor, "N D"]:
-        """x with the rest drawn anew: first the part that its known entries speak for, then a point of it."""
+        """x with the rest drawn anew: first the part that its known entries speak for, then a point
+        of it."""
         value, filled = x[:, self.known], x.clone()
         part = torch.multinomial(responsibilities(self.seen, value), 1, generator=generator)[:, 0]
         noise = torch.randn(len(x), self.root.shape[-1], generator=generator, dtype=torch.float64)
         for k in part.unique():
             here = part == k
             off = value[here] - self.seen.means[k]
-            new = self.given.means[k, ~self.known] + off @ self.gain[k].T + noise[here] @ self.root[k].T
+            new = (
+                self.given.means[k, ~self.known]
+                + off @ self.gain[k].T
+                + noise[here] @ self.root[k].T
+            )
             filled[here.nonzero(), (~self.known).nonzero()[:, 0]] = new
         return filled
 
 
 def there_and_back(
-    question: Question, x: Float[Tensor, "N D"], rounds: int, generator: torch.Generator, keep: bool = False
+    question: Question,
+    x: Float[Tensor, "N D"],
+    rounds: int,
+    generator: torch.Generator,
+    keep: bool = False,
 ) -> Float[Tensor, "N D"]:
-    """`rounds` times: the future drawn given the past, the past given the future, and the holes filled from that.
+    """`rounds` times: the future drawn given the past, the past given the future, and the holes
+    filled from that.
 
-    What is known of the future is given, too. As in III-E the way back does not look at what is known of the past: it
-    reaches the holes through the future only.
-    `keep`: it does look, which makes this Gibbs sampling, with the true conditional for its end.
+    What is known of the future is given, too. As in III-E the way back does not look at what is
+    known of the past: it reaches the holes through the future only. `keep`: it does look, which
+    makes this Gibbs sampling, with the true conditional for its end.
     Raises ValueError for a question that names no past.  Source: MoDiff III-E.  Notebook: 15
     """
     if question.past is None:
         raise ValueError("there-and-back needs a past to start from: name it in the question")
     known, past = question.known, question.past
-    ahead, back = Rest(question.truth, past | known), Rest(question.truth, (~past | known) if keep else ~past)
+    ahead, back = (
+        Rest(question.truth, past | known),
+        Rest(question.truth, (~past | known) if keep else ~past),
+    )
     for _ in range(rounds):
         x = ahead.draw(x, generator)
         x = torch.where(known, x, back.draw(x, generator))
     return x
 
 
-def answers(question: Question, way: Way, n: int, generator: torch.Generator) -> Float[Tensor, "n D"]:
+def answers(
+    question: Question, way: Way, n: int, generator: torch.Generator
+) -> Float[Tensor, "n D"]:
     """n samples by one way: the known entries as they are, the others filled in.  Notebook: 15"""
     truth, known = question.truth, question.known
     values = question.values.double().where(known, 0.0).expand(n, -1)
@@ -139,14 +168,27 @@ def answers(question: Question, way: Way, n: int, generator: torch.Generator) ->
         shape = (n, question.frames, -1)
         start = torch.randn(values.shape, generator=generator, dtype=torch.float64).view(shape)
         blend = None if way.blend is None else partial(blended, fade=way.blend)
-        options = {"steps": way.steps, "resample": way.resample, "blend": blend, "guidance": way.guidance}
+        options = {
+            "steps": way.steps,
+            "resample": way.resample,
+            "blend": blend,
+            "guidance": way.guidance,
+        }
         given, mask = values.reshape(shape), known.expand(n, -1).reshape(shape)
         loop = inpaint_steps(
-            _framed(question.denoise), start, question.schedule, given, mask, generator=generator, **options
+            _framed(question.denoise),
+            start,
+            question.schedule,
+            given,
+            mask,
+            generator=generator,
+            **options,
         )
         *_, last = loop
         return last.x_s.flatten(1)
-    x = torch.where(known, values, truth.mean())  # what is missing is the mean at first, as in `reconstruction`
+    x = torch.where(
+        known, values, truth.mean()
+    )  # what is missing is the mean at first, as in `reconstruction`
     return there_and_back(question, x, way.rounds, generator, keep=way.kind == "gibbs")
 
 
@@ -159,8 +201,9 @@ def _framed(denoise: Denoiser) -> Denoiser:
 class Errors:
     """How far samples are from the wanted: 0, 1 and 0 for whoever draws from it.
 
-    mean: root mean square over entries of (mean - wanted mean) / wanted deviation. spread: root of the mean ratio of
-    variances. share: largest possible difference in probability (total variation) between shares of the parts.
+    mean: root mean square over entries of (mean - wanted mean) / wanted deviation. spread: root of
+    the mean ratio of variances. share: largest possible difference in probability (total variation)
+    between shares of the parts.
     """
 
     mean: float
@@ -184,7 +227,8 @@ def errors_of(x: Float[Tensor, "N D"], question: Question) -> Errors:
 def conditional_errors(
     question: Question, ways: Iterable[Way] = WAYS, *, seeds: Iterable[int] = range(5), n: int = 200
 ) -> Iterator[tuple[Way, int, Errors]]:
-    """Every way with every seed, n samples each: (way, seed, errors), as soon as each is known.  Notebook: 15"""
+    """Every way with every seed, n samples each: (way, seed, errors), as soon as each is known.
+    Notebook: 15"""
     seeds = tuple(seeds)
     for way in ways:
         for seed in seeds:
@@ -193,7 +237,8 @@ def conditional_errors(
 
 
 def gathered(found: Iterable[tuple[Way, int, Errors]]) -> dict[str, dict[str, list[float]]]:
-    """By the ways' names and by figure, one number for each seed: gathered(...)["masked.50"]["mean"].  Notebook: 15"""
+    """By the ways' names and by figure, one number for each seed:
+    gathered(...)["masked.50"]["mean"].   Notebook: 15"""
     table: dict[str, dict[str, list[float]]] = {}
     for way, _, errors in found:
         row = table.setdefault(way.name, {})

@@ -1,6 +1,8 @@
-"""Questions with a known answer about a body: windows of walking under a fitted mixture, and what is given of one.
+"""Questions with a known answer about a body: windows of walking under a fitted mixture, and what
+is given of one.
 
-A window has `frames` poses, `every` frames of the recording apart; its first half is the past. Standardised columns.
+A window has `frames` poses, `every` frames of the recording apart; its first half is the past.
+Standardised columns.
 Source: ours; the holes are those of MoFusion 4.4 and MoDiff III-E.  Notebook: 15
 """
 
@@ -14,7 +16,7 @@ from jaxtyping import Bool, Float
 from torch import Tensor
 
 from ..ddpm import Schedule
-from ..known import body_part, keyframes, seed
+from ..editing.masks import body_part, keyframes, seed
 from ..motion.clip import Clip
 from ..motion.scaler import Scaler
 from ..motion.skeleton import JOINTS, J
@@ -24,7 +26,8 @@ from .mixture_fit import WindowMixture, fit_windows
 
 @dataclass(frozen=True, eq=False)
 class WalkMixture:
-    """A mixture of short windows of walking, and the scaler (one entry a coordinate of a pose) back to metres."""
+    """A mixture of short windows of walking, and the scaler (one entry a coordinate of a pose) back
+    to metres."""
 
     fitted: WindowMixture
     scaler: Scaler
@@ -41,13 +44,20 @@ class WalkMixture:
         return poses.reshape(len(x), self.frames, J, 3).double().numpy()
 
     def question(
-        self, window: Float[Tensor, "D"], known: Bool[np.ndarray, "T J"], schedule: Schedule, past: bool = False
+        self,
+        window: Float[Tensor, "D"],
+        known: Bool[np.ndarray, "T J"],
+        schedule: Schedule,
+        past: bool = False,
     ) -> Question:
-        """What is the rest of this window? `past`: of its first half only, with there-and-back among the ways."""
+        """What is the rest of this window? `past`: of its first half only, with there-and-back
+        among the ways."""
         columns = torch.from_numpy(np.repeat(known, 3, axis=1)).flatten()
         half = torch.arange(len(columns)) < (self.frames // 2) * 3 * J
         denoise = self.fitted.denoiser(schedule)
-        return Question(self.truth, denoise, schedule, window, columns, half if past else None, self.frames)
+        return Question(
+            self.truth, denoise, schedule, window, columns, half if past else None, self.frames
+        )
 
 
 def fit_walks(
@@ -64,12 +74,20 @@ def fit_walks(
     Raises ValueError where no clip is long enough, and as `fit_windows`.
     """
     span = (frames - 1) * every + 1
-    rows = [clip.features()[first : first + span : every] for clip in clips for first in range(0, len(clip) - span, 4)]
+    rows = [
+        clip.features()[first : first + span : every]
+        for clip in clips
+        for first in range(0, len(clip) - span, 4)
+    ]
     if not rows:
         raise ValueError(f"no clip has more than {span} frames: there is no window to fit")
     poses = torch.from_numpy(np.stack(rows))
     scaler = Scaler.fit(poses)
-    return WalkMixture(fit_windows(scaler.transform(poses).flatten(1), K, axes, generator=generator), scaler, frames)
+    return WalkMixture(
+        fit_windows(scaler.transform(poses).flatten(1), K, axes, generator=generator),
+        scaler,
+        frames,
+    )
 
 
 def holes(frames: int) -> dict[str, Bool[np.ndarray, "T J"]]:
@@ -82,8 +100,11 @@ def holes(frames: int) -> dict[str, Bool[np.ndarray, "T J"]]:
 
 
 def holes_in_the_past(frames: int) -> dict[str, Bool[np.ndarray, "T J"]]:
-    """What may be missing from its first half: the frames between its ends, a leg; of the second, all is missing."""
+    """What may be missing from its first half: the frames between its ends, a leg; of the second,
+    all is missing."""
     past = np.arange(frames)[:, None] < frames // 2
     ends = np.isin(np.arange(frames), (0, frames // 2 - 1))[:, None]
-    leg = np.array([name.startswith("Right") and name.endswith(("Leg", "Foot", "ToeBase")) for name in JOINTS])
+    leg = np.array(
+        [name.startswith("Right") and name.endswith(("Leg", "Foot", "ToeBase")) for name in JOINTS]
+    )
     return {"frames": np.repeat(ends, J, axis=1), "leg": past & ~leg}

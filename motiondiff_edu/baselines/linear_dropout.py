@@ -1,9 +1,11 @@
-"""Dropout of the past in least squares, in closed form: every kind of it is a kind of ridge regression.
+"""Dropout of the past in least squares, in closed form: every kind of it is a kind of ridge
+regression.
 
 Least squares knows a dropped past x~ by two means over what is drawn at random, no more:
     E[x~] = keep x,    E[x~ x~^T] = share * x x^T + floor I      (* entry by entry)
-so the fit to endlessly many dropped pasts is known. For V = keep W, W the weights of the past, its normal equations
-are those of clean pasts with a penalty: (share / keep^2 - 1) * X^T X + floor / keep^2 I.
+so the fit to endlessly many dropped pasts is known. For V = keep W, W the weights of the past, its
+normal equations are those of clean pasts with a penalty: (share / keep^2 - 1) * X^T X + floor /
+keep^2 I.
 Source: MoDiff III-D (what is dropped); the algebra is ours.  Notebook: 09
 """
 
@@ -14,15 +16,18 @@ import torch
 from jaxtyping import Float
 from torch import Tensor
 
-from ..windows import Windows
+from ..performers.windows import Windows
 from .linear_gaussian import LinearGaussian, design, fitted
 
-Drop = Callable[[Tensor, torch.Generator], Tensor]  # a past (B, T_h, D) and who draws -> what is left of it
+Drop = Callable[
+    [Tensor, torch.Generator], Tensor
+]  # a past (B, T_h, D) and who draws -> what is left of it
 
 
 @dataclass(frozen=True, eq=False)
 class Moments:
-    """What a dropout leaves of the past on average: E[x~] = keep x, E[x~ x~^T] = share * x x^T + floor I.
+    """What a dropout leaves of the past on average: E[x~] = keep x, E[x~ x~^T] = share * x x^T +
+    floor I.
 
     Those made here raise ValueError for a rate outside 0..1.  Notebook: 09
     """
@@ -34,7 +39,8 @@ class Moments:
 
 @dataclass(frozen=True, eq=False)
 class Products:
-    """All that least squares takes from the windows: means over them of x x^T, x y^T and y y^T, in standard units."""
+    """All that least squares takes from the windows: means over them of x x^T, x y^T and y y^T, in
+    standard units."""
 
     xx: Float[Tensor, "F F"]
     xy: Float[Tensor, "F D"]
@@ -54,20 +60,23 @@ def check_rate(rate: float) -> None:
 
 
 def noised(rate: float, alpha_bar: Float[Tensor, "S"]) -> Moments:
-    """Diffusion dropout; each of these alpha_bar is as likely.  keep: their roots' mean; floor: mean 1 - alpha_bar."""
+    """Diffusion dropout; each of these alpha_bar is as likely.  keep: their roots' mean; floor:
+    mean 1 - alpha_bar."""
     check_rate(rate)
     keep, share = 1 - rate + rate * alpha_bar.sqrt().mean(), 1 - rate + rate * alpha_bar.mean()
     return Moments(float(keep), share.double(), float(rate * (1 - alpha_bar).mean()))
 
 
 def zeroed(rate: float) -> Moments:
-    """Whole pasts set to zero: the penalty has the data's own shape, and shrinks all of the past alike."""
+    """Whole pasts set to zero: the penalty has the data's own shape, and shrinks all of the past
+    alike."""
     check_rate(rate)
     return Moments(1 - rate, torch.tensor(1 - rate, dtype=torch.float64))
 
 
 def frames_zeroed(rate: float, T_h: int, D: int) -> Moments:
-    """MoGlow's frame dropout: two frames are both there with (1 - rate)^2, a frame and itself with 1 - rate."""
+    """MoGlow's frame dropout: two frames are both there with (1 - rate)^2, a frame and itself with
+    1 - rate."""
     check_rate(rate)
     frame = torch.arange(T_h * D) // D
     alike = frame[:, None] == frame
@@ -75,18 +84,25 @@ def frames_zeroed(rate: float, T_h: int, D: int) -> Moments:
 
 
 def entries_rescaled(rate: float, entries: int) -> Moments:
-    """nn.Dropout on the past: entries set to zero, the others divided by 1 - rate, so that the mean stays."""
+    """nn.Dropout on the past: entries set to zero, the others divided by 1 - rate, so that the mean
+    stays."""
     check_rate(rate)
     if rate == 1:
-        raise ValueError("nn.Dropout at rate 1 leaves nothing whose mean could stay; take a rate below 1")
+        raise ValueError(
+            "nn.Dropout at rate 1 leaves nothing whose mean could stay; take a rate below 1"
+        )
     share = torch.ones(entries, entries, dtype=torch.float64)
     return Moments(1.0, share + rate / (1 - rate) * torch.eye(entries, dtype=torch.float64))
 
 
 def products(
-    windows: Windows, drop: Drop | None = None, draws: int = 1, generator: torch.Generator | None = None
+    windows: Windows,
+    drop: Drop | None = None,
+    draws: int = 1,
+    generator: torch.Generator | None = None,
 ) -> Products:
-    """The products of all windows, with the past as `drop` leaves it in `draws` tries at each window.
+    """The products of all windows, with the past as `drop` leaves it in `draws` tries at each
+    window.
 
     Raises ValueError unless the windows predict one pose (T_p = 1).  Notebook: 09
     """
@@ -104,7 +120,8 @@ def products(
 
 
 def expected(clean: Products, moments: Moments) -> Products:
-    """What `products(windows, drop)` tends to with many draws, from the products of clean pasts.  Notebook: 09"""
+    """What `products(windows, drop)` tends to with many draws, from the products of clean pasts.
+    Notebook: 09"""
     P, xx, xy = clean.past, clean.xx.clone(), clean.xy.clone()
     xx[:P, :P] = moments.share * xx[:P, :P] + moments.floor * torch.eye(P, dtype=xx.dtype)
     xx[:P, P:] *= moments.keep
@@ -114,23 +131,32 @@ def expected(clean: Products, moments: Moments) -> Products:
 
 
 def fit(dropped: Products, clean: Products | None = None, ridge: float = 1e-6) -> LinearGaussian:
-    """Least squares on dropped pasts; the walker's noise is what this leaves over on clean ones, as it will be used.
+    """Least squares on dropped pasts; the walker's noise is what this leaves over on clean ones, as
+    it will be used.
 
     Without `clean` the products are those of clean pasts: ordinary least squares.  Notebook: 09
     """
     clean = clean or dropped
-    weight = torch.linalg.solve(dropped.xx + ridge * torch.eye(len(dropped.xx), dtype=torch.float64), dropped.xy)
+    weight = torch.linalg.solve(
+        dropped.xx + ridge * torch.eye(len(dropped.xx), dtype=torch.float64), dropped.xy
+    )
     left = clean.yy - weight.T @ clean.xy - clean.xy.T @ weight + weight.T @ clean.xx @ weight
     return fitted(clean.windows, weight, (left + left.T) / 2)
 
 
 def contributions(walker: LinearGaussian, clean: Products) -> tuple[float, float]:
-    """How far past and control move the next pose: RMS of either's part of the sum, in standard deviations.
+    """How far past and control move the next pose: RMS of either's part of the sum, in standard
+    deviations.
 
     Notebook: 09
     """
     weight, P = walker.weight.double(), clean.past
-    centred = clean.xx - torch.outer(clean.xx[-1], clean.xx[-1])  # the last regressor is the constant 1
+    centred = clean.xx - torch.outer(
+        clean.xx[-1], clean.xx[-1]
+    )  # the last regressor is the constant 1
     parts = (slice(0, P), slice(P, len(weight) - 1))
-    past, control = (((weight[part].T @ centred[part, part]) * weight[part].T).sum(1).mean().sqrt() for part in parts)
+    past, control = (
+        ((weight[part].T @ centred[part, part]) * weight[part].T).sum(1).mean().sqrt()
+        for part in parts
+    )
     return float(past), float(control)

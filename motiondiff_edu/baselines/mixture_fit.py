@@ -1,9 +1,12 @@
-"""A Gaussian mixture fitted to short windows of motion: motion whose every conditional is known exactly.
+"""A Gaussian mixture fitted to short windows of motion: motion whose every conditional is known
+exactly.
 
     x = m + W z + e,   z ~ sum_k w_k N(mu_k, C_k),   e ~ N(0, rest I) across W
-W are the first principal axes of the windows, the mixture in them is fitted by expectation and maximisation (EM). It
-is a crude model of walking, and that does not matter: samplers are judged against *it*, not against walking.
-Source: EM after Dempster, Laird and Rubin (1977); principal axes with an even rest after Tipping and Bishop (1999).
+W are the first principal axes of the windows, the mixture in them is fitted by expectation and
+maximisation (EM). It is a crude model of walking, and that does not matter: samplers are judged
+against *it*, not against walking.
+Source: EM after Dempster, Laird and Rubin (1977); principal axes with an even rest after Tipping
+and Bishop (1999).
 Notebook: 15
 """
 
@@ -19,18 +22,26 @@ from ..exact import Mixture, along_axes, mixture, part_log_densities, posterior_
 
 
 def responsibilities(given: Mixture, x: Float[Tensor, "N D"]) -> Float[Tensor, "N K"]:
-    """The probability that each part made each point: w_k N(x; m_k, C_k), scaled to sum to 1.  Notebook: 15"""
+    """The probability that each part made each point: w_k N(x; m_k, C_k), scaled to sum to 1.
+    Notebook: 15"""
     off = along_axes(given, x.double()[:, None] - given.means)
     return part_log_densities(given.weights, off, given.variances).softmax(1)
 
 
 def fit_mixture(
-    x: Float[Tensor, "N D"], K: int, *, ridge: float = 1e-3, rounds: int = 50, generator: torch.Generator | None = None
+    x: Float[Tensor, "N D"],
+    K: int,
+    *,
+    ridge: float = 1e-3,
+    rounds: int = 50,
+    generator: torch.Generator | None = None,
 ) -> Mixture:
-    """Fit K Gaussians by EM, from K of the points drawn far apart; every covariance gets `ridge` on its diagonal.
+    """Fit K Gaussians by EM, from K of the points drawn far apart; every covariance gets `ridge` on
+    its diagonal.
 
-    Expectation: r_nk = share of part k in x_n. Maximisation: w_k = mean r_nk; m_k and C_k, means weighed by r_nk.
-    A part that loses its points keeps a point's weight and stays where it was, so that none vanishes.
+    Expectation: r_nk = share of part k in x_n. Maximisation: w_k = mean r_nk; m_k and C_k, means
+    weighed by r_nk. A part that loses its points keeps a point's weight and stays where it was, so
+    that none vanishes.
     Raises ValueError for fewer points than parts.  Notebook: 15
     """
     x, N = x.double(), len(x)
@@ -41,7 +52,9 @@ def fit_mixture(
     even = ridge * torch.eye(x.shape[1], dtype=torch.float64)
     for _ in range(rounds):
         mass = share.sum(0).clamp(min=1.0)
-        missing = mass - share.sum(0)  # what a part lacks to a point's weight lies where the part is
+        missing = mass - share.sum(
+            0
+        )  # what a part lacks to a point's weight lies where the part is
         means = (share.T @ x + missing[:, None] * means) / mass[:, None]
         off = x - means[:, None]
         covariances = (share.T[..., None] * off).mT @ off / mass[:, None, None]
@@ -50,8 +63,11 @@ def fit_mixture(
     return fitted
 
 
-def _far_apart(x: Float[Tensor, "N D"], K: int, generator: torch.Generator | None) -> Float[Tensor, "K D"]:
-    """k-means++: each next point is drawn with a chance that grows as its squared distance from those there are."""
+def _far_apart(
+    x: Float[Tensor, "N D"], K: int, generator: torch.Generator | None
+) -> Float[Tensor, "K D"]:
+    """k-means++: each next point is drawn with a chance that grows as its squared distance from
+    those there are."""
     chosen = x[torch.randint(len(x), (1,), generator=generator)]
     while len(chosen) < K:
         away = torch.cdist(x, chosen).min(1).values.square() + 1e-12
@@ -61,7 +77,8 @@ def _far_apart(x: Float[Tensor, "N D"], K: int, generator: torch.Generator | Non
 
 @dataclass(frozen=True, eq=False)
 class WindowMixture:
-    """A mixture in a few principal axes (the columns of `basis`), and the same small variance across all others."""
+    """A mixture in a few principal axes (the columns of `basis`), and the same small variance
+    across all others."""
 
     inside: Mixture
     mean: Float[Tensor, "D"]
@@ -73,12 +90,17 @@ class WindowMixture:
         """The same mixture in all D dimensions."""
         D, r = self.basis.shape
         across = torch.linalg.qr(self.basis, mode="complete").Q[:, r:]
-        axes = torch.cat([self.basis @ self.inside.axes, across.expand(len(self.inside.weights), -1, -1)], dim=2)
+        axes = torch.cat(
+            [self.basis @ self.inside.axes, across.expand(len(self.inside.weights), -1, -1)], dim=2
+        )
         variances = torch.nn.functional.pad(self.inside.variances, (0, D - r), value=self.rest)
-        return Mixture(self.inside.weights, self.mean + self.inside.means @ self.basis.T, axes, variances)
+        return Mixture(
+            self.inside.weights, self.mean + self.inside.means @ self.basis.T, axes, variances
+        )
 
     def denoiser(self, schedule: Schedule) -> Denoiser:
-        """The exact denoiser, eps_hat = E[eps | x_s]: `exact_denoiser` of the whole, at the cost of the axes alone."""
+        """The exact denoiser, eps_hat = E[eps | x_s]: `exact_denoiser` of the whole, at the cost of
+        the axes alone."""
 
         def denoise(x_s: Tensor, s: Tensor) -> Tensor:
             x = x_s.double()
@@ -96,9 +118,11 @@ class WindowMixture:
 def fit_windows(
     x: Float[Tensor, "N D"], K: int = 5, axes: int = 30, *, generator: torch.Generator | None = None
 ) -> WindowMixture:
-    """Fit K Gaussians in the first principal axes of standardised windows; what is left over is spread evenly.
+    """Fit K Gaussians in the first principal axes of standardised windows; what is left over is
+    spread evenly.
 
-    No covariance is narrower than that rest.  Raises ValueError for more axes than windows or columns.  Notebook: 15
+    No covariance is narrower than that rest.  Raises ValueError for more axes than windows or
+    columns.   Notebook: 15
     """
     N, D = x.shape
     if not axes < min(N, D):
@@ -106,4 +130,6 @@ def fit_windows(
     x, mean = x.double(), x.double().mean(0)
     size, directions = torch.linalg.eigh((x - mean).T @ (x - mean) / N)  # the smallest first
     rest, basis = float(size[:-axes].clamp(min=0).mean()), directions[:, -axes:]
-    return WindowMixture(fit_mixture((x - mean) @ basis, K, ridge=rest, generator=generator), mean, basis, rest)
+    return WindowMixture(
+        fit_mixture((x - mean) @ basis, K, ridge=rest, generator=generator), mean, basis, rest
+    )

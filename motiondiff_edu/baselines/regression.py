@@ -1,7 +1,8 @@
-"""Dance by regression: one right answer for each song, the mean of all the dances it might have had.
+"""Dance by regression: one right answer for each song, the mean of all the dances it might have
+had.
 
-No noise goes in, so the same song gives the same dance; where many continuations are right, the mean of them is what
-minimises the squared error, and a mean of dances hardly dances.
+No noise goes in, so the same song gives the same dance; where many continuations are right, the
+mean of them is what minimises the squared error, and a mean of dances hardly dances.
 Source: the idea of AI Choreographer, as MoFusion's Table 1 has it for a baseline.  Notebook: 14
 """
 
@@ -10,7 +11,7 @@ from collections.abc import Callable
 import torch
 from torch import Tensor, nn
 
-from ..dance_windows import DanceWindows
+from ..performers.dance_windows import DanceWindows
 from .transformer import TransformerConfig
 
 REGRESSION = TransformerConfig(deterministic=True)
@@ -19,7 +20,8 @@ REGRESSION = TransformerConfig(deterministic=True)
 def regression_loss(
     windows: DanceWindows, *, batch: int = 32, shake: float = 0.0
 ) -> Callable[[nn.Module, torch.Generator], Tensor]:
-    """Mean squared error of the motion itself, as a `loss_fn` for `training.train_steps`.  Notebook: 14"""
+    """Mean squared error of the motion itself, as a `loss_fn` for `training.train_steps`.
+    Notebook: 14"""
 
     def loss_fn(model: nn.Module, generator: torch.Generator) -> Tensor:
         device = next(model.parameters()).device

@@ -1,8 +1,10 @@
-"""Filling holes with no network: the expected value of what is missing, given what is there, under one Gaussian.
+"""Filling holes with no network: the expected value of what is missing, given what is there, under
+one Gaussian.
 
     E[x_m | x_k] = mean_m + C_mk (C_kk + ridge I)^-1 (x_k - mean_k)
-One mean and one covariance C serve every mask: for each it is the ridge regression of the missing columns on the
-visible ones, in closed form. The answer is a mean: it says nothing of how else it might have been.
+One mean and one covariance C serve every mask: for each it is the ridge regression of the missing
+columns on the visible ones, in closed form. The answer is a mean: it says nothing of how else it
+might have been.
 Source: the rival is ours; the papers have none.  Notebook: 10
 """
 
@@ -13,38 +15,48 @@ from jaxtyping import Bool, Float
 from torch import Tensor
 
 from ..motion.scaler import Scaler
-from ..windows import Windows
+from ..performers.windows import Windows
 
 
 @dataclass(frozen=True, eq=False)
 class ConditionalMean:
-    """Mean and covariance of rows of numbers (float64), and the ridge that keeps the regression calm.  Notebook: 10"""
+    """Mean and covariance of rows of numbers (float64), and the ridge that keeps the regression
+    calm.   Notebook: 10"""
 
     mean: Float[Tensor, "F"]
     covariance: Float[Tensor, "F F"]
     ridge: float = 1e-2
 
     def fill(self, x: Float[Tensor, "B F"], known: Bool[Tensor, "B F"]) -> Float[Tensor, "B F"]:
-        """The rows with what is not known replaced by its expected value; what is known comes back as it was.
+        """The rows with what is not known replaced by its expected value; what is known comes back
+        as it was.
 
-        Where nothing is known that is the mean. What `x` holds in a hole is not looked at (NaN may stand there).
+        Where nothing is known that is the mean. What `x` holds in a hole is not looked at (NaN may
+        stand there).
         """
         filled = x.clone()
         for row, have in enumerate(known):
             lack, away = ~have, (x[row, have] - self.mean[have]).double()
-            visible = self.covariance[have][:, have] + self.ridge * torch.eye(int(have.sum())).double()
-            guess = self.mean[lack] + self.covariance[lack][:, have] @ torch.linalg.solve(visible, away)
+            visible = (
+                self.covariance[have][:, have] + self.ridge * torch.eye(int(have.sum())).double()
+            )
+            guess = self.mean[lack] + self.covariance[lack][:, have] @ torch.linalg.solve(
+                visible, away
+            )
             filled[row, lack] = guess.to(x)
         return filled
 
 
 def fit(rows: Float[Tensor, "K F"], ridge: float = 1e-2) -> ConditionalMean:
-    """Mean and covariance (divided by K) of training rows, in units in which `ridge` means the same for all columns.
+    """Mean and covariance (divided by K) of training rows, in units in which `ridge` means the same
+    for all columns.
 
     Raises ValueError for fewer than two rows or a ridge that is not above 0.  Notebook: 10
     """
     if len(rows) < 2 or ridge <= 0:
-        raise ValueError(f"a covariance needs two rows and a ridge above 0, not {len(rows)} rows and ridge {ridge:g}")
+        raise ValueError(
+            f"a covariance needs two rows and a ridge above 0, not {len(rows)} rows and ridge {ridge:g}"
+        )
     mean = rows.double().mean(0)
     centred = rows.double() - mean
     return ConditionalMean(mean, centred.T @ centred / len(rows), ridge)
@@ -52,14 +64,18 @@ def fit(rows: Float[Tensor, "K F"], ridge: float = 1e-2) -> ConditionalMean:
 
 @dataclass(frozen=True, eq=False)
 class WindowRidge:
-    """The same for windows of a walk: T_h poses with holes, and the control of all frames, which is never missing."""
+    """The same for windows of a walk: T_h poses with holes, and the control of all frames, which is
+    never missing."""
 
     inner: ConditionalMean
     pose_scaler: Scaler
     control_scaler: Scaler
 
     def repair(
-        self, past: Float[Tensor, "B T_h D"], known: Bool[Tensor, "B T_h D"], control: Float[Tensor, "B T C"]
+        self,
+        past: Float[Tensor, "B T_h D"],
+        known: Bool[Tensor, "B T_h D"],
+        control: Float[Tensor, "B T C"],
     ) -> Float[Tensor, "B T_h D"]:
         """The past (metres) with its holes filled by their expected values.  Notebook: 10"""
         rows = _rows(self.pose_scaler.transform(past), self.control_scaler.transform(control))

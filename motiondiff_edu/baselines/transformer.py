@@ -1,8 +1,8 @@
 """A plain transformer that dances: frames attend to frames, and to the music; no U-Net.
 
-Told the noised motion and the step, it is a denoiser of the U-Net's size (is the U-Net light?). Given nothing but the
-music it is a regression: see `regression.py`.  Source: AI Choreographer's cross-modal transformer (cited by MoFusion
-4.1), made small; sizes are ours.  Notebook: 14
+Told the noised motion and the step, it is a denoiser of the U-Net's size (is the U-Net light?).
+Given nothing but the music it is a regression: see `regression.py`.  Source: AI Choreographer's
+cross-modal transformer (cited by MoFusion 4.1), made small; sizes are ours.   Notebook: 14
 """
 
 from dataclasses import asdict, dataclass
@@ -19,7 +19,8 @@ from ..prediction import TARGETS
 
 @dataclass(frozen=True)
 class TransformerConfig:
-    """Sizes of the network; `deterministic` leaves x_s and s out: the motion then follows from the music alone."""
+    """Sizes of the network; `deterministic` leaves x_s and s out: the motion then follows from the
+    music alone."""
 
     D: int = 63
     C: int = 80
@@ -35,13 +36,16 @@ class TransformerConfig:
     deterministic: bool = False
 
     def __post_init__(self):
-        """Raises ValueError for sizes of which no network can be built, and for an unknown target."""
+        """Raises ValueError for sizes of which no network can be built, and for an unknown
+        target."""
         if min(self.D, self.C, self.S, self.heads, self.layers) < 1 or self.music_layers < 0:
             raise ValueError("D, C, S, heads and layers must be 1 at least")
         if min(self.fps, self.slowest, self.fastest) <= 0:
             raise ValueError("fps, slowest and fastest are rates above 0")
         if self.width < 1 or self.width % (2 * self.heads):
-            raise ValueError(f"the width must be a multiple of 2 x {self.heads} heads, not {self.width}")
+            raise ValueError(
+                f"the width must be a multiple of 2 x {self.heads} heads, not {self.width}"
+            )
         if self.target not in TARGETS:
             raise ValueError(f"target must be one of {', '.join(TARGETS)}, not {self.target!r}")
 
@@ -50,21 +54,25 @@ class TransformerConfig:
 
 
 class Layer(nn.Module):
-    """Self-attention between frames, then what MoFusion's blocks have: attention to the music and a feed-forward."""
+    """Self-attention between frames, then what MoFusion's blocks have: attention to the music and a
+    feed-forward."""
 
     def __init__(self, width: int, heads: int):
         super().__init__()
         self.norm, self.attention = nn.LayerNorm(width), CrossModalAttention(width, heads)
         self.ask = Ask(width, heads, width)
 
-    def forward(self, x: Float[Tensor, "B T C"], music: Music, bias, between, to_music) -> Float[Tensor, "B T C"]:
+    def forward(
+        self, x: Float[Tensor, "B T C"], music: Music, bias, between, to_music
+    ) -> Float[Tensor, "B T C"]:
         normed = self.norm(x)
         x = x + self.attention(normed, normed, None, between)
         return self.ask(x, music.tokens, bias, to_music)
 
 
 class DanceTransformer(nn.Module):
-    """The same call as MoFusion's: (x_s, s, music) -> the target; with `deterministic`, x_s only says how long.
+    """The same call as MoFusion's: (x_s, s, music) -> the target; with `deterministic`, x_s only
+    says how long.
 
     Notebook: 14
     """
@@ -79,14 +87,23 @@ class DanceTransformer(nn.Module):
         self.out = nn.Sequential(nn.LayerNorm(width), nn.Linear(width, config.D))
 
     def listen(
-        self, mel: Float[Tensor, "B M C"], times: Float[Tensor, "M"], mask: Bool[Tensor, "B M"] | None = None
+        self,
+        mel: Float[Tensor, "B M C"],
+        times: Float[Tensor, "M"],
+        mask: Bool[Tensor, "B M"] | None = None,
     ) -> Music:
         """As MoFusion.listen."""
-        present = mel.new_ones(1, mel.shape[1], 1) if mask is None else mask[..., None].to(mel.dtype)
+        present = (
+            mel.new_ones(1, mel.shape[1], 1) if mask is None else mask[..., None].to(mel.dtype)
+        )
         step = 2 if self.config.music_layers else 1
-        return Music(self.music(mel, present), times[::step], None if mask is None else mask[:, ::step])
+        return Music(
+            self.music(mel, present), times[::step], None if mask is None else mask[:, ::step]
+        )
 
-    def forward(self, x_s: Float[Tensor, "B T D"], s: Int[Tensor, "B"], music: Music) -> Float[Tensor, "B T D"]:
+    def forward(
+        self, x_s: Float[Tensor, "B T D"], s: Int[Tensor, "B"], music: Music
+    ) -> Float[Tensor, "B T D"]:
         config = self.config
         if config.deterministic:
             x_s, s = torch.zeros_like(x_s), torch.zeros_like(s)

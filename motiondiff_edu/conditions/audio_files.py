@@ -1,6 +1,8 @@
-"""Sound files to mono samples at 16 kHz, or an AudioError that says what is wrong and what to do about it.
+"""Sound files to mono samples at 16 kHz, or an AudioError that says what is wrong and what to do
+about it.
 
-wav, flac, ogg, mp3, aiff and what else libsndfile reads, told apart by content and not by name, at any rate.
+wav, flac, ogg, mp3, aiff and what else libsndfile reads, told apart by content and not by name, at
+any rate.
 Notebook: 11, 19
 """
 
@@ -19,10 +21,12 @@ from torch import Tensor
 from .music import SAMPLE_RATE
 
 SHORTEST = 1.0  # seconds
-SILENT = 1e-4  # a file whose largest sample is below this, 80 dB under full scale, holds nothing to dance to
+# a file whose largest sample is below this, 80 dB under full scale, holds nothing to dance to
+SILENT = 1e-4
 BLOCK = 4096  # samples read at a time, of a file that cannot be read in one piece
 
-VIDEO_AND_PHONES = {  # first bytes of what libsndfile does not read and ffmpeg does: (where, bytes): name
+# first bytes of what libsndfile does not read and ffmpeg does: (where, bytes): name
+VIDEO_AND_PHONES = {
     (4, b"ftyp"): "an MP4 file (m4a, mp4, mov)",
     (0, b"\x1a\x45\xdf\xa3"): "a Matroska file (mkv, webm)",
     (0, b"\x30\x26\xb2\x75"): "a Windows Media file (wma)",
@@ -38,22 +42,29 @@ class AudioError(ValueError):
 
 
 def read_audio(path: str | Path) -> Float[Tensor, "N"]:
-    """A sound file as mono float32 samples at 16 kHz, without its constant offset; channels are averaged.
+    """A sound file as mono float32 samples at 16 kHz, without its constant offset; channels are
+    averaged.
 
     Where the file breaks off, what could be read is returned with a UserWarning.
-    Raises AudioError for a file that is missing, a folder, of another kind, damaged, empty, silent, shorter than a
-    second, or has samples that are not finite.  Source: MoFusion 3.3.  Notebook: 11
+    Raises AudioError for a file that is missing, a folder, of another kind, damaged, empty, silent,
+    shorter than a second, or has samples that are not finite.  Source: MoFusion 3.3.   Notebook: 11
     """
     path = Path(path)
     if not path.is_file():
-        what = "is a folder; name a sound file in it" if path.is_dir() else "is not there; check the spelling"
+        what = (
+            "is a folder; name a sound file in it"
+            if path.is_dir()
+            else "is not there; check the spelling"
+        )
         raise AudioError(f"{path} {what}")
     channels, rate, loss = _decode(path)
     seconds = len(channels) / rate
     if seconds < SHORTEST:
         length = f"holds {seconds:.2f} s of sound" if len(channels) else "holds no sound at all"
         length += f" and {loss}" if loss else ""
-        raise AudioError(f"{path.name} {length}; give it at least {SHORTEST:g} s, or better a whole song")
+        raise AudioError(
+            f"{path.name} {length}; give it at least {SHORTEST:g} s, or better a whole song"
+        )
     bad = np.flatnonzero(~np.isfinite(channels).all(1))
     if len(bad):
         raise AudioError(
@@ -62,14 +73,18 @@ def read_audio(path: str | Path) -> Float[Tensor, "N"]:
         )
     mono = _mono(channels, path.name)
     if loss:
-        warnings.warn(f"{path.name} {loss}; the {seconds:.2f} s that could be read are used", stacklevel=2)
+        warnings.warn(
+            f"{path.name} {loss}; the {seconds:.2f} s that could be read are used", stacklevel=2
+        )
     return torch.from_numpy(resample(mono, rate).astype(np.float32))
 
 
 def resample(audio: Float[np.ndarray, "N"], rate: int) -> Float[np.ndarray, "n"]:
-    """The same sound at 16 kHz: n = ceil(N * 16000 / rate). What lies above the new 8 kHz, or the old half rate, goes.
+    """The same sound at 16 kHz: n = ceil(N * 16000 / rate). What lies above the new 8 kHz, or the
+    old half rate, goes.
 
-    A windowed sinc of 32 zero crossings a side: flat to 88 % of the lower half rate, 80 dB down from 107 %.
+    A windowed sinc of 32 zero crossings a side: flat to 88 % of the lower half rate, 80 dB down
+    from 107 %.
     Notebook: 11
     """
     common = gcd(SAMPLE_RATE, rate)
@@ -90,14 +105,19 @@ def _decode(path: Path) -> tuple[Float[np.ndarray, "N channels"], int, str]:
             try:
                 channels = file.read(dtype="float32", always_2d=True)
             except soundfile.LibsndfileError:
-                return _before_the_damage(path), file.samplerate, "is damaged: the rest cannot be read"
+                return (
+                    _before_the_damage(path),
+                    file.samplerate,
+                    "is damaged: the rest cannot be read",
+                )
             return channels, file.samplerate, _lost(file, len(channels))
     except soundfile.LibsndfileError as error:
         raise AudioError(f"{path.name} {_other_kind(path, error)}") from None
 
 
 def _before_the_damage(path: Path) -> Float[np.ndarray, "N channels"]:
-    """Block by block, as far as it goes; whole files are not read so, for seeking in an MP3 loses its place."""
+    """Block by block, as far as it goes; whole files are not read so, for seeking in an MP3 loses
+    its place."""
     import soundfile
 
     with soundfile.SoundFile(path) as file:
@@ -113,9 +133,13 @@ def _lost(file, there: int) -> str:
     promised, log = file.frames, file.extra_info
     if found := PROMISED.search(log):
         claimed, actual = int(found[1]), max(int(found[2]), 1)
-        promised = there * claimed // actual if claimed < 2**31 - 1 else there  # else written before its end was known
+        promised = (
+            there * claimed // actual if claimed < 2**31 - 1 else there
+        )  # else written before its end was known
     if "reports a hole" in log:
-        return f"is damaged: {(promised - there) / file.samplerate:.2f} s are missing from its middle"
+        return (
+            f"is damaged: {(promised - there) / file.samplerate:.2f} s are missing from its middle"
+        )
     if promised > there:
         return f"breaks off, for its header promises {promised / file.samplerate:.2f} s"
     if "lacks an end-of-stream" in log:
@@ -130,7 +154,9 @@ def _mono(channels: Float[np.ndarray, "N channels"], name: str) -> Float[np.ndar
     if np.abs(mono).max() < SILENT:
         mono = channels[:, peaks.argmax()]
     if peaks.max() < SILENT:
-        raise AudioError(f"{name} is silent from end to end, nothing to dance to; was the right input recorded?")
+        raise AudioError(
+            f"{name} is silent from end to end, nothing to dance to; was the right input recorded?"
+        )
     return mono
 
 

@@ -1,6 +1,7 @@
 """Control for the walker: from a drawn path, from a joystick, constant, or held.
 
-A control is (T, 3): forward m/s, left m/s, yaw rad/s (counter-clockwise from above); row t takes root[t] to root[t+1].
+A control is (T, 3): forward m/s, left m/s, yaw rad/s (counter-clockwise from above); row t takes
+root[t] to root[t+1].
 Notebook: 00, 07
 """
 
@@ -13,7 +14,8 @@ from scipy.ndimage import gaussian_filter1d
 from ..motion.root_frame import FPS, control_from_path
 
 SPACING = 0.01  # metres between the points that a path is resampled to
-SIDEWAYS = 2.5  # m/s^2, speed times yaw rate: more than this and a runner would have to lean far into the bend
+# m/s^2, speed times yaw rate: more than this and a runner would have to lean far into the bend
+SIDEWAYS = 2.5
 RAMP = 0.5  # seconds that a joystick takes from one position to the next
 
 
@@ -29,7 +31,8 @@ def constant_control(
 
 
 def hold(control: Float[np.ndarray, "T 3"], t: int) -> Float[np.ndarray, "T 3"]:
-    """The control as known at frame t: rows after t repeat row t, for nobody knows what the hand does next.
+    """The control as known at frame t: rows after t repeat row t, for nobody knows what the hand
+    does next.
 
     Raises IndexError where there is no row t.  Notebook: 07
     """
@@ -40,27 +43,40 @@ def hold(control: Float[np.ndarray, "T 3"], t: int) -> Float[np.ndarray, "T 3"]:
     return held
 
 
-def splice(past: Float[np.ndarray, "T 3"], new: Float[np.ndarray, "n 3"], T_h: int) -> Float[np.ndarray, "m 3"]:
-    """The control of the last T_h past frames and of n new ones: what a rollout is told, m = T_h + n.
+def splice(
+    past: Float[np.ndarray, "T 3"], new: Float[np.ndarray, "n 3"], T_h: int
+) -> Float[np.ndarray, "m 3"]:
+    """The control of the last T_h past frames and of n new ones: what a rollout is told, m = T_h +
+    n.
 
-    Nobody knows where a recording would have gone: its last row only repeats the one before. Here it leads into the
-    first new frame, so it becomes the first row of `new`.
+    Nobody knows where a recording would have gone: its last row only repeats the one before. Here
+    it leads into the first new frame, so it becomes the first row of `new`.
     Raises ValueError where the past has fewer than T_h frames.  Notebook: 00
     """
     if len(past) < T_h:
-        raise ValueError(f"the walker wants the control of {T_h} past frames, this past has {len(past)}")
+        raise ValueError(
+            f"the walker wants the control of {T_h} past frames, this past has {len(past)}"
+        )
     return np.concatenate([past[len(past) - T_h : -1], new[:1], new])
 
 
-def joystick(segments: Sequence[tuple], fps: float | int = FPS, ramp: float | int = RAMP) -> Float[np.ndarray, "T 3"]:
-    """Control from a list of (seconds, forward, left, yaw); each change takes `ramp` seconds, smoothly.
+def joystick(
+    segments: Sequence[tuple], fps: float | int = FPS, ramp: float | int = RAMP
+) -> Float[np.ndarray, "T 3"]:
+    """Control from a list of (seconds, forward, left, yaw); each change takes `ramp` seconds,
+    smoothly.
 
     r(u) = u^2 (3 - 2u) leads from the value left behind to the new one.
     Raises ValueError for no segment, or one that is not four finite numbers.  Notebook: 07
     """
-    bad = next((segment for segment in segments if len(segment) != 4 or not np.isfinite(segment).all()), None)
+    bad = next(
+        (segment for segment in segments if len(segment) != 4 or not np.isfinite(segment).all()),
+        None,
+    )
     if bad is not None or not segments:
-        raise ValueError(f"a segment is (seconds, forward, left, yaw), four finite numbers, not {bad or 'nothing'}")
+        raise ValueError(
+            f"a segment is (seconds, forward, left, yaw), four finite numbers, not {bad or 'nothing'}"
+        )
     rows, value = [], np.array(segments[0][1:], dtype=np.float64)
     for seconds, *target in segments:
         goal = np.array(target, dtype=np.float64)
@@ -85,13 +101,16 @@ def path_to_control(
     max_yaw: float | int = 1.8,
     smoothing: float | int = 0.12,
 ) -> Float[np.ndarray, "T 3"]:
-    """Control that walks along `points` ([x, z], metres) at `speed` m/s, starting at the first one with heading 0.
+    """Control that walks along `points` ([x, z], metres) at `speed` m/s, starting at the first one
+    with heading 0.
 
-    The path is resampled by arc length and rounded by a Gaussian of `smoothing` metres; speed keeps to `acceleration`
-    (m/s^2, from and to rest if `rest`) and drops where a bend would ask for more than `max_yaw` rad/s. A path that does
-    not set out along z is turned to on the spot first. At each of `stops` (metres along the path) it rests for `pause`
-    seconds. Integrated, it is the rounded path.
-    Raises ValueError for a path without length, a position that is not finite, or a speed outside (0, 4].  Notebook: 00
+    The path is resampled by arc length and rounded by a Gaussian of `smoothing` metres; speed keeps
+    to `acceleration` (m/s^2, from and to rest if `rest`) and drops where a bend would ask for more
+    than `max_yaw` rad/s. A path that does not set out along z is turned to on the spot first. At
+    each of `stops` (metres along the path) it rests for `pause` seconds. Integrated, it is the
+    rounded path.
+    Raises ValueError for a path without length, a position that is not finite, or a speed outside
+    (0, 4].   Notebook: 00
     """
     if not 0 < speed <= 4:
         raise ValueError(f"speed must lie in (0, 4] m/s, got {speed}; the walker knows up to 3")
@@ -101,7 +120,14 @@ def path_to_control(
     where = np.concatenate([[0.0], np.cumsum(step)])
     turn = np.abs(np.diff(heading))
     halts = [int(np.argmin(np.abs(where - s))) for s in stops]
-    v = _speeds(step, turn, float(speed), acceleration, max_yaw, halts + ([0, len(curve) - 1] if rest else []))
+    v = _speeds(
+        step,
+        turn,
+        float(speed),
+        acceleration,
+        max_yaw,
+        halts + ([0, len(curve) - 1] if rest else []),
+    )
     dt = np.maximum(2 * step / np.maximum(v[1:] + v[:-1], 1e-9), turn / max_yaw)
     time = np.concatenate([[0.0], np.cumsum(dt)])
     for halt in halts:  # the pause sits in the step that leaves the halt
@@ -110,27 +136,39 @@ def path_to_control(
     return _control_at(frames, time, curve, heading, halts, pause, fps, max_yaw)
 
 
-def round_path(points: Float[np.ndarray, "n 2"], smoothing: float | int = 0.12) -> Float[np.ndarray, "m 2"]:
-    """The path through `points`, a point every centimetre, corners rounded by a Gaussian; both ends stay in place.
+def round_path(
+    points: Float[np.ndarray, "n 2"], smoothing: float | int = 0.12
+) -> Float[np.ndarray, "m 2"]:
+    """The path through `points`, a point every centimetre, corners rounded by a Gaussian; both ends
+    stay in place.
 
     Raises ValueError for a path shorter than 5 cm or a position that is not finite.  Notebook: 00
     """
     points = np.asarray(points, dtype=np.float64)
     if not np.isfinite(points).all():
-        raise ValueError(f"point {int(np.argwhere(~np.isfinite(points))[0, 0])} of the path is not finite")
+        raise ValueError(
+            f"point {int(np.argwhere(~np.isfinite(points))[0, 0])} of the path is not finite"
+        )
     where = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))])
     if len(points) < 2 or where[-1] < 0.05:
-        raise ValueError(f"a path needs at least two points and 5 cm, this one has {len(points)} point(s): draw on")
+        raise ValueError(
+            f"a path needs at least two points and 5 cm, this one has {len(points)} point(s): draw on"
+        )
     even = np.linspace(0, where[-1], int(np.ceil(where[-1] / SPACING)) + 1)
     line = np.stack([np.interp(even, where, column) for column in points.T], -1)
     return _smooth_fixed_ends(line, smoothing / SPACING)
 
 
 def _smooth_fixed_ends(line: np.ndarray, sigma: float) -> np.ndarray:
-    """Gaussian along the line, which is continued past its ends by a half-turn about them, so that they stay."""
+    """Gaussian along the line, which is continued past its ends by a half-turn about them, so that
+    they stay."""
     n = min(len(line) - 1, int(4 * sigma) + 1)
     wide = np.concatenate([2 * line[0] - line[n:0:-1], line, 2 * line[-1] - line[-2 : -n - 2 : -1]])
-    return gaussian_filter1d(wide, sigma, axis=0, mode="nearest")[n : n + len(line)] if sigma > 0 else line
+    return (
+        gaussian_filter1d(wide, sigma, axis=0, mode="nearest")[n : n + len(line)]
+        if sigma > 0
+        else line
+    )
 
 
 def _headings(curve: np.ndarray) -> np.ndarray:
@@ -140,9 +178,15 @@ def _headings(curve: np.ndarray) -> np.ndarray:
 
 
 def _speeds(
-    step: np.ndarray, turn: np.ndarray, speed: float, acceleration: float | int, max_yaw: float | int, halts: list[int]
+    step: np.ndarray,
+    turn: np.ndarray,
+    speed: float,
+    acceleration: float | int,
+    max_yaw: float | int,
+    halts: list[int],
 ) -> np.ndarray:
-    """The fastest speed at each point within `speed`, `max_yaw`, SIDEWAYS, `acceleration`, and zero at `halts`."""
+    """The fastest speed at each point within `speed`, `max_yaw`, SIDEWAYS, `acceleration`, and zero
+    at `halts`."""
     bend = np.concatenate([np.minimum(turn / np.maximum(step, 1e-9), 20.0), [0.0]])
     bend = np.maximum(gaussian_filter1d(bend, 0.1 / SPACING, mode="nearest"), 1e-9)
     v = np.minimum(speed, np.minimum(max_yaw / bend, np.sqrt(SIDEWAYS / bend)))
@@ -160,7 +204,9 @@ def _control_at(
     fps: float | int, max_yaw: float | int,
 ) -> Float[np.ndarray, "T 3"]:  # fmt: skip
     """Read the timed curve at the frames, turn to it first where needed, and take velocities."""
-    knots = np.insert(np.arange(len(time)), [h + 1 for h in halts], halts)  # a halted point stands twice
+    knots = np.insert(
+        np.arange(len(time)), [h + 1 for h in halts], halts
+    )  # a halted point stands twice
     leave = np.zeros(len(knots))
     for i, halt in enumerate(sorted(halts)):
         leave[halt + 1 + i] = pause
@@ -170,15 +216,20 @@ def _control_at(
     first = _turn_on_the_spot(facing[0], fps, max_yaw)
     root = np.concatenate([np.repeat(root[:1], len(first), 0), root])
     facing = gaussian_filter1d(np.concatenate([first, facing]), 0.15 * fps, mode="nearest")
-    settle = 1 - _smoothstep(np.clip(np.arange(len(facing)) / fps, 0, 1))  # what is left of an angle goes in a second
+    settle = 1 - _smoothstep(
+        np.clip(np.arange(len(facing)) / fps, 0, 1)
+    )  # what is left of an angle goes in a second
     return control_from_path(root, facing - facing[0] * settle, float(fps))
 
 
 def _turn_on_the_spot(angle: float, fps: float | int, max_yaw: float | int) -> np.ndarray:
-    """Headings from 0 to just before `angle`, at `max_yaw` at most; none for a turn of less than three degrees."""
+    """Headings from 0 to just before `angle`, at `max_yaw` at most; none for a turn of less than
+    three degrees."""
     if abs(angle) < np.radians(3):
         return np.zeros(0)
-    frames = int(np.ceil(1.5 * abs(angle) / max_yaw * fps))  # smoothstep is 1.5 times as steep as a straight line
+    frames = int(
+        np.ceil(1.5 * abs(angle) / max_yaw * fps)
+    )  # smoothstep is 1.5 times as steep as a straight line
     return angle * _smoothstep(np.arange(frames) / frames)
 
 
@@ -203,7 +254,8 @@ PRESETS: tuple[str, ...] = tuple(_PRESETS)
 
 
 def preset(name: str) -> tuple[Float[np.ndarray, "n 2"], list[float]]:
-    """A named path and its stops (metres along it): straight, circle, figure eight, slalom, stop and go.
+    """A named path and its stops (metres along it): straight, circle, figure eight, slalom, stop
+    and go.
 
     Raises KeyError with the names there are.  Notebook: 00
     """

@@ -1,6 +1,8 @@
-"""What the network hears: the log-Mel spectrogram of a song, where its frames lie in time, and a tracker's beats.
+"""What the network hears: the log-Mel spectrogram of a song, where its frames lie in time, and a
+tracker's beats.
 
-A Mel frame comes every 32 ms and a motion frame every 50 ms: the two are matched by seconds, never by index.
+A Mel frame comes every 32 ms and a motion frame every 50 ms: the two are matched by seconds, never
+by index.
 Notebook: 11
 """
 
@@ -13,13 +15,18 @@ from torch import Tensor
 from torch.nn import functional as F
 
 SAMPLE_RATE, HOP, BANDS, F_MIN, F_MAX = 16_000, 512, 80, 0.0, 8000.0  # MoFusion 3.3
-N_FFT = 1024  # 64 ms; the paper leaves it open. 512 = HOP would be deaf between two frames, 2048 would blur a beat more
-TOGETHER = 256  # frames at once: what lies between sound and bands then stays in the cache, 2 x faster
+# 64 ms; the paper leaves it open. 512 = HOP would be deaf between two frames, 2048 would blur a
+# beat more
+N_FFT = 1024
+TOGETHER = (
+    256  # frames at once: what lies between sound and bands then stays in the cache, 2 x faster
+)
 FLOOR = 1e-5  # power: the log's floor, about 80 dB under a full-scale sine; the paper names none
 FRAMES_PER_SECOND = SAMPLE_RATE / HOP  # 31.25
 
 TRACKER_HOP = 256  # samples: beats to 16 ms
-TRACKER_LAG = 0.02  # seconds its beats come too late: 12-19 ms for drum hits, 22-30 ms in composed songs (tests)
+# seconds its beats come too late: 12-19 ms for drum hits, 22-30 ms in composed songs (tests)
+TRACKER_LAG = 0.02
 
 Samples = Float[Tensor, "*B N"] | Float[np.ndarray, "*B N"]
 
@@ -29,7 +36,9 @@ def hz_to_mel(hz: Float[Tensor, "*n"]) -> Float[Tensor, "*n"]:
 
     mel = 3 f / 200 below 1000 Hz; 15 + 27 log(f / 1000) / log(6.4) above.  Notebook: 11
     """
-    return torch.where(hz < 1000, 3 * hz / 200, 15 + 27 * (hz.clamp(min=1000) / 1000).log() / np.log(6.4))
+    return torch.where(
+        hz < 1000, 3 * hz / 200, 15 + 27 * (hz.clamp(min=1000) / 1000).log() / np.log(6.4)
+    )
 
 
 def mel_to_hz(mel: Float[Tensor, "*n"]) -> Float[Tensor, "*n"]:
@@ -44,26 +53,39 @@ def mel_filters(
     f_min: float | int = F_MIN,
     f_max: float | int = F_MAX,
 ) -> Float[Tensor, "bands bins"]:
-    """Triangles over the n_fft/2 + 1 frequencies of a spectrum, evenly spaced in Mel, each of area 1 in Hz.
+    """Triangles over the n_fft/2 + 1 frequencies of a spectrum, evenly spaced in Mel, each of area
+    1 in Hz.
 
-    Band b rises from edge b to edge b+1 and falls to edge b+2, and is 2 / (edge[b+2] - edge[b]) high.
-    Raises ValueError for frequencies that do not ascend within 0 .. sample_rate/2, or a band too narrow for any bin.
+    Band b rises from edge b to edge b+1 and falls to edge b+2, and is 2 / (edge[b+2] - edge[b])
+    high.
+    Raises ValueError for frequencies that do not ascend within 0 .. sample_rate/2, or a band too
+    narrow for any bin.
     Source: MoFusion 3.3.  Notebook: 11
     """
     if not 0 <= f_min < f_max <= sample_rate / 2:
-        raise ValueError(f"bands must lie within 0 and {sample_rate / 2:g} Hz, ascending; got {f_min:g} to {f_max:g}")
+        raise ValueError(
+            f"bands must lie within 0 and {sample_rate / 2:g} Hz, ascending; got {f_min:g} to {f_max:g}"
+        )
     ends = hz_to_mel(torch.tensor([f_min, f_max], dtype=torch.float64))
-    edges = mel_to_hz(torch.linspace(float(ends[0]), float(ends[1]), bands + 2, dtype=torch.float64))[:, None]
+    edges = mel_to_hz(
+        torch.linspace(float(ends[0]), float(ends[1]), bands + 2, dtype=torch.float64)
+    )[:, None]
     hz = torch.linspace(0, sample_rate / 2, n_fft // 2 + 1, dtype=torch.float64)
     low, middle, high = edges[:-2], edges[1:-1], edges[2:]
-    triangles = torch.minimum((hz - low) / (middle - low), (high - hz) / (high - middle)).clamp(min=0)
+    triangles = torch.minimum((hz - low) / (middle - low), (high - hz) / (high - middle)).clamp(
+        min=0
+    )
     if not (triangles > 0).any(1).all():
-        raise ValueError(f"{bands} bands are too many for n_fft = {n_fft}: some lie between two frequencies")
+        raise ValueError(
+            f"{bands} bands are too many for n_fft = {n_fft}: some lie between two frequencies"
+        )
     return triangles * 2 / (high - low)
 
 
 @lru_cache
-@torch.inference_mode(False)  # else a first call within inference mode would leave tools that no gradient can pass
+@torch.inference_mode(
+    False
+)  # else a first call within inference mode would leave tools that no gradient can pass
 def _tools(device: torch.device, dtype: torch.dtype) -> tuple[Tensor, Tensor]:
     """The window and the filters (bins, bands), made once for each device and precision."""
     window = torch.hann_window(N_FFT, dtype=torch.float64).to(device, dtype)
@@ -71,23 +93,29 @@ def _tools(device: torch.device, dtype: torch.dtype) -> tuple[Tensor, Tensor]:
 
 
 def log_mel(audio: Samples) -> Float[Tensor, "*B M 80"]:
-    """The log-Mel spectrogram of sound at 16 kHz, M = 1 + N // 512 frames; frame m is centred on sample 512 m.
+    """The log-Mel spectrogram of sound at 16 kHz, M = 1 + N // 512 frames; frame m is centred on
+    sample 512 m.
 
-    log(max(FLOOR, filters @ |STFT|^2)), natural logarithm, Hann window of 1024 samples, zeros beyond both ends.
-    A full-scale sine comes to 5 (high) or 8 (low), digital silence to log(1e-5) = -11.5.
+    log(max(FLOOR, filters @ |STFT|^2)), natural logarithm, Hann window of 1024 samples, zeros
+    beyond both ends. A full-scale sine comes to 5 (high) or 8 (low), digital silence to log(1e-5) =
+    -11.5.
     Raises ValueError for no samples, or whole numbers.
     Source: MoFusion 3.3.  Notebook: 11
     """
     audio = torch.as_tensor(audio)
     if not audio.is_floating_point() or not audio.shape[-1]:
-        raise ValueError(f"sound is float samples between -1 and 1, not {tuple(audio.shape)} of {audio.dtype}")
+        raise ValueError(
+            f"sound is float samples between -1 and 1, not {tuple(audio.shape)} of {audio.dtype}"
+        )
     window, filters = _tools(audio.device, audio.dtype)
     flat = F.pad(audio.reshape(-1, audio.shape[-1]), (N_FFT // 2, N_FFT // 2))
     M, bands = 1 + audio.shape[-1] // HOP, []
     for first in range(0, M, TOGETHER):
         last = min(first + TOGETHER, M) - 1
         piece = flat[:, first * HOP : last * HOP + N_FFT]
-        spectrum = torch.stft(piece, N_FFT, HOP, window=window, center=False, return_complex=True).mT
+        spectrum = torch.stft(
+            piece, N_FFT, HOP, window=window, center=False, return_complex=True
+        ).mT
         bands.append((spectrum.real.square() + spectrum.imag.square()) @ filters)
     return torch.cat(bands, dim=1).clamp(min=FLOOR).log().reshape(*audio.shape[:-1], M, BANDS)
 
@@ -102,7 +130,8 @@ def crop_seconds(
 ) -> tuple[Float[Tensor, "*B n bands"], Float[Tensor, "n"]]:
     """The Mel frames within `seconds` from `start`, and their times counted from `start`.
 
-    Always n = floor(31.25 seconds) of them, so that crops can be stacked; the first is at most 32 ms after `start`.
+    Always n = floor(31.25 seconds) of them, so that crops can be stacked; the first is at most 32
+    ms after `start`.
     Raises ValueError where the span leaves the song.  Notebook: 11
     """
     first = int(np.ceil(start * FRAMES_PER_SECOND - 1e-6))
@@ -115,8 +144,11 @@ def crop_seconds(
     return mel[..., first : first + n, :], frame_times(first + n)[first:] - start
 
 
-def at_times(mel: Float[Tensor, "*B M bands"], times: Float[Tensor, "T"]) -> Float[Tensor, "*B T bands"]:
-    """The Mel spectrogram at any `times` (seconds), such as those of motion frames: straight lines between its frames.
+def at_times(
+    mel: Float[Tensor, "*B M bands"], times: Float[Tensor, "T"]
+) -> Float[Tensor, "*B T bands"]:
+    """The Mel spectrogram at any `times` (seconds), such as those of motion frames: straight lines
+    between its frames.
 
     Before the first and after the last frame their values are kept.  Notebook: 11
     """
@@ -126,13 +158,18 @@ def at_times(mel: Float[Tensor, "*B M bands"], times: Float[Tensor, "T"]) -> Flo
     return torch.lerp(mel[..., before, :], mel[..., after, :], (where - before).to(mel)[:, None])
 
 
-def beats_of(audio: Float[Tensor, "N"] | Float[np.ndarray, "N"], lag: float = TRACKER_LAG) -> Float[np.ndarray, "K"]:
-    """The beats of a recording at 16 kHz, in seconds, as librosa's tracker hears them, with its `lag` taken out.
+def beats_of(
+    audio: Float[Tensor, "N"] | Float[np.ndarray, "N"], lag: float = TRACKER_LAG
+) -> Float[np.ndarray, "K"]:
+    """The beats of a recording at 16 kHz, in seconds, as librosa's tracker hears them, with its
+    `lag` taken out.
 
-    The tracker takes steady tempo for granted and may follow every second or half beat; for silence it finds none.
-    A beat is where something starts to sound. Source: Ellis 2007, by librosa.  Notebook: 11
+    The tracker takes steady tempo for granted and may follow every second or half beat; for silence
+    it finds none. A beat is where something starts to sound. Source: Ellis 2007, by librosa.
+    Notebook: 11
     """
-    import librosa  # slow to import, and needed for recordings only: a composed song knows its beats
+    # slow to import, and needed for recordings only: a composed song knows its beats
+    import librosa
 
     framing = {"sr": SAMPLE_RATE, "hop_length": TRACKER_HOP}
     onsets = librosa.onset.onset_strength(y=np.asarray(audio), n_fft=N_FFT, **framing)

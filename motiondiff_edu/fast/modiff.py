@@ -1,7 +1,9 @@
-"""MoDiff for use: the context is encoded once a frame; keys, values and step embeddings are kept over the loop.
+"""MoDiff for use: the context is encoded once a frame; keys, values and step embeddings are kept
+over the loop.
 
-The same numbers as the plain network in the core, to 1e-5 (tested). The plain one runs encoder and decoder at each of
-the S steps although past and control do not change meanwhile.  Source: MoDiff III-F, Fig. 2.  Notebook: 07
+The same numbers as the plain network in the core, to 1e-5 (tested). The plain one runs encoder and
+decoder at each of the S steps although past and control do not change meanwhile.  Source: MoDiff
+III-F, Fig. 2.   Notebook: 07
 """
 
 import copy
@@ -19,10 +21,12 @@ from ..modiff import MoDiff, step_embedding
 
 @dataclass(frozen=True, eq=False)
 class Folded:
-    """A memory as one decoder layer asks it: keys with the queries' weights in them, values with the outputs'.
+    """A memory as one decoder layer asks it: keys with the queries' weights in them, values with
+    the outputs'.
 
-    q K^T = (x W_q) K^T = x (W_q K^T), and the bracket stays the same at all S steps; likewise (A V) W_o = A (V W_o).
-    The heads lie side by side, as HM = H*M columns: a layer asks with one product and is answered with another.
+    q K^T = (x W_q) K^T = x (W_q K^T), and the bracket stays the same at all S steps; likewise (A V)
+    W_o = A (V W_o). The heads lie side by side, as HM = H*M columns: a layer asks with one product
+    and is answered with another.
     """
 
     keys: Float[Tensor, "B C HM"]
@@ -52,19 +56,26 @@ class _Linear:
 
 
 class _Layer:
-    """One decoder block, laid out for few calls; x is (B*T, width), all frames of all samples in rows."""
+    """One decoder block, laid out for few calls; x is (B*T, width), all frames of all samples in
+    rows."""
 
     def __init__(self, block: Block):
         own, cross, (first, *_, last) = block.self_attention, block.cross_attention, block.ff
         self.cross, self.heads = cross, own.heads
-        self.norm_self, self.norm_cross, self.norm_ff = block.norm_self, block.norm_cross, block.norm_ff
+        self.norm_self, self.norm_cross, self.norm_ff = (
+            block.norm_self,
+            block.norm_cross,
+            block.norm_ff,
+        )
         self.qkv, self.out = _Linear(own.q, own.kv), _Linear(own.out)
         self.first, self.last = _Linear(first), _Linear(last)
 
     def fold(self, memory: Float[Tensor, "B M C"], bias: Float[Tensor, "1 H T M"]) -> Folded:
         """A memory's keys and values with this layer's weights in them; done once a frame."""
         cross, (B, M, C), H = self.cross, memory.shape, self.heads
-        k, v = (part.reshape(B * M, H, -1).transpose(0, 1) for part in cross.kv(memory).chunk(2, dim=-1))
+        k, v = (
+            part.reshape(B * M, H, -1).transpose(0, 1) for part in cross.kv(memory).chunk(2, dim=-1)
+        )
         k = k / math.sqrt(C // H)  # (H, B*M, d), as v
         asking = cross.q.weight.unflatten(0, (H, -1))  # (H, d, C)
         answering = cross.out.weight.unflatten(1, (H, -1)).permute(1, 2, 0)  # (H, d, C)
@@ -72,26 +83,43 @@ class _Layer:
             torch.bmm(part, weight).view(H, B, M, C).transpose(0, 1).reshape(B, H * M, C)
             for part, weight in ((k, asking), (v, answering))
         )
-        own = torch.bmm(k, cross.q.bias.view(H, -1, 1)).view(H, B, 1, M).transpose(0, 1)  # what q's bias asks
+        own = (
+            torch.bmm(k, cross.q.bias.view(H, -1, 1)).view(H, B, 1, M).transpose(0, 1)
+        )  # what q's bias asks
         return Folded(keys.transpose(1, 2), (bias + own).transpose(1, 2).flatten(2), values)
 
     def __call__(
-        self, x: Float[Tensor, "N C"], frames: int, self_bias: Float[Tensor, "1 H T T"], memory: Folded
+        self,
+        x: Float[Tensor, "N C"],
+        frames: int,
+        self_bias: Float[Tensor, "1 H T T"],
+        memory: Folded,
     ) -> Float[Tensor, "N C"]:
         width, shape = x.shape[1], (-1, frames, self.heads, x.shape[1] // self.heads)
-        q, k, v = (part.reshape(shape).transpose(1, 2) for part in self.qkv(self.norm_self(x)).chunk(3, dim=-1))
+        q, k, v = (
+            part.reshape(shape).transpose(1, 2)
+            for part in self.qkv(self.norm_self(x)).chunk(3, dim=-1)
+        )
         mixed = F.scaled_dot_product_attention(q, k, v, attn_mask=self_bias)  # (B, H, T, d)
         x = self.out(mixed.transpose(1, 2).reshape(-1, width)).add_(x)
-        scores = torch.baddbmm(memory.bias, self.norm_cross(x).view(-1, frames, width), memory.keys)  # (B, T, H*M)
+        scores = torch.baddbmm(
+            memory.bias, self.norm_cross(x).view(-1, frames, width), memory.keys
+        )  # (B, T, H*M)
         weights = torch.softmax(scores.unflatten(-1, (self.heads, -1)), dim=-1).view_as(scores)
-        x = torch.baddbmm(x.view(-1, frames, width), weights, memory.values).view(-1, width).add_(self.cross.out.bias)
+        x = (
+            torch.baddbmm(x.view(-1, frames, width), weights, memory.values)
+            .view(-1, width)
+            .add_(self.cross.out.bias)
+        )
         return self.last(F.gelu(self.first(self.norm_ff(x)))).add_(x)
 
 
 class FastMoDiff:
-    """A trained MoDiff, read once: `encode` a frame's context, then `denoise` as often as the sampler asks.
+    """A trained MoDiff, read once: `encode` a frame's context, then `denoise` as often as the
+    sampler asks.
 
-    It works on a copy: `model` may train on, in its own mode, and this twin keeps the weights of the time of building.
+    It works on a copy: `model` may train on, in its own mode, and this twin keeps the weights of
+    the time of building.
     Notebook: 07
     """
 
@@ -102,11 +130,18 @@ class FastMoDiff:
         width, D = model.config.width, model.config.D
         weight = model.future_in.weight
         self.x_weight = weight[:, :D].t().contiguous()  # the noised poses' half of the input layer
-        steps = model.step_in(step_embedding(torch.arange(model.config.S + 1, device=weight.device), width))
-        step_part = F.linear(steps, weight[:, D:], model.future_in.bias)  # the step's half, for every s
+        steps = model.step_in(
+            step_embedding(torch.arange(model.config.S + 1, device=weight.device), width)
+        )
+        step_part = F.linear(
+            steps, weight[:, D:], model.future_in.bias
+        )  # the step's half, for every s
         self.start = step_part[:, None] + model.time[model.config.T_h :]  # and when each frame is
         self.layers = [_Layer(block) for block in model.decoder]
-        self.self_bias, self.memory_bias = model.self_bias().contiguous(), model.memory_bias().contiguous()
+        self.self_bias, self.memory_bias = (
+            model.self_bias().contiguous(),
+            model.memory_bias().contiguous(),
+        )
         norm, first, _, last = model.head
         self.head_norm, self.head_first, self.head_last = norm, _Linear(first), _Linear(last)
         self.skip = model.skip
@@ -124,15 +159,20 @@ class FastMoDiff:
     def denoise(
         self, x_s: Float[Tensor, "B T_p D"], s: Int[Tensor, "B"] | int, context: Context
     ) -> Float[Tensor, "B T_p D"]:
-        """The network's output at step s, one for the whole batch or one for each: eps, x0 or v, as its target says."""
+        """The network's output at step s, one for the whole batch or one for each: eps, x0 or v, as
+        its target says."""
         out = self.head(self.attend(self.embed(x_s, s), context))
         return out if self.skip is None else out + self.skip[s].view(-1, 1, 1) * x_s
 
-    def embed(self, x_s: Float[Tensor, "B T_p D"], s: Int[Tensor, "B"] | int) -> Float[Tensor, "B T_p width"]:
+    def embed(
+        self, x_s: Float[Tensor, "B T_p D"], s: Int[Tensor, "B"] | int
+    ) -> Float[Tensor, "B T_p width"]:
         """The decoder's tokens, as MoDiff.embed makes them."""
         return (x_s @ self.x_weight).add_(self.start[s])
 
-    def attend(self, x: Float[Tensor, "B T_p width"], context: Context) -> Float[Tensor, "B T_p width"]:
+    def attend(
+        self, x: Float[Tensor, "B T_p width"], context: Context
+    ) -> Float[Tensor, "B T_p width"]:
         """The decoder's layers, as MoDiff.attend has them."""
         rows = x.flatten(0, 1)
         for layer, memory in zip(self.layers, context.layers, strict=True):

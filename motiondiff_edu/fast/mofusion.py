@@ -1,4 +1,5 @@
-"""MoFusion for use: music is heard once a song; keys, values and what the step says are kept over the sampling loop.
+"""MoFusion for use: music is heard once a song; keys, values and what the step says are kept over
+the sampling loop.
 
 The same numbers as the plain network in the core, but for rounding (tested).  Notebook: 12
 """
@@ -18,7 +19,8 @@ from ..mofusion import Ask, MoFusion, ResBlock, View
 
 @dataclass(frozen=True, eq=False)
 class Listening:
-    """What the blocks need of a song, for motions of one length: keys and values block by block, and the views."""
+    """What the blocks need of a song, for motions of one length: keys and values block by block,
+    and the views."""
 
     frames: int
     views: list[View]
@@ -27,32 +29,46 @@ class Listening:
 
 
 class FastMoFusion:
-    """A trained MoFusion, read once: `listen` to the music, then `denoise` as often as the sampler asks.
+    """A trained MoFusion, read once: `listen` to the music, then `denoise` as often as the sampler
+    asks.
 
-    It works on a copy, as FastMoDiff does; without music (C = 0) there is nothing to keep: use the plain network.
+    It works on a copy, as FastMoDiff does; without music (C = 0) there is nothing to keep: use the
+    plain network.
     Notebook: 12
     """
 
     @torch.inference_mode()
     def __init__(self, model: MoFusion):
         if model.music is None:
-            raise ValueError("a network without music has no keys and values to keep: use the plain one")
+            raise ValueError(
+                "a network without music has no keys and values to keep: use the plain one"
+            )
         self.model = model = copy.deepcopy(model).eval()
         self.config = model.config
         self.levels = len(self.config.widths)
         self.blocks = [*model.down, model.middle, *model.up]
         self.level_of = [*range(self.levels), self.levels, *range(self.levels - 1, -1, -1)]
         device = model.into.mix.weight.device
-        steps = model.step_in(step_embedding(torch.arange(self.config.S + 1, device=device), 4 * self.config.widths[0]))
-        self.told = [block["res"].step(steps).chunk(2, dim=-1) for block in self.blocks]  # scale, shift for every s
+        steps = model.step_in(
+            step_embedding(
+                torch.arange(self.config.S + 1, device=device), 4 * self.config.widths[0]
+            )
+        )
+        self.told = [
+            block["res"].step(steps).chunk(2, dim=-1) for block in self.blocks
+        ]  # scale, shift for every s
 
     @torch.inference_mode()
-    def listen(self, mel: Float[Tensor, "B M C"], times: Float[Tensor, "M"], frames: int) -> Listening:
+    def listen(
+        self, mel: Float[Tensor, "B M C"], times: Float[Tensor, "M"], frames: int
+    ) -> Listening:
         """The keys and values of a song, turned by their times, for a dance of so many frames."""
         music = self.model.listen(mel, times)
         padded = frames + -frames % 2**self.levels
         lengths = torch.full((1,), frames, device=mel.device)
-        views = [View.of(padded, lengths, level, music, self.config) for level in range(self.levels + 1)]
+        views = [
+            View.of(padded, lengths, level, music, self.config) for level in range(self.levels + 1)
+        ]
         keys, values = [], []
         for block, level in zip(self.blocks, self.level_of, strict=True):
             attention = block["ask"].attention
@@ -65,7 +81,8 @@ class FastMoFusion:
     def denoise(
         self, x_s: Float[Tensor, "B T D"], s: Int[Tensor, "B"] | int, song: Listening
     ) -> Float[Tensor, "B T D"]:
-        """The network's output at step s, one for the whole batch or one for each: eps, x0 or v, as its target says."""
+        """The network's output at step s, one for the whole batch or one for each: eps, x0 or v, as
+        its target says."""
         model, levels, views = self.model, self.levels, song.views
         x = F.pad(x_s, (0, 0, 0, -song.frames % 2**levels))
         h, kept = model.into(x), []

@@ -1,7 +1,8 @@
 """Samplers with almost no cost of their own: DDPM as in the core, DDIM, few steps, a warm start.
 
-Every sampler here is one rule, x_next = keep * x_s + turn * eps_hat + sigma * noise, with three numbers for each step.
-They are Python floats made before the loop: around a small network it is a scheduler's own arithmetic that takes time.
+Every sampler here is one rule, x_next = keep * x_s + turn * eps_hat + sigma * noise, with three
+numbers for each step. They are Python floats made before the loop: around a small network it is a
+scheduler's own arithmetic that takes time.
 """
 
 import math
@@ -11,37 +12,53 @@ import torch
 from jaxtyping import Float
 from torch import Tensor
 
-from motiondiff_edu.ddpm import Denoiser, Schedule, draw, p_variance, q_sample
+from ..ddpm import Denoiser, Schedule, draw, p_variance, q_sample
 
 
 class FastStep:
-    """One moment of sampling, like `ddpm.Step`; x0_hat is computed only when somebody looks at it."""
+    """One moment of sampling, like `ddpm.Step`; x0_hat is computed only when somebody looks at
+    it."""
 
     __slots__ = ("s", "x_s", "eps_hat", "_alpha_bar", "_clip")
 
     def __init__(self, s: int, x_s: Tensor, eps_hat: Tensor, alpha_bar: float, clip: float | None):
-        self.s, self.x_s, self.eps_hat, self._alpha_bar, self._clip = s, x_s, eps_hat, alpha_bar, clip
+        self.s, self.x_s, self.eps_hat, self._alpha_bar, self._clip = (
+            s,
+            x_s,
+            eps_hat,
+            alpha_bar,
+            clip,
+        )
 
     @property
     def x0_hat(self) -> Tensor:
         """(x_s - sqrt(1 - alpha_bar_s) eps_hat) / sqrt(alpha_bar_s)"""
-        x0_hat = (self.x_s - math.sqrt(1 - self._alpha_bar) * self.eps_hat) / math.sqrt(self._alpha_bar)
+        x0_hat = (self.x_s - math.sqrt(1 - self._alpha_bar) * self.eps_hat) / math.sqrt(
+            self._alpha_bar
+        )
         return x0_hat if self._clip is None else x0_hat.clamp(-self._clip, self._clip)
 
 
 def timesteps(S: int, steps: int) -> list[int]:
-    """Choose `steps` of the S diffusion steps, evenly spaced, S first: timesteps(100, 4) = [100, 75, 50, 25]."""
+    """Choose `steps` of the S diffusion steps, evenly spaced, S first: timesteps(100, 4) = [100,
+    75, 50, 25]."""
     if not 1 <= steps <= S:
         raise ValueError(f"can take between 1 and {S} steps, not {steps}")
     return [S - (i * S) // steps for i in range(steps)]
 
 
 def warm_start(
-    guess: Float[Tensor, "B *shape"], s: int, schedule: Schedule, *, generator: torch.Generator | None = None
+    guess: Float[Tensor, "B *shape"],
+    s: int,
+    schedule: Schedule,
+    *,
+    generator: torch.Generator | None = None,
 ) -> Float[Tensor, "B *shape"]:
-    """Start from a guess of x0 instead of pure noise: noise it to step s, then walk on with steps=timesteps(s, n).
+    """Start from a guess of x0 instead of pure noise: noise it to step s, then walk on with
+    steps=timesteps(s, n).
 
-    A low s is fast and stays close to the guess; what the guess gets wrong is mended only as far as step s can reach.
+    A low s is fast and stays close to the guess; what the guess gets wrong is mended only as far as
+    step s can reach.
     """
     return q_sample(guess, s, schedule, draw(guess, generator))
 
@@ -56,7 +73,8 @@ def ddpm_steps(
     variance: str = "beta",
     clip: float | None = None,
 ) -> Iterator[FastStep]:
-    """`ddpm.sample_steps`, faster: the same records for the same noise. Source: MoDiff Alg. 2. Notebook: 03."""
+    """`ddpm.sample_steps`, faster: the same records for the same noise. Source: MoDiff Alg. 2.
+    Notebook: 03."""
     beta, alpha_bar = schedule.beta.tolist(), schedule.alpha_bar.tolist()
     sigma = p_variance(schedule, variance).sqrt().tolist()
     plan = []
@@ -78,15 +96,23 @@ def ddim_steps(
     noise: Float[Tensor, "S *any"] | None = None,
     clip: float | None = None,
 ) -> Iterator[FastStep]:
-    """Leap from step to step: x_next = sqrt(ab_next) x0_hat + sqrt(1 - ab_next - sigma^2) eps_hat + sigma noise.
+    """Leap from step to step: x_next = sqrt(ab_next) x0_hat + sqrt(1 - ab_next - sigma^2) eps_hat +
+    sigma noise.
 
     sigma^2 = eta^2 (1 - ab_next) / (1 - ab_s) (1 - ab_s / ab_next). With eta = 0 no noise is drawn.
-    Few steps with eta = 0 give samples that lie too close together (notebook 03): DDIM is not DDPM, only faster.
+    Few steps with eta = 0 give samples that lie too close together (notebook 03): DDIM is not DDPM,
+    only faster.
     Raises ValueError for steps that do not fall, or lie outside 1..S, and for an eta outside 0..1.
     """
     visited = timesteps(schedule.S, steps) if isinstance(steps, int) else list(steps)
-    if not visited or visited != sorted(set(visited), reverse=True) or not 1 <= visited[-1] <= visited[0] <= schedule.S:
-        raise ValueError(f"steps must fall, from {schedule.S} at most to 1 at least; these are {visited}")
+    if (
+        not visited
+        or visited != sorted(set(visited), reverse=True)
+        or not 1 <= visited[-1] <= visited[0] <= schedule.S
+    ):
+        raise ValueError(
+            f"steps must fall, from {schedule.S} at most to 1 at least; these are {visited}"
+        )
     if not 0 <= eta <= 1:
         raise ValueError(f"eta must lie between 0 (no noise) and 1 (DDPM's), not {eta}")
     alpha_bar = schedule.alpha_bar.tolist()
@@ -111,7 +137,9 @@ def _walk(
     """Follow a plan of (s, weight of x0_hat, weight of x_s, weight of eps_hat, sigma)."""
     home = generator.device if generator else None
     x = start if isinstance(start, Tensor) else torch.randn(start, generator=generator, device=home)
-    labels = torch.tensor([p[0] for p in plan], device=x.device)[:, None].repeat(1, len(x)).unbind(0)
+    labels = (
+        torch.tensor([p[0] for p in plan], device=x.device)[:, None].repeat(1, len(x)).unbind(0)
+    )
     for label, (s, to_x0, to_x, to_eps, sigma) in zip(labels, plan, strict=True):
         a, b = math.sqrt(alpha_bar[s]), math.sqrt(1 - alpha_bar[s])
         eps_hat = denoise(x, label)

@@ -1,1 +1,2 @@
-"""Measures of motion, as pure functions of arrays: what each counts, and what it is blind to.  Notebook: 08"""
+"""Measures of motion, as pure functions of arrays: what each counts, and what it is blind to.
+Notebook: 08"""

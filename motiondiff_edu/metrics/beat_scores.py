@@ -1,7 +1,9 @@
-"""A set of dances against their songs, in one record: the score, and beside it what shows whether it means anything.
+"""A set of dances against their songs, in one record: the score, and beside it what shows whether
+it means anything.
 
-That is: the same with other songs' beats, the level of chance, kinematic beats per music beat (a figure that stops all
-the time meets many beats), and the speed (a figure that hardly moves stops anywhere).  Notebook: 14
+That is: the same with other songs' beats, the level of chance, kinematic beats per music beat (a
+figure that stops all the time meets many beats), and the speed (a figure that hardly moves stops
+anywhere).   Notebook: 14
 """
 
 import warnings
@@ -20,9 +22,10 @@ from .skating import mean_where
 class BeatScores:
     """One row of numbers for each clip (for intervals), and their means over clips as properties.
 
-    bas: beat alignment, kinematic form; bas_shuffled: its mean with the beats of each other song; bas_chance: of stops
-    at random times; beats_per_beat: kinematic beats per music beat; speed: mean joint speed in m/s.
-    A clip without kinematic beats has NaN in bas and bas_shuffled, and is left out of their means.  Notebook: 14
+    bas: beat alignment, kinematic form; bas_shuffled: its mean with the beats of each other song;
+    bas_chance: of stops at random times; beats_per_beat: kinematic beats per music beat; speed:
+    mean joint speed in m/s. A clip without kinematic beats has NaN in bas and bas_shuffled, and is
+    left out of their means.   Notebook: 14
     """
 
     bas_clips: Float[np.ndarray, "B"]
@@ -58,17 +61,22 @@ def beat_scores(
     fps: float | int = FPS,
     sigma: float | int = SIGMA,
 ) -> BeatScores:
-    """Score B dances, each against the beats of its song: times in seconds from the clip's first frame.
+    """Score B dances, each against the beats of its song: times in seconds from the clip's first
+    frame.
 
-    Beats before the first and after the last frame may be given: a stop may be near them; they count as music beats
-    only within the clip. One NoBeatsWarning tells how many clips never slow down. `bas_shuffled` is NaN for one clip.
-    Raises ValueError unless there is one list of beats for each dance, each with a beat within the clip.
+    Beats before the first and after the last frame may be given: a stop may be near them; they
+    count as music beats only within the clip. One NoBeatsWarning tells how many clips never slow
+    down. `bas_shuffled` is NaN for one clip.
+    Raises ValueError unless there is one list of beats for each dance, each with a beat within the
+    clip.
     Source: MoFusion eq. 10, Table 1.  Notebook: 14
     """
     seconds = (positions.shape[1] - 1) / fps
     within = [int(((beats >= 0) & (beats <= seconds)).sum()) for beats in music]
     if len(music) != len(positions):
-        raise ValueError(f"{len(positions)} dances and the beats of {len(music)} songs: each dance needs its song")
+        raise ValueError(
+            f"{len(positions)} dances and the beats of {len(music)} songs: each dance needs its song"
+        )
     if 0 in within:
         raise ValueError(
             f"song {within.index(0)} has no beat in the {seconds:g} s of its dance; are its times seconds?"
@@ -77,18 +85,28 @@ def beat_scores(
     every = _every_pair(found, music, sigma)
     return BeatScores(
         bas_clips=np.diagonal(every).copy(),
-        bas_shuffled_clips=np.asarray(mean_where(np.where(np.eye(len(every), dtype=bool), np.nan, every))),
+        bas_shuffled_clips=np.asarray(
+            mean_where(np.where(np.eye(len(every), dtype=bool), np.nan, every))
+        ),
         bas_chance_clips=np.array([chance_level(beats, seconds, sigma) for beats in music]),
         beats_per_beat_clips=np.array([len(k) / m for k, m in zip(found, within, strict=True)]),
         speed_clips=mean_speed(positions, fps).mean(-1),
     )
 
 
-def _every_pair(found: Sequence[np.ndarray], music: Sequence[np.ndarray], sigma: float | int) -> np.ndarray:
+def _every_pair(
+    found: Sequence[np.ndarray], music: Sequence[np.ndarray], sigma: float | int
+) -> np.ndarray:
     """Score of dance i with song j."""
     still = sum(len(beats) == 0 for beats in found)
     if still:
-        warnings.warn(f"{still} of {len(found)} dances never slow down: no score", NoBeatsWarning, stacklevel=3)
+        warnings.warn(
+            f"{still} of {len(found)} dances never slow down: no score",
+            NoBeatsWarning,
+            stacklevel=3,
+        )
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", NoBeatsWarning)
-        return np.array([[beat_alignment(kinematic, beats, sigma) for beats in music] for kinematic in found])
+        return np.array(
+            [[beat_alignment(kinematic, beats, sigma) for beats in music] for kinematic in found]
+        )

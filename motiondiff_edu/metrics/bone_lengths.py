@@ -1,6 +1,8 @@
-"""Do the limbs keep their length? The networks draw 21 free points: nothing but learning holds the bones together.
+"""Do the limbs keep their length? The networks draw 21 free points: nothing but learning holds the
+bones together.
 
-Positions in metres, errors in centimetres, as in the papers' tables. Root frame and world give the same figures.
+Positions in metres, errors in centimetres, as in the papers' tables. Root frame and world give the
+same figures.
 Source: MoDiff IV-B, Tables I and II.  Notebook: 08
 """
 
@@ -13,7 +15,8 @@ CM_PER_METRE = 100.0
 
 
 def bone_lengths(positions: Float[np.ndarray, "*B T J 3"]) -> Float[np.ndarray, "*B T bones"]:
-    """Length of every bone in every frame, in metres: l_b(t) = |p[t, b] - p[t, parent(b)]|, b = 1..20.
+    """Length of every bone in every frame, in metres: l_b(t) = |p[t, b] - p[t, parent(b)]|, b =
+    1..20.
 
     Raises ValueError when the positions are not those of the course's 21 joints.  Notebook: 08
     """
@@ -26,7 +29,9 @@ def bone_lengths(positions: Float[np.ndarray, "*B T J 3"]) -> Float[np.ndarray, 
     return np.linalg.norm(positions[..., 1:, :] - positions[..., PARENTS[1:], :], axis=-1)
 
 
-def bone_rmse(positions: Float[np.ndarray, "*B T J 3"], reference: Float[np.ndarray, "bones"] = BONE_LENGTHS) -> float:
+def bone_rmse(
+    positions: Float[np.ndarray, "*B T J 3"], reference: Float[np.ndarray, "bones"] = BONE_LENGTHS
+) -> float:
     """The paper's bone-length error in cm, over all clips, frames and bones together.
 
     RMSE = 100 * sqrt( mean over clips, t, b of (l_b(t) - reference_b)^2 ), lengths in metres.
@@ -36,10 +41,11 @@ def bone_rmse(positions: Float[np.ndarray, "*B T J 3"], reference: Float[np.ndar
 
 
 def bone_rmse_within_clip(positions: Float[np.ndarray, "*B T J 3"]) -> float:
-    """How much the bones stretch while the clip runs, in cm: the same, against each clip's own mean lengths.
+    """How much the bones stretch while the clip runs, in cm: the same, against each clip's own mean
+    lengths.
 
-    RMSE = 100 * sqrt( mean over clips, t, b of (l_b(t) - mean_t l_b)^2 ): a figure that is too large but rigid has 0.
-    Ours, beside the paper's.  Notebook: 08
+    RMSE = 100 * sqrt( mean over clips, t, b of (l_b(t) - mean_t l_b)^2 ): a figure that is too
+    large but rigid has 0. Ours, beside the paper's.   Notebook: 08
     """
     lengths = bone_lengths(positions)
     return float(CM_PER_METRE * np.sqrt(np.mean((lengths - lengths.mean(-2, keepdims=True)) ** 2)))

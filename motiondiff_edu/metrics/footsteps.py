@@ -1,8 +1,10 @@
-"""Counting footsteps as MoDiff's Tables I, II and Fig. 3 do, the whole curve, and what makes the count break.
+"""Counting footsteps as MoDiff's Tables I, II and Fig. 3 do, the whole curve, and what makes the
+count break.
 
-A step is an interval in which a heel is slower over the ground than a tolerance v. Too small a tolerance finds no step;
-noise or sliding near the tolerance cuts each step into crumbs, and the paper's count is then a count of crumbs.
-Speeds in cm/s, durations in seconds.  Source: MoDiff IV-B, Fig. 3.  Notebook: 08
+A step is an interval in which a heel is slower over the ground than a tolerance v. Too small a
+tolerance finds no step; noise or sliding near the tolerance cuts each step into crumbs, and the
+paper's count is then a count of crumbs. Speeds in cm/s, durations in seconds.  Source: MoDiff IV-B,
+Fig. 3.   Notebook: 08
 """
 
 from collections.abc import Sequence
@@ -23,8 +25,8 @@ class StepRule:
     """What counts as a step. The default is the paper's; every other setting is ours.
 
     min_duration_s: shorter steps are dropped; merge_gap_s: gaps up to this long are closed first;
-    hysteresis: a step begins below v and ends only above v + hysteresis (cm/s);
-    drop_edge_runs: steps cut by the clip's ends, whose duration is not known, are dropped.  Notebook: 08
+    hysteresis: a step begins below v and ends only above v + hysteresis (cm/s); drop_edge_runs:
+    steps cut by the clip's ends, whose duration is not known, are dropped.   Notebook: 08
     """
 
     min_duration_s: float | int = 0.0
@@ -39,7 +41,8 @@ ROBUST = StepRule(min_duration_s=0.1, merge_gap_s=0.05)
 
 @dataclass(frozen=True)
 class Footsteps:
-    """The curve f_est(v), and the row of MoDiff's Table I that is read from it: count, v95, mean_s, std_s."""
+    """The curve f_est(v), and the row of MoDiff's Table I that is read from it: count, v95, mean_s,
+    std_s."""
 
     tolerances: Float[np.ndarray, "V"]
     counts: Float[np.ndarray, "V"]
@@ -50,9 +53,12 @@ class Footsteps:
 
 
 def heel_speed(
-    poses: Float[np.ndarray, "*B T J 3"], control: Float[np.ndarray, "*B T 3"], fps: float | int = FPS
+    poses: Float[np.ndarray, "*B T J 3"],
+    control: Float[np.ndarray, "*B T 3"],
+    fps: float | int = FPS,
 ) -> Float[np.ndarray, "*B T-1 2"]:
-    """Horizontal speed over the ground of the left and the right heel joint, in cm/s.  Source: MoDiff IV-B.
+    """Horizontal speed over the ground of the left and the right heel joint, in cm/s.  Source:
+    MoDiff IV-B.
 
     Notebook: 08
     """
@@ -66,9 +72,13 @@ def runs(mask: Bool[np.ndarray, "N"]) -> Int[np.ndarray, "n 2"]:
 
 
 def steps_of_heel(
-    speed: Float[np.ndarray, "N"], tolerance: float | int, rule: StepRule = PAPER, fps: float | int = FPS
+    speed: Float[np.ndarray, "N"],
+    tolerance: float | int,
+    rule: StepRule = PAPER,
+    fps: float | int = FPS,
 ) -> Int[np.ndarray, "n 2"]:
-    """The steps of one heel: runs of speed < tolerance (cm/s), then what `rule` changes.  Notebook: 08"""
+    """The steps of one heel: runs of speed < tolerance (cm/s), then what `rule` changes.
+    Notebook: 08"""
     found = runs(speed < tolerance)
     if rule.hysteresis > 0:
         found = _holding(runs(speed < tolerance + rule.hysteresis), found)
@@ -79,10 +89,14 @@ def steps_of_heel(
     return found[(found[:, 1] - found[:, 0]) >= rule.min_duration_s * fps - 1e-9]
 
 
-def _holding(wide: Int[np.ndarray, "a 2"], narrow: Int[np.ndarray, "b 2"]) -> Int[np.ndarray, "c 2"]:
+def _holding(
+    wide: Int[np.ndarray, "a 2"], narrow: Int[np.ndarray, "b 2"]
+) -> Int[np.ndarray, "c 2"]:
     """From each first frame in `narrow` to the end of its run in `wide`."""
     kept = [
-        [narrow[inside, 0].min(), end] for start, end in wide.tolist() if (inside := _within(narrow, start, end)).any()
+        [narrow[inside, 0].min(), end]
+        for start, end in wide.tolist()
+        if (inside := _within(narrow, start, end)).any()
     ]
     return np.array(kept, dtype=int).reshape(-1, 2)
 
@@ -95,14 +109,21 @@ def _merged(found: Int[np.ndarray, "a 2"], gap: float | int) -> Int[np.ndarray, 
     if len(found) == 0:
         return found
     breaks = np.flatnonzero(found[1:, 0] - found[:-1, 1] > gap + 1e-9)
-    return np.stack([found[np.append(0, breaks + 1), 0], found[np.append(breaks, len(found) - 1), 1]], -1)
+    return np.stack(
+        [found[np.append(0, breaks + 1), 0], found[np.append(breaks, len(found) - 1), 1]], -1
+    )
 
 
 def step_durations(
-    speeds: Sequence[Float[np.ndarray, "_ 2"]], tolerance: float | int, rule: StepRule = PAPER, fps: float | int = FPS
+    speeds: Sequence[Float[np.ndarray, "_ 2"]],
+    tolerance: float | int,
+    rule: StepRule = PAPER,
+    fps: float | int = FPS,
 ) -> Float[np.ndarray, "n"]:
     """Duration in seconds of every step of both heels in all clips.  Notebook: 08"""
-    found = [steps_of_heel(clip[:, heel], tolerance, rule, fps) for clip in speeds for heel in (0, 1)]
+    found = [
+        steps_of_heel(clip[:, heel], tolerance, rule, fps) for clip in speeds for heel in (0, 1)
+    ]
     return np.diff(np.concatenate(found), axis=-1)[:, 0] / fps
 
 
@@ -113,7 +134,8 @@ def footsteps(
     per_clip_average: bool = False,
     fps: float | int = FPS,
 ) -> Footsteps:
-    """Footsteps of a set of clips, each given by its `heel_speed`; the row of Table I at v95, and the whole curve.
+    """Footsteps of a set of clips, each given by its `heel_speed`; the row of Table I at v95, and
+    the whole curve.
 
     f_est(v) = number of steps at tolerance v;  v95 = min{ v : f_est(v) >= 0.95 max_u f_est(u) };
     count, mean_s, std_s: number, mean and population deviation of the step durations at v95.

@@ -1,8 +1,10 @@
-"""How far one cloud of feature vectors is from another: FID, and what it owes to the number of clips.
+"""How far one cloud of feature vectors is from another: FID, and what it owes to the number of
+clips.
 
-Two clouds are compared by their means and covariances alone. A covariance of D features needs many more than D clips;
-the published table had 40 generated dances for 72 features. With few clips the distance is too large, even between two
-halves of the data: so print `fid_floor` beside it.  Source: MoFusion 4.1 (FID), Table 1.  Notebook: 14
+Two clouds are compared by their means and covariances alone. A covariance of D features needs many
+more than D clips; the published table had 40 generated dances for 72 features. With few clips the
+distance is too large, even between two halves of the data: so print `fid_floor` beside it.  Source:
+MoFusion 4.1 (FID), Table 1.   Notebook: 14
 """
 
 import warnings
@@ -13,13 +15,17 @@ from scipy.linalg import sqrtm
 
 
 class FewSamplesWarning(UserWarning):
-    """There are too few clips for so many features; the figure is usable beside others of as many clips only."""
+    """There are too few clips for so many features; the figure is usable beside others of as many
+    clips only."""
 
 
-def normalise(features: Float[np.ndarray, "*N F"], data: Float[np.ndarray, "M F"]) -> Float[np.ndarray, "*N F"]:
+def normalise(
+    features: Float[np.ndarray, "*N F"], data: Float[np.ndarray, "M F"]
+) -> Float[np.ndarray, "*N F"]:
     """(features - mean) / std, mean and population std being those of the *data's* features.
 
-    A feature that never changes in the data is only shifted: without this, rounding would be divided by rounding.
+    A feature that never changes in the data is only shifted: without this, rounding would be
+    divided by rounding.
     Source: MoFusion 4.1, and the code it follows.  Notebook: 14
     """
     mean, std = data.mean(0), data.std(0)
@@ -32,24 +38,30 @@ def frechet_distance(
     mean_2: Float[np.ndarray, "F"],
     covariance_2: Float[np.ndarray, "F F"],
 ) -> float:
-    """d^2 = |m1 - m2|^2 + tr(C1 + C2 - 2 (C1^1/2 C2 C1^1/2)^1/2), the squared Frechet distance of two Gaussians.
+    """d^2 = |m1 - m2|^2 + tr(C1 + C2 - 2 (C1^1/2 C2 C1^1/2)^1/2), the squared Frechet distance of
+    two Gaussians.
 
-    The root is taken of a symmetric matrix, by its eigenvalues: real and never negative, also where C1 or C2 is
-    singular. For covariances that commute it is |m1 - m2|^2 + |sqrt(l1) - sqrt(l2)|^2, l the paired eigenvalues.
+    The root is taken of a symmetric matrix, by its eigenvalues: real and never negative, also where
+    C1 or C2 is singular. For covariances that commute it is |m1 - m2|^2 + |sqrt(l1) - sqrt(l2)|^2,
+    l the paired eigenvalues.
     Source: MoFusion 4.1.  Notebook: 14
     """
     values, vectors = np.linalg.eigh(covariance_1)
     root = (vectors * np.sqrt(np.maximum(values, 0.0))) @ vectors.T
     middle = np.linalg.eigvalsh(root @ covariance_2 @ root)
     mixed = np.sqrt(np.maximum(middle, 0.0)).sum()
-    distance = ((mean_1 - mean_2) ** 2).sum() + np.trace(covariance_1) + np.trace(covariance_2) - 2 * mixed
+    distance = (
+        ((mean_1 - mean_2) ** 2).sum() + np.trace(covariance_1) + np.trace(covariance_2) - 2 * mixed
+    )
     return float(max(distance, 0.0))  # rounding may take a distance of 0 below
 
 
 def shrunk_covariance(features: Float[np.ndarray, "N F"]) -> Float[np.ndarray, "F F"]:
-    """The covariance (divided by N) drawn towards a multiple of the identity, as far as Ledoit and Wolf (2004) advise.
+    """The covariance (divided by N) drawn towards a multiple of the identity, as far as Ledoit and
+    Wolf (2004) advise.
 
-    C* = (1 - w) C + w (tr C / F) I, the more the fewer the clips; it is never singular unless all clips are one.
+    C* = (1 - w) C + w (tr C / F) I, the more the fewer the clips; it is never singular unless all
+    clips are one.
     Notebook: 14
     """
     centred = features - features.mean(0)
@@ -57,17 +69,22 @@ def shrunk_covariance(features: Float[np.ndarray, "N F"]) -> Float[np.ndarray, "
     covariance = centred.T @ centred / n
     size = np.trace(covariance) / width
     spread = (covariance**2).sum() - width * size**2  # of the covariance around the target
-    noise = ((centred**2).sum(1) ** 2).sum() / n**2 - (covariance**2).sum() / n  # expected error of the covariance
+    noise = ((centred**2).sum(1) ** 2).sum() / n**2 - (
+        covariance**2
+    ).sum() / n  # expected error of the covariance
     weight = 0.0 if spread <= 0 else float(np.clip(noise / spread, 0.0, 1.0))
     return (1 - weight) * covariance + weight * size * np.eye(width)
 
 
 def fid(generated: Float[np.ndarray, "N F"], data: Float[np.ndarray, "M F"]) -> float:
-    """Frechet distance between features of generated and recorded clips, in units of the data's deviations.
+    """Frechet distance between features of generated and recorded clips, in units of the data's
+    deviations.
 
-    Both are normalised by the data; unbiased covariances. Warns (FewSamplesWarning) unless both have more clips than
-    features: the figure is then too large by much, and only to be set beside `fid_floor` of as many clips.
-    Raises ValueError for fewer than two clips or features that are not finite.  Source: MoFusion 4.1.  Notebook: 14
+    Both are normalised by the data; unbiased covariances. Warns (FewSamplesWarning) unless both
+    have more clips than features: the figure is then too large by much, and only to be set beside
+    `fid_floor` of as many clips.
+    Raises ValueError for fewer than two clips or features that are not finite.  Source: MoFusion
+    4.1.   Notebook: 14
     """
     generated, data = _checked(generated, data)
     if min(len(generated), len(data)) <= data.shape[1]:
@@ -81,24 +98,31 @@ def fid(generated: Float[np.ndarray, "N F"], data: Float[np.ndarray, "M F"]) -> 
 
 
 def shrunk_fid(generated: Float[np.ndarray, "N F"], data: Float[np.ndarray, "M F"]) -> float:
-    """The same with `shrunk_covariance`: less noise and bias where clips are few, and not the published number.
+    """The same with `shrunk_covariance`: less noise and bias where clips are few, and not the
+    published number.
 
     Raises ValueError for fewer than two clips or features that are not finite.  Notebook: 14
     """
     generated, data = _checked(generated, data)
-    return frechet_distance(generated.mean(0), shrunk_covariance(generated), data.mean(0), shrunk_covariance(data))
+    return frechet_distance(
+        generated.mean(0), shrunk_covariance(generated), data.mean(0), shrunk_covariance(data)
+    )
 
 
 def fid_floor(
     data: Float[np.ndarray, "M F"], n: int, rng: np.random.Generator, distance=fid, times: int = 10
 ) -> tuple[float, float]:
-    """What perfection scores: mean and deviation of the FID between n clips of the data, by chance, and all others.
+    """What perfection scores: mean and deviation of the FID between n clips of the data, by chance,
+    and all others.
 
-    A generator whose n clips come near this figure cannot be told from the data. `distance` is `fid`, `shrunk_fid` ...
+    A generator whose n clips come near this figure cannot be told from the data. `distance` is
+    `fid`, `shrunk_fid` ...
     Raises ValueError unless two clips are left on both sides.  Notebook: 14
     """
     if not 2 <= n <= len(data) - 2:
-        raise ValueError(f"of {len(data)} clips {n} cannot be set against the others: two are needed on both sides")
+        raise ValueError(
+            f"of {len(data)} clips {n} cannot be set against the others: two are needed on both sides"
+        )
     found = []
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", FewSamplesWarning)
@@ -109,10 +133,12 @@ def fid_floor(
 
 
 def published_fid(generated: Float[np.ndarray, "N F"], data: Float[np.ndarray, "M F"]) -> complex:
-    """FID as the public code has it: the root of C1 C2 taken by scipy.linalg.sqrtm, without looking at what it returns.
+    """FID as the public code has it: the root of C1 C2 taken by scipy.linalg.sqrtm, without looking
+    at what it returns.
 
-    C1 C2 is not symmetric. With fewer clips than features it is singular, and the root has an imaginary part: hence a
-    complex number here. The real part then still agrees with `fid`.  Source: MoFusion 4.1.  Notebook: 14
+    C1 C2 is not symmetric. With fewer clips than features it is singular, and the root has an
+    imaginary part: hence a complex number here. The real part then still agrees with `fid`.
+    Source: MoFusion 4.1.   Notebook: 14
     """
     generated, data = _checked(generated, data)
     first, second = _covariance(generated), _covariance(data)
@@ -132,7 +158,9 @@ def _covariance(features: np.ndarray) -> np.ndarray:
 def _checked(generated: np.ndarray, data: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     for name, features in (("generated", generated), ("data's", data)):
         if len(features) < 2:
-            raise ValueError(f"a covariance takes two clips, and there is {len(features)} among the {name} features")
+            raise ValueError(
+                f"a covariance takes two clips, and there is {len(features)} among the {name} features"
+            )
         if not np.isfinite(features).all():
             bad = int(np.flatnonzero(~np.isfinite(features).all(1))[0])
             raise ValueError(f"row {bad} of the {name} features is not finite: which clip is that?")

@@ -1,8 +1,10 @@
-"""A dance in three numbers for each joint, as FID, Diversity and MultiModality count it: how much energy goes where.
+"""A dance in three numbers for each joint, as FID, Diversity and MultiModality count it: how much
+energy goes where.
 
-`kinetic_features` is what the numbers are said to be. `published_kinetic_features` is what the code behind the
-published tables computes: there a misplaced bracket makes the third number measure the distance from the origin.
-Everything is at 60 frames/s; metres, seconds, y up.  Source: MoFusion 4.1 (FID, Div, MModality).  Notebook: 14
+`kinetic_features` is what the numbers are said to be. `published_kinetic_features` is what the code
+behind the published tables computes: there a misplaced bracket makes the third number measure the
+distance from the origin. Everything is at 60 frames/s; metres, seconds, y up.  Source: MoFusion 4.1
+(FID, Div, MModality).   Notebook: 14
 """
 
 import numpy as np
@@ -14,12 +16,16 @@ from ..motion.root_frame import FPS
 WINDOW = 2  # frames to either side, at 60 frames/s
 
 
-def kinetic_features(positions: Float[np.ndarray, "T J 3"], fps: float | int = FPS) -> Float[np.ndarray, "F"]:
-    """(horizontal energy, vertical energy, energy expenditure) of joint 0, then of joint 1 ...: F = 3 J numbers.
+def kinetic_features(
+    positions: Float[np.ndarray, "T J 3"], fps: float | int = FPS
+) -> Float[np.ndarray, "F"]:
+    """(horizontal energy, vertical energy, energy expenditure) of joint 0, then of joint 1 ...: F =
+    3 J numbers.
 
-    v[t], a[t]: velocity and acceleration at 60 frames/s, each averaged over two frames to either side;
-    horizontal = mean_t |v_xz|^2, vertical = mean_t v_y^2 in (m/s)^2; expenditure = mean_t |a| in m/s^2.
-    Where the dancer stands in the world makes no difference. Raises ValueError for fewer than three frames.
+    v[t], a[t]: velocity and acceleration at 60 frames/s, each averaged over two frames to either
+    side; horizontal = mean_t |v_xz|^2, vertical = mean_t v_y^2 in (m/s)^2; expenditure = mean_t |a|
+    in m/s^2. Where the dancer stands in the world makes no difference. Raises ValueError for fewer
+    than three frames.
     Source: MoFusion 4.1.  Notebook: 14
     """
     positions = _at_60(positions, fps)
@@ -27,12 +33,16 @@ def kinetic_features(positions: Float[np.ndarray, "T J 3"], fps: float | int = F
     return _together(steps, np.diff(steps, axis=0) * DANCE_FPS)
 
 
-def published_kinetic_features(positions: Float[np.ndarray, "T J 3"], fps: float | int = FPS) -> Float[np.ndarray, "F"]:
-    """The same with the fault of the public code (fairmotion, AIST++, Bailando), for comparing with published figures.
+def published_kinetic_features(
+    positions: Float[np.ndarray, "T J 3"], fps: float | int = FPS
+) -> Float[np.ndarray, "F"]:
+    """The same with the fault of the public code (fairmotion, AIST++, Bailando), for comparing with
+    published figures.
 
-    There the earlier velocity is p[t] - p[t-1] / dt instead of (p[t] - p[t-1]) / dt, so that the expenditure is about
-    59 * 60 * mean_t |p|: it tells the distance from the origin, and a motionless joint has one, too.
-    Bailando moves the first root to the origin before (`from_the_origin`), AIST++ does not: their figures differ.
+    There the earlier velocity is p[t] - p[t-1] / dt instead of (p[t] - p[t-1]) / dt, so that the
+    expenditure is about 59 * 60 * mean_t |p|: it tells the distance from the origin, and a
+    motionless joint has one, too. Bailando moves the first root to the origin before
+    (`from_the_origin`), AIST++ does not: their figures differ.
     Raises ValueError for fewer than three frames.  Source: MoFusion 4.1.  Notebook: 14
     """
     positions = _at_60(positions, fps)
@@ -42,25 +52,33 @@ def published_kinetic_features(positions: Float[np.ndarray, "T J 3"], fps: float
 
 
 def from_the_origin(positions: Float[np.ndarray, "T J 3"]) -> Float[np.ndarray, "T J 3"]:
-    """The motion moved so that joint 0 starts at (0, 0, 0), as Bailando does before its features.  Notebook: 14"""
+    """The motion moved so that joint 0 starts at (0, 0, 0), as Bailando does before its features.
+    Notebook: 14"""
     return positions - positions[:1, :1]
 
 
 def _at_60(positions: np.ndarray, fps: float | int) -> np.ndarray:
     if len(positions) < 3:
-        raise ValueError(f"an acceleration takes three frames, and this motion has {len(positions)}")
+        raise ValueError(
+            f"an acceleration takes three frames, and this motion has {len(positions)}"
+        )
     return resample(positions, fps)
 
 
 def _averaged(rates: Float[np.ndarray, "N J 3"], frames: int) -> Float[np.ndarray, "{frames} J 3"]:
-    """Mean of the rates over a window around each of so many frames; at the ends over what there is of it."""
+    """Mean of the rates over a window around each of so many frames; at the ends over what there is
+    of it."""
     total = np.concatenate([np.zeros((1, *rates.shape[1:])), np.cumsum(rates, axis=0)])
-    at = np.arange(frames)  # a last frame without an acceleration of its own has the mean of those before
+    at = np.arange(
+        frames
+    )  # a last frame without an acceleration of its own has the mean of those before
     first, last = np.maximum(at - WINDOW, 0), np.minimum(at + WINDOW + 1, len(rates))
     return (total[last] - total[first]) / (last - first)[:, None, None]
 
 
-def _together(steps: Float[np.ndarray, "N J 3"], changes: Float[np.ndarray, "_ J 3"]) -> Float[np.ndarray, "F"]:
+def _together(
+    steps: Float[np.ndarray, "N J 3"], changes: Float[np.ndarray, "_ J 3"]
+) -> Float[np.ndarray, "F"]:
     """The three numbers of each joint from its velocities and its accelerations, frame by frame."""
     velocity, acceleration = _averaged(steps, len(steps)), _averaged(changes, len(steps))
     horizontal = (velocity[..., [0, 2]] ** 2).sum(-1).mean(0)

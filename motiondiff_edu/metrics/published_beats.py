@@ -1,7 +1,9 @@
-"""The beat scores of the published tables, in the form their code has, with its faults; for comparing like with like.
+"""The beat scores of the published tables, in the form their code has, with its faults; for
+comparing like with like.
 
-Both count in frames and take 60 of them a second for granted: at 20 frames/s the same code, with its sigma of 3 frames,
-gives a chance level of .75 and not .25. Resample first (motion.resample). What is mended: `beats.py`.
+Both count in frames and take 60 of them a second for granted: at 20 frames/s the same code, with
+its sigma of 3 frames, gives a chance level of .75 and not .25. Resample first (motion.resample).
+What is mended: `beats.py`.
 
                       AIST++'s authors                      Bailando; the formula of MoFusion eq. 10
 averaged over         kinematic beats                       music beats: who stops often, wins
@@ -23,18 +25,25 @@ SIGMA_FRAMES = 3.0
 
 
 def aist_beats(positions: Float[np.ndarray, "T J 3"]) -> Int[np.ndarray, "K"]:
-    """Kinematic beats as AIST++'s authors find them: frames at 60 frames/s, from the unsmoothed sum of joint speeds.
+    """Kinematic beats as AIST++'s authors find them: frames at 60 frames/s, from the unsmoothed sum
+    of joint speeds.
 
-    A 0 is set before the speeds, so that entry t is the step from t-1 to t.  Source: MoFusion 4.1.  Notebook: 14
+    A 0 is set before the speeds, so that entry t is the step from t-1 to t.  Source: MoFusion 4.1.
+    Notebook: 14
     """
-    speed = np.concatenate([[0.0], mean_speed(positions, 1)])  # a mean has its minima where the sum has them
+    speed = np.concatenate(
+        [[0.0], mean_speed(positions, 1)]
+    )  # a mean has its minima where the sum has them
     return argrelextrema(speed, np.less, order=10)[0]
 
 
 def aist_score(
-    kinematic: Real[np.ndarray, "K"], music: Real[np.ndarray, "M"], sigma: float | int = SIGMA_FRAMES
+    kinematic: Real[np.ndarray, "K"],
+    music: Real[np.ndarray, "M"],
+    sigma: float | int = SIGMA_FRAMES,
 ) -> float:
-    """Mean over kinematic beats (frames at 60 frames/s) of exp(-min_m |b - m|^2 / 2 sigma^2); 0 where there are none.
+    """Mean over kinematic beats (frames at 60 frames/s) of exp(-min_m |b - m|^2 / 2 sigma^2); 0
+    where there are none.
 
     Raises ValueError for music without a beat.  Source: MoFusion 4.1.  Notebook: 14
     """
@@ -42,7 +51,8 @@ def aist_score(
 
 
 def bailando_beats(positions: Float[np.ndarray, "T J 3"]) -> Int[np.ndarray, "K"]:
-    """Kinematic beats as Bailando finds them: frames at 60 frames/s, from the mean joint speed smoothed by 5 frames.
+    """Kinematic beats as Bailando finds them: frames at 60 frames/s, from the mean joint speed
+    smoothed by 5 frames.
 
     Entry t is the step from t to t+1.  Source: MoFusion 4.1.  Notebook: 14
     """
@@ -50,17 +60,25 @@ def bailando_beats(positions: Float[np.ndarray, "T J 3"]) -> Int[np.ndarray, "K"
 
 
 def bailando_score(
-    kinematic: Real[np.ndarray, "K"], music: Real[np.ndarray, "M"], sigma: float | int = SIGMA_FRAMES
+    kinematic: Real[np.ndarray, "K"],
+    music: Real[np.ndarray, "M"],
+    sigma: float | int = SIGMA_FRAMES,
 ) -> float:
-    """Mean over music beats (frames at 60 frames/s) of exp(-min_b |b - m|^2 / 2 sigma^2): the formula of eq. 10.
+    """Mean over music beats (frames at 60 frames/s) of exp(-min_b |b - m|^2 / 2 sigma^2): the
+    formula of eq. 10.
 
-    Raises ValueError where either side has no beat, as their code does.  Source: MoFusion eq. 10.  Notebook: 14
+    Raises ValueError where either side has no beat, as their code does.  Source: MoFusion eq. 10.
+    Notebook: 14
     """
     return _mean_over(music, kinematic, sigma)
 
 
-def _mean_over(these: Real[np.ndarray, "K"], others: Real[np.ndarray, "M"], sigma: float | int) -> float:
+def _mean_over(
+    these: Real[np.ndarray, "K"], others: Real[np.ndarray, "M"], sigma: float | int
+) -> float:
     if len(these) == 0 or len(others) == 0:
-        raise ValueError("one side has no beat at all: this form of the score is not defined then (see metrics.beats)")
+        raise ValueError(
+            "one side has no beat at all: this form of the score is not defined then (see metrics.beats)"
+        )
     nearest = np.abs(these[:, None] - others[None, :]).min(1)
     return float(np.exp(-(nearest**2) / (2 * sigma**2)).mean())

@@ -1,8 +1,10 @@
-"""Repairs: how far what was missing is from the truth, how well it joins the rest, and whether it moves.
+"""Repairs: how far what was missing is from the truth, how well it joins the rest, and whether it
+moves.
 
-Positions in metres, results in centimetres. `known` says of each joint in each frame whether it was given; several
-repairs of the same past stand in front, (n, ..., T, J, 3), and share it.
-Source: MoDiff IV-C (RMSE_re is of bones; the distance to the truth is ours: here the truth is known).  Notebook: 10
+Positions in metres, results in centimetres. `known` says of each joint in each frame whether it was
+given; several repairs of the same past stand in front, (n, ..., T, J, 3), and share it.
+Source: MoDiff IV-C (RMSE_re is of bones; the distance to the truth is ours: here the truth is
+known).   Notebook: 10
 """
 
 import numpy as np
@@ -16,7 +18,8 @@ Known = Bool[np.ndarray, "*B T J"]
 
 
 def missing_error(made: Poses, truth: Float[np.ndarray, "*B T J 3"], known: Known) -> float:
-    """Mean distance of the missing joints from the truth, cm: over all of them, in all frames and motions.
+    """Mean distance of the missing joints from the truth, cm: over all of them, in all frames and
+    motions.
 
     A mean of repairs can only win here: |mean_i x_i - truth| <= mean_i |x_i - truth|.
     Raises ValueError when nothing is missing.  Notebook: 10
@@ -26,14 +29,19 @@ def missing_error(made: Poses, truth: Float[np.ndarray, "*B T J 3"], known: Know
 
 
 def joined_bones(made: Poses, known: Known) -> float:
-    """The bone error (cm, RMS against the true lengths) of those bones that have an end which was missing.
+    """The bone error (cm, RMS against the true lengths) of those bones that have an end which was
+    missing.
 
-    The paper's RMSE_re does not say whether it counts the others, whose length is given; `bone_rmse` counts all.
+    The paper's RMSE_re does not say whether it counts the others, whose length is given;
+    `bone_rmse` counts all.
     Raises ValueError when nothing is missing.  Source: MoDiff Table II.  Notebook: 10
     """
     parents, children = np.array(BONES).T
     off = bone_lengths(made) - BONE_LENGTHS
-    return float(CM_PER_METRE * np.sqrt((_where(~(known[..., parents] & known[..., children]), off) ** 2).mean()))
+    return float(
+        CM_PER_METRE
+        * np.sqrt((_where(~(known[..., parents] & known[..., children]), off) ** 2).mean())
+    )
 
 
 def missing_step(made: Poses, known: Known) -> float:
@@ -47,7 +55,8 @@ def missing_step(made: Poses, known: Known) -> float:
 
 
 def missing_spread(samples: Float[np.ndarray, "n *B T J 3"], known: Known) -> float:
-    """How far n repairs of the same past lie from their mean, cm: RMS over the missing joints, with n - 1.
+    """How far n repairs of the same past lie from their mean, cm: RMS over the missing joints, with
+    n - 1.
 
     Repairs that know how uncertain they are spread about as far as the truth is from their mean.
     Raises ValueError for fewer than two repairs, and when nothing is missing.  Notebook: 10
@@ -58,7 +67,9 @@ def missing_spread(samples: Float[np.ndarray, "n *B T J 3"], known: Known) -> fl
     return float(CM_PER_METRE * np.sqrt(_where(~known, variance).mean()))
 
 
-def _where(counted: Bool[np.ndarray, "..."], values: Float[np.ndarray, "..."]) -> Float[np.ndarray, "K"]:
+def _where(
+    counted: Bool[np.ndarray, "..."], values: Float[np.ndarray, "..."]
+) -> Float[np.ndarray, "K"]:
     """The values that count; masks of single motions serve all repairs in front."""
     if not counted.any():
         raise ValueError("nothing is missing: there is no repair to measure")

@@ -1,7 +1,9 @@
-"""Does the dance repeat itself? Every pose compared with every other, where the figure stands and faces put aside.
+"""Does the dance repeat itself? Every pose compared with every other, where the figure stands and
+faces put aside.
 
-The matrix has a bright diagonal (each pose is like itself); a loop of two seconds adds bright lines two seconds beside
-it. A dance needs some repetition, as music does: read the figure beside the data's own.
+The matrix has a bright diagonal (each pose is like itself); a loop of two seconds adds bright lines
+two seconds beside it. A dance needs some repetition, as music does: read the figure beside the
+data's own.
 Source: MoFusion 4.1 (repetitive dances, judged there by eye).  Notebook: 14
 """
 
@@ -16,19 +18,23 @@ OVERLAP = 2.0  # s that must be compared at each lag: a short overlap agrees by 
 
 
 def pose_changes(positions: Float[np.ndarray, "T 21 3"]) -> Float[np.ndarray, "T 63"]:
-    """Poses with the pelvis above the origin, facing z in every frame, minus the clip's mean pose; metres.
+    """Poses with the pelvis above the origin, facing z in every frame, minus the clip's mean pose;
+    metres.
 
     The heading is that of hips and shoulders together. Raises ValueError for NaN.  Notebook: 14
     """
     if not np.isfinite(positions).all():
-        raise ValueError("positions hold NaN or infinity: fill or cut them before asking what repeats")
+        raise ValueError(
+            "positions hold NaN or infinity: fill or cut them before asking what repeats"
+        )
     poses, _ = to_root_frame(positions, positions[:, HIPS][:, [0, 2]], body_heading(positions))
     flat = poses.reshape(len(poses), -1)
     return flat - flat.mean(0)
 
 
 def self_similarity(positions: Float[np.ndarray, "T 21 3"]) -> Float[np.ndarray, "T T"]:
-    """S[t, u] = <x_t, x_u> / (|x_t| |x_u|), x the `pose_changes`: 1 for the same pose, -1 for the opposite one.
+    """S[t, u] = <x_t, x_u> / (|x_t| |x_u|), x the `pose_changes`: 1 for the same pose, -1 for the
+    opposite one.
 
     Raises ValueError for NaN and for a figure that keeps one pose.  Notebook: 14
     """
@@ -38,7 +44,8 @@ def self_similarity(positions: Float[np.ndarray, "T 21 3"]) -> Float[np.ndarray,
 
 
 def likeness(x: Float[np.ndarray, "T F"], lag: int) -> float:
-    """r = sum_t <x_t, x_{t+lag}> / sqrt(sum_t |x_t|^2 sum_t |x_{t+lag}|^2), t running over the overlap; 1 for a loop.
+    """r = sum_t <x_t, x_{t+lag}> / sqrt(sum_t |x_t|^2 sum_t |x_{t+lag}|^2), t running over the
+    overlap; 1 for a loop.
 
     Notebook: 14
     """
@@ -46,30 +53,39 @@ def likeness(x: Float[np.ndarray, "T F"], lag: int) -> float:
     return float((a * b).sum() / np.sqrt(max((a**2).sum() * (b**2).sum(), 1e-24)))
 
 
-def lag_similarity(positions: Float[np.ndarray, "T 21 3"], fps: float | int = FPS) -> Float[np.ndarray, "L"]:
-    """The `likeness` of the dance to itself `lag` frames later, for lag = 0, 1, ... as long as 2 s are left to compare.
+def lag_similarity(
+    positions: Float[np.ndarray, "T 21 3"], fps: float | int = FPS
+) -> Float[np.ndarray, "L"]:
+    """The `likeness` of the dance to itself `lag` frames later, for lag = 0, 1, ... as long as 2 s
+    are left to compare.
 
     Raises ValueError for a clip under 2 s, NaN, and a figure that keeps one pose.  Notebook: 14
     """
     x = _moving(pose_changes(positions))
     overlap = round(OVERLAP * fps)
     if len(x) < overlap:
-        raise ValueError(f"{len(x) / fps:g} s are too short to look for repetition: {OVERLAP:g} s are compared")
+        raise ValueError(
+            f"{len(x) / fps:g} s are too short to look for repetition: {OVERLAP:g} s are compared"
+        )
     return np.array([likeness(x, lag) for lag in range(len(x) - overlap + 1)])
 
 
 def repeat_score(
     positions: Float[np.ndarray, "T 21 3"], fps: float | int = FPS, lags: tuple[float, float] = LAGS
 ) -> float:
-    """The largest `lag_similarity` between 1 and 8 seconds: 1 for a loop of up to 8 s, near 0 for noise.
+    """The largest `lag_similarity` between 1 and 8 seconds: 1 for a loop of up to 8 s, near 0 for
+    noise.
 
-    A clip of T seconds shows lags up to T - 2 s: compare clips of one length only. Smooth movement that never returns
-    still has some likeness by chance. Raises ValueError as `lag_similarity`, and when no such lag fits.  Notebook: 14
+    A clip of T seconds shows lags up to T - 2 s: compare clips of one length only. Smooth movement
+    that never returns still has some likeness by chance. Raises ValueError as `lag_similarity`, and
+    when no such lag fits.   Notebook: 14
     """
     similarity = lag_similarity(positions, fps)
     first, last = round(lags[0] * fps), round(lags[1] * fps)
     if len(similarity) <= first:
-        raise ValueError(f"{len(positions) / fps:g} s leave no lag of {lags[0]:g} s with {OVERLAP:g} s to compare")
+        raise ValueError(
+            f"{len(positions) / fps:g} s leave no lag of {lags[0]:g} s with {OVERLAP:g} s to compare"
+        )
     return float(similarity[first : last + 1].max())
 
 

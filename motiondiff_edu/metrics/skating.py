@@ -1,7 +1,7 @@
 """Does the foot that stands slide? The speed over the ground of the toe that carries the figure.
 
-A foot is never called planted because it is slow: its speed is what is being judged. It is planted because it is low.
-Metres and metres a second. Notebook: 08
+A foot is never called planted because it is slow: its speed is what is being judged. It is planted
+because it is low. Metres and metres a second. Notebook: 08
 """
 
 import numpy as np
@@ -14,12 +14,15 @@ PLANTED_BELOW = 0.03  # metres
 
 
 def ground_velocity(
-    points: Float[np.ndarray, "*B T K 3"], control: Float[np.ndarray, "*B T 3"], fps: float | int = FPS
+    points: Float[np.ndarray, "*B T K 3"],
+    control: Float[np.ndarray, "*B T 3"],
+    fps: float | int = FPS,
 ) -> Float[np.ndarray, "*B T-1 K 2"]:
     """Velocity over the ground, (left, forward) in m/s, of points that are given in the root frame.
 
-    Step t is seen in the heading halfway between t and t+1, where the root moves by (v_left, v_forward) / fps. With
-    d = yaw / (2 fps):  velocity = fps * (R(+d) p[t+1] - R(-d) p[t]) + (v_left, v_forward).  Notebook: 08
+    Step t is seen in the heading halfway between t and t+1, where the root moves by (v_left,
+    v_forward) / fps. With d = yaw / (2 fps):  velocity = fps * (R(+d) p[t+1] - R(-d) p[t]) +
+    (v_left, v_forward).   Notebook: 08
     """
     half_turn = np.asarray(control, np.float64)[..., :-1, None, 2] / (2 * fps)
     ground = np.asarray(points, np.float64)[..., [0, 2]]
@@ -27,8 +30,11 @@ def ground_velocity(
     return moved * fps + control[..., :-1, None, 1::-1]
 
 
-def _turn(xz: Float[np.ndarray, "*B K 2"], angle: Float[np.ndarray, "*B 1"]) -> Float[np.ndarray, "*B K 2"]:
-    """(left, forward) coordinates of a figure that faces `angle`, read in the frame that faces 0."""
+def _turn(
+    xz: Float[np.ndarray, "*B K 2"], angle: Float[np.ndarray, "*B 1"]
+) -> Float[np.ndarray, "*B K 2"]:
+    """(left, forward) coordinates of a figure that faces `angle`, read in the frame that faces
+    0."""
     x, z = xz[..., 0], xz[..., 1]
     sin, cos = np.sin(angle), np.cos(angle)
     return np.stack([x * cos + z * sin, z * cos - x * sin], -1)
@@ -37,7 +43,8 @@ def _turn(xz: Float[np.ndarray, "*B K 2"], angle: Float[np.ndarray, "*B 1"]) -> 
 def planted_toe(
     poses: Float[np.ndarray, "*B T J 3"], below: float | int = PLANTED_BELOW
 ) -> tuple[Int[np.ndarray, "*B T-1"], Bool[np.ndarray, "*B T-1"]]:
-    """For the step from t to t+1: which toe is lower (0 left, 1 right; left if equal), and is it under `below` metres.
+    """For the step from t to t+1: which toe is lower (0 left, 1 right; left if equal), and is it
+    under `below` metres.
 
     Low is judged at both ends of the step: the higher of the two heights counts.  Notebook: 08
     """
@@ -52,7 +59,8 @@ def planted_velocity(
     fps: float | int = FPS,
     below: float | int = PLANTED_BELOW,
 ) -> Float[np.ndarray, "*B T-1 2"]:
-    """Velocity over the ground of the planted toe, (left, forward) in m/s; NaN in steps where no toe is planted.
+    """Velocity over the ground of the planted toe, (left, forward) in m/s; NaN in steps where no
+    toe is planted.
 
     Notebook: 08
     """
@@ -68,10 +76,12 @@ def skating(
     fps: float | int = FPS,
     below: float | int = PLANTED_BELOW,
 ) -> float | Float[np.ndarray, "*B"]:
-    """How fast the planted toe slides, in m/s, mean over the steps where one is planted; one figure for each clip.
+    """How fast the planted toe slides, in m/s, mean over the steps where one is planted; one figure
+    for each clip.
 
-    skating = mean_t |velocity over the ground of the planted toe|. Flight is left out; a clip where no toe is ever
-    under `below` has no figure: NaN, never a flattering 0 (see `planted_share`).  Notebook: 08
+    skating = mean_t |velocity over the ground of the planted toe|. Flight is left out; a clip where
+    no toe is ever under `below` has no figure: NaN, never a flattering 0 (see `planted_share`).
+    Notebook: 08
     """
     return mean_where(np.linalg.norm(planted_velocity(poses, control, fps, below), axis=-1))
 
@@ -79,7 +89,8 @@ def skating(
 def planted_share(
     poses: Float[np.ndarray, "*B T J 3"], below: float | int = PLANTED_BELOW
 ) -> float | Float[np.ndarray, "*B"]:
-    """The share of steps with a planted toe: 1 in a walk, less in a run, 0 for a figure that floats; NaN for no step.
+    """The share of steps with a planted toe: 1 in a walk, less in a run, 0 for a figure that
+    floats; NaN for no step.
 
     Notebook: 08
     """

@@ -1,1 +1,2 @@
-"""Motion as arrays: the skeleton, forward kinematics, the root frame, clips, and the files they come from."""
+"""Motion as arrays: the skeleton, forward kinematics, the root frame, clips, and the files they
+come from."""

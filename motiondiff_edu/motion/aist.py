@@ -1,8 +1,8 @@
 """Dances from AIST++: keypoints3d pickles, read without running what a pickle may hold.
 
-A pickle is a program; unpickling a stranger's file runs it. Here it may name four things: the numpy array, its type,
-and the two functions that put an array together. Everything else is refused by name.
-Centimetres become metres; 60 frames/s; y up; the floor is put to 0.  Notebook: 14, 19
+A pickle is a program; unpickling a stranger's file runs it. Here it may name four things: the numpy
+array, its type, and the two functions that put an array together. Everything else is refused by
+name. Centimetres become metres; 60 frames/s; y up; the floor is put to 0.   Notebook: 14, 19
 """
 
 import io
@@ -25,15 +25,17 @@ FLOOR_PERCENTILE = 1.0
 
 
 class AistError(ValueError):
-    """A file is no AIST++ keypoints file, or not a safe one; the message says what it is and what to do."""
+    """A file is no AIST++ keypoints file, or not a safe one; the message says what it is and what
+    to do."""
 
 
 @dataclass(frozen=True, eq=False)
 class Keypoints:
     """A recorded dance: 17 joints (`COCO`) in metres at 60 frames/s, the floor at y = 0.
 
-    `floor` is the height in metres that was taken off; `nan_frames` the frames with a missing joint (left as NaN);
-    `tempo` the music's beats a minute as the file's name tells, or None.  Notebook: 14
+    `floor` is the height in metres that was taken off; `nan_frames` the frames with a missing joint
+    (left as NaN); `tempo` the music's beats a minute as the file's name tells, or None.   Notebook:
+    14
     """
 
     positions: Float[np.ndarray, "T 17 3"]
@@ -45,18 +47,22 @@ class Keypoints:
 
 
 def read_keypoints(path: str | Path, optimised: bool = True) -> Keypoints:
-    """Read a keypoints3d pickle of AIST++; `optimised` takes keypoints3d_optim, which has no gaps, else the raw ones.
+    """Read a keypoints3d pickle of AIST++; `optimised` takes keypoints3d_optim, which has no gaps,
+    else the raw ones.
 
-    The floor is the 1st percentile over frames of the lowest joint: the ankles of a standing figure come to 0, since
-    COCO has no toes, and one bad frame does not lower it.
-    Raises AistError for anything else than such a file: other pickles (unread beyond the first foreign name), .npy
-    features, other shapes; FileNotFoundError where there is none.  Notebook: 14, 19
+    The floor is the 1st percentile over frames of the lowest joint: the ankles of a standing figure
+    come to 0, since COCO has no toes, and one bad frame does not lower it.
+    Raises AistError for anything else than such a file: other pickles (unread beyond the first
+    foreign name), .npy features, other shapes; FileNotFoundError where there is none.   Notebook:
+    14, 19
     """
     path = Path(path).expanduser()
     if path.is_dir():
         raise AistError(f"{path.name}: this is a folder; give one of the .pkl files in it.")
     if path.stat().st_size > LARGEST:
-        raise AistError(f"{path.name}: larger than {LARGEST // 1_000_000} MB, and no keypoints file is.")
+        raise AistError(
+            f"{path.name}: larger than {LARGEST // 1_000_000} MB, and no keypoints file is."
+        )
     content, key = _load(path), "keypoints3d_optim" if optimised else "keypoints3d"
     cm = _array(content, key, path.name)
     known = np.isfinite(cm).all((1, 2))
@@ -64,11 +70,14 @@ def read_keypoints(path: str | Path, optimised: bool = True) -> Keypoints:
         raise AistError(f"{path.name}: every frame of {key} has a missing joint.")
     positions = cm / 100.0
     floor = float(np.percentile(positions[known][..., 1].min(1), FLOOR_PERCENTILE))
-    return Keypoints(positions - [0.0, floor, 0.0], floor, np.flatnonzero(~known), tempo_of(path.name), path.name)
+    return Keypoints(
+        positions - [0.0, floor, 0.0], floor, np.flatnonzero(~known), tempo_of(path.name), path.name
+    )
 
 
 def tempo_of(name: str) -> float | None:
-    """Beats a minute of the music that an AIST++ name tells: mBR2 is 80 + 10 * 2 = 100; house (mHO2) 110 + 5 * 2 = 120.
+    """Beats a minute of the music that an AIST++ name tells: mBR2 is 80 + 10 * 2 = 100; house
+    (mHO2) 110 + 5 * 2 = 120.
 
     None where the name has no music in it.  Notebook: 14
     """
@@ -79,7 +88,11 @@ def tempo_of(name: str) -> float | None:
     return start + step * int(music[2])
 
 
-_ADMITTED = {("numpy", "ndarray"): np.ndarray, ("numpy", "dtype"): np.dtype, ("_codecs", "encode"): None}
+_ADMITTED = {
+    ("numpy", "ndarray"): np.ndarray,
+    ("numpy", "dtype"): np.dtype,
+    ("_codecs", "encode"): None,
+}
 for _numpy in ("numpy.core", "numpy._core"):  # before and since numpy 2
     _ADMITTED[f"{_numpy}.multiarray", "_reconstruct"] = multiarray._reconstruct
     _ADMITTED[f"{_numpy}.numeric", "_frombuffer"] = numeric._frombuffer
@@ -90,7 +103,9 @@ class _Restricted(pickle.Unpickler):
 
     def find_class(self, module: str, name: str):
         if (module, name) not in _ADMITTED:
-            raise AistError(f"it names {module}.{name}, which an array does not need: such a file may run a program")
+            raise AistError(
+                f"it names {module}.{name}, which an array does not need: such a file may run a program"
+            )
         return _ADMITTED[module, name] or _encode
 
 
@@ -111,11 +126,15 @@ def _load(path: Path):
     except AistError as error:
         raise AistError(f"{path.name}: not read: {error}.") from None
     except Exception as error:  # a damaged pickle may raise anything
-        raise AistError(f"{path.name}: no pickle, or a damaged one ({type(error).__name__}: {error}).") from None
+        raise AistError(
+            f"{path.name}: no pickle, or a damaged one ({type(error).__name__}: {error})."
+        ) from None
 
 
 def _told_of_npy(raw: bytes) -> str:
-    wanted = "what is wanted is a pickle of AIST++'s folder keypoints3d, with positions (frames, 17, 3)."
+    wanted = (
+        "what is wanted is a pickle of AIST++'s folder keypoints3d, with positions (frames, 17, 3)."
+    )
     try:
         shape = np.load(io.BytesIO(raw), allow_pickle=False).shape
     except ValueError:
@@ -127,8 +146,14 @@ def _told_of_npy(raw: bytes) -> str:
 
 def _array(content, key: str, name: str) -> Float[np.ndarray, "T 17 3"]:
     if not isinstance(content, dict) or key not in content:
-        holds = ", ".join(map(str, content)) if isinstance(content, dict) else type(content).__name__
-        hint = " These are joint angles: take the file of that name in keypoints3d." if "smpl_poses" in holds else ""
+        holds = (
+            ", ".join(map(str, content)) if isinstance(content, dict) else type(content).__name__
+        )
+        hint = (
+            " These are joint angles: take the file of that name in keypoints3d."
+            if "smpl_poses" in holds
+            else ""
+        )
         raise AistError(f"{name}: holds {holds}, and no {key}.{hint}")
     found = content[key]
     if not isinstance(found, np.ndarray) or found.dtype.kind != "f":

@@ -1,8 +1,9 @@
 """Mirroring and time reversal, with the velocities that belong to them.
 
 Both are exact here: bones keep their length and the control still integrates to the figure's path.
-Where we differ: the public preprocessing of the corpus mirrors the limbs but not the x of the central joints, and
-negates the velocities of a reversed clip without shifting them by the frame that a forward difference needs.
+Where we differ: the public preprocessing of the corpus mirrors the limbs but not the x of the
+central joints, and negates the velocities of a reversed clip without shifting them by the frame
+that a forward difference needs.
 Source: MoDiff III-E, IV-A.  Notebook: 01
 """
 
@@ -19,18 +20,28 @@ _FLIP_CONTROL = np.array([1.0, -1.0, -1.0])  # control: forward stays, left and 
 
 
 def mirror(clip: Clip) -> Clip:
-    """The clip seen in a mirror: every joint's x is negated, left and right swap names; so do the contacts.
+    """The clip seen in a mirror: every joint's x is negated, left and right swap names; so do the
+    contacts.
 
     Twice is the identity.  Notebook: 01
     """
-    contacts = None if clip.contacts is None else clip.contacts[:, ::-1].copy()  # torch takes no backward view
-    return replace(clip, poses=clip.poses[:, MIRROR] * _FLIP_X, control=clip.control * _FLIP_CONTROL, contacts=contacts)
+    contacts = (
+        None if clip.contacts is None else clip.contacts[:, ::-1].copy()
+    )  # torch takes no backward view
+    return replace(
+        clip,
+        poses=clip.poses[:, MIRROR] * _FLIP_X,
+        control=clip.control * _FLIP_CONTROL,
+        contacts=contacts,
+    )
 
 
 def reverse_time(clip: Clip) -> Clip:
-    """The clip played backwards: control'[t] = -control[T-2-t], since control[t] leads from frame t to t+1.
+    """The clip played backwards: control'[t] = -control[T-2-t], since control[t] leads from frame t
+    to t+1.
 
-    Twice is the identity but for the last row of control, which repeats its neighbour by convention.
+    Twice is the identity but for the last row of control, which repeats its neighbour by
+    convention.
     Source: MoDiff III-E.  Notebook: 01
     """
     control = np.empty_like(clip.control)
@@ -41,7 +52,8 @@ def reverse_time(clip: Clip) -> Clip:
 
 
 def augment(clips: Sequence[Clip]) -> list[Clip]:
-    """Four clips from each: as it is, mirrored, reversed, both. The source stays, so splits stay clean.
+    """Four clips from each: as it is, mirrored, reversed, both. The source stays, so splits stay
+    clean.
 
     Source: MoDiff III-E.  Notebook: 01
     """

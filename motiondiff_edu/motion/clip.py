@@ -16,7 +16,8 @@ from .root_frame import FPS, to_world
 class Clip:
     """Poses in the root frame (metres), control (m/s, m/s, rad/s), and what is known about them.
 
-    `source` names the recording (or the seed) that the clip was cut from; splits are made by it.  Notebook: 01
+    `source` names the recording (or the seed) that the clip was cut from; splits are made by it.
+    Notebook: 01
     """
 
     poses: Float[np.ndarray, "T 21 3"]
@@ -28,12 +29,16 @@ class Clip:
 
     def __post_init__(self):
         if len(self.poses) != len(self.control):
-            raise ValueError(f"clip {self.source!r}: {len(self.poses)} poses but {len(self.control)} rows of control")
+            raise ValueError(
+                f"clip {self.source!r}: {len(self.poses)} poses but {len(self.control)} rows of control"
+            )
 
     def __len__(self) -> int:
         return len(self.poses)
 
-    def world(self, start: tuple[float, float, float] = (0.0, 0.0, 0.0)) -> Float[np.ndarray, "T 21 3"]:
+    def world(
+        self, start: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    ) -> Float[np.ndarray, "T 21 3"]:
         """Positions in the world, the root starting at `start` = (x, z, heading)."""
         return to_world(self.poses, self.control, start, self.fps)
 
@@ -42,15 +47,20 @@ class Clip:
         return self.poses.reshape(len(self), -1).astype(np.float32)
 
     def cut(self, first: int, last: int) -> "Clip":
-        """Frames first..last-1 as a clip of the same source; `info` stays that of the whole clip."""
+        """Frames first..last-1 as a clip of the same source; `info` stays that of the whole
+        clip."""
         contacts = None if self.contacts is None else self.contacts[first:last]
-        return replace(self, poses=self.poses[first:last], control=self.control[first:last], contacts=contacts)
+        return replace(
+            self, poses=self.poses[first:last], control=self.control[first:last], contacts=contacts
+        )
 
 
 def slice_clips(clips: Sequence[Clip], seconds: float = 4.0, overlap: float = 0.5) -> list[Clip]:
-    """Cut clips into pieces of `seconds` that overlap by the share `overlap`; a shorter rest is left out.
+    """Cut clips into pieces of `seconds` that overlap by the share `overlap`; a shorter rest is
+    left out.
 
-    Raises ValueError unless 0 <= overlap < 1 and a piece has a frame.  Source: MoDiff IV-A.  Notebook: 01
+    Raises ValueError unless 0 <= overlap < 1 and a piece has a frame.  Source: MoDiff IV-A.
+    Notebook: 01
     """
     if not 0 <= overlap < 1:
         raise ValueError(f"overlap must lie in [0, 1), got {overlap}")
@@ -60,14 +70,17 @@ def slice_clips(clips: Sequence[Clip], seconds: float = 4.0, overlap: float = 0.
         if length < 1:
             raise ValueError(f"pieces of {seconds} s have no frame at {clip.fps:g} frames/s")
         stride = max(1, round(length * (1 - overlap)))
-        pieces += [clip.cut(first, first + length) for first in range(0, len(clip) - length + 1, stride)]
+        pieces += [
+            clip.cut(first, first + length) for first in range(0, len(clip) - length + 1, stride)
+        ]
     return pieces
 
 
 def split_by_source(
     clips: Sequence[Clip], fractions: Sequence[float], rng: np.random.Generator
 ) -> tuple[list[Clip], ...]:
-    """Split into groups so that no source stands in two of them: slices of one recording share frames.
+    """Split into groups so that no source stands in two of them: slices of one recording share
+    frames.
 
     `fractions` are shares of the sources and sum to 1. Raises ValueError otherwise.  Notebook: 01
     """

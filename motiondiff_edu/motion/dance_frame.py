@@ -1,7 +1,9 @@
-"""Dance as the network sees it: where the pelvis is, and the other joints about it; no turning from frame to frame.
+"""Dance as the network sees it: where the pelvis is, and the other joints about it; no turning from
+frame to frame.
 
-Columns 0:3 are the pelvis (x, y, z), which starts at x = z = 0, facing z; then x, y, z of each of the 20 other joints
-minus the pelvis, same axes. Metres.  Source: MoFusion 3 (root-relative joints and the root's path).  Notebook: 12
+Columns 0:3 are the pelvis (x, y, z), which starts at x = z = 0, facing z; then x, y, z of each of
+the 20 other joints minus the pelvis, same axes. Metres.  Source: MoFusion 3 (root-relative joints
+and the root's path).   Notebook: 12
 """
 
 from dataclasses import dataclass
@@ -29,7 +31,8 @@ def heading(across: Float[np.ndarray, "*B 3"]) -> Float[np.ndarray, "*B"]:
 
 @dataclass(frozen=True, eq=False)
 class Place:
-    """Where a figure stands and which way it faces: the way from the world to its own frame, and back."""
+    """Where a figure stands and which way it faces: the way from the world to its own frame, and
+    back."""
 
     ground: Float[np.ndarray, "*B 3"]  # below the pelvis: x, 0, z
     heading: Float[np.ndarray, "*B"]
@@ -58,14 +61,18 @@ def _turned(
 
 
 def at_origin(positions: Float[np.ndarray, "*B T 21 3"]) -> Float[np.ndarray, "*B T 21 3"]:
-    """The same motion, moved and turned so that it starts with the pelvis over x = z = 0, facing z."""
+    """The same motion, moved and turned so that it starts with the pelvis over x = z = 0, facing
+    z."""
     return Place.of(positions[..., 0, :, :]).enter(positions)
 
 
 def to_features(positions: Float[np.ndarray, "*B T J 3"]) -> Float[np.ndarray, "*B T 63"]:
-    """World positions as the network's 63 numbers.  Raises ValueError for another skeleton.  Notebook: 12"""
+    """World positions as the network's 63 numbers.  Raises ValueError for another skeleton.
+    Notebook: 12"""
     if positions.shape[-2:] != (J, 3):
-        raise ValueError(f"the course's skeleton has {J} joints with 3 coordinates, got {positions.shape[-2:]}")
+        raise ValueError(
+            f"the course's skeleton has {J} joints with 3 coordinates, got {positions.shape[-2:]}"
+        )
     return placed_features(at_origin(positions))
 
 
@@ -77,7 +84,8 @@ def placed_features(placed: Float[np.ndarray, "*B T J 3"]) -> Float[np.ndarray, 
 
 
 def to_positions(features: Float[Tensor, "*B T 63"]) -> Float[Tensor, "*B T 21 3"]:
-    """The network's 63 numbers as world positions, differentiable (the losses need it).  Notebook: 12, 13"""
+    """The network's 63 numbers as world positions, differentiable (the losses need it).   Notebook:
+    12, 13"""
     joints = features.unflatten(-1, (J, 3))
     pelvis = joints[..., :1, :]
     return torch.cat([pelvis, joints[..., 1:, :] + pelvis], dim=-2)

@@ -1,4 +1,5 @@
-"""Joint names over the dialects of BVH: which joint of a file plays which part of the course's figure.
+"""Joint names over the dialects of BVH: which joint of a file plays which part of the course's
+figure.
 
 Notebook: 00
 """
@@ -7,11 +8,12 @@ import re
 from collections.abc import Mapping
 
 from .bvh import Bvh
-from .bvh_tokens import BvhError
+from .bvh.tokens import BvhError
 from .skeleton import JOINTS
 
-# The joints of one side, best spelling first; the side stands before or after, a word or a letter (LeftKnee, Knee_L).
-# One word can mean two joints (LeftHip a thigh or a corner of the pelvis, LeftFoot an ankle or a toe), hence the order.
+# The joints of one side, best spelling first; the side stands before or after, a word or a letter
+# (LeftKnee, Knee_L). One word can mean two joints (LeftHip a thigh or a corner of the pelvis,
+# LeftFoot an ankle or a toe), hence the order.
 SIDED = {
     "UpLeg": "upleg upperleg thigh hip femur",
     "Leg": "leg lowleg lowerleg shin knee calf tibia",
@@ -32,7 +34,11 @@ CENTRAL = {
 PREFIX = re.compile(r"^(bip\d+|mixamorig\d*|character\d*)")
 # What a figure must have; the others can be made up from these.
 NEEDED = ["Hips", "Head"]
-NEEDED += [side + part for side in ("Left", "Right") for part in ("UpLeg", "Leg", "Foot", "Arm", "ForeArm", "Hand")]
+NEEDED += [
+    side + part
+    for side in ("Left", "Right")
+    for part in ("UpLeg", "Leg", "Foot", "Arm", "ForeArm", "Hand")
+]
 
 
 def plain(name: str) -> str:
@@ -53,17 +59,22 @@ def spellings(joint: str) -> list[str]:
 def guess_mapping(bvh: Bvh, given: Mapping[str, str] | None = None) -> dict[str, str]:
     """{course joint: node of the file}: what is `given`, the rest guessed from the joint names.
 
-    End sites serve as toe and hand tip. Joints that no spelling fits are left out (only those that can be made up).
+    End sites serve as toe and hand tip. Joints that no spelling fits are left out (only those that
+    can be made up).
     Raises BvhError when the figure lacks a needed joint; the message lists the file's joints.
     """
     known = {plain(name): name for name in reversed(bvh.joints)}
     mapping = dict(given or {})
     for joint in (joint for joint in JOINTS if joint not in mapping):
         taken = set(mapping.values())
-        fits = [known[word] for word in spellings(joint) if word in known and known[word] not in taken]
+        fits = [
+            known[word] for word in spellings(joint) if word in known and known[word] not in taken
+        ]
         if fits:
             mapping[joint] = fits[0]
-    for tip, base in [(side + tip, side + base) for side in ("Left", "Right") for tip, base in TIPS]:
+    for tip, base in [
+        (side + tip, side + base) for side in ("Left", "Right") for tip, base in TIPS
+    ]:
         ends = end_of(bvh, mapping[base]) if base in mapping else []
         if tip not in mapping and ends:
             mapping[tip] = ends[0]
@@ -88,15 +99,21 @@ def check_mapping(mapping: Mapping[str, str], bvh: Bvh) -> dict[str, str]:
     """
     wrong = [name for name in mapping if name not in JOINTS]
     if wrong:
-        raise BvhError(f"the mapping names '{wrong[0]}', which is no joint of the course: {', '.join(JOINTS)}.")
+        raise BvhError(
+            f"the mapping names '{wrong[0]}', which is no joint of the course: {', '.join(JOINTS)}."
+        )
     missing = [name for name in mapping.values() if name not in bvh.names]
     if missing:
-        raise BvhError(f"the mapping names '{missing[0]}', but the file has: {', '.join(bvh.names)}.", bvh.source)
+        raise BvhError(
+            f"the mapping names '{missing[0]}', but the file has: {', '.join(bvh.names)}.",
+            bvh.source,
+        )
     return guess_mapping(bvh, given=mapping)
 
 
 def refuse_incomplete(mapping: Mapping[str, str], bvh: Bvh) -> None:
-    """Raise BvhError when a needed joint has no counterpart; show what there is and how to name it."""
+    """Raise BvhError when a needed joint has no counterpart; show what there is and how to name
+    it."""
     lacking = [joint for joint in NEEDED if joint not in mapping]
     if lacking:
         raise BvhError(

@@ -1,4 +1,5 @@
-"""The pose of another skeleton on the course's bones: bone directions are kept, bone lengths are ours.
+"""The pose of another skeleton on the course's bones: bone directions are kept, bone lengths are
+ours.
 
 Hips and chest are taken as rigid blocks, since every dialect places its spine joints elsewhere.
 Notebook: 00
@@ -11,7 +12,9 @@ from scipy.spatial.transform import Rotation
 from .kinematics import rot_x
 from .skeleton import BONE_LENGTHS, BONES, HEELS, OFFSETS, PARENTS, TOES, joint_index
 
-HIPS, SPINE, SPINE1, NECK, HEAD = (joint_index(name) for name in ("Hips", "Spine", "Spine1", "Neck1", "Head"))
+HIPS, SPINE, SPINE1, NECK, HEAD = (
+    joint_index(name) for name in ("Hips", "Spine", "Spine1", "Neck1", "Head")
+)
 UPLEGS, ARMS = (1, 5), (13, 17)
 FLAT_PITCH = float(np.arctan2(-OFFSETS[4, 1], OFFSETS[4, 2]))  # of our foot on the floor, downwards
 
@@ -21,7 +24,9 @@ def unit(vector: Float[np.ndarray, "... 3"]) -> Float[np.ndarray, "... 3"]:
     return vector / np.maximum(np.linalg.norm(vector, axis=-1, keepdims=True), 1e-12)
 
 
-def frame_of(left: Float[np.ndarray, "T 3"], up: Float[np.ndarray, "T 3"]) -> Float[np.ndarray, "T 3 3"]:
+def frame_of(
+    left: Float[np.ndarray, "T 3"], up: Float[np.ndarray, "T 3"]
+) -> Float[np.ndarray, "T 3 3"]:
     """Rotation matrices whose columns are left (kept), up (made perpendicular) and ahead."""
     x = unit(left)
     z = unit(np.cross(x, up))
@@ -29,9 +34,12 @@ def frame_of(left: Float[np.ndarray, "T 3"], up: Float[np.ndarray, "T 3"]) -> Fl
 
 
 def calibrated(
-    direction: Float[np.ndarray, "T 3"], frame: Float[np.ndarray, "T 3 3"], target: Float[np.ndarray, "3"]
+    direction: Float[np.ndarray, "T 3"],
+    frame: Float[np.ndarray, "T 3 3"],
+    target: Float[np.ndarray, "3"],
 ) -> Float[np.ndarray, "T 3"]:
-    """Turn directions by one constant rotation in a body frame, so that their mean there is `target`.
+    """Turn directions by one constant rotation in a body frame, so that their mean there is
+    `target`.
 
     This removes how a dialect places a joint and keeps how the person moves it.
     """
@@ -49,7 +57,8 @@ def between(start: Float[np.ndarray, "3"], end: Float[np.ndarray, "3"]) -> Float
 
 
 def complete(points: Float[np.ndarray, "T 21 3"]) -> Float[np.ndarray, "T 21 3"]:
-    """Fill joints that a file lacks: neck and spine on the line from hips to head, hand tips along the forearm."""
+    """Fill joints that a file lacks: neck and spine on the line from hips to head, hand tips along
+    the forearm."""
     points = points.copy()
     hips, shoulders = points[:, UPLEGS].mean(1), points[:, ARMS].mean(1)
     made_up = {
@@ -66,8 +75,11 @@ def complete(points: Float[np.ndarray, "T 21 3"]) -> Float[np.ndarray, "T 21 3"]
 
 
 def has_our_bones(points: Float[np.ndarray, "T 21 3"]) -> bool:
-    """True when every bone has the course's length within 2 %, as in files that this course wrote."""
-    lengths = np.array([np.median(np.linalg.norm(points[:, c] - points[:, p], axis=-1)) for p, c in BONES])
+    """True when every bone has the course's length within 2 %, as in files that this course
+    wrote."""
+    lengths = np.array(
+        [np.median(np.linalg.norm(points[:, c] - points[:, p], axis=-1)) for p, c in BONES]
+    )
     return bool(np.all(np.abs(lengths / BONE_LENGTHS - 1) < 0.02))
 
 
@@ -83,8 +95,9 @@ def bone_directions(
 ) -> Float[np.ndarray, "T 21 3"]:
     """Unit direction of every bone (row 0 unused) for our figure, from another figure's joints.
 
-    `standing` is true where a foot lies flat; it tells which pitch of that foot means flat.
-    `lean` (radians, backwards) is the slope of the trunk, from hip joints to shoulders, when the figure stands upright.
+    `standing` is true where a foot lies flat; it tells which pitch of that foot means flat. `lean`
+    (radians, backwards) is the slope of the trunk, from hip joints to shoulders, when the figure
+    stands upright.
     """
     directions = plain_directions(points)
     pelvis, chest = trunk_frames(points, lean)
@@ -96,12 +109,15 @@ def bone_directions(
         directions[:, joint] = calibrated(points[:, joint] - points[:, NECK], chest, OFFSETS[joint])
     for side, (heel, toe) in enumerate(zip(HEELS, TOES, strict=True)):
         shank = points[:, heel - 1] - points[:, heel]
-        directions[:, toe] = foot_direction(points[:, toe] - points[:, heel], shank, pelvis, standing[:, side])
+        directions[:, toe] = foot_direction(
+            points[:, toe] - points[:, heel], shank, pelvis, standing[:, side]
+        )
     return directions
 
 
 def rest_lean(rest: Float[np.ndarray, "21 3"]) -> float:
-    """How far the trunk slopes backwards in a rest pose (radians): a matter of where joints are placed, not of posture.
+    """How far the trunk slopes backwards in a rest pose (radians): a matter of where joints are
+    placed, not of posture.
 
     Zero when the rest pose does not stand, or slopes more than a standing figure does.
     """
@@ -113,9 +129,11 @@ def rest_lean(rest: Float[np.ndarray, "21 3"]) -> float:
 
 
 def trunk_frames(points: Float[np.ndarray, "T 21 3"], lean: float) -> tuple[np.ndarray, np.ndarray]:
-    """Frames of pelvis and chest: across from hip and shoulder line, up from the lower and the upper trunk.
+    """Frames of pelvis and chest: across from hip and shoulder line, up from the lower and the
+    upper trunk.
 
-    The trunk bends where the file has a spine joint near its middle; its mean shape is straightened.
+    The trunk bends where the file has a spine joint near its middle; its mean shape is
+    straightened.
     """
     hips, shoulders = points[:, UPLEGS].mean(1), points[:, ARMS].mean(1)
     across_hips = points[:, UPLEGS[0]] - points[:, UPLEGS[1]]
@@ -129,13 +147,20 @@ def trunk_frames(points: Float[np.ndarray, "T 21 3"], lean: float) -> tuple[np.n
 
 
 def mid_trunk(
-    points: Float[np.ndarray, "T 21 3"], hips: Float[np.ndarray, "T 3"], trunk: Float[np.ndarray, "T 3"]
+    points: Float[np.ndarray, "T 21 3"],
+    hips: Float[np.ndarray, "T 3"],
+    trunk: Float[np.ndarray, "T 3"],
 ) -> Float[np.ndarray, "T 3"]:
-    """The spine joint nearest to half way up the trunk, or the point half way where none is near."""
+    """The spine joint nearest to half way up the trunk, or the point half way where none is
+    near."""
     height = np.einsum("tji,ti->tj", points[:, [SPINE, SPINE1, NECK]] - hips[:, None], trunk)
     share = np.median(height / (trunk**2).sum(-1)[:, None], axis=0)
     best = int(np.abs(share - 0.5).argmin())
-    return points[:, [SPINE, SPINE1, NECK][best]] if abs(share[best] - 0.5) < 0.25 else hips + trunk / 2
+    return (
+        points[:, [SPINE, SPINE1, NECK][best]]
+        if abs(share[best] - 0.5) < 0.25
+        else hips + trunk / 2
+    )
 
 
 def foot_direction(
@@ -144,21 +169,27 @@ def foot_direction(
     pelvis: Float[np.ndarray, "T 3 3"],
     standing: Bool[np.ndarray, " T"],
 ) -> Float[np.ndarray, "T 3"]:
-    """Direction ankle to toe, pitched by a constant so that a foot flat on the floor is flat with our ankle height.
+    """Direction ankle to toe, pitched by a constant so that a foot flat on the floor is flat with
+    our ankle height.
 
-    A foot that is missing, or points straight down from the shank, becomes a flat foot square to the shank.
+    A foot that is missing, or points straight down from the shank, becomes a flat foot square to
+    the shank.
     """
     lengthwise = np.abs(np.einsum("ti,ti->t", unit(foot), unit(shank)))
     if np.isnan(foot).any() or np.median(lengthwise) > 0.9:
         return frame_of(pelvis[..., 0], shank) @ unit(OFFSETS[TOES[0]])
     foot = unit(foot)
     pitch = -np.arcsin(np.clip(foot[:, 1], -1, 1))
-    flat = np.percentile(pitch[standing] if standing.sum() > 3 else pitch, 20)  # the rest may kneel on its toes
+    flat = np.percentile(
+        pitch[standing] if standing.sum() > 3 else pitch, 20
+    )  # the rest may kneel on its toes
     across = unit(np.cross(shank, foot))
     return Rotation.from_rotvec(across * (FLAT_PITCH - flat)).apply(foot)
 
 
-def build(hips: Float[np.ndarray, "T 3"], directions: Float[np.ndarray, "T 21 3"]) -> Float[np.ndarray, "T 21 3"]:
+def build(
+    hips: Float[np.ndarray, "T 3"], directions: Float[np.ndarray, "T 21 3"]
+) -> Float[np.ndarray, "T 21 3"]:
     """Positions of our figure from the place of its hips and its bone directions."""
     world = np.empty_like(directions)
     world[:, HIPS] = hips

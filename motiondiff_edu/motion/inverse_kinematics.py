@@ -1,16 +1,17 @@
-"""A joint is dragged and the body follows: every bone keeps its length, and what need not move stays.
+"""A joint is dragged and the body follows: every bone keeps its length, and what need not move
+stays.
 
-Elbows and knees turn about shoulder and hip; wrists and ankles are reached by two bones (the triangle of their
-lengths); fingertips and toes tow hand and foot; head, neck, spine and shoulders (one block with the chest) bend the
-trunk by FABRIK; the pelvis carries the body, and the feet stay where they stand as far as the legs reach. What cannot
-be reached is pointed at.
+Elbows and knees turn about shoulder and hip; wrists and ankles are reached by two bones (the
+triangle of their lengths); fingertips and toes tow hand and foot; head, neck, spine and shoulders
+(one block with the chest) bend the trunk by FABRIK; the pelvis carries the body, and the feet stay
+where they stand as far as the legs reach. What cannot be reached is pointed at.
 Source: FABRIK: Aristidou and Lasenby, 2011; two bones: the law of cosines.  Notebook: 15
 """
 
 import numpy as np
 from jaxtyping import Float
 
-from .bvh_fit import least_turn
+from .bvh.fit import least_turn
 from .directions import ARMS, SPINE1, UPLEGS, unit
 from .planting import pelvis_ahead, perpendicular
 from .skeleton import HEELS, HIPS, JOINTS, PARENTS, J
@@ -18,34 +19,45 @@ from .skeleton import HEELS, HIPS, JOINTS, PARENTS, J
 Pose = Float[np.ndarray, "21 3"]
 Point = Float[np.ndarray, "3"]
 
-STRAIGHTEST = 0.9995  # of its length: a limb is not stretched further, or its bend would have no side
-STIFF = 0.03  # m: a joint so near to the line through its limb shows no side to bend to; the body's own is mixed in
+STRAIGHTEST = (
+    0.9995  # of its length: a limb is not stretched further, or its bend would have no side
+)
+# m: a joint so near to the line through its limb shows no side to bend to; the body's own is mixed
+# in
+STIFF = 0.03
 PELVIS = (HIPS, *UPLEGS)  # one rigid piece
 
 
 def drag(pose: Pose, joint: int, target: Point) -> Pose:
-    """The pose with a joint at `target` (metres, world), or as near as its bones reach; all bones as long as before.
+    """The pose with a joint at `target` (metres, world), or as near as its bones reach; all bones
+    as long as before.
 
     Dragging a joint to where it is changes nothing.
-    Raises IndexError for a joint that the skeleton has not, ValueError for a target that is not finite.  Notebook: 15
+    Raises IndexError for a joint that the skeleton has not, ValueError for a target that is not
+    finite.   Notebook: 15
     """
     if not 0 <= joint < J:
         raise IndexError(f"joint {joint} is not one of the skeleton's {J} (0 to {J - 1})")
     if not np.isfinite(target).all():
-        raise ValueError(f"{JOINTS[joint]} cannot be dragged to {target.tolist()}: the target is not finite")
+        raise ValueError(
+            f"{JOINTS[joint]} cannot be dragged to {target.tolist()}: the target is not finite"
+        )
     if joint in PELVIS:
         return pelvis_moved(pose, target - pose[joint])
     chain = chain_to(joint)
     if chain[0] == HIPS:
         return carried(pose, chain, fabrik(pose[chain], target))
     if len(chain) == 2:
-        return carried(pose, chain, np.stack([pose[chain[0]], pose[chain[0]] + _bone(pose, chain, target)]))
+        return carried(
+            pose, chain, np.stack([pose[chain[0]], pose[chain[0]] + _bone(pose, chain, target)])
+        )
     solve = two_bones if len(chain) == 3 else towed
     return carried(pose, chain, solve(pose[chain], target, bends_to(pose, chain[0])))
 
 
 def chain_to(joint: int) -> list[int]:
-    """The joints that reach for it, from the one that stays: hip or shoulder for a limb, the pelvis for the trunk.
+    """The joints that reach for it, from the one that stays: hip or shoulder for a limb, the pelvis
+    for the trunk.
 
     A shoulder hangs from the chest, which is one block: the neck is left out on the way.
     """
@@ -56,7 +68,8 @@ def chain_to(joint: int) -> list[int]:
 
 
 def bends_to(pose: Pose, root: int) -> Float[np.ndarray, "2 3"]:
-    """Where a straight limb starts to bend, and where else if it points there: knees ahead or up, elbows back or down.
+    """Where a straight limb starts to bend, and where else if it points there: knees ahead or up,
+    elbows back or down.
 
     `root` is the limb's first joint, a hip or a shoulder.
     """
@@ -67,10 +80,12 @@ def bends_to(pose: Pose, root: int) -> Float[np.ndarray, "2 3"]:
 def two_bones(
     limb: Float[np.ndarray, "3 3"], target: Point, bends: Float[np.ndarray, "2 3"]
 ) -> Float[np.ndarray, "3 3"]:
-    """Root, middle and end with the end at the target: a triangle of two bones a, b and the distance d.
+    """Root, middle and end with the end at the target: a triangle of two bones a, b and the
+    distance d.
 
-    The middle is (a^2 - b^2 + d^2) / 2d along the line and sqrt(a^2 - that^2) aside of it, on the side where it was,
-    which turns with the line. A target out of reach is drawn in along the line from the root.
+    The middle is (a^2 - b^2 + d^2) / 2d along the line and sqrt(a^2 - that^2) aside of it, on the
+    side where it was, which turns with the line. A target out of reach is drawn in along the line
+    from the root.
     """
     root, middle, end = limb
     a, b, far = (float(np.linalg.norm(v)) for v in (middle - root, end - middle, end - root))
@@ -88,28 +103,37 @@ def two_bones(
 
 
 def _first_aside(directions: Float[np.ndarray, "2 3"], line: Point) -> Point:
-    """The first of two directions at right angles to the line; the second where the first points along it."""
+    """The first of two directions at right angles to the line; the second where the first points
+    along it."""
     first, second = (perpendicular(v[None], line[None])[0] for v in directions)
     return unit(first) if np.linalg.norm(first) > 0.2 else unit(second)
 
 
-def towed(limb: Float[np.ndarray, "4 3"], target: Point, bends: Float[np.ndarray, "2 3"]) -> Float[np.ndarray, "4 3"]:
-    """Two bones and a last one that is drawn by its tip, as a cart by its shaft: hand or foot, and what carries it."""
+def towed(
+    limb: Float[np.ndarray, "4 3"], target: Point, bends: Float[np.ndarray, "2 3"]
+) -> Float[np.ndarray, "4 3"]:
+    """Two bones and a last one that is drawn by its tip, as a cart by its shaft: hand or foot, and
+    what carries it."""
     three, last = limb[:3], float(np.linalg.norm(limb[3] - limb[2]))
     tip = limb[3]
     for _ in range(20):
         if np.linalg.norm(tip - target) < 1e-9:
             break
-        three = two_bones(limb[:3], target + last * _aim(three[2] - target, limb[2] - limb[3]), bends)
+        three = two_bones(
+            limb[:3], target + last * _aim(three[2] - target, limb[2] - limb[3]), bends
+        )
         tip = three[2] + last * _aim(target - three[2], limb[3] - limb[2])
     return np.concatenate([three, tip[None]])
 
 
-def fabrik(chain: Float[np.ndarray, "N 3"], target: Point, rounds: int = 60) -> Float[np.ndarray, "N 3"]:
-    """The chain with its end at the target, its start where it was: from the end and from the start by turns, each
-    joint is put on the line to its neighbour's new place, at the bone's length.
+def fabrik(
+    chain: Float[np.ndarray, "N 3"], target: Point, rounds: int = 60
+) -> Float[np.ndarray, "N 3"]:
+    """The chain with its end at the target, its start where it was: from the end and from the start
+    by turns, each joint is put on the line to its neighbour's new place, at the bone's length.
 
-    A target out of reach leaves the chain straight. Two joints in one place leave their bone the direction it had.
+    A target out of reach leaves the chain straight. Two joints in one place leave their bone the
+    direction it had.
     """
     lengths = np.linalg.norm(np.diff(chain, axis=0), axis=-1)
     places = np.array(chain)
@@ -118,10 +142,14 @@ def fabrik(chain: Float[np.ndarray, "N 3"], target: Point, rounds: int = 60) -> 
             break
         places[-1] = target
         for i in range(len(chain) - 2, -1, -1):
-            places[i] = places[i + 1] + lengths[i] * _aim(places[i] - places[i + 1], chain[i] - chain[i + 1])
+            places[i] = places[i + 1] + lengths[i] * _aim(
+                places[i] - places[i + 1], chain[i] - chain[i + 1]
+            )
         places[0] = chain[0]
         for i in range(len(chain) - 1):
-            places[i + 1] = places[i] + lengths[i] * _aim(places[i + 1] - places[i], chain[i + 1] - chain[i])
+            places[i + 1] = places[i] + lengths[i] * _aim(
+                places[i + 1] - places[i], chain[i + 1] - chain[i]
+            )
     return places
 
 
@@ -135,14 +163,19 @@ def carried(pose: Pose, chain: list[int], places: Float[np.ndarray, "N 3"]) -> P
         joint, above = chain[k], chain[k - 1]
         turn = least_turn((pose[joint] - pose[above])[None], (places[k] - places[k - 1])[None])[0]
         turn = np.eye(3) if joint in HEELS and k == len(chain) - 1 else turn
-        below = [j for j in block(joint, above) if k + 1 == len(chain) or j not in block(chain[k + 1], joint)]
+        below = [
+            j
+            for j in block(joint, above)
+            if k + 1 == len(chain) or j not in block(chain[k + 1], joint)
+        ]
         moved[below] = places[k] + (pose[below] - pose[joint]) @ turn.T
         moved[joint] = places[k]
     return moved
 
 
 def block(joint: int, above: int) -> list[int]:
-    """What turns with the bone between two joints, a chain's neighbours: the first joint on the way, and all below."""
+    """What turns with the bone between two joints, a chain's neighbours: the first joint on the
+    way, and all below."""
     first = joint
     while PARENTS[first] != above:
         first = int(PARENTS[first])

@@ -13,7 +13,8 @@ def rot_x(angle: Float[np.ndarray, "*N"] | float) -> Float[np.ndarray, "*N 3 3"]
 
 
 def rot_y(angle: Float[np.ndarray, "*N"] | float) -> Float[np.ndarray, "*N 3 3"]:
-    """Rotation about y by `angle` radians: turns z towards x, counter-clockwise from above.  Notebook: 01"""
+    """Rotation about y by `angle` radians: turns z towards x, counter-clockwise from above.
+    Notebook: 01"""
     return _axis_rotation(angle, 2, 0)
 
 
@@ -37,12 +38,16 @@ _ROTATIONS = {"X": rot_x, "Y": rot_y, "Z": rot_z}
 
 
 def euler_to_matrix(angles: Float[np.ndarray, "*N K"], order: str) -> Float[np.ndarray, "*N 3 3"]:
-    """Intrinsic Euler angles (radians) to matrices: order "ZXY" means R = Rz @ Rx @ Ry, as BVH files mean it.
+    """Intrinsic Euler angles (radians) to matrices: order "ZXY" means R = Rz @ Rx @ Ry, as BVH
+    files mean it.
 
-    Raises ValueError when the order has a letter other than X, Y, Z or does not fit the angles.  Notebook: 01
+    Raises ValueError when the order has a letter other than X, Y, Z or does not fit the angles.
+    Notebook: 01
     """
     if len(order) != angles.shape[-1] or set(order) - set("XYZ"):
-        raise ValueError(f"rotation order {order!r} does not fit {angles.shape[-1]} angles; use letters X, Y, Z")
+        raise ValueError(
+            f"rotation order {order!r} does not fit {angles.shape[-1]} angles; use letters X, Y, Z"
+        )
     matrix = np.broadcast_to(np.eye(3), (*angles.shape[:-1], 3, 3))
     for k, letter in enumerate(order):
         matrix = matrix @ _ROTATIONS[letter](angles[..., k])
@@ -57,7 +62,8 @@ def forward_kinematics(
 ) -> tuple[Float[np.ndarray, "T J 3"], Float[np.ndarray, "T J 3 3"]]:
     """World positions (the unit of `offsets`) and global rotations of every joint.
 
-    G[j] = G[parent] L[j],   p[j] = p[parent] + G[parent] offset[j];   the root sits at `root_position`.
+    G[j] = G[parent] L[j],   p[j] = p[parent] + G[parent] offset[j];   the root sits at
+    `root_position`.
     Raises ValueError when a parent comes after its child.  Notebook: 01
     """
     if any(parent >= joint for joint, parent in enumerate(parents)):

@@ -13,7 +13,7 @@ from scipy.interpolate import CubicSpline
 from scipy.signal import butter, sosfiltfilt
 
 from .bvh import Bvh
-from .bvh_tokens import BvhError
+from .bvh.tokens import BvhError
 from .skeleton import HEELS, JOINTS, TOES, joint_index
 
 LEG = 0.835  # m, thigh plus shank of the course's figure
@@ -27,7 +27,9 @@ class MotionWarning(UserWarning):
     """Something in a file was put right or looks wrong; the clip is usable."""
 
 
-def pick(world: Float[np.ndarray, "T N 3"], bvh: Bvh, mapping: Mapping[str, str]) -> Float[np.ndarray, "T 21 3"]:
+def pick(
+    world: Float[np.ndarray, "T N 3"], bvh: Bvh, mapping: Mapping[str, str]
+) -> Float[np.ndarray, "T 21 3"]:
     """The course's 21 joints out of all nodes of a file; NaN where the file has no counterpart."""
     points = np.full((len(world), len(JOINTS), 3), np.nan)
     for joint, name in mapping.items():
@@ -41,15 +43,19 @@ def leg_length(points: Float[np.ndarray, "T 21 3"]) -> float:
     return float(np.median(thigh_shank, axis=1).sum() / 2)
 
 
-def to_metres(points: Float[np.ndarray, "T 21 3"], source: str = "") -> tuple[Float[np.ndarray, "T 21 3"], float]:
+def to_metres(
+    points: Float[np.ndarray, "T 21 3"], source: str = ""
+) -> tuple[Float[np.ndarray, "T 21 3"], float]:
     """Scale so that thigh plus shank is 0.835 m; returns metres per unit too.
 
-    Raises BvhError for a figure without legs.  Source: the stature behind the course's bones (1.70 m).
+    Raises BvhError for a figure without legs.  Source: the stature behind the course's bones (1.70
+    m).
     """
     length = leg_length(points)
     if not length > 1e-9:
         raise BvhError(
-            "the legs have no length, so the unit cannot be told; check the mapping of UpLeg, Leg, Foot.", source
+            "the legs have no length, so the unit cannot be told; check the mapping of UpLeg, Leg, Foot.",
+            source,
         )
     return points * (LEG / length), LEG / length
 
@@ -81,18 +87,22 @@ def turn_up(points: Float[np.ndarray, "... 3"], up: str) -> Float[np.ndarray, ".
 
 
 def unmirror(points: Float[np.ndarray, "T 21 3"]) -> tuple[Float[np.ndarray, "T 21 3"], bool]:
-    """Reflect x when left and right are exchanged against the toes: left x up must point where the toes do."""
+    """Reflect x when left and right are exchanged against the toes: left x up must point where the
+    toes do."""
     left = points[:, joint_index("LeftUpLeg")] - points[:, joint_index("RightUpLeg")]
     ahead = np.cross(left, body_axis(points))
     feet = (points[:, list(TOES)] - points[:, list(HEELS)]).sum(1)
-    cosine = np.einsum("ti,ti->t", ahead, feet) / (np.linalg.norm(ahead, axis=-1) * np.linalg.norm(feet, axis=-1))
+    cosine = np.einsum("ti,ti->t", ahead, feet) / (
+        np.linalg.norm(ahead, axis=-1) * np.linalg.norm(feet, axis=-1)
+    )
     if not np.median(cosine) < -0.3:  # NaN where the toes are unknown
         return points, False
     return points * FLIP_X, True
 
 
 def calibration_frames(points: Float[np.ndarray, "T 21 3"]) -> int:
-    """How many first frames are no motion: a T-pose from which a joint leaps 20 cm, five times its usual step.
+    """How many first frames are no motion: a T-pose from which a joint leaps 20 cm, five times its
+    usual step.
 
     Further leaps of 12 cm that follow at once (a blend into the take) go too.
     """
@@ -104,15 +114,20 @@ def calibration_frames(points: Float[np.ndarray, "T 21 3"]) -> int:
     return int(wild.argmin()) if not wild.all() else 1
 
 
-def resample(points: Float[np.ndarray, "T 21 3"], from_fps: float, to_fps: float) -> Float[np.ndarray, "F 21 3"]:
-    """Cubic spline to another rate, after a zero-phase low-pass of 8 Hz when at least half of the frames go.
+def resample(
+    points: Float[np.ndarray, "T 21 3"], from_fps: float, to_fps: float
+) -> Float[np.ndarray, "F 21 3"]:
+    """Cubic spline to another rate, after a zero-phase low-pass of 8 Hz when at least half of the
+    frames go.
 
     A joint that the file lacks (NaN) stays unknown.
     """
     known = np.isfinite(points).all((0, 2))  # a spline takes no NaN
     times, moving = np.arange(len(points)) / from_fps, points[:, known]
     if from_fps >= 2 * to_fps - 1e-6 and len(points) > 30:
-        moving = sosfiltfilt(butter(4, CUT_HZ * to_fps / 20, fs=from_fps, output="sos"), moving, axis=0)
+        moving = sosfiltfilt(
+            butter(4, CUT_HZ * to_fps / 20, fs=from_fps, output="sos"), moving, axis=0
+        )
     if abs(from_fps - to_fps) > 1e-6:
         count = int(np.floor(times[-1] * to_fps + 1e-6)) + 1
         moving = CubicSpline(times, moving)(np.arange(count) / to_fps)
@@ -127,7 +142,8 @@ def speed(points: Float[np.ndarray, "T ... 3"], fps: float) -> Float[np.ndarray,
 
 
 def floor_plane(toes: Float[np.ndarray, "T 2 3"], fps: float) -> Float[np.ndarray, "3"]:
-    """(height at the origin, slope along x, slope along z) of the floor, through the toes that stand.
+    """(height at the origin, slope along x, slope along z) of the floor, through the toes that
+    stand.
 
     Least squares, repeated without the points more than 3 cm above (a toe held still in the air).
     """
@@ -138,7 +154,9 @@ def floor_plane(toes: Float[np.ndarray, "T 2 3"], fps: float) -> Float[np.ndarra
     for _ in range(6):
         x, z = (stand - middle)[:, [0, 2]].T
         design = np.stack([np.ones_like(x), x, z], 1)
-        calm = np.diag([0.0, 0.01, 0.01]) * len(stand)  # a figure on the spot tells nothing of the slope
+        calm = np.diag([0.0, 0.01, 0.01]) * len(
+            stand
+        )  # a figure on the spot tells nothing of the slope
         plane = np.linalg.solve(design.T @ design + calm, design.T @ stand[:, 1])
         above = stand[:, 1] - design @ plane
         keep = above < max(0.03, np.percentile(above, 50))
@@ -150,13 +168,17 @@ def floor_plane(toes: Float[np.ndarray, "T 2 3"], fps: float) -> Float[np.ndarra
     return np.array([plane[0] - plane[1:] @ middle[[0, 2]], *plane[1:]])
 
 
-def level(points: Float[np.ndarray, "T 21 3"], plane: Float[np.ndarray, "3"]) -> Float[np.ndarray, "T 21 3"]:
+def level(
+    points: Float[np.ndarray, "T 21 3"], plane: Float[np.ndarray, "3"]
+) -> Float[np.ndarray, "T 21 3"]:
     """Turn and shift everything so that the plane becomes y = 0."""
     normal = np.array([-plane[1], 1.0, -plane[2]])
     normal /= np.linalg.norm(normal)
     across = np.cross(normal, [0.0, 1.0, 0.0])
     cosine = normal[1]
-    cross = np.array([[0, -across[2], across[1]], [across[2], 0, -across[0]], [-across[1], across[0], 0]])
+    cross = np.array(
+        [[0, -across[2], across[1]], [across[2], 0, -across[0]], [-across[1], across[0], 0]]
+    )
     turn = np.eye(3) + cross + cross @ cross / (1 + cosine)
     return (points - np.array([0.0, plane[0], 0.0])) @ turn.T
 

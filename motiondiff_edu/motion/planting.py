@@ -1,4 +1,5 @@
-"""Feet that stay where they stand: contacts, pinned toes, and legs that follow by two-bone inverse kinematics.
+"""Feet that stay where they stand: contacts, pinned toes, and legs that follow by two-bone inverse
+kinematics.
 
 Notebook: 00
 """
@@ -37,10 +38,13 @@ def spans(contact: Bool[np.ndarray, " T"]) -> list[tuple[int, int]]:
     return [(int(a), int(b)) for a, b in edges.reshape(-1, 2)]
 
 
-def shift_to_pins(toe: Float[np.ndarray, "T 3"], contact: Bool[np.ndarray, " T"]) -> Float[np.ndarray, "T 3"]:
+def shift_to_pins(
+    toe: Float[np.ndarray, "T 3"], contact: Bool[np.ndarray, " T"]
+) -> Float[np.ndarray, "T 3"]:
     """What to add to a toe so that it rests on one point of the floor during each contact.
 
-    Between contacts the shift passes smoothly (3u^2 - 2u^3) from one to the next; outside it is held.
+    Between contacts the shift passes smoothly (3u^2 - 2u^3) from one to the next; outside it is
+    held.
     """
     shift = np.zeros_like(toe)
     pinned = spans(contact)
@@ -52,18 +56,24 @@ def shift_to_pins(toe: Float[np.ndarray, "T 3"], contact: Bool[np.ndarray, " T"]
     shift[: pinned[0][0]], shift[pinned[-1][1] :] = shift[pinned[0][0]], shift[pinned[-1][1] - 1]
     for (_, left), (right, _) in zip(pinned[:-1], pinned[1:], strict=True):
         u = (np.arange(left, right) - (left - 1))[:, None] / (right - left + 1)
-        shift[left:right] = shift[left - 1] + (shift[right] - shift[left - 1]) * (3 * u**2 - 2 * u**3)
+        shift[left:right] = shift[left - 1] + (shift[right] - shift[left - 1]) * (
+            3 * u**2 - 2 * u**3
+        )
     return shift
 
 
 def plant(
     world: Float[np.ndarray, "T 21 3"], contacts: Bool[np.ndarray, "T 2"], fps: float
 ) -> Float[np.ndarray, "T 21 3"]:
-    """Move toes to their pins and keep every bone: the body follows the mean shift, the legs take up the rest.
+    """Move toes to their pins and keep every bone: the body follows the mean shift, the legs take
+    up the rest.
 
-    Between contacts no toe goes below the floor. Where a leg would have to be too long, the hips come down.
+    Between contacts no toe goes below the floor. Where a leg would have to be too long, the hips
+    come down.
     """
-    shift = np.stack([shift_to_pins(world[:, toe], contacts[:, side]) for side, toe in enumerate(TOES)], axis=1)
+    shift = np.stack(
+        [shift_to_pins(world[:, toe], contacts[:, side]) for side, toe in enumerate(TOES)], axis=1
+    )
     lifted = np.maximum(world[:, list(TOES), 1] + shift[..., 1], 0)
     shift[..., 1] = lifted - world[:, list(TOES), 1]
     ankles = world[:, list(HEELS)] + shift
@@ -100,7 +110,8 @@ def solve_leg(
     knee: Float[np.ndarray, "T 3"],
     ahead: Float[np.ndarray, "T 3"],
 ) -> tuple[Float[np.ndarray, "T 3"], Float[np.ndarray, "T 3"]]:
-    """Knee and ankle with thigh and shank at their lengths; the knee bends to the side where it was, never back.
+    """Knee and ankle with thigh and shank at their lengths; the knee bends to the side where it
+    was, never back.
 
     An ankle out of reach is drawn in along the line from the hip.
     """
@@ -115,6 +126,8 @@ def solve_leg(
     return hip + along[:, None] * line + height[:, None] * side, hip + distance[:, None] * line
 
 
-def perpendicular(vector: Float[np.ndarray, "T 3"], line: Float[np.ndarray, "T 3"]) -> Float[np.ndarray, "T 3"]:
+def perpendicular(
+    vector: Float[np.ndarray, "T 3"], line: Float[np.ndarray, "T 3"]
+) -> Float[np.ndarray, "T 3"]:
     """The part of a vector at right angles to a unit line."""
     return vector - np.einsum("ti,ti->t", vector, line)[:, None] * line

@@ -1,7 +1,7 @@
 """Any humanoid BVH as a clip of the course: `load_clip("walk.bvh")`.
 
-The chain: find the joints, metres from the leg length, y up, drop a T-pose, 20 frames/s, level floor,
-bone directions onto our bones, feet planted, root frame and control.
+The chain: find the joints, metres from the leg length, y up, drop a T-pose, 20 frames/s, level
+floor, bone directions onto our bones, feet planted, root frame and control.
 Notebook: 00
 """
 
@@ -14,7 +14,15 @@ from jaxtyping import Bool, Float
 from .bvh import Bvh, BvhError, read_bvh
 from .clip import Clip
 from .dialects import check_mapping, guess_mapping
-from .directions import UPLEGS, bone_directions, build, complete, has_our_bones, plain_directions, rest_lean
+from .directions import (
+    UPLEGS,
+    bone_directions,
+    build,
+    complete,
+    has_our_bones,
+    plain_directions,
+    rest_lean,
+)
 from .faults import WILD, wild_joints
 from .normalise import (
     FLIP_X,
@@ -38,10 +46,14 @@ SHORTEST = 0.5  # s; less has no gait and no heading
 SUNK = -0.05  # metres: no joint of somebody on their feet is so low
 
 
-def load_clip(path: str | Path, mapping: Mapping[str, str] | None = None, file_fps: float | int | None = None) -> Clip:
-    """Read a BVH file and retarget it; `mapping` {course joint: joint of the file} where names are not guessed.
+def load_clip(
+    path: str | Path, mapping: Mapping[str, str] | None = None, file_fps: float | int | None = None
+) -> Clip:
+    """Read a BVH file and retarget it; `mapping` {course joint: joint of the file} where names are
+    not guessed.
 
-    `file_fps` overrules the file's frame time. Raises BvhError; warns (MotionWarning) about what was put right.
+    `file_fps` overrules the file's frame time. Raises BvhError; warns (MotionWarning) about what
+    was put right.
     """
     return retarget(read_bvh(path, file_fps), mapping)
 
@@ -49,23 +61,36 @@ def load_clip(path: str | Path, mapping: Mapping[str, str] | None = None, file_f
 def retarget(bvh: Bvh, mapping: Mapping[str, str] | None = None, fps: float | int = 20.0) -> Clip:
     """A motion on the course's 21 joints and bones, `fps` frames/s, metres, feet on floor 0.
 
-    Bone directions are the source's; toes stay still while planted. `clip.info` records what was found.
+    Bone directions are the source's; toes stay still while planted. `clip.info` records what was
+    found.
     Raises BvhError when joints are missing or the motion is shorter than half a second.
     """
     fps = float(fps)
     if not 0 < fps < np.inf:
-        raise BvhError(f"fps must be a positive number of frames a second, not {fps:g}.", bvh.source)
+        raise BvhError(
+            f"fps must be a positive number of frames a second, not {fps:g}.", bvh.source
+        )
     mapping = guess_mapping(bvh) if mapping is None else check_mapping(mapping, bvh)
     points, info = normalised(bvh, mapping, fps)
     world, contacts = onto_our_bones(points, info["rest_lean"], fps)
     warn_sunk(world, fps, bvh.source, info["notes"])
     root, heading = estimate_root(world, fps)
     poses, control = to_root_frame(world, root, heading, fps)
-    return Clip(poses, control, fps=fps, contacts=contacts, source=bvh.source, info=info | {"mapping": dict(mapping)})
+    return Clip(
+        poses,
+        control,
+        fps=fps,
+        contacts=contacts,
+        source=bvh.source,
+        info=info | {"mapping": dict(mapping)},
+    )
 
 
-def normalised(bvh: Bvh, mapping: Mapping[str, str], fps: float) -> tuple[Float[np.ndarray, "T 21 3"], dict]:
-    """The figure in metres, y up, at `fps`, on a level floor; and a record of what had to be done."""
+def normalised(
+    bvh: Bvh, mapping: Mapping[str, str], fps: float
+) -> tuple[Float[np.ndarray, "T 21 3"], dict]:
+    """The figure in metres, y up, at `fps`, on a level floor; and a record of what had to be
+    done."""
     points, notes = pick(bvh.world_positions(), bvh, mapping), []
     rest = pick(bvh.rest_positions()[None], bvh, mapping)
     up = up_axis(points, rest[0])
@@ -78,7 +103,9 @@ def normalised(bvh: Bvh, mapping: Mapping[str, str], fps: float) -> tuple[Float[
     dropped = calibration_frames(points)
     if dropped:
         which = "frame 0 is" if dropped == 1 else f"frames 0 to {dropped - 1} are"
-        notes.append(tell(f"{which} a calibration pose, far from the motion, and dropped", bvh.source))
+        notes.append(
+            tell(f"{which} a calibration pose, far from the motion, and dropped", bvh.source)
+        )
     points = complete(points[dropped:])
     refuse_short(len(points), bvh)
     speeds = speed(points, bvh.fps)
@@ -87,7 +114,14 @@ def normalised(bvh: Bvh, mapping: Mapping[str, str], fps: float) -> tuple[Float[
     wild = wild_joints(speeds, bvh.fps, len(points), fps)
     ours = has_our_bones(points)
     plane = np.zeros(3) if ours else floor_plane(ground_points(points), fps)
-    info = dict(file_fps=bvh.fps, unit_m=unit, up=up, dropped_frames=dropped, floor_slope=tuple(plane[1:]), notes=notes)
+    info = dict(
+        file_fps=bvh.fps,
+        unit_m=unit,
+        up=up,
+        dropped_frames=dropped,
+        floor_slope=tuple(plane[1:]),
+        notes=notes,
+    )
     return level(points, plane), info | {"rest_lean": rest_lean(rest), "wild": wild}
 
 
@@ -114,12 +148,19 @@ def onto_our_bones(
     return plant(raw, contacts, fps), contacts
 
 
-def warn_sunk(world: Float[np.ndarray, "T 21 3"], fps: float, source: str, notes: list[str]) -> None:
+def warn_sunk(
+    world: Float[np.ndarray, "T 21 3"], fps: float, source: str, notes: list[str]
+) -> None:
     """Warn about joints deep in the floor: a fault of the capture, or somebody who rolls on it."""
     t, joint = np.unravel_index(world[..., 1].argmin(), world.shape[:2])
     if world[t, joint, 1] < SUNK:
         depth, when = -100 * world[t, joint, 1], t / fps
-        notes.append(tell(f"{JOINTS[joint]} is {depth:.0f} cm under the floor {when:.2f} s into the clip", source))
+        notes.append(
+            tell(
+                f"{JOINTS[joint]} is {depth:.0f} cm under the floor {when:.2f} s into the clip",
+                source,
+            )
+        )
 
 
 def refuse_short(count: int, bvh: Bvh) -> None:
@@ -130,10 +171,14 @@ def refuse_short(count: int, bvh: Bvh) -> None:
 
 
 def warn_wild(speeds: Float[np.ndarray, "T 21"], bvh: Bvh, dropped: int, notes: list[str]) -> None:
-    """Warn about joints faster than any actor's: the capture has a fault there (`info["wild"]` says which joints)."""
+    """Warn about joints faster than any actor's: the capture has a fault there (`info["wild"]` says
+    which joints)."""
     wild = np.flatnonzero(np.nanmax(speeds, axis=1) > WILD)
     if len(wild):
         where = f"frames {wild[0] + dropped} to {wild[-1] + dropped}"
         notes.append(
-            tell(f"a joint moves faster than {WILD:g} m/s within {where}: a fault of the capture?", bvh.source)
+            tell(
+                f"a joint moves faster than {WILD:g} m/s within {where}: a fault of the capture?",
+                bvh.source,
+            )
         )

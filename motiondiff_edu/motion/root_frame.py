@@ -1,8 +1,10 @@
-"""World <-> root frame + control: the figure as it sees itself, and the velocities that carry it along.
+"""World <-> root frame + control: the figure as it sees itself, and the velocities that carry it
+along.
 
-The root is the point on the ground under the figure. control[t] = (forward m/s, left m/s, yaw rad/s) takes root[t] to
-root[t+1], expressed in the heading halfway between; so mirroring and time reversal are exact sign changes.
-Heading psi is counter-clockwise seen from above: forward = (sin psi, cos psi), left = (cos psi, -sin psi) in (x, z).
+The root is the point on the ground under the figure. control[t] = (forward m/s, left m/s, yaw
+rad/s) takes root[t] to root[t+1], expressed in the heading halfway between; so mirroring and time
+reversal are exact sign changes. Heading psi is counter-clockwise seen from above: forward = (sin
+psi, cos psi), left = (cos psi, -sin psi) in (x, z).
 Source: MoDiff IV-A (control in R^3).  Notebook: 01
 """
 
@@ -13,39 +15,53 @@ from scipy.ndimage import gaussian_filter1d
 from .skeleton import HIPS, joint_index
 
 FPS = 20.0
-ROOT_SMOOTHING, HEADING_SMOOTHING = 0.25, 0.33  # seconds: shorter ones leak the gait into the control
+ROOT_SMOOTHING, HEADING_SMOOTHING = (
+    0.25,
+    0.33,
+)  # seconds: shorter ones leak the gait into the control
 
 
-def forward_left(heading: Float[np.ndarray, "*T"]) -> tuple[Float[np.ndarray, "*T 2"], Float[np.ndarray, "*T 2"]]:
-    """Unit vectors (x, z) ahead of and to the left of a figure with this heading (radians).  Notebook: 01"""
+def forward_left(
+    heading: Float[np.ndarray, "*T"],
+) -> tuple[Float[np.ndarray, "*T 2"], Float[np.ndarray, "*T 2"]]:
+    """Unit vectors (x, z) ahead of and to the left of a figure with this heading (radians).
+    Notebook: 01"""
     sin, cos = np.sin(heading), np.cos(heading)
     return np.stack([sin, cos], -1), np.stack([cos, -sin], -1)
 
 
 def root_path(
-    control: Float[np.ndarray, "T 3"], start: tuple[float, float, float] = (0.0, 0.0, 0.0), fps: float = FPS
+    control: Float[np.ndarray, "T 3"],
+    start: tuple[float, float, float] = (0.0, 0.0, 0.0),
+    fps: float = FPS,
 ) -> tuple[Float[np.ndarray, "T 2"], Float[np.ndarray, "T"]]:
     """Integrate the control: root (x, z) in metres and heading in radians at every frame.
 
-    heading[t+1] = heading[t] + yaw[t]/fps;  root[t+1] = root[t] + (v_f forward + v_l left)/fps at the halfway heading.
-    `start` is (x, z, heading) at frame 0; the last row of control is not used.  Notebook: 01
+    heading[t+1] = heading[t] + yaw[t]/fps;  root[t+1] = root[t] + (v_f forward + v_l left)/fps at
+    the halfway heading. `start` is (x, z, heading) at frame 0; the last row of control is not used.
+    Notebook: 01
     """
     step = np.asarray(control, dtype=np.float64) / fps
     heading = start[2] + np.concatenate([[0.0], np.cumsum(step[:-1, 2])])
     forward, left = forward_left(heading + step[:, 2] / 2)
     moves = step[:, :1] * forward + step[:, 1:2] * left
-    return np.array(start[:2]) + np.concatenate([np.zeros((1, 2)), np.cumsum(moves[:-1], 0)]), heading
+    return np.array(start[:2]) + np.concatenate(
+        [np.zeros((1, 2)), np.cumsum(moves[:-1], 0)]
+    ), heading
 
 
 def control_from_path(
     root_xz: Float[np.ndarray, "T 2"], heading: Float[np.ndarray, "T"], fps: float = FPS
 ) -> Float[np.ndarray, "T 3"]:
-    """The control that carries the root along this path (the inverse of `root_path`); the last row repeats.
+    """The control that carries the root along this path (the inverse of `root_path`); the last row
+    repeats.
 
     Raises ValueError for fewer than two frames.  Notebook: 01
     """
     if len(root_xz) < 2:
-        raise ValueError(f"a path needs at least 2 frames to have a velocity, this one has {len(root_xz)}")
+        raise ValueError(
+            f"a path needs at least 2 frames to have a velocity, this one has {len(root_xz)}"
+        )
     yaw = np.diff(heading)
     forward, left = forward_left(heading[:-1] + yaw / 2)
     move = np.diff(root_xz, axis=0)
@@ -64,7 +80,9 @@ def to_world(
     Raises ValueError unless there is a row of control for each pose.  Notebook: 01
     """
     if len(poses) != len(control):
-        raise ValueError(f"{len(poses)} poses and {len(control)} rows of control: each pose needs its row")
+        raise ValueError(
+            f"{len(poses)} poses and {len(control)} rows of control: each pose needs its row"
+        )
     root_xz, heading = root_path(control, start, fps)
     forward, left = (v[:, None] for v in forward_left(heading))
     ground = root_xz[:, None] + poses[..., :1] * left + poses[..., 2:] * forward
@@ -77,7 +95,8 @@ def to_root_frame(
     heading: Float[np.ndarray, "T"],
     fps: float = FPS,
 ) -> tuple[Float[np.ndarray, "T J 3"], Float[np.ndarray, "T 3"]]:
-    """Root-frame poses and control of world positions, given the root's path (the inverse of `to_world`).
+    """Root-frame poses and control of world positions, given the root's path (the inverse of
+    `to_world`).
 
     Notebook: 01
     """
@@ -88,11 +107,15 @@ def to_root_frame(
 
 
 def body_heading(world: Float[np.ndarray, "T 21 3"]) -> Float[np.ndarray, "T"]:
-    """Which way hips and shoulders together face, in radians, -pi to pi (`dance_frame.facing` asks the hips alone).
+    """Which way hips and shoulders together face, in radians, -pi to pi (`dance_frame.facing` asks
+    the hips alone).
 
     Notebook: 01
     """
-    left, right = (world[:, [joint_index(s + "UpLeg"), joint_index(s + "Arm")]].sum(1) for s in ("Left", "Right"))
+    left, right = (
+        world[:, [joint_index(s + "UpLeg"), joint_index(s + "Arm")]].sum(1)
+        for s in ("Left", "Right")
+    )
     across = left - right
     return np.arctan2(-across[:, 2], across[:, 0])
 
@@ -100,20 +123,26 @@ def body_heading(world: Float[np.ndarray, "T 21 3"]) -> Float[np.ndarray, "T"]:
 def estimate_root(
     world: Float[np.ndarray, "T 21 3"], fps: float = FPS
 ) -> tuple[Float[np.ndarray, "T 2"], Float[np.ndarray, "T"]]:
-    """Root path and heading of a real clip: the pelvis on the ground and the facing of hips and shoulders, smoothed.
+    """Root path and heading of a real clip: the pelvis on the ground and the facing of hips and
+    shoulders, smoothed.
 
-    Gaussians of 0.25 s and 0.33 s; shorter ones leak the gait into the control. Beyond its ends the clip is continued
-    by point reflection, so that a figure that walks does not seem to slow down there.  Notebook: 01
+    Gaussians of 0.25 s and 0.33 s; shorter ones leak the gait into the control. Beyond its ends the
+    clip is continued by point reflection, so that a figure that walks does not seem to slow down
+    there.   Notebook: 01
     """
     root = _smooth(world[:, HIPS][:, [0, 2]], ROOT_SMOOTHING * fps)
     return root, _smooth(np.unwrap(body_heading(world)), HEADING_SMOOTHING * fps)
 
 
 def _smooth(x: np.ndarray, sigma: float) -> np.ndarray:
-    """Gaussian along time; before the first and after the last frame x goes on point-reflected: 2 x[0] - x[t].
+    """Gaussian along time; before the first and after the last frame x goes on point-reflected: 2
+    x[0] - x[t].
 
-    A clip shorter than the Gaussian is reflected again and again, so that it goes on at its own speed.
+    A clip shorter than the Gaussian is reflected again and again, so that it goes on at its own
+    speed.
     """
     reach = int(4 * sigma) + 1
     width = [(reach, reach)] + [(0, 0)] * (x.ndim - 1)
-    return gaussian_filter1d(np.pad(x, width, "reflect", reflect_type="odd"), sigma, axis=0)[reach : reach + len(x)]
+    return gaussian_filter1d(np.pad(x, width, "reflect", reflect_type="odd"), sigma, axis=0)[
+        reach : reach + len(x)
+    ]

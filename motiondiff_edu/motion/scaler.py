@@ -1,6 +1,7 @@
 """Standardisation: zero mean and unit spread for every feature, and back.
 
-Poses and control have a scaler each. A missing input is zero *after* standardisation: the average pose.
+Poses and control have a scaler each. A missing input is zero *after* standardisation: the average
+pose.
 Source: MoDiff IV-A leaves it open; per-column z-scores are the corpus' own habit.  Notebook: 01
 """
 
@@ -22,10 +23,12 @@ class Scaler:
 
     @classmethod
     def fit(cls, x: Float[Tensor, "*N D"]) -> "Scaler":
-        """Mean and (population) standard deviation of data.  Raises ValueError on NaN, infinity, or no rows.
+        """Mean and (population) standard deviation of data.  Raises ValueError on NaN, infinity, or
+        no rows.
 
-        A column that never moves gets std 1: it stays in its own unit, so that a value unseen in training (the first
-        step to the side) arrives as itself and not as thousands of standard deviations.
+        A column that never moves gets std 1: it stays in its own unit, so that a value unseen in
+        training (the first step to the side) arrives as itself and not as thousands of standard
+        deviations.
         """
         flat = x.reshape(-1, x.shape[-1]).double()
         if not len(flat):

@@ -1,7 +1,8 @@
 """The one skeleton of the course: the 21 joints of MoDiff's data, with constant bones.
 
-Metres; y up, x to the figure's left, z forward. A planted toe joint lies on the floor, y = 0.
-The names are those of the locomotion corpus that MoDiff uses; the bone lengths are ours, for a person of 1.70 m.
+Metres; y up, x to the figure's left, z forward. A planted toe joint lies on the floor, y = 0. The
+names are those of the locomotion corpus that MoDiff uses; the bone lengths are ours, for a person
+of 1.70 m.
 Source: MoDiff IV-A.  Notebook: 01
 """
 
@@ -37,8 +38,12 @@ J: int = len(JOINTS)
 PARENTS: np.ndarray = np.array([parent for _, parent, _ in _TABLE])
 OFFSETS: np.ndarray = np.array([offset for _, _, offset in _TABLE])  # (21, 3), metres
 
-BONES: tuple[tuple[int, int], ...] = tuple((int(PARENTS[j]), j) for j in range(1, J))  # (parent, child)
-BONE_LENGTHS: np.ndarray = np.linalg.norm(OFFSETS[1:], axis=-1)  # (20,), metres, in the order of BONES
+BONES: tuple[tuple[int, int], ...] = tuple(
+    (int(PARENTS[j]), j) for j in range(1, J)
+)  # (parent, child)
+BONE_LENGTHS: np.ndarray = np.linalg.norm(
+    OFFSETS[1:], axis=-1
+)  # (20,), metres, in the order of BONES
 
 HIPS = 0
 HEELS = (3, 7)  # the Foot joints: the ankle, which the corpus calls heel
@@ -54,7 +59,9 @@ def _mirror_permutation() -> np.ndarray:
     return np.array([JOINTS.index(name) for name in partner])
 
 
-MIRROR: np.ndarray = _mirror_permutation()  # MIRROR[j] is the joint on the other side (a central joint is its own)
+MIRROR: np.ndarray = (
+    _mirror_permutation()
+)  # MIRROR[j] is the joint on the other side (a central joint is its own)
 
 
 def joint_index(name: str) -> int:

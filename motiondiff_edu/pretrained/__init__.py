@@ -1,1 +1,1 @@
-"""Shipped weights, each with its card, and the recipes that make them: `python -m motiondiff_edu.pretrained`."""
+"""Shipped weights, each with its card; saving and loading them without running code."""

@@ -1,1 +1,2 @@
-"""Figures from plain arrays, with matplotlib: colour-blind safe, readable on a projector, each with its caption."""
+"""Figures from plain arrays, with matplotlib: colour-blind safe, readable on a projector, each with
+its caption."""

@@ -1,4 +1,5 @@
-"""Attention maps: who looks where. A row is a query and sums to one; groups of keys are named and parted by lines.
+"""Attention maps: who looks where. A row is a query and sums to one; groups of keys are named and
+parted by lines.
 
 A map says where values were read, not why: a weight is not an explanation.  Notebook: 06
 """
@@ -17,7 +18,8 @@ Groups = Sequence[tuple[str, int]]  # (name, how many keys), in the order of the
 
 
 def modiff_groups(T_h: int = 10, T_p: int = 10) -> list[tuple[str, int]]:
-    """The keys of MoDiff's memory, in order: past poses, control of the past, control of the future."""
+    """The keys of MoDiff's memory, in order: past poses, control of the past, control of the
+    future."""
     return [("past poses", T_h), ("control, past", T_h), ("control, future", T_p)]
 
 
@@ -30,14 +32,17 @@ def attention_map(
     query_name: str = "future frame (query)",
     key_name: str = "key",
 ) -> Figure:
-    """One map, dark where much is read. `weights` of several heads: take one, or their mean, or `attention_heads`.
+    """One map, dark where much is read. `weights` of several heads: take one, or their mean, or
+    `attention_heads`.
 
     Raises ValueError where groups or labels do not fit the map.
     """
     _check(weights.shape, groups, query_labels, key_labels)
     T, M = weights.shape
     words = f"Attention of {T} queries over {M} keys; each row sums to one, darker is more."
-    fig, (axis,) = figure(min(12, 3.2 + 0.3 * M), min(9, 2.4 + 0.3 * T), f"{title}: {words}" if title else words)
+    fig, (axis,) = figure(
+        min(12, 3.2 + 0.3 * M), min(9, 2.4 + 0.3 * T), f"{title}: {words}" if title else words
+    )
     image = _paint(axis, weights, groups, float(weights.max()))
     axis.set(xlabel=key_name, ylabel=query_name)
     axis.set_title(title, pad=34 if groups else 8)
@@ -48,7 +53,9 @@ def attention_map(
 
 
 def attention_heads(
-    weights: Float[np.ndarray, "H T M"], groups: Groups | None = None, titles: Sequence[str] | None = None
+    weights: Float[np.ndarray, "H T M"],
+    groups: Groups | None = None,
+    titles: Sequence[str] | None = None,
 ) -> Figure:
     """A map for each head, all on one scale."""
     _check(weights.shape[1:], groups, None, None)
@@ -72,16 +79,23 @@ def attention_heads(
 
 
 def group_shares(weights: Float[np.ndarray, "T M"], groups: Groups, title: str = "") -> Figure:
-    """How much of each query's attention goes to each group of keys: stacked bars that reach one."""
+    """How much of each query's attention goes to each group of keys: stacked bars that reach
+    one."""
     _check(weights.shape, groups, None, None)
-    words = "Share of each query's attention that goes to " + ", ".join(name for name, _ in groups) + "."
+    words = (
+        "Share of each query's attention that goes to "
+        + ", ".join(name for name, _ in groups)
+        + "."
+    )
     fig, (axis,) = figure(9, 3.8, words)
     bottom, first = np.zeros(len(weights)), 0
     hatches = ("", "//", "..", "xx", "\\\\")
     for k, (name, count) in enumerate(groups):
         share = weights[:, first : first + count].sum(1)
         style = {"color": OKABE_ITO[k % 7], "hatch": hatches[k % 5], "edgecolor": "white"}
-        axis.bar(np.arange(1, len(weights) + 1), share, bottom=bottom, label=name, width=0.85, **style)
+        axis.bar(
+            np.arange(1, len(weights) + 1), share, bottom=bottom, label=name, width=0.85, **style
+        )
         bottom, first = bottom + share, first + count
     axis.set(xlabel="future frame (query)", ylabel="share", ylim=(0, 1), title=title)
     axis.set_xticks(np.arange(1, len(weights) + 1, -(-len(weights) // 20)))
@@ -89,7 +103,9 @@ def group_shares(weights: Float[np.ndarray, "T M"], groups: Groups, title: str =
     return fig
 
 
-def _check(shape: tuple, groups: Groups | None, query_labels: Sequence | None, key_labels: Sequence | None) -> None:
+def _check(
+    shape: tuple, groups: Groups | None, query_labels: Sequence | None, key_labels: Sequence | None
+) -> None:
     T, M = shape
     if groups is not None and sum(count for _, count in groups) != M:
         raise ValueError(f"the groups have {sum(c for _, c in groups)} keys, the map has {M}")
@@ -99,14 +115,23 @@ def _check(shape: tuple, groups: Groups | None, query_labels: Sequence | None, k
 
 
 def _paint(axis: Axes, weights: np.ndarray, groups: Groups | None, top: float, short: bool = False):
-    image = axis.imshow(weights, cmap="Blues", vmin=0, vmax=top, aspect="auto", interpolation="nearest")
+    image = axis.imshow(
+        weights, cmap="Blues", vmin=0, vmax=top, aspect="auto", interpolation="nearest"
+    )
     axis.grid(False)
     first = 0
     for name, count in groups or []:
         if first:
             axis.axvline(first - 0.5, color=INK, lw=1.2)
         words = name.replace(", ", "\n").replace(" ", "\n") if short else name
-        axis.text(first + count / 2 - 0.5, -0.75, words, ha="center", va="bottom", fontsize=9 if short else SMALL)
+        axis.text(
+            first + count / 2 - 0.5,
+            -0.75,
+            words,
+            ha="center",
+            va="bottom",
+            fontsize=9 if short else SMALL,
+        )
         first += count
     return image
 

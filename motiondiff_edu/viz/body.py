@@ -1,6 +1,7 @@
 """The drawn body: which joints carry which thickness, a camera, and polygons ready to be filled.
 
-The browser's player draws from the same table of parts, so the poster and the live figure are the same figure.
+The browser's player draws from the same table of parts, so the poster and the live figure are the
+same figure.
 Notebook: 01
 """
 
@@ -12,7 +13,11 @@ from jaxtyping import Float
 from ..motion.skeleton import J
 
 GREY, INK, PAPER = "#5B6472", "#1F2933", "#FFFFFF"
-LEFT_COLOUR, RIGHT_COLOUR, CENTRE_COLOUR = "#0072B2", "#D55E00", GREY  # Okabe-Ito blue and vermillion
+LEFT_COLOUR, RIGHT_COLOUR, CENTRE_COLOUR = (
+    "#0072B2",
+    "#D55E00",
+    GREY,
+)  # Okabe-Ito blue and vermillion
 PATH_COLOUR = "#009E73"
 COLOURS = {"L": LEFT_COLOUR, "R": RIGHT_COLOUR, "C": CENTRE_COLOUR}
 PAST_WASH = 0.55  # how far the colours of given frames are washed out towards the paper
@@ -23,7 +28,8 @@ _RING = np.stack([np.cos(ANGLES), np.sin(ANGLES)], -1)
 
 @dataclass(frozen=True)
 class Part:
-    """The convex hull of circles: (joint a, joint b, w, radius in metres), centred at a + w (b - a)."""
+    """The convex hull of circles: (joint a, joint b, w, radius in metres), centred at a + w (b -
+    a)."""
 
     side: str  # L, R or C
     circles: tuple[tuple[int, int, float, float], ...]
@@ -34,7 +40,14 @@ def _limb(side: str, *joint_radius: tuple[int, float]) -> Part:
 
 
 def _side(side: str, leg: int, arm: int) -> list[Part]:
-    foot = Part(side, ((leg + 2, leg + 2, 0.0, 0.045), (leg + 3, leg + 3, 0.0, 0.036), (leg + 2, leg + 3, 1.4, 0.026)))
+    foot = Part(
+        side,
+        (
+            (leg + 2, leg + 2, 0.0, 0.045),
+            (leg + 3, leg + 3, 0.0, 0.036),
+            (leg + 2, leg + 3, 1.4, 0.026),
+        ),
+    )
     return [
         _limb(side, (leg, 0.078), (leg + 1, 0.052)),
         _limb(side, (leg + 1, 0.054), (leg + 2, 0.036)),
@@ -62,13 +75,16 @@ def stick_parts(parents: list[int], radius: float = 0.025) -> tuple[Part, ...]:
 
 
 def parts_for(joints: int, parents: list[int] | None = None) -> tuple[Part, ...]:
-    """The course's body for 21 joints, sticks for another skeleton, which then needs its `parents`."""
+    """The course's body for 21 joints, sticks for another skeleton, which then needs its
+    `parents`."""
     if parents is not None:
         if len(parents) != joints:
             raise ValueError(f"`parents` names {len(parents)} joints, the positions have {joints}")
         return stick_parts(list(parents))
     if joints != J:
-        raise ValueError(f"positions have {joints} joints, the course's skeleton has {J}: give `parents` for another")
+        raise ValueError(
+            f"positions have {joints} joints, the course's skeleton has {J}: give `parents` for another"
+        )
     return BODY
 
 
@@ -79,9 +95,11 @@ def parts_record(parts: tuple[Part, ...]) -> list[dict]:
 
 @dataclass(frozen=True)
 class Camera:
-    """A camera that looks at (x, height, z) from `distance` metres; yaw 0 stands at the figure's right side.
+    """A camera that looks at (x, height, z) from `distance` metres; yaw 0 stands at the figure's
+    right side.
 
-    `focal` is in picture heights: a thing of h metres at the target covers focal h / distance of the picture.
+    `focal` is in picture heights: a thing of h metres at the target covers focal h / distance of
+    the picture.
     """
 
     x: float = 0.0
@@ -98,7 +116,12 @@ class Camera:
 
     def axes(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Unit vectors to the right, up and ahead."""
-        cos, sin, rise, flat = np.cos(self.yaw), np.sin(self.yaw), np.sin(self.pitch), np.cos(self.pitch)
+        cos, sin, rise, flat = (
+            np.cos(self.yaw),
+            np.sin(self.yaw),
+            np.sin(self.pitch),
+            np.cos(self.pitch),
+        )
         ahead = -np.array([-flat * cos, rise, flat * sin])
         right = np.array([sin, 0.0, cos])
         return right, np.cross(right, ahead), ahead
@@ -107,12 +130,15 @@ class Camera:
 def project(
     points: Float[np.ndarray, "*N 3"], camera: Camera, size: tuple[int, int]
 ) -> tuple[Float[np.ndarray, "*N 2"], Float[np.ndarray, "*N"]]:
-    """Pixels (x to the right, y down) and pixels per metre at each point, in a picture of `size` (width, height)."""
+    """Pixels (x to the right, y down) and pixels per metre at each point, in a picture of `size`
+    (width, height)."""
     right, up, ahead = camera.axes()
     target = np.array([camera.x, camera.height, camera.z])
     away = points - (target - camera.distance * ahead)
     scale = camera.focal * size[1] / np.maximum(away @ ahead, 0.1)
-    return np.stack([size[0] / 2 + scale * (away @ right), size[1] / 2 - scale * (away @ up)], -1), scale
+    return np.stack(
+        [size[0] / 2 + scale * (away @ right), size[1] / 2 - scale * (away @ up)], -1
+    ), scale
 
 
 def hull(points: Float[np.ndarray, "N 2"]) -> Float[np.ndarray, "K 2"]:
@@ -140,7 +166,9 @@ def circle_centres(pose: Float[np.ndarray, "J 3"], part: Part) -> Float[np.ndarr
     return pose[a] + w[:, None] * (pose[b] - pose[a])
 
 
-def outline(pixels: Float[np.ndarray, "N 2"], radii: Float[np.ndarray, "N"]) -> Float[np.ndarray, "K 2"]:
+def outline(
+    pixels: Float[np.ndarray, "N 2"], radii: Float[np.ndarray, "N"]
+) -> Float[np.ndarray, "K 2"]:
     """The polygon around circles."""
     return hull((pixels[:, None] + radii[:, None, None] * _RING).reshape(-1, 2))
 
@@ -158,7 +186,8 @@ def body_polygons(
     parts: tuple[Part, ...] = BODY,
     wash: float = 0.0,
 ) -> list[tuple[Float[np.ndarray, "_ 2"], str, bool]]:
-    """Filled polygons of one pose, far ones first: per part its outline (True) and a lighter streak that rounds it.
+    """Filled polygons of one pose, far ones first: per part its outline (True) and a lighter streak
+    that rounds it.
 
     Parts behind the body's middle are washed out a little: the depth cue.
     """
@@ -170,20 +199,32 @@ def body_polygons(
         behind = float(np.clip(4 * (1 - scale.mean() / middle[0]), 0, 0.45))
         colour = mix(COLOURS[part.side], PAPER, min(1.0, wash + behind * (1 - wash)))
         shine = outline(pixels - 0.3 * radii[:, None] * [0.5, 1], 0.45 * radii)
-        drawn.append((scale.mean(), [(outline(pixels, radii), colour, True), (shine, mix(colour, PAPER, 0.22), False)]))
+        drawn.append(
+            (
+                scale.mean(),
+                [(outline(pixels, radii), colour, True), (shine, mix(colour, PAPER, 0.22), False)],
+            )
+        )
     return [polygon for _, pair in sorted(drawn, key=lambda item: item[0]) for polygon in pair]
 
 
 def shadow_polygons(
-    pose: Float[np.ndarray, "J 3"], camera: Camera, size: tuple[int, int], parts: tuple[Part, ...] = BODY
+    pose: Float[np.ndarray, "J 3"],
+    camera: Camera,
+    size: tuple[int, int],
+    parts: tuple[Part, ...] = BODY,
 ) -> list[Float[np.ndarray, "_ 2"]]:
     """What the body darkens on the floor, under a light from above, a little aside."""
     shadows = []
     for part in parts:
         centres = circle_centres(pose, part)
         radii = np.array([circle[3] for circle in part.circles])
-        floor = np.stack([centres[:, 0] + 0.25 * centres[:, 1], centres[:, 2] - 0.15 * centres[:, 1]], -1)
+        floor = np.stack(
+            [centres[:, 0] + 0.25 * centres[:, 1], centres[:, 2] - 0.15 * centres[:, 1]], -1
+        )
         ring = (floor[:, None] + 0.9 * radii[:, None, None] * _RING).reshape(-1, 2)
-        pixels, _ = project(np.stack([ring[:, 0], np.zeros(len(ring)), ring[:, 1]], -1), camera, size)
+        pixels, _ = project(
+            np.stack([ring[:, 0], np.zeros(len(ring)), ring[:, 1]], -1), camera, size
+        )
         shadows.append(hull(pixels))
     return shadows

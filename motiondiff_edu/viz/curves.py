@@ -1,4 +1,5 @@
-"""Curves that several notebooks draw: losses, small multiples, control over time, values with intervals.
+"""Curves that several notebooks draw: losses, small multiples, control over time, values with
+intervals.
 
 Every line has its own colour and its own dashes.  Notebook: 05, 07
 """
@@ -35,10 +36,15 @@ def _lines(axis: Axes, curves: Curves, smooth: int = 1) -> None:
         axis.plot(x, running_mean(y, smooth) if smooth > 1 else y, label=name, **style)
 
 
-def loss_curves(curves: Curves, smooth: int = 1, log: bool = True, title: str = "", ylabel: str = "loss") -> Figure:
-    """Training losses over steps; with `smooth` > 1 the running mean, the raw values faint behind it."""
+def loss_curves(
+    curves: Curves, smooth: int = 1, log: bool = True, title: str = "", ylabel: str = "loss"
+) -> Figure:
+    """Training losses over steps; with `smooth` > 1 the running mean, the raw values faint behind
+    it."""
     words = f"{title or 'Loss'} over training steps: {', '.join(curves)}."
-    fig, (axis,) = figure(9, 4.4, words + (f" Running mean of {smooth} steps." if smooth > 1 else ""))
+    fig, (axis,) = figure(
+        9, 4.4, words + (f" Running mean of {smooth} steps." if smooth > 1 else "")
+    )
     _lines(axis, curves, smooth)
     axis.set(xlabel="training step", ylabel=ylabel, title=title)
     if log:
@@ -48,13 +54,20 @@ def loss_curves(curves: Curves, smooth: int = 1, log: bool = True, title: str = 
 
 
 def small_multiples(
-    panels: Mapping[str, Curves], xlabel: str, ylabel: str, columns: int = 3, title: str = "", log: bool = False
+    panels: Mapping[str, Curves],
+    xlabel: str,
+    ylabel: str,
+    columns: int = 3,
+    title: str = "",
+    log: bool = False,
 ) -> Figure:
     """One small picture for each entry, all with the same axes, so that they can be compared."""
     columns = min(columns, len(panels))
     rows = -(-len(panels) // columns)
     words = f"{title + ': ' if title else ''}{ylabel} over {xlabel}, one picture each for {', '.join(panels)}."
-    fig, axes = figure(4.2 * columns, 3.2 * rows + 0.3, words, rows, columns, sharex=True, sharey=True)
+    fig, axes = figure(
+        4.2 * columns, 3.2 * rows + 0.3, words, rows, columns, sharex=True, sharey=True
+    )
     for axis, (name, curves) in zip(axes, panels.items(), strict=False):
         _lines(axis, curves)
         axis.set_title(name)
@@ -70,28 +83,43 @@ def small_multiples(
     return fig
 
 
-def control_curves(controls: Mapping[str, Float[np.ndarray, "_ 3"]], fps: float | int = 20.0, past: int = 0) -> Figure:
+def control_curves(
+    controls: Mapping[str, Float[np.ndarray, "_ 3"]], fps: float | int = 20.0, past: int = 0
+) -> Figure:
     """Forward, left and yaw over time, one row each; the given past is shaded."""
     fig, axes = figure(9, 5.4, f"Control over time: {', '.join(controls)}.", 3, 1, sharex=True)
-    for k, (axis, name) in enumerate(zip(axes, ("forward (m/s)", "left (m/s)", "yaw (rad/s)"), strict=True)):
+    for k, (axis, name) in enumerate(
+        zip(axes, ("forward (m/s)", "left (m/s)", "yaw (rad/s)"), strict=True)
+    ):
         _lines(axis, {n: (np.arange(len(c)) / fps, c[:, k]) for n, c in controls.items()})
         axis.set_ylabel(name)
         low, high = axis.get_ylim()
         axis.set_ylim(min(low, -0.3), max(high, 0.3))
         if past:
-            axis.axvspan(0, past / fps, color=GREY, alpha=0.15, label="past (given)" if k == 0 else None)
+            axis.axvspan(
+                0, past / fps, color=GREY, alpha=0.15, label="past (given)" if k == 0 else None
+            )
     axes[-1].set_xlabel("time (s)")
     if len(controls) > 1 or past:
         fig.legend(
-            *axes[0].get_legend_handles_labels(), loc="outside upper right", ncols=4, frameon=False, fontsize=SMALL
+            *axes[0].get_legend_handles_labels(),
+            loc="outside upper right",
+            ncols=4,
+            frameon=False,
+            fontsize=SMALL,
         )
     return fig
 
 
 def intervals(
-    records: Sequence[tuple], xlabel: str, reference: float | None = None, reference_name: str = "data", title: str = ""
+    records: Sequence[tuple],
+    xlabel: str,
+    reference: float | None = None,
+    reference_name: str = "data",
+    title: str = "",
 ) -> Figure:
-    """Values with their intervals, a row each: records are (name, value, low, high); a line marks the reference."""
+    """Values with their intervals, a row each: records are (name, value, low, high); a line marks
+    the reference."""
     told = [f"{name} {value:.3g} ({low:.3g} to {high:.3g})" for name, value, low, high in records]
     fig, (axis,) = figure(9, 1.3 + 0.5 * len(records), f"{title or xlabel}: {'; '.join(told)}.")
     for k, (_name, value, low, high) in enumerate(records):

@@ -1,4 +1,5 @@
-"""Figures of measured dances: where they slow down, scores beside their chance level, how they repeat themselves.
+"""Figures of measured dances: where they slow down, scores beside their chance level, how they
+repeat themselves.
 
 Plain arrays in, a captioned Figure out.  Notebook: 14
 """
@@ -23,7 +24,8 @@ def stops_and_beats(
     words: str,
     fps: float | int = 20,
 ) -> Figure:
-    """A row for each dance: its smoothed mean joint speed, dots where it slows down, and lines at the music's beats."""
+    """A row for each dance: its smoothed mean joint speed, dots where it slows down, and lines at
+    the music's beats."""
     fig, axes = figure(10, 0.9 + 1.9 * len(dances), words, rows=len(dances), sharex=True)
     for axis, (name, positions) in zip(axes, dances.items(), strict=True):
         fine = resample(positions, fps) if fps < DANCE_FPS else positions
@@ -31,21 +33,46 @@ def stops_and_beats(
         speed, stops = smooth_speed(fine, rate), kinematic_beats(positions, fps)
         times = (np.arange(len(speed)) + 0.5) / rate
         shown = music[(music >= 0) & (music <= times[-1])]
-        axis.vlines(shown, 0, 1, GREY, ls=":", lw=1.4, transform=axis.get_xaxis_transform(), label="beat of the music")
+        axis.vlines(
+            shown,
+            0,
+            1,
+            GREY,
+            ls=":",
+            lw=1.4,
+            transform=axis.get_xaxis_transform(),
+            label="beat of the music",
+        )
         axis.plot(times, speed, color=OKABE_ITO[0], label="mean joint speed")
-        axis.plot(stops, np.interp(stops, times, speed), "o", color=OKABE_ITO[1], ms=8, label="kinematic beat")
+        axis.plot(
+            stops,
+            np.interp(stops, times, speed),
+            "o",
+            color=OKABE_ITO[1],
+            ms=8,
+            label="kinematic beat",
+        )
         axis.set(title=name, ylabel="m/s", ylim=(0, None))
         axis.grid(False)
     axes[-1].set_xlabel("time (s)")
-    fig.legend(*axes[0].get_legend_handles_labels(), loc="outside lower right", ncols=3, frameon=False, fontsize=SMALL)
+    fig.legend(
+        *axes[0].get_legend_handles_labels(),
+        loc="outside lower right",
+        ncols=3,
+        frameon=False,
+        fontsize=SMALL,
+    )
     return fig
 
 
-Pairs = Mapping[str, Mapping[str, tuple[float, float]]]  # panel -> row -> (value, what it is to be read beside)
+Pairs = Mapping[
+    str, Mapping[str, tuple[float, float]]
+]  # panel -> row -> (value, what it is to be read beside)
 
 
 def beside_chance(panels: Pairs, words: str) -> Figure:
-    """A panel for each score, a bar in it for each dance, and a line across the bar at its chance level.
+    """A panel for each score, a bar in it for each dance, and a line across the bar at its chance
+    level.
 
     panels[score][dance] = (value, chance).
     """
@@ -56,7 +83,8 @@ def beside_chance(panels: Pairs, words: str) -> Figure:
 
 
 def beside_floor(panels: Pairs, words: str) -> Figure:
-    """The same for distances, which have no upper end: logarithmic, but for the first unit; the line is their floor."""
+    """The same for distances, which have no upper end: logarithmic, but for the first unit; the
+    line is their floor."""
     fig, axes = _bars(panels, words, "data against data", "{:.0f}")
     highest = max(max(pair) for rows in panels.values() for pair in rows.values())
     for axis in axes:
@@ -70,29 +98,56 @@ def beside_floor(panels: Pairs, words: str) -> Figure:
 
 def _bars(panels: Pairs, words: str, mark: str, form: str) -> tuple[Figure, list[Axes]]:
     rows = list(next(iter(panels.values())))
-    fig, axes = figure(2.4 + 4.2 * len(panels), 1.5 + 0.5 * len(rows), words, 1, len(panels), sharey=True)
+    fig, axes = figure(
+        2.4 + 4.2 * len(panels), 1.5 + 0.5 * len(rows), words, 1, len(panels), sharey=True
+    )
     for axis, (title, pairs) in zip(axes, panels.items(), strict=True):
         for k, (value, beside) in enumerate(pairs.values()):
             axis.barh(k, value, height=0.6, color=OKABE_ITO[5])
             place = {"xytext": (6, 0), "textcoords": "offset points", "va": "center", "color": INK}
-            axis.annotate(form.format(value), (max(value, beside) if value > 0.8 * beside else value, k), **place)
-            axis.plot([beside] * 2, [k - 0.4, k + 0.4], color=OKABE_ITO[1], lw=3, label=mark if k == 0 else None)
+            axis.annotate(
+                form.format(value),
+                (max(value, beside) if value > 0.8 * beside else value, k),
+                **place,
+            )
+            axis.plot(
+                [beside] * 2,
+                [k - 0.4, k + 0.4],
+                color=OKABE_ITO[1],
+                lw=3,
+                label=mark if k == 0 else None,
+            )
         axis.set(title=title, ylim=(len(rows) - 0.5, -0.5))
         axis.grid(False)
     axes[0].set_yticks(range(len(rows)), rows)
-    fig.legend(*axes[0].get_legend_handles_labels(), loc="outside lower right", frameon=False, fontsize=SMALL)
+    fig.legend(
+        *axes[0].get_legend_handles_labels(),
+        loc="outside lower right",
+        frameon=False,
+        fontsize=SMALL,
+    )
     return fig, axes
 
 
 def chance_over_tempo(
-    tempo: Float[np.ndarray, "N"], chance: Float[np.ndarray, "N"], published: Mapping[str, float], words: str
+    tempo: Float[np.ndarray, "N"],
+    chance: Float[np.ndarray, "N"],
+    published: Mapping[str, float],
+    words: str,
 ) -> Figure:
     """The chance level over the music's tempo, and published scores as level lines."""
     fig, (axis,) = figure(9, 4.2, words)
     axis.plot(tempo, chance, color=OKABE_ITO[1], lw=3, label="stops at random times")
     for k, (name, score) in enumerate(published.items()):
-        axis.axhline(score, color=OKABE_ITO[(0, 2, 3, 4)[k % 4]], ls=DASHES[1 + k % 7], label=f"{name}: {score:g}")
-    axis.set(xlabel="tempo of the music (BPM)", ylabel="beat alignment", ylim=(0, 1.4 * chance.max()))
+        axis.axhline(
+            score,
+            color=OKABE_ITO[(0, 2, 3, 4)[k % 4]],
+            ls=DASHES[1 + k % 7],
+            label=f"{name}: {score:g}",
+        )
+    axis.set(
+        xlabel="tempo of the music (BPM)", ylabel="beat alignment", ylim=(0, 1.4 * chance.max())
+    )
     legend(axis, loc="lower right")
     return fig
 
@@ -102,11 +157,19 @@ def over_clips(
     curves: Mapping[str, tuple[Float[np.ndarray, "N"], Float[np.ndarray, "N"]]],
     words: str,
 ) -> Figure:
-    """A distance over the number of clips it was counted on, with a band of one deviation; both axes logarithmic."""
+    """A distance over the number of clips it was counted on, with a band of one deviation; both
+    axes logarithmic."""
     fig, (axis,) = figure(9, 4.2, words)
     for k, (name, (mean, std)) in enumerate(curves.items()):
         axis.plot(sizes, mean, color=OKABE_ITO[k], ls=DASHES[k], marker=MARKERS[k], label=name)
-        axis.fill_between(sizes, np.maximum(mean - std, mean / 10), mean + std, color=OKABE_ITO[k], alpha=0.15, lw=0)
+        axis.fill_between(
+            sizes,
+            np.maximum(mean - std, mean / 10),
+            mean + std,
+            color=OKABE_ITO[k],
+            alpha=0.15,
+            lw=0,
+        )
     axis.set(xlabel="clips", ylabel="Frechet distance", xscale="log", yscale="log")
     axis.set_xticks(sizes, [f"{n:g}" for n in sizes])
     axis.yaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
@@ -116,13 +179,18 @@ def over_clips(
     return fig
 
 
-def similarity_matrices(matrices: Mapping[str, Float[np.ndarray, "_ _"]], words: str, fps: float | int = 20) -> Figure:
-    """Self-similarity of several dances side by side: time against time, dark blue alike, red opposite."""
+def similarity_matrices(
+    matrices: Mapping[str, Float[np.ndarray, "_ _"]], words: str, fps: float | int = 20
+) -> Figure:
+    """Self-similarity of several dances side by side: time against time, dark blue alike, red
+    opposite."""
     fig, axes = figure(4.1 * len(matrices) + 0.8, 4.4, words, 1, len(matrices))
     for k, (axis, (name, matrix)) in enumerate(zip(axes, matrices.items(), strict=True)):
         seconds = len(matrix) / fps
         extent = (0.0, seconds, seconds, 0.0)
-        image = axis.imshow(matrix, cmap="RdBu", vmin=-1, vmax=1, extent=extent, interpolation="nearest")
+        image = axis.imshow(
+            matrix, cmap="RdBu", vmin=-1, vmax=1, extent=extent, interpolation="nearest"
+        )
         axis.set(title=name, xlabel="time (s)", ylabel="time (s)" if k == 0 else "")
         axis.grid(False)
     fig.colorbar(image, ax=axes, label="similarity", shrink=0.8)

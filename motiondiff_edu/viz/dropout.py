@@ -1,4 +1,5 @@
-"""Pictures of dropout: curves side by side with an axis each, where a linear walker's weight lies, steps that meet.
+"""Pictures of dropout: curves side by side with an axis each, where a linear walker's weight lies,
+steps that meet.
 
 Notebook: 09
 """
@@ -16,10 +17,14 @@ Curves = Mapping[str, tuple]  # name -> (x, y), equally long
 HATCHES = ("", "//", "..", "xx", "\\\\")
 
 
-def beside(panels: Mapping[str, Curves], words: str, xlabel: str, log: Sequence[str] = ()) -> Figure:
-    """Panels of named curves with one x axis, and a y axis each, from 0 on or, for those named in `log`, logarithmic.
+def beside(
+    panels: Mapping[str, Curves], words: str, xlabel: str, log: Sequence[str] = ()
+) -> Figure:
+    """Panels of named curves with one x axis, and a y axis each, from 0 on or, for those named in
+    `log`, logarithmic.
 
-    All panels give a name the same colour and marker; one legend stands above them, if there are several names.
+    All panels give a name the same colour and marker; one legend stands above them, if there are
+    several names.
     """
     fig, axes = figure(4.6 * len(panels), 4.1, words, 1, len(panels), sharex=True)
     names = list(dict.fromkeys(name for curves in panels.values() for name in curves))
@@ -35,23 +40,38 @@ def beside(panels: Mapping[str, Curves], words: str, xlabel: str, log: Sequence[
             axis.set_ylim(0, 1.08 * max(float(np.asarray(y).max()) for _, y in curves.values()))
     handles = {h.get_label(): h for axis in axes for h in axis.get_lines()}
     if len(handles) > 1:
-        fig.legend(handles.values(), handles, loc="outside upper center", ncols=4, frameon=False, fontsize=MEDIUM)
+        fig.legend(
+            handles.values(),
+            handles,
+            loc="outside upper center",
+            ncols=4,
+            frameon=False,
+            fontsize=MEDIUM,
+        )
     fig.supxlabel(xlabel, fontsize=MEDIUM)
     return fig
 
 
-def where_the_weight_lies(weights: Mapping[str, Float[np.ndarray, "F D"]], T_h: int, words: str) -> Figure:
-    """For each linear walker a bar for each past frame and for the control: the root of its squared weights' sum."""
+def where_the_weight_lies(
+    weights: Mapping[str, Float[np.ndarray, "F D"]], T_h: int, words: str
+) -> Figure:
+    """For each linear walker a bar for each past frame and for the control: the root of its squared
+    weights' sum."""
     fig, (axis,) = figure(10, 4.2, words)
     width = 0.84 / len(weights)
     for k, (name, weight) in enumerate(weights.items()):
-        squares, past = np.square(np.asarray(weight, dtype=np.float64)).sum(1), T_h * weight.shape[1]
+        squares, past = (
+            np.square(np.asarray(weight, dtype=np.float64)).sum(1),
+            T_h * weight.shape[1],
+        )
         sizes = np.sqrt([*squares[:past].reshape(T_h, -1).sum(1), squares[past:-1].sum()])
         place = np.arange(T_h + 1) + (k + 0.5) * width - 0.42
         style = {"color": OKABE_ITO[k % 7], "hatch": HATCHES[k % 5], "edgecolor": "white"}
         axis.bar(place, sizes, width=0.95 * width, label=name, **style)
     axis.axvline(T_h - 0.5, color=INK, lw=1)
-    axis.set_xticks(range(T_h + 1), [*(f"{t}" if t else "last" for t in range(1 - T_h, 1)), "control"])
+    axis.set_xticks(
+        range(T_h + 1), [*(f"{t}" if t else "last" for t in range(1 - T_h, 1)), "control"]
+    )
     axis.set(xlabel="past pose (frames before the last)", ylabel="size of the weights")
     axis.set_yscale("log")
     handles, names = axis.get_legend_handles_labels()
@@ -59,8 +79,11 @@ def where_the_weight_lies(weights: Mapping[str, Float[np.ndarray, "F D"]], T_h: 
     return fig
 
 
-def who_meets_whom(meetings: Mapping[str, tuple[Float[np.ndarray, "N"], Float[np.ndarray, "N"]]], words: str) -> Figure:
-    """For each way of dropping a panel: how noised the target is (across) and how noised its past is (up), both 0..1.
+def who_meets_whom(
+    meetings: Mapping[str, tuple[Float[np.ndarray, "N"], Float[np.ndarray, "N"]]], words: str
+) -> Figure:
+    """For each way of dropping a panel: how noised the target is (across) and how noised its past
+    is (up), both 0..1.
 
     The line below is what sampling asks for: a clean past at every step.
     """

@@ -1,4 +1,5 @@
-"""Figures of in-betweens: a slice of a plane and who fills it how, ways beside the right answer, masks, joints in time.
+"""Figures of in-betweens: a slice of a plane and who fills it how, ways beside the right answer,
+masks, joints in time.
 
 Plain arrays in, a captioned Figure out.  Notebook: 15
 """
@@ -25,7 +26,8 @@ def slice_of_plane(
     density: Float[np.ndarray, "M"],
     words: str,
 ) -> Figure:
-    """Points of a plane, the line where the first coordinate is `at`, and on it the second one as the first way has it.
+    """Points of a plane, the line where the first coordinate is `at`, and on it the second one as
+    the first way has it.
 
     Beside it, what each way found, as histograms under the true conditional density.
     """
@@ -38,7 +40,13 @@ def slice_of_plane(
     plane.set(title="the data", xlabel="x, given", ylabel="y, wanted")
     for k, (axis, (name, y)) in enumerate(zip(beside, made.items(), strict=True)):
         bars = {"bins": 60, "range": (float(grid[0]), float(grid[-1])), "density": True}
-        axis.hist(np.asarray(y), orientation="horizontal", color=OKABE_ITO[(1, 0, 2)[k % 3]], alpha=0.5, **bars)
+        axis.hist(
+            np.asarray(y),
+            orientation="horizontal",
+            color=OKABE_ITO[(1, 0, 2)[k % 3]],
+            alpha=0.5,
+            **bars,
+        )
         axis.plot(density, grid, color=INK, lw=2, label="p(y | x), exact" if k == 0 else None)
         axis.set(title=name, xlim=(0, 1.7 * float(max(density))), xlabel="density")
     plane.set_ylim(float(grid[0]), float(grid[-1]))
@@ -52,12 +60,17 @@ def ways(
     titles: Mapping[str, str],
     words: str,
 ) -> Figure:
-    """A panel for each figure, a row for each way: a dot for each seed, and a line at the right answer."""
-    fig, axes = figure(3.0 + 3.4 * len(right), 1.4 + 0.45 * len(found), words, 1, len(right), sharey=True)
+    """A panel for each figure, a row for each way: a dot for each seed, and a line at the right
+    answer."""
+    fig, axes = figure(
+        3.0 + 3.4 * len(right), 1.4 + 0.45 * len(found), words, 1, len(right), sharey=True
+    )
     for k, (axis, (name, value)) in enumerate(zip(axes, right.items(), strict=True)):
         axis.axvline(value, color=INK, lw=1.4, ls=":")
         for row, figures in enumerate(found.values()):
-            axis.plot(figures[name], [row] * len(figures[name]), "o", ms=8, color=OKABE_ITO[k], alpha=0.75)
+            axis.plot(
+                figures[name], [row] * len(figures[name]), "o", ms=8, color=OKABE_ITO[k], alpha=0.75
+            )
         axis.set(title=titles[name], ylim=(len(found) - 0.5, -0.5))
         low, high = axis.get_xlim()
         axis.set_xlim(min(low, 0), max(high, 1.2 * value))
@@ -65,13 +78,23 @@ def ways(
     return fig
 
 
-def masks(known: Mapping[str, Bool[np.ndarray, "T J"]], words: str, fps: float | int = 20) -> Figure:
+def masks(
+    known: Mapping[str, Bool[np.ndarray, "T J"]], words: str, fps: float | int = 20
+) -> Figure:
     """What is given: a panel for each mask, joints from top to bottom, time to the right."""
     fig, axes = figure(2.5 * len(known), 2.9, words, 1, len(known), sharey=True)
     for axis, (name, mask) in zip(axes, known.items(), strict=True):
         extent = (0, len(mask) / fps, mask.shape[1] - 0.5, -0.5)
         colours = ListedColormap([OPEN, GIVEN])
-        axis.imshow(mask.T, cmap=colours, vmin=0, vmax=1, extent=extent, aspect="auto", interpolation="nearest")
+        axis.imshow(
+            mask.T,
+            cmap=colours,
+            vmin=0,
+            vmax=1,
+            extent=extent,
+            aspect="auto",
+            interpolation="nearest",
+        )
         axis.set(title=name, xlabel="time (s)")
         axis.grid(False)
     axes[0].set_ylabel("joint")
@@ -88,7 +111,8 @@ def over_time(
     ylabel: str,
     fps: float | int = 20,
 ) -> Figure:
-    """One number of a pose over time: samples as thin lines, others named; frames that were given are shaded."""
+    """One number of a pose over time: samples as thin lines, others named; frames that were given
+    are shaded."""
     fig, (axis,) = figure(9, 3.8, words)
     seconds = np.arange(len(given)) / fps
     edge = np.flatnonzero(np.diff(np.pad(given.astype(int), 1)))
@@ -96,9 +120,22 @@ def over_time(
         ends = (first - 0.5) / fps, (last - 0.5) / fps
         axis.axvspan(*ends, color=GIVEN, alpha=0.6, lw=0, label="given" if k == 0 else None)
     for k, sample in enumerate(samples):
-        axis.plot(seconds, sample, color=OKABE_ITO[0], lw=1.1, alpha=0.6, label="samples" if k == 0 else None)
+        axis.plot(
+            seconds,
+            sample,
+            color=OKABE_ITO[0],
+            lw=1.1,
+            alpha=0.6,
+            label="samples" if k == 0 else None,
+        )
     for k, (name, line) in enumerate(lines.items()):
         axis.plot(seconds, line, color=(INK, *OKABE_ITO[1:4])[k % 4], ls=DASHES[k % 8], label=name)
     axis.set(xlabel="time (s)", ylabel=ylabel, xlim=(seconds[0], seconds[-1]))
-    fig.legend(*axis.get_legend_handles_labels(), loc="outside lower right", ncols=5, frameon=False, fontsize=SMALL)
+    fig.legend(
+        *axis.get_legend_handles_labels(),
+        loc="outside lower right",
+        ncols=5,
+        frameon=False,
+        fontsize=SMALL,
+    )
     return fig

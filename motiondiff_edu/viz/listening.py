@@ -23,10 +23,11 @@ def levels_over_sound(
     words: str,
     sample_rate: int = 16_000,
 ) -> Figure:
-    """A song with its beats, and below it where each level reads while the dance of `seconds` goes on, as in the paper.
+    """A song with its beats, and below it where each level reads while the dance of `seconds` goes
+    on, as in the paper.
 
-    Across: the music's time. Downwards: the dance's. Each map has its own scale; one alone, larger, is drawn by
-    `attention_over_sound`.  Source: MoFusion Fig. 4.
+    Across: the music's time. Downwards: the dance's. Each map has its own scale; one alone, larger,
+    is drawn by `attention_over_sound`.  Source: MoFusion Fig. 4.
     """
     fig, axes = figure(10, 1.6 + 2.3 * len(maps), words, 1 + len(maps), 1, sharex=True,
                        gridspec_kw={"height_ratios": [1.1, *[2] * len(maps)]})  # fmt: skip
@@ -54,18 +55,27 @@ def attention_over_sound(
 ) -> Figure:
     """The waveform with its beats above the map of who looks where in it, on one axis of time.
 
-    A row of the map is a moment of the motion (`fps` rows a second), a column a token at its time in seconds. On the
-    dashed line a moment looks at itself. Raises ValueError where times do not fit the map.
+    A row of the map is a moment of the motion (`fps` rows a second), a column a token at its time
+    in seconds. On the dashed line a moment looks at itself. Raises ValueError where times do not
+    fit the map.
     Source: MoFusion Fig. 4  Notebook: 12
     """
-    if token_times.shape != weights.shape[1:] or len(token_times) < 2 or (np.diff(token_times) <= 0).any():
-        raise ValueError(f"token_times are {weights.shape[1]} (two or more) increasing seconds: {token_times!r:.80}")
+    if (
+        token_times.shape != weights.shape[1:]
+        or len(token_times) < 2
+        or (np.diff(token_times) <= 0).any()
+    ):
+        raise ValueError(
+            f"token_times are {weights.shape[1]} (two or more) increasing seconds: {token_times!r:.80}"
+        )
     T, seconds = len(weights), len(audio) / sample_rate
     words = (
         f"Attention of {T / fps:.1f} s of motion over {seconds:.1f} s of music, below its waveform; a row sums to one, "
         "darker is more; on the dashed line motion and music are at the same moment; upright lines are beats."
     )
-    fig, (wave, axis) = figure(10, 6.6, f"{title}: {words}" if title else words, 2, sharex=True, height_ratios=(1, 3))
+    fig, (wave, axis) = figure(
+        10, 6.6, f"{title}: {words}" if title else words, 2, sharex=True, height_ratios=(1, 3)
+    )
     waves(wave, audio, sample_rate)
     image = time_map(axis, weights, token_times, T / fps, "Blues")
     for panel, alpha in ((wave, 0.6), (axis, 0.3)):
@@ -86,7 +96,8 @@ def time_maps(
     words: str,
     labels: tuple[str, str] = ("music (s)", "dance (s)"),
 ) -> Figure:
-    """Maps side by side, each on its own scale: rows over `seconds`, columns at their times; dashed: one moment."""
+    """Maps side by side, each on its own scale: rows over `seconds`, columns at their times;
+    dashed: one moment."""
     fig, axes = figure(4.6 * len(maps), 4.4, words, 1, len(maps), sharey=True)
     for axis, (name, values) in zip(axes, maps.items(), strict=True):
         time_map(axis, values, columns, seconds)
@@ -103,10 +114,13 @@ def weight_and_effect(
     seconds: float,
     words: str,
 ) -> Figure:
-    """For each sound at `times`: left how much attention each moment of the dance gives it, right how far it moves
-    that moment (cm) when it is silenced."""
+    """For each sound at `times`: left how much attention each moment of the dance gives it, right
+    how far it moves that moment (cm) when it is silenced."""
     fig, axes = figure(11, 4.8, words, 1, 2, sharey=True)
-    pictures = ((shares, "attention to the sound", "share"), (100 * moved.T, "moved when it is silenced", "cm"))
+    pictures = (
+        (shares, "attention to the sound", "share"),
+        (100 * moved.T, "moved when it is silenced", "cm"),
+    )
     for axis, (values, title, unit) in zip(axes, pictures, strict=True):
         image = time_map(axis, values, np.arange(float(len(times))), seconds)
         axis.plot(np.arange(len(times)), times, "D", color="#D55E00", ms=4, mew=0)
@@ -129,7 +143,13 @@ def before_and_after(
     low, top = min(p.min() for p in pictures.values()), max(p.max() for p in pictures.values())
     for axis, (name, picture) in zip(axes, pictures.items(), strict=True):
         axis.pcolormesh(
-            times, np.arange(picture.shape[1]), picture.T, cmap="magma", vmin=low, vmax=top, shading="nearest"
+            times,
+            np.arange(picture.shape[1]),
+            picture.T,
+            cmap="magma",
+            vmin=low,
+            vmax=top,
+            shading="nearest",
         )
         for mark in marks:
             axis.axvline(mark, color="white", lw=1.4, ls="--")

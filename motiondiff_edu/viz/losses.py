@@ -1,4 +1,5 @@
-"""Pictures of the kinematic losses: figures whose bones stretch, what each loss notices, losses over diffusion time.
+"""Pictures of the kinematic losses: figures whose bones stretch, what each loss notices, losses
+over diffusion time.
 
 Notebook: 13
 """
@@ -19,7 +20,9 @@ from ..motion.skeleton import BONE_LENGTHS, BONES, HIPS
 from .body import INK
 from .style import DASHES, MEDIUM, OKABE_ITO, SMALL, figure, legend, table
 
-SHORT_TO_LONG = matplotlib.colors.LinearSegmentedColormap.from_list("bones", ["#0072B2", "#C9CDD4", "#D55E00"])
+SHORT_TO_LONG = matplotlib.colors.LinearSegmentedColormap.from_list(
+    "bones", ["#0072B2", "#C9CDD4", "#D55E00"]
+)
 STRETCH = Normalize(-0.3, 0.3, clip=True)  # of a bone: its length over the true one, minus 1
 ROUNDING = 1e-10  # what lies below is float32's rounding, and not drawn
 REACH = 1.15  # m from the hips to the edge of a picture, at least
@@ -32,9 +35,11 @@ def stretched(
     fps: float | int | None = None,
     widest: float | int = math.inf,
 ) -> Figure:
-    """A row of n poses for each motion, seen from the front; bones are blue where too short, orange where too long.
+    """A row of n poses for each motion, seen from the front; bones are blue where too short, orange
+    where too long.
 
-    With `fps` the seconds stand above the first row; what reaches out of a picture `widest` metres wide is cut off.
+    With `fps` the seconds stand above the first row; what reaches out of a picture `widest` metres
+    wide is cut off.
     """
     fig, axes = figure(1.45 * n + 1.0, 1.5 * len(rows) + 0.3, words, len(rows), n)
     for row, (name, motion) in enumerate(rows.items()):
@@ -43,7 +48,9 @@ def stretched(
         for axis, frame in zip(axes[:n], _spread(next(iter(rows.values())), n), strict=True):
             axis.set_title(f"{frame / fps:.1f} s", fontsize=SMALL)
     colours = ScalarMappable(STRETCH, SHORT_TO_LONG)
-    bar = fig.colorbar(colours, ax=axes, location="right", shrink=0.6, aspect=25, ticks=[-0.3, 0, 0.3])
+    bar = fig.colorbar(
+        colours, ax=axes, location="right", shrink=0.6, aspect=25, ticks=[-0.3, 0, 0.3]
+    )
     bar.ax.set_yticklabels(["30 % short", "right", "30 % long"], fontsize=SMALL)
     return fig
 
@@ -53,9 +60,13 @@ def _spread(motion: Float[np.ndarray, "_ 21 3"], n: int) -> Int[np.ndarray, "n"]
 
 
 def draw_row(
-    axes: Sequence[Axes], motion: Float[np.ndarray, "_ 21 3"], name: str, widest: float | int = math.inf
+    axes: Sequence[Axes],
+    motion: Float[np.ndarray, "_ 21 3"],
+    name: str,
+    widest: float | int = math.inf,
 ) -> None:
-    """One motion, a pose in each axis, all at one scale, which is told where it is not the usual one."""
+    """One motion, a pose in each axis, all at one scale, which is told where it is not the usual
+    one."""
     poses = np.asarray(motion, np.float64)[_spread(motion, len(axes))]
     far = float(np.abs(poses - poses[:, HIPS : HIPS + 1])[..., :2].max())
     reach = REACH if far <= REACH else min(1.05 * far, widest / 2)
@@ -63,7 +74,16 @@ def draw_row(
         _sticks(axis, pose, reach)
     shown = f"{2 * reach:.1f} m wide" if reach > far else f"{2 * reach:.1f} of {2 * far:.1f} m"
     told = name if reach == REACH else f"{name}\n({shown})"
-    axes[0].text(-0.04, 0.5, told, rotation=90, va="center", ha="right", transform=axes[0].transAxes, fontsize=SMALL)
+    axes[0].text(
+        -0.04,
+        0.5,
+        told,
+        rotation=90,
+        va="center",
+        ha="right",
+        transform=axes[0].transAxes,
+        fontsize=SMALL,
+    )
 
 
 def _sticks(axis: Axes, pose: Float[np.ndarray, "21 3"], reach: float) -> None:
@@ -73,29 +93,43 @@ def _sticks(axis: Axes, pose: Float[np.ndarray, "21 3"], reach: float) -> None:
         colour = SHORT_TO_LONG(STRETCH(much))
         axis.plot(*about[[parent, child]].T, color=colour, lw=3.5, solid_capstyle="round")
     axis.plot(*about.T, ".", color=INK, ms=3)
-    axis.set(xlim=(reach, -reach), ylim=(-reach, reach), aspect="equal")  # x is the figure's left; we look at its face
+    axis.set(
+        xlim=(reach, -reach), ylim=(-reach, reach), aspect="equal"
+    )  # x is the figure's left; we look at its face
     axis.set_axis_off()
 
 
-def noticed(values: Float[np.ndarray, "R C"], rows: Sequence[str], columns: Sequence[str], words: str) -> Figure:
-    """A table of losses; in each column the shade goes from white (nothing) to the column's largest value."""
+def noticed(
+    values: Float[np.ndarray, "R C"], rows: Sequence[str], columns: Sequence[str], words: str
+) -> Figure:
+    """A table of losses; in each column the shade goes from white (nothing) to the column's largest
+    value."""
     fig, (axis,) = figure(2.6 + 1.9 * len(columns), 0.9 + 0.52 * len(rows), words)
     share = values / np.maximum(values.max(axis=0), 1e-30)
     axis.imshow(np.sqrt(share), cmap="Oranges", vmin=0, vmax=1.6, aspect="auto")
     for (i, j), value in np.ndenumerate(values):
         text = "0" if share[i, j] < 1e-3 else f"{value:.2g}"
-        axis.text(j, i, text, ha="center", va="center", color="#999999" if text == "0" else "#111111")
+        axis.text(
+            j, i, text, ha="center", va="center", color="#999999" if text == "0" else "#111111"
+        )
     table(axis, rows, columns)
     return fig
 
 
 def over_steps(
-    panels: Mapping[str, Mapping[str, tuple]], words: str, ylabel: str = "", at: int | None = None, columns: int = 2
+    panels: Mapping[str, Mapping[str, tuple]],
+    words: str,
+    ylabel: str = "",
+    at: int | None = None,
+    columns: int = 2,
 ) -> Figure:
-    """Panels of named curves (s, y) over the diffusion step, y on a log axis of its own; `at` marks one step."""
+    """Panels of named curves (s, y) over the diffusion step, y on a log axis of its own; `at` marks
+    one step."""
     columns = min(columns, len(panels))
     rows = -(-len(panels) // columns)
-    fig, axes = figure(4.7 * columns if columns > 1 else 8, 3.3 * rows + 0.4, words, rows, columns, sharex=True)
+    fig, axes = figure(
+        4.7 * columns if columns > 1 else 8, 3.3 * rows + 0.4, words, rows, columns, sharex=True
+    )
     for axis, (name, curves) in zip(axes, panels.items(), strict=False):
         _log_curves(axis, curves, at)
         axis.set_title(name)
@@ -111,7 +145,9 @@ def over_steps(
 def _log_curves(axis: Axes, curves: Mapping[str, tuple], at: int | None = None) -> None:
     for k, (name, (s, y)) in enumerate(curves.items()):
         s, y = np.asarray(s), np.asarray(y, np.float64)
-        axis.plot(s, np.where(y > 0, y, np.nan), label=name, color=OKABE_ITO[k % 7], ls=DASHES[k % 8])
+        axis.plot(
+            s, np.where(y > 0, y, np.nan), label=name, color=OKABE_ITO[k % 7], ls=DASHES[k % 8]
+        )
         if at is not None and at in s:
             axis.plot(at, y[s == at], "o", color=OKABE_ITO[k % 7], ms=9)
     axis.set_yscale("log")
@@ -120,9 +156,14 @@ def _log_curves(axis: Axes, curves: Mapping[str, tuple], at: int | None = None) 
 
 
 def moment(
-    motion: Float[np.ndarray, "T 21 3"], panels: Mapping[str, Mapping[str, tuple]], s: int, words: str, n: int = 4
+    motion: Float[np.ndarray, "T 21 3"],
+    panels: Mapping[str, Mapping[str, tuple]],
+    s: int,
+    words: str,
+    n: int = 4,
 ) -> Figure:
-    """What the network has in mind at step s: n poses of x0_hat, and below them each loss over s, with s marked."""
+    """What the network has in mind at step s: n poses of x0_hat, and below them each loss over s,
+    with s marked."""
     fig, axes = figure(11, 5.6, words, 2, max(n, len(panels)), height_ratios=[1.25, 1])
     width = max(n, len(panels))
     draw_row(axes[:n], motion, f"x0_hat, s = {s}")

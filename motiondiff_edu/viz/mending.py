@@ -1,4 +1,5 @@
-"""Figures of what was mended: errors over the length of a gap, and a map of dropout's rate against what is missing.
+"""Figures of what was mended: errors over the length of a gap, and a map of dropout's rate against
+what is missing.
 
 Notebook: 09, 15
 """
@@ -11,7 +12,9 @@ from matplotlib.figure import Figure
 
 from .style import DASHES, MARKERS, MEDIUM, OKABE_ITO, figure, legend, table
 
-Line = tuple[Sequence[float], Sequence[float], Sequence[float], Sequence[float]]  # x, value, low, high
+Line = tuple[
+    Sequence[float], Sequence[float], Sequence[float], Sequence[float]
+]  # x, value, low, high
 
 
 def over_gaps(
@@ -20,7 +23,8 @@ def over_gaps(
     xlabel: str = "length of the gap (frames of 1/20 s)",
     log: Sequence[str] = (),
 ) -> Figure:
-    """One panel for each measure, a line in it for each method, its 95 % interval shaded; `log`: measures by powers.
+    """One panel for each measure, a line in it for each method, its 95 % interval shaded; `log`:
+    measures by powers.
 
     Notebook: 15
     """
@@ -29,14 +33,21 @@ def over_gaps(
         for i, (name, (x, value, low, high)) in enumerate(lines.items()):
             line = axis.plot(x, value, ls=DASHES[i % 8], marker=MARKERS[i % 8], label=name)[0]
             axis.fill_between(x, low, high, color=line.get_color(), alpha=0.15, lw=0)
-        axis.set(xlabel=xlabel, title=measure, **({"yscale": "log"} if measure in log else {"ylim": (0, None)}))
+        axis.set(
+            xlabel=xlabel,
+            title=measure,
+            **({"yscale": "log"} if measure in log else {"ylim": (0, None)}),
+        )
         axis.set_xticks(x)
         legend(axis, loc="upper center", bbox_to_anchor=(0.5, -0.16), fontsize=MEDIUM)
     return fig
 
 
-def by_fault(panels: Mapping[str, Mapping[str, tuple[float, float, float]]], words: str, xlabel: str) -> Figure:
-    """A panel for each fault, a row for each way of mending it: (value, low, high), by powers; further left is better.
+def by_fault(
+    panels: Mapping[str, Mapping[str, tuple[float, float, float]]], words: str, xlabel: str
+) -> Figure:
+    """A panel for each fault, a row for each way of mending it: (value, low, high), by powers;
+    further left is better.
 
     Notebook: 10
     """
@@ -47,7 +58,13 @@ def by_fault(panels: Mapping[str, Mapping[str, tuple[float, float, float]]], wor
             row = names.index(name)
             style = {"fmt": MARKERS[row % 8], "color": OKABE_ITO[row % 7], "capsize": 4}
             axis.errorbar(value, row, xerr=[[value - low], [high - value]], **style)
-        axis.set(xscale="log", xlabel=xlabel, title=fault, yticks=range(len(names)), ylim=(len(names) - 0.5, -0.5))
+        axis.set(
+            xscale="log",
+            xlabel=xlabel,
+            title=fault,
+            yticks=range(len(names)),
+            ylim=(len(names) - 0.5, -0.5),
+        )
         axis.set_xticks([1, 2, 5, 10, 20], ["1", "2", "5", "10", "20"])
         axis.set_xticks([], minor=True)
         axis.set_yticklabels(names if axis is axes[0] else [])
@@ -55,11 +72,16 @@ def by_fault(panels: Mapping[str, Mapping[str, tuple[float, float, float]]], wor
 
 
 def rate_map(
-    panels: Mapping[str, Float[np.ndarray, "R M"]], rates: Sequence[str], missing: Sequence[str], words: str
+    panels: Mapping[str, Float[np.ndarray, "R M"]],
+    rates: Sequence[str],
+    missing: Sequence[str],
+    words: str,
 ) -> Figure:
-    """A map for each measure: rates of dropout in rows, shares of the past missing in columns; small is good.
+    """A map for each measure: rates of dropout in rows, shares of the past missing in columns;
+    small is good.
 
-    Colours compare within a column (dark: the worst rate at that share), numbers are the errors.  Notebook: 09
+    Colours compare within a column (dark: the worst rate at that share), numbers are the errors.
+    Notebook: 09
     """
     fig, axes = figure(1.2 + 5.0 * len(panels), 1.4 + 0.5 * len(rates), words, 1, len(panels))
     for axis, (measure, errors) in zip(axes, panels.items(), strict=True):

@@ -1,4 +1,5 @@
-"""Figures of measured walks: footstep curves, drift over time, what a planted foot does, scores beside each other.
+"""Figures of measured walks: footstep curves, drift over time, what a planted foot does, scores
+beside each other.
 
 Notebook: 08
 """
@@ -20,7 +21,8 @@ def footstep_curves(
     curves: Mapping[str, Float[np.ndarray, "V"]],
     words: str = "Number of footsteps against the velocity tolerance; a dot at 95 % of the maximum.",
 ) -> Figure:
-    """Number of footsteps against the tolerance 1, 2, 3 ... cm/s, a dot at each v95.  Source: MoDiff Fig. 3."""
+    """Number of footsteps against the tolerance 1, 2, 3 ... cm/s, a dot at each v95.  Source:
+    MoDiff Fig. 3."""
     fig, (axis,) = figure(9, 4.6, words)
     for i, (label, counts) in enumerate(curves.items()):
         at = int(np.argmax(counts >= 0.95 * counts.max()))
@@ -32,13 +34,22 @@ def footstep_curves(
 
 
 def over_time(
-    panels: Mapping[str, Mapping[str, Float[np.ndarray, "_"]]], words: str, shade_to: float | int = 0
+    panels: Mapping[str, Mapping[str, Float[np.ndarray, "_"]]],
+    words: str,
+    shade_to: float | int = 0,
 ) -> Figure:
-    """One panel for each measure, one line in it for each motion, a point for each second of the rollout."""
+    """One panel for each measure, one line in it for each motion, a point for each second of the
+    rollout."""
     fig, axes = figure(5.2 * len(panels), 4, words, 1, len(panels))
     for axis, (measure, lines) in zip(axes, panels.items(), strict=True):
         for i, (label, values) in enumerate(lines.items()):
-            axis.plot(np.arange(len(values)) + 0.5, values, DASHES[i % 8], marker=MARKERS[i % 8], label=label)
+            axis.plot(
+                np.arange(len(values)) + 0.5,
+                values,
+                DASHES[i % 8],
+                marker=MARKERS[i % 8],
+                label=label,
+            )
         if shade_to:
             axis.axvspan(0, shade_to, color="0.9")
         axis.set(xlabel="time (s)", title=measure, ylim=(0, None))
@@ -53,12 +64,17 @@ def toe_heights(
     fps: float | int = 20,
     below: float = PLANTED_BELOW,
 ) -> Figure:
-    """Height of the toes over time, in cm; grey where the lower one, under `below` metres, is planted."""
+    """Height of the toes over time, in cm; grey where the lower one, under `below` metres, is
+    planted."""
     fig, (axis,) = figure(9, 3.4, words)
     seconds = np.arange(len(height)) / fps
     _shade(axis, planted, fps)
-    for side, (label, colour) in enumerate((("left toe", LEFT_COLOUR), ("right toe", RIGHT_COLOUR))):
-        axis.plot(seconds, 100 * height[:, side], "-" if side == 0 else "--", label=label, color=colour)
+    for side, (label, colour) in enumerate(
+        (("left toe", LEFT_COLOUR), ("right toe", RIGHT_COLOUR))
+    ):
+        axis.plot(
+            seconds, 100 * height[:, side], "-" if side == 0 else "--", label=label, color=colour
+        )
     axis.axhline(100 * below, color=INK, lw=1, ls=":", label=f"{100 * below:g} cm")
     axis.set(xlabel="time (s)", ylabel="height (cm)")
     legend(axis, loc="upper right", ncols=3)
@@ -67,9 +83,13 @@ def toe_heights(
 
 
 def gates(
-    gate: Float[np.ndarray, "T 2"], planted: Bool[np.ndarray, "T 2"], words: str, fps: float | int = 20
+    gate: Float[np.ndarray, "T 2"],
+    planted: Bool[np.ndarray, "T 2"],
+    words: str,
+    fps: float | int = 20,
 ) -> Figure:
-    """How far two gates are open (0 to 1), left above right; grey where that foot stands in truth."""
+    """How far two gates are open (0 to 1), left above right; grey where that foot stands in
+    truth."""
     fig, axes = figure(9, 3.8, words, rows=2, sharex=True, sharey=True)
     seconds = np.arange(len(gate)) / fps
     for side, (axis, label, colour) in enumerate(
@@ -91,13 +111,17 @@ def _shade(axis: Axes, planted: np.ndarray, fps: float | int) -> None:
 def score_table(
     scores: Mapping[str, Mapping[str, float]], words: str, digits: int = 2, log: Sequence[str] = ()
 ) -> Figure:
-    """Rows of motions, columns of measures, to so many digits; a cell is darker the larger it is in its column.
+    """Rows of motions, columns of measures, to so many digits; a cell is darker the larger it is in
+    its column.
 
-    The shade goes with the value, from 0 on, or in the columns named in `log` with its logarithm, from the smallest on.
+    The shade goes with the value, from 0 on, or in the columns named in `log` with its logarithm,
+    from the smallest on.
     """
     rows, columns = list(scores), list(next(iter(scores.values())))
     values = np.array([[scores[row][column] for column in columns] for row in rows], dtype=float)
-    shades = np.array([_shades(of, name in log) for name, of in zip(columns, values.T, strict=True)]).T
+    shades = np.array(
+        [_shades(of, name in log) for name, of in zip(columns, values.T, strict=True)]
+    ).T
     fig, (axis,) = figure(2.6 + 1.75 * len(columns), 1.1 + 0.5 * len(rows), words)
     axis.imshow(shades, cmap="Blues", vmin=0, vmax=1.8, aspect="auto")
     for (i, j), value in np.ndenumerate(values):
@@ -108,7 +132,8 @@ def score_table(
 
 
 def _shades(column: Float[np.ndarray, "R"], log: bool) -> Float[np.ndarray, "R"]:
-    """How dark each value is, 1 for the largest; nothing where there is no value, or none above 0 for a logarithm."""
+    """How dark each value is, 1 for the largest; nothing where there is no value, or none above 0
+    for a logarithm."""
     if not log:
         return np.nan_to_num(column) / max(float(np.nan_to_num(column).max()), 1e-12)
     powers = np.log10(np.where(column > 0, column, np.nan))

@@ -1,4 +1,5 @@
-"""Figures of what motion is made of: the joints by number, poses in between, paths seen from above, control, windows.
+"""Figures of what motion is made of: the joints by number, poses in between, paths seen from above,
+control, windows.
 
 Plain arrays in, a matplotlib Figure with its caption out.  Notebook: 01
 """
@@ -14,7 +15,12 @@ from ..motion.skeleton import BONES, JOINTS, LEFT, RIGHT
 from .body import CENTRE_COLOUR, INK, LEFT_COLOUR, PATH_COLOUR, RIGHT_COLOUR
 from .style import figure as captioned
 
-SERIES = (INK, "#E69F00", LEFT_COLOUR, PATH_COLOUR)  # told apart by colour-blind readers, and by marker and label
+SERIES = (
+    INK,
+    "#E69F00",
+    LEFT_COLOUR,
+    PATH_COLOUR,
+)  # told apart by colour-blind readers, and by marker and label
 
 
 def _side_colour(joint: int) -> str:
@@ -41,7 +47,15 @@ def joint_map(pose: Float[np.ndarray, "21 3"], caption: str) -> Figure:
     listed.axis("off")
     for j, name in enumerate(JOINTS):
         row = 1 - j / len(JOINTS)
-        listed.text(0, row, f"{j:2d} {name}", color=_side_colour(j), fontsize=11, family="monospace", va="top")
+        listed.text(
+            0,
+            row,
+            f"{j:2d} {name}",
+            color=_side_colour(j),
+            fontsize=11,
+            family="monospace",
+            va="top",
+        )
     return figure
 
 
@@ -51,7 +65,8 @@ def limb_steps(
     true_length: float,
     caption: str,
 ) -> Figure:
-    """A limb of K joints at U moments between two poses, one panel for each way of going; below, its length (m)."""
+    """A limb of K joints at U moments between two poses, one panel for each way of going; below,
+    its length (m)."""
     n = len(ways)
     figure, axes = captioned(3.2 * n, 5.8, caption, 2, n, height_ratios=[2.4, 1], sharey="row")
     reach = 1.3 * max(np.abs(limb).max() for limb in ways.values())
@@ -59,7 +74,9 @@ def limb_steps(
         for u, pose in zip(np.linspace(0, 1, len(limb)), limb, strict=True):
             panel.plot(*pose.T, "o-", color=INK, alpha=0.25 + 0.75 * (u in (0, 1)), ms=4, lw=2)
             beyond = pose[-1] + 0.08 * pose[-1] / np.linalg.norm(pose[-1])
-            panel.text(*beyond, f"{u:.2g}", fontsize=10, color=RIGHT_COLOUR, ha="center", va="center")
+            panel.text(
+                *beyond, f"{u:.2g}", fontsize=10, color=RIGHT_COLOUR, ha="center", va="center"
+            )
         panel.set(aspect="equal", title=name, xlabel="x (m)", xticks=(-0.5, 0, 0.5))
         panel.set(xlim=(-reach, reach), ylim=(-reach, reach))
         curve.plot(np.linspace(0, 1, len(lengths[name])), lengths[name], color=LEFT_COLOUR)
@@ -71,11 +88,16 @@ def limb_steps(
 
 
 def paths_from_above(
-    paths: Mapping[str, tuple[Float[np.ndarray, "_ 2"], Float[np.ndarray, "_"]]], caption: str, every: int = 10
+    paths: Mapping[str, tuple[Float[np.ndarray, "_ 2"], Float[np.ndarray, "_"]]],
+    caption: str,
+    every: int = 10,
 ) -> Figure:
-    """Root paths (x, z) with their headings (radians) as arrows, seen from above with the figure's left on the left."""
+    """Root paths (x, z) with their headings (radians) as arrows, seen from above with the figure's
+    left on the left."""
     spread = np.ptp(np.concatenate([root for root, _ in paths.values()]), axis=0)
-    figure, (axes,) = captioned(9, 1.4 + 6.5 * min(max(spread[1] / max(spread[0], 1e-3), 0.3), 0.75), caption)
+    figure, (axes,) = captioned(
+        9, 1.4 + 6.5 * min(max(spread[1] / max(spread[0], 1e-3), 0.3), 0.75), caption
+    )
     for k, (name, (root, heading)) in enumerate(paths.items()):
         colour = SERIES[k % len(SERIES)]
         axes.plot(*root.T, color=colour, lw=2, label=name, ls="-" if k == 0 else "--")
@@ -90,18 +112,32 @@ def paths_from_above(
 
 
 def windows_in_time(
-    starts: Sequence[Sequence[int]], length: int, groups: Sequence[Sequence[str]], caption: str, fps: float = 20.0
+    starts: Sequence[Sequence[int]],
+    length: int,
+    groups: Sequence[Sequence[str]],
+    caption: str,
+    fps: float = 20.0,
 ) -> Figure:
-    """Windows as bars: starts[k] are the first frames of the windows of recording k, groups[k] "train" or "test"."""
+    """Windows as bars: starts[k] are the first frames of the windows of recording k, groups[k]
+    "train" or "test"."""
     figure, (axes,) = captioned(9, 1.3 + 0.6 * len(starts), caption)
     axes.grid(False)
     colours = {"train": LEFT_COLOUR, "test": RIGHT_COLOUR}
     for k, (firsts, names) in enumerate(zip(starts, groups, strict=True)):
         for n, (first, name) in enumerate(zip(firsts, names, strict=True)):
-            axes.barh(k + 0.38 * (n % 2), length / fps, 0.34, first / fps, color=colours[name], edgecolor="white")
+            axes.barh(
+                k + 0.38 * (n % 2),
+                length / fps,
+                0.34,
+                first / fps,
+                color=colours[name],
+                edgecolor="white",
+            )
     keys = [Patch(color=colour, label=name) for name, colour in colours.items()]
     names = [f"recording {k}" for k in range(len(starts))]
     axes.set(yticks=np.arange(len(starts)) + 0.19, yticklabels=names, xlabel="time (s)")
-    axes.legend(handles=keys, ncols=2, loc="lower right", fontsize=11, bbox_to_anchor=(1, 1), frameon=False)
+    axes.legend(
+        handles=keys, ncols=2, loc="lower right", fontsize=11, bbox_to_anchor=(1, 1), frameon=False
+    )
     axes.invert_yaxis()
     return figure

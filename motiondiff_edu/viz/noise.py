@@ -1,4 +1,5 @@
-"""Pictures of noise going in and coming out: curves, densities, paths and terms, each from plain arrays.
+"""Pictures of noise going in and coming out: curves, densities, paths and terms, each from plain
+arrays.
 
 Every function returns a figure that shows itself once; the caption under it says what to see.
 """
@@ -28,12 +29,26 @@ def finish(fig: Figure, words: str, labels: tuple[str, str] | None = None) -> Fi
 
 
 def lines(
-    x, curves: dict, caption: str, labels: tuple[str, str], *, log=(False, False), marks: dict | None = None, ylim=None
+    x,
+    curves: dict,
+    caption: str,
+    labels: tuple[str, str],
+    *,
+    log=(False, False),
+    marks: dict | None = None,
+    ylim=None,
 ) -> Figure:
     """Several named curves over x; `marks` are named horizontal levels."""
     fig, (axis,) = panels()
     for i, (name, y) in enumerate(curves.items()):
-        axis.plot(x, y, label=name, color=COLOURS[i % 6], ls=DASHES[i % 6], marker="o" if len(x) < 12 else None)
+        axis.plot(
+            x,
+            y,
+            label=name,
+            color=COLOURS[i % 6],
+            ls=DASHES[i % 6],
+            marker="o" if len(x) < 12 else None,
+        )
     for name, level in (marks or {}).items():
         axis.axhline(level, color=GREY, lw=1.3, ls=":")
         axis.annotate(
@@ -54,11 +69,19 @@ def lines(
     return finish(fig, caption, labels)
 
 
-def noised_curve(seconds, clean, noised, s: int, signal: float, caption: str | None = None) -> Figure:
-    """One coordinate over time, clean and at diffusion step s, with the share of its amplitude that is left."""
+def noised_curve(
+    seconds, clean, noised, s: int, signal: float, caption: str | None = None
+) -> Figure:
+    """One coordinate over time, clean and at diffusion step s, with the share of its amplitude that
+    is left."""
     fig, (axis,) = panels(height=3.2)
     axis.plot(seconds, noised, color=ORANGE, lw=1.4, marker=".", label=f"x_s at s = {s}")
-    axis.plot(seconds, signal * np.asarray(clean), color=BLUE, label=f"what is left of x0: {100 * signal:.0f} %")
+    axis.plot(
+        seconds,
+        signal * np.asarray(clean),
+        color=BLUE,
+        label=f"what is left of x0: {100 * signal:.0f} %",
+    )
     axis.set_ylim(-3.6, 3.6)
     legend(axis, loc="upper right", ncol=2)
     caption = caption or (
@@ -78,21 +101,36 @@ def noise_ladder(seconds, clean, noised: dict, caption: str) -> Figure:
     return finish(fig, caption, ("time (s)", "left heel"))
 
 
-def densities(grid, curves: dict, caption: str, labels=("value", "density"), *, points: dict | None = None) -> Figure:
-    """Named densities over one grid, filled lightly; `points` are named values marked on the axis."""
+def densities(
+    grid, curves: dict, caption: str, labels=("value", "density"), *, points: dict | None = None
+) -> Figure:
+    """Named densities over one grid, filled lightly; `points` are named values marked on the
+    axis."""
     fig, (axis,) = panels()
     for i, (name, y) in enumerate(curves.items()):
         axis.plot(grid, y, label=name, color=COLOURS[i], ls=DASHES[i])
         axis.fill_between(grid, y, color=COLOURS[i], alpha=0.10)
     for i, (name, value) in enumerate((points or {}).items()):
-        axis.plot([value], [0], marker="^", ms=11, color=INK if i == 0 else GREY, ls="none", label=name, clip_on=False)
+        axis.plot(
+            [value],
+            [0],
+            marker="^",
+            ms=11,
+            color=INK if i == 0 else GREY,
+            ls="none",
+            label=name,
+            clip_on=False,
+        )
     axis.set_ylim(bottom=0)
     legend(axis)
     return finish(fig, caption, labels)
 
 
-def histograms(samples: dict, grid, density, caption: str, label: str = "value", top: float = 1.35) -> Figure:
-    """A histogram for each named set of samples, each under the same exact density; cut off at `top` times its peak."""
+def histograms(
+    samples: dict, grid, density, caption: str, label: str = "value", top: float = 1.35
+) -> Figure:
+    """A histogram for each named set of samples, each under the same exact density; cut off at
+    `top` times its peak."""
     fig, axes = panels(len(samples), width=4.2 * max(len(samples), 2), height=3.4, sharey=True)
     for i, (axis, (name, values)) in enumerate(zip(axes, samples.items(), strict=True)):
         ends = float(grid[0]), float(grid[-1])
@@ -105,14 +143,20 @@ def histograms(samples: dict, grid, density, caption: str, label: str = "value",
 
 
 def paths(steps, x, grid, at_start, at_end, caption: str, show: int = 60) -> Figure:
-    """Sampling paths x (steps, n) from noise on the left to samples on the right, a density at either end."""
+    """Sampling paths x (steps, n) from noise on the left to samples on the right, a density at
+    either end."""
     x = np.asarray(x)
-    fig, (left, middle, right) = panels(3, 10.5, 4, sharey=True, gridspec_kw={"width_ratios": [1, 5, 1]})
+    fig, (left, middle, right) = panels(
+        3, 10.5, 4, sharey=True, gridspec_kw={"width_ratios": [1, 5, 1]}
+    )
     middle.plot(steps, x[:, :show], color=BLUE, lw=0.8, alpha=0.45)
     middle.plot(steps, x[:, 0], color=ORANGE, lw=2)
     middle.invert_xaxis()
     bars = {"bins": 60, "range": (float(grid[0]), float(grid[-1])), "density": True, "alpha": 0.6}
-    for axis, density, values, name in ((left, at_start, x[0], "at S"), (right, at_end, x[-1], "at 0")):
+    for axis, density, values, name in (
+        (left, at_start, x[0], "at S"),
+        (right, at_end, x[-1], "at 0"),
+    ):
         axis.hist(values, orientation="horizontal", color=SKY, **bars)
         axis.plot(density, grid, color=INK, lw=1.6)
         axis.set_title(name)
@@ -128,7 +172,10 @@ def one_moment(grid, density, values, guesses, s: int, caption: str) -> Figure:
     """All samples at one step: where x_s lies, and what the denoiser answers for x0."""
     fig, (left, right) = panels(2, width=10, height=3.4, sharey=True)
     shown = {"bins": 90, "range": (float(grid[0]), float(grid[-1])), "density": True, "alpha": 0.5}
-    for axis, data, colour, name in ((left, values, BLUE, f"x_s at s = {s}"), (right, guesses, ORANGE, "x0_hat there")):
+    for axis, data, colour, name in (
+        (left, values, BLUE, f"x_s at s = {s}"),
+        (right, guesses, ORANGE, "x0_hat there"),
+    ):
         axis.hist(np.clip(np.asarray(data), float(grid[0]), float(grid[-1])), color=colour, **shown)
         axis.plot(grid, density, color=INK, lw=1.6)
         axis.set_title(name)
@@ -137,7 +184,8 @@ def one_moment(grid, density, values, guesses, s: int, caption: str) -> Figure:
 
 
 def bound(terms, exact: float, caption: str) -> Figure:
-    """Terms of the negative bound over s (terms[0] is the prior's), and their running sum beside -E log q(x0)."""
+    """Terms of the negative bound over s (terms[0] is the prior's), and their running sum beside -E
+    log q(x0)."""
     fig, (left, right) = panels(2, width=10.5, height=4)
     terms, s = np.asarray(terms), np.arange(1, len(terms))
     left.bar(s, terms[1:], width=1.0, color=np.where(s == 1, ORANGE, BLUE))

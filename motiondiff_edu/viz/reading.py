@@ -1,4 +1,5 @@
-"""What attention reads, and what it is worth: buckets of time, sharpness, and weight against measured effect.
+"""What attention reads, and what it is worth: buckets of time, sharpness, and weight against
+measured effect.
 
 Plain arrays in, a captioned Figure out.  Notebook: 06
 """
@@ -13,12 +14,20 @@ from .body import GREY
 from .style import OKABE_ITO, figure, legend
 
 
-def bucket_map(distance: Int[np.ndarray, "N"], bucket: Int[np.ndarray, "N"], window: int, words: str) -> Figure:
-    """Bucket over time distance (frames, key minus query); the distances within +-window are shaded."""
+def bucket_map(
+    distance: Int[np.ndarray, "N"], bucket: Int[np.ndarray, "N"], window: int, words: str
+) -> Figure:
+    """Bucket over time distance (frames, key minus query); the distances within +-window are
+    shaded."""
     fig, (axis,) = figure(9, 3.8, words)
-    for past, colour, name in ((True, OKABE_ITO[0], "key in the past"), (False, OKABE_ITO[1], "key in the future")):
+    for past, colour, name in (
+        (True, OKABE_ITO[0], "key in the past"),
+        (False, OKABE_ITO[1], "key in the future"),
+    ):
         side = distance <= 0 if past else distance > 0
-        axis.plot(distance[side], bucket[side], "o" if past else "s", color=colour, ms=3, label=name)
+        axis.plot(
+            distance[side], bucket[side], "o" if past else "s", color=colour, ms=3, label=name
+        )
     axis.axvspan(-window, window, color=GREY, alpha=0.12, label="within MoDiff's window")
     axis.set(xlabel="time of the key minus time of the query (frames)", ylabel="bucket")
     legend(axis, loc="center right")
@@ -26,12 +35,18 @@ def bucket_map(distance: Int[np.ndarray, "N"], bucket: Int[np.ndarray, "N"], win
 
 
 def sharpness(
-    sizes: Int[np.ndarray, "N"], curves: Mapping[str, Float[np.ndarray, "N"]], floor: float, words: str
+    sizes: Int[np.ndarray, "N"],
+    curves: Mapping[str, Float[np.ndarray, "N"]],
+    floor: float,
+    words: str,
 ) -> Figure:
-    """The largest weight of a row over the size d of queries and keys; `floor` is that of equal weights."""
+    """The largest weight of a row over the size d of queries and keys; `floor` is that of equal
+    weights."""
     fig, (axis,) = figure(9, 3.8, words)
     for k, (name, values) in enumerate(curves.items()):
-        axis.plot(sizes, values, color=OKABE_ITO[k], marker="os"[k % 2], ls=("-", "--")[k % 2], label=name)
+        axis.plot(
+            sizes, values, color=OKABE_ITO[k], marker="os"[k % 2], ls=("-", "--")[k % 2], label=name
+        )
     axis.axhline(floor, color=GREY, lw=1.2, ls=":", label="all weights equal")
     axis.set(xlabel="size d of queries and keys", ylabel="largest weight (mean)", ylim=(0, 1.02))
     axis.set_xscale("log", base=2)
@@ -40,9 +55,13 @@ def sharpness(
 
 
 def weight_against_effect(
-    weight: Float[np.ndarray, "B M"], effect: Float[np.ndarray, "B M"], groups: list[tuple[str, int]], words: str
+    weight: Float[np.ndarray, "B M"],
+    effect: Float[np.ndarray, "B M"],
+    groups: list[tuple[str, int]],
+    words: str,
 ) -> Figure:
-    """The attention that each key of each example got, and the effect of hiding it, both over their group's mean there.
+    """The attention that each key of each example got, and the effect of hiding it, both over their
+    group's mean there.
 
     The mean is taken in each example: some examples move more than others whatever is hidden.
     """

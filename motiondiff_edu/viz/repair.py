@@ -25,14 +25,23 @@ def by_round(
     words: str,
     marks: Mapping[str, tuple[str, float]] | None = None,
 ) -> Figure:
-    """One panel for each measure, a line in it for each fault, a point for each round; `marks` are dotted levels."""
+    """One panel for each measure, a line in it for each fault, a point for each round; `marks` are
+    dotted levels."""
     fig, axes = figure(5.2 * len(panels), 4, words, 1, len(panels))
     for axis, (measure, lines) in zip(axes, panels.items(), strict=True):
         for i, (label, values) in enumerate(lines.items()):
-            axis.plot(np.arange(1, len(values) + 1), values, ls=DASHES[i % 8], marker=MARKERS[i % 8], label=label)
+            axis.plot(
+                np.arange(1, len(values) + 1),
+                values,
+                ls=DASHES[i % 8],
+                marker=MARKERS[i % 8],
+                label=label,
+            )
         if measure in (marks or {}):
             name, level = marks[measure]
-            axis.axhline(level, color=body.INK, ls=":", lw=1.2, label=name)  # told in the legend: points lie beside it
+            axis.axhline(
+                level, color=body.INK, ls=":", lw=1.2, label=name
+            )  # told in the legend: points lie beside it
         axis.set(xlabel="round", title=measure, ylim=(0, None))
         axis.xaxis.get_major_locator().set_params(integer=True)
     legend(axes[0])
@@ -46,7 +55,8 @@ def with_ghosts(
     words: str,
     frames: Sequence[int],
 ) -> Figure:
-    """A row of poses for each name; below those in `samples` a row of their limbs with a missing end, thin and green.
+    """A row of poses for each name; below those in `samples` a row of their limbs with a missing
+    end, thin and green.
 
     So the pose that is to be judged is not covered.
     """
@@ -62,12 +72,26 @@ def with_ghosts(
             axis.set_title(f"frame {t}", fontsize=SMALL)
         if i % n == 0:
             name = "each of them" if ghosts else name
-            axis.text(-0.05, 0.5, name, rotation=90, va="center", ha="right", transform=axis.transAxes, fontsize=MEDIUM)
+            axis.text(
+                -0.05,
+                0.5,
+                name,
+                rotation=90,
+                va="center",
+                ha="right",
+                transform=axis.transAxes,
+                fontsize=MEDIUM,
+            )
     fig.legend(handles=SIDES, loc="outside lower right", ncols=2, frameon=False, fontsize=SMALL)
     return fig
 
 
-def _haunt(axis: Axes, samples: Float[np.ndarray, "n 21 3"], known: Bool[np.ndarray, "21"], camera: body.Camera):
+def _haunt(
+    axis: Axes,
+    samples: Float[np.ndarray, "n 21 3"],
+    known: Bool[np.ndarray, "21"],
+    camera: body.Camera,
+):
     for sample in samples:
         pixels, _ = body.project(np.asarray(sample, np.float64), camera, _SIZE)
         for a, b in BONES:
@@ -75,17 +99,32 @@ def _haunt(axis: Axes, samples: Float[np.ndarray, "n 21 3"], known: Bool[np.ndar
                 axis.plot(*pixels[[a, b]].T, color=GHOST, lw=1, alpha=0.6, zorder=4)
 
 
-def faults_and_methods(panels: Mapping[str, Mapping[str, Mapping[str, float]]], words: str, log: bool = True) -> Figure:
-    """A panel for each measure: a row for each fault, a mark in it for each method; NaN leaves a mark out."""
+def faults_and_methods(
+    panels: Mapping[str, Mapping[str, Mapping[str, float]]], words: str, log: bool = True
+) -> Figure:
+    """A panel for each measure: a row for each fault, a mark in it for each method; NaN leaves a
+    mark out."""
     faults = list(next(iter(panels.values())))
-    fig, axes = figure(5.4 * len(panels), 1.4 + 0.8 * len(faults), words, 1, len(panels), sharey=True)
+    fig, axes = figure(
+        5.4 * len(panels), 1.4 + 0.8 * len(faults), words, 1, len(panels), sharey=True
+    )
     for axis, (measure, rows) in zip(axes, panels.items(), strict=True):
         methods = len(rows[faults[0]])
-        apart = min(0.2, 0.7 / methods)  # rows of marks within the row of a fault, so that none hides another
+        apart = min(
+            0.2, 0.7 / methods
+        )  # rows of marks within the row of a fault, so that none hides another
         for k, method in enumerate(rows[faults[0]]):
             values = [rows[fault][method] for fault in faults]
             rows_at = np.arange(len(faults)) + apart * (k - (methods - 1) / 2)
-            axis.plot(values, rows_at, MARKERS[k % 8], color=OKABE_ITO[k % 7], ms=9, ls="none", label=method)
+            axis.plot(
+                values,
+                rows_at,
+                MARKERS[k % 8],
+                color=OKABE_ITO[k % 7],
+                ms=9,
+                ls="none",
+                label=method,
+            )
         axis.set_title(measure, fontsize=LARGE)
         axis.set_ylim(len(faults) - 0.5, -0.5)
         if log:
@@ -94,5 +133,11 @@ def faults_and_methods(panels: Mapping[str, Mapping[str, Mapping[str, float]]], 
             axis.xaxis.set_major_formatter("{x:g}")
             axis.xaxis.set_minor_formatter(NullFormatter())
     axes[0].set_yticks(range(len(faults)), faults)
-    fig.legend(*axes[0].get_legend_handles_labels(), loc="outside lower center", ncols=5, frameon=False, fontsize=SMALL)
+    fig.legend(
+        *axes[0].get_legend_handles_labels(),
+        loc="outside lower center",
+        ncols=5,
+        frameon=False,
+        fontsize=SMALL,
+    )
     return fig

@@ -1,4 +1,5 @@
-"""Skeletons on paper: a strip of poses, several motions side by side, a path from above with its footprints.
+"""Skeletons on paper: a strip of poses, several motions side by side, a path from above with its
+footprints.
 
 Positions are world positions in metres, (T, 21, 3), y up.  Notebook: 01
 """
@@ -27,11 +28,16 @@ def pose_strip(
     title: str = "",
     camera: body.Camera | None = None,
 ) -> Figure:
-    """n poses, evenly spaced from the first frame to the last; the first `past` frames paler: they were given."""
+    """n poses, evenly spaced from the first frame to the last; the first `past` frames paler: they
+    were given."""
     words = f"{n} poses over {len(positions) / fps:.1f} s, left limbs blue, right limbs orange"
     words += "." if past is None else f"; the paler ones, up to {past / fps:.1f} s, were given."
-    fig, axes = figure(1.35 * n, 2.75 + 0.4 * bool(title), f"{title}: {words}" if title else words, 1, n)
-    for axis, t in zip(axes, np.linspace(0, len(positions) - 1, n).round().astype(int), strict=True):
+    fig, axes = figure(
+        1.35 * n, 2.75 + 0.4 * bool(title), f"{title}: {words}" if title else words, 1, n
+    )
+    for axis, t in zip(
+        axes, np.linspace(0, len(positions) - 1, n).round().astype(int), strict=True
+    ):
         draw_pose(axis, positions[t], camera, washed=bool(past is not None and t < past))
         axis.set_title(f"{t / fps:.1f} s", fontsize=SMALL)
     if title:
@@ -47,10 +53,15 @@ def side_by_side(
     fps: float | int = 20.0,
     past: int | None = None,
 ) -> Figure:
-    """A row of n poses for each motion, at the same times; a motion that has ended shows nothing."""
-    names = list(labels) if labels is not None else [f"motion {i}" for i in range(1, len(motions) + 1)]
+    """A row of n poses for each motion, at the same times; a motion that has ended shows
+    nothing."""
+    names = (
+        list(labels) if labels is not None else [f"motion {i}" for i in range(1, len(motions) + 1)]
+    )
     frames = np.linspace(0, max(map(len, motions)) - 1, n).round().astype(int)
-    words = f"{n} poses of {', '.join(names)} at the same times, left limbs blue, right limbs orange."
+    words = (
+        f"{n} poses of {', '.join(names)} at the same times, left limbs blue, right limbs orange."
+    )
     fig, axes = figure(1.4 * n, 2.2 * len(motions) + 0.8, words, len(motions), n)
     for i, axis in enumerate(axes):
         row, t = i // n, frames[i % n]
@@ -66,7 +77,9 @@ def side_by_side(
     return fig
 
 
-def noise_to_motion(moments: Mapping[int, Float[np.ndarray, "T 21 3"]], words: str, n: int = 4) -> Figure:
+def noise_to_motion(
+    moments: Mapping[int, Float[np.ndarray, "T 21 3"]], words: str, n: int = 4
+) -> Figure:
     """A row for each diffusion step (as ordered in `moments`), n poses of the window in each.
 
     Source: MoDiff Fig. 1; MoFusion Fig. 2.  Notebook: 07
@@ -85,20 +98,35 @@ def noise_to_motion(moments: Mapping[int, Float[np.ndarray, "T 21 3"]], words: s
 
 def _name_row(axis: Axes, name: str) -> None:
     """Upright, to the left of the first axis of a row."""
-    axis.text(-0.05, 0.5, name, rotation=90, va="center", ha="right", transform=axis.transAxes, fontsize=MEDIUM)
+    axis.text(
+        -0.05,
+        0.5,
+        name,
+        rotation=90,
+        va="center",
+        ha="right",
+        transform=axis.transAxes,
+        fontsize=MEDIUM,
+    )
 
 
 def draw_pose(
-    axis: Axes, pose: Float[np.ndarray, "21 3"], camera: body.Camera | None = None, washed: bool = False
+    axis: Axes,
+    pose: Float[np.ndarray, "21 3"],
+    camera: body.Camera | None = None,
+    washed: bool = False,
 ) -> None:
-    """One figure in one axis, seen from its right and a little ahead, standing on a bit of floor."""
+    """One figure in one axis, seen from its right and a little ahead, standing on a bit of
+    floor."""
     size = (270, 420)
     pose = np.asarray(pose, np.float64)
     camera = (camera or body.Camera(focal=2.3)).at(*pose[HIPS, [0, 2]])
     for polygon in body.shadow_polygons(pose, camera, size):
         axis.add_patch(Polygon(polygon, color="#D5D9DF", lw=0, zorder=1))
     wash = body.PAST_WASH if washed else 0.0
-    for order, (polygon, colour, is_outline) in enumerate(body.body_polygons(pose, camera, size, wash=wash)):
+    for order, (polygon, colour, is_outline) in enumerate(
+        body.body_polygons(pose, camera, size, wash=wash)
+    ):
         edge = {"ec": body.PAPER, "lw": 0.8} if is_outline else {"lw": 0}
         axis.add_patch(Polygon(polygon, fc=colour, zorder=2 + order / 100, **edge))
     axis.set(xlim=(0, size[0]), ylim=(size[1], 0), aspect="equal")
@@ -111,9 +139,12 @@ def top_view(
     paths: Mapping[str, Float[np.ndarray, "_ 2"]] | None = None,
     title: str = "",
 ) -> Figure:
-    """The floor from above, x to the left: where the hips went, a footprint for each step, and given paths [x, z]."""
+    """The floor from above, x to the left: where the hips went, a footprint for each step, and
+    given paths [x, z]."""
     words = "The floor seen from above, one square a metre; the start is at the bottom arrow."
-    fig, (axis,) = figure(6.2, 6.2, words if positions is None else words + " Footprints: left blue, right orange.")
+    fig, (axis,) = figure(
+        6.2, 6.2, words if positions is None else words + " Footprints: left blue, right orange."
+    )
     styles = zip(("-", "--", ":"), (OKABE_ITO[2], OKABE_ITO[4], OKABE_ITO[3]), strict=True)
     for (name, path), (dash, colour) in zip((paths or {}).items(), list(styles) * 3, strict=False):
         axis.plot(path[:, 0], path[:, 1], dash, color=colour, lw=3, label=name)

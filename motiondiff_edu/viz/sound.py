@@ -1,4 +1,5 @@
-"""Pictures of sound: waves, spectra, filters, spectrograms, onsets, tempo and beats, each from plain arrays."""
+"""Pictures of sound: waves, spectra, filters, spectrograms, onsets, tempo and beats, each from
+plain arrays."""
 
 from collections.abc import Mapping, Sequence
 
@@ -31,13 +32,22 @@ def waveform(seconds, audio, caption: str, beats: Sequence = ()) -> Figure:
     return fig
 
 
-def spectra(hz, curves: Mapping[str, np.ndarray], caption: str, *, mark: float | None = None) -> Figure:
+def spectra(
+    hz, curves: Mapping[str, np.ndarray], caption: str, *, mark: float | None = None
+) -> Figure:
     """Magnitude spectra in decibels below the loudest bin of each."""
     fig, (axis,) = figure(9, 3.4, caption)
     for i, (name, magnitude) in enumerate(curves.items()):
         magnitude = np.asarray(magnitude)
         level = 20 * np.log10(np.maximum(magnitude / magnitude.max(), 1e-6))
-        axis.plot(hz, level, color=OKABE_ITO[i], ls=DASHES[i], label=name, marker="." if len(hz) < 120 else None)
+        axis.plot(
+            hz,
+            level,
+            color=OKABE_ITO[i],
+            ls=DASHES[i],
+            label=name,
+            marker="." if len(hz) < 120 else None,
+        )
     if mark is not None:
         axis.axvline(mark, color=INK, lw=1, ls=":", label=f"{mark:g} Hz")
     axis.set_ylim(-100, 6)
@@ -61,9 +71,17 @@ def filters(hz, triangles, caption: str, every: int = 1) -> Figure:
 
 
 def spectrogram(
-    seconds, frequencies, values, caption: str, *, beats: Sequence = (), top: float | None = None, title: str = ""
+    seconds,
+    frequencies,
+    values,
+    caption: str,
+    *,
+    beats: Sequence = (),
+    top: float | None = None,
+    title: str = "",
 ) -> Figure:
-    """Values (M, bins) as colours over time and frequency (Hz, rising); `top` cuts the frequencies off."""
+    """Values (M, bins) as colours over time and frequency (Hz, rising); `top` cuts the frequencies
+    off."""
     fig, (axis,) = figure(10, 3.6, caption)
     _heat(fig, axis, seconds, frequencies, values)
     _beats(axis, beats, seconds[0], seconds[-1], "white", "beat")
@@ -73,8 +91,11 @@ def spectrogram(
     return fig
 
 
-def mel_spectrogram(seconds, centres, values, caption: str, *, beats: Sequence = (), title: str = "") -> Figure:
-    """Log-Mel values (M, bands) as colours, one row for each band; `centres` are the bands' middles in Hz."""
+def mel_spectrogram(
+    seconds, centres, values, caption: str, *, beats: Sequence = (), title: str = ""
+) -> Figure:
+    """Log-Mel values (M, bands) as colours, one row for each band; `centres` are the bands' middles
+    in Hz."""
     fig, (axis,) = figure(10, 3.6, caption)
     rows, marks = np.arange(len(centres)), (100, 500, 1000, 2000, 4000, 7000)
     _heat(fig, axis, seconds, rows, values)
@@ -85,7 +106,9 @@ def mel_spectrogram(seconds, centres, values, caption: str, *, beats: Sequence =
 
 
 def _heat(fig: Figure, axis: Axes, seconds, rows, values) -> None:
-    image = axis.pcolormesh(seconds, rows, np.asarray(values).T, cmap=HEAT, shading="nearest", rasterized=True)
+    image = axis.pcolormesh(
+        seconds, rows, np.asarray(values).T, cmap=HEAT, shading="nearest", rasterized=True
+    )
     fig.colorbar(image, ax=axis, pad=0.01).set_label("log power")
     axis.grid(False)
     axis.set_xlabel("time (s)")
@@ -111,7 +134,14 @@ def onsets(seconds, strength, caption: str, beats: Sequence = (), found: Sequenc
     inside = [beat for beat in found if seconds[0] <= beat <= seconds[-1]]
     high = float(np.max(strength))
     if inside:
-        axis.plot(inside, np.full(len(inside), 1.08 * high), "v", color=GREEN, ms=9, label="beat, from the tracker")
+        axis.plot(
+            inside,
+            np.full(len(inside), 1.08 * high),
+            "v",
+            color=GREEN,
+            ms=9,
+            label="beat, from the tracker",
+        )
     axis.set_ylim(0, 1.5 * high)
     axis.set_xlim(seconds[0], seconds[-1])
     axis.set_xlabel("time (s)")
@@ -120,12 +150,19 @@ def onsets(seconds, strength, caption: str, beats: Sequence = (), found: Sequenc
     return fig
 
 
-def tempogram(seconds, tempi, values, tempo: float, caption: str, lowest: float = 30, highest: float = 320) -> Figure:
-    """How strongly onsets recur at each tempo (values: tempi, M), over time and in the mean; the true one dashed."""
+def tempogram(
+    seconds, tempi, values, tempo: float, caption: str, lowest: float = 30, highest: float = 320
+) -> Figure:
+    """How strongly onsets recur at each tempo (values: tempi, M), over time and in the mean; the
+    true one dashed."""
     tempi, values = np.asarray(tempi), np.asarray(values)
     keep = (tempi >= lowest) & (tempi <= highest)
-    fig, (left, right) = figure(10, 3.8, caption, 1, 2, sharey=True, gridspec_kw={"width_ratios": [3, 1]})
-    left.pcolormesh(seconds, tempi[keep], values[keep], cmap=HEAT, shading="nearest", rasterized=True)
+    fig, (left, right) = figure(
+        10, 3.8, caption, 1, 2, sharey=True, gridspec_kw={"width_ratios": [3, 1]}
+    )
+    left.pcolormesh(
+        seconds, tempi[keep], values[keep], cmap=HEAT, shading="nearest", rasterized=True
+    )
     left.grid(False)
     left.axhline(tempo, color="white", ls="--", lw=1.5)
     right.plot(values[keep].mean(1), tempi[keep], color=BLUE)
@@ -141,12 +178,22 @@ def tempogram(seconds, tempi, values, tempo: float, caption: str, lowest: float 
 
 
 def lags(offsets: Mapping[str, np.ndarray], caption: str, lag: float, reach: float = 120) -> Figure:
-    """For each named song, how many milliseconds after the nearest true beat each found one comes; `lag` marked."""
+    """For each named song, how many milliseconds after the nearest true beat each found one comes;
+    `lag` marked."""
     fig, (axis,) = figure(9, 0.5 * len(offsets) + 1.6, caption)
     for row, values in enumerate(offsets.values()):
         values = np.clip(np.asarray(values), -reach, reach)
-        axis.plot(values, row + np.linspace(-0.2, 0.2, len(values)), ".", color=BLUE, ms=5, alpha=0.5)
-        axis.plot([np.median(values)], [row], "D", color=ORANGE, ms=9, label="median" if row == 0 else None)
+        axis.plot(
+            values, row + np.linspace(-0.2, 0.2, len(values)), ".", color=BLUE, ms=5, alpha=0.5
+        )
+        axis.plot(
+            [np.median(values)],
+            [row],
+            "D",
+            color=ORANGE,
+            ms=9,
+            label="median" if row == 0 else None,
+        )
     axis.axvline(0, color=INK, lw=1)
     axis.axvline(lag, color=GREEN, ls="--", label=f"{lag:.0f} ms")
     axis.set_yticks(range(len(offsets)), list(offsets))

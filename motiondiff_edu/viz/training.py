@@ -1,4 +1,5 @@
-"""Pictures of training: loss beside its floor, clouds of samples, what a denoiser guesses in the plane, learnt weights.
+"""Pictures of training: loss beside its floor, clouds of samples, what a denoiser guesses in the
+plane, learnt weights.
 
 Notebook: 05, 07
 """
@@ -15,15 +16,23 @@ FAINT, INK = "#B8BEC7", "#222222"
 
 
 def over_s(
-    curves: Mapping[str, tuple], words: str, ylabel: str, log: bool = True, marks: Mapping[str, float] | None = None
+    curves: Mapping[str, tuple],
+    words: str,
+    ylabel: str,
+    log: bool = True,
+    marks: Mapping[str, float] | None = None,
 ) -> Figure:
     """Named curves (s, y) over the diffusion step; `marks` are named horizontal levels."""
     fig, (axis,) = figure(9, 4.4, words)
     for k, (name, (s, y)) in enumerate(curves.items()):
-        axis.plot(np.asarray(s), np.asarray(y), label=name, color=OKABE_ITO[k % 7], ls=DASHES[k % 8])
+        axis.plot(
+            np.asarray(s), np.asarray(y), label=name, color=OKABE_ITO[k % 7], ls=DASHES[k % 8]
+        )
     for name, level in (marks or {}).items():
         axis.axhline(level, color="#666666", lw=1.2, ls=":")
-        axis.annotate(name, (0.01, level), xycoords=("axes fraction", "data"), va="bottom", color="#444444")
+        axis.annotate(
+            name, (0.01, level), xycoords=("axes fraction", "data"), va="bottom", color="#444444"
+        )
     axis.set(xlabel="diffusion step s (1: hardly any noise)", ylabel=ylabel)
     if log:
         axis.set_yscale("log")
@@ -31,25 +40,44 @@ def over_s(
     return fig
 
 
-def loss_above_floor(losses: Mapping[str, float], floors: Mapping[str, float], words: str) -> Figure:
+def loss_above_floor(
+    losses: Mapping[str, float], floors: Mapping[str, float], words: str
+) -> Figure:
     """A bar for each loss; the grey part is what the exact denoiser would also have to pay."""
     fig, (axis,) = figure(9, 1.4 + 0.6 * len(losses), words)
     for k, name in enumerate(losses):
-        axis.barh(k, floors[name], color=FAINT, label="floor: the exact denoiser's loss" if k == 0 else None)
+        axis.barh(
+            k,
+            floors[name],
+            color=FAINT,
+            label="floor: the exact denoiser's loss" if k == 0 else None,
+        )
         axis.barh(k, max(losses[name] - floors[name], 0.0), left=floors[name], color=OKABE_ITO[1],
                   label="what could still be learnt" if k == 0 else None)  # fmt: skip
         axis.text(max(losses[name], floors[name]) + 0.01, k, f"{losses[name]:.3f}", va="center")
     axis.set_yticks(range(len(losses)), list(losses))
-    axis.set(xlabel="mean loss over all s", ylim=(len(losses) - 0.5, -0.5), xlim=(0, 1.32 * max(losses.values())))
+    axis.set(
+        xlabel="mean loss over all s",
+        ylim=(len(losses) - 0.5, -0.5),
+        xlim=(0, 1.32 * max(losses.values())),
+    )
     fig.legend(loc="outside upper center", ncols=2, frameon=False, fontsize=SMALL)
     return fig
 
 
-def clouds(panels: Mapping[str, Float[np.ndarray, "_ 2"]], words: str, reach: float = 2.6) -> Figure:
+def clouds(
+    panels: Mapping[str, Float[np.ndarray, "_ 2"]], words: str, reach: float = 2.6
+) -> Figure:
     """Sets of points in the plane, a panel each, all with the same axes."""
     fig, axes = figure(3.1 * len(panels), 3.7, words, 1, len(panels), sharex=True, sharey=True)
     for k, (axis, (name, points)) in enumerate(zip(axes, panels.items(), strict=True)):
-        axis.plot(*np.clip(points, -reach, reach).T, ".", ms=2.5, alpha=0.5, color=INK if k == 0 else OKABE_ITO[k - 1])
+        axis.plot(
+            *np.clip(points, -reach, reach).T,
+            ".",
+            ms=2.5,
+            alpha=0.5,
+            color=INK if k == 0 else OKABE_ITO[k - 1],
+        )
         axis.set(title=name, aspect="equal", xlim=(-reach, reach), ylim=(-reach, reach))
     return fig
 
@@ -58,7 +86,8 @@ def guesses(
     data: Float[np.ndarray, "_ 2"], x_s: Float[np.ndarray, "N 2"], right: Float[np.ndarray, "N 2"],
     panels: Mapping[str, Float[np.ndarray, "N 2"]], words: str, reach: float = 3.0,
 ) -> Figure:  # fmt: skip
-    """For each network a panel: noised points (dots), the guess of x0 (end of the line), the exact guess (circle)."""
+    """For each network a panel: noised points (dots), the guess of x0 (end of the line), the exact
+    guess (circle)."""
     fig, axes = figure(3.6 * len(panels), 4.1, words, 1, len(panels), sharex=True, sharey=True)
     for k, (axis, (name, guess)) in enumerate(zip(axes, panels.items(), strict=True)):
         axis.plot(*data.T, ".", ms=1.5, color=FAINT, zorder=0)

@@ -1,1 +1,2 @@
-"""Canvas and controls for notebooks. They show what the library computed and hold no arithmetic of their own."""
+"""Canvas and controls for notebooks. They show what the library computed and hold no arithmetic of
+their own."""

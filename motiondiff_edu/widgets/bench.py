@@ -1,7 +1,9 @@
-"""The repair bench: knock joints and frames out of a walk, let the walker mend it, see how far off it is.
+"""The repair bench: knock joints and frames out of a walk, let the walker mend it, see how far off
+it is.
 
-Click a joint, or a frame below; the buttons bring ready-made faults. Keys: left and right choose a frame, up and down
-a joint, Space knocks out or restores; P plays, T shows or hides the truth, R resets; drag to turn.  Notebook: 10
+Click a joint, or a frame below; the buttons bring ready-made faults. Keys: left and right choose a
+frame, up and down a joint, Space knocks out or restores; P plays, T shows or hides the truth, R
+resets; drag to turn.   Notebook: 10
 """
 
 import base64
@@ -14,8 +16,8 @@ import numpy as np
 import traitlets
 from jaxtyping import Bool
 
+from ..editing.repair_bench import RepairBench
 from ..motion.skeleton import JOINTS, PARENTS, J
-from ..repair_bench import RepairBench
 from ..viz import body
 from . import module, packing, poster
 from .player import PAGE, STACK
@@ -27,10 +29,12 @@ _STATE = ("scene", "first", "missing", "repaired", "said")
 
 
 class Bench(anywidget.AnyWidget):
-    """A walk (a Clip in the root frame) whose window of T_h frames can be broken, and is mended by `walker`.
+    """A walk (a Clip in the root frame) whose window of T_h frames can be broken, and is mended by
+    `walker`.
 
-    `faults` are buttons: name -> mask (T_h, 21), True where known. `first` (the window's first frame) and `missing`
-    (numbers frame x 21 + joint) can be read and set; `repair()` is what the button does. The rest is as in RepairBench.
+    `faults` are buttons: name -> mask (T_h, 21), True where known. `first` (the window's first
+    frame) and `missing` (numbers frame x 21 + joint) can be read and set; `repair()` is what the
+    button does. The rest is as in RepairBench.
     Raises ValueError for a mask of another shape, and where RepairBench does.  Notebook: 10
     """
 
@@ -40,7 +44,9 @@ class Bench(anywidget.AnyWidget):
     roots = traitlets.Bytes().tag(sync=True)
     first = traitlets.Int(0).tag(sync=True)
     missing = traitlets.List(traitlets.Int()).tag(sync=True)
-    asked = traitlets.Int(0).tag(sync=True)  # how often a repair was asked for, and how often answered
+    asked = traitlets.Int(0).tag(
+        sync=True
+    )  # how often a repair was asked for, and how often answered
     answered = traitlets.Int(0).tag(sync=True)
     repaired = traitlets.Dict().tag(sync=True)  # of which window and holes the repairs below are
     mended_joints = traitlets.Bytes().tag(sync=True)
@@ -55,7 +61,10 @@ class Bench(anywidget.AnyWidget):
         packed = packing.pack([self._truth])
         self.joints, self.roots = packed.joints, packed.roots
         self.outcome = None
-        buttons = [{"name": name, "missing": self._numbers(name, known)} for name, known in (faults or {}).items()]
+        buttons = [
+            {"name": name, "missing": self._numbers(name, known)}
+            for name, known in (faults or {}).items()
+        ]
         self.scene = {
             "fps": float(clip.fps), "frames": len(clip), "T_h": self.bench.T_h, "last_first": self.bench.last_first,
             "names": list(JOINTS), "parents": PARENTS.tolist(), "parts": body.parts_record(body.BODY),
@@ -65,7 +74,9 @@ class Bench(anywidget.AnyWidget):
 
     def _numbers(self, name: str, known: Bool[np.ndarray, "_ _"]) -> list[int]:
         if known.shape != (self.bench.T_h, J):
-            raise ValueError(f"the fault {name!r} is {known.shape}; a mask of the window is ({self.bench.T_h}, {J})")
+            raise ValueError(
+                f"the fault {name!r} is {known.shape}; a mask of the window is ({self.bench.T_h}, {J})"
+            )
         return np.flatnonzero(~known).tolist()
 
     def repair(self) -> None:
@@ -80,15 +91,24 @@ class Bench(anywidget.AnyWidget):
         self.outcome = outcome
         with self.hold_sync():
             self.mended_joints, self.mended_roots = packed.joints, packed.roots
-            self.repaired = asked | {"figures": len(outcome.motions), "edition": self.repaired.get("edition", 0) + 1}
+            self.repaired = asked | {
+                "figures": len(outcome.motions),
+                "edition": self.repaired.get("edition", 0) + 1,
+            }
 
     @traitlets.observe("asked")
     def _answer(self, change):
         try:
             self.repair()
-        except Exception as error:  # nobody sees what a callback raises: it is told where it was asked
+        except (
+            Exception
+        ) as error:  # nobody sees what a callback raises: it is told where it was asked
             known = isinstance(error, ValueError)
-            self.said = f"Not repaired: {error}." if known else f"Not repaired, {type(error).__name__}: {error}."
+            self.said = (
+                f"Not repaired: {error}."
+                if known
+                else f"Not repaired, {type(error).__name__}: {error}."
+            )
         finally:
             self.answered = change["new"]
 
@@ -124,7 +144,8 @@ class Bench(anywidget.AnyWidget):
         return f"{words} {self.said}" if self.shows_repairs else words
 
     def page(self) -> str:
-        """A whole HTML page that plays the walk, mended where it was mended; needs no kernel and no network."""
+        """A whole HTML page that plays the walk, mended where it was mended; needs no kernel and no
+        network."""
         record = {name: base64.b64encode(getattr(self, name)).decode() for name in _BYTES}
         record |= {name: getattr(self, name) for name in _STATE} | {"asked": 0, "answered": 0}
         record["scene"] = self.scene | {"kernel": False}
@@ -132,7 +153,8 @@ class Bench(anywidget.AnyWidget):
         return PAGE.format(title=html.escape(self.description), module=MODULE, record=text)
 
     def poster(self):
-        """Six poses of the window as a pillow image, what is missing marked; below it the repairs against the truth."""
+        """Six poses of the window as a pillow image, what is missing marked; below it the repairs
+        against the truth."""
         first, end = self.first, self.first + self.bench.T_h
         away = np.zeros(self._truth.shape[:2], bool)
         away[first:end] = ~self.bench.known(self.missing)
@@ -155,4 +177,9 @@ class Bench(anywidget.AnyWidget):
             width=1200, height=self.scene["height"] + 330, alt=html.escape(self.description, quote=True), png=png,
             title="repair bench", page=html.escape(self.page(), quote=True),
         )  # fmt: skip
-        return {**bundle, "text/html": stack, "image/png": png, "text/plain": self.description}, metadata
+        return {
+            **bundle,
+            "text/html": stack,
+            "image/png": png,
+            "text/plain": self.description,
+        }, metadata

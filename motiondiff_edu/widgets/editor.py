@@ -1,8 +1,10 @@
-"""The editor: pin frames of a motion, drag joints, keep a part of the body, and have the rest made anew.
+"""The editor: pin frames of a motion, drag joints, keep a part of the body, and have the rest made
+anew.
 
-In the page: a figure and a timeline. Enter pins a frame, J chooses a joint, arrows move it (1 cm; 5 with Shift), Page
-Up and Page Down in depth; G generates, [ and ] choose among the in-betweens; Z undoes, R resets. Python holds the edit
-and does the inverse kinematics; the page draws, and says where a joint was dragged to.  Notebook: 15
+In the page: a figure and a timeline. Enter pins a frame, J chooses a joint, arrows move it (1 cm; 5
+with Shift), Page Up and Page Down in depth; G generates, [ and ] choose among the in-betweens; Z
+undoes, R resets. Python holds the edit and does the inverse kinematics; the page draws, and says
+where a joint was dragged to.   Notebook: 15
 """
 
 import time
@@ -15,9 +17,9 @@ import torch
 import traitlets
 from jaxtyping import Bool, Float
 
-from ..editing import Edit, Made, Make, drag_in_words, make_between, takes
-from ..motion.bvh_fit import FitReport
-from ..motion.bvh_write import write_bvh
+from ..editing.edit import Edit, Made, Make, drag_in_words, make_between, takes
+from ..motion.bvh.fit import FitReport
+from ..motion.bvh.write import write_bvh
 from ..motion.skeleton import JOINTS, J, joint_index
 from . import editor_page, packing
 from .editor_page import MODULE, MOST, complaint, listed
@@ -34,13 +36,15 @@ class _Step:
 
 
 class Editor(anywidget.AnyWidget):
-    """Edit a motion (T, 21, 3), world positions in metres; `make(positions, known, generator)` finds the rest.
+    """Edit a motion (T, 21, 3), world positions in metres; `make(positions, known, generator)`
+    finds the rest.
 
-    `make` returns (samples, T, 21, 3), metres; where it takes `samples` and `resample` it is told the page's numbers:
-    `functools.partial(inbetween, dancer)` is one. It runs in the kernel; the generator is seeded by `seed` + how often
-    Generate was pressed before. `names` are the 21 joints' names on the page.
-    `known`, `positions`, `samples` and `chosen` can be read; `pin`, `unpin`, `drag`, `keep`, `generate`, `undo`,
-    `reset` and `save` do what the page's controls do, and raise what these tell.
+    `make` returns (samples, T, 21, 3), metres; where it takes `samples` and `resample` it is told
+    the page's numbers: `functools.partial(inbetween, dancer)` is one. It runs in the kernel; the
+    generator is seeded by `seed` + how often Generate was pressed before. `names` are the 21
+    joints' names on the page. `known`, `positions`, `samples` and `chosen` can be read; `pin`,
+    `unpin`, `drag`, `keep`, `generate`, `undo`, `reset` and `save` do what the page's controls do,
+    and raise what these tell.
     Raises ValueError for a motion of another shape, or not finite.  Notebook: 15
     """
 
@@ -63,13 +67,17 @@ class Editor(anywidget.AnyWidget):
         super().__init__()
         motion = np.array(motion, np.float64)
         if motion.ndim != 3 or motion.shape[1:] != (J, 3):
-            raise ValueError(f"a motion to edit is (frames, {J}, 3), world positions in metres, not {motion.shape}")
+            raise ValueError(
+                f"a motion to edit is (frames, {J}, 3), world positions in metres, not {motion.shape}"
+            )
         names = list(JOINTS if names is None else names)
         if len(names) != J:
             raise ValueError(f"{len(names)} names for the {J} joints")
         self._fps, self._make, self._seed = float(fps), make, int(seed)
         self._step, self._past, self._grip = _Step(Edit(motion)), [], None
-        self.error: Exception | None = None  # what `make` raised last when Generate was pressed, with its traceback
+        self.error: Exception | None = (
+            None  # what `make` raised last when Generate was pressed, with its traceback
+        )
         packed = packing.pack([motion])
         with self.hold_sync():
             self.joints, self.roots = packed.joints, packed.roots
@@ -103,11 +111,14 @@ class Editor(anywidget.AnyWidget):
         return self.state["description"]
 
     def pin(self, *frames: int) -> str:
-        """Pin frames with the pose seen there: the chosen in-between's, or the motion's.  IndexError outside."""
+        """Pin frames with the pose seen there: the chosen in-between's, or the motion's.
+        IndexError outside."""
         edit, frames = self.edit, [self.edit.index(frame) for frame in frames]
         for frame in frames:
             if frame not in edit.pins:
-                edit = edit.pin(frame, None if self.samples is None else self.samples[self.chosen, frame])
+                edit = edit.pin(
+                    frame, None if self.samples is None else self.samples[self.chosen, frame]
+                )
         return self._do(edit, f"Pinned {listed(frames)}.")
 
     def unpin(self, *frames: int) -> str:
@@ -118,15 +129,20 @@ class Editor(anywidget.AnyWidget):
         return self._do(edit, f"Let go of {listed(frames)}.")
 
     def drag(self, frame: int, joint: str, target) -> str:
-        """Move a joint of a pinned frame to a place (metres, world); the bones keep their lengths."""
+        """Move a joint of a pinned frame to a place (metres, world); the bones keep their
+        lengths."""
         return self._do(*self._dragged(self.edit, frame, joint, target))
 
     def keep(self, part: str | None) -> str:
         """Keep a part of the body in every frame, or None.  KeyError with the names there are."""
-        return self._do(self.edit.keep(part), f"The {part} is kept in every frame." if part else "No part is kept.")
+        return self._do(
+            self.edit.keep(part),
+            f"The {part} is kept in every frame." if part else "No part is kept.",
+        )
 
     def generate(self) -> str:
-        """Make `count` in-betweens; raises what `make` raises, and ValueError where there is nothing to make."""
+        """Make `count` in-betweens; raises what `make` raises, and ValueError where there is
+        nothing to make."""
         begun, seed = time.perf_counter(), self._seed + self._step.presses
         self.busy = True
         try:
@@ -147,10 +163,13 @@ class Editor(anywidget.AnyWidget):
 
     def reset(self) -> str:
         """Back to the motion as it was given."""
-        return self._go(_Step(Edit(self.edit.motion)), "Everything as at first; Undo brings the edit back.")
+        return self._go(
+            _Step(Edit(self.edit.motion)), "Everything as at first; Undo brings the edit back."
+        )
 
     def save(self, path: str | Path) -> FitReport:
-        """Write the chosen in-between as BVH, whole or not at all; tells how far bones had to be evened out.
+        """Write the chosen in-between as BVH, whole or not at all; tells how far bones had to be
+        evened out.
 
         Raises ValueError before there is one, and what `write_bvh` raises.
         """
@@ -178,7 +197,8 @@ class Editor(anywidget.AnyWidget):
         self._tell(words, content["number"])
 
     def _pull(self, frame: int, joint: str, target: list, grip: int) -> str:
-        """One of many small drags: those of one grip start from the same pose, and are undone together."""
+        """One of many small drags: those of one grip start from the same pose, and are undone
+        together."""
         going = self._grip is not None and self._grip[0] == grip
         edit, words = self._dragged(self._grip[1] if going else self.edit, frame, joint, target)
         if not going:
@@ -193,7 +213,8 @@ class Editor(anywidget.AnyWidget):
         return edit, f"{name} in frame {frame} {drag_in_words(before, edit, frame, joint, target)}."
 
     def _pressed(self, after: int) -> str | None:
-        """Generate, unless the press is from before the last in-betweens came, or while others are made."""
+        """Generate, unless the press is from before the last in-betweens came, or while others are
+        made."""
         if self.busy or after != self._step.presses:
             return None
         try:
@@ -215,7 +236,9 @@ class Editor(anywidget.AnyWidget):
         with self.hold_sync():
             if others:
                 packed = None if step.made is None else packing.pack(list(step.made.samples))
-                self.made_joints, self.made_roots = (b"", b"") if packed is None else (packed.joints, packed.roots)
+                self.made_joints, self.made_roots = (
+                    (b"", b"") if packed is None else (packed.joints, packed.roots)
+                )
             self.chosen = step.chosen
             return self._tell(words)
 
@@ -235,14 +258,19 @@ class Editor(anywidget.AnyWidget):
     @traitlets.validate("frame", "chosen")
     def _is_there(self, proposal):
         name, value = proposal["trait"].name, proposal["value"]
-        count = len(self.edit) if name == "frame" else 1 if self.samples is None else len(self.samples)
+        count = (
+            len(self.edit) if name == "frame" else 1 if self.samples is None else len(self.samples)
+        )
         if not 0 <= value < count:
             raise traitlets.TraitError(f"{name} is a number from 0 to {count - 1}, not {value}")
         return value
 
     def poster(self, n: int = 6):
-        """A strip of n poses as a pillow image: the motion with the pinned poses, and the chosen in-between."""
-        return editor_page.strip(self.edit, None if self.samples is None else self.samples[self.chosen], self._fps, n)
+        """A strip of n poses as a pillow image: the motion with the pinned poses, and the chosen
+        in-between."""
+        return editor_page.strip(
+            self.edit, None if self.samples is None else self.samples[self.chosen], self._fps, n
+        )
 
     def _repr_mimebundle_(self, **kwargs):
         live = super()._repr_mimebundle_(**kwargs)

@@ -1,4 +1,5 @@
-"""What the page of the editor is told: its scene, the edit as it stands, words; and the page where no kernel runs.
+"""What the page of the editor is told: its scene, the edit as it stands, words; and the page where
+no kernel runs.
 
 Notebook: 15
 """
@@ -12,8 +13,8 @@ from pathlib import Path
 
 import numpy as np
 
-from ..editing import KEPT, Edit, Made
-from ..known import body_part
+from ..editing.edit import KEPT, Edit, Made
+from ..editing.masks import body_part
 from ..motion.skeleton import J, joint_index
 from ..viz import body
 from . import module, poster
@@ -26,7 +27,8 @@ PLAIN = ("scene", "state", "frame", "chosen", "count", "resample", "busy", "file
 
 
 def scene_of(edit: Edit, fps: float, names: list[str], strength: bool) -> dict:
-    """What does not change: the length, the joints' names, the drawn body; `strength`: `make` takes a resampling."""
+    """What does not change: the length, the joints' names, the drawn body; `strength`: `make` takes
+    a resampling."""
     return {"frames": len(edit), "joints": J, "fps": fps, "names": names, "parts": body.parts_record(body.BODY),
             "keep": list(KEPT), "most": MOST, "strength": strength, "height": 380}  # fmt: skip
 
@@ -89,7 +91,8 @@ def save_as(editor, name: str) -> str:
 
 
 def html_page(editor) -> str:
-    """A whole HTML page with the editor as it stands: needs no kernel and no network, and cannot generate."""
+    """A whole HTML page with the editor as it stands: needs no kernel and no network, and cannot
+    generate."""
     record = {name: base64.b64encode(getattr(editor, name)).decode() for name in BINARY}
     record |= {name: getattr(editor, name) for name in PLAIN} | {"busy": False}
     text = json.dumps(record, allow_nan=False).replace("<", "\\u003c")
@@ -97,7 +100,8 @@ def html_page(editor) -> str:
 
 
 def strip(edit: Edit, sample: np.ndarray | None, fps: float, n: int = 6):
-    """n poses as a pillow image: the motion with the pinned poses, and below it the in-between that is shown."""
+    """n poses as a pillow image: the motion with the pinned poses, and below it the in-between that
+    is shown."""
     figures = [poster.Figure(edit.positions, "with the pinned poses" if edit.pins else "")]
     figures += [] if sample is None else [poster.Figure(sample, "in-between")]
     return poster.filmstrip(figures, fps, n)

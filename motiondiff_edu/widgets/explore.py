@@ -6,18 +6,25 @@ from ..viz.style import as_html
 
 
 def explore(draw, **start) -> ipywidgets.VBox:
-    """Show draw(**values) with a slider, a list or a tick box for each argument, and a button that resets them all.
+    """Show draw(**values) with a slider, a list or a tick box for each argument, and a button that
+    resets them all.
 
-    explore(draw, s=(1, 100, 50), name=["linear", "cosine"], noise=True): (low, high, start), the choices, or on/off.
-    `draw` returns a matplotlib Figure, whose label becomes the picture's alternative text. Errors in `draw` are raised.
+    explore(draw, s=(1, 100, 50), name=["linear", "cosine"], noise=True): (low, high, start), the
+    choices, or on/off. `draw` returns a matplotlib Figure, whose label becomes the picture's
+    alternative text. Errors in `draw` are raised.
     Raises ValueError for an argument that is none of these.
     """
     controls = {name: _control(name, value) for name, value in start.items()}
     first = {name: control.value for name, control in controls.items()}
-    picture, reset = ipywidgets.HTML(), ipywidgets.Button(description="Reset", tooltip="back to the start")
+    picture, reset = (
+        ipywidgets.HTML(),
+        ipywidgets.Button(description="Reset", tooltip="back to the start"),
+    )
 
     def refresh(_=None):
-        picture.value = as_html(draw(**{name: control.value for name, control in controls.items()}), dpi=90)
+        picture.value = as_html(
+            draw(**{name: control.value for name, control in controls.items()}), dpi=90
+        )
 
     def back(_):
         for name, control in controls.items():
@@ -36,7 +43,9 @@ def _control(name: str, value) -> ipywidgets.Widget:
     if isinstance(value, list):
         return ipywidgets.Dropdown(options=value, value=value[0], description=name)
     if not (isinstance(value, tuple) and len(value) == 3):
-        raise ValueError(f"{name} takes (low, high, start), a list of choices, or True or False; got {value!r}")
+        raise ValueError(
+            f"{name} takes (low, high, start), a list of choices, or True or False; got {value!r}"
+        )
     low, high, begin = value
     kind = ipywidgets.IntSlider if isinstance(begin, int) else ipywidgets.FloatSlider
     extra = {} if isinstance(begin, int) else {"step": (high - low) / 50}

@@ -1,4 +1,5 @@
-"""The music lane under the figure: what is heard, where its beats are, and the strips above and below it.
+"""The music lane under the figure: what is heard, where its beats are, and the strips above and
+below it.
 
 Notebook: 12
 """
@@ -18,7 +19,8 @@ TICKS, WAVE, AXIS, CURVE = 14, 56, 20, 36  # pixels
 
 @dataclass(frozen=True, eq=False)
 class Lane:
-    """A sound as long as `frames` frames of motion, its beats and downbeats (seconds), and the strips."""
+    """A sound as long as `frames` frames of motion, its beats and downbeats (seconds), and the
+    strips."""
 
     sound: Sound
     beats: list[float]
@@ -31,7 +33,11 @@ class Lane:
     def description(self) -> str:
         """What is heard and seen of the music, in one sentence: the alternative text."""
         beats = f"{len(self.beats)} beats marked" if self.beats else ""
-        said = [f"Music: {self.sound.seconds:.1f} s, its waveform below the figure", beats, self.strips.words()]
+        said = [
+            f"Music: {self.sound.seconds:.1f} s, its waveform below the figure",
+            beats,
+            self.strips.words(),
+        ]
         return "; ".join(filter(None, said)) + "."
 
     @property
@@ -41,7 +47,8 @@ class Lane:
         return 96 + 36 * more + (54 if self.strips.moved is not None else 0)
 
     def traits(self) -> tuple[bytes, bytes, dict]:
-        """What the page needs: the sound file, the bytes of waveform and attention, and the record explaining them."""
+        """What the page needs: the sound file, the bytes of waveform and attention, and the record
+        explaining them."""
         wave = peaks(self.sound.samples)
         record = {"mime": self.sound.mime, "seconds": self.frames / self.fps, "fps": self.fps, "frames": self.frames,
                   "peaks": len(wave), "beats": self.beats, "downbeats": self.downbeats,
@@ -79,7 +86,13 @@ class Lane:
             pen.polygon(outline, fill=body.mix(GREEN, body.PAPER, 0.5), outline=GREEN)
         font = ImageFont.load_default(13)
         pen.text((6, top + WAVE + 3), "0 s", fill=body.INK, font=font)
-        pen.text((width - 6, top + WAVE + 3), f"{self.sound.seconds:.1f} s", fill=body.INK, font=font, anchor="ra")
+        pen.text(
+            (width - 6, top + WAVE + 3),
+            f"{self.sound.seconds:.1f} s",
+            fill=body.INK,
+            font=font,
+            anchor="ra",
+        )
         return whole
 
 

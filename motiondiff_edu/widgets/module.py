@@ -1,6 +1,8 @@
-"""The ES modules of player, editor, bench: parts in js/, one after the other, are one module that imports nothing.
+"""The ES modules of player, editor, bench: parts in js/, one after the other, are one module that
+imports nothing.
 
-The parts name what they take from each other as any ES modules do; joined, these lines have done their duty.
+The parts name what they take from each other as any ES modules do; joined, these lines have done
+their duty.
 Notebook: 00, 10, 15
 """
 
@@ -8,7 +10,14 @@ import re
 from pathlib import Path
 
 FOLDER = Path(__file__).parent / "js"
-PARTS = ("dom", "figures", "paint", "clock", "lane", "player")  # each takes from those before it only
+PARTS = (
+    "dom",
+    "figures",
+    "paint",
+    "clock",
+    "lane",
+    "player",
+)  # each takes from those before it only
 EDITOR = ("dom", "figures", "paint", "clock", "timeline", "stage", "editor")
 BENCH = ("dom", "figures", "paint", "clock", "bench_paint", "bench")
 
@@ -17,6 +26,7 @@ _EXPORT = re.compile(r"^export (?=function|const)", re.MULTILINE)
 
 
 def joined(parts: tuple[str, ...] = PARTS) -> str:
-    """One ES module: the text of the parts without their imports; only what the last one exports is exported."""
+    """One ES module: the text of the parts without their imports; only what the last one exports is
+    exported."""
     *inner, last = (_IMPORT.sub("", (FOLDER / f"{name}.js").read_text("utf-8")) for name in parts)
     return "\n".join([*(_EXPORT.sub("", text) for text in inner), last])

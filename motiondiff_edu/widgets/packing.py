@@ -1,6 +1,8 @@
-"""Motion as bytes for the browser: joints relative to the root as int16 at 1/2048 m, the root's path as float32.
+"""Motion as bytes for the browser: joints relative to the root as int16 at 1/2048 m, the root's
+path as float32.
 
-Whole positions as int16 would overflow on a long walk; relative ones reach 16 m from the hips, which no body does.
+Whole positions as int16 would overflow on a long walk; relative ones reach 16 m from the hips,
+which no body does.
 Notebook: 01
 """
 
@@ -40,7 +42,8 @@ def _relative_units(positions: Float[np.ndarray, "T J 3"]) -> Float[np.ndarray, 
 
 
 def check_positions(positions: Float[np.ndarray, "T J 3"], figure: int = 0) -> None:
-    """Raise ValueError with figure, frame and joint where a position is not finite or too far from the root."""
+    """Raise ValueError with figure, frame and joint where a position is not finite or too far from
+    the root."""
     if not len(positions):
         raise ValueError(f"figure {figure} has no frames: nothing to draw")
     bad = ~np.isfinite(positions).all(-1)
@@ -57,7 +60,8 @@ def check_positions(positions: Float[np.ndarray, "T J 3"], figure: int = 0) -> N
 
 
 def as_figures(positions: object) -> list[Float[np.ndarray, "T J 3"]]:
-    """One motion (T, J, 3), a batch (N, T, J, 3) or a sequence of motions, arrays or tensors, as float64 arrays."""
+    """One motion (T, J, 3), a batch (N, T, J, 3) or a sequence of motions, arrays or tensors, as
+    float64 arrays."""
     if isinstance(positions, Sequence):
         figures = [np.asarray(p, dtype=np.float64) for p in positions]
     else:
@@ -67,16 +71,21 @@ def as_figures(positions: object) -> list[Float[np.ndarray, "T J 3"]]:
         raise ValueError("no figure given: nothing to draw")
     for i, figure in enumerate(figures):
         if figure.ndim != 3 or figure.shape[-1] != 3:
-            raise ValueError(f"figure {i} has shape {figure.shape}; positions are (frames, joints, 3) in metres")
+            raise ValueError(
+                f"figure {i} has shape {figure.shape}; positions are (frames, joints, 3) in metres"
+            )
     if len({figure.shape[1] for figure in figures}) > 1:
-        raise ValueError(f"figures have different joints: {[figure.shape[1] for figure in figures]}")
+        raise ValueError(
+            f"figures have different joints: {[figure.shape[1] for figure in figures]}"
+        )
     return figures
 
 
 def pack(figures: Sequence[Float[np.ndarray, "_ J 3"]]) -> Packed:
     """Pack figures; raises ValueError where `check_positions` does, and never clips.
 
-    Stored joints are within 1/4096 m (0.24 mm) of the given ones, plus float32's rounding of the root.
+    Stored joints are within 1/4096 m (0.24 mm) of the given ones, plus float32's rounding of the
+    root.
     """
     joints, roots = [], []
     for i, positions in enumerate(figures):
@@ -90,25 +99,36 @@ def pack(figures: Sequence[Float[np.ndarray, "_ J 3"]]) -> Packed:
 
 def unpack(packed: Packed) -> list[Float[np.ndarray, "_ J 3"]]:
     """The positions again, as the browser reads them."""
-    joints = np.frombuffer(packed.joints, "<i2").reshape(-1, packed.joint_count, 3) / UNITS_PER_METRE
+    joints = (
+        np.frombuffer(packed.joints, "<i2").reshape(-1, packed.joint_count, 3) / UNITS_PER_METRE
+    )
     whole = joints + np.frombuffer(packed.roots, "<f4").reshape(-1, 1, 3)
     return np.split(whole, np.cumsum(packed.frames)[:-1])
 
 
 def as_contacts(contacts: object, frames: Sequence[int]) -> list[Bool[np.ndarray, "_ 2"] | None]:
     """Per figure (T, 2) bool (left, right planted) or None, checked against the figure's frames."""
-    given = list(contacts) if isinstance(contacts, Sequence) else [contacts] + [None] * (len(frames) - 1)
+    given = (
+        list(contacts)
+        if isinstance(contacts, Sequence)
+        else [contacts] + [None] * (len(frames) - 1)
+    )
     if len(given) != len(frames):
         raise ValueError(f"{len(given)} contact arrays for {len(frames)} figures")
     out = [None if c is None else np.asarray(c, dtype=bool) for c in given]
     for i, (c, n) in enumerate(zip(out, frames, strict=True)):
         if c is not None and c.shape != (n, 2):
-            raise ValueError(f"contacts of figure {i} have shape {c.shape}; expected ({n}, 2): left, right")
+            raise ValueError(
+                f"contacts of figure {i} have shape {c.shape}; expected ({n}, 2): left, right"
+            )
     return out
 
 
-def pack_contacts(contacts: Sequence[Bool[np.ndarray, "_ 2"] | None], frames: Sequence[int]) -> bytes:
-    """One byte a frame: 1 for left, 2 for right, 3 for both planted; 0 also where nothing is known."""
+def pack_contacts(
+    contacts: Sequence[Bool[np.ndarray, "_ 2"] | None], frames: Sequence[int]
+) -> bytes:
+    """One byte a frame: 1 for left, 2 for right, 3 for both planted; 0 also where nothing is
+    known."""
     codes = [
         np.zeros(n, np.uint8) if c is None else (c[:, 0] + 2 * c[:, 1]).astype(np.uint8)
         for c, n in zip(contacts, frames, strict=True)

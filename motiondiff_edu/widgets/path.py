@@ -1,4 +1,5 @@
-"""The path pad: draw on the floor where a figure shall walk; by mouse, keyboard or a ready-made path.
+"""The path pad: draw on the floor where a figure shall walk; by mouse, keyboard or a ready-made
+path.
 
 Arrows add half a metre, Backspace takes it back, C clears, R resets.  Notebook: 00
 """
@@ -19,10 +20,12 @@ from ..viz.skeleton import top_view
 
 
 class PathPad(anywidget.AnyWidget):
-    """A floor seen from above, in metres; the figure starts at the origin, facing up (z); its left (x) is to the left.
+    """A floor seen from above, in metres; the figure starts at the origin, facing up (z); its left
+    (x) is to the left.
 
     `points` (n, 2) [x, z], `speed` (m/s) and `stops` (metres along the path) can be read and set;
-    `control()` is what walks along them; `on_change(f)` calls f(pad) after each change.  Notebook: 00
+    `control()` is what walks along them; `on_change(f)` calls f(pad) after each change.   Notebook:
+    00
     """
 
     _esm = Path(__file__).with_suffix(".js")
@@ -50,14 +53,18 @@ class PathPad(anywidget.AnyWidget):
     def points(self, value) -> None:
         points = np.asarray(value, dtype=np.float64)
         if points.ndim != 2 or points.shape[1] != 2 or not np.isfinite(points).all():
-            raise ValueError(f"points are (n, 2) finite numbers [x, z] in metres, got shape {points.shape}")
+            raise ValueError(
+                f"points are (n, 2) finite numbers [x, z] in metres, got shape {points.shape}"
+            )
         with self.hold_trait_notifications():
             self.preset, self.stops, self.line = "", [], points.tolist()
 
     @traitlets.validate("preset")
     def _known_preset(self, proposal):
         if proposal["value"] and proposal["value"] not in walks.PRESETS:
-            raise traitlets.TraitError(f"no path is called {proposal['value']!r}; there are {', '.join(walks.PRESETS)}")
+            raise traitlets.TraitError(
+                f"no path is called {proposal['value']!r}; there are {', '.join(walks.PRESETS)}"
+            )
         return proposal["value"]
 
     @traitlets.observe("preset")
@@ -75,11 +82,13 @@ class PathPad(anywidget.AnyWidget):
             self.seconds = 0.0
 
     def control(self, fps: float | int = 20.0) -> Float[np.ndarray, "T 3"]:
-        """The control that walks along the path at the chosen speed, from rest to rest; see `path_to_control`."""
+        """The control that walks along the path at the chosen speed, from rest to rest; see
+        `path_to_control`."""
         return walks.path_to_control(self.points, self.speed, fps, self.stops)
 
     def on_change(self, callback: Callable[["PathPad"], object]) -> None:
-        """Call `callback(pad)` whenever path, stops or speed have changed; once, when they change together."""
+        """Call `callback(pad)` whenever path, stops or speed have changed; once, when they change
+        together."""
         told = [(self.line, self.stops, self.speed)]
 
         def tell(change):
@@ -105,4 +114,9 @@ class PathPad(anywidget.AnyWidget):
         top_view(paths={"path": self.points}).savefig(buffer, format="png", dpi=70)
         png = base64.b64encode(buffer.getvalue()).decode()
         still = f'<img alt="{html.escape(self.description, quote=True)}" src="data:image/png;base64,{png}">'
-        return {**bundle, "text/html": still, "image/png": png, "text/plain": self.description}, metadata
+        return {
+            **bundle,
+            "text/html": still,
+            "image/png": png,
+            "text/plain": self.description,
+        }, metadata

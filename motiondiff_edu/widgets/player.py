@@ -1,8 +1,10 @@
-"""The player: moving figures, live in JupyterLab, alive in exported HTML, a picture where nothing runs.
+"""The player: moving figures, live in JupyterLab, alive in exported HTML, a picture where nothing
+runs.
 
-Notebooks are to be saved without widget state: with it, exported pages look for the module on the network.
-Space plays, arrows step (up and down by ten), Home and End jump, + and - zoom, F follows, M mutes, R resets; drag to
-turn. With a sound, the sound is the clock: the frame shown is floor(time heard x fps), at any speed.
+Notebooks are to be saved without widget state: with it, exported pages look for the module on the
+network. Space plays, arrows step (up and down by ten), Home and End jump, + and - zoom, F follows,
+M mutes, R resets; drag to turn. With a sound, the sound is the clock: the frame shown is floor(time
+heard x fps), at any speed.
 Notebook: 00, 12
 """
 
@@ -17,7 +19,7 @@ import anywidget
 import numpy as np
 import traitlets
 
-from ..files import replacing
+from .._files import replacing
 from ..viz import body
 from . import lane, module, packing, poster, sound
 
@@ -39,17 +41,20 @@ STACK = """<div style="position:relative;width:100%;max-width:{width}px;min-heig
 
 
 class Player(anywidget.AnyWidget):
-    """Show one motion (T, J, 3), a batch (N, T, J, 3) or a list of motions, world positions in metres, y up.
+    """Show one motion (T, J, 3), a batch (N, T, J, 3) or a list of motions, world positions in
+    metres, y up.
 
-    `past` frames were given and are drawn paler; `contacts` (T, 2) bool marks planted feet; `path` (n, 2) [x, z] is
-    drawn on the floor; each may be one value for all figures or a list (one array of contacts belongs to the first
-    figure). `layout` is "side" (a field each) or "together" (one floor; `offset` = (x, z) metres between figures).
-    `parents` names each joint's parent where the skeleton is another one. `frame` and `playing` can be read and set.
-    `audio` (N,) from -1 to 1 at `sample_rate` Hz, or the bytes of a sound file, is played with the motion, cut or
-    filled up to its length (with a warning), above a waveform with `beats` and `downbeats` (seconds) marked; `codec`
-    is "ogg", "flac" or "wav". Such a player waits for a click, unless `autoplay` is True and the browser allows it.
-    Raises ValueError with figure, frame and joint where a position is not finite or beyond reach, and for extras that
-    do not fit the motion.  Notebook: 00, 12
+    `past` frames were given and are drawn paler; `contacts` (T, 2) bool marks planted feet; `path`
+    (n, 2) [x, z] is drawn on the floor; each may be one value for all figures or a list (one array
+    of contacts belongs to the first figure). `layout` is "side" (a field each) or "together" (one
+    floor; `offset` = (x, z) metres between figures). `parents` names each joint's parent where the
+    skeleton is another one. `frame` and `playing` can be read and set. `audio` (N,) from -1 to 1 at
+    `sample_rate` Hz, or the bytes of a sound file, is played with the motion, cut or filled up to
+    its length (with a warning), above a waveform with `beats` and `downbeats` (seconds) marked;
+    `codec` is "ogg", "flac" or "wav". Such a player waits for a click, unless `autoplay` is True
+    and the browser allows it.
+    Raises ValueError with figure, frame and joint where a position is not finite or beyond reach,
+    and for extras that do not fit the motion.   Notebook: 00, 12
     """
 
     _esm = MODULE
@@ -77,10 +82,13 @@ class Player(anywidget.AnyWidget):
         self.show(positions)
 
     def show(self, positions, **changes) -> None:
-        """Show another motion in the same place; `changes` replaces past, contacts, labels, path, fps, audio ..."""
+        """Show another motion in the same place; `changes` replaces past, contacts, labels, path,
+        fps, audio ..."""
         unknown = set(changes) - set(self._options)
         if unknown:
-            raise TypeError(f"show() does not know {sorted(unknown)}; it takes {sorted(self._options)}")
+            raise TypeError(
+                f"show() does not know {sorted(unknown)}; it takes {sorted(self._options)}"
+            )
         options = self._options | changes
         options["fps"] = float(options["fps"])
         if not 0 < options["fps"] < float("inf"):
@@ -95,8 +103,12 @@ class Player(anywidget.AnyWidget):
             self.joints, self.roots = packed.joints, packed.roots
             self.contacts = packing.pack_contacts([f.contacts for f in figures], packed.frames)
             self.frame = min(self.frame, max(packed.frames) - 1)
-            self.sound, self.strips, self.music = (b"", b"", {}) if music is None else music.traits()
-            self.scene = _scene(figures, options["fps"], self._look, music) | {"edition": self._editions}
+            self.sound, self.strips, self.music = (
+                (b"", b"", {}) if music is None else music.traits()
+            )
+            self.scene = _scene(figures, options["fps"], self._look, music) | {
+                "edition": self._editions
+            }
 
     @property
     def description(self) -> str:
@@ -107,18 +119,22 @@ class Player(anywidget.AnyWidget):
     def _frame_exists(self, proposal):
         last = max((f["frames"] for f in self.scene.get("figures", [])), default=1) - 1
         if self.scene and not 0 <= proposal["value"] <= last:
-            raise traitlets.TraitError(f"frame {proposal['value']} does not exist; frames are 0 to {last}")
+            raise traitlets.TraitError(
+                f"frame {proposal['value']} does not exist; frames are 0 to {last}"
+            )
         return proposal["value"]
 
     def page(self) -> str:
-        """A whole HTML page with the module and the motion in it: needs no kernel and no network."""
+        """A whole HTML page with the module and the motion in it: needs no kernel and no
+        network."""
         record = {name: base64.b64encode(getattr(self, name)).decode() for name in _TRAITS}
         record |= {"scene": self.scene, "music": self.music, "frame": self.frame, "playing": False}
         text = json.dumps(record, allow_nan=False).replace("<", "\\u003c")
         return PAGE.format(title=html.escape(self.description), module=MODULE, record=text)
 
     def poster(self, n: int = 6):
-        """A strip of n poses as a pillow image, the music lane below: what is shown where nothing runs."""
+        """A strip of n poses as a pillow image, the music lane below: what is shown where nothing
+        runs."""
         strip = poster.filmstrip(self._figures, self._options["fps"], n)
         return strip if self._music is None else self._music.under(strip)
 
@@ -131,7 +147,12 @@ class Player(anywidget.AnyWidget):
             width=1200, height=height, alt=html.escape(self.description, quote=True), png=png,
             title="motion player", page=html.escape(self.page(), quote=True),
         )  # fmt: skip
-        return {**bundle, "text/html": stack, "image/png": png, "text/plain": self.description}, metadata
+        return {
+            **bundle,
+            "text/html": stack,
+            "image/png": png,
+            "text/plain": self.description,
+        }, metadata
 
     def save_html(self, path: str | os.PathLike) -> Path:
         """Write the figure as one HTML file that plays anywhere, offline."""
@@ -146,15 +167,26 @@ class Player(anywidget.AnyWidget):
         first, *rest = (p.quantize(palette=palette, dither=0) for p in pictures)
         pause = round(100 / self._options["fps"]) * 10  # GIF counts in hundredths of a second
         with replacing(path) as part:
-            first.save(part, "GIF", save_all=True, append_images=rest, duration=pause, loop=0, optimize=False)
+            first.save(
+                part,
+                "GIF",
+                save_all=True,
+                append_images=rest,
+                duration=pause,
+                loop=0,
+                optimize=False,
+            )
         return Path(path)
 
     def save_mp4(self, path: str | os.PathLike, size: tuple[int, int] = (480, 432)) -> Path:
-        """Write the figure as MP4, each figure `size` pixels, with its sound; ImportError without imageio-ffmpeg."""
+        """Write the figure as MP4, each figure `size` pixels, with its sound; ImportError without
+        imageio-ffmpeg."""
         try:
             import imageio_ffmpeg
         except ImportError as error:
-            raise ImportError("save_mp4 needs the package imageio-ffmpeg; save_gif does not") from error
+            raise ImportError(
+                "save_mp4 needs the package imageio-ffmpeg; save_gif does not"
+            ) from error
         width = size[0] * len(self._figures)
         with replacing(path) as part, tempfile.TemporaryDirectory() as folder:
             extra = {}
@@ -187,8 +219,13 @@ def _figures(arrays: list, options: dict, parents: list | None) -> list[poster.F
     contacts = packing.as_contacts(options["contacts"], [len(a) for a in arrays])
     labels = packing.per_figure(options["labels"] or "", count, "labels")
     pasts = packing.per_figure(options["past"], count, "past")
-    paths = options["path"] if isinstance(options["path"], list | tuple) else [options["path"]] * count
-    paths = [None if p is None else np.asarray(p, dtype=np.float64) for p in packing.per_figure(paths, count, "path")]
+    paths = (
+        options["path"] if isinstance(options["path"], list | tuple) else [options["path"]] * count
+    )
+    paths = [
+        None if p is None else np.asarray(p, dtype=np.float64)
+        for p in packing.per_figure(paths, count, "path")
+    ]
     columns = zip(arrays, labels, pasts, contacts, paths, strict=True)
     return [poster.Figure(a, label, past, c, p, parts) for a, label, past, c, p in columns]
 
@@ -199,7 +236,9 @@ def _scene(figures: list[poster.Figure], fps: float, look: dict, music: lane.Lan
          "path": None if f.path is None else f.path.round(4).tolist()}
         for f in figures
     ]  # fmt: skip
-    words = describe(figures, fps) if music is None else f"{describe(figures, fps)} {music.description}"
+    words = (
+        describe(figures, fps) if music is None else f"{describe(figures, fps)} {music.description}"
+    )
     parts = body.parts_record(figures[0].parts)
     autoplay = music is None if look["autoplay"] is None else bool(look["autoplay"])
     return {**look, "fps": fps, "figures": records, "joints": figures[0].positions.shape[1], "parts": parts,
@@ -207,10 +246,13 @@ def _scene(figures: list[poster.Figure], fps: float, look: dict, music: lane.Lan
 
 
 def describe(figures: list[poster.Figure], fps: float) -> str:
-    """One sentence for those who cannot see it: how many figures, how long, how far they go, what was given."""
+    """One sentence for those who cannot see it: how many figures, how long, how far they go, what
+    was given."""
     words = []
     for i, f in enumerate(figures, 1):
         way = np.linalg.norm(f.positions[-1, 0, [0, 2]] - f.positions[0, 0, [0, 2]])
         given = "" if f.past is None else f", the first {f.past / fps:.1f} s given and drawn paler"
-        words.append(f"{f.label or f'figure {i}'}: {len(f) / fps:.1f} s, ends {way:.1f} m from its start{given}")
+        words.append(
+            f"{f.label or f'figure {i}'}: {len(f) / fps:.1f} s, ends {way:.1f} m from its start{given}"
+        )
     return "Moving skeletons, left limbs blue and right limbs orange. " + "; ".join(words) + "."

@@ -1,4 +1,5 @@
-"""Still pictures of the player's scene, with pillow: the filmstrip where nothing runs, and the frames of a GIF or MP4.
+"""Still pictures of the player's scene, with pillow: the filmstrip where nothing runs, and the
+frames of a GIF or MP4.
 
 Notebook: 01
 """
@@ -20,7 +21,8 @@ GROUND, LINE = "#F1F3F5", "#9AA3AE"
 
 @dataclass(frozen=True, eq=False)
 class Thin:
-    """Thin limbs over a figure's body, of n motions: the bones that have an end in `away`, dashed or not."""
+    """Thin limbs over a figure's body, of n motions: the bones that have an end in `away`, dashed
+    or not."""
 
     motions: Float[np.ndarray, "n T J 3"]
     away: Bool[np.ndarray, "T J"]
@@ -30,7 +32,8 @@ class Thin:
 
 @dataclass(frozen=True, eq=False)
 class Figure:
-    """One figure of a scene; `past` frames were given, `path` is drawn on the floor ((n, 2) metres, [x, z])."""
+    """One figure of a scene; `past` frames were given, `path` is drawn on the floor ((n, 2) metres,
+    [x, z])."""
 
     positions: Float[np.ndarray, "T J 3"]
     label: str = ""
@@ -55,7 +58,8 @@ def camera_at(positions: Float[np.ndarray, "T J 3"], t: int, camera: body.Camera
 
 
 def floor_lines(camera: body.Camera, reach: int = 5) -> Iterator[tuple[np.ndarray, float]]:
-    """Segments of a 1 m grid around the camera's target, with their strength 0..1, which fades outwards."""
+    """Segments of a 1 m grid around the camera's target, with their strength 0..1, which fades
+    outwards."""
     centre = np.round([camera.x, camera.z])
     for i in range(-reach, reach + 1):
         for k in range(-reach, reach):
@@ -70,7 +74,14 @@ def _floor_points(xz: np.ndarray) -> np.ndarray:
     return np.insert(np.asarray(xz, dtype=np.float64), 1, 0.0, axis=1)
 
 
-def _line(pen: ImageDraw.ImageDraw, points: np.ndarray, camera: body.Camera, size: tuple, colour: str, width: int):
+def _line(
+    pen: ImageDraw.ImageDraw,
+    points: np.ndarray,
+    camera: body.Camera,
+    size: tuple,
+    colour: str,
+    width: int,
+):
     if len(points) < 2:
         return
     right, up, ahead = camera.axes()
@@ -81,7 +92,9 @@ def _line(pen: ImageDraw.ImageDraw, points: np.ndarray, camera: body.Camera, siz
         pen.line([*pixels[i], *pixels[i + 1]], fill=colour, width=width)
 
 
-def _ground(pen: ImageDraw.ImageDraw, figure: Figure, t: int, camera: body.Camera, size: tuple) -> None:
+def _ground(
+    pen: ImageDraw.ImageDraw, figure: Figure, t: int, camera: body.Camera, size: tuple
+) -> None:
     """Floor grid, given path, trail of the root, marks under planted feet."""
     for segment, strength in floor_lines(camera):
         _line(pen, segment, camera, size, body.mix(GROUND, LINE, 0.55 * strength), SMOOTH)
@@ -93,13 +106,17 @@ def _ground(pen: ImageDraw.ImageDraw, figure: Figure, t: int, camera: body.Camer
         return
     for side in np.flatnonzero(figure.contacts[t]):
         foot = figure.positions[t, [HEELS[side], TOES[side]]].mean(0)
-        ring = foot * [1, 0, 1] + 0.17 * np.stack([np.cos(body.ANGLES), 0 * body.ANGLES, np.sin(body.ANGLES)], -1)
+        ring = foot * [1, 0, 1] + 0.17 * np.stack(
+            [np.cos(body.ANGLES), 0 * body.ANGLES, np.sin(body.ANGLES)], -1
+        )
         colour = body.COLOURS["LR"[side]]
         pixels = [tuple(p) for p in body.project(ring, camera, size)[0]]
         pen.polygon(pixels, fill=body.mix(colour, GROUND, 0.75), outline=colour, width=SMOOTH)
 
 
-def _thin_limbs(pen: ImageDraw.ImageDraw, thin: Thin, t: int, camera: body.Camera, size: tuple) -> None:
+def _thin_limbs(
+    pen: ImageDraw.ImageDraw, thin: Thin, t: int, camera: body.Camera, size: tuple
+) -> None:
     """Over a body; a dashed one is five dashes a bone."""
     bones = [bone for bone in BONES if thin.away[t, list(bone)].any()]
     shares = np.linspace(0, 1, 10 if thin.dashed else 2).reshape(-1, 2)
@@ -110,8 +127,11 @@ def _thin_limbs(pen: ImageDraw.ImageDraw, thin: Thin, t: int, camera: body.Camer
                 _line(pen, dash, camera, size, thin.colour, 2 * SMOOTH)
 
 
-def render(figure: Figure, t: int, size: tuple[int, int], camera: body.Camera | None = None) -> Image.Image:
-    """Frame t of one figure (the last one once it has ended), `size` pixels, the camera following."""
+def render(
+    figure: Figure, t: int, size: tuple[int, int], camera: body.Camera | None = None
+) -> Image.Image:
+    """Frame t of one figure (the last one once it has ended), `size` pixels, the camera
+    following."""
     t = min(t, len(figure) - 1)
     big = (size[0] * SMOOTH, size[1] * SMOOTH)
     camera = camera_at(figure.positions, t, camera or body.Camera())
@@ -123,7 +143,9 @@ def render(figure: Figure, t: int, size: tuple[int, int], camera: body.Camera | 
     picture.paste("#1E2837", mask=shade)
     pen = ImageDraw.Draw(picture)
     wash = body.PAST_WASH if figure.tense(t) == "past" else 0.0
-    for polygon, colour, is_outline in body.body_polygons(figure.positions[t], camera, big, figure.parts, wash):
+    for polygon, colour, is_outline in body.body_polygons(
+        figure.positions[t], camera, big, figure.parts, wash
+    ):
         points = [tuple(p) for p in polygon]
         if is_outline:
             pen.line([*points, points[0]], fill=GROUND, width=2 * SMOOTH, joint="curve")
@@ -133,7 +155,9 @@ def render(figure: Figure, t: int, size: tuple[int, int], camera: body.Camera | 
     return picture.resize(size, Image.Resampling.LANCZOS)
 
 
-def _write(pen: ImageDraw.ImageDraw, at: tuple[int, int], text: str, size: int, anchor: str = "la") -> None:
+def _write(
+    pen: ImageDraw.ImageDraw, at: tuple[int, int], text: str, size: int, anchor: str = "la"
+) -> None:
     pen.text(at, text, fill=body.INK, font=ImageFont.load_default(size), anchor=anchor)
 
 
@@ -141,14 +165,21 @@ def _legend(pen: ImageDraw.ImageDraw, right: int, y: int, text_size: int) -> Non
     for word, colour in (("right", body.RIGHT_COLOUR), ("left", body.LEFT_COLOUR)):
         width = round(pen.textlength(word, font=ImageFont.load_default(text_size)))
         _write(pen, (right - width, y), word, text_size)
-        pen.ellipse([right - width - text_size, y + 2, right - width - 4, y + text_size - 2], fill=colour)
+        pen.ellipse(
+            [right - width - text_size, y + 2, right - width - 4, y + text_size - 2], fill=colour
+        )
         right -= width + 2 * text_size
 
 
 def filmstrip(
-    figures: list[Figure], fps: float, n: int = 6, width: int = 960, between: Sequence[int] | None = None
+    figures: list[Figure],
+    fps: float,
+    n: int = 6,
+    width: int = 960,
+    between: Sequence[int] | None = None,
 ) -> Image.Image:
-    """n poses from first to last, or of the frames `between` (both inclusive); a row for each figure, times above."""
+    """n poses from first to last, or of the frames `between` (both inclusive); a row for each
+    figure, times above."""
     cell, head = width // n, 30
     tall = int(cell * {1: 2.1, 2: 1.45}.get(len(figures), 1.2))
     picture = Image.new("RGB", (width, head + tall * len(figures)), body.PAPER)
@@ -173,8 +204,11 @@ def as_png(picture: Image.Image) -> bytes:
     return buffer.getvalue()
 
 
-def film(figures: list[Figure], fps: float, size: tuple[int, int] = (400, 360)) -> Iterator[Image.Image]:
-    """Every frame, the figures side by side, each in a field of `size` with label, tense and time."""
+def film(
+    figures: list[Figure], fps: float, size: tuple[int, int] = (400, 360)
+) -> Iterator[Image.Image]:
+    """Every frame, the figures side by side, each in a field of `size` with label, tense and
+    time."""
     for t in range(max(map(len, figures))):
         picture = Image.new("RGB", (size[0] * len(figures), size[1]), body.PAPER)
         pen = ImageDraw.Draw(picture)
@@ -188,7 +222,8 @@ def film(figures: list[Figure], fps: float, size: tuple[int, int] = (400, 360)) 
 
 
 def film_palette(figures: list[Figure], size: tuple[int, int]) -> Image.Image:
-    """One palette of 96 colours for all frames: from the first and the last, which hold past and future shades."""
+    """One palette of 96 colours for all frames: from the first and the last, which hold past and
+    future shades."""
     both = Image.new("RGB", (2 * size[0], size[1]))
     for i, t in enumerate((0, len(figures[0]) - 1)):
         both.paste(render(figures[0], t, size), (i * size[0], 0))

@@ -1,8 +1,10 @@
-"""Sound for the player: one channel of samples, as long as the motion, as a small file that browsers play.
+"""Sound for the player: one channel of samples, as long as the motion, as a small file that
+browsers play.
 
-Opus in Ogg (10 s take 10-40 KB) where soundfile can write it, else WAV (320 KB); `codec="flac"` (exact, about 200 KB)
-and "wav" play in older Safaris, too. MP3 and Vorbis are not written: in Chromium a jump lands up to 70 ms beside the
-time it tells (MP3) or 30 ms (Vorbis), and short Vorbis files of libsndfile break off.
+Opus in Ogg (10 s take 10-40 KB) where soundfile can write it, else WAV (320 KB); `codec="flac"`
+(exact, about 200 KB) and "wav" play in older Safaris, too. MP3 and Vorbis are not written: in
+Chromium a jump lands up to 70 ms beside the time it tells (MP3) or 30 ms (Vorbis), and short Vorbis
+files of libsndfile break off.
 Notebook: 12
 """
 
@@ -20,12 +22,14 @@ from ..viz.over_time import lows_and_highs
 CODECS = {"ogg": ("OGG", "OPUS"), "flac": ("FLAC", "PCM_16"), "wav": ("WAV", "PCM_16")}
 OPUS_RATES = (8_000, 12_000, 16_000, 24_000, 48_000)
 RATES = (8_000, 96_000)  # Hz: what browsers agree on
-BLOCK = 8192  # samples written at once: libsndfile's Ogg encoders have overflowed their stack on long ones
+# samples written at once: libsndfile's Ogg encoders have overflowed their stack on long ones
+BLOCK = 8192
 
 
 @dataclass(frozen=True, eq=False)
 class Sound:
-    """What is heard: the samples, and the same as the bytes of a file. `seconds` is the length of both."""
+    """What is heard: the samples, and the same as the bytes of a file. `seconds` is the length of
+    both."""
 
     samples: Float[np.ndarray, "N"]
     sample_rate: int
@@ -38,12 +42,15 @@ class Sound:
         return len(self.samples) / self.sample_rate
 
 
-def as_sound(audio: object, sample_rate: int = 16_000, seconds: float | None = None, codec: str = "ogg") -> Sound:
-    """Samples (N,) between -1 and 1, or the bytes of a WAV, FLAC, Ogg or MP3 file, cut or filled up to `seconds`.
+def as_sound(
+    audio: object, sample_rate: int = 16_000, seconds: float | None = None, codec: str = "ogg"
+) -> Sound:
+    """Samples (N,) between -1 and 1, or the bytes of a WAV, FLAC, Ogg or MP3 file, cut or filled up
+    to `seconds`.
 
-    Louder samples are scaled down together; channels of a file are averaged. A sound that had to be cut or filled up
-    by more than 0.05 s is told in a warning. Raises ValueError for another shape, integers, samples that are not
-    finite, and bytes nobody can read.
+    Louder samples are scaled down together; channels of a file are averaged. A sound that had to be
+    cut or filled up by more than 0.05 s is told in a warning. Raises ValueError for another shape,
+    integers, samples that are not finite, and bytes nobody can read.
     """
     if codec not in CODECS:
         raise ValueError(f"codec is one of {', '.join(CODECS)}, not {codec!r}")
@@ -53,8 +60,11 @@ def as_sound(audio: object, sample_rate: int = 16_000, seconds: float | None = N
     return Sound(samples, sample_rate, *encode(samples, sample_rate, codec))
 
 
-def encode(samples: Float[np.ndarray, "N"], sample_rate: int, codec: str = "ogg") -> tuple[bytes, str]:
-    """The bytes of a sound file and their MIME type; WAV by the standard library where soundfile cannot write it."""
+def encode(
+    samples: Float[np.ndarray, "N"], sample_rate: int, codec: str = "ogg"
+) -> tuple[bytes, str]:
+    """The bytes of a sound file and their MIME type; WAV by the standard library where soundfile
+    cannot write it."""
     try:
         import soundfile
 
@@ -65,34 +75,54 @@ def encode(samples: Float[np.ndarray, "N"], sample_rate: int, codec: str = "ogg"
             for start in range(0, len(samples), BLOCK):
                 out.write(samples[start : start + BLOCK])
         return file.getvalue(), f"audio/{codec}"
-    except (ImportError, OSError, RuntimeError, ValueError):  # no soundfile, or one without this codec
+    except (
+        ImportError,
+        OSError,
+        RuntimeError,
+        ValueError,
+    ):  # no soundfile, or one without this codec
         return _wav(samples, sample_rate), "audio/wav"
 
 
 def peaks(samples: Float[np.ndarray, "N"], bins: int = 1000) -> Int8[np.ndarray, "_ 2"]:
-    """Lowest and highest sample of each of (at most) `bins` equal stretches, 127 the largest of all: the waveform."""
+    """Lowest and highest sample of each of (at most) `bins` equal stretches, 127 the largest of
+    all: the waveform."""
     both = np.stack(lows_and_highs(samples, bins)[1:], 1)
     return np.rint(both / max(np.abs(both).max(), 1e-9) * 127).astype(np.int8)
 
 
 def as_times(times: object, name: str, seconds: float) -> list[float]:
-    """Increasing times in seconds, those beyond the end left out; raises ValueError for anything else."""
+    """Increasing times in seconds, those beyond the end left out; raises ValueError for anything
+    else."""
     values = np.asarray([] if times is None else times, dtype=np.float64)
-    if values.ndim != 1 or not np.isfinite(values).all() or (np.diff(values) <= 0).any() or (values < 0).any():
-        raise ValueError(f"`{name}` are increasing times in seconds from the start, one number each: got {times!r:.80}")
+    if (
+        values.ndim != 1
+        or not np.isfinite(values).all()
+        or (np.diff(values) <= 0).any()
+        or (values < 0).any()
+    ):
+        raise ValueError(
+            f"`{name}` are increasing times in seconds from the start, one number each: got {times!r:.80}"
+        )
     return values[values < seconds].round(4).tolist()
 
 
 def _checked(audio: object, sample_rate: int) -> Float[np.ndarray, "N"]:
     if not RATES[0] <= sample_rate <= RATES[1] or int(sample_rate) != sample_rate:
-        raise ValueError(f"sample_rate is a whole number of Hz from {RATES[0]} to {RATES[1]}, not {sample_rate}")
+        raise ValueError(
+            f"sample_rate is a whole number of Hz from {RATES[0]} to {RATES[1]}, not {sample_rate}"
+        )
     samples = np.asarray(audio)
     if samples.ndim != 1:
-        raise ValueError(f"audio has shape {samples.shape}; give one channel (N,), the mean of several for instance")
+        raise ValueError(
+            f"audio has shape {samples.shape}; give one channel (N,), the mean of several for instance"
+        )
     if not len(samples):
         raise ValueError("audio has no samples: nothing to play")
     if not np.issubdtype(samples.dtype, np.floating):
-        raise ValueError(f"audio holds {samples.dtype}; give floats from -1 to 1 (16-bit samples divided by 32768)")
+        raise ValueError(
+            f"audio holds {samples.dtype}; give floats from -1 to 1 (16-bit samples divided by 32768)"
+        )
     bad = ~np.isfinite(samples)
     if bad.any():
         at = int(np.argmax(bad))
@@ -109,7 +139,10 @@ def _fitted(samples: np.ndarray, sample_rate: int, seconds: float | None) -> np.
     if abs(given - wanted) > 0.05 * sample_rate:
         told = f"the sound lasts {given / sample_rate:.2f} s, the motion {seconds:.2f} s: "
         left = (wanted - given) / sample_rate
-        warnings.warn(told + (f"its last {left:.2f} s are silent" if left > 0 else "the rest is cut off"), stacklevel=5)
+        warnings.warn(
+            told + (f"its last {left:.2f} s are silent" if left > 0 else "the rest is cut off"),
+            stacklevel=5,
+        )
     return np.pad(samples, (0, max(0, wanted - given)))[:wanted]
 
 
@@ -119,7 +152,9 @@ def _decoded(data: bytes) -> tuple[np.ndarray, int]:
     try:
         samples, sample_rate = soundfile.read(io.BytesIO(data), dtype="float32", always_2d=True)
     except (OSError, RuntimeError) as error:
-        raise ValueError(f"these {len(data)} bytes are no WAV, FLAC, Ogg or MP3 file: {error}") from error
+        raise ValueError(
+            f"these {len(data)} bytes are no WAV, FLAC, Ogg or MP3 file: {error}"
+        ) from error
     return samples.mean(1), sample_rate
 
 

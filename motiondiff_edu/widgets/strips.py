@@ -1,6 +1,8 @@
-"""What the music lane shows besides the waveform, packed small: attention over the music, and how far a figure moved.
+"""What the music lane shows besides the waveform, packed small: attention over the music, and how
+far a figure moved.
 
-Attention is kept in 8 bits, each row scaled by its own largest weight, which goes along: wrong by at most 1/510 of it.
+Attention is kept in 8 bits, each row scaled by its own largest weight, which goes along: wrong by
+at most 1/510 of it.
 Notebook: 12
 """
 
@@ -16,7 +18,8 @@ from .sound import as_times
 
 @dataclass(frozen=True, eq=False)
 class Level:
-    """One attention map: rows over the motion's time, columns over `edges` (seconds), `tops` the rows' largest."""
+    """One attention map: rows over the motion's time, columns over `edges` (seconds), `tops` the
+    rows' largest."""
 
     name: str
     codes: UInt8[np.ndarray, "T M"]
@@ -31,7 +34,8 @@ class Level:
 
 @dataclass(frozen=True, eq=False)
 class Strips:
-    """Attention maps and the curve of how far the figure moved (metres) when the sound at `hits` was silenced."""
+    """Attention maps and the curve of how far the figure moved (metres) when the sound at `hits`
+    was silenced."""
 
     levels: tuple[Level, ...] = ()
     moved: Float[np.ndarray, "T"] | None = None
@@ -58,49 +62,73 @@ class Strips:
 
     def words(self) -> str:
         """What is shown, for those who cannot see it."""
-        said = [f"attention of {', '.join(level.name for level in self.levels)} as colour"] if self.levels else []
+        said = (
+            [f"attention of {', '.join(level.name for level in self.levels)} as colour"]
+            if self.levels
+            else []
+        )
         if self.moved is not None:
             said.append(f"how far the figure moves without a hit, up to {self.moved.max():.2f} m")
         return "; ".join(said)
 
 
 def pack_levels(attention: object, token_times: object, scale: str = "map") -> tuple[Level, ...]:
-    """One map (T, M) or {name: map}, rows over the whole motion (a map may have fewer than frames), summing to one.
+    """One map (T, M) or {name: map}, rows over the whole motion (a map may have fewer than frames),
+    summing to one.
 
-    `token_times`: the time in seconds of each column (or {name: times}); a column reaches halfway to its neighbours.
-    Full colour is the largest weight of the whole map, or with `scale="frame"` of each row, which shows where it
-    looks but not how sharply. Raises ValueError for maps that are no attention, and where times do not fit.
+    `token_times`: the time in seconds of each column (or {name: times}); a column reaches halfway
+    to its neighbours. Full colour is the largest weight of the whole map, or with `scale="frame"`
+    of each row, which shows where it looks but not how sharply. Raises ValueError for maps that are
+    no attention, and where times do not fit.
     """
     if scale not in ("map", "frame"):
         raise ValueError(f'scale is "map" or "frame", not {scale!r}')
     maps = attention if isinstance(attention, Mapping) else {"attention": attention}
     if not maps:
         raise ValueError("attention is empty: give a map (T, M), or {name: map}")
-    return tuple(_level(str(name), m, _times_of(name, token_times), scale) for name, m in maps.items())
+    return tuple(
+        _level(str(name), m, _times_of(name, token_times), scale) for name, m in maps.items()
+    )
 
 
-def pack_moved(moved: object, frames: int, hit: object = None) -> tuple[np.ndarray, tuple[float, ...]]:
-    """The curve (T,) in metres, one value a frame, and the silenced hits' times in seconds (one or several)."""
+def pack_moved(
+    moved: object, frames: int, hit: object = None
+) -> tuple[np.ndarray, tuple[float, ...]]:
+    """The curve (T,) in metres, one value a frame, and the silenced hits' times in seconds (one or
+    several)."""
     curve = np.asarray(moved, dtype=np.float64)
     if curve.shape != (frames,) or not np.isfinite(curve).all() or (curve < 0).any():
-        raise ValueError(f"`moved` is one finite distance in metres a frame, ({frames},); got shape {curve.shape}")
+        raise ValueError(
+            f"`moved` is one finite distance in metres a frame, ({frames},); got shape {curve.shape}"
+        )
     times = None if hit is None else np.atleast_1d(hit)
     return curve, tuple(as_times(times, "hit", np.inf))
 
 
-def check_attention(weights: Float[np.ndarray, "..."], times: Float[np.ndarray, "_"], name: str = "attention") -> None:
-    """Raise ValueError unless rows are finite, not negative and sum to one, and times increase, one a column."""
+def check_attention(
+    weights: Float[np.ndarray, "..."], times: Float[np.ndarray, "_"], name: str = "attention"
+) -> None:
+    """Raise ValueError unless rows are finite, not negative and sum to one, and times increase, one
+    a column."""
     if weights.ndim != 2 or not weights.size:
-        raise ValueError(f"{name}: a map is (motion rows, tokens), got {weights.shape}; of several heads take one")
+        raise ValueError(
+            f"{name}: a map is (motion rows, tokens), got {weights.shape}; of several heads take one"
+        )
     if not np.isfinite(weights).all() or (weights < -1e-6).any():
-        raise ValueError(f"{name}: weights are finite and not negative; these are scores perhaps: softmax first")
+        raise ValueError(
+            f"{name}: weights are finite and not negative; these are scores perhaps: softmax first"
+        )
     off = np.abs(weights.sum(1) - 1)
     if off.max() > 1e-2:
         row = int(off.argmax())
         raise ValueError(
             f"{name}: row {row} sums to {weights[row].sum():.3g}, not 1. Is the map (motion, music), and after softmax?"
         )
-    if times.shape != weights.shape[1:] or not np.isfinite(times).all() or (np.diff(times) <= 0).any():
+    if (
+        times.shape != weights.shape[1:]
+        or not np.isfinite(times).all()
+        or (np.diff(times) <= 0).any()
+    ):
         raise ValueError(
             f"{name}: token_times are increasing seconds, one for each of the {weights.shape[1]} columns; "
             f"got shape {times.shape}"
@@ -111,7 +139,9 @@ def _times_of(name: object, token_times: object) -> object:
     if not isinstance(token_times, Mapping):
         return token_times
     if name not in token_times:
-        raise ValueError(f"token_times has no times for {name!r}; it has {', '.join(map(str, token_times))}")
+        raise ValueError(
+            f"token_times has no times for {name!r}; it has {', '.join(map(str, token_times))}"
+        )
     return token_times[name]
 
 

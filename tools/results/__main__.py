@@ -2,13 +2,14 @@
 
     python -m tools.results [--only PART ...] [--full] [--quick] [--weights NAME=FILE] [--render]
 
-Parts: walker-eps, walker-x0, walker-ddim10, their -lookahead lines, footsteps; dancer, dancer-plain, regression,
-unheard (music like none in training), attention, dance-time; mend (dropout and repairs), mend-both (both papers'
-repairs), inbetween, known-answer (ways of filling in where the right one is a formula). Those that train, for minutes a
-row: budget, dance-budget and mend-map; one row of them: budget.T_p-5, dance-budget.v. Without --only,
-all are measured that the shipped weights allow; --full adds those that train, whose records are else kept as they are.
-A training that was killed goes on. --quick measures little, into build/quick, and is for trying the code; --render
-only writes docs/RESULTS.md from the records that are there.
+Parts: walker-eps, walker-x0, walker-ddim10, their -lookahead lines, footsteps; dancer,
+dancer-plain, regression, unheard (music like none in training), attention, dance-time; mend
+(dropout and repairs), mend-both (both papers' repairs), inbetween, known-answer (ways of filling in
+where the right one is a formula). Those that train, for minutes a row: budget, dance-budget and
+mend-map; one row of them: budget.T_p-5, dance-budget.v. Without --only, all are measured that the
+shipped weights allow; --full adds those that train, whose records are else kept as they are. A
+training that was killed goes on. --quick measures little, into build/quick, and is for trying the
+code; --render only writes docs/RESULTS.md from the records that are there.
 """
 
 import argparse
@@ -17,42 +18,66 @@ import time
 from pathlib import Path
 
 from benchmarks.records import show, write_records
-from motiondiff_edu.files import replacing
+from motiondiff_edu._files import replacing
 from motiondiff_edu.viz.metrics import footstep_curves
 
-from . import budget, dance_budget, inbetween, known_answer, mend, mend_both, mend_dropout, mend_repair
-from .attention import attention_picture, attention_records
-from .cards import add_metrics
-from .dance_parts import DANCE_FULL, DANCE_QUICK, DANCES, Stage, dance_records
-from .dance_time import TIMED, time_records
-from .mend_trials import names_of
-from .parts import FULL, LINES, QUICK, Bench, Walks, alias_records, footstep_records, walker_records, weights_digest
-from .render import render
+from .dances import budget as dance_budget
+from .dances.attention import attention_picture, attention_records
+from .dances.parts import DANCE_FULL, DANCE_QUICK, DANCES, Stage, dance_records
+from .dances.timing import TIMED, time_records
+from .inbetweens import inbetween, known_answer
+from .page.cards import add_metrics
+from .page.render import render
+from .repairs import both, dropout, mend, repair
+from .repairs.trials import names_of
+from .walks import budget
+from .walks.parts import (
+    FULL,
+    LINES,
+    QUICK,
+    Bench,
+    Walks,
+    alias_records,
+    footstep_records,
+    walker_records,
+    weights_digest,
+)
 
 DOCS, RUNS = Path("docs"), Path("build/runs")
-MEASURED = ("footsteps", "attention", "dance-time", "known-answer")  # by the shipped weights, or by none
+MEASURED = (
+    "footsteps",
+    "attention",
+    "dance-time",
+    "known-answer",
+)  # by the shipped weights, or by none
 MENDED = {  # by these weights
     "mend": {*names_of("plain"), *names_of("dropout")},
-    "mend-both": {mend_both.WALKER, "unconditional"},
+    "mend-both": {both.WALKER, "unconditional"},
     "inbetween": {"unconditional"},
 }
 TRAINED = {
     "budget": tuple(budget.VARIANTS),
     "dance-budget": tuple(dance_budget.VARIANTS),
-    "mend-map": tuple(mend_dropout.RATES),
+    "mend-map": tuple(dropout.RATES),
 }
 ROUNDS = 7  # of dance-time
 
 
 def arguments() -> argparse.Namespace:
     parser = argparse.ArgumentParser(
-        prog="python -m tools.results", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+        prog="python -m tools.results",
+        description=__doc__,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     parser.add_argument("--only", nargs="+", default=[], metavar="PART", help="only these parts")
     parser.add_argument("--full", action="store_true", help="what trains as well (hours)")
     parser.add_argument("--quick", action="store_true", help="few clips; written to build/quick")
-    parser.add_argument("--weights", nargs="+", default=[], metavar="NAME=FILE", help="weights that are not shipped")
-    parser.add_argument("--render", action="store_true", help="only docs/RESULTS.md, from the records there")
+    parser.add_argument(
+        "--weights", nargs="+", default=[], metavar="NAME=FILE", help="weights that are not shipped"
+    )
+    parser.add_argument(
+        "--render", action="store_true", help="only docs/RESULTS.md, from the records there"
+    )
     return parser.parse_args()
 
 
@@ -71,14 +96,18 @@ def main() -> None:
 def weights_of(items: list[str]) -> dict[str, Path]:
     """NAME=FILE, for weights that are not shipped."""
     pairs = [item.partition("=") for item in items]
-    bad = next((item for item, (_, _, file) in zip(items, pairs, strict=True) if not Path(file).is_file()), None)
+    bad = next(
+        (item for item, (_, _, file) in zip(items, pairs, strict=True) if not Path(file).is_file()),
+        None,
+    )
     if bad:
         sys.exit(f"--weights takes NAME=FILE with a weights file that exists, not {bad!r}")
     return {name: Path(file) for name, _, file in pairs}
 
 
 def parts_of(only: list[str], full: bool, lines: dict[str, Walks], weights: set[str]) -> list[str]:
-    """The parts asked for, row by row; none asked for: all that have weights, and with `full` what trains.
+    """The parts asked for, row by row; none asked for: all that have weights, and with `full` what
+    trains.
 
     Leaves with the names there are when one is unknown.
     """
@@ -89,18 +118,30 @@ def parts_of(only: list[str], full: bool, lines: dict[str, Walks], weights: set[
     rows = {part: [f"{part}.{name}" for name in names] for part, names in TRAINED.items()}
     asked = only or [*there, *(rows if full else ())]
     parts = [row for part in asked for row in rows.get(part, [part])]
-    known = {*lines, *DANCES, *MEASURED, *MENDED, *(row for group in rows.values() for row in group)}
+    known = {
+        *lines,
+        *DANCES,
+        *MEASURED,
+        *MENDED,
+        *(row for group in rows.values() for row in group),
+    }
     unknown = sorted(set(parts) - known)
     if unknown:
         there = ", ".join([*lines, *DANCES, *MEASURED, *MENDED, *rows])
-        sys.exit(f"no part is called {', '.join(unknown)}; there are: {there}; rows: budget.T_p-5, dance-budget.v ...")
+        sys.exit(
+            f"no part is called {', '.join(unknown)}; there are: {there}; rows: budget.T_p-5, dance-budget.v ..."
+        )
     return parts
 
 
 def measure(asked: argparse.Namespace, folder: Path) -> None:
-    """Run the parts asked for and write their records; those of all other parts stay as they are."""
+    """Run the parts asked for and write their records; those of all other parts stay as they
+    are."""
     extra = weights_of(asked.weights)
-    bench, lines = Bench(QUICK if asked.quick else FULL, extra), LINES | {name: Walks(name, name) for name in extra}
+    bench, lines = (
+        Bench(QUICK if asked.quick else FULL, extra),
+        LINES | {name: Walks(name, name) for name in extra},
+    )
     stage = Stage(DANCE_QUICK if asked.quick else DANCE_FULL, extra)
     options = " --quick" * asked.quick + "".join(f" --weights {item}" for item in asked.weights)
     for part in parts_of(asked.only, asked.full, lines, set(bench.weights)):
@@ -111,33 +152,49 @@ def measure(asked: argparse.Namespace, folder: Path) -> None:
         print(f"{part}: {time.monotonic() - began:.0f} s", flush=True)
 
 
-def records_of(part: str, quick: bool, bench: Bench, stage: Stage, lines, folder: Path, command: str) -> list[dict]:
+def records_of(
+    part: str, quick: bool, bench: Bench, stage: Stage, lines, folder: Path, command: str
+) -> list[dict]:
     """The records of one part; its figure, where it has one, is written beside them."""
     group, _, row = part.partition(".")
     if group == "budget":
         return budget.budget_records(row, budget.QUICK if quick else budget.FULL, command)
     if group == "dance-budget":
-        size, runs = (dance_budget.QUICK, folder / "runs") if quick else (dance_budget.FULL, RUNS / group)
+        size, runs = (
+            (dance_budget.QUICK, folder / "runs") if quick else (dance_budget.FULL, RUNS / group)
+        )
         return dance_budget.budget_records(row, size, runs, command)
     if group == "mend-map":
-        size, runs = (mend_dropout.MAP_QUICK, folder / "map") if quick else (mend_dropout.MAP_FULL, RUNS / group)
-        return mend_dropout.map_records(row, size, bench.trials, runs, command)
+        size, runs = (
+            (dropout.MAP_QUICK, folder / "map") if quick else (dropout.MAP_FULL, RUNS / group)
+        )
+        return dropout.map_records(row, size, bench.trials, runs, command)
     if part == "mend":
-        return mend.records(bench, mend_repair.QUICK if quick else mend_repair.FULL, command)
+        return mend.records(bench, repair.QUICK if quick else repair.FULL, command)
     if part == "inbetween":
-        dancer, digest = stage.dancer("unconditional"), weights_digest(stage.weights["unconditional"])
-        return inbetween.inbetween_records(dancer, digest, inbetween.QUICK if quick else inbetween.FULL, command)
+        dancer, digest = (
+            stage.dancer("unconditional"),
+            weights_digest(stage.weights["unconditional"]),
+        )
+        return inbetween.inbetween_records(
+            dancer, digest, inbetween.QUICK if quick else inbetween.FULL, command
+        )
     if part == "mend-both":
-        size = mend_repair.QUICK if quick else mend_repair.FULL
-        return mend_both.both_records(bench, stage.dancer("unconditional"), size, command)
+        size = repair.QUICK if quick else repair.FULL
+        return both.both_records(bench, stage.dancer("unconditional"), size, command)
     if part == "known-answer":
-        return known_answer.known_answer_records(known_answer.QUICK if quick else known_answer.FULL, command)
+        return known_answer.known_answer_records(
+            known_answer.QUICK if quick else known_answer.FULL, command
+        )
     if part == "dance-time":
         size, rounds = (dance_budget.QUICK, 2) if quick else (dance_budget.FULL, ROUNDS)
         return time_records(TIMED, size, rounds, command)
     if part == "footsteps":
         records, curves = footstep_records(bench, command)
-        save(footstep_curves({k: v for k, v in curves.items() if not k.endswith("-robust")}), folder / "footsteps.png")
+        save(
+            footstep_curves({k: v for k, v in curves.items() if not k.endswith("-robust")}),
+            folder / "footsteps.png",
+        )
         return records
     if part == "attention":
         save(attention_picture(stage), folder / "attention.png")

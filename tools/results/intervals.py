@@ -1,4 +1,5 @@
-"""A figure with its interval: clips are drawn again with replacement, and the figure computed anew each time."""
+"""A figure with its interval: clips are drawn again with replacement, and the figure computed anew
+each time."""
 
 from collections.abc import Callable
 
@@ -7,8 +8,11 @@ import numpy as np
 DRAWS = 2000
 
 
-def interval(figure: Callable[..., float], *per_clip: np.ndarray, draws: int = DRAWS) -> tuple[float, float, float]:
-    """The figure and its 95 % bootstrap interval; arrays have one row for each clip and are drawn together.
+def interval(
+    figure: Callable[..., float], *per_clip: np.ndarray, draws: int = DRAWS
+) -> tuple[float, float, float]:
+    """The figure and its 95 % bootstrap interval; arrays have one row for each clip and are drawn
+    together.
 
     A figure that is not a number in some draws (no planted toe in any clip drawn) leaves those out.
     """
@@ -18,5 +22,7 @@ def interval(figure: Callable[..., float], *per_clip: np.ndarray, draws: int = D
         chosen = rng.integers(n, size=n)
         values.append(figure(*(rows[chosen] for rows in per_clip)))
     value = float(figure(*per_clip))
-    low, high = np.nanpercentile(values, [2.5, 97.5]) if np.isfinite(values).any() else (np.nan, np.nan)
+    low, high = (
+        np.nanpercentile(values, [2.5, 97.5]) if np.isfinite(values).any() else (np.nan, np.nan)
+    )
     return value, float(low), float(high)

@@ -1,0 +1,6 @@
+"""Dances to a song: phrases of moves from the genre's own vocabulary, on the beat, on feet that
+stay planted."""
+
+from .performance import GENRES, Dance, dance, dances, perform
+
+__all__ = ["GENRES", "Dance", "dance", "dances", "perform"]

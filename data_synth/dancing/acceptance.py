@@ -1,0 +1,131 @@
+"""Do synthetic dances lie where real ones do, and on the beat? The table over dozens of dances,
+beside the real range.
+
+python -m data_synth.dancing.acceptance [--dances 30] [--seconds 30]
+
+The dances are danced to silent scores that cover the tempi of each genre: what README.md shows.
+"""
+
+import argparse
+
+import numpy as np
+
+from motiondiff_edu.metrics.beats import beat_alignment
+from motiondiff_edu.motion.skeleton import BONE_LENGTHS, BONES, HEELS, TOES
+
+from ..music.score import beat_song
+from ..music.song import GENRES, Song
+from ..walking.acceptance import show, table
+from .performance import Dance, dance
+from .statistics import kinematic_beats, repeats, statistics
+
+# name -> (lowest, highest) of 8 real upright dances at 20 frames/s
+UPRIGHT = {
+    "speed": (0.33, 1.6), "neither_planted": (0.06, 0.79), "hips_spread": (0.05, 0.26), "beats_per_second": (1.1, 2.4),
+    "pca95": (6, 13), "jerk": (31, 362), "power4": (0.79, 0.99),
+}  # fmt: skip
+# what we ask of ourselves: with the right song; the share of the music's beats that the body marks
+OWN = {"own_song": (0.6, 0.85), "other_song": (0.15, 0.35), "beats_per_beat": (0.6, 1.3)}
+# genres whose mean over dances lies outside, and why; the data card tells more
+OUTSIDE = {
+    "waltz neither_planted": "three steps a bar, each landing before the next lifts, and planted feet are still",
+    "latin neither_planted": "small steps close to the floor, and planted feet are still",
+}
+
+
+def songs(count: int, seconds: float, first_seed: int = 0) -> list[Song]:
+    """Silent songs, genre by genre in turn, tempi spread over each genre's range and drifting by 2
+    %."""
+    genres = list(GENRES.items())
+    each, found = -(-count // len(genres)), []
+    for k in range(count):
+        genre, (slowest, fastest, metre) = genres[k % len(genres)]
+        tempo = slowest + (fastest - slowest) * (k // len(genres) + 0.5) / each
+        found.append(beat_song(seconds, tempo, metre, genre, first_seed + k, drift=0.02))
+    return found
+
+
+def figures(danced: Dance, song: Song, other: Song) -> dict[str, float]:
+    """Statistics of one dance, with its alignment to its own song and to another."""
+    moved = kinematic_beats(danced.positions, danced.fps)
+    return statistics(danced.positions, danced.fps) | {
+        "own_song": beat_alignment(moved, song.beats),
+        "other_song": beat_alignment(moved, other.beats),
+        "beats_per_beat": len(moved) / len(song.beats),
+        "repeats": repeats(danced.positions, danced.fps),
+    }
+
+
+def acceptance(
+    count: int = 30, seconds: float = 30.0
+) -> tuple[list[Dance], list[dict[str, float]]]:
+    """The dances, and the figures of each."""
+    heard = songs(count, seconds)
+    danced = [dance(song, k) for k, song in enumerate(heard)]
+    others = [heard[(k + 7) % count] for k in range(count)]
+    return danced, [figures(d, s, o) for d, s, o in zip(danced, heard, others, strict=True)]
+
+
+def means_outside(danced: list[Dance], rows: list[dict[str, float]]) -> set[str]:
+    """Statistics whose mean is outside the real range, over all dances (by name) or in a genre
+    ("genre name")."""
+    found = set()
+    for genre in ("", *GENRES):
+        chosen = [r for d, r in zip(danced, rows, strict=True) if genre in ("", d.genre)]
+        for name, mean, _, _, low, high, _ in table(chosen, UPRIGHT):
+            if not low <= mean <= high:
+                found.add(f"{genre} {name}".strip())
+    return found
+
+
+def limits(danced: list[Dance]) -> dict[str, float]:
+    """The worst of all frames: slipping feet, the lowest joint (mm), bones (m), knees (degrees),
+    hands (m/s)."""
+    slip, low, bones, knees, hands = 0.0, np.inf, 0.0, [], 0.0
+    for d in danced:
+        p = d.positions
+        still = d.contacts[1:] & d.contacts[:-1]
+        slip = max(slip, float(np.linalg.norm(np.diff(p[:, TOES], axis=0), axis=-1)[still].max()))
+        low = min(low, float(p[..., 1].min()))
+        lengths = np.linalg.norm(p[:, [b for _, b in BONES]] - p[:, [a for a, _ in BONES]], axis=-1)
+        bones = max(bones, float(np.abs(lengths - BONE_LENGTHS).max()))
+        knees += [knee_angle(p).min(), knee_angle(p).max()]
+        hands = max(hands, float(np.linalg.norm(np.diff(p, axis=0), axis=-1).max() * d.fps))
+    return {
+        "planted_toe_mm_a_frame": 1e3 * slip,
+        "lowest_joint_mm": 1e3 * low,
+        "bone_error_m": bones,
+        "knee_smallest_deg": float(min(knees)),
+        "knee_largest_deg": float(max(knees)),
+        "fastest_joint_mps": hands,
+    }
+
+
+def knee_angle(world: np.ndarray) -> np.ndarray:
+    """Degrees between thigh and shank, (T, 2): 0 is a straight leg."""
+    ankle = np.array(HEELS)
+    thigh, shank = world[:, ankle - 1] - world[:, ankle - 2], world[:, ankle] - world[:, ankle - 1]
+    cos = (thigh * shank).sum(-1) / np.linalg.norm(thigh, axis=-1) / np.linalg.norm(shank, axis=-1)
+    return np.degrees(np.arccos(np.clip(cos, -1, 1)))
+
+
+if __name__ == "__main__":
+    parser = argparse.ArgumentParser(prog="python -m data_synth.dancing.acceptance")
+    parser.add_argument("--dances", type=int, default=30)
+    parser.add_argument("--seconds", type=float, default=30.0)
+    given = parser.parse_args()
+    danced, rows = acceptance(given.dances, given.seconds)
+    print(show(table(rows, UPRIGHT | OWN)))
+    for genre in GENRES:
+        print(
+            f"{genre}\n\n"
+            + show(
+                table(
+                    [r for d, r in zip(danced, rows, strict=True) if d.genre == genre],
+                    UPRIGHT | OWN,
+                )
+            )
+        )
+    print("outside:", ", ".join(sorted(means_outside(danced, rows))) or "nothing")
+    print(f"highest repetition: {max(r['repeats'] for r in rows):.3g}")
+    print("\n".join(f"{name}: {value:.3g}" for name, value in limits(danced).items()))

@@ -1,0 +1,120 @@
+"""From the channels of a dance to the 21 joints: pelvis over the feet, a spine that bends in three
+places, arms, legs.
+
+Per frame and vectorised; world frame, metres; the channels are those of dance_script.REST, in
+degrees and metres.
+"""
+
+import numpy as np
+from jaxtyping import Float
+
+from motiondiff_edu.motion.kinematics import rot_x, rot_y, rot_z
+from motiondiff_edu.motion.root_frame import forward_left
+from motiondiff_edu.motion.skeleton import OFFSETS, J
+
+from ..walking import legs
+from ..walking.upper_body import DOWN, FOREARM, UPPER_ARM
+from .script import ARM, LENGTHS
+from .steps import Track
+
+STAND = 0.957  # height of the Hips joint over flat feet before `drop`
+# metres that the hips give way for each unit of sine of the trunk's lean, so that the weight stays
+UPPER_SHARE = 0.17
+
+
+def dancer(
+    channels: dict[str, Float[np.ndarray, "T"]],
+    tracks: tuple[Track, Track],
+    heading: Float[np.ndarray, "T"],
+) -> Float[np.ndarray, "T 21 3"]:
+    """The joints of a figure whose feet are at `tracks` and whose body is as the channels say."""
+    c = {name: value if name in LENGTHS else np.radians(value) for name, value in channels.items()}
+    yaw = heading + c["hip_yaw"]
+    pelvis = legs.pelvis_rotation(yaw, c["hip_roll"], c["hip_tilt"])
+    feet = legs.Feet(
+        *(np.stack(v, 1) for v in zip(*((k.ankle(), k.toe, k.yaw) for k in tracks), strict=True))
+    )
+    hips = legs.hips_within_reach(_hips(c, tracks, heading), pelvis, feet)
+    feet = legs.not_folded(hips, pelvis, feet)
+    joints = np.zeros((len(heading), J, 3))
+    joints[:, 0] = hips
+    for side, first in enumerate((1, 5)):
+        knee_out = (1, -1)[side] * c["lr"[side] + "_knee"]
+        joints[:, first] = hips + pelvis @ OFFSETS[first]
+        joints[:, first + 2], joints[:, first + 3] = feet.ankle[:, side], feet.toe[:, side]
+        facing = yaw + 0.5 * (feet.yaw[:, side] - yaw) + knee_out
+        joints[:, first + 1] = legs.bend_knee(
+            joints[:, first],
+            feet.ankle[:, side],
+            _knee_side(joints[:, first], feet.ankle[:, side], facing),
+        )
+    shoulders = _spine(joints, hips, yaw, c)
+    for side, joint in enumerate((13, 17)):
+        _arm(joints, shoulders, joint, {name: c[f"{'lr'[side]}_{name}"] for name in ARM})
+    return joints
+
+
+def _hips(c, tracks, heading) -> Float[np.ndarray, "T 3"]:
+    """The pelvis over the foot that bears, moved by sway and surge, and away from where the trunk
+    leans."""
+    left, right = (k.ground for k in tracks)
+    over = right + (0.5 + 0.47 * c["weight"])[:, None] * (left - right)
+    ahead, aside = forward_left(heading)
+    surge = c["surge"] + 0.03 - UPPER_SHARE * (np.sin(c["lean"]) + 0.5 * np.sin(c["hip_tilt"]))
+    sway = c["sway"] + UPPER_SHARE * np.sin(c["side"])
+    x, z = (over + surge[:, None] * ahead + sway[:, None] * aside).T
+    return np.stack([x, STAND - c["drop"], z], -1)
+
+
+def _knee_side(hip, ankle, facing) -> Float[np.ndarray, "T 3"]:
+    """Where the knee points: ahead of a hanging leg, up from one that is kicked out, down from one
+    kicked back."""
+    left = np.stack([np.cos(facing), np.zeros_like(facing), -np.sin(facing)], -1)
+    return np.cross(ankle - hip, left)
+
+
+def _spine(joints, hips, yaw, c) -> Float[np.ndarray, "T 3 3"]:
+    """Set Spine, Spine1, Neck1 and Head; returns the rotation that carries the shoulders."""
+    low = (
+        rot_y(yaw)
+        @ rot_z(0.5 * c["hip_roll"] + 0.3 * c["side"])
+        @ rot_x(0.5 * c["hip_tilt"] + 0.4 * c["lean"])
+    )
+    middle = (
+        rot_y(yaw + 0.5 * c["twist"])
+        @ rot_z(0.7 * c["side"])
+        @ rot_x(0.8 * c["lean"] + 0.2 * c["hip_tilt"] + c["chest"])
+    )
+    top = (
+        rot_y(yaw + 0.9 * c["twist"])
+        @ rot_z(c["side"])
+        @ rot_x(1.15 * c["lean"] - 0.9 * c["chest"])
+    )
+    joints[:, 9] = hips + low @ OFFSETS[9]
+    joints[:, 10] = joints[:, 9] + middle @ OFFSETS[10]
+    joints[:, 11] = joints[:, 10] + top @ OFFSETS[11]
+    steady = (
+        0.45 * c["twist"] - 0.5 * c["hip_yaw"] + c["look"]
+    )  # the head keeps more to where the dance faces
+    head = (
+        rot_y(yaw + steady)
+        @ rot_z(0.3 * c["side"] + c["cock"])
+        @ rot_x(0.45 * c["lean"] + c["nod"] - 0.3 * c["chest"])
+    )
+    joints[:, 12] = joints[:, 11] + head @ OFFSETS[12]
+    return rot_y(yaw + c["twist"]) @ rot_z(c["side"]) @ rot_x(0.7 * c["lean"] - 0.6 * c["chest"])
+
+
+def _arm(joints, shoulders, joint: int, a) -> None:
+    """Set Arm, ForeArm, Hand and HandIndex1 from the angles of one arm."""
+    side = 1.0 if joint == 13 else -1.0
+    shoulder = joints[:, 11] + (shoulders @ rot_z(side * a["shrug"])) @ OFFSETS[joint]
+    upper = shoulders @ rot_x(-a["swing"]) @ rot_z(side * a["out"]) @ rot_y(-side * a["twist"])
+    bend = np.radians(4) + legs.softplus(a["elbow"] - np.radians(4), 0.06)
+    bend = np.radians(148) - legs.softplus(np.radians(148) - bend, 0.06)
+    fore = upper @ rot_x(-bend)
+    hand = fore @ rot_x(-a["wrist"])
+    joints[:, joint] = shoulder
+    joints[:, joint + 1] = shoulder + upper @ (UPPER_ARM * DOWN)
+    joints[:, joint + 2] = joints[:, joint + 1] + fore @ (FOREARM * DOWN)
+    joints[:, joint + 3] = joints[:, joint + 2] + hand @ (0.09 * DOWN)

@@ -1,0 +1,153 @@
+"""Which move when: the choreographer draws them phrase by phrase, repeats, mirrors and varies them.
+
+It knows the score (beats, bars, phrases, energy), never the sound.
+"""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ..music.song import Song
+from ..walking.footsteps import TOE_AHEAD
+from .moves import MANNERS, Manner
+from .script import REST, Script
+from .sheet import Sheet
+
+CALM = 0.25  # energy below this is a break
+ROOM = 1.6  # metres from the start, beyond which the dancer comes back
+
+
+@dataclass(frozen=True)
+class Move:
+    """A move as it was danced: from which beat, over how many, its name, whether left and right
+    were swapped."""
+
+    start: int
+    beats: int
+    name: str
+    mirrored: bool
+    rate: float  # beats a count
+    size: float
+
+
+def slots(song: Song, rng: np.random.Generator) -> list[tuple[int, int]]:
+    """(first beat, beats): phrases and breaks cut into whole bars, 4 to 8 beats where the metre
+    allows it."""
+    edges = np.flatnonzero(np.diff(song.phrase) | np.diff(song.energy < CALM)) + 1
+    cuts = []
+    for first, last in zip([0, *edges], [*edges, len(song.beats)], strict=True):
+        at = int(first)
+        while at < last:
+            bars = max(
+                round(float(rng.choice([4, 8], p=[0.4, 0.6])) / song.metre),
+                2 if song.metre < 4 else 1,
+            )
+            pick_up = (
+                song.metre - int(song.bar_position[at])
+            ) % song.metre  # a phrase may begin before a bar
+            length = min(bars * song.metre + pick_up, int(last) - at)
+            if int(last) - at - length < 4:
+                length = int(last) - at
+            if cuts and min(length, cuts[-1][1]) < 3:  # a pick-up, or what is left of the last bar
+                cuts[-1] = (cuts[-1][0], cuts[-1][1] + length)
+            else:
+                cuts.append((at, length))
+            at += length
+    return cuts
+
+
+def rate_of(song: Song, calm: bool, rng: np.random.Generator) -> float:
+    """Beats a count: half time at high tempo, now and then double at a low one."""
+    period = 60.0 / song.tempo
+    if period < 0.44 and song.metre % 2 == 0:
+        return 2.0 if rng.random() < (0.75 if period < 0.40 else 0.35) else 1.0
+    if period > 0.62 and not calm and rng.random() < 0.06:
+        return 0.5
+    if calm and song.metre % 2 == 0 and period < 0.55 and rng.random() < 0.4:
+        return 2.0
+    return 1.0
+
+
+def choreograph(
+    song: Song, rng: np.random.Generator, only: str | None = None
+) -> tuple[Script, list[Move]]:
+    """The script of a dance to this song, and the moves it is made of; `only` names the one move to
+    dance.
+
+    Raises ValueError when the genre has no move of that name.
+    """
+    manner = MANNERS[song.genre]
+    if only is not None:
+        known = {f.__name__: f for f in (*manner.moves, *manner.calm)}
+        if only not in known:
+            raise ValueError(f"{song.genre} has no move {only!r}; it has {', '.join(known)}")
+        manner = replace(manner, moves=(known[only],), calm=(known[only],))
+    rest = REST | manner.rest
+    script, moves = Script(), []
+    for name, value in rest.items():
+        script.keys[name].append((-2.0, value))
+    script.keys["heading"].append((-2.0, 0.0))
+    stride, taste = float(rng.normal(1.0, 0.09)), rng.dirichlet(np.full(len(manner.moves), 2.5))
+    for start, length in slots(song, rng):
+        move = _draw(song, manner, start, length, moves, taste, rng)
+        moves.append(move)
+        count = max(1, round(length / move.rate))
+        sheet = Sheet(
+            script, start, count, length / count, move.mirrored, move.size, stride * min(move.size, 1.08) ** 0.5, rest,
+            song.metre, rng,
+        )  # fmt: skip
+        _gather(sheet, script)
+        sheet.drift = _drift(script, count, rng)
+        next(f for f in (*manner.moves, *manner.calm) if f.__name__ == move.name)(sheet)
+        sheet.close()
+    _end(script, rest, len(song.beats))
+    return script, moves
+
+
+def _draw(song, manner: Manner, start, length, moves, taste, rng) -> Move:
+    """The next move: the last one mirrored, or a new one; small in breaks, large where energy is
+    high."""
+    energy = float(song.energy[start : start + length].mean())
+    calm = energy < CALM
+    tempo = np.clip((60.0 / song.tempo / 0.5) ** 0.55, 0.78, 1.25)
+    size = float(np.clip((0.84 + 0.50 * energy) * tempo * rng.normal(1, 0.08), 0.5, 1.4))
+    rate = rate_of(song, calm, rng)
+    size *= 1.2 if rate > 1 and not calm else 0.85 if rate < 1 else 1.0
+    last = moves[-1] if moves else None
+    if last and not calm and length >= 3 and last.name in {f.__name__ for f in manner.moves}:
+        again = len(moves) > 1 and moves[-2].name == last.name
+        if not again and rng.random() < 0.45:
+            return Move(start, length, last.name, not last.mirrored, last.rate, size)
+    pool = manner.calm if calm else manner.moves
+    share = np.ones(len(pool)) if calm else taste.copy()
+    for i, f in enumerate(pool):
+        if last and f.__name__ == last.name and len(pool) > 1:
+            share[i] = 0.0
+    name = pool[int(rng.choice(len(pool), p=share / share.sum()))].__name__
+    return Move(start, length, name, bool(rng.random() < 0.5), rate, size)
+
+
+def _drift(script: Script, count: int, rng: np.random.Generator) -> tuple[float, float]:
+    """A way to go during a move (metres a count, left and ahead): anywhere, but back when far from
+    the start."""
+    x, z, heading = script.home
+    pull = min(np.hypot(x, z) / ROOM, 1.0)
+    dx, dz = rng.normal(0.0, 0.05, 2) * (1 - pull) - 0.6 * pull * np.array([x, z]) / max(count, 4)
+    s, c = np.sin(heading), np.cos(heading)
+    left, ahead = np.clip((dx * c - dz * s, dx * s + dz * c), -0.11, 0.11)
+    return float(left), float(ahead)
+
+
+def _gather(sheet: Sheet, script: Script) -> None:
+    """Home is between the feet again, so that what a move left behind is not carried on."""
+    middle = np.mean([toe[:2] for toe in script.toes], 0)
+    x, z, heading = script.home
+    back = TOE_AHEAD * np.array([np.sin(heading), np.cos(heading)])
+    script.home = (float(middle[0] - back[0]), float(middle[1] - back[1]), heading)
+
+
+def _end(script: Script, rest: dict[str, float], beats: int) -> None:
+    """After the last beat the dancer comes to rest on both feet."""
+    script.enter(
+        {name: [(beats + 0.5, value), (beats + 1.5, value)] for name, value in rest.items()}
+    )

@@ -1,0 +1,49 @@
+"""The vocabularies: what each genre can do, a file a genre, and how it carries itself."""
+
+from dataclasses import dataclass
+
+from . import hiphop, house, latin, pop, waltz
+
+
+@dataclass(frozen=True)
+class Manner:
+    """How a genre moves: stillness at the keys, flow through them, the arms' spring, posture at
+    rest."""
+
+    moves: tuple
+    calm: tuple  # for breaks
+    hold: float  # share of the time between two keys that is still
+    flow: float  # 0 stops at each key, 1 passes through
+    spring: float  # Hz: how tightly the arms follow
+    lead: (
+        float  # seconds by which the dancer sets out early, so that the stillness comes on the beat
+    )
+    rest: dict[str, float]
+
+
+_BENT = {
+    f"{side}_{name}": value
+    for side in "lr"
+    for name, value in (("elbow", 62.0), ("swing", 16.0), ("out", 20.0))
+}
+_ROUND = {
+    f"{side}_{name}": value
+    for side in "lr"
+    for name, value in (("elbow", 40.0), ("swing", 22.0), ("out", 34.0))
+}
+
+MANNERS: dict[str, Manner] = {
+    "house": Manner(
+        house.MOVES, house.CALM, 0.10, 0.15, 4.0, 0.012, {"drop": 0.04, "lean": 7.0, **_BENT}
+    ),
+    "hiphop": Manner(
+        hiphop.MOVES, hiphop.CALM, 0.14, 0.10, 4.5, 0.012, {"drop": 0.05, "lean": 7.0}
+    ),
+    "pop": Manner(pop.MOVES, pop.CALM, 0.18, 0.08, 5.0, 0.03, {"drop": 0.025, "lean": 2.0}),
+    "latin": Manner(
+        latin.MOVES, latin.CALM, 0.06, 0.30, 4.0, 0.03, {"drop": 0.03, "lean": 2.0, **_BENT}
+    ),
+    "waltz": Manner(
+        waltz.MOVES, waltz.CALM, 0.10, 0.18, 3.2, 0.045, {"drop": 0.02, "lean": 0.0, **_ROUND}
+    ),
+}

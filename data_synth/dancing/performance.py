@@ -1,0 +1,161 @@
+"""Dances to a song: phrases of moves from the genre's own vocabulary, arriving on the beat, on feet
+that stay planted.
+
+    python -m data_synth dances --out FOLDER     # BVH for Blender, npz (no pickle) for everything else
+
+What a dance depends on is the song's score and a seed: two seeds give two dances to one song.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Bool, Float
+
+from .. import noise
+from ..music import songs
+from ..music.song import GENRES, Song
+from ..walking.footsteps import TOE_AHEAD
+from .body import dancer
+from .choreography import choreograph
+from .curves import curve, felt_beats, springy, within_reach
+from .moves import MANNERS, Manner
+from .script import ARM, LENGTHS, REST, STANCE, Script
+from .steps import Track, track
+
+FPS = 20.0
+DANCES_A_SEED = 100_000
+DAMPING, ARMS_LEAD = (
+    0.6,
+    1.0,
+)  # of the arms' spring; the share of its delay that the arms set out earlier
+ARMS = [f"{side}_{name}" for side in "lr" for name in ARM]
+FASTEST = 250.0  # degrees a second, on average between two keys, that an arm's angle may change
+START = ((STANCE, TOE_AHEAD, 0.12), (-STANCE, TOE_AHEAD, -0.12))  # toe x, toe z, direction
+
+
+@dataclass(frozen=True, eq=False)
+class Dance:
+    """World positions (metres), which foot is planted (left, right: truth), and the moves as
+    danced.
+
+    `moves` has (first beat, name, mirrored) of every move.
+    """
+
+    positions: Float[np.ndarray, "T 21 3"]
+    contacts: Bool[np.ndarray, "T 2"]
+    moves: list[tuple[int, str, bool]]
+    genre: str
+    fps: float
+    seed: int
+
+    def __len__(self) -> int:
+        return len(self.positions)
+
+
+def dance(song: Song, seed: int, only: str | None = None) -> Dance:
+    """A dance to the song's score, 20 frames/s, from (0, 0) facing z; `only` names one move to fill
+    it with.
+
+    Raises ValueError when the song has fewer than two beats, its genre has no such moves, or the
+    seed is negative.
+    """
+    if song.genre not in MANNERS:
+        raise ValueError(f"no moves for the genre {song.genre!r}; there are {', '.join(MANNERS)}")
+    if len(song.beats) < 2:
+        raise ValueError(
+            f"a dance needs two beats or more, this song of {song.seconds:.1f} s has {len(song.beats)}"
+        )
+    if seed < 0:
+        raise ValueError(f"a seed is a whole number from 0 on, got {seed}")
+    script, moves = choreograph(song, np.random.default_rng([seed, song.seed, 31]), only)
+    positions, contacts = perform(script, song, seed)
+    names = [(m.start, m.name, m.mirrored) for m in moves]
+    return Dance(positions, contacts, names, song.genre, FPS, seed)
+
+
+def dances(
+    n: int, seed: int, seconds: float = 30.0, *, each: int = 1, genre: str | None = None
+) -> Iterator[tuple[Song, Dance]]:
+    """n songs as `music.songs` has them, with `each` dances to every one: what dancers are trained
+    on.
+
+    The dances to one song follow one another. Different seeds share no song, and no dancer's seed.
+    Raises ValueError as `songs` and `dance` do, for no dance to a song, and for more dances than a
+    seed has.
+    """
+    if each < 1 or n * each > DANCES_A_SEED:
+        raise ValueError(
+            f"one dance to a song or more, {DANCES_A_SEED} in all; got {n} songs with {each} each"
+        )
+    made = songs(n, seed, seconds, genre=genre)
+    first = seed * DANCES_A_SEED
+    return (
+        (song, dance(song, first + each * k + j))
+        for k, song in enumerate(made)
+        for j in range(each)
+    )
+
+
+def perform(
+    script: Script, song: Song, seed: int
+) -> tuple[Float[np.ndarray, "T 21 3"], Bool[np.ndarray, "T 2"]]:
+    """A person dances the script: with their own timing, posture, spring and drift."""
+    rng = np.random.default_rng([seed, song.seed, 32])
+    manner, t = MANNERS[song.genre], np.arange(int(song.seconds * FPS)) / FPS
+    seconds, number = felt_beats(
+        song.beats, rng, jitter=rng.uniform(0.012, 0.020), off=rng.normal(-manner.lead, 0.006)
+    )
+    b = np.interp(t, seconds, number)
+    delay = (
+        2 * DAMPING / (2 * np.pi * manner.spring)
+    )  # the arms' spring is late by this: they set out so much earlier
+    early = np.interp(t + ARMS_LEAD * delay, seconds, number)
+    channels = _channels(script, b, early, (seconds, number), manner, seed, rng)
+    heading = curve(b, script.keys["heading"], hold=0.0, flow=0.8)
+    tracks = tuple(_foot(script, foot, t, seconds, number, channels, rng) for foot in (0, 1))
+    return dancer(channels, tracks, heading), np.stack([k.planted for k in tracks], -1)
+
+
+def _channels(
+    script: Script, b, early, grid, manner: Manner, seed: int, rng
+) -> dict[str, Float[np.ndarray, "T"]]:
+    """Every channel at every frame, with the person's posture and slow drift; the arms on a
+    spring."""
+    wander = noise.drift(noise.white(seed, len(b))[:, : len(REST)], 0.45, FPS)
+    channels = {}
+    for i, name in enumerate(REST):
+        late, keys, is_arm = 0.012 * rng.standard_normal(), script.keys[name], name in ARMS
+        if is_arm:
+            keys = within_reach(keys, np.interp([k[0] for k in keys], grid[1], grid[0]), FASTEST)
+        flow = 0.5 * manner.flow if name == "drop" else manner.flow
+        drifts, own = _person(name)
+        value = curve((early if is_arm else b) - late, keys, manner.hold, flow)
+        channels[name] = value + drifts * wander[:, i] + own * rng.standard_normal()
+    hertz = manner.spring * float(np.exp(0.12 * rng.standard_normal()))
+    arms = springy(np.stack([channels[name] for name in ARMS], -1), FPS, hertz, DAMPING)
+    return channels | dict(zip(ARMS, arms.T, strict=True))
+
+
+def _person(name: str) -> tuple[float, float]:
+    """How much a channel drifts, and how much its posture differs from person to person (sd;
+    degrees or metres)."""
+    if name == "weight" or name.endswith("heel"):
+        return 0.0, 0.0
+    if name in ARMS:
+        return 2.0, 6.0
+    return (0.003, 0.008) if name in LENGTHS else (0.9, 3.0)
+
+
+def _foot(script: Script, foot: int, t, seconds, number, channels, rng) -> Track:
+    """One foot's steps at the moments the dancer makes them, each a few milliseconds off."""
+    steps = script.steps[foot]
+    times = np.interp([(s.lift, s.land) for s in steps], number, seconds).reshape(-1, 2)
+    times = times + 0.006 * rng.standard_normal(times.shape)
+    flat = np.maximum.accumulate(times.ravel()).reshape(-1, 2)
+    flat[:, 1] = np.maximum(flat[:, 1], flat[:, 0] + 0.06)
+    heel = np.maximum(channels[f"{'lr'[foot]}_heel"], 0.0)
+    return track(steps, START[foot], flat, t, heel)
+
+
+__all__ = ["Dance", "GENRES", "dance", "dances", "perform"]

@@ -1,0 +1,252 @@
+"""The page a move is written on: in its own counts, as danced by someone who begins with the left
+foot.
+
+The sheet mirrors the move, scales it, slows or quickens it, and enters it in the script of the
+whole dance. It sees to the weight: before a foot lifts, the other one bears. Angles in degrees,
+lengths in metres.
+"""
+
+from math import cos, hypot, radians, sin
+
+import numpy as np
+
+from ..walking.footsteps import TOE_AHEAD
+from .script import ARM, LENGTHS, STANCE, TURNS_SIGN, Script, Step
+
+UNSCALED = ("weight", "look")
+ARRIVED = 0.62  # share of the weight that a foot has at the count it lands on
+NEAREST, WIDEST = 0.13, 0.62  # metres between the toes when a step lands
+
+
+class Sheet:
+    """The page of one move: `n` counts, the first at beat `start`, `rate` beats apart.
+
+    `size` scales how far it goes, `stride` the steps; `mirrored` swaps left and right; `rng` is for
+    its own choices.
+    """
+
+    def __init__(self, script: Script, start: float, n: int, rate: float, mirrored: bool, size: float, stride: float,
+                 rest: dict[str, float], metre: int, rng: np.random.Generator):  # fmt: skip
+        self.script, self.start, self.n, self.rate = script, start, n, rate
+        self.sign, self.size, self.stride = (-1 if mirrored else 1), size, stride
+        self.rest, self.metre, self.rng = rest, metre, rng
+        self.keys: dict[str, list[tuple[float, float]]] = {}
+        self.drift = (
+            0.0,
+            0.0,
+        )  # metres to the dancer's left and ahead that each count travels besides
+
+    def key(self, name: str, *pairs: tuple[float, float]) -> None:
+        """Key values of a channel: (count, value) ..."""
+        if self.sign < 0 and name[:2] in ("l_", "r_"):
+            name = {"l": "r", "r": "l"}[name[0]] + name[1:]
+        turned = self.sign if name in TURNS_SIGN else 1
+        rest = self.rest[name]
+        scale = 1.0 if name in UNSCALED else self.size**0.5 if name[1] == "_" else self.size
+        for count, value in pairs:
+            uneven = 1.0 if name == "weight" else 1 + 0.09 * self.rng.standard_normal()
+            entry = rest + scale * uneven * (turned * value - rest)
+            self.keys.setdefault(name, []).append((self.start + count * self.rate, entry))
+
+    def arms(self, count: float, left, right=None) -> None:
+        """Both arms at a count: (swing, out, twist, elbow[, wrist, shrug]) each; the right as the
+        left if not given."""
+        for side, pose in (("l", left), ("r", left if right is None else right)):
+            pose = (*pose, *(8.0, 0.0)[len(pose) - 4 :])
+            for name, value in zip(ARM, pose, strict=True):
+                self.key(f"{side}_{name}", (count, value))
+
+    def place(self, x: float, z: float, yaw: float) -> tuple[float, float, float]:
+        """From the move's own floor (left, ahead, degrees to the left) to the world's: x, z,
+        yaw."""
+        hx, hz, heading = self.script.home
+        x = self.sign * x
+        s, c = sin(heading), cos(heading)
+        return hx + x * c + z * s, hz - x * s + z * c, heading + self.sign * radians(yaw)
+
+    def step(self, foot: int, count: float, x: float, z: float, turn: float | None = None, height: float = 0.06,
+             weight: bool = True, swing: float = 0.74, kick: float = 0.0) -> None:  # fmt: skip
+        """Put a foot (0 left, 1 right) down at a count, its ankle at (x left, z ahead) of home.
+
+        The weight goes to the other foot before it lifts, and over to it after it has landed unless
+        `weight` is False.
+        """
+        side = 1 if foot == 0 else -1
+        lift = self._put(foot, count, x, z, turn, height, swing, kick)
+        if lift is None:
+            return
+        self.key("weight", ((lift - self.start) / self.rate, -0.93 * side))
+        if weight:  # the rest of it follows before the other foot lifts
+            self.key("weight", (count + 0.06 / self.rate, ARRIVED * side))
+
+    def jump(self, count: float, left: tuple[float, float], right: tuple[float, float], height: float = 0.09,
+             turns: tuple[float, float] = (9.0, -9.0), swing: float = 0.6) -> None:  # fmt: skip
+        """Both feet leave the floor together and come down at a count, at (x, z) each."""
+        count -= 0.07  # the knees give after it
+        lifts = [
+            self._put(foot, count, *at, turns[foot], height, swing, 22.0)
+            for foot, at in ((0, left), (1, right))
+        ]
+        self.both(count - 0.8 * swing)
+        self.both(count + 0.07)
+        for lift in lifts:
+            if lift is not None:
+                self.key(
+                    "drop",
+                    (count - 0.5 * swing, 0.02 - 0.9 * height),
+                    (count - swing - 0.05, 0.075),
+                )
+
+    def hop(
+        self,
+        foot: int,
+        count: float,
+        height: float = 0.05,
+        turn: float | None = None,
+        swing: float = 0.42,
+    ) -> None:
+        """The standing foot leaves the floor where it is and comes down again at a count."""
+        x, z = self.at(self.foot(foot))
+        if self._put(foot, count, x, z, turn, height, swing, 20.0, scaled=False) is not None:
+            self.key("drop", (count - 0.5 * swing, 0.015 - 0.6 * height))
+            self.key(
+                "weight",
+                (count - swing, 0.93 if foot == 0 else -0.93),
+                (count, 0.93 if foot == 0 else -0.93),
+            )
+
+    def at(self, real: int) -> tuple[float, float]:
+        """Where a foot of the dancer's has its ankle, on the move's own floor."""
+        x, z, yaw = self.script.toes[real]
+        hx, hz, heading = self.script.home
+        dx, dz = x - TOE_AHEAD * sin(yaw) - hx, z - TOE_AHEAD * cos(yaw) - hz
+        s, c = sin(heading), cos(heading)
+        return self.sign * (dx * c - dz * s), dx * s + dz * c
+
+    def _put(
+        self, foot, count, x, z, turn, height, swing, kick, scaled: bool = True
+    ) -> float | None:
+        """Write down one step; the beat at which it lifts, or None where there is no time for
+        it."""
+        side, real = (1 if foot == 0 else -1), self.foot(foot)
+        if scaled:
+            x, z = side * STANCE + self.stride * (x - side * STANCE), self.stride * z
+            x, z = x + self.sign * self.drift[0] * count, z + self.drift[1] * count
+        px, pz, yaw = self.place(x, z, side * 7.0 if turn is None else turn)
+        land = self.start + (count - 0.04) * self.rate
+        lift = max(land - max(swing * self.rate, 0.3), self.script.landed[real] + 0.25)
+        if land - lift < 0.26:
+            return None
+        toe = self._spread(real, px + TOE_AHEAD * sin(yaw), pz + TOE_AHEAD * cos(yaw)) + (yaw,)
+        out = self._round_the_other(real, toe)
+        self.script.steps[real].append(
+            Step(lift, land, *toe, height * (0.6 + 0.4 * self.size), out, kick)
+        )
+        self.script.toes[real], self.script.landed[real] = toe, land
+        return lift
+
+    def _spread(self, foot: int, x: float, z: float) -> tuple[float, float]:
+        """A toe place brought to where the legs reach: NEAREST to WIDEST from the other toe."""
+        ox, oz, _ = self.script.toes[1 - foot]
+        gap = hypot(x - ox, z - oz)
+        scale = min(max(gap, NEAREST), WIDEST) / max(gap, 1e-6)
+        return ox + scale * (x - ox), oz + scale * (z - oz)
+
+    def kick(
+        self,
+        foot: int,
+        count: float,
+        x: float,
+        z: float,
+        height: float,
+        toe: float = 25.0,
+        half: float = 0.48,
+    ) -> None:
+        """Swing a foot out to (x left, z ahead) of where it stands, up to `height` at a count, and
+        set it down again.
+
+        `toe` is how far it points down (degrees; negative: the heel first); `half` the counts from
+        the floor to there.
+        """
+        real, at = self.foot(foot), self.start + count * self.rate
+        half = max(half * self.rate, 0.28)
+        lift = max(at - half, self.script.landed[real] + 0.25)
+        if at - lift < 0.2:
+            return
+        s, c = sin(self.script.home[2]), cos(self.script.home[2])
+        x = self.sign * x
+        out = self.size * (x * c + z * s), self.size * (z * c - x * s)
+        self.script.steps[real].append(
+            Step(lift, at + (at - lift), *self.script.toes[real], height * self.size, out, toe)
+        )
+        self.script.landed[real] = at + (at - lift)
+        self.key("weight", ((lift - self.start) / self.rate, -0.93 * (1 if foot == 0 else -1)))
+
+    def _round_the_other(self, foot: int, toe) -> tuple[float, float]:
+        """How far the path must bulge so that the swinging foot passes the other at 0.15 m or
+        more."""
+        (ax, az, _), (bx, bz, _), (ox, oz, _) = (
+            self.script.toes[foot],
+            toe,
+            self.script.toes[1 - foot],
+        )
+        length = hypot(bx - ax, bz - az)
+        u = min(
+            max(((ox - ax) * (bx - ax) + (oz - az) * (bz - az)) / max(length, 1e-6) ** 2, 0.0), 1.0
+        )
+        dx, dz = ax + u * (bx - ax) - ox, az + u * (bz - az) - oz
+        gap = hypot(dx, dz)
+        if not 0.1 < u < 0.9 or gap > 0.15:
+            return 0.0, 0.0
+        bulge = (0.15 - gap) / max(sin(np.pi * u) ** 2, 0.3) / max(gap, 1e-6)
+        return bulge * dx, bulge * dz
+
+    def pivot(self, foot: int, count: float, turn: float, during: float = 0.6) -> None:
+        """Turn a planted foot about its toe to `turn` degrees (left) from home by a count."""
+        real, land = self.foot(foot), self.start + count * self.rate
+        lift = max(land - during * self.rate, self.script.landed[real] + 0.02)
+        if land - lift < 0.15:
+            return
+        x, z, _ = self.script.toes[real]
+        yaw = self.script.home[2] + self.sign * radians(turn)
+        self.script.steps[real].append(Step(lift, land, x, z, yaw, 0.0, pivot=True))
+        self.script.toes[real], self.script.landed[real] = (x, z, yaw), land
+
+    def foot(self, foot: int) -> int:
+        """Which foot of the dancer's a move's left (0) or right (1) one is."""
+        return foot if self.sign > 0 else 1 - foot
+
+    def both(self, count: float) -> None:
+        """The weight on both feet."""
+        self.key("weight", (count, 0.0))
+
+    def go(
+        self, count: float, x: float = 0.0, z: float = 0.0, turn: float = 0.0, during: float = 1.0
+    ) -> None:
+        """Home moves (left, ahead) and turns (degrees to the left) by a count: what follows is seen
+        from there."""
+        hx, hz, heading = self.script.home
+        end, began = self.start + count * self.rate, self.start + (count - during) * self.rate
+        px, pz, after = self.place(self.stride * x, self.stride * z, turn)
+        if turn:
+            keys = self.keys.setdefault("heading", [])
+            keys += [(max(began, self.script.heading_at + 0.07), heading), (end, after)]
+            self.script.heading_at = end
+        self.script.home = (px, pz, after)
+
+    def close(self) -> None:
+        """Enter the move; a channel that it did not use goes back to rest."""
+        last = self.start + (self.n - 1) * self.rate
+        for name, rest in self.rest.items():
+            if name not in self.keys and name != "weight":
+                wander = (
+                    0.03
+                    * self.rng.standard_normal(2)
+                    * (abs(rest) + (0.1 if name in LENGTHS else 30))
+                )
+                first = self.start + 0.5 * self.rng.random()
+                self.keys[name] = [
+                    (first, rest + wander[0]),
+                    (max(last, first + 0.5), rest + wander[1]),
+                ]
+        self.script.enter(self.keys)

@@ -1,0 +1,61 @@
+"""A song: how it sounds, and what is known of it — every beat, every drum hit, where the bars and
+the phrases begin.
+
+The music is composed in `music.py`; the dance in `dance.py` follows the score (beats, bars,
+phrases, energy), never the sound, so that what a network hears and what it must move to meet only
+in the data.
+"""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from jaxtyping import Float, Int
+
+SAMPLE_RATE = 16_000  # Hz, MoFusion's
+
+GENRES = {  # name: (slowest, fastest BPM, beats in a bar)
+    "house": (110, 165, 4),
+    "hiphop": (80, 108, 4),
+    "pop": (96, 135, 4),
+    "latin": (88, 126, 4),
+    "waltz": (80, 132, 3),
+}
+TRAINING_TIMBRES = ("machine", "acoustic", "brushes", "lofi", "percussion", "chip")
+HELD_OUT_TIMBRE = "mallets"  # clay pots and wooden bars: never drawn, only when asked for
+TIMBRES = (*TRAINING_TIMBRES, HELD_OUT_TIMBRE)
+DRUMS = ("kick", "snare", "clap", "rim", "hat", "open hat", "shaker", "tom", "crash")
+
+
+@dataclass(frozen=True, eq=False)
+class Song:
+    """Mono sound at SAMPLE_RATE, and the score behind it; all times in seconds from the first
+    sample.
+
+    `bar_position` is 0 on a downbeat; `phrase` counts from 0 and changes on a downbeat; `energy` is
+    0 (a break) to 1. `hits` has the time of every drum hit by the drum's name, one of DRUMS; a drum
+    that is not played has none. `tempo` is the mean, in beats a minute. `info["section"]` names
+    every beat's part: intro, verse, chorus, bridge, break.
+    """
+
+    audio: Float[np.ndarray, "N"]
+    beats: Float[np.ndarray, "K"]
+    bar_position: Int[np.ndarray, "K"]
+    phrase: Int[np.ndarray, "K"]
+    energy: Float[np.ndarray, "K"]
+    hits: dict[str, Float[np.ndarray, "_"]]
+    genre: str
+    tempo: float
+    metre: int
+    timbre: str  # the set of instruments it is played on
+    seed: int
+    info: dict = field(default_factory=dict)
+
+    @property
+    def seconds(self) -> float:
+        """Length of the sound."""
+        return len(self.audio) / SAMPLE_RATE
+
+    @property
+    def downbeats(self) -> Float[np.ndarray, "K2"]:
+        """The first beat of every bar."""
+        return self.beats[self.bar_position == 0]

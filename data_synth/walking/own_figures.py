@@ -1,0 +1,113 @@
+"""What the walking data themselves score: spread of continuations, adherence, skating, lean in
+turns; and their limits.
+
+These stand beside every figure of a network that was trained on them.
+"""
+
+import time
+
+import numpy as np
+from jaxtyping import Float
+
+from motiondiff_edu.metrics.adherence import adherence
+from motiondiff_edu.metrics.bone_lengths import bone_lengths
+from motiondiff_edu.metrics.diversity import spread
+from motiondiff_edu.metrics.skating import skating
+from motiondiff_edu.motion.clip import Clip
+from motiondiff_edu.motion.skeleton import BONE_LENGTHS, TOES
+
+from .gait_statistics import turning_lean
+from .walks import continuations, dataset, random_control, walk
+
+
+def spreads(pasts: int, n: int, seconds: float, seed: int = 0) -> Float[np.ndarray, "pasts"]:
+    """Root-frame RMS spread (m) from 1 s on of n continuations, for `pasts` pasts and the controls
+    they had anyway."""
+    found = []
+    for k, whole in enumerate(dataset(pasts, 4 + seconds, seed)):
+        later = continuations(whole.cut(70, 80), whole.control[80:], n, seed + k)
+        found.append(spread(np.stack([c.poses for c in later])))
+    return np.array(found)
+
+
+def own_figures(
+    clips: int = 60, pasts: int = 20, n: int = 50, seconds: float = 12.0
+) -> dict[str, float]:
+    """Means over clips: spread (m), adherence and skating (m/s), slope and correlation of the lean
+    in turns."""
+    apart, walks = spreads(pasts, n, seconds), dataset(clips, seconds, 1)
+    out = {
+        "spread_m": apart.mean(),
+        "spread_smallest_m": apart.min(),
+        "spread_largest_m": apart.max(),
+    }
+    out["adherence_mps"] = np.mean([adherence(c.poses, c.control) for c in walks])
+    out["skating_mps"] = np.nanmean([skating(c.poses, c.control) for c in walks])
+    turns = [random_control(20.0, np.random.default_rng([2, k]), "turn") for k in range(12)]
+    lean = np.array([turning_lean(walk(c, k, "neutral").world()) for k, c in enumerate(turns)])
+    out["turning_lean_slope"], out["turning_lean_r"] = lean.mean(0)
+    return {name: float(value) for name, value in out.items()}
+
+
+def limits(clips: int = 600, seconds: float = 12.0, spots: int = 60) -> dict[str, float]:
+    """What no frame of `clips` walks exceeds, how near the feet come on `spots` fast turns, and the
+    speed of making."""
+    begun = time.process_time()
+    walks = dataset(clips, seconds, 1)
+    out = {"made_per_cpu_second": clips * seconds / (time.process_time() - begun)}
+    knees, controls = (
+        np.concatenate([knee_angles(c) for c in walks]),
+        np.concatenate([c.control for c in walks]),
+    )
+    out |= {"knee_smallest_deg": knees.min(), "knee_largest_deg": knees.max()}
+    out["lowest_joint_mm"] = 1e3 * min(c.poses[..., 1].min() for c in walks)
+    out["planted_toe_mm_a_frame"] = 1e3 * max(planted_slip(c) for c in walks)
+    out["bone_error_m"] = max(bone_error(c) for c in walks)
+    out |= {"ahead_slowest_mps": controls[:, 0].min(), "ahead_fastest_mps": controls[:, 0].max()}
+    out["aside_mps"], out["turning_dps"] = (
+        np.abs(controls[:, 1]).max(),
+        np.degrees(np.abs(controls[:, 2]).max()),
+    )
+    out["speed_times_turning_mps2"] = np.abs(controls[:, 0] * controls[:, 2]).max()
+    near = np.concatenate(
+        [feet_apart(c)[fast] for c, fast in (_spot(k, seconds) for k in range(spots))]
+    )
+    out |= {"feet_within_4cm": (near < 0.04).mean(), "feet_nearest_cm": 100 * near.min()}
+    return {name: float(value) for name, value in out.items()}
+
+
+def knee_angles(clip: Clip) -> Float[np.ndarray, "T 2"]:
+    """How far the knees are bent (degrees, 0 straight), left and right."""
+    thigh, shank = (
+        clip.poses[:, [2, 6]] - clip.poses[:, [1, 5]],
+        clip.poses[:, [3, 7]] - clip.poses[:, [2, 6]],
+    )
+    cos = (thigh * shank).sum(-1) / np.linalg.norm(thigh, axis=-1) / np.linalg.norm(shank, axis=-1)
+    return np.degrees(np.arccos(np.clip(cos, -1, 1)))
+
+
+def planted_slip(clip: Clip) -> float:
+    """The farthest that a planted toe moves in a frame (m)."""
+    moved = np.linalg.norm(np.diff(clip.world()[:, TOES], axis=0), axis=-1)
+    return float((moved * (clip.contacts[1:] & clip.contacts[:-1])).max())
+
+
+def bone_error(clip: Clip) -> float:
+    """The largest difference of a bone from its length (m)."""
+    return float(np.abs(bone_lengths(clip.poses) - BONE_LENGTHS).max())
+
+
+def feet_apart(clip: Clip) -> Float[np.ndarray, "T"]:
+    """Smallest distance (m) of the lines from ankle to toe of both feet, at eleven points of
+    each."""
+    share = np.linspace(0, 1, 11)[:, None]
+    left, right = (
+        p[:, :1] + share * (p[:, 1:] - p[:, :1]) for p in (clip.poses[:, 3:5], clip.poses[:, 7:9])
+    )
+    return np.linalg.norm(left[:, :, None] - right[:, None], axis=-1).min((1, 2))
+
+
+def _spot(k: int, seconds: float) -> tuple[Clip, np.ndarray]:
+    """A walk on the spot, and its frames that turn at 100 degrees/s or more."""
+    clip = walk(random_control(seconds, np.random.default_rng([5, k]), "spot"), k)
+    return clip, np.abs(clip.control[:, 2]) >= np.radians(100)

@@ -1,0 +1,189 @@
+"""How somebody walks: the numbers that stay the same through a clip, for a handful of characters.
+
+A style shows in trunk lean, elbows, arm swing, width of the track and turning of the chest; the
+timing of steps varies much less. Angles in degrees, lengths in metres, factors relative to the
+neutral walk at the same speed.
+"""
+
+from dataclasses import dataclass, fields, replace
+
+import numpy as np
+
+
+@dataclass(frozen=True)
+class Style:
+    """Constants of one walker; the defaults are the neutral walk."""
+
+    name: str = "neutral"
+    cadence: float = 1.0  # factor on steps per minute
+    stance: float = 0.0  # added to the stance fraction
+    asymmetry: float = 0.0  # share of a cycle by which the right foot comes late
+    width: float = 0.075  # distance between the two lines of footprints
+    toe_out: float = 6.0
+    crouch: float = 0.0  # metres the pelvis is lower
+    bounce: float = 1.0  # vertical pelvis movement, factor
+    sway: float = 1.0  # lateral pelvis movement, factor
+    lift: float = 1.0  # height of the swinging foot, factor
+    pelvis_yaw: float = 1.0
+    chest_yaw: float = 1.0
+    lean: float = 0.0  # trunk, forward
+    head: float = 0.0  # extra, forward
+    arms: float = 1.0  # arm swing, factor
+    arms_right: float = 1.0  # the right arm's swing over the left's
+    elbow: float = 0.0  # added to the elbows
+    abduct: float = 8.0  # upper arms away from the body
+    behaviours: float = 6.0  # events a minute: looking about, waving, hands on hips
+
+
+STYLES: dict[str, Style] = {
+    s.name: s
+    for s in (
+        Style(),
+        Style(
+            "old",
+            1.08,
+            0.02,
+            0.0,
+            0.15,
+            14.0,
+            0.035,
+            0.7,
+            0.9,
+            0.75,
+            0.7,
+            1.2,
+            20.0,
+            8.0,
+            0.65,
+            1.0,
+            24.0,
+            10.0,
+        ),
+        Style(
+            "strut",
+            0.98,
+            0.0,
+            0.0,
+            0.13,
+            9.0,
+            0.0,
+            1.0,
+            1.4,
+            1.1,
+            1.25,
+            2.2,
+            -6.0,
+            -3.0,
+            1.1,
+            1.0,
+            10.0,
+            17.0,
+        ),
+        Style(
+            "crouch",
+            0.92,
+            0.01,
+            0.0,
+            0.20,
+            12.0,
+            0.10,
+            0.9,
+            1.2,
+            1.1,
+            1.5,
+            1.8,
+            24.0,
+            -14.0,
+            0.5,
+            1.0,
+            55.0,
+            20.0,
+        ),
+        Style(
+            "brisk",
+            1.07,
+            -0.01,
+            0.0,
+            0.06,
+            4.0,
+            0.0,
+            1.1,
+            0.85,
+            1.0,
+            1.1,
+            0.9,
+            3.0,
+            0.0,
+            1.35,
+            1.0,
+            32.0,
+            9.0,
+        ),
+        Style(
+            "tired",
+            0.93,
+            0.02,
+            0.0,
+            0.10,
+            8.0,
+            0.015,
+            0.8,
+            1.2,
+            0.8,
+            0.8,
+            0.8,
+            9.0,
+            14.0,
+            0.55,
+            1.0,
+            -4.0,
+            5.0,
+        ),
+    )
+}
+SHARES = {"neutral": 0.45, "old": 0.1, "strut": 0.12, "crouch": 0.08, "brisk": 0.13, "tired": 0.12}
+
+# how much people of one style differ: sd of each number (factors: of their logarithm)
+SPREAD = {
+    "cadence": 0.025,
+    "stance": 0.008,
+    "asymmetry": 0.006,
+    "width": 0.018,
+    "toe_out": 2.5,
+    "crouch": 0.006,
+}
+SPREAD |= {
+    "bounce": 0.08,
+    "sway": 0.1,
+    "lift": 0.06,
+    "pelvis_yaw": 0.12,
+    "chest_yaw": 0.2,
+    "lean": 1.5,
+    "head": 2.0,
+}
+SPREAD |= {"arms": 0.14, "arms_right": 0.08, "elbow": 3.5, "abduct": 2.0}
+FACTORS = ("cadence", "bounce", "sway", "lift", "pelvis_yaw", "chest_yaw", "arms", "arms_right")
+
+
+def draw_style(name: str | None, rng: np.random.Generator) -> str:
+    """The given name, or one drawn by SHARES; raises ValueError for a name that is not in
+    STYLES."""
+    if name is None:
+        return str(rng.choice(list(SHARES), p=list(SHARES.values())))
+    if name not in STYLES:
+        raise ValueError(f"no style is called {name!r}; there are {', '.join(STYLES)}")
+    return name
+
+
+def person(style: Style, rng: np.random.Generator) -> Style:
+    """One walker of this style: every constant moved by its SPREAD (at most 2 sd)."""
+    new = {}
+    for f in fields(style):
+        if f.name in SPREAD:
+            shift = SPREAD[f.name] * float(np.clip(rng.standard_normal(), -2, 2))
+            old = getattr(style, f.name)
+            new[f.name] = old * float(np.exp(shift)) if f.name in FACTORS else old + shift
+    side = 1.0 if rng.random() < 0.5 else -1.0  # nobody is quite symmetric
+    new["asymmetry"] += 0.006 * side
+    new["width"] = max(new["width"], 0.02)
+    return replace(style, **new)

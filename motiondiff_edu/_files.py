@@ -1,0 +1,41 @@
+"""Files that are there whole or not at all, and digests by which a damaged one is known."""
+
+import hashlib
+import os
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from pathlib import Path
+
+from torch import Tensor
+
+
+@contextmanager
+def replacing(path: str | Path) -> Iterator[Path]:
+    """A name beside `path` to write to; renamed to `path` when all went well, removed when not.
+
+    with replacing("walk.bvh") as aside: aside.write_text(...)
+    """
+    path = Path(path)
+    path.parent.mkdir(parents=True, exist_ok=True)
+    aside = path.with_name(
+        f".{path.name}.{os.getpid()}.part"
+    )  # not tempfile: its files are for their owner alone
+    try:
+        yield aside
+        os.replace(aside, path)
+    finally:
+        aside.unlink(missing_ok=True)
+
+
+def digest_of_tensors(tensors: Mapping[str, Tensor]) -> str:
+    """SHA-256 of all tensors, in the order of their names: safetensors itself checks only its
+    header."""
+    digest = hashlib.sha256()
+    for name in sorted(tensors):
+        digest.update(name.encode() + tensors[name].contiguous().numpy().tobytes())
+    return digest.hexdigest()
+
+
+def digest_of_texts(texts: Mapping[str, str]) -> str:
+    """SHA-256 of named texts, in the order of their names."""
+    return hashlib.sha256(repr(sorted(texts.items())).encode()).hexdigest()

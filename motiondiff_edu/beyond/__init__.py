@@ -1,0 +1,2 @@
+"""Departures from the papers, one idea a file: what it is, why, and what it gains (a row of
+docs/RESULTS.md)."""

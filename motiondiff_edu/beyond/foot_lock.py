@@ -1,0 +1,100 @@
+"""Feet that were made up stand where they stand: a low, slow toe is held in place, and the leg
+follows.
+
+A network's feet slide by centimetres in each frame, which the eye sees first. Nothing but legs is
+moved, and nothing that is given; whoever lets the feet glide on purpose must do without.
+Source: foot-skate cleanup for motion capture (Kovar and others, 2002), shortened.  Notebook: 15
+"""
+
+import numpy as np
+from jaxtyping import Bool, Float
+from scipy.ndimage import distance_transform_edt
+
+from ..motion.dance_frame import GROUND
+from ..motion.inverse_kinematics import bends_to, two_bones
+from ..motion.planting import spans
+from ..motion.skeleton import HEELS, TOES
+
+FADE = 6  # frames
+LOW, SLOW = (
+    0.05,
+    1.0,
+)  # m above the floor and m/s: a toe under both is taken to stand, however it slides
+FLOOR = 5  # percentile of a toe's height
+
+
+def steady_feet(
+    positions: Float[np.ndarray, "*B T 21 3"], known: Bool[np.ndarray, "T 21"], fps: float = 20.0
+) -> Float[np.ndarray, "*B T 21 3"]:
+    """Legs that are not known (metres, world) moved so that feet do not slide; bones keep their
+    length.
+
+    A stand is a run of frames in which a toe is low and slow. It stays at its median place, or
+    where it is given in the meantime; the correction passes smoothly from stand to stand, and is
+    nothing where the foot is given. An ankle out of the leg's reach slides on as little as it must.
+    Notebook: 15
+    """
+    every = np.array(positions, np.float64).reshape(-1, *positions.shape[-3:])
+    for moved in every:
+        for toe, heel in zip(TOES, HEELS, strict=True):
+            _steady_leg(moved, known, toe, heel, fps)
+    return np.where(known[..., None], positions, every.reshape(positions.shape))
+
+
+def _steady_leg(moved, known, toe: int, heel: int, fps: float) -> None:
+    """One leg, in place: hip, knee, ankle and toe are neighbours in the skeleton. The foot keeps
+    its direction."""
+    leg = [heel - 2, heel - 1, heel]
+    free = ~known[:, [*leg[1:], toe]].any(1)
+    shift = to_stands(moved[:, toe], ~free, fps)
+    for t in np.flatnonzero(free & shift.any(1)):
+        foot = moved[t, toe] - moved[t, heel]
+        moved[t, leg] = two_bones(
+            moved[t, leg], moved[t, heel] + shift[t], bends_to(moved[t], leg[0])
+        )
+        moved[t, toe] = moved[t, heel] + foot
+
+
+def to_stands(
+    toe: Float[np.ndarray, "T 3"], given: Bool[np.ndarray, " T"], fps: float
+) -> Float[np.ndarray, "T 3"]:
+    """What to add to a toe so that it does not slide while it stands; zero where it is given."""
+    shift, anchored, frames = np.zeros_like(toe), given.copy(), np.arange(len(toe))
+    for first, last in spans(stands(toe, fps)):
+        inside = np.flatnonzero(given[first:last]) + first
+        if len(inside):  # at the given places, and evenly from one to the next should they differ
+            pin = np.stack(
+                [np.interp(np.arange(first, last), inside, toe[inside, k]) for k in range(3)], -1
+            )
+        else:
+            pin = np.median(toe[first:last], axis=0)
+        pull = 1 - closeness(given & ((frames < first) | (frames >= last)))[first:last]
+        # held over the ground; up and down it rolls as it did
+        shift[first:last], anchored[first:last] = (
+            pull[:, None] * (pin - toe[first:last]) * GROUND,
+            True,
+        )
+    at = np.flatnonzero(anchored)
+    if len(at):
+        before = at[np.clip(np.searchsorted(at, frames, "right") - 1, 0, None)]
+        after = at[np.clip(np.searchsorted(at, frames, "left"), None, len(at) - 1)]
+        u = np.clip((frames - before) / np.maximum(after - before, 1), 0, 1)[:, None]
+        shift = shift[before] + (shift[after] - shift[before]) * (3 * u**2 - 2 * u**3)
+    return shift
+
+
+def closeness(given: Bool[np.ndarray, " T"]) -> Float[np.ndarray, " T"]:
+    """1 in given frames, 0 from `FADE` frames away, smooth between: no stand may jump to where a
+    foot is given next."""
+    away = distance_transform_edt(~given) if given.any() else np.full(len(given), np.inf)
+    u = np.minimum(away / FADE, 1)
+    return 1 - (3 * u**2 - 2 * u**3)
+
+
+def stands(toe: Float[np.ndarray, "T 3"], fps: float) -> Bool[np.ndarray, " T"]:
+    """Frames in which a toe is low, and slow over the ground to or from the frame beside it; runs
+    of two at least."""
+    ground = np.linalg.norm(np.diff(toe[:, [0, 2]], axis=0), axis=-1) * fps
+    slow = np.minimum(np.append(ground, np.inf), np.append(np.inf, ground)) < SLOW
+    found = slow & (toe[:, 1] < np.percentile(toe[:, 1], FLOOR) + LOW)
+    return found & (np.append(found[1:], False) | np.append(False, found[:-1]))

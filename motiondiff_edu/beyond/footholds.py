@@ -1,0 +1,162 @@
+"""A foot that stands: MoDiff whose ankles and toes may stay where they are in the world.
+
+A planted foot is at rest in the world, and moves in the root frame: backwards, as fast as the root
+goes forwards. A network that draws it anew in every frame misses by millimetres, and the foot
+slides. But where a joint of the last pose would be if it stayed is known exactly, from the control
+alone (`held`). So for each of these joints the network chooses, between 0 and 1, how much of that
+to take:
+
+    x0_hat = gate * held + (1 - gate) * free
+Ours; neither paper has it.  Notebook: 07
+"""
+
+from dataclasses import dataclass
+
+import torch
+from jaxtyping import Float, Int
+from torch import Tensor, nn
+
+from ..modiff import MoDiff, MoDiffConfig
+from ..motion.scaler import Scaler
+from ..motion.skeleton import J, joint_index
+
+FEET = [joint_index(name) for name in ("LeftFoot", "LeftToeBase", "RightFoot", "RightToeBase")]
+LEAN, STRETCH = 0.25, 0.1  # see openness
+COLUMNS = [3 * joint + axis for joint in FEET for axis in range(3)]
+
+
+def held_positions(
+    joints: Float[Tensor, "B K 3"], control: Float[Tensor, "B T 3"], fps: float = 20.0
+) -> Float[Tensor, "B T K 3"]:
+    """Where joints (metres, root frame) come to lie in the root frames ahead, if they stay put in
+    the world.
+
+    Row t of the control takes the root on to frame t + 1, at the halfway heading; result t is as
+    seen from there.
+    Notebook: 07
+    """
+    forward, left, yaw = (control / fps).unbind(-1)
+    heading = yaw.cumsum(1)
+    halfway = heading - yaw / 2
+    root_x = (forward * halfway.sin() + left * halfway.cos()).cumsum(1)
+    root_z = (forward * halfway.cos() - left * halfway.sin()).cumsum(1)
+    x, y, z = joints[:, None].unbind(-1)
+    x, z = x - root_x[..., None], z - root_z[..., None]
+    sin, cos = heading.sin()[..., None], heading.cos()[..., None]
+    return torch.stack([x * cos - z * sin, y.expand_as(x), x * sin + z * cos], dim=-1)
+
+
+@dataclass(frozen=True)
+class FootholdConfig(MoDiffConfig):
+    """Sizes of a network with footholds. It is asked for x0 and has no skip: a foothold is a place.
+
+    Raises ValueError for another target, for a skip, or for another skeleton than the course's.
+    Notebook: 07
+    """
+
+    target: str = "x0"
+    skip: bool = False
+
+    def __post_init__(self):
+        super().__post_init__()
+        if self.target != "x0" or self.skip:
+            raise ValueError('a foothold is a place: it needs target="x0" and skip=False')
+        if self.D != 3 * J:
+            raise ValueError(
+                f"footholds are for the {J} joints of the course's skeleton, D = {3 * J}, not {self.D}"
+            )
+
+
+@dataclass(frozen=True, eq=False)
+class Standing:
+    """The memory of past and control, and where the feet would be if they stayed (standardised,
+    COLUMNS only)."""
+
+    memory: Float[Tensor, "B M width"]
+    held: Float[Tensor, "B T_p K"]
+
+    def repeat_interleave(self, repeats: int, dim: int = 0) -> "Standing":
+        parts = (self.memory, self.held)
+        return Standing(*(part.repeat_interleave(repeats, dim) for part in parts))
+
+
+class FootholdMoDiff(MoDiff):
+    """MoDiff for x0 whose head may leave ankles and toes where they stood, joint by joint and frame
+    by frame.
+
+    The scalers lead to metres and m/s: where a foot stays is a matter of metres. They are not among
+    the weights.
+    Notebook: 07
+    """
+
+    def __init__(self, config: FootholdConfig, pose_scaler: Scaler, control_scaler: Scaler):
+        super().__init__(config)
+        self.gate = nn.Linear(config.width, len(FEET))
+        nn.init.zeros_(self.gate.weight)
+        nn.init.constant_(self.gate.bias, -2.0)  # at first the feet are nearly free
+        units = {
+            "pose_mean": pose_scaler.mean[COLUMNS],
+            "pose_std": pose_scaler.std[COLUMNS],
+            "control_mean": control_scaler.mean,
+            "control_std": control_scaler.std,
+        }
+        for name, value in units.items():
+            self.register_buffer(name, value.clone(), persistent=False)
+
+    def held(
+        self, pose: Float[Tensor, "B D"], control: Float[Tensor, "B T C"]
+    ) -> Float[Tensor, "B T_p K"]:
+        """`held_positions` of the feet of a pose (the last one given), everything standardised."""
+        feet = pose[:, COLUMNS] * self.pose_std + self.pose_mean
+        ahead = control[:, self.config.T_h - 1 : -1] * self.control_std + self.control_mean
+        places = held_positions(feet.unflatten(-1, (-1, 3)), ahead).flatten(-2)
+        return (places - self.pose_mean) / self.pose_std
+
+    def encode(
+        self,
+        past: Float[Tensor, "B T_h D"],
+        control: Float[Tensor, "B T C"],
+        standing: Float[Tensor, "B D"] | None = None,
+    ) -> Standing:
+        """The memory, and where the feet of the pose `standing` (by default the last one given)
+        would stay."""
+        memory = super().encode(past, control)
+        return Standing(memory, self.held(past[:, -1] if standing is None else standing, control))
+
+    def decode(
+        self, x_s: Float[Tensor, "B T_p D"], s: Int[Tensor, "B"], context: Standing
+    ) -> Float[Tensor, "B T_p D"]:
+        """x0_hat: free for most joints, between free and held for the feet."""
+        x = self.attend(self.embed(x_s, s), context.memory)
+        return blend(self.head(x), openness(self.gate(x), leaning=not self.training), context.held)
+
+
+def blend(
+    free: Float[Tensor, "B T_p D"], share: Float[Tensor, "B T_p F"], held: Float[Tensor, "B T_p K"]
+) -> Float[Tensor, "B T_p D"]:
+    """share * held + (1 - share) * free in the feet's columns, a share for each joint."""
+    out = free.clone()
+    out[..., COLUMNS] = torch.lerp(out[..., COLUMNS], held, share.repeat_interleave(3, dim=-1))
+    return out
+
+
+def openness(gate: Float[Tensor, "*B F"], leaning: bool = True) -> Float[Tensor, "*B F"]:
+    """How much of its place a joint keeps, 0 to 1, from the gate's logit: in training
+    (leaning=False) its sigmoid.
+
+    In use the gate leans towards holding, by LEAN, and is stretched at both ends by STRETCH, so
+    that nearly all becomes all. A squared error hardly sees a foot creep by millimetres, and that
+    is what training asks about; the eye does. Both numbers were chosen on walks that no figure of
+    docs/RESULTS.md is of: more lean, and the bones suffer.
+    Source: ours; the stretch is that of the hard concrete distribution (Louizos and others, 2018).
+    Notebook: 07
+    """
+    if not leaning:
+        return torch.sigmoid(gate)
+    return ((1 + 2 * STRETCH) * torch.sigmoid(gate + LEAN) - STRETCH).clamp(0, 1)
+
+
+def network(config: MoDiffConfig, pose_scaler: Scaler, control_scaler: Scaler) -> MoDiff:
+    """The network that a configuration asks for: MoDiff, or the one with footholds."""
+    footholds = isinstance(config, FootholdConfig)
+    return FootholdMoDiff(config, pose_scaler, control_scaler) if footholds else MoDiff(config)

@@ -1,0 +1,215 @@
+"""Wrong answers to the exercises of notebook 10."""
+
+import torch
+
+
+def order_only(control):
+    """What the paper says. The figure is told to walk ahead while its film runs backwards."""
+    return control.flip(1)
+
+
+def not_shifted(control):
+    """Nearly right: each step is taken one frame too early, and the path ends beside where it
+    began."""
+    return -control.flip(1)
+
+
+def no_sign(control):
+    """The rows are where they belong, the figure still walks ahead."""
+    back = control[:, :-1].flip(1)
+    return torch.cat([back, back[:, -1:]], dim=1)
+
+
+def yaw_kept(control):
+    """It walks backwards, and turns off to the wrong side."""
+    return -no_sign(control) * torch.tensor([1, 1, -1.0])
+
+
+def left_kept(control):
+    """As in a mirror: but a mirror leaves time alone."""
+    return -no_sign(control) * torch.tensor([1, -1.0, 1])
+
+
+def last_zero(control):
+    """In the last frame it stands still."""
+    back = -control[:, :-1].flip(1)
+    return torch.cat([back, torch.zeros_like(back[:, :1])], dim=1)
+
+
+def in_place(control):
+    """Right, but the walk that was given now has another control."""
+    control.copy_(-no_sign(control))
+    return control
+
+
+def _round(
+    walk_on,
+    past,
+    known,
+    mean,
+    control,
+    reverse=lambda c: -no_sign(c),
+    flip_ahead=True,
+    flip_back=True,
+):
+    filled = torch.where(known, past, mean)
+    ahead = walk_on(filled, control)
+    back = walk_on(ahead.flip(1) if flip_ahead else ahead, reverse(control))
+    return back.flip(1) if flip_back else back
+
+
+def _filled(**changes):
+    def answer(walk_on, past, known, mean, control):
+        return torch.where(known, past, _round(walk_on, past, known, mean, control, **changes))
+
+    return answer
+
+
+def mask_inverted(walk_on, past, known, mean, control):
+    """Keeps the holes and replaces what was given."""
+    return torch.where(
+        known, _round(walk_on, past, known, mean, control), torch.where(known, past, mean)
+    )
+
+
+def overwritten(walk_on, past, known, mean, control):
+    """A smooth past, but no longer the one that was given."""
+    return _round(walk_on, past, known, mean, control)
+
+
+def raw_zero(walk_on, past, known, mean, control):
+    """The missing hand starts on the floor, and the walker takes it for what it saw."""
+    return torch.where(known, past, _round(walk_on, past, known, torch.zeros_like(mean), control))
+
+
+def nan_to_the_walker(walk_on, past, known, mean, control):
+    """Fills the holes afterwards only: the walker has eaten NaN."""
+    return _round(walk_on, past, known, past, control)
+
+
+def start_returned(walk_on, past, known, mean, control):
+    """Has walked there and back, and forgets to use it."""
+    _round(walk_on, past, known, mean, control)
+    return torch.where(known, past, mean)
+
+
+def two_rounds(walk_on, past, known, mean, control):
+    """Right where it ends, but it was asked for one round."""
+    once = torch.where(known, past, _round(walk_on, past, known, mean, control))
+    return torch.where(known, past, _round(walk_on, once, known, mean, control))
+
+
+def short_control(walk_on, past, known, mean, control):
+    """Only the rows beside the past go along: a walker then has no control for the frames it is to
+    make."""
+    ahead = walk_on(torch.where(known, past, mean), control[:, : past.shape[1]])
+    back = walk_on(ahead.flip(1), -no_sign(control)).flip(1)
+    return torch.where(known, past, back)
+
+
+def last_pose_only(walk_on, past, known, mean, control):
+    """Walks back from one pose: the walker goes on from as many as it was trained with."""
+    ahead = walk_on(torch.where(known, past, mean), control)
+    back = walk_on(ahead.flip(1)[:, -1:], -no_sign(control)).flip(1)
+    return torch.where(known, past, back)
+
+
+def there_only(walk_on, past, known, mean, control):
+    """Fills the past with the future."""
+    return torch.where(known, past, walk_on(torch.where(known, past, mean), control))
+
+
+def _moved(before, after, known):
+    return (after - before).square() * ~known, (~known).flatten(1).sum(1).clamp(min=1)
+
+
+def no_root(before, after, known):
+    """Square metres: a centimetre seems to be a tenth of a millimetre."""
+    moved, holes = _moved(before, after, known)
+    return moved.flatten(1).sum(1) / holes
+
+
+def all_entries(before, after, known):
+    """Given entries count as well."""
+    return (after - before).square().flatten(1).mean(1).sqrt()
+
+
+def divided_by_all(before, after, known):
+    """A small hole seems to have come to rest long before it has."""
+    return _moved(before, after, known)[0].flatten(1).mean(1).sqrt()
+
+
+def one_for_all(before, after, known):
+    """One number for the whole batch: a restless sample hides among many calm ones."""
+    return (after - before)[~known].square().mean().sqrt()
+
+
+def mean_distance(before, after, known):
+    """Metres, but not the root of the mean square."""
+    holes = ~known
+    return ((after - before).abs() * holes).flatten(1).sum(1) / holes.flatten(1).sum(1).clamp(min=1)
+
+
+def before_in_place(before, after, known):
+    """Right, but the holes as they were are lost to the next round."""
+    before -= after
+    moved = before.square() * ~known
+    return (moved.flatten(1).sum(1) / (~known).flatten(1).sum(1).clamp(min=1)).sqrt()
+
+
+def after_in_place(before, after, known):
+    """Right, but what was found is gone."""
+    after[known] = before[known]
+    return (
+        ((after - before).square()).flatten(1).sum(1) / (~known).flatten(1).sum(1).clamp(min=1)
+    ).sqrt()
+
+
+def nothing_by_nothing(before, after, known):
+    """0 / 0 where nothing is missing: NaN is never below a tolerance, and the loop runs on."""
+    holes = ~known
+    return (((after - before).square() * holes).flatten(1).sum(1) / holes.flatten(1).sum(1)).sqrt()
+
+
+ZOO = {
+    "time_reversal": {
+        "order only": order_only,
+        "negated, not shifted": not_shifted,
+        "shifted, not negated": no_sign,
+        "yaw keeps its sign": yaw_kept,
+        "left keeps its sign": left_kept,
+        "last row zero": last_zero,
+        "changes its input": in_place,
+    },
+    "there_and_back": {
+        "control not negated": _filled(reverse=order_only),
+        "negated, not shifted": _filled(reverse=not_shifted),
+        "motion reversed, control not": _filled(reverse=lambda control: control),
+        "yaw not negated": _filled(reverse=yaw_kept),
+        "new frames not reversed": _filled(flip_ahead=False),
+        "way back not turned round": _filled(flip_back=False),
+        "mask inverted": mask_inverted,
+        "known entries overwritten": overwritten,
+        "holes start at raw zero": raw_zero,
+        "NaN given to the walker": nan_to_the_walker,
+        "start returned": start_returned,
+        "two rounds": two_rounds,
+        "control of the past only": short_control,
+        "back from one pose": last_pose_only,
+        "way there only": there_only,
+        "time never turned": _filled(flip_ahead=False, flip_back=False),
+        "neither time nor control turned": _filled(
+            reverse=lambda control: control, flip_ahead=False, flip_back=False
+        ),
+    },
+    "moved_by": {
+        "no root": no_root,
+        "all entries count": all_entries,
+        "divided by all entries": divided_by_all,
+        "one number for all samples": one_for_all,
+        "mean distance": mean_distance,
+        "changes before": before_in_place,
+        "changes after": after_in_place,
+        "nothing by nothing": nothing_by_nothing,
+    },
+}

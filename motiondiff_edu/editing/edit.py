@@ -1,0 +1,226 @@
+"""An edit of a motion: frames are pinned as keyframes, joints dragged, a part of the body kept; the
+rest is to be made.
+
+What is given follows from it: `known` and `positions`, as `editing.inbetween.inbetween` takes them.
+Source: MoFusion 4.4 (editing by seeds, keyframes and joints).  Notebook: 15
+"""
+
+import inspect
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+
+import numpy as np
+import torch
+from jaxtyping import Bool, Float
+
+from ..metrics.keyframes import keyframe_error, seam_jump
+from ..motion.inverse_kinematics import drag
+from ..motion.skeleton import JOINTS, joint_index
+from .masks import PARTS, body_part, known_frames
+
+Pose = Float[np.ndarray, "21 3"]
+KEPT = tuple(name for name in PARTS if name != "whole body")  # parts that can be kept throughout
+CM, MM = 100.0, 1000.0
+
+
+@dataclass(frozen=True, eq=False)
+class Edit:
+    """A motion (metres) and what of it is held: pinned frames with their poses, and a part kept in
+    all frames.
+
+    Each method returns another edit; `moved` names the joints that were dragged in each pinned
+    frame.   Notebook: 15
+    """
+
+    motion: Float[np.ndarray, "T 21 3"]
+    pins: Mapping[int, Pose] = field(default_factory=dict)
+    moved: Mapping[int, tuple[str, ...]] = field(default_factory=dict)
+    part: str | None = None
+
+    def __len__(self) -> int:
+        return len(self.motion)
+
+    def pin(self, frame: int, pose: Pose | None = None) -> "Edit":
+        """A frame held as a keyframe: as it is in the motion, or in this pose.  Raises IndexError
+        outside of it."""
+        frame = self.index(frame)
+        pose = np.array(
+            self.motion[frame] if pose is None else pose, np.float64
+        )  # a copy: a pin is nobody else's
+        return replace(self, pins={**self.pins, frame: pose}, moved=_without(self.moved, frame))
+
+    def unpin(self, frame: int) -> "Edit":
+        """A frame is let go, and with it what was dragged there."""
+        frame = self.index(frame)
+        return replace(self, pins=_without(self.pins, frame), moved=_without(self.moved, frame))
+
+    def drag(self, frame: int, joint: str, target: Float[np.ndarray, "3"]) -> "Edit":
+        """A joint of a pinned frame moved to a place (metres, world); the body follows, see
+        `inverse_kinematics.drag`.
+
+        Raises ValueError for a frame that is not pinned, KeyError for a name that no joint has.
+        """
+        frame = self.index(frame)
+        if frame not in self.pins:
+            raise ValueError(f"frame {frame} is not pinned: pin it first, then drag its joints")
+        pose = drag(self.pins[frame], joint_index(joint), np.asarray(target, np.float64))
+        names = dict.fromkeys((*self.moved.get(frame, ()), joint))
+        return replace(
+            self, pins={**self.pins, frame: pose}, moved={**self.moved, frame: tuple(names)}
+        )
+
+    def keep(self, part: str | None) -> "Edit":
+        """A part of the body held in every frame: one of `KEPT`, or None.  Raises KeyError with the
+        names there are."""
+        if part is not None and part not in KEPT:
+            raise KeyError(f"no part is called {part!r}; there are {', '.join(KEPT)}, and None")
+        return replace(self, part=part)
+
+    @cached_property
+    def known(self) -> Bool[np.ndarray, "T 21"]:
+        """True where a joint's place is given."""
+        known = known_frames(len(self), self.pins)
+        return known if self.part is None else known | body_part(len(self), self.part)
+
+    @cached_property
+    def positions(self) -> Float[np.ndarray, "T 21 3"]:
+        """The motion with the pinned poses in their places; where nothing is known it is the motion
+        still."""
+        positions = np.array(self.motion)
+        for frame, pose in self.pins.items():
+            positions[frame] = pose
+        return positions
+
+    @property
+    def torn(self) -> tuple[int, ...]:
+        """Pinned frames in which a joint that is kept throughout is elsewhere than in the motion:
+        expect a jump."""
+        if self.part is None:
+            return ()
+        kept = body_part(1, self.part)[0]
+        away = {f: np.abs(pose - self.motion[f])[kept].max() for f, pose in self.pins.items()}
+        return tuple(frame for frame in sorted(away) if away[frame] > 1e-6)
+
+    def __str__(self) -> str:
+        if not self.pins and self.part is None:
+            return "nothing is held"
+        count = len(self.pins)
+        words = [f"{count} frame{'s' * (count != 1)} pinned" if count else "no frame pinned"]
+        if self.moved:
+            words[0] += f" ({len(self.moved)} edited)"
+        return ", ".join(words + ([] if self.part is None else [f"{self.part} kept"]))
+
+    def index(self, frame: int) -> int:
+        """A frame's number from 0 on; -1 is the last frame.  Raises IndexError outside of the
+        motion."""
+        if not -len(self) <= frame < len(self):
+            raise IndexError(
+                f"frame {frame} is not within a motion of {len(self)} frames (0 to {len(self) - 1})"
+            )
+        return int(frame) % len(self)
+
+
+def _without(table: Mapping, key) -> dict:
+    return {k: v for k, v in table.items() if k != key}
+
+
+@dataclass(frozen=True, eq=False)
+class Made:
+    """In-betweens of an edit, and what was measured on them (metres and m/s, one number for
+    each)."""
+
+    edit: Edit
+    samples: Float[np.ndarray, "N T 21 3"]
+    keyframe_error: Float[np.ndarray, "N"]  # NaN where nothing was given
+    seam_jump: Float[np.ndarray, "N"]  # NaN where there is no seam
+    motions_jump: float  # of the motion that was edited, at the same seams
+
+    def measured(self, which: int) -> str:
+        """One in-between's figures in words."""
+        error, jump = self.keyframe_error[which], self.seam_jump[which]
+        words = [
+            "nothing was given to keep"
+            if np.isnan(error)
+            else f"keyframe error {MM * error:.1f} mm"
+        ]
+        if not np.isnan(jump):
+            words.append(f"seam jump {jump:.2f} m/s (the motion before: {self.motions_jump:.2f})")
+        return ", ".join(words)
+
+
+Make = Callable[..., Float[np.ndarray, "N T 21 3"]]
+
+
+def make_between(
+    edit: Edit,
+    make: Make,
+    generator: torch.Generator,
+    samples: int = 1,
+    resample: int = 1,
+    fps: float = 20.0,
+) -> Made:
+    """Have `make(positions, known, generator)` find what is not held, `samples` times, and measure
+    the seams.
+
+    Where `make` takes `samples` or `resample`, it is told these too; else it is called until there
+    are enough. What comes back is measured, not put right.
+    Raises ValueError where everything is held, and for an answer of another shape or not finite.
+    Notebook: 15
+    """
+    if edit.known.all():
+        raise ValueError("every frame is pinned: there is nothing to make. Let some frames go")
+    wanted = {"samples": samples, "resample": resample}
+    extra = {name: value for name, value in wanted.items() if takes(make, name)}
+    found: list[np.ndarray] = []
+    while len(found) < samples:
+        found += list(_asked(edit, make, generator, extra))
+    made = np.stack(found[:samples])
+    truth = np.broadcast_to(edit.positions, made.shape)
+    given = edit.known.any()
+    error = keyframe_error(made, truth, edit.known) if given else np.full(len(made), np.nan)
+    before = float(seam_jump(edit.motion[None], edit.known, fps)[0])
+    return Made(edit, made, error, seam_jump(made, edit.known, fps), before)
+
+
+def takes(make: Make, name: str) -> bool:
+    """Whether a callable has a parameter of this name, or takes any."""
+    parameters = inspect.signature(make).parameters.values()
+    return any(p.name == name or p.kind is p.VAR_KEYWORD for p in parameters)
+
+
+def _asked(
+    edit: Edit, make: Make, generator: torch.Generator, extra: dict
+) -> Float[np.ndarray, "N T 21 3"]:
+    """One call, its answer checked. A parameter called `generator` is named: `partial(inbetween,
+    dancer)` works."""
+    if any(name == "generator" for name in inspect.signature(make).parameters):
+        answer = make(edit.positions, edit.known, generator=generator, **extra)
+    else:
+        answer = make(edit.positions, edit.known, generator, **extra)
+    made = np.asarray(answer, np.float64)
+    if made.ndim != 4 or made.shape[1:] != edit.motion.shape or not len(made):
+        shape = ("samples", *edit.motion.shape)
+        raise ValueError(
+            f"the in-betweening gave an array of shape {made.shape}; ({', '.join(map(str, shape))}) is needed"
+        )
+    bad = np.argwhere(~np.isfinite(made).all(-1))
+    if len(bad):
+        one, frame, joint = bad[0]
+        raise ValueError(
+            f"in-between {one + 1} is not finite in frame {frame}, {JOINTS[joint]} ({len(bad)} joints in all)"
+        )
+    return made
+
+
+def drag_in_words(
+    before: Edit, after: Edit, frame: int, joint: str, target: Float[np.ndarray, "3"]
+) -> str:
+    """How far a drag has moved a joint, and how far from its target it had to stop."""
+    j, frame = joint_index(joint), after.index(frame)
+    old, new = before.pins[frame][j], after.pins[frame][j]
+    words = f"moved by {CM * np.linalg.norm(new - old):.0f} cm"
+    short = CM * np.linalg.norm(np.asarray(target) - new)
+    return words + (
+        f"; its bones reach no further, {short:.0f} cm are missing" if short > 0.5 else ""
+    )

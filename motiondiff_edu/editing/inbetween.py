@@ -1,0 +1,134 @@
+"""In-betweens of motions in metres: what is known of a walk or a dance is kept, bit by bit, and the
+rest is made.
+
+The sampling itself is `inbetweening.inpaint_steps`.  Source: MoFusion 4.4.  Notebook: 15
+"""
+
+import math
+from functools import partial
+
+import numpy as np
+import torch
+from jaxtyping import Bool, Float
+from torch import Tensor
+
+from ..beyond.constant_bones import given_lengths, steady_bones
+from ..beyond.foot_lock import steady_feet
+from ..beyond.guidance import blended
+from ..inbetweening import inpaint_steps
+from ..motion.dance_frame import GROUND, Place, heading, placed_features, to_positions
+from ..motion.directions import ARMS, UPLEGS
+from ..motion.skeleton import HIPS, JOINTS, J
+from ..performers.dancer import Dancer
+from .masks import known_columns
+
+BLEND = 10  # frames within which a correction fades where nothing else is given
+GUIDANCE = 0.5  # more obeys sparse keyframes better, and jumps more at the seams of a gap
+AHEAD, SOMEWHERE = 20, 0.5  # frames of the path that tell where it leads, if so far (metres)
+# options of `inbetween` that make it masked sampling as in 4.4
+PAPER = {"blend": None, "guidance": 0.0, "bones": False, "feet": False}
+
+
+def inbetween(
+    dancer: Dancer,
+    positions: Float[np.ndarray, "T 21 3"],
+    known: Bool[np.ndarray, "T 21"],
+    mel: Float[Tensor, "M C"] | None = None,
+    *,
+    samples: int = 1,
+    steps: int = 50,
+    eta: float = 1.0,
+    resample: int = 1,
+    blend: int | None = BLEND,
+    guidance: float = GUIDANCE,
+    bones: bool = True,
+    feet: bool = True,
+    seed: int = 0,
+    generator: torch.Generator | None = None,
+) -> Float[np.ndarray, "samples T 21 3"]:
+    """Find what is not known of a motion (metres, 20 frames/s), `samples` times; `mel` for a dancer
+    that hears.
+
+    Known entries come back bit by bit as they were given; the others may be NaN. The motion is
+    `seen_from` where it begins to be known. Numbers are drawn from `generator`, or from a new one
+    with this `seed`. `blend`: the network's guesses are drawn through what is given, at every step,
+    and let go of within so many frames where nothing more is given (`beyond.guidance.blended`).
+    `guidance`: they are moved by its gradient before (`inbetweening.guided`), at twice the cost.
+    `bones`: they get the lengths that they have where they are given (`beyond.constant_bones`).
+    `feet`: theirs do not slide (`beyond.foot_lock`). `**PAPER`: none of the four, masked sampling
+    as in the paper.
+    Raises ValueError where a joint is given without the pelvis, or is given and not a number, and
+    for shapes that do not fit.  Source: MoFusion 4.4.   Notebook: 15
+    """
+    positions, known = _checked(positions, known)
+    generator = generator or torch.Generator().manual_seed(seed)
+    columns, place = torch.from_numpy(known_columns(known)), seen_from(positions, known)
+    at_home = np.where(known[..., None], place.enter(np.nan_to_num(positions)), 0.0)
+    given = dancer.motion_scaler.transform(torch.from_numpy(placed_features(at_home)).float())
+    shape = (samples, *given.shape)
+    heard = None if mel is None else mel[None].expand(samples, -1, -1)
+    denoise = dancer.denoiser(heard, len(given), fast=not guidance)
+    blend_in = None if blend is None else partial(blended, fade=fading(blend))
+    options = {
+        "steps": steps,
+        "eta": eta,
+        "resample": resample,
+        "guidance": guidance,
+        "generator": generator,
+    }
+    start, held = (
+        torch.randn(shape, generator=generator),
+        (given.expand(shape), columns.expand(shape)),
+    )
+    loop = inpaint_steps(denoise, start, dancer.schedule, *held, blend=blend_in, **options)
+    *_, last = loop
+    made = place.leave(to_positions(dancer.motion_scaler.inverse(last.x_s)).double().numpy())
+    whole = np.where(known[..., None], positions, made)
+    whole = steady_bones(whole, known, given_lengths(positions, known)) if bones else whole
+    return steady_feet(whole, known) if feet and known.any() else whole
+
+
+def fading(frames: int) -> Float[Tensor, "63"]:
+    """So many frames for every column, but for where the pelvis is in the room: there is no place
+    to go back to."""
+    fade = torch.full((3 * J,), float(frames))
+    fade[[3 * HIPS, 3 * HIPS + 2]] = math.inf
+    return fade
+
+
+def seen_from(positions: Float[np.ndarray, "T 21 3"], known: Bool[np.ndarray, "T 21"]) -> Place:
+    """Where the motion begins to be known, and which way it faces there: near it the network's
+    motions start.
+
+    By the first frame that gives pelvis and hips, or else pelvis and shoulders; or else by the path
+    of the pelvis, which is taken to go forward (along z where it goes nowhere at first). The
+    world's origin where nothing is known.
+    """
+    for left, right in (UPLEGS, ARMS):
+        whole = known[:, [HIPS, left, right]].all(-1)
+        if whole.any():
+            pose = positions[whole.argmax()]
+            return Place(pose[HIPS] * GROUND, heading(pose[left] - pose[right]))
+    path = positions[known[:, HIPS], HIPS]
+    if not len(path):
+        return Place(np.zeros(3), np.zeros(()))
+    ahead = path[min(AHEAD, len(path) - 1)] - path[0]
+    goes = np.hypot(ahead[0], ahead[2]) > SOMEWHERE
+    return Place(path[0] * GROUND, np.array(np.arctan2(ahead[0], ahead[2]) if goes else 0.0))
+
+
+def _checked(positions, known) -> tuple[Float[np.ndarray, "T 21 3"], Bool[np.ndarray, "T 21"]]:
+    """Both as arrays of numpy, if they fit and what is given are numbers."""
+    positions, known = np.asarray(positions), np.asarray(known)
+    if positions.shape[1:] != (J, 3) or known.shape != positions.shape[:2] or known.dtype != bool:
+        raise ValueError(
+            f"it takes positions (T, {J}, 3) and a mask (T, {J}) of True and False, not {positions.shape} and "
+            f"{known.shape} of {known.dtype}"
+        )
+    wrong = np.argwhere(known & ~np.isfinite(positions).all(-1))
+    if len(wrong):
+        frame, joint = wrong[0]
+        raise ValueError(
+            f"{JOINTS[joint]} in frame {frame} is given and not a number: mend it, or do not give it"
+        )
+    return positions, known

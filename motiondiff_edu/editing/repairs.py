@@ -1,0 +1,105 @@
+"""One past, mended several times over: from the same holes different draws lead to different
+repairs.
+
+Their mean is nearest to the truth and hardly a motion; each of them is a motion. The repair bench
+shows both.
+Source: MoDiff III-E; drawing several is ours.  Notebook: 10
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+import torch
+from jaxtyping import Bool, Float
+from torch import Tensor
+
+from ..beyond.constant_bones import steady_bones
+from ..metrics import repair
+from ..metrics.bone_lengths import bone_lengths, bone_rmse
+from ..reconstruction import repair_steps
+
+
+@dataclass(frozen=True, eq=False)
+class Mended:
+    """`n` repairs of each past after so many rounds (root frame, metres), and how far the last one
+    moved them (m)."""
+
+    samples: Float[np.ndarray, "n *B T_h J 3"]
+    known: Bool[np.ndarray, "*B T_h J"]
+    round: int
+    change: float
+
+    @property
+    def mean(self) -> Float[np.ndarray, "*B T_h J 3"]:
+        """The mean of the repairs; what was given is in it as it was."""
+        return np.where(self.known[..., None], self.samples[0], self.samples.mean(0))
+
+    def errors(self, truth: Float[np.ndarray, "*B T_h J 3"]) -> dict[str, float]:
+        """In cm: distance from the truth of one repair and of the mean, spread, and the bone error
+        of either."""
+        found = {
+            "one repair": repair.missing_error(self.samples, truth, self.known),
+            "their mean": repair.missing_error(self.mean, truth, self.known),
+            "bones of one": bone_rmse(self.samples),
+            "bones of the mean": bone_rmse(self.mean),
+        }
+        return found | (
+            {"spread": repair.missing_spread(self.samples, self.known)}
+            if len(self.samples) > 1
+            else {}
+        )
+
+
+def mend_steps(
+    walker,
+    past: Float[np.ndarray, "*B T_h J 3"],
+    known: Bool[np.ndarray, "*_ _ _"],
+    control: Float[np.ndarray, "*B T 3"],
+    n: int = 10,
+    *,
+    generator: torch.Generator,
+    rounds: int = 5,
+    steps: int | None = 10,
+) -> Iterator[Mended]:
+    """After each round there and back, `n` repairs of each past (root-frame positions, metres; NaN
+    in the holes).
+
+    `control` has T_h rows beside the past and T_h after it (m/s, m/s, rad/s). A past without a
+    batch axis is taken too.
+    Raises ValueError when nothing is missing, nothing is known, or shapes do not fit.  Notebook: 10
+    """
+    if known.shape != past.shape[:-1]:
+        raise ValueError(
+            f"known is {known.shape}, and must have an entry for each joint of each frame: {past.shape[:-1]}"
+        )
+    if known.all():
+        raise ValueError("nothing is missing: there is nothing to repair")
+    if not known.any():
+        raise ValueError("nothing is known: there is nothing to go by")
+    T_h, J = known.shape[-2:]
+    mask = torch.from_numpy(known.reshape(-1, T_h, J)).repeat_interleave(3, dim=-1)
+    rows = (np.reshape(past, (-1, T_h, 3 * J)), np.reshape(control, (-1, control.shape[-2], 3)))
+    holes, steer = (torch.from_numpy(np.asarray(row, np.float32)) for row in rows)
+    batch = [row.repeat(n, 1, 1) for row in (holes, mask, steer)]
+    for done in repair_steps(walker, *batch, rounds=rounds, generator=generator, steps=steps):
+        samples = done.past.double().numpy().reshape(n, *past.shape)
+        yield Mended(
+            np.where(known[..., None], past, samples), known, done.number, float(done.change.mean())
+        )
+
+
+def with_bones(
+    past: Float[Tensor, "B T_h D"], known: Bool[Tensor, "B T_h D"], walked: Float[Tensor, "B T D"]
+) -> Float[Tensor, "B T_h D"]:
+    """The past, its missing joints moved until bones are as long as they are in `walked` (median
+    over its frames).
+
+    For `reconstruction.repair_steps(settle=with_bones)`: a made joint beside a known one else tears
+    the bone between.
+    Source: ours.  Notebook: 10
+    """
+    joints, ahead = (x.double().unflatten(-1, (-1, 3)).numpy() for x in (past, walked))
+    here = known.unflatten(-1, (-1, 3)).all(-1).numpy()
+    lengths = np.median(bone_lengths(ahead), axis=-2)
+    return torch.from_numpy(steady_bones(joints, here, lengths)).flatten(-2).to(past)

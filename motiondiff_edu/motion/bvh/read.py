@@ -1,0 +1,147 @@
+"""Reading BVH motion capture: `read_bvh(path)` returns every frame of the file, as written.
+
+Rules for what files leave open (each has its test): position channels replace a joint's OFFSET,
+whether they stand before or after the rotations; a rotation order is the order of the channels, so
+Zrotation Xrotation Yrotation is R = Rz Rx Ry; end sites may be missing; a joint with CHANNELS 0
+keeps its offset; two figures in one file are refused; units and the upward axis are not in the file
+and are left as they are (`retarget` finds them).
+"""
+
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+
+import numpy as np
+from jaxtyping import Bool, Float, Int
+
+from ..kinematics import euler_to_matrix, forward_kinematics
+from .frames import frame_rows, frame_time, header, rate
+from .hierarchy import Node, read_nodes
+from .tokens import BvhError, read_lines, statements
+
+__all__ = ["Bvh", "BvhError", "read_bvh"]
+
+
+@dataclass(frozen=True)
+class Bvh:
+    """A BVH file: nodes are its joints and end sites (called `<joint>_End`) in file order.
+
+    Lengths are in the file's own units, rotation channels in degrees, `frame_time` in seconds.
+    `channels[n]` names the columns of node n; the columns of `frames` are those of all nodes in
+    turn.
+    """
+
+    names: tuple[str, ...]
+    parents: Int[np.ndarray, " N"]
+    offsets: Float[np.ndarray, "N 3"]
+    channels: tuple[tuple[str, ...], ...]
+    frames: Float[np.ndarray, "T C"]
+    frame_time: float
+    is_end: Bool[np.ndarray, " N"]
+    source: str = ""
+
+    @property
+    def fps(self) -> float:
+        """Frames per second, with the rounding of the frame time undone (.03333 is 30)."""
+        return rate(self.frame_time)
+
+    @property
+    def joints(self) -> tuple[str, ...]:
+        """The names of the joints, without end sites."""
+        return tuple(name for name, end in zip(self.names, self.is_end, strict=True) if not end)
+
+    @cached_property
+    def orders(self) -> tuple[str, ...]:
+        """The rotation order of each node, as "ZXY"; empty where it cannot turn."""
+        return tuple(
+            "".join(name[0] for name in names if name.endswith("rotation"))
+            for names in self.channels
+        )
+
+    @cached_property
+    def first_column(self) -> Int[np.ndarray, " N"]:
+        """The column of `frames` where each node's channels begin."""
+        return np.cumsum([0] + [len(names) for names in self.channels[:-1]])
+
+    def columns(self, node: int, kind: str) -> list[tuple[str, int]]:
+        """(axis, column) of a node's "position" or "rotation" channels, in file order."""
+        start = int(self.first_column[node])
+        return [
+            (name[0], start + i)
+            for i, name in enumerate(self.channels[node])
+            if name.endswith(kind)
+        ]
+
+    def local_rotations(self) -> Float[np.ndarray, "T N 3 3"]:
+        """The turn of each node against its parent, R = R_first R_second R_third."""
+        turns = np.broadcast_to(np.eye(3), (len(self.frames), len(self.names), 3, 3)).copy()
+        for order in set(self.orders) - {""}:
+            nodes = [n for n, own in enumerate(self.orders) if own == order]
+            columns = np.array(
+                [[column for _, column in self.columns(n, "rotation")] for n in nodes]
+            )
+            turns[:, nodes] = euler_to_matrix(np.radians(self.frames[:, columns]), order)
+        return turns
+
+    def local_positions(self) -> Float[np.ndarray, "T N 3"]:
+        """The place of each node in its parent's frame: its offset, replaced where position
+        channels exist."""
+        places = np.broadcast_to(self.offsets, (len(self.frames), *self.offsets.shape)).copy()
+        for node in range(len(self.names)):
+            for axis, column in self.columns(node, "position"):
+                places[:, node, "XYZ".index(axis)] = self.frames[:, column]
+        return places
+
+    def world_positions(self, end_sites: bool = True) -> Float[np.ndarray, "T N 3"]:
+        """World positions of all nodes in every frame (file units); without end sites on
+        request."""
+        places = self.local_positions()
+        positions, turns = forward_kinematics(
+            self.local_rotations(), places[:, 0], self.offsets, self.parents
+        )
+        if (places[:, 1:] != self.offsets[1:]).any():
+            for node, parent in list(enumerate(self.parents))[
+                1:
+            ]:  # joints that also move in their parent's frame
+                positions[:, node] = positions[:, parent] + np.einsum(
+                    "tij,tj->ti", turns[:, parent], places[:, node]
+                )
+        return positions if end_sites else positions[:, ~self.is_end]
+
+    def rest_positions(self) -> Float[np.ndarray, "N 3"]:
+        """Positions with all angles zero: the pose that the offsets draw."""
+        still = np.broadcast_to(np.eye(3), (1, len(self.names), 3, 3)).copy()
+        return forward_kinematics(still, self.offsets[:1], self.offsets, self.parents)[0][0]
+
+
+def read_bvh(path: str | Path, file_fps: float | int | None = None) -> Bvh:
+    """Read a BVH file; `file_fps` overrules its frame time, for files that state a wrong one.
+
+    Raises BvhError (a ValueError) with file, line, joint and what to do, for anything that is not
+    a whole, unambiguous BVH file; FileNotFoundError when there is none.
+    Notebook: 00, 01.
+    """
+    lines = read_lines(path)
+    found, motion = statements(lines, path)
+    nodes = read_nodes(found, path)
+    declared, declared_line, time, time_line, first = header(lines, motion, path)
+    seconds = frame_time(time, time_line, path, None if file_fps is None else float(file_fps))
+    columns = [(node.name, channel) for node in nodes for channel in node.channels]
+    frames = frame_rows(lines, first, declared, columns, path, declared_line)
+    return assemble(nodes, frames, seconds, Path(path).stem or Path(path).name)
+
+
+def assemble(
+    nodes: list[Node], frames: Float[np.ndarray, "T C"], seconds: float, source: str
+) -> Bvh:
+    """The frozen record of what was read."""
+    return Bvh(
+        names=tuple(node.name for node in nodes),
+        parents=np.array([node.parent for node in nodes]),
+        offsets=np.array([node.offset for node in nodes]),
+        channels=tuple(node.channels for node in nodes),
+        frames=frames,
+        frame_time=seconds,
+        is_end=np.array([node.end for node in nodes]),
+        source=source,
+    )

@@ -1,0 +1,173 @@
+"""A dancer: MoFusion's network, its schedule, and the scalers that lead to metres and to log-Mel;
+music in, dance out.
+
+Source: MoFusion 3, 4.1.  Notebook: 00, 12
+"""
+
+from dataclasses import dataclass, field
+from functools import cached_property
+from pathlib import Path
+
+import numpy as np
+import torch
+from jaxtyping import Float
+from torch import Tensor
+
+from ..baselines.transformer import DanceTransformer, TransformerConfig
+from ..conditions.audio_files import read_audio
+from ..conditions.music import FRAMES_PER_SECOND, SAMPLE_RATE, frame_times, log_mel
+from ..ddpm import Schedule
+from ..fast.mofusion import FastMoFusion
+from ..fast.samplers import ddim_steps, ddpm_steps
+from ..mofusion import MoFusion, MoFusionConfig
+from ..motion.dance_frame import to_positions
+from ..motion.scaler import Scaler
+from ..prediction import denoiser_of
+from .dance_windows import FPS, mel_frames
+
+STEPS, ETA = 50, 0.5  # of DDIM, unless told
+# standard deviations from the mean pose: an eps network's x0_hat is held within, as DDPM's code
+# does
+FARTHEST = 5.0
+
+
+def network(config: MoFusionConfig | TransformerConfig) -> MoFusion | DanceTransformer:
+    """The network that a configuration asks for."""
+    return (DanceTransformer if isinstance(config, TransformerConfig) else MoFusion)(config)
+
+
+@dataclass(frozen=True, eq=False)
+class Dancer:
+    """The network, in its own units, and the scalers that lead there from metres and log-Mel."""
+
+    model: MoFusion | DanceTransformer
+    schedule: Schedule
+    motion_scaler: Scaler
+    mel_scaler: Scaler
+    card: dict = field(default_factory=dict)
+
+    def __post_init__(self):
+        """Raises ValueError for a schedule with another number of steps than the network's."""
+        if self.schedule.S != self.model.config.S:
+            raise ValueError(
+                f"the schedule has {self.schedule.S} steps, the network {self.model.config.S}"
+            )
+
+    @property
+    def config(self) -> MoFusionConfig | TransformerConfig:
+        return self.model.config
+
+    @cached_property
+    def fast(self) -> FastMoFusion:
+        """The fast twin, built at first use (of the U-Net; a baseline has none)."""
+        return FastMoFusion(self.model)
+
+    def heard(
+        self, mel: Float[Tensor, "B M C"], frames: int
+    ) -> tuple[Float[Tensor, "B M2 C"], Float[Tensor, "M2"]]:
+        """What sounds during so many frames, in the network's units, and when: what it is to
+        `listen` to."""
+        mel = self.mel_scaler.transform(mel[:, : mel_frames(frames)])
+        return mel, frame_times(mel.shape[1]).float()
+
+    def denoiser(self, mel: Float[Tensor, "B M C"] | None, frames: int, fast: bool = True):
+        """`denoise(x_s, s) -> eps_hat` for this music (None for a network without), in the
+        network's units.
+
+        `fast`: by the fast twin, where there is one; it cannot be differentiated.
+        Raises ValueError where a network that dances to music has none, or one without music is
+        given some.
+        """
+        if (mel is None) != (self.config.C == 0):
+            raise ValueError(
+                "this network hears nothing"
+                if mel is not None
+                else "this network dances to music: give it"
+            )
+        if mel is None:
+            return self._as_eps(self.model)
+        if fast and isinstance(self.model, MoFusion):
+            listening = self.fast.listen(*self.heard(mel, frames), frames)
+            return self._as_eps(lambda x_s, s: self.fast.denoise(x_s, s, listening))
+        music = self.model.listen(*self.heard(mel, frames))
+        return self._as_eps(lambda x_s, s: self.model(x_s, s, music))
+
+    def _as_eps(self, network):
+        return denoiser_of(network, self.schedule, self.config.target)
+
+    def dance_to(
+        self,
+        sound: Float[Tensor, "N"] | Float[np.ndarray, "N"] | str | Path,
+        seconds: float | None = None,
+        *,
+        seed: int = 0,
+        **options,
+    ) -> tuple[Float[np.ndarray, "T 21 3"], Float[np.ndarray, "N2"]]:
+        """Dance to a sound file, or to mono sound at 16 kHz; returns the dance (metres) and the
+        sound danced to.
+
+        `seconds`: of the sound, from its start, by default all; `options` as for `dance`.
+        Raises AudioError for a file that cannot be read (`conditions.audio_files`).   Notebook: 00,
+        12
+        """
+        heard = (
+            read_audio(sound) if isinstance(sound, (str, Path)) else torch.as_tensor(sound).float()
+        )
+        heard = heard if seconds is None else heard[: round(seconds * SAMPLE_RATE)]
+        draw, frames = torch.Generator().manual_seed(seed), int(len(heard) / SAMPLE_RATE * FPS)
+        dance = self.dance(log_mel(heard)[None], frames, generator=draw, **options)[0]
+        return dance.double().numpy(), heard.numpy()
+
+    @torch.inference_mode()
+    def dance(
+        self,
+        mel: Float[Tensor, "B M C"],
+        frames: int | None = None,
+        *,
+        generator: torch.Generator | None = None,
+        steps: int | None = STEPS,
+        eta: float = ETA,
+        start: Float[Tensor, "B T D"] | None = None,
+    ) -> Float[Tensor, "B T 21 3"]:
+        """Dance to log-Mel spectrograms (`conditions.music.log_mel`), one dance each; metres, 20
+        frames a second.
+
+        `frames`: how long, by default as long as the music. `steps`: of DDIM with `eta` (S where
+        there are no more), or None for DDPM with all. `start`: the noise to begin with (by default
+        drawn), so that two songs can be danced to from the same noise.
+        Raises ValueError for more frames than there is music.  Notebook: 12
+        """
+        longest = int((mel.shape[1] - 1) / FRAMES_PER_SECOND * FPS) + 1
+        frames = longest if frames is None else frames
+        if not 1 <= frames <= longest:
+            raise ValueError(
+                f"the music lasts {longest} frames of motion ({longest / FPS:.1f} s), not {frames}"
+            )
+        if getattr(self.config, "deterministic", False):
+            return self._regress(mel, frames)
+        denoise = self.denoiser(mel, frames)
+        x_S = (
+            torch.randn(len(mel), frames, self.config.D, generator=generator)
+            if start is None
+            else start
+        )
+        options = {
+            "generator": generator,
+            "clip": FARTHEST if self.config.target == "eps" else None,
+        }
+        if steps is None:
+            loop = ddpm_steps(denoise, x_S, self.schedule, variance="posterior", **options)
+        else:
+            loop = ddim_steps(
+                denoise, x_S, self.schedule, min(steps, self.schedule.S), eta, **options
+            )
+        for step in loop:
+            last = step
+        return to_positions(self.motion_scaler.inverse(last.x_s))
+
+    def _regress(self, mel: Float[Tensor, "B M C"], frames: int) -> Float[Tensor, "B T 21 3"]:
+        """The one dance that a regression has for each song."""
+        music = self.model.listen(*self.heard(mel, frames))
+        nothing = mel.new_zeros(len(mel), frames, self.config.D)
+        out = self.model(nothing, torch.zeros(len(mel), dtype=torch.long), music)
+        return to_positions(self.motion_scaler.inverse(out))

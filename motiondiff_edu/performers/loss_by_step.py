@@ -1,0 +1,130 @@
+"""What each loss is at each diffusion step, and how hard it pulls at the network: to measure a
+weight, not to quote it.
+
+x_s is made from known x0 and eps, somebody answers with eps_hat, and x0_hat follows. Who answers is
+an `Answer`: a network, the exact denoiser, or the true noise with a given error.
+Source: MoFusion 3.2, eq. 4-7.  Notebook: 13
+"""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+
+import torch
+from jaxtyping import Bool, Float
+from torch import Tensor
+
+from ..ddpm import Denoiser, Schedule, Table, draw, q_sample
+from ..kinematic_loss import over_time
+from ..motion.scaler import Scaler
+from ..prediction import target_of, to_x0, x0_from_eps
+from .dance_windows import kinematic_parts
+
+Answer = Callable[[Tensor, Tensor, Tensor], Tensor]  # (x_s, s, eps) -> eps_hat
+
+
+@dataclass(frozen=True, eq=False)
+class LossOverTime:
+    """Losses at the diffusion steps `steps`, means over a batch, by the names of `kinematic_parts`
+    and "data".
+
+    "data" is the squared error of the network's own target (L_da). `pull[name]` is the length of
+    the gradient with respect to the network's output, for one motion: what training feels.
+    """
+
+    steps: tuple[int, ...]
+    value: Mapping[str, Float[Tensor, "N"]]
+    pull: Mapping[str, Float[Tensor, "N"]]
+
+    def weighted(self, schedule: Schedule, kind: str) -> "LossOverTime":
+        """The same times lambda(s), the data term excepted.  Raises ValueError for an unknown
+        weight.   Notebook: 13"""
+        share = over_time(schedule, kind)[list(self.steps)]
+        parts = [
+            {k: v if k == "data" else share.to(v) * v for k, v in x.items()}
+            for x in (self.value, self.pull)
+        ]
+        return LossOverTime(self.steps, *parts)
+
+
+def erring(error: float, seed: int = 0) -> Answer:
+    """An answer that is wrong by `error` everywhere: eps_hat = eps + error N(0, I); 0.05 is 5 %.
+
+    The error is drawn from `seed` afresh each time, so that it is the same at every step.
+    Notebook: 13
+    """
+    return lambda x_s, s, eps: eps + error * draw(eps, torch.Generator().manual_seed(seed))
+
+
+def answer_of(denoise: Denoiser) -> Answer:
+    """The answer of a denoiser, who does not know eps.  Notebook: 13"""
+    return lambda x_s, s, eps: denoise(x_s, s)
+
+
+def clean_guess(
+    answer: Answer,
+    x0: Float[Tensor, "B T D"],
+    eps: Float[Tensor, "B T D"],
+    s: int,
+    schedule: Schedule,
+) -> Float[Tensor, "B T D"]:
+    """x0_hat at step s, by way of eps_hat.  Source: MoFusion eq. 5.  Notebook: 13"""
+    return x0_from_eps(*_asked(answer, x0, eps, s, schedule), schedule)
+
+
+def losses_over_time(
+    answer: Answer,
+    x0: Float[Tensor, "B T D"],
+    eps: Float[Tensor, "B T D"],
+    stands: Bool[Tensor, "B T 2"],
+    scaler: Scaler,
+    schedule: Schedule,
+    steps: Sequence[int],
+    target: str = "eps",
+) -> LossOverTime:
+    """All losses of x0_hat at each of `steps`, unweighted, and their pull at a network that
+    predicts `target`.
+
+    x0 is standardised by `scaler`. Raises IndexError for a step that the schedule has not,
+    ValueError for a target.
+    Source: MoFusion eq. 4-7.  Notebook: 13
+    """
+    rows = [_at_step(answer, x0, eps, stands, scaler, schedule, s, target) for s in steps]
+    value, pull = (
+        {name: torch.stack([row[k][name] for row in rows]) for name in rows[0][k]} for k in (0, 1)
+    )
+    return LossOverTime(tuple(steps), value, pull)
+
+
+def _asked(
+    answer: Answer, x0: Tensor, eps: Tensor, s: int, schedule: Schedule
+) -> tuple[Tensor, int, Tensor]:
+    x_s = q_sample(x0, s, schedule, eps)
+    with torch.no_grad():
+        return x_s, s, answer(x_s, torch.full((len(x0),), s, device=x0.device), eps)
+
+
+def _at_step(answer, x0, eps, stands, scaler, schedule, s, target) -> tuple[dict, dict]:
+    x_s, s, eps_hat = _asked(answer, x0, eps, s, schedule)
+    x0_hat = x0_from_eps(x_s, s, eps_hat, schedule)
+    output = target_of(x0_hat, eps_hat, s, schedule, target).detach().requires_grad_()
+    with torch.enable_grad():
+        parts = {"data": (output - target_of(x0, eps, s, schedule, target)).square().mean((1, 2))}
+        parts |= kinematic_parts(to_x0(output, x_s, s, schedule, target), x0, stands, scaler)
+        pulls = {
+            k: torch.autograd.grad(v.sum(), output, retain_graph=True)[0] for k, v in parts.items()
+        }
+    return (
+        {k: v.detach().mean() for k, v in parts.items()},
+        {k: g.flatten(1).norm(dim=1).mean() for k, g in pulls.items()},
+    )
+
+
+def eps_weight(schedule: Schedule, kind: str) -> Table:
+    """What lambda(s) L_m is in terms of eps: lambda(s) |x0_hat - x0|^2 = eps_weight(s) |eps_hat -
+    eps|^2.
+
+    lambda(s) (1 - alpha_bar) / alpha_bar; with the paper's lambda = alpha_bar it is 1 - alpha_bar,
+    largest at s = S.
+    Source: MoFusion eq. 5, 7.  Notebook: 13
+    """
+    return over_time(schedule, kind) * (1 - schedule.alpha_bar) / schedule.alpha_bar

@@ -1,0 +1,115 @@
+"""A walker: a trained MoDiff with all that it needs to be used: schedule, scalers, and the card
+that says what it is.
+
+`rollout.generate(walker, past, control)` lets it walk.  Notebook: 00, 07
+"""
+
+import copy
+from dataclasses import dataclass, field
+from functools import cached_property
+
+import torch
+from jaxtyping import Float
+from torch import Tensor
+
+from ..beyond.footholds import FootholdMoDiff
+from ..ddpm import Schedule, linear_schedule, make_schedule
+from ..fast.footholds import FastFoothold
+from ..fast.modiff import FastMoDiff
+from ..fast.samplers import ddim_steps, ddpm_steps
+from ..modiff import MoDiff, MoDiffConfig
+from ..motion.scaler import Scaler
+from ..prediction import denoiser_of
+from ..rollout import WindowSampler
+
+
+def leap_schedule(
+    S: int = 100, leap: float = 0.37, beta_2: float = 0.03, beta_S: float = 0.08
+) -> Schedule:
+    """beta_1 = leap, then evenly from beta_2 to beta_S: step 1 brings noise of sqrt(leap / (1 -
+    leap)) of the signal.
+
+    By default 0.77 of it. A small network sees no more of a pose at lower noise than it guesses
+    anyhow. Steps there draw its errors again and again, and rollouts feed on them; one leap from
+    step 1 to the clean pose does not. Ours.   Notebook: 07
+    """
+    rest = torch.linspace(beta_2, beta_S, S - 1, dtype=torch.float64)
+    return make_schedule(
+        torch.cat([torch.tensor([leap], dtype=torch.float64), rest]), f"leap {leap:g}"
+    )
+
+
+SCHEDULES = {"linear": linear_schedule, "leap": leap_schedule}  # by the names that recipes use
+
+
+@dataclass(frozen=True, eq=False)
+class Walker:
+    """The network, in its own units, and the scalers that lead there from metres and m/s."""
+
+    model: MoDiff
+    schedule: Schedule
+    pose_scaler: Scaler
+    control_scaler: Scaler
+    card: dict = field(default_factory=dict)
+
+    def __post_init__(self):
+        """Raises ValueError for a schedule with another number of steps than the network's."""
+        if self.schedule.S != self.model.config.S:
+            raise ValueError(
+                f"the schedule has {self.schedule.S} steps, the network {self.model.config.S}"
+            )
+
+    def to(self, device: str | torch.device) -> "Walker":
+        """The same walker on another device; `rollout.generate` brings past and control there."""
+        model = copy.deepcopy(self.model).to(device)
+        return Walker(
+            model,
+            self.schedule,
+            self.pose_scaler.to(device),
+            self.control_scaler.to(device),
+            self.card,
+        )
+
+    @property
+    def config(self) -> MoDiffConfig:
+        return self.model.config
+
+    @cached_property
+    def fast(self) -> FastMoDiff:
+        """The fast twin, built at first use."""
+        return (FastFoothold if isinstance(self.model, FootholdMoDiff) else FastMoDiff)(self.model)
+
+    def denoiser(
+        self, past: Float[Tensor, "B T_h D"], control: Float[Tensor, "B T C"], fast: bool = True
+    ):
+        """`denoise(x_s, s) -> eps_hat` for this past and control, in the network's units.
+
+        `fast`: by the fast twin; it cannot be differentiated.
+        """
+        if not fast:
+            return denoiser_of(
+                lambda x_s, s: self.model(x_s, s, past, control), self.schedule, self.config.target
+            )
+        context = self.fast.encode(past, control)
+        return denoiser_of(
+            lambda x_s, s: self.fast.denoise(x_s, s, context), self.schedule, self.config.target
+        )
+
+    def window_sampler(self, steps: int | None = None) -> WindowSampler:
+        """Draw a window of T_p poses: DDPM with all steps, or DDIM with `steps` of them.
+        Notebook: 08"""
+
+        @torch.inference_mode()
+        def sample(past: Tensor, control: Tensor, generator: torch.Generator) -> Tensor:
+            denoise = self.denoiser(past, control)
+            shape = (len(past), self.config.T_p, self.config.D)
+            x_S = torch.randn(shape, generator=generator, device=generator.device).to(past.device)
+            if steps is None:
+                loop = ddpm_steps(denoise, x_S, self.schedule, generator=generator)
+            else:
+                loop = ddim_steps(denoise, x_S, self.schedule, steps=steps, generator=generator)
+            for step in loop:
+                last = step
+            return last.x_s
+
+        return sample

@@ -1,0 +1,165 @@
+"""Trained walkers and dancers on disk, and the shipped ones by name.
+
+Safetensors with a card that says what they are and how they were made; float16 unless told
+otherwise.
+Notebook: 00, 07, 12
+"""
+
+import json
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+
+from safetensors import safe_open
+from torch import Tensor
+
+from ..baselines.transformer import TransformerConfig
+from ..beyond import footholds
+from ..beyond.footholds import FootholdConfig
+from ..ddpm import make_schedule
+from ..modiff import MoDiffConfig
+from ..mofusion import MoFusionConfig
+from ..motion.scaler import Scaler
+from ..performers import dancer
+from ..performers.dancer import Dancer
+from ..performers.walker import Walker
+from .eight_bits import pack, unpack
+from .weights_file import CheckpointError, check_sizes, config_of, read_weights, write_weights
+
+__all__ = [
+    "CheckpointError",
+    "available",
+    "load",
+    "load_dancer",
+    "load_walker",
+    "pretrained",
+    "save",
+]
+
+FOLDER = Path(__file__).parent
+
+
+@dataclass(frozen=True)
+class Kind:
+    """A kind of figure: its format in files, its scalers (of D and of C columns), and the networks
+    it may have."""
+
+    format: str
+    figure: type
+    scalers: tuple[str, str]
+    networks: Mapping[
+        str, type
+    ]  # the configuration, by the name of the network's class; the first is the usual one
+    network: Callable  # of a configuration and the two scalers
+
+
+WALKER = Kind(
+    "motiondiff_edu walker 2",
+    Walker,
+    ("pose", "control"),
+    {"MoDiff": MoDiffConfig, "FootholdMoDiff": FootholdConfig},
+    footholds.network,
+)
+DANCER = Kind(
+    "motiondiff_edu dancer 1",
+    Dancer,
+    ("motion", "mel"),
+    {"MoFusion": MoFusionConfig, "DanceTransformer": TransformerConfig},
+    lambda config, *scalers: dancer.network(config),
+)
+KINDS = (WALKER, DANCER)
+STORED = {8: pack, 16: lambda weights: {k: v.half() for k, v in weights.items()}, 32: dict}
+
+
+def save(figure: Walker | Dancer, path: str | Path, bits: int = 16) -> Path:
+    """Write a walker or dancer: weights (in float16; `bits` = 32 as they are, 8 see `eight_bits`),
+    scalers, schedule.
+
+    A card.json is laid beside it. Written to a temporary name and renamed.
+    Raises ValueError for other numbers of bits.  Notebook: 07, 12
+    """
+    if bits not in STORED:
+        raise ValueError(f"weights are written in 8, 16 or 32 bits, not {bits}")
+    kind = DANCER if isinstance(figure, Dancer) else WALKER
+    scalers = {name: getattr(figure, f"{name}_scaler") for name in kind.scalers}
+    weights = STORED[bits](figure.model.state_dict())
+    tensors = {f"model.{k}": v for k, v in weights.items()}
+    tensors |= {
+        f"{name}.{part}": getattr(s, part)
+        for name, s in scalers.items()
+        for part in ("mean", "std")
+    }
+    tensors["schedule.beta"] = figure.schedule.beta[1:]
+    settings = {
+        "format": kind.format,
+        "network": type(figure.model).__name__,
+        "schedule": figure.schedule.name,
+    }
+    return write_weights(path, tensors, settings, figure.config.as_dict(), figure.card)
+
+
+def bits_of(path: str | Path) -> int:
+    """In how many bits a file's matrices are written: 8, 16 or 32."""
+    with safe_open(path, "pt") as file:
+        kinds = {
+            file.get_slice(name).get_dtype() for name in file.keys() if name.startswith("model.")
+        }
+    return 8 if "I8" in kinds else 16 if "F16" in kinds else 32
+
+
+def load(path: str | Path) -> Walker | Dancer:
+    """Read a walker or a dancer, whichever it is.
+
+    Raises CheckpointError for a file that is missing, damaged, or not one of ours.  Notebook: 00
+    """
+    return _read(path, *KINDS)
+
+
+def load_walker(path: str | Path) -> Walker:
+    """Read a walker.  Raises CheckpointError as `load`, and for a dancer.  Notebook: 07"""
+    return _read(path, WALKER)
+
+
+def load_dancer(path: str | Path) -> Dancer:
+    """Read a dancer, or a baseline that dances.  Raises CheckpointError as `load`, and for a
+    walker.   Notebook: 12"""
+    return _read(path, DANCER)
+
+
+def _read(path: str | Path, *kinds: Kind) -> Walker | Dancer:
+    return read_weights(path, {kind.format: partial(_assembled, kind) for kind in kinds})
+
+
+def _assembled(kind: Kind, tensors: dict[str, Tensor], metadata: dict[str, str]) -> Walker | Dancer:
+    config = config_of(metadata, kind.networks, next(iter(kind.networks)))
+    sizes = dict(zip(kind.scalers, (config.D, config.C), strict=True))
+    vectors = {f"{name}.{part}": size for name, size in sizes.items() for part in ("mean", "std")}
+    check_sizes(tensors, vectors | {"schedule.beta": config.S})
+    scalers = [Scaler(tensors[f"{name}.mean"], tensors[f"{name}.std"]) for name in kind.scalers]
+    model = kind.network(config, *scalers)
+    model.load_state_dict(unpack({k[6:]: v for k, v in tensors.items() if k.startswith("model.")}))
+    schedule = make_schedule(tensors["schedule.beta"], metadata["schedule"])
+    card = json.loads(metadata.get("card", "{}")) or {}
+    return kind.figure(model.eval().requires_grad_(False), schedule, *scalers, card)
+
+
+def available() -> dict[str, Path]:
+    """The shipped weights: {name: file}; an alias stands beside the name it points to."""
+    files = {path.stem: path for path in sorted(FOLDER.glob("*.safetensors"))}
+    aliases = FOLDER / "aliases.json"
+    named = json.loads(aliases.read_text()) if aliases.is_file() else {}
+    return files | {alias: files[name] for alias, name in named.items() if name in files}
+
+
+def pretrained(name: str = "walker") -> Walker | Dancer:
+    """Shipped weights by name: "walker" is the better one of "walker-eps" and "walker-x0"; "dancer"
+    dances.
+
+    Raises CheckpointError with the names there are.  Notebook: 00
+    """
+    files = available()
+    if name not in files:
+        there = ", ".join(files) or "none (run make pretrained)"
+        raise CheckpointError(f"no weights are called {name!r}; there are: {there}")
+    return load(files[name])

@@ -1,0 +1,155 @@
+"""A file of weights: safetensors (no code in them), settings, and a card that says how they were
+made.
+
+A damaged or foreign file is refused with the reason. What lies in it is a matter of
+`pretrained/checkpoints.py`.
+"""
+
+import json
+import os
+from collections.abc import Callable, Mapping
+from dataclasses import fields
+from pathlib import Path
+from typing import TypeVar
+
+import torch
+from safetensors import SafetensorError, safe_open
+from safetensors.torch import save_file
+from torch import Tensor
+
+from .._files import digest_of_tensors, digest_of_texts, replacing
+
+Config = TypeVar("Config")
+Assemble = Callable[
+    [dict[str, Tensor], dict[str, str]], object
+]  # (tensors, metadata) -> what they are
+SETTINGS = ("format", "network", "config", "schedule")  # what settles how the tensors are used
+
+
+class CheckpointError(ValueError):
+    """A weights file that cannot be used, with the reason and what to do."""
+
+
+def write_weights(
+    path: str | Path, tensors: Mapping[str, Tensor], settings: dict, config: dict, card: dict
+) -> Path:
+    """Write tensors, settings (texts) and card; a card.json is laid beside it. Temporary names
+    first, then renamed."""
+    path = Path(path)
+    metadata = settings | {"config": json.dumps(config), "card": json.dumps(card)}
+    tensors = {k: v.detach().cpu().clone().contiguous() for k, v in tensors.items()}
+    with replacing(path) as aside:
+        save_file(tensors, aside, metadata | _digests(tensors, metadata))
+        os.chmod(aside, 0o644)  # safetensors writes for its owner alone; weights are for everybody
+    with replacing(path.with_suffix(".json")) as aside:
+        aside.write_text(json.dumps(card | {"config": config}, indent=1) + "\n")
+    return path
+
+
+def read_weights(path: str | Path, kinds: Mapping[str, Assemble]) -> object:
+    """Read a file of one of the formats `kinds`, check it, and return kinds[format](tensors,
+    metadata).
+
+    Raises CheckpointError for a file that is missing, damaged, or of another format.
+    """
+    path = Path(path)
+    metadata, tensors = _opened(path)
+    assemble = kinds.get(metadata.get("format", ""))
+    if assemble is None:
+        wanted = " or ".join(name.split()[1] for name in kinds)
+        raise CheckpointError(
+            f"{path.name} is no {wanted} of this project ({_looks_like(metadata, tensors)})"
+        )
+    for what, digest in _digests(tensors, metadata).items():
+        if metadata.get(what) != digest:
+            part = "tensors" if what == "sha256" else "settings"
+            raise CheckpointError(
+                f"{path.name} is damaged: its {part} are not those that were written; fetch it again"
+            )
+    bad = [name for name, tensor in tensors.items() if not torch.isfinite(tensor.float()).all()]
+    if bad:
+        raise CheckpointError(
+            f"{path.name}: {bad[0]} holds NaN or infinity; the training that wrote it had failed"
+        )
+    try:
+        return assemble(tensors, metadata | {"file": path.name})
+    except CheckpointError:
+        raise
+    except (RuntimeError, KeyError, ValueError, AssertionError) as error:
+        raise CheckpointError(
+            f"{path.name}: weights and configuration disagree ({error}); fetch it again"
+        ) from error
+
+
+def config_of(metadata: dict[str, str], kinds: Mapping[str, type[Config]], default: str) -> Config:
+    """The configuration, every setting known and of its default's type; `kinds` by the name of the
+    network's class."""
+    name = metadata["file"]
+    try:
+        values = dict(json.loads(metadata["config"]))
+    except (KeyError, ValueError, TypeError) as error:
+        raise CheckpointError(
+            f"{name}: its configuration cannot be read ({error}); fetch it again"
+        ) from error
+    kind = kinds.get(metadata.get("network", default))
+    if kind is None:
+        raise CheckpointError(f"{name} holds an unknown network, {metadata['network']}; upgrade")
+    defaults = {field.name: field.default for field in fields(kind)}
+    unknown = set(values) - set(defaults)
+    if unknown:
+        raise CheckpointError(
+            f"{name} has unknown settings ({', '.join(sorted(unknown))}); upgrade"
+        )
+    for setting, value in values.items():
+        usual = type(defaults[setting])
+        fits = type(value) is usual or (type(value) is int and usual is float)  # dropout = 0
+        fits = fits or (
+            usual is tuple and type(value) is list and all(type(v) is int for v in value)
+        )
+        if not fits:
+            raise CheckpointError(
+                f"{name}: its setting {setting} = {value!r} makes no sense; fetch it again"
+            )
+    values = {k: tuple(v) if isinstance(v, list) else v for k, v in values.items()}
+    try:
+        return kind(**values)
+    except ValueError as error:
+        raise CheckpointError(
+            f"{name}: its settings make no network ({error}); fetch it again"
+        ) from error
+
+
+def check_sizes(tensors: dict[str, Tensor], sizes: dict[str, int]) -> None:
+    """Raise ValueError for a vector of another length than it must have (`load_state_dict` does not
+    see those)."""
+    for name, size in sizes.items():
+        if tuple(tensors[name].shape) != (size,):
+            raise ValueError(
+                f"{name} has the shape {tuple(tensors[name].shape)} where ({size},) belongs"
+            )
+
+
+def _opened(path: Path) -> tuple[dict[str, str], dict[str, Tensor]]:
+    if not path.is_file():
+        raise CheckpointError(f"there is no weights file {path}")
+    try:
+        with safe_open(path, "pt") as file:
+            return file.metadata() or {}, {name: file.get_tensor(name) for name in file.keys()}
+    except (SafetensorError, OSError, ValueError) as error:
+        raise CheckpointError(
+            f"{path.name} is damaged or is no safetensors file ({error}); fetch it again"
+        ) from error
+
+
+def _digests(tensors: dict, metadata: dict[str, str]) -> dict[str, str]:
+    """Of the tensors alone (records of figures name the weights by it), and of what settles how
+    they are used."""
+    settings = {name: metadata.get(name, "") for name in SETTINGS}
+    return {"sha256": digest_of_tensors(tensors), "sha256_settings": digest_of_texts(settings)}
+
+
+def _looks_like(metadata: dict[str, str], tensors: dict) -> str:
+    if metadata.get("format"):
+        return f"it says that it is: {metadata['format']}"
+    first = ", ".join(sorted(tensors)[:3])
+    return f"its tensors begin with {first}" if first else "it holds no tensors"

@@ -1,0 +1,88 @@
+"""`python -m motiondiff_edu.recipes [NAME ...]`: train the shipped walkers and dancers (hours), or
+those named."""
+
+import argparse
+import json
+from pathlib import Path
+
+import torch
+
+from .._files import replacing
+from ..pretrained.checkpoints import FOLDER, save
+from .dancers import DANCE_RECIPES, SHIPPED_DANCERS
+from .train_dancer import train_dancer
+from .train_walker import train
+from .walkers import PAIRS, RECIPES, SHIPPED
+
+ALL = RECIPES | DANCE_RECIPES
+EIGHT_BITS = {
+    "regression",
+    "unconditional",
+    *(recipe.name for recipe in PAIRS),
+}  # so that all fit into 25 MB
+
+
+def main() -> None:
+    """python -m motiondiff_edu.recipes [NAME ...]"""
+    parser = argparse.ArgumentParser(prog="python -m motiondiff_edu.recipes", description=__doc__)
+    parser.add_argument(
+        "names", nargs="*", help=f"which of {', '.join(ALL)}; none: all that are shipped"
+    )
+    parser.add_argument(
+        "--runs",
+        type=Path,
+        default=Path("build/runs"),
+        help="where runs are saved and resumed from",
+    )
+    parser.add_argument("--out", type=Path, default=FOLDER, help="where the weights go")
+    parser.add_argument("--threads", type=int, default=torch.get_num_threads())
+    parser.add_argument(
+        "--alias", metavar="NAME", help="only let `walker` stand for NAME, and train nothing"
+    )
+    arguments = parser.parse_args()
+    unknown = set(arguments.names) - set(ALL)
+    if unknown:
+        parser.error(
+            f"no recipe is called {', '.join(sorted(unknown))}; there are: {', '.join(ALL)}"
+        )
+    if arguments.alias:
+        return point_alias(arguments.out, arguments.alias)
+    torch.set_num_threads(arguments.threads)
+    arguments.runs.mkdir(parents=True, exist_ok=True)
+    for name in arguments.names or [recipe.name for recipe in (*SHIPPED, *SHIPPED_DANCERS)]:
+        print(
+            "wrote",
+            build(
+                name, arguments.runs / f"{name}.safetensors", arguments.out / f"{name}.safetensors"
+            ),
+        )
+
+
+def build(name: str, run: Path, out: Path) -> Path:
+    """Train a recipe by its name, continuing `run` where there is one; write what comes of it."""
+
+    def log(line: str) -> None:
+        print(line, flush=True)
+
+    figure = (
+        train(RECIPES[name], run, log=log)
+        if name in RECIPES
+        else train_dancer(DANCE_RECIPES[name], run, log=log)
+    )
+    return save(figure, out, bits=8 if name in EIGHT_BITS else 16)
+
+
+def point_alias(folder: Path, name: str) -> None:
+    """Let the name `walker` stand for `name`; exits with the names there are when the folder has no
+    such weights."""
+    there = sorted(path.stem for path in folder.glob("*.safetensors"))
+    if name not in there:
+        raise SystemExit(
+            f"no weights in {folder} are called {name!r}; there are: {', '.join(there) or 'none'}"
+        )
+    with replacing(folder / "aliases.json") as aside:
+        aside.write_text(json.dumps({"walker": name}) + "\n")
+
+
+if __name__ == "__main__":
+    main()

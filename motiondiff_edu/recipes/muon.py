@@ -1,0 +1,110 @@
+"""Adam for most weights, Muon for the matrices of the attention and feed-forward layers.
+
+Adam scales every number by itself. Muon replaces the averaged gradient of a whole matrix by the
+nearest matrix whose singular values are all one: directions that rarely show in the gradient learn
+as fast as the common ones. A step takes longer, and the walkers need far fewer of them; `python -m
+tools.results --only budget` compares both. Ours: the papers use Adam.   Notebook: 07
+"""
+
+import torch
+from jaxtyping import Float
+from torch import Tensor, nn
+
+from ..cross_modal_attention import Block
+from ..mofusion import Ask, ResBlock
+
+
+def optimizer_for(model: nn.Module, name: str):
+    """What `TrainState.start` needs for the optimizer a recipe names: "muon", or "adam" (None: it
+    has its own)."""
+    if name not in ("muon", "adam"):
+        raise ValueError(f'optimizer must be "muon" or "adam", not {name!r}')
+    return MuonAndAdam(model) if name == "muon" else None
+
+
+class Muon(torch.optim.Optimizer):
+    """As torch.optim.Muon, in float32: that one computes in bfloat16, which many CPUs only imitate,
+    far more slowly.
+
+    Source: Jordan and others, 2024; the size of a step, matched to Adam's, so that one learning
+    rate serves both, is that of Liu and others, 2025.   Notebook: 07
+    """
+
+    def __init__(self, params: list[nn.Parameter], lr: float = 1e-3, momentum: float = 0.95):
+        super().__init__(params, {"lr": lr, "momentum": momentum})
+
+    @torch.no_grad()
+    def step(self) -> None:
+        """One step against the gradients (those of None are left alone)."""
+        for group in self.param_groups:
+            for matrix in (p for p in group["params"] if p.grad is not None):
+                mean = self.state[matrix].setdefault("momentum_buffer", torch.zeros_like(matrix))
+                mean.lerp_(matrix.grad, 1 - group["momentum"])
+                ahead = matrix.grad.lerp(mean, group["momentum"])  # Nesterov's
+                matrix.add_(whitened(ahead), alpha=-0.2 * max(matrix.shape) ** 0.5 * group["lr"])
+
+
+def whitened(matrix: Float[Tensor, "m n"], steps: int = 5) -> Float[Tensor, "m n"]:
+    """About the nearest matrix whose singular values are all one, by a polynomial that draws them
+    to .7 to 1.2.
+
+    With x the singular values: a x + b x^3 + c x^5, five times; the three numbers were chosen by
+    Jordan for speed.
+    """
+    a, b, c = 3.4445, -4.7750, 2.0315
+    wide = matrix.mT if matrix.shape[0] > matrix.shape[1] else matrix
+    x = wide / wide.norm().clamp_min(1e-7)
+    for _ in range(steps):
+        square = x @ x.mT
+        x = torch.addmm(x, torch.addmm(square, square, square, beta=b, alpha=c), x, beta=a)
+    return x.mT if matrix.shape[0] > matrix.shape[1] else x
+
+
+class MuonAndAdam:
+    """Two optimizers that look like one: what `training.train_steps` and `recipes.runs.save_run`
+    ask of an optimizer."""
+
+    def __init__(self, model: nn.Module, lr: float = 1e-3):
+        blocks = [
+            module for module in model.modules() if isinstance(module, (Block, ResBlock, Ask))
+        ]
+        matrices = {id(p) for block in blocks for p in block.parameters() if p.ndim == 2}
+        first = [p for p in model.parameters() if id(p) in matrices]
+        others = [p for p in model.parameters() if id(p) not in matrices]
+        if not first:
+            raise ValueError(
+                f"{type(model).__name__} has no transformer block: nothing for Muon to do; use Adam"
+            )
+        self.parts = [Muon(first, lr=lr), torch.optim.Adam(others, lr=lr, fused=True)]
+
+    @property
+    def param_groups(self) -> list[dict]:
+        return [group for part in self.parts for group in part.param_groups]
+
+    def zero_grad(self, set_to_none: bool = True) -> None:
+        for part in self.parts:
+            part.zero_grad(set_to_none=set_to_none)
+
+    def step(self) -> None:
+        for part in self.parts:
+            part.step()
+
+    def state_dict(self) -> dict:
+        """{"state": {number of the parameter: its moments}}, Muon's parameters first."""
+        state, offset = {}, 0
+        for part in self.parts:
+            state |= {offset + i: moments for i, moments in part.state_dict()["state"].items()}
+            offset += sum(len(group["params"]) for group in part.param_groups)
+        return {"state": state}
+
+    def load_state_dict(self, saved: dict) -> None:
+        offset = 0
+        for part in self.parts:
+            own, count = part.state_dict(), sum(len(group["params"]) for group in part.param_groups)
+            mine = {
+                i - offset: moments
+                for i, moments in saved["state"].items()
+                if offset <= i < offset + count
+            }
+            part.load_state_dict(own | {"state": mine})
+            offset += count

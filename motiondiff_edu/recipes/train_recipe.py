@@ -1,0 +1,117 @@
+"""What all trainings of a recipe share: the run on disk, the sittings, the loop, the card."""
+
+import datetime
+import platform
+import subprocess
+from collections.abc import Callable
+from dataclasses import asdict
+from pathlib import Path
+
+import numpy as np
+import torch
+from torch import nn
+
+from ..training import LossFn, TrainState, cosine_lr, train_steps
+from .dancers import DanceRecipe
+from .muon import optimizer_for
+from .runs import notes_of, resume_run, saver
+from .walkers import Recipe
+
+
+def train_recipe(
+    recipe: Recipe | DanceRecipe,
+    run_file: Path,
+    model: nn.Module,
+    loss_fn: LossFn,
+    *,
+    about: dict[str, str],
+    facts: dict,
+    data: str,
+    warmup: int,
+    log: Callable[[str], object],
+    before: Callable[[int], object] | None = None,
+) -> tuple[nn.Module, dict]:
+    """Train (or continue) a fresh network; `run_file` holds the run.  Returns the averaged network,
+    and its card.
+
+    A run goes on with the recipe and the `about` (which network, which data) that it was begun
+    with; the card tells `facts`, and where the `data` are from. `before` is `train_steps`'s. The
+    rate rises for `warmup` steps, but a quarter of all at most.
+    Raises ValueError when the run in `run_file` was begun with other settings.
+    """
+    device = "cuda" if torch.cuda.is_available() else "cpu"
+    model = model.to(device)
+    state = TrainState.start(model, recipe.seed, optimizer_for(model, recipe.optimizer))
+    about = asdict(recipe) | about
+    if run_file.exists():
+        resume_run(state, run_file, about)
+        log(f"{recipe.name}: continuing at step {state.step}")
+    sittings = notes_of(run_file)
+    if state.step < recipe.steps:
+        sittings = [*sittings, {"from_step": state.step, **where(device)}]
+    rate = cosine_lr(recipe.lr, recipe.steps, warmup=min(warmup, recipe.steps // 4))
+    run_to_end(recipe, rate, state, loss_fn, saver(run_file, about, sittings), log, before)
+    card = {
+        "name": recipe.name,
+        "target": recipe.config.target,
+        "recipe": {k: v for k, v in asdict(recipe).items() if k not in ("config", "name")},
+        "parameters": sum(p.numel() for p in state.model.parameters()),
+        **facts,
+        "minutes": round(state.seconds / 60, 1),
+        "sittings": sittings,
+        "data": data,
+        "final_loss": round(mean_loss(loss_fn, state.average), 6),
+    }  # `make results` adds the measured figures
+    return state.average.cpu().eval(), card
+
+
+def run_to_end(
+    recipe: Recipe | DanceRecipe, rate, state: TrainState, loss_fn: LossFn, save, log, before=None
+) -> None:
+    """Train to the last step, with a word every thousand steps, or twenty times."""
+    settings = {
+        "lr": rate,
+        "decay": recipe.decay,
+        "save": save,
+        "save_every": recipe.save_every,
+        "progress": False,
+    }
+    settings["before"] = before
+    losses, every = [], min(1000, max(1, recipe.steps // 20))
+    for report in train_steps(state, loss_fn, recipe.steps, **settings):
+        losses.append(report.loss)
+        if report.step % every == 0:
+            mean, minutes = np.mean(losses[-every:]), state.seconds / 60
+            log(f"{recipe.name} {report.step}/{recipe.steps}: loss {mean:.5f}, {minutes:.1f} min")
+
+
+@torch.no_grad()
+def mean_loss(loss_fn: LossFn, network: nn.Module, batches: int = 50) -> float:
+    """Of the averaged network, on batches drawn with a seed of their own."""
+    generator = torch.Generator().manual_seed(1)
+    return float(np.mean([loss_fn(network, generator).item() for _ in range(batches)]))
+
+
+def commit_of(folder: Path) -> str:
+    """The commit of the checkout whose top `folder` is, "-dirty" when files differ from it."""
+    if not (
+        folder / ".git"
+    ).exists():  # a package installed within somebody's own repository has no commit of ours
+        return "not in a checkout"
+    command = ["git", "-C", str(folder), "describe", "--always", "--dirty"]
+    try:
+        done = subprocess.run(command, capture_output=True, text=True, check=False)
+    except OSError:  # no git here
+        return "unknown"
+    return done.stdout.strip() or "not in a checkout"
+
+
+def where(device: str) -> dict:
+    """The code and the machine of one sitting."""
+    return {
+        "commit": commit_of(Path(__file__).parents[2]),
+        "date": datetime.date.today().isoformat(),
+        "machine": torch.cuda.get_device_name() if device == "cuda" else platform.machine(),
+        "threads": torch.get_num_threads(),
+        "torch": torch.__version__,
+    }

@@ -1,0 +1,152 @@
+"""Ways back that heed what is known: held frame by frame, or the whole window under a mask."""
+
+from types import SimpleNamespace
+
+import pytest
+import torch
+
+from motiondiff_edu import exact
+from motiondiff_edu.beyond.back_with_known import held_back, masked_back
+from motiondiff_edu.ddpm import linear_schedule
+from motiondiff_edu.motion.scaler import Scaler
+from motiondiff_edu.reconstruction import repair, walked_back
+
+T_H, T_P, D = 5, 7, 2
+
+
+class Halving:
+    """A walker that predicts half of the last pose, k times over: what it is told in between
+    decides what follows."""
+
+    def __init__(self):
+        self.config = SimpleNamespace(T_h=T_H, T_p=T_P, D=D, C=3)
+        self.pose_scaler, self.control_scaler = (
+            Scaler(torch.full((D,), 0.5), torch.full((D,), 2.0)),
+            Scaler.nothing(3),
+        )
+
+    def window_sampler(self, steps=None):
+        return lambda past, control, generator: torch.stack(
+            [past[:, -1] / 2**k for k in range(1, T_P + 1)], 1
+        )
+
+
+def options():
+    return {"generator": torch.Generator().manual_seed(0), "steps": None}
+
+
+def test_each_frame_goes_on_from_the_one_before_with_what_is_known_of_it_put_right():
+    walker, B = Halving(), 3
+    ahead, given = torch.full((B, T_H, D), 0.5 + 2 * 8.0), torch.full((B, T_H, D), float("nan"))
+    known = torch.zeros(B, T_H, D, dtype=torch.bool)
+    known[:, 2, 1], given[:, 2, 1] = True, 0.5 + 2 * 40.0
+    made = walker.pose_scaler.transform(
+        held_back(walker, ahead, torch.zeros(B, 2 * T_H, 3), given, known, **options())
+    )
+    want = torch.tensor([[4.0, 4.0], [2.0, 2.0], [1.0, 40.0], [0.5, 20.0], [0.25, 10.0]])
+    torch.testing.assert_close(made, want.expand(B, -1, -1))
+    free = walked_back(walker, ahead, torch.zeros(B, 2 * T_H, 3), given, known, **options())
+    assert (walker.pose_scaler.transform(free)[:, 3] == 0.5).all()
+
+
+class Obedient(Halving):
+    """Its next pose is what the control says of that frame."""
+
+    def window_sampler(self, steps=None):
+        return lambda past, control, generator: control[:, T_H:, :D]
+
+
+def test_each_frame_is_walked_under_the_control_of_its_own_time():
+    walker, B = Obedient(), 3
+    control = torch.randn(B, 2 * T_H, 3, generator=torch.Generator().manual_seed(2))
+    zeros = torch.zeros(B, T_H, D)
+    made = walker.pose_scaler.transform(
+        held_back(walker, zeros, control, zeros, zeros > 1, **options())
+    )
+    torch.testing.assert_close(made, control[:, T_H:, :D])
+
+
+class Known(Halving):
+    """A walker whose windows are Gaussian, whatever came before; the exact denoiser is its
+    network."""
+
+    def __init__(self, T_p: int = T_P):
+        super().__init__()
+        self.config.T_p, self.config.S = T_p, 60
+        root = torch.randn(
+            T_p * D, T_p * D, generator=torch.Generator().manual_seed(3), dtype=torch.float64
+        )
+        covariance = root @ root.T / (T_p * D) + 0.1 * torch.eye(T_p * D)
+        self.given = exact.mixture(torch.ones(1), torch.zeros(1, T_p * D), covariance[None])
+        self.schedule = linear_schedule(60, 1e-3, 0.3)
+
+    def denoiser(self, past, control, fast=True):
+        return exact.exact_denoiser(self.given, self.schedule)
+
+
+def test_a_window_under_a_mask_has_about_the_mean_that_what_is_known_asks_for():
+    walker, B = Known(), 1500
+    known = torch.zeros(B, T_H, D, dtype=torch.bool)
+    known[:, 1] = known[:, 3, 0] = True
+    values = torch.tensor([1.5, -1.0, 2.0])
+    given = torch.full((B, T_H, D), float("nan"))
+    given[known] = 0.5 + 2 * values.repeat(B)
+    made = walker.pose_scaler.transform(
+        masked_back(
+            walker, torch.zeros(B, T_H, D), torch.zeros(B, 2 * T_H, 3), given, known, **options()
+        )
+    )
+    torch.testing.assert_close(made[known], values.repeat(B))
+    whole = torch.zeros(T_P * D, dtype=torch.bool)
+    whole[: T_H * D] = known[0].flatten()
+    padded = torch.zeros(T_P * D)
+    padded[whole] = values
+    truth = exact.conditional(walker.given, padded, whole).mean()[: int((~known[0]).sum())].float()
+    spread = (
+        exact.conditional(walker.given, padded, whole)
+        .covariance()
+        .diagonal()
+        .sqrt()[: len(truth)]
+        .float()
+    )
+    plain = walker.given.mean()[: len(truth)].float()
+    off, off_unheeded = (((x - truth) / spread).abs() for x in (made[:, ~known[0]].mean(0), plain))
+    assert off.mean() < 0.25 < 0.5 < off_unheeded.mean()
+
+
+def test_a_mask_wants_a_window_as_long_as_the_past():
+    with pytest.raises(ValueError, match="window of 4 frames cannot hold the 5"):
+        zeros = torch.zeros(2, T_H, D)
+        masked_back(Known(4), zeros, torch.zeros(2, 2 * T_H, 3), zeros, zeros > 1, **options())
+
+
+@pytest.mark.parametrize("way", [held_back, masked_back])
+def test_all_is_made_where_the_inputs_are_and_drawn_where_the_generator_is(way):
+    """With another default device, whatever is made without regard to the inputs lands beside
+    them."""
+    walker, known = Known(), torch.zeros(2, T_H, D, dtype=torch.bool)
+    ahead, given = torch.zeros(2, T_H, D), torch.ones(2, T_H, D)
+    known[:, 2] = True
+    arguments = walker, ahead, torch.zeros(2, 2 * T_H, 3), given, known
+    here, draws = way(*arguments, **options()), options()
+    with torch.device("meta"):
+        there = way(*arguments, **draws)
+    assert torch.equal(here, there)
+
+
+@pytest.mark.parametrize("way", [walked_back, held_back])
+def test_each_way_serves_the_repair_and_keeps_what_is_known(way):
+    past = torch.randn(2, T_H, D, generator=torch.Generator().manual_seed(5))
+    known = torch.ones(past.shape, dtype=torch.bool)
+    known[:, 2] = False
+    holes = past.masked_fill(~known, float("nan"))
+    draw = torch.Generator().manual_seed(1)
+    made = repair(
+        Halving(), holes, known, torch.zeros(2, 2 * T_H, 3), way_back=way, rounds=2, generator=draw
+    )
+    assert torch.equal(made[known], past[known]) and torch.isfinite(made).all()
+    assert not torch.equal(made[~known], walker_mean().expand(2, D).reshape(-1))
+
+
+def walker_mean():
+    return torch.full((D,), 0.5)

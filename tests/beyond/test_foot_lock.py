@@ -1,0 +1,99 @@
+"""Feet that slide are held, legs keep their bones, and what was given is not touched."""
+
+import numpy as np
+import pytest
+
+from data_synth.walking import walk
+from motiondiff_edu.beyond.foot_lock import stands, steady_feet, to_stands
+from motiondiff_edu.editing.masks import body_part, gap, keyframes
+from motiondiff_edu.metrics.bone_lengths import bone_lengths
+from motiondiff_edu.motion.skeleton import HEELS, TOES
+
+LEGS = [joint for toe, heel in zip(TOES, HEELS, strict=True) for joint in (heel - 1, heel, toe)]
+
+
+@pytest.fixture(scope="module")
+def clip():
+    return walk(np.tile([1.2, 0.0, 0.0], (100, 1)), seed=3)
+
+
+def sliding(positions, contacts):
+    """Mean speed over the ground (m/s) of toes that stand in the truth, from frame to frame."""
+    toes = positions[:, list(TOES)][..., [0, 2]]
+    return (20 * np.linalg.norm(np.diff(toes, axis=0), axis=-1))[
+        contacts[1:] & contacts[:-1]
+    ].mean()
+
+
+def too_fast(clip, known):
+    """The walk; what is not known of it runs ahead by up to 30 cm and back, and slides."""
+    world, ahead = clip.world(), np.array([0.0, 0.0, 0.3])
+    return np.where(
+        known[..., None],
+        world,
+        world + np.sin(np.linspace(0, 3 * np.pi, 100))[:, None, None] ** 2 * ahead,
+    )
+
+
+@pytest.mark.parametrize("mask", [lambda T: gap(T, 20, 60), lambda T: keyframes(T, 33)])
+def test_sliding_feet_are_held(clip, mask):
+    known = mask(100)
+    slid = too_fast(clip, known)
+    held = steady_feet(slid, known)
+    before, after = (sliding(x, clip.contacts) for x in (slid, held))
+    assert before > 0.25 and after < before / 3
+    others = np.delete(np.arange(21), LEGS)
+    assert np.array_equal(held[:, others], slid[:, others]) and np.array_equal(
+        held[known], slid[known]
+    )
+    np.testing.assert_allclose(
+        bone_lengths(held)[~known.all(1)], bone_lengths(slid)[~known.all(1)], atol=2e-3
+    )
+
+
+def test_a_walk_that_does_not_slide_is_hardly_moved(clip):
+    world = clip.world()
+    held = steady_feet(world, gap(100, 10, 80))
+    assert np.linalg.norm(held - world, axis=-1).max() < 0.05
+
+
+def test_several_motions_are_held_as_each_alone(clip):
+    known = gap(100, 20, 60)
+    both = np.stack([too_fast(clip, known), clip.world()])
+    kept = both.copy()
+    held = steady_feet(both[None], known)
+    assert held.shape == (1, 2, 100, 21, 3) and np.array_equal(both, kept)
+    assert np.array_equal(held[0, 1], steady_feet(both[1], known))
+
+
+def test_given_legs_stay_and_all_given_is_the_input(clip):
+    world = clip.world()
+    lower = body_part(100, "lower body")
+    assert np.array_equal(steady_feet(world, lower), world)
+    assert np.array_equal(steady_feet(world, np.ones((100, 21), bool)), world)
+
+
+def test_a_stand_is_where_the_toe_is_given_and_the_correction_fades_to_the_given():
+    toe = np.zeros((30, 3))
+    toe[:, 2] = np.concatenate(
+        [np.arange(10) * 0.02, 0.2 + np.arange(1, 11) * 0.1, 1.2 + np.arange(10) * 0.02]
+    )
+    toe[10:20, 1] = 0.2  # stands while it slides (0.4 m/s), steps, and stands again
+    standing = stands(toe, 20.0)
+    assert standing[:10].all() and standing[20:].all() and not standing[11:19].any()
+    given = np.zeros(30, bool)
+    given[[2, 15]] = True
+    moved = toe + to_stands(toe, given, 20.0)
+    np.testing.assert_allclose(
+        moved[:10, 2], toe[2, 2], atol=1e-12
+    )  # at the given place, not at the median
+    np.testing.assert_allclose(
+        moved[21:, 2], np.median(toe[20:, 2])
+    )  # farther from the given than the fade
+    assert np.array_equal(moved[15], toe[15])
+    assert (np.abs(np.diff(moved[:, 2])) < 0.25).all() and np.isfinite(moved).all()
+
+
+def test_nothing_stands_nothing_moves():
+    flying = np.tile([0.0, 1.0, 0.0], (10, 1)) + np.arange(10)[:, None] * [0.0, 0.0, 0.3]
+    assert (to_stands(flying, np.zeros(10, bool), 20.0) == 0).all()

@@ -1,0 +1,287 @@
+"""Footholds: held joints rest in the world, the gate chooses, the fast twin and the weights file
+keep both."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+import torch
+
+from motiondiff_edu.beyond.footholds import (
+    COLUMNS,
+    FEET,
+    FootholdConfig,
+    FootholdMoDiff,
+    blend,
+    held_positions,
+    network,
+    openness,
+)
+from motiondiff_edu.ddpm import linear_schedule
+from motiondiff_edu.diffusion_dropout import Dropout
+from motiondiff_edu.fast.footholds import FastFoothold
+from motiondiff_edu.modiff import MoDiff, MoDiffConfig
+from motiondiff_edu.motion.clip import Clip
+from motiondiff_edu.motion.root_frame import to_world
+from motiondiff_edu.motion.scaler import Scaler
+from motiondiff_edu.motion.skeleton import JOINTS
+from motiondiff_edu.performers.walker import Walker
+from motiondiff_edu.performers.windows import Windows, bone_errors, window_loss
+from motiondiff_edu.pretrained.checkpoints import load_walker, save
+
+T_H, T_P, B = 4, 5, 3
+SIZES = dict(T_h=T_H, T_p=T_P, S=8, width=16, heads=2, hidden=24)
+TINY, FREE = FootholdConfig(**SIZES), MoDiffConfig(**SIZES, target="x0", skip=False)
+POSE = Scaler(torch.linspace(-2, 3, 63), torch.linspace(0.1, 0.6, 63))
+CONTROL = Scaler(torch.tensor([1.0, 0.1, -0.2]), torch.tensor([0.5, 0.2, 0.8]))
+
+
+def tiny(gate: float | None = None, seed: int = 0) -> FootholdMoDiff:
+    """A network that answers at random; with `gate`, one whose gate gives this logit everywhere."""
+    torch.manual_seed(seed)
+    model = FootholdMoDiff(TINY, POSE, CONTROL).eval()
+    with torch.no_grad():
+        model.gate.weight.normal_() if gate is None else model.gate.bias.fill_(gate)
+    return model
+
+
+def inputs(seed: int = 1):
+    g = torch.Generator().manual_seed(seed)
+    shapes = ((B, T_P, 63), (B, T_H, 63), (B, T_H + T_P, 3))
+    x_s, past, control = (torch.randn(shape, generator=g) for shape in shapes)
+    return x_s, torch.tensor([2, 7, 5]), past, control
+
+
+def test_the_feet_are_the_ankles_and_toes():
+    assert [JOINTS[j] for j in FEET] == ["LeftFoot", "LeftToeBase", "RightFoot", "RightToeBase"]
+    assert COLUMNS == [9, 10, 11, 12, 13, 14, 21, 22, 23, 24, 25, 26]
+
+
+def test_held_joints_rest_in_the_world():
+    """The oracle is the way back: poses and control, placed in the world, do not move."""
+    rng = np.random.default_rng(0)
+    control, joints = rng.normal(size=(2, 7, 3)) * [2, 1, 3], rng.normal(size=(2, 4, 3))
+    held = held_positions(torch.from_numpy(joints), torch.from_numpy(control)).numpy()
+    for b in range(2):
+        poses = np.concatenate([joints[b : b + 1], held[b]])
+        world = to_world(
+            poses, np.concatenate([control[b], control[b, -1:]]), start=(0.3, -0.2, 1.1)
+        )
+        assert np.abs(world - world[:1]).max() < 1e-12
+
+
+def test_held_joints_by_hand():
+    """1 m/s ahead: a toe at rest falls back by 5 cm a frame. A quarter turn to the left: what was
+    ahead is right."""
+    toe = torch.tensor([[[0.1, 0.02, 0.3]]])
+    back = held_positions(toe, torch.tensor([[[1.0, 0, 0]] * 2]))
+    torch.testing.assert_close(back[0, :, 0], torch.tensor([[0.1, 0.02, 0.25], [0.1, 0.02, 0.2]]))
+    turned = held_positions(toe, torch.tensor([[[0.0, 0, torch.pi / 2 * 20]]]))
+    torch.testing.assert_close(turned[0, 0, 0], torch.tensor([-0.3, 0.02, 0.1]))
+
+
+def metres(output: torch.Tensor) -> np.ndarray:
+    return POSE.inverse(output).double().numpy().reshape(B, -1, 21, 3)
+
+
+def test_an_open_gate_leaves_the_feet_where_they_are():
+    x_s, s, past, control = inputs()
+    with torch.no_grad():
+        poses = metres(torch.cat([past[:, -1:], tiny(gate=50.0)(x_s, s, past, control)], 1))
+    steer = CONTROL.inverse(control[:, T_H - 1 :]).double().numpy()
+    world = np.stack([to_world(p, c) for p, c in zip(poses, steer, strict=True)])
+    moved = np.abs(world - world[:, :1]).max((0, 1, 3))
+    assert moved[FEET].max() < 1e-5
+    assert np.delete(moved, FEET).min() > 0.01
+
+
+def test_a_closed_gate_is_plain_modiff():
+    closed, plain = tiny(gate=-50.0), MoDiff(FREE).eval()
+    plain.load_state_dict(
+        {k: v for k, v in closed.state_dict().items() if not k.startswith("gate")}
+    )
+    x_s, s, past, control = inputs()
+    torch.testing.assert_close(
+        closed(x_s, s, past, control), plain(x_s, s, past, control), atol=1e-6, rtol=1e-6
+    )
+
+
+def test_the_gate_shares_by_joint():
+    held, free = torch.ones(1, 1, 12), torch.zeros(1, 1, 63)
+    out = blend(free, torch.tensor([[[0.1, 0.2, 0.3, 0.4]]]), held)[0, 0]
+    wanted = torch.zeros(21, 3)
+    wanted[FEET] = torch.tensor([[0.1], [0.2], [0.3], [0.4]])
+    torch.testing.assert_close(out.view(21, 3), wanted)
+    assert not free.any()  # what it was given stays
+
+
+def test_another_pose_may_stand():
+    x_s, s, past, control = inputs()
+    model, other = tiny(gate=50.0), past[:, -1] + 0.5
+    with torch.no_grad():
+        by_default = model.encode(past, control)
+        standing = model.encode(past, control, other)
+    assert torch.equal(by_default.memory, standing.memory)
+    assert torch.equal(standing.held, model.held(other, control)) and not torch.equal(
+        standing.held, by_default.held
+    )
+    twice = standing.repeat_interleave(2)
+    assert torch.equal(twice.held[1], standing.held[0]) and torch.equal(
+        twice.memory[2], standing.memory[1]
+    )
+
+
+def test_fast_twin_gives_the_same_numbers():
+    plain, (x_s, s, past, control) = tiny(), inputs()
+    fast = FastFoothold(plain)
+    with torch.no_grad():
+        wanted = plain(x_s, s, past, control)
+    torch.testing.assert_close(
+        fast.denoise(x_s, s, fast.encode(past, control)), wanted, atol=1e-5, rtol=1e-5
+    )
+
+
+def test_the_weights_file_keeps_the_gate_and_the_walker_walks(tmp_path: Path):
+    walker = Walker(tiny(), linear_schedule(8, 0.2, 0.95), POSE, CONTROL)
+    back = load_walker(save(walker, tmp_path / "tiny.safetensors", bits=32))
+    assert isinstance(back.model, FootholdMoDiff)
+    (_, _, past, control), seed = inputs(), lambda: torch.Generator().manual_seed(3)
+    torch.testing.assert_close(
+        back.window_sampler()(past, control, seed()), walker.window_sampler()(past, control, seed())
+    )
+
+
+@pytest.mark.parametrize(
+    ("settings", "reason"),
+    [({"target": "eps"}, "target"), ({"skip": True}, "skip"), ({"D": 30}, "63, not 30")],
+)
+def test_what_has_no_place_is_refused(settings, reason):
+    with pytest.raises(ValueError, match=reason):
+        replace(TINY, **settings)
+
+
+def test_the_configuration_names_the_network():
+    assert type(network(TINY, POSE, CONTROL)) is FootholdMoDiff
+    assert type(network(FREE, POSE, CONTROL)) is MoDiff
+
+
+def walk_windows() -> Windows:
+    rng = np.random.default_rng(0)
+    return Windows.of(
+        [Clip(rng.normal(size=(60, 21, 3)).cumsum(0), rng.normal(size=(60, 3)), source="drift")],
+        T_H,
+        T_P,
+    )
+
+
+def watched(windows: Windows, seen: dict) -> FootholdMoDiff:
+    """A network that writes down the last poses it is shown, and those on which its feet may
+    stand."""
+    model = FootholdMoDiff(TINY, windows.pose_scaler, windows.control_scaler)
+    encode = model.encode
+
+    def spy(past, control, standing):
+        seen.update(past=past[:, -1], standing=standing)
+        return encode(past, control, standing)
+
+    model.encode = spy
+    return model
+
+
+@pytest.mark.parametrize("doubt", [0.0, 0.4, 1.0])
+def test_doubt_is_the_share_of_the_shaking_under_the_feet(doubt: float):
+    """The pose whose feet may stay lies between the clean past and the one that is seen."""
+    windows, seen = walk_windows(), {}
+    model = watched(windows, seen)
+    window_loss(windows, linear_schedule(8, 0.2, 0.95), batch=6, jitter=0.3, doubt=doubt)(
+        model, torch.Generator().manual_seed(5)
+    )
+    clean = windows.draw(6, torch.Generator().manual_seed(5))[0][:, -1]
+    torch.testing.assert_close(seen["standing"], clean + doubt * (seen["past"] - clean))
+    assert (seen["past"] - clean).abs().max() > 0.01
+
+
+def test_a_dropped_past_leaves_no_clean_feet_to_stand_on():
+    """Wherever the past was noised, the feet that may stay are those of the noised past."""
+    windows, schedule, seen = walk_windows(), linear_schedule(8, 0.2, 0.95), {}
+    model = watched(windows, seen)
+    dropout = Dropout(schedule, lambda done: 0.5, steps=1)
+    loss_fn = window_loss(
+        windows, schedule, batch=20, noises=2, jitter=0.3, doubt=0.5, dropout=dropout
+    )
+    loss_fn(model, torch.Generator().manual_seed(5))
+    same = (seen["standing"] == seen["past"]).all(1)
+    clean = windows.draw(20, torch.Generator().manual_seed(5))[0][:, -1].repeat_interleave(2, 0)
+    torch.testing.assert_close(
+        seen["standing"][~same], (clean + 0.5 * (seen["past"] - clean))[~same]
+    )
+    assert 8 < same.sum() < 32
+
+
+def test_bone_errors_by_hand():
+    """All joints off by the same: no bone errs. The left hand's tip alone off by 3 cm: its bone
+    errs, no other."""
+    error = torch.zeros(1, 2, 63)
+    error[:, 0] = 0.2
+    error[0, 1, 3 * 16 + 1] = 0.03
+    found = bone_errors(error)
+    assert not found[0, 0].any()
+    assert found[0, 1, 15] == pytest.approx(0.03**2 / 3) and found[0, 1].count_nonzero() == 1
+
+
+def test_bones_add_their_errors_to_the_loss():
+    windows, schedule = walk_windows(), linear_schedule(8, 0.2, 0.95)
+    model = MoDiff(FREE)
+
+    def loss(bones: float) -> float:
+        return window_loss(windows, schedule, batch=6, bones=bones)(
+            model, torch.Generator().manual_seed(5)
+        ).item()
+
+    assert loss(1.0) > loss(0.0) and loss(2.0) - loss(1.0) == pytest.approx(
+        loss(1.0) - loss(0.0), rel=1e-4
+    )
+
+
+def test_in_use_a_gate_leans_towards_holding_and_goes_all_the_way():
+    """Where a sigmoid stops short of 0 and 1 the stretched one is there; halfway lies a quarter
+    lower."""
+    gate = torch.tensor([-9.0, -2.65, -0.25, 2.15, 9.0])
+    torch.testing.assert_close(openness(gate), torch.tensor([0.0, 0.0, 0.5, 1.0, 1.0]))
+    torch.testing.assert_close(openness(gate, leaning=False), torch.sigmoid(gate))
+
+
+def test_training_sees_the_plain_gate_and_use_the_leaning_one():
+    x_s, s, past, control = inputs()
+    model = tiny()
+    shares = []
+    for training in (True, False):
+        part = model.train(training)
+        with torch.no_grad():
+            context = part.encode(past, control)
+            x = part.attend(part.embed(x_s, s), context.memory)
+            gate, free, out = part.gate(x), part.head(x), part(x_s, s, past, control)
+        for leaning in (False, True):
+            shares.append(
+                torch.allclose(out, blend(free, openness(gate, leaning), context.held), atol=1e-6)
+            )
+    assert shares == [True, False, False, True]
+
+
+def test_gates_are_those_the_answer_was_made_with():
+    x_s, s, past, control = inputs()
+    model = tiny()
+    with torch.no_grad():
+        context = model.encode(past, control)
+        x = model.attend(model.embed(x_s, s), context.memory)
+        gates, free = openness(model.gate(x)), model.head(x)
+        out = model(x_s, s, past, control)
+    assert gates.shape == (B, T_P, 4) and 0 <= gates.min() < 0.3 and 0.7 < gates.max() <= 1
+    share = (
+        ((out - free)[..., COLUMNS] / (context.held - free[..., COLUMNS]))
+        .unflatten(-1, (4, 3))
+        .median(-1)
+        .values
+    )
+    torch.testing.assert_close(share, gates, atol=1e-3, rtol=1e-3)

@@ -1,0 +1,103 @@
+"""doctor.py: each finding on a sound machine and on a broken one, and the page."""
+
+import importlib.metadata
+import subprocess
+import sys
+import webbrowser
+
+import pytest
+
+from motiondiff_edu import doctor
+from motiondiff_edu.doctor import Finding
+
+
+def test_a_line_says_what_to_do_only_when_something_is_wrong():
+    assert str(Finding("sound", "fine")) == "ok    sound     fine"
+    assert str(Finding("sound", "bad", "mend it")).split("\n") == [
+        "FAIL  sound     bad",
+        f"{'':16}-> mend it",
+    ]
+    assert str(Finding("sound", "odd", "perhaps", note=True)).startswith("note")
+
+
+def test_the_page_fails_when_a_finding_fails_and_not_for_a_note(capsys):
+    well, odd, bad = Finding("a", "x"), Finding("b", "y", "z", note=True), Finding("c", "y", "z")
+    assert doctor.main([lambda: well, lambda: odd]) == 0
+    assert "All well" in capsys.readouterr().out
+    assert doctor.main([lambda: well, lambda: bad]) == 1
+    assert "1 to mend" in capsys.readouterr().out
+
+
+def test_a_check_that_breaks_is_a_finding():
+    def canvas():
+        raise ModuleNotFoundError("No module named 'anywidget'")
+
+    finding = doctor.guarded(canvas)
+    assert (
+        finding.name == "canvas"
+        and "No module named 'anywidget'" in finding.told
+        and finding.remedy
+    )
+
+
+def test_missing_and_different_packages_are_named(monkeypatch):
+    monkeypatch.setattr(doctor, "required", lambda: ["torch", "anywidget", "tqdm"])
+    monkeypatch.setattr(
+        doctor, "constraints", lambda: {"torch": "2.13.0", "anywidget": "0.11.0", "tqdm": "4.70.1"}
+    )
+    installed = {"torch": "2.13.0+cpu", "anywidget": "0.10.0", "tqdm": "4.70.1"}
+    monkeypatch.setattr(importlib.metadata, "version", installed.__getitem__)
+    finding = doctor.versions()
+    assert finding.note and finding.told == "anywidget 0.10.0 (tested: 0.11.0)"
+
+    def version(name):
+        raise importlib.metadata.PackageNotFoundError(name)
+
+    monkeypatch.setattr(importlib.metadata, "version", version)
+    finding = doctor.versions()
+    assert not finding.note and finding.told == "missing: torch, anywidget, tqdm"
+
+
+def test_the_pins_are_read_from_the_checkout():
+    pins = doctor.constraints()
+    assert pins["torch"] == "2.13.0" and len(pins) > 30
+
+
+@pytest.mark.parametrize("check", [doctor.python, doctor.compute, doctor.sound, doctor.writing])
+def test_this_machine_is_sound(check):
+    finding = check()
+    assert not finding.remedy or finding.note, str(finding)
+
+
+def test_the_kernel_starts_and_finds_the_package():
+    assert doctor.kernel() == Finding("kernel", "starts, and finds motiondiff_edu")
+
+
+def test_a_folder_that_cannot_be_written_is_said(monkeypatch):
+    def refuse(**_):
+        raise PermissionError(13, "Permission denied")
+
+    monkeypatch.setattr(doctor.tempfile, "TemporaryFile", refuse)
+    finding = doctor.writing()
+    assert "Permission denied" in finding.told and "folder of your own" in finding.remedy
+
+
+def test_no_browser_is_a_note_and_no_module_a_failure(monkeypatch, tmp_path):
+    def none():
+        raise webbrowser.Error("none")
+
+    monkeypatch.setattr(webbrowser, "get", none)
+    (tmp_path / "widgets").mkdir()
+    monkeypatch.setattr(doctor, "PACKAGE", tmp_path)
+    assert "ES module" in doctor.canvas().told and not doctor.canvas().note
+    (tmp_path / "widgets" / "player.js").touch()
+    assert doctor.canvas().note
+
+
+def test_doctor_still_speaks_where_torch_cannot_be_imported():
+    code = (
+        "import sys; sys.modules['torch'] = None; sys.argv = ['motiondiff_edu', 'doctor']; "
+        "from motiondiff_edu import doctor; print(doctor.guarded(doctor.compute))"
+    )
+    told = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True).stdout
+    assert told.startswith("FAIL  compute") and "-> python -m pip install" in told

@@ -1,0 +1,136 @@
+"""Do the synthetic dances lie where real ones do, and on the beat? The table, and the ruler it is
+measured with."""
+
+import re
+import warnings
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from data_synth.dancing.acceptance import OUTSIDE, OWN, UPRIGHT, acceptance, limits, means_outside
+from data_synth.dancing.statistics import (
+    joint_speed,
+    kinematic_beats,
+    repeats,
+    root_frame,
+    statistics,
+)
+from data_synth.walking.acceptance import table
+from motiondiff_edu.motion.kinematics import rot_y
+from motiondiff_edu.motion.retarget import load_clip
+
+CARD = (Path(__file__).parents[2] / "data_synth" / "README.md").read_text(encoding="utf-8")
+CARD = CARD.split("# Data card: synthetic dance")[1]
+
+
+@pytest.fixture(scope="module")
+def found():
+    return acceptance(count=20, seconds=30.0)
+
+
+def card(row: str) -> list[float]:
+    """The numbers of a row of the card's tables, after its name."""
+    line = re.search(rf"^\| {row} \|(.*)\|$", CARD, re.MULTILINE)
+    return [float(number) for number in re.findall(r"-?\d[\d.]*(?:e-\d+)?", line[1])]
+
+
+def test_what_lies_outside_is_known_and_explained(found):
+    assert means_outside(*found) <= set(OUTSIDE)
+    for name in OUTSIDE:
+        assert f"`{name}`" in CARD, f"{name} is not explained in the data card"
+
+
+def test_nearly_every_dance_is_inside(found):
+    shares = {line[0]: line[6] for line in table(found[1], UPRIGHT)}
+    assert np.mean(list(shares.values())) > 0.95 and min(shares.values()) > 0.8, shares
+
+
+def test_dances_meet_their_own_song_and_no_other(found):
+    """By chance exp(-d^2 / (2 0.05^2)) is some 0.05 sqrt(2 pi) / period: 0.16 to 0.35 at 80 to 165
+    beats a minute."""
+    lines = {line[0]: line for line in table(found[1], OWN)}
+    assert 0.6 < lines["own_song"][1] < 0.85 and 0.15 < lines["other_song"][1] < 0.3
+    assert lines["own_song"][2] > 0.4 and lines["beats_per_beat"][6] > 0.85
+    for genre in {d.genre for d in found[0]}:
+        own = [r["own_song"] for d, r in zip(*found, strict=True) if d.genre == genre]
+        assert np.mean(own) > 0.55, genre
+
+
+def test_no_dance_is_a_loop(found):
+    assert max(row["repeats"] for row in found[1]) < 0.9
+
+
+def test_no_dance_exceeds_the_limits_of_the_card(found):
+    worst = limits(found[0])
+    assert (
+        worst["planted_toe_mm_a_frame"] < card("planted toe")[0]
+        and worst["bone_error_m"] < card("bones")[0]
+    )
+    assert abs(worst["lowest_joint_mm"] - card("lowest joint")[0]) < 1e-3
+    low, high = card("knees")[:2]
+    assert (
+        low - 0.5 < worst["knee_smallest_deg"] < low + 1.5
+        and high - 20 < worst["knee_largest_deg"] < high + 0.5
+    )
+    assert (
+        card("fastest joint")[0] - 4 < worst["fastest_joint_mps"] < card("fastest joint")[0] + 0.1
+    )
+
+
+def test_the_card_has_these_dances_figures(found):
+    """Twenty dances here, thirty in the card."""
+    for name, mean, *_ in table(found[1], UPRIGHT | OWN):
+        assert card(name)[0] == pytest.approx(mean, rel=0.2), name
+
+
+# the ruler
+
+
+def shaking(period: float, fps: float = 20.0, seconds: float = 12.0) -> np.ndarray:
+    """A figure whose left hand goes to and fro, at rest every `period` seconds from `period` on."""
+    t = np.arange(round(seconds * fps)) / fps
+    world = np.random.default_rng(0).normal(size=(1, 21, 3)).repeat(len(t), 0)
+    world[:, 15, 0] += 0.3 * np.cos(np.pi * t / period)
+    return world
+
+
+def test_kinematic_beats_are_where_a_movement_turns():
+    for period in (0.4, 0.63):
+        beats = kinematic_beats(shaking(period))
+        wanted = period * np.arange(1, 12 / period)
+        inner = beats[(beats > 1) & (beats < 11)]
+        assert np.abs(inner[:, None] - wanted).min(1).max() < 0.02
+        assert np.diff(inner) == pytest.approx(period, abs=0.035)
+
+
+def test_speed_by_hand():
+    world = np.zeros((5, 21, 3))
+    world[:, 4, 1] = [0.0, 0.1, 0.2, 0.2, 0.2]
+    assert joint_speed(world, 20.0) == pytest.approx(np.array([2.0, 1.0, 0.0]) / 21)
+
+
+def test_a_loop_repeats_and_turning_does_not_hide_it():
+    rng = np.random.default_rng(1)
+    phrase = np.cumsum(rng.normal(size=(20, 21, 3)), 0) * 0.01
+    pose = rng.normal(size=(21, 3)) + [0.0, 1.0, 0.0]
+    pose[[1, 13], 0], pose[[5, 17], 0] = 1.0, -1.0
+    loop = pose + np.tile(np.concatenate([phrase, phrase[::-1]]), (4, 1, 1))
+    assert repeats(loop) > 0.99
+    turned = np.einsum("ij,tkj->tki", rot_y(1.1), loop) + [3.0, 0.0, -2.0]
+    assert root_frame(turned, 20.0) == pytest.approx(root_frame(loop, 20.0), abs=1e-9)
+
+
+def test_the_ruler_finds_real_dances_inside(real_data):
+    """Two upright dances of CMU; a third clip, of a dab, crouches more than any of the eight that
+    made the range."""
+    for name, cut in (("cmu_05_06_dance", 0), ("cmu_acrnn_salsa_10", 90)):
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            row = statistics(load_clip(real_data / "bvh" / f"{name}.bvh").world()[cut:])
+        for key, (low, high) in UPRIGHT.items():
+            assert low - 0.1 * (high - low) <= row[key] <= high + 0.1 * (high - low), (
+                name,
+                key,
+                row[key],
+            )

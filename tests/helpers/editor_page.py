@@ -1,0 +1,84 @@
+"""A page with an editor whose messages reach the Python object, as in JupyterLab: both ends of the
+wire, no server."""
+
+import base64
+import json
+from pathlib import Path
+
+from motiondiff_edu.widgets.editor import Editor
+from motiondiff_edu.widgets.editor_page import BINARY, MODULE, PLAIN
+
+MODEL = """
+const decode = (s) => new DataView(Uint8Array.from(atob(s), (c) => c.charCodeAt(0)).buffer);
+const state = {}, listeners = {}, dirty = new Set();
+window.asked = []; window.leaked = 0;
+document.addEventListener("keydown", () => { window.leaked++; });
+const fire = (name) => (listeners["change:" + name] || []).forEach((f) => f());
+window.take = (record) => {
+  for (const [name, value] of Object.entries(record)) state[name] = BINARY.includes(name) ? decode(value) : value;
+  for (const name of Object.keys(record)) fire(name);
+};
+window.model = {
+  get: (name) => state[name],
+  set: (name, value) => { if (state[name] !== value) { state[name] = value; dirty.add(name); fire(name); } },
+  save_changes: () => {
+    const record = Object.fromEntries([...dirty].map((name) => [name, state[name]]));
+    dirty.clear();
+    window.kernel({ traits: record });
+  },
+  send: (content) => { window.asked.push(content); window.kernel({ message: content }); },
+  on: (name, f) => { (listeners[name] ||= []).push(f); },
+  off: (name, f) => { listeners[name] = (listeners[name] || []).filter((g) => g !== f); },
+};
+window.listening = () => Object.values(listeners).flat().length;
+window.take(RECORD);
+window.cleanup = widget.render({ model: window.model, el: document.getElementById("here") });
+"""
+
+
+def record(editor: Editor, names=BINARY + PLAIN) -> dict:
+    """What the page has of an editor, as JSON takes it."""
+    values = {name: getattr(editor, name) for name in names}
+    return {
+        name: base64.b64encode(v).decode() if isinstance(v, bytes) else v
+        for name, v in values.items()
+    }
+
+
+def open_editor(page, folder: Path, editor: Editor, background: str = "#fff") -> None:
+    """Show an editor; what the page sends is received by the object, and what changes there is told
+    to the page."""
+    told = record(editor)
+
+    def kernel(what: dict) -> dict:
+        for name, value in what.get("traits", {}).items():
+            setattr(editor, name, value)
+            told[name] = value
+        if "message" in what:
+            editor._receive(editor, what["message"], [])
+        now = record(editor)
+        changed = {name: value for name, value in now.items() if value != told[name]}
+        told.update(changed)
+        return changed
+
+    page.expose_function("kernelled", kernel)
+    source = MODULE.replace("export default", "const widget =", 1).replace(
+        "export function", "function"
+    )
+    script = MODEL.replace("RECORD", json.dumps(told).replace("<", "\\u003c")).replace(
+        "BINARY", json.dumps(BINARY)
+    )
+    wire = "window.kernel = async (what) => { const changed = await window.kernelled(what); window.take(changed); };"
+    path = folder / "page.html"
+    style = f"body {{ background: {background}; margin: 8px; }}"
+    body = f'<div id="here"></div><script type="module">\n{source}\n{wire}\n{script}</script>'
+    path.write_text(
+        f'<!doctype html><meta charset="utf-8"><style>{style}</style><body>{body}', "utf-8"
+    )
+    page.goto(path.as_uri())
+    page.locator(".mde-editor").wait_for()
+
+
+def settled(page) -> None:
+    """Wait until Python has answered all that was asked."""
+    page.wait_for_function("!asked.length || model.get('state').heard >= asked.at(-1).number")

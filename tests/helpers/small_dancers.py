@@ -1,0 +1,36 @@
+"""Dancers with random weights, small enough for a test: what they dance is noise, how they are asked is
+not."""
+
+import torch
+
+from motiondiff_edu.ddpm import cosine_schedule
+from motiondiff_edu.mofusion import MoFusion, MoFusionConfig
+from motiondiff_edu.motion.scaler import Scaler
+from motiondiff_edu.performers.dancer import Dancer
+
+TINY = MoFusionConfig(S=12, widths=(16, 24), heads=2, music_layers=1, target="x0", skip=False)
+HEARS = MoFusionConfig(C=5, S=30, widths=(16, 24), heads=2, music_layers=1, target="x0", skip=False)
+
+
+def dancer_to_mel(**changes) -> Dancer:
+    torch.manual_seed(0)
+    model = MoFusion(MoFusionConfig(**{**TINY.as_dict(), **changes}))
+    with torch.no_grad():
+        for weight in model.parameters():
+            weight.add_(0.1 * torch.randn(weight.shape))
+    motion, mel = (
+        Scaler(torch.zeros(63), torch.full((63,), 0.1)),
+        Scaler(torch.full((80,), -6.0), torch.ones(80)),
+    )
+    return Dancer(
+        model.eval().requires_grad_(False), cosine_schedule(model.config.S), motion, mel, {}
+    )
+
+
+def dancer_of_bands(C: int = 0) -> Dancer:
+    torch.manual_seed(0)
+    model = MoFusion(MoFusionConfig(**{**HEARS.as_dict(), "C": C})).eval().requires_grad_(False)
+    for weight in model.parameters():
+        weight.add_(0.1 * torch.randn(weight.shape))
+    scalers = Scaler(torch.zeros(63), torch.full((63,), 0.2)), Scaler.nothing(C)
+    return Dancer(model, cosine_schedule(30), *scalers)

@@ -1,0 +1,98 @@
+"""skating: nought for feet that stand, the slide itself for feet that slide, nothing for feet in
+the air."""
+
+import numpy as np
+import pytest
+from gaits import FPS, control_of, gait, rest_pose
+
+from motiondiff_edu.metrics.skating import ground_velocity, planted_share, planted_toe, skating
+from motiondiff_edu.motion.root_frame import forward_left, root_path, to_root_frame, to_world
+from motiondiff_edu.motion.skeleton import MIRROR
+
+CONTROLS = [
+    control_of(6),
+    control_of(5, 0.9, 0.3, 0.8),
+    control_of(5, -0.4, 0.0, -1.5),
+    control_of(3, 0.0),
+]
+
+
+@pytest.mark.parametrize("control", CONTROLS)
+def test_a_perfect_gait_does_not_skate(control):
+    assert skating(gait(control), control) < 1e-9
+
+
+def test_a_figure_that_stands_still_does_not_skate():
+    assert skating(np.tile(rest_pose(), (9, 1, 1)), np.zeros((9, 3))) == 0
+
+
+@pytest.mark.parametrize("control", CONTROLS)
+def test_a_known_slide_is_read_as_it_is(control):
+    faster = control + [0.12, 0.16, 0.0]  # carried along at 0.2 m/s more than the feet do
+    assert skating(gait(control), faster) == pytest.approx(0.2)
+
+
+def test_a_slide_built_into_the_feet_is_read_too():
+    control = control_of(8)
+    assert skating(gait(control, slide=0.2), control) == pytest.approx(0.2, rel=0.03)
+
+
+def test_ground_velocity_is_the_velocity_in_the_world():
+    rng = np.random.default_rng(4)
+    poses, control = rng.normal(size=(11, 21, 3)), rng.normal(size=(11, 3))
+    world = to_world(poses, control, (1.0, 2.0, 0.5))[..., [0, 2]]
+    heading = root_path(control, (1.0, 2.0, 0.5))[1]
+    forward, left = forward_left((heading[1:] + heading[:-1]) / 2)
+    for t in range(10):  # step by step, in the world, seen along the halfway heading
+        velocity = (world[t + 1] - world[t]) * FPS
+        expected = np.stack([velocity @ left[t], velocity @ forward[t]], -1)
+        np.testing.assert_allclose(ground_velocity(poses, control)[t], expected, atol=1e-10)
+
+
+def test_moving_turning_or_mirroring_the_world_changes_nothing():
+    control = control_of(6, 1.0, 0.1, 0.6)
+    poses = gait(control) + np.random.default_rng(5).normal(0, 0.003, (120, 21, 3))
+    world, (path, heading) = (
+        to_world(poses, control, (9.0, -4.0, 2.2)),
+        root_path(control, (9.0, -4.0, 2.2)),
+    )
+    moved, control_again = to_root_frame(world, path, heading)
+    mirrored = skating(poses[:, MIRROR] * [-1, 1, 1], control * [1, -1, -1])
+    assert skating(moved, control_again) == pytest.approx(skating(poses, control), rel=1e-6)
+    assert mirrored == pytest.approx(skating(poses, control))
+
+
+def test_a_batch_gives_one_figure_a_clip():
+    control = np.stack([control_of(4), control_of(4, 0.7)])
+    poses = np.stack([gait(one) for one in control])
+    figures = skating(poses, control + [[[0.0, 0, 0]], [[0.1, 0, 0]]])
+    np.testing.assert_allclose(figures, [0, 0.1], atol=1e-9)
+
+
+def test_a_floating_figure_has_no_figure_instead_of_a_good_one():
+    control = control_of(3)
+    poses = gait(control) + [0, 0.05, 0]
+    assert np.isnan(skating(poses, control)) and planted_share(poses) == 0
+
+
+def test_a_single_pose_makes_no_step_and_has_no_figure(recwarn):
+    control = control_of(3)
+    poses = gait(control)
+    assert np.isnan(skating(poses[:1], control[:1])) and np.isnan(planted_share(poses[:1]))
+    assert not recwarn.list
+
+
+def test_flight_is_left_out():
+    control = control_of(6)
+    poses = gait(control)
+    poses[40:60] += [0.3, 0.2, 0.0]  # a second in the air, and to the side
+    side, planted = planted_toe(poses)
+    assert not planted[39:60].any() and planted[:39].all() and skating(poses, control) < 1e-9
+
+
+def test_the_lower_toe_is_the_one_that_is_judged():
+    control = control_of(2, 0.0)
+    poses = np.tile(rest_pose(), (40, 1, 1))
+    poses[:, 8, 1] = 0.01  # right toe under 3 cm, a little above the left one, and sliding
+    poses[:, 8, 2] += np.arange(40) * 0.01
+    assert (planted_toe(poses)[0] == 0).all() and skating(poses, control) < 1e-9

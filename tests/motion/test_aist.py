@@ -1,0 +1,171 @@
+"""AIST++ keypoints: what is read, in which unit, and that a hostile pickle is refused before it
+runs."""
+
+import codecs
+import os
+import pickle
+
+import numpy as np
+import pytest
+
+from motiondiff_edu.motion.aist import AistError, read_keypoints, tempo_of
+
+NAME = "gJS_sBM_cAll_d03_mJS4_ch06.pkl"
+
+
+def made_up(frames=7):
+    """A figure 1.7 m tall whose lowest joint is 70 cm up, in cm."""
+    rng = np.random.default_rng(1)
+    keypoints = rng.uniform(80, 240, (frames, 17, 3))
+    keypoints[:, 15, 1] = 70.0
+    return keypoints
+
+
+def written(folder, content, name=NAME, protocol=4):
+    path = folder / name
+    path.write_bytes(pickle.dumps(content, protocol=protocol))
+    return path
+
+
+def test_real_clips_are_read(real_data):
+    folder = real_data / "aist" / "keypoints3d"
+    clip = read_keypoints(folder / "gBR_sBM_cAll_d06_mBR2_ch06.pkl")
+    assert (
+        clip.positions.shape == (576, 17, 3)
+        and clip.fps == 60
+        and clip.tempo == 100
+        and not len(clip.nan_frames)
+    )
+    assert 0.67 < clip.floor < 0.72  # the lowest joint, metres, as others measured
+    height = clip.positions[:, 0, 1] - clip.positions[:, 15:, 1].min(1)
+    assert 1.3 < np.percentile(height, 95) < 1.8  # nose above the lower ankle
+    raw = read_keypoints(folder / "gBR_sBM_cAll_d04_mBR2_ch08.pkl", optimised=False)
+    assert len(raw.nan_frames) == 24 and np.isnan(raw.positions[raw.nan_frames]).any((1, 2)).all()
+    assert np.isfinite(np.delete(raw.positions, raw.nan_frames, 0)).all()
+
+
+@pytest.mark.parametrize("protocol", [2, 4, 5])
+def test_centimetres_become_metres_above_the_floor(tmp_path, protocol):
+    content = {"keypoints3d": made_up(5) + 50, "keypoints3d_optim": made_up()}
+    clip = read_keypoints(written(tmp_path, content, protocol=protocol))
+    assert clip.floor == pytest.approx(0.7) and clip.source == NAME and clip.tempo == 120
+    np.testing.assert_allclose(clip.positions, made_up() / 100 - [0, 0.7, 0])
+    assert read_keypoints(tmp_path / NAME, optimised=False).positions.shape == (5, 17, 3)
+
+
+def test_one_bad_frame_does_not_lower_the_floor(tmp_path):
+    keypoints = made_up(300)
+    keypoints[40, 3, 1] = -90.0
+    assert read_keypoints(
+        written(tmp_path, {"keypoints3d_optim": keypoints})
+    ).floor == pytest.approx(0.7)
+
+
+def test_missing_joints_are_reported_and_stay_missing(tmp_path):
+    keypoints = made_up()
+    keypoints[2, 5, 0] = np.nan
+    clip = read_keypoints(written(tmp_path, {"keypoints3d_optim": keypoints}))
+    assert (
+        clip.nan_frames.tolist() == [2]
+        and np.isnan(clip.positions[2, 5, 0])
+        and clip.floor == pytest.approx(0.7)
+    )
+    keypoints[:, 1] = np.nan
+    with pytest.raises(AistError, match="every frame"):
+        read_keypoints(written(tmp_path, {"keypoints3d_optim": keypoints}))
+
+
+@pytest.mark.parametrize(
+    "name, tempo",
+    [
+        ("gBR_sBM_cAll_d04_mBR2_ch08.pkl", 100),
+        ("gHO_sBM_cAll_d19_mHO0_ch01", 110),
+        ("gHO_sFM_cAll_d20_mHO5_ch11.pkl", 135),
+        ("mine.pkl", None),
+    ],
+)
+def test_names_tell_the_tempo(name, tempo):
+    assert tempo_of(name) == tempo
+
+
+class Hostile:
+    """Unpickled plainly, this makes a folder; a worse one could do anything."""
+
+    def __init__(self, folder):
+        self.folder = str(folder)
+
+    def __reduce__(self):
+        return os.mkdir, (self.folder,)
+
+
+def test_a_hostile_pickle_is_refused_and_does_not_run(tmp_path):
+    trap = tmp_path / "sprung"
+    path = written(tmp_path, {"keypoints3d_optim": made_up(), "more": Hostile(trap)})
+    with pytest.raises(AistError, match=r"names (posix|nt)\.mkdir.*may run a program"):
+        read_keypoints(path)
+    assert not trap.exists()
+    pickle.loads(path.read_bytes())  # and it was a trap
+    assert trap.exists()
+
+
+@pytest.mark.parametrize("what", [eval, getattr, np.load, codecs.decode, Hostile])
+def test_nothing_but_arrays_is_named(tmp_path, what):
+    with pytest.raises(AistError, match="an array does not need"):
+        read_keypoints(written(tmp_path, {"keypoints3d_optim": what}))
+
+
+def test_only_the_codec_of_old_pickles_is_admitted(tmp_path):
+    class Compressed:
+        def __reduce__(self):
+            return codecs.encode, ("aa", "rot13")
+
+    with pytest.raises(AistError, match="codec 'rot13'"):
+        read_keypoints(written(tmp_path, {"keypoints3d_optim": Compressed()}))
+
+
+@pytest.mark.parametrize(
+    "content, told",
+    [
+        (
+            {"smpl_poses": np.zeros((3, 72)), "smpl_trans": np.zeros((3, 3))},
+            "joint angles: take the file of that name",
+        ),
+        (
+            {"keypoints3d_optim": np.zeros((3, 24, 3))},
+            r"has shape \(3, 24, 3\), and should have \(frames, 17, 3\)",
+        ),
+        ({"keypoints3d_optim": np.zeros((0, 17, 3))}, r"shape \(0, 17, 3\)"),
+        ({"keypoints3d_optim": [1, 2]}, "no array of numbers"),
+        ([1, 2], "holds list, and no keypoints3d_optim"),
+    ],
+)
+def test_other_contents_are_told_apart(tmp_path, content, told):
+    with pytest.raises(AistError, match=told):
+        read_keypoints(written(tmp_path, content))
+
+
+def test_other_files_are_told_apart(tmp_path, real_data):
+    np.save(tmp_path / "dance.npy", np.zeros((90, 34)))
+    with pytest.raises(AistError, match="34 music or motion features"):
+        read_keypoints(tmp_path / "dance.npy")
+    np.save(tmp_path / "joints.npy", np.zeros((90, 22, 3)))
+    with pytest.raises(AistError, match=r"shape \(90, 22, 3\)"):
+        read_keypoints(tmp_path / "joints.npy")
+    np.save(tmp_path / "objects.npy", np.array([{}], dtype=object))
+    with pytest.raises(AistError, match="Python objects"):
+        read_keypoints(tmp_path / "objects.npy")
+    whole = written(tmp_path, {"keypoints3d_optim": made_up()}).read_bytes()
+    for name, raw in (
+        ("cut.pkl", whole[:200]),
+        ("empty.pkl", b""),
+        ("page.pkl", b"<html>not found</html>"),
+    ):
+        (tmp_path / name).write_bytes(raw)
+        with pytest.raises(AistError, match=f"{name}: no pickle, or a damaged one"):
+            read_keypoints(tmp_path / name)
+    with pytest.raises(AistError, match="folder"):
+        read_keypoints(tmp_path)
+    with pytest.raises(AistError, match="joint angles"):
+        read_keypoints(real_data / "aist" / "motions" / "gBR_sBM_cAll_d06_mBR2_ch06.pkl")
+    with pytest.raises(FileNotFoundError):
+        read_keypoints(tmp_path / "none.pkl")

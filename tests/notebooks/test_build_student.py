@@ -1,0 +1,129 @@
+"""tools/build_student.py: stubs, folded solutions, staleness; and this checkout's edition is up to
+date."""
+
+import ast
+import json
+
+import build_student
+import notebook_cells
+import pytest
+
+SOLUTION = '''def my_mean(x):
+    """The mean."""
+    # solution
+    total = sum(x)
+
+    return total / len(x)
+    # end solution
+
+
+checks.mean(my_mean)'''
+STUB = '''def my_mean(x):
+    """The mean."""
+    raise NotImplementedError("your turn")
+
+
+checks.mean(my_mean)'''
+
+
+def cell(source, kind="code", identity="a1", *tags):
+    extra = {"outputs": [{"output_type": "stream"}], "execution_count": 7} if kind == "code" else {}
+    return {
+        "cell_type": kind,
+        "id": identity,
+        "metadata": {"tags": list(tags)},
+        "source": source,
+    } | extra
+
+
+def write(folder, *cells, name="02_noise.ipynb"):
+    folder.joinpath(name).write_text(
+        json.dumps({"cells": cells, "metadata": {}, "nbformat": 4, "nbformat_minor": 5})
+    )
+
+
+@pytest.fixture
+def folder(tmp_path):
+    opening = cell(
+        "See [the walker](../docs/walk.gif) and [the next](03_back.ipynb).", "markdown", "m1"
+    )
+    write(
+        tmp_path,
+        opening,
+        cell("x = [1, 2]", "code", "c1", "imports"),
+        cell(SOLUTION, "code", "s1", "solution"),
+    )
+    return tmp_path
+
+
+def test_solution_becomes_a_stub_and_is_folded_after_it(folder):
+    assert build_student.write(folder) == 1
+    cells = notebook_cells.read(folder / "student" / "02_noise.ipynb")["cells"]
+    assert [c["id"] for c in cells] == ["m1", "c1", "s1", "s1-solution"]
+    assert cells[2]["source"] == STUB and cells[2]["metadata"]["tags"] == ["exercise"]
+    told = cells[3]["source"]
+    assert told.startswith("<details>") and "return total / len(x)" in told
+    assert "# solution" not in told and "checks." not in told
+    ast.parse(told.split("```python\n")[1].split("```")[0])
+
+
+def test_links_out_of_the_folder_go_one_up_and_others_stay(folder):
+    build_student.write(folder)
+    text = notebook_cells.read(folder / "student" / "02_noise.ipynb")["cells"][0]["source"]
+    assert text == "See [the walker](../../docs/walk.gif) and [the next](03_back.ipynb)."
+
+
+def test_no_outputs_and_the_same_bytes_twice(folder):
+    build_student.write(folder)
+    path = folder / "student" / "02_noise.ipynb"
+    first = path.read_bytes()
+    build_student.write(folder)
+    assert path.read_bytes() == first
+    cells = notebook_cells.read(path)["cells"]
+    assert all(
+        c["outputs"] == [] and c["execution_count"] is None
+        for c in cells
+        if c["cell_type"] == "code"
+    )
+
+
+def test_check_finds_missing_changed_and_left_over(folder, capsys):
+    check = ["--check", "--folder", str(folder)]
+    assert build_student.main(check) == 1 and "02_noise.ipynb: missing" in capsys.readouterr().err
+    assert build_student.main(["--folder", str(folder)]) == 0
+    assert build_student.main(check) == 0
+    write(folder, cell("x = [1, 2, 3]"))
+    (folder / "student" / "09_old.ipynb").write_text("{}")
+    assert build_student.main(check) == 1
+    assert capsys.readouterr().err.splitlines()[1:] == [
+        "02_noise.ipynb: changed",
+        "09_old.ipynb: left over",
+    ]
+    assert build_student.main(["--folder", str(folder)]) == 0 and build_student.main(check) == 0
+
+
+@pytest.mark.parametrize(
+    "source, message",
+    [
+        ("def f(x):\n    return x\n\nchecks.f(f)", "needs `# solution`"),
+        ("def f(x):\n    # solution\n    return x\n\nchecks.f(f)", "needs `# solution`"),
+        ("# solution\ny = 3\n# end solution\nchecks.y(y)", "body of a function"),
+    ],
+)
+def test_solution_cell_of_another_form_is_refused_by_name(tmp_path, capsys, source, message):
+    write(tmp_path, cell(source, "code", "s7", "solution"))
+    assert build_student.main(["--folder", str(tmp_path)]) == 1
+    told = capsys.readouterr().err
+    assert message in told and "02_noise.ipynb, cell 0 (s7)" in told
+
+
+def test_stub_within_a_loop_keeps_its_indent():
+    source = "def f(x):\n    for i in x:\n        # solution\n        y = i\n        # end solution\n    return y"
+    wanted = (
+        'def f(x):\n    for i in x:\n        raise NotImplementedError("your turn")\n    return y'
+    )
+    assert build_student.stub(source, "here") == wanted
+
+
+def test_the_edition_of_this_checkout_is_up_to_date():
+    assert build_student.stale(notebook_cells.NOTEBOOKS) == [], "run: make student"

@@ -1,0 +1,179 @@
+"""tools/check_notebooks.py finds each fault it claims to find, and this checkout's notebooks have
+none."""
+
+import copy
+import json
+
+import check_notebooks
+import notebook_cells
+import pytest
+
+OPENING = """# 02 Noise
+After this notebook you will be able to add noise. **Needs** 01. **Paper** MoDiff III-B. **Minutes** 20.
+**Symbols** x0, x_s, s."""
+EXERCISE = "**Exercise** (difficulty 1 of 3, 5 minutes)\n<details><summary>Hint</summary>\nsquare roots\n</details>"
+SOLUTION = "def f(x):\n    # solution\n    return x\n    # end solution\n\n\nchecks.f(f)"
+
+
+def cell(source, *tags, kind="code"):
+    body = {"cell_type": kind, "metadata": {"tags": list(tags)}, "source": source}
+    return body | ({"outputs": [], "execution_count": None} if kind == "code" else {})
+
+
+@pytest.fixture
+def good():
+    text = [
+        cell(f"Some words. {'**Predict** more or less?' if i < 2 else ''}", kind="markdown")
+        for i in range(9)
+    ]
+    cells = [
+        cell(OPENING, kind="markdown"),
+        cell(
+            'from motiondiff_edu import checks, runtime\nrun = runtime.start(notebook="02", seed=0)',
+            "imports",
+        ),
+        cell("def twin(x):\n    return x", "twin"),
+        *[part for words in text for part in (words, cell("x = 1"))],
+        *[
+            part
+            for _ in range(2)
+            for part in (cell(EXERCISE, kind="markdown"), cell(SOLUTION, "solution"))
+        ],
+        cell("Three things to keep. Next: 03.", kind="markdown"),
+    ]
+    for number, each in enumerate(cells):
+        each["id"] = f"c{number}"
+    return {"cells": cells, "metadata": {}, "nbformat": 4, "nbformat_minor": 5}
+
+
+def faults(notebook, tmp_path, name="02_noise.ipynb"):
+    path = tmp_path / name
+    path.write_text(json.dumps(notebook))
+    return check_notebooks.faults(path)
+
+
+def test_a_good_notebook_has_no_fault(good, tmp_path):
+    assert faults(good, tmp_path) == []
+
+
+def first(notebook, tag):
+    return next(c for c in notebook["cells"] if tag in c["metadata"]["tags"])
+
+
+def spoil_outputs(nb):
+    nb["cells"][1]["outputs"] = [{"output_type": "stream"}]
+
+
+def spoil_few_cells(nb):
+    del nb["cells"][8:12]
+
+
+def spoil_words(nb):
+    nb["cells"][0]["source"] += " word" * 1800
+
+
+def spoil_long_cell(nb):
+    first(nb, "twin")["source"] = "\n".join(f"x = {i}" for i in range(17))
+
+
+def spoil_share(nb):
+    for one in nb["cells"][4:10:2]:
+        one["source"] = "\n".join(f"x = {i}" for i in range(9))
+
+
+def spoil_ids(nb):
+    nb["cells"][3]["id"] = nb["cells"][4]["id"]
+
+
+def spoil_twin(nb):
+    first(nb, "twin")["metadata"]["tags"] = []
+
+
+def spoil_prediction(nb):
+    nb["cells"][3]["source"] = "Some words."
+
+
+def spoil_start(nb):
+    first(nb, "imports")["source"] = "import torch"
+
+
+def spoil_import(nb):
+    nb["cells"][4]["source"] = "import torch"
+
+
+def spoil_minutes(nb):
+    nb["cells"][0]["source"] = OPENING.replace("**Minutes** 20", "")
+
+
+def spoil_closing(nb):
+    nb["cells"][-1]["source"] = "The end."
+
+
+def spoil_exercises(nb):
+    first(nb, "solution")["metadata"]["tags"] = []
+
+
+def spoil_difficulty(nb):
+    where = nb["cells"].index(first(nb, "solution"))
+    nb["cells"][where - 1]["source"] = EXERCISE.replace("difficulty 1 of 3, ", "")
+
+
+def spoil_hint(nb):
+    where = nb["cells"].index(first(nb, "solution"))
+    nb["cells"][where - 1]["source"] = EXERCISE.replace("Hint", "Idea")
+
+
+def spoil_check(nb):
+    first(nb, "solution")["source"] = SOLUTION.replace("checks.f(f)", "f(1)")
+
+
+def spoil_markers(nb):
+    first(nb, "solution")["source"] = SOLUTION.replace("    # end solution\n", "")
+
+
+def spoil_pip(nb):
+    nb["cells"][4]["source"] = "%pip install torch"
+
+
+def spoil_path(nb):
+    nb["cells"][4]["source"] = "x = open('" + "/home" + "/me/walk.bvh')"
+
+
+def spoil_image(nb):
+    nb["cells"][3]["source"] += "\n![](walk.png)"
+
+
+@pytest.mark.parametrize(
+    "spoil, words",
+    [
+        (spoil_outputs, "outputs are stored"),
+        (spoil_few_cells, "22 cells"),
+        (spoil_words, "words; keep under"),
+        (spoil_long_cell, "a code cell of 17 lines"),
+        (spoil_share, "more than 8 lines"),
+        (spoil_ids, "ids are missing or repeated"),
+        (spoil_twin, "tagged `twin`"),
+        (spoil_prediction, "1 times **Predict**"),
+        (spoil_start, "runtime.start"),
+        (spoil_import, "all imports belong"),
+        (spoil_minutes, "does not say its minutes"),
+        (spoil_closing, "does not say three things"),
+        (spoil_exercises, "1 cells tagged `solution`"),
+        (spoil_difficulty, "minutes and difficulty"),
+        (spoil_hint, "fold a hint"),
+        (spoil_check, "must call its check"),
+        (spoil_markers, "needs `# solution`"),
+        (spoil_pip, "pip in a code cell"),
+        (spoil_path, "an absolute path"),
+        (spoil_image, "without alt text"),
+    ],
+)
+def test_each_fault_is_found(good, tmp_path, spoil, words):
+    notebook = copy.deepcopy(good)
+    spoil(notebook)
+    assert any(words in fault for fault in faults(notebook, tmp_path)), faults(notebook, tmp_path)
+
+
+@pytest.mark.parametrize("path", notebook_cells.sources(), ids=lambda path: path.stem)
+def test_the_notebooks_of_this_checkout_have_the_form(path):
+    assert check_notebooks.faults(path) == []

@@ -1,0 +1,276 @@
+"""Listening with a dancer: attention by level, its share on beats, and what a silenced sound
+moves."""
+
+import io
+from datetime import UTC, datetime
+
+import notebook_cells
+import numpy as np
+import pytest
+import torch
+from small_dancers import TINY
+from small_dancers import dancer_to_mel as dancer
+
+from motiondiff_edu.conditions.music import log_mel
+from motiondiff_edu.cross_modal_attention import CrossModalAttention
+from motiondiff_edu.mofusion import MoFusion
+from motiondiff_edu.performers import attention_on_beats
+from motiondiff_edu.pretrained import checkpoints
+
+
+def clicks(seconds: float, at: tuple[float, ...], tone: float = 0.1) -> np.ndarray:
+    """A steady tone of 500 Hz, and short bursts of noise upon it."""
+    t = np.arange(round(seconds * 16_000)) / 16_000
+    sound = tone * np.sin(2 * np.pi * 500 * t)
+    for moment in at:
+        burst = np.where(t >= moment, np.exp(-np.maximum(t - moment, 0) / 0.02), 0.0)
+        sound = sound + 0.5 * burst * np.random.default_rng(3).standard_normal(len(t))
+    return sound.astype(np.float32)
+
+
+def maps(T: int = 30, s: int = 5, **changes):
+    mel = torch.randn(50, 80, generator=torch.Generator().manual_seed(1)) - 6
+    dance = np.random.default_rng(2).normal(size=(T, 21, 3))
+    return attention_on_beats.attention_maps(
+        dancer(**changes), mel, dance, s, generator=torch.Generator().manual_seed(4)
+    )
+
+
+def test_each_level_has_a_row_for_each_of_its_frames_and_a_column_for_each_token():
+    found, times = maps(T=30)  # music: the 47 Mel frames of 1.5 s, every second of which is a token
+    rows = {"down, 20 a second": 30, "down, 10 a second": 15, "bottom, 5 a second": 8, "up, 10 a second": 15,
+            "up, 20 a second": 30}  # fmt: skip
+    assert {name: m.shape for name, m in found.items()} == {
+        name: (n, 24) for name, n in rows.items()
+    }
+    assert list(found) == list(rows)
+    assert times == pytest.approx(np.arange(24) * 0.064)
+    for m in found.values():
+        assert m.sum(1) == pytest.approx(np.ones(len(m)), abs=1e-5) and (m >= 0).all()
+    assert (
+        found["down, 20 a second"].std(0).max() > 1e-4
+    )  # rows differ: they ask at different times
+
+
+def test_rows_and_columns_lie_where_they_are_in_time():
+    """A network that reaches 0.2 s: where its weights are zero is known beforehand."""
+    found, times = maps(T=30, reach=0.2, heads=1)
+    for (name, m), level in zip(found.items(), (0, 1, 2, 1, 0), strict=True):
+        frames = np.arange(len(m)) * 2**level / 20
+        away = np.abs(frames[:, None] - times)
+        assert (m[away < 0.199] > 0).all() and (m[away > 0.201] < 1e-6).all(), name
+
+
+def test_the_layers_are_those_of_the_network():
+    names = [
+        n for n, part in MoFusion(TINY).named_modules() if isinstance(part, CrossModalAttention)
+    ]
+    assert sorted(layer for layer, _, _ in attention_on_beats.layers_of(TINY)) == sorted(names)
+
+
+def test_maps_come_from_the_seed_and_depend_on_the_step():
+    one, again, other = maps(s=5)[0], maps(s=5)[0], maps(s=12)[0]
+    for name in one:
+        assert np.array_equal(one[name], again[name])
+    assert np.abs(one["bottom, 5 a second"] - other["bottom, 5 a second"]).max() > 1e-5
+
+
+def test_a_network_without_music_and_a_step_too_far_are_named():
+    with pytest.raises(ValueError, match="hears music"):
+        maps(C=0)
+    with pytest.raises(ValueError, match="1 to 12, not 13"):
+        maps(s=13)
+
+
+def test_beat_mass_by_hand():
+    times = np.arange(6) * 0.064  # 0, .064, .128, .192, .256, .32
+    weights = np.array([[0.5, 0.1, 0.1, 0.1, 0.1, 0.1], [0.0, 0.0, 0.0, 0.0, 0.25, 0.75]])
+    assert attention_on_beats.beat_mass(weights, times, np.array([0.0])) == pytest.approx(
+        (0.6 + 0.0) / 2
+    )
+    assert attention_on_beats.beat_mass(
+        weights, times, np.array([0.0, 0.05, 0.3])
+    ) == pytest.approx((0.9 + 1.0) / 2)
+    assert attention_on_beats.beat_mass(
+        weights, times, np.array([0.3]), near=0.03
+    ) == pytest.approx((0.1 + 0.75) / 2)
+    with pytest.raises(ValueError, match="no beat"):
+        attention_on_beats.beat_mass(weights, times, np.array([]))
+
+
+def test_beats_with_another_place_are_what_even_weights_get():
+    times, beats = np.arange(150) * 0.064, np.arange(0.3, 9.5, 0.6)
+    even = np.full((4, 150), 1 / 150)
+    on_beats = (np.abs(times[:, None] - beats).min(1) <= 0.1).astype(float)[None]
+    on_beats /= on_beats.sum()
+    rng = np.random.default_rng(0)
+    chance = attention_on_beats.beat_mass_by_chance(even, times, beats, rng)
+    assert chance.shape == (500,) and chance.mean() == pytest.approx(0.2 / 0.6, abs=0.02)
+    assert attention_on_beats.beat_mass(on_beats, times, beats) == pytest.approx(1.0)
+    assert attention_on_beats.beat_mass_by_chance(
+        on_beats, times, beats, rng
+    ).mean() == pytest.approx(0.2 / 0.6, abs=0.03)
+
+
+def test_seconds_read_by_hand():
+    times = 0.7 + np.arange(5) * 0.064
+    even, one, two = np.full(5, 0.2), np.eye(5)[3], np.array([0, 0.5, 0, 0, 0.5])
+    for row, tokens in ((even, 5), (one, 1), (two, 2)):
+        assert attention_on_beats.seconds_read(row[None], times) == pytest.approx(tokens * 0.064)
+    assert attention_on_beats.seconds_read(np.stack([even, one]), times) == pytest.approx(3 * 0.064)
+
+
+def test_share_near_counts_the_silenced_span():
+    times = np.arange(5) * 0.1
+    weights = np.array([[0.1, 0.2, 0.3, 0.25, 0.15], [1.0, 0, 0, 0, 0]])
+    got = attention_on_beats.share_near(
+        weights, times, np.array([0.05, 0.31]), before=0.02, after=0.12
+    )
+    assert got == pytest.approx(np.array([[0.2, 0.25 + 0.15], [0.0, 0.0]]))
+
+
+def test_a_silenced_hit_is_gone_and_nothing_else():
+    song, tone = clicks(2.0, (0.5, 1.2)), clicks(2.0, ())
+    quiet = attention_on_beats.silence_hit(song, 1.2)
+    t = np.arange(len(song)) / 16_000
+    span = (t >= 1.2 - attention_on_beats.EDGE) & (
+        t <= 1.2 + attention_on_beats.WIDTH + attention_on_beats.EDGE
+    )
+    assert quiet.dtype == song.dtype and np.array_equal(quiet[~span], song[~span])
+    hit = (t >= 1.2) & (t < 1.3)
+
+    def power(x):
+        return float(np.square(x[hit]).mean())
+
+    assert power(quiet - tone) < 0.02 * power(song - tone)  # of the burst hardly anything is left
+    assert power(quiet) == pytest.approx(power(tone), rel=0.15)  # and the tone goes on
+    assert np.array_equal(attention_on_beats.silence_hit(tone, 1.2)[~span], tone[~span])
+    assert (
+        np.abs(attention_on_beats.silence_hit(tone, 1.2) - tone).max() < 0.01
+    )  # where nothing is struck nothing goes
+
+
+def test_a_hit_at_the_very_start_is_silenced_too():
+    song = clicks(1.0, (0.0,), tone=0.0)
+    assert (
+        np.abs(attention_on_beats.silence_hit(song, 0.0)[:1600]).max() < 0.05 * np.abs(song).max()
+    )
+
+
+@pytest.mark.parametrize(
+    "time, width, words",
+    [(2.0, 0.12, "no sound at 2 s"), (-0.1, 0.12, "no sound"), (1.0, 0.0, "above 0")],
+)
+def test_what_cannot_be_silenced_is_named(time, width, words):
+    with pytest.raises(ValueError, match=words):
+        attention_on_beats.silence_hit(clicks(2.0, (0.5,)), time, width)
+
+
+def test_occlusion_dances_again_from_the_same_noise():
+    one, song, times = dancer(), clicks(2.0, (0.5, 1.0), tone=0.0), np.array([0.5, 1.0, 1.6])
+    found = attention_on_beats.occlusion(
+        one, song, times, 33, generator=torch.Generator().manual_seed(7), steps=3
+    )
+    start = torch.randn(1, 33, 63, generator=torch.Generator().manual_seed(7))
+    plain = one.dance(log_mel(song)[None], 33, start=start, steps=3, eta=0.0)[0].double().numpy()
+    assert found.dance == pytest.approx(plain, abs=1e-5)
+    assert found.without.shape == (3, 33, 21, 3) and found.moved.shape == (3, 33)
+    by_hand = np.sqrt(((found.without[1, 20] - plain[20]) ** 2).sum(-1)).mean()
+    assert found.moved[1, 20] == pytest.approx(by_hand, abs=1e-5)
+    assert found.moved[:2].max(1).min() > 1e-4  # a silenced burst changes something
+    assert found.moved[2].max() < 1e-5  # silenced silence changes nothing
+    in_turn = attention_on_beats.occlusion(
+        one, song, times, 33, generator=torch.Generator().manual_seed(7), steps=3, together=1
+    )
+    assert in_turn.without == pytest.approx(found.without, abs=1e-5)
+
+
+def test_what_rings_on_comes_back_without_another_blow():
+    """A long burst: the loudness of the mended song never jumps, neither at the hit nor where the
+    span ends."""
+    t = np.arange(32_000) / 16_000
+    ring = np.where(t >= 1.0, np.exp(-np.maximum(t - 1.0, 0) / 0.15), 0.0) * np.random.default_rng(
+        5
+    ).standard_normal(32_000)
+    song = (0.01 * np.random.default_rng(6).standard_normal(32_000) + 0.3 * ring).astype(np.float32)
+
+    def largest_rise(x):
+        level = log_mel(x).numpy().mean(1)
+        return np.diff(level[25:45]).max()
+
+    assert largest_rise(song) > 4 and largest_rise(attention_on_beats.silence_hit(song, 1.0)) < 1.5
+
+
+def test_a_sound_is_read_from_its_name_and_from_its_bytes(tmp_path):
+    soundfile = pytest.importorskip("soundfile")
+    soundfile.write(tmp_path / "song.wav", clicks(1.5, (0.5,)), 16_000, subtype="FLOAT")
+    by_name, by_bytes = (
+        attention_on_beats.read_sound(s)
+        for s in (tmp_path / "song.wav", (tmp_path / "song.wav").read_bytes())
+    )
+    assert torch.equal(by_name, by_bytes) and by_name.numpy() == pytest.approx(
+        clicks(1.5, (0.5,)), abs=1e-3
+    )
+    with pytest.raises(ValueError, match="text, not sound"):
+        attention_on_beats.read_sound(b"these are words, and no music at all")
+
+
+def test_notebook_12_dances_to_an_upload_and_says_what_is_wrong_with_it(monkeypatch):
+    """A button's error reaches nobody, so the cells are run here, with a small dancer, and a file
+    is uploaded."""
+    soundfile = pytest.importorskip("soundfile")
+    monkeypatch.setattr(checkpoints, "pretrained", lambda name: dancer(S=20))
+    path = next(path for path in notebook_cells.sources() if path.name.startswith("12"))
+    cells = [
+        c
+        for c in notebook_cells.code(notebook_cells.read(path))
+        if c["id"] in ("imports", "song", "own-song", "upload")
+    ]
+    names = notebook_cells.run(cells, {"display": lambda *shown: None})
+    names["beats_of"] = lambda audio: np.array([0.5, 1.0, 7.0])  # librosa is slow to import
+
+    def upload(content: bytes) -> None:
+        when = datetime.now(UTC)
+        file = {
+            "name": "a",
+            "type": "b",
+            "size": len(content),
+            "content": memoryview(content),
+            "last_modified": when,
+        }
+        names["upload"].value = (file,)
+
+    whole = len(names["player"].music["beats"])
+    buffer = io.BytesIO()
+    soundfile.write(buffer, clicks(3.0, (0.5, 1.0)), 16_000, format="WAV")
+    upload(buffer.getvalue())
+    assert names["said"].value == "now it dances to your song"
+    assert names["player"].scene["figures"][0]["frames"] == 60 and whole > 2
+    assert names["player"].music["beats"] == [0.5, 1.0]
+    upload(b"these are words, and no music at all")
+    assert (
+        "text, not sound" in names["said"].value
+        and names["player"].scene["figures"][0]["frames"] == 60
+    )
+
+
+def test_figures_say_what_they_show():
+    pytest.importorskip("matplotlib")
+    from motiondiff_edu.viz import listening as viz
+    from motiondiff_edu.viz.style import caption
+
+    found, times = maps(T=30)
+    song, moments = clicks(1.5, (0.5,)), np.array([0.2, 0.5, 1.1])
+    shares = attention_on_beats.share_near(found["down, 20 a second"], times, moments)
+    figures = [
+        viz.levels_over_sound(song, found, times, np.array([0.5, 1.0]), 1.5, "one"),
+        viz.time_maps({"a": found["down, 20 a second"]}, times, 1.5, "two"),
+        viz.weight_and_effect(shares, np.ones((3, 30)), moments, 1.5, "three"),
+        viz.before_and_after({"song": log_mel(song).numpy()}, np.arange(47) / 31.25, [0.5], "four"),
+    ]
+    assert [caption(fig) for fig in figures] == ["one", "two", "three", "four"]
+    assert len(figures[0].axes) == 6 and [len(axis.lines) for axis in figures[0].axes] == [2] * 6
+    left, right = (axis.collections[0].get_array() for axis in figures[2].axes[:2])
+    assert left.shape == (30, 3) and float(right.max()) == pytest.approx(
+        100
+    )  # metres come as centimetres

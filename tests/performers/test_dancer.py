@@ -1,0 +1,183 @@
+"""A dancer: lengths, seeds, samplers, the baselines that dance, and its file."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+import torch
+from synthetic_dance import windows
+
+from motiondiff_edu.baselines.regression import REGRESSION, regression_loss
+from motiondiff_edu.baselines.transformer import DanceTransformer, TransformerConfig
+from motiondiff_edu.ddpm import cosine_schedule
+from motiondiff_edu.mofusion import MoFusion, MoFusionConfig
+from motiondiff_edu.motion.scaler import Scaler
+from motiondiff_edu.performers.dancer import FARTHEST, Dancer
+from motiondiff_edu.pretrained.checkpoints import (
+    CheckpointError,
+    load,
+    load_dancer,
+    load_walker,
+    save,
+)
+
+UNET = MoFusionConfig(C=5, S=12, widths=(16, 24), heads=2, music_layers=1, target="x0", skip=False)
+PLAIN = TransformerConfig(C=5, S=12, width=16, heads=2, layers=2, music_layers=1)
+
+
+def dancer(config=UNET) -> Dancer:
+    torch.manual_seed(0)
+    model = (MoFusion if isinstance(config, MoFusionConfig) else DanceTransformer)(config)
+    with torch.no_grad():
+        for weight in model.parameters():
+            weight.add_(0.1 * torch.randn(weight.shape))
+    motion, mel = (
+        Scaler(torch.zeros(63), torch.full((63,), 0.1)),
+        Scaler(torch.zeros(5), torch.ones(5)),
+    )
+    return Dancer(model.eval(), cosine_schedule(12), motion, mel, {"name": "test"})
+
+
+def mel(B: int = 2, M: int = 64) -> torch.Tensor:
+    return torch.randn(B, M, 5, generator=torch.Generator().manual_seed(5))
+
+
+def seeded(seed: int = 0) -> torch.Generator:
+    return torch.Generator().manual_seed(seed)
+
+
+@pytest.mark.parametrize("steps", [4, None])
+@pytest.mark.parametrize("config", [UNET, PLAIN])
+def test_dances_are_as_long_as_asked_and_come_from_the_seed(config, steps):
+    one = dancer(config)
+    out = one.dance(mel(), 30, generator=seeded(), steps=steps)
+    assert out.shape == (2, 30, 21, 3) and torch.isfinite(out).all()
+    assert torch.equal(out, one.dance(mel(), 30, generator=seeded(), steps=steps))
+    assert not torch.equal(out, one.dance(mel(), 30, generator=seeded(1), steps=steps))
+    assert (
+        one.dance(mel(), generator=seeded(), steps=2).shape[1] == 41
+    )  # 63 steps of 32 ms are 2.016 s: frames 0 to 40
+    with pytest.raises(ValueError, match="lasts 41 frames"):
+        one.dance(mel(), 42)
+
+
+def test_a_schedule_with_fewer_steps_than_the_usual_sampler_takes_is_danced_with_all_of_them():
+    one = dancer()
+    usual = one.dance(mel(), 30, generator=seeded())
+    assert torch.equal(usual, one.dance(mel(), 30, generator=seeded(), steps=12))
+    assert not torch.equal(usual, one.dance(mel(), 30, generator=seeded(), steps=11))
+    with pytest.raises(ValueError, match="between 1 and 12"):
+        one.dance(mel(), 30, steps=0)
+
+
+@pytest.mark.parametrize("steps", [6, None])
+def test_an_eps_network_does_not_tear_the_figure_apart(steps):
+    """At s = S an error of eps is blown up by b / a; the guess is held within what dances are."""
+    wild = dancer(replace(UNET, target="eps"))
+    dance = wild.dance(mel(), 30, generator=seeded(), steps=steps, eta=0.0)
+    about = torch.cat([dance[:, :, :1], dance[:, :, 1:] - dance[:, :, :1]], dim=2)
+    features = wild.motion_scaler.transform(about.flatten(2))
+    assert features.abs().max() <= FARTHEST + 1e-3 and features.abs().max() > 0.5
+
+
+def test_the_same_noise_and_other_music_give_another_dance():
+    one, start = dancer(), torch.randn(2, 30, 63)
+    out = one.dance(mel(), start=start, frames=30, steps=3, eta=0.0)
+    assert torch.equal(out, one.dance(mel(), start=start, frames=30, steps=3, eta=0.0))
+    assert not torch.equal(out, one.dance(mel().flip(1), start=start, frames=30, steps=3, eta=0.0))
+
+
+def test_only_music_that_sounds_meanwhile_is_heard():
+    one, start = dancer(), torch.randn(2, 20, 63)
+    longer = torch.cat([mel(), 9 + mel()], dim=1)
+    both = [one.dance(m, start=start, frames=20, steps=2, eta=0.0) for m in (mel(), longer)]
+    assert torch.equal(*both)
+
+
+@torch.no_grad()
+def test_songs_of_several_lengths_in_one_batch_do_not_influence_one_another():
+    model, x, s = dancer(PLAIN).model, torch.randn(2, 30, 63), torch.tensor([3, 9])
+    heard, times = torch.arange(64) < torch.tensor([64, 41])[:, None], torch.arange(64) / 31.25
+    together = model(x, s, model.listen(mel(), times, heard))
+    alone = model(x[1:], s[1:], model.listen(mel()[1:, :41], times[:41]))
+    torch.testing.assert_close(together[1:], alone, atol=2e-5, rtol=1e-4)
+
+
+def test_sizes_of_the_transformer_are_checked():
+    for wrong in (
+        {"width": 0},
+        {"width": 18},
+        {"heads": 0},
+        {"target": "y"},
+        {"fps": 0.0},
+        {"slowest": 0.0},
+    ):
+        with pytest.raises(ValueError):
+            TransformerConfig(**{**PLAIN.as_dict(), **wrong})
+
+
+def test_regression_has_one_dance_for_a_song():
+    one = dancer(TransformerConfig(**{**PLAIN.as_dict(), "deterministic": True}))
+    out = one.dance(mel(), 30, generator=seeded(0))
+    assert torch.equal(out, one.dance(mel(), 30, generator=seeded(1)))
+    assert not torch.equal(out[0], out[1])
+    assert REGRESSION.deterministic
+
+
+def test_regression_learns_the_mean_of_what_it_sees():
+    """Of dances that have nothing to do with their music, the mean pose is all that can be
+    learnt."""
+    made = windows()
+    model = DanceTransformer(TransformerConfig(**{**PLAIN.as_dict(), "deterministic": True}))
+    loss_fn, draw = regression_loss(made, batch=16), seeded()
+    optimizer = torch.optim.Adam(model.parameters(), lr=3e-3)
+    first = loss_fn(model, draw).item()
+    for _ in range(60):
+        optimizer.zero_grad()
+        loss_fn(model, draw).backward()
+        optimizer.step()
+    assert loss_fn(model, draw).item() < 0.9 * first
+
+
+@pytest.mark.parametrize("config", [UNET, PLAIN])
+def test_a_file_gives_the_same_dancer_back(config, tmp_path: Path):
+    one = dancer(config)
+    again = load_dancer(save(one, tmp_path / "one.safetensors", bits=32))
+    assert again.config == config and again.card == {"name": "test"}
+    assert isinstance(load(tmp_path / "one.safetensors"), Dancer)
+    start = torch.randn(2, 20, 63)
+    both = [d.dance(mel(), start=start, frames=20, steps=3, eta=0.0) for d in (one, again)]
+    torch.testing.assert_close(*both, atol=1e-6, rtol=1e-6)
+
+
+def test_a_dancer_is_no_walker(tmp_path: Path):
+    path = save(dancer(), tmp_path / "one.safetensors")
+    with pytest.raises(CheckpointError, match="no walker .*dancer"):
+        load_walker(path)
+
+
+def test_schedule_and_network_must_have_as_many_steps():
+    one = dancer()
+    with pytest.raises(ValueError, match="20 steps, the network 12"):
+        Dancer(one.model, cosine_schedule(20), one.motion_scaler, one.mel_scaler)
+
+
+def test_dancing_to_sound(tmp_path: Path):
+    """From samples or from a file, the same; `seconds` cuts the sound, and the dance with it."""
+    import soundfile
+
+    one = dancer(MoFusionConfig(**{**UNET.as_dict(), "C": 80}))
+    one = Dancer(
+        one.model, one.schedule, one.motion_scaler, Scaler(torch.zeros(80), torch.ones(80))
+    )
+    sound = 0.3 * torch.randn(2 * 16_000, generator=seeded())
+    out, heard = one.dance_to(sound, steps=2)
+    assert out.shape == (40, 21, 3) and len(heard) == 32_000
+    again, _ = one.dance_to(sound, seed=0, steps=2)
+    assert (out == again).all() and not (out == one.dance_to(sound, seed=1, steps=2)[0]).all()
+    assert one.dance_to(sound, 1.5, steps=2)[0].shape[0] == 30
+    soundfile.write(tmp_path / "noise.wav", sound.numpy(), 16_000, subtype="FLOAT")
+    from_file, heard = one.dance_to(tmp_path / "noise.wav", steps=2)
+    assert from_file.shape == out.shape and abs(heard - (sound - sound.mean()).numpy()).max() < 1e-3
+    with pytest.raises(ValueError, match="spelling"):
+        one.dance_to(tmp_path / "nothing.wav")

@@ -1,0 +1,333 @@
+"""Weights on disk: they come back as they were, and whatever is damaged or foreign is refused with
+the reason."""
+
+import json
+import pickle
+import warnings
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+import torch
+from safetensors import safe_open
+from safetensors.torch import load_file, save_file
+
+from motiondiff_edu.ddpm import linear_schedule
+from motiondiff_edu.modiff import MoDiff, MoDiffConfig
+from motiondiff_edu.motion.scaler import Scaler
+from motiondiff_edu.performers.walker import Walker
+from motiondiff_edu.pretrained import checkpoints, weights_file
+from motiondiff_edu.pretrained.checkpoints import (
+    CheckpointError,
+    available,
+    load,
+    load_walker,
+    pretrained,
+    save,
+)
+
+
+def tiny_walker() -> Walker:
+    torch.manual_seed(1)
+    model = MoDiff(MoDiffConfig(T_h=4, T_p=3, S=6, width=16, heads=2, hidden=24))
+    pose = Scaler(torch.linspace(-2, 3, 63), torch.linspace(0.1, 0.6, 63))
+    control = Scaler(torch.tensor([1.0, 0.1, -0.2]), torch.tensor([0.5, 0.2, 0.8]))
+    return Walker(
+        model.eval(), linear_schedule(6, 0.2, 0.95), pose, control, {"name": "tiny", "steps": 12}
+    )
+
+
+@pytest.fixture()
+def saved(tmp_path: Path) -> Path:
+    return save(tiny_walker(), tmp_path / "tiny.safetensors")
+
+
+def rewrite(path: Path, change, metadata=None) -> None:
+    """Change the tensors of a weights file; the metadata stay (unless others are given), the
+    checksums are right."""
+    with safe_open(path, "pt") as file:
+        metadata = file.metadata() if metadata is None else metadata
+    tensors = load_file(path)
+    change(tensors)
+    save_file(tensors, path, metadata | weights_file._digests(tensors, metadata))
+
+
+def test_round_trip_in_full_precision_is_exact(tmp_path: Path):
+    walker = tiny_walker()
+    back = load_walker(path := save(walker, tmp_path / "tiny.safetensors", bits=32))
+    assert checkpoints.bits_of(path) == 32
+    assert back.config == walker.config and back.card == walker.card
+    for (name, old), new in zip(
+        walker.model.state_dict().items(), back.model.state_dict().values(), strict=True
+    ):
+        assert torch.equal(old, new), name
+    assert torch.equal(back.schedule.alpha_bar, walker.schedule.alpha_bar)
+    assert back.schedule.name == walker.schedule.name
+    for name in ("pose_scaler", "control_scaler"):
+        assert torch.equal(getattr(back, name).mean, getattr(walker, name).mean)
+        assert torch.equal(getattr(back, name).std, getattr(walker, name).std)
+    assert not back.model.training and not any(p.requires_grad for p in back.model.parameters())
+
+
+def test_in_eight_bits_each_weight_is_off_by_half_a_step_of_its_row_at_most(tmp_path: Path):
+    walker = tiny_walker()
+    small, usual = (save(walker, tmp_path / f"{bits}.safetensors", bits=bits) for bits in (8, 16))
+    back, raw = load_walker(small), load_file(small)
+    assert small.stat().st_size < 0.9 * usual.stat().st_size  # vectors and the header do not shrink
+    assert [checkpoints.bits_of(path) for path in (small, usual)] == [8, 16]
+    matrices = 0
+    for (name, old), new in zip(
+        walker.model.state_dict().items(), back.model.state_dict().values(), strict=True
+    ):
+        if old.dim() < 2:
+            assert torch.equal(new, old.half().float()), name
+            continue
+        matrices += 1
+        assert raw[f"model.{name}"].dtype == torch.int8
+        step = old.flatten(1).abs().amax(1) / 127
+        assert ((new - old).flatten(1).abs().amax(1) <= 0.5001 * step).all(), name
+        assert torch.allclose(
+            new.flatten(1).abs().amax(1), old.flatten(1).abs().amax(1), rtol=1e-5
+        ), name
+    assert matrices > 10
+
+
+def test_no_other_number_of_bits_is_taken(tmp_path: Path):
+    with pytest.raises(ValueError, match="8, 16 or 32 bits, not 4"):
+        save(tiny_walker(), tmp_path / "tiny.safetensors", bits=4)
+
+
+def test_a_file_in_eight_bits_without_a_scale_is_refused(tmp_path: Path):
+    path = save(tiny_walker(), tmp_path / "tiny.safetensors", bits=8)
+    rewrite(
+        path, lambda tensors: tensors.pop(next(name for name in tensors if name.endswith(".scale")))
+    )
+    with pytest.raises(CheckpointError, match="disagree"):
+        load_walker(path)
+
+
+def test_shipped_files_are_float16_and_load_as_float32(saved: Path):
+    raw, back = load_file(saved), load_walker(saved)
+    assert {raw[k].dtype for k in raw if k.startswith("model.")} == {torch.float16}
+    assert raw["pose.mean"].dtype == torch.float32 and raw["schedule.beta"].dtype == torch.float64
+    for name, old in tiny_walker().model.state_dict().items():
+        new = back.model.state_dict()[name]
+        assert new.dtype == torch.float32
+        assert torch.equal(new, old.half().float())
+
+
+def test_the_card_lies_beside_it_and_no_temporary_file_stays(saved: Path):
+    card = json.loads(saved.with_suffix(".json").read_text())
+    assert card["name"] == "tiny" and card["config"]["T_p"] == 3
+    assert sorted(p.name for p in saved.parent.iterdir()) == ["tiny.json", "tiny.safetensors"]
+
+
+def test_aliases_and_unknown_names(saved: Path, monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.setattr(checkpoints, "FOLDER", saved.parent)
+    (saved.parent / "aliases.json").write_text('{"walker": "tiny", "ghost": "gone"}')
+    assert available() == {"tiny": saved, "walker": saved}
+    assert pretrained("walker").card["name"] == "tiny"
+    with pytest.raises(
+        CheckpointError, match="no weights are called 'dancer'; there are: tiny, walker"
+    ):
+        pretrained("dancer")
+
+
+def test_shipped_weights_are_read_once(saved: Path, monkeypatch: pytest.MonkeyPatch):
+    reads, opened = [], weights_file._opened
+    monkeypatch.setattr(weights_file, "_opened", lambda path: reads.append(path) or opened(path))
+    monkeypatch.setattr(checkpoints, "FOLDER", saved.parent)
+    assert isinstance(pretrained("tiny"), Walker) and reads == [saved]
+
+
+def test_with_no_weights_at_all_it_says_how_to_make_them(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+):
+    monkeypatch.setattr(checkpoints, "FOLDER", tmp_path)
+    with pytest.raises(CheckpointError, match="none .run make pretrained."):
+        pretrained()
+
+
+def test_a_missing_file(tmp_path: Path):
+    with pytest.raises(CheckpointError, match="there is no weights file .*gone.safetensors"):
+        load_walker(tmp_path / "gone.safetensors")
+    with pytest.raises(CheckpointError, match="there is no weights file .*gone.safetensors"):
+        load(tmp_path / "gone.safetensors")
+
+
+@pytest.mark.parametrize("share", [0.0, 0.001, 0.1, 0.9, 0.9999])
+def test_a_truncated_file(saved: Path, share: float):
+    whole = saved.read_bytes()
+    saved.write_bytes(whole[: int(share * len(whole))])
+    with pytest.raises(
+        CheckpointError, match="tiny.safetensors is damaged or is no safetensors file"
+    ):
+        load_walker(saved)
+
+
+@pytest.mark.parametrize("place", [0, 3, 9, 40, 200])
+def test_flipped_bytes_in_the_header(saved: Path, place: int):
+    raw = bytearray(saved.read_bytes())
+    raw[place] ^= 0xFF
+    saved.write_bytes(raw)
+    with pytest.raises(CheckpointError, match="tiny.safetensors"):
+        load_walker(saved)
+
+
+@pytest.mark.parametrize("place", [-1, -500, -5000])
+def test_flipped_bytes_in_the_weights(saved: Path, place: int):
+    raw = bytearray(saved.read_bytes())
+    raw[place] ^= 0x40
+    saved.write_bytes(raw)
+    with pytest.raises(CheckpointError, match="tiny.safetensors.*damaged"):
+        load_walker(saved)
+
+
+def test_a_foreign_safetensors_file(tmp_path: Path):
+    path = tmp_path / "other.safetensors"
+    save_file({"encoder.weight": torch.zeros(2, 3), "bias": torch.zeros(3)}, path)
+    with pytest.raises(
+        CheckpointError, match="no walker of this project .its tensors begin with bias, encoder"
+    ):
+        load_walker(path)
+    with pytest.raises(CheckpointError, match="no walker or dancer of this project"):
+        load(path)
+
+
+class Bomb:
+    """Unpickling this creates a file."""
+
+    def __init__(self, path: Path):
+        self.path = path
+
+    def __reduce__(self):
+        return (open, (str(self.path), "w"))
+
+
+@pytest.mark.parametrize("form", ["pickle", "torch"])
+def test_a_pickle_is_refused_and_not_executed(tmp_path: Path, form: str):
+    path, mark = tmp_path / "weights.safetensors", tmp_path / "executed"
+    if form == "pickle":
+        path.write_bytes(pickle.dumps(Bomb(mark)))
+    else:
+        torch.save({"model": Bomb(mark)}, path)
+    with pytest.raises(
+        CheckpointError, match="weights.safetensors is damaged or is no safetensors file"
+    ):
+        load_walker(path)
+    assert not mark.exists()
+    with warnings.catch_warnings():  # the bomb is real
+        warnings.simplefilter("ignore")
+        pickle.loads(pickle.dumps(Bomb(mark))).close()
+    assert mark.exists()
+
+
+def test_a_folder_is_not_a_file(tmp_path: Path):
+    with pytest.raises(CheckpointError, match="there is no weights file"):
+        load_walker(tmp_path)
+
+
+def test_weights_that_are_not_finite(saved: Path):
+    rewrite(saved, lambda tensors: tensors["model.past_in.weight"].view(-1)[5].fill_(torch.nan))
+    with pytest.raises(
+        CheckpointError, match="model.past_in.weight holds NaN or infinity; the training"
+    ):
+        load_walker(saved)
+
+
+@pytest.mark.parametrize("name", ["model.past_in.weight", "pose.std", "schedule.beta"])
+def test_a_tensor_that_is_missing_or_has_another_shape(saved: Path, name: str):
+    rewrite(saved, lambda tensors: tensors.pop(name))
+    with pytest.raises(CheckpointError, match="tiny.safetensors"):
+        load_walker(saved)
+
+
+def test_a_tensor_of_another_size(saved: Path):
+    rewrite(saved, lambda tensors: tensors.update({"model.past_in.weight": torch.zeros(16, 62)}))
+    with pytest.raises(
+        CheckpointError, match="(?s)weights and configuration disagree.*past_in.weight"
+    ):
+        load_walker(saved)
+    save(tiny_walker(), saved)
+    rewrite(saved, lambda tensors: tensors.update({"pose.mean": torch.zeros(62)}))
+    with pytest.raises(CheckpointError, match="pose.mean has the shape .62,. where .63,. belongs"):
+        load_walker(saved)
+
+
+@pytest.mark.parametrize("name", ["sha256", "sha256_settings"])
+def test_a_file_without_a_checksum_is_refused(saved: Path, name: str):
+    with safe_open(saved, "pt") as file:
+        metadata = {k: v for k, v in file.metadata().items() if k != name}
+        save_file({k: file.get_tensor(k) for k in file.keys()}, saved, metadata)
+    with pytest.raises(CheckpointError, match="tiny.safetensors is damaged"):
+        load_walker(saved)
+
+
+@pytest.mark.parametrize(
+    "name, old, new",
+    [
+        ("config", '"skip": true', '"skip": false'),
+        ("config", '"dropout": 0.0', '"dropout": 0.9'),
+        ("schedule", "", "x"),
+    ],
+)
+def test_a_changed_setting_is_damage(saved: Path, name: str, old: str, new: str):
+    """It would load, and walk like nobody."""
+    with safe_open(saved, "pt") as file:
+        metadata, tensors = file.metadata(), {k: file.get_tensor(k) for k in file.keys()}
+    changed = metadata[name].replace(old, new) if old else metadata[name] + new
+    assert changed != metadata[name]
+    save_file(tensors, saved, metadata | {name: changed})
+    with pytest.raises(CheckpointError, match="tiny.safetensors is damaged: its settings"):
+        load_walker(saved)
+
+
+def test_a_schedule_out_of_range_or_of_another_length(saved: Path):
+    rewrite(saved, lambda tensors: tensors["schedule.beta"].fill_(1.5))
+    with pytest.raises(CheckpointError, match="every beta must lie between 0 and 1"):
+        load_walker(saved)
+    save(tiny_walker(), saved)
+    rewrite(
+        saved,
+        lambda tensors: tensors.update(
+            {"schedule.beta": torch.full((9,), 0.4, dtype=torch.float64)}
+        ),
+    )
+    with pytest.raises(
+        CheckpointError, match="schedule.beta has the shape .9,. where .6,. belongs"
+    ):
+        load_walker(saved)
+
+
+NONSENSE = [
+    '{"flow_steps": 3}',
+    "{broken",
+    '"a string"',
+    '{"width": "wide"}',
+    '{"heads": 0}',
+    '{"target": "foo"}',
+    None,
+]
+
+
+@pytest.mark.parametrize("config", NONSENSE)
+def test_a_configuration_that_makes_no_sense(saved: Path, config: str | None):
+    metadata = {"format": checkpoints.WALKER.format, "schedule": "linear", "card": "{}"}
+    rewrite(saved, lambda tensors: None, metadata | ({"config": config} if config else {}))
+    with pytest.raises(CheckpointError, match="tiny.safetensors"):
+        load_walker(saved)
+
+
+def test_a_network_of_a_later_version_is_refused_by_name(saved: Path):
+    with safe_open(saved, "pt") as file:
+        metadata = file.metadata()
+    rewrite(saved, lambda tensors: None, metadata | {"network": "BetterMoDiff"})
+    with pytest.raises(CheckpointError, match="unknown network, BetterMoDiff; upgrade"):
+        load_walker(saved)
+
+
+def test_a_whole_number_for_a_share_comes_back(tmp_path: Path):
+    walker = tiny_walker()
+    model = MoDiff(replace(walker.config, dropout=0))
+    kept = save(replace(walker, model=model), tmp_path / "whole.safetensors")
+    assert load_walker(kept).config.dropout == 0

@@ -1,0 +1,136 @@
+"""Dancers' recipes: a small one is trained, killed and continued; what comes of it dances, and its
+card tells how."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+import torch
+
+from motiondiff_edu.beyond.schedules import shifted
+from motiondiff_edu.ddpm import cosine_schedule
+from motiondiff_edu.performers.dancer import network
+from motiondiff_edu.pretrained.checkpoints import load_dancer
+from motiondiff_edu.recipes import __main__ as command
+from motiondiff_edu.recipes.dancers import DANCE_RECIPES, DANCER, DANCER_PLAIN, REGRESSED
+from motiondiff_edu.recipes.train_dancer import loss_of, schedule_of, train_dancer, training_windows
+
+SIZES = {"steps": 6, "songs": 2, "seconds": 8.0, "batch": 3, "save_every": 2, "frames": 40}
+TINY = replace(
+    DANCER,
+    name="tiny",
+    config=replace(DANCER.config, widths=(16, 24), music_layers=1, S=20),
+    **SIZES,
+)
+
+
+@pytest.fixture(scope="module")
+def windows():
+    return training_windows(TINY)
+
+
+def test_data_are_songs_and_dances_to_them(windows):
+    assert windows.n == 40 and len(windows) >= 2 * 2 * 7
+    assert windows.mel.shape[1] == 80 and torch.isfinite(windows.mel).all()
+    assert training_windows(replace(TINY, steps=7)) is windows  # the same data: shared
+    other = training_windows(replace(TINY, data_seed=2))
+    assert other.dances.shape != windows.dances.shape or not torch.equal(
+        other.dances, windows.dances
+    )
+    again = training_windows(TINY)
+    assert (
+        again is not windows
+        and torch.equal(again.dances, windows.dances)
+        and torch.equal(again.mel, windows.mel)
+    )
+    once = training_windows(replace(TINY, dances=1))
+    assert len(windows) == 2 * len(once) and torch.equal(once.mel, windows.mel)
+
+
+def test_a_killed_training_continues_bit_for_bit(windows, tmp_path: Path):
+    whole = train_dancer(TINY, tmp_path / "whole.safetensors", windows, log=lambda line: None)
+
+    def stop(line: str) -> None:
+        if " 3/6" in line:
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        train_dancer(TINY, tmp_path / "killed.safetensors", windows, log=stop)
+    again = train_dancer(TINY, tmp_path / "killed.safetensors", windows, log=lambda line: None)
+    assert all(
+        torch.equal(a, b)
+        for a, b in zip(whole.model.parameters(), again.model.parameters(), strict=True)
+    )
+    assert [sitting["from_step"] for sitting in again.card["sittings"]] == [0, 2]
+    with pytest.raises(ValueError, match="begun with lr"):
+        train_dancer(
+            replace(TINY, lr=1e-4), tmp_path / "whole.safetensors", windows, log=lambda line: None
+        )
+
+
+def test_what_a_recipe_says_reaches_the_training(windows, tmp_path: Path):
+    trained = train_dancer(TINY, tmp_path / "one.safetensors", windows, log=lambda line: None)
+    usual = cosine_schedule(20)
+    assert torch.equal(trained.schedule.alpha_bar, shifted(usual, 0.1).alpha_bar)
+    assert not torch.equal(trained.schedule.alpha_bar, usual.alpha_bar)
+    torch.manual_seed(0)
+    model = network(TINY.config)
+
+    def loss(**changed) -> float:
+        recipe = replace(TINY, **changed)
+        return loss_of(recipe, windows, schedule_of(recipe))(
+            model, torch.Generator().manual_seed(0)
+        ).item()
+
+    plain = {
+        "kinematic": None,
+        "high_noise": 2.0,
+        "changes": 0.0,
+        "feet": 0.0,
+        "shake": 0.0,
+        "snr": 1.0,
+        "batch": 2,
+    }
+    for name, value in plain.items():
+        assert loss(**{name: value}) != loss(), name
+
+
+def test_the_command_trains_a_recipe_into_a_file(monkeypatch, tmp_path: Path, capsys):
+    small = replace(
+        REGRESSED,
+        config=replace(REGRESSED.config, width=16, heads=2, layers=1, music_layers=1),
+        **SIZES,
+    )
+    monkeypatch.setitem(command.DANCE_RECIPES, "regression", small)
+    arguments = [
+        "pretrained",
+        "regression",
+        "--runs",
+        str(tmp_path / "runs"),
+        "--out",
+        str(tmp_path),
+    ]
+    monkeypatch.setattr("sys.argv", arguments)
+    command.main()
+    dancer = load_dancer(tmp_path / "regression.safetensors")
+    assert "wrote" in capsys.readouterr().out
+    assert (
+        dancer.card["recipe"]["steps"] == 6
+        and dancer.card["target"] == "x0"
+        and dancer.card["windows"] > 0
+    )
+    mel = torch.zeros(1, 70, 80)
+    assert dancer.dance(mel, 40).shape == (1, 40, 21, 3)
+
+
+def test_with_and_without_kinematic_losses_all_else_is_alike():
+    assert DANCER.kinematic and not DANCER_PLAIN.kinematic
+    assert replace(DANCER_PLAIN, name="dancer", kinematic=DANCER.kinematic) == DANCER
+    assert DANCER.kinematic.over_time == "alpha_bar"  # the paper's
+    assert set(DANCE_RECIPES) == {
+        "dancer",
+        "dancer-plain",
+        "regression",
+        "dancer-full",
+        "unconditional",
+    }

@@ -1,0 +1,159 @@
+"""A recipe becomes a walker and a card; a killed training goes on, and with other settings it is
+refused."""
+
+import time
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+import torch
+
+from motiondiff_edu.beyond.footholds import FootholdConfig
+from motiondiff_edu.diffusion_dropout import P_D, Dropout
+from motiondiff_edu.modiff import MODIFF_SMALL
+from motiondiff_edu.performers.windows import window_loss
+from motiondiff_edu.pretrained.checkpoints import load_walker, save
+from motiondiff_edu.recipes import train_walker as train_module
+from motiondiff_edu.recipes.budget import train_for
+from motiondiff_edu.recipes.train_recipe import commit_of
+from motiondiff_edu.recipes.train_walker import train, training_clips
+from motiondiff_edu.recipes.walkers import RECIPES, SHIPPED, WALKER_X0, Recipe
+
+TINY = replace(MODIFF_SMALL, width=16, heads=2, hidden=24, T_p=5)
+SHORT = Recipe("short", TINY, steps=6, batch=3, clips=2, seconds=2.0, reversed_share=1.0)
+
+
+def quiet(_: str) -> None:
+    pass
+
+
+def test_the_data_hold_every_clip_four_times_when_all_are_reversed():
+    clips = training_clips(SHORT)
+    assert len(clips) == 2 * 2 * 2 and {len(clip) for clip in clips} == {40}
+    assert len(training_clips(replace(SHORT, reversed_share=0.0))) == 4
+
+
+def test_a_recipe_becomes_a_walker_with_its_card(tmp_path: Path):
+    walker = train(SHORT, tmp_path / "run", log=quiet)
+    card = load_walker(save(walker, tmp_path / "short.safetensors")).card
+    assert card["name"] == "short" and card["target"] == "eps" and card["recipe"]["steps"] == 6
+    assert card["frames"] == 8 * 40 and card["minutes"] >= 0 and card["final_loss"] > 0
+    (sitting,) = card["sittings"]
+    assert (
+        sitting["from_step"] == 0
+        and sitting["commit"]
+        and sitting["threads"] == torch.get_num_threads()
+    )
+    assert card["parameters"] == sum(p.numel() for p in walker.model.parameters())
+
+
+FEET = FootholdConfig(width=16, heads=2, hidden=24, T_p=5)
+LIKE_SHIPPED = replace(WALKER_X0, config=FEET, steps=8, batch=3, clips=2, seconds=2.0, save_every=3)
+
+
+class Killed(Exception):
+    pass
+
+
+def kill_at(step: int, monkeypatch):
+    """Let the training die in the middle of this step, once."""
+
+    def dying(windows, schedule, **settings):
+        inner, calls = window_loss(windows, schedule, **settings), iter(range(step))
+
+        def loss_fn(model, generator):
+            if next(calls, None) is None:
+                raise Killed
+            return inner(model, generator)
+
+        return loss_fn
+
+    monkeypatch.setattr(train_module, "window_loss", dying)
+
+
+@pytest.mark.parametrize("step", [4, 7])
+def test_a_killed_training_goes_on_where_it_was_saved(tmp_path: Path, monkeypatch, step: int):
+    """What is shipped, in small: footholds, the leap, Muon."""
+    whole = train(LIKE_SHIPPED, tmp_path / "whole", log=quiet)
+    with monkeypatch.context() as patch:
+        kill_at(step, patch)
+        with pytest.raises(Killed):
+            train(LIKE_SHIPPED, tmp_path / "killed", log=quiet)
+    again = train(LIKE_SHIPPED, tmp_path / "killed", log=quiet)
+    for name, weight in whole.model.state_dict().items():
+        assert torch.equal(weight, again.model.state_dict()[name]), name
+    assert [sitting["from_step"] for sitting in again.card["sittings"]] == [0, 3 * (step // 3)]
+    assert again.card["final_loss"] == whole.card["final_loss"] > 0
+
+
+def test_a_training_with_diffusion_dropout_is_another_and_goes_on_bit_for_bit(
+    tmp_path: Path, monkeypatch
+):
+    dropped = replace(SHORT, dropout=(0.0, 0.5, 1.0), calm=0.5, steps=8, save_every=3)
+    whole = train(dropped, tmp_path / "whole", log=quiet)
+    plain = train(replace(dropped, dropout=()), tmp_path / "plain", log=quiet)
+    assert whole.card["recipe"]["dropout"] and not plain.card["recipe"]["dropout"]
+    pairs = zip(whole.model.parameters(), plain.model.parameters(), strict=True)
+    assert not all(torch.equal(a, b) for a, b in pairs)
+    with monkeypatch.context() as patch:
+        kill_at(7, patch)
+        with pytest.raises(Killed):
+            train(dropped, tmp_path / "killed", log=quiet)
+    again = train(dropped, tmp_path / "killed", log=quiet)
+    assert [sitting["from_step"] for sitting in again.card["sittings"]] == [0, 6]
+    pairs = zip(whole.model.parameters(), again.model.parameters(), strict=True)
+    assert all(torch.equal(a, b) for a, b in pairs)
+
+
+def test_dropout_rises_within_a_training_when_its_time_has_come(tmp_path: Path, monkeypatch):
+    """Four steps, calm for two: no past is noised in those, and every past in the others."""
+    usual, seen = Dropout.__call__, []
+
+    def watched(self, past, s, generator):
+        after = usual(self, past, s, generator)
+        seen.append((after != past).flatten(1).any(1).float().mean().item())
+        return after
+
+    monkeypatch.setattr(Dropout, "__call__", watched)
+    train(replace(SHORT, dropout=(0.0, 1.0), calm=0.5, steps=4), tmp_path / "run", log=quiet)
+    assert seen[:4] == [0.0, 0.0, 1.0, 1.0]  # what follows is the final loss
+
+
+def test_a_run_is_continued_with_its_own_settings_and_data_or_not_at_all(tmp_path: Path):
+    walker = train(SHORT, tmp_path / "run", log=quiet)
+    again = train(SHORT, tmp_path / "run", log=quiet)  # nothing is left to do
+    assert again.card == walker.card
+    with pytest.raises(ValueError, match="begun with lr = 0.002, and 0.1 is asked for"):
+        train(replace(SHORT, lr=0.1), tmp_path / "run", log=quiet)
+    with pytest.raises(ValueError, match="begun with data = "):
+        train(SHORT, tmp_path / "run", clips=training_clips(replace(SHORT, data_seed=2)), log=quiet)
+
+
+def test_muon_and_adam_make_different_walkers(tmp_path: Path):
+    one, other = (
+        train(replace(SHORT, optimizer=name), tmp_path / name, log=quiet).model.future_in.weight
+        for name in ("muon", "adam")
+    )
+    assert not torch.equal(one, other)
+
+
+def test_a_budget_of_seconds_is_kept():
+    before = time.process_time()
+    walker, steps = train_for(
+        1.0, training_clips(SHORT), replace(TINY, target="x0", skip=False), batch=3
+    )
+    assert 1 < time.process_time() - before < 4  # the data, the last step, the walker
+    assert steps > 5 and walker.config.target == "x0"
+
+
+def test_what_is_shipped_has_a_recipe_and_the_papers_one_is_the_papers():
+    pairs = [f"mend-{kind}-{k}" for k in range(3) for kind in ("plain", "dropout")]
+    assert [recipe.name for recipe in SHIPPED] == ["walker-x0", "walker-eps", *pairs]
+    assert all(RECIPES[name].dropout == (P_D if "dropout" in name else ()) for name in pairs)
+    paper = RECIPES["walker-paper"]
+    assert (paper.optimizer, paper.lr, paper.batch, paper.config.width) == ("adam", 5e-5, 64, 256)
+    assert paper.jitter == paper.metres == paper.near == paper.high_noise == 0
+
+
+def test_the_commit_of_a_folder_that_is_no_checkout(tmp_path: Path):
+    assert commit_of(tmp_path) == "not in a checkout"

@@ -1,0 +1,198 @@
+"""Dancers at one budget: what differs is what the table says, a row goes on, differences are of the
+same songs."""
+
+from dataclasses import asdict, replace
+from functools import partial
+
+import numpy as np
+import pytest
+import torch
+
+from motiondiff_edu.baselines.transformer import DanceTransformer, TransformerConfig
+from motiondiff_edu.mofusion import MoFusion, MoFusionConfig
+from tools.results import __main__ as command
+from tools.results.dances import budget, tables, timing
+from tools.results.dances.budget import FULL, QUICK, VARIANTS, budget_records, recipe_of
+from tools.results.dances.parts import Danced, DanceSize
+from tools.results.dances.scores import rows_of
+from tools.results.intervals import interval
+from tools.results.walks import scores
+from tools.results.walks.parts import Walks
+
+TINY = MoFusionConfig(widths=(16, 24), music_layers=1, S=60, target="x0", skip=False)
+SMALL = replace(QUICK, measured=DanceSize(songs=3, seeds=1, pieces=2, each=2))
+
+
+@pytest.fixture
+def tiny(monkeypatch):
+    """The same variants with networks that train in no time, and intervals of few draws."""
+    monkeypatch.setattr(scores, "interval", partial(interval, draws=30))
+    transformer = TransformerConfig(width=16, heads=2, layers=1, music_layers=1, S=60)
+    for name, (words, base, config, settings) in list(VARIANTS.items()):
+        changes = {"target": config.target, "C": config.C}
+        if isinstance(config, TransformerConfig):
+            small = replace(transformer, deterministic=config.deterministic, **changes)
+        else:
+            small = replace(
+                TINY, skip=config.skip, music_layers=min(config.music_layers, 1), **changes
+            )
+        monkeypatch.setitem(VARIANTS, name, (words, base, small, settings))
+
+
+def test_each_variant_differs_from_its_base_in_what_its_words_say():
+    differing = {
+        "no-feet": {"feet"},
+        "poses": {"changes"},
+        "eps": {"config.target", "config.skip"},
+        "eps-weighted": {"high_noise"},
+        "v": {"config.target", "config.skip"},
+        "constant": {"kinematic"},
+        "alpha_bar": {"kinematic"},
+        "snr": {"kinematic"},
+        "slide": {"kinematic"},
+        "cosine": {"snr"},
+        "linear-music": {"config.music_layers"},
+        "mfcc": {"config.C"},
+        "regression": {"config.deterministic"},
+    }
+    for name, wanted in differing.items():
+        own, base = (flat(asdict(recipe_of(n, FULL))) for n in (name, VARIANTS[name][1]))
+        assert own.keys() == base.keys()
+        assert {k.split(".")[0] if k.startswith("kin") else k for k in own if own[k] != base[k]} - {
+            "name"
+        } == wanted
+    kinds = [recipe_of(name, FULL).kinematic.over_time for name in ("constant", "alpha_bar", "snr")]
+    assert kinds == ["constant", "alpha_bar", "snr"]
+    assert set(differing) | {"x0", "transformer"} == set(VARIANTS)
+    rivals = {rival for found in budget.RIVALS.values() for rival in found}
+    assert rivals | {base for _, base, *_ in VARIANTS.values()} - {""} <= set(VARIANTS)
+
+
+def flat(tree: dict, above: str = "") -> dict:
+    """{"config.target": ...}; kinematic weights are one thing, there or not."""
+    found = {}
+    for key, value in tree.items():
+        if isinstance(value, dict) and key != "kinematic":
+            found |= flat(value, f"{above}{key}.")
+        else:
+            found[above + key] = value
+    return found
+
+
+def test_the_transformer_is_of_the_size_of_the_unet():
+    unet, plain = (sum(p.numel() for p in kind(VARIANTS[name][2]).parameters())
+                   for kind, name in ((MoFusion, "x0"), (DanceTransformer, "transformer")))  # fmt: skip
+    assert plain == pytest.approx(unet, rel=0.02)
+
+
+def test_a_row_is_trained_measured_and_set_beside_its_base(tiny, tmp_path, capsys):
+    records = budget_records("alpha_bar", SMALL, tmp_path, "c")
+    assert "x0 was not measured" in capsys.readouterr().out
+    assert not [one["name"] for one in records if "minus" in one["name"]]
+    base = {one["name"]: one for one in budget_records("x0", SMALL, tmp_path, "c")}
+    again = {one["name"]: one for one in budget_records("alpha_bar", SMALL, tmp_path, "c")}
+    assert "continuing at step 3" in capsys.readouterr().out  # nothing was trained again
+    for one in records:
+        assert again[one["name"]]["value"] == one["value"]
+    share = [
+        found[f"dance-budget.{n}.bas_share"]["value"]
+        for n, found in (("alpha_bar", again), ("x0", base))
+    ]
+    assert again["dance-budget.alpha_bar.bas_share_minus_x0"]["value"] == pytest.approx(
+        share[0] - share[1], abs=1e-3
+    )
+    bones = [
+        found[f"dance-budget.{n}.bone_rmse_cm"]["value"]
+        for n, found in (("alpha_bar", again), ("x0", base))
+    ]
+    gain = again["dance-budget.alpha_bar.bone_gain_over_x0"]
+    assert gain["value"] == pytest.approx(1 - bones[0] / bones[1], abs=1e-3)
+    seeds = gain["seeds"]
+    assert seeds["trained_steps"] == 3 and seeds["songs"] == 3 and seeds["sampling"] == [0]
+    assert seeds["weights"] != base["dance-budget.x0.bas"]["seeds"]["weights"]
+
+
+def test_rows_of_another_budget_or_sampler_are_not_set_beside_it(tiny, tmp_path, monkeypatch):
+    rows, squares = {"bas": np.full(4, 0.5), "bas_shuffled": np.full(4, 0.2)}, np.full(4, 2.0)
+    data = {"bas": np.full(4, 0.8), "bas_shuffled": np.full(4, 0.2)}
+    worse = Danced([], {**rows, "bas": np.full(4, 0.35)}, data, 4 * squares)
+    budget.keep("constant", worse, tmp_path, SMALL)
+    found = Danced([], rows, data, squares)
+    figures = {
+        figure.name: figure.value for figure in budget.gains("alpha_bar", found, tmp_path, SMALL)
+    }
+    assert figures["bas_share_minus_constant"] == pytest.approx(0.3 / 0.6 - 0.15 / 0.6)
+    assert figures["bone_gain_over_constant"] == pytest.approx(0.5) and len(figures) == 2
+    for other in (
+        replace(SMALL, steps=4),
+        replace(SMALL, measured=DanceSize(songs=3, seeds=1, pieces=2, each=3)),
+    ):
+        assert budget.gains("alpha_bar", found, tmp_path, other) == []
+    monkeypatch.setattr(budget, "ETA", 0.25)
+    assert budget.gains("alpha_bar", found, tmp_path, SMALL) == []
+
+
+@pytest.mark.parametrize("name", ["eps-weighted", "mfcc", "regression"])
+def test_what_is_not_the_usual_network_is_trained_and_measured(tiny, tmp_path, name):
+    found = {one["name"].removeprefix(f"dance-budget.{name}."): one["value"]
+             for one in budget_records(name, SMALL, tmp_path, "c")}  # fmt: skip
+    assert found["fid"] > 0 and found["bone_rmse_cm"] > 0
+    assert (found["multimodality"] == 0) == (name == "regression")
+    assert budget.stage("mfcc", SMALL).songs.mel.shape[2] == 22
+    assert budget.stage("", SMALL).songs.mel.shape[2] == 80
+
+
+def test_the_papers_form_is_averaged_over_beats_within_the_clip():
+    songs = budget.stage("", SMALL).songs
+    dances, beats = songs.truth[:, 0, :100][None], songs.beats(100)
+    found = rows_of(dances, beats)
+    outside = [
+        np.append(music, 7.0) for music in beats
+    ]  # 2 s after the dance: nobody could meet it
+    assert rows_of(dances, outside)["bas_music"] == pytest.approx(found["bas_music"])
+    still = np.concatenate(
+        [dances, np.repeat(dances[:, :, :1], 100, axis=2)]
+    )  # one of two dances meets no beat
+    assert rows_of(still, beats)["bas_music"] == pytest.approx(found["bas_music"] / 2)
+
+
+def test_times_are_of_every_network_and_the_base_is_one(tiny):
+    names = ("x0", "transformer", "regression")
+    found = {one["name"]: one for one in timing.time_records(names, SMALL, 2, "c")}
+    assert len(found) == 3 * 7 and all(one["value"] > 0 for one in found.values())
+    for what in ("step", "pass", "dance"):
+        assert found[f"dance-timing.x0.{what}_over_x0"]["value"] == 1
+        mine = [found[f"dance-timing.transformer.{what}_{end}"] for end in ("ms", "over_x0")]
+        assert mine[0]["unit"] == "CPU ms" and mine[1]["unit"] == "ratio"
+    networks = {"x0": MoFusion, "transformer": DanceTransformer, "regression": DanceTransformer}
+    for name, kind in networks.items():
+        size = sum(p.numel() for p in kind(VARIANTS[name][2]).parameters())
+        assert found[f"dance-time.{name}.parameters"]["value"] == size
+    page = tables.choices(found)
+    assert "a training step (batch 3)" in page and "8 dances of 100 frames" in page
+    (line,) = [line for line in page.splitlines() if line.startswith("| `transformer` | ")]
+    assert line.count(" | ") == 7
+    # fifty passes against one
+    assert (
+        found["dance-timing.transformer.dance_ms"]["value"]
+        > 3 * found["dance-timing.regression.dance_ms"]["value"]
+    )
+    assert torch.get_num_threads() >= 1
+
+
+def test_what_trains_is_run_when_asked_for_only():
+    weights, lines = {"dancer"}, {"walker-x0": Walks("walker-x0", "walker-x0")}
+    plain = command.parts_of([], False, lines, weights)  # there are no weights of that walker
+    assert plain == ["dancer", "unheard", "footsteps", "attention", "dance-time", "known-answer"]
+    full = command.parts_of([], True, {}, weights)
+    assert full[: len(plain)] == plain and {"dance-budget.v", "budget.T_p-1"} <= set(full)
+    assert command.parts_of(["dance-budget"], False, {}, weights) == [
+        f"dance-budget.{name}" for name in VARIANTS
+    ]
+    assert command.parts_of(["dance-budget.v", "attention"], False, {}, weights) == [
+        "dance-budget.v",
+        "attention",
+    ]
+    assert "attention" not in command.parts_of([], False, {}, set())
+    with pytest.raises(SystemExit, match="dance-budget.w"):
+        command.parts_of(["dance-budget.w"], False, {}, weights)

@@ -1,0 +1,96 @@
+"""The dancers' figures: the data scores as the data, shifted dances lose it, gains and ratios are
+what they say."""
+
+import numpy as np
+import pytest
+
+from tools.results.dances.scores import (
+    beat_figures,
+    bone_figure,
+    bone_gain,
+    features_of,
+    longer,
+    repeat_figure,
+    rows_of,
+    share,
+    variety_figures,
+)
+from tools.results.dances.trials import FPS, unseen_songs
+
+
+@pytest.fixture(scope="module")
+def songs():
+    return unseen_songs(5, draws=3, frames=100)
+
+
+def named(figures) -> dict[str, float]:
+    return {figure.name: figure.value for figure in figures}
+
+
+def test_songs_and_dances_are_of_the_same_seconds(songs):
+    assert songs.truth.shape == (5, 3, 100, 21, 3) and songs.mel.shape[2] == 80
+    assert songs.mel.shape[1] / 31.25 >= 100 / FPS
+    for song, beats in zip(songs.songs, songs.beats(100), strict=True):
+        assert set(beats) <= set(song.beats) and beats.max() < 99 / 20 + 0.25 and len(beats) > 4
+    assert len({song.genre for song in songs.songs}) > 2
+
+
+def test_the_datas_own_dances_have_the_datas_figures(songs):
+    beats = songs.beats(100)
+    data = rows_of(songs.truth[:, 0][None], beats)
+    found = named(beat_figures(data, data))
+    assert found["skating_mps"] == found["skating_data_mps"] < 0.05
+    slid = songs.truth[:, 1][None] + 0.01 * np.arange(songs.truth.shape[2])[:, None, None] * [
+        1.0,
+        0.0,
+        0.0,
+    ]
+    assert named(beat_figures(rows_of(slid, beats), data))["skating_mps"] == pytest.approx(
+        0.2, abs=0.05
+    )
+    assert (
+        found["bas_share"]
+        == found["speed_over_data"]
+        == found["beats_per_beat_over_data"]
+        == pytest.approx(1)
+    )
+    assert found["bas"] > found["bas_shuffled"] + 0.15
+    other = named(beat_figures(rows_of(songs.truth[:, 1][None], beats), data))
+    assert 0.5 < other["bas_share"] < 1.6  # another right dance to the same songs
+    late = np.roll(songs.truth[:, 0], 6, axis=1)  # 0.3 s: no beat any more
+    assert named(beat_figures(rows_of(late[None], beats), data))["bas_share"] < 0.4
+
+
+def test_share_by_hand():
+    own, shuffled, data, data_shuffled = (np.full(3, x) for x in (0.5, 0.2, 0.8, 0.2))
+    assert share(own, shuffled, data, data_shuffled) == pytest.approx(0.5)
+    short = [own, shuffled, data, data_shuffled]
+    assert longer("x", short, short).value == pytest.approx(1)
+    assert longer("x", [np.full(3, 0.35), *short[1:]], short).value == pytest.approx(0.5)
+
+
+def test_bones(songs):
+    still, squares = bone_figure(songs.truth[:, 0][None])
+    assert still.value == pytest.approx(0, abs=1e-9)
+    longer_legs = songs.truth[:, 0].copy()
+    longer_legs[..., [3, 4], :] += [0.0, -0.02, 0.0]
+    wrong, more = bone_figure(longer_legs[None])
+    assert wrong.value > 0.2
+    assert bone_gain(more / 4, more).value == pytest.approx(
+        0.5
+    )  # half the error, a quarter of its square
+
+
+def test_variety(songs):
+    features = features_of(songs.truth)
+    pooled = features_of(songs.truth[:, :1])[:, 0]
+    found = named(variety_figures(features, features, pooled))
+    assert found["multimodality_over_data"] == pytest.approx(1) and found["multimodality"] > 0
+    same = np.repeat(features[:, :1], 3, axis=1)
+    assert named(variety_figures(same, features, pooled))["multimodality"] == 0
+
+
+def test_a_loop_repeats_and_a_dance_less(songs):
+    loop = np.tile(songs.truth[:1, 0, :40], (1, 5, 1, 1))
+    long = unseen_songs(2, frames=200).truth[:, 0]
+    assert repeat_figure(loop).value > 0.99 > repeat_figure(long).value

@@ -1,0 +1,139 @@
+"""In-betweens as they are measured: errors, rivals, seams and spectra of motions whose figures are
+known."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from motiondiff_edu.metrics.keyframes import npss
+from tools.results.inbetweens import inbetween
+from tools.results.inbetweens.inbetween import (
+    GAPS,
+    Filled,
+    InbetweenSize,
+    figures_of,
+    inbetween_records,
+    middle,
+    trials,
+)
+
+GAP = 10
+
+
+@pytest.fixture(scope="module")
+def truth():
+    return trials(4)
+
+
+def off(truth, known, metres):
+    """The truth, but for the gap, which is so far to the side."""
+    return np.where(known[..., None], truth, truth + [metres, 0.0, 0.0])
+
+
+def filled(truth, **changed):
+    """Two samples 4 cm off to either side, arcs nearer than lines; `changed` replaces some."""
+    known = middle(GAP)
+    sides = np.stack([off(truth, known, 0.04), off(truth, known, -0.04)])
+    ways = {"made": sides, "masked": off(truth, known, 0.5), "free": off(truth, known, 0.9)}
+    ways |= {"lines": off(truth, known, 0.2), "arcs": off(truth, known, 0.1)} | changed
+    return Filled(
+        known, truth, *(ways[name] for name in ("made", "masked", "free", "lines", "arcs"))
+    )
+
+
+def values(one):
+    return {figure.name: figure.value for figure in figures_of(one)}
+
+
+def test_errors_are_those_of_the_mean_of_one_and_of_the_best(truth):
+    found = values(filled(truth))
+    by_hand = {"error_cm": 0, "error_one_cm": 4, "error_best_cm": 4, "error_masked_cm": 50, "error_free_cm": 90,
+               "error_lines_cm": 20, "error_arcs_cm": 10, "keyframe_error_cm": 0}  # fmt: skip
+    assert {name: found[name] for name in by_hand} == pytest.approx(by_hand, abs=1e-9)
+
+
+@pytest.mark.parametrize("nearer", ["lines", "arcs"])
+def test_the_rival_is_the_better_interpolation(truth, nearer):
+    one = filled(truth, **{nearer: off(truth, middle(GAP), 0.05)})
+    found = values(one)
+    assert found["error_one_over_interpolation"] == pytest.approx(4 / 5)
+    rival = getattr(one, nearer).reshape(4, 100, -1)
+    assert found["npss_interpolation"] == pytest.approx(npss(rival, truth.reshape(4, 100, -1)))
+
+
+def test_seams_are_over_the_datas_own_and_sliding_is_of_the_gap(truth):
+    found = values(filled(truth))
+    still = values(filled(truth, made=np.stack([truth, truth]), masked=truth))
+    assert (
+        still["seam_jump_over_data"]
+        == pytest.approx(1)
+        == pytest.approx(still["seam_jump_masked_over_data"])
+    )
+    assert (
+        found["seam_jump_over_data"] > 1.2
+        and found["seam_jump_masked_over_data"] > found["seam_jump_over_data"]
+    )
+    assert still["skating_mps"] == pytest.approx(still["skating_data_mps"])
+    assert (
+        found["skating_masked_mps"] > found["skating_mps"] > found["skating_data_mps"]
+    )  # the step into the gap
+
+
+def test_spectra_are_the_means_of_the_samples_and_their_ratio(truth):
+    shaken = truth + 0.05 * np.random.default_rng(0).standard_normal(truth.shape)
+    one = filled(truth, made=np.stack([shaken, truth]))
+    flat = [x.reshape(4, 100, -1) for x in (shaken, truth, one.arcs)]
+    found, half = values(one), npss(flat[0], flat[1]) / 2  # of the second sample it is 0
+    assert found["npss"] == pytest.approx(half)
+    assert found["npss_over_interpolation"] == pytest.approx(half / npss(flat[2], flat[1]))
+
+
+def test_the_worst_gap_stands_under_the_bar(monkeypatch):
+    """Each gap's samples are off by its length in millimetres, but given frames are held."""
+    monkeypatch.setattr(
+        inbetween, "filled", lambda dancer, truth, length, size: shifted(truth, length)
+    )
+
+    def shifted(truth, length):
+        known = middle(length)
+        made = off(truth, known, length / 1000)
+        return Filled(
+            known, truth, made[None], made, made, off(truth, known, 0.1), off(truth, known, 0.2)
+        )
+
+    records = {
+        one["name"]: one
+        for one in inbetween_records(None, "digest", InbetweenSize(motions=2), "a command")
+    }
+    for length in GAPS:
+        assert records[f"inbetween.gap{length}.error_over_interpolation"]["value"] == pytest.approx(
+            length / 100
+        )
+    assert records["inbetween.gap60_error_over_interpolation"]["value"] == pytest.approx(0.6)
+    for kind in ("seam_jump_over_data", "npss_over_interpolation"):
+        each = [records[f"inbetween.gap{length}.{kind}"]["value"] for length in GAPS]
+        assert records[f"inbetween.{kind}"]["value"] == max(each) > min(each)
+
+
+def test_every_way_is_asked_for_what_it_is_for(monkeypatch, truth):
+    """The paper's masking has none of our options; what is free is given nothing; ours is as a user
+    calls it."""
+    asked = []
+
+    def made(dancer, positions, known, samples=1, **options):
+        asked.append(
+            SimpleNamespace(
+                known=known, holes=np.isnan(positions), samples=samples, options=options
+            )
+        )
+        return np.zeros((samples, 100, 21, 3))
+
+    monkeypatch.setattr(inbetween, "inbetween", made)
+    found = inbetween.filled(None, truth, GAP, InbetweenSize(samples=3, steps=7))
+    usual, paper, free = (asked[4 * k : 4 * k + 4] for k in range(3))
+    assert found.made.shape[:2] == (3, 4) and len(asked) == 12
+    assert all(np.array_equal(one.holes.all(-1), ~middle(GAP)) for one in (*usual, *paper))
+    assert all(set(one.options) == {"steps", "generator"} and one.samples == 3 for one in usual)
+    assert all(inbetween.PAPER.items() <= one.options.items() for one in paper)
+    assert not any(one.known.any() for one in free)

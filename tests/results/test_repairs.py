@@ -1,0 +1,209 @@
+"""What menders are measured by: holes as they should be, figures by hand, intervals over trainings
+and clips."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+import torch
+
+from data_synth.imperfect import ARM, dead_joints, dropped_frames
+from motiondiff_edu.beyond.back_with_known import masked_back
+from motiondiff_edu.ddpm import cosine_schedule
+from motiondiff_edu.metrics.bone_lengths import bone_rmse
+from motiondiff_edu.motion.scaler import Scaler
+from motiondiff_edu.motion.skeleton import JOINTS
+from motiondiff_edu.reconstruction import walked_back
+from tools.results.repairs import both, repair, tables
+from tools.results.repairs import dropout as dropout_part
+from tools.results.repairs import rivals as rivals_part
+from tools.results.repairs.rivals import rivals
+from tools.results.repairs.trials import as_given, interval_over_seeds, names_of, without
+from tools.results.walks.trials import unseen
+
+
+@pytest.fixture(scope="module")
+def trials():
+    return unseen(5, 2)
+
+
+class Standing:
+    """Predicts what its scaler has for a mean pose; counts its windows."""
+
+    schedule = cosine_schedule(20)
+
+    def __init__(self):
+        self.config = SimpleNamespace(T_h=10, T_p=10, D=63, C=3, S=20)
+        self.pose_scaler = Scaler(torch.linspace(-1, 1, 63), torch.full((63,), 0.5))
+        self.control_scaler, self.asked = Scaler.nothing(3), 0
+
+    def window_sampler(self, steps=None):
+        def sample(past, control, generator):
+            self.asked += 1
+            return torch.zeros(len(past), 10, 63)
+
+        return sample
+
+    def denoiser(self, past, control, fast=True):
+        return lambda x, s: x / (1 - self.schedule.alpha_bar[s]).sqrt().view(-1, 1, 1).to(x)
+
+
+def test_missing_joints_are_zero_once_standardised(trials):
+    walker, broken = Standing(), without(trials.past, 0.3)
+    past, known = as_given(walker, broken)
+    lost = ~broken.known.all(1)
+    assert (lost.sum(1) == round(0.3 * 21)).all() and len(
+        {tuple(row) for row in lost}
+    ) == 5  # others in each
+    scaled = walker.pose_scaler.transform(past)
+    assert (scaled[~known] == 0).all() and known.sum() == 5 * 10 * 3 * 15
+    np.testing.assert_allclose(
+        past[known].numpy(), trials.past.reshape(5, 10, 63)[known.numpy()], rtol=1e-5, atol=1e-6
+    )
+
+
+def test_the_interval_is_over_trainings_as_well_as_clips():
+    alike = np.tile(np.linspace(0, 1, 40), (3, 1))
+    apart = alike + np.array([[-2.0], [0.0], [2.0]])
+    value, low, high = interval_over_seeds(np.mean, alike)
+    assert value == pytest.approx(0.5) and low < 0.5 < high and high - low < 0.3
+    wide = interval_over_seeds(np.mean, apart)
+    assert wide[0] == pytest.approx(0.5) and wide[1] < -0.5 and wide[2] > 1.5
+
+
+def test_gains_and_cost_by_hand():
+    plain = {"bone": np.full((3, 6), 9.0), "adherence": np.full((3, 6), 0.5)}
+    dropout = {"bone": np.full((3, 6), 4.0), "adherence": np.full((3, 6), 0.6)}
+    bone, adherence = dropout_part.gains(plain, dropout)
+    assert (bone.name, bone.value, bone.low, bone.high) == (
+        "dropout_gain_bone_cm",
+        *[pytest.approx(1.0)] * 3,
+    )
+    assert adherence.value == pytest.approx(-0.1) and adherence.unit == "m/s"
+    assert dropout_part.cost(plain, dropout).value == pytest.approx(
+        1.2
+    )  # the larger of 2/3 and 6/5
+
+
+def test_errors_of_a_repair_count_what_was_missing(trials):
+    broken = dropped_frames(trials.past, 3, 4)
+    made = trials.past + 0.0
+    made[:, 3:7] += [0.03, 0.0, 0.04]  # 5 cm off
+    made[:, 0] += 9.0  # known frames are not looked at
+    np.testing.assert_allclose(repair.squared_errors(made, trials.past, broken), 25.0)
+    assert np.isnan(repair.squared_errors(made, trials.past, without(trials.past, 0.0))).all()
+
+
+@pytest.fixture(autouse=True)
+def few_clips(monkeypatch):
+    monkeypatch.setattr(rivals_part, "CLIPS", 16)
+
+
+def test_rivals_fill_what_they_can(trials):
+    arm = rivals(dead_joints(trials.past, ARM), trials)
+    assert set(arm) == {
+        "ridge",
+        "meanpose",
+    }  # no straight line leads through a joint that is never seen
+    lines = rivals(dropped_frames(trials.past, 3, 4), trials)["interpolation"]
+    np.testing.assert_allclose(lines[:, 4], 0.6 * trials.past[:, 2] + 0.4 * trials.past[:, 7])
+    hidden = [JOINTS.index(name) for name in ARM]
+    errors = {
+        name: np.linalg.norm((guess - trials.past)[:, :, hidden], axis=-1).mean()
+        for name, guess in arm.items()
+    }
+    assert errors["ridge"] < errors["meanpose"]
+    seen = np.delete(np.arange(21), hidden)
+    np.testing.assert_allclose(arm["ridge"][:, :, seen], trials.past[:, :, seen], atol=1e-6)
+
+
+def test_repairs_of_a_walker_that_stands_are_the_mean_pose(trials):
+    size = repair.RepairSize(samples=2, rounds=1, steps=3)
+    found = {f.name: f for f in repair.repair_figures("arm", Standing(), trials, size)}
+    assert found["arm_paper_rmse_cm"].value == pytest.approx(found["arm_paper_one_rmse_cm"].value)
+    broken = repair.FAULTS["arm"](trials.past)
+    either = [
+        repair.repaired(Standing(), trials, broken, size, way) for way in (walked_back, masked_back)
+    ]
+    np.testing.assert_allclose(*either, atol=1e-3)
+    assert found["arm_rmse_over_ridge"].value == pytest.approx(
+        found["arm_rmse_cm"].value / found["arm_rmse_ridge_cm"].value
+    )
+
+
+def test_the_tables_say_what_the_records_say(tmp_path):
+    sections = (tables.dropout, tables.repairs, tables.inbetweens)
+    assert [section({}, tmp_path) for section in sections] == ["", "", ""]
+    seeds = {"trainings": 3, "frames": 10, "clips": 7, "missing": 0.3}
+
+    def one(name, value):
+        return dict(
+            name=name,
+            value=value,
+            low=value,
+            high=value,
+            seeds=seeds,
+            unit="cm",
+            paper=None,
+            command="",
+        )
+
+    names = [
+        "mend.dropout_cost_complete",
+        "mend.plain_missing_bone_cm",
+        "mend.dropout_missing_bone_cm",
+    ]
+    records = {name: one(name, 1.25 + k) for k, name in enumerate(names)}
+    said = tables.dropout(records, tmp_path)
+    assert "| missing | bone | 2.25 cm | 3.25 cm |" in said and "7 unseen pasts" in said
+
+
+def test_the_pairs_are_shipped_names():
+    assert names_of("plain") == ["mend-plain-0", "mend-plain-1", "mend-plain-2"]
+
+
+def test_table_2_measures_what_was_repaired_and_what_was_walked(trials):
+    """A walker that stands in the mean pose: its bones are that pose's, the repaired window's are
+    of both."""
+    size, frames = repair.RepairSize(samples=1, rounds=1, steps=3), trials.truth.shape[1]
+    windows = repair.repaired_windows([Standing()], trials, size)
+    found, after = repair.table_2([Standing()], trials, size, windows, "standing_", keep=10)
+    value = {one.name.removeprefix("table2_standing_"): one.value for one in found}
+    mean = Standing().pose_scaler.mean.double().numpy().reshape(21, 3)
+    stood = bone_rmse(np.broadcast_to(mean, (5, frames, 21, 3)))
+    assert value["bone_whole_cm"] == pytest.approx(stood) == pytest.approx(value["bone_ge_cm"])
+    np.testing.assert_allclose(after[0], np.broadcast_to(mean, (5, frames, 21, 3)), atol=1e-5)
+    broken = without(trials.past, repair.SHARE)
+    filled = np.where(broken.known[..., None], trials.past, mean)
+    assert value["bone_re_paper_cm"] == pytest.approx(bone_rmse(filled), rel=1e-4)
+    assert value["bone_re_cm"] == pytest.approx(
+        bone_rmse(filled), rel=1e-3
+    )  # its window under a mask is the mean, too
+    assert value["bone_re_bones_cm"] != pytest.approx(value["bone_re_cm"], rel=1e-2)
+    assert value["ratio"] == pytest.approx(max(stood, value["bone_re_cm"]) / stood)
+
+
+def test_both_papers_repairs_are_scored_where_both_had_to_guess(trials, monkeypatch):
+    """One way 3 cm off, the other 5 cm, each in its own frame; the pelvis, which one of them is
+    told, is not scored."""
+    side = np.array([0.0, 0.0, 0.03])
+
+    def repaired(walker, few, broken, size, way):
+        made = (
+            few.past + side + [9.0, 0.0, 0.0] * (np.arange(21) == 0)[:, None]
+        )  # the pelvis: anywhere
+        return np.stack([made, few.past + 0.0])
+
+    monkeypatch.setattr(both, "repaired", repaired)
+    monkeypatch.setattr(
+        both, "masked", lambda dancer, world, known, n, **how: (world + 5 / 3 * side)[None]
+    )
+    found = {one.name: one.value for one in both.both_figures(None, None, trials, repair.QUICK)}
+    assert (
+        found["arm.there_and_back.one_cm"] == pytest.approx(3)
+        and found["arm.there_and_back.mean_cm"] < 3
+    )
+    assert found["frames.there_and_back.one_cm"] == pytest.approx(3)
+    assert (
+        found["frames.masked.one_cm"] == found["frames.masked_blended.mean_cm"] == pytest.approx(5)
+    )

@@ -1,0 +1,140 @@
+"""The results machinery, with the data itself as the walker: no error, ratios of one; and the
+page."""
+
+import json
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from gaits import control_of, gait, rest_pose
+
+sys.path.insert(
+    0, str(Path(__file__).parents[2])
+)  # tools and benchmarks are of the checkout, not of the package
+
+from motiondiff_edu.metrics.footsteps import footsteps, heel_speed  # noqa: E402
+from tools.results.__main__ import weights_of  # noqa: E402
+from tools.results.intervals import interval  # noqa: E402
+from tools.results.page import cards
+from tools.results.page.bars import BARS, Bar  # noqa: E402
+from tools.results.page.render import read_records, render  # noqa: E402
+from tools.results.walks import parts, steps_table  # noqa: E402
+from tools.results.walks.scores import diversity, score  # noqa: E402
+
+CONTROL = np.stack(
+    [
+        control_of(7, v, 0.0, w)
+        for v, w in ((1.0, 0.3), (1.3, -0.2), (0.7, 0.0), (1.6, 0.1), (0.5, 0.9))
+    ]
+)
+WALKS = np.stack([gait(control) for control in CONTROL])
+
+
+def values(figures):
+    return {figure.name: figure.value for figure in figures}
+
+
+def test_the_data_as_a_walker_has_no_excess_and_follows_only_its_own_control():
+    slow = CONTROL - [0.01, 0, 0]  # data that are off by 1 cm/s, so that a ratio exists
+    found = values(score(WALKS, slow, WALKS))
+    assert found["adherence_excess_mps"] == 0 and found["adherence_mps"] == pytest.approx(0.01)
+    assert found["adherence_shuffled_over_own"] > 20
+    assert found["skating_over_data"] == pytest.approx(0.5)  # 0.01 m/s over the floor of 0.02
+    assert found["drift_adherence_ratio"] == pytest.approx(1)
+
+
+def test_a_walker_that_gets_worse_drifts_and_one_that_slides_skates():
+    still, told = np.tile(rest_pose(), (5, 140, 1, 1)), np.zeros((5, 140, 3))
+    noise = (
+        np.random.default_rng(2).normal(0, 1, still.shape)
+        * np.linspace(0.0005, 0.002, 140)[:, None, None]
+    )
+    found = values(score(still + noise, told, still))
+    assert found["drift_ratio"] >= found["drift_bone_ratio"] > 1.8
+    carried = values(score(WALKS, CONTROL + [0.1, 0.0, 0.0], WALKS))
+    assert carried["skating_over_data"] == pytest.approx(
+        1
+    )  # the data are judged under the same control
+    assert values(score(WALKS + [0, 0.1, 0], CONTROL, WALKS))["planted_share"] == 0
+
+
+def test_the_spread_of_the_data_over_itself_is_one():
+    drawn = np.random.default_rng(3).normal(size=(4, 3, 30, 21, 3))
+    assert values(diversity(2 * drawn, drawn))["diversity_over_data"] == pytest.approx(2)
+
+
+def test_the_rows_of_the_step_table_are_those_of_the_metric():
+    control = np.tile(control_of(6), (3, 1, 1))
+    poses = np.stack([gait(c, phase=p) for c, p in zip(control, (0.1, 0.4, 0.7), strict=True)])
+    poses = poses + np.random.default_rng(4).normal(0, 0.001, poses.shape)
+    expected = footsteps(list(heel_speed(poses, control)))
+    found = steps_table.tables(poses, control)
+    np.testing.assert_allclose(steps_table.curve(found), expected.counts)
+    np.testing.assert_allclose(
+        steps_table.row(found),
+        [expected.count, expected.v95, expected.mean_s, expected.std_s],
+        rtol=1e-9,
+    )
+
+
+def test_an_interval_holds_the_mean_and_narrows_with_the_clips():
+    rng = np.random.default_rng(5)
+    few, many = (interval(np.mean, rng.normal(3, 1, n)) for n in (20, 2000))
+    assert few[1] < 3 < few[2] and many[2] - many[1] < 0.3 * (few[2] - few[1])
+
+
+def test_the_page_is_made_from_the_records(tmp_path):
+    keys = dict(
+        low=0.1, high=0.3, seeds={}, unit="cm", paper=None, command="python -m tools.results"
+    )
+    (tmp_path / "results").mkdir()
+    path = tmp_path / "results" / "walker-x0.json"
+    path.write_text(json.dumps([dict(name="walker.bone_rmse_cm", value=0.2345, **keys)]))
+    (tmp_path / "bench").mkdir()
+    render(tmp_path, tmp_path / "bench")
+    page = (tmp_path / "RESULTS.md").read_text()
+    assert "| `walker.bone_rmse_cm` | at most 0.3 | 0.234 | [0.1, 0.3] | met |" in page
+    assert page.count("| not measured |") == len(BARS) - 1
+    path.with_name("old.json").write_text(path.read_text())
+    with pytest.raises(ValueError, match="stands in"):
+        read_records(tmp_path / "results")
+
+
+def test_walker_is_written_from_the_records_of_whom_it_stands_for(tmp_path, monkeypatch):
+    monkeypatch.setattr(parts, "alias_of", lambda: "walker-x0")
+    assert parts.alias_records(tmp_path) == []
+    (tmp_path / "walker-x0.json").write_text(
+        json.dumps([{"name": "walker-x0.bone_rmse_cm", "value": 0.2}])
+    )
+    assert parts.alias_records(tmp_path) == [{"name": "walker.bone_rmse_cm", "value": 0.2}]
+
+
+def test_a_card_tells_only_figures_of_its_own_weights(tmp_path):
+    record = {"name": "walker-x0.bone_rmse_cm", "value": 0.2, "seeds": {"weights": "abc"}}
+    (tmp_path / "walker-x0.json").write_text(json.dumps([record]))
+    assert cards.metrics(tmp_path, "walker-x0", "abc") == {"bone_rmse_cm": 0.2}
+    assert (
+        cards.metrics(tmp_path, "walker-x0", "other")
+        == {}
+        == cards.metrics(tmp_path, "walker-eps", "abc")
+    )
+
+
+def test_weights_to_measure_are_given_by_name_and_file(tmp_path):
+    (tmp_path / "w.safetensors").touch()
+    assert weights_of([f"mine={tmp_path}/w.safetensors"]) == {"mine": tmp_path / "w.safetensors"}
+    with pytest.raises(SystemExit, match="NAME=FILE"):
+        weights_of(["mine"])
+
+
+def test_bars_have_two_sides():
+    both = Bar("x", at_least=0.5, at_most=1.5)
+    assert (
+        both.met(0.5)
+        and both.met(1.5)
+        and not both.met(1.6)
+        and not both.met(0.4)
+        and both.text == "0.5 to 1.5"
+    )
+    assert not Bar("y", at_least=5).met(4.9) and Bar("z", at_most=0.3).met(0.3)

@@ -1,0 +1,69 @@
+"""What an animator does, in JupyterLab: a real walk, three frames pinned, an arm bent in one,
+in-betweens, a file."""
+
+import os
+
+import pytest
+from browser import open_page
+from jupyter_page import ASK, lab, run_all  # noqa: F401
+
+CELL = """import sys; sys.path.insert(0, {tests!r})
+from functools import partial
+import numpy as np
+from motiondiff_edu import checkpoints
+from motiondiff_edu.between import inbetween
+from motiondiff_edu.motion.retarget import load_clip
+from motiondiff_edu.motion.skeleton import JOINTS
+from motiondiff_edu.widgets.editor import Editor
+walk = load_clip("WALK").world()[:57]
+editor = Editor(walk, partial(inbetween, checkpoints.pretrained("unconditional"), steps=10))
+editor"""
+ROOT = "document.querySelector('.mde-editor').dataset"
+CHECK = """
+made, hand = editor.samples[editor.chosen], JOINTS.index("RightHand")
+raised = made[28, hand, 1] - walk[28, hand, 1]
+back = load_clip("in-between.bvh").world()
+same = lambda x: x - x[:1, :1] * np.array([1.0, 0.0, 1.0])
+print(np.array_equal(made[[0, 56]], walk[[0, 56]]), round(float(raised), 2),
+      len(back), bool(np.abs(np.linalg.norm(back[:, 14] - back[:, 13], axis=-1)
+                             - np.linalg.norm(made[:, 14] - made[:, 13], axis=-1)).max() < 2e-3),
+      bool(np.abs(same(back)[..., 1] - same(made)[..., 1]).max() < 2e-2))
+"""
+
+
+@pytest.fixture
+def address(monkeypatch, request, real_data):
+    walk = real_data / "bvh" / "cmu_02_01_walk.bvh"
+    monkeypatch.setattr(request.module, "CELL", CELL.replace("WALK", str(walk)))
+    return request.getfixturevalue("lab")
+
+
+def test_a_real_walk_is_edited_and_saved(browser, address, tmp_path):
+    with open_page(browser, offline=False, viewport={"width": 1300, "height": 1000}) as page:
+        page.set_default_timeout(120_000)
+        canvas = run_all(page, address, "mde-editor")
+        canvas.focus()
+        for key in ("Home", "Enter", "End", "Enter"):
+            page.keyboard.press(key)
+        page.evaluate(ASK, "editor.frame = 28")
+        page.wait_for_function(f"{ROOT}.frame === '28'")
+        canvas.focus()
+        page.keyboard.press("Enter")
+        page.wait_for_function(f"{ROOT}.pins === '0 28 56'")
+        page.get_by_label("Joint to move").select_option("RightHand")
+        canvas.focus()
+        for _ in range(4):
+            page.keyboard.press("Shift+ArrowUp")  # 5 cm each
+        page.get_by_text("RightHand in frame 28 moved by").wait_for()
+        page.keyboard.press("g")
+        page.wait_for_function(f"{ROOT}.made === '3'")
+        assert "keyframe error 0.0 mm" in page.locator(".mde-measured").inner_text()
+        if folder := os.environ.get("MOTIONDIFF_SCREENSHOTS"):
+            page.screenshot(path=os.path.join(folder, "animator.png"))
+        page.get_by_role("button", name="Save as BVH").click()
+        page.wait_for_function("document.querySelector('.mde-say').textContent.startsWith('Saved')")
+        kept, raised, frames, bones, heights = page.evaluate(ASK, CHECK).splitlines()[-1].split()
+        assert (kept, frames, bones, heights) == ("True", "57", "True", "True") and 0.1 < float(
+            raised
+        ) < 0.25
+        assert (tmp_path / "in-between.bvh").is_file() and page.problems == []

@@ -1,0 +1,481 @@
+"""The editor: in Python, and in a browser whose messages reach the Python object."""
+
+import re
+import time
+
+import numpy as np
+import pytest
+import torch
+import traitlets
+from browser import coloured, ink, open_page
+from editor_page import open_editor, settled
+from synthetic_walk import walk
+
+from motiondiff_edu.baselines.interpolation import spherical
+from motiondiff_edu.motion.bvh import read_bvh
+from motiondiff_edu.motion.skeleton import BONES, JOINTS, joint_index
+from motiondiff_edu.viz.body import Camera, project
+from motiondiff_edu.widgets import packing
+from motiondiff_edu.widgets.editor import Editor
+
+T, HAND = 31, joint_index("LeftHand")
+FIGURE, RAIL = "canvas:not(.mde-lane)", "canvas.mde-timeline"
+
+
+@pytest.fixture(scope="module")
+def motion() -> np.ndarray:
+    return walk(frames=T, turn=0.5)[0]
+
+
+def guess(positions, known, generator, samples=1, resample=1):
+    """Bones turned evenly between what is held, shaken; the more it is resampled, the less."""
+    base = spherical(positions, known)
+    shape = (samples, *base.shape[:2], 3)
+    noise = 0.1 / resample * torch.randn(shape, generator=generator, dtype=torch.float64).numpy()
+    return np.where(known[..., None], base, base + noise)
+
+
+def words(page) -> str:
+    return page.locator(".mde-told").inner_text()
+
+
+# ---- in Python
+def test_the_page_is_told_what_is_held(motion):
+    editor = Editor(motion, guess)
+    editor.pin(20, 4)
+    editor.keep("upper body")
+    target = motion[4, HAND] + [0, 0.2, 0.05]
+    editor.drag(4, "LeftHand", target)
+    state = editor.state
+    assert (state["pins"], state["moved"], state["part"]) == ([4, 20], [[HAND], []], "upper body")
+    assert state["held"].startswith(
+        "2 frames pinned (1 edited), upper body kept. In frame 4 what is kept throughout"
+    )
+    assert state["message"] == "LeftHand in frame 4 moved by 21 cm."
+    np.testing.assert_allclose(
+        np.frombuffer(editor.poses, "<f4").reshape(2, 21, 3)[0], editor.positions[4], atol=1e-6
+    )
+    np.testing.assert_allclose(editor.positions[4, HAND], target, atol=1e-9)
+    assert editor.known[:, HAND].all() and editor.known.any(1).all() and editor.samples is None
+
+
+def test_the_last_frame_by_its_number_from_the_end_is_the_same_frame(motion):
+    editor, target = Editor(motion, guess), motion[-1, HAND] + [0, 0.2, 0.05]
+    assert editor.pin(-1) == f"Pinned frame {T - 1}."
+    assert editor.drag(-1, "LeftHand", target) == f"LeftHand in frame {T - 1} moved by 21 cm."
+    editor.pin(-1)  # pinned already: what was dragged there stays
+    np.testing.assert_allclose(editor.positions[-1, HAND], target, atol=1e-9)
+    assert editor.unpin(-1) == f"Let go of frame {T - 1}." and not editor.known.any()
+    with pytest.raises(IndexError, match=f"frame {T} is not within"):
+        editor.pin(T)
+
+
+def test_generating_tells_what_was_measured_and_the_same_seed_makes_the_same(motion):
+    editors = [Editor(motion, guess, seed=s) for s in (5, 5, 6)]
+    for editor in editors:
+        editor.pin(0, 15, 30)
+        editor.count, editor.resample = 2, 4
+        editor.generate()
+    one, same, other = (editor.samples for editor in editors)
+    assert (
+        one.shape == (2, T, 21, 3) and np.array_equal(one, same) and not np.array_equal(one, other)
+    )
+    assert np.array_equal(one[:, [0, 15, 30]], np.stack([motion[[0, 15, 30]]] * 2))
+    assert re.fullmatch(
+        r"In-betweens made: 2, in \d+\.\d s \(seed 5\)\.", editors[0].state["message"]
+    )
+    assert re.fullmatch(r"keyframe error 0\.0 mm, seam jump \d.*", editors[0].state["measured"][1])
+    unpacked = packing.unpack(
+        packing.Packed(editors[0].made_joints, editors[0].made_roots, (T, T), 21)
+    )
+    assert max(np.abs(a - b).max() for a, b in zip(unpacked, one, strict=True)) < 0.001
+    editors[0].generate()
+    assert not np.array_equal(editors[0].samples, one) and "(seed 6)" in editors[0].state["message"]
+
+
+def test_a_frame_is_pinned_as_it_is_seen(motion):
+    editor = Editor(motion, guess)
+    editor.pin(0, 30)
+    editor.generate()
+    editor.chosen = 2
+    editor.pin(11)
+    assert np.array_equal(editor.positions[11], editor.samples[2, 11]) and editor.state["old"]
+    editor.generate()
+    assert np.array_equal(editor.samples[0, 11], editor.positions[11]) and not editor.state["old"]
+    assert editor.chosen == 0
+
+
+def test_undo_goes_back_step_by_step_and_reset_can_be_undone(motion):
+    editor = Editor(motion, guess)
+    editor.pin(3)
+    editor.generate()
+    editor.chosen, made = 1, editor.samples
+    editor.unpin(3)
+    editor.reset()
+    assert (
+        editor.samples is None
+        and editor.made_joints == b""
+        and editor.state["held"] == "nothing is held."
+    )
+    editor.undo()
+    assert editor.state["pins"] == [] and editor.samples is made and editor.chosen == 1
+    editor.undo()
+    assert editor.state["pins"] == [3] and not editor.state["old"] and editor.state["undo"] == 2
+    editor.undo()
+    editor.undo()
+    assert editor.samples is None
+    with pytest.raises(IndexError, match="nothing to undo"):
+        editor.undo()
+
+
+def test_a_saved_file_reads_back_as_the_chosen_in_between(motion, tmp_path, capsys):
+    editor = Editor(motion, guess, fps=25)
+    with pytest.raises(ValueError, match="no in-between yet"):
+        editor.save(tmp_path / "none.bvh")
+    editor.pin(0, 12, 30)
+    editor.generate()
+    editor.chosen = 1
+    report = editor.save(tmp_path / "made.bvh")
+    bvh = read_bvh(tmp_path / "made.bvh")
+    back = bvh.world_positions()[:, [bvh.names.index(name) for name in JOINTS]] / 100
+    assert bvh.fps == 25 and np.abs(back - report.positions).max() < 1e-3
+    off = np.linalg.norm(back - editor.samples[1], axis=-1)
+    np.testing.assert_allclose(off, report.shift_mm / 1000, atol=1e-4)
+    assert [path.name for path in tmp_path.iterdir()] == [
+        "made.bvh"
+    ] and "made.bvh" in capsys.readouterr().out
+
+
+def receive(editor, **content) -> str:
+    editor._receive(editor, {"number": editor.state["heard"] + 1, **content}, [])
+    return editor.state["message"]
+
+
+def test_errors_are_told_in_the_page_and_leave_it_at_rest(motion, tmp_path):
+    def broken(positions, known, generator):
+        raise RuntimeError("out of memory")
+
+    editor = Editor(motion, broken)
+    assert receive(editor, do="generate", after=0) == "RuntimeError: out of memory."
+    assert not editor.busy and editor.samples is None and isinstance(editor.error, RuntimeError)
+    assert receive(editor, do="undo") == "There is nothing to undo."
+    assert receive(editor, do="drag", frame=3, joint=5, to=[0, 0, 0], grip=1).startswith(
+        "Frame 3 is not pinned"
+    )
+    assert (
+        receive(editor, do="save", name=str(tmp_path / "x"))
+        == "There is no in-between yet: press Generate first."
+    )
+    assert receive(editor, do="save", name=" ") == "Give the file a name."
+    editor.pin(*range(T))
+    assert receive(editor, do="generate", after=0).startswith(
+        "Every frame is pinned: there is nothing to make."
+    )
+    assert editor.state["heard"] == 6
+
+
+def test_a_press_while_another_is_answered_is_ignored(motion):
+    calls = []
+
+    def make(positions, known, generator):
+        calls.append(len(calls))
+        assert editor.busy
+        receive(editor, do="generate", after=0)  # a message that comes in between
+        return guess(positions, known, generator, samples=3)
+
+    editor = Editor(motion, make)
+    editor.pin(0, 30)
+    assert receive(editor, do="generate", after=0).startswith("In-betweens made: 3")
+    receive(editor, do="generate", after=0)  # pressed before the answer had come
+    assert calls == [0]
+    receive(editor, do="generate", after=1)
+    assert calls == [0, 1]
+
+
+def test_drags_of_one_grip_start_from_the_same_pose_and_are_undone_together(motion):
+    editor = Editor(motion, guess)
+    editor.pin(8)
+    there = (motion[8, HAND] + [0.1, 0.3, 0.0]).tolist()
+    for target in ([5.0, 5.0, 5.0], [-3.0, 0.5, 0.2], there):
+        receive(editor, do="drag", frame=8, joint=HAND, to=target, grip=1)
+    alone = Editor(motion, guess)
+    alone.pin(8)
+    alone.drag(8, "LeftHand", there)
+    assert np.array_equal(editor.positions, alone.positions)
+    receive(
+        editor,
+        do="drag",
+        frame=8,
+        joint=12,
+        to=(editor.positions[8, 12] + [0.05, 0, 0]).tolist(),
+        grip=2,
+    )
+    assert editor.edit.moved == {8: ("LeftHand", "Head")} and editor.state["undo"] == 3
+    receive(editor, do="undo")
+    assert np.array_equal(editor.positions, alone.positions)
+    receive(editor, do="undo")
+    assert np.array_equal(editor.positions, motion)
+
+
+def test_what_is_no_motion_is_refused(motion):
+    with pytest.raises(
+        ValueError, match=r"\(frames, 21, 3\), world positions in metres, not \(31, 63\)"
+    ):
+        Editor(motion.reshape(T, 63), guess)
+    with pytest.raises(ValueError, match="frame 2, joint 5"):
+        Editor(np.where(np.arange(T * 21).reshape(T, 21, 1) == 2 * 21 + 5, np.nan, motion), guess)
+    with pytest.raises(ValueError, match="3 names for the 21 joints"):
+        Editor(motion, guess, names=["a", "b", "c"])
+    with pytest.raises(traitlets.TraitError, match="frame is a number from 0 to 30, not 31"):
+        Editor(motion, guess).frame = T
+    with pytest.raises(traitlets.TraitError, match="chosen is a number from 0 to 0, not 1"):
+        Editor(motion, guess).chosen = 1
+
+
+# ---- in a browser
+@pytest.fixture
+def editor(motion):
+    return Editor(motion, guess)
+
+
+@pytest.fixture
+def page(browser, tmp_path, editor):
+    with open_page(browser, viewport={"width": 1100, "height": 800}) as page:
+        open_editor(page, tmp_path, editor)
+        yield page
+        assert page.problems == []
+
+
+def press(page, *keys) -> None:
+    for key in keys:
+        page.keyboard.press(key)
+    settled(page)
+
+
+def test_the_whole_way_by_keyboard(page, editor, motion, tmp_path):
+    page.locator(FIGURE).focus()
+    press(page, "Enter", *["."] * 12, "Enter", "End", "Enter", "PageUp")
+    assert page.locator(".mde-editor").get_attribute("data-pins") == "0 12 30"
+    assert page.locator(".mde-editor").get_attribute(
+        "data-frame"
+    ) == "12" and "3 frames pinned." in words(page)
+    page.get_by_label("Joint to move").select_option("LeftHand")
+    page.locator(FIGURE).focus()
+    press(page, *["Shift+ArrowUp"] * 6, "ArrowUp", "PageUp")
+    moved = editor.positions[12] - motion[12]
+    assert moved[HAND, 1] == pytest.approx(0.31, abs=0.02) and np.array_equal(
+        np.delete(moved, range(13, 17), 0), np.zeros((17, 3))
+    )
+    assert (page.evaluate("leaked"), editor.edit.moved) == (0, {12: ("LeftHand",)})
+    press(page, "g")
+    page.wait_for_function("model.get('state').made === 3")
+    pinned = [0, 12, 30]
+    assert all(np.array_equal(one[pinned], editor.positions[pinned]) for one in editor.samples)
+    assert "keyframe error 0.0 mm" in words(page) and "(seed 0)" in words(page)
+    press(page, "]", "]")
+    assert editor.chosen == 2 and "In-between 3:" in words(page)
+    press(page, "]")
+    assert editor.chosen == 0
+    page.get_by_label("Name of the file").fill(str(tmp_path / "edited"))
+    press(page, "Enter")
+    page.wait_for_function("document.querySelector('.mde-say').textContent.startsWith('Saved')")
+    bvh = read_bvh(tmp_path / "edited.bvh")
+    back = bvh.world_positions()[:, [bvh.names.index(name) for name in JOINTS]] / 100
+    told = float(re.search(r"([\d.]+) mm at most", words(page))[1]) / 1000
+    assert np.linalg.norm(back - editor.samples[0], axis=-1).max() == pytest.approx(told, abs=1e-4)
+
+
+def handle(page, editor, frame: int, joint: int) -> tuple[float, float]:
+    """Where a joint of a frame is on the screen, by the camera of the still pictures."""
+    box = page.locator(FIGURE).bounding_box()
+    around = editor.positions[np.clip(np.arange(frame - 10, frame + 11), 0, T - 1), 0].mean(0)
+    camera = Camera(x=around[0], z=around[2], distance=5 / 1.1)
+    pixel, _ = project(editor.positions[frame, joint][None], camera, (box["width"], box["height"]))
+    return box["x"] + pixel[0, 0], box["y"] + pixel[0, 1]
+
+
+def test_a_hand_is_dragged_with_the_mouse_and_the_bones_keep_their_lengths(page, editor, motion):
+    page.locator(FIGURE).focus()
+    press(page, ".", ".", "Enter")
+    x, y = handle(page, editor, 2, HAND)
+    page.mouse.move(x, y)
+    page.mouse.down()
+    page.mouse.move(x + 10, y - 40, steps=5)
+    page.mouse.move(x + 20, y - 70, steps=5)
+    page.mouse.up()
+    settled(page)
+    page.wait_for_function("model.get('state').moved[0].length === 1")
+    after = handle(page, editor, 2, HAND)
+    assert after == pytest.approx((x + 20, y - 70), abs=1.5), (
+        "the hand is under the pointer, in the plane of the view"
+    )
+    for parent, child in BONES:
+        lengths = [np.linalg.norm(p[2, child] - p[2, parent]) for p in (motion, editor.positions)]
+        assert lengths[1] == pytest.approx(lengths[0])
+    assert "LeftHand in frame 2 moved by" in words(page) and editor.state["undo"] == 2
+    press(page, "Control+z")
+    assert np.array_equal(editor.positions, motion) and editor.state["pins"] == [2]
+
+
+def test_dragging_elsewhere_turns_the_view_and_moves_nothing(page, editor, motion):
+    page.locator(FIGURE).focus()
+    press(page, "Enter")
+    first, box = ink(page.locator(FIGURE)), page.locator(FIGURE).bounding_box()
+    page.mouse.move(box["x"] + 60, box["y"] + 200)
+    page.mouse.down()
+    page.mouse.move(box["x"] + 160, box["y"] + 230, steps=3)
+    page.mouse.up()
+    assert ink(page.locator(FIGURE)) != first and np.array_equal(editor.positions, motion)
+    assert page.evaluate("asked.length") == 1
+
+
+def test_the_timeline_pins_by_clicks_and_scrubs_by_its_ruler(page, editor):
+    box = page.locator(RAIL).bounding_box()
+    at = lambda t: 14 + t / (T - 1) * (box["width"] - 28)  # noqa: E731
+    track, ruler = box["y"] + 38, box["y"] + 10
+    for frame in (10, 20, 10):  # 10 is pinned, 20 is pinned, 10 is looked at
+        page.mouse.click(box["x"] + at(frame), track)
+        settled(page)
+    assert editor.state["pins"] == [10, 20] and editor.frame == 10
+    page.mouse.click(box["x"] + at(10), track)  # and let go
+    settled(page)
+    assert editor.state["pins"] == [20]
+    page.mouse.move(box["x"] + at(3), ruler)
+    page.mouse.down()
+    page.mouse.move(box["x"] + at(27), ruler, steps=4)
+    page.mouse.up()
+    page.wait_for_function("document.querySelector('.mde-editor').dataset.frame === '27'")
+    assert editor.state["pins"] == [20]
+    page.locator(RAIL).focus()
+    press(page, "PageUp")
+    assert (
+        page.locator(RAIL).get_attribute("aria-valuetext") == "frame 20 of 30, 1.00 seconds, pinned"
+    )
+    press(page, "Enter")
+    assert editor.state["pins"] == [] and "Nothing is held" in words(page)
+
+
+def test_controls_are_told_and_ghosts_are_drawn(page, editor):
+    page.get_by_label("Number of in-betweens").select_option("5")
+    page.get_by_label("Resampling").select_option("7")
+    page.get_by_label("Part of the body").select_option("the lower body")
+    settled(page)
+    assert (editor.count, editor.resample, editor.edit.part) == (5, 7, "lower body")
+    page.locator(FIGURE).focus()
+    press(page, "Enter", ".", ".", ".")
+    pale = coloured(page.locator(FIGURE))
+    page.get_by_role("button", name="Generate").click()
+    page.wait_for_function("model.get('state').made === 5")
+    assert editor.samples.shape == (5, T, 21, 3)
+    assert coloured(page.locator(FIGURE))["orange"] > 1.2 * pale["orange"], (
+        "what is to be made is pale before"
+    )
+    seen = ink(page.locator(FIGURE))
+    page.get_by_label("Next in-between").click()
+    assert editor.chosen == 1 and ink(page.locator(FIGURE)) != seen
+    page.get_by_role("button", name="Undo").click()
+    settled(page)
+    assert editor.samples is None and "1 frame pinned, lower body kept" in words(page)
+    page.get_by_role("button", name="Reset").click()
+    settled(page)
+    assert editor.edit.part is None and page.get_by_label("Part of the body").input_value() == ""
+
+
+def test_a_busy_editor_says_so_and_ignores_a_second_press(browser, tmp_path, motion):
+    calls = []
+
+    def slow(positions, known, generator, samples, resample):
+        calls.append(samples)
+        time.sleep(0.3)
+        return guess(positions, known, generator, samples)
+
+    editor = Editor(motion, slow)
+    editor.pin(0, 30)
+    with open_page(browser) as page:
+        open_editor(page, tmp_path, editor)
+        page.evaluate("""() => {
+            const b = document.querySelector(".mde-main"), root = document.querySelector(".mde-editor");
+            b.click(); b.click();
+            window.seen = [b.textContent, b.getAttribute("aria-disabled"), root.getAttribute("aria-busy")];
+        }""")
+        assert page.evaluate("seen") == ["Generating …", "true", "true"]
+        page.wait_for_function("model.get('state').made === 3")
+        page.wait_for_function("document.querySelector('.mde-main').textContent === 'Generate'")
+        assert calls == [3] and page.evaluate("asked.length") == 1
+        assert page.problems == []
+
+
+def test_errors_appear_in_the_message_line(page, editor):
+    page.locator(FIGURE).focus()
+    press(page, "j", "ArrowUp")
+    assert (
+        "Frame 0 is not pinned: press Enter" in words(page) and page.evaluate("asked.length") == 0
+    )
+    press(page, "]")
+    assert "There are no in-betweens yet" in words(page)
+    press(page, "z")
+    assert "There is nothing to undo." in words(page)
+    editor._make = lambda p, k, g: p
+    press(page, "g")
+    page.wait_for_function("document.querySelector('.mde-say').textContent.includes('is needed')")
+    assert "(31, 21, 3); (samples, 31, 21, 3) is needed." in words(page)
+    page.wait_for_function("document.querySelector('.mde-main').textContent === 'Generate'")
+
+
+def test_playing_runs_through_the_frames_and_python_hears_where_it_stopped(page, editor):
+    page.get_by_role("button", name="Play").click()
+    page.wait_for_function("Number(document.querySelector('.mde-editor').dataset.frame) > 4")
+    page.locator(FIGURE).focus()
+    press(page, " ")
+    assert page.locator(".mde-editor").get_attribute("data-playing") == "false"
+    frame = int(page.locator(".mde-editor").get_attribute("data-frame"))
+    page.wait_for_function(f"model.get('frame') === {frame}")
+    assert editor.frame == frame
+    page.evaluate("cleanup()")
+    assert page.evaluate("[document.querySelectorAll('canvas').length, listening()]") == [0, 0]
+
+
+def test_without_a_kernel_it_plays_and_pins_and_says_what_it_needs(browser, motion, tmp_path):
+    editor = Editor(motion, guess)
+    editor.pin(0, 30)
+    editor.generate()
+    bundle, _ = editor._repr_mimebundle_()
+    assert (
+        'alt="Motion editor: a skeleton moves for 1.6 s, 31 frames; 2 frames pinned. 3 in-betweens made."'
+        in bundle["text/html"]
+    )
+    assert {"image/png", "application/vnd.jupyter.widget-view+json"} <= set(bundle)
+    export = tmp_path / "export.html"
+    export.write_text(f"<!doctype html><body>{bundle['text/html']}", "utf-8")
+    with open_page(browser, viewport={"width": 1100, "height": 850}) as page:
+        page.goto(export.as_uri())
+        inside = page.frame_locator("iframe")
+        canvas, said = inside.locator(FIGURE), inside.locator(".mde-say")
+        canvas.wait_for()
+        assert min(coloured(canvas).values()) > 200
+        inside.get_by_role("button", name="Play").click()
+        inside.locator(".mde-editor:not([data-frame='0'])").wait_for()
+        canvas.focus()
+        for key in (" ", "Home", ".", ".", "Enter"):
+            page.keyboard.press(key)
+        assert inside.locator(".mde-editor").get_attribute("data-pins") == "0 2 30"
+        assert "Frame 2 pinned, on this page only." in said.inner_text()
+        page.keyboard.press("g")
+        assert (
+            said.inner_text()
+            == "Generating needs a running notebook: run the cell that made this editor."
+        )
+        page.keyboard.press("]")
+        assert "In-between 2:" in inside.locator(".mde-measured").inner_text()
+        assert page.problems == [] and page.asked == []
+
+
+def test_a_kernel_that_does_not_answer_is_told(browser, tmp_path, motion):
+    with open_page(browser) as page:
+        page.clock.install()
+        open_editor(page, tmp_path, Editor(motion, guess))
+        page.evaluate("window.kernel = () => {}")
+        page.get_by_role("button", name="Generate").click()
+        page.clock.run_for(6000)
+        assert "kernel does not answer" in words(page)
+        assert page.locator(".mde-main").inner_text() == "Generate"

@@ -1,0 +1,219 @@
+"""The player's ES module in a browser: with a fake model in a bare page, and exported, offline,
+without a kernel."""
+
+import pytest
+from browser import coloured, ink, open_page, player_page, shown
+from synthetic_walk import walk
+
+from motiondiff_edu.widgets.player import Player
+
+ANOTHER_FRAME = (
+    "() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))"
+)
+ORANGE_HALVES = """() => {
+  const c = document.querySelector("canvas"), w = c.width >> 1;
+  return [0, w].map((x) => {
+    const d = c.getContext("2d").getImageData(x, 0, w, c.height).data;
+    let n = 0;
+    for (let i = 0; i < d.length; i += 4) if (d[i] > d[i + 2] + 80 && d[i] > d[i + 1] + 50) n++;
+    return n;
+  });
+}"""
+
+
+@pytest.fixture(scope="module")
+def player():
+    positions, contacts = walk(frames=53, turn=0.3)
+    return Player(positions, contacts=contacts, past=20, labels="walker", autoplay=False)
+
+
+def test_keys_move_the_figure_and_do_not_leak(browser, player, tmp_path):
+    with open_page(browser) as page:
+        page.goto(player_page(tmp_path, player))
+        canvas = page.locator("canvas")
+        assert min(coloured(canvas).values()) > 200
+        canvas.focus()
+        presses = {
+            "ArrowRight": 1,
+            "ArrowUp": 11,
+            "ArrowLeft": 10,
+            "ArrowDown": 0,
+            "End": 52,
+            "Home": 0,
+        }
+        for key, frame in presses.items():
+            before = ink(canvas)
+            page.keyboard.press(key)
+            assert shown(page) == frame == page.evaluate("saved.at(-1).frame"), key
+            assert ink(canvas) != before, key
+        assert page.evaluate("leaked") == 0
+        assert page.problems == []
+
+
+def test_zoom_orbit_follow_and_reset_change_the_view_and_reset_brings_it_back(
+    browser, player, tmp_path
+):
+    with open_page(browser) as page:
+        page.goto(player_page(tmp_path, player))
+        canvas = page.locator("canvas")
+        canvas.focus()
+        page.wait_for_function("document.activeElement.tagName === 'CANVAS'")
+        first = ink(canvas)
+        seen = [first]
+        for act in ["+", "-", "f"]:
+            page.keyboard.press(act)
+            seen.append(ink(canvas))
+        assert seen[1] != first and seen[2] == first and seen[3] != first
+        box = canvas.bounding_box()
+        page.mouse.move(box["x"] + 200, box["y"] + 200)
+        page.mouse.down()
+        page.mouse.move(box["x"] + 320, box["y"] + 250)
+        page.mouse.up()
+        page.mouse.wheel(0, -300)
+        page.keyboard.press("ArrowRight")
+        assert ink(canvas) not in seen
+        page.get_by_role("button", name="Reset").click()
+        assert ink(canvas) == first and shown(page) == 0
+
+
+def test_wheel_scrolls_the_page_until_the_figure_was_clicked(browser, player, tmp_path):
+    with open_page(browser) as page:
+        page.goto(player_page(tmp_path, player))
+        canvas = page.locator("canvas")
+        first, box = ink(canvas), canvas.bounding_box()
+        page.mouse.move(box["x"] + 200, box["y"] + 200)
+        page.mouse.wheel(0, -300)
+        page.evaluate(ANOTHER_FRAME)
+        assert ink(canvas) == first
+        page.mouse.click(box["x"] + 200, box["y"] + 200)
+        clicked = canvas.evaluate("c => c.toDataURL()")
+        page.mouse.wheel(0, -300)
+        page.wait_for_function(
+            "(was) => document.querySelector('canvas').toDataURL() !== was", arg=clicked
+        )
+
+
+def test_play_advances_pauses_and_tells_python(browser, player, tmp_path):
+    with open_page(browser) as page:
+        page.goto(player_page(tmp_path, player))
+        canvas, first = page.locator("canvas"), ink(page.locator("canvas"))
+        page.get_by_role("button", name="Play").click()
+        page.wait_for_function("document.querySelector('.mde-player').dataset.frame > 3")
+        page.wait_for_function("saved.some((s) => s.playing && s.frame > 0)")
+        canvas.focus()
+        page.keyboard.press(" ")
+        frame = shown(page)
+        assert page.evaluate("[saved.at(-1).frame, saved.at(-1).playing]") == [frame, False]
+        assert page.get_by_role("button", name="Play").count() == 1
+        assert frame > 0 and ink(canvas) != first
+
+
+def test_python_sets_the_frame_and_another_motion(browser, player, tmp_path):
+    with open_page(browser) as page:
+        page.goto(player_page(tmp_path, player))
+        canvas, first = page.locator("canvas"), ink(page.locator("canvas"))
+        page.evaluate("model.set('frame', 31)")
+        assert shown(page) == 31 and ink(canvas) != first
+        assert page.locator("input[type=range]").input_value() == "31"
+        page.evaluate("""() => { const s = structuredClone(model.get('scene'));
+            s.figures[0].frames = 7; model.set('scene', s); }""")
+        assert shown(page) == 6 and page.locator("input[type=range]").get_attribute("max") == "6"
+        page.evaluate("cleanup()")
+        assert page.evaluate("[document.querySelectorAll('canvas').length, listening()]") == [0, 0]
+
+
+def test_past_is_paler_and_contacts_leave_marks(browser, tmp_path):
+    positions, contacts = walk(frames=53, turn=0.3)
+
+    def at(frame, **options):
+        with open_page(browser) as page:
+            page.goto(player_page(tmp_path, Player(positions, autoplay=False, **options)))
+            page.evaluate(f"model.set('frame', {frame})")
+            return coloured(page.locator("canvas")), ink(page.locator("canvas"))
+
+    assert at(15, past=20)[0]["blue"] < 0.7 * at(15)[0]["blue"]
+    assert at(30, past=20)[0]["blue"] > 0.9 * at(30)[0]["blue"]
+    assert at(30, contacts=contacts)[1] != at(30)[1]
+
+
+@pytest.mark.parametrize("layout", ["side", "together"])
+def test_several_figures_are_all_drawn(browser, tmp_path, layout):
+    positions, _ = walk(frames=53, turn=0.3)
+    several = Player(
+        [positions, positions[:20]], layout=layout, labels=["long", "short"], autoplay=False
+    )
+    with open_page(browser) as page:
+        page.goto(player_page(tmp_path, several))
+        page.evaluate("model.set('frame', 40)")
+        assert min(page.evaluate(ORANGE_HALVES)) > 100
+        assert page.problems == []
+
+
+@pytest.mark.parametrize("motion, playing", [("reduce", False), ("no-preference", True)])
+def test_autoplay_unless_motion_is_unwanted(browser, tmp_path, motion, playing):
+    with open_page(browser, reduced_motion=motion) as page:
+        page.goto(player_page(tmp_path, Player(walk(frames=30)[0])))
+        assert page.locator(".mde-player").get_attribute("data-playing") == str(playing).lower()
+        if playing:
+            page.wait_for_function("document.querySelector('.mde-player').dataset.frame > 2")
+
+
+def test_exported_html_is_alive_offline(browser, player, tmp_path):
+    page_path = tmp_path / "export.html"
+    bundle, _ = player._repr_mimebundle_()
+    page_path.write_text(f"<!doctype html><body>{bundle['text/html']}", "utf-8")
+    with open_page(browser) as page:
+        page.goto(page_path.as_uri())
+        inside = page.frame_locator("iframe")
+        canvas = inside.locator("canvas")
+        canvas.wait_for()
+        first = ink(canvas)
+        assert min(coloured(canvas).values()) > 200
+        inside.get_by_role("button", name="Play").click()
+        inside.locator(".mde-player:not([data-frame='0'])").wait_for()
+        canvas.focus()
+        page.keyboard.press(" ")
+        assert ink(canvas) != first
+        page.keyboard.press("End")
+        inside.locator(".mde-player[data-frame='52']").wait_for()
+        assert page.problems == [] and page.asked == []
+
+
+def test_a_notebook_exported_by_nbconvert_is_alive_offline(browser, player, tmp_path):
+    nbformat, nbconvert = pytest.importorskip("nbformat"), pytest.importorskip("nbconvert")
+    data, metadata = player._repr_mimebundle_()
+    output = nbformat.v4.new_output("execute_result", data, metadata=metadata, execution_count=1)
+    notebook = nbformat.v4.new_notebook(
+        cells=[nbformat.v4.new_code_cell("player", outputs=[output])]
+    )
+    page_path = tmp_path / "notebook.html"
+    page_path.write_text(nbconvert.HTMLExporter().from_notebook_node(notebook)[0], "utf-8")
+    with open_page(browser) as page:
+        page.goto(page_path.as_uri())
+        inside = page.frame_locator("iframe")
+        inside.get_by_role("button", name="Play").click()
+        inside.locator(".mde-player:not([data-frame='0'])").wait_for()
+        assert min(coloured(inside.locator("canvas")).values()) > 200
+
+
+def test_where_no_script_runs_the_poster_is_seen(browser, player, tmp_path):
+    page_path = tmp_path / "export.html"
+    page_path.write_text(
+        f"<!doctype html><body>{player._repr_mimebundle_()[0]['text/html']}", "utf-8"
+    )
+    with open_page(browser, java_script_enabled=False) as page:
+        page.goto(page_path.as_uri())
+        shot = tmp_path / "shot.png"
+        page.screenshot(path=shot)
+    from PIL import Image
+
+    pixels = list(Image.open(shot).convert("RGB").get_flattened_data())
+    assert sum(b > r + 60 and b > g + 20 for r, g, b in pixels) > 500
+
+
+def test_saved_page_plays_by_itself(browser, tmp_path):
+    saved = Player(walk(frames=30)[0], labels="</script><b>").save_html(tmp_path / "walk.html")
+    with open_page(browser, reduced_motion="no-preference") as page:
+        page.goto(saved.as_uri())
+        page.wait_for_function("document.querySelector('.mde-player').dataset.frame > 3")
+        assert page.problems == [] and page.asked == []

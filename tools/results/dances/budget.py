@@ -1,0 +1,186 @@
+"""What is each choice of a dancer worth? Dancers trained for as many steps, each unlike another in
+one choice.
+
+Where in diffusion time is the beat decided (the targets look hardest at different noise)? What do
+the kinematic losses do, and their weight over time? Is a linear layer enough for the music, a U-Net
+better than a transformer, Mel as good as MFCC with the beats given? All else is alike: data, seed,
+steps, sampler.  Source: MoFusion 3, 4.1; choices are ours
+"""
+
+from dataclasses import dataclass, replace
+from functools import cache, partial
+from pathlib import Path
+
+import numpy as np
+
+from motiondiff_edu._files import digest_of_tensors, replacing
+from motiondiff_edu.baselines.transformer import TransformerConfig
+from motiondiff_edu.mofusion import MOFUSION_SMALL
+from motiondiff_edu.performers.dance_windows import DanceWindows
+from motiondiff_edu.performers.dancer import ETA, STEPS, Dancer
+from motiondiff_edu.recipes.dancers import KINEMATIC, X0, DanceRecipe
+from motiondiff_edu.recipes.train_dancer import train_dancer, training_windows
+
+from ..walks.scores import Figure
+from .mfcc import CHANNELS, heard_instead, mfcc_and_beats
+from .parts import Danced, DanceSize, Stage, danced
+from .scores import bone_gain, share_minus
+from .trials import UNSEEN, mel_of
+
+LIKE = "target x0, shifted schedule, no kinematic losses, changes weighted 5, feet 0.2, convolutions over the Mel"
+KIN = {
+    name: {"kinematic": replace(KINEMATIC, over_time=name)}
+    for name in ("constant", "alpha_bar", "snr")
+}
+PLAIN = TransformerConfig()  # 2.64 M numbers, the U-Net has 2.65 M
+EPS = replace(
+    MOFUSION_SMALL, target="eps", skip=True
+)  # a network without it learns no eps in so few steps
+NO_FEET = {"feet": 0.0}  # errors of eps or v are no positions: no toes could be followed in them
+# name: (what differs, in words, from which other one, the network, settings of the training)
+VARIANTS = {
+    "x0": (LIKE, "", X0, {}),
+    "no-feet": ("errors of poses and of changes, not of feet", "x0", X0, NO_FEET),
+    "poses": (
+        "errors of poses alone, as the paper has it",
+        "no-feet",
+        X0,
+        NO_FEET | {"changes": 0.0},
+    ),
+    "eps": ("target eps, with its skip", "no-feet", EPS, NO_FEET),
+    "eps-weighted": (
+        "high noise weighted, up to 21 times",
+        "eps",
+        EPS,
+        NO_FEET | {"high_noise": 20.0},
+    ),
+    "v": ("target v, with the skip", "no-feet", replace(EPS, target="v"), NO_FEET),
+    "constant": ("kinematic losses, all steps alike", "x0", X0, KIN["constant"]),
+    "alpha_bar": ("kinematic losses weighted by alpha_bar", "x0", X0, KIN["alpha_bar"]),
+    "snr": (
+        "kinematic losses weighted by alpha_bar / (1 - alpha_bar), 5 at most",
+        "x0",
+        X0,
+        KIN["snr"],
+    ),
+    "slide": ("a foot loss of 2", "alpha_bar", X0, {"kinematic": replace(KINEMATIC, slide=2.0)}),
+    "cosine": ("the cosine schedule as it is", "x0", X0, {"snr": 1.0}),
+    "linear-music": ("one linear layer for the music", "x0", replace(X0, music_layers=0), {}),
+    "transformer": ("a plain transformer of equal size", "x0", PLAIN, {}),
+    "mfcc": ("MFCC and the true beats instead of Mel", "x0", replace(X0, C=CHANNELS), {}),
+    "regression": (
+        "regression, errors of poses alone",
+        "transformer",
+        replace(PLAIN, deterministic=True),
+        {},
+    ),
+}
+RIVALS = {"alpha_bar": ("constant",), "snr": ("constant", "alpha_bar")}  # set beside these as well
+HEARD = {"mfcc": mfcc_and_beats}  # all others hear log-Mel
+SHARE = ("bas", "bas_shuffled")
+
+
+@dataclass(frozen=True)
+class Budget:
+    """How long is trained, on what, and how much is measured."""
+
+    steps: int = 1200
+    songs: int = 400
+    seconds: float = 20.0
+    batch: int = 16
+    save_every: int = 50
+    measured: DanceSize = DanceSize(songs=30, seeds=2, pieces=10, each=8)
+
+
+FULL = Budget()
+QUICK = Budget(steps=3, songs=2, seconds=8.0, batch=3, save_every=2, measured=DanceSize(3, 1, 2, 2))
+
+
+def recipe_of(name: str, budget: Budget) -> DanceRecipe:
+    """The training of one variant, as `recipes.train_dancer` understands it."""
+    _, _, config, settings = VARIANTS[name]
+    sizes = {
+        key: getattr(budget, key) for key in ("steps", "songs", "seconds", "batch", "save_every")
+    }
+    return DanceRecipe(f"dance-budget.{name}", config, shake=0.0, **sizes, **settings)
+
+
+@cache
+def material(name: str, budget: Budget) -> DanceWindows:
+    """What is trained on: by the name of another hearing in HEARD, or "" for log-Mel."""
+    recipe = recipe_of("x0", budget)
+    if not name:
+        return training_windows(recipe)
+    return heard_instead(
+        material("", budget), HEARD[name], recipe.songs, recipe.data_seed, recipe.seconds
+    )
+
+
+@cache
+def stage(name: str, budget: Budget) -> Stage:
+    """What is danced to: the same songs for all, heard as in training."""
+    return Stage(budget.measured, hear=HEARD.get(name, mel_of))
+
+
+def trained(name: str, budget: Budget, runs: Path) -> Dancer:
+    """The dancer of one variant; a run that was killed goes on, one that is finished is only
+    read."""
+    heard = name if name in HEARD else ""
+    runs.mkdir(parents=True, exist_ok=True)
+    run, log = runs / f"{name}.safetensors", partial(print, flush=True)
+    return train_dancer(recipe_of(name, budget), run, material(heard, budget), log)
+
+
+def about(name: str, budget: Budget) -> str:
+    """What a row was measured under: training, songs and sampler."""
+    return repr((recipe_of(name, budget), budget.measured, STEPS, ETA))
+
+
+def gains(name: str, found: Danced, runs: Path, budget: Budget) -> list[Figure]:
+    """Beside what a row is to be compared with, on the same songs: drawn together, so that their
+    luck is shared."""
+    figures, own = [], [rows[key] for rows in (found.own, found.data) for key in SHARE]
+    for rival in filter(None, (VARIANTS[name][1], *RIVALS.get(name, ()))):
+        kept = runs / f"{rival}.npz"
+        other = dict(np.load(kept)) if kept.is_file() else {"about": ""}
+        if str(other["about"]) != about(rival, budget):
+            print(
+                f"{name}: {rival} was not measured here under the same budget: no differences to it"
+            )
+            continue
+        figures.append(
+            share_minus(
+                f"bas_share_minus_{rival}", own, [other["own_" + k] for k in SHARE] + own[2:]
+            )
+        )
+        figures.append(
+            replace(bone_gain(found.squares, other["squares"]), name=f"bone_gain_over_{rival}")
+        )
+    return figures
+
+
+def keep(name: str, found: Danced, runs: Path, budget: Budget) -> None:
+    """The rows of each song, for those that are set beside this one."""
+    rows = {f"own_{key}": found.own[key] for key in SHARE} | {"squares": found.squares}
+    rows["about"] = np.array(about(name, budget))
+    with replacing(runs / f"{name}.npz") as aside, open(aside, "wb") as file:
+        np.savez(file, **rows)
+
+
+def budget_records(name: str, budget: Budget, runs: Path, command: str) -> list[dict]:
+    """Train (or continue) one variant, and measure it."""
+    dancer, songs = trained(name, budget, runs), stage(name if name in HEARD else "", budget)
+    found = danced(songs, dancer)
+    keep(name, found, runs, budget)
+    size, recipe = budget.measured, recipe_of(name, budget)
+    seeds = {
+        "data": UNSEEN,
+        "songs": size.songs,
+        "sampling": list(range(size.seeds)),
+        "steps": STEPS,
+        "eta": ETA,
+    }
+    seeds |= {"training": recipe.seed, "trained_steps": recipe.steps, "trained_songs": recipe.songs}
+    seeds |= {"batch": recipe.batch, "weights": digest_of_tensors(dancer.model.state_dict())[:16]}
+    figures = [*found.figures, *gains(name, found, runs, budget)]
+    return [figure.as_record(f"dance-budget.{name}.", seeds, command) for figure in figures]

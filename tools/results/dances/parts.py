@@ -1,0 +1,175 @@
+"""What `make results` measures of the dancers: one part for each of the shipped weights, and one
+for unheard music."""
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+from pathlib import Path
+
+import numpy as np
+
+from motiondiff_edu.performers.dancer import STEPS, Dancer
+from motiondiff_edu.pretrained import checkpoints
+
+from ..walks.parts import weights_digest
+from ..walks.scores import Figure
+from .scores import (
+    beat_figures,
+    bone_figure,
+    bone_gain,
+    features_of,
+    longer,
+    repeat_figure,
+    rows_of,
+    variety_figures,
+)
+from .trials import UNSEEN, Hear, Songs, dances_of, mel_of, unseen_songs
+
+TRAINED = 100  # frames, as trained
+LONG = (200, 400)
+DANCES = {
+    "dancer": "dancer",
+    "dancer-plain": "dancer-plain",
+    "regression": "regression",
+    "unheard": "dancer",
+}  # weights
+UNHEARD = {  # what no training song has: one of them at a time
+    "metre5": {"metre": 5},
+    "tempo70": {"tempo": 70.0},
+    "mallets": {"timbre": "mallets"},
+}
+
+
+@dataclass(frozen=True)
+class DanceSize:
+    """How much is measured: the bars' 50 songs and 3 sampling seeds, or a quick look."""
+
+    songs: int = 50
+    seeds: int = 3
+    pieces: int = 20  # of music, for what differs between dances to one piece
+    each: int = 10
+
+
+DANCE_FULL, DANCE_QUICK = DanceSize(), DanceSize(songs=6, seeds=1, pieces=3, each=3)
+
+
+class Stage:
+    """The songs, made once, the data's own dances to them, and the dancers by name."""
+
+    def __init__(
+        self, size: DanceSize, weights: dict[str, Path] | None = None, hear: Hear = mel_of
+    ):
+        self.size, self.weights, self.hear = size, checkpoints.available() | (weights or {}), hear
+
+    @cached_property
+    def songs(self) -> Songs:
+        return unseen_songs(self.size.songs, hear=self.hear)
+
+    @cached_property
+    def pieces(self) -> Songs:
+        return unseen_songs(
+            self.size.pieces, self.size.each, TRAINED, seed=UNSEEN + 1, hear=self.hear
+        )
+
+    @cached_property
+    def data_features(self) -> np.ndarray:
+        """Kinetic features of the data's dances to the songs: what all features are normalised
+        by."""
+        return features_of(self.songs.truth[:, :, :TRAINED])[:, 0]
+
+    def dancer(self, name: str) -> Dancer:
+        return checkpoints.load_dancer(self.weights[name])
+
+    def data_rows(self, frames: int) -> dict[str, np.ndarray]:
+        return rows_of(self.songs.truth[:, 0, :frames][None], self.songs.beats(frames))
+
+
+def dances(stage: Stage, dancer: Dancer, frames: int, seeds: int) -> np.ndarray:
+    """(seeds, songs, frames, 21, 3)"""
+    return np.stack([dances_of(dancer, stage.songs.mel, frames, seed) for seed in range(seeds)])
+
+
+@dataclass(frozen=True, eq=False)
+class Danced:
+    """One dancer's figures, and the rows (one for each song) behind them."""
+
+    figures: list[Figure]
+    own: dict[str, np.ndarray]
+    data: dict[str, np.ndarray]
+    squares: np.ndarray  # errors of bones, cm^2
+
+
+def danced(stage: Stage, dancer: Dancer) -> Danced:
+    """The figures that every dancer has."""
+    made = dances(stage, dancer, TRAINED, stage.size.seeds)
+    own, data = rows_of(made, stage.songs.beats(TRAINED)), stage.data_rows(TRAINED)
+    bones, squares = bone_figure(made)
+    return Danced([*beat_figures(own, data), bones, *variety(stage, dancer)], own, data, squares)
+
+
+def dancer_figures(stage: Stage, name: str) -> list[Figure]:
+    """All figures of one of the weights."""
+    dancer = stage.dancer(name)
+    found = danced(stage, dancer)
+    if name != "dancer":
+        return found.figures + repeats(stage, dances(stage, dancer, max(LONG), 1)[0])
+    gain = []
+    if "dancer-plain" in stage.weights:
+        plain = dances(stage, stage.dancer("dancer-plain"), TRAINED, stage.size.seeds)
+        gain = [bone_gain(found.squares, bone_figure(plain)[1])]
+    return found.figures + gain + long_figures(stage, dancer, found)
+
+
+def long_figures(stage: Stage, dancer: Dancer, found: Danced) -> list[Figure]:
+    """What is left of the alignment in dances two and four times as long as those trained on; how
+    much they repeat."""
+    names, figures = ("bas", "bas_shuffled"), []
+    short = [rows[name] for rows in (found.own, found.data) for name in names]
+    for frames in LONG:
+        made = dances(stage, dancer, frames, 1)
+        rows = rows_of(made, stage.songs.beats(frames)), stage.data_rows(frames)
+        figures.append(
+            longer(f"long{frames}_over_100", [row[name] for row in rows for name in names], short)
+        )
+    return figures + repeats(stage, made[0])
+
+
+def repeats(stage: Stage, made: np.ndarray) -> list[Figure]:
+    """How much the longest dances repeat themselves, and how much the data's do."""
+    return [
+        repeat_figure(made),
+        replace(repeat_figure(stage.songs.truth[:, 0]), name="repeat_data"),
+    ]
+
+
+def variety(stage: Stage, dancer: Dancer) -> list[Figure]:
+    """How the dances to one piece differ from one another, and all of them from the data's."""
+    mel = stage.pieces.mel.repeat_interleave(stage.size.each, dim=0)
+    made = dances_of(dancer, mel, TRAINED, seed=0).reshape(stage.pieces.truth.shape)
+    return variety_figures(features_of(made), features_of(stage.pieces.truth), stage.data_features)
+
+
+def unheard_figures(stage: Stage) -> list[Figure]:
+    """Alignment with music of a metre, a tempo and a timbre that no training song has."""
+    figures, dancer = [], stage.dancer("dancer")
+    for name, asked in UNHEARD.items():
+        heard = unseen_songs(stage.size.songs, frames=TRAINED, seed=UNSEEN + 2, **asked)
+        beats = heard.beats(TRAINED)
+        made = dances_of(dancer, heard.mel, TRAINED, seed=0)
+        found = beat_figures(rows_of(made[None], beats), rows_of(heard.truth[:, 0][None], beats))
+        figures += [Figure(f"{name}.{f.name}", f.value, f.low, f.high, f.unit) for f in found]
+    return figures
+
+
+def dance_records(stage: Stage, part: str, command: str) -> list[dict]:
+    """The records of a part: "dancer", "dancer-plain", "regression", or "unheard"."""
+    unheard = part == "unheard"
+    figures = unheard_figures(stage) if unheard else dancer_figures(stage, part)
+    seeds = {
+        "data": UNSEEN,
+        "songs": stage.size.songs,
+        "sampling": list(range(stage.size.seeds)),
+        "steps": STEPS,
+    }
+    seeds["weights"] = weights_digest(stage.weights[DANCES[part]])
+    prefix = "dancer.unheard." if unheard else f"{part}."
+    return [figure.as_record(prefix, seeds, command) for figure in figures]

@@ -1,0 +1,159 @@
+"""The figures of dances, each with its interval over songs: names, values, units.
+
+The functions take arrays: the data's own dances are scored by the same code.
+"""
+
+import warnings
+from collections.abc import Sequence
+
+import numpy as np
+from jaxtyping import Float
+
+from motiondiff_edu.metrics.beat_scores import BeatScores, beat_scores
+from motiondiff_edu.metrics.beats import NoBeatsWarning, kinematic_beats, music_alignment
+from motiondiff_edu.metrics.diversity import diversity
+from motiondiff_edu.metrics.frechet import FewSamplesWarning, fid, normalise
+from motiondiff_edu.metrics.kinetic_features import kinetic_features
+from motiondiff_edu.metrics.repetition import repeat_score
+from motiondiff_edu.metrics.skating import skating
+
+from ..walks.scores import FPS, Figure, figure_of, ratio, root_mean, squared_bone_error
+
+Beats = Sequence[Float[np.ndarray, "_"]]
+
+
+def rows_of(
+    dances: Float[np.ndarray, "R N T J 3"], beats: Beats
+) -> dict[str, Float[np.ndarray, "N"]]:
+    """Of each song, the mean over R dances to it: score, score with other songs, chance, beats per
+    beat, speed.
+
+    `bas_music` is the form of MoFusion's eq. 10, averaged over the music's beats; `skating` is how
+    fast standing toes slide, m/s.
+    """
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", NoBeatsWarning)
+        scored: list[BeatScores] = [beat_scores(one, beats) for one in dances]
+    names = (
+        "bas_clips",
+        "bas_shuffled_clips",
+        "bas_chance_clips",
+        "beats_per_beat_clips",
+        "speed_clips",
+    )
+    rows = {
+        name.removesuffix("_clips"): np.nanmean([getattr(s, name) for s in scored], axis=0)
+        for name in names
+    }
+    still = np.zeros(
+        (*dances.shape[1:3], 3)
+    )  # a dance has no control: its positions are the world's
+    rows["skating"] = np.nanmean([skating(one, still) for one in dances], axis=0)
+    return rows | {"bas_music": np.mean([_music_form(one, beats) for one in dances], axis=0)}
+
+
+def _music_form(dances: Float[np.ndarray, "N T J 3"], beats: Beats) -> Float[np.ndarray, "N"]:
+    """Beats within the clip only: none could be danced to outside of it."""
+    end = (dances.shape[1] - 1) / FPS
+    within = [music[(music >= 0) & (music <= end)] for music in beats]
+    return np.array(
+        [music_alignment(kinematic_beats(one), b) for one, b in zip(dances, within, strict=True)]
+    )
+
+
+def beat_figures(own: dict[str, np.ndarray], data: dict[str, np.ndarray]) -> list[Figure]:
+    """Beat alignment beside all that shows whether it means anything."""
+    figures = {
+        "bas": ("", np.nanmean, own["bas"]),
+        "bas_shuffled": ("", np.nanmean, own["bas_shuffled"]),
+        "bas_chance": ("", np.nanmean, own["bas_chance"]),
+        "bas_data": ("", np.nanmean, data["bas"]),
+        "bas_data_shuffled": ("", np.nanmean, data["bas_shuffled"]),
+        "bas_music": ("", np.nanmean, own["bas_music"]),
+        "bas_music_data": ("", np.nanmean, data["bas_music"]),
+        "bas_share": (
+            "ratio",
+            share,
+            own["bas"],
+            own["bas_shuffled"],
+            data["bas"],
+            data["bas_shuffled"],
+        ),
+        "beats_per_beat": ("", np.nanmean, own["beats_per_beat"]),
+        "beats_per_beat_over_data": ("ratio", ratio, own["beats_per_beat"], data["beats_per_beat"]),
+        "speed_mps": ("m/s", np.nanmean, own["speed"]),
+        "speed_over_data": ("ratio", ratio, own["speed"], data["speed"]),
+        "skating_mps": ("m/s", np.nanmean, own["skating"]),
+        "skating_data_mps": ("m/s", np.nanmean, data["skating"]),
+    }
+    return [figure_of(name, unit, figure, *rows) for name, (unit, figure, *rows) in figures.items()]
+
+
+def share(own, own_shuffled, data, data_shuffled) -> float:
+    """How much of the data's own alignment (beyond that with other songs) a dancer has."""
+    return (np.nanmean(own) - np.nanmean(own_shuffled)) / (
+        np.nanmean(data) - np.nanmean(data_shuffled)
+    )
+
+
+def longer(name: str, long: list[np.ndarray], short: list[np.ndarray]) -> Figure:
+    """`share` of long dances over that of short ones; rows as `share` takes them."""
+    return figure_of(
+        name, "ratio", lambda *rows: share(*rows[:4]) / share(*rows[4:]), *long, *short
+    )
+
+
+def bone_figure(dances: Float[np.ndarray, "R N T J 3"]) -> tuple[Figure, Float[np.ndarray, "N"]]:
+    """Bone-length RMSE in cm, and the squared errors of each song behind it."""
+    squares = np.mean([squared_bone_error(one) for one in dances], axis=0)
+    return figure_of("bone_rmse_cm", "cm", root_mean, squares), squares
+
+
+def bone_gain(with_losses: Float[np.ndarray, "N"], without: Float[np.ndarray, "N"]) -> Figure:
+    """1 - RMSE with / RMSE without kinematic losses."""
+    return figure_of(
+        "bone_gain", "share", lambda a, b: 1 - root_mean(a) / root_mean(b), with_losses, without
+    )
+
+
+def features_of(dances: Float[np.ndarray, "N K T J 3"]) -> Float[np.ndarray, "N K F"]:
+    """Kinetic features of every dance."""
+    return np.stack([np.stack([kinetic_features(one) for one in row]) for row in dances])
+
+
+def variety_figures(
+    own: Float[np.ndarray, "N K F"],
+    data: Float[np.ndarray, "N K F"],
+    all_data: Float[np.ndarray, "P F"],
+) -> list[Figure]:
+    """MultiModality (K dances to one song), Diversity and FID, on kinetic features normalised by
+    `all_data`.
+
+    `fid_data`, of as many dances by the data, is what perfection gets: so few clips are never at 0.
+    """
+    modes, modes_data = (diversity(normalise(x, all_data)) for x in (own, data))
+    pooled, pooled_data = (x.reshape(-1, x.shape[-1]) for x in (own, data))
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", FewSamplesWarning)
+        once = {"fid": fid(pooled, all_data), "fid_data": fid(pooled_data, all_data)}
+    once |= {"diversity": diversity(normalise(pooled, all_data))}
+    once |= {"diversity_data": diversity(normalise(pooled_data, all_data))}
+    return [
+        figure_of("multimodality", "", np.mean, modes),
+        figure_of("multimodality_data", "", np.mean, modes_data),
+        figure_of("multimodality_over_data", "ratio", ratio, modes, modes_data),
+        *(Figure(name, *(3 * [float(value)]), "") for name, value in once.items()),
+    ]
+
+
+def share_minus(name: str, own: list[np.ndarray], other: list[np.ndarray]) -> Figure:
+    """`share` of one dancer minus that of another, on the same songs; rows as `share` takes
+    them."""
+    return figure_of(
+        name, "of the data's", lambda *rows: share(*rows[:4]) - share(*rows[4:]), *own, *other
+    )
+
+
+def repeat_figure(dances: Float[np.ndarray, "N T J 3"]) -> Figure:
+    """How much a dance repeats itself at some lag of 1 to 8 s."""
+    return figure_of("repeat", "", np.mean, np.array([repeat_score(one) for one in dances]))

@@ -1,0 +1,170 @@
+"""MoFusion's Table 1 beside ours, and what each choice of a dancer is worth: sections of
+docs/RESULTS.md."""
+
+from motiondiff_edu.performers.dancer import ETA, STEPS
+
+from ..page.markdown import cell, number, table
+from .budget import FULL, VARIANTS
+from .timing import BASE, TIMED
+
+# BAS, FID, Div, MModality: MoFusion (Dabral et al., CVPR 2023), Table 1, AIST++
+PAPER_TABLE = {
+    "Ground Truth": (0.237, 17.10, 8.19, None),
+    "Li et al.": (0.160, 86.43, 6.85, None),
+    "DanceNet": (0.143, 69.13, 2.86, None),
+    "Dance Revolution": (0.195, 73.42, 3.52, None),
+    "AI Choreographer": (0.221, 35.35, 5.94, None),
+    "Bailando": (0.233, 28.16, 7.83, None),
+    "MoFusion (Ours)": (0.253, 50.31, 9.09, 11.38),
+}
+COLUMNS = ("bas_music", "fid", "diversity", "multimodality", "bas", "bas_share")
+TRAINED_ROWS = {  # the trainings of Table 1, by the names of VARIANTS
+    "regression": "regression",
+    "x0": "MoFusion, no kinematic losses",
+    "constant": "MoFusion, kinematic losses all alike",
+    "alpha_bar": "MoFusion, weighted by alpha_bar",
+    "snr": "MoFusion, weighted by alpha_bar / (1 - alpha_bar)",
+}
+SHIPPED_ROWS = {
+    "regression": "regression, shipped",
+    "dancer-plain": "MoFusion, no kinematic losses, shipped",
+    "dancer": "MoFusion, weighted by alpha_bar, shipped",
+}
+STORED, ANEW = "`make results FULL=1`; stored", "`make results`"
+SHOWN = (
+    "bas_share",
+    "speed_over_data",
+    "beats_per_beat_over_data",
+    "bone_rmse_cm",
+    "skating_mps",
+    "multimodality_over_data",
+    "fid",
+)
+TABLE_1 = """## MoFusion's Table 1
+
+| here | in the paper | the same? |
+| --- | --- | --- |
+| `bas_music` | BAS, eq. 10 | the formula, sigma 3 of 60 frames a second; beats are true ones here, librosa's there |
+| `fid`, `diversity`, `multimodality` | FID, Div, MModality | the kind, without the public code's misplaced bracket |
+| `bas` | the words above eq. 10 | averaged over the stops of the dance, so that stopping all the time wins nothing |
+| `bas_share` | none | how much of the data's own alignment, beyond that with other songs' beats, is there |
+
+The data are not the same: AIST++ is recorded, ours composed and danced by a program, with other joints, clips of 5 s
+and fewer of them. Compare rows within a block, never across. FID falls with the number of clips; the data's row, other
+dances to the same pieces, is what perfection gets. One training seed each; **[low, high]** is over songs.
+
+"""
+
+
+def table_1(records: dict[str, dict]) -> str:
+    """The paper's rows, then ours: trainings of one length, then the shipped weights."""
+    head = [
+        "motion",
+        "bas_music (BAS)",
+        "fid (FID)",
+        "diversity (Div)",
+        "multimodality (MModality)",
+        *COLUMNS[4:],
+    ]
+    rows = [
+        [
+            f"{who} (the paper, AIST++)",
+            *(number(x) if x is not None else "n/a" for x in row),
+            "-",
+            "-",
+            "printed",
+        ]
+        for who, row in PAPER_TABLE.items()
+    ]
+    rows += _block(
+        records,
+        {f"dance-budget.{name}": words for name, words in TRAINED_ROWS.items()},
+        "same steps",
+    )
+    rows += _block(records, SHIPPED_ROWS, "shipped weights")
+    return TABLE_1 + table([*head, "made by"], rows)
+
+
+def _block(records: dict[str, dict], names: dict[str, str], what: str) -> list[list[str]]:
+    """The data's row, read from whatever was measured with it, and a row for each name."""
+    there = [name for name in names if f"{name}.bas" in records]
+    made, unmeasured = STORED if what == "same steps" else ANEW, ["-"] * len(COLUMNS)
+    rows = []
+    if there:
+        data = [_of_data(records, there, kind) for kind in COLUMNS]
+        rows.append([f"**data** ({what})", *data, "with the rows below"])
+    for name, words in names.items():
+        steps = records[f"{name}.bas"]["seeds"].get("trained_steps") if name in there else None
+        cells = (
+            [cell(records.get(f"{name}.{kind}"), unit=False) for kind in COLUMNS]
+            if there
+            else unmeasured
+        )
+        said = made if name in there else f"not measured yet ({made.removesuffix('; stored')})"
+        rows.append([f"**{words}**" + (f", {steps} steps" if steps else ""), *cells, said])
+    return rows
+
+
+def _of_data(records: dict[str, dict], names: list[str], kind: str) -> str:
+    found = (records.get(f"{name}.{kind}_data") for name in names)
+    return (
+        "1" if kind == "bas_share" else cell(next((one for one in found if one), None), unit=False)
+    )
+
+
+def choices(records: dict[str, dict]) -> str:
+    """One row for each variant that was trained for the same number of steps."""
+    head = [
+        "the choice",
+        "compare with",
+        *(f"`{kind}`" for kind in SHOWN),
+        "share gained",
+        "bone error saved",
+        "",
+    ]
+    rows = []
+    for name, (words, base, *_) in VARIANTS.items():
+        mine = [
+            f"dance-budget.{name}.{kind}"
+            for kind in (*SHOWN, f"bas_share_minus_{base}", f"bone_gain_over_{base}")
+        ]
+        said = (
+            f"stored, {records[mine[0]]['seeds']['trained_steps']} steps"
+            if mine[0] in records
+            else "not measured yet"
+        )
+        beside = f"`{base}`" if base else "-"
+        rows.append(
+            [f"`{name}`: {words}", beside, *(cell(records.get(n), unit=False) for n in mine), said]
+        )
+    text = (
+        f"## What each choice of a dancer is worth\n\nTrained on the same songs with the same seed for {FULL.steps} "
+        f"steps of {FULL.batch} windows; each row differs from the row named beside it in one choice. "
+        f"{STEPS} DDIM steps (eta = {ETA:g}) for all. `share gained` and `bone error saved` are set against that row, "
+        "on the same songs. The trainings are short, one seed each: an order, not what a choice is worth in the end. "
+        "`make results FULL=1` trains them; `make results` keeps what is stored.\n\n"
+    )
+    return text + table(head, rows) + _times(records)
+
+
+def _times(records: dict[str, dict]) -> str:
+    kinds = ["parameters"] + [
+        f"{what}{part}" for what in ("step", "pass", "dance") for part in ("_ms", f"_over_{BASE}")
+    ]
+    rows = [
+        [
+            f"`{name}`",
+            *(cell(records.get(f"dance-time.{name}.{kind}"), unit=False) for kind in kinds),
+        ]
+        for name in TIMED
+        if f"dance-time.{name}.step_ms" in records
+    ]
+    if not rows:
+        return ""
+    about = records[f"dance-time.{BASE}.step_ms"]["seeds"]
+    text = (
+        f"\nCPU milliseconds of one thread: a training step (batch {about['batch']}), one pass through the plain "
+        f"network and a whole sampling ({about['dances']} dances of {about['frames']} frames at once, {about['steps']} "
+        "steps of DDIM; the U-Net by its fast twin, which keeps what it heard). Ratios are of the same round.\n\n"
+    )
+    return text + table(["network", *(f"`{kind}`" for kind in kinds)], rows)

@@ -1,0 +1,106 @@
+"""What a step of training and a dance cost, network beside network: is MoFusion's U-Net light?
+
+CPU-seconds of one thread, networks taking turns in every round, so that a ratio is of the same
+minutes. The networks are untrained: what the weights are does not matter here.  Source: MoFusion 1
+(lightweight); the measure is ours
+"""
+
+import time
+from dataclasses import replace
+
+import torch
+
+from benchmarks.records import record
+from motiondiff_edu.performers.dance_windows import DanceWindows
+from motiondiff_edu.performers.dancer import STEPS, Dancer, network
+from motiondiff_edu.recipes.muon import optimizer_for
+from motiondiff_edu.recipes.train_dancer import loss_of, schedule_of
+from motiondiff_edu.training import TrainState, train_steps
+
+from .budget import HEARD, Budget, material, recipe_of
+
+BASE, TIMED = "x0", ("x0", "alpha_bar", "linear-music", "transformer", "mfcc", "regression")
+DANCES = 8  # at once
+
+
+class Clock:
+    """One network with all that a step of training, a pass and a dance need; times are CPU-seconds
+    of one call."""
+
+    def __init__(self, name: str, windows: DanceWindows, budget: Budget):
+        recipe = recipe_of(name, budget)
+        schedule = schedule_of(recipe)
+        torch.manual_seed(recipe.seed)
+        model = network(recipe.config)
+        state = TrainState.start(model, recipe.seed, optimizer_for(model, recipe.optimizer))
+        self.training = train_steps(
+            state, loss_of(recipe, windows, schedule), 10**6, lr=1e-4, progress=False
+        )
+        self.dancer = Dancer(state.average, schedule, windows.motion_scaler, windows.mel_scaler)
+        self.parameters = sum(p.numel() for p in model.parameters())
+        x0, self.mel, _ = windows.draw(DANCES, torch.Generator().manual_seed(0))
+        self.x_s, self.times = x0, windows.mel_times
+
+    def step(self) -> None:
+        next(self.training)
+
+    @torch.inference_mode()
+    def one_pass(self) -> None:
+        """One call of the plain network, music included."""
+        music = self.dancer.model.listen(self.mel, self.times)
+        self.dancer.model(self.x_s, torch.full((len(self.x_s),), 500), music)
+
+    def dance(self) -> None:
+        """As a user has it: DDIM, with the fast twin where there is one."""
+        heard = self.dancer.mel_scaler.inverse(self.mel)
+        self.dancer.dance(heard, self.x_s.shape[1], generator=torch.Generator().manual_seed(0))
+
+
+def spent(call) -> float:
+    """CPU-seconds of this process."""
+    began = time.process_time()
+    call()
+    return time.process_time() - began
+
+
+def time_records(names: tuple[str, ...], budget: Budget, rounds: int, command: str) -> list[dict]:
+    """Steps, passes and dances of all names in turns; of each the median, and its ratio to BASE in
+    the same round."""
+    before = torch.get_num_threads()
+    torch.set_num_threads(1)
+    small = replace(budget, songs=2, seconds=8.0)  # how much there is to draw from costs nothing
+    clocks = {
+        name: Clock(name, material(name if name in HEARD else "", small), budget) for name in names
+    }
+    spans: dict[tuple[str, str], list[float]] = {}
+    for turn in range(rounds + 1):
+        for name, clock in clocks.items():
+            calls = {"step": clock.step, "pass": clock.one_pass, "dance": clock.dance}
+            for what, call in calls.items():
+                seconds = spent(call)
+                if turn:  # the first is for warming up
+                    spans.setdefault((name, what), []).append(seconds)
+    torch.set_num_threads(before)
+    about = {
+        "rounds": rounds,
+        "batch": budget.batch,
+        "dances": DANCES,
+        "frames": clock.x_s.shape[1],
+        "steps": STEPS,
+    }
+    found = []
+    for name in names:
+        found.append(
+            record(
+                f"dance-time.{name}.parameters", [clocks[name].parameters], unit="", command=command
+            )
+        )
+        for what in ("step", "pass", "dance"):
+            mine, base = spans[name, what], spans[BASE, what]
+            kind = f"dance-time.{name}.{what}"
+            found.append(
+                record(f"{kind}_ms", [1000 * s for s in mine], unit="CPU ms", command=command)
+            )
+            ratios = [a / b for a, b in zip(mine, base, strict=True)]
+            found.append(record(f"{kind}_over_{BASE}", ratios, unit="ratio", command=command))
+    return [one | {"seeds": about} for one in found]

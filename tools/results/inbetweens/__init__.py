@@ -1,0 +1,1 @@
+"""Part of `python -m tools.results`: inbetweens."""

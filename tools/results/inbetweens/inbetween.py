@@ -1,0 +1,197 @@
+"""In-betweens of unseen walks and dances at gaps of 5 to 60 frames, beside interpolation and
+sampling without a mask.
+
+The network's are guided and blended at every step (`editing.inbetween.inbetween`); the paper's
+masked sampling stands beside.
+Source: MoFusion 4.4; what is measured, `metrics.keyframes`.  Notebook: 15
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import torch
+from jaxtyping import Bool, Float
+
+from data_synth.mixed import motions
+from motiondiff_edu.baselines.interpolation import linear, spherical
+from motiondiff_edu.editing.inbetween import PAPER, inbetween
+from motiondiff_edu.editing.masks import gap
+from motiondiff_edu.metrics.keyframes import keyframe_error, npss_parts, seam_jump, unknown_error
+from motiondiff_edu.metrics.skating import skating
+from motiondiff_edu.motion.dance_frame import at_origin
+from motiondiff_edu.performers.dancer import Dancer
+
+from ..walks.scores import Figure, figure_of, ratio
+from ..walks.trials import UNSEEN
+
+T = 100  # frames, as trained
+GAPS = (5, 15, 30, 60)
+BARS = (15, 30, 60)  # gaps that have a bar
+
+
+@dataclass(frozen=True)
+class InbetweenSize:
+    """Motions (half walks, half dances), samples of each, DDIM's steps, and how often each is
+    made."""
+
+    motions: int = 12
+    samples: int = 10
+    steps: int = 25
+
+
+FULL, QUICK = InbetweenSize(), InbetweenSize(motions=4, samples=3, steps=4)
+
+
+def trials(n: int) -> Float[np.ndarray, "N T J 3"]:
+    """Motions that no network was trained on, from their own beginning; walk, dance, walk, dance
+    ..."""
+    made = motions(n, UNSEEN, seconds=8.0)
+    return np.stack([at_origin(positions[30 : 30 + T]) for positions, _ in made])
+
+
+def middle(length: int) -> Bool[np.ndarray, "T J"]:
+    """A gap of so many frames in the middle."""
+    return gap(T, (T - length) // 2, length)
+
+
+@dataclass(frozen=True, eq=False)
+class Filled:
+    """What was made of the gap of one length: (samples, motions, frames, joints, 3), and by
+    interpolation."""
+
+    known: Bool[np.ndarray, "T J"]
+    truth: Float[np.ndarray, "N T J 3"]
+    made: Float[np.ndarray, "S N T J 3"]
+    masked: Float[np.ndarray, "N T J 3"]  # one sample as in the paper, nothing blended
+    free: Float[np.ndarray, "N T J 3"]  # sampled without the mask
+    lines: Float[np.ndarray, "N T J 3"]
+    arcs: Float[np.ndarray, "N T J 3"]
+
+
+def filled(
+    dancer: Dancer, truth: Float[np.ndarray, "N T J 3"], length: int, size: InbetweenSize
+) -> Filled:
+    """Every motion's gap, filled in all ways."""
+    known, draw = middle(length), torch.Generator().manual_seed(length)
+    options = {"steps": size.steps, "generator": draw}
+    holes = np.where(known[..., None], truth, np.nan)
+    made = [inbetween(dancer, one, known, samples=size.samples, **options) for one in holes]
+    masked = [inbetween(dancer, one, known, **PAPER, **options)[0] for one in holes]
+    free = [inbetween(dancer, one, np.zeros_like(known), **options)[0] for one in truth]
+    flat = [[fill(one, known) for one in truth] for fill in (linear, spherical)]
+    return Filled(known, truth, np.stack(made, 1), *map(np.stack, (masked, free, *flat)))
+
+
+def figures_of(one: Filled) -> list[Figure]:
+    """Errors (metres to centimetres), spectra and seams of one gap, each with its interval over
+    motions."""
+
+    def error(made: np.ndarray) -> np.ndarray:
+        return 100 * unknown_error(made, one.truth, one.known)
+
+    single = np.stack([error(sample) for sample in one.made])
+    mean, straight, arcs = error(one.made.mean(0)), error(one.lines), error(one.arcs)
+    rival, rival_rows = min((("lines", straight), ("arcs", arcs)), key=lambda pair: pair[1].mean())
+    own, straight_seam, masked_seam = (
+        seam_jump(x, one.known) for x in (one.truth, one.lines, one.masked)
+    )
+    seam = np.mean([seam_jump(sample, one.known) for sample in one.made], 0)
+    kept = np.max([keyframe_error(sample, one.truth, one.known) for sample in one.made], 0)
+    found = [
+        figure_of("error_cm", "cm", np.mean, mean),
+        figure_of("error_one_cm", "cm", np.mean, single.mean(0)),
+        figure_of("error_best_cm", "cm", np.mean, single.min(0)),
+        figure_of("error_lines_cm", "cm", np.mean, straight),
+        figure_of("error_arcs_cm", "cm", np.mean, arcs),
+        figure_of("error_masked_cm", "cm", np.mean, error(one.masked)),
+        figure_of("error_free_cm", "cm", np.mean, error(one.free)),
+        figure_of("error_over_interpolation", "ratio", ratio, mean, rival_rows),
+        figure_of("error_one_over_interpolation", "ratio", ratio, single.mean(0), rival_rows),
+        figure_of("error_best_over_interpolation", "ratio", ratio, single.min(0), rival_rows),
+        figure_of("seam_jump_over_data", "ratio", ratio, seam, own),
+        figure_of("seam_jump_lines_over_data", "ratio", ratio, straight_seam, own),
+        figure_of("seam_jump_masked_over_data", "ratio", ratio, masked_seam, own),
+        figure_of("keyframe_error_cm", "cm", lambda x: 100 * np.max(x), kept),
+        *spectra(one, rival),
+        *sliding(one),
+    ]
+    return found
+
+
+def within(one: Filled, positions: np.ndarray) -> np.ndarray:
+    """The gap, and a frame on either side of it."""
+    first, last = np.flatnonzero(~one.known.any(1))[[0, -1]]
+    return positions[..., first - 1 : last + 2, :, :]
+
+
+def sliding(one: Filled) -> list[Figure]:
+    """How fast planted toes slide within the gap, m/s, in one sample of each motion; clips without
+    any are left out."""
+    made = {"": one.made[0], "_masked": one.masked, "_lines": one.lines, "_data": one.truth}
+    return [
+        figure_of(f"skating{name}_mps", "m/s", np.nanmean, skating(x, np.zeros((*x.shape[:2], 3))))
+        for name, x in ((name, within(one, x)) for name, x in made.items())
+    ]
+
+
+def spectra(one: Filled, rival: str) -> list[Figure]:
+    """NPSS of single samples (their mean), of interpolation, and their ratio; over the joints as
+    they are.
+
+    There the mean place outweighs all movement, so the ratio stands once more for velocities within
+    the gap.
+    """
+    arrays = (one.truth, getattr(one, rival), *one.made)
+    places, weight = parts(arrays)
+    velocities, weight_v = parts([np.diff(within(one, x), axis=1) for x in arrays])
+    return [
+        figure_of("npss", "", ratio_of_sums, places[1], weight),
+        figure_of("npss_interpolation", "", ratio_of_sums, places[0], weight),
+        figure_of("npss_over_interpolation", "ratio", ratio_of_sums, *places[::-1]),
+        figure_of("npss_velocity_over_interpolation", "ratio", ratio_of_sums, *velocities[::-1]),
+    ]
+
+
+def parts(arrays: Sequence[np.ndarray]) -> tuple[tuple[np.ndarray, np.ndarray], np.ndarray]:
+    """Of the truth, interpolation and samples: NPSS' sums over each motion, (interpolation's,
+    samples' mean); weights.
+
+    Sums can be drawn again a thousand times, spectra could not.
+    """
+    truth, *others = (x.reshape(*x.shape[:2], -1) for x in arrays)
+    sums = [npss_parts(x, truth) for x in others]
+    return (sums[0][0], np.mean([moved for moved, _ in sums[1:]], 0)), sums[0][1]
+
+
+def ratio_of_sums(above: np.ndarray, below: np.ndarray) -> float:
+    return float(above.sum() / below.sum())
+
+
+def inbetween_records(
+    dancer: Dancer, weights: str, size: InbetweenSize, command: str
+) -> list[dict]:
+    """All gaps; the worst of the spectra and of the seams under names of their own."""
+    truth = trials(size.motions)
+    seeds = {"data": UNSEEN, "motions": size.motions, "samples": size.samples, "weights": weights}
+    seeds |= {"steps": size.steps}
+    records, every = [], {}
+    for length in GAPS:
+        every[length] = {
+            figure.name: figure for figure in figures_of(filled(dancer, truth, length, size))
+        }
+        records += [
+            f.as_record(f"inbetween.gap{length}.", seeds, command) for f in every[length].values()
+        ]
+    barred = {
+        f"gap{length}_error_over_interpolation": every[length]["error_over_interpolation"]
+        for length in BARS
+    }
+    for kind in ("npss_over_interpolation", "seam_jump_over_data", "keyframe_error_cm"):
+        barred[kind] = max(
+            (found[kind] for found in every.values()), key=lambda figure: figure.value
+        )
+    return records + [
+        f.as_record("inbetween.", seeds, command) | {"name": f"inbetween.{n}"}
+        for n, f in barred.items()
+    ]

@@ -1,0 +1,71 @@
+"""The goals that the figures are held against, by the names of their records."""
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Bar:
+    """A figure and the range it should lie in; an open side is None."""
+
+    name: str
+    at_least: float | None = None
+    at_most: float | None = None
+
+    @property
+    def text(self) -> str:
+        if None not in (self.at_least, self.at_most):
+            return f"{self.at_least:g} to {self.at_most:g}"
+        return (
+            f"at least {self.at_least:g}" if self.at_most is None else f"at most {self.at_most:g}"
+        )
+
+    def met(self, value: float) -> bool:
+        return (self.at_least is None or value >= self.at_least) and (
+            self.at_most is None or value <= self.at_most
+        )
+
+
+BARS = (
+    Bar("walker.bone_rmse_cm", at_most=0.3),
+    Bar("walker.adherence_excess_mps", at_most=0.03),
+    Bar("walker.adherence_shuffled_over_own", at_least=5),
+    Bar("walker.drift_ratio", at_most=1.2),
+    Bar("walker.skating_over_data", at_most=1.5),
+    Bar("walker.diversity_over_data", at_least=0.5, at_most=1.5),
+    Bar("bench.modiff_frame_paper_x", at_least=6),
+    Bar("bench.modiff_frame_small_x", at_least=3.3),
+    Bar("bench.sampler_over_diffusers", at_most=0.27),
+    Bar("bench.sampler_over_smalldiffusion", at_most=0.75),
+    Bar("bench.walker_80s_bone_rmse_cm", at_most=0.5),
+    Bar("bench.walker_80s_adherence_excess_mps", at_most=0.04),
+    Bar("bench.import_over_torch", at_most=1.1),
+    Bar("dancer.bas_share", at_least=0.6),
+    Bar("dancer.speed_over_data", at_least=0.85, at_most=1.15),
+    Bar("dancer.beats_per_beat_over_data", at_least=0.8, at_most=1.25),
+    Bar("dancer.bone_rmse_cm", at_most=1.0),
+    Bar("dancer.bone_gain", at_least=0.25),
+    Bar("dancer.multimodality_over_data", at_least=0.6, at_most=1.3),
+    Bar("regression.multimodality", at_most=0),
+    Bar("dancer.long200_over_100", at_least=0.7),
+    Bar("dancer.long400_over_100", at_least=0.7),
+    Bar("player.audio_offset_ms", at_most=50),
+    Bar("bench.unet_sampling_n64_x", at_least=1.4),
+    Bar("bench.unet_sampling_n200_x", at_least=1.2),
+    Bar("bench.unet_training_x", at_least=1.0),
+    Bar("bench.unet_sampling_diffusers_x", at_least=1.15),
+    Bar("bench.logmel_x", at_least=6),
+    Bar("mend.dropout_gain_bone_cm", at_least=0),
+    Bar("mend.dropout_gain_adherence_mps", at_least=0),
+    Bar("mend.dropout_cost_complete", at_most=1.1),
+    Bar("mend.arm_rmse_over_ridge", at_most=1),
+    Bar("mend.arm_rmse_over_meanpose", at_most=1),
+    Bar("mend.frames_rmse_over_interpolation", at_most=1),
+    Bar("mend.table2_ratio", at_most=1.5),
+    Bar("mend.footsteps_over_data", at_least=0.95, at_most=1.05),
+    Bar("inbetween.keyframe_error_cm", at_most=0),
+    Bar("inbetween.gap15_error_over_interpolation", at_most=1),
+    Bar("inbetween.gap30_error_over_interpolation", at_most=1),
+    Bar("inbetween.gap60_error_over_interpolation", at_most=1),
+    Bar("inbetween.npss_over_interpolation", at_most=1),
+    Bar("inbetween.seam_jump_over_data", at_most=1.5),
+)

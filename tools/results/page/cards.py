@@ -1,0 +1,36 @@
+"""The measured figures on the cards of the shipped weights: whoever opens a card sees how good they
+are."""
+
+from dataclasses import replace
+from pathlib import Path
+
+from motiondiff_edu.pretrained import checkpoints
+
+from ..walks.parts import kept_records, weights_digest
+
+SHOWN = ("bone_rmse_cm", "adherence_mps", "adherence_excess_mps", "drift_ratio", "skating_mps", "diversity_over_data",
+         "bas_share", "speed_over_data", "beats_per_beat_over_data", "multimodality_over_data")  # fmt: skip
+
+
+def metrics(folder: Path, name: str, digest: str) -> dict[str, float]:
+    """What the records of a walker or dancer say, where they are of these very weights."""
+    records = {one["name"]: one for one in kept_records(folder, name)}
+    mine = {kind: records.get(f"{name}.{kind}") for kind in SHOWN}
+    return {
+        kind: one["value"]
+        for kind, one in mine.items()
+        if one and one["seeds"]["weights"] == digest
+    }
+
+
+def add_metrics(folder: Path) -> None:
+    """Write the figures of `folder` into the cards; a file whose card says so already is left
+    alone."""
+    for path in set(checkpoints.available().values()):
+        figure, found = checkpoints.load(path), metrics(folder, path.stem, weights_digest(path))
+        if figure.card.get("metrics", {}) != found:
+            checkpoints.save(
+                replace(figure, card=figure.card | {"metrics": found}),
+                path,
+                checkpoints.bits_of(path),
+            )

@@ -1,0 +1,212 @@
+"""docs/RESULTS.md, made from the records in docs/results/*.json and benchmarks/results/*.json;
+nothing is typed in."""
+
+import json
+from pathlib import Path
+
+from motiondiff_edu._files import replacing
+
+from ..dances.tables import choices, table_1
+from ..inbetweens import known_tables
+from ..repairs import tables
+from ..walks.budget import VARIANTS
+from ..walks.steps_table import PAPER_TABLE
+from .bars import BARS, Bar
+from .claims import claims
+from .markdown import cell, number, span, table
+
+HEAD = """# Results
+
+Made by `make results` (and `make bench`) from the records in `docs/results` and `benchmarks/results`. Do not edit.
+
+The course's data are synthetic, and neither paper's code nor its prepared data is public: figures stand beside the
+paper's for orientation, not as a reproduction. **[low, high]** is a 95 % interval (bootstrap) over clips; over pasts
+for diversity; over repeats for times. It is that of one training run: it does not hold what another training seed
+would change.
+"""
+
+
+def read_records(*folders: Path) -> dict[str, dict]:
+    """All records by name; a name that stands in two files is an error, for then one of them is
+    old."""
+    found, where = {}, {}
+    for path in sorted(path for folder in folders for path in folder.glob("*.json")):
+        for one in json.loads(path.read_text()):
+            if one["name"] in found:
+                raise ValueError(
+                    f"{one['name']} stands in {where[one['name']]} and in {path}: delete the older file"
+                )
+            found[one["name"]], where[one["name"]] = one, path
+    return found
+
+
+def bars(records: dict[str, dict]) -> str:
+    """Every bar with the measured figure: met, missed, or not measured."""
+    rows = [[f"`{bar.name}`", bar.text, *_verdict(bar, records.get(bar.name))] for bar in BARS]
+    return "## The bars\n\n" + table(["figure", "bar", "measured", "interval", ""], rows)
+
+
+def _verdict(bar: Bar, one: dict | None) -> list[str]:
+    if one is None or one["value"] is None:
+        return ["-", "-", "not measured"]
+    return [number(one["value"]), span(one), "met" if bar.met(one["value"]) else "**missed**"]
+
+
+def walkers(records: dict[str, dict]) -> str:
+    """One column for each walker, one row for each figure, value and interval in a cell."""
+    names = [n for n in records if n.split(".")[0].startswith("walker") and n.count(".") == 1]
+    columns = sorted({n.split(".")[0] for n in names}, key=lambda c: (c != "walker", len(c), c))
+    kinds = list(dict.fromkeys(n.split(".")[1] for n in names))
+    rows = [
+        [f"`{kind}`", *(cell(records.get(f"{column}.{kind}")) for column in columns)]
+        for kind in kinds
+    ]
+    if not names:
+        return "## The walkers\n\nNot measured yet.\n"
+    seeds = {key: said for n in names for key, said in records[n]["seeds"].items()}
+    return (
+        f"## The walkers\n\n{seeds.get('clips')} unseen pasts and controls of {seeds.get('seconds')} s, raw output, "
+        "DDPM with all steps (`ddim10`: ten DDIM steps), control held over the window (`lookahead`: the window sees "
+        "the control to come). `_data` rows judge the recorded motion under the same control. `diversity`: "
+        f"{seeds.get('each')} rollouts for each of {seeds.get('pasts')} pasts, from the end of the first second on. "
+        f"Seeds: pasts and controls {_seed(names, records, 'walk')}, those of the diversity "
+        f"{_seed(names, records, 'diversity')}, rollouts {seeds.get('rollouts')}."
+        "\n\n" + table(["figure", *columns], rows) + _beside_the_paper(records)
+    )
+
+
+def _seed(names: list[str], records: dict[str, dict], what: str) -> str:
+    """The data's seed of the figures of diversity, or of all others."""
+    found = {
+        records[n]["seeds"].get("data")
+        for n in names
+        if ("diversity" in n) == (what == "diversity")
+    }
+    return " and ".join(str(seed) for seed in sorted(found - {None})) or "-"
+
+
+def _beside_the_paper(records: dict[str, dict]) -> str:
+    one = records.get("walker-eps.bone_rmse_cm")
+    if one is None or one["paper"] is None:
+        return ""
+    return (
+        f"\nMoDiff prints a bone RMSE of {number(one['paper'])} cm (Table I, without dropout); `walker-eps`, which has "
+        f"the paper's target, has {number(one['value'])} cm. Data, skeleton and sizes of the networks differ: only the "
+        "order of size can be compared. Of adherence, drift and diversity the paper has no figures.\n"
+    )
+
+
+def footsteps(records: dict[str, dict], folder: Path) -> str:
+    """MoDiff's Table I: the paper's rows, then ours."""
+    head = ["motion", "f_est", "v95, cm/s", "mean step, s", "std, s", "bone RMSE, cm"]
+    rows = [
+        [f"{who} (the paper, other data)", *map(number, row)] for who, row in PAPER_TABLE.items()
+    ]
+    for kind, note in (("footsteps", ""), ("footsteps-robust", ", robust count")):
+        for who in dict.fromkeys(n.split(".")[1] for n in records if n.startswith(f"{kind}.")):
+            bone = records.get(
+                "walker.bone_rmse_data_cm" if who == "data" else f"{who}.bone_rmse_cm"
+            )
+            cells = [
+                records[f"{kind}.{who}.{what}"] for what in ("f_est", "v95_cmps", "mean_s", "std_s")
+            ]
+            bones = number(bone["value"]) if bone else "-"
+            rows.append(
+                [f"**{who}**{note}", *(f"{number(c['value'])} {span(c)}" for c in cells), bones]
+            )
+    text = (
+        "## Footsteps: MoDiff's Table I and Fig. 3\n\nOur clips are others, and more of them: compare rows within "
+        "a block, never across. Notebook 08 shows why the paper's count follows noise; the robust count closes gaps of "
+        "one frame and drops steps shorter than 0.1 s.\n\n"
+    )
+    picture = ""
+    if (folder / "footsteps.png").exists():
+        picture = "\n![Number of footsteps against the velocity tolerance, data and walkers](results/footsteps.png)\n"
+    return text + table(head, rows) + picture
+
+
+def budget(records: dict[str, dict]) -> str:
+    """One row for each choice that was tried at the same budget."""
+    mine = {n: r for n, r in records.items() if n.startswith("budget.")}
+    if not mine:
+        return ""
+    kinds = list(dict.fromkeys(n.split(".")[2] for n in mine))
+    rows = [
+        [
+            words,
+            VARIANTS[base][0] if base else "-",
+            *(cell(mine.get(f"budget.{name}.{kind}")) for kind in kinds),
+        ]
+        for name, (words, base, *_) in VARIANTS.items()
+        if f"budget.{name}.{kinds[0]}" in mine
+    ]
+    seeds = next(iter(mine.values()))["seeds"]
+    text = (
+        f"## What each choice is worth\n\nSmall walkers trained for {seeds['cpu_seconds']:g} CPU-seconds each, one "
+        "thread, with half the shipped walkers' batch and fewer clips; each row differs from the row named beside it "
+        "in one choice. MoDiff (III-A) says that predicting more than one pose helps: see T_p. DDPM with S = 100, "
+        f"held control, one pose kept of every window, {seeds['clips']} unseen controls. One training seed each: small "
+        "differences mean nothing.\n\n"
+    )
+    return text + table(["the choice", "compare with", *(f"`{kind}`" for kind in kinds)], rows)
+
+
+def attention(records: dict[str, dict], folder: Path) -> str:
+    """MoFusion's Fig. 4 in numbers, level by level, and the picture."""
+    kinds = ("beat_mass", "beat_mass_over_shuffled", "beat_mass_over_shifted", "seconds_read")
+    levels = [
+        n.split(".")[1] for n in records if n.startswith("attention.") and n.endswith(".beat_mass")
+    ]
+    places = {"": "all levels", **{f"{level}.": level for level in levels if level != "beat_mass"}}
+    rows = [
+        [words, *(cell(records.get(f"attention.{place}{kind}")) for kind in kinds)]
+        for place, words in places.items()
+    ]
+    text = (
+        "## Attention over the beats: MoFusion's Fig. 4\n\nHow much of a level's attention lies within 0.1 s of a "
+        "beat, over the same near the beats of other songs (`shuffled`) and near its own beats moved together "
+        "(`shifted`): 1 is chance. `seconds_read`: how much music a frame reads. A level is named by its frames a "
+        "second; heads averaged, three diffusion steps. Seven levels are seven chances: one outlier is no finding.\n\n"
+    )
+    if "attention.beat_mass" not in records:
+        return text + "Not measured yet.\n"
+    picture = "\n![Attention of the levels over the sound, beats dotted](results/attention.png)\n"
+    return (
+        text
+        + table(["level", *(f"`{k}`" for k in kinds)], rows)
+        + picture * (folder / "attention.png").exists()
+    )
+
+
+def others(records: dict[str, dict]) -> str:
+    """Everything that stands in no table above, with what makes it."""
+    shown = ("walker", "footsteps", "budget.", "dance-budget.", "dance-time.", "attention.")
+    shown += ("mend", "known-answer.", "inbetween.")
+    rest = [one for name, one in sorted(records.items()) if not name.startswith(shown)]
+    rows = [
+        [f"`{r['name']}`", number(r["value"]), span(r), r["unit"], f"`{r['command']}`"]
+        for r in rest
+    ]
+    return (
+        "## Further figures\n\n" + table(["figure", "value", "interval", "unit", "made by"], rows)
+        if rows
+        else ""
+    )
+
+
+def render(docs: Path, benchmarks: Path = Path("benchmarks/results")) -> None:
+    """Write RESULTS.md beside the records, to a temporary name first."""
+    records = read_records(docs / "results", benchmarks)
+    parts = [HEAD, bars(records), walkers(records), footsteps(records, docs / "results")]
+    parts += [
+        budget(records),
+        table_1(records),
+        choices(records),
+        attention(records, docs / "results"),
+    ]
+    tables.draw(records, docs / "results")
+    parts += [tables.dropout(records, docs / "results"), tables.repairs(records, docs / "results")]
+    parts += [known_tables.both(records), known_tables.known_answers(records)]
+    parts += [tables.inbetweens(records, docs / "results"), claims(records), others(records)]
+    with replacing(docs / "RESULTS.md") as aside:
+        aside.write_text("\n".join(part for part in parts if part))

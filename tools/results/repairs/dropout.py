@@ -1,0 +1,167 @@
+"""What diffusion dropout is worth when part of the past is missing: pairs of walkers, and a map
+over rates.
+
+The pairs are shipped: the same network, data and steps, with and without, three training seeds
+each.
+Source: MoDiff III-D, IV-C, Table II.  Notebook: 09
+"""
+
+from dataclasses import dataclass, replace
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+
+from motiondiff_edu.metrics.adherence import adherence
+from motiondiff_edu.pretrained import checkpoints
+from motiondiff_edu.recipes.train_walker import train, training_clips
+from motiondiff_edu.recipes.walkers import MEND_PLAIN, Recipe
+
+from ..walks.parts import weights_digest
+from ..walks.scores import Figure, root_mean, squared_bone_error
+from ..walks.trials import UNSEEN, Trials
+from .trials import SEEDS, SHARE, continued, interval_over_seeds, names_of
+
+NEXT = 10  # frames
+SHARES = (0.0, 0.15, 0.3, 0.5, 0.7, 1.0)  # of the joints missing
+RATES = {
+    f"{round(100 * rate):02d}": rate for rate in (0.0, 0.05, 0.1, 0.15, 0.25, 0.5, 0.75)
+}  # by name, per cent
+
+
+def rows(made: np.ndarray, trials: Trials) -> dict[str, np.ndarray]:
+    """Of each clip: squared bone error (cm^2) and distance from the control (m/s)."""
+    frames = made.shape[1]
+    return {
+        "bone": squared_bone_error(made),
+        "adherence": adherence(made, trials.asked[:, :frames]),
+    }
+
+
+FIGURES = {"bone": ("cm", root_mean), "adherence": ("mps", np.nanmean)}
+
+
+def gains(plain: dict[str, np.ndarray], dropout: dict[str, np.ndarray]) -> list[Figure]:
+    """Plain minus dropout on broken pasts; arrays (seeds, clips)."""
+    found = []
+    for kind, (unit, mean) in FIGURES.items():
+        values = interval_over_seeds(
+            lambda a, b, mean=mean: mean(a) - mean(b), plain[kind], dropout[kind]
+        )
+        found.append(
+            Figure(f"dropout_gain_{kind}_{unit}", *values, "cm" if unit == "cm" else "m/s")
+        )
+    return found
+
+
+def cost(plain: dict[str, np.ndarray], dropout: dict[str, np.ndarray]) -> Figure:
+    """Dropout over plain on complete pasts, the larger of the two kinds of error."""
+
+    def larger(*parts: np.ndarray) -> float:
+        pairs = zip(FIGURES.values(), (parts[:2], parts[2:]), strict=True)
+        return max(mean(b) / mean(a) for (_, mean), (a, b) in pairs)
+
+    arrays = [both[kind] for kind in FIGURES for both in (plain, dropout)]
+    return Figure("dropout_cost_complete", *interval_over_seeds(larger, *arrays), "ratio")
+
+
+def measured(walkers: list, trials: Trials, share: float) -> dict[str, np.ndarray]:
+    """`rows` of several walkers, (seeds, clips); each draws with the same seed."""
+    each = [rows(continued(walker, trials, share, NEXT), trials) for walker in walkers]
+    return {kind: np.stack([one[kind] for one in each]) for kind in FIGURES}
+
+
+def dropout_figures(trials: Trials, weights: dict[str, Path]) -> list[Figure]:
+    """Gains, cost, and what both kinds have with and without faults."""
+    walkers = {
+        kind: [checkpoints.load_walker(weights[n]) for n in names_of(kind)]
+        for kind in ("plain", "dropout")
+    }
+    whole, broken = (
+        {k: measured(w, trials, share) for k, w in walkers.items()} for share in (0.0, SHARE)
+    )
+    found = [*gains(broken["plain"], broken["dropout"]), cost(whole["plain"], whole["dropout"])]
+    for words, both in (("complete", whole), ("missing", broken)):
+        for kind, arrays in both.items():
+            for what, (unit, mean) in FIGURES.items():
+                values = interval_over_seeds(mean, arrays[what])
+                found.append(
+                    Figure(
+                        f"{kind}_{words}_{what}_{unit}", *values, "cm" if unit == "cm" else "m/s"
+                    )
+                )
+    return found
+
+
+def dropout_records(trials: Trials, weights: dict[str, Path], command: str) -> list[dict]:
+    seeds = {
+        "data": UNSEEN,
+        "clips": len(trials.past),
+        "missing": SHARE,
+        "frames": NEXT,
+        "rollouts": 0,
+    }
+    seeds |= {
+        "trainings": SEEDS,
+        "weights": [weights_digest(weights[n]) for k in ("plain", "dropout") for n in names_of(k)],
+    }
+    return [
+        figure.as_record("mend.", seeds, command) for figure in dropout_figures(trials, weights)
+    ]
+
+
+@dataclass(frozen=True)
+class MapBudget:
+    """How long each walker of the map is trained, on what."""
+
+    steps: int = 4000
+    clips: int = 200
+    save_every: int = 200
+
+
+MAP_FULL, MAP_QUICK = MapBudget(), MapBudget(steps=3, clips=2, save_every=2)
+
+
+def map_recipe(name: str, budget: MapBudget) -> Recipe:
+    """A walker with one rate of dropout from beginning to end."""
+    rate = RATES[name]
+    sizes = {"steps": budget.steps, "clips": budget.clips, "save_every": budget.save_every}
+    return replace(
+        MEND_PLAIN, name=f"mend-map.{name}", dropout=(rate,) if rate else (), calm=0.0, **sizes
+    )
+
+
+@cache
+def _clips(budget: MapBudget):
+    return training_clips(map_recipe("00", budget))
+
+
+def map_records(
+    name: str, budget: MapBudget, trials: Trials, runs: Path, command: str
+) -> list[dict]:
+    """Train (or continue) the walker of one rate, and measure it at every share of joints
+    missing."""
+    runs.mkdir(parents=True, exist_ok=True)
+    recipe = map_recipe(name, budget)
+    walker = train(recipe, runs / f"{name}.safetensors", _clips(budget))
+    seeds = {
+        "data": UNSEEN,
+        "clips": len(trials.past),
+        "frames": NEXT,
+        "rollouts": 0,
+        "training": recipe.seed,
+    }
+    seeds |= {"trained_steps": budget.steps, "trained_clips": budget.clips}
+    found = []
+    for share in SHARES:
+        one = measured([walker], trials, share)
+        for what, (unit, mean) in FIGURES.items():
+            values = interval_over_seeds(mean, one[what])
+            found.append(
+                Figure(
+                    f"missing-{round(100 * share)}.{what}_{unit}",
+                    *values,
+                    "cm" if unit == "cm" else "m/s",
+                )
+            )
+    return [figure.as_record(f"mend-map.{name}.", seeds, command) for figure in found]

@@ -1,0 +1,181 @@
+"""Repairs of broken pasts against the truth, beside what needs no walker; and MoDiff's Table II.
+
+Source: MoDiff III-E, IV-C, Table II, Fig. 6.  Notebook: 10
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+import torch
+from jaxtyping import Float
+
+from data_synth.imperfect import ARM, LEG, Imperfect, bursts, dead_joints, dropped_frames
+from motiondiff_edu.beyond.back_with_known import masked_back
+from motiondiff_edu.editing.repairs import with_bones
+from motiondiff_edu.performers.walker import Walker
+from motiondiff_edu.reconstruction import WayBack, repair, walked_back
+
+from ..walks import steps_table
+from ..walks.scores import Figure, figure_of, root_mean, squared_bone_error
+from ..walks.trials import Trials
+from .rivals import rivals
+from .trials import SHARE, as_given, continued, interval_over_seeds, without
+
+Past = Float[np.ndarray, "N T_h J 3"]
+FAULTS: dict[str, Callable[[Past], Imperfect]] = {
+    "arm": lambda past: dead_joints(past, ARM),
+    "leg": lambda past: dead_joints(past, LEG),
+    "frames": lambda past: dropped_frames(past, 3, 4),  # four inner frames of ten
+    "bursts": lambda past: bursts(past, np.random.default_rng(2)),
+}
+
+
+@dataclass(frozen=True)
+class RepairSize:
+    """Samples of each repair, rounds there and back, DDIM's steps."""
+
+    samples: int = 10
+    rounds: int = 2
+    steps: int = 10
+
+
+FULL, QUICK = RepairSize(), RepairSize(samples=2, rounds=1, steps=3)
+PAPER_SAMPLES = 3  # of the paper's own repairs, which stand beside
+
+
+def repaired(
+    walker: Walker,
+    trials: Trials,
+    broken: Imperfect,
+    size: RepairSize,
+    way_back: WayBack = walked_back,
+    guess: Past | None = None,
+    bones: bool = False,
+) -> Float[np.ndarray, "S N T_h J 3"]:
+    """So many repairs of each past; metres."""
+    past, known = as_given(walker, broken)
+    control = torch.from_numpy(trials.control[:, : 2 * past.shape[1]]).float()
+    start = None if guess is None else torch.from_numpy(guess).float().flatten(2)
+    options = {"rounds": size.rounds, "steps": size.steps, "way_back": way_back, "guess": start}
+    options["settle"] = with_bones if bones else None
+    made = [
+        repair(walker, past, known, control, generator=torch.Generator().manual_seed(k), **options)
+        for k in range(size.samples)
+    ]
+    return torch.stack(made).unflatten(-1, (-1, 3)).double().numpy()
+
+
+def squared_errors(made: Past, truth: Past, broken: Imperfect) -> Float[np.ndarray, "N"]:
+    """Of each past the mean squared distance (cm^2) of what was missing; NaN where nothing was."""
+    squares = 1e4 * ((made - truth) ** 2).sum(-1)
+    missing = ~broken.known
+    with np.errstate(invalid="ignore"):
+        return (squares * missing).sum((1, 2)) / missing.sum((1, 2))
+
+
+def root_nanmean(squares: np.ndarray) -> float:
+    return float(np.sqrt(np.nanmean(squares)))
+
+
+def repair_figures(fault: str, walker: Walker, trials: Trials, size: RepairSize) -> list[Figure]:
+    """The mean of the repairs, one of them, the paper's repairs, and the rivals' guesses, all in
+    cm; and over rivals.
+
+    Ours begin with what ridge regression guesses, hold what is known on the way back, too, and keep
+    bones; the paper's begin with the mean pose and do neither (the mean is of fewer). Intervals are
+    over pasts.
+    """
+    broken = FAULTS[fault](trials.past)
+    guesses = rivals(broken, trials)
+    ours = repaired(walker, trials, broken, size, masked_back, guesses["ridge"], bones=True)
+    theirs = repaired(
+        walker, trials, broken, replace(size, samples=min(size.samples, PAPER_SAMPLES))
+    )
+    each = {"": ours.mean(0), "one_": ours[0], "paper_": theirs.mean(0), "paper_one_": theirs[0]}
+    rows = {
+        f"{name}rmse_cm": squared_errors(made, trials.past, broken) for name, made in each.items()
+    }
+    others = {name: squared_errors(guess, trials.past, broken) for name, guess in guesses.items()}
+    rows |= {f"rmse_{name}_cm": row for name, row in others.items()}
+    found = [figure_of(f"{fault}_{name}", "cm", root_nanmean, row) for name, row in rows.items()]
+    for name, row in others.items():
+        over = f"{fault}_rmse_over_{name}", "ratio", lambda a, b: root_nanmean(a) / root_nanmean(b)
+        found.append(figure_of(*over, rows["rmse_cm"], row))
+        won = (
+            f"{fault}_nearer_than_{name}",
+            "share",
+            lambda a, b: float(np.nanmean(np.where(np.isnan(b), b, a < b))),
+        )
+        found.append(figure_of(*won, rows["rmse_cm"], row))
+    return found
+
+
+def repaired_windows(
+    walkers: list[Walker], trials: Trials, size: RepairSize
+) -> dict[str, list[np.ndarray]]:
+    """Pasts with 30 % of their joints missing, repaired once by each walker.
+
+    `re`: our way as it comes from the network; `re_bones`: bones kept; `re_paper`: the paper's way.
+    """
+    broken, once = without(trials.past, SHARE), RepairSize(1, size.rounds, size.steps)
+    guess = rivals(broken, trials)["ridge"]
+    ours = {
+        name: (masked_back, guess, bones) for name, bones in (("re", False), ("re_bones", True))
+    }
+    ways = ours | {"re_paper": ()}
+    return {
+        name: [repaired(walker, trials, broken, once, *how)[0] for walker in walkers]
+        for name, how in ways.items()
+    }
+
+
+def table_2(
+    walkers: list[Walker],
+    trials: Trials,
+    size: RepairSize,
+    windows: dict[str, list[np.ndarray]],
+    who: str = "",
+    keep: int = 1,
+) -> tuple[list[Figure], list[np.ndarray]]:
+    """MoDiff's Table II: bone errors with 30 % of the past's joints missing, over those with a
+    complete past.
+
+    Of `repaired_windows`, and of what follows the broken past (`ge`), which is returned as well,
+    one set of walks for each walker. `who` names them; they keep `keep` poses of a window.
+    """
+    frames = trials.truth.shape[1]
+    whole = [
+        continued(walker, trials, 0.0, frames, steps=size.steps, keep=keep) for walker in walkers
+    ]
+    after = [
+        continued(walker, trials, SHARE, frames, steps=size.steps, keep=keep) for walker in walkers
+    ]
+    sets = {"whole": whole, "ge": after, **windows}
+    squares = {name: np.stack([squared_bone_error(x) for x in each]) for name, each in sets.items()}
+    figures = [
+        Figure(f"table2_{who}bone_{name}_cm", *interval_over_seeds(root_mean, x), "cm")
+        for name, x in squares.items()
+    ]
+    arrays = [squares[name] for name in ("whole", "ge", "re")]
+    ratio = interval_over_seeds(
+        lambda w, g, r: max(root_mean(g), root_mean(r)) / root_mean(w), *arrays
+    )
+    return [*figures, Figure(f"table2_{who}ratio", *ratio, "ratio")], after
+
+
+def footsteps(name: str, walks: list[np.ndarray], trials: Trials, rule) -> Figure:
+    """Number of footsteps of walks (one set for each training) over that of the recorded motion, at
+    v95 of each."""
+    tables = np.stack([steps_table.tables(poses, trials.asked, rule) for poses in walks])
+    data = np.broadcast_to(steps_table.tables(trials.truth, trials.asked, rule), tables.shape)
+
+    def over(made: np.ndarray, recorded: np.ndarray) -> float:
+        return np.mean(
+            [
+                steps_table.row(a)[0] / steps_table.row(b)[0]
+                for a, b in zip(made, recorded, strict=True)
+            ]
+        )
+
+    return Figure(name, *interval_over_seeds(over, tables, data), "ratio")

@@ -1,0 +1,80 @@
+"""What menders are tried on: unseen pasts with known faults, given to walkers as zero after
+standardisation."""
+
+from collections.abc import Callable
+
+import numpy as np
+import torch
+from jaxtyping import Bool, Float
+
+from data_synth.imperfect import Imperfect, random_joints
+from motiondiff_edu import rollout
+from motiondiff_edu.performers.walker import Walker
+
+from ..intervals import DRAWS
+from ..walks.trials import Trials
+
+SHARE = 0.3  # of the joints, missing throughout: MoDiff's Table II
+KINDS = {"plain": "mend-plain", "dropout": "mend-dropout"}
+SEEDS = 3  # trainings of each kind, shipped
+
+
+def names_of(kind: str) -> list[str]:
+    """The shipped weights of one kind, one for each training seed."""
+    return [f"{KINDS[kind]}-{k}" for k in range(SEEDS)]
+
+
+def without(past: Float[np.ndarray, "N T_h J 3"], share: float, seed: int = 1) -> Imperfect:
+    """A share of the joints of each past missing throughout, drawn with a seed of its own."""
+    return random_joints(past, share, np.random.default_rng(seed))
+
+
+def as_given(walker: Walker, broken: Imperfect) -> tuple[torch.Tensor, torch.Tensor]:
+    """(past, known), both (N, T_h, D): the network's columns in metres, the mean pose where nothing
+    is known."""
+    past = torch.from_numpy(broken.positions).float().flatten(2)
+    known = columns_of(broken.known)
+    return torch.where(known, past, walker.pose_scaler.mean.expand_as(past)), known
+
+
+def columns_of(known: Bool[np.ndarray, "N T J"]) -> Bool[torch.Tensor, "N T D"]:
+    """Each joint has three columns of a walker's pose."""
+    return torch.from_numpy(np.repeat(known, 3, axis=-1))
+
+
+def continued(
+    walker: Walker,
+    trials: Trials,
+    share: float,
+    frames: int,
+    seed: int = 0,
+    steps: int | None = None,
+    keep: int = 1,
+) -> Float[np.ndarray, "N n J 3"]:
+    """The next `frames` after a past of which a share of the joints is missing; control held, as in
+    all figures.
+
+    `keep` poses of every predicted window are kept.
+    """
+    past, _ = as_given(walker, without(trials.past, share))
+    control = torch.from_numpy(trials.control[:, : past.shape[1] + frames]).float()
+    made = rollout.generate(walker, past, control, seed=seed, steps=steps, keep=keep)
+    return made.unflatten(-1, (-1, 3)).double().numpy()
+
+
+def interval_over_seeds(
+    figure: Callable[..., float], *rows: Float[np.ndarray, "K N *any"], draws: int = DRAWS
+) -> tuple[float, float, float]:
+    """The figure with its 95 % bootstrap interval: training seeds and clips are both drawn again,
+    with replacement.
+
+    Arrays have a row for each training seed, a column for each clip; seeds and clips are drawn for
+    all of them alike.
+    """
+    rng, (K, N) = np.random.default_rng(0), rows[0].shape[:2]
+    values = []
+    for _ in range(draws):
+        chosen = np.ix_(rng.integers(K, size=K), rng.integers(N, size=N))
+        values.append(figure(*(x[chosen] for x in rows)))
+    low, high = np.nanpercentile(values, [2.5, 97.5])
+    return float(figure(*rows)), float(low), float(high)

@@ -1,0 +1,113 @@
+"""What is each choice worth? Small walkers trained for the same CPU-seconds, each unlike another in
+one choice.
+
+How many future poses should be predicted at once (MoDiff says that T_p > 1 helps, and gives no
+number)? What do the schedule, the optimizer, the shaken past, the weights of the loss, the
+footholds and the target do? All else is alike: network, data, seed, and the rollout, which keeps
+one pose of every window.  Source: MoDiff III-A; the rest is ours
+"""
+
+from dataclasses import asdict, dataclass, replace
+from functools import cache
+
+import torch
+
+from data_synth.walking import dataset
+from motiondiff_edu.beyond.footholds import FootholdConfig
+from motiondiff_edu.modiff import MoDiffConfig
+from motiondiff_edu.motion.augment import augment
+from motiondiff_edu.motion.clip import Clip
+from motiondiff_edu.recipes.budget import train_for
+
+from .scores import Figure, score
+from .trials import T_H, UNSEEN, Trials, unseen, walker_generate
+
+SHOWN = (
+    "bone_rmse_cm",
+    "adherence_mps",
+    "adherence_shuffled_over_own",
+    "skating_mps",
+    "drift_ratio",
+)
+SMALL = MoDiffConfig(  # small enough to come far in minutes
+    width=64,
+    hidden=256,
+    motion_layers=1,
+    control_layers=1,
+    cross_layers=1,
+    decoder_layers=2,
+    target="x0",
+    skip=False,
+)
+FEET = FootholdConfig(**asdict(SMALL))
+EPS = replace(SMALL, target="eps", skip=True)
+LIKE = "walker-x0's choices but for footholds, T_p = 10"
+# name: (what differs, in words, from which other one, the network, settings of the training)
+VARIANTS = {
+    "T_p-10": (LIKE, "", SMALL, {}),
+    "T_p-1": ("T_p = 1", "T_p-10", replace(SMALL, T_p=1), {}),
+    "T_p-5": ("T_p = 5", "T_p-10", replace(SMALL, T_p=5), {}),
+    "T_p-20": ("T_p = 20", "T_p-10", replace(SMALL, T_p=20), {}),
+    "linear": ("linear schedule, 1e-4 to 0.1", "T_p-10", SMALL, {"schedule": "linear"}),
+    "footholds": ("with footholds", "T_p-10", FEET, {}),
+    "adam": (
+        "Adam at 1e-3 instead of Muon at 3e-3",
+        "T_p-10",
+        SMALL,
+        {"optimizer": "adam", "lr": 1e-3},
+    ),
+    "unshaken": ("the past as it is", "T_p-10", SMALL, {"jitter": 0.0}),
+    "eps": ("eps with the skip, high noise weighted", "T_p-10", EPS, {"high_noise": 3.0}),
+    "joints": ("errors of joints alone, none of bones", "T_p-10", SMALL, {"bones": 0.0}),
+    "spreads": ("errors in standard deviations", "joints", SMALL, {"bones": 0.0, "metres": 0.0}),
+    "alike": ("all ten poses alike", "T_p-10", SMALL, {"near": 0.0}),
+}
+
+
+@dataclass(frozen=True)
+class Budget:
+    """CPU-seconds of training each, clips to train on, clips to walk, and for how long."""
+
+    seconds: float = 160
+    training: int = 300
+    clips: int = 24
+    walk_s: int = 8
+
+
+FULL, QUICK = Budget(), Budget(seconds=2, training=6, clips=8, walk_s=6)
+
+
+@cache
+def material(budget: Budget) -> tuple[list[Clip], Trials]:
+    """What all variants train on and walk."""
+    return augment(dataset(budget.training, 20.0, seed=1)), unseen(budget.clips, budget.walk_s)
+
+
+def measure(name: str, budget: Budget) -> list[Figure]:
+    """The figures of one variant, and the steps its seconds were enough for."""
+    _, _, config, training = VARIANTS[name]
+    clips, trials = material(budget)
+    walker, steps = train_for(budget.seconds, clips, config, **training)
+    walks = walker_generate(walker)(trials.past, trials.control, 0)
+    found = [figure for figure in score(walks, trials.asked, trials.truth) if figure.name in SHOWN]
+    print(f"{name}: {steps} steps in {budget.seconds:g} CPU-seconds, T_h = {T_H}", flush=True)
+    return [*found, Figure("steps", steps, steps, steps, "")]
+
+
+def budget_records(name: str, budget: Budget, command: str) -> list[dict]:
+    """One thread, whatever the machine has: CPU-seconds are the budget. Compare what one machine
+    measured."""
+    before = torch.get_num_threads()
+    torch.set_num_threads(1)
+    seeds = {
+        "data": UNSEEN,
+        "training": 0,
+        "rollouts": 0,
+        "clips": budget.clips,
+        "cpu_seconds": budget.seconds,
+    }
+    records = [
+        figure.as_record(f"budget.{name}.", seeds, command) for figure in measure(name, budget)
+    ]
+    torch.set_num_threads(before)
+    return records

@@ -1,0 +1,215 @@
+"""What `make results` measures, in parts that can be run alone; each part is a list of records and
+one JSON file."""
+
+import hashlib
+import json
+from dataclasses import asdict, dataclass
+from functools import cached_property
+from pathlib import Path
+
+import numpy as np
+from safetensors import safe_open
+
+from motiondiff_edu._files import replacing
+from motiondiff_edu.metrics.footsteps import PAPER, ROBUST
+from motiondiff_edu.pretrained import checkpoints
+
+from . import steps_table
+from .scores import Figure, diversity, score
+from .trials import UNSEEN, Choices, Trials, choices, rollouts_of, unseen, walker_generate
+
+CACHE = Path("build/results")  # rollouts, so that a new metric needs no new rollouts
+PACKAGE = Path(checkpoints.__file__).parents[1]
+ROLLING = (
+    "cross_modal_attention.py",
+    "ddpm.py",
+    "modiff.py",
+    "prediction.py",
+    "rollout.py",
+    "beyond/footholds.py",
+    "motion/scaler.py",
+    "performers/walker.py",
+    "pretrained/checkpoints.py",
+)
+PAPER_BONES = {
+    "walker-eps.bone_rmse_cm": 0.089,
+    "walker-paper.bone_rmse_cm": 0.089,
+}  # Table I, without dropout
+
+
+@dataclass(frozen=True)
+class Size:
+    """How much is measured: the bars' 100 controls and 20 x 50 continuations, or a quick look."""
+
+    clips: int = 100
+    pasts: int = 20
+    each: int = 50
+    seconds: int = 12
+
+
+FULL, QUICK = Size(), Size(clips=12, pasts=3, each=8, seconds=7)
+
+
+class Bench:
+    """The trials, made once, and the rollouts on them, kept on disk by the weights they come
+    from."""
+
+    def __init__(self, size: Size, weights: dict[str, Path] | None = None):
+        self.size, self.weights = size, checkpoints.available() | (weights or {})
+
+    @cached_property
+    def trials(self) -> Trials:
+        return unseen(self.size.clips, self.size.seconds)
+
+    @cached_property
+    def choices(self) -> Choices:
+        return choices(self.size.pasts, self.size.each)
+
+    def rollouts(self, name: str, steps: int | None, hold: bool, what: str) -> np.ndarray:
+        """Poses of the walker `name` on the trials (what="walks") or on the choices
+        (what="choices")."""
+        path = self.weights.get(name) or checkpoints.available().get(name)
+        if path is None:
+            raise SystemExit(
+                f"no weights are called {name!r}; there are: {', '.join(self.weights) or 'none'}"
+            )
+        inputs = "-".join(_digest(x) for x in self._inputs(what))
+        key = f"{weights_digest(path)}-{steps}-{hold}-{what}-{json.dumps(asdict(self.size))}-{inputs}-{code_digest()}"
+        kept = CACHE / f"{name}-{hashlib.sha256(key.encode()).hexdigest()[:12]}.npy"
+        if not kept.exists():
+            generate = walker_generate(checkpoints.load_walker(path), steps, hold)
+            asked = self.trials if what == "walks" else self.choices
+            new = (
+                rollouts_of(generate, asked)
+                if what == "choices"
+                else generate(asked.past, asked.control, 0)
+            )
+            with replacing(kept) as aside, open(aside, "wb") as file:
+                np.save(file, new.astype(np.float32))
+        return np.load(kept).astype(np.float64)
+
+    def _inputs(self, what: str) -> tuple[np.ndarray, np.ndarray]:
+        asked = self.trials if what == "walks" else self.choices
+        return asked.past, asked.control
+
+
+def _digest(array: np.ndarray) -> str:
+    return hashlib.sha256(np.ascontiguousarray(array).tobytes()).hexdigest()[:16]
+
+
+def weights_digest(path: Path) -> str:
+    """Of the tensors in a weights file, not of its card."""
+    with safe_open(path, "pt") as file:
+        return file.metadata()["sha256"][:16]
+
+
+def code_digest() -> str:
+    """Of all code that turns weights and inputs into poses: when it changes, no old rollout is
+    taken for a new one."""
+    files = [PACKAGE / name for name in ROLLING] + sorted((PACKAGE / "fast").glob("*.py"))
+    return hashlib.sha256(b"".join(path.read_bytes() for path in files)).hexdigest()[:16]
+
+
+@dataclass(frozen=True)
+class Walks:
+    """One line of the bars: which weights, which sampler, what control it sees."""
+
+    prefix: str
+    name: str
+    steps: int | None = None
+    hold: bool = True
+    choose: bool = True  # measure the diversity too
+
+    def figures(self, bench: Bench) -> list[Figure]:
+        trials = bench.trials
+        walks = bench.rollouts(self.name, self.steps, self.hold, "walks")
+        found = score(walks, trials.asked, trials.truth)
+        if self.choose:
+            found += diversity(
+                bench.rollouts(self.name, self.steps, self.hold, "choices"), bench.choices.drawn
+            )
+        return found
+
+
+LINES = {
+    line.prefix: line
+    for line in (
+        Walks("walker-eps", "walker-eps"),
+        Walks("walker-x0", "walker-x0"),
+        Walks("walker-ddim10", "walker", steps=10),
+        Walks("walker-eps-lookahead", "walker-eps", hold=False, choose=False),
+        Walks("walker-x0-lookahead", "walker-x0", hold=False, choose=False),
+    )
+}
+
+
+def alias_of(name: str = "walker") -> str:
+    """Which of the shipped weights `walker` stands for."""
+    files = checkpoints.available()
+    return next(
+        (other for other, path in files.items() if other != name and path == files.get(name)), name
+    )
+
+
+def alias_records(folder: Path) -> list[dict]:
+    """The records of the walker that the name `walker` stands for, once more under that name."""
+    name = alias_of()
+    return [
+        one | {"name": f"walker.{one['name'].removeprefix(name + '.')}"}
+        for one in kept_records(folder, name)
+    ]
+
+
+def kept_records(folder: Path, name: str) -> list[dict]:
+    """The records of a part; none before it was measured."""
+    kept = folder / f"{name}.json"
+    return json.loads(kept.read_text()) if kept.is_file() else []
+
+
+def walker_records(bench: Bench, line: Walks, command: str) -> list[dict]:
+    """The figures of one line as records."""
+    return [
+        as_record(f"{line.prefix}.", figure, bench, line, command) for figure in line.figures(bench)
+    ]
+
+
+def as_record(prefix: str, figure: Figure, bench: Bench, line: Walks | None, command: str) -> dict:
+    """With all that settles the figure: seeds, how much was measured, which weights (none: the
+    data's own)."""
+    size, seeds = bench.size, {"rollouts": 0}
+    if figure.name.startswith("diversity"):
+        seeds |= {"data": UNSEEN + 500_000, "pasts": size.pasts, "each": size.each}
+    else:
+        seeds |= {"data": UNSEEN, "clips": size.clips, "seconds": size.seconds}
+    if line:
+        seeds |= {"weights": weights_digest(bench.weights[line.name]), "steps": line.steps or "all"}
+    return figure.as_record(prefix, seeds, command, PAPER_BONES.get(prefix + figure.name))
+
+
+def footstep_records(bench: Bench, command: str) -> tuple[list[dict], dict[str, np.ndarray]]:
+    """Table I on our data: the recorded walks and every line of walkers; and the curves of Fig.
+    3."""
+    sets = {"data": (None, bench.trials.truth)}
+    for line in LINES.values():
+        if line.name in bench.weights and line.hold:
+            sets[line.prefix] = line, bench.rollouts(line.name, line.steps, line.hold, "walks")
+    records, curves = [], {}
+    for name, (line, poses) in sets.items():
+        for suffix, rule in (("", PAPER), ("-robust", ROBUST)):
+            table = steps_table.tables(poses, bench.trials.asked, rule)
+            curves[name + suffix] = steps_table.curve(table)
+            found = steps_table.figures(table)
+            records += [
+                as_record(f"footsteps{suffix}.{name}.", figure, bench, line, command)
+                for figure in found
+            ]
+    for one in records:
+        one["paper"] = _paper_figure(one["name"])
+    return records, curves
+
+
+def _paper_figure(name: str) -> float | None:
+    kind, who, what = name.split(".")
+    row = {"data": "Recorded data", "walker-eps": "MoDiff (no drop)"}.get(who)
+    column = ("f_est", "v95_cmps", "mean_s", "std_s").index(what)
+    return steps_table.PAPER_TABLE[row][column] if row and kind == "footsteps" else None

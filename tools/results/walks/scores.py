@@ -1,0 +1,141 @@
+"""The figures of one walker on a set of trials, each with its interval over clips: names, values,
+units.
+
+`score` takes arrays, so that anything can be scored: the data itself is a walker with no error.
+"""
+
+import warnings
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Float
+
+from motiondiff_edu.metrics.adherence import adherence
+from motiondiff_edu.metrics.bone_lengths import bone_lengths
+from motiondiff_edu.metrics.diversity import spread
+from motiondiff_edu.metrics.skating import planted_share, skating
+from motiondiff_edu.motion.skeleton import BONE_LENGTHS
+
+from ..intervals import interval
+
+FPS = 20
+SKATING_FLOOR = 0.02  # m/s: data that slide less count as this
+EDGE = 3 * FPS  # drift compares the first three seconds with the last three
+
+
+@dataclass(frozen=True)
+class Figure:
+    """One measured figure, before it becomes a record."""
+
+    name: str
+    value: float
+    low: float
+    high: float
+    unit: str
+
+    def as_record(self, prefix: str, seeds: dict, command: str, paper: float | None = None) -> dict:
+        """As it is kept in docs/results: five digits, None where there is no number."""
+        value, low, high = (
+            float(f"{x:.5g}") if np.isfinite(x) else None for x in (self.value, self.low, self.high)
+        )
+        return dict(name=prefix + self.name, value=value, low=low, high=high, seeds=seeds, unit=self.unit,
+                    paper=paper, command=command)  # fmt: skip
+
+
+def squared_bone_error(poses: Float[np.ndarray, "N T J 3"]) -> Float[np.ndarray, "N"]:
+    """Mean squared bone-length error of each clip, cm^2: its mean's root is the paper's RMSE."""
+    return 1e4 * ((bone_lengths(poses) - BONE_LENGTHS) ** 2).mean((-2, -1))
+
+
+def squared_stretch(poses: Float[np.ndarray, "N T J 3"]) -> Float[np.ndarray, "N"]:
+    """The same against each clip's own mean lengths."""
+    return 1e4 * bone_lengths(poses).var(-2).mean(-1)
+
+
+def shuffled_adherence(poses: Float[np.ndarray, "N T J 3"], control: Float[np.ndarray, "N T 3"]):
+    """Adherence of every motion to the controls of three other clips (1/4, 1/2, 3/4 of the set
+    away), its mean."""
+    n = len(poses)
+    shifts = sorted({max(1, n * k // 4) for k in (1, 2, 3)})
+    return np.mean([adherence(poses, np.roll(control, shift, axis=0)) for shift in shifts], axis=0)
+
+
+def score(
+    poses: Float[np.ndarray, "N n J 3"],
+    control: Float[np.ndarray, "N n 3"],
+    truth: Float[np.ndarray, "N n J 3"],
+) -> list[Figure]:
+    """The figures of `poses` generated under `control`, beside those of the data's own answer
+    `truth`."""
+    own, data = adherence(poses, control), adherence(truth, control)
+    slide, slide_data = skating(poses, control), skating(truth, control)
+    first, last = slice(None, EDGE), slice(-EDGE, None)
+    bones = [squared_bone_error(poses[:, part]) for part in (first, last)]
+    kept = [adherence(poses[:, part], control[:, part]) for part in (first, last)]
+    figures = {
+        "bone_rmse_cm": ("cm", root_mean, squared_bone_error(poses)),
+        "bone_rmse_within_clip_cm": ("cm", root_mean, squared_stretch(poses)),
+        "bone_rmse_data_cm": ("cm", root_mean, squared_bone_error(truth)),
+        "adherence_mps": ("m/s", np.nanmean, own),
+        "adherence_data_mps": ("m/s", np.nanmean, data),
+        "adherence_excess_mps": ("m/s", _difference, own, data),
+        "adherence_shuffled_over_own": ("ratio", ratio, shuffled_adherence(poses, control), own),
+        "drift_bone_ratio": ("ratio", lambda a, b: root_mean(a) / root_mean(b), bones[1], bones[0]),
+        "drift_adherence_ratio": ("ratio", ratio, kept[1], kept[0]),
+        "drift_ratio": ("ratio", _larger, *bones, *kept),
+        "skating_mps": ("m/s", np.nanmean, slide),
+        "skating_data_mps": ("m/s", np.nanmean, slide_data),
+        "skating_over_data": ("ratio", _over_floor, slide, slide_data),
+        "planted_share": ("share", np.nanmean, planted_share(poses)),
+        "planted_share_data": ("share", np.nanmean, planted_share(truth)),
+    }
+    return [figure_of(name, unit, figure, *rows) for name, (unit, figure, *rows) in figures.items()]
+
+
+def diversity(
+    rollouts: Float[np.ndarray, "P n T J 3"], drawn: Float[np.ndarray, "P n T J 3"]
+) -> list[Figure]:
+    """Spread of the rollouts, of the data's continuations, and their ratio; the interval is over
+    pasts."""
+    own, data = spread(rollouts), spread(drawn)
+    return [
+        figure_of("diversity_m", "m", np.mean, own),
+        figure_of("diversity_data_m", "m", np.mean, data),
+        figure_of("diversity_over_data", "ratio", ratio, own, data),
+        figure_of("diversity_over_data_median", "ratio", lambda a, b: np.median(a / b), own, data),
+    ]
+
+
+def figure_of(name: str, unit: str, figure: Callable[..., float], *rows: np.ndarray) -> Figure:
+    """The figure `figure(*rows)` with its interval over the rows; NaN, without a warning, where
+    there is no number."""
+    with warnings.catch_warnings():
+        warnings.simplefilter(
+            "ignore", RuntimeWarning
+        )  # the mean of no number is NaN, and shown as such
+        return Figure(name, *interval(figure, *rows), unit)
+
+
+def root_mean(squares: Float[np.ndarray, "N"]) -> float:
+    """sqrt(mean of squares): an RMSE, from each clip's mean squared error."""
+    return np.sqrt(squares.mean())
+
+
+def ratio(over: Float[np.ndarray, "N"], under: Float[np.ndarray, "N"]) -> float:
+    """Mean over mean (not the mean of ratios), clips without a number left out of each."""
+    return np.nanmean(over) / np.nanmean(under)
+
+
+def _difference(own, data):
+    return np.nanmean(own) - np.nanmean(data)
+
+
+def _over_floor(own, data):
+    return np.nanmean(own) / max(np.nanmean(data), SKATING_FLOOR)
+
+
+def _larger(bones_first, bones_last, adherence_first, adherence_last):
+    return max(
+        root_mean(bones_last) / root_mean(bones_first), ratio(adherence_last, adherence_first)
+    )

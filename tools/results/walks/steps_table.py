@@ -1,0 +1,64 @@
+"""MoDiff's Table I and Fig. 3 on the course's data: a footstep curve for each set of motions, and
+the row read from it.
+
+The bootstrap draws clips; for that every clip is reduced to a table (number of steps, sum and sum
+of squares of their durations) at every tolerance, which add up.
+"""
+
+import numpy as np
+from jaxtyping import Float
+
+from motiondiff_edu.metrics.footsteps import PAPER, TOLERANCES, StepRule, heel_speed, step_durations
+
+from .scores import Figure, figure_of
+
+# f_est, v95 (cm/s), mean and std of step duration (s), bone RMSE (cm): MoDiff Table I, Edinburgh,
+# CMU and HDM05 data
+PAPER_TABLE = {
+    "Recorded data": (289, 5, 0.315, 0.263, 0),
+    "MoGlow (no drop)": (314, 6, 0.222, 0.134, 0.315),
+    "MoGlow (drop)": (253, 5, 0.341, 0.250, 0.250),
+    "TimeGrad (no drop)": (284, 6, 0.331, 0.338, 0.124),
+    "TimeGrad (drop)": (281, 5, 0.289, 0.241, 0.115),
+    "MoDiff (no drop)": (280, 5, 0.289, 0.239, 0.089),
+    "MoDiff (drop)": (284, 5, 0.334, 0.286, 0.072),
+}
+
+
+def tables(
+    poses: Float[np.ndarray, "N T J 3"], control: Float[np.ndarray, "N T 3"], rule: StepRule = PAPER
+) -> Float[np.ndarray, "N V 3"]:
+    """For every clip and tolerance: number of steps, sum of their durations, sum of the squares."""
+    speeds = heel_speed(poses, control)
+    durations = [[step_durations([speed], float(v), rule) for v in TOLERANCES] for speed in speeds]
+    return np.array([[(len(d), d.sum(), (d**2).sum()) for d in clip] for clip in durations])
+
+
+def curve(table: Float[np.ndarray, "N V 3"]) -> Float[np.ndarray, "V"]:
+    """f_est(v) over all clips."""
+    return table[..., 0].sum(0)
+
+
+def row(table: Float[np.ndarray, "N V 3"]) -> tuple[float, float, float, float]:
+    """f_est, v95, mean and std of the durations at v95: the same as `metrics.footsteps.footsteps`
+    on these clips."""
+    count, total, squares = table.sum(0).T
+    at = int(np.argmax(count >= 0.95 * count.max()))
+    if count.max() == 0:
+        return 0.0, np.nan, np.nan, np.nan
+    mean = total[at] / count[at]
+    return (
+        float(count[at]),
+        float(TOLERANCES[at]),
+        mean,
+        float(np.sqrt(max(squares[at] / count[at] - mean**2, 0))),
+    )
+
+
+def figures(table: Float[np.ndarray, "N V 3"]) -> list[Figure]:
+    """The row of Table I as figures with intervals."""
+    names = (("f_est", "steps"), ("v95_cmps", "cm/s"), ("mean_s", "s"), ("std_s", "s"))
+    return [
+        figure_of(name, unit, lambda t, i=i: row(t)[i], table)
+        for i, (name, unit) in enumerate(names)
+    ]

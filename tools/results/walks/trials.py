@@ -1,0 +1,102 @@
+"""What a walker is tried on: unseen pasts, unseen controls, and the data's own answer to both."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import torch
+from jaxtyping import Float
+
+from data_synth.walking import continuations, dataset
+from motiondiff_edu import rollout
+from motiondiff_edu.motion.clip import Clip
+
+from .scores import FPS
+
+UNSEEN = 900_000  # seeds from here on belong to no training set
+SECONDS, T_H = 12, 10
+
+# (past (N, T_h, J, 3), control (N, T_h + n, 3), seed) -> new poses (N, n, J, 3), metres
+Generate = Callable[[np.ndarray, np.ndarray, int], np.ndarray]
+
+
+@dataclass(frozen=True, eq=False)
+class Trials:
+    """N pasts with the control of past and future, and the recorded future; control row T_h belongs
+    to truth[:, 0]."""
+
+    past: Float[np.ndarray, "N T_h J 3"]
+    control: Float[np.ndarray, "N T 3"]
+    truth: Float[np.ndarray, "N n J 3"]
+
+    @classmethod
+    def of(cls, clips: Sequence[Clip], T_h: int = T_H) -> "Trials":
+        """The first T_h frames of each clip are the past, the rest is what is asked for."""
+        poses, control = (
+            np.stack([clip.poses for clip in clips]),
+            np.stack([clip.control for clip in clips]),
+        )
+        return cls(poses[:, :T_h], control, poses[:, T_h:])
+
+    def first(self, n: int) -> "Trials":
+        """The first n of them."""
+        return Trials(self.past[:n], self.control[:n], self.truth[:n])
+
+    @property
+    def asked(self) -> Float[np.ndarray, "N n 3"]:
+        """The control of the generated frames."""
+        return self.control[:, -self.truth.shape[1] :]
+
+
+def unseen(n: int = 100, seconds: float = SECONDS) -> Trials:
+    """n trials of `seconds` whose pasts and controls no walker was trained on."""
+    return Trials.of(dataset(n, seconds + T_H / FPS, seed=UNSEEN))
+
+
+def walker_generate(
+    walker, steps: int | None = None, hold: bool = True, batch: int = 100
+) -> Generate:
+    """A walker as a function of plain arrays; DDPM with all S steps, or DDIM with `steps`."""
+
+    def generate(past: np.ndarray, control: np.ndarray, seed: int) -> np.ndarray:
+        new = []
+        for i in range(0, len(past), batch):
+            inputs = [torch.from_numpy(x[i : i + batch]).float() for x in (past, control)]
+            poses = rollout.generate(
+                walker, inputs[0].flatten(2), inputs[1], seed=seed + i, steps=steps, hold=hold
+            )
+            new.append(poses.unflatten(-1, (-1, 3)).double().numpy())
+        return np.concatenate(new)
+
+    return generate
+
+
+@dataclass(frozen=True, eq=False)
+class Choices:
+    """P pasts with their control, and n futures drawn from the data for each."""
+
+    past: Float[np.ndarray, "P T_h J 3"]
+    control: Float[np.ndarray, "P T 3"]
+    drawn: Float[np.ndarray, "P n frames J 3"]
+
+
+def choices(pasts: int = 20, n: int = 50, seconds: float = 3.0) -> Choices:
+    """Pasts that have several right continuations, with `n` of them drawn from the data."""
+    clips, frames = dataset(pasts, seconds + T_H / FPS, seed=UNSEEN + 500_000), round(seconds * FPS)
+    drawn = [
+        continuations(c.cut(0, T_H), c.control[T_H:], n, seed=UNSEEN + i)
+        for i, c in enumerate(clips)
+    ]
+    futures = np.stack([[future.poses[-frames:] for future in futures] for futures in drawn])
+    return Choices(
+        np.stack([c.poses[:T_H] for c in clips]), np.stack([c.control for c in clips]), futures
+    )
+
+
+def rollouts_of(
+    generate: Generate, asked: Choices, seed: int = 0
+) -> Float[np.ndarray, "P n frames J 3"]:
+    """As many rollouts of each past as futures were drawn from the data."""
+    n = asked.drawn.shape[1]
+    past, control = (np.repeat(x, n, axis=0) for x in (asked.past, asked.control))
+    return generate(past, control, seed).reshape(asked.drawn.shape)
