@@ -7,7 +7,6 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).parent.parent
-LONGEST = 250
 
 LIBRARY = sorted(
     path for folder in ("motiondiff_edu", "data_synth") for path in (ROOT / folder).rglob("*.py")
@@ -44,12 +43,6 @@ def tracked() -> list[Path]:
         path for path in ROOT.rglob("*") if ".venv" not in path.parts
     ]
     return [path for path in paths if path.is_file() and path.suffix in TEXT]
-
-
-@pytest.mark.parametrize("path", LIBRARY, ids=lambda path: path.relative_to(ROOT).as_posix())
-def test_library_files_are_short(path):
-    lines = len(path.read_text(encoding="utf-8").splitlines())
-    assert lines <= LONGEST, f"{lines} lines: find the second idea and give it its own file"
 
 
 @pytest.mark.parametrize("what", FORBIDDEN)

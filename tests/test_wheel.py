@@ -31,7 +31,9 @@ SHIPPED = {".py", ".js", ".css", ".safetensors", ".json"}
 USE = """
 import json, sys
 import motiondiff_edu, data_synth
-from motiondiff_edu import __main__ as command, checkpoints, checks, doctor
+from motiondiff_edu import __main__ as command, doctor
+from motiondiff_edu.course import checks
+from motiondiff_edu.pretrained import checkpoints
 from motiondiff_edu.motion.skeleton import JOINTS
 from motiondiff_edu.widgets.player import Player
 from data_synth import mixtures

@@ -112,7 +112,7 @@ SHAPES = {  # in a process of its own: here the tests' own check of shapes would
 def test_shapes_that_would_broadcast_are_told_apart(call, tmp_path, root):
     code = f"""
 import numpy as np
-from motiondiff_edu.motion.bvh_write import write_bvh
+from motiondiff_edu.motion.bvh.write import write_bvh
 from motiondiff_edu.motion.root_frame import to_world
 {call}
 """

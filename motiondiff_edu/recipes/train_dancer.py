@@ -69,7 +69,7 @@ def train_dancer(
         loss_of(recipe, windows, schedule),
         about={"network": type(model).__name__, "data": digest(windows)},
         facts={"windows": len(windows)},
-        data=f"data_synth.{'mixed' if recipe.motions else 'music and data_synth.dance'}, synthetic",
+        data=f"data_synth.{'mixed' if recipe.motions else 'music and data_synth.dancing'}, synthetic",
         warmup=300,
         log=log,
     )

@@ -29,7 +29,7 @@ def good():
     cells = [
         cell(OPENING, kind="markdown"),
         cell(
-            'from motiondiff_edu import checks, runtime\nrun = runtime.start(notebook="02", seed=0)',
+            'from motiondiff_edu.course import checks, runtime\nrun = runtime.start(notebook="02", seed=0)',
             "imports",
         ),
         cell("def twin(x):\n    return x", "twin"),

@@ -9,7 +9,7 @@ from jupyter_page import ASK, lab, run_all  # noqa: F401
 CELL = """import sys; sys.path.insert(0, {tests!r})
 import numpy as np
 from data_synth.walking import walk
-from motiondiff_edu import checkpoints
+from motiondiff_edu.pretrained import checkpoints
 from motiondiff_edu.motion.skeleton import JOINTS
 from motiondiff_edu.widgets.bench import Bench
 clip = walk(np.tile([1.2, 0.0, 0.4], (60, 1)), seed=6)
