@@ -12,4 +12,5 @@ from pathlib import Path
 WORKER = os.environ.get("PYTEST_XDIST_WORKER")  # gw0, gw1 ...; unset where there is but one process
 
 if WORKER:
-    os.environ.setdefault("NUMBA_CACHE_DIR", str(Path(__file__).parent / "build" / "numba" / WORKER))
+    numba_cache = Path(__file__).parent / "build" / "numba" / WORKER
+    os.environ.setdefault("NUMBA_CACHE_DIR", str(numba_cache))

@@ -29,7 +29,8 @@ from motiondiff_edu.widgets.player import Player  # noqa: E402
 COMMAND = "python -m benchmarks player"
 FPS, RATE, BEAT = 20, 16_000, 0.5
 SAMPLE = """async (seconds) => {
-  const root = document.querySelector(".mde-player"), sound = root.querySelector("audio"), rows = [];
+  const root = document.querySelector(".mde-player"), sound = root.querySelector("audio");
+ const rows = [];
   const end = performance.now() + 1000 * seconds;
   while (performance.now() < end) {
     rows.push([sound.currentTime, Number(root.dataset.frame)]);

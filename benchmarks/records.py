@@ -51,5 +51,6 @@ def show(records: list[dict]) -> None:
     """Print one line a record."""
     for one in records:
         print(
-            f"{one['name']:44s} {one['value']:9.3g}  [{one['low']:.3g}, {one['high']:.3g}] {one['unit']}"
+            f"{one['name']:44s} {one['value']:9.3g}  [{one['low']:.3g}, "
+            f"{one['high']:.3g}] {one['unit']}"
         )

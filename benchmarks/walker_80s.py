@@ -1,7 +1,8 @@
 """What 80 CPU-seconds of training give: a small walker on three sets of walks, judged on unseen
 controls of the same.
 
-    one person   neutral, no waving and looking about, straight ahead and in curves: notebook 07's data (the bars)
+    one person   neutral, no waving and looking about, straight ahead and in curves:
+                 notebook 07's data (the bars)
     one style    neutral walkers, all their behaviours, all kinds of control
     all styles   the walkers' training data, fewer clips
 
@@ -30,7 +31,14 @@ from motiondiff_edu.motion.clip import Clip  # noqa: E402
 from motiondiff_edu.recipes.budget import train_for  # noqa: E402
 from tools.results.walks.budget import SMALL  # noqa: E402
 from tools.results.walks.scores import score  # noqa: E402
-from tools.results.walks.trials import FPS, SECONDS, T_H, UNSEEN, Trials, walker_generate  # noqa: E402
+from tools.results.walks.trials import (  # noqa: E402
+    FPS,
+    SECONDS,
+    T_H,
+    UNSEEN,
+    Trials,
+    walker_generate,
+)
 
 COMMAND = "python -m benchmarks walker"
 CLIPS = 240

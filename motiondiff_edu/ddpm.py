@@ -56,11 +56,15 @@ def make_schedule(beta: Float[Tensor, "S"], name: str = "schedule") -> Schedule:
     if bad or len(beta) < 2:
         where = f"beta_{bad[0]} = {float(beta[bad[0]]):g}" if bad else "there is none"
         raise ValueError(
-            f"{name}: every beta must lie between 0 and 1, but {where}; take more steps or smaller betas"
+            f"{name}: every beta must lie between 0 and 1, but {where}; "
+            "take more steps or smaller betas"
         )
     schedule = Schedule(beta, 1 - beta, torch.cumprod(1 - beta, 0), name)
     if schedule.signal_left > 0.1:
-        what = "Sampling starts from pure noise, which this schedule never reaches: take more steps or larger betas."
+        what = (
+            "Sampling starts from pure noise, which this schedule never reaches: "
+            "take more steps or larger betas."
+        )
         warnings.warn(f"{schedule_card(schedule)} {what}", stacklevel=3)
     return schedule
 

@@ -1,6 +1,8 @@
 """Diffusion dropout: now and then the past is noised as the future is, so that the control must do.
 
-    q(x_s | x) = N(sqrt(alpha_bar_s) x, (1 - alpha_bar_s) I),   with probability p_d for each sample of the batch
+    q(x_s | x) = N(sqrt(alpha_bar_s) x, (1 - alpha_bar_s) I),
+    with probability p_d for each sample of the batch
+
 Not nn.Dropout: nothing is set to zero, and nothing is rescaled. Rivals that set to zero stand
 beside it.
 Source: MoDiff III-D, eq. 12, Alg. 1.  Notebook: 09
@@ -40,7 +42,8 @@ def diffusion_dropout(
     """
     if past.ndim != 3 or s.shape != past.shape[:1] or (s < 0).any() or (s > schedule.S).any():
         raise ValueError(
-            f"past {tuple(past.shape)}, s {s.tolist()!r:.50}; pass (B, T_h, D), B steps 0..{schedule.S}"
+            f"past {tuple(past.shape)}, s {s.tolist()!r:.50}; "
+            f"pass (B, T_h, D), B steps 0..{schedule.S}"
         )
     hit = chosen(len(past), rate, generator).to(past.device)
     if not shared:

@@ -1,7 +1,9 @@
 """Some entries of a motion are given, the others are to be found: seeds, keyframes, parts of the
 body.
 
-    at every step s:  x_s = known ? noised snapshot of the given : x_s;  then one step of sampling as ever
+    at every step s:  x_s = known ? noised snapshot of the given : x_s
+                      then one step of sampling as ever
+
 at the end the given entries are put back as they were. A trained denoiser is enough: nothing is
 trained for it. Masking alone is not the conditional distribution (notebook 15): `resample` goes
 there and back at every step. Nor does a trained network's guess agree with what is given: `blend`
@@ -90,7 +92,9 @@ def guided(
     """x0_hat, with what is wrong at the given entries traced back to x_s, and from there to all
     others.
 
-        x0_hat + weight * length * pull,   pull = J^T (given - x0_hat)[known],   J = d x0_hat / d x_s
+        x0_hat + weight * length * pull
+        pull = J^T (given - x0_hat)[known],   J = d x0_hat / d x_s
+
     J is, up to a factor, the covariance of what x_s leaves open (Tweedie): whatever goes with the
     given is moved along. `length`, for each sample, leaves least wrong at the given entries of this
     guess: entries that say the same must not pull twice. (The sources have a constant there.)

@@ -1,9 +1,10 @@
 """MoFusion's network: a 1D U-Net over motion frames; every block ends by asking the music.
 
-    x_s -> [res, ask] -----------------------------------------------------------> [res, ask] -> eps_hat
-              halve -> [res, ask] ---------------------------------> [res, ask] -> double
-                         halve -> [res, ask] -------> [res, ask] -> double
-                                    halve -> [res, ask] -> double
+    x_s -> [res, ask] --------------------------------------------------> [res, ask] -> eps_hat
+             halve -> [res, ask] ----------------------------> [res, ask] -> double
+                        halve -> [res, ask] ------> [res, ask] -> double
+                                   halve -> [res, ask] -> double
+
 res: two convolutions over time, told the step s.  ask: cross-modal attention (`Ask`), keys and
 values from the music.
 Source: MoFusion 3.1-3.3, Fig. 3.  Notebook: 12

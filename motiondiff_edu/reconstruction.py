@@ -1,7 +1,9 @@
 """There and back: what is missing in the past is found by walking on, turning round, and walking
 back.
 
-    past with holes -> T_h new frames -> both reversed in time -> T_h new frames: the past, as it may have been
+    past with holes -> T_h new frames -> both reversed in time
+                    -> T_h new frames: the past, as it may have been
+
 The holes are filled from it, and again, until filling changes nothing. Nothing is trained for it.
 Where we differ: "reverse the order" is not enough for the control: velocities change their sign,
 and since control[t] leads from frame t to t + 1 they move by one frame.
@@ -90,7 +92,8 @@ def repair_steps(
         )
     if known.shape != past.shape or known.dtype != torch.bool:
         raise ValueError(
-            f"known is {known.dtype} {tuple(known.shape)}; give bool, {tuple(past.shape)} as past is"
+            f"known is {known.dtype} {tuple(known.shape)}; "
+            f"give bool, {tuple(past.shape)} as past is"
         )
     if control.shape[:2] != (len(past), 2 * T_h):
         raise ValueError(

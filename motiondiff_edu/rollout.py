@@ -95,12 +95,14 @@ def generate(
         or (past.shape[2], control.shape[-1]) != (D, C)
     ):
         raise ValueError(
-            f"past {tuple(past.shape)} and control {tuple(control.shape)} do not go together: the walker takes "
-            f"(B, {T_h}, {D}) and (B, T, {C}), or both without B; flatten positions (T, 21, 3) to (T, 63)"
+            f"past {tuple(past.shape)} and control {tuple(control.shape)} do not go together: the "
+            f"walker takes (B, {T_h}, {D}) and (B, T, {C}), or both without B; "
+            "flatten positions (T, 21, 3) to (T, 63)"
         )
     if past.shape[1] != T_h:
         raise ValueError(
-            f"the walker continues {T_h} past poses, got {past.shape[1]}: pass past[..., -{T_h}:, :]"
+            f"the walker continues {T_h} past poses, got {past.shape[1]}: "
+            f"pass past[..., -{T_h}:, :]"
         )
     if frames < 1:
         raise ValueError(
@@ -135,7 +137,8 @@ def _warn_beyond(control: Float[Tensor, "B T C"], seen: dict | None) -> None:
             else f"column {column}"
         )
         warnings.warn(
-            f"row {row} of the control asks for {control[batch, row, column]:.3g} ({name}); this walker learnt from "
-            f"{low[column]:.3g} to {high[column]:.3g}, and will do something else",
+            f"row {row} of the control asks for {control[batch, row, column]:.3g} ({name}); this "
+            f"walker learnt from {low[column]:.3g} to {high[column]:.3g}, "
+            "and will do something else",
             stacklevel=3,
         )

@@ -80,7 +80,10 @@ def resolve(name: str):
 
 
 def test_items_are_read_out_of_a_source_line():
-    text = "Noise. Source: MoDiff eq. 1-2, Alg. 1 (which errs), Tables I and II; MoFusion eq. 8-9.  Notebook: 02, 03"
+    text = (
+        "Noise. Source: MoDiff eq. 1-2, Alg. 1 (which errs), Tables I and II; MoFusion eq. "
+        "8-9.  Notebook: 02, 03"
+    )
     assert items(text, "MoDiff") == {"eq. 1", "eq. 2", "Alg. 1", "Table I", "Table II"}
     assert items(text, "MoFusion") == {"eq. 8", "eq. 9"}
 

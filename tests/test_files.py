@@ -1,4 +1,4 @@
-"""The files themselves: short, tied to no machine, the same vocabulary everywhere."""
+"""The files themselves: read in one sitting, tied to no machine, one statement a line."""
 
 import re
 import subprocess
@@ -29,7 +29,9 @@ TEXT = {
 
 FORBIDDEN = {
     "an absolute path of one machine": r"(?<![\w.~:/])/(home|root|Users|tmp|mnt|opt|srv|work)/\w",
-    "a package registry": r"\b(pypi|pythonhosted|conda\.anaconda|npmjs|unpkg|jsdelivr|crates)\.(org|com|io|net)\b",
+    "a package registry": (
+        r"\b(pypi|pythonhosted|conda\.anaconda|npmjs|unpkg|jsdelivr|crates)\.(org|com|io|net)\b"
+    ),
     "a loose end": r"\bTO[D]O\b|\bFIX[M]E\b|\bX[X]X\b",
 }
 THIS = Path(__file__)

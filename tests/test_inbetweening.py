@@ -140,8 +140,17 @@ def clip(T: int = 40) -> np.ndarray:
     return to_world(walked.poses, walked.control, (3.0, -2.0, 0.7))[:T]
 
 
-@pytest.mark.parametrize("known", [seed(40, 10), keyframes(40, 12), gap(40, 5, 20), body_part(40, "lower body"),
-                                   body_part(40, "upper body"), body_part(40, "trajectory")])  # fmt: skip
+@pytest.mark.parametrize(
+    "known",
+    [
+        seed(40, 10),
+        keyframes(40, 12),
+        gap(40, 5, 20),
+        body_part(40, "lower body"),
+        body_part(40, "upper body"),
+        body_part(40, "trajectory"),
+    ],
+)
 @pytest.mark.parametrize("C", [0, 5])
 def test_known_entries_come_back_bit_by_bit_and_the_rest_is_made(known, C):
     truth, mel = clip(), torch.randn(64, 5, generator=seeded(9)) if C else None
@@ -166,8 +175,16 @@ def test_all_known_is_the_input_and_nothing_known_is_a_plain_sample():
         one, np.full_like(truth, np.nan), ~everything, samples=2, steps=5, generator=seeded(2)
     )
     draw = seeded(2)
-    plain = last(ddim_steps(one.denoiser(None, 40), torch.randn(2, 40, 63, generator=draw), one.schedule, 5, 1.0,
-                            generator=draw))  # fmt: skip
+    plain = last(
+        ddim_steps(
+            one.denoiser(None, 40),
+            torch.randn(2, 40, 63, generator=draw),
+            one.schedule,
+            5,
+            1.0,
+            generator=draw,
+        )
+    )
     np.testing.assert_allclose(made, to_positions(one.motion_scaler.inverse(plain)), atol=1e-5)
 
 

@@ -48,7 +48,10 @@ def test_denoiser_of_turns_any_network_into_eps(case):
     x0, eps, s, schedule, x_s = case
     s = s if isinstance(s, torch.Tensor) else torch.full((2,), s)
     for target in P.TARGETS:
-        network = lambda x, s, target=target: P.target_of(x0, eps, s, schedule, target)  # noqa: E731
+
+        def network(x, s, target=target):
+            return P.target_of(x0, eps, s, schedule, target)
+
         torch.testing.assert_close(P.denoiser_of(network, schedule, target)(x_s, s), eps)
 
 

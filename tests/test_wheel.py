@@ -39,10 +39,14 @@ from motiondiff_edu.widgets.player import Player
 from data_synth import mixtures
 import numpy as np
 
-walkers = {n: sum(p.numel() for p in checkpoints.pretrained(n).model.parameters()) for n in checkpoints.available()}
+walkers = {
+    name: sum(p.numel() for p in checkpoints.pretrained(name).model.parameters())
+    for name in checkpoints.available()
+}
 player = Player(np.zeros((2, 21, 3)))
 print(json.dumps({
-    "package": motiondiff_edu.__file__, "data": data_synth.__file__, "version": motiondiff_edu.__version__,
+    "package": motiondiff_edu.__file__, "data": data_synth.__file__,
+    "version": motiondiff_edu.__version__,
     "walkers": walkers, "module": len(str(player._esm)), "pins": len(doctor.constraints()),
     "notebooks": sorted(p.name for p in (command.notebook_folder() / "student").glob("*.ipynb")),
     "place": [str(p) for p in command.place_for_students(command.notebook_folder())],

@@ -102,7 +102,9 @@ def test_a_rate_that_no_reader_takes_for_one_is_not_written(tmp_path, fps):
 
 
 SHAPES = {  # in a process of its own: here the tests' own check of shapes would speak first
-    "write_bvh('x.bvh', np.zeros((5, 63)))": "positions are (T, 21, 3), metres in the world; these are (5, 63).",
+    "write_bvh('x.bvh', np.zeros((5, 63)))": (
+        "positions are (T, 21, 3), metres in the world; these are (5, 63)."
+    ),
     "write_bvh('x.bvh', np.zeros((5, 20, 3)))": "these are (5, 20, 3)",
     "to_world(np.zeros((5, 21, 3)), np.zeros((1, 3)))": "5 poses and 1 rows of control",
 }

@@ -96,7 +96,7 @@ def opening(notebook: dict) -> Iterator[str]:
         yield "the first cell must begin with a title (# ...)"
     for cell in code(notebook)[1:]:
         if any(isinstance(node, ast.Import | ast.ImportFrom) for node in parsed(cell).body):
-            yield f"cell {cell.get('id')} imports; all imports belong into the cell tagged `imports`"
+            yield f"cell {cell.get('id')} imports; imports belong into the cell tagged `imports`"
 
 
 def parsed(cell: dict) -> ast.Module:

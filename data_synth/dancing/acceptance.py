@@ -21,14 +21,21 @@ from .statistics import kinematic_beats, repeats, statistics
 
 # name -> (lowest, highest) of 8 real upright dances at 20 frames/s
 UPRIGHT = {
-    "speed": (0.33, 1.6), "neither_planted": (0.06, 0.79), "hips_spread": (0.05, 0.26), "beats_per_second": (1.1, 2.4),
-    "pca95": (6, 13), "jerk": (31, 362), "power4": (0.79, 0.99),
-}  # fmt: skip
+    "speed": (0.33, 1.6),
+    "neither_planted": (0.06, 0.79),
+    "hips_spread": (0.05, 0.26),
+    "beats_per_second": (1.1, 2.4),
+    "pca95": (6, 13),
+    "jerk": (31, 362),
+    "power4": (0.79, 0.99),
+}
 # what we ask of ourselves: with the right song; the share of the music's beats that the body marks
 OWN = {"own_song": (0.6, 0.85), "other_song": (0.15, 0.35), "beats_per_beat": (0.6, 1.3)}
 # genres whose mean over dances lies outside, and why; the data card tells more
 OUTSIDE = {
-    "waltz neither_planted": "three steps a bar, each landing before the next lifts, and planted feet are still",
+    "waltz neither_planted": (
+        "three steps a bar, each landing before the next lifts, and planted feet are still"
+    ),
     "latin neither_planted": "small steps close to the floor, and planted feet are still",
 }
 

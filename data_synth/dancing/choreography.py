@@ -93,9 +93,17 @@ def choreograph(
         moves.append(move)
         count = max(1, round(length / move.rate))
         sheet = Sheet(
-            script, start, count, length / count, move.mirrored, move.size, stride * min(move.size, 1.08) ** 0.5, rest,
-            song.metre, rng,
-        )  # fmt: skip
+            script,
+            start,
+            count,
+            length / count,
+            move.mirrored,
+            move.size,
+            stride * min(move.size, 1.08) ** 0.5,
+            rest,
+            song.metre,
+            rng,
+        )
         _gather(sheet, script)
         sheet.drift = _drift(script, count, rng)
         next(f for f in (*manner.moves, *manner.calm) if f.__name__ == move.name)(sheet)

@@ -1,7 +1,7 @@
 """Dances to a song: phrases of moves from the genre's own vocabulary, arriving on the beat, on feet
 that stay planted.
 
-    python -m data_synth dances --out FOLDER     # BVH for Blender, npz (no pickle) for everything else
+    python -m data_synth dances --out FOLDER   # BVH for Blender, npz (no pickle) for all else
 
 What a dance depends on is the song's score and a seed: two seeds give two dances to one song.
 """
@@ -64,7 +64,8 @@ def dance(song: Song, seed: int, only: str | None = None) -> Dance:
         raise ValueError(f"no moves for the genre {song.genre!r}; there are {', '.join(MANNERS)}")
     if len(song.beats) < 2:
         raise ValueError(
-            f"a dance needs two beats or more, this song of {song.seconds:.1f} s has {len(song.beats)}"
+            "a dance needs two beats or more, "
+            f"this song of {song.seconds:.1f} s has {len(song.beats)}"
         )
     if seed < 0:
         raise ValueError(f"a seed is a whole number from 0 on, got {seed}")

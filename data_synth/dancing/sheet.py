@@ -25,8 +25,19 @@ class Sheet:
     its own choices.
     """
 
-    def __init__(self, script: Script, start: float, n: int, rate: float, mirrored: bool, size: float, stride: float,
-                 rest: dict[str, float], metre: int, rng: np.random.Generator):  # fmt: skip
+    def __init__(
+        self,
+        script: Script,
+        start: float,
+        n: int,
+        rate: float,
+        mirrored: bool,
+        size: float,
+        stride: float,
+        rest: dict[str, float],
+        metre: int,
+        rng: np.random.Generator,
+    ):
         self.script, self.start, self.n, self.rate = script, start, n, rate
         self.sign, self.size, self.stride = (-1 if mirrored else 1), size, stride
         self.rest, self.metre, self.rng = rest, metre, rng
@@ -64,8 +75,18 @@ class Sheet:
         s, c = sin(heading), cos(heading)
         return hx + x * c + z * s, hz - x * s + z * c, heading + self.sign * radians(yaw)
 
-    def step(self, foot: int, count: float, x: float, z: float, turn: float | None = None, height: float = 0.06,
-             weight: bool = True, swing: float = 0.74, kick: float = 0.0) -> None:  # fmt: skip
+    def step(
+        self,
+        foot: int,
+        count: float,
+        x: float,
+        z: float,
+        turn: float | None = None,
+        height: float = 0.06,
+        weight: bool = True,
+        swing: float = 0.74,
+        kick: float = 0.0,
+    ) -> None:
         """Put a foot (0 left, 1 right) down at a count, its ankle at (x left, z ahead) of home.
 
         The weight goes to the other foot before it lifts, and over to it after it has landed unless
@@ -79,8 +100,15 @@ class Sheet:
         if weight:  # the rest of it follows before the other foot lifts
             self.key("weight", (count + 0.06 / self.rate, ARRIVED * side))
 
-    def jump(self, count: float, left: tuple[float, float], right: tuple[float, float], height: float = 0.09,
-             turns: tuple[float, float] = (9.0, -9.0), swing: float = 0.6) -> None:  # fmt: skip
+    def jump(
+        self,
+        count: float,
+        left: tuple[float, float],
+        right: tuple[float, float],
+        height: float = 0.09,
+        turns: tuple[float, float] = (9.0, -9.0),
+        swing: float = 0.6,
+    ) -> None:
         """Both feet leave the floor together and come down at a count, at (x, z) each."""
         count -= 0.07  # the knees give after it
         lifts = [

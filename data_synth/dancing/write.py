@@ -66,7 +66,8 @@ def main(arguments: list[str] | None = None) -> None:
         write_bvh(given.out / f"dance_{k:03d}.bvh", danced.positions, danced.fps)
     genres = list(GENRES) if given.genre is None else [given.genre]
     print(
-        f"{given.dances} dances of {given.seconds:g} s ({', '.join(genres[: given.dances])}) in {given.out}"
+        f"{given.dances} dances of {given.seconds:g} s "
+        f"({', '.join(genres[: given.dances])}) in {given.out}"
     )
 
 

@@ -81,12 +81,16 @@ def main(arguments: list[str] | None = None) -> None:
         parser.error(str(error))
     except OSError as error:
         parser.error(
-            f"--out {given.out} cannot be a folder ({error.strerror}): give the name of a folder, new or old"
+            f"--out {given.out} cannot be a folder ({error.strerror}): "
+            "give the name of a folder, new or old"
         )
     for k, song in enumerate(made):
         save_song(song, given.out / f"song_{k:03d}")
         print(
-            f"song_{k:03d}: {song.genre}, {song.tempo:.0f} BPM, {song.metre} beats a bar, {song.timbre}",
+            (
+                f"song_{k:03d}: {song.genre}, {song.tempo:.0f} BPM, "
+                f"{song.metre} beats a bar, {song.timbre}"
+            ),
             flush=True,
         )
     print(f"{given.songs} songs of {given.seconds:g} s in {given.out}")

@@ -21,7 +21,8 @@ def statistics(world: Float[np.ndarray, "T 21 3"], fps: float = 20.0) -> dict[st
     found, c = cycles(walk), curves(walk)
     if not found:
         raise ValueError(
-            "no steady gait cycle in this clip: it must walk straight for at least two steps of each foot"
+            "no steady gait cycle in this clip: "
+            "it must walk straight for at least two steps of each foot"
         )
     rows = [_of_cycle(walk, cycle, c) for cycle in found]
     out = {k: float(np.mean([r[k] for r in rows])) for k in rows[0]}

@@ -54,7 +54,8 @@ def continuations(past: Clip, control: Float[np.ndarray, "n 3"], n: int, seed: i
     made, control = past.info.get("made"), _checked(control)
     if made is None:
         raise ValueError(
-            f"clip {past.source!r} was not made by data_synth.walking, so its own continuations are unknown"
+            f"clip {past.source!r} was not made by data_synth.walking, "
+            "so its own continuations are unknown"
         )
     end = _end_in(past)
     whole = np.concatenate([made["control"][:end], control])
@@ -94,7 +95,8 @@ def _checked(control: np.ndarray) -> np.ndarray:
         )
     if not np.isfinite(control).all():
         raise ValueError(
-            f"control has a value that is not finite in frame {int(np.argmin(np.isfinite(control).all(1)))}"
+            "control has a value that is not finite in frame "
+            f"{int(np.argmin(np.isfinite(control).all(1)))}"
         )
     if (np.abs(control) > (4.5, 1.5, 4.5)).any():
         t = int(np.argmax((np.abs(control) > (4.5, 1.5, 4.5)).any(1)))

@@ -1,7 +1,8 @@
 """How far is each way of filling in from the true conditional? Judged where that is known: on
 Gaussian mixtures.
 
-    wanted: p(unknown | known) of a mixture (`exact.conditional`); asked: the exact denoiser, so the method alone errs
+    wanted: p(unknown | known) of a mixture (`exact.conditional`)
+    asked:  the exact denoiser, so the method alone errs
 Ways: masked sampling (MoFusion 4.4), with and without resampling, in few steps or many;
 there-and-back (MoDiff III-E), which draws the future from the past and the past from the future;
 the same with what is known kept in view, which is Gibbs sampling; and draws from the wanted itself,

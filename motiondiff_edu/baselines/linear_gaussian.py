@@ -88,7 +88,8 @@ def design(windows: Windows) -> tuple[Float[Tensor, "K F"], Float[Tensor, "K D"]
     """
     if windows.T_p != 1:
         raise ValueError(
-            f"this model predicts one pose at a time; make the windows with T_p=1, not {windows.T_p}"
+            "this model predicts one pose at a time; "
+            f"make the windows with T_p=1, not {windows.T_p}"
         )
     rows = windows.starts[:, None] + torch.arange(windows.T_h + 1)
     poses, control = windows.poses.double()[rows], windows.control.double()[rows[:, :-1]]

@@ -55,7 +55,8 @@ def fit(rows: Float[Tensor, "K F"], ridge: float = 1e-2) -> ConditionalMean:
     """
     if len(rows) < 2 or ridge <= 0:
         raise ValueError(
-            f"a covariance needs two rows and a ridge above 0, not {len(rows)} rows and ridge {ridge:g}"
+            "a covariance needs two rows and a ridge above 0, "
+            f"not {len(rows)} rows and ridge {ridge:g}"
         )
     mean = rows.double().mean(0)
     centred = rows.double() - mean

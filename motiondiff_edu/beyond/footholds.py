@@ -63,7 +63,8 @@ class FootholdConfig(MoDiffConfig):
             raise ValueError('a foothold is a place: it needs target="x0" and skip=False')
         if self.D != 3 * J:
             raise ValueError(
-                f"footholds are for the {J} joints of the course's skeleton, D = {3 * J}, not {self.D}"
+                f"footholds are for the {J} joints of the course's skeleton, D = {3 * J}, "
+                f"not {self.D}"
             )
 
 

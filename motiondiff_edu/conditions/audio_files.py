@@ -68,8 +68,9 @@ def read_audio(path: str | Path) -> Float[Tensor, "N"]:
     bad = np.flatnonzero(~np.isfinite(channels).all(1))
     if len(bad):
         raise AudioError(
-            f"{path.name}: {len(bad)} samples are NaN or infinite, the first at {bad[0] / rate:.3f} s; "
-            "the program that wrote it divided by zero: export the sound again"
+            f"{path.name}: {len(bad)} samples are NaN or infinite, the first at "
+            f"{bad[0] / rate:.3f} s; the program that wrote it divided by zero: "
+            "export the sound again"
         )
     mono = _mono(channels, path.name)
     if loss:
@@ -166,10 +167,16 @@ def _other_kind(path: Path, error: Exception) -> str:
         head = file.read(64)
     for (where, mark), kind in VIDEO_AND_PHONES.items():
         if head[where : where + len(mark)] == mark:
-            return f'is {kind}, which needs ffmpeg. Convert it first: ffmpeg -i "{path}" "{path.with_suffix(".wav")}"'
+            return (
+                f"is {kind}, which needs ffmpeg. Convert it first: "
+                f'ffmpeg -i "{path}" "{path.with_suffix(".wav")}"'
+            )
     if not head:
         return "is an empty file (0 bytes): copy or download it again"
     if head.isascii() and b"\0" not in head:
-        return f"is text, not sound; it begins with {head[:20].decode()!r}. Was it downloaded by its page's address?"
+        return (
+            f"is text, not sound; it begins with {head[:20].decode()!r}. "
+            "Was it downloaded by its page's address?"
+        )
     reason = getattr(error, "error_string", str(error)).rstrip(".")
     return f"is no sound file that can be read ({reason}). Save it again as wav, flac, ogg or mp3"

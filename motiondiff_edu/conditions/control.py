@@ -75,7 +75,8 @@ def joystick(
     )
     if bad is not None or not segments:
         raise ValueError(
-            f"a segment is (seconds, forward, left, yaw), four finite numbers, not {bad or 'nothing'}"
+            "a segment is (seconds, forward, left, yaw), four finite numbers, "
+            f"not {bad or 'nothing'}"
         )
     rows, value = [], np.array(segments[0][1:], dtype=np.float64)
     for seconds, *target in segments:
@@ -152,7 +153,8 @@ def round_path(
     where = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))])
     if len(points) < 2 or where[-1] < 0.05:
         raise ValueError(
-            f"a path needs at least two points and 5 cm, this one has {len(points)} point(s): draw on"
+            "a path needs at least two points and 5 cm, "
+            f"this one has {len(points)} point(s): draw on"
         )
     even = np.linspace(0, where[-1], int(np.ceil(where[-1] / SPACING)) + 1)
     line = np.stack([np.interp(even, where, column) for column in points.T], -1)
@@ -200,9 +202,15 @@ def _speeds(
 
 
 def _control_at(
-    frames: np.ndarray, time: np.ndarray, curve: np.ndarray, heading: np.ndarray, halts: list[int], pause: float | int,
-    fps: float | int, max_yaw: float | int,
-) -> Float[np.ndarray, "T 3"]:  # fmt: skip
+    frames: np.ndarray,
+    time: np.ndarray,
+    curve: np.ndarray,
+    heading: np.ndarray,
+    halts: list[int],
+    pause: float | int,
+    fps: float | int,
+    max_yaw: float | int,
+) -> Float[np.ndarray, "T 3"]:
     """Read the timed curve at the frames, turn to it first where needed, and take velocities."""
     knots = np.insert(
         np.arange(len(time)), [h + 1 for h in halts], halts

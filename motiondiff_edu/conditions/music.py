@@ -64,7 +64,8 @@ def mel_filters(
     """
     if not 0 <= f_min < f_max <= sample_rate / 2:
         raise ValueError(
-            f"bands must lie within 0 and {sample_rate / 2:g} Hz, ascending; got {f_min:g} to {f_max:g}"
+            f"bands must lie within 0 and {sample_rate / 2:g} Hz, ascending; "
+            f"got {f_min:g} to {f_max:g}"
         )
     ends = hz_to_mel(torch.tensor([f_min, f_max], dtype=torch.float64))
     edges = mel_to_hz(
@@ -139,7 +140,8 @@ def crop_seconds(
     if first < 0 or n < 1 or first + n > mel.shape[-2]:
         lasts = (mel.shape[-2] - 1) / FRAMES_PER_SECOND
         raise ValueError(
-            f"{seconds:g} s from {start:g} s are not within this song of {lasts:.2f} s; one frame is 32 ms"
+            f"{seconds:g} s from {start:g} s are not within this song of {lasts:.2f} s; "
+            "one frame is 32 ms"
         )
     return mel[..., first : first + n, :], frame_times(first + n)[first:] - start
 

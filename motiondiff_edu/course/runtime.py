@@ -79,8 +79,8 @@ class Run:
     def __str__(self) -> str:
         show = ", demo: shipped weights, no training" if self.demo else ""
         return (
-            f"notebook {self.notebook} | profile {self.profile} | seed {self.seed} | torch {torch.__version__} "
-            f"on {self.device}, {threads()} threads{show}"
+            f"notebook {self.notebook} | profile {self.profile} | seed {self.seed} | torch "
+            f"{torch.__version__} on {self.device}, {threads()} threads{show}"
         )
 
 

@@ -122,13 +122,14 @@ def _checked(positions, known) -> tuple[Float[np.ndarray, "T 21 3"], Bool[np.nda
     positions, known = np.asarray(positions), np.asarray(known)
     if positions.shape[1:] != (J, 3) or known.shape != positions.shape[:2] or known.dtype != bool:
         raise ValueError(
-            f"it takes positions (T, {J}, 3) and a mask (T, {J}) of True and False, not {positions.shape} and "
-            f"{known.shape} of {known.dtype}"
+            f"it takes positions (T, {J}, 3) and a mask (T, {J}) of True and False, "
+            f"not {positions.shape} and {known.shape} of {known.dtype}"
         )
     wrong = np.argwhere(known & ~np.isfinite(positions).all(-1))
     if len(wrong):
         frame, joint = wrong[0]
         raise ValueError(
-            f"{JOINTS[joint]} in frame {frame} is given and not a number: mend it, or do not give it"
+            f"{JOINTS[joint]} in frame {frame} is given and not a number: "
+            "mend it, or do not give it"
         )
     return positions, known

@@ -71,7 +71,8 @@ def mend_steps(
     """
     if known.shape != past.shape[:-1]:
         raise ValueError(
-            f"known is {known.shape}, and must have an entry for each joint of each frame: {past.shape[:-1]}"
+            f"known is {known.shape}, and must have an entry for each joint of "
+            f"each frame: {past.shape[:-1]}"
         )
     if known.all():
         raise ValueError("nothing is missing: there is nothing to repair")

@@ -75,11 +75,13 @@ def beat_scores(
     within = [int(((beats >= 0) & (beats <= seconds)).sum()) for beats in music]
     if len(music) != len(positions):
         raise ValueError(
-            f"{len(positions)} dances and the beats of {len(music)} songs: each dance needs its song"
+            f"{len(positions)} dances and the beats of {len(music)} songs: "
+            "each dance needs its song"
         )
     if 0 in within:
         raise ValueError(
-            f"song {within.index(0)} has no beat in the {seconds:g} s of its dance; are its times seconds?"
+            f"song {within.index(0)} has no beat in the {seconds:g} s of its dance; "
+            "are its times seconds?"
         )
     found = [kinematic_beats(dance, fps) for dance in positions]
     every = _every_pair(found, music, sigma)

@@ -176,5 +176,6 @@ def f_measure(
 def _some_music(music: Float[np.ndarray, "M"]) -> None:
     if len(music) == 0:
         raise ValueError(
-            "this music has no beat to be compared with: was it silent, or cut before its first beat?"
+            "this music has no beat to be compared with: "
+            "was it silent, or cut before its first beat?"
         )

@@ -22,8 +22,8 @@ def bone_lengths(positions: Float[np.ndarray, "*B T J 3"]) -> Float[np.ndarray, 
     """
     if positions.shape[-2] != len(PARENTS):
         raise ValueError(
-            f"bones are measured on the course's {len(PARENTS)} joints, these positions have {positions.shape[-2]}: "
-            "retarget the motion first (motion.retarget)"
+            f"bones are measured on the course's {len(PARENTS)} joints, these positions have "
+            f"{positions.shape[-2]}: retarget the motion first (motion.retarget)"
         )
     positions = np.asarray(positions, np.float64)
     return np.linalg.norm(positions[..., 1:, :] - positions[..., PARENTS[1:], :], axis=-1)

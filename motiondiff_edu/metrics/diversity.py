@@ -27,7 +27,8 @@ def spread(
         raise ValueError("a spread needs at least 2 rollouts of the same past and control, got 1")
     if rollouts.shape[-3] <= first:
         raise ValueError(
-            f"rollouts of {rollouts.shape[-3]} frames end before the spread begins, at frame {first}"
+            f"rollouts of {rollouts.shape[-3]} frames end before the spread begins, "
+            f"at frame {first}"
         )
     late = np.asarray(rollouts, np.float64)[..., first:, :, :]
     deviation = late - late.mean(-4, keepdims=True)

@@ -89,7 +89,10 @@ def fid(generated: Float[np.ndarray, "N F"], data: Float[np.ndarray, "M F"]) -> 
     generated, data = _checked(generated, data)
     if min(len(generated), len(data)) <= data.shape[1]:
         warnings.warn(
-            f"{len(generated)} and {len(data)} clips for {data.shape[1]} features: more clips than features are needed",
+            (
+                f"{len(generated)} and {len(data)} clips for {data.shape[1]} features: "
+                "more clips than features are needed"
+            ),
             FewSamplesWarning,
             stacklevel=2,
         )
@@ -121,7 +124,8 @@ def fid_floor(
     """
     if not 2 <= n <= len(data) - 2:
         raise ValueError(
-            f"of {len(data)} clips {n} cannot be set against the others: two are needed on both sides"
+            f"of {len(data)} clips {n} cannot be set against the others: "
+            "two are needed on both sides"
         )
     found = []
     with warnings.catch_warnings():
@@ -159,7 +163,8 @@ def _checked(generated: np.ndarray, data: np.ndarray) -> tuple[np.ndarray, np.nd
     for name, features in (("generated", generated), ("data's", data)):
         if len(features) < 2:
             raise ValueError(
-                f"a covariance takes two clips, and there is {len(features)} among the {name} features"
+                "a covariance takes two clips, and there is "
+                f"{len(features)} among the {name} features"
             )
         if not np.isfinite(features).all():
             bad = int(np.flatnonzero(~np.isfinite(features).all(1))[0])

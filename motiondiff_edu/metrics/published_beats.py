@@ -78,7 +78,8 @@ def _mean_over(
 ) -> float:
     if len(these) == 0 or len(others) == 0:
         raise ValueError(
-            "one side has no beat at all: this form of the score is not defined then (see metrics.beats)"
+            "one side has no beat at all: this form of the score is not "
+            "defined then (see metrics.beats)"
         )
     nearest = np.abs(these[:, None] - others[None, :]).min(1)
     return float(np.exp(-(nearest**2) / (2 * sigma**2)).mean())

@@ -84,7 +84,8 @@ def repeat_score(
     first, last = round(lags[0] * fps), round(lags[1] * fps)
     if len(similarity) <= first:
         raise ValueError(
-            f"{len(positions) / fps:g} s leave no lag of {lags[0]:g} s with {OVERLAP:g} s to compare"
+            f"{len(positions) / fps:g} s leave no lag of {lags[0]:g} s "
+            f"with {OVERLAP:g} s to compare"
         )
     return float(similarity[first : last + 1].max())
 

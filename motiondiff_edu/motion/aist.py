@@ -17,9 +17,24 @@ from numpy._core import multiarray, numeric
 
 AIST_FPS = 60.0
 COCO = (
-    "Nose", "LeftEye", "RightEye", "LeftEar", "RightEar", "LeftShoulder", "RightShoulder", "LeftElbow", "RightElbow",
-    "LeftWrist", "RightWrist", "LeftHip", "RightHip", "LeftKnee", "RightKnee", "LeftAnkle", "RightAnkle",
-)  # fmt: skip
+    "Nose",
+    "LeftEye",
+    "RightEye",
+    "LeftEar",
+    "RightEar",
+    "LeftShoulder",
+    "RightShoulder",
+    "LeftElbow",
+    "RightElbow",
+    "LeftWrist",
+    "RightWrist",
+    "LeftHip",
+    "RightHip",
+    "LeftKnee",
+    "RightKnee",
+    "LeftAnkle",
+    "RightAnkle",
+)
 LARGEST = 300_000_000  # bytes
 FLOOR_PERCENTILE = 1.0
 
@@ -104,7 +119,8 @@ class _Restricted(pickle.Unpickler):
     def find_class(self, module: str, name: str):
         if (module, name) not in _ADMITTED:
             raise AistError(
-                f"it names {module}.{name}, which an array does not need: such a file may run a program"
+                f"it names {module}.{name}, which an array does not need: "
+                "such a file may run a program"
             )
         return _ADMITTED[module, name] or _encode
 
@@ -140,7 +156,10 @@ def _told_of_npy(raw: bytes) -> str:
     except ValueError:
         return f"a .npy file that holds Python objects; {wanted}"
     if shape[-1:] == (34,):
-        return f"a .npy file of shape {shape}: 34 music or motion features a frame, normalised, and no joints; {wanted}"
+        return (
+            f"a .npy file of shape {shape}: 34 music or motion features a frame, normalised, "
+            f"and no joints; {wanted}"
+        )
     return f"a .npy file of shape {shape}; {wanted}"
 
 

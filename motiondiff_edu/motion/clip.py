@@ -30,7 +30,8 @@ class Clip:
     def __post_init__(self):
         if len(self.poses) != len(self.control):
             raise ValueError(
-                f"clip {self.source!r}: {len(self.poses)} poses but {len(self.control)} rows of control"
+                f"clip {self.source!r}: {len(self.poses)} poses but "
+                f"{len(self.control)} rows of control"
             )
 
     def __len__(self) -> int:

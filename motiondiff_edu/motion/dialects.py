@@ -22,7 +22,10 @@ SIDED = {
     "Arm": "arm shldr uparm upperarm shoulder humerus",
     "ForeArm": "forearm lowarm lowerarm elbow radius",
     "Hand": "wrist hand",
-    "HandIndex1": "handindex1 handmiddle1 mid1 middle1 index1 fingers finger1 finger handend handtip palm hand",
+    "HandIndex1": (
+        "handindex1 handmiddle1 mid1 middle1 index1 fingers finger1 "
+        "finger handend handtip palm hand"
+    ),
 }
 CENTRAL = {
     "Hips": "hips hip pelvis root",
@@ -117,7 +120,8 @@ def refuse_incomplete(mapping: Mapping[str, str], bvh: Bvh) -> None:
     lacking = [joint for joint in NEEDED if joint not in mapping]
     if lacking:
         raise BvhError(
-            f"no joint found for {', '.join(lacking)}. The file has: {', '.join(bvh.joints)}. Give the missing ones, "
-            f"for instance load_clip(path, mapping={{'{lacking[0]}': '<its joint>', ...}}).",
+            f"no joint found for {', '.join(lacking)}. The file has: {', '.join(bvh.joints)}. "
+            "Give the missing ones, for instance load_clip(path, "
+            f"mapping={{'{lacking[0]}': '<its joint>', ...}}).",
             bvh.source,
         )

@@ -54,7 +54,10 @@ def to_metres(
     length = leg_length(points)
     if not length > 1e-9:
         raise BvhError(
-            "the legs have no length, so the unit cannot be told; check the mapping of UpLeg, Leg, Foot.",
+            (
+                "the legs have no length, so the unit cannot be told; "
+                "check the mapping of UpLeg, Leg, Foot."
+            ),
             source,
         )
     return points * (LEG / length), LEG / length

@@ -29,7 +29,8 @@ def resample(
         raise ValueError(f"frame rates are positive, got {fps} and {to}")
     if to < fps - 1e-6:
         raise ValueError(
-            f"from {fps:g} down to {to:g} frames/s fast movement must be taken out first: motion.normalise.resample"
+            f"from {fps:g} down to {to:g} frames/s fast movement must be taken out first: "
+            "motion.normalise.resample"
         )
     if len(positions) < 2:
         raise ValueError(f"a motion of {len(positions)} frames has nothing between its frames")

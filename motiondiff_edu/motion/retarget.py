@@ -166,7 +166,10 @@ def warn_sunk(
 def refuse_short(count: int, bvh: Bvh) -> None:
     """Raise BvhError for a clip too short to tell a way from."""
     if count / bvh.fps < SHORTEST:
-        problem = f"{count} frames at {bvh.fps:g} frames/s are {count / bvh.fps:.2f} s; {SHORTEST} s are needed."
+        problem = (
+            f"{count} frames at {bvh.fps:g} frames/s are {count / bvh.fps:.2f} s; "
+            f"{SHORTEST} s are needed."
+        )
         raise BvhError(problem + " If the frame time is wrong, pass file_fps=.", bvh.source)
 
 

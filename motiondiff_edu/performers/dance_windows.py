@@ -90,7 +90,8 @@ class DanceWindows:
         )
         if not len(dances) == len(contacts) == len(mels):
             raise ValueError(
-                f"{len(dances)} dances, {len(contacts)} contacts and {len(mels)} songs: each needs its own"
+                f"{len(dances)} dances, {len(contacts)} contacts and {len(mels)} songs: "
+                "each needs its own"
             )
         lengths = enumerate(zip(map(len, dances), map(len, contacts), strict=True))
         uneven = next(((k, *both) for k, both in lengths if both[0] != both[1]), None)

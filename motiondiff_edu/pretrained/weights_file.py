@@ -64,7 +64,8 @@ def read_weights(path: str | Path, kinds: Mapping[str, Assemble]) -> object:
         if metadata.get(what) != digest:
             part = "tensors" if what == "sha256" else "settings"
             raise CheckpointError(
-                f"{path.name} is damaged: its {part} are not those that were written; fetch it again"
+                f"{path.name} is damaged: its {part} are not those that were written; "
+                "fetch it again"
             )
     bad = [name for name, tensor in tensors.items() if not torch.isfinite(tensor.float()).all()]
     if bad:

@@ -61,8 +61,8 @@ WALKER_EPS = Recipe("walker-eps", MODIFF_SMALL, steps=20_000, schedule="leap", h
 # frame (so 300,000 steps, not epochs) and hold the control in half of the cases; the skip; the
 # warm-up and cosine of the rate.
 WALKER_PAPER = Recipe(
-    "walker-paper", MODIFF_PAPER, steps=300_000, lr=5e-5, optimizer="adam", noises=1, jitter=0.0, metres=0.0, near=0.0,
-    bones=0.0, clips=2400,
+    "walker-paper", MODIFF_PAPER, steps=300_000, lr=5e-5, optimizer="adam", noises=1, jitter=0.0,
+    metres=0.0, near=0.0, bones=0.0, clips=2400,
 )  # fmt: skip
 
 # Pairs of small walkers, alike but for diffusion dropout, each with three training seeds: notebooks

@@ -83,7 +83,8 @@ def parts_for(joints: int, parents: list[int] | None = None) -> tuple[Part, ...]
         return stick_parts(list(parents))
     if joints != J:
         raise ValueError(
-            f"positions have {joints} joints, the course's skeleton has {J}: give `parents` for another"
+            f"positions have {joints} joints, the course's skeleton has {J}: "
+            "give `parents` for another"
         )
     return BODY
 

@@ -64,7 +64,10 @@ def small_multiples(
     """One small picture for each entry, all with the same axes, so that they can be compared."""
     columns = min(columns, len(panels))
     rows = -(-len(panels) // columns)
-    words = f"{title + ': ' if title else ''}{ylabel} over {xlabel}, one picture each for {', '.join(panels)}."
+    words = (
+        f"{title + ': ' if title else ''}{ylabel} over {xlabel}, "
+        f"one picture each for {', '.join(panels)}."
+    )
     fig, axes = figure(
         4.2 * columns, 3.2 * rows + 0.3, words, rows, columns, sharex=True, sharey=True
     )

@@ -66,12 +66,14 @@ def attention_over_sound(
         or (np.diff(token_times) <= 0).any()
     ):
         raise ValueError(
-            f"token_times are {weights.shape[1]} (two or more) increasing seconds: {token_times!r:.80}"
+            f"token_times are {weights.shape[1]} (two or more) increasing seconds: "
+            f"{token_times!r:.80}"
         )
     T, seconds = len(weights), len(audio) / sample_rate
     words = (
-        f"Attention of {T / fps:.1f} s of motion over {seconds:.1f} s of music, below its waveform; a row sums to one, "
-        "darker is more; on the dashed line motion and music are at the same moment; upright lines are beats."
+        f"Attention of {T / fps:.1f} s of motion over {seconds:.1f} s of music, below its "
+        "waveform; a row sums to one, darker is more; "
+        "on the dashed line motion and music are at the same moment; upright lines are beats."
     )
     fig, (wave, axis) = figure(
         10, 6.6, f"{title}: {words}" if title else words, 2, sharex=True, height_ratios=(1, 3)

@@ -19,7 +19,9 @@ from .style import DASHES, MARKERS, figure, legend, table
 
 def footstep_curves(
     curves: Mapping[str, Float[np.ndarray, "V"]],
-    words: str = "Number of footsteps against the velocity tolerance; a dot at 95 % of the maximum.",
+    words: str = (
+        "Number of footsteps against the velocity tolerance; a dot at 95 % of the maximum."
+    ),
 ) -> Figure:
     """Number of footsteps against the tolerance 1, 2, 3 ... cm/s, a dot at each v95.  Source:
     MoDiff Fig. 3."""

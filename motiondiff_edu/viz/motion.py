@@ -102,8 +102,17 @@ def paths_from_above(
         colour = SERIES[k % len(SERIES)]
         axes.plot(*root.T, color=colour, lw=2, label=name, ls="-" if k == 0 else "--")
         axes.plot(*root[0], "o", color=colour, ms=8)
-        axes.quiver(*root[::every].T, np.sin(heading[::every]), np.cos(heading[::every]), color=colour,
-                    angles="xy", scale_units="xy", scale=1.7, width=0.005, zorder=3)  # fmt: skip
+        axes.quiver(
+            *root[::every].T,
+            np.sin(heading[::every]),
+            np.cos(heading[::every]),
+            color=colour,
+            angles="xy",
+            scale_units="xy",
+            scale=1.7,
+            width=0.005,
+            zorder=3,
+        )
     axes.invert_xaxis()  # from above, and looking along z, left is on the left
     axes.set(aspect="equal", xlabel="x: left (m)", ylabel="z: forward (m)")
     if len(paths) > 1:

@@ -85,8 +85,8 @@ def noised_curve(
     axis.set_ylim(-3.6, 3.6)
     legend(axis, loc="upper right", ncol=2)
     caption = caption or (
-        f"Step {s}: the blue curve is the clean one times {signal:.2f}; the orange one adds noise of "
-        f"standard deviation {np.sqrt(1 - signal**2):.2f}."
+        f"Step {s}: the blue curve is the clean one times {signal:.2f}; "
+        f"the orange one adds noise of standard deviation {np.sqrt(1 - signal**2):.2f}."
     )
     return finish(fig, caption, ("time (s)", "left heel (standardised)"))
 

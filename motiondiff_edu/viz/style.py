@@ -17,11 +17,19 @@ LARGE, MEDIUM, SMALL = 16, 14, 12
 DPI = 100
 
 _RC = {
-    "font.size": MEDIUM, "axes.titlesize": LARGE, "axes.labelsize": MEDIUM, "xtick.labelsize": SMALL,
-    "ytick.labelsize": SMALL, "legend.fontsize": SMALL, "axes.spines.top": False, "axes.spines.right": False,
-    "axes.prop_cycle": matplotlib.cycler(color=OKABE_ITO[:7]), "lines.linewidth": 2.2, "axes.grid": True,
+    "font.size": MEDIUM,
+    "axes.titlesize": LARGE,
+    "axes.labelsize": MEDIUM,
+    "xtick.labelsize": SMALL,
+    "ytick.labelsize": SMALL,
+    "legend.fontsize": SMALL,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "axes.prop_cycle": matplotlib.cycler(color=OKABE_ITO[:7]),
+    "lines.linewidth": 2.2,
+    "axes.grid": True,
     "grid.alpha": 0.25,
-}  # fmt: skip
+}
 
 
 class CaptionedFigure(Figure):
@@ -55,7 +63,10 @@ def _png(fig: Figure, dpi: int) -> bytes:
 def _html(words: str, png: str) -> str:
     words = html.escape(words, quote=True)
     picture = f'<img alt="{words}" style="max-width:100%" src="data:image/png;base64,{png}">'
-    return f'<figure style="margin:0">{picture}<figcaption style="max-width:60em">{words}</figcaption></figure>'
+    return (
+        f'<figure style="margin:0">{picture}<figcaption '
+        f'style="max-width:60em">{words}</figcaption></figure>'
+    )
 
 
 def figure(

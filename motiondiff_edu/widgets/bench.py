@@ -53,8 +53,18 @@ class Bench(anywidget.AnyWidget):
     mended_roots = traitlets.Bytes().tag(sync=True)
     said = traitlets.Unicode("").tag(sync=True)
 
-    def __init__(self, walker, clip, first=None, faults: Mapping[str, Bool[np.ndarray, "T_h J"]] | None = None,
-                 samples=10, rounds=5, steps=10, seed=0, height=400):  # fmt: skip
+    def __init__(
+        self,
+        walker,
+        clip,
+        first=None,
+        faults: Mapping[str, Bool[np.ndarray, "T_h J"]] | None = None,
+        samples=10,
+        rounds=5,
+        steps=10,
+        seed=0,
+        height=400,
+    ):
         super().__init__()
         self.bench = RepairBench(walker, clip, samples, rounds, steps, seed)
         self._truth = clip.world()
@@ -66,16 +76,24 @@ class Bench(anywidget.AnyWidget):
             for name, known in (faults or {}).items()
         ]
         self.scene = {
-            "fps": float(clip.fps), "frames": len(clip), "T_h": self.bench.T_h, "last_first": self.bench.last_first,
-            "names": list(JOINTS), "parents": PARENTS.tolist(), "parts": body.parts_record(body.BODY),
-            "faults": buttons, "height": int(height), "kernel": True,
-        }  # fmt: skip
+            "fps": float(clip.fps),
+            "frames": len(clip),
+            "T_h": self.bench.T_h,
+            "last_first": self.bench.last_first,
+            "names": list(JOINTS),
+            "parents": PARENTS.tolist(),
+            "parts": body.parts_record(body.BODY),
+            "faults": buttons,
+            "height": int(height),
+            "kernel": True,
+        }
         self.first = self.bench.last_first // 2 if first is None else int(first)
 
     def _numbers(self, name: str, known: Bool[np.ndarray, "_ _"]) -> list[int]:
         if known.shape != (self.bench.T_h, J):
             raise ValueError(
-                f"the fault {name!r} is {known.shape}; a mask of the window is ({self.bench.T_h}, {J})"
+                f"the fault {name!r} is {known.shape}; "
+                f"a mask of the window is ({self.bench.T_h}, {J})"
             )
         return np.flatnonzero(~known).tolist()
 
@@ -116,7 +134,8 @@ class Bench(anywidget.AnyWidget):
     def _within_the_walk(self, proposal):
         if not 0 <= proposal["value"] <= self.bench.last_first:
             raise traitlets.TraitError(
-                f"the window may begin at frame 0 to {self.bench.last_first}, not {proposal['value']}"
+                f"the window may begin at frame 0 to {self.bench.last_first}, "
+                f"not {proposal['value']}"
             )
         return proposal["value"]
 
@@ -138,8 +157,8 @@ class Bench(anywidget.AnyWidget):
         """What is to be seen, in a sentence or two: the alternative text."""
         scene, last = self.scene, self.first + self.bench.T_h - 1
         words = (
-            f"A walk of {scene['frames'] / scene['fps']:.1f} s. In the window, frames {self.first} to {last}, "
-            f"{len(self.missing)} of {self.bench.T_h * J} places of joints are missing."
+            f"A walk of {scene['frames'] / scene['fps']:.1f} s. In the window, frames {self.first} "
+            f"to {last}, {len(self.missing)} of {self.bench.T_h * J} places of joints are missing."
         )
         return f"{words} {self.said}" if self.shows_repairs else words
 
@@ -174,9 +193,13 @@ class Bench(anywidget.AnyWidget):
         bundle, metadata = live if isinstance(live, tuple) else (live or {}, {})
         png = base64.b64encode(poster.as_png(self.poster())).decode()
         stack = STACK.format(
-            width=1200, height=self.scene["height"] + 330, alt=html.escape(self.description, quote=True), png=png,
-            title="repair bench", page=html.escape(self.page(), quote=True),
-        )  # fmt: skip
+            width=1200,
+            height=self.scene["height"] + 330,
+            alt=html.escape(self.description, quote=True),
+            png=png,
+            title="repair bench",
+            page=html.escape(self.page(), quote=True),
+        )
         return {
             **bundle,
             "text/html": stack,

@@ -68,7 +68,8 @@ class Editor(anywidget.AnyWidget):
         motion = np.array(motion, np.float64)
         if motion.ndim != 3 or motion.shape[1:] != (J, 3):
             raise ValueError(
-                f"a motion to edit is (frames, {J}, 3), world positions in metres, not {motion.shape}"
+                f"a motion to edit is (frames, {J}, 3), world positions in metres, "
+                f"not {motion.shape}"
             )
         names = list(JOINTS if names is None else names)
         if len(names) != J:
@@ -152,7 +153,10 @@ class Editor(anywidget.AnyWidget):
         finally:
             self.busy = False
         free = "" if self.known.any() else " Nothing was pinned or kept: the result is free."
-        words = f"In-betweens made: {self.count}, in {time.perf_counter() - begun:.1f} s (seed {seed}).{free}"
+        words = (
+            f"In-betweens made: {self.count}, in {time.perf_counter() - begun:.1f} s "
+            f"(seed {seed}).{free}"
+        )
         return self._go(_Step(self.edit, made, 0, self._step.presses + 1), words)
 
     def undo(self) -> str:
@@ -250,7 +254,8 @@ class Editor(anywidget.AnyWidget):
             self.poses = editor_page.poses_of(edit)
             self.state = editor_page.state_of(edit, made) | {
                 "message": words, "presses": self._step.presses, "undo": len(self._past),
-                "heard": last.get("heard", 0) if number is None else number, "edition": last.get("edition", 0) + 1,
+                "heard": last.get("heard", 0) if number is None else number,
+                "edition": last.get("edition", 0) + 1,
                 "description": editor_page.described(edit, made, self._fps),
             }  # fmt: skip
         return words

@@ -50,9 +50,17 @@ class Lane:
         """What the page needs: the sound file, the bytes of waveform and attention, and the record
         explaining them."""
         wave = peaks(self.sound.samples)
-        record = {"mime": self.sound.mime, "seconds": self.frames / self.fps, "fps": self.fps, "frames": self.frames,
-                  "peaks": len(wave), "beats": self.beats, "downbeats": self.downbeats,
-                  "description": self.description, **self.strips.record()}  # fmt: skip
+        record = {
+            "mime": self.sound.mime,
+            "seconds": self.frames / self.fps,
+            "fps": self.fps,
+            "frames": self.frames,
+            "peaks": len(wave),
+            "beats": self.beats,
+            "downbeats": self.downbeats,
+            "description": self.description,
+            **self.strips.record(),
+        }
         return self.sound.data, wave.tobytes() + self.strips.codes(), record
 
     def under(self, picture: Image.Image) -> Image.Image:

@@ -49,13 +49,14 @@ def check_positions(positions: Float[np.ndarray, "T J 3"], figure: int = 0) -> N
     bad = ~np.isfinite(positions).all(-1)
     if bad.any():
         raise ValueError(
-            f"{_where(bad, figure)}: the position is not finite ({int(bad.sum())} such joints in all). "
-            "Look where the motion was computed; a diverged rollout is the usual cause"
+            f"{_where(bad, figure)}: the position is not finite ({int(bad.sum())} such joints in "
+            "all). Look where the motion was computed; a diverged rollout is the usual cause"
         )
     far = (np.abs(_relative_units(positions)) > 32767).any(-1)
     if far.any():
         raise ValueError(
-            f"{_where(far, figure)}: more than {REACH:.0f} m from joint 0. Positions are in metres: are these cm?"
+            f"{_where(far, figure)}: more than {REACH:.0f} m from joint 0. "
+            "Positions are in metres: are these cm?"
         )
 
 

@@ -105,7 +105,10 @@ class PathPad(anywidget.AnyWidget):
         if not self.line:
             return "A floor seen from above, nothing drawn on it."
         x, z = self.points[-1]
-        return f"A path seen from above: {len(self.line)} points, from the origin to {z:.1f} m ahead, {x:.1f} m left."
+        return (
+            f"A path seen from above: {len(self.line)} points, "
+            f"from the origin to {z:.1f} m ahead, {x:.1f} m left."
+        )
 
     def _repr_mimebundle_(self, **kwargs):
         live = super()._repr_mimebundle_(**kwargs)
@@ -113,7 +116,10 @@ class PathPad(anywidget.AnyWidget):
         buffer = io.BytesIO()
         top_view(paths={"path": self.points}).savefig(buffer, format="png", dpi=70)
         png = base64.b64encode(buffer.getvalue()).decode()
-        still = f'<img alt="{html.escape(self.description, quote=True)}" src="data:image/png;base64,{png}">'
+        still = (
+            f'<img alt="{html.escape(self.description, quote=True)}" '
+            f'src="data:image/png;base64,{png}">'
+        )
         return {
             **bundle,
             "text/html": still,

@@ -27,7 +27,8 @@ MODULE = module.joined()
 _TRAITS = ("joints", "roots", "contacts", "sound", "strips")
 
 PAGE = """<!doctype html><html lang="en"><head><meta charset="utf-8"><title>{title}</title>
-<style>html,body{{margin:0;height:100%}}@media print{{html,body{{height:auto}}}}</style></head><body>
+<style>html,body{{margin:0;height:100%}}@media print{{html,body{{height:auto}}}}</style></head>\
+<body>
 <script type="module">
 {module}
 document.body.style.background = "#fff";
@@ -74,9 +75,19 @@ class Player(anywidget.AnyWidget):
         layout="side", offset=(1.2, 0.0), height=430, autoplay=None, follow=True, parents=None,
     ):  # fmt: skip
         super().__init__()
-        self._options = {"fps": fps, "past": past, "contacts": contacts, "labels": labels, "path": path,
-                         "audio": audio, "sample_rate": sample_rate, "beats": beats, "downbeats": downbeats,
-                         "codec": codec, "strips": None}  # fmt: skip
+        self._options = {
+            "fps": fps,
+            "past": past,
+            "contacts": contacts,
+            "labels": labels,
+            "path": path,
+            "audio": audio,
+            "sample_rate": sample_rate,
+            "beats": beats,
+            "downbeats": downbeats,
+            "codec": codec,
+            "strips": None,
+        }
         self._look = _look(layout, offset, height, autoplay, follow, parents)
         self._editions = 0
         self.show(positions)
@@ -209,8 +220,14 @@ def _look(layout, offset, height, autoplay, follow, parents) -> dict:
     if layout not in ("side", "together"):
         raise ValueError(f'layout is "side" or "together", not {layout!r}')
     offset = [float(v) for v in (offset if layout == "together" else (0, 0))]
-    return {"layout": layout, "offset": offset, "height": int(height), "autoplay": autoplay,
-            "follow": bool(follow), "parents": None if parents is None else [int(p) for p in parents]}  # fmt: skip
+    return {
+        "layout": layout,
+        "offset": offset,
+        "height": int(height),
+        "autoplay": autoplay,
+        "follow": bool(follow),
+        "parents": None if parents is None else [int(p) for p in parents],
+    }
 
 
 def _figures(arrays: list, options: dict, parents: list | None) -> list[poster.Figure]:
@@ -241,8 +258,15 @@ def _scene(figures: list[poster.Figure], fps: float, look: dict, music: lane.Lan
     )
     parts = body.parts_record(figures[0].parts)
     autoplay = music is None if look["autoplay"] is None else bool(look["autoplay"])
-    return {**look, "fps": fps, "figures": records, "joints": figures[0].positions.shape[1], "parts": parts,
-            "autoplay": autoplay, "description": words}  # fmt: skip
+    return {
+        **look,
+        "fps": fps,
+        "figures": records,
+        "joints": figures[0].positions.shape[1],
+        "parts": parts,
+        "autoplay": autoplay,
+        "description": words,
+    }
 
 
 def describe(figures: list[poster.Figure], fps: float) -> str:
@@ -253,6 +277,7 @@ def describe(figures: list[poster.Figure], fps: float) -> str:
         way = np.linalg.norm(f.positions[-1, 0, [0, 2]] - f.positions[0, 0, [0, 2]])
         given = "" if f.past is None else f", the first {f.past / fps:.1f} s given and drawn paler"
         words.append(
-            f"{f.label or f'figure {i}'}: {len(f) / fps:.1f} s, ends {way:.1f} m from its start{given}"
+            f"{f.label or f'figure {i}'}: {len(f) / fps:.1f} s, "
+            f"ends {way:.1f} m from its start{given}"
         )
     return "Moving skeletons, left limbs blue and right limbs orange. " + "; ".join(words) + "."

@@ -102,7 +102,8 @@ def as_times(times: object, name: str, seconds: float) -> list[float]:
         or (values < 0).any()
     ):
         raise ValueError(
-            f"`{name}` are increasing times in seconds from the start, one number each: got {times!r:.80}"
+            f"`{name}` are increasing times in seconds from the start, one number each: "
+            f"got {times!r:.80}"
         )
     return values[values < seconds].round(4).tolist()
 
@@ -115,19 +116,22 @@ def _checked(audio: object, sample_rate: int) -> Float[np.ndarray, "N"]:
     samples = np.asarray(audio)
     if samples.ndim != 1:
         raise ValueError(
-            f"audio has shape {samples.shape}; give one channel (N,), the mean of several for instance"
+            f"audio has shape {samples.shape}; "
+            "give one channel (N,), the mean of several for instance"
         )
     if not len(samples):
         raise ValueError("audio has no samples: nothing to play")
     if not np.issubdtype(samples.dtype, np.floating):
         raise ValueError(
-            f"audio holds {samples.dtype}; give floats from -1 to 1 (16-bit samples divided by 32768)"
+            f"audio holds {samples.dtype}; give floats from -1 to 1 "
+            "(16-bit samples divided by 32768)"
         )
     bad = ~np.isfinite(samples)
     if bad.any():
         at = int(np.argmax(bad))
         raise ValueError(
-            f"audio is not finite at sample {at} ({at / sample_rate:.2f} s); {int(bad.sum())} such samples in all"
+            f"audio is not finite at sample {at} ({at / sample_rate:.2f} s); "
+            f"{int(bad.sum())} such samples in all"
         )
     return (samples / max(1.0, float(np.abs(samples).max()))).astype(np.float32)
 

@@ -46,10 +46,15 @@ class Strips:
         edges = [level.edges.round(4).tolist() for level in self.levels]
         once = [e for i, e in enumerate(edges) if e not in edges[:i]]
         levels = [
-            {"name": level.name, "rows": len(level.codes), "edges": once.index(own), "full": level.full,
-             "tops": [float(f"{v:.5g}") for v in level.tops]}
+            {
+                "name": level.name,
+                "rows": len(level.codes),
+                "edges": once.index(own),
+                "full": level.full,
+                "tops": [float(f"{v:.5g}") for v in level.tops],
+            }
             for level, own in zip(self.levels, edges, strict=True)
-        ]  # fmt: skip
+        ]
         moved = None
         if self.moved is not None:
             values = self.moved.round(4).tolist()
@@ -99,7 +104,8 @@ def pack_moved(
     curve = np.asarray(moved, dtype=np.float64)
     if curve.shape != (frames,) or not np.isfinite(curve).all() or (curve < 0).any():
         raise ValueError(
-            f"`moved` is one finite distance in metres a frame, ({frames},); got shape {curve.shape}"
+            f"`moved` is one finite distance in metres a frame, ({frames},); "
+            f"got shape {curve.shape}"
         )
     times = None if hit is None else np.atleast_1d(hit)
     return curve, tuple(as_times(times, "hit", np.inf))
@@ -112,7 +118,8 @@ def check_attention(
     a column."""
     if weights.ndim != 2 or not weights.size:
         raise ValueError(
-            f"{name}: a map is (motion rows, tokens), got {weights.shape}; of several heads take one"
+            f"{name}: a map is (motion rows, tokens), got {weights.shape}; "
+            "of several heads take one"
         )
     if not np.isfinite(weights).all() or (weights < -1e-6).any():
         raise ValueError(
@@ -122,7 +129,8 @@ def check_attention(
     if off.max() > 1e-2:
         row = int(off.argmax())
         raise ValueError(
-            f"{name}: row {row} sums to {weights[row].sum():.3g}, not 1. Is the map (motion, music), and after softmax?"
+            f"{name}: row {row} sums to {weights[row].sum():.3g}, not 1. "
+            "Is the map (motion, music), and after softmax?"
         )
     if (
         times.shape != weights.shape[1:]
@@ -130,8 +138,8 @@ def check_attention(
         or (np.diff(times) <= 0).any()
     ):
         raise ValueError(
-            f"{name}: token_times are increasing seconds, one for each of the {weights.shape[1]} columns; "
-            f"got shape {times.shape}"
+            f"{name}: token_times are increasing seconds, "
+            f"one for each of the {weights.shape[1]} columns; got shape {times.shape}"
         )
 
 

@@ -23,8 +23,15 @@ def knees(T):
     return known
 
 
-@pytest.mark.parametrize("mask", [lambda T: gap(T, 10, 20), lambda T: keyframes(T, 15), knees,
-                                  lambda T: body_part(T, "lower body") | keyframes(T, 20)])  # fmt: skip
+@pytest.mark.parametrize(
+    "mask",
+    [
+        lambda T: gap(T, 10, 20),
+        lambda T: keyframes(T, 15),
+        knees,
+        lambda T: body_part(T, "lower body") | keyframes(T, 20),
+    ],
+)
 def test_bones_are_as_long_as_where_they_are_given(clip, mask):
     known = mask(len(clip))
     shaken = np.where(

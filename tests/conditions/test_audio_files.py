@@ -60,8 +60,16 @@ FILES = {
         None,
     ),
 }
-KINDS = [("wav", "PCM_16"), ("wav", "PCM_24"), ("wav", "FLOAT"), ("flac", "PCM_16"), ("ogg", "VORBIS"),
-         ("aiff", "PCM_16"), ("mp3", "MPEG_LAYER_III"), ("au", "ULAW")]  # fmt: skip
+KINDS = [
+    ("wav", "PCM_16"),
+    ("wav", "PCM_24"),
+    ("wav", "FLOAT"),
+    ("flac", "PCM_16"),
+    ("ogg", "VORBIS"),
+    ("aiff", "PCM_16"),
+    ("mp3", "MPEG_LAYER_III"),
+    ("au", "ULAW"),
+]
 
 
 def chord(rate: int = 22050, seconds: float = 2.3) -> np.ndarray:
@@ -160,13 +168,28 @@ def written(folder, name: str, samples, rate: int = 16000, **options):
         (lambda d: d, "is a folder; name a sound file"),
         (lambda d: written(d, "none.wav", np.zeros(0)), "none.wav holds no sound at all; give it"),
         (lambda d: written(d, "none.ogg", np.zeros(0)), "none.ogg holds no sound at all; give it"),
-        (lambda d: written(d, "short.wav", chord(16000)[:15999]), "short.wav holds 1.00 s of sound; give it"),
-        (lambda d: written(d, "still.flac", np.zeros(20_000)), "still.flac is silent from end to end"),
-        (lambda d: written(d, "hum.wav", np.full(20_000, 0.4)), "hum.wav is silent from end to end"),
-        (lambda d: written(d, "nan.wav", with_nan(np.nan), subtype="FLOAT"), "nan.wav: 3 .* are NaN .* at 0.500 s"),
-        (lambda d: written(d, "inf.wav", with_nan(-np.inf), subtype="FLOAT"), "inf.wav: 3 .* infinite, .* at 0.5"),
+        (
+            lambda d: written(d, "short.wav", chord(16000)[:15999]),
+            "short.wav holds 1.00 s of sound; give it",
+        ),
+        (
+            lambda d: written(d, "still.flac", np.zeros(20_000)),
+            "still.flac is silent from end to end",
+        ),
+        (
+            lambda d: written(d, "hum.wav", np.full(20_000, 0.4)),
+            "hum.wav is silent from end to end",
+        ),
+        (
+            lambda d: written(d, "nan.wav", with_nan(np.nan), subtype="FLOAT"),
+            "nan.wav: 3 .* are NaN .* at 0.500 s",
+        ),
+        (
+            lambda d: written(d, "inf.wav", with_nan(-np.inf), subtype="FLOAT"),
+            "inf.wav: 3 .* infinite, .* at 0.5",
+        ),
     ],
-)  # fmt: skip
+)
 def test_what_cannot_be_danced_to_is_refused_in_words(tmp_path, make, words):
     with pytest.raises(AudioError, match=words):
         read_audio(make(tmp_path))
@@ -181,7 +204,11 @@ def with_nan(value: float) -> np.ndarray:
 @pytest.mark.parametrize(
     "name, content, words",
     [
-        ("song.m4a", b"\0\0\0\x20ftypM4A \0\0\0\0", r'needs ffmpeg. Convert .*: ffmpeg -i ".*song.m4a" ".*song.wav"'),
+        (
+            "song.m4a",
+            b"\0\0\0\x20ftypM4A \0\0\0\0",
+            r'needs ffmpeg. Convert .*: ffmpeg -i ".*song.m4a" ".*song.wav"',
+        ),
         ("clip.wav", b"\x1a\x45\xdf\xa3\x01\0\0\0", "Matroska file .*ffmpeg -i"),
         ("song.aac", b"\xff\xf1\x50\x80\0\0\0\0", "AAC stream, which needs ffmpeg"),
         ("song.wma", b"\x30\x26\xb2\x75\x8e\x66", "Windows Media file .*needs ffmpeg"),
@@ -189,7 +216,7 @@ def with_nan(value: float) -> np.ndarray:
         ("nothing.wav", b"", "is an empty file"),
         ("noise.ogg", bytes(range(200, 256)) * 9, "no sound file that can be read .*Save it again"),
     ],
-)  # fmt: skip
+)
 def test_other_files_are_told_by_their_content(tmp_path, name, content, words):
     (tmp_path / name).write_bytes(content)
     with pytest.raises(AudioError, match=words):
@@ -198,9 +225,14 @@ def test_other_files_are_told_by_their_content(tmp_path, name, content, words):
 
 @pytest.mark.parametrize(
     "name, kept, words",
-    [("cut.wav", 0.6, "promises 4.00 s"), ("cut.aiff", 0.6, "promises 4.00 s"), ("cut.flac", 0.7, "damaged|promises"),
-     ("cut.ogg", 0.6, "last page is missing"), ("cut.mp3", 0.6, "promises 4")],
-)  # fmt: skip
+    [
+        ("cut.wav", 0.6, "promises 4.00 s"),
+        ("cut.aiff", 0.6, "promises 4.00 s"),
+        ("cut.flac", 0.7, "damaged|promises"),
+        ("cut.ogg", 0.6, "last page is missing"),
+        ("cut.mp3", 0.6, "promises 4"),
+    ],
+)
 def test_a_file_that_breaks_off_is_read_as_far_as_it_goes_and_warns(tmp_path, name, kept, words):
     tones = chord(22050, 4.0) + np.random.default_rng(0).normal(0, 0.05, 88200)
     path = written(tmp_path, name, tones, 22050)

@@ -273,9 +273,10 @@ def test_speech_is_heard_like_music(real_data):
 
 def test_listening_does_not_import_librosa():
     code = (
-        "import sys, motiondiff_edu, motiondiff_edu.conditions.music as m, motiondiff_edu.conditions.audio_files;"
-        "import torch; m.log_mel(torch.zeros(600));"
-        "print([name for name in ('librosa', 'numba', 'soundfile') if name in sys.modules])"
+        "import sys, motiondiff_edu, motiondiff_edu.conditions.music as m, "
+        "motiondiff_edu.conditions.audio_files;import torch; "
+        "m.log_mel(torch.zeros(600));print([name for name in ('librosa', 'numba', "
+        "'soundfile') if name in sys.modules])"
     )
     told = subprocess.run(
         [sys.executable, "-c", code], capture_output=True, text=True, check=True

@@ -158,9 +158,12 @@ def test_measures_are_the_answers_own_and_said_in_words(motion):
         (lambda p: p, r"shape \(24, 21, 3\); \(samples, 24, 21, 3\) is needed"),
         (lambda p: p[None, :9], r"shape \(1, 9, 21, 3\)"),
         (lambda p: p[None][:0], r"shape \(0, 24, 21, 3\)"),
-        (lambda p: np.where(np.arange(T)[:, None, None] == 6, np.nan, p)[None], "1 is not finite in frame 6, Hips"),
+        (
+            lambda p: np.where(np.arange(T)[:, None, None] == 6, np.nan, p)[None],
+            "1 is not finite in frame 6, Hips",
+        ),
     ],
-)  # fmt: skip
+)
 def test_wrong_answers_are_told(motion, answer, message):
     with pytest.raises(ValueError, match=message):
         make_between(Edit(motion).pin(0), lambda p, k, g: answer(p), seeded())

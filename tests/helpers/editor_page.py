@@ -15,12 +15,16 @@ window.asked = []; window.leaked = 0;
 document.addEventListener("keydown", () => { window.leaked++; });
 const fire = (name) => (listeners["change:" + name] || []).forEach((f) => f());
 window.take = (record) => {
-  for (const [name, value] of Object.entries(record)) state[name] = BINARY.includes(name) ? decode(value) : value;
+  for (const [name, value] of Object.entries(record))
+    state[name] = BINARY.includes(name) ? decode(value) : value;
   for (const name of Object.keys(record)) fire(name);
 };
 window.model = {
   get: (name) => state[name],
-  set: (name, value) => { if (state[name] !== value) { state[name] = value; dirty.add(name); fire(name); } },
+  set: (name, value) => {
+    if (state[name] === value) return;
+    state[name] = value; dirty.add(name); fire(name);
+  },
   save_changes: () => {
     const record = Object.fromEntries([...dirty].map((name) => [name, state[name]]));
     dirty.clear();
@@ -68,7 +72,10 @@ def open_editor(page, folder: Path, editor: Editor, background: str = "#fff") ->
     script = MODEL.replace("RECORD", json.dumps(told).replace("<", "\\u003c")).replace(
         "BINARY", json.dumps(BINARY)
     )
-    wire = "window.kernel = async (what) => { const changed = await window.kernelled(what); window.take(changed); };"
+    wire = (
+        "window.kernel = async (what) => { const changed = await window.kernelled(what); "
+        "window.take(changed); };"
+    )
     path = folder / "page.html"
     style = f"body {{ background: {background}; margin: 8px; }}"
     body = f'<div id="here"></div><script type="module">\n{source}\n{wire}\n{script}</script>'

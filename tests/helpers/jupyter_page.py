@@ -1,5 +1,7 @@
-"""A JupyterLab that serves one notebook, and the page that shows it: for every test of a widget with a
-kernel. The cell that it runs is the CELL of the test's module."""
+"""A JupyterLab that serves one notebook, and the page that shows it.
+
+Every test of a widget with a kernel uses it. It runs the CELL of the test's module.
+"""
 
 import json
 import os

@@ -1,5 +1,7 @@
-"""Dancers with random weights, small enough for a test: what they dance is noise, how they are asked is
-not."""
+"""Dancers with random weights, small enough for a test.
+
+They dance noise; how they are called is the same as for trained ones.
+"""
 
 import torch
 

@@ -38,8 +38,13 @@ def maps(T: int = 30, s: int = 5, **changes):
 
 def test_each_level_has_a_row_for_each_of_its_frames_and_a_column_for_each_token():
     found, times = maps(T=30)  # music: the 47 Mel frames of 1.5 s, every second of which is a token
-    rows = {"down, 20 a second": 30, "down, 10 a second": 15, "bottom, 5 a second": 8, "up, 10 a second": 15,
-            "up, 20 a second": 30}  # fmt: skip
+    rows = {
+        "down, 20 a second": 30,
+        "down, 10 a second": 15,
+        "bottom, 5 a second": 8,
+        "up, 10 a second": 15,
+        "up, 20 a second": 30,
+    }
     assert {name: m.shape for name, m in found.items()} == {
         name: (n, 24) for name, n in rows.items()
     }

@@ -80,8 +80,10 @@ def flat(tree: dict, above: str = "") -> dict:
 
 
 def test_the_transformer_is_of_the_size_of_the_unet():
-    unet, plain = (sum(p.numel() for p in kind(VARIANTS[name][2]).parameters())
-                   for kind, name in ((MoFusion, "x0"), (DanceTransformer, "transformer")))  # fmt: skip
+    unet, plain = (
+        sum(p.numel() for p in kind(VARIANTS[name][2]).parameters())
+        for kind, name in ((MoFusion, "x0"), (DanceTransformer, "transformer"))
+    )
     assert plain == pytest.approx(unet, rel=0.02)
 
 

@@ -48,8 +48,16 @@ def values(one):
 
 def test_errors_are_those_of_the_mean_of_one_and_of_the_best(truth):
     found = values(filled(truth))
-    by_hand = {"error_cm": 0, "error_one_cm": 4, "error_best_cm": 4, "error_masked_cm": 50, "error_free_cm": 90,
-               "error_lines_cm": 20, "error_arcs_cm": 10, "keyframe_error_cm": 0}  # fmt: skip
+    by_hand = {
+        "error_cm": 0,
+        "error_one_cm": 4,
+        "error_best_cm": 4,
+        "error_masked_cm": 50,
+        "error_free_cm": 90,
+        "error_lines_cm": 20,
+        "error_arcs_cm": 10,
+        "keyframe_error_cm": 0,
+    }
     assert {name: found[name] for name in by_hand} == pytest.approx(by_hand, abs=1e-9)
 
 

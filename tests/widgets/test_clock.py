@@ -10,7 +10,8 @@ from browser import open_page
 
 from motiondiff_edu.widgets import module
 
-SCRIPTED = """([polls, rate]) => {  // at every picture: the page's time (s), the sound's, where it is sent first
+SCRIPTED = """([polls, rate]) => {
+  // at every picture: the page's time (s), the sound's, where it is sent first
   let now = 0;
   const performance = { now: () => 1000 * now };
   const audio = { currentTime: 0, paused: true, seeking: false, play() { this.paused = false; } };

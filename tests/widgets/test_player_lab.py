@@ -1,6 +1,8 @@
 """The whole path: JupyterLab, a kernel, a browser; the figure has ink, plays with its sound, and
 Python hears of it."""
 
+import os
+
 from browser import coloured, ink, open_page
 from jupyter_page import ASK, lab, run_all  # noqa: F401
 
@@ -9,13 +11,14 @@ from click_track import clicks
 from synthetic_walk import walk
 from motiondiff_edu.widgets.player import Player
 positions, contacts = walk(frames=40)
-player = Player(positions, contacts=contacts, past=10, labels="walker", audio=clicks([0.5, 1, 1.5], 2))
+sound = clicks([0.5, 1, 1.5], 2)
+player = Player(positions, contacts=contacts, past=10, labels="walker", audio=sound)
 player"""
 HEARD = "document.querySelector('.mde-player audio').currentTime"
 SHOWN = "Number(document.querySelector('.mde-player').dataset.frame)"
 
 
-def test_figure_plays_in_jupyterlab_and_python_sees_it(browser, lab):
+def test_figure_plays_in_jupyterlab_and_python_sees_it(browser, lab):  # noqa: F811
     size = {"width": 1300, "height": 900}
     with open_page(browser, offline=False, viewport=size) as page:
         page.set_default_timeout(60_000)

@@ -31,15 +31,20 @@ HEARD = "document.querySelector('audio').currentTime"
 
 # ---- in the browser
 
-WATCH = """async (seconds) => {  // in every animation frame: the sound's time as it begins, the picture as it ends
-  const root = document.querySelector(".mde-player"), sound = root.querySelector("audio"), rows = [];
+WATCH = """async (seconds) => {
+  // in every animation frame: the sound's time as it begins, the picture as it ends
+  const root = document.querySelector(".mde-player"), sound = root.querySelector("audio");
+  const rows = [];
   const small = document.createElement("canvas").getContext("2d", { willReadFrequently: true });
   while (sound.currentTime < seconds && rows.length < 1500) {
     const heard = await new Promise((done) => requestAnimationFrame(() => done(sound.currentTime)));
     small.drawImage(root.querySelector("canvas"), 0, 0, 48, 24);
-    const dark = small.getImageData(0, 0, 48, 12).data.map((v) => 255 - v); // the upper half: the body, no trail
+    // the upper half: the body, no trail
+    const dark = small.getImageData(0, 0, 48, 12).data.map((v) => 255 - v);
     let left = 0, right = 0;
-    for (let i = 0; i < dark.length; i += 4) if (i / 4 % 48 < 24) left += dark[i]; else right += dark[i];
+    for (let i = 0; i < dark.length; i += 4) {
+      if (i / 4 % 48 < 24) left += dark[i]; else right += dark[i];
+    }
     rows.push([heard, left > right ? "left" : "right", Number(root.dataset.frame)]);
   }
   return rows;
@@ -68,7 +73,8 @@ def test_a_planted_beat_lands_on_its_click(browser, player, tmp_path):
 
 
 DECODED = """async () => {
-  const bytes = model.get("sound"), file = bytes.buffer.slice(bytes.byteOffset, bytes.byteOffset + bytes.byteLength);
+  const bytes = model.get("sound");
+  const file = bytes.buffer.slice(bytes.byteOffset, bytes.byteOffset + bytes.byteLength);
   const heard = await new OfflineAudioContext(1, 16000, 16000).decodeAudioData(file);
   return Array.from(heard.getChannelData(0));
 }"""
@@ -132,7 +138,10 @@ def test_sound_and_picture_begin_again_together(browser, player, tmp_path):
 
 
 def test_speed_keeps_the_pitch_and_mute_is_a_button_and_a_key(browser, player, tmp_path):
-    sounding = "(() => { const a = document.querySelector('audio'); return [a.playbackRate, a.preservesPitch, a.muted]; })()"
+    sounding = (
+        "(() => { const a = document.querySelector('audio'); "
+        "return [a.playbackRate, a.preservesPitch, a.muted]; })()"
+    )
     with open_page(browser) as page:
         page.goto(player_page(tmp_path, player))
         page.get_by_label("Speed").select_option("2")

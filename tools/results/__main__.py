@@ -129,7 +129,8 @@ def parts_of(only: list[str], full: bool, lines: dict[str, Walks], weights: set[
     if unknown:
         there = ", ".join([*lines, *DANCES, *MEASURED, *MENDED, *rows])
         sys.exit(
-            f"no part is called {', '.join(unknown)}; there are: {there}; rows: budget.T_p-5, dance-budget.v ..."
+            f"no part is called {', '.join(unknown)}; there are: {there}; rows: "
+            "budget.T_p-5, dance-budget.v ..."
         )
     return parts
 

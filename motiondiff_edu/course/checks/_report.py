@@ -67,7 +67,8 @@ def check(function: Callable[[Any], str | None]) -> Check:
     name = function.__name__
     if name in REGISTRY and REGISTRY[name].__module__ != function.__module__:
         raise ValueError(
-            f"two checks are called {name}: in {REGISTRY[name].__module__} and {function.__module__}"
+            f"two checks are called {name}: in {REGISTRY[name].__module__} and "
+            f"{function.__module__}"
         )
 
     @functools.wraps(function)

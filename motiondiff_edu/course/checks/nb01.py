@@ -28,7 +28,10 @@ def lengths_of_bones(mine):
         "the lengths of two poses with bones of 5, 12 and 3",
         mistakes,
     )
-    return "Three coordinates hold a joint, one number should hold a bone: nothing in 63 positions makes sure of it."
+    return (
+        "Three coordinates hold a joint, one number should hold a bone: "
+        "nothing in 63 positions makes sure of it."
+    )
 
 
 @check
@@ -69,9 +72,10 @@ def _expect_poses(seen, poses):
     left_foot, right_foot, neck = 3, 7, 11  # by hand: the names of the skeleton
     mistakes = {
         "x is negated, but left and right must swap names too": poses[:, left_foot] * [-1, 1, 1],
-        "the names are swapped, but nothing was seen in a mirror: which coordinate changes sign?": poses[
-            :, right_foot
-        ],
+        (
+            "the names are swapped, but nothing was seen in a mirror: "
+            "which coordinate changes sign?"
+        ): poses[:, right_foot],
         "the wrong coordinate changes sign; x points to the left": poses[:, right_foot]
         * [1, 1, -1],
     }

@@ -60,14 +60,19 @@ def x0_weight(mine):
         "u_1 ... u_4",
         mistakes={
             "that is the weight of eps errors; an x0 error of 1 is another eps error": of_eps,
-            "an eps error is sqrt(alpha_bar / (1 - alpha_bar)) times the x0 error, and it enters squared": of_eps
-            * (a / (1 - a)).sqrt(),
+            (
+                "an eps error is sqrt(alpha_bar / (1 - alpha_bar)) times the x0 error, "
+                "and it enters squared"
+            ): of_eps * (a / (1 - a)).sqrt(),
             "the factor is upside down: at high noise a large x0 error is a small eps error": of_eps
             * (1 - a)
             / a,
         },
     )
-    return f"u_1 is {float(right[0] / right[-1]):.0f} times u_4 here: in x0, the bound cares for the last step most."
+    return (
+        f"u_1 is {float(right[0] / right[-1]):.0f} times u_4 here: "
+        "in x0, the bound cares for the last step most."
+    )
 
 
 @check
@@ -91,8 +96,8 @@ def tighter_bound(mine):
     deep = mine(ratio.log() - far)
     expect(
         torch.isfinite(torch.as_tensor(deep)).all(),
-        "at -2000 your answer is not finite: exp gives zero there. Take the largest of each column out before exp, "
-        "or ask torch",
+        "at -2000 your answer is not finite: exp gives zero there. "
+        "Take the largest of each column out before exp, or ask torch",
     )
     expect_close(
         deep,

@@ -21,11 +21,16 @@ def back_to_x0(mine):
         mistakes = {
             "a is the square root of alpha_bar, b that of 1 - alpha_bar": roots_dropped,
             "a and b are swapped": _convert(output, x_s, b, a)[target],
-            "check the sign: x_s = a x0 + b eps, v = a eps - b x0": _convert(-output, x_s, a, b)[target],
-            "this is the noise, and x0 was asked for": {"eps": output, "x0": (x_s - a * x0) / b,
-                                                        "v": a * output + b * x_s}[target],
+            "check the sign: x_s = a x0 + b eps, v = a eps - b x0": (
+                _convert(-output, x_s, a, b)[target]
+            ),
+            "this is the noise, and x0 was asked for": {
+                "eps": output,
+                "x0": (x_s - a * x0) / b,
+                "v": a * output + b * x_s,
+            }[target],
             "undo the mixing completely: divide by a": x_s - b * output,
-        }  # fmt: skip
+        }
         expect_close(
             mine(output, x_s, alpha_bar, target),
             x0,
@@ -72,4 +77,7 @@ def weight_between_losses(mine):
         "x0_hat - x0 has a in the denominator as well": 1 - alpha_bar,
     }
     expect_close(mine(alpha_bar), wanted, "the weight at alpha_bar = 0.9, 0.5, 0.2, 0.01", mistakes)
-    return "Choosing a target is choosing where to look: an unweighted eps loss looks away from high noise."
+    return (
+        "Choosing a target is choosing where to look: "
+        "an unweighted eps loss looks away from high noise."
+    )

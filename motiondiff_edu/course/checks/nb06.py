@@ -65,9 +65,9 @@ def split_into_heads(mine):
     )
     got = mine(x, 3)
     mistakes = {
-        "frames and channels got mixed: cut the channels, then move the heads to the front": x.reshape(
-            2, 3, 5, 4
-        ),
+        (
+            "frames and channels got mixed: cut the channels, then move the heads to the front"
+        ): x.reshape(2, 3, 5, 4),
         "a head owns neighbouring channels, not every third": x.reshape(2, 5, 4, 3).permute(
             0, 3, 1, 2
         ),

@@ -34,7 +34,10 @@ def batch_with_dropout(mine):
             torch.equal(one.nan_to_num(), two.nan_to_num())
             for one, two in zip((seen, x_s), again, strict=True)
         ),
-        "what you return differs from call to call; `u` and `noise` are given, so draw nothing yourself",
+        (
+            "what you return differs from call to call; "
+            "`u` and `noise` are given, so draw nothing yourself"
+        ),
     )
     a = torch.tensor([0.6, 0.8, 0.28, 0.6]).double()[:, None, None]
     b = torch.tensor([0.8, 0.6, 0.96, 0.8]).double()[:, None, None]
@@ -54,18 +57,23 @@ def batch_with_dropout(mine):
     if touched is not False and (touched.any(1) != touched.all(1)).any():
         expect(
             False,
-            "some frames of a past were noised and others not; one u decides over the whole past of a sample",
+            (
+                "some frames of a past were noised and others not; "
+                "one u decides over the whole past of a sample"
+            ),
         )
     noised = a * past + b * second
     mistakes = {
         "the mask is inverted: `u < rate` are the few that are noised": torch.where(
             hit, past, noised
         ),
-        "every past is noised; each sample has its own u, and only those with u < rate are hit": noised,
+        (
+            "every past is noised; each sample has its own u, and only those with u < rate are hit"
+        ): noised,
         "nothing is dropped yet": past,
-        "past and future have the same noise: the network could read the answer off the past": torch.where(
-            hit, a * past + b * first, past
-        ),
+        (
+            "past and future have the same noise: the network could read the answer off the past"
+        ): torch.where(hit, a * past + b * first, past),
         "this is zeroing: eq. 12 shrinks and adds noise": torch.where(hit, 0 * past, past),
         "nothing is divided by 1 - rate: that is nn.Dropout": torch.where(hit, noised, past)
         / (1 - rate),
@@ -78,7 +86,10 @@ def batch_with_dropout(mine):
         },
     }
     expect_close(seen, torch.where(hit, noised, past), "the past as the network sees it", mistakes)
-    return "Sample by sample, whole pasts, noise of their own: three things that are easily got wrong without a sound."
+    return (
+        "Sample by sample, whole pasts, noise of their own: "
+        "three things that are easily got wrong without a sound."
+    )
 
 
 def _two(got) -> list[torch.Tensor]:
@@ -124,9 +135,9 @@ def dropped_products(mine):
     # keep = 0.5 + 0.5 * 0.7, share = 0.5 + 0.5 * 0.5, floor = 0.5 * 0.5
     wanted = _products(xx, 0.85, 0.75, 0.25)
     mistakes = {
-        "past times past has two factors sqrt(alpha_bar): their product is alpha_bar itself": _products(
-            xx, 0.85, 0.85, 0.25
-        ),
+        (
+            "past times past has two factors sqrt(alpha_bar): their product is alpha_bar itself"
+        ): _products(xx, 0.85, 0.85, 0.25),
         "past times control has one factor sqrt(alpha_bar), not two": _products(
             xx, 0.75, 0.75, 0.25
         ),
@@ -193,9 +204,9 @@ def rate_schedule(mine):
             [0, 0, 0.4, 0.4, 0.2, 0.2, 0.1, 0.1]
         ),
         "the rate rises in steps, it does not glide": evenly,
-        "the first rate never comes, or comes too late: each has a third of what is left": torch.tensor(
-            [0, 0, 0, 0, 0.1, 0.1, 0.2, 0.2]
-        ),
+        (
+            "the first rate never comes, or comes too late: each has a third of what is left"
+        ): torch.tensor([0, 0, 0, 0, 0.1, 0.1, 0.2, 0.2]),
         "the rates share what is left after the calm part, not the whole training": torch.tensor(
             [0, 0, 0.2, 0.2, 0.2, 0.4, 0.4, 0.4]
         ),
@@ -212,4 +223,7 @@ def rate_schedule(mine):
         "the rate when all is done",
         {"no rate comes after the last": 0.0},
     )
-    return "With the paper's rates, .05 to .25, and calm = .5, half of the training never meets a noised past."
+    return (
+        "With the paper's rates, .05 to .25, and calm = .5, "
+        "half of the training never meets a noised past."
+    )

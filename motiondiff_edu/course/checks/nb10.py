@@ -28,11 +28,17 @@ class Watched:
         call = f"call {self.calls} of walk_on got"
         expect(
             past.shape == (2, T_H, 2),
-            f"{call} a past {tuple(past.shape)}; it goes on from all T_h = {T_H} frames, (2, {T_H}, 2)",
+            (
+                f"{call} a past {tuple(past.shape)}; "
+                f"it goes on from all T_h = {T_H} frames, (2, {T_H}, 2)"
+            ),
         )
         expect(
             control.shape == (2, 2 * T_H, 3),
-            f"{call} {rows} rows of control, and takes all {2 * T_H}: {T_H} beside the past, {T_H} for the new frames",
+            (
+                f"{call} {rows} rows of control, and takes all {2 * T_H}: "
+                f"{T_H} beside the past, {T_H} for the new frames"
+            ),
         )
         return walk_on(past, control)
 
@@ -89,7 +95,10 @@ def time_reversal(mine):
         "the control of two walks, played backwards",
         mistakes={
             "only the order is reversed; who walks backwards has a negative speed": flipped,
-            "the signs are right; but control[t] leads from frame t to t + 1, so one row has moved": -flipped,
+            (
+                "the signs are right; but control[t] leads from frame t to t + 1, "
+                "so one row has moved"
+            ): -flipped,
             "order and shift are right, the signs are not": -wanted,
             "turning has a sign, too: who turned left turns right on the way back": wanted
             * torch.tensor([1, 1, -1.0]),
@@ -125,12 +134,15 @@ def there_and_back(mine):
     answer = torch.as_tensor(answer)
     expect(
         not torch.isnan(answer[~known]).any(),
-        "there is NaN in the holes. The walker was given NaN, or the holes were not filled from the way back "
-        "(known * past is NaN, too: use torch.where)",
+        "there is NaN in the holes. The walker was given NaN, or the holes were not filled from "
+        "the way back (known * past is NaN, too: use torch.where)",
     )
     expect(
         watched.calls == 2,
-        f"calls of walk_on: {watched.calls}; one round takes two: there, and back from where that led",
+        (
+            f"calls of walk_on: {watched.calls}; one round takes two: "
+            "there, and back from where that led"
+        ),
     )
 
     def variant(**changes):
@@ -160,9 +172,9 @@ def there_and_back(mine):
             "time was never turned round: walking on twice leads farther ahead": variant(
                 flip_ahead=False, flip_back=False
             ),
-            "time was never turned round, nor the control: walking on twice leads farther ahead": variant(
-                reverse=lambda c: c, flip_ahead=False, flip_back=False
-            ),
+            (
+                "time was never turned round, nor the control: walking on twice leads farther ahead"
+            ): variant(reverse=lambda c: c, flip_ahead=False, flip_back=False),
             "the mask is the wrong way round: known is True where something was given": torch.where(
                 known, right, torch.where(known, past, mean)
             ),
@@ -171,7 +183,10 @@ def there_and_back(mine):
             "the holes still hold what they were started with": torch.where(known, past, mean),
         },
     )
-    return "one number of sample 1 is still its mean: this walker has no idea of a body that would tell it better."
+    return (
+        "one number of sample 1 is still its mean: "
+        "this walker has no idea of a body that would tell it better."
+    )
 
 
 @check

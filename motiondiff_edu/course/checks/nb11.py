@@ -18,7 +18,10 @@ def log_mel_from_spectrum(mine):
     loud = torch.tensor([[5.0, 2.0, 0.25], [0.5, 0.5, 0.5]])  # the same with magnitudes
     mistakes = {
         "those are magnitudes; power is their square": loud.log(),
-        "the bands come first; time is never last here, and never first either way: return (M, bands)": wanted.T,
+        (
+            "the bands come first; time is never last here, and never first either way: "
+            "return (M, bands)"
+        ): wanted.T,
         "that is the logarithm to base 10": power.log10(),
         "that is in decibels": 10 * power.log10(),
         "that is log(1 + power), which presses soft sounds flat": power.log1p(),
@@ -55,7 +58,10 @@ def mel_index(mine):
     motion = np.arange(T)
     late = index * 512 / 16_000 - motion / 20
     if (np.abs(late) <= 0.016 + 1e-6).all():
-        return f"at {motion[-1] / 20:.1f} s motion is at frame {T - 1}, sound at frame {int(index[-1])}."
+        return (
+            f"at {motion[-1] / 20:.1f} s motion is at frame {T - 1}, "
+            f"sound at frame {int(index[-1])}."
+        )
     for hint, wrong in {
         "that matches by index: frame t with frame t. They tick at different rates": motion,
         "a second has 31.25 Mel frames, not 32: after 50 s that is 1.2 s off": np.round(
@@ -74,7 +80,10 @@ def mel_index(mine):
     worst = int(np.abs(late).argmax())
     expect(
         False,
-        f"motion frame {worst} ({worst / 20:.2f} s) is matched with sound {late[worst]:+.3f} s away from it",
+        (
+            f"motion frame {worst} ({worst / 20:.2f} s) is matched with sound "
+            f"{late[worst]:+.3f} s away from it"
+        ),
     )
 
 

@@ -38,18 +38,20 @@ def frame_conv(mine):
         same_length = {
             f"this looks into the future only: {middle}": mixed(x, after, _shifted(x, 2)),
             f"this looks into the past only: {middle}": mixed(_shifted(x, -2), before, x),
-            "before and after are exchanged: the first third of the weights belongs to the frame before": mixed(
-                after, x, before
-            ),
+            (
+                "before and after are exchanged: "
+                "the first third of the weights belongs to the frame before"
+            ): mixed(after, x, before),
             "it wraps around: before the first frame comes not the last one, but zeros": mixed(
                 x.roll(1, 0), x, x.roll(-1, 0)
             ),
             "beyond both ends are zeros, and not the first and the last frame once more": mixed(
                 torch.cat([x[:1], x[:-1]]), x, torch.cat([x[1:], x[-1:]])
             ),
-            "these columns go channel by channel; the weights want one frame whole, then the next": mixed(
-                torch.stack([before, x, after], -1).flatten(1)
-            ),
+            (
+                "these columns go channel by channel; "
+                "the weights want one frame whole, then the next"
+            ): mixed(torch.stack([before, x, after], -1).flatten(1)),
         }
         mistakes = {hint: wrong[::stride] for hint, wrong in same_length.items()} | {
             "the bias is missing": wanted - bias
@@ -59,9 +61,10 @@ def frame_conv(mine):
             mistakes |= {
                 "every second frame is kept, the *first* one included": whole[1::2],
                 "the stride is not used": whole,
-                "neighbours first, then every second answer: here the frames between were never seen": (
-                    mixed(_shifted(x[::2], -1), x[::2], _shifted(x[::2], 1))
-                ),
+                (
+                    "neighbours first, then every second answer: "
+                    "here the frames between were never seen"
+                ): (mixed(_shifted(x[::2], -1), x[::2], _shifted(x[::2], 1))),
                 "the last frame got lost: of 7 frames, every second kept, 4 are left": whole[::2][
                     :3
                 ],
@@ -90,11 +93,17 @@ def any_length(mine):
             asked.append(x.shape[1])
             expect(
                 x.shape[0] == 2 and x.shape[2] == 3,
-                f"the network was given {tuple(x.shape)}: it is the frames, axis 1 of (B, T, D), that are filled up",
+                (
+                    f"the network was given {tuple(x.shape)}: "
+                    "it is the frames, axis 1 of (B, T, D), that are filled up"
+                ),
             )
             expect(
                 x.shape[1] % multiple == 0,
-                f"the network was given {x.shape[1]} frames, no multiple of {multiple}: fill up before you ask",
+                (
+                    f"the network was given {x.shape[1]} frames, no multiple of {multiple}: "
+                    "fill up before you ask"
+                ),
             )
             return sums(x)
 
@@ -122,7 +131,10 @@ def any_length(mine):
         expect_close(
             got, sums(x), f"the answer for {T} frames and multiples of {multiple}", mistakes
         )
-    return "In the library the filling is masked as well, so that attention and neighbours never see it."
+    return (
+        "In the library the filling is masked as well, "
+        "so that attention and neighbours never see it."
+    )
 
 
 @check
@@ -142,9 +154,10 @@ def clocks(mine):
     n, m, turn = torch.arange(5.0), torch.arange(7.0), 2 * math.pi
     t, u = turn * n / fps_q, turn * m / fps_k
     mistakes = {
-        "these are indices: divide each by its own rate, for only seconds mean the same on both sides": weights(
-            turn * n, turn * m
-        ),
+        (
+            "these are indices: divide each by its own rate, "
+            "for only seconds mean the same on both sides"
+        ): weights(turn * n, turn * m),
         "both sides were counted by the motion's clock; the tokens have their own": weights(
             t, turn * m / fps_q
         ),
@@ -173,4 +186,7 @@ def clocks(mine):
         "the weights of 5 frames over 7 tokens",
         mistakes,
     )
-    return "A minute later on both clocks, and every weight is the same: only the time between them counts."
+    return (
+        "A minute later on both clocks, and every weight is the same: "
+        "only the time between them counts."
+    )

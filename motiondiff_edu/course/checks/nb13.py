@@ -52,13 +52,15 @@ def skeleton_loss(mine):
     # bone 0: 2 / 4, bone 1: 6 / 4, bone 2: 0.5 / 4
     wanted, off = torch.tensor((0.5 + 1.5 + 0.125) / 3), lengths - lengths.mean(0)
     mistakes = {
-        "this is the variance over the bones of a frame; bones may differ, but not over time": lengths.var(
-            1
-        ).mean(),
+        (
+            "this is the variance over the bones of a frame; bones may differ, but not over time"
+        ): lengths.var(1).mean(),
         "divide by the number of frames minus one": lengths.var(0, correction=0).mean(),
         "this is the standard deviation; equation 6 has no root": lengths.std(0).mean(),
         "the bones are averaged, not added up": lengths.var(0).sum(),
-        "this is the variance of all lengths together; each bone has a mean of its own": lengths.var(),
+        "this is the variance of all lengths together; each bone has a mean of its own": (
+            lengths.var()
+        ),
         "one mean for all bones: each bone has a mean of its own": ((lengths - lengths.mean()) ** 2)
         .sum(0)
         .mean()
@@ -108,15 +110,16 @@ def asymmetry_from_features(mine):
         "these lengths are in standardised units; go back to metres first": _asymmetry(
             _lengths(in_std, bones), pairs
         ),
-        "standardised units, and the pelvis is not added: metres first, then the pelvis": _asymmetry(
-            _lengths(unscaled, bones), pairs
+        "standardised units, and the pelvis is not added: metres first, then the pelvis": (
+            _asymmetry(_lengths(unscaled, bones), pairs)
         ),
         "only half-way back to metres: the mean is missing": _asymmetry(
             _lengths(_placed((x0_hat * std).unflatten(1, (5, 3))), bones), pairs
         ),
-        "the pelvis is not added to the other joints, or is to itself as well: bones that start there err": _asymmetry(
-            _lengths(about, bones), pairs
-        ),
+        (
+            "the pelvis is not added to the other joints, or is to itself as well: "
+            "bones that start there err"
+        ): _asymmetry(_lengths(about, bones), pairs),
         "only half-way back to metres: the std is missing": _asymmetry(
             _lengths(_placed((x0_hat + mean).unflatten(1, (5, 3))), bones), pairs
         ),
@@ -138,7 +141,10 @@ def asymmetry_from_features(mine):
         "the mean over the frames as well, not their sum": gap.abs().sum(0).mean(),
     }
     expect_close(mine(x0_hat, mean, std, bones, pairs), wanted, "L_a of two frames", mistakes)
-    return "Bones are in metres: what the network says has to leave its own units before it can be judged."
+    return (
+        "Bones are in metres: what the network says has to leave its "
+        "own units before it can be judged."
+    )
 
 
 def _placed(about):

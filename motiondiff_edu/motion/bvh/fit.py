@@ -57,8 +57,9 @@ class FitReport:
     def __str__(self) -> str:
         frame, joint = np.unravel_index(int(self.shift_mm.argmax()), self.shift_mm.shape)
         return (
-            f"{self.path or 'fit'}: {len(self.positions)} frames, bones made constant; joints shifted by "
-            f"{self.mean_mm:.2f} mm on average, {self.max_mm:.2f} mm at most ({JOINTS[joint]}, frame {frame})"
+            f"{self.path or 'fit'}: {len(self.positions)} frames, bones made constant; joints "
+            f"shifted by {self.mean_mm:.2f} mm on average, "
+            f"{self.max_mm:.2f} mm at most ({JOINTS[joint]}, frame {frame})"
         )
 
 

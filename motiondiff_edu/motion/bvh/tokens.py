@@ -82,7 +82,10 @@ def refuse_foreign(start: bytes, path: Path) -> None:
         )
     if b"\0" in start:
         raise BvhError(
-            "this is a binary file, and BVH is text that starts with HIERARCHY; export the take as BVH.",
+            (
+                "this is a binary file, and BVH is text that starts with HIERARCHY; "
+                "export the take as BVH."
+            ),
             path,
         )
     if head.split(maxsplit=1)[0].lower() != b"hierarchy":
@@ -142,5 +145,11 @@ def why_no_number(text: str) -> str:
     if re.fullmatch(r"[-+]?\d*,\d+([eE][-+]?\d+)?", text):
         return f"'{text}' has a decimal comma; export with decimal points (an English locale)."
     if RUN_TOGETHER.search(text):
-        return f"'{text}' looks like two numbers without a blank between them; put a blank before the second sign."
-    return f"'{text[:40]}' is not a number; only numbers may stand here. Remove the comment or repair the line."
+        return (
+            f"'{text}' looks like two numbers without a blank between them; "
+            "put a blank before the second sign."
+        )
+    return (
+        f"'{text[:40]}' is not a number; only numbers may stand here. "
+        "Remove the comment or repair the line."
+    )

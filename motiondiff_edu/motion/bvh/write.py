@@ -38,8 +38,9 @@ def write_bvh(
         raise BvhError(f"the motion {what}; nothing was written.", path)
     if positions.shape[1:] != (J, 3):
         raise BvhError(
-            f"positions are (T, {J}, 3), metres in the world; these are {positions.shape}. What a walker makes becomes "
-            f"that by root_frame.to_world(new.reshape(-1, {J}, 3), control). Nothing was written.",
+            f"positions are (T, {J}, 3), metres in the world; these are {positions.shape}. What a "
+            f"walker makes becomes that by root_frame.to_world(new.reshape(-1, {J}, 3), "
+            "control). Nothing was written.",
             path,
         )
     if not 1 / SLOWEST <= fps <= 1 / FASTEST:

@@ -129,8 +129,9 @@ def attention_picture(stage: Stage, song: int = 0, frames: int = TRAINED) -> Pic
     shown = {name: maps[name] for k, name in enumerate(maps) if k <= levels or k == len(maps) - 1}
     audio, seconds = heard.songs[song].audio, frames / FPS
     words = (
-        "Where each level of the U-Net reads in the music while its dance is denoised, heads averaged. Rows are "
-        "moments of the dance; darker is more. Dotted lines are beats; an upright stripe is read by all moments."
+        "Where each level of the U-Net reads in the music while its dance is denoised, heads "
+        "averaged. Rows are moments of the dance; darker is more. Dotted lines are beats; "
+        "an upright stripe is read by all moments."
     )
     return levels_over_sound(
         audio[: round(seconds * 16_000)], shown, times, heard.songs[song].beats, seconds, words

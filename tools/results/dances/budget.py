@@ -27,7 +27,10 @@ from .parts import Danced, DanceSize, Stage, danced
 from .scores import bone_gain, share_minus
 from .trials import UNSEEN, mel_of
 
-LIKE = "target x0, shifted schedule, no kinematic losses, changes weighted 5, feet 0.2, convolutions over the Mel"
+LIKE = (
+    "target x0, shifted schedule, no kinematic losses, changes weighted 5, feet 0.2, "
+    "convolutions over the Mel"
+)
 KIN = {
     name: {"kinematic": replace(KINEMATIC, over_time=name)}
     for name in ("constant", "alpha_bar", "snr")

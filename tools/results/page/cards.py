@@ -8,8 +8,18 @@ from motiondiff_edu.pretrained import checkpoints
 
 from ..walks.parts import kept_records, weights_digest
 
-SHOWN = ("bone_rmse_cm", "adherence_mps", "adherence_excess_mps", "drift_ratio", "skating_mps", "diversity_over_data",
-         "bas_share", "speed_over_data", "beats_per_beat_over_data", "multimodality_over_data")  # fmt: skip
+SHOWN = (
+    "bone_rmse_cm",
+    "adherence_mps",
+    "adherence_excess_mps",
+    "drift_ratio",
+    "skating_mps",
+    "diversity_over_data",
+    "bas_share",
+    "speed_over_data",
+    "beats_per_beat_over_data",
+    "multimodality_over_data",
+)
 
 
 def metrics(folder: Path, name: str, digest: str) -> dict[str, float]:

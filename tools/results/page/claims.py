@@ -13,10 +13,14 @@ from .markdown import cell, number, table
 AGREES, DIFFERS, OPEN, MISSING = "agrees", "does not agree", "undecided", "not measured yet"
 TEXT = """## The paper's claims, tried
 
-Each claim of MoFusion that a figure of this course can judge. The verdict is computed: **agrees** when the whole 95 %
-interval lies on the right side of the limit, **does not agree** when on the wrong side, **undecided** across it.
-Data, sizes and length of training are ours: a verdict is of the idea at this scale, not of the paper's own figures.
-Intervals are over songs: another training seed may change more. Less repetition than the data's, or more spread, is
+Each claim of MoFusion that a figure of this course can judge. The verdict is computed: \
+**agrees** when the whole 95 %
+interval lies on the right side of the limit, **does not agree** when on the wrong side, \
+**undecided** across it.
+Data, sizes and length of training are ours: a verdict is of the idea at this scale, \
+not of the paper's own figures.
+Intervals are over songs: another training seed may change more. Less repetition than the data's, \
+or more spread, is
 what a claim asks for; it is not yet a better dance.
 
 """
@@ -66,43 +70,146 @@ KNOWN = {
 MEL, CLEAN = "dance-budget.x0.bas_share", "dance-budget.no-feet.bas_share"
 WEIGHTED = "dance-budget.alpha_bar"
 CLAIMS = (
-    Claim("dances rarely repeat themselves: no more than the data", "1, 4.1", "dancer.repeat", -1,
-          of="dancer.repeat_data"),
-    Claim("dances repeat themselves less than those of a deterministic method", "4.1", "dancer.repeat", -1,
-          of="regression.repeat"),
-    Claim("raw Mel is enough: MFCC and given beats gain a tenth of the data's alignment at most", "2, 3.3",
-          "dance-budget.mfcc.bas_share_minus_x0", -1, 0.1, beside=(MEL, "dance-budget.mfcc.bas_share")),
-    Claim("a linear layer is enough for the music: it loses a tenth of the data's alignment at most", "3.3",
-          "dance-budget.linear-music.bas_share_minus_x0", 1, -0.1, beside=(MEL, "dance-budget.linear-music.bas_share")),
-    Claim("a metre that was never heard is danced to", "1", "dancer.unheard.metre5.bas_share", 1, **KNOWN),
-    Claim("a tempo that was never heard is danced to", "1", "dancer.unheard.tempo70.bas_share", 1, **KNOWN),
-    Claim("instruments that were never heard are danced to", "1", "dancer.unheard.mallets.bas_share", 1, **KNOWN),
-    Claim("the U-Net is light: a transformer of equal size dances no faster", "1",
-          "dance-time.transformer.dance_over_x0", 1, beside=("dance-time.transformer.pass_over_x0",)),
-    Claim("the U-Net is light: a transformer of equal size trains no faster", "1",
-          "dance-time.transformer.step_over_x0", 1),
-    Claim("lightness costs no quality: a transformer gains a tenth of the data's alignment at most", "1",
-          "dance-budget.transformer.bas_share_minus_x0", -1, 0.1,
-          beside=("dance-budget.transformer.bone_gain_over_x0",)),
-    Claim("kinematic losses help: bones err less (shipped weights)", "3.2", "dancer.bone_gain", 1, 0.0),
-    Claim("kinematic losses help: bones err less (trainings of equal length)", "3.2",
-          f"{WEIGHTED}.bone_gain_over_x0", 1, 0.0, beside=(f"{WEIGHTED}.bas_share_minus_x0",)),
-    Claim("their weight over time helps: bones err less than with all steps alike", "3.2",
-          f"{WEIGHTED}.bone_gain_over_constant", 1, 0.0),
-    Claim("their weight over time helps: more on the beat than with all steps alike", "3.2",
-          f"{WEIGHTED}.bas_share_minus_constant", 1, 0.0),
-    Claim("the noise, unweighted, is a good target: seven tenths of the alignment of x0", "3.1",
-          "dance-budget.eps.bas_share", 1, 0.7, CLEAN, ("dance-budget.eps-weighted.bas_share",)),
-    Claim("dances are on the beat at least as well as the data", "Table 1", "dancer.bas", 1, of="dancer.bas_data"),
-    Claim("one piece has many dances: as unlike one another as the data's", "Table 1",
-          "dancer.multimodality_over_data", 1, beside=("regression.multimodality",)),
-    Claim("attention falls on the beats, more than on those of other songs", "Fig. 4",
-          "attention.beat_mass_over_shuffled", 1, beside=("attention.beat_mass_over_shifted",)),
-    Claim("attention falls on the beats at the bottom of the U-Net", "Fig. 4",
-          "attention.bottom.beat_mass_over_shuffled", 1),
-    Claim("the bottom of the U-Net reads less of the music at a time than the top", "Fig. 4",
-          "attention.bottom_over_top_seconds", -1),
-)  # fmt: skip
+    Claim(
+        "dances rarely repeat themselves: no more than the data",
+        "1, 4.1",
+        "dancer.repeat",
+        -1,
+        of="dancer.repeat_data",
+    ),
+    Claim(
+        "dances repeat themselves less than those of a deterministic method",
+        "4.1",
+        "dancer.repeat",
+        -1,
+        of="regression.repeat",
+    ),
+    Claim(
+        "raw Mel is enough: MFCC and given beats gain a tenth of the data's alignment at most",
+        "2, 3.3",
+        "dance-budget.mfcc.bas_share_minus_x0",
+        -1,
+        0.1,
+        beside=(MEL, "dance-budget.mfcc.bas_share"),
+    ),
+    Claim(
+        "a linear layer is enough for the music: it loses a tenth of the data's alignment at most",
+        "3.3",
+        "dance-budget.linear-music.bas_share_minus_x0",
+        1,
+        -0.1,
+        beside=(MEL, "dance-budget.linear-music.bas_share"),
+    ),
+    Claim(
+        "a metre that was never heard is danced to",
+        "1",
+        "dancer.unheard.metre5.bas_share",
+        1,
+        **KNOWN,
+    ),
+    Claim(
+        "a tempo that was never heard is danced to",
+        "1",
+        "dancer.unheard.tempo70.bas_share",
+        1,
+        **KNOWN,
+    ),
+    Claim(
+        "instruments that were never heard are danced to",
+        "1",
+        "dancer.unheard.mallets.bas_share",
+        1,
+        **KNOWN,
+    ),
+    Claim(
+        "the U-Net is light: a transformer of equal size dances no faster",
+        "1",
+        "dance-time.transformer.dance_over_x0",
+        1,
+        beside=("dance-time.transformer.pass_over_x0",),
+    ),
+    Claim(
+        "the U-Net is light: a transformer of equal size trains no faster",
+        "1",
+        "dance-time.transformer.step_over_x0",
+        1,
+    ),
+    Claim(
+        "lightness costs no quality: a transformer gains a tenth of the data's alignment at most",
+        "1",
+        "dance-budget.transformer.bas_share_minus_x0",
+        -1,
+        0.1,
+        beside=("dance-budget.transformer.bone_gain_over_x0",),
+    ),
+    Claim(
+        "kinematic losses help: bones err less (shipped weights)", "3.2", "dancer.bone_gain", 1, 0.0
+    ),
+    Claim(
+        "kinematic losses help: bones err less (trainings of equal length)",
+        "3.2",
+        f"{WEIGHTED}.bone_gain_over_x0",
+        1,
+        0.0,
+        beside=(f"{WEIGHTED}.bas_share_minus_x0",),
+    ),
+    Claim(
+        "their weight over time helps: bones err less than with all steps alike",
+        "3.2",
+        f"{WEIGHTED}.bone_gain_over_constant",
+        1,
+        0.0,
+    ),
+    Claim(
+        "their weight over time helps: more on the beat than with all steps alike",
+        "3.2",
+        f"{WEIGHTED}.bas_share_minus_constant",
+        1,
+        0.0,
+    ),
+    Claim(
+        "the noise, unweighted, is a good target: seven tenths of the alignment of x0",
+        "3.1",
+        "dance-budget.eps.bas_share",
+        1,
+        0.7,
+        CLEAN,
+        ("dance-budget.eps-weighted.bas_share",),
+    ),
+    Claim(
+        "dances are on the beat at least as well as the data",
+        "Table 1",
+        "dancer.bas",
+        1,
+        of="dancer.bas_data",
+    ),
+    Claim(
+        "one piece has many dances: as unlike one another as the data's",
+        "Table 1",
+        "dancer.multimodality_over_data",
+        1,
+        beside=("regression.multimodality",),
+    ),
+    Claim(
+        "attention falls on the beats, more than on those of other songs",
+        "Fig. 4",
+        "attention.beat_mass_over_shuffled",
+        1,
+        beside=("attention.beat_mass_over_shifted",),
+    ),
+    Claim(
+        "attention falls on the beats at the bottom of the U-Net",
+        "Fig. 4",
+        "attention.bottom.beat_mass_over_shuffled",
+        1,
+    ),
+    Claim(
+        "the bottom of the U-Net reads less of the music at a time than the top",
+        "Fig. 4",
+        "attention.bottom_over_top_seconds",
+        -1,
+    ),
+)
 
 
 def claims(records: dict[str, dict]) -> str:

@@ -74,7 +74,8 @@ class Bench:
                 f"no weights are called {name!r}; there are: {', '.join(self.weights) or 'none'}"
             )
         inputs = "-".join(_digest(x) for x in self._inputs(what))
-        key = f"{weights_digest(path)}-{steps}-{hold}-{what}-{json.dumps(asdict(self.size))}-{inputs}-{code_digest()}"
+        size = json.dumps(asdict(self.size))
+        key = f"{weights_digest(path)}-{steps}-{hold}-{what}-{size}-{inputs}-{code_digest()}"
         kept = CACHE / f"{name}-{hashlib.sha256(key.encode()).hexdigest()[:12]}.npy"
         if not kept.exists():
             generate = walker_generate(checkpoints.load_walker(path), steps, hold)

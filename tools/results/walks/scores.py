@@ -39,8 +39,16 @@ class Figure:
         value, low, high = (
             float(f"{x:.5g}") if np.isfinite(x) else None for x in (self.value, self.low, self.high)
         )
-        return dict(name=prefix + self.name, value=value, low=low, high=high, seeds=seeds, unit=self.unit,
-                    paper=paper, command=command)  # fmt: skip
+        return dict(
+            name=prefix + self.name,
+            value=value,
+            low=low,
+            high=high,
+            seeds=seeds,
+            unit=self.unit,
+            paper=paper,
+            command=command,
+        )
 
 
 def squared_bone_error(poses: Float[np.ndarray, "N T J 3"]) -> Float[np.ndarray, "N"]:
