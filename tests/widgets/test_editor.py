@@ -5,13 +5,11 @@ import time
 
 import numpy as np
 import pytest
-import torch
 import traitlets
 from browser import coloured, ink, open_page
-from editor_page import open_editor, settled
+from editor_page import guess, open_editor, settled
 from synthetic_walk import walk
 
-from motiondiff_edu.baselines.interpolation import spherical
 from motiondiff_edu.motion.bvh import read_bvh
 from motiondiff_edu.motion.skeleton import BONES, JOINTS, joint_index
 from motiondiff_edu.viz.body import Camera, project
@@ -25,14 +23,6 @@ FIGURE, RAIL = "canvas:not(.mde-lane)", "canvas.mde-timeline"
 @pytest.fixture(scope="module")
 def motion() -> np.ndarray:
     return walk(frames=T, turn=0.5)[0]
-
-
-def guess(positions, known, generator, samples=1, resample=1):
-    """Bones turned evenly between what is held, shaken; the more it is resampled, the less."""
-    base = spherical(positions, known)
-    shape = (samples, *base.shape[:2], 3)
-    noise = 0.1 / resample * torch.randn(shape, generator=generator, dtype=torch.float64).numpy()
-    return np.where(known[..., None], base, base + noise)
 
 
 def words(page) -> str:
@@ -159,7 +149,7 @@ def test_errors_are_told_in_the_page_and_leave_it_at_rest(motion, tmp_path):
     assert receive(editor, do="generate", after=0) == "RuntimeError: out of memory."
     assert not editor.busy and editor.samples is None and isinstance(editor.error, RuntimeError)
     assert receive(editor, do="undo") == "There is nothing to undo."
-    assert receive(editor, do="drag", frame=3, joint=5, to=[0, 0, 0], grip=1).startswith(
+    assert receive(editor, do="drag", frame=3, joint=5, by=[0, 0, 0], grip=1).startswith(
         "Frame 3 is not pinned"
     )
     assert (
@@ -168,7 +158,7 @@ def test_errors_are_told_in_the_page_and_leave_it_at_rest(motion, tmp_path):
     )
     assert receive(editor, do="save", name=" ") == "Give the file a name."
     editor.pin(*range(T))
-    assert receive(editor, do="generate", after=0).startswith(
+    assert receive(editor, do="generate", after=5).startswith(
         "Every frame is pinned: there is nothing to make."
     )
     assert editor.state["heard"] == 6
@@ -195,26 +185,66 @@ def test_a_press_while_another_is_answered_is_ignored(motion):
 def test_drags_of_one_grip_start_from_the_same_pose_and_are_undone_together(motion):
     editor = Editor(motion, guess)
     editor.pin(8)
-    there = (motion[8, HAND] + [0.1, 0.3, 0.0]).tolist()
-    for target in ([5.0, 5.0, 5.0], [-3.0, 0.5, 0.2], there):
-        receive(editor, do="drag", frame=8, joint=HAND, to=target, grip=1)
+    for by in ([5.0, 5.0, 5.0], [-3.0, 0.5, 0.2], [0.1, 0.3, 0.0]):
+        receive(editor, do="drag", frame=8, joint=HAND, by=by, grip=1)
     alone = Editor(motion, guess)
     alone.pin(8)
-    alone.drag(8, "LeftHand", there)
+    alone.drag(8, "LeftHand", motion[8, HAND] + [0.1, 0.3, 0.0])
     assert np.array_equal(editor.positions, alone.positions)
-    receive(
-        editor,
-        do="drag",
-        frame=8,
-        joint=12,
-        to=(editor.positions[8, 12] + [0.05, 0, 0]).tolist(),
-        grip=2,
-    )
+    receive(editor, do="drag", frame=8, joint=12, by=[0.05, 0, 0], grip=2)
     assert editor.edit.moved == {8: ("LeftHand", "Head")} and editor.state["undo"] == 3
     receive(editor, do="undo")
     assert np.array_equal(editor.positions, alone.positions)
     receive(editor, do="undo")
     assert np.array_equal(editor.positions, motion)
+
+
+def height(editor, frame: int = 8) -> float:
+    """How far the left hand of a frame was raised, in cm."""
+    return 100 * (editor.positions - editor.edit.motion)[frame, HAND, 1]
+
+
+def test_a_grip_goes_on_after_an_undo_with_what_it_was_moved_since(motion):
+    editor = Editor(motion, guess)
+    editor.pin(8)
+    for cm in (5, 12):
+        receive(editor, do="drag", frame=8, joint=HAND, by=[0, cm / 100, 0], grip=1)
+    receive(editor, do="undo")
+    assert height(editor) == 0
+    for cm in (15, 19):  # 3 and 7 more than before the undo
+        receive(editor, do="drag", frame=8, joint=HAND, by=[0, cm / 100, 0], grip=1)
+    assert height(editor) == pytest.approx(7) and editor.state["undo"] == 2
+    receive(editor, do="drag", frame=8, joint=HAND, by=[0, 0.01, 0], grip=2)
+    assert height(editor) == pytest.approx(8)
+    receive(editor, do="undo")
+    assert height(editor) == pytest.approx(7)
+    assert "not by [0.0, nan, 0.0]" in receive(
+        editor, do="drag", frame=8, joint=HAND, by=[0, None, 0], grip=3
+    )
+    receive(editor, do="drag", frame=8, joint=HAND, by=[0, 0.02, 0], grip=3)
+    assert height(editor) == pytest.approx(9)
+
+
+def test_a_press_after_an_undo_is_no_old_one(motion):
+    editor = Editor(motion, guess)
+    editor.pin(0, 30)
+    receive(editor, do="generate", after=0, count=2, resample=4)
+    assert (len(editor.samples), editor.count, editor.resample) == (2, 2, 4)
+    receive(editor, do="undo")
+    assert editor.samples is None
+    receive(editor, do="generate", after=1)  # the page has not heard of the undo yet
+    assert len(editor.samples) == 2
+
+
+def test_a_frame_is_turned_over_as_it_is_here_and_pinned_as_it_is_shown_there(motion):
+    editor = Editor(motion, guess)
+    editor.pin(0, 30)
+    editor.generate()
+    receive(editor, do="toggle", frame=11, chosen=2)
+    assert np.array_equal(editor.positions[11], editor.samples[2, 11]) and editor.chosen == 2
+    assert receive(editor, do="toggle", frame=11, chosen=2) == "Let go of frame 11."
+    receive(editor, do="ping")
+    assert editor.state["message"] == "Let go of frame 11."
 
 
 def test_what_is_no_motion_is_refused(motion):
@@ -444,8 +474,8 @@ def test_without_a_kernel_it_plays_and_pins_and_says_what_it_needs(browser, moti
     bundle, _ = editor._repr_mimebundle_()
     assert (
         'alt="Motion editor: a skeleton moves for 1.6 s, 31 frames; 2 frames pinned. '
-        '3 in-betweens made."'
-    ) in bundle["text/html"]
+        '3 in-betweens made."' in bundle["text/html"]
+    )
     assert {"image/png", "application/vnd.jupyter.widget-view+json"} <= set(bundle)
     export = tmp_path / "export.html"
     export.write_text(f"<!doctype html><body>{bundle['text/html']}", "utf-8")

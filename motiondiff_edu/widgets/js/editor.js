@@ -7,10 +7,12 @@ import { bytes, unpack } from "./figures.js";
 import { smoothRoot } from "./paint.js";
 import { silentClock } from "./clock.js";
 import { timeline } from "./timeline.js";
-import { along, dragged, jointAt, paintStage } from "./stage.js";
+import { along, dot, dragged, jointAt, paintStage } from "./stage.js";
 
-const HOME = { yaw: 0.6, pitch: 0.2, zoom: 1.1 }, CENTIMETRE = 0.01, SILENCE = 5000, NUDGES = 900; // milliseconds
+const HOME = { yaw: 0.6, pitch: 0.2, zoom: 1.1 }, CENTIMETRE = 0.01, SILENCE = 5000, PATIENCE = 1000, NUDGES = 900; // milliseconds
 const ASLEEP = "needs a running notebook: run the cell that made this editor.";
+const MUTE = "The notebook's kernel does not answer: it is busy with another cell, or not running.";
+const GONE = "The notebook's kernel is gone. Your changes are still shown here, but nothing can be made or saved. Restart the kernel and run the notebook's cells again: the editor then starts anew.";
 const MORE_CSS = `
 .mde-editor canvas { touch-action: none; } .mde-editor canvas.mde-timeline { cursor: pointer; }
 .mde-editor canvas.mde-over { cursor: move; }
@@ -62,18 +64,20 @@ export function mount(model, el, { fill = false } = {}) {
 
   const view = { ...HOME, follow: true }, clock = silentClock(scene.frames / scene.fps, () => visible);
   let state, motion, samples, poses, frame = 0, chosen = 0, playing = false, visible = true, ticking = 0, sent = -1, told = 0;
-  let look = null, joint = null, hover = null, target = null, held_spot = null, grip = 0, nudged = null, pull = null;
-  let number = 0, waiting = null, queued = null, pressed = 0, begun = 0, silence = 0;
+  let look = null, joint = null, hover = null, target = null, held_spot = null, grip = null, grips = 0, pull = null;
+  let number = 0, unsent = null, drag_number = 0, patience = 0, pressed = 0, begun = 0, silence = 0, gone = false;
 
   // ---- what Python told
   const read = (where, frames) => unpack({ get: (name) => ({ scene: { joints: scene.joints, figures: frames.map((n) => ({ frames: n })) },
     joints: model.get(`${where}joints`), roots: model.get(`${where}roots`), contacts: new DataView(new ArrayBuffer(0)) })[name] });
-  function load() {
+  function load() { // false for an answer that was overtaken by a newer one
+    if (state && model.get("state").edition < state.edition) return false;
     state = { ...model.get("state") };
     samples = read("made_", Array(state.made).fill(scene.frames));
     const flat = new Float32Array(bytes(model.get("poses"))), size = 3 * scene.joints;
     poses = new Map(state.pins.map((t, i) => [t, Array.from({ length: scene.joints }, (_, j) => Array.from(flat.slice(i * size + 3 * j, i * size + 3 * j + 3)))]));
     chosen = clamp(model.get("chosen"), 0, Math.max(samples.length - 1, 0));
+    return true;
   }
   const base = () => samples[chosen] || motion;
   const figure = { frames: scene.frames, path: null, past: null, prints: [], planted: () => 0,
@@ -115,7 +119,7 @@ export function mount(model, el, { fill = false } = {}) {
     held.textContent = state.held[0].toUpperCase() + state.held.slice(1);
     measured.textContent = samples.length ? `In-between ${chosen + 1}${state.old ? " (made before the last change)" : ""}: ${state.measured[chosen]}.` : "";
     which.textContent = samples.length ? `${chosen + 1} of ${samples.length}` : "none yet";
-    const busy = pressed > 0 || model.get("busy");
+    const busy = generating();
     root.setAttribute("aria-busy", String(busy)); generate.setAttribute("aria-disabled", String(busy));
     generate.textContent = busy ? "Generating \u2026" : "Generate";
     undo.setAttribute("aria-disabled", String(!state.undo)); save.setAttribute("aria-disabled", String(!samples.length));
@@ -125,23 +129,51 @@ export function mount(model, el, { fill = false } = {}) {
   const say = (text) => { said.textContent = text; };
 
   // ---- what the page asks
+  // Wishes are sent as differences (how far a joint is moved since it was gripped, pinned or not the other way round): the
+  // pose that the page shows may be an old one, and Python adds them to its own.
+  const asking = () => live && !gone && number > state.heard, generating = () => !gone && (pressed > 0 || model.get("busy"));
   function ask(content, what) {
-    if (!live) return say(`${what} ${ASLEEP}`);
-    number = Math.max(number, state.heard) + 1; model.send({ ...content, number });
-    clearTimeout(silence);
-    silence = setTimeout(() => {
-      if (stop.signal.aborted || state.heard >= number || model.get("busy")) return;
-      pressed = 0; waiting = null; words(); say("The notebook's kernel does not answer: it is busy with another cell, or not running.");
-    }, SILENCE);
+    if (!live) { say(`${what} ${ASLEEP}`); return false; }
+    handOn(); // what was dragged before this comes first
+    return send(content);
   }
-  function pullTo(to, name) { // one drag on its way at a time: the last one asked for goes next
-    target = to; draw();
-    const content = { do: "drag", frame, joint, to, grip };
-    if (waiting != null) { queued = content; return; }
-    ask(content, name); waiting = live ? number : null;
+  function send(content) {
+    const next = Math.max(number, state.heard) + 1;
+    if (!reach({ ...content, number: next })) return false;
+    number = next; gone = false;
+    clearTimeout(silence); silence = setTimeout(miss, SILENCE);
+    return true;
+  }
+  function reach(content) { // a kernel that was shut down or started anew takes no messages: `send` throws
+    try { model.send(content); return true; } catch { /* told below */ }
+    gone = true; pressed = 0; unsent = target = null; clearTimeout(silence); words(); say(GONE); draw();
+    return false;
+  }
+  function miss() { // no answer so far
+    if (stop.signal.aborted || state.heard >= number) return;
+    if (model.get("busy")) { if (reach({ do: "ping" })) silence = setTimeout(miss, SILENCE); return; } // it works, if it is there still
+    pressed = 0; words(); say(MUTE);
+  }
+  function take(j) { // a grip is one change to Undo: a run of key presses, or one drag
+    handOn();
+    const going = target && grip && grip.frame === frame && grip.joint === j;
+    grip = { id: grips = Math.max(Date.now(), grips + 1), frame, joint: j, by: [0, 0, 0], from: going ? target : figure.pose(frame)[j] };
+    return grip;
+  }
+  function pullBy(by, held, name) { // in all since the grip began: whatever becomes of the messages before, the last one holds all of it
+    if (!live) return say(`${name} ${ASLEEP}`);
+    held.by = by; target = along(held.from, by, 1); draw();
+    unsent = { do: "drag", frame: held.frame, joint: held.joint, by, grip: held.id };
+    if (!patience) handOn();
+  }
+  function handOn() { // one drag on its way at a time, so that a slow kernel is not flooded; without an answer the next one goes all the same
+    const content = unsent; unsent = null;
+    if (!content || !send(content)) return;
+    drag_number = number; clearTimeout(patience);
+    patience = setTimeout(() => { patience = 0; if (!stop.signal.aborted) handOn(); }, PATIENCE);
   }
   function toggle(t) {
-    if (live) return ask({ do: poses.has(t) ? "unpin" : "pin", frame: t }, "");
+    if (live) return ask({ do: "toggle", frame: t, chosen }, "");
     const on = !poses.has(t); // with no kernel pins are shown, and nothing follows from them
     if (on) poses.set(t, figure.pose(t)); else poses.delete(t);
     const moved = new Map(state.pins.map((f, i) => [f, state.moved[i]]));
@@ -150,10 +182,10 @@ export function mount(model, el, { fill = false } = {}) {
     words(); say(`Frame ${t} ${on ? "pinned" : "let go"}, on this page only.`); draw();
   }
   function make() {
-    if (pressed || model.get("busy")) return;
+    if (generating()) return;
     if (!live) return say(`Generating ${ASLEEP}`);
     halt(frame); begun = performance.now();
-    ask({ do: "generate", after: state.presses }, "");
+    if (!ask({ do: "generate", after: state.heard, count: Number(count.value), resample: Number(strength.value) }, "")) return;
     pressed = number; words(); count_up();
   }
   function count_up() { // so that one sees that something goes on
@@ -169,20 +201,20 @@ export function mount(model, el, { fill = false } = {}) {
   function keepFile() { if (model.get("file") !== file.value) { model.set("file", file.value); model.save_changes(); } }
   function store() {
     if (!samples.length) return say("There is no in-between to save yet: Generate makes some.");
-    keepFile(); ask({ do: "save", name: file.value }, "Saving");
+    keepFile(); ask({ do: "save", name: file.value, chosen }, "Saving");
   }
   function select(j) {
-    joint = j; target = null; nudged = null;
-    if (j != null && !poses.has(frame)) say(`${scene.names[j]} can be moved once this frame is pinned (Enter).`);
+    joint = j; target = null; grip = null;
+    if (j != null && !poses.has(frame) && !asking()) say(`${scene.names[j]} can be moved once this frame is pinned (Enter).`);
     words(); draw();
   }
-  function nudge(direction, sign, big) { // presses in quick succession are one change
-    if (!poses.has(frame)) return say(`Frame ${frame} is not pinned: press Enter to pin it, then move its joints.`);
-    const now = performance.now(), going = nudged && nudged.frame === frame && nudged.joint === joint;
-    if (!going || now - nudged.time > NUDGES) grip = Date.now();
-    const from = going && waiting != null ? nudged.to : poses.get(frame)[joint];
-    nudged = { frame, joint, time: now, to: along(from, direction, sign * CENTIMETRE * (big ? 5 : 1)) };
-    pullTo(nudged.to, "Moving a joint");
+  function nudge(direction, sign, big) { // presses in quick succession are one change; one that leads back is another
+    if (!poses.has(frame) && !asking()) return say(`Frame ${frame} is not pinned: press Enter to pin it, then move its joints.`);
+    const now = performance.now(), step = direction.map((v) => v * sign * CENTIMETRE * (big ? 5 : 1));
+    const going = grip && grip.step && now - grip.time < NUDGES && dot(grip.step, step) >= 0;
+    const held = going ? grip : take(joint);
+    Object.assign(held, { step, time: now });
+    pullBy(along(held.by, step, 1), held, "Moving a joint");
   }
 
   // ---- time
@@ -192,7 +224,7 @@ export function mount(model, el, { fill = false } = {}) {
   }
   function show(to, force = true) {
     const t = clamp(Math.round(to), 0, last);
-    if (t !== frame) { target = null; hover = null; nudged = null; held_spot = null; }
+    if (t !== frame) { target = hover = grip = held_spot = null; if (pull && !pull.turn) pull = null; }
     frame = t; draw(); tell(force);
   }
   function halt(to) { if (playing) setPlaying(false); clock.seek(clamp(to, 0, last) / scene.fps); show(to); }
@@ -216,12 +248,13 @@ export function mount(model, el, { fill = false } = {}) {
     const there = state.pins.filter((t) => (by > 0 ? t > frame : t < frame)), t = by > 0 ? there[0] : there.at(-1);
     if (t == null) say(by > 0 ? "No frame after this one is pinned." : "No frame before this one is pinned."); else halt(t);
   }
+  function takeBack() { grip = null; ask({ do: "undo" }, "Undo"); }
   function home() { Object.assign(view, HOME, { follow: true }); joint = target = null; halt(0); ask({ do: "reset" }, "Resetting the edit"); }
   function zoom(by) { view.zoom = clamp(view.zoom * by, 0.25, 5); draw(); }
 
   // ---- keys
   const common = {
-    " ": () => setPlaying(!playing), Enter: () => toggle(frame), "[": () => choose(-1), "]": () => choose(1), g: make, z: () => ask({ do: "undo" }, "Undo"),
+    " ": () => setPlaying(!playing), Enter: () => toggle(frame), "[": () => choose(-1), "]": () => choose(1), g: make, z: takeBack,
     ",": () => step(-1), ".": () => step(1), Home: () => halt(0), End: () => halt(last), r: home, "+": () => zoom(1.2), "=": () => zoom(1.2), "-": () => zoom(1 / 1.2),
     f: () => { view.follow = !view.follow; draw(); }, o: () => { before.checked = !before.checked; draw(); }, Escape: () => select(null),
     j: (shift) => select(joint == null ? (shift ? scene.joints - 1 : 0) : (joint + (shift ? -1 : 1) + scene.joints) % scene.joints),
@@ -246,9 +279,9 @@ export function mount(model, el, { fill = false } = {}) {
     canvas.setPointerCapture(e.pointerId); canvas.focus({ preventScroll: true });
     const j = over(e);
     if (j == null) { pull = { turn: [e.clientX, e.clientY] }; return; }
-    grip = Date.now(); held_spot = smoothRoot(figure, frame);
-    if (!view.follow) held_spot = motion.middle;
-    select(j); pull = { from: figure.pose(frame)[j], at: place(e), moved: false };
+    held_spot = view.follow ? smoothRoot(figure, frame) : motion.middle;
+    const held = take(j);
+    select(j); pull = { held, at: place(e), moved: false };
   });
   listen(canvas, "pointermove", (e) => {
     if (!pull) {
@@ -263,10 +296,10 @@ export function mount(model, el, { fill = false } = {}) {
     }
     const [x, y] = place(e), [dx, dy] = [x - pull.at[0], y - pull.at[1]];
     if (!pull.moved && Math.hypot(dx, dy) < 3) return;
-    pull.moved = true; pullTo(dragged(look, pull.from, dx, dy), "Dragging a joint");
+    pull.moved = true; pullBy(dragged(look, pull.held.from, dx, dy), pull.held, "Dragging a joint");
   });
   for (const name of ["pointerup", "pointercancel"]) listen(canvas, name, () => {
-    if (pull && !pull.turn) { held_spot = null; if (waiting == null && live) target = null; }
+    if (pull && !pull.turn) { held_spot = null; if (!asking() && !unsent) target = null; }
     pull = null; draw();
   });
   listen(canvas, "pointerleave", () => { if (hover != null) { hover = null; draw(); } });
@@ -278,7 +311,7 @@ export function mount(model, el, { fill = false } = {}) {
   // ---- the controls
   const press = (node, act) => listen(node, "click", () => { if (node.getAttribute("aria-disabled") !== "true" || node === generate || node === save) act(); });
   press(play, () => setPlaying(!playing)); press(pin, () => toggle(frame)); press(generate, make); press(previous, () => choose(-1)); press(next, () => choose(1));
-  press(undo, () => ask({ do: "undo" }, "Undo")); press(reset, home); press(save, store);
+  press(undo, takeBack); press(reset, home); press(save, store);
   listen(joints, "change", () => select(joints.value === "" ? null : Number(joints.value)));
   listen(keep, "change", () => { ask({ do: "keep", part: keep.value }, "Keeping a part"); if (!live) keep.value = state.part; });
   listen(count, "change", () => { model.set("count", Number(count.value)); model.save_changes(); });
@@ -289,16 +322,16 @@ export function mount(model, el, { fill = false } = {}) {
   // ---- Python's changes
   const onState = () => {
     const last_heard = state.heard;
-    load();
+    if (!load()) return;
     if (state.heard !== last_heard || !pressed) say(state.message);
     if (pressed && state.heard >= pressed) { pressed = 0; say(state.message); }
-    if (waiting != null && state.heard >= waiting) {
-      waiting = null;
-      if (queued) { const content = queued; queued = null; ask(content, ""); waiting = number; } else if (!pull) target = null;
+    if (state.heard >= drag_number) {
+      clearTimeout(patience); patience = 0;
+      if (unsent) handOn(); else if (!pull) target = null;
     }
     words(); draw();
   };
-  const onChosen = () => { if (model.get("chosen") !== chosen) { load(); words(); draw(); } };
+  const onChosen = () => { chosen = clamp(model.get("chosen"), 0, Math.max(samples.length - 1, 0)); words(); draw(); };
   const onFrame = () => { if (model.get("frame") !== sent) { sent = model.get("frame"); clock.seek(sent / scene.fps); show(sent); } };
   const onControls = () => { count.value = String(model.get("count")); strength.value = String(model.get("resample")); file.value = model.get("file"); words(); };
   const changes = { "change:state": onState, "change:chosen": onChosen, "change:frame": onFrame, "change:busy": words, "change:count": onControls, "change:resample": onControls, "change:file": onControls };
@@ -312,7 +345,7 @@ export function mount(model, el, { fill = false } = {}) {
   onControls(); say(state.message); draw();
   sizes.observe(canvas); sights.observe(canvas); themes.observe(document.body, { attributes: true });
   return () => {
-    stop.abort(); clearTimeout(silence); cancelAnimationFrame(ticking); [sizes, sights, themes].forEach((o) => o.disconnect());
+    stop.abort(); clearTimeout(silence); clearTimeout(patience); cancelAnimationFrame(ticking); [sizes, sights, themes].forEach((o) => o.disconnect());
     for (const [name, f] of Object.entries(changes)) model.off(name, f);
     root.remove();
   };

@@ -5,11 +5,12 @@ import { camera, paintBody, paintFloor, paintGround, paintText } from "./paint.j
 const REACH = { mouse: 16, pen: 18, touch: 26 }; // pixels from a joint within which it is meant
 
 export const along = (p, direction, metres) => p.map((v, k) => v + metres * direction[k]);
+export const dot = (a, b) => a.reduce((sum, v, k) => sum + v * b[k], 0);
 
-// Where a joint is dragged to: from `from` by so many pixels, in the plane that faces the viewer.
+// How far so many pixels move a joint that is at `from`, in the plane that faces the viewer: metres.
 export function dragged(look, from, dx, dy) {
   const scale = look(from).scale;
-  return along(along(from, look.right, dx / scale), look.up, -dy / scale);
+  return along(along([0, 0, 0], look.right, dx / scale), look.up, -dy / scale);
 }
 
 export function jointAt(look, pose, x, y, kind) { // the joint under the pointer, the nearer one of two; null for none
