@@ -26,7 +26,7 @@ def parser_of(verbs: dict) -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
         prog=program(), description="Human-motion diffusion: the course, and the library.", allow_abbrev=False
     )
-    commands = parser.add_subparsers(dest="verb", metavar="VERB", required=True)
+    commands = parser.add_subparsers(dest="verb", metavar="VERB")
     for name, verb in verbs.items():
         further = getattr(verb, "PASSES_OPTIONS_ON", "")
         about = f"{verb.HELP[0].upper()}{verb.HELP[1:]}."
@@ -45,9 +45,13 @@ def parser_of(verbs: dict) -> argparse.ArgumentParser:
 def main(arguments: list[str] | None = None) -> int:
     """Run one verb; returns the exit status."""
     verbs = {name: importlib.import_module(f"motiondiff_edu.{module}") for name, module in VERBS.items()}
-    chosen, chosen_options = parser_of(verbs).parse_known_args(arguments)
+    parser = parser_of(verbs)
+    chosen, further = parser.parse_known_args(arguments)
+    if chosen.verb is None:
+        parser.print_help()
+        return 2
     verb = verbs[chosen.verb]
-    chosen.options = chosen_options
+    chosen.options = further
     if chosen.options and not getattr(verb, "PASSES_OPTIONS_ON", ""):
         chosen.parser.error(f"{chosen.verb} does not know {' '.join(chosen.options)}")
     try:

@@ -1,4 +1,4 @@
-"""Who imports whom: core (torch) -> the rest -> viz (matplotlib) -> widgets (ipywidgets). Nothing imports upwards."""
+"""Who imports whom: core (torch) -> rest -> viz (matplotlib) -> widgets (ipywidgets) -> course. Nothing upwards."""
 
 import ast
 import sys
@@ -15,16 +15,16 @@ CORE = {
     "inbetweening", "reconstruction", "rollout", "modiff", "mofusion", "training",
 }  # fmt: skip
 CORE_LINES, CORE_FILES = 1800, 12
-LAYER = {"core": 0, "rest": 1, "viz": 2, "widgets": 3}
-# the commands open notebooks and look at the machine; they may reach everywhere, from within functions
-COMMANDS = {"__main__", "doctor"}
+LAYER = {"core": 0, "rest": 1, "viz": 2, "widgets": 3, "course": 4}
+# the command line reaches everywhere
+COMMANDS = {"__main__"}
 
 FILES = sorted(path for path in PACKAGE.rglob("*.py"))
 ALL = FILES + sorted((ROOT / "data_synth").rglob("*.py"))
 
 
 def layer(module: str) -> str:
-    """core, rest, viz or widgets, of a dotted name below motiondiff_edu."""
+    """core, rest, viz, widgets or course, of a dotted name below motiondiff_edu."""
     first = module.split(".")[0]
     return "core" if module in CORE else first if first in LAYER else "rest"
 
