@@ -30,7 +30,7 @@ define install
 @$(BIN)/python -c '$(NEW_ENOUGH)' || { echo "$(VENV) was made with a Python older than 3.11."; \
 	echo "Remove it (rm -rf $(VENV)) and type the same again."; exit 1; }
 @echo "installing into $(VENV); this happens once and takes a minute or more"
-@$(BIN)/python -m pip install --quiet --retries 2 --disable-pip-version-check -c constraints.txt -e '.$(1)' >$(VENV)/pip.log 2>&1 || { \
+@$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt -e '.$(1)' >$(VENV)/pip.log 2>&1 || { \
 	if grep -qE '$(NO_NETWORK)' $(VENV)/pip.log; then \
 		echo "No network: pip could not reach the package index, and the first time it has to."; \
 		echo "Go online and type the same again. What pip said is in $(VENV)/pip.log"; \

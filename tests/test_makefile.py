@@ -70,7 +70,7 @@ def test_an_interpreter_without_venv_is_told_apart(checkout):
 def test_without_a_network_the_word_is_plain(checkout):
     """The real pip, with an index that nobody answers for."""
     script(checkout / ".venv" / "bin" / "python", f"""exec '{sys.executable}' "$@"\n""")
-    closed = {"PIP_INDEX_URL": "http://127.0.0.1:9/simple", "PIP_CONFIG_FILE": os.devnull}
+    closed = {"PIP_INDEX_URL": "http://127.0.0.1:9/simple", "PIP_RETRIES": "0", "PIP_CONFIG_FILE": os.devnull}
     answer = make(checkout, "lab", PIP_TARGET=str(checkout / "target"), **closed)
     assert answer.returncode and "No network: pip could not reach" in answer.stdout
     told = answer.stdout + answer.stderr
