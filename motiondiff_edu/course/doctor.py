@@ -1,6 +1,7 @@
-"""`python -m motiondiff_edu doctor`: one page that says what works on this machine, and what to do
-about the rest."""
+"""`motiondiff-edu doctor`: one page that says what works on this machine, and what to do about the
+rest."""
 
+import argparse
 import importlib
 import importlib.metadata
 import io
@@ -12,9 +13,11 @@ import tempfile
 import webbrowser
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
-from pathlib import Path
 
-PACKAGE = Path(__file__).parent
+from .places import PACKAGE, notebook_folder, place_for_students, program
+
+HELP = "one page: what works here, and what to do about the rest"
+EXAMPLE = "doctor"
 INSTALL = "python -m pip install -c constraints.txt -e . (in the checkout), or make lab"
 
 
@@ -95,10 +98,7 @@ def compute() -> Finding:
     a = torch.eye(3) * 2
     right = torch.equal(a @ a, torch.eye(3) * 4)
     cores, wanted, gpu = os.cpu_count() or 1, torch.get_num_threads(), torch.cuda.is_available()
-    told = (
-        f"torch {torch.__version__}, {wanted} threads on {cores} cores, "
-        f"GPU: {'yes' if gpu else 'no'}"
-    )
+    told = f"torch {torch.__version__}, {wanted} threads on {cores} cores, GPU: {'yes' if gpu else 'no'}"
     if not right:
         return Finding("torch", told + "; a product of matrices came out wrong", INSTALL)
     if wanted > cores:
@@ -166,7 +166,7 @@ def sound() -> Finding:
 
 def weights() -> Finding:
     """The shipped weights can be read."""
-    from .pretrained.checkpoints import available, pretrained
+    from ..pretrained.checkpoints import available, pretrained
 
     if "walker" not in available():
         return Finding(
@@ -177,23 +177,19 @@ def weights() -> Finding:
 
 
 def writing() -> Finding:
-    """Notebooks and results can be written here."""
-    here = Path.cwd()
+    """Copies of the notebooks, and results, can be written where `lab` puts them."""
+    _, mine = place_for_students()
+    here = next(folder for folder in (mine, *mine.parents) if folder.is_dir())
     try:
         with tempfile.TemporaryFile(dir=here):
             return Finding("writing", f"allowed in {here}")
     except OSError as error:
-        return Finding(
-            "writing",
-            f"not allowed in {here} ({error.strerror})",
-            "start from a folder of your own",
-        )
+        remedy = f"start from a folder of your own, or name one: {program()} lab --folder FOLDER"
+        return Finding("writing", f"not allowed in {here} ({error.strerror})", remedy)
 
 
 def notebooks() -> Finding:
     """The notebooks are where `lab` looks."""
-    from .__main__ import notebook_folder
-
     folder = notebook_folder()
     count = len(list((folder / "student").glob("[0-9][0-9]*.ipynb")))
     return Finding("notebooks", f"{count} in {folder / 'student'}", "" if count else "make student")
@@ -210,6 +206,15 @@ def guarded(check: Callable[[], Finding]) -> Finding:
         return Finding(check.__name__, f"{type(error).__name__}: {error}".splitlines()[0], INSTALL)
 
 
+def arguments(parser: argparse.ArgumentParser) -> None:
+    """None."""
+
+
+def run(chosen: argparse.Namespace) -> int:
+    """Print the page; 1 when anything failed."""
+    return main()
+
+
 def main(checks: Iterable[Callable[[], Finding]] = CHECKS) -> int:
     """Print the page; 1 when anything failed."""
     failed = 0
@@ -218,7 +223,7 @@ def main(checks: Iterable[Callable[[], Finding]] = CHECKS) -> int:
         failed += bool(finding.remedy) and not finding.note
         print(finding, flush=True)
     print(
-        "\nAll well: python -m motiondiff_edu lab"
+        f"\nAll well: {program()} lab"
         if not failed
         else f"\n{failed} to mend, see the arrows above."
     )
