@@ -232,12 +232,18 @@ def _clean_guess(
 
 
 # ---- the objective -------------------------------------------------------------------------------
+def squared_error(error: X, s: Int[Tensor, "B"]) -> Float[Tensor, ""]:
+    """Mean of error^2, alike for all entries and all steps s: the papers' loss. Source: MoDiff eq.
+    10 (Alg. 1 forgets the square). Notebook: 07."""
+    return error.square().mean()
+
+
 def simple_loss(
     denoise: Denoiser, x0: X, s: Int[Tensor, "B"], schedule: Schedule, noise: X
 ) -> Float[Tensor, ""]:
-    """Mean of ||eps - eps_hat(x_s, s)||^2. Source: MoDiff eq. 10, Alg. 1 (which forgets the
-    square). Notebook: 04."""
-    return (noise - denoise(q_sample(x0, s, schedule, noise), s)).square().mean()
+    """Mean of ||eps - eps_hat(x_s, s)||^2 for given steps and noise; `modiff.training_loss` draws
+    both. Source: MoDiff eq. 10. Notebook: 04."""
+    return squared_error(noise - denoise(q_sample(x0, s, schedule, noise), s), s)
 
 
 def dropped_weight(schedule: Schedule) -> Table:

@@ -68,6 +68,14 @@ def test_steps_of_its_own_are_drawn_evenly_from_all():
     assert found.max() > 0.95 * wanted[-1]
 
 
+def test_a_dropout_that_nobody_tells_the_time_refuses_to_be_none_at_all():
+    dropout, past = Dropout(SCHEDULE, dropout_rate(), steps=8), torch.zeros(2, 3, 4)
+    with pytest.raises(RuntimeError, match=r"train_steps\(..., before=dropout.now\)"):
+        dropout(past, torch.tensor([1, 2]), seeded())
+    dropout.now(0)
+    assert torch.equal(dropout(past, torch.tensor([1, 2]), seeded()), past)
+
+
 @pytest.mark.parametrize("shared", [True, False])
 def test_a_training_s_dropout_goes_by_what_is_done_and_by_its_own_choice_of_steps(shared):
     dropout = Dropout(SCHEDULE, lambda done: float(done >= 0.5), steps=8, shared=shared)
@@ -106,11 +114,11 @@ def test_the_paper_s_schedule_of_a_thousand_epochs():
 
 
 def test_other_schedules():
-    high = dropout_rate((0.25,), calm=0.0)
+    high = dropout_rate((0.25,), start=0.0)
     assert high(0.0) == high(1.0) == 0.25
     assert (
-        dropout_rate((0.1, 0.2), calm=0.2)(0.19) == 0.0
-        and dropout_rate((0.1, 0.2), calm=0.2)(0.21) == 0.1
+        dropout_rate((0.1, 0.2), start=0.2)(0.19) == 0.0
+        and dropout_rate((0.1, 0.2), start=0.2)(0.21) == 0.1
     )
 
 
@@ -122,7 +130,7 @@ def test_wrong_inputs():
         lambda: zeroing(past, 2.0),
         lambda: dropout_rate((0.1, 1.2)),
         lambda: dropout_rate(()),
-        lambda: dropout_rate(calm=-1.0),
+        lambda: dropout_rate(start=-1.0),
     ):
         with pytest.raises(ValueError, match="between 0 and 1"):
             call()

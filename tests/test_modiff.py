@@ -1,5 +1,5 @@
-"""MoDiff's network: the paper's sizes, its inputs, the skip, and the fast twin that gives the same
-numbers."""
+"""MoDiff's network: the paper's sizes, its inputs, the skip, the fast twin that gives the same
+numbers; and Algorithm 1."""
 
 import math
 from dataclasses import replace
@@ -8,8 +8,16 @@ import pytest
 import torch
 
 from motiondiff_edu.cross_modal_attention import relative_position_bucket
+from motiondiff_edu.ddpm import linear_schedule
+from motiondiff_edu.diffusion_dropout import Dropout
 from motiondiff_edu.fast.modiff import FastMoDiff
-from motiondiff_edu.modiff import MODIFF_PAPER, MODIFF_SMALL, MoDiff, step_embedding
+from motiondiff_edu.modiff import (
+    MODIFF_PAPER,
+    MODIFF_SMALL,
+    MoDiff,
+    step_embedding,
+    training_loss,
+)
 
 TINY = replace(MODIFF_SMALL, D=9, T_h=4, T_p=5, S=20, width=16, heads=2, hidden=24)
 B = 3
@@ -245,3 +253,54 @@ def test_the_wiring_by_hand():
             x = block(x, own, memory, other)
         wanted = model.head(x) + model.skip[7] * x_s
         torch.testing.assert_close(model(x_s, s, past, control), wanted, atol=1e-6, rtol=1e-5)
+
+
+@pytest.mark.parametrize("target", ["eps", "x0", "v"])
+@pytest.mark.parametrize("rate", [0.0, 0.5])
+def test_training_loss_is_algorithm_1(target, rate):
+    """Steps, dropout and noise drawn as the loss draws them; the rest written out."""
+    model, schedule = lively(replace(TINY, target=target)), linear_schedule(TINY.S, 0.2, 0.95)
+    x0, _, past, control = inputs(TINY, batch=9)
+    dropout = Dropout(schedule, lambda done: rate, steps=1, done=0.0)
+    loss = training_loss(
+        model, (past, x0, control), schedule, torch.Generator().manual_seed(4), dropout=dropout
+    )
+    draws = torch.Generator().manual_seed(4)
+    s = torch.randint(1, TINY.S + 1, (9,), generator=draws)
+    hit = torch.rand(9, generator=draws) < rate
+    of_past, eps = torch.randn(past.shape, generator=draws), torch.randn(x0.shape, generator=draws)
+    a = schedule.alpha_bar[s].float().sqrt()[:, None, None]
+    b = (1 - schedule.alpha_bar[s]).float().sqrt()[:, None, None]
+    x_d = torch.where(hit[:, None, None], a * past + b * of_past, past)
+    wanted = {"eps": eps, "x0": x0, "v": a * eps - b * x0}[target]
+    errors = (wanted - model(a * x0 + b * eps, s, x_d, control)) ** 2
+    assert (0 < hit.sum() < 9) == (rate > 0)
+    assert loss.item() == pytest.approx(errors.mean().item(), rel=1e-5)
+
+
+def test_training_loss_takes_another_loss_of_the_error_and_its_steps():
+    model, schedule = lively(TINY), linear_schedule(TINY.S, 0.2, 0.95)
+    x0, _, past, control = inputs(TINY)
+    seen = {}
+
+    def largest(error, s):
+        seen.update(error=error, s=s)
+        return error.abs().amax()
+
+    draws = torch.Generator().manual_seed(5)
+    loss = training_loss(model, (past, x0, control), schedule, draws, loss=largest)
+    assert seen["error"].shape == x0.shape and seen["s"].shape == (B,)
+    assert loss == seen["error"].abs().amax() and loss.requires_grad
+
+
+def test_every_step_is_drawn_and_none_beyond():
+    model, schedule, seen = lively(TINY), linear_schedule(TINY.S, 0.2, 0.95), set()
+    x0, _, past, control = inputs(TINY, batch=200)
+    draws = torch.Generator().manual_seed(6)
+
+    def loss(error, s):
+        seen.update(s.tolist())
+        return error.mean()
+
+    training_loss(model, (past, x0, control), schedule, draws, loss=loss)
+    assert seen == set(range(1, TINY.S + 1))

@@ -256,6 +256,25 @@ def test_the_average_is_exponential_with_a_shorter_memory_at_the_start():
     assert not state.average.weight.requires_grad
 
 
+def test_the_average_s_memory_of_the_first_steps_by_hand():
+    """One weight that every step lowers by 1: 0, -1, -2, -3. The memory is 1/10, 2/11, 3/12 long,
+    so the start is soon forgotten."""
+
+    class Falls(nn.Module):
+        def __init__(self):
+            super().__init__()
+            self.weight = nn.Parameter(torch.zeros(()))
+
+    state = TrainState.start(Falls())
+    state.optimizer = torch.optim.SGD(state.model.parameters())
+    loop = train_steps(state, lambda model, generator: model.weight, 3, lr=1.0, progress=False)
+    found = [state.average.weight.item() for _ in loop]
+    first = -1 * 9 / 10
+    second = first * 2 / 11 - 2 * 9 / 11
+    third = second * 3 / 12 - 3 * 9 / 12
+    assert found == pytest.approx([first, second, third])
+
+
 def test_gradients_are_clipped_and_the_norm_is_reported():
     seen = []
 

@@ -13,7 +13,9 @@ import torch
 from jaxtyping import Float
 from torch import Tensor
 
-from .skeleton import HIPS, MIRROR, J, joint_index
+from ..kinematic_loss import Body
+from .scaler import Scaler
+from .skeleton import BONE_PAIRS, BONES, HIPS, MIRROR, TOES, J, joint_index
 
 GROUND = np.array([1.0, 0.0, 1.0])  # what of a place is on the floor
 HIP_LEFT, HIP_RIGHT = joint_index("LeftUpLeg"), joint_index("RightUpLeg")
@@ -89,6 +91,12 @@ def to_positions(features: Float[Tensor, "*B T 63"]) -> Float[Tensor, "*B T 21 3
     joints = features.unflatten(-1, (J, 3))
     pelvis = joints[..., :1, :]
     return torch.cat([pelvis, joints[..., 1:, :] + pelvis], dim=-2)
+
+
+def body_of(scaler: Scaler) -> Body:
+    """The course's figure for the kinematic losses of motions that `scaler` standardised.
+    Notebook: 13"""
+    return Body(lambda x: to_positions(scaler.inverse(x)), BONES, BONE_PAIRS, TOES)
 
 
 def mirror(positions: Float[np.ndarray, "*B T 21 3"]) -> Float[np.ndarray, "*B T 21 3"]:

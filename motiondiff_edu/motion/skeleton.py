@@ -63,6 +63,13 @@ MIRROR: np.ndarray = (
     _mirror_permutation()
 )  # MIRROR[j] is the joint on the other side (a central joint is its own)
 
+# numbers of bones, left and right
+BONE_PAIRS: tuple[tuple[int, int], ...] = tuple(
+    (k, BONES.index((int(PARENTS[MIRROR[child]]), int(MIRROR[child]))))
+    for k, (_, child) in enumerate(BONES)
+    if child in LEFT
+)
+
 
 def joint_index(name: str) -> int:
     """The index of a joint by its name; the error lists the names there are."""

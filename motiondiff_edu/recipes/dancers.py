@@ -17,6 +17,20 @@ KINEMATIC = KinematicWeights(
 
 
 @dataclass(frozen=True)
+class DanceLossWeights:
+    """What the data term adds to the mean square, by names of `beyond.loss_terms`; 0 is the
+    paper's.
+
+    `changes`: weight of `changes`.  `toes`: weight of `toe_changes`.
+    `high_noise`: largest extra weight of `high_noise_weights`.
+    """
+
+    changes: float = 0.0
+    toes: float = 0.0
+    high_noise: float = 0.0
+
+
+@dataclass(frozen=True)
 class DanceRecipe:
     """One training run on `songs` songs of `seconds` each, `dances` to each song, every dance
     mirrored as well."""
@@ -25,12 +39,8 @@ class DanceRecipe:
     config: MoFusionConfig | TransformerConfig
     steps: int
     kinematic: KinematicWeights | None = None
-    high_noise: float = 0.0  # largest extra weight of steps that are mostly noise
-    changes: float = (
-        5.0  # weight of the errors of changes from frame to frame, beside those of poses
-    )
-    feet: float = 0.2  # weight of the errors of the toes' changes in the world
-    shake: float = 0.3  # how much the music's level and balance vary (`DanceWindows.draw`)
+    loss_weights: DanceLossWeights = DanceLossWeights(changes=5.0, toes=0.2)
+    gain_noise: float = 0.3  # of the music's level and balance: `DanceWindows.draw`
     snr: float = 0.1  # of the cosine schedule: its signal-to-noise ratio is multiplied by it
     frames: int = 100  # of a window
     lr: float = 3e-3
@@ -44,14 +54,6 @@ class DanceRecipe:
     data_seed: int = 1
     seed: int = 0
     save_every: int = 250  # steps
-
-    @property
-    def loss_settings(self) -> dict:
-        """What `performers.dance_windows.dance_loss` is to be told."""
-        return {
-            name: getattr(self, name)
-            for name in ("batch", "high_noise", "changes", "feet", "shake")
-        }
 
 
 X0 = replace(MOFUSION_SMALL, target="x0", skip=False)

@@ -12,7 +12,7 @@ from motiondiff_edu.baselines.transformer import DanceTransformer, TransformerCo
 from motiondiff_edu.ddpm import cosine_schedule
 from motiondiff_edu.mofusion import MoFusion, MoFusionConfig
 from motiondiff_edu.motion.scaler import Scaler
-from motiondiff_edu.performers.dancer import FARTHEST, Dancer
+from motiondiff_edu.performers.dancer import Dancer
 from motiondiff_edu.pretrained.checkpoints import (
     CheckpointError,
     load,
@@ -72,12 +72,12 @@ def test_a_schedule_with_fewer_steps_than_the_usual_sampler_takes_is_danced_with
 
 @pytest.mark.parametrize("steps", [6, None])
 def test_an_eps_network_does_not_tear_the_figure_apart(steps):
-    """At s = S an error of eps is blown up by b / a; the guess is held within what dances are."""
+    """At s = S an error of eps is blown up by b / a; the guess is held within what dances are: no
+    further than 0.5 m from a mean of 0, where the standard deviation is 0.1 m."""
     wild = dancer(replace(UNET, target="eps"))
     dance = wild.dance(mel(), 30, generator=seeded(), steps=steps, eta=0.0)
     about = torch.cat([dance[:, :, :1], dance[:, :, 1:] - dance[:, :, :1]], dim=2)
-    features = wild.motion_scaler.transform(about.flatten(2))
-    assert features.abs().max() <= FARTHEST + 1e-3 and features.abs().max() > 0.5
+    assert 0.49 < about.abs().max() < 0.501  # held, and by nothing closer
 
 
 def test_the_same_noise_and_other_music_give_another_dance():

@@ -10,28 +10,29 @@ from synthetic_dance import windows
 
 from motiondiff_edu.ddpm import cosine_schedule, q_sample
 from motiondiff_edu.exact import dataset_denoiser
+from motiondiff_edu.motion.dance_frame import body_of
 from motiondiff_edu.motion.scaler import Scaler
 from motiondiff_edu.performers.loss_by_step import (
-    answer_of,
     clean_guess,
     eps_weight,
     erring,
     losses_over_time,
+    predictor_of,
 )
 from motiondiff_edu.viz import losses as viz
 from motiondiff_edu.viz.style import caption
 
 SCHEDULE, STEPS = cosine_schedule(50), (1, 17, 30, 44)
 WINDOWS = windows(n=24)
-SCALER = Scaler(WINDOWS.motion_scaler.mean.double(), WINDOWS.motion_scaler.std.double())
-X0, _, STANDS = WINDOWS.take(torch.arange(3))
+BODY = body_of(Scaler(WINDOWS.motion_scaler.mean.double(), WINDOWS.motion_scaler.std.double()))
+X0, _, PLANTED = WINDOWS.take(torch.arange(3))
 X0 = X0.double()
 EPS = torch.randn(X0.shape, generator=torch.Generator().manual_seed(1), dtype=torch.float64)
 
 
-def measured(answer=None, steps=STEPS, target="eps"):
-    answer = answer or erring(0.05, seed=2)
-    return losses_over_time(answer, X0, EPS, STANDS, SCALER, SCHEDULE, steps, target)
+def measured(predict=None, steps=STEPS, target="eps"):
+    predict = predict or erring(0.05, seed=2)
+    return losses_over_time(predict, X0, EPS, PLANTED, BODY, SCHEDULE, steps, target)
 
 
 def carried(s):
@@ -100,7 +101,7 @@ def test_pull_of_a_loss_is_what_small_steps_change():
 
     def at(eps_hat):
         return losses_over_time(
-            lambda *_: eps_hat, X0[:1], EPS[:1], STANDS[:1], SCALER, SCHEDULE, (30,)
+            lambda *_: eps_hat, X0[:1], EPS[:1], PLANTED[:1], BODY, SCHEDULE, (30,)
         )
 
     slopes = []
@@ -142,7 +143,7 @@ def test_squared_losses_level_off_under_the_papers_weight_and_the_others_fall():
 
 def test_the_ideal_guess_at_high_noise_is_a_mean_with_short_bones():
     windows = WINDOWS.take(torch.arange(len(WINDOWS)))[0].double()
-    answer = answer_of(dataset_denoiser(windows, SCHEDULE))
+    answer = predictor_of(dataset_denoiser(windows, SCHEDULE))
     guess = clean_guess(answer, X0, EPS, 50, SCHEDULE)
     torch.testing.assert_close(guess[0], windows.mean(0), rtol=0, atol=0.1)
     ideal, off = measured(answer, (49,)).value["skeleton"], measured(steps=(49,)).value["skeleton"]
@@ -156,7 +157,7 @@ def test_the_answer_is_asked_with_the_noised_motion_and_its_step():
         asked.append((x_s, s))
         return EPS
 
-    clean_guess(answer_of(denoise), X0, EPS, 17, SCHEDULE)
+    clean_guess(predictor_of(denoise), X0, EPS, 17, SCHEDULE)
     torch.testing.assert_close(asked[0][0], q_sample(X0, 17, SCHEDULE, EPS))
     assert asked[0][1].tolist() == [17, 17, 17]
 
@@ -171,9 +172,7 @@ def test_unknown_names_are_refused():
 
 
 def test_stretched_bones_are_coloured_and_a_torn_figure_is_told_its_width():
-    from motiondiff_edu.motion.dance_frame import to_positions
-
-    poses = to_positions(SCALER.inverse(X0[0])).numpy()
+    poses = BODY.to_positions(X0[:1])[0].numpy()
     figure = viz.stretched({"truth": poses, "torn": 10 * poses}, "two rows", n=3)
     assert caption(figure) == "two rows" and len(figure.axes) == 2 * 3 + 1
     colours = [

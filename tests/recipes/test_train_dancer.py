@@ -82,17 +82,12 @@ def test_what_a_recipe_says_reaches_the_training(windows, tmp_path: Path):
             model, torch.Generator().manual_seed(0)
         ).item()
 
-    plain = {
-        "kinematic": None,
-        "high_noise": 2.0,
-        "changes": 0.0,
-        "feet": 0.0,
-        "shake": 0.0,
-        "snr": 1.0,
-        "batch": 2,
-    }
+    plain = {"kinematic": None, "gain_noise": 0.0, "snr": 1.0, "batch": 2}
     for name, value in plain.items():
         assert loss(**{name: value}) != loss(), name
+    for name, value in {"high_noise": 2.0, "changes": 0.0, "toes": 0.0}.items():
+        weights = replace(TINY.loss_weights, **{name: value})
+        assert loss(loss_weights=weights) != loss(), name
 
 
 def test_the_command_trains_a_recipe_into_a_file(monkeypatch, tmp_path: Path, capsys):
