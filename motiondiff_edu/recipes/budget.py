@@ -6,9 +6,10 @@ import time
 import torch
 
 from ..beyond.footholds import network
+from ..beyond.schedules import SCHEDULES
 from ..modiff import MoDiffConfig
 from ..motion.clip import Clip
-from ..performers.walker import SCHEDULES, Walker
+from ..performers.walker import Walker
 from ..performers.windows import Windows, window_loss
 from ..training import TrainState, train_steps
 from .muon import optimizer_for

@@ -21,7 +21,7 @@ class Recipe:
     name: str
     config: MoDiffConfig
     steps: int
-    schedule: str = "linear"  # or "leap", see walker.leap_schedule
+    schedule: str = "linear"  # or "leap", see beyond.schedules
     lr: float = 2e-3
     optimizer: str = "muon"  # or "adam", the paper's
     batch: int = 64  # windows a step
