@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 import torch
 
-from motiondiff_edu.beyond.schedules import shifted
+from motiondiff_edu.beyond.schedules import leap_schedule, shifted
 from motiondiff_edu.ddpm import (
     cosine_schedule,
     draw,
@@ -27,7 +27,6 @@ from motiondiff_edu.ddpm import (
     simple_loss,
 )
 from motiondiff_edu.exact import exact_denoiser, mixture, sample_mixture
-from motiondiff_edu.performers.walker import leap_schedule
 from motiondiff_edu.prediction import to_eps
 from motiondiff_edu.recipes.dancers import DANCER
 

@@ -12,16 +12,16 @@ Source: MoFusion 4.4; MoDiff III-E; the comparison is ours.  Notebook: 15
 
 from collections.abc import Iterable, Iterator
 from dataclasses import asdict, dataclass
-from functools import cached_property, partial
+from functools import cached_property
 
 import torch
 from jaxtyping import Bool, Float
 from torch import Tensor
 
-from ..beyond.guidance import blended
-from ..ddpm import Denoiser, Schedule
+from ..beyond.guidance import blended, guided
+from ..ddpm import Denoiser, Schedule, timesteps
 from ..exact import Mixture, conditional, mixture, sample_mixture
-from ..inbetweening import inpaint_steps
+from ..inbetweening import inpaint_steps, resampled
 from .mixture_fit import responsibilities
 
 
@@ -168,23 +168,14 @@ def answers(
     if way.kind == "masked":
         shape = (n, question.frames, -1)
         start = torch.randn(values.shape, generator=generator, dtype=torch.float64).view(shape)
-        blend = None if way.blend is None else partial(blended, fade=way.blend)
-        options = {
-            "steps": way.steps,
-            "resample": way.resample,
-            "blend": blend,
-            "guidance": way.guidance,
-        }
-        given, mask = values.reshape(shape), known.expand(n, -1).reshape(shape)
-        loop = inpaint_steps(
-            _framed(question.denoise),
-            start,
-            question.schedule,
-            given,
-            mask,
-            generator=generator,
-            **options,
-        )
+        denoise, schedule = _framed(question.denoise), question.schedule
+        held = values.reshape(shape), known.expand(n, -1).reshape(shape)
+        if way.guidance:
+            denoise = guided(denoise, schedule, *held, way.guidance)
+        if way.blend is not None:
+            denoise = blended(denoise, schedule, *held, way.blend)
+        steps = resampled(timesteps(schedule.S, way.steps), way.resample)
+        loop = inpaint_steps(denoise, start, schedule, *held, steps=steps, generator=generator)
         *_, last = loop
         return last.x_s.flatten(1)
     x = torch.where(

@@ -11,6 +11,7 @@ import warnings
 from contextlib import suppress
 from math import gcd
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 import numpy as np
 import torch
@@ -78,6 +79,19 @@ def read_audio(path: str | Path) -> Float[Tensor, "N"]:
             f"{path.name} {loss}; the {seconds:.2f} s that could be read are used", stacklevel=2
         )
     return torch.from_numpy(resample(mono, rate).astype(np.float32))
+
+
+def read_sound(sound: str | Path | bytes | memoryview) -> Float[Tensor, "N"]:
+    """`read_audio` of a sound file by its name, or of its bytes, as they come from an upload.
+
+    Raises AudioError as `read_audio` does.  Notebook: 12
+    """
+    if isinstance(sound, str | Path):
+        return read_audio(sound)
+    with TemporaryDirectory() as folder:
+        path = Path(folder) / "the uploaded file"
+        path.write_bytes(sound)
+        return read_audio(path)
 
 
 def resample(audio: Float[np.ndarray, "N"], rate: int) -> Float[np.ndarray, "n"]:

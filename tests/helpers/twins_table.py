@@ -35,7 +35,6 @@ from motiondiff_edu import (
 )
 from motiondiff_edu.baselines import linear_dropout, ridge
 from motiondiff_edu.conditions import music
-from motiondiff_edu.fast.samplers import ddim_steps
 from motiondiff_edu.metrics import adherence, beats, bone_lengths, footsteps, kinetic_features
 from motiondiff_edu.modiff import MoDiff, MoDiffConfig
 from motiondiff_edu.mofusion import ResBlock
@@ -164,7 +163,7 @@ TWINS["03"] = {
         lambda: (_shrink, _normal(2, 5), LINEAR, _normal(101, 2, 5, seed=1)),
     ),
     "ddim": Twin(
-        lambda *args: _last(ddim_steps(*args)),
+        lambda *args: _last(ddpm.ddim_steps(*args)),
         lambda: (_shrink, _normal(2, 5), LINEAR, [100, 60, 25, 3]),
     ),
 }
