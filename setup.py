@@ -1,5 +1,7 @@
-"""Everything is in pyproject.toml; here a wheel takes notebooks and constraints along, for `lab`
-without a checkout."""
+"""Everything is in pyproject.toml.
+
+Here a wheel takes notebooks and constraints along, for `lab` without a checkout.
+"""
 
 import shutil
 from pathlib import Path
@@ -9,8 +11,10 @@ from setuptools.command.build_py import build_py
 
 
 class WithNotebooks(build_py):
-    """Copies what a wheel needs from outside the package: notebooks/, notebooks/student/ and
-    constraints.txt."""
+    """Copies what a wheel needs from outside the package.
+
+    notebooks/, notebooks/student/ and constraints.txt.
+    """
 
     def run(self):
         super().run()

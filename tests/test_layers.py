@@ -1,5 +1,7 @@
-"""Who imports whom: core (torch) -> the rest -> viz (matplotlib) -> widgets (ipywidgets). Nothing
-imports upwards."""
+"""Who imports whom: core (torch) -> the rest -> viz (matplotlib) -> widgets (ipywidgets).
+
+Nothing imports upwards.
+"""
 
 import ast
 import sys
@@ -56,8 +58,10 @@ def third_party(path: Path) -> set[str]:
 
 
 def own(path: Path) -> set[str]:
-    """The modules of motiondiff_edu that a file imports, dotted below the package, names resolved
-    to their file."""
+    """The modules of motiondiff_edu that a file imports.
+
+    Dotted below the package, names resolved to their file.
+    """
     names = {
         name.removeprefix("motiondiff_edu.")
         for name in imports(path)
@@ -144,6 +148,8 @@ def test_every_third_party_import_is_declared():
 
 
 def test_no_file_puts_annotations_off():
-    """`from __future__ import annotations` would turn the shapes into strings that nothing
-    checks."""
+    """No file turns its shapes into strings that nothing checks.
+
+    `from __future__ import annotations` would.
+    """
     assert [path.name for path in ALL if "__future__.annotations" in imports(path)] == []

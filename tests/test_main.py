@@ -1,5 +1,7 @@
-"""`python -m motiondiff_edu`: which notebook opens where, what a demo sets, and a JupyterLab that
-really serves it."""
+"""`python -m motiondiff_edu`.
+
+Which notebook opens where, what a demo sets, and a JupyterLab that really serves it.
+"""
 
 import json
 import re

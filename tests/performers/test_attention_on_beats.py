@@ -1,5 +1,7 @@
-"""Listening with a dancer: attention by level, its share on beats, and what a silenced sound
-moves."""
+"""Listening with a dancer.
+
+Attention by level, its share on beats, and what a silenced sound moves.
+"""
 
 import io
 from datetime import UTC, datetime
@@ -191,8 +193,10 @@ def test_occlusion_dances_again_from_the_same_noise():
 
 
 def test_what_rings_on_comes_back_without_another_blow():
-    """A long burst: the loudness of the mended song never jumps, neither at the hit nor where the
-    span ends."""
+    """The loudness of a mended song never jumps.
+
+    A long burst: neither at the hit nor where the span ends.
+    """
     t = np.arange(32_000) / 16_000
     ring = np.where(t >= 1.0, np.exp(-np.maximum(t - 1.0, 0) / 0.15), 0.0) * np.random.default_rng(
         5
@@ -221,8 +225,10 @@ def test_a_sound_is_read_from_its_name_and_from_its_bytes(tmp_path):
 
 
 def test_notebook_12_dances_to_an_upload_and_says_what_is_wrong_with_it(monkeypatch):
-    """A button's error reaches nobody, so the cells are run here, with a small dancer, and a file
-    is uploaded."""
+    """A file is uploaded to notebook 12, and the message is read.
+
+    A button's error reaches nobody, so the cells are run here, with a small dancer.
+    """
     soundfile = pytest.importorskip("soundfile")
     monkeypatch.setattr(checkpoints, "pretrained", lambda name: dancer(S=20))
     path = next(path for path in notebook_cells.sources() if path.name.startswith("12"))

@@ -59,8 +59,10 @@ def test_music_and_motion_of_a_window_are_of_the_same_seconds():
 
 
 def test_a_long_dance_hears_all_of_its_music():
-    """258.4 s are 8075 hops of 32 ms, and the frame at the start: 5168 / 20 * 31.25 falls short of
-    it by rounding."""
+    """258.4 s are 8075 hops of 32 ms, and the frame at the start.
+
+    5168 / 20 * 31.25 falls short of it by rounding.
+    """
     assert mel_frames(5168) == 8076 and mel_frames(1) == 2 and mel_frames(16) == 26
 
 
@@ -151,8 +153,10 @@ def tiny(target: str = "x0", skip: bool = False) -> MoFusion:
 
 
 def test_the_loss_of_a_network_that_says_zero():
-    """The network is new: its last layer apart it changes nothing; with zeros there it says 0, and
-    x0 has power 1."""
+    """The network is new: its last layer apart it changes nothing.
+
+    With zeros there it says 0, and x0 has power 1.
+    """
     model, made = tiny(), windows()
     torch.nn.init.zeros_(model.out.weight)
     torch.nn.init.zeros_(model.out.bias)
@@ -224,8 +228,10 @@ def test_a_network_of_each_target_learns(target):
 
 
 def test_the_toes_changes_in_the_world_weigh_extra():
-    """A network that says 0 (standardised: the mean pose) errs by the motion; its toes by all that
-    toes move."""
+    """A network that says 0 (standardised: the mean pose) errs by the motion.
+
+    Its toes by all that toes move.
+    """
     model, made = tiny(), windows()
     torch.nn.init.zeros_(model.out.weight)
     torch.nn.init.zeros_(model.out.bias)
@@ -242,8 +248,10 @@ def test_the_toes_changes_in_the_world_weigh_extra():
 
 
 def test_pelvis_and_leg_that_err_alike_cost_no_feet():
-    """A pelvis that drifts takes the toes along, unless the legs err the other way: then the feet
-    stand."""
+    """A pelvis that drifts takes the toes along, unless the legs err the other way.
+
+    Then the feet stand.
+    """
     made, target = windows(), MoFusionConfig(target="x0")
     drift = torch.zeros(4, 40, 63)
     drift[..., 0] = (

@@ -1,5 +1,7 @@
-"""Windows never cross clips, half of them are held, the scalers lead back to metres, and the loss
-is Algorithm 1."""
+"""Windows never cross clips, and half of them are held.
+
+The scalers lead back to metres, and the loss is Algorithm 1.
+"""
 
 from dataclasses import replace
 
@@ -115,8 +117,10 @@ def test_the_loss_is_algorithm_1(windows: Windows, target: str):
 
 
 def test_the_past_is_dropped_at_the_step_of_its_own_target(windows: Windows):
-    """The same draws: two noises for each window, each with the past that dropout makes at its own
-    step."""
+    """Each window has two noises, each with the past that dropout makes at its own step.
+
+    The draws are the same.
+    """
     config = MoDiffConfig(T_h=T_H, T_p=T_P, S=6, width=16, heads=2, hidden=24, target="x0")
     torch.manual_seed(0)
     model, schedule = MoDiff(config), linear_schedule(6, 0.2, 0.95)
@@ -155,8 +159,10 @@ def assert_even_on_a_log_scale(sizes: torch.Tensor, largest: float):
 
 
 def test_the_shaken_past_has_one_steady_error_of_any_size():
-    """Where nothing changes from frame to frame, only the steady part is left: the same noise in
-    all frames."""
+    """Where nothing changes from frame to frame, only the steady part is left.
+
+    The same noise in all frames.
+    """
     past = torch.zeros(4000, 6, 50)
     noise = shaken(past, 0.3, torch.zeros(50), torch.Generator().manual_seed(0))
     assert torch.equal(noise, noise[:, :1].expand_as(noise))
@@ -192,8 +198,10 @@ SLOPES = np.linspace(
 
 
 class OffByOne(nn.Module):
-    """Tells the future of steady motion exactly, but for one entry at one step: there it errs by
-    1."""
+    """Tells the future of steady motion exactly, but for one entry at one step.
+
+    There it errs by 1.
+    """
 
     config = MoDiffConfig(T_h=T_H, T_p=T_P, S=6, target="x0")
 
@@ -229,8 +237,10 @@ def test_without_weights_every_error_costs_the_same():
 
 
 def test_columns_are_weighted_by_how_far_they_move():
-    """In metres the squared error of a column that moves three times as far costs nine times as
-    much."""
+    """A column that moves three times as far costs nine times as much.
+
+    In metres, by its squared error.
+    """
     a, b = 12, 56
     ratio = SLOPES[b] / SLOPES[a]
     assert cost(column=b, metres=1.0) / cost(column=a, metres=1.0) == pytest.approx(ratio, rel=1e-3)
@@ -251,7 +261,9 @@ def test_frames_are_weighted_by_how_little_has_moved_till_then():
 
 
 def test_steps_are_weighted_by_their_noise():
-    """beta 0.2, 0.35, 0.5, 0.65 ... leave 0.8, 0.52, 0.26, 0.091 of the signal; noise / signal is
-    capped at 3."""
+    """beta 0.2, 0.35, 0.5, 0.65 ... leave 0.8, 0.52, 0.26, 0.091 of the signal.
+
+    Noise / signal is capped at 3.
+    """
     wanted = [1 + 0.2 / 0.8, 1 + 0.48 / 0.52, 1 + 0.74 / 0.26, 1 + 3, 1 + 3, 1 + 3]
     assert [cost(step=s, high_noise=3.0) for s in range(1, 7)] == pytest.approx(wanted, rel=1e-3)
