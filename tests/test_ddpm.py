@@ -35,8 +35,10 @@ S_REF = 1000
 
 @pytest.fixture(scope="module")
 def reference():
-    """The schedule, the start and the dummy model of the published reference run (diffusers'
-    scheduler tests)."""
+    """The schedule, the start and the dummy model of the published reference run.
+
+    They are those of diffusers' scheduler tests.
+    """
     start = (torch.arange(768).reshape(3, 8, 8, 4) / 768).permute(3, 0, 1, 2)
     return (
         linear_schedule(S_REF, 1e-4, 0.02),

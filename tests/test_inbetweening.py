@@ -1,5 +1,7 @@
-"""Masked sampling: what is given comes back, what is not follows the true conditional once it is
-resampled."""
+"""Masked sampling.
+
+What is given comes back, what is not follows the true conditional once it is resampled.
+"""
 
 import jaxtyping
 import numpy as np
@@ -42,8 +44,10 @@ def last(loop):
 
 
 def correlated(rho: float = 0.9):
-    """One Gaussian in the plane whose coordinates agree: the second is rho times the first, and
-    some noise."""
+    """One Gaussian in the plane whose coordinates agree.
+
+    The second is rho times the first, and some noise.
+    """
     covariance = torch.tensor([[[1.0, rho], [rho, 1.0]]], dtype=torch.float64)
     return mixture(torch.ones(1), torch.tensor([[0.3, -0.2]]), covariance)
 
@@ -207,8 +211,10 @@ def test_all_known_is_the_input_and_nothing_known_is_a_plain_sample():
 
 @pytest.mark.parametrize("known", [seed(40, 10), *(body_part(40, part) for part in PARTS)])
 def test_where_the_motion_stands_and_faces_does_not_matter(known):
-    """The same motion elsewhere: what is made is the same, elsewhere; whatever part of the body is
-    given."""
+    """The same motion elsewhere: what is made is the same, elsewhere.
+
+    Whatever part of the body is given.
+    """
     truth, one = walk(np.tile([1.2, 0.1, 0.3], (40, 1)), 0).world(), dancer()
     place = Place(np.array([1.0, 0.0, -5.0]), np.array(2.1))
     here, there = (
@@ -218,8 +224,10 @@ def test_where_the_motion_stands_and_faces_does_not_matter(known):
 
 
 def test_a_trajectory_is_walked_forward():
-    """Nothing tells where the figure faces but its path: it is seen from where it begins, along the
-    path."""
+    """Nothing tells where the figure faces but its path.
+
+    It is seen from where it begins, along the path.
+    """
     path = np.full((40, 21, 3), np.nan)
     path[:, 0] = np.array([7.0, 0.9, 1.0]) + np.linspace(0, 3, 40)[:, None] * [1.0, 0.0, 0.0]
     place = seen_from(path, body_part(40, "trajectory"))
@@ -294,8 +302,10 @@ def test_blending_carries_the_correction_and_fades():
 
 
 def test_blending_at_every_step_leaves_no_jump_where_masking_does():
-    """A denoiser that knows nothing of the given (its guess is 1 everywhere): masking pops,
-    blending does not."""
+    """A denoiser that knows nothing of the given (its guess is 1 everywhere).
+
+    Masking pops, blending does not.
+    """
     given = torch.linspace(3, 5, 30).view(1, 30, 1)
     known = torch.ones(1, 30, 1, dtype=torch.bool)
     known[:, 10:20] = False
@@ -314,8 +324,10 @@ def test_blending_at_every_step_leaves_no_jump_where_masking_does():
 
 
 def test_guidance_moves_what_goes_with_the_given():
-    """With the exact denoiser of two numbers that agree, the unknown one comes nearer to where the
-    known one says."""
+    """With the exact denoiser of two numbers that agree, the given one moves the other.
+
+    The unknown one comes nearer to where the known one says.
+    """
     truth, n = correlated(0.9), 2000
     given, known = given_first(1.8, n)
     wanted = conditional(truth, given[0].nan_to_num(), known[0]).mean().item()
@@ -329,8 +341,10 @@ def test_guidance_moves_what_goes_with_the_given():
 
 
 def test_one_guided_guess_by_hand():
-    """J is known for a linear denoiser: x0_hat = M x, so the pull is M^T r, as long as leaves least
-    wrong."""
+    """J is known for a linear denoiser.
+
+    x0_hat = M x, so the pull is M^T r, as long as leaves least wrong.
+    """
     M, x, known = (
         torch.tensor([[0.5, 0.3], [0.3, 0.5]]),
         torch.tensor([[1.0, 2.0]]),

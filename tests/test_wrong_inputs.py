@@ -1,5 +1,7 @@
-"""What somebody may hand over by mistake, and what they are told: no broadcast, no NaN, in this
-course's words."""
+"""What somebody may hand over by mistake, and what they are told.
+
+No broadcast, no NaN, in this course's words.
+"""
 
 import math
 import os

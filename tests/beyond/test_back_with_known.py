@@ -15,8 +15,10 @@ T_H, T_P, D = 5, 7, 2
 
 
 class Halving:
-    """A walker that predicts half of the last pose, k times over: what it is told in between
-    decides what follows."""
+    """A walker that predicts half of the last pose, k times over.
+
+    What it is told in between decides what follows.
+    """
 
     def __init__(self):
         self.config = SimpleNamespace(T_h=T_H, T_p=T_P, D=D, C=3)
@@ -116,8 +118,7 @@ def test_a_mask_wants_a_window_as_long_as_the_past(T_p):
 
 @pytest.mark.parametrize("way", [held_back, masked_back])
 def test_all_is_made_where_the_inputs_are_and_drawn_where_the_generator_is(way):
-    """With another default device, whatever is made without regard to the inputs lands beside
-    them."""
+    """With another default device, new tensors still land beside the inputs."""
     walker, known = Known(), torch.zeros(2, T_H, D, dtype=torch.bool)
     ahead, given = torch.zeros(2, T_H, D), torch.ones(2, T_H, D)
     known[:, 2] = True

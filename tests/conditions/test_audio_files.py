@@ -1,5 +1,7 @@
-"""Sound files: every kind that can be read gives the same sound, and what cannot be danced to is
-refused in words."""
+"""Sound files: every kind that can be read gives the same sound.
+
+What cannot be danced to is refused in words.
+"""
 
 import math
 import shutil

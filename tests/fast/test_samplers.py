@@ -1,5 +1,7 @@
-"""Fast samplers: equal to the plain loop, to published runs, and honest about what few steps
-lose."""
+"""Fast samplers.
+
+Equal to the plain loop, to published runs, and honest about what few steps lose.
+"""
 
 import pytest
 import torch
@@ -83,8 +85,10 @@ def test_fast_ddpm_equals_the_plain_loop_for_the_same_seed():
 
 
 class FarGenerator(torch.Generator):
-    """Stands for the generator of another device, with the one device that is everywhere and not
-    the CPU."""
+    """Stands for the generator of another device.
+
+    It uses the one device that is everywhere and not the CPU.
+    """
 
     device = torch.device("meta")
 
@@ -160,8 +164,10 @@ def test_ddim_without_eta_is_a_map_of_its_start():
 
 @pytest.mark.parametrize("steps, lost", [(10, 0.22), (100, 0.293)])
 def test_ddim_under_disperses_as_its_own_algebra_says(steps, lost):
-    """A Gaussian of std .30: each leap multiplies x by (a a' var + b b') / (a^2 var + b^2); ten of
-    them leave .22."""
+    """A Gaussian of std .30: each leap multiplies x by (a a' var + b b') / (a^2 var + b^2).
+
+    Ten of them leave .22.
+    """
     schedule, std = linear_schedule(), 0.3
     predicted, visited = 1.0, timesteps(100, steps) + [0]
     for now, then in zip(visited[:-1], visited[1:], strict=True):

@@ -125,8 +125,10 @@ def test_share_near_counts_the_silenced_span():
 
 
 def test_notebook_12_dances_to_an_upload_and_says_what_is_wrong_with_it(monkeypatch):
-    """A button's error reaches nobody, so the cells are run here, with a small dancer, and a file
-    is uploaded."""
+    """A file is uploaded to notebook 12, and the message is read.
+
+    A button's error reaches nobody, so the cells are run here, with a small dancer.
+    """
     soundfile = pytest.importorskip("soundfile")
     monkeypatch.setattr(checkpoints, "pretrained", lambda name: dancer(S=20))
     path = next(path for path in notebook_cells.sources() if path.name.startswith("12"))

@@ -1,5 +1,7 @@
-"""A walker samples with its own schedule in its own units, and `generate` leads in and out of
-metres."""
+"""A walker samples with its own schedule in its own units.
+
+`generate` leads in and out of metres.
+"""
 
 import inspect
 
