@@ -1,5 +1,6 @@
-"""How far picture and sound are apart while the player plays: in a real Chromium, all that it can
-show being drawn.
+"""How far picture and sound are apart while the player plays.
+
+In a real Chromium, all that it can show being drawn.
 
 At random moments the sound's clock t and the painted frame k are read; their distance is that of t
 from the frame's interval [k/20, (k+1)/20), zero inside. A run's figure is the 95th percentile of

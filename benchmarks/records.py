@@ -1,5 +1,7 @@
-"""Records of measured figures: {name, value, low, high, seeds, unit, paper, command}, kept in lists
-in JSON files."""
+"""Records of measured figures, kept in lists in JSON files.
+
+Each is {name, value, low, high, seeds, unit, paper, command}.
+"""
 
 import json
 from pathlib import Path

@@ -1,5 +1,6 @@
-"""MoFusion's U-Net, music included, beside lucidrains' Unet1D and diffusers' UNet1DModel without
-any condition.
+"""MoFusion's U-Net, music included, beside two unconditioned ones.
+
+Those are lucidrains' Unet1D and diffusers' UNet1DModel.
 
 Networks of about as many parameters (widths are chosen for that), random weights: sampling is ten
 DDIM steps for eight motions, each side with its own sampler; training is a forward and a backward
@@ -37,8 +38,10 @@ def count(model: torch.nn.Module) -> int:
 
 @cache
 def lucidrains():
-    """The module of Unet1D alone: the package as a whole imports torchvision, which it does not
-    need here."""
+    """The module of Unet1D alone.
+
+    The package as a whole imports torchvision, which it does not need here.
+    """
     spec = importlib.util.find_spec(PEER)
     if spec is None:
         raise SystemExit(

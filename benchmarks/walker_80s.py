@@ -1,5 +1,6 @@
-"""What 80 CPU-seconds of training give: a small walker on three sets of walks, judged on unseen
-controls of the same.
+"""What 80 CPU-seconds of training give.
+
+A small walker on three sets of walks, judged on unseen controls of the same.
 
     one person   neutral, no waving and looking about, straight ahead and in curves:
                  notebook 07's data (the bars)
@@ -65,8 +66,10 @@ SETS: dict[str, tuple[str, Callable]] = {  # name: (prefix of its records, what 
 
 
 def measure(name: str, seconds: float, unseen: int, seed: int) -> list[dict]:
-    """Train on one set of walks (each mirrored, too), walk unseen controls of the same, and score
-    the raw output."""
+    """Train on one set of walks, walk unseen controls of the same, and score the raw output.
+
+    Each walk is mirrored, too.
+    """
     prefix, make = SETS[name]
     clips = [version for clip in make(CLIPS, 20.0, 11) for version in (clip, mirror(clip))]
     trials = Trials.of(make(unseen, SECONDS + T_H / FPS, UNSEEN))

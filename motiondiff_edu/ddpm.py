@@ -1,5 +1,5 @@
 """Denoising diffusion (MoDiff, III-B and III-C): noise is added by a rule, and taken away by a
-learnt one.
+learnt one, step by step (DDPM) or in leaps (DDIM).
 
 Steps are numbered s = 1..S, and every table has S + 1 entries, so that `alpha_bar[s]` is the
 paper's (and [0] is 1). A *denoiser* is any callable `denoise(x_s, s) -> eps_hat`, with s of shape
@@ -8,7 +8,7 @@ paper's (and [0] is 1). A *denoiser* is any callable `denoise(x_s, s) -> eps_hat
 
 import math
 import warnings
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
 import torch
@@ -99,16 +99,27 @@ def schedule_card(schedule: Schedule) -> str:
 
 def at(table: Table, s: Steps, x: X, first: int = 0) -> Tensor:
     """Look up table[s], shaped so that it multiplies x: one number, or one for each sample of the
-    batch."""
-    if isinstance(s, int) and not first <= s < len(table):
+    batch.
+
+    Raises IndexError for a step below `first` or beyond the table.
+    """
+    low, high = (s, s) if isinstance(s, int) else _range(s, first)
+    if not first <= low <= high < len(table):
         raise IndexError(
-            f"s = {s}: steps go from {first} to {len(table) - 1} here, and 0 is clean data"
+            f"s = {low if low < first else high}: steps go from {first} to {len(table) - 1} here, "
+            "and 0 is clean data"
         )
-    return (
-        table[s].to(x)
-        if isinstance(s, int)
-        else table.to(x.device)[s].to(x).reshape(-1, *[1] * (x.dim() - 1))
-    )
+    if isinstance(s, int):
+        return table[s].to(x)
+    return table.to(x.device)[s].to(x).reshape(-1, *[1] * (x.dim() - 1))
+
+
+def _range(s: Int[Tensor, "B"], first: int) -> tuple[int, int]:
+    """The smallest and the largest of some steps; of none, and of a tensor without values, `first`
+    twice."""
+    if not s.numel() or s.is_meta:
+        return first, first
+    return int(s.min()), int(s.max())
 
 
 def draw(
@@ -206,10 +217,7 @@ def sample_steps(
     noise[s - 1], when given, is the noise of step s; clip bounds x0_hat to [-clip, clip].
     Source: MoDiff Alg. 2. Notebook: 03.
     """
-    home = generator.device if generator else None
-    x_s = (
-        start if isinstance(start, Tensor) else torch.randn(start, generator=generator, device=home)
-    )
+    x_s = _first(start, generator)
     for s in range(schedule.S, 0, -1):
         eps_hat = denoise(x_s, torch.full((len(x_s),), s, device=x_s.device))
         x0_hat, eps_hat = _clean_guess(x_s, s, eps_hat, schedule, clip)
@@ -229,6 +237,101 @@ def _clean_guess(
         x0_hat = x0_hat.clamp(-clip, clip)
         eps_hat = (x_s - signal * x0_hat) / sigma
     return x0_hat, eps_hat
+
+
+def timesteps(S: int, steps: int) -> list[int]:
+    """Choose `steps` of the S diffusion steps, evenly spaced, S first: timesteps(100, 4) = [100,
+    75, 50, 25].
+
+    Raises ValueError unless 1 <= steps <= S.  Notebook: 03
+    """
+    if not 1 <= steps <= S:
+        raise ValueError(f"can take between 1 and {S} steps, not {steps}")
+    return [S - (i * S) // steps for i in range(steps)]
+
+
+def falling(steps: int | Sequence[int], S: int) -> list[int]:
+    """The steps that a sampler visits: `timesteps(S, steps)`, or those of a list.
+
+    Raises ValueError for steps that do not fall, or lie outside 1..S.
+    """
+    if isinstance(steps, int):
+        return timesteps(S, steps)
+    visited = list(steps)
+    falls = visited == sorted(set(visited), reverse=True)
+    if not visited or not falls or not 1 <= visited[-1] <= visited[0] <= S:
+        raise ValueError(f"steps must fall, from {S} at most to 1 at least; these are {visited}")
+    return visited
+
+
+def ddim_sigma(s: int, after: int, schedule: Schedule, eta: float) -> float:
+    """Standard deviation of the noise that a leap from s to `after` draws.
+
+    sigma^2 = eta^2 (1 - ab_after) / (1 - ab_s) (1 - ab_s / ab_after); eta = 1 is DDPM's posterior.
+    Raises ValueError for an eta outside 0..1.  Notebook: 03
+    """
+    if not 0 <= eta <= 1:
+        raise ValueError(f"eta must lie between 0 (no noise) and 1 (DDPM's), not {eta}")
+    now, then = float(schedule.alpha_bar[s]), float(schedule.alpha_bar[after])
+    return eta * math.sqrt((1 - then) / (1 - now) * (1 - now / then))
+
+
+def ddim_step(
+    x0_hat: X,
+    eps_hat: X,
+    after: int,
+    schedule: Schedule,
+    sigma: float = 0.0,
+    noise: X | None = None,
+) -> X:
+    """Leap to step `after`: sqrt(ab_after) x0_hat + sqrt(1 - ab_after - sigma^2) eps_hat + sigma
+    noise.
+
+    Source: DDIM (Song, Meng and Ermon, 2021).  Notebook: 03
+    """
+    then = float(schedule.alpha_bar[after])
+    x = math.sqrt(then) * x0_hat + math.sqrt(max(1 - then - sigma**2, 0.0)) * eps_hat
+    return x + sigma * noise if sigma else x
+
+
+@torch.no_grad()
+def ddim_steps(
+    denoise: Denoiser,
+    start: Tensor | tuple[int, ...],
+    schedule: Schedule,
+    steps: int | Sequence[int] = 10,
+    eta: float = 0.0,
+    *,
+    generator: torch.Generator | None = None,
+    noise: Float[Tensor, "S *any"] | None = None,
+    clip: float | None = None,
+) -> Iterator[Step]:
+    """Leap from x_S to x0 in a few `ddim_step`s, and yield a record of each, and of s = 0.
+
+    With eta = 0 no noise is drawn. Few steps with eta = 0 give samples that lie too close together:
+    DDIM is not DDPM, only faster. noise[s - 1], when given, is the noise of step s; clip bounds
+    x0_hat.
+    Raises ValueError for steps that do not fall, or lie outside 1..S, and for an eta outside 0..1.
+    Notebook: 03
+    """
+    visited = falling(steps, schedule.S)
+    x_s = _first(start, generator)
+    for s, after in zip(visited, [*visited[1:], 0], strict=True):
+        sigma = ddim_sigma(s, after, schedule, eta)
+        eps_hat = denoise(x_s, torch.full((len(x_s),), s, device=x_s.device))
+        x0_hat, eps_hat = _clean_guess(x_s, s, eps_hat, schedule, clip)
+        yield Step(s, x_s, x0_hat, eps_hat)
+        z = None if not sigma else draw(x_s, generator) if noise is None else noise[s - 1]
+        x_s = ddim_step(x0_hat, eps_hat, after, schedule, sigma, z)
+    yield Step(0, x_s, x_s, torch.zeros_like(x_s))
+
+
+def _first(start: Tensor | tuple[int, ...], generator: torch.Generator | None) -> Tensor:
+    """x_S itself, or drawn in that shape where the generator lives."""
+    if isinstance(start, Tensor):
+        return start
+    home = generator.device if generator else None
+    return torch.randn(start, generator=generator, device=home)
 
 
 # ---- the objective -------------------------------------------------------------------------------

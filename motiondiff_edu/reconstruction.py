@@ -18,7 +18,7 @@ import torch
 from jaxtyping import Float, Shaped
 from torch import Tensor
 
-from .rollout import generate
+from .rollout import AnyWalker, generate
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,14 +50,16 @@ def reverse_control(control: Float[Tensor, "*B T 3"]) -> Float[Tensor, "*B T 3"]
 WayBack = Callable[..., Tensor]
 
 
-def walked_back(walker, ahead, control, given, known, **options) -> Float[Tensor, "B T_h D"]:
-    """The paper's: from what was walked ahead, no more (others: `ways_back`).  Source: MoDiff
+def walked_back(
+    walker: AnyWalker, ahead, control, given, known, **options
+) -> Float[Tensor, "B T_h D"]:
+    """The paper's: from what was walked ahead, no more (others: `beyond.back_with_known`).  Source: MoDiff
     III-E.   Notebook: 10"""
     return generate(walker, ahead, control, hold=False, **options)
 
 
 def repair_steps(
-    walker,
+    walker: AnyWalker,
     past: Float[Any, "B _ _"],
     known: Shaped[Any, "_ _ _"],
     control: Float[Any, "_ _ _"],
@@ -77,7 +79,7 @@ def repair_steps(
     `control` has T_h rows beside the past and T_h for the way there. Holes are the mean pose at
     first (zero once standardised), or `guess` (metres), from a regression, say. Stops after
     `rounds` at the latest: a sampler's own spread may be above the tolerance. `way_back`: the
-    paper's, or one of `ways_back`, which heed what is known. Of each window `keep` poses are kept,
+    paper's, or one of `beyond.back_with_known`, which heed what is known. Of each window `keep` poses are kept,
     by default all T_p; keep=1 is the paper's rollout (ten times dearer, and farther off).
     `correct(past, known, ahead)` is applied to the filled past after each round, such as
     `editing.repairs.with_bones`.
@@ -125,7 +127,7 @@ def repair_steps(
             return
 
 
-def repair(walker, past, known, control, **options) -> Float[Tensor, "B T_h D"]:
+def repair(walker: AnyWalker, past, known, control, **options) -> Float[Tensor, "B T_h D"]:
     """The last of `repair_steps`: known entries come back bit by bit as they were given.
     Notebook: 10"""
     return list(repair_steps(walker, past, known, control, **options))[-1].past

@@ -10,7 +10,7 @@ Source: MoDiff III-C, Alg. 2.  Notebook: 08
 import warnings
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Protocol, runtime_checkable
 
 import torch
 from jaxtyping import Float
@@ -18,6 +18,44 @@ from torch import Tensor
 
 WindowSampler = Callable[[Tensor, Tensor, torch.Generator], Tensor]
 Control = Tensor | Callable[[int], Tensor]
+
+
+@runtime_checkable
+class Units(Protocol):
+    """Between metres (or m/s) and a network's units; `mean` lies where the network does."""
+
+    mean: Tensor
+
+    def transform(self, x: Tensor) -> Tensor: ...
+
+    def inverse(self, x: Tensor) -> Tensor: ...
+
+
+@runtime_checkable
+class Sizes(Protocol):
+    """Frames given and predicted; numbers in a pose and in a row of the control."""
+
+    T_h: int
+    T_p: int
+    D: int
+    C: int
+
+
+@runtime_checkable
+class AnyWalker(Protocol):
+    """What `generate` needs of a walker: sizes, units, and a window sampler.
+
+    `performers.walker.Walker` is one; whatever has these four can be walked with. A `card` that
+    says which control was seen in training is used where there is one.
+    """
+
+    @property
+    def config(self) -> Sizes: ...
+
+    pose_scaler: Units
+    control_scaler: Units
+
+    def window_sampler(self, steps: int | None = None) -> WindowSampler: ...
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,7 +102,7 @@ def rollout_steps(
 
 
 def generate(
-    walker,
+    walker: AnyWalker,
     past: Float[Any, "*B T_h D"],
     control: Float[Any, "*B T C"],
     *,

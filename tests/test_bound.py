@@ -73,8 +73,10 @@ def test_prior_term_is_small_where_the_schedule_reaches_noise():
 
 @pytest.mark.parametrize("s", [2, 30, 100])
 def test_eq_8_is_the_weighted_distance_of_means_plus_a_constant(s):
-    """KL - ||mean_q - mean_p||^2 / (2 beta) is the same for every denoiser; eq. 9 turns means into
-    noises."""
+    """KL - ||mean_q - mean_p||^2 / (2 beta) is the same for every denoiser.
+
+    Eq. 9 turns means into noises.
+    """
     schedule, generator = linear_schedule(), torch.Generator().manual_seed(14)
     x0, eps = (
         torch.randn(2, 5, 7, generator=generator).double(),
@@ -116,8 +118,10 @@ def test_bound_lies_below_the_exact_log_density(truth, schedule):
 
 
 def test_bound_is_tight_for_a_standard_gaussian():
-    """q(x_{s-1} | x_s) is then a Gaussian of variance beta_s, exactly what p assumes: only the
-    prior's term is lost."""
+    """q(x_{s-1} | x_s) is then a Gaussian of variance beta_s, exactly what p assumes.
+
+    Only the prior's term is lost.
+    """
     schedule = cosine_schedule(50)
     value, error = gap(gaussian(), schedule)
     assert abs(value) < 4 * error and error < 0.02
@@ -153,8 +157,10 @@ def test_terms_are_one_a_step_and_kls_are_positive():
 
 
 def test_bound_lies_below_the_models_own_density():
-    """For three steps the model's own p(x0) can be summed on a grid; the bound is below its log at
-    every x0."""
+    """For three steps the model's own p(x0) can be summed on a grid.
+
+    The bound is below its log at every x0.
+    """
     truth, schedule = two_hills(std=0.4), linear_schedule(3, 0.5, 0.97)
     denoise = exact_denoiser(truth, schedule)
     grid = torch.linspace(-6, 6, 3001, dtype=torch.float64)[:, None]

@@ -1,5 +1,7 @@
-"""Attention against torch's own, the T5 buckets against published values, and watching that changes
-nothing."""
+"""Attention against torch's own, and the T5 buckets against published values.
+
+Watching changes nothing.
+"""
 
 import pytest
 import torch

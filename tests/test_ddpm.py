@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 import torch
 
-from motiondiff_edu.beyond.schedules import shifted
+from motiondiff_edu.beyond.schedules import leap_schedule, shifted
 from motiondiff_edu.ddpm import (
     cosine_schedule,
     draw,
@@ -27,7 +27,6 @@ from motiondiff_edu.ddpm import (
     simple_loss,
 )
 from motiondiff_edu.exact import exact_denoiser, mixture, sample_mixture
-from motiondiff_edu.performers.walker import leap_schedule
 from motiondiff_edu.prediction import to_eps
 from motiondiff_edu.recipes.dancers import DANCER
 
@@ -36,8 +35,10 @@ S_REF = 1000
 
 @pytest.fixture(scope="module")
 def reference():
-    """The schedule, the start and the dummy model of the published reference run (diffusers'
-    scheduler tests)."""
+    """The schedule, the start and the dummy model of the published reference run.
+
+    They are those of diffusers' scheduler tests.
+    """
     start = (torch.arange(768).reshape(3, 8, 8, 4) / 768).permute(3, 0, 1, 2)
     return (
         linear_schedule(S_REF, 1e-4, 0.02),

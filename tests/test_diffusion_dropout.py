@@ -1,5 +1,7 @@
-"""Diffusion dropout: eq. 12's mean and variance, its rate, who is hit, and the schedule of
-rates."""
+"""Diffusion dropout.
+
+Eq. 12's mean and variance, its rate, who is hit, and the schedule of rates.
+"""
 
 import pytest
 import torch

@@ -78,8 +78,10 @@ def test_every_weights_file_has_its_card():
 
 
 def test_no_pickle():
-    """Weights and data come without code in them; AIST++'s pickles are read by an unpickler that
-    knows only arrays."""
+    """Weights and data come without code in them.
+
+    AIST++'s pickles are read by an unpickler that knows only arrays.
+    """
     pattern = re.compile(r"import pickle|pickle\.|\btorch\.(save|load)\(|allow_pickle\s*=\s*True")
     found = [path.name for path in LIBRARY if pattern.search(path.read_text(encoding="utf-8"))]
     assert found == ["aist.py"]

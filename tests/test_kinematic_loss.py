@@ -119,8 +119,10 @@ def test_gradient_of_the_skeleton_loss_pulls_a_long_frame_back():
 
 
 def test_the_identity_behind_the_papers_weight():
-    """alpha_bar |x0_hat - x0|^2 = (1 - alpha_bar) |eps_hat - eps|^2: with L_m the weight asks most
-    at high noise."""
+    """alpha_bar |x0_hat - x0|^2 = (1 - alpha_bar) |eps_hat - eps|^2.
+
+    With L_m the weight asks most at high noise.
+    """
     schedule, draw = cosine_schedule(1000), torch.Generator().manual_seed(0)
     x0, eps, wrong = (torch.randn(3, 8, 5, generator=draw, dtype=torch.float64) for _ in range(3))
     for s in (1, 250, 500, 900, 990):

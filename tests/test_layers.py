@@ -187,6 +187,8 @@ def test_every_third_party_import_is_declared():
 
 
 def test_no_file_puts_annotations_off():
-    """`from __future__ import annotations` would turn the shapes into strings that nothing
-    checks."""
+    """No file turns its shapes into strings that nothing checks.
+
+    `from __future__ import annotations` would.
+    """
     assert [path.name for path in ALL if "__future__.annotations" in imports(path)] == []

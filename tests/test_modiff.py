@@ -24,8 +24,10 @@ B = 3
 
 
 def lively(config, seed=0):
-    """A network whose zero-initialised tables have values too: else a missing bias would go
-    unnoticed."""
+    """A network whose zero-initialised tables have values too.
+
+    Else a missing bias would go unnoticed.
+    """
     torch.manual_seed(seed)
     model = MoDiff(config).eval()
     with torch.no_grad():
@@ -211,8 +213,9 @@ def test_fast_twin_stays_as_it_was_built_and_leaves_the_model_in_training():
 
 
 def test_the_wiring_by_hand():
-    """Which table goes where, and when everything happens: written out, with every time as a
-    number.
+    """Which table goes where, and when everything happens.
+
+    Written out, with every time as a number.
 
     T_h = 4, T_p = 5: poses are given at frames -3 to 0, control at -3 to 5, and the future is 1 to
     5.

@@ -1,5 +1,7 @@
-"""There and back: what is known is untouched, holes are filled by a walker that knows the way, and
-then it stops."""
+"""Walking there and back fills holes and leaves what is known untouched.
+
+The walker knows the way, and then it stops.
+"""
 
 from types import SimpleNamespace
 
@@ -17,8 +19,10 @@ T_H, D = 6, 8
 
 
 class Turning:
-    """A walker that turns pairs of numbers by the control's first column: right, and reversible;
-    then some noise."""
+    """A walker that turns pairs of numbers by the control's first column: right, and reversible.
+
+    Then some noise.
+    """
 
     def __init__(self, noise: float = 0.0):
         self.config = SimpleNamespace(T_h=T_H, T_p=2, D=D, C=3)

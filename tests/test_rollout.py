@@ -1,5 +1,7 @@
-"""Rollout: which rows of control are seen, when the sampler is asked, what is refused. The samplers
-here are fakes."""
+"""Rollout: which rows of control are seen, when the sampler is asked, what is refused.
+
+The samplers here are fakes.
+"""
 
 import pytest
 import torch
@@ -19,8 +21,10 @@ def numbered_control(frames: int) -> torch.Tensor:
 
 
 class Echo:
-    """A sampler that returns the control of the future frames as poses, and remembers what it was
-    given."""
+    """A sampler that returns the control of the future frames as poses.
+
+    It remembers what it was given.
+    """
 
     def __init__(self):
         self.calls = []
@@ -118,8 +122,10 @@ def test_control_as_a_function_is_asked_when_needed_and_can_change_on_the_fly(
 
 
 def test_the_rows_already_walked_under_are_not_asked_again():
-    """A hand on a joystick only knows its present position: the network must be told what it was
-    before."""
+    """A hand on a joystick only knows its present position.
+
+    The network must be told what it was before.
+    """
     asked, seen = [], []
 
     def hand(t: int) -> torch.Tensor:

@@ -1,5 +1,7 @@
-"""The training loop: it learns, averages, clips, saves no code, survives a kill, stops at a
-non-finite loss."""
+"""The training loop.
+
+It learns, averages, clips, saves no code, survives a kill, stops at a non-finite loss.
+"""
 
 import math
 import os
@@ -21,8 +23,10 @@ from motiondiff_edu.training import NonFiniteLoss, TrainState, cosine_lr, train_
 
 
 def network():
-    """Dropout draws from torch's own generator, the batches from the run's: both must be
-    resumed."""
+    """Dropout draws from torch's own generator, the batches from the run's.
+
+    Both must be resumed.
+    """
     torch.manual_seed(3)
     return nn.Sequential(nn.Linear(5, 7), nn.Tanh(), nn.Dropout(0.2), nn.Linear(7, 2))
 

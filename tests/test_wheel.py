@@ -1,5 +1,7 @@
-"""A wheel, built and installed elsewhere, has all that the checkout has: weights, ES module,
-data_synth, notebooks."""
+"""A wheel, built and installed elsewhere, has all that the checkout has.
+
+Weights, ES module, data_synth, notebooks.
+"""
 
 import json
 import os
@@ -81,8 +83,10 @@ def wheel(tmp_path_factory) -> Path:
 
 @pytest.fixture(scope="module")
 def elsewhere(wheel, tmp_path_factory) -> tuple[Path, dict]:
-    """A fresh environment with the wheel in it; torch and the others are borrowed. With what USE
-    prints."""
+    """A fresh environment with the wheel in it; torch and the others are borrowed.
+
+    With what USE prints.
+    """
     home = tmp_path_factory.mktemp("elsewhere")
     venv.create(home / "env", with_pip=False)
     python = home / "env" / ("Scripts/python.exe" if os.name == "nt" else "bin/python")

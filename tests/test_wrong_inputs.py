@@ -1,5 +1,7 @@
-"""What somebody may hand over by mistake, and what they are told: no broadcast, no NaN, in this
-course's words."""
+"""What somebody may hand over by mistake, and what they are told.
+
+No broadcast, no NaN, in this course's words.
+"""
 
 import math
 import os
@@ -15,7 +17,6 @@ from data_synth.walking import walk
 from data_synth.walking.write import main as write_walks
 from motiondiff_edu import ddpm
 from motiondiff_edu.conditions.control import joystick
-from motiondiff_edu.fast.samplers import ddim_steps
 from motiondiff_edu.metrics.adherence import adherence
 from motiondiff_edu.modiff import MoDiff, MoDiffConfig
 from motiondiff_edu.motion.bvh.write import write_bvh
@@ -32,7 +33,7 @@ PLAIN = Scaler(torch.zeros(63), torch.ones(63)), Scaler(torch.zeros(3), torch.on
 
 
 def ddim(**options):
-    return lambda: list(ddim_steps(lambda x, s: x, X, SCHEDULE, **options))
+    return lambda: list(ddpm.ddim_steps(lambda x, s: x, X, SCHEDULE, **options))
 
 
 MISTAKES = {
@@ -87,6 +88,21 @@ def test_it_is_refused_in_words(what):
 def test_a_step_that_is_not_there(s):
     with pytest.raises(IndexError, match=f"s = {s}: steps go from 0 to 20 here, and 0 is clean"):
         ddpm.q_sample(X, s, SCHEDULE, X)
+
+
+@pytest.mark.parametrize("steps, named", [([3, -1], -1), ([21, 20], 21), ([-4, 30], -4)])
+def test_steps_of_a_batch_are_checked_as_one_is(steps, named):
+    """A tensor's -1 would read the last entry, and say nothing."""
+    with pytest.raises(IndexError, match=f"s = {named}: steps go from 0 to 20 here"):
+        ddpm.q_sample(X, torch.tensor(steps), SCHEDULE, X)
+
+
+def test_a_batch_with_clean_data_has_no_step_back():
+    s = torch.tensor([7, 0])
+    for call in (ddpm.q_posterior, ddpm.p_mean):
+        order = (X, s, X) if call is ddpm.p_mean else (X, X, s)
+        with pytest.raises(IndexError, match="s = 0: steps go from 1 to 20 here"):
+            call(*order, SCHEDULE)
 
 
 @pytest.mark.parametrize("fps", [math.inf, 1, 2000])

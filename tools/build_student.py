@@ -95,8 +95,10 @@ def student(notebook: dict, name: str) -> dict:
 
 
 def text(notebook: dict) -> str:
-    """The bytes of a notebook as Jupyter writes them: sources by line, keys sorted, one space of
-    indent."""
+    """The bytes of a notebook as Jupyter writes them.
+
+    Sources by line, keys sorted, one space of indent.
+    """
     cells = [
         cell | {"source": cell["source"].splitlines(keepends=True)} for cell in notebook["cells"]
     ]

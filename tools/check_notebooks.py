@@ -1,5 +1,6 @@
-"""The form of a notebook: length, opening, tags, exercises, closing, nothing that ties it to one
-machine.
+"""The form of a notebook.
+
+Length, opening, tags, exercises, closing, nothing that ties it to one machine.
 
 python tools/check_notebooks.py [NOTEBOOK ...]     lists what is wrong; exit 1 when anything is
 """
@@ -77,8 +78,10 @@ def storage(notebook: dict) -> Iterator[str]:
 
 
 def opening(notebook: dict) -> Iterator[str]:
-    """Before the imports: aim, needs, paper, minutes, symbols; then one imports cell that starts
-    the run."""
+    """Before the imports: aim, needs, paper, minutes, symbols.
+
+    Then one imports cell that starts the run.
+    """
     imports = code(notebook, "imports")
     if len(imports) != 1 or "runtime.start(" not in imports[0]["source"]:
         yield "there must be one cell tagged `imports`, which calls runtime.start(...)"
@@ -119,8 +122,10 @@ def closing(notebook: dict) -> Iterator[str]:
 
 
 def exercises(notebook: dict, name: str) -> Iterator[str]:
-    """Two or more exercises, each with minutes and difficulty before it, a hint, and a check in the
-    same cell."""
+    """Two or more exercises, each with minutes, difficulty, a hint and a check.
+
+    The text stands before it, the check in the same cell.
+    """
     cells = notebook["cells"]
     found = [
         index

@@ -1,5 +1,7 @@
-"""The README's moving picture: the shipped walker along the slalom.  Run: python
-tools/walk_gif.py"""
+"""The README's moving picture: the shipped walker along the slalom.
+
+Run: python tools/walk_gif.py
+"""
 
 from pathlib import Path
 

@@ -1,5 +1,6 @@
-"""Do synthetic dances lie where real ones do, and on the beat? The table over dozens of dances,
-beside the real range.
+"""Do synthetic dances lie where real ones do, and on the beat?
+
+The table over dozens of dances, beside the real range.
 
 python -m data_synth.dancing.acceptance [--dances 30] [--seconds 30]
 
@@ -41,8 +42,10 @@ OUTSIDE = {
 
 
 def songs(count: int, seconds: float, first_seed: int = 0) -> list[Song]:
-    """Silent songs, genre by genre in turn, tempi spread over each genre's range and drifting by 2
-    %."""
+    """Silent songs, genre by genre in turn.
+
+    Tempi are spread over each genre's range and drift by 2 %.
+    """
     genres = list(GENRES.items())
     each, found = -(-count // len(genres)), []
     for k in range(count):
@@ -74,8 +77,10 @@ def acceptance(
 
 
 def means_outside(danced: list[Dance], rows: list[dict[str, float]]) -> set[str]:
-    """Statistics whose mean is outside the real range, over all dances (by name) or in a genre
-    ("genre name")."""
+    """Statistics whose mean over dances is outside the real range.
+
+    Over all dances (by name) or in a genre ("genre name").
+    """
     found = set()
     for genre in ("", *GENRES):
         chosen = [r for d, r in zip(danced, rows, strict=True) if genre in ("", d.genre)]
@@ -86,8 +91,10 @@ def means_outside(danced: list[Dance], rows: list[dict[str, float]]) -> set[str]
 
 
 def limits(danced: list[Dance]) -> dict[str, float]:
-    """The worst of all frames: slipping feet, the lowest joint (mm), bones (m), knees (degrees),
-    hands (m/s)."""
+    """The worst of all frames.
+
+    Slipping feet, the lowest joint (mm), bones (m), knees (degrees), hands (m/s).
+    """
     slip, low, bones, knees, hands = 0.0, np.inf, 0.0, [], 0.0
     for d in danced:
         p = d.positions

@@ -1,5 +1,6 @@
-"""Dances to a song: phrases of moves from the genre's own vocabulary, arriving on the beat, on feet
-that stay planted.
+"""Dances to a song.
+
+Phrases of moves from the genre's own vocabulary, arriving on the beat, on feet that stay planted.
 
     python -m data_synth dances --out FOLDER   # BVH for Blender, npz (no pickle) for all else
 
@@ -36,8 +37,9 @@ START = ((STANCE, TOE_AHEAD, 0.12), (-STANCE, TOE_AHEAD, -0.12))  # toe x, toe z
 
 @dataclass(frozen=True, eq=False)
 class Dance:
-    """World positions (metres), which foot is planted (left, right: truth), and the moves as
-    danced.
+    """World positions (metres), true contacts and the moves of a dance.
+
+    Contacts say which foot is planted: left, right.
 
     `moves` has (first beat, name, mirrored) of every move.
     """
@@ -54,8 +56,9 @@ class Dance:
 
 
 def dance(song: Song, seed: int, only: str | None = None) -> Dance:
-    """A dance to the song's score, 20 frames/s, from (0, 0) facing z; `only` names one move to fill
-    it with.
+    """A dance to the song's score, 20 frames/s, from (0, 0) facing z.
+
+    `only` names one move to fill it with.
 
     Raises ValueError when the song has fewer than two beats, its genre has no such moves, or the
     seed is negative.
@@ -78,8 +81,9 @@ def dance(song: Song, seed: int, only: str | None = None) -> Dance:
 def dances(
     n: int, seed: int, seconds: float = 30.0, *, each: int = 1, genre: str | None = None
 ) -> Iterator[tuple[Song, Dance]]:
-    """n songs as `music.songs` has them, with `each` dances to every one: what dancers are trained
-    on.
+    """n songs as `music.songs` has them, with `each` dances to every one.
+
+    What dancers are trained on.
 
     The dances to one song follow one another. Different seeds share no song, and no dancer's seed.
     Raises ValueError as `songs` and `dance` do, for no dance to a song, and for more dances than a
@@ -121,8 +125,10 @@ def perform(
 def _channels(
     script: Script, b, early, grid, manner: Manner, seed: int, rng
 ) -> dict[str, Float[np.ndarray, "T"]]:
-    """Every channel at every frame, with the person's posture and slow drift; the arms on a
-    spring."""
+    """Every channel at every frame, with the person's posture and slow drift.
+
+    The arms on a spring.
+    """
     wander = noise.drift(noise.white(seed, len(b))[:, : len(REST)], 0.45, FPS)
     channels = {}
     for i, name in enumerate(REST):
@@ -139,8 +145,10 @@ def _channels(
 
 
 def _person(name: str) -> tuple[float, float]:
-    """How much a channel drifts, and how much its posture differs from person to person (sd;
-    degrees or metres)."""
+    """How much a channel drifts, and how much its posture differs between persons.
+
+    Standard deviations, in degrees or metres.
+    """
     if name == "weight" or name.endswith("heel"):
         return 0.0, 0.0
     if name in ARMS:

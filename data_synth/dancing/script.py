@@ -1,5 +1,6 @@
-"""What a dance is written down as: key poses by channel, and footsteps, all counted in beats of the
-song.
+"""What a dance is written down as.
+
+Key poses by channel, and footsteps, all counted in beats of the song.
 
 Angles in degrees, lengths in metres. A move does not write here but on a `Sheet` of its own
 (dance_sheet.py).
@@ -50,8 +51,10 @@ STANCE = 0.10  # of an ankle from the middle, standing
 
 @dataclass(frozen=True)
 class Step:
-    """One foot from `lift` to `land` (beats), to a toe place (x, z) and direction; in the air it
-    passes `height`."""
+    """One foot from `lift` to `land` (beats), to a toe place (x, z) and direction.
+
+    In the air it passes `height`.
+    """
 
     lift: float
     land: float

@@ -1,5 +1,6 @@
-"""The page a move is written on: in its own counts, as danced by someone who begins with the left
-foot.
+"""The page a move is written on.
+
+In its own counts, as danced by someone who begins with the left foot.
 
 The sheet mirrors the move, scales it, slows or quickens it, and enters it in the script of the
 whole dance. It sees to the weight: before a foot lifts, the other one bears. Angles in degrees,
@@ -60,16 +61,20 @@ class Sheet:
             self.keys.setdefault(name, []).append((self.start + count * self.rate, entry))
 
     def arms(self, count: float, left, right=None) -> None:
-        """Both arms at a count: (swing, out, twist, elbow[, wrist, shrug]) each; the right as the
-        left if not given."""
+        """Both arms at a count: (swing, out, twist, elbow[, wrist, shrug]) each.
+
+        The right as the left if not given.
+        """
         for side, pose in (("l", left), ("r", left if right is None else right)):
             pose = (*pose, *(8.0, 0.0)[len(pose) - 4 :])
             for name, value in zip(ARM, pose, strict=True):
                 self.key(f"{side}_{name}", (count, value))
 
     def place(self, x: float, z: float, yaw: float) -> tuple[float, float, float]:
-        """From the move's own floor (left, ahead, degrees to the left) to the world's: x, z,
-        yaw."""
+        """From the move's own floor (left, ahead, degrees to the left) to the world's.
+
+        x, z, yaw.
+        """
         hx, hz, heading = self.script.home
         x = self.sign * x
         s, c = sin(heading), cos(heading)
@@ -154,8 +159,10 @@ class Sheet:
     def _put(
         self, foot, count, x, z, turn, height, swing, kick, scaled: bool = True
     ) -> float | None:
-        """Write down one step; the beat at which it lifts, or None where there is no time for
-        it."""
+        """Write down one step.
+
+        The beat at which it lifts, or None where there is no time for it.
+        """
         side, real = (1 if foot == 0 else -1), self.foot(foot)
         if scaled:
             x, z = side * STANCE + self.stride * (x - side * STANCE), self.stride * z
@@ -190,8 +197,9 @@ class Sheet:
         toe: float = 25.0,
         half: float = 0.48,
     ) -> None:
-        """Swing a foot out to (x left, z ahead) of where it stands, up to `height` at a count, and
-        set it down again.
+        """Swing a foot out, up to `height` at a count, and set it down again.
+
+        It goes to (x left, z ahead) of where it stands.
 
         `toe` is how far it points down (degrees; negative: the heel first); `half` the counts from
         the floor to there.
@@ -211,8 +219,10 @@ class Sheet:
         self.key("weight", ((lift - self.start) / self.rate, -0.93 * (1 if foot == 0 else -1)))
 
     def _round_the_other(self, foot: int, toe) -> tuple[float, float]:
-        """How far the path must bulge so that the swinging foot passes the other at 0.15 m or
-        more."""
+        """How far the path must bulge to pass the other foot.
+
+        The swinging foot passes it at 0.15 m or more.
+        """
         (ax, az, _), (bx, bz, _), (ox, oz, _) = (
             self.script.toes[foot],
             toe,
@@ -251,8 +261,10 @@ class Sheet:
     def go(
         self, count: float, x: float = 0.0, z: float = 0.0, turn: float = 0.0, during: float = 1.0
     ) -> None:
-        """Home moves (left, ahead) and turns (degrees to the left) by a count: what follows is seen
-        from there."""
+        """Home moves (left, ahead) and turns (degrees to the left) by a count.
+
+        What follows is seen from there.
+        """
         hx, hz, heading = self.script.home
         end, began = self.start + count * self.rate, self.start + (count - during) * self.rate
         px, pz, after = self.place(self.stride * x, self.stride * z, turn)

@@ -1,5 +1,7 @@
-"""Where the feet of a dance are at every frame: toes that stay while planted, and swing, lift and
-roll in between."""
+"""Where the feet of a dance are at every frame.
+
+Toes that stay while planted, and swing, lift and roll in between.
+"""
 
 from dataclasses import dataclass
 
@@ -15,8 +17,11 @@ from .script import Step
 
 @dataclass(frozen=True)
 class Track:
-    """One foot: toe joint, direction and pitch (radians, heel up), whether it is planted, where it
-    carries weight."""
+    """One foot over time.
+
+    Toe joint, direction and pitch (radians, heel up), whether it is planted, where it carries
+    weight.
+    """
 
     toe: Float[np.ndarray, "T 3"]
     yaw: Float[np.ndarray, "T"]
@@ -38,8 +43,9 @@ def track(
     t: Float[np.ndarray, "T"],
     heel: Float[np.ndarray, "T"],
 ) -> Track:
-    """A foot that stands at `start` (toe x, toe z, yaw) and takes `steps`, from times[:, 0] to
-    times[:, 1] (seconds).
+    """A foot that stands at `start` (toe x, toe z, yaw) and takes `steps`.
+
+    They last from times[:, 0] to times[:, 1] (seconds).
 
     `heel` (degrees) is how far a move raises it while it stands.
     """
@@ -72,8 +78,10 @@ def track(
 
 
 def _pitch(step: Step, far: float, lift: float, land: float) -> list[tuple[float, float]]:
-    """Degrees, heel up, at moments around one step: the heel leaves first, and the ball of the foot
-    lands first."""
+    """Degrees, heel up, at moments around one step.
+
+    The heel leaves first, and the ball of the foot lands first.
+    """
     if step.pivot:
         return [(lift, 0.0), ((lift + land) / 2, 7.0), (land, 0.0)]
     took = land - lift
@@ -91,8 +99,10 @@ def _pitch(step: Step, far: float, lift: float, land: float) -> list[tuple[float
 
 
 def _rolled(keys: list[tuple[float, float]], t: Float[np.ndarray, "T"]) -> Float[np.ndarray, "T"]:
-    """A smooth curve through the keys, of which those that come before their forerunners are left
-    out."""
+    """A smooth curve through the keys.
+
+    Keys that come before their forerunners are left out.
+    """
     kept = keys[:1]
     for key in keys[1:]:
         while key[0] - kept[-1][0] < 0.02 and len(kept) > 1 and kept[-1][1] == 0.0:

@@ -60,8 +60,9 @@ def compose(
     metre: int | None = None,
     timbre: str | None = None,
 ) -> Song:
-    """One song; what is not given is drawn: a genre, its tempo (BPM) and metre, one of
-    TRAINING_TIMBRES.
+    """One song; what is not given is drawn.
+
+    A genre, its tempo (BPM) and metre, one of TRAINING_TIMBRES.
 
     The same arguments give the same bytes. With another `timbre` it is the same music on other
     instruments.
@@ -100,8 +101,10 @@ def compose(
 
 
 def _chosen(genre, tempo, metre, timbre, rng: np.random.Generator) -> tuple[str, float, int, str]:
-    """What is not given is drawn; all of it is drawn in any case, so that nothing given changes
-    what comes after."""
+    """What is not given is drawn.
+
+    All of it is drawn in any case, so that nothing given changes what comes after.
+    """
     drawn = str(rng.choice(list(GENRES))), rng.random(), str(rng.choice(TRAINING_TIMBRES))
     genre, timbre = genre or drawn[0], timbre or drawn[2]
     slowest, fastest, usual = GENRES[genre]

@@ -1,5 +1,6 @@
-"""The form of a song before any note is written: beats in time, bars, phrases and sections, breaks
-and fills.
+"""The form of a song before any note is written.
+
+Beats in time, bars, phrases and sections, breaks and fills.
 
 A phrase is two bars; in 3 it may be four. A section (intro, verse, chorus, bridge) is one to four
 phrases. What leads to a chorus may end in a break: a bar or two without drums, in which the beats
@@ -34,8 +35,10 @@ DRIFT = 0.02  # the beat's length stays within this share of the mean
 
 @dataclass(frozen=True)
 class Bar:
-    """One bar: which section and phrase it is of, how loud the section, and what happens at its
-    end."""
+    """One bar of a song's form.
+
+    Which section and phrase it is of, how loud the section, and what happens at its end.
+    """
 
     number: int
     section: str
@@ -49,8 +52,10 @@ class Bar:
 
 @dataclass(frozen=True, eq=False)
 class Form:
-    """Bars, and the time of every beat from the first of bars[0] on: negative before the recording
-    begins."""
+    """Bars, and the time of every beat from the first of bars[0] on.
+
+    Negative before the recording begins.
+    """
 
     bars: list[Bar]
     times: Float[np.ndarray, "B"]
@@ -76,8 +81,9 @@ class Form:
 
 
 def roles(groups: tuple[int, ...]) -> list[str]:
-    """What each beat of a bar is: "one", "strong" (another group's first), "back" (a group's last),
-    "weak" or "last".
+    """What each beat of a bar is.
+
+    "one", "strong" (another group's first), "back" (a group's last), "weak" or "last".
 
     roles((2, 2)) = one back strong last; roles((3, 2)) = one weak back strong last.
     """
@@ -132,8 +138,10 @@ def _bars(
 
 
 def _periods(rng: np.random.Generator, n: int) -> Float[np.ndarray, "n"]:
-    """Lengths of n beats over their mean: a slow random walk within DRIFT, or all 1 in a steady
-    song."""
+    """Lengths of n beats over their mean.
+
+    A slow random walk within DRIFT, or all 1 in a steady song.
+    """
     steady, spread = rng.random() < 0.35, rng.uniform(0.3, 1.0)
     steps, walk = rng.standard_normal(n), np.zeros(n)
     for k in range(1, n):
@@ -145,8 +153,10 @@ def _periods(rng: np.random.Generator, n: int) -> Float[np.ndarray, "n"]:
 def draw_form(
     rng: np.random.Generator, seconds: float, tempo: float, metre: int, swing: tuple[float, float]
 ) -> Form:
-    """Draw the form of a song that begins anywhere, one in four at its beginning; `swing` is where
-    and its unit."""
+    """Draw the form of a song that begins anywhere, one in four at its beginning.
+
+    `swing` is where and its unit.
+    """
     groups = GROUPS[metre][int(rng.integers(len(GROUPS[metre])))]
     phrase_bars = int(rng.choice([2, 4])) if metre == 3 else 2
     beginning, skip, phase = rng.random() < 0.25, int(rng.integers(0, 4 * metre)), rng.random()
@@ -164,8 +174,10 @@ def draw_form(
 
 
 def energies(form: Form, rng: np.random.Generator) -> Float[np.ndarray, "B"]:
-    """Energy of every beat: its section's, rising towards a section's end, at most 0.1 in a
-    break."""
+    """Energy of every beat.
+
+    Its section's, rising towards a section's end, at most 0.1 in a break.
+    """
     quiet = rng.uniform(0, 0.1)
     level = np.repeat([bar.level for bar in form.bars], form.metre)
     wander = 0.03 * np.convolve(rng.standard_normal(len(level)), np.ones(5) / 5, "same")

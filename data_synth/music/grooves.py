@@ -1,5 +1,6 @@
-"""What the drums play: patterns per genre as four sixteenths a beat, and how a song part makes its
-bars of them.
+"""What the drums play.
+
+Patterns per genre as four sixteenths a beat, and how a song part makes its bars of them.
 
 A pattern has five cells, for the beats "one back strong last weak" of form.roles, so that it serves
 every metre: a bar of 4 is one back strong last, of 3 one weak last, of 5 one weak back strong last.
@@ -116,8 +117,10 @@ FILLS = ("xxxx", "x.xx", "xx.x", "..xx", "x.x.", ".xxx")
 
 @dataclass(frozen=True)
 class Hit:
-    """One stroke: which drum, where in beats from the form's first, how hard (0-1), and which of
-    its sounds."""
+    """One stroke of a drum.
+
+    Which drum, where in beats from the form's first, how hard (0-1), and which of its sounds.
+    """
 
     drum: str
     position: float
@@ -144,8 +147,7 @@ def marks(bar: list[str]) -> list[tuple[float, str]]:
 def draw_part(
     genre: str, groups: tuple[int, ...], rng: np.random.Generator
 ) -> dict[str, tuple[list, list]]:
-    """For every drum of a part: the marks of its bar, and of the bar that answers it at a phrase's
-    end."""
+    """The marks of every drum's bar, and of the bar that answers it at a phrase's end."""
     part = {}
     for drum, patterns in GROOVES[genre].items():
         first, answer = rng.choice(len(patterns)), rng.random(2)

@@ -1,5 +1,6 @@
-"""What the pitched instruments play: chords that lead into one another, a bass below, a melody that
-comes back.
+"""What the pitched instruments play.
+
+Chords that lead into one another, a bass below, a melody that comes back.
 
 Patterns have five cells like those of grooves.py. Bass: R root, F fifth, O octave, T third, A one
 step from the next root. Chords: L held until the next, s short, a one note of the chord after
@@ -100,8 +101,10 @@ class Note:
 
 @dataclass(frozen=True)
 class Chord:
-    """Pitch classes of a bar: the root first, then the chord's, and the scale that holds under
-    it."""
+    """Pitch classes of a bar.
+
+    The root first, then the chord's, and the scale that holds under it.
+    """
 
     root: int
     tones: tuple[int, ...]
@@ -123,8 +126,10 @@ def chord_on(degree: int, tonic: int, mode: str, sevenths: bool) -> Chord:
 
 
 def lead(tones: tuple[int, ...], before: tuple[int, ...], centre: int = 62) -> tuple[int, ...]:
-    """The chord's notes, each pitch class once, near `before` and around `centre`: as little
-    movement as can be."""
+    """The chord's notes, each pitch class once, near `before` and around `centre`.
+
+    As little movement as can be.
+    """
     near = [[p for p in range(centre - 9, centre + 12) if p % 12 == tone] for tone in tones]
 
     def cost(notes):
@@ -225,16 +230,20 @@ def write_chords(
 
 @dataclass(frozen=True)
 class Motif:
-    """A phrase's tune before it meets the chords: where its notes are (beats), how the line moves
-    (scale steps)."""
+    """A phrase's tune before it meets the chords.
+
+    Where its notes are (beats), how the line moves (scale steps).
+    """
 
     at: list[float]
     step: list[int]
 
 
 def draw_motif(form: Form, genre: str, rng: np.random.Generator) -> Motif:
-    """One bar's rhythm, repeated with a change in later bars, a breath at the end; sometimes a
-    pickup."""
+    """One bar's rhythm, repeated with a change in later bars, a breath at the end.
+
+    Sometimes a pickup.
+    """
     choice = RHYTHMS[genre]
     bar = [str(choice[rng.integers(len(choice))]) for _ in range(form.metre)]
     if all(cell == "...." for cell in bar[:2]):
@@ -258,8 +267,10 @@ def draw_motif(form: Form, genre: str, rng: np.random.Generator) -> Motif:
 def write_melody(
     form: Form, chords: list[Chord], genre: str, rng: np.random.Generator
 ) -> list[Note]:
-    """A tune in choruses, often in verses: phrases a a a b; chord tones on the beats, the root or
-    third at the end."""
+    """A tune in choruses, often in verses: phrases a a a b.
+
+    Chord tones on the beats, the root or third at the end.
+    """
     motifs = {
         name: (draw_motif(form, genre, rng), draw_motif(form, genre, rng))
         for name in ("verse", "chorus")

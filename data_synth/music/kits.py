@@ -1,5 +1,7 @@
-"""Drums by synthesis: each is a struck body (a tone that bends) and noise between two frequencies,
-dying away."""
+"""Drums by synthesis.
+
+Each is a struck body (a tone that bends) and noise between two frequencies, dying away.
+"""
 
 from dataclasses import dataclass, replace
 
@@ -163,8 +165,10 @@ TOM_PITCH = (1.35, 1.0, 0.75)  # high to low
 
 
 def _envelope(t: np.ndarray, decay: float, attack: float, bursts: int = 1) -> np.ndarray:
-    """Rise in `attack`, fall by 1/e in `decay`; of several bursts 11 ms apart only the last
-    rings."""
+    """Rise in `attack`, fall by 1/e in `decay`.
+
+    Of several bursts 11 ms apart only the last rings.
+    """
     env = np.minimum(t / attack, 1.0) * np.exp(-np.maximum(t - attack, 0) / decay)
     for k in range(1, bursts):
         after = t - 0.011 * k

@@ -1,5 +1,7 @@
-"""Pitched instruments from one cycle of a wave: a dark part that lasts and a bright part that dies
-away first."""
+"""Pitched instruments from one cycle of a wave.
+
+A dark part that lasts and a bright part that dies away first.
+"""
 
 from dataclasses import dataclass
 from functools import lru_cache
@@ -14,8 +16,10 @@ TABLE = 2048  # samples of one cycle
 
 @dataclass(frozen=True)
 class Voice:
-    """A wave's partials and how it begins and ends; seconds. `decay` is to 1/e; `sustain` the share
-    that stays."""
+    """A wave's partials and how it begins and ends; seconds.
+
+    `decay` is to 1/e; `sustain` the share that stays.
+    """
 
     roll: float  # partial k has amplitude k ** -roll
     odd: float = 1.0  # what the even partials are multiplied with
@@ -77,8 +81,10 @@ VOICES = {
 
 @lru_cache(maxsize=4096)
 def _cycle(voice: Voice, highest: int) -> tuple[np.ndarray, np.ndarray]:
-    """One cycle with partials up to `highest` only, so that none folds back: the dark part and the
-    bright."""
+    """One cycle with partials up to `highest` only, so that none folds back.
+
+    The dark part and the bright.
+    """
     amplitude = np.array(
         voice.partials or [k**-voice.roll * (1 if k % 2 else voice.odd) for k in range(1, 33)]
     )

@@ -1,5 +1,6 @@
-"""Do synthetic walks lie where real ones do? The table: ours over many walkers, beside the range of
-real clips.
+"""Do synthetic walks lie where real ones do?
+
+The table: ours over many walkers, beside the range of real clips.
 
 python -m data_synth.walking.acceptance [--walks 24]
 
@@ -96,8 +97,10 @@ RUN = {
 
 
 def steady_walk(speed: float, seed: int, seconds: float = 13.0) -> dict[str, float]:
-    """Statistics of a neutral walker going straight at one speed, with no arm or head
-    behaviours."""
+    """Statistics of a neutral walker going straight at one speed.
+
+    It has no arm or head behaviours.
+    """
     who = replace(person(STYLES["neutral"], np.random.default_rng([seed, 9])), behaviours=0.0)
     control = np.tile([speed, 0.0, 0.0], (round(20 * seconds), 1))
     s = statistics(walk(control, seed, who).world())
@@ -107,8 +110,11 @@ def steady_walk(speed: float, seed: int, seconds: float = 13.0) -> dict[str, flo
 
 
 def table(rows: list[dict[str, float]], ranges: dict[str, tuple[float, float]]) -> list[tuple]:
-    """(name, mean, smallest, largest of ours, lowest, highest real, share of walkers inside the
-    range +- 10 %)."""
+    """Rows that set our walks beside the real range.
+
+    (name, mean, smallest, largest of ours, lowest, highest real, share of walkers inside the range
+    +- 10 %).
+    """
     lines = []
     for name, (low, high) in ranges.items():
         values = np.array([r[name] for r in rows if np.isfinite(r.get(name, np.nan))])
@@ -126,8 +132,10 @@ def acceptance(walks: int = 24, runs: int = 8) -> tuple[list[tuple], list[tuple]
 
 
 def means_outside(walked: list[tuple], ran: list[tuple]) -> set[str]:
-    """Names of the statistics whose mean over walkers is outside the real range ("run ..." for
-    those of running)."""
+    """Names of the statistics whose mean over walkers is outside the real range.
+
+    "run ..." for those of running.
+    """
     lines = [("", line) for line in walked] + [("run ", line) for line in ran]
     return {
         prefix + line[0]

@@ -34,8 +34,10 @@ class Drive:
 
 
 def drive(control, root_xz, heading, rows, style: Style, lean_shift, run, fps: float) -> Drive:
-    """Rates and velocities per frame; velocity at frame t is control[t-1], which brought the root
-    there."""
+    """Rates and velocities per frame.
+
+    Velocity at frame t is control[t-1], which brought the root there.
+    """
     arrived = np.concatenate([control[:1], control[:-1]])
     smooth = follow(arrived, 0.06, fps)
     slow, fast = drift(rows[:, 0], 3.0, fps), drift(rows[:, 1], 0.3, fps)

@@ -1,5 +1,6 @@
-"""When and where the feet go: a gait clock driven by the control, and footprints that never move
-once made.
+"""When and where the feet go.
+
+A gait clock driven by the control, and footprints that never move once made.
 
 Causal: frame t depends on the root path up to t and on the noise up to t; so a held control decides
 everything. A swinging foot aims at its middle of stance, should the present velocity last; the aim
@@ -93,8 +94,10 @@ class _Feet:
         return min(max((far - 0.50) / 0.15, 0.0), 1.2)
 
     def first_foot(self, t: int) -> None:
-        """From standing either foot may go first; sideways and turning the near one usually
-        does."""
+        """From standing either foot may go first.
+
+        Sideways and turning the near one usually does.
+        """
         d = self.d
         lift_next = LEFT_FOOT if self.phase(0) > self.phase(1) else RIGHT_FOOT
         pull = 1.5 * d.noise[t][0] + 6 * d.left[t] + 1.5 * d.yaw[t]  # positive: the left foot

@@ -1,5 +1,6 @@
-"""Gait cycles of a walk given as world positions: foot contact by height and speed, angles over the
-cycle.
+"""Gait cycles of a walk given as world positions.
+
+Foot contact by height and speed, angles over the cycle.
 
 Works on real clips and synthetic ones alike; contact is found from the motion, not taken from the
 truth.
@@ -65,8 +66,10 @@ def _tidy(down: np.ndarray) -> np.ndarray:
 
 
 def analyse(world: Float[np.ndarray, "T 21 3"], fps: float = 20.0) -> Walk:
-    """Directions and contacts of a clip (a foot is down when it is low and slower than the
-    pelvis)."""
+    """Directions and contacts of a clip.
+
+    A foot is down when it is low and slower than the pelvis.
+    """
     hips = world[:, 0][:, [0, 2]]
     v = gaussian_filter1d(np.gradient(hips, axis=0) * fps, 0.25 * fps, axis=0, mode="nearest")
     speed = np.linalg.norm(v, axis=-1)
@@ -96,8 +99,10 @@ def analyse(world: Float[np.ndarray, "T 21 3"], fps: float = 20.0) -> Walk:
 
 
 def cycles(walk: Walk, steady: bool = True) -> list[Cycle]:
-    """Cycles of both feet with one toe-off and one strike of the other foot; `steady`: straight and
-    even."""
+    """Cycles of both feet with one toe-off and one strike of the other foot.
+
+    `steady`: straight and even.
+    """
     strikes = [np.flatnonzero(~walk.down[:-1, s] & walk.down[1:, s]) + 1 for s in (0, 1)]
     offs = [np.flatnonzero(walk.down[:-1, s] & ~walk.down[1:, s]) + 1 for s in (0, 1)]
     found = []
@@ -124,8 +129,10 @@ def _steady(walk: Walk, a: int, b: int) -> bool:
 
 
 def curves(walk: Walk) -> dict[str, np.ndarray]:
-    """Angles (degrees) and heights (m) per frame; the names that end in 0 or 1 belong to the left
-    or right side."""
+    """Angles (degrees) and heights (m) per frame.
+
+    The names that end in 0 or 1 belong to the left or right side.
+    """
     out = {"hips_y": walk.joint("Hips")[:, 1], "lean": walk.sagittal("Hips", "Neck1", 1.0)}
     out["head"] = walk.sagittal("Neck1", "Head", 1.0)
     heading = np.arctan2(walk.facing[:, 0], walk.facing[:, 1])

@@ -1,5 +1,6 @@
-"""The numbers by which a walk is judged: one value per statistic and clip, as measured on real
-walks.
+"""The numbers by which a walk is judged.
+
+One value per statistic and clip, as measured on real walks.
 
 Lengths mm except step length (m), angles degrees, times seconds unless the name says otherwise.
 """
@@ -15,8 +16,10 @@ AT = {p: int(round(p / 2)) for p in range(0, 101, 2)}  # index in GRID of a perc
 
 
 def statistics(world: Float[np.ndarray, "T 21 3"], fps: float = 20.0) -> dict[str, float]:
-    """All statistics of one clip of steady walking or running; raises ValueError when it has no
-    steady cycle."""
+    """All statistics of one clip of steady walking or running.
+
+    Raises ValueError when it has no steady cycle.
+    """
     walk = analyse(world, fps)
     found, c = cycles(walk), curves(walk)
     if not found:
@@ -54,8 +57,10 @@ def mean_curves(world: Float[np.ndarray, "T 21 3"], fps: float = 20.0) -> dict[s
 
 
 def turning_lean(world: Float[np.ndarray, "T 21 3"], fps: float = 20.0) -> tuple[float, float]:
-    """Slope and correlation of the whole body's lean (mid-ankles to neck) against atan(v w / g),
-    inward positive."""
+    """Slope and correlation of the whole body's lean against atan(v w / g), inward positive.
+
+    The lean is measured from mid-ankles to neck.
+    """
     walk = analyse(world, fps)
     body = gaussian_filter1d(
         world[:, 11] - (world[:, 3] + world[:, 7]) / 2, 0.4 * fps, axis=0, mode="nearest"

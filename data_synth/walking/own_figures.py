@@ -1,5 +1,6 @@
-"""What the walking data themselves score: spread of continuations, adherence, skating, lean in
-turns; and their limits.
+"""What the walking data themselves score.
+
+Spread of continuations, adherence, skating, lean in turns; and their limits.
 
 These stand beside every figure of a network that was trained on them.
 """
@@ -21,8 +22,10 @@ from .walks import continuations, dataset, random_control, walk
 
 
 def spreads(pasts: int, n: int, seconds: float, seed: int = 0) -> Float[np.ndarray, "pasts"]:
-    """Root-frame RMS spread (m) from 1 s on of n continuations, for `pasts` pasts and the controls
-    they had anyway."""
+    """Root-frame RMS spread (m) from 1 s on of n continuations.
+
+    For `pasts` pasts and the controls they had anyway.
+    """
     found = []
     for k, whole in enumerate(dataset(pasts, 4 + seconds, seed)):
         later = continuations(whole.cut(70, 80), whole.control[80:], n, seed + k)
@@ -33,8 +36,10 @@ def spreads(pasts: int, n: int, seconds: float, seed: int = 0) -> Float[np.ndarr
 def own_figures(
     clips: int = 60, pasts: int = 20, n: int = 50, seconds: float = 12.0
 ) -> dict[str, float]:
-    """Means over clips: spread (m), adherence and skating (m/s), slope and correlation of the lean
-    in turns."""
+    """Means over clips.
+
+    Spread (m), adherence and skating (m/s), slope and correlation of the lean in turns.
+    """
     apart, walks = spreads(pasts, n, seconds), dataset(clips, seconds, 1)
     out = {
         "spread_m": apart.mean(),
@@ -50,8 +55,10 @@ def own_figures(
 
 
 def limits(clips: int = 600, seconds: float = 12.0, spots: int = 60) -> dict[str, float]:
-    """What no frame of `clips` walks exceeds, how near the feet come on `spots` fast turns, and the
-    speed of making."""
+    """What no frame of `clips` walks exceeds.
+
+    With it how near the feet come on `spots` fast turns, and the speed of making.
+    """
     begun = time.process_time()
     walks = dataset(clips, seconds, 1)
     out = {"made_per_cpu_second": clips * seconds / (time.process_time() - begun)}
@@ -98,8 +105,10 @@ def bone_error(clip: Clip) -> float:
 
 
 def feet_apart(clip: Clip) -> Float[np.ndarray, "T"]:
-    """Smallest distance (m) of the lines from ankle to toe of both feet, at eleven points of
-    each."""
+    """Smallest distance (m) of the lines from ankle to toe of both feet.
+
+    At eleven points of each.
+    """
     share = np.linspace(0, 1, 11)[:, None]
     left, right = (
         p[:, :1] + share * (p[:, 1:] - p[:, :1]) for p in (clip.poses[:, 3:5], clip.poses[:, 7:9])

@@ -1,5 +1,6 @@
-"""Dance by regression: one right answer for each song, the mean of all the dances it might have
-had.
+"""Dance by regression.
+
+One right answer for each song, the mean of all the dances it might have had.
 
 No noise goes in, so the same song gives the same dance; where many continuations are right, the
 mean of them is what minimises the squared error, and a mean of dances hardly dances.

@@ -1,5 +1,6 @@
-"""Sound files to mono samples at 16 kHz, or an AudioError that says what is wrong and what to do
-about it.
+"""Sound files to mono samples at 16 kHz.
+
+An AudioError says what is wrong with a file and what to do about it.
 
 wav, flac, ogg, mp3, aiff and what else libsndfile reads, told apart by content and not by name, at
 any rate.
@@ -11,6 +12,7 @@ import warnings
 from contextlib import suppress
 from math import gcd
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 import numpy as np
 import torch
@@ -42,8 +44,9 @@ class AudioError(ValueError):
 
 
 def read_audio(path: str | Path) -> Float[Tensor, "N"]:
-    """A sound file as mono float32 samples at 16 kHz, without its constant offset; channels are
-    averaged.
+    """A sound file as mono float32 samples at 16 kHz, without its constant offset.
+
+    Channels are averaged.
 
     Where the file breaks off, what could be read is returned with a UserWarning.
     Raises AudioError for a file that is missing, a folder, of another kind, damaged, empty, silent,
@@ -80,9 +83,23 @@ def read_audio(path: str | Path) -> Float[Tensor, "N"]:
     return torch.from_numpy(resample(mono, rate).astype(np.float32))
 
 
+def read_sound(sound: str | Path | bytes | memoryview) -> Float[Tensor, "N"]:
+    """`read_audio` of a sound file by its name, or of its bytes, as they come from an upload.
+
+    Raises AudioError as `read_audio` does.  Notebook: 12
+    """
+    if isinstance(sound, str | Path):
+        return read_audio(sound)
+    with TemporaryDirectory() as folder:
+        path = Path(folder) / "the uploaded file"
+        path.write_bytes(sound)
+        return read_audio(path)
+
+
 def resample(audio: Float[np.ndarray, "N"], rate: int) -> Float[np.ndarray, "n"]:
-    """The same sound at 16 kHz: n = ceil(N * 16000 / rate). What lies above the new 8 kHz, or the
-    old half rate, goes.
+    """The same sound at 16 kHz: n = ceil(N * 16000 / rate).
+
+    What lies above the new 8 kHz, or the old half rate, goes.
 
     A windowed sinc of 32 zero crossings a side: flat to 88 % of the lower half rate, 80 dB down
     from 107 %.
@@ -117,8 +134,10 @@ def _decode(path: Path) -> tuple[Float[np.ndarray, "N channels"], int, str]:
 
 
 def _before_the_damage(path: Path) -> Float[np.ndarray, "N channels"]:
-    """Block by block, as far as it goes; whole files are not read so, for seeking in an MP3 loses
-    its place."""
+    """Block by block, as far as it goes.
+
+    Whole files are not read so, for seeking in an MP3 loses its place.
+    """
     import soundfile
 
     with soundfile.SoundFile(path) as file:

@@ -1,5 +1,6 @@
-"""What the network hears: the log-Mel spectrogram of a song, where its frames lie in time, and a
-tracker's beats.
+"""What the network hears.
+
+The log-Mel spectrogram of a song, where its frames lie in time, and a tracker's beats.
 
 A Mel frame comes every 32 ms and a motion frame every 50 ms: the two are matched by seconds, never
 by index.
@@ -42,7 +43,10 @@ def hz_to_mel(hz: Float[Tensor, "*n"]) -> Float[Tensor, "*n"]:
 
 
 def mel_to_hz(mel: Float[Tensor, "*n"]) -> Float[Tensor, "*n"]:
-    """The frequency of a Mel number: `hz_to_mel`, undone.  Notebook: 11"""
+    """The frequency of a Mel number: `hz_to_mel`, undone.
+
+    Notebook: 11
+    """
     return torch.where(mel < 15, 200 * mel / 3, 1000 * ((mel - 15) * (np.log(6.4) / 27)).exp())
 
 
@@ -53,8 +57,9 @@ def mel_filters(
     f_min: float | int = F_MIN,
     f_max: float | int = F_MAX,
 ) -> Float[Tensor, "bands bins"]:
-    """Triangles over the n_fft/2 + 1 frequencies of a spectrum, evenly spaced in Mel, each of area
-    1 in Hz.
+    """Triangles over the frequencies of a spectrum, evenly spaced in Mel, each of area 1 in Hz.
+
+    The spectrum has n_fft/2 + 1 frequencies.
 
     Band b rises from edge b to edge b+1 and falls to edge b+2, and is 2 / (edge[b+2] - edge[b])
     high.
@@ -94,8 +99,9 @@ def _tools(device: torch.device, dtype: torch.dtype) -> tuple[Tensor, Tensor]:
 
 
 def log_mel(audio: Samples) -> Float[Tensor, "*B M 80"]:
-    """The log-Mel spectrogram of sound at 16 kHz, M = 1 + N // 512 frames; frame m is centred on
-    sample 512 m.
+    """The log-Mel spectrogram of sound at 16 kHz, M = 1 + N // 512 frames.
+
+    Frame m is centred on sample 512 m.
 
     log(max(FLOOR, filters @ |STFT|^2)), natural logarithm, Hann window of 1024 samples, zeros
     beyond both ends. A full-scale sine comes to 5 (high) or 8 (low), digital silence to log(1e-5) =
@@ -122,7 +128,10 @@ def log_mel(audio: Samples) -> Float[Tensor, "*B M 80"]:
 
 
 def frame_times(M: int) -> Float[Tensor, "M"]:
-    """When each of M Mel frames sounds: the seconds of its centre, 31.25 a second.  Notebook: 11"""
+    """When each of M Mel frames sounds: the seconds of its centre, 31.25 a second.
+
+    Notebook: 11
+    """
     return torch.arange(M, dtype=torch.float64) / FRAMES_PER_SECOND
 
 
@@ -149,8 +158,9 @@ def crop_seconds(
 def at_times(
     mel: Float[Tensor, "*B M bands"], times: Float[Tensor, "T"]
 ) -> Float[Tensor, "*B T bands"]:
-    """The Mel spectrogram at any `times` (seconds), such as those of motion frames: straight lines
-    between its frames.
+    """The Mel spectrogram at any `times` (seconds), such as those of motion frames.
+
+    Straight lines between its frames.
 
     Before the first and after the last frame their values are kept.  Notebook: 11
     """
@@ -163,8 +173,9 @@ def at_times(
 def beats_of(
     audio: Float[Tensor, "N"] | Float[np.ndarray, "N"], lag: float = TRACKER_LAG
 ) -> Float[np.ndarray, "K"]:
-    """The beats of a recording at 16 kHz, in seconds, as librosa's tracker hears them, with its
-    `lag` taken out.
+    """The beats of a recording at 16 kHz, in seconds.
+
+    As librosa's tracker hears them, with its `lag` taken out.
 
     The tracker takes steady tempo for granted and may follow every second or half beat; for silence
     it finds none. A beat is where something starts to sound. Source: Ellis 2007, by librosa.

@@ -5,7 +5,6 @@ The sampling itself is `inbetweening.inpaint_steps`.  Source: MoFusion 4.4.  Not
 """
 
 import math
-from functools import partial
 
 import numpy as np
 import torch
@@ -14,8 +13,9 @@ from torch import Tensor
 
 from ..beyond.constant_bones import given_lengths, steady_bones
 from ..beyond.foot_lock import steady_feet
-from ..beyond.guidance import blended
-from ..inbetweening import inpaint_steps
+from ..beyond.guidance import blended, guided
+from ..ddpm import timesteps
+from ..inbetweening import inpaint_steps, resampled
 from ..motion.dance_frame import GROUND, Place, heading, placed_features, to_positions
 from ..motion.directions import ARMS, UPLEGS
 from ..motion.skeleton import HIPS, JOINTS, J
@@ -53,7 +53,7 @@ def inbetween(
     `seen_from` where it begins to be known. Numbers are drawn from `generator`, or from a new one
     with this `seed`. `blend`: the network's guesses are drawn through what is given, at every step,
     and let go of within so many frames where nothing more is given (`beyond.guidance.blended`).
-    `guidance`: they are moved by its gradient before (`inbetweening.guided`), at twice the cost.
+    `guidance`: they are moved by its gradient before (`beyond.guidance.guided`), at twice the cost.
     `bones`: they get the lengths that they have where they are given (`beyond.constant_bones`).
     `feet`: theirs do not slide (`beyond.foot_lock`). `**PAPER`: none of the four, masked sampling
     as in the paper.
@@ -67,20 +67,18 @@ def inbetween(
     given = dancer.motion_scaler.transform(torch.from_numpy(placed_features(at_home)).float())
     shape = (samples, *given.shape)
     heard = None if mel is None else mel[None].expand(samples, -1, -1)
-    denoise = dancer.denoiser(heard, len(given), fast=not guidance)
-    blend_in = None if blend is None else partial(blended, fade=fading(blend))
-    options = {
-        "steps": steps,
-        "eta": eta,
-        "resample": resample,
-        "guidance": guidance,
-        "generator": generator,
-    }
-    start, held = (
-        torch.randn(shape, generator=generator),
-        (given.expand(shape), columns.expand(shape)),
+    start = torch.randn(shape, generator=generator)
+    held, schedule = (given.expand(shape), columns.expand(shape)), dancer.schedule
+    steer = bool(guidance) and bool(known.any())
+    denoise = dancer.denoiser(heard, len(given), fast=not steer)
+    if steer:
+        denoise = guided(denoise, schedule, *held, guidance)
+    if blend is not None:
+        denoise = blended(denoise, schedule, *held, fading(blend))
+    visited = resampled(timesteps(schedule.S, steps), resample)
+    loop = inpaint_steps(
+        denoise, start, schedule, *held, steps=visited, eta=eta, generator=generator
     )
-    loop = inpaint_steps(denoise, start, dancer.schedule, *held, blend=blend_in, **options)
     *_, last = loop
     made = place.leave(to_positions(dancer.motion_scaler.inverse(last.x_s)).double().numpy())
     whole = np.where(known[..., None], positions, made)

@@ -14,6 +14,7 @@ from jaxtyping import Bool, Float
 from ..motion.clip import Clip
 from ..motion.root_frame import FPS, root_path, to_world
 from ..motion.skeleton import J
+from ..rollout import AnyWalker
 from .repairs import Mended, mend_steps
 
 
@@ -37,7 +38,7 @@ class RepairBench:
     Raises ValueError for a walk that is too short, or has not 20 frames/s.  Notebook: 10
     """
 
-    walker: object
+    walker: AnyWalker
     clip: Clip
     samples: int = 10
     rounds: int = 5

@@ -18,6 +18,7 @@ from ..beyond.constant_bones import steady_bones
 from ..metrics import repair
 from ..metrics.bone_lengths import bone_lengths, bone_rmse
 from ..reconstruction import repair_steps
+from ..rollout import AnyWalker
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,7 +53,7 @@ class Mended:
 
 
 def mend_steps(
-    walker,
+    walker: AnyWalker,
     past: Float[np.ndarray, "*B T_h J 3"],
     known: Bool[np.ndarray, "*_ _ _"],
     control: Float[np.ndarray, "*B T 3"],

@@ -1,5 +1,6 @@
-"""A set of dances against their songs, in one record: the score, and beside it what shows whether
-it means anything.
+"""A set of dances against their songs, in one record.
+
+The score, and beside it what shows whether it means anything.
 
 That is: the same with other songs' beats, the level of chance, kinematic beats per music beat (a
 figure that stops all the time meets many beats), and the speed (a figure that hardly moves stops
@@ -61,8 +62,9 @@ def beat_scores(
     fps: float | int = FPS,
     sigma: float | int = SIGMA,
 ) -> BeatScores:
-    """Score B dances, each against the beats of its song: times in seconds from the clip's first
-    frame.
+    """Score B dances, each against the beats of its song.
+
+    Times in seconds from the clip's first frame.
 
     Beats before the first and after the last frame may be given: a stop may be near them; they
     count as music beats only within the clip. One NoBeatsWarning tells how many clips never slow

@@ -1,2 +1,4 @@
-"""Motion as arrays: the skeleton, forward kinematics, the root frame, clips, and the files they
-come from."""
+"""Motion as arrays.
+
+The skeleton, forward kinematics, the root frame, clips, and the files they come from.
+"""

@@ -40,8 +40,10 @@ FLOOR_PERCENTILE = 1.0
 
 
 class AistError(ValueError):
-    """A file is no AIST++ keypoints file, or not a safe one; the message says what it is and what
-    to do."""
+    """A file is no AIST++ keypoints file, or not a safe one.
+
+    The message says what it is and what to do.
+    """
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,8 +64,9 @@ class Keypoints:
 
 
 def read_keypoints(path: str | Path, optimised: bool = True) -> Keypoints:
-    """Read a keypoints3d pickle of AIST++; `optimised` takes keypoints3d_optim, which has no gaps,
-    else the raw ones.
+    """Read a keypoints3d pickle of AIST++.
+
+    `optimised` takes keypoints3d_optim, which has no gaps, else the raw ones.
 
     The floor is the 1st percentile over frames of the lowest joint: the ankles of a standing figure
     come to 0, since COCO has no toes, and one bad frame does not lower it.
@@ -91,8 +94,9 @@ def read_keypoints(path: str | Path, optimised: bool = True) -> Keypoints:
 
 
 def tempo_of(name: str) -> float | None:
-    """Beats a minute of the music that an AIST++ name tells: mBR2 is 80 + 10 * 2 = 100; house
-    (mHO2) 110 + 5 * 2 = 120.
+    """Beats a minute of the music that an AIST++ name tells: mBR2 is 80 + 10 * 2 = 100.
+
+    House (mHO2) 110 + 5 * 2 = 120.
 
     None where the name has no music in it.  Notebook: 14
     """

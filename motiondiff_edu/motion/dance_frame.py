@@ -1,5 +1,6 @@
-"""Dance as the network sees it: where the pelvis is, and the other joints about it; no turning from
-frame to frame.
+"""Dance as the network sees it: where the pelvis is, and the other joints about it.
+
+No turning from frame to frame.
 
 Columns 0:3 are the pelvis (x, y, z), which starts at x = z = 0, facing z; then x, y, z of each of
 the 20 other joints minus the pelvis, same axes. Metres.  Source: MoFusion 3 (root-relative joints
@@ -33,8 +34,10 @@ def heading(across: Float[np.ndarray, "*B 3"]) -> Float[np.ndarray, "*B"]:
 
 @dataclass(frozen=True, eq=False)
 class Place:
-    """Where a figure stands and which way it faces: the way from the world to its own frame, and
-    back."""
+    """Where a figure stands and which way it faces.
+
+    The way from the world to its own frame, and back.
+    """
 
     ground: Float[np.ndarray, "*B 3"]  # below the pelvis: x, 0, z
     heading: Float[np.ndarray, "*B"]
@@ -63,8 +66,10 @@ def _turned(
 
 
 def at_origin(positions: Float[np.ndarray, "*B T 21 3"]) -> Float[np.ndarray, "*B T 21 3"]:
-    """The same motion, moved and turned so that it starts with the pelvis over x = z = 0, facing
-    z."""
+    """The same motion, moved and turned to its own beginning.
+
+    It starts with the pelvis over x = z = 0, facing z.
+    """
     return Place.of(positions[..., 0, :, :]).enter(positions)
 
 
@@ -79,7 +84,10 @@ def to_features(positions: Float[np.ndarray, "*B T J 3"]) -> Float[np.ndarray, "
 
 
 def placed_features(placed: Float[np.ndarray, "*B T J 3"]) -> Float[np.ndarray, "*B T 63"]:
-    """The 63 numbers of a motion that is where it should be already.  Notebook: 15"""
+    """The 63 numbers of a motion that is where it should be already.
+
+    Notebook: 15
+    """
     about = placed[..., HIPS + 1 :, :] - placed[..., HIPS : HIPS + 1, :]
     whole = np.concatenate([placed[..., HIPS : HIPS + 1, :], about], axis=-2)
     return whole.reshape(*whole.shape[:-2], 3 * J)

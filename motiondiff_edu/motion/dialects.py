@@ -1,5 +1,6 @@
-"""Joint names over the dialects of BVH: which joint of a file plays which part of the course's
-figure.
+"""Joint names over the dialects of BVH.
+
+Which joint of a file plays which part of the course's figure.
 
 Notebook: 00
 """
@@ -115,8 +116,10 @@ def check_mapping(mapping: Mapping[str, str], bvh: Bvh) -> dict[str, str]:
 
 
 def refuse_incomplete(mapping: Mapping[str, str], bvh: Bvh) -> None:
-    """Raise BvhError when a needed joint has no counterpart; show what there is and how to name
-    it."""
+    """Raise BvhError when a needed joint has no counterpart.
+
+    Show what there is and how to name it.
+    """
     lacking = [joint for joint in NEEDED if joint not in mapping]
     if lacking:
         raise BvhError(

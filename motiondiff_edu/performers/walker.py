@@ -13,7 +13,7 @@ from jaxtyping import Float
 from torch import Tensor
 
 from ..beyond.footholds import FootholdMoDiff
-from ..ddpm import Schedule, linear_schedule, make_schedule
+from ..ddpm import Schedule
 from ..fast.footholds import FastFoothold
 from ..fast.modiff import FastMoDiff
 from ..fast.samplers import ddim_steps, ddpm_steps
@@ -21,25 +21,6 @@ from ..modiff import MoDiff, MoDiffConfig
 from ..motion.scaler import Scaler
 from ..prediction import denoiser_of
 from ..rollout import WindowSampler
-
-
-def leap_schedule(
-    S: int = 100, leap: float = 0.37, beta_2: float = 0.03, beta_S: float = 0.08
-) -> Schedule:
-    """beta_1 = leap, then evenly from beta_2 to beta_S: step 1 brings noise of sqrt(leap / (1 -
-    leap)) of the signal.
-
-    By default 0.77 of it. A small network sees no more of a pose at lower noise than it guesses
-    anyhow. Steps there draw its errors again and again, and rollouts feed on them; one leap from
-    step 1 to the clean pose does not. Ours.   Notebook: 07
-    """
-    rest = torch.linspace(beta_2, beta_S, S - 1, dtype=torch.float64)
-    return make_schedule(
-        torch.cat([torch.tensor([leap], dtype=torch.float64), rest]), f"leap {leap:g}"
-    )
-
-
-SCHEDULES = {"linear": linear_schedule, "leap": leap_schedule}  # by the names that recipes use
 
 
 @dataclass(frozen=True, eq=False)

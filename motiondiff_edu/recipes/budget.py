@@ -7,8 +7,9 @@ from dataclasses import replace
 import torch
 
 from ..beyond.footholds import network
+from ..beyond.schedules import SCHEDULES
 from ..motion.clip import Clip
-from ..performers.walker import SCHEDULES, Walker
+from ..performers.walker import Walker
 from ..performers.windows import Windows
 from ..training import TrainState, train_steps
 from .muon import optimizer_for

@@ -11,13 +11,14 @@ from torch import Tensor, nn
 from ..beyond import loss_terms
 from ..beyond.footholds import CleanFootholds, FootholdConfig, network
 from ..beyond.past_noise import past_noise
+from ..beyond.schedules import SCHEDULES
 from ..beyond.shared_encoding import SharedEncoding, repeated
 from ..ddpm import Schedule, squared_error
 from ..diffusion_dropout import Dropout, dropout_rate
 from ..modiff import training_loss
 from ..motion.augment import mirror, reverse_time
 from ..motion.clip import Clip
-from ..performers.walker import SCHEDULES, Walker
+from ..performers.walker import Walker
 from ..performers.windows import Windows, typical_change
 from ..training import LossFn
 from .train_recipe import train_recipe

@@ -38,7 +38,7 @@ class Recipe:
     name: str
     config: MoDiffConfig
     steps: int
-    schedule: str = "linear"  # or "leap": `performers.walker.leap_schedule`
+    schedule: str = "linear"  # or "leap": `beyond.schedules`
     lr: float = 2e-3
     optimizer: str = "adam"  # or "muon": `recipes.muon`
     batch: int = 64  # windows a step

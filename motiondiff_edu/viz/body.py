@@ -28,8 +28,10 @@ _RING = np.stack([np.cos(ANGLES), np.sin(ANGLES)], -1)
 
 @dataclass(frozen=True)
 class Part:
-    """The convex hull of circles: (joint a, joint b, w, radius in metres), centred at a + w (b -
-    a)."""
+    """The convex hull of circles.
+
+    (joint a, joint b, w, radius in metres), centred at a + w (b - a).
+    """
 
     side: str  # L, R or C
     circles: tuple[tuple[int, int, float, float], ...]
@@ -75,8 +77,10 @@ def stick_parts(parents: list[int], radius: float = 0.025) -> tuple[Part, ...]:
 
 
 def parts_for(joints: int, parents: list[int] | None = None) -> tuple[Part, ...]:
-    """The course's body for 21 joints, sticks for another skeleton, which then needs its
-    `parents`."""
+    """The course's body for 21 joints, sticks for another skeleton.
+
+    Another skeleton needs its `parents`.
+    """
     if parents is not None:
         if len(parents) != joints:
             raise ValueError(f"`parents` names {len(parents)} joints, the positions have {joints}")
@@ -96,8 +100,9 @@ def parts_record(parts: tuple[Part, ...]) -> list[dict]:
 
 @dataclass(frozen=True)
 class Camera:
-    """A camera that looks at (x, height, z) from `distance` metres; yaw 0 stands at the figure's
-    right side.
+    """A camera that looks at (x, height, z) from `distance` metres.
+
+    Yaw 0 stands at the figure's right side.
 
     `focal` is in picture heights: a thing of h metres at the target covers focal h / distance of
     the picture.
@@ -131,8 +136,10 @@ class Camera:
 def project(
     points: Float[np.ndarray, "*N 3"], camera: Camera, size: tuple[int, int]
 ) -> tuple[Float[np.ndarray, "*N 2"], Float[np.ndarray, "*N"]]:
-    """Pixels (x to the right, y down) and pixels per metre at each point, in a picture of `size`
-    (width, height)."""
+    """Pixels (x to the right, y down) and pixels per metre at each point.
+
+    In a picture of `size` (width, height).
+    """
     right, up, ahead = camera.axes()
     target = np.array([camera.x, camera.height, camera.z])
     away = points - (target - camera.distance * ahead)
@@ -187,8 +194,9 @@ def body_polygons(
     parts: tuple[Part, ...] = BODY,
     wash: float = 0.0,
 ) -> list[tuple[Float[np.ndarray, "_ 2"], str, bool]]:
-    """Filled polygons of one pose, far ones first: per part its outline (True) and a lighter streak
-    that rounds it.
+    """Filled polygons of one pose, far ones first.
+
+    Per part its outline (True) and a lighter streak that rounds it.
 
     Parts behind the body's middle are washed out a little: the depth cue.
     """

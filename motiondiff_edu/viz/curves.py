@@ -1,5 +1,6 @@
-"""Curves that several notebooks draw: losses, small multiples, control over time, values with
-intervals.
+"""Curves that several notebooks draw.
+
+Losses, small multiples, control over time, values with intervals.
 
 Every line has its own colour and its own dashes.  Notebook: 05, 07
 """
@@ -39,8 +40,10 @@ def _lines(axis: Axes, curves: Curves, smooth: int = 1) -> None:
 def loss_curves(
     curves: Curves, smooth: int = 1, log: bool = True, title: str = "", ylabel: str = "loss"
 ) -> Figure:
-    """Training losses over steps; with `smooth` > 1 the running mean, the raw values faint behind
-    it."""
+    """Training losses over steps.
+
+    With `smooth` > 1 the running mean, the raw values faint behind it.
+    """
     words = f"{title or 'Loss'} over training steps: {', '.join(curves)}."
     fig, (axis,) = figure(
         9, 4.4, words + (f" Running mean of {smooth} steps." if smooth > 1 else "")
@@ -121,8 +124,10 @@ def intervals(
     reference_name: str = "data",
     title: str = "",
 ) -> Figure:
-    """Values with their intervals, a row each: records are (name, value, low, high); a line marks
-    the reference."""
+    """Values with their intervals, a row each: records are (name, value, low, high).
+
+    A line marks the reference.
+    """
     told = [f"{name} {value:.3g} ({low:.3g} to {high:.3g})" for name, value, low, high in records]
     fig, (axis,) = figure(9, 1.3 + 0.5 * len(records), f"{title or xlabel}: {'; '.join(told)}.")
     for k, (_name, value, low, high) in enumerate(records):

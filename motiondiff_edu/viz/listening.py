@@ -23,8 +23,9 @@ def levels_over_sound(
     words: str,
     sample_rate: int = 16_000,
 ) -> Figure:
-    """A song with its beats, and below it where each level reads while the dance of `seconds` goes
-    on, as in the paper.
+    """A song with its beats, and below it where each level reads.
+
+    The dance lasts `seconds`; the picture is the paper's.
 
     Across: the music's time. Downwards: the dance's. Each map has its own scale; one alone, larger,
     is drawn by `attention_over_sound`.  Source: MoFusion Fig. 4.
@@ -98,8 +99,10 @@ def time_maps(
     words: str,
     labels: tuple[str, str] = ("music (s)", "dance (s)"),
 ) -> Figure:
-    """Maps side by side, each on its own scale: rows over `seconds`, columns at their times;
-    dashed: one moment."""
+    """Maps side by side, each on its own scale: rows over `seconds`, columns at their times.
+
+    Dashed: one moment.
+    """
     fig, axes = figure(4.6 * len(maps), 4.4, words, 1, len(maps), sharey=True)
     for axis, (name, values) in zip(axes, maps.items(), strict=True):
         time_map(axis, values, columns, seconds)
@@ -116,8 +119,11 @@ def weight_and_effect(
     seconds: float,
     words: str,
 ) -> Figure:
-    """For each sound at `times`: left how much attention each moment of the dance gives it, right
-    how far it moves that moment (cm) when it is silenced."""
+    """For each sound at `times`, the attention it gets and how far it moves the dance.
+
+    Left: how much attention each moment of the dance gives it. Right: how far it moves that moment
+    (cm) when it is silenced.
+    """
     fig, axes = figure(11, 4.8, words, 1, 2, sharey=True)
     pictures = (
         (shares, "attention to the sound", "share"),

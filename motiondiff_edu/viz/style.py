@@ -1,5 +1,7 @@
-"""How all figures look: large type, Okabe-Ito colours, and a caption that goes with the picture as
-its alt text."""
+"""How all figures look.
+
+Large type, Okabe-Ito colours, and a caption that goes with the picture as its alt text.
+"""
 
 import base64
 import html
@@ -33,8 +35,10 @@ _RC = {
 
 
 class CaptionedFigure(Figure):
-    """A matplotlib figure that shows itself, once, with its caption below it and as its alternative
-    text."""
+    """A matplotlib figure that shows itself, once, with its caption below it.
+
+    The caption is its alternative text as well.
+    """
 
     def _repr_mimebundle_(self, include=None, exclude=None) -> dict:
         png = base64.b64encode(self.as_png()).decode()
@@ -82,8 +86,10 @@ def figure(
 
 
 def caption(fig: Figure) -> str:
-    """What the figure shows, in a sentence or two: its caption, and the text for those who cannot
-    see it."""
+    """What the figure shows, in a sentence or two.
+
+    Its caption, and the text for those who cannot see it.
+    """
     return str(fig.get_label())
 
 
@@ -94,8 +100,10 @@ def add_caption(fig: Figure, words: str) -> Figure:
 
 
 def table(axis: Axes, rows: Sequence[str], columns: Sequence[str]) -> None:
-    """Make a table of an axis with a cell at each whole number: names to the left and above,
-    nothing else around."""
+    """Make a table of an axis with a cell at each whole number.
+
+    Names to the left and above, nothing else around.
+    """
     axis.set_xticks(range(len(columns)), columns)
     axis.set_yticks(range(len(rows)), rows)
     axis.tick_params(length=0, top=True, labeltop=True, bottom=False, labelbottom=False)

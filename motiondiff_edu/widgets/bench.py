@@ -1,5 +1,6 @@
-"""The repair bench: knock joints and frames out of a walk, let the walker mend it, see how far off
-it is.
+"""The repair bench.
+
+Knock joints and frames out of a walk, let the walker mend it, see how far off it is.
 
 Click a joint, or a frame below; the buttons bring ready-made faults. Keys: left and right choose a
 frame, up and down a joint, Space knocks out or restores; P plays, T shows or hides the truth, R
@@ -29,8 +30,9 @@ _STATE = ("scene", "first", "missing", "repaired", "said")
 
 
 class Bench(anywidget.AnyWidget):
-    """A walk (a Clip in the root frame) whose window of T_h frames can be broken, and is mended by
-    `walker`.
+    """A walk whose window of T_h frames can be broken, and is mended by `walker`.
+
+    The walk is a Clip in the root frame.
 
     `faults` are buttons: name -> mask (T_h, 21), True where known. `first` (the window's first
     frame) and `missing` (numbers frame x 21 + joint) can be read and set; `repair()` is what the
@@ -163,8 +165,10 @@ class Bench(anywidget.AnyWidget):
         return f"{words} {self.said}" if self.shows_repairs else words
 
     def page(self) -> str:
-        """A whole HTML page that plays the walk, mended where it was mended; needs no kernel and no
-        network."""
+        """A whole HTML page that plays the walk, mended where it was mended.
+
+        Needs no kernel and no network.
+        """
         record = {name: base64.b64encode(getattr(self, name)).decode() for name in _BYTES}
         record |= {name: getattr(self, name) for name in _STATE} | {"asked": 0, "answered": 0}
         record["scene"] = self.scene | {"kernel": False}
@@ -172,8 +176,10 @@ class Bench(anywidget.AnyWidget):
         return PAGE.format(title=html.escape(self.description), module=MODULE, record=text)
 
     def poster(self):
-        """Six poses of the window as a pillow image, what is missing marked; below it the repairs
-        against the truth."""
+        """Six poses of the window as a pillow image, what is missing marked.
+
+        Below it the repairs against the truth.
+        """
         first, end = self.first, self.first + self.bench.T_h
         away = np.zeros(self._truth.shape[:2], bool)
         away[first:end] = ~self.bench.known(self.missing)

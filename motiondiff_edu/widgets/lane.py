@@ -1,5 +1,6 @@
-"""The music lane under the figure: what is heard, where its beats are, and the strips above and
-below it.
+"""The music lane under the figure.
+
+What is heard, where its beats are, and the strips above and below it.
 
 Notebook: 12
 """
@@ -19,8 +20,10 @@ TICKS, WAVE, AXIS, CURVE = 14, 56, 20, 36  # pixels
 
 @dataclass(frozen=True, eq=False)
 class Lane:
-    """A sound as long as `frames` frames of motion, its beats and downbeats (seconds), and the
-    strips."""
+    """A sound as long as `frames` frames of motion.
+
+    With its beats and downbeats (seconds), and the strips.
+    """
 
     sound: Sound
     beats: list[float]
@@ -47,8 +50,10 @@ class Lane:
         return 96 + 36 * more + (54 if self.strips.moved is not None else 0)
 
     def traits(self) -> tuple[bytes, bytes, dict]:
-        """What the page needs: the sound file, the bytes of waveform and attention, and the record
-        explaining them."""
+        """What the page needs.
+
+        The sound file, the bytes of waveform and attention, and the record explaining them.
+        """
         wave = peaks(self.sound.samples)
         record = {
             "mime": self.sound.mime,

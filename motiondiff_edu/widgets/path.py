@@ -1,5 +1,6 @@
-"""The path pad: draw on the floor where a figure shall walk; by mouse, keyboard or a ready-made
-path.
+"""The path pad: draw on the floor where a figure shall walk.
+
+By mouse, keyboard or a ready-made path.
 
 Arrows add half a metre, Backspace takes it back, C clears, R resets.  Notebook: 00
 """
@@ -20,8 +21,9 @@ from ..viz.skeleton import top_view
 
 
 class PathPad(anywidget.AnyWidget):
-    """A floor seen from above, in metres; the figure starts at the origin, facing up (z); its left
-    (x) is to the left.
+    """A floor seen from above, in metres; the figure starts at the origin, facing up (z).
+
+    Its left (x) is to the left.
 
     `points` (n, 2) [x, z], `speed` (m/s) and `stops` (metres along the path) can be read and set;
     `control()` is what walks along them; `on_change(f)` calls f(pad) after each change.   Notebook:
@@ -82,13 +84,17 @@ class PathPad(anywidget.AnyWidget):
             self.seconds = 0.0
 
     def control(self, fps: float | int = 20.0) -> Float[np.ndarray, "T 3"]:
-        """The control that walks along the path at the chosen speed, from rest to rest; see
-        `path_to_control`."""
+        """The control that walks along the path at the chosen speed, from rest to rest.
+
+        See `path_to_control`.
+        """
         return walks.path_to_control(self.points, self.speed, fps, self.stops)
 
     def on_change(self, callback: Callable[["PathPad"], object]) -> None:
-        """Call `callback(pad)` whenever path, stops or speed have changed; once, when they change
-        together."""
+        """Call `callback(pad)` whenever path, stops or speed have changed.
+
+        Once, when they change together.
+        """
         told = [(self.line, self.stops, self.speed)]
 
         def tell(change):

@@ -1,5 +1,6 @@
-"""The player: moving figures, live in JupyterLab, alive in exported HTML, a picture where nothing
-runs.
+"""The player: moving figures.
+
+Live in JupyterLab, alive in exported HTML, a picture where nothing runs.
 
 Notebooks are to be saved without widget state: with it, exported pages look for the module on the
 network. Space plays, arrows step (up and down by ten), Home and End jump, + and - zoom, F follows,
@@ -42,8 +43,9 @@ STACK = """<div style="position:relative;width:100%;max-width:{width}px;min-heig
 
 
 class Player(anywidget.AnyWidget):
-    """Show one motion (T, J, 3), a batch (N, T, J, 3) or a list of motions, world positions in
-    metres, y up.
+    """Show one motion or several, world positions in metres, y up.
+
+    One motion (T, J, 3), a batch (N, T, J, 3) or a list of motions.
 
     `past` frames were given and are drawn paler; `contacts` (T, 2) bool marks planted feet; `path`
     (n, 2) [x, z] is drawn on the floor; each may be one value for all figures or a list (one array
@@ -93,8 +95,10 @@ class Player(anywidget.AnyWidget):
         self.show(positions)
 
     def show(self, positions, **changes) -> None:
-        """Show another motion in the same place; `changes` replaces past, contacts, labels, path,
-        fps, audio ..."""
+        """Show another motion in the same place.
+
+        `changes` replaces past, contacts, labels, path, fps, audio ...
+        """
         unknown = set(changes) - set(self._options)
         if unknown:
             raise TypeError(
@@ -136,16 +140,20 @@ class Player(anywidget.AnyWidget):
         return proposal["value"]
 
     def page(self) -> str:
-        """A whole HTML page with the module and the motion in it: needs no kernel and no
-        network."""
+        """A whole HTML page with the module and the motion in it.
+
+        Needs no kernel and no network.
+        """
         record = {name: base64.b64encode(getattr(self, name)).decode() for name in _TRAITS}
         record |= {"scene": self.scene, "music": self.music, "frame": self.frame, "playing": False}
         text = json.dumps(record, allow_nan=False).replace("<", "\\u003c")
         return PAGE.format(title=html.escape(self.description), module=MODULE, record=text)
 
     def poster(self, n: int = 6):
-        """A strip of n poses as a pillow image, the music lane below: what is shown where nothing
-        runs."""
+        """A strip of n poses as a pillow image, the music lane below.
+
+        What is shown where nothing runs.
+        """
         strip = poster.filmstrip(self._figures, self._options["fps"], n)
         return strip if self._music is None else self._music.under(strip)
 
@@ -190,8 +198,10 @@ class Player(anywidget.AnyWidget):
         return Path(path)
 
     def save_mp4(self, path: str | os.PathLike, size: tuple[int, int] = (480, 432)) -> Path:
-        """Write the figure as MP4, each figure `size` pixels, with its sound; ImportError without
-        imageio-ffmpeg."""
+        """Write the figure as MP4, each figure `size` pixels, with its sound.
+
+        ImportError without imageio-ffmpeg.
+        """
         try:
             import imageio_ffmpeg
         except ImportError as error:
@@ -270,8 +280,10 @@ def _scene(figures: list[poster.Figure], fps: float, look: dict, music: lane.Lan
 
 
 def describe(figures: list[poster.Figure], fps: float) -> str:
-    """One sentence for those who cannot see it: how many figures, how long, how far they go, what
-    was given."""
+    """One sentence for those who cannot see it.
+
+    How many figures, how long, how far they go, what was given.
+    """
     words = []
     for i, f in enumerate(figures, 1):
         way = np.linalg.norm(f.positions[-1, 0, [0, 2]] - f.positions[0, 0, [0, 2]])

@@ -1,5 +1,7 @@
-"""Ways of filling in, against conditionals that are known: closed forms, and draws that have the
-right answer."""
+"""Ways of filling in, against conditionals that are known.
+
+Closed forms, and draws that have the right answer.
+"""
 
 import math
 from dataclasses import replace
@@ -45,8 +47,10 @@ def correlated():
 
 
 def masked_by_hand(x: float, visited: list[int], resample: int) -> tuple[float, float]:
-    """Mean and variance of the second coordinate, the first given: every step of masked sampling is
-    linear in it."""
+    """Mean and variance of the second coordinate, the first given.
+
+    Every step of masked sampling is linear in it.
+    """
     alpha_bar, mean, variance = SCHEDULE.alpha_bar.tolist(), 0.0, 1.0
     for s, after in zip(visited, [*visited[1:], 0], strict=True):
         now, then = alpha_bar[s], alpha_bar[after]
@@ -82,8 +86,10 @@ def test_masked_sampling_of_a_gaussian_is_a_recursion_done_by_hand(steps, resamp
 
 
 def test_a_blended_way_draws_the_guess_through_what_is_given():
-    """One step of independent entries: the guess is next to nothing, and what is left is the
-    correction, by hand."""
+    """One step of independent entries.
+
+    The guess is next to nothing, and what is left is the correction, by hand.
+    """
     truth = mixture(torch.ones(1), torch.zeros(1, 6), torch.eye(6)[None])
     asked = question(truth, [1.0, 0, 3.0, 0, 0, 0], [True, False, True, False, False, False])
     asked = replace(asked, frames=6)
@@ -121,8 +127,10 @@ def test_errors_are_in_units_of_the_wanted():
 
 
 def test_shares_of_the_parts_are_compared():
-    """All samples in one hill, where the wanted has two that are alike: half of the mass is in the
-    wrong place."""
+    """All samples in one hill, where the wanted has two that are alike.
+
+    Half of the mass is in the wrong place.
+    """
     asked = question(ring(6), [0.75, 0.0], [True, False])
     low = torch.tensor([[0.75, -1.3]], dtype=torch.float64).expand(7, 2)
     assert errors_of(low, asked).share == pytest.approx(0.5, abs=0.01)
@@ -140,15 +148,19 @@ def test_the_rest_is_drawn_from_the_conditional():
 
 
 def chain(seen: float = 0.6):
-    """Known, hole, future: neighbours correlate by `seen`, and known and future through the hole
-    only."""
+    """Known, hole, future.
+
+    Neighbours correlate by `seen`, and known and future through the hole only.
+    """
     c = torch.tensor([[[1.0, seen, seen**2], [seen, 1.0, seen], [seen**2, seen, 1.0]]])
     return mixture(torch.ones(1), torch.zeros(1, 3), c)
 
 
 def test_there_and_back_hears_of_the_known_through_the_future_only_and_gibbs_does_not():
-    """In this chain the future hears nothing but the hole: there-and-back forgets the known wholly,
-    by hand."""
+    """In this chain the future hears nothing but the hole.
+
+    There-and-back forgets the known wholly, by hand.
+    """
     asked = question(chain(), [2.0, 0.0, 0.0], [True, False, False], [True, True, False])
     found = {
         way.kind: e
@@ -165,8 +177,10 @@ def test_there_and_back_hears_of_the_known_through_the_future_only_and_gibbs_doe
 @pytest.mark.parametrize("kind", ["there-and-back", "gibbs"])
 @pytest.mark.parametrize("past", [[True, False, False], [True, True, False]])
 def test_what_is_known_of_the_future_is_given_too(kind, past):
-    """The last entry is known: with nothing known of the past both ways are Gibbs sampling, and
-    come to the wanted."""
+    """The last entry is known.
+
+    With nothing known of the past both ways are Gibbs sampling, and come to the wanted.
+    """
     asked = question(chain(), [math.nan, math.nan, 2.0], [False, False, True], past)
     x = answers(asked, Way(kind), 4000, seeded(6))
     assert (x[:, 2] == 2).all()

@@ -1,5 +1,7 @@
-"""Dropout of the past in least squares: the closed forms equal what is drawn, and the ridge they
-are said to be."""
+"""Dropout of the past in least squares.
+
+The closed forms equal what is drawn, and the ridge they are said to be.
+"""
 
 import numpy as np
 import pytest
@@ -18,8 +20,10 @@ T_H, D, SCHEDULE = 2, 63, linear_schedule(100)
 
 @pytest.fixture(scope="module")
 def windows() -> Windows:
-    """A world of 63 coordinates that all go on from the past and from the control, alike enough to
-    be redundant."""
+    """A world of 63 coordinates that all go on from the past and from the control.
+
+    They are alike enough to be redundant.
+    """
     rng = np.random.default_rng(0)
     control, x = rng.normal(size=(900, 3)), np.zeros((900, D))
     for t in range(1, 899):

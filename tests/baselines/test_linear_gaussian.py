@@ -1,5 +1,7 @@
-"""The linear-Gaussian walker finds the numbers of a linear world, draws its noise, and tells when
-it would run away."""
+"""The linear-Gaussian walker finds the numbers of a linear world.
+
+It draws that world's noise, and tells when it would run away.
+"""
 
 import numpy as np
 import pytest
@@ -15,8 +17,10 @@ T_H, D = 2, 63
 
 
 def linear_world(frames: int = 4000, noise: float = 0.3) -> Clip:
-    """pose[t+1] = 0.6 pose[t] - 0.3 pose[t-1] + 0.5 (first control) + noise, in every
-    coordinate."""
+    """One step of a linear world, in every coordinate.
+
+    pose[t+1] = 0.6 pose[t] - 0.3 pose[t-1] + 0.5 (first control) + noise.
+    """
     rng = np.random.default_rng(0)
     control = rng.normal(size=(frames, 3))
     x = np.zeros((frames, D))

@@ -1,5 +1,7 @@
-"""Mixtures fitted to points and to windows of walking: what was put in is found; the fast denoiser
-is the exact one."""
+"""Mixtures fitted to points and to windows of walking: what was put in is found.
+
+The fast denoiser is the exact one.
+"""
 
 import numpy as np
 import pytest

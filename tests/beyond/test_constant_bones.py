@@ -16,8 +16,10 @@ def clip():
 
 
 def knees(T):
-    """All is given but a knee and a shoulder, between two given joints each; in the first frame
-    they are, too."""
+    """All is given but a knee and a shoulder, between two given joints each.
+
+    In the first frame they are, too.
+    """
     known = np.ones((T, 21), bool)
     known[1:, [joint_index("LeftLeg"), joint_index("RightArm")]] = False
     return known

@@ -1,5 +1,7 @@
-"""Footholds: held joints rest in the world, the gate chooses, the fast twin and the weights file
-keep both."""
+"""Footholds: held joints rest in the world, and the gate chooses.
+
+The fast twin and the weights file keep both.
+"""
 
 from dataclasses import replace
 from pathlib import Path
@@ -74,8 +76,10 @@ def test_held_joints_rest_in_the_world():
 
 
 def test_held_joints_by_hand():
-    """1 m/s ahead: a toe at rest falls back by 5 cm a frame. A quarter turn to the left: what was
-    ahead is right."""
+    """1 m/s ahead: a toe at rest falls back by 5 cm a frame.
+
+    A quarter turn to the left: what was ahead is right.
+    """
     toe = torch.tensor([[[0.1, 0.02, 0.3]]])
     back = held_positions(toe, torch.tensor([[[1.0, 0, 0]] * 2]))
     torch.testing.assert_close(back[0, :, 0], torch.tensor([[0.1, 0.02, 0.25], [0.1, 0.02, 0.2]]))
@@ -178,8 +182,10 @@ def walk_windows() -> Windows:
 
 
 def watched(windows: Windows, seen: dict) -> FootholdMoDiff:
-    """A network that writes down the last poses it is shown, and those on which its feet may
-    stand."""
+    """A network that writes down the last poses it is shown.
+
+    And those on which its feet may stand.
+    """
     model = FootholdMoDiff(TINY, windows.pose_scaler, windows.control_scaler)
     encode = model.encode
 
@@ -244,8 +250,10 @@ def test_feet_are_held_alike_where_the_encoding_is_shared():
 
 
 def test_in_use_a_gate_leans_towards_holding_and_goes_all_the_way():
-    """Where a sigmoid stops short of 0 and 1 the stretched one is there; halfway lies a quarter
-    lower."""
+    """Where a sigmoid stops short of 0 and 1 the stretched one is there.
+
+    Halfway lies a quarter lower.
+    """
     gate = torch.tensor([-9.0, -2.65, -0.25, 2.15, 9.0])
     torch.testing.assert_close(openness(gate), torch.tensor([0.0, 0.0, 0.5, 1.0, 1.0]))
     torch.testing.assert_close(openness(gate, leaning=False), torch.sigmoid(gate))

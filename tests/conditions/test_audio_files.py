@@ -1,5 +1,7 @@
-"""Sound files: every kind that can be read gives the same sound, and what cannot be danced to is
-refused in words."""
+"""Sound files: every kind that can be read gives the same sound.
+
+What cannot be danced to is refused in words.
+"""
 
 import math
 import shutil
@@ -10,8 +12,9 @@ import numpy as np
 import pytest
 import soundfile
 import torch
+from bursts import clicks
 
-from motiondiff_edu.conditions.audio_files import AudioError, read_audio, resample
+from motiondiff_edu.conditions.audio_files import AudioError, read_audio, read_sound, resample
 from motiondiff_edu.conditions.music import log_mel
 
 # what becomes of each file of the real data's audio_formats_and_broken: seconds, or words of the
@@ -256,3 +259,15 @@ def test_a_wrong_name_does_not_matter(tmp_path):
     path = written(tmp_path, "song.flac", chord(22050), 22050)
     shutil.copy(path, tmp_path / "song ü.wav")
     assert torch.equal(read_audio(tmp_path / "song ü.wav"), read_audio(path))
+
+
+def test_a_sound_is_read_from_its_name_and_from_its_bytes(tmp_path):
+    soundfile.write(tmp_path / "song.wav", clicks(1.5, (0.5,)), 16_000, subtype="FLOAT")
+    by_name, by_bytes = (
+        read_sound(s) for s in (tmp_path / "song.wav", (tmp_path / "song.wav").read_bytes())
+    )
+    assert torch.equal(by_name, by_bytes) and by_name.numpy() == pytest.approx(
+        clicks(1.5, (0.5,)), abs=1e-3
+    )
+    with pytest.raises(ValueError, match="text, not sound"):
+        read_sound(b"these are words, and no music at all")

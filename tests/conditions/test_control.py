@@ -18,8 +18,10 @@ from motiondiff_edu.motion.root_frame import root_path
 
 
 def apart(control: np.ndarray, points: np.ndarray) -> tuple[float, float]:
-    """Metres from the walked way to the drawn line, and from the drawn line to the walked way, at
-    the worst place."""
+    """How far the walked way and the drawn line lie apart at the worst place, in metres.
+
+    In both directions.
+    """
     walked, _ = root_path(control, (float(points[0, 0]), float(points[0, 1]), 0.0))
     gaps = cdist(walked, round_path(points, 0.0))
     return gaps.min(1).max(), gaps.min(0).max()

@@ -1,5 +1,7 @@
-"""Notebook 09's checks: the likely mistakes are named, and an answer in another wrapping is
-taken."""
+"""Notebook 09's checks name the likely mistakes.
+
+An answer in another wrapping is taken.
+"""
 
 import pytest
 import torch

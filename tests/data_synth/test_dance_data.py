@@ -1,5 +1,7 @@
-"""Synthetic dances: same seed, same bytes; feet that stay, bones and knees that hold, on any beat
-grid."""
+"""Synthetic dances: same seed, same bytes.
+
+Feet that stay, bones and knees that hold, on any beat grid.
+"""
 
 from dataclasses import replace
 
@@ -109,8 +111,10 @@ def test_planted_feet_stay_on_the_floor(danced, alone):
 
 
 def test_contacts_are_true(danced):
-    """A toe that lies still on the floor for three frames is planted, but for the first instants of
-    a step."""
+    """A toe that lies still on the floor for three frames is planted.
+
+    The first instants of a step are left out.
+    """
     for _, d in danced:
         toes = d.positions[:, TOES]
         still = (np.linalg.norm(np.diff(toes, axis=0), axis=-1) < 1e-7) & (toes[1:, :, 1] < 1e-7)
@@ -140,8 +144,10 @@ def test_no_joint_jumps(danced, alone):
 
 
 def test_the_weight_is_over_the_other_foot_when_a_foot_lifts(danced):
-    """Hips seen from above, along the line between the feet: past the middle, towards the foot that
-    stays."""
+    """Hips seen from above, along the line between the feet.
+
+    Past the middle, towards the foot that stays.
+    """
     shares = []
     for _, d in danced:
         for side in (0, 1):
@@ -217,8 +223,10 @@ def test_breaks_are_calmer():
 
 
 def test_a_mirrored_sheet_is_the_mirror():
-    """Keys and steps of a move written mirrored are those of the move with left and right
-    swapped."""
+    """A move written mirrored is the move with left and right swapped.
+
+    Its keys and steps are.
+    """
     found = []
     for mirrored in (False, True):
         script = Script()
@@ -259,8 +267,10 @@ def test_a_curve_is_still_at_its_keys():
 
 
 def test_a_spring_settles_and_overshoots():
-    """A step of height one: 9.5 % too far at damping 0.6 (exp(-pi d / sqrt(1 - d^2))), and then
-    there."""
+    """A step of height one.
+
+    9.5 % too far at damping 0.6 (exp(-pi d / sqrt(1 - d^2))), and then there.
+    """
     step = np.concatenate([np.zeros(3), np.ones(60)])[:, None]
     y = springy(step, 200.0, 4.0, 0.6)
     assert y[0, 0] == 0 and y.max() == pytest.approx(1 + np.exp(-np.pi * 0.6 / 0.8), abs=2e-3)

@@ -1,5 +1,7 @@
-"""Synthetic songs: same seed, same bytes; beats that keep time; hits that sound when they should;
-files; errors."""
+"""Synthetic songs: same seed, same bytes; beats that keep time; hits that sound when they should.
+
+Files; errors.
+"""
 
 import json
 
@@ -107,8 +109,10 @@ def test_sound_is_finite_and_not_clipped(made):
 
 
 def rises(audio):
-    """Times (s), and how much louder 14 bands got within 16 ms: frames of 16 ms, logarithms, rises
-    summed."""
+    """Times (s), and how much louder 14 bands got within 16 ms.
+
+    Frames of 16 ms, logarithms, rises summed.
+    """
     hop, frame = 32, 256
     _, t, spectrum = stft(
         audio, SAMPLE_RATE, nperseg=frame, noverlap=frame - hop, boundary=None, padded=False

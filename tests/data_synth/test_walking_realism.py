@@ -1,5 +1,7 @@
-"""Do the synthetic walks lie where real ones do? The acceptance table, and the ruler it is measured
-with."""
+"""Do the synthetic walks lie where real ones do?
+
+The acceptance table, and the ruler it is measured with.
+"""
 
 import re
 from pathlib import Path

@@ -1,5 +1,7 @@
-"""An edit of a motion: what is held follows from what was pinned and kept; answers are measured as
-they are."""
+"""An edit of a motion: what is held follows from what was pinned and kept.
+
+Answers are measured as they are.
+"""
 
 from functools import partial
 

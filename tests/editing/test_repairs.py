@@ -1,5 +1,7 @@
-"""Several repairs of one past: given entries stay, errors agree with the measures, and what cannot
-be is said."""
+"""Several repairs of one past.
+
+Given entries stay, errors agree with the measures, and what cannot be is said.
+"""
 
 from types import SimpleNamespace
 
@@ -86,8 +88,10 @@ def test_several_pasts_are_mended_as_each_alone_but_for_the_draws():
 
 
 def test_bones_of_the_holes_get_the_lengths_that_they_have_where_it_walks():
-    """The elbow of the arm hangs on a given shoulder: shaken, its bones tear, and are mended; the
-    given stays."""
+    """The elbow of the arm hangs on a given shoulder: shaken, its bones tear, and are mended.
+
+    The given stays.
+    """
     truth = torch.from_numpy(CLIP.poses).flatten(-2)[None]
     known = torch.from_numpy(dead_joints(CLIP.poses[:T_H], ARM).known).repeat_interleave(3, -1)[
         None

@@ -1,5 +1,7 @@
-"""A Chromium for the tests of widgets: started without network services, offline where a test says
-so."""
+"""A Chromium for the tests of widgets.
+
+Started without network services, offline where a test says so.
+"""
 
 import base64
 import hashlib
@@ -19,8 +21,10 @@ FLAGS = (
 
 @contextmanager
 def start_browser(executable: str):
-    """A Chromium; close it before other tests run: playwright's event loop would stand in their
-    way."""
+    """A Chromium; close it before other tests run.
+
+    Playwright's event loop would stand in their way.
+    """
     sync_api = pytest.importorskip("playwright.sync_api")
     with sync_api.sync_playwright() as playwright:
         browser = playwright.chromium.launch(executable_path=executable, args=FLAGS)
@@ -30,8 +34,10 @@ def start_browser(executable: str):
 
 @contextmanager
 def open_page(browser, offline: bool = True, **context):
-    """A page whose errors are collected in `page.problems`; offline, any request but file: and
-    data: is refused."""
+    """A page whose errors are collected in `page.problems`.
+
+    Offline, any request but file: and data: is refused.
+    """
     fresh = browser.new_context(**({"viewport": {"width": 1000, "height": 620}} | context))
     page = fresh.new_page()
     page.problems, page.asked = [], []
@@ -97,8 +103,9 @@ window.cleanup = widget.render({ model: window.model, el: document.getElementByI
 
 
 def bare_page(folder: Path, module: Path | str, record: dict, binary: list[str]) -> str:
-    """Write a page that runs an ES module (its file or its text) with a fake model on `record`;
-    return its address.
+    """Write a page that runs an ES module (its file or its text) with a fake model on `record`.
+
+    Return its address.
 
     In the page: model, saved (states sent to Python), leaked (keys that reached the document),
     cleanup.

@@ -1,5 +1,7 @@
-"""A click track, and a figure that stands still but for jumps: what is heard and what is seen have
-known moments."""
+"""A click track, and a figure that stands still but for jumps.
+
+What is heard and what is seen have known moments.
+"""
 
 import numpy as np
 from synthetic_walk import walk
@@ -18,8 +20,10 @@ def clicks(times, seconds: float, rate: int = RATE) -> np.ndarray:
 
 
 def jumping(frames: int, jumps) -> np.ndarray:
-    """A standing figure (frames, 21, 3) that is 0.6 m to the left or the right, and changes sides
-    at each jump."""
+    """A standing figure (frames, 21, 3) that changes sides at each jump.
+
+    It is 0.6 m to the left or the right.
+    """
     pose = walk(frames=3)[0][1]
     side = np.cumsum(np.isin(np.arange(frames), jumps)) % 2
     return pose + (0.6 * side - 0.3)[:, None, None] * [1.0, 0.0, 0.0]

@@ -1,5 +1,7 @@
-"""A page with an editor whose messages reach the Python object, as in JupyterLab: both ends of the
-wire, no server."""
+"""A page with an editor whose messages reach the Python object, as in JupyterLab.
+
+Both ends of the wire, no server.
+"""
 
 import base64
 import json
@@ -71,8 +73,10 @@ def record(editor: Editor, names=BINARY + PLAIN) -> dict:
 
 
 def open_editor(page, folder: Path, editor: Editor, background: str = "#fff") -> None:
-    """Show an editor; what the page sends is received by the object, and what changes there is told
-    to the page."""
+    """Show an editor that is connected to its Python object.
+
+    What the page sends is received by the object, and what changes there is told to the page.
+    """
     told = record(editor)
 
     def kernel(what: dict) -> dict:

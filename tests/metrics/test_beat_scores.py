@@ -1,5 +1,7 @@
-"""The record of a set of dances: each number against what it must be for figures that stop when
-told."""
+"""The record of a set of dances.
+
+Each number against what it must be for figures that stop when told.
+"""
 
 import numpy as np
 import pytest

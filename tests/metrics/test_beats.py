@@ -1,5 +1,7 @@
-"""Beats of a dance: stops at known times, the closed form of chance, and a shake that fools the
-music form alone."""
+"""Beats of a dance.
+
+Stops at known times, the closed form of chance, and a shake that fools the music form alone.
+"""
 
 import warnings
 

@@ -1,5 +1,7 @@
-"""Kinetic features: values of the public code, movements whose energy is known, and the fault in
-plain view."""
+"""Kinetic features.
+
+Values of the public code, movements whose energy is known, and the fault in plain view.
+"""
 
 import numpy as np
 import pytest

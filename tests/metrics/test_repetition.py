@@ -71,8 +71,10 @@ def test_the_matrix_is_that_of_cosines():
 
 
 def test_lag_similarity_by_hand():
-    """One joint up and down: x = +1, -1, +1, -1 ... is opposite at odd lags and the same at even
-    ones."""
+    """One joint up and down.
+
+    x = +1, -1, +1, -1 ... is opposite at odd lags and the same at even ones.
+    """
     positions = np.tile(rest_pose(), (60, 1, 1))
     positions[:, 12, 1] += 0.1 * (-1.0) ** np.arange(60)
     similarity = lag_similarity(positions)

@@ -1,5 +1,7 @@
-"""skating: nought for feet that stand, the slide itself for feet that slide, nothing for feet in
-the air."""
+"""metrics.skating, on feet that stand, slide and fly.
+
+Nought for feet that stand, the slide itself for feet that slide, nothing for feet in the air.
+"""
 
 import numpy as np
 import pytest

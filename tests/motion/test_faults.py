@@ -52,8 +52,10 @@ def test_the_swapped_markers_of_a_real_dance(real_data):
 
 @pytest.mark.parametrize("whole", [False, True])
 def test_the_swapped_markers_are_mended(real_data, whole):
-    """Before, feet are thrown about; after, no more than elsewhere in the dance, and bones keep
-    their lengths."""
+    """Before, feet are thrown about.
+
+    After, no more than elsewhere in the dance, and bones keep their lengths.
+    """
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         clip = load_clip(real_data / "bvh" / "cmu_acrnn_salsa_10.bvh")

@@ -49,8 +49,10 @@ def test_an_order_that_does_not_fit_is_refused(order):
 
 
 def test_chain_worked_out_by_hand():
-    """Root at (1, 2, 3) turned 90 degrees about z; then two bones, 2 up and 1 to x; the second
-    joint turns back."""
+    """Root at (1, 2, 3) turned 90 degrees about z; then two bones, 2 up and 1 to x.
+
+    The second joint turns back.
+    """
     parents, offsets = np.array([-1, 0, 1]), np.array([[9.0, 9, 9], [0, 2, 0], [1, 0, 0]])
     local = np.stack([rot_z(np.pi / 2), rot_z(-np.pi / 2), np.eye(3)])[None]
     positions, rotations = forward_kinematics(local, np.array([[1.0, 2, 3]]), offsets, parents)

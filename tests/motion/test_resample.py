@@ -1,5 +1,7 @@
-"""motion.resample: sums of sines come back at the new frames, the ends stay, and what cannot be
-done is refused."""
+"""motion.resample.
+
+Sums of sines come back at the new frames, the ends stay, and what cannot be done is refused.
+"""
 
 import numpy as np
 import pytest

@@ -1,5 +1,7 @@
-"""Figures without toes and end sites: they stand on their ankles, at any rate, with flat feet of
-ours."""
+"""Figures without toes and end sites.
+
+They stand on their ankles, at any rate, with flat feet of ours.
+"""
 
 import numpy as np
 import pytest

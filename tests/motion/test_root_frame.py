@@ -9,8 +9,10 @@ from motiondiff_edu.motion.skeleton import OFFSETS, PARENTS, J, joint_index
 
 
 def long_run(seconds=60, fps=20, seed=3):
-    """Poses and control of a run at 3 m/s that turns both ways, steps aside, and passes +-pi
-    several times."""
+    """Poses and control of a run at 3 m/s.
+
+    It turns both ways, steps aside, and passes +-pi several times.
+    """
     rng = np.random.default_rng(seed)
     t = np.arange(seconds * fps) / fps
     control = np.stack([3 + 0 * t, 0.5 * np.sin(t), 1.2 * np.sin(0.3 * t) + 0.6], -1)
@@ -51,8 +53,10 @@ def test_one_second_of_each_column(row, end):
 
 
 def test_a_circle_closes_exactly():
-    """Walking a full turn at constant speed returns to the start: the halfway heading makes it a
-    regular polygon."""
+    """Walking a full turn at constant speed returns to the start.
+
+    The halfway heading makes it a regular polygon.
+    """
     frames = 80
     control = np.tile([1.3, 0.2, 2 * np.pi * rf.FPS / frames], (frames + 1, 1))
     root, heading = rf.root_path(control, (1.0, 2.0, 0.7))
@@ -94,8 +98,10 @@ def test_the_body_faces_where_hips_and_shoulders_look_together():
 
 
 def test_estimated_root_finds_path_and_heading_of_a_swaying_figure():
-    """The pelvis sways at gait frequency; the estimate has a tenth of the sway, and heading passes
-    pi unbroken."""
+    """The pelvis sways at gait frequency.
+
+    The estimate has a tenth of the sway, and heading passes pi unbroken.
+    """
     frames, fps = 240, 20
     t = np.arange(frames) / fps
     control = np.tile([1.2, 0.0, 0.5], (frames, 1))
@@ -112,8 +118,10 @@ def test_estimated_root_finds_path_and_heading_of_a_swaying_figure():
 
 @pytest.mark.parametrize("frames", [11, 19, 47])
 def test_estimated_root_of_a_short_clip_keeps_its_speed(frames):
-    """Half a second is shorter than the Gaussian: a steady walk must not seem to slow down at its
-    ends."""
+    """Half a second is shorter than the Gaussian.
+
+    A steady walk must not seem to slow down at its ends.
+    """
     control = np.tile([1.3, 0.2, 0.0], (frames, 1))
     poses = np.tile(long_run(seconds=1)[0].mean(0), (frames, 1, 1))
     root, heading = rf.estimate_root(rf.to_world(poses, control))
@@ -123,8 +131,10 @@ def test_estimated_root_of_a_short_clip_keeps_its_speed(frames):
 
 
 def test_the_estimated_root_is_smoothed_by_gaussians_of_these_lengths():
-    """A Gaussian of sigma seconds leaves exp(-(2 pi f sigma)^2 / 2) of a sine of f Hz: way .25 s,
-    turns .33 s."""
+    """A Gaussian of sigma seconds leaves exp(-(2 pi f sigma)^2 / 2) of a sine of f Hz.
+
+    Way .25 s, turns .33 s.
+    """
     t, pose = np.arange(400) / 20, long_run(seconds=1)[0].mean(0)
     sway, turn = 0.05 * np.sin(2 * np.pi * 0.6 * t), 0.2 * np.sin(2 * np.pi * 0.6 * t)
     world = np.tile(pose, (400, 1, 1))

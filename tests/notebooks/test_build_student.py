@@ -1,5 +1,7 @@
-"""tools/build_student.py: stubs, folded solutions, staleness; and this checkout's edition is up to
-date."""
+"""tools/build_student.py: stubs, folded solutions, staleness.
+
+And this checkout's edition is up to date.
+"""
 
 import ast
 import json

@@ -1,5 +1,7 @@
-"""tools/check_notebooks.py finds each fault it claims to find, and this checkout's notebooks have
-none."""
+"""tools/check_notebooks.py finds each fault it claims to find.
+
+This checkout's notebooks have none.
+"""
 
 import copy
 import json

@@ -1,5 +1,7 @@
-"""The step-by-step versions in the notebooks agree with the library: cells tagged `twin`, run and
-compared."""
+"""The step-by-step versions in the notebooks agree with the library.
+
+Cells tagged `twin`, run and compared.
+"""
 
 import functools
 
@@ -14,8 +16,10 @@ PATHS = {path.stem[:2]: path for path in notebook_cells.sources()}
 
 @functools.cache
 def names(notebook: str) -> dict:
-    """What the cells tagged imports, setup and twin define, run in a fresh namespace without any
-    other cell."""
+    """What the cells tagged imports, setup and twin define.
+
+    They run in a fresh namespace without any other cell.
+    """
     content = notebook_cells.read(PATHS[notebook])
     space = notebook_cells.start(content, PATHS[notebook].stem)
     return notebook_cells.run(notebook_cells.code(content, "twin"), space, PATHS[notebook].stem)

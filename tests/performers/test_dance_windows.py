@@ -45,8 +45,10 @@ def test_music_and_motion_of_a_window_are_of_the_same_seconds():
 
 
 def test_a_long_dance_hears_all_of_its_music():
-    """258.4 s are 8075 hops of 32 ms, and the frame at the start: 5168 / 20 * 31.25 falls short of
-    it by rounding."""
+    """258.4 s are 8075 hops of 32 ms, and the frame at the start.
+
+    5168 / 20 * 31.25 falls short of it by rounding.
+    """
     assert mel_frames(5168) == 8076 and mel_frames(1) == 2 and mel_frames(16) == 26
 
 

@@ -125,8 +125,7 @@ def test_regression_has_one_dance_for_a_song():
 
 
 def test_regression_learns_the_mean_of_what_it_sees():
-    """Of dances that have nothing to do with their music, the mean pose is all that can be
-    learnt."""
+    """The mean pose is all that dances teach which have nothing to do with their music."""
     made = windows()
     model = DanceTransformer(TransformerConfig(**{**PLAIN.as_dict(), "deterministic": True}))
     loss_fn, draw = regression_loss(made, batch=16), seeded()

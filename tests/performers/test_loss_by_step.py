@@ -1,5 +1,7 @@
-"""Losses over diffusion time: against the algebra, against autograd by differences, and on answers
-that are known."""
+"""Losses over diffusion time.
+
+Against the algebra, against autograd by differences, and on answers that are known.
+"""
 
 import math
 

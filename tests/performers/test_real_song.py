@@ -1,5 +1,7 @@
-"""The main job on real input: a recorded song is danced to, and the dance neither freezes nor flies
-apart."""
+"""The main job on real input.
+
+A recorded song is danced to, and the dance neither freezes nor flies apart.
+"""
 
 import numpy as np
 import pytest

@@ -1,5 +1,7 @@
-"""Weights on disk: they come back as they were, and whatever is damaged or foreign is refused with
-the reason."""
+"""Weights on disk.
+
+They come back as they were, and whatever is damaged or foreign is refused with the reason.
+"""
 
 import json
 import pickle
@@ -43,8 +45,10 @@ def saved(tmp_path: Path) -> Path:
 
 
 def rewrite(path: Path, change, metadata=None) -> None:
-    """Change the tensors of a weights file; the metadata stay (unless others are given), the
-    checksums are right."""
+    """Change the tensors of a weights file.
+
+    The metadata stay (unless others are given), the checksums are right.
+    """
     with safe_open(path, "pt") as file:
         metadata = file.metadata() if metadata is None else metadata
     tensors = load_file(path)

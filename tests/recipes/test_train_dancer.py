@@ -1,5 +1,7 @@
-"""Dancers' recipes: a small one is trained, killed and continued; what comes of it dances, and its
-card tells how."""
+"""Dancers' recipes: a small one is trained, killed and continued.
+
+What comes of it dances, and its card tells how.
+"""
 
 from dataclasses import replace
 from pathlib import Path

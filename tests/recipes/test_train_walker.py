@@ -1,5 +1,7 @@
-"""A recipe becomes a walker and a card; a killed training goes on, and with other settings it is
-refused."""
+"""A recipe becomes a walker and a card.
+
+A killed training goes on, and with other settings it is refused.
+"""
 
 import time
 from dataclasses import replace

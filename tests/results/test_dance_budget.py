@@ -1,5 +1,7 @@
-"""Dancers at one budget: what differs is what the table says, a row goes on, differences are of the
-same songs."""
+"""Dancers at one budget.
+
+What differs is what the table says, a row goes on, differences are of the same songs.
+"""
 
 from dataclasses import asdict, replace
 from functools import partial

@@ -1,5 +1,7 @@
-"""In-betweens as they are measured: errors, rivals, seams and spectra of motions whose figures are
-known."""
+"""In-betweens as they are measured.
+
+Errors, rivals, seams and spectra of motions whose figures are known.
+"""
 
 from types import SimpleNamespace
 
@@ -125,8 +127,10 @@ def test_the_worst_gap_stands_under_the_bar(monkeypatch):
 
 
 def test_every_way_is_asked_for_what_it_is_for(monkeypatch, truth):
-    """The paper's masking has none of our options; what is free is given nothing; ours is as a user
-    calls it."""
+    """The paper's masking has none of our options; what is free is given nothing.
+
+    Ours is as a user calls it.
+    """
     asked = []
 
     def made(dancer, positions, known, samples=1, **options):

@@ -1,5 +1,7 @@
-"""The results machinery, with the data itself as the walker: no error, ratios of one; and the
-page."""
+"""The results machinery, with the data itself as the walker.
+
+No error, ratios of one; and the page.
+"""
 
 import json
 import sys

@@ -1,5 +1,7 @@
-"""What an animator does, in JupyterLab: a real walk, three frames pinned, an arm bent in one,
-in-betweens, a file."""
+"""What an animator does, in JupyterLab.
+
+A real walk, three frames pinned, an arm bent in one, in-betweens, a file.
+"""
 
 import os
 

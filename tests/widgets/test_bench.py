@@ -1,5 +1,6 @@
-"""The repair bench: its logic and traits in Python, and knocking out, repairing and resetting in a
-browser.
+"""The repair bench.
+
+Its logic and traits in Python, and knocking out, repairing and resetting in a browser.
 
 The walker of these tests goes on as the last pose was, but for noise: what it mends is known.
 """
@@ -221,8 +222,10 @@ SEND = """([state, binary]) => {
 
 
 class Table:
-    """A page with a bench, and the widget behind it: `answer` does what the kernel does with what
-    the page saved."""
+    """A page with a bench, and the widget behind it.
+
+    `answer` does what the kernel does with what the page saved.
+    """
 
     def __init__(self, page, widget):
         self.page, self.widget = page, widget
@@ -248,8 +251,10 @@ class Table:
         self.page.evaluate(SEND, [state, binary])
 
     def click_joint(self, name: str) -> None:
-        """Where the camera of the still pictures sees the joint, from as far away as the
-        bench's."""
+        """Where the camera of the still pictures sees the joint.
+
+        From as far away as the bench's.
+        """
         box, frame, walked = self.figure.bounding_box(), int(self.data("frame")), CLIP.world()
         camera = poster.camera_at(walked, frame, body.Camera(distance=4.2))
         spots, _ = body.project(walked[frame], camera, (box["width"], box["height"]))

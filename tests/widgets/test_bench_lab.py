@@ -1,5 +1,7 @@
-"""The repair bench in JupyterLab, with the walker of the course: an arm is knocked out by hand,
-mended, and read."""
+"""The repair bench in JupyterLab, with the walker of the course.
+
+An arm is knocked out by hand, mended, and read.
+"""
 
 import os
 

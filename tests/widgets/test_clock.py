@@ -1,5 +1,6 @@
-"""The clock that a sound is: what it tells from one picture to the next, of readings that stutter,
-jump and start anew.
+"""The clock that a sound is.
+
+What it tells from one picture to the next, of readings that stutter, jump and start anew.
 
 Page's clock and sound are scripted: how fast the machine is plays no part.
 """
@@ -46,8 +47,10 @@ def told(browser):
 
 
 def played(times: np.ndarray, rests=()) -> np.ndarray:
-    """Seconds of sound played since the first time, without the `rests`, (begin, length) on the
-    page's clock."""
+    """Seconds of sound played since the first time, without the `rests`.
+
+    A rest is (begin, length) on the page's clock.
+    """
     return (
         times
         - times[0]

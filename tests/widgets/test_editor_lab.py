@@ -1,5 +1,7 @@
-"""The editor in JupyterLab, with a kernel: a frame is pinned, in-betweens are made, Python and the
-page agree."""
+"""The editor in JupyterLab, with a kernel.
+
+A frame is pinned, in-betweens are made, Python and the page agree.
+"""
 
 import os
 

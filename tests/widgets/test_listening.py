@@ -1,5 +1,7 @@
-"""Attention and silenced hits over the waveform: packed in Python, drawn in a browser, and as a
-figure."""
+"""Attention and silenced hits over the waveform.
+
+Packed in Python, drawn in a browser, and as a figure.
+"""
 
 import numpy as np
 import pytest
@@ -25,8 +27,11 @@ def softmax(scores):
 
 @pytest.fixture(scope="module")
 def maps():
-    """Of 86 frames one that looks at token (frame // 2), of 11 rows one that looks at token 42 - 4
-    row."""
+    """Two maps with known targets.
+
+    Of 86 frames one that looks at token (frame // 2), of 11 rows one that looks at token 42 - 4
+    row.
+    """
     now, back = (np.zeros((rows, 43)) for rows in (T, 11))
     now[np.arange(T), np.arange(T) // 2] = 30
     back[np.arange(11), 42 - 4 * np.arange(11)] = 30

@@ -1,5 +1,7 @@
-"""The whole path: JupyterLab, a kernel, a browser; the figure has ink, plays with its sound, and
-Python hears of it."""
+"""The whole path: JupyterLab, a kernel, a browser.
+
+The figure has ink, plays with its sound, and Python hears of it.
+"""
 
 import os
 

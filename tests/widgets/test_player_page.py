@@ -1,5 +1,7 @@
-"""The player's ES module in a browser: with a fake model in a bare page, and exported, offline,
-without a kernel."""
+"""The player's ES module in a browser.
+
+With a fake model in a bare page, and exported, offline, without a kernel.
+"""
 
 import pytest
 from browser import coloured, ink, open_page, player_page, shown

@@ -1,5 +1,7 @@
-"""Sound in the player: the sound is the clock, live and exported; and what Python says of sounds
-that do not fit."""
+"""Sound in the player: the sound is the clock, live and exported.
+
+And what Python says of sounds that do not fit.
+"""
 
 import io
 import re

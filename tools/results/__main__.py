@@ -106,8 +106,9 @@ def weights_of(items: list[str]) -> dict[str, Path]:
 
 
 def parts_of(only: list[str], full: bool, lines: dict[str, Walks], weights: set[str]) -> list[str]:
-    """The parts asked for, row by row; none asked for: all that have weights, and with `full` what
-    trains.
+    """The parts asked for, row by row.
+
+    None asked for: all that have weights, and with `full` what trains.
 
     Leaves with the names there are when one is unknown.
     """
@@ -136,8 +137,10 @@ def parts_of(only: list[str], full: bool, lines: dict[str, Walks], weights: set[
 
 
 def measure(asked: argparse.Namespace, folder: Path) -> None:
-    """Run the parts asked for and write their records; those of all other parts stay as they
-    are."""
+    """Run the parts asked for and write their records.
+
+    Those of all other parts stay as they are.
+    """
     extra = weights_of(asked.weights)
     bench, lines = (
         Bench(QUICK if asked.quick else FULL, extra),

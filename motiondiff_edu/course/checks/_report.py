@@ -43,8 +43,10 @@ class CheckFailed(AssertionError):
     """An answer that is not right yet, with the likely mistake."""
 
     def _render_traceback_(self) -> list[str]:
-        """What IPython shows instead of a traceback through the check: the message, and the
-        reader's own lines."""
+        """What IPython shows instead of a traceback through the check.
+
+        The message, and the reader's own lines.
+        """
         lines = [f"{type(self).__name__}: {self}"]
         if self.__cause__ is not None:
             frames = traceback.extract_tb(self.__cause__.__traceback__)
@@ -130,8 +132,9 @@ def expect_close(
     rtol: float = 1e-4,
     atol: float = 1e-5,
 ) -> None:
-    """Fail unless `got` equals `wanted`; name the mistake whose value it has, or else the place
-    that is farthest off.
+    """Fail unless `got` equals `wanted`.
+
+    Name the mistake whose value it has, or else the place that is farthest off.
 
     Numbers, lists, arrays and tensors are taken alike.
     """

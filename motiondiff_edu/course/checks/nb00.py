@@ -46,8 +46,10 @@ def right_turn(mine):
 
 @check
 def splice_control(mine):
-    """mine(past, new, T_h): the last T_h rows of the past, its last one leading into the first new
-    frame."""
+    """Check mine(past, new, T_h).
+
+    The last T_h rows of the past, its last one leading into the first new frame.
+    """
     past, new = np.arange(18.0).reshape(6, 3), 100 + np.arange(12.0).reshape(4, 3)
     before = past.copy()
     got = mine(past, new, 5)

@@ -36,8 +36,10 @@ def lengths_of_bones(mine):
 
 @check
 def place_in_world(mine):
-    """mine(pose, x, z, heading): four joints, turned and moved, at headings whose sines are
-    known."""
+    """Check mine(pose, x, z, heading).
+
+    Four joints, turned and moved, at headings whose sines are known.
+    """
     pose = np.array([[0.0, 1.0, 0.0], [0.2, 1.5, 0.0], [0.0, 0.1, 0.3], [-0.1, 0.4, 0.05]])
     quarter = mine(pose, 2.0, 5.0, np.pi / 2)  # facing +x, so left is -z
     x, y, z = pose.T

@@ -63,8 +63,10 @@ def best_guess(mine):
 
 @check
 def step_back(mine):
-    """mine(x_s, s, eps_hat, beta, alpha_bar, z), with tables whose roots at s = 2 are round
-    numbers."""
+    """Check mine(x_s, s, eps_hat, beta, alpha_bar, z).
+
+    The tables have roots at s = 2 that are round numbers.
+    """
     beta, alpha_bar = torch.tensor([0.0, 0.4375, 0.36]), torch.tensor([1.0, 0.5625, 0.36])
     x, eps, z = (
         torch.tensor([[1.0, -2.0, 0.5]]),
@@ -106,8 +108,10 @@ def step_back(mine):
 
 @check
 def leap(mine):
-    """mine(x_s, eps_hat, alpha_bar_s, alpha_bar_r, eta, z): one DDIM step, where the roots are
-    round numbers."""
+    """Check mine(x_s, eps_hat, alpha_bar_s, alpha_bar_r, eta, z).
+
+    One DDIM step, where the roots are round numbers.
+    """
     now, then, eta = 0.36, 0.64, 0.5
     x, eps, z = (
         torch.tensor([[1.0, -2.0, 0.5]]),

@@ -41,8 +41,10 @@ def prior_term(mine):
 
 @check
 def x0_weight(mine):
-    """Expected values: distance of two posterior means for a unit error in x0, squared, over 2
-    beta."""
+    """Expected values.
+
+    Distance of two posterior means for a unit error in x0, squared, over 2 beta.
+    """
     beta = torch.tensor([0.0, 0.1, 0.2, 0.4, 0.5], dtype=torch.float64)
     alpha_bar = torch.tensor([1.0, 0.9, 0.72, 0.432, 0.216], dtype=torch.float64)
     moved = alpha_bar[:-1].sqrt() * beta[1:] / (1 - alpha_bar[1:])  # eq. 7: the factor of x0

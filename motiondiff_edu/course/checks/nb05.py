@@ -1,5 +1,7 @@
-"""Checks of notebook 05: back to x0 from any target, the averaged weights, and the weight between
-two losses."""
+"""Checks of notebook 05.
+
+Back to x0 from any target, the averaged weights, and the weight between two losses.
+"""
 
 import numpy as np
 import torch
@@ -9,8 +11,10 @@ from ._report import check, expect, expect_close
 
 @check
 def back_to_x0(mine):
-    """mine(output, x_s, alpha_bar, target): each of eps, x0 and v leads back to the same x0, worked
-    out by hand."""
+    """Check mine(output, x_s, alpha_bar, target).
+
+    Each of eps, x0 and v leads back to the same x0, worked out by hand.
+    """
     # a = 0.8, b = 0.6 and a = 0.6, b = 0.8; x0 = 2, -1 and eps = -1, 3 by hand
     alpha_bar = torch.tensor([0.64, 0.36])
     x0, x_s = torch.tensor([2.0, -1.0]), torch.tensor([1.0, 1.8])

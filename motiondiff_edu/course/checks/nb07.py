@@ -1,5 +1,7 @@
-"""Checks of notebook 07: the control held over the future, and the rollout that repeats Algorithm
-2."""
+"""Checks of notebook 07.
+
+The control held over the future, and the rollout that repeats Algorithm 2.
+"""
 
 import torch
 
@@ -50,8 +52,10 @@ class _Recorder:
 
 @check
 def rollout_by_hand(mine):
-    """mine(sample, past, control, frames, T_p) with a sampler that writes down what it was
-    given."""
+    """Check mine(sample, past, control, frames, T_p).
+
+    The sampler writes down what it was given.
+    """
     B, T_h, T_p, D, C, frames = 2, 4, 3, 6, 1, 5
     past = (
         torch.arange(T_h).float()[None, :, None].expand(B, T_h, D)

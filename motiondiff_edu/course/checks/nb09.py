@@ -1,5 +1,7 @@
-"""Checks of notebook 09: the batch of Algorithm 1 with its dropped past, what a linear fit sees of
-it, and the rate."""
+"""Checks of notebook 09.
+
+The batch of Algorithm 1 with its dropped past, what a linear fit sees of it, and the rate.
+"""
 
 import torch
 
@@ -12,8 +14,10 @@ ALPHA_BAR = torch.tensor(
 
 @check
 def batch_with_dropout(mine):
-    """mine(past, future, s, alpha_bar, rate, u, noise): (past as the network sees it, noised
-    future)."""
+    """Check mine(past, future, s, alpha_bar, rate, u, noise).
+
+    (past as the network sees it, noised future).
+    """
     draw = torch.Generator().manual_seed(9)
     past, future, first, second = torch.randn(4, 4, 3, 2, generator=draw, dtype=torch.float64)
     s, u, rate, noise = (
@@ -125,8 +129,10 @@ def _wrong_noise(x, noise, a, b) -> dict:
 
 @check
 def dropped_products(mine):
-    """mine(xx, past, rate, alpha_bar): 2 past entries and 1 of control, worked out for two steps
-    and a rate of 1/2."""
+    """Check mine(xx, past, rate, alpha_bar).
+
+    2 past entries and 1 of control, worked out for two steps and a rate of 1/2.
+    """
     xx = torch.tensor([[2.0, 0.5, 1.0], [0.5, 3.0, -1.0], [1.0, -1.0, 4.0]], dtype=torch.float64)
     alpha_bar, rate = ALPHA_BAR[1:3], 0.5  # roots 0.8 and 0.6
     before = xx.clone()

@@ -9,15 +9,19 @@ T_H = 3
 
 
 def walk_on(past: torch.Tensor, control: torch.Tensor) -> torch.Tensor:
-    """A walker of two numbers, (B, 3, 2): one goes ahead with column 0 of the control, one turns
-    with column 2."""
+    """A walker of two numbers, (B, 3, 2).
+
+    One goes ahead with column 0 of the control, one turns with column 2.
+    """
     steps = control[:, T_H - 1 : 2 * T_H - 1][..., [0, 2]]
     return past[:, -1:] + steps.cumsum(1)
 
 
 class Watched:
-    """`walk_on`, which counts how often it is asked, and refuses a past or a control that is cut
-    short."""
+    """A `walk_on` that counts its calls.
+
+    It refuses a past or a control that is cut short.
+    """
 
     def __init__(self):
         self.calls = 0
@@ -58,8 +62,10 @@ def one_round(past, known, start, control, reverse=back_in_time, flip_ahead=True
 
 
 def material():
-    """Past with NaN in its holes, mask, mean pose, control, and what a round there and back makes
-    of them, by hand.
+    """What the checks of repairs need, worked out by hand.
+
+    Past with NaN in its holes, mask, mean pose, control, and what a round there and back makes of
+    them.
 
     Sample 0 knows its last frame: the way there ends at (12, 14.25), and the way back goes through
     the true places. Sample 1 knows only the first number there: the other starts at its mean 9 and

@@ -8,8 +8,10 @@ from ._report import as_array, check, expect, expect_close
 
 @check
 def log_mel_from_spectrum(mine):
-    """mine(X, filters, floor): 2 frames, 4 frequencies, 3 bands, the numbers by hand; one band is
-    silent."""
+    """Check mine(X, filters, floor): 2 frames, 4 frequencies, 3 bands, the numbers by hand.
+
+    One band is silent.
+    """
     X = torch.tensor([[3 + 4j, 0, 2j, 1], [0, 1j, 0, -2]], dtype=torch.complex64)
     filters = torch.tensor([[1.0, 0.5, 0, 0], [0, 0.5, 1, 0], [0, 0, 0, 0.25]])
     power = torch.tensor([[25.0, 4.0, 0.25], [0.5, 0.5, 1.0]])
@@ -89,8 +91,10 @@ def mel_index(mine):
 
 @check
 def tracker_lag(mine):
-    """mine(found, true): the first beat missed, one invented half-way, one wild; the others 30 ms
-    late."""
+    """Check mine(found, true): the first beat missed, one invented half-way, one wild.
+
+    The others 30 ms late.
+    """
     true = np.array([0.5, 1.0, 1.5, 2.0, 2.5, 3.0, 3.5])
     found = np.array([1.03, 1.53, 1.79, 2.03, 2.53, 3.03, 3.53, 5.0])
     gaps = np.array([0.03, 0.03, -0.21, 0.03, 0.03, 0.03, 0.03, 1.5])

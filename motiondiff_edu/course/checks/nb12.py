@@ -1,5 +1,7 @@
-"""Checks of notebook 12: a frame convolution, motions of any length, and attention between two
-clocks."""
+"""Checks of notebook 12.
+
+A frame convolution, motions of any length, and attention between two clocks.
+"""
 
 import math
 
@@ -80,8 +82,10 @@ def frame_conv(mine):
 
 @check
 def any_length(mine):
-    """mine(network, x, multiple) with a network that knows where each frame lies, and what comes
-    after it."""
+    """Check mine(network, x, multiple).
+
+    The network knows where each frame lies, and what comes after it.
+    """
 
     def sums(x):  # what is put before the motion, cut off it, or filled in behind it shows
         return x.cumsum(1) + x.sum(1, keepdim=True) + torch.arange(x.shape[1])[:, None]
@@ -144,8 +148,10 @@ def clocks(mine):
     fps_q, fps_k, f = 20.0, 15.625, torch.tensor([0.3, 2.0])
 
     def weights(t, u, root=2.0, softmax=-1):
-        """Pair by pair as complex numbers: the score of q and k is the real part of q conj(k) e^(i
-        angle)."""
+        """Pair by pair as complex numbers.
+
+        The score of q and k is the real part of q conj(k) e^(i angle).
+        """
         a, b = torch.complex(q[:, :2], q[:, 2:]), torch.complex(k[:, :2], k[:, 2:])
         phase = torch.exp(1j * (t[:, None, None] - u[None, :, None]) * f)
         scores = (a[:, None] * b.conj()[None] * phase).real.sum(-1) / root

@@ -1,5 +1,7 @@
-"""Checks of notebook 13: the clean guess, the skeleton loss, and the asymmetry from the network's
-own numbers."""
+"""Checks of notebook 13.
+
+The clean guess, the skeleton loss, and the asymmetry from the network's own numbers.
+"""
 
 import torch
 
@@ -8,8 +10,10 @@ from ._report import check, expect_close
 
 @check
 def x0_hat(mine):
-    """mine(x_s, s, eps_hat, alpha_bar): x0 comes back when eps_hat is right, each sample with its
-    own step."""
+    """Check mine(x_s, s, eps_hat, alpha_bar).
+
+    x0 comes back when eps_hat is right, each sample with its own step.
+    """
     # a, b by step: (1, 0), (0.8, 0.6), (0.6, 0.8), (0.28, 0.96)
     alpha_bar = torch.tensor([1.0, 0.64, 0.36, 0.0784], dtype=torch.float64)
     draw = torch.Generator().manual_seed(13)
@@ -86,8 +90,10 @@ def skeleton_loss(mine):
 
 @check
 def asymmetry_from_features(mine):
-    """mine(x0_hat, mean, std, bones, pairs): five joints, two frames, lengths of 3-4-5
-    triangles."""
+    """Check mine(x0_hat, mean, std, bones, pairs).
+
+    Five joints, two frames, lengths of 3-4-5 triangles.
+    """
     bones, pairs = ((0, 1), (1, 2), (0, 3), (3, 4)), ((0, 2), (1, 3))
     # pelvis in the world, then left hip, left knee, right hip, right knee minus the pelvis; metres
     about = torch.tensor(

@@ -1,5 +1,7 @@
-"""Checks of notebook 15: the snapshot, the loop of masked sampling, and the way back to more
-noise."""
+"""Checks of notebook 15.
+
+The snapshot, the loop of masked sampling, and the way back to more noise.
+"""
 
 import math
 
@@ -69,8 +71,10 @@ def snapshot(mine):
 
 
 class _Told:
-    """A leap and a snapshot that write down what happens: each is simple enough to be followed by
-    hand."""
+    """A leap and a snapshot that write down what happens.
+
+    Each is simple enough to be followed by hand.
+    """
 
     def __init__(self, given: torch.Tensor):
         self.given, self.seen, self.drawn = given, [], []
@@ -86,8 +90,10 @@ class _Told:
 
 @check
 def masked(mine):
-    """mine(leap, snapshot, x, visited, given, known) with a leap in which everything depends on
-    everything."""
+    """Check mine(leap, snapshot, x, visited, given, known).
+
+    Everything in the leap depends on everything.
+    """
     x, given, visited = _numbers(2, 5), _numbers(2, 5, seed=1), [9, 6, 4, 1]
     known = torch.tensor([[True, False, True, False, False], [False, True, False, False, True]])
 

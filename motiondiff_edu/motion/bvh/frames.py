@@ -14,8 +14,10 @@ EXACT_RATES = [float(n) for n in range(1, 1001)] + [n * 1000 / 1001 for n in (24
 
 
 def header(lines: list[str], motion: int, path: str | Path) -> tuple[int, int, str, int, int]:
-    """Declared frames and its line, text of the frame time and its line, index of the first data
-    line."""
+    """What the header of the motion says.
+
+    Declared frames and its line, text of the frame time and its line, index of the first data line.
+    """
     frames_at = next_filled(lines, motion + 1)
     time_at = next_filled(lines, frames_at + 1)
     frames = after_keyword(lines, frames_at, "frames", path)
@@ -156,8 +158,10 @@ def row_of(
 def check_frame_ends(
     counts: list[tuple[int, int]], columns: list[tuple[str, str]], path: str | Path
 ) -> None:
-    """Raise BvhError unless every frame, a number for each of `columns`, ends at the end of a
-    line."""
+    """Raise BvhError unless every frame ends at the end of a line.
+
+    A frame is a number for each of `columns`.
+    """
     held, begun, width = 0, 0, len(columns)
     for line, count in counts:
         begun = line if held == 0 else begun

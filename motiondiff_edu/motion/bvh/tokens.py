@@ -1,5 +1,7 @@
-"""From the bytes of a BVH file to numbered statements and numbers, refusing early what is no
-BVH."""
+"""From the bytes of a BVH file to numbered statements and numbers.
+
+What is no BVH is refused early.
+"""
 
 import re
 from dataclasses import dataclass
@@ -48,8 +50,9 @@ class Statement:
 
 
 def read_lines(path: str | Path) -> list[str]:
-    """The lines of a BVH file, whatever its line ends; anything that cannot be BVH is refused
-    unread.
+    """The lines of a BVH file, whatever its line ends.
+
+    Anything that cannot be BVH is refused unread.
 
     Raises BvhError for a folder, an empty, binary, UTF-16, HTML or oversized file.
     """
@@ -98,8 +101,10 @@ def refuse_foreign(start: bytes, path: Path) -> None:
 
 
 def decode(raw: bytes) -> str:
-    """UTF-8 (a byte-order mark is dropped), else Latin-1: only joint names can hold such
-    letters."""
+    """UTF-8 (a byte-order mark is dropped), else Latin-1.
+
+    Only joint names can hold such letters.
+    """
     try:
         return raw.decode("utf-8-sig")
     except UnicodeDecodeError:

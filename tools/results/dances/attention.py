@@ -1,5 +1,6 @@
-"""MoFusion's Fig. 4 as a figure that can be wrong: does attention fall on the beats, more than by
-chance?
+"""MoFusion's Fig. 4 as a figure that can be wrong.
+
+Does attention fall on the beats, more than by chance?
 
 Over many unseen songs: the share of a level's attention within 0.1 s of a beat, over the share near
 the beats of other songs (which have their own tempo and place), and over the share near its own
@@ -51,8 +52,10 @@ def masses(
     own: int,
     seed: int,
 ) -> dict[str, tuple[float, ...]]:
-    """For each level the KINDS: share near the beats of song `own`, of the others, of its own
-    moved; seconds read."""
+    """For each level the KINDS.
+
+    Share near the beats of song `own`, of the others, of its own moved; seconds read.
+    """
     found = {}
     for name, weights in maps.items():
         others = [beat_mass(weights, times, other) for i, other in enumerate(beats) if i != own]
@@ -83,8 +86,10 @@ def short(name: str) -> str:
 
 
 def attention_figures(rows: dict[str, dict[str, np.ndarray]]) -> list[Figure]:
-    """Shares and ratios with intervals over songs; those without a level's name are means over the
-    levels."""
+    """Shares and ratios with intervals over songs.
+
+    Those without a level's name are means over the levels.
+    """
     figures = []
     for level, row in rows.items():
         place = "" if level == "all" else f"{level}."
@@ -120,8 +125,10 @@ def attention_records(stage: Stage, command: str) -> list[dict]:
 
 
 def attention_picture(stage: Stage, song: int = 0, frames: int = TRAINED) -> Picture:
-    """Levels over the sound of one unseen song, as in the paper: the way down, the bottom, the last
-    on the way up."""
+    """Levels over the sound of one unseen song, as in the paper.
+
+    The way down, the bottom, the last on the way up.
+    """
     dancer, heard = stage.dancer("dancer"), stage.songs
     dance = dances_of(dancer, heard.mel[song : song + 1], frames, seed=0)[0]
     maps, times = maps_of(dancer, heard.mel[song], dance, song)

@@ -1,5 +1,6 @@
-"""What is each choice of a dancer worth? Dancers trained for as many steps, each unlike another in
-one choice.
+"""What is each choice of a dancer worth?
+
+Dancers trained for as many steps, each unlike another in one choice.
 
 Where in diffusion time is the beat decided (the targets look hardest at different noise)? What do
 the kinematic losses do, and their weight over time? Is a linear layer enough for the music, a U-Net
@@ -135,8 +136,10 @@ def stage(name: str, budget: Budget) -> Stage:
 
 
 def trained(name: str, budget: Budget, runs: Path) -> Dancer:
-    """The dancer of one variant; a run that was killed goes on, one that is finished is only
-    read."""
+    """The dancer of one variant.
+
+    A run that was killed goes on, one that is finished is only read.
+    """
     heard = name if name in HEARD else ""
     runs.mkdir(parents=True, exist_ok=True)
     run, log = runs / f"{name}.safetensors", partial(print, flush=True)
@@ -149,8 +152,10 @@ def about(name: str, budget: Budget) -> str:
 
 
 def gains(name: str, found: Danced, runs: Path, budget: Budget) -> list[Figure]:
-    """Beside what a row is to be compared with, on the same songs: drawn together, so that their
-    luck is shared."""
+    """What a row gains over the row that it is compared with, on the same songs.
+
+    Both are drawn together, so that their luck is shared.
+    """
     figures, own = [], [rows[key] for rows in (found.own, found.data) for key in SHARE]
     for rival in filter(None, (VARIANTS[name][1], *RIVALS.get(name, ()))):
         kept = runs / f"{rival}.npz"

@@ -1,5 +1,7 @@
-"""What `make results` measures of the dancers: one part for each of the shipped weights, and one
-for unheard music."""
+"""What `make results` measures of the dancers.
+
+One part for each of the shipped weights, and one for unheard music.
+"""
 
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -72,8 +74,10 @@ class Stage:
 
     @cached_property
     def data_features(self) -> np.ndarray:
-        """Kinetic features of the data's dances to the songs: what all features are normalised
-        by."""
+        """Kinetic features of the data's dances to the songs.
+
+        What all features are normalised by.
+        """
         return features_of(self.songs.truth[:, :, :TRAINED])[:, 0]
 
     def dancer(self, name: str) -> Dancer:
@@ -120,8 +124,10 @@ def dancer_figures(stage: Stage, name: str) -> list[Figure]:
 
 
 def long_figures(stage: Stage, dancer: Dancer, found: Danced) -> list[Figure]:
-    """What is left of the alignment in dances two and four times as long as those trained on; how
-    much they repeat."""
+    """What is left of the alignment in dances two and four times as long as those trained on.
+
+    How much they repeat.
+    """
     names, figures = ("bas", "bas_shuffled"), []
     short = [rows[name] for rows in (found.own, found.data) for name in names]
     for frames in LONG:

@@ -1,5 +1,7 @@
-"""MoFusion's Table 1 beside ours, and what each choice of a dancer is worth: sections of
-docs/RESULTS.md."""
+"""MoFusion's Table 1 beside ours, and what each choice of a dancer is worth.
+
+Sections of docs/RESULTS.md.
+"""
 
 from motiondiff_edu.performers.dancer import ETA, STEPS
 

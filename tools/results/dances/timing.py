@@ -24,8 +24,10 @@ DANCES = 8  # at once
 
 
 class Clock:
-    """One network with all that a step of training, a pass and a dance need; times are CPU-seconds
-    of one call."""
+    """One network with all that a step of training, a pass and a dance need.
+
+    Times are CPU-seconds of one call.
+    """
 
     def __init__(self, name: str, windows: DanceWindows, budget: Budget):
         recipe = recipe_of(name, budget)
@@ -64,8 +66,10 @@ def spent(call) -> float:
 
 
 def time_records(names: tuple[str, ...], budget: Budget, rounds: int, command: str) -> list[dict]:
-    """Steps, passes and dances of all names in turns; of each the median, and its ratio to BASE in
-    the same round."""
+    """Steps, passes and dances of all names in turns.
+
+    Of each the median, and its ratio to BASE in the same round.
+    """
     before = torch.get_num_threads()
     torch.set_num_threads(1)
     small = replace(budget, songs=2, seconds=8.0)  # how much there is to draw from costs nothing

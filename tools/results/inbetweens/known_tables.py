@@ -1,5 +1,7 @@
-"""Two sections of docs/RESULTS.md: filling in where the right answer is a formula, and both papers'
-repairs."""
+"""Two sections of docs/RESULTS.md.
+
+Filling in where the right answer is a formula, and both papers' repairs.
+"""
 
 from ..page.markdown import cell, table
 
@@ -11,8 +13,10 @@ KINDS = {
 
 
 def _part(records: dict[str, dict], prefix: str) -> tuple[list[str], list[str], dict]:
-    """What stands after the prefix: (columns, rows), each in the order of the records, and what
-    they were made from."""
+    """What stands after the prefix.
+
+    (columns, rows), each in the order of the records, and what they were made from.
+    """
     found = [name for name in records if name.startswith(prefix)]
     names = [name.removeprefix(prefix) for name in found]
     columns = list(dict.fromkeys(name.split(".")[0] for name in names))

@@ -1,5 +1,7 @@
-"""The measured figures on the cards of the shipped weights: whoever opens a card sees how good they
-are."""
+"""The measured figures on the cards of the shipped weights.
+
+Whoever opens a card sees how good they are.
+"""
 
 from dataclasses import replace
 from pathlib import Path
@@ -34,8 +36,10 @@ def metrics(folder: Path, name: str, digest: str) -> dict[str, float]:
 
 
 def add_metrics(folder: Path) -> None:
-    """Write the figures of `folder` into the cards; a file whose card says so already is left
-    alone."""
+    """Write the figures of `folder` into the cards.
+
+    A file whose card says so already is left alone.
+    """
     for path in set(checkpoints.available().values()):
         figure, found = checkpoints.load(path), metrics(folder, path.stem, weights_digest(path))
         if figure.card.get("metrics", {}) != found:

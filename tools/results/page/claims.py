@@ -1,5 +1,6 @@
-"""The paper's claims, each judged by a figure measured here: what agrees, what does not. No verdict
-is written by hand.
+"""The paper's claims, each judged by a figure measured here: what agrees, what does not.
+
+No verdict is written by hand.
 
 An interval that lies wholly on the right side of the limit agrees, one wholly on the wrong side
 does not, one across it leaves the claim undecided. A limit may itself be a measured figure: then
@@ -28,8 +29,10 @@ what a claim asks for; it is not yet a better dance.
 
 @dataclass(frozen=True)
 class Claim:
-    """What the paper says, the record that judges it, and the limit: a number, or a share of
-    another record."""
+    """What the paper says, the record that judges it, and the limit.
+
+    A number, or a share of another record.
+    """
 
     words: str
     where: str

@@ -1,5 +1,7 @@
-"""docs/RESULTS.md, made from the records in docs/results/*.json and benchmarks/results/*.json;
-nothing is typed in."""
+"""docs/RESULTS.md, made from the records in docs/results/*.json and benchmarks/results/*.json.
+
+Nothing is typed in.
+"""
 
 import json
 from pathlib import Path
@@ -31,8 +33,10 @@ would change.
 
 
 def read_records(*folders: Path) -> dict[str, dict]:
-    """All records by name; a name that stands in two files is an error, for then one of them is
-    old."""
+    """All records by name.
+
+    A name that stands in two files is an error, for then one of them is old.
+    """
     found, where = {}, {}
     for path in sorted(path for folder in folders for path in folder.glob("*.json")):
         for one in json.loads(path.read_text()):

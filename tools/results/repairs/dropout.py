@@ -1,5 +1,6 @@
-"""What diffusion dropout is worth when part of the past is missing: pairs of walkers, and a map
-over rates.
+"""What diffusion dropout is worth when part of the past is missing.
+
+Pairs of walkers, and a map over rates.
 
 The pairs are shipped: the same network, data and steps, with and without, three training seeds
 each.
@@ -143,8 +144,10 @@ def _clips(budget: MapBudget):
 def map_records(
     name: str, budget: MapBudget, trials: Trials, runs: Path, command: str
 ) -> list[dict]:
-    """Train (or continue) the walker of one rate, and measure it at every share of joints
-    missing."""
+    """Train (or continue) the walker of one rate.
+
+    It is measured at every share of joints missing.
+    """
     runs.mkdir(parents=True, exist_ok=True)
     recipe = map_recipe(name, budget)
     walker = train(recipe, runs / f"{name}.safetensors", _clips(budget))

@@ -79,8 +79,9 @@ def root_nanmean(squares: np.ndarray) -> float:
 
 
 def repair_figures(fault: str, walker: Walker, trials: Trials, size: RepairSize) -> list[Figure]:
-    """The mean of the repairs, one of them, the paper's repairs, and the rivals' guesses, all in
-    cm; and over rivals.
+    """The mean of the repairs, one of them, the paper's and the rivals' guesses, all in cm.
+
+    Also the mean's error over that of each rival.
 
     Ours begin with what ridge regression guesses, hold what is known on the way back, too, and keep
     bones; the paper's begin with the mean pose and do neither (the mean is of fewer). Intervals are
@@ -138,8 +139,9 @@ def table_2(
     who: str = "",
     keep: int = 1,
 ) -> tuple[list[Figure], list[np.ndarray]]:
-    """MoDiff's Table II: bone errors with 30 % of the past's joints missing, over those with a
-    complete past.
+    """MoDiff's Table II.
+
+    Bone errors with 30 % of the past's joints missing, over those with a complete past.
 
     Of `repaired_windows`, and of what follows the broken past (`ge`), which is returned as well,
     one set of walks for each walker. `who` names them; they keep `keep` poses of a window.
@@ -165,8 +167,10 @@ def table_2(
 
 
 def footsteps(name: str, walks: list[np.ndarray], trials: Trials, rule) -> Figure:
-    """Number of footsteps of walks (one set for each training) over that of the recorded motion, at
-    v95 of each."""
+    """Number of footsteps of walks over that of the recorded motion, at v95 of each.
+
+    One set of walks for each training.
+    """
     tables = np.stack([steps_table.tables(poses, trials.asked, rule) for poses in walks])
     data = np.broadcast_to(steps_table.tables(trials.truth, trials.asked, rule), tables.shape)
 

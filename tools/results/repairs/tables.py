@@ -1,5 +1,7 @@
-"""Diffusion dropout, repairs and in-betweens: sections of docs/RESULTS.md, and their pictures, from
-the records."""
+"""Diffusion dropout, repairs and in-betweens.
+
+Sections of docs/RESULTS.md, and their pictures, from the records.
+"""
 
 from pathlib import Path
 

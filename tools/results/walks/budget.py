@@ -1,5 +1,6 @@
-"""What is each choice worth? Small walkers trained for the same CPU-seconds, each unlike another in
-one choice.
+"""What is each choice worth?
+
+Small walkers trained for the same CPU-seconds, each unlike another in one choice.
 
 How many future poses should be predicted at once (MoDiff says that T_p > 1 helps, and gives no
 number)? What do the schedule, the optimizer, the past noise, the weights of the loss, the
@@ -110,8 +111,10 @@ def measure(name: str, budget: Budget) -> list[Figure]:
 
 
 def budget_records(name: str, budget: Budget, command: str) -> list[dict]:
-    """One thread, whatever the machine has: CPU-seconds are the budget. Compare what one machine
-    measured."""
+    """One thread, whatever the machine has: CPU-seconds are the budget.
+
+    Compare what one machine measured.
+    """
     before = torch.get_num_threads()
     torch.set_num_threads(1)
     seeds = {

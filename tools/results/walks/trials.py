@@ -22,8 +22,10 @@ Generate = Callable[[np.ndarray, np.ndarray, int], np.ndarray]
 
 @dataclass(frozen=True, eq=False)
 class Trials:
-    """N pasts with the control of past and future, and the recorded future; control row T_h belongs
-    to truth[:, 0]."""
+    """N pasts with the control of past and future, and the recorded future.
+
+    Control row T_h belongs to truth[:, 0].
+    """
 
     past: Float[np.ndarray, "N T_h J 3"]
     control: Float[np.ndarray, "N T 3"]

@@ -23,14 +23,18 @@ def mask_inverted(past, future, s, alpha_bar, rate, u, noise):
 
 
 def one_throw_for_the_batch(past, future, s, alpha_bar, rate, u, noise):
-    """All pasts of a batch are noised, or none: the gradient of one step in twenty has never seen a
-    past."""
+    """All pasts of a batch are noised, or none.
+
+    The gradient of one step in twenty has never seen a past.
+    """
     return _batch(past, future, s, alpha_bar, rate, u, noise, hit=(u[0] < rate).expand(len(u)))
 
 
 def a_throw_for_each_frame(past, future, s, alpha_bar, rate, u, noise):
-    """Single frames are noised, and the clean ones beside them tell all: nothing has to come from
-    the control."""
+    """Single frames are noised, and the clean ones beside them tell all.
+
+    Nothing has to come from the control.
+    """
     hit = torch.rand(past.shape[:2], generator=torch.Generator().manual_seed(0)) < 0.5
     return torch.where(hit[..., None], _noised(past, s, alpha_bar, noise[1]), past), _noised(
         future, s, alpha_bar, noise[0]
@@ -38,8 +42,10 @@ def a_throw_for_each_frame(past, future, s, alpha_bar, rate, u, noise):
 
 
 def same_noise_for_both(past, future, s, alpha_bar, rate, u, noise):
-    """The past carries the very noise that is asked for: a low loss in training, and nothing to
-    read in sampling."""
+    """The past carries the very noise that is asked for.
+
+    A low loss in training, and nothing to read in sampling.
+    """
     return _batch(past, future, s, alpha_bar, rate, u, noise, own=0)
 
 
