@@ -336,8 +336,8 @@ def _first(start: Tensor | tuple[int, ...], generator: torch.Generator | None) -
 
 # ---- the objective -------------------------------------------------------------------------------
 def squared_error(error: X, s: Int[Tensor, "B"]) -> Float[Tensor, ""]:
-    """Mean of error^2, alike for all entries and all steps s: the papers' loss. Source: MoDiff eq.
-    10 (Alg. 1 forgets the square). Notebook: 07."""
+    """Mean of error^2, alike for all entries and all steps s: the papers' loss (Algorithm 1 forgets
+    the square). Source: MoDiff eq. 10. Notebook: 07."""
     return error.square().mean()
 
 

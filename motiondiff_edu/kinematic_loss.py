@@ -73,7 +73,7 @@ def training_loss(
     `lambda_k` is a weight for each step (`over_time`), by default the paper's alpha_bar.
     Ours: the network may be asked for x0 or v instead of eps (`model.config.target`), and another
     `loss` may be taken of the target's error (`beyond.loss_terms`).
-    Source: MoFusion eq. 2, 4, 5.  Notebook: 13
+    Source: MoFusion eq. 4.  Notebook: 13
     """
     x0, context = batch
     s = torch.randint(1, schedule.S + 1, (len(x0),), generator=generator).to(x0.device)

@@ -5,7 +5,7 @@ future; and Algorithm 1, which trains them.
                             +--concatenated in time--6 cross-modal layers--> memory
     control     --2 layers--+                                                  |
     (noised future, step) ----------------------------------3 decoder layers--+--> eps_hat
-Source: MoDiff III-F, IV-A, Fig. 2, Alg. 1.  Notebook: 07
+Source: MoDiff III-F, IV-A, Fig. 2.  Notebook: 07
 """
 
 import math
@@ -217,7 +217,7 @@ def training_loss(
     `dropout` makes x_d from the past x (`diffusion_dropout.Dropout`); without it x_d = x. Ours:
     the network may be asked for x0 or v instead (`model.config.target`), and another `loss` than
     eq. 10's mean square may be taken of the error (`beyond.loss_terms`).
-    Source: MoDiff Alg. 1, eq. 10, 12.  Notebook: 07
+    Source: MoDiff Alg. 1, eq. 10.  Notebook: 05, 07
     """
     past, x0, control = batch
     s = torch.randint(1, schedule.S + 1, (len(x0),), generator=generator).to(x0.device)
