@@ -1,4 +1,4 @@
-"""course/handout.py: copies are handed out and renewed, and nothing that a student changed is overwritten."""
+"""course/handout.py: copies are renewed, and nothing that a student changed is overwritten."""
 
 import json
 from pathlib import Path
