@@ -83,7 +83,7 @@ def test_check_finds_missing_changed_and_left_over(folder, capsys):
 
 def filled_in(path):
     """The edition's notebook with an answer in place of the stub."""
-    return path.read_text("utf-8").replace(r'raise NotImplementedError(\"your turn\")', "return 7")
+    return path.read_text("utf-8").replace(r"raise NotImplementedError(\"your turn\")", "return 7")
 
 
 def git(folder, *arguments):
