@@ -49,4 +49,8 @@ def test_pins_drags_and_in_betweens_in_jupyterlab(browser, lab):  # noqa: F811
         assert "trajectory kept" in page.locator(".mde-held").inner_text()
         if folder := os.environ.get("MOTIONDIFF_SCREENSHOTS"):
             page.screenshot(path=os.path.join(folder, "editor_lab.png"))
+        page.evaluate("() => window.jupyterapp.shell.currentWidget.sessionContext.shutdown()")
+        page.get_by_role("button", name="Generate").click()
+        page.get_by_text("kernel is gone. Your changes are still shown here").wait_for()
+        assert page.locator(".mde-editor").get_attribute("data-made") == "3"
         assert page.problems == []
