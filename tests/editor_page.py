@@ -40,10 +40,11 @@ window.cleanup = widget.render({ model: window.model, el: document.getElementByI
 
 # What Python answers comes at once; after `delay` milliseconds; or where `holding`, once a test lets it go.
 WIRE = """
-window.delay = 0; window.holding = false; window.held = []; window.received = 0;
+window.delay = 0; window.holding = false; window.held = []; window.sent = window.received = 0;
 window.kernel = async (what) => {
+  window.sent++;
   const changed = await window.kernelled(what);
-  if (what.message) window.received++;
+  window.received++;
   if (window.holding) { window.held.push(changed); return; }
   if (window.delay) await new Promise((done) => setTimeout(done, window.delay));
   window.take(changed);
@@ -85,13 +86,14 @@ def open_editor(page, folder: Path, editor: Editor, background: str = "#fff") ->
 
 
 def settled(page) -> None:
-    """Wait until Python has answered all that was asked, and the page has heard it."""
-    page.wait_for_function("!asked.length || model.get('state').heard >= asked.at(-1).number")
+    """Wait until Python has got all that was sent, and the page has heard the answers."""
+    heard = "!asked.length || model.get('state').heard >= asked.at(-1).number"
+    page.wait_for_function(f"sent === received && ({heard})")
 
 
 def received(page) -> None:
-    """Wait until Python has done all that was asked, whether the page has heard of it or not."""
-    page.wait_for_function("received === asked.length")
+    """Wait until Python has got all that was sent, whether the page has heard the answers or not."""
+    page.wait_for_function("sent === received")
 
 
 def guess(positions, known, generator, samples=1, resample=1):

@@ -6,7 +6,7 @@ import time
 import numpy as np
 import pytest
 import traitlets
-from browser import coloured, ink, open_page
+from browser import coloured, drawn, ink, open_page
 from editor_page import guess, open_editor, settled
 from synthetic_walk import walk
 
@@ -257,7 +257,8 @@ def press(page, *keys) -> None:
 
 def test_the_whole_way_by_keyboard(page, editor, motion, tmp_path):
     page.locator(FIGURE).focus()
-    press(page, "Enter", *["."] * 12, "Enter", "End", "Enter", "PageUp")
+    press(page, "Enter", *["."] * 12, "Enter", "End", "Enter")
+    press(page, "PageUp")
     assert page.locator(".mde-editor").get_attribute("data-pins") == "0 12 30"
     assert page.locator(".mde-editor").get_attribute("data-frame") == "12" and "3 frames pinned." in words(page)
     page.get_by_label("Joint to move").select_option("LeftHand")
@@ -367,6 +368,7 @@ def test_controls_are_told_and_ghosts_are_drawn(page, editor):
     assert coloured(page.locator(FIGURE))["orange"] > 1.2 * pale["orange"], "what is to be made is pale before"
     seen = ink(page.locator(FIGURE))
     page.get_by_label("Next in-between").click()
+    settled(page)
     assert editor.chosen == 1 and ink(page.locator(FIGURE)) != seen
     page.get_by_role("button", name="Undo").click()
     settled(page)
@@ -444,19 +446,18 @@ def test_without_a_kernel_it_plays_and_pins_and_says_what_it_needs(browser, moti
         page.goto(export.as_uri())
         inside = page.frame_locator("iframe")
         canvas, said = inside.locator(FIGURE), inside.locator(".mde-say")
-        canvas.wait_for()
-        assert min(coloured(canvas).values()) > 200
+        drawn(canvas)
         inside.get_by_role("button", name="Play").click()
         inside.locator(".mde-editor:not([data-frame='0'])").wait_for()
         canvas.focus()
         for key in (" ", "Home", ".", ".", "Enter"):
             page.keyboard.press(key)
-        assert inside.locator(".mde-editor").get_attribute("data-pins") == "0 2 30"
+        inside.locator(".mde-editor[data-pins='0 2 30']").wait_for()
         assert "Frame 2 pinned, on this page only." in said.inner_text()
         page.keyboard.press("g")
-        assert said.inner_text() == "Generating needs a running notebook: run the cell that made this editor."
+        inside.get_by_text("Generating needs a running notebook: run the cell that made this editor.").wait_for()
         page.keyboard.press("]")
-        assert "In-between 2:" in inside.locator(".mde-measured").inner_text()
+        inside.get_by_text("In-between 2:").wait_for()
         assert page.problems == [] and page.asked == []
 
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from browser import open_page, player_page
+from browser import open_page, player_page, until
 from click_track import clicks, jumping
 from synthetic_walk import walk
 
@@ -210,8 +210,8 @@ def test_exported_it_shows_the_same_and_the_poster_has_the_lane(browser, listeni
     with open_page(browser) as page:
         page.goto((tmp_path / "export.html").as_uri())
         lane = page.frame_locator("iframe").locator(".mde-lane")
-        lane.wait_for()
-        assert max(lane.evaluate(COLOURS)[0]) > 20 and page.problems == [] and page.asked == []
+        until(lane, f"() => Math.max(...({COLOURS})()[0]) > 20")
+        assert page.problems == [] and page.asked == []
     pixels = np.asarray(listening.poster().convert("RGB")).astype(int)
     assert ((pixels[..., 0] > pixels[..., 1] + 40) & (pixels[..., 2] > pixels[..., 1] + 20)).sum() > 500
     assert len(html) < 300_000
