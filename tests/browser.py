@@ -67,11 +67,13 @@ UNTIL = """async (element, [condition, patience]) => {
 
 
 def until(locator, condition: str, patience: int = 30_000) -> None:
-    """Wait until a JavaScript function of an element gives true, in whatever frame the element is."""
+    """Wait until a JavaScript function of an element gives true, in whatever frame it is."""
     locator.evaluate(UNTIL, [condition, patience])
 
 
-ANOTHER_FRAME = "() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))"
+ANOTHER_FRAME = """() => new Promise((done) => {
+  requestAnimationFrame(() => requestAnimationFrame(done));
+})"""
 COLOURED = """c => {
   const d = c.getContext('2d').getImageData(0, 0, c.width, c.height).data;
   let blue = 0, orange = 0;
@@ -90,7 +92,7 @@ def coloured(canvas) -> dict:
 
 
 def drawn(canvas) -> None:
-    """Wait until a canvas shows a figure, with over 200 pixels of either colour: it may be there before it is drawn."""
+    """Wait until a figure is drawn, with over 200 pixels of either colour: the canvas comes first."""
     until(canvas, f"(c) => Math.min(...Object.values(({COLOURED})(c))) > 200")
 
 

@@ -38,7 +38,7 @@ window.take(RECORD);
 window.cleanup = widget.render({ model: window.model, el: document.getElementById("here") });
 """
 
-# What Python answers comes at once; after `delay` milliseconds; or where `holding`, once a test lets it go.
+# What Python answers comes at once; after `delay` milliseconds; or where `holding`, by `letGo`.
 WIRE = """
 window.delay = 0; window.holding = false; window.held = []; window.sent = window.received = 0;
 window.kernel = async (what) => {
@@ -49,7 +49,10 @@ window.kernel = async (what) => {
   if (window.delay) await new Promise((done) => setTimeout(done, window.delay));
   window.take(changed);
 };
-window.letGo = () => { window.holding = false; while (window.held.length) window.take(window.held.shift()); };
+window.letGo = () => {
+  window.holding = false;
+  while (window.held.length) window.take(window.held.shift());
+};
 """
 
 
@@ -92,7 +95,7 @@ def settled(page) -> None:
 
 
 def received(page) -> None:
-    """Wait until Python has got all that was sent, whether the page has heard the answers or not."""
+    """Wait until Python has got all that was sent, whether the page has the answers or not."""
     page.wait_for_function("sent === received")
 
 

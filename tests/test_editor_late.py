@@ -1,4 +1,4 @@
-"""The editor where Python answers late, out of order or not at all: what was pressed and dragged adds up all the same.
+"""The editor where Python answers late, out of order or not at all: presses and drags add up.
 
 The answers are held until a test lets them go, so that no test depends on how fast the machine is.
 """
