@@ -7,12 +7,14 @@ import { bytes, unpack } from "./figures.js";
 import { smoothRoot } from "./paint.js";
 import { silentClock } from "./clock.js";
 import { timeline } from "./timeline.js";
+import { wire } from "./wire.js";
 import { along, dot, dragged, jointAt, paintStage } from "./stage.js";
 
-const HOME = { yaw: 0.6, pitch: 0.2, zoom: 1.1 }, CENTIMETRE = 0.01, SILENCE = 5000, PATIENCE = 1000, NUDGES = 900; // milliseconds
+const HOME = { yaw: 0.6, pitch: 0.2, zoom: 1.1 }, CENTIMETRE = 0.01, NUDGES = 900; // milliseconds
 const ASLEEP = "needs a running notebook: run the cell that made this editor.";
 const MUTE = "The notebook's kernel does not answer: it is busy with another cell, or not running.";
-const GONE = "The notebook's kernel is gone. Your changes are still shown here, but nothing can be made or saved. Restart the kernel and run the notebook's cells again: the editor then starts anew.";
+const GONE = "The notebook's kernel is gone. Your changes are still shown here, but nothing can be made or saved. "
+  + "Restart the kernel and run the notebook's cells again: the editor then starts anew.";
 const MORE_CSS = `
 .mde-editor canvas { touch-action: none; } .mde-editor canvas.mde-timeline { cursor: pointer; }
 .mde-editor canvas.mde-over { cursor: move; }
@@ -65,7 +67,11 @@ export function mount(model, el, { fill = false } = {}) {
   const view = { ...HOME, follow: true }, clock = silentClock(scene.frames / scene.fps, () => visible);
   let state, motion, samples, poses, frame = 0, chosen = 0, playing = false, visible = true, ticking = 0, sent = -1, told = 0;
   let look = null, joint = null, hover = null, target = null, held_spot = null, grip = null, grips = 0, pull = null;
-  let number = 0, unsent = null, drag_number = 0, patience = 0, pressed = 0, begun = 0, silence = 0, gone = false;
+  let pressed = 0, begun = 0; // Generate: the number of its message, and when
+  const way = wire(model, () => state.heard, () => model.get("busy"), (gone) => {
+    pressed = 0; if (gone) target = null;
+    words(); say(gone ? GONE : MUTE); draw();
+  });
 
   // ---- what Python told
   const read = (where, frames) => unpack({ get: (name) => ({ scene: { joints: scene.joints, figures: frames.map((n) => ({ frames: n })) },
@@ -129,48 +135,23 @@ export function mount(model, el, { fill = false } = {}) {
   const say = (text) => { said.textContent = text; };
 
   // ---- what the page asks
-  // Wishes are sent as differences (how far a joint is moved since it was gripped, pinned or not the other way round): the
-  // pose that the page shows may be an old one, and Python adds them to its own.
-  const asking = () => live && !gone && number > state.heard, generating = () => !gone && (pressed > 0 || model.get("busy"));
+  const generating = () => !way.gone() && (pressed > 0 || model.get("busy"));
   function ask(content, what) {
-    if (!live) { say(`${what} ${ASLEEP}`); return false; }
-    handOn(); // what was dragged before this comes first
-    return send(content);
-  }
-  function send(content) {
-    const next = Math.max(number, state.heard) + 1;
-    if (!reach({ ...content, number: next })) return false;
-    number = next; gone = false;
-    clearTimeout(silence); silence = setTimeout(miss, SILENCE);
-    return true;
-  }
-  function reach(content) { // a kernel that was shut down or started anew takes no messages: `send` throws
-    try { model.send(content); return true; } catch { /* told below */ }
-    gone = true; pressed = 0; unsent = target = null; clearTimeout(silence); words(); say(GONE); draw();
-    return false;
-  }
-  function miss() { // no answer so far
-    if (stop.signal.aborted || state.heard >= number) return;
-    if (model.get("busy")) { if (reach({ do: "ping" })) silence = setTimeout(miss, SILENCE); return; } // it works, if it is there still
-    pressed = 0; words(); say(MUTE);
+    if (live) return way.ask(content);
+    say(`${what} ${ASLEEP}`);
+    return 0;
   }
   function take(j) { // a grip is one change to Undo: a run of key presses, or one drag
-    handOn();
-    const going = target && grip && grip.frame === frame && grip.joint === j;
-    grip = { id: grips = Math.max(Date.now(), grips + 1), frame, joint: j, by: [0, 0, 0], from: going ? target : figure.pose(frame)[j] };
+    way.handOn();
+    const more = target && grip && grip.frame === frame && grip.joint === j; // not answered yet
+    grips = Math.max(Date.now(), grips + 1);
+    grip = { id: grips, frame, joint: j, by: [0, 0, 0], from: more ? target : figure.pose(frame)[j] };
     return grip;
   }
-  function pullBy(by, held, name) { // in all since the grip began: whatever becomes of the messages before, the last one holds all of it
+  function pullBy(by, held, name) { // metres in all since the grip began
     if (!live) return say(`${name} ${ASLEEP}`);
     held.by = by; target = along(held.from, by, 1); draw();
-    unsent = { do: "drag", frame: held.frame, joint: held.joint, by, grip: held.id };
-    if (!patience) handOn();
-  }
-  function handOn() { // one drag on its way at a time, so that a slow kernel is not flooded; without an answer the next one goes all the same
-    const content = unsent; unsent = null;
-    if (!content || !send(content)) return;
-    drag_number = number; clearTimeout(patience);
-    patience = setTimeout(() => { patience = 0; if (!stop.signal.aborted) handOn(); }, PATIENCE);
+    way.drag({ do: "drag", frame: held.frame, joint: held.joint, by, grip: held.id });
   }
   function toggle(t) {
     if (live) return ask({ do: "toggle", frame: t, chosen }, "");
@@ -185,8 +166,9 @@ export function mount(model, el, { fill = false } = {}) {
     if (generating()) return;
     if (!live) return say(`Generating ${ASLEEP}`);
     halt(frame); begun = performance.now();
-    if (!ask({ do: "generate", after: state.heard, count: Number(count.value), resample: Number(strength.value) }, "")) return;
-    pressed = number; words(); count_up();
+    const wanted = { count: Number(count.value), resample: Number(strength.value) };
+    pressed = ask({ do: "generate", after: state.heard, ...wanted }, "");
+    if (pressed) { words(); count_up(); }
   }
   function count_up() { // so that one sees that something goes on
     if (!pressed || stop.signal.aborted) return;
@@ -205,11 +187,11 @@ export function mount(model, el, { fill = false } = {}) {
   }
   function select(j) {
     joint = j; target = null; grip = null;
-    if (j != null && !poses.has(frame) && !asking()) say(`${scene.names[j]} can be moved once this frame is pinned (Enter).`);
+    if (j != null && !poses.has(frame) && !way.asking()) say(`${scene.names[j]} can be moved once this frame is pinned (Enter).`);
     words(); draw();
   }
   function nudge(direction, sign, big) { // presses in quick succession are one change; one that leads back is another
-    if (!poses.has(frame) && !asking()) return say(`Frame ${frame} is not pinned: press Enter to pin it, then move its joints.`);
+    if (!poses.has(frame) && !way.asking()) return say(`Frame ${frame} is not pinned: press Enter to pin it, then move its joints.`);
     const now = performance.now(), step = direction.map((v) => v * sign * CENTIMETRE * (big ? 5 : 1));
     const going = grip && grip.step && now - grip.time < NUDGES && dot(grip.step, step) >= 0;
     const held = going ? grip : take(joint);
@@ -299,7 +281,7 @@ export function mount(model, el, { fill = false } = {}) {
     pull.moved = true; pullBy(dragged(look, pull.held.from, dx, dy), pull.held, "Dragging a joint");
   });
   for (const name of ["pointerup", "pointercancel"]) listen(canvas, name, () => {
-    if (pull && !pull.turn) { held_spot = null; if (!asking() && !unsent) target = null; }
+    if (pull && !pull.turn) { held_spot = null; if (!way.dragging()) target = null; }
     pull = null; draw();
   });
   listen(canvas, "pointerleave", () => { if (hover != null) { hover = null; draw(); } });
@@ -325,10 +307,8 @@ export function mount(model, el, { fill = false } = {}) {
     if (!load()) return;
     if (state.heard !== last_heard || !pressed) say(state.message);
     if (pressed && state.heard >= pressed) { pressed = 0; say(state.message); }
-    if (state.heard >= drag_number) {
-      clearTimeout(patience); patience = 0;
-      if (unsent) handOn(); else if (!pull) target = null;
-    }
+    way.answered();
+    if (!pull && !way.dragging()) target = null;
     words(); draw();
   };
   const onChosen = () => { chosen = clamp(model.get("chosen"), 0, Math.max(samples.length - 1, 0)); words(); draw(); };
@@ -341,11 +321,11 @@ export function mount(model, el, { fill = false } = {}) {
   [motion] = read("", [scene.frames]);
   const ends = [0, 2].map((k) => { const v = Array.from({ length: scene.frames }, (_, t) => motion.root(t)[k]); return [Math.min(...v), Math.max(...v)]; });
   motion.middle = ends.map(([a, b]) => (a + b) / 2); motion.extent = Math.hypot(...ends.map(([a, b]) => b - a));
-  load(); number = state.heard; frame = sent = clamp(model.get("frame"), 0, last); clock.seek(frame / scene.fps);
+  load(); frame = sent = clamp(model.get("frame"), 0, last); clock.seek(frame / scene.fps);
   onControls(); say(state.message); draw();
   sizes.observe(canvas); sights.observe(canvas); themes.observe(document.body, { attributes: true });
   return () => {
-    stop.abort(); clearTimeout(silence); clearTimeout(patience); cancelAnimationFrame(ticking); [sizes, sights, themes].forEach((o) => o.disconnect());
+    stop.abort(); way.close(); cancelAnimationFrame(ticking); [sizes, sights, themes].forEach((o) => o.disconnect());
     for (const [name, f] of Object.entries(changes)) model.off(name, f);
     root.remove();
   };
