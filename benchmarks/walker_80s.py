@@ -29,7 +29,7 @@ from data_synth.walking import dataset, random_control, walk  # noqa: E402
 from data_synth.walking.styles import STYLES  # noqa: E402
 from motiondiff_edu.motion.augment import mirror  # noqa: E402
 from motiondiff_edu.motion.clip import Clip  # noqa: E402
-from motiondiff_edu.recipes.budget import train_for  # noqa: E402
+from motiondiff_edu.recipes.budget import BUDGET, train_for  # noqa: E402
 from tools.results.walks.budget import SMALL  # noqa: E402
 from tools.results.walks.scores import score  # noqa: E402
 from tools.results.walks.trials import (  # noqa: E402
@@ -73,7 +73,8 @@ def measure(name: str, seconds: float, unseen: int, seed: int) -> list[dict]:
     prefix, make = SETS[name]
     clips = [version for clip in make(CLIPS, 20.0, 11) for version in (clip, mirror(clip))]
     trials = Trials.of(make(unseen, SECONDS + T_H / FPS, UNSEEN))
-    walker, steps = train_for(seconds, clips, SMALL, seed=seed, batch=16)
+    recipe = replace(BUDGET, name=name, config=SMALL, seed=seed, batch=16)
+    walker, steps = train_for(seconds, clips, recipe)
     weights = sum(p.numel() for p in walker.model.parameters())
     print(f"{name}: {steps} steps in {seconds:g} CPU-seconds, {weights} weights", flush=True)
     walks = walker_generate(walker)(trials.past, trials.control, 0)

@@ -5,8 +5,8 @@
                         halve -> [res, ask] ------> [res, ask] -> double
                                    halve -> [res, ask] -> double
 
-res: two convolutions over time, told the step s.  ask: cross-modal attention (`Ask`), keys and
-values from the music.
+res: two convolutions over time, scaled and shifted by the step s (`ResBlock`).
+ask: cross-modal attention, keys and values from the music (`CrossAttentionBlock`).
 Source: MoFusion 3.1-3.3, Fig. 3.  Notebook: 12
 """
 
@@ -117,7 +117,7 @@ class ResBlock(nn.Module):
         return self.around(x) + h
 
 
-class Ask(nn.Module):
+class CrossAttentionBlock(nn.Module):
     """Cross-modal attention, then a feed-forward layer: queries from the motion, keys and values
     from the music.
 
@@ -188,7 +188,7 @@ class MoFusion(nn.Module):
         self.into = FrameConv(config.D, first)
 
         def block(inputs, outputs):
-            ask = Ask(outputs, config.heads, context if config.C else outputs)
+            ask = CrossAttentionBlock(outputs, config.heads, context if config.C else outputs)
             return nn.ModuleDict({"res": ResBlock(inputs, outputs, width), "ask": ask})
 
         self.down = nn.ModuleList(block(a, b) for a, b in pairwise((first, *widths)))

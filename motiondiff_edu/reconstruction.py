@@ -71,7 +71,7 @@ def repair_steps(
     generator: torch.Generator,
     steps: int | None = 10,
     keep: int | None = None,
-    settle: Callable[[Tensor, Tensor, Tensor], Tensor] | None = None,
+    correct: Callable[[Tensor, Tensor, Tensor], Tensor] | None = None,
 ) -> Iterator[Round]:
     """Fill the holes of `past` (metres), round by round, until they move by less than `tolerance`
     metres (RMS).
@@ -81,8 +81,8 @@ def repair_steps(
     `rounds` at the latest: a sampler's own spread may be above the tolerance. `way_back`: the
     paper's, or one of `beyond.back_with_known`, which heed what is known. Of each window `keep` poses are kept,
     by default all T_p; keep=1 is the paper's rollout (ten times dearer, and farther off).
-    `settle(past, known, ahead)` mends the filled past after each round:
-    `editing.repairs.with_bones`, for one.
+    `correct(past, known, ahead)` is applied to the filled past after each round, such as
+    `editing.repairs.with_bones`.
     Raises ValueError for what does not fit.  Source: MoDiff III-E, Fig. 6; the stop rule is ours.
     Notebook: 10
     """
@@ -119,7 +119,7 @@ def repair_steps(
             .to(past)
         )
         before, filled = filled, torch.where(known, past, back)
-        filled = settle(filled, known, ahead) if settle else filled
+        filled = correct(filled, known, ahead) if correct else filled
         moved = (filled - before).square().flatten(1).sum(1)
         change = (moved / missing.flatten(1).sum(1).clamp(min=1)).sqrt()
         yield Round(number, filled, change)

@@ -127,7 +127,7 @@ def test_one_sample_at_rest_does_not_end_the_others():
     assert len(found) == 3 and found[0].change[0] == 0 < found[0].change[1]
 
 
-def test_what_settles_a_past_is_in_it_and_in_its_change():
+def test_what_corrects_a_past_is_in_it_and_in_its_change():
     past, control = material()
     known = torch.ones(past.shape, dtype=torch.bool)
     known[:, 1:3] = False
@@ -141,12 +141,12 @@ def test_what_settles_a_past_is_in_it_and_in_its_change():
         "guess": past,
         "generator": seeded(),
     }  # a walker that knows the way changes nothing
-    (plain,), (settled,) = (
-        list(repair_steps(Turning(), past, known, control, settle=s, **options))
+    (plain,), (corrected,) = (
+        list(repair_steps(Turning(), past, known, control, correct=s, **options))
         for s in (None, raised)
     )
-    torch.testing.assert_close(settled.past, plain.past + 1.0 * ~known)
-    torch.testing.assert_close(settled.change, torch.ones(3), atol=1e-4, rtol=0)
+    torch.testing.assert_close(corrected.past, plain.past + 1.0 * ~known)
+    torch.testing.assert_close(corrected.change, torch.ones(3), atol=1e-4, rtol=0)
     assert plain.change.max() < 1e-4
 
 

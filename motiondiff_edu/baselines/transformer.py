@@ -13,7 +13,7 @@ from torch import Tensor, nn
 
 from ..cross_modal_attention import CrossModalAttention, angles_of
 from ..modiff import step_embedding
-from ..mofusion import Ask, Music, MusicEncoder
+from ..mofusion import CrossAttentionBlock, Music, MusicEncoder
 from ..prediction import TARGETS
 
 
@@ -66,7 +66,7 @@ class Layer(nn.Module):
     def __init__(self, width: int, heads: int):
         super().__init__()
         self.norm, self.attention = nn.LayerNorm(width), CrossModalAttention(width, heads)
-        self.ask = Ask(width, heads, width)
+        self.ask = CrossAttentionBlock(width, heads, width)
 
     def forward(
         self, x: Float[Tensor, "B T C"], music: Music, bias, between, to_music

@@ -97,8 +97,8 @@ def with_bones(
     """The past, its missing joints moved until bones are as long as they are in `walked` (median
     over its frames).
 
-    For `reconstruction.repair_steps(settle=with_bones)`: a made joint beside a known one else tears
-    the bone between.
+    For `reconstruction.repair_steps(correct=with_bones)`: otherwise the bone between a generated
+    and a given joint changes its length.
     Source: ours.  Notebook: 10
     """
     joints, ahead = (x.double().unflatten(-1, (-1, 3)).numpy() for x in (past, walked))

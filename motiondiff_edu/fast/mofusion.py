@@ -14,7 +14,7 @@ from torch.nn import functional as F
 
 from ..cross_modal_attention import turned
 from ..modiff import step_embedding
-from ..mofusion import Ask, MoFusion, ResBlock, View
+from ..mofusion import CrossAttentionBlock, MoFusion, ResBlock, View
 
 
 @dataclass(frozen=True, eq=False)
@@ -111,8 +111,8 @@ def _res(block: ResBlock, x: Tensor, scale: Tensor, shift: Tensor, mask: Tensor)
     return block.conv_out(F.silu(h).mul_(mask)).add_(block.around(x))
 
 
-def _ask(block: Ask, x: Tensor, keys: Tensor, values: Tensor, view: View) -> Tensor:
-    """Ask.forward, with keys and values at hand."""
+def _ask(block: CrossAttentionBlock, x: Tensor, keys: Tensor, values: Tensor, view: View) -> Tensor:
+    """CrossAttentionBlock.forward, with keys and values at hand."""
     attention = block.attention
     q = turned(attention.split(attention.q(block.norm(x))), view.turns[x.shape[-1]][0])
     mixed = F.scaled_dot_product_attention(q, keys, values, attn_mask=view.bias)

@@ -65,7 +65,7 @@ def attention_maps(
         x0, torch.tensor([s]), dancer.schedule, torch.randn(x0.shape, generator=generator)
     )
     with watch(model) as seen:
-        music = model.listen(*dancer.heard(mel[None], T))
+        music = model.listen(*dancer.mel_input(mel[None], T))
         model(x_s, torch.tensor([s]), music)
     maps = {
         name: seen[layer][0][0]

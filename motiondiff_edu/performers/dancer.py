@@ -62,11 +62,11 @@ class Dancer:
         """The fast twin, built at first use (of the U-Net; a baseline has none)."""
         return FastMoFusion(self.model)
 
-    def heard(
+    def mel_input(
         self, mel: Float[Tensor, "B M C"], frames: int
     ) -> tuple[Float[Tensor, "B M2 C"], Float[Tensor, "M2"]]:
-        """What sounds during so many frames, in the network's units, and when: what it is to
-        `listen` to."""
+        """The network's input for so many frames: the standardised Mel frames, and their times in
+        seconds."""
         mel = self.mel_scaler.transform(mel[:, : mel_frames(frames)])
         return mel, frame_times(mel.shape[1]).float()
 
@@ -87,9 +87,9 @@ class Dancer:
         if mel is None:
             return self._as_eps(self.model)
         if fast and isinstance(self.model, MoFusion):
-            listening = self.fast.listen(*self.heard(mel, frames), frames)
+            listening = self.fast.listen(*self.mel_input(mel, frames), frames)
             return self._as_eps(lambda x_s, s: self.fast.denoise(x_s, s, listening))
-        music = self.model.listen(*self.heard(mel, frames))
+        music = self.model.listen(*self.mel_input(mel, frames))
         return self._as_eps(lambda x_s, s: self.model(x_s, s, music))
 
     def _as_eps(self, network):
@@ -167,7 +167,7 @@ class Dancer:
 
     def _regress(self, mel: Float[Tensor, "B M C"], frames: int) -> Float[Tensor, "B T 21 3"]:
         """The one dance that a regression has for each song."""
-        music = self.model.listen(*self.heard(mel, frames))
+        music = self.model.listen(*self.mel_input(mel, frames))
         nothing = mel.new_zeros(len(mel), frames, self.config.D)
         out = self.model(nothing, torch.zeros(len(mel), dtype=torch.long), music)
         return to_positions(self.motion_scaler.inverse(out))

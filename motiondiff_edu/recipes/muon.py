@@ -11,7 +11,7 @@ from jaxtyping import Float
 from torch import Tensor, nn
 
 from ..cross_modal_attention import Block
-from ..mofusion import Ask, ResBlock
+from ..mofusion import CrossAttentionBlock, ResBlock
 
 
 def optimizer_for(model: nn.Module, name: str):
@@ -66,7 +66,9 @@ class MuonAndAdam:
 
     def __init__(self, model: nn.Module, lr: float = 1e-3):
         blocks = [
-            module for module in model.modules() if isinstance(module, (Block, ResBlock, Ask))
+            module
+            for module in model.modules()
+            if isinstance(module, (Block, ResBlock, CrossAttentionBlock))
         ]
         matrices = {id(p) for block in blocks for p in block.parameters() if p.ndim == 2}
         first = [p for p in model.parameters() if id(p) in matrices]

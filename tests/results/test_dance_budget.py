@@ -43,10 +43,10 @@ def tiny(monkeypatch):
 
 def test_each_variant_differs_from_its_base_in_what_its_words_say():
     differing = {
-        "no-feet": {"feet"},
-        "poses": {"changes"},
+        "no-feet": {"loss_weights.toes"},
+        "poses": {"loss_weights.changes"},
         "eps": {"config.target", "config.skip"},
-        "eps-weighted": {"high_noise"},
+        "eps-weighted": {"loss_weights.high_noise"},
         "v": {"config.target", "config.skip"},
         "constant": {"kinematic"},
         "alpha_bar": {"kinematic"},

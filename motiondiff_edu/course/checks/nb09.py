@@ -194,13 +194,13 @@ def _products(xx, keep: float, share: float, floor: float):
 
 @check
 def rate_schedule(mine):
-    """mine(done, rates, calm): 0 while calm, then the rates one after the other."""
+    """mine(done, rates, start): 0 until `start`, then the rates one after the other."""
     rates, times = (0.1, 0.2, 0.4), torch.tensor([0.0, 0.39, 0.41, 0.59, 0.61, 0.79, 0.81, 0.999])
     got = [float(mine(float(t), rates, 0.4)) for t in times]
     steps = torch.tensor([0, 0, 0.1, 0.1, 0.2, 0.2, 0.4, 0.4])
     evenly = ((times - 0.4).clamp(min=0) / 0.6) * 0.4
     mistakes = {
-        "the calm part is missing: the rates begin at once": torch.tensor(
+        "the rates begin at once: until `start` the rate is 0": torch.tensor(
             [0.1, 0.2, 0.2, 0.2, 0.2, 0.4, 0.4, 0.4]
         ),
         "the rate jumps to the last one at once; it rises step by step": torch.where(
@@ -213,15 +213,18 @@ def rate_schedule(mine):
         (
             "the first rate never comes, or comes too late: each has a third of what is left"
         ): torch.tensor([0, 0, 0, 0, 0.1, 0.1, 0.2, 0.2]),
-        "the rates share what is left after the calm part, not the whole training": torch.tensor(
+        "the rates share what is left after `start`, not the whole training": torch.tensor(
             [0, 0, 0.2, 0.2, 0.2, 0.4, 0.4, 0.4]
         ),
-        "the rates are 0 after the calm part and not before it": torch.tensor(
+        "the rates are 0 after `start` and not before it": torch.tensor(
             [0.1, 0.1, 0, 0, 0, 0, 0, 0]
         ),
     }
     expect_close(
-        got, steps, "the rate at 0, .39, .41, .59, .61, .79, .81 and .999, calm until .4", mistakes
+        got,
+        steps,
+        "the rate at 0, .39, .41, .59, .61, .79, .81 and .999, with start = .4",
+        mistakes,
     )
     expect_close(
         mine(1.0, rates, 0.4),
@@ -230,6 +233,6 @@ def rate_schedule(mine):
         {"no rate comes after the last": 0.0},
     )
     return (
-        "With the paper's rates, .05 to .25, and calm = .5, "
+        "With the paper's rates, .05 to .25, and start = .5, "
         "half of the training never meets a noised past."
     )

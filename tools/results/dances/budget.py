@@ -19,7 +19,13 @@ from motiondiff_edu.baselines.transformer import TransformerConfig
 from motiondiff_edu.mofusion import MOFUSION_SMALL
 from motiondiff_edu.performers.dance_windows import DanceWindows
 from motiondiff_edu.performers.dancer import ETA, STEPS, Dancer
-from motiondiff_edu.recipes.dancers import KINEMATIC, X0, DanceRecipe
+from motiondiff_edu.recipes.dancers import (
+    DANCER_PLAIN,
+    KINEMATIC,
+    X0,
+    DanceLossWeights,
+    DanceRecipe,
+)
 from motiondiff_edu.recipes.train_dancer import train_dancer, training_windows
 
 from ..walks.scores import Figure
@@ -40,7 +46,9 @@ PLAIN = TransformerConfig()  # 2.64 M numbers, the U-Net has 2.65 M
 EPS = replace(
     MOFUSION_SMALL, target="eps", skip=True
 )  # a network without it learns no eps in so few steps
-NO_FEET = {"feet": 0.0}  # errors of eps or v are no positions: no toes could be followed in them
+NO_FEET = {
+    "loss_weights": DanceLossWeights(changes=5.0)
+}  # errors of eps or v are no positions: no toes could be followed in them
 # name: (what differs, in words, from which other one, the network, settings of the training)
 VARIANTS = {
     "x0": (LIKE, "", X0, {}),
@@ -49,14 +57,14 @@ VARIANTS = {
         "errors of poses alone, as the paper has it",
         "no-feet",
         X0,
-        NO_FEET | {"changes": 0.0},
+        {"loss_weights": DanceLossWeights()},
     ),
     "eps": ("target eps, with its skip", "no-feet", EPS, NO_FEET),
     "eps-weighted": (
         "high noise weighted, up to 21 times",
         "eps",
         EPS,
-        NO_FEET | {"high_noise": 20.0},
+        {"loss_weights": DanceLossWeights(changes=5.0, high_noise=20.0)},
     ),
     "v": ("target v, with the skip", "no-feet", replace(EPS, target="v"), NO_FEET),
     "constant": ("kinematic losses, all steps alike", "x0", X0, KIN["constant"]),
@@ -106,7 +114,8 @@ def recipe_of(name: str, budget: Budget) -> DanceRecipe:
     sizes = {
         key: getattr(budget, key) for key in ("steps", "songs", "seconds", "batch", "save_every")
     }
-    return DanceRecipe(f"dance-budget.{name}", config, shake=0.0, **sizes, **settings)
+    settings = sizes | settings | {"config": config, "gain_noise": 0.0}
+    return replace(DANCER_PLAIN, name=f"dance-budget.{name}", **settings)
 
 
 @cache

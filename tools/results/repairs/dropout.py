@@ -128,7 +128,11 @@ def map_recipe(name: str, budget: MapBudget) -> Recipe:
     rate = RATES[name]
     sizes = {"steps": budget.steps, "clips": budget.clips, "save_every": budget.save_every}
     return replace(
-        MEND_PLAIN, name=f"mend-map.{name}", dropout=(rate,) if rate else (), calm=0.0, **sizes
+        MEND_PLAIN,
+        name=f"mend-map.{name}",
+        dropout=(rate,) if rate else (),
+        dropout_start=0.0,
+        **sizes,
     )
 
 

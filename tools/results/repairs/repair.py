@@ -58,7 +58,7 @@ def repaired(
     control = torch.from_numpy(trials.control[:, : 2 * past.shape[1]]).float()
     start = None if guess is None else torch.from_numpy(guess).float().flatten(2)
     options = {"rounds": size.rounds, "steps": size.steps, "way_back": way_back, "guess": start}
-    options["settle"] = with_bones if bones else None
+    options["correct"] = with_bones if bones else None
     made = [
         repair(walker, past, known, control, generator=torch.Generator().manual_seed(k), **options)
         for k in range(size.samples)

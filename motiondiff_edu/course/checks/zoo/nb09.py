@@ -183,39 +183,39 @@ def shares_inverted(xx, past, rate, alpha_bar):
     return _expected(xx, past, keep, share, (1 - rate) * (1 - alpha_bar).mean())
 
 
-def no_calm(done, rates, calm):
+def without_start(done, rates, start):
     """Begins with the first rate at once."""
     return rates[min(int(done * len(rates)), len(rates) - 1)]
 
 
-def at_once(done, rates, calm):
+def at_once(done, rates, start):
     """From nothing to the highest rate in one step."""
-    return 0.0 if done < calm else rates[-1]
+    return 0.0 if done < start else rates[-1]
 
 
-def downwards(done, rates, calm):
+def downwards(done, rates, start):
     """The hardest first."""
     return (
         0.0
-        if done < calm
-        else rates[::-1][min(int((done - calm) / (1 - calm) * len(rates)), len(rates) - 1)]
+        if done < start
+        else rates[::-1][min(int((done - start) / (1 - start) * len(rates)), len(rates) - 1)]
     )
 
 
-def gliding(done, rates, calm):
+def gliding(done, rates, start):
     """Rises evenly where the paper rises in steps."""
-    return max(0.0, (done - calm) / (1 - calm)) * rates[-1]
+    return max(0.0, (done - start) / (1 - start)) * rates[-1]
 
 
-def over_the_whole(done, rates, calm):
-    """Shares the whole training among the rates, so that the first ones pass while it is calm."""
-    return 0.0 if done < calm else rates[min(int(done * len(rates)), len(rates) - 1)]
+def over_the_whole(done, rates, start):
+    """Shares the whole training among the rates, so that the first ones pass before the start."""
+    return 0.0 if done < start else rates[min(int(done * len(rates)), len(rates) - 1)]
 
 
-def nothing_after_the_last(done, rates, calm):
+def nothing_after_the_last(done, rates, start):
     """When all is done there is no entry of the list left."""
-    k = int((done - calm) / (1 - calm) * len(rates) + 1e-9)
-    return 0.0 if done < calm or k >= len(rates) else rates[k]
+    k = int((done - start) / (1 - start) * len(rates) + 1e-9)
+    return 0.0 if done < start or k >= len(rates) else rates[k]
 
 
 ZOO = {
@@ -248,7 +248,7 @@ ZOO = {
         "shares inverted": shares_inverted,
     },
     "rate_schedule": {
-        "no calm": no_calm,
+        "no start": without_start,
         "at once": at_once,
         "downwards": downwards,
         "gliding": gliding,
