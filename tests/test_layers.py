@@ -17,9 +17,8 @@ CORE = {
 }  # fmt: skip
 CORE_LINES, CORE_FILES = 1800, 12
 LAYER = {"core": 0, "rest": 1, "viz": 2, "widgets": 3}
-# the commands open notebooks and look at the machine; they may reach everywhere, from within
-# functions
-COMMANDS = {"__main__", "doctor"}
+# the front door and the commands may reach everywhere, from within functions
+COMMANDS = {"__init__", "__main__", "doctor"}
 
 FILES = sorted(path for path in PACKAGE.rglob("*.py"))
 ALL = FILES + sorted((ROOT / "data_synth").rglob("*.py"))
@@ -71,7 +70,9 @@ def by_layer(*names: str) -> list[Path]:
     return [
         path
         for path in FILES
-        if layer(module_of(path)) in names and module_of(path) not in COMMANDS
+        if layer(module_of(path)) in names
+        and module_of(path) not in COMMANDS
+        and not module_of(path).startswith("_commands")
     ]
 
 

@@ -11,7 +11,9 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Bool, Float
 from PIL import Image, ImageDraw, ImageFont
+from tqdm.auto import tqdm
 
+from ..motion.progress import DELAY
 from ..motion.skeleton import BONES, HEELS, TOES
 from ..viz import body
 
@@ -209,7 +211,7 @@ def film(
 ) -> Iterator[Image.Image]:
     """Every frame, the figures side by side, each in a field of `size` with label, tense and
     time."""
-    for t in range(max(map(len, figures))):
+    for t in tqdm(range(max(map(len, figures))), desc="drawing", delay=DELAY, leave=False):
         picture = Image.new("RGB", (size[0] * len(figures), size[1]), body.PAPER)
         pen = ImageDraw.Draw(picture)
         for i, figure in enumerate(figures):
