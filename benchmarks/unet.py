@@ -102,7 +102,7 @@ def samplers(dancer: Dancer, nets: dict[str, torch.nn.Module], B: int, N: int) -
 
     @torch.inference_mode()
     def ours_once():
-        return dancer.dance(mel, N, steps=STEPS, eta=0.0)
+        return dancer.dance_mel(mel, N, steps=STEPS, eta=0.0)
 
     @torch.inference_mode()
     def lucidrains_once():

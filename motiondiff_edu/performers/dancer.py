@@ -14,16 +14,19 @@ from jaxtyping import Float
 from torch import Tensor
 
 from ..baselines.transformer import DanceTransformer, TransformerConfig
-from ..conditions.audio_files import read_audio
+from ..conditions.audio_files import samples_of
 from ..conditions.music import FRAMES_PER_SECOND, SAMPLE_RATE, frame_times, log_mel
 from ..ddpm import Schedule
 from ..fast.mofusion import FastMoFusion
 from ..fast.samplers import ddim_steps, ddpm_steps
 from ..mofusion import MoFusion, MoFusionConfig
+from ..motion.checks import checked_count, checked_seconds
 from ..motion.dance_frame import to_positions
+from ..motion.motion import Motion
 from ..motion.scaler import Scaler
 from ..prediction import denoiser_of
 from .dance_windows import FPS, mel_frames
+from .watched import watched
 
 STEPS, ETA = 50, 0.5  # of DDIM, unless told
 # standard deviations from the mean pose: an eps network's x0_hat is held within, as DDPM's code
@@ -95,31 +98,44 @@ class Dancer:
     def _as_eps(self, network):
         return denoiser_of(network, self.schedule, self.config.target)
 
-    def dance_to(
+    def dance(
         self,
-        sound: Float[Tensor, "N"] | Float[np.ndarray, "N"] | str | Path,
-        seconds: float | None = None,
+        sound: str | Path | np.ndarray | Tensor,
         *,
+        seconds: float | None = None,
+        samples: int = 1,
         seed: int = 0,
-        **options,
-    ) -> tuple[Float[np.ndarray, "T 21 3"], Float[np.ndarray, "N2"]]:
-        """Dance to a sound file, or to mono sound at 16 kHz; returns the dance (metres) and the
-        sound danced to.
+        steps: int | None = STEPS,
+        progress: bool = True,
+    ) -> Motion | list[Motion]:
+        """Dance to a sound file, or to mono sound at 16 kHz (N,) from -1 to 1; the dance has the
+        sound along.
 
-        `seconds`: of the sound, from its start, by default all; `options` as for `dance`.
-        Raises AudioError for a file that cannot be read (`conditions.audio_files`).   Notebook: 00,
-        12
+        `seconds` of the sound from its start, all of it by default and where it is shorter. With
+        `samples` above 1 a list of so many different dances. `steps` of DDIM, or None for DDPM.
+        Raises AudioError for sound that cannot be danced to (`conditions.audio_files`), ValueError
+        for numbers that cannot be meant.  Source: MoFusion 3.  Notebook: 00, 12
         """
-        heard = (
-            read_audio(sound) if isinstance(sound, (str, Path)) else torch.as_tensor(sound).float()
-        )
-        heard = heard if seconds is None else heard[: round(seconds * SAMPLE_RATE)]
-        draw, frames = torch.Generator().manual_seed(seed), int(len(heard) / SAMPLE_RATE * FPS)
-        dance = self.dance(log_mel(heard)[None], frames, generator=draw, **options)[0]
-        return dance.double().numpy(), heard.numpy()
+        count = checked_count(samples, "samples")
+        longest = None if seconds is None else round(checked_seconds(seconds) * SAMPLE_RATE)
+        heard = samples_of(sound)[:longest]
+        frames = int(len(heard) / SAMPLE_RATE * FPS)
+        if not frames:
+            raise ValueError(f"{len(heard) / SAMPLE_RATE:.3f} s of sound are less than a frame")
+        mel = log_mel(heard)[None].expand(count, -1, -1)
+        draw = torch.Generator().manual_seed(seed)
+        evaluations = min(steps or self.schedule.S, self.schedule.S)
+        with watched(self, evaluations, "dancing", progress) as one:
+            dances = one.dance_mel(mel, frames, generator=draw, steps=steps).double().cpu().numpy()
+        name = Path(sound).stem if isinstance(sound, (str, Path)) else "sound"
+        made = [
+            Motion(dance, FPS, audio=heard.numpy(), sample_rate=SAMPLE_RATE, source=f"{name}, danced to")
+            for dance in dances
+        ]
+        return made if samples > 1 else made[0]
 
     @torch.inference_mode()
-    def dance(
+    def dance_mel(
         self,
         mel: Float[Tensor, "B M C"],
         frames: int | None = None,

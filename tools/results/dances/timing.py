@@ -55,7 +55,7 @@ class Clock:
     def dance(self) -> None:
         """As a user has it: DDIM, with the fast twin where there is one."""
         heard = self.dancer.mel_scaler.inverse(self.mel)
-        self.dancer.dance(heard, self.x_s.shape[1], generator=torch.Generator().manual_seed(0))
+        self.dancer.dance_mel(heard, self.x_s.shape[1], generator=torch.Generator().manual_seed(0))
 
 
 def spent(call) -> float:
