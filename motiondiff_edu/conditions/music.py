@@ -122,7 +122,7 @@ def log_mel(audio: Samples) -> Float[Tensor, "*B M 80"]:
 
 def frame_times(M: int) -> Float[Tensor, "M"]:
     """When each of M Mel frames sounds: the seconds of its centre, 31.25 a second.  Notebook: 11"""
-    return torch.arange(M, dtype=torch.float64) / FRAMES_PER_SECOND
+    return torch.arange(M, dtype=torch.float64, device="cpu") / FRAMES_PER_SECOND
 
 
 def crop_seconds(

@@ -5,10 +5,10 @@ import time
 
 import torch
 
-from ..beyond.footholds import network
 from ..beyond.schedules import SCHEDULES
 from ..modiff import MoDiffConfig
 from ..motion.clip import Clip
+from ..performers.networks import network
 from ..performers.walker import Walker
 from ..performers.windows import Windows, window_loss
 from ..training import TrainState, train_steps

@@ -12,7 +12,8 @@ from ..beyond.schedules import shifted
 from ..conditions.music import log_mel
 from ..ddpm import Schedule, cosine_schedule
 from ..performers.dance_windows import DanceWindows, dance_loss
-from ..performers.dancer import Dancer, network
+from ..performers.dancer import Dancer
+from ..performers.networks import network
 from ..training import LossFn
 from .dancers import DanceRecipe
 from .train_recipe import train_recipe

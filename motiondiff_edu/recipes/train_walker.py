@@ -7,11 +7,11 @@ from pathlib import Path
 import numpy as np
 import torch
 
-from ..beyond.footholds import network
 from ..beyond.schedules import SCHEDULES
 from ..diffusion_dropout import Dropout, dropout_rate
 from ..motion.augment import mirror, reverse_time
 from ..motion.clip import Clip
+from ..performers.networks import network
 from ..performers.walker import Walker
 from ..performers.windows import Windows, window_loss
 from .train_recipe import train_recipe

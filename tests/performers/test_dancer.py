@@ -181,3 +181,37 @@ def test_dancing_to_sound(tmp_path: Path):
     assert from_file.shape == out.shape and abs(heard - (sound - sound.mean()).numpy()).max() < 1e-3
     with pytest.raises(ValueError, match="spelling"):
         one.dance_to(tmp_path / "nothing.wav")
+
+
+def test_a_dancer_moved_is_a_copy_that_dances_alike():
+    one = dancer()
+    moved = one.to("cpu")
+    assert moved.model is not one.model and moved.card == one.card
+    both = [d.dance(mel(), 30, generator=seeded(), steps=3) for d in (one, moved)]
+    torch.testing.assert_close(*both)
+
+
+@pytest.mark.parametrize("steps", [3, None])
+def test_all_lies_where_the_dancer_is_and_noise_is_drawn_where_the_generator_is(steps):
+    """With another default device, whatever is made without regard to the inputs lands beside
+    them."""
+    deterministic = TransformerConfig(**{**PLAIN.as_dict(), "deterministic": True})
+    for config in (UNET, PLAIN, replace(UNET, target="eps"), deterministic):
+        one = dancer(config)
+        here, draw = one.dance(mel(), 30, generator=seeded(), steps=steps), seeded()
+        heard = mel()
+        with torch.device("meta"):
+            there = one.dance(heard, 30, generator=draw, steps=steps)
+        torch.testing.assert_close(there, here)
+
+
+def test_music_is_brought_to_where_the_dancer_is():
+    one, brought = dancer(), []
+
+    class Elsewhere(torch.Tensor):
+        def to(self, *args, **kwargs):
+            brought.append(args[0])
+            return super().to(*args, **kwargs).as_subclass(torch.Tensor)
+
+    one.heard(mel().as_subclass(Elsewhere), 20)
+    assert brought == [one.device]
