@@ -132,7 +132,7 @@ def frame_times(M: int) -> Float[Tensor, "M"]:
 
     Notebook: 11
     """
-    return torch.arange(M, dtype=torch.float64) / FRAMES_PER_SECOND
+    return torch.arange(M, dtype=torch.float64, device="cpu") / FRAMES_PER_SECOND
 
 
 def crop_seconds(

@@ -52,5 +52,5 @@ def occlusion(
         dancer.dance_mel(mel, frames, start=start.expand(len(mel), -1, -1), steps=steps, eta=0.0)
         for mel in heard.split(together)
     ]
-    whole = torch.cat(dances).double().numpy()
+    whole = torch.cat(dances).double().cpu().numpy()
     return Occlusion(np.asarray(times, np.float64), whole[0], whole[1:])

@@ -12,14 +12,15 @@ from functools import cached_property
 import numpy as np
 import torch
 from jaxtyping import Float
-from torch import Tensor
+from torch import Tensor, nn
 
-from ..beyond.footholds import FootholdMoDiff
+from ..beyond.footholds import FootholdConfig, FootholdMoDiff
 from ..conditions.control import as_long, splice
-from ..ddpm import Schedule
+from ..ddpm import Denoiser, Schedule, draw
 from ..fast.footholds import FastFoothold
 from ..fast.modiff import FastMoDiff
 from ..fast.samplers import ddim_steps, ddpm_steps
+from ..fast.twins import Twin, watched
 from ..modiff import MoDiff, MoDiffConfig
 from ..motion.checks import checked_count, checked_seconds
 from ..motion.motion import Motion, MotionError
@@ -27,17 +28,21 @@ from ..motion.root_frame import FPS, root_path, to_world
 from ..motion.scaler import Scaler
 from ..motion.skeleton import J
 from ..prediction import denoiser_of
-from ..rollout import WindowSampler, generate
-from .watched import watched
+from ..rollout import Sizes, WindowSampler, generate
+from .networks import kind_of, register
+from .with_bar import with_bar
 
 STEPS = 10  # of DDIM, unless told: as good as DDPM with all, and ten times as fast (RESULTS)
+
+register("walker", MoDiff, MoDiffConfig, fast=FastMoDiff)
+register("walker", FootholdMoDiff, FootholdConfig, build=FootholdMoDiff, fast=FastFoothold)
 
 
 @dataclass(frozen=True, eq=False)
 class Walker:
     """The network, in its own units, and the scalers that lead there from metres and m/s."""
 
-    model: MoDiff
+    model: nn.Module
     schedule: Schedule
     pose_scaler: Scaler
     control_scaler: Scaler
@@ -62,13 +67,19 @@ class Walker:
         )
 
     @property
-    def config(self) -> MoDiffConfig:
+    def config(self) -> Sizes:
         return self.model.config
 
     @cached_property
-    def fast(self) -> FastMoDiff:
-        """The fast twin, built at first use."""
-        return (FastFoothold if isinstance(self.model, FootholdMoDiff) else FastMoDiff)(self.model)
+    def _twin(self) -> Twin | None:
+        kind = kind_of(self.model)
+        return Twin(self.model, kind.fast) if kind and kind.fast else None
+
+    @property
+    def fast(self) -> FastMoDiff | None:
+        """The fast twin with the weights of now: built at first use, and again when they have
+        changed. None for a network that was registered without one."""
+        return self._twin and self._twin()
 
     def walk(
         self,
@@ -105,7 +116,7 @@ class Walker:
         rows = splice(clip.control, told, T_h)
         past, steer = clip.features()[None, -T_h:], rows[None].astype(np.float32)
         evaluations = len(told) * (steps or self.schedule.S)
-        with watched(self, evaluations, "walking", progress) as walker:
+        with with_bar(self, evaluations, "walking", progress) as walker:
             new = generate(
                 walker, past.repeat(count, 0), steer.repeat(count, 0), seed=seed, steps=steps
             )
@@ -121,19 +132,20 @@ class Walker:
 
     def denoiser(
         self, past: Float[Tensor, "B T_h D"], control: Float[Tensor, "B T C"], fast: bool = True
-    ):
+    ) -> Denoiser:
         """`denoise(x_s, s) -> eps_hat` for this past and control, in the network's units.
 
-        `fast`: by the fast twin; it cannot be differentiated.
+        `fast`: by the fast twin, where there is one and nobody watches the network's attention; it
+        cannot be differentiated.
         """
-        if not fast:
-            return denoiser_of(
-                lambda x_s, s: self.model(x_s, s, past, control), self.schedule, self.config.target
-            )
-        context = self.fast.encode(past, control)
-        return denoiser_of(
-            lambda x_s, s: self.fast.denoise(x_s, s, context), self.schedule, self.config.target
-        )
+        twin = self.fast if fast and not watched(self.model) else None
+        if twin is None:
+            return self._as_eps(lambda x_s, s: self.model(x_s, s, past, control))
+        context = twin.encode(past, control)
+        return self._as_eps(lambda x_s, s: twin.denoise(x_s, s, context))
+
+    def _as_eps(self, network) -> Denoiser:
+        return denoiser_of(network, self.schedule, self.config.target)
 
     def window_sampler(self, steps: int | None = None) -> WindowSampler:
         """Draw a window of T_p poses: DDPM with all steps, or DDIM with `steps` of them.
@@ -142,8 +154,7 @@ class Walker:
         @torch.inference_mode()
         def sample(past: Tensor, control: Tensor, generator: torch.Generator) -> Tensor:
             denoise = self.denoiser(past, control)
-            shape = (len(past), self.config.T_p, self.config.D)
-            x_S = torch.randn(shape, generator=generator, device=generator.device).to(past.device)
+            x_S = draw(past.new_empty(len(past), self.config.T_p, self.config.D), generator)
             if steps is None:
                 loop = ddpm_steps(denoise, x_S, self.schedule, generator=generator)
             else:

@@ -19,7 +19,7 @@ from ..motion.root_frame import FPS
 from ..motion.skeleton import TOES
 from ..performers.dancer import Dancer
 from ..performers.walker import Walker
-from ..performers.watched import watched
+from ..performers.with_bar import with_bar
 from . import checkpoints
 
 STEPS = 50  # of DDIM, for in-betweens
@@ -54,7 +54,7 @@ def inbetween(
     known, count = _fitting(motion, known), checked_count(samples, "samples")
     if known.all():
         raise MotionError(f"{motion.name}: all is known, there is nothing to make")
-    with watched(_shipped("unconditional"), steps, "filling in", progress) as dancer:
+    with with_bar(_shipped("unconditional"), steps, "filling in", progress) as dancer:
         made = inbetweens.inbetween(
             dancer, motion.positions, known, samples=count, steps=steps, seed=seed
         )
@@ -76,7 +76,7 @@ def reconstruct(
     known, walker = _fitting(motion, known), _shipped("walker")
     total = reconstruction.evaluations(walker, known)
     generator = torch.Generator().manual_seed(seed)
-    with watched(walker, total, "reconstructing", progress) as walker:
+    with with_bar(walker, total, "reconstructing", progress) as walker:
         whole = reconstruction.reconstruct(walker, motion.positions, known, generator=generator)
     return _made(motion, known, whole, "reconstructed")
 

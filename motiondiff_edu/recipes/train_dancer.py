@@ -16,7 +16,8 @@ from ..ddpm import Schedule, cosine_schedule, squared_error
 from ..kinematic_loss import kinematic_parts, over_time, training_loss
 from ..motion.dance_frame import body_of
 from ..performers.dance_windows import DanceWindows, toes_moved
-from ..performers.dancer import Dancer, network
+from ..performers.dancer import Dancer
+from ..performers.networks import network
 from ..training import LossFn
 from .dancers import DanceLossWeights, DanceRecipe
 from .train_recipe import train_recipe

@@ -18,7 +18,6 @@ from motiondiff_edu.beyond.footholds import (
     FootholdMoDiff,
     blend,
     held_positions,
-    network,
     openness,
 )
 from motiondiff_edu.beyond.shared_encoding import SharedEncoding, repeated
@@ -30,6 +29,7 @@ from motiondiff_edu.motion.clip import Clip
 from motiondiff_edu.motion.root_frame import to_world
 from motiondiff_edu.motion.scaler import Scaler
 from motiondiff_edu.motion.skeleton import JOINTS
+from motiondiff_edu.performers.networks import network
 from motiondiff_edu.performers.walker import Walker
 from motiondiff_edu.performers.windows import Windows
 from motiondiff_edu.pretrained.checkpoints import load_walker, save

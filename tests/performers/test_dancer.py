@@ -207,3 +207,38 @@ def test_sound_that_cannot_be_danced_to_is_refused_in_words(sound, options, told
     one = dancer(MoFusionConfig(**{**UNET.as_dict(), "C": 80}))
     with pytest.raises(ValueError, match=told):
         one.dance(sound, **options)
+
+
+
+def test_a_dancer_moved_is_a_copy_that_dances_alike():
+    one = dancer()
+    moved = one.to("cpu")
+    assert moved.model is not one.model and moved.card == one.card
+    both = [d.dance_mel(mel(), 30, generator=seeded(), steps=3) for d in (one, moved)]
+    torch.testing.assert_close(*both)
+
+
+@pytest.mark.parametrize("steps", [3, None])
+def test_all_lies_where_the_dancer_is_and_noise_is_drawn_where_the_generator_is(steps):
+    """With another default device, whatever is made without regard to the inputs lands beside
+    them."""
+    deterministic = TransformerConfig(**{**PLAIN.as_dict(), "deterministic": True})
+    for config in (UNET, PLAIN, replace(UNET, target="eps"), deterministic):
+        one = dancer(config)
+        here, draw = one.dance_mel(mel(), 30, generator=seeded(), steps=steps), seeded()
+        heard = mel()
+        with torch.device("meta"):
+            there = one.dance_mel(heard, 30, generator=draw, steps=steps)
+        torch.testing.assert_close(there, here)
+
+
+def test_music_is_brought_to_where_the_dancer_is():
+    one, brought = dancer(), []
+
+    class Elsewhere(torch.Tensor):
+        def to(self, *args, **kwargs):
+            brought.append(args[0])
+            return super().to(*args, **kwargs).as_subclass(torch.Tensor)
+
+    one.mel_input(mel().as_subclass(Elsewhere), 20)
+    assert brought == [one.device]

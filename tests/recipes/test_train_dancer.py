@@ -11,7 +11,7 @@ import torch
 
 from motiondiff_edu.beyond.schedules import shifted
 from motiondiff_edu.ddpm import cosine_schedule
-from motiondiff_edu.performers.dancer import network
+from motiondiff_edu.performers.networks import network
 from motiondiff_edu.pretrained.checkpoints import load_dancer
 from motiondiff_edu.recipes import __main__ as command
 from motiondiff_edu.recipes.dancers import DANCE_RECIPES, DANCER, DANCER_PLAIN, REGRESSED

@@ -11,7 +11,7 @@ Performer = TypeVar("Performer")  # what has a `denoiser` that its samplers ask 
 
 
 @contextmanager
-def watched(
+def with_bar(
     performer: Performer, evaluations: int, what: str, shown: bool = True
 ) -> Iterator[Performer]:
     """The same performer, whose network moves a bar on by one each time it is evaluated."""
