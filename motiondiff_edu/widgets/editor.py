@@ -178,14 +178,12 @@ class Editor(anywidget.AnyWidget):
         )
 
     def save(self, path: str | Path) -> FitReport:
-        """Write the chosen in-between as BVH, whole or not at all; tells how far bones had to be
-        evened out.
+        """Write the chosen in-between as BVH; before there is one, the motion with its pins.
 
-        Raises ValueError before there is one, and what `write_bvh` raises.
+        The file is written whole or not at all. Returns how far bones had to be evened out.
+        Raises what `write_bvh` raises.
         """
-        if self.samples is None:
-            raise ValueError("there is no in-between yet: press Generate first")
-        return write_bvh(Path(path), self.samples[self.chosen], self._fps)
+        return write_bvh(Path(path), self._shown(), self._fps)
 
     def _receive(self, _, content: dict, buffers) -> None:
         if content["do"] == "ping":  # the page only tries whether there is a kernel
@@ -257,6 +255,9 @@ class Editor(anywidget.AnyWidget):
             raise
         finally:
             self._asked = number
+
+    def _shown(self) -> Float[np.ndarray, "T 21 3"]:
+        return self.positions if self.samples is None else self.samples[self.chosen]
 
     def _here(self) -> _Step:
         return replace(self._step, chosen=self.chosen)

@@ -64,7 +64,9 @@ def play(
     is printed and returned; `open_page=False` leaves it at that.
     Raises MotionError as `player_of`, TypeError for what is no Motion.  Notebook: 00
     """
-    figures = [one for given in motions for one in ([given] if isinstance(given, Motion) else given)]
+    figures = [
+        one for given in motions for one in ([given] if isinstance(given, Motion) else given)
+    ]
     wrong = next((one for one in figures if not isinstance(one, Motion)), None)
     if wrong is not None or not figures:
         what = "nothing was given" if not figures else f"not {type(wrong).__name__}"

@@ -120,8 +120,6 @@ def test_undo_goes_back_step_by_step_and_reset_can_be_undone(motion):
 
 def test_a_saved_file_reads_back_as_the_chosen_in_between(motion, tmp_path, capsys):
     editor = Editor(motion, guess, fps=25)
-    with pytest.raises(ValueError, match="no in-between yet"):
-        editor.save(tmp_path / "none.bvh")
     editor.pin(0, 12, 30)
     editor.generate()
     editor.chosen = 1
@@ -141,6 +139,46 @@ def receive(editor, **content) -> str:
     return editor.state["message"]
 
 
+def test_a_retouched_pose_is_saved_before_anything_is_generated(motion, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    editor = Editor(motion, guess)
+    editor.pin(4)
+    editor.drag(4, "LeftHand", motion[4, HAND] + [0, 0.2, 0.05])
+    said = receive(editor, do="save", name=" retouched ", chosen=0)
+    assert said.startswith(f"Saved {tmp_path / 'retouched.bvh'} (the motion with its pinned poses;")
+    back = read_bvh(tmp_path / "retouched.bvh")
+    hand = back.world_positions()[:, back.names.index("LeftHand")] / 100
+    np.testing.assert_allclose(hand, editor.positions[:, HAND], atol=0.02)  # bones are evened out
+    assert hand[4, 1] > motion[4, HAND, 1] + 0.17
+    assert ", over an older file: " in receive(editor, do="save", name="retouched.bvh")
+
+
+@pytest.mark.parametrize(
+    "name, message",
+    [
+        (
+            "/elsewhere/walk.bvh",
+            "'/elsewhere/walk.bvh' names a folder. Type a name alone: the file goes beside",
+        ),
+        ("../walk.bvh", "names a folder"),
+        ("~/walk", "names a folder"),
+        (r"C:\walk.bvh", "names a folder"),
+        ("my walk.txt", "Not saved: only .bvh can be written, not .txt. Type my walk.bvh."),
+        (" ", "Give the file a name."),
+        (".bvh", "Give the file a name."),
+        ("..", "Give the file a name."),
+    ],
+)
+def test_what_is_no_name_for_a_file_is_refused_and_nothing_written(
+    motion, tmp_path, monkeypatch, name, message
+):
+    inside = tmp_path / "inside"
+    inside.mkdir()
+    monkeypatch.chdir(inside)
+    assert message in receive(Editor(motion, guess), do="save", name=name)
+    assert list(tmp_path.rglob("*")) == [inside]
+
+
 def test_errors_are_told_in_the_page_and_leave_it_at_rest(motion, tmp_path):
     def broken(positions, known, generator):
         raise RuntimeError("out of memory")
@@ -152,10 +190,7 @@ def test_errors_are_told_in_the_page_and_leave_it_at_rest(motion, tmp_path):
     assert receive(editor, do="drag", frame=3, joint=5, by=[0, 0, 0], grip=1).startswith(
         "Frame 3 is not pinned"
     )
-    assert (
-        receive(editor, do="save", name=str(tmp_path / "x"))
-        == "There is no in-between yet: press Generate first."
-    )
+    assert receive(editor, do="save", name=str(tmp_path / "x")).endswith("in a cell.")
     assert receive(editor, do="save", name=" ") == "Give the file a name."
     editor.pin(*range(T))
     assert receive(editor, do="generate", after=5).startswith(
@@ -282,7 +317,7 @@ def press(page, *keys) -> None:
     settled(page)
 
 
-def test_the_whole_way_by_keyboard(page, editor, motion, tmp_path):
+def test_the_whole_way_by_keyboard(page, editor, motion, tmp_path, monkeypatch):
     page.locator(FIGURE).focus()
     press(page, "Enter", *["."] * 12, "Enter", "End", "Enter")
     press(page, "PageUp")
@@ -307,10 +342,11 @@ def test_the_whole_way_by_keyboard(page, editor, motion, tmp_path):
     assert editor.chosen == 2 and "In-between 3:" in words(page)
     press(page, "]")
     assert editor.chosen == 0
-    page.get_by_label("Name of the file").fill(str(tmp_path / "edited"))
+    monkeypatch.chdir(tmp_path)
+    page.get_by_label("Name of the file").fill("edited 1.5")
     press(page, "Enter")
     page.wait_for_function("document.querySelector('.mde-say').textContent.startsWith('Saved')")
-    bvh = read_bvh(tmp_path / "edited.bvh")
+    bvh = read_bvh(tmp_path / "edited 1.5.bvh")
     back = bvh.world_positions()[:, [bvh.names.index(name) for name in JOINTS]] / 100
     told = float(re.search(r"([\d.]+) mm at most", words(page))[1]) / 1000
     assert np.linalg.norm(back - editor.samples[0], axis=-1).max() == pytest.approx(told, abs=1e-4)
@@ -360,17 +396,21 @@ def test_dragging_elsewhere_turns_the_view_and_moves_nothing(page, editor, motio
     assert page.evaluate("asked.length") == 1
 
 
-def test_the_timeline_pins_by_clicks_and_scrubs_by_its_ruler(page, editor):
+def test_a_click_on_the_timeline_goes_there_and_a_double_click_pins(page, editor):
     box = page.locator(RAIL).bounding_box()
     at = lambda t: 14 + t / (T - 1) * (box["width"] - 28)  # noqa: E731
     track, ruler = box["y"] + 38, box["y"] + 10
-    for frame in (10, 20, 10):  # 10 is pinned, 20 is pinned, 10 is looked at
-        page.mouse.click(box["x"] + at(frame), track)
+    for row, frame in ((track, 10), (ruler, 20), (track, 5)):
+        page.mouse.click(box["x"] + at(frame), row)
         settled(page)
-    assert editor.state["pins"] == [10, 20] and editor.frame == 10
-    page.mouse.click(box["x"] + at(10), track)  # and let go
+        assert editor.frame == frame and page.evaluate("asked.length") == 0
+    for row, frame, pins in ((track, 10, [10]), (ruler, 20, [10, 20]), (track, 10, [20])):
+        page.mouse.dblclick(box["x"] + at(frame), row)
+        settled(page)
+        assert editor.frame == frame and editor.state["pins"] == pins
+    page.mouse.click(box["x"] + at(20), track)  # a click lets nothing go
     settled(page)
-    assert editor.state["pins"] == [20]
+    assert editor.frame == 20 and editor.state["pins"] == [20]
     page.mouse.move(box["x"] + at(3), ruler)
     page.mouse.down()
     page.mouse.move(box["x"] + at(27), ruler, steps=4)
@@ -384,6 +424,34 @@ def test_the_timeline_pins_by_clicks_and_scrubs_by_its_ruler(page, editor):
     )
     press(page, "Enter")
     assert editor.state["pins"] == [] and "Nothing is held" in words(page)
+
+
+LABELS = """() => {  // boxes of the labels written on the stage
+  const boxes = [], write = CanvasRenderingContext2D.prototype.fillText;
+  CanvasRenderingContext2D.prototype.fillText = function (text, x, y) {
+    const wide = this.measureText(text).width, left = this.textAlign === "right" ? x - wide : x;
+    if (text.match(/^in-b|^motion/)) boxes.push([text, left, y - 11, left + wide, y + 2]);
+    return write.call(this, text, x, y);
+  };
+  document.querySelector(".mde-editor input[type=checkbox]").click();
+  CanvasRenderingContext2D.prototype.fillText = write;
+  return boxes;
+}"""
+
+
+@pytest.mark.parametrize("frame", [1, 15])  # in one place, and apart
+def test_every_ghost_has_its_name_and_no_name_covers_another(page, editor, frame):
+    editor.pin(0, 30)
+    page.get_by_role("button", name="Generate").click()
+    page.wait_for_function("model.get('state').made === 3")
+    page.locator(FIGURE).focus()
+    press(page, "Home", *["."] * frame, "]")
+    boxes, width = page.evaluate(LABELS), page.locator(FIGURE).bounding_box()["width"]
+    assert sorted(box[0] for box in boxes) == ["in-between 1", "in-between 3", "motion before"]
+    for i, (_, left, top, right, foot) in enumerate(boxes):
+        assert 0 <= left and right <= width and top > 0
+        for _, left2, top2, right2, foot2 in boxes[:i]:
+            assert right <= left2 or right2 <= left or foot <= top2 or foot2 <= top
 
 
 def test_controls_are_told_and_ghosts_are_drawn(page, editor):

@@ -49,7 +49,7 @@ export function mount(model, el, { fill = false } = {}) {
   const next = button("\u203a", "The next in-between (])", { "aria-label": "Next in-between" }), which = element("output", { "aria-live": "polite" });
   const before = element("input", { type: "checkbox", title: "The motion before the edit, as a ghost (O)" });
   const undo = button("Undo", "Take the last change back (Z)"), reset = button("Reset", "Everything as at first (R); Undo leads back");
-  const file = element("input", { type: "text", "aria-label": "Name of the file", spellcheck: "false" }), save = button("Save as BVH", "Write the in-between that is shown");
+  const file = element("input", { type: "text", "aria-label": "Name of the file", spellcheck: "false" }), save = button("Save as BVH", "Write the in-between that is shown; before there is one, the motion with its pinned poses");
   const held = element("div", { class: "mde-held" }), said = element("div", { class: "mde-say", role: "status" }), measured = element("div", { class: "mde-measured" });
   const dots = { L: element("i"), R: element("i") }, key = (side, word) => element("span", { class: "mde-key" }, dots[side], word);
   const rail = timeline(listen, () => ({ frames: scene.frames, fps: scene.fps, frame, pins: state.pins, moved: state.moved, part: state.part, made: state.made }), (t) => halt(t), (t) => toggle(t), () => draw());
@@ -110,8 +110,9 @@ export function mount(model, el, { fill = false } = {}) {
     for (const side of ["L", "R"]) dots[side].style.background = rgba(theme.body[side]);
     const kept = new Set(state.kept), pinned = poses.has(frame);
     const wash = (part) => (pinned || samples.length || part.circles.every(([a, b]) => kept.has(a) && kept.has(b)) ? 0 : 0.6);
-    const ghosts = pinned ? [] : samples.filter((_, k) => k !== chosen).map((f) => f.pose(frame));
-    if (before.checked) ghosts.push(motion.pose(frame));
+    const others = pinned ? [] : samples.map((f, k) => ({ name: `in-between ${k + 1}`, pose: f.pose(frame) }));
+    const ghosts = others.filter((_, k) => k !== chosen);
+    if (before.checked) ghosts.push({ name: "motion before", pose: motion.pose(frame) });
     const spot = held_spot || (view.follow ? smoothRoot(figure, frame) : motion.middle);
     look = paintStage(ctx, { parts: scene.parts, figure, ghosts, frame, pinned: pinned && !playing, wash, spot, extent: view.follow ? 0 : motion.extent, joint, hover, target,
       names: scene.names, title: title(), hint: hint(), marks: state.pins.map((t) => poses.get(t)[0]), focus }, view, theme, w, h);
@@ -128,7 +129,7 @@ export function mount(model, el, { fill = false } = {}) {
     const busy = generating();
     root.setAttribute("aria-busy", String(busy)); generate.setAttribute("aria-disabled", String(busy));
     generate.textContent = busy ? "Generating \u2026" : "Generate";
-    undo.setAttribute("aria-disabled", String(!state.undo)); save.setAttribute("aria-disabled", String(!samples.length));
+    undo.setAttribute("aria-disabled", String(!state.undo));
     for (const node of [previous, next]) node.setAttribute("aria-disabled", String(samples.length < 2));
     keep.value = state.part; canvas.setAttribute("aria-label", state.description); joints.value = joint == null ? "" : String(joint);
   }
@@ -182,7 +183,6 @@ export function mount(model, el, { fill = false } = {}) {
   }
   function keepFile() { if (model.get("file") !== file.value) { model.set("file", file.value); model.save_changes(); } }
   function store() {
-    if (!samples.length) return say("There is no in-between to save yet: Generate makes some.");
     keepFile(); ask({ do: "save", name: file.value, chosen }, "Saving");
   }
   function select(j) {
@@ -291,7 +291,7 @@ export function mount(model, el, { fill = false } = {}) {
   }, { passive: false });
 
   // ---- the controls
-  const press = (node, act) => listen(node, "click", () => { if (node.getAttribute("aria-disabled") !== "true" || node === generate || node === save) act(); });
+  const press = (node, act) => listen(node, "click", () => { if (node.getAttribute("aria-disabled") !== "true" || node === generate) act(); });
   press(play, () => setPlaying(!playing)); press(pin, () => toggle(frame)); press(generate, make); press(previous, () => choose(-1)); press(next, () => choose(1));
   press(undo, takeBack); press(reset, home); press(save, store);
   listen(joints, "change", () => select(joints.value === "" ? null : Number(joints.value)));
