@@ -70,7 +70,9 @@ def versions() -> Finding:
         names = required()
     except importlib.metadata.PackageNotFoundError:
         return Finding("versions", "motiondiff-edu is not installed", INSTALL)
-    pins, missing, other = constraints(), [], []
+    pins = constraints()
+    missing = []
+    other = []
     for name in names:
         try:
             version = importlib.metadata.version(name).split("+")[0]
@@ -94,7 +96,9 @@ def compute() -> Finding:
 
     a = torch.eye(3) * 2
     right = torch.equal(a @ a, torch.eye(3) * 4)
-    cores, wanted, gpu = os.cpu_count() or 1, torch.get_num_threads(), torch.cuda.is_available()
+    cores = os.cpu_count() or 1
+    wanted = torch.get_num_threads()
+    gpu = torch.cuda.is_available()
     told = (
         f"torch {torch.__version__}, {wanted} threads on {cores} cores, "
         f"GPU: {'yes' if gpu else 'no'}"

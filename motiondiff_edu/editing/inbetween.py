@@ -76,10 +76,8 @@ def inbetween(
         "guidance": guidance,
         "generator": generator,
     }
-    start, held = (
-        torch.randn(shape, generator=generator),
-        (given.expand(shape), columns.expand(shape)),
-    )
+    start = torch.randn(shape, generator=generator)
+    held = (given.expand(shape), columns.expand(shape))
     loop = inpaint_steps(denoise, start, dancer.schedule, *held, blend=blend_in, **options)
     *_, last = loop
     made = place.leave(to_positions(dancer.motion_scaler.inverse(last.x_s)).double().numpy())

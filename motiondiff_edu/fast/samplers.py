@@ -22,13 +22,11 @@ class FastStep:
     __slots__ = ("s", "x_s", "eps_hat", "_alpha_bar", "_clip")
 
     def __init__(self, s: int, x_s: Tensor, eps_hat: Tensor, alpha_bar: float, clip: float | None):
-        self.s, self.x_s, self.eps_hat, self._alpha_bar, self._clip = (
-            s,
-            x_s,
-            eps_hat,
-            alpha_bar,
-            clip,
-        )
+        self.s = s
+        self.x_s = x_s
+        self.eps_hat = eps_hat
+        self._alpha_bar = alpha_bar
+        self._clip = clip
 
     @property
     def x0_hat(self) -> Tensor:

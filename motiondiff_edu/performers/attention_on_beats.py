@@ -27,11 +27,10 @@ from .dancer import Dancer
 
 NEAR = 0.1  # s: what lies so close to a beat is counted as the beat's
 WIDTH = 0.12  # s of sound that is taken away
-BESIDE, EDGE, TINY = (
-    0.08,
-    0.02,
-    1e-9,
-)  # s listened to on either side of it; s of cross-fade; below is silence
+# s listened to on either side of it; s of cross-fade; below is silence
+BESIDE = 0.08
+EDGE = 0.02
+TINY = 1e-9
 
 
 def layers_of(config: MoFusionConfig) -> Iterator[tuple[str, int, str]]:

@@ -36,10 +36,8 @@ def train(recipe: Recipe, run_file: Path, clips: list[Clip] | None = None, log=p
     """
     config = recipe.config
     windows = Windows.of(clips or training_clips(recipe), config.T_h, config.T_p)
-    schedule, scalers = (
-        SCHEDULES[recipe.schedule](config.S),
-        (windows.pose_scaler, windows.control_scaler),
-    )
+    schedule = SCHEDULES[recipe.schedule](config.S)
+    scalers = (windows.pose_scaler, windows.control_scaler)
     dropout = (
         Dropout(schedule, dropout_rate(recipe.dropout, recipe.calm), recipe.steps)
         if recipe.dropout

@@ -74,8 +74,12 @@ class Editor(anywidget.AnyWidget):
         names = list(JOINTS if names is None else names)
         if len(names) != J:
             raise ValueError(f"{len(names)} names for the {J} joints")
-        self._fps, self._make, self._seed = float(fps), make, int(seed)
-        self._step, self._past, self._grip = _Step(Edit(motion)), [], None
+        self._fps = float(fps)
+        self._make = make
+        self._seed = int(seed)
+        self._step = _Step(Edit(motion))
+        self._past = []
+        self._grip = None
         self.error: Exception | None = (
             None  # what `make` raised last when Generate was pressed, with its traceback
         )
@@ -236,7 +240,9 @@ class Editor(anywidget.AnyWidget):
     def _go(self, step: _Step, words: str, remember: bool = True) -> str:
         if remember:
             self._past.append(self._here())
-        others, self._step, self._grip = step.made is not self._step.made, step, None
+        others = step.made is not self._step.made
+        self._step = step
+        self._grip = None
         with self.hold_sync():
             if others:
                 packed = None if step.made is None else packing.pack(list(step.made.samples))
@@ -248,7 +254,9 @@ class Editor(anywidget.AnyWidget):
 
     def _tell(self, words: str | None, number: int | None = None) -> str:
         """The page's copy of the edit; `number` is that of the message that is answered."""
-        edit, made, last = self.edit, self._step.made, self.state
+        edit = self.edit
+        made = self._step.made
+        last = self.state
         words = last.get("message", "") if words is None else words
         with self.hold_sync():
             self.poses = editor_page.poses_of(edit)

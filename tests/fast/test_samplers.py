@@ -29,7 +29,8 @@ def last_of(steps):
 @pytest.mark.parametrize("variance", ["beta", "posterior"])
 @pytest.mark.parametrize("clip", [None, 0.8])
 def test_fast_ddpm_equals_the_plain_loop_for_the_same_noise(variance, clip):
-    schedule, generator = linear_schedule(40, 1e-4, 0.3), torch.Generator().manual_seed(9)
+    schedule = linear_schedule(40, 1e-4, 0.3)
+    generator = torch.Generator().manual_seed(9)
     start = torch.randn(2, 5, 3, generator=generator, dtype=torch.float64)
     noise = torch.randn(40, 2, 5, 3, generator=generator, dtype=torch.float64)
 
@@ -107,7 +108,8 @@ def test_ddim_sum_equals_the_published_run(target, beta_1, total):
 )
 def test_ddim_noise_equals_published_variances(t, before, published):
     """With a silent model and eta = 1, one leap from zero leaves exactly sigma times the noise."""
-    schedule, noise = linear_schedule(1000, 1e-4, 0.02), torch.ones(1000, 1, 1)
+    schedule = linear_schedule(1000, 1e-4, 0.02)
+    noise = torch.ones(1000, 1, 1)
     leap = list(
         ddim_steps(
             lambda x, s: 0 * x, torch.zeros(1, 1), schedule, [t + 1, before + 1], 1.0, noise=noise
@@ -117,8 +119,10 @@ def test_ddim_noise_equals_published_variances(t, before, published):
 
 
 def test_ddim_with_eta_1_and_all_steps_is_ddpm_with_the_posterior_variance():
-    schedule, noise = linear_schedule(30, 1e-3, 0.3), torch.randn(30, 4, 1, dtype=torch.float64)
-    denoise, start = exact_denoiser(three_hills(), schedule), torch.randn(4, 1, dtype=torch.float64)
+    schedule = linear_schedule(30, 1e-3, 0.3)
+    noise = torch.randn(30, 4, 1, dtype=torch.float64)
+    denoise = exact_denoiser(three_hills(), schedule)
+    start = torch.randn(4, 1, dtype=torch.float64)
     ddim = last_of(ddim_steps(denoise, start, schedule, 30, 1.0, noise=noise))
     torch.testing.assert_close(
         ddim, last_of(ddpm_steps(denoise, start, schedule, noise=noise, variance="posterior"))
@@ -127,7 +131,8 @@ def test_ddim_with_eta_1_and_all_steps_is_ddpm_with_the_posterior_variance():
 
 def test_ddim_without_eta_is_a_map_of_its_start():
     schedule = linear_schedule()
-    denoise, start = exact_denoiser(three_hills(), schedule), torch.randn(4, 1)
+    denoise = exact_denoiser(three_hills(), schedule)
+    start = torch.randn(4, 1)
     assert torch.equal(
         last_of(ddim_steps(denoise, start, schedule)), last_of(ddim_steps(denoise, start, schedule))
     )
@@ -186,7 +191,8 @@ def test_warm_start_keeps_to_its_guess_only_from_low_steps():
 
 
 def test_warm_start_is_its_guess_noised_to_that_very_step():
-    schedule, guess = linear_schedule(20, 1e-3, 0.5), torch.linspace(-1, 2, 15).reshape(3, 5)
+    schedule = linear_schedule(20, 1e-3, 0.5)
+    guess = torch.linspace(-1, 2, 15).reshape(3, 5)
     noise = torch.randn(3, 5, generator=torch.Generator().manual_seed(3))
     for s in (1, 7, 20):
         kept = schedule.alpha_bar[s].item()

@@ -76,7 +76,9 @@ def test_the_layers_are_those_of_the_network():
 
 
 def test_maps_come_from_the_seed_and_depend_on_the_step():
-    one, again, other = maps(s=5)[0], maps(s=5)[0], maps(s=12)[0]
+    one = maps(s=5)[0]
+    again = maps(s=5)[0]
+    other = maps(s=12)[0]
     for name in one:
         assert np.array_equal(one[name], again[name])
     assert np.abs(one["bottom, 5 a second"] - other["bottom, 5 a second"]).max() > 1e-5
@@ -121,7 +123,9 @@ def test_beats_with_another_place_are_what_even_weights_get():
 
 def test_seconds_read_by_hand():
     times = 0.7 + np.arange(5) * 0.064
-    even, one, two = np.full(5, 0.2), np.eye(5)[3], np.array([0, 0.5, 0, 0, 0.5])
+    even = np.full(5, 0.2)
+    one = np.eye(5)[3]
+    two = np.array([0, 0.5, 0, 0, 0.5])
     for row, tokens in ((even, 5), (one, 1), (two, 2)):
         assert attention_on_beats.seconds_read(row[None], times) == pytest.approx(tokens * 0.064)
     assert attention_on_beats.seconds_read(np.stack([even, one]), times) == pytest.approx(3 * 0.064)
@@ -174,7 +178,9 @@ def test_what_cannot_be_silenced_is_named(time, width, words):
 
 
 def test_occlusion_dances_again_from_the_same_noise():
-    one, song, times = dancer(), clicks(2.0, (0.5, 1.0), tone=0.0), np.array([0.5, 1.0, 1.6])
+    one = dancer()
+    song = clicks(2.0, (0.5, 1.0), tone=0.0)
+    times = np.array([0.5, 1.0, 1.6])
     found = attention_on_beats.occlusion(
         one, song, times, 33, generator=torch.Generator().manual_seed(7), steps=3
     )

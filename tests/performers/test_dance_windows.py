@@ -103,13 +103,15 @@ def test_draws_come_from_the_generator_and_belong_together():
 
 def test_shaken_music_differs_in_level_and_balance_alone():
     made = windows()
-    still, shaken = made.draw(400, seeded()), made.draw(400, seeded(), shake=0.3)
+    still = made.draw(400, seeded())
+    shaken = made.draw(400, seeded(), shake=0.3)
     assert torch.equal(still[0], shaken[0]) and torch.equal(still[2], shaken[2])
     change = shaken[1] - still[1]
     torch.testing.assert_close(
         change, change[:, :1].expand_as(change), atol=1e-5, rtol=0
     )  # the same at all times
-    level, tilt = change[:, 0].mean(-1), (change[:, 0, -1] - change[:, 0, 0]) / 2
+    level = change[:, 0].mean(-1)
+    tilt = (change[:, 0, -1] - change[:, 0, 0]) / 2
     line = level[:, None] + tilt[:, None] * torch.linspace(-1, 1, 5)
     torch.testing.assert_close(change[:, 0], line, atol=1e-5, rtol=0)
     assert level.std().item() == pytest.approx(
@@ -166,7 +168,9 @@ def test_the_loss_of_a_network_that_says_zero():
 
 
 def test_kinematic_losses_add_to_it_by_their_weights():
-    made, schedule, model = windows(), cosine_schedule(20), tiny()
+    made = windows()
+    schedule = cosine_schedule(20)
+    model = tiny()
     plain = dance_loss(made, schedule, batch=9)(model, torch.Generator().manual_seed(0)).item()
 
     def extra(**change) -> float:
@@ -203,7 +207,8 @@ def test_parts_are_in_metres_after_the_scaler_is_undone():
     )
     assert parts["slide"].max() < 1e-3  # planted toes stand within a millimetre
     longer = made.motion_scaler.inverse(truth)
-    shin, half = 3 + 3 * (JOINTS.index("LeftFoot") - 1), torch.arange(40) < 20
+    shin = 3 + 3 * (JOINTS.index("LeftFoot") - 1)
+    half = torch.arange(40) < 20
     longer[:, half, shin + 1] -= 0.04  # the left ankle 4 cm lower, in half of the frames
     parts = kinematic_parts(made.motion_scaler.transform(longer), truth, stands, made.motion_scaler)
     assert (
@@ -215,9 +220,11 @@ def test_parts_are_in_metres_after_the_scaler_is_undone():
 @pytest.mark.parametrize("target", ["eps", "v", "x0"])
 def test_a_network_of_each_target_learns(target):
     made, schedule = windows(), cosine_schedule(20)
-    model, draw = tiny(target, target == "eps"), torch.Generator().manual_seed(0)
+    model = tiny(target, target == "eps")
+    draw = torch.Generator().manual_seed(0)
     loss_fn = dance_loss(made, schedule, batch=16, high_noise=3.0)
-    optimizer, losses = torch.optim.Adam(model.parameters(), lr=3e-3), []
+    optimizer = torch.optim.Adam(model.parameters(), lr=3e-3)
+    losses = []
     for _ in range(60):
         loss = loss_fn(model, draw)
         optimizer.zero_grad()
@@ -261,11 +268,9 @@ def test_pelvis_and_leg_that_err_alike_cost_no_feet():
     class Errs(torch.nn.Module):
         def __init__(self, toes_too: bool):
             super().__init__()
-            self.config, self.toes_too, self.bias = (
-                target,
-                toes_too,
-                torch.nn.Parameter(torch.zeros(())),
-            )
+            self.config = target
+            self.toes_too = toes_too
+            self.bias = torch.nn.Parameter(torch.zeros(()))
 
         def listen(self, mel, times):
             return None

@@ -173,7 +173,8 @@ def test_the_shaken_past_has_one_steady_error_of_any_size():
 
 
 def test_the_shaken_past_has_fresh_errors_as_large_as_columns_change():
-    past, change = torch.zeros(4000, 6, 3), torch.tensor([0.5, 1.0, 2.0])
+    past = torch.zeros(4000, 6, 3)
+    change = torch.tensor([0.5, 1.0, 2.0])
     noise = shaken(past, 0.3, change, torch.Generator().manual_seed(0))
     fresh = noise - noise.mean(1, keepdim=True)
     assert fresh.std((0, 1)) == pytest.approx(change * fresh.std((0, 1))[1], rel=0.05)
@@ -225,7 +226,8 @@ def cost(frame: int = 0, column: int = 0, step: int = 1, **weights) -> float:
     """What one error of 1 costs there; without weights it is 1."""
     poses = (np.arange(40)[:, None] * SLOPES).reshape(40, 21, 3)
     windows = Windows.of([Clip(poses, np.zeros((40, 3)), source="steady")], T_H, T_P)
-    schedule, model = linear_schedule(6, 0.2, 0.95), OffByOne(frame, column, step)
+    schedule = linear_schedule(6, 0.2, 0.95)
+    model = OffByOne(frame, column, step)
     loss = window_loss(windows, schedule, batch=40, noises=1, **weights)(
         model, torch.Generator().manual_seed(8)
     )

@@ -61,7 +61,8 @@ def kill_at(step: int, monkeypatch):
     """Let the training die in the middle of this step, once."""
 
     def dying(windows, schedule, **settings):
-        inner, calls = window_loss(windows, schedule, **settings), iter(range(step))
+        inner = window_loss(windows, schedule, **settings)
+        calls = iter(range(step))
 
         def loss_fn(model, generator):
             if next(calls, None) is None:

@@ -20,12 +20,10 @@ def batch_with_dropout(mine):
     """
     draw = torch.Generator().manual_seed(9)
     past, future, first, second = torch.randn(4, 4, 3, 2, generator=draw, dtype=torch.float64)
-    s, u, rate, noise = (
-        torch.tensor([2, 1, 3, 2]),
-        torch.tensor([0.1, 0.7, 0.25, 0.9]),
-        0.3,
-        torch.stack([first, second]),
-    )
+    s = torch.tensor([2, 1, 3, 2])
+    u = torch.tensor([0.1, 0.7, 0.25, 0.9])
+    rate = 0.3
+    noise = torch.stack([first, second])
     given = past.clone(), future.clone()
     seen, x_s = _two(mine(*given, s, ALPHA_BAR, rate, u, noise))
     expect(
@@ -195,7 +193,8 @@ def _products(xx, keep: float, share: float, floor: float):
 @check
 def rate_schedule(mine):
     """mine(done, rates, calm): 0 while calm, then the rates one after the other."""
-    rates, times = (0.1, 0.2, 0.4), torch.tensor([0.0, 0.39, 0.41, 0.59, 0.61, 0.79, 0.81, 0.999])
+    rates = (0.1, 0.2, 0.4)
+    times = torch.tensor([0.0, 0.39, 0.41, 0.59, 0.61, 0.79, 0.81, 0.999])
     got = [float(mine(float(t), rates, 0.4)) for t in times]
     steps = torch.tensor([0, 0, 0.1, 0.1, 0.2, 0.2, 0.4, 0.4])
     evenly = ((times - 0.4).clamp(min=0) / 0.6) * 0.4
