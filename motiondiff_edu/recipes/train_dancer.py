@@ -37,7 +37,10 @@ def training_windows(recipe: DanceRecipe) -> DanceWindows:
 def _made(songs: int, seed: int, seconds: float, each: int, frames: int) -> DanceWindows:
     from data_synth.dancing import dances  # data_synth lies beside the package, and imports it
 
-    positions, contacts, mels, heard = [], [], [], None
+    positions = []
+    contacts = []
+    mels = []
+    heard = None
     for song, danced in dances(songs, seed, seconds, each=each):
         if song is not heard:
             heard, mel = song, log_mel(torch.from_numpy(song.audio).float())

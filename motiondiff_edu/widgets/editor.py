@@ -281,7 +281,9 @@ class Editor(anywidget.AnyWidget):
 
     def _tell(self, words: str | None, number: int | None = None) -> str:
         """The page's copy of the edit; `number` is that of the message that is answered."""
-        edit, made, last = self.edit, self._step.made, self.state
+        edit = self.edit
+        made = self._step.made
+        last = self.state
         words = last.get("message", "") if words is None else words
         with self.hold_sync():
             self.poses = editor_page.poses_of(edit)

@@ -32,10 +32,8 @@ def dancer(config=UNET) -> Dancer:
     with torch.no_grad():
         for weight in model.parameters():
             weight.add_(0.1 * torch.randn(weight.shape))
-    motion, mel = (
-        Scaler(torch.zeros(63), torch.full((63,), 0.1)),
-        Scaler(torch.zeros(5), torch.ones(5)),
-    )
+    motion = Scaler(torch.zeros(63), torch.full((63,), 0.1))
+    mel = Scaler(torch.zeros(5), torch.ones(5))
     return Dancer(model.eval(), cosine_schedule(12), motion, mel, {"name": "test"})
 
 
@@ -97,8 +95,11 @@ def test_only_music_that_sounds_meanwhile_is_heard():
 
 @torch.no_grad()
 def test_songs_of_several_lengths_in_one_batch_do_not_influence_one_another():
-    model, x, s = dancer(PLAIN).model, torch.randn(2, 30, 63), torch.tensor([3, 9])
-    heard, times = torch.arange(64) < torch.tensor([64, 41])[:, None], torch.arange(64) / 31.25
+    model = dancer(PLAIN).model
+    x = torch.randn(2, 30, 63)
+    s = torch.tensor([3, 9])
+    heard = torch.arange(64) < torch.tensor([64, 41])[:, None]
+    times = torch.arange(64) / 31.25
     together = model(x, s, model.listen(mel(), times, heard))
     alone = model(x[1:], s[1:], model.listen(mel()[1:, :41], times[:41]))
     torch.testing.assert_close(together[1:], alone, atol=2e-5, rtol=1e-4)

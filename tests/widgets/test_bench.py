@@ -35,7 +35,10 @@ class Standing:
     """Stays in its last pose, with noise of 5 mm drawn for each row of the batch."""
 
     class config:
-        T_h, T_p, D, C = T_H, T_H, 63, 3
+        T_h = T_H
+        T_p = T_H
+        D = 63
+        C = 3
 
     pose_scaler = Scaler(torch.from_numpy(CLIP.poses.mean(0)).float().flatten(), torch.ones(63))
     control_scaler = Scaler.nothing(3)
@@ -60,7 +63,8 @@ def by_the_library(first: int, missing: list[int]) -> np.ndarray:
     known = np.ones(T_H * J, bool)
     known[missing] = False
     known = known.reshape(T_H, J)
-    past, control = CLIP.poses[first : first + T_H], CLIP.control[first : first + 2 * T_H]
+    past = CLIP.poses[first : first + T_H]
+    control = CLIP.control[first : first + 2 * T_H]
     options = {"n": 3, "rounds": 2, "generator": torch.Generator().manual_seed(0)}
     *_, last = mend_steps(
         Standing(), np.where(known[..., None], past, np.nan), known, control, **options
@@ -225,7 +229,8 @@ class Table:
 
     def __init__(self, page, widget):
         self.page, self.widget = page, widget
-        self.figure, self.map = page.locator("canvas.mde-figure"), page.locator("canvas.mde-lane")
+        self.figure = page.locator("canvas.mde-figure")
+        self.map = page.locator("canvas.mde-lane")
 
     def saved(self, name: str):
         return self.page.evaluate(f"saved.at(-1).{name}")

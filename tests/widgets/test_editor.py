@@ -50,7 +50,8 @@ def test_the_page_is_told_what_is_held(motion):
 
 
 def test_the_last_frame_by_its_number_from_the_end_is_the_same_frame(motion):
-    editor, target = Editor(motion, guess), motion[-1, HAND] + [0, 0.2, 0.05]
+    editor = Editor(motion, guess)
+    target = motion[-1, HAND] + [0, 0.2, 0.05]
     assert editor.pin(-1) == f"Pinned frame {T - 1}."
     assert editor.drag(-1, "LeftHand", target) == f"LeftHand in frame {T - 1} moved by 21 cm."
     editor.pin(-1)  # pinned already: what was dragged there stays
@@ -387,7 +388,8 @@ def test_a_hand_is_dragged_with_the_mouse_and_the_bones_keep_their_lengths(page,
 def test_dragging_elsewhere_turns_the_view_and_moves_nothing(page, editor, motion):
     page.locator(FIGURE).focus()
     press(page, "Enter")
-    first, box = ink(page.locator(FIGURE)), page.locator(FIGURE).bounding_box()
+    first = ink(page.locator(FIGURE))
+    box = page.locator(FIGURE).bounding_box()
     page.mouse.move(box["x"] + 60, box["y"] + 200)
     page.mouse.down()
     page.mouse.move(box["x"] + 160, box["y"] + 230, steps=3)

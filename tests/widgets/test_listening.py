@@ -66,7 +66,8 @@ def test_a_column_reaches_halfway_to_its_neighbours():
 
 
 def test_the_record_says_how_the_bytes_are_to_be_read(listening, maps, moved):
-    record, codes = listening.music, np.frombuffer(listening.strips, np.uint8)
+    record = listening.music
+    codes = np.frombuffer(listening.strips, np.uint8)
     assert [(level["name"], level["rows"], level["edges"]) for level in record["levels"]] == [
         ("fine", T, 0),
         ("coarse", 11, 0),
@@ -238,7 +239,8 @@ TEXTS = """() => {  // boxes of all labels written on the lane
 def test_labels_neither_overlap_nor_leave_the_lane(browser, listening, tmp_path, width):
     with open_page(browser, viewport={"width": width, "height": 700}) as page:
         page.goto(player_page(tmp_path, listening))
-        boxes, inside = page.evaluate(TEXTS), page.locator(".mde-lane").bounding_box()["width"]
+        boxes = page.evaluate(TEXTS)
+        inside = page.locator(".mde-lane").bounding_box()["width"]
         assert page.evaluate("document.documentElement.scrollWidth <= innerWidth")
     assert len(boxes) >= 4
     for i, (text, left, top, right, foot) in enumerate(boxes):

@@ -189,7 +189,8 @@ def test_exported_html_is_alive_offline(browser, player, tmp_path):
 
 
 def test_a_notebook_exported_by_nbconvert_is_alive_offline(browser, player, tmp_path):
-    nbformat, nbconvert = pytest.importorskip("nbformat"), pytest.importorskip("nbconvert")
+    nbformat = pytest.importorskip("nbformat")
+    nbconvert = pytest.importorskip("nbconvert")
     data, metadata = player._repr_mimebundle_()
     output = nbformat.v4.new_output("execute_result", data, metadata=metadata, execution_count=1)
     notebook = nbformat.v4.new_notebook(

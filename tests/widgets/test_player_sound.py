@@ -367,7 +367,8 @@ def test_an_mp4_has_the_sound(tmp_path):
 
 
 def test_the_same_scene_with_another_motion_is_told_to_the_page():
-    first, second = walk(frames=37, speed=1.0)[0], walk(frames=37, speed=1.001)[0]
+    first = walk(frames=37, speed=1.0)[0]
+    second = walk(frames=37, speed=1.001)[0]
     player = Player(first)
     heard = []
     player.observe(lambda change: heard.append(change["new"]), "scene")

@@ -20,7 +20,8 @@ from motiondiff_edu.training import TrainState, train_steps
 
 from .budget import HEARD, Budget, material, recipe_of
 
-BASE, TIMED = "x0", ("x0", "alpha_bar", "linear-music", "transformer", "mfcc", "regression")
+BASE = "x0"
+TIMED = ("x0", "alpha_bar", "linear-music", "transformer", "mfcc", "regression")
 DANCES = 8  # at once
 
 
