@@ -15,7 +15,8 @@ class WithNotebooks(build_py):
         super().run()
         if self.editable_mode:
             return
-        root, package = Path(__file__).parent, Path(self.build_lib) / "motiondiff_edu"
+        root = Path(__file__).parent
+        package = Path(self.build_lib) / "motiondiff_edu"
         shutil.copy(root / "constraints.txt", package / "constraints.txt")
         for folder in ("notebooks", "notebooks/student"):
             (package / folder).mkdir(parents=True, exist_ok=True)

@@ -28,7 +28,9 @@ from motiondiff_edu.performers.dance_windows import mel_frames
 from motiondiff_edu.performers.dancer import Dancer
 
 COMMAND = "python -m benchmarks unet"
-D, BANDS, STEPS = 63, 80, 10
+D = 63
+BANDS = 80
+STEPS = 10
 PEER = "denoising_diffusion_pytorch"
 
 
@@ -102,7 +104,7 @@ def samplers(dancer: Dancer, nets: dict[str, torch.nn.Module], B: int, N: int) -
 
     @torch.inference_mode()
     def ours_once():
-        return dancer.dance(mel, N, steps=STEPS, eta=0.0)
+        return dancer.dance_mel(mel, N, steps=STEPS, eta=0.0)
 
     @torch.inference_mode()
     def lucidrains_once():
@@ -125,7 +127,8 @@ def samplers(dancer: Dancer, nets: dict[str, torch.nn.Module], B: int, N: int) -
 def trainers(dancer: Dancer, nets: dict[str, torch.nn.Module], B: int, N: int) -> dict:
     """One step of training of each."""
     model, peer = dancer.model, nets["lucidrains"]
-    mel, times = torch.randn(B, mel_frames(N), BANDS), frame_times(mel_frames(N)).float()
+    mel = torch.randn(B, mel_frames(N), BANDS)
+    times = frame_times(mel_frames(N)).float()
     x, s = torch.randn(B, N, D), torch.randint(1, 1000, (B,))
     channels_first = x.mT.contiguous()
     optimizers = {

@@ -53,7 +53,8 @@ NAMES = {
 
 
 def one_person(clips: int, seconds: float, seed: int) -> list[Clip]:
-    rng, person = np.random.default_rng(seed), replace(STYLES["neutral"], behaviours=0.0)
+    rng = np.random.default_rng(seed)
+    person = replace(STYLES["neutral"], behaviours=0.0)
     kinds = ("straight", "turn") * clips
     return [walk(random_control(seconds, rng, kinds[i]), seed + i, person) for i in range(clips)]
 

@@ -1,13 +1,12 @@
-"""The command line: `motiondiff-edu lab`, or `python -m motiondiff_edu lab`. Without a verb it
-lists them.
+"""The command line: `motiondiff-edu lab`, or `python -m motiondiff_edu lab`.
 
 A new verb is one module and one line in VERBS. The module has
-    HELP             one line that says what the verb does
-    EXAMPLE          one command, without the program's name
-    arguments(parser)    adds the verb's own arguments
-    run(chosen)      does it, and returns the exit status
-and imports nothing heavy before `run`. With PASSES_OPTIONS_ON = "JupyterLab" it takes options that
-are not its own, in `chosen.options`, for the program of that name.
+    HELP               one line that says what the verb does
+    EXAMPLE            one command, without the program's name
+    arguments(parser)  adds the verb's own arguments
+    run(chosen)        does it, and returns the exit status
+and imports nothing heavy before `run`. With PASSES_OPTIONS_ON = "JupyterLab" it also takes options
+that are not its own, in `chosen.options`, for the program of that name.
 
 An error whose class belongs to this project is a message for the person who typed the command, so
 it is printed without a traceback. Any other is a fault of the program, and keeps its traceback.

@@ -162,7 +162,8 @@ def q_posterior(x0: X, x_s: X, s: Steps, schedule: Schedule) -> tuple[X, Tensor]
     Source: MoDiff eq. 6-7. Notebook: 02.
     """
     beta, alpha = at(schedule.beta, s, x_s, first=1), at(schedule.alpha, s, x_s)
-    left, left_before = at(1 - schedule.alpha_bar, s, x_s), at(1 - schedule.alpha_bar, s - 1, x_s)
+    left = at(1 - schedule.alpha_bar, s, x_s)
+    left_before = at(1 - schedule.alpha_bar, s - 1, x_s)
     mean = (1 - left_before).sqrt() * beta / left * x0 + alpha.sqrt() * left_before / left * x_s
     return mean, at(posterior_variance(schedule), s, x_s)
 
@@ -231,7 +232,8 @@ def _clean_guess(
     x_s: Tensor, s: int, eps_hat: Tensor, schedule: Schedule, clip: float | None
 ) -> tuple[Tensor, Tensor]:
     """x0_hat, bounded if asked, and the eps_hat that goes with it."""
-    signal, sigma = at(schedule.alpha_bar, s, x_s).sqrt(), at(1 - schedule.alpha_bar, s, x_s).sqrt()
+    signal = at(schedule.alpha_bar, s, x_s).sqrt()
+    sigma = at(1 - schedule.alpha_bar, s, x_s).sqrt()
     x0_hat = (x_s - sigma * eps_hat) / signal
     if clip is not None:
         x0_hat = x0_hat.clamp(-clip, clip)

@@ -80,7 +80,9 @@ class FrameConv(nn.Module):
 
     def __init__(self, inputs: int, outputs: int, stride: int = 1, dilation: int = 1):
         super().__init__()
-        self.mix, self.stride, self.dilation = nn.Linear(3 * inputs, outputs), stride, dilation
+        self.mix = nn.Linear(3 * inputs, outputs)
+        self.stride = stride
+        self.dilation = dilation
 
     def forward(self, x: Float[Tensor, "B T C"]) -> Float[Tensor, "B T2 C2"]:
         n = self.dilation
@@ -128,10 +130,8 @@ class CrossAttentionBlock(nn.Module):
 
     def __init__(self, width: int, heads: int, context_width: int):
         super().__init__()
-        self.norm, self.attention = (
-            nn.LayerNorm(width),
-            CrossModalAttention(width, heads, context_width),
-        )
+        self.norm = nn.LayerNorm(width)
+        self.attention = CrossModalAttention(width, heads, context_width)
         self.norm_ff = nn.LayerNorm(width)
         self.ff = nn.Sequential(nn.Linear(width, 2 * width), nn.GELU(), nn.Linear(2 * width, width))
 
@@ -178,7 +178,9 @@ class MoFusion(nn.Module):
 
     def __init__(self, config: MoFusionConfig = MOFUSION_SMALL):
         super().__init__()
-        self.config, widths, first = config, config.widths, config.widths[0]
+        self.config = config
+        widths = config.widths
+        first = config.widths[0]
         width = 4 * first  # of the step's embedding
         self.step_in = nn.Sequential(
             nn.Linear(width, width), nn.SiLU(), nn.Linear(width, width), nn.SiLU()

@@ -151,7 +151,8 @@ def generate(
     _warn_beyond(control, getattr(walker, "card", {}).get("control_range"))
     generator = generator or torch.Generator().manual_seed(seed)
     past, control = (x.float().to(walker.pose_scaler.mean.device) for x in (past, control))
-    poses, velocities = walker.pose_scaler.transform(past), walker.control_scaler.transform(control)
+    poses = walker.pose_scaler.transform(past)
+    velocities = walker.control_scaler.transform(control)
     sample, T_p = walker.window_sampler(steps), walker.config.T_p
     loop = rollout_steps(
         sample, poses, velocities, frames, T_p, generator=generator, keep=keep, hold=hold

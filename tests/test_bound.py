@@ -34,12 +34,10 @@ def gap(truth, schedule, denoise=None, seed=13):
 
 
 def test_gaussian_kl_is_torchs():
-    m1, m2, v1, v2 = (
-        torch.randn(2, 5, 7),
-        torch.randn(2, 5, 7),
-        torch.tensor(0.3),
-        torch.tensor(0.8),
-    )
+    m1 = torch.randn(2, 5, 7)
+    m2 = torch.randn(2, 5, 7)
+    v1 = torch.tensor(0.3)
+    v2 = torch.tensor(0.8)
     normal = torch.distributions.Normal
     expected = torch.distributions.kl_divergence(normal(m1, v1.sqrt()), normal(m2, v2.sqrt())).sum(
         (1, 2)
@@ -48,12 +46,10 @@ def test_gaussian_kl_is_torchs():
 
 
 def test_reconstruction_term_is_torchs():
-    schedule, x0, x_1, eps = (
-        linear_schedule(),
-        torch.randn(2, 5, 7),
-        torch.randn(2, 5, 7),
-        torch.randn(2, 5, 7),
-    )
+    schedule = linear_schedule()
+    x0 = torch.randn(2, 5, 7)
+    x_1 = torch.randn(2, 5, 7)
+    eps = torch.randn(2, 5, 7)
     normal = torch.distributions.Normal(
         p_mean(x_1, 1, eps, schedule), schedule.beta[1].sqrt().float()
     )
@@ -77,11 +73,10 @@ def test_eq_8_is_the_weighted_distance_of_means_plus_a_constant(s):
 
     Eq. 9 turns means into noises.
     """
-    schedule, generator = linear_schedule(), torch.Generator().manual_seed(14)
-    x0, eps = (
-        torch.randn(2, 5, 7, generator=generator).double(),
-        torch.randn(2, 5, 7, generator=generator).double(),
-    )
+    schedule = linear_schedule()
+    generator = torch.Generator().manual_seed(14)
+    x0 = torch.randn(2, 5, 7, generator=generator).double()
+    eps = torch.randn(2, 5, 7, generator=generator).double()
     x_s, constants = q_sample(x0, s, schedule, eps), []
     for eps_hat in (0 * eps, eps + 0.3, torch.tanh(x_s)):
         means = q_posterior(x0, x_s, s, schedule)[0] - p_mean(x_s, s, eps_hat, schedule)
@@ -97,7 +92,8 @@ def test_eq_8_is_the_weighted_distance_of_means_plus_a_constant(s):
 
 def test_dropped_weight_by_hand():
     schedule = linear_schedule()
-    beta, alpha_bar = schedule.beta[30].item(), schedule.alpha_bar[30].item()
+    beta = schedule.beta[30].item()
+    alpha_bar = schedule.alpha_bar[30].item()
     assert dropped_weight(schedule)[30].item() == pytest.approx(
         beta / (2 * (1 - beta) * (1 - alpha_bar))
     )
@@ -129,7 +125,8 @@ def test_bound_is_tight_for_a_standard_gaussian():
 
 def test_gap_shrinks_with_more_steps():
     truth = two_hills(std=0.2)
-    few, many = gap(truth, cosine_schedule(10)), gap(truth, cosine_schedule(200))
+    few = gap(truth, cosine_schedule(10))
+    many = gap(truth, cosine_schedule(200))
     assert few[0] > many[0] + 5 * (few[1] + many[1])
 
 
@@ -142,10 +139,8 @@ def test_a_worse_denoiser_has_a_wider_gap():
 
 
 def test_terms_are_one_a_step_and_kls_are_positive():
-    schedule, truth = (
-        linear_schedule(17, 1e-3, 0.5),
-        mixture(torch.ones(1), torch.zeros(1, 3), torch.eye(3)[None]),
-    )
+    schedule = linear_schedule(17, 1e-3, 0.5)
+    truth = mixture(torch.ones(1), torch.zeros(1, 3), torch.eye(3)[None])
     terms = bound_terms(
         exact_denoiser(truth, schedule),
         torch.randn(5, 3),

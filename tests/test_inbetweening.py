@@ -53,7 +53,9 @@ def correlated(rho: float = 0.9):
 
 
 def test_the_conditional_is_the_joint_density_over_the_marginal_one():
-    truth, value, known = crossed_bars(), torch.tensor([-0.9, 9.0]), torch.tensor([True, False])
+    truth = crossed_bars()
+    value = torch.tensor([-0.9, 9.0])
+    known = torch.tensor([True, False])
     grid = torch.linspace(-4, 4, 8001, dtype=torch.float64)[:, None]
     joint = log_density(truth, torch.cat([torch.full_like(grid, -0.9), grid], 1)).exp()
     wanted = joint / (joint.sum() * (grid[1] - grid[0]))
@@ -100,8 +102,10 @@ def test_masking_with_the_exact_denoiser_misses_the_conditional_until_it_resampl
 
 
 def test_nothing_known_is_plain_sampling_and_all_known_is_the_input():
-    truth, start = crossed_bars(), torch.randn(50, 2, generator=seeded(3))
-    denoise, nothing = exact_denoiser(truth, SCHEDULE), torch.zeros(50, 2, dtype=torch.bool)
+    truth = crossed_bars()
+    start = torch.randn(50, 2, generator=seeded(3))
+    denoise = exact_denoiser(truth, SCHEDULE)
+    nothing = torch.zeros(50, 2, dtype=torch.bool)
     for eta in (0.0, 1.0):
         thrice = {"steps": resampled(timesteps(100, 50), 3), "eta": eta, "generator": seeded(4)}
         ours = last(inpaint_steps(denoise, start, SCHEDULE, start, nothing, **thrice))
@@ -174,7 +178,8 @@ def clip(T: int = 40) -> np.ndarray:
 )
 @pytest.mark.parametrize("C", [0, 5])
 def test_known_entries_come_back_bit_by_bit_and_the_rest_is_made(known, C):
-    truth, mel = clip(), torch.randn(64, 5, generator=seeded(9)) if C else None
+    truth = clip()
+    mel = torch.randn(64, 5, generator=seeded(9)) if C else None
     holes = np.where(known[..., None], truth, np.nan)
     made = inbetween(
         dancer(C), holes, known, mel, samples=3, steps=5, resample=2, generator=seeded(1)
@@ -215,7 +220,8 @@ def test_where_the_motion_stands_and_faces_does_not_matter(known):
 
     Whatever part of the body is given.
     """
-    truth, one = walk(np.tile([1.2, 0.1, 0.3], (40, 1)), 0).world(), dancer()
+    truth = walk(np.tile([1.2, 0.1, 0.3], (40, 1)), 0).world()
+    one = dancer()
     place = Place(np.array([1.0, 0.0, -5.0]), np.array(2.1))
     here, there = (
         inbetween(one, x, known, steps=5, generator=seeded(3)) for x in (truth, place.leave(truth))
@@ -238,12 +244,16 @@ def test_a_trajectory_is_walked_forward():
 
 def test_what_sets_it_apart_from_the_papers_masking():
     """Each option does what it is for; each is on by default but for resampling."""
-    truth, known, one = clip(), gap(40, 12, 14), checkpoints.pretrained("unconditional")
+    truth = clip()
+    known = gap(40, 12, 14)
+    one = checkpoints.pretrained("unconditional")
 
     def made(**options):
         return inbetween(one, truth, known, samples=2, steps=5, seed=4, **options)
 
-    usual, plain, torn = made(), made(**PAPER), made(bones=False, feet=False)
+    usual = made()
+    plain = made(**PAPER)
+    torn = made(bones=False, feet=False)
     assert seam_jump(usual, known).mean() < 0.5 * seam_jump(plain, known).mean()
     lengths = bone_lengths(truth)[0]
     assert (
@@ -331,7 +341,8 @@ def test_guidance_moves_what_goes_with_the_given():
     truth, n = correlated(0.9), 2000
     given, known = given_first(1.8, n)
     wanted = conditional(truth, given[0].nan_to_num(), known[0]).mean().item()
-    start, denoise = torch.randn(n, 2, generator=seeded(1)), exact_denoiser(truth, SCHEDULE)
+    start = torch.randn(n, 2, generator=seeded(1))
+    denoise = exact_denoiser(truth, SCHEDULE)
     off = {}
     for guidance in (0.0, 1.0):
         who = guided(denoise, SCHEDULE, given, known, guidance) if guidance else denoise
@@ -345,11 +356,9 @@ def test_one_guided_guess_by_hand():
 
     x0_hat = M x, so the pull is M^T r, as long as leaves least wrong.
     """
-    M, x, known = (
-        torch.tensor([[0.5, 0.3], [0.3, 0.5]]),
-        torch.tensor([[1.0, 2.0]]),
-        torch.tensor([[True, False]]),
-    )
+    M = torch.tensor([[0.5, 0.3], [0.3, 0.5]])
+    x = torch.tensor([[1.0, 2.0]])
+    known = torch.tensor([[True, False]])
     alpha_bar = SCHEDULE.alpha_bar[40].item()
 
     def denoise(x, s):

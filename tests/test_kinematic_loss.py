@@ -61,14 +61,13 @@ def test_nothing_is_wrong_with_the_truth():
 
 
 def test_moving_and_turning_the_figure_changes_nothing_and_shaking_it_does():
-    truth, turn = (
-        walk(1),
-        torch.tensor([[0.6, 0.0, 0.8], [0.0, 1.0, 0.0], [-0.8, 0.0, 0.6]], dtype=torch.float64),
-    )
+    truth = walk(1)
+    turn = torch.tensor([[0.6, 0.0, 0.8], [0.0, 1.0, 0.0], [-0.8, 0.0, 0.6]], dtype=torch.float64)
     rough = truth + 0.02 * torch.randn(truth.shape, generator=torch.Generator().manual_seed(0))
     moved = rough @ turn.T + torch.tensor([5.0, 1.0, -3.0])
     for loss in (skeleton_loss, lambda x: asymmetry_loss(x, ((0, 4), (1, 5)))):
-        before, after = loss(bone_lengths(rough, BONES)), loss(bone_lengths(moved, BONES))
+        before = loss(bone_lengths(rough, BONES))
+        after = loss(bone_lengths(moved, BONES))
         torch.testing.assert_close(before, after)
         assert before > 1e-4
 
@@ -84,7 +83,8 @@ def test_frames_that_are_not_there_do_not_count():
 
 
 def test_a_motion_of_padding_alone_costs_nothing():
-    lengths, nobody = torch.rand(2, 7, 4), torch.tensor([[True], [False]]).expand(2, 7)
+    lengths = torch.rand(2, 7, 4)
+    nobody = torch.tensor([[True], [False]]).expand(2, 7)
     found = (skeleton_loss(lengths, nobody), asymmetry_loss(lengths, ((0, 1), (2, 3)), nobody))
     assert all(loss[0] > 0 and loss[1] == 0 for loss in found)
 
@@ -94,7 +94,8 @@ def test_a_foot_slides_only_where_it_should_stand():
     positions = torch.zeros(1, T, 21, 3)
     positions[0, :, TOES[0], 0] = 0.1 * torch.arange(T)  # the left toe slides 10 cm a frame
     positions[0, :, TOES[1], 1] = 0.3 * torch.arange(T)  # the right one only rises
-    left, right = torch.zeros(1, T, 2, dtype=torch.bool), torch.zeros(1, T, 2, dtype=torch.bool)
+    left = torch.zeros(1, T, 2, dtype=torch.bool)
+    right = torch.zeros(1, T, 2, dtype=torch.bool)
     left[..., 0], right[..., 1] = True, True
     assert slide_loss(positions, left, TOES).item() == pytest.approx(0.1)
     assert slide_loss(positions, right, TOES).item() == pytest.approx(0, abs=1e-5)
@@ -123,7 +124,8 @@ def test_the_identity_behind_the_papers_weight():
 
     With L_m the weight asks most at high noise.
     """
-    schedule, draw = cosine_schedule(1000), torch.Generator().manual_seed(0)
+    schedule = cosine_schedule(1000)
+    draw = torch.Generator().manual_seed(0)
     x0, eps, wrong = (torch.randn(3, 8, 5, generator=draw, dtype=torch.float64) for _ in range(3))
     for s in (1, 250, 500, 900, 990):
         at = torch.full((3,), s)

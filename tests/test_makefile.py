@@ -1,5 +1,4 @@
-"""Makefile: what it says when Python is missing or old, or pip has no network. Nothing is installed
-here."""
+"""Makefile: what it says when Python is missing or old, or pip has no network."""
 
 import os
 import shutil

@@ -91,10 +91,8 @@ def test_wrong_numbers_of_frames_are_told(frames):
 
 @pytest.mark.parametrize("which", ["x_s", "s", "past", "control"])
 def test_every_input_is_heard(which):
-    model, args = (
-        lively(TINY),
-        dict(zip(("x_s", "s", "past", "control"), inputs(TINY), strict=True)),
-    )
+    model = lively(TINY)
+    args = dict(zip(("x_s", "s", "past", "control"), inputs(TINY), strict=True))
     before = model(**args)
     args[which] = args[which] + (1 if which == "s" else 0.5)
     assert not torch.allclose(model(**args), before, atol=1e-4)
@@ -187,7 +185,8 @@ def test_fast_twin_keeps_the_context_it_was_given():
     """Another past or control needs another context: the kept one must not leak into it."""
     fast = FastMoDiff(lively(TINY))
     x_s, _, past, control = inputs(TINY)
-    first, second = fast.encode(past, control), fast.encode(past, control + 1)
+    first = fast.encode(past, control)
+    second = fast.encode(past, control + 1)
     before = fast.denoise(x_s, 5, first)
     assert not torch.allclose(fast.denoise(x_s, 5, second), before, atol=1e-4)
     assert torch.equal(fast.denoise(x_s, 5, first), before)
@@ -221,7 +220,9 @@ def test_the_wiring_by_hand():
     5.
     """
     model, (x_s, s, past, control) = lively(TINY), inputs(TINY)
-    given, told, future = [-3, -2, -1, 0], [-3, -2, -1, 0, 1, 2, 3, 4, 5], [1, 2, 3, 4, 5]
+    given = [-3, -2, -1, 0]
+    told = [-3, -2, -1, 0, 1, 2, 3, 4, 5]
+    future = [1, 2, 3, 4, 5]
     clock = {t: model.time[t + 3] for t in told}
 
     def encoder(part, times, x):

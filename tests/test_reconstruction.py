@@ -50,7 +50,8 @@ class Turning:
 def material(B: int = 3):
     draw = torch.Generator().manual_seed(0)
     control = torch.rand(B, 2 * T_H, 3, generator=draw)
-    pose, rows = torch.randn(B, D // 2, dtype=torch.complex64, generator=draw), []
+    pose = torch.randn(B, D // 2, dtype=torch.complex64, generator=draw)
+    rows = []
     for t in range(2 * T_H):
         rows.append(torch.view_as_real(pose).flatten(1))
         pose = pose * torch.exp(1j * control[:, t, 0])[:, None]

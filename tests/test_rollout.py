@@ -8,7 +8,11 @@ import torch
 
 from motiondiff_edu.rollout import rollout_steps
 
-B, T_H, T_P, D, C = 2, 4, 3, 5, 1
+B = 2
+T_H = 4
+T_P = 3
+D = 5
+C = 1
 
 
 def generator() -> torch.Generator:
@@ -70,7 +74,9 @@ def test_keep_asks_the_sampler_every_keep_frames_and_feeds_back_what_was_kept(ke
 
     calls, control = [], numbered_control(T_H + 7)
     poses = roll(lambda *given: calls.append(1) or sample(*given), control, 7, keep=keep)
-    past, random, expected = torch.zeros(B, T_H, D), generator(), []
+    past = torch.zeros(B, T_H, D)
+    random = generator()
+    expected = []
     for t in range(0, 7, keep):
         known = control[:, t : t + T_H]
         window = sample(past, torch.cat([known, known[:, -1:].repeat(1, T_P, 1)], 1), random)[

@@ -72,7 +72,8 @@ def environment() -> dict:
 
 
 def test_a_killed_run_resumes_bit_for_bit(tmp_path: Path):
-    whole, killed = tmp_path / "whole.safetensors", tmp_path / "killed.safetensors"
+    whole = tmp_path / "whole.safetensors"
+    killed = tmp_path / "killed.safetensors"
     expected = run(whole, 40)
     command = [
         sys.executable,
@@ -125,7 +126,8 @@ def test_a_run_of_another_network_is_refused(tmp_path: Path):
 
 
 def test_a_file_that_is_no_run_is_refused_with_what_to_do(tmp_path: Path):
-    path, state = tmp_path / "run.safetensors", TrainState.start(network())
+    path = tmp_path / "run.safetensors"
+    state = TrainState.start(network())
     path.write_bytes(b"not a run at all")
     with pytest.raises(ValueError, match=r"run\.safetensors cannot be resumed: damaged.*delete it"):
         resume_run(state, path)
@@ -135,7 +137,8 @@ def test_a_file_that_is_no_run_is_refused_with_what_to_do(tmp_path: Path):
 
 
 def test_a_run_begun_with_other_settings_is_refused(tmp_path: Path):
-    path, state = tmp_path / "run.safetensors", TrainState.start(network())
+    path = tmp_path / "run.safetensors"
+    state = TrainState.start(network())
     save_run(state, path, {"jitter": 0.3, "styles": ("old", "tired")})
     assert resume_run(state, path, {"jitter": 0.3, "styles": ("old", "tired")}) is state
     with pytest.raises(
@@ -156,7 +159,8 @@ def test_the_moments_of_one_optimizer_are_not_given_to_another(tmp_path: Path):
 
 
 def test_notes_are_kept_and_do_not_hinder(tmp_path: Path):
-    path, state = tmp_path / "run.safetensors", TrainState.start(network())
+    path = tmp_path / "run.safetensors"
+    state = TrainState.start(network())
     assert notes_of(path) == []
     save_run(state, path, notes=[{"from_step": 0}])
     assert notes_of(path) == [{"from_step": 0}] and resume_run(state, path) is state
@@ -184,7 +188,9 @@ def bad_at(step: int, value: float):
 
 @pytest.mark.parametrize("value", [math.nan, math.inf])
 def test_a_non_finite_loss_stops_and_keeps_the_last_good_weights(tmp_path: Path, value: float):
-    path, state, good = tmp_path / "run.safetensors", TrainState.start(nn.Linear(3, 2), seed=1), []
+    path = tmp_path / "run.safetensors"
+    state = TrainState.start(nn.Linear(3, 2), seed=1)
+    good = []
     with pytest.raises(
         NonFiniteLoss, match=r"^step 6: the loss is (nan|inf).*learning rate.*run\.safetensors"
     ):
@@ -207,7 +213,8 @@ def test_broken_weights_are_not_saved_over_good_ones(tmp_path: Path):
     path, model = tmp_path / "run.safetensors", nn.Linear(3, 2)
     state, bad = TrainState.start(model, seed=1), bad_at(99, math.nan)
     list(train_steps(state, bad, 5, save=saver(path), save_every=5, progress=False))
-    before, state.optimizer = path.read_bytes(), Breaks(model.parameters(), lr=0.1)
+    before = path.read_bytes()
+    state.optimizer = Breaks(model.parameters(), lr=0.1)
     with pytest.raises(
         NonFiniteLoss, match="step 6: .* had broken the weights already; they are not saved"
     ):
@@ -216,7 +223,8 @@ def test_broken_weights_are_not_saved_over_good_ones(tmp_path: Path):
 
 
 def test_the_last_step_is_saved_whatever_its_number(tmp_path: Path):
-    path, state = tmp_path / "run.safetensors", TrainState.start(nn.Linear(3, 2), seed=1)
+    path = tmp_path / "run.safetensors"
+    state = TrainState.start(nn.Linear(3, 2), seed=1)
     list(
         train_steps(state, bad_at(99, math.nan), 7, save=saver(path), save_every=5, progress=False)
     )
@@ -224,7 +232,8 @@ def test_the_last_step_is_saved_whatever_its_number(tmp_path: Path):
 
 
 def test_a_flipped_bit_in_a_saved_run_is_found(tmp_path: Path):
-    path, state = tmp_path / "run.safetensors", TrainState.start(nn.Linear(3, 2), seed=1)
+    path = tmp_path / "run.safetensors"
+    state = TrainState.start(nn.Linear(3, 2), seed=1)
     list(train_steps(state, bad_at(99, math.nan), 3, save=saver(path), progress=False))
     raw = bytearray(path.read_bytes())
     raw[-1] ^= 0x40

@@ -27,7 +27,8 @@ from motiondiff_edu.rollout import generate
 
 SCHEDULE = ddpm.linear_schedule(20, 1e-3, 0.5)
 X = torch.zeros(2, 3)
-CLIP, RNG = walk(np.zeros((11, 3)), seed=0), np.random.default_rng(0)
+CLIP = walk(np.zeros((11, 3)), seed=0)
+RNG = np.random.default_rng(0)
 SMALL = MoDiffConfig(T_h=4, T_p=3, S=6, width=16, heads=2, hidden=24)
 PLAIN = Scaler(torch.zeros(63), torch.ones(63)), Scaler(torch.zeros(3), torch.ones(3))
 

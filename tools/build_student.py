@@ -118,7 +118,8 @@ def edition(folder: Path) -> dict[Path, str]:
 
 def stale(folder: Path) -> list[str]:
     """What is missing, changed or left over in folder/student."""
-    wanted, there = edition(folder), set((folder / "student").glob("*.ipynb"))
+    wanted = edition(folder)
+    there = set((folder / "student").glob("*.ipynb"))
     changed = [
         path
         for path, content in wanted.items()

@@ -16,7 +16,9 @@ import notebook_cells
 from notebook_cells import code, markdown, tags
 
 CELLS, WORDS = (25, 45), 1800
-LINES, LONG_SHARE, LINES_AT_MOST = 8, 0.10, 16
+LINES = 8
+LONG_SHARE = 0.10
+LINES_AT_MOST = 16
 NO_TWINS = {"00"}  # start here: nothing is built by hand
 
 OPENING = {  # what the cells before the imports must say
@@ -135,7 +137,8 @@ def exercises(notebook: dict, name: str) -> Iterator[str]:
     if len(found) < 2:
         yield f"{len(found)} cells tagged `solution`; a notebook has two exercises or more"
     for index in found:
-        where, told = f"exercise in cell {cells[index].get('id')}", before(cells, index)
+        where = f"exercise in cell {cells[index].get('id')}"
+        told = before(cells, index)
         if not re.search(r"\bmin(utes?)?\b", told) or not re.search(
             r"difficulty|easy|medium|hard|[★☆●○]", told, re.I
         ):

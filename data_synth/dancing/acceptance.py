@@ -95,7 +95,11 @@ def limits(danced: list[Dance]) -> dict[str, float]:
 
     Slipping feet, the lowest joint (mm), bones (m), knees (degrees), hands (m/s).
     """
-    slip, low, bones, knees, hands = 0.0, np.inf, 0.0, [], 0.0
+    slip = 0.0
+    low = np.inf
+    bones = 0.0
+    knees = []
+    hands = 0.0
     for d in danced:
         p = d.positions
         still = d.contacts[1:] & d.contacts[:-1]
@@ -118,7 +122,8 @@ def limits(danced: list[Dance]) -> dict[str, float]:
 def knee_angle(world: np.ndarray) -> np.ndarray:
     """Degrees between thigh and shank, (T, 2): 0 is a straight leg."""
     ankle = np.array(HEELS)
-    thigh, shank = world[:, ankle - 1] - world[:, ankle - 2], world[:, ankle] - world[:, ankle - 1]
+    thigh = world[:, ankle - 1] - world[:, ankle - 2]
+    shank = world[:, ankle] - world[:, ankle - 1]
     cos = (thigh * shank).sum(-1) / np.linalg.norm(thigh, axis=-1) / np.linalg.norm(shank, axis=-1)
     return np.degrees(np.arccos(np.clip(cos, -1, 1)))
 

@@ -42,7 +42,8 @@ def dancer(
     for side, first in enumerate((1, 5)):
         knee_out = (1, -1)[side] * c["lr"[side] + "_knee"]
         joints[:, first] = hips + pelvis @ OFFSETS[first]
-        joints[:, first + 2], joints[:, first + 3] = feet.ankle[:, side], feet.toe[:, side]
+        joints[:, first + 2] = feet.ankle[:, side]
+        joints[:, first + 3] = feet.toe[:, side]
         facing = yaw + 0.5 * (feet.yaw[:, side] - yaw) + knee_out
         joints[:, first + 1] = legs.bend_knee(
             joints[:, first],

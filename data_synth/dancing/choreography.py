@@ -92,7 +92,8 @@ def choreograph(
     for name, value in rest.items():
         script.keys[name].append((-2.0, value))
     script.keys["heading"].append((-2.0, 0.0))
-    stride, taste = float(rng.normal(1.0, 0.09)), rng.dirichlet(np.full(len(manner.moves), 2.5))
+    stride = float(rng.normal(1.0, 0.09))
+    taste = rng.dirichlet(np.full(len(manner.moves), 2.5))
     for start, length in slots(song, rng):
         move = _draw(song, manner, start, length, moves, taste, rng)
         moves.append(move)

@@ -107,7 +107,8 @@ def perform(
 ) -> tuple[Float[np.ndarray, "T 21 3"], Bool[np.ndarray, "T 2"]]:
     """A person dances the script: with their own timing, posture, spring and drift."""
     rng = np.random.default_rng([seed, song.seed, 32])
-    manner, t = MANNERS[song.genre], np.arange(int(song.seconds * FPS)) / FPS
+    manner = MANNERS[song.genre]
+    t = np.arange(int(song.seconds * FPS)) / FPS
     seconds, number = felt_beats(
         song.beats, rng, jitter=rng.uniform(0.012, 0.020), off=rng.normal(-manner.lead, 0.006)
     )
@@ -132,7 +133,9 @@ def _channels(
     wander = noise.drift(noise.white(seed, len(b))[:, : len(REST)], 0.45, FPS)
     channels = {}
     for i, name in enumerate(REST):
-        late, keys, is_arm = 0.012 * rng.standard_normal(), script.keys[name], name in ARMS
+        late = 0.012 * rng.standard_normal()
+        keys = script.keys[name]
+        is_arm = name in ARMS
         if is_arm:
             keys = within_reach(keys, np.interp([k[0] for k in keys], grid[1], grid[0]), FASTEST)
         flow = 0.5 * manner.flow if name == "drop" else manner.flow

@@ -39,9 +39,16 @@ class Sheet:
         metre: int,
         rng: np.random.Generator,
     ):
-        self.script, self.start, self.n, self.rate = script, start, n, rate
-        self.sign, self.size, self.stride = (-1 if mirrored else 1), size, stride
-        self.rest, self.metre, self.rng = rest, metre, rng
+        self.script = script
+        self.start = start
+        self.n = n
+        self.rate = rate
+        self.sign = -1 if mirrored else 1
+        self.size = size
+        self.stride = stride
+        self.rest = rest
+        self.metre = metre
+        self.rng = rng
         self.keys: dict[str, list[tuple[float, float]]] = {}
         self.drift = (
             0.0,
@@ -152,7 +159,8 @@ class Sheet:
         """Where a foot of the dancer's has its ankle, on the move's own floor."""
         x, z, yaw = self.script.toes[real]
         hx, hz, heading = self.script.home
-        dx, dz = x - TOE_AHEAD * sin(yaw) - hx, z - TOE_AHEAD * cos(yaw) - hz
+        dx = x - TOE_AHEAD * sin(yaw) - hx
+        dz = z - TOE_AHEAD * cos(yaw) - hz
         s, c = sin(heading), cos(heading)
         return self.sign * (dx * c - dz * s), dx * s + dz * c
 
@@ -165,8 +173,10 @@ class Sheet:
         """
         side, real = (1 if foot == 0 else -1), self.foot(foot)
         if scaled:
-            x, z = side * STANCE + self.stride * (x - side * STANCE), self.stride * z
-            x, z = x + self.sign * self.drift[0] * count, z + self.drift[1] * count
+            x = side * STANCE + self.stride * (x - side * STANCE)
+            z = self.stride * z
+            x = x + self.sign * self.drift[0] * count
+            z = z + self.drift[1] * count
         px, pz, yaw = self.place(x, z, side * 7.0 if turn is None else turn)
         land = self.start + (count - 0.04) * self.rate
         lift = max(land - max(swing * self.rate, 0.3), self.script.landed[real] + 0.25)
@@ -223,11 +233,9 @@ class Sheet:
 
         The swinging foot passes it at 0.15 m or more.
         """
-        (ax, az, _), (bx, bz, _), (ox, oz, _) = (
-            self.script.toes[foot],
-            toe,
-            self.script.toes[1 - foot],
-        )
+        ax, az, _ = self.script.toes[foot]
+        bx, bz, _ = toe
+        ox, oz, _ = self.script.toes[1 - foot]
         length = hypot(bx - ax, bz - az)
         u = min(
             max(((ox - ax) * (bx - ax) + (oz - az) * (bz - az)) / max(length, 1e-6) ** 2, 0.0), 1.0
@@ -266,7 +274,8 @@ class Sheet:
         What follows is seen from there.
         """
         hx, hz, heading = self.script.home
-        end, began = self.start + count * self.rate, self.start + (count - during) * self.rate
+        end = self.start + count * self.rate
+        began = self.start + (count - during) * self.rate
         px, pz, after = self.place(self.stride * x, self.stride * z, turn)
         if turn:
             keys = self.keys.setdefault("heading", [])

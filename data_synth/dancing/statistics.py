@@ -83,11 +83,9 @@ def repeats(world: Float[np.ndarray, "T 21 3"], fps: float = 20.0, least: float 
 
 def statistics(world: Float[np.ndarray, "T 21 3"], fps: float = 20.0) -> dict[str, float]:
     """The figures that the acceptance table asks for; metres, seconds, shares."""
-    speed, planted, local = (
-        joint_speed(world, fps),
-        looks_planted(world, fps),
-        root_frame(world, fps),
-    )
+    speed = joint_speed(world, fps)
+    planted = looks_planted(world, fps)
+    local = root_frame(world, fps)
     share = np.cumsum(np.linalg.svd(local - local.mean(0), compute_uv=False) ** 2)
     velocity = np.diff(local, axis=0) * fps
     f, power = welch(velocity, fps, "hann", min(len(velocity), round(4 * fps)), axis=0)

@@ -32,7 +32,8 @@ class Track:
     def ankle(self) -> Float[np.ndarray, "T 3"]:
         """The Foot joint: behind the toe, and higher the more the foot is pitched."""
         sin, cos = np.sin(self.pitch), np.cos(self.pitch)
-        back, up = TOE_AHEAD * cos - ANKLE * sin, ANKLE * cos + TOE_AHEAD * sin
+        back = TOE_AHEAD * cos - ANKLE * sin
+        up = ANKLE * cos + TOE_AHEAD * sin
         return self.toe + np.stack([-back * np.sin(self.yaw), up, -back * np.cos(self.yaw)], -1)
 
 
@@ -49,12 +50,10 @@ def track(
 
     `heel` (degrees) is how far a move raises it while it stands.
     """
-    x, y, z, yaw = (
-        np.full(len(t), start[0]),
-        np.zeros(len(t)),
-        np.full(len(t), start[1]),
-        np.full(len(t), start[2]),
-    )
+    x = np.full(len(t), start[0])
+    y = np.zeros(len(t))
+    z = np.full(len(t), start[1])
+    yaw = np.full(len(t), start[2])
     planted, detour = np.ones(len(t), bool), np.zeros((len(t), 2))
     pitch: list[tuple[float, float]] = [(t[0] - 1.0, 0.0)]
     for step, (lift, land) in zip(steps, times, strict=True):
@@ -85,10 +84,8 @@ def _pitch(step: Step, far: float, lift: float, land: float) -> list[tuple[float
     if step.pivot:
         return [(lift, 0.0), ((lift + land) / 2, 7.0), (land, 0.0)]
     took = land - lift
-    off, middle = (
-        min(10 + 50 * far + 60 * step.height, 38),
-        step.kick if step.kick else 10 + 40 * step.height,
-    )
+    off = min(10 + 50 * far + 60 * step.height, 38)
+    middle = step.kick if step.kick else 10 + 40 * step.height
     return [
         (lift - 0.12, 0.0),
         (lift + 0.12 * took, off),

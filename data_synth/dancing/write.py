@@ -13,7 +13,7 @@ from .performance import Dance, dances
 
 
 def save_npz(danced: Dance, song: Song, path: Path) -> None:
-    """Positions, contacts, moves and the song's beats as plain arrays, no pickle.
+    """Positions, contacts, moves and the song's beats as plain arrays.
 
     Written aside, then renamed.
     """

@@ -82,7 +82,8 @@ def compose(
 
     heard = np.flatnonzero((form.times >= 0) & (form.times < seconds))
     bars = [form.bars[b // metre] for b in heard]
-    beats, phrase = form.times[heard], np.array([bar.phrase for bar in bars])
+    beats = form.times[heard]
+    phrase = np.array([bar.phrase for bar in bars])
     mean = 60.0 * (len(beats) - 1) / (beats[-1] - beats[0]) if len(beats) > 1 else tempo
     return Song(
         audio=audio,

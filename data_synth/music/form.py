@@ -119,7 +119,9 @@ def _bars(
     rng: np.random.Generator, metre: int, phrase_bars: int, silent_bars: int, enough: int
 ) -> list[Bar]:
     """Whole sections until there are `enough` bars."""
-    bars, phrase, loud = [], -1, rng.uniform(-0.08, 0.08)
+    bars = []
+    phrase = -1
+    loud = rng.uniform(-0.08, 0.08)
     for name, length, rest in _sections(rng, phrase_bars, silent_bars):
         for place in range(length):
             in_phrase, last = place % phrase_bars, place == length - 1
@@ -159,7 +161,9 @@ def draw_form(
     """
     groups = GROUPS[metre][int(rng.integers(len(GROUPS[metre])))]
     phrase_bars = int(rng.choice([2, 4])) if metre == 3 else 2
-    beginning, skip, phase = rng.random() < 0.25, int(rng.integers(0, 4 * metre)), rng.random()
+    beginning = rng.random() < 0.25
+    skip = int(rng.integers(0, 4 * metre))
+    phase = rng.random()
     own, drift = rng.spawn(2)
     lead = int(np.ceil(LEAD * tempo / 60 / metre / phrase_bars)) * phrase_bars
     beats = round(seconds * tempo / 60)

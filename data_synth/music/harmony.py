@@ -143,11 +143,13 @@ def lead(tones: tuple[int, ...], before: tuple[int, ...], centre: int = 62) -> t
 
 def draw_chords(form: Form, genre: str, rng: np.random.Generator) -> list[Chord]:
     """One chord for every bar; a section's last bar leads back."""
-    tonic, mode = int(rng.integers(12)), str(rng.choice(list(SCALES), p=MODES[genre]))
+    tonic = int(rng.integers(12))
+    mode = str(rng.choice(list(SCALES), p=MODES[genre]))
     sevenths = rng.random() < {"house": 0.7, "hiphop": 0.8, "latin": 0.5}.get(genre, 0.25)
     choices = PROGRESSIONS[genre][mode]
     plan = {name: choices[int(rng.integers(len(choices)))] for name in ("verse", "chorus")}
-    slow, turn = 1 + (genre in ("house", "hiphop") and rng.random() < 0.4), rng.random() < 0.6
+    slow = 1 + (genre in ("house", "hiphop") and rng.random() < 0.4)
+    turn = rng.random() < 0.6
     chords = []
     for bar in form.bars:
         progression = plan["chorus" if bar.section == "chorus" else "verse"]
@@ -162,14 +164,14 @@ def write_bass(form: Form, chords: list[Chord], genre: str, rng: np.random.Gener
         n: marks(cells(BASS[genre][rng.integers(len(BASS[genre]))], form.groups))
         for n in ("verse", "chorus")
     }
-    lowest, short, notes = int(rng.integers(28, 34)), rng.uniform(0.5, 0.95), []
+    lowest = int(rng.integers(28, 34))
+    short = rng.uniform(0.5, 0.95)
+    notes = []
     for bar, chord, following in zip(form.bars, chords, [*chords[1:], chords[-1]], strict=True):
         if bar.level < 0.4:
             continue
-        root, strokes = (
-            lowest + (chord.root - lowest) % 12,
-            patterns["chorus" if bar.section == "chorus" else "verse"],
-        )
+        root = lowest + (chord.root - lowest) % 12
+        strokes = patterns["chorus" if bar.section == "chorus" else "verse"]
         goal = lowest + (following.root - lowest) % 12
         above = goal + (2 if (goal + 2) % 12 in following.scale else 1)
         steps = {"R": root, "F": root + (chord.tones[2] - chord.root) % 12, "O": root + 12}
@@ -200,12 +202,11 @@ def write_chords(
         n: marks(cells(CHORDS[genre][rng.integers(len(CHORDS[genre]))], form.groups))
         for n in ("verse", "chorus")
     }
-    voicing, notes, turn, absent = (
-        (),
-        [],
-        0,
-        rng.random() < 0.08,
-    )  # a song of drums and bass, but for its breaks
+    # a song of drums and bass, but for its breaks
+    voicing = ()
+    notes = []
+    turn = 0
+    absent = rng.random() < 0.08
     for bar, chord in zip(form.bars, chords, strict=True):
         if bar.section == "silence" or (absent and bar.section != "break"):
             continue
@@ -216,10 +217,8 @@ def write_chords(
         )
         ends = [at for at, _ in strokes[1:]] + [form.metre]
         for (at, mark), end in zip(strokes, ends, strict=True):
-            length, loud = (
-                {"L": end - at, "s": 0.3, "a": 0.6}[mark],
-                0.35 if held else 0.5 + 0.4 * bar.level,
-            )
+            length = {"L": end - at, "s": 0.3, "a": 0.6}[mark]
+            loud = 0.35 if held else 0.5 + 0.4 * bar.level
             pitches = (
                 voicing if mark != "a" else [voicing[turn % len(voicing)] + 12 * (turn % 8 > 4)]
             )
@@ -288,7 +287,9 @@ def write_melody(
 
 
 def _phrase(form: Form, chords: list[Chord], bar: Bar, motif: Motif, centre: int) -> list[Note]:
-    start, pitch, notes = bar.number * form.metre, centre, []
+    start = bar.number * form.metre
+    pitch = centre
+    notes = []
     for k, (at, step) in enumerate(zip(motif.at, motif.step, strict=True)):
         here = form.bars[min(max(int((start + at) // form.metre), 0), len(form.bars) - 1)]
         chord, ends = chords[here.number], k == len(motif.at) - 1

@@ -63,7 +63,9 @@ def drum_bus(
     played: Played, timbre: str, length: int, rng: np.random.Generator
 ) -> Float[np.ndarray, "N"]:
     """All strokes; three sounds of every drum, so that no two in a row are the same."""
-    kit, ready, out = own_kit(timbre, rng), {}, np.zeros(length)
+    kit = own_kit(timbre, rng)
+    ready = {}
+    out = np.zeros(length)
     sources = dict(
         zip(DRUMS, rng.spawn(len(DRUMS)), strict=True)
     )  # a drum's sound does not depend on what else plays
@@ -86,7 +88,9 @@ def voice_bus(
 ) -> Float[np.ndarray, "N"]:
     """All notes of one voice."""
     choices = VOICES[timbre][kind]
-    voice, ready, out = choices[int(rng.integers(len(choices)))], {}, np.zeros(length)
+    voice = choices[int(rng.integers(len(choices)))]
+    ready = {}
+    out = np.zeros(length)
     if not notes:
         return out
     start = form.at(np.array([n.position for n in notes]))
@@ -150,7 +154,8 @@ def mix(
     Its peak is 0.8 to 0.95.
     """
     strokes, voices, space, noise = rng.spawn(4)
-    length, n = round((LEAD + seconds) * SAMPLE_RATE), round(seconds * SAMPLE_RATE)
+    length = round((LEAD + seconds) * SAMPLE_RATE)
+    n = round(seconds * SAMPLE_RATE)
     buses = {"drums": drum_bus(played, timbre, length, strokes)}
     for kind in ("bass", "chords", "lead"):
         buses[kind] = voice_bus(
@@ -178,10 +183,8 @@ def mix(
 def _master(
     y: np.ndarray, timbre: str, rng: np.random.Generator, noise: np.random.Generator
 ) -> np.ndarray:
-    low, high = (
-        rng.uniform(25, 60) if rng.random() < 0.8 else rng.uniform(100, 220),
-        rng.uniform(2500, 6000),
-    )
+    low = rng.uniform(25, 60) if rng.random() < 0.8 else rng.uniform(100, 220)
+    high = rng.uniform(2500, 6000)
     y = sosfilt(butter(2, low, "high", fs=SAMPLE_RATE, output="sos"), y)
     if rng.random() < (0.9 if timbre == "lofi" else 0.15):
         y = sosfilt(butter(2, high, "low", fs=SAMPLE_RATE, output="sos"), y)

@@ -40,7 +40,8 @@ def beat_song(
             f"{seconds} s at {tempo:g} BPM hold no two beats: more seconds, or a higher tempo"
         )
     rng = np.random.default_rng([seed, 21])
-    first, turn = rng.uniform(0.02, min(period, seconds - period)), rng.uniform(0, 2 * np.pi)
+    first = rng.uniform(0.02, min(period, seconds - period))
+    turn = rng.uniform(0, 2 * np.pi)
     count = np.arange(int(2 * seconds / period) + 2)
     swing = drift * 12 / (2 * np.pi) * (np.sin(2 * np.pi * count / 12 + turn) - np.sin(turn))
     beats = first + period * (count + swing)

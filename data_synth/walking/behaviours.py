@@ -14,7 +14,9 @@ from jaxtyping import Bool, Float
 from ..noise import follow
 
 # kind -> pose of (left, right) arm, or None where the arm just goes on swinging
-_WAVE, _HIP, _HELD = (12.0, 62.0, -78.0, 88.0), (-20.0, 41.0, 62.0, 84.0), (14.0, 10.0, 22.0, 96.0)
+_WAVE = (12.0, 62.0, -78.0, 88.0)
+_HIP = (-20.0, 41.0, 62.0, 84.0)
+_HELD = (14.0, 10.0, 22.0, 96.0)
 ARM_POSES = {
     "wave left": (_WAVE, None),
     "wave right": (None, _WAVE),
@@ -51,7 +53,9 @@ def _states(
     """
     on = np.zeros((len(u), kinds))
     kind, since = -1, 0
-    draw, choice, calm = u[:, 0].tolist(), u[:, 1].tolist(), calm.tolist()
+    draw = u[:, 0].tolist()
+    choice = u[:, 1].tolist()
+    calm = calm.tolist()
     for t in range(len(draw)):
         if kind < 0 and draw[t] < per_second / fps and calm[t]:
             kind, since = min(int(choice[t] * kinds), kinds - 1), t

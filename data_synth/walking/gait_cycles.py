@@ -86,7 +86,8 @@ def analyse(world: Float[np.ndarray, "T 21 3"], fps: float = 20.0) -> Walk:
     travel = np.where(speed[:, None] > 0.35, v / np.maximum(speed[:, None], 1e-6), facing)
     down, level = [], []
     for side in SIDES:
-        foot, toe = world[:, j(side + "Foot")], world[:, j(side + "ToeBase")]
+        foot = world[:, j(side + "Foot")]
+        toe = world[:, j(side + "ToeBase")]
         slow = _speed(toe, fps) < 0.3
         level.append(
             np.percentile(foot[slow, 1], 25) if slow.sum() > 3 else np.percentile(foot[:, 1], 10)
@@ -108,10 +109,8 @@ def cycles(walk: Walk, steady: bool = True) -> list[Cycle]:
     found = []
     for s in (0, 1):
         for a, b in zip(strikes[s][:-1].tolist(), strikes[s][1:].tolist(), strict=True):
-            off, other = (
-                offs[s][(offs[s] > a) & (offs[s] < b)],
-                strikes[1 - s][(strikes[1 - s] > a) & (strikes[1 - s] < b)],
-            )
+            off = offs[s][(offs[s] > a) & (offs[s] < b)]
+            other = strikes[1 - s][(strikes[1 - s] > a) & (strikes[1 - s] < b)]
             ok = (
                 0.45 < (b - a) / walk.fps < 1.9
                 and len(off) == len(other) == 1
@@ -143,10 +142,8 @@ def curves(walk: Walk) -> dict[str, np.ndarray]:
         out[f"ankle{s}"] = _between(walk, side + "Leg", side + "Foot", side + "ToeBase")
         out[f"hand{s}"] = walk.sagittal(side + "Arm", side + "Hand")
         out[f"elbow{s}"] = _between(walk, side + "Arm", side + "ForeArm", side + "Hand")
-        out[f"toe_y{s}"], out[f"foot_y{s}"] = (
-            walk.joint(side + "ToeBase")[:, 1],
-            walk.joint(side + "Foot")[:, 1],
-        )
+        out[f"toe_y{s}"] = walk.joint(side + "ToeBase")[:, 1]
+        out[f"foot_y{s}"] = walk.joint(side + "Foot")[:, 1]
         for name, joints in (("pelvis", "UpLeg"), ("thorax", "Arm")):
             d = walk.joint(side + joints) - walk.joint(SIDES[1 - s] + joints)
             own = 1.0 if s == 0 else -1.0  # ahead of a line that runs to one's own side

@@ -56,7 +56,8 @@ def place_feet(steps: Steps, root_xz, heading, forward, run, style: Style) -> Fe
     pitch, pivot, lift = _roll(steps, x, z, yaw, forward[:, None], run[:, None], style)
     back = TOE_AHEAD - (TOE_AHEAD + HEEL_BEHIND) * pivot  # of the pivot, seen from the ankle
     sin, cos = np.sin(pitch), np.cos(pitch)
-    ahead_ankle, up_ankle = back - back * cos + ANKLE * sin, back * sin + ANKLE * cos + lift
+    ahead_ankle = back - back * cos + ANKLE * sin
+    up_ankle = back * sin + ANKLE * cos + lift
     rest = TOE_AHEAD - back
     ahead_toe, up_toe = back + rest * cos, lift - rest * sin
     s, c = np.sin(yaw), np.cos(yaw)
@@ -88,7 +89,8 @@ def _roll(steps: Steps, x, z, yaw, forward, run, style: Style):
     heel_off = np.clip(forward / 1.1, 0, 1.0) ** 0.7 * steps.amount[:, None]
     degrees = np.where(curve > 0, curve * heel_off, curve * steps.toe_up)
     late = np.clip((progress - 0.4) / 0.2, 0, 1) * np.clip((1.45 - progress) / 0.4, 0, 1)
-    forced, up = heel_rise(_behind(x, z, yaw)) * late, np.maximum(degrees, 0)
+    forced = heel_rise(_behind(x, z, yaw)) * late
+    up = np.maximum(degrees, 0)
     degrees = degrees + softplus(forced - up, 1.5) - softplus(-up, 1.5)
     u = np.clip(progress - 1, 0, 1)
     pivot = np.where(progress > 1, u * u * (3 - 2 * u), (progress < 0.35) * 1.0)

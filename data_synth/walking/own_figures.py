@@ -40,7 +40,8 @@ def own_figures(
 
     Spread (m), adherence and skating (m/s), slope and correlation of the lean in turns.
     """
-    apart, walks = spreads(pasts, n, seconds), dataset(clips, seconds, 1)
+    apart = spreads(pasts, n, seconds)
+    walks = dataset(clips, seconds, 1)
     out = {
         "spread_m": apart.mean(),
         "spread_smallest_m": apart.min(),
@@ -62,19 +63,15 @@ def limits(clips: int = 600, seconds: float = 12.0, spots: int = 60) -> dict[str
     begun = time.process_time()
     walks = dataset(clips, seconds, 1)
     out = {"made_per_cpu_second": clips * seconds / (time.process_time() - begun)}
-    knees, controls = (
-        np.concatenate([knee_angles(c) for c in walks]),
-        np.concatenate([c.control for c in walks]),
-    )
+    knees = np.concatenate([knee_angles(c) for c in walks])
+    controls = np.concatenate([c.control for c in walks])
     out |= {"knee_smallest_deg": knees.min(), "knee_largest_deg": knees.max()}
     out["lowest_joint_mm"] = 1e3 * min(c.poses[..., 1].min() for c in walks)
     out["planted_toe_mm_a_frame"] = 1e3 * max(planted_slip(c) for c in walks)
     out["bone_error_m"] = max(bone_error(c) for c in walks)
     out |= {"ahead_slowest_mps": controls[:, 0].min(), "ahead_fastest_mps": controls[:, 0].max()}
-    out["aside_mps"], out["turning_dps"] = (
-        np.abs(controls[:, 1]).max(),
-        np.degrees(np.abs(controls[:, 2]).max()),
-    )
+    out["aside_mps"] = np.abs(controls[:, 1]).max()
+    out["turning_dps"] = np.degrees(np.abs(controls[:, 2]).max())
     out["speed_times_turning_mps2"] = np.abs(controls[:, 0] * controls[:, 2]).max()
     near = np.concatenate(
         [feet_apart(c)[fast] for c, fast in (_spot(k, seconds) for k in range(spots))]
@@ -85,10 +82,8 @@ def limits(clips: int = 600, seconds: float = 12.0, spots: int = 60) -> dict[str
 
 def knee_angles(clip: Clip) -> Float[np.ndarray, "T 2"]:
     """How far the knees are bent (degrees, 0 straight), left and right."""
-    thigh, shank = (
-        clip.poses[:, [2, 6]] - clip.poses[:, [1, 5]],
-        clip.poses[:, [3, 7]] - clip.poses[:, [2, 6]],
-    )
+    thigh = clip.poses[:, [2, 6]] - clip.poses[:, [1, 5]]
+    shank = clip.poses[:, [3, 7]] - clip.poses[:, [2, 6]]
     cos = (thigh * shank).sum(-1) / np.linalg.norm(thigh, axis=-1) / np.linalg.norm(shank, axis=-1)
     return np.degrees(np.arccos(np.clip(cos, -1, 1)))
 

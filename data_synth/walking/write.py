@@ -13,7 +13,7 @@ from .walks import dataset
 
 
 def save_npz(clip: Clip, path: Path) -> None:
-    """Poses, control, contacts, fps and source as plain arrays, no pickle.
+    """Poses, control, contacts, fps and source as plain arrays.
 
     Written aside, then renamed.
     """

@@ -157,10 +157,8 @@ def there_and_back(
     if question.past is None:
         raise ValueError("there-and-back needs a past to start from: name it in the question")
     known, past = question.known, question.past
-    ahead, back = (
-        Rest(question.truth, past | known),
-        Rest(question.truth, (~past | known) if keep else ~past),
-    )
+    ahead = Rest(question.truth, past | known)
+    back = Rest(question.truth, (~past | known) if keep else ~past)
     for _ in range(rounds):
         x = ahead.draw(x, generator)
         x = torch.where(known, x, back.draw(x, generator))

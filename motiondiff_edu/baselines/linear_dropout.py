@@ -133,7 +133,9 @@ def products(
 def expected(clean: Products, moments: Moments) -> Products:
     """What `products(windows, drop)` tends to with many draws, from the products of clean pasts.
     Notebook: 09"""
-    P, xx, xy = clean.past, clean.xx.clone(), clean.xy.clone()
+    P = clean.past
+    xx = clean.xx.clone()
+    xy = clean.xy.clone()
     xx[:P, :P] = moments.share * xx[:P, :P] + moments.floor * torch.eye(P, dtype=xx.dtype)
     xx[:P, P:] *= moments.keep
     xx[P:, :P] *= moments.keep

@@ -14,6 +14,7 @@ from torch import Tensor, nn
 from ..cross_modal_attention import CrossModalAttention, angles_of
 from ..modiff import step_embedding
 from ..mofusion import CrossAttentionBlock, Music, MusicEncoder
+from ..performers.networks import register
 from ..prediction import TARGETS
 
 
@@ -124,3 +125,6 @@ class DanceTransformer(nn.Module):
         for layer in self.layers:
             x = layer(x, music, bias, (frames, frames), (frames, heard))
         return self.out(x)
+
+
+register("dancer", DanceTransformer, TransformerConfig)

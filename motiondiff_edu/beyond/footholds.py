@@ -192,9 +192,3 @@ def openness(gate: Float[Tensor, "*B F"], leaning: bool = True) -> Float[Tensor,
     if not leaning:
         return torch.sigmoid(gate)
     return ((1 + 2 * STRETCH) * torch.sigmoid(gate + LEAN) - STRETCH).clamp(0, 1)
-
-
-def network(config: MoDiffConfig, pose_scaler: Scaler, control_scaler: Scaler) -> MoDiff:
-    """The network that a configuration asks for: MoDiff, or the one with footholds."""
-    footholds = isinstance(config, FootholdConfig)
-    return FootholdMoDiff(config, pose_scaler, control_scaler) if footholds else MoDiff(config)

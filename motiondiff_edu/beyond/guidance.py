@@ -106,7 +106,8 @@ def blended_guess(
         torch.where(known, frames, T).flip(1).cummin(1).values.flip(1)
     )  # the one ahead, T for none
     wrong = (given - x0_hat).where(known, 0.0)
-    behind, ahead = wrong.gather(1, before.clamp(min=0)), wrong.gather(1, after.clamp(max=T - 1))
+    behind = wrong.gather(1, before.clamp(min=0))
+    ahead = wrong.gather(1, after.clamp(max=T - 1))
     share = (frames - before) / (after - before).clamp(min=1)
     alone = (1 - torch.where(before < 0, after - frames, frames - before) / (fade + 1)).clamp(min=0)
     behind = behind * torch.where(after < T, 1 - share, alone).where(

@@ -25,6 +25,7 @@ from .music import SAMPLE_RATE
 SHORTEST = 1.0  # seconds
 # a file whose largest sample is below this, 80 dB under full scale, holds nothing to dance to
 SILENT = 1e-4
+LOUDEST = 10.0  # samples reach 1; more than a mix that clips is no sound, or in other units
 BLOCK = 4096  # samples read at a time, of a file that cannot be read in one piece
 
 # first bytes of what libsndfile does not read and ffmpeg does: (where, bytes): name
@@ -94,6 +95,38 @@ def read_sound(sound: str | Path | bytes | memoryview) -> Float[Tensor, "N"]:
         path = Path(folder) / "the uploaded file"
         path.write_bytes(sound)
         return read_audio(path)
+
+
+def samples_of(sound: str | Path | np.ndarray | Tensor) -> Float[Tensor, "N"]:
+    """A sound file read, or samples as they are: mono, 16 kHz, float32.
+
+    Raises AudioError as `read_audio`, and for samples of another shape, in whole numbers, not
+    finite, or far beyond -1 to 1.   Notebook: 00, 12
+    """
+    if isinstance(sound, (str, Path)):
+        return read_audio(Path(sound).expanduser())
+    samples = np.asarray(sound)
+    if samples.ndim != 1 or not len(samples):
+        raise AudioError(
+            f"sound is one channel of samples (N,) at {SAMPLE_RATE} Hz, not {samples.shape}; the mean of "
+            "several channels is one"
+        )
+    if not np.issubdtype(samples.dtype, np.floating):
+        raise AudioError(
+            f"sound is floating-point samples from -1 to 1, not {samples.dtype}; divide 16-bit samples by 32768"
+        )
+    bad = np.flatnonzero(~np.isfinite(samples))
+    if len(bad):
+        raise AudioError(
+            f"{len(bad)} samples are NaN or infinite, the first at {bad[0] / SAMPLE_RATE:.3f} s"
+        )
+    where = int(np.abs(samples).argmax())
+    if abs(samples[where]) > LOUDEST:
+        raise AudioError(
+            f"samples lie between -1 and 1; the one at {where / SAMPLE_RATE:.3f} s is "
+            f"{samples[where]:.3g}. Divide the sound by its largest sample, if it is sound"
+        )
+    return torch.from_numpy(samples.astype(np.float32))
 
 
 def resample(audio: Float[np.ndarray, "N"], rate: int) -> Float[np.ndarray, "n"]:

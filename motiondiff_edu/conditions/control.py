@@ -65,6 +65,27 @@ def splice(
     return np.concatenate([past[len(past) - T_h : -1], new[:1], new])
 
 
+def as_long(control: Float[np.ndarray, "n 3"], rows: int | None) -> Float[np.ndarray, "m 3"]:
+    """A control of so many rows: cut, or its last row held; None leaves its length.
+
+    Raises ValueError for another shape, no row, and rows that are not finite.
+    """
+    array = np.array(control, np.float64)
+    if array.ndim != 2 or array.shape[1] != 3 or not len(array):
+        raise ValueError(
+            f"a control is (rows, 3): forward m/s, left m/s, turning rad/s, {FPS:g} rows a second; "
+            f"this is {array.shape}. joystick([(seconds, forward, left, turning), ...]) makes one"
+        )
+    bad = np.flatnonzero(~np.isfinite(array).all(1))
+    if len(bad):
+        raise ValueError(f"row {bad[0]} of the control is {array[bad[0]]}: give finite numbers")
+    if rows is None:
+        return array
+    if rows < 1:
+        raise ValueError(f"a control of {rows} rows has no frame: a frame is {1 / FPS:g} s")
+    return array[np.minimum(np.arange(rows), len(array) - 1)]
+
+
 def joystick(
     segments: Sequence[tuple], fps: float | int = FPS, ramp: float | int = RAMP
 ) -> Float[np.ndarray, "T 3"]:

@@ -15,7 +15,12 @@ from jaxtyping import Float
 from torch import Tensor
 from torch.nn import functional as F
 
-SAMPLE_RATE, HOP, BANDS, F_MIN, F_MAX = 16_000, 512, 80, 0.0, 8000.0  # MoFusion 3.3
+# MoFusion 3.3
+SAMPLE_RATE = 16_000
+HOP = 512
+BANDS = 80
+F_MIN = 0.0
+F_MAX = 8000.0
 # 64 ms; the paper leaves it open. 512 = HOP would be deaf between two frames, 2048 would blur a
 # beat more
 N_FFT = 1024
@@ -77,7 +82,9 @@ def mel_filters(
         torch.linspace(float(ends[0]), float(ends[1]), bands + 2, dtype=torch.float64)
     )[:, None]
     hz = torch.linspace(0, sample_rate / 2, n_fft // 2 + 1, dtype=torch.float64)
-    low, middle, high = edges[:-2], edges[1:-1], edges[2:]
+    low = edges[:-2]
+    middle = edges[1:-1]
+    high = edges[2:]
     triangles = torch.minimum((hz - low) / (middle - low), (high - hz) / (high - middle)).clamp(
         min=0
     )
@@ -132,7 +139,7 @@ def frame_times(M: int) -> Float[Tensor, "M"]:
 
     Notebook: 11
     """
-    return torch.arange(M, dtype=torch.float64) / FRAMES_PER_SECOND
+    return torch.arange(M, dtype=torch.float64, device="cpu") / FRAMES_PER_SECOND
 
 
 def crop_seconds(

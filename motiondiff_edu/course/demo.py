@@ -1,5 +1,4 @@
-"""`motiondiff-edu demo NB`: one notebook ready to show, with shipped weights and large type;
-changes are not kept."""
+"""`motiondiff-edu demo NB`: one notebook ready to show, with shipped weights and large type."""
 
 import argparse
 import json

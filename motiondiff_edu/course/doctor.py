@@ -73,7 +73,9 @@ def versions() -> Finding:
         names = required()
     except importlib.metadata.PackageNotFoundError:
         return Finding("versions", "motiondiff-edu is not installed", INSTALL)
-    pins, missing, other = constraints(), [], []
+    pins = constraints()
+    missing = []
+    other = []
     for name in names:
         try:
             version = importlib.metadata.version(name).split("+")[0]

@@ -25,8 +25,7 @@ def open_lab(root: Path, notebook: Path, options: list[str], environment: dict[s
 
 
 def serve(command: list[str], environment: dict[str, str]) -> int:
-    """Run the server; its exit status. Ctrl-C and SIGTERM end it, so that no kernel is left
-    behind."""
+    """Run the server; its exit status. Ctrl-C and SIGTERM end it, and its kernels with it."""
     server = subprocess.Popen(command, env=os.environ | environment)
     before = signal.signal(signal.SIGTERM, lambda *_: server.terminate())
     try:

@@ -1,5 +1,4 @@
-"""`motiondiff-edu lab`: JupyterLab at notebook 00, in a copy of the student edition that is the
-student's own."""
+"""`motiondiff-edu lab`: JupyterLab in a student's own copies of the student edition."""
 
 import argparse
 from pathlib import Path
@@ -24,7 +23,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--folder",
         type=Path,
-        help="where your copies are (default: motiondiff_notebooks, at the top of a checkout or here)",
+        help="where your copies are (default: motiondiff_notebooks)",
     )
 
 

@@ -4,7 +4,7 @@ import os
 import sys
 from pathlib import Path
 
-PACKAGE = Path(__file__).parent.parent
+PACKAGE = Path(__file__).parents[1]
 COPIES = "motiondiff_notebooks"
 
 

@@ -5,6 +5,7 @@ The sampling itself is `inbetweening.inpaint_steps`.  Source: MoFusion 4.4.  Not
 """
 
 import math
+from typing import Protocol, runtime_checkable
 
 import numpy as np
 import torch
@@ -14,12 +15,12 @@ from torch import Tensor
 from ..beyond.constant_bones import given_lengths, steady_bones
 from ..beyond.foot_lock import steady_feet
 from ..beyond.guidance import blended, guided
-from ..ddpm import timesteps
+from ..ddpm import Denoiser, Schedule, draw, timesteps
 from ..inbetweening import inpaint_steps, resampled
 from ..motion.dance_frame import GROUND, Place, heading, placed_features, to_positions
 from ..motion.directions import ARMS, UPLEGS
+from ..motion.scaler import Scaler
 from ..motion.skeleton import HIPS, JOINTS, J
-from ..performers.dancer import Dancer
 from .masks import known_columns
 
 BLEND = 10  # frames within which a correction fades where nothing else is given
@@ -29,8 +30,18 @@ AHEAD, SOMEWHERE = 20, 0.5  # frames of the path that tell where it leads, if so
 PAPER = {"blend": None, "guidance": 0.0, "bones": False, "feet": False}
 
 
+@runtime_checkable
+class AnyDancer(Protocol):
+    """What `inbetween` needs of a dancer: schedule, units, and a denoiser for the music."""
+
+    schedule: Schedule
+    motion_scaler: Scaler
+
+    def denoiser(self, mel: Tensor | None, frames: int, fast: bool = True) -> Denoiser: ...
+
+
 def inbetween(
-    dancer: Dancer,
+    dancer: AnyDancer,
     positions: Float[np.ndarray, "T 21 3"],
     known: Bool[np.ndarray, "T 21"],
     mel: Float[Tensor, "M C"] | None = None,
@@ -63,24 +74,27 @@ def inbetween(
     positions, known = _checked(positions, known)
     generator = generator or torch.Generator().manual_seed(seed)
     columns, place = torch.from_numpy(known_columns(known)), seen_from(positions, known)
+    device = dancer.motion_scaler.mean.device
     at_home = np.where(known[..., None], place.enter(np.nan_to_num(positions)), 0.0)
-    given = dancer.motion_scaler.transform(torch.from_numpy(placed_features(at_home)).float())
+    features = torch.from_numpy(placed_features(at_home)).float().to(device)
+    given = dancer.motion_scaler.transform(features)
     shape = (samples, *given.shape)
     heard = None if mel is None else mel[None].expand(samples, -1, -1)
-    start = torch.randn(shape, generator=generator)
-    held, schedule = (given.expand(shape), columns.expand(shape)), dancer.schedule
+    held, schedule = (given.expand(shape), columns.to(device).expand(shape)), dancer.schedule
+    start = draw(held[0], generator)
     steer = bool(guidance) and bool(known.any())
     denoise = dancer.denoiser(heard, len(given), fast=not steer)
     if steer:
         denoise = guided(denoise, schedule, *held, guidance)
     if blend is not None:
-        denoise = blended(denoise, schedule, *held, fading(blend))
+        denoise = blended(denoise, schedule, *held, fading(blend).to(device))
     visited = resampled(timesteps(schedule.S, steps), resample)
     loop = inpaint_steps(
         denoise, start, schedule, *held, steps=visited, eta=eta, generator=generator
     )
     *_, last = loop
-    made = place.leave(to_positions(dancer.motion_scaler.inverse(last.x_s)).double().numpy())
+    poses = to_positions(dancer.motion_scaler.inverse(last.x_s))
+    made = place.leave(poses.double().cpu().numpy())
     whole = np.where(known[..., None], positions, made)
     whole = steady_bones(whole, known, given_lengths(positions, known)) if bones else whole
     return steady_feet(whole, known) if feet and known.any() else whole

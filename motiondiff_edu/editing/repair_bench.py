@@ -93,10 +93,8 @@ class RepairBench:
                 f"the window begins at frame {first}; it may begin at 0 to {self.last_first}"
             )
         known, T_h = self.known(missing), self.T_h
-        truth, control = (
-            self.clip.poses[first : first + T_h],
-            self.clip.control[first : first + 2 * T_h],
-        )
+        truth = self.clip.poses[first : first + T_h]
+        control = self.clip.control[first : first + 2 * T_h]
         path, heading = root_path(self.clip.control)
         start = (*path[first], heading[first])
         holes = np.where(known[..., None], truth, np.nan)

@@ -43,7 +43,8 @@ class FastMoFusion:
             raise ValueError(
                 "a network without music has no keys and values to keep: use the plain one"
             )
-        self.model = model = copy.deepcopy(model).eval()
+        model = copy.deepcopy(model).eval()
+        self.model = model
         self.config = model.config
         self.levels = len(self.config.widths)
         self.blocks = [*model.down, model.middle, *model.up]
@@ -83,7 +84,9 @@ class FastMoFusion:
     ) -> Float[Tensor, "B T D"]:
         """The network's output at step s, one for the whole batch or one for each: eps, x0 or v, as
         its target says."""
-        model, levels, views = self.model, self.levels, song.views
+        model = self.model
+        levels = self.levels
+        views = song.views
         x = F.pad(x_s, (0, 0, 0, -song.frames % 2**levels))
         h, kept = model.into(x), []
         for level in range(levels):

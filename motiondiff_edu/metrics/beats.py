@@ -77,7 +77,9 @@ def kinematic_beats(
             "positions hold NaN or infinity: fill or cut them before looking for beats"
         )
     low = find_peaks(-speed, prominence=DUST)[0]
-    before, here, after = speed[low - 1], speed[low], speed[low + 1]
+    before = speed[low - 1]
+    here = speed[low]
+    after = speed[low + 1]
     bend = before - 2 * here + after
     shift = np.divide(before - after, 2 * bend, out=np.zeros_like(bend), where=bend > 0)
     return (low + 0.5 + np.clip(shift, -0.5, 0.5)) / fps
@@ -174,7 +176,9 @@ def f_measure(
     hits = i = j = 0
     while i < len(found) and j < len(true):
         if abs(found[i] - true[j]) <= window:
-            hits, i, j = hits + 1, i + 1, j + 1
+            hits = hits + 1
+            i = i + 1
+            j = j + 1
         elif found[i] < true[j]:
             i += 1
         else:

@@ -61,7 +61,8 @@ def npss_parts(
     """
     power = [np.abs(np.fft.rfft(x, axis=1)) ** 2 for x in (made, truth)]
     spread = [np.cumsum(p / np.maximum(p.sum(1, keepdims=True), 1e-12), axis=1) for p in power]
-    moved, weight = np.abs(spread[0] - spread[1]).sum(1), power[1].sum(1)
+    moved = np.abs(spread[0] - spread[1]).sum(1)
+    weight = power[1].sum(1)
     return (moved * weight).sum(-1), weight.sum(-1)
 
 

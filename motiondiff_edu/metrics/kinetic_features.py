@@ -77,7 +77,8 @@ def _averaged(rates: Float[np.ndarray, "N J 3"], frames: int) -> Float[np.ndarra
     at = np.arange(
         frames
     )  # a last frame without an acceleration of its own has the mean of those before
-    first, last = np.maximum(at - WINDOW, 0), np.minimum(at + WINDOW + 1, len(rates))
+    first = np.maximum(at - WINDOW, 0)
+    last = np.minimum(at + WINDOW + 1, len(rates))
     return (total[last] - total[first]) / (last - first)[:, None, None]
 
 
@@ -85,7 +86,8 @@ def _together(
     steps: Float[np.ndarray, "N J 3"], changes: Float[np.ndarray, "_ J 3"]
 ) -> Float[np.ndarray, "F"]:
     """The three numbers of each joint from its velocities and its accelerations, frame by frame."""
-    velocity, acceleration = _averaged(steps, len(steps)), _averaged(changes, len(steps))
+    velocity = _averaged(steps, len(steps))
+    acceleration = _averaged(changes, len(steps))
     horizontal = (velocity[..., [0, 2]] ** 2).sum(-1).mean(0)
     vertical = (velocity[..., 1] ** 2).mean(0)
     expenditure = np.linalg.norm(acceleration, axis=-1).mean(0)

@@ -2,3 +2,8 @@
 
 The skeleton, forward kinematics, the root frame, clips, and the files they come from.
 """
+
+from . import registry
+
+registry.readers.announce(f"{__name__}.files", ".bvh", ".npz")
+registry.writers.announce(f"{__name__}.files", ".bvh", ".npz")

@@ -81,7 +81,8 @@ def read_keypoints(path: str | Path, optimised: bool = True) -> Keypoints:
         raise AistError(
             f"{path.name}: larger than {LARGEST // 1_000_000} MB, and no keypoints file is."
         )
-    content, key = _load(path), "keypoints3d_optim" if optimised else "keypoints3d"
+    content = _load(path)
+    key = "keypoints3d_optim" if optimised else "keypoints3d"
     cm = _array(content, key, path.name)
     known = np.isfinite(cm).all((1, 2))
     if not known.any():

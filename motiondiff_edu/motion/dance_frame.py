@@ -19,7 +19,8 @@ from .scaler import Scaler
 from .skeleton import BONE_PAIRS, BONES, HIPS, MIRROR, TOES, J, joint_index
 
 GROUND = np.array([1.0, 0.0, 1.0])  # what of a place is on the floor
-HIP_LEFT, HIP_RIGHT = joint_index("LeftUpLeg"), joint_index("RightUpLeg")
+HIP_LEFT = joint_index("LeftUpLeg")
+HIP_RIGHT = joint_index("RightUpLeg")
 
 
 def facing(positions: Float[np.ndarray, "*B 21 3"]) -> Float[np.ndarray, "*B"]:
@@ -59,7 +60,8 @@ def _turned(
     positions: Float[np.ndarray, "*B T J 3"], heading: Float[np.ndarray, "*#B"], back: bool = False
 ) -> Float[np.ndarray, "*B T J 3"]:
     """Turned so that who faced `heading` faces z; `back` the other way."""
-    sin, cos = np.sin(heading)[..., None, None], np.cos(heading)[..., None, None]
+    sin = np.sin(heading)[..., None, None]
+    cos = np.cos(heading)[..., None, None]
     sin = -sin if back else sin
     x, y, z = np.moveaxis(positions, -1, 0)
     return np.stack([x * cos - z * sin, y, x * sin + z * cos], -1)

@@ -34,7 +34,8 @@ def _axis_rotation(angle, first: int, second: int) -> np.ndarray:
     angle = np.asarray(angle, dtype=np.float64)
     matrix = np.zeros((*angle.shape, 3, 3))
     matrix[..., range(3), range(3)] = 1.0
-    matrix[..., first, first] = matrix[..., second, second] = np.cos(angle)
+    matrix[..., first, first] = np.cos(angle)
+    matrix[..., second, second] = np.cos(angle)
     matrix[..., second, first] = np.sin(angle)
     matrix[..., first, second] = -np.sin(angle)
     return matrix

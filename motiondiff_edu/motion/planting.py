@@ -86,7 +86,9 @@ def plant(
         foot = world[:, TOES[side]] - world[:, heel]
         ahead = unit(unit(foot) + pelvis_ahead(world))
         knee, ankle = solve_leg(moved[:, heel - 2], ankles[:, side], moved[:, heel - 1], ahead)
-        moved[:, heel - 1], moved[:, heel], moved[:, heel + 1] = knee, ankle, ankle + foot
+        moved[:, heel - 1] = knee
+        moved[:, heel] = ankle
+        moved[:, heel + 1] = ankle + foot
     return moved
 
 

@@ -83,7 +83,7 @@ def retarget(bvh: Bvh, mapping: Mapping[str, str] | None = None, fps: float | in
         fps=fps,
         contacts=contacts,
         source=bvh.source,
-        info=info | {"mapping": dict(mapping)},
+        info=info | {"mapping": dict(mapping), "start": (*root[0].tolist(), float(heading[0]))},
     )
 
 

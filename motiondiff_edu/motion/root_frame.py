@@ -135,8 +135,18 @@ def estimate_root(
     clip is continued by point reflection, so that a figure that walks does not seem to slow down
     there.   Notebook: 01
     """
-    root = _smooth(world[:, HIPS][:, [0, 2]], ROOT_SMOOTHING * fps)
-    return root, _smooth(np.unwrap(body_heading(world)), HEADING_SMOOTHING * fps)
+    return smoothed_root(world[:, HIPS][:, [0, 2]], body_heading(world), fps)
+
+
+def smoothed_root(
+    pelvis: Float[np.ndarray, "T 2"], heading: Float[np.ndarray, "T"], fps: float = FPS
+) -> tuple[Float[np.ndarray, "T 2"], Float[np.ndarray, "T"]]:
+    """Root path and heading from the pelvis' (x, z) and where the body faces (radians): the
+    Gaussians of `estimate_root`."""
+    return (
+        _smooth(pelvis, ROOT_SMOOTHING * fps),
+        _smooth(np.unwrap(heading), HEADING_SMOOTHING * fps),
+    )
 
 
 def _smooth(x: np.ndarray, sigma: float) -> np.ndarray:

@@ -13,8 +13,8 @@ from jaxtyping import Float
 from torch import Tensor
 
 from ..cross_modal_attention import watch
-from ..ddpm import q_sample
-from ..mofusion import MoFusion, MoFusionConfig
+from ..ddpm import draw, q_sample
+from ..mofusion import MoFusionConfig
 from ..motion.dance_frame import to_features
 from .dancer import Dancer
 
@@ -54,26 +54,26 @@ def attention_maps(
     Notebook: 12
     """
     model, T = dancer.model, len(dance)
-    if not isinstance(model, MoFusion) or model.music is None:
+    if not hasattr(model.config, "widths") or model.music is None:
         raise ValueError(
             f"these maps are of a U-Net that hears music, not of {type(model).__name__} without"
         )
     if not 1 <= s <= dancer.schedule.S:
         raise ValueError(f"this dancer's steps are 1 to {dancer.schedule.S}, not {s}")
-    x0 = dancer.motion_scaler.transform(torch.from_numpy(to_features(dance)).float())[None]
-    x_s = q_sample(
-        x0, torch.tensor([s]), dancer.schedule, torch.randn(x0.shape, generator=generator)
-    )
+    features = torch.from_numpy(to_features(dance)).float().to(dancer.device)
+    x0 = dancer.motion_scaler.transform(features)[None]
+    x_s = q_sample(x0, s, dancer.schedule, draw(x0, generator))
     with watch(model) as seen:
         music = model.listen(*dancer.mel_input(mel[None], T))
-        model(x_s, torch.tensor([s]), music)
+        model(x_s, torch.tensor([s], device=dancer.device), music)
     maps = {
         name: seen[layer][0][0]
         .mean(0)[: -(-T // 2**level)]
+        .cpu()
         .numpy()  # rows beyond the dance are padding
         for layer, level, name in layers_of(model.config)
     }
-    return maps, music.times.double().numpy()
+    return maps, music.times.double().cpu().numpy()
 
 
 def share_near(

@@ -75,7 +75,11 @@ class DanceWindows:
             raise ValueError(
                 "dance {} has {} frames, and contacts for {}: one for each frame".format(*uneven)
             )
-        starts, song_starts, heard, first, song = [], [], [], 0, 0
+        starts = []
+        song_starts = []
+        heard = []
+        first = 0
+        song = 0
         for dance, mel in zip(dances, mels, strict=True):
             if not heard or mel is not heard[-1]:
                 song += len(heard[-1]) if heard else 0

@@ -49,8 +49,8 @@ def occlusion(
     start = torch.randn(1, frames, dancer.config.D, generator=generator)
     heard = log_mel(np.stack([audio, *(silence_hit(audio, float(time), width) for time in times)]))
     dances = [
-        dancer.dance(mel, frames, start=start.expand(len(mel), -1, -1), steps=steps, eta=0.0)
+        dancer.dance_mel(mel, frames, start=start.expand(len(mel), -1, -1), steps=steps, eta=0.0)
         for mel in heard.split(together)
     ]
-    whole = torch.cat(dances).double().numpy()
+    whole = torch.cat(dances).double().cpu().numpy()
     return Occlusion(np.asarray(times, np.float64), whole[0], whole[1:])

@@ -43,7 +43,9 @@ class Windows:
         Raises ValueError when no clip is as long as a window, or one has not 20 frames/s.
         Notebook: 07
         """
-        length, starts, first = T_h + T_p, [], 0
+        length = T_h + T_p
+        starts = []
+        first = 0
         other = next((clip for clip in clips if clip.fps != FPS), None)
         if other:
             raise ValueError(

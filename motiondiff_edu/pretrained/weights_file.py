@@ -94,7 +94,10 @@ def config_of(metadata: dict[str, str], kinds: Mapping[str, type[Config]], defau
         ) from error
     kind = kinds.get(metadata.get("network", default))
     if kind is None:
-        raise CheckpointError(f"{name} holds an unknown network, {metadata['network']}; upgrade")
+        raise CheckpointError(
+            f"{name} holds an unknown network, {metadata['network']}; upgrade, or register it first "
+            "(performers.networks.register)"
+        )
     defaults = {field.name: field.default for field in fields(kind)}
     unknown = set(values) - set(defaults)
     if unknown:

@@ -6,9 +6,9 @@ from dataclasses import replace
 
 import torch
 
-from ..beyond.footholds import network
 from ..beyond.schedules import SCHEDULES
 from ..motion.clip import Clip
+from ..performers.networks import network
 from ..performers.walker import Walker
 from ..performers.windows import Windows
 from ..training import TrainState, train_steps

@@ -51,7 +51,9 @@ def whitened(matrix: Float[Tensor, "m n"], steps: int = 5) -> Float[Tensor, "m n
     With x the singular values: a x + b x^3 + c x^5, five times; the three numbers were chosen by
     Jordan for speed.
     """
-    a, b, c = 3.4445, -4.7750, 2.0315
+    a = 3.4445
+    b = -4.7750
+    c = 2.0315
     wide = matrix.mT if matrix.shape[0] > matrix.shape[1] else matrix
     x = wide / wide.norm().clamp_min(1e-7)
     for _ in range(steps):

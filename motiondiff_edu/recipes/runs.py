@@ -68,10 +68,8 @@ def resume_run(state: TrainState, path: str | Path, about: dict | None = None) -
     """
     try:
         with safe_open(path, "pt") as file:
-            tensors, counts = (
-                {name: file.get_tensor(name) for name in file.keys()},
-                file.metadata() or {},
-            )
+            tensors = {name: file.get_tensor(name) for name in file.keys()}
+            counts = file.metadata() or {}
     except (SafetensorError, OSError) as error:
         raise ValueError(
             f"{path} cannot be resumed: damaged, or no safetensors file ({error}); delete it"
@@ -104,7 +102,8 @@ def resume_run(state: TrainState, path: str | Path, about: dict | None = None) -
         index, key = name.split(".")
         moments.setdefault(int(index), {})[key] = tensor
     state.optimizer.load_state_dict(state.optimizer.state_dict() | {"state": moments})
-    state.step, state.seconds = json.loads(counts["step"]), json.loads(counts.get("seconds", "0"))
+    state.step = json.loads(counts["step"])
+    state.seconds = json.loads(counts.get("seconds", "0"))
     state.generator.set_state(parts["random"]["generator"])
     torch.set_rng_state(parts["random"]["torch"])
     if "cuda" in parts["random"] and torch.cuda.is_available():

@@ -16,7 +16,8 @@ from ..ddpm import Schedule, cosine_schedule, squared_error
 from ..kinematic_loss import kinematic_parts, over_time, training_loss
 from ..motion.dance_frame import body_of
 from ..performers.dance_windows import DanceWindows, toes_moved
-from ..performers.dancer import Dancer, network
+from ..performers.dancer import Dancer
+from ..performers.networks import network
 from ..training import LossFn
 from .dancers import DanceLossWeights, DanceRecipe
 from .train_recipe import train_recipe
@@ -36,7 +37,10 @@ def training_windows(recipe: DanceRecipe) -> DanceWindows:
 def _made(songs: int, seed: int, seconds: float, each: int, frames: int) -> DanceWindows:
     from data_synth.dancing import dances  # data_synth lies beside the package, and imports it
 
-    positions, contacts, mels, heard = [], [], [], None
+    positions = []
+    contacts = []
+    mels = []
+    heard = None
     for song, danced in dances(songs, seed, seconds, each=each):
         if song is not heard:
             heard, mel = song, log_mel(torch.from_numpy(song.audio).float())

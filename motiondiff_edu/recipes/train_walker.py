@@ -9,7 +9,7 @@ import torch
 from torch import Tensor, nn
 
 from ..beyond import loss_terms
-from ..beyond.footholds import CleanFootholds, FootholdConfig, network
+from ..beyond.footholds import CleanFootholds, FootholdConfig
 from ..beyond.past_noise import past_noise
 from ..beyond.schedules import SCHEDULES
 from ..beyond.shared_encoding import SharedEncoding, repeated
@@ -18,6 +18,7 @@ from ..diffusion_dropout import Dropout, dropout_rate
 from ..modiff import training_loss
 from ..motion.augment import mirror, reverse_time
 from ..motion.clip import Clip
+from ..performers.networks import network
 from ..performers.walker import Walker
 from ..performers.windows import Windows, typical_change
 from ..training import LossFn

@@ -12,12 +12,13 @@ from jaxtyping import Float
 
 from ..motion.skeleton import J
 
-GREY, INK, PAPER = "#5B6472", "#1F2933", "#FFFFFF"
-LEFT_COLOUR, RIGHT_COLOUR, CENTRE_COLOUR = (
-    "#0072B2",
-    "#D55E00",
-    GREY,
-)  # Okabe-Ito blue and vermillion
+GREY = "#5B6472"
+INK = "#1F2933"
+PAPER = "#FFFFFF"
+# Okabe-Ito blue and vermillion
+LEFT_COLOUR = "#0072B2"
+RIGHT_COLOUR = "#D55E00"
+CENTRE_COLOUR = GREY
 PATH_COLOUR = "#009E73"
 COLOURS = {"L": LEFT_COLOUR, "R": RIGHT_COLOUR, "C": CENTRE_COLOUR}
 PAST_WASH = 0.55  # how far the colours of given frames are washed out towards the paper
@@ -122,12 +123,10 @@ class Camera:
 
     def axes(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Unit vectors to the right, up and ahead."""
-        cos, sin, rise, flat = (
-            np.cos(self.yaw),
-            np.sin(self.yaw),
-            np.sin(self.pitch),
-            np.cos(self.pitch),
-        )
+        cos = np.cos(self.yaw)
+        sin = np.sin(self.yaw)
+        rise = np.sin(self.pitch)
+        flat = np.cos(self.pitch)
         ahead = -np.array([-flat * cos, rise, flat * sin])
         right = np.array([sin, 0.0, cos])
         return right, np.cross(right, ahead), ahead

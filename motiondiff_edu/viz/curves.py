@@ -28,7 +28,8 @@ def running_mean(y: Float[np.ndarray, "T"], window: int) -> Float[np.ndarray, "T
 
 def _lines(axis: Axes, curves: Curves, smooth: int = 1) -> None:
     for k, (name, (x, y)) in enumerate(curves.items()):
-        x, y = np.asarray(x, dtype=np.float64), np.asarray(y, dtype=np.float64)
+        x = np.asarray(x, dtype=np.float64)
+        y = np.asarray(y, dtype=np.float64)
         if x.shape != y.shape:
             raise ValueError(f"curve {name!r}: x has shape {x.shape}, y has {y.shape}")
         style = {"color": OKABE_ITO[k % 7], "ls": DASHES[k % 8]}

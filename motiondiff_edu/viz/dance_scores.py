@@ -33,7 +33,8 @@ def stops_and_beats(
     for axis, (name, positions) in zip(axes, dances.items(), strict=True):
         fine = resample(positions, fps) if fps < DANCE_FPS else positions
         rate = max(fps, DANCE_FPS)
-        speed, stops = smooth_speed(fine, rate), kinematic_beats(positions, fps)
+        speed = smooth_speed(fine, rate)
+        stops = kinematic_beats(positions, fps)
         times = (np.arange(len(speed)) + 0.5) / rate
         shown = music[(music >= 0) & (music <= times[-1])]
         axis.vlines(

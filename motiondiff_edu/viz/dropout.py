@@ -64,10 +64,8 @@ def where_the_weight_lies(
     fig, (axis,) = figure(10, 4.2, words)
     width = 0.84 / len(weights)
     for k, (name, weight) in enumerate(weights.items()):
-        squares, past = (
-            np.square(np.asarray(weight, dtype=np.float64)).sum(1),
-            T_h * weight.shape[1],
-        )
+        squares = np.square(np.asarray(weight, dtype=np.float64)).sum(1)
+        past = T_h * weight.shape[1]
         sizes = np.sqrt([*squares[:past].reshape(T_h, -1).sum(1), squares[past:-1].sum()])
         place = np.arange(T_h + 1) + (k + 0.5) * width - 0.42
         style = {"color": OKABE_ITO[k % 7], "hatch": HATCHES[k % 5], "edgecolor": "white"}

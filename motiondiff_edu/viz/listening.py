@@ -148,7 +148,8 @@ def before_and_after(
 ) -> Figure:
     """Log-Mel spectrograms on one scale, low bands below; dashed lines at `marks` (seconds)."""
     fig, axes = figure(5 * len(pictures), 3.6, words, 1, len(pictures), sharey=True)
-    low, top = min(p.min() for p in pictures.values()), max(p.max() for p in pictures.values())
+    low = min(p.min() for p in pictures.values())
+    top = max(p.max() for p in pictures.values())
     for axis, (name, picture) in zip(axes, pictures.items(), strict=True):
         axis.pcolormesh(
             times,

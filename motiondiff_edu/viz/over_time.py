@@ -28,7 +28,8 @@ def lows_and_highs(
 ) -> tuple[Float[np.ndarray, "K"], Float[np.ndarray, "K"], Float[np.ndarray, "K"]]:
     """First index, lowest and highest sample of each of (at most) `bins` equal stretches."""
     starts = np.linspace(0, len(samples), min(bins, len(samples)) + 1).astype(int)[:-1]
-    low, high = np.minimum.reduceat(samples, starts), np.maximum.reduceat(samples, starts)
+    low = np.minimum.reduceat(samples, starts)
+    high = np.maximum.reduceat(samples, starts)
     return starts.astype(np.float64), low, high
 
 

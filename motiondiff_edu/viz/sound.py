@@ -103,7 +103,8 @@ def mel_spectrogram(
     `centres` are the bands' middles in Hz.
     """
     fig, (axis,) = figure(10, 3.6, caption)
-    rows, marks = np.arange(len(centres)), (100, 500, 1000, 2000, 4000, 7000)
+    rows = np.arange(len(centres))
+    marks = (100, 500, 1000, 2000, 4000, 7000)
     _heat(fig, axis, seconds, rows, values)
     axis.set_yticks(np.interp(marks, centres, rows), [str(hz) for hz in marks])
     _beats(axis, beats, seconds[0], seconds[-1], "white", "beat")

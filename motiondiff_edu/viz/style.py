@@ -15,7 +15,9 @@ from matplotlib.figure import Figure
 OKABE_ITO = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000", "#F0E442")
 MARKERS = ("o", "s", "^", "D", "v", "P", "X", "*")
 DASHES = ("-", "--", "-.", ":", (0, (5, 1)), (0, (1, 1)), (0, (8, 2, 1, 2)), (0, (3, 3)))
-LARGE, MEDIUM, SMALL = 16, 14, 12
+LARGE = 16
+MEDIUM = 14
+SMALL = 12
 DPI = 100
 
 _RC = {

@@ -40,11 +40,9 @@ class _Grip:
     """A run of small drags that Undo takes back together."""
 
     name: int | None = None  # as the page numbers its grips
-    # metres in all, as told last
-    by: Float[np.ndarray, "3"] = field(default_factory=lambda: np.zeros(3))
+    by: Float[np.ndarray, "3"] = field(default_factory=lambda: np.zeros(3))  # metres in all
     before: Edit | None = None  # what the drags start from; None once something else was done
-    # what `before` holds of it already
-    since: Float[np.ndarray, "3"] = field(default_factory=lambda: np.zeros(3))
+    since: Float[np.ndarray, "3"] = field(default_factory=lambda: np.zeros(3))  # `by` at `before`
 
 
 class Editor(anywidget.AnyWidget):
@@ -80,8 +78,7 @@ class Editor(anywidget.AnyWidget):
         motion = np.array(motion, np.float64)
         if motion.ndim != 3 or motion.shape[1:] != (J, 3):
             raise ValueError(
-                f"a motion to edit is (frames, {J}, 3), world positions in metres, "
-                f"not {motion.shape}"
+                f"a motion to edit is (frames, {J}, 3), world positions in metres, not {motion.shape}"
             )
         names = list(JOINTS if names is None else names)
         if len(names) != J:
@@ -165,8 +162,7 @@ class Editor(anywidget.AnyWidget):
         finally:
             self.busy = False
         free = "" if self.known.any() else " Nothing was pinned or kept: the result is free."
-        took = time.perf_counter() - begun
-        words = f"In-betweens made: {self.count}, in {took:.1f} s (seed {seed}).{free}"
+        words = f"In-betweens made: {self.count}, in {time.perf_counter() - begun:.1f} s (seed {seed}).{free}"
         return self._go(_Step(self.edit, made, 0, self._step.presses + 1), words)
 
     def undo(self) -> str:
@@ -182,14 +178,12 @@ class Editor(anywidget.AnyWidget):
         )
 
     def save(self, path: str | Path) -> FitReport:
-        """Write the chosen in-between as BVH, whole or not at all; tells how far bones had to be
-        evened out.
+        """Write the chosen in-between as BVH; before there is one, the motion with its pins.
 
-        Raises ValueError before there is one, and what `write_bvh` raises.
+        The file is written whole or not at all. Returns how far bones had to be evened out.
+        Raises what `write_bvh` raises.
         """
-        if self.samples is None:
-            raise ValueError("there is no in-between yet: press Generate first")
-        return write_bvh(Path(path), self.samples[self.chosen], self._fps)
+        return write_bvh(Path(path), self._shown(), self._fps)
 
     def _receive(self, _, content: dict, buffers) -> None:
         if content["do"] == "ping":  # the page only tries whether there is a kernel
@@ -213,12 +207,10 @@ class Editor(anywidget.AnyWidget):
         self._tell(words, content["number"])
 
     def _see(self, content: dict) -> None:
-        """Take over what the page shows: a trait's own message may come later than the one that
-        relies on it."""
+        """Set the traits that a message relies on: their own messages may arrive after it."""
         if "chosen" in content:
-            self.chosen = min(
-                content["chosen"], 0 if self.samples is None else len(self.samples) - 1
-            )
+            last = 0 if self.samples is None else len(self.samples) - 1
+            self.chosen = min(content["chosen"], last)
         for name in {"count", "resample"} & set(content):
             setattr(self, name, content[name])
 
@@ -226,10 +218,11 @@ class Editor(anywidget.AnyWidget):
         return self.unpin(frame) if self.edit.index(frame) in self.edit.pins else self.pin(frame)
 
     def _pull(self, frame: int, joint: str, by: list, grip: int) -> str:
-        """A joint moved by so many metres in all since its grip began.
+        """Move a joint by `by` metres, counted from where its grip began.
 
         The drags of one grip start from the same pose, and are undone together. After another
-        change, Undo say, a grip goes on from what is there then, with what it was moved since.
+        change (Undo, say) the grip starts again from the pose that is there then, and only what
+        it is moved since is added.
         """
         by = np.asarray(by, np.float64)
         if by.shape != (3,) or not np.isfinite(by).all():
@@ -252,8 +245,7 @@ class Editor(anywidget.AnyWidget):
         return edit, f"{name} in frame {frame} {drag_in_words(before, edit, frame, joint, target)}."
 
     def _pressed(self, after: int, number: int) -> str | None:
-        """Generate, unless the page had not heard of the last in-betweens when it asked, or others
-        are being made."""
+        """Generate; not while others are made, nor for a press from before the last answer."""
         if self.busy or after < self._asked:
             return None
         try:
@@ -264,6 +256,9 @@ class Editor(anywidget.AnyWidget):
         finally:
             self._asked = number
 
+    def _shown(self) -> Float[np.ndarray, "T 21 3"]:
+        return self.positions if self.samples is None else self.samples[self.chosen]
+
     def _here(self) -> _Step:
         return replace(self._step, chosen=self.chosen)
 
@@ -273,11 +268,8 @@ class Editor(anywidget.AnyWidget):
     def _go(self, step: _Step, words: str, remember: bool = True) -> str:
         if remember:
             self._past.append(self._here())
-        others, self._step, self._grip = (
-            step.made is not self._step.made,
-            step,
-            replace(self._grip, before=None),
-        )
+        others, self._step = step.made is not self._step.made, step
+        self._grip = replace(self._grip, before=None)
         with self.hold_sync():
             if others:
                 packed = None if step.made is None else packing.pack(list(step.made.samples))
@@ -289,7 +281,9 @@ class Editor(anywidget.AnyWidget):
 
     def _tell(self, words: str | None, number: int | None = None) -> str:
         """The page's copy of the edit; `number` is that of the message that is answered."""
-        edit, made, last = self.edit, self._step.made, self.state
+        edit = self.edit
+        made = self._step.made
+        last = self.state
         words = last.get("message", "") if words is None else words
         with self.hold_sync():
             self.poses = editor_page.poses_of(edit)

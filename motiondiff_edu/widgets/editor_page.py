@@ -9,6 +9,7 @@ import contextlib
 import html
 import io
 import json
+import re
 from pathlib import Path
 
 import numpy as np
@@ -88,15 +89,41 @@ def complaint(error: Exception) -> str:
     return text[:1].upper() + text[1:] + ("" if text.endswith(".") else ".")
 
 
-def save_as(editor, name: str) -> str:
-    """Save under a name typed on the page, and tell where.  ValueError for no name."""
-    if not name:
+ENDING = re.compile(
+    r"(.*)(\.[a-z][a-z0-9]{0,4})", re.IGNORECASE
+)  # "a walk.txt", but not "take 1.5"
+
+
+def file_of(name: str) -> str:
+    """A name typed on the page, with the ending of the file that is written.
+
+    Raises ValueError for no name, one with a folder, and the ending of another kind of file.
+    """
+    if set(name) & set("/\\:"):
+        raise ValueError(
+            f"not saved: {name!r} names a folder. Type a name alone: the file goes beside the notebook "
+            f"(into {Path.cwd()}). To write elsewhere, call editor.save(path) in a cell"
+        )
+    found = ENDING.fullmatch(name)
+    stem, ending = found.groups() if found else (name, ".bvh")
+    if not stem.strip(". "):
         raise ValueError("give the file a name")
-    path = Path(name if name.lower().endswith(".bvh") else f"{name}.bvh").expanduser()
+    if ending.lower() != ".bvh":
+        raise ValueError(f"not saved: only .bvh can be written, not {ending}. Type {stem}.bvh")
+    return stem + ending
+
+
+def save_as(editor, name: str) -> str:
+    """Save beside the notebook, under a name typed on the page, and tell where."""
+    path = Path(file_of(name))
     there = path.exists()
     with contextlib.redirect_stdout(io.StringIO()):  # what it prints is told on the page
         told = str(editor.save(path)).split(": ", 1)[1]
-    return f"Saved {path.resolve()}{' (over an older one)' * there}: {told}."
+    what = "the in-between that is shown"
+    if editor.samples is None:
+        what = "the motion with its pinned poses; nothing is generated yet"
+    over = ", over an older file" * there
+    return f"Saved {path.resolve()} ({what}){over}: {told}."
 
 
 def html_page(editor) -> str:

@@ -17,10 +17,8 @@ def explore(draw, **start) -> ipywidgets.VBox:
     """
     controls = {name: _control(name, value) for name, value in start.items()}
     first = {name: control.value for name, control in controls.items()}
-    picture, reset = (
-        ipywidgets.HTML(),
-        ipywidgets.Button(description="Reset", tooltip="back to the start"),
-    )
+    picture = ipywidgets.HTML()
+    reset = ipywidgets.Button(description="Reset", tooltip="back to the start")
 
     def refresh(_=None):
         picture.value = as_html(

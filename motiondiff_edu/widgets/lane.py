@@ -15,7 +15,11 @@ from .sound import Sound, as_sound, as_times, peaks
 from .strips import Strips
 
 PURPLE, GREEN = "#CC79A7", "#009E73"
-TICKS, WAVE, AXIS, CURVE = 14, 56, 20, 36  # pixels
+# pixels
+TICKS = 14
+WAVE = 56
+AXIS = 20
+CURVE = 36
 
 
 @dataclass(frozen=True, eq=False)

@@ -59,7 +59,9 @@ class PathPad(anywidget.AnyWidget):
                 f"points are (n, 2) finite numbers [x, z] in metres, got shape {points.shape}"
             )
         with self.hold_trait_notifications():
-            self.preset, self.stops, self.line = "", [], points.tolist()
+            self.preset = ""
+            self.stops = []
+            self.line = points.tolist()
 
     @traitlets.validate("preset")
     def _known_preset(self, proposal):

@@ -112,7 +112,9 @@ class Player(anywidget.AnyWidget):
         packed = packing.pack(arrays)
         figures = _figures(arrays, options, self._look["parents"])
         music = lane.from_options(options, max(packed.frames))
-        self._figures, self._options, self._music = figures, options, music
+        self._figures = figures
+        self._options = options
+        self._music = music
         self._editions += 1  # another motion may have the same scene: this tells the page of it
         with self.hold_sync():
             self.joints, self.roots = packed.joints, packed.roots

@@ -12,7 +12,9 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Bool, Float
 from PIL import Image, ImageDraw, ImageFont
+from tqdm.auto import tqdm
 
+from ..motion.progress import DELAY
 from ..motion.skeleton import BONES, HEELS, TOES
 from ..viz import body
 
@@ -222,7 +224,7 @@ def film(
 
     Each in a field of `size` with label, tense and time.
     """
-    for t in range(max(map(len, figures))):
+    for t in tqdm(range(max(map(len, figures))), desc="drawing", delay=DELAY, leave=False):
         picture = Image.new("RGB", (size[0] * len(figures), size[1]), body.PAPER)
         pen = ImageDraw.Draw(picture)
         for i, figure in enumerate(figures):

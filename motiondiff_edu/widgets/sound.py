@@ -74,7 +74,9 @@ def encode(
     try:
         import soundfile
 
-        file, (form, subtype), rate = io.BytesIO(), CODECS[codec], sample_rate
+        file = io.BytesIO()
+        form, subtype = CODECS[codec]
+        rate = sample_rate
         if subtype == "OPUS" and rate not in OPUS_RATES:
             samples, rate = _resampled(samples, rate)
         with soundfile.SoundFile(file, "w", rate, 1, subtype, format=form) as out:

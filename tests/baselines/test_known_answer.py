@@ -51,26 +51,24 @@ def masked_by_hand(x: float, visited: list[int], resample: int) -> tuple[float, 
 
     Every step of masked sampling is linear in it.
     """
-    alpha_bar, mean, variance = SCHEDULE.alpha_bar.tolist(), 0.0, 1.0
+    alpha_bar = SCHEDULE.alpha_bar.tolist()
+    mean = 0.0
+    variance = 1.0
     for s, after in zip(visited, [*visited[1:], 0], strict=True):
         now, then = alpha_bar[s], alpha_bar[after]
         # x_s has variances 1 and covariance now * RHO: the regression of the clean second
         # coordinate on both
         c = now * RHO
-        of_x, of_y = (
-            math.sqrt(now) * (RHO - c) / (1 - c * c),
-            math.sqrt(now) * (1 - RHO * c) / (1 - c * c),
-        )
+        of_x = math.sqrt(now) * (RHO - c) / (1 - c * c)
+        of_y = math.sqrt(now) * (1 - RHO * c) / (1 - c * c)
         sigma = math.sqrt((1 - then) / (1 - now) * (1 - now / then))
         keep = math.sqrt(max(1 - then - sigma**2, 0.0) / (1 - now))
         to_x0 = math.sqrt(then) - keep * math.sqrt(now)
         B, C = to_x0 * of_x, to_x0 * of_y + keep
         for turn in range(resample if after else 1):
             if turn:  # back again
-                mean, variance = (
-                    mean * math.sqrt(now / then),
-                    variance * now / then + 1 - now / then,
-                )
+                mean = mean * math.sqrt(now / then)
+                variance = variance * now / then + 1 - now / then
             mean = B * math.sqrt(now) * x + C * mean
             variance = B * B * (1 - now) + C * C * variance + sigma**2
     return mean, variance
@@ -142,7 +140,8 @@ def test_the_rest_is_drawn_from_the_conditional():
     drawn = Rest(truth, known).draw(x, seeded(2))
     assert torch.equal(drawn[:, 0], x[:, 0])
     for i, value in enumerate((-0.9, 0.6)):
-        wanted, mine = conditional(truth, torch.tensor([value, 0.0]), known), drawn[i::2, 1]
+        wanted = conditional(truth, torch.tensor([value, 0.0]), known)
+        mine = drawn[i::2, 1]
         assert mine.mean().item() == pytest.approx(wanted.mean().item(), abs=0.03)
         assert mine.std().item() == pytest.approx(wanted.covariance().item() ** 0.5, rel=0.06)
 

@@ -36,7 +36,9 @@ def fitted() -> LinearGaussian:
 
 
 def test_it_finds_the_numbers_of_a_linear_world(fitted: LinearGaussian):
-    before, last, control = fitted.weight[:D], fitted.weight[D : 2 * D], fitted.weight[2 * D : -1]
+    before = fitted.weight[:D]
+    last = fitted.weight[D : 2 * D]
+    control = fitted.weight[2 * D : -1]
     assert torch.allclose(last, 0.6 * torch.eye(D), atol=0.08)
     assert torch.allclose(before, -0.3 * torch.eye(D), atol=0.08)
     assert torch.allclose(

@@ -11,7 +11,9 @@ from motiondiff_edu.ddpm import linear_schedule
 from motiondiff_edu.motion.scaler import Scaler
 from motiondiff_edu.reconstruction import repair, walked_back
 
-T_H, T_P, D = 5, 7, 2
+T_H = 5
+T_P = 7
+D = 2
 
 
 class Halving:
@@ -22,10 +24,8 @@ class Halving:
 
     def __init__(self):
         self.config = SimpleNamespace(T_h=T_H, T_p=T_P, D=D, C=3)
-        self.pose_scaler, self.control_scaler = (
-            Scaler(torch.full((D,), 0.5), torch.full((D,), 2.0)),
-            Scaler.nothing(3),
-        )
+        self.pose_scaler = Scaler(torch.full((D,), 0.5), torch.full((D,), 2.0))
+        self.control_scaler = Scaler.nothing(3)
 
     def window_sampler(self, steps=None):
         return lambda past, control, generator: torch.stack(
@@ -39,7 +39,8 @@ def options():
 
 def test_each_frame_goes_on_from_the_one_before_with_what_is_known_of_it_put_right():
     walker, B = Halving(), 3
-    ahead, given = torch.full((B, T_H, D), 0.5 + 2 * 8.0), torch.full((B, T_H, D), float("nan"))
+    ahead = torch.full((B, T_H, D), 0.5 + 2 * 8.0)
+    given = torch.full((B, T_H, D), float("nan"))
     known = torch.zeros(B, T_H, D, dtype=torch.bool)
     known[:, 2, 1], given[:, 2, 1] = True, 0.5 + 2 * 40.0
     made = walker.pose_scaler.transform(

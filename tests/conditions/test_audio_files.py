@@ -83,7 +83,8 @@ def chord(rate: int = 22050, seconds: float = 2.3) -> np.ndarray:
 
 @pytest.mark.parametrize("name", FILES)
 def test_each_real_file_is_read_or_refused_as_it_should_be(real_data, name):
-    (wanted, warned), path = FILES[name], real_data / "audio_formats_and_broken" / name
+    wanted, warned = FILES[name]
+    path = real_data / "audio_formats_and_broken" / name
     with warnings.catch_warnings(record=True) as told:
         warnings.simplefilter("always")
         if isinstance(wanted, str):

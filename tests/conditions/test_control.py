@@ -102,7 +102,8 @@ def test_constant_and_hold():
 
 
 def test_a_spliced_control_leads_into_the_first_new_frame():
-    past, new = constant_control(1.0, seconds=0.6), constant_control(0.0, 0.5, 0.2, seconds=0.2)
+    past = constant_control(1.0, seconds=0.6)
+    new = constant_control(0.0, 0.5, 0.2, seconds=0.2)
     before = past.copy()
     rows = splice(past, new, T_h=5)
     assert rows.tolist() == [[1.0, 0.0, 0.0]] * 4 + [[0.0, 0.5, 0.2]] * 5

@@ -21,7 +21,9 @@ def test_a_line_says_what_to_do_only_when_something_is_wrong():
 
 
 def test_the_page_fails_when_a_finding_fails_and_not_for_a_note(capsys):
-    well, odd, bad = Finding("a", "x"), Finding("b", "y", "z", note=True), Finding("c", "y", "z")
+    well = Finding("a", "x")
+    odd = Finding("b", "y", "z", note=True)
+    bad = Finding("c", "y", "z")
     assert doctor.main([lambda: well, lambda: odd]) == 0
     assert "All well" in capsys.readouterr().out
     assert doctor.main([lambda: well, lambda: bad]) == 1

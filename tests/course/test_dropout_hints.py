@@ -49,7 +49,8 @@ def test_the_mistake_is_named(check, what, told):
 
 
 def right(past, future, s, alpha_bar, rate, u, noise):
-    a, b = alpha_bar[s][:, None, None] ** 0.5, (1 - alpha_bar[s][:, None, None]) ** 0.5
+    a = alpha_bar[s][:, None, None] ** 0.5
+    b = (1 - alpha_bar[s][:, None, None]) ** 0.5
     return torch.where(
         (u < rate)[:, None, None], a * past + b * noise[1], past
     ), a * future + b * noise[0]

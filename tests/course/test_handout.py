@@ -1,5 +1,4 @@
-"""course/handout.py: copies are handed out and renewed, and nothing that a student changed is
-overwritten."""
+"""course/handout.py: copies are renewed, and nothing that a student changed is overwritten."""
 
 import json
 from pathlib import Path
@@ -71,6 +70,8 @@ def test_an_untouched_copy_is_renewed(course, mine):
     assert hand_out(course, mine) == handout.Handout(("03_back.ipynb",), ())
     assert (mine / "03_back.ipynb").read_text() == new
     assert hand_out(course, mine) == handout.Handout((), ())
+    (course / "student" / "03_back.ipynb").write_text(notebook("newer still", "y = 2"))
+    assert hand_out(course, mine) == handout.Handout(("03_back.ipynb",), ())
 
 
 def test_a_copy_that_was_only_looked_at_counts_as_untouched(course, mine):
@@ -188,6 +189,15 @@ def test_a_fresh_copy_leaves_every_earlier_one_beside_it(course, mine):
     assert aside == ["answers 1", "answers 2", "answers 3"]
     upgrade(course)
     assert hand_out(course, mine) == handout.Handout(("03_back.ipynb",), ())
+
+
+def test_a_fresh_copy_is_current_also_once_it_is_filled_in_and_others_stay_known(course, mine):
+    for name in ("00_start.ipynb", "03_back.ipynb"):
+        (mine / name).write_text("answers")
+    upgrade(course)
+    make_fresh(course, mine, "03_back.ipynb")
+    (mine / "03_back.ipynb").write_text("new answers")
+    assert hand_out(course, mine) == handout.Handout((), ())
 
 
 def test_the_refusal_of_the_system_is_passed_on_in_words(course, tmp_path, monkeypatch):

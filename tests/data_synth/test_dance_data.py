@@ -75,7 +75,9 @@ def test_a_silent_score_is_a_song():
 
 def test_same_seed_same_bytes_and_two_seeds_differ():
     song = beat_song(17.0, 112.0)
-    first, again, other = dance(song, 7), dance(song, 7), dance(song, 8)
+    first = dance(song, 7)
+    again = dance(song, 7)
+    other = dance(song, 8)
     assert first.positions.tobytes() == again.positions.tobytes() and first.moves == again.moves
     apart = first.positions - first.positions[:, :1] - (other.positions - other.positions[:, :1])
     assert (
@@ -128,7 +130,9 @@ def test_knees_bend_one_way_and_not_too_far(danced, alone):
         p, ankle = d.positions, np.array(HEELS)
         angle = knee_angle(p)
         assert 10 < angle.min() and angle.max() < 140, name
-        hip, knee, foot = p[:, ankle - 2], p[:, ankle - 1], p[:, ankle]
+        hip = p[:, ankle - 2]
+        knee = p[:, ankle - 1]
+        foot = p[:, ankle]
         left = p[:, [1]] - p[:, [5]]
         ahead = np.cross(
             foot - hip, left
@@ -151,7 +155,8 @@ def test_the_weight_is_over_the_other_foot_when_a_foot_lifts(danced):
     shares = []
     for _, d in danced:
         for side in (0, 1):
-            ankle, other = d.positions[:, HEELS[side]], d.positions[:, HEELS[1 - side]]
+            ankle = d.positions[:, HEELS[side]]
+            other = d.positions[:, HEELS[1 - side]]
             lifts = np.flatnonzero(
                 d.contacts[:-1, side] & ~d.contacts[1:, side] & d.contacts[1:].any(1)
             )

@@ -101,10 +101,8 @@ def test_feet_stay_above_the_floor(clips):
 def test_knees_never_bend_backwards_nor_lock(clips):
     for clip in clips:
         for hip, knee, ankle in ((1, 2, 3), (5, 6, 7)):
-            thigh, shank = (
-                clip.poses[:, knee] - clip.poses[:, hip],
-                clip.poses[:, ankle] - clip.poses[:, knee],
-            )
+            thigh = clip.poses[:, knee] - clip.poses[:, hip]
+            shank = clip.poses[:, ankle] - clip.poses[:, knee]
             sagittal = np.cross(thigh, shank)[
                 :, 0
             ]  # seen from the left, the shank trails the thigh: positive

@@ -76,7 +76,8 @@ def test_a_pin_is_a_copy(motion):
 
 
 def test_frames_count_from_the_end_as_well(motion):
-    before, target = Edit(motion).pin(-1), motion[-1, HAND] + [0.1, 0.2, 0.0]
+    before = Edit(motion).pin(-1)
+    target = motion[-1, HAND] + [0.1, 0.2, 0.0]
     after = before.drag(-1, "RightHand", target)
     assert (before.index(-1), before.index(0)) == (T - 1, 0) and list(after.moved) == [T - 1]
     assert drag_in_words(before, after, -1, "RightHand", target) == "moved by 22 cm"

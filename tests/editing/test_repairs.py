@@ -24,7 +24,10 @@ class Drawing:
     """A walker that stands still but for noise: each row of the batch draws its own."""
 
     class config:
-        T_h, T_p, D, C = T_H, 5, 63, 3
+        T_h = T_H
+        T_p = 5
+        D = 63
+        C = 3
 
     pose_scaler = Scaler(torch.from_numpy(CLIP.poses.mean(0)).float().flatten(), torch.ones(63))
     control_scaler = Scaler.nothing(3)
@@ -76,7 +79,8 @@ def test_the_errors_are_those_of_the_measures():
 
 def test_several_pasts_are_mended_as_each_alone_but_for_the_draws():
     fault = dead_joints(np.stack([CLIP.poses[:T_H], CLIP.poses[3 : 3 + T_H] + 0.1]))
-    control, generator = np.stack([CLIP.control] * 2), torch.Generator().manual_seed(1)
+    control = np.stack([CLIP.control] * 2)
+    generator = torch.Generator().manual_seed(1)
     *_, both = mend_steps(
         Drawing(), fault.positions, fault.known, control, 5, generator=generator, rounds=2
     )

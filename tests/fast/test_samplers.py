@@ -32,7 +32,8 @@ def last_of(steps):
 @pytest.mark.parametrize("variance", ["beta", "posterior"])
 @pytest.mark.parametrize("clip", [None, 0.8])
 def test_fast_ddpm_equals_the_plain_loop_for_the_same_noise(variance, clip):
-    schedule, generator = linear_schedule(40, 1e-4, 0.3), torch.Generator().manual_seed(9)
+    schedule = linear_schedule(40, 1e-4, 0.3)
+    generator = torch.Generator().manual_seed(9)
     start = torch.randn(2, 5, 3, generator=generator, dtype=torch.float64)
     noise = torch.randn(40, 2, 5, 3, generator=generator, dtype=torch.float64)
 
@@ -136,7 +137,8 @@ def test_ddim_sum_equals_the_published_run(target, beta_1, total):
 )
 def test_ddim_noise_equals_published_variances(t, before, published):
     """With a silent model and eta = 1, one leap from zero leaves exactly sigma times the noise."""
-    schedule, noise = linear_schedule(1000, 1e-4, 0.02), torch.ones(1000, 1, 1)
+    schedule = linear_schedule(1000, 1e-4, 0.02)
+    noise = torch.ones(1000, 1, 1)
     leap = list(
         ddim_steps(
             lambda x, s: 0 * x, torch.zeros(1, 1), schedule, [t + 1, before + 1], 1.0, noise=noise
@@ -146,8 +148,10 @@ def test_ddim_noise_equals_published_variances(t, before, published):
 
 
 def test_ddim_with_eta_1_and_all_steps_is_ddpm_with_the_posterior_variance():
-    schedule, noise = linear_schedule(30, 1e-3, 0.3), torch.randn(30, 4, 1, dtype=torch.float64)
-    denoise, start = exact_denoiser(three_hills(), schedule), torch.randn(4, 1, dtype=torch.float64)
+    schedule = linear_schedule(30, 1e-3, 0.3)
+    noise = torch.randn(30, 4, 1, dtype=torch.float64)
+    denoise = exact_denoiser(three_hills(), schedule)
+    start = torch.randn(4, 1, dtype=torch.float64)
     ddim = last_of(ddim_steps(denoise, start, schedule, 30, 1.0, noise=noise))
     torch.testing.assert_close(
         ddim, last_of(ddpm_steps(denoise, start, schedule, noise=noise, variance="posterior"))
@@ -156,7 +160,8 @@ def test_ddim_with_eta_1_and_all_steps_is_ddpm_with_the_posterior_variance():
 
 def test_ddim_without_eta_is_a_map_of_its_start():
     schedule = linear_schedule()
-    denoise, start = exact_denoiser(three_hills(), schedule), torch.randn(4, 1)
+    denoise = exact_denoiser(three_hills(), schedule)
+    start = torch.randn(4, 1)
     assert torch.equal(
         last_of(ddim_steps(denoise, start, schedule)), last_of(ddim_steps(denoise, start, schedule))
     )

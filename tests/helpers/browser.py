@@ -1,7 +1,5 @@
-"""A Chromium for the tests of widgets.
-
-Started without network services, offline where a test says so.
-"""
+"""A Chromium for the tests of widgets: started without network services, offline where a test says
+so."""
 
 import base64
 import hashlib
@@ -21,10 +19,8 @@ FLAGS = (
 
 @contextmanager
 def start_browser(executable: str):
-    """A Chromium; close it before other tests run.
-
-    Playwright's event loop would stand in their way.
-    """
+    """A Chromium; close it before other tests run: playwright's event loop would stand in their
+    way."""
     sync_api = pytest.importorskip("playwright.sync_api")
     with sync_api.sync_playwright() as playwright:
         browser = playwright.chromium.launch(executable_path=executable, args=FLAGS)
@@ -34,10 +30,8 @@ def start_browser(executable: str):
 
 @contextmanager
 def open_page(browser, offline: bool = True, **context):
-    """A page whose errors are collected in `page.problems`.
-
-    Offline, any request but file: and data: is refused.
-    """
+    """A page whose errors are collected in `page.problems`; offline, any request but file: and
+    data: is refused."""
     fresh = browser.new_context(**({"viewport": {"width": 1000, "height": 620}} | context))
     page = fresh.new_page()
     page.problems, page.asked = [], []
@@ -66,6 +60,23 @@ def shown(page) -> int:
     return int(page.locator(".mde-player").get_attribute("data-frame"))
 
 
+UNTIL = """async (element, [condition, patience]) => {
+  const holds = eval(condition), end = Date.now() + patience;
+  while (!holds(element)) {
+    if (Date.now() > end) throw new Error("it never came to be: " + condition);
+    await new Promise((done) => setTimeout(done, 20));
+  }
+}"""
+
+
+def until(locator, condition: str, patience: int = 30_000) -> None:
+    """Wait until a JavaScript function of an element gives true, in whatever frame it is."""
+    locator.evaluate(UNTIL, [condition, patience])
+
+
+ANOTHER_FRAME = """() => new Promise((done) => {
+  requestAnimationFrame(() => requestAnimationFrame(done));
+})"""
 COLOURED = """c => {
   const d = c.getContext('2d').getImageData(0, 0, c.width, c.height).data;
   let blue = 0, orange = 0;
@@ -81,6 +92,12 @@ COLOURED = """c => {
 def coloured(canvas) -> dict:
     """How many pixels of a canvas are as blue as the left limbs and as orange as the right ones."""
     return canvas.evaluate(COLOURED)
+
+
+def drawn(canvas) -> None:
+    """Wait until a figure is drawn, with over 200 pixels of either colour: the canvas comes
+    first."""
+    until(canvas, f"(c) => Math.min(...Object.values(({COLOURED})(c))) > 200")
 
 
 FAKE_MODEL = """
@@ -103,9 +120,8 @@ window.cleanup = widget.render({ model: window.model, el: document.getElementByI
 
 
 def bare_page(folder: Path, module: Path | str, record: dict, binary: list[str]) -> str:
-    """Write a page that runs an ES module (its file or its text) with a fake model on `record`.
-
-    Return its address.
+    """Write a page that runs an ES module (its file or its text) with a fake model on `record`;
+    return its address.
 
     In the page: model, saved (states sent to Python), leaked (keys that reached the document),
     cleanup.

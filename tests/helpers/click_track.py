@@ -11,7 +11,8 @@ RATE = 16_000
 
 def clicks(times, seconds: float, rate: int = RATE) -> np.ndarray:
     """A short 1 kHz click that begins exactly at each time."""
-    samples, n = np.zeros(round(seconds * rate)), np.arange(round(0.03 * rate))
+    samples = np.zeros(round(seconds * rate))
+    n = np.arange(round(0.03 * rate))
     for t in times:
         samples[round(t * rate) :][: len(n)] += (
             0.8 * np.exp(-n / rate / 0.005) * np.cos(2 * np.pi * 1000 * n / rate)

@@ -1,7 +1,5 @@
-"""A page with an editor whose messages reach the Python object, as in JupyterLab.
-
-Both ends of the wire, no server.
-"""
+"""A page with an editor whose messages reach the Python object, as in JupyterLab: both ends of the
+wire, no server."""
 
 import base64
 import json
@@ -21,16 +19,12 @@ window.asked = []; window.leaked = 0;
 document.addEventListener("keydown", () => { window.leaked++; });
 const fire = (name) => (listeners["change:" + name] || []).forEach((f) => f());
 window.take = (record) => {
-  for (const [name, value] of Object.entries(record))
-    state[name] = BINARY.includes(name) ? decode(value) : value;
+  for (const [name, value] of Object.entries(record)) state[name] = BINARY.includes(name) ? decode(value) : value;
   for (const name of Object.keys(record)) fire(name);
 };
 window.model = {
   get: (name) => state[name],
-  set: (name, value) => {
-    if (state[name] === value) return;
-    state[name] = value; dirty.add(name); fire(name);
-  },
+  set: (name, value) => { if (state[name] !== value) { state[name] = value; dirty.add(name); fire(name); } },
   save_changes: () => {
     const record = Object.fromEntries([...dirty].map((name) => [name, state[name]]));
     dirty.clear();
@@ -45,13 +39,13 @@ window.take(RECORD);
 window.cleanup = widget.render({ model: window.model, el: document.getElementById("here") });
 """
 
-# What Python answers comes at once; after `delay` milliseconds; or where `holding`, once a test
-# lets it go.
+# What Python answers comes at once; after `delay` milliseconds; or where `holding`, by `letGo`.
 WIRE = """
-window.delay = 0; window.holding = false; window.held = []; window.received = 0;
+window.delay = 0; window.holding = false; window.held = []; window.sent = window.received = 0;
 window.kernel = async (what) => {
+  window.sent++;
   const changed = await window.kernelled(what);
-  if (what.message) window.received++;
+  window.received++;
   if (window.holding) { window.held.push(changed); return; }
   if (window.delay) await new Promise((done) => setTimeout(done, window.delay));
   window.take(changed);
@@ -73,10 +67,8 @@ def record(editor: Editor, names=BINARY + PLAIN) -> dict:
 
 
 def open_editor(page, folder: Path, editor: Editor, background: str = "#fff") -> None:
-    """Show an editor that is connected to its Python object.
-
-    What the page sends is received by the object, and what changes there is told to the page.
-    """
+    """Show an editor; what the page sends is received by the object, and what changes there is told
+    to the page."""
     told = record(editor)
 
     def kernel(what: dict) -> dict:
@@ -108,13 +100,14 @@ def open_editor(page, folder: Path, editor: Editor, background: str = "#fff") ->
 
 
 def settled(page) -> None:
-    """Wait until Python has answered all that was asked, and the page has heard it."""
-    page.wait_for_function("!asked.length || model.get('state').heard >= asked.at(-1).number")
+    """Wait until Python has got all that was sent, and the page has heard the answers."""
+    heard = "!asked.length || model.get('state').heard >= asked.at(-1).number"
+    page.wait_for_function(f"sent === received && ({heard})")
 
 
 def received(page) -> None:
-    """Wait until Python has done all that was asked, whether the page has heard of it or not."""
-    page.wait_for_function("received === asked.length")
+    """Wait until Python has got all that was sent, whether the page has the answers or not."""
+    page.wait_for_function("sent === received")
 
 
 def guess(positions, known, generator, samples=1, resample=1):

@@ -26,8 +26,7 @@ def to_files(path: Path) -> list[str]:
 
 
 def dead(folder: Path) -> list[str]:
-    """`file: link` for every relative link of the folder's notebooks and pages that leads nowhere
-    in it."""
+    """`file: link` for every relative link that leads nowhere in the folder."""
     paths = sorted(path for kind in ("*.ipynb", "*.md") for path in folder.rglob(kind))
     missing = []
     for path in paths:

@@ -20,10 +20,8 @@ def dancer_to_mel(**changes) -> Dancer:
     with torch.no_grad():
         for weight in model.parameters():
             weight.add_(0.1 * torch.randn(weight.shape))
-    motion, mel = (
-        Scaler(torch.zeros(63), torch.full((63,), 0.1)),
-        Scaler(torch.full((80,), -6.0), torch.ones(80)),
-    )
+    motion = Scaler(torch.zeros(63), torch.full((63,), 0.1))
+    mel = Scaler(torch.full((80,), -6.0), torch.ones(80))
     return Dancer(
         model.eval().requires_grad_(False), cosine_schedule(model.config.S), motion, mel, {}
     )

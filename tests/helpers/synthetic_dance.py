@@ -17,7 +17,10 @@ def material(frames=(120, 90), seed: int = 0):
 
     Every band holds the time in seconds.
     """
-    rng, dances, contacts, mels = np.random.default_rng(seed), [], [], []
+    rng = np.random.default_rng(seed)
+    dances = []
+    contacts = []
+    mels = []
     for k, T in enumerate(frames):
         clip = walk(random_control(T / 20, rng, "turn"), k)
         dances.append(to_world(clip.poses, clip.control)[:T])

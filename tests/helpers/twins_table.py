@@ -361,7 +361,10 @@ class _GoesOn:
     """
 
     class config:
-        T_h, T_p, D, C = 4, 4, 6, 3
+        T_h = 4
+        T_p = 4
+        D = 6
+        C = 3
 
     pose_scaler = Scaler(torch.linspace(-1, 1, 6), torch.linspace(0.5, 2, 6))
     control_scaler = Scaler.nothing(3)
@@ -506,11 +509,10 @@ def _dropped(past, s, alpha_bar, rate, u, noise) -> torch.Tensor:
 
 def _past_and_its_draws() -> tuple:
     """Seven pasts, and the throws and noises that the library draws from the same seed."""
-    draw, past = torch.Generator().manual_seed(81), _normal(7, 5, 3, seed=80)
-    u, noise = (
-        torch.rand(7, generator=draw),
-        torch.randn(past.shape, generator=draw, dtype=past.dtype),
-    )
+    draw = torch.Generator().manual_seed(81)
+    past = _normal(7, 5, 3, seed=80)
+    u = torch.rand(7, generator=draw)
+    noise = torch.randn(past.shape, generator=draw, dtype=past.dtype)
     return past, torch.arange(5, 75, 10), LINEAR.alpha_bar, 0.4, u, noise
 
 
@@ -544,7 +546,8 @@ def _a_plane_half_known() -> tuple:
 
     Of three of them the first coordinate is given, of two the second.
     """
-    schedule, known = ddpm.cosine_schedule(30), torch.zeros(7, 2, dtype=torch.bool)
+    schedule = ddpm.cosine_schedule(30)
+    known = torch.zeros(7, 2, dtype=torch.bool)
     known[:3, 0], known[3:5, 1] = True, True
     denoise = exact.exact_denoiser(crossed_bars(), schedule)
     start, given = _normal(7, 2, seed=150), _normal(7, 2, seed=151)

@@ -51,7 +51,8 @@ def test_noise_and_aimless_movement_do_not_repeat():
 
 
 def test_place_and_heading_do_not_count():
-    angles, places = np.cumsum(RNG.normal(0, 0.3, 200)), np.cumsum(RNG.normal(0, 0.1, (200, 1)), 0)
+    angles = np.cumsum(RNG.normal(0, 0.3, 200))
+    places = np.cumsum(RNG.normal(0, 0.1, (200, 1)), 0)
     elsewhere = turned(loop(), angles, places)
     np.testing.assert_allclose(pose_changes(elsewhere), pose_changes(loop()), atol=1e-9)
     assert repeat_score(elsewhere) == pytest.approx(1.0)

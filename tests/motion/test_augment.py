@@ -64,7 +64,9 @@ def test_the_public_mirror_tears_the_shoulders_off():
 
     15.1 cm become 5.4 and 25.1 (measured on its code).
     """
-    neck, left, right = 11, 13, 17
+    neck = 11
+    left = 13
+    right = 17
     poses = np.zeros((1, J, 3))
     poses[0, neck] = [0.05, 1.45, 0]
     poses[0, left], poses[0, right] = [0.20, 1.43, 0], [-0.10, 1.43, 0]

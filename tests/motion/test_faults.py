@@ -61,7 +61,8 @@ def test_the_swapped_markers_are_mended(real_data, whole):
         clip = load_clip(real_data / "bvh" / "cmu_acrnn_salsa_10.bvh")
     before, wild = clip.world(), clip.info["wild"]
     known = ~np.repeat(wild.any(1, keepdims=True), 21, axis=1) if whole else ~wild
-    network, draw = checkpoints.pretrained("unconditional"), torch.Generator().manual_seed(0)
+    network = checkpoints.pretrained("unconditional")
+    draw = torch.Generator().manual_seed(0)
     after = inbetween(network, before, known, steps=25, generator=draw)[0]
     assert np.array_equal(after[known], before[known])
     assert np.ptp(bone_lengths(after), axis=0).max() < 0.002

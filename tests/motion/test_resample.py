@@ -19,7 +19,8 @@ def movement(times):
 
 
 def test_movement_below_a_quarter_of_the_rate_comes_back():
-    coarse, fine = movement(np.arange(81) / 20), movement(np.arange(241) / 60)
+    coarse = movement(np.arange(81) / 20)
+    fine = movement(np.arange(241) / 60)
     new = resample(coarse, 20)
     assert new.shape == (241, 3, 3)
     inner = np.abs(new - fine)[12:-12].max()

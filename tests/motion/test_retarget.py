@@ -145,7 +145,8 @@ def test_real_walks(real_data, name, speed):
     clip = load_clip(real_data / "bvh" / f"{name}.bvh")
     world = clip.world()
     assert cruise(clip) == pytest.approx(speed, rel=0.03)
-    thigh, shank = world[:, [2, 6]] - world[:, [1, 5]], world[:, [3, 7]] - world[:, [2, 6]]
+    thigh = world[:, [2, 6]] - world[:, [1, 5]]
+    shank = world[:, [3, 7]] - world[:, [2, 6]]
     left = (world[:, 1] - world[:, 5])[:, None]
     bend = np.degrees(
         np.arctan2(

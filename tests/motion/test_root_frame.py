@@ -91,7 +91,8 @@ def test_the_body_faces_where_hips_and_shoulders_look_together():
     world = np.zeros((2, 21, 3))
     for part, width, angle in (("UpLeg", 0.1, 0.4), ("Arm", 0.3, 1.0)):
         left = width * np.array([np.cos(angle), 0.0, -np.sin(angle)])
-        world[0, joint_index("Left" + part)], world[0, joint_index("Right" + part)] = left, -left
+        world[0, joint_index("Left" + part)] = left
+        world[0, joint_index("Right" + part)] = -left
     world[1] = world[0] * [-1.0, 1.0, -1.0]  # half a turn
     wanted = np.angle(0.1 * np.exp(0.4j) + 0.3 * np.exp(1.0j))
     np.testing.assert_allclose(rf.body_heading(world), [wanted, wanted - np.pi], atol=1e-12)
@@ -136,7 +137,8 @@ def test_the_estimated_root_is_smoothed_by_gaussians_of_these_lengths():
     Way .25 s, turns .33 s.
     """
     t, pose = np.arange(400) / 20, long_run(seconds=1)[0].mean(0)
-    sway, turn = 0.05 * np.sin(2 * np.pi * 0.6 * t), 0.2 * np.sin(2 * np.pi * 0.6 * t)
+    sway = 0.05 * np.sin(2 * np.pi * 0.6 * t)
+    turn = 0.2 * np.sin(2 * np.pi * 0.6 * t)
     world = np.tile(pose, (400, 1, 1))
     still, heading = rf.estimate_root(world)
     world[..., 0] += sway[:, None]
@@ -153,10 +155,8 @@ def test_the_estimated_root_is_smoothed_by_gaussians_of_these_lengths():
 def test_the_heading_is_that_of_hips_and_shoulders_together():
     pose = np.zeros((1, 21, 3))
     for name, x, z in (("UpLeg", 0.1, 0.0), ("Arm", 0.3 * np.cos(0.4), -0.3 * np.sin(0.4))):
-        pose[0, joint_index("Left" + name)], pose[0, joint_index("Right" + name)] = (
-            (x, 1, z),
-            (-x, 1, -z),
-        )
+        pose[0, joint_index("Left" + name)] = (x, 1, z)
+        pose[0, joint_index("Right" + name)] = (-x, 1, -z)
     _, heading = rf.estimate_root(np.tile(pose, (60, 1, 1)))
     by_hand = np.arctan2(
         0.3 * np.sin(0.4), 0.1 + 0.3 * np.cos(0.4)

@@ -38,10 +38,8 @@ def flat(value) -> list[np.ndarray]:
 def test_the_notebooks_version_agrees_with_the_library(notebook, name):
     twin = TWINS[notebook][name]
     assert name in names(notebook), f"no cell of notebook {notebook} tagged `twin` defines {name}"
-    mine, library = (
-        flat(names(notebook)[name](*twin.arguments())),
-        flat(twin.library(*twin.arguments())),
-    )
+    mine = flat(names(notebook)[name](*twin.arguments()))
+    library = flat(twin.library(*twin.arguments()))
     assert len(mine) == len(library)
     for got, wanted in zip(mine, library, strict=True):
         np.testing.assert_allclose(got, wanted, atol=twin.atol, rtol=twin.rtol)

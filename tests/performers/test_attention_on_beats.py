@@ -64,7 +64,9 @@ def test_the_layers_are_those_of_the_network():
 
 
 def test_maps_come_from_the_seed_and_depend_on_the_step():
-    one, again, other = maps(s=5)[0], maps(s=5)[0], maps(s=12)[0]
+    one = maps(s=5)[0]
+    again = maps(s=5)[0]
+    other = maps(s=12)[0]
     for name in one:
         assert np.array_equal(one[name], again[name])
     assert np.abs(one["bottom, 5 a second"] - other["bottom, 5 a second"]).max() > 1e-5
@@ -109,7 +111,9 @@ def test_beats_with_another_place_are_what_even_weights_get():
 
 def test_seconds_read_by_hand():
     times = 0.7 + np.arange(5) * 0.064
-    even, one, two = np.full(5, 0.2), np.eye(5)[3], np.array([0, 0.5, 0, 0, 0.5])
+    even = np.full(5, 0.2)
+    one = np.eye(5)[3]
+    two = np.array([0, 0.5, 0, 0, 0.5])
     for row, tokens in ((even, 5), (one, 1), (two, 2)):
         assert attention_on_beats.seconds_read(row[None], times) == pytest.approx(tokens * 0.064)
     assert attention_on_beats.seconds_read(np.stack([even, one]), times) == pytest.approx(3 * 0.064)

@@ -95,7 +95,8 @@ def test_music_with_gain_noise_differs_in_level_and_balance_alone():
     torch.testing.assert_close(
         change, change[:, :1].expand_as(change), atol=1e-5, rtol=0
     )  # the same at all times
-    level, tilt = change[:, 0].mean(-1), (change[:, 0, -1] - change[:, 0, 0]) / 2
+    level = change[:, 0].mean(-1)
+    tilt = (change[:, 0, -1] - change[:, 0, 0]) / 2
     line = level[:, None] + tilt[:, None] * torch.linspace(-1, 1, 5)
     torch.testing.assert_close(change[:, 0], line, atol=1e-5, rtol=0)
     assert level.std().item() == pytest.approx(
@@ -129,7 +130,8 @@ def test_parts_are_in_metres_after_the_scaler_is_undone():
     )
     assert parts["slide"].max() < 1e-3  # planted toes stand within a millimetre
     longer = made.motion_scaler.inverse(truth)
-    shin, half = 3 + 3 * (JOINTS.index("LeftFoot") - 1), torch.arange(40) < 20
+    shin = 3 + 3 * (JOINTS.index("LeftFoot") - 1)
+    half = torch.arange(40) < 20
     longer[:, half, shin + 1] -= 0.04  # the left ankle 4 cm lower, in half of the frames
     parts = kinematic_parts(made.motion_scaler.transform(longer), truth, body, stands)
     assert (

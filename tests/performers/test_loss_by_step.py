@@ -120,7 +120,8 @@ def test_pull_of_a_loss_is_what_small_steps_change():
 
 
 def test_a_network_that_predicts_x0_feels_the_bones_less_by_a_over_b():
-    eps, x0 = measured().pull["skeleton"], measured(target="x0").pull["skeleton"]
+    eps = measured().pull["skeleton"]
+    x0 = measured(target="x0").pull["skeleton"]
     torch.testing.assert_close(
         eps / x0, torch.tensor([carried(s) for s in STEPS]).double(), rtol=1e-5, atol=0
     )
@@ -129,10 +130,8 @@ def test_a_network_that_predicts_x0_feels_the_bones_less_by_a_over_b():
 def test_squared_losses_level_off_under_the_papers_weight_and_the_others_fall():
     """5 % off: unweighted all explode; alpha_bar L_s stays, alpha_bar L_a falls by a / a."""
     late, later = 45, 49
-    loss, weighted = (
-        measured(steps=(late, later)),
-        measured(steps=(late, later)).weighted(SCHEDULE, "alpha_bar"),
-    )
+    loss = measured(steps=(late, later))
+    weighted = measured(steps=(late, later)).weighted(SCHEDULE, "alpha_bar")
     growth = {
         name: float(loss.value[name][1] / loss.value[name][0]) for name in ("skeleton", "asymmetry")
     }
@@ -148,7 +147,8 @@ def test_the_ideal_guess_at_high_noise_is_a_mean_with_short_bones():
     answer = predictor_of(dataset_denoiser(windows, SCHEDULE))
     guess = clean_guess(answer, X0, EPS, 50, SCHEDULE)
     torch.testing.assert_close(guess[0], windows.mean(0), rtol=0, atol=0.1)
-    ideal, off = measured(answer, (49,)).value["skeleton"], measured(steps=(49,)).value["skeleton"]
+    ideal = measured(answer, (49,)).value["skeleton"]
+    off = measured(steps=(49,)).value["skeleton"]
     assert ideal < off / 100
 
 

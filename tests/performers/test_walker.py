@@ -16,7 +16,9 @@ from motiondiff_edu.performers.walker import Walker
 from motiondiff_edu.prediction import to_eps
 from motiondiff_edu.rollout import generate
 
-S, T_H, T_P = 6, 4, 3
+S = 6
+T_H = 4
+T_P = 3
 
 
 def tiny_walker(target: str = "eps") -> Walker:

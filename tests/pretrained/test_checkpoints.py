@@ -278,7 +278,8 @@ def test_a_file_without_a_checksum_is_refused(saved: Path, name: str):
 def test_a_changed_setting_is_damage(saved: Path, name: str, old: str, new: str):
     """It would load, and walk like nobody."""
     with safe_open(saved, "pt") as file:
-        metadata, tensors = file.metadata(), {k: file.get_tensor(k) for k in file.keys()}
+        metadata = file.metadata()
+        tensors = {k: file.get_tensor(k) for k in file.keys()}
     changed = metadata[name].replace(old, new) if old else metadata[name] + new
     assert changed != metadata[name]
     save_file(tensors, saved, metadata | {name: changed})

@@ -8,7 +8,7 @@ import pytest
 import torch
 
 from motiondiff_edu.beyond.footholds import FootholdConfig
-from motiondiff_edu.beyond.footholds import network as walker_network
+from motiondiff_edu.performers.networks import network as walker_network
 from motiondiff_edu.ddpm import linear_schedule
 from motiondiff_edu.diffusion_dropout import Dropout
 from motiondiff_edu.kinematic_loss import KinematicWeights

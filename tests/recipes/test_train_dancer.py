@@ -11,7 +11,7 @@ import torch
 
 from motiondiff_edu.beyond.schedules import shifted
 from motiondiff_edu.ddpm import cosine_schedule
-from motiondiff_edu.performers.dancer import network
+from motiondiff_edu.performers.networks import network
 from motiondiff_edu.pretrained.checkpoints import load_dancer
 from motiondiff_edu.recipes import __main__ as command
 from motiondiff_edu.recipes.dancers import DANCE_RECIPES, DANCER, DANCER_PLAIN, REGRESSED
@@ -117,7 +117,7 @@ def test_the_command_trains_a_recipe_into_a_file(monkeypatch, tmp_path: Path, ca
         and dancer.card["windows"] > 0
     )
     mel = torch.zeros(1, 70, 80)
-    assert dancer.dance(mel, 40).shape == (1, 40, 21, 3)
+    assert dancer.dance_mel(mel, 40).shape == (1, 40, 21, 3)
 
 
 def test_with_and_without_kinematic_losses_all_else_is_alike():

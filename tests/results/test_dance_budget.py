@@ -117,7 +117,8 @@ def test_a_row_is_trained_measured_and_set_beside_its_base(tiny, tmp_path, capsy
 
 
 def test_rows_of_another_budget_or_sampler_are_not_set_beside_it(tiny, tmp_path, monkeypatch):
-    rows, squares = {"bas": np.full(4, 0.5), "bas_shuffled": np.full(4, 0.2)}, np.full(4, 2.0)
+    rows = {"bas": np.full(4, 0.5), "bas_shuffled": np.full(4, 0.2)}
+    squares = np.full(4, 2.0)
     data = {"bas": np.full(4, 0.8), "bas_shuffled": np.full(4, 0.2)}
     worse = Danced([], {**rows, "bas": np.full(4, 0.35)}, data, 4 * squares)
     budget.keep("constant", worse, tmp_path, SMALL)
@@ -185,7 +186,8 @@ def test_times_are_of_every_network_and_the_base_is_one(tiny):
 
 
 def test_what_trains_is_run_when_asked_for_only():
-    weights, lines = {"dancer"}, {"walker-x0": Walks("walker-x0", "walker-x0")}
+    weights = {"dancer"}
+    lines = {"walker-x0": Walks("walker-x0", "walker-x0")}
     plain = command.parts_of([], False, lines, weights)  # there are no weights of that walker
     assert plain == ["dancer", "unheard", "footsteps", "attention", "dance-time", "known-answer"]
     full = command.parts_of([], True, {}, weights)

@@ -169,7 +169,8 @@ def test_table_2_measures_what_was_repaired_and_what_was_walked(trials):
 
     Its bones are that pose's, the repaired window's are of both.
     """
-    size, frames = repair.RepairSize(samples=1, rounds=1, steps=3), trials.truth.shape[1]
+    size = repair.RepairSize(samples=1, rounds=1, steps=3)
+    frames = trials.truth.shape[1]
     windows = repair.repaired_windows([Standing()], trials, size)
     found, after = repair.table_2([Standing()], trials, size, windows, "standing_", keep=10)
     value = {one.name.removeprefix("table2_standing_"): one.value for one in found}

@@ -1,7 +1,5 @@
-"""What an animator does, in JupyterLab.
-
-A real walk, three frames pinned, an arm bent in one, in-betweens, a file.
-"""
+"""What an animator does, in JupyterLab: a real walk, three frames pinned, an arm bent in one,
+in-betweens, a file."""
 
 import os
 
@@ -66,7 +64,6 @@ def test_a_real_walk_is_edited_and_saved(browser, address, tmp_path):
         page.get_by_role("button", name="Save as BVH").click()
         page.wait_for_function("document.querySelector('.mde-say').textContent.startsWith('Saved')")
         kept, raised, frames, bones, heights = page.evaluate(ASK, CHECK).splitlines()[-1].split()
-        assert (kept, frames, bones, heights) == ("True", "57", "True", "True") and float(
-            raised
-        ) == pytest.approx(0.2 * np.cos(0.2), abs=0.006)
+        assert (kept, frames, bones, heights) == ("True", "57", "True", "True")
+        assert float(raised) == pytest.approx(0.2 * np.cos(0.2), abs=0.006)
         assert (tmp_path / "in-between.bvh").is_file() and page.problems == []

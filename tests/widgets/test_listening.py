@@ -1,11 +1,9 @@
-"""Attention and silenced hits over the waveform.
-
-Packed in Python, drawn in a browser, and as a figure.
-"""
+"""Attention and silenced hits over the waveform: packed in Python, drawn in a browser, and as a
+figure."""
 
 import numpy as np
 import pytest
-from browser import open_page, player_page
+from browser import open_page, player_page, until
 from click_track import clicks, jumping
 from synthetic_walk import walk
 
@@ -27,11 +25,8 @@ def softmax(scores):
 
 @pytest.fixture(scope="module")
 def maps():
-    """Two maps with known targets.
-
-    Of 86 frames one that looks at token (frame // 2), of 11 rows one that looks at token 42 - 4
-    row.
-    """
+    """Of 86 frames one that looks at token (frame // 2), of 11 rows one that looks at token 42 - 4
+    row."""
     now, back = (np.zeros((rows, 43)) for rows in (T, 11))
     now[np.arange(T), np.arange(T) // 2] = 30
     back[np.arange(11), 42 - 4 * np.arange(11)] = 30
@@ -71,7 +66,8 @@ def test_a_column_reaches_halfway_to_its_neighbours():
 
 
 def test_the_record_says_how_the_bytes_are_to_be_read(listening, maps, moved):
-    record, codes = listening.music, np.frombuffer(listening.strips, np.uint8)
+    record = listening.music
+    codes = np.frombuffer(listening.strips, np.uint8)
     assert [(level["name"], level["rows"], level["edges"]) for level in record["levels"]] == [
         ("fine", T, 0),
         ("coarse", 11, 0),
@@ -146,10 +142,8 @@ def test_show_replaces_what_is_given_and_an_error_changes_nothing(maps, moved):
 
 # ---- drawn
 
-COLOURS = """() => {
-  // per column of the lane: how purple the waveform's rows are, how green those of the curve
-  const c = document.querySelector(".mde-lane");
-  const d = c.getContext("2d").getImageData(0, 0, c.width, c.height).data;
+COLOURS = """() => {  // per column of the lane: how purple the waveform's rows are, how green those of the curve
+  const c = document.querySelector(".mde-lane"), d = c.getContext("2d").getImageData(0, 0, c.width, c.height).data;
   const purple = [], green = [];
   for (let x = 0; x < c.width; x++) {
     let p = 0, g = 0;
@@ -213,14 +207,9 @@ def test_a_click_in_the_lane_goes_there_and_playing_goes_on(browser, listening, 
             3.0, abs=1e-3
         )
         lane = page.locator(".mde-lane")
-        assert [
-            lane.get_attribute(f"aria-value{name}") for name in ("min", "max", "now", "text")
-        ] == [
-            "0",
-            "4.30",
-            "3.00",
-            "3.00 of 4.30 seconds, beat 6 of 8",
-        ]
+        assert [lane.get_attribute(f"aria-value{name}") for name in ("min", "max", "now", "text")] == [
+            "0", "4.30", "3.00", "3.00 of 4.30 seconds, beat 6 of 8",
+        ]  # fmt: skip
         page.keyboard.press("ArrowLeft")  # the lane has the focus
         assert (
             page.locator(".mde-player").get_attribute("data-frame") == "59"
@@ -250,7 +239,8 @@ TEXTS = """() => {  // boxes of all labels written on the lane
 def test_labels_neither_overlap_nor_leave_the_lane(browser, listening, tmp_path, width):
     with open_page(browser, viewport={"width": width, "height": 700}) as page:
         page.goto(player_page(tmp_path, listening))
-        boxes, inside = page.evaluate(TEXTS), page.locator(".mde-lane").bounding_box()["width"]
+        boxes = page.evaluate(TEXTS)
+        inside = page.locator(".mde-lane").bounding_box()["width"]
         assert page.evaluate("document.documentElement.scrollWidth <= innerWidth")
     assert len(boxes) >= 4
     for i, (text, left, top, right, foot) in enumerate(boxes):
@@ -265,8 +255,8 @@ def test_exported_it_shows_the_same_and_the_poster_has_the_lane(browser, listeni
     with open_page(browser) as page:
         page.goto((tmp_path / "export.html").as_uri())
         lane = page.frame_locator("iframe").locator(".mde-lane")
-        lane.wait_for()
-        assert max(lane.evaluate(COLOURS)[0]) > 20 and page.problems == [] and page.asked == []
+        until(lane, f"() => Math.max(...({COLOURS})()[0]) > 20")
+        assert page.problems == [] and page.asked == []
     pixels = np.asarray(listening.poster().convert("RGB")).astype(int)
     assert (
         (pixels[..., 0] > pixels[..., 1] + 40) & (pixels[..., 2] > pixels[..., 1] + 20)

@@ -99,11 +99,9 @@ def arm_wave(p: Sheet) -> None:
         # crest at: left hand, left elbow, chest, right elbow ... forth in four counts and back in
         # four
         at = k % 4 if k % 8 < 4 else 3 - k % 4
-        hand, elbow, quiet = (
-            (14, 78, -36, 62, -26, 2),
-            (4, 100, 22, 30, 34, 18),
-            (2, 73, 12, 17, 14, 0),
-        )
+        hand = (14, 78, -36, 62, -26, 2)
+        elbow = (4, 100, 22, 30, 34, 18)
+        quiet = (2, 73, 12, 17, 14, 0)
         p.arms(k, *((hand, quiet), (elbow, quiet), (quiet, elbow), (quiet, hand))[at])
         s = 1.5 - at
         p.key("weight", (k, 0.6 * s))

@@ -50,7 +50,8 @@ def splice_control(mine):
 
     The last T_h rows of the past, its last one leading into the first new frame.
     """
-    past, new = np.arange(18.0).reshape(6, 3), 100 + np.arange(12.0).reshape(4, 3)
+    past = np.arange(18.0).reshape(6, 3)
+    new = 100 + np.arange(12.0).reshape(4, 3)
     before = past.copy()
     got = mine(past, new, 5)
     expect(np.array_equal(past, before), "the recording's control was changed; work on a copy")

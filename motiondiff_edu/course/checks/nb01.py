@@ -71,7 +71,10 @@ def _small_walk():
 
 
 def _expect_poses(seen, poses):
-    left_foot, right_foot, neck = 3, 7, 11  # by hand: the names of the skeleton
+    # by hand: the names of the skeleton
+    left_foot = 3
+    right_foot = 7
+    neck = 11
     mistakes = {
         "x is negated, but left and right must swap names too": poses[:, left_foot] * [-1, 1, 1],
         (

@@ -41,13 +41,14 @@ def q_sample(mine):
 @check
 def posterior(mine):
     """Expected values by Bayes' rule on a grid, so that no formula is trusted."""
-    alpha_bar, s, x0, x_s = torch.tensor([1.0, 0.9, 0.7, 0.4], dtype=torch.float64), 3, 0.8, -0.6
+    alpha_bar = torch.tensor([1.0, 0.9, 0.7, 0.4], dtype=torch.float64)
+    s = 3
+    x0 = 0.8
+    x_s = -0.6
     before, alpha = 0.7, 0.4 / 0.7
     grid = torch.linspace(-8, 8, 160_001, dtype=torch.float64)
-    from_x0, from_x_s = (
-        (grid - before**0.5 * x0) ** 2 / (1 - before),
-        (x_s - alpha**0.5 * grid) ** 2 / (1 - alpha),
-    )
+    from_x0 = (grid - before**0.5 * x0) ** 2 / (1 - before)
+    from_x_s = (x_s - alpha**0.5 * grid) ** 2 / (1 - alpha)
     weight = (-(from_x0 + from_x_s) / 2).softmax(0)
     mean = (weight * grid).sum()
     variance = (weight * (grid - mean) ** 2).sum()

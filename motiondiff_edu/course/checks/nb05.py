@@ -51,10 +51,8 @@ def _convert(output, x_s, a, b) -> dict:
 @check
 def averaged_weights(mine):
     """mine(means, new, decay) -> new averages; the old ones stay as they are."""
-    means, new = (
-        [np.array([1.0, -2.0]), np.zeros(3)],
-        [np.array([2.0, 2.0]), np.array([10.0, 0.0, -5.0])],
-    )
+    means = [np.array([1.0, -2.0]), np.zeros(3)]
+    new = [np.array([2.0, 2.0]), np.array([10.0, 0.0, -5.0])]
     got = mine(means, new, 0.9)
     expect(got is not None, "nothing comes back; return the new list of averages")
     expect(len(got) == 2, f"two arrays went in, {len(got)} came out")

@@ -56,7 +56,12 @@ def rollout_by_hand(mine):
 
     The sampler writes down what it was given.
     """
-    B, T_h, T_p, D, C, frames = 2, 4, 3, 6, 1, 5
+    B = 2
+    T_h = 4
+    T_p = 3
+    D = 6
+    C = 1
+    frames = 5
     past = (
         torch.arange(T_h).float()[None, :, None].expand(B, T_h, D)
         * torch.tensor([1.0, -1.0])[:, None, None]

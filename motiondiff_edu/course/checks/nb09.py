@@ -20,12 +20,10 @@ def batch_with_dropout(mine):
     """
     draw = torch.Generator().manual_seed(9)
     past, future, first, second = torch.randn(4, 4, 3, 2, generator=draw, dtype=torch.float64)
-    s, u, rate, noise = (
-        torch.tensor([2, 1, 3, 2]),
-        torch.tensor([0.1, 0.7, 0.25, 0.9]),
-        0.3,
-        torch.stack([first, second]),
-    )
+    s = torch.tensor([2, 1, 3, 2])
+    u = torch.tensor([0.1, 0.7, 0.25, 0.9])
+    rate = 0.3
+    noise = torch.stack([first, second])
     given = past.clone(), future.clone()
     seen, x_s = _two(mine(*given, s, ALPHA_BAR, rate, u, noise))
     expect(

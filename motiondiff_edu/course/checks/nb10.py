@@ -94,7 +94,8 @@ def time_reversal(mine):
     kept = control.clone()
     wanted = torch.tensor([[-3.0, -0.125, -16], [-2, -0.25, -8], [-1, -0.5, -4], [-1, -0.5, -4]])
     wanted = torch.stack([wanted, -10 * wanted])
-    flipped, last = control.flip(1), torch.cat([wanted[:, :3], -control[:, :1] * 0], dim=1)
+    flipped = control.flip(1)
+    last = torch.cat([wanted[:, :3], -control[:, :1] * 0], dim=1)
     expect_close(
         mine(control),
         wanted,

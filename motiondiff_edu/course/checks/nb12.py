@@ -23,11 +23,10 @@ def _shifted(x: torch.Tensor, by: int) -> torch.Tensor:
 @check
 def frame_conv(mine):
     """mine(x, weight, bias, stride) against PyTorch's conv1d."""
-    x, weight, bias = (
-        _numbers(7, 2),
-        _numbers(4, 6, seed=1),
-        _numbers(4, seed=2),
-    )  # 7 frames of 2, answers of 4
+    # 7 frames of 2, answers of 4
+    x = _numbers(7, 2)
+    weight = _numbers(4, 6, seed=1)
+    bias = _numbers(4, seed=2)
     kernel = weight.unflatten(1, (3, 2)).transpose(1, 2)
 
     def mixed(*parts):
@@ -113,7 +112,8 @@ def any_length(mine):
 
         got = torch.as_tensor(mine(network, x, multiple))
         more = -(-T // multiple) * multiple
-        whole, late = sums(F.pad(x, (0, 0, 0, more - T))), sums(F.pad(x, (0, 0, more - T, 0)))
+        whole = sums(F.pad(x, (0, 0, 0, more - T)))
+        late = sums(F.pad(x, (0, 0, more - T, 0)))
         held = sums(torch.cat([x, x[:, -1:].expand(-1, more - T, -1)], 1))[:, :T]
         moved = "fill up behind the motion: before it, every frame moves to another time"
         expect(bool(asked), "the network was not asked at all")
@@ -145,19 +145,24 @@ def any_length(mine):
 def clocks(mine):
     """mine(q, k, fps_q, fps_k, f) against cosines of the time between."""
     q, k = _numbers(5, 4), _numbers(7, 4, seed=1)  # 5 frames, 7 tokens, two pairs
-    fps_q, fps_k, f = 20.0, 15.625, torch.tensor([0.3, 2.0])
+    fps_q = 20.0
+    fps_k = 15.625
+    f = torch.tensor([0.3, 2.0])
 
     def weights(t, u, root=2.0, softmax=-1):
         """Pair by pair as complex numbers.
 
         The score of q and k is the real part of q conj(k) e^(i angle).
         """
-        a, b = torch.complex(q[:, :2], q[:, 2:]), torch.complex(k[:, :2], k[:, 2:])
+        a = torch.complex(q[:, :2], q[:, 2:])
+        b = torch.complex(k[:, :2], k[:, 2:])
         phase = torch.exp(1j * (t[:, None, None] - u[None, :, None]) * f)
         scores = (a[:, None] * b.conj()[None] * phase).real.sum(-1) / root
         return scores if softmax is None else scores.softmax(softmax)
 
-    n, m, turn = torch.arange(5.0), torch.arange(7.0), 2 * math.pi
+    n = torch.arange(5.0)
+    m = torch.arange(7.0)
+    turn = 2 * math.pi
     t, u = turn * n / fps_q, turn * m / fps_k
     mistakes = {
         (

@@ -19,10 +19,8 @@ def x0_hat(mine):
     draw = torch.Generator().manual_seed(13)
     x0, eps = torch.randn(2, 2, 5, 3, generator=draw, dtype=torch.float64)
     s = torch.tensor([1, 2])
-    a, b = (
-        torch.tensor([0.8, 0.6]).double()[:, None, None],
-        torch.tensor([0.6, 0.8]).double()[:, None, None],
-    )
+    a = torch.tensor([0.8, 0.6]).double()[:, None, None]
+    b = torch.tensor([0.6, 0.8]).double()[:, None, None]
     x_s = a * x0 + b * eps
     mistakes = {
         "the second alpha_bar needs its index as well; this takes the last of the table": x_s / a
@@ -54,7 +52,8 @@ def skeleton_loss(mine):
         [[2.0, 5.0, 3.5], [1.0, 2.0, 4.0], [3.0, 2.0, 4.5], [2.0, 3.0, 4.0], [2.0, 3.0, 4.0]]
     )
     # bone 0: 2 / 4, bone 1: 6 / 4, bone 2: 0.5 / 4
-    wanted, off = torch.tensor((0.5 + 1.5 + 0.125) / 3), lengths - lengths.mean(0)
+    wanted = torch.tensor((0.5 + 1.5 + 0.125) / 3)
+    off = lengths - lengths.mean(0)
     mistakes = {
         (
             "this is the variance over the bones of a frame; bones may differ, but not over time"
@@ -106,10 +105,12 @@ def asymmetry_from_features(mine):
     # left: 0.5, 1.0 and 1.0, 1.2; right: 1.0, 1.5 and 0.5, 1.2
     wanted = torch.tensor((0.5 + 0.5 + 0.5 + 0.0) / 4)
     flat = about.flatten(1)
-    mean, std = torch.linspace(-0.4, 0.9, 15).double(), torch.linspace(0.2, 0.7, 15).double()
+    mean = torch.linspace(-0.4, 0.9, 15).double()
+    std = torch.linspace(0.2, 0.7, 15).double()
     x0_hat = (flat - mean) / std
     world = torch.cat([about[:, :1], about[:, 1:] + about[:, :1]], 1)
-    lengths, unscaled = _lengths(world, bones), x0_hat.unflatten(1, (5, 3))
+    lengths = _lengths(world, bones)
+    unscaled = x0_hat.unflatten(1, (5, 3))
     in_std = torch.cat([unscaled[:, :1], unscaled[:, 1:] + unscaled[:, :1]], 1)
     gap = lengths[:, [0, 1]] - lengths[:, [2, 3]]
     mistakes = {

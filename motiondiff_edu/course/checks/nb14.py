@@ -23,12 +23,11 @@ def shuffled_score(mine):
     table = np.array([[pair(stops, song) for song in SONGS] for stops in STOPS])
     others = ~np.eye(n, dtype=bool)
     right = table[others].mean()
-    own, all_pairs, next_only = (
-        np.diag(table).mean(),
-        table.mean(),
-        np.mean([table[i, (i + 1) % n] for i in range(n)]),
-    )
-    once, once_below = table[np.triu_indices(n, 1)].mean(), table[np.tril_indices(n, -1)].mean()
+    own = np.diag(table).mean()
+    all_pairs = table.mean()
+    next_only = np.mean([table[i, (i + 1) % n] for i in range(n)])
+    once = table[np.triu_indices(n, 1)].mean()
+    once_below = table[np.tril_indices(n, -1)].mean()
     before_only = np.mean([table[i, i - 1] for i in range(n)])
     music = np.array([[pair(song, stops) for song in SONGS] for stops in STOPS])[others].mean()
     expect_close(

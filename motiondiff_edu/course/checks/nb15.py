@@ -17,7 +17,9 @@ def _numbers(*shape: int, seed: int = 0) -> torch.Tensor:
 @check
 def snapshot(mine):
     """mine(x_s, given, known, alpha_bar, noise), entry by entry by hand."""
-    x_s, given, noise = _numbers(2, 5, 3), _numbers(2, 5, 3, seed=1), _numbers(2, 5, 3, seed=2)
+    x_s = _numbers(2, 5, 3)
+    given = _numbers(2, 5, 3, seed=1)
+    noise = _numbers(2, 5, 3, seed=2)
     known = torch.zeros(2, 5, 3, dtype=torch.bool)
     known[0, :2], known[1, 3, 1:] = True, True
     for alpha_bar in (0.36, 0.9):
@@ -77,7 +79,9 @@ class _Told:
     """
 
     def __init__(self, given: torch.Tensor):
-        self.given, self.seen, self.drawn = given, [], []
+        self.given = given
+        self.seen = []
+        self.drawn = []
 
     def snapshot(self, s):
         self.drawn.append(int(s))
@@ -94,7 +98,9 @@ def masked(mine):
 
     Everything in the leap depends on everything.
     """
-    x, given, visited = _numbers(2, 5), _numbers(2, 5, seed=1), [9, 6, 4, 1]
+    x = _numbers(2, 5)
+    given = _numbers(2, 5, seed=1)
+    visited = [9, 6, 4, 1]
     known = torch.tensor([[True, False, True, False, False], [False, True, False, False, True]])
 
     def by(order):

@@ -113,7 +113,9 @@ def hierarchy(
     offsets: Float[np.ndarray, "21 3"],
 ) -> tuple[tuple[str, ...], np.ndarray, Float[np.ndarray, "N 3"]]:
     """Names, parents and offsets with the helper joints put in, each before its child."""
-    names, above, table = [], {}, []
+    names = []
+    above = {}
+    table = []
     helper_of = {child: helper for helper, (_, children) in HELPERS.items() for child in children}
     for joint, name in enumerate(JOINTS):
         helper = helper_of.get(name)

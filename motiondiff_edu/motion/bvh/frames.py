@@ -162,7 +162,9 @@ def check_frame_ends(
 
     A frame is a number for each of `columns`.
     """
-    held, begun, width = 0, 0, len(columns)
+    held = 0
+    begun = 0
+    width = len(columns)
     for line, count in counts:
         begun = line if held == 0 else begun
         held += count

@@ -30,7 +30,9 @@ class BvhError(ValueError):
             if part
         ]
         super().__init__(f"{', '.join(place)}: {problem}" if place else problem)
-        self.path, self.line, self.joint = str(path), line, joint
+        self.path = str(path)
+        self.line = line
+        self.joint = joint
 
 
 @dataclass(frozen=True)

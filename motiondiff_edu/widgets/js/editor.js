@@ -7,12 +7,14 @@ import { bytes, unpack } from "./figures.js";
 import { smoothRoot } from "./paint.js";
 import { silentClock } from "./clock.js";
 import { timeline } from "./timeline.js";
+import { wire } from "./wire.js";
 import { along, dot, dragged, jointAt, paintStage } from "./stage.js";
 
-const HOME = { yaw: 0.6, pitch: 0.2, zoom: 1.1 }, CENTIMETRE = 0.01, SILENCE = 5000, PATIENCE = 1000, NUDGES = 900; // milliseconds
+const HOME = { yaw: 0.6, pitch: 0.2, zoom: 1.1 }, CENTIMETRE = 0.01, NUDGES = 900; // milliseconds
 const ASLEEP = "needs a running notebook: run the cell that made this editor.";
 const MUTE = "The notebook's kernel does not answer: it is busy with another cell, or not running.";
-const GONE = "The notebook's kernel is gone. Your changes are still shown here, but nothing can be made or saved. Restart the kernel and run the notebook's cells again: the editor then starts anew.";
+const GONE = "The notebook's kernel is gone. Your changes are still shown here, but nothing can be made or saved. "
+  + "Restart the kernel and run the notebook's cells again: the editor then starts anew.";
 const MORE_CSS = `
 .mde-editor canvas { touch-action: none; } .mde-editor canvas.mde-timeline { cursor: pointer; }
 .mde-editor canvas.mde-over { cursor: move; }
@@ -47,7 +49,7 @@ export function mount(model, el, { fill = false } = {}) {
   const next = button("\u203a", "The next in-between (])", { "aria-label": "Next in-between" }), which = element("output", { "aria-live": "polite" });
   const before = element("input", { type: "checkbox", title: "The motion before the edit, as a ghost (O)" });
   const undo = button("Undo", "Take the last change back (Z)"), reset = button("Reset", "Everything as at first (R); Undo leads back");
-  const file = element("input", { type: "text", "aria-label": "Name of the file", spellcheck: "false" }), save = button("Save as BVH", "Write the in-between that is shown");
+  const file = element("input", { type: "text", "aria-label": "Name of the file", spellcheck: "false" }), save = button("Save as BVH", "Write the in-between that is shown; before there is one, the motion with its pinned poses");
   const held = element("div", { class: "mde-held" }), said = element("div", { class: "mde-say", role: "status" }), measured = element("div", { class: "mde-measured" });
   const dots = { L: element("i"), R: element("i") }, key = (side, word) => element("span", { class: "mde-key" }, dots[side], word);
   const rail = timeline(listen, () => ({ frames: scene.frames, fps: scene.fps, frame, pins: state.pins, moved: state.moved, part: state.part, made: state.made }), (t) => halt(t), (t) => toggle(t), () => draw());
@@ -65,7 +67,11 @@ export function mount(model, el, { fill = false } = {}) {
   const view = { ...HOME, follow: true }, clock = silentClock(scene.frames / scene.fps, () => visible);
   let state, motion, samples, poses, frame = 0, chosen = 0, playing = false, visible = true, ticking = 0, sent = -1, told = 0;
   let look = null, joint = null, hover = null, target = null, held_spot = null, grip = null, grips = 0, pull = null;
-  let number = 0, unsent = null, drag_number = 0, patience = 0, pressed = 0, begun = 0, silence = 0, gone = false;
+  let pressed = 0, begun = 0; // Generate: the number of its message, and when
+  const way = wire(model, () => state.heard, () => model.get("busy"), (gone) => {
+    pressed = 0; if (gone) target = null;
+    words(); say(gone ? GONE : MUTE); draw();
+  });
 
   // ---- what Python told
   const read = (where, frames) => unpack({ get: (name) => ({ scene: { joints: scene.joints, figures: frames.map((n) => ({ frames: n })) },
@@ -104,8 +110,9 @@ export function mount(model, el, { fill = false } = {}) {
     for (const side of ["L", "R"]) dots[side].style.background = rgba(theme.body[side]);
     const kept = new Set(state.kept), pinned = poses.has(frame);
     const wash = (part) => (pinned || samples.length || part.circles.every(([a, b]) => kept.has(a) && kept.has(b)) ? 0 : 0.6);
-    const ghosts = pinned ? [] : samples.filter((_, k) => k !== chosen).map((f) => f.pose(frame));
-    if (before.checked) ghosts.push(motion.pose(frame));
+    const others = pinned ? [] : samples.map((f, k) => ({ name: `in-between ${k + 1}`, pose: f.pose(frame) }));
+    const ghosts = others.filter((_, k) => k !== chosen);
+    if (before.checked) ghosts.push({ name: "motion before", pose: motion.pose(frame) });
     const spot = held_spot || (view.follow ? smoothRoot(figure, frame) : motion.middle);
     look = paintStage(ctx, { parts: scene.parts, figure, ghosts, frame, pinned: pinned && !playing, wash, spot, extent: view.follow ? 0 : motion.extent, joint, hover, target,
       names: scene.names, title: title(), hint: hint(), marks: state.pins.map((t) => poses.get(t)[0]), focus }, view, theme, w, h);
@@ -122,55 +129,30 @@ export function mount(model, el, { fill = false } = {}) {
     const busy = generating();
     root.setAttribute("aria-busy", String(busy)); generate.setAttribute("aria-disabled", String(busy));
     generate.textContent = busy ? "Generating \u2026" : "Generate";
-    undo.setAttribute("aria-disabled", String(!state.undo)); save.setAttribute("aria-disabled", String(!samples.length));
+    undo.setAttribute("aria-disabled", String(!state.undo));
     for (const node of [previous, next]) node.setAttribute("aria-disabled", String(samples.length < 2));
     keep.value = state.part; canvas.setAttribute("aria-label", state.description); joints.value = joint == null ? "" : String(joint);
   }
   const say = (text) => { said.textContent = text; };
 
   // ---- what the page asks
-  // Wishes are sent as differences (how far a joint is moved since it was gripped, pinned or not the other way round): the
-  // pose that the page shows may be an old one, and Python adds them to its own.
-  const asking = () => live && !gone && number > state.heard, generating = () => !gone && (pressed > 0 || model.get("busy"));
+  const generating = () => !way.gone() && (pressed > 0 || model.get("busy"));
   function ask(content, what) {
-    if (!live) { say(`${what} ${ASLEEP}`); return false; }
-    handOn(); // what was dragged before this comes first
-    return send(content);
-  }
-  function send(content) {
-    const next = Math.max(number, state.heard) + 1;
-    if (!reach({ ...content, number: next })) return false;
-    number = next; gone = false;
-    clearTimeout(silence); silence = setTimeout(miss, SILENCE);
-    return true;
-  }
-  function reach(content) { // a kernel that was shut down or started anew takes no messages: `send` throws
-    try { model.send(content); return true; } catch { /* told below */ }
-    gone = true; pressed = 0; unsent = target = null; clearTimeout(silence); words(); say(GONE); draw();
-    return false;
-  }
-  function miss() { // no answer so far
-    if (stop.signal.aborted || state.heard >= number) return;
-    if (model.get("busy")) { if (reach({ do: "ping" })) silence = setTimeout(miss, SILENCE); return; } // it works, if it is there still
-    pressed = 0; words(); say(MUTE);
+    if (live) return way.ask(content);
+    say(`${what} ${ASLEEP}`);
+    return 0;
   }
   function take(j) { // a grip is one change to Undo: a run of key presses, or one drag
-    handOn();
-    const going = target && grip && grip.frame === frame && grip.joint === j;
-    grip = { id: grips = Math.max(Date.now(), grips + 1), frame, joint: j, by: [0, 0, 0], from: going ? target : figure.pose(frame)[j] };
+    way.handOn();
+    const more = target && grip && grip.frame === frame && grip.joint === j; // not answered yet
+    grips = Math.max(Date.now(), grips + 1);
+    grip = { id: grips, frame, joint: j, by: [0, 0, 0], from: more ? target : figure.pose(frame)[j] };
     return grip;
   }
-  function pullBy(by, held, name) { // in all since the grip began: whatever becomes of the messages before, the last one holds all of it
+  function pullBy(by, held, name) { // metres in all since the grip began
     if (!live) return say(`${name} ${ASLEEP}`);
     held.by = by; target = along(held.from, by, 1); draw();
-    unsent = { do: "drag", frame: held.frame, joint: held.joint, by, grip: held.id };
-    if (!patience) handOn();
-  }
-  function handOn() { // one drag on its way at a time, so that a slow kernel is not flooded; without an answer the next one goes all the same
-    const content = unsent; unsent = null;
-    if (!content || !send(content)) return;
-    drag_number = number; clearTimeout(patience);
-    patience = setTimeout(() => { patience = 0; if (!stop.signal.aborted) handOn(); }, PATIENCE);
+    way.drag({ do: "drag", frame: held.frame, joint: held.joint, by, grip: held.id });
   }
   function toggle(t) {
     if (live) return ask({ do: "toggle", frame: t, chosen }, "");
@@ -185,8 +167,9 @@ export function mount(model, el, { fill = false } = {}) {
     if (generating()) return;
     if (!live) return say(`Generating ${ASLEEP}`);
     halt(frame); begun = performance.now();
-    if (!ask({ do: "generate", after: state.heard, count: Number(count.value), resample: Number(strength.value) }, "")) return;
-    pressed = number; words(); count_up();
+    const wanted = { count: Number(count.value), resample: Number(strength.value) };
+    pressed = ask({ do: "generate", after: state.heard, ...wanted }, "");
+    if (pressed) { words(); count_up(); }
   }
   function count_up() { // so that one sees that something goes on
     if (!pressed || stop.signal.aborted) return;
@@ -200,16 +183,15 @@ export function mount(model, el, { fill = false } = {}) {
   }
   function keepFile() { if (model.get("file") !== file.value) { model.set("file", file.value); model.save_changes(); } }
   function store() {
-    if (!samples.length) return say("There is no in-between to save yet: Generate makes some.");
     keepFile(); ask({ do: "save", name: file.value, chosen }, "Saving");
   }
   function select(j) {
     joint = j; target = null; grip = null;
-    if (j != null && !poses.has(frame) && !asking()) say(`${scene.names[j]} can be moved once this frame is pinned (Enter).`);
+    if (j != null && !poses.has(frame) && !way.asking()) say(`${scene.names[j]} can be moved once this frame is pinned (Enter).`);
     words(); draw();
   }
   function nudge(direction, sign, big) { // presses in quick succession are one change; one that leads back is another
-    if (!poses.has(frame) && !asking()) return say(`Frame ${frame} is not pinned: press Enter to pin it, then move its joints.`);
+    if (!poses.has(frame) && !way.asking()) return say(`Frame ${frame} is not pinned: press Enter to pin it, then move its joints.`);
     const now = performance.now(), step = direction.map((v) => v * sign * CENTIMETRE * (big ? 5 : 1));
     const going = grip && grip.step && now - grip.time < NUDGES && dot(grip.step, step) >= 0;
     const held = going ? grip : take(joint);
@@ -299,7 +281,7 @@ export function mount(model, el, { fill = false } = {}) {
     pull.moved = true; pullBy(dragged(look, pull.held.from, dx, dy), pull.held, "Dragging a joint");
   });
   for (const name of ["pointerup", "pointercancel"]) listen(canvas, name, () => {
-    if (pull && !pull.turn) { held_spot = null; if (!asking() && !unsent) target = null; }
+    if (pull && !pull.turn) { held_spot = null; if (!way.dragging()) target = null; }
     pull = null; draw();
   });
   listen(canvas, "pointerleave", () => { if (hover != null) { hover = null; draw(); } });
@@ -309,7 +291,7 @@ export function mount(model, el, { fill = false } = {}) {
   }, { passive: false });
 
   // ---- the controls
-  const press = (node, act) => listen(node, "click", () => { if (node.getAttribute("aria-disabled") !== "true" || node === generate || node === save) act(); });
+  const press = (node, act) => listen(node, "click", () => { if (node.getAttribute("aria-disabled") !== "true" || node === generate) act(); });
   press(play, () => setPlaying(!playing)); press(pin, () => toggle(frame)); press(generate, make); press(previous, () => choose(-1)); press(next, () => choose(1));
   press(undo, takeBack); press(reset, home); press(save, store);
   listen(joints, "change", () => select(joints.value === "" ? null : Number(joints.value)));
@@ -325,10 +307,8 @@ export function mount(model, el, { fill = false } = {}) {
     if (!load()) return;
     if (state.heard !== last_heard || !pressed) say(state.message);
     if (pressed && state.heard >= pressed) { pressed = 0; say(state.message); }
-    if (state.heard >= drag_number) {
-      clearTimeout(patience); patience = 0;
-      if (unsent) handOn(); else if (!pull) target = null;
-    }
+    way.answered();
+    if (!pull && !way.dragging()) target = null;
     words(); draw();
   };
   const onChosen = () => { chosen = clamp(model.get("chosen"), 0, Math.max(samples.length - 1, 0)); words(); draw(); };
@@ -341,11 +321,11 @@ export function mount(model, el, { fill = false } = {}) {
   [motion] = read("", [scene.frames]);
   const ends = [0, 2].map((k) => { const v = Array.from({ length: scene.frames }, (_, t) => motion.root(t)[k]); return [Math.min(...v), Math.max(...v)]; });
   motion.middle = ends.map(([a, b]) => (a + b) / 2); motion.extent = Math.hypot(...ends.map(([a, b]) => b - a));
-  load(); number = state.heard; frame = sent = clamp(model.get("frame"), 0, last); clock.seek(frame / scene.fps);
+  load(); frame = sent = clamp(model.get("frame"), 0, last); clock.seek(frame / scene.fps);
   onControls(); say(state.message); draw();
   sizes.observe(canvas); sights.observe(canvas); themes.observe(document.body, { attributes: true });
   return () => {
-    stop.abort(); clearTimeout(silence); clearTimeout(patience); cancelAnimationFrame(ticking); [sizes, sights, themes].forEach((o) => o.disconnect());
+    stop.abort(); way.close(); cancelAnimationFrame(ticking); [sizes, sights, themes].forEach((o) => o.disconnect());
     for (const [name, f] of Object.entries(changes)) model.off(name, f);
     root.remove();
   };

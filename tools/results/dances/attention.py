@@ -60,7 +60,8 @@ def masses(
     for name, weights in maps.items():
         others = [beat_mass(weights, times, other) for i, other in enumerate(beats) if i != own]
         moved = beat_mass_by_chance(weights, times, beats[own], np.random.default_rng(seed), SHIFTS)
-        here, read = beat_mass(weights, times, beats[own]), seconds_read(weights, times)
+        here = beat_mass(weights, times, beats[own])
+        read = seconds_read(weights, times)
         found[name] = here, float(np.mean(others)), float(moved.mean()), read
     return found
 
@@ -69,7 +70,8 @@ def rows_of(
     dancer: Dancer, songs: Songs, frames: int = TRAINED
 ) -> dict[str, dict[str, Float[np.ndarray, "N"]]]:
     """{level: {kind of KINDS: one number for each song}}, and "all", the mean over the levels."""
-    beats, danced = songs.beats(frames), dances_of(dancer, songs.mel, frames, seed=0)
+    beats = songs.beats(frames)
+    danced = dances_of(dancer, songs.mel, frames, seed=0)
     every = [
         masses(*maps_of(dancer, mel, danced[i], i), beats, i, i) for i, mel in enumerate(songs.mel)
     ]

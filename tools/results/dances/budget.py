@@ -156,7 +156,8 @@ def gains(name: str, found: Danced, runs: Path, budget: Budget) -> list[Figure]:
 
     Both are drawn together, so that their luck is shared.
     """
-    figures, own = [], [rows[key] for rows in (found.own, found.data) for key in SHARE]
+    figures = []
+    own = [rows[key] for rows in (found.own, found.data) for key in SHARE]
     for rival in filter(None, (VARIANTS[name][1], *RIVALS.get(name, ()))):
         kept = runs / f"{rival}.npz"
         other = dict(np.load(kept)) if kept.is_file() else {"about": ""}
@@ -186,7 +187,8 @@ def keep(name: str, found: Danced, runs: Path, budget: Budget) -> None:
 
 def budget_records(name: str, budget: Budget, runs: Path, command: str) -> list[dict]:
     """Train (or continue) one variant, and measure it."""
-    dancer, songs = trained(name, budget, runs), stage(name if name in HEARD else "", budget)
+    dancer = trained(name, budget, runs)
+    songs = stage(name if name in HEARD else "", budget)
     found = danced(songs, dancer)
     keep(name, found, runs, budget)
     size, recipe = budget.measured, recipe_of(name, budget)

@@ -51,7 +51,8 @@ class DanceSize:
     each: int = 10
 
 
-DANCE_FULL, DANCE_QUICK = DanceSize(), DanceSize(songs=6, seeds=1, pieces=3, each=3)
+DANCE_FULL = DanceSize()
+DANCE_QUICK = DanceSize(songs=6, seeds=1, pieces=3, each=3)
 
 
 class Stage:
@@ -60,7 +61,9 @@ class Stage:
     def __init__(
         self, size: DanceSize, weights: dict[str, Path] | None = None, hear: Hear = mel_of
     ):
-        self.size, self.weights, self.hear = size, checkpoints.available() | (weights or {}), hear
+        self.size = size
+        self.weights = checkpoints.available() | (weights or {})
+        self.hear = hear
 
     @cached_property
     def songs(self) -> Songs:
@@ -105,7 +108,8 @@ class Danced:
 def danced(stage: Stage, dancer: Dancer) -> Danced:
     """The figures that every dancer has."""
     made = dances(stage, dancer, TRAINED, stage.size.seeds)
-    own, data = rows_of(made, stage.songs.beats(TRAINED)), stage.data_rows(TRAINED)
+    own = rows_of(made, stage.songs.beats(TRAINED))
+    data = stage.data_rows(TRAINED)
     bones, squares = bone_figure(made)
     return Danced([*beat_figures(own, data), bones, *variety(stage, dancer)], own, data, squares)
 

@@ -97,7 +97,8 @@ def table_1(records: dict[str, dict]) -> str:
 def _block(records: dict[str, dict], names: dict[str, str], what: str) -> list[list[str]]:
     """The data's row, read from whatever was measured with it, and a row for each name."""
     there = [name for name in names if f"{name}.bas" in records]
-    made, unmeasured = STORED if what == "same steps" else ANEW, ["-"] * len(COLUMNS)
+    made = STORED if what == "same steps" else ANEW
+    unmeasured = ["-"] * len(COLUMNS)
     rows = []
     if there:
         data = [_of_data(records, there, kind) for kind in COLUMNS]

@@ -12,14 +12,16 @@ import torch
 
 from benchmarks.records import record
 from motiondiff_edu.performers.dance_windows import DanceWindows
-from motiondiff_edu.performers.dancer import STEPS, Dancer, network
+from motiondiff_edu.performers.dancer import STEPS, Dancer
+from motiondiff_edu.performers.networks import network
 from motiondiff_edu.recipes.muon import optimizer_for
 from motiondiff_edu.recipes.train_dancer import loss_of, schedule_of
 from motiondiff_edu.training import TrainState, train_steps
 
 from .budget import HEARD, Budget, material, recipe_of
 
-BASE, TIMED = "x0", ("x0", "alpha_bar", "linear-music", "transformer", "mfcc", "regression")
+BASE = "x0"
+TIMED = ("x0", "alpha_bar", "linear-music", "transformer", "mfcc", "regression")
 DANCES = 8  # at once
 
 
@@ -55,7 +57,7 @@ class Clock:
     def dance(self) -> None:
         """As a user has it: DDIM, with the fast twin where there is one."""
         heard = self.dancer.mel_scaler.inverse(self.mel)
-        self.dancer.dance(heard, self.x_s.shape[1], generator=torch.Generator().manual_seed(0))
+        self.dancer.dance_mel(heard, self.x_s.shape[1], generator=torch.Generator().manual_seed(0))
 
 
 def spent(call) -> float:

@@ -72,5 +72,5 @@ def dances_of(
 ) -> Float[np.ndarray, "N T 21 3"]:
     """One dance to each song; metres."""
     draw = torch.Generator().manual_seed(seed)
-    parts = [dancer.dance(part, frames, generator=draw) for part in mel.split(batch)]
+    parts = [dancer.dance_mel(part, frames, generator=draw) for part in mel.split(batch)]
     return torch.cat(parts).double().numpy()

@@ -43,7 +43,8 @@ class InbetweenSize:
     steps: int = 25
 
 
-FULL, QUICK = InbetweenSize(), InbetweenSize(motions=4, samples=3, steps=4)
+FULL = InbetweenSize()
+QUICK = InbetweenSize(motions=4, samples=3, steps=4)
 
 
 def trials(n: int) -> Float[np.ndarray, "N T J 3"]:
@@ -100,7 +101,9 @@ def figures_of(one: Filled) -> list[Figure]:
         return 100 * unknown_error(made, one.truth, one.known)
 
     single = np.stack([error(sample) for sample in one.made])
-    mean, straight, arcs = error(one.made.mean(0)), error(one.lines), error(one.arcs)
+    mean = error(one.made.mean(0))
+    straight = error(one.lines)
+    arcs = error(one.arcs)
     rival, rival_rows = min((("lines", straight), ("arcs", arcs)), key=lambda pair: pair[1].mean())
     own, straight_seam, masked_seam = (
         seam_jump(x, one.known) for x in (one.truth, one.lines, one.masked)

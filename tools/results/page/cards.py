@@ -41,7 +41,8 @@ def add_metrics(folder: Path) -> None:
     A file whose card says so already is left alone.
     """
     for path in set(checkpoints.available().values()):
-        figure, found = checkpoints.load(path), metrics(folder, path.stem, weights_digest(path))
+        figure = checkpoints.load(path)
+        found = metrics(folder, path.stem, weights_digest(path))
         if figure.card.get("metrics", {}) != found:
             checkpoints.save(
                 replace(figure, card=figure.card | {"metrics": found}),

@@ -11,7 +11,10 @@ from dataclasses import dataclass
 
 from .markdown import cell, number, table
 
-AGREES, DIFFERS, OPEN, MISSING = "agrees", "does not agree", "undecided", "not measured yet"
+AGREES = "agrees"
+DIFFERS = "does not agree"
+OPEN = "undecided"
+MISSING = "not measured yet"
 TEXT = """## The paper's claims, tried
 
 Each claim of MoFusion that a figure of this course can judge. The verdict is computed: \
@@ -54,10 +57,8 @@ class Claim:
         needed = [records.get(name) for name in (self.figure, self.of) if name]
         if any(one is None or one["low"] is None for one in needed):
             return MISSING
-        (low, high), (least, most) = (
-            (needed[0][side] for side in ("low", "high")),
-            (self.limit, self.limit),
-        )
+        low, high = (needed[0][side] for side in ("low", "high"))
+        least, most = (self.limit, self.limit)
         if self.of:
             least, most = (self.limit * needed[1][side] for side in ("low", "high"))
         agrees, differs = (
@@ -70,7 +71,8 @@ KNOWN = {
     "limit": 0.7,
     "of": "dancer.bas_share",
 }  # seven tenths of the share it has with music like that of training
-MEL, CLEAN = "dance-budget.x0.bas_share", "dance-budget.no-feet.bas_share"
+MEL = "dance-budget.x0.bas_share"
+CLEAN = "dance-budget.no-feet.bas_share"
 WEIGHTED = "dance-budget.alpha_bar"
 CLAIMS = (
     Claim(

@@ -64,7 +64,8 @@ def masked(
 
     `how`: options of `inbetween`.
     """
-    draw, holes = torch.Generator().manual_seed(0), np.where(known[..., None], world, np.nan)
+    draw = torch.Generator().manual_seed(0)
+    holes = np.where(known[..., None], world, np.nan)
     options = {"samples": samples, "steps": 25, "generator": draw, **how}
     made = [inbetween(dancer, one, seen, **options) for one, seen in zip(holes, known, strict=True)]
     return np.stack(made, 1)
@@ -77,10 +78,8 @@ def both_figures(walker: Walker, dancer: Dancer, trials: Trials, size: RepairSiz
     for fault, break_it in FAULTS.items():
         broken = break_it(few.past)
         world, known = masked_window(few, broken.known)
-        T_h, judged = (
-            few.past.shape[1],
-            replace(broken, known=broken.known | (np.arange(J) == HIPS)),
-        )
+        T_h = few.past.shape[1]
+        judged = replace(broken, known=broken.known | (np.arange(J) == HIPS))
         ways = {
             "there_and_back": (repaired(walker, few, broken, size, walked_back), few.past),
             "there_and_back_masked": (repaired(walker, few, broken, size, masked_back), few.past),

@@ -120,7 +120,8 @@ class MapBudget:
     save_every: int = 200
 
 
-MAP_FULL, MAP_QUICK = MapBudget(), MapBudget(steps=3, clips=2, save_every=2)
+MAP_FULL = MapBudget()
+MAP_QUICK = MapBudget(steps=3, clips=2, save_every=2)
 
 
 def map_recipe(name: str, budget: MapBudget) -> Recipe:

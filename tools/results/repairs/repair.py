@@ -119,7 +119,8 @@ def repaired_windows(
 
     `re`: our way as it comes from the network; `re_bones`: bones kept; `re_paper`: the paper's way.
     """
-    broken, once = without(trials.past, SHARE), RepairSize(1, size.rounds, size.steps)
+    broken = without(trials.past, SHARE)
+    once = RepairSize(1, size.rounds, size.steps)
     guess = rivals(broken, trials)["ridge"]
     ours = {
         name: (masked_back, guess, bones) for name, bones in (("re", False), ("re_bones", True))

@@ -85,7 +85,8 @@ class Budget:
     walk_s: int = 8
 
 
-FULL, QUICK = Budget(), Budget(seconds=2, training=6, clips=8, walk_s=6)
+FULL = Budget()
+QUICK = Budget(seconds=2, training=6, clips=8, walk_s=6)
 
 
 @cache

@@ -59,7 +59,8 @@ class Bench:
     """
 
     def __init__(self, size: Size, weights: dict[str, Path] | None = None):
-        self.size, self.weights = size, checkpoints.available() | (weights or {})
+        self.size = size
+        self.weights = checkpoints.available() | (weights or {})
 
     @cached_property
     def trials(self) -> Trials:

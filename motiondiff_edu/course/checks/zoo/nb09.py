@@ -154,7 +154,8 @@ def no_noise(xx, past, rate, alpha_bar):
 
 def variance_subtracted(xx, past, rate, alpha_bar):
     """A minus before the noise's variance: the ridge is a pit."""
-    share, keep = 1 - rate + rate * alpha_bar.mean(), 1 - rate + rate * alpha_bar.sqrt().mean()
+    share = 1 - rate + rate * alpha_bar.mean()
+    keep = 1 - rate + rate * alpha_bar.sqrt().mean()
     return _expected(xx, past, keep, share, -rate * (1 - alpha_bar).mean())
 
 
@@ -171,7 +172,8 @@ def all_dropped(xx, past, rate, alpha_bar):
 
 def control_dropped_too(xx, past, rate, alpha_bar):
     """Puts the noise on the whole diagonal: then no weight could move to the control."""
-    share, floor = 1 - rate + rate * alpha_bar.mean(), rate * (1 - alpha_bar).mean()
+    share = 1 - rate + rate * alpha_bar.mean()
+    floor = rate * (1 - alpha_bar).mean()
     right = _expected(xx, past, 1 - rate + rate * alpha_bar.sqrt().mean(), share, floor)
     right[past:, past:] += floor * torch.eye(len(xx) - past)
     return right
@@ -179,7 +181,8 @@ def control_dropped_too(xx, past, rate, alpha_bar):
 
 def shares_inverted(xx, past, rate, alpha_bar):
     """`rate` and 1 - rate change places; at a rate of 1/2 nobody notices."""
-    share, keep = rate + (1 - rate) * alpha_bar.mean(), rate + (1 - rate) * alpha_bar.sqrt().mean()
+    share = rate + (1 - rate) * alpha_bar.mean()
+    keep = rate + (1 - rate) * alpha_bar.sqrt().mean()
     return _expected(xx, past, keep, share, (1 - rate) * (1 - alpha_bar).mean())
 
 
