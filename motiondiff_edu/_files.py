@@ -6,8 +6,6 @@ from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 
-from torch import Tensor
-
 
 @contextmanager
 def replacing(path: str | Path) -> Iterator[Path]:
@@ -27,9 +25,10 @@ def replacing(path: str | Path) -> Iterator[Path]:
         aside.unlink(missing_ok=True)
 
 
-def digest_of_tensors(tensors: Mapping[str, Tensor]) -> str:
+def digest_of_tensors(tensors: Mapping[str, "torch.Tensor"]) -> str:
     """SHA-256 of all tensors, in the order of their names: safetensors itself checks only its
     header."""
+    # their type is a string because `lab` writes files also where torch cannot be imported
     digest = hashlib.sha256()
     for name in sorted(tensors):
         digest.update(name.encode() + tensors[name].contiguous().numpy().tobytes())

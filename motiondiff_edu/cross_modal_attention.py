@@ -165,10 +165,8 @@ class Block(nn.Module):
         self.norm_self, self.self_attention = nn.LayerNorm(width), CrossModalAttention(width, heads)
         self.with_context = with_context
         if with_context:
-            self.norm_cross, self.cross_attention = (
-                nn.LayerNorm(width),
-                CrossModalAttention(width, heads),
-            )
+            self.norm_cross = nn.LayerNorm(width)
+            self.cross_attention = CrossModalAttention(width, heads)
         self.norm_ff = nn.LayerNorm(width)
         self.ff = nn.Sequential(nn.Linear(width, hidden), nn.GELU(), nn.Linear(hidden, width))
         self.drop = nn.Dropout(dropout)

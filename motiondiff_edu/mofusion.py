@@ -1,11 +1,12 @@
 """MoFusion's network: a 1D U-Net over motion frames; every block ends by asking the music.
 
-    x_s -> [res, ask] -----------------------------------------------------------> [res, ask] -> eps_hat
-              halve -> [res, ask] ---------------------------------> [res, ask] -> double
-                         halve -> [res, ask] -------> [res, ask] -> double
-                                    halve -> [res, ask] -> double
-res: two convolutions over time, told the step s.  ask: cross-modal attention (`Ask`), keys and
-values from the music.
+    x_s -> [res, ask] --------------------------------------------------> [res, ask] -> eps_hat
+             halve -> [res, ask] ----------------------------> [res, ask] -> double
+                        halve -> [res, ask] ------> [res, ask] -> double
+                                   halve -> [res, ask] -> double
+
+res: two convolutions over time, scaled and shifted by the step s (`ResBlock`).
+ask: cross-modal attention, keys and values from the music (`CrossAttentionBlock`).
 Source: MoFusion 3.1-3.3, Fig. 3.  Notebook: 12
 """
 
@@ -79,7 +80,9 @@ class FrameConv(nn.Module):
 
     def __init__(self, inputs: int, outputs: int, stride: int = 1, dilation: int = 1):
         super().__init__()
-        self.mix, self.stride, self.dilation = nn.Linear(3 * inputs, outputs), stride, dilation
+        self.mix = nn.Linear(3 * inputs, outputs)
+        self.stride = stride
+        self.dilation = dilation
 
     def forward(self, x: Float[Tensor, "B T C"]) -> Float[Tensor, "B T2 C2"]:
         n = self.dilation
@@ -116,7 +119,7 @@ class ResBlock(nn.Module):
         return self.around(x) + h
 
 
-class Ask(nn.Module):
+class CrossAttentionBlock(nn.Module):
     """Cross-modal attention, then a feed-forward layer: queries from the motion, keys and values
     from the music.
 
@@ -127,10 +130,8 @@ class Ask(nn.Module):
 
     def __init__(self, width: int, heads: int, context_width: int):
         super().__init__()
-        self.norm, self.attention = (
-            nn.LayerNorm(width),
-            CrossModalAttention(width, heads, context_width),
-        )
+        self.norm = nn.LayerNorm(width)
+        self.attention = CrossModalAttention(width, heads, context_width)
         self.norm_ff = nn.LayerNorm(width)
         self.ff = nn.Sequential(nn.Linear(width, 2 * width), nn.GELU(), nn.Linear(2 * width, width))
 
@@ -177,7 +178,9 @@ class MoFusion(nn.Module):
 
     def __init__(self, config: MoFusionConfig = MOFUSION_SMALL):
         super().__init__()
-        self.config, widths, first = config, config.widths, config.widths[0]
+        self.config = config
+        widths = config.widths
+        first = config.widths[0]
         width = 4 * first  # of the step's embedding
         self.step_in = nn.Sequential(
             nn.Linear(width, width), nn.SiLU(), nn.Linear(width, width), nn.SiLU()
@@ -187,7 +190,7 @@ class MoFusion(nn.Module):
         self.into = FrameConv(config.D, first)
 
         def block(inputs, outputs):
-            ask = Ask(outputs, config.heads, context if config.C else outputs)
+            ask = CrossAttentionBlock(outputs, config.heads, context if config.C else outputs)
             return nn.ModuleDict({"res": ResBlock(inputs, outputs, width), "ask": ask})
 
         self.down = nn.ModuleList(block(a, b) for a, b in pairwise((first, *widths)))

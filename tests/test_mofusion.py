@@ -171,8 +171,10 @@ def test_a_frame_convolution_is_torchs():
 
 
 def test_a_new_network_changes_nothing_between_its_ends():
-    """Residual blocks start as what leads around them: so a deep network trains from the first
-    step."""
+    """Residual blocks start as what leads around them.
+
+    So a deep network trains from the first step.
+    """
     torch.manual_seed(0)
     block = MoFusion(TINY).down[0]["res"]
     x = torch.randn(2, 9, 16)

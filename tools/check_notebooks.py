@@ -1,5 +1,6 @@
-"""The form of a notebook: length, opening, tags, exercises, closing, nothing that ties it to one
-machine.
+"""The form of a notebook.
+
+Length, opening, tags, exercises, closing, nothing that ties it to one machine.
 
 python tools/check_notebooks.py [NOTEBOOK ...]     lists what is wrong; exit 1 when anything is
 """
@@ -15,7 +16,9 @@ import notebook_cells
 from notebook_cells import code, markdown, tags
 
 CELLS, WORDS = (25, 45), 1800
-LINES, LONG_SHARE, LINES_AT_MOST = 8, 0.10, 16
+LINES = 8
+LONG_SHARE = 0.10
+LINES_AT_MOST = 16
 NO_TWINS = {"00"}  # start here: nothing is built by hand
 
 OPENING = {  # what the cells before the imports must say
@@ -77,8 +80,10 @@ def storage(notebook: dict) -> Iterator[str]:
 
 
 def opening(notebook: dict) -> Iterator[str]:
-    """Before the imports: aim, needs, paper, minutes, symbols; then one imports cell that starts
-    the run."""
+    """Before the imports: aim, needs, paper, minutes, symbols.
+
+    Then one imports cell that starts the run.
+    """
     imports = code(notebook, "imports")
     if len(imports) != 1 or "runtime.start(" not in imports[0]["source"]:
         yield "there must be one cell tagged `imports`, which calls runtime.start(...)"
@@ -96,7 +101,7 @@ def opening(notebook: dict) -> Iterator[str]:
         yield "the first cell must begin with a title (# ...)"
     for cell in code(notebook)[1:]:
         if any(isinstance(node, ast.Import | ast.ImportFrom) for node in parsed(cell).body):
-            yield f"cell {cell.get('id')} imports; all imports belong into the cell tagged `imports`"
+            yield f"cell {cell.get('id')} imports; imports belong into the cell tagged `imports`"
 
 
 def parsed(cell: dict) -> ast.Module:
@@ -119,8 +124,10 @@ def closing(notebook: dict) -> Iterator[str]:
 
 
 def exercises(notebook: dict, name: str) -> Iterator[str]:
-    """Two or more exercises, each with minutes and difficulty before it, a hint, and a check in the
-    same cell."""
+    """Two or more exercises, each with minutes, difficulty, a hint and a check.
+
+    The text stands before it, the check in the same cell.
+    """
     cells = notebook["cells"]
     found = [
         index
@@ -130,7 +137,8 @@ def exercises(notebook: dict, name: str) -> Iterator[str]:
     if len(found) < 2:
         yield f"{len(found)} cells tagged `solution`; a notebook has two exercises or more"
     for index in found:
-        where, told = f"exercise in cell {cells[index].get('id')}", before(cells, index)
+        where = f"exercise in cell {cells[index].get('id')}"
+        told = before(cells, index)
         if not re.search(r"\bmin(utes?)?\b", told) or not re.search(
             r"difficulty|easy|medium|hard|[★☆●○]", told, re.I
         ):

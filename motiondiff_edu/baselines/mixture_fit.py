@@ -1,5 +1,6 @@
-"""A Gaussian mixture fitted to short windows of motion: motion whose every conditional is known
-exactly.
+"""A Gaussian mixture fitted to short windows of motion.
+
+Motion whose every conditional is known exactly.
 
     x = m + W z + e,   z ~ sum_k w_k N(mu_k, C_k),   e ~ N(0, rest I) across W
 W are the first principal axes of the windows, the mixture in them is fitted by expectation and
@@ -36,8 +37,9 @@ def fit_mixture(
     rounds: int = 50,
     generator: torch.Generator | None = None,
 ) -> Mixture:
-    """Fit K Gaussians by EM, from K of the points drawn far apart; every covariance gets `ridge` on
-    its diagonal.
+    """Fit K Gaussians by EM, from K of the points drawn far apart.
+
+    Every covariance gets `ridge` on its diagonal.
 
     Expectation: r_nk = share of part k in x_n. Maximisation: w_k = mean r_nk; m_k and C_k, means
     weighed by r_nk. A part that loses its points keeps a point's weight and stays where it was, so
@@ -66,8 +68,10 @@ def fit_mixture(
 def _far_apart(
     x: Float[Tensor, "N D"], K: int, generator: torch.Generator | None
 ) -> Float[Tensor, "K D"]:
-    """k-means++: each next point is drawn with a chance that grows as its squared distance from
-    those there are."""
+    """Points drawn far apart from one another (k-means++).
+
+    A point's chance grows with its squared distance from those already drawn.
+    """
     chosen = x[torch.randint(len(x), (1,), generator=generator)]
     while len(chosen) < K:
         away = torch.cdist(x, chosen).min(1).values.square() + 1e-12
@@ -77,8 +81,10 @@ def _far_apart(
 
 @dataclass(frozen=True, eq=False)
 class WindowMixture:
-    """A mixture in a few principal axes (the columns of `basis`), and the same small variance
-    across all others."""
+    """A mixture in a few principal axes, with the same small variance across all others.
+
+    The axes are the columns of `basis`.
+    """
 
     inside: Mixture
     mean: Float[Tensor, "D"]
@@ -99,8 +105,10 @@ class WindowMixture:
         )
 
     def denoiser(self, schedule: Schedule) -> Denoiser:
-        """The exact denoiser, eps_hat = E[eps | x_s]: `exact_denoiser` of the whole, at the cost of
-        the axes alone."""
+        """The exact denoiser, eps_hat = E[eps | x_s].
+
+        `exact_denoiser` of the whole, at the cost of the axes alone.
+        """
 
         def denoise(x_s: Tensor, s: Tensor) -> Tensor:
             x = x_s.double()
@@ -118,8 +126,9 @@ class WindowMixture:
 def fit_windows(
     x: Float[Tensor, "N D"], K: int = 5, axes: int = 30, *, generator: torch.Generator | None = None
 ) -> WindowMixture:
-    """Fit K Gaussians in the first principal axes of standardised windows; what is left over is
-    spread evenly.
+    """Fit K Gaussians in the first principal axes of standardised windows.
+
+    What is left over is spread evenly.
 
     No covariance is narrower than that rest.  Raises ValueError for more axes than windows or
     columns.   Notebook: 15

@@ -202,13 +202,15 @@ def _asked(
     if made.ndim != 4 or made.shape[1:] != edit.motion.shape or not len(made):
         shape = ("samples", *edit.motion.shape)
         raise ValueError(
-            f"the in-betweening gave an array of shape {made.shape}; ({', '.join(map(str, shape))}) is needed"
+            f"the in-betweening gave an array of shape {made.shape}; "
+            f"({', '.join(map(str, shape))}) is needed"
         )
     bad = np.argwhere(~np.isfinite(made).all(-1))
     if len(bad):
         one, frame, joint = bad[0]
         raise ValueError(
-            f"in-between {one + 1} is not finite in frame {frame}, {JOINTS[joint]} ({len(bad)} joints in all)"
+            f"in-between {one + 1} is not finite in frame {frame}, "
+            f"{JOINTS[joint]} ({len(bad)} joints in all)"
         )
     return made
 

@@ -60,19 +60,21 @@ class _Layer:
     rows."""
 
     def __init__(self, block: Block):
-        own, cross, (first, *_, last) = block.self_attention, block.cross_attention, block.ff
+        own = block.self_attention
+        cross = block.cross_attention
+        first, *_, last = block.ff
         self.cross, self.heads = cross, own.heads
-        self.norm_self, self.norm_cross, self.norm_ff = (
-            block.norm_self,
-            block.norm_cross,
-            block.norm_ff,
-        )
+        self.norm_self = block.norm_self
+        self.norm_cross = block.norm_cross
+        self.norm_ff = block.norm_ff
         self.qkv, self.out = _Linear(own.q, own.kv), _Linear(own.out)
         self.first, self.last = _Linear(first), _Linear(last)
 
     def fold(self, memory: Float[Tensor, "B M C"], bias: Float[Tensor, "1 H T M"]) -> Folded:
         """A memory's keys and values with this layer's weights in them; done once a frame."""
-        cross, (B, M, C), H = self.cross, memory.shape, self.heads
+        cross = self.cross
+        B, M, C = memory.shape
+        H = self.heads
         k, v = (
             part.reshape(B * M, H, -1).transpose(0, 1) for part in cross.kv(memory).chunk(2, dim=-1)
         )
@@ -138,12 +140,12 @@ class FastMoDiff:
         )  # the step's half, for every s
         self.start = step_part[:, None] + model.time[model.config.T_h :]  # and when each frame is
         self.layers = [_Layer(block) for block in model.decoder]
-        self.self_bias, self.memory_bias = (
-            model.self_bias().contiguous(),
-            model.memory_bias().contiguous(),
-        )
+        self.self_bias = model.self_bias().contiguous()
+        self.memory_bias = model.memory_bias().contiguous()
         norm, first, _, last = model.head
-        self.head_norm, self.head_first, self.head_last = norm, _Linear(first), _Linear(last)
+        self.head_norm = norm
+        self.head_first = _Linear(first)
+        self.head_last = _Linear(last)
         self.skip = model.skip
 
     @torch.inference_mode()

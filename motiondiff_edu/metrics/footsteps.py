@@ -1,5 +1,6 @@
-"""Counting footsteps as MoDiff's Tables I, II and Fig. 3 do, the whole curve, and what makes the
-count break.
+"""Footsteps counted as MoDiff's Tables I, II and Fig. 3 do.
+
+With the whole curve, and what makes the count break.
 
 A step is an interval in which a heel is slower over the ground than a tolerance v. Too small a
 tolerance finds no step; noise or sliding near the tolerance cuts each step into crumbs, and the
@@ -41,8 +42,10 @@ ROBUST = StepRule(min_duration_s=0.1, merge_gap_s=0.05)
 
 @dataclass(frozen=True)
 class Footsteps:
-    """The curve f_est(v), and the row of MoDiff's Table I that is read from it: count, v95, mean_s,
-    std_s."""
+    """The curve f_est(v), and the row of MoDiff's Table I that is read from it.
+
+    Count, v95, mean_s, std_s.
+    """
 
     tolerances: Float[np.ndarray, "V"]
     counts: Float[np.ndarray, "V"]
@@ -66,7 +69,10 @@ def heel_speed(
 
 
 def runs(mask: Bool[np.ndarray, "N"]) -> Int[np.ndarray, "n 2"]:
-    """First frame and first frame after of every longest stretch of True.  Notebook: 08"""
+    """First frame and first frame after of every longest stretch of True.
+
+    Notebook: 08
+    """
     edges = np.flatnonzero(np.diff(np.concatenate([[False], mask, [False]]).astype(int)))
     return edges.reshape(-1, 2)
 
@@ -120,7 +126,10 @@ def step_durations(
     rule: StepRule = PAPER,
     fps: float | int = FPS,
 ) -> Float[np.ndarray, "n"]:
-    """Duration in seconds of every step of both heels in all clips.  Notebook: 08"""
+    """Duration in seconds of every step of both heels in all clips.
+
+    Notebook: 08
+    """
     found = [
         steps_of_heel(clip[:, heel], tolerance, rule, fps) for clip in speeds for heel in (0, 1)
     ]
@@ -134,8 +143,9 @@ def footsteps(
     per_clip_average: bool = False,
     fps: float | int = FPS,
 ) -> Footsteps:
-    """Footsteps of a set of clips, each given by its `heel_speed`; the row of Table I at v95, and
-    the whole curve.
+    """Footsteps of a set of clips, each given by its `heel_speed`.
+
+    The row of Table I at v95, and the whole curve.
 
     f_est(v) = number of steps at tolerance v;  v95 = min{ v : f_est(v) >= 0.95 max_u f_est(u) };
     count, mean_s, std_s: number, mean and population deviation of the step durations at v95.

@@ -1,5 +1,6 @@
-"""How far one cloud of feature vectors is from another: FID, and what it owes to the number of
-clips.
+"""How far one cloud of feature vectors is from another.
+
+FID, and what it owes to the number of clips.
 
 Two clouds are compared by their means and covariances alone. A covariance of D features needs many
 more than D clips; the published table had 40 generated dances for 72 features. With few clips the
@@ -15,8 +16,10 @@ from scipy.linalg import sqrtm
 
 
 class FewSamplesWarning(UserWarning):
-    """There are too few clips for so many features; the figure is usable beside others of as many
-    clips only."""
+    """There are too few clips for so many features.
+
+    The figure is usable beside others of as many clips only.
+    """
 
 
 def normalise(
@@ -38,8 +41,9 @@ def frechet_distance(
     mean_2: Float[np.ndarray, "F"],
     covariance_2: Float[np.ndarray, "F F"],
 ) -> float:
-    """d^2 = |m1 - m2|^2 + tr(C1 + C2 - 2 (C1^1/2 C2 C1^1/2)^1/2), the squared Frechet distance of
-    two Gaussians.
+    """The squared Frechet distance of two Gaussians.
+
+    d^2 = |m1 - m2|^2 + tr(C1 + C2 - 2 (C1^1/2 C2 C1^1/2)^1/2).
 
     The root is taken of a symmetric matrix, by its eigenvalues: real and never negative, also where
     C1 or C2 is singular. For covariances that commute it is |m1 - m2|^2 + |sqrt(l1) - sqrt(l2)|^2,
@@ -57,8 +61,9 @@ def frechet_distance(
 
 
 def shrunk_covariance(features: Float[np.ndarray, "N F"]) -> Float[np.ndarray, "F F"]:
-    """The covariance (divided by N) drawn towards a multiple of the identity, as far as Ledoit and
-    Wolf (2004) advise.
+    """The covariance (divided by N) drawn towards a multiple of the identity.
+
+    As far as Ledoit and Wolf (2004) advise.
 
     C* = (1 - w) C + w (tr C / F) I, the more the fewer the clips; it is never singular unless all
     clips are one.
@@ -77,8 +82,9 @@ def shrunk_covariance(features: Float[np.ndarray, "N F"]) -> Float[np.ndarray, "
 
 
 def fid(generated: Float[np.ndarray, "N F"], data: Float[np.ndarray, "M F"]) -> float:
-    """Frechet distance between features of generated and recorded clips, in units of the data's
-    deviations.
+    """Frechet distance between features of generated and recorded clips.
+
+    In units of the data's deviations.
 
     Both are normalised by the data; unbiased covariances. Warns (FewSamplesWarning) unless both
     have more clips than features: the figure is then too large by much, and only to be set beside
@@ -89,7 +95,10 @@ def fid(generated: Float[np.ndarray, "N F"], data: Float[np.ndarray, "M F"]) -> 
     generated, data = _checked(generated, data)
     if min(len(generated), len(data)) <= data.shape[1]:
         warnings.warn(
-            f"{len(generated)} and {len(data)} clips for {data.shape[1]} features: more clips than features are needed",
+            (
+                f"{len(generated)} and {len(data)} clips for {data.shape[1]} features: "
+                "more clips than features are needed"
+            ),
             FewSamplesWarning,
             stacklevel=2,
         )
@@ -98,8 +107,9 @@ def fid(generated: Float[np.ndarray, "N F"], data: Float[np.ndarray, "M F"]) -> 
 
 
 def shrunk_fid(generated: Float[np.ndarray, "N F"], data: Float[np.ndarray, "M F"]) -> float:
-    """The same with `shrunk_covariance`: less noise and bias where clips are few, and not the
-    published number.
+    """The same with `shrunk_covariance`.
+
+    Less noise and bias where clips are few, and not the published number.
 
     Raises ValueError for fewer than two clips or features that are not finite.  Notebook: 14
     """
@@ -112,8 +122,9 @@ def shrunk_fid(generated: Float[np.ndarray, "N F"], data: Float[np.ndarray, "M F
 def fid_floor(
     data: Float[np.ndarray, "M F"], n: int, rng: np.random.Generator, distance=fid, times: int = 10
 ) -> tuple[float, float]:
-    """What perfection scores: mean and deviation of the FID between n clips of the data, by chance,
-    and all others.
+    """What perfection scores.
+
+    Mean and deviation of the FID between n clips of the data, by chance, and all others.
 
     A generator whose n clips come near this figure cannot be told from the data. `distance` is
     `fid`, `shrunk_fid` ...
@@ -121,7 +132,8 @@ def fid_floor(
     """
     if not 2 <= n <= len(data) - 2:
         raise ValueError(
-            f"of {len(data)} clips {n} cannot be set against the others: two are needed on both sides"
+            f"of {len(data)} clips {n} cannot be set against the others: "
+            "two are needed on both sides"
         )
     found = []
     with warnings.catch_warnings():
@@ -133,8 +145,9 @@ def fid_floor(
 
 
 def published_fid(generated: Float[np.ndarray, "N F"], data: Float[np.ndarray, "M F"]) -> complex:
-    """FID as the public code has it: the root of C1 C2 taken by scipy.linalg.sqrtm, without looking
-    at what it returns.
+    """FID as the public code has it.
+
+    The root of C1 C2 taken by scipy.linalg.sqrtm, without looking at what it returns.
 
     C1 C2 is not symmetric. With fewer clips than features it is singular, and the root has an
     imaginary part: hence a complex number here. The real part then still agrees with `fid`.
@@ -159,7 +172,8 @@ def _checked(generated: np.ndarray, data: np.ndarray) -> tuple[np.ndarray, np.nd
     for name, features in (("generated", generated), ("data's", data)):
         if len(features) < 2:
             raise ValueError(
-                f"a covariance takes two clips, and there is {len(features)} among the {name} features"
+                "a covariance takes two clips, and there is "
+                f"{len(features)} among the {name} features"
             )
         if not np.isfinite(features).all():
             bad = int(np.flatnonzero(~np.isfinite(features).all(1))[0])

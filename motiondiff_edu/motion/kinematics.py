@@ -8,7 +8,10 @@ from jaxtyping import Float, Int
 
 
 def rot_x(angle: Float[np.ndarray, "*N"] | float) -> Float[np.ndarray, "*N 3 3"]:
-    """Rotation about x by `angle` radians (right-handed).  Notebook: 01"""
+    """Rotation about x by `angle` radians (right-handed).
+
+    Notebook: 01
+    """
     return _axis_rotation(angle, 1, 2)
 
 
@@ -19,7 +22,10 @@ def rot_y(angle: Float[np.ndarray, "*N"] | float) -> Float[np.ndarray, "*N 3 3"]
 
 
 def rot_z(angle: Float[np.ndarray, "*N"] | float) -> Float[np.ndarray, "*N 3 3"]:
-    """Rotation about z by `angle` radians (right-handed).  Notebook: 01"""
+    """Rotation about z by `angle` radians (right-handed).
+
+    Notebook: 01
+    """
     return _axis_rotation(angle, 0, 1)
 
 
@@ -28,7 +34,8 @@ def _axis_rotation(angle, first: int, second: int) -> np.ndarray:
     angle = np.asarray(angle, dtype=np.float64)
     matrix = np.zeros((*angle.shape, 3, 3))
     matrix[..., range(3), range(3)] = 1.0
-    matrix[..., first, first] = matrix[..., second, second] = np.cos(angle)
+    matrix[..., first, first] = np.cos(angle)
+    matrix[..., second, second] = np.cos(angle)
     matrix[..., second, first] = np.sin(angle)
     matrix[..., first, second] = -np.sin(angle)
     return matrix
@@ -38,8 +45,9 @@ _ROTATIONS = {"X": rot_x, "Y": rot_y, "Z": rot_z}
 
 
 def euler_to_matrix(angles: Float[np.ndarray, "*N K"], order: str) -> Float[np.ndarray, "*N 3 3"]:
-    """Intrinsic Euler angles (radians) to matrices: order "ZXY" means R = Rz @ Rx @ Ry, as BVH
-    files mean it.
+    """Intrinsic Euler angles (radians) to matrices.
+
+    Order "ZXY" means R = Rz @ Rx @ Ry, as BVH files mean it.
 
     Raises ValueError when the order has a letter other than X, Y, Z or does not fit the angles.
     Notebook: 01

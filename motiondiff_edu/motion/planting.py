@@ -1,5 +1,6 @@
-"""Feet that stay where they stand: contacts, pinned toes, and legs that follow by two-bone inverse
-kinematics.
+"""Feet that stay where they stand.
+
+Contacts, pinned toes, and legs that follow by two-bone inverse kinematics.
 
 Notebook: 00
 """
@@ -65,8 +66,9 @@ def shift_to_pins(
 def plant(
     world: Float[np.ndarray, "T 21 3"], contacts: Bool[np.ndarray, "T 2"], fps: float
 ) -> Float[np.ndarray, "T 21 3"]:
-    """Move toes to their pins and keep every bone: the body follows the mean shift, the legs take
-    up the rest.
+    """Move toes to their pins and keep every bone.
+
+    The body follows the mean shift, the legs take up the rest.
 
     Between contacts no toe goes below the floor. Where a leg would have to be too long, the hips
     come down.
@@ -84,7 +86,9 @@ def plant(
         foot = world[:, TOES[side]] - world[:, heel]
         ahead = unit(unit(foot) + pelvis_ahead(world))
         knee, ankle = solve_leg(moved[:, heel - 2], ankles[:, side], moved[:, heel - 1], ahead)
-        moved[:, heel - 1], moved[:, heel], moved[:, heel + 1] = knee, ankle, ankle + foot
+        moved[:, heel - 1] = knee
+        moved[:, heel] = ankle
+        moved[:, heel + 1] = ankle + foot
     return moved
 
 
@@ -110,8 +114,9 @@ def solve_leg(
     knee: Float[np.ndarray, "T 3"],
     ahead: Float[np.ndarray, "T 3"],
 ) -> tuple[Float[np.ndarray, "T 3"], Float[np.ndarray, "T 3"]]:
-    """Knee and ankle with thigh and shank at their lengths; the knee bends to the side where it
-    was, never back.
+    """Knee and ankle with thigh and shank at their lengths.
+
+    The knee bends to the side where it was, never back.
 
     An ankle out of reach is drawn in along the line from the hip.
     """

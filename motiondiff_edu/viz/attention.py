@@ -1,5 +1,6 @@
-"""Attention maps: who looks where. A row is a query and sums to one; groups of keys are named and
-parted by lines.
+"""Attention maps: who looks where.
+
+A row is a query and sums to one; groups of keys are named and parted by lines.
 
 A map says where values were read, not why: a weight is not an explanation.  Notebook: 06
 """
@@ -18,8 +19,10 @@ Groups = Sequence[tuple[str, int]]  # (name, how many keys), in the order of the
 
 
 def modiff_groups(T_h: int = 10, T_p: int = 10) -> list[tuple[str, int]]:
-    """The keys of MoDiff's memory, in order: past poses, control of the past, control of the
-    future."""
+    """The keys of MoDiff's memory, in order.
+
+    Past poses, control of the past, control of the future.
+    """
     return [("past poses", T_h), ("control, past", T_h), ("control, future", T_p)]
 
 
@@ -32,8 +35,9 @@ def attention_map(
     query_name: str = "future frame (query)",
     key_name: str = "key",
 ) -> Figure:
-    """One map, dark where much is read. `weights` of several heads: take one, or their mean, or
-    `attention_heads`.
+    """One map, dark where much is read.
+
+    `weights` of several heads: take one, or their mean, or `attention_heads`.
 
     Raises ValueError where groups or labels do not fit the map.
     """
@@ -79,8 +83,10 @@ def attention_heads(
 
 
 def group_shares(weights: Float[np.ndarray, "T M"], groups: Groups, title: str = "") -> Figure:
-    """How much of each query's attention goes to each group of keys: stacked bars that reach
-    one."""
+    """How much of each query's attention goes to each group of keys.
+
+    Stacked bars that reach one.
+    """
     _check(weights.shape, groups, None, None)
     words = (
         "Share of each query's attention that goes to "

@@ -1,5 +1,7 @@
-"""Mixtures fitted to points and to windows of walking: what was put in is found; the fast denoiser
-is the exact one."""
+"""Mixtures fitted to points and to windows of walking: what was put in is found.
+
+The fast denoiser is the exact one.
+"""
 
 import numpy as np
 import pytest
@@ -61,7 +63,8 @@ def test_a_part_that_loses_its_points_stays_where_it_was():
 
 
 def test_responsibilities_are_bayes_rule():
-    truth, x = crossed_bars(), torch.tensor([[0.3, -0.2], [-1.0, 0.5]], dtype=torch.float64)
+    truth = crossed_bars()
+    x = torch.tensor([[0.3, -0.2], [-1.0, 0.5]], dtype=torch.float64)
     covariances = torch.einsum("kia,ka,kja->kij", truth.axes, truth.variances, truth.axes)
     normal = torch.distributions.MultivariateNormal
     joint = torch.stack(
@@ -79,7 +82,9 @@ def small() -> WindowMixture:
 
 
 def test_the_denoiser_of_windows_is_the_exact_one_of_the_whole_mixture():
-    fitted, x, s = small(), torch.randn(4, 9, generator=seeded(11)), torch.tensor([1, 9, 30, 50])
+    fitted = small()
+    x = torch.randn(4, 9, generator=seeded(11))
+    s = torch.tensor([1, 9, 30, 50])
     torch.testing.assert_close(
         fitted.denoiser(SCHEDULE)(x, s), exact_denoiser(fitted.whole, SCHEDULE)(x, s)
     )

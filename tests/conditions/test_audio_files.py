@@ -1,5 +1,7 @@
-"""Sound files: every kind that can be read gives the same sound, and what cannot be danced to is
-refused in words."""
+"""Sound files: every kind that can be read gives the same sound.
+
+What cannot be danced to is refused in words.
+"""
 
 import math
 import shutil
@@ -10,8 +12,9 @@ import numpy as np
 import pytest
 import soundfile
 import torch
+from bursts import clicks
 
-from motiondiff_edu.conditions.audio_files import AudioError, read_audio, resample
+from motiondiff_edu.conditions.audio_files import AudioError, read_audio, read_sound, resample
 from motiondiff_edu.conditions.music import log_mel
 
 # what becomes of each file of the real data's audio_formats_and_broken: seconds, or words of the
@@ -60,8 +63,16 @@ FILES = {
         None,
     ),
 }
-KINDS = [("wav", "PCM_16"), ("wav", "PCM_24"), ("wav", "FLOAT"), ("flac", "PCM_16"), ("ogg", "VORBIS"),
-         ("aiff", "PCM_16"), ("mp3", "MPEG_LAYER_III"), ("au", "ULAW")]  # fmt: skip
+KINDS = [
+    ("wav", "PCM_16"),
+    ("wav", "PCM_24"),
+    ("wav", "FLOAT"),
+    ("flac", "PCM_16"),
+    ("ogg", "VORBIS"),
+    ("aiff", "PCM_16"),
+    ("mp3", "MPEG_LAYER_III"),
+    ("au", "ULAW"),
+]
 
 
 def chord(rate: int = 22050, seconds: float = 2.3) -> np.ndarray:
@@ -72,7 +83,8 @@ def chord(rate: int = 22050, seconds: float = 2.3) -> np.ndarray:
 
 @pytest.mark.parametrize("name", FILES)
 def test_each_real_file_is_read_or_refused_as_it_should_be(real_data, name):
-    (wanted, warned), path = FILES[name], real_data / "audio_formats_and_broken" / name
+    wanted, warned = FILES[name]
+    path = real_data / "audio_formats_and_broken" / name
     with warnings.catch_warnings(record=True) as told:
         warnings.simplefilter("always")
         if isinstance(wanted, str):
@@ -160,13 +172,28 @@ def written(folder, name: str, samples, rate: int = 16000, **options):
         (lambda d: d, "is a folder; name a sound file"),
         (lambda d: written(d, "none.wav", np.zeros(0)), "none.wav holds no sound at all; give it"),
         (lambda d: written(d, "none.ogg", np.zeros(0)), "none.ogg holds no sound at all; give it"),
-        (lambda d: written(d, "short.wav", chord(16000)[:15999]), "short.wav holds 1.00 s of sound; give it"),
-        (lambda d: written(d, "still.flac", np.zeros(20_000)), "still.flac is silent from end to end"),
-        (lambda d: written(d, "hum.wav", np.full(20_000, 0.4)), "hum.wav is silent from end to end"),
-        (lambda d: written(d, "nan.wav", with_nan(np.nan), subtype="FLOAT"), "nan.wav: 3 .* are NaN .* at 0.500 s"),
-        (lambda d: written(d, "inf.wav", with_nan(-np.inf), subtype="FLOAT"), "inf.wav: 3 .* infinite, .* at 0.5"),
+        (
+            lambda d: written(d, "short.wav", chord(16000)[:15999]),
+            "short.wav holds 1.00 s of sound; give it",
+        ),
+        (
+            lambda d: written(d, "still.flac", np.zeros(20_000)),
+            "still.flac is silent from end to end",
+        ),
+        (
+            lambda d: written(d, "hum.wav", np.full(20_000, 0.4)),
+            "hum.wav is silent from end to end",
+        ),
+        (
+            lambda d: written(d, "nan.wav", with_nan(np.nan), subtype="FLOAT"),
+            "nan.wav: 3 .* are NaN .* at 0.500 s",
+        ),
+        (
+            lambda d: written(d, "inf.wav", with_nan(-np.inf), subtype="FLOAT"),
+            "inf.wav: 3 .* infinite, .* at 0.5",
+        ),
     ],
-)  # fmt: skip
+)
 def test_what_cannot_be_danced_to_is_refused_in_words(tmp_path, make, words):
     with pytest.raises(AudioError, match=words):
         read_audio(make(tmp_path))
@@ -181,7 +208,11 @@ def with_nan(value: float) -> np.ndarray:
 @pytest.mark.parametrize(
     "name, content, words",
     [
-        ("song.m4a", b"\0\0\0\x20ftypM4A \0\0\0\0", r'needs ffmpeg. Convert .*: ffmpeg -i ".*song.m4a" ".*song.wav"'),
+        (
+            "song.m4a",
+            b"\0\0\0\x20ftypM4A \0\0\0\0",
+            r'needs ffmpeg. Convert .*: ffmpeg -i ".*song.m4a" ".*song.wav"',
+        ),
         ("clip.wav", b"\x1a\x45\xdf\xa3\x01\0\0\0", "Matroska file .*ffmpeg -i"),
         ("song.aac", b"\xff\xf1\x50\x80\0\0\0\0", "AAC stream, which needs ffmpeg"),
         ("song.wma", b"\x30\x26\xb2\x75\x8e\x66", "Windows Media file .*needs ffmpeg"),
@@ -189,7 +220,7 @@ def with_nan(value: float) -> np.ndarray:
         ("nothing.wav", b"", "is an empty file"),
         ("noise.ogg", bytes(range(200, 256)) * 9, "no sound file that can be read .*Save it again"),
     ],
-)  # fmt: skip
+)
 def test_other_files_are_told_by_their_content(tmp_path, name, content, words):
     (tmp_path / name).write_bytes(content)
     with pytest.raises(AudioError, match=words):
@@ -198,9 +229,14 @@ def test_other_files_are_told_by_their_content(tmp_path, name, content, words):
 
 @pytest.mark.parametrize(
     "name, kept, words",
-    [("cut.wav", 0.6, "promises 4.00 s"), ("cut.aiff", 0.6, "promises 4.00 s"), ("cut.flac", 0.7, "damaged|promises"),
-     ("cut.ogg", 0.6, "last page is missing"), ("cut.mp3", 0.6, "promises 4")],
-)  # fmt: skip
+    [
+        ("cut.wav", 0.6, "promises 4.00 s"),
+        ("cut.aiff", 0.6, "promises 4.00 s"),
+        ("cut.flac", 0.7, "damaged|promises"),
+        ("cut.ogg", 0.6, "last page is missing"),
+        ("cut.mp3", 0.6, "promises 4"),
+    ],
+)
 def test_a_file_that_breaks_off_is_read_as_far_as_it_goes_and_warns(tmp_path, name, kept, words):
     tones = chord(22050, 4.0) + np.random.default_rng(0).normal(0, 0.05, 88200)
     path = written(tmp_path, name, tones, 22050)
@@ -224,3 +260,15 @@ def test_a_wrong_name_does_not_matter(tmp_path):
     path = written(tmp_path, "song.flac", chord(22050), 22050)
     shutil.copy(path, tmp_path / "song ü.wav")
     assert torch.equal(read_audio(tmp_path / "song ü.wav"), read_audio(path))
+
+
+def test_a_sound_is_read_from_its_name_and_from_its_bytes(tmp_path):
+    soundfile.write(tmp_path / "song.wav", clicks(1.5, (0.5,)), 16_000, subtype="FLOAT")
+    by_name, by_bytes = (
+        read_sound(s) for s in (tmp_path / "song.wav", (tmp_path / "song.wav").read_bytes())
+    )
+    assert torch.equal(by_name, by_bytes) and by_name.numpy() == pytest.approx(
+        clicks(1.5, (0.5,)), abs=1e-3
+    )
+    with pytest.raises(ValueError, match="text, not sound"):
+        read_sound(b"these are words, and no music at all")

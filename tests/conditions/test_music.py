@@ -1,5 +1,7 @@
-"""What the network hears: against librosa, the MATLAB reference, closed forms, and beats that
-others found."""
+"""What the network hears.
+
+Against librosa, the MATLAB reference, closed forms, and beats that others found.
+"""
 
 import subprocess
 import sys
@@ -37,8 +39,10 @@ def loudness(seconds: float, f: float = 440.0, seed: int = 0):
 
 
 def drums(times, seconds: float, kind: str = "noise", seed: int = 0):
-    """A hit at each of `times`, over a little noise: noise, a tone or a bass drum, with a sharp
-    start."""
+    """A hit at each of `times`, over a little noise.
+
+    Noise, a tone or a bass drum, with a sharp start.
+    """
     rng, t = np.random.default_rng(seed), np.arange(1280) / SAMPLE_RATE
     hit = {
         "noise": 0.3 * rng.normal(size=1280) * np.exp(-t / 0.02),
@@ -273,9 +277,10 @@ def test_speech_is_heard_like_music(real_data):
 
 def test_listening_does_not_import_librosa():
     code = (
-        "import sys, motiondiff_edu, motiondiff_edu.conditions.music as m, motiondiff_edu.conditions.audio_files;"
-        "import torch; m.log_mel(torch.zeros(600));"
-        "print([name for name in ('librosa', 'numba', 'soundfile') if name in sys.modules])"
+        "import sys, motiondiff_edu, motiondiff_edu.conditions.music as m, "
+        "motiondiff_edu.conditions.audio_files;import torch; "
+        "m.log_mel(torch.zeros(600));print([name for name in ('librosa', 'numba', "
+        "'soundfile') if name in sys.modules])"
     )
     told = subprocess.run(
         [sys.executable, "-c", code], capture_output=True, text=True, check=True

@@ -1,5 +1,7 @@
-"""An edit of a motion: what is held follows from what was pinned and kept; answers are measured as
-they are."""
+"""An edit of a motion: what is held follows from what was pinned and kept.
+
+Answers are measured as they are.
+"""
 
 from functools import partial
 
@@ -74,7 +76,8 @@ def test_a_pin_is_a_copy(motion):
 
 
 def test_frames_count_from_the_end_as_well(motion):
-    before, target = Edit(motion).pin(-1), motion[-1, HAND] + [0.1, 0.2, 0.0]
+    before = Edit(motion).pin(-1)
+    target = motion[-1, HAND] + [0.1, 0.2, 0.0]
     after = before.drag(-1, "RightHand", target)
     assert (before.index(-1), before.index(0)) == (T - 1, 0) and list(after.moved) == [T - 1]
     assert drag_in_words(before, after, -1, "RightHand", target) == "moved by 22 cm"
@@ -158,9 +161,12 @@ def test_measures_are_the_answers_own_and_said_in_words(motion):
         (lambda p: p, r"shape \(24, 21, 3\); \(samples, 24, 21, 3\) is needed"),
         (lambda p: p[None, :9], r"shape \(1, 9, 21, 3\)"),
         (lambda p: p[None][:0], r"shape \(0, 24, 21, 3\)"),
-        (lambda p: np.where(np.arange(T)[:, None, None] == 6, np.nan, p)[None], "1 is not finite in frame 6, Hips"),
+        (
+            lambda p: np.where(np.arange(T)[:, None, None] == 6, np.nan, p)[None],
+            "1 is not finite in frame 6, Hips",
+        ),
     ],
-)  # fmt: skip
+)
 def test_wrong_answers_are_told(motion, answer, message):
     with pytest.raises(ValueError, match=message):
         make_between(Edit(motion).pin(0), lambda p, k, g: answer(p), seeded())

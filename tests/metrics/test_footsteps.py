@@ -1,5 +1,7 @@
-"""footsteps: the true count on a gait whose steps are known, and what noise and sliding do to the
-paper's count."""
+"""metrics.footsteps, on a gait whose steps are known.
+
+The true count, and what noise and sliding do to the paper's count.
+"""
 
 import numpy as np
 import pytest

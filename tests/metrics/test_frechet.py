@@ -26,14 +26,16 @@ def cloud(n, width=5, seed=0):
 
 def test_commuting_covariances_have_the_distance_of_their_roots():
     axes = np.linalg.qr(np.random.default_rng(3).normal(size=(4, 4)))[0]
-    first, second = np.array([4.0, 1.0, 0.25, 0.0]), np.array([1.0, 9.0, 0.25, 4.0])
+    first = np.array([4.0, 1.0, 0.25, 0.0])
+    second = np.array([1.0, 9.0, 0.25, 4.0])
     apart = np.array([1.0, 0.0, 2.0, 0.0])
     distance = frechet_distance(np.zeros(4), axes * first @ axes.T, apart, axes * second @ axes.T)
     assert distance == pytest.approx(5 + (2 - 1) ** 2 + (1 - 3) ** 2 + 0 + 2**2)
 
 
 def test_covariances_that_do_not_commute_agree_with_scipys_root():
-    first, second = np.cov(cloud(50).T), np.cov(cloud(70, seed=1)[:, ::-1].T)
+    first = np.cov(cloud(50).T)
+    second = np.cov(cloud(70, seed=1)[:, ::-1].T)
     wanted = 3.0 + np.trace(first + second - 2 * sqrtm(first @ second)).real
     assert frechet_distance(
         np.zeros(5), first, np.array([1.0, 1, 1, 0, 0]), second
@@ -41,16 +43,16 @@ def test_covariances_that_do_not_commute_agree_with_scipys_root():
 
 
 def test_numbers_one_by_one_in_one_dimension():
-    data, generated = (
-        np.array([[1.0], [3.0]]),
-        np.array([[2.0], [8.0]]),
-    )  # the data: mean 2, population std 1
+    # the data: mean 2, population std 1
+    data = np.array([[1.0], [3.0]])
+    generated = np.array([[2.0], [8.0]])
     assert fid(generated, data) == pytest.approx(3.0**2 + (np.sqrt(18.0) - np.sqrt(2.0)) ** 2)
 
 
 def test_a_single_feature_has_a_distance_in_every_form():
     """Of numbers: (m1 - m2)^2 + (s1 - s2)^2, in units of the data's deviation."""
-    generated, data = np.array([[1.0], [2.0], [6.0], [3.0]]), np.array([[0.0], [4.0], [5.0]])
+    generated = np.array([[1.0], [2.0], [6.0], [3.0]])
+    data = np.array([[0.0], [4.0], [5.0]])
     unbiased = [x.std(ddof=1) / data.std() for x in (generated, data)]
     wanted = ((generated.mean() - data.mean()) / data.std()) ** 2 + (unbiased[0] - unbiased[1]) ** 2
     assert fid(generated, data) == pytest.approx(wanted) and published_fid(

@@ -53,10 +53,9 @@ def test_a_tilted_floor_is_found_and_levelled():
 
 def test_resampling_keeps_slow_motion_and_drops_fast():
     t = np.arange(481) / 120
-    slow, fast = (
-        np.sin(2 * np.pi * 1.0 * t),
-        0.1 * np.sin(2 * np.pi * 16 * t),
-    )  # 16 Hz would look like 4 Hz
+    # 16 Hz would look like 4 Hz
+    slow = np.sin(2 * np.pi * 1.0 * t)
+    fast = 0.1 * np.sin(2 * np.pi * 16 * t)
     points = np.broadcast_to((slow + fast)[:, None, None], (481, 21, 3)).copy()
     out = resample(points, 120.0, 20.0)
     assert out.shape == (81, 21, 3)
@@ -98,7 +97,8 @@ def test_planting_stills_the_toes_and_keeps_the_bones():
 
 
 def test_knees_bend_forward_even_where_they_did_not():
-    hip, ankle = np.array([[0.0, 0.9, 0.0]]), np.array([[0.0, 0.12, 0.1]])
+    hip = np.array([[0.0, 0.9, 0.0]])
+    ankle = np.array([[0.0, 0.12, 0.1]])
     for behind in (0.05, 0.0, -0.05):
         knee, reached = solve_leg(
             hip, ankle, np.array([[0.0, 0.5, behind]]), np.array([[0.0, 0.0, 1.0]])

@@ -1,5 +1,7 @@
-"""tools/check_notebooks.py finds each fault it claims to find, and this checkout's notebooks have
-none."""
+"""tools/check_notebooks.py finds each fault it claims to find.
+
+This checkout's notebooks have none.
+"""
 
 import copy
 import json
@@ -9,9 +11,13 @@ import notebook_cells
 import pytest
 
 OPENING = """# 02 Noise
-After this notebook you will be able to add noise. **Needs** 01. **Paper** MoDiff III-B. **Minutes** 20.
+After this notebook you will be able to add noise. **Needs** 01. **Paper** MoDiff III-B. \
+**Minutes** 20.
 **Symbols** x0, x_s, s."""
-EXERCISE = "**Exercise** (difficulty 1 of 3, 5 minutes)\n<details><summary>Hint</summary>\nsquare roots\n</details>"
+EXERCISE = (
+    "**Exercise** "
+    "(difficulty 1 of 3, 5 minutes)\n<details><summary>Hint</summary>\nsquare roots\n</details>"
+)
 SOLUTION = "def f(x):\n    # solution\n    return x\n    # end solution\n\n\nchecks.f(f)"
 
 
@@ -29,7 +35,9 @@ def good():
     cells = [
         cell(OPENING, kind="markdown"),
         cell(
-            'from motiondiff_edu.course import checks, runtime\nrun = runtime.start(notebook="02", seed=0)',
+            (
+                'from motiondiff_edu.course import checks, runtime\nrun = runtime.start(notebook="02", seed=0)'
+            ),
             "imports",
         ),
         cell("def twin(x):\n    return x", "twin"),

@@ -1,5 +1,7 @@
-"""Figures from plain arrays: they hold what was given, carry a caption, and refuse what does not
-fit."""
+"""Figures from plain arrays.
+
+They hold what was given, carry a caption, and refuse what does not fit.
+"""
 
 import io
 

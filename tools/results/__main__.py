@@ -106,8 +106,9 @@ def weights_of(items: list[str]) -> dict[str, Path]:
 
 
 def parts_of(only: list[str], full: bool, lines: dict[str, Walks], weights: set[str]) -> list[str]:
-    """The parts asked for, row by row; none asked for: all that have weights, and with `full` what
-    trains.
+    """The parts asked for, row by row.
+
+    None asked for: all that have weights, and with `full` what trains.
 
     Leaves with the names there are when one is unknown.
     """
@@ -129,23 +130,25 @@ def parts_of(only: list[str], full: bool, lines: dict[str, Walks], weights: set[
     if unknown:
         there = ", ".join([*lines, *DANCES, *MEASURED, *MENDED, *rows])
         sys.exit(
-            f"no part is called {', '.join(unknown)}; there are: {there}; rows: budget.T_p-5, dance-budget.v ..."
+            f"no part is called {', '.join(unknown)}; there are: {there}; rows: "
+            "budget.T_p-5, dance-budget.v ..."
         )
     return parts
 
 
 def measure(asked: argparse.Namespace, folder: Path) -> None:
-    """Run the parts asked for and write their records; those of all other parts stay as they
-    are."""
+    """Run the parts asked for and write their records.
+
+    Those of all other parts stay as they are.
+    """
     extra = weights_of(asked.weights)
-    bench, lines = (
-        Bench(QUICK if asked.quick else FULL, extra),
-        LINES | {name: Walks(name, name) for name in extra},
-    )
+    bench = Bench(QUICK if asked.quick else FULL, extra)
+    lines = LINES | {name: Walks(name, name) for name in extra}
     stage = Stage(DANCE_QUICK if asked.quick else DANCE_FULL, extra)
     options = " --quick" * asked.quick + "".join(f" --weights {item}" for item in asked.weights)
     for part in parts_of(asked.only, asked.full, lines, set(bench.weights)):
-        began, command = time.monotonic(), f"python -m tools.results --only {part}{options}"
+        began = time.monotonic()
+        command = f"python -m tools.results --only {part}{options}"
         records = records_of(part, asked.quick, bench, stage, lines, folder, command)
         show([one for one in records if one["value"] is not None])
         write_records(folder / f"{part}.json", records)
@@ -172,10 +175,8 @@ def records_of(
     if part == "mend":
         return mend.records(bench, repair.QUICK if quick else repair.FULL, command)
     if part == "inbetween":
-        dancer, digest = (
-            stage.dancer("unconditional"),
-            weights_digest(stage.weights["unconditional"]),
-        )
+        dancer = stage.dancer("unconditional")
+        digest = weights_digest(stage.weights["unconditional"])
         return inbetween.inbetween_records(
             dancer, digest, inbetween.QUICK if quick else inbetween.FULL, command
         )

@@ -16,8 +16,10 @@ def span(one: dict) -> str:
 
 
 def cell(one: dict | None, unit: bool = True) -> str:
-    """Value, interval and unit of a record; a figure that was computed once, over all clips, has no
-    interval."""
+    """Value, interval and unit of a record.
+
+    A figure that was computed once, over all clips, has no interval.
+    """
     if one is None or one["value"] is None:
         return "-"
     once = one["low"] == one["high"] == one["value"]
