@@ -36,7 +36,7 @@ def ladder(rungs: Sequence[Rung], measures: Sequence[str], words: str) -> Figure
             axis.plot(seen, [row] * len(seen), MARKERS[k], color=OKABE_ITO[k], ms=7, alpha=0.8)
         for k, group in enumerate(groups):
             rows = [row for row, rung in enumerate(rungs) if rung.group == group]
-            first = [x for x in rungs[rows[0]].values.get(measure, ()) if x is not None and x > 0]
+            first = _drawn(rungs[rows[0]], measure)
             if first:
                 mean = sum(first) / len(first)
                 axis.plot([mean, mean], [rows[0], rows[-1]], "--", color=OKABE_ITO[k], lw=1.2)
@@ -46,3 +46,8 @@ def ladder(rungs: Sequence[Rung], measures: Sequence[str], words: str) -> Figure
         axis.set_yticks(range(len(rungs)), [rung.words for rung in rungs])
     axes[0].invert_yaxis()
     return fig
+
+
+def _drawn(rung: Rung, measure: str) -> list[float]:
+    """The values that a logarithmic axis can show."""
+    return [x for x in rung.values.get(measure, ()) if x is not None and 0 < x < float("inf")]

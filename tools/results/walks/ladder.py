@@ -15,16 +15,19 @@ from functools import cache
 from pathlib import Path
 
 import numpy as np
+import torch
 
 from data_synth.walking import dataset
 from motiondiff_edu._files import replacing
-from motiondiff_edu.beyond.footholds import FootholdConfig, network
+from motiondiff_edu.beyond.footholds import FootholdConfig
+from motiondiff_edu.beyond.schedules import SCHEDULES
 from motiondiff_edu.diffusion_dropout import P_D
 from motiondiff_edu.metrics.adherence import adherence
 from motiondiff_edu.metrics.skating import skating
 from motiondiff_edu.motion.augment import augment
 from motiondiff_edu.motion.clip import Clip
-from motiondiff_edu.performers.walker import SCHEDULES, Walker
+from motiondiff_edu.performers.networks import network
+from motiondiff_edu.performers.walker import Walker
 from motiondiff_edu.performers.windows import Windows
 from motiondiff_edu.recipes.muon import optimizer_for
 from motiondiff_edu.recipes.train_recipe import mean_loss
@@ -282,7 +285,7 @@ def validation_loss(walker: Walker, recipe: Recipe, clips: list[Clip], batches: 
 
 # ---- one cell ------------------------------------------------------------------------------------
 def train_cell(name: str, plan: Plan, runs: Path, rows_file: Path, size: Size) -> None:
-    """Train and measure the seeds of a cell that are not in `rows_file` yet, one after the other."""
+    """Train and measure the seeds of a cell that are not in `rows_file` yet."""
     for seed in range(SEEDS):
         kept = read_rows(rows_file)
         if str(seed) in kept["seeds"]:
@@ -330,3 +333,36 @@ def ladder_records(name: str, rows_file: Path, base_file: Path | None, command: 
             apart = interval_over_seeds(lambda *x, n=n, v=value: v(*x[:n]) - v(*x[n:]), *both)
             found.append(Figure(f"{figure}_minus_base", *apart, unit))
     return [one.as_record(f"ladder.{name}.", about, command) for one in found]
+
+
+def measure(row: str, folder: Path, runs: Path, size: Size, command: str) -> list[dict]:
+    """One part of the ladder: "pace", "rates", or a cell, which needs both.
+
+    One thread, whatever the machine has. Rows and plan are kept in `folder`, trainings in `runs`.
+    """
+    plan = Plan.read(folder / "plan.json")
+    threads = torch.get_num_threads()
+    torch.set_num_threads(1)
+    try:
+        if row == "pace" or not plan.pace:
+            measure_pace(plan, size)
+        if row == "rates" or (
+            row in CELLS and CELLS[row].tuned and rate_key(row) not in plan.rates
+        ):
+            choose_rates(plan, runs, size)
+        if row not in CELLS:
+            return plan_records(plan, command)
+        train_cell(row, plan, runs, folder / f"{row}.json", size)
+    finally:
+        torch.set_num_threads(threads)
+    base = CELLS[row].base
+    return ladder_records(
+        row, folder / f"{row}.json", folder / f"{base}.json" if base else None, command
+    )
+
+
+def plan_records(plan: Plan, command: str) -> list[dict]:
+    """Milliseconds of a step of each cell, and the rate chosen for each base and optimiser."""
+    found = [Figure(f"{name}.step_ms", ms, ms, ms, "ms") for name, ms in plan.pace.items()]
+    found += [Figure(f"{key}.rate", rate, rate, rate, "") for key, rate in plan.rates.items()]
+    return [one.as_record("ladder.plan.", {"threads": 1}, command) for one in found]
