@@ -1,4 +1,4 @@
-"""The ladder: cells differ from their base in one choice; figures by hand; no cell trained twice."""
+"""The ladder: one choice a cell, figures by hand, and no cell is trained twice."""
 
 import json
 from dataclasses import asdict

@@ -9,7 +9,8 @@ where the right one is a formula). Those that train, for minutes a row: ladder (
 walker to ours), budget, dance-budget and mend-map; one row of them: budget.T_p-5, dance-budget.v.
 Without --only, all are measured that the shipped weights allow; --full adds those that train, whose
 records are else kept as they are. A training that was killed goes on. --quick measures little, into
-build/quick, and is for trying the code; --render only writes docs/RESULTS.md from the records that are there.
+build/quick, and is for trying the code; --render only writes docs/RESULTS.md from the records that
+are there.
 """
 
 import argparse
