@@ -5,11 +5,12 @@
 Parts: walker-eps, walker-x0, walker-ddim10, their -lookahead lines, footsteps; dancer,
 dancer-plain, regression, unheard (music like none in training), attention, dance-time; mend
 (dropout and repairs), mend-both (both papers' repairs), inbetween, known-answer (ways of filling in
-where the right one is a formula). Those that train, for minutes a row: budget, dance-budget and
-mend-map; one row of them: budget.T_p-5, dance-budget.v. Without --only, all are measured that the
-shipped weights allow; --full adds those that train, whose records are else kept as they are. A
-training that was killed goes on. --quick measures little, into build/quick, and is for trying the
-code; --render only writes docs/RESULTS.md from the records that are there.
+where the right one is a formula). Those that train, for minutes a row: ladder (from the paper's
+walker to ours), budget, dance-budget and mend-map; one row of them: budget.T_p-5, dance-budget.v.
+Without --only, all are measured that the shipped weights allow; --full adds those that train, whose
+records are else kept as they are. A training that was killed goes on. --quick measures little, into
+build/quick, and is for trying the code; --render only writes docs/RESULTS.md from the records that
+are there.
 """
 
 import argparse
@@ -30,7 +31,7 @@ from .page.cards import add_metrics
 from .page.render import render
 from .repairs import both, dropout, mend, repair
 from .repairs.trials import names_of
-from .walks import budget
+from .walks import budget, ladder
 from .walks.parts import (
     FULL,
     LINES,
@@ -56,6 +57,7 @@ MENDED = {  # by these weights
     "inbetween": {"unconditional"},
 }
 TRAINED = {
+    "ladder": ("pace", "rates", *ladder.CELLS),
     "budget": tuple(budget.VARIANTS),
     "dance-budget": tuple(dance_budget.VARIANTS),
     "mend-map": tuple(dropout.RATES),
@@ -160,6 +162,9 @@ def records_of(
 ) -> list[dict]:
     """The records of one part; its figure, where it has one, is written beside them."""
     group, _, row = part.partition(".")
+    if group == "ladder":
+        size, runs = (ladder.QUICK, folder / "runs") if quick else (ladder.FULL, RUNS / group)
+        return ladder.measure(row, folder / group, runs, size, command)
     if group == "budget":
         return budget.budget_records(row, budget.QUICK if quick else budget.FULL, command)
     if group == "dance-budget":
