@@ -8,7 +8,7 @@ import pytest
 import torch
 
 from motiondiff_edu.beyond.footholds import FootholdConfig
-from motiondiff_edu.performers.networks import network as walker_network
+from motiondiff_edu.beyond.schedules import SCHEDULES
 from motiondiff_edu.ddpm import linear_schedule
 from motiondiff_edu.diffusion_dropout import Dropout
 from motiondiff_edu.kinematic_loss import KinematicWeights
@@ -16,7 +16,7 @@ from motiondiff_edu.modiff import MoDiff, MoDiffConfig
 from motiondiff_edu.mofusion import MoFusion
 from motiondiff_edu.motion.clip import Clip
 from motiondiff_edu.performers.dance_windows import DanceWindows
-from motiondiff_edu.performers.walker import SCHEDULES
+from motiondiff_edu.performers.networks import network
 from motiondiff_edu.performers.windows import Windows
 from motiondiff_edu.recipes import train_dancer, train_walker
 from motiondiff_edu.recipes.dancers import DANCER, DANCER_PLAIN, DanceLossWeights
@@ -77,7 +77,7 @@ def test_walkers_losses_are_those_that_the_shipped_ones_were_trained_with(name, 
     schedule = SCHEDULES["leap"](100)
     dropout = Dropout(schedule, lambda done: rate, 1, done=0.0) if rate else None
     torch.manual_seed(0)
-    model = walker_network(recipe.config, walks.pose_scaler, walks.control_scaler)
+    model = network(recipe.config, walks.pose_scaler, walks.control_scaler)
     loss_fn, generator = (
         train_walker.loss_of(replace(recipe, batch=6), walks, schedule, dropout),
         seeded(),
