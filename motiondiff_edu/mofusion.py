@@ -84,7 +84,7 @@ class FrameConv(nn.Module):
         self.stride = stride
         self.dilation = dilation
 
-    def forward(self, x: Float[Tensor, "B T C"]) -> Float[Tensor, "B T2 C2"]:
+    def forward(self, x: Float[Tensor, "B T W"]) -> Float[Tensor, "B T2 W2"]:
         n = self.dilation
         padded = F.pad(x, (0, 0, n, n))
         return self.mix(
@@ -111,8 +111,8 @@ class ResBlock(nn.Module):
             nn.init.zeros_(layer.bias)
 
     def forward(
-        self, x: Float[Tensor, "B T C"], step: Float[Tensor, "B W"], mask: Float[Tensor, "#B T 1"]
-    ) -> Float[Tensor, "B T C2"]:
+        self, x: Float[Tensor, "B T W"], step: Float[Tensor, "B E"], mask: Float[Tensor, "#B T 1"]
+    ) -> Float[Tensor, "B T W2"]:
         h = self.conv_in(F.silu(self.norm_in(x)) * mask)
         scale, shift = self.step(step)[:, None].chunk(2, dim=-1)
         h = self.conv_out(F.silu(self.norm_out(h) * (1 + scale) + shift) * mask)
@@ -135,7 +135,7 @@ class CrossAttentionBlock(nn.Module):
         self.norm_ff = nn.LayerNorm(width)
         self.ff = nn.Sequential(nn.Linear(width, 2 * width), nn.GELU(), nn.Linear(2 * width, width))
 
-    def forward(self, x: Float[Tensor, "B T C"], context, bias, turns) -> Float[Tensor, "B T C"]:
+    def forward(self, x: Float[Tensor, "B T W"], context, bias, turns) -> Float[Tensor, "B T W"]:
         normed = self.norm(x)
         x = x + self.attention(normed, normed if context is None else context, bias, turns)
         return x + self.ff(self.norm_ff(x))

@@ -8,7 +8,6 @@ import pytest
 import torch
 
 from motiondiff_edu.beyond.footholds import FootholdConfig
-from motiondiff_edu.performers.networks import network as walker_network
 from motiondiff_edu.ddpm import linear_schedule
 from motiondiff_edu.diffusion_dropout import Dropout
 from motiondiff_edu.kinematic_loss import KinematicWeights
@@ -16,6 +15,7 @@ from motiondiff_edu.modiff import MoDiff, MoDiffConfig
 from motiondiff_edu.mofusion import MoFusion
 from motiondiff_edu.motion.clip import Clip
 from motiondiff_edu.performers.dance_windows import DanceWindows
+from motiondiff_edu.performers.networks import network as walker_network
 from motiondiff_edu.performers.walker import SCHEDULES
 from motiondiff_edu.performers.windows import Windows
 from motiondiff_edu.recipes import train_dancer, train_walker
