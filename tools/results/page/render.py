@@ -11,6 +11,7 @@ from motiondiff_edu._files import replacing
 from ..dances.tables import choices, table_1
 from ..inbetweens import known_tables
 from ..repairs import tables
+from ..walks import ladder_page
 from ..walks.budget import VARIANTS
 from ..walks.steps_table import PAPER_TABLE
 from .bars import BARS, Bar
@@ -213,7 +214,7 @@ def attention(records: dict[str, dict], folder: Path) -> str:
 
 def others(records: dict[str, dict]) -> str:
     """Everything that stands in no table above, with what makes it."""
-    shown = ("walker", "footsteps", "budget.", "dance-budget.", "dance-time.", "attention.")
+    shown = ("walker", "footsteps", "ladder.", "budget.", "dance-budget.", "dance-time.", "attention.")
     shown += ("mend", "known-answer.", "inbetween.")
     rest = [one for name, one in sorted(records.items()) if not name.startswith(shown)]
     rows = [
@@ -227,8 +228,10 @@ def others(records: dict[str, dict]) -> str:
 def render(docs: Path, benchmarks: Path = Path("benchmarks/results")) -> None:
     """Write RESULTS.md and RESULTS_ALL.md beside the records, each to a temporary name first."""
     records = read_records(docs / "results", benchmarks)
+    ladder_page.draw(records, docs / "results")
     parts = [HEAD, bars(records), walkers(records), footsteps(records, docs / "results")]
     parts += [
+        ladder_page.section(records, docs / "results"),
         budget(records),
         table_1(records),
         folded(choices(records), "What training and dancing cost in time"),
