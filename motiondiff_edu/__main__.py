@@ -14,6 +14,8 @@ import sys
 import tempfile
 from pathlib import Path
 
+from . import _commands
+
 PACKAGE = Path(__file__).parent
 # what a projector wants: matplotlib's type, and JupyterLab's
 LARGE_FIGURES = "figure.dpi: 150\nfont.size: 13\nlines.linewidth: 2.2\n"
@@ -151,7 +153,12 @@ def main(arguments: list[str] | None = None) -> int:
         "number", metavar="NB"
     )
     commands.add_parser("doctor", help="what works here, and what to do about the rest")
+    _commands.add_to(commands)
     chosen, options = parser.parse_known_args(arguments)
+    if chosen.command in _commands.VERBS:
+        if options:
+            parser.error(f"{chosen.command} does not know {' '.join(options)}")
+        return _commands.run(chosen)
     if options and chosen.command == "doctor":
         parser.error(f"doctor takes no options, got {' '.join(options)}")
     try:
