@@ -105,15 +105,18 @@ def samples_of(sound: str | Path | np.ndarray | Tensor) -> Float[Tensor, "N"]:
     """
     if isinstance(sound, (str, Path)):
         return read_audio(Path(sound).expanduser())
+    if not isinstance(sound, (np.ndarray, Tensor, list)):
+        raise AudioError(f"sound is a file's name or its samples, not {type(sound).__name__}")
     samples = np.asarray(sound)
     if samples.ndim != 1 or not len(samples):
         raise AudioError(
-            f"sound is one channel of samples (N,) at {SAMPLE_RATE} Hz, not {samples.shape}; the mean of "
-            "several channels is one"
+            f"sound is one channel of samples (N,) at {SAMPLE_RATE} Hz, not {samples.shape}; the "
+            "mean of several channels is one"
         )
     if not np.issubdtype(samples.dtype, np.floating):
         raise AudioError(
-            f"sound is floating-point samples from -1 to 1, not {samples.dtype}; divide 16-bit samples by 32768"
+            f"sound is floating-point samples from -1 to 1, not {samples.dtype}; divide 16-bit "
+            "samples by 32768"
         )
     bad = np.flatnonzero(~np.isfinite(samples))
     if len(bad):
