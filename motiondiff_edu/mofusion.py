@@ -45,7 +45,6 @@ class MoFusionConfig:
     fps: float = 20.0  # of the motion
     slowest: float = 0.05  # Hz, of the position code
     fastest: float = 8.0
-    reach: float = 0.0  # s: how far attention sees, 0 for no limit
     target: str = "eps"
     skip: bool = True
 
@@ -53,9 +52,9 @@ class MoFusionConfig:
         """Raises ValueError for sizes of which no network can be built, and for an unknown
         target."""
         counts, rates = (self.D, self.S, self.heads), (self.fps, self.slowest, self.fastest)
-        if min(counts) < 1 or min(rates) <= 0 or min(self.C, self.music_layers, self.reach) < 0:
+        if min(counts) < 1 or min(rates) <= 0 or min(self.C, self.music_layers) < 0:
             raise ValueError(
-                "D, S, heads must be 1 at least; C, music_layers, reach 0 at least; rates above 0"
+                "D, S, heads must be 1 at least; C, music_layers 0 at least; rates above 0"
             )
         bad = next((w for w in self.widths if w < 2 * self.heads or w % (2 * self.heads)), None)
         if not self.widths or bad is not None:
@@ -294,9 +293,6 @@ class View:
         inside, times = frames < lengths[:, None], frames / config.fps  # (B, T), and seconds
         heard, seen = (times, inside) if music is None else (music.times, music.mask)
         allowed = None if seen is None or bool(seen.all()) else seen[:, None, None]
-        if config.reach:
-            near = ((times[:, None] - heard).abs() <= config.reach)[None, None]
-            allowed = near if allowed is None else allowed & near
         bias = (
             None
             if allowed is None
