@@ -16,9 +16,14 @@ import argparse
 import importlib
 import sys
 
+from . import _commands
 from .course.places import program
 
-VERBS = {"lab": "course.lab", "demo": "course.demo", "doctor": "course.doctor"}
+VERBS = {name: f"_commands.{name}" for name in _commands.VERBS} | {
+    "lab": "course.lab",
+    "demo": "course.demo",
+    "doctor": "course.doctor",
+}
 
 
 def parser_of(verbs: dict) -> argparse.ArgumentParser:
@@ -32,10 +37,12 @@ def parser_of(verbs: dict) -> argparse.ArgumentParser:
     for name, verb in verbs.items():
         further = getattr(verb, "PASSES_OPTIONS_ON", "")
         about = f"{verb.HELP[0].upper()}{verb.HELP[1:]}."
+        about = verb.__doc__ if name in _commands.VERBS else about
         command = commands.add_parser(
             name,
             help=verb.HELP,
             description=about + (f" Further options go to {further}." if further else ""),
+            formatter_class=argparse.RawDescriptionHelpFormatter,
             epilog=f"example: {program()} {verb.EXAMPLE}",
             allow_abbrev=False,
         )
@@ -58,6 +65,8 @@ def main(arguments: list[str] | None = None) -> int:
     chosen.options = further
     if chosen.options and not getattr(verb, "PASSES_OPTIONS_ON", ""):
         chosen.parser.error(f"{chosen.verb} does not know {' '.join(chosen.options)}")
+    if chosen.verb in _commands.VERBS:
+        return _commands.run(verb, chosen)
     try:
         return verb.run(chosen)
     except Exception as error:

@@ -76,7 +76,7 @@ MODIFF_PAPER = MoDiffConfig(dropout=0.1)
 MODIFF_SMALL = MoDiffConfig(width=128, hidden=256, cross_layers=2)
 
 
-def step_embedding(s: Int[Tensor, "B"], width: int) -> Float[Tensor, "B W"]:
+def step_embedding(s: Int[Tensor, "B"], width: int) -> Float[Tensor, "B E"]:
     """Sines and cosines of the diffusion step, wavelengths from 2 pi to 10000 * 2 pi steps.
     Notebook: 05, 07"""
     frequencies = torch.exp(
@@ -96,7 +96,7 @@ class Encoder(nn.Module):
         sizes = (config.width, config.heads, config.hidden)
         self.blocks = nn.ModuleList(Block(*sizes, dropout=config.dropout) for _ in range(layers))
 
-    def forward(self, x: Float[Tensor, "B T C"]) -> Float[Tensor, "B T C"]:
+    def forward(self, x: Float[Tensor, "B T W"]) -> Float[Tensor, "B T W"]:
         bias = self.bias()
         for block in self.blocks:
             x = block(x, bias)

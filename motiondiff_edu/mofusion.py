@@ -45,7 +45,6 @@ class MoFusionConfig:
     fps: float = 20.0  # of the motion
     slowest: float = 0.05  # Hz, of the position code
     fastest: float = 8.0
-    reach: float = 0.0  # s: how far attention sees, 0 for no limit
     target: str = "eps"
     skip: bool = True
 
@@ -53,9 +52,9 @@ class MoFusionConfig:
         """Raises ValueError for sizes of which no network can be built, and for an unknown
         target."""
         counts, rates = (self.D, self.S, self.heads), (self.fps, self.slowest, self.fastest)
-        if min(counts) < 1 or min(rates) <= 0 or min(self.C, self.music_layers, self.reach) < 0:
+        if min(counts) < 1 or min(rates) <= 0 or min(self.C, self.music_layers) < 0:
             raise ValueError(
-                "D, S, heads must be 1 at least; C, music_layers, reach 0 at least; rates above 0"
+                "D, S, heads must be 1 at least; C, music_layers 0 at least; rates above 0"
             )
         bad = next((w for w in self.widths if w < 2 * self.heads or w % (2 * self.heads)), None)
         if not self.widths or bad is not None:
@@ -84,7 +83,7 @@ class FrameConv(nn.Module):
         self.stride = stride
         self.dilation = dilation
 
-    def forward(self, x: Float[Tensor, "B T C"]) -> Float[Tensor, "B T2 C2"]:
+    def forward(self, x: Float[Tensor, "B T W"]) -> Float[Tensor, "B T2 W2"]:
         n = self.dilation
         padded = F.pad(x, (0, 0, n, n))
         return self.mix(
@@ -111,8 +110,8 @@ class ResBlock(nn.Module):
             nn.init.zeros_(layer.bias)
 
     def forward(
-        self, x: Float[Tensor, "B T C"], step: Float[Tensor, "B W"], mask: Float[Tensor, "#B T 1"]
-    ) -> Float[Tensor, "B T C2"]:
+        self, x: Float[Tensor, "B T W"], step: Float[Tensor, "B E"], mask: Float[Tensor, "#B T 1"]
+    ) -> Float[Tensor, "B T W2"]:
         h = self.conv_in(F.silu(self.norm_in(x)) * mask)
         scale, shift = self.step(step)[:, None].chunk(2, dim=-1)
         h = self.conv_out(F.silu(self.norm_out(h) * (1 + scale) + shift) * mask)
@@ -135,7 +134,7 @@ class CrossAttentionBlock(nn.Module):
         self.norm_ff = nn.LayerNorm(width)
         self.ff = nn.Sequential(nn.Linear(width, 2 * width), nn.GELU(), nn.Linear(2 * width, width))
 
-    def forward(self, x: Float[Tensor, "B T C"], context, bias, turns) -> Float[Tensor, "B T C"]:
+    def forward(self, x: Float[Tensor, "B T W"], context, bias, turns) -> Float[Tensor, "B T W"]:
         normed = self.norm(x)
         x = x + self.attention(normed, normed if context is None else context, bias, turns)
         return x + self.ff(self.norm_ff(x))
@@ -294,9 +293,6 @@ class View:
         inside, times = frames < lengths[:, None], frames / config.fps  # (B, T), and seconds
         heard, seen = (times, inside) if music is None else (music.times, music.mask)
         allowed = None if seen is None or bool(seen.all()) else seen[:, None, None]
-        if config.reach:
-            near = ((times[:, None] - heard).abs() <= config.reach)[None, None]
-            allowed = near if allowed is None else allowed & near
         bias = (
             None
             if allowed is None

@@ -3,10 +3,13 @@
 import ast
 import re
 import subprocess
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import notebook_cells
 import pytest
+
+from motiondiff_edu._files import replacing
 
 ROOT = Path(__file__).parent.parent
 
@@ -125,3 +128,22 @@ def test_no_pickle():
         not re.search(r"pickle\.loads?\(|allow_pickle\s*=\s*True", reader)
         and "find_class" in reader
     )
+
+
+def test_threads_that_write_one_file_do_not_tear_it(tmp_path):
+    """Each text is long enough to be written in pieces; what is read is always one of them."""
+    path, read = tmp_path / "one.txt", []
+    texts = [letter * 200_000 for letter in "abcd"]
+
+    def write(text: str) -> None:
+        for _ in range(20):
+            with replacing(path) as aside, aside.open("w") as file:
+                for start in range(0, len(text), 20_000):
+                    file.write(text[start : start + 20_000])
+                    file.flush()
+            read.append(path.read_text())
+
+    with ThreadPoolExecutor(4) as pool:
+        list(pool.map(write, texts))
+    assert set(read) <= set(texts) and len(read) == 80
+    assert [p.name for p in tmp_path.iterdir()] == ["one.txt"]

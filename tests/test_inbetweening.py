@@ -3,6 +3,8 @@
 What is given comes back, what is not follows the true conditional once it is resampled.
 """
 
+from dataclasses import replace
+
 import jaxtyping
 import numpy as np
 import pytest
@@ -27,8 +29,11 @@ from motiondiff_edu.exact import conditional, exact_denoiser, log_density, mixtu
 from motiondiff_edu.inbetweening import inpaint_steps, resampled
 from motiondiff_edu.metrics.bone_lengths import bone_lengths
 from motiondiff_edu.metrics.keyframes import seam_jump
-from motiondiff_edu.motion.dance_frame import Place, facing, to_positions
+from motiondiff_edu.mofusion import MoFusion
+from motiondiff_edu.motion.dance_frame import Place, facing, to_features, to_positions
 from motiondiff_edu.motion.root_frame import to_world
+from motiondiff_edu.performers.dancer import FARTHEST
+from motiondiff_edu.prediction import x0_from_eps
 from motiondiff_edu.pretrained import checkpoints
 
 SCHEDULE = cosine_schedule(100)
@@ -331,6 +336,39 @@ def test_blending_at_every_step_leaves_no_jump_where_masking_does():
         for who in (denoise, drawn)
     )
     assert plain.diff(dim=1).abs().max() > 2 and blent.diff(dim=1).abs().max() < 0.2
+
+
+@pytest.mark.parametrize("eta, wild, tame", [(0.0, 4.0, 1.1), (0.5, 2.0, 1.1)])
+def test_a_bounded_guess_does_not_blow_up_an_error_of_one_percent(eta, wild, tame):
+    """At s = S an error of eps counts b / a times: the made entries are five times too wide."""
+    schedule, n = cosine_schedule(1000), 2000
+    exact = exact_denoiser(correlated(0.3), schedule)
+    known, given = torch.tensor([True, False]).expand(n, 2), torch.randn(n, 2, generator=seeded(1))
+
+    def off(x, s):
+        return 1.01 * exact(x, s)
+
+    held = with_guess(off, schedule, lambda x0: x0.clamp(-5, 5))
+    free, bounded = (
+        last(inpaint_steps(who, start, schedule, given, known, eta=eta, generator=seeded(3)))
+        for who, start in ((who, torch.randn(n, 2, generator=seeded(2))) for who in (off, held))
+    )
+    assert free[:, 1].std() > wild and 0.7 < bounded[:, 1].std() < tame
+
+
+def test_the_guesses_of_a_dancer_that_predicts_noise_are_held_within_what_dances_are():
+    one = dancer(0)
+    config = replace(one.config, target="eps")
+    wild = replace(one, model=MoFusion(config).requires_grad_(False))
+    x_S, s = torch.randn(2, 20, 63, generator=seeded(5)), torch.full((2,), 30)
+    guesses = {
+        who: x0_from_eps(x_S, s, who.denoiser(None, 20)(x_S, s), one.schedule)
+        for who in (one, wild)
+    }
+    assert guesses[wild].abs().max() == pytest.approx(FARTHEST, rel=1e-2)
+    made = inbetween(wild, clip(), seed(40, 10), steps=5, bones=False, feet=False, blend=None)
+    features = wild.motion_scaler.transform(torch.from_numpy(to_features(made)).float())
+    assert features[..., 3:].abs().max() < FARTHEST + 1e-3
 
 
 def test_guidance_moves_what_goes_with_the_given():

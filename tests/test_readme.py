@@ -1,61 +1,122 @@
-"""The README's examples do what they say."""
+"""The examples of README and docs do what they say, on small stand-ins for the reader's files."""
 
 import re
+import shlex
 
+import numpy as np
 import pytest
 import soundfile
+from PIL import Image
 
 from data_synth.music import compose
 from data_synth.walking import walk
+from motiondiff_edu.__main__ import main
 from motiondiff_edu.conditions.control import constant_control
 from motiondiff_edu.motion.bvh import read_bvh
 from motiondiff_edu.motion.bvh.write import write_bvh
 from motiondiff_edu.motion.retarget import load_clip
-from motiondiff_edu.pretrained import checkpoints
 from motiondiff_edu.pretrained.checkpoints import available
 
-
-def examples(root) -> list[str]:
-    return re.findall(
-        r"^```python\n(.*?)^```", (root / "README.md").read_text(encoding="utf-8"), re.M | re.S
-    )
-
-
-@pytest.mark.skipif("walker" not in available(), reason="no walker is shipped: run make pretrained")
-def test_a_recording_goes_on_as_the_readme_has_it(root, tmp_path, monkeypatch):
-    code, _, _ = examples(root)
-    code = code.replace("seed=0)", "seed=0, steps=5)")  # quicker, and nothing else
-    write_bvh(tmp_path / "my_walk.bvh", walk(constant_control(1.0, seconds=3), seed=5).world())
-    monkeypatch.chdir(tmp_path)
-    exec(compile(code, "README.md", "exec"), {})
-    made = load_clip(tmp_path / "continued.bvh")
-    assert len(made) == 7 * 20 and made.control[20:50, 0].mean() == pytest.approx(1.2, abs=0.1)
-    assert made.control[80:120, 2].mean() == pytest.approx(0.6, abs=0.1)
-
-
-@pytest.mark.skipif("dancer" not in available(), reason="no dancer is shipped: run make pretrained")
-def test_a_song_is_danced_to_as_the_readme_has_it(root, tmp_path, monkeypatch):
-    _, code, _ = examples(root)
-    song = compose(3, "pop", seconds=6.0)
-    soundfile.write(tmp_path / "my_song.ogg", song.audio, 16_000)
-    monkeypatch.chdir(tmp_path)
-    given = {"checkpoints": checkpoints, "write_bvh": write_bvh}  # imported in the example before
-    exec(compile(code.replace("seconds=20)", "seconds=4, steps=3)"), "README.md", "exec"), given)
-    assert given["dance"].shape == (80, 21, 3) and len(given["sound"]) == 4 * 16_000
-    assert len(read_bvh(tmp_path / "dance.bvh").frames) == 80
-
-
-@pytest.mark.skipif(
-    "unconditional" not in available(), reason="no such network is shipped: run make pretrained"
+WALKED, SUNG = 3.0, 2.0  # seconds of the stand-ins
+SHIPPED = {"walker", "dancer", "unconditional"}
+pytestmark = pytest.mark.skipif(
+    not SHIPPED <= set(available()), reason="not all weights are shipped: run make pretrained"
 )
-def test_in_betweens_are_made_as_the_readme_has_it(root):
-    _, _, code = examples(root)
-    given = {
-        "checkpoints": checkpoints,
-        "clip": walk(constant_control(1.0, seconds=3), seed=5),
-    }  # of the first example
-    exec(compile(code.replace("samples=3)", "samples=3, steps=3)"), "README.md", "exec"), given)
-    assert (
-        given["made"].shape == (3, 60, 21, 3)
-        and (given["made"][:, 20] == given["motion"][20]).all()
-    )
+
+
+def blocks(root, page: str, language: str) -> list[str]:
+    """The code blocks of a page in one language; "" for those without."""
+    text = (root / page).read_text(encoding="utf-8")
+    found = re.findall(r"^```(\w*)\n(.*?)^```$", text, re.M | re.S)
+    return [code for kind, code in found if kind == language]
+
+
+@pytest.fixture
+def folder(tmp_path, monkeypatch):
+    """A folder with the files that the examples read."""
+    given = walk(constant_control(1.0, seconds=WALKED), seed=5).world()
+    write_bvh(tmp_path / "my_walk.bvh", given)
+    soundfile.write(tmp_path / "song.ogg", compose(3, "pop", seconds=SUNG).audio, 16_000)
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def run(root, page: str) -> dict:
+    """Run the Python examples of a page one after the other; what they have named."""
+    names: dict = {}
+    for code in blocks(root, page, "python"):
+        if "bpy" not in code and "io_anim_bvh" not in code:  # those are for Blender's own Python
+            exec(compile(code, page, "exec"), names)
+    return names
+
+
+def test_three_lines_continue_a_recording(root, folder):
+    made = run(root, "README.md")
+    assert len(made["more"]) == 3 * 20
+    clip = load_clip(folder / "more.bvh")
+    assert len(clip) == 3 * 20 and clip.control[20:40, 0].mean() == pytest.approx(1.2, abs=0.1)
+
+
+def test_the_examples_of_the_guide_run_in_order(root, folder):
+    made = run(root, "docs/USING.md")
+    walked, given = made["walk"].positions, made["known"]
+    assert len(made["more"]) == 7 * 20
+    assert load_clip(folder / "more.bvh").control[80:120, 2].mean() == pytest.approx(0.6, abs=0.1)
+    assert len(made["dance"]) == SUNG * 20 and (folder / "dance.mp4").stat().st_size > 10_000
+    keys = [one.positions[::20] for one in made["made"]]
+    assert len(keys) == 3 and all(np.array_equal(key, walked[::20]) for key in keys)
+    assert len(read_bvh(folder / "inbetween.bvh").frames) == WALKED * 20
+    whole = made["whole"].positions
+    assert np.array_equal(whole[given], walked[given]) and (~given).sum() == 20 * 4
+    made_anew = np.linalg.norm(whole - walked, axis=-1)[~given]
+    assert 0 < made_anew.mean() < 0.3  # another arm, near where an arm can be
+    assert (folder / "whole.bvh").exists()
+
+
+def test_the_example_for_blender_writes_its_file(root, folder):
+    made = run(root, "docs/BLENDER.md")
+    assert len(read_bvh(folder / "more.bvh").frames) == len(made["more"]) == 5 * 20
+
+
+@pytest.mark.parametrize("page", ["README.md", "docs/USING.md"])
+def test_the_commands_write_their_files(root, folder, page):
+    lines = [line for block in blocks(root, page, "") for line in block.splitlines()]
+    commands = [shlex.split(line) for line in lines if line.startswith("motiondiff-edu ")]
+    assert len(commands) == 2
+    for _, *arguments in commands:
+        assert main(arguments) in (0, None)
+        out = folder / arguments[arguments.index("--out") + 1]
+        assert out.stat().st_size > 10_000
+    parts = re.findall(r"([\d.]+)s", " ".join(commands[0]))
+    assert len(read_bvh(folder / "more.bvh").frames) == 20 * sum(map(float, parts))
+
+
+def test_the_block_to_paste_comes_first_and_the_links_lead_somewhere(root):
+    text = (root / "README.md").read_text(encoding="utf-8")
+    before = re.sub(r"!\[.*?\]\(.*?\)", "", text.split("make lab\n")[0], flags=re.S)
+    assert len(before.split()) < 60
+    for page in ("README.md", "docs/INSTALL.md", "docs/USING.md", "docs/BLENDER.md"):
+        links = re.findall(r"\]\(([^)#]+)", (root / page).read_text(encoding="utf-8"))
+        local = [link for link in links if not link.startswith("http")]
+        assert local or page == "docs/BLENDER.md"
+        assert [link for link in local if not ((root / page).parent / link).exists()] == []
+
+
+def test_the_table_names_the_notebooks_there_are(root):
+    text = (root / "README.md").read_text(encoding="utf-8")
+    there = sorted(path.name[:2] for path in (root / "notebooks").glob("[0-9]*.ipynb"))
+    assert re.findall(r"^\| (\d\d) \|", text, re.M) == there
+
+
+def test_the_moving_picture_moves_and_is_light(root):
+    (name,) = re.findall(r"!\[[^\]]+\]\(([^)]+)\)", (root / "README.md").read_text("utf-8"))
+    path = root / name
+    assert path.stat().st_size < 2.5e6
+    with Image.open(path) as picture:
+        assert 900 <= picture.width <= 1000 and picture.info["loop"] == 0
+        shown = []
+        for k in range(picture.n_frames):
+            picture.seek(k)
+            picture.load()
+            shown.append(picture.info["duration"])
+        assert 4_000 <= sum(shown) <= 6_000

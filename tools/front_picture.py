@@ -18,7 +18,6 @@ from functools import partial
 from pathlib import Path
 
 import numpy as np
-import torch
 from PIL import Image, ImageDraw, ImageFont
 
 ROOT = Path(__file__).parents[1]
@@ -27,15 +26,13 @@ sys.path.insert(0, str(ROOT / "tests" / "helpers"))  # how the tests open a widg
 from browser import bare_page, open_page, start_browser  # noqa: E402
 from editor_page import open_editor, settled  # noqa: E402
 
+import motiondiff_edu as md  # noqa: E402
 from data_synth.music import compose  # noqa: E402
 from data_synth.walking import walk  # noqa: E402
 from motiondiff_edu._files import replacing  # noqa: E402
-from motiondiff_edu.conditions.control import constant_control, splice  # noqa: E402
+from motiondiff_edu.conditions.control import constant_control  # noqa: E402
 from motiondiff_edu.editing.inbetween import inbetween  # noqa: E402
-from motiondiff_edu.motion.root_frame import root_path, to_world  # noqa: E402
 from motiondiff_edu.motion.skeleton import joint_index  # noqa: E402
-from motiondiff_edu.pretrained import checkpoints  # noqa: E402
-from motiondiff_edu.rollout import generate  # noqa: E402
 from motiondiff_edu.widgets.editor import Editor  # noqa: E402
 from motiondiff_edu.widgets.path import PathPad  # noqa: E402
 from motiondiff_edu.widgets.player import Player  # noqa: E402
@@ -73,8 +70,11 @@ def path_panel(browser, folder: Path) -> Iterator[Image.Image]:
         page.wait_for_timeout(300)
         yield from draw_path(page)
         pad.points = page.evaluate("saved.at(-1).line")
-    positions, path = walked(pad)
-    yield from played(browser, folder, Player(positions, path=path, autoplay=False), WIDTHS[0])
+    standing = md.Motion.of_clip(walk(constant_control(seconds=2), seed=1, style="neutral"))
+    more = md.load("walker").walk(standing, pad.control()[:PICTURES], seed=0, steps=None)
+    way = more.root[:, :2]  # the commanded one
+    player = Player(more.positions, path=way, autoplay=False)
+    yield from played(browser, folder, player, WIDTHS[0])
 
 
 def draw_path(page) -> Iterator[Image.Image]:
@@ -91,26 +91,13 @@ def draw_path(page) -> Iterator[Image.Image]:
     page.mouse.up()
 
 
-def walked(pad: PathPad) -> tuple[np.ndarray, np.ndarray]:
-    """What the shipped walker does with the drawn path, from standing; and the path."""
-    standing = walk(constant_control(seconds=2), seed=1, style="neutral")
-    control = splice(standing.control, pad.control(), 10)
-    past = torch.from_numpy(standing.features()[-10:])
-    ahead = torch.tensor(control, dtype=torch.float32)
-    new = generate(checkpoints.pretrained("walker"), past, ahead, seed=0)
-    poses = np.concatenate([standing.poses[-10:], new.double().numpy().reshape(-1, 21, 3)])
-    return to_world(poses, control)[8:], root_path(control)[0]
-
-
 def dance_panel(browser, folder: Path) -> Iterator[Image.Image]:
     """The shipped dancer and the song it dances to, with its beats."""
     seconds = PICTURES / FPS
     song = compose(2_025, "house", seconds=seconds)
-    sound = torch.from_numpy(song.audio).float()
-    dance, audio = checkpoints.pretrained("dancer").dance_to(sound, seed=3)
-    player = Player(
-        dance, audio=audio, beats=song.beats[song.beats < seconds], autoplay=False, follow=True
-    )
+    dance = md.load("dancer").dance(song.audio, seed=3)
+    beats = song.beats[song.beats < dance.seconds]
+    player = Player(dance.positions, audio=dance.audio, beats=beats, autoplay=False)
     yield from played(browser, folder, player, WIDTHS[1])
 
 
@@ -130,7 +117,7 @@ def played(browser, folder: Path, player: Player, width: int) -> Iterator[Image.
 
 def editor_panel(browser, folder: Path) -> Iterator[Image.Image]:
     """The editor: three frames are pinned, a hand is moved, in-betweens are made and played."""
-    network = checkpoints.pretrained("unconditional")
+    network = md.load("unconditional")
     motion = walk(constant_control(1.0, seconds=4), seed=5).world()
     editor = Editor(motion, partial(inbetween, network, steps=25))
     with open_page(browser, viewport={"width": WIDTHS[2], "height": 900}) as page:
@@ -143,7 +130,7 @@ def editor_panel(browser, folder: Path) -> Iterator[Image.Image]:
         )
         page.wait_for_timeout(300)
         shot = partial(screenshot, page, WIDTHS[2])
-        yield from pin_and_raise(page, editor, shot)
+        yield from pin_and_move(page, editor, shot)
         page.get_by_role("button", name="Generate").click()
         settled(page)
         for t in range(len(motion)):
@@ -151,8 +138,8 @@ def editor_panel(browser, folder: Path) -> Iterator[Image.Image]:
             yield shot()
 
 
-def pin_and_raise(page, editor: Editor, shot) -> Iterator[Image.Image]:
-    """Pictures of the edit: the first, a middle and the last frame pinned, the right hand raised."""
+def pin_and_move(page, editor: Editor, shot) -> Iterator[Image.Image]:
+    """Pictures of the edit: the first, a middle and the last frame pinned, the right hand moved."""
     canvas = page.locator(".mde-editor canvas:not(.mde-timeline)")
     hand = joint_index("RightHand")
     for frame in (0, 40, len(editor.edit) - 1):

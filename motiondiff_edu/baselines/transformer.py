@@ -70,8 +70,8 @@ class Layer(nn.Module):
         self.ask = CrossAttentionBlock(width, heads, width)
 
     def forward(
-        self, x: Float[Tensor, "B T C"], music: Music, bias, between, to_music
-    ) -> Float[Tensor, "B T C"]:
+        self, x: Float[Tensor, "B T W"], music: Music, bias, between, to_music
+    ) -> Float[Tensor, "B T W"]:
         normed = self.norm(x)
         x = x + self.attention(normed, normed, None, between)
         return self.ask(x, music.tokens, bias, to_music)

@@ -12,7 +12,7 @@ from scipy.ndimage import distance_transform_edt
 
 from ..motion.dance_frame import GROUND
 from ..motion.inverse_kinematics import bends_to, two_bones
-from ..motion.planting import spans
+from ..motion.planting import runs
 from ..motion.skeleton import HEELS, TOES
 
 FADE = 6  # frames
@@ -62,7 +62,7 @@ def to_stands(
     shift = np.zeros_like(toe)
     anchored = given.copy()
     frames = np.arange(len(toe))
-    for first, last in spans(stands(toe, fps)):
+    for first, last in runs(stands(toe, fps)):
         inside = np.flatnonzero(given[first:last]) + first
         if len(inside):  # at the given places, and evenly from one to the next should they differ
             pin = np.stack(

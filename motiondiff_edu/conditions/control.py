@@ -94,7 +94,8 @@ def joystick(
     Each change takes `ramp` seconds, smoothly.
 
     r(u) = u^2 (3 - 2u) leads from the value left behind to the new one.
-    Raises ValueError for no segment, or one that is not four finite numbers.  Notebook: 07
+    Raises ValueError for no segment, one that is not four finite numbers, or negative seconds.
+    Notebook: 07
     """
     bad = next(
         (segment for segment in segments if len(segment) != 4 or not np.isfinite(segment).all()),
@@ -105,6 +106,9 @@ def joystick(
             "a segment is (seconds, forward, left, yaw), four finite numbers, "
             f"not {bad or 'nothing'}"
         )
+    backwards = next((segment for segment in segments if segment[0] < 0), None)
+    if backwards is not None:
+        raise ValueError(f"a segment lasts 0 seconds or more, not {backwards[0]:g}: {backwards}")
     rows, value = [], np.array(segments[0][1:], dtype=np.float64)
     for seconds, *target in segments:
         goal = np.array(target, dtype=np.float64)

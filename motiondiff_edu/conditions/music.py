@@ -162,21 +162,6 @@ def crop_seconds(
     return mel[..., first : first + n, :], frame_times(first + n)[first:] - start
 
 
-def at_times(
-    mel: Float[Tensor, "*B M bands"], times: Float[Tensor, "T"]
-) -> Float[Tensor, "*B T bands"]:
-    """The Mel spectrogram at any `times` (seconds), such as those of motion frames.
-
-    Straight lines between its frames.
-
-    Before the first and after the last frame their values are kept.  Notebook: 11
-    """
-    where = (times * FRAMES_PER_SECOND).clamp(0, mel.shape[-2] - 1)
-    before = where.floor().long().clamp(max=max(0, mel.shape[-2] - 2))
-    after = (before + 1).clamp(max=mel.shape[-2] - 1)
-    return torch.lerp(mel[..., before, :], mel[..., after, :], (where - before).to(mel)[:, None])
-
-
 def beats_of(
     audio: Float[Tensor, "N"] | Float[np.ndarray, "N"], lag: float = TRACKER_LAG
 ) -> Float[np.ndarray, "K"]:

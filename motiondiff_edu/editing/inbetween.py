@@ -66,7 +66,8 @@ def inbetween(
     and let go of within so many frames where nothing more is given (`beyond.guidance.blended`).
     `guidance`: they are moved by its gradient before (`beyond.guidance.guided`), at twice the cost.
     `bones`: they get the lengths that they have where they are given (`beyond.constant_bones`).
-    `feet`: theirs do not slide (`beyond.foot_lock`). `**PAPER`: none of the four, masked sampling
+    `feet`: theirs do not slide (`beyond.foot_lock`). Where nothing is known the result is a sample
+    as it comes, and none of the four changes it. `**PAPER`: none of the four, masked sampling
     as in the paper.
     Raises ValueError where a joint is given without the pelvis, or is given and not a number, and
     for shapes that do not fit.  Source: MoFusion 4.4.   Notebook: 15

@@ -29,9 +29,9 @@ class Folded:
     and is answered with another.
     """
 
-    keys: Float[Tensor, "B C HM"]
+    keys: Float[Tensor, "B W HM"]
     bias: Float[Tensor, "B T HM"]
-    values: Float[Tensor, "B HM C"]
+    values: Float[Tensor, "B HM W"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,7 +51,7 @@ class _Linear:
         self.weight = torch.cat([layer.weight for layer in layers]).t().contiguous()
         self.bias = torch.cat([layer.bias for layer in layers])
 
-    def __call__(self, x: Float[Tensor, "N C"]) -> Float[Tensor, "N K"]:
+    def __call__(self, x: Float[Tensor, "N W"]) -> Float[Tensor, "N K"]:
         return torch.addmm(self.bias, x, self.weight)
 
 
@@ -70,19 +70,19 @@ class _Layer:
         self.qkv, self.out = _Linear(own.q, own.kv), _Linear(own.out)
         self.first, self.last = _Linear(first), _Linear(last)
 
-    def fold(self, memory: Float[Tensor, "B M C"], bias: Float[Tensor, "1 H T M"]) -> Folded:
+    def fold(self, memory: Float[Tensor, "B M W"], bias: Float[Tensor, "1 H T M"]) -> Folded:
         """A memory's keys and values with this layer's weights in them; done once a frame."""
         cross = self.cross
-        B, M, C = memory.shape
+        B, M, W = memory.shape
         H = self.heads
         k, v = (
             part.reshape(B * M, H, -1).transpose(0, 1) for part in cross.kv(memory).chunk(2, dim=-1)
         )
-        k = k / math.sqrt(C // H)  # (H, B*M, d), as v
-        asking = cross.q.weight.unflatten(0, (H, -1))  # (H, d, C)
-        answering = cross.out.weight.unflatten(1, (H, -1)).permute(1, 2, 0)  # (H, d, C)
+        k = k / math.sqrt(W // H)  # (H, B*M, d), as v
+        asking = cross.q.weight.unflatten(0, (H, -1))  # (H, d, W)
+        answering = cross.out.weight.unflatten(1, (H, -1)).permute(1, 2, 0)  # (H, d, W)
         keys, values = (
-            torch.bmm(part, weight).view(H, B, M, C).transpose(0, 1).reshape(B, H * M, C)
+            torch.bmm(part, weight).view(H, B, M, W).transpose(0, 1).reshape(B, H * M, W)
             for part, weight in ((k, asking), (v, answering))
         )
         own = (
@@ -92,11 +92,11 @@ class _Layer:
 
     def __call__(
         self,
-        x: Float[Tensor, "N C"],
+        x: Float[Tensor, "N W"],
         frames: int,
         self_bias: Float[Tensor, "1 H T T"],
         memory: Folded,
-    ) -> Float[Tensor, "N C"]:
+    ) -> Float[Tensor, "N W"]:
         width, shape = x.shape[1], (-1, frames, self.heads, x.shape[1] // self.heads)
         q, k, v = (
             part.reshape(shape).transpose(1, 2)

@@ -12,7 +12,7 @@ import warnings
 
 import numpy as np
 from jaxtyping import Float
-from scipy.linalg import sqrtm
+from sklearn.covariance import ledoit_wolf
 
 
 class FewSamplesWarning(UserWarning):
@@ -69,16 +69,7 @@ def shrunk_covariance(features: Float[np.ndarray, "N F"]) -> Float[np.ndarray, "
     clips are one.
     Notebook: 14
     """
-    centred = features - features.mean(0)
-    n, width = centred.shape
-    covariance = centred.T @ centred / n
-    size = np.trace(covariance) / width
-    spread = (covariance**2).sum() - width * size**2  # of the covariance around the target
-    noise = ((centred**2).sum(1) ** 2).sum() / n**2 - (
-        covariance**2
-    ).sum() / n  # expected error of the covariance
-    weight = 0.0 if spread <= 0 else float(np.clip(noise / spread, 0.0, 1.0))
-    return (1 - weight) * covariance + weight * size * np.eye(width)
+    return ledoit_wolf(features)[0]
 
 
 def fid(generated: Float[np.ndarray, "N F"], data: Float[np.ndarray, "M F"]) -> float:
@@ -142,25 +133,6 @@ def fid_floor(
             order = rng.permutation(len(data))
             found.append(distance(data[order[:n]], data[order[n:]]))
     return float(np.mean(found)), float(np.std(found))
-
-
-def published_fid(generated: Float[np.ndarray, "N F"], data: Float[np.ndarray, "M F"]) -> complex:
-    """FID as the public code has it.
-
-    The root of C1 C2 taken by scipy.linalg.sqrtm, without looking at what it returns.
-
-    C1 C2 is not symmetric. With fewer clips than features it is singular, and the root has an
-    imaginary part: hence a complex number here. The real part then still agrees with `fid`.
-    Source: MoFusion 4.1.   Notebook: 14
-    """
-    generated, data = _checked(generated, data)
-    first, second = _covariance(generated), _covariance(data)
-    root = sqrtm(first @ second)
-    if not np.isfinite(root).all():
-        more = 1e-6 * np.eye(len(first))
-        root = sqrtm((first + more) @ (second + more))
-    between = ((generated.mean(0) - data.mean(0)) ** 2).sum()
-    return complex(between + np.trace(first) + np.trace(second) - 2 * np.trace(root))
 
 
 def _covariance(features: np.ndarray) -> np.ndarray:

@@ -14,7 +14,7 @@ from jaxtyping import Float
 
 from .bvh.fit import least_turn
 from .directions import ARMS, SPINE1, UPLEGS, unit
-from .planting import pelvis_ahead, perpendicular
+from .planting import pelvis_ahead, perpendicular, triangle
 from .skeleton import HEELS, HIPS, JOINTS, PARENTS, J
 
 Pose = Float[np.ndarray, "21 3"]
@@ -88,8 +88,7 @@ def two_bones(
 
     A triangle of two bones a, b and the distance d.
 
-    The middle is (a^2 - b^2 + d^2) / 2d along the line and sqrt(a^2 - that^2) aside of it, on the
-    side where it was, which turns with the line. A target out of reach is drawn in along the line
+    The middle (`planting.triangle`) lies on the side where it was, which turns with the line. A target out of reach is drawn in along the line
     from the root.
     """
     root, middle, end = limb
@@ -98,8 +97,7 @@ def two_bones(
     wanted = float(np.linalg.norm(target - root))
     line = (target - root) / wanted if wanted > 1e-9 else unit(end - root)
     d = float(np.clip(wanted, min(abs(a - b) + 0.01, far), longest))
-    along = (a**2 - b**2 + d**2) / (2 * d)
-    aside = np.sqrt(max(a**2 - along**2, 0.0))
+    along, aside = triangle(a, b, d)
     before = perpendicular((middle - root)[None], unit(end - root)[None])
     was = float(np.linalg.norm(before))
     side = (least_turn(unit(end - root)[None], line[None]) @ before[0])[0]

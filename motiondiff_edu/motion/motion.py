@@ -1,4 +1,5 @@
-"""A Motion: where every joint is in every frame, and what came along. What the front door takes and gives.
+"""A Motion: where every joint is in every frame, and what came along; the front door takes and
+gives it.
 
     walk[20:60]   walk.between(1.0, 3.0)   walk.then(more)   walk.save("walk.bvh")
 `Clip` is its training view: poses in the root frame with their control.  Notebook: 00
@@ -112,7 +113,7 @@ class Motion:
         return np.isfinite(self.positions).all(-1)
 
     def all_but(
-        self, joints: list[str] | tuple[str, ...], first: int = 0, last: int | None = None
+        self, joints: str | list[str] | tuple[str, ...], first: int = 0, last: int | None = None
     ) -> Bool[np.ndarray, "T J"]:
         """`known`, but False for these joints in frames first to last - 1 (by default to the end):
         what `reconstruct` is to find.
@@ -165,7 +166,7 @@ class Motion:
         return self[round(first * self.fps) : round(last * self.fps)]
 
     def then(self, *others: "Motion") -> "Motion":
-        """This motion and then the others, one after the other; each stays where it is in the world.
+        """This motion and then the others; each stays where it is in the world.
 
         What did not come along with all of them is left out.
         Raises MotionError for another frame rate or skeleton.
@@ -175,7 +176,8 @@ class Motion:
             if abs(other.fps - self.fps) > 1e-6 or other.skeleton != self.skeleton:
                 raise MotionError(
                     f"{other.name} has {other.fps:g} frames/s and {len(other.skeleton)} joints, "
-                    f"{self.name} {self.fps:g} and {len(self.skeleton)}: bring it there by resampled()"
+                    f"{self.name} {self.fps:g} and {len(self.skeleton)}; resampled(fps) changes "
+                    f"the rate"
                 )
         joined = {"positions": np.concatenate([part.positions for part in parts])}
         for name in ("root", "contacts"):
@@ -224,16 +226,17 @@ class Motion:
             frame, joint = missing[0]
             raise MotionError(
                 f"{self.name}: {self.skeleton.names[joint]} in frame {frame} has no position (NaN; "
-                f"{len(missing)} such in all). md.reconstruct(motion, motion.known) can fill them in"
+                f"{len(missing)} such in all). md.reconstruct(motion, motion.known) can find them"
             )
 
     def check_whole(self) -> None:
-        """Raise MotionError unless every joint of the course's skeleton has its place, in two frames
-        at least."""
+        """Raise MotionError unless every joint of the course's skeleton has its place, in two
+        frames at least."""
         if self.skeleton != COURSE:
             raise MotionError(
                 f"{self.name} has {len(self.skeleton)} joints; the course's networks know the "
-                f"{len(COURSE)} of their own skeleton. Read the figure from a BVH file: it is retargeted"
+                f"{len(COURSE)} of their own skeleton. Read the figure from a BVH file: it is "
+                f"retargeted"
             )
         self.check_finite()
         if len(self) < 2:
@@ -266,6 +269,16 @@ class Motion:
         return show(self)
 
 
+def as_motion(given: object) -> Motion:
+    """A Motion as it is.  Raises TypeError, with what to do, for anything else."""
+    if not isinstance(given, Motion):
+        raise TypeError(
+            f"this takes a Motion, not {type(given).__name__}; md.read_motion(path) reads one from "
+            f"a file, md.Motion(positions, fps) makes one"
+        )
+    return given
+
+
 def check_ending(path: str | Path) -> str:
     """The ending by which `save` writes.  Raises MotionError for one that nobody knows."""
     ending = Path(path).suffix.lower()
@@ -284,20 +297,21 @@ def _positions(positions, skeleton: Skeleton) -> np.ndarray:
         raise MotionError("positions are numbers, (frames, joints, 3), in metres") from None
     if array.ndim != 3 or array.shape[-1] != 3 or not len(array):
         raise MotionError(
-            f"positions are (frames, joints, 3) in metres, with a frame at least; these are {array.shape}"
+            f"positions are (frames, joints, 3) in metres, with a frame at least; these are "
+            f"{array.shape}"
         )
     if array.shape[1] != len(skeleton):
         raise MotionError(
-            f"positions have {array.shape[1]} joints, the skeleton {len(skeleton)}: for another one "
-            f"pass skeleton=Skeleton(names, parents)"
+            f"positions have {array.shape[1]} joints, the skeleton {len(skeleton)}: for another "
+            f"one pass skeleton=Skeleton(names, parents)"
         )
     array[np.isnan(array).any(-1)] = np.nan
     wild = np.argwhere((np.abs(array) > FARTHEST).any(-1))
     if len(wild):
         frame, joint = wild[0]
         raise MotionError(
-            f"{skeleton.names[joint]} in frame {frame} is at {array[frame, joint]} m, which is nowhere: "
-            f"look where it was computed"
+            f"{skeleton.names[joint]} in frame {frame} is at {array[frame, joint]} m, which is "
+            f"nowhere: look where it was computed"
         )
     return array
 

@@ -14,6 +14,7 @@ import torch
 from jaxtyping import Float
 from torch import Tensor, nn
 
+from .. import rollout
 from ..beyond.footholds import FootholdConfig, FootholdMoDiff
 from ..conditions.control import as_long, splice
 from ..ddpm import Denoiser, Schedule, draw
@@ -23,12 +24,12 @@ from ..fast.samplers import ddim_steps, ddpm_steps
 from ..fast.twins import Twin, watched
 from ..modiff import MoDiff, MoDiffConfig
 from ..motion.checks import checked_count, checked_seconds
-from ..motion.motion import Motion, MotionError
+from ..motion.motion import Motion, MotionError, as_motion
 from ..motion.root_frame import FPS, root_path, to_world
 from ..motion.scaler import Scaler
 from ..motion.skeleton import J
 from ..prediction import denoiser_of
-from ..rollout import Sizes, WindowSampler, generate
+from ..rollout import Sizes, WindowSampler
 from .networks import kind_of, register
 from .with_bar import with_bar
 
@@ -102,7 +103,7 @@ class Walker:
         Raises MotionError and ValueError for what cannot be continued or meant; warns where the
         control asks for more than the walker saw in training.  Source: MoDiff Alg. 2.  Notebook: 00
         """
-        motion.check_whole()
+        as_motion(motion).check_whole()
         count, T_h = checked_count(samples, "samples"), self.config.T_h
         length = None if seconds is None else round(checked_seconds(seconds) * FPS)
         told = as_long(control, length)
@@ -114,12 +115,11 @@ class Walker:
                 f"({T_h / FPS:g} s) and needs so many"
             )
         rows = splice(clip.control, told, T_h)
-        past, steer = clip.features()[None, -T_h:], rows[None].astype(np.float32)
+        past = torch.from_numpy(clip.features()[-T_h:]).expand(count, -1, -1)
+        steer = torch.from_numpy(rows).float().expand(count, -1, -1)
         evaluations = len(told) * (steps or self.schedule.S)
         with with_bar(self, evaluations, "walking", progress) as walker:
-            new = generate(
-                walker, past.repeat(count, 0), steer.repeat(count, 0), seed=seed, steps=steps
-            )
+            new = rollout.generate(walker, past, steer, seed=seed, steps=steps)
         poses = new.double().cpu().numpy().reshape(count, -1, J, 3)
         place, heading = root_path(rows, tuple(given.root[-T_h]))
         way = np.column_stack([place, heading])
@@ -127,7 +127,9 @@ class Walker:
         for one in poses:
             whole = np.concatenate([clip.poses[-T_h:], one])
             world = to_world(whole, rows, tuple(way[0]))
-            made.append(Motion(world[T_h:], FPS, root=way[T_h:], source=f"{motion.name}, continued"))
+            made.append(
+                Motion(world[T_h:], FPS, root=way[T_h:], source=f"{motion.name}, continued")
+            )
         return made if samples > 1 else made[0]
 
     def denoiser(

@@ -1,4 +1,5 @@
-"""The front door's verbs that need weights: `load` by name, `inbetween` and `reconstruct` with the shipped ones.
+"""The front door's verbs that need weights: `load` by name; `inbetween` and `reconstruct` with the
+shipped ones.
 
 Notebook: 00, 10, 15
 """
@@ -14,7 +15,7 @@ from ..editing import inbetween as inbetweens
 from ..editing import reconstruct as reconstruction
 from ..editing.masks import checked_known
 from ..motion.checks import checked_count
-from ..motion.motion import Motion, MotionError
+from ..motion.motion import Motion, MotionError, as_motion
 from ..motion.root_frame import FPS
 from ..motion.skeleton import TOES
 from ..performers.dancer import Dancer
@@ -88,7 +89,7 @@ def _shipped(name: str) -> Walker | Dancer:
 
 def _fitting(motion: Motion, known) -> Bool[np.ndarray, "T J"]:
     """The mask, if it fits, for a motion at the networks' frame rate."""
-    if abs(motion.fps - FPS) > 1e-6:
+    if abs(as_motion(motion).fps - FPS) > 1e-6:
         raise MotionError(
             f"{motion.name} has {motion.fps:g} frames/s, the networks know {FPS:g}: bring it there "
             f"by motion.resampled({FPS:g}), and make `known` for that"

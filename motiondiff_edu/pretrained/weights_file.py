@@ -23,6 +23,8 @@ Config = TypeVar("Config")
 Assemble = Callable[
     [dict[str, Tensor], dict[str, str]], object
 ]  # (tensors, metadata) -> what they are
+# settings of earlier versions, with the value that says nothing
+RETIRED = {"reach": 0.0}
 SETTINGS = ("format", "network", "config", "schedule")  # what settles how the tensors are used
 
 
@@ -98,6 +100,7 @@ def config_of(metadata: dict[str, str], kinds: Mapping[str, type[Config]], defau
             f"{name} holds an unknown network, {metadata['network']}; upgrade, or register it first "
             "(performers.networks.register)"
         )
+    values = {k: v for k, v in values.items() if k not in RETIRED or v != RETIRED[k]}
     defaults = {field.name: field.default for field in fields(kind)}
     unknown = set(values) - set(defaults)
     if unknown:

@@ -13,7 +13,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from .body import GREY
-from .style import DASHES, LARGE, MEDIUM, OKABE_ITO, SMALL, figure, legend
+from .style import DASHES, OKABE_ITO, SMALL, figure, legend
 
 Curves = Mapping[str, tuple]  # name -> (x, y), equally long
 
@@ -54,39 +54,6 @@ def loss_curves(
     if log:
         axis.set_yscale("log")
     legend(axis)
-    return fig
-
-
-def small_multiples(
-    panels: Mapping[str, Curves],
-    xlabel: str,
-    ylabel: str,
-    columns: int = 3,
-    title: str = "",
-    log: bool = False,
-) -> Figure:
-    """One small picture for each entry, all with the same axes, so that they can be compared."""
-    columns = min(columns, len(panels))
-    rows = -(-len(panels) // columns)
-    words = (
-        f"{title + ': ' if title else ''}{ylabel} over {xlabel}, "
-        f"one picture each for {', '.join(panels)}."
-    )
-    fig, axes = figure(
-        4.2 * columns, 3.2 * rows + 0.3, words, rows, columns, sharex=True, sharey=True
-    )
-    for axis, (name, curves) in zip(axes, panels.items(), strict=False):
-        _lines(axis, curves)
-        axis.set_title(name)
-        if log:
-            axis.set_yscale("log")
-    for axis in axes[len(panels) :]:
-        axis.set_axis_off()
-    legend(axes[0])
-    fig.supxlabel(xlabel, fontsize=MEDIUM)
-    fig.supylabel(ylabel, fontsize=MEDIUM)
-    if title:
-        fig.suptitle(title, fontsize=LARGE)
     return fig
 
 

@@ -104,7 +104,7 @@ def _sticks(axis: Axes, pose: Float[np.ndarray, "21 3"], reach: float) -> None:
 
 
 def noticed(
-    values: Float[np.ndarray, "R C"], rows: Sequence[str], columns: Sequence[str], words: str
+    values: Float[np.ndarray, "R K"], rows: Sequence[str], columns: Sequence[str], words: str
 ) -> Figure:
     """A table of losses.
 

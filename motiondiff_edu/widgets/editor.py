@@ -17,7 +17,7 @@ import torch
 import traitlets
 from jaxtyping import Bool, Float
 
-from ..editing.edit import Edit, Made, Make, drag_in_words, make_between, takes
+from ..editing.edit import Edit, Made, Make, drag_in_words, make_between
 from ..motion.bvh.fit import FitReport
 from ..motion.bvh.write import write_bvh
 from ..motion.skeleton import JOINTS, J, joint_index
@@ -46,11 +46,10 @@ class _Grip:
 
 
 class Editor(anywidget.AnyWidget):
-    """Edit a motion (T, 21, 3), world positions in metres; `make(positions, known, generator)`
-    finds the rest.
+    """Edit a motion (T, 21, 3), world positions in metres; `make` finds the rest.
 
-    `make` returns (samples, T, 21, 3), metres; where it takes `samples` and `resample` it is told
-    the page's numbers: `functools.partial(inbetween, dancer)` is one. It runs in the kernel; the
+    `make` is an `editing.edit.Make`: `functools.partial(inbetween, dancer)` is one. It is called
+    with the page's numbers for `samples` and `resample`, and runs in the kernel; the
     generator is seeded by `seed` + how often Generate was pressed before. `names` are the 21
     joints' names on the page. `known`, `positions`, `samples` and `chosen` can be read; `pin`,
     `unpin`, `drag`, `keep`, `generate`, `undo`, `reset` and `save` do what the page's controls do,
@@ -91,7 +90,7 @@ class Editor(anywidget.AnyWidget):
         packed = packing.pack([motion])
         with self.hold_sync():
             self.joints, self.roots = packed.joints, packed.roots
-            self.scene = editor_page.scene_of(self.edit, self._fps, names, takes(make, "resample"))
+            self.scene = editor_page.scene_of(self.edit, self._fps, names, True)
             self._tell("Pin frames (Enter), drag their joints, then Generate.")
         self.on_msg(self._receive)
 

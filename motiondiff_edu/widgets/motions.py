@@ -14,7 +14,7 @@ import numpy as np
 from jaxtyping import Float
 
 from ..motion import registry
-from ..motion.motion import Motion, MotionError
+from ..motion.motion import Motion, MotionError, as_motion
 from ..motion.skeleton import COURSE
 from .player import Player
 
@@ -22,7 +22,8 @@ from .player import Player
 def player_of(motions: Sequence[Motion], labels: Sequence[str] | None = None) -> Player:
     """Several motions side by side, at the frame rate of the first, with the first sound there is.
 
-    Raises MotionError where a joint is missing, for two skeletons, and for labels that do not match.
+    Raises MotionError where a joint is missing, for two skeletons, and for labels that do not
+    match.
     """
     first = motions[0]
     for motion in motions:
@@ -64,13 +65,13 @@ def play(
     is printed and returned; `open_page=False` leaves it at that.
     Raises MotionError as `player_of`, TypeError for what is no Motion.  Notebook: 00
     """
-    figures = [
-        one for given in motions for one in ([given] if isinstance(given, Motion) else given)
-    ]
-    wrong = next((one for one in figures if not isinstance(one, Motion)), None)
-    if wrong is not None or not figures:
-        what = "nothing was given" if not figures else f"not {type(wrong).__name__}"
-        raise TypeError(f"play takes motions, {what}; md.read_motion(path) reads one")
+    figures = []
+    for given in motions:
+        figures += list(given) if isinstance(given, list | tuple) else [given]
+    if not figures:
+        raise TypeError("play takes a motion at least; md.read_motion(path) reads one")
+    for one in figures:
+        as_motion(one)
     player = player_of(figures, labels)
     if path is None and _in_a_notebook():
         from IPython.display import display

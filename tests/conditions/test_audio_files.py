@@ -7,12 +7,12 @@ import math
 import shutil
 import warnings
 
-import librosa
 import numpy as np
 import pytest
 import soundfile
 import torch
 from bursts import clicks
+from scipy.signal import firwin, resample_poly
 
 from motiondiff_edu.conditions.audio_files import AudioError, read_audio, read_sound, resample
 from motiondiff_edu.conditions.music import log_mel
@@ -121,7 +121,7 @@ def test_every_kind_and_rate_gives_the_same_sound(tmp_path, kind, rate):
     path, tones = tmp_path / f"chord.{kind[0]}", chord(rate)
     soundfile.write(path, tones, rate, subtype=kind[1])
     audio = read_audio(path)
-    assert audio.dtype == torch.float32 and len(audio) == math.ceil(len(tones) * 16000 / rate)
+    assert audio.dtype == torch.float32 and abs(len(audio) - len(tones) * 16000 / rate) <= 0.5
     error = np.abs(audio.numpy()[2000:-2000] - chord(16000)[: len(audio)][2000:-2000]).max()
     assert error < (0.06 if kind[0] in ("mp3", "ogg", "au") else 2e-4)
 
@@ -136,12 +136,14 @@ def test_a_sound_above_the_new_limit_does_not_come_back_as_another():
         assert np.abs(resample(np.sin(2 * np.pi * hz * t), 44100)[1000:-1000]).max() < left
 
 
-def test_resampled_music_is_what_soxr_makes_of_it(real_data):
+def test_resampled_music_is_what_a_long_windowed_sinc_makes_of_it(real_data):
     song, rate = soundfile.read(real_data / "audio/vibe_ace.ogg", frames=22050 * 8, dtype="float32")
-    theirs = librosa.resample(song, orig_sr=rate, target_sr=16000, res_type="soxr_vhq")
+    cut = max(up := 16000 // math.gcd(16000, rate), down := rate // math.gcd(16000, rate))
+    taps = firwin(64 * cut + 1, 0.96 / cut, window=("kaiser", 8.6)).astype(song.dtype)
+    theirs = resample_poly(song, up, down, window=taps)
     ours = resample(song, rate)
-    assert len(ours) == len(theirs)
-    difference = (log_mel(ours) - log_mel(theirs))[4:-4]
+    assert 0 <= len(theirs) - len(ours) <= 1
+    difference = (log_mel(ours) - log_mel(theirs[: len(ours)]))[4:-4]
     assert float(difference[:, :77].abs().max()) < 0.02 and float(difference.abs().median()) < 1e-3
 
 

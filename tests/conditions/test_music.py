@@ -15,7 +15,6 @@ from scipy.io import loadmat
 from motiondiff_edu.conditions import audio_files, music
 from motiondiff_edu.conditions.music import (
     SAMPLE_RATE,
-    at_times,
     beats_of,
     crop_seconds,
     frame_times,
@@ -216,17 +215,6 @@ def test_a_crop_up_to_the_very_end_is_there_for_any_length():
         mel, end = log_mel(torch.zeros(n)), n / SAMPLE_RATE
         crop, times = crop_seconds(mel, end - 1.5, 1.5)
         assert len(crop) == 46 and times[-1] <= 1.5
-
-
-def test_mel_at_motion_frames_is_read_by_time():
-    mel = frame_times(50)[:, None] * torch.linspace(
-        1, 2, 80, dtype=torch.float64
-    )  # grows with time: lines are exact
-    motion = torch.arange(31, dtype=torch.float64) / 20
-    torch.testing.assert_close(at_times(mel, motion)[:, 0], motion)
-    torch.testing.assert_close(at_times(mel, frame_times(50)), mel)
-    torch.testing.assert_close(at_times(mel, torch.tensor([-1.0, 99.0]).double()), mel[[0, -1]])
-    assert at_times(mel[:1].expand(2, 3, 1, 80), motion).shape == (2, 3, 31, 80)
 
 
 @pytest.mark.parametrize("kind", ["noise", "tone", "kick"])

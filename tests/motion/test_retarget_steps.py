@@ -14,7 +14,7 @@ from motiondiff_edu.motion.normalise import (
     turn_up,
     unmirror,
 )
-from motiondiff_edu.motion.planting import find_contacts, plant, shift_to_pins, solve_leg, spans
+from motiondiff_edu.motion.planting import find_contacts, plant, runs, shift_to_pins, solve_leg
 from motiondiff_edu.motion.retarget import warn_sunk
 from motiondiff_edu.motion.skeleton import BONE_LENGTHS, HEELS, OFFSETS, PARENTS, TOES, joint_index
 
@@ -76,7 +76,7 @@ def test_contacts_and_pins():
     toe = np.zeros((9, 3))
     toe[:, 0] = [0, 0.001, 0.002, 0.2, 0.4, 0.6, 0.8, 0.801, 0.802]
     contact = np.array([1, 1, 1, 0, 0, 0, 1, 1, 1], bool)
-    assert spans(contact) == [(0, 3), (6, 9)]
+    assert runs(contact).tolist() == [[0, 3], [6, 9]]
     moved = toe + shift_to_pins(toe, contact)
     assert np.allclose(moved[:3], moved[0]) and np.allclose(moved[6:], moved[6])
     both = np.stack([toe, toe + [0, 0.2, 0]], axis=1)

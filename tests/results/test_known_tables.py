@@ -39,7 +39,7 @@ def test_the_table_has_a_row_for_each_way_and_a_column_for_each_hole(records):
     said = known_tables.known_answers(records)
     assert "| way | seed | keyframes | lower body | past-frames | past-leg |" in said
     assert (
-        said.count("| `masked.50` |") == said.count("| `gibbs.20` |") == 3
+        said.count("<br>`masked.50` |") == said.count("<br>`gibbs.20` |") == 3
         and "2 windows, 30 samples" in said
     )
     assert known_tables.known_answers({}) == known_tables.both({}) == ""
@@ -72,4 +72,4 @@ def test_both_papers_repairs_in_a_row_each():
     }
     said = known_tables.both(records)
     assert "| way | arm, mean | arm, one | leg, mean | leg, one |" in said
-    assert "| `masked` | 1 | 2 | 5 | 6 |" in said and "mean of 10 repairs" in said
+    assert "<br>`masked` | 1 | 2 | 5 | 6 |" in said and "mean of 10 repairs" in said

@@ -203,7 +203,7 @@ def test_errors_are_told_in_the_page_and_leave_it_at_rest(motion, tmp_path):
 def test_a_press_while_another_is_answered_is_ignored(motion):
     calls = []
 
-    def make(positions, known, generator):
+    def make(positions, known, generator, **_):
         calls.append(len(calls))
         assert editor.busy
         receive(editor, do="generate", after=0)  # a message that comes in between
@@ -517,10 +517,10 @@ def test_errors_appear_in_the_message_line(page, editor):
     assert "There are no in-betweens yet" in words(page)
     press(page, "z")
     assert "There is nothing to undo." in words(page)
-    editor._make = lambda p, k, g: p
+    editor._make = lambda p, k, **_: p
     press(page, "g")
     page.wait_for_function("document.querySelector('.mde-say').textContent.includes('is needed')")
-    assert "(31, 21, 3); (samples, 31, 21, 3) is needed." in words(page)
+    assert "(31, 21, 3); (3, 31, 21, 3) is needed." in words(page)
     page.wait_for_function("document.querySelector('.mde-main').textContent === 'Generate'")
 
 

@@ -11,7 +11,7 @@ import torch
 from synthetic_walk import walk
 from motiondiff_edu.baselines.interpolation import spherical
 from motiondiff_edu.widgets.editor import Editor
-def make(positions, known, generator, samples=1):
+def make(positions, known, generator, samples=1, resample=1):
     shake = 0.02 * torch.randn(samples, 40, 21, 3, generator=generator).double().numpy()
     return spherical(positions, known) + shake * ~known[..., None]
 editor = Editor(walk(frames=40)[0], make)

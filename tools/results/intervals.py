@@ -17,7 +17,8 @@ def interval(
 
     Arrays have one row for each clip and are drawn together.
 
-    A figure that is not a number in some draws (no planted toe in any clip drawn) leaves those out.
+    A figure that is not a number in some draws (no planted toe in any clip drawn) leaves those out;
+    scipy.stats.bootstrap then has no interval, and it refuses a single clip.
     """
     rng, n = np.random.default_rng(0), len(per_clip[0])
     values = []

@@ -93,7 +93,7 @@ def frame_rows(
     columns: list[tuple[str, str]],
     path: str | Path,
     declared_line: int,
-) -> Float[np.ndarray, "T C"]:
+) -> Float[np.ndarray, "T K"]:
     """All frames as an array (T, channels).
 
     A frame may be wrapped over several lines but must end where a line ends; so a lost or an

@@ -35,7 +35,7 @@ class Bvh:
     parents: Int[np.ndarray, " N"]
     offsets: Float[np.ndarray, "N 3"]
     channels: tuple[tuple[str, ...], ...]
-    frames: Float[np.ndarray, "T C"]
+    frames: Float[np.ndarray, "T K"]
     frame_time: float
     is_end: Bool[np.ndarray, " N"]
     source: str = ""
@@ -136,7 +136,7 @@ def read_bvh(path: str | Path, file_fps: float | int | None = None) -> Bvh:
 
 
 def assemble(
-    nodes: list[Node], frames: Float[np.ndarray, "T C"], seconds: float, source: str
+    nodes: list[Node], frames: Float[np.ndarray, "T K"], seconds: float, source: str
 ) -> Bvh:
     """The frozen record of what was read."""
     return Bvh(

@@ -46,14 +46,14 @@ TABLE_1 = """## MoFusion's Table 1
 
 | here | in the paper | the same? |
 | --- | --- | --- |
-| `bas_music` | BAS, eq. 10 | the formula, sigma 3 of 60 frames a second; \
-beats are true ones here, librosa's there |
-| `fid`, `diversity`, `multimodality` | FID, Div, MModality | the kind, \
-without the public code's misplaced bracket |
-| `bas` | the words above eq. 10 | averaged over the stops of the dance, \
-so that stopping all the time wins nothing |
-| `bas_share` | none | how much of the data's own alignment, beyond that with other songs' beats, \
-is there |
+| beats of the music danced to, `bas_music` | BAS, eq. 10 | the formula, sigma 3 of 60 frames a \
+second; beats are true ones here, librosa's there |
+| `fid`, `diversity`, `multimodality` | FID, Div, MModality | the kind, without the public code's \
+misplaced bracket |
+| stops of the dance on a beat, `bas` | the words above eq. 10 | averaged over the stops of the \
+dance, so that stopping all the time wins nothing |
+| share of the data's alignment, `bas_share` | none | how much of the data's own alignment, \
+beyond that with other songs' beats, is there |
 
 The data are not the same: AIST++ is recorded, ours composed and danced by a program, \
 with other joints, clips of 5 s
@@ -164,7 +164,7 @@ def _times(records: dict[str, dict]) -> str:
     ]
     rows = [
         [
-            f"`{name}`",
+            f"`{name}`: {VARIANTS[name][0]}",
             *(cell(records.get(f"dance-time.{name}.{kind}"), unit=False) for kind in kinds),
         ]
         for name in TIMED

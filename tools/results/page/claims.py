@@ -218,19 +218,20 @@ CLAIMS = (
 
 
 def claims(records: dict[str, dict]) -> str:
-    """A line for each claim, then what agrees and what does not."""
+    """What agrees and what does not; then, folded, a line for each claim."""
     judged = [(claim, claim.verdict(records)) for claim in CLAIMS]
     rows = [
         [one.words, one.where, f"**{said}**", _measured(one, records), one.rule]
         for one, said in judged
     ]
-    text = TEXT + table(["claim", "MoFusion", "verdict here", "measured", "limit"], rows)
+    judgements = table(["claim", "MoFusion", "verdict here", "measured", "limit"], rows)
     sums = [
         f"* **{said}** ({len(of)}): {'; '.join(of) or 'none'}"
         for said in (AGREES, DIFFERS, OPEN, MISSING)
         for of in [[claim.words for claim, found in judged if found == said]]
     ]
-    return f"{text}\n### What agrees with the paper and what does not\n\n" + "\n".join(sums) + "\n"
+    fold = f"<details><summary>Each claim with its figures</summary>\n\n{judgements}\n</details>\n"
+    return TEXT + "\n".join(sums) + "\n\n" + fold
 
 
 def _measured(claim: Claim, records: dict[str, dict]) -> str:

@@ -1,5 +1,9 @@
 """Numbers, intervals and tables as Markdown has them."""
 
+import re
+
+from .words import label
+
 
 def number(x: float | None) -> str:
     """Three digits; a dash where there is none."""
@@ -18,7 +22,7 @@ def span(one: dict) -> str:
 def cell(one: dict | None, unit: bool = True) -> str:
     """Value, interval and unit of a record.
 
-    A figure that was computed once, over all clips, has no interval.
+    A figure that was computed once, over all clips, has no interval. Ratios and shares have no unit.
     """
     if one is None or one["value"] is None:
         return "-"
@@ -26,11 +30,23 @@ def cell(one: dict | None, unit: bool = True) -> str:
     return " ".join(
         [number(one["value"])]
         + [span(one)] * (not once)
-        + [one["unit"]] * (unit and bool(one["unit"]))
+        + [one["unit"]] * (unit and one["unit"] not in ("", "ratio", "share"))
     )
 
 
 def table(head: list[str], rows: list[list[str]]) -> str:
-    """A table with a head."""
-    lines = ["| " + " | ".join(row) + " |" for row in (head, ["---"] * len(head), *rows)]
+    """A table with a head; where a heading or a row's name is a key alone, its words are added."""
+    named = [[label(row[0]), *row[1:]] for row in rows]
+    lines = [
+        "| " + " | ".join(row) + " |" for row in (map(label, head), ["---"] * len(head), *named)
+    ]
     return "\n".join(lines) + "\n"
+
+
+def folded(section: str, summary: str, tables: int = 1) -> str:
+    """A section whose text after so many tables is folded away; as it is where there is no more."""
+    ends = [found.end() for found in re.finditer(r"(?:^\|.*\n)+", section, re.M)]
+    if len(ends) <= tables:
+        return section
+    open_part, rest = section[: ends[tables - 1]], section[ends[tables - 1] :].strip("\n")
+    return f"{open_part}\n<details><summary>{summary}</summary>\n\n{rest}\n\n</details>\n"

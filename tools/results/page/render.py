@@ -11,13 +11,16 @@ from motiondiff_edu._files import replacing
 from ..dances.tables import choices, table_1
 from ..inbetweens import known_tables
 from ..repairs import tables
+from ..walks import ladder_page
 from ..walks.budget import VARIANTS
 from ..walks.steps_table import PAPER_TABLE
 from .bars import BARS, Bar
 from .claims import claims
-from .markdown import cell, number, span, table
+from .markdown import cell, folded, number, span, table
+from .opening import contents, opening
+from .words import GOALS
 
-HEAD = """# Results
+HEAD = """## How to read this page
 
 Made by `make results` (and `make bench`) from the records in `docs/results` and \
 `benchmarks/results`. Do not edit.
@@ -29,6 +32,14 @@ high]** is a 95 % interval (bootstrap) over clips; over pasts
 for diversity; over repeats for times. It is that of one training run: \
 it does not hold what another training seed
 would change.
+"""
+
+ALL = "RESULTS_ALL.md"
+FURTHER = """# Further figures
+
+Every figure that stands in no table of [RESULTS.md](RESULTS.md), with its 95 % interval and the command that measures it.
+Made by `make results` and `make bench`. Do not edit.
+
 """
 
 
@@ -51,8 +62,12 @@ def read_records(*folders: Path) -> dict[str, dict]:
 
 def bars(records: dict[str, dict]) -> str:
     """Every bar with the measured figure: met, missed, or not measured."""
-    rows = [[f"`{bar.name}`", bar.text, *_verdict(bar, records.get(bar.name))] for bar in BARS]
-    return "## The bars\n\n" + table(["figure", "bar", "measured", "interval", ""], rows)
+    rows = [
+        [GOALS.get(bar.name, ""), f"`{bar.name}`", bar.text, *_verdict(bar, records.get(bar.name))]
+        for bar in BARS
+    ]
+    head = ["what", "figure", "bar", "measured", "interval", ""]
+    return "## The bars\n\n" + table(head, rows)
 
 
 def _verdict(bar: Bar, one: dict | None) -> list[str]:
@@ -199,33 +214,35 @@ def attention(records: dict[str, dict], folder: Path) -> str:
 
 def others(records: dict[str, dict]) -> str:
     """Everything that stands in no table above, with what makes it."""
-    shown = ("walker", "footsteps", "budget.", "dance-budget.", "dance-time.", "attention.")
+    shown = ("walker", "footsteps", "ladder.", "budget.", "dance-budget.", "dance-time.", "attention.")
     shown += ("mend", "known-answer.", "inbetween.")
     rest = [one for name, one in sorted(records.items()) if not name.startswith(shown)]
     rows = [
         [f"`{r['name']}`", number(r["value"]), span(r), r["unit"], f"`{r['command']}`"]
         for r in rest
     ]
-    return (
-        "## Further figures\n\n" + table(["figure", "value", "interval", "unit", "made by"], rows)
-        if rows
-        else ""
-    )
+    head = ["figure", "value", "interval", "unit", "made by"]
+    return FURTHER + table(head, rows) if rows else ""
 
 
 def render(docs: Path, benchmarks: Path = Path("benchmarks/results")) -> None:
-    """Write RESULTS.md beside the records, to a temporary name first."""
+    """Write RESULTS.md and RESULTS_ALL.md beside the records, each to a temporary name first."""
     records = read_records(docs / "results", benchmarks)
+    ladder_page.draw(records, docs / "results")
     parts = [HEAD, bars(records), walkers(records), footsteps(records, docs / "results")]
     parts += [
+        ladder_page.section(records, docs / "results"),
         budget(records),
         table_1(records),
-        choices(records),
+        folded(choices(records), "What training and dancing cost in time"),
         attention(records, docs / "results"),
     ]
     tables.draw(records, docs / "results")
     parts += [tables.dropout(records, docs / "results"), tables.repairs(records, docs / "results")]
-    parts += [known_tables.both(records), known_tables.known_answers(records)]
-    parts += [tables.inbetweens(records, docs / "results"), claims(records), others(records)]
-    with replacing(docs / "RESULTS.md") as aside:
-        aside.write_text("\n".join(part for part in parts if part))
+    known = folded(known_tables.known_answers(records), "The spread, and the shares of the parts")
+    parts += [known_tables.both(records), known]
+    parts += [tables.inbetweens(records, docs / "results"), claims(records)]
+    parts = [opening(records), contents(parts), *parts]
+    for name, text in (("RESULTS.md", "\n".join(filter(None, parts))), (ALL, others(records))):
+        with replacing(docs / name) as aside:
+            aside.write_text(text)

@@ -1,0 +1,199 @@
+"""Words for the keys of the records, as the tables and the opening of docs/RESULTS.md have them."""
+
+import re
+
+# Of figures with a goal: what is measured, as the subject of "... is 0.22 cm".
+GOALS = {
+    "walker.bone_rmse_cm": "the walker's bone error",
+    "walker.adherence_excess_mps": "the walker's control error beyond that of the data",
+    "walker.adherence_shuffled_over_own": (
+        "the walker's error on other clips' controls, over that on its own"
+    ),
+    "walker.drift_ratio": "the walker's error in the last 3 s, over that in the first 3 s",
+    "walker.skating_over_data": "the sliding of the walker's planted feet, over that of the data",
+    "walker.diversity_over_data": "the diversity of the walker's walks, over that of the data",
+    "bench.modiff_frame_paper_x": (
+        "the speed of a frame at the paper's size, over a plain loop with diffusers"
+    ),
+    "bench.modiff_frame_small_x": (
+        "the speed of a frame at the shipped size, over a plain loop with diffusers"
+    ),
+    "bench.sampler_over_diffusers": "the cost of the sampler itself, over that of diffusers",
+    "bench.sampler_over_smalldiffusion": (
+        "the cost of the sampler itself, over that of smalldiffusion"
+    ),
+    "bench.walker_80s_bone_rmse_cm": "the bone error of walks of 80 s",
+    "bench.walker_80s_adherence_excess_mps": (
+        "the control error of walks of 80 s beyond that of the data"
+    ),
+    "bench.import_over_torch": "the time to import the library, over that to import torch",
+    "dancer.bas_share": "the beat alignment of the dances beyond chance, over that of the data",
+    "dancer.speed_over_data": "the speed of the dances, over that of the data",
+    "dancer.beats_per_beat_over_data": "the number of stops for each beat, over that of the data",
+    "dancer.bone_rmse_cm": "the dancer's bone error",
+    "dancer.bone_gain": "the share of the bone error that kinematic losses remove",
+    "dancer.multimodality_over_data": "the variety of dances to one song, over that of the data",
+    "regression.multimodality": "the variety of the regression's dances to one song",
+    "dancer.long200_over_100": "the beat alignment of dances of 10 s, over that of 5 s",
+    "dancer.long400_over_100": "the beat alignment of dances of 20 s, over that of 5 s",
+    "player.audio_offset_ms": "the player's offset between sound and picture (95th percentile)",
+    "bench.unet_sampling_n64_x": "the U-Net's speed of sampling 64 frames, over lucidrains' Unet1D",
+    "bench.unet_sampling_n200_x": (
+        "the U-Net's speed of sampling 200 frames, over lucidrains' Unet1D"
+    ),
+    "bench.unet_training_x": "the U-Net's speed of training, over lucidrains' Unet1D",
+    "bench.unet_sampling_diffusers_x": "the U-Net's speed of sampling, over diffusers' UNet1DModel",
+    "bench.logmel_x": "the speed of the log-Mel spectrogram, over librosa",
+    "bench.logmel_ms_per_minute": "the time for the log-Mel spectrogram of a minute of sound",
+    "mend.dropout_gain_bone_cm": "what diffusion dropout saves in bone error, with joints missing",
+    "mend.dropout_gain_adherence_mps": (
+        "what diffusion dropout saves in control error, with joints missing"
+    ),
+    "mend.dropout_cost_complete": (
+        "the error with diffusion dropout, over that without, from complete pasts"
+    ),
+    "mend.arm_rmse_over_ridge": "the error of a reconstructed arm, over that of ridge regression",
+    "mend.arm_rmse_over_meanpose": "the error of a reconstructed arm, over that of the mean pose",
+    "mend.frames_rmse_over_interpolation": (
+        "the error of reconstructed frames, over that of straight lines"
+    ),
+    "mend.table2_ratio": "the small walkers' bone error with joints missing, over that without",
+    "mend.footsteps_over_data": (
+        "the small walkers' footsteps with joints missing, over those of the data"
+    ),
+    "mend.table2_walker_ge_over_whole": (
+        "the walker's bone error with joints missing, over that without"
+    ),
+    "mend.table2_walker_bone_re_cm": "the bone error of pasts that the walker reconstructed",
+    "mend.footsteps_walker_over_data": (
+        "the walker's footsteps with joints missing, over those of the data"
+    ),
+    "inbetween.keyframe_error_cm": "the error of in-betweens at the given frames",
+    "inbetween.gap15_error_over_interpolation": (
+        "the error in gaps of 15 frames, over that of straight lines"
+    ),
+    "inbetween.gap30_error_over_interpolation": (
+        "the error in gaps of 30 frames, over that of straight lines"
+    ),
+    "inbetween.gap60_error_over_interpolation": (
+        "the error in gaps of 60 frames, over that of straight lines"
+    ),
+    "inbetween.npss_over_interpolation": "the spectral error (NPSS), over that of straight lines",
+    "inbetween.seam_jump_over_data": "the jump at the ends of a gap, over that of the data",
+}
+
+# Of columns and rows: the last part of a key.
+KINDS = {
+    "bone_rmse_cm": "bone error",
+    "bone_rmse_within_clip_cm": "bone error around each clip's own lengths",
+    "bone_rmse_data_cm": "bone error of the data",
+    "adherence_mps": "control error",
+    "adherence_data_mps": "control error of the data",
+    "adherence_excess_mps": "control error beyond the data's",
+    "adherence_shuffled_over_own": "error on other controls over that on its own",
+    "drift_bone_ratio": "bone error, last 3 s over first 3 s",
+    "drift_adherence_ratio": "control error, last 3 s over first 3 s",
+    "drift_ratio": "drift: the larger of both",
+    "skating_mps": "sliding of planted feet",
+    "skating_data_mps": "sliding of planted feet, data",
+    "skating_over_data": "sliding over the data's",
+    "planted_share": "share of frames with a planted foot",
+    "planted_share_data": "share of frames with a planted foot, data",
+    "diversity_m": "diversity",
+    "diversity_data_m": "diversity of the data",
+    "diversity_over_data": "diversity over the data's",
+    "diversity_over_data_median": "diversity over the data's, median past",
+    "steps": "training steps",
+    "bas": "beat alignment over the dance's stops",
+    "bas_music": "beat alignment over the music's beats",
+    "bas_share": "share of the data's alignment",
+    "speed_over_data": "speed over the data's",
+    "beats_per_beat_over_data": "stops for each beat, over the data's",
+    "multimodality_over_data": "variety for one song, over the data's",
+    "fid": "Fréchet distance (FID)",
+    "parameters": "parameters",
+    "step_ms": "a training step, ms",
+    "step_over_x0": "a training step, over x0's",
+    "pass_ms": "one pass, ms",
+    "pass_over_x0": "one pass, over x0's",
+    "dance_ms": "8 dances, ms",
+    "dance_over_x0": "8 dances, over x0's",
+    "beat_mass": "attention near beats",
+    "beat_mass_over_shuffled": "over that near other songs' beats",
+    "beat_mass_over_shifted": "over that near its beats, shifted",
+    "seconds_read": "music read by a frame",
+    "dropout_gain_bone_cm": "saved in bone error, with joints missing",
+    "dropout_gain_adherence_mps": "saved in control error, with joints missing",
+    "dropout_cost_complete": "error over that without dropout, complete pasts",
+    "rmse_cm": "mean of ten",
+    "one_rmse_cm": "one",
+    "paper_rmse_cm": "as in the paper, mean",
+    "paper_one_rmse_cm": "as in the paper, one",
+    "rmse_ridge_cm": "ridge regression",
+    "rmse_meanpose_cm": "mean pose",
+    "rmse_over_ridge": "over ridge regression",
+    "nearer_than_ridge": "share nearer than ridge regression",
+    "rmse_over_meanpose": "over the mean pose",
+    "nearer_than_meanpose": "share nearer than the mean pose",
+    "rmse_interpolation_cm": "straight lines",
+    "rmse_over_interpolation": "over straight lines",
+    "nearer_than_interpolation": "share nearer than straight lines",
+    "there_and_back": "MoDiff's, there and back",
+    "there_and_back_masked": "the same, what is known held on the way back",
+    "masked": "MoFusion's, under a mask",
+    "masked_blended": "the same, blended and guided",
+    "exact": "draws from the right answer",
+    "npss_over_interpolation": "NPSS over straight lines'",
+    "npss_velocity_over_interpolation": "NPSS of velocities over straight lines'",
+    "seam_jump_over_data": "jump at the seam over the data's",
+    "seam_jump_lines_over_data": "jump of straight lines",
+    "seam_jump_masked_over_data": "jump, masked as in the paper",
+    "skating_lines_mps": "sliding of straight lines",
+    "skating_masked_mps": "sliding, masked as in the paper",
+}
+TABLE_2 = {
+    "bone_whole_cm": "bone error, complete pasts",
+    "bone_ge_cm": "bone error of walks from broken pasts",
+    "bone_re_cm": "bone error of reconstructed pasts, our way",
+    "bone_re_bones_cm": "the same, bones kept",
+    "bone_re_paper_cm": "bone error of reconstructed pasts, the paper's way",
+    "ratio": "the larger of walks and reconstructions, over complete pasts",
+    "ge_over_whole": "walks from broken pasts over complete pasts",
+}
+WALKERS = {"": "small walkers", "keep5_": "small walkers, five poses kept", "walker_": "`walker`"}
+FOOTSTEPS = {
+    "": "footsteps over the data's, our way",
+    "_paper": "footsteps over the data's, the paper's way",
+}
+
+
+def in_words(key: str) -> str | None:
+    """What a key stands for; None where it has no words yet."""
+    second = re.fullmatch(r"mend\.table2_(keep5_|walker_|)(\w+)", key)
+    if second and second[2] in TABLE_2:
+        return f"{WALKERS[second[1]]}: {TABLE_2[second[2]]}"
+    steps = re.fullmatch(r"mend\.footsteps_(keep5_|walker_|)over_data(_paper|)", key)
+    if steps:
+        return f"{WALKERS[steps[1]]}: {FOOTSTEPS[steps[2]]}"
+    return way_in_words(key) or KINDS.get(key)
+
+
+def way_in_words(key: str) -> str | None:
+    """Of a way to fill in, such as `masked.50.x5`: how many steps, and what was added."""
+    way = re.fullmatch(r"(masked|there-and-back|gibbs)\.(\d+)(?:\.(x(\d+)|blended|guided))?", key)
+    if way is None:
+        return None
+    kind, steps, more, times = way.groups()
+    if kind == "masked":
+        added = f", each {times} times" if times else f", {more}" if more else ""
+        return f"under a mask, {steps} steps{added}"
+    rounds = "once" if steps == "1" else f"{steps} times"
+    held = ", what is known seen on the way back" if kind == "gibbs" else ""
+    return f"there and back, {rounds}{held}"
+
+
+def label(cell: str) -> str:
+    """A cell that is a key alone gets its words before it; any other stays as it is."""
+    key = re.fullmatch(r"`([^`]+)`", cell)
+    words = in_words(key[1]) if key else None
+    return f"{words}<br>{cell}" if words else cell
