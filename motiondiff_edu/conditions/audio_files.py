@@ -108,12 +108,13 @@ def samples_of(sound: str | Path | np.ndarray | Tensor) -> Float[Tensor, "N"]:
     samples = np.asarray(sound)
     if samples.ndim != 1 or not len(samples):
         raise AudioError(
-            f"sound is one channel of samples (N,) at {SAMPLE_RATE} Hz, not {samples.shape}; the mean of "
-            "several channels is one"
+            f"sound is one channel of samples (N,) at {SAMPLE_RATE} Hz, not {samples.shape}; the "
+            "mean of several channels is one"
         )
     if not np.issubdtype(samples.dtype, np.floating):
         raise AudioError(
-            f"sound is floating-point samples from -1 to 1, not {samples.dtype}; divide 16-bit samples by 32768"
+            f"sound is floating-point samples from -1 to 1, not {samples.dtype}; divide 16-bit "
+            "samples by 32768"
         )
     bad = np.flatnonzero(~np.isfinite(samples))
     if len(bad):

@@ -81,21 +81,21 @@ def checked_known(motion: Motion, known) -> Bool[np.ndarray, "T J"]:
     """
     if motion.skeleton != COURSE:
         raise MotionError(
-            f"{motion.name} has {len(motion.skeleton)} joints; the course's networks know the {J} of "
-            f"their own skeleton. Read the figure from a BVH file: it is retargeted"
+            f"{motion.name} has {len(motion.skeleton)} joints; the course's networks know the {J} "
+            f"of their own skeleton. Read the figure from a BVH file: it is retargeted"
         )
     array = np.asarray(known)
     if array.shape != (len(motion), J) or array.dtype != bool:
         raise MotionError(
-            f"known is {array.dtype} {array.shape}; it is bool ({len(motion)}, {J}), a row for each "
-            f"frame and True where the joint is given. md.keyframes(motion) makes one"
+            f"known is {array.dtype} {array.shape}; it is bool ({len(motion)}, {J}), a row for "
+            f"each frame and True where the joint is given. md.keyframes(motion) makes one"
         )
     wrong = np.argwhere(array & ~motion.known)
     if len(wrong):
         frame, joint = wrong[0]
         raise MotionError(
-            f"{JOINTS[joint]} in frame {frame} is given and has no position (NaN): known & motion.known "
-            f"lets such joints go"
+            f"{JOINTS[joint]} in frame {frame} is given and has no position (NaN): known & "
+            f"motion.known lets such joints go"
         )
     return array
 

@@ -1,7 +1,9 @@
-"""Missing joints of a motion of any length: windows of ten frames cover each hole, and each is walked
-there and back.
+"""Missing joints of a motion of any length, by many short walks there and back.
 
-    guess -> every window there and back -> the mean where windows overlap -> bones at their length -> next guess
+Windows of ten frames cover each hole, and each window is walked there and back:
+
+    guess -> every window there and back -> the mean where windows overlap
+          -> bones at their length -> next guess
 A window repaired alone would not meet its neighbours: here each round begins with what all of them
 found together. The way back is drawn through what is known, so that holes join on both sides.
 Source: MoDiff III-E; the overlapping windows are ours.  Notebook: 10
@@ -128,8 +130,8 @@ def path_of(
     lost = np.flatnonzero(~known[:, HIPS])
     if len(lost):
         raise MotionError(
-            f"the pelvis ({JOINTS[HIPS]}) is not known in frame {lost[0]} ({len(lost)} such in all), and "
-            f"the walk's control is read from it. md.inbetween can make whole frames"
+            f"the pelvis ({JOINTS[HIPS]}) is not known in frame {lost[0]} ({len(lost)} such in "
+            f"all), and the walk's control is read from it. md.inbetween can make whole frames"
         )
     across, told = np.zeros((len(positions), 3)), np.zeros(len(positions), bool)
     for left, right in (UPLEGS, ARMS):
@@ -138,7 +140,8 @@ def path_of(
         told |= both
     if not told.any():
         raise MotionError(
-            "nothing tells which way the figure faces: in no frame both hips or both shoulders are known"
+            "nothing tells which way the figure faces: in no frame both hips or both shoulders are "
+            "known"
         )
     facing = np.unwrap(heading(across[told]))
     facing = np.interp(np.arange(len(positions)), np.flatnonzero(told), facing)

@@ -133,7 +133,9 @@ def _arrays(path: Path) -> dict[str, np.ndarray]:
         with zipfile.ZipFile(path) as packed:
             size = sum(entry.file_size for entry in packed.infolist())
         if size > LARGEST:
-            raise MotionError(f"{path.name} unpacks to {size / 1e9:.0f} GB; cut it into shorter takes")
+            raise MotionError(
+                f"{path.name} unpacks to {size / 1e9:.0f} GB; cut it into shorter takes"
+            )
         with np.load(path, allow_pickle=False) as file:
             return {name: file[name] for name in file.files}
     except MotionError:

@@ -1,4 +1,6 @@
-"""A Motion: where every joint is in every frame, and what came along. What the front door takes and gives.
+"""A Motion: where every joint is in every frame, and what came along.
+
+The front door takes motions and gives them.
 
     walk[20:60]   walk.between(1.0, 3.0)   walk.then(more)   walk.save("walk.bvh")
 `Clip` is its training view: poses in the root frame with their control.  Notebook: 00
@@ -165,9 +167,9 @@ class Motion:
         return self[round(first * self.fps) : round(last * self.fps)]
 
     def then(self, *others: "Motion") -> "Motion":
-        """This motion and then the others, one after the other; each stays where it is in the world.
+        """This motion and then the others, one after the other.
 
-        What did not come along with all of them is left out.
+        Each stays where it is in the world. What did not come along with all of them is left out.
         Raises MotionError for another frame rate or skeleton.
         """
         parts = [self, *others]
@@ -175,7 +177,8 @@ class Motion:
             if abs(other.fps - self.fps) > 1e-6 or other.skeleton != self.skeleton:
                 raise MotionError(
                     f"{other.name} has {other.fps:g} frames/s and {len(other.skeleton)} joints, "
-                    f"{self.name} {self.fps:g} and {len(self.skeleton)}: bring it there by resampled()"
+                    f"{self.name} {self.fps:g} and {len(self.skeleton)}: bring it there by "
+                    "resampled()"
                 )
         joined = {"positions": np.concatenate([part.positions for part in parts])}
         for name in ("root", "contacts"):
@@ -224,16 +227,17 @@ class Motion:
             frame, joint = missing[0]
             raise MotionError(
                 f"{self.name}: {self.skeleton.names[joint]} in frame {frame} has no position (NaN; "
-                f"{len(missing)} such in all). md.reconstruct(motion, motion.known) can fill them in"
+                f"{len(missing)} such in all). md.reconstruct(motion, motion.known) can fill them "
+                "in"
             )
 
     def check_whole(self) -> None:
-        """Raise MotionError unless every joint of the course's skeleton has its place, in two frames
-        at least."""
+        """Raise MotionError unless the course's joints all have their places, in two frames or more."""
         if self.skeleton != COURSE:
             raise MotionError(
                 f"{self.name} has {len(self.skeleton)} joints; the course's networks know the "
-                f"{len(COURSE)} of their own skeleton. Read the figure from a BVH file: it is retargeted"
+                f"{len(COURSE)} of their own skeleton. Read the figure from a BVH file: it is "
+                "retargeted"
             )
         self.check_finite()
         if len(self) < 2:
@@ -284,20 +288,21 @@ def _positions(positions, skeleton: Skeleton) -> np.ndarray:
         raise MotionError("positions are numbers, (frames, joints, 3), in metres") from None
     if array.ndim != 3 or array.shape[-1] != 3 or not len(array):
         raise MotionError(
-            f"positions are (frames, joints, 3) in metres, with a frame at least; these are {array.shape}"
+            "positions are (frames, joints, 3) in metres, with a frame at least; these are "
+            f"{array.shape}"
         )
     if array.shape[1] != len(skeleton):
         raise MotionError(
-            f"positions have {array.shape[1]} joints, the skeleton {len(skeleton)}: for another one "
-            f"pass skeleton=Skeleton(names, parents)"
+            f"positions have {array.shape[1]} joints, the skeleton {len(skeleton)}: for another "
+            f"one pass skeleton=Skeleton(names, parents)"
         )
     array[np.isnan(array).any(-1)] = np.nan
     wild = np.argwhere((np.abs(array) > FARTHEST).any(-1))
     if len(wild):
         frame, joint = wild[0]
         raise MotionError(
-            f"{skeleton.names[joint]} in frame {frame} is at {array[frame, joint]} m, which is nowhere: "
-            f"look where it was computed"
+            f"{skeleton.names[joint]} in frame {frame} is at {array[frame, joint]} m, which is "
+            f"nowhere: look where it was computed"
         )
     return array
 

@@ -1,4 +1,8 @@
-"""A progress bar for whatever takes longer than a moment: `with bar(100, "walking") as step: step()`."""
+"""A progress bar for whatever takes longer than a moment.
+
+with bar(100, "walking") as step:
+    step()
+"""
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager

@@ -98,13 +98,14 @@ class Skeleton:
         if len(names) != len(parents) or len(set(names)) != len(names) or not names:
             raise ValueError(
                 f"a skeleton has a parent for each of its joints, and no name twice; "
-                f"these are {len(names)} names ({len(set(names))} different), {len(parents)} parents"
+                f"these are {len(names)} names ({len(set(names))} different), {len(parents)} "
+                "parents"
             )
         for joint, parent in enumerate(parents):
             if not -1 <= parent < joint:
                 raise ValueError(
-                    f"the parent of {names[joint]} (joint {joint}) is {parent}: a parent comes before "
-                    f"its children, and -1 is for a root"
+                    f"the parent of {names[joint]} (joint {joint}) is {parent}: a parent comes "
+                    f"before its children, and -1 is for a root"
                 )
 
     def __len__(self) -> int:

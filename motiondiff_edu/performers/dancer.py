@@ -154,7 +154,13 @@ class Dancer:
         dances = dances.double().cpu().numpy()
         name = Path(sound).stem if isinstance(sound, (str, Path)) else "sound"
         made = [
-            Motion(dance, FPS, audio=heard.numpy(), sample_rate=SAMPLE_RATE, source=f"{name}, danced to")
+            Motion(
+                dance,
+                FPS,
+                audio=heard.numpy(),
+                sample_rate=SAMPLE_RATE,
+                source=f"{name}, danced to",
+            )
             for dance in dances
         ]
         return made if samples > 1 else made[0]

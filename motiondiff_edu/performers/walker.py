@@ -127,7 +127,9 @@ class Walker:
         for one in poses:
             whole = np.concatenate([clip.poses[-T_h:], one])
             world = to_world(whole, rows, tuple(way[0]))
-            made.append(Motion(world[T_h:], FPS, root=way[T_h:], source=f"{motion.name}, continued"))
+            made.append(
+                Motion(world[T_h:], FPS, root=way[T_h:], source=f"{motion.name}, continued")
+            )
         return made if samples > 1 else made[0]
 
     def denoiser(

@@ -22,7 +22,8 @@ from .player import Player
 def player_of(motions: Sequence[Motion], labels: Sequence[str] | None = None) -> Player:
     """Several motions side by side, at the frame rate of the first, with the first sound there is.
 
-    Raises MotionError where a joint is missing, for two skeletons, and for labels that do not match.
+    Raises MotionError where a joint is missing, for two skeletons, and for labels that do not
+    match.
     """
     first = motions[0]
     for motion in motions:

@@ -83,7 +83,9 @@ def test_the_same_noise_and_other_music_give_another_dance():
     one, start = dancer(), torch.randn(2, 30, 63)
     out = one.dance_mel(mel(), start=start, frames=30, steps=3, eta=0.0)
     assert torch.equal(out, one.dance_mel(mel(), start=start, frames=30, steps=3, eta=0.0))
-    assert not torch.equal(out, one.dance_mel(mel().flip(1), start=start, frames=30, steps=3, eta=0.0))
+    assert not torch.equal(
+        out, one.dance_mel(mel().flip(1), start=start, frames=30, steps=3, eta=0.0)
+    )
 
 
 def test_only_music_that_sounds_meanwhile_is_heard():
@@ -208,7 +210,6 @@ def test_sound_that_cannot_be_danced_to_is_refused_in_words(sound, options, told
     one = dancer(MoFusionConfig(**{**UNET.as_dict(), "C": 80}))
     with pytest.raises(ValueError, match=told):
         one.dance(sound, **options)
-
 
 
 def test_a_dancer_moved_is_a_copy_that_dances_alike():
