@@ -159,7 +159,8 @@ def test_a_recipe_without_departures_is_algorithm_1(walks, rate):
     start = walks.starts[torch.randint(len(walks.starts), (7,), generator=generator)]
     torch.rand(7, generator=generator)  # who holds the control: nobody here
     rows = start[:, None] + torch.arange(T_H + T_P)
-    past, y, c = walks.poses[rows[:, :T_H]], walks.poses[rows[:, T_H:]], walks.control[rows]
+    past, y = walks.poses[rows[:, :T_H]], walks.poses[rows[:, T_H:]]
+    c = walks.control[rows]
     s = torch.randint(1, 7, (7,), generator=generator)
     alpha_bar = torch.cumprod(1 - torch.linspace(0.2, 0.95, 6), 0)[s - 1][:, None, None]
     if rate:
@@ -178,7 +179,8 @@ def test_without_departures_a_dancer_s_loss_is_the_mean_square_of_eps():
     recipe = replace(
         EPS, kinematic=None, loss_weights=DanceLossWeights(), gain_noise=0.0, snr=1.0, batch=5
     )
-    windows, schedule, generator = dances(), train_dancer.schedule_of(recipe), seeded()
+    windows, schedule = dances(), train_dancer.schedule_of(recipe)
+    generator = seeded()
     torch.manual_seed(0)
     model = MoFusion(recipe.config)
     loss = train_dancer.loss_of(recipe, windows, schedule)(model, seeded())

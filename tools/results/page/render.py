@@ -37,7 +37,8 @@ would change.
 ALL = "RESULTS_ALL.md"
 FURTHER = """# Further figures
 
-Every figure that stands in no table of [RESULTS.md](RESULTS.md), with its 95 % interval and the command that measures it.
+Every figure that stands in no table of [RESULTS.md](RESULTS.md), with its 95 % interval \
+and the command that measures it.
 Made by `make results` and `make bench`. Do not edit.
 
 """
@@ -214,7 +215,15 @@ def attention(records: dict[str, dict], folder: Path) -> str:
 
 def others(records: dict[str, dict]) -> str:
     """Everything that stands in no table above, with what makes it."""
-    shown = ("walker", "footsteps", "ladder.", "budget.", "dance-budget.", "dance-time.", "attention.")
+    shown = (
+        "walker",
+        "footsteps",
+        "ladder.",
+        "budget.",
+        "dance-budget.",
+        "dance-time.",
+        "attention.",
+    )
     shown += ("mend", "known-answer.", "inbetween.")
     rest = [one for name, one in sorted(records.items()) if not name.startswith(shown)]
     rows = [
