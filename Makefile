@@ -4,9 +4,12 @@ VENV := .venv
 BIN  := $(VENV)/bin
 NB   ?= 07
 
+# Exits with an error unless Python is new enough.
+NEW_ENOUGH := import sys; sys.exit(sys.version_info < (3, 11))
+
 # The first interpreter that runs and is new enough; choose another with `make lab PYTHON=/path/to/python`.
 PYTHON ?= $(shell for p in python3 python3.13 python3.12 python3.11 python3.14; do \
-	$$p -c 'import sys; sys.exit(sys.version_info < (3, 11))' >/dev/null 2>&1 && { echo $$p; break; }; done)
+	$$p -c '$(NEW_ENOUGH)' >/dev/null 2>&1 && { echo $$p; break; }; done)
 
 .PHONY: help lab demo doctor test unit notebooks browser lint results bench pretrained student clean
 .DEFAULT_GOAL := help
@@ -16,30 +19,45 @@ help: ## this list
 
 $(BIN)/python:
 	@test -n "$(PYTHON)" || { echo "No Python 3.11 or newer found. Install one, or say where it is: make lab PYTHON=..."; exit 1; }
+	@command -v "$(firstword $(PYTHON))" >/dev/null || { echo "There is no Python at $(PYTHON). Leave PYTHON out, or name another."; exit 1; }
+	@$(PYTHON) -c '$(NEW_ENOUGH)' || { echo "$(PYTHON) is too old: Python 3.11 or newer is needed."; exit 1; }
 	@$(PYTHON) -m venv $(VENV) || { rm -rf $(VENV); \
 		echo "$(PYTHON) cannot make virtual environments. On Debian or Ubuntu: apt-get install python3-venv"; exit 1; }
 
+# Installs the course with the extras in $(1), or says in plain words why it cannot. All that pip said is in $(VENV)/pip.log.
+NO_NETWORK := NewConnectionError|ConnectTimeoutError|NameResolutionError|Failed to establish|Network is unreachable|from versions: none
+define install
+@$(BIN)/python -c '$(NEW_ENOUGH)' || { echo "$(VENV) was made with a Python older than 3.11."; \
+	echo "Remove it (rm -rf $(VENV)) and type the same again."; exit 1; }
+@echo "installing into $(VENV); this happens once and takes a minute or more"
+@$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt -e '.$(1)' >$(VENV)/pip.log 2>&1 || { \
+	if grep -qE '$(NO_NETWORK)' $(VENV)/pip.log; then \
+		echo "No network: pip could not reach the package index, and the first time it has to."; \
+		echo "Go online and type the same again. What pip said is in $(VENV)/pip.log"; \
+	else cat $(VENV)/pip.log; echo "pip could not install the course; what it said is above."; fi; exit 1; }
+endef
+
 # A stamp each, so that the second `make lab` starts at once and a changed requirement installs again.
 $(VENV)/.lab: pyproject.toml constraints.txt setup.py | $(BIN)/python
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt -e .
+	$(call install,)
 	@touch $@
 
 $(VENV)/.test: pyproject.toml constraints.txt setup.py | $(BIN)/python
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt -e '.[test]'
+	$(call install,[test])
 	@touch $@ $(VENV)/.lab
 
 $(VENV)/.bench: pyproject.toml constraints.txt setup.py | $(BIN)/python
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt -e '.[bench]'
+	$(call install,[bench])
 	@touch $@
 
-lab: $(VENV)/.lab ## set up .venv and open JupyterLab at notebook 00
-	$(BIN)/python -m motiondiff_edu lab
+lab: $(VENV)/.lab ## set up .venv and open JupyterLab in your own copy of the notebooks (FRESH=03: a fresh copy of one)
+	@$(BIN)/python -m motiondiff_edu lab $(foreach number,$(FRESH),--fresh $(number)) $(OPTIONS)
 
 demo: $(VENV)/.lab ## open one notebook ready to show: make demo NB=07
-	$(BIN)/python -m motiondiff_edu demo $(NB)
+	@$(BIN)/python -m motiondiff_edu demo $(NB) $(OPTIONS)
 
 doctor: $(VENV)/.lab ## one page: what works here, and what to do about the rest
-	$(BIN)/python -m motiondiff_edu doctor
+	@$(BIN)/python -m motiondiff_edu doctor
 
 test: lint unit notebooks browser ## set up .venv and run everything: lint, unit tests, notebooks, browser
 
@@ -62,8 +80,8 @@ lint: $(VENV)/.test ## ruff, the form of the notebooks, the student edition
 	$(BIN)/python tools/check_notebooks.py
 	$(BIN)/python tools/build_student.py --check
 
-student: $(VENV)/.test ## rebuild notebooks/student from notebooks
-	$(BIN)/python tools/build_student.py
+student: $(VENV)/.test ## rebuild notebooks/student from notebooks (FORCE=1: also what was changed there by hand)
+	@$(BIN)/python tools/build_student.py $(if $(FORCE),--force)
 
 results: $(VENV)/.lab ## recompute docs/results and docs/RESULTS.md; with FULL=1 train what is compared as well (hours)
 	$(BIN)/python -m tools.results $(if $(FULL),--full)

@@ -1,5 +1,6 @@
-"""Run the benchmarks, each in its own process: python -m benchmarks [import | frame | mel | unet |
-walker | player ...]
+"""Run the benchmarks, each in its own process.
+
+python -m benchmarks [import | frame | mel | unet | walker | player ...]
 
 Records go to benchmarks/results/*.json; `python -m tools.results --render` puts them into
 docs/RESULTS.md. On a shared machine only the ratios mean something: both sides are timed in turn,

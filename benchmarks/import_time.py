@@ -1,5 +1,6 @@
-"""How long `import motiondiff_edu` takes beside `import torch`: fresh processes, CPU seconds, in
-turn.
+"""How long `import motiondiff_edu` takes beside `import torch`.
+
+Fresh processes, CPU seconds, in turn.
 
 Run: python benchmarks/import_time.py [--repeats 15] [--out benchmarks/results/import_time.json]
 """
@@ -25,8 +26,10 @@ def cpu_seconds(module: str) -> float:
 
 
 def measure(repeats: int) -> dict[str, np.ndarray]:
-    """Both modules in every repeat, the order turned round each time; the first repeat only fills
-    the disk cache."""
+    """Both modules in every repeat, the order turned round each time.
+
+    The first repeat only fills the disk cache.
+    """
     times = {module: [] for module in MODULES}
     for repeat in range(repeats + 1):
         for module in MODULES[:: 1 if repeat % 2 else -1]:

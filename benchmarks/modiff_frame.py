@@ -1,5 +1,6 @@
-"""One autoregressive frame of MoDiff, S = 100, batch 1: ours beside the whole network under
-diffusers' DDPMScheduler.
+"""One autoregressive frame of MoDiff, S = 100, batch 1.
+
+Ours beside the whole network under diffusers' DDPMScheduler.
 
 Both sides have the same weights and the same noise, and end at the same poses (checked first). Ours
 encodes past and control once a frame and keeps keys, values and step embeddings. Timed in turn, in
@@ -28,8 +29,10 @@ Sampler = Callable[[torch.Tensor, torch.Tensor, torch.Generator], torch.Tensor]
 
 
 def network(config: MoDiffConfig) -> Walker:
-    """A MoDiff with random weights, with scalers that do nothing: what it predicts does not matter
-    here."""
+    """A MoDiff with random weights, with scalers that do nothing.
+
+    What it predicts does not matter here.
+    """
     torch.manual_seed(0)
     unit = [Scaler(torch.zeros(n), torch.ones(n)) for n in (config.D, config.C)]
     return Walker(MoDiff(config).eval().requires_grad_(False), linear_schedule(config.S), *unit)
@@ -90,8 +93,10 @@ def measure(runs: dict[str, Sampler], past, control, repeats: int) -> dict[str, 
 
 
 def records_of(size: str, threads: int, times: dict[str, np.ndarray], bar: bool) -> list[dict]:
-    """Milliseconds, median and least, and how many times faster; the bar's own name for the number
-    of cores at hand."""
+    """Milliseconds, median and least, and how many times faster.
+
+    The bar's own name for the number of cores at hand.
+    """
     stem, records = f"bench.modiff_frame_{size}", []
     middle = f"{stem}_{threads}thread{'s' * (threads > 1)}"
     for name, values in times.items():

@@ -1,5 +1,6 @@
-"""How far picture and sound are apart while the player plays: in a real Chromium, all that it can
-show being drawn.
+"""How far picture and sound are apart while the player plays.
+
+In a real Chromium, all that it can show being drawn.
 
 At random moments the sound's clock t and the painted frame k are read; their distance is that of t
 from the frame's interval [k/20, (k+1)/20), zero inside. A run's figure is the 95th percentile of
@@ -27,9 +28,12 @@ from motiondiff_edu.widgets.listening import Listening  # noqa: E402
 from motiondiff_edu.widgets.player import Player  # noqa: E402
 
 COMMAND = "python -m benchmarks player"
-FPS, RATE, BEAT = 20, 16_000, 0.5
+FPS = 20
+RATE = 16_000
+BEAT = 0.5
 SAMPLE = """async (seconds) => {
-  const root = document.querySelector(".mde-player"), sound = root.querySelector("audio"), rows = [];
+  const root = document.querySelector(".mde-player"), sound = root.querySelector("audio");
+ const rows = [];
   const end = performance.now() + 1000 * seconds;
   while (performance.now() < end) {
     rows.push([sound.currentTime, Number(root.dataset.frame)]);
@@ -41,7 +45,8 @@ SAMPLE = """async (seconds) => {
 
 def click_track(seconds: float) -> np.ndarray:
     """A click on every beat."""
-    samples, n = np.zeros(round(seconds * RATE)), np.arange(round(0.04 * RATE))
+    samples = np.zeros(round(seconds * RATE))
+    n = np.arange(round(0.04 * RATE))
     click = 0.8 * np.exp(-n / RATE / 0.01) * np.sin(2 * np.pi * 1000 * n / RATE)
     for beat in np.arange(0, seconds - 0.05, BEAT):
         samples[round(beat * RATE) :][: len(n)] += click

@@ -1,5 +1,7 @@
-"""Records of measured figures: {name, value, low, high, seeds, unit, paper, command}, kept in lists
-in JSON files."""
+"""Records of measured figures, kept in lists in JSON files.
+
+Each is {name, value, low, high, seeds, unit, paper, command}.
+"""
 
 import json
 from pathlib import Path
@@ -51,5 +53,6 @@ def show(records: list[dict]) -> None:
     """Print one line a record."""
     for one in records:
         print(
-            f"{one['name']:44s} {one['value']:9.3g}  [{one['low']:.3g}, {one['high']:.3g}] {one['unit']}"
+            f"{one['name']:44s} {one['value']:9.3g}  [{one['low']:.3g}, "
+            f"{one['high']:.3g}] {one['unit']}"
         )

@@ -1,5 +1,6 @@
-"""What a sampler costs around a model that costs nothing: ours beside diffusers and smalldiffusion,
-in one run.
+"""What a sampler costs around a model that costs nothing.
+
+Ours beside diffusers and smalldiffusion, in one run.
 
 Each repeat times all of them one after the other, in changing order; a figure is the median of the
 ratios of repeats. Run: python benchmarks/sampler_overhead.py [--repeats 40] [--out

@@ -1,5 +1,7 @@
-"""Runs timed in turn, in changing order: what else goes on in the machine befalls all of them
-alike."""
+"""Runs timed in turn, in changing order.
+
+What else goes on in the machine befalls all of them alike.
+"""
 
 import time
 from collections.abc import Callable, Mapping
@@ -10,8 +12,10 @@ import numpy as np
 def in_turn(
     runs: Mapping[str, Callable[[], object]], repeats: int, *, best_of: int = 1, warmup: int = 1
 ) -> dict[str, np.ndarray]:
-    """Milliseconds of every run in every repeat: the best of `best_of`; `warmup` repeats before are
-    thrown away."""
+    """Milliseconds of every run in every repeat: the best of `best_of`.
+
+    `warmup` repeats before are thrown away.
+    """
     times, rng = {name: [] for name in runs}, np.random.default_rng(0)
     for repeat in range(-warmup, repeats):
         for name in rng.permutation(list(runs)):

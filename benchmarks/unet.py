@@ -1,5 +1,6 @@
-"""MoFusion's U-Net, music included, beside lucidrains' Unet1D and diffusers' UNet1DModel without
-any condition.
+"""MoFusion's U-Net, music included, beside two unconditioned ones.
+
+Those are lucidrains' Unet1D and diffusers' UNet1DModel.
 
 Networks of about as many parameters (widths are chosen for that), random weights: sampling is ten
 DDIM steps for eight motions, each side with its own sampler; training is a forward and a backward
@@ -27,7 +28,9 @@ from motiondiff_edu.performers.dance_windows import mel_frames
 from motiondiff_edu.performers.dancer import Dancer
 
 COMMAND = "python -m benchmarks unet"
-D, BANDS, STEPS = 63, 80, 10
+D = 63
+BANDS = 80
+STEPS = 10
 PEER = "denoising_diffusion_pytorch"
 
 
@@ -37,12 +40,15 @@ def count(model: torch.nn.Module) -> int:
 
 @cache
 def lucidrains():
-    """The module of Unet1D alone: the package as a whole imports torchvision, which it does not
-    need here."""
+    """The module of Unet1D alone.
+
+    The package as a whole imports torchvision, which it does not need here.
+    """
     spec = importlib.util.find_spec(PEER)
     if spec is None:
         raise SystemExit(
-            f"{PEER} is not installed: pip install --no-deps denoising-diffusion-pytorch einops ema-pytorch"
+            f"{PEER} is not installed: pip install --no-deps "
+            "denoising-diffusion-pytorch einops ema-pytorch"
         )
     bare = ModuleType(PEER)
     bare.__path__ = list(spec.submodule_search_locations)
@@ -98,7 +104,7 @@ def samplers(dancer: Dancer, nets: dict[str, torch.nn.Module], B: int, N: int) -
 
     @torch.inference_mode()
     def ours_once():
-        return dancer.dance(mel, N, steps=STEPS, eta=0.0)
+        return dancer.dance_mel(mel, N, steps=STEPS, eta=0.0)
 
     @torch.inference_mode()
     def lucidrains_once():
@@ -121,7 +127,8 @@ def samplers(dancer: Dancer, nets: dict[str, torch.nn.Module], B: int, N: int) -
 def trainers(dancer: Dancer, nets: dict[str, torch.nn.Module], B: int, N: int) -> dict:
     """One step of training of each."""
     model, peer = dancer.model, nets["lucidrains"]
-    mel, times = torch.randn(B, mel_frames(N), BANDS), frame_times(mel_frames(N)).float()
+    mel = torch.randn(B, mel_frames(N), BANDS)
+    times = frame_times(mel_frames(N)).float()
     x, s = torch.randn(B, N, D), torch.randint(1, 1000, (B,))
     channels_first = x.mT.contiguous()
     optimizers = {

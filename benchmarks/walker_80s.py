@@ -1,7 +1,9 @@
-"""What 80 CPU-seconds of training give: a small walker on three sets of walks, judged on unseen
-controls of the same.
+"""What 80 CPU-seconds of training give.
 
-    one person   neutral, no waving and looking about, straight ahead and in curves: notebook 07's data (the bars)
+A small walker on three sets of walks, judged on unseen controls of the same.
+
+    one person   neutral, no waving and looking about, straight ahead and in curves:
+                 notebook 07's data (the bars)
     one style    neutral walkers, all their behaviours, all kinds of control
     all styles   the walkers' training data, fewer clips
 
@@ -27,10 +29,17 @@ from data_synth.walking import dataset, random_control, walk  # noqa: E402
 from data_synth.walking.styles import STYLES  # noqa: E402
 from motiondiff_edu.motion.augment import mirror  # noqa: E402
 from motiondiff_edu.motion.clip import Clip  # noqa: E402
-from motiondiff_edu.recipes.budget import train_for  # noqa: E402
+from motiondiff_edu.recipes.budget import BUDGET, train_for  # noqa: E402
 from tools.results.walks.budget import SMALL  # noqa: E402
 from tools.results.walks.scores import score  # noqa: E402
-from tools.results.walks.trials import FPS, SECONDS, T_H, UNSEEN, Trials, walker_generate  # noqa: E402
+from tools.results.walks.trials import (  # noqa: E402
+    FPS,
+    SECONDS,
+    T_H,
+    UNSEEN,
+    Trials,
+    walker_generate,
+)
 
 COMMAND = "python -m benchmarks walker"
 CLIPS = 240
@@ -44,7 +53,8 @@ NAMES = {
 
 
 def one_person(clips: int, seconds: float, seed: int) -> list[Clip]:
-    rng, person = np.random.default_rng(seed), replace(STYLES["neutral"], behaviours=0.0)
+    rng = np.random.default_rng(seed)
+    person = replace(STYLES["neutral"], behaviours=0.0)
     kinds = ("straight", "turn") * clips
     return [walk(random_control(seconds, rng, kinds[i]), seed + i, person) for i in range(clips)]
 
@@ -57,12 +67,15 @@ SETS: dict[str, tuple[str, Callable]] = {  # name: (prefix of its records, what 
 
 
 def measure(name: str, seconds: float, unseen: int, seed: int) -> list[dict]:
-    """Train on one set of walks (each mirrored, too), walk unseen controls of the same, and score
-    the raw output."""
+    """Train on one set of walks, walk unseen controls of the same, and score the raw output.
+
+    Each walk is mirrored, too.
+    """
     prefix, make = SETS[name]
     clips = [version for clip in make(CLIPS, 20.0, 11) for version in (clip, mirror(clip))]
     trials = Trials.of(make(unseen, SECONDS + T_H / FPS, UNSEEN))
-    walker, steps = train_for(seconds, clips, SMALL, seed=seed, batch=16)
+    recipe = replace(BUDGET, name=name, config=SMALL, seed=seed, batch=16)
+    walker, steps = train_for(seconds, clips, recipe)
     weights = sum(p.numel() for p in walker.model.parameters())
     print(f"{name}: {steps} steps in {seconds:g} CPU-seconds, {weights} weights", flush=True)
     walks = walker_generate(walker)(trials.past, trials.control, 0)

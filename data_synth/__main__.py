@@ -1,5 +1,7 @@
-"""`python -m data_synth walks | dances | songs --out FOLDER`: synthetic motion and music as
-files."""
+"""Write synthetic motion and music as files.
+
+`python -m data_synth walks | dances | songs --out FOLDER`
+"""
 
 import argparse
 import sys

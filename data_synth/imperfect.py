@@ -1,5 +1,6 @@
-"""Faults as motion capture has them, with the truth known: dead joints, dropped frames, bursts,
-jitter.
+"""Faults as motion capture has them, with the truth known.
+
+Dead joints, dropped frames, bursts, jitter.
 
 A fault takes clean positions and gives (faulty positions, known): what is missing is NaN and False
 in `known`; what trembles is there, and wrong.  Source: MoDiff III-E, IV-C names the first two.
@@ -20,8 +21,10 @@ LEG = ("RightUpLeg", "RightLeg", "RightFoot", "RightToeBase")
 
 @dataclass(frozen=True, eq=False)
 class Imperfect:
-    """A motion with a fault: positions with NaN where nothing is known, and the mask that says
-    so."""
+    """A motion with a fault.
+
+    Positions with NaN where nothing is known, and the mask that says so.
+    """
 
     positions: Float[np.ndarray, "*B T J 3"]
     known: Bool[np.ndarray, "*B T J"]
@@ -50,7 +53,9 @@ def random_joints(
 
 
 def dropped_frames(positions: Float[np.ndarray, "*B T J 3"], first: int, count: int) -> Imperfect:
-    """All joints are missing in `count` frames from `first` on.  Notebook: 10
+    """All joints are missing in `count` frames from `first` on.
+
+    Notebook: 10
 
     Raises ValueError unless these frames lie within the motion.
     """
@@ -70,8 +75,9 @@ def bursts(
     every: float = 20.0,
     longest: int = 6,
 ) -> Imperfect:
-    """Now and then a joint is lost for a few frames, as when a marker is hidden: once in `every`
-    frames and joint.
+    """Now and then a joint is lost for a few frames, as when a marker is hidden.
+
+    Once in `every` frames and joint.
 
     Each loss lasts 1 to `longest` frames.  Notebook: 10
     """
@@ -89,8 +95,10 @@ def bursts(
 def jitter(
     positions: Float[np.ndarray, "*B T J 3"], size: float, rng: np.random.Generator
 ) -> Imperfect:
-    """Every coordinate trembles by `size` metres (standard deviation); nothing is missing, so all
-    is "known"."""
+    """Every coordinate trembles by `size` metres (standard deviation).
+
+    Nothing is missing, so all is "known".
+    """
     noisy = positions + size * rng.standard_normal(positions.shape)
     return Imperfect(noisy, np.ones(positions.shape[:-1], bool))
 

@@ -17,8 +17,9 @@ Motion = tuple[Float[np.ndarray, "T 21 3"], Bool[np.ndarray, "T 2"]]
 
 
 def motions(n: int, seed: int, seconds: float = 20.0) -> Iterator[Motion]:
-    """n motions, positions in the world (metres, 20 frames/s) and which feet stand: walk, dance,
-    walk, dance ...
+    """n motions, positions in the world (metres, 20 frames/s) and which feet stand.
+
+    Walk, dance, walk, dance ...
 
     The same seed gives the same bytes; different seeds share none.
     Raises ValueError as `beat_song` and `random_control` do.  Notebook: 15

@@ -44,8 +44,10 @@ def ring(parts: int = 6, radius: float = 1.5, std: float = 0.2) -> Mixture:
 
 
 def crossed_bars(length: float = 1.0, width: float = 0.15) -> Mixture:
-    """Two long hills in the plane that lean towards each other: the coordinates depend on one
-    another."""
+    """Two long hills in the plane that lean towards each other.
+
+    The coordinates depend on one another.
+    """
     bar = torch.tensor([[length**2 + width**2, length**2 - width**2]], dtype=torch.float64) / 2
     rising = torch.stack([bar[0], bar[0].flip(0)])
     falling = rising * torch.tensor([[1.0, -1.0], [-1.0, 1.0]], dtype=torch.float64)

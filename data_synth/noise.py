@@ -1,5 +1,6 @@
-"""Seeded randomness that can be redrawn from one frame on and leaves everything before that frame
-as it was.
+"""Seeded randomness that can be redrawn from one frame on.
+
+Everything before that frame stays as it was.
 
 Every random thing about a walk is a causal function of one table of white noise, a row per frame. A
 continuation keeps the rows of its past and draws new ones after it: what the past has settled
@@ -20,8 +21,9 @@ PREROLL = 400  # rows before the first frame: slow processes start in their stat
 def white(
     seed: int, n: int, redraw: Sequence[tuple[int, int]] = ()
 ) -> Float[np.ndarray, "rows 40"]:
-    """n + PREROLL rows of N(0, 1); from each (frame, seed) in `redraw` on, the rows come from that
-    seed instead.
+    """n + PREROLL rows of N(0, 1).
+
+    From each (frame, seed) in `redraw` on, the rows come from that seed instead.
 
     Longer tables begin with the shorter ones.  Raises ValueError for a negative seed.
     """
@@ -38,8 +40,10 @@ def white(
 
 
 def drift(rows: Float[np.ndarray, "rows *k"], tau: float, fps: float) -> Float[np.ndarray, "n *k"]:
-    """Unit-variance smooth noise with memory of about 2 tau seconds: two low-passes in a row;
-    PREROLL is cut off."""
+    """Unit-variance smooth noise with memory of about 2 tau seconds: two low-passes in a row.
+
+    PREROLL is cut off.
+    """
     a = np.exp(-1.0 / (fps * tau))
     y = lfilter([1.0], [1.0, -2 * a, a * a], rows, axis=0)
     return (y / np.sqrt((1 + a * a) / (1 - a * a) ** 3))[PREROLL:]
@@ -48,8 +52,10 @@ def drift(rows: Float[np.ndarray, "rows *k"], tau: float, fps: float) -> Float[n
 def follow(
     target: Float[np.ndarray, "T *k"], tau: float, fps: float, poles: int = 2
 ) -> Float[np.ndarray, "T *k"]:
-    """Low-pass of `target` by `poles` equal one-pole filters of time constant tau; starts at
-    target[0], causal."""
+    """Low-pass of `target` by `poles` equal one-pole filters of time constant tau.
+
+    Starts at target[0], causal.
+    """
     a = np.exp(-1.0 / (fps * tau))
     y = np.asarray(target, dtype=np.float64)
     for _ in range(poles):

@@ -2,11 +2,10 @@
 
 import hashlib
 import os
+import secrets
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
-
-from torch import Tensor
 
 
 @contextmanager
@@ -17,9 +16,8 @@ def replacing(path: str | Path) -> Iterator[Path]:
     """
     path = Path(path)
     path.parent.mkdir(parents=True, exist_ok=True)
-    aside = path.with_name(
-        f".{path.name}.{os.getpid()}.part"
-    )  # not tempfile: its files are for their owner alone
+    # a name for each writer, threads included; not tempfile: its files are for their owner alone
+    aside = path.with_name(f".{path.name}.{os.getpid()}.{secrets.token_hex(4)}.part")
     try:
         yield aside
         os.replace(aside, path)
@@ -27,9 +25,10 @@ def replacing(path: str | Path) -> Iterator[Path]:
         aside.unlink(missing_ok=True)
 
 
-def digest_of_tensors(tensors: Mapping[str, Tensor]) -> str:
+def digest_of_tensors(tensors: Mapping[str, "torch.Tensor"]) -> str:
     """SHA-256 of all tensors, in the order of their names: safetensors itself checks only its
     header."""
+    # their type is a string because `lab` writes files also where torch cannot be imported
     digest = hashlib.sha256()
     for name in sorted(tensors):
         digest.update(name.encode() + tensors[name].contiguous().numpy().tobytes())

@@ -125,17 +125,17 @@ class CrossModalAttention(nn.Module):
         self.out = nn.Linear(width, width)
         self.watcher = None  # a list while somebody watches
 
-    def split(self, x: Float[Tensor, "B T C"]) -> Float[Tensor, "B H T d"]:
+    def split(self, x: Float[Tensor, "B T W"]) -> Float[Tensor, "B H T d"]:
         """Cut the channels into heads: head h owns channels h*d ... (h+1)*d - 1."""
         return x.unflatten(-1, (self.heads, -1)).transpose(1, 2)
 
     def forward(
         self,
-        x: Float[Tensor, "B T C"],
-        context: Float[Tensor, "B M C2"],
+        x: Float[Tensor, "B T W"],
+        context: Float[Tensor, "B M C"],
         bias: Float[Tensor, "#B #H T M"] | None = None,
         turns: tuple[Float[Tensor, "T w"], Float[Tensor, "M w"]] | None = None,
-    ) -> Float[Tensor, "B T C"]:
+    ) -> Float[Tensor, "B T W"]:
         """`bias` is added to the scores; `turns` are the angles of `turned` for queries and keys,
         if there are any."""
         q = self.split(self.q(x))
@@ -165,21 +165,19 @@ class Block(nn.Module):
         self.norm_self, self.self_attention = nn.LayerNorm(width), CrossModalAttention(width, heads)
         self.with_context = with_context
         if with_context:
-            self.norm_cross, self.cross_attention = (
-                nn.LayerNorm(width),
-                CrossModalAttention(width, heads),
-            )
+            self.norm_cross = nn.LayerNorm(width)
+            self.cross_attention = CrossModalAttention(width, heads)
         self.norm_ff = nn.LayerNorm(width)
         self.ff = nn.Sequential(nn.Linear(width, hidden), nn.GELU(), nn.Linear(hidden, width))
         self.drop = nn.Dropout(dropout)
 
     def forward(
         self,
-        x: Float[Tensor, "B T C"],
+        x: Float[Tensor, "B T W"],
         bias: Float[Tensor, "1 H T T"] | None = None,
-        context: Float[Tensor, "B M C"] | None = None,
+        context: Float[Tensor, "B M W"] | None = None,
         context_bias: Float[Tensor, "1 H T M"] | None = None,
-    ) -> Float[Tensor, "B T C"]:
+    ) -> Float[Tensor, "B T W"]:
         normed = self.norm_self(x)
         x = x + self.drop(self.self_attention(normed, normed, bias))
         if self.with_context:

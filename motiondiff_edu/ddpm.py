@@ -1,5 +1,5 @@
 """Denoising diffusion (MoDiff, III-B and III-C): noise is added by a rule, and taken away by a
-learnt one.
+learnt one, step by step (DDPM) or in leaps (DDIM).
 
 Steps are numbered s = 1..S, and every table has S + 1 entries, so that `alpha_bar[s]` is the
 paper's (and [0] is 1). A *denoiser* is any callable `denoise(x_s, s) -> eps_hat`, with s of shape
@@ -8,7 +8,7 @@ paper's (and [0] is 1). A *denoiser* is any callable `denoise(x_s, s) -> eps_hat
 
 import math
 import warnings
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
 import torch
@@ -56,11 +56,15 @@ def make_schedule(beta: Float[Tensor, "S"], name: str = "schedule") -> Schedule:
     if bad or len(beta) < 2:
         where = f"beta_{bad[0]} = {float(beta[bad[0]]):g}" if bad else "there is none"
         raise ValueError(
-            f"{name}: every beta must lie between 0 and 1, but {where}; take more steps or smaller betas"
+            f"{name}: every beta must lie between 0 and 1, but {where}; "
+            "take more steps or smaller betas"
         )
     schedule = Schedule(beta, 1 - beta, torch.cumprod(1 - beta, 0), name)
     if schedule.signal_left > 0.1:
-        what = "Sampling starts from pure noise, which this schedule never reaches: take more steps or larger betas."
+        what = (
+            "Sampling starts from pure noise, which this schedule never reaches: "
+            "take more steps or larger betas."
+        )
         warnings.warn(f"{schedule_card(schedule)} {what}", stacklevel=3)
     return schedule
 
@@ -95,16 +99,27 @@ def schedule_card(schedule: Schedule) -> str:
 
 def at(table: Table, s: Steps, x: X, first: int = 0) -> Tensor:
     """Look up table[s], shaped so that it multiplies x: one number, or one for each sample of the
-    batch."""
-    if isinstance(s, int) and not first <= s < len(table):
+    batch.
+
+    Raises IndexError for a step below `first` or beyond the table.
+    """
+    low, high = (s, s) if isinstance(s, int) else _range(s, first)
+    if not first <= low <= high < len(table):
         raise IndexError(
-            f"s = {s}: steps go from {first} to {len(table) - 1} here, and 0 is clean data"
+            f"s = {low if low < first else high}: steps go from {first} to {len(table) - 1} here, "
+            "and 0 is clean data"
         )
-    return (
-        table[s].to(x)
-        if isinstance(s, int)
-        else table.to(x.device)[s].to(x).reshape(-1, *[1] * (x.dim() - 1))
-    )
+    if isinstance(s, int):
+        return table[s].to(x)
+    return table.to(x.device)[s].to(x).reshape(-1, *[1] * (x.dim() - 1))
+
+
+def _range(s: Int[Tensor, "B"], first: int) -> tuple[int, int]:
+    """The smallest and the largest of some steps; of none, and of a tensor without values, `first`
+    twice."""
+    if not s.numel() or s.is_meta:
+        return first, first
+    return int(s.min()), int(s.max())
 
 
 def draw(
@@ -147,7 +162,8 @@ def q_posterior(x0: X, x_s: X, s: Steps, schedule: Schedule) -> tuple[X, Tensor]
     Source: MoDiff eq. 6-7. Notebook: 02.
     """
     beta, alpha = at(schedule.beta, s, x_s, first=1), at(schedule.alpha, s, x_s)
-    left, left_before = at(1 - schedule.alpha_bar, s, x_s), at(1 - schedule.alpha_bar, s - 1, x_s)
+    left = at(1 - schedule.alpha_bar, s, x_s)
+    left_before = at(1 - schedule.alpha_bar, s - 1, x_s)
     mean = (1 - left_before).sqrt() * beta / left * x0 + alpha.sqrt() * left_before / left * x_s
     return mean, at(posterior_variance(schedule), s, x_s)
 
@@ -202,10 +218,7 @@ def sample_steps(
     noise[s - 1], when given, is the noise of step s; clip bounds x0_hat to [-clip, clip].
     Source: MoDiff Alg. 2. Notebook: 03.
     """
-    home = generator.device if generator else None
-    x_s = (
-        start if isinstance(start, Tensor) else torch.randn(start, generator=generator, device=home)
-    )
+    x_s = _first(start, generator)
     for s in range(schedule.S, 0, -1):
         eps_hat = denoise(x_s, torch.full((len(x_s),), s, device=x_s.device))
         x0_hat, eps_hat = _clean_guess(x_s, s, eps_hat, schedule, clip)
@@ -219,7 +232,8 @@ def _clean_guess(
     x_s: Tensor, s: int, eps_hat: Tensor, schedule: Schedule, clip: float | None
 ) -> tuple[Tensor, Tensor]:
     """x0_hat, bounded if asked, and the eps_hat that goes with it."""
-    signal, sigma = at(schedule.alpha_bar, s, x_s).sqrt(), at(1 - schedule.alpha_bar, s, x_s).sqrt()
+    signal = at(schedule.alpha_bar, s, x_s).sqrt()
+    sigma = at(1 - schedule.alpha_bar, s, x_s).sqrt()
     x0_hat = (x_s - sigma * eps_hat) / signal
     if clip is not None:
         x0_hat = x0_hat.clamp(-clip, clip)
@@ -227,13 +241,114 @@ def _clean_guess(
     return x0_hat, eps_hat
 
 
+def timesteps(S: int, steps: int) -> list[int]:
+    """Choose `steps` of the S diffusion steps, evenly spaced, S first: timesteps(100, 4) = [100,
+    75, 50, 25].
+
+    Raises ValueError unless 1 <= steps <= S.  Notebook: 03
+    """
+    if not 1 <= steps <= S:
+        raise ValueError(f"can take between 1 and {S} steps, not {steps}")
+    return [S - (i * S) // steps for i in range(steps)]
+
+
+def falling(steps: int | Sequence[int], S: int) -> list[int]:
+    """The steps that a sampler visits: `timesteps(S, steps)`, or those of a list.
+
+    Raises ValueError for steps that do not fall, or lie outside 1..S.
+    """
+    if isinstance(steps, int):
+        return timesteps(S, steps)
+    visited = list(steps)
+    falls = visited == sorted(set(visited), reverse=True)
+    if not visited or not falls or not 1 <= visited[-1] <= visited[0] <= S:
+        raise ValueError(f"steps must fall, from {S} at most to 1 at least; these are {visited}")
+    return visited
+
+
+def ddim_sigma(s: int, after: int, schedule: Schedule, eta: float) -> float:
+    """Standard deviation of the noise that a leap from s to `after` draws.
+
+    sigma^2 = eta^2 (1 - ab_after) / (1 - ab_s) (1 - ab_s / ab_after); eta = 1 is DDPM's posterior.
+    Raises ValueError for an eta outside 0..1.  Notebook: 03
+    """
+    if not 0 <= eta <= 1:
+        raise ValueError(f"eta must lie between 0 (no noise) and 1 (DDPM's), not {eta}")
+    now, then = float(schedule.alpha_bar[s]), float(schedule.alpha_bar[after])
+    return eta * math.sqrt((1 - then) / (1 - now) * (1 - now / then))
+
+
+def ddim_step(
+    x0_hat: X,
+    eps_hat: X,
+    after: int,
+    schedule: Schedule,
+    sigma: float = 0.0,
+    noise: X | None = None,
+) -> X:
+    """Leap to step `after`: sqrt(ab_after) x0_hat + sqrt(1 - ab_after - sigma^2) eps_hat + sigma
+    noise.
+
+    Source: DDIM (Song, Meng and Ermon, 2021).  Notebook: 03
+    """
+    then = float(schedule.alpha_bar[after])
+    x = math.sqrt(then) * x0_hat + math.sqrt(max(1 - then - sigma**2, 0.0)) * eps_hat
+    return x + sigma * noise if sigma else x
+
+
+@torch.no_grad()
+def ddim_steps(
+    denoise: Denoiser,
+    start: Tensor | tuple[int, ...],
+    schedule: Schedule,
+    steps: int | Sequence[int] = 10,
+    eta: float = 0.0,
+    *,
+    generator: torch.Generator | None = None,
+    noise: Float[Tensor, "S *any"] | None = None,
+    clip: float | None = None,
+) -> Iterator[Step]:
+    """Leap from x_S to x0 in a few `ddim_step`s, and yield a record of each, and of s = 0.
+
+    With eta = 0 no noise is drawn. Few steps with eta = 0 give samples that lie too close together:
+    DDIM is not DDPM, only faster. noise[s - 1], when given, is the noise of step s; clip bounds
+    x0_hat.
+    Raises ValueError for steps that do not fall, or lie outside 1..S, and for an eta outside 0..1.
+    Notebook: 03
+    """
+    visited = falling(steps, schedule.S)
+    x_s = _first(start, generator)
+    for s, after in zip(visited, [*visited[1:], 0], strict=True):
+        sigma = ddim_sigma(s, after, schedule, eta)
+        eps_hat = denoise(x_s, torch.full((len(x_s),), s, device=x_s.device))
+        x0_hat, eps_hat = _clean_guess(x_s, s, eps_hat, schedule, clip)
+        yield Step(s, x_s, x0_hat, eps_hat)
+        z = None if not sigma else draw(x_s, generator) if noise is None else noise[s - 1]
+        x_s = ddim_step(x0_hat, eps_hat, after, schedule, sigma, z)
+    yield Step(0, x_s, x_s, torch.zeros_like(x_s))
+
+
+def _first(start: Tensor | tuple[int, ...], generator: torch.Generator | None) -> Tensor:
+    """x_S itself, or drawn in that shape where the generator lives."""
+    if isinstance(start, Tensor):
+        return start
+    home = generator.device if generator else None
+    return torch.randn(start, generator=generator, device=home)
+
+
 # ---- the objective -------------------------------------------------------------------------------
+def squared_error(error: X, s: Int[Tensor, "B"]) -> Float[Tensor, ""]:
+    """Mean of error^2, alike for all entries and all steps s: the papers' loss (Algorithm 1 forgets
+    the square). Source: MoDiff eq. 10. Notebook: 07."""
+    return error.square().mean()
+
+
 def simple_loss(
     denoise: Denoiser, x0: X, s: Int[Tensor, "B"], schedule: Schedule, noise: X
 ) -> Float[Tensor, ""]:
-    """Mean of ||eps - eps_hat(x_s, s)||^2. Source: MoDiff eq. 10, Alg. 1 (which forgets the
-    square). Notebook: 04."""
-    return (noise - denoise(q_sample(x0, s, schedule, noise), s)).square().mean()
+    """Mean of ||eps - eps_hat(x_s, s)||^2 for given steps and noise; `modiff.training_loss` draws
+    both. Source: MoDiff eq. 10. Notebook: 04."""
+    return squared_error(noise - denoise(q_sample(x0, s, schedule, noise), s), s)
 
 
 def dropped_weight(schedule: Schedule) -> Table:

@@ -1,6 +1,8 @@
 """Diffusion dropout: now and then the past is noised as the future is, so that the control must do.
 
-    q(x_s | x) = N(sqrt(alpha_bar_s) x, (1 - alpha_bar_s) I),   with probability p_d for each sample of the batch
+    q(x_s | x) = N(sqrt(alpha_bar_s) x, (1 - alpha_bar_s) I),
+    with probability p_d for each sample of the batch
+
 Not nn.Dropout: nothing is set to zero, and nothing is rescaled. Rivals that set to zero stand
 beside it.
 Source: MoDiff III-D, eq. 12, Alg. 1.  Notebook: 09
@@ -16,7 +18,7 @@ from torch import Tensor
 from .ddpm import Schedule, draw, q_sample
 
 P_D = (0.0, 0.05, 0.10, 0.15, 0.20, 0.25)  # MoDiff IV-A: the rates, one after the other
-CALM = 0.5  # share of the training before the first rise: 500 of the paper's 1000 epochs
+START = 0.5  # share of the training before the first rise: 500 of the paper's 1000 epochs
 
 Past = Float[Tensor, "B T_h D"]
 
@@ -40,7 +42,8 @@ def diffusion_dropout(
     """
     if past.ndim != 3 or s.shape != past.shape[:1] or (s < 0).any() or (s > schedule.S).any():
         raise ValueError(
-            f"past {tuple(past.shape)}, s {s.tolist()!r:.50}; pass (B, T_h, D), B steps 0..{schedule.S}"
+            f"past {tuple(past.shape)}, s {s.tolist()!r:.50}; "
+            f"pass (B, T_h, D), B steps 0..{schedule.S}"
         )
     hit = chosen(len(past), rate, generator).to(past.device)
     if not shared:
@@ -70,10 +73,12 @@ def chosen(n: int, rate: float, generator: torch.Generator | None = None) -> Boo
 
 @dataclass
 class Dropout:
-    """Diffusion dropout for one training: call it with (past, s, generator), and tell it how much
-    is `done`, 0 to 1.
+    """Diffusion dropout for one training, as `modiff.training_loss` takes it: dropout(past, s,
+    generator).
 
-    A training loop calls `now` before each step: `train_steps(..., before=dropout.now)`.
+    Its rate rises with `done`, the share of the training that is behind us, 0 to 1. A training
+    loop sets it before each step: `train_steps(..., before=dropout.now)`.
+    Raises RuntimeError when it is called before `done` is set.
     Source: MoDiff Alg. 1, III-D (the scheduler P_d).  Notebook: 09
     """
 
@@ -81,37 +86,41 @@ class Dropout:
     rate: Callable[[float], float]  # of what is done: `dropout_rate`
     steps: int  # of the whole training
     shared: bool = True
-    done: float = 0.0
+    done: float | None = None
 
     def now(self, step: int) -> None:
-        """`step` of the steps are behind us."""
+        """Set `done`: so many of the steps are behind us."""
         self.done = step / self.steps
 
     def __call__(
         self, past: Past, s: Int[Tensor, "B"], generator: torch.Generator | None = None
     ) -> Past:
-        return diffusion_dropout(
-            past, s, self.schedule, self.rate(self.done), generator, shared=self.shared
-        )
+        if self.done is None:
+            raise RuntimeError(
+                "diffusion dropout does not know how far the training is, and would never drop: "
+                "pass train_steps(..., before=dropout.now), or call dropout.now(step) yourself"
+            )
+        rate = self.rate(self.done)
+        return diffusion_dropout(past, s, self.schedule, rate, generator, shared=self.shared)
 
 
-def dropout_rate(rates: tuple[float, ...] = P_D, calm: float = CALM) -> Callable[[float], float]:
+def dropout_rate(rates: tuple[float, ...] = P_D, start: float = START) -> Callable[[float], float]:
     """The schedule P_d for a training of any length: `rate(done)`, where `done` goes from 0 to 1.
 
-    0 for the first `calm` of the training, then each of the rates for an equal share of what is
-    left; a first rate of 0 is what the calm part has already had (in the paper: .05 from epoch 500
-    on, .25 from 900 to the end).
-    Raises ValueError unless the rates lie in 0..1 and calm in 0..1.  Source: MoDiff III-D, IV-A.
+    The rate is 0 until `start`, then each of the rates for an equal share of what is left. A first
+    rate of 0 is the part before `start` (in the paper: .05 from epoch 500 on, .25 from 900 to the
+    end).
+    Raises ValueError unless the rates lie in 0..1 and start in 0..1.  Source: MoDiff III-D, IV-A.
     Notebook: 09
     """
     risen = rates[1:] if len(rates) > 1 and rates[0] == 0 else rates
-    if not risen or not all(0 <= rate <= 1 for rate in rates) or not 0 <= calm <= 1:
-        raise ValueError(f"rates and calm lie between 0 and 1, not {rates} and {calm:g}")
+    if not risen or not all(0 <= rate <= 1 for rate in rates) or not 0 <= start <= 1:
+        raise ValueError(f"rates and start lie between 0 and 1, not {rates} and {start:g}")
 
     def rate(done: float) -> float:
-        if done < calm or calm == 1:
+        if done < start or start == 1:
             return 0.0
-        k = int((done - calm) / (1 - calm) * len(risen) + 1e-9)
+        k = int((done - start) / (1 - start) * len(risen) + 1e-9)
         return risen[min(k, len(risen) - 1)]
 
     return rate

@@ -2,26 +2,29 @@
 which step.
 
     L = L_da + lambda(s) L_k,   L_k = w_s L_s + w_a L_a + w_m L_m (+ w_f L_f)
-L_da is the squared error of the target (to which `performers.dance_windows.dance_loss` may add).
-L_k looks at x0_hat, the guess of the clean motion, in metres.
+L_da is the squared error of the target. L_k looks at x0_hat, the guess of the clean motion, in
+metres.
 Source: MoFusion 3.2, eq. 4-7.  Notebook: 13
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import torch
-from jaxtyping import Bool, Float
+from jaxtyping import Bool, Float, Int
 from torch import Tensor
 
-from .ddpm import Schedule, Table
+from .ddpm import Schedule, Table, at, draw, q_sample, squared_error
+from .prediction import target_of, to_x0
 
+Motion = Float[Tensor, "B T D"]
 Bones = tuple[tuple[int, int], ...]
 SNR_LIMIT = 5.0  # of the signal-to-noise weight: without a limit it is infinite at s = 0
 
 
 @dataclass(frozen=True)
 class KinematicWeights:
-    """How much each loss counts; all must be said: MoFusion gives no numbers.
+    """How much each loss counts. No defaults: MoFusion publishes none.
 
     `skeleton` is per m^2 (a bone that varies by 1 cm has L_s = 1e-4 m^2), `asymmetry` and `slide`
     per metre, `motion` per squared standard deviation.  Source: MoFusion 3.2 (lambda_a, lambda_m;
@@ -32,7 +35,76 @@ class KinematicWeights:
     asymmetry: float
     motion: float
     slide: float
-    over_time: str  # a name of OVER_TIME
+    over_time: str  # lambda(s): a name of OVER_TIME
+
+    def total(self, parts: dict[str, Float[Tensor, "B"]]) -> Float[Tensor, "B"]:
+        """L_k, from `kinematic_parts`.  Source: MoFusion 3.2"""
+        return sum(getattr(self, name) * loss for name, loss in parts.items())
+
+
+@dataclass(frozen=True, eq=False)
+class Body:
+    """What the losses must know of a figure.
+
+    `to_positions`: from the network's (standardised) features to joints in metres.
+    `bones`: (parent, child) joints.  `pairs`: (left, right) numbers of bones.  `toes`: two joints.
+    """
+
+    to_positions: Callable[[Motion], Float[Tensor, "B T J 3"]]
+    bones: Bones
+    pairs: Bones
+    toes: tuple[int, int]
+
+
+def training_loss(
+    model: Callable[..., Motion],
+    batch: tuple,
+    schedule: Schedule,
+    generator: torch.Generator,
+    *,
+    kinematic: Callable[[Motion, Motion], Float[Tensor, "B"]] | None = None,
+    lambda_k: Table | None = None,
+    loss: Callable[[Motion, Int[Tensor, "B"]], Float[Tensor, ""]] = squared_error,
+) -> Float[Tensor, ""]:
+    """MoFusion's whole loss, for one batch (x0, context): L_da + lambda_k(s) L_k.
+
+    `context` is what the model takes beside x_s and s: `mofusion.Music`, or None.
+    `kinematic(x0_hat, x0)` is L_k of each sample (`kinematic_parts`, weighted); None leaves it out.
+    `lambda_k` is a weight for each step (`over_time`), by default the paper's alpha_bar.
+    Ours: the network may be asked for x0 or v instead of eps (`model.config.target`), and another
+    `loss` may be taken of the target's error (`beyond.loss_terms`).
+    Source: MoFusion eq. 4.  Notebook: 13
+    """
+    x0, context = batch
+    s = torch.randint(1, schedule.S + 1, (len(x0),), generator=generator).to(x0.device)
+    eps = draw(x0, generator)
+    x_s = q_sample(x0, s, schedule, eps)  # eq. 1-2
+    output = model(x_s, s, context)
+    target = model.config.target
+    L_da = loss(target_of(x0, eps, s, schedule, target) - output, s)
+    if kinematic is None:
+        return L_da
+    x0_hat = to_x0(output, x_s, s, schedule, target)  # eq. 5
+    L_k = kinematic(x0_hat, x0)
+    lambda_k = schedule.alpha_bar if lambda_k is None else lambda_k
+    return L_da + (at(lambda_k, s, L_k) * L_k).mean()  # eq. 4
+
+
+def kinematic_parts(
+    x0_hat: Motion, x0: Motion, body: Body, planted: Bool[Tensor, "B T 2"]
+) -> dict[str, Float[Tensor, "B"]]:
+    """L_s, L_a, L_m and the foot-slide loss of each sample, by the names of KinematicWeights.
+
+    `planted`: which feet stand in x0.  Source: MoFusion 3.2.  Notebook: 13
+    """
+    positions = body.to_positions(x0_hat)
+    lengths = bone_lengths(positions, body.bones)
+    return {
+        "skeleton": skeleton_loss(lengths),
+        "asymmetry": asymmetry_loss(lengths, body.pairs),
+        "motion": motion_loss(x0_hat, x0),
+        "slide": slide_loss(positions, planted, body.toes),
+    }
 
 
 def bone_lengths(positions: Float[Tensor, "B T J 3"], bones: Bones) -> Float[Tensor, "B T K"]:

@@ -1,5 +1,5 @@
-"""MoDiff's network: two encoders, a cross-modal transformer, and a decoder that predicts the noise
-of the future.
+"""MoDiff: two encoders, a cross-modal transformer and a decoder that predicts the noise of the
+future; and Algorithm 1, which trains them.
 
     past poses  --2 layers--+
                             +--concatenated in time--6 cross-modal layers--> memory
@@ -9,6 +9,7 @@ Source: MoDiff III-F, IV-A, Fig. 2.  Notebook: 07
 """
 
 import math
+from collections.abc import Callable
 from dataclasses import asdict, dataclass, fields
 
 import torch
@@ -16,7 +17,12 @@ from jaxtyping import Float, Int
 from torch import Tensor, nn
 
 from .cross_modal_attention import Block, RelativeBias
-from .prediction import TARGETS
+from .ddpm import Schedule, draw, q_sample, squared_error
+from .prediction import TARGETS, target_of
+
+Past = Float[Tensor, "B T_h D"]
+Future = Float[Tensor, "B T_p D"]
+Control = Float[Tensor, "B T C"]
 
 
 @dataclass(frozen=True)
@@ -70,7 +76,7 @@ MODIFF_PAPER = MoDiffConfig(dropout=0.1)
 MODIFF_SMALL = MoDiffConfig(width=128, hidden=256, cross_layers=2)
 
 
-def step_embedding(s: Int[Tensor, "B"], width: int) -> Float[Tensor, "B W"]:
+def step_embedding(s: Int[Tensor, "B"], width: int) -> Float[Tensor, "B E"]:
     """Sines and cosines of the diffusion step, wavelengths from 2 pi to 10000 * 2 pi steps.
     Notebook: 05, 07"""
     frequencies = torch.exp(
@@ -90,7 +96,7 @@ class Encoder(nn.Module):
         sizes = (config.width, config.heads, config.hidden)
         self.blocks = nn.ModuleList(Block(*sizes, dropout=config.dropout) for _ in range(layers))
 
-    def forward(self, x: Float[Tensor, "B T C"]) -> Float[Tensor, "B T C"]:
+    def forward(self, x: Float[Tensor, "B T W"]) -> Float[Tensor, "B T W"]:
         bias = self.bias()
         for block in self.blocks:
             x = block(x, bias)
@@ -193,3 +199,31 @@ class MoDiff(nn.Module):
         control: Float[Tensor, "B T C"],
     ) -> Float[Tensor, "B T_p D"]:
         return self.decode(x_s, s, self.encode(past, control))
+
+
+def training_loss(
+    model: Callable[[Future, Int[Tensor, "B"], Past, Control], Future],
+    batch: tuple[Past, Future, Control],
+    schedule: Schedule,
+    generator: torch.Generator,
+    *,
+    dropout: Callable[[Past, Int[Tensor, "B"], torch.Generator], Past] | None = None,
+    loss: Callable[[Future, Int[Tensor, "B"]], Float[Tensor, ""]] = squared_error,
+) -> Float[Tensor, ""]:
+    """Algorithm 1: what a gradient step is taken on, for one batch (past, future, control).
+
+    || eps - eps_theta(x_s, s, x_d, c) ||^2,   x_s = sqrt(alpha_bar_s) x0 + sqrt(1 - alpha_bar_s) eps
+    s ~ Uniform(1..S), eps ~ N(0, I); the paper's x0 and x_s are y_0 and y_s.
+    `dropout` makes x_d from the past x (`diffusion_dropout.Dropout`); without it x_d = x. Ours:
+    the network may be asked for x0 or v instead (`model.config.target`), and another `loss` than
+    eq. 10's mean square may be taken of the error (`beyond.loss_terms`).
+    Source: MoDiff Alg. 1, eq. 10.  Notebook: 05, 07
+    """
+    past, x0, control = batch
+    s = torch.randint(1, schedule.S + 1, (len(x0),), generator=generator).to(x0.device)
+    if dropout is not None:
+        past = dropout(past, s, generator)  # eq. 12
+    eps = draw(x0, generator)
+    x_s = q_sample(x0, s, schedule, eps)  # eq. 2
+    target = target_of(x0, eps, s, schedule, model.config.target)
+    return loss(target - model(x_s, s, past, control), s)  # eq. 10

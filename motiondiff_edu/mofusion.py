@@ -1,11 +1,12 @@
 """MoFusion's network: a 1D U-Net over motion frames; every block ends by asking the music.
 
-    x_s -> [res, ask] -----------------------------------------------------------> [res, ask] -> eps_hat
-              halve -> [res, ask] ---------------------------------> [res, ask] -> double
-                         halve -> [res, ask] -------> [res, ask] -> double
-                                    halve -> [res, ask] -> double
-res: two convolutions over time, told the step s.  ask: cross-modal attention (`Ask`), keys and
-values from the music.
+    x_s -> [res, ask] --------------------------------------------------> [res, ask] -> eps_hat
+             halve -> [res, ask] ----------------------------> [res, ask] -> double
+                        halve -> [res, ask] ------> [res, ask] -> double
+                                   halve -> [res, ask] -> double
+
+res: two convolutions over time, scaled and shifted by the step s (`ResBlock`).
+ask: cross-modal attention, keys and values from the music (`CrossAttentionBlock`).
 Source: MoFusion 3.1-3.3, Fig. 3.  Notebook: 12
 """
 
@@ -44,7 +45,6 @@ class MoFusionConfig:
     fps: float = 20.0  # of the motion
     slowest: float = 0.05  # Hz, of the position code
     fastest: float = 8.0
-    reach: float = 0.0  # s: how far attention sees, 0 for no limit
     target: str = "eps"
     skip: bool = True
 
@@ -52,9 +52,9 @@ class MoFusionConfig:
         """Raises ValueError for sizes of which no network can be built, and for an unknown
         target."""
         counts, rates = (self.D, self.S, self.heads), (self.fps, self.slowest, self.fastest)
-        if min(counts) < 1 or min(rates) <= 0 or min(self.C, self.music_layers, self.reach) < 0:
+        if min(counts) < 1 or min(rates) <= 0 or min(self.C, self.music_layers) < 0:
             raise ValueError(
-                "D, S, heads must be 1 at least; C, music_layers, reach 0 at least; rates above 0"
+                "D, S, heads must be 1 at least; C, music_layers 0 at least; rates above 0"
             )
         bad = next((w for w in self.widths if w < 2 * self.heads or w % (2 * self.heads)), None)
         if not self.widths or bad is not None:
@@ -79,9 +79,11 @@ class FrameConv(nn.Module):
 
     def __init__(self, inputs: int, outputs: int, stride: int = 1, dilation: int = 1):
         super().__init__()
-        self.mix, self.stride, self.dilation = nn.Linear(3 * inputs, outputs), stride, dilation
+        self.mix = nn.Linear(3 * inputs, outputs)
+        self.stride = stride
+        self.dilation = dilation
 
-    def forward(self, x: Float[Tensor, "B T C"]) -> Float[Tensor, "B T2 C2"]:
+    def forward(self, x: Float[Tensor, "B T W"]) -> Float[Tensor, "B T2 W2"]:
         n = self.dilation
         padded = F.pad(x, (0, 0, n, n))
         return self.mix(
@@ -108,15 +110,15 @@ class ResBlock(nn.Module):
             nn.init.zeros_(layer.bias)
 
     def forward(
-        self, x: Float[Tensor, "B T C"], step: Float[Tensor, "B W"], mask: Float[Tensor, "#B T 1"]
-    ) -> Float[Tensor, "B T C2"]:
+        self, x: Float[Tensor, "B T W"], step: Float[Tensor, "B E"], mask: Float[Tensor, "#B T 1"]
+    ) -> Float[Tensor, "B T W2"]:
         h = self.conv_in(F.silu(self.norm_in(x)) * mask)
         scale, shift = self.step(step)[:, None].chunk(2, dim=-1)
         h = self.conv_out(F.silu(self.norm_out(h) * (1 + scale) + shift) * mask)
         return self.around(x) + h
 
 
-class Ask(nn.Module):
+class CrossAttentionBlock(nn.Module):
     """Cross-modal attention, then a feed-forward layer: queries from the motion, keys and values
     from the music.
 
@@ -127,14 +129,12 @@ class Ask(nn.Module):
 
     def __init__(self, width: int, heads: int, context_width: int):
         super().__init__()
-        self.norm, self.attention = (
-            nn.LayerNorm(width),
-            CrossModalAttention(width, heads, context_width),
-        )
+        self.norm = nn.LayerNorm(width)
+        self.attention = CrossModalAttention(width, heads, context_width)
         self.norm_ff = nn.LayerNorm(width)
         self.ff = nn.Sequential(nn.Linear(width, 2 * width), nn.GELU(), nn.Linear(2 * width, width))
 
-    def forward(self, x: Float[Tensor, "B T C"], context, bias, turns) -> Float[Tensor, "B T C"]:
+    def forward(self, x: Float[Tensor, "B T W"], context, bias, turns) -> Float[Tensor, "B T W"]:
         normed = self.norm(x)
         x = x + self.attention(normed, normed if context is None else context, bias, turns)
         return x + self.ff(self.norm_ff(x))
@@ -177,7 +177,9 @@ class MoFusion(nn.Module):
 
     def __init__(self, config: MoFusionConfig = MOFUSION_SMALL):
         super().__init__()
-        self.config, widths, first = config, config.widths, config.widths[0]
+        self.config = config
+        widths = config.widths
+        first = config.widths[0]
         width = 4 * first  # of the step's embedding
         self.step_in = nn.Sequential(
             nn.Linear(width, width), nn.SiLU(), nn.Linear(width, width), nn.SiLU()
@@ -187,7 +189,7 @@ class MoFusion(nn.Module):
         self.into = FrameConv(config.D, first)
 
         def block(inputs, outputs):
-            ask = Ask(outputs, config.heads, context if config.C else outputs)
+            ask = CrossAttentionBlock(outputs, config.heads, context if config.C else outputs)
             return nn.ModuleDict({"res": ResBlock(inputs, outputs, width), "ask": ask})
 
         self.down = nn.ModuleList(block(a, b) for a, b in pairwise((first, *widths)))
@@ -291,9 +293,6 @@ class View:
         inside, times = frames < lengths[:, None], frames / config.fps  # (B, T), and seconds
         heard, seen = (times, inside) if music is None else (music.times, music.mask)
         allowed = None if seen is None or bool(seen.all()) else seen[:, None, None]
-        if config.reach:
-            near = ((times[:, None] - heard).abs() <= config.reach)[None, None]
-            allowed = near if allowed is None else allowed & near
         bias = (
             None
             if allowed is None

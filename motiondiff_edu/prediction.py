@@ -113,7 +113,8 @@ def denoiser_of(network, schedule: Schedule, target: str):
         output = network(x_s, s)
         if torch.is_grad_enabled() and x_s.requires_grad and not output.requires_grad:
             raise ValueError(
-                "no gradient here: take the network, not its fast twin, outside torch.inference_mode()"
+                "no gradient here: take the network, not its fast twin, "
+                "outside torch.inference_mode()"
             )
         return to_eps(output, x_s, s, schedule, target)
 

@@ -1,7 +1,9 @@
 """There and back: what is missing in the past is found by walking on, turning round, and walking
 back.
 
-    past with holes -> T_h new frames -> both reversed in time -> T_h new frames: the past, as it may have been
+    past with holes -> T_h new frames -> both reversed in time
+                    -> T_h new frames: the past, as it may have been
+
 The holes are filled from it, and again, until filling changes nothing. Nothing is trained for it.
 Where we differ: "reverse the order" is not enough for the control: velocities change their sign,
 and since control[t] leads from frame t to t + 1 they move by one frame.
@@ -16,7 +18,7 @@ import torch
 from jaxtyping import Float, Shaped
 from torch import Tensor
 
-from .rollout import generate
+from .rollout import AnyWalker, generate
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,14 +50,16 @@ def reverse_control(control: Float[Tensor, "*B T 3"]) -> Float[Tensor, "*B T 3"]
 WayBack = Callable[..., Tensor]
 
 
-def walked_back(walker, ahead, control, given, known, **options) -> Float[Tensor, "B T_h D"]:
-    """The paper's: from what was walked ahead, no more (others: `ways_back`).  Source: MoDiff
+def walked_back(
+    walker: AnyWalker, ahead, control, given, known, **options
+) -> Float[Tensor, "B T_h D"]:
+    """The paper's: from what was walked ahead, no more (others: `beyond.back_with_known`).  Source: MoDiff
     III-E.   Notebook: 10"""
     return generate(walker, ahead, control, hold=False, **options)
 
 
 def repair_steps(
-    walker,
+    walker: AnyWalker,
     past: Float[Any, "B _ _"],
     known: Shaped[Any, "_ _ _"],
     control: Float[Any, "_ _ _"],
@@ -67,7 +71,7 @@ def repair_steps(
     generator: torch.Generator,
     steps: int | None = 10,
     keep: int | None = None,
-    settle: Callable[[Tensor, Tensor, Tensor], Tensor] | None = None,
+    correct: Callable[[Tensor, Tensor, Tensor], Tensor] | None = None,
 ) -> Iterator[Round]:
     """Fill the holes of `past` (metres), round by round, until they move by less than `tolerance`
     metres (RMS).
@@ -75,10 +79,10 @@ def repair_steps(
     `control` has T_h rows beside the past and T_h for the way there. Holes are the mean pose at
     first (zero once standardised), or `guess` (metres), from a regression, say. Stops after
     `rounds` at the latest: a sampler's own spread may be above the tolerance. `way_back`: the
-    paper's, or one of `ways_back`, which heed what is known. Of each window `keep` poses are kept,
+    paper's, or one of `beyond.back_with_known`, which heed what is known. Of each window `keep` poses are kept,
     by default all T_p; keep=1 is the paper's rollout (ten times dearer, and farther off).
-    `settle(past, known, ahead)` mends the filled past after each round:
-    `editing.repairs.with_bones`, for one.
+    `correct(past, known, ahead)` is applied to the filled past after each round, such as
+    `editing.repairs.with_bones`.
     Raises ValueError for what does not fit.  Source: MoDiff III-E, Fig. 6; the stop rule is ours.
     Notebook: 10
     """
@@ -90,7 +94,8 @@ def repair_steps(
         )
     if known.shape != past.shape or known.dtype != torch.bool:
         raise ValueError(
-            f"known is {known.dtype} {tuple(known.shape)}; give bool, {tuple(past.shape)} as past is"
+            f"known is {known.dtype} {tuple(known.shape)}; "
+            f"give bool, {tuple(past.shape)} as past is"
         )
     if control.shape[:2] != (len(past), 2 * T_h):
         raise ValueError(
@@ -114,7 +119,7 @@ def repair_steps(
             .to(past)
         )
         before, filled = filled, torch.where(known, past, back)
-        filled = settle(filled, known, ahead) if settle else filled
+        filled = correct(filled, known, ahead) if correct else filled
         moved = (filled - before).square().flatten(1).sum(1)
         change = (moved / missing.flatten(1).sum(1).clamp(min=1)).sqrt()
         yield Round(number, filled, change)
@@ -122,7 +127,7 @@ def repair_steps(
             return
 
 
-def repair(walker, past, known, control, **options) -> Float[Tensor, "B T_h D"]:
+def repair(walker: AnyWalker, past, known, control, **options) -> Float[Tensor, "B T_h D"]:
     """The last of `repair_steps`: known entries come back bit by bit as they were given.
     Notebook: 10"""
     return list(repair_steps(walker, past, known, control, **options))[-1].past

@@ -10,7 +10,7 @@ Source: MoDiff III-C, Alg. 2.  Notebook: 08
 import warnings
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Protocol, runtime_checkable
 
 import torch
 from jaxtyping import Float
@@ -18,6 +18,44 @@ from torch import Tensor
 
 WindowSampler = Callable[[Tensor, Tensor, torch.Generator], Tensor]
 Control = Tensor | Callable[[int], Tensor]
+
+
+@runtime_checkable
+class Units(Protocol):
+    """Between metres (or m/s) and a network's units; `mean` lies where the network does."""
+
+    mean: Tensor
+
+    def transform(self, x: Tensor) -> Tensor: ...
+
+    def inverse(self, x: Tensor) -> Tensor: ...
+
+
+@runtime_checkable
+class Sizes(Protocol):
+    """Frames given and predicted; numbers in a pose and in a row of the control."""
+
+    T_h: int
+    T_p: int
+    D: int
+    C: int
+
+
+@runtime_checkable
+class AnyWalker(Protocol):
+    """What `generate` needs of a walker: sizes, units, and a window sampler.
+
+    `performers.walker.Walker` is one; whatever has these four can be walked with. A `card` that
+    says which control was seen in training is used where there is one.
+    """
+
+    @property
+    def config(self) -> Sizes: ...
+
+    pose_scaler: Units
+    control_scaler: Units
+
+    def window_sampler(self, steps: int | None = None) -> WindowSampler: ...
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,7 +102,7 @@ def rollout_steps(
 
 
 def generate(
-    walker,
+    walker: AnyWalker,
     past: Float[Any, "*B T_h D"],
     control: Float[Any, "*B T C"],
     *,
@@ -95,12 +133,14 @@ def generate(
         or (past.shape[2], control.shape[-1]) != (D, C)
     ):
         raise ValueError(
-            f"past {tuple(past.shape)} and control {tuple(control.shape)} do not go together: the walker takes "
-            f"(B, {T_h}, {D}) and (B, T, {C}), or both without B; flatten positions (T, 21, 3) to (T, 63)"
+            f"past {tuple(past.shape)} and control {tuple(control.shape)} do not go together: the "
+            f"walker takes (B, {T_h}, {D}) and (B, T, {C}), or both without B; "
+            "flatten positions (T, 21, 3) to (T, 63)"
         )
     if past.shape[1] != T_h:
         raise ValueError(
-            f"the walker continues {T_h} past poses, got {past.shape[1]}: pass past[..., -{T_h}:, :]"
+            f"the walker continues {T_h} past poses, got {past.shape[1]}: "
+            f"pass past[..., -{T_h}:, :]"
         )
     if frames < 1:
         raise ValueError(
@@ -111,7 +151,8 @@ def generate(
     _warn_beyond(control, getattr(walker, "card", {}).get("control_range"))
     generator = generator or torch.Generator().manual_seed(seed)
     past, control = (x.float().to(walker.pose_scaler.mean.device) for x in (past, control))
-    poses, velocities = walker.pose_scaler.transform(past), walker.control_scaler.transform(control)
+    poses = walker.pose_scaler.transform(past)
+    velocities = walker.control_scaler.transform(control)
     sample, T_p = walker.window_sampler(steps), walker.config.T_p
     loop = rollout_steps(
         sample, poses, velocities, frames, T_p, generator=generator, keep=keep, hold=hold
@@ -135,7 +176,8 @@ def _warn_beyond(control: Float[Tensor, "B T C"], seen: dict | None) -> None:
             else f"column {column}"
         )
         warnings.warn(
-            f"row {row} of the control asks for {control[batch, row, column]:.3g} ({name}); this walker learnt from "
-            f"{low[column]:.3g} to {high[column]:.3g}, and will do something else",
+            f"row {row} of the control asks for {control[batch, row, column]:.3g} ({name}); this "
+            f"walker learnt from {low[column]:.3g} to {high[column]:.3g}, "
+            "and will do something else",
             stacklevel=3,
         )

@@ -146,8 +146,12 @@ def _stop(state: TrainState, loss: float, norm: float, rate: float, save: Callab
             f" They are saved: {save(state)}." if save else ""
         )
     else:
-        kept = "The update before had broken the weights already; they are not saved, and what was saved earlier stays."
+        kept = (
+            "The update before had broken the weights already; "
+            "they are not saved, and what was saved earlier stays."
+        )
     raise NonFiniteLoss(
-        f"step {state.step}: the loss is {loss}, the gradient's norm {norm}, at learning rate {rate:g}. {kept} "
-        "Usual causes: a learning rate too high (try a tenth), or NaN in the data (Scaler.fit refuses those)."
+        f"step {state.step}: the loss is {loss}, the gradient's norm {norm}, at learning rate "
+        f"{rate:g}. {kept} Usual causes: a learning rate too high (try a tenth), "
+        "or NaN in the data (Scaler.fit refuses those)."
     )

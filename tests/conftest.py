@@ -1,5 +1,6 @@
-"""What the tests share: the real recordings and the browser, skipped visibly, or demanded where the
-build says so.
+"""What the tests share.
+
+The real recordings and the browser, skipped visibly, or demanded where the build says so.
 
 MOTIONDIFF_REAL_DATA   folder of real recordings; when it is set, a test that cannot use it fails
 MOTIONDIFF_REQUIRE_BROWSER   when it is set, a test that finds no Chromium fails
@@ -35,8 +36,10 @@ def root() -> Path:
 
 @pytest.fixture(scope="session")
 def real_data() -> Path:
-    """The folder of real recordings (bvh/, bvh_odd_and_broken/, oracle/ ...): never part of the
-    project."""
+    """The folder of real recordings (bvh/, bvh_odd_and_broken/, oracle/ ...).
+
+    Never part of the project.
+    """
     folder = os.environ.get("MOTIONDIFF_REAL_DATA", "")
     if not folder:
         pytest.skip("real recordings not given: set MOTIONDIFF_REAL_DATA to their folder")
@@ -77,8 +80,9 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
 
 @pytest.hookimpl(wrapper=True)
 def pytest_runtest_makereport(item: pytest.Item, call: pytest.CallInfo):
-    """A skip from anywhere (importorskip, a mark) in a browser or real-data test is a failure where
-    it was demanded.
+    """A skip is a failure where the test was demanded.
+
+    From anywhere (importorskip, a mark), in a browser or real-data test.
 
     What wants real recordings as well as a browser may be skipped where none are given.
     """

@@ -34,12 +34,10 @@ def gap(truth, schedule, denoise=None, seed=13):
 
 
 def test_gaussian_kl_is_torchs():
-    m1, m2, v1, v2 = (
-        torch.randn(2, 5, 7),
-        torch.randn(2, 5, 7),
-        torch.tensor(0.3),
-        torch.tensor(0.8),
-    )
+    m1 = torch.randn(2, 5, 7)
+    m2 = torch.randn(2, 5, 7)
+    v1 = torch.tensor(0.3)
+    v2 = torch.tensor(0.8)
     normal = torch.distributions.Normal
     expected = torch.distributions.kl_divergence(normal(m1, v1.sqrt()), normal(m2, v2.sqrt())).sum(
         (1, 2)
@@ -48,12 +46,10 @@ def test_gaussian_kl_is_torchs():
 
 
 def test_reconstruction_term_is_torchs():
-    schedule, x0, x_1, eps = (
-        linear_schedule(),
-        torch.randn(2, 5, 7),
-        torch.randn(2, 5, 7),
-        torch.randn(2, 5, 7),
-    )
+    schedule = linear_schedule()
+    x0 = torch.randn(2, 5, 7)
+    x_1 = torch.randn(2, 5, 7)
+    eps = torch.randn(2, 5, 7)
     normal = torch.distributions.Normal(
         p_mean(x_1, 1, eps, schedule), schedule.beta[1].sqrt().float()
     )
@@ -73,13 +69,14 @@ def test_prior_term_is_small_where_the_schedule_reaches_noise():
 
 @pytest.mark.parametrize("s", [2, 30, 100])
 def test_eq_8_is_the_weighted_distance_of_means_plus_a_constant(s):
-    """KL - ||mean_q - mean_p||^2 / (2 beta) is the same for every denoiser; eq. 9 turns means into
-    noises."""
-    schedule, generator = linear_schedule(), torch.Generator().manual_seed(14)
-    x0, eps = (
-        torch.randn(2, 5, 7, generator=generator).double(),
-        torch.randn(2, 5, 7, generator=generator).double(),
-    )
+    """KL - ||mean_q - mean_p||^2 / (2 beta) is the same for every denoiser.
+
+    Eq. 9 turns means into noises.
+    """
+    schedule = linear_schedule()
+    generator = torch.Generator().manual_seed(14)
+    x0 = torch.randn(2, 5, 7, generator=generator).double()
+    eps = torch.randn(2, 5, 7, generator=generator).double()
     x_s, constants = q_sample(x0, s, schedule, eps), []
     for eps_hat in (0 * eps, eps + 0.3, torch.tanh(x_s)):
         means = q_posterior(x0, x_s, s, schedule)[0] - p_mean(x_s, s, eps_hat, schedule)
@@ -95,7 +92,8 @@ def test_eq_8_is_the_weighted_distance_of_means_plus_a_constant(s):
 
 def test_dropped_weight_by_hand():
     schedule = linear_schedule()
-    beta, alpha_bar = schedule.beta[30].item(), schedule.alpha_bar[30].item()
+    beta = schedule.beta[30].item()
+    alpha_bar = schedule.alpha_bar[30].item()
     assert dropped_weight(schedule)[30].item() == pytest.approx(
         beta / (2 * (1 - beta) * (1 - alpha_bar))
     )
@@ -116,8 +114,10 @@ def test_bound_lies_below_the_exact_log_density(truth, schedule):
 
 
 def test_bound_is_tight_for_a_standard_gaussian():
-    """q(x_{s-1} | x_s) is then a Gaussian of variance beta_s, exactly what p assumes: only the
-    prior's term is lost."""
+    """q(x_{s-1} | x_s) is then a Gaussian of variance beta_s, exactly what p assumes.
+
+    Only the prior's term is lost.
+    """
     schedule = cosine_schedule(50)
     value, error = gap(gaussian(), schedule)
     assert abs(value) < 4 * error and error < 0.02
@@ -125,7 +125,8 @@ def test_bound_is_tight_for_a_standard_gaussian():
 
 def test_gap_shrinks_with_more_steps():
     truth = two_hills(std=0.2)
-    few, many = gap(truth, cosine_schedule(10)), gap(truth, cosine_schedule(200))
+    few = gap(truth, cosine_schedule(10))
+    many = gap(truth, cosine_schedule(200))
     assert few[0] > many[0] + 5 * (few[1] + many[1])
 
 
@@ -138,10 +139,8 @@ def test_a_worse_denoiser_has_a_wider_gap():
 
 
 def test_terms_are_one_a_step_and_kls_are_positive():
-    schedule, truth = (
-        linear_schedule(17, 1e-3, 0.5),
-        mixture(torch.ones(1), torch.zeros(1, 3), torch.eye(3)[None]),
-    )
+    schedule = linear_schedule(17, 1e-3, 0.5)
+    truth = mixture(torch.ones(1), torch.zeros(1, 3), torch.eye(3)[None])
     terms = bound_terms(
         exact_denoiser(truth, schedule),
         torch.randn(5, 3),
@@ -153,8 +152,10 @@ def test_terms_are_one_a_step_and_kls_are_positive():
 
 
 def test_bound_lies_below_the_models_own_density():
-    """For three steps the model's own p(x0) can be summed on a grid; the bound is below its log at
-    every x0."""
+    """For three steps the model's own p(x0) can be summed on a grid.
+
+    The bound is below its log at every x0.
+    """
     truth, schedule = two_hills(std=0.4), linear_schedule(3, 0.5, 0.97)
     denoise = exact_denoiser(truth, schedule)
     grid = torch.linspace(-6, 6, 3001, dtype=torch.float64)[:, None]

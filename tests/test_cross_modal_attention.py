@@ -1,5 +1,7 @@
-"""Attention against torch's own, the T5 buckets against published values, and watching that changes
-nothing."""
+"""Attention against torch's own, and the T5 buckets against published values.
+
+Watching changes nothing.
+"""
 
 import pytest
 import torch
@@ -16,7 +18,11 @@ from motiondiff_edu.cross_modal_attention import (
     watch,
 )
 
-B, H, T, M, d = 2, 3, 5, 7, 4
+B = 2
+H = 3
+T = 5
+M = 7
+d = 4
 
 
 @pytest.fixture
@@ -67,8 +73,9 @@ def test_a_key_that_is_masked_out_gets_nothing(qkvb):
 # transformers 5.23.0, T5Attention._relative_position_bucket, 32 buckets, farthest 128; distance =
 # key - query
 T5_BOTH = {
-    -128: 15, -91: 15, -64: 14, -46: 13, -32: 12, -23: 11, -16: 10, -12: 9, -11: 8, -8: 8, -7: 7, -1: 1, 0: 0,
-    1: 17, 7: 23, 8: 24, 12: 25, 16: 26, 23: 27, 32: 28, 46: 29, 64: 30, 91: 31, 200: 31,
+    -128: 15, -91: 15, -64: 14, -46: 13, -32: 12, -23: 11, -16: 10, -12: 9, -11: 8, -8: 8, -7: 7,
+    -1: 1, 0: 0, 1: 17, 7: 23, 8: 24, 12: 25,
+    16: 26, 23: 27, 32: 28, 46: 29, 64: 30, 91: 31, 200: 31,
 }  # fmt: skip
 T5_CAUSAL = {
     -128: 31,
@@ -127,10 +134,8 @@ def test_layer_equals_multihead_attention_with_the_same_weights():
         theirs.in_proj_bias.copy_(torch.cat([mine.q.bias, mine.kv.bias]))
         theirs.out_proj.load_state_dict(mine.out.state_dict())
     g = torch.Generator().manual_seed(8)
-    x, context = (
-        torch.randn(B, T, width, generator=g),
-        torch.randn(B, M, context_width, generator=g),
-    )
+    x = torch.randn(B, T, width, generator=g)
+    context = torch.randn(B, M, context_width, generator=g)
     wanted, weights = theirs(x, context, context, average_attn_weights=False)
     torch.testing.assert_close(mine(x, context), wanted, atol=1e-6, rtol=1e-5)
     with watch(mine) as maps:
@@ -140,9 +145,12 @@ def test_layer_equals_multihead_attention_with_the_same_weights():
 
 def test_watching_collects_maps_and_changes_nothing():
     torch.manual_seed(3)
-    block, g = Block(12, H, 20, with_context=True).eval(), torch.Generator().manual_seed(9)
-    x, context = torch.randn(B, T, 12, generator=g), torch.randn(B, M, 12, generator=g)
-    bias, context_bias = torch.randn(1, H, T, T, generator=g), torch.randn(1, H, T, M, generator=g)
+    block = Block(12, H, 20, with_context=True).eval()
+    g = torch.Generator().manual_seed(9)
+    x = torch.randn(B, T, 12, generator=g)
+    context = torch.randn(B, M, 12, generator=g)
+    bias = torch.randn(1, H, T, T, generator=g)
+    context_bias = torch.randn(1, H, T, M, generator=g)
     plain = block(x, bias, context, context_bias)
     with watch(block) as maps:
         watched = block(x, bias, context, context_bias)
@@ -179,8 +187,10 @@ def test_width_that_heads_cannot_share():
 def test_block_is_its_formula():
     """x + self(norm x), + cross(norm x), + ff(norm x): written out, against the class."""
     torch.manual_seed(6)
-    block, g = Block(12, H, 20, with_context=True).eval(), torch.Generator().manual_seed(5)
-    x, context = torch.randn(B, T, 12, generator=g), torch.randn(B, M, 12, generator=g)
+    block = Block(12, H, 20, with_context=True).eval()
+    g = torch.Generator().manual_seed(5)
+    x = torch.randn(B, T, 12, generator=g)
+    context = torch.randn(B, M, 12, generator=g)
     n = F.layer_norm(x, (12,), block.norm_self.weight, block.norm_self.bias)
     y = x + block.self_attention(n, n)
     y = y + block.cross_attention(F.layer_norm(y, (12,)), context)

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 import torch
 
-from motiondiff_edu.beyond.schedules import shifted
+from motiondiff_edu.beyond.schedules import leap_schedule, shifted
 from motiondiff_edu.ddpm import (
     cosine_schedule,
     draw,
@@ -27,7 +27,6 @@ from motiondiff_edu.ddpm import (
     simple_loss,
 )
 from motiondiff_edu.exact import exact_denoiser, mixture, sample_mixture
-from motiondiff_edu.performers.walker import leap_schedule
 from motiondiff_edu.prediction import to_eps
 from motiondiff_edu.recipes.dancers import DANCER
 
@@ -36,8 +35,10 @@ S_REF = 1000
 
 @pytest.fixture(scope="module")
 def reference():
-    """The schedule, the start and the dummy model of the published reference run (diffusers'
-    scheduler tests)."""
+    """The schedule, the start and the dummy model of the published reference run.
+
+    They are those of diffusers' scheduler tests.
+    """
     start = (torch.arange(768).reshape(3, 8, 8, 4) / 768).permute(3, 0, 1, 2)
     return (
         linear_schedule(S_REF, 1e-4, 0.02),
@@ -69,9 +70,11 @@ def test_ddpm_sum_equals_the_published_run(reference, target, total):
 def test_two_steps_from_lightly_noised_data_equal_the_published_run(reference):
     schedule, start, model = reference
     noise = (torch.arange(768).flip(-1).reshape(3, 8, 8, 4) / 768).permute(3, 0, 1, 2)
-    x, generator = q_sample(start, 2, schedule, noise), torch.Generator().manual_seed(0)
+    x = q_sample(start, 2, schedule, noise)
+    generator = torch.Generator().manual_seed(0)
     for s in (2, 1):
-        a, b = schedule.alpha_bar[s].sqrt().float(), (1 - schedule.alpha_bar[s]).sqrt().float()
+        a = schedule.alpha_bar[s].sqrt().float()
+        b = (1 - schedule.alpha_bar[s]).sqrt().float()
         x0_hat = ((x - b * model(x, torch.full((4,), s))) / a).clamp(-1, 1)
         mean, variance = q_posterior(x0_hat, x, s, schedule)
         x = mean + variance.sqrt() * draw(x, generator)
@@ -109,7 +112,8 @@ def test_cosine_schedule_equals_published_values():
 
 
 def test_shifting_a_schedule_multiplies_its_signal_to_noise_ratio():
-    plain, less = cosine_schedule(1000), shifted(cosine_schedule(1000), 0.02)
+    plain = cosine_schedule(1000)
+    less = shifted(cosine_schedule(1000), 0.02)
     ratios = [s.alpha_bar[1:] / (1 - s.alpha_bar[1:]) for s in (plain, less)]
     torch.testing.assert_close(ratios[1], 0.02 * ratios[0], rtol=1e-9, atol=0)
     assert less.alpha_bar[0] == 1 and "x 0.02" in less.name and less.signal_left < plain.signal_left
@@ -168,7 +172,8 @@ def test_schedule_that_leaves_signal_warns_in_words(beta_S, left):
 
 
 def test_iterated_single_steps_match_the_closed_form():
-    schedule, generator = linear_schedule(30, 1e-3, 0.3), torch.Generator().manual_seed(1)
+    schedule = linear_schedule(30, 1e-3, 0.3)
+    generator = torch.Generator().manual_seed(1)
     x0 = torch.tensor([0.7, -1.2]).expand(40_000, 2)
     x = x0
     for s in range(1, 23):
@@ -181,7 +186,9 @@ def test_iterated_single_steps_match_the_closed_form():
 
 
 def test_q_sample_takes_a_step_for_each_sample():
-    schedule, x0, noise = linear_schedule(), torch.randn(2, 5, 7), torch.randn(2, 5, 7)
+    schedule = linear_schedule()
+    x0 = torch.randn(2, 5, 7)
+    noise = torch.randn(2, 5, 7)
     both = q_sample(x0, torch.tensor([3, 90]), schedule, noise)
     for i, s in enumerate((3, 90)):
         torch.testing.assert_close(
@@ -191,7 +198,10 @@ def test_q_sample_takes_a_step_for_each_sample():
 
 def test_posterior_is_bayes_rule_on_a_grid():
     """q(x_{s-1} | x_s, x0) from eq. 7 against the product of two densities, normalised by a sum."""
-    schedule, s, x0, x_s = linear_schedule(20, 0.01, 0.4), 9, 0.8, -0.3
+    schedule = linear_schedule(20, 0.01, 0.4)
+    s = 9
+    x0 = 0.8
+    x_s = -0.3
     grid = torch.linspace(-6, 6, 20_001, dtype=torch.float64)
     log_p = -((grid - schedule.alpha_bar[s - 1].sqrt() * x0) ** 2) / (
         2 * (1 - schedule.alpha_bar[s - 1])
@@ -206,12 +216,10 @@ def test_posterior_is_bayes_rule_on_a_grid():
 
 
 def test_p_mean_with_the_true_noise_is_the_posterior_mean():
-    schedule, x0, eps, s = (
-        linear_schedule(),
-        torch.randn(4, 3, 2).double(),
-        torch.randn(4, 3, 2).double(),
-        37,
-    )
+    schedule = linear_schedule()
+    x0 = torch.randn(4, 3, 2).double()
+    eps = torch.randn(4, 3, 2).double()
+    s = 37
     x_s = q_sample(x0, s, schedule, eps)
     torch.testing.assert_close(p_mean(x_s, s, eps, schedule), q_posterior(x0, x_s, s, schedule)[0])
 
@@ -228,7 +236,9 @@ def test_variances_are_the_papers_and_its_lower_bound():
 def test_one_reverse_step_by_hand(variance):
     """x_1 from x_2 in plain numbers: beta is 0.1, then 0.4, so alpha_bar_2 = 0.9 * 0.6 = 0.54."""
     schedule = make_schedule(torch.tensor([0.1, 0.4, 0.75, 0.95], dtype=torch.float64))
-    x_2, eps_hat, z = [0.7, -1.2], [0.3, 0.5], [-0.8, 1.5]
+    x_2 = [0.7, -1.2]
+    eps_hat = [0.3, 0.5]
+    z = [-0.8, 1.5]
     sigma = {"beta": 0.4**0.5, "posterior": (0.4 * 0.1 / 0.46) ** 0.5}[variance]
     x_1 = [
         (x - 0.4 / 0.46**0.5 * e) / 0.6**0.5 + sigma * n
@@ -241,7 +251,9 @@ def test_one_reverse_step_by_hand(variance):
 
 @pytest.mark.parametrize("variance", ["beta", "posterior"])
 def test_last_step_adds_no_noise(variance):
-    schedule, x, eps = linear_schedule(), torch.randn(2, 5, 7), torch.randn(2, 5, 7)
+    schedule = linear_schedule()
+    x = torch.randn(2, 5, 7)
+    eps = torch.randn(2, 5, 7)
     loud = torch.full_like(x, 1e6)
     torch.testing.assert_close(
         p_sample(x, 1, eps, schedule, loud, variance), p_mean(x, 1, eps, schedule)
@@ -284,7 +296,8 @@ def test_exact_denoiser_samples_have_the_mixtures_mean_variance_and_weights():
         torch.tensor([[-1.0, 0.5], [1.0, -0.2]]),
         torch.tensor([[[0.04, 0.02], [0.02, 0.05]], [[0.09, 0.0], [0.0, 0.02]]]),
     )
-    schedule, generator = cosine_schedule(200), torch.Generator().manual_seed(2)
+    schedule = cosine_schedule(200)
+    generator = torch.Generator().manual_seed(2)
     *_, last = sample_steps(
         exact_denoiser(truth, schedule), (8000, 2), schedule, generator=generator
     )
@@ -297,12 +310,10 @@ def test_exact_denoiser_samples_have_the_mixtures_mean_variance_and_weights():
 
 
 def test_simple_loss_is_the_mean_square_and_zero_for_the_true_noise():
-    schedule, x0, noise, s = (
-        linear_schedule(),
-        torch.randn(2, 5, 7),
-        torch.randn(2, 5, 7),
-        torch.tensor([4, 60]),
-    )
+    schedule = linear_schedule()
+    x0 = torch.randn(2, 5, 7)
+    noise = torch.randn(2, 5, 7)
+    s = torch.tensor([4, 60])
     assert simple_loss(lambda x, s: noise, x0, s, schedule, noise) == 0
     zero = simple_loss(lambda x, s: torch.zeros_like(x), x0, s, schedule, noise)
     assert zero.item() == pytest.approx((noise**2).mean().item(), rel=1e-6)

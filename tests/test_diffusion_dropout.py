@@ -1,5 +1,7 @@
-"""Diffusion dropout: eq. 12's mean and variance, its rate, who is hit, and the schedule of
-rates."""
+"""Diffusion dropout.
+
+Eq. 12's mean and variance, its rate, who is hit, and the schedule of rates.
+"""
 
 import pytest
 import torch
@@ -24,10 +26,8 @@ def seeded(seed: int = 0) -> torch.Generator:
 def test_rate_zero_is_the_identity_and_rate_one_is_equation_12():
     past, s = torch.full((4000, 5, 3), 2.0), torch.full((4000,), 40)
     assert torch.equal(diffusion_dropout(past, s, SCHEDULE, 0.0, seeded()), past)
-    out, alpha_bar = (
-        diffusion_dropout(past, s, SCHEDULE, 1.0, seeded()),
-        SCHEDULE.alpha_bar[40].item(),
-    )
+    out = diffusion_dropout(past, s, SCHEDULE, 1.0, seeded())
+    alpha_bar = SCHEDULE.alpha_bar[40].item()
     assert out.mean().item() == pytest.approx(2 * alpha_bar**0.5, abs=0.02)
     assert out.var().item() == pytest.approx(1 - alpha_bar, rel=0.02)
     each = out.flatten(1)
@@ -35,7 +35,8 @@ def test_rate_zero_is_the_identity_and_rate_one_is_equation_12():
 
 
 def test_whole_samples_are_hit_and_by_the_rate():
-    past, s = torch.ones(5000, 4, 3), torch.randint(1, 101, (5000,), generator=seeded(1))
+    past = torch.ones(5000, 4, 3)
+    s = torch.randint(1, 101, (5000,), generator=seeded(1))
     touched = (diffusion_dropout(past, s, SCHEDULE, 0.2, seeded(2)) != past).flatten(1)
     assert torch.equal(touched.any(1), touched.all(1))
     assert touched.any(1).float().mean().item() == pytest.approx(0.2, abs=0.02)
@@ -43,7 +44,8 @@ def test_whole_samples_are_hit_and_by_the_rate():
 
 @pytest.mark.parametrize("shared", [True, False])
 def test_a_noised_past_has_the_target_s_step_or_one_of_its_own(shared):
-    past, s = torch.zeros(3000, 40, 5), torch.where(torch.arange(3000) % 2 == 0, 5, 95)
+    past = torch.zeros(3000, 40, 5)
+    s = torch.where(torch.arange(3000) % 2 == 0, 5, 95)
     out = diffusion_dropout(past, s, SCHEDULE, 1.0, seeded(3), shared=shared)
     spread = out.flatten(1).std(1)
     few, many = spread[::2].mean().item(), spread[1::2].mean().item()
@@ -60,12 +62,21 @@ def test_steps_of_its_own_are_drawn_evenly_from_all():
     out = diffusion_dropout(
         past, torch.ones(4000, dtype=torch.int64), SCHEDULE, 1.0, seeded(6), shared=False
     )
-    found, quantiles = out.flatten(1).var(1), torch.tensor([0.02, 0.25, 0.5, 0.75, 0.98])
+    found = out.flatten(1).var(1)
+    quantiles = torch.tensor([0.02, 0.25, 0.5, 0.75, 0.98])
     wanted = (1 - SCHEDULE.alpha_bar[1:]).float()
     torch.testing.assert_close(
         found.quantile(quantiles), wanted.quantile(quantiles), atol=0.01, rtol=0.08
     )
     assert found.max() > 0.95 * wanted[-1]
+
+
+def test_a_dropout_that_nobody_tells_the_time_refuses_to_be_none_at_all():
+    dropout, past = Dropout(SCHEDULE, dropout_rate(), steps=8), torch.zeros(2, 3, 4)
+    with pytest.raises(RuntimeError, match=r"train_steps\(..., before=dropout.now\)"):
+        dropout(past, torch.tensor([1, 2]), seeded())
+    dropout.now(0)
+    assert torch.equal(dropout(past, torch.tensor([1, 2]), seeded()), past)
 
 
 @pytest.mark.parametrize("shared", [True, False])
@@ -106,11 +117,11 @@ def test_the_paper_s_schedule_of_a_thousand_epochs():
 
 
 def test_other_schedules():
-    high = dropout_rate((0.25,), calm=0.0)
+    high = dropout_rate((0.25,), start=0.0)
     assert high(0.0) == high(1.0) == 0.25
     assert (
-        dropout_rate((0.1, 0.2), calm=0.2)(0.19) == 0.0
-        and dropout_rate((0.1, 0.2), calm=0.2)(0.21) == 0.1
+        dropout_rate((0.1, 0.2), start=0.2)(0.19) == 0.0
+        and dropout_rate((0.1, 0.2), start=0.2)(0.21) == 0.1
     )
 
 
@@ -122,7 +133,7 @@ def test_wrong_inputs():
         lambda: zeroing(past, 2.0),
         lambda: dropout_rate((0.1, 1.2)),
         lambda: dropout_rate(()),
-        lambda: dropout_rate(calm=-1.0),
+        lambda: dropout_rate(start=-1.0),
     ):
         with pytest.raises(ValueError, match="between 0 and 1"):
             call()

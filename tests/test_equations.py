@@ -1,5 +1,7 @@
-"""docs/EQUATIONS.md is true: each numbered item of both papers once; functions, notebooks, tests
-exist; both ways."""
+"""docs/EQUATIONS.md is true: each numbered item of both papers once.
+
+Functions, notebooks, tests exist; both ways.
+"""
 
 import ast
 import importlib
@@ -47,8 +49,10 @@ def ticked(cell: str) -> list[str]:
 
 
 def items(docstring: str, paper: str) -> set[str]:
-    """What the `Source:` of a docstring names: `Source: MoDiff eq. 1-2, Alg. 1` -> eq. 1, eq. 2,
-    Alg. 1."""
+    """What the `Source:` of a docstring names.
+
+    `Source: MoDiff eq. 1-2, Alg. 1` -> eq. 1, eq. 2, Alg. 1.
+    """
     found = set()
     for source in re.findall(r"Source:(.*?)(?=Notebooks?:|\n\s*\n|\Z)", docstring or "", re.S):
         for part in re.findall(rf"{paper}(.*?)(?=MoDiff|MoFusion|\Z)", source, re.S):
@@ -80,7 +84,10 @@ def resolve(name: str):
 
 
 def test_items_are_read_out_of_a_source_line():
-    text = "Noise. Source: MoDiff eq. 1-2, Alg. 1 (which errs), Tables I and II; MoFusion eq. 8-9.  Notebook: 02, 03"
+    text = (
+        "Noise. Source: MoDiff eq. 1-2, Alg. 1 (which errs), Tables I and II; MoFusion eq. "
+        "8-9.  Notebook: 02, 03"
+    )
     assert items(text, "MoDiff") == {"eq. 1", "eq. 2", "Alg. 1", "Table I", "Table II"}
     assert items(text, "MoFusion") == {"eq. 8", "eq. 9"}
 
@@ -130,8 +137,10 @@ def test_tests_exist(row):
 
 
 def documented() -> list[tuple[str, str]]:
-    """Public functions and classes of the library: (dotted name below the package, its own
-    docstring)."""
+    """Public functions and classes of the library.
+
+    (dotted name below the package, its own docstring).
+    """
     found = []
     for module in pkgutil.walk_packages(motiondiff_edu.__path__):
         path = Path(module.module_finder.path) / f"{module.name}.py"

@@ -27,7 +27,8 @@ def normal(x, mean, variance):
 @pytest.mark.parametrize("s", [1, 20, 60, 100])
 def test_density_of_x_s_is_the_blurred_density_of_x0(s):
     """log q(x_s) against the integral of q(x_s | x0) q(x0), on a grid."""
-    truth, x_s = three_hills(), torch.tensor([[-1.1], [0.0], [0.6], [2.0]], dtype=torch.float64)
+    truth = three_hills()
+    x_s = torch.tensor([[-1.1], [0.0], [0.6], [2.0]], dtype=torch.float64)
     a, rest = SCHEDULE.alpha_bar[s] ** 0.5, 1 - SCHEDULE.alpha_bar[s]
     p0 = log_density(truth, GRID).exp()
     integral = (normal(x_s, a * GRID[:, 0], rest) * p0).sum(1) * (GRID[1, 0] - GRID[0, 0])
@@ -38,7 +39,8 @@ def test_density_of_x_s_is_the_blurred_density_of_x0(s):
 
 @pytest.mark.parametrize("s", [2, 20, 60, 100])
 def test_posterior_mean_is_the_integral_of_x0(s):
-    truth, x_s = three_hills(), torch.tensor([[-1.1], [0.0], [0.6], [2.0]], dtype=torch.float64)
+    truth = three_hills()
+    x_s = torch.tensor([[-1.1], [0.0], [0.6], [2.0]], dtype=torch.float64)
     a, rest = SCHEDULE.alpha_bar[s] ** 0.5, 1 - SCHEDULE.alpha_bar[s]
     weight = normal(x_s, a * GRID[:, 0], rest) * log_density(truth, GRID).exp()
     expected = (weight * GRID[:, 0]).sum(1) / weight.sum(1)
@@ -67,7 +69,9 @@ def test_denoiser_is_the_score_of_the_noised_density():
 
 def test_denoiser_beats_every_other_guess():
     """Its mean square error is below that of the same guess scaled or shifted."""
-    truth, s, generator = two_hills(), 40, torch.Generator().manual_seed(4)
+    truth = two_hills()
+    s = 40
+    generator = torch.Generator().manual_seed(4)
     x0 = sample_mixture(truth, 40_000, generator)
     eps = torch.randn(x0.shape, generator=generator, dtype=torch.float64)
     guess = exact_denoiser(truth, SCHEDULE)(
@@ -99,7 +103,8 @@ def test_dataset_denoiser_counts_by_hand():
 
 
 def test_dataset_denoiser_gives_back_its_data():
-    generator, schedule = torch.Generator().manual_seed(6), cosine_schedule(60)
+    generator = torch.Generator().manual_seed(6)
+    schedule = cosine_schedule(60)
     data = torch.randn(7, 5, 3, generator=generator)
     *_, last = sample_steps(
         dataset_denoiser(data, schedule), (40, 5, 3), schedule, generator=generator
@@ -111,7 +116,8 @@ def test_dataset_denoiser_gives_back_its_data():
 def test_dataset_denoiser_equals_a_mixture_without_width():
     data = torch.randn(7, 3, dtype=torch.float64)
     points = mixture(torch.ones(7), data, torch.zeros(7, 3, 3))
-    x, s = torch.randn(4, 3, dtype=torch.float64), torch.tensor([1, 20, 60, 100])
+    x = torch.randn(4, 3, dtype=torch.float64)
+    s = torch.tensor([1, 20, 60, 100])
     torch.testing.assert_close(
         dataset_denoiser(data, SCHEDULE)(x, s), exact_denoiser(points, SCHEDULE)(x, s)
     )

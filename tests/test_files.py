@@ -1,16 +1,26 @@
-"""The files themselves: short, tied to no machine, the same vocabulary everywhere."""
+"""The files themselves: read in one sitting, tied to no machine, one statement a line."""
 
+import ast
 import re
 import subprocess
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
+import notebook_cells
 import pytest
+
+from motiondiff_edu._files import replacing
 
 ROOT = Path(__file__).parent.parent
 
 LIBRARY = sorted(
     path for folder in ("motiondiff_edu", "data_synth") for path in (ROOT / folder).rglob("*.py")
 )
+CODE = ("motiondiff_edu", "data_synth", "tools", "benchmarks", "tests")
+SOURCES = [
+    *sorted(path for folder in CODE for path in (ROOT / folder).rglob("*.py")),
+    *notebook_cells.sources(),
+]
 TEXT = {
     ".py",
     ".md",
@@ -29,7 +39,9 @@ TEXT = {
 
 FORBIDDEN = {
     "an absolute path of one machine": r"(?<![\w.~:/])/(home|root|Users|tmp|mnt|opt|srv|work)/\w",
-    "a package registry": r"\b(pypi|pythonhosted|conda\.anaconda|npmjs|unpkg|jsdelivr|crates)\.(org|com|io|net)\b",
+    "a package registry": (
+        r"\b(pypi|pythonhosted|conda\.anaconda|npmjs|unpkg|jsdelivr|crates)\.(org|com|io|net)\b"
+    ),
     "a loose end": r"\bTO[D]O\b|\bFIX[M]E\b|\bX[X]X\b",
 }
 THIS = Path(__file__)
@@ -43,6 +55,34 @@ def tracked() -> list[Path]:
         path for path in ROOT.rglob("*") if ".venv" not in path.parts
     ]
     return [path for path in paths if path.is_file() and path.suffix in TEXT]
+
+
+def packed(source: str) -> list[str]:
+    """Assignments that pack three values or more into as many targets."""
+    return [
+        f"line {node.lineno}: {ast.unparse(node.targets[0])}"
+        for node in ast.walk(ast.parse(source))
+        if isinstance(node, ast.Assign)
+        and isinstance(node.targets[0], ast.Tuple | ast.List)
+        and isinstance(node.value, ast.Tuple | ast.List)
+        and len(node.targets[0].elts) > 2
+    ]
+
+
+def test_packed_assignments_are_found():
+    assert packed("a, b, c = 1, 2, 3") == ["line 1: (a, b, c)"]
+    assert packed("if x:\n    [a, b, *c] = [1, *more]") == ["line 2: [a, b, *c]"]
+    assert packed("a, b = b, a\na, b, c = three()\nfor a, b, c in rows: pass") == []
+
+
+@pytest.mark.parametrize("path", SOURCES, ids=lambda path: path.relative_to(ROOT).as_posix())
+def test_one_assignment_a_line(path):
+    """At most two values are assigned at once, as in a swap; more go on lines of their own."""
+    if path.suffix == ".py":
+        cells = [path.read_text(encoding="utf-8")]
+    else:
+        cells = [cell["source"] for cell in notebook_cells.code(notebook_cells.read(path))]
+    assert [line for cell in cells for line in packed(cell)] == []
 
 
 @pytest.mark.parametrize("what", FORBIDDEN)
@@ -76,8 +116,10 @@ def test_every_weights_file_has_its_card():
 
 
 def test_no_pickle():
-    """Weights and data come without code in them; AIST++'s pickles are read by an unpickler that
-    knows only arrays."""
+    """Weights and data come without code in them.
+
+    AIST++'s pickles are read by an unpickler that knows only arrays.
+    """
     pattern = re.compile(r"import pickle|pickle\.|\btorch\.(save|load)\(|allow_pickle\s*=\s*True")
     found = [path.name for path in LIBRARY if pattern.search(path.read_text(encoding="utf-8"))]
     assert found == ["aist.py"]
@@ -86,3 +128,22 @@ def test_no_pickle():
         not re.search(r"pickle\.loads?\(|allow_pickle\s*=\s*True", reader)
         and "find_class" in reader
     )
+
+
+def test_threads_that_write_one_file_do_not_tear_it(tmp_path):
+    """Each text is long enough to be written in pieces; what is read is always one of them."""
+    path, read = tmp_path / "one.txt", []
+    texts = [letter * 200_000 for letter in "abcd"]
+
+    def write(text: str) -> None:
+        for _ in range(20):
+            with replacing(path) as aside, aside.open("w") as file:
+                for start in range(0, len(text), 20_000):
+                    file.write(text[start : start + 20_000])
+                    file.flush()
+            read.append(path.read_text())
+
+    with ThreadPoolExecutor(4) as pool:
+        list(pool.map(write, texts))
+    assert set(read) <= set(texts) and len(read) == 80
+    assert [p.name for p in tmp_path.iterdir()] == ["one.txt"]

@@ -1,7 +1,9 @@
-"""Masked sampling: what is given comes back, what is not follows the true conditional once it is
-resampled."""
+"""Masked sampling.
 
-from functools import partial
+What is given comes back, what is not follows the true conditional once it is resampled.
+"""
+
+from dataclasses import replace
 
 import jaxtyping
 import numpy as np
@@ -11,8 +13,8 @@ from small_dancers import dancer_of_bands as dancer
 
 from data_synth.mixtures import crossed_bars
 from data_synth.walking import random_control, walk
-from motiondiff_edu.beyond.guidance import blended
-from motiondiff_edu.ddpm import cosine_schedule
+from motiondiff_edu.beyond.guidance import blended, blended_guess, guided, guided_guess, with_guess
+from motiondiff_edu.ddpm import cosine_schedule, ddim_steps, timesteps
 from motiondiff_edu.editing.inbetween import PAPER, fading, inbetween, seen_from
 from motiondiff_edu.editing.masks import (
     PARTS,
@@ -24,12 +26,14 @@ from motiondiff_edu.editing.masks import (
     seed,
 )
 from motiondiff_edu.exact import conditional, exact_denoiser, log_density, mixture, sample_mixture
-from motiondiff_edu.fast.samplers import ddim_steps
-from motiondiff_edu.inbetweening import guided, inpaint_steps
+from motiondiff_edu.inbetweening import inpaint_steps, resampled
 from motiondiff_edu.metrics.bone_lengths import bone_lengths
 from motiondiff_edu.metrics.keyframes import seam_jump
-from motiondiff_edu.motion.dance_frame import Place, facing, to_positions
+from motiondiff_edu.mofusion import MoFusion
+from motiondiff_edu.motion.dance_frame import Place, facing, to_features, to_positions
 from motiondiff_edu.motion.root_frame import to_world
+from motiondiff_edu.performers.dancer import FARTHEST
+from motiondiff_edu.prediction import x0_from_eps
 from motiondiff_edu.pretrained import checkpoints
 
 SCHEDULE = cosine_schedule(100)
@@ -45,14 +49,18 @@ def last(loop):
 
 
 def correlated(rho: float = 0.9):
-    """One Gaussian in the plane whose coordinates agree: the second is rho times the first, and
-    some noise."""
+    """One Gaussian in the plane whose coordinates agree.
+
+    The second is rho times the first, and some noise.
+    """
     covariance = torch.tensor([[[1.0, rho], [rho, 1.0]]], dtype=torch.float64)
     return mixture(torch.ones(1), torch.tensor([[0.3, -0.2]]), covariance)
 
 
 def test_the_conditional_is_the_joint_density_over_the_marginal_one():
-    truth, value, known = crossed_bars(), torch.tensor([-0.9, 9.0]), torch.tensor([True, False])
+    truth = crossed_bars()
+    value = torch.tensor([-0.9, 9.0])
+    known = torch.tensor([True, False])
     grid = torch.linspace(-4, 4, 8001, dtype=torch.float64)[:, None]
     joint = log_density(truth, torch.cat([torch.full_like(grid, -0.9), grid], 1)).exp()
     wanted = joint / (joint.sum() * (grid[1] - grid[0]))
@@ -87,8 +95,7 @@ def test_masking_with_the_exact_denoiser_misses_the_conditional_until_it_resampl
             SCHEDULE,
             given,
             known,
-            steps=50,
-            resample=resample,
+            steps=resampled(timesteps(100, 50), resample),
             generator=seeded(2),
         )
         x = last(loop)
@@ -100,14 +107,13 @@ def test_masking_with_the_exact_denoiser_misses_the_conditional_until_it_resampl
 
 
 def test_nothing_known_is_plain_sampling_and_all_known_is_the_input():
-    truth, start = crossed_bars(), torch.randn(50, 2, generator=seeded(3))
-    denoise, nothing = exact_denoiser(truth, SCHEDULE), torch.zeros(50, 2, dtype=torch.bool)
+    truth = crossed_bars()
+    start = torch.randn(50, 2, generator=seeded(3))
+    denoise = exact_denoiser(truth, SCHEDULE)
+    nothing = torch.zeros(50, 2, dtype=torch.bool)
     for eta in (0.0, 1.0):
-        ours = last(
-            inpaint_steps(
-                denoise, start, SCHEDULE, start, nothing, eta=eta, resample=3, generator=seeded(4)
-            )
-        )
+        thrice = {"steps": resampled(timesteps(100, 50), 3), "eta": eta, "generator": seeded(4)}
+        ours = last(inpaint_steps(denoise, start, SCHEDULE, start, nothing, **thrice))
         plain = last(ddim_steps(denoise, start, SCHEDULE, 50, eta, generator=seeded(4)))
         torch.testing.assert_close(ours, plain, atol=1e-5, rtol=1e-5)
     given = sample_mixture(truth, 50, seeded(5)).float()
@@ -128,10 +134,34 @@ def test_the_known_part_is_a_snapshot_noised_for_the_step():
         assert step.x_s[:, 0].std().item() == pytest.approx((1 - alpha_bar) ** 0.5, abs=0.05)
 
 
-def test_wrong_inputs():
+def test_resampling_goes_there_back_and_there():
+    assert resampled([30, 20, 10], 2) == [30, 20, 30, 20, 10, 20, 10]
+    assert resampled([9, 4], 3) == [9, 4, 9, 4, 9, 4] and resampled([9, 4], 1) == [9, 4]
     with pytest.raises(ValueError, match="once at least"):
-        start = torch.zeros(1, 2)
-        next(inpaint_steps(lambda x, s: x, start, SCHEDULE, start, start > 0, resample=0))
+        resampled([9, 4], 0)
+
+
+def test_a_way_back_adds_the_noise_of_the_forward_process():
+    """Whose guess is always 3: at step 60, after a way back, x_s has the mean and spread of 60."""
+    n, nothing = 6000, torch.zeros(6000, 2)
+    known = torch.tensor([True, False]).expand(n, 2)
+    denoise = with_guess(lambda x, s: x, SCHEDULE, lambda x0: torch.full_like(x0, 3.0))
+    visited = resampled([60, 10], 2)
+    loop = inpaint_steps(
+        denoise, nothing, SCHEDULE, nothing, known, steps=visited, generator=seeded(8)
+    )
+    steps = list(loop)
+    assert [step.s for step in steps] == [60, 60, 10, 0]
+    free, alpha_bar = steps[1].x_s[:, 1], SCHEDULE.alpha_bar[60].item()
+    assert free.mean().item() == pytest.approx(3 * alpha_bar**0.5, abs=0.05)
+    assert free.std().item() == pytest.approx((1 - alpha_bar) ** 0.5, abs=0.03)
+
+
+@pytest.mark.parametrize("steps", [[], [101], [20, 0], 0, 101])
+def test_steps_that_are_not_there(steps):
+    start = torch.zeros(1, 2)
+    with pytest.raises(ValueError, match="between 1 and 100"):
+        next(inpaint_steps(lambda x, s: x, start, SCHEDULE, start, start > 0, steps=steps))
 
 
 def clip(T: int = 40) -> np.ndarray:
@@ -140,11 +170,21 @@ def clip(T: int = 40) -> np.ndarray:
     return to_world(walked.poses, walked.control, (3.0, -2.0, 0.7))[:T]
 
 
-@pytest.mark.parametrize("known", [seed(40, 10), keyframes(40, 12), gap(40, 5, 20), body_part(40, "lower body"),
-                                   body_part(40, "upper body"), body_part(40, "trajectory")])  # fmt: skip
+@pytest.mark.parametrize(
+    "known",
+    [
+        seed(40, 10),
+        keyframes(40, 12),
+        gap(40, 5, 20),
+        body_part(40, "lower body"),
+        body_part(40, "upper body"),
+        body_part(40, "trajectory"),
+    ],
+)
 @pytest.mark.parametrize("C", [0, 5])
 def test_known_entries_come_back_bit_by_bit_and_the_rest_is_made(known, C):
-    truth, mel = clip(), torch.randn(64, 5, generator=seeded(9)) if C else None
+    truth = clip()
+    mel = torch.randn(64, 5, generator=seeded(9)) if C else None
     holes = np.where(known[..., None], truth, np.nan)
     made = inbetween(
         dancer(C), holes, known, mel, samples=3, steps=5, resample=2, generator=seeded(1)
@@ -166,16 +206,27 @@ def test_all_known_is_the_input_and_nothing_known_is_a_plain_sample():
         one, np.full_like(truth, np.nan), ~everything, samples=2, steps=5, generator=seeded(2)
     )
     draw = seeded(2)
-    plain = last(ddim_steps(one.denoiser(None, 40), torch.randn(2, 40, 63, generator=draw), one.schedule, 5, 1.0,
-                            generator=draw))  # fmt: skip
+    plain = last(
+        ddim_steps(
+            one.denoiser(None, 40),
+            torch.randn(2, 40, 63, generator=draw),
+            one.schedule,
+            5,
+            1.0,
+            generator=draw,
+        )
+    )
     np.testing.assert_allclose(made, to_positions(one.motion_scaler.inverse(plain)), atol=1e-5)
 
 
 @pytest.mark.parametrize("known", [seed(40, 10), *(body_part(40, part) for part in PARTS)])
 def test_where_the_motion_stands_and_faces_does_not_matter(known):
-    """The same motion elsewhere: what is made is the same, elsewhere; whatever part of the body is
-    given."""
-    truth, one = walk(np.tile([1.2, 0.1, 0.3], (40, 1)), 0).world(), dancer()
+    """The same motion elsewhere: what is made is the same, elsewhere.
+
+    Whatever part of the body is given.
+    """
+    truth = walk(np.tile([1.2, 0.1, 0.3], (40, 1)), 0).world()
+    one = dancer()
     place = Place(np.array([1.0, 0.0, -5.0]), np.array(2.1))
     here, there = (
         inbetween(one, x, known, steps=5, generator=seeded(3)) for x in (truth, place.leave(truth))
@@ -184,8 +235,10 @@ def test_where_the_motion_stands_and_faces_does_not_matter(known):
 
 
 def test_a_trajectory_is_walked_forward():
-    """Nothing tells where the figure faces but its path: it is seen from where it begins, along the
-    path."""
+    """Nothing tells where the figure faces but its path.
+
+    It is seen from where it begins, along the path.
+    """
     path = np.full((40, 21, 3), np.nan)
     path[:, 0] = np.array([7.0, 0.9, 1.0]) + np.linspace(0, 3, 40)[:, None] * [1.0, 0.0, 0.0]
     place = seen_from(path, body_part(40, "trajectory"))
@@ -196,12 +249,16 @@ def test_a_trajectory_is_walked_forward():
 
 def test_what_sets_it_apart_from_the_papers_masking():
     """Each option does what it is for; each is on by default but for resampling."""
-    truth, known, one = clip(), gap(40, 12, 14), checkpoints.pretrained("unconditional")
+    truth = clip()
+    known = gap(40, 12, 14)
+    one = checkpoints.pretrained("unconditional")
 
     def made(**options):
         return inbetween(one, truth, known, samples=2, steps=5, seed=4, **options)
 
-    usual, plain, torn = made(), made(**PAPER), made(bones=False, feet=False)
+    usual = made()
+    plain = made(**PAPER)
+    torn = made(bones=False, feet=False)
     assert seam_jump(usual, known).mean() < 0.5 * seam_jump(plain, known).mean()
     lengths = bone_lengths(truth)[0]
     assert (
@@ -246,22 +303,24 @@ def test_what_cannot_be_given_is_said(spoil, message, monkeypatch):
 def test_blending_carries_the_correction_and_fades():
     made, given = torch.zeros(1, 9, 2), torch.full((1, 9, 2), float("nan"))
     given[0, 4, 0], given[0, 2, 1], given[0, 6, 1] = 1.0, 1.0, 3.0
-    out = blended(made, given, ~given.isnan(), 3)[0]
+    out = blended_guess(made, given, ~given.isnan(), 3)[0]
     torch.testing.assert_close(out[:, 0], torch.tensor([0, 0.25, 0.5, 0.75, 1, 0.75, 0.5, 0.25, 0]))
     torch.testing.assert_close(out[:, 1], torch.tensor([0.5, 0.75, 1, 1.5, 2, 2.5, 3, 2.25, 1.5]))
-    assert torch.equal(blended(made, given, torch.zeros(1, 9, 2, dtype=torch.bool), 3), made)
-    stays = blended(made, given, ~given.isnan(), torch.tensor([torch.inf, 0.0]))[0]
+    assert torch.equal(blended_guess(made, given, torch.zeros(1, 9, 2, dtype=torch.bool), 3), made)
+    stays = blended_guess(made, given, ~given.isnan(), torch.tensor([torch.inf, 0.0]))[0]
     torch.testing.assert_close(stays[:, 0], torch.ones(9))
     torch.testing.assert_close(stays[:, 1], torch.tensor([0, 0, 1, 1.5, 2, 2.5, 3, 0, 0]))
     right = torch.randn(1, 9, 2)
-    assert torch.equal(blended(right, right, ~given.isnan(), 3), right)
+    assert torch.equal(blended_guess(right, right, ~given.isnan(), 3), right)
     with torch.device("meta"):  # another default device: what is made must go by the inputs
-        assert torch.equal(blended(made, given, ~given.isnan(), 3)[0], out)
+        assert torch.equal(blended_guess(made, given, ~given.isnan(), 3)[0], out)
 
 
 def test_blending_at_every_step_leaves_no_jump_where_masking_does():
-    """A denoiser that knows nothing of the given (its guess is 1 everywhere): masking pops,
-    blending does not."""
+    """A denoiser that knows nothing of the given (its guess is 1 everywhere).
+
+    Masking pops, blending does not.
+    """
     given = torch.linspace(3, 5, 30).view(1, 30, 1)
     known = torch.ones(1, 30, 1, dtype=torch.bool)
     known[:, 10:20] = False
@@ -271,59 +330,93 @@ def test_blending_at_every_step_leaves_no_jump_where_masking_does():
         return (x - alpha_bar.sqrt()) / (1 - alpha_bar).sqrt()
 
     options = {"steps": 10, "generator": seeded()}
+    drawn = blended(denoise, SCHEDULE, given, known, fade=3)
     plain, blent = (
-        last(
-            inpaint_steps(
-                denoise, torch.randn(1, 30, 1), SCHEDULE, given, known, blend=blend, **options
-            )
-        )
-        for blend in (None, partial(blended, fade=3))
+        last(inpaint_steps(who, torch.randn(1, 30, 1), SCHEDULE, given, known, **options))
+        for who in (denoise, drawn)
     )
     assert plain.diff(dim=1).abs().max() > 2 and blent.diff(dim=1).abs().max() < 0.2
 
 
+@pytest.mark.parametrize("eta, wild, tame", [(0.0, 4.0, 1.1), (0.5, 2.0, 1.1)])
+def test_a_bounded_guess_does_not_blow_up_an_error_of_one_percent(eta, wild, tame):
+    """At s = S an error of eps counts b / a times: the made entries are five times too wide."""
+    schedule, n = cosine_schedule(1000), 2000
+    exact = exact_denoiser(correlated(0.3), schedule)
+    known, given = torch.tensor([True, False]).expand(n, 2), torch.randn(n, 2, generator=seeded(1))
+
+    def off(x, s):
+        return 1.01 * exact(x, s)
+
+    held = with_guess(off, schedule, lambda x0: x0.clamp(-5, 5))
+    free, bounded = (
+        last(inpaint_steps(who, start, schedule, given, known, eta=eta, generator=seeded(3)))
+        for who, start in ((who, torch.randn(n, 2, generator=seeded(2))) for who in (off, held))
+    )
+    assert free[:, 1].std() > wild and 0.7 < bounded[:, 1].std() < tame
+
+
+def test_the_guesses_of_a_dancer_that_predicts_noise_are_held_within_what_dances_are():
+    one = dancer(0)
+    config = replace(one.config, target="eps")
+    wild = replace(one, model=MoFusion(config).requires_grad_(False))
+    x_S, s = torch.randn(2, 20, 63, generator=seeded(5)), torch.full((2,), 30)
+    guesses = {
+        who: x0_from_eps(x_S, s, who.denoiser(None, 20)(x_S, s), one.schedule)
+        for who in (one, wild)
+    }
+    assert guesses[wild].abs().max() == pytest.approx(FARTHEST, rel=1e-2)
+    made = inbetween(wild, clip(), seed(40, 10), steps=5, bones=False, feet=False, blend=None)
+    features = wild.motion_scaler.transform(torch.from_numpy(to_features(made)).float())
+    assert features[..., 3:].abs().max() < FARTHEST + 1e-3
+
+
 def test_guidance_moves_what_goes_with_the_given():
-    """With the exact denoiser of two numbers that agree, the unknown one comes nearer to where the
-    known one says."""
+    """With the exact denoiser of two numbers that agree, the given one moves the other.
+
+    The unknown one comes nearer to where the known one says.
+    """
     truth, n = correlated(0.9), 2000
     given, known = given_first(1.8, n)
     wanted = conditional(truth, given[0].nan_to_num(), known[0]).mean().item()
-    start, denoise = torch.randn(n, 2, generator=seeded(1)), exact_denoiser(truth, SCHEDULE)
+    start = torch.randn(n, 2, generator=seeded(1))
+    denoise = exact_denoiser(truth, SCHEDULE)
     off = {}
     for guidance in (0.0, 1.0):
-        loop = inpaint_steps(
-            denoise, start, SCHEDULE, given, known, guidance=guidance, generator=seeded(2)
-        )
+        who = guided(denoise, SCHEDULE, given, known, guidance) if guidance else denoise
+        loop = inpaint_steps(who, start, SCHEDULE, given, known, generator=seeded(2))
         off[guidance] = abs(last(loop)[:, 1].mean().item() - wanted)
     assert off[1.0] < 0.5 * off[0.0], off
 
 
 def test_one_guided_guess_by_hand():
-    """J is known for a linear denoiser: x0_hat = M x, so the pull is M^T r, as long as leaves least
-    wrong."""
-    M, x, known = (
-        torch.tensor([[0.5, 0.3], [0.3, 0.5]]),
-        torch.tensor([[1.0, 2.0]]),
-        torch.tensor([[True, False]]),
-    )
+    """J is known for a linear denoiser.
+
+    x0_hat = M x, so the pull is M^T r, as long as leaves least wrong.
+    """
+    M = torch.tensor([[0.5, 0.3], [0.3, 0.5]])
+    x = torch.tensor([[1.0, 2.0]])
+    known = torch.tensor([[True, False]])
     alpha_bar = SCHEDULE.alpha_bar[40].item()
 
     def denoise(x, s):
         return (x - alpha_bar**0.5 * x @ M.T) / (1 - alpha_bar) ** 0.5
 
-    out = guided(denoise, x, 40, alpha_bar, torch.tensor([[3.0, 0.0]]), known, 1.0)
+    given, s = torch.tensor([[3.0, 0.0]]), torch.tensor([40])
+    out = guided_guess(denoise, x, s, SCHEDULE, given, known, 1.0)
     x0_hat = torch.tensor([1.1, 1.3])
     pull = M.T @ torch.tensor([3.0 - 1.1, 0.0])
     torch.testing.assert_close(out[0], x0_hat + pull * (3.0 - 1.1) / pull[0])
     assert out[0, 0] == pytest.approx(3.0)  # one given entry is met at once
+    eps_hat = guided(denoise, SCHEDULE, given, known)(x, s)
+    torch.testing.assert_close(alpha_bar**0.5 * out + (1 - alpha_bar) ** 0.5 * eps_hat, x)
 
 
 def test_guidance_through_a_fast_twin_is_refused():
     who, mel = dancer(5), torch.randn(1, 64, 5, generator=seeded(9))
     start = torch.zeros(1, 40, 63)
-    loop = inpaint_steps(
-        who.denoiser(mel, 40), start, who.schedule, start, start == 0, steps=2, guidance=1.0
-    )
+    steered = guided(who.denoiser(mel, 40), who.schedule, start, start == 0)
+    loop = inpaint_steps(steered, start, who.schedule, start, start == 0, steps=2)
     with pytest.raises(ValueError, match="fast twin"):
         next(loop)
 

@@ -1,37 +1,60 @@
-"""Who imports whom: core (torch) -> the rest -> viz (matplotlib) -> widgets (ipywidgets). Nothing
-imports upwards."""
+"""Who imports whom: each folder of the package is a layer, and nothing imports upwards."""
 
 import ast
 import sys
+import tomllib
+from graphlib import CycleError, TopologicalSorter
 from pathlib import Path
 
 import pytest
 
 ROOT = Path(__file__).parent.parent
-PACKAGE = ROOT / "motiondiff_edu"
+PACKAGE, DATA = ROOT / "motiondiff_edu", ROOT / "data_synth"
 
-# The core is the syllabus: what the course teaches, by name. Not all of it is there yet.
-CORE = {
-    "ddpm", "prediction", "exact", "diffusion_dropout", "kinematic_loss", "cross_modal_attention",
-    "inbetweening", "reconstruction", "rollout", "modiff", "mofusion", "training",
-}  # fmt: skip
-LAYER = {"core": 0, "rest": 1, "viz": 2, "widgets": 3}
-# the commands open notebooks and look at the machine; they may reach everywhere, from within
-# functions
-COMMANDS = {"__main__", "doctor"}
+# What stands left of a layer is what it may import; layers with a comma between them know nothing
+# of each other. The syllabus is every .py at the top of the package.
+CHAINS = (
+    "_files syllabus motion beyond,conditions,metrics fast performers editing baselines pretrained"
+    " recipes",
+    "editing viz widgets course",
+    "pretrained course",  # doctor and demo ask which weights there are
+)
+FRONT = {"__init__", "__main__"}  # the front door and the command line reach everywhere
+# The data need conventions, measures and Gaussian mixtures, and no network.
+DATA_IMPORTS = {"_files", "motion", "metrics", "exact"}
+DATA_READERS = {"recipes", "course"}
 
-FILES = sorted(path for path in PACKAGE.rglob("*.py"))
-ALL = FILES + sorted((ROOT / "data_synth").rglob("*.py"))
+FILES = sorted(PACKAGE.rglob("*.py"))
+ALL = FILES + sorted(DATA.rglob("*.py"))
+
+
+def allowed() -> dict[str, set[str]]:
+    """Of each layer the layers it may import, itself included."""
+    below = {}
+    for chain in CHAINS:
+        so_far = set()
+        for place in chain.split():
+            for name in place.split(","):
+                below[name] = below.get(name, set()) | so_far | {name}
+            so_far = so_far.union(*(below[name] for name in place.split(",")))
+    return below
+
+
+def dotted(path: Path) -> str:
+    """A file's module name, with `__init__` dropped."""
+    parts = path.relative_to(ROOT).with_suffix("").parts
+    return ".".join(parts).removesuffix(".__init__")
+
+
+MODULES = {dotted(path): path for path in ALL}
 
 
 def layer(module: str) -> str:
-    """core, rest, viz or widgets, of a dotted name below motiondiff_edu."""
-    first = module.split(".")[0]
-    return "core" if module in CORE else first if first in LAYER else "rest"
-
-
-def module_of(path: Path) -> str:
-    return ".".join(path.relative_to(PACKAGE).with_suffix("").parts).removesuffix(".__init__")
+    """The layer of a module of motiondiff_edu: its folder, "syllabus", "_files" or "front"."""
+    path = MODULES[module].relative_to(PACKAGE)
+    if len(path.parts) > 1:
+        return path.parts[0]
+    return "front" if path.stem in FRONT else "_files" if path.stem == "_files" else "syllabus"
 
 
 def imports(path: Path) -> set[str]:
@@ -55,76 +78,105 @@ def third_party(path: Path) -> set[str]:
 
 
 def own(path: Path) -> set[str]:
-    """The modules of motiondiff_edu that a file imports, dotted below the package, names resolved
-    to their file."""
-    names = {
-        name.removeprefix("motiondiff_edu.")
-        for name in imports(path)
-        if name.startswith("motiondiff_edu.")
-    }
-    modules = {module_of(file) for file in FILES}
-    return {name if name in modules else name.rpartition(".")[0] for name in names} - {""}
+    """The modules of this project that a file imports; what is no module is a name in one."""
+    names = {n for n in imports(path) if n.split(".")[0] in ("motiondiff_edu", "data_synth")}
+    return {name if name in MODULES else name.rpartition(".")[0] for name in names}
 
 
-def by_layer(*names: str) -> list[Path]:
-    return [
-        path
-        for path in FILES
-        if layer(module_of(path)) in names and module_of(path) not in COMMANDS
-    ]
+def upwards(path: Path) -> list[str]:
+    """What a file of the package imports against the order of the layers."""
+    mine = layer(dotted(path))
+    if mine == "front":
+        return []
+    wrong = []
+    for name in sorted(own(path)):
+        if name.startswith("data_synth"):
+            fits = mine in DATA_READERS
+        else:
+            fits = layer(name) in allowed()[mine]
+        wrong += [] if fits else [name]
+    return wrong
 
 
 def named(paths: list[Path]):
     return [pytest.param(path, id=path.relative_to(ROOT).as_posix()) for path in paths]
 
 
-@pytest.mark.parametrize("path", named(by_layer("core")))
-def test_the_core_imports_torch_and_jaxtyping_only(path):
-    allowed = {"torch", "jaxtyping"} | ({"tqdm"} if path.stem == "training" else set())
-    assert third_party(path) <= allowed
+def test_the_order_of_the_layers_is_what_the_chains_say():
+    may = allowed()
+    assert may["syllabus"] == {"_files", "syllabus"} and may["beyond"] == may["motion"] | {"beyond"}
+    assert {"fast", "metrics"} < may["performers"] and "baselines" not in may["performers"]
+    assert "editing" in may["viz"] and not {"baselines", "pretrained"} & may["widgets"]
+    assert "pretrained" in may["course"] and "recipes" not in may["course"]
 
 
-@pytest.mark.parametrize("path", named(by_layer(*LAYER)))
+def test_every_folder_is_a_layer():
+    assert {layer(module) for module in map(dotted, FILES)} == {*allowed(), "front"}
+
+
+@pytest.mark.parametrize("path", named(FILES))
 def test_nothing_imports_upwards(path):
-    mine = LAYER[layer(module_of(path))]
-    assert not {name for name in own(path) if LAYER[layer(name)] > mine}
+    assert upwards(path) == []
+
+
+def test_an_import_within_a_function_is_seen(tmp_path, monkeypatch):
+    low = tmp_path / "motiondiff_edu" / "motion" / "low.py"
+    low.parent.mkdir(parents=True)
+    low.write_text("def f():\n    from ..performers.walker import Walker\n    return Walker\n")
+    monkeypatch.setattr(f"{__name__}.ROOT", tmp_path)
+    monkeypatch.setattr(f"{__name__}.PACKAGE", tmp_path / "motiondiff_edu")
+    walker = tmp_path / "motiondiff_edu" / "performers" / "walker.py"
+    known = {"motiondiff_edu.motion.low": low, "motiondiff_edu.performers.walker": walker}
+    monkeypatch.setattr(f"{__name__}.MODULES", known)
+    assert upwards(low) == ["motiondiff_edu.performers.walker"]
+
+
+SYLLABUS = [path for path in FILES if layer(dotted(path)) == "syllabus"]
+
+
+@pytest.mark.parametrize("path", named(SYLLABUS))
+def test_the_syllabus_imports_torch_and_jaxtyping_only(path):
+    progress = {"tqdm"} if path.stem == "training" else set()
+    assert third_party(path) <= {"torch", "jaxtyping"} | progress
+
+
+@pytest.mark.parametrize("path", named([path for path in ALL if path.is_relative_to(DATA)]))
+def test_the_data_know_no_network(path):
+    used = {n.split(".")[1] for n in own(path) if n.startswith("motiondiff_edu.")}
+    assert used <= DATA_IMPORTS
+    assert not third_party(path) & {"matplotlib", "ipywidgets", "anywidget", "librosa"}
+
+
+def test_nothing_imports_in_a_circle():
+    graph = {dotted(path): own(path) - {dotted(path)} for path in ALL}
+    try:
+        TopologicalSorter(graph).prepare()
+    except CycleError as error:
+        pytest.fail(" -> ".join(error.args[1]))
 
 
 @pytest.mark.parametrize(
-    "package, allowed",
+    "package, places",
     [
-        ("librosa", lambda name: name == "conditions.music"),
-        ("ipywidgets", lambda name: name.startswith("widgets.")),
-        ("anywidget", lambda name: name.startswith("widgets.")),
-        ("matplotlib", lambda name: name.startswith(("viz.", "widgets."))),
+        ("librosa", ("motiondiff_edu.conditions.music",)),
+        ("ipywidgets", ("motiondiff_edu.widgets.",)),
+        ("anywidget", ("motiondiff_edu.widgets.",)),
+        ("matplotlib", ("motiondiff_edu.viz.", "motiondiff_edu.widgets.")),
     ],
 )
-def test_a_package_of_one_layer_stays_there(package, allowed):
-    importers = [module_of(path) for path in FILES if package in third_party(path)]
-    assert [name for name in importers if not allowed(name)] == []
-
-
-def test_the_data_need_no_pictures_and_no_network():
-    for path in ALL:
-        if path.is_relative_to(ROOT / "data_synth"):
-            assert not third_party(path) & {"matplotlib", "ipywidgets", "anywidget", "librosa"}, (
-                path.name
-            )
-            assert not {name for name in own(path) if name.startswith(("viz", "widgets"))}, (
-                path.name
-            )
+def test_a_package_of_one_layer_stays_there(package, places):
+    importers = [dotted(path) for path in FILES if package in third_party(path)]
+    assert importers and [name for name in importers if not name.startswith(places)] == []
 
 
 def test_every_third_party_import_is_declared():
-    import tomllib
-
     project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
     extras = [line for lines in project["optional-dependencies"].values() for line in lines]
     names = {
         line.split(">")[0].split("=")[0].replace("-", "_").lower()
         for line in project["dependencies"] + extras
     }
-    names |= {"PIL"}  # pillow
+    names |= {"PIL", "sklearn"}  # pillow, scikit-learn
     names |= {
         "jupyter_client",
         "IPython",
@@ -135,6 +187,8 @@ def test_every_third_party_import_is_declared():
 
 
 def test_no_file_puts_annotations_off():
-    """`from __future__ import annotations` would turn the shapes into strings that nothing
-    checks."""
+    """No file turns its shapes into strings that nothing checks.
+
+    `from __future__ import annotations` would.
+    """
     assert [path.name for path in ALL if "__future__.annotations" in imports(path)] == []

@@ -1,7 +1,8 @@
-"""`python -m motiondiff_edu`: which notebook opens where, what a demo sets, and a JupyterLab that
-really serves it."""
+"""`python -m motiondiff_edu`: verbs, messages, which notebook opens where, what a demo sets, and a
+real JupyterLab."""
 
 import json
+import os
 import re
 import subprocess
 import sys
@@ -13,6 +14,7 @@ from pathlib import Path
 import pytest
 
 from motiondiff_edu import __main__ as command
+from motiondiff_edu.course import demo, jupyter, lab, places
 
 
 @pytest.fixture
@@ -31,7 +33,8 @@ def checkout(tmp_path, monkeypatch):
     (tmp_path / "repo" / "docs").mkdir()
     (tmp_path / "repo" / "docs" / "walk.gif").write_bytes(b"GIF89a")
     (tmp_path / "repo" / "pyproject.toml").touch()
-    monkeypatch.setattr(command, "PACKAGE", tmp_path / "repo" / "motiondiff_edu")
+    monkeypatch.setattr(places, "PACKAGE", tmp_path / "repo" / "motiondiff_edu")
+    monkeypatch.delenv("MAKELEVEL", raising=False)
     return tmp_path / "repo"
 
 
@@ -46,15 +49,126 @@ def calls(monkeypatch):
         seen.append((arguments, env, files))
         return 0
 
-    monkeypatch.setattr(command, "serve", serve)
+    monkeypatch.setattr(jupyter, "serve", serve)
     return seen
 
 
-def test_lab_opens_notebook_00_of_the_student_edition(checkout, calls):
+def test_lab_opens_notebook_00_in_a_copy_of_the_student_edition(checkout, calls):
     assert command.main(["lab", "--no-browser"]) == 0
-    arguments = calls[0][0]
+    arguments, _, files = calls[0]
     assert f"--ServerApp.root_dir={checkout}" in arguments and arguments[-1] == "--no-browser"
-    assert "--LabApp.default_url=/lab/tree/notebooks/student/00_start.ipynb" in arguments
+    assert "--LabApp.default_url=/lab/tree/motiondiff_notebooks/00_start.ipynb" in arguments
+    assert "motiondiff_notebooks/00_start.ipynb" in files
+
+
+def test_lab_has_tabs_of_its_own_and_adds_to_the_jupyter_settings_there_are(
+    checkout, calls, monkeypatch
+):
+    monkeypatch.setenv("JUPYTER_CONFIG_PATH", "theirs")
+    assert command.main(["lab"]) == 0
+    environment = calls[0][1]
+    workspaces = Path(environment["JUPYTERLAB_WORKSPACES_DIR"])
+    assert workspaces.is_relative_to(checkout / "motiondiff_notebooks")
+    assert environment["JUPYTER_CONFIG_PATH"].endswith("jupyter_config" + os.pathsep + "theirs")
+    assert "JUPYTERLAB_SETTINGS_DIR" not in environment  # a student's own theme and keys stay
+
+
+def test_lab_says_what_is_old_and_how_to_get_the_new_one(checkout, calls, capsys, monkeypatch):
+    shipped, mine = (
+        checkout / name / "00_start.ipynb" for name in ("notebooks/student", "motiondiff_notebooks")
+    )
+    assert command.main(["lab"]) == 0 and "kept" not in capsys.readouterr().out
+    mine.write_text("my answers")
+    shipped.write_text("a newer edition")
+    assert command.main(["lab"]) == 0
+    told = capsys.readouterr().out
+    assert (
+        "newer ones: 00_start.ipynb" in told and "python -m motiondiff_edu lab --fresh 00" in told
+    )
+    monkeypatch.setenv("MAKELEVEL", "1")
+    assert command.main(["lab"]) == 0 and "make lab FRESH=00" in capsys.readouterr().out
+    assert command.main(["lab", "--fresh", "0"]) == 0
+    told = capsys.readouterr().out
+    assert (
+        "00_start.ipynb is fresh; yours is now 00_start_mine.ipynb" in told and "kept" not in told
+    )
+    assert (
+        mine.read_text() == "a newer edition"
+        and mine.with_stem("00_start_mine").read_text() == "my answers"
+    )
+    assert command.main(["lab"]) == 0 and "kept" not in capsys.readouterr().out
+
+
+def test_lab_says_which_copies_it_renewed(checkout, calls, capsys):
+    assert command.main(["lab"]) == 0 and "renewed" not in capsys.readouterr().out
+    (checkout / "notebooks" / "student" / "00_start.ipynb").write_text("a newer edition")
+    assert (
+        command.main(["lab"]) == 0
+        and "renewed, you had not changed them: 00_start" in capsys.readouterr().out
+    )
+
+
+def test_a_wrong_number_after_a_right_one_moves_nothing(checkout, calls, capsys):
+    assert command.main(["lab"]) == 0
+    mine = checkout / "motiondiff_notebooks" / "00_start.ipynb"
+    mine.write_text("my answers")
+    assert command.main(["lab", "--fresh", "00", "--fresh", "12"]) == 1 and len(calls) == 1
+    assert "no notebook 12" in capsys.readouterr().err and mine.read_text() == "my answers"
+
+
+def test_lab_takes_a_folder_by_name(checkout, calls, tmp_path):
+    assert command.main(["lab", "--folder", str(tmp_path / "mine")]) == 0
+    arguments, _, files = calls[0]
+    assert f"--ServerApp.root_dir={tmp_path / 'mine'}" in arguments and "00_start.ipynb" in files
+    assert not (checkout / "motiondiff_notebooks").exists()
+
+
+def test_a_folder_that_cannot_be_written_is_said_without_a_traceback(
+    checkout, calls, tmp_path, capsys
+):
+    (tmp_path / "file").touch()
+    assert command.main(["lab", "--folder", str(tmp_path / "file" / "mine")]) == 1
+    told = capsys.readouterr().err
+    assert str(tmp_path / "file" / "mine") in told and "lab --folder FOLDER" in told and not calls
+
+
+@pytest.mark.parametrize("verb", command.VERBS)
+def test_each_verb_explains_itself_with_an_example(verb, capsys):
+    with pytest.raises(SystemExit) as ended:
+        command.main([verb, "--help"])
+    assert ended.value.code == 0
+    example = re.search(r"example: python -m motiondiff_edu (.*)", capsys.readouterr().out)[1]
+    assert example.split()[0] == verb
+
+
+def test_without_a_verb_all_are_listed(capsys):
+    assert command.main([]) == 2
+    told = capsys.readouterr().out
+    assert all(verb in told for verb in ("lab", "demo", "doctor"))
+
+
+def test_options_go_on_to_jupyterlab_but_not_from_doctor(checkout, calls, capsys):
+    assert command.main(["demo", "7", "--port", "8899"]) == 0
+    assert calls[0][0][-2:] == ["--port", "8899"]
+    with pytest.raises(SystemExit):
+        command.main(["doctor", "--port"])
+    assert "doctor does not know --port" in capsys.readouterr().err
+
+
+def test_a_fault_of_the_program_keeps_its_traceback(monkeypatch):
+    def broken(chosen):
+        raise ValueError("operands could not be broadcast together")
+
+    monkeypatch.setattr(lab, "run", broken)
+    with pytest.raises(ValueError, match="broadcast"):
+        command.main(["lab"])
+
+
+def test_the_script_and_the_module_name_themselves(monkeypatch):
+    monkeypatch.setattr("sys.argv", ["bin/motiondiff-edu", "lab"])
+    assert places.program() == "motiondiff-edu"
+    monkeypatch.setattr("sys.argv", ["motiondiff_edu/__main__.py", "lab"])
+    assert places.program() == "python -m motiondiff_edu"
 
 
 def test_lab_from_a_wheel_opens_a_copy_and_keeps_what_is_there(
@@ -64,13 +178,15 @@ def test_lab_from_a_wheel_opens_a_copy_and_keeps_what_is_there(
     (checkout / "notebooks").rename(checkout / "elsewhere")
     package.mkdir(parents=True)
     (checkout / "elsewhere").rename(package / "notebooks")
-    monkeypatch.setattr(command, "PACKAGE", package)
+    monkeypatch.setattr(places, "PACKAGE", package)
     monkeypatch.chdir(checkout)
     assert command.main(["lab"]) == 0
     mine = checkout / "motiondiff_notebooks" / "00_start.ipynb"
     assert f"--ServerApp.root_dir={mine.parent}" in calls[0][0] and mine.is_file()
     mine.write_text("my work")
     assert command.main(["lab"]) == 0 and mine.read_text() == "my work"
+    monkeypatch.chdir(mine.parent)  # from within: the same copies, not copies below copies
+    assert command.main(["lab"]) == 0 and not (mine.parent / "motiondiff_notebooks").exists()
 
 
 @pytest.mark.parametrize("number", ["07", "7"])
@@ -84,6 +200,8 @@ def test_demo_shows_a_copy_with_large_type_and_the_shipped_weights(checkout, cal
         "matplotlibrc"
     )
     assert not any(str(checkout) in argument for argument in arguments)
+    home = next(a.split("=")[1] for a in arguments if "root_dir" in a)
+    assert environment["JUPYTERLAB_WORKSPACES_DIR"].startswith(home)  # its tabs end with it
 
 
 def test_a_notebook_that_is_not_there_is_answered_with_those_that_are(checkout, calls, capsys):
@@ -92,7 +210,7 @@ def test_a_notebook_that_is_not_there_is_answered_with_those_that_are(checkout, 
 
 
 def test_matplotlib_takes_the_large_type(tmp_path):
-    environment = command.demo_environment(tmp_path)
+    environment = demo.demo_environment(tmp_path)
     import matplotlib
 
     values = matplotlib.rc_params_from_file(environment["MATPLOTLIBRC"], use_default_template=False)
@@ -114,8 +232,8 @@ def ask(address: str, attempts: int = 60) -> dict:
 def test_jupyterlab_really_starts_and_serves_the_notebook(checkout):
     """Through the command itself: the server answers with the notebook that the address names."""
     code = (
-        "import sys, pathlib; from motiondiff_edu import __main__ as m; "
-        f"m.PACKAGE = pathlib.Path({str(checkout / 'motiondiff_edu')!r}); "
+        "import sys, pathlib; from motiondiff_edu import __main__ as m; from motiondiff_edu.course import places; "
+        f"places.PACKAGE = pathlib.Path({str(checkout / 'motiondiff_edu')!r}); "
         "sys.exit(m.main(['lab', '--no-browser', '--port=0', '--IdentityProvider.token=walk']))"
     )
     server = subprocess.Popen([sys.executable, "-c", code], stderr=subprocess.PIPE, text=True)
@@ -129,11 +247,18 @@ def test_jupyterlab_really_starts_and_serves_the_notebook(checkout):
             )
             address = found and (found[1], found[2])
         port, page = address
-        assert page == "/lab/tree/notebooks/student/00_start.ipynb"
+        assert page == "/lab/tree/motiondiff_notebooks/00_start.ipynb"
         served = (
             f"http://127.0.0.1:{port}/api/contents/{page.removeprefix('/lab/tree/')}?token=walk"
         )
         assert ask(served)["type"] == "notebook"
+        plugin = "@jupyterlab/apputils-extension:notification"
+        news = ask(f"http://127.0.0.1:{port}/lab/api/settings/{plugin}?token=walk")["schema"][
+            "properties"
+        ]
+        assert (
+            news["fetchNews"]["default"] == "false" and news["checkForUpdates"]["default"] is False
+        )
         server.terminate()
         server.wait(timeout=60)
         with pytest.raises(urllib.error.URLError):  # ending the command ended JupyterLab, too

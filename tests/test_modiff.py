@@ -1,5 +1,5 @@
-"""MoDiff's network: the paper's sizes, its inputs, the skip, and the fast twin that gives the same
-numbers."""
+"""MoDiff's network: the paper's sizes, its inputs, the skip, the fast twin that gives the same
+numbers; and Algorithm 1."""
 
 import math
 from dataclasses import replace
@@ -8,16 +8,26 @@ import pytest
 import torch
 
 from motiondiff_edu.cross_modal_attention import relative_position_bucket
+from motiondiff_edu.ddpm import linear_schedule
+from motiondiff_edu.diffusion_dropout import Dropout
 from motiondiff_edu.fast.modiff import FastMoDiff
-from motiondiff_edu.modiff import MODIFF_PAPER, MODIFF_SMALL, MoDiff, step_embedding
+from motiondiff_edu.modiff import (
+    MODIFF_PAPER,
+    MODIFF_SMALL,
+    MoDiff,
+    step_embedding,
+    training_loss,
+)
 
 TINY = replace(MODIFF_SMALL, D=9, T_h=4, T_p=5, S=20, width=16, heads=2, hidden=24)
 B = 3
 
 
 def lively(config, seed=0):
-    """A network whose zero-initialised tables have values too: else a missing bias would go
-    unnoticed."""
+    """A network whose zero-initialised tables have values too.
+
+    Else a missing bias would go unnoticed.
+    """
     torch.manual_seed(seed)
     model = MoDiff(config).eval()
     with torch.no_grad():
@@ -81,10 +91,8 @@ def test_wrong_numbers_of_frames_are_told(frames):
 
 @pytest.mark.parametrize("which", ["x_s", "s", "past", "control"])
 def test_every_input_is_heard(which):
-    model, args = (
-        lively(TINY),
-        dict(zip(("x_s", "s", "past", "control"), inputs(TINY), strict=True)),
-    )
+    model = lively(TINY)
+    args = dict(zip(("x_s", "s", "past", "control"), inputs(TINY), strict=True))
     before = model(**args)
     args[which] = args[which] + (1 if which == "s" else 0.5)
     assert not torch.allclose(model(**args), before, atol=1e-4)
@@ -177,7 +185,8 @@ def test_fast_twin_keeps_the_context_it_was_given():
     """Another past or control needs another context: the kept one must not leak into it."""
     fast = FastMoDiff(lively(TINY))
     x_s, _, past, control = inputs(TINY)
-    first, second = fast.encode(past, control), fast.encode(past, control + 1)
+    first = fast.encode(past, control)
+    second = fast.encode(past, control + 1)
     before = fast.denoise(x_s, 5, first)
     assert not torch.allclose(fast.denoise(x_s, 5, second), before, atol=1e-4)
     assert torch.equal(fast.denoise(x_s, 5, first), before)
@@ -203,14 +212,17 @@ def test_fast_twin_stays_as_it_was_built_and_leaves_the_model_in_training():
 
 
 def test_the_wiring_by_hand():
-    """Which table goes where, and when everything happens: written out, with every time as a
-    number.
+    """Which table goes where, and when everything happens.
+
+    Written out, with every time as a number.
 
     T_h = 4, T_p = 5: poses are given at frames -3 to 0, control at -3 to 5, and the future is 1 to
     5.
     """
     model, (x_s, s, past, control) = lively(TINY), inputs(TINY)
-    given, told, future = [-3, -2, -1, 0], [-3, -2, -1, 0, 1, 2, 3, 4, 5], [1, 2, 3, 4, 5]
+    given = [-3, -2, -1, 0]
+    told = [-3, -2, -1, 0, 1, 2, 3, 4, 5]
+    future = [1, 2, 3, 4, 5]
     clock = {t: model.time[t + 3] for t in told}
 
     def encoder(part, times, x):
@@ -245,3 +257,54 @@ def test_the_wiring_by_hand():
             x = block(x, own, memory, other)
         wanted = model.head(x) + model.skip[7] * x_s
         torch.testing.assert_close(model(x_s, s, past, control), wanted, atol=1e-6, rtol=1e-5)
+
+
+@pytest.mark.parametrize("target", ["eps", "x0", "v"])
+@pytest.mark.parametrize("rate", [0.0, 0.5])
+def test_training_loss_is_algorithm_1(target, rate):
+    """Steps, dropout and noise drawn as the loss draws them; the rest written out."""
+    model, schedule = lively(replace(TINY, target=target)), linear_schedule(TINY.S, 0.2, 0.95)
+    x0, _, past, control = inputs(TINY, batch=9)
+    dropout = Dropout(schedule, lambda done: rate, steps=1, done=0.0)
+    loss = training_loss(
+        model, (past, x0, control), schedule, torch.Generator().manual_seed(4), dropout=dropout
+    )
+    draws = torch.Generator().manual_seed(4)
+    s = torch.randint(1, TINY.S + 1, (9,), generator=draws)
+    hit = torch.rand(9, generator=draws) < rate
+    of_past, eps = torch.randn(past.shape, generator=draws), torch.randn(x0.shape, generator=draws)
+    a = schedule.alpha_bar[s].float().sqrt()[:, None, None]
+    b = (1 - schedule.alpha_bar[s]).float().sqrt()[:, None, None]
+    x_d = torch.where(hit[:, None, None], a * past + b * of_past, past)
+    wanted = {"eps": eps, "x0": x0, "v": a * eps - b * x0}[target]
+    errors = (wanted - model(a * x0 + b * eps, s, x_d, control)) ** 2
+    assert (0 < hit.sum() < 9) == (rate > 0)
+    assert loss.item() == pytest.approx(errors.mean().item(), rel=1e-5)
+
+
+def test_training_loss_takes_another_loss_of_the_error_and_its_steps():
+    model, schedule = lively(TINY), linear_schedule(TINY.S, 0.2, 0.95)
+    x0, _, past, control = inputs(TINY)
+    seen = {}
+
+    def largest(error, s):
+        seen.update(error=error, s=s)
+        return error.abs().amax()
+
+    draws = torch.Generator().manual_seed(5)
+    loss = training_loss(model, (past, x0, control), schedule, draws, loss=largest)
+    assert seen["error"].shape == x0.shape and seen["s"].shape == (B,)
+    assert loss == seen["error"].abs().amax() and loss.requires_grad
+
+
+def test_every_step_is_drawn_and_none_beyond():
+    model, schedule, seen = lively(TINY), linear_schedule(TINY.S, 0.2, 0.95), set()
+    x0, _, past, control = inputs(TINY, batch=200)
+    draws = torch.Generator().manual_seed(6)
+
+    def loss(error, s):
+        seen.update(s.tolist())
+        return error.mean()
+
+    training_loss(model, (past, x0, control), schedule, draws, loss=loss)
+    assert seen == set(range(1, TINY.S + 1))

@@ -9,7 +9,8 @@ from motiondiff_edu.ddpm import linear_schedule, q_sample
 
 @pytest.fixture(params=["one step for all", "a step for each"])
 def case(request):
-    schedule, generator = linear_schedule(), torch.Generator().manual_seed(3)
+    schedule = linear_schedule()
+    generator = torch.Generator().manual_seed(3)
     x0, eps = (torch.randn(2, 5, 7, generator=generator, dtype=torch.float64) for _ in range(2))
     s = 41 if request.param.startswith("one") else torch.tensor([1, 100])
     return x0, eps, s, schedule, q_sample(x0, s, schedule, eps)
@@ -38,7 +39,8 @@ def test_v_keeps_the_length_of_the_pair(case):
 def test_mofusion_eq_5_with_its_index():
     """x0 = x_s / sqrt(alpha_bar_s) - sqrt(1 / alpha_bar_s - 1) eps, written as the paper has it."""
     schedule, s = linear_schedule(), 70
-    x_s, eps = torch.randn(2, 5, 7).double(), torch.randn(2, 5, 7).double()
+    x_s = torch.randn(2, 5, 7).double()
+    eps = torch.randn(2, 5, 7).double()
     alpha_bar = schedule.alpha_bar[s]
     as_written = x_s / alpha_bar**0.5 - (1 / alpha_bar - 1) ** 0.5 * eps
     torch.testing.assert_close(P.x0_from_eps(x_s, s, eps, schedule), as_written)
@@ -48,7 +50,10 @@ def test_denoiser_of_turns_any_network_into_eps(case):
     x0, eps, s, schedule, x_s = case
     s = s if isinstance(s, torch.Tensor) else torch.full((2,), s)
     for target in P.TARGETS:
-        network = lambda x, s, target=target: P.target_of(x0, eps, s, schedule, target)  # noqa: E731
+
+        def network(x, s, target=target):
+            return P.target_of(x0, eps, s, schedule, target)
+
         torch.testing.assert_close(P.denoiser_of(network, schedule, target)(x_s, s), eps)
 
 

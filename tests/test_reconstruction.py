@@ -1,5 +1,7 @@
-"""There and back: what is known is untouched, holes are filled by a walker that knows the way, and
-then it stops."""
+"""Walking there and back fills holes and leaves what is known untouched.
+
+The walker knows the way, and then it stops.
+"""
 
 from types import SimpleNamespace
 
@@ -17,8 +19,10 @@ T_H, D = 6, 8
 
 
 class Turning:
-    """A walker that turns pairs of numbers by the control's first column: right, and reversible;
-    then some noise."""
+    """A walker that turns pairs of numbers by the control's first column: right, and reversible.
+
+    Then some noise.
+    """
 
     def __init__(self, noise: float = 0.0):
         self.config = SimpleNamespace(T_h=T_H, T_p=2, D=D, C=3)
@@ -46,7 +50,8 @@ class Turning:
 def material(B: int = 3):
     draw = torch.Generator().manual_seed(0)
     control = torch.rand(B, 2 * T_H, 3, generator=draw)
-    pose, rows = torch.randn(B, D // 2, dtype=torch.complex64, generator=draw), []
+    pose = torch.randn(B, D // 2, dtype=torch.complex64, generator=draw)
+    rows = []
     for t in range(2 * T_H):
         rows.append(torch.view_as_real(pose).flatten(1))
         pose = pose * torch.exp(1j * control[:, t, 0])[:, None]
@@ -123,7 +128,7 @@ def test_one_sample_at_rest_does_not_end_the_others():
     assert len(found) == 3 and found[0].change[0] == 0 < found[0].change[1]
 
 
-def test_what_settles_a_past_is_in_it_and_in_its_change():
+def test_what_corrects_a_past_is_in_it_and_in_its_change():
     past, control = material()
     known = torch.ones(past.shape, dtype=torch.bool)
     known[:, 1:3] = False
@@ -137,12 +142,12 @@ def test_what_settles_a_past_is_in_it_and_in_its_change():
         "guess": past,
         "generator": seeded(),
     }  # a walker that knows the way changes nothing
-    (plain,), (settled,) = (
-        list(repair_steps(Turning(), past, known, control, settle=s, **options))
+    (plain,), (corrected,) = (
+        list(repair_steps(Turning(), past, known, control, correct=s, **options))
         for s in (None, raised)
     )
-    torch.testing.assert_close(settled.past, plain.past + 1.0 * ~known)
-    torch.testing.assert_close(settled.change, torch.ones(3), atol=1e-4, rtol=0)
+    torch.testing.assert_close(corrected.past, plain.past + 1.0 * ~known)
+    torch.testing.assert_close(corrected.change, torch.ones(3), atol=1e-4, rtol=0)
     assert plain.change.max() < 1e-4
 
 

@@ -1,12 +1,18 @@
-"""Rollout: which rows of control are seen, when the sampler is asked, what is refused. The samplers
-here are fakes."""
+"""Rollout: which rows of control are seen, when the sampler is asked, what is refused.
+
+The samplers here are fakes.
+"""
 
 import pytest
 import torch
 
 from motiondiff_edu.rollout import rollout_steps
 
-B, T_H, T_P, D, C = 2, 4, 3, 5, 1
+B = 2
+T_H = 4
+T_P = 3
+D = 5
+C = 1
 
 
 def generator() -> torch.Generator:
@@ -19,8 +25,10 @@ def numbered_control(frames: int) -> torch.Tensor:
 
 
 class Echo:
-    """A sampler that returns the control of the future frames as poses, and remembers what it was
-    given."""
+    """A sampler that returns the control of the future frames as poses.
+
+    It remembers what it was given.
+    """
 
     def __init__(self):
         self.calls = []
@@ -66,7 +74,9 @@ def test_keep_asks_the_sampler_every_keep_frames_and_feeds_back_what_was_kept(ke
 
     calls, control = [], numbered_control(T_H + 7)
     poses = roll(lambda *given: calls.append(1) or sample(*given), control, 7, keep=keep)
-    past, random, expected = torch.zeros(B, T_H, D), generator(), []
+    past = torch.zeros(B, T_H, D)
+    random = generator()
+    expected = []
     for t in range(0, 7, keep):
         known = control[:, t : t + T_H]
         window = sample(past, torch.cat([known, known[:, -1:].repeat(1, T_P, 1)], 1), random)[
@@ -118,8 +128,10 @@ def test_control_as_a_function_is_asked_when_needed_and_can_change_on_the_fly(
 
 
 def test_the_rows_already_walked_under_are_not_asked_again():
-    """A hand on a joystick only knows its present position: the network must be told what it was
-    before."""
+    """A hand on a joystick only knows its present position.
+
+    The network must be told what it was before.
+    """
     asked, seen = [], []
 
     def hand(t: int) -> torch.Tensor:

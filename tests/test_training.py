@@ -1,5 +1,7 @@
-"""The training loop: it learns, averages, clips, saves no code, survives a kill, stops at a
-non-finite loss."""
+"""The training loop.
+
+It learns, averages, clips, saves no code, survives a kill, stops at a non-finite loss.
+"""
 
 import math
 import os
@@ -21,8 +23,10 @@ from motiondiff_edu.training import NonFiniteLoss, TrainState, cosine_lr, train_
 
 
 def network():
-    """Dropout draws from torch's own generator, the batches from the run's: both must be
-    resumed."""
+    """Dropout draws from torch's own generator, the batches from the run's.
+
+    Both must be resumed.
+    """
     torch.manual_seed(3)
     return nn.Sequential(nn.Linear(5, 7), nn.Tanh(), nn.Dropout(0.2), nn.Linear(7, 2))
 
@@ -68,7 +72,8 @@ def environment() -> dict:
 
 
 def test_a_killed_run_resumes_bit_for_bit(tmp_path: Path):
-    whole, killed = tmp_path / "whole.safetensors", tmp_path / "killed.safetensors"
+    whole = tmp_path / "whole.safetensors"
+    killed = tmp_path / "killed.safetensors"
     expected = run(whole, 40)
     command = [
         sys.executable,
@@ -121,7 +126,8 @@ def test_a_run_of_another_network_is_refused(tmp_path: Path):
 
 
 def test_a_file_that_is_no_run_is_refused_with_what_to_do(tmp_path: Path):
-    path, state = tmp_path / "run.safetensors", TrainState.start(network())
+    path = tmp_path / "run.safetensors"
+    state = TrainState.start(network())
     path.write_bytes(b"not a run at all")
     with pytest.raises(ValueError, match=r"run\.safetensors cannot be resumed: damaged.*delete it"):
         resume_run(state, path)
@@ -131,7 +137,8 @@ def test_a_file_that_is_no_run_is_refused_with_what_to_do(tmp_path: Path):
 
 
 def test_a_run_begun_with_other_settings_is_refused(tmp_path: Path):
-    path, state = tmp_path / "run.safetensors", TrainState.start(network())
+    path = tmp_path / "run.safetensors"
+    state = TrainState.start(network())
     save_run(state, path, {"jitter": 0.3, "styles": ("old", "tired")})
     assert resume_run(state, path, {"jitter": 0.3, "styles": ("old", "tired")}) is state
     with pytest.raises(
@@ -152,7 +159,8 @@ def test_the_moments_of_one_optimizer_are_not_given_to_another(tmp_path: Path):
 
 
 def test_notes_are_kept_and_do_not_hinder(tmp_path: Path):
-    path, state = tmp_path / "run.safetensors", TrainState.start(network())
+    path = tmp_path / "run.safetensors"
+    state = TrainState.start(network())
     assert notes_of(path) == []
     save_run(state, path, notes=[{"from_step": 0}])
     assert notes_of(path) == [{"from_step": 0}] and resume_run(state, path) is state
@@ -180,7 +188,9 @@ def bad_at(step: int, value: float):
 
 @pytest.mark.parametrize("value", [math.nan, math.inf])
 def test_a_non_finite_loss_stops_and_keeps_the_last_good_weights(tmp_path: Path, value: float):
-    path, state, good = tmp_path / "run.safetensors", TrainState.start(nn.Linear(3, 2), seed=1), []
+    path = tmp_path / "run.safetensors"
+    state = TrainState.start(nn.Linear(3, 2), seed=1)
+    good = []
     with pytest.raises(
         NonFiniteLoss, match=r"^step 6: the loss is (nan|inf).*learning rate.*run\.safetensors"
     ):
@@ -203,7 +213,8 @@ def test_broken_weights_are_not_saved_over_good_ones(tmp_path: Path):
     path, model = tmp_path / "run.safetensors", nn.Linear(3, 2)
     state, bad = TrainState.start(model, seed=1), bad_at(99, math.nan)
     list(train_steps(state, bad, 5, save=saver(path), save_every=5, progress=False))
-    before, state.optimizer = path.read_bytes(), Breaks(model.parameters(), lr=0.1)
+    before = path.read_bytes()
+    state.optimizer = Breaks(model.parameters(), lr=0.1)
     with pytest.raises(
         NonFiniteLoss, match="step 6: .* had broken the weights already; they are not saved"
     ):
@@ -212,7 +223,8 @@ def test_broken_weights_are_not_saved_over_good_ones(tmp_path: Path):
 
 
 def test_the_last_step_is_saved_whatever_its_number(tmp_path: Path):
-    path, state = tmp_path / "run.safetensors", TrainState.start(nn.Linear(3, 2), seed=1)
+    path = tmp_path / "run.safetensors"
+    state = TrainState.start(nn.Linear(3, 2), seed=1)
     list(
         train_steps(state, bad_at(99, math.nan), 7, save=saver(path), save_every=5, progress=False)
     )
@@ -220,7 +232,8 @@ def test_the_last_step_is_saved_whatever_its_number(tmp_path: Path):
 
 
 def test_a_flipped_bit_in_a_saved_run_is_found(tmp_path: Path):
-    path, state = tmp_path / "run.safetensors", TrainState.start(nn.Linear(3, 2), seed=1)
+    path = tmp_path / "run.safetensors"
+    state = TrainState.start(nn.Linear(3, 2), seed=1)
     list(train_steps(state, bad_at(99, math.nan), 3, save=saver(path), progress=False))
     raw = bytearray(path.read_bytes())
     raw[-1] ^= 0x40
@@ -254,6 +267,25 @@ def test_the_average_is_exponential_with_a_shorter_memory_at_the_start():
     assert torch.allclose(state.average.weight, mean, atol=1e-6)
     assert not torch.allclose(state.average.weight, state.model.weight, atol=1e-4)
     assert not state.average.weight.requires_grad
+
+
+def test_the_average_s_memory_of_the_first_steps_by_hand():
+    """One weight that every step lowers by 1: 0, -1, -2, -3. The memory is 1/10, 2/11, 3/12 long,
+    so the start is soon forgotten."""
+
+    class Falls(nn.Module):
+        def __init__(self):
+            super().__init__()
+            self.weight = nn.Parameter(torch.zeros(()))
+
+    state = TrainState.start(Falls())
+    state.optimizer = torch.optim.SGD(state.model.parameters())
+    loop = train_steps(state, lambda model, generator: model.weight, 3, lr=1.0, progress=False)
+    found = [state.average.weight.item() for _ in loop]
+    first = -1 * 9 / 10
+    second = first * 2 / 11 - 2 * 9 / 11
+    third = second * 3 / 12 - 3 * 9 / 12
+    assert found == pytest.approx([first, second, third])
 
 
 def test_gradients_are_clipped_and_the_norm_is_reported():

@@ -1,5 +1,7 @@
-"""A wheel, built and installed elsewhere, has all that the checkout has: weights, ES module,
-data_synth, notebooks."""
+"""A wheel, built and installed elsewhere, has all that the checkout has.
+
+Weights, ES module, data_synth, notebooks.
+"""
 
 import json
 import os
@@ -11,6 +13,7 @@ import venv
 import zipfile
 from pathlib import Path
 
+import links
 import pytest
 
 from motiondiff_edu.widgets import module
@@ -24,15 +27,15 @@ BUILT_FROM = [
     "LICENSE",
     "constraints.txt",
 ]
-FOLDERS = ["motiondiff_edu", "data_synth", "notebooks"]
-SHIPPED = {".py", ".js", ".css", ".safetensors", ".json"}
+FOLDERS = ["motiondiff_edu", "data_synth", "notebooks", "docs"]
+SHIPPED = {".py", ".js", ".css", ".safetensors", ".json", ".typed"}
 
 # What a user of the installed wheel does, far from any checkout.
 USE = """
 import json, sys
 import motiondiff_edu, data_synth
-from motiondiff_edu import __main__ as command, doctor
-from motiondiff_edu.course import checks
+from pathlib import Path
+from motiondiff_edu.course import checks, doctor, handout, places
 from motiondiff_edu.pretrained import checkpoints
 from motiondiff_edu.motion.skeleton import JOINTS
 from motiondiff_edu.widgets.player import Player
@@ -41,11 +44,13 @@ import numpy as np
 
 walkers = {n: sum(p.numel() for p in checkpoints.pretrained(n).model.parameters()) for n in checkpoints.available()}
 player = Player(np.zeros((2, 21, 3)))
+root, mine = places.place_for_students()
+handout.hand_out(places.notebook_folder(), mine)
 print(json.dumps({
     "package": motiondiff_edu.__file__, "data": data_synth.__file__, "version": motiondiff_edu.__version__,
     "walkers": walkers, "module": len(str(player._esm)), "pins": len(doctor.constraints()),
-    "notebooks": sorted(p.name for p in (command.notebook_folder() / "student").glob("*.ipynb")),
-    "place": [str(p) for p in command.place_for_students(command.notebook_folder())],
+    "notebooks": sorted(p.name for p in (places.notebook_folder() / "student").glob("*.ipynb")),
+    "place": [str(root), str(mine)],
 }))
 """
 
@@ -78,8 +83,10 @@ def wheel(tmp_path_factory) -> Path:
 
 @pytest.fixture(scope="module")
 def elsewhere(wheel, tmp_path_factory) -> tuple[Path, dict]:
-    """A fresh environment with the wheel in it; torch and the others are borrowed. With what USE
-    prints."""
+    """A fresh environment with the wheel in it; torch and the others are borrowed.
+
+    With what USE prints.
+    """
     home = tmp_path_factory.mktemp("elsewhere")
     venv.create(home / "env", with_pip=False)
     python = home / "env" / ("Scripts/python.exe" if os.name == "nt" else "bin/python")
@@ -132,3 +139,17 @@ def test_lab_opens_a_copy_of_the_wheels_notebooks(elsewhere):
     mine = home.resolve() / "motiondiff_notebooks"
     assert [Path(place).resolve() for place in found["place"]] == [mine, mine]
     assert sorted(path.name for path in mine.glob("*.ipynb")) == there
+    assert links.dead(mine) == []
+
+
+def test_the_wheel_brings_its_command(elsewhere):
+    home, _ = elsewhere
+    script = (
+        home / "env" / ("Scripts/motiondiff-edu.exe" if os.name == "nt" else "bin/motiondiff-edu")
+    )
+    answer = subprocess.run([script, "demo", "99"], cwd=home, capture_output=True, text=True)
+    assert answer.returncode == 1 and answer.stderr.startswith("no notebook 99 in ")
+    told = subprocess.run(
+        [script, "lab", "--help"], cwd=home, capture_output=True, text=True
+    ).stdout
+    assert "usage: motiondiff-edu lab" in told and "example: motiondiff-edu lab" in told

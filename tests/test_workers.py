@@ -1,5 +1,7 @@
-"""`make test` with two workers: one that dies ends the run as a failure, and each has a numba cache
-of its own."""
+"""`make test` with two workers.
+
+One that dies ends the run as a failure, and each has a numba cache of its own.
+"""
 
 import re
 import shutil
@@ -54,8 +56,10 @@ def test_a_worker_that_dies_fails_the_run(run):
 
 
 def test_workers_do_not_share_what_numba_compiled(run, root, tmp_path, monkeypatch):
-    """Else two of them write the halves of one function, and who reads it dies (numba issue
-    10128)."""
+    """Each worker compiles into a cache of its own.
+
+    Else two of them write the halves of one function, and the reader dies (numba issue 10128).
+    """
     for inherited in ("NUMBA_CACHE_DIR", "PYTEST_XDIST_WORKER"):
         monkeypatch.delenv(inherited, raising=False)
     shutil.copy(root / "conftest.py", tmp_path)

@@ -1,5 +1,7 @@
-"""What somebody may hand over by mistake, and what they are told: no broadcast, no NaN, in this
-course's words."""
+"""What somebody may hand over by mistake, and what they are told.
+
+No broadcast, no NaN, in this course's words.
+"""
 
 import math
 import os
@@ -15,25 +17,24 @@ from data_synth.walking import walk
 from data_synth.walking.write import main as write_walks
 from motiondiff_edu import ddpm
 from motiondiff_edu.conditions.control import joystick
-from motiondiff_edu.fast.samplers import ddim_steps
 from motiondiff_edu.metrics.adherence import adherence
 from motiondiff_edu.modiff import MoDiff, MoDiffConfig
 from motiondiff_edu.motion.bvh.write import write_bvh
 from motiondiff_edu.motion.clip import slice_clips, split_by_source
 from motiondiff_edu.motion.scaler import Scaler
 from motiondiff_edu.performers.walker import Walker
-from motiondiff_edu.performers.windows import Windows, window_loss
 from motiondiff_edu.rollout import generate
 
 SCHEDULE = ddpm.linear_schedule(20, 1e-3, 0.5)
 X = torch.zeros(2, 3)
-CLIP, RNG = walk(np.zeros((11, 3)), seed=0), np.random.default_rng(0)
+CLIP = walk(np.zeros((11, 3)), seed=0)
+RNG = np.random.default_rng(0)
 SMALL = MoDiffConfig(T_h=4, T_p=3, S=6, width=16, heads=2, hidden=24)
 PLAIN = Scaler(torch.zeros(63), torch.ones(63)), Scaler(torch.zeros(3), torch.ones(3))
 
 
 def ddim(**options):
-    return lambda: list(ddim_steps(lambda x, s: x, X, SCHEDULE, **options))
+    return lambda: list(ddpm.ddim_steps(lambda x, s: x, X, SCHEDULE, **options))
 
 
 MISTAKES = {
@@ -73,10 +74,6 @@ MISTAKES = {
         lambda: Walker(MoDiff(SMALL), SCHEDULE, *PLAIN),
         "has 20 steps, the network 6",
     ),
-    "no noise to learn from": (
-        lambda: window_loss(Windows.of([CLIP], 4, 3), SCHEDULE, noises=0),
-        "noises = 0",
-    ),
     "heads that do not fit": (lambda: MoDiffConfig(width=16, heads=3), "shared evenly by 3 heads"),
 }
 
@@ -94,6 +91,21 @@ def test_a_step_that_is_not_there(s):
         ddpm.q_sample(X, s, SCHEDULE, X)
 
 
+@pytest.mark.parametrize("steps, named", [([3, -1], -1), ([21, 20], 21), ([-4, 30], -4)])
+def test_steps_of_a_batch_are_checked_as_one_is(steps, named):
+    """A tensor's -1 would read the last entry, and say nothing."""
+    with pytest.raises(IndexError, match=f"s = {named}: steps go from 0 to 20 here"):
+        ddpm.q_sample(X, torch.tensor(steps), SCHEDULE, X)
+
+
+def test_a_batch_with_clean_data_has_no_step_back():
+    s = torch.tensor([7, 0])
+    for call in (ddpm.q_posterior, ddpm.p_mean):
+        order = (X, s, X) if call is ddpm.p_mean else (X, X, s)
+        with pytest.raises(IndexError, match="s = 0: steps go from 1 to 20 here"):
+            call(*order, SCHEDULE)
+
+
 @pytest.mark.parametrize("fps", [math.inf, 1, 2000])
 def test_a_rate_that_no_reader_takes_for_one_is_not_written(tmp_path, fps):
     with pytest.raises(ValueError, match="fps must be 2 to 1000"):
@@ -102,7 +114,9 @@ def test_a_rate_that_no_reader_takes_for_one_is_not_written(tmp_path, fps):
 
 
 SHAPES = {  # in a process of its own: here the tests' own check of shapes would speak first
-    "write_bvh('x.bvh', np.zeros((5, 63)))": "positions are (T, 21, 3), metres in the world; these are (5, 63).",
+    "write_bvh('x.bvh', np.zeros((5, 63)))": (
+        "positions are (T, 21, 3), metres in the world; these are (5, 63)."
+    ),
     "write_bvh('x.bvh', np.zeros((5, 20, 3)))": "these are (5, 20, 3)",
     "to_world(np.zeros((5, 21, 3)), np.zeros((1, 3)))": "5 poses and 1 rows of control",
 }
@@ -139,7 +153,10 @@ def test_a_control_beyond_the_training_data_is_named():
         UserWarning, match=r"row 5 of the control asks for -45 \(turning rate\); .* from -2 to 2"
     ):
         generate(walker, past, control)
-    control[5, 2] = -2.1
+    control[5, 2] = -2.5  # a tenth of the range, from -2 to 2, is 0.4
+    with pytest.warns(UserWarning, match="row 5 of the control asks for -2.5"):
+        generate(walker, past, control)
+    control[5, 2] = -2.3
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         generate(walker, past, control)

@@ -5,13 +5,16 @@ solution`, then the call of its check. The student edition has `raise NotImpleme
 turn")` there, and then the solution, folded. Everything else stays. The same input gives the same
 bytes.
 
-    python tools/build_student.py            write
+    python tools/build_student.py            write, unless a file there was changed by hand
+    python tools/build_student.py --force    write over what was changed by hand, too
     python tools/build_student.py --check    write nothing; exit 1 when the edition is stale
 """
 
 import argparse
+import hashlib
 import json
 import re
+import subprocess
 import sys
 from pathlib import Path
 
@@ -23,6 +26,8 @@ from motiondiff_edu._files import replacing
 REGION = re.compile(r"^( *)# solution *\n(.*?\n)\1# end solution *$", re.MULTILINE | re.DOTALL)
 # a link that leaves the folder leaves one folder more from notebooks/student
 UPWARDS = re.compile(r'(\]\(|src="|href=")\.\./')
+# in the edition's folder, not committed: {name: SHA-256} of what was written last
+RECORD = ".generated.json"
 
 
 class StudentError(ValueError):
@@ -90,8 +95,10 @@ def student(notebook: dict, name: str) -> dict:
 
 
 def text(notebook: dict) -> str:
-    """The bytes of a notebook as Jupyter writes them: sources by line, keys sorted, one space of
-    indent."""
+    """The bytes of a notebook as Jupyter writes them.
+
+    Sources by line, keys sorted, one space of indent.
+    """
     cells = [
         cell | {"source": cell["source"].splitlines(keepends=True)} for cell in notebook["cells"]
     ]
@@ -111,7 +118,8 @@ def edition(folder: Path) -> dict[Path, str]:
 
 def stale(folder: Path) -> list[str]:
     """What is missing, changed or left over in folder/student."""
-    wanted, there = edition(folder), set((folder / "student").glob("*.ipynb"))
+    wanted = edition(folder)
+    there = set((folder / "student").glob("*.ipynb"))
     changed = [
         path
         for path, content in wanted.items()
@@ -125,6 +133,47 @@ def stale(folder: Path) -> list[str]:
     return [f"{path.name}: {kind}" for kind, paths in kinds.items() for path in sorted(paths)]
 
 
+def digest(content: str | bytes) -> str:
+    """SHA-256 of a file's content; git on Windows may write other line ends, which do not count."""
+    raw = content.encode() if isinstance(content, str) else content
+    return hashlib.sha256(raw.replace(b"\r\n", b"\n")).hexdigest()
+
+
+def last_written(folder: Path) -> dict[str, str]:
+    """{name: SHA-256} of what was written into folder/student last; empty where there is no
+    record."""
+    try:
+        return json.loads((folder / "student" / RECORD).read_text(encoding="utf-8"))
+    except (OSError, ValueError):
+        return {}
+
+
+def committed(path: Path) -> bool:
+    """Whether git has this file exactly as it is. False without git, or outside of a repository."""
+    command = ["git", "status", "--porcelain", "--ignored", "--", path.name]
+    try:
+        answer = subprocess.run(command, cwd=path.parent, capture_output=True, text=True)
+    except OSError:
+        return False
+    return answer.returncode == 0 and not answer.stdout.strip()
+
+
+def by_hand(folder: Path) -> list[Path]:
+    """What would be lost in folder/student: neither as it was written last, nor as it will be, nor
+    committed."""
+    last = last_written(folder)
+    wanted = {path: digest(content) for path, content in edition(folder).items()}
+    there = {
+        path: digest(path.read_bytes()) for path in sorted((folder / "student").glob("*.ipynb"))
+    }
+    changed = [
+        path
+        for path, found in there.items()
+        if found not in (last.get(path.name), wanted.get(path))
+    ]
+    return [path for path in changed if not committed(path)]
+
+
 def write(folder: Path) -> int:
     """Write the edition, remove what is left over, and return how many notebooks it has."""
     wanted = edition(folder)
@@ -134,7 +183,22 @@ def write(folder: Path) -> int:
     for path, content in wanted.items():
         with replacing(path) as aside:
             aside.write_text(content, encoding="utf-8", newline="\n")
+    written = {path.name: digest(content) for path, content in wanted.items()}
+    with replacing(folder / "student" / RECORD) as aside:
+        aside.write_text(json.dumps(written, indent=1), encoding="utf-8")
     return len(wanted)
+
+
+def refusal(paths: list[Path]) -> str:
+    """What to say instead of overwriting work."""
+    return "\n".join(
+        [
+            "not written: these were changed by hand, and would be lost:",
+            *(f"  {path.parent.name}/{path.name}" for path in paths),
+            "Copy what you want to keep; then: make student FORCE=1 (or --force).",
+            "Work in your own copies instead, which nothing overwrites: make lab.",
+        ]
+    )
 
 
 def main(arguments: list[str] | None = None) -> int:
@@ -142,10 +206,14 @@ def main(arguments: list[str] | None = None) -> int:
     parser.add_argument(
         "--check", action="store_true", help="write nothing; exit 1 when the edition is stale"
     )
+    parser.add_argument("--force", action="store_true", help="write over what was changed by hand")
     parser.add_argument("--folder", type=Path, default=NOTEBOOKS)
     options = parser.parse_args(arguments)
     try:
         if not options.check:
+            if not options.force and (changed := by_hand(options.folder)):
+                print(refusal(changed), file=sys.stderr)
+                return 1
             print(f"{write(options.folder)} notebooks written to {options.folder.name}/student")
             return 0
         found = stale(options.folder)

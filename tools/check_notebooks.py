@@ -1,10 +1,12 @@
-"""The form of a notebook: length, opening, tags, exercises, closing, nothing that ties it to one
-machine.
+"""The form of a notebook.
+
+Length, opening, tags, exercises, closing, nothing that ties it to one machine.
 
 python tools/check_notebooks.py [NOTEBOOK ...]     lists what is wrong; exit 1 when anything is
 """
 
 import ast
+import math
 import re
 import sys
 from collections.abc import Iterator
@@ -15,7 +17,11 @@ import notebook_cells
 from notebook_cells import code, markdown, tags
 
 CELLS, WORDS = (25, 45), 1800
-LINES, LONG_SHARE, LINES_AT_MOST = 8, 0.10, 16
+LINES = 8  # logical lines: a statement over several rows counts once
+LONG_SHARE = 0.10
+LINES_AT_MOST = 16
+ROWS_AT_MOST = 32
+COLUMNS = 88
 NO_TWINS = {"00"}  # start here: nothing is built by hand
 
 OPENING = {  # what the cells before the imports must say
@@ -39,27 +45,47 @@ FORBIDDEN = {
 }
 
 
-def lines(source: str) -> int:
-    """Lines of code: blank lines and whole-line comments are not counted."""
-    return sum(
-        bool(line.strip()) and not line.strip().startswith("#") for line in source.splitlines()
-    )
+def lines(cell: dict) -> int:
+    """Logical lines of code: a statement counts once, over however many rows it is wrapped."""
+    return sum(isinstance(node, ast.stmt) for node in ast.walk(parsed(cell)))
+
+
+def rows(cell: dict) -> int:
+    """Rows of code: blank rows and whole-row comments are not counted."""
+    stripped = (row.strip() for row in cell["source"].splitlines())
+    return sum(bool(row) and not row.startswith("#") for row in stripped)
 
 
 def length(notebook: dict) -> Iterator[str]:
-    """25-45 cells, most code cells of at most 8 lines, under 1,800 words."""
+    """25-45 cells, most code cells of at most 8 logical lines, under 1,800 words.
+
+    The cell of imports is not counted.
+    """
     count = len(notebook["cells"])
     if not CELLS[0] <= count <= CELLS[1]:
         yield f"{count} cells; one sitting has {CELLS[0]} to {CELLS[1]}"
     words = sum(len(re.findall(r"[^\W_][\w'-]*", cell["source"])) for cell in markdown(notebook))
     if words >= WORDS:
         yield f"{words} words; keep under {WORDS}"
-    sizes = [lines(cell["source"]) for cell in code(notebook)]
+    cells = [cell for cell in code(notebook) if "imports" not in tags(cell)]
+    sizes = [lines(cell) for cell in cells]
     long = sum(size > LINES for size in sizes)
-    if long > LONG_SHARE * len(sizes):
+    if long > math.ceil(LONG_SHARE * len(sizes)):
         yield f"{long} of {len(sizes)} code cells have more than {LINES} lines; one in ten may"
     if max(sizes, default=0) > LINES_AT_MOST:
         yield f"a code cell of {max(sizes)} lines; {LINES_AT_MOST} at most"
+    tall = max(map(rows, cells), default=0)
+    if tall > ROWS_AT_MOST:
+        yield f"a code cell of {tall} rows, which no screen shows at once; {ROWS_AT_MOST} at most"
+
+
+def width(notebook: dict) -> Iterator[str]:
+    """Code of at most 88 columns: beside the file browser a laptop shows no more."""
+    for cell in code(notebook):
+        for number, row in enumerate(cell["source"].splitlines(), 1):
+            if len(row) > COLUMNS:
+                where = f"cell {cell.get('id')}, line {number}"
+                yield f"{where} has {len(row)} columns; {COLUMNS} at most"
 
 
 def storage(notebook: dict) -> Iterator[str]:
@@ -77,8 +103,10 @@ def storage(notebook: dict) -> Iterator[str]:
 
 
 def opening(notebook: dict) -> Iterator[str]:
-    """Before the imports: aim, needs, paper, minutes, symbols; then one imports cell that starts
-    the run."""
+    """Before the imports: aim, needs, paper, minutes, symbols.
+
+    Then one imports cell that starts the run.
+    """
     imports = code(notebook, "imports")
     if len(imports) != 1 or "runtime.start(" not in imports[0]["source"]:
         yield "there must be one cell tagged `imports`, which calls runtime.start(...)"
@@ -96,7 +124,7 @@ def opening(notebook: dict) -> Iterator[str]:
         yield "the first cell must begin with a title (# ...)"
     for cell in code(notebook)[1:]:
         if any(isinstance(node, ast.Import | ast.ImportFrom) for node in parsed(cell).body):
-            yield f"cell {cell.get('id')} imports; all imports belong into the cell tagged `imports`"
+            yield f"cell {cell.get('id')} imports; all imports belong in the cell tagged `imports`"
 
 
 def parsed(cell: dict) -> ast.Module:
@@ -119,8 +147,10 @@ def closing(notebook: dict) -> Iterator[str]:
 
 
 def exercises(notebook: dict, name: str) -> Iterator[str]:
-    """Two or more exercises, each with minutes and difficulty before it, a hint, and a check in the
-    same cell."""
+    """Two or more exercises, each with minutes, difficulty, a hint and a check.
+
+    The text stands before it, the check in the same cell.
+    """
     cells = notebook["cells"]
     found = [
         index
@@ -130,7 +160,8 @@ def exercises(notebook: dict, name: str) -> Iterator[str]:
     if len(found) < 2:
         yield f"{len(found)} cells tagged `solution`; a notebook has two exercises or more"
     for index in found:
-        where, told = f"exercise in cell {cells[index].get('id')}", before(cells, index)
+        where = f"exercise in cell {cells[index].get('id')}"
+        told = before(cells, index)
         if not re.search(r"\bmin(utes?)?\b", told) or not re.search(
             r"difficulty|easy|medium|hard|[★☆●○]", told, re.I
         ):
@@ -179,7 +210,7 @@ def portable(notebook: dict) -> Iterator[str]:
 def faults(path: Path) -> list[str]:
     """All that is wrong with the form of one notebook."""
     notebook = notebook_cells.read(path)
-    plain = [rule(notebook) for rule in (length, storage, opening, closing, portable)]
+    plain = [rule(notebook) for rule in (length, width, storage, opening, closing, portable)]
     return [
         fault
         for rule in [*plain, exercises(notebook, path.name), lesson(notebook, path.name)]

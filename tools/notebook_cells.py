@@ -1,5 +1,7 @@
-"""Reading notebooks for the tools and tests: cells, tags, and running the tagged cells outside a
-kernel."""
+"""Reading notebooks for the tools and tests.
+
+Cells, tags, and running the tagged cells outside a kernel.
+"""
 
 import json
 import re
@@ -47,6 +49,8 @@ def run(cells: list[dict], namespace: dict, name: str = "notebook") -> dict:
 
 
 def start(notebook: dict, name: str = "notebook") -> dict:
-    """The namespace after the cells tagged `imports` and `setup`, which tagged cells may rely
-    on."""
+    """The namespace after the cells tagged `imports` and `setup`.
+
+    Tagged cells may rely on it.
+    """
     return run(code(notebook, "imports", "setup"), {}, name)

@@ -1,5 +1,7 @@
-"""Dances to a song: phrases of moves from the genre's own vocabulary, on the beat, on feet that
-stay planted."""
+"""Dances to a song.
+
+Phrases of moves from the genre's own vocabulary, on the beat, on feet that stay planted.
+"""
 
 from .performance import GENRES, Dance, dance, dances, perform
 

@@ -1,5 +1,6 @@
-"""Do synthetic dances lie where real ones do, and on the beat? The table over dozens of dances,
-beside the real range.
+"""Do synthetic dances lie where real ones do, and on the beat?
+
+The table over dozens of dances, beside the real range.
 
 python -m data_synth.dancing.acceptance [--dances 30] [--seconds 30]
 
@@ -21,21 +22,30 @@ from .statistics import kinematic_beats, repeats, statistics
 
 # name -> (lowest, highest) of 8 real upright dances at 20 frames/s
 UPRIGHT = {
-    "speed": (0.33, 1.6), "neither_planted": (0.06, 0.79), "hips_spread": (0.05, 0.26), "beats_per_second": (1.1, 2.4),
-    "pca95": (6, 13), "jerk": (31, 362), "power4": (0.79, 0.99),
-}  # fmt: skip
+    "speed": (0.33, 1.6),
+    "neither_planted": (0.06, 0.79),
+    "hips_spread": (0.05, 0.26),
+    "beats_per_second": (1.1, 2.4),
+    "pca95": (6, 13),
+    "jerk": (31, 362),
+    "power4": (0.79, 0.99),
+}
 # what we ask of ourselves: with the right song; the share of the music's beats that the body marks
 OWN = {"own_song": (0.6, 0.85), "other_song": (0.15, 0.35), "beats_per_beat": (0.6, 1.3)}
 # genres whose mean over dances lies outside, and why; the data card tells more
 OUTSIDE = {
-    "waltz neither_planted": "three steps a bar, each landing before the next lifts, and planted feet are still",
+    "waltz neither_planted": (
+        "three steps a bar, each landing before the next lifts, and planted feet are still"
+    ),
     "latin neither_planted": "small steps close to the floor, and planted feet are still",
 }
 
 
 def songs(count: int, seconds: float, first_seed: int = 0) -> list[Song]:
-    """Silent songs, genre by genre in turn, tempi spread over each genre's range and drifting by 2
-    %."""
+    """Silent songs, genre by genre in turn.
+
+    Tempi are spread over each genre's range and drift by 2 %.
+    """
     genres = list(GENRES.items())
     each, found = -(-count // len(genres)), []
     for k in range(count):
@@ -67,8 +77,10 @@ def acceptance(
 
 
 def means_outside(danced: list[Dance], rows: list[dict[str, float]]) -> set[str]:
-    """Statistics whose mean is outside the real range, over all dances (by name) or in a genre
-    ("genre name")."""
+    """Statistics whose mean over dances is outside the real range.
+
+    Over all dances (by name) or in a genre ("genre name").
+    """
     found = set()
     for genre in ("", *GENRES):
         chosen = [r for d, r in zip(danced, rows, strict=True) if genre in ("", d.genre)]
@@ -79,9 +91,15 @@ def means_outside(danced: list[Dance], rows: list[dict[str, float]]) -> set[str]
 
 
 def limits(danced: list[Dance]) -> dict[str, float]:
-    """The worst of all frames: slipping feet, the lowest joint (mm), bones (m), knees (degrees),
-    hands (m/s)."""
-    slip, low, bones, knees, hands = 0.0, np.inf, 0.0, [], 0.0
+    """The worst of all frames.
+
+    Slipping feet, the lowest joint (mm), bones (m), knees (degrees), hands (m/s).
+    """
+    slip = 0.0
+    low = np.inf
+    bones = 0.0
+    knees = []
+    hands = 0.0
     for d in danced:
         p = d.positions
         still = d.contacts[1:] & d.contacts[:-1]
@@ -104,7 +122,8 @@ def limits(danced: list[Dance]) -> dict[str, float]:
 def knee_angle(world: np.ndarray) -> np.ndarray:
     """Degrees between thigh and shank, (T, 2): 0 is a straight leg."""
     ankle = np.array(HEELS)
-    thigh, shank = world[:, ankle - 1] - world[:, ankle - 2], world[:, ankle] - world[:, ankle - 1]
+    thigh = world[:, ankle - 1] - world[:, ankle - 2]
+    shank = world[:, ankle] - world[:, ankle - 1]
     cos = (thigh * shank).sum(-1) / np.linalg.norm(thigh, axis=-1) / np.linalg.norm(shank, axis=-1)
     return np.degrees(np.arccos(np.clip(cos, -1, 1)))
 

@@ -1,5 +1,6 @@
-"""From the channels of a dance to the 21 joints: pelvis over the feet, a spine that bends in three
-places, arms, legs.
+"""From the channels of a dance to the 21 joints.
+
+Pelvis over the feet, a spine that bends in three places, arms, legs.
 
 Per frame and vectorised; world frame, metres; the channels are those of dance_script.REST, in
 degrees and metres.
@@ -41,7 +42,8 @@ def dancer(
     for side, first in enumerate((1, 5)):
         knee_out = (1, -1)[side] * c["lr"[side] + "_knee"]
         joints[:, first] = hips + pelvis @ OFFSETS[first]
-        joints[:, first + 2], joints[:, first + 3] = feet.ankle[:, side], feet.toe[:, side]
+        joints[:, first + 2] = feet.ankle[:, side]
+        joints[:, first + 3] = feet.toe[:, side]
         facing = yaw + 0.5 * (feet.yaw[:, side] - yaw) + knee_out
         joints[:, first + 1] = legs.bend_knee(
             joints[:, first],
@@ -55,8 +57,10 @@ def dancer(
 
 
 def _hips(c, tracks, heading) -> Float[np.ndarray, "T 3"]:
-    """The pelvis over the foot that bears, moved by sway and surge, and away from where the trunk
-    leans."""
+    """The pelvis over the foot that bears, moved by sway and surge.
+
+    It also moves away from where the trunk leans.
+    """
     left, right = (k.ground for k in tracks)
     over = right + (0.5 + 0.47 * c["weight"])[:, None] * (left - right)
     ahead, aside = forward_left(heading)
@@ -67,8 +71,10 @@ def _hips(c, tracks, heading) -> Float[np.ndarray, "T 3"]:
 
 
 def _knee_side(hip, ankle, facing) -> Float[np.ndarray, "T 3"]:
-    """Where the knee points: ahead of a hanging leg, up from one that is kicked out, down from one
-    kicked back."""
+    """Where the knee points.
+
+    Ahead of a hanging leg, up from one that is kicked out, down from one kicked back.
+    """
     left = np.stack([np.cos(facing), np.zeros_like(facing), -np.sin(facing)], -1)
     return np.cross(ankle - hip, left)
 

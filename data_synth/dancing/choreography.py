@@ -19,8 +19,10 @@ ROOM = 1.6  # metres from the start, beyond which the dancer comes back
 
 @dataclass(frozen=True)
 class Move:
-    """A move as it was danced: from which beat, over how many, its name, whether left and right
-    were swapped."""
+    """A move as it was danced.
+
+    From which beat, over how many, its name, whether left and right were swapped.
+    """
 
     start: int
     beats: int
@@ -31,8 +33,10 @@ class Move:
 
 
 def slots(song: Song, rng: np.random.Generator) -> list[tuple[int, int]]:
-    """(first beat, beats): phrases and breaks cut into whole bars, 4 to 8 beats where the metre
-    allows it."""
+    """(first beat, beats).
+
+    Phrases and breaks cut into whole bars, 4 to 8 beats where the metre allows it.
+    """
     edges = np.flatnonzero(np.diff(song.phrase) | np.diff(song.energy < CALM)) + 1
     cuts = []
     for first, last in zip([0, *edges], [*edges, len(song.beats)], strict=True):
@@ -71,8 +75,9 @@ def rate_of(song: Song, calm: bool, rng: np.random.Generator) -> float:
 def choreograph(
     song: Song, rng: np.random.Generator, only: str | None = None
 ) -> tuple[Script, list[Move]]:
-    """The script of a dance to this song, and the moves it is made of; `only` names the one move to
-    dance.
+    """The script of a dance to this song, and the moves it is made of.
+
+    `only` names the one move to dance.
 
     Raises ValueError when the genre has no move of that name.
     """
@@ -87,15 +92,24 @@ def choreograph(
     for name, value in rest.items():
         script.keys[name].append((-2.0, value))
     script.keys["heading"].append((-2.0, 0.0))
-    stride, taste = float(rng.normal(1.0, 0.09)), rng.dirichlet(np.full(len(manner.moves), 2.5))
+    stride = float(rng.normal(1.0, 0.09))
+    taste = rng.dirichlet(np.full(len(manner.moves), 2.5))
     for start, length in slots(song, rng):
         move = _draw(song, manner, start, length, moves, taste, rng)
         moves.append(move)
         count = max(1, round(length / move.rate))
         sheet = Sheet(
-            script, start, count, length / count, move.mirrored, move.size, stride * min(move.size, 1.08) ** 0.5, rest,
-            song.metre, rng,
-        )  # fmt: skip
+            script,
+            start,
+            count,
+            length / count,
+            move.mirrored,
+            move.size,
+            stride * min(move.size, 1.08) ** 0.5,
+            rest,
+            song.metre,
+            rng,
+        )
         _gather(sheet, script)
         sheet.drift = _drift(script, count, rng)
         next(f for f in (*manner.moves, *manner.calm) if f.__name__ == move.name)(sheet)
@@ -105,8 +119,10 @@ def choreograph(
 
 
 def _draw(song, manner: Manner, start, length, moves, taste, rng) -> Move:
-    """The next move: the last one mirrored, or a new one; small in breaks, large where energy is
-    high."""
+    """The next move: the last one mirrored, or a new one.
+
+    Small in breaks, large where energy is high.
+    """
     energy = float(song.energy[start : start + length].mean())
     calm = energy < CALM
     tempo = np.clip((60.0 / song.tempo / 0.5) ** 0.55, 0.78, 1.25)
@@ -128,8 +144,10 @@ def _draw(song, manner: Manner, start, length, moves, taste, rng) -> Move:
 
 
 def _drift(script: Script, count: int, rng: np.random.Generator) -> tuple[float, float]:
-    """A way to go during a move (metres a count, left and ahead): anywhere, but back when far from
-    the start."""
+    """A way to go during a move (metres a count, left and ahead).
+
+    Anywhere, but back when far from the start.
+    """
     x, z, heading = script.home
     pull = min(np.hypot(x, z) / ROOM, 1.0)
     dx, dz = rng.normal(0.0, 0.05, 2) * (1 - pull) - 0.6 * pull * np.array([x, z]) / max(count, 4)

@@ -16,8 +16,10 @@ AROUND = 8
 
 
 def least_jerk(u: Float[np.ndarray, "*T"]) -> Float[np.ndarray, "*T"]:
-    """From 0 to 1 as u does, with no speed and no acceleration at either end: 10 u^3 - 15 u^4 + 6
-    u^5."""
+    """From 0 to 1 as u does, with no speed and no acceleration at either end.
+
+    10 u^3 - 15 u^4 + 6 u^5.
+    """
     u = np.clip(u, 0.0, 1.0)
     return u * u * u * (10 + u * (6 * u - 15))
 
@@ -25,8 +27,9 @@ def least_jerk(u: Float[np.ndarray, "*T"]) -> Float[np.ndarray, "*T"]:
 def felt_beats(
     beats: Float[np.ndarray, "K"], rng: np.random.Generator, jitter: float, off: float
 ) -> tuple[Float[np.ndarray, "N"], Float[np.ndarray, "N"]]:
-    """When the dancer feels each half beat: seconds, and the beat's number (-AROUND ... K - 1 +
-    AROUND).
+    """When the dancer feels each half beat.
+
+    Seconds, and the beat's number (-AROUND ... K - 1 + AROUND).
 
     Each is missed by N(0, jitter) seconds, halves by 1.3 times that, and all by `off`.
     """
@@ -60,8 +63,10 @@ def curve(
 def within_reach(
     keys: list[tuple[float, float]], seconds: Float[np.ndarray, "K2"], fastest: float
 ) -> list[tuple[float, float]]:
-    """The keys, none farther from the one before than `fastest` a second allows: without the time,
-    a hit is smaller."""
+    """The keys, none farther from the one before than `fastest` a second allows.
+
+    Without the time, a hit is smaller.
+    """
     kept = [keys[0]]
     for i in range(1, len(keys)):
         most = fastest * (seconds[i] - seconds[i - 1])

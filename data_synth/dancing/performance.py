@@ -1,7 +1,8 @@
-"""Dances to a song: phrases of moves from the genre's own vocabulary, arriving on the beat, on feet
-that stay planted.
+"""Dances to a song.
 
-    python -m data_synth dances --out FOLDER     # BVH for Blender, npz (no pickle) for everything else
+Phrases of moves from the genre's own vocabulary, arriving on the beat, on feet that stay planted.
+
+    python -m data_synth dances --out FOLDER   # BVH for Blender, npz (no pickle) for all else
 
 What a dance depends on is the song's score and a seed: two seeds give two dances to one song.
 """
@@ -36,8 +37,9 @@ START = ((STANCE, TOE_AHEAD, 0.12), (-STANCE, TOE_AHEAD, -0.12))  # toe x, toe z
 
 @dataclass(frozen=True, eq=False)
 class Dance:
-    """World positions (metres), which foot is planted (left, right: truth), and the moves as
-    danced.
+    """World positions (metres), true contacts and the moves of a dance.
+
+    Contacts say which foot is planted: left, right.
 
     `moves` has (first beat, name, mirrored) of every move.
     """
@@ -54,8 +56,9 @@ class Dance:
 
 
 def dance(song: Song, seed: int, only: str | None = None) -> Dance:
-    """A dance to the song's score, 20 frames/s, from (0, 0) facing z; `only` names one move to fill
-    it with.
+    """A dance to the song's score, 20 frames/s, from (0, 0) facing z.
+
+    `only` names one move to fill it with.
 
     Raises ValueError when the song has fewer than two beats, its genre has no such moves, or the
     seed is negative.
@@ -64,7 +67,8 @@ def dance(song: Song, seed: int, only: str | None = None) -> Dance:
         raise ValueError(f"no moves for the genre {song.genre!r}; there are {', '.join(MANNERS)}")
     if len(song.beats) < 2:
         raise ValueError(
-            f"a dance needs two beats or more, this song of {song.seconds:.1f} s has {len(song.beats)}"
+            "a dance needs two beats or more, "
+            f"this song of {song.seconds:.1f} s has {len(song.beats)}"
         )
     if seed < 0:
         raise ValueError(f"a seed is a whole number from 0 on, got {seed}")
@@ -77,8 +81,9 @@ def dance(song: Song, seed: int, only: str | None = None) -> Dance:
 def dances(
     n: int, seed: int, seconds: float = 30.0, *, each: int = 1, genre: str | None = None
 ) -> Iterator[tuple[Song, Dance]]:
-    """n songs as `music.songs` has them, with `each` dances to every one: what dancers are trained
-    on.
+    """n songs as `music.songs` has them, with `each` dances to every one.
+
+    What dancers are trained on.
 
     The dances to one song follow one another. Different seeds share no song, and no dancer's seed.
     Raises ValueError as `songs` and `dance` do, for no dance to a song, and for more dances than a
@@ -102,7 +107,8 @@ def perform(
 ) -> tuple[Float[np.ndarray, "T 21 3"], Bool[np.ndarray, "T 2"]]:
     """A person dances the script: with their own timing, posture, spring and drift."""
     rng = np.random.default_rng([seed, song.seed, 32])
-    manner, t = MANNERS[song.genre], np.arange(int(song.seconds * FPS)) / FPS
+    manner = MANNERS[song.genre]
+    t = np.arange(int(song.seconds * FPS)) / FPS
     seconds, number = felt_beats(
         song.beats, rng, jitter=rng.uniform(0.012, 0.020), off=rng.normal(-manner.lead, 0.006)
     )
@@ -120,12 +126,16 @@ def perform(
 def _channels(
     script: Script, b, early, grid, manner: Manner, seed: int, rng
 ) -> dict[str, Float[np.ndarray, "T"]]:
-    """Every channel at every frame, with the person's posture and slow drift; the arms on a
-    spring."""
+    """Every channel at every frame, with the person's posture and slow drift.
+
+    The arms on a spring.
+    """
     wander = noise.drift(noise.white(seed, len(b))[:, : len(REST)], 0.45, FPS)
     channels = {}
     for i, name in enumerate(REST):
-        late, keys, is_arm = 0.012 * rng.standard_normal(), script.keys[name], name in ARMS
+        late = 0.012 * rng.standard_normal()
+        keys = script.keys[name]
+        is_arm = name in ARMS
         if is_arm:
             keys = within_reach(keys, np.interp([k[0] for k in keys], grid[1], grid[0]), FASTEST)
         flow = 0.5 * manner.flow if name == "drop" else manner.flow
@@ -138,8 +148,10 @@ def _channels(
 
 
 def _person(name: str) -> tuple[float, float]:
-    """How much a channel drifts, and how much its posture differs from person to person (sd;
-    degrees or metres)."""
+    """How much a channel drifts, and how much its posture differs between persons.
+
+    Standard deviations, in degrees or metres.
+    """
     if name == "weight" or name.endswith("heel"):
         return 0.0, 0.0
     if name in ARMS:

@@ -1,5 +1,6 @@
-"""What a dance is written down as: key poses by channel, and footsteps, all counted in beats of the
-song.
+"""What a dance is written down as.
+
+Key poses by channel, and footsteps, all counted in beats of the song.
 
 Angles in degrees, lengths in metres. A move does not write here but on a `Sheet` of its own
 (dance_sheet.py).
@@ -19,15 +20,29 @@ ARM = (
 )  # ahead, aside, inward, bend, bend, shoulder up
 REST = {
     # weight: 1 on the left foot, -1 on the right; drop: down
-    "weight": 0.0, "sway": 0.0, "surge": 0.0, "drop": 0.02,
-    "hip_yaw": 0.0, "hip_roll": 0.0, "hip_tilt": 0.0,  # to the left, left side up, forward
+    "weight": 0.0,
+    "sway": 0.0,
+    "surge": 0.0,
+    "drop": 0.02,
+    "hip_yaw": 0.0,
+    "hip_roll": 0.0,
+    "hip_tilt": 0.0,  # to the left, left side up, forward
     # chest: forward, left side up, to the left, pushed out
-    "lean": 3.0, "side": 0.0, "twist": 0.0, "chest": 0.0,
-    "nod": 0.0, "look": 0.0, "cock": 0.0,  # of the head: down, to the left, left side up
-    **{f"{side}_{name}": v for side in "lr" for name, v in zip(ARM, (6.0, 12.0, 18.0, 28.0, 8.0, 0.0), strict=True)},
+    "lean": 3.0,
+    "side": 0.0,
+    "twist": 0.0,
+    "chest": 0.0,
+    "nod": 0.0,
+    "look": 0.0,
+    "cock": 0.0,  # of the head: down, to the left, left side up
+    **{
+        f"{side}_{name}": v
+        for side in "lr"
+        for name, v in zip(ARM, (6.0, 12.0, 18.0, 28.0, 8.0, 0.0), strict=True)
+    },
     # heel raised; knee turned outward
     **{f"{side}_{name}": 0.0 for side in "lr" for name in ("heel", "knee")},
-}  # fmt: skip
+}
 # channels that change their sign when left and right are swapped
 TURNS_SIGN = ("weight", "sway", "hip_yaw", "hip_roll", "side", "twist", "look", "cock")
 LENGTHS = ("weight", "sway", "surge", "drop")  # channels that are no angles
@@ -36,8 +51,10 @@ STANCE = 0.10  # of an ankle from the middle, standing
 
 @dataclass(frozen=True)
 class Step:
-    """One foot from `lift` to `land` (beats), to a toe place (x, z) and direction; in the air it
-    passes `height`."""
+    """One foot from `lift` to `land` (beats), to a toe place (x, z) and direction.
+
+    In the air it passes `height`.
+    """
 
     lift: float
     land: float

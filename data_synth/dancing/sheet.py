@@ -1,5 +1,6 @@
-"""The page a move is written on: in its own counts, as danced by someone who begins with the left
-foot.
+"""The page a move is written on.
+
+In its own counts, as danced by someone who begins with the left foot.
 
 The sheet mirrors the move, scales it, slows or quickens it, and enters it in the script of the
 whole dance. It sees to the weight: before a foot lifts, the other one bears. Angles in degrees,
@@ -25,11 +26,29 @@ class Sheet:
     its own choices.
     """
 
-    def __init__(self, script: Script, start: float, n: int, rate: float, mirrored: bool, size: float, stride: float,
-                 rest: dict[str, float], metre: int, rng: np.random.Generator):  # fmt: skip
-        self.script, self.start, self.n, self.rate = script, start, n, rate
-        self.sign, self.size, self.stride = (-1 if mirrored else 1), size, stride
-        self.rest, self.metre, self.rng = rest, metre, rng
+    def __init__(
+        self,
+        script: Script,
+        start: float,
+        n: int,
+        rate: float,
+        mirrored: bool,
+        size: float,
+        stride: float,
+        rest: dict[str, float],
+        metre: int,
+        rng: np.random.Generator,
+    ):
+        self.script = script
+        self.start = start
+        self.n = n
+        self.rate = rate
+        self.sign = -1 if mirrored else 1
+        self.size = size
+        self.stride = stride
+        self.rest = rest
+        self.metre = metre
+        self.rng = rng
         self.keys: dict[str, list[tuple[float, float]]] = {}
         self.drift = (
             0.0,
@@ -49,23 +68,37 @@ class Sheet:
             self.keys.setdefault(name, []).append((self.start + count * self.rate, entry))
 
     def arms(self, count: float, left, right=None) -> None:
-        """Both arms at a count: (swing, out, twist, elbow[, wrist, shrug]) each; the right as the
-        left if not given."""
+        """Both arms at a count: (swing, out, twist, elbow[, wrist, shrug]) each.
+
+        The right as the left if not given.
+        """
         for side, pose in (("l", left), ("r", left if right is None else right)):
             pose = (*pose, *(8.0, 0.0)[len(pose) - 4 :])
             for name, value in zip(ARM, pose, strict=True):
                 self.key(f"{side}_{name}", (count, value))
 
     def place(self, x: float, z: float, yaw: float) -> tuple[float, float, float]:
-        """From the move's own floor (left, ahead, degrees to the left) to the world's: x, z,
-        yaw."""
+        """From the move's own floor (left, ahead, degrees to the left) to the world's.
+
+        x, z, yaw.
+        """
         hx, hz, heading = self.script.home
         x = self.sign * x
         s, c = sin(heading), cos(heading)
         return hx + x * c + z * s, hz - x * s + z * c, heading + self.sign * radians(yaw)
 
-    def step(self, foot: int, count: float, x: float, z: float, turn: float | None = None, height: float = 0.06,
-             weight: bool = True, swing: float = 0.74, kick: float = 0.0) -> None:  # fmt: skip
+    def step(
+        self,
+        foot: int,
+        count: float,
+        x: float,
+        z: float,
+        turn: float | None = None,
+        height: float = 0.06,
+        weight: bool = True,
+        swing: float = 0.74,
+        kick: float = 0.0,
+    ) -> None:
         """Put a foot (0 left, 1 right) down at a count, its ankle at (x left, z ahead) of home.
 
         The weight goes to the other foot before it lifts, and over to it after it has landed unless
@@ -79,8 +112,15 @@ class Sheet:
         if weight:  # the rest of it follows before the other foot lifts
             self.key("weight", (count + 0.06 / self.rate, ARRIVED * side))
 
-    def jump(self, count: float, left: tuple[float, float], right: tuple[float, float], height: float = 0.09,
-             turns: tuple[float, float] = (9.0, -9.0), swing: float = 0.6) -> None:  # fmt: skip
+    def jump(
+        self,
+        count: float,
+        left: tuple[float, float],
+        right: tuple[float, float],
+        height: float = 0.09,
+        turns: tuple[float, float] = (9.0, -9.0),
+        swing: float = 0.6,
+    ) -> None:
         """Both feet leave the floor together and come down at a count, at (x, z) each."""
         count -= 0.07  # the knees give after it
         lifts = [
@@ -119,19 +159,24 @@ class Sheet:
         """Where a foot of the dancer's has its ankle, on the move's own floor."""
         x, z, yaw = self.script.toes[real]
         hx, hz, heading = self.script.home
-        dx, dz = x - TOE_AHEAD * sin(yaw) - hx, z - TOE_AHEAD * cos(yaw) - hz
+        dx = x - TOE_AHEAD * sin(yaw) - hx
+        dz = z - TOE_AHEAD * cos(yaw) - hz
         s, c = sin(heading), cos(heading)
         return self.sign * (dx * c - dz * s), dx * s + dz * c
 
     def _put(
         self, foot, count, x, z, turn, height, swing, kick, scaled: bool = True
     ) -> float | None:
-        """Write down one step; the beat at which it lifts, or None where there is no time for
-        it."""
+        """Write down one step.
+
+        The beat at which it lifts, or None where there is no time for it.
+        """
         side, real = (1 if foot == 0 else -1), self.foot(foot)
         if scaled:
-            x, z = side * STANCE + self.stride * (x - side * STANCE), self.stride * z
-            x, z = x + self.sign * self.drift[0] * count, z + self.drift[1] * count
+            x = side * STANCE + self.stride * (x - side * STANCE)
+            z = self.stride * z
+            x = x + self.sign * self.drift[0] * count
+            z = z + self.drift[1] * count
         px, pz, yaw = self.place(x, z, side * 7.0 if turn is None else turn)
         land = self.start + (count - 0.04) * self.rate
         lift = max(land - max(swing * self.rate, 0.3), self.script.landed[real] + 0.25)
@@ -162,8 +207,9 @@ class Sheet:
         toe: float = 25.0,
         half: float = 0.48,
     ) -> None:
-        """Swing a foot out to (x left, z ahead) of where it stands, up to `height` at a count, and
-        set it down again.
+        """Swing a foot out, up to `height` at a count, and set it down again.
+
+        It goes to (x left, z ahead) of where it stands.
 
         `toe` is how far it points down (degrees; negative: the heel first); `half` the counts from
         the floor to there.
@@ -183,13 +229,13 @@ class Sheet:
         self.key("weight", ((lift - self.start) / self.rate, -0.93 * (1 if foot == 0 else -1)))
 
     def _round_the_other(self, foot: int, toe) -> tuple[float, float]:
-        """How far the path must bulge so that the swinging foot passes the other at 0.15 m or
-        more."""
-        (ax, az, _), (bx, bz, _), (ox, oz, _) = (
-            self.script.toes[foot],
-            toe,
-            self.script.toes[1 - foot],
-        )
+        """How far the path must bulge to pass the other foot.
+
+        The swinging foot passes it at 0.15 m or more.
+        """
+        ax, az, _ = self.script.toes[foot]
+        bx, bz, _ = toe
+        ox, oz, _ = self.script.toes[1 - foot]
         length = hypot(bx - ax, bz - az)
         u = min(
             max(((ox - ax) * (bx - ax) + (oz - az) * (bz - az)) / max(length, 1e-6) ** 2, 0.0), 1.0
@@ -223,10 +269,13 @@ class Sheet:
     def go(
         self, count: float, x: float = 0.0, z: float = 0.0, turn: float = 0.0, during: float = 1.0
     ) -> None:
-        """Home moves (left, ahead) and turns (degrees to the left) by a count: what follows is seen
-        from there."""
+        """Home moves (left, ahead) and turns (degrees to the left) by a count.
+
+        What follows is seen from there.
+        """
         hx, hz, heading = self.script.home
-        end, began = self.start + count * self.rate, self.start + (count - during) * self.rate
+        end = self.start + count * self.rate
+        began = self.start + (count - during) * self.rate
         px, pz, after = self.place(self.stride * x, self.stride * z, turn)
         if turn:
             keys = self.keys.setdefault("heading", [])

@@ -1,5 +1,6 @@
-"""What is measured of a dance, the same way for ours and for real ones: 20 frames/s, world
-positions in metres.
+"""What is measured of a dance, the same way for ours and for real ones.
+
+20 frames/s, world positions in metres.
 
 The range of real dances was measured with this ruler, and holds for it alone. Three functions here
 have relatives in motiondiff_edu.metrics that measure a little otherwise: `joint_speed`,
@@ -20,8 +21,9 @@ FINE = 3  # the speed is resampled this many times finer before its minima are t
 
 
 def joint_speed(world: Float[np.ndarray, "T 21 3"], fps: float) -> Float[np.ndarray, "T2"]:
-    """Mean over joints of |p(t + 1) - p(t - 1)| fps / 2 (m/s), of the frames that have two
-    neighbours.
+    """Mean joint speed, in m/s.
+
+    Mean over joints of |p(t + 1) - p(t - 1)| fps / 2, of the frames that have two neighbours.
 
     `metrics.beats.mean_speed` is of a single step: quick movements count more there.
     """
@@ -31,8 +33,9 @@ def joint_speed(world: Float[np.ndarray, "T 21 3"], fps: float) -> Float[np.ndar
 def kinematic_beats(
     world: Float[np.ndarray, "T 21 3"], fps: float = 20.0
 ) -> Float[np.ndarray, "N"]:
-    """Times (s) of the local minima of the mean joint speed, Gaussian of SMOOTHING, timed on a
-    cubic spline.
+    """Times (s) of the local minima of the mean joint speed.
+
+    Smoothed by a Gaussian of SMOOTHING, timed on a cubic spline.
 
     `metrics.beats.kinematic_beats` brings the motion itself to 60 frames/s first, and so sees stops
     that the two-frame speed here passes over: 2 % more on our dances.
@@ -68,8 +71,10 @@ def root_frame(world: Float[np.ndarray, "T 21 3"], fps: float) -> Float[np.ndarr
 
 
 def repeats(world: Float[np.ndarray, "T 21 3"], fps: float = 20.0, least: float = 0.5) -> float:
-    """The highest autocorrelation of the root-frame pose, lags from `least` seconds to half the
-    dance: 1 is a loop."""
+    """The highest autocorrelation of the root-frame pose; 1 is a loop.
+
+    Lags go from `least` seconds to half the dance.
+    """
     x = root_frame(world, fps)
     x = x - x.mean(0)
     lags = range(round(least * fps), len(x) // 2)
@@ -78,11 +83,9 @@ def repeats(world: Float[np.ndarray, "T 21 3"], fps: float = 20.0, least: float 
 
 def statistics(world: Float[np.ndarray, "T 21 3"], fps: float = 20.0) -> dict[str, float]:
     """The figures that the acceptance table asks for; metres, seconds, shares."""
-    speed, planted, local = (
-        joint_speed(world, fps),
-        looks_planted(world, fps),
-        root_frame(world, fps),
-    )
+    speed = joint_speed(world, fps)
+    planted = looks_planted(world, fps)
+    local = root_frame(world, fps)
     share = np.cumsum(np.linalg.svd(local - local.mean(0), compute_uv=False) ** 2)
     velocity = np.diff(local, axis=0) * fps
     f, power = welch(velocity, fps, "hann", min(len(velocity), round(4 * fps)), axis=0)

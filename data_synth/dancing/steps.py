@@ -1,5 +1,7 @@
-"""Where the feet of a dance are at every frame: toes that stay while planted, and swing, lift and
-roll in between."""
+"""Where the feet of a dance are at every frame.
+
+Toes that stay while planted, and swing, lift and roll in between.
+"""
 
 from dataclasses import dataclass
 
@@ -15,8 +17,11 @@ from .script import Step
 
 @dataclass(frozen=True)
 class Track:
-    """One foot: toe joint, direction and pitch (radians, heel up), whether it is planted, where it
-    carries weight."""
+    """One foot over time.
+
+    Toe joint, direction and pitch (radians, heel up), whether it is planted, where it carries
+    weight.
+    """
 
     toe: Float[np.ndarray, "T 3"]
     yaw: Float[np.ndarray, "T"]
@@ -27,7 +32,8 @@ class Track:
     def ankle(self) -> Float[np.ndarray, "T 3"]:
         """The Foot joint: behind the toe, and higher the more the foot is pitched."""
         sin, cos = np.sin(self.pitch), np.cos(self.pitch)
-        back, up = TOE_AHEAD * cos - ANKLE * sin, ANKLE * cos + TOE_AHEAD * sin
+        back = TOE_AHEAD * cos - ANKLE * sin
+        up = ANKLE * cos + TOE_AHEAD * sin
         return self.toe + np.stack([-back * np.sin(self.yaw), up, -back * np.cos(self.yaw)], -1)
 
 
@@ -38,17 +44,16 @@ def track(
     t: Float[np.ndarray, "T"],
     heel: Float[np.ndarray, "T"],
 ) -> Track:
-    """A foot that stands at `start` (toe x, toe z, yaw) and takes `steps`, from times[:, 0] to
-    times[:, 1] (seconds).
+    """A foot that stands at `start` (toe x, toe z, yaw) and takes `steps`.
+
+    They last from times[:, 0] to times[:, 1] (seconds).
 
     `heel` (degrees) is how far a move raises it while it stands.
     """
-    x, y, z, yaw = (
-        np.full(len(t), start[0]),
-        np.zeros(len(t)),
-        np.full(len(t), start[1]),
-        np.full(len(t), start[2]),
-    )
+    x = np.full(len(t), start[0])
+    y = np.zeros(len(t))
+    z = np.full(len(t), start[1])
+    yaw = np.full(len(t), start[2])
     planted, detour = np.ones(len(t), bool), np.zeros((len(t), 2))
     pitch: list[tuple[float, float]] = [(t[0] - 1.0, 0.0)]
     for step, (lift, land) in zip(steps, times, strict=True):
@@ -72,15 +77,15 @@ def track(
 
 
 def _pitch(step: Step, far: float, lift: float, land: float) -> list[tuple[float, float]]:
-    """Degrees, heel up, at moments around one step: the heel leaves first, and the ball of the foot
-    lands first."""
+    """Degrees, heel up, at moments around one step.
+
+    The heel leaves first, and the ball of the foot lands first.
+    """
     if step.pivot:
         return [(lift, 0.0), ((lift + land) / 2, 7.0), (land, 0.0)]
     took = land - lift
-    off, middle = (
-        min(10 + 50 * far + 60 * step.height, 38),
-        step.kick if step.kick else 10 + 40 * step.height,
-    )
+    off = min(10 + 50 * far + 60 * step.height, 38)
+    middle = step.kick if step.kick else 10 + 40 * step.height
     return [
         (lift - 0.12, 0.0),
         (lift + 0.12 * took, off),
@@ -91,8 +96,10 @@ def _pitch(step: Step, far: float, lift: float, land: float) -> list[tuple[float
 
 
 def _rolled(keys: list[tuple[float, float]], t: Float[np.ndarray, "T"]) -> Float[np.ndarray, "T"]:
-    """A smooth curve through the keys, of which those that come before their forerunners are left
-    out."""
+    """A smooth curve through the keys.
+
+    Keys that come before their forerunners are left out.
+    """
     kept = keys[:1]
     for key in keys[1:]:
         while key[0] - kept[-1][0] < 0.02 and len(kept) > 1 and kept[-1][1] == 0.0:

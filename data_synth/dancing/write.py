@@ -13,8 +13,10 @@ from .performance import Dance, dances
 
 
 def save_npz(danced: Dance, song: Song, path: Path) -> None:
-    """Positions, contacts, moves and the song's beats as plain arrays, no pickle; written aside,
-    then renamed."""
+    """Positions, contacts, moves and the song's beats as plain arrays.
+
+    Written aside, then renamed.
+    """
     starts, names, mirrored = zip(*danced.moves, strict=True)
     with replacing(path) as aside, open(aside, "wb") as f:
         np.savez_compressed(
@@ -38,7 +40,7 @@ def save_npz(danced: Dance, song: Song, path: Path) -> None:
 
 
 def main(arguments: list[str] | None = None) -> None:
-    """python -m data_synth dances --out FOLDER"""
+    """Write synthetic dances: `python -m data_synth dances --out FOLDER`."""
     parser = argparse.ArgumentParser(
         prog="python -m data_synth dances", description="Write synthetic dances."
     )
@@ -66,7 +68,8 @@ def main(arguments: list[str] | None = None) -> None:
         write_bvh(given.out / f"dance_{k:03d}.bvh", danced.positions, danced.fps)
     genres = list(GENRES) if given.genre is None else [given.genre]
     print(
-        f"{given.dances} dances of {given.seconds:g} s ({', '.join(genres[: given.dances])}) in {given.out}"
+        f"{given.dances} dances of {given.seconds:g} s "
+        f"({', '.join(genres[: given.dances])}) in {given.out}"
     )
 
 

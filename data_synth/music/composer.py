@@ -60,8 +60,9 @@ def compose(
     metre: int | None = None,
     timbre: str | None = None,
 ) -> Song:
-    """One song; what is not given is drawn: a genre, its tempo (BPM) and metre, one of
-    TRAINING_TIMBRES.
+    """One song; what is not given is drawn.
+
+    A genre, its tempo (BPM) and metre, one of TRAINING_TIMBRES.
 
     The same arguments give the same bytes. With another `timbre` it is the same music on other
     instruments.
@@ -81,7 +82,8 @@ def compose(
 
     heard = np.flatnonzero((form.times >= 0) & (form.times < seconds))
     bars = [form.bars[b // metre] for b in heard]
-    beats, phrase = form.times[heard], np.array([bar.phrase for bar in bars])
+    beats = form.times[heard]
+    phrase = np.array([bar.phrase for bar in bars])
     mean = 60.0 * (len(beats) - 1) / (beats[-1] - beats[0]) if len(beats) > 1 else tempo
     return Song(
         audio=audio,
@@ -100,8 +102,10 @@ def compose(
 
 
 def _chosen(genre, tempo, metre, timbre, rng: np.random.Generator) -> tuple[str, float, int, str]:
-    """What is not given is drawn; all of it is drawn in any case, so that nothing given changes
-    what comes after."""
+    """What is not given is drawn.
+
+    All of it is drawn in any case, so that nothing given changes what comes after.
+    """
     drawn = str(rng.choice(list(GENRES))), rng.random(), str(rng.choice(TRAINING_TIMBRES))
     genre, timbre = genre or drawn[0], timbre or drawn[2]
     slowest, fastest, usual = GENRES[genre]

@@ -1,5 +1,6 @@
-"""The form of a song before any note is written: beats in time, bars, phrases and sections, breaks
-and fills.
+"""The form of a song before any note is written.
+
+Beats in time, bars, phrases and sections, breaks and fills.
 
 A phrase is two bars; in 3 it may be four. A section (intro, verse, chorus, bridge) is one to four
 phrases. What leads to a chorus may end in a break: a bar or two without drums, in which the beats
@@ -34,8 +35,10 @@ DRIFT = 0.02  # the beat's length stays within this share of the mean
 
 @dataclass(frozen=True)
 class Bar:
-    """One bar: which section and phrase it is of, how loud the section, and what happens at its
-    end."""
+    """One bar of a song's form.
+
+    Which section and phrase it is of, how loud the section, and what happens at its end.
+    """
 
     number: int
     section: str
@@ -49,8 +52,10 @@ class Bar:
 
 @dataclass(frozen=True, eq=False)
 class Form:
-    """Bars, and the time of every beat from the first of bars[0] on: negative before the recording
-    begins."""
+    """Bars, and the time of every beat from the first of bars[0] on.
+
+    Negative before the recording begins.
+    """
 
     bars: list[Bar]
     times: Float[np.ndarray, "B"]
@@ -76,8 +81,9 @@ class Form:
 
 
 def roles(groups: tuple[int, ...]) -> list[str]:
-    """What each beat of a bar is: "one", "strong" (another group's first), "back" (a group's last),
-    "weak" or "last".
+    """What each beat of a bar is.
+
+    "one", "strong" (another group's first), "back" (a group's last), "weak" or "last".
 
     roles((2, 2)) = one back strong last; roles((3, 2)) = one weak back strong last.
     """
@@ -113,7 +119,9 @@ def _bars(
     rng: np.random.Generator, metre: int, phrase_bars: int, silent_bars: int, enough: int
 ) -> list[Bar]:
     """Whole sections until there are `enough` bars."""
-    bars, phrase, loud = [], -1, rng.uniform(-0.08, 0.08)
+    bars = []
+    phrase = -1
+    loud = rng.uniform(-0.08, 0.08)
     for name, length, rest in _sections(rng, phrase_bars, silent_bars):
         for place in range(length):
             in_phrase, last = place % phrase_bars, place == length - 1
@@ -132,8 +140,10 @@ def _bars(
 
 
 def _periods(rng: np.random.Generator, n: int) -> Float[np.ndarray, "n"]:
-    """Lengths of n beats over their mean: a slow random walk within DRIFT, or all 1 in a steady
-    song."""
+    """Lengths of n beats over their mean.
+
+    A slow random walk within DRIFT, or all 1 in a steady song.
+    """
     steady, spread = rng.random() < 0.35, rng.uniform(0.3, 1.0)
     steps, walk = rng.standard_normal(n), np.zeros(n)
     for k in range(1, n):
@@ -145,11 +155,15 @@ def _periods(rng: np.random.Generator, n: int) -> Float[np.ndarray, "n"]:
 def draw_form(
     rng: np.random.Generator, seconds: float, tempo: float, metre: int, swing: tuple[float, float]
 ) -> Form:
-    """Draw the form of a song that begins anywhere, one in four at its beginning; `swing` is where
-    and its unit."""
+    """Draw the form of a song that begins anywhere, one in four at its beginning.
+
+    `swing` is where and its unit.
+    """
     groups = GROUPS[metre][int(rng.integers(len(GROUPS[metre])))]
     phrase_bars = int(rng.choice([2, 4])) if metre == 3 else 2
-    beginning, skip, phase = rng.random() < 0.25, int(rng.integers(0, 4 * metre)), rng.random()
+    beginning = rng.random() < 0.25
+    skip = int(rng.integers(0, 4 * metre))
+    phase = rng.random()
     own, drift = rng.spawn(2)
     lead = int(np.ceil(LEAD * tempo / 60 / metre / phrase_bars)) * phrase_bars
     beats = round(seconds * tempo / 60)
@@ -164,8 +178,10 @@ def draw_form(
 
 
 def energies(form: Form, rng: np.random.Generator) -> Float[np.ndarray, "B"]:
-    """Energy of every beat: its section's, rising towards a section's end, at most 0.1 in a
-    break."""
+    """Energy of every beat.
+
+    Its section's, rising towards a section's end, at most 0.1 in a break.
+    """
     quiet = rng.uniform(0, 0.1)
     level = np.repeat([bar.level for bar in form.bars], form.metre)
     wander = 0.03 * np.convolve(rng.standard_normal(len(level)), np.ones(5) / 5, "same")

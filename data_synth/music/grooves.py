@@ -1,5 +1,6 @@
-"""What the drums play: patterns per genre as four sixteenths a beat, and how a song part makes its
-bars of them.
+"""What the drums play.
+
+Patterns per genre as four sixteenths a beat, and how a song part makes its bars of them.
 
 A pattern has five cells, for the beats "one back strong last weak" of form.roles, so that it serves
 every metre: a bar of 4 is one back strong last, of 3 one weak last, of 5 one weak back strong last.
@@ -20,19 +21,24 @@ GROOVES = {
         "kick": ("X... X... X... X... X...", "X... X... X... X... X...", "X... X... X... X..o X...",
                  "X... X... X..o X... X...", "X... X... X... X.o. X...",
                  "X..x ..X. .x.. X... ..x.", "X... ..x. ..X. ...x ...x"),
-        "clap": (".... X... .... X... ....", ".... X... .... X... ....", ".... .... .... X... ...."),
-        "snare": ("...g .... ..g. .... ....", "...o ..o. ...o ..o. ..o.", ".... .... .... ..g. ...."),
+        "clap": (".... X... .... X... ....", ".... X... .... X... ....",
+                 ".... .... .... X... ...."),
+        "snare": ("...g .... ..g. .... ....", "...o ..o. ...o ..o. ..o.",
+                  ".... .... .... ..g. ...."),
         "hat": ("..X. ..X. ..X. ..X. ..X.", "o.x. o.x. o.x. o.x. o.x.", "x.x. x.x. x.x. x.x. x.x.",
                 "xogo xogo xogo xogo xogo", "xgog xgog xgog xgog xgog", "x... x... x... x... x..."),
-        "open hat": ("..o. ..o. ..o. ..o. ..o.", ".... .... .... ..x. ....", ".... ..x. .... ..x. ...."),
-        "shaker": ("xgog xgog xgog xgog xgog", "xgxg xgxg xgxg xgxg xgxg", "g.o. g.o. g.o. g.o. g.o."),
+        "open hat": ("..o. ..o. ..o. ..o. ..o.", ".... .... .... ..x. ....",
+                     ".... ..x. .... ..x. ...."),
+        "shaker": ("xgog xgog xgog xgog xgog", "xgxg xgxg xgxg xgxg xgxg",
+                   "g.o. g.o. g.o. g.o. g.o."),
         "rim": ("x..x ..x. ..x. x... .x..", "x.o. .x.. x..x ..x. ...x"),
         "tom": (".... ...o .... .o.o ....", "..o. .... ..oo .... ...."),
     },
     "hiphop": {
         "kick": ("X... .... ..X. .... ....", "X..x .... ..x. ...o ....", "X... ..x. .xX. .... ...x",
                  "X.x. .... ..X. ..o. ....", "..X. ...x ..X. .... ..x."),
-        "snare": (".... X... .... X... ....", ".... X..g .g.. X... ....", ".... X... ..g. X..g .g..",
+        "snare": (".... X... .... X... ....", ".... X..g .g.. X... ....",
+                  ".... X... ..g. X..g .g..",
                   ".... .... .... X... ...."),
         "clap": (".... x... .... x... ....", ".... .... .... x... ...."),
         "hat": ("x.o. x.o. x.o. x.o. x.o.", "x.x. x.xo x.x. xoxo x.x.", "xogo xogo xogo xogo xogo",
@@ -44,8 +50,10 @@ GROOVES = {
     },
     "pop": {
         "kick": ("X... .... X... .... ....", "X... ..x. X... .... ....", "X.x. .... ..X. .... ..x.",
-                 "X... ...x X... ..o. ....", "X... x... X... x... x...", "..X. .... ..x. ..o. ...."),
-        "snare": (".... X... .... X... ....", ".... X... .... X..g ....", ".... X..g .g.. X... .g..",
+                 "X... ...x X... ..o. ....", "X... x... X... x... x...",
+                 "..X. .... ..x. ..o. ...."),
+        "snare": (".... X... .... X... ....", ".... X... .... X..g ....",
+                  ".... X..g .g.. X... .g..",
                   ".... .... X... .... ....", ".... X... .... X.x. ...."),
         "clap": (".... x... .... x... ....", ".... .... .... x... ...."),
         "hat": ("x.o. x.o. x.o. x.o. x.o.", "X.x. X.x. X.x. X.x. X.x.", "xgog xgog xgog xgog xgog",
@@ -57,20 +65,25 @@ GROOVES = {
     },
     "latin": {
         "kick": ("X..x ..o. X..x ..o. ...x", "X... X... X... X... X...", "X... x... X... x... x...",
-                 "o... X... o... X... o...", "...x ..x. ...x ..X. ..x.", "X... ...x X... ...x ...."),
-        "snare": ("...x ..x. ...x ..x. ..x.", "..g. x... ..g. x.g. ..g.", ".... x... .... x... ....",
+                 "o... X... o... X... o...", "...x ..x. ...x ..X. ..x.",
+                 "X... ...x X... ...x ...."),
+        "snare": ("...x ..x. ...x ..x. ..x.", "..g. x... ..g. x.g. ..g.",
+                  ".... x... .... x... ....",
                   ".... .... .... ..x. ...."),
-        "clap": ("X... x... X... x... x...", "X.o. x.ox X.o. x.o. xo..", "X... x... X.o. x.o. x..."),
+        "clap": ("X... x... X... x... x...", "X.o. x.ox X.o. x.o. xo..",
+                 "X... x... X.o. x.o. x..."),
         "rim": ("X..x ..x. ..x. x... .x..", "..x. x... x..x ..x. ...x", "X... x..x ..x. x... .x.."),
         "hat": ("x.o. x.o. x.o. x.o. x.o.", "xgog xgog xgog xgog xgog"),
         "open hat": (".... .... .... ..o. ....",),
-        "shaker": ("xgog xgog xgog xgog xgog", "Xgog Xgog Xgog Xgog Xgog", "xgxg xgxg xgxg xgxg xgxg"),
+        "shaker": ("xgog xgog xgog xgog xgog", "Xgog Xgog Xgog Xgog Xgog",
+                   "xgxg xgxg xgxg xgxg xgxg"),
         "tom": ("g.g. X.xx g.g. X.xx g.g.", "..x. ..xx .x.. ..xx ..x.", "...o x... .o.. xx.. ...."),
     },
     "waltz": {
         "kick": ("X... .... X... .... ....", "X... .... X... ..o. ....", "X... .... x... .... ..x.",
                  ".... .... X... .... ....", "X... ..x. X... .... ..x."),
-        "snare": (".... x... .... x... x...", ".... o... .... o.g. o...", ".... x... ..g. x... x.g.",
+        "snare": (".... x... .... x... x...", ".... o... .... o.g. o...",
+                  ".... x... ..g. x... x.g.",
                   ".... .... .... o... ....", "..o. .... ..o. X... ...."),
         "clap": (".... o... .... o... o...", ".... .... .... x... ...."),
         "rim": (".... o... .... o... o...", ".... .... .... o... ....", "x... ..o. x... .... ..o."),
@@ -83,21 +96,31 @@ GROOVES = {
 }  # fmt: skip
 # how probably a part has the drum at all, and how loud a section must be for it
 PLAYS = {
-    "kick": (0.95, 0.35), "snare": (0.9, 0.4), "clap": (0.45, 0.5), "rim": (0.3, 0.3), "hat": (0.9, 0.3),
-    "open hat": (0.4, 0.55), "shaker": (0.35, 0.5), "tom": (0.15, 0.45),
-}  # fmt: skip
+    "kick": (0.95, 0.35),
+    "snare": (0.9, 0.4),
+    "clap": (0.45, 0.5),
+    "rim": (0.3, 0.3),
+    "hat": (0.9, 0.3),
+    "open hat": (0.4, 0.55),
+    "shaker": (0.35, 0.5),
+    "tom": (0.15, 0.45),
+}
 OWN = {  # where a genre departs from that probability
-    "house": {"kick": 1.0, "clap": 1.0, "hat": 1.0, "snare": 0.2, "open hat": 0.3}, "hiphop": {"snare": 1.0},
-    "pop": {"snare": 1.0}, "latin": {"rim": 0.8, "shaker": 0.8, "hat": 0.4, "snare": 0.6, "clap": 0.6, "tom": 0.4},
+    "house": {"kick": 1.0, "clap": 1.0, "hat": 1.0, "snare": 0.2, "open hat": 0.3},
+    "hiphop": {"snare": 1.0},
+    "pop": {"snare": 1.0},
+    "latin": {"rim": 0.8, "shaker": 0.8, "hat": 0.4, "snare": 0.6, "clap": 0.6, "tom": 0.4},
     "waltz": {"hat": 1.0},
-}  # fmt: skip
+}
 FILLS = ("xxxx", "x.xx", "xx.x", "..xx", "x.x.", ".xxx")
 
 
 @dataclass(frozen=True)
 class Hit:
-    """One stroke: which drum, where in beats from the form's first, how hard (0-1), and which of
-    its sounds."""
+    """One stroke of a drum.
+
+    Which drum, where in beats from the form's first, how hard (0-1), and which of its sounds.
+    """
 
     drum: str
     position: float
@@ -124,8 +147,7 @@ def marks(bar: list[str]) -> list[tuple[float, str]]:
 def draw_part(
     genre: str, groups: tuple[int, ...], rng: np.random.Generator
 ) -> dict[str, tuple[list, list]]:
-    """For every drum of a part: the marks of its bar, and of the bar that answers it at a phrase's
-    end."""
+    """The marks of every drum's bar, and of the bar that answers it at a phrase's end."""
     part = {}
     for drum, patterns in GROOVES[genre].items():
         first, answer = rng.choice(len(patterns)), rng.random(2)

@@ -1,5 +1,6 @@
-"""What the pitched instruments play: chords that lead into one another, a bass below, a melody that
-comes back.
+"""What the pitched instruments play.
+
+Chords that lead into one another, a bass below, a melody that comes back.
 
 Patterns have five cells like those of grooves.py. Bass: R root, F fifth, O octave, T third, A one
 step from the next root. Chords: L held until the next, s short, a one note of the chord after
@@ -21,20 +22,39 @@ SCALES = {
 }
 # degrees of the scale, 0 the tonic, one chord a bar
 PROGRESSIONS = {
-    "house": {"major": ((0, 5, 3, 4), (3, 4, 5, 0)), "minor": ((0, 5, 6, 0), (0, 2, 5, 6), (5, 6, 0, 0)),
-              "dorian": ((0, 3), (0, 0, 3, 3), (0, 6, 3, 0))},
-    "hiphop": {"major": ((1, 4, 0, 5), (3, 2, 1, 0)), "minor": ((0, 5), (0, 3, 5, 4), (5, 4, 0, 0)),
-               "dorian": ((0, 3), (0, 1))},
-    "pop": {"major": ((0, 4, 5, 3), (5, 3, 0, 4), (0, 5, 3, 4), (0, 3, 0, 4)), "minor": ((0, 5, 2, 6), (0, 3, 5, 4)),
-            "dorian": ((0, 6, 3, 0),)},
-    "latin": {"major": ((0, 3, 4, 3), (0, 1, 4, 0)), "minor": ((0, 6, 5, 4), (0, 3, 4, 0)), "dorian": ((0, 3, 0, 3),)},
-    "waltz": {"major": ((0, 0, 4, 4), (0, 4, 4, 0), (0, 5, 1, 4), (0, 3, 4, 0)), "minor": ((0, 3, 4, 0), (0, 5, 3, 4)),
-              "dorian": ((0, 1, 0, 6),)},
-}  # fmt: skip
+    "house": {
+        "major": ((0, 5, 3, 4), (3, 4, 5, 0)),
+        "minor": ((0, 5, 6, 0), (0, 2, 5, 6), (5, 6, 0, 0)),
+        "dorian": ((0, 3), (0, 0, 3, 3), (0, 6, 3, 0)),
+    },
+    "hiphop": {
+        "major": ((1, 4, 0, 5), (3, 2, 1, 0)),
+        "minor": ((0, 5), (0, 3, 5, 4), (5, 4, 0, 0)),
+        "dorian": ((0, 3), (0, 1)),
+    },
+    "pop": {
+        "major": ((0, 4, 5, 3), (5, 3, 0, 4), (0, 5, 3, 4), (0, 3, 0, 4)),
+        "minor": ((0, 5, 2, 6), (0, 3, 5, 4)),
+        "dorian": ((0, 6, 3, 0),),
+    },
+    "latin": {
+        "major": ((0, 3, 4, 3), (0, 1, 4, 0)),
+        "minor": ((0, 6, 5, 4), (0, 3, 4, 0)),
+        "dorian": ((0, 3, 0, 3),),
+    },
+    "waltz": {
+        "major": ((0, 0, 4, 4), (0, 4, 4, 0), (0, 5, 1, 4), (0, 3, 4, 0)),
+        "minor": ((0, 3, 4, 0), (0, 5, 3, 4)),
+        "dorian": ((0, 1, 0, 6),),
+    },
+}
 MODES = {  # how probable: major, minor, dorian
-    "house": (0.2, 0.45, 0.35), "hiphop": (0.2, 0.5, 0.3), "pop": (0.6, 0.3, 0.1), "latin": (0.35, 0.5, 0.15),
+    "house": (0.2, 0.45, 0.35),
+    "hiphop": (0.2, 0.5, 0.3),
+    "pop": (0.6, 0.3, 0.1),
+    "latin": (0.35, 0.5, 0.15),
     "waltz": (0.6, 0.3, 0.1),
-}  # fmt: skip
+}
 BASS = {
     "house": ("R.R. R.R. R.R. R.R. R.R.", "..R. ..R. ..R. ..R. ..R.", "R..R ..R. .R.. R.O. ..R.",
               "R... R... R... R.A. R...", "R.O. R.O. R.O. R.O. R.O."),
@@ -60,10 +80,12 @@ CHORDS = {
               ".... s... s... s... s.s.", "s... ..s. s... ..s. ...."),
 }  # fmt: skip
 RHYTHMS = {  # of the melody; what comes often stands more than once
-    "house": ("x..x", "..x.", "x...", ".x.x", "...."), "hiphop": ("x.x.", "..xx", "x...", ".x.x", "....", "...x"),
-    "pop": ("x.x.", "x...", "x..x", "..x.", "...."), "latin": ("x..x", "..x.", ".x.x", "x.x.", "...."),
+    "house": ("x..x", "..x.", "x...", ".x.x", "...."),
+    "hiphop": ("x.x.", "..xx", "x...", ".x.x", "....", "...x"),
+    "pop": ("x.x.", "x...", "x..x", "..x.", "...."),
+    "latin": ("x..x", "..x.", ".x.x", "x.x.", "...."),
     "waltz": ("x...", "x...", "x.x.", "x...", "...."),
-}  # fmt: skip
+}
 
 
 @dataclass(frozen=True)
@@ -79,8 +101,10 @@ class Note:
 
 @dataclass(frozen=True)
 class Chord:
-    """Pitch classes of a bar: the root first, then the chord's, and the scale that holds under
-    it."""
+    """Pitch classes of a bar.
+
+    The root first, then the chord's, and the scale that holds under it.
+    """
 
     root: int
     tones: tuple[int, ...]
@@ -102,8 +126,10 @@ def chord_on(degree: int, tonic: int, mode: str, sevenths: bool) -> Chord:
 
 
 def lead(tones: tuple[int, ...], before: tuple[int, ...], centre: int = 62) -> tuple[int, ...]:
-    """The chord's notes, each pitch class once, near `before` and around `centre`: as little
-    movement as can be."""
+    """The chord's notes, each pitch class once, near `before` and around `centre`.
+
+    As little movement as can be.
+    """
     near = [[p for p in range(centre - 9, centre + 12) if p % 12 == tone] for tone in tones]
 
     def cost(notes):
@@ -117,11 +143,13 @@ def lead(tones: tuple[int, ...], before: tuple[int, ...], centre: int = 62) -> t
 
 def draw_chords(form: Form, genre: str, rng: np.random.Generator) -> list[Chord]:
     """One chord for every bar; a section's last bar leads back."""
-    tonic, mode = int(rng.integers(12)), str(rng.choice(list(SCALES), p=MODES[genre]))
+    tonic = int(rng.integers(12))
+    mode = str(rng.choice(list(SCALES), p=MODES[genre]))
     sevenths = rng.random() < {"house": 0.7, "hiphop": 0.8, "latin": 0.5}.get(genre, 0.25)
     choices = PROGRESSIONS[genre][mode]
     plan = {name: choices[int(rng.integers(len(choices)))] for name in ("verse", "chorus")}
-    slow, turn = 1 + (genre in ("house", "hiphop") and rng.random() < 0.4), rng.random() < 0.6
+    slow = 1 + (genre in ("house", "hiphop") and rng.random() < 0.4)
+    turn = rng.random() < 0.6
     chords = []
     for bar in form.bars:
         progression = plan["chorus" if bar.section == "chorus" else "verse"]
@@ -136,14 +164,14 @@ def write_bass(form: Form, chords: list[Chord], genre: str, rng: np.random.Gener
         n: marks(cells(BASS[genre][rng.integers(len(BASS[genre]))], form.groups))
         for n in ("verse", "chorus")
     }
-    lowest, short, notes = int(rng.integers(28, 34)), rng.uniform(0.5, 0.95), []
+    lowest = int(rng.integers(28, 34))
+    short = rng.uniform(0.5, 0.95)
+    notes = []
     for bar, chord, following in zip(form.bars, chords, [*chords[1:], chords[-1]], strict=True):
         if bar.level < 0.4:
             continue
-        root, strokes = (
-            lowest + (chord.root - lowest) % 12,
-            patterns["chorus" if bar.section == "chorus" else "verse"],
-        )
+        root = lowest + (chord.root - lowest) % 12
+        strokes = patterns["chorus" if bar.section == "chorus" else "verse"]
         goal = lowest + (following.root - lowest) % 12
         above = goal + (2 if (goal + 2) % 12 in following.scale else 1)
         steps = {"R": root, "F": root + (chord.tones[2] - chord.root) % 12, "O": root + 12}
@@ -174,12 +202,11 @@ def write_chords(
         n: marks(cells(CHORDS[genre][rng.integers(len(CHORDS[genre]))], form.groups))
         for n in ("verse", "chorus")
     }
-    voicing, notes, turn, absent = (
-        (),
-        [],
-        0,
-        rng.random() < 0.08,
-    )  # a song of drums and bass, but for its breaks
+    # a song of drums and bass, but for its breaks
+    voicing = ()
+    notes = []
+    turn = 0
+    absent = rng.random() < 0.08
     for bar, chord in zip(form.bars, chords, strict=True):
         if bar.section == "silence" or (absent and bar.section != "break"):
             continue
@@ -190,10 +217,8 @@ def write_chords(
         )
         ends = [at for at, _ in strokes[1:]] + [form.metre]
         for (at, mark), end in zip(strokes, ends, strict=True):
-            length, loud = (
-                {"L": end - at, "s": 0.3, "a": 0.6}[mark],
-                0.35 if held else 0.5 + 0.4 * bar.level,
-            )
+            length = {"L": end - at, "s": 0.3, "a": 0.6}[mark]
+            loud = 0.35 if held else 0.5 + 0.4 * bar.level
             pitches = (
                 voicing if mark != "a" else [voicing[turn % len(voicing)] + 12 * (turn % 8 > 4)]
             )
@@ -204,16 +229,20 @@ def write_chords(
 
 @dataclass(frozen=True)
 class Motif:
-    """A phrase's tune before it meets the chords: where its notes are (beats), how the line moves
-    (scale steps)."""
+    """A phrase's tune before it meets the chords.
+
+    Where its notes are (beats), how the line moves (scale steps).
+    """
 
     at: list[float]
     step: list[int]
 
 
 def draw_motif(form: Form, genre: str, rng: np.random.Generator) -> Motif:
-    """One bar's rhythm, repeated with a change in later bars, a breath at the end; sometimes a
-    pickup."""
+    """One bar's rhythm, repeated with a change in later bars, a breath at the end.
+
+    Sometimes a pickup.
+    """
     choice = RHYTHMS[genre]
     bar = [str(choice[rng.integers(len(choice))]) for _ in range(form.metre)]
     if all(cell == "...." for cell in bar[:2]):
@@ -237,8 +266,10 @@ def draw_motif(form: Form, genre: str, rng: np.random.Generator) -> Motif:
 def write_melody(
     form: Form, chords: list[Chord], genre: str, rng: np.random.Generator
 ) -> list[Note]:
-    """A tune in choruses, often in verses: phrases a a a b; chord tones on the beats, the root or
-    third at the end."""
+    """A tune in choruses, often in verses: phrases a a a b.
+
+    Chord tones on the beats, the root or third at the end.
+    """
     motifs = {
         name: (draw_motif(form, genre, rng), draw_motif(form, genre, rng))
         for name in ("verse", "chorus")
@@ -256,7 +287,9 @@ def write_melody(
 
 
 def _phrase(form: Form, chords: list[Chord], bar: Bar, motif: Motif, centre: int) -> list[Note]:
-    start, pitch, notes = bar.number * form.metre, centre, []
+    start = bar.number * form.metre
+    pitch = centre
+    notes = []
     for k, (at, step) in enumerate(zip(motif.at, motif.step, strict=True)):
         here = form.bars[min(max(int((start + at) // form.metre), 0), len(form.bars) - 1)]
         chord, ends = chords[here.number], k == len(motif.at) - 1

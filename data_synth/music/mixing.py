@@ -1,5 +1,7 @@
-"""From strokes and notes to one sound: each is rendered once and added where it is played; then
-room and loudness."""
+"""From strokes and notes to one sound: each is rendered once and added where it is played.
+
+Then room and loudness.
+"""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -34,8 +36,10 @@ class Played:
 
 
 def play(form: Form, hits: list[Hit], rng: np.random.Generator) -> Played:
-    """A player's unevenness: some ms early or late, each drum with its habit, at most 15; the beats
-    stay the grid."""
+    """A player's unevenness: some ms early or late, each drum with its habit, at most 15.
+
+    The beats stay the grid.
+    """
     spread, uneven = rng.uniform(0.001, 0.005), rng.uniform(0.03, 0.1)
     habit = dict(zip(DRUMS, rng.uniform(-0.003, 0.005, len(DRUMS)), strict=True))
     wander = spread * rng.standard_normal(len(hits)) + np.array([habit[hit.drum] for hit in hits])
@@ -59,7 +63,9 @@ def drum_bus(
     played: Played, timbre: str, length: int, rng: np.random.Generator
 ) -> Float[np.ndarray, "N"]:
     """All strokes; three sounds of every drum, so that no two in a row are the same."""
-    kit, ready, out = own_kit(timbre, rng), {}, np.zeros(length)
+    kit = own_kit(timbre, rng)
+    ready = {}
+    out = np.zeros(length)
     sources = dict(
         zip(DRUMS, rng.spawn(len(DRUMS)), strict=True)
     )  # a drum's sound does not depend on what else plays
@@ -82,7 +88,9 @@ def voice_bus(
 ) -> Float[np.ndarray, "N"]:
     """All notes of one voice."""
     choices = VOICES[timbre][kind]
-    voice, ready, out = choices[int(rng.integers(len(choices)))], {}, np.zeros(length)
+    voice = choices[int(rng.integers(len(choices)))]
+    ready = {}
+    out = np.zeros(length)
     if not notes:
         return out
     start = form.at(np.array([n.position for n in notes]))
@@ -111,8 +119,10 @@ def duck(played: Played, length: int, depth: float, recover: float) -> Float[np.
 def room(
     y: Float[np.ndarray, "N"], seconds: float, rng: np.random.Generator
 ) -> Float[np.ndarray, "N"]:
-    """The sound of a room alone: noise that has fallen by 60 dB after `seconds`, duller towards its
-    end."""
+    """The sound of a room alone.
+
+    Noise that has fallen by 60 dB after `seconds`, duller towards its end.
+    """
     t = np.arange(round(seconds * SAMPLE_RATE)) / SAMPLE_RATE
     tail = lfilter([0.5], [1, -0.5], rng.standard_normal(len(t))) * 10 ** (-3 * t / seconds)
     tail[: round(0.008 * SAMPLE_RATE)] = 0
@@ -120,8 +130,10 @@ def room(
 
 
 def compress(y: Float[np.ndarray, "N"], amount: float) -> Float[np.ndarray, "N"]:
-    """What is louder than the average is turned down, smoothly: `amount` 0 not at all, 1 nearly to
-    the average."""
+    """What is louder than the average is turned down, smoothly.
+
+    `amount` 0 not at all, 1 nearly to the average.
+    """
     a = np.exp(-1 / (0.03 * SAMPLE_RATE))
     loud = lfilter([1 - a], [1, -a], y * y)
     usual = np.mean(y * y) + 1e-12
@@ -137,10 +149,13 @@ def mix(
     seconds: float,
     rng: np.random.Generator,
 ) -> Float[np.ndarray, "N"]:
-    """The finished recording: balance, ducking, room, filters, compression, hiss; its peak is 0.8
-    to 0.95."""
+    """The finished recording: balance, ducking, room, filters, compression, hiss.
+
+    Its peak is 0.8 to 0.95.
+    """
     strokes, voices, space, noise = rng.spawn(4)
-    length, n = round((LEAD + seconds) * SAMPLE_RATE), round(seconds * SAMPLE_RATE)
+    length = round((LEAD + seconds) * SAMPLE_RATE)
+    n = round(seconds * SAMPLE_RATE)
     buses = {"drums": drum_bus(played, timbre, length, strokes)}
     for kind in ("bass", "chords", "lead"):
         buses[kind] = voice_bus(
@@ -168,10 +183,8 @@ def mix(
 def _master(
     y: np.ndarray, timbre: str, rng: np.random.Generator, noise: np.random.Generator
 ) -> np.ndarray:
-    low, high = (
-        rng.uniform(25, 60) if rng.random() < 0.8 else rng.uniform(100, 220),
-        rng.uniform(2500, 6000),
-    )
+    low = rng.uniform(25, 60) if rng.random() < 0.8 else rng.uniform(100, 220)
+    high = rng.uniform(2500, 6000)
     y = sosfilt(butter(2, low, "high", fs=SAMPLE_RATE, output="sos"), y)
     if rng.random() < (0.9 if timbre == "lofi" else 0.15):
         y = sosfilt(butter(2, high, "low", fs=SAMPLE_RATE, output="sos"), y)

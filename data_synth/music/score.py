@@ -1,5 +1,7 @@
-"""A silent score: beats, bars and phrases, with no music; for tests, and for dances to a count of
-one's own."""
+"""A silent score: beats, bars and phrases, with no music.
+
+For tests, and for dances to a count of one's own.
+"""
 
 import numpy as np
 
@@ -17,8 +19,9 @@ def beat_song(
     *,
     drift: float = 0.0,
 ) -> Song:
-    """A silent Song whose beats stand `60 / tempo` s apart, the first after a pause that the seed
-    draws.
+    """A silent Song whose beats stand `60 / tempo` s apart.
+
+    The first comes after a pause that the seed draws.
 
     `drift` bends the tempo by up to that share, slowly; the last bars of every fourth phrase are a
     break (energy 0.15).
@@ -37,7 +40,8 @@ def beat_song(
             f"{seconds} s at {tempo:g} BPM hold no two beats: more seconds, or a higher tempo"
         )
     rng = np.random.default_rng([seed, 21])
-    first, turn = rng.uniform(0.02, min(period, seconds - period)), rng.uniform(0, 2 * np.pi)
+    first = rng.uniform(0.02, min(period, seconds - period))
+    turn = rng.uniform(0, 2 * np.pi)
     count = np.arange(int(2 * seconds / period) + 2)
     swing = drift * 12 / (2 * np.pi) * (np.sin(2 * np.pi * count / 12 + turn) - np.sin(turn))
     beats = first + period * (count + swing)

@@ -1,5 +1,6 @@
-"""A song: how it sounds, and what is known of it — every beat, every drum hit, where the bars and
-the phrases begin.
+"""A song: how it sounds, and what is known of it.
+
+Every beat, every drum hit, where the bars and the phrases begin.
 
 The music is composed in `music.py`; the dance in `dance.py` follows the score (beats, bars,
 phrases, energy), never the sound, so that what a network hears and what it must move to meet only
@@ -28,8 +29,9 @@ DRUMS = ("kick", "snare", "clap", "rim", "hat", "open hat", "shaker", "tom", "cr
 
 @dataclass(frozen=True, eq=False)
 class Song:
-    """Mono sound at SAMPLE_RATE, and the score behind it; all times in seconds from the first
-    sample.
+    """Mono sound at SAMPLE_RATE, and the score behind it.
+
+    All times in seconds from the first sample.
 
     `bar_position` is 0 on a downbeat; `phrase` counts from 0 and changes on a downbeat; `energy` is
     0 (a break) to 1. `hits` has the time of every drum hit by the drum's name, one of DRUMS; a drum

@@ -1,5 +1,7 @@
-"""Pitched instruments from one cycle of a wave: a dark part that lasts and a bright part that dies
-away first."""
+"""Pitched instruments from one cycle of a wave.
+
+A dark part that lasts and a bright part that dies away first.
+"""
 
 from dataclasses import dataclass
 from functools import lru_cache
@@ -14,8 +16,10 @@ TABLE = 2048  # samples of one cycle
 
 @dataclass(frozen=True)
 class Voice:
-    """A wave's partials and how it begins and ends; seconds. `decay` is to 1/e; `sustain` the share
-    that stays."""
+    """A wave's partials and how it begins and ends; seconds.
+
+    `decay` is to 1/e; `sustain` the share that stays.
+    """
 
     roll: float  # partial k has amplitude k ** -roll
     odd: float = 1.0  # what the even partials are multiplied with
@@ -40,17 +44,14 @@ SAW = Voice(1.0, 1.0, 0.005, 0.3, 0.5, 0.06, 0.2, 12)
 DRAWBARS = Voice(1, attack=0.003, sustain=0.7, bright=1, partials=ORGAN)
 UPRIGHT = Voice(1.9, 1.0, 0.006, 0.5, 0.1, 0.05, 0.06)
 ELECTRIC = Voice(1.4, 1.0, 0.003, 0.6, 0.35, 0.04, 0.1)
-SYNTH, SUB = Voice(1.1, 1, 0.003, 0.2, 0.4, 0.03, 0.12), Voice(2.6, 0.3, 0.005, 0.6, 0.6, 0.04)
+SYNTH = Voice(1.1, 1, 0.003, 0.2, 0.4, 0.03, 0.12)
+SUB = Voice(2.6, 0.3, 0.005, 0.6, 0.6, 0.04)
 WOODEN = Voice(1, attack=0.001, decay=0.25, sustain=0, bright=0.04, partials=BAR)
 GLASS = Voice(2.5, 0.2, 0.001, 0.8, 0, 0.2, 0.1)
-CLARINET, FIDDLE = (
-    Voice(1.2, 0.15, 0.03, 1, 0.8, 0.08, 0.6, 0, 15),
-    Voice(1.1, 0.9, 0.03, 1, 0.8, 0.1, 0.8, 0, 18),
-)
-SQUARE, NASAL = (
-    Voice(1.0, 0.0, 0.001, 0.3, 0.5, 0.02, 2),
-    Voice(1.0, 0.6, 0.001, 0.5, 0.6, 0.02, 2, 0, 14),
-)
+CLARINET = Voice(1.2, 0.15, 0.03, 1, 0.8, 0.08, 0.6, 0, 15)
+FIDDLE = Voice(1.1, 0.9, 0.03, 1, 0.8, 0.1, 0.8, 0, 18)
+SQUARE = Voice(1.0, 0.0, 0.001, 0.3, 0.5, 0.02, 2)
+NASAL = Voice(1.0, 0.6, 0.001, 0.5, 0.6, 0.02, 2, 0, 14)
 # timbre -> voice -> what a song draws one of
 VOICES = {
     "machine": {"bass": (SYNTH, SUB), "chords": (PAD, SAW, DRAWBARS), "lead": (SAW, SQUARE)},
@@ -77,8 +78,10 @@ VOICES = {
 
 @lru_cache(maxsize=4096)
 def _cycle(voice: Voice, highest: int) -> tuple[np.ndarray, np.ndarray]:
-    """One cycle with partials up to `highest` only, so that none folds back: the dark part and the
-    bright."""
+    """One cycle with partials up to `highest` only, so that none folds back.
+
+    The dark part and the bright.
+    """
     amplitude = np.array(
         voice.partials or [k**-voice.roll * (1 if k % 2 else voice.odd) for k in range(1, 33)]
     )

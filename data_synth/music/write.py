@@ -14,8 +14,10 @@ from .song import GENRES, SAMPLE_RATE, TIMBRES, Song
 
 
 def score(song: Song) -> dict:
-    """What is known of a song as lists and numbers; times in seconds, to a tenth of a
-    millisecond."""
+    """What is known of a song as lists and numbers.
+
+    Times in seconds, to a tenth of a millisecond.
+    """
 
     def rounded(times):
         return np.round(times, 4).tolist()
@@ -47,7 +49,7 @@ def save_song(song: Song, path: Path) -> None:
 
 
 def main(arguments: list[str] | None = None) -> None:
-    """python -m data_synth songs --out FOLDER"""
+    """Write synthetic songs: `python -m data_synth songs --out FOLDER`."""
     parser = argparse.ArgumentParser(
         prog="python -m data_synth songs", description="Write songs with known beats."
     )
@@ -81,12 +83,16 @@ def main(arguments: list[str] | None = None) -> None:
         parser.error(str(error))
     except OSError as error:
         parser.error(
-            f"--out {given.out} cannot be a folder ({error.strerror}): give the name of a folder, new or old"
+            f"--out {given.out} cannot be a folder ({error.strerror}): "
+            "give the name of a folder, new or old"
         )
     for k, song in enumerate(made):
         save_song(song, given.out / f"song_{k:03d}")
         print(
-            f"song_{k:03d}: {song.genre}, {song.tempo:.0f} BPM, {song.metre} beats a bar, {song.timbre}",
+            (
+                f"song_{k:03d}: {song.genre}, {song.tempo:.0f} BPM, "
+                f"{song.metre} beats a bar, {song.timbre}"
+            ),
             flush=True,
         )
     print(f"{given.songs} songs of {given.seconds:g} s in {given.out}")

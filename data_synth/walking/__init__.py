@@ -1,5 +1,7 @@
-"""Walks: a commanded path in, a figure that walks it out; and several right continuations of one
-past."""
+"""Walks: a commanded path in, a figure that walks it out.
+
+And several right continuations of one past.
+"""
 
 from .styles import STYLES
 from .walks import continuations, dataset, drawn_walk, random_control, walk

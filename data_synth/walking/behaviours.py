@@ -1,5 +1,6 @@
-"""What arms and head do besides walking: waving, hands on hips, looking about; begun and ended at
-random times.
+"""What arms and head do besides walking: waving, hands on hips, looking about.
+
+Begun and ended at random times.
 
 A pose of an arm is (swing, abduction, twist, elbow) in degrees: swing forward +, twist inward +,
 elbow bent +.
@@ -13,7 +14,9 @@ from jaxtyping import Bool, Float
 from ..noise import follow
 
 # kind -> pose of (left, right) arm, or None where the arm just goes on swinging
-_WAVE, _HIP, _HELD = (12.0, 62.0, -78.0, 88.0), (-20.0, 41.0, 62.0, 84.0), (14.0, 10.0, 22.0, 96.0)
+_WAVE = (12.0, 62.0, -78.0, 88.0)
+_HIP = (-20.0, 41.0, 62.0, 84.0)
+_HELD = (14.0, 10.0, 22.0, 96.0)
 ARM_POSES = {
     "wave left": (_WAVE, None),
     "wave right": (None, _WAVE),
@@ -44,11 +47,15 @@ def _states(
     calm: np.ndarray,
     fps: float,
 ):
-    """One-hot rows of what is going on: begins and ends by chance, never before its least
-    duration."""
+    """One-hot rows of what is going on.
+
+    It begins and ends by chance, never before its least duration.
+    """
     on = np.zeros((len(u), kinds))
     kind, since = -1, 0
-    draw, choice, calm = u[:, 0].tolist(), u[:, 1].tolist(), calm.tolist()
+    draw = u[:, 0].tolist()
+    choice = u[:, 1].tolist()
+    calm = calm.tolist()
     for t in range(len(draw)):
         if kind < 0 and draw[t] < per_second / fps and calm[t]:
             kind, since = min(int(choice[t] * kinds), kinds - 1), t
@@ -62,8 +69,10 @@ def _states(
 def behaviours(
     u: Float[np.ndarray, "T 4"], per_minute: float, calm: Bool[np.ndarray, "T"], fps: float
 ) -> Behaviours:
-    """Draw what happens from uniform numbers; nothing begins where `calm` is False (running
-    fast)."""
+    """Draw what happens from uniform numbers.
+
+    Nothing begins where `calm` is False (running fast).
+    """
     arms = _states(u[:, :2], len(ARM_KINDS), per_minute / 100, LASTS["arms"], calm, fps)
     head = _states(u[:, 2:], len(HEAD_KINDS), per_minute / 100, LASTS["head"], calm, fps)
     return Behaviours(follow(arms, 0.12, fps, 3), follow(head, 0.12, fps, 3))
@@ -72,8 +81,10 @@ def behaviours(
 def pose_arm(
     free: Float[np.ndarray, "T 4"], side: int, doing: Behaviours, wave: Float[np.ndarray, "T"]
 ) -> Float[np.ndarray, "T 4"]:
-    """Mix the freely swinging arm (side 0 left, 1 right) with the poses that are going on; `wave`
-    in -1..1."""
+    """Mix the freely swinging arm (side 0 left, 1 right) with the poses that are going on.
+
+    `wave` in -1..1.
+    """
     pose = free.copy()
     for k, name in enumerate(ARM_POSES):
         target = ARM_POSES[name][side]

@@ -25,13 +25,13 @@ def body(
     phase: float,
     fps: float,
 ) -> tuple[Float[np.ndarray, "T 21 3"], Bool[np.ndarray, "T 2"]]:
-    """Poses and contacts of a walk; `rows` is the noise of noise.white, `phase` where the clock
-    starts."""
+    """Poses and contacts of a walk.
+
+    `rows` is the noise of noise.white, `phase` where the clock starts.
+    """
     forward, left, yaw = follow(np.concatenate([control[:1], control[:-1]]), 0.07, fps).T
-    run, speed = (
-        follow(running(forward), 0.09, fps),
-        np.hypot(np.where(forward < 0, -forward, forward), left),
-    )
+    run = follow(running(forward), 0.09, fps)
+    speed = np.hypot(np.where(forward < 0, -forward, forward), left)
     inward = 0.78 * np.arctan(forward * yaw / GRAVITY)
     lean_shift = -1.58 * (1 - 0.25 * run) * np.tan(inward)
     steps = plan(

@@ -81,8 +81,9 @@ def _ramp(targets: np.ndarray, fps: float, rise: tuple[float, float, float]) -> 
 def random_control(
     seconds: float, rng: np.random.Generator, kind: str = "mixed", fps: float = FPS
 ) -> Float[np.ndarray, "T 3"]:
-    """A control of one of KINDS: targets held 1-5 s, ramps of 0.3-1 s, as smooth as a real root
-    path.
+    """A control of one of KINDS.
+
+    Targets held 1-5 s, ramps of 0.3-1 s, as smooth as a real root path.
 
     Raises ValueError for an unknown kind.
     """
@@ -102,8 +103,10 @@ def random_control(
 
 
 def _possible(control: np.ndarray) -> np.ndarray:
-    """Turning and stepping aside are limited by speed: |v w| at most 2.3 m/s2, no fast sideways
-    running."""
+    """Turning and stepping aside are limited by speed.
+
+    |v w| at most 2.3 m/s2, no fast sideways running.
+    """
     speed = np.abs(control[:, 0])
     most = np.minimum(MAX_YAW, 2.3 / np.maximum(speed, 0.5))
     yaw = control[:, 2] / (1 + (np.abs(control[:, 2]) / most) ** 12) ** (1 / 12)

@@ -34,11 +34,14 @@ class Drive:
 
 
 def drive(control, root_xz, heading, rows, style: Style, lean_shift, run, fps: float) -> Drive:
-    """Rates and velocities per frame; velocity at frame t is control[t-1], which brought the root
-    there."""
+    """Rates and velocities per frame.
+
+    Velocity at frame t is control[t-1], which brought the root there.
+    """
     arrived = np.concatenate([control[:1], control[:-1]])
     smooth = follow(arrived, 0.06, fps)
-    slow, fast = drift(rows[:, 0], 3.0, fps), drift(rows[:, 1], 0.3, fps)
+    slow = drift(rows[:, 0], 3.0, fps)
+    fast = drift(rows[:, 1], 0.3, fps)
     rate = cadence(*smooth.T, run) * style.cadence * np.exp(0.032 * slow + 0.012 * fast)
     # a velocity that changes is carried a little further
     ahead = arrived + np.clip(1.2 * (arrived - smooth), -0.15, 0.15)
@@ -63,7 +66,9 @@ def home(
     stance).
     """
     side = 1.0 if foot == LEFT_FOOT else -1.0
-    vf, vl, w = d.forward[t], d.left[t], d.yaw[t]
+    vf = d.forward[t]
+    vl = d.left[t]
+    w = d.yaw[t]
     middle, later = d.heading[t] + w * tau * 0.4, d.heading[t] + w * tau
     slow = 1 - 0.7 * min(abs(vf) / 0.8, 1.0)
     width = style.width * (1 - 0.5 * d.run[t]) + slow * (
@@ -71,7 +76,10 @@ def home(
     )
     out = side * width / 2 + d.lean_shift[t]
     far, across = vf * (ahead if vf > 0 else tau), vl * tau
-    sm, cm, sl, cl = sin(middle), cos(middle), sin(later), cos(later)
+    sm = sin(middle)
+    cm = cos(middle)
+    sl = sin(later)
+    cl = cos(later)
     x = d.x[t] + far * sm + across * cm + out * cl + 0.015 * sl
     z = d.z[t] + far * cm - across * sm - out * sl + 0.015 * cl
     return x, z, later + side * radians(style.toe_out)

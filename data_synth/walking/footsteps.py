@@ -1,5 +1,6 @@
-"""When and where the feet go: a gait clock driven by the control, and footprints that never move
-once made.
+"""When and where the feet go.
+
+A gait clock driven by the control, and footprints that never move once made.
 
 Causal: frame t depends on the root path up to t and on the noise up to t; so a held control decides
 everything. A swinging foot aims at its middle of stance, should the present velocity last; the aim
@@ -37,18 +38,21 @@ class _Feet:
     """State of the loop: both feet and the clock."""
 
     def __init__(self, d: Drive, style: Style, phase: float):
-        self.d, self.style, self.clock, self.rate = d, style, phase, d.steps_per_second[0] / 2
+        self.d = d
+        self.style = style
+        self.clock = phase
+        self.rate = d.steps_per_second[0] / 2
         self.offset = [0.0, 0.5 + style.asymmetry]
         self.amount = [1.0, 1.0]
         if d.need[0] < ACTIVE:  # standing: both feet down, in the middle of double support
-            self.clock, self.rate, self.amount = (
-                (0.0 if phase < 0.5 else 0.5) + 0.09,
-                0.0,
-                [0.0, 0.0],
-            )
+            self.clock = (0.0 if phase < 0.5 else 0.5) + 0.09
+            self.rate = 0.0
+            self.amount = [0.0, 0.0]
         self.toe_up = [0.0, 0.0]
         places = [home(d, 0, foot, style, 0.0, 0.0) for foot in (0, 1)]
-        self.place, self.start, self.aim = list(places), list(places), list(places)
+        self.place = list(places)
+        self.start = list(places)
+        self.aim = list(places)
         self.swing, self.off_phase = [False, False], [0.65, 0.65]
         self.error = [(0.0, 0.0), (0.0, 0.0)]  # ahead and aside, of the swing under way
 
@@ -93,8 +97,10 @@ class _Feet:
         return min(max((far - 0.50) / 0.15, 0.0), 1.2)
 
     def first_foot(self, t: int) -> None:
-        """From standing either foot may go first; sideways and turning the near one usually
-        does."""
+        """From standing either foot may go first.
+
+        Sideways and turning the near one usually does.
+        """
         d = self.d
         lift_next = LEFT_FOOT if self.phase(0) > self.phase(1) else RIGHT_FOOT
         pull = 1.5 * d.noise[t][0] + 6 * d.left[t] + 1.5 * d.yaw[t]  # positive: the left foot
@@ -107,11 +113,9 @@ class _Feet:
         if self.swing[foot] and p < 0.25:
             self.swing[foot], self.place[foot] = False, self.aim[foot]
         if not self.swing[foot] and d.stance[t] <= p:
-            self.swing[foot], self.off_phase[foot], self.start[foot] = (
-                True,
-                min(p, d.stance[t]),
-                self.place[foot],
-            )
+            self.swing[foot] = True
+            self.off_phase[foot] = min(p, d.stance[t])
+            self.start[foot] = self.place[foot]
             self.aim[foot] = self.target(t, foot, p)
             self.error[foot] = (0.009 * d.noise[t][1], 0.009 * d.noise[t][2])
         if not self.swing[foot]:
@@ -156,7 +160,8 @@ class _Feet:
 
     def uncrossed(self, t: int, foot: int, x: float, z: float, s: float, c: float) -> float:
         """How far the aim must move aside (left positive) so that slow feet do not cross."""
-        side, (ox, oz, _) = (1.0 if foot == LEFT_FOOT else -1.0), self.place[1 - foot]
+        side = 1.0 if foot == LEFT_FOOT else -1.0
+        ox, oz, _ = self.place[1 - foot]
         apart = side * ((x - ox) * c - (z - oz) * s)
         return side * max(0.0, 0.10 - apart) * (1 - min(abs(self.d.forward[t]) / 0.5, 1.0))
 

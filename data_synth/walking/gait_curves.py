@@ -1,5 +1,6 @@
-"""What walking and running do over one cycle, and how that depends on speed: curves and relations,
-no state.
+"""What walking and running do over one cycle, and how that depends on speed.
+
+Curves and relations, no state.
 
 Phase p = 0 is the heel strike of one's own foot, p = 1 the next one. `run` is 0 for walking, 1 for
 running. HAND, ELBOW, ROLL and HEIGHT follow mean curves measured on eight public recordings of
@@ -33,8 +34,9 @@ def cadence(forward: Frames, left: Frames, yaw: Frames, run: Frames) -> Frames:
 
 
 def stance_fraction(forward: Frames, run: Frames) -> Frames:
-    """Share of the cycle until the toe leaves: 0.63 - 0.044 v walking, below one half (flight) in a
-    run.
+    """Share of the cycle until the toe leaves.
+
+    0.63 - 0.044 v walking, below one half (flight) in a run.
 
     A contact detector sees some 0.05 more: it counts the toe as down until it is faster than the
     pelvis.
@@ -45,8 +47,10 @@ def stance_fraction(forward: Frames, run: Frames) -> Frames:
 
 
 def fourier(table: list, harmonics: int) -> tuple[np.ndarray, np.ndarray]:
-    """Coefficients (cosines, sines) of a periodic curve given at equal steps of phase; the mean
-    comes first."""
+    """Coefficients (cosines, sines) of a periodic curve given at equal steps of phase.
+
+    The mean comes first.
+    """
     c = np.fft.rfft(table) / len(table)
     c = c[: harmonics + 1] * np.where(np.arange(harmonics + 1) == 0, 1, 2)
     return c.real, -c.imag

@@ -1,5 +1,6 @@
-"""Gait cycles of a walk given as world positions: foot contact by height and speed, angles over the
-cycle.
+"""Gait cycles of a walk given as world positions.
+
+Foot contact by height and speed, angles over the cycle.
 
 Works on real clips and synthetic ones alike; contact is found from the motion, not taken from the
 truth.
@@ -65,8 +66,10 @@ def _tidy(down: np.ndarray) -> np.ndarray:
 
 
 def analyse(world: Float[np.ndarray, "T 21 3"], fps: float = 20.0) -> Walk:
-    """Directions and contacts of a clip (a foot is down when it is low and slower than the
-    pelvis)."""
+    """Directions and contacts of a clip.
+
+    A foot is down when it is low and slower than the pelvis.
+    """
     hips = world[:, 0][:, [0, 2]]
     v = gaussian_filter1d(np.gradient(hips, axis=0) * fps, 0.25 * fps, axis=0, mode="nearest")
     speed = np.linalg.norm(v, axis=-1)
@@ -83,7 +86,8 @@ def analyse(world: Float[np.ndarray, "T 21 3"], fps: float = 20.0) -> Walk:
     travel = np.where(speed[:, None] > 0.35, v / np.maximum(speed[:, None], 1e-6), facing)
     down, level = [], []
     for side in SIDES:
-        foot, toe = world[:, j(side + "Foot")], world[:, j(side + "ToeBase")]
+        foot = world[:, j(side + "Foot")]
+        toe = world[:, j(side + "ToeBase")]
         slow = _speed(toe, fps) < 0.3
         level.append(
             np.percentile(foot[slow, 1], 25) if slow.sum() > 3 else np.percentile(foot[:, 1], 10)
@@ -96,17 +100,17 @@ def analyse(world: Float[np.ndarray, "T 21 3"], fps: float = 20.0) -> Walk:
 
 
 def cycles(walk: Walk, steady: bool = True) -> list[Cycle]:
-    """Cycles of both feet with one toe-off and one strike of the other foot; `steady`: straight and
-    even."""
+    """Cycles of both feet with one toe-off and one strike of the other foot.
+
+    `steady`: straight and even.
+    """
     strikes = [np.flatnonzero(~walk.down[:-1, s] & walk.down[1:, s]) + 1 for s in (0, 1)]
     offs = [np.flatnonzero(walk.down[:-1, s] & ~walk.down[1:, s]) + 1 for s in (0, 1)]
     found = []
     for s in (0, 1):
         for a, b in zip(strikes[s][:-1].tolist(), strikes[s][1:].tolist(), strict=True):
-            off, other = (
-                offs[s][(offs[s] > a) & (offs[s] < b)],
-                strikes[1 - s][(strikes[1 - s] > a) & (strikes[1 - s] < b)],
-            )
+            off = offs[s][(offs[s] > a) & (offs[s] < b)]
+            other = strikes[1 - s][(strikes[1 - s] > a) & (strikes[1 - s] < b)]
             ok = (
                 0.45 < (b - a) / walk.fps < 1.9
                 and len(off) == len(other) == 1
@@ -124,8 +128,10 @@ def _steady(walk: Walk, a: int, b: int) -> bool:
 
 
 def curves(walk: Walk) -> dict[str, np.ndarray]:
-    """Angles (degrees) and heights (m) per frame; the names that end in 0 or 1 belong to the left
-    or right side."""
+    """Angles (degrees) and heights (m) per frame.
+
+    The names that end in 0 or 1 belong to the left or right side.
+    """
     out = {"hips_y": walk.joint("Hips")[:, 1], "lean": walk.sagittal("Hips", "Neck1", 1.0)}
     out["head"] = walk.sagittal("Neck1", "Head", 1.0)
     heading = np.arctan2(walk.facing[:, 0], walk.facing[:, 1])
@@ -136,10 +142,8 @@ def curves(walk: Walk) -> dict[str, np.ndarray]:
         out[f"ankle{s}"] = _between(walk, side + "Leg", side + "Foot", side + "ToeBase")
         out[f"hand{s}"] = walk.sagittal(side + "Arm", side + "Hand")
         out[f"elbow{s}"] = _between(walk, side + "Arm", side + "ForeArm", side + "Hand")
-        out[f"toe_y{s}"], out[f"foot_y{s}"] = (
-            walk.joint(side + "ToeBase")[:, 1],
-            walk.joint(side + "Foot")[:, 1],
-        )
+        out[f"toe_y{s}"] = walk.joint(side + "ToeBase")[:, 1]
+        out[f"foot_y{s}"] = walk.joint(side + "Foot")[:, 1]
         for name, joints in (("pelvis", "UpLeg"), ("thorax", "Arm")):
             d = walk.joint(side + joints) - walk.joint(SIDES[1 - s] + joints)
             own = 1.0 if s == 0 else -1.0  # ahead of a line that runs to one's own side

@@ -1,5 +1,6 @@
-"""The numbers by which a walk is judged: one value per statistic and clip, as measured on real
-walks.
+"""The numbers by which a walk is judged.
+
+One value per statistic and clip, as measured on real walks.
 
 Lengths mm except step length (m), angles degrees, times seconds unless the name says otherwise.
 """
@@ -15,13 +16,16 @@ AT = {p: int(round(p / 2)) for p in range(0, 101, 2)}  # index in GRID of a perc
 
 
 def statistics(world: Float[np.ndarray, "T 21 3"], fps: float = 20.0) -> dict[str, float]:
-    """All statistics of one clip of steady walking or running; raises ValueError when it has no
-    steady cycle."""
+    """All statistics of one clip of steady walking or running.
+
+    Raises ValueError when it has no steady cycle.
+    """
     walk = analyse(world, fps)
     found, c = cycles(walk), curves(walk)
     if not found:
         raise ValueError(
-            "no steady gait cycle in this clip: it must walk straight for at least two steps of each foot"
+            "no steady gait cycle in this clip: "
+            "it must walk straight for at least two steps of each foot"
         )
     rows = [_of_cycle(walk, cycle, c) for cycle in found]
     out = {k: float(np.mean([r[k] for r in rows])) for k in rows[0]}
@@ -53,8 +57,10 @@ def mean_curves(world: Float[np.ndarray, "T 21 3"], fps: float = 20.0) -> dict[s
 
 
 def turning_lean(world: Float[np.ndarray, "T 21 3"], fps: float = 20.0) -> tuple[float, float]:
-    """Slope and correlation of the whole body's lean (mid-ankles to neck) against atan(v w / g),
-    inward positive."""
+    """Slope and correlation of the whole body's lean against atan(v w / g), inward positive.
+
+    The lean is measured from mid-ankles to neck.
+    """
     walk = analyse(world, fps)
     body = gaussian_filter1d(
         world[:, 11] - (world[:, 3] + world[:, 7]) / 2, 0.4 * fps, axis=0, mode="nearest"
@@ -62,7 +68,8 @@ def turning_lean(world: Float[np.ndarray, "T 21 3"], fps: float = 20.0) -> tuple
     turn = np.gradient(np.unwrap(np.arctan2(walk.travel[:, 0], walk.travel[:, 1]))) * fps
     turn = gaussian_filter1d(turn, 0.4 * fps, mode="nearest")
     left = body[:, 0] * walk.travel[:, 1] - body[:, 2] * walk.travel[:, 0]
-    lean, needed = np.arctan2(left, body[:, 1]), np.arctan(walk.speed * turn / 9.81)
+    lean = np.arctan2(left, body[:, 1])
+    needed = np.arctan(walk.speed * turn / 9.81)
     on = slice(round(fps), -round(fps))
     return float(np.polyfit(needed[on], lean[on], 1)[0]), float(
         np.corrcoef(needed[on], lean[on])[0, 1]
@@ -70,13 +77,16 @@ def turning_lean(world: Float[np.ndarray, "T 21 3"], fps: float = 20.0) -> tuple
 
 
 def _of_cycle(walk: Walk, k: Cycle, c: dict) -> dict[str, float]:
-    s, o, fps = k.side, 1 - k.side, walk.fps
+    s = k.side
+    o = 1 - k.side
+    fps = walk.fps
     own = {
         n: over_cycle(c[f"{n}{s}"], k)
         for n in ("thigh", "knee", "hand", "elbow", "toe_y", "foot_y", "pelvis_yaw")
     }
     both = {n: over_cycle(c[n], k) for n in ("hips_y", "lean", "head")}
-    time, v = (k.end - k.start) / fps, walk.speed[k.start : k.end].mean()
+    time = (k.end - k.start) / fps
+    v = walk.speed[k.start : k.end].mean()
     down = walk.down[k.start : k.end]
     hips = over_cycle(walk.world[:, 0], k)
     out = {
@@ -87,7 +97,8 @@ def _of_cycle(walk: Walk, k: Cycle, c: dict) -> dict[str, float]:
     }
     out |= {"double_support": (down.sum(1) == 2).mean(), "flight": (down.sum(1) == 0).mean()}
     out |= _feet(walk, k, own) | _pelvis(walk, k, hips, both["hips_y"], own, c)
-    out["lean"], out["lean_swing"] = both["lean"].mean(), np.ptp(_detrend(both["lean"]))
+    out["lean"] = both["lean"].mean()
+    out["lean_swing"] = np.ptp(_detrend(both["lean"]))
     head = over_cycle(walk.world[:, 12], k)
     out |= {
         "head_vertical": 1e3 * np.ptp(_detrend(head[:, 1])),
@@ -148,7 +159,8 @@ def _pelvis(
     lateral = lateral - lateral.mean()
     ahead = (np.gradient(walk.world[:, 0][:, [0, 2]], axis=0) * walk.fps * walk.travel).sum(-1)
     v = over_cycle(ahead, k)
-    thorax, pelvis = over_cycle(c[f"thorax_yaw{k.side}"], k), own["pelvis_yaw"]
+    thorax = over_cycle(c[f"thorax_yaw{k.side}"], k)
+    pelvis = own["pelvis_yaw"]
     wave = np.exp(-2j * np.pi * GRID[:-1])
     trail = np.degrees(np.angle(np.sum(pelvis[:-1] * wave) / np.sum(thorax[:-1] * wave))) % 360
     out = {"pelvis_vertical": 1e3 * np.ptp(y), "pelvis_top_at": 100 * ((-phase) % 0.5)}
@@ -235,9 +247,8 @@ def _kinematics(walk: Walk) -> dict[str, float]:
 def _root_frame(walk: Walk) -> np.ndarray:
     """Joints minus hips, facing removed, (T, 63)."""
     p = walk.world - walk.world[:, :1]
-    forward, left = (
-        walk.facing[:, None],
-        np.stack([walk.facing[:, 1], -walk.facing[:, 0]], -1)[:, None],
-    )
-    x, z = (p[..., [0, 2]] * left).sum(-1), (p[..., [0, 2]] * forward).sum(-1)
+    forward = walk.facing[:, None]
+    left = np.stack([walk.facing[:, 1], -walk.facing[:, 0]], -1)[:, None]
+    x = (p[..., [0, 2]] * left).sum(-1)
+    z = (p[..., [0, 2]] * forward).sum(-1)
     return np.stack([x, p[..., 1], z], -1).reshape(len(p), -1)

@@ -1,5 +1,6 @@
-"""From footprints to legs: the feet roll over heel and toe, the pelvis rides above, knees bend to
-fit.
+"""From footprints to legs.
+
+The feet roll over heel and toe, the pelvis rides above, knees bend to fit.
 
 Everything here is per frame, in the root frame (x left, y up, z ahead), metres and radians.
 """
@@ -43,8 +44,10 @@ def heel_rise(behind: Float[np.ndarray, "*T"]) -> Float[np.ndarray, "*T"]:
 
 
 def place_feet(steps: Steps, root_xz, heading, forward, run, style: Style) -> Feet:
-    """Roll each foot about its heel (after landing) or its toe (before leaving), and lift it in
-    between."""
+    """Roll each foot about its heel or its toe, and lift it in between.
+
+    About the heel after landing, about the toe before leaving.
+    """
     to_forward, to_left = (v[:, None] for v in forward_left(heading))
     offset = steps.ground - root_xz[:, None]
     x, z = (offset * to_left).sum(-1), (offset * to_forward).sum(-1)
@@ -53,7 +56,8 @@ def place_feet(steps: Steps, root_xz, heading, forward, run, style: Style) -> Fe
     pitch, pivot, lift = _roll(steps, x, z, yaw, forward[:, None], run[:, None], style)
     back = TOE_AHEAD - (TOE_AHEAD + HEEL_BEHIND) * pivot  # of the pivot, seen from the ankle
     sin, cos = np.sin(pitch), np.cos(pitch)
-    ahead_ankle, up_ankle = back - back * cos + ANKLE * sin, back * sin + ANKLE * cos + lift
+    ahead_ankle = back - back * cos + ANKLE * sin
+    up_ankle = back * sin + ANKLE * cos + lift
     rest = TOE_AHEAD - back
     ahead_toe, up_toe = back + rest * cos, lift - rest * sin
     s, c = np.sin(yaw), np.cos(yaw)
@@ -70,8 +74,10 @@ def _behind(x: np.ndarray, z: np.ndarray, yaw: np.ndarray) -> np.ndarray:
 
 
 def _clear(steps: Steps, x: np.ndarray) -> np.ndarray:
-    """A swinging foot goes round the other one: how far each moves outward (metres, left
-    positive)."""
+    """How far a swinging foot moves outward, to go round the other one.
+
+    In metres, left positive.
+    """
     short = softplus(0.095 - (x[:, 0] - x[:, 1]), 0.012)[:, None]
     return short * np.sin(np.pi * np.clip(steps.progress - 1, 0, 1)) ** 2 * np.array([1.0, -1.0])
 
@@ -83,7 +89,8 @@ def _roll(steps: Steps, x, z, yaw, forward, run, style: Style):
     heel_off = np.clip(forward / 1.1, 0, 1.0) ** 0.7 * steps.amount[:, None]
     degrees = np.where(curve > 0, curve * heel_off, curve * steps.toe_up)
     late = np.clip((progress - 0.4) / 0.2, 0, 1) * np.clip((1.45 - progress) / 0.4, 0, 1)
-    forced, up = heel_rise(_behind(x, z, yaw)) * late, np.maximum(degrees, 0)
+    forced = heel_rise(_behind(x, z, yaw)) * late
+    up = np.maximum(degrees, 0)
     degrees = degrees + softplus(forced - up, 1.5) - softplus(-up, 1.5)
     u = np.clip(progress - 1, 0, 1)
     pivot = np.where(progress > 1, u * u * (3 - 2 * u), (progress < 0.35) * 1.0)
@@ -94,8 +101,10 @@ def _roll(steps: Steps, x, z, yaw, forward, run, style: Style):
 
 
 def pelvis_height(clock, amount, forward, run, speed, style: Style) -> Float[np.ndarray, "T"]:
-    """Height of the Hips joint before the legs have their say: highest at mid-stance, lower when
-    faster."""
+    """Height of the Hips joint before the legs have their say.
+
+    Highest at mid-stance, lower when faster.
+    """
     swing = np.clip(0.055 * speed - 0.031, 0.012, 0.06) * style.bounce
     walk = 0.957 - (0.02 + 0.008 * (speed - 1.2) + 0.02 * softplus(speed - 1.35, 0.1)) * amount
     wave = periodic(HEIGHT, 2 * clock) * amount
@@ -118,8 +127,10 @@ def own_roll(
 def hips_within_reach(
     hips: Float[np.ndarray, "T 3"], rotation: Float[np.ndarray, "T 3 3"], feet: Feet
 ) -> Float[np.ndarray, "T 3"]:
-    """Lower the pelvis, smoothly, where a leg would have to be longer than it is; long steps pull
-    it along."""
+    """Lower the pelvis, smoothly, where a leg would have to be longer than it is.
+
+    Long steps pull it along.
+    """
     hips = hips.copy()
     sockets = [rotation @ OFFSETS[joint] for joint in (1, 5)]
     for side, socket in enumerate(sockets):
@@ -140,8 +151,10 @@ def hips_within_reach(
 def not_folded(
     hips: Float[np.ndarray, "T 3"], rotation: Float[np.ndarray, "T 3 3"], feet: Feet
 ) -> Feet:
-    """Lower a swinging foot that comes so near its hip that the knee would fold beyond 135 degrees
-    or so."""
+    """Lower a swinging foot that comes too near its hip.
+
+    The knee would fold beyond 135 degrees or so.
+    """
     sockets = np.stack([hips + rotation @ OFFSETS[j] for j in (1, 5)], 1)
     near = softplus(0.34 - np.linalg.norm(feet.ankle - sockets, axis=-1), 0.012)
     down = np.stack([0 * near, near, 0 * near], -1)
@@ -151,8 +164,10 @@ def not_folded(
 def bend_knee(
     hip: Float[np.ndarray, "T 3"], ankle: Float[np.ndarray, "T 3"], toward: Float[np.ndarray, "T 3"]
 ) -> Float[np.ndarray, "T 3"]:
-    """The knee of a two-bone leg from hip to ankle, on the side of `toward`; the ankle must be
-    within reach."""
+    """The knee of a two-bone leg from hip to ankle, on the side of `toward`.
+
+    The ankle must be within reach.
+    """
     gap = ankle - hip
     distance = np.linalg.norm(gap, axis=-1, keepdims=True)
     along = gap / distance

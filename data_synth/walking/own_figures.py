@@ -1,5 +1,6 @@
-"""What the walking data themselves score: spread of continuations, adherence, skating, lean in
-turns; and their limits.
+"""What the walking data themselves score.
+
+Spread of continuations, adherence, skating, lean in turns; and their limits.
 
 These stand beside every figure of a network that was trained on them.
 """
@@ -21,8 +22,10 @@ from .walks import continuations, dataset, random_control, walk
 
 
 def spreads(pasts: int, n: int, seconds: float, seed: int = 0) -> Float[np.ndarray, "pasts"]:
-    """Root-frame RMS spread (m) from 1 s on of n continuations, for `pasts` pasts and the controls
-    they had anyway."""
+    """Root-frame RMS spread (m) from 1 s on of n continuations.
+
+    For `pasts` pasts and the controls they had anyway.
+    """
     found = []
     for k, whole in enumerate(dataset(pasts, 4 + seconds, seed)):
         later = continuations(whole.cut(70, 80), whole.control[80:], n, seed + k)
@@ -33,9 +36,12 @@ def spreads(pasts: int, n: int, seconds: float, seed: int = 0) -> Float[np.ndarr
 def own_figures(
     clips: int = 60, pasts: int = 20, n: int = 50, seconds: float = 12.0
 ) -> dict[str, float]:
-    """Means over clips: spread (m), adherence and skating (m/s), slope and correlation of the lean
-    in turns."""
-    apart, walks = spreads(pasts, n, seconds), dataset(clips, seconds, 1)
+    """Means over clips.
+
+    Spread (m), adherence and skating (m/s), slope and correlation of the lean in turns.
+    """
+    apart = spreads(pasts, n, seconds)
+    walks = dataset(clips, seconds, 1)
     out = {
         "spread_m": apart.mean(),
         "spread_smallest_m": apart.min(),
@@ -50,24 +56,22 @@ def own_figures(
 
 
 def limits(clips: int = 600, seconds: float = 12.0, spots: int = 60) -> dict[str, float]:
-    """What no frame of `clips` walks exceeds, how near the feet come on `spots` fast turns, and the
-    speed of making."""
+    """What no frame of `clips` walks exceeds.
+
+    With it how near the feet come on `spots` fast turns, and the speed of making.
+    """
     begun = time.process_time()
     walks = dataset(clips, seconds, 1)
     out = {"made_per_cpu_second": clips * seconds / (time.process_time() - begun)}
-    knees, controls = (
-        np.concatenate([knee_angles(c) for c in walks]),
-        np.concatenate([c.control for c in walks]),
-    )
+    knees = np.concatenate([knee_angles(c) for c in walks])
+    controls = np.concatenate([c.control for c in walks])
     out |= {"knee_smallest_deg": knees.min(), "knee_largest_deg": knees.max()}
     out["lowest_joint_mm"] = 1e3 * min(c.poses[..., 1].min() for c in walks)
     out["planted_toe_mm_a_frame"] = 1e3 * max(planted_slip(c) for c in walks)
     out["bone_error_m"] = max(bone_error(c) for c in walks)
     out |= {"ahead_slowest_mps": controls[:, 0].min(), "ahead_fastest_mps": controls[:, 0].max()}
-    out["aside_mps"], out["turning_dps"] = (
-        np.abs(controls[:, 1]).max(),
-        np.degrees(np.abs(controls[:, 2]).max()),
-    )
+    out["aside_mps"] = np.abs(controls[:, 1]).max()
+    out["turning_dps"] = np.degrees(np.abs(controls[:, 2]).max())
     out["speed_times_turning_mps2"] = np.abs(controls[:, 0] * controls[:, 2]).max()
     near = np.concatenate(
         [feet_apart(c)[fast] for c, fast in (_spot(k, seconds) for k in range(spots))]
@@ -78,10 +82,8 @@ def limits(clips: int = 600, seconds: float = 12.0, spots: int = 60) -> dict[str
 
 def knee_angles(clip: Clip) -> Float[np.ndarray, "T 2"]:
     """How far the knees are bent (degrees, 0 straight), left and right."""
-    thigh, shank = (
-        clip.poses[:, [2, 6]] - clip.poses[:, [1, 5]],
-        clip.poses[:, [3, 7]] - clip.poses[:, [2, 6]],
-    )
+    thigh = clip.poses[:, [2, 6]] - clip.poses[:, [1, 5]]
+    shank = clip.poses[:, [3, 7]] - clip.poses[:, [2, 6]]
     cos = (thigh * shank).sum(-1) / np.linalg.norm(thigh, axis=-1) / np.linalg.norm(shank, axis=-1)
     return np.degrees(np.arccos(np.clip(cos, -1, 1)))
 
@@ -98,8 +100,10 @@ def bone_error(clip: Clip) -> float:
 
 
 def feet_apart(clip: Clip) -> Float[np.ndarray, "T"]:
-    """Smallest distance (m) of the lines from ankle to toe of both feet, at eleven points of
-    each."""
+    """Smallest distance (m) of the lines from ankle to toe of both feet.
+
+    At eleven points of each.
+    """
     share = np.linspace(0, 1, 11)[:, None]
     left, right = (
         p[:, :1] + share * (p[:, 1:] - p[:, :1]) for p in (clip.poses[:, 3:5], clip.poses[:, 7:9])

@@ -166,8 +166,10 @@ FACTORS = ("cadence", "bounce", "sway", "lift", "pelvis_yaw", "chest_yaw", "arms
 
 
 def draw_style(name: str | None, rng: np.random.Generator) -> str:
-    """The given name, or one drawn by SHARES; raises ValueError for a name that is not in
-    STYLES."""
+    """The given name, or one drawn by SHARES.
+
+    Raises ValueError for a name that is not in STYLES.
+    """
     if name is None:
         return str(rng.choice(list(SHARES), p=list(SHARES.values())))
     if name not in STYLES:

@@ -1,5 +1,7 @@
-"""Trunk, head and arms over a moving pelvis: the chest trails it, the arms swing with the opposite
-leg."""
+"""Trunk, head and arms over a moving pelvis.
+
+The chest trails it, the arms swing with the opposite leg.
+"""
 
 from dataclasses import dataclass
 
@@ -19,8 +21,10 @@ DOWN = np.array([0.0, -1.0, 0.0])
 
 @dataclass(frozen=True)
 class Trunk:
-    """Angles in radians per frame: chest yaw (counter-clockwise), forward lean, roll (left side
-    up), head."""
+    """Angles in radians per frame.
+
+    Chest yaw (counter-clockwise), forward lean, roll (left side up), head.
+    """
 
     yaw: Float[np.ndarray, "T"]
     lean: Float[np.ndarray, "T"]
@@ -91,8 +95,10 @@ def spine(
 def free_arm(
     clock, side: int, amount, run, speed, swing, noise: Float[np.ndarray, "T 2"], style: Style
 ):
-    """(swing, abduction, twist, elbow) of an arm that just swings; the hand's angle follows the
-    measured curve."""
+    """(swing, abduction, twist, elbow) of an arm that just swings.
+
+    The hand's angle follows the measured curve.
+    """
     p = clock if side == 0 else clock + 0.5
     size = (
         (27 + 17 * np.clip(speed, 0, 1.8))
@@ -123,8 +129,10 @@ def arm(
     joint: int,
     pose: Float[np.ndarray, "T 4"],
 ):
-    """Shoulder, elbow, hand and finger positions of the arm that starts at `joint` (13 left, 17
-    right)."""
+    """Shoulder, elbow, hand and finger positions of one arm.
+
+    It starts at `joint` (13 left, 17 right).
+    """
     side = 1.0 if joint == 13 else -1.0
     swing, abduct, twist, elbow = np.radians(pose).T
     shoulder = neck + shoulders @ OFFSETS[joint]
@@ -139,8 +147,10 @@ def arm(
 def both_arms(
     neck, shoulders, clock, amount, run, speed, doing: Behaviours, noise, wave, style: Style
 ) -> list:
-    """The eight joints of both arms, left first; `noise` (T, 5): a pair per arm, and the swing they
-    share."""
+    """The eight joints of both arms, left first.
+
+    `noise` (T, 5): a pair per arm, and the swing they share.
+    """
     joints = []
     for side, joint in enumerate((13, 17)):
         swing = swing_factor(doing) * np.exp(0.16 * noise[:, 4])

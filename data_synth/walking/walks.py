@@ -1,5 +1,6 @@
-"""Walks: a commanded path in, a figure that walks it out; and several right continuations of one
-past.
+"""Walks: a commanded path in, a figure that walks it out.
+
+And several right continuations of one past.
 
     python -m data_synth walks --out FOLDER [--clips 20] [--seconds 12] [--seed 0]
 
@@ -27,8 +28,9 @@ __all__ = ["continuations", "dataset", "random_control", "walk"]
 
 
 def walk(control: Float[np.ndarray, "T 3"], seed: int, style: str | Style | None = None) -> Clip:
-    """A walk along this control (m/s ahead, m/s left, rad/s; 20 frames/s); the same seed gives the
-    same bytes.
+    """A walk along this control (m/s ahead, m/s left, rad/s; 20 frames/s).
+
+    The same seed gives the same bytes.
 
     `style`: a name of styles.STYLES (the person is drawn from it), a Style taken as it is, or None
     to draw one.
@@ -42,8 +44,9 @@ def walk(control: Float[np.ndarray, "T 3"], seed: int, style: str | Style | None
 
 
 def continuations(past: Clip, control: Float[np.ndarray, "n 3"], n: int, seed: int) -> list[Clip]:
-    """n walks of len(control) frames that go on from the last frame of `past`, each right, each
-    different.
+    """n walks of len(control) frames that go on from the last frame of `past`.
+
+    Each is right, and each is different.
 
     control[0] belongs to the first new frame; the step into it is the past's last control. Person,
     pose, clock, footprints and behaviours under way come from the past; noise after it is drawn
@@ -54,7 +57,8 @@ def continuations(past: Clip, control: Float[np.ndarray, "n 3"], n: int, seed: i
     made, control = past.info.get("made"), _checked(control)
     if made is None:
         raise ValueError(
-            f"clip {past.source!r} was not made by data_synth.walking, so its own continuations are unknown"
+            f"clip {past.source!r} was not made by data_synth.walking, "
+            "so its own continuations are unknown"
         )
     end = _end_in(past)
     whole = np.concatenate([made["control"][:end], control])
@@ -70,8 +74,10 @@ def continuations(past: Clip, control: Float[np.ndarray, "n 3"], n: int, seed: i
 def dataset(
     n_clips: int, seconds: float, seed: int, styles: Sequence[str] | None = None
 ) -> list[Clip]:
-    """n_clips walks of `seconds`, controls of every kind, styles drawn by their shares or evenly
-    from `styles`."""
+    """n_clips walks of `seconds`, controls of every kind.
+
+    Styles are drawn by their shares or evenly from `styles`.
+    """
     return [
         drawn_walk(seconds, np.random.default_rng([seed, 4, k]), styles) for k in range(n_clips)
     ]
@@ -94,7 +100,8 @@ def _checked(control: np.ndarray) -> np.ndarray:
         )
     if not np.isfinite(control).all():
         raise ValueError(
-            f"control has a value that is not finite in frame {int(np.argmin(np.isfinite(control).all(1)))}"
+            "control has a value that is not finite in frame "
+            f"{int(np.argmin(np.isfinite(control).all(1)))}"
         )
     if (np.abs(control) > (4.5, 1.5, 4.5)).any():
         t = int(np.argmax((np.abs(control) > (4.5, 1.5, 4.5)).any(1)))

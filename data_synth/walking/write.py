@@ -13,8 +13,10 @@ from .walks import dataset
 
 
 def save_npz(clip: Clip, path: Path) -> None:
-    """Poses, control, contacts, fps and source as plain arrays, no pickle; written aside, then
-    renamed."""
+    """Poses, control, contacts, fps and source as plain arrays.
+
+    Written aside, then renamed.
+    """
     with replacing(path) as aside, open(aside, "wb") as f:
         np.savez_compressed(
             f,
@@ -28,7 +30,7 @@ def save_npz(clip: Clip, path: Path) -> None:
 
 
 def main(arguments: list[str] | None = None) -> None:
-    """python -m data_synth walks --out FOLDER"""
+    """Write synthetic walks: `python -m data_synth walks --out FOLDER`."""
     parser = argparse.ArgumentParser(
         prog="python -m data_synth walks", description="Write synthetic walks."
     )

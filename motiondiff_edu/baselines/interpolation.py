@@ -14,8 +14,9 @@ from ..motion.skeleton import BONES
 def linear(
     positions: Float[np.ndarray, "T J 3"], known: Bool[np.ndarray, "T J"]
 ) -> Float[np.ndarray, "T J 3"]:
-    """Each joint goes straight from one given place to the next.  Raises ValueError for a joint
-    that is never given.
+    """Each joint goes straight from one given place to the next.
+
+    Raises ValueError for a joint that is never given.
 
     Notebook: 15
     """
@@ -33,8 +34,9 @@ def linear(
 def spherical(
     positions: Float[np.ndarray, "T J 3"], known: Bool[np.ndarray, "T J"]
 ) -> Float[np.ndarray, "T J 3"]:
-    """The pelvis goes straight; every bone turns evenly from one given direction to the next, and
-    keeps its length.
+    """The pelvis goes straight.
+
+    Every bone turns evenly from one given direction to the next, and keeps its length.
 
     A bone counts as given where both of its ends are; given joints stay where they are.
     Raises ValueError for a joint that is never given.  Notebook: 15
@@ -57,8 +59,9 @@ def spherical(
 def _slerp(
     vectors: Float[np.ndarray, "K 3"], at: np.ndarray, times: np.ndarray
 ) -> Float[np.ndarray, "T 3"]:
-    """Vectors between those at the frames `at`: directions on the great circle, lengths on a
-    straight line.
+    """Vectors between those at the frames `at`.
+
+    Directions on the great circle, lengths on a straight line.
 
     Opposite directions turn by any of the great circles between them.
     """

@@ -1,7 +1,9 @@
-"""How far is each way of filling in from the true conditional? Judged where that is known: on
-Gaussian mixtures.
+"""How far is each way of filling in from the true conditional?
 
-    wanted: p(unknown | known) of a mixture (`exact.conditional`); asked: the exact denoiser, so the method alone errs
+Judged where that is known: on Gaussian mixtures.
+
+    wanted: p(unknown | known) of a mixture (`exact.conditional`)
+    asked:  the exact denoiser, so the method alone errs
 Ways: masked sampling (MoFusion 4.4), with and without resampling, in few steps or many;
 there-and-back (MoDiff III-E), which draws the future from the past and the past from the future;
 the same with what is known kept in view, which is Gibbs sampling; and draws from the wanted itself,
@@ -11,23 +13,24 @@ Source: MoFusion 4.4; MoDiff III-E; the comparison is ours.  Notebook: 15
 
 from collections.abc import Iterable, Iterator
 from dataclasses import asdict, dataclass
-from functools import cached_property, partial
+from functools import cached_property
 
 import torch
 from jaxtyping import Bool, Float
 from torch import Tensor
 
-from ..beyond.guidance import blended
-from ..ddpm import Denoiser, Schedule
+from ..beyond.guidance import blended, guided
+from ..ddpm import Denoiser, Schedule, timesteps
 from ..exact import Mixture, conditional, mixture, sample_mixture
-from ..inbetweening import inpaint_steps
+from ..inbetweening import inpaint_steps, resampled
 from .mixture_fit import responsibilities
 
 
 @dataclass(frozen=True, eq=False)
 class Question:
-    """A mixture, its exact denoiser, and some of its entries given. `past` is what there-and-back
-    starts from.
+    """A mixture, its exact denoiser, and some of its entries given.
+
+    `past` is what there-and-back starts from.
 
     Only unknown entries of the past are judged where a past is named, so that all ways answer the
     same question.
@@ -54,8 +57,10 @@ class Question:
 
 @dataclass(frozen=True)
 class Way:
-    """How to fill in: "exact", "masked" (with what `inpaint_steps` takes), "there-and-back" or
-    "gibbs" (`rounds`)."""
+    """A way to fill in.
+
+    "exact", "masked" (with what `inpaint_steps` takes), "there-and-back" or "gibbs" (`rounds`).
+    """
 
     kind: str
     steps: int = 50
@@ -97,8 +102,11 @@ ROUNDS = (
 
 
 class Rest:
-    """Draws from p(the rest | these entries) of a mixture, for many values of these entries at
-    once.   Notebook: 15"""
+    """Draws from p(the rest | these entries) of a mixture.
+
+    For many values of these entries at once.
+    Notebook: 15
+    """
 
     def __init__(self, given: Mixture, known: Bool[Tensor, "D"]):
         covariances = torch.einsum("kia,ka,kja->kij", given.axes, given.variances, given.axes)
@@ -111,8 +119,10 @@ class Rest:
         self.root = axes * variances.clamp(min=0).sqrt()[:, None]
 
     def draw(self, x: Float[Tensor, "N D"], generator: torch.Generator) -> Float[Tensor, "N D"]:
-        """x with the rest drawn anew: first the part that its known entries speak for, then a point
-        of it."""
+        """x with the rest drawn anew.
+
+        First the part that its known entries speak for, then a point of it.
+        """
         value, filled = x[:, self.known], x.clone()
         part = torch.multinomial(responsibilities(self.seen, value), 1, generator=generator)[:, 0]
         noise = torch.randn(len(x), self.root.shape[-1], generator=generator, dtype=torch.float64)
@@ -135,8 +145,9 @@ def there_and_back(
     generator: torch.Generator,
     keep: bool = False,
 ) -> Float[Tensor, "N D"]:
-    """`rounds` times: the future drawn given the past, the past given the future, and the holes
-    filled from that.
+    """Draw the future given the past, then the past given the future, `rounds` times.
+
+    The holes are filled from each new past.
 
     What is known of the future is given, too. As in III-E the way back does not look at what is
     known of the past: it reaches the holes through the future only. `keep`: it does look, which
@@ -146,10 +157,8 @@ def there_and_back(
     if question.past is None:
         raise ValueError("there-and-back needs a past to start from: name it in the question")
     known, past = question.known, question.past
-    ahead, back = (
-        Rest(question.truth, past | known),
-        Rest(question.truth, (~past | known) if keep else ~past),
-    )
+    ahead = Rest(question.truth, past | known)
+    back = Rest(question.truth, (~past | known) if keep else ~past)
     for _ in range(rounds):
         x = ahead.draw(x, generator)
         x = torch.where(known, x, back.draw(x, generator))
@@ -159,7 +168,10 @@ def there_and_back(
 def answers(
     question: Question, way: Way, n: int, generator: torch.Generator
 ) -> Float[Tensor, "n D"]:
-    """n samples by one way: the known entries as they are, the others filled in.  Notebook: 15"""
+    """n samples by one way: the known entries as they are, the others filled in.
+
+    Notebook: 15
+    """
     truth, known = question.truth, question.known
     values = question.values.double().where(known, 0.0).expand(n, -1)
     if way.kind == "exact":
@@ -167,23 +179,14 @@ def answers(
     if way.kind == "masked":
         shape = (n, question.frames, -1)
         start = torch.randn(values.shape, generator=generator, dtype=torch.float64).view(shape)
-        blend = None if way.blend is None else partial(blended, fade=way.blend)
-        options = {
-            "steps": way.steps,
-            "resample": way.resample,
-            "blend": blend,
-            "guidance": way.guidance,
-        }
-        given, mask = values.reshape(shape), known.expand(n, -1).reshape(shape)
-        loop = inpaint_steps(
-            _framed(question.denoise),
-            start,
-            question.schedule,
-            given,
-            mask,
-            generator=generator,
-            **options,
-        )
+        denoise, schedule = _framed(question.denoise), question.schedule
+        held = values.reshape(shape), known.expand(n, -1).reshape(shape)
+        if way.guidance:
+            denoise = guided(denoise, schedule, *held, way.guidance)
+        if way.blend is not None:
+            denoise = blended(denoise, schedule, *held, way.blend)
+        steps = resampled(timesteps(schedule.S, way.steps), way.resample)
+        loop = inpaint_steps(denoise, start, schedule, *held, steps=steps, generator=generator)
         *_, last = loop
         return last.x_s.flatten(1)
     x = torch.where(
@@ -212,7 +215,10 @@ class Errors:
 
 
 def errors_of(x: Float[Tensor, "N D"], question: Question) -> Errors:
-    """Samples against the true conditional.  Notebook: 15"""
+    """Samples against the true conditional.
+
+    Notebook: 15
+    """
     wanted, judged = question.wanted, question.judged[~question.known]
     mean, variance = wanted.mean()[judged], wanted.covariance().diagonal()[judged]
     made = x[:, question.judged]

@@ -1,5 +1,6 @@
-"""Questions with a known answer about a body: windows of walking under a fitted mixture, and what
-is given of one.
+"""Questions with a known answer about a body.
+
+Windows of walking under a fitted mixture, and what is given of one.
 
 A window has `frames` poses, `every` frames of the recording apart; its first half is the past.
 Standardised columns.
@@ -26,8 +27,10 @@ from .mixture_fit import WindowMixture, fit_windows
 
 @dataclass(frozen=True, eq=False)
 class WalkMixture:
-    """A mixture of short windows of walking, and the scaler (one entry a coordinate of a pose) back
-    to metres."""
+    """A mixture of short windows of walking, and the scaler back to metres.
+
+    The scaler has one entry for each coordinate of a pose.
+    """
 
     fitted: WindowMixture
     scaler: Scaler
@@ -50,8 +53,10 @@ class WalkMixture:
         schedule: Schedule,
         past: bool = False,
     ) -> Question:
-        """What is the rest of this window? `past`: of its first half only, with there-and-back
-        among the ways."""
+        """What is the rest of this window?
+
+        `past`: of its first half only, with there-and-back among the ways.
+        """
         columns = torch.from_numpy(np.repeat(known, 3, axis=1)).flatten()
         half = torch.arange(len(columns)) < (self.frames // 2) * 3 * J
         denoise = self.fitted.denoiser(schedule)
@@ -69,7 +74,9 @@ def fit_walks(
     *,
     generator: torch.Generator | None = None,
 ) -> WalkMixture:
-    """Fit K Gaussians to all windows of these walks, a fifth of a second apart.  Notebook: 15
+    """Fit K Gaussians to all windows of these walks, a fifth of a second apart.
+
+    Notebook: 15
 
     Raises ValueError where no clip is long enough, and as `fit_windows`.
     """
@@ -91,7 +98,10 @@ def fit_walks(
 
 
 def holes(frames: int) -> dict[str, Bool[np.ndarray, "T J"]]:
-    """What may be given of a window: a seed, keyframes, a part of the body.  Notebook: 15"""
+    """What may be given of a window: a seed, keyframes, a part of the body.
+
+    Notebook: 15
+    """
     return {
         "seed": seed(frames, frames // 2),
         "keyframes": keyframes(frames, frames),
@@ -100,8 +110,10 @@ def holes(frames: int) -> dict[str, Bool[np.ndarray, "T J"]]:
 
 
 def holes_in_the_past(frames: int) -> dict[str, Bool[np.ndarray, "T J"]]:
-    """What may be missing from its first half: the frames between its ends, a leg; of the second,
-    all is missing."""
+    """What may be missing from its first half: the frames between its ends, a leg.
+
+    Of the second, all is missing.
+    """
     past = np.arange(frames)[:, None] < frames // 2
     ends = np.isin(np.arange(frames), (0, frames // 2 - 1))[:, None]
     leg = np.array(

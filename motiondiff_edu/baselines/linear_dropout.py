@@ -1,5 +1,6 @@
-"""Dropout of the past in least squares, in closed form: every kind of it is a kind of ridge
-regression.
+"""Dropout of the past in least squares, in closed form.
+
+Every kind of it is a kind of ridge regression.
 
 Least squares knows a dropped past x~ by two means over what is drawn at random, no more:
     E[x~] = keep x,    E[x~ x~^T] = share * x x^T + floor I      (* entry by entry)
@@ -26,8 +27,9 @@ Drop = Callable[
 
 @dataclass(frozen=True, eq=False)
 class Moments:
-    """What a dropout leaves of the past on average: E[x~] = keep x, E[x~ x~^T] = share * x x^T +
-    floor I.
+    """What a dropout leaves of the past on average.
+
+    E[x~] = keep x, E[x~ x~^T] = share * x x^T + floor I.
 
     Those made here raise ValueError for a rate outside 0..1.  Notebook: 09
     """
@@ -39,8 +41,10 @@ class Moments:
 
 @dataclass(frozen=True, eq=False)
 class Products:
-    """All that least squares takes from the windows: means over them of x x^T, x y^T and y y^T, in
-    standard units."""
+    """All that least squares takes from the windows.
+
+    Means over them of x x^T, x y^T and y y^T, in standard units.
+    """
 
     xx: Float[Tensor, "F F"]
     xy: Float[Tensor, "F D"]
@@ -68,15 +72,19 @@ def noised(rate: float, alpha_bar: Float[Tensor, "S"]) -> Moments:
 
 
 def zeroed(rate: float) -> Moments:
-    """Whole pasts set to zero: the penalty has the data's own shape, and shrinks all of the past
-    alike."""
+    """Whole pasts set to zero.
+
+    The penalty has the data's own shape, and shrinks all of the past alike.
+    """
     check_rate(rate)
     return Moments(1 - rate, torch.tensor(1 - rate, dtype=torch.float64))
 
 
 def frames_zeroed(rate: float, T_h: int, D: int) -> Moments:
-    """MoGlow's frame dropout: two frames are both there with (1 - rate)^2, a frame and itself with
-    1 - rate."""
+    """MoGlow's frame dropout.
+
+    Two frames are both there with (1 - rate)^2, a frame and itself with 1 - rate.
+    """
     check_rate(rate)
     frame = torch.arange(T_h * D) // D
     alike = frame[:, None] == frame
@@ -84,8 +92,10 @@ def frames_zeroed(rate: float, T_h: int, D: int) -> Moments:
 
 
 def entries_rescaled(rate: float, entries: int) -> Moments:
-    """nn.Dropout on the past: entries set to zero, the others divided by 1 - rate, so that the mean
-    stays."""
+    """nn.Dropout on the past.
+
+    Entries set to zero, the others divided by 1 - rate, so that the mean stays.
+    """
     check_rate(rate)
     if rate == 1:
         raise ValueError(
@@ -101,8 +111,9 @@ def products(
     draws: int = 1,
     generator: torch.Generator | None = None,
 ) -> Products:
-    """The products of all windows, with the past as `drop` leaves it in `draws` tries at each
-    window.
+    """The products of all windows, with the past as `drop` leaves it.
+
+    It is dropped `draws` times at each window.
 
     Raises ValueError unless the windows predict one pose (T_p = 1).  Notebook: 09
     """
@@ -122,7 +133,9 @@ def products(
 def expected(clean: Products, moments: Moments) -> Products:
     """What `products(windows, drop)` tends to with many draws, from the products of clean pasts.
     Notebook: 09"""
-    P, xx, xy = clean.past, clean.xx.clone(), clean.xy.clone()
+    P = clean.past
+    xx = clean.xx.clone()
+    xy = clean.xy.clone()
     xx[:P, :P] = moments.share * xx[:P, :P] + moments.floor * torch.eye(P, dtype=xx.dtype)
     xx[:P, P:] *= moments.keep
     xx[P:, :P] *= moments.keep
@@ -131,8 +144,9 @@ def expected(clean: Products, moments: Moments) -> Products:
 
 
 def fit(dropped: Products, clean: Products | None = None, ridge: float = 1e-6) -> LinearGaussian:
-    """Least squares on dropped pasts; the walker's noise is what this leaves over on clean ones, as
-    it will be used.
+    """Least squares on dropped pasts.
+
+    The walker's noise is what this leaves over on clean ones, as it will be used.
 
     Without `clean` the products are those of clean pasts: ordinary least squares.  Notebook: 09
     """
@@ -145,8 +159,9 @@ def fit(dropped: Products, clean: Products | None = None, ridge: float = 1e-6) -
 
 
 def contributions(walker: LinearGaussian, clean: Products) -> tuple[float, float]:
-    """How far past and control move the next pose: RMS of either's part of the sum, in standard
-    deviations.
+    """How far past and control move the next pose.
+
+    RMS of either's part of the sum, in standard deviations.
 
     Notebook: 09
     """

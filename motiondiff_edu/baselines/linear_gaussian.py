@@ -1,5 +1,6 @@
-"""A walker with no network: the next pose is a linear function of past and control, plus Gaussian
-noise.
+"""A walker with no network.
+
+The next pose is a linear function of past and control, plus Gaussian noise.
 
     next = W [past T_h poses, T_h rows of control, 1] + L z,   z ~ N(0, I)
 W is ridge regression, L L^T the covariance of what it leaves over: a vector autoregression with
@@ -46,8 +47,9 @@ class LinearGaussian:
         return regressors(past, control[:, : self.T_h]) @ self.weight
 
     def window_sampler(self, steps: int | None = None, spread: float = 1.0) -> WindowSampler:
-        """Draw the next pose; `spread` scales the noise (0: the mean). Without diffusion, `steps`
-        changes nothing.
+        """Draw the next pose; `spread` scales the noise (0: the mean).
+
+        Without diffusion, `steps` changes nothing.
 
         Notebook: 07
         """
@@ -59,8 +61,9 @@ class LinearGaussian:
         return sample
 
     def growth(self) -> float:
-        """The factor by which the longest-lived error changes in a frame: above 1 it grows for
-        ever.
+        """The factor by which the longest-lived error changes in a frame.
+
+        Above 1 it grows for ever.
 
         The largest |eigenvalue| of the companion matrix, which moves T_h poses one frame on.
         Notebook: 07
@@ -75,7 +78,10 @@ class LinearGaussian:
 def regressors(
     past: Float[Tensor, "B T_h D"], control: Float[Tensor, "B T_h C"]
 ) -> Float[Tensor, "B F"]:
-    """One row for each window: all its past poses, the control beside them, and 1.  Notebook: 07"""
+    """One row for each window: all its past poses, the control beside them, and 1.
+
+    Notebook: 07
+    """
     return torch.cat(
         [past.flatten(1), control.flatten(1), torch.ones(len(past), 1).to(past)], dim=1
     )
@@ -88,7 +94,8 @@ def design(windows: Windows) -> tuple[Float[Tensor, "K F"], Float[Tensor, "K D"]
     """
     if windows.T_p != 1:
         raise ValueError(
-            f"this model predicts one pose at a time; make the windows with T_p=1, not {windows.T_p}"
+            "this model predicts one pose at a time; "
+            f"make the windows with T_p=1, not {windows.T_p}"
         )
     rows = windows.starts[:, None] + torch.arange(windows.T_h + 1)
     poses, control = windows.poses.double()[rows], windows.control.double()[rows[:, :-1]]
@@ -96,8 +103,9 @@ def design(windows: Windows) -> tuple[Float[Tensor, "K F"], Float[Tensor, "K D"]
 
 
 def fit(windows: Windows, ridge: float = 1e-3) -> LinearGaussian:
-    """Least squares over all windows: W = (X^T X + ridge K I)^-1 X^T Y, K windows; L from the
-    residuals' covariance.
+    """Least squares over all windows: W = (X^T X + ridge K I)^-1 X^T Y, K windows.
+
+    L from the residuals' covariance.
 
     Raises ValueError unless the windows predict one pose (T_p = 1).  Notebook: 07
     """
@@ -111,7 +119,10 @@ def fit(windows: Windows, ridge: float = 1e-3) -> LinearGaussian:
 def fitted(
     windows: Windows, weight: Float[Tensor, "F D"], covariance: Float[Tensor, "D D"]
 ) -> LinearGaussian:
-    """The walker with these weights, whose noise has this covariance.  Notebook: 07, 09"""
+    """The walker with these weights, whose noise has this covariance.
+
+    Notebook: 07, 09
+    """
     spread = torch.linalg.cholesky(
         covariance + 1e-12 * torch.eye(len(covariance), dtype=torch.float64)
     )

@@ -1,5 +1,6 @@
-"""A Gaussian mixture fitted to short windows of motion: motion whose every conditional is known
-exactly.
+"""A Gaussian mixture fitted to short windows of motion.
+
+Motion whose every conditional is known exactly.
 
     x = m + W z + e,   z ~ sum_k w_k N(mu_k, C_k),   e ~ N(0, rest I) across W
 W are the first principal axes of the windows, the mixture in them is fitted by expectation and
@@ -15,6 +16,7 @@ from functools import cached_property
 
 import torch
 from jaxtyping import Float
+from sklearn.mixture import GaussianMixture
 from torch import Tensor
 
 from ..ddpm import Denoiser, Schedule, at
@@ -33,52 +35,30 @@ def fit_mixture(
     K: int,
     *,
     ridge: float = 1e-3,
-    rounds: int = 50,
+    rounds: int = 200,
     generator: torch.Generator | None = None,
 ) -> Mixture:
-    """Fit K Gaussians by EM, from K of the points drawn far apart; every covariance gets `ridge` on
-    its diagonal.
+    """Fit K Gaussians by EM (scikit-learn's), begun at the clusters of k-means; every covariance
+    gets `ridge` on its diagonal.
 
-    Expectation: r_nk = share of part k in x_n. Maximisation: w_k = mean r_nk; m_k and C_k, means
-    weighed by r_nk. A part that loses its points keeps a point's weight and stays where it was, so
-    that none vanishes.
-    Raises ValueError for fewer points than parts.  Notebook: 15
+    Raises ValueError for fewer different points than parts.  Notebook: 15
     """
-    x, N = x.double(), len(x)
-    if N < K:
-        raise ValueError(f"{K} parts need as many points at least, not {N}")
-    means = _far_apart(x, K, generator)
-    share = torch.nn.functional.one_hot(torch.cdist(x, means).argmin(1), K).double()
-    even = ridge * torch.eye(x.shape[1], dtype=torch.float64)
-    for _ in range(rounds):
-        mass = share.sum(0).clamp(min=1.0)
-        missing = mass - share.sum(
-            0
-        )  # what a part lacks to a point's weight lies where the part is
-        means = (share.T @ x + missing[:, None] * means) / mass[:, None]
-        off = x - means[:, None]
-        covariances = (share.T[..., None] * off).mT @ off / mass[:, None, None]
-        fitted = mixture(mass, means, covariances + even)
-        share = responsibilities(fitted, x)
-    return fitted
-
-
-def _far_apart(
-    x: Float[Tensor, "N D"], K: int, generator: torch.Generator | None
-) -> Float[Tensor, "K D"]:
-    """k-means++: each next point is drawn with a chance that grows as its squared distance from
-    those there are."""
-    chosen = x[torch.randint(len(x), (1,), generator=generator)]
-    while len(chosen) < K:
-        away = torch.cdist(x, chosen).min(1).values.square() + 1e-12
-        chosen = torch.cat([chosen, x[torch.multinomial(away, 1, generator=generator)]])
-    return chosen
+    x = x.double()
+    different = len(x.unique(dim=0))
+    if different < K:
+        raise ValueError(f"{K} parts need as many different points at least, not {different}")
+    seed = int(torch.randint(2**31 - 1, (1,), generator=generator))
+    fitted = GaussianMixture(K, reg_covar=ridge, max_iter=rounds, random_state=seed).fit(x.numpy())
+    parts = fitted.weights_, fitted.means_, fitted.covariances_
+    return mixture(*(torch.from_numpy(part) for part in parts))
 
 
 @dataclass(frozen=True, eq=False)
 class WindowMixture:
-    """A mixture in a few principal axes (the columns of `basis`), and the same small variance
-    across all others."""
+    """A mixture in a few principal axes, with the same small variance across all others.
+
+    The axes are the columns of `basis`.
+    """
 
     inside: Mixture
     mean: Float[Tensor, "D"]
@@ -99,8 +79,10 @@ class WindowMixture:
         )
 
     def denoiser(self, schedule: Schedule) -> Denoiser:
-        """The exact denoiser, eps_hat = E[eps | x_s]: `exact_denoiser` of the whole, at the cost of
-        the axes alone."""
+        """The exact denoiser, eps_hat = E[eps | x_s].
+
+        `exact_denoiser` of the whole, at the cost of the axes alone.
+        """
 
         def denoise(x_s: Tensor, s: Tensor) -> Tensor:
             x = x_s.double()
@@ -118,8 +100,9 @@ class WindowMixture:
 def fit_windows(
     x: Float[Tensor, "N D"], K: int = 5, axes: int = 30, *, generator: torch.Generator | None = None
 ) -> WindowMixture:
-    """Fit K Gaussians in the first principal axes of standardised windows; what is left over is
-    spread evenly.
+    """Fit K Gaussians in the first principal axes of standardised windows.
+
+    What is left over is spread evenly.
 
     No covariance is narrower than that rest.  Raises ValueError for more axes than windows or
     columns.   Notebook: 15

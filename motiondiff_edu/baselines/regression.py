@@ -1,5 +1,6 @@
-"""Dance by regression: one right answer for each song, the mean of all the dances it might have
-had.
+"""Dance by regression.
+
+One right answer for each song, the mean of all the dances it might have had.
 
 No noise goes in, so the same song gives the same dance; where many continuations are right, the
 mean of them is what minimises the squared error, and a mean of dances hardly dances.
@@ -18,14 +19,14 @@ REGRESSION = TransformerConfig(deterministic=True)
 
 
 def regression_loss(
-    windows: DanceWindows, *, batch: int = 32, shake: float = 0.0
+    windows: DanceWindows, *, batch: int = 32, gain_noise: float = 0.0
 ) -> Callable[[nn.Module, torch.Generator], Tensor]:
     """Mean squared error of the motion itself, as a `loss_fn` for `training.train_steps`.
     Notebook: 14"""
 
     def loss_fn(model: nn.Module, generator: torch.Generator) -> Tensor:
         device = next(model.parameters()).device
-        x0, mel, _ = (part.to(device) for part in windows.draw(batch, generator, shake))
+        x0, mel, _ = (part.to(device) for part in windows.draw(batch, generator, gain_noise))
         s = torch.zeros(batch, dtype=torch.long, device=device)
         out = model(torch.zeros_like(x0), s, model.listen(mel, windows.mel_times.to(device)))
         return (out - x0).square().mean()

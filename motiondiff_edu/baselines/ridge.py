@@ -1,5 +1,6 @@
-"""Filling holes with no network: the expected value of what is missing, given what is there, under
-one Gaussian.
+"""Filling holes with no network.
+
+The expected value of what is missing, given what is there, under one Gaussian.
 
     E[x_m | x_k] = mean_m + C_mk (C_kk + ridge I)^-1 (x_k - mean_k)
 One mean and one covariance C serve every mask: for each it is the ridge regression of the missing
@@ -20,16 +21,20 @@ from ..performers.windows import Windows
 
 @dataclass(frozen=True, eq=False)
 class ConditionalMean:
-    """Mean and covariance of rows of numbers (float64), and the ridge that keeps the regression
-    calm.   Notebook: 10"""
+    """Mean and covariance of rows of numbers (float64), and the regression's ridge.
+
+    The ridge keeps the regression calm.
+    Notebook: 10
+    """
 
     mean: Float[Tensor, "F"]
     covariance: Float[Tensor, "F F"]
     ridge: float = 1e-2
 
     def fill(self, x: Float[Tensor, "B F"], known: Bool[Tensor, "B F"]) -> Float[Tensor, "B F"]:
-        """The rows with what is not known replaced by its expected value; what is known comes back
-        as it was.
+        """The rows with what is not known replaced by its expected value.
+
+        What is known comes back as it was.
 
         Where nothing is known that is the mean. What `x` holds in a hole is not looked at (NaN may
         stand there).
@@ -48,14 +53,16 @@ class ConditionalMean:
 
 
 def fit(rows: Float[Tensor, "K F"], ridge: float = 1e-2) -> ConditionalMean:
-    """Mean and covariance (divided by K) of training rows, in units in which `ridge` means the same
-    for all columns.
+    """Mean and covariance (divided by K) of training rows.
+
+    In units in which `ridge` means the same for all columns.
 
     Raises ValueError for fewer than two rows or a ridge that is not above 0.  Notebook: 10
     """
     if len(rows) < 2 or ridge <= 0:
         raise ValueError(
-            f"a covariance needs two rows and a ridge above 0, not {len(rows)} rows and ridge {ridge:g}"
+            "a covariance needs two rows and a ridge above 0, "
+            f"not {len(rows)} rows and ridge {ridge:g}"
         )
     mean = rows.double().mean(0)
     centred = rows.double() - mean
@@ -64,8 +71,10 @@ def fit(rows: Float[Tensor, "K F"], ridge: float = 1e-2) -> ConditionalMean:
 
 @dataclass(frozen=True, eq=False)
 class WindowRidge:
-    """The same for windows of a walk: T_h poses with holes, and the control of all frames, which is
-    never missing."""
+    """The same for windows of a walk.
+
+    T_h poses with holes, and the control of all frames, which is never missing.
+    """
 
     inner: ConditionalMean
     pose_scaler: Scaler
@@ -77,7 +86,10 @@ class WindowRidge:
         known: Bool[Tensor, "B T_h D"],
         control: Float[Tensor, "B T C"],
     ) -> Float[Tensor, "B T_h D"]:
-        """The past (metres) with its holes filled by their expected values.  Notebook: 10"""
+        """The past (metres) with its holes filled by their expected values.
+
+        Notebook: 10
+        """
         rows = _rows(self.pose_scaler.transform(past), self.control_scaler.transform(control))
         given = torch.ones(len(rows), rows.shape[1] - known[0].numel(), dtype=torch.bool)
         filled = self.inner.fill(rows, torch.cat([known.flatten(1), given], dim=1))
@@ -86,7 +98,10 @@ class WindowRidge:
 
 
 def fit_windows(windows: Windows, ridge: float = 1e-2, every: int = 3) -> WindowRidge:
-    """Fit on every third window of training data: neighbours hold nearly the same.  Notebook: 10"""
+    """Fit on every third window of training data: neighbours hold nearly the same.
+
+    Notebook: 10
+    """
     rows = windows.starts[::every, None] + torch.arange(windows.T_h + windows.T_p)
     together = _rows(windows.poses[rows[:, : windows.T_h]], windows.control[rows])
     return WindowRidge(fit(together, ridge), windows.pose_scaler, windows.control_scaler)

@@ -13,14 +13,17 @@ from torch import Tensor, nn
 
 from ..cross_modal_attention import CrossModalAttention, angles_of
 from ..modiff import step_embedding
-from ..mofusion import Ask, Music, MusicEncoder
+from ..mofusion import CrossAttentionBlock, Music, MusicEncoder
+from ..performers.networks import register
 from ..prediction import TARGETS
 
 
 @dataclass(frozen=True)
 class TransformerConfig:
-    """Sizes of the network; `deterministic` leaves x_s and s out: the motion then follows from the
-    music alone."""
+    """Sizes of the network.
+
+    `deterministic` leaves x_s and s out: the motion then follows from the music alone.
+    """
 
     D: int = 63
     C: int = 80
@@ -36,8 +39,10 @@ class TransformerConfig:
     deterministic: bool = False
 
     def __post_init__(self):
-        """Raises ValueError for sizes of which no network can be built, and for an unknown
-        target."""
+        """Raises ValueError for sizes of which no network can be built.
+
+        Also for an unknown target.
+        """
         if min(self.D, self.C, self.S, self.heads, self.layers) < 1 or self.music_layers < 0:
             raise ValueError("D, C, S, heads and layers must be 1 at least")
         if min(self.fps, self.slowest, self.fastest) <= 0:
@@ -54,25 +59,28 @@ class TransformerConfig:
 
 
 class Layer(nn.Module):
-    """Self-attention between frames, then what MoFusion's blocks have: attention to the music and a
-    feed-forward."""
+    """Self-attention between frames, then what MoFusion's blocks have.
+
+    Attention to the music and a feed-forward.
+    """
 
     def __init__(self, width: int, heads: int):
         super().__init__()
         self.norm, self.attention = nn.LayerNorm(width), CrossModalAttention(width, heads)
-        self.ask = Ask(width, heads, width)
+        self.ask = CrossAttentionBlock(width, heads, width)
 
     def forward(
-        self, x: Float[Tensor, "B T C"], music: Music, bias, between, to_music
-    ) -> Float[Tensor, "B T C"]:
+        self, x: Float[Tensor, "B T W"], music: Music, bias, between, to_music
+    ) -> Float[Tensor, "B T W"]:
         normed = self.norm(x)
         x = x + self.attention(normed, normed, None, between)
         return self.ask(x, music.tokens, bias, to_music)
 
 
 class DanceTransformer(nn.Module):
-    """The same call as MoFusion's: (x_s, s, music) -> the target; with `deterministic`, x_s only
-    says how long.
+    """The same call as MoFusion's: (x_s, s, music) -> the target.
+
+    With `deterministic`, x_s only says how long.
 
     Notebook: 14
     """
@@ -117,3 +125,6 @@ class DanceTransformer(nn.Module):
         for layer in self.layers:
             x = layer(x, music, bias, (frames, frames), (frames, heard))
         return self.out(x)
+
+
+register("dancer", DanceTransformer, TransformerConfig)

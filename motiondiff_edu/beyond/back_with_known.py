@@ -7,20 +7,48 @@ the walker as well.
 Source: ours; the mask is MoFusion 4.4's, the walk MoDiff III-E's.  Notebook: 10, 15
 """
 
+from typing import Protocol, runtime_checkable
+
 import torch
 from jaxtyping import Bool, Float
 from torch import Tensor
 
-from ..ddpm import draw
+from ..ddpm import Denoiser, Schedule, draw
 from ..inbetweening import inpaint_steps
-from ..rollout import rollout_steps
+from ..reconstruction import walked_back
+from ..rollout import AnyWalker, rollout_steps
+from .guidance import blended_guess, guided
 
 GUIDANCE = 0.5  # of masked_back
+FADE = 10  # frames within which drawn_back's correction fades where nothing more is known
 Frames = Float[Tensor, "B T_h D"]
 
 
+@runtime_checkable
+class MaskedWalker(AnyWalker, Protocol):
+    """What `masked_back` needs besides: the schedule, and a denoiser with a gradient."""
+
+    schedule: Schedule
+
+    def denoiser(self, past: Tensor, control: Tensor, fast: bool = True) -> Denoiser: ...
+
+
+def drawn_back(
+    walker: AnyWalker,
+    ahead: Frames,
+    control: Float[Tensor, "B T C"],
+    given: Frames,
+    known: Bool[Tensor, "B _ _"],
+    **options,
+) -> Frames:
+    """The paper's way back, drawn through the known entries afterwards: no jump where a hole ends.
+    Notebook: 10"""
+    back = walked_back(walker, ahead, control, given, known, **options)
+    return blended_guess(back, given.to(back), known, FADE)
+
+
 def held_back(
-    walker,
+    walker: AnyWalker,
     ahead: Frames,
     control: Float[Tensor, "B T C"],
     given: Frames,
@@ -45,7 +73,7 @@ def held_back(
 
 @torch.no_grad()
 def masked_back(
-    walker,
+    walker: MaskedWalker,
     ahead: Frames,
     control: Float[Tensor, "B T C"],
     given: Frames,
@@ -55,28 +83,26 @@ def masked_back(
     """All at once: the walker's one window, sampled with its known entries held and guided by them.
 
     The sampling is `inbetweening.inpaint_steps`.
-
-    Raises ValueError for a walker that predicts fewer poses than it is given.  Notebook: 10, 15
+    Raises ValueError for a walker that predicts more or fewer poses than it is given.
+    Notebook: 10, 15
     """
-    config = walker.config
-    if config.T_p < config.T_h:
+    config, schedule = walker.config, walker.schedule
+    if config.T_p != config.T_h:
         raise ValueError(
-            f"a window of {config.T_p} frames cannot hold the {config.T_h} of a past; use held_back"
+            f"this walker predicts {config.T_p} poses from {config.T_h}: its window is not the past. "
+            "Use held_back"
         )
     given, ahead = (walker.pose_scaler.transform(x.float()) for x in (given, ahead))
-    given, known = _longer(given, config.T_p, 0.0), _longer(known, config.T_p, False)
-    denoise = walker.denoiser(ahead, walker.control_scaler.transform(control.float()), fast=False)
+    network = walker.denoiser(ahead, walker.control_scaler.transform(control.float()), fast=False)
     start = draw(given, options["generator"])
-    settings = {
-        "steps": options["steps"] or config.S,
-        "guidance": GUIDANCE,
-        "generator": options["generator"],
-    }
-    for step in inpaint_steps(denoise, start, walker.schedule, given, known, **settings):
-        last = step
-    return walker.pose_scaler.inverse(last.x_s[:, : config.T_h])
-
-
-def _longer(x: Tensor, frames: int, fill: float) -> Tensor:
-    """As many frames as the walker's window has; the rest is not known."""
-    return torch.cat([x, x.new_full((len(x), frames - x.shape[1], x.shape[2]), fill)], 1)
+    loop = inpaint_steps(
+        guided(network, schedule, given, known, GUIDANCE),
+        start,
+        schedule,
+        given,
+        known,
+        steps=options["steps"] or config.S,
+        generator=options["generator"],
+    )
+    *_, last = loop
+    return walker.pose_scaler.inverse(last.x_s)

@@ -12,7 +12,7 @@ from scipy.ndimage import distance_transform_edt
 
 from ..motion.dance_frame import GROUND
 from ..motion.inverse_kinematics import bends_to, two_bones
-from ..motion.planting import spans
+from ..motion.planting import runs
 from ..motion.skeleton import HEELS, TOES
 
 FADE = 6  # frames
@@ -59,8 +59,10 @@ def to_stands(
     toe: Float[np.ndarray, "T 3"], given: Bool[np.ndarray, " T"], fps: float
 ) -> Float[np.ndarray, "T 3"]:
     """What to add to a toe so that it does not slide while it stands; zero where it is given."""
-    shift, anchored, frames = np.zeros_like(toe), given.copy(), np.arange(len(toe))
-    for first, last in spans(stands(toe, fps)):
+    shift = np.zeros_like(toe)
+    anchored = given.copy()
+    frames = np.arange(len(toe))
+    for first, last in runs(stands(toe, fps)):
         inside = np.flatnonzero(given[first:last]) + first
         if len(inside):  # at the given places, and evenly from one to the next should they differ
             pin = np.stack(
@@ -70,10 +72,8 @@ def to_stands(
             pin = np.median(toe[first:last], axis=0)
         pull = 1 - closeness(given & ((frames < first) | (frames >= last)))[first:last]
         # held over the ground; up and down it rolls as it did
-        shift[first:last], anchored[first:last] = (
-            pull[:, None] * (pin - toe[first:last]) * GROUND,
-            True,
-        )
+        shift[first:last] = pull[:, None] * (pin - toe[first:last]) * GROUND
+        anchored[first:last] = True
     at = np.flatnonzero(anchored)
     if len(at):
         before = at[np.clip(np.searchsorted(at, frames, "right") - 1, 0, None)]

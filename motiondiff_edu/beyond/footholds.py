@@ -7,9 +7,12 @@ alone (`held`). So for each of these joints the network chooses, between 0 and 1
 to take:
 
     x0_hat = gate * held + (1 - gate) * free
+In training the past has noise (`past_noise`), and a foot held at a noised place is not at rest: the
+gate would learn never to hold. `CleanFootholds` takes most of it away under the feet.
 Ours; neither paper has it.  Notebook: 07
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import torch
@@ -63,7 +66,8 @@ class FootholdConfig(MoDiffConfig):
             raise ValueError('a foothold is a place: it needs target="x0" and skip=False')
         if self.D != 3 * J:
             raise ValueError(
-                f"footholds are for the {J} joints of the course's skeleton, D = {3 * J}, not {self.D}"
+                f"footholds are for the {J} joints of the course's skeleton, D = {3 * J}, "
+                f"not {self.D}"
             )
 
 
@@ -131,6 +135,40 @@ class FootholdMoDiff(MoDiff):
         return blend(self.head(x), openness(self.gate(x), leaning=not self.training), context.held)
 
 
+@dataclass(frozen=True, eq=False)
+class CleanFootholds:
+    """A network with footholds in training: it sees the noised past, and holds the feet nearly
+    where the clean one has them.
+
+    `clean`, `noised`: the past before and after `past_noise`.
+    `foot_noise`: fraction of the past noise applied to the held feet, 0 to 1.
+    Where diffusion dropout changed the past once more, the feet are held at that past's last pose:
+    nothing clean may slip through.
+    Notebook: 07
+    """
+
+    model: Callable  # a FootholdMoDiff, or its SharedEncoding
+    clean: Float[Tensor, "B T_h D"]
+    noised: Float[Tensor, "B T_h D"]
+    foot_noise: float
+
+    @property
+    def config(self) -> MoDiffConfig:
+        return self.model.config
+
+    def __call__(
+        self,
+        x_s: Float[Tensor, "B T_p D"],
+        s: Int[Tensor, "B"],
+        past: Float[Tensor, "B T_h D"],
+        control: Float[Tensor, "B T C"],
+    ) -> Float[Tensor, "B T_p D"]:
+        standing = torch.lerp(self.clean, self.noised, self.foot_noise)[:, -1]
+        dropped = (past != self.noised).flatten(1).any(1)
+        standing = past[:, -1].where(dropped[:, None], standing)
+        return self.model.decode(x_s, s, self.model.encode(past, control, standing))
+
+
 def blend(
     free: Float[Tensor, "B T_p D"], share: Float[Tensor, "B T_p F"], held: Float[Tensor, "B T_p K"]
 ) -> Float[Tensor, "B T_p D"]:
@@ -154,9 +192,3 @@ def openness(gate: Float[Tensor, "*B F"], leaning: bool = True) -> Float[Tensor,
     if not leaning:
         return torch.sigmoid(gate)
     return ((1 + 2 * STRETCH) * torch.sigmoid(gate + LEAN) - STRETCH).clamp(0, 1)
-
-
-def network(config: MoDiffConfig, pose_scaler: Scaler, control_scaler: Scaler) -> MoDiff:
-    """The network that a configuration asks for: MoDiff, or the one with footholds."""
-    footholds = isinstance(config, FootholdConfig)
-    return FootholdMoDiff(config, pose_scaler, control_scaler) if footholds else MoDiff(config)

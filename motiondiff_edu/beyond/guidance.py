@@ -1,29 +1,101 @@
-"""A guess drawn through what is given: `inbetweening.inpaint_steps(blend=partial(blended,
-fade=10))`.
+"""Denoisers that heed what is given: wrappers that take a denoiser and return one, for
+`inbetweening.inpaint_steps`.
 
-Source: ours; in motion graphs the same is done to splice clips.  Notebook: 15
+    blended(guided(denoise, schedule, given, known), schedule, given, known, fade=10)
+A trained network's guess x0_hat and the given entries need not agree, and the difference is a jump
+where they meet. Guidance moves the guess by the network's own gradient; blending draws it through
+the given entries. Either changes x0_hat, and returns the eps_hat that goes with it.
+Source: guidance after Ho and others (2022) and Song and others (2023); blending is ours, and motion
+graphs splice clips so.  Notebook: 15
 """
+
+from collections.abc import Callable
 
 import torch
 from jaxtyping import Bool, Float
 from torch import Tensor
 
+from ..ddpm import Denoiser, Schedule
+from ..prediction import eps_from_x0, x0_from_eps
+
+X = Float[Tensor, "B *shape"]
+Mask = Bool[Tensor, "B *shape"]
 Fade = int | Float[Tensor, "D"]  # frames
 
 
+def guided(
+    denoise: Denoiser, schedule: Schedule, given: X, known: Mask, weight: float = 1.0
+) -> Denoiser:
+    """The denoiser with `guided_guess` for its x0_hat; it costs twice as much.
+
+    `denoise` must be differentiable: a network, not its fast twin.  Notebook: 15
+    """
+
+    def steered(x_s: Tensor, s: Tensor) -> Tensor:
+        x0_hat = guided_guess(denoise, x_s, s, schedule, given, known, weight)
+        return eps_from_x0(x_s, s, x0_hat, schedule)
+
+    return steered
+
+
 def blended(
+    denoise: Denoiser,
+    schedule: Schedule,
+    given: Float[Tensor, "B T D"],
+    known: Bool[Tensor, "B T D"],
+    fade: Fade,
+) -> Denoiser:
+    """The denoiser with `blended_guess` for its x0_hat.  Notebook: 15"""
+    return with_guess(denoise, schedule, lambda x0: blended_guess(x0, given, known, fade))
+
+
+def with_guess(
+    denoise: Denoiser, schedule: Schedule, change: Callable[[Tensor], Tensor]
+) -> Denoiser:
+    """A denoiser whose x0_hat is `change(x0_hat)`, and whose eps_hat goes with it."""
+
+    def changed(x_s: Tensor, s: Tensor) -> Tensor:
+        x0_hat = change(x0_from_eps(x_s, s, denoise(x_s, s), schedule))
+        return eps_from_x0(x_s, s, x0_hat, schedule)
+
+    return changed
+
+
+def guided_guess(
+    denoise: Denoiser, x_s: X, s: Tensor, schedule: Schedule, given: X, known: Mask, weight: float
+) -> X:
+    """x0_hat, with what is wrong at the given entries traced back to x_s, and from there to all
+    others.
+
+        x0_hat + weight * length * pull,   pull = J^T (given - x0_hat)[known],   J = d x0_hat / d x_s
+    J is, up to a factor, the covariance of what x_s leaves open (Tweedie): whatever goes with the
+    given is moved along. `length`, for each sample, leaves least wrong at the given entries of this
+    guess: entries that say the same must not pull twice. (The sources have a constant there.)
+    Notebook: 15
+    Source: Ho and others, Video diffusion models (2022); Song and others, Pseudoinverse-guided
+    diffusion (2023).
+    """
+    with torch.enable_grad():
+        x = x_s.detach().requires_grad_()
+        x0_hat = x0_from_eps(x, s, denoise(x, s), schedule)
+        wrong = (given - x0_hat).detach().where(known, 0.0)
+        (pull,) = torch.autograd.grad(x0_hat, x, wrong)
+    at_known = pull.where(known, 0.0).flatten(1)
+    length = (wrong.flatten(1) * at_known).sum(1) / at_known.square().sum(1).clamp(min=1e-12)
+    return x0_hat.detach() + weight * length.clamp(min=0).view(-1, *[1] * (x.ndim - 1)) * pull
+
+
+def blended_guess(
     x0_hat: Float[Tensor, "B T D"],
     given: Float[Tensor, "B T D"],
     known: Bool[Tensor, "B T D"],
     fade: Fade,
 ) -> Float[Tensor, "B T D"]:
-    """x0_hat drawn through the given entries: what is wrong there is carried over to the frames
+    """x0_hat drawn through the given entries: the correction there is interpolated to the frames
     between them.
 
-    Between two known frames the correction goes evenly from the one's to the other's; before the
-    first and after the last it fades to nothing within `fade` frames (one number, or one for each
-    column; infinity: it stays). Ours: a network's guess and the given need not agree, and else the
-    difference is a jump where they meet.
+    Before the first and after the last given frame it fades to nothing within `fade` frames (one
+    number, or one for each column; infinity: it stays).  Notebook: 15
     """
     T = x0_hat.shape[1]
     frames = torch.arange(T, device=x0_hat.device).view(1, T, 1).expand(known.shape)
@@ -34,7 +106,8 @@ def blended(
         torch.where(known, frames, T).flip(1).cummin(1).values.flip(1)
     )  # the one ahead, T for none
     wrong = (given - x0_hat).where(known, 0.0)
-    behind, ahead = wrong.gather(1, before.clamp(min=0)), wrong.gather(1, after.clamp(max=T - 1))
+    behind = wrong.gather(1, before.clamp(min=0))
+    ahead = wrong.gather(1, after.clamp(max=T - 1))
     share = (frames - before) / (after - before).clamp(min=1)
     alone = (1 - torch.where(before < 0, after - frames, frames - before) / (fade + 1)).clamp(min=0)
     behind = behind * torch.where(after < T, 1 - share, alone).where(

@@ -1,12 +1,14 @@
-"""A schedule with more noise at every step: its signal-to-noise ratio, times a number.
+"""Two schedules of our own: more noise at every step, and no steps at low noise.
 
-What many entries tell together survives noise that hides each of them: images of more pixels,
+More noise: what many entries tell together survives noise that hides each of them: images of more pixels,
 dances of more frames. A schedule made for small things then hurries through the noise at which much
 is decided.
 Source: Hoogeboom and others, 2023 (simple diffusion), for images; for dances, ours.  Notebook: 12
 """
 
-from ..ddpm import Schedule, make_schedule
+import torch
+
+from ..ddpm import Schedule, linear_schedule, make_schedule
 
 
 def shifted(schedule: Schedule, snr: float) -> Schedule:
@@ -24,3 +26,22 @@ def shifted(schedule: Schedule, snr: float) -> Schedule:
         return schedule
     left = snr * schedule.alpha_bar / (1 - schedule.alpha_bar + snr * schedule.alpha_bar)
     return make_schedule(1 - left[1:] / left[:-1], f"{schedule.name}, signal-to-noise x {snr:g}")
+
+
+def leap_schedule(
+    S: int = 100, leap: float = 0.37, beta_2: float = 0.03, beta_S: float = 0.08
+) -> Schedule:
+    """beta_1 = leap, then evenly from beta_2 to beta_S: step 1 brings noise of sqrt(leap / (1 -
+    leap)) of the signal, by default 0.77 of it.
+
+    At lower noise a small network sees no more of a pose than it can guess. Steps there add its
+    errors again and again, and a rollout repeats them; one leap from step 1 to the clean pose does
+    not. Ours.  Notebook: 07
+    """
+    rest = torch.linspace(beta_2, beta_S, S - 1, dtype=torch.float64)
+    return make_schedule(
+        torch.cat([torch.tensor([leap], dtype=torch.float64), rest]), f"leap {leap:g}"
+    )
+
+
+SCHEDULES = {"linear": linear_schedule, "leap": leap_schedule}  # by the names that recipes use

@@ -1,5 +1,6 @@
-"""Sound files to mono samples at 16 kHz, or an AudioError that says what is wrong and what to do
-about it.
+"""Sound files to mono samples at 16 kHz.
+
+An AudioError says what is wrong with a file and what to do about it.
 
 wav, flac, ogg, mp3, aiff and what else libsndfile reads, told apart by content and not by name, at
 any rate.
@@ -9,13 +10,13 @@ Notebook: 11, 19
 import re
 import warnings
 from contextlib import suppress
-from math import gcd
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 import numpy as np
+import soxr
 import torch
 from jaxtyping import Float
-from scipy.signal import firwin, resample_poly
 from torch import Tensor
 
 from .music import SAMPLE_RATE
@@ -23,6 +24,7 @@ from .music import SAMPLE_RATE
 SHORTEST = 1.0  # seconds
 # a file whose largest sample is below this, 80 dB under full scale, holds nothing to dance to
 SILENT = 1e-4
+LOUDEST = 10.0  # samples reach 1; more than a mix that clips is no sound, or in other units
 BLOCK = 4096  # samples read at a time, of a file that cannot be read in one piece
 
 # first bytes of what libsndfile does not read and ffmpeg does: (where, bytes): name
@@ -42,8 +44,9 @@ class AudioError(ValueError):
 
 
 def read_audio(path: str | Path) -> Float[Tensor, "N"]:
-    """A sound file as mono float32 samples at 16 kHz, without its constant offset; channels are
-    averaged.
+    """A sound file as mono float32 samples at 16 kHz, without its constant offset.
+
+    Channels are averaged.
 
     Where the file breaks off, what could be read is returned with a UserWarning.
     Raises AudioError for a file that is missing, a folder, of another kind, damaged, empty, silent,
@@ -68,8 +71,9 @@ def read_audio(path: str | Path) -> Float[Tensor, "N"]:
     bad = np.flatnonzero(~np.isfinite(channels).all(1))
     if len(bad):
         raise AudioError(
-            f"{path.name}: {len(bad)} samples are NaN or infinite, the first at {bad[0] / rate:.3f} s; "
-            "the program that wrote it divided by zero: export the sound again"
+            f"{path.name}: {len(bad)} samples are NaN or infinite, the first at "
+            f"{bad[0] / rate:.3f} s; the program that wrote it divided by zero: "
+            "export the sound again"
         )
     mono = _mono(channels, path.name)
     if loss:
@@ -79,21 +83,58 @@ def read_audio(path: str | Path) -> Float[Tensor, "N"]:
     return torch.from_numpy(resample(mono, rate).astype(np.float32))
 
 
-def resample(audio: Float[np.ndarray, "N"], rate: int) -> Float[np.ndarray, "n"]:
-    """The same sound at 16 kHz: n = ceil(N * 16000 / rate). What lies above the new 8 kHz, or the
-    old half rate, goes.
+def read_sound(sound: str | Path | bytes | memoryview) -> Float[Tensor, "N"]:
+    """`read_audio` of a sound file by its name, or of its bytes, as they come from an upload.
 
-    A windowed sinc of 32 zero crossings a side: flat to 88 % of the lower half rate, 80 dB down
-    from 107 %.
-    Notebook: 11
+    Raises AudioError as `read_audio` does.  Notebook: 12
     """
-    common = gcd(SAMPLE_RATE, rate)
-    up, down = SAMPLE_RATE // common, rate // common
-    if up == down:
-        return audio
-    cut = max(up, down)
-    taps = firwin(64 * cut + 1, 0.96 / cut, window=("kaiser", 8.6)).astype(audio.dtype)
-    return resample_poly(audio, up, down, window=taps)
+    if isinstance(sound, str | Path):
+        return read_audio(sound)
+    with TemporaryDirectory() as folder:
+        path = Path(folder) / "the uploaded file"
+        path.write_bytes(sound)
+        return read_audio(path)
+
+
+def samples_of(sound: str | Path | np.ndarray | Tensor) -> Float[Tensor, "N"]:
+    """A sound file read, or samples as they are: mono, 16 kHz, float32.
+
+    Raises AudioError as `read_audio`, and for samples of another shape, in whole numbers, not
+    finite, or far beyond -1 to 1.   Notebook: 00, 12
+    """
+    if isinstance(sound, (str, Path)):
+        return read_audio(Path(sound).expanduser())
+    if not isinstance(sound, (np.ndarray, Tensor, list)):
+        raise AudioError(f"sound is a file's name or its samples, not {type(sound).__name__}")
+    samples = np.asarray(sound)
+    if samples.ndim != 1 or not len(samples):
+        raise AudioError(
+            f"sound is one channel of samples (N,) at {SAMPLE_RATE} Hz, not {samples.shape}; the "
+            "mean of several channels is one"
+        )
+    if not np.issubdtype(samples.dtype, np.floating):
+        raise AudioError(
+            f"sound is floating-point samples from -1 to 1, not {samples.dtype}; divide 16-bit "
+            "samples by 32768"
+        )
+    bad = np.flatnonzero(~np.isfinite(samples))
+    if len(bad):
+        raise AudioError(
+            f"{len(bad)} samples are NaN or infinite, the first at {bad[0] / SAMPLE_RATE:.3f} s"
+        )
+    where = int(np.abs(samples).argmax())
+    if abs(samples[where]) > LOUDEST:
+        raise AudioError(
+            f"samples lie between -1 and 1; the one at {where / SAMPLE_RATE:.3f} s is "
+            f"{samples[where]:.3g}. Divide the sound by its largest sample, if it is sound"
+        )
+    return torch.from_numpy(samples.astype(np.float32))
+
+
+def resample(audio: Float[np.ndarray, "N"], rate: int) -> Float[np.ndarray, "n"]:
+    """The same sound at 16 kHz, by soxr at its very high quality: what lies above the new 8 kHz, or
+    the old half rate, goes.  Notebook: 11"""
+    return audio if rate == SAMPLE_RATE else soxr.resample(audio, rate, SAMPLE_RATE, "VHQ")
 
 
 def _decode(path: Path) -> tuple[Float[np.ndarray, "N channels"], int, str]:
@@ -116,8 +157,10 @@ def _decode(path: Path) -> tuple[Float[np.ndarray, "N channels"], int, str]:
 
 
 def _before_the_damage(path: Path) -> Float[np.ndarray, "N channels"]:
-    """Block by block, as far as it goes; whole files are not read so, for seeking in an MP3 loses
-    its place."""
+    """Block by block, as far as it goes.
+
+    Whole files are not read so, for seeking in an MP3 loses its place.
+    """
     import soundfile
 
     with soundfile.SoundFile(path) as file:
@@ -166,10 +209,16 @@ def _other_kind(path: Path, error: Exception) -> str:
         head = file.read(64)
     for (where, mark), kind in VIDEO_AND_PHONES.items():
         if head[where : where + len(mark)] == mark:
-            return f'is {kind}, which needs ffmpeg. Convert it first: ffmpeg -i "{path}" "{path.with_suffix(".wav")}"'
+            return (
+                f"is {kind}, which needs ffmpeg. Convert it first: "
+                f'ffmpeg -i "{path}" "{path.with_suffix(".wav")}"'
+            )
     if not head:
         return "is an empty file (0 bytes): copy or download it again"
     if head.isascii() and b"\0" not in head:
-        return f"is text, not sound; it begins with {head[:20].decode()!r}. Was it downloaded by its page's address?"
+        return (
+            f"is text, not sound; it begins with {head[:20].decode()!r}. "
+            "Was it downloaded by its page's address?"
+        )
     reason = getattr(error, "error_string", str(error)).rstrip(".")
     return f"is no sound file that can be read ({reason}). Save it again as wav, flac, ogg or mp3"

@@ -26,13 +26,17 @@ def constant_control(
     seconds: float | int = 4.0,
     fps: float | int = FPS,
 ) -> Float[np.ndarray, "T 3"]:
-    """The same velocities for all of `seconds`; m/s, m/s, rad/s.  Notebook: 00"""
+    """The same velocities for all of `seconds`; m/s, m/s, rad/s.
+
+    Notebook: 00
+    """
     return np.tile([float(forward), float(left), float(yaw)], (round(seconds * fps), 1))
 
 
 def hold(control: Float[np.ndarray, "T 3"], t: int) -> Float[np.ndarray, "T 3"]:
-    """The control as known at frame t: rows after t repeat row t, for nobody knows what the hand
-    does next.
+    """The control as known at frame t.
+
+    Rows after t repeat row t, for nobody knows what the hand does next.
 
     Raises IndexError where there is no row t.  Notebook: 07
     """
@@ -46,8 +50,9 @@ def hold(control: Float[np.ndarray, "T 3"], t: int) -> Float[np.ndarray, "T 3"]:
 def splice(
     past: Float[np.ndarray, "T 3"], new: Float[np.ndarray, "n 3"], T_h: int
 ) -> Float[np.ndarray, "m 3"]:
-    """The control of the last T_h past frames and of n new ones: what a rollout is told, m = T_h +
-    n.
+    """The control of the last T_h past frames and of n new ones.
+
+    What a rollout is told, m = T_h + n.
 
     Nobody knows where a recording would have gone: its last row only repeats the one before. Here
     it leads into the first new frame, so it becomes the first row of `new`.
@@ -60,14 +65,37 @@ def splice(
     return np.concatenate([past[len(past) - T_h : -1], new[:1], new])
 
 
+def as_long(control: Float[np.ndarray, "n 3"], rows: int | None) -> Float[np.ndarray, "m 3"]:
+    """A control of so many rows: cut, or its last row held; None leaves its length.
+
+    Raises ValueError for another shape, no row, and rows that are not finite.
+    """
+    array = np.array(control, np.float64)
+    if array.ndim != 2 or array.shape[1] != 3 or not len(array):
+        raise ValueError(
+            f"a control is (rows, 3): forward m/s, left m/s, turning rad/s, {FPS:g} rows a second; "
+            f"this is {array.shape}. joystick([(seconds, forward, left, turning), ...]) makes one"
+        )
+    bad = np.flatnonzero(~np.isfinite(array).all(1))
+    if len(bad):
+        raise ValueError(f"row {bad[0]} of the control is {array[bad[0]]}: give finite numbers")
+    if rows is None:
+        return array
+    if rows < 1:
+        raise ValueError(f"a control of {rows} rows has no frame: a frame is {1 / FPS:g} s")
+    return array[np.minimum(np.arange(rows), len(array) - 1)]
+
+
 def joystick(
     segments: Sequence[tuple], fps: float | int = FPS, ramp: float | int = RAMP
 ) -> Float[np.ndarray, "T 3"]:
-    """Control from a list of (seconds, forward, left, yaw); each change takes `ramp` seconds,
-    smoothly.
+    """Control from a list of (seconds, forward, left, yaw).
+
+    Each change takes `ramp` seconds, smoothly.
 
     r(u) = u^2 (3 - 2u) leads from the value left behind to the new one.
-    Raises ValueError for no segment, or one that is not four finite numbers.  Notebook: 07
+    Raises ValueError for no segment, one that is not four finite numbers, or negative seconds.
+    Notebook: 07
     """
     bad = next(
         (segment for segment in segments if len(segment) != 4 or not np.isfinite(segment).all()),
@@ -75,8 +103,12 @@ def joystick(
     )
     if bad is not None or not segments:
         raise ValueError(
-            f"a segment is (seconds, forward, left, yaw), four finite numbers, not {bad or 'nothing'}"
+            "a segment is (seconds, forward, left, yaw), four finite numbers, "
+            f"not {bad or 'nothing'}"
         )
+    backwards = next((segment for segment in segments if segment[0] < 0), None)
+    if backwards is not None:
+        raise ValueError(f"a segment lasts 0 seconds or more, not {backwards[0]:g}: {backwards}")
     rows, value = [], np.array(segments[0][1:], dtype=np.float64)
     for seconds, *target in segments:
         goal = np.array(target, dtype=np.float64)
@@ -101,8 +133,9 @@ def path_to_control(
     max_yaw: float | int = 1.8,
     smoothing: float | int = 0.12,
 ) -> Float[np.ndarray, "T 3"]:
-    """Control that walks along `points` ([x, z], metres) at `speed` m/s, starting at the first one
-    with heading 0.
+    """Control that walks along `points` ([x, z], metres) at `speed` m/s.
+
+    It starts at the first point with heading 0.
 
     The path is resampled by arc length and rounded by a Gaussian of `smoothing` metres; speed keeps
     to `acceleration` (m/s^2, from and to rest if `rest`) and drops where a bend would ask for more
@@ -139,8 +172,9 @@ def path_to_control(
 def round_path(
     points: Float[np.ndarray, "n 2"], smoothing: float | int = 0.12
 ) -> Float[np.ndarray, "m 2"]:
-    """The path through `points`, a point every centimetre, corners rounded by a Gaussian; both ends
-    stay in place.
+    """The path through `points`, a point every centimetre, corners rounded by a Gaussian.
+
+    Both ends stay in place.
 
     Raises ValueError for a path shorter than 5 cm or a position that is not finite.  Notebook: 00
     """
@@ -152,7 +186,8 @@ def round_path(
     where = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))])
     if len(points) < 2 or where[-1] < 0.05:
         raise ValueError(
-            f"a path needs at least two points and 5 cm, this one has {len(points)} point(s): draw on"
+            "a path needs at least two points and 5 cm, "
+            f"this one has {len(points)} point(s): draw on"
         )
     even = np.linspace(0, where[-1], int(np.ceil(where[-1] / SPACING)) + 1)
     line = np.stack([np.interp(even, where, column) for column in points.T], -1)
@@ -160,8 +195,10 @@ def round_path(
 
 
 def _smooth_fixed_ends(line: np.ndarray, sigma: float) -> np.ndarray:
-    """Gaussian along the line, which is continued past its ends by a half-turn about them, so that
-    they stay."""
+    """Gaussian along the line, with both ends left in place.
+
+    The line is continued past its ends by a half-turn about them.
+    """
     n = min(len(line) - 1, int(4 * sigma) + 1)
     wide = np.concatenate([2 * line[0] - line[n:0:-1], line, 2 * line[-1] - line[-2 : -n - 2 : -1]])
     return (
@@ -185,8 +222,10 @@ def _speeds(
     max_yaw: float | int,
     halts: list[int],
 ) -> np.ndarray:
-    """The fastest speed at each point within `speed`, `max_yaw`, SIDEWAYS, `acceleration`, and zero
-    at `halts`."""
+    """The fastest speed that is allowed at each point.
+
+    Within `speed`, `max_yaw`, SIDEWAYS and `acceleration`, and zero at `halts`.
+    """
     bend = np.concatenate([np.minimum(turn / np.maximum(step, 1e-9), 20.0), [0.0]])
     bend = np.maximum(gaussian_filter1d(bend, 0.1 / SPACING, mode="nearest"), 1e-9)
     v = np.minimum(speed, np.minimum(max_yaw / bend, np.sqrt(SIDEWAYS / bend)))
@@ -200,9 +239,15 @@ def _speeds(
 
 
 def _control_at(
-    frames: np.ndarray, time: np.ndarray, curve: np.ndarray, heading: np.ndarray, halts: list[int], pause: float | int,
-    fps: float | int, max_yaw: float | int,
-) -> Float[np.ndarray, "T 3"]:  # fmt: skip
+    frames: np.ndarray,
+    time: np.ndarray,
+    curve: np.ndarray,
+    heading: np.ndarray,
+    halts: list[int],
+    pause: float | int,
+    fps: float | int,
+    max_yaw: float | int,
+) -> Float[np.ndarray, "T 3"]:
     """Read the timed curve at the frames, turn to it first where needed, and take velocities."""
     knots = np.insert(
         np.arange(len(time)), [h + 1 for h in halts], halts
@@ -223,8 +268,10 @@ def _control_at(
 
 
 def _turn_on_the_spot(angle: float, fps: float | int, max_yaw: float | int) -> np.ndarray:
-    """Headings from 0 to just before `angle`, at `max_yaw` at most; none for a turn of less than
-    three degrees."""
+    """Headings from 0 to just before `angle`, at `max_yaw` at most.
+
+    None for a turn of less than three degrees.
+    """
     if abs(angle) < np.radians(3):
         return np.zeros(0)
     frames = int(
@@ -254,8 +301,9 @@ PRESETS: tuple[str, ...] = tuple(_PRESETS)
 
 
 def preset(name: str) -> tuple[Float[np.ndarray, "n 2"], list[float]]:
-    """A named path and its stops (metres along it): straight, circle, figure eight, slalom, stop
-    and go.
+    """A named path and its stops (metres along it).
+
+    Straight, circle, figure eight, slalom, stop and go.
 
     Raises KeyError with the names there are.  Notebook: 00
     """

@@ -1,5 +1,6 @@
-"""What the network hears: the log-Mel spectrogram of a song, where its frames lie in time, and a
-tracker's beats.
+"""What the network hears.
+
+The log-Mel spectrogram of a song, where its frames lie in time, and a tracker's beats.
 
 A Mel frame comes every 32 ms and a motion frame every 50 ms: the two are matched by seconds, never
 by index.
@@ -14,7 +15,12 @@ from jaxtyping import Float
 from torch import Tensor
 from torch.nn import functional as F
 
-SAMPLE_RATE, HOP, BANDS, F_MIN, F_MAX = 16_000, 512, 80, 0.0, 8000.0  # MoFusion 3.3
+# MoFusion 3.3
+SAMPLE_RATE = 16_000
+HOP = 512
+BANDS = 80
+F_MIN = 0.0
+F_MAX = 8000.0
 # 64 ms; the paper leaves it open. 512 = HOP would be deaf between two frames, 2048 would blur a
 # beat more
 N_FFT = 1024
@@ -42,7 +48,10 @@ def hz_to_mel(hz: Float[Tensor, "*n"]) -> Float[Tensor, "*n"]:
 
 
 def mel_to_hz(mel: Float[Tensor, "*n"]) -> Float[Tensor, "*n"]:
-    """The frequency of a Mel number: `hz_to_mel`, undone.  Notebook: 11"""
+    """The frequency of a Mel number: `hz_to_mel`, undone.
+
+    Notebook: 11
+    """
     return torch.where(mel < 15, 200 * mel / 3, 1000 * ((mel - 15) * (np.log(6.4) / 27)).exp())
 
 
@@ -53,8 +62,9 @@ def mel_filters(
     f_min: float | int = F_MIN,
     f_max: float | int = F_MAX,
 ) -> Float[Tensor, "bands bins"]:
-    """Triangles over the n_fft/2 + 1 frequencies of a spectrum, evenly spaced in Mel, each of area
-    1 in Hz.
+    """Triangles over the frequencies of a spectrum, evenly spaced in Mel, each of area 1 in Hz.
+
+    The spectrum has n_fft/2 + 1 frequencies.
 
     Band b rises from edge b to edge b+1 and falls to edge b+2, and is 2 / (edge[b+2] - edge[b])
     high.
@@ -64,14 +74,17 @@ def mel_filters(
     """
     if not 0 <= f_min < f_max <= sample_rate / 2:
         raise ValueError(
-            f"bands must lie within 0 and {sample_rate / 2:g} Hz, ascending; got {f_min:g} to {f_max:g}"
+            f"bands must lie within 0 and {sample_rate / 2:g} Hz, ascending; "
+            f"got {f_min:g} to {f_max:g}"
         )
     ends = hz_to_mel(torch.tensor([f_min, f_max], dtype=torch.float64))
     edges = mel_to_hz(
         torch.linspace(float(ends[0]), float(ends[1]), bands + 2, dtype=torch.float64)
     )[:, None]
     hz = torch.linspace(0, sample_rate / 2, n_fft // 2 + 1, dtype=torch.float64)
-    low, middle, high = edges[:-2], edges[1:-1], edges[2:]
+    low = edges[:-2]
+    middle = edges[1:-1]
+    high = edges[2:]
     triangles = torch.minimum((hz - low) / (middle - low), (high - hz) / (high - middle)).clamp(
         min=0
     )
@@ -93,8 +106,9 @@ def _tools(device: torch.device, dtype: torch.dtype) -> tuple[Tensor, Tensor]:
 
 
 def log_mel(audio: Samples) -> Float[Tensor, "*B M 80"]:
-    """The log-Mel spectrogram of sound at 16 kHz, M = 1 + N // 512 frames; frame m is centred on
-    sample 512 m.
+    """The log-Mel spectrogram of sound at 16 kHz, M = 1 + N // 512 frames.
+
+    Frame m is centred on sample 512 m.
 
     log(max(FLOOR, filters @ |STFT|^2)), natural logarithm, Hann window of 1024 samples, zeros
     beyond both ends. A full-scale sine comes to 5 (high) or 8 (low), digital silence to log(1e-5) =
@@ -121,8 +135,11 @@ def log_mel(audio: Samples) -> Float[Tensor, "*B M 80"]:
 
 
 def frame_times(M: int) -> Float[Tensor, "M"]:
-    """When each of M Mel frames sounds: the seconds of its centre, 31.25 a second.  Notebook: 11"""
-    return torch.arange(M, dtype=torch.float64) / FRAMES_PER_SECOND
+    """When each of M Mel frames sounds: the seconds of its centre, 31.25 a second.
+
+    Notebook: 11
+    """
+    return torch.arange(M, dtype=torch.float64, device="cpu") / FRAMES_PER_SECOND
 
 
 def crop_seconds(
@@ -139,30 +156,18 @@ def crop_seconds(
     if first < 0 or n < 1 or first + n > mel.shape[-2]:
         lasts = (mel.shape[-2] - 1) / FRAMES_PER_SECOND
         raise ValueError(
-            f"{seconds:g} s from {start:g} s are not within this song of {lasts:.2f} s; one frame is 32 ms"
+            f"{seconds:g} s from {start:g} s are not within this song of {lasts:.2f} s; "
+            "one frame is 32 ms"
         )
     return mel[..., first : first + n, :], frame_times(first + n)[first:] - start
-
-
-def at_times(
-    mel: Float[Tensor, "*B M bands"], times: Float[Tensor, "T"]
-) -> Float[Tensor, "*B T bands"]:
-    """The Mel spectrogram at any `times` (seconds), such as those of motion frames: straight lines
-    between its frames.
-
-    Before the first and after the last frame their values are kept.  Notebook: 11
-    """
-    where = (times * FRAMES_PER_SECOND).clamp(0, mel.shape[-2] - 1)
-    before = where.floor().long().clamp(max=max(0, mel.shape[-2] - 2))
-    after = (before + 1).clamp(max=mel.shape[-2] - 1)
-    return torch.lerp(mel[..., before, :], mel[..., after, :], (where - before).to(mel)[:, None])
 
 
 def beats_of(
     audio: Float[Tensor, "N"] | Float[np.ndarray, "N"], lag: float = TRACKER_LAG
 ) -> Float[np.ndarray, "K"]:
-    """The beats of a recording at 16 kHz, in seconds, as librosa's tracker hears them, with its
-    `lag` taken out.
+    """The beats of a recording at 16 kHz, in seconds.
+
+    As librosa's tracker hears them, with its `lag` taken out.
 
     The tracker takes steady tempo for granted and may follow every second or half beat; for silence
     it finds none. A beat is where something starts to sound. Source: Ellis 2007, by librosa.

@@ -1,2 +1,4 @@
-"""What only notebooks use: profile and seed, exercise checks and their bug zoo, doctor, lab and
-demo."""
+"""What only notebooks use.
+
+Profile and seed, exercise checks and their bug zoo, doctor, lab and demo.
+"""

@@ -1,5 +1,6 @@
-"""Where a notebook runs: fast or full, the seed, the device, the threads. The one place that reads
-MOTIONDIFF_PROFILE.
+"""Where a notebook runs: fast or full, the seed, the device, the threads.
+
+The one place that reads MOTIONDIFF_PROFILE.
 
 A notebook's first code cell calls `run = runtime.start(notebook="03", seed=0)`; later ones use
 `run.fast`, `run.generator` and `run.pick(400, 20_000)`.
@@ -22,8 +23,9 @@ class ProfileError(ValueError):
 
 
 def profile() -> Profile:
-    """The profile in force: `fast` (the default) or `full`: longer trainings, more clips, a GPU
-    where there is one.
+    """The profile in force.
+
+    `fast` (the default) or `full`: longer trainings, more clips, a GPU where there is one.
 
     Raises ProfileError when the environment variable MOTIONDIFF_PROFILE holds anything else.
     """
@@ -36,8 +38,10 @@ def profile() -> Profile:
 
 
 def demo() -> bool:
-    """True when the notebook was opened by `python -m motiondiff_edu demo`: shipped weights, no
-    training."""
+    """True when the notebook was opened by `python -m motiondiff_edu demo`.
+
+    Shipped weights, no training.
+    """
     return os.environ.get("MOTIONDIFF_DEMO", "") not in ("", "0")
 
 
@@ -57,8 +61,10 @@ def threads() -> int:
 
 @dataclass(frozen=True)
 class Run:
-    """What a notebook needs to know about where it runs. The generators were seeded once, at the
-    start."""
+    """What a notebook needs to know about where it runs.
+
+    The generators were seeded once, at the start.
+    """
 
     notebook: str
     profile: Profile
@@ -79,8 +85,8 @@ class Run:
     def __str__(self) -> str:
         show = ", demo: shipped weights, no training" if self.demo else ""
         return (
-            f"notebook {self.notebook} | profile {self.profile} | seed {self.seed} | torch {torch.__version__} "
-            f"on {self.device}, {threads()} threads{show}"
+            f"notebook {self.notebook} | profile {self.profile} | seed {self.seed} | torch "
+            f"{torch.__version__} on {self.device}, {threads()} threads{show}"
         )
 
 

@@ -5,10 +5,10 @@ What is given follows from it: `known` and `positions`, as `editing.inbetween.in
 Source: MoFusion 4.4 (editing by seeds, keyframes and joints).  Notebook: 15
 """
 
-import inspect
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from typing import Protocol, runtime_checkable
 
 import numpy as np
 import torch
@@ -149,7 +149,23 @@ class Made:
         return ", ".join(words)
 
 
-Make = Callable[..., Float[np.ndarray, "N T 21 3"]]
+@runtime_checkable
+class Make(Protocol):
+    """What finds the rest of an edit: `functools.partial(inbetween, dancer)` is one.
+
+    It is called with these five, three of them by name, and answers with `samples` motions (metres);
+    `resample` is how often each step is made.
+    """
+
+    def __call__(
+        self,
+        positions: Float[np.ndarray, "T 21 3"],
+        known: Bool[np.ndarray, "T 21"],
+        *,
+        samples: int,
+        resample: int,
+        generator: torch.Generator,
+    ) -> Float[np.ndarray, "N T 21 3"]: ...
 
 
 def make_between(
@@ -160,22 +176,18 @@ def make_between(
     resample: int = 1,
     fps: float = 20.0,
 ) -> Made:
-    """Have `make(positions, known, generator)` find what is not held, `samples` times, and measure
-    the seams.
+    """Have `make` find what is not held, and measure the seams.
 
-    Where `make` takes `samples` or `resample`, it is told these too; else it is called until there
-    are enough. What comes back is measured, not put right.
+    What comes back is measured, not put right.
     Raises ValueError where everything is held, and for an answer of another shape or not finite.
     Notebook: 15
     """
     if edit.known.all():
         raise ValueError("every frame is pinned: there is nothing to make. Let some frames go")
-    wanted = {"samples": samples, "resample": resample}
-    extra = {name: value for name, value in wanted.items() if takes(make, name)}
-    found: list[np.ndarray] = []
-    while len(found) < samples:
-        found += list(_asked(edit, make, generator, extra))
-    made = np.stack(found[:samples])
+    answer = make(
+        edit.positions, edit.known, samples=samples, resample=resample, generator=generator
+    )
+    made = _checked(answer, (samples, *edit.motion.shape))
     truth = np.broadcast_to(edit.positions, made.shape)
     given = edit.known.any()
     error = keyframe_error(made, truth, edit.known) if given else np.full(len(made), np.nan)
@@ -183,32 +195,19 @@ def make_between(
     return Made(edit, made, error, seam_jump(made, edit.known, fps), before)
 
 
-def takes(make: Make, name: str) -> bool:
-    """Whether a callable has a parameter of this name, or takes any."""
-    parameters = inspect.signature(make).parameters.values()
-    return any(p.name == name or p.kind is p.VAR_KEYWORD for p in parameters)
-
-
-def _asked(
-    edit: Edit, make: Make, generator: torch.Generator, extra: dict
-) -> Float[np.ndarray, "N T 21 3"]:
-    """One call, its answer checked. A parameter called `generator` is named: `partial(inbetween,
-    dancer)` works."""
-    if any(name == "generator" for name in inspect.signature(make).parameters):
-        answer = make(edit.positions, edit.known, generator=generator, **extra)
-    else:
-        answer = make(edit.positions, edit.known, generator, **extra)
+def _checked(answer, shape: tuple[int, ...]) -> Float[np.ndarray, "N T 21 3"]:
+    """The answer as an array, if it has this shape and every number is finite."""
     made = np.asarray(answer, np.float64)
-    if made.ndim != 4 or made.shape[1:] != edit.motion.shape or not len(made):
-        shape = ("samples", *edit.motion.shape)
+    if made.shape != shape:
         raise ValueError(
-            f"the in-betweening gave an array of shape {made.shape}; ({', '.join(map(str, shape))}) is needed"
+            f"the in-betweening gave an array of shape {made.shape}; {shape} is needed"
         )
     bad = np.argwhere(~np.isfinite(made).all(-1))
     if len(bad):
         one, frame, joint = bad[0]
         raise ValueError(
-            f"in-between {one + 1} is not finite in frame {frame}, {JOINTS[joint]} ({len(bad)} joints in all)"
+            f"in-between {one + 1} is not finite in frame {frame}, "
+            f"{JOINTS[joint]} ({len(bad)} joints in all)"
         )
     return made
 

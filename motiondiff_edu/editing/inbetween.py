@@ -5,7 +5,7 @@ The sampling itself is `inbetweening.inpaint_steps`.  Source: MoFusion 4.4.  Not
 """
 
 import math
-from functools import partial
+from typing import Protocol, runtime_checkable
 
 import numpy as np
 import torch
@@ -14,12 +14,13 @@ from torch import Tensor
 
 from ..beyond.constant_bones import given_lengths, steady_bones
 from ..beyond.foot_lock import steady_feet
-from ..beyond.guidance import blended
-from ..inbetweening import inpaint_steps
+from ..beyond.guidance import blended, guided
+from ..ddpm import Denoiser, Schedule, draw, timesteps
+from ..inbetweening import inpaint_steps, resampled
 from ..motion.dance_frame import GROUND, Place, heading, placed_features, to_positions
 from ..motion.directions import ARMS, UPLEGS
+from ..motion.scaler import Scaler
 from ..motion.skeleton import HIPS, JOINTS, J
-from ..performers.dancer import Dancer
 from .masks import known_columns
 
 BLEND = 10  # frames within which a correction fades where nothing else is given
@@ -29,8 +30,18 @@ AHEAD, SOMEWHERE = 20, 0.5  # frames of the path that tell where it leads, if so
 PAPER = {"blend": None, "guidance": 0.0, "bones": False, "feet": False}
 
 
+@runtime_checkable
+class AnyDancer(Protocol):
+    """What `inbetween` needs of a dancer: schedule, units, and a denoiser for the music."""
+
+    schedule: Schedule
+    motion_scaler: Scaler
+
+    def denoiser(self, mel: Tensor | None, frames: int, fast: bool = True) -> Denoiser: ...
+
+
 def inbetween(
-    dancer: Dancer,
+    dancer: AnyDancer,
     positions: Float[np.ndarray, "T 21 3"],
     known: Bool[np.ndarray, "T 21"],
     mel: Float[Tensor, "M C"] | None = None,
@@ -53,9 +64,10 @@ def inbetween(
     `seen_from` where it begins to be known. Numbers are drawn from `generator`, or from a new one
     with this `seed`. `blend`: the network's guesses are drawn through what is given, at every step,
     and let go of within so many frames where nothing more is given (`beyond.guidance.blended`).
-    `guidance`: they are moved by its gradient before (`inbetweening.guided`), at twice the cost.
+    `guidance`: they are moved by its gradient before (`beyond.guidance.guided`), at twice the cost.
     `bones`: they get the lengths that they have where they are given (`beyond.constant_bones`).
-    `feet`: theirs do not slide (`beyond.foot_lock`). `**PAPER`: none of the four, masked sampling
+    `feet`: theirs do not slide (`beyond.foot_lock`). Where nothing is known the result is a sample
+    as it comes, and none of the four changes it. `**PAPER`: none of the four, masked sampling
     as in the paper.
     Raises ValueError where a joint is given without the pelvis, or is given and not a number, and
     for shapes that do not fit.  Source: MoFusion 4.4.   Notebook: 15
@@ -63,26 +75,27 @@ def inbetween(
     positions, known = _checked(positions, known)
     generator = generator or torch.Generator().manual_seed(seed)
     columns, place = torch.from_numpy(known_columns(known)), seen_from(positions, known)
+    device = dancer.motion_scaler.mean.device
     at_home = np.where(known[..., None], place.enter(np.nan_to_num(positions)), 0.0)
-    given = dancer.motion_scaler.transform(torch.from_numpy(placed_features(at_home)).float())
+    features = torch.from_numpy(placed_features(at_home)).float().to(device)
+    given = dancer.motion_scaler.transform(features)
     shape = (samples, *given.shape)
     heard = None if mel is None else mel[None].expand(samples, -1, -1)
-    denoise = dancer.denoiser(heard, len(given), fast=not guidance)
-    blend_in = None if blend is None else partial(blended, fade=fading(blend))
-    options = {
-        "steps": steps,
-        "eta": eta,
-        "resample": resample,
-        "guidance": guidance,
-        "generator": generator,
-    }
-    start, held = (
-        torch.randn(shape, generator=generator),
-        (given.expand(shape), columns.expand(shape)),
+    held, schedule = (given.expand(shape), columns.to(device).expand(shape)), dancer.schedule
+    start = draw(held[0], generator)
+    steer = bool(guidance) and bool(known.any())
+    denoise = dancer.denoiser(heard, len(given), fast=not steer)
+    if steer:
+        denoise = guided(denoise, schedule, *held, guidance)
+    if blend is not None:
+        denoise = blended(denoise, schedule, *held, fading(blend).to(device))
+    visited = resampled(timesteps(schedule.S, steps), resample)
+    loop = inpaint_steps(
+        denoise, start, schedule, *held, steps=visited, eta=eta, generator=generator
     )
-    loop = inpaint_steps(denoise, start, dancer.schedule, *held, blend=blend_in, **options)
     *_, last = loop
-    made = place.leave(to_positions(dancer.motion_scaler.inverse(last.x_s)).double().numpy())
+    poses = to_positions(dancer.motion_scaler.inverse(last.x_s))
+    made = place.leave(poses.double().cpu().numpy())
     whole = np.where(known[..., None], positions, made)
     whole = steady_bones(whole, known, given_lengths(positions, known)) if bones else whole
     return steady_feet(whole, known) if feet and known.any() else whole
@@ -122,13 +135,14 @@ def _checked(positions, known) -> tuple[Float[np.ndarray, "T 21 3"], Bool[np.nda
     positions, known = np.asarray(positions), np.asarray(known)
     if positions.shape[1:] != (J, 3) or known.shape != positions.shape[:2] or known.dtype != bool:
         raise ValueError(
-            f"it takes positions (T, {J}, 3) and a mask (T, {J}) of True and False, not {positions.shape} and "
-            f"{known.shape} of {known.dtype}"
+            f"it takes positions (T, {J}, 3) and a mask (T, {J}) of True and False, "
+            f"not {positions.shape} and {known.shape} of {known.dtype}"
         )
     wrong = np.argwhere(known & ~np.isfinite(positions).all(-1))
     if len(wrong):
         frame, joint = wrong[0]
         raise ValueError(
-            f"{JOINTS[joint]} in frame {frame} is given and not a number: mend it, or do not give it"
+            f"{JOINTS[joint]} in frame {frame} is given and not a number: "
+            "mend it, or do not give it"
         )
     return positions, known

@@ -6,12 +6,14 @@ the other joints about it, so a joint can be held only where the pelvis is held,
 Source: MoFusion 4.4 (the mask delta).  Notebook: 15
 """
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Sequence, Sized
 
 import numpy as np
 from jaxtyping import Bool
 
-from ..motion.skeleton import HIPS, JOINTS, J, joint_index
+from ..motion.checks import checked_count
+from ..motion.motion import Motion, MotionError
+from ..motion.skeleton import COURSE, HIPS, JOINTS, J, joint_index
 
 LOWER = tuple(name for name in JOINTS if name.endswith(("UpLeg", "Leg", "Foot", "ToeBase")))
 UPPER = tuple(name for name in JOINTS if name not in LOWER and name != JOINTS[HIPS])
@@ -60,6 +62,42 @@ def keyframes(T: int, every: int) -> Bool[np.ndarray, "{T} J"]:
     if every < 1:
         raise ValueError(f"a keyframe every {every} frames: it takes 1 (all of them) or more")
     return known_frames(T, sorted({*range(0, T, every), T - 1}))
+
+
+def keyframes_of(motion: Sized | int, every: int = 20) -> Bool[np.ndarray, "T J"]:
+    """`keyframes` of a motion, or of so many frames.  Notebook: 15
+
+    Raises ValueError for every < 1, or no frame.
+    """
+    T = motion if isinstance(motion, int) else len(motion)
+    return keyframes(checked_count(T, "a motion's number of frames"), checked_count(every, "every"))
+
+
+def checked_known(motion: Motion, known) -> Bool[np.ndarray, "T J"]:
+    """A mask that fits a motion of the course's skeleton: True where a joint is given.
+
+    Raises MotionError for another skeleton, another shape, what is not True or False, and a joint
+    that is given and missing.
+    """
+    if motion.skeleton != COURSE:
+        raise MotionError(
+            f"{motion.name} has {len(motion.skeleton)} joints; the course's networks know the {J} "
+            f"of their own skeleton. Read the figure from a BVH file: it is retargeted"
+        )
+    array = np.asarray(known)
+    if array.shape != (len(motion), J) or array.dtype != bool:
+        raise MotionError(
+            f"known is {array.dtype} {array.shape}; it is bool ({len(motion)}, {J}), a row for "
+            f"each frame and True where the joint is given. md.keyframes(motion) makes one"
+        )
+    wrong = np.argwhere(array & ~motion.known)
+    if len(wrong):
+        frame, joint = wrong[0]
+        raise MotionError(
+            f"{JOINTS[joint]} in frame {frame} is given and has no position (NaN): "
+            f"known & motion.known lets such joints go"
+        )
+    return array
 
 
 def gap(T: int, first: int, length: int) -> Bool[np.ndarray, "{T} J"]:

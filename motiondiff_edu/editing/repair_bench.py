@@ -14,6 +14,7 @@ from jaxtyping import Bool, Float
 from ..motion.clip import Clip
 from ..motion.root_frame import FPS, root_path, to_world
 from ..motion.skeleton import J
+from ..rollout import AnyWalker
 from .repairs import Mended, mend_steps
 
 
@@ -37,7 +38,7 @@ class RepairBench:
     Raises ValueError for a walk that is too short, or has not 20 frames/s.  Notebook: 10
     """
 
-    walker: object
+    walker: AnyWalker
     clip: Clip
     samples: int = 10
     rounds: int = 5
@@ -46,11 +47,14 @@ class RepairBench:
 
     def __post_init__(self):
         if len(self.clip) < 2 * self.T_h:
-            raise ValueError(f"the walk has {len(self.clip)} frames; the bench needs {2 * self.T_h}: {self.T_h} to be "
-                             f"mended, and the control of {self.T_h} to walk there and back")  # fmt: skip
+            raise ValueError(
+                f"the walk has {len(self.clip)} frames; the bench needs {2 * self.T_h}: "
+                f"{self.T_h} to be mended, and the control of {self.T_h} to walk there and back"
+            )
         if self.clip.fps != FPS:
             raise ValueError(
-                f"the walker knows {FPS:g} frames/s, and the walk has {self.clip.fps:g}: resample it first"
+                f"the walker knows {FPS:g} frames/s, and the walk has {self.clip.fps:g}: "
+                "resample it first"
             )
 
     @property
@@ -89,10 +93,8 @@ class RepairBench:
                 f"the window begins at frame {first}; it may begin at 0 to {self.last_first}"
             )
         known, T_h = self.known(missing), self.T_h
-        truth, control = (
-            self.clip.poses[first : first + T_h],
-            self.clip.control[first : first + 2 * T_h],
-        )
+        truth = self.clip.poses[first : first + T_h]
+        control = self.clip.control[first : first + 2 * T_h]
         path, heading = root_path(self.clip.control)
         start = (*path[first], heading[first])
         holes = np.where(known[..., None], truth, np.nan)
@@ -109,8 +111,9 @@ class RepairBench:
     def _words(self, mended: Mended, truth: Float[np.ndarray, "T_h J 3"]) -> str:
         found, holes = mended.errors(truth), int((~mended.known).sum())
         return (
-            f"Round {mended.round} of {self.rounds}: {holes} of {mended.known.size} places were missing. From the "
-            f"truth the mean of {len(mended.samples)} repairs is {found['their mean']:.1f} cm away, one repair "
-            f"{found['one repair']:.1f} cm; bones err by {found['bones of the mean']:.2f} and "
-            f"{found['bones of one']:.2f} cm. The last round moved the repairs by {100 * mended.change:.1f} cm."
+            f"Round {mended.round} of {self.rounds}: {holes} of {mended.known.size} places were "
+            f"missing. From the truth the mean of {len(mended.samples)} repairs is "
+            f"{found['their mean']:.1f} cm away, one repair {found['one repair']:.1f} cm; bones "
+            f"err by {found['bones of the mean']:.2f} and {found['bones of one']:.2f} cm. "
+            f"The last round moved the repairs by {100 * mended.change:.1f} cm."
         )

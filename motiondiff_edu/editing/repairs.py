@@ -18,6 +18,7 @@ from ..beyond.constant_bones import steady_bones
 from ..metrics import repair
 from ..metrics.bone_lengths import bone_lengths, bone_rmse
 from ..reconstruction import repair_steps
+from ..rollout import AnyWalker
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,7 +53,7 @@ class Mended:
 
 
 def mend_steps(
-    walker,
+    walker: AnyWalker,
     past: Float[np.ndarray, "*B T_h J 3"],
     known: Bool[np.ndarray, "*_ _ _"],
     control: Float[np.ndarray, "*B T 3"],
@@ -71,7 +72,8 @@ def mend_steps(
     """
     if known.shape != past.shape[:-1]:
         raise ValueError(
-            f"known is {known.shape}, and must have an entry for each joint of each frame: {past.shape[:-1]}"
+            f"known is {known.shape}, and must have an entry for each joint of "
+            f"each frame: {past.shape[:-1]}"
         )
     if known.all():
         raise ValueError("nothing is missing: there is nothing to repair")
@@ -95,8 +97,8 @@ def with_bones(
     """The past, its missing joints moved until bones are as long as they are in `walked` (median
     over its frames).
 
-    For `reconstruction.repair_steps(settle=with_bones)`: a made joint beside a known one else tears
-    the bone between.
+    For `reconstruction.repair_steps(correct=with_bones)`: otherwise the bone between a generated
+    and a given joint changes its length.
     Source: ours.  Notebook: 10
     """
     joints, ahead = (x.double().unflatten(-1, (-1, 3)).numpy() for x in (past, walked))

@@ -29,9 +29,9 @@ class Folded:
     and is answered with another.
     """
 
-    keys: Float[Tensor, "B C HM"]
+    keys: Float[Tensor, "B W HM"]
     bias: Float[Tensor, "B T HM"]
-    values: Float[Tensor, "B HM C"]
+    values: Float[Tensor, "B HM W"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,7 +51,7 @@ class _Linear:
         self.weight = torch.cat([layer.weight for layer in layers]).t().contiguous()
         self.bias = torch.cat([layer.bias for layer in layers])
 
-    def __call__(self, x: Float[Tensor, "N C"]) -> Float[Tensor, "N K"]:
+    def __call__(self, x: Float[Tensor, "N W"]) -> Float[Tensor, "N K"]:
         return torch.addmm(self.bias, x, self.weight)
 
 
@@ -60,27 +60,29 @@ class _Layer:
     rows."""
 
     def __init__(self, block: Block):
-        own, cross, (first, *_, last) = block.self_attention, block.cross_attention, block.ff
+        own = block.self_attention
+        cross = block.cross_attention
+        first, *_, last = block.ff
         self.cross, self.heads = cross, own.heads
-        self.norm_self, self.norm_cross, self.norm_ff = (
-            block.norm_self,
-            block.norm_cross,
-            block.norm_ff,
-        )
+        self.norm_self = block.norm_self
+        self.norm_cross = block.norm_cross
+        self.norm_ff = block.norm_ff
         self.qkv, self.out = _Linear(own.q, own.kv), _Linear(own.out)
         self.first, self.last = _Linear(first), _Linear(last)
 
-    def fold(self, memory: Float[Tensor, "B M C"], bias: Float[Tensor, "1 H T M"]) -> Folded:
+    def fold(self, memory: Float[Tensor, "B M W"], bias: Float[Tensor, "1 H T M"]) -> Folded:
         """A memory's keys and values with this layer's weights in them; done once a frame."""
-        cross, (B, M, C), H = self.cross, memory.shape, self.heads
+        cross = self.cross
+        B, M, W = memory.shape
+        H = self.heads
         k, v = (
             part.reshape(B * M, H, -1).transpose(0, 1) for part in cross.kv(memory).chunk(2, dim=-1)
         )
-        k = k / math.sqrt(C // H)  # (H, B*M, d), as v
-        asking = cross.q.weight.unflatten(0, (H, -1))  # (H, d, C)
-        answering = cross.out.weight.unflatten(1, (H, -1)).permute(1, 2, 0)  # (H, d, C)
+        k = k / math.sqrt(W // H)  # (H, B*M, d), as v
+        asking = cross.q.weight.unflatten(0, (H, -1))  # (H, d, W)
+        answering = cross.out.weight.unflatten(1, (H, -1)).permute(1, 2, 0)  # (H, d, W)
         keys, values = (
-            torch.bmm(part, weight).view(H, B, M, C).transpose(0, 1).reshape(B, H * M, C)
+            torch.bmm(part, weight).view(H, B, M, W).transpose(0, 1).reshape(B, H * M, W)
             for part, weight in ((k, asking), (v, answering))
         )
         own = (
@@ -90,11 +92,11 @@ class _Layer:
 
     def __call__(
         self,
-        x: Float[Tensor, "N C"],
+        x: Float[Tensor, "N W"],
         frames: int,
         self_bias: Float[Tensor, "1 H T T"],
         memory: Folded,
-    ) -> Float[Tensor, "N C"]:
+    ) -> Float[Tensor, "N W"]:
         width, shape = x.shape[1], (-1, frames, self.heads, x.shape[1] // self.heads)
         q, k, v = (
             part.reshape(shape).transpose(1, 2)
@@ -138,12 +140,12 @@ class FastMoDiff:
         )  # the step's half, for every s
         self.start = step_part[:, None] + model.time[model.config.T_h :]  # and when each frame is
         self.layers = [_Layer(block) for block in model.decoder]
-        self.self_bias, self.memory_bias = (
-            model.self_bias().contiguous(),
-            model.memory_bias().contiguous(),
-        )
+        self.self_bias = model.self_bias().contiguous()
+        self.memory_bias = model.memory_bias().contiguous()
         norm, first, _, last = model.head
-        self.head_norm, self.head_first, self.head_last = norm, _Linear(first), _Linear(last)
+        self.head_norm = norm
+        self.head_first = _Linear(first)
+        self.head_last = _Linear(last)
         self.skip = model.skip
 
     @torch.inference_mode()

@@ -14,7 +14,7 @@ from torch.nn import functional as F
 
 from ..cross_modal_attention import turned
 from ..modiff import step_embedding
-from ..mofusion import Ask, MoFusion, ResBlock, View
+from ..mofusion import CrossAttentionBlock, MoFusion, ResBlock, View
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,7 +43,8 @@ class FastMoFusion:
             raise ValueError(
                 "a network without music has no keys and values to keep: use the plain one"
             )
-        self.model = model = copy.deepcopy(model).eval()
+        model = copy.deepcopy(model).eval()
+        self.model = model
         self.config = model.config
         self.levels = len(self.config.widths)
         self.blocks = [*model.down, model.middle, *model.up]
@@ -83,7 +84,9 @@ class FastMoFusion:
     ) -> Float[Tensor, "B T D"]:
         """The network's output at step s, one for the whole batch or one for each: eps, x0 or v, as
         its target says."""
-        model, levels, views = self.model, self.levels, song.views
+        model = self.model
+        levels = self.levels
+        views = song.views
         x = F.pad(x_s, (0, 0, 0, -song.frames % 2**levels))
         h, kept = model.into(x), []
         for level in range(levels):
@@ -111,8 +114,8 @@ def _res(block: ResBlock, x: Tensor, scale: Tensor, shift: Tensor, mask: Tensor)
     return block.conv_out(F.silu(h).mul_(mask)).add_(block.around(x))
 
 
-def _ask(block: Ask, x: Tensor, keys: Tensor, values: Tensor, view: View) -> Tensor:
-    """Ask.forward, with keys and values at hand."""
+def _ask(block: CrossAttentionBlock, x: Tensor, keys: Tensor, values: Tensor, view: View) -> Tensor:
+    """CrossAttentionBlock.forward, with keys and values at hand."""
     attention = block.attention
     q = turned(attention.split(attention.q(block.norm(x))), view.turns[x.shape[-1]][0])
     mixed = F.scaled_dot_product_attention(q, keys, values, attn_mask=view.bias)

@@ -1,4 +1,4 @@
-"""Samplers with almost no cost of their own: DDPM as in the core, DDIM, few steps, a warm start.
+"""Samplers with almost no cost of their own: DDPM and DDIM as in `ddpm`, to rounding (tested).
 
 Every sampler here is one rule, x_next = keep * x_s + turn * eps_hat + sigma * noise, with three
 numbers for each step. They are Python floats made before the loop: around a small network it is a
@@ -12,55 +12,33 @@ import torch
 from jaxtyping import Float
 from torch import Tensor
 
-from ..ddpm import Denoiser, Schedule, draw, p_variance, q_sample
+from ..ddpm import Denoiser, Schedule, ddim_sigma, draw, falling, p_variance
 
 
 class FastStep:
-    """One moment of sampling, like `ddpm.Step`; x0_hat is computed only when somebody looks at
-    it."""
+    """One moment of sampling, like `ddpm.Step`; x0_hat and eps_hat are computed when they are
+    read."""
 
-    __slots__ = ("s", "x_s", "eps_hat", "_alpha_bar", "_clip")
+    __slots__ = ("s", "x_s", "_said", "_alpha_bar", "_clip")
 
-    def __init__(self, s: int, x_s: Tensor, eps_hat: Tensor, alpha_bar: float, clip: float | None):
-        self.s, self.x_s, self.eps_hat, self._alpha_bar, self._clip = (
-            s,
-            x_s,
-            eps_hat,
-            alpha_bar,
-            clip,
-        )
+    def __init__(self, s: int, x_s: Tensor, said: Tensor, alpha_bar: float, clip: float | None):
+        self.s, self.x_s, self._said = s, x_s, said
+        self._alpha_bar, self._clip = alpha_bar, clip
 
     @property
     def x0_hat(self) -> Tensor:
-        """(x_s - sqrt(1 - alpha_bar_s) eps_hat) / sqrt(alpha_bar_s)"""
-        x0_hat = (self.x_s - math.sqrt(1 - self._alpha_bar) * self.eps_hat) / math.sqrt(
-            self._alpha_bar
-        )
+        """(x_s - sqrt(1 - alpha_bar_s) eps_hat) / sqrt(alpha_bar_s), bounded if asked."""
+        signal, noise = math.sqrt(self._alpha_bar), math.sqrt(1 - self._alpha_bar)
+        x0_hat = (self.x_s - noise * self._said) / signal
         return x0_hat if self._clip is None else x0_hat.clamp(-self._clip, self._clip)
 
-
-def timesteps(S: int, steps: int) -> list[int]:
-    """Choose `steps` of the S diffusion steps, evenly spaced, S first: timesteps(100, 4) = [100,
-    75, 50, 25]."""
-    if not 1 <= steps <= S:
-        raise ValueError(f"can take between 1 and {S} steps, not {steps}")
-    return [S - (i * S) // steps for i in range(steps)]
-
-
-def warm_start(
-    guess: Float[Tensor, "B *shape"],
-    s: int,
-    schedule: Schedule,
-    *,
-    generator: torch.Generator | None = None,
-) -> Float[Tensor, "B *shape"]:
-    """Start from a guess of x0 instead of pure noise: noise it to step s, then walk on with
-    steps=timesteps(s, n).
-
-    A low s is fast and stays close to the guess; what the guess gets wrong is mended only as far as
-    step s can reach.
-    """
-    return q_sample(guess, s, schedule, draw(guess, generator))
+    @property
+    def eps_hat(self) -> Tensor:
+        """What the denoiser says, or what goes with a bounded x0_hat."""
+        if self._clip is None or not self.s:
+            return self._said
+        signal, noise = math.sqrt(self._alpha_bar), math.sqrt(1 - self._alpha_bar)
+        return (self.x_s - signal * self.x0_hat) / noise
 
 
 def ddpm_steps(
@@ -73,8 +51,10 @@ def ddpm_steps(
     variance: str = "beta",
     clip: float | None = None,
 ) -> Iterator[FastStep]:
-    """`ddpm.sample_steps`, faster: the same records for the same noise. Source: MoDiff Alg. 2.
-    Notebook: 03."""
+    """`ddpm.sample_steps`, faster: the same records for the same noise, to rounding.
+
+    Source: MoDiff Alg. 2.  Notebook: 03
+    """
     beta, alpha_bar = schedule.beta.tolist(), schedule.alpha_bar.tolist()
     sigma = p_variance(schedule, variance).sqrt().tolist()
     plan = []
@@ -96,30 +76,14 @@ def ddim_steps(
     noise: Float[Tensor, "S *any"] | None = None,
     clip: float | None = None,
 ) -> Iterator[FastStep]:
-    """Leap from step to step: x_next = sqrt(ab_next) x0_hat + sqrt(1 - ab_next - sigma^2) eps_hat +
-    sigma noise.
+    """`ddpm.ddim_steps`, faster: the same records for the same noise, to rounding.  Notebook: 12
 
-    sigma^2 = eta^2 (1 - ab_next) / (1 - ab_s) (1 - ab_s / ab_next). With eta = 0 no noise is drawn.
-    Few steps with eta = 0 give samples that lie too close together (notebook 03): DDIM is not DDPM,
-    only faster.
     Raises ValueError for steps that do not fall, or lie outside 1..S, and for an eta outside 0..1.
     """
-    visited = timesteps(schedule.S, steps) if isinstance(steps, int) else list(steps)
-    if (
-        not visited
-        or visited != sorted(set(visited), reverse=True)
-        or not 1 <= visited[-1] <= visited[0] <= schedule.S
-    ):
-        raise ValueError(
-            f"steps must fall, from {schedule.S} at most to 1 at least; these are {visited}"
-        )
-    if not 0 <= eta <= 1:
-        raise ValueError(f"eta must lie between 0 (no noise) and 1 (DDPM's), not {eta}")
-    alpha_bar = schedule.alpha_bar.tolist()
+    visited, alpha_bar = falling(steps, schedule.S), schedule.alpha_bar.tolist()
     plan = []
     for s, after in zip(visited, [*visited[1:], 0], strict=True):
-        now, then = alpha_bar[s], alpha_bar[after]
-        sigma = eta * math.sqrt((1 - then) / (1 - now) * (1 - now / then))
+        then, sigma = alpha_bar[after], ddim_sigma(s, after, schedule, eta)
         plan.append((s, math.sqrt(then), 0.0, math.sqrt(max(1 - then - sigma**2, 0.0)), sigma))
     return _walk(denoise, start, alpha_bar, plan, generator, noise, clip)
 
@@ -148,7 +112,7 @@ def _walk(
         if clip is None:
             x = torch.add(x * (to_x + to_x0 / a), eps_hat, alpha=to_eps - to_x0 * b / a)
         else:
-            x = to_x0 * step.x0_hat + to_x * x + to_eps * eps_hat
+            x = to_x0 * step.x0_hat + to_x * x + to_eps * step.eps_hat
         if sigma:
             x.add_(draw(x, generator) if noise is None else noise[s - 1], alpha=sigma)
     yield FastStep(0, x, torch.zeros_like(x), 1.0, clip)

@@ -1,5 +1,6 @@
-"""Does the figure go where it is told? Not to be read from the root, which follows the control by
-construction.
+"""Does the figure go where it is told?
+
+Not to be read from the root, which follows the control by construction.
 
 The feet tell. A planted toe says how the root must move for the toe to stay still; the control says
 how it does move. Their difference is slow in a good walk (each step ripples, and the ripples
@@ -19,8 +20,9 @@ def implied_root_velocity(
     fps: float | int = FPS,
     below: float | int = PLANTED_BELOW,
 ) -> Float[np.ndarray, "*B T-1 2"]:
-    """The root velocity, (forward, left) in m/s at the halfway heading, that would keep the planted
-    toe still.
+    """The root velocity that would keep the planted toe still.
+
+    (forward, left) in m/s at the halfway heading.
 
     With p the toe in the root frame and d = yaw / (2 fps):  implied[t] = fps * (R(-d) p[t] - R(+d)
     p[t+1]). The yaw is the control's. NaN in steps where no toe is planted.   Notebook: 08
@@ -35,8 +37,9 @@ def residual_velocity(
     fps: float | int = FPS,
     below: float | int = PLANTED_BELOW,
 ) -> Float[np.ndarray, "*B T-1 2"]:
-    """What the feet say minus what the control says: implied root velocity - control, (forward,
-    left) in m/s.
+    """What the feet say minus what the control says.
+
+    Implied root velocity - control, (forward, left) in m/s.
 
     It is also minus the velocity at which the planted toe slides. NaN in flight.  Notebook: 08
     """
@@ -49,8 +52,9 @@ def adherence(
     fps: float | int = FPS,
     below: float | int = PLANTED_BELOW,
 ) -> float | Float[np.ndarray, "*B"]:
-    """Distance from the control in m/s (small is good): |mean of the residual over a second|,
-    averaged over seconds.
+    """Distance from the control in m/s (small is good).
+
+    |mean of the residual over a second|, averaged over seconds.
 
     The seconds follow each other without overlap; a last one shorter than half is left out. Flight
     is left out of a second's mean, a second all in flight out of the average; a clip with no

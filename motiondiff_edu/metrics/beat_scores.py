@@ -1,5 +1,6 @@
-"""A set of dances against their songs, in one record: the score, and beside it what shows whether
-it means anything.
+"""A set of dances against their songs, in one record.
+
+The score, and beside it what shows whether it means anything.
 
 That is: the same with other songs' beats, the level of chance, kinematic beats per music beat (a
 figure that stops all the time meets many beats), and the speed (a figure that hardly moves stops
@@ -61,8 +62,9 @@ def beat_scores(
     fps: float | int = FPS,
     sigma: float | int = SIGMA,
 ) -> BeatScores:
-    """Score B dances, each against the beats of its song: times in seconds from the clip's first
-    frame.
+    """Score B dances, each against the beats of its song.
+
+    Times in seconds from the clip's first frame.
 
     Beats before the first and after the last frame may be given: a stop may be near them; they
     count as music beats only within the clip. One NoBeatsWarning tells how many clips never slow
@@ -75,11 +77,13 @@ def beat_scores(
     within = [int(((beats >= 0) & (beats <= seconds)).sum()) for beats in music]
     if len(music) != len(positions):
         raise ValueError(
-            f"{len(positions)} dances and the beats of {len(music)} songs: each dance needs its song"
+            f"{len(positions)} dances and the beats of {len(music)} songs: "
+            "each dance needs its song"
         )
     if 0 in within:
         raise ValueError(
-            f"song {within.index(0)} has no beat in the {seconds:g} s of its dance; are its times seconds?"
+            f"song {within.index(0)} has no beat in the {seconds:g} s of its dance; "
+            "are its times seconds?"
         )
     found = [kinematic_beats(dance, fps) for dance in positions]
     every = _every_pair(found, music, sigma)

@@ -1,5 +1,6 @@
-"""Does the dance keep time? Moments at which the body slows down, compared with the beats of the
-music.
+"""Does the dance keep time?
+
+Moments at which the body slows down, compared with the beats of the music.
 
 A kinematic beat is a local minimum of the mean joint speed: a stop between two moves. Times are in
 seconds throughout. A score without its chance level says nothing: the published ones, .23 to .25,
@@ -30,8 +31,9 @@ class NoBeatsWarning(UserWarning):
 def mean_speed(
     positions: Float[np.ndarray, "*B T J 3"], fps: float | int = FPS
 ) -> Float[np.ndarray, "*B T-1"]:
-    """Mean over the joints of |p[t+1] - p[t]| fps, in m/s; entry t belongs to the time (t + 1/2) /
-    fps.
+    """Mean over the joints of |p[t+1] - p[t]| fps, in m/s.
+
+    Entry t belongs to the time (t + 1/2) / fps.
 
     Raises ValueError for fewer than two frames.  Source: MoFusion 4.1.  Notebook: 14
     """
@@ -47,7 +49,10 @@ def smooth_speed(
     fps: float | int = FPS,
     smoothing: float | int = SMOOTHING,
 ) -> Float[np.ndarray, "*B T-1"]:
-    """`mean_speed`, smoothed along time by a Gaussian of `smoothing` seconds.  Notebook: 14"""
+    """`mean_speed`, smoothed along time by a Gaussian of `smoothing` seconds.
+
+    Notebook: 14
+    """
     return gaussian_filter1d(mean_speed(positions, fps), smoothing * fps, axis=-1)
 
 
@@ -72,7 +77,9 @@ def kinematic_beats(
             "positions hold NaN or infinity: fill or cut them before looking for beats"
         )
     low = find_peaks(-speed, prominence=DUST)[0]
-    before, here, after = speed[low - 1], speed[low], speed[low + 1]
+    before = speed[low - 1]
+    here = speed[low]
+    after = speed[low + 1]
     bend = before - 2 * here + after
     shift = np.divide(before - after, 2 * bend, out=np.zeros_like(bend), where=bend > 0)
     return (low + 0.5 + np.clip(shift, -0.5, 0.5)) / fps
@@ -81,8 +88,9 @@ def kinematic_beats(
 def beat_alignment(
     kinematic: Float[np.ndarray, "K"], music: Float[np.ndarray, "M"], sigma: float | int = SIGMA
 ) -> float:
-    """How near to a music beat the dance slows down, 0 to 1: mean over *kinematic* beats b of
-    exp(-d(b)^2 / 2 sigma^2).
+    """How near to a music beat the dance slows down, 0 to 1.
+
+    Mean over *kinematic* beats b of exp(-d(b)^2 / 2 sigma^2).
 
     d(b) = min_m |b - m|, m the music beats. The kinematic form: of AIST++'s authors, and of
     MoFusion's sentence. Exchange the arguments for the music form of MoFusion's formula and of
@@ -103,8 +111,9 @@ def beat_alignment(
 def music_alignment(
     kinematic: Float[np.ndarray, "K"], music: Float[np.ndarray, "M"], sigma: float | int = SIGMA
 ) -> float:
-    """The music form: mean over *music* beats m of exp(-min_b |b - m|^2 / 2 sigma^2). It rewards
-    whoever stops often.
+    """The music form: mean over *music* beats m of exp(-min_b |b - m|^2 / 2 sigma^2).
+
+    It rewards whoever stops often.
 
     No kinematic beat gives 0: no music beat was met. Raises ValueError for music without a beat.
     Source: MoFusion eq. 10.  Notebook: 14
@@ -141,8 +150,9 @@ def shifted_level(
     rng: np.random.Generator,
     times: int = 200,
 ) -> float:
-    """The chance level of any score: its mean when the dance begins at a random time, going round
-    at `seconds`.
+    """The chance level of any score.
+
+    Its mean when the dance begins at a random time, going round at `seconds`.
 
     `score` is `beat_alignment`, `music_alignment` ... The dance keeps its rhythm and loses its
     place in the music.
@@ -157,15 +167,18 @@ def shifted_level(
 def f_measure(
     found: Float[np.ndarray, "K"], true: Float[np.ndarray, "M"], window: float | int = 0.07
 ) -> float:
-    """Beats found against true ones, 0 to 1: F = 2 hits / (K + M), a hit being a pair at most
-    `window` seconds apart.
+    """Beats found against true ones, 0 to 1.
+
+    F = 2 hits / (K + M), a hit being a pair at most `window` seconds apart.
 
     Each beat is used once. 0 when one side is empty. Times must be in order.  Notebook: 11, 14
     """
     hits = i = j = 0
     while i < len(found) and j < len(true):
         if abs(found[i] - true[j]) <= window:
-            hits, i, j = hits + 1, i + 1, j + 1
+            hits = hits + 1
+            i = i + 1
+            j = j + 1
         elif found[i] < true[j]:
             i += 1
         else:
@@ -176,5 +189,6 @@ def f_measure(
 def _some_music(music: Float[np.ndarray, "M"]) -> None:
     if len(music) == 0:
         raise ValueError(
-            "this music has no beat to be compared with: was it silent, or cut before its first beat?"
+            "this music has no beat to be compared with: "
+            "was it silent, or cut before its first beat?"
         )

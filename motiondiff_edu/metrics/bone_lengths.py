@@ -1,5 +1,6 @@
-"""Do the limbs keep their length? The networks draw 21 free points: nothing but learning holds the
-bones together.
+"""Do the limbs keep their length?
+
+The networks draw 21 free points: nothing but learning holds the bones together.
 
 Positions in metres, errors in centimetres, as in the papers' tables. Root frame and world give the
 same figures.
@@ -15,15 +16,16 @@ CM_PER_METRE = 100.0
 
 
 def bone_lengths(positions: Float[np.ndarray, "*B T J 3"]) -> Float[np.ndarray, "*B T bones"]:
-    """Length of every bone in every frame, in metres: l_b(t) = |p[t, b] - p[t, parent(b)]|, b =
-    1..20.
+    """Length of every bone in every frame, in metres.
+
+    l_b(t) = |p[t, b] - p[t, parent(b)]|, b = 1..20.
 
     Raises ValueError when the positions are not those of the course's 21 joints.  Notebook: 08
     """
     if positions.shape[-2] != len(PARENTS):
         raise ValueError(
-            f"bones are measured on the course's {len(PARENTS)} joints, these positions have {positions.shape[-2]}: "
-            "retarget the motion first (motion.retarget)"
+            f"bones are measured on the course's {len(PARENTS)} joints, these positions have "
+            f"{positions.shape[-2]}: retarget the motion first (motion.retarget)"
         )
     positions = np.asarray(positions, np.float64)
     return np.linalg.norm(positions[..., 1:, :] - positions[..., PARENTS[1:], :], axis=-1)
@@ -41,8 +43,9 @@ def bone_rmse(
 
 
 def bone_rmse_within_clip(positions: Float[np.ndarray, "*B T J 3"]) -> float:
-    """How much the bones stretch while the clip runs, in cm: the same, against each clip's own mean
-    lengths.
+    """How much the bones stretch while the clip runs, in cm.
+
+    The same, against each clip's own mean lengths.
 
     RMSE = 100 * sqrt( mean over clips, t, b of (l_b(t) - mean_t l_b)^2 ): a figure that is too
     large but rigid has 0. Ours, beside the paper's.   Notebook: 08

@@ -1,5 +1,6 @@
-"""How different are several motions with the same past and control, or the same music? More is not
-better.
+"""How different are several motions with the same past and control, or the same music?
+
+More is not better.
 
 Whatever is measured here, noise scores highest: set it beside the data's own value.   Notebook: 08,
 14
@@ -14,8 +15,9 @@ from ..motion.root_frame import FPS
 def spread(
     rollouts: Float[np.ndarray, "*B n T J 3"], fps: float | int = FPS, skip_s: float | int = 1.0
 ) -> float | Float[np.ndarray, "*B"]:
-    """Root-frame RMS spread of n rollouts, in metres, from `skip_s` seconds on (before, the shared
-    past still rules).
+    """Root-frame RMS spread of n rollouts, in metres, from `skip_s` seconds on.
+
+    Before that the shared past still rules.
 
     spread^2 = 1 / (n - 1) * sum_i mean_{t, j} |p_i[t, j] - mean_i p_i[t, j]|^2 Noise spreads as
     well as choice does: read it as a ratio to the spread of the data's own continuations, which a
@@ -27,7 +29,8 @@ def spread(
         raise ValueError("a spread needs at least 2 rollouts of the same past and control, got 1")
     if rollouts.shape[-3] <= first:
         raise ValueError(
-            f"rollouts of {rollouts.shape[-3]} frames end before the spread begins, at frame {first}"
+            f"rollouts of {rollouts.shape[-3]} frames end before the spread begins, "
+            f"at frame {first}"
         )
     late = np.asarray(rollouts, np.float64)[..., first:, :, :]
     deviation = late - late.mean(-4, keepdims=True)
@@ -49,8 +52,9 @@ def diversity(features: Float[np.ndarray, "*B N F"]) -> float | Float[np.ndarray
 
 
 def multimodality(features: Float[np.ndarray, "B K F"]) -> float:
-    """How different the K dances to one piece of music are: the mean distance of their pairs,
-    averaged over B pieces.
+    """How different the K dances to one piece of music are.
+
+    The mean distance of their pairs, averaged over B pieces.
 
     The paper takes K = 50 and leaves the rest open; here: all pairs, features normalised by the
     data before.

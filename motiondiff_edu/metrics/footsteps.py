@@ -1,5 +1,6 @@
-"""Counting footsteps as MoDiff's Tables I, II and Fig. 3 do, the whole curve, and what makes the
-count break.
+"""Footsteps counted as MoDiff's Tables I, II and Fig. 3 do.
+
+With the whole curve, and what makes the count break.
 
 A step is an interval in which a heel is slower over the ground than a tolerance v. Too small a
 tolerance finds no step; noise or sliding near the tolerance cuts each step into crumbs, and the
@@ -11,8 +12,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from jaxtyping import Bool, Float, Int
+from jaxtyping import Float, Int
 
+from ..motion.planting import runs
 from ..motion.root_frame import FPS
 from ..motion.skeleton import HEELS
 from .skating import ground_velocity
@@ -24,15 +26,13 @@ TOLERANCES = np.arange(1.0, 61.0)  # cm/s; the paper's own are the integers 5 an
 class StepRule:
     """What counts as a step. The default is the paper's; every other setting is ours.
 
-    min_duration_s: shorter steps are dropped; merge_gap_s: gaps up to this long are closed first;
-    hysteresis: a step begins below v and ends only above v + hysteresis (cm/s); drop_edge_runs:
-    steps cut by the clip's ends, whose duration is not known, are dropped.   Notebook: 08
+    min_duration_s: shorter steps are dropped.
+    merge_gap_s: gaps up to this long are closed first.
+    Notebook: 08
     """
 
     min_duration_s: float | int = 0.0
     merge_gap_s: float | int = 0.0
-    hysteresis: float | int = 0.0
-    drop_edge_runs: bool = False
 
 
 PAPER = StepRule()
@@ -41,8 +41,10 @@ ROBUST = StepRule(min_duration_s=0.1, merge_gap_s=0.05)
 
 @dataclass(frozen=True)
 class Footsteps:
-    """The curve f_est(v), and the row of MoDiff's Table I that is read from it: count, v95, mean_s,
-    std_s."""
+    """The curve f_est(v), and the row of MoDiff's Table I that is read from it.
+
+    Count, v95, mean_s, std_s.
+    """
 
     tolerances: Float[np.ndarray, "V"]
     counts: Float[np.ndarray, "V"]
@@ -65,12 +67,6 @@ def heel_speed(
     return 100 * np.linalg.norm(ground_velocity(poses[..., HEELS, :], control, fps), axis=-1)
 
 
-def runs(mask: Bool[np.ndarray, "N"]) -> Int[np.ndarray, "n 2"]:
-    """First frame and first frame after of every longest stretch of True.  Notebook: 08"""
-    edges = np.flatnonzero(np.diff(np.concatenate([[False], mask, [False]]).astype(int)))
-    return edges.reshape(-1, 2)
-
-
 def steps_of_heel(
     speed: Float[np.ndarray, "N"],
     tolerance: float | int,
@@ -80,29 +76,9 @@ def steps_of_heel(
     """The steps of one heel: runs of speed < tolerance (cm/s), then what `rule` changes.
     Notebook: 08"""
     found = runs(speed < tolerance)
-    if rule.hysteresis > 0:
-        found = _holding(runs(speed < tolerance + rule.hysteresis), found)
     if rule.merge_gap_s > 0:
         found = _merged(found, rule.merge_gap_s * fps)
-    if rule.drop_edge_runs:
-        found = found[(found[:, 0] > 0) & (found[:, 1] < len(speed))]
     return found[(found[:, 1] - found[:, 0]) >= rule.min_duration_s * fps - 1e-9]
-
-
-def _holding(
-    wide: Int[np.ndarray, "a 2"], narrow: Int[np.ndarray, "b 2"]
-) -> Int[np.ndarray, "c 2"]:
-    """From each first frame in `narrow` to the end of its run in `wide`."""
-    kept = [
-        [narrow[inside, 0].min(), end]
-        for start, end in wide.tolist()
-        if (inside := _within(narrow, start, end)).any()
-    ]
-    return np.array(kept, dtype=int).reshape(-1, 2)
-
-
-def _within(found: Int[np.ndarray, "n 2"], start: int, end: int) -> Bool[np.ndarray, "n"]:
-    return (found[:, 0] >= start) & (found[:, 1] <= end)
 
 
 def _merged(found: Int[np.ndarray, "a 2"], gap: float | int) -> Int[np.ndarray, "b 2"]:
@@ -120,7 +96,10 @@ def step_durations(
     rule: StepRule = PAPER,
     fps: float | int = FPS,
 ) -> Float[np.ndarray, "n"]:
-    """Duration in seconds of every step of both heels in all clips.  Notebook: 08"""
+    """Duration in seconds of every step of both heels in all clips.
+
+    Notebook: 08
+    """
     found = [
         steps_of_heel(clip[:, heel], tolerance, rule, fps) for clip in speeds for heel in (0, 1)
     ]
@@ -131,11 +110,11 @@ def footsteps(
     speeds: Sequence[Float[np.ndarray, "_ 2"]],
     rule: StepRule = PAPER,
     tolerances: Float[np.ndarray, "V"] = TOLERANCES,
-    per_clip_average: bool = False,
     fps: float | int = FPS,
 ) -> Footsteps:
-    """Footsteps of a set of clips, each given by its `heel_speed`; the row of Table I at v95, and
-    the whole curve.
+    """Footsteps of a set of clips, each given by its `heel_speed`.
+
+    The row of Table I at v95, and the whole curve.
 
     f_est(v) = number of steps at tolerance v;  v95 = min{ v : f_est(v) >= 0.95 max_u f_est(u) };
     count, mean_s, std_s: number, mean and population deviation of the step durations at v95.
@@ -149,6 +128,5 @@ def footsteps(
     if counts.max() == 0:
         return Footsteps(tolerances, counts, 0.0, np.nan, np.nan, np.nan)
     at = int(np.argmax(counts >= 0.95 * counts.max()))
-    counts = counts / (len(speeds) if per_clip_average else 1)
     mean, std = float(durations[at].mean()), float(durations[at].std())
     return Footsteps(tolerances, counts, float(counts[at]), float(tolerances[at]), mean, std)

@@ -1,5 +1,6 @@
-"""How far one cloud of feature vectors is from another: FID, and what it owes to the number of
-clips.
+"""How far one cloud of feature vectors is from another.
+
+FID, and what it owes to the number of clips.
 
 Two clouds are compared by their means and covariances alone. A covariance of D features needs many
 more than D clips; the published table had 40 generated dances for 72 features. With few clips the
@@ -11,12 +12,14 @@ import warnings
 
 import numpy as np
 from jaxtyping import Float
-from scipy.linalg import sqrtm
+from sklearn.covariance import ledoit_wolf
 
 
 class FewSamplesWarning(UserWarning):
-    """There are too few clips for so many features; the figure is usable beside others of as many
-    clips only."""
+    """There are too few clips for so many features.
+
+    The figure is usable beside others of as many clips only.
+    """
 
 
 def normalise(
@@ -38,8 +41,9 @@ def frechet_distance(
     mean_2: Float[np.ndarray, "F"],
     covariance_2: Float[np.ndarray, "F F"],
 ) -> float:
-    """d^2 = |m1 - m2|^2 + tr(C1 + C2 - 2 (C1^1/2 C2 C1^1/2)^1/2), the squared Frechet distance of
-    two Gaussians.
+    """The squared Frechet distance of two Gaussians.
+
+    d^2 = |m1 - m2|^2 + tr(C1 + C2 - 2 (C1^1/2 C2 C1^1/2)^1/2).
 
     The root is taken of a symmetric matrix, by its eigenvalues: real and never negative, also where
     C1 or C2 is singular. For covariances that commute it is |m1 - m2|^2 + |sqrt(l1) - sqrt(l2)|^2,
@@ -57,28 +61,21 @@ def frechet_distance(
 
 
 def shrunk_covariance(features: Float[np.ndarray, "N F"]) -> Float[np.ndarray, "F F"]:
-    """The covariance (divided by N) drawn towards a multiple of the identity, as far as Ledoit and
-    Wolf (2004) advise.
+    """The covariance (divided by N) drawn towards a multiple of the identity.
+
+    As far as Ledoit and Wolf (2004) advise.
 
     C* = (1 - w) C + w (tr C / F) I, the more the fewer the clips; it is never singular unless all
     clips are one.
     Notebook: 14
     """
-    centred = features - features.mean(0)
-    n, width = centred.shape
-    covariance = centred.T @ centred / n
-    size = np.trace(covariance) / width
-    spread = (covariance**2).sum() - width * size**2  # of the covariance around the target
-    noise = ((centred**2).sum(1) ** 2).sum() / n**2 - (
-        covariance**2
-    ).sum() / n  # expected error of the covariance
-    weight = 0.0 if spread <= 0 else float(np.clip(noise / spread, 0.0, 1.0))
-    return (1 - weight) * covariance + weight * size * np.eye(width)
+    return ledoit_wolf(features)[0]
 
 
 def fid(generated: Float[np.ndarray, "N F"], data: Float[np.ndarray, "M F"]) -> float:
-    """Frechet distance between features of generated and recorded clips, in units of the data's
-    deviations.
+    """Frechet distance between features of generated and recorded clips.
+
+    In units of the data's deviations.
 
     Both are normalised by the data; unbiased covariances. Warns (FewSamplesWarning) unless both
     have more clips than features: the figure is then too large by much, and only to be set beside
@@ -89,7 +86,10 @@ def fid(generated: Float[np.ndarray, "N F"], data: Float[np.ndarray, "M F"]) -> 
     generated, data = _checked(generated, data)
     if min(len(generated), len(data)) <= data.shape[1]:
         warnings.warn(
-            f"{len(generated)} and {len(data)} clips for {data.shape[1]} features: more clips than features are needed",
+            (
+                f"{len(generated)} and {len(data)} clips for {data.shape[1]} features: "
+                "more clips than features are needed"
+            ),
             FewSamplesWarning,
             stacklevel=2,
         )
@@ -98,8 +98,9 @@ def fid(generated: Float[np.ndarray, "N F"], data: Float[np.ndarray, "M F"]) -> 
 
 
 def shrunk_fid(generated: Float[np.ndarray, "N F"], data: Float[np.ndarray, "M F"]) -> float:
-    """The same with `shrunk_covariance`: less noise and bias where clips are few, and not the
-    published number.
+    """The same with `shrunk_covariance`.
+
+    Less noise and bias where clips are few, and not the published number.
 
     Raises ValueError for fewer than two clips or features that are not finite.  Notebook: 14
     """
@@ -112,8 +113,9 @@ def shrunk_fid(generated: Float[np.ndarray, "N F"], data: Float[np.ndarray, "M F
 def fid_floor(
     data: Float[np.ndarray, "M F"], n: int, rng: np.random.Generator, distance=fid, times: int = 10
 ) -> tuple[float, float]:
-    """What perfection scores: mean and deviation of the FID between n clips of the data, by chance,
-    and all others.
+    """What perfection scores.
+
+    Mean and deviation of the FID between n clips of the data, by chance, and all others.
 
     A generator whose n clips come near this figure cannot be told from the data. `distance` is
     `fid`, `shrunk_fid` ...
@@ -121,7 +123,8 @@ def fid_floor(
     """
     if not 2 <= n <= len(data) - 2:
         raise ValueError(
-            f"of {len(data)} clips {n} cannot be set against the others: two are needed on both sides"
+            f"of {len(data)} clips {n} cannot be set against the others: "
+            "two are needed on both sides"
         )
     found = []
     with warnings.catch_warnings():
@@ -130,24 +133,6 @@ def fid_floor(
             order = rng.permutation(len(data))
             found.append(distance(data[order[:n]], data[order[n:]]))
     return float(np.mean(found)), float(np.std(found))
-
-
-def published_fid(generated: Float[np.ndarray, "N F"], data: Float[np.ndarray, "M F"]) -> complex:
-    """FID as the public code has it: the root of C1 C2 taken by scipy.linalg.sqrtm, without looking
-    at what it returns.
-
-    C1 C2 is not symmetric. With fewer clips than features it is singular, and the root has an
-    imaginary part: hence a complex number here. The real part then still agrees with `fid`.
-    Source: MoFusion 4.1.   Notebook: 14
-    """
-    generated, data = _checked(generated, data)
-    first, second = _covariance(generated), _covariance(data)
-    root = sqrtm(first @ second)
-    if not np.isfinite(root).all():
-        more = 1e-6 * np.eye(len(first))
-        root = sqrtm((first + more) @ (second + more))
-    between = ((generated.mean(0) - data.mean(0)) ** 2).sum()
-    return complex(between + np.trace(first) + np.trace(second) - 2 * np.trace(root))
 
 
 def _covariance(features: np.ndarray) -> np.ndarray:
@@ -159,7 +144,8 @@ def _checked(generated: np.ndarray, data: np.ndarray) -> tuple[np.ndarray, np.nd
     for name, features in (("generated", generated), ("data's", data)):
         if len(features) < 2:
             raise ValueError(
-                f"a covariance takes two clips, and there is {len(features)} among the {name} features"
+                "a covariance takes two clips, and there is "
+                f"{len(features)} among the {name} features"
             )
         if not np.isfinite(features).all():
             bad = int(np.flatnonzero(~np.isfinite(features).all(1))[0])

@@ -1,5 +1,6 @@
-"""In-betweens: are the given frames kept, how far are the others from the truth, is there a jump
-where they meet?
+"""Measures of in-betweens.
+
+Are the given frames kept, how far are the others from the truth, is there a jump where they meet?
 
 All in metres; positions (N, T, J, 3) of N motions, `known` (T, J).  Source: CondMDI and GMD for the
 first two, with every frame counted once; NPSS: Gopalakrishnan and others, 2019; the seam is ours.
@@ -39,8 +40,9 @@ def _distance(made, truth, counted, complaint: str):
 
 
 def npss(made: Float[np.ndarray, "N T D"], truth: Float[np.ndarray, "N T D"]) -> float:
-    """Normalised power spectrum similarity: how differently two sets of motions spread over
-    frequencies; 0 is alike.
+    """Normalised power spectrum similarity.
+
+    How differently two sets of motions spread over frequencies; 0 is alike.
 
     For each motion and column the power spectra, scaled to sum to 1, are compared by the earth
     mover's distance (in frequency bins); the mean is weighted by the power of the truth.
@@ -53,17 +55,22 @@ def npss(made: Float[np.ndarray, "N T D"], truth: Float[np.ndarray, "N T D"]) ->
 def npss_parts(
     made: Float[np.ndarray, "N T D"], truth: Float[np.ndarray, "N T D"]
 ) -> tuple[Float[np.ndarray, "N"], Float[np.ndarray, "N"]]:
-    """Of each motion the sum of its weighted distances, and of the weights: `npss` is the one over
-    the other."""
+    """Of each motion the sum of its weighted distances, and of the weights.
+
+    `npss` is the one over the other.
+    """
     power = [np.abs(np.fft.rfft(x, axis=1)) ** 2 for x in (made, truth)]
     spread = [np.cumsum(p / np.maximum(p.sum(1, keepdims=True), 1e-12), axis=1) for p in power]
-    moved, weight = np.abs(spread[0] - spread[1]).sum(1), power[1].sum(1)
+    moved = np.abs(spread[0] - spread[1]).sum(1)
+    weight = power[1].sum(1)
     return (moved * weight).sum(-1), weight.sum(-1)
 
 
 def seams(known: Bool[np.ndarray, "T J"]) -> Int[np.ndarray, "K"]:
-    """The inner frames on either side of which (or at which) it changes what is given: t and t + 1
-    of each change."""
+    """The inner frames on either side of which (or at which) it changes what is given.
+
+    t and t + 1 of each change.
+    """
     change = np.flatnonzero((known[1:] != known[:-1]).any(-1))
     frames = np.unique(np.concatenate([change, change + 1]))
     return frames[(frames > 0) & (frames < len(known) - 1)]
@@ -72,8 +79,9 @@ def seams(known: Bool[np.ndarray, "T J"]) -> Int[np.ndarray, "K"]:
 def seam_jump(
     made: Motions, known: Bool[np.ndarray, "T J"], fps: float = 20.0
 ) -> Float[np.ndarray, "N"]:
-    """How much velocities change at the seams, m/s: mean over seams and joints of |v[t] - v[t -
-    1]|.
+    """How much velocities change at the seams, m/s.
+
+    Mean over seams and joints of |v[t] - v[t - 1]|.
 
     The data have some as well: set theirs at the same frames beside it. NaN where there is no seam.
     Notebook: 15

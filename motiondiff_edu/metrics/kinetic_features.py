@@ -1,5 +1,6 @@
-"""A dance in three numbers for each joint, as FID, Diversity and MultiModality count it: how much
-energy goes where.
+"""A dance in three numbers for each joint, as FID, Diversity and MultiModality count it.
+
+How much energy goes where.
 
 `kinetic_features` is what the numbers are said to be. `published_kinetic_features` is what the code
 behind the published tables computes: there a misplaced bracket makes the third number measure the
@@ -19,8 +20,9 @@ WINDOW = 2  # frames to either side, at 60 frames/s
 def kinetic_features(
     positions: Float[np.ndarray, "T J 3"], fps: float | int = FPS
 ) -> Float[np.ndarray, "F"]:
-    """(horizontal energy, vertical energy, energy expenditure) of joint 0, then of joint 1 ...: F =
-    3 J numbers.
+    """Energies of joint 0, of joint 1 and so on.
+
+    Each has (horizontal energy, vertical energy, energy expenditure): F = 3 J numbers.
 
     v[t], a[t]: velocity and acceleration at 60 frames/s, each averaged over two frames to either
     side; horizontal = mean_t |v_xz|^2, vertical = mean_t v_y^2 in (m/s)^2; expenditure = mean_t |a|
@@ -36,8 +38,9 @@ def kinetic_features(
 def published_kinetic_features(
     positions: Float[np.ndarray, "T J 3"], fps: float | int = FPS
 ) -> Float[np.ndarray, "F"]:
-    """The same with the fault of the public code (fairmotion, AIST++, Bailando), for comparing with
-    published figures.
+    """The same features with the fault of the public code, to compare with published figures.
+
+    The code is that of fairmotion, AIST++ and Bailando.
 
     There the earlier velocity is p[t] - p[t-1] / dt instead of (p[t] - p[t-1]) / dt, so that the
     expenditure is about 59 * 60 * mean_t |p|: it tells the distance from the origin, and a
@@ -66,13 +69,16 @@ def _at_60(positions: np.ndarray, fps: float | int) -> np.ndarray:
 
 
 def _averaged(rates: Float[np.ndarray, "N J 3"], frames: int) -> Float[np.ndarray, "{frames} J 3"]:
-    """Mean of the rates over a window around each of so many frames; at the ends over what there is
-    of it."""
+    """Mean of the rates over a window around each of so many frames.
+
+    At the ends over what there is of it.
+    """
     total = np.concatenate([np.zeros((1, *rates.shape[1:])), np.cumsum(rates, axis=0)])
     at = np.arange(
         frames
     )  # a last frame without an acceleration of its own has the mean of those before
-    first, last = np.maximum(at - WINDOW, 0), np.minimum(at + WINDOW + 1, len(rates))
+    first = np.maximum(at - WINDOW, 0)
+    last = np.minimum(at + WINDOW + 1, len(rates))
     return (total[last] - total[first]) / (last - first)[:, None, None]
 
 
@@ -80,7 +86,8 @@ def _together(
     steps: Float[np.ndarray, "N J 3"], changes: Float[np.ndarray, "_ J 3"]
 ) -> Float[np.ndarray, "F"]:
     """The three numbers of each joint from its velocities and its accelerations, frame by frame."""
-    velocity, acceleration = _averaged(steps, len(steps)), _averaged(changes, len(steps))
+    velocity = _averaged(steps, len(steps))
+    acceleration = _averaged(changes, len(steps))
     horizontal = (velocity[..., [0, 2]] ** 2).sum(-1).mean(0)
     vertical = (velocity[..., 1] ** 2).mean(0)
     expenditure = np.linalg.norm(acceleration, axis=-1).mean(0)

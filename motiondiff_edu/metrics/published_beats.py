@@ -1,5 +1,6 @@
-"""The beat scores of the published tables, in the form their code has, with its faults; for
-comparing like with like.
+"""The beat scores of the published tables, in the form their code has, with its faults.
+
+For comparing like with like.
 
 Both count in frames and take 60 of them a second for granted: at 20 frames/s the same code, with
 its sigma of 3 frames, gives a chance level of .75 and not .25. Resample first (motion.resample).
@@ -25,8 +26,9 @@ SIGMA_FRAMES = 3.0
 
 
 def aist_beats(positions: Float[np.ndarray, "T J 3"]) -> Int[np.ndarray, "K"]:
-    """Kinematic beats as AIST++'s authors find them: frames at 60 frames/s, from the unsmoothed sum
-    of joint speeds.
+    """Kinematic beats as AIST++'s authors find them.
+
+    Frames at 60 frames/s, from the unsmoothed sum of joint speeds.
 
     A 0 is set before the speeds, so that entry t is the step from t-1 to t.  Source: MoFusion 4.1.
     Notebook: 14
@@ -42,8 +44,9 @@ def aist_score(
     music: Real[np.ndarray, "M"],
     sigma: float | int = SIGMA_FRAMES,
 ) -> float:
-    """Mean over kinematic beats (frames at 60 frames/s) of exp(-min_m |b - m|^2 / 2 sigma^2); 0
-    where there are none.
+    """Mean over kinematic beats (frames at 60 frames/s) of exp(-min_m |b - m|^2 / 2 sigma^2).
+
+    0 where there are none.
 
     Raises ValueError for music without a beat.  Source: MoFusion 4.1.  Notebook: 14
     """
@@ -51,8 +54,9 @@ def aist_score(
 
 
 def bailando_beats(positions: Float[np.ndarray, "T J 3"]) -> Int[np.ndarray, "K"]:
-    """Kinematic beats as Bailando finds them: frames at 60 frames/s, from the mean joint speed
-    smoothed by 5 frames.
+    """Kinematic beats as Bailando finds them.
+
+    Frames at 60 frames/s, from the mean joint speed smoothed by 5 frames.
 
     Entry t is the step from t to t+1.  Source: MoFusion 4.1.  Notebook: 14
     """
@@ -64,8 +68,9 @@ def bailando_score(
     music: Real[np.ndarray, "M"],
     sigma: float | int = SIGMA_FRAMES,
 ) -> float:
-    """Mean over music beats (frames at 60 frames/s) of exp(-min_b |b - m|^2 / 2 sigma^2): the
-    formula of eq. 10.
+    """Mean over music beats (frames at 60 frames/s) of exp(-min_b |b - m|^2 / 2 sigma^2).
+
+    The formula of eq. 10.
 
     Raises ValueError where either side has no beat, as their code does.  Source: MoFusion eq. 10.
     Notebook: 14
@@ -78,7 +83,8 @@ def _mean_over(
 ) -> float:
     if len(these) == 0 or len(others) == 0:
         raise ValueError(
-            "one side has no beat at all: this form of the score is not defined then (see metrics.beats)"
+            "one side has no beat at all: this form of the score is not "
+            "defined then (see metrics.beats)"
         )
     nearest = np.abs(these[:, None] - others[None, :]).min(1)
     return float(np.exp(-(nearest**2) / (2 * sigma**2)).mean())

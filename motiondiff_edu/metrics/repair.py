@@ -1,5 +1,6 @@
-"""Repairs: how far what was missing is from the truth, how well it joins the rest, and whether it
-moves.
+"""Measures of repairs.
+
+How far what was missing is from the truth, how well it joins the rest, and whether it moves.
 
 Positions in metres, results in centimetres. `known` says of each joint in each frame whether it was
 given; several repairs of the same past stand in front, (n, ..., T, J, 3), and share it.
@@ -18,8 +19,9 @@ Known = Bool[np.ndarray, "*B T J"]
 
 
 def missing_error(made: Poses, truth: Float[np.ndarray, "*B T J 3"], known: Known) -> float:
-    """Mean distance of the missing joints from the truth, cm: over all of them, in all frames and
-    motions.
+    """Mean distance of the missing joints from the truth, cm.
+
+    Over all of them, in all frames and motions.
 
     A mean of repairs can only win here: |mean_i x_i - truth| <= mean_i |x_i - truth|.
     Raises ValueError when nothing is missing.  Notebook: 10
@@ -29,8 +31,9 @@ def missing_error(made: Poses, truth: Float[np.ndarray, "*B T J 3"], known: Know
 
 
 def joined_bones(made: Poses, known: Known) -> float:
-    """The bone error (cm, RMS against the true lengths) of those bones that have an end which was
-    missing.
+    """The error of bones that have a missing end, cm.
+
+    RMS against the true lengths.
 
     The paper's RMSE_re does not say whether it counts the others, whose length is given;
     `bone_rmse` counts all.
@@ -55,8 +58,9 @@ def missing_step(made: Poses, known: Known) -> float:
 
 
 def missing_spread(samples: Float[np.ndarray, "n *B T J 3"], known: Known) -> float:
-    """How far n repairs of the same past lie from their mean, cm: RMS over the missing joints, with
-    n - 1.
+    """How far n repairs of the same past lie from their mean, cm.
+
+    RMS over the missing joints, with n - 1.
 
     Repairs that know how uncertain they are spread about as far as the truth is from their mean.
     Raises ValueError for fewer than two repairs, and when nothing is missing.  Notebook: 10

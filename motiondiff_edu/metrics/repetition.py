@@ -1,5 +1,6 @@
-"""Does the dance repeat itself? Every pose compared with every other, where the figure stands and
-faces put aside.
+"""Does the dance repeat itself?
+
+Every pose compared with every other, where the figure stands and faces put aside.
 
 The matrix has a bright diagonal (each pose is like itself); a loop of two seconds adds bright lines
 two seconds beside it. A dance needs some repetition, as music does: read the figure beside the
@@ -18,8 +19,9 @@ OVERLAP = 2.0  # s that must be compared at each lag: a short overlap agrees by 
 
 
 def pose_changes(positions: Float[np.ndarray, "T 21 3"]) -> Float[np.ndarray, "T 63"]:
-    """Poses with the pelvis above the origin, facing z in every frame, minus the clip's mean pose;
-    metres.
+    """Poses with the pelvis above the origin, facing z in every frame, minus the clip's mean pose.
+
+    Metres.
 
     The heading is that of hips and shoulders together. Raises ValueError for NaN.  Notebook: 14
     """
@@ -33,8 +35,9 @@ def pose_changes(positions: Float[np.ndarray, "T 21 3"]) -> Float[np.ndarray, "T
 
 
 def self_similarity(positions: Float[np.ndarray, "T 21 3"]) -> Float[np.ndarray, "T T"]:
-    """S[t, u] = <x_t, x_u> / (|x_t| |x_u|), x the `pose_changes`: 1 for the same pose, -1 for the
-    opposite one.
+    """S[t, u] = <x_t, x_u> / (|x_t| |x_u|), x the `pose_changes`.
+
+    1 for the same pose, -1 for the opposite one.
 
     Raises ValueError for NaN and for a figure that keeps one pose.  Notebook: 14
     """
@@ -44,8 +47,10 @@ def self_similarity(positions: Float[np.ndarray, "T 21 3"]) -> Float[np.ndarray,
 
 
 def likeness(x: Float[np.ndarray, "T F"], lag: int) -> float:
-    """r = sum_t <x_t, x_{t+lag}> / sqrt(sum_t |x_t|^2 sum_t |x_{t+lag}|^2), t running over the
-    overlap; 1 for a loop.
+    """How alike a motion and itself `lag` frames later are; 1 for a loop.
+
+    r = sum_t <x_t, x_{t+lag}> / sqrt(sum_t |x_t|^2 sum_t |x_{t+lag}|^2), t running over the
+    overlap.
 
     Notebook: 14
     """
@@ -56,8 +61,9 @@ def likeness(x: Float[np.ndarray, "T F"], lag: int) -> float:
 def lag_similarity(
     positions: Float[np.ndarray, "T 21 3"], fps: float | int = FPS
 ) -> Float[np.ndarray, "L"]:
-    """The `likeness` of the dance to itself `lag` frames later, for lag = 0, 1, ... as long as 2 s
-    are left to compare.
+    """The `likeness` of the dance to itself `lag` frames later.
+
+    For lag = 0, 1, ... as long as 2 s are left to compare.
 
     Raises ValueError for a clip under 2 s, NaN, and a figure that keeps one pose.  Notebook: 14
     """
@@ -73,8 +79,9 @@ def lag_similarity(
 def repeat_score(
     positions: Float[np.ndarray, "T 21 3"], fps: float | int = FPS, lags: tuple[float, float] = LAGS
 ) -> float:
-    """The largest `lag_similarity` between 1 and 8 seconds: 1 for a loop of up to 8 s, near 0 for
-    noise.
+    """The largest `lag_similarity` between 1 and 8 seconds.
+
+    1 for a loop of up to 8 s, near 0 for noise.
 
     A clip of T seconds shows lags up to T - 2 s: compare clips of one length only. Smooth movement
     that never returns still has some likeness by chance. Raises ValueError as `lag_similarity`, and
@@ -84,7 +91,8 @@ def repeat_score(
     first, last = round(lags[0] * fps), round(lags[1] * fps)
     if len(similarity) <= first:
         raise ValueError(
-            f"{len(positions) / fps:g} s leave no lag of {lags[0]:g} s with {OVERLAP:g} s to compare"
+            f"{len(positions) / fps:g} s leave no lag of {lags[0]:g} s "
+            f"with {OVERLAP:g} s to compare"
         )
     return float(similarity[first : last + 1].max())
 

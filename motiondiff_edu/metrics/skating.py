@@ -33,8 +33,10 @@ def ground_velocity(
 def _turn(
     xz: Float[np.ndarray, "*B K 2"], angle: Float[np.ndarray, "*B 1"]
 ) -> Float[np.ndarray, "*B K 2"]:
-    """(left, forward) coordinates of a figure that faces `angle`, read in the frame that faces
-    0."""
+    """(left, forward) coordinates of a figure that faces `angle`.
+
+    Read in the frame that faces 0.
+    """
     x, z = xz[..., 0], xz[..., 1]
     sin, cos = np.sin(angle), np.cos(angle)
     return np.stack([x * cos + z * sin, z * cos - x * sin], -1)
@@ -43,8 +45,9 @@ def _turn(
 def planted_toe(
     poses: Float[np.ndarray, "*B T J 3"], below: float | int = PLANTED_BELOW
 ) -> tuple[Int[np.ndarray, "*B T-1"], Bool[np.ndarray, "*B T-1"]]:
-    """For the step from t to t+1: which toe is lower (0 left, 1 right; left if equal), and is it
-    under `below` metres.
+    """For the step from t to t+1.
+
+    Which toe is lower (0 left, 1 right; left if equal), and is it under `below` metres.
 
     Low is judged at both ends of the step: the higher of the two heights counts.  Notebook: 08
     """
@@ -59,8 +62,9 @@ def planted_velocity(
     fps: float | int = FPS,
     below: float | int = PLANTED_BELOW,
 ) -> Float[np.ndarray, "*B T-1 2"]:
-    """Velocity over the ground of the planted toe, (left, forward) in m/s; NaN in steps where no
-    toe is planted.
+    """Velocity over the ground of the planted toe, (left, forward) in m/s.
+
+    NaN in steps where no toe is planted.
 
     Notebook: 08
     """
@@ -76,8 +80,9 @@ def skating(
     fps: float | int = FPS,
     below: float | int = PLANTED_BELOW,
 ) -> float | Float[np.ndarray, "*B"]:
-    """How fast the planted toe slides, in m/s, mean over the steps where one is planted; one figure
-    for each clip.
+    """How fast the planted toe slides, in m/s, mean over the steps where one is planted.
+
+    One figure for each clip.
 
     skating = mean_t |velocity over the ground of the planted toe|. Flight is left out; a clip where
     no toe is ever under `below` has no figure: NaN, never a flattering 0 (see `planted_share`).
@@ -89,8 +94,9 @@ def skating(
 def planted_share(
     poses: Float[np.ndarray, "*B T J 3"], below: float | int = PLANTED_BELOW
 ) -> float | Float[np.ndarray, "*B"]:
-    """The share of steps with a planted toe: 1 in a walk, less in a run, 0 for a figure that
-    floats; NaN for no step.
+    """The share of steps with a planted toe.
+
+    1 in a walk, less in a run, 0 for a figure that floats; NaN for no step.
 
     Notebook: 08
     """

@@ -1,2 +1,9 @@
-"""Motion as arrays: the skeleton, forward kinematics, the root frame, clips, and the files they
-come from."""
+"""Motion as arrays.
+
+The skeleton, forward kinematics, the root frame, clips, and the files they come from.
+"""
+
+from . import registry
+
+registry.readers.announce(f"{__name__}.files", ".bvh", ".npz")
+registry.writers.announce(f"{__name__}.files", ".bvh", ".npz")

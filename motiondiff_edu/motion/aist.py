@@ -17,16 +17,33 @@ from numpy._core import multiarray, numeric
 
 AIST_FPS = 60.0
 COCO = (
-    "Nose", "LeftEye", "RightEye", "LeftEar", "RightEar", "LeftShoulder", "RightShoulder", "LeftElbow", "RightElbow",
-    "LeftWrist", "RightWrist", "LeftHip", "RightHip", "LeftKnee", "RightKnee", "LeftAnkle", "RightAnkle",
-)  # fmt: skip
+    "Nose",
+    "LeftEye",
+    "RightEye",
+    "LeftEar",
+    "RightEar",
+    "LeftShoulder",
+    "RightShoulder",
+    "LeftElbow",
+    "RightElbow",
+    "LeftWrist",
+    "RightWrist",
+    "LeftHip",
+    "RightHip",
+    "LeftKnee",
+    "RightKnee",
+    "LeftAnkle",
+    "RightAnkle",
+)
 LARGEST = 300_000_000  # bytes
 FLOOR_PERCENTILE = 1.0
 
 
 class AistError(ValueError):
-    """A file is no AIST++ keypoints file, or not a safe one; the message says what it is and what
-    to do."""
+    """A file is no AIST++ keypoints file, or not a safe one.
+
+    The message says what it is and what to do.
+    """
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,8 +64,9 @@ class Keypoints:
 
 
 def read_keypoints(path: str | Path, optimised: bool = True) -> Keypoints:
-    """Read a keypoints3d pickle of AIST++; `optimised` takes keypoints3d_optim, which has no gaps,
-    else the raw ones.
+    """Read a keypoints3d pickle of AIST++.
+
+    `optimised` takes keypoints3d_optim, which has no gaps, else the raw ones.
 
     The floor is the 1st percentile over frames of the lowest joint: the ankles of a standing figure
     come to 0, since COCO has no toes, and one bad frame does not lower it.
@@ -63,7 +81,8 @@ def read_keypoints(path: str | Path, optimised: bool = True) -> Keypoints:
         raise AistError(
             f"{path.name}: larger than {LARGEST // 1_000_000} MB, and no keypoints file is."
         )
-    content, key = _load(path), "keypoints3d_optim" if optimised else "keypoints3d"
+    content = _load(path)
+    key = "keypoints3d_optim" if optimised else "keypoints3d"
     cm = _array(content, key, path.name)
     known = np.isfinite(cm).all((1, 2))
     if not known.any():
@@ -76,8 +95,9 @@ def read_keypoints(path: str | Path, optimised: bool = True) -> Keypoints:
 
 
 def tempo_of(name: str) -> float | None:
-    """Beats a minute of the music that an AIST++ name tells: mBR2 is 80 + 10 * 2 = 100; house
-    (mHO2) 110 + 5 * 2 = 120.
+    """Beats a minute of the music that an AIST++ name tells: mBR2 is 80 + 10 * 2 = 100.
+
+    House (mHO2) 110 + 5 * 2 = 120.
 
     None where the name has no music in it.  Notebook: 14
     """
@@ -104,7 +124,8 @@ class _Restricted(pickle.Unpickler):
     def find_class(self, module: str, name: str):
         if (module, name) not in _ADMITTED:
             raise AistError(
-                f"it names {module}.{name}, which an array does not need: such a file may run a program"
+                f"it names {module}.{name}, which an array does not need: "
+                "such a file may run a program"
             )
         return _ADMITTED[module, name] or _encode
 
@@ -140,7 +161,10 @@ def _told_of_npy(raw: bytes) -> str:
     except ValueError:
         return f"a .npy file that holds Python objects; {wanted}"
     if shape[-1:] == (34,):
-        return f"a .npy file of shape {shape}: 34 music or motion features a frame, normalised, and no joints; {wanted}"
+        return (
+            f"a .npy file of shape {shape}: 34 music or motion features a frame, normalised, "
+            f"and no joints; {wanted}"
+        )
     return f"a .npy file of shape {shape}; {wanted}"
 
 

@@ -20,8 +20,9 @@ _FLIP_CONTROL = np.array([1.0, -1.0, -1.0])  # control: forward stays, left and 
 
 
 def mirror(clip: Clip) -> Clip:
-    """The clip seen in a mirror: every joint's x is negated, left and right swap names; so do the
-    contacts.
+    """The clip seen in a mirror: every joint's x is negated, left and right swap names.
+
+    So do the contacts.
 
     Twice is the identity.  Notebook: 01
     """
@@ -37,8 +38,9 @@ def mirror(clip: Clip) -> Clip:
 
 
 def reverse_time(clip: Clip) -> Clip:
-    """The clip played backwards: control'[t] = -control[T-2-t], since control[t] leads from frame t
-    to t+1.
+    """The clip played backwards.
+
+    control'[t] = -control[T-2-t], since control[t] leads from frame t to t+1.
 
     Twice is the identity but for the last row of control, which repeats its neighbour by
     convention.
@@ -52,8 +54,9 @@ def reverse_time(clip: Clip) -> Clip:
 
 
 def augment(clips: Sequence[Clip]) -> list[Clip]:
-    """Four clips from each: as it is, mirrored, reversed, both. The source stays, so splits stay
-    clean.
+    """Four clips from each: as it is, mirrored, reversed, both.
+
+    The source stays, so splits stay clean.
 
     Source: MoDiff III-E.  Notebook: 01
     """

@@ -30,7 +30,8 @@ class Clip:
     def __post_init__(self):
         if len(self.poses) != len(self.control):
             raise ValueError(
-                f"clip {self.source!r}: {len(self.poses)} poses but {len(self.control)} rows of control"
+                f"clip {self.source!r}: {len(self.poses)} poses but "
+                f"{len(self.control)} rows of control"
             )
 
     def __len__(self) -> int:
@@ -47,8 +48,10 @@ class Clip:
         return self.poses.reshape(len(self), -1).astype(np.float32)
 
     def cut(self, first: int, last: int) -> "Clip":
-        """Frames first..last-1 as a clip of the same source; `info` stays that of the whole
-        clip."""
+        """Frames first..last-1 as a clip of the same source.
+
+        `info` stays that of the whole clip.
+        """
         contacts = None if self.contacts is None else self.contacts[first:last]
         return replace(
             self, poses=self.poses[first:last], control=self.control[first:last], contacts=contacts
@@ -56,8 +59,9 @@ class Clip:
 
 
 def slice_clips(clips: Sequence[Clip], seconds: float = 4.0, overlap: float = 0.5) -> list[Clip]:
-    """Cut clips into pieces of `seconds` that overlap by the share `overlap`; a shorter rest is
-    left out.
+    """Cut clips into pieces of `seconds` that overlap by the share `overlap`.
+
+    A shorter rest is left out.
 
     Raises ValueError unless 0 <= overlap < 1 and a piece has a frame.  Source: MoDiff IV-A.
     Notebook: 01
@@ -79,8 +83,9 @@ def slice_clips(clips: Sequence[Clip], seconds: float = 4.0, overlap: float = 0.
 def split_by_source(
     clips: Sequence[Clip], fractions: Sequence[float], rng: np.random.Generator
 ) -> tuple[list[Clip], ...]:
-    """Split into groups so that no source stands in two of them: slices of one recording share
-    frames.
+    """Split into groups so that no source stands in two of them.
+
+    Slices of one recording share frames.
 
     `fractions` are shares of the sources and sum to 1. Raises ValueError otherwise.  Notebook: 01
     """

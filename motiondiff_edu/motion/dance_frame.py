@@ -1,5 +1,6 @@
-"""Dance as the network sees it: where the pelvis is, and the other joints about it; no turning from
-frame to frame.
+"""Dance as the network sees it: where the pelvis is, and the other joints about it.
+
+No turning from frame to frame.
 
 Columns 0:3 are the pelvis (x, y, z), which starts at x = z = 0, facing z; then x, y, z of each of
 the 20 other joints minus the pelvis, same axes. Metres.  Source: MoFusion 3 (root-relative joints
@@ -13,10 +14,13 @@ import torch
 from jaxtyping import Float
 from torch import Tensor
 
-from .skeleton import HIPS, MIRROR, J, joint_index
+from ..kinematic_loss import Body
+from .scaler import Scaler
+from .skeleton import BONE_PAIRS, BONES, HIPS, MIRROR, TOES, J, joint_index
 
 GROUND = np.array([1.0, 0.0, 1.0])  # what of a place is on the floor
-HIP_LEFT, HIP_RIGHT = joint_index("LeftUpLeg"), joint_index("RightUpLeg")
+HIP_LEFT = joint_index("LeftUpLeg")
+HIP_RIGHT = joint_index("RightUpLeg")
 
 
 def facing(positions: Float[np.ndarray, "*B 21 3"]) -> Float[np.ndarray, "*B"]:
@@ -31,8 +35,10 @@ def heading(across: Float[np.ndarray, "*B 3"]) -> Float[np.ndarray, "*B"]:
 
 @dataclass(frozen=True, eq=False)
 class Place:
-    """Where a figure stands and which way it faces: the way from the world to its own frame, and
-    back."""
+    """Where a figure stands and which way it faces.
+
+    The way from the world to its own frame, and back.
+    """
 
     ground: Float[np.ndarray, "*B 3"]  # below the pelvis: x, 0, z
     heading: Float[np.ndarray, "*B"]
@@ -54,15 +60,18 @@ def _turned(
     positions: Float[np.ndarray, "*B T J 3"], heading: Float[np.ndarray, "*#B"], back: bool = False
 ) -> Float[np.ndarray, "*B T J 3"]:
     """Turned so that who faced `heading` faces z; `back` the other way."""
-    sin, cos = np.sin(heading)[..., None, None], np.cos(heading)[..., None, None]
+    sin = np.sin(heading)[..., None, None]
+    cos = np.cos(heading)[..., None, None]
     sin = -sin if back else sin
     x, y, z = np.moveaxis(positions, -1, 0)
     return np.stack([x * cos - z * sin, y, x * sin + z * cos], -1)
 
 
 def at_origin(positions: Float[np.ndarray, "*B T 21 3"]) -> Float[np.ndarray, "*B T 21 3"]:
-    """The same motion, moved and turned so that it starts with the pelvis over x = z = 0, facing
-    z."""
+    """The same motion, moved and turned to its own beginning.
+
+    It starts with the pelvis over x = z = 0, facing z.
+    """
     return Place.of(positions[..., 0, :, :]).enter(positions)
 
 
@@ -77,7 +86,10 @@ def to_features(positions: Float[np.ndarray, "*B T J 3"]) -> Float[np.ndarray, "
 
 
 def placed_features(placed: Float[np.ndarray, "*B T J 3"]) -> Float[np.ndarray, "*B T 63"]:
-    """The 63 numbers of a motion that is where it should be already.  Notebook: 15"""
+    """The 63 numbers of a motion that is where it should be already.
+
+    Notebook: 15
+    """
     about = placed[..., HIPS + 1 :, :] - placed[..., HIPS : HIPS + 1, :]
     whole = np.concatenate([placed[..., HIPS : HIPS + 1, :], about], axis=-2)
     return whole.reshape(*whole.shape[:-2], 3 * J)
@@ -89,6 +101,12 @@ def to_positions(features: Float[Tensor, "*B T 63"]) -> Float[Tensor, "*B T 21 3
     joints = features.unflatten(-1, (J, 3))
     pelvis = joints[..., :1, :]
     return torch.cat([pelvis, joints[..., 1:, :] + pelvis], dim=-2)
+
+
+def body_of(scaler: Scaler) -> Body:
+    """The course's figure for the kinematic losses of motions that `scaler` standardised.
+    Notebook: 13"""
+    return Body(lambda x: to_positions(scaler.inverse(x)), BONES, BONE_PAIRS, TOES)
 
 
 def mirror(positions: Float[np.ndarray, "*B T 21 3"]) -> Float[np.ndarray, "*B T 21 3"]:

@@ -1,5 +1,6 @@
-"""Joint names over the dialects of BVH: which joint of a file plays which part of the course's
-figure.
+"""Joint names over the dialects of BVH.
+
+Which joint of a file plays which part of the course's figure.
 
 Notebook: 00
 """
@@ -22,7 +23,10 @@ SIDED = {
     "Arm": "arm shldr uparm upperarm shoulder humerus",
     "ForeArm": "forearm lowarm lowerarm elbow radius",
     "Hand": "wrist hand",
-    "HandIndex1": "handindex1 handmiddle1 mid1 middle1 index1 fingers finger1 finger handend handtip palm hand",
+    "HandIndex1": (
+        "handindex1 handmiddle1 mid1 middle1 index1 fingers finger1 "
+        "finger handend handtip palm hand"
+    ),
 }
 CENTRAL = {
     "Hips": "hips hip pelvis root",
@@ -112,12 +116,15 @@ def check_mapping(mapping: Mapping[str, str], bvh: Bvh) -> dict[str, str]:
 
 
 def refuse_incomplete(mapping: Mapping[str, str], bvh: Bvh) -> None:
-    """Raise BvhError when a needed joint has no counterpart; show what there is and how to name
-    it."""
+    """Raise BvhError when a needed joint has no counterpart.
+
+    Show what there is and how to name it.
+    """
     lacking = [joint for joint in NEEDED if joint not in mapping]
     if lacking:
         raise BvhError(
-            f"no joint found for {', '.join(lacking)}. The file has: {', '.join(bvh.joints)}. Give the missing ones, "
-            f"for instance load_clip(path, mapping={{'{lacking[0]}': '<its joint>', ...}}).",
+            f"no joint found for {', '.join(lacking)}. The file has: {', '.join(bvh.joints)}. "
+            "Give the missing ones, for instance load_clip(path, "
+            f"mapping={{'{lacking[0]}': '<its joint>', ...}}).",
             bvh.source,
         )

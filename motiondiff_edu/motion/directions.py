@@ -1,5 +1,6 @@
-"""The pose of another skeleton on the course's bones: bone directions are kept, bone lengths are
-ours.
+"""The pose of another skeleton on the course's bones.
+
+Bone directions are kept, bone lengths are ours.
 
 Hips and chest are taken as rigid blocks, since every dialect places its spine joints elsewhere.
 Notebook: 00
@@ -38,8 +39,9 @@ def calibrated(
     frame: Float[np.ndarray, "T 3 3"],
     target: Float[np.ndarray, "3"],
 ) -> Float[np.ndarray, "T 3"]:
-    """Turn directions by one constant rotation in a body frame, so that their mean there is
-    `target`.
+    """Directions turned by one constant rotation in a body frame.
+
+    Their mean there becomes `target`.
 
     This removes how a dialect places a joint and keeps how the person moves it.
     """
@@ -57,8 +59,10 @@ def between(start: Float[np.ndarray, "3"], end: Float[np.ndarray, "3"]) -> Float
 
 
 def complete(points: Float[np.ndarray, "T 21 3"]) -> Float[np.ndarray, "T 21 3"]:
-    """Fill joints that a file lacks: neck and spine on the line from hips to head, hand tips along
-    the forearm."""
+    """Fill joints that a file lacks.
+
+    Neck and spine on the line from hips to head, hand tips along the forearm.
+    """
     points = points.copy()
     hips, shoulders = points[:, UPLEGS].mean(1), points[:, ARMS].mean(1)
     made_up = {
@@ -75,8 +79,10 @@ def complete(points: Float[np.ndarray, "T 21 3"]) -> Float[np.ndarray, "T 21 3"]
 
 
 def has_our_bones(points: Float[np.ndarray, "T 21 3"]) -> bool:
-    """True when every bone has the course's length within 2 %, as in files that this course
-    wrote."""
+    """True when every bone has the course's length within 2 %.
+
+    Files that this course wrote have it.
+    """
     lengths = np.array(
         [np.median(np.linalg.norm(points[:, c] - points[:, p], axis=-1)) for p, c in BONES]
     )
@@ -116,8 +122,9 @@ def bone_directions(
 
 
 def rest_lean(rest: Float[np.ndarray, "21 3"]) -> float:
-    """How far the trunk slopes backwards in a rest pose (radians): a matter of where joints are
-    placed, not of posture.
+    """How far the trunk slopes backwards in a rest pose (radians).
+
+    A matter of where joints are placed, not of posture.
 
     Zero when the rest pose does not stand, or slopes more than a standing figure does.
     """
@@ -129,8 +136,9 @@ def rest_lean(rest: Float[np.ndarray, "21 3"]) -> float:
 
 
 def trunk_frames(points: Float[np.ndarray, "T 21 3"], lean: float) -> tuple[np.ndarray, np.ndarray]:
-    """Frames of pelvis and chest: across from hip and shoulder line, up from the lower and the
-    upper trunk.
+    """Frames of pelvis and chest.
+
+    Across from hip and shoulder line, up from the lower and the upper trunk.
 
     The trunk bends where the file has a spine joint near its middle; its mean shape is
     straightened.
@@ -151,8 +159,10 @@ def mid_trunk(
     hips: Float[np.ndarray, "T 3"],
     trunk: Float[np.ndarray, "T 3"],
 ) -> Float[np.ndarray, "T 3"]:
-    """The spine joint nearest to half way up the trunk, or the point half way where none is
-    near."""
+    """The spine joint nearest to half way up the trunk.
+
+    The point half way where none is near.
+    """
     height = np.einsum("tji,ti->tj", points[:, [SPINE, SPINE1, NECK]] - hips[:, None], trunk)
     share = np.median(height / (trunk**2).sum(-1)[:, None], axis=0)
     best = int(np.abs(share - 0.5).argmin())
@@ -169,8 +179,9 @@ def foot_direction(
     pelvis: Float[np.ndarray, "T 3 3"],
     standing: Bool[np.ndarray, " T"],
 ) -> Float[np.ndarray, "T 3"]:
-    """Direction ankle to toe, pitched by a constant so that a foot flat on the floor is flat with
-    our ankle height.
+    """Direction from ankle to toe, pitched by a constant.
+
+    A foot flat on the floor is then flat with our ankle height.
 
     A foot that is missing, or points straight down from the shank, becomes a flat foot square to
     the shank.

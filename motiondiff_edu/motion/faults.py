@@ -1,5 +1,6 @@
-"""Where a capture cannot be right: joints that move faster than any actor's, as when markers are
-exchanged.
+"""Where a capture cannot be right.
+
+Joints that move faster than any actor's, as when markers are exchanged.
 
 What is found is a mask, so that it can be mended: `editing.inbetween.inbetween(dancer,
 clip.world(), ~clip.info["wild"])`. A joint may be wrong without haste: to be safe, doubt whole
@@ -20,8 +21,9 @@ MARGIN_S, CLOSE_S = 0.05, 0.5
 def wild_joints(
     speeds: Float[np.ndarray, "N 21"], fps: float | int, frames: int, to_fps: float | int
 ) -> Bool[np.ndarray, "{frames} 21"]:
-    """Of a motion of `frames` at `to_fps`, the joints that are not to be believed; `speeds` are the
-    file's, in m/s.
+    """Of a motion of `frames` at `to_fps`, the joints that are not to be believed.
+
+    `speeds` are the file's, in m/s.
 
     Nothing is doubted unless some joint passes WILD. Then every joint is doubted while it passes
     HASTY and 0.05 s around, and between two such moments up to half a second apart: markers

@@ -1,5 +1,6 @@
-"""A joint is dragged and the body follows: every bone keeps its length, and what need not move
-stays.
+"""A joint is dragged and the body follows.
+
+Every bone keeps its length, and what need not move stays.
 
 Elbows and knees turn about shoulder and hip; wrists and ankles are reached by two bones (the
 triangle of their lengths); fingertips and toes tow hand and foot; head, neck, spine and shoulders
@@ -13,7 +14,7 @@ from jaxtyping import Float
 
 from .bvh.fit import least_turn
 from .directions import ARMS, SPINE1, UPLEGS, unit
-from .planting import pelvis_ahead, perpendicular
+from .planting import pelvis_ahead, perpendicular, triangle
 from .skeleton import HEELS, HIPS, JOINTS, PARENTS, J
 
 Pose = Float[np.ndarray, "21 3"]
@@ -29,8 +30,9 @@ PELVIS = (HIPS, *UPLEGS)  # one rigid piece
 
 
 def drag(pose: Pose, joint: int, target: Point) -> Pose:
-    """The pose with a joint at `target` (metres, world), or as near as its bones reach; all bones
-    as long as before.
+    """The pose with a joint at `target` (metres, world), or as near as its bones reach.
+
+    All bones as long as before.
 
     Dragging a joint to where it is changes nothing.
     Raises IndexError for a joint that the skeleton has not, ValueError for a target that is not
@@ -56,8 +58,9 @@ def drag(pose: Pose, joint: int, target: Point) -> Pose:
 
 
 def chain_to(joint: int) -> list[int]:
-    """The joints that reach for it, from the one that stays: hip or shoulder for a limb, the pelvis
-    for the trunk.
+    """The joints that reach for it, from the one that stays.
+
+    Hip or shoulder for a limb, the pelvis for the trunk.
 
     A shoulder hangs from the chest, which is one block: the neck is left out on the way.
     """
@@ -68,8 +71,9 @@ def chain_to(joint: int) -> list[int]:
 
 
 def bends_to(pose: Pose, root: int) -> Float[np.ndarray, "2 3"]:
-    """Where a straight limb starts to bend, and where else if it points there: knees ahead or up,
-    elbows back or down.
+    """Where a straight limb starts to bend, and where else if it points there.
+
+    Knees ahead or up, elbows back or down.
 
     `root` is the limb's first joint, a hip or a shoulder.
     """
@@ -80,11 +84,11 @@ def bends_to(pose: Pose, root: int) -> Float[np.ndarray, "2 3"]:
 def two_bones(
     limb: Float[np.ndarray, "3 3"], target: Point, bends: Float[np.ndarray, "2 3"]
 ) -> Float[np.ndarray, "3 3"]:
-    """Root, middle and end with the end at the target: a triangle of two bones a, b and the
-    distance d.
+    """Root, middle and end with the end at the target.
 
-    The middle is (a^2 - b^2 + d^2) / 2d along the line and sqrt(a^2 - that^2) aside of it, on the
-    side where it was, which turns with the line. A target out of reach is drawn in along the line
+    A triangle of two bones a, b and the distance d.
+
+    The middle (`planting.triangle`) lies on the side where it was, which turns with the line. A target out of reach is drawn in along the line
     from the root.
     """
     root, middle, end = limb
@@ -93,8 +97,7 @@ def two_bones(
     wanted = float(np.linalg.norm(target - root))
     line = (target - root) / wanted if wanted > 1e-9 else unit(end - root)
     d = float(np.clip(wanted, min(abs(a - b) + 0.01, far), longest))
-    along = (a**2 - b**2 + d**2) / (2 * d)
-    aside = np.sqrt(max(a**2 - along**2, 0.0))
+    along, aside = triangle(a, b, d)
     before = perpendicular((middle - root)[None], unit(end - root)[None])
     was = float(np.linalg.norm(before))
     side = (least_turn(unit(end - root)[None], line[None]) @ before[0])[0]
@@ -103,8 +106,10 @@ def two_bones(
 
 
 def _first_aside(directions: Float[np.ndarray, "2 3"], line: Point) -> Point:
-    """The first of two directions at right angles to the line; the second where the first points
-    along it."""
+    """The first of two directions at right angles to the line.
+
+    The second where the first points along it.
+    """
     first, second = (perpendicular(v[None], line[None])[0] for v in directions)
     return unit(first) if np.linalg.norm(first) > 0.2 else unit(second)
 
@@ -112,8 +117,10 @@ def _first_aside(directions: Float[np.ndarray, "2 3"], line: Point) -> Point:
 def towed(
     limb: Float[np.ndarray, "4 3"], target: Point, bends: Float[np.ndarray, "2 3"]
 ) -> Float[np.ndarray, "4 3"]:
-    """Two bones and a last one that is drawn by its tip, as a cart by its shaft: hand or foot, and
-    what carries it."""
+    """Two bones and a last one that is drawn by its tip, as a cart by its shaft.
+
+    Hand or foot, and what carries it.
+    """
     three, last = limb[:3], float(np.linalg.norm(limb[3] - limb[2]))
     tip = limb[3]
     for _ in range(20):
@@ -129,8 +136,10 @@ def towed(
 def fabrik(
     chain: Float[np.ndarray, "N 3"], target: Point, rounds: int = 60
 ) -> Float[np.ndarray, "N 3"]:
-    """The chain with its end at the target, its start where it was: from the end and from the start
-    by turns, each joint is put on the line to its neighbour's new place, at the bone's length.
+    """The chain with its end at the target, its start where it was.
+
+    From the end and from the start by turns, each joint is put on the line to its neighbour's new
+    place, at the bone's length.
 
     A target out of reach leaves the chain straight. Two joints in one place leave their bone the
     direction it had.
@@ -174,8 +183,10 @@ def carried(pose: Pose, chain: list[int], places: Float[np.ndarray, "N 3"]) -> P
 
 
 def block(joint: int, above: int) -> list[int]:
-    """What turns with the bone between two joints, a chain's neighbours: the first joint on the
-    way, and all below."""
+    """What turns with the bone between two joints, a chain's neighbours.
+
+    The first joint on the way, and all below.
+    """
     first = joint
     while PARENTS[first] != above:
         first = int(PARENTS[first])

@@ -3,12 +3,18 @@
 Source: textbook rigid-body kinematics; MoDiff itself works on positions (IV-A).  Notebook: 01
 """
 
+from itertools import pairwise
+
 import numpy as np
 from jaxtyping import Float, Int
+from scipy.spatial.transform import Rotation
 
 
 def rot_x(angle: Float[np.ndarray, "*N"] | float) -> Float[np.ndarray, "*N 3 3"]:
-    """Rotation about x by `angle` radians (right-handed).  Notebook: 01"""
+    """Rotation about x by `angle` radians (right-handed).
+
+    Notebook: 01
+    """
     return _axis_rotation(angle, 1, 2)
 
 
@@ -19,7 +25,10 @@ def rot_y(angle: Float[np.ndarray, "*N"] | float) -> Float[np.ndarray, "*N 3 3"]
 
 
 def rot_z(angle: Float[np.ndarray, "*N"] | float) -> Float[np.ndarray, "*N 3 3"]:
-    """Rotation about z by `angle` radians (right-handed).  Notebook: 01"""
+    """Rotation about z by `angle` radians (right-handed).
+
+    Notebook: 01
+    """
     return _axis_rotation(angle, 0, 1)
 
 
@@ -28,30 +37,28 @@ def _axis_rotation(angle, first: int, second: int) -> np.ndarray:
     angle = np.asarray(angle, dtype=np.float64)
     matrix = np.zeros((*angle.shape, 3, 3))
     matrix[..., range(3), range(3)] = 1.0
-    matrix[..., first, first] = matrix[..., second, second] = np.cos(angle)
+    matrix[..., first, first] = np.cos(angle)
+    matrix[..., second, second] = np.cos(angle)
     matrix[..., second, first] = np.sin(angle)
     matrix[..., first, second] = -np.sin(angle)
     return matrix
 
 
-_ROTATIONS = {"X": rot_x, "Y": rot_y, "Z": rot_z}
-
-
 def euler_to_matrix(angles: Float[np.ndarray, "*N K"], order: str) -> Float[np.ndarray, "*N 3 3"]:
-    """Intrinsic Euler angles (radians) to matrices: order "ZXY" means R = Rz @ Rx @ Ry, as BVH
-    files mean it.
+    """Intrinsic Euler angles (radians) to matrices.
 
-    Raises ValueError when the order has a letter other than X, Y, Z or does not fit the angles.
-    Notebook: 01
+    Order "ZXY" means R = Rz @ Rx @ Ry, as BVH files mean it.
+
+    Raises ValueError when the order has a letter other than X, Y, Z, or one twice in a row, or does
+    not fit the angles.  Notebook: 01
     """
-    if len(order) != angles.shape[-1] or set(order) - set("XYZ"):
+    twice = any(a == b for a, b in pairwise(order))
+    if not 1 <= len(order) == angles.shape[-1] <= 3 or set(order) - set("XYZ") or twice:
         raise ValueError(
             f"rotation order {order!r} does not fit {angles.shape[-1]} angles; use letters X, Y, Z"
         )
-    matrix = np.broadcast_to(np.eye(3), (*angles.shape[:-1], 3, 3))
-    for k, letter in enumerate(order):
-        matrix = matrix @ _ROTATIONS[letter](angles[..., k])
-    return np.ascontiguousarray(matrix)
+    turns = Rotation.from_euler(order, angles.reshape(-1, len(order)))  # capitals: intrinsic
+    return turns.as_matrix().reshape(*angles.shape[:-1], 3, 3)
 
 
 def forward_kinematics(

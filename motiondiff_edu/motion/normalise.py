@@ -54,7 +54,10 @@ def to_metres(
     length = leg_length(points)
     if not length > 1e-9:
         raise BvhError(
-            "the legs have no length, so the unit cannot be told; check the mapping of UpLeg, Leg, Foot.",
+            (
+                "the legs have no length, so the unit cannot be told; "
+                "check the mapping of UpLeg, Leg, Foot."
+            ),
             source,
         )
     return points * (LEG / length), LEG / length
@@ -87,8 +90,10 @@ def turn_up(points: Float[np.ndarray, "... 3"], up: str) -> Float[np.ndarray, ".
 
 
 def unmirror(points: Float[np.ndarray, "T 21 3"]) -> tuple[Float[np.ndarray, "T 21 3"], bool]:
-    """Reflect x when left and right are exchanged against the toes: left x up must point where the
-    toes do."""
+    """Reflect x when left and right are exchanged against the toes.
+
+    Left x up must point where the toes do.
+    """
     left = points[:, joint_index("LeftUpLeg")] - points[:, joint_index("RightUpLeg")]
     ahead = np.cross(left, body_axis(points))
     feet = (points[:, list(TOES)] - points[:, list(HEELS)]).sum(1)
@@ -101,8 +106,9 @@ def unmirror(points: Float[np.ndarray, "T 21 3"]) -> tuple[Float[np.ndarray, "T 
 
 
 def calibration_frames(points: Float[np.ndarray, "T 21 3"]) -> int:
-    """How many first frames are no motion: a T-pose from which a joint leaps 20 cm, five times its
-    usual step.
+    """How many first frames are no motion.
+
+    A T-pose from which a joint leaps 20 cm, five times its usual step.
 
     Further leaps of 12 cm that follow at once (a blend into the take) go too.
     """
@@ -117,8 +123,9 @@ def calibration_frames(points: Float[np.ndarray, "T 21 3"]) -> int:
 def resample(
     points: Float[np.ndarray, "T 21 3"], from_fps: float, to_fps: float
 ) -> Float[np.ndarray, "F 21 3"]:
-    """Cubic spline to another rate, after a zero-phase low-pass of 8 Hz when at least half of the
-    frames go.
+    """Cubic spline to another rate.
+
+    A zero-phase low-pass of 8 Hz comes first when at least half of the frames go.
 
     A joint that the file lacks (NaN) stays unknown.
     """
@@ -142,8 +149,9 @@ def speed(points: Float[np.ndarray, "T ... 3"], fps: float) -> Float[np.ndarray,
 
 
 def floor_plane(toes: Float[np.ndarray, "T 2 3"], fps: float) -> Float[np.ndarray, "3"]:
-    """(height at the origin, slope along x, slope along z) of the floor, through the toes that
-    stand.
+    """The floor through the toes that stand.
+
+    (height at the origin, slope along x, slope along z).
 
     Least squares, repeated without the points more than 3 cm above (a toe held still in the air).
     """

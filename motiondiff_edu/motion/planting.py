@@ -1,11 +1,12 @@
-"""Feet that stay where they stand: contacts, pinned toes, and legs that follow by two-bone inverse
-kinematics.
+"""Feet that stay where they stand.
+
+Contacts, pinned toes, and legs that follow by two-bone inverse kinematics.
 
 Notebook: 00
 """
 
 import numpy as np
-from jaxtyping import Bool, Float
+from jaxtyping import Bool, Float, Int
 from scipy.ndimage import gaussian_filter1d, maximum_filter1d
 
 from .directions import unit
@@ -32,10 +33,23 @@ def flat_feet(points: Float[np.ndarray, "T 21 3"], fps: float) -> Bool[np.ndarra
     return (speed(toes, fps) < 0.3) & (speed(heels, fps) < 0.3) & (toes[..., 1] < 2 * LOW)
 
 
-def spans(contact: Bool[np.ndarray, " T"]) -> list[tuple[int, int]]:
-    """(first, last + 1) of each run of True."""
-    edges = np.flatnonzero(np.diff(np.concatenate([[False], contact, [False]]).astype(int)))
-    return [(int(a), int(b)) for a, b in edges.reshape(-1, 2)]
+Length = float | Float[np.ndarray, "*T"]
+
+
+def runs(mask: Bool[np.ndarray, "N"]) -> Int[np.ndarray, "n 2"]:
+    """First frame and first frame after of every longest stretch of True.  Notebook: 08"""
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], mask, [False]]).astype(int)))
+    return edges.reshape(-1, 2)
+
+
+def triangle(a: Length, b: Length, d: Length) -> tuple[Length, Length]:
+    """Where two bones a and b meet whose ends are d apart: how far along the line between the ends,
+    and aside of it.
+
+    (a^2 - b^2 + d^2) / 2d and sqrt(a^2 - that^2), by the law of cosines.
+    """
+    along = (a**2 - b**2 + d**2) / (2 * d)
+    return along, np.sqrt(np.maximum(a**2 - along**2, 0.0))
 
 
 def shift_to_pins(
@@ -47,7 +61,7 @@ def shift_to_pins(
     held.
     """
     shift = np.zeros_like(toe)
-    pinned = spans(contact)
+    pinned = runs(contact).tolist()
     for first, last in pinned:
         pin = np.median(toe[first:last], axis=0) * np.array([1.0, 0.0, 1.0])
         shift[first:last] = pin - toe[first:last]
@@ -65,8 +79,9 @@ def shift_to_pins(
 def plant(
     world: Float[np.ndarray, "T 21 3"], contacts: Bool[np.ndarray, "T 2"], fps: float
 ) -> Float[np.ndarray, "T 21 3"]:
-    """Move toes to their pins and keep every bone: the body follows the mean shift, the legs take
-    up the rest.
+    """Move toes to their pins and keep every bone.
+
+    The body follows the mean shift, the legs take up the rest.
 
     Between contacts no toe goes below the floor. Where a leg would have to be too long, the hips
     come down.
@@ -84,7 +99,9 @@ def plant(
         foot = world[:, TOES[side]] - world[:, heel]
         ahead = unit(unit(foot) + pelvis_ahead(world))
         knee, ankle = solve_leg(moved[:, heel - 2], ankles[:, side], moved[:, heel - 1], ahead)
-        moved[:, heel - 1], moved[:, heel], moved[:, heel + 1] = knee, ankle, ankle + foot
+        moved[:, heel - 1] = knee
+        moved[:, heel] = ankle
+        moved[:, heel + 1] = ankle + foot
     return moved
 
 
@@ -110,15 +127,15 @@ def solve_leg(
     knee: Float[np.ndarray, "T 3"],
     ahead: Float[np.ndarray, "T 3"],
 ) -> tuple[Float[np.ndarray, "T 3"], Float[np.ndarray, "T 3"]]:
-    """Knee and ankle with thigh and shank at their lengths; the knee bends to the side where it
-    was, never back.
+    """Knee and ankle with thigh and shank at their lengths.
+
+    The knee bends to the side where it was, never back.
 
     An ankle out of reach is drawn in along the line from the hip.
     """
     line = unit(ankle - hip)
     distance = np.clip(np.linalg.norm(ankle - hip, axis=-1), 0.2, REACH)
-    along = (THIGH**2 - SHANK**2 + distance**2) / (2 * distance)
-    height = np.sqrt(np.maximum(THIGH**2 - along**2, 0))
+    along, height = triangle(THIGH, SHANK, distance)
     side = perpendicular(knee - hip, line)
     front = unit(perpendicular(ahead, line))
     forward = np.einsum("ti,ti->t", side, front)

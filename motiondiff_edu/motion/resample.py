@@ -1,5 +1,6 @@
-"""Motion at a higher frame rate, by a cubic spline through its frames: dances are compared at 60
-frames/s.
+"""Motion at a higher frame rate, by a cubic spline through its frames.
+
+Dances are compared at 60 frames/s.
 
 Beats, speeds and energies change with the frame rate they are counted at. Whoever compares with the
 published figures goes to their 60 frames/s first.   Notebook: 14
@@ -15,8 +16,9 @@ DANCE_FPS = 60.0  # of AIST++, and of every published score on it
 def resample(
     positions: Float[np.ndarray, "T *shape"], fps: float | int, to: float | int = DANCE_FPS
 ) -> Float[np.ndarray, "F *shape"]:
-    """The same motion with `to` frames a second: new[k] = spline(k / to), cubic, through
-    positions[t] at t / fps.
+    """The same motion with `to` frames a second.
+
+    new[k] = spline(k / to), cubic, through positions[t] at t / fps.
 
     The first frame stays as it is, and so does the last where `to` is a whole multiple of `fps`;
     elsewhere the new motion ends less than 1 / to before the old one. Movement up to a quarter of
@@ -29,7 +31,8 @@ def resample(
         raise ValueError(f"frame rates are positive, got {fps} and {to}")
     if to < fps - 1e-6:
         raise ValueError(
-            f"from {fps:g} down to {to:g} frames/s fast movement must be taken out first: motion.normalise.resample"
+            f"from {fps:g} down to {to:g} frames/s fast movement must be taken out first: "
+            "motion.normalise.resample"
         )
     if len(positions) < 2:
         raise ValueError(f"a motion of {len(positions)} frames has nothing between its frames")

@@ -49,8 +49,9 @@ SUNK = -0.05  # metres: no joint of somebody on their feet is so low
 def load_clip(
     path: str | Path, mapping: Mapping[str, str] | None = None, file_fps: float | int | None = None
 ) -> Clip:
-    """Read a BVH file and retarget it; `mapping` {course joint: joint of the file} where names are
-    not guessed.
+    """Read a BVH file and retarget it.
+
+    `mapping` {course joint: joint of the file} where names are not guessed.
 
     `file_fps` overrules the file's frame time. Raises BvhError; warns (MotionWarning) about what
     was put right.
@@ -82,15 +83,17 @@ def retarget(bvh: Bvh, mapping: Mapping[str, str] | None = None, fps: float | in
         fps=fps,
         contacts=contacts,
         source=bvh.source,
-        info=info | {"mapping": dict(mapping)},
+        info=info | {"mapping": dict(mapping), "start": (*root[0].tolist(), float(heading[0]))},
     )
 
 
 def normalised(
     bvh: Bvh, mapping: Mapping[str, str], fps: float
 ) -> tuple[Float[np.ndarray, "T 21 3"], dict]:
-    """The figure in metres, y up, at `fps`, on a level floor; and a record of what had to be
-    done."""
+    """The figure in metres, y up, at `fps`, on a level floor.
+
+    And a record of what had to be done.
+    """
     points, notes = pick(bvh.world_positions(), bvh, mapping), []
     rest = pick(bvh.rest_positions()[None], bvh, mapping)
     up = up_axis(points, rest[0])
@@ -166,13 +169,18 @@ def warn_sunk(
 def refuse_short(count: int, bvh: Bvh) -> None:
     """Raise BvhError for a clip too short to tell a way from."""
     if count / bvh.fps < SHORTEST:
-        problem = f"{count} frames at {bvh.fps:g} frames/s are {count / bvh.fps:.2f} s; {SHORTEST} s are needed."
+        problem = (
+            f"{count} frames at {bvh.fps:g} frames/s are {count / bvh.fps:.2f} s; "
+            f"{SHORTEST} s are needed."
+        )
         raise BvhError(problem + " If the frame time is wrong, pass file_fps=.", bvh.source)
 
 
 def warn_wild(speeds: Float[np.ndarray, "T 21"], bvh: Bvh, dropped: int, notes: list[str]) -> None:
-    """Warn about joints faster than any actor's: the capture has a fault there (`info["wild"]` says
-    which joints)."""
+    """Warn about joints faster than any actor's.
+
+    The capture has a fault there (`info["wild"]` says which joints).
+    """
     wild = np.flatnonzero(np.nanmax(speeds, axis=1) > WILD)
     if len(wild):
         where = f"frames {wild[0] + dropped} to {wild[-1] + dropped}"

@@ -1,5 +1,6 @@
-"""World <-> root frame + control: the figure as it sees itself, and the velocities that carry it
-along.
+"""World <-> root frame + control.
+
+The figure as it sees itself, and the velocities that carry it along.
 
 The root is the point on the ground under the figure. control[t] = (forward m/s, left m/s, yaw
 rad/s) takes root[t] to root[t+1], expressed in the heading halfway between; so mirroring and time
@@ -53,8 +54,9 @@ def root_path(
 def control_from_path(
     root_xz: Float[np.ndarray, "T 2"], heading: Float[np.ndarray, "T"], fps: float = FPS
 ) -> Float[np.ndarray, "T 3"]:
-    """The control that carries the root along this path (the inverse of `root_path`); the last row
-    repeats.
+    """The control that carries the root along this path (the inverse of `root_path`).
+
+    The last row repeats.
 
     Raises ValueError for fewer than two frames.  Notebook: 01
     """
@@ -95,8 +97,9 @@ def to_root_frame(
     heading: Float[np.ndarray, "T"],
     fps: float = FPS,
 ) -> tuple[Float[np.ndarray, "T J 3"], Float[np.ndarray, "T 3"]]:
-    """Root-frame poses and control of world positions, given the root's path (the inverse of
-    `to_world`).
+    """Root-frame poses and control of world positions, given the root's path.
+
+    The inverse of `to_world`.
 
     Notebook: 01
     """
@@ -107,8 +110,9 @@ def to_root_frame(
 
 
 def body_heading(world: Float[np.ndarray, "T 21 3"]) -> Float[np.ndarray, "T"]:
-    """Which way hips and shoulders together face, in radians, -pi to pi (`dance_frame.facing` asks
-    the hips alone).
+    """Which way hips and shoulders together face, in radians, -pi to pi.
+
+    `dance_frame.facing` asks the hips alone.
 
     Notebook: 01
     """
@@ -123,20 +127,32 @@ def body_heading(world: Float[np.ndarray, "T 21 3"]) -> Float[np.ndarray, "T"]:
 def estimate_root(
     world: Float[np.ndarray, "T 21 3"], fps: float = FPS
 ) -> tuple[Float[np.ndarray, "T 2"], Float[np.ndarray, "T"]]:
-    """Root path and heading of a real clip: the pelvis on the ground and the facing of hips and
-    shoulders, smoothed.
+    """Root path and heading of a real clip.
+
+    The pelvis on the ground and the facing of hips and shoulders, smoothed.
 
     Gaussians of 0.25 s and 0.33 s; shorter ones leak the gait into the control. Beyond its ends the
     clip is continued by point reflection, so that a figure that walks does not seem to slow down
     there.   Notebook: 01
     """
-    root = _smooth(world[:, HIPS][:, [0, 2]], ROOT_SMOOTHING * fps)
-    return root, _smooth(np.unwrap(body_heading(world)), HEADING_SMOOTHING * fps)
+    return smoothed_root(world[:, HIPS][:, [0, 2]], body_heading(world), fps)
+
+
+def smoothed_root(
+    pelvis: Float[np.ndarray, "T 2"], heading: Float[np.ndarray, "T"], fps: float = FPS
+) -> tuple[Float[np.ndarray, "T 2"], Float[np.ndarray, "T"]]:
+    """Root path and heading from the pelvis' (x, z) and where the body faces (radians): the
+    Gaussians of `estimate_root`."""
+    return (
+        _smooth(pelvis, ROOT_SMOOTHING * fps),
+        _smooth(np.unwrap(heading), HEADING_SMOOTHING * fps),
+    )
 
 
 def _smooth(x: np.ndarray, sigma: float) -> np.ndarray:
-    """Gaussian along time; before the first and after the last frame x goes on point-reflected: 2
-    x[0] - x[t].
+    """Gaussian along time.
+
+    Before the first and after the last frame x goes on point-reflected: 2 x[0] - x[t].
 
     A clip shorter than the Gaussian is reflected again and again, so that it goes on at its own
     speed.

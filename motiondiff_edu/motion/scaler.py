@@ -23,8 +23,9 @@ class Scaler:
 
     @classmethod
     def fit(cls, x: Float[Tensor, "*N D"]) -> "Scaler":
-        """Mean and (population) standard deviation of data.  Raises ValueError on NaN, infinity, or
-        no rows.
+        """Mean and (population) standard deviation of data.
+
+        Raises ValueError on NaN, infinity, or no rows.
 
         A column that never moves gets std 1: it stays in its own unit, so that a value unseen in
         training (the first step to the side) arrives as itself and not as thousands of standard

@@ -6,6 +6,8 @@ of 1.70 m.
 Source: MoDiff IV-A.  Notebook: 01
 """
 
+from dataclasses import dataclass
+
 import numpy as np
 
 # name, parent, offset from the parent in the rest pose (standing, arms out sideways)
@@ -63,9 +65,56 @@ MIRROR: np.ndarray = (
     _mirror_permutation()
 )  # MIRROR[j] is the joint on the other side (a central joint is its own)
 
+# numbers of bones, left and right
+BONE_PAIRS: tuple[tuple[int, int], ...] = tuple(
+    (k, BONES.index((int(PARENTS[MIRROR[child]]), int(MIRROR[child]))))
+    for k, (_, child) in enumerate(BONES)
+    if child in LEFT
+)
+
 
 def joint_index(name: str) -> int:
     """The index of a joint by its name; the error lists the names there are."""
     if name not in JOINTS:
         raise KeyError(f"no joint is called {name!r}; the skeleton has {', '.join(JOINTS)}")
     return JOINTS.index(name)
+
+
+@dataclass(frozen=True)
+class Skeleton:
+    """Joints by name, and the number of each joint's parent (-1 for the root, which comes first).
+
+    Raises ValueError where the two do not fit together.
+    """
+
+    names: tuple[str, ...]
+    parents: tuple[int, ...]
+
+    def __post_init__(self):
+        names = tuple(map(str, self.names))
+        parents = tuple(map(int, self.parents))
+        object.__setattr__(self, "names", names)
+        object.__setattr__(self, "parents", parents)
+        if len(names) != len(parents) or len(set(names)) != len(names) or not names:
+            raise ValueError(
+                f"a skeleton has a parent for each of its joints, and no name twice; these are "
+                f"{len(names)} names ({len(set(names))} different), {len(parents)} parents"
+            )
+        for joint, parent in enumerate(parents):
+            if not -1 <= parent < joint:
+                raise ValueError(
+                    f"the parent of {names[joint]} (joint {joint}) is {parent}: a parent comes "
+                    f"before its children, and -1 is for a root"
+                )
+
+    def __len__(self) -> int:
+        return len(self.names)
+
+    def index(self, name: str) -> int:
+        """The number of a joint.  Raises KeyError with the names there are."""
+        if name not in self.names:
+            raise KeyError(f"no joint is called {name!r}; the skeleton has {', '.join(self.names)}")
+        return self.names.index(name)
+
+
+COURSE = Skeleton(JOINTS, tuple(PARENTS.tolist()))  # the one skeleton of the course's networks

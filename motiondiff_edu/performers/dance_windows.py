@@ -1,5 +1,4 @@
-"""Training windows of dance: seconds of motion and the music that sounds meanwhile, and the loss on
-them.
+"""Training windows of dance: seconds of motion, and the music that sounds meanwhile.
 
 Motion has 20 frames a second, the Mel spectrogram 31.25: only every 0.8 s do both have a frame at
 the same moment, so windows start there, and the music's frames lie at the same times in every
@@ -7,45 +6,22 @@ window.
 Source: MoFusion 4.1 (100 frames and more at a time; lengths are ours).  Notebook: 12
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 import torch
 from jaxtyping import Bool, Float, Int
-from torch import Tensor, nn
+from torch import Tensor
 
 from ..conditions.music import frame_times
-from ..ddpm import Schedule, q_sample
-from ..kinematic_loss import (
-    KinematicWeights,
-    asymmetry_loss,
-    bone_lengths,
-    motion_loss,
-    over_time,
-    skeleton_loss,
-    slide_loss,
-)
 from ..motion.dance_frame import mirror, to_features, to_positions
 from ..motion.scaler import Scaler
-from ..motion.skeleton import BONES, JOINTS, TOES
-from ..prediction import target_of, to_x0
+from ..motion.skeleton import TOES
 
 FPS, D = 20.0, 63
 FITTED = 5000  # windows, of which the motion's scaler is taken
 MOTION_GRID, MEL_GRID = 16, 25  # frames in 0.8 s
-PAIRS = tuple(
-    (
-        k,
-        next(
-            i
-            for i, (_, other) in enumerate(BONES)
-            if JOINTS[other] == JOINTS[child].replace("Left", "Right")
-        ),
-    )
-    for k, (_, child) in enumerate(BONES)
-    if JOINTS[child].startswith("Left")
-)  # of bones, left and right
 
 
 def mel_frames(n: int) -> int:
@@ -90,7 +66,8 @@ class DanceWindows:
         )
         if not len(dances) == len(contacts) == len(mels):
             raise ValueError(
-                f"{len(dances)} dances, {len(contacts)} contacts and {len(mels)} songs: each needs its own"
+                f"{len(dances)} dances, {len(contacts)} contacts and {len(mels)} songs: "
+                "each needs its own"
             )
         lengths = enumerate(zip(map(len, dances), map(len, contacts), strict=True))
         uneven = next(((k, *both) for k, both in lengths if both[0] != both[1]), None)
@@ -98,7 +75,11 @@ class DanceWindows:
             raise ValueError(
                 "dance {} has {} frames, and contacts for {}: one for each frame".format(*uneven)
             )
-        starts, song_starts, heard, first, song = [], [], [], 0, 0
+        starts = []
+        song_starts = []
+        heard = []
+        first = 0
+        song = 0
         for dance, mel in zip(dances, mels, strict=True):
             if not heard or mel is not heard[-1]:
                 song += len(heard[-1]) if heard else 0
@@ -148,71 +129,19 @@ class DanceWindows:
         )
 
     def draw(
-        self, batch: int, generator: torch.Generator, shake: float = 0.0
+        self, batch: int, generator: torch.Generator, gain_noise: float = 0.0
     ) -> tuple[Float[Tensor, "B T D"], Float[Tensor, "B M C"], Bool[Tensor, "B T 2"]]:
         """A random batch: motion, music, and which feet stand.
 
-        `shake`: how much the music's level and its balance of low and high change from window to
-        window (standard deviation, of the standardised log-Mel), as they do from one loudspeaker to
-        another.
+        `gain_noise`: how much the music's level and its balance of low and high change from window
+        to window (standard deviation, of the standardised log-Mel), as they do from one
+        loudspeaker to another.
         """
         motion, mel, stands = self.take(torch.randint(len(self), (batch,), generator=generator))
-        if shake:
-            level, tilt = shake * torch.randn(2, batch, 1, 1, generator=generator)
+        if gain_noise:
+            level, tilt = gain_noise * torch.randn(2, batch, 1, 1, generator=generator)
             mel = mel + level + tilt * torch.linspace(-1, 1, mel.shape[-1])
         return motion, mel, stands
-
-
-def dance_loss(
-    windows: DanceWindows,
-    schedule: Schedule,
-    kinematic: KinematicWeights | None = None,
-    *,
-    batch: int = 32,
-    high_noise: float = 0.0,
-    changes: float = 0.0,
-    feet: float = 0.0,
-    shake: float = 0.0,
-) -> Callable[[nn.Module, torch.Generator], Tensor]:
-    """MoFusion's loss as a `loss_fn` for `training.train_steps`: the target's squared error, and
-    L_k on x0_hat.
-
-    `high_noise` = c weights the squared error at step s by 1 + min((1 - alpha_bar) / alpha_bar, c):
-    an eps network would else hardly look where the beat is decided. `changes` weights the errors of
-    changes from frame to frame, `feet` those of the toes in the world, as a share of how far toes
-    move: for a foot to stand, pelvis and leg must err alike. Both are of the target's errors: an
-    eps network's are its x0_hat's, times sqrt(alpha_bar / (1 - alpha_bar)). `shake` is
-    `DanceWindows.draw`'s. Raises ValueError for `feet` where no toe moves.
-    Source: MoFusion eq. 4; changes, feet and shake are ours.  Notebook: 12, 13
-    """
-    noise_over_signal = ((1 - schedule.alpha_bar) / schedule.alpha_bar).float()
-    data_weight = 1 + noise_over_signal.clamp_max(high_noise)
-    lam = over_time(schedule, kinematic.over_time).float() if kinematic else None
-    std, stepped = windows.motion_scaler.std, toes_moved(windows) if feet else 1.0
-
-    def loss_fn(model: nn.Module, generator: torch.Generator) -> Tensor:
-        device = next(model.parameters()).device
-        x0, mel, stands = (part.to(device) for part in windows.draw(batch, generator, shake))
-        s = torch.randint(1, schedule.S + 1, (batch,), generator=generator).to(device)
-        eps = torch.randn(x0.shape, generator=generator).to(device)
-        x_s = q_sample(x0, s, schedule, eps)
-        music = model.listen(mel, windows.mel_times.to(device)) if model.config.C else None
-        out = model(x_s, s, music)
-        target = model.config.target
-        wrong = out - target_of(x0, eps, s, schedule, target)
-        error = wrong.square().mean((1, 2)) + changes * wrong.diff(dim=1).square().mean((1, 2))
-        if feet:
-            moved = to_positions(wrong * std.to(device))[:, :, list(TOES)].diff(dim=1)
-            error = error + feet / stepped * moved.square().mean((1, 2, 3))
-        loss = (data_weight.to(device)[s] * error).mean()
-        if kinematic:
-            x0_hat = to_x0(out, x_s, s, schedule, target)
-            parts = kinematic_parts(x0_hat, x0, stands, windows.motion_scaler.to(device))
-            weighed = sum(getattr(kinematic, name) * value for name, value in parts.items())
-            loss = loss + (lam.to(device)[s] * weighed).mean()
-        return loss
-
-    return loss_fn
 
 
 def toes_moved(windows: DanceWindows, samples: int = 1000) -> float:
@@ -226,21 +155,3 @@ def toes_moved(windows: DanceWindows, samples: int = 1000) -> float:
     if not moved:
         raise ValueError("no toe moves in these windows: errors of feet have no measure")
     return moved
-
-
-def kinematic_parts(
-    x0_hat: Float[Tensor, "B T D"],
-    x0: Float[Tensor, "B T D"],
-    stands: Bool[Tensor, "B T 2"],
-    scaler: Scaler,
-) -> dict[str, Float[Tensor, "B"]]:
-    """L_s, L_a, L_m and the foot-slide loss of standardised motions, by the names of
-    KinematicWeights.   Notebook: 13"""
-    positions = to_positions(scaler.inverse(x0_hat))
-    lengths = bone_lengths(positions, BONES)
-    return {
-        "skeleton": skeleton_loss(lengths),
-        "asymmetry": asymmetry_loss(lengths, PAIRS),
-        "motion": motion_loss(x0_hat, x0),
-        "slide": slide_loss(positions, stands, TOES),
-    }

@@ -4,6 +4,7 @@ music in, dance out.
 Source: MoFusion 3, 4.1.  Notebook: 00, 12
 """
 
+import copy
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
@@ -11,19 +12,24 @@ from pathlib import Path
 import numpy as np
 import torch
 from jaxtyping import Float
-from torch import Tensor
+from torch import Tensor, nn
 
-from ..baselines.transformer import DanceTransformer, TransformerConfig
-from ..conditions.audio_files import read_audio
+from ..beyond.guidance import with_guess
+from ..conditions.audio_files import samples_of
 from ..conditions.music import FRAMES_PER_SECOND, SAMPLE_RATE, frame_times, log_mel
-from ..ddpm import Schedule
+from ..ddpm import Denoiser, Schedule, draw
 from ..fast.mofusion import FastMoFusion
 from ..fast.samplers import ddim_steps, ddpm_steps
+from ..fast.twins import Twin, watched
 from ..mofusion import MoFusion, MoFusionConfig
+from ..motion.checks import checked_count, checked_seconds
 from ..motion.dance_frame import to_positions
+from ..motion.motion import Motion
 from ..motion.scaler import Scaler
 from ..prediction import denoiser_of
 from .dance_windows import FPS, mel_frames
+from .networks import Config, kind_of, register
+from .with_bar import with_bar
 
 STEPS, ETA = 50, 0.5  # of DDIM, unless told
 # standard deviations from the mean pose: an eps network's x0_hat is held within, as DDPM's code
@@ -31,16 +37,14 @@ STEPS, ETA = 50, 0.5  # of DDIM, unless told
 FARTHEST = 5.0
 
 
-def network(config: MoFusionConfig | TransformerConfig) -> MoFusion | DanceTransformer:
-    """The network that a configuration asks for."""
-    return (DanceTransformer if isinstance(config, TransformerConfig) else MoFusion)(config)
+register("dancer", MoFusion, MoFusionConfig, fast=FastMoFusion)
 
 
 @dataclass(frozen=True, eq=False)
 class Dancer:
     """The network, in its own units, and the scalers that lead there from metres and log-Mel."""
 
-    model: MoFusion | DanceTransformer
+    model: nn.Module
     schedule: Schedule
     motion_scaler: Scaler
     mel_scaler: Scaler
@@ -53,28 +57,47 @@ class Dancer:
                 f"the schedule has {self.schedule.S} steps, the network {self.model.config.S}"
             )
 
+    def to(self, device: str | torch.device) -> "Dancer":
+        """The same dancer on another device; music is brought there, and dances come from there."""
+        model = copy.deepcopy(self.model).to(device)
+        scalers = self.motion_scaler.to(device), self.mel_scaler.to(device)
+        return Dancer(model, self.schedule, *scalers, self.card)
+
     @property
-    def config(self) -> MoFusionConfig | TransformerConfig:
+    def config(self) -> Config:
         return self.model.config
 
-    @cached_property
-    def fast(self) -> FastMoFusion:
-        """The fast twin, built at first use (of the U-Net; a baseline has none)."""
-        return FastMoFusion(self.model)
+    @property
+    def device(self) -> torch.device:
+        return self.motion_scaler.mean.device
 
-    def heard(
+    @cached_property
+    def _twin(self) -> Twin | None:
+        kind = kind_of(self.model)
+        return Twin(self.model, kind.fast) if kind and kind.fast and self.config.C else None
+
+    @property
+    def fast(self) -> FastMoFusion | None:
+        """The fast twin with the weights of now: built at first use, and again when they have
+        changed. None for a network without music, or registered without a twin."""
+        return self._twin and self._twin()
+
+    def mel_input(
         self, mel: Float[Tensor, "B M C"], frames: int
     ) -> tuple[Float[Tensor, "B M2 C"], Float[Tensor, "M2"]]:
-        """What sounds during so many frames, in the network's units, and when: what it is to
-        `listen` to."""
-        mel = self.mel_scaler.transform(mel[:, : mel_frames(frames)])
-        return mel, frame_times(mel.shape[1]).float()
+        """The network's input for so many frames: the standardised Mel frames, and their times in
+        seconds."""
+        mel = self.mel_scaler.transform(mel[:, : mel_frames(frames)].to(self.device))
+        return mel, frame_times(mel.shape[1]).float().to(self.device)
 
-    def denoiser(self, mel: Float[Tensor, "B M C"] | None, frames: int, fast: bool = True):
+    def denoiser(
+        self, mel: Float[Tensor, "B M C"] | None, frames: int, fast: bool = True
+    ) -> Denoiser:
         """`denoise(x_s, s) -> eps_hat` for this music (None for a network without), in the
-        network's units.
+        network's units; the x0_hat of an eps network is held within FARTHEST.
 
-        `fast`: by the fast twin, where there is one; it cannot be differentiated.
+        `fast`: by the fast twin, where there is one and nobody watches the network's attention; it
+        cannot be differentiated.
         Raises ValueError where a network that dances to music has none, or one without music is
         given some.
         """
@@ -86,40 +109,64 @@ class Dancer:
             )
         if mel is None:
             return self._as_eps(self.model)
-        if fast and isinstance(self.model, MoFusion):
-            listening = self.fast.listen(*self.heard(mel, frames), frames)
-            return self._as_eps(lambda x_s, s: self.fast.denoise(x_s, s, listening))
-        music = self.model.listen(*self.heard(mel, frames))
+        twin = self.fast if fast and not watched(self.model) else None
+        if twin is not None:
+            listening = twin.listen(*self.mel_input(mel, frames), frames)
+            return self._as_eps(lambda x_s, s: twin.denoise(x_s, s, listening))
+        music = self.model.listen(*self.mel_input(mel, frames))
         return self._as_eps(lambda x_s, s: self.model(x_s, s, music))
 
-    def _as_eps(self, network):
-        return denoiser_of(network, self.schedule, self.config.target)
+    def _as_eps(self, network) -> Denoiser:
+        denoise = denoiser_of(network, self.schedule, self.config.target)
+        if self.config.target != "eps":
+            return denoise
+        return with_guess(denoise, self.schedule, lambda x0: x0.clamp(-FARTHEST, FARTHEST))
 
-    def dance_to(
+    def dance(
         self,
-        sound: Float[Tensor, "N"] | Float[np.ndarray, "N"] | str | Path,
-        seconds: float | None = None,
+        sound: str | Path | np.ndarray | Tensor,
         *,
+        seconds: float | None = None,
+        samples: int = 1,
         seed: int = 0,
-        **options,
-    ) -> tuple[Float[np.ndarray, "T 21 3"], Float[np.ndarray, "N2"]]:
-        """Dance to a sound file, or to mono sound at 16 kHz; returns the dance (metres) and the
-        sound danced to.
+        steps: int | None = STEPS,
+        progress: bool = True,
+    ) -> Motion | list[Motion]:
+        """Dance to a sound file, or to mono sound at 16 kHz (N,) from -1 to 1; the dance has the
+        sound along.
 
-        `seconds`: of the sound, from its start, by default all; `options` as for `dance`.
-        Raises AudioError for a file that cannot be read (`conditions.audio_files`).   Notebook: 00,
-        12
+        `seconds` of the sound from its start, all of it by default and where it is shorter. With
+        `samples` above 1 a list of so many different dances. `steps` of DDIM, or None for DDPM.
+        Raises AudioError for sound that cannot be danced to (`conditions.audio_files`), ValueError
+        for numbers that cannot be meant.  Source: MoFusion 3.  Notebook: 00, 12
         """
-        heard = (
-            read_audio(sound) if isinstance(sound, (str, Path)) else torch.as_tensor(sound).float()
-        )
-        heard = heard if seconds is None else heard[: round(seconds * SAMPLE_RATE)]
-        draw, frames = torch.Generator().manual_seed(seed), int(len(heard) / SAMPLE_RATE * FPS)
-        dance = self.dance(log_mel(heard)[None], frames, generator=draw, **options)[0]
-        return dance.double().numpy(), heard.numpy()
+        count = checked_count(samples, "samples")
+        longest = None if seconds is None else round(checked_seconds(seconds) * SAMPLE_RATE)
+        heard = samples_of(sound)[:longest]
+        frames = int(len(heard) / SAMPLE_RATE * FPS)
+        if not frames:
+            raise ValueError(f"{len(heard) / SAMPLE_RATE:.3f} s of sound are less than a frame")
+        mel = log_mel(heard)[None].expand(count, -1, -1)
+        generator = torch.Generator().manual_seed(seed)
+        evaluations = min(steps or self.schedule.S, self.schedule.S)
+        with with_bar(self, evaluations, "dancing", progress) as one:
+            dances = one.dance_mel(mel, frames, generator=generator, steps=steps)
+        dances = dances.double().cpu().numpy()
+        name = Path(sound).stem if isinstance(sound, (str, Path)) else "sound"
+        made = [
+            Motion(
+                dance,
+                FPS,
+                audio=heard.numpy(),
+                sample_rate=SAMPLE_RATE,
+                source=f"{name}, danced to",
+            )
+            for dance in dances
+        ]
+        return made if samples > 1 else made[0]
 
     @torch.inference_mode()
-    def dance(
+    def dance_mel(
         self,
         mel: Float[Tensor, "B M C"],
         frames: int | None = None,
@@ -146,28 +193,22 @@ class Dancer:
         if getattr(self.config, "deterministic", False):
             return self._regress(mel, frames)
         denoise = self.denoiser(mel, frames)
-        x_S = (
-            torch.randn(len(mel), frames, self.config.D, generator=generator)
-            if start is None
-            else start
-        )
-        options = {
-            "generator": generator,
-            "clip": FARTHEST if self.config.target == "eps" else None,
-        }
+        where = self.motion_scaler.mean.new_empty(len(mel), frames, self.config.D)
+        x_S = draw(where, generator) if start is None else start.to(self.device)
+        options = {"generator": generator}
         if steps is None:
             loop = ddpm_steps(denoise, x_S, self.schedule, variance="posterior", **options)
         else:
-            loop = ddim_steps(
-                denoise, x_S, self.schedule, min(steps, self.schedule.S), eta, **options
-            )
+            steps = min(steps, self.schedule.S)
+            loop = ddim_steps(denoise, x_S, self.schedule, steps, eta, **options)
         for step in loop:
             last = step
         return to_positions(self.motion_scaler.inverse(last.x_s))
 
     def _regress(self, mel: Float[Tensor, "B M C"], frames: int) -> Float[Tensor, "B T 21 3"]:
         """The one dance that a regression has for each song."""
-        music = self.model.listen(*self.heard(mel, frames))
-        nothing = mel.new_zeros(len(mel), frames, self.config.D)
-        out = self.model(nothing, torch.zeros(len(mel), dtype=torch.long), music)
+        music = self.model.listen(*self.mel_input(mel, frames))
+        nothing = torch.zeros(len(mel), frames, self.config.D, device=self.device)
+        s = torch.zeros(len(mel), dtype=torch.long, device=self.device)
+        out = self.model(nothing, s, music)
         return to_positions(self.motion_scaler.inverse(out))

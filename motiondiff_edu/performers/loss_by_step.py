@@ -1,8 +1,8 @@
 """What each loss is at each diffusion step, and how hard it pulls at the network: to measure a
 weight, not to quote it.
 
-x_s is made from known x0 and eps, somebody answers with eps_hat, and x0_hat follows. Who answers is
-an `Answer`: a network, the exact denoiser, or the true noise with a given error.
+x_s is made from known x0 and eps, `predict(x_s, s, eps)` returns eps_hat, and x0_hat follows.
+`predict` is a network, the exact denoiser, or the true noise with a given error.
 Source: MoFusion 3.2, eq. 4-7.  Notebook: 13
 """
 
@@ -14,12 +14,10 @@ from jaxtyping import Bool, Float
 from torch import Tensor
 
 from ..ddpm import Denoiser, Schedule, Table, draw, q_sample
-from ..kinematic_loss import over_time
-from ..motion.scaler import Scaler
+from ..kinematic_loss import Body, kinematic_parts, over_time
 from ..prediction import target_of, to_x0, x0_from_eps
-from .dance_windows import kinematic_parts
 
-Answer = Callable[[Tensor, Tensor, Tensor], Tensor]  # (x_s, s, eps) -> eps_hat
+Predictor = Callable[[Tensor, Tensor, Tensor], Tensor]  # (x_s, s, eps) -> eps_hat
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,8 +44,8 @@ class LossOverTime:
         return LossOverTime(self.steps, *parts)
 
 
-def erring(error: float, seed: int = 0) -> Answer:
-    """An answer that is wrong by `error` everywhere: eps_hat = eps + error N(0, I); 0.05 is 5 %.
+def erring(error: float, seed: int = 0) -> Predictor:
+    """The true noise, wrong by `error` everywhere: eps_hat = eps + error N(0, I); 0.05 is 5 %.
 
     The error is drawn from `seed` afresh each time, so that it is the same at every step.
     Notebook: 13
@@ -55,28 +53,28 @@ def erring(error: float, seed: int = 0) -> Answer:
     return lambda x_s, s, eps: eps + error * draw(eps, torch.Generator().manual_seed(seed))
 
 
-def answer_of(denoise: Denoiser) -> Answer:
-    """The answer of a denoiser, who does not know eps.  Notebook: 13"""
+def predictor_of(denoise: Denoiser) -> Predictor:
+    """A denoiser as `predict`: it does not see eps.  Notebook: 13"""
     return lambda x_s, s, eps: denoise(x_s, s)
 
 
 def clean_guess(
-    answer: Answer,
+    predict: Predictor,
     x0: Float[Tensor, "B T D"],
     eps: Float[Tensor, "B T D"],
     s: int,
     schedule: Schedule,
 ) -> Float[Tensor, "B T D"]:
     """x0_hat at step s, by way of eps_hat.  Source: MoFusion eq. 5.  Notebook: 13"""
-    return x0_from_eps(*_asked(answer, x0, eps, s, schedule), schedule)
+    return x0_from_eps(*_predicted(predict, x0, eps, s, schedule), schedule)
 
 
 def losses_over_time(
-    answer: Answer,
+    predict: Predictor,
     x0: Float[Tensor, "B T D"],
     eps: Float[Tensor, "B T D"],
-    stands: Bool[Tensor, "B T 2"],
-    scaler: Scaler,
+    planted: Bool[Tensor, "B T 2"],
+    body: Body,
     schedule: Schedule,
     steps: Sequence[int],
     target: str = "eps",
@@ -84,32 +82,31 @@ def losses_over_time(
     """All losses of x0_hat at each of `steps`, unweighted, and their pull at a network that
     predicts `target`.
 
-    x0 is standardised by `scaler`. Raises IndexError for a step that the schedule has not,
-    ValueError for a target.
+    Raises IndexError for a step that the schedule has not, ValueError for an unknown target.
     Source: MoFusion eq. 4-7.  Notebook: 13
     """
-    rows = [_at_step(answer, x0, eps, stands, scaler, schedule, s, target) for s in steps]
+    rows = [_at_step(predict, x0, eps, planted, body, schedule, s, target) for s in steps]
     value, pull = (
         {name: torch.stack([row[k][name] for row in rows]) for name in rows[0][k]} for k in (0, 1)
     )
     return LossOverTime(tuple(steps), value, pull)
 
 
-def _asked(
-    answer: Answer, x0: Tensor, eps: Tensor, s: int, schedule: Schedule
+def _predicted(
+    predict: Predictor, x0: Tensor, eps: Tensor, s: int, schedule: Schedule
 ) -> tuple[Tensor, int, Tensor]:
     x_s = q_sample(x0, s, schedule, eps)
     with torch.no_grad():
-        return x_s, s, answer(x_s, torch.full((len(x0),), s, device=x0.device), eps)
+        return x_s, s, predict(x_s, torch.full((len(x0),), s, device=x0.device), eps)
 
 
-def _at_step(answer, x0, eps, stands, scaler, schedule, s, target) -> tuple[dict, dict]:
-    x_s, s, eps_hat = _asked(answer, x0, eps, s, schedule)
+def _at_step(predict, x0, eps, planted, body, schedule, s, target) -> tuple[dict, dict]:
+    x_s, s, eps_hat = _predicted(predict, x0, eps, s, schedule)
     x0_hat = x0_from_eps(x_s, s, eps_hat, schedule)
     output = target_of(x0_hat, eps_hat, s, schedule, target).detach().requires_grad_()
     with torch.enable_grad():
         parts = {"data": (output - target_of(x0, eps, s, schedule, target)).square().mean((1, 2))}
-        parts |= kinematic_parts(to_x0(output, x_s, s, schedule, target), x0, stands, scaler)
+        parts |= kinematic_parts(to_x0(output, x_s, s, schedule, target), x0, body, planted)
         pulls = {
             k: torch.autograd.grad(v.sum(), output, retain_graph=True)[0] for k, v in parts.items()
         }

@@ -6,23 +6,18 @@ Notebook: 00, 07, 12
 """
 
 import json
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import MISSING, asdict, dataclass
 from functools import partial
 from pathlib import Path
 
 from safetensors import safe_open
 from torch import Tensor
 
-from ..baselines.transformer import TransformerConfig
-from ..beyond import footholds
-from ..beyond.footholds import FootholdConfig
+from ..baselines import transformer  # noqa: F401  registers the network of two shipped files
 from ..ddpm import make_schedule
-from ..modiff import MoDiffConfig
-from ..mofusion import MoFusionConfig
 from ..motion.scaler import Scaler
-from ..performers import dancer
 from ..performers.dancer import Dancer
+from ..performers.networks import kind_of, networks_of
 from ..performers.walker import Walker
 from .eight_bits import pack, unpack
 from .weights_file import CheckpointError, check_sizes, config_of, read_weights, write_weights
@@ -42,32 +37,18 @@ FOLDER = Path(__file__).parent
 
 @dataclass(frozen=True)
 class Kind:
-    """A kind of figure: its format in files, its scalers (of D and of C columns), and the networks
-    it may have."""
+    """A performer in files: its name, its format there, its class, its scalers (of D and of C
+    columns), and its usual network."""
 
+    name: str
     format: str
-    figure: type
+    performer: type
     scalers: tuple[str, str]
-    networks: Mapping[
-        str, type
-    ]  # the configuration, by the name of the network's class; the first is the usual one
-    network: Callable  # of a configuration and the two scalers
+    usual: str
 
 
-WALKER = Kind(
-    "motiondiff_edu walker 2",
-    Walker,
-    ("pose", "control"),
-    {"MoDiff": MoDiffConfig, "FootholdMoDiff": FootholdConfig},
-    footholds.network,
-)
-DANCER = Kind(
-    "motiondiff_edu dancer 1",
-    Dancer,
-    ("motion", "mel"),
-    {"MoFusion": MoFusionConfig, "DanceTransformer": TransformerConfig},
-    lambda config, *scalers: dancer.network(config),
-)
+WALKER = Kind("walker", "motiondiff_edu walker 2", Walker, ("pose", "control"), "MoDiff")
+DANCER = Kind("dancer", "motiondiff_edu dancer 1", Dancer, ("motion", "mel"), "MoFusion")
 KINDS = (WALKER, DANCER)
 STORED = {8: pack, 16: lambda weights: {k: v.half() for k, v in weights.items()}, 32: dict}
 
@@ -77,11 +58,20 @@ def save(figure: Walker | Dancer, path: str | Path, bits: int = 16) -> Path:
     scalers, schedule.
 
     A card.json is laid beside it. Written to a temporary name and renamed.
-    Raises ValueError for other numbers of bits.  Notebook: 07, 12
+    Raises ValueError for other numbers of bits, for what is no performer, and for a network that is
+    not registered (`performers.networks.register`).  Notebook: 07, 12
     """
     if bits not in STORED:
         raise ValueError(f"weights are written in 8, 16 or 32 bits, not {bits}")
-    kind = DANCER if isinstance(figure, Dancer) else WALKER
+    kind = next((kind for kind in KINDS if isinstance(figure, kind.performer)), None)
+    if kind is None:
+        raise ValueError(f"a walker or a dancer is saved, not a {type(figure).__name__}")
+    network = type(figure.model).__name__
+    if kind_of(figure.model) is not networks_of(kind.name).get(network, MISSING):
+        raise ValueError(
+            f"{network} is not registered, and could not be loaded again: call "
+            f'performers.networks.register("{kind.name}", {network}, {type(figure.config).__name__})'
+        )
     scalers = {name: getattr(figure, f"{name}_scaler") for name in kind.scalers}
     weights = STORED[bits](figure.model.state_dict())
     tensors = {f"model.{k}": v for k, v in weights.items()}
@@ -93,10 +83,10 @@ def save(figure: Walker | Dancer, path: str | Path, bits: int = 16) -> Path:
     tensors["schedule.beta"] = figure.schedule.beta[1:]
     settings = {
         "format": kind.format,
-        "network": type(figure.model).__name__,
+        "network": network,
         "schedule": figure.schedule.name,
     }
-    return write_weights(path, tensors, settings, figure.config.as_dict(), figure.card)
+    return write_weights(path, tensors, settings, asdict(figure.config), figure.card)
 
 
 def bits_of(path: str | Path) -> int:
@@ -132,16 +122,17 @@ def _read(path: str | Path, *kinds: Kind) -> Walker | Dancer:
 
 
 def _assembled(kind: Kind, tensors: dict[str, Tensor], metadata: dict[str, str]) -> Walker | Dancer:
-    config = config_of(metadata, kind.networks, next(iter(kind.networks)))
+    networks = networks_of(kind.name)
+    config = config_of(metadata, {name: one.config for name, one in networks.items()}, kind.usual)
     sizes = dict(zip(kind.scalers, (config.D, config.C), strict=True))
     vectors = {f"{name}.{part}": size for name, size in sizes.items() for part in ("mean", "std")}
     check_sizes(tensors, vectors | {"schedule.beta": config.S})
     scalers = [Scaler(tensors[f"{name}.mean"], tensors[f"{name}.std"]) for name in kind.scalers]
-    model = kind.network(config, *scalers)
+    model = networks[metadata.get("network", kind.usual)].build(config, *scalers)
     model.load_state_dict(unpack({k[6:]: v for k, v in tensors.items() if k.startswith("model.")}))
     schedule = make_schedule(tensors["schedule.beta"], metadata["schedule"])
     card = json.loads(metadata.get("card", "{}")) or {}
-    return kind.figure(model.eval().requires_grad_(False), schedule, *scalers, card)
+    return kind.performer(model.eval().requires_grad_(False), schedule, *scalers, card)
 
 
 def available() -> dict[str, Path]:

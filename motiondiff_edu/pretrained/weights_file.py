@@ -23,6 +23,8 @@ Config = TypeVar("Config")
 Assemble = Callable[
     [dict[str, Tensor], dict[str, str]], object
 ]  # (tensors, metadata) -> what they are
+# settings of earlier versions, with the value that says nothing
+RETIRED = {"reach": 0.0}
 SETTINGS = ("format", "network", "config", "schedule")  # what settles how the tensors are used
 
 
@@ -64,7 +66,8 @@ def read_weights(path: str | Path, kinds: Mapping[str, Assemble]) -> object:
         if metadata.get(what) != digest:
             part = "tensors" if what == "sha256" else "settings"
             raise CheckpointError(
-                f"{path.name} is damaged: its {part} are not those that were written; fetch it again"
+                f"{path.name} is damaged: its {part} are not those that were written; "
+                "fetch it again"
             )
     bad = [name for name, tensor in tensors.items() if not torch.isfinite(tensor.float()).all()]
     if bad:
@@ -93,7 +96,11 @@ def config_of(metadata: dict[str, str], kinds: Mapping[str, type[Config]], defau
         ) from error
     kind = kinds.get(metadata.get("network", default))
     if kind is None:
-        raise CheckpointError(f"{name} holds an unknown network, {metadata['network']}; upgrade")
+        raise CheckpointError(
+            f"{name} holds an unknown network, {metadata['network']}; upgrade, or register it first "
+            "(performers.networks.register)"
+        )
+    values = {k: v for k, v in values.items() if k not in RETIRED or v != RETIRED[k]}
     defaults = {field.name: field.default for field in fields(kind)}
     unknown = set(values) - set(defaults)
     if unknown:

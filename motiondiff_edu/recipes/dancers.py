@@ -17,21 +17,33 @@ KINEMATIC = KinematicWeights(
 
 
 @dataclass(frozen=True)
+class DanceLossWeights:
+    """What the data term adds to the mean square, by names of `beyond.loss_terms`; 0 is the
+    paper's.
+
+    `changes`: weight of `changes`.  `toes`: weight of `toe_changes`.
+    `high_noise`: largest extra weight of `high_noise_weights`.
+    """
+
+    changes: float = 0.0
+    toes: float = 0.0
+    high_noise: float = 0.0
+
+
+@dataclass(frozen=True)
 class DanceRecipe:
-    """One training run on `songs` songs of `seconds` each, `dances` to each song, every dance
-    mirrored as well."""
+    """One training run of a dancer. What is not said of the loss is the paper's.
+
+    `songs` songs of `seconds` each are made, `dances` to each song, every dance mirrored as well.
+    """
 
     name: str
     config: MoFusionConfig | TransformerConfig
     steps: int
     kinematic: KinematicWeights | None = None
-    high_noise: float = 0.0  # largest extra weight of steps that are mostly noise
-    changes: float = (
-        5.0  # weight of the errors of changes from frame to frame, beside those of poses
-    )
-    feet: float = 0.2  # weight of the errors of the toes' changes in the world
-    shake: float = 0.3  # how much the music's level and balance vary (`DanceWindows.draw`)
-    snr: float = 0.1  # of the cosine schedule: its signal-to-noise ratio is multiplied by it
+    loss_weights: DanceLossWeights = DanceLossWeights()
+    gain_noise: float = 0.0  # of the music's level and balance: `DanceWindows.draw`
+    snr: float = 1.0  # of the cosine schedule: its signal-to-noise ratio is multiplied by it
     frames: int = 100  # of a window
     lr: float = 3e-3
     optimizer: str = "muon"
@@ -45,24 +57,19 @@ class DanceRecipe:
     seed: int = 0
     save_every: int = 250  # steps
 
-    @property
-    def loss_settings(self) -> dict:
-        """What `performers.dance_windows.dance_loss` is to be told."""
-        return {
-            name: getattr(self, name)
-            for name in ("batch", "high_noise", "changes", "feet", "shake")
-        }
-
 
 X0 = replace(MOFUSION_SMALL, target="x0", skip=False)
-DANCER = DanceRecipe("dancer", X0, steps=10_000, kinematic=KINEMATIC)
-DANCER_PLAIN = DanceRecipe("dancer-plain", X0, steps=10_000)
-REGRESSED = DanceRecipe("regression", REGRESSION, steps=3000)
+OURS = DanceLossWeights(changes=5.0, toes=0.2)
+DANCER_PLAIN = DanceRecipe(
+    "dancer-plain", X0, steps=10_000, loss_weights=OURS, gain_noise=0.3, snr=0.1
+)
+DANCER = replace(DANCER_PLAIN, name="dancer", kinematic=KINEMATIC)
+REGRESSED = DanceRecipe("regression", REGRESSION, steps=3000, gain_noise=0.3, snr=0.1)
 FULL = replace(MOFUSION_FULL, target="x0", skip=False)  # never trained: it wants a GPU
 DANCER_FULL = replace(DANCER, name="dancer-full", config=FULL, steps=200_000, batch=64)
 
-UNCONDITIONAL = DanceRecipe(
-    "unconditional", replace(X0, C=0), steps=6000, kinematic=KINEMATIC, songs=0, motions=3000
+UNCONDITIONAL = replace(
+    DANCER, name="unconditional", config=replace(X0, C=0), steps=6000, songs=0, motions=3000
 )
 
 SHIPPED_DANCERS = (DANCER, DANCER_PLAIN, REGRESSED, UNCONDITIONAL)

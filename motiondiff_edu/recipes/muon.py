@@ -11,7 +11,7 @@ from jaxtyping import Float
 from torch import Tensor, nn
 
 from ..cross_modal_attention import Block
-from ..mofusion import Ask, ResBlock
+from ..mofusion import CrossAttentionBlock, ResBlock
 
 
 def optimizer_for(model: nn.Module, name: str):
@@ -51,7 +51,9 @@ def whitened(matrix: Float[Tensor, "m n"], steps: int = 5) -> Float[Tensor, "m n
     With x the singular values: a x + b x^3 + c x^5, five times; the three numbers were chosen by
     Jordan for speed.
     """
-    a, b, c = 3.4445, -4.7750, 2.0315
+    a = 3.4445
+    b = -4.7750
+    c = 2.0315
     wide = matrix.mT if matrix.shape[0] > matrix.shape[1] else matrix
     x = wide / wide.norm().clamp_min(1e-7)
     for _ in range(steps):
@@ -66,7 +68,9 @@ class MuonAndAdam:
 
     def __init__(self, model: nn.Module, lr: float = 1e-3):
         blocks = [
-            module for module in model.modules() if isinstance(module, (Block, ResBlock, Ask))
+            module
+            for module in model.modules()
+            if isinstance(module, (Block, ResBlock, CrossAttentionBlock))
         ]
         matrices = {id(p) for block in blocks for p in block.parameters() if p.ndim == 2}
         first = [p for p in model.parameters() if id(p) in matrices]

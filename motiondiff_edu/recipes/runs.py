@@ -68,17 +68,16 @@ def resume_run(state: TrainState, path: str | Path, about: dict | None = None) -
     """
     try:
         with safe_open(path, "pt") as file:
-            tensors, counts = (
-                {name: file.get_tensor(name) for name in file.keys()},
-                file.metadata() or {},
-            )
+            tensors = {name: file.get_tensor(name) for name in file.keys()}
+            counts = file.metadata() or {}
     except (SafetensorError, OSError) as error:
         raise ValueError(
             f"{path} cannot be resumed: damaged, or no safetensors file ({error}); delete it"
         ) from error
     if counts.get("sha256", "") != digest_of_tensors(tensors) and "step" in counts:
         raise ValueError(
-            f"{path} cannot be resumed: damaged, its tensors are not those that were saved; delete it"
+            f"{path} cannot be resumed: damaged, "
+            "its tensors are not those that were saved; delete it"
         )
     parts: dict[str, dict] = {}
     for name, tensor in tensors.items():
@@ -87,7 +86,8 @@ def resume_run(state: TrainState, path: str | Path, about: dict | None = None) -
     missing = {"model", "average", "random"} - set(parts) or {"step"} - set(counts)
     if missing:
         raise ValueError(
-            f"{path} is no saved run: it has no {sorted(missing)[0]}; give another file, or delete it"
+            f"{path} is no saved run: it has no {sorted(missing)[0]}; "
+            "give another file, or delete it"
         )
     _same(about, json.loads(counts.get("about", "null")), path)
     kind = json.loads(counts.get("optimizer", "null"))
@@ -102,7 +102,8 @@ def resume_run(state: TrainState, path: str | Path, about: dict | None = None) -
         index, key = name.split(".")
         moments.setdefault(int(index), {})[key] = tensor
     state.optimizer.load_state_dict(state.optimizer.state_dict() | {"state": moments})
-    state.step, state.seconds = json.loads(counts["step"]), json.loads(counts.get("seconds", "0"))
+    state.step = json.loads(counts["step"])
+    state.seconds = json.loads(counts.get("seconds", "0"))
     state.generator.set_state(parts["random"]["generator"])
     torch.set_rng_state(parts["random"]["torch"])
     if "cuda" in parts["random"] and torch.cuda.is_available():
@@ -131,6 +132,6 @@ def _same(asked: dict | None, found: dict | None, path: str | Path) -> None:
     found = found or {}
     name = next(key for key in [*asked, *found] if asked.get(key) != found.get(key))
     raise ValueError(
-        f"{path} was begun with {name} = {found.get(name)!r}, and {asked.get(name)!r} is asked for: "
-        "delete the file to start anew, or ask for what it was begun with"
+        f"{path} was begun with {name} = {found.get(name)!r}, and {asked.get(name)!r} is asked "
+        "for: delete the file to start anew, or ask for what it was begun with"
     )

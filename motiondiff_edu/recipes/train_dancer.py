@@ -1,20 +1,25 @@
-"""Train a recipe into a dancer: songs, dances, windows, card. A killed run continues where it was
-saved last."""
+"""Train a recipe into a dancer: songs, dances, windows, MoFusion's loss with the recipe's
+departures, card. A killed run continues where it was saved last."""
 
 from functools import lru_cache
 from pathlib import Path
 
 import torch
+from torch import Tensor, nn
 
 from .._files import digest_of_tensors
 from ..baselines.regression import regression_loss
+from ..beyond import loss_terms
 from ..beyond.schedules import shifted
 from ..conditions.music import log_mel
-from ..ddpm import Schedule, cosine_schedule
-from ..performers.dance_windows import DanceWindows, dance_loss
-from ..performers.dancer import Dancer, network
+from ..ddpm import Schedule, cosine_schedule, squared_error
+from ..kinematic_loss import kinematic_parts, over_time, training_loss
+from ..motion.dance_frame import body_of
+from ..performers.dance_windows import DanceWindows, toes_moved
+from ..performers.dancer import Dancer
+from ..performers.networks import network
 from ..training import LossFn
-from .dancers import DanceRecipe
+from .dancers import DanceLossWeights, DanceRecipe
 from .train_recipe import train_recipe
 
 
@@ -32,7 +37,10 @@ def training_windows(recipe: DanceRecipe) -> DanceWindows:
 def _made(songs: int, seed: int, seconds: float, each: int, frames: int) -> DanceWindows:
     from data_synth.dancing import dances  # data_synth lies beside the package, and imports it
 
-    positions, contacts, mels, heard = [], [], [], None
+    positions = []
+    contacts = []
+    mels = []
+    heard = None
     for song, danced in dances(songs, seed, seconds, each=each):
         if song is not heard:
             heard, mel = song, log_mel(torch.from_numpy(song.audio).float())
@@ -85,8 +93,47 @@ def loss_of(recipe: DanceRecipe, windows: DanceWindows, schedule: Schedule) -> L
     """The loss that a recipe asks for: MoFusion's, or the regression's where the network is
     deterministic."""
     if getattr(recipe.config, "deterministic", False):
-        return regression_loss(windows, batch=recipe.batch, shake=recipe.shake)
-    return dance_loss(windows, schedule, recipe.kinematic, **recipe.loss_settings)
+        return regression_loss(windows, batch=recipe.batch, gain_noise=recipe.gain_noise)
+    loss, weights = weighted_loss(recipe.loss_weights, windows, schedule), recipe.kinematic
+    lambda_k = over_time(schedule, weights.over_time) if weights else None
+
+    def loss_fn(model: nn.Module, generator: torch.Generator) -> Tensor:
+        device = next(model.parameters()).device
+        drawn = windows.draw(recipe.batch, generator, recipe.gain_noise)
+        x0, mel, planted = (part.to(device) for part in drawn)
+        music = model.listen(mel, windows.mel_times.to(device)) if model.config.C else None
+        body = body_of(windows.motion_scaler.to(device))
+
+        def kinematic(x0_hat: Tensor, x0: Tensor) -> Tensor:
+            return weights.total(kinematic_parts(x0_hat, x0, body, planted))
+
+        return training_loss(
+            model,
+            (x0, music),
+            schedule,
+            generator,
+            kinematic=kinematic if weights else None,
+            lambda_k=lambda_k,
+            loss=loss,
+        )
+
+    return loss_fn
+
+
+def weighted_loss(
+    weights: DanceLossWeights, windows: DanceWindows, schedule: Schedule
+) -> loss_terms.Loss:
+    """The mean square of eq. 4's data term, with the weights and terms that are not 0."""
+    loss = squared_error
+    if weights.changes:
+        loss = loss_terms.total(loss, loss_terms.changes(weights.changes))
+    if weights.toes:
+        std, moved = windows.motion_scaler.std, toes_moved(windows)
+        loss = loss_terms.total(loss, loss_terms.toe_changes(weights.toes, std, moved))
+    if weights.high_noise:
+        steps = loss_terms.high_noise_weights(schedule, weights.high_noise)
+        loss = loss_terms.weighted_by_step(loss, steps)
+    return loss
 
 
 def digest(windows: DanceWindows) -> str:

@@ -51,6 +51,10 @@ def train_recipe(
         sittings = [*sittings, {"from_step": state.step, **where(device)}]
     rate = cosine_lr(recipe.lr, recipe.steps, warmup=min(warmup, recipe.steps // 4))
     run_to_end(recipe, rate, state, loss_fn, saver(run_file, about, sittings), log, before)
+    if before:
+        before(
+            state.step
+        )  # the final loss is that of the end, also of a run that had nothing to do
     card = {
         "name": recipe.name,
         "target": recipe.config.target,

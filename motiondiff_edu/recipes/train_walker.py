@@ -1,20 +1,29 @@
-"""Train a recipe into a walker: data, windows, card. A killed run continues where it was saved
-last."""
+"""Train a recipe into a walker: data, windows, Algorithm 1 with the recipe's departures, card. A
+killed run continues where it was saved last."""
 
 import hashlib
 from pathlib import Path
 
 import numpy as np
 import torch
+from torch import Tensor, nn
 
-from ..beyond.footholds import network
+from ..beyond import loss_terms
+from ..beyond.footholds import CleanFootholds, FootholdConfig
+from ..beyond.past_noise import past_noise
+from ..beyond.schedules import SCHEDULES
+from ..beyond.shared_encoding import SharedEncoding, repeated
+from ..ddpm import Schedule, squared_error
 from ..diffusion_dropout import Dropout, dropout_rate
+from ..modiff import training_loss
 from ..motion.augment import mirror, reverse_time
 from ..motion.clip import Clip
-from ..performers.walker import SCHEDULES, Walker
-from ..performers.windows import Windows, window_loss
+from ..performers.networks import network
+from ..performers.walker import Walker
+from ..performers.windows import Windows, typical_change
+from ..training import LossFn
 from .train_recipe import train_recipe
-from .walkers import Recipe
+from .walkers import LossWeights, Recipe
 
 
 def training_clips(recipe: Recipe) -> list[Clip]:
@@ -40,17 +49,13 @@ def train(recipe: Recipe, run_file: Path, clips: list[Clip] | None = None, log=p
         SCHEDULES[recipe.schedule](config.S),
         (windows.pose_scaler, windows.control_scaler),
     )
-    dropout = (
-        Dropout(schedule, dropout_rate(recipe.dropout, recipe.calm), recipe.steps)
-        if recipe.dropout
-        else None
-    )
+    dropout = dropout_of(recipe, schedule)
     torch.manual_seed(recipe.seed)
     trained, card = train_recipe(
         recipe,
         run_file,
         network(config, *scalers),
-        window_loss(windows, schedule, **recipe.loss_settings, dropout=dropout),
+        loss_of(recipe, windows, schedule, dropout),
         before=dropout.now if dropout else None,
         about={"network": type(config).__name__, "data": digest(windows)},
         facts={"frames": len(windows.poses), "control_range": control_range(windows)},
@@ -59,6 +64,54 @@ def train(recipe: Recipe, run_file: Path, clips: list[Clip] | None = None, log=p
         log=log,
     )
     return Walker(trained, schedule, *scalers, card)
+
+
+def loss_of(
+    recipe: Recipe, windows: Windows, schedule: Schedule, dropout: Dropout | None = None
+) -> LossFn:
+    """The recipe's loss: its data, `modiff.training_loss`, and the departures that it names."""
+    loss, change = weighted_loss(recipe.loss_weights, windows, schedule), typical_change(windows)
+    footholds = isinstance(recipe.config, FootholdConfig)
+
+    def loss_fn(model: nn.Module, generator: torch.Generator) -> Tensor:
+        device = next(model.parameters()).device
+        past, x0, control = windows.draw(recipe.batch, generator, recipe.held_control)
+        noised = past
+        if recipe.past_noise:
+            noised = past_noise(past, recipe.past_noise, change[0], generator)
+        batch = tuple(part.to(device) for part in (past, noised, x0, control))
+        past, noised, x0, control = repeated(batch, recipe.noises)
+        if recipe.noises > 1 and dropout is None:
+            model = SharedEncoding(model, recipe.noises)
+        if footholds:
+            model = CleanFootholds(model, past, noised, recipe.foot_noise)
+        batch = (noised, x0, control)
+        return training_loss(model, batch, schedule, generator, dropout=dropout, loss=loss)
+
+    return loss_fn
+
+
+def weighted_loss(weights: LossWeights, windows: Windows, schedule: Schedule) -> loss_terms.Loss:
+    """eq. 10's mean square, with the weights and terms that are not 0."""
+    std, loss = windows.pose_scaler.std, squared_error
+    if weights.metres:
+        loss = loss_terms.weighted(loss, loss_terms.metre_weights(std, weights.metres))
+    if weights.bones:
+        loss = loss_terms.total(loss, loss_terms.bones(weights.bones, std))
+    if weights.near:
+        change = typical_change(windows) * std
+        loss = loss_terms.weighted(loss, loss_terms.near_weights(change, weights.near))
+    if weights.high_noise:
+        steps = loss_terms.high_noise_weights(schedule, weights.high_noise)
+        loss = loss_terms.weighted_by_step(loss, steps)
+    return loss
+
+
+def dropout_of(recipe: Recipe, schedule: Schedule) -> Dropout | None:
+    """The recipe's diffusion dropout, if it has one."""
+    if not recipe.dropout:
+        return None
+    return Dropout(schedule, dropout_rate(recipe.dropout, recipe.dropout_start), recipe.steps)
 
 
 def control_range(windows: Windows) -> dict[str, list[float]]:

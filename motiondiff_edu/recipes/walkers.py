@@ -9,35 +9,46 @@ as their cards say.   Notebook: 07
 from dataclasses import dataclass, replace
 
 from ..beyond.footholds import FootholdConfig
-from ..diffusion_dropout import P_D
+from ..diffusion_dropout import P_D, START
 from ..modiff import MODIFF_PAPER, MODIFF_SMALL, MoDiffConfig
 
 
 @dataclass(frozen=True)
+class LossWeights:
+    """What the loss adds to eq. 10, by names of `beyond.loss_terms`; 0 is the paper's.
+
+    `metres`: power of `metre_weights`.  `near`: power of `near_weights`.
+    `high_noise`: largest extra weight of `high_noise_weights`.  `bones`: weight of `bones`.
+    """
+
+    metres: float = 0.0
+    near: float = 0.0
+    high_noise: float = 0.0
+    bones: float = 0.0
+
+
+@dataclass(frozen=True)
 class Recipe:
-    """One training run. `seconds` of each of `clips` clips are made with the data seed; mirrored
-    and reversed later."""
+    """One training run of a walker. What is not said is the paper's, but for the rate, the number
+    of steps, the data, and the held control.
+
+    `seconds` of each of `clips` clips are made with the data seed; mirrored and reversed later.
+    """
 
     name: str
     config: MoDiffConfig
     steps: int
-    schedule: str = "linear"  # or "leap", see walker.leap_schedule
+    schedule: str = "linear"  # or "leap": `beyond.schedules`
     lr: float = 2e-3
-    optimizer: str = "muon"  # or "adam", the paper's
+    optimizer: str = "adam"  # or "muon": `recipes.muon`
     batch: int = 64  # windows a step
-    noises: int = 2  # diffusion steps drawn for each window
-    jitter: float = 0.3  # of the past, in standard deviations
-    metres: float = (
-        2.0  # columns of the loss are weighted by their standard deviation to this power
-    )
-    near: float = 1.0  # its frames by one over how far poses move until then, to this power
-    high_noise: float = 0.0  # largest extra weight of steps that are mostly noise
-    bones: float = 2.0  # weight of the errors of bones, beside those of joints
-    doubt: float = 0.05  # share of the shaking that reaches the feet's places, see foothold.py
-    dropout: tuple[
-        float, ...
-    ] = ()  # rates of diffusion dropout, one after the other; none: no dropout
-    calm: float = 0.5  # share of the training before the first of them
+    noises: int = 1  # diffusion steps drawn for each window: `beyond.shared_encoding`
+    held_control: float = 0.5  # share of the windows that hold the control over the future
+    past_noise: float = 0.0  # standard deviations: `beyond.past_noise`
+    foot_noise: float = 0.05  # fraction of it under the held feet: `beyond.footholds`
+    loss_weights: LossWeights = LossWeights()
+    dropout: tuple[float, ...] = ()  # rates P_d of diffusion dropout in turn; none: no dropout
+    dropout_start: float = START  # share of the training before the first of them
     decay: float = 0.999
     clips: int = 720
     seconds: float = 20.0
@@ -47,26 +58,41 @@ class Recipe:
     styles: tuple[str, ...] | None = None
     save_every: int = 2000  # steps
 
-    @property
-    def loss_settings(self) -> dict:
-        """What `performers.windows.window_loss` is to be told."""
-        names = ("batch", "noises", "jitter", "metres", "near", "high_noise", "bones", "doubt")
-        return {name: getattr(self, name) for name in names}
+    def __post_init__(self):
+        """Raises ValueError for batch or noises under 1."""
+        if min(self.batch, self.noises) < 1:
+            raise ValueError(
+                f"a batch needs a window and a noise at least, not batch = {self.batch}, "
+                f"noises = {self.noises}"
+            )
 
 
 SMALL_FEET = FootholdConfig(width=128, hidden=256, cross_layers=2)  # MODIFF_SMALL with footholds
-WALKER_X0 = Recipe("walker-x0", SMALL_FEET, steps=20_000, schedule="leap")
-WALKER_EPS = Recipe("walker-eps", MODIFF_SMALL, steps=20_000, schedule="leap", high_noise=3.0)
+OURS = LossWeights(metres=2.0, near=1.0, bones=2.0)
+WALKER_X0 = Recipe(
+    "walker-x0",
+    SMALL_FEET,
+    steps=20_000,
+    schedule="leap",
+    optimizer="muon",
+    noises=2,
+    past_noise=0.3,
+    loss_weights=OURS,
+)
+WALKER_EPS = replace(
+    WALKER_X0,
+    name="walker-eps",
+    config=MODIFF_SMALL,
+    loss_weights=replace(OURS, high_noise=3.0),
+)
 # The paper's sizes, Adam, 5e-5, batch 64, plain loss. Ours: the data, whose windows start at every
 # frame (so 300,000 steps, not epochs) and hold the control in half of the cases; the skip; the
 # warm-up and cosine of the rate.
-WALKER_PAPER = Recipe(
-    "walker-paper", MODIFF_PAPER, steps=300_000, lr=5e-5, optimizer="adam", noises=1, jitter=0.0, metres=0.0, near=0.0,
-    bones=0.0, clips=2400,
-)  # fmt: skip
+WALKER_PAPER = Recipe("walker-paper", MODIFF_PAPER, steps=300_000, lr=5e-5, clips=2400)
 
 # Pairs of small walkers, alike but for diffusion dropout, each with three training seeds: notebooks
-# 09 and 10. Their pasts are not shaken: that is our remedy for what the paper's dropout is to mend.
+# 09 and 10. Their pasts have no other noise: that is our remedy for what the paper's dropout is to
+# mend.
 MEND_CONFIG = MoDiffConfig(
     width=64,
     hidden=128,
@@ -77,14 +103,14 @@ MEND_CONFIG = MoDiffConfig(
     target="x0",
     skip=False,
 )
-MEND_PLAIN = Recipe(
-    "mend-plain",
-    MEND_CONFIG,
+MEND_PLAIN = replace(
+    WALKER_X0,
+    name="mend-plain",
+    config=MEND_CONFIG,
     steps=8000,
-    schedule="leap",
     batch=32,
     lr=3e-3,
-    jitter=0.0,
+    past_noise=0.0,
     clips=360,
     save_every=500,
 )

@@ -1,2 +1,4 @@
-"""Figures from plain arrays, with matplotlib: colour-blind safe, readable on a projector, each with
-its caption."""
+"""Figures from plain arrays, with matplotlib.
+
+Colour-blind safe, readable on a projector, each with its caption.
+"""

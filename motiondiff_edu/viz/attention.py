@@ -1,5 +1,6 @@
-"""Attention maps: who looks where. A row is a query and sums to one; groups of keys are named and
-parted by lines.
+"""Attention maps: who looks where.
+
+A row is a query and sums to one; groups of keys are named and parted by lines.
 
 A map says where values were read, not why: a weight is not an explanation.  Notebook: 06
 """
@@ -12,14 +13,16 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from .body import INK
-from .style import MEDIUM, OKABE_ITO, SMALL, figure
+from .style import MEDIUM, SMALL, figure
 
 Groups = Sequence[tuple[str, int]]  # (name, how many keys), in the order of the keys
 
 
 def modiff_groups(T_h: int = 10, T_p: int = 10) -> list[tuple[str, int]]:
-    """The keys of MoDiff's memory, in order: past poses, control of the past, control of the
-    future."""
+    """The keys of MoDiff's memory, in order.
+
+    Past poses, control of the past, control of the future.
+    """
     return [("past poses", T_h), ("control, past", T_h), ("control, future", T_p)]
 
 
@@ -32,8 +35,9 @@ def attention_map(
     query_name: str = "future frame (query)",
     key_name: str = "key",
 ) -> Figure:
-    """One map, dark where much is read. `weights` of several heads: take one, or their mean, or
-    `attention_heads`.
+    """One map, dark where much is read.
+
+    `weights` of several heads: take one, or their mean, or `attention_heads`.
 
     Raises ValueError where groups or labels do not fit the map.
     """
@@ -75,31 +79,6 @@ def attention_heads(
     fig.colorbar(image, ax=axes, label="weight", shrink=0.8)
     fig.supxlabel("key", fontsize=MEDIUM)
     fig.supylabel("query", fontsize=MEDIUM)
-    return fig
-
-
-def group_shares(weights: Float[np.ndarray, "T M"], groups: Groups, title: str = "") -> Figure:
-    """How much of each query's attention goes to each group of keys: stacked bars that reach
-    one."""
-    _check(weights.shape, groups, None, None)
-    words = (
-        "Share of each query's attention that goes to "
-        + ", ".join(name for name, _ in groups)
-        + "."
-    )
-    fig, (axis,) = figure(9, 3.8, words)
-    bottom, first = np.zeros(len(weights)), 0
-    hatches = ("", "//", "..", "xx", "\\\\")
-    for k, (name, count) in enumerate(groups):
-        share = weights[:, first : first + count].sum(1)
-        style = {"color": OKABE_ITO[k % 7], "hatch": hatches[k % 5], "edgecolor": "white"}
-        axis.bar(
-            np.arange(1, len(weights) + 1), share, bottom=bottom, label=name, width=0.85, **style
-        )
-        bottom, first = bottom + share, first + count
-    axis.set(xlabel="future frame (query)", ylabel="share", ylim=(0, 1), title=title)
-    axis.set_xticks(np.arange(1, len(weights) + 1, -(-len(weights) // 20)))
-    axis.legend(frameon=False, fontsize=SMALL, loc="center left", bbox_to_anchor=(1, 0.5))
     return fig
 
 

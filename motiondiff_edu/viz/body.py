@@ -12,12 +12,13 @@ from jaxtyping import Float
 
 from ..motion.skeleton import J
 
-GREY, INK, PAPER = "#5B6472", "#1F2933", "#FFFFFF"
-LEFT_COLOUR, RIGHT_COLOUR, CENTRE_COLOUR = (
-    "#0072B2",
-    "#D55E00",
-    GREY,
-)  # Okabe-Ito blue and vermillion
+GREY = "#5B6472"
+INK = "#1F2933"
+PAPER = "#FFFFFF"
+# Okabe-Ito blue and vermillion
+LEFT_COLOUR = "#0072B2"
+RIGHT_COLOUR = "#D55E00"
+CENTRE_COLOUR = GREY
 PATH_COLOUR = "#009E73"
 COLOURS = {"L": LEFT_COLOUR, "R": RIGHT_COLOUR, "C": CENTRE_COLOUR}
 PAST_WASH = 0.55  # how far the colours of given frames are washed out towards the paper
@@ -28,8 +29,10 @@ _RING = np.stack([np.cos(ANGLES), np.sin(ANGLES)], -1)
 
 @dataclass(frozen=True)
 class Part:
-    """The convex hull of circles: (joint a, joint b, w, radius in metres), centred at a + w (b -
-    a)."""
+    """The convex hull of circles.
+
+    (joint a, joint b, w, radius in metres), centred at a + w (b - a).
+    """
 
     side: str  # L, R or C
     circles: tuple[tuple[int, int, float, float], ...]
@@ -75,15 +78,18 @@ def stick_parts(parents: list[int], radius: float = 0.025) -> tuple[Part, ...]:
 
 
 def parts_for(joints: int, parents: list[int] | None = None) -> tuple[Part, ...]:
-    """The course's body for 21 joints, sticks for another skeleton, which then needs its
-    `parents`."""
+    """The course's body for 21 joints, sticks for another skeleton.
+
+    Another skeleton needs its `parents`.
+    """
     if parents is not None:
         if len(parents) != joints:
             raise ValueError(f"`parents` names {len(parents)} joints, the positions have {joints}")
         return stick_parts(list(parents))
     if joints != J:
         raise ValueError(
-            f"positions have {joints} joints, the course's skeleton has {J}: give `parents` for another"
+            f"positions have {joints} joints, the course's skeleton has {J}: "
+            "give `parents` for another"
         )
     return BODY
 
@@ -95,8 +101,9 @@ def parts_record(parts: tuple[Part, ...]) -> list[dict]:
 
 @dataclass(frozen=True)
 class Camera:
-    """A camera that looks at (x, height, z) from `distance` metres; yaw 0 stands at the figure's
-    right side.
+    """A camera that looks at (x, height, z) from `distance` metres.
+
+    Yaw 0 stands at the figure's right side.
 
     `focal` is in picture heights: a thing of h metres at the target covers focal h / distance of
     the picture.
@@ -116,12 +123,10 @@ class Camera:
 
     def axes(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Unit vectors to the right, up and ahead."""
-        cos, sin, rise, flat = (
-            np.cos(self.yaw),
-            np.sin(self.yaw),
-            np.sin(self.pitch),
-            np.cos(self.pitch),
-        )
+        cos = np.cos(self.yaw)
+        sin = np.sin(self.yaw)
+        rise = np.sin(self.pitch)
+        flat = np.cos(self.pitch)
         ahead = -np.array([-flat * cos, rise, flat * sin])
         right = np.array([sin, 0.0, cos])
         return right, np.cross(right, ahead), ahead
@@ -130,8 +135,10 @@ class Camera:
 def project(
     points: Float[np.ndarray, "*N 3"], camera: Camera, size: tuple[int, int]
 ) -> tuple[Float[np.ndarray, "*N 2"], Float[np.ndarray, "*N"]]:
-    """Pixels (x to the right, y down) and pixels per metre at each point, in a picture of `size`
-    (width, height)."""
+    """Pixels (x to the right, y down) and pixels per metre at each point.
+
+    In a picture of `size` (width, height).
+    """
     right, up, ahead = camera.axes()
     target = np.array([camera.x, camera.height, camera.z])
     away = points - (target - camera.distance * ahead)
@@ -186,8 +193,9 @@ def body_polygons(
     parts: tuple[Part, ...] = BODY,
     wash: float = 0.0,
 ) -> list[tuple[Float[np.ndarray, "_ 2"], str, bool]]:
-    """Filled polygons of one pose, far ones first: per part its outline (True) and a lighter streak
-    that rounds it.
+    """Filled polygons of one pose, far ones first.
+
+    Per part its outline (True) and a lighter streak that rounds it.
 
     Parts behind the body's middle are washed out a little: the depth cue.
     """

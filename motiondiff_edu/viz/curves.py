@@ -1,5 +1,6 @@
-"""Curves that several notebooks draw: losses, small multiples, control over time, values with
-intervals.
+"""Curves that several notebooks draw.
+
+Losses, small multiples, control over time, values with intervals.
 
 Every line has its own colour and its own dashes.  Notebook: 05, 07
 """
@@ -12,7 +13,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from .body import GREY
-from .style import DASHES, LARGE, MEDIUM, OKABE_ITO, SMALL, figure, legend
+from .style import DASHES, OKABE_ITO, SMALL, figure, legend
 
 Curves = Mapping[str, tuple]  # name -> (x, y), equally long
 
@@ -27,7 +28,8 @@ def running_mean(y: Float[np.ndarray, "T"], window: int) -> Float[np.ndarray, "T
 
 def _lines(axis: Axes, curves: Curves, smooth: int = 1) -> None:
     for k, (name, (x, y)) in enumerate(curves.items()):
-        x, y = np.asarray(x, dtype=np.float64), np.asarray(y, dtype=np.float64)
+        x = np.asarray(x, dtype=np.float64)
+        y = np.asarray(y, dtype=np.float64)
         if x.shape != y.shape:
             raise ValueError(f"curve {name!r}: x has shape {x.shape}, y has {y.shape}")
         style = {"color": OKABE_ITO[k % 7], "ls": DASHES[k % 8]}
@@ -39,8 +41,10 @@ def _lines(axis: Axes, curves: Curves, smooth: int = 1) -> None:
 def loss_curves(
     curves: Curves, smooth: int = 1, log: bool = True, title: str = "", ylabel: str = "loss"
 ) -> Figure:
-    """Training losses over steps; with `smooth` > 1 the running mean, the raw values faint behind
-    it."""
+    """Training losses over steps.
+
+    With `smooth` > 1 the running mean, the raw values faint behind it.
+    """
     words = f"{title or 'Loss'} over training steps: {', '.join(curves)}."
     fig, (axis,) = figure(
         9, 4.4, words + (f" Running mean of {smooth} steps." if smooth > 1 else "")
@@ -50,36 +54,6 @@ def loss_curves(
     if log:
         axis.set_yscale("log")
     legend(axis)
-    return fig
-
-
-def small_multiples(
-    panels: Mapping[str, Curves],
-    xlabel: str,
-    ylabel: str,
-    columns: int = 3,
-    title: str = "",
-    log: bool = False,
-) -> Figure:
-    """One small picture for each entry, all with the same axes, so that they can be compared."""
-    columns = min(columns, len(panels))
-    rows = -(-len(panels) // columns)
-    words = f"{title + ': ' if title else ''}{ylabel} over {xlabel}, one picture each for {', '.join(panels)}."
-    fig, axes = figure(
-        4.2 * columns, 3.2 * rows + 0.3, words, rows, columns, sharex=True, sharey=True
-    )
-    for axis, (name, curves) in zip(axes, panels.items(), strict=False):
-        _lines(axis, curves)
-        axis.set_title(name)
-        if log:
-            axis.set_yscale("log")
-    for axis in axes[len(panels) :]:
-        axis.set_axis_off()
-    legend(axes[0])
-    fig.supxlabel(xlabel, fontsize=MEDIUM)
-    fig.supylabel(ylabel, fontsize=MEDIUM)
-    if title:
-        fig.suptitle(title, fontsize=LARGE)
     return fig
 
 
@@ -118,8 +92,10 @@ def intervals(
     reference_name: str = "data",
     title: str = "",
 ) -> Figure:
-    """Values with their intervals, a row each: records are (name, value, low, high); a line marks
-    the reference."""
+    """Values with their intervals, a row each: records are (name, value, low, high).
+
+    A line marks the reference.
+    """
     told = [f"{name} {value:.3g} ({low:.3g} to {high:.3g})" for name, value, low, high in records]
     fig, (axis,) = figure(9, 1.3 + 0.5 * len(records), f"{title or xlabel}: {'; '.join(told)}.")
     for k, (_name, value, low, high) in enumerate(records):

@@ -1,5 +1,6 @@
-"""Figures of measured dances: where they slow down, scores beside their chance level, how they
-repeat themselves.
+"""Figures of measured dances.
+
+Where they slow down, scores beside their chance level, how they repeat themselves.
 
 Plain arrays in, a captioned Figure out.  Notebook: 14
 """
@@ -24,13 +25,16 @@ def stops_and_beats(
     words: str,
     fps: float | int = 20,
 ) -> Figure:
-    """A row for each dance: its smoothed mean joint speed, dots where it slows down, and lines at
-    the music's beats."""
+    """A row for each dance.
+
+    Its smoothed mean joint speed, dots where it slows down, and lines at the music's beats.
+    """
     fig, axes = figure(10, 0.9 + 1.9 * len(dances), words, rows=len(dances), sharex=True)
     for axis, (name, positions) in zip(axes, dances.items(), strict=True):
         fine = resample(positions, fps) if fps < DANCE_FPS else positions
         rate = max(fps, DANCE_FPS)
-        speed, stops = smooth_speed(fine, rate), kinematic_beats(positions, fps)
+        speed = smooth_speed(fine, rate)
+        stops = kinematic_beats(positions, fps)
         times = (np.arange(len(speed)) + 0.5) / rate
         shown = music[(music >= 0) & (music <= times[-1])]
         axis.vlines(
@@ -71,8 +75,9 @@ Pairs = Mapping[
 
 
 def beside_chance(panels: Pairs, words: str) -> Figure:
-    """A panel for each score, a bar in it for each dance, and a line across the bar at its chance
-    level.
+    """A panel for each score, with a bar for each dance.
+
+    A line across the bar marks its chance level.
 
     panels[score][dance] = (value, chance).
     """
@@ -83,8 +88,10 @@ def beside_chance(panels: Pairs, words: str) -> Figure:
 
 
 def beside_floor(panels: Pairs, words: str) -> Figure:
-    """The same for distances, which have no upper end: logarithmic, but for the first unit; the
-    line is their floor."""
+    """The same for distances, which have no upper end: logarithmic, but for the first unit.
+
+    The line is their floor.
+    """
     fig, axes = _bars(panels, words, "data against data", "{:.0f}")
     highest = max(max(pair) for rows in panels.values() for pair in rows.values())
     for axis in axes:
@@ -157,8 +164,10 @@ def over_clips(
     curves: Mapping[str, tuple[Float[np.ndarray, "N"], Float[np.ndarray, "N"]]],
     words: str,
 ) -> Figure:
-    """A distance over the number of clips it was counted on, with a band of one deviation; both
-    axes logarithmic."""
+    """A distance over the number of clips it was counted on, with a band of one deviation.
+
+    Both axes logarithmic.
+    """
     fig, (axis,) = figure(9, 4.2, words)
     for k, (name, (mean, std)) in enumerate(curves.items()):
         axis.plot(sizes, mean, color=OKABE_ITO[k], ls=DASHES[k], marker=MARKERS[k], label=name)
@@ -182,8 +191,10 @@ def over_clips(
 def similarity_matrices(
     matrices: Mapping[str, Float[np.ndarray, "_ _"]], words: str, fps: float | int = 20
 ) -> Figure:
-    """Self-similarity of several dances side by side: time against time, dark blue alike, red
-    opposite."""
+    """Self-similarity of several dances side by side.
+
+    Time against time, dark blue alike, red opposite.
+    """
     fig, axes = figure(4.1 * len(matrices) + 0.8, 4.4, words, 1, len(matrices))
     for k, (axis, (name, matrix)) in enumerate(zip(axes, matrices.items(), strict=True)):
         seconds = len(matrix) / fps

@@ -1,5 +1,6 @@
-"""Pictures of dropout: curves side by side with an axis each, where a linear walker's weight lies,
-steps that meet.
+"""Pictures of dropout.
+
+Curves side by side with an axis each, where a linear walker's weight lies, steps that meet.
 
 Notebook: 09
 """
@@ -20,8 +21,9 @@ HATCHES = ("", "//", "..", "xx", "\\\\")
 def beside(
     panels: Mapping[str, Curves], words: str, xlabel: str, log: Sequence[str] = ()
 ) -> Figure:
-    """Panels of named curves with one x axis, and a y axis each, from 0 on or, for those named in
-    `log`, logarithmic.
+    """Panels of named curves with one x axis, and a y axis each.
+
+    It begins at 0, or is logarithmic for those named in `log`.
 
     All panels give a name the same colour and marker; one legend stands above them, if there are
     several names.
@@ -55,15 +57,15 @@ def beside(
 def where_the_weight_lies(
     weights: Mapping[str, Float[np.ndarray, "F D"]], T_h: int, words: str
 ) -> Figure:
-    """For each linear walker a bar for each past frame and for the control: the root of its squared
-    weights' sum."""
+    """For each linear walker a bar for each past frame and for the control.
+
+    The root of its squared weights' sum.
+    """
     fig, (axis,) = figure(10, 4.2, words)
     width = 0.84 / len(weights)
     for k, (name, weight) in enumerate(weights.items()):
-        squares, past = (
-            np.square(np.asarray(weight, dtype=np.float64)).sum(1),
-            T_h * weight.shape[1],
-        )
+        squares = np.square(np.asarray(weight, dtype=np.float64)).sum(1)
+        past = T_h * weight.shape[1]
         sizes = np.sqrt([*squares[:past].reshape(T_h, -1).sum(1), squares[past:-1].sum()])
         place = np.arange(T_h + 1) + (k + 0.5) * width - 0.42
         style = {"color": OKABE_ITO[k % 7], "hatch": HATCHES[k % 5], "edgecolor": "white"}
@@ -82,8 +84,9 @@ def where_the_weight_lies(
 def who_meets_whom(
     meetings: Mapping[str, tuple[Float[np.ndarray, "N"], Float[np.ndarray, "N"]]], words: str
 ) -> Figure:
-    """For each way of dropping a panel: how noised the target is (across) and how noised its past
-    is (up), both 0..1.
+    """One panel for each way of dropping.
+
+    How noised the target is (across) and how noised its past is (up), both 0..1.
 
     The line below is what sampling asks for: a clean past at every step.
     """

@@ -1,5 +1,6 @@
-"""Figures of in-betweens: a slice of a plane and who fills it how, ways beside the right answer,
-masks, joints in time.
+"""Figures of in-betweens.
+
+A slice of a plane and who fills it how, ways beside the right answer, masks, joints in time.
 
 Plain arrays in, a captioned Figure out.  Notebook: 15
 """
@@ -26,8 +27,9 @@ def slice_of_plane(
     density: Float[np.ndarray, "M"],
     words: str,
 ) -> Figure:
-    """Points of a plane, the line where the first coordinate is `at`, and on it the second one as
-    the first way has it.
+    """Points of a plane, and on one line of it the ways of filling in.
+
+    The first coordinate of that line is `at`; the second is drawn as the first way has it.
 
     Beside it, what each way found, as histograms under the true conditional density.
     """
@@ -60,8 +62,10 @@ def ways(
     titles: Mapping[str, str],
     words: str,
 ) -> Figure:
-    """A panel for each figure, a row for each way: a dot for each seed, and a line at the right
-    answer."""
+    """A panel for each figure, a row for each way.
+
+    A dot for each seed, and a line at the right answer.
+    """
     fig, axes = figure(
         3.0 + 3.4 * len(right), 1.4 + 0.45 * len(found), words, 1, len(right), sharey=True
     )
@@ -111,8 +115,10 @@ def over_time(
     ylabel: str,
     fps: float | int = 20,
 ) -> Figure:
-    """One number of a pose over time: samples as thin lines, others named; frames that were given
-    are shaded."""
+    """One number of a pose over time: samples as thin lines, others named.
+
+    Frames that were given are shaded.
+    """
     fig, (axis,) = figure(9, 3.8, words)
     seconds = np.arange(len(given)) / fps
     edge = np.flatnonzero(np.diff(np.pad(given.astype(int), 1)))

@@ -23,8 +23,9 @@ def levels_over_sound(
     words: str,
     sample_rate: int = 16_000,
 ) -> Figure:
-    """A song with its beats, and below it where each level reads while the dance of `seconds` goes
-    on, as in the paper.
+    """A song with its beats, and below it where each level reads.
+
+    The dance lasts `seconds`; the picture is the paper's.
 
     Across: the music's time. Downwards: the dance's. Each map has its own scale; one alone, larger,
     is drawn by `attention_over_sound`.  Source: MoFusion Fig. 4.
@@ -66,12 +67,14 @@ def attention_over_sound(
         or (np.diff(token_times) <= 0).any()
     ):
         raise ValueError(
-            f"token_times are {weights.shape[1]} (two or more) increasing seconds: {token_times!r:.80}"
+            f"token_times are {weights.shape[1]} (two or more) increasing seconds: "
+            f"{token_times!r:.80}"
         )
     T, seconds = len(weights), len(audio) / sample_rate
     words = (
-        f"Attention of {T / fps:.1f} s of motion over {seconds:.1f} s of music, below its waveform; a row sums to one, "
-        "darker is more; on the dashed line motion and music are at the same moment; upright lines are beats."
+        f"Attention of {T / fps:.1f} s of motion over {seconds:.1f} s of music, below its "
+        "waveform; a row sums to one, darker is more; "
+        "on the dashed line motion and music are at the same moment; upright lines are beats."
     )
     fig, (wave, axis) = figure(
         10, 6.6, f"{title}: {words}" if title else words, 2, sharex=True, height_ratios=(1, 3)
@@ -96,8 +99,10 @@ def time_maps(
     words: str,
     labels: tuple[str, str] = ("music (s)", "dance (s)"),
 ) -> Figure:
-    """Maps side by side, each on its own scale: rows over `seconds`, columns at their times;
-    dashed: one moment."""
+    """Maps side by side, each on its own scale: rows over `seconds`, columns at their times.
+
+    Dashed: one moment.
+    """
     fig, axes = figure(4.6 * len(maps), 4.4, words, 1, len(maps), sharey=True)
     for axis, (name, values) in zip(axes, maps.items(), strict=True):
         time_map(axis, values, columns, seconds)
@@ -114,8 +119,11 @@ def weight_and_effect(
     seconds: float,
     words: str,
 ) -> Figure:
-    """For each sound at `times`: left how much attention each moment of the dance gives it, right
-    how far it moves that moment (cm) when it is silenced."""
+    """For each sound at `times`, the attention it gets and how far it moves the dance.
+
+    Left: how much attention each moment of the dance gives it. Right: how far it moves that moment
+    (cm) when it is silenced.
+    """
     fig, axes = figure(11, 4.8, words, 1, 2, sharey=True)
     pictures = (
         (shares, "attention to the sound", "share"),
@@ -140,7 +148,8 @@ def before_and_after(
 ) -> Figure:
     """Log-Mel spectrograms on one scale, low bands below; dashed lines at `marks` (seconds)."""
     fig, axes = figure(5 * len(pictures), 3.6, words, 1, len(pictures), sharey=True)
-    low, top = min(p.min() for p in pictures.values()), max(p.max() for p in pictures.values())
+    low = min(p.min() for p in pictures.values())
+    top = max(p.max() for p in pictures.values())
     for axis, (name, picture) in zip(axes, pictures.items(), strict=True):
         axis.pcolormesh(
             times,

@@ -1,5 +1,6 @@
-"""Pictures of the kinematic losses: figures whose bones stretch, what each loss notices, losses
-over diffusion time.
+"""Pictures of the kinematic losses.
+
+Figures whose bones stretch, what each loss notices, losses over diffusion time.
 
 Notebook: 13
 """
@@ -35,8 +36,9 @@ def stretched(
     fps: float | int | None = None,
     widest: float | int = math.inf,
 ) -> Figure:
-    """A row of n poses for each motion, seen from the front; bones are blue where too short, orange
-    where too long.
+    """A row of n poses for each motion, seen from the front.
+
+    Bones are blue where too short, orange where too long.
 
     With `fps` the seconds stand above the first row; what reaches out of a picture `widest` metres
     wide is cut off.
@@ -65,8 +67,10 @@ def draw_row(
     name: str,
     widest: float | int = math.inf,
 ) -> None:
-    """One motion, a pose in each axis, all at one scale, which is told where it is not the usual
-    one."""
+    """One motion, a pose in each axis, all at one scale.
+
+    The scale is told where it is not the usual one.
+    """
     poses = np.asarray(motion, np.float64)[_spread(motion, len(axes))]
     far = float(np.abs(poses - poses[:, HIPS : HIPS + 1])[..., :2].max())
     reach = REACH if far <= REACH else min(1.05 * far, widest / 2)
@@ -100,10 +104,12 @@ def _sticks(axis: Axes, pose: Float[np.ndarray, "21 3"], reach: float) -> None:
 
 
 def noticed(
-    values: Float[np.ndarray, "R C"], rows: Sequence[str], columns: Sequence[str], words: str
+    values: Float[np.ndarray, "R K"], rows: Sequence[str], columns: Sequence[str], words: str
 ) -> Figure:
-    """A table of losses; in each column the shade goes from white (nothing) to the column's largest
-    value."""
+    """A table of losses.
+
+    In each column the shade goes from white (nothing) to the column's largest value.
+    """
     fig, (axis,) = figure(2.6 + 1.9 * len(columns), 0.9 + 0.52 * len(rows), words)
     share = values / np.maximum(values.max(axis=0), 1e-30)
     axis.imshow(np.sqrt(share), cmap="Oranges", vmin=0, vmax=1.6, aspect="auto")
@@ -123,8 +129,10 @@ def over_steps(
     at: int | None = None,
     columns: int = 2,
 ) -> Figure:
-    """Panels of named curves (s, y) over the diffusion step, y on a log axis of its own; `at` marks
-    one step."""
+    """Panels of named curves (s, y) over the diffusion step, y on a log axis of its own.
+
+    `at` marks one step.
+    """
     columns = min(columns, len(panels))
     rows = -(-len(panels) // columns)
     fig, axes = figure(
@@ -162,8 +170,10 @@ def moment(
     words: str,
     n: int = 4,
 ) -> Figure:
-    """What the network has in mind at step s: n poses of x0_hat, and below them each loss over s,
-    with s marked."""
+    """What the network has in mind at step s.
+
+    n poses of x0_hat, and below them each loss over s, with s marked.
+    """
     fig, axes = figure(11, 5.6, words, 2, max(n, len(panels)), height_ratios=[1.25, 1])
     width = max(n, len(panels))
     draw_row(axes[:n], motion, f"x0_hat, s = {s}")

@@ -1,5 +1,6 @@
-"""Figures of what was mended: errors over the length of a gap, and a map of dropout's rate against
-what is missing.
+"""Figures of what was mended.
+
+Errors over the length of a gap, and a map of dropout's rate against what is missing.
 
 Notebook: 09, 15
 """
@@ -46,8 +47,9 @@ def over_gaps(
 def by_fault(
     panels: Mapping[str, Mapping[str, tuple[float, float, float]]], words: str, xlabel: str
 ) -> Figure:
-    """A panel for each fault, a row for each way of mending it: (value, low, high), by powers;
-    further left is better.
+    """A panel for each fault, a row for each way of mending it: (value, low, high), by powers.
+
+    Further left is better.
 
     Notebook: 10
     """
@@ -77,8 +79,9 @@ def rate_map(
     missing: Sequence[str],
     words: str,
 ) -> Figure:
-    """A map for each measure: rates of dropout in rows, shares of the past missing in columns;
-    small is good.
+    """A map for each measure: rates of dropout in rows, shares of the past missing in columns.
+
+    Small is good.
 
     Colours compare within a column (dark: the worst rate at that share), numbers are the errors.
     Notebook: 09

@@ -1,5 +1,6 @@
-"""Figures of measured walks: footstep curves, drift over time, what a planted foot does, scores
-beside each other.
+"""Figures of measured walks.
+
+Footstep curves, drift over time, what a planted foot does, scores beside each other.
 
 Notebook: 08
 """
@@ -19,7 +20,9 @@ from .style import DASHES, MARKERS, figure, legend, table
 
 def footstep_curves(
     curves: Mapping[str, Float[np.ndarray, "V"]],
-    words: str = "Number of footsteps against the velocity tolerance; a dot at 95 % of the maximum.",
+    words: str = (
+        "Number of footsteps against the velocity tolerance; a dot at 95 % of the maximum."
+    ),
 ) -> Figure:
     """Number of footsteps against the tolerance 1, 2, 3 ... cm/s, a dot at each v95.  Source:
     MoDiff Fig. 3."""
@@ -38,8 +41,10 @@ def over_time(
     words: str,
     shade_to: float | int = 0,
 ) -> Figure:
-    """One panel for each measure, one line in it for each motion, a point for each second of the
-    rollout."""
+    """One panel for each measure, with one line for each motion.
+
+    A point for each second of the rollout.
+    """
     fig, axes = figure(5.2 * len(panels), 4, words, 1, len(panels))
     for axis, (measure, lines) in zip(axes, panels.items(), strict=True):
         for i, (label, values) in enumerate(lines.items()):
@@ -64,8 +69,10 @@ def toe_heights(
     fps: float | int = 20,
     below: float = PLANTED_BELOW,
 ) -> Figure:
-    """Height of the toes over time, in cm; grey where the lower one, under `below` metres, is
-    planted."""
+    """Height of the toes over time, in cm.
+
+    Grey where the lower one, under `below` metres, is planted.
+    """
     fig, (axis,) = figure(9, 3.4, words)
     seconds = np.arange(len(height)) / fps
     _shade(axis, planted, fps)
@@ -88,8 +95,10 @@ def gates(
     words: str,
     fps: float | int = 20,
 ) -> Figure:
-    """How far two gates are open (0 to 1), left above right; grey where that foot stands in
-    truth."""
+    """How far two gates are open (0 to 1), left above right.
+
+    Grey where that foot stands in truth.
+    """
     fig, axes = figure(9, 3.8, words, rows=2, sharex=True, sharey=True)
     seconds = np.arange(len(gate)) / fps
     for side, (axis, label, colour) in enumerate(
@@ -111,8 +120,9 @@ def _shade(axis: Axes, planted: np.ndarray, fps: float | int) -> None:
 def score_table(
     scores: Mapping[str, Mapping[str, float]], words: str, digits: int = 2, log: Sequence[str] = ()
 ) -> Figure:
-    """Rows of motions, columns of measures, to so many digits; a cell is darker the larger it is in
-    its column.
+    """Rows of motions, columns of measures, to so many digits.
+
+    A cell is darker the larger it is in its column.
 
     The shade goes with the value, from 0 on, or in the columns named in `log` with its logarithm,
     from the smallest on.
@@ -132,8 +142,10 @@ def score_table(
 
 
 def _shades(column: Float[np.ndarray, "R"], log: bool) -> Float[np.ndarray, "R"]:
-    """How dark each value is, 1 for the largest; nothing where there is no value, or none above 0
-    for a logarithm."""
+    """How dark each value is, 1 for the largest.
+
+    Nothing where there is no value, or none above 0 for a logarithm.
+    """
     if not log:
         return np.nan_to_num(column) / max(float(np.nan_to_num(column).max()), 1e-12)
     powers = np.log10(np.where(column > 0, column, np.nan))

@@ -1,5 +1,6 @@
-"""Figures of what motion is made of: the joints by number, poses in between, paths seen from above,
-control, windows.
+"""Figures of what motion is made of.
+
+The joints by number, poses in between, paths seen from above, control, windows.
 
 Plain arrays in, a matplotlib Figure with its caption out.  Notebook: 01
 """
@@ -65,8 +66,10 @@ def limb_steps(
     true_length: float,
     caption: str,
 ) -> Figure:
-    """A limb of K joints at U moments between two poses, one panel for each way of going; below,
-    its length (m)."""
+    """A limb of K joints at U moments between two poses, one panel for each way of going.
+
+    Below, its length (m).
+    """
     n = len(ways)
     figure, axes = captioned(3.2 * n, 5.8, caption, 2, n, height_ratios=[2.4, 1], sharey="row")
     reach = 1.3 * max(np.abs(limb).max() for limb in ways.values())
@@ -92,8 +95,10 @@ def paths_from_above(
     caption: str,
     every: int = 10,
 ) -> Figure:
-    """Root paths (x, z) with their headings (radians) as arrows, seen from above with the figure's
-    left on the left."""
+    """Root paths (x, z) seen from above, headings (radians) as arrows.
+
+    The figure's left is on the left.
+    """
     spread = np.ptp(np.concatenate([root for root, _ in paths.values()]), axis=0)
     figure, (axes,) = captioned(
         9, 1.4 + 6.5 * min(max(spread[1] / max(spread[0], 1e-3), 0.3), 0.75), caption
@@ -102,8 +107,17 @@ def paths_from_above(
         colour = SERIES[k % len(SERIES)]
         axes.plot(*root.T, color=colour, lw=2, label=name, ls="-" if k == 0 else "--")
         axes.plot(*root[0], "o", color=colour, ms=8)
-        axes.quiver(*root[::every].T, np.sin(heading[::every]), np.cos(heading[::every]), color=colour,
-                    angles="xy", scale_units="xy", scale=1.7, width=0.005, zorder=3)  # fmt: skip
+        axes.quiver(
+            *root[::every].T,
+            np.sin(heading[::every]),
+            np.cos(heading[::every]),
+            color=colour,
+            angles="xy",
+            scale_units="xy",
+            scale=1.7,
+            width=0.005,
+            zorder=3,
+        )
     axes.invert_xaxis()  # from above, and looking along z, left is on the left
     axes.set(aspect="equal", xlabel="x: left (m)", ylabel="z: forward (m)")
     if len(paths) > 1:
@@ -118,8 +132,10 @@ def windows_in_time(
     caption: str,
     fps: float = 20.0,
 ) -> Figure:
-    """Windows as bars: starts[k] are the first frames of the windows of recording k, groups[k]
-    "train" or "test"."""
+    """Windows as bars.
+
+    starts[k] are the first frames of the windows of recording k, groups[k] "train" or "test".
+    """
     figure, (axes,) = captioned(9, 1.3 + 0.6 * len(starts), caption)
     axes.grid(False)
     colours = {"train": LEFT_COLOUR, "test": RIGHT_COLOUR}

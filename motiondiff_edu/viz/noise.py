@@ -1,5 +1,6 @@
-"""Pictures of noise going in and coming out: curves, densities, paths and terms, each from plain
-arrays.
+"""Pictures of noise going in and coming out.
+
+Curves, densities, paths and terms, each from plain arrays.
 
 Every function returns a figure that shows itself once; the caption under it says what to see.
 """
@@ -72,8 +73,10 @@ def lines(
 def noised_curve(
     seconds, clean, noised, s: int, signal: float, caption: str | None = None
 ) -> Figure:
-    """One coordinate over time, clean and at diffusion step s, with the share of its amplitude that
-    is left."""
+    """One coordinate over time, clean and at diffusion step s.
+
+    The caption says what share of its amplitude is left.
+    """
     fig, (axis,) = panels(height=3.2)
     axis.plot(seconds, noised, color=ORANGE, lw=1.4, marker=".", label=f"x_s at s = {s}")
     axis.plot(
@@ -85,8 +88,8 @@ def noised_curve(
     axis.set_ylim(-3.6, 3.6)
     legend(axis, loc="upper right", ncol=2)
     caption = caption or (
-        f"Step {s}: the blue curve is the clean one times {signal:.2f}; the orange one adds noise of "
-        f"standard deviation {np.sqrt(1 - signal**2):.2f}."
+        f"Step {s}: the blue curve is the clean one times {signal:.2f}; "
+        f"the orange one adds noise of standard deviation {np.sqrt(1 - signal**2):.2f}."
     )
     return finish(fig, caption, ("time (s)", "left heel (standardised)"))
 
@@ -104,8 +107,10 @@ def noise_ladder(seconds, clean, noised: dict, caption: str) -> Figure:
 def densities(
     grid, curves: dict, caption: str, labels=("value", "density"), *, points: dict | None = None
 ) -> Figure:
-    """Named densities over one grid, filled lightly; `points` are named values marked on the
-    axis."""
+    """Named densities over one grid, filled lightly.
+
+    `points` are named values marked on the axis.
+    """
     fig, (axis,) = panels()
     for i, (name, y) in enumerate(curves.items()):
         axis.plot(grid, y, label=name, color=COLOURS[i], ls=DASHES[i])
@@ -129,8 +134,10 @@ def densities(
 def histograms(
     samples: dict, grid, density, caption: str, label: str = "value", top: float = 1.35
 ) -> Figure:
-    """A histogram for each named set of samples, each under the same exact density; cut off at
-    `top` times its peak."""
+    """A histogram for each named set of samples, each under the same exact density.
+
+    Cut off at `top` times its peak.
+    """
     fig, axes = panels(len(samples), width=4.2 * max(len(samples), 2), height=3.4, sharey=True)
     for i, (axis, (name, values)) in enumerate(zip(axes, samples.items(), strict=True)):
         ends = float(grid[0]), float(grid[-1])
@@ -143,8 +150,10 @@ def histograms(
 
 
 def paths(steps, x, grid, at_start, at_end, caption: str, show: int = 60) -> Figure:
-    """Sampling paths x (steps, n) from noise on the left to samples on the right, a density at
-    either end."""
+    """Sampling paths x (steps, n) from noise on the left to samples on the right.
+
+    A density stands at either end.
+    """
     x = np.asarray(x)
     fig, (left, middle, right) = panels(
         3, 10.5, 4, sharey=True, gridspec_kw={"width_ratios": [1, 5, 1]}
@@ -184,8 +193,10 @@ def one_moment(grid, density, values, guesses, s: int, caption: str) -> Figure:
 
 
 def bound(terms, exact: float, caption: str) -> Figure:
-    """Terms of the negative bound over s (terms[0] is the prior's), and their running sum beside -E
-    log q(x0)."""
+    """Terms of the negative bound over s, and their running sum beside -E log q(x0).
+
+    terms[0] is the prior's.
+    """
     fig, (left, right) = panels(2, width=10.5, height=4)
     terms, s = np.asarray(terms), np.arange(1, len(terms))
     left.bar(s, terms[1:], width=1.0, color=np.where(s == 1, ORANGE, BLUE))

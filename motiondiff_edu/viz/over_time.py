@@ -1,5 +1,7 @@
-"""What figures and lanes of music are made of: a waveform's outline, and maps whose columns are
-moments in time."""
+"""What figures and lanes of music are made of.
+
+A waveform's outline, and maps whose columns are moments in time.
+"""
 
 import numpy as np
 from jaxtyping import Float
@@ -9,8 +11,9 @@ from .body import INK
 
 
 def edges_of(times: Float[np.ndarray, "M"]) -> Float[np.ndarray, "M1"]:
-    """Where columns begin and end: halfway between their times, the outer ones as wide as their
-    neighbours.
+    """Where columns begin and end.
+
+    Halfway between their times, the outer ones as wide as their neighbours.
 
     A single column is one second wide.
     """
@@ -25,15 +28,18 @@ def lows_and_highs(
 ) -> tuple[Float[np.ndarray, "K"], Float[np.ndarray, "K"], Float[np.ndarray, "K"]]:
     """First index, lowest and highest sample of each of (at most) `bins` equal stretches."""
     starts = np.linspace(0, len(samples), min(bins, len(samples)) + 1).astype(int)[:-1]
-    low, high = np.minimum.reduceat(samples, starts), np.maximum.reduceat(samples, starts)
+    low = np.minimum.reduceat(samples, starts)
+    high = np.maximum.reduceat(samples, starts)
     return starts.astype(np.float64), low, high
 
 
 def waves(
     axis: Axes, audio: Float[np.ndarray, "N"], sample_rate: float | int, bins: int = 1200
 ) -> None:
-    """A waveform over seconds: what lies between the lowest and the highest sample of each of
-    `bins` stretches."""
+    """A waveform over seconds.
+
+    What lies between the lowest and the highest sample of each of `bins` stretches.
+    """
     starts, low, high = lows_and_highs(audio, bins)
     axis.fill_between(starts / sample_rate, low, high, color=INK, lw=0)
     axis.set_yticks([])
@@ -47,8 +53,10 @@ def time_map(
     seconds: float,
     colours: str = "Purples",
 ):
-    """A map whose rows share `seconds` evenly, from the top down, columns at their times; the
-    larger, the darker."""
+    """A map whose rows share `seconds` evenly, from the top down, columns at their times.
+
+    The larger, the darker.
+    """
     rows = np.linspace(0, seconds, len(values) + 1)
     image = axis.pcolormesh(
         edges_of(columns), rows, values, cmap=colours, vmin=min(0, values.min()), vmax=values.max()

@@ -1,5 +1,6 @@
-"""What attention reads, and what it is worth: buckets of time, sharpness, and weight against
-measured effect.
+"""What attention reads, and what it is worth.
+
+Buckets of time, sharpness, and weight against measured effect.
 
 Plain arrays in, a captioned Figure out.  Notebook: 06
 """
@@ -17,8 +18,10 @@ from .style import OKABE_ITO, figure, legend
 def bucket_map(
     distance: Int[np.ndarray, "N"], bucket: Int[np.ndarray, "N"], window: int, words: str
 ) -> Figure:
-    """Bucket over time distance (frames, key minus query); the distances within +-window are
-    shaded."""
+    """Bucket over time distance (frames, key minus query).
+
+    The distances within +-window are shaded.
+    """
     fig, (axis,) = figure(9, 3.8, words)
     for past, colour, name in (
         (True, OKABE_ITO[0], "key in the past"),
@@ -40,8 +43,10 @@ def sharpness(
     floor: float,
     words: str,
 ) -> Figure:
-    """The largest weight of a row over the size d of queries and keys; `floor` is that of equal
-    weights."""
+    """The largest weight of a row over the size d of queries and keys.
+
+    `floor` is that of equal weights.
+    """
     fig, (axis,) = figure(9, 3.8, words)
     for k, (name, values) in enumerate(curves.items()):
         axis.plot(
@@ -60,8 +65,9 @@ def weight_against_effect(
     groups: list[tuple[str, int]],
     words: str,
 ) -> Figure:
-    """The attention that each key of each example got, and the effect of hiding it, both over their
-    group's mean there.
+    """The attention that each key of each example got, and the effect of hiding it.
+
+    Both over their group's mean there.
 
     The mean is taken in each example: some examples move more than others whatever is hidden.
     """

@@ -25,8 +25,10 @@ def by_round(
     words: str,
     marks: Mapping[str, tuple[str, float]] | None = None,
 ) -> Figure:
-    """One panel for each measure, a line in it for each fault, a point for each round; `marks` are
-    dotted levels."""
+    """One panel for each measure, a line in it for each fault, a point for each round.
+
+    `marks` are dotted levels.
+    """
     fig, axes = figure(5.2 * len(panels), 4, words, 1, len(panels))
     for axis, (measure, lines) in zip(axes, panels.items(), strict=True):
         for i, (label, values) in enumerate(lines.items()):
@@ -55,8 +57,9 @@ def with_ghosts(
     words: str,
     frames: Sequence[int],
 ) -> Figure:
-    """A row of poses for each name; below those in `samples` a row of their limbs with a missing
-    end, thin and green.
+    """A row of poses for each name.
+
+    Below those in `samples` a row of their limbs with a missing end, thin and green.
 
     So the pose that is to be judged is not covered.
     """
@@ -102,8 +105,10 @@ def _haunt(
 def faults_and_methods(
     panels: Mapping[str, Mapping[str, Mapping[str, float]]], words: str, log: bool = True
 ) -> Figure:
-    """A panel for each measure: a row for each fault, a mark in it for each method; NaN leaves a
-    mark out."""
+    """A panel for each measure: a row for each fault, a mark in it for each method.
+
+    NaN leaves a mark out.
+    """
     faults = list(next(iter(panels.values())))
     fig, axes = figure(
         5.4 * len(panels), 1.4 + 0.8 * len(faults), words, 1, len(panels), sharey=True

@@ -1,5 +1,6 @@
-"""Skeletons on paper: a strip of poses, several motions side by side, a path from above with its
-footprints.
+"""Skeletons on paper.
+
+A strip of poses, several motions side by side, a path from above with its footprints.
 
 Positions are world positions in metres, (T, 21, 3), y up.  Notebook: 01
 """
@@ -28,8 +29,10 @@ def pose_strip(
     title: str = "",
     camera: body.Camera | None = None,
 ) -> Figure:
-    """n poses, evenly spaced from the first frame to the last; the first `past` frames paler: they
-    were given."""
+    """n poses, evenly spaced from the first frame to the last.
+
+    The first `past` frames paler: they were given.
+    """
     words = f"{n} poses over {len(positions) / fps:.1f} s, left limbs blue, right limbs orange"
     words += "." if past is None else f"; the paler ones, up to {past / fps:.1f} s, were given."
     fig, axes = figure(
@@ -53,8 +56,10 @@ def side_by_side(
     fps: float | int = 20.0,
     past: int | None = None,
 ) -> Figure:
-    """A row of n poses for each motion, at the same times; a motion that has ended shows
-    nothing."""
+    """A row of n poses for each motion, at the same times.
+
+    A motion that has ended shows nothing.
+    """
     names = (
         list(labels) if labels is not None else [f"motion {i}" for i in range(1, len(motions) + 1)]
     )
@@ -116,8 +121,10 @@ def draw_pose(
     camera: body.Camera | None = None,
     washed: bool = False,
 ) -> None:
-    """One figure in one axis, seen from its right and a little ahead, standing on a bit of
-    floor."""
+    """One figure in one axis, standing on a bit of floor.
+
+    Seen from its right and a little ahead.
+    """
     size = (270, 420)
     pose = np.asarray(pose, np.float64)
     camera = (camera or body.Camera(focal=2.3)).at(*pose[HIPS, [0, 2]])
@@ -139,8 +146,10 @@ def top_view(
     paths: Mapping[str, Float[np.ndarray, "_ 2"]] | None = None,
     title: str = "",
 ) -> Figure:
-    """The floor from above, x to the left: where the hips went, a footprint for each step, and
-    given paths [x, z]."""
+    """The floor from above, x to the left.
+
+    Where the hips went, a footprint for each step, and given paths [x, z].
+    """
     words = "The floor seen from above, one square a metre; the start is at the bottom arrow."
     fig, (axis,) = figure(
         6.2, 6.2, words if positions is None else words + " Footprints: left blue, right orange."

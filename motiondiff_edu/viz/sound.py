@@ -1,5 +1,7 @@
-"""Pictures of sound: waves, spectra, filters, spectrograms, onsets, tempo and beats, each from
-plain arrays."""
+"""Pictures of sound.
+
+Waves, spectra, filters, spectrograms, onsets, tempo and beats, each from plain arrays.
+"""
 
 from collections.abc import Mapping, Sequence
 
@@ -80,8 +82,10 @@ def spectrogram(
     top: float | None = None,
     title: str = "",
 ) -> Figure:
-    """Values (M, bins) as colours over time and frequency (Hz, rising); `top` cuts the frequencies
-    off."""
+    """Values (M, bins) as colours over time and frequency (Hz, rising).
+
+    `top` cuts the frequencies off.
+    """
     fig, (axis,) = figure(10, 3.6, caption)
     _heat(fig, axis, seconds, frequencies, values)
     _beats(axis, beats, seconds[0], seconds[-1], "white", "beat")
@@ -94,10 +98,13 @@ def spectrogram(
 def mel_spectrogram(
     seconds, centres, values, caption: str, *, beats: Sequence = (), title: str = ""
 ) -> Figure:
-    """Log-Mel values (M, bands) as colours, one row for each band; `centres` are the bands' middles
-    in Hz."""
+    """Log-Mel values (M, bands) as colours, one row for each band.
+
+    `centres` are the bands' middles in Hz.
+    """
     fig, (axis,) = figure(10, 3.6, caption)
-    rows, marks = np.arange(len(centres)), (100, 500, 1000, 2000, 4000, 7000)
+    rows = np.arange(len(centres))
+    marks = (100, 500, 1000, 2000, 4000, 7000)
     _heat(fig, axis, seconds, rows, values)
     axis.set_yticks(np.interp(marks, centres, rows), [str(hz) for hz in marks])
     _beats(axis, beats, seconds[0], seconds[-1], "white", "beat")
@@ -153,8 +160,10 @@ def onsets(seconds, strength, caption: str, beats: Sequence = (), found: Sequenc
 def tempogram(
     seconds, tempi, values, tempo: float, caption: str, lowest: float = 30, highest: float = 320
 ) -> Figure:
-    """How strongly onsets recur at each tempo (values: tempi, M), over time and in the mean; the
-    true one dashed."""
+    """How strongly onsets recur at each tempo (values: tempi, M), over time and in the mean.
+
+    The true one dashed.
+    """
     tempi, values = np.asarray(tempi), np.asarray(values)
     keep = (tempi >= lowest) & (tempi <= highest)
     fig, (left, right) = figure(
@@ -178,8 +187,10 @@ def tempogram(
 
 
 def lags(offsets: Mapping[str, np.ndarray], caption: str, lag: float, reach: float = 120) -> Figure:
-    """For each named song, how many milliseconds after the nearest true beat each found one comes;
-    `lag` marked."""
+    """For each named song, how many milliseconds after the nearest true beat each found one comes.
+
+    `lag` marked.
+    """
     fig, (axis,) = figure(9, 0.5 * len(offsets) + 1.6, caption)
     for row, values in enumerate(offsets.values()):
         values = np.clip(np.asarray(values), -reach, reach)

@@ -1,5 +1,7 @@
-"""How all figures look: large type, Okabe-Ito colours, and a caption that goes with the picture as
-its alt text."""
+"""How all figures look.
+
+Large type, Okabe-Ito colours, and a caption that goes with the picture as its alt text.
+"""
 
 import base64
 import html
@@ -13,20 +15,32 @@ from matplotlib.figure import Figure
 OKABE_ITO = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000", "#F0E442")
 MARKERS = ("o", "s", "^", "D", "v", "P", "X", "*")
 DASHES = ("-", "--", "-.", ":", (0, (5, 1)), (0, (1, 1)), (0, (8, 2, 1, 2)), (0, (3, 3)))
-LARGE, MEDIUM, SMALL = 16, 14, 12
+LARGE = 16
+MEDIUM = 14
+SMALL = 12
 DPI = 100
 
 _RC = {
-    "font.size": MEDIUM, "axes.titlesize": LARGE, "axes.labelsize": MEDIUM, "xtick.labelsize": SMALL,
-    "ytick.labelsize": SMALL, "legend.fontsize": SMALL, "axes.spines.top": False, "axes.spines.right": False,
-    "axes.prop_cycle": matplotlib.cycler(color=OKABE_ITO[:7]), "lines.linewidth": 2.2, "axes.grid": True,
+    "font.size": MEDIUM,
+    "axes.titlesize": LARGE,
+    "axes.labelsize": MEDIUM,
+    "xtick.labelsize": SMALL,
+    "ytick.labelsize": SMALL,
+    "legend.fontsize": SMALL,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "axes.prop_cycle": matplotlib.cycler(color=OKABE_ITO[:7]),
+    "lines.linewidth": 2.2,
+    "axes.grid": True,
     "grid.alpha": 0.25,
-}  # fmt: skip
+}
 
 
 class CaptionedFigure(Figure):
-    """A matplotlib figure that shows itself, once, with its caption below it and as its alternative
-    text."""
+    """A matplotlib figure that shows itself, once, with its caption below it.
+
+    The caption is its alternative text as well.
+    """
 
     def _repr_mimebundle_(self, include=None, exclude=None) -> dict:
         png = base64.b64encode(self.as_png()).decode()
@@ -55,7 +69,10 @@ def _png(fig: Figure, dpi: int) -> bytes:
 def _html(words: str, png: str) -> str:
     words = html.escape(words, quote=True)
     picture = f'<img alt="{words}" style="max-width:100%" src="data:image/png;base64,{png}">'
-    return f'<figure style="margin:0">{picture}<figcaption style="max-width:60em">{words}</figcaption></figure>'
+    return (
+        f'<figure style="margin:0">{picture}<figcaption '
+        f'style="max-width:60em">{words}</figcaption></figure>'
+    )
 
 
 def figure(
@@ -71,8 +88,10 @@ def figure(
 
 
 def caption(fig: Figure) -> str:
-    """What the figure shows, in a sentence or two: its caption, and the text for those who cannot
-    see it."""
+    """What the figure shows, in a sentence or two.
+
+    Its caption, and the text for those who cannot see it.
+    """
     return str(fig.get_label())
 
 
@@ -83,8 +102,10 @@ def add_caption(fig: Figure, words: str) -> Figure:
 
 
 def table(axis: Axes, rows: Sequence[str], columns: Sequence[str]) -> None:
-    """Make a table of an axis with a cell at each whole number: names to the left and above,
-    nothing else around."""
+    """Make a table of an axis with a cell at each whole number.
+
+    Names to the left and above, nothing else around.
+    """
     axis.set_xticks(range(len(columns)), columns)
     axis.set_yticks(range(len(rows)), rows)
     axis.tick_params(length=0, top=True, labeltop=True, bottom=False, labelbottom=False)

@@ -1,5 +1,6 @@
-"""Pictures of training: loss beside its floor, clouds of samples, what a denoiser guesses in the
-plane, learnt weights.
+"""Pictures of training.
+
+Loss beside its floor, clouds of samples, what a denoiser guesses in the plane, learnt weights.
 
 Notebook: 05, 07
 """
@@ -86,8 +87,10 @@ def guesses(
     data: Float[np.ndarray, "_ 2"], x_s: Float[np.ndarray, "N 2"], right: Float[np.ndarray, "N 2"],
     panels: Mapping[str, Float[np.ndarray, "N 2"]], words: str, reach: float = 3.0,
 ) -> Figure:  # fmt: skip
-    """For each network a panel: noised points (dots), the guess of x0 (end of the line), the exact
-    guess (circle)."""
+    """One panel for each network.
+
+    Noised points (dots), the guess of x0 (end of the line), the exact guess (circle).
+    """
     fig, axes = figure(3.6 * len(panels), 4.1, words, 1, len(panels), sharex=True, sharey=True)
     for k, (axis, (name, guess)) in enumerate(zip(axes, panels.items(), strict=True)):
         axis.plot(*data.T, ".", ms=1.5, color=FAINT, zorder=0)

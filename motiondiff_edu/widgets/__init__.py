@@ -1,2 +1,4 @@
-"""Canvas and controls for notebooks. They show what the library computed and hold no arithmetic of
-their own."""
+"""Canvas and controls for notebooks.
+
+They show what the library computed and hold no arithmetic of their own.
+"""

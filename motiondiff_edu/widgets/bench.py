@@ -1,5 +1,6 @@
-"""The repair bench: knock joints and frames out of a walk, let the walker mend it, see how far off
-it is.
+"""The repair bench.
+
+Knock joints and frames out of a walk, let the walker mend it, see how far off it is.
 
 Click a joint, or a frame below; the buttons bring ready-made faults. Keys: left and right choose a
 frame, up and down a joint, Space knocks out or restores; P plays, T shows or hides the truth, R
@@ -29,8 +30,9 @@ _STATE = ("scene", "first", "missing", "repaired", "said")
 
 
 class Bench(anywidget.AnyWidget):
-    """A walk (a Clip in the root frame) whose window of T_h frames can be broken, and is mended by
-    `walker`.
+    """A walk whose window of T_h frames can be broken, and is mended by `walker`.
+
+    The walk is a Clip in the root frame.
 
     `faults` are buttons: name -> mask (T_h, 21), True where known. `first` (the window's first
     frame) and `missing` (numbers frame x 21 + joint) can be read and set; `repair()` is what the
@@ -53,8 +55,18 @@ class Bench(anywidget.AnyWidget):
     mended_roots = traitlets.Bytes().tag(sync=True)
     said = traitlets.Unicode("").tag(sync=True)
 
-    def __init__(self, walker, clip, first=None, faults: Mapping[str, Bool[np.ndarray, "T_h J"]] | None = None,
-                 samples=10, rounds=5, steps=10, seed=0, height=400):  # fmt: skip
+    def __init__(
+        self,
+        walker,
+        clip,
+        first=None,
+        faults: Mapping[str, Bool[np.ndarray, "T_h J"]] | None = None,
+        samples=10,
+        rounds=5,
+        steps=10,
+        seed=0,
+        height=400,
+    ):
         super().__init__()
         self.bench = RepairBench(walker, clip, samples, rounds, steps, seed)
         self._truth = clip.world()
@@ -66,16 +78,24 @@ class Bench(anywidget.AnyWidget):
             for name, known in (faults or {}).items()
         ]
         self.scene = {
-            "fps": float(clip.fps), "frames": len(clip), "T_h": self.bench.T_h, "last_first": self.bench.last_first,
-            "names": list(JOINTS), "parents": PARENTS.tolist(), "parts": body.parts_record(body.BODY),
-            "faults": buttons, "height": int(height), "kernel": True,
-        }  # fmt: skip
+            "fps": float(clip.fps),
+            "frames": len(clip),
+            "T_h": self.bench.T_h,
+            "last_first": self.bench.last_first,
+            "names": list(JOINTS),
+            "parents": PARENTS.tolist(),
+            "parts": body.parts_record(body.BODY),
+            "faults": buttons,
+            "height": int(height),
+            "kernel": True,
+        }
         self.first = self.bench.last_first // 2 if first is None else int(first)
 
     def _numbers(self, name: str, known: Bool[np.ndarray, "_ _"]) -> list[int]:
         if known.shape != (self.bench.T_h, J):
             raise ValueError(
-                f"the fault {name!r} is {known.shape}; a mask of the window is ({self.bench.T_h}, {J})"
+                f"the fault {name!r} is {known.shape}; "
+                f"a mask of the window is ({self.bench.T_h}, {J})"
             )
         return np.flatnonzero(~known).tolist()
 
@@ -116,7 +136,8 @@ class Bench(anywidget.AnyWidget):
     def _within_the_walk(self, proposal):
         if not 0 <= proposal["value"] <= self.bench.last_first:
             raise traitlets.TraitError(
-                f"the window may begin at frame 0 to {self.bench.last_first}, not {proposal['value']}"
+                f"the window may begin at frame 0 to {self.bench.last_first}, "
+                f"not {proposal['value']}"
             )
         return proposal["value"]
 
@@ -138,14 +159,16 @@ class Bench(anywidget.AnyWidget):
         """What is to be seen, in a sentence or two: the alternative text."""
         scene, last = self.scene, self.first + self.bench.T_h - 1
         words = (
-            f"A walk of {scene['frames'] / scene['fps']:.1f} s. In the window, frames {self.first} to {last}, "
-            f"{len(self.missing)} of {self.bench.T_h * J} places of joints are missing."
+            f"A walk of {scene['frames'] / scene['fps']:.1f} s. In the window, frames {self.first} "
+            f"to {last}, {len(self.missing)} of {self.bench.T_h * J} places of joints are missing."
         )
         return f"{words} {self.said}" if self.shows_repairs else words
 
     def page(self) -> str:
-        """A whole HTML page that plays the walk, mended where it was mended; needs no kernel and no
-        network."""
+        """A whole HTML page that plays the walk, mended where it was mended.
+
+        Needs no kernel and no network.
+        """
         record = {name: base64.b64encode(getattr(self, name)).decode() for name in _BYTES}
         record |= {name: getattr(self, name) for name in _STATE} | {"asked": 0, "answered": 0}
         record["scene"] = self.scene | {"kernel": False}
@@ -153,8 +176,10 @@ class Bench(anywidget.AnyWidget):
         return PAGE.format(title=html.escape(self.description), module=MODULE, record=text)
 
     def poster(self):
-        """Six poses of the window as a pillow image, what is missing marked; below it the repairs
-        against the truth."""
+        """Six poses of the window as a pillow image, what is missing marked.
+
+        Below it the repairs against the truth.
+        """
         first, end = self.first, self.first + self.bench.T_h
         away = np.zeros(self._truth.shape[:2], bool)
         away[first:end] = ~self.bench.known(self.missing)
@@ -174,9 +199,13 @@ class Bench(anywidget.AnyWidget):
         bundle, metadata = live if isinstance(live, tuple) else (live or {}, {})
         png = base64.b64encode(poster.as_png(self.poster())).decode()
         stack = STACK.format(
-            width=1200, height=self.scene["height"] + 330, alt=html.escape(self.description, quote=True), png=png,
-            title="repair bench", page=html.escape(self.page(), quote=True),
-        )  # fmt: skip
+            width=1200,
+            height=self.scene["height"] + 330,
+            alt=html.escape(self.description, quote=True),
+            png=png,
+            title="repair bench",
+            page=html.escape(self.page(), quote=True),
+        )
         return {
             **bundle,
             "text/html": stack,

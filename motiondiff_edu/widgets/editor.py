@@ -4,11 +4,11 @@ anew.
 In the page: a figure and a timeline. Enter pins a frame, J chooses a joint, arrows move it (1 cm; 5
 with Shift), Page Up and Page Down in depth; G generates, [ and ] choose among the in-betweens; Z
 undoes, R resets. Python holds the edit and does the inverse kinematics; the page draws, and says
-where a joint was dragged to.   Notebook: 15
+how far a joint was moved.   Notebook: 15
 """
 
 import time
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import anywidget
@@ -17,7 +17,7 @@ import torch
 import traitlets
 from jaxtyping import Bool, Float
 
-from ..editing.edit import Edit, Made, Make, drag_in_words, make_between, takes
+from ..editing.edit import Edit, Made, Make, drag_in_words, make_between
 from ..motion.bvh.fit import FitReport
 from ..motion.bvh.write import write_bvh
 from ..motion.skeleton import JOINTS, J, joint_index
@@ -35,12 +35,21 @@ class _Step:
     presses: int = 0  # of Generate, up to here
 
 
-class Editor(anywidget.AnyWidget):
-    """Edit a motion (T, 21, 3), world positions in metres; `make(positions, known, generator)`
-    finds the rest.
+@dataclass(frozen=True, eq=False)
+class _Grip:
+    """A run of small drags that Undo takes back together."""
 
-    `make` returns (samples, T, 21, 3), metres; where it takes `samples` and `resample` it is told
-    the page's numbers: `functools.partial(inbetween, dancer)` is one. It runs in the kernel; the
+    name: int | None = None  # as the page numbers its grips
+    by: Float[np.ndarray, "3"] = field(default_factory=lambda: np.zeros(3))  # metres in all
+    before: Edit | None = None  # what the drags start from; None once something else was done
+    since: Float[np.ndarray, "3"] = field(default_factory=lambda: np.zeros(3))  # `by` at `before`
+
+
+class Editor(anywidget.AnyWidget):
+    """Edit a motion (T, 21, 3), world positions in metres; `make` finds the rest.
+
+    `make` is an `editing.edit.Make`: `functools.partial(inbetween, dancer)` is one. It is called
+    with the page's numbers for `samples` and `resample`, and runs in the kernel; the
     generator is seeded by `seed` + how often Generate was pressed before. `names` are the 21
     joints' names on the page. `known`, `positions`, `samples` and `chosen` can be read; `pin`,
     `unpin`, `drag`, `keep`, `generate`, `undo`, `reset` and `save` do what the page's controls do,
@@ -74,14 +83,14 @@ class Editor(anywidget.AnyWidget):
         if len(names) != J:
             raise ValueError(f"{len(names)} names for the {J} joints")
         self._fps, self._make, self._seed = float(fps), make, int(seed)
-        self._step, self._past, self._grip = _Step(Edit(motion)), [], None
-        self.error: Exception | None = (
-            None  # what `make` raised last when Generate was pressed, with its traceback
-        )
+        self._step, self._past, self._grip = _Step(Edit(motion)), [], _Grip()
+        self._asked = 0  # the number of the page's last message that asked for in-betweens
+        # what `make` raised last when Generate was pressed, with its traceback
+        self.error: Exception | None = None
         packed = packing.pack([motion])
         with self.hold_sync():
             self.joints, self.roots = packed.joints, packed.roots
-            self.scene = editor_page.scene_of(self.edit, self._fps, names, takes(make, "resample"))
+            self.scene = editor_page.scene_of(self.edit, self._fps, names, True)
             self._tell("Pin frames (Enter), drag their joints, then Generate.")
         self.on_msg(self._receive)
 
@@ -168,27 +177,27 @@ class Editor(anywidget.AnyWidget):
         )
 
     def save(self, path: str | Path) -> FitReport:
-        """Write the chosen in-between as BVH, whole or not at all; tells how far bones had to be
-        evened out.
+        """Write the chosen in-between as BVH; before there is one, the motion with its pins.
 
-        Raises ValueError before there is one, and what `write_bvh` raises.
+        The file is written whole or not at all. Returns how far bones had to be evened out.
+        Raises what `write_bvh` raises.
         """
-        if self.samples is None:
-            raise ValueError("there is no in-between yet: press Generate first")
-        return write_bvh(Path(path), self.samples[self.chosen], self._fps)
+        return write_bvh(Path(path), self._shown(), self._fps)
 
     def _receive(self, _, content: dict, buffers) -> None:
+        if content["do"] == "ping":  # the page only tries whether there is a kernel
+            return
         acts = {
-            "pin": lambda c: self.pin(c["frame"]),
-            "unpin": lambda c: self.unpin(c["frame"]),
-            "drag": lambda c: self._pull(c["frame"], JOINTS[c["joint"]], c["to"], c["grip"]),
+            "toggle": lambda c: self._toggle(c["frame"]),
+            "drag": lambda c: self._pull(c["frame"], JOINTS[c["joint"]], c["by"], c["grip"]),
             "keep": lambda c: self.keep(c["part"] or None),
-            "generate": lambda c: self._pressed(c["after"]),
+            "generate": lambda c: self._pressed(c["after"], c["number"]),
             "undo": lambda c: self.undo(),
             "reset": lambda c: self.reset(),
             "save": lambda c: editor_page.save_as(self, c["name"].strip()),
         }
         try:
+            self._see(content)
             words = acts[content["do"]](content)
         except KeyboardInterrupt:
             words = "Stopped."
@@ -196,14 +205,36 @@ class Editor(anywidget.AnyWidget):
             words = complaint(error)
         self._tell(words, content["number"])
 
-    def _pull(self, frame: int, joint: str, target: list, grip: int) -> str:
-        """One of many small drags: those of one grip start from the same pose, and are undone
-        together."""
-        going = self._grip is not None and self._grip[0] == grip
-        edit, words = self._dragged(self._grip[1] if going else self.edit, frame, joint, target)
+    def _see(self, content: dict) -> None:
+        """Set the traits that a message relies on: their own messages may arrive after it."""
+        if "chosen" in content:
+            last = 0 if self.samples is None else len(self.samples) - 1
+            self.chosen = min(content["chosen"], last)
+        for name in {"count", "resample"} & set(content):
+            setattr(self, name, content[name])
+
+    def _toggle(self, frame: int) -> str:
+        return self.unpin(frame) if self.edit.index(frame) in self.edit.pins else self.pin(frame)
+
+    def _pull(self, frame: int, joint: str, by: list, grip: int) -> str:
+        """Move a joint by `by` metres, counted from where its grip began.
+
+        The drags of one grip start from the same pose, and are undone together. After another
+        change (Undo, say) the grip starts again from the pose that is there then, and only what
+        it is moved since is added.
+        """
+        by = np.asarray(by, np.float64)
+        if by.shape != (3,) or not np.isfinite(by).all():
+            raise ValueError(f"{joint} is moved by three numbers of metres, not by {by.tolist()}")
+        last = self._grip if self._grip.name == grip else _Grip(grip)
+        going = last.before is not None
+        before, since = (last.before, last.since) if going else (self.edit, last.by)
+        self._grip = _Grip(grip, by)
+        start = before.positions[before.index(frame), joint_index(joint)]
+        edit, words = self._dragged(before, frame, joint, start + by - since)
         if not going:
             self._past.append(self._here())
-            self._grip = (grip, self.edit)
+        self._grip = _Grip(grip, by, before, since)
         self._step = replace(self._here(), edit=edit)
         return words
 
@@ -212,16 +243,20 @@ class Editor(anywidget.AnyWidget):
         edit, name = before.drag(frame, joint, target), self.scene["names"][joint_index(joint)]
         return edit, f"{name} in frame {frame} {drag_in_words(before, edit, frame, joint, target)}."
 
-    def _pressed(self, after: int) -> str | None:
-        """Generate, unless the press is from before the last in-betweens came, or while others are
-        made."""
-        if self.busy or after != self._step.presses:
+    def _pressed(self, after: int, number: int) -> str | None:
+        """Generate; not while others are made, nor for a press from before the last answer."""
+        if self.busy or after < self._asked:
             return None
         try:
             return self.generate()
         except Exception as error:
             self.error = error
             raise
+        finally:
+            self._asked = number
+
+    def _shown(self) -> Float[np.ndarray, "T 21 3"]:
+        return self.positions if self.samples is None else self.samples[self.chosen]
 
     def _here(self) -> _Step:
         return replace(self._step, chosen=self.chosen)
@@ -232,7 +267,8 @@ class Editor(anywidget.AnyWidget):
     def _go(self, step: _Step, words: str, remember: bool = True) -> str:
         if remember:
             self._past.append(self._here())
-        others, self._step, self._grip = step.made is not self._step.made, step, None
+        others, self._step = step.made is not self._step.made, step
+        self._grip = replace(self._grip, before=None)
         with self.hold_sync():
             if others:
                 packed = None if step.made is None else packing.pack(list(step.made.samples))
@@ -244,13 +280,15 @@ class Editor(anywidget.AnyWidget):
 
     def _tell(self, words: str | None, number: int | None = None) -> str:
         """The page's copy of the edit; `number` is that of the message that is answered."""
-        edit, made, last = self.edit, self._step.made, self.state
+        edit = self.edit
+        made = self._step.made
+        last = self.state
         words = last.get("message", "") if words is None else words
         with self.hold_sync():
             self.poses = editor_page.poses_of(edit)
             self.state = editor_page.state_of(edit, made) | {
-                "message": words, "presses": self._step.presses, "undo": len(self._past),
-                "heard": last.get("heard", 0) if number is None else number, "edition": last.get("edition", 0) + 1,
+                "message": words, "undo": len(self._past), "heard": max(last.get("heard", 0), number or 0),
+                "edition": last.get("edition", 0) + 1,
                 "description": editor_page.described(edit, made, self._fps),
             }  # fmt: skip
         return words

@@ -9,6 +9,7 @@ import contextlib
 import html
 import io
 import json
+import re
 from pathlib import Path
 
 import numpy as np
@@ -29,8 +30,9 @@ PLAIN = ("scene", "state", "frame", "chosen", "count", "resample", "busy", "file
 def scene_of(edit: Edit, fps: float, names: list[str], strength: bool) -> dict:
     """What does not change: the length, the joints' names, the drawn body; `strength`: `make` takes
     a resampling."""
-    return {"frames": len(edit), "joints": J, "fps": fps, "names": names, "parts": body.parts_record(body.BODY),
-            "keep": list(KEPT), "most": MOST, "strength": strength, "height": 380}  # fmt: skip
+    return {"frames": len(edit), "joints": J, "fps": fps, "names": names,
+            "parts": body.parts_record(body.BODY), "keep": list(KEPT), "most": MOST,
+            "strength": strength, "height": 380}  # fmt: skip
 
 
 def state_of(edit: Edit, made: Made | None) -> dict:
@@ -38,9 +40,11 @@ def state_of(edit: Edit, made: Made | None) -> dict:
     pins = sorted(edit.pins)
     kept = [] if edit.part is None else np.flatnonzero(body_part(1, edit.part)[0]).tolist()
     return {
-        "pins": pins, "moved": [[joint_index(name) for name in edit.moved.get(f, ())] for f in pins],
+        "pins": pins,
+        "moved": [[joint_index(name) for name in edit.moved.get(f, ())] for f in pins],
         "part": edit.part or "", "kept": kept, "held": held(edit),
-        "made": 0 if made is None else len(made.samples), "old": made is not None and made.edit is not edit,
+        "made": 0 if made is None else len(made.samples),
+        "old": made is not None and made.edit is not edit,
         "measured": [] if made is None else [made.measured(k) for k in range(len(made.samples))],
     }  # fmt: skip
 
@@ -49,7 +53,10 @@ def held(edit: Edit) -> str:
     """What is known now, and where it contradicts itself."""
     words = f"{edit}."
     if edit.torn:
-        words += f" In {listed(edit.torn)} what is kept throughout is elsewhere than in the motion: expect a jump."
+        words += (
+            f" In {listed(edit.torn)} what is kept throughout is elsewhere than "
+            "in the motion: expect a jump."
+        )
     return words
 
 
@@ -61,7 +68,10 @@ def poses_of(edit: Edit) -> bytes:
 def described(edit: Edit, made: Made | None, fps: float) -> str:
     """One sentence for those who cannot see it."""
     some = "" if made is None else f" {len(made.samples)} in-betweens made."
-    return f"Motion editor: a skeleton moves for {len(edit) / fps:.1f} s, {len(edit)} frames; {edit}.{some}"
+    return (
+        f"Motion editor: a skeleton moves for {len(edit) / fps:.1f} s, "
+        f"{len(edit)} frames; {edit}.{some}"
+    )
 
 
 def listed(frames) -> str:
@@ -79,15 +89,41 @@ def complaint(error: Exception) -> str:
     return text[:1].upper() + text[1:] + ("" if text.endswith(".") else ".")
 
 
-def save_as(editor, name: str) -> str:
-    """Save under a name typed on the page, and tell where.  ValueError for no name."""
-    if not name:
+ENDING = re.compile(
+    r"(.*)(\.[a-z][a-z0-9]{0,4})", re.IGNORECASE
+)  # "a walk.txt", but not "take 1.5"
+
+
+def file_of(name: str) -> str:
+    """A name typed on the page, with the ending of the file that is written.
+
+    Raises ValueError for no name, one with a folder, and the ending of another kind of file.
+    """
+    if set(name) & set("/\\:"):
+        raise ValueError(
+            f"not saved: {name!r} names a folder. Type a name alone: the file goes beside the notebook "
+            f"(into {Path.cwd()}). To write elsewhere, call editor.save(path) in a cell"
+        )
+    found = ENDING.fullmatch(name)
+    stem, ending = found.groups() if found else (name, ".bvh")
+    if not stem.strip(". "):
         raise ValueError("give the file a name")
-    path = Path(name if name.lower().endswith(".bvh") else f"{name}.bvh").expanduser()
+    if ending.lower() != ".bvh":
+        raise ValueError(f"not saved: only .bvh can be written, not {ending}. Type {stem}.bvh")
+    return stem + ending
+
+
+def save_as(editor, name: str) -> str:
+    """Save beside the notebook, under a name typed on the page, and tell where."""
+    path = Path(file_of(name))
     there = path.exists()
     with contextlib.redirect_stdout(io.StringIO()):  # what it prints is told on the page
         told = str(editor.save(path)).split(": ", 1)[1]
-    return f"Saved {path.resolve()}{' (over an older one)' * there}: {told}."
+    what = "the in-between that is shown"
+    if editor.samples is None:
+        what = "the motion with its pinned poses; nothing is generated yet"
+    over = ", over an older file" * there
+    return f"Saved {path.resolve()} ({what}){over}: {told}."
 
 
 def html_page(editor) -> str:
@@ -111,7 +147,8 @@ def bundle(editor, live: dict) -> dict:
     """The live widget, and beside it a page over a picture, for wherever that does not run."""
     png = base64.b64encode(poster.as_png(editor.poster())).decode()
     stack = STACK.format(
-        width=1200, height=editor.scene["height"] + 330, alt=html.escape(editor.description, quote=True), png=png,
+        width=1200, height=editor.scene["height"] + 330,
+        alt=html.escape(editor.description, quote=True), png=png,
         title="motion editor", page=html.escape(html_page(editor), quote=True),
     )  # fmt: skip
     return {**live, "text/html": stack, "image/png": png, "text/plain": editor.description}

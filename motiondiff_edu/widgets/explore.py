@@ -6,8 +6,9 @@ from ..viz.style import as_html
 
 
 def explore(draw, **start) -> ipywidgets.VBox:
-    """Show draw(**values) with a slider, a list or a tick box for each argument, and a button that
-    resets them all.
+    """Show draw(**values) with a control for each argument.
+
+    A slider, a list or a tick box each, and a button that resets them all.
 
     explore(draw, s=(1, 100, 50), name=["linear", "cosine"], noise=True): (low, high, start), the
     choices, or on/off. `draw` returns a matplotlib Figure, whose label becomes the picture's
@@ -16,10 +17,8 @@ def explore(draw, **start) -> ipywidgets.VBox:
     """
     controls = {name: _control(name, value) for name, value in start.items()}
     first = {name: control.value for name, control in controls.items()}
-    picture, reset = (
-        ipywidgets.HTML(),
-        ipywidgets.Button(description="Reset", tooltip="back to the start"),
-    )
+    picture = ipywidgets.HTML()
+    reset = ipywidgets.Button(description="Reset", tooltip="back to the start")
 
     def refresh(_=None):
         picture.value = as_html(

@@ -1,5 +1,6 @@
-"""The music lane under the figure: what is heard, where its beats are, and the strips above and
-below it.
+"""The music lane under the figure.
+
+What is heard, where its beats are, and the strips above and below it.
 
 Notebook: 12
 """
@@ -14,13 +15,19 @@ from .sound import Sound, as_sound, as_times, peaks
 from .strips import Strips
 
 PURPLE, GREEN = "#CC79A7", "#009E73"
-TICKS, WAVE, AXIS, CURVE = 14, 56, 20, 36  # pixels
+# pixels
+TICKS = 14
+WAVE = 56
+AXIS = 20
+CURVE = 36
 
 
 @dataclass(frozen=True, eq=False)
 class Lane:
-    """A sound as long as `frames` frames of motion, its beats and downbeats (seconds), and the
-    strips."""
+    """A sound as long as `frames` frames of motion.
+
+    With its beats and downbeats (seconds), and the strips.
+    """
 
     sound: Sound
     beats: list[float]
@@ -47,12 +54,22 @@ class Lane:
         return 96 + 36 * more + (54 if self.strips.moved is not None else 0)
 
     def traits(self) -> tuple[bytes, bytes, dict]:
-        """What the page needs: the sound file, the bytes of waveform and attention, and the record
-        explaining them."""
+        """What the page needs.
+
+        The sound file, the bytes of waveform and attention, and the record explaining them.
+        """
         wave = peaks(self.sound.samples)
-        record = {"mime": self.sound.mime, "seconds": self.frames / self.fps, "fps": self.fps, "frames": self.frames,
-                  "peaks": len(wave), "beats": self.beats, "downbeats": self.downbeats,
-                  "description": self.description, **self.strips.record()}  # fmt: skip
+        record = {
+            "mime": self.sound.mime,
+            "seconds": self.frames / self.fps,
+            "fps": self.fps,
+            "frames": self.frames,
+            "peaks": len(wave),
+            "beats": self.beats,
+            "downbeats": self.downbeats,
+            "description": self.description,
+            **self.strips.record(),
+        }
         return self.sound.data, wave.tobytes() + self.strips.codes(), record
 
     def under(self, picture: Image.Image) -> Image.Image:

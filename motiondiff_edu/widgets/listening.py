@@ -1,5 +1,6 @@
-"""A figure that dances to a song, and what it listens to: attention, and what a silenced hit
-changes, over its waves.
+"""A figure that dances to a song, and what it listens to.
+
+Attention, and what a silenced hit changes, over its waves.
 
 Notebook: 12
 """
@@ -13,8 +14,7 @@ _OWN = ("attention", "token_times", "moved", "hit", "scale")
 
 
 class Listening(Player):
-    """A `Player` with sound whose music lane shows, for the present frame, where in the music was
-    read.
+    """A `Player` whose music lane shows where in the music the present frame reads.
 
     `attention` (T, M) or {level: (T, M)}: rows over the whole motion, columns at `token_times`
     seconds, summing to one; `scale` "map" (full colour is the map's largest weight) or "frame"
@@ -41,8 +41,10 @@ class Listening(Player):
         super().__init__(positions, audio=audio, **more)
 
     def show(self, positions, **changes) -> None:
-        """Show another dance in the same place; `changes` replaces audio, attention, moved and what
-        `Player` knows."""
+        """Show another dance in the same place.
+
+        `changes` replaces audio, attention, moved and what `Player` knows.
+        """
         shown = self._shown | {name: changes.pop(name) for name in _OWN if name in changes}
         super().show(positions, strips=partial(_strips, shown), **changes)
         self._shown = shown

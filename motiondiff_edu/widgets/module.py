@@ -10,15 +10,9 @@ import re
 from pathlib import Path
 
 FOLDER = Path(__file__).parent / "js"
-PARTS = (
-    "dom",
-    "figures",
-    "paint",
-    "clock",
-    "lane",
-    "player",
-)  # each takes from those before it only
-EDITOR = ("dom", "figures", "paint", "clock", "timeline", "stage", "editor")
+# each takes from those before it only
+PARTS = ("dom", "figures", "paint", "clock", "lane", "player")
+EDITOR = ("dom", "figures", "paint", "clock", "timeline", "stage", "wire", "editor")
 BENCH = ("dom", "figures", "paint", "clock", "bench_paint", "bench")
 
 _IMPORT = re.compile(r'^import \{.*\} from "\./\w+\.js";\n', re.MULTILINE)

@@ -1,5 +1,6 @@
-"""Motion as bytes for the browser: joints relative to the root as int16 at 1/2048 m, the root's
-path as float32.
+"""Motion as bytes for the browser.
+
+Joints relative to the root as int16 at 1/2048 m, the root's path as float32.
 
 Whole positions as int16 would overflow on a long walk; relative ones reach 16 m from the hips,
 which no body does.
@@ -42,26 +43,31 @@ def _relative_units(positions: Float[np.ndarray, "T J 3"]) -> Float[np.ndarray, 
 
 
 def check_positions(positions: Float[np.ndarray, "T J 3"], figure: int = 0) -> None:
-    """Raise ValueError with figure, frame and joint where a position is not finite or too far from
-    the root."""
+    """Raise ValueError where a position is not finite or too far from the root.
+
+    It names figure, frame and joint.
+    """
     if not len(positions):
         raise ValueError(f"figure {figure} has no frames: nothing to draw")
     bad = ~np.isfinite(positions).all(-1)
     if bad.any():
         raise ValueError(
-            f"{_where(bad, figure)}: the position is not finite ({int(bad.sum())} such joints in all). "
-            "Look where the motion was computed; a diverged rollout is the usual cause"
+            f"{_where(bad, figure)}: the position is not finite ({int(bad.sum())} such joints in "
+            "all). Look where the motion was computed; a diverged rollout is the usual cause"
         )
     far = (np.abs(_relative_units(positions)) > 32767).any(-1)
     if far.any():
         raise ValueError(
-            f"{_where(far, figure)}: more than {REACH:.0f} m from joint 0. Positions are in metres: are these cm?"
+            f"{_where(far, figure)}: more than {REACH:.0f} m from joint 0. "
+            "Positions are in metres: are these cm?"
         )
 
 
 def as_figures(positions: object) -> list[Float[np.ndarray, "T J 3"]]:
-    """One motion (T, J, 3), a batch (N, T, J, 3) or a sequence of motions, arrays or tensors, as
-    float64 arrays."""
+    """One or several motions as float64 arrays.
+
+    One motion (T, J, 3), a batch (N, T, J, 3) or a sequence of motions, arrays or tensors.
+    """
     if isinstance(positions, Sequence):
         figures = [np.asarray(p, dtype=np.float64) for p in positions]
     else:
@@ -127,8 +133,10 @@ def as_contacts(contacts: object, frames: Sequence[int]) -> list[Bool[np.ndarray
 def pack_contacts(
     contacts: Sequence[Bool[np.ndarray, "_ 2"] | None], frames: Sequence[int]
 ) -> bytes:
-    """One byte a frame: 1 for left, 2 for right, 3 for both planted; 0 also where nothing is
-    known."""
+    """One byte a frame.
+
+    1 for left, 2 for right, 3 for both planted; 0 also where nothing is known.
+    """
     codes = [
         np.zeros(n, np.uint8) if c is None else (c[:, 0] + 2 * c[:, 1]).astype(np.uint8)
         for c, n in zip(contacts, frames, strict=True)

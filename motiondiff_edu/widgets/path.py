@@ -1,5 +1,6 @@
-"""The path pad: draw on the floor where a figure shall walk; by mouse, keyboard or a ready-made
-path.
+"""The path pad: draw on the floor where a figure shall walk.
+
+By mouse, keyboard or a ready-made path.
 
 Arrows add half a metre, Backspace takes it back, C clears, R resets.  Notebook: 00
 """
@@ -20,8 +21,9 @@ from ..viz.skeleton import top_view
 
 
 class PathPad(anywidget.AnyWidget):
-    """A floor seen from above, in metres; the figure starts at the origin, facing up (z); its left
-    (x) is to the left.
+    """A floor seen from above, in metres; the figure starts at the origin, facing up (z).
+
+    Its left (x) is to the left.
 
     `points` (n, 2) [x, z], `speed` (m/s) and `stops` (metres along the path) can be read and set;
     `control()` is what walks along them; `on_change(f)` calls f(pad) after each change.   Notebook:
@@ -57,7 +59,9 @@ class PathPad(anywidget.AnyWidget):
                 f"points are (n, 2) finite numbers [x, z] in metres, got shape {points.shape}"
             )
         with self.hold_trait_notifications():
-            self.preset, self.stops, self.line = "", [], points.tolist()
+            self.preset = ""
+            self.stops = []
+            self.line = points.tolist()
 
     @traitlets.validate("preset")
     def _known_preset(self, proposal):
@@ -82,13 +86,17 @@ class PathPad(anywidget.AnyWidget):
             self.seconds = 0.0
 
     def control(self, fps: float | int = 20.0) -> Float[np.ndarray, "T 3"]:
-        """The control that walks along the path at the chosen speed, from rest to rest; see
-        `path_to_control`."""
+        """The control that walks along the path at the chosen speed, from rest to rest.
+
+        See `path_to_control`.
+        """
         return walks.path_to_control(self.points, self.speed, fps, self.stops)
 
     def on_change(self, callback: Callable[["PathPad"], object]) -> None:
-        """Call `callback(pad)` whenever path, stops or speed have changed; once, when they change
-        together."""
+        """Call `callback(pad)` whenever path, stops or speed have changed.
+
+        Once, when they change together.
+        """
         told = [(self.line, self.stops, self.speed)]
 
         def tell(change):
@@ -105,7 +113,10 @@ class PathPad(anywidget.AnyWidget):
         if not self.line:
             return "A floor seen from above, nothing drawn on it."
         x, z = self.points[-1]
-        return f"A path seen from above: {len(self.line)} points, from the origin to {z:.1f} m ahead, {x:.1f} m left."
+        return (
+            f"A path seen from above: {len(self.line)} points, "
+            f"from the origin to {z:.1f} m ahead, {x:.1f} m left."
+        )
 
     def _repr_mimebundle_(self, **kwargs):
         live = super()._repr_mimebundle_(**kwargs)
@@ -113,7 +124,10 @@ class PathPad(anywidget.AnyWidget):
         buffer = io.BytesIO()
         top_view(paths={"path": self.points}).savefig(buffer, format="png", dpi=70)
         png = base64.b64encode(buffer.getvalue()).decode()
-        still = f'<img alt="{html.escape(self.description, quote=True)}" src="data:image/png;base64,{png}">'
+        still = (
+            f'<img alt="{html.escape(self.description, quote=True)}" '
+            f'src="data:image/png;base64,{png}">'
+        )
         return {
             **bundle,
             "text/html": still,

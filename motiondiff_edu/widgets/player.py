@@ -1,5 +1,6 @@
-"""The player: moving figures, live in JupyterLab, alive in exported HTML, a picture where nothing
-runs.
+"""The player: moving figures.
+
+Live in JupyterLab, alive in exported HTML, a picture where nothing runs.
 
 Notebooks are to be saved without widget state: with it, exported pages look for the module on the
 network. Space plays, arrows step (up and down by ten), Home and End jump, + and - zoom, F follows,
@@ -27,7 +28,8 @@ MODULE = module.joined()
 _TRAITS = ("joints", "roots", "contacts", "sound", "strips")
 
 PAGE = """<!doctype html><html lang="en"><head><meta charset="utf-8"><title>{title}</title>
-<style>html,body{{margin:0;height:100%}}@media print{{html,body{{height:auto}}}}</style></head><body>
+<style>html,body{{margin:0;height:100%}}@media print{{html,body{{height:auto}}}}</style></head>\
+<body>
 <script type="module">
 {module}
 document.body.style.background = "#fff";
@@ -41,8 +43,9 @@ STACK = """<div style="position:relative;width:100%;max-width:{width}px;min-heig
 
 
 class Player(anywidget.AnyWidget):
-    """Show one motion (T, J, 3), a batch (N, T, J, 3) or a list of motions, world positions in
-    metres, y up.
+    """Show one motion or several, world positions in metres, y up.
+
+    One motion (T, J, 3), a batch (N, T, J, 3) or a list of motions.
 
     `past` frames were given and are drawn paler; `contacts` (T, 2) bool marks planted feet; `path`
     (n, 2) [x, z] is drawn on the floor; each may be one value for all figures or a list (one array
@@ -74,16 +77,28 @@ class Player(anywidget.AnyWidget):
         layout="side", offset=(1.2, 0.0), height=430, autoplay=None, follow=True, parents=None,
     ):  # fmt: skip
         super().__init__()
-        self._options = {"fps": fps, "past": past, "contacts": contacts, "labels": labels, "path": path,
-                         "audio": audio, "sample_rate": sample_rate, "beats": beats, "downbeats": downbeats,
-                         "codec": codec, "strips": None}  # fmt: skip
+        self._options = {
+            "fps": fps,
+            "past": past,
+            "contacts": contacts,
+            "labels": labels,
+            "path": path,
+            "audio": audio,
+            "sample_rate": sample_rate,
+            "beats": beats,
+            "downbeats": downbeats,
+            "codec": codec,
+            "strips": None,
+        }
         self._look = _look(layout, offset, height, autoplay, follow, parents)
         self._editions = 0
         self.show(positions)
 
     def show(self, positions, **changes) -> None:
-        """Show another motion in the same place; `changes` replaces past, contacts, labels, path,
-        fps, audio ..."""
+        """Show another motion in the same place.
+
+        `changes` replaces past, contacts, labels, path, fps, audio ...
+        """
         unknown = set(changes) - set(self._options)
         if unknown:
             raise TypeError(
@@ -97,7 +112,9 @@ class Player(anywidget.AnyWidget):
         packed = packing.pack(arrays)
         figures = _figures(arrays, options, self._look["parents"])
         music = lane.from_options(options, max(packed.frames))
-        self._figures, self._options, self._music = figures, options, music
+        self._figures = figures
+        self._options = options
+        self._music = music
         self._editions += 1  # another motion may have the same scene: this tells the page of it
         with self.hold_sync():
             self.joints, self.roots = packed.joints, packed.roots
@@ -125,16 +142,20 @@ class Player(anywidget.AnyWidget):
         return proposal["value"]
 
     def page(self) -> str:
-        """A whole HTML page with the module and the motion in it: needs no kernel and no
-        network."""
+        """A whole HTML page with the module and the motion in it.
+
+        Needs no kernel and no network.
+        """
         record = {name: base64.b64encode(getattr(self, name)).decode() for name in _TRAITS}
         record |= {"scene": self.scene, "music": self.music, "frame": self.frame, "playing": False}
         text = json.dumps(record, allow_nan=False).replace("<", "\\u003c")
         return PAGE.format(title=html.escape(self.description), module=MODULE, record=text)
 
     def poster(self, n: int = 6):
-        """A strip of n poses as a pillow image, the music lane below: what is shown where nothing
-        runs."""
+        """A strip of n poses as a pillow image, the music lane below.
+
+        What is shown where nothing runs.
+        """
         strip = poster.filmstrip(self._figures, self._options["fps"], n)
         return strip if self._music is None else self._music.under(strip)
 
@@ -179,8 +200,10 @@ class Player(anywidget.AnyWidget):
         return Path(path)
 
     def save_mp4(self, path: str | os.PathLike, size: tuple[int, int] = (480, 432)) -> Path:
-        """Write the figure as MP4, each figure `size` pixels, with its sound; ImportError without
-        imageio-ffmpeg."""
+        """Write the figure as MP4, each figure `size` pixels, with its sound.
+
+        ImportError without imageio-ffmpeg.
+        """
         try:
             import imageio_ffmpeg
         except ImportError as error:
@@ -209,8 +232,14 @@ def _look(layout, offset, height, autoplay, follow, parents) -> dict:
     if layout not in ("side", "together"):
         raise ValueError(f'layout is "side" or "together", not {layout!r}')
     offset = [float(v) for v in (offset if layout == "together" else (0, 0))]
-    return {"layout": layout, "offset": offset, "height": int(height), "autoplay": autoplay,
-            "follow": bool(follow), "parents": None if parents is None else [int(p) for p in parents]}  # fmt: skip
+    return {
+        "layout": layout,
+        "offset": offset,
+        "height": int(height),
+        "autoplay": autoplay,
+        "follow": bool(follow),
+        "parents": None if parents is None else [int(p) for p in parents],
+    }
 
 
 def _figures(arrays: list, options: dict, parents: list | None) -> list[poster.Figure]:
@@ -241,18 +270,28 @@ def _scene(figures: list[poster.Figure], fps: float, look: dict, music: lane.Lan
     )
     parts = body.parts_record(figures[0].parts)
     autoplay = music is None if look["autoplay"] is None else bool(look["autoplay"])
-    return {**look, "fps": fps, "figures": records, "joints": figures[0].positions.shape[1], "parts": parts,
-            "autoplay": autoplay, "description": words}  # fmt: skip
+    return {
+        **look,
+        "fps": fps,
+        "figures": records,
+        "joints": figures[0].positions.shape[1],
+        "parts": parts,
+        "autoplay": autoplay,
+        "description": words,
+    }
 
 
 def describe(figures: list[poster.Figure], fps: float) -> str:
-    """One sentence for those who cannot see it: how many figures, how long, how far they go, what
-    was given."""
+    """One sentence for those who cannot see it.
+
+    How many figures, how long, how far they go, what was given.
+    """
     words = []
     for i, f in enumerate(figures, 1):
         way = np.linalg.norm(f.positions[-1, 0, [0, 2]] - f.positions[0, 0, [0, 2]])
         given = "" if f.past is None else f", the first {f.past / fps:.1f} s given and drawn paler"
         words.append(
-            f"{f.label or f'figure {i}'}: {len(f) / fps:.1f} s, ends {way:.1f} m from its start{given}"
+            f"{f.label or f'figure {i}'}: {len(f) / fps:.1f} s, "
+            f"ends {way:.1f} m from its start{given}"
         )
     return "Moving skeletons, left limbs blue and right limbs orange. " + "; ".join(words) + "."

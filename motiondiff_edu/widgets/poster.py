@@ -1,5 +1,6 @@
-"""Still pictures of the player's scene, with pillow: the filmstrip where nothing runs, and the
-frames of a GIF or MP4.
+"""Still pictures of the player's scene, with pillow.
+
+The filmstrip where nothing runs, and the frames of a GIF or MP4.
 
 Notebook: 01
 """
@@ -11,7 +12,9 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Bool, Float
 from PIL import Image, ImageDraw, ImageFont
+from tqdm.auto import tqdm
 
+from ..motion.progress import DELAY
 from ..motion.skeleton import BONES, HEELS, TOES
 from ..viz import body
 
@@ -21,8 +24,10 @@ GROUND, LINE = "#F1F3F5", "#9AA3AE"
 
 @dataclass(frozen=True, eq=False)
 class Thin:
-    """Thin limbs over a figure's body, of n motions: the bones that have an end in `away`, dashed
-    or not."""
+    """Thin limbs over a figure's body, of n motions.
+
+    The bones that have an end in `away`, dashed or not.
+    """
 
     motions: Float[np.ndarray, "n T J 3"]
     away: Bool[np.ndarray, "T J"]
@@ -32,8 +37,10 @@ class Thin:
 
 @dataclass(frozen=True, eq=False)
 class Figure:
-    """One figure of a scene; `past` frames were given, `path` is drawn on the floor ((n, 2) metres,
-    [x, z])."""
+    """One figure of a scene.
+
+    `past` frames were given, `path` is drawn on the floor ((n, 2) metres, [x, z]).
+    """
 
     positions: Float[np.ndarray, "T J 3"]
     label: str = ""
@@ -58,8 +65,10 @@ def camera_at(positions: Float[np.ndarray, "T J 3"], t: int, camera: body.Camera
 
 
 def floor_lines(camera: body.Camera, reach: int = 5) -> Iterator[tuple[np.ndarray, float]]:
-    """Segments of a 1 m grid around the camera's target, with their strength 0..1, which fades
-    outwards."""
+    """Segments of a 1 m grid around the camera's target, with their strength 0..1.
+
+    The strength fades outwards.
+    """
     centre = np.round([camera.x, camera.z])
     for i in range(-reach, reach + 1):
         for k in range(-reach, reach):
@@ -130,8 +139,10 @@ def _thin_limbs(
 def render(
     figure: Figure, t: int, size: tuple[int, int], camera: body.Camera | None = None
 ) -> Image.Image:
-    """Frame t of one figure (the last one once it has ended), `size` pixels, the camera
-    following."""
+    """Frame t of one figure, the camera following.
+
+    It is the last frame once the figure has ended; `size` is in pixels.
+    """
     t = min(t, len(figure) - 1)
     big = (size[0] * SMOOTH, size[1] * SMOOTH)
     camera = camera_at(figure.positions, t, camera or body.Camera())
@@ -178,8 +189,10 @@ def filmstrip(
     width: int = 960,
     between: Sequence[int] | None = None,
 ) -> Image.Image:
-    """n poses from first to last, or of the frames `between` (both inclusive); a row for each
-    figure, times above."""
+    """n poses from first to last, or of the frames `between` (both inclusive).
+
+    A row for each figure, times above.
+    """
     cell, head = width // n, 30
     tall = int(cell * {1: 2.1, 2: 1.45}.get(len(figures), 1.2))
     picture = Image.new("RGB", (width, head + tall * len(figures)), body.PAPER)
@@ -207,9 +220,11 @@ def as_png(picture: Image.Image) -> bytes:
 def film(
     figures: list[Figure], fps: float, size: tuple[int, int] = (400, 360)
 ) -> Iterator[Image.Image]:
-    """Every frame, the figures side by side, each in a field of `size` with label, tense and
-    time."""
-    for t in range(max(map(len, figures))):
+    """Every frame, the figures side by side.
+
+    Each in a field of `size` with label, tense and time.
+    """
+    for t in tqdm(range(max(map(len, figures))), desc="drawing", delay=DELAY, leave=False):
         picture = Image.new("RGB", (size[0] * len(figures), size[1]), body.PAPER)
         pen = ImageDraw.Draw(picture)
         for i, figure in enumerate(figures):
@@ -222,8 +237,10 @@ def film(
 
 
 def film_palette(figures: list[Figure], size: tuple[int, int]) -> Image.Image:
-    """One palette of 96 colours for all frames: from the first and the last, which hold past and
-    future shades."""
+    """One palette of 96 colours for all frames.
+
+    From the first and the last, which hold past and future shades.
+    """
     both = Image.new("RGB", (2 * size[0], size[1]))
     for i, t in enumerate((0, len(figures[0]) - 1)):
         both.paste(render(figures[0], t, size), (i * size[0], 0))

@@ -1,5 +1,6 @@
-"""Sound for the player: one channel of samples, as long as the motion, as a small file that
-browsers play.
+"""Sound for the player.
+
+One channel of samples, as long as the motion, as a small file that browsers play.
 
 Opus in Ogg (10 s take 10-40 KB) where soundfile can write it, else WAV (320 KB); `codec="flac"`
 (exact, about 200 KB) and "wav" play in older Safaris, too. MP3 and Vorbis are not written: in
@@ -28,8 +29,10 @@ BLOCK = 8192
 
 @dataclass(frozen=True, eq=False)
 class Sound:
-    """What is heard: the samples, and the same as the bytes of a file. `seconds` is the length of
-    both."""
+    """What is heard: the samples, and the same as the bytes of a file.
+
+    `seconds` is the length of both.
+    """
 
     samples: Float[np.ndarray, "N"]
     sample_rate: int
@@ -45,8 +48,9 @@ class Sound:
 def as_sound(
     audio: object, sample_rate: int = 16_000, seconds: float | None = None, codec: str = "ogg"
 ) -> Sound:
-    """Samples (N,) between -1 and 1, or the bytes of a WAV, FLAC, Ogg or MP3 file, cut or filled up
-    to `seconds`.
+    """Sound cut or filled up to `seconds`.
+
+    Samples (N,) between -1 and 1, or the bytes of a WAV, FLAC, Ogg or MP3 file.
 
     Louder samples are scaled down together; channels of a file are averaged. A sound that had to be
     cut or filled up by more than 0.05 s is told in a warning. Raises ValueError for another shape,
@@ -63,12 +67,16 @@ def as_sound(
 def encode(
     samples: Float[np.ndarray, "N"], sample_rate: int, codec: str = "ogg"
 ) -> tuple[bytes, str]:
-    """The bytes of a sound file and their MIME type; WAV by the standard library where soundfile
-    cannot write it."""
+    """The bytes of a sound file and their MIME type.
+
+    WAV by the standard library where soundfile cannot write it.
+    """
     try:
         import soundfile
 
-        file, (form, subtype), rate = io.BytesIO(), CODECS[codec], sample_rate
+        file = io.BytesIO()
+        form, subtype = CODECS[codec]
+        rate = sample_rate
         if subtype == "OPUS" and rate not in OPUS_RATES:
             samples, rate = _resampled(samples, rate)
         with soundfile.SoundFile(file, "w", rate, 1, subtype, format=form) as out:
@@ -85,15 +93,19 @@ def encode(
 
 
 def peaks(samples: Float[np.ndarray, "N"], bins: int = 1000) -> Int8[np.ndarray, "_ 2"]:
-    """Lowest and highest sample of each of (at most) `bins` equal stretches, 127 the largest of
-    all: the waveform."""
+    """The waveform: lowest and highest sample of each of (at most) `bins` equal stretches.
+
+    127 is the largest of all.
+    """
     both = np.stack(lows_and_highs(samples, bins)[1:], 1)
     return np.rint(both / max(np.abs(both).max(), 1e-9) * 127).astype(np.int8)
 
 
 def as_times(times: object, name: str, seconds: float) -> list[float]:
-    """Increasing times in seconds, those beyond the end left out; raises ValueError for anything
-    else."""
+    """Increasing times in seconds, those beyond the end left out.
+
+    Raises ValueError for anything else.
+    """
     values = np.asarray([] if times is None else times, dtype=np.float64)
     if (
         values.ndim != 1
@@ -102,7 +114,8 @@ def as_times(times: object, name: str, seconds: float) -> list[float]:
         or (values < 0).any()
     ):
         raise ValueError(
-            f"`{name}` are increasing times in seconds from the start, one number each: got {times!r:.80}"
+            f"`{name}` are increasing times in seconds from the start, one number each: "
+            f"got {times!r:.80}"
         )
     return values[values < seconds].round(4).tolist()
 
@@ -115,19 +128,22 @@ def _checked(audio: object, sample_rate: int) -> Float[np.ndarray, "N"]:
     samples = np.asarray(audio)
     if samples.ndim != 1:
         raise ValueError(
-            f"audio has shape {samples.shape}; give one channel (N,), the mean of several for instance"
+            f"audio has shape {samples.shape}; "
+            "give one channel (N,), the mean of several for instance"
         )
     if not len(samples):
         raise ValueError("audio has no samples: nothing to play")
     if not np.issubdtype(samples.dtype, np.floating):
         raise ValueError(
-            f"audio holds {samples.dtype}; give floats from -1 to 1 (16-bit samples divided by 32768)"
+            f"audio holds {samples.dtype}; give floats from -1 to 1 "
+            "(16-bit samples divided by 32768)"
         )
     bad = ~np.isfinite(samples)
     if bad.any():
         at = int(np.argmax(bad))
         raise ValueError(
-            f"audio is not finite at sample {at} ({at / sample_rate:.2f} s); {int(bad.sum())} such samples in all"
+            f"audio is not finite at sample {at} ({at / sample_rate:.2f} s); "
+            f"{int(bad.sum())} such samples in all"
         )
     return (samples / max(1.0, float(np.abs(samples).max()))).astype(np.float32)
 

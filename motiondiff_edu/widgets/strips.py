@@ -1,5 +1,6 @@
-"""What the music lane shows besides the waveform, packed small: attention over the music, and how
-far a figure moved.
+"""What the music lane shows besides the waveform, packed small.
+
+Attention over the music, and how far a figure moved.
 
 Attention is kept in 8 bits, each row scaled by its own largest weight, which goes along: wrong by
 at most 1/510 of it.
@@ -18,8 +19,10 @@ from .sound import as_times
 
 @dataclass(frozen=True, eq=False)
 class Level:
-    """One attention map: rows over the motion's time, columns over `edges` (seconds), `tops` the
-    rows' largest."""
+    """One attention map.
+
+    Rows over the motion's time, columns over `edges` (seconds), `tops` the rows' largest.
+    """
 
     name: str
     codes: UInt8[np.ndarray, "T M"]
@@ -34,8 +37,10 @@ class Level:
 
 @dataclass(frozen=True, eq=False)
 class Strips:
-    """Attention maps and the curve of how far the figure moved (metres) when the sound at `hits`
-    was silenced."""
+    """Attention maps, and how far the figure moved when the sound at `hits` was silenced.
+
+    The curve is in metres.
+    """
 
     levels: tuple[Level, ...] = ()
     moved: Float[np.ndarray, "T"] | None = None
@@ -46,10 +51,15 @@ class Strips:
         edges = [level.edges.round(4).tolist() for level in self.levels]
         once = [e for i, e in enumerate(edges) if e not in edges[:i]]
         levels = [
-            {"name": level.name, "rows": len(level.codes), "edges": once.index(own), "full": level.full,
-             "tops": [float(f"{v:.5g}") for v in level.tops]}
+            {
+                "name": level.name,
+                "rows": len(level.codes),
+                "edges": once.index(own),
+                "full": level.full,
+                "tops": [float(f"{v:.5g}") for v in level.tops],
+            }
             for level, own in zip(self.levels, edges, strict=True)
-        ]  # fmt: skip
+        ]
         moved = None
         if self.moved is not None:
             values = self.moved.round(4).tolist()
@@ -73,8 +83,9 @@ class Strips:
 
 
 def pack_levels(attention: object, token_times: object, scale: str = "map") -> tuple[Level, ...]:
-    """One map (T, M) or {name: map}, rows over the whole motion (a map may have fewer than frames),
-    summing to one.
+    """One map (T, M) or a dictionary of named maps.
+
+    Rows lie over the whole motion (a map may have fewer than frames) and sum to one.
 
     `token_times`: the time in seconds of each column (or {name: times}); a column reaches halfway
     to its neighbours. Full colour is the largest weight of the whole map, or with `scale="frame"`
@@ -94,12 +105,15 @@ def pack_levels(attention: object, token_times: object, scale: str = "map") -> t
 def pack_moved(
     moved: object, frames: int, hit: object = None
 ) -> tuple[np.ndarray, tuple[float, ...]]:
-    """The curve (T,) in metres, one value a frame, and the silenced hits' times in seconds (one or
-    several)."""
+    """The curve (T,) in metres, one value a frame.
+
+    Beside it the silenced hits' times in seconds (one or several).
+    """
     curve = np.asarray(moved, dtype=np.float64)
     if curve.shape != (frames,) or not np.isfinite(curve).all() or (curve < 0).any():
         raise ValueError(
-            f"`moved` is one finite distance in metres a frame, ({frames},); got shape {curve.shape}"
+            f"`moved` is one finite distance in metres a frame, ({frames},); "
+            f"got shape {curve.shape}"
         )
     times = None if hit is None else np.atleast_1d(hit)
     return curve, tuple(as_times(times, "hit", np.inf))
@@ -108,11 +122,14 @@ def pack_moved(
 def check_attention(
     weights: Float[np.ndarray, "..."], times: Float[np.ndarray, "_"], name: str = "attention"
 ) -> None:
-    """Raise ValueError unless rows are finite, not negative and sum to one, and times increase, one
-    a column."""
+    """Raise ValueError unless rows sum to one and times increase, one a column.
+
+    Rows are finite and not negative.
+    """
     if weights.ndim != 2 or not weights.size:
         raise ValueError(
-            f"{name}: a map is (motion rows, tokens), got {weights.shape}; of several heads take one"
+            f"{name}: a map is (motion rows, tokens), got {weights.shape}; "
+            "of several heads take one"
         )
     if not np.isfinite(weights).all() or (weights < -1e-6).any():
         raise ValueError(
@@ -122,7 +139,8 @@ def check_attention(
     if off.max() > 1e-2:
         row = int(off.argmax())
         raise ValueError(
-            f"{name}: row {row} sums to {weights[row].sum():.3g}, not 1. Is the map (motion, music), and after softmax?"
+            f"{name}: row {row} sums to {weights[row].sum():.3g}, not 1. "
+            "Is the map (motion, music), and after softmax?"
         )
     if (
         times.shape != weights.shape[1:]
@@ -130,8 +148,8 @@ def check_attention(
         or (np.diff(times) <= 0).any()
     ):
         raise ValueError(
-            f"{name}: token_times are increasing seconds, one for each of the {weights.shape[1]} columns; "
-            f"got shape {times.shape}"
+            f"{name}: token_times are increasing seconds, "
+            f"one for each of the {weights.shape[1]} columns; got shape {times.shape}"
         )
 
 

@@ -1,5 +1,7 @@
-"""Ways of filling in, against conditionals that are known: closed forms, and draws that have the
-right answer."""
+"""Ways of filling in, against conditionals that are known.
+
+Closed forms, and draws that have the right answer.
+"""
 
 import math
 from dataclasses import replace
@@ -45,28 +47,28 @@ def correlated():
 
 
 def masked_by_hand(x: float, visited: list[int], resample: int) -> tuple[float, float]:
-    """Mean and variance of the second coordinate, the first given: every step of masked sampling is
-    linear in it."""
-    alpha_bar, mean, variance = SCHEDULE.alpha_bar.tolist(), 0.0, 1.0
+    """Mean and variance of the second coordinate, the first given.
+
+    Every step of masked sampling is linear in it.
+    """
+    alpha_bar = SCHEDULE.alpha_bar.tolist()
+    mean = 0.0
+    variance = 1.0
     for s, after in zip(visited, [*visited[1:], 0], strict=True):
         now, then = alpha_bar[s], alpha_bar[after]
         # x_s has variances 1 and covariance now * RHO: the regression of the clean second
         # coordinate on both
         c = now * RHO
-        of_x, of_y = (
-            math.sqrt(now) * (RHO - c) / (1 - c * c),
-            math.sqrt(now) * (1 - RHO * c) / (1 - c * c),
-        )
+        of_x = math.sqrt(now) * (RHO - c) / (1 - c * c)
+        of_y = math.sqrt(now) * (1 - RHO * c) / (1 - c * c)
         sigma = math.sqrt((1 - then) / (1 - now) * (1 - now / then))
         keep = math.sqrt(max(1 - then - sigma**2, 0.0) / (1 - now))
         to_x0 = math.sqrt(then) - keep * math.sqrt(now)
         B, C = to_x0 * of_x, to_x0 * of_y + keep
         for turn in range(resample if after else 1):
             if turn:  # back again
-                mean, variance = (
-                    mean * math.sqrt(now / then),
-                    variance * now / then + 1 - now / then,
-                )
+                mean = mean * math.sqrt(now / then)
+                variance = variance * now / then + 1 - now / then
             mean = B * math.sqrt(now) * x + C * mean
             variance = B * B * (1 - now) + C * C * variance + sigma**2
     return mean, variance
@@ -82,8 +84,10 @@ def test_masked_sampling_of_a_gaussian_is_a_recursion_done_by_hand(steps, resamp
 
 
 def test_a_blended_way_draws_the_guess_through_what_is_given():
-    """One step of independent entries: the guess is next to nothing, and what is left is the
-    correction, by hand."""
+    """One step of independent entries.
+
+    The guess is next to nothing, and what is left is the correction, by hand.
+    """
     truth = mixture(torch.ones(1), torch.zeros(1, 6), torch.eye(6)[None])
     asked = question(truth, [1.0, 0, 3.0, 0, 0, 0], [True, False, True, False, False, False])
     asked = replace(asked, frames=6)
@@ -121,8 +125,10 @@ def test_errors_are_in_units_of_the_wanted():
 
 
 def test_shares_of_the_parts_are_compared():
-    """All samples in one hill, where the wanted has two that are alike: half of the mass is in the
-    wrong place."""
+    """All samples in one hill, where the wanted has two that are alike.
+
+    Half of the mass is in the wrong place.
+    """
     asked = question(ring(6), [0.75, 0.0], [True, False])
     low = torch.tensor([[0.75, -1.3]], dtype=torch.float64).expand(7, 2)
     assert errors_of(low, asked).share == pytest.approx(0.5, abs=0.01)
@@ -134,21 +140,26 @@ def test_the_rest_is_drawn_from_the_conditional():
     drawn = Rest(truth, known).draw(x, seeded(2))
     assert torch.equal(drawn[:, 0], x[:, 0])
     for i, value in enumerate((-0.9, 0.6)):
-        wanted, mine = conditional(truth, torch.tensor([value, 0.0]), known), drawn[i::2, 1]
+        wanted = conditional(truth, torch.tensor([value, 0.0]), known)
+        mine = drawn[i::2, 1]
         assert mine.mean().item() == pytest.approx(wanted.mean().item(), abs=0.03)
         assert mine.std().item() == pytest.approx(wanted.covariance().item() ** 0.5, rel=0.06)
 
 
 def chain(seen: float = 0.6):
-    """Known, hole, future: neighbours correlate by `seen`, and known and future through the hole
-    only."""
+    """Known, hole, future.
+
+    Neighbours correlate by `seen`, and known and future through the hole only.
+    """
     c = torch.tensor([[[1.0, seen, seen**2], [seen, 1.0, seen], [seen**2, seen, 1.0]]])
     return mixture(torch.ones(1), torch.zeros(1, 3), c)
 
 
 def test_there_and_back_hears_of_the_known_through_the_future_only_and_gibbs_does_not():
-    """In this chain the future hears nothing but the hole: there-and-back forgets the known wholly,
-    by hand."""
+    """In this chain the future hears nothing but the hole.
+
+    There-and-back forgets the known wholly, by hand.
+    """
     asked = question(chain(), [2.0, 0.0, 0.0], [True, False, False], [True, True, False])
     found = {
         way.kind: e
@@ -165,8 +176,10 @@ def test_there_and_back_hears_of_the_known_through_the_future_only_and_gibbs_doe
 @pytest.mark.parametrize("kind", ["there-and-back", "gibbs"])
 @pytest.mark.parametrize("past", [[True, False, False], [True, True, False]])
 def test_what_is_known_of_the_future_is_given_too(kind, past):
-    """The last entry is known: with nothing known of the past both ways are Gibbs sampling, and
-    come to the wanted."""
+    """The last entry is known.
+
+    With nothing known of the past both ways are Gibbs sampling, and come to the wanted.
+    """
     asked = question(chain(), [math.nan, math.nan, 2.0], [False, False, True], past)
     x = answers(asked, Way(kind), 4000, seeded(6))
     assert (x[:, 2] == 2).all()

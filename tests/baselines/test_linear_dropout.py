@@ -1,5 +1,7 @@
-"""Dropout of the past in least squares: the closed forms equal what is drawn, and the ridge they
-are said to be."""
+"""Dropout of the past in least squares.
+
+The closed forms equal what is drawn, and the ridge they are said to be.
+"""
 
 import numpy as np
 import pytest
@@ -13,13 +15,17 @@ from motiondiff_edu.motion.clip import Clip
 from motiondiff_edu.motion.scaler import Scaler
 from motiondiff_edu.performers.windows import Windows
 
-T_H, D, SCHEDULE = 2, 63, linear_schedule(100)
+T_H = 2
+D = 63
+SCHEDULE = linear_schedule(100)
 
 
 @pytest.fixture(scope="module")
 def windows() -> Windows:
-    """A world of 63 coordinates that all go on from the past and from the control, alike enough to
-    be redundant."""
+    """A world of 63 coordinates that all go on from the past and from the control.
+
+    They are alike enough to be redundant.
+    """
     rng = np.random.default_rng(0)
     control, x = rng.normal(size=(900, 3)), np.zeros((900, D))
     for t in range(1, 899):
@@ -92,7 +98,8 @@ def test_zeroing_shrinks_a_past_without_control_evenly(windows, clean):
 
 
 def test_without_dropout_it_is_ordinary_least_squares(windows, clean):
-    again, wanted = ld.fit(clean, ridge=1e-3), linear_gaussian.fit(windows, ridge=1e-3)
+    again = ld.fit(clean, ridge=1e-3)
+    wanted = linear_gaussian.fit(windows, ridge=1e-3)
     torch.testing.assert_close(again.weight, wanted.weight, rtol=1e-4, atol=1e-5)
     torch.testing.assert_close(again.spread, wanted.spread, rtol=1e-3, atol=1e-4)
 

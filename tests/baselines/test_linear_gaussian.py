@@ -1,5 +1,7 @@
-"""The linear-Gaussian walker finds the numbers of a linear world, draws its noise, and tells when
-it would run away."""
+"""The linear-Gaussian walker finds the numbers of a linear world.
+
+It draws that world's noise, and tells when it would run away.
+"""
 
 import numpy as np
 import pytest
@@ -15,8 +17,10 @@ T_H, D = 2, 63
 
 
 def linear_world(frames: int = 4000, noise: float = 0.3) -> Clip:
-    """pose[t+1] = 0.6 pose[t] - 0.3 pose[t-1] + 0.5 (first control) + noise, in every
-    coordinate."""
+    """One step of a linear world, in every coordinate.
+
+    pose[t+1] = 0.6 pose[t] - 0.3 pose[t-1] + 0.5 (first control) + noise.
+    """
     rng = np.random.default_rng(0)
     control = rng.normal(size=(frames, 3))
     x = np.zeros((frames, D))
@@ -32,7 +36,9 @@ def fitted() -> LinearGaussian:
 
 
 def test_it_finds_the_numbers_of_a_linear_world(fitted: LinearGaussian):
-    before, last, control = fitted.weight[:D], fitted.weight[D : 2 * D], fitted.weight[2 * D : -1]
+    before = fitted.weight[:D]
+    last = fitted.weight[D : 2 * D]
+    control = fitted.weight[2 * D : -1]
     assert torch.allclose(last, 0.6 * torch.eye(D), atol=0.08)
     assert torch.allclose(before, -0.3 * torch.eye(D), atol=0.08)
     assert torch.allclose(

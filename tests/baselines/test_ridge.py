@@ -1,5 +1,7 @@
-"""Ridge regression from what is visible: against least squares with the penalty as extra rows, and
-by hand."""
+"""Ridge regression from what is visible.
+
+Against least squares with the penalty as extra rows, and by hand.
+"""
 
 import numpy as np
 import pytest

@@ -13,8 +13,10 @@ import timing  # noqa: E402
 
 @pytest.fixture
 def runs(monkeypatch):
-    """Two runs, which take 1, 2, 3 ... and 10, 20, 30 ... seconds, and the order in which they were
-    called."""
+    """Two runs, and the order in which they were called.
+
+    They take 1, 2, 3 ... and 10, 20, 30 ... seconds.
+    """
     now, order = [0.0], []
     monkeypatch.setattr(timing.time, "perf_counter", lambda: now[0])
 

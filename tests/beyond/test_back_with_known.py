@@ -11,19 +11,21 @@ from motiondiff_edu.ddpm import linear_schedule
 from motiondiff_edu.motion.scaler import Scaler
 from motiondiff_edu.reconstruction import repair, walked_back
 
-T_H, T_P, D = 5, 7, 2
+T_H = 5
+T_P = 7
+D = 2
 
 
 class Halving:
-    """A walker that predicts half of the last pose, k times over: what it is told in between
-    decides what follows."""
+    """A walker that predicts half of the last pose, k times over.
+
+    What it is told in between decides what follows.
+    """
 
     def __init__(self):
         self.config = SimpleNamespace(T_h=T_H, T_p=T_P, D=D, C=3)
-        self.pose_scaler, self.control_scaler = (
-            Scaler(torch.full((D,), 0.5), torch.full((D,), 2.0)),
-            Scaler.nothing(3),
-        )
+        self.pose_scaler = Scaler(torch.full((D,), 0.5), torch.full((D,), 2.0))
+        self.control_scaler = Scaler.nothing(3)
 
     def window_sampler(self, steps=None):
         return lambda past, control, generator: torch.stack(
@@ -37,7 +39,8 @@ def options():
 
 def test_each_frame_goes_on_from_the_one_before_with_what_is_known_of_it_put_right():
     walker, B = Halving(), 3
-    ahead, given = torch.full((B, T_H, D), 0.5 + 2 * 8.0), torch.full((B, T_H, D), float("nan"))
+    ahead = torch.full((B, T_H, D), 0.5 + 2 * 8.0)
+    given = torch.full((B, T_H, D), float("nan"))
     known = torch.zeros(B, T_H, D, dtype=torch.bool)
     known[:, 2, 1], given[:, 2, 1] = True, 0.5 + 2 * 40.0
     made = walker.pose_scaler.transform(
@@ -68,9 +71,9 @@ def test_each_frame_is_walked_under_the_control_of_its_own_time():
 
 class Known(Halving):
     """A walker whose windows are Gaussian, whatever came before; the exact denoiser is its
-    network."""
+    network. As strict as MoDiff about how many rows it takes."""
 
-    def __init__(self, T_p: int = T_P):
+    def __init__(self, T_p: int = T_H):
         super().__init__()
         self.config.T_p, self.config.S = T_p, 60
         root = torch.randn(
@@ -81,6 +84,7 @@ class Known(Halving):
         self.schedule = linear_schedule(60, 1e-3, 0.3)
 
     def denoiser(self, past, control, fast=True):
+        assert past.shape[1] == T_H and control.shape[1] == T_H + self.config.T_p
         return exact.exact_denoiser(self.given, self.schedule)
 
 
@@ -97,33 +101,25 @@ def test_a_window_under_a_mask_has_about_the_mean_that_what_is_known_asks_for():
         )
     )
     torch.testing.assert_close(made[known], values.repeat(B))
-    whole = torch.zeros(T_P * D, dtype=torch.bool)
-    whole[: T_H * D] = known[0].flatten()
-    padded = torch.zeros(T_P * D)
+    whole, padded = known[0].flatten(), torch.zeros(T_H * D)
     padded[whole] = values
-    truth = exact.conditional(walker.given, padded, whole).mean()[: int((~known[0]).sum())].float()
-    spread = (
-        exact.conditional(walker.given, padded, whole)
-        .covariance()
-        .diagonal()
-        .sqrt()[: len(truth)]
-        .float()
-    )
+    wanted = exact.conditional(walker.given, padded, whole)
+    truth, spread = wanted.mean().float(), wanted.covariance().diagonal().sqrt().float()
     plain = walker.given.mean()[: len(truth)].float()
     off, off_unheeded = (((x - truth) / spread).abs() for x in (made[:, ~known[0]].mean(0), plain))
     assert off.mean() < 0.25 < 0.5 < off_unheeded.mean()
 
 
-def test_a_mask_wants_a_window_as_long_as_the_past():
-    with pytest.raises(ValueError, match="window of 4 frames cannot hold the 5"):
+@pytest.mark.parametrize("T_p", [T_H - 1, T_P])
+def test_a_mask_wants_a_window_as_long_as_the_past(T_p):
+    with pytest.raises(ValueError, match=f"predicts {T_p} poses from 5.*held_back"):
         zeros = torch.zeros(2, T_H, D)
-        masked_back(Known(4), zeros, torch.zeros(2, 2 * T_H, 3), zeros, zeros > 1, **options())
+        masked_back(Known(T_p), zeros, torch.zeros(2, 2 * T_H, 3), zeros, zeros > 1, **options())
 
 
 @pytest.mark.parametrize("way", [held_back, masked_back])
 def test_all_is_made_where_the_inputs_are_and_drawn_where_the_generator_is(way):
-    """With another default device, whatever is made without regard to the inputs lands beside
-    them."""
+    """With another default device, new tensors still land beside the inputs."""
     walker, known = Known(), torch.zeros(2, T_H, D, dtype=torch.bool)
     ahead, given = torch.zeros(2, T_H, D), torch.ones(2, T_H, D)
     known[:, 2] = True

@@ -16,15 +16,24 @@ def clip():
 
 
 def knees(T):
-    """All is given but a knee and a shoulder, between two given joints each; in the first frame
-    they are, too."""
+    """All is given but a knee and a shoulder, between two given joints each.
+
+    In the first frame they are, too.
+    """
     known = np.ones((T, 21), bool)
     known[1:, [joint_index("LeftLeg"), joint_index("RightArm")]] = False
     return known
 
 
-@pytest.mark.parametrize("mask", [lambda T: gap(T, 10, 20), lambda T: keyframes(T, 15), knees,
-                                  lambda T: body_part(T, "lower body") | keyframes(T, 20)])  # fmt: skip
+@pytest.mark.parametrize(
+    "mask",
+    [
+        lambda T: gap(T, 10, 20),
+        lambda T: keyframes(T, 15),
+        knees,
+        lambda T: body_part(T, "lower body") | keyframes(T, 20),
+    ],
+)
 def test_bones_are_as_long_as_where_they_are_given(clip, mask):
     known = mask(len(clip))
     shaken = np.where(

@@ -94,6 +94,24 @@ def test_a_stand_is_where_the_toe_is_given_and_the_correction_fades_to_the_given
     assert (np.abs(np.diff(moved[:, 2])) < 0.25).all() and np.isfinite(moved).all()
 
 
+def test_a_stand_s_correction_rises_smoothly_beside_a_frame_that_is_given_after_it():
+    """A toe that creeps by 1 cm a frame for ten frames, then flies; it is given right after. Held
+    at its median, the last frame of the stand would jump by 4.5 cm: there, 1 frame from the given
+    one, only 3/36 - 2/216 of the correction are left; 6 frames away, all of it."""
+    toe = np.zeros((20, 3))
+    toe[:10, 2] = np.arange(10) * 0.01
+    toe[10:, 2], toe[10:, 1] = 0.09 + np.arange(1, 11) * 0.1, 0.3
+    given = np.zeros(20, bool)
+    given[10] = True
+    assert stands(toe, 20.0).tolist() == [True] * 10 + [False] * 10
+    shift = to_stands(toe, given, 20.0)[:, 2]
+    whole = 0.045 - toe[:10, 2]
+    left = np.array([3 * (k / 6) ** 2 - 2 * (k / 6) ** 3 for k in range(1, 6)])
+    np.testing.assert_allclose(shift[9:4:-1], left * whole[9:4:-1], atol=1e-12)
+    np.testing.assert_allclose(shift[:5], whole[:5], atol=1e-12)
+    assert (shift[10:] == 0).all()
+
+
 def test_nothing_stands_nothing_moves():
     flying = np.tile([0.0, 1.0, 0.0], (10, 1)) + np.arange(10)[:, None] * [0.0, 0.0, 0.3]
     assert (to_stands(flying, np.zeros(10, bool), 20.0) == 0).all()

@@ -1,5 +1,7 @@
-"""Footholds: held joints rest in the world, the gate chooses, the fast twin and the weights file
-keep both."""
+"""Footholds: held joints rest in the world, and the gate chooses.
+
+The fast twin and the weights file keep both.
+"""
 
 from dataclasses import replace
 from pathlib import Path
@@ -11,28 +13,33 @@ import torch
 from motiondiff_edu.beyond.footholds import (
     COLUMNS,
     FEET,
+    CleanFootholds,
     FootholdConfig,
     FootholdMoDiff,
     blend,
     held_positions,
-    network,
     openness,
 )
+from motiondiff_edu.beyond.shared_encoding import SharedEncoding, repeated
 from motiondiff_edu.ddpm import linear_schedule
 from motiondiff_edu.diffusion_dropout import Dropout
 from motiondiff_edu.fast.footholds import FastFoothold
-from motiondiff_edu.modiff import MoDiff, MoDiffConfig
+from motiondiff_edu.modiff import MoDiff, MoDiffConfig, training_loss
 from motiondiff_edu.motion.clip import Clip
 from motiondiff_edu.motion.root_frame import to_world
 from motiondiff_edu.motion.scaler import Scaler
 from motiondiff_edu.motion.skeleton import JOINTS
+from motiondiff_edu.performers.networks import network
 from motiondiff_edu.performers.walker import Walker
-from motiondiff_edu.performers.windows import Windows, bone_errors, window_loss
+from motiondiff_edu.performers.windows import Windows
 from motiondiff_edu.pretrained.checkpoints import load_walker, save
 
-T_H, T_P, B = 4, 5, 3
+T_H = 4
+T_P = 5
+B = 3
 SIZES = dict(T_h=T_H, T_p=T_P, S=8, width=16, heads=2, hidden=24)
-TINY, FREE = FootholdConfig(**SIZES), MoDiffConfig(**SIZES, target="x0", skip=False)
+TINY = FootholdConfig(**SIZES)
+FREE = MoDiffConfig(**SIZES, target="x0", skip=False)
 POSE = Scaler(torch.linspace(-2, 3, 63), torch.linspace(0.1, 0.6, 63))
 CONTROL = Scaler(torch.tensor([1.0, 0.1, -0.2]), torch.tensor([0.5, 0.2, 0.8]))
 
@@ -61,7 +68,8 @@ def test_the_feet_are_the_ankles_and_toes():
 def test_held_joints_rest_in_the_world():
     """The oracle is the way back: poses and control, placed in the world, do not move."""
     rng = np.random.default_rng(0)
-    control, joints = rng.normal(size=(2, 7, 3)) * [2, 1, 3], rng.normal(size=(2, 4, 3))
+    control = rng.normal(size=(2, 7, 3)) * [2, 1, 3]
+    joints = rng.normal(size=(2, 4, 3))
     held = held_positions(torch.from_numpy(joints), torch.from_numpy(control)).numpy()
     for b in range(2):
         poses = np.concatenate([joints[b : b + 1], held[b]])
@@ -72,8 +80,10 @@ def test_held_joints_rest_in_the_world():
 
 
 def test_held_joints_by_hand():
-    """1 m/s ahead: a toe at rest falls back by 5 cm a frame. A quarter turn to the left: what was
-    ahead is right."""
+    """1 m/s ahead: a toe at rest falls back by 5 cm a frame.
+
+    A quarter turn to the left: what was ahead is right.
+    """
     toe = torch.tensor([[[0.1, 0.02, 0.3]]])
     back = held_positions(toe, torch.tensor([[[1.0, 0, 0]] * 2]))
     torch.testing.assert_close(back[0, :, 0], torch.tensor([[0.1, 0.02, 0.25], [0.1, 0.02, 0.2]]))
@@ -146,10 +156,10 @@ def test_the_weights_file_keeps_the_gate_and_the_walker_walks(tmp_path: Path):
     walker = Walker(tiny(), linear_schedule(8, 0.2, 0.95), POSE, CONTROL)
     back = load_walker(save(walker, tmp_path / "tiny.safetensors", bits=32))
     assert isinstance(back.model, FootholdMoDiff)
-    (_, _, past, control), seed = inputs(), lambda: torch.Generator().manual_seed(3)
-    torch.testing.assert_close(
-        back.window_sampler()(past, control, seed()), walker.window_sampler()(past, control, seed())
-    )
+    _, _, past, control = inputs()
+    found = back.window_sampler()(past, control, torch.Generator().manual_seed(3))
+    wanted = walker.window_sampler()(past, control, torch.Generator().manual_seed(3))
+    torch.testing.assert_close(found, wanted)
 
 
 @pytest.mark.parametrize(
@@ -176,8 +186,10 @@ def walk_windows() -> Windows:
 
 
 def watched(windows: Windows, seen: dict) -> FootholdMoDiff:
-    """A network that writes down the last poses it is shown, and those on which its feet may
-    stand."""
+    """A network that writes down the last poses it is shown.
+
+    And those on which its feet may stand.
+    """
     model = FootholdMoDiff(TINY, windows.pose_scaler, windows.control_scaler)
     encode = model.encode
 
@@ -189,64 +201,63 @@ def watched(windows: Windows, seen: dict) -> FootholdMoDiff:
     return model
 
 
-@pytest.mark.parametrize("doubt", [0.0, 0.4, 1.0])
-def test_doubt_is_the_share_of_the_shaking_under_the_feet(doubt: float):
-    """The pose whose feet may stay lies between the clean past and the one that is seen."""
+def drawn(windows: Windows, batch: int) -> tuple[torch.Tensor, ...]:
+    return windows.draw(batch, torch.Generator().manual_seed(5))
+
+
+def loss_on(model, batch, **options) -> None:
+    schedule, draws = linear_schedule(8, 0.2, 0.95), torch.Generator().manual_seed(6)
+    training_loss(model, batch, schedule, draws, **options)
+
+
+@pytest.mark.parametrize("foot_noise", [0.0, 0.4, 1.0])
+def test_foot_noise_is_the_fraction_of_the_past_noise_under_the_feet(foot_noise: float):
+    """The pose whose feet are held lies between the clean past and the one that is seen."""
     windows, seen = walk_windows(), {}
-    model = watched(windows, seen)
-    window_loss(windows, linear_schedule(8, 0.2, 0.95), batch=6, jitter=0.3, doubt=doubt)(
-        model, torch.Generator().manual_seed(5)
-    )
-    clean = windows.draw(6, torch.Generator().manual_seed(5))[0][:, -1]
-    torch.testing.assert_close(seen["standing"], clean + doubt * (seen["past"] - clean))
-    assert (seen["past"] - clean).abs().max() > 0.01
+    clean, x0, control = drawn(windows, 6)
+    noised = clean + torch.randn(clean.shape, generator=torch.Generator().manual_seed(7))
+    model = CleanFootholds(watched(windows, seen), clean, noised, foot_noise)
+    loss_on(model, (noised, x0, control))
+    assert torch.equal(seen["past"], noised[:, -1]) and model.config is TINY
+    wanted = clean[:, -1] + foot_noise * (noised - clean)[:, -1]
+    torch.testing.assert_close(seen["standing"], wanted)
 
 
 def test_a_dropped_past_leaves_no_clean_feet_to_stand_on():
-    """Wherever the past was noised, the feet that may stay are those of the noised past."""
-    windows, schedule, seen = walk_windows(), linear_schedule(8, 0.2, 0.95), {}
-    model = watched(windows, seen)
-    dropout = Dropout(schedule, lambda done: 0.5, steps=1)
-    loss_fn = window_loss(
-        windows, schedule, batch=20, noises=2, jitter=0.3, doubt=0.5, dropout=dropout
+    """Wherever the past was dropped, the feet that are held are those of the dropped past."""
+    windows, seen = walk_windows(), {}
+    clean, x0, control = drawn(windows, 40)
+    noised = clean + torch.randn(clean.shape, generator=torch.Generator().manual_seed(7))
+    dropout = Dropout(linear_schedule(8, 0.2, 0.95), lambda done: 0.5, steps=1, done=0.0)
+    model = CleanFootholds(watched(windows, seen), clean, noised, 0.5)
+    loss_on(model, (noised, x0, control), dropout=dropout)
+    dropped = (seen["past"] != noised[:, -1]).any(1)
+    assert 8 < dropped.sum() < 32
+    assert torch.equal(seen["standing"][dropped], seen["past"][dropped])
+    wanted = (clean + noised)[:, -1] / 2
+    torch.testing.assert_close(seen["standing"][~dropped], wanted[~dropped])
+
+
+def test_feet_are_held_alike_where_the_encoding_is_shared():
+    windows = walk_windows()
+    model = FootholdMoDiff(TINY, windows.pose_scaler, windows.control_scaler)
+    torch.nn.init.normal_(model.gate.weight)
+    clean, x0, control = repeated(drawn(windows, 3), 2)
+    noised = clean + 0.1
+    x_s, s = torch.randn(6, T_P, 63), torch.arange(1, 7)
+    plain, shared = (
+        CleanFootholds(network, clean, noised, 0.3)(x_s, s, noised, control)
+        for network in (model, SharedEncoding(model, 2))
     )
-    loss_fn(model, torch.Generator().manual_seed(5))
-    same = (seen["standing"] == seen["past"]).all(1)
-    clean = windows.draw(20, torch.Generator().manual_seed(5))[0][:, -1].repeat_interleave(2, 0)
-    torch.testing.assert_close(
-        seen["standing"][~same], (clean + 0.5 * (seen["past"] - clean))[~same]
-    )
-    assert 8 < same.sum() < 32
-
-
-def test_bone_errors_by_hand():
-    """All joints off by the same: no bone errs. The left hand's tip alone off by 3 cm: its bone
-    errs, no other."""
-    error = torch.zeros(1, 2, 63)
-    error[:, 0] = 0.2
-    error[0, 1, 3 * 16 + 1] = 0.03
-    found = bone_errors(error)
-    assert not found[0, 0].any()
-    assert found[0, 1, 15] == pytest.approx(0.03**2 / 3) and found[0, 1].count_nonzero() == 1
-
-
-def test_bones_add_their_errors_to_the_loss():
-    windows, schedule = walk_windows(), linear_schedule(8, 0.2, 0.95)
-    model = MoDiff(FREE)
-
-    def loss(bones: float) -> float:
-        return window_loss(windows, schedule, batch=6, bones=bones)(
-            model, torch.Generator().manual_seed(5)
-        ).item()
-
-    assert loss(1.0) > loss(0.0) and loss(2.0) - loss(1.0) == pytest.approx(
-        loss(1.0) - loss(0.0), rel=1e-4
-    )
+    torch.testing.assert_close(shared, plain)
+    assert not torch.allclose(model(x_s, s, noised, control), plain)
 
 
 def test_in_use_a_gate_leans_towards_holding_and_goes_all_the_way():
-    """Where a sigmoid stops short of 0 and 1 the stretched one is there; halfway lies a quarter
-    lower."""
+    """Where a sigmoid stops short of 0 and 1 the stretched one is there.
+
+    Halfway lies a quarter lower.
+    """
     gate = torch.tensor([-9.0, -2.65, -0.25, 2.15, 9.0])
     torch.testing.assert_close(openness(gate), torch.tensor([0.0, 0.0, 0.5, 1.0, 1.0]))
     torch.testing.assert_close(openness(gate, leaning=False), torch.sigmoid(gate))
@@ -261,7 +272,9 @@ def test_training_sees_the_plain_gate_and_use_the_leaning_one():
         with torch.no_grad():
             context = part.encode(past, control)
             x = part.attend(part.embed(x_s, s), context.memory)
-            gate, free, out = part.gate(x), part.head(x), part(x_s, s, past, control)
+            gate = part.gate(x)
+            free = part.head(x)
+            out = part(x_s, s, past, control)
         for leaning in (False, True):
             shares.append(
                 torch.allclose(out, blend(free, openness(gate, leaning), context.held), atol=1e-6)

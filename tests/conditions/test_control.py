@@ -18,8 +18,10 @@ from motiondiff_edu.motion.root_frame import root_path
 
 
 def apart(control: np.ndarray, points: np.ndarray) -> tuple[float, float]:
-    """Metres from the walked way to the drawn line, and from the drawn line to the walked way, at
-    the worst place."""
+    """How far the walked way and the drawn line lie apart at the worst place, in metres.
+
+    In both directions.
+    """
     walked, _ = root_path(control, (float(points[0, 0]), float(points[0, 1]), 0.0))
     gaps = cdist(walked, round_path(points, 0.0))
     return gaps.min(1).max(), gaps.min(0).max()
@@ -100,7 +102,8 @@ def test_constant_and_hold():
 
 
 def test_a_spliced_control_leads_into_the_first_new_frame():
-    past, new = constant_control(1.0, seconds=0.6), constant_control(0.0, 0.5, 0.2, seconds=0.2)
+    past = constant_control(1.0, seconds=0.6)
+    new = constant_control(0.0, 0.5, 0.2, seconds=0.2)
     before = past.copy()
     rows = splice(past, new, T_h=5)
     assert rows.tolist() == [[1.0, 0.0, 0.0]] * 4 + [[0.0, 0.5, 0.2]] * 5

@@ -1,5 +1,7 @@
-"""What the network hears: against librosa, the MATLAB reference, closed forms, and beats that
-others found."""
+"""What the network hears.
+
+Against librosa, the MATLAB reference, closed forms, and beats that others found.
+"""
 
 import subprocess
 import sys
@@ -13,7 +15,6 @@ from scipy.io import loadmat
 from motiondiff_edu.conditions import audio_files, music
 from motiondiff_edu.conditions.music import (
     SAMPLE_RATE,
-    at_times,
     beats_of,
     crop_seconds,
     frame_times,
@@ -37,8 +38,10 @@ def loudness(seconds: float, f: float = 440.0, seed: int = 0):
 
 
 def drums(times, seconds: float, kind: str = "noise", seed: int = 0):
-    """A hit at each of `times`, over a little noise: noise, a tone or a bass drum, with a sharp
-    start."""
+    """A hit at each of `times`, over a little noise.
+
+    Noise, a tone or a bass drum, with a sharp start.
+    """
     rng, t = np.random.default_rng(seed), np.arange(1280) / SAMPLE_RATE
     hit = {
         "noise": 0.3 * rng.normal(size=1280) * np.exp(-t / 0.02),
@@ -214,17 +217,6 @@ def test_a_crop_up_to_the_very_end_is_there_for_any_length():
         assert len(crop) == 46 and times[-1] <= 1.5
 
 
-def test_mel_at_motion_frames_is_read_by_time():
-    mel = frame_times(50)[:, None] * torch.linspace(
-        1, 2, 80, dtype=torch.float64
-    )  # grows with time: lines are exact
-    motion = torch.arange(31, dtype=torch.float64) / 20
-    torch.testing.assert_close(at_times(mel, motion)[:, 0], motion)
-    torch.testing.assert_close(at_times(mel, frame_times(50)), mel)
-    torch.testing.assert_close(at_times(mel, torch.tensor([-1.0, 99.0]).double()), mel[[0, -1]])
-    assert at_times(mel[:1].expand(2, 3, 1, 80), motion).shape == (2, 3, 31, 80)
-
-
 @pytest.mark.parametrize("kind", ["noise", "tone", "kick"])
 @pytest.mark.parametrize("bpm", [91, 120, 133.3])
 def test_the_trackers_lag_is_what_is_taken_out(bpm, kind):
@@ -273,9 +265,10 @@ def test_speech_is_heard_like_music(real_data):
 
 def test_listening_does_not_import_librosa():
     code = (
-        "import sys, motiondiff_edu, motiondiff_edu.conditions.music as m, motiondiff_edu.conditions.audio_files;"
-        "import torch; m.log_mel(torch.zeros(600));"
-        "print([name for name in ('librosa', 'numba', 'soundfile') if name in sys.modules])"
+        "import sys, motiondiff_edu, motiondiff_edu.conditions.music as m, "
+        "motiondiff_edu.conditions.audio_files;import torch; "
+        "m.log_mel(torch.zeros(600));print([name for name in ('librosa', 'numba', "
+        "'soundfile') if name in sys.modules])"
     )
     told = subprocess.run(
         [sys.executable, "-c", code], capture_output=True, text=True, check=True

@@ -1,5 +1,7 @@
-"""Every check on three kinds of answer: the notebook's solution, its stub, and the wrong answers of
-the zoo."""
+"""Every check on three kinds of answer.
+
+The notebook's solution, its stub, and the wrong answers of the zoo.
+"""
 
 import ast
 import functools

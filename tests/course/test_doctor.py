@@ -1,4 +1,4 @@
-"""doctor.py: each finding on a sound machine and on a broken one, and the page."""
+"""course/doctor.py: each finding on a sound machine and on a broken one, and the page."""
 
 import importlib.metadata
 import subprocess
@@ -7,8 +7,8 @@ import webbrowser
 
 import pytest
 
-from motiondiff_edu import doctor
-from motiondiff_edu.doctor import Finding
+from motiondiff_edu.course import doctor
+from motiondiff_edu.course.doctor import Finding
 
 
 def test_a_line_says_what_to_do_only_when_something_is_wrong():
@@ -21,7 +21,9 @@ def test_a_line_says_what_to_do_only_when_something_is_wrong():
 
 
 def test_the_page_fails_when_a_finding_fails_and_not_for_a_note(capsys):
-    well, odd, bad = Finding("a", "x"), Finding("b", "y", "z", note=True), Finding("c", "y", "z")
+    well = Finding("a", "x")
+    odd = Finding("b", "y", "z", note=True)
+    bad = Finding("c", "y", "z")
     assert doctor.main([lambda: well, lambda: odd]) == 0
     assert "All well" in capsys.readouterr().out
     assert doctor.main([lambda: well, lambda: bad]) == 1
@@ -97,7 +99,18 @@ def test_no_browser_is_a_note_and_no_module_a_failure(monkeypatch, tmp_path):
 def test_doctor_still_speaks_where_torch_cannot_be_imported():
     code = (
         "import sys; sys.modules['torch'] = None; sys.argv = ['motiondiff_edu', 'doctor']; "
-        "from motiondiff_edu import doctor; print(doctor.guarded(doctor.compute))"
+        "from motiondiff_edu import __main__ as command; from motiondiff_edu.course import doctor; "
+        "doctor.main.__defaults__ = ((doctor.python, doctor.compute, doctor.notebooks),); sys.exit(command.main())"
     )
-    told = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True).stdout
-    assert told.startswith("FAIL  compute") and "-> python -m pip install" in told
+    answer = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
+    compute = answer.stdout[answer.stdout.index("FAIL") :]
+    assert answer.returncode == 1 and answer.stdout.startswith("ok    python")
+    assert compute.startswith("FAIL  compute") and "-> python -m pip install" in compute
+    assert "ok    notebooks" in compute and "1 to mend" in compute
+
+
+def test_writing_is_tried_where_lab_puts_the_copies(monkeypatch, tmp_path):
+    monkeypatch.setattr(doctor, "place_for_students", lambda: (tmp_path, tmp_path / "a" / "b"))
+    assert doctor.writing() == Finding("writing", f"allowed in {tmp_path}")
+    (tmp_path / "a" / "b").mkdir(parents=True)
+    assert doctor.writing() == Finding("writing", f"allowed in {tmp_path / 'a' / 'b'}")

@@ -1,5 +1,7 @@
-"""Notebook 09's checks: the likely mistakes are named, and an answer in another wrapping is
-taken."""
+"""Notebook 09's checks name the likely mistakes.
+
+An answer in another wrapping is taken.
+"""
 
 import pytest
 import torch
@@ -47,7 +49,8 @@ def test_the_mistake_is_named(check, what, told):
 
 
 def right(past, future, s, alpha_bar, rate, u, noise):
-    a, b = alpha_bar[s][:, None, None] ** 0.5, (1 - alpha_bar[s][:, None, None]) ** 0.5
+    a = alpha_bar[s][:, None, None] ** 0.5
+    b = (1 - alpha_bar[s][:, None, None]) ** 0.5
     return torch.where(
         (u < rate)[:, None, None], a * past + b * noise[1], past
     ), a * future + b * noise[0]

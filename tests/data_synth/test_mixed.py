@@ -1,5 +1,7 @@
-"""Motion without music: walks and dances by turns, the windows of them, and a network that hears
-nothing."""
+"""Motion without music.
+
+Walks and dances by turns, the windows of them, and a network that hears nothing.
+"""
 
 from dataclasses import replace
 

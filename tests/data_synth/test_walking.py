@@ -1,5 +1,7 @@
-"""Synthetic walks: same seed, same bytes; feet that stay, knees that bend one way, several right
-continuations."""
+"""Synthetic walks: same seed, same bytes.
+
+Feet that stay, knees that bend one way, several right continuations.
+"""
 
 import numpy as np
 import pytest
@@ -33,8 +35,10 @@ def given():
 
 @pytest.fixture(scope="module")
 def clips(given):
-    """One walk of every kind and style; it gets a copy of its control, so that the given one stays
-    as it was."""
+    """One walk of every kind and style.
+
+    It gets a copy of its control, so that the given one stays as it was.
+    """
     return [walk(given[k].copy(), k, style) for k, (_, style) in enumerate(PAIRS)]
 
 
@@ -78,8 +82,10 @@ def test_planted_feet_do_not_slide(clips):
 
 
 def test_contacts_are_true(clips):
-    """A planted toe lies on the floor; a toe that lies still on the floor for three frames is
-    planted."""
+    """A planted toe lies on the floor.
+
+    A toe that lies still on the floor for three frames is planted.
+    """
     for clip in clips:
         toes = clip.world()[:, TOES]
         assert np.abs(toes[clip.contacts][:, 1]).max() < 1e-3
@@ -95,10 +101,8 @@ def test_feet_stay_above_the_floor(clips):
 def test_knees_never_bend_backwards_nor_lock(clips):
     for clip in clips:
         for hip, knee, ankle in ((1, 2, 3), (5, 6, 7)):
-            thigh, shank = (
-                clip.poses[:, knee] - clip.poses[:, hip],
-                clip.poses[:, ankle] - clip.poses[:, knee],
-            )
+            thigh = clip.poses[:, knee] - clip.poses[:, hip]
+            shank = clip.poses[:, ankle] - clip.poses[:, knee]
             sagittal = np.cross(thigh, shank)[
                 :, 0
             ]  # seen from the left, the shank trails the thigh: positive

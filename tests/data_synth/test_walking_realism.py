@@ -1,5 +1,7 @@
-"""Do the synthetic walks lie where real ones do? The acceptance table, and the ruler it is measured
-with."""
+"""Do the synthetic walks lie where real ones do?
+
+The acceptance table, and the ruler it is measured with.
+"""
 
 import re
 from pathlib import Path
@@ -55,7 +57,9 @@ def test_the_table_has_every_statistic_and_shows_it(tables):
 def test_the_knee_has_two_bumps_and_the_toe_lifts_twice():
     curve = mean_curves(walk(np.tile([1.2, 0.0, 0.0], (250, 1)), 3, "neutral").world())
     knee, toe = curve["knee"], curve["toe_y"]
-    loading, dip, swing = knee[:15].max(), knee[15:25].min(), knee[30:45].max()
+    loading = knee[:15].max()
+    dip = knee[15:25].min()
+    swing = knee[30:45].max()
     assert loading > knee[0] + 4 and dip < loading - 7 and swing > 55
     assert toe[33:36].max() > toe[42:45].min() + 0.03 and toe[-1] > toe[42:45].min() + 0.01
     assert 0.20 < GRID[curve["hips_y"][:25].argmax()] < 0.40

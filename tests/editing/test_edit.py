@@ -1,5 +1,7 @@
-"""An edit of a motion: what is held follows from what was pinned and kept; answers are measured as
-they are."""
+"""An edit of a motion: what is held follows from what was pinned and kept.
+
+Answers are measured as they are.
+"""
 
 from functools import partial
 
@@ -10,7 +12,7 @@ from small_dancers import dancer_of_bands as dancer
 from synthetic_walk import walk
 
 from motiondiff_edu.baselines.interpolation import spherical
-from motiondiff_edu.editing.edit import Edit, drag_in_words, make_between, takes
+from motiondiff_edu.editing.edit import Edit, drag_in_words, make_between
 from motiondiff_edu.editing.inbetween import inbetween
 from motiondiff_edu.editing.masks import LOWER, PARTS
 from motiondiff_edu.motion.skeleton import BONES, JOINTS, joint_index
@@ -74,7 +76,8 @@ def test_a_pin_is_a_copy(motion):
 
 
 def test_frames_count_from_the_end_as_well(motion):
-    before, target = Edit(motion).pin(-1), motion[-1, HAND] + [0.1, 0.2, 0.0]
+    before = Edit(motion).pin(-1)
+    target = motion[-1, HAND] + [0.1, 0.2, 0.0]
     after = before.drag(-1, "RightHand", target)
     assert (before.index(-1), before.index(0)) == (T - 1, 0) and list(after.moved) == [T - 1]
     assert drag_in_words(before, after, -1, "RightHand", target) == "moved by 22 cm"
@@ -111,7 +114,6 @@ def test_an_untrained_dancer_keeps_what_is_held_bit_by_bit(motion):
     edit = Edit(motion).pin(0).pin(10).pin(23).keep("trajectory")
     edit = edit.drag(10, "RightHand", motion[10, HAND] + [0.0, 0.3, 0.1])
     make = partial(inbetween, dancer(), steps=4)
-    assert takes(make, "samples") and takes(make, "resample")
     made = make_between(edit, make, seeded(1), samples=3, resample=2)
     assert made.samples.shape == (3, T, 21, 3)
     assert all(np.array_equal(one[edit.known], edit.positions[edit.known]) for one in made.samples)
@@ -120,50 +122,54 @@ def test_an_untrained_dancer_keeps_what_is_held_bit_by_bit(motion):
     assert np.array_equal(again.samples, made.samples)
 
 
-def test_a_make_without_a_number_is_called_until_there_are_enough(motion):
-    calls = []
+def test_what_finds_the_rest_is_told_how_many_and_how_carefully(motion):
+    told = []
 
-    def two(positions, known, draw):
-        calls.append(torch.rand(1, generator=draw).item())
-        return np.stack([spherical(positions, known)] * 2)
+    def make(positions, known, *, samples, resample, generator):
+        told.append((samples, resample, generator.initial_seed()))
+        return np.stack([spherical(positions, known)] * samples)
 
-    made = make_between(Edit(motion).pin(0).pin(20), two, seeded(), samples=3)
-    assert len(made.samples) == 3 and len(set(calls)) == 2
-    assert not takes(two, "resample")
+    made = make_between(Edit(motion).pin(0).pin(20), make, seeded(6), samples=3, resample=4)
+    assert len(made.samples) == 3 and told == [(3, 4, 6)]
+    with pytest.raises(ValueError, match=r"shape \(3, 24, 21, 3\); \(2, 24, 21, 3\) is needed"):
+        make_between(Edit(motion).pin(0), lambda p, k, **_: np.stack([p] * 3), seeded(), samples=2)
 
 
 def test_measures_are_the_answers_own_and_said_in_words(motion):
     edit = Edit(motion).pin(0).pin(12).pin(23)
 
-    def off(positions, known, generator):
+    def off(positions, known, **_):
         one = np.array(positions)
         one[12] += [0.0, 0.03, 0.04]  # 5 cm off in one of three pinned frames
         return one[None]
 
     made = make_between(edit, off, seeded())
     assert made.keyframe_error[0] == pytest.approx(0.05 / 3)
-    same = make_between(edit, lambda p, k, g: p[None], seeded())
+    same = make_between(edit, lambda p, k, **_: p[None], seeded())
     assert (
         same.seam_jump[0] == pytest.approx(same.motions_jump)
         and made.seam_jump[0] > same.seam_jump[0]
     )
     assert made.measured(0).startswith("keyframe error 16.7 mm, seam jump ")
-    free = make_between(Edit(motion), lambda p, k, g: p[None], seeded())
+    free = make_between(Edit(motion), lambda p, k, **_: p[None], seeded())
     assert free.measured(0) == "nothing was given to keep"
 
 
 @pytest.mark.parametrize(
     "answer, message",
     [
-        (lambda p: p, r"shape \(24, 21, 3\); \(samples, 24, 21, 3\) is needed"),
+        (lambda p: p, r"shape \(24, 21, 3\); \(1, 24, 21, 3\) is needed"),
         (lambda p: p[None, :9], r"shape \(1, 9, 21, 3\)"),
         (lambda p: p[None][:0], r"shape \(0, 24, 21, 3\)"),
-        (lambda p: np.where(np.arange(T)[:, None, None] == 6, np.nan, p)[None], "1 is not finite in frame 6, Hips"),
+        (
+            lambda p: np.where(np.arange(T)[:, None, None] == 6, np.nan, p)[None],
+            "1 is not finite in frame 6, Hips",
+        ),
     ],
-)  # fmt: skip
+)
 def test_wrong_answers_are_told(motion, answer, message):
     with pytest.raises(ValueError, match=message):
-        make_between(Edit(motion).pin(0), lambda p, k, g: answer(p), seeded())
+        make_between(Edit(motion).pin(0), lambda p, k, **_: answer(p), seeded())
 
 
 def test_nothing_left_to_make(motion):
@@ -172,4 +178,4 @@ def test_nothing_left_to_make(motion):
         edit = edit.pin(frame)
     assert edit.known.sum() == T * len(JOINTS)
     with pytest.raises(ValueError, match="every frame is pinned: there is nothing to make"):
-        make_between(edit, lambda p, k, g: p[None], seeded())
+        make_between(edit, lambda p, k, **_: p[None], seeded())

@@ -1,5 +1,7 @@
-"""Several repairs of one past: given entries stay, errors agree with the measures, and what cannot
-be is said."""
+"""Several repairs of one past.
+
+Given entries stay, errors agree with the measures, and what cannot be is said.
+"""
 
 from types import SimpleNamespace
 
@@ -22,7 +24,10 @@ class Drawing:
     """A walker that stands still but for noise: each row of the batch draws its own."""
 
     class config:
-        T_h, T_p, D, C = T_H, 5, 63, 3
+        T_h = T_H
+        T_p = 5
+        D = 63
+        C = 3
 
     pose_scaler = Scaler(torch.from_numpy(CLIP.poses.mean(0)).float().flatten(), torch.ones(63))
     control_scaler = Scaler.nothing(3)
@@ -74,7 +79,8 @@ def test_the_errors_are_those_of_the_measures():
 
 def test_several_pasts_are_mended_as_each_alone_but_for_the_draws():
     fault = dead_joints(np.stack([CLIP.poses[:T_H], CLIP.poses[3 : 3 + T_H] + 0.1]))
-    control, generator = np.stack([CLIP.control] * 2), torch.Generator().manual_seed(1)
+    control = np.stack([CLIP.control] * 2)
+    generator = torch.Generator().manual_seed(1)
     *_, both = mend_steps(
         Drawing(), fault.positions, fault.known, control, 5, generator=generator, rounds=2
     )
@@ -86,8 +92,10 @@ def test_several_pasts_are_mended_as_each_alone_but_for_the_draws():
 
 
 def test_bones_of_the_holes_get_the_lengths_that_they_have_where_it_walks():
-    """The elbow of the arm hangs on a given shoulder: shaken, its bones tear, and are mended; the
-    given stays."""
+    """The elbow of the arm hangs on a given shoulder: shaken, its bones tear, and are mended.
+
+    The given stays.
+    """
     truth = torch.from_numpy(CLIP.poses).flatten(-2)[None]
     known = torch.from_numpy(dead_joints(CLIP.poses[:T_H], ARM).known).repeat_interleave(3, -1)[
         None

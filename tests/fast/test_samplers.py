@@ -1,15 +1,16 @@
-"""Fast samplers: equal to the plain loop, to published runs, and honest about what few steps
-lose."""
+"""Fast samplers.
 
-import math
+Equal to the plain loop, to published runs, and honest about what few steps lose.
+"""
 
 import pytest
 import torch
 
 from data_synth.mixtures import crossed_bars, gaussian, three_hills
-from motiondiff_edu.ddpm import cosine_schedule, linear_schedule, sample_steps
+from motiondiff_edu import ddpm
+from motiondiff_edu.ddpm import linear_schedule, sample_steps, timesteps
 from motiondiff_edu.exact import dataset_denoiser, exact_denoiser
-from motiondiff_edu.fast.samplers import ddim_steps, ddpm_steps, timesteps, warm_start
+from motiondiff_edu.fast.samplers import ddim_steps, ddpm_steps
 from motiondiff_edu.prediction import to_eps
 
 START = (torch.arange(768).reshape(3, 8, 8, 4) / 768).permute(3, 0, 1, 2)
@@ -17,6 +18,10 @@ START = (torch.arange(768).reshape(3, 8, 8, 4) / 768).permute(3, 0, 1, 2)
 
 def dummy(x, s):
     return x * ((s - 1) / s).float().reshape(-1, 1, 1, 1)
+
+
+def seeded(seed: int) -> torch.Generator:
+    return torch.Generator().manual_seed(seed)
 
 
 def last_of(steps):
@@ -27,7 +32,8 @@ def last_of(steps):
 @pytest.mark.parametrize("variance", ["beta", "posterior"])
 @pytest.mark.parametrize("clip", [None, 0.8])
 def test_fast_ddpm_equals_the_plain_loop_for_the_same_noise(variance, clip):
-    schedule, generator = linear_schedule(40, 1e-4, 0.3), torch.Generator().manual_seed(9)
+    schedule = linear_schedule(40, 1e-4, 0.3)
+    generator = torch.Generator().manual_seed(9)
     start = torch.randn(2, 5, 3, generator=generator, dtype=torch.float64)
     noise = torch.randn(40, 2, 5, 3, generator=generator, dtype=torch.float64)
 
@@ -41,6 +47,32 @@ def test_fast_ddpm_equals_the_plain_loop_for_the_same_noise(variance, clip):
         assert plain.s == fast.s
         torch.testing.assert_close(plain.x_s, fast.x_s, atol=1e-6, rtol=0)
         torch.testing.assert_close(plain.x0_hat, fast.x0_hat, atol=1e-6, rtol=0)
+        torch.testing.assert_close(plain.eps_hat, fast.eps_hat, atol=1e-6, rtol=1e-6)
+
+
+@pytest.mark.parametrize("steps, eta", [(7, 0.0), (7, 0.6), (7, 1.0), ([33, 8, 2], 0.4)])
+@pytest.mark.parametrize("clip", [None, 0.8])
+def test_fast_ddim_equals_the_plain_loop_for_the_same_noise_and_seed(steps, eta, clip):
+    schedule = linear_schedule(40, 1e-4, 0.3)
+    start = torch.randn(2, 5, 3, generator=seeded(9), dtype=torch.float64)
+    given = torch.randn(40, 2, 5, 3, generator=seeded(3), dtype=torch.float64)
+
+    def model(x, s):
+        return torch.tanh(x + s.reshape(-1, 1, 1) / 40)
+
+    for noise in (given, None):
+        pair = [
+            list(f(model, start, schedule, steps, eta, noise=noise, clip=clip, generator=seeded(4)))
+            for f in (ddpm.ddim_steps, ddim_steps)
+        ]
+        assert len(pair[0]) == len(pair[1]) == (8 if steps == 7 else 4)
+        for plain, fast in zip(*pair, strict=True):
+            assert plain.s == fast.s
+            for part in ("x_s", "x0_hat", "eps_hat"):
+                ours, wanted = getattr(fast, part), getattr(plain, part)
+                torch.testing.assert_close(ours, wanted, atol=1e-6, rtol=1e-6)
+        if clip:
+            assert all(step.x0_hat.abs().max() <= clip + 1e-9 for step in pair[0][:-1])
 
 
 def test_fast_ddpm_equals_the_plain_loop_for_the_same_seed():
@@ -54,13 +86,15 @@ def test_fast_ddpm_equals_the_plain_loop_for_the_same_seed():
 
 
 class FarGenerator(torch.Generator):
-    """Stands for the generator of another device, with the one device that is everywhere and not
-    the CPU."""
+    """Stands for the generator of another device.
+
+    It uses the one device that is everywhere and not the CPU.
+    """
 
     device = torch.device("meta")
 
 
-@pytest.mark.parametrize("sample", [sample_steps, ddpm_steps, ddim_steps])
+@pytest.mark.parametrize("sample", [sample_steps, ddpm_steps, ddpm.ddim_steps, ddim_steps])
 def test_a_shape_is_drawn_and_walked_where_the_generator_lives(sample):
     schedule = linear_schedule(11, 1e-3, 0.7)
     for denoise in (
@@ -103,7 +137,8 @@ def test_ddim_sum_equals_the_published_run(target, beta_1, total):
 )
 def test_ddim_noise_equals_published_variances(t, before, published):
     """With a silent model and eta = 1, one leap from zero leaves exactly sigma times the noise."""
-    schedule, noise = linear_schedule(1000, 1e-4, 0.02), torch.ones(1000, 1, 1)
+    schedule = linear_schedule(1000, 1e-4, 0.02)
+    noise = torch.ones(1000, 1, 1)
     leap = list(
         ddim_steps(
             lambda x, s: 0 * x, torch.zeros(1, 1), schedule, [t + 1, before + 1], 1.0, noise=noise
@@ -113,8 +148,10 @@ def test_ddim_noise_equals_published_variances(t, before, published):
 
 
 def test_ddim_with_eta_1_and_all_steps_is_ddpm_with_the_posterior_variance():
-    schedule, noise = linear_schedule(30, 1e-3, 0.3), torch.randn(30, 4, 1, dtype=torch.float64)
-    denoise, start = exact_denoiser(three_hills(), schedule), torch.randn(4, 1, dtype=torch.float64)
+    schedule = linear_schedule(30, 1e-3, 0.3)
+    noise = torch.randn(30, 4, 1, dtype=torch.float64)
+    denoise = exact_denoiser(three_hills(), schedule)
+    start = torch.randn(4, 1, dtype=torch.float64)
     ddim = last_of(ddim_steps(denoise, start, schedule, 30, 1.0, noise=noise))
     torch.testing.assert_close(
         ddim, last_of(ddpm_steps(denoise, start, schedule, noise=noise, variance="posterior"))
@@ -123,7 +160,8 @@ def test_ddim_with_eta_1_and_all_steps_is_ddpm_with_the_posterior_variance():
 
 def test_ddim_without_eta_is_a_map_of_its_start():
     schedule = linear_schedule()
-    denoise, start = exact_denoiser(three_hills(), schedule), torch.randn(4, 1)
+    denoise = exact_denoiser(three_hills(), schedule)
+    start = torch.randn(4, 1)
     assert torch.equal(
         last_of(ddim_steps(denoise, start, schedule)), last_of(ddim_steps(denoise, start, schedule))
     )
@@ -131,8 +169,10 @@ def test_ddim_without_eta_is_a_map_of_its_start():
 
 @pytest.mark.parametrize("steps, lost", [(10, 0.22), (100, 0.293)])
 def test_ddim_under_disperses_as_its_own_algebra_says(steps, lost):
-    """A Gaussian of std .30: each leap multiplies x by (a a' var + b b') / (a^2 var + b^2); ten of
-    them leave .22."""
+    """A Gaussian of std .30: each leap multiplies x by (a a' var + b b') / (a^2 var + b^2).
+
+    Ten of them leave .22.
+    """
     schedule, std = linear_schedule(), 0.3
     predicted, visited = 1.0, timesteps(100, steps) + [0]
     for now, then in zip(visited[:-1], visited[1:], strict=True):
@@ -165,24 +205,3 @@ def test_timesteps_start_at_the_top_and_do_not_repeat():
         )
     with pytest.raises(ValueError, match="between 1 and 100"):
         timesteps(100, 101)
-
-
-def test_warm_start_keeps_to_its_guess_only_from_low_steps():
-    schedule, guess = cosine_schedule(100), torch.full((5000, 1), 1.5)
-    denoise = exact_denoiser(three_hills(), schedule)
-    kept = []
-    for s in (10, 95):
-        start = warm_start(guess, s, schedule, generator=torch.Generator().manual_seed(12))
-        x = last_of(ddim_steps(denoise, start, schedule, timesteps(s, 5)))
-        kept.append((x > 0.7).float().mean().item())
-    assert kept[0] == 1 and kept[1] < 0.6
-    assert math.isclose(start.mean().item(), 1.5 * schedule.alpha_bar[95] ** 0.5, abs_tol=0.05)
-
-
-def test_warm_start_is_its_guess_noised_to_that_very_step():
-    schedule, guess = linear_schedule(20, 1e-3, 0.5), torch.linspace(-1, 2, 15).reshape(3, 5)
-    noise = torch.randn(3, 5, generator=torch.Generator().manual_seed(3))
-    for s in (1, 7, 20):
-        kept = schedule.alpha_bar[s].item()
-        start = warm_start(guess, s, schedule, generator=torch.Generator().manual_seed(3))
-        torch.testing.assert_close(start, kept**0.5 * guess + (1 - kept) ** 0.5 * noise)

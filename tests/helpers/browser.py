@@ -60,6 +60,23 @@ def shown(page) -> int:
     return int(page.locator(".mde-player").get_attribute("data-frame"))
 
 
+UNTIL = """async (element, [condition, patience]) => {
+  const holds = eval(condition), end = Date.now() + patience;
+  while (!holds(element)) {
+    if (Date.now() > end) throw new Error("it never came to be: " + condition);
+    await new Promise((done) => setTimeout(done, 20));
+  }
+}"""
+
+
+def until(locator, condition: str, patience: int = 30_000) -> None:
+    """Wait until a JavaScript function of an element gives true, in whatever frame it is."""
+    locator.evaluate(UNTIL, [condition, patience])
+
+
+ANOTHER_FRAME = """() => new Promise((done) => {
+  requestAnimationFrame(() => requestAnimationFrame(done));
+})"""
 COLOURED = """c => {
   const d = c.getContext('2d').getImageData(0, 0, c.width, c.height).data;
   let blue = 0, orange = 0;
@@ -75,6 +92,12 @@ COLOURED = """c => {
 def coloured(canvas) -> dict:
     """How many pixels of a canvas are as blue as the left limbs and as orange as the right ones."""
     return canvas.evaluate(COLOURED)
+
+
+def drawn(canvas) -> None:
+    """Wait until a figure is drawn, with over 200 pixels of either colour: the canvas comes
+    first."""
+    until(canvas, f"(c) => Math.min(...Object.values(({COLOURED})(c))) > 200")
 
 
 FAKE_MODEL = """

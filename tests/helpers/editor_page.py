@@ -5,6 +5,10 @@ import base64
 import json
 from pathlib import Path
 
+import numpy as np
+import torch
+
+from motiondiff_edu.baselines.interpolation import spherical
 from motiondiff_edu.widgets.editor import Editor
 from motiondiff_edu.widgets.editor_page import BINARY, MODULE, PLAIN
 
@@ -33,6 +37,23 @@ window.model = {
 window.listening = () => Object.values(listeners).flat().length;
 window.take(RECORD);
 window.cleanup = widget.render({ model: window.model, el: document.getElementById("here") });
+"""
+
+# What Python answers comes at once; after `delay` milliseconds; or where `holding`, by `letGo`.
+WIRE = """
+window.delay = 0; window.holding = false; window.held = []; window.sent = window.received = 0;
+window.kernel = async (what) => {
+  window.sent++;
+  const changed = await window.kernelled(what);
+  window.received++;
+  if (window.holding) { window.held.push(changed); return; }
+  if (window.delay) await new Promise((done) => setTimeout(done, window.delay));
+  window.take(changed);
+};
+window.letGo = () => {
+  window.holding = false;
+  while (window.held.length) window.take(window.held.shift());
+};
 """
 
 
@@ -68,10 +89,9 @@ def open_editor(page, folder: Path, editor: Editor, background: str = "#fff") ->
     script = MODEL.replace("RECORD", json.dumps(told).replace("<", "\\u003c")).replace(
         "BINARY", json.dumps(BINARY)
     )
-    wire = "window.kernel = async (what) => { const changed = await window.kernelled(what); window.take(changed); };"
     path = folder / "page.html"
     style = f"body {{ background: {background}; margin: 8px; }}"
-    body = f'<div id="here"></div><script type="module">\n{source}\n{wire}\n{script}</script>'
+    body = f'<div id="here"></div><script type="module">\n{source}\n{WIRE}\n{script}</script>'
     path.write_text(
         f'<!doctype html><meta charset="utf-8"><style>{style}</style><body>{body}', "utf-8"
     )
@@ -80,5 +100,19 @@ def open_editor(page, folder: Path, editor: Editor, background: str = "#fff") ->
 
 
 def settled(page) -> None:
-    """Wait until Python has answered all that was asked."""
-    page.wait_for_function("!asked.length || model.get('state').heard >= asked.at(-1).number")
+    """Wait until Python has got all that was sent, and the page has heard the answers."""
+    heard = "!asked.length || model.get('state').heard >= asked.at(-1).number"
+    page.wait_for_function(f"sent === received && ({heard})")
+
+
+def received(page) -> None:
+    """Wait until Python has got all that was sent, whether the page has the answers or not."""
+    page.wait_for_function("sent === received")
+
+
+def guess(positions, known, generator, samples=1, resample=1):
+    """Bones turned evenly between what is held, shaken; the more it is resampled, the less."""
+    base = spherical(positions, known)
+    shape = (samples, *base.shape[:2], 3)
+    noise = 0.1 / resample * torch.randn(shape, generator=generator, dtype=torch.float64).numpy()
+    return np.where(known[..., None], base, base + noise)

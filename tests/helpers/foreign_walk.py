@@ -1,5 +1,7 @@
-"""A BVH file of a walk on another body, files with joints cut off, and what must hold for every
-clip made from one."""
+"""A BVH file of a walk on another body.
+
+With it files with joints cut off, and what must hold for every clip made from one.
+"""
 
 from collections.abc import Collection
 from dataclasses import replace
@@ -17,8 +19,10 @@ CHANNELS = ("Zrotation", "Xrotation", "Yrotation")
 
 
 def foreign(path, frames=361, fps=120, unit=0.0254, z_up=False, t_pose=False, names=None, **motion):
-    """A walk on another body (other proportions, unit, names), below a static root; returns the
-    file."""
+    """A walk on another body (other proportions, unit, names), below a static root.
+
+    Returns the file.
+    """
     world, _ = walk(frames=frames, fps=fps, **motion)
     fitted = fit(world)
     offsets = fitted.offsets / unit
@@ -79,8 +83,10 @@ def without(bvh: Bvh, dropped: Collection[str]) -> Bvh:
 
 
 def seen_in_a_mirror(bvh: Bvh) -> Bvh:
-    """The same motion with left and right exchanged, as careless exports have it: x and turns about
-    y and z flip."""
+    """The same motion with left and right exchanged, as careless exports have it.
+
+    x and turns about y and z flip.
+    """
     flips = {"Xposition", "Yrotation", "Zrotation"}
     signs = [-1.0 if channel in flips else 1.0 for channels in bvh.channels for channel in channels]
     return replace(bvh, offsets=bvh.offsets * [-1, 1, 1], frames=bvh.frames * signs)

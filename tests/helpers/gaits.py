@@ -1,5 +1,7 @@
-"""An analytic gait whose steps are known: feet that stand still, and swing from one footprint to
-the next."""
+"""An analytic gait whose steps are known.
+
+Feet that stand still, and swing from one footprint to the next.
+"""
 
 import numpy as np
 
@@ -22,8 +24,9 @@ def control_of(seconds: float, forward=1.2, left=0.0, yaw=0.0) -> np.ndarray:
 
 
 def gait(control: np.ndarray, phase=0.3, cycle=1.04, slide=0.0, lift=0.08) -> np.ndarray:
-    """Root-frame poses (T, 21, 3) of a walk under `control`: each foot still for STANCE seconds of
-    every `cycle`.
+    """Root-frame poses (T, 21, 3) of a walk under `control`.
+
+    Each foot still for STANCE seconds of every `cycle`.
 
     A foot stands where the root is at mid-stance, a hand's breadth to its side; `slide` (m/s)
     pushes it along +z.

@@ -1,5 +1,7 @@
-"""A JupyterLab that serves one notebook, and the page that shows it: for every test of a widget with a
-kernel. The cell that it runs is the CELL of the test's module."""
+"""A JupyterLab that serves one notebook, and the page that shows it.
+
+Every test of a widget with a kernel uses it. It runs the CELL of the test's module.
+"""
 
 import json
 import os
@@ -51,8 +53,10 @@ def free_port() -> int:
 
 @pytest.fixture
 def lab(chromium, root, tmp_path, request):
-    """The address of a JupyterLab that serves one notebook, whose cell is the CELL of the test's
-    module."""
+    """The address of a JupyterLab that serves one notebook.
+
+    Its cell is the CELL of the test's module.
+    """
     pytest.importorskip("jupyterlab")
     notebook(
         tmp_path / "walk.ipynb", request.module.CELL.format(tests=str(root / "tests" / "helpers"))

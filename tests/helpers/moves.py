@@ -11,8 +11,10 @@ def directions(seed: int = 0) -> np.ndarray:
 
 
 def stopping_at(stops: np.ndarray, seconds: float, fps: float, reach: float = 0.3) -> np.ndarray:
-    """Every joint goes to and fro and is at rest at each of the given times, and at no other: (T,
-    21, 3)."""
+    """Every joint goes to and fro and is at rest at each of the given times, and at no other.
+
+    (T, 21, 3).
+    """
     stops = np.asarray(stops, dtype=float)
     edges = np.concatenate([[stops[0] - 0.5], stops, [stops[-1] + 0.5]])
     times = np.arange(round(seconds * fps) + 1) / fps
@@ -23,8 +25,10 @@ def stopping_at(stops: np.ndarray, seconds: float, fps: float, reach: float = 0.
 def shake(
     hz: float, seconds: float, fps: float, phase: float = 0.0, reach: float = 0.05
 ) -> np.ndarray:
-    """The whole figure trembles at `hz`, and so stops 2 hz times a second, whatever the music
-    does."""
+    """The whole figure trembles at `hz`, and so stops 2 hz times a second.
+
+    Whatever the music does.
+    """
     times = np.arange(round(seconds * fps) + 1) / fps
     return (
         rest_pose() + reach * np.sin(2 * np.pi * hz * times + phase)[:, None, None] * directions()

@@ -1,5 +1,7 @@
-"""Dancers with random weights, small enough for a test: what they dance is noise, how they are asked is
-not."""
+"""Dancers with random weights, small enough for a test.
+
+They dance noise; how they are called is the same as for trained ones.
+"""
 
 import torch
 
@@ -18,10 +20,8 @@ def dancer_to_mel(**changes) -> Dancer:
     with torch.no_grad():
         for weight in model.parameters():
             weight.add_(0.1 * torch.randn(weight.shape))
-    motion, mel = (
-        Scaler(torch.zeros(63), torch.full((63,), 0.1)),
-        Scaler(torch.full((80,), -6.0), torch.ones(80)),
-    )
+    motion = Scaler(torch.zeros(63), torch.full((63,), 0.1))
+    mel = Scaler(torch.full((80,), -6.0), torch.ones(80))
     return Dancer(
         model.eval().requires_grad_(False), cosine_schedule(model.config.S), motion, mel, {}
     )

@@ -1,5 +1,7 @@
-"""Walks for dances, and Mel frames that say when they sound: material for the tests of windows and
-dancers."""
+"""Walks for dances, and Mel frames that say when they sound.
+
+Material for the tests of windows and dancers.
+"""
 
 import numpy as np
 import torch
@@ -11,9 +13,14 @@ from motiondiff_edu.performers.dance_windows import DanceWindows
 
 
 def material(frames=(120, 90), seed: int = 0):
-    """Two walks for dances, and Mel frames that say when they sound: every band holds the time in
-    seconds."""
-    rng, dances, contacts, mels = np.random.default_rng(seed), [], [], []
+    """Two walks for dances, and Mel frames that say when they sound.
+
+    Every band holds the time in seconds.
+    """
+    rng = np.random.default_rng(seed)
+    dances = []
+    contacts = []
+    mels = []
     for k, T in enumerate(frames):
         clip = walk(random_control(T / 20, rng, "turn"), k)
         dances.append(to_world(clip.poses, clip.control)[:T])

@@ -1,5 +1,7 @@
-"""A quick figure that walks, for tests of what draws motion: plausible to the eye, not the course's
-data."""
+"""A quick figure that walks, for tests of what draws motion.
+
+Plausible to the eye, not the course's data.
+"""
 
 import numpy as np
 
@@ -10,8 +12,10 @@ from motiondiff_edu.motion.skeleton import JOINTS, OFFSETS, PARENTS, TOES
 def walk(
     frames: int = 80, fps: float = 20.0, speed: float = 1.2, turn: float = 0.0, phase: float = 0.0
 ):
-    """World positions (frames, 21, 3) and contacts (frames, 2) of a figure that sets out from the
-    origin."""
+    """A figure that sets out from the origin.
+
+    World positions (frames, 21, 3) and contacts (frames, 2).
+    """
     t = np.arange(frames) / fps
     cycle = 2 * np.pi * 0.9 * t + phase
     local = np.tile(np.eye(3), (frames, len(JOINTS), 1, 1))

@@ -1,5 +1,6 @@
-"""Which step-by-step function of a notebook (in cells tagged `twin`) must agree with which function
-of the library.
+"""Which step-by-step function of a notebook must agree with which of the library.
+
+They stand in cells tagged `twin`.
 
 TWINS = {"02": {"name in the notebook": Twin(library function, arguments)}}; `arguments` is a
 function without parameters that returns the tuple both are called with. Where the two take
@@ -35,7 +36,6 @@ from motiondiff_edu import (
 )
 from motiondiff_edu.baselines import linear_dropout, ridge
 from motiondiff_edu.conditions import music
-from motiondiff_edu.fast.samplers import ddim_steps
 from motiondiff_edu.metrics import adherence, beats, bone_lengths, footsteps, kinetic_features
 from motiondiff_edu.modiff import MoDiff, MoDiffConfig
 from motiondiff_edu.mofusion import ResBlock
@@ -164,7 +164,7 @@ TWINS["03"] = {
         lambda: (_shrink, _normal(2, 5), LINEAR, _normal(101, 2, 5, seed=1)),
     ),
     "ddim": Twin(
-        lambda *args: _last(ddim_steps(*args)),
+        lambda *args: _last(ddpm.ddim_steps(*args)),
         lambda: (_shrink, _normal(2, 5), LINEAR, [100, 60, 25, 3]),
     ),
 }
@@ -211,8 +211,10 @@ TWINS["08"] = {
 
 
 def _column(terms: torch.Tensor) -> torch.Tensor:
-    """The library keeps one number for each sample; the notebook has one for each entry, here the
-    same."""
+    """The library keeps one number for each sample.
+
+    The notebook has one for each entry, here the same.
+    """
     return terms[..., None]
 
 
@@ -353,11 +355,16 @@ def _librosas_onsets(mel) -> np.ndarray:
 
 
 class _GoesOn:
-    """A walker without noise: its last pose plus the steps that the control gives. Called, it goes
-    on by itself."""
+    """A walker without noise: its last pose plus the steps that the control gives.
+
+    Called, it goes on by itself.
+    """
 
     class config:
-        T_h, T_p, D, C = 4, 4, 6, 3
+        T_h = 4
+        T_p = 4
+        D = 6
+        C = 3
 
     pose_scaler = Scaler(torch.linspace(-1, 1, 6), torch.linspace(0.5, 2, 6))
     control_scaler = Scaler.nothing(3)
@@ -502,11 +509,10 @@ def _dropped(past, s, alpha_bar, rate, u, noise) -> torch.Tensor:
 
 def _past_and_its_draws() -> tuple:
     """Seven pasts, and the throws and noises that the library draws from the same seed."""
-    draw, past = torch.Generator().manual_seed(81), _normal(7, 5, 3, seed=80)
-    u, noise = (
-        torch.rand(7, generator=draw),
-        torch.randn(past.shape, generator=draw, dtype=past.dtype),
-    )
+    draw = torch.Generator().manual_seed(81)
+    past = _normal(7, 5, 3, seed=80)
+    u = torch.rand(7, generator=draw)
+    noise = torch.randn(past.shape, generator=draw, dtype=past.dtype)
     return past, torch.arange(5, 75, 10), LINEAR.alpha_bar, 0.4, u, noise
 
 
@@ -514,8 +520,10 @@ UNIT = Scaler(torch.zeros(1), torch.ones(1))
 
 
 def _ridge_by_dropout(xx, xy, past, alpha_bar) -> torch.Tensor:
-    """Least squares on pasts of `past` frames, one number each, that are always noised to one
-    step."""
+    """Least squares on pasts that are always noised to one step.
+
+    They have `past` frames, one number each.
+    """
     clip = Windows(torch.zeros(9, 1), torch.zeros(9, 3), torch.arange(2), past, 1, *[UNIT] * 2)
     clean = linear_dropout.Products(xx, xy, torch.eye(1).double(), clip)
     dropped = linear_dropout.expected(clean, linear_dropout.noised(1.0, torch.tensor([alpha_bar])))
@@ -534,9 +542,12 @@ TWINS["09"] = {
 
 
 def _a_plane_half_known() -> tuple:
-    """Seven points of a plane; of three of them the first coordinate is given, of two the
-    second."""
-    schedule, known = ddpm.cosine_schedule(30), torch.zeros(7, 2, dtype=torch.bool)
+    """Seven points of a plane.
+
+    Of three of them the first coordinate is given, of two the second.
+    """
+    schedule = ddpm.cosine_schedule(30)
+    known = torch.zeros(7, 2, dtype=torch.bool)
     known[:3, 0], known[3:5, 1] = True, True
     denoise = exact.exact_denoiser(crossed_bars(), schedule)
     start, given = _normal(7, 2, seed=150), _normal(7, 2, seed=151)

@@ -1,5 +1,7 @@
-"""The type checker of the tests: beartype, taking an int where a float is asked for, as Python's
-own rules do."""
+"""The type checker of the tests.
+
+Beartype, taking an int where a float is asked for, as Python's own rules do.
+"""
 
 from beartype import BeartypeConf, beartype
 

@@ -1,5 +1,7 @@
-"""adherence: nought when the feet go where the control says, the difference in velocity when they
-do not."""
+"""metrics.adherence, on walks that keep the control and walks that do not.
+
+Nought when the feet go where the control says, else the difference in velocity.
+"""
 
 import numpy as np
 import pytest

@@ -1,5 +1,7 @@
-"""The record of a set of dances: each number against what it must be for figures that stop when
-told."""
+"""The record of a set of dances.
+
+Each number against what it must be for figures that stop when told.
+"""
 
 import numpy as np
 import pytest
@@ -35,9 +37,19 @@ def test_dances_on_their_own_beats():
 
 def test_the_means_are_those_of_the_clips():
     numbers = BeatScores(*(np.array([1.0, 2.0, 6.0]) * k for k in range(1, 6)))
-    assert [numbers.bas, numbers.bas_shuffled, numbers.bas_chance, numbers.beats_per_beat, numbers.speed] == [
-        3.0, 6.0, 9.0, 12.0, 15.0,
-    ]  # fmt: skip
+    assert [
+        numbers.bas,
+        numbers.bas_shuffled,
+        numbers.bas_chance,
+        numbers.beats_per_beat,
+        numbers.speed,
+    ] == [
+        3.0,
+        6.0,
+        9.0,
+        12.0,
+        15.0,
+    ]
 
 
 def test_shuffled_is_each_dance_with_each_other_song():

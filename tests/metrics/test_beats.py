@@ -1,5 +1,7 @@
-"""Beats of a dance: stops at known times, the closed form of chance, and a shake that fools the
-music form alone."""
+"""Beats of a dance.
+
+Stops at known times, the closed form of chance, and a shake that fools the music form alone.
+"""
 
 import warnings
 
@@ -63,14 +65,18 @@ def test_a_recorded_dance_has_the_same_beats_at_twenty_and_sixty_frames(real_dat
     clip = read_keypoints(
         real_data / "aist" / "keypoints3d" / "gBR_sBM_cAll_d06_mBR2_ch06.pkl"
     ).positions
-    fine, coarse = kinematic_beats(clip, 60), kinematic_beats(clip[::3], 20)
+    fine = kinematic_beats(clip, 60)
+    coarse = kinematic_beats(clip[::3], 20)
     assert f_measure(coarse, fine, 0.025) == 1.0
     assert 2.2 < len(fine) / 9.6 < 2.6  # beats a second: measured by others, at 20 frames/s
 
 
 def test_scores_by_hand():
     kinematic, music = np.array([1.0, 2.05, 2.5]), np.array([1.0, 2.0])
-    here, half, one = 1.0, np.exp(-0.5), np.exp(-50.0)  # 0, 1 and 10 sigma away
+    # 0, 1 and 10 sigma away
+    here = 1.0
+    half = np.exp(-0.5)
+    one = np.exp(-50.0)
     assert beat_alignment(kinematic, music) == pytest.approx((here + half + one) / 3)
     assert music_alignment(kinematic, music) == pytest.approx((here + half) / 2)
     assert beat_alignment(kinematic, music, sigma=0.1) == pytest.approx(
@@ -105,7 +111,8 @@ def test_chance_is_what_random_stops_score_for_any_beats():
 
 
 def test_shifting_at_random_finds_the_chance_of_both_forms():
-    rng, found = np.random.default_rng(2), kinematic_beats(stopping_at(BEATS, 20.0, 20), 20)
+    rng = np.random.default_rng(2)
+    found = kinematic_beats(stopping_at(BEATS, 20.0, 20), 20)
     shifted = shifted_level(beat_alignment, found, BEATS, 20.0, rng, times=2000)
     assert shifted == pytest.approx(chance_level(BEATS, 20.0), abs=0.02)
     # as many stops as beats, one period apart: both forms then have one chance level

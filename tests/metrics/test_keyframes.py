@@ -1,5 +1,7 @@
-"""Measures of in-betweens, and interpolation: hand-made motions, closed forms, what must not
-change."""
+"""Measures of in-betweens, and interpolation.
+
+Hand-made motions, closed forms, what must not change.
+"""
 
 import numpy as np
 import pytest

@@ -1,5 +1,7 @@
-"""Kinetic features: values of the public code, movements whose energy is known, and the fault in
-plain view."""
+"""Kinetic features.
+
+Values of the public code, movements whose energy is known, and the fault in plain view.
+"""
 
 import numpy as np
 import pytest
@@ -75,7 +77,8 @@ def test_a_circle_has_the_energies_and_the_acceleration_of_a_circle():
 def test_where_the_dancer_stands_matters_to_the_published_form_alone():
     near, far = circle(), circle(centre=(3.0, 0.0, 0.0))
     np.testing.assert_allclose(kinetic_features(near, 60), kinetic_features(far, 60), rtol=1e-9)
-    low, high = published_kinetic_features(near, 60), published_kinetic_features(far, 60)
+    low = published_kinetic_features(near, 60)
+    high = published_kinetic_features(far, 60)
     np.testing.assert_allclose(low[:2], high[:2], rtol=1e-9)
     assert high[2] / low[2] > 8
     # 59 * 60 * |p| for a joint that does not move at all

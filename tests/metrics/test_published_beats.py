@@ -1,5 +1,7 @@
-"""The published forms of the beat score: a recorded dance on its known grid, and each fault where
-it shows."""
+"""The published forms of the beat score.
+
+A recorded dance on its known grid, and each fault where it shows.
+"""
 
 import numpy as np
 import pytest

@@ -8,7 +8,8 @@ from motiondiff_edu.metrics import repair
 from motiondiff_edu.motion.skeleton import joint_index
 
 TRUTH = walk(np.tile([1.1, 0.0, 0.0], (12, 1)), seed=4).poses[:7]
-HAND, FOREARM = joint_index("RightHand"), joint_index("RightForeArm")
+HAND = joint_index("RightHand")
+FOREARM = joint_index("RightForeArm")
 KNOWN = np.ones((7, 21), bool)
 KNOWN[2:5, HAND] = False
 

@@ -51,7 +51,8 @@ def test_noise_and_aimless_movement_do_not_repeat():
 
 
 def test_place_and_heading_do_not_count():
-    angles, places = np.cumsum(RNG.normal(0, 0.3, 200)), np.cumsum(RNG.normal(0, 0.1, (200, 1)), 0)
+    angles = np.cumsum(RNG.normal(0, 0.3, 200))
+    places = np.cumsum(RNG.normal(0, 0.1, (200, 1)), 0)
     elsewhere = turned(loop(), angles, places)
     np.testing.assert_allclose(pose_changes(elsewhere), pose_changes(loop()), atol=1e-9)
     assert repeat_score(elsewhere) == pytest.approx(1.0)
@@ -71,8 +72,10 @@ def test_the_matrix_is_that_of_cosines():
 
 
 def test_lag_similarity_by_hand():
-    """One joint up and down: x = +1, -1, +1, -1 ... is opposite at odd lags and the same at even
-    ones."""
+    """One joint up and down.
+
+    x = +1, -1, +1, -1 ... is opposite at odd lags and the same at even ones.
+    """
     positions = np.tile(rest_pose(), (60, 1, 1))
     positions[:, 12, 1] += 0.1 * (-1.0) ** np.arange(60)
     similarity = lag_similarity(positions)

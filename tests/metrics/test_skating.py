@@ -1,5 +1,7 @@
-"""skating: nought for feet that stand, the slide itself for feet that slide, nothing for feet in
-the air."""
+"""metrics.skating, on feet that stand, slide and fly.
+
+Nought for feet that stand, the slide itself for feet that slide, nothing for feet in the air.
+"""
 
 import numpy as np
 import pytest
@@ -39,7 +41,8 @@ def test_a_slide_built_into_the_feet_is_read_too():
 
 def test_ground_velocity_is_the_velocity_in_the_world():
     rng = np.random.default_rng(4)
-    poses, control = rng.normal(size=(11, 21, 3)), rng.normal(size=(11, 3))
+    poses = rng.normal(size=(11, 21, 3))
+    control = rng.normal(size=(11, 3))
     world = to_world(poses, control, (1.0, 2.0, 0.5))[..., [0, 2]]
     heading = root_path(control, (1.0, 2.0, 0.5))[1]
     forward, left = forward_left((heading[1:] + heading[:-1]) / 2)
@@ -52,10 +55,8 @@ def test_ground_velocity_is_the_velocity_in_the_world():
 def test_moving_turning_or_mirroring_the_world_changes_nothing():
     control = control_of(6, 1.0, 0.1, 0.6)
     poses = gait(control) + np.random.default_rng(5).normal(0, 0.003, (120, 21, 3))
-    world, (path, heading) = (
-        to_world(poses, control, (9.0, -4.0, 2.2)),
-        root_path(control, (9.0, -4.0, 2.2)),
-    )
+    world = to_world(poses, control, (9.0, -4.0, 2.2))
+    path, heading = root_path(control, (9.0, -4.0, 2.2))
     moved, control_again = to_root_frame(world, path, heading)
     mirrored = skating(poses[:, MIRROR] * [-1, 1, 1], control * [1, -1, -1])
     assert skating(moved, control_again) == pytest.approx(skating(poses, control), rel=1e-6)

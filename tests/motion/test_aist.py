@@ -1,5 +1,7 @@
-"""AIST++ keypoints: what is read, in which unit, and that a hostile pickle is refused before it
-runs."""
+"""AIST++ keypoints.
+
+What is read, in which unit, and that a hostile pickle is refused before it runs.
+"""
 
 import codecs
 import os

@@ -39,8 +39,10 @@ def test_mirror_keeps_bones_and_is_its_own_inverse(walk):
 
 
 def test_mirrored_walk_integrates_to_the_mirrored_path(walk):
-    """The world itself, seen in a mirror that stands along z: x is negated, and sides swap
-    names."""
+    """The world itself, seen in a mirror that stands along z.
+
+    x is negated, and sides swap names.
+    """
     seen = walk.world((2.0, 1.0, 0.5))[:, MIRROR] * [-1, 1, 1]
     np.testing.assert_allclose(mirror(walk).world((-2.0, 1.0, -0.5)), seen, atol=1e-12)
     assert np.array_equal(mirror(walk).contacts, walk.contacts[:, [1, 0]])
@@ -48,17 +50,23 @@ def test_mirrored_walk_integrates_to_the_mirrored_path(walk):
 
 
 def public_mirror(poses):
-    """What the corpus' public preprocessing does, told in one line: the central joints keep their
-    x."""
+    """What the corpus' public preprocessing does, told in one line.
+
+    The central joints keep their x.
+    """
     out = poses[:, MIRROR] * [-1, 1, 1]
     out[:, CENTRE, 0] = poses[:, CENTRE, 0]
     return out
 
 
 def test_the_public_mirror_tears_the_shoulders_off():
-    """A neck 5 cm to the left between shoulders 15 cm away: 15.1 cm become 5.4 and 25.1 (measured
-    on its code)."""
-    neck, left, right = 11, 13, 17
+    """A neck 5 cm to the left between shoulders 15 cm away.
+
+    15.1 cm become 5.4 and 25.1 (measured on its code).
+    """
+    neck = 11
+    left = 13
+    right = 17
     poses = np.zeros((1, J, 3))
     poses[0, neck] = [0.05, 1.45, 0]
     poses[0, left], poses[0, right] = [0.20, 1.43, 0], [-0.10, 1.43, 0]

@@ -38,8 +38,10 @@ REAL = {
 
 @pytest.fixture(autouse=True)
 def no_hang():
-    """Some readers never come back from these files; here that is an error and not a wait (of CPU
-    time)."""
+    """Some readers never come back from these files.
+
+    Here that is an error and not a wait (of CPU time).
+    """
     if not hasattr(signal, "SIGPROF"):
         yield
         return

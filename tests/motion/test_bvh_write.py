@@ -1,5 +1,7 @@
-"""Writing BVH: constant bones fitted to any motion, angles without flips, the same motion read
-back."""
+"""Writing BVH and reading it back.
+
+Constant bones fitted to any motion, angles without flips, the same motion read back.
+"""
 
 import json
 import shutil

@@ -46,8 +46,10 @@ def test_no_overlap_and_an_impossible_one():
 
 @pytest.mark.parametrize("seed", range(20))
 def test_no_source_stands_on_two_sides(seed):
-    """A property of any data set: slices of one recording share frames, so they must share a
-    side."""
+    """A property of any data set.
+
+    Slices of one recording share frames, so they must share a side.
+    """
     rng = np.random.default_rng(seed)
     sources = [f"take {k}" for k in range(int(rng.integers(3, 12)))]
     clips = [

@@ -52,14 +52,17 @@ def test_the_swapped_markers_of_a_real_dance(real_data):
 
 @pytest.mark.parametrize("whole", [False, True])
 def test_the_swapped_markers_are_mended(real_data, whole):
-    """Before, feet are thrown about; after, no more than elsewhere in the dance, and bones keep
-    their lengths."""
+    """Before, feet are thrown about.
+
+    After, no more than elsewhere in the dance, and bones keep their lengths.
+    """
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         clip = load_clip(real_data / "bvh" / "cmu_acrnn_salsa_10.bvh")
     before, wild = clip.world(), clip.info["wild"]
     known = ~np.repeat(wild.any(1, keepdims=True), 21, axis=1) if whole else ~wild
-    network, draw = checkpoints.pretrained("unconditional"), torch.Generator().manual_seed(0)
+    network = checkpoints.pretrained("unconditional")
+    draw = torch.Generator().manual_seed(0)
     after = inbetween(network, before, known, steps=25, generator=draw)[0]
     assert np.array_equal(after[known], before[known])
     assert np.ptp(bone_lengths(after), axis=0).max() < 0.002

@@ -1,5 +1,7 @@
-"""A dragged joint: where it comes to, that no bone changes its length, that what need not move
-stays."""
+"""A dragged joint.
+
+Where it comes to, that no bone changes its length, that what need not move stays.
+"""
 
 import numpy as np
 import pytest
@@ -64,8 +66,10 @@ def test_two_bones_make_the_triangle_of_their_lengths():
 
 
 def test_the_bend_turns_with_the_limb_and_does_not_flip():
-    """A leg swung from hanging down to pointing ahead: the knee goes from ahead to up, never
-    through the leg."""
+    """A leg swung from hanging down to pointing ahead.
+
+    The knee goes from ahead to up, never through the leg.
+    """
     down = two_bones(
         np.array([[0.0, 0, 0], [0, -1, 0], [0, -2, 0]]), np.array([0.0, -1.9, 0]), BENDS
     )

@@ -49,9 +49,12 @@ def test_an_order_that_does_not_fit_is_refused(order):
 
 
 def test_chain_worked_out_by_hand():
-    """Root at (1, 2, 3) turned 90 degrees about z; then two bones, 2 up and 1 to x; the second
-    joint turns back."""
-    parents, offsets = np.array([-1, 0, 1]), np.array([[9.0, 9, 9], [0, 2, 0], [1, 0, 0]])
+    """Root at (1, 2, 3) turned 90 degrees about z; then two bones, 2 up and 1 to x.
+
+    The second joint turns back.
+    """
+    parents = np.array([-1, 0, 1])
+    offsets = np.array([[9.0, 9, 9], [0, 2, 0], [1, 0, 0]])
     local = np.stack([rot_z(np.pi / 2), rot_z(-np.pi / 2), np.eye(3)])[None]
     positions, rotations = forward_kinematics(local, np.array([[1.0, 2, 3]]), offsets, parents)
     # up, turned by 90 degrees about z, points to -x; after turning back, x is x again
@@ -67,7 +70,9 @@ def test_whole_skeleton_equals_scipy_chain(rng):
         local.as_matrix().reshape(frames, J, 3, 3), root, OFFSETS, PARENTS
     )
     for t, j in itertools.product(range(frames), range(J)):
-        chain, point, turn = [j], root[t].copy(), Rotation.identity()
+        chain = [j]
+        point = root[t].copy()
+        turn = Rotation.identity()
         while PARENTS[chain[0]] >= 0:
             chain.insert(0, int(PARENTS[chain[0]]))
         for before, joint in zip(chain[:-1], chain[1:], strict=True):

@@ -1,5 +1,7 @@
-"""The main job on real input: a motion-capture clip is retargeted, continued under new control, and
-written as BVH."""
+"""The main job on real input.
+
+A motion-capture clip is retargeted, continued under new control, and written as BVH.
+"""
 
 import numpy as np
 import pytest

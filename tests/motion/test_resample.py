@@ -1,5 +1,7 @@
-"""motion.resample: sums of sines come back at the new frames, the ends stay, and what cannot be
-done is refused."""
+"""motion.resample.
+
+Sums of sines come back at the new frames, the ends stay, and what cannot be done is refused.
+"""
 
 import numpy as np
 import pytest
@@ -17,7 +19,8 @@ def movement(times):
 
 
 def test_movement_below_a_quarter_of_the_rate_comes_back():
-    coarse, fine = movement(np.arange(81) / 20), movement(np.arange(241) / 60)
+    coarse = movement(np.arange(81) / 20)
+    fine = movement(np.arange(241) / 60)
     new = resample(coarse, 20)
     assert new.shape == (241, 3, 3)
     inner = np.abs(new - fine)[12:-12].max()

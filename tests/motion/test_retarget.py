@@ -14,12 +14,19 @@ from motiondiff_edu.motion.retarget import load_clip, retarget
 from motiondiff_edu.motion.root_frame import forward_left
 from motiondiff_edu.motion.skeleton import JOINTS, TOES
 
-SMPL = dict(zip(JOINTS, "Pelvis L_Hip L_Knee L_Ankle L_Foot R_Hip R_Knee R_Ankle R_Foot Spine1 Spine2 Neck Head "
-    "L_Shoulder L_Elbow L_Wrist L_Hand R_Shoulder R_Elbow R_Wrist R_Hand".split(), strict=True))  # fmt: skip
+SMPL = dict(
+    zip(
+        JOINTS,
+        "Pelvis L_Hip L_Knee L_Ankle L_Foot R_Hip R_Knee R_Ankle R_Foot Spine1 Spine2 Neck Head "
+        "L_Shoulder L_Elbow L_Wrist L_Hand R_Shoulder R_Elbow R_Wrist R_Hand".split(),
+        strict=True,
+    )
+)
 SMPL |= {"LeftShoulder": "L_Collar", "RightShoulder": "R_Collar"}
 HUMANOIDS = (
-    "animdraw_cmu1_jumping_jacks animdraw_fair1_dab bvhpython_test_freebvh bvhpython_test_mocapbank bvhtoolbox_walk01 "
-    "cmu_02_01_walk cmu_05_06_dance cmu_12_01_walk_pybvh cmu_acrnn_salsa_10 cmu_max_131_01 pybvh_bvh_test1 "
+    "animdraw_cmu1_jumping_jacks animdraw_fair1_dab bvhpython_test_freebvh "
+    "bvhpython_test_mocapbank bvhtoolbox_walk01 cmu_02_01_walk cmu_05_06_dance "
+    "cmu_12_01_walk_pybvh cmu_acrnn_salsa_10 cmu_max_131_01 pybvh_bvh_test1 "
     "pymo_AV_8Walk_Meredith_HVHA_Rep1"
 ).split()
 
@@ -138,10 +145,15 @@ def test_real_walks(real_data, name, speed):
     clip = load_clip(real_data / "bvh" / f"{name}.bvh")
     world = clip.world()
     assert cruise(clip) == pytest.approx(speed, rel=0.03)
-    thigh, shank = world[:, [2, 6]] - world[:, [1, 5]], world[:, [3, 7]] - world[:, [2, 6]]
+    thigh = world[:, [2, 6]] - world[:, [1, 5]]
+    shank = world[:, [3, 7]] - world[:, [2, 6]]
     left = (world[:, 1] - world[:, 5])[:, None]
-    bend = np.degrees(np.arctan2((np.cross(thigh, shank) * left).sum(-1) / np.linalg.norm(left, axis=-1),
-        (thigh * shank).sum(-1)))  # fmt: skip
+    bend = np.degrees(
+        np.arctan2(
+            (np.cross(thigh, shank) * left).sum(-1) / np.linalg.norm(left, axis=-1),
+            (thigh * shank).sum(-1),
+        )
+    )
     assert bend.min() > -5 and 55 < bend.max() < 85
     lift = world[:, list(TOES), 1].max(0)
     assert (0.05 < lift).all() and (lift < 0.25).all()

@@ -1,5 +1,7 @@
-"""Figures without toes and end sites: they stand on their ankles, at any rate, with flat feet of
-ours."""
+"""Figures without toes and end sites.
+
+They stand on their ankles, at any rate, with flat feet of ours.
+"""
 
 import numpy as np
 import pytest
@@ -21,7 +23,8 @@ def test_joints_that_a_file_lacks_stay_unknown_and_the_others_are_resampled():
     cut = points.copy()
     cut[:, [4, 16]] = np.nan
     for fps, count in ((120.0, 8), (30.0, 31)):  # with the low-pass before the spline, and without
-        whole, partly = resample(points, fps, 20.0), resample(cut, fps, 20.0)
+        whole = resample(points, fps, 20.0)
+        partly = resample(cut, fps, 20.0)
         assert partly.shape == (count, 21, 3)
         assert np.isnan(partly[:, [4, 16]]).all()
         others = [j for j in range(21) if j not in (4, 16)]

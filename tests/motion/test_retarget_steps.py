@@ -14,7 +14,7 @@ from motiondiff_edu.motion.normalise import (
     turn_up,
     unmirror,
 )
-from motiondiff_edu.motion.planting import find_contacts, plant, shift_to_pins, solve_leg, spans
+from motiondiff_edu.motion.planting import find_contacts, plant, runs, shift_to_pins, solve_leg
 from motiondiff_edu.motion.retarget import warn_sunk
 from motiondiff_edu.motion.skeleton import BONE_LENGTHS, HEELS, OFFSETS, PARENTS, TOES, joint_index
 
@@ -53,10 +53,9 @@ def test_a_tilted_floor_is_found_and_levelled():
 
 def test_resampling_keeps_slow_motion_and_drops_fast():
     t = np.arange(481) / 120
-    slow, fast = (
-        np.sin(2 * np.pi * 1.0 * t),
-        0.1 * np.sin(2 * np.pi * 16 * t),
-    )  # 16 Hz would look like 4 Hz
+    # 16 Hz would look like 4 Hz
+    slow = np.sin(2 * np.pi * 1.0 * t)
+    fast = 0.1 * np.sin(2 * np.pi * 16 * t)
     points = np.broadcast_to((slow + fast)[:, None, None], (481, 21, 3)).copy()
     out = resample(points, 120.0, 20.0)
     assert out.shape == (81, 21, 3)
@@ -77,7 +76,7 @@ def test_contacts_and_pins():
     toe = np.zeros((9, 3))
     toe[:, 0] = [0, 0.001, 0.002, 0.2, 0.4, 0.6, 0.8, 0.801, 0.802]
     contact = np.array([1, 1, 1, 0, 0, 0, 1, 1, 1], bool)
-    assert spans(contact) == [(0, 3), (6, 9)]
+    assert runs(contact).tolist() == [[0, 3], [6, 9]]
     moved = toe + shift_to_pins(toe, contact)
     assert np.allclose(moved[:3], moved[0]) and np.allclose(moved[6:], moved[6])
     both = np.stack([toe, toe + [0, 0.2, 0]], axis=1)
@@ -98,7 +97,8 @@ def test_planting_stills_the_toes_and_keeps_the_bones():
 
 
 def test_knees_bend_forward_even_where_they_did_not():
-    hip, ankle = np.array([[0.0, 0.9, 0.0]]), np.array([[0.0, 0.12, 0.1]])
+    hip = np.array([[0.0, 0.9, 0.0]])
+    ankle = np.array([[0.0, 0.12, 0.1]])
     for behind in (0.05, 0.0, -0.05):
         knee, reached = solve_leg(
             hip, ankle, np.array([[0.0, 0.5, behind]]), np.array([[0.0, 0.0, 1.0]])

@@ -9,8 +9,10 @@ from motiondiff_edu.motion.skeleton import OFFSETS, PARENTS, J, joint_index
 
 
 def long_run(seconds=60, fps=20, seed=3):
-    """Poses and control of a run at 3 m/s that turns both ways, steps aside, and passes +-pi
-    several times."""
+    """Poses and control of a run at 3 m/s.
+
+    It turns both ways, steps aside, and passes +-pi several times.
+    """
     rng = np.random.default_rng(seed)
     t = np.arange(seconds * fps) / fps
     control = np.stack([3 + 0 * t, 0.5 * np.sin(t), 1.2 * np.sin(0.3 * t) + 0.6], -1)
@@ -51,8 +53,10 @@ def test_one_second_of_each_column(row, end):
 
 
 def test_a_circle_closes_exactly():
-    """Walking a full turn at constant speed returns to the start: the halfway heading makes it a
-    regular polygon."""
+    """Walking a full turn at constant speed returns to the start.
+
+    The halfway heading makes it a regular polygon.
+    """
     frames = 80
     control = np.tile([1.3, 0.2, 2 * np.pi * rf.FPS / frames], (frames + 1, 1))
     root, heading = rf.root_path(control, (1.0, 2.0, 0.7))
@@ -87,15 +91,18 @@ def test_the_body_faces_where_hips_and_shoulders_look_together():
     world = np.zeros((2, 21, 3))
     for part, width, angle in (("UpLeg", 0.1, 0.4), ("Arm", 0.3, 1.0)):
         left = width * np.array([np.cos(angle), 0.0, -np.sin(angle)])
-        world[0, joint_index("Left" + part)], world[0, joint_index("Right" + part)] = left, -left
+        world[0, joint_index("Left" + part)] = left
+        world[0, joint_index("Right" + part)] = -left
     world[1] = world[0] * [-1.0, 1.0, -1.0]  # half a turn
     wanted = np.angle(0.1 * np.exp(0.4j) + 0.3 * np.exp(1.0j))
     np.testing.assert_allclose(rf.body_heading(world), [wanted, wanted - np.pi], atol=1e-12)
 
 
 def test_estimated_root_finds_path_and_heading_of_a_swaying_figure():
-    """The pelvis sways at gait frequency; the estimate has a tenth of the sway, and heading passes
-    pi unbroken."""
+    """The pelvis sways at gait frequency.
+
+    The estimate has a tenth of the sway, and heading passes pi unbroken.
+    """
     frames, fps = 240, 20
     t = np.arange(frames) / fps
     control = np.tile([1.2, 0.0, 0.5], (frames, 1))
@@ -112,8 +119,10 @@ def test_estimated_root_finds_path_and_heading_of_a_swaying_figure():
 
 @pytest.mark.parametrize("frames", [11, 19, 47])
 def test_estimated_root_of_a_short_clip_keeps_its_speed(frames):
-    """Half a second is shorter than the Gaussian: a steady walk must not seem to slow down at its
-    ends."""
+    """Half a second is shorter than the Gaussian.
+
+    A steady walk must not seem to slow down at its ends.
+    """
     control = np.tile([1.3, 0.2, 0.0], (frames, 1))
     poses = np.tile(long_run(seconds=1)[0].mean(0), (frames, 1, 1))
     root, heading = rf.estimate_root(rf.to_world(poses, control))
@@ -123,10 +132,13 @@ def test_estimated_root_of_a_short_clip_keeps_its_speed(frames):
 
 
 def test_the_estimated_root_is_smoothed_by_gaussians_of_these_lengths():
-    """A Gaussian of sigma seconds leaves exp(-(2 pi f sigma)^2 / 2) of a sine of f Hz: way .25 s,
-    turns .33 s."""
+    """A Gaussian of sigma seconds leaves exp(-(2 pi f sigma)^2 / 2) of a sine of f Hz.
+
+    Way .25 s, turns .33 s.
+    """
     t, pose = np.arange(400) / 20, long_run(seconds=1)[0].mean(0)
-    sway, turn = 0.05 * np.sin(2 * np.pi * 0.6 * t), 0.2 * np.sin(2 * np.pi * 0.6 * t)
+    sway = 0.05 * np.sin(2 * np.pi * 0.6 * t)
+    turn = 0.2 * np.sin(2 * np.pi * 0.6 * t)
     world = np.tile(pose, (400, 1, 1))
     still, heading = rf.estimate_root(world)
     world[..., 0] += sway[:, None]
@@ -143,10 +155,8 @@ def test_the_estimated_root_is_smoothed_by_gaussians_of_these_lengths():
 def test_the_heading_is_that_of_hips_and_shoulders_together():
     pose = np.zeros((1, 21, 3))
     for name, x, z in (("UpLeg", 0.1, 0.0), ("Arm", 0.3 * np.cos(0.4), -0.3 * np.sin(0.4))):
-        pose[0, joint_index("Left" + name)], pose[0, joint_index("Right" + name)] = (
-            (x, 1, z),
-            (-x, 1, -z),
-        )
+        pose[0, joint_index("Left" + name)] = (x, 1, z)
+        pose[0, joint_index("Right" + name)] = (-x, 1, -z)
     _, heading = rf.estimate_root(np.tile(pose, (60, 1, 1)))
     by_hand = np.arctan2(
         0.3 * np.sin(0.4), 0.1 + 0.3 * np.cos(0.4)

@@ -57,3 +57,12 @@ def test_the_resting_toe_stands_on_the_floor_and_left_is_positive_x():
 def test_unknown_joint_names_those_there_are():
     with pytest.raises(KeyError, match="LeftHandIndex1"):
         sk.joint_index("LeftPinky")
+
+
+def test_pairs_of_bones_are_left_and_right():
+    """The eight of an arm and a leg, and none in the middle."""
+    names = [(sk.JOINTS[parent], sk.JOINTS[child]) for parent, child in sk.BONES]
+    for left, right in sk.BONE_PAIRS:
+        assert tuple(n.replace("Left", "Right") for n in names[left]) == names[right]
+        assert names[left] != names[right]
+    assert len(sk.BONE_PAIRS) == len(set(sk.BONE_PAIRS)) == 8

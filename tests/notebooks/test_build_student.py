@@ -1,8 +1,11 @@
-"""tools/build_student.py: stubs, folded solutions, staleness; and this checkout's edition is up to
-date."""
+"""tools/build_student.py: stubs, folded solutions, staleness.
+
+And this checkout's edition is up to date.
+"""
 
 import ast
 import json
+import subprocess
 
 import build_student
 import notebook_cells
@@ -99,7 +102,82 @@ def test_check_finds_missing_changed_and_left_over(folder, capsys):
         "02_noise.ipynb: changed",
         "09_old.ipynb: left over",
     ]
-    assert build_student.main(["--folder", str(folder)]) == 0 and build_student.main(check) == 0
+    assert (
+        build_student.main(["--force", "--folder", str(folder)]) == 0
+        and build_student.main(check) == 0
+    )
+
+
+def filled_in(path):
+    """The edition's notebook with an answer in place of the stub."""
+    return path.read_text("utf-8").replace(r"raise NotImplementedError(\"your turn\")", "return 7")
+
+
+def git(folder, *arguments):
+    own = ["-c", "user.name=a", "-c", "user.email=a@b.c", "-c", "commit.gpgsign=false"]
+    subprocess.run(["git", *own, *arguments], cwd=folder, check=True, capture_output=True)
+
+
+def test_an_answer_typed_into_the_edition_is_not_overwritten(folder, capsys):
+    make = ["--folder", str(folder)]
+    assert build_student.main(make) == 0
+    path = folder / "student" / "02_noise.ipynb"
+    path.write_text(answered := filled_in(path), "utf-8")
+    assert "return 7" in answered
+    assert build_student.main(make) == 1 and path.read_text("utf-8") == answered
+    told = capsys.readouterr().err
+    assert "  student/02_noise.ipynb\n" in told and "make student FORCE=1" in told
+    assert build_student.main([*make, "--force"]) == 0 and "return 7" not in path.read_text("utf-8")
+
+
+def test_a_notebook_of_a_students_own_is_not_removed(folder, capsys):
+    (folder / "student").mkdir()
+    (folder / "student" / "my_notes.ipynb").write_text("mine")
+    assert (
+        build_student.main(["--folder", str(folder)]) == 1
+        and "my_notes.ipynb" in capsys.readouterr().err
+    )
+    assert (folder / "student" / "my_notes.ipynb").read_text() == "mine"
+    assert not (folder / "student" / "02_noise.ipynb").exists()
+
+
+def test_what_was_written_last_is_written_again_after_the_source_changed(folder):
+    make = ["--folder", str(folder)]
+    for source in ("x = [1, 2, 3]", "x = [1, 2, 3, 4]"):
+        assert build_student.main(make) == 0
+        write(folder, cell(source))
+    write(folder, cell("y = 5"), name="05_other.ipynb")
+    (folder / "02_noise.ipynb").unlink()
+    assert build_student.main(make) == 0
+    assert [path.name for path in (folder / "student").glob("*.ipynb")] == ["05_other.ipynb"]
+
+
+def test_without_a_record_an_edition_that_would_not_change_is_no_obstacle(folder):
+    make = ["--folder", str(folder)]
+    assert build_student.main(make) == 0
+    (folder / "student" / build_student.RECORD).unlink()
+    assert build_student.main(make) == 0
+    (folder / "student" / build_student.RECORD).unlink()
+    write(folder, cell("x = [1, 2, 3]"))
+    assert build_student.main(make) == 1
+
+
+def test_in_a_fresh_clone_what_is_committed_may_be_overwritten_and_nothing_else(folder):
+    make, path = ["--folder", str(folder)], folder / "student" / "02_noise.ipynb"
+    build_student.write(folder)
+    (folder / ".gitignore").write_text("student/*.json\n")
+    git(folder, "init")
+    git(folder, "add", ".")
+    git(folder, "commit", "-m", "all")
+    (folder / "student" / build_student.RECORD).unlink()
+    write(folder, cell("x = [1, 2, 3]"))
+    assert build_student.main(make) == 0
+    path.write_text(answered := path.read_text("utf-8").replace("[1, 2, 3]", "[1]"), "utf-8")
+    assert build_student.main(make) == 1 and path.read_text("utf-8") == answered
+    git(folder, "add", ".")  # what is only staged can still be lost
+    assert build_student.main(make) == 1
+    git(folder, "commit", "-m", "answers")
+    assert build_student.main(make) == 0
 
 
 @pytest.mark.parametrize(

@@ -1,5 +1,6 @@
-"""What a reader does after Run All: press Walk in notebook 00, move a slider in notebook 07; names
-may be reused.
+"""What a reader does after Run All: press Walk in notebook 00, move a slider in notebook 07.
+
+Names may be reused.
 
 A button's error reaches nobody: the kernel swallows it. So the cells are run here, with a walker
 that stands still, and the widgets are used afterwards.
@@ -14,8 +15,10 @@ from motiondiff_edu.beyond.footholds import FootholdMoDiff
 
 
 def standing_still(walker, past, control, **options) -> torch.Tensor:
-    """Instead of `rollout.generate`: the last pose again and again. Who listens to the gate hears
-    ten calls a frame."""
+    """Instead of `rollout.generate`: the last pose again and again.
+
+    Who listens to the gate hears ten calls a frame.
+    """
     frames = control.shape[-2] - past.shape[-2]
     if isinstance(getattr(walker, "model", None), FootholdMoDiff):
         for _ in range(10 * frames):

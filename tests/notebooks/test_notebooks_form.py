@@ -1,5 +1,7 @@
-"""tools/check_notebooks.py finds each fault it claims to find, and this checkout's notebooks have
-none."""
+"""tools/check_notebooks.py finds each fault it claims to find.
+
+This checkout's notebooks have none.
+"""
 
 import copy
 import json
@@ -9,9 +11,15 @@ import notebook_cells
 import pytest
 
 OPENING = """# 02 Noise
-After this notebook you will be able to add noise. **Needs** 01. **Paper** MoDiff III-B. **Minutes** 20.
+After this notebook you will be able to add noise. **Needs** 01. **Paper** MoDiff III-B. \
+**Minutes** 20.
 **Symbols** x0, x_s, s."""
-EXERCISE = "**Exercise** (difficulty 1 of 3, 5 minutes)\n<details><summary>Hint</summary>\nsquare roots\n</details>"
+IMPORTS = """from motiondiff_edu import checks, runtime
+run = runtime.start(notebook="02", seed=0)"""
+EXERCISE = """**Exercise** (difficulty 1 of 3, 5 minutes)
+<details><summary>Hint</summary>
+square roots
+</details>"""
 SOLUTION = "def f(x):\n    # solution\n    return x\n    # end solution\n\n\nchecks.f(f)"
 
 
@@ -28,10 +36,7 @@ def good():
     ]
     cells = [
         cell(OPENING, kind="markdown"),
-        cell(
-            'from motiondiff_edu.course import checks, runtime\nrun = runtime.start(notebook="02", seed=0)',
-            "imports",
-        ),
+        cell(IMPORTS, "imports"),
         cell("def twin(x):\n    return x", "twin"),
         *[part for words in text for part in (words, cell("x = 1"))],
         *[
@@ -53,6 +58,14 @@ def faults(notebook, tmp_path, name="02_noise.ipynb"):
 
 
 def test_a_good_notebook_has_no_fault(good, tmp_path):
+    assert faults(good, tmp_path) == []
+
+
+def test_a_wrapped_statement_counts_once_and_imports_not_at_all(good, tmp_path):
+    wrapped = "\n".join(f"x{i} = [\n    {i},\n]" for i in range(8))
+    for one in good["cells"][4:12:2]:
+        one["source"] = wrapped
+    first(good, "imports")["source"] += "\nx = 1" * 20
     assert faults(good, tmp_path) == []
 
 
@@ -79,6 +92,14 @@ def spoil_long_cell(nb):
 def spoil_share(nb):
     for one in nb["cells"][4:10:2]:
         one["source"] = "\n".join(f"x = {i}" for i in range(9))
+
+
+def spoil_rows(nb):
+    first(nb, "twin")["source"] = "x = [\n" + "    0,\n" * 31 + "]"
+
+
+def spoil_width(nb):
+    first(nb, "twin")["source"] = "x = 1\n\nlonger = " + "1" * 80
 
 
 def spoil_ids(nb):
@@ -151,6 +172,8 @@ def spoil_image(nb):
         (spoil_words, "words; keep under"),
         (spoil_long_cell, "a code cell of 17 lines"),
         (spoil_share, "more than 8 lines"),
+        (spoil_rows, "a code cell of 33 rows"),
+        (spoil_width, "cell c2, line 3 has 89 columns"),
         (spoil_ids, "ids are missing or repeated"),
         (spoil_twin, "tagged `twin`"),
         (spoil_prediction, "1 times **Predict**"),

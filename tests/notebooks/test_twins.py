@@ -1,5 +1,7 @@
-"""The step-by-step versions in the notebooks agree with the library: cells tagged `twin`, run and
-compared."""
+"""The step-by-step versions in the notebooks agree with the library.
+
+Cells tagged `twin`, run and compared.
+"""
 
 import functools
 
@@ -14,8 +16,10 @@ PATHS = {path.stem[:2]: path for path in notebook_cells.sources()}
 
 @functools.cache
 def names(notebook: str) -> dict:
-    """What the cells tagged imports, setup and twin define, run in a fresh namespace without any
-    other cell."""
+    """What the cells tagged imports, setup and twin define.
+
+    They run in a fresh namespace without any other cell.
+    """
     content = notebook_cells.read(PATHS[notebook])
     space = notebook_cells.start(content, PATHS[notebook].stem)
     return notebook_cells.run(notebook_cells.code(content, "twin"), space, PATHS[notebook].stem)
@@ -34,10 +38,8 @@ def flat(value) -> list[np.ndarray]:
 def test_the_notebooks_version_agrees_with_the_library(notebook, name):
     twin = TWINS[notebook][name]
     assert name in names(notebook), f"no cell of notebook {notebook} tagged `twin` defines {name}"
-    mine, library = (
-        flat(names(notebook)[name](*twin.arguments())),
-        flat(twin.library(*twin.arguments())),
-    )
+    mine = flat(names(notebook)[name](*twin.arguments()))
+    library = flat(twin.library(*twin.arguments()))
     assert len(mine) == len(library)
     for got, wanted in zip(mine, library, strict=True):
         np.testing.assert_allclose(got, wanted, atol=twin.atol, rtol=twin.rtol)

@@ -1,31 +1,22 @@
-"""Listening with a dancer: attention by level, its share on beats, and what a silenced sound
-moves."""
+"""Where a dancer's attention reads: by level, and its share on beats."""
 
 import io
+from dataclasses import replace
 from datetime import UTC, datetime
 
 import notebook_cells
 import numpy as np
 import pytest
 import torch
+from bursts import clicks
 from small_dancers import TINY
 from small_dancers import dancer_to_mel as dancer
 
 from motiondiff_edu.conditions.music import log_mel
 from motiondiff_edu.cross_modal_attention import CrossModalAttention
-from motiondiff_edu.mofusion import MoFusion
+from motiondiff_edu.mofusion import MoFusion, View
 from motiondiff_edu.performers import attention_on_beats
 from motiondiff_edu.pretrained import checkpoints
-
-
-def clicks(seconds: float, at: tuple[float, ...], tone: float = 0.1) -> np.ndarray:
-    """A steady tone of 500 Hz, and short bursts of noise upon it."""
-    t = np.arange(round(seconds * 16_000)) / 16_000
-    sound = tone * np.sin(2 * np.pi * 500 * t)
-    for moment in at:
-        burst = np.where(t >= moment, np.exp(-np.maximum(t - moment, 0) / 0.02), 0.0)
-        sound = sound + 0.5 * burst * np.random.default_rng(3).standard_normal(len(t))
-    return sound.astype(np.float32)
 
 
 def maps(T: int = 30, s: int = 5, **changes):
@@ -38,8 +29,13 @@ def maps(T: int = 30, s: int = 5, **changes):
 
 def test_each_level_has_a_row_for_each_of_its_frames_and_a_column_for_each_token():
     found, times = maps(T=30)  # music: the 47 Mel frames of 1.5 s, every second of which is a token
-    rows = {"down, 20 a second": 30, "down, 10 a second": 15, "bottom, 5 a second": 8, "up, 10 a second": 15,
-            "up, 20 a second": 30}  # fmt: skip
+    rows = {
+        "down, 20 a second": 30,
+        "down, 10 a second": 15,
+        "bottom, 5 a second": 8,
+        "up, 10 a second": 15,
+        "up, 20 a second": 30,
+    }
     assert {name: m.shape for name, m in found.items()} == {
         name: (n, 24) for name, n in rows.items()
     }
@@ -52,9 +48,18 @@ def test_each_level_has_a_row_for_each_of_its_frames_and_a_column_for_each_token
     )  # rows differ: they ask at different times
 
 
-def test_rows_and_columns_lie_where_they_are_in_time():
-    """A network that reaches 0.2 s: where its weights are zero is known beforehand."""
-    found, times = maps(T=30, reach=0.2, heads=1)
+def test_rows_and_columns_lie_where_they_are_in_time(monkeypatch):
+    """A network that may attend within 0.2 s only: where its weights are zero is known
+    beforehand."""
+    plain = View.of
+
+    def near(T, lengths, level, music, config):
+        view, times = plain(T, lengths, level, music, config), torch.arange(0, T, 2**level) / 20
+        away = (times[:, None] - music.times).abs()
+        return replace(view, bias=torch.where(away <= 0.2, 0.0, -1e4)[None, None])
+
+    monkeypatch.setattr(View, "of", near)
+    found, times = maps(T=30, heads=1)
     for (name, m), level in zip(found.items(), (0, 1, 2, 1, 0), strict=True):
         frames = np.arange(len(m)) * 2**level / 20
         away = np.abs(frames[:, None] - times)
@@ -69,7 +74,9 @@ def test_the_layers_are_those_of_the_network():
 
 
 def test_maps_come_from_the_seed_and_depend_on_the_step():
-    one, again, other = maps(s=5)[0], maps(s=5)[0], maps(s=12)[0]
+    one = maps(s=5)[0]
+    again = maps(s=5)[0]
+    other = maps(s=12)[0]
     for name in one:
         assert np.array_equal(one[name], again[name])
     assert np.abs(one["bottom, 5 a second"] - other["bottom, 5 a second"]).max() > 1e-5
@@ -114,7 +121,9 @@ def test_beats_with_another_place_are_what_even_weights_get():
 
 def test_seconds_read_by_hand():
     times = 0.7 + np.arange(5) * 0.064
-    even, one, two = np.full(5, 0.2), np.eye(5)[3], np.array([0, 0.5, 0, 0, 0.5])
+    even = np.full(5, 0.2)
+    one = np.eye(5)[3]
+    two = np.array([0, 0.5, 0, 0, 0.5])
     for row, tokens in ((even, 5), (one, 1), (two, 2)):
         assert attention_on_beats.seconds_read(row[None], times) == pytest.approx(tokens * 0.064)
     assert attention_on_beats.seconds_read(np.stack([even, one]), times) == pytest.approx(3 * 0.064)
@@ -129,95 +138,11 @@ def test_share_near_counts_the_silenced_span():
     assert got == pytest.approx(np.array([[0.2, 0.25 + 0.15], [0.0, 0.0]]))
 
 
-def test_a_silenced_hit_is_gone_and_nothing_else():
-    song, tone = clicks(2.0, (0.5, 1.2)), clicks(2.0, ())
-    quiet = attention_on_beats.silence_hit(song, 1.2)
-    t = np.arange(len(song)) / 16_000
-    span = (t >= 1.2 - attention_on_beats.EDGE) & (
-        t <= 1.2 + attention_on_beats.WIDTH + attention_on_beats.EDGE
-    )
-    assert quiet.dtype == song.dtype and np.array_equal(quiet[~span], song[~span])
-    hit = (t >= 1.2) & (t < 1.3)
-
-    def power(x):
-        return float(np.square(x[hit]).mean())
-
-    assert power(quiet - tone) < 0.02 * power(song - tone)  # of the burst hardly anything is left
-    assert power(quiet) == pytest.approx(power(tone), rel=0.15)  # and the tone goes on
-    assert np.array_equal(attention_on_beats.silence_hit(tone, 1.2)[~span], tone[~span])
-    assert (
-        np.abs(attention_on_beats.silence_hit(tone, 1.2) - tone).max() < 0.01
-    )  # where nothing is struck nothing goes
-
-
-def test_a_hit_at_the_very_start_is_silenced_too():
-    song = clicks(1.0, (0.0,), tone=0.0)
-    assert (
-        np.abs(attention_on_beats.silence_hit(song, 0.0)[:1600]).max() < 0.05 * np.abs(song).max()
-    )
-
-
-@pytest.mark.parametrize(
-    "time, width, words",
-    [(2.0, 0.12, "no sound at 2 s"), (-0.1, 0.12, "no sound"), (1.0, 0.0, "above 0")],
-)
-def test_what_cannot_be_silenced_is_named(time, width, words):
-    with pytest.raises(ValueError, match=words):
-        attention_on_beats.silence_hit(clicks(2.0, (0.5,)), time, width)
-
-
-def test_occlusion_dances_again_from_the_same_noise():
-    one, song, times = dancer(), clicks(2.0, (0.5, 1.0), tone=0.0), np.array([0.5, 1.0, 1.6])
-    found = attention_on_beats.occlusion(
-        one, song, times, 33, generator=torch.Generator().manual_seed(7), steps=3
-    )
-    start = torch.randn(1, 33, 63, generator=torch.Generator().manual_seed(7))
-    plain = one.dance(log_mel(song)[None], 33, start=start, steps=3, eta=0.0)[0].double().numpy()
-    assert found.dance == pytest.approx(plain, abs=1e-5)
-    assert found.without.shape == (3, 33, 21, 3) and found.moved.shape == (3, 33)
-    by_hand = np.sqrt(((found.without[1, 20] - plain[20]) ** 2).sum(-1)).mean()
-    assert found.moved[1, 20] == pytest.approx(by_hand, abs=1e-5)
-    assert found.moved[:2].max(1).min() > 1e-4  # a silenced burst changes something
-    assert found.moved[2].max() < 1e-5  # silenced silence changes nothing
-    in_turn = attention_on_beats.occlusion(
-        one, song, times, 33, generator=torch.Generator().manual_seed(7), steps=3, together=1
-    )
-    assert in_turn.without == pytest.approx(found.without, abs=1e-5)
-
-
-def test_what_rings_on_comes_back_without_another_blow():
-    """A long burst: the loudness of the mended song never jumps, neither at the hit nor where the
-    span ends."""
-    t = np.arange(32_000) / 16_000
-    ring = np.where(t >= 1.0, np.exp(-np.maximum(t - 1.0, 0) / 0.15), 0.0) * np.random.default_rng(
-        5
-    ).standard_normal(32_000)
-    song = (0.01 * np.random.default_rng(6).standard_normal(32_000) + 0.3 * ring).astype(np.float32)
-
-    def largest_rise(x):
-        level = log_mel(x).numpy().mean(1)
-        return np.diff(level[25:45]).max()
-
-    assert largest_rise(song) > 4 and largest_rise(attention_on_beats.silence_hit(song, 1.0)) < 1.5
-
-
-def test_a_sound_is_read_from_its_name_and_from_its_bytes(tmp_path):
-    soundfile = pytest.importorskip("soundfile")
-    soundfile.write(tmp_path / "song.wav", clicks(1.5, (0.5,)), 16_000, subtype="FLOAT")
-    by_name, by_bytes = (
-        attention_on_beats.read_sound(s)
-        for s in (tmp_path / "song.wav", (tmp_path / "song.wav").read_bytes())
-    )
-    assert torch.equal(by_name, by_bytes) and by_name.numpy() == pytest.approx(
-        clicks(1.5, (0.5,)), abs=1e-3
-    )
-    with pytest.raises(ValueError, match="text, not sound"):
-        attention_on_beats.read_sound(b"these are words, and no music at all")
-
-
 def test_notebook_12_dances_to_an_upload_and_says_what_is_wrong_with_it(monkeypatch):
-    """A button's error reaches nobody, so the cells are run here, with a small dancer, and a file
-    is uploaded."""
+    """A file is uploaded to notebook 12, and the message is read.
+
+    A button's error reaches nobody, so the cells are run here, with a small dancer.
+    """
     soundfile = pytest.importorskip("soundfile")
     monkeypatch.setattr(checkpoints, "pretrained", lambda name: dancer(S=20))
     path = next(path for path in notebook_cells.sources() if path.name.startswith("12"))

@@ -1,5 +1,7 @@
-"""Losses over diffusion time: against the algebra, against autograd by differences, and on answers
-that are known."""
+"""Losses over diffusion time.
+
+Against the algebra, against autograd by differences, and on answers that are known.
+"""
 
 import math
 
@@ -10,28 +12,29 @@ from synthetic_dance import windows
 
 from motiondiff_edu.ddpm import cosine_schedule, q_sample
 from motiondiff_edu.exact import dataset_denoiser
+from motiondiff_edu.motion.dance_frame import body_of
 from motiondiff_edu.motion.scaler import Scaler
 from motiondiff_edu.performers.loss_by_step import (
-    answer_of,
     clean_guess,
     eps_weight,
     erring,
     losses_over_time,
+    predictor_of,
 )
 from motiondiff_edu.viz import losses as viz
 from motiondiff_edu.viz.style import caption
 
 SCHEDULE, STEPS = cosine_schedule(50), (1, 17, 30, 44)
 WINDOWS = windows(n=24)
-SCALER = Scaler(WINDOWS.motion_scaler.mean.double(), WINDOWS.motion_scaler.std.double())
-X0, _, STANDS = WINDOWS.take(torch.arange(3))
+BODY = body_of(Scaler(WINDOWS.motion_scaler.mean.double(), WINDOWS.motion_scaler.std.double()))
+X0, _, PLANTED = WINDOWS.take(torch.arange(3))
 X0 = X0.double()
 EPS = torch.randn(X0.shape, generator=torch.Generator().manual_seed(1), dtype=torch.float64)
 
 
-def measured(answer=None, steps=STEPS, target="eps"):
-    answer = answer or erring(0.05, seed=2)
-    return losses_over_time(answer, X0, EPS, STANDS, SCALER, SCHEDULE, steps, target)
+def measured(predict=None, steps=STEPS, target="eps"):
+    predict = predict or erring(0.05, seed=2)
+    return losses_over_time(predict, X0, EPS, PLANTED, BODY, SCHEDULE, steps, target)
 
 
 def carried(s):
@@ -100,7 +103,7 @@ def test_pull_of_a_loss_is_what_small_steps_change():
 
     def at(eps_hat):
         return losses_over_time(
-            lambda *_: eps_hat, X0[:1], EPS[:1], STANDS[:1], SCALER, SCHEDULE, (30,)
+            lambda *_: eps_hat, X0[:1], EPS[:1], PLANTED[:1], BODY, SCHEDULE, (30,)
         )
 
     slopes = []
@@ -117,7 +120,8 @@ def test_pull_of_a_loss_is_what_small_steps_change():
 
 
 def test_a_network_that_predicts_x0_feels_the_bones_less_by_a_over_b():
-    eps, x0 = measured().pull["skeleton"], measured(target="x0").pull["skeleton"]
+    eps = measured().pull["skeleton"]
+    x0 = measured(target="x0").pull["skeleton"]
     torch.testing.assert_close(
         eps / x0, torch.tensor([carried(s) for s in STEPS]).double(), rtol=1e-5, atol=0
     )
@@ -126,10 +130,8 @@ def test_a_network_that_predicts_x0_feels_the_bones_less_by_a_over_b():
 def test_squared_losses_level_off_under_the_papers_weight_and_the_others_fall():
     """5 % off: unweighted all explode; alpha_bar L_s stays, alpha_bar L_a falls by a / a."""
     late, later = 45, 49
-    loss, weighted = (
-        measured(steps=(late, later)),
-        measured(steps=(late, later)).weighted(SCHEDULE, "alpha_bar"),
-    )
+    loss = measured(steps=(late, later))
+    weighted = measured(steps=(late, later)).weighted(SCHEDULE, "alpha_bar")
     growth = {
         name: float(loss.value[name][1] / loss.value[name][0]) for name in ("skeleton", "asymmetry")
     }
@@ -142,10 +144,11 @@ def test_squared_losses_level_off_under_the_papers_weight_and_the_others_fall():
 
 def test_the_ideal_guess_at_high_noise_is_a_mean_with_short_bones():
     windows = WINDOWS.take(torch.arange(len(WINDOWS)))[0].double()
-    answer = answer_of(dataset_denoiser(windows, SCHEDULE))
+    answer = predictor_of(dataset_denoiser(windows, SCHEDULE))
     guess = clean_guess(answer, X0, EPS, 50, SCHEDULE)
     torch.testing.assert_close(guess[0], windows.mean(0), rtol=0, atol=0.1)
-    ideal, off = measured(answer, (49,)).value["skeleton"], measured(steps=(49,)).value["skeleton"]
+    ideal = measured(answer, (49,)).value["skeleton"]
+    off = measured(steps=(49,)).value["skeleton"]
     assert ideal < off / 100
 
 
@@ -156,7 +159,7 @@ def test_the_answer_is_asked_with_the_noised_motion_and_its_step():
         asked.append((x_s, s))
         return EPS
 
-    clean_guess(answer_of(denoise), X0, EPS, 17, SCHEDULE)
+    clean_guess(predictor_of(denoise), X0, EPS, 17, SCHEDULE)
     torch.testing.assert_close(asked[0][0], q_sample(X0, 17, SCHEDULE, EPS))
     assert asked[0][1].tolist() == [17, 17, 17]
 
@@ -171,9 +174,7 @@ def test_unknown_names_are_refused():
 
 
 def test_stretched_bones_are_coloured_and_a_torn_figure_is_told_its_width():
-    from motiondiff_edu.motion.dance_frame import to_positions
-
-    poses = to_positions(SCALER.inverse(X0[0])).numpy()
+    poses = BODY.to_positions(X0[:1])[0].numpy()
     figure = viz.stretched({"truth": poses, "torn": 10 * poses}, "two rows", n=3)
     assert caption(figure) == "two rows" and len(figure.axes) == 2 * 3 + 1
     colours = [

@@ -1,5 +1,7 @@
-"""The main job on real input: a recorded song is danced to, and the dance neither freezes nor flies
-apart."""
+"""The main job on real input.
+
+A recorded song is danced to, and the dance neither freezes nor flies apart.
+"""
 
 import numpy as np
 import pytest
@@ -22,8 +24,9 @@ def speed(dance: np.ndarray) -> np.ndarray:
 @pytest.mark.parametrize("song", ["vibe_ace", "nutcracker"])
 def test_a_recorded_song_is_danced_to_by_a_body_that_moves_throughout(song, real_data, tmp_path):
     file = real_data / "audio" / f"{song}.ogg"
-    dance, sound = pretrained("dancer").dance_to(file, SECONDS, seed=1)
-    assert dance.shape == (SECONDS * 20, 21, 3) and len(sound) == SECONDS * 16_000
+    made = pretrained("dancer").dance(file, seconds=SECONDS, seed=1)
+    dance = made.positions
+    assert dance.shape == (SECONDS * 20, 21, 3) and len(made.audio) == SECONDS * 16_000
 
     assert bone_rmse(dance) < 2  # cm: a body
     by_second = speed(dance)[: SECONDS * 20 - 20].reshape(-1, 20).mean(1)
@@ -37,7 +40,7 @@ def test_a_recorded_song_is_danced_to_by_a_body_that_moves_throughout(song, real
     assert np.abs(dance[:, 0, [0, 2]]).max() < 4  # metres: it does not wander off
     assert repeat_score(dance) < 0.98  # no loop
 
-    other, _ = pretrained("dancer").dance_to(file, SECONDS, seed=2)
+    other = pretrained("dancer").dance(file, seconds=SECONDS, seed=2).positions
     assert np.abs(other - dance).mean() > 0.05  # metres: another seed, another dance
     report = write_bvh(tmp_path / "dance.bvh", dance)
     assert (

@@ -1,5 +1,7 @@
-"""A walker samples with its own schedule in its own units, and `generate` leads in and out of
-metres."""
+"""A walker samples with its own schedule in its own units.
+
+`generate` leads in and out of metres.
+"""
 
 import inspect
 
@@ -10,11 +12,13 @@ from motiondiff_edu.ddpm import linear_schedule, sample_steps
 from motiondiff_edu.fast.samplers import ddim_steps
 from motiondiff_edu.modiff import MoDiff, MoDiffConfig
 from motiondiff_edu.motion.scaler import Scaler
-from motiondiff_edu.performers.walker import Walker, leap_schedule
+from motiondiff_edu.performers.walker import Walker
 from motiondiff_edu.prediction import to_eps
 from motiondiff_edu.rollout import generate
 
-S, T_H, T_P = 6, 4, 3
+S = 6
+T_H = 4
+T_P = 3
 
 
 def tiny_walker(target: str = "eps") -> Walker:
@@ -132,17 +136,3 @@ def test_a_walker_moved_is_a_copy_that_walks_alike():
     moved = walker.to("cpu")
     assert moved.model is not walker.model and moved.card == walker.card
     torch.testing.assert_close(generate(moved, past, control), generate(walker, past, control))
-
-
-def noise_over_signal(schedule):
-    return ((1 - schedule.alpha_bar) / schedule.alpha_bar).sqrt()
-
-
-def test_the_leap_schedule_goes_from_nothing_to_three_quarters_in_one_step_and_the_linear_one_in_thirty():
-    schedule, linear = leap_schedule(), linear_schedule(100)
-    noise = noise_over_signal(schedule)
-    assert not ((noise > 0) & (noise < 0.76)).any()
-    assert ((noise_over_signal(linear) > 0) & (noise_over_signal(linear) < 0.76)).sum() == 30
-    assert schedule.S == 100 and schedule.signal_left < 0.1
-    assert noise[1] == pytest.approx((0.37 / 0.63) ** 0.5) and noise[0] == 0
-    assert (noise[1:].diff() > 0).all() and schedule.beta[2] == pytest.approx(0.03)

@@ -1,5 +1,7 @@
-"""`python -m motiondiff_edu.recipes --alias NAME`: the name `walker` can only stand for weights
-that are there."""
+"""`python -m motiondiff_edu.recipes --alias NAME`.
+
+The name `walker` can only stand for weights that are there.
+"""
 
 import json
 from pathlib import Path

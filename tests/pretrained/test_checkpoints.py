@@ -1,5 +1,7 @@
-"""Weights on disk: they come back as they were, and whatever is damaged or foreign is refused with
-the reason."""
+"""Weights on disk.
+
+They come back as they were, and whatever is damaged or foreign is refused with the reason.
+"""
 
 import json
 import pickle
@@ -43,8 +45,10 @@ def saved(tmp_path: Path) -> Path:
 
 
 def rewrite(path: Path, change, metadata=None) -> None:
-    """Change the tensors of a weights file; the metadata stay (unless others are given), the
-    checksums are right."""
+    """Change the tensors of a weights file.
+
+    The metadata stay (unless others are given), the checksums are right.
+    """
     with safe_open(path, "pt") as file:
         metadata = file.metadata() if metadata is None else metadata
     tensors = load_file(path)
@@ -274,7 +278,8 @@ def test_a_file_without_a_checksum_is_refused(saved: Path, name: str):
 def test_a_changed_setting_is_damage(saved: Path, name: str, old: str, new: str):
     """It would load, and walk like nobody."""
     with safe_open(saved, "pt") as file:
-        metadata, tensors = file.metadata(), {k: file.get_tensor(k) for k in file.keys()}
+        metadata = file.metadata()
+        tensors = {k: file.get_tensor(k) for k in file.keys()}
     changed = metadata[name].replace(old, new) if old else metadata[name] + new
     assert changed != metadata[name]
     save_file(tensors, saved, metadata | {name: changed})

@@ -1,5 +1,7 @@
-"""Muon for the matrices of the blocks, Adam for the rest: who gets which, the step's form, and a
-resumed run."""
+"""Muon for the matrices of the blocks, Adam for the rest.
+
+Who gets which, the step's form, and a resumed run.
+"""
 
 from dataclasses import replace
 from pathlib import Path
@@ -39,18 +41,19 @@ def test_every_parameter_has_one_optimizer_and_only_block_matrices_go_to_muon():
 
 
 def test_a_first_step_moves_every_direction_of_a_matrix_alike():
-    """The closed form: U V^T of the gradient's singular value decomposition, times 0.2 sqrt(larger
-    side) lr."""
+    """The closed form.
+
+    U V^T of the gradient's singular value decomposition, times 0.2 sqrt(larger side) lr.
+    """
     torch.manual_seed(0)
     layer = Block(16, 2, 24)
     optimizer, weight = MuonAndAdam(layer, lr=1e-2), layer.ff[0].weight
     block_loss(layer, torch.Generator().manual_seed(1)).backward()
-    before, (u, _, vt) = (
-        weight.detach().clone(),
-        torch.linalg.svd(weight.grad.float(), full_matrices=False),
-    )
+    before = weight.detach().clone()
+    u, _, vt = torch.linalg.svd(weight.grad.float(), full_matrices=False)
     optimizer.step()
-    moved, expected = before - weight.detach(), 1e-2 * 0.2 * 24**0.5 * (u @ vt)
+    moved = before - weight.detach()
+    expected = 1e-2 * 0.2 * 24**0.5 * (u @ vt)
     cosine = nn.functional.cosine_similarity(moved.flatten(), expected.flatten(), dim=0)
     assert (
         cosine > 0.95 and 0.7 < moved.norm() / expected.norm() < 1.2
@@ -59,8 +62,10 @@ def test_a_first_step_moves_every_direction_of_a_matrix_alike():
 
 @pytest.mark.parametrize("shape", [(24, 16), (16, 24), (20, 20)])
 def test_steps_are_those_of_torch(shape):
-    """torch.optim.Muon rounds to bfloat16 on the way: alike to a few per cent of a step, over
-    several steps."""
+    """torch.optim.Muon rounds to bfloat16 on the way.
+
+    Alike to a few per cent of a step, over several steps.
+    """
     torch.manual_seed(1)
     ours, theirs = (nn.Parameter(torch.zeros(shape)) for _ in range(2))
     optimizers = (

@@ -1,5 +1,7 @@
-"""Dancers' recipes: a small one is trained, killed and continued; what comes of it dances, and its
-card tells how."""
+"""Dancers' recipes: a small one is trained, killed and continued.
+
+What comes of it dances, and its card tells how.
+"""
 
 from dataclasses import replace
 from pathlib import Path
@@ -9,7 +11,7 @@ import torch
 
 from motiondiff_edu.beyond.schedules import shifted
 from motiondiff_edu.ddpm import cosine_schedule
-from motiondiff_edu.performers.dancer import network
+from motiondiff_edu.performers.networks import network
 from motiondiff_edu.pretrained.checkpoints import load_dancer
 from motiondiff_edu.recipes import __main__ as command
 from motiondiff_edu.recipes.dancers import DANCE_RECIPES, DANCER, DANCER_PLAIN, REGRESSED
@@ -82,17 +84,12 @@ def test_what_a_recipe_says_reaches_the_training(windows, tmp_path: Path):
             model, torch.Generator().manual_seed(0)
         ).item()
 
-    plain = {
-        "kinematic": None,
-        "high_noise": 2.0,
-        "changes": 0.0,
-        "feet": 0.0,
-        "shake": 0.0,
-        "snr": 1.0,
-        "batch": 2,
-    }
+    plain = {"kinematic": None, "gain_noise": 0.0, "snr": 1.0, "batch": 2}
     for name, value in plain.items():
         assert loss(**{name: value}) != loss(), name
+    for name, value in {"high_noise": 2.0, "changes": 0.0, "toes": 0.0}.items():
+        weights = replace(TINY.loss_weights, **{name: value})
+        assert loss(loss_weights=weights) != loss(), name
 
 
 def test_the_command_trains_a_recipe_into_a_file(monkeypatch, tmp_path: Path, capsys):
@@ -120,7 +117,7 @@ def test_the_command_trains_a_recipe_into_a_file(monkeypatch, tmp_path: Path, ca
         and dancer.card["windows"] > 0
     )
     mel = torch.zeros(1, 70, 80)
-    assert dancer.dance(mel, 40).shape == (1, 40, 21, 3)
+    assert dancer.dance_mel(mel, 40).shape == (1, 40, 21, 3)
 
 
 def test_with_and_without_kinematic_losses_all_else_is_alike():

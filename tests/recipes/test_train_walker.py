@@ -1,5 +1,7 @@
-"""A recipe becomes a walker and a card; a killed training goes on, and with other settings it is
-refused."""
+"""A recipe becomes a walker and a card.
+
+A killed training goes on, and with other settings it is refused.
+"""
 
 import time
 from dataclasses import replace
@@ -11,13 +13,12 @@ import torch
 from motiondiff_edu.beyond.footholds import FootholdConfig
 from motiondiff_edu.diffusion_dropout import P_D, Dropout
 from motiondiff_edu.modiff import MODIFF_SMALL
-from motiondiff_edu.performers.windows import window_loss
 from motiondiff_edu.pretrained.checkpoints import load_walker, save
 from motiondiff_edu.recipes import train_walker as train_module
-from motiondiff_edu.recipes.budget import train_for
+from motiondiff_edu.recipes.budget import BUDGET, train_for
 from motiondiff_edu.recipes.train_recipe import commit_of
 from motiondiff_edu.recipes.train_walker import train, training_clips
-from motiondiff_edu.recipes.walkers import RECIPES, SHIPPED, WALKER_X0, Recipe
+from motiondiff_edu.recipes.walkers import RECIPES, SHIPPED, WALKER_X0, LossWeights, Recipe
 
 TINY = replace(MODIFF_SMALL, width=16, heads=2, hidden=24, T_p=5)
 SHORT = Recipe("short", TINY, steps=6, batch=3, clips=2, seconds=2.0, reversed_share=1.0)
@@ -58,17 +59,14 @@ class Killed(Exception):
 def kill_at(step: int, monkeypatch):
     """Let the training die in the middle of this step, once."""
 
-    def dying(windows, schedule, **settings):
-        inner, calls = window_loss(windows, schedule, **settings), iter(range(step))
+    usual, calls = train_module.training_loss, iter(range(step))
 
-        def loss_fn(model, generator):
-            if next(calls, None) is None:
-                raise Killed
-            return inner(model, generator)
+    def dying(*given, **options):
+        if next(calls, None) is None:
+            raise Killed
+        return usual(*given, **options)
 
-        return loss_fn
-
-    monkeypatch.setattr(train_module, "window_loss", dying)
+    monkeypatch.setattr(train_module, "training_loss", dying)
 
 
 @pytest.mark.parametrize("step", [4, 7])
@@ -89,7 +87,7 @@ def test_a_killed_training_goes_on_where_it_was_saved(tmp_path: Path, monkeypatc
 def test_a_training_with_diffusion_dropout_is_another_and_goes_on_bit_for_bit(
     tmp_path: Path, monkeypatch
 ):
-    dropped = replace(SHORT, dropout=(0.0, 0.5, 1.0), calm=0.5, steps=8, save_every=3)
+    dropped = replace(SHORT, dropout=(0.0, 0.5, 1.0), dropout_start=0.5, steps=8, save_every=3)
     whole = train(dropped, tmp_path / "whole", log=quiet)
     plain = train(replace(dropped, dropout=()), tmp_path / "plain", log=quiet)
     assert whole.card["recipe"]["dropout"] and not plain.card["recipe"]["dropout"]
@@ -106,7 +104,7 @@ def test_a_training_with_diffusion_dropout_is_another_and_goes_on_bit_for_bit(
 
 
 def test_dropout_rises_within_a_training_when_its_time_has_come(tmp_path: Path, monkeypatch):
-    """Four steps, calm for two: no past is noised in those, and every past in the others."""
+    """Four steps, and dropout from the third on: no past is noised in those, and every past in the others."""
     usual, seen = Dropout.__call__, []
 
     def watched(self, past, s, generator):
@@ -115,7 +113,9 @@ def test_dropout_rises_within_a_training_when_its_time_has_come(tmp_path: Path, 
         return after
 
     monkeypatch.setattr(Dropout, "__call__", watched)
-    train(replace(SHORT, dropout=(0.0, 1.0), calm=0.5, steps=4), tmp_path / "run", log=quiet)
+    train(
+        replace(SHORT, dropout=(0.0, 1.0), dropout_start=0.5, steps=4), tmp_path / "run", log=quiet
+    )
     assert seen[:4] == [0.0, 0.0, 1.0, 1.0]  # what follows is the final loss
 
 
@@ -139,11 +139,25 @@ def test_muon_and_adam_make_different_walkers(tmp_path: Path):
 
 def test_a_budget_of_seconds_is_kept():
     before = time.process_time()
-    walker, steps = train_for(
-        1.0, training_clips(SHORT), replace(TINY, target="x0", skip=False), batch=3
-    )
+    recipe = replace(BUDGET, config=replace(TINY, target="x0", skip=False), batch=3)
+    walker, steps = train_for(1.0, training_clips(SHORT), recipe)
     assert 1 < time.process_time() - before < 4  # the data, the last step, the walker
     assert steps > 5 and walker.config.target == "x0"
+
+
+def test_dropout_rises_with_the_seconds_of_a_budget(monkeypatch):
+    usual, seen = Dropout.__call__, []
+
+    def watched(self, past, s, generator):
+        seen.append((self.done, self.rate(self.done)))
+        return usual(self, past, s, generator)
+
+    monkeypatch.setattr(Dropout, "__call__", watched)
+    recipe = replace(BUDGET, config=TINY, batch=3, dropout=(0.0, 1.0), dropout_start=0.5)
+    train_for(0.5, training_clips(SHORT), recipe)
+    done = [share for share, _ in seen]
+    assert done == sorted(done) and done[0] < 0.3 and done[-1] > 0.7
+    assert all(rate == float(share >= 0.5) for share, rate in seen)
 
 
 def test_what_is_shipped_has_a_recipe_and_the_papers_one_is_the_papers():
@@ -152,7 +166,8 @@ def test_what_is_shipped_has_a_recipe_and_the_papers_one_is_the_papers():
     assert all(RECIPES[name].dropout == (P_D if "dropout" in name else ()) for name in pairs)
     paper = RECIPES["walker-paper"]
     assert (paper.optimizer, paper.lr, paper.batch, paper.config.width) == ("adam", 5e-5, 64, 256)
-    assert paper.jitter == paper.metres == paper.near == paper.high_noise == 0
+    assert paper.past_noise == 0 and paper.noises == 1 and paper.loss_weights == LossWeights()
+    assert paper.schedule == "linear" and paper.config.target == "eps"
 
 
 def test_the_commit_of_a_folder_that_is_no_checkout(tmp_path: Path):

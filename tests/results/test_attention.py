@@ -1,5 +1,7 @@
-"""The statistic of Fig. 4: a reader of beats is told from an even one, and from one that reads the
-wrong beats."""
+"""The statistic of Fig. 4.
+
+A reader of beats is told from an even one, and from one that reads the wrong beats.
+"""
 
 from functools import partial
 

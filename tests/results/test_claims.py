@@ -82,7 +82,8 @@ def test_claims_ask_for_figures_that_are_measured():
             assert group in rows
             for kind in ("_minus_", "_over_"):
                 if kind in figure and not figure.endswith("_data"):
-                    own, rival = group.removeprefix("dance-budget."), figure.split(kind)[1]
+                    own = group.removeprefix("dance-budget.")
+                    rival = figure.split(kind)[1]
                     assert rival in (VARIANTS[own][1], *RIVALS.get(own, ()))
 
 

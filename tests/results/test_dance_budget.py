@@ -1,5 +1,7 @@
-"""Dancers at one budget: what differs is what the table says, a row goes on, differences are of the
-same songs."""
+"""Dancers at one budget.
+
+What differs is what the table says, a row goes on, differences are of the same songs.
+"""
 
 from dataclasses import asdict, replace
 from functools import partial
@@ -41,10 +43,10 @@ def tiny(monkeypatch):
 
 def test_each_variant_differs_from_its_base_in_what_its_words_say():
     differing = {
-        "no-feet": {"feet"},
-        "poses": {"changes"},
+        "no-feet": {"loss_weights.toes"},
+        "poses": {"loss_weights.changes"},
         "eps": {"config.target", "config.skip"},
-        "eps-weighted": {"high_noise"},
+        "eps-weighted": {"loss_weights.high_noise"},
         "v": {"config.target", "config.skip"},
         "constant": {"kinematic"},
         "alpha_bar": {"kinematic"},
@@ -80,8 +82,10 @@ def flat(tree: dict, above: str = "") -> dict:
 
 
 def test_the_transformer_is_of_the_size_of_the_unet():
-    unet, plain = (sum(p.numel() for p in kind(VARIANTS[name][2]).parameters())
-                   for kind, name in ((MoFusion, "x0"), (DanceTransformer, "transformer")))  # fmt: skip
+    unet, plain = (
+        sum(p.numel() for p in kind(VARIANTS[name][2]).parameters())
+        for kind, name in ((MoFusion, "x0"), (DanceTransformer, "transformer"))
+    )
     assert plain == pytest.approx(unet, rel=0.02)
 
 
@@ -113,7 +117,8 @@ def test_a_row_is_trained_measured_and_set_beside_its_base(tiny, tmp_path, capsy
 
 
 def test_rows_of_another_budget_or_sampler_are_not_set_beside_it(tiny, tmp_path, monkeypatch):
-    rows, squares = {"bas": np.full(4, 0.5), "bas_shuffled": np.full(4, 0.2)}, np.full(4, 2.0)
+    rows = {"bas": np.full(4, 0.5), "bas_shuffled": np.full(4, 0.2)}
+    squares = np.full(4, 2.0)
     data = {"bas": np.full(4, 0.8), "bas_shuffled": np.full(4, 0.2)}
     worse = Danced([], {**rows, "bas": np.full(4, 0.35)}, data, 4 * squares)
     budget.keep("constant", worse, tmp_path, SMALL)
@@ -185,7 +190,8 @@ def test_times_are_of_every_network_and_the_base_is_one(tiny):
 
 
 def test_what_trains_is_run_when_asked_for_only():
-    weights, lines = {"dancer"}, {"walker-x0": Walks("walker-x0", "walker-x0")}
+    weights = {"dancer"}
+    lines = {"walker-x0": Walks("walker-x0", "walker-x0")}
     plain = command.parts_of([], False, lines, weights)  # there are no weights of that walker
     assert plain == ["dancer", "unheard", "footsteps", "attention", "dance-time", "known-answer"]
     full = command.parts_of([], True, {}, weights)

@@ -1,5 +1,7 @@
-"""The dancers' figures: the data scores as the data, shifted dances lose it, gains and ratios are
-what they say."""
+"""The dancers' figures.
+
+The data scores as the data, shifted dances lose it, gains and ratios are what they say.
+"""
 
 import numpy as np
 import pytest

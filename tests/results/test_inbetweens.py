@@ -1,5 +1,7 @@
-"""In-betweens as they are measured: errors, rivals, seams and spectra of motions whose figures are
-known."""
+"""In-betweens as they are measured.
+
+Errors, rivals, seams and spectra of motions whose figures are known.
+"""
 
 from types import SimpleNamespace
 
@@ -48,8 +50,16 @@ def values(one):
 
 def test_errors_are_those_of_the_mean_of_one_and_of_the_best(truth):
     found = values(filled(truth))
-    by_hand = {"error_cm": 0, "error_one_cm": 4, "error_best_cm": 4, "error_masked_cm": 50, "error_free_cm": 90,
-               "error_lines_cm": 20, "error_arcs_cm": 10, "keyframe_error_cm": 0}  # fmt: skip
+    by_hand = {
+        "error_cm": 0,
+        "error_one_cm": 4,
+        "error_best_cm": 4,
+        "error_masked_cm": 50,
+        "error_free_cm": 90,
+        "error_lines_cm": 20,
+        "error_arcs_cm": 10,
+        "keyframe_error_cm": 0,
+    }
     assert {name: found[name] for name in by_hand} == pytest.approx(by_hand, abs=1e-9)
 
 
@@ -117,8 +127,10 @@ def test_the_worst_gap_stands_under_the_bar(monkeypatch):
 
 
 def test_every_way_is_asked_for_what_it_is_for(monkeypatch, truth):
-    """The paper's masking has none of our options; what is free is given nothing; ours is as a user
-    calls it."""
+    """The paper's masking has none of our options; what is free is given nothing.
+
+    Ours is as a user calls it.
+    """
     asked = []
 
     def made(dancer, positions, known, samples=1, **options):

@@ -1,5 +1,7 @@
-"""MFCC and beats as a network hears them: librosa's numbers from our own spectrogram, beats where
-they sound."""
+"""MFCC and beats as a network hears them.
+
+Librosa's numbers from our own spectrogram, beats where they sound.
+"""
 
 from dataclasses import replace
 

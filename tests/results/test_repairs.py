@@ -1,5 +1,7 @@
-"""What menders are measured by: holes as they should be, figures by hand, intervals over trainings
-and clips."""
+"""What menders are measured by.
+
+Holes as they should be, figures by hand, intervals over trainings and clips.
+"""
 
 from types import SimpleNamespace
 
@@ -163,9 +165,12 @@ def test_the_pairs_are_shipped_names():
 
 
 def test_table_2_measures_what_was_repaired_and_what_was_walked(trials):
-    """A walker that stands in the mean pose: its bones are that pose's, the repaired window's are
-    of both."""
-    size, frames = repair.RepairSize(samples=1, rounds=1, steps=3), trials.truth.shape[1]
+    """A walker that stands in the mean pose.
+
+    Its bones are that pose's, the repaired window's are of both.
+    """
+    size = repair.RepairSize(samples=1, rounds=1, steps=3)
+    frames = trials.truth.shape[1]
     windows = repair.repaired_windows([Standing()], trials, size)
     found, after = repair.table_2([Standing()], trials, size, windows, "standing_", keep=10)
     value = {one.name.removeprefix("table2_standing_"): one.value for one in found}
@@ -184,8 +189,10 @@ def test_table_2_measures_what_was_repaired_and_what_was_walked(trials):
 
 
 def test_both_papers_repairs_are_scored_where_both_had_to_guess(trials, monkeypatch):
-    """One way 3 cm off, the other 5 cm, each in its own frame; the pelvis, which one of them is
-    told, is not scored."""
+    """One way 3 cm off, the other 5 cm, each in its own frame.
+
+    The pelvis, which one of them is told, is not scored.
+    """
     side = np.array([0.0, 0.0, 0.03])
 
     def repaired(walker, few, broken, size, way):

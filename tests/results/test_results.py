@@ -1,5 +1,7 @@
-"""The results machinery, with the data itself as the walker: no error, ratios of one; and the
-page."""
+"""The results machinery, with the data itself as the walker.
+
+No error, ratios of one; and the page.
+"""
 
 import json
 import sys
@@ -45,7 +47,8 @@ def test_the_data_as_a_walker_has_no_excess_and_follows_only_its_own_control():
 
 
 def test_a_walker_that_gets_worse_drifts_and_one_that_slides_skates():
-    still, told = np.tile(rest_pose(), (5, 140, 1, 1)), np.zeros((5, 140, 3))
+    still = np.tile(rest_pose(), (5, 140, 1, 1))
+    told = np.zeros((5, 140, 3))
     noise = (
         np.random.default_rng(2).normal(0, 1, still.shape)
         * np.linspace(0.0005, 0.002, 140)[:, None, None]

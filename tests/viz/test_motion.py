@@ -1,5 +1,7 @@
-"""Figures of notebooks 01 and 06: drawn from arrays, with a caption, and true to what they are
-given."""
+"""Figures of notebooks 01 and 06.
+
+Drawn from arrays, with a caption, and true to what they are given.
+"""
 
 import numpy as np
 import pytest

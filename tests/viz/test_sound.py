@@ -1,5 +1,7 @@
-"""Figures of sound: they hold what was given, carry a caption, and draw only the beats that lie in
-the picture."""
+"""Figures of sound.
+
+They hold what was given, carry a caption, and draw only the beats that lie in the picture.
+"""
 
 import io
 

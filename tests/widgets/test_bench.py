@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 import torch
 import traitlets
-from browser import bare_page, coloured, ink, open_page
+from browser import bare_page, coloured, drawn, ink, open_page
 from PIL import Image
 
 from data_synth.walking import walk
@@ -35,7 +35,10 @@ class Standing:
     """Stays in its last pose, with noise of 5 mm drawn for each row of the batch."""
 
     class config:
-        T_h, T_p, D, C = T_H, T_H, 63, 3
+        T_h = T_H
+        T_p = T_H
+        D = 63
+        C = 3
 
     pose_scaler = Scaler(torch.from_numpy(CLIP.poses.mean(0)).float().flatten(), torch.ones(63))
     control_scaler = Scaler.nothing(3)
@@ -60,7 +63,8 @@ def by_the_library(first: int, missing: list[int]) -> np.ndarray:
     known = np.ones(T_H * J, bool)
     known[missing] = False
     known = known.reshape(T_H, J)
-    past, control = CLIP.poses[first : first + T_H], CLIP.control[first : first + 2 * T_H]
+    past = CLIP.poses[first : first + T_H]
+    control = CLIP.control[first : first + 2 * T_H]
     options = {"n": 3, "rounds": 2, "generator": torch.Generator().manual_seed(0)}
     *_, last = mend_steps(
         Standing(), np.where(known[..., None], past, np.nan), known, control, **options
@@ -178,9 +182,8 @@ def test_the_still_picture_shows_the_window_its_holes_and_the_repairs_against_th
 
     def near(picture, colour: str) -> int:
         wanted = np.array([int(colour[k : k + 2], 16) for k in (1, 3, 5)])
-        picture = Image.open(io.BytesIO(poster.as_png(picture))).convert(
-            "RGB"
-        )  # as it is shown, in few colours
+        # as it is shown, in few colours
+        picture = Image.open(io.BytesIO(poster.as_png(picture))).convert("RGB")
         return int((np.abs(np.asarray(picture).astype(int) - wanted).sum(-1) < 60).sum())
 
     widget = bench()
@@ -188,15 +191,15 @@ def test_the_still_picture_shows_the_window_its_holes_and_the_repairs_against_th
     assert strips[-1]["between"] == (9, 9 + T_H - 1)
     widget.missing = np.flatnonzero(~ARM).tolist()
     holes = widget.poster()
+    # without words
     upper = [
         picture.crop((0, 30, picture.width, picture.height - 60)) for picture in (whole, holes)
-    ]  # without words
+    ]
     assert near(upper[1], body.INK) > near(upper[0], body.INK) + 100
     widget.repair()
     mended = widget.poster()
-    lower = mended.crop(
-        (0, mended.height // 2, mended.width, mended.height - 30)
-    )  # without the words below
+    # without the words below
+    lower = mended.crop((0, mended.height // 2, mended.width, mended.height - 30))
     assert near(lower, GHOST) > 100 and near(lower, body.INK) > 100
     widget.first = 3  # moved: the repairs are old, and the strip shows the new window
     assert widget.poster().height < mended.height and strips[-1]["between"] == (3, 3 + T_H - 1)
@@ -226,7 +229,8 @@ class Table:
 
     def __init__(self, page, widget):
         self.page, self.widget = page, widget
-        self.figure, self.map = page.locator("canvas.mde-figure"), page.locator("canvas.mde-lane")
+        self.figure = page.locator("canvas.mde-figure")
+        self.map = page.locator("canvas.mde-lane")
 
     def saved(self, name: str):
         return self.page.evaluate(f"saved.at(-1).{name}")
@@ -280,9 +284,8 @@ def test_a_clicked_hand_is_mended_as_the_library_mends_it(table):
     assert table.saved("missing") == HAND and table.data("missing") == str(T_H)
     assert "RightHand is missing in the whole window. 8 of 168 places are missing." in table.note()
     broken = ink(table.figure)
-    assert (
-        broken != whole and coloured(table.figure)["orange"] < drawn["orange"]
-    )  # the forearm has gone
+    # the forearm has gone
+    assert broken != whole and coloured(table.figure)["orange"] < drawn["orange"]
     before = table.widget.mended_joints
     table.page.get_by_role("button", name="Repair").click()
     assert (
@@ -294,9 +297,8 @@ def test_a_clicked_hand_is_mended_as_the_library_mends_it(table):
         shown(table.widget)[0], by_the_library(9, table.saved("missing")), atol=6e-4
     )
     assert table.data("repairs") == "4" and "the mean of 3 repairs is" in table.note()
-    table.page.wait_for_function(
-        "document.querySelector('.mde-bench').dataset.frame > 5"
-    )  # it plays of itself
+    # it plays of itself
+    table.page.wait_for_function("document.querySelector('.mde-bench').dataset.frame > 5")
     assert (
         table.data("playing") == "true"
         and table.page.get_by_role("button", name="Repair").is_enabled()
@@ -407,9 +409,9 @@ def test_exported_html_plays_offline_and_says_that_repairing_needs_a_kernel(brow
         page.goto(export.as_uri())
         inside = page.frame_locator("iframe")
         inside.locator(".mde-bench[data-state='mean of 3 repairs']").wait_for()
-        assert min(coloured(inside.locator("canvas.mde-figure")).values()) > 200
+        drawn(inside.locator("canvas.mde-figure"))
         inside.get_by_role("button", name="Repair").click()
-        assert "needs a running kernel" in inside.locator("output.mde-said").inner_text()
+        inside.get_by_text("needs a running kernel").wait_for()
         inside.get_by_role("button", name="Play").click()
         inside.locator(".mde-bench:not([data-frame='13'])").wait_for()
         assert page.problems == [] and page.asked == []

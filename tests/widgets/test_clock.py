@@ -1,5 +1,6 @@
-"""The clock that a sound is: what it tells from one picture to the next, of readings that stutter,
-jump and start anew.
+"""The clock that a sound is.
+
+What it tells from one picture to the next, of readings that stutter, jump and start anew.
 
 Page's clock and sound are scripted: how fast the machine is plays no part.
 """
@@ -10,7 +11,8 @@ from browser import open_page
 
 from motiondiff_edu.widgets import module
 
-SCRIPTED = """([polls, rate]) => {  // at every picture: the page's time (s), the sound's, where it is sent first
+SCRIPTED = """([polls, rate]) => {
+  // at every picture: the page's time (s), the sound's, where it is sent first
   let now = 0;
   const performance = { now: () => 1000 * now };
   const audio = { currentTime: 0, paused: true, seeking: false, play() { this.paused = false; } };
@@ -45,8 +47,10 @@ def told(browser):
 
 
 def played(times: np.ndarray, rests=()) -> np.ndarray:
-    """Seconds of sound played since the first time, without the `rests`, (begin, length) on the
-    page's clock."""
+    """Seconds of sound played since the first time, without the `rests`.
+
+    A rest is (begin, length) on the page's clock.
+    """
     return (
         times
         - times[0]

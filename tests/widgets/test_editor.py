@@ -5,13 +5,11 @@ import time
 
 import numpy as np
 import pytest
-import torch
 import traitlets
-from browser import coloured, ink, open_page
-from editor_page import open_editor, settled
+from browser import coloured, drawn, ink, open_page
+from editor_page import guess, open_editor, settled
 from synthetic_walk import walk
 
-from motiondiff_edu.baselines.interpolation import spherical
 from motiondiff_edu.motion.bvh import read_bvh
 from motiondiff_edu.motion.skeleton import BONES, JOINTS, joint_index
 from motiondiff_edu.viz.body import Camera, project
@@ -25,14 +23,6 @@ FIGURE, RAIL = "canvas:not(.mde-lane)", "canvas.mde-timeline"
 @pytest.fixture(scope="module")
 def motion() -> np.ndarray:
     return walk(frames=T, turn=0.5)[0]
-
-
-def guess(positions, known, generator, samples=1, resample=1):
-    """Bones turned evenly between what is held, shaken; the more it is resampled, the less."""
-    base = spherical(positions, known)
-    shape = (samples, *base.shape[:2], 3)
-    noise = 0.1 / resample * torch.randn(shape, generator=generator, dtype=torch.float64).numpy()
-    return np.where(known[..., None], base, base + noise)
 
 
 def words(page) -> str:
@@ -60,7 +50,8 @@ def test_the_page_is_told_what_is_held(motion):
 
 
 def test_the_last_frame_by_its_number_from_the_end_is_the_same_frame(motion):
-    editor, target = Editor(motion, guess), motion[-1, HAND] + [0, 0.2, 0.05]
+    editor = Editor(motion, guess)
+    target = motion[-1, HAND] + [0, 0.2, 0.05]
     assert editor.pin(-1) == f"Pinned frame {T - 1}."
     assert editor.drag(-1, "LeftHand", target) == f"LeftHand in frame {T - 1} moved by 21 cm."
     editor.pin(-1)  # pinned already: what was dragged there stays
@@ -130,8 +121,6 @@ def test_undo_goes_back_step_by_step_and_reset_can_be_undone(motion):
 
 def test_a_saved_file_reads_back_as_the_chosen_in_between(motion, tmp_path, capsys):
     editor = Editor(motion, guess, fps=25)
-    with pytest.raises(ValueError, match="no in-between yet"):
-        editor.save(tmp_path / "none.bvh")
     editor.pin(0, 12, 30)
     editor.generate()
     editor.chosen = 1
@@ -151,6 +140,46 @@ def receive(editor, **content) -> str:
     return editor.state["message"]
 
 
+def test_a_retouched_pose_is_saved_before_anything_is_generated(motion, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    editor = Editor(motion, guess)
+    editor.pin(4)
+    editor.drag(4, "LeftHand", motion[4, HAND] + [0, 0.2, 0.05])
+    said = receive(editor, do="save", name=" retouched ", chosen=0)
+    assert said.startswith(f"Saved {tmp_path / 'retouched.bvh'} (the motion with its pinned poses;")
+    back = read_bvh(tmp_path / "retouched.bvh")
+    hand = back.world_positions()[:, back.names.index("LeftHand")] / 100
+    np.testing.assert_allclose(hand, editor.positions[:, HAND], atol=0.02)  # bones are evened out
+    assert hand[4, 1] > motion[4, HAND, 1] + 0.17
+    assert ", over an older file: " in receive(editor, do="save", name="retouched.bvh")
+
+
+@pytest.mark.parametrize(
+    "name, message",
+    [
+        (
+            "/elsewhere/walk.bvh",
+            "'/elsewhere/walk.bvh' names a folder. Type a name alone: the file goes beside",
+        ),
+        ("../walk.bvh", "names a folder"),
+        ("~/walk", "names a folder"),
+        (r"C:\walk.bvh", "names a folder"),
+        ("my walk.txt", "Not saved: only .bvh can be written, not .txt. Type my walk.bvh."),
+        (" ", "Give the file a name."),
+        (".bvh", "Give the file a name."),
+        ("..", "Give the file a name."),
+    ],
+)
+def test_what_is_no_name_for_a_file_is_refused_and_nothing_written(
+    motion, tmp_path, monkeypatch, name, message
+):
+    inside = tmp_path / "inside"
+    inside.mkdir()
+    monkeypatch.chdir(inside)
+    assert message in receive(Editor(motion, guess), do="save", name=name)
+    assert list(tmp_path.rglob("*")) == [inside]
+
+
 def test_errors_are_told_in_the_page_and_leave_it_at_rest(motion, tmp_path):
     def broken(positions, known, generator):
         raise RuntimeError("out of memory")
@@ -159,16 +188,13 @@ def test_errors_are_told_in_the_page_and_leave_it_at_rest(motion, tmp_path):
     assert receive(editor, do="generate", after=0) == "RuntimeError: out of memory."
     assert not editor.busy and editor.samples is None and isinstance(editor.error, RuntimeError)
     assert receive(editor, do="undo") == "There is nothing to undo."
-    assert receive(editor, do="drag", frame=3, joint=5, to=[0, 0, 0], grip=1).startswith(
+    assert receive(editor, do="drag", frame=3, joint=5, by=[0, 0, 0], grip=1).startswith(
         "Frame 3 is not pinned"
     )
-    assert (
-        receive(editor, do="save", name=str(tmp_path / "x"))
-        == "There is no in-between yet: press Generate first."
-    )
+    assert receive(editor, do="save", name=str(tmp_path / "x")).endswith("in a cell.")
     assert receive(editor, do="save", name=" ") == "Give the file a name."
     editor.pin(*range(T))
-    assert receive(editor, do="generate", after=0).startswith(
+    assert receive(editor, do="generate", after=5).startswith(
         "Every frame is pinned: there is nothing to make."
     )
     assert editor.state["heard"] == 6
@@ -177,7 +203,7 @@ def test_errors_are_told_in_the_page_and_leave_it_at_rest(motion, tmp_path):
 def test_a_press_while_another_is_answered_is_ignored(motion):
     calls = []
 
-    def make(positions, known, generator):
+    def make(positions, known, generator, **_):
         calls.append(len(calls))
         assert editor.busy
         receive(editor, do="generate", after=0)  # a message that comes in between
@@ -195,26 +221,66 @@ def test_a_press_while_another_is_answered_is_ignored(motion):
 def test_drags_of_one_grip_start_from_the_same_pose_and_are_undone_together(motion):
     editor = Editor(motion, guess)
     editor.pin(8)
-    there = (motion[8, HAND] + [0.1, 0.3, 0.0]).tolist()
-    for target in ([5.0, 5.0, 5.0], [-3.0, 0.5, 0.2], there):
-        receive(editor, do="drag", frame=8, joint=HAND, to=target, grip=1)
+    for by in ([5.0, 5.0, 5.0], [-3.0, 0.5, 0.2], [0.1, 0.3, 0.0]):
+        receive(editor, do="drag", frame=8, joint=HAND, by=by, grip=1)
     alone = Editor(motion, guess)
     alone.pin(8)
-    alone.drag(8, "LeftHand", there)
+    alone.drag(8, "LeftHand", motion[8, HAND] + [0.1, 0.3, 0.0])
     assert np.array_equal(editor.positions, alone.positions)
-    receive(
-        editor,
-        do="drag",
-        frame=8,
-        joint=12,
-        to=(editor.positions[8, 12] + [0.05, 0, 0]).tolist(),
-        grip=2,
-    )
+    receive(editor, do="drag", frame=8, joint=12, by=[0.05, 0, 0], grip=2)
     assert editor.edit.moved == {8: ("LeftHand", "Head")} and editor.state["undo"] == 3
     receive(editor, do="undo")
     assert np.array_equal(editor.positions, alone.positions)
     receive(editor, do="undo")
     assert np.array_equal(editor.positions, motion)
+
+
+def height(editor, frame: int = 8) -> float:
+    """How far the left hand of a frame was raised, in cm."""
+    return 100 * (editor.positions - editor.edit.motion)[frame, HAND, 1]
+
+
+def test_a_grip_goes_on_after_an_undo_with_what_it_was_moved_since(motion):
+    editor = Editor(motion, guess)
+    editor.pin(8)
+    for cm in (5, 12):
+        receive(editor, do="drag", frame=8, joint=HAND, by=[0, cm / 100, 0], grip=1)
+    receive(editor, do="undo")
+    assert height(editor) == 0
+    for cm in (15, 19):  # 3 and 7 more than before the undo
+        receive(editor, do="drag", frame=8, joint=HAND, by=[0, cm / 100, 0], grip=1)
+    assert height(editor) == pytest.approx(7) and editor.state["undo"] == 2
+    receive(editor, do="drag", frame=8, joint=HAND, by=[0, 0.01, 0], grip=2)
+    assert height(editor) == pytest.approx(8)
+    receive(editor, do="undo")
+    assert height(editor) == pytest.approx(7)
+    assert "not by [0.0, nan, 0.0]" in receive(
+        editor, do="drag", frame=8, joint=HAND, by=[0, None, 0], grip=3
+    )
+    receive(editor, do="drag", frame=8, joint=HAND, by=[0, 0.02, 0], grip=3)
+    assert height(editor) == pytest.approx(9)
+
+
+def test_a_press_after_an_undo_is_no_old_one(motion):
+    editor = Editor(motion, guess)
+    editor.pin(0, 30)
+    receive(editor, do="generate", after=0, count=2, resample=4)
+    assert (len(editor.samples), editor.count, editor.resample) == (2, 2, 4)
+    receive(editor, do="undo")
+    assert editor.samples is None
+    receive(editor, do="generate", after=1)  # the page has not heard of the undo yet
+    assert len(editor.samples) == 2
+
+
+def test_a_frame_is_turned_over_as_it_is_here_and_pinned_as_it_is_shown_there(motion):
+    editor = Editor(motion, guess)
+    editor.pin(0, 30)
+    editor.generate()
+    receive(editor, do="toggle", frame=11, chosen=2)
+    assert np.array_equal(editor.positions[11], editor.samples[2, 11]) and editor.chosen == 2
+    assert receive(editor, do="toggle", frame=11, chosen=2) == "Let go of frame 11."
+    receive(editor, do="ping")
+    assert editor.state["message"] == "Let go of frame 11."
 
 
 def test_what_is_no_motion_is_refused(motion):
@@ -252,9 +318,10 @@ def press(page, *keys) -> None:
     settled(page)
 
 
-def test_the_whole_way_by_keyboard(page, editor, motion, tmp_path):
+def test_the_whole_way_by_keyboard(page, editor, motion, tmp_path, monkeypatch):
     page.locator(FIGURE).focus()
-    press(page, "Enter", *["."] * 12, "Enter", "End", "Enter", "PageUp")
+    press(page, "Enter", *["."] * 12, "Enter", "End", "Enter")
+    press(page, "PageUp")
     assert page.locator(".mde-editor").get_attribute("data-pins") == "0 12 30"
     assert page.locator(".mde-editor").get_attribute(
         "data-frame"
@@ -276,10 +343,11 @@ def test_the_whole_way_by_keyboard(page, editor, motion, tmp_path):
     assert editor.chosen == 2 and "In-between 3:" in words(page)
     press(page, "]")
     assert editor.chosen == 0
-    page.get_by_label("Name of the file").fill(str(tmp_path / "edited"))
+    monkeypatch.chdir(tmp_path)
+    page.get_by_label("Name of the file").fill("edited 1.5")
     press(page, "Enter")
     page.wait_for_function("document.querySelector('.mde-say').textContent.startsWith('Saved')")
-    bvh = read_bvh(tmp_path / "edited.bvh")
+    bvh = read_bvh(tmp_path / "edited 1.5.bvh")
     back = bvh.world_positions()[:, [bvh.names.index(name) for name in JOINTS]] / 100
     told = float(re.search(r"([\d.]+) mm at most", words(page))[1]) / 1000
     assert np.linalg.norm(back - editor.samples[0], axis=-1).max() == pytest.approx(told, abs=1e-4)
@@ -320,7 +388,8 @@ def test_a_hand_is_dragged_with_the_mouse_and_the_bones_keep_their_lengths(page,
 def test_dragging_elsewhere_turns_the_view_and_moves_nothing(page, editor, motion):
     page.locator(FIGURE).focus()
     press(page, "Enter")
-    first, box = ink(page.locator(FIGURE)), page.locator(FIGURE).bounding_box()
+    first = ink(page.locator(FIGURE))
+    box = page.locator(FIGURE).bounding_box()
     page.mouse.move(box["x"] + 60, box["y"] + 200)
     page.mouse.down()
     page.mouse.move(box["x"] + 160, box["y"] + 230, steps=3)
@@ -329,17 +398,21 @@ def test_dragging_elsewhere_turns_the_view_and_moves_nothing(page, editor, motio
     assert page.evaluate("asked.length") == 1
 
 
-def test_the_timeline_pins_by_clicks_and_scrubs_by_its_ruler(page, editor):
+def test_a_click_on_the_timeline_goes_there_and_a_double_click_pins(page, editor):
     box = page.locator(RAIL).bounding_box()
     at = lambda t: 14 + t / (T - 1) * (box["width"] - 28)  # noqa: E731
     track, ruler = box["y"] + 38, box["y"] + 10
-    for frame in (10, 20, 10):  # 10 is pinned, 20 is pinned, 10 is looked at
-        page.mouse.click(box["x"] + at(frame), track)
+    for row, frame in ((track, 10), (ruler, 20), (track, 5)):
+        page.mouse.click(box["x"] + at(frame), row)
         settled(page)
-    assert editor.state["pins"] == [10, 20] and editor.frame == 10
-    page.mouse.click(box["x"] + at(10), track)  # and let go
+        assert editor.frame == frame and page.evaluate("asked.length") == 0
+    for row, frame, pins in ((track, 10, [10]), (ruler, 20, [10, 20]), (track, 10, [20])):
+        page.mouse.dblclick(box["x"] + at(frame), row)
+        settled(page)
+        assert editor.frame == frame and editor.state["pins"] == pins
+    page.mouse.click(box["x"] + at(20), track)  # a click lets nothing go
     settled(page)
-    assert editor.state["pins"] == [20]
+    assert editor.frame == 20 and editor.state["pins"] == [20]
     page.mouse.move(box["x"] + at(3), ruler)
     page.mouse.down()
     page.mouse.move(box["x"] + at(27), ruler, steps=4)
@@ -353,6 +426,34 @@ def test_the_timeline_pins_by_clicks_and_scrubs_by_its_ruler(page, editor):
     )
     press(page, "Enter")
     assert editor.state["pins"] == [] and "Nothing is held" in words(page)
+
+
+LABELS = """() => {  // boxes of the labels written on the stage
+  const boxes = [], write = CanvasRenderingContext2D.prototype.fillText;
+  CanvasRenderingContext2D.prototype.fillText = function (text, x, y) {
+    const wide = this.measureText(text).width, left = this.textAlign === "right" ? x - wide : x;
+    if (text.match(/^in-b|^motion/)) boxes.push([text, left, y - 11, left + wide, y + 2]);
+    return write.call(this, text, x, y);
+  };
+  document.querySelector(".mde-editor input[type=checkbox]").click();
+  CanvasRenderingContext2D.prototype.fillText = write;
+  return boxes;
+}"""
+
+
+@pytest.mark.parametrize("frame", [1, 15])  # in one place, and apart
+def test_every_ghost_has_its_name_and_no_name_covers_another(page, editor, frame):
+    editor.pin(0, 30)
+    page.get_by_role("button", name="Generate").click()
+    page.wait_for_function("model.get('state').made === 3")
+    page.locator(FIGURE).focus()
+    press(page, "Home", *["."] * frame, "]")
+    boxes, width = page.evaluate(LABELS), page.locator(FIGURE).bounding_box()["width"]
+    assert sorted(box[0] for box in boxes) == ["in-between 1", "in-between 3", "motion before"]
+    for i, (_, left, top, right, foot) in enumerate(boxes):
+        assert 0 <= left and right <= width and top > 0
+        for _, left2, top2, right2, foot2 in boxes[:i]:
+            assert right <= left2 or right2 <= left or foot <= top2 or foot2 <= top
 
 
 def test_controls_are_told_and_ghosts_are_drawn(page, editor):
@@ -372,6 +473,7 @@ def test_controls_are_told_and_ghosts_are_drawn(page, editor):
     )
     seen = ink(page.locator(FIGURE))
     page.get_by_label("Next in-between").click()
+    settled(page)
     assert editor.chosen == 1 and ink(page.locator(FIGURE)) != seen
     page.get_by_role("button", name="Undo").click()
     settled(page)
@@ -415,10 +517,10 @@ def test_errors_appear_in_the_message_line(page, editor):
     assert "There are no in-betweens yet" in words(page)
     press(page, "z")
     assert "There is nothing to undo." in words(page)
-    editor._make = lambda p, k, g: p
+    editor._make = lambda p, k, **_: p
     press(page, "g")
     page.wait_for_function("document.querySelector('.mde-say').textContent.includes('is needed')")
-    assert "(31, 21, 3); (samples, 31, 21, 3) is needed." in words(page)
+    assert "(31, 21, 3); (3, 31, 21, 3) is needed." in words(page)
     page.wait_for_function("document.querySelector('.mde-main').textContent === 'Generate'")
 
 
@@ -451,22 +553,20 @@ def test_without_a_kernel_it_plays_and_pins_and_says_what_it_needs(browser, moti
         page.goto(export.as_uri())
         inside = page.frame_locator("iframe")
         canvas, said = inside.locator(FIGURE), inside.locator(".mde-say")
-        canvas.wait_for()
-        assert min(coloured(canvas).values()) > 200
+        drawn(canvas)
         inside.get_by_role("button", name="Play").click()
         inside.locator(".mde-editor:not([data-frame='0'])").wait_for()
         canvas.focus()
         for key in (" ", "Home", ".", ".", "Enter"):
             page.keyboard.press(key)
-        assert inside.locator(".mde-editor").get_attribute("data-pins") == "0 2 30"
+        inside.locator(".mde-editor[data-pins='0 2 30']").wait_for()
         assert "Frame 2 pinned, on this page only." in said.inner_text()
         page.keyboard.press("g")
-        assert (
-            said.inner_text()
-            == "Generating needs a running notebook: run the cell that made this editor."
-        )
+        inside.get_by_text(
+            "Generating needs a running notebook: run the cell that made this editor."
+        ).wait_for()
         page.keyboard.press("]")
-        assert "In-between 2:" in inside.locator(".mde-measured").inner_text()
+        inside.get_by_text("In-between 2:").wait_for()
         assert page.problems == [] and page.asked == []
 
 

@@ -3,7 +3,7 @@ figure."""
 
 import numpy as np
 import pytest
-from browser import open_page, player_page
+from browser import open_page, player_page, until
 from click_track import clicks, jumping
 from synthetic_walk import walk
 
@@ -66,7 +66,8 @@ def test_a_column_reaches_halfway_to_its_neighbours():
 
 
 def test_the_record_says_how_the_bytes_are_to_be_read(listening, maps, moved):
-    record, codes = listening.music, np.frombuffer(listening.strips, np.uint8)
+    record = listening.music
+    codes = np.frombuffer(listening.strips, np.uint8)
     assert [(level["name"], level["rows"], level["edges"]) for level in record["levels"]] == [
         ("fine", T, 0),
         ("coarse", 11, 0),
@@ -238,7 +239,8 @@ TEXTS = """() => {  // boxes of all labels written on the lane
 def test_labels_neither_overlap_nor_leave_the_lane(browser, listening, tmp_path, width):
     with open_page(browser, viewport={"width": width, "height": 700}) as page:
         page.goto(player_page(tmp_path, listening))
-        boxes, inside = page.evaluate(TEXTS), page.locator(".mde-lane").bounding_box()["width"]
+        boxes = page.evaluate(TEXTS)
+        inside = page.locator(".mde-lane").bounding_box()["width"]
         assert page.evaluate("document.documentElement.scrollWidth <= innerWidth")
     assert len(boxes) >= 4
     for i, (text, left, top, right, foot) in enumerate(boxes):
@@ -253,8 +255,8 @@ def test_exported_it_shows_the_same_and_the_poster_has_the_lane(browser, listeni
     with open_page(browser) as page:
         page.goto((tmp_path / "export.html").as_uri())
         lane = page.frame_locator("iframe").locator(".mde-lane")
-        lane.wait_for()
-        assert max(lane.evaluate(COLOURS)[0]) > 20 and page.problems == [] and page.asked == []
+        until(lane, f"() => Math.max(...({COLOURS})()[0]) > 20")
+        assert page.problems == [] and page.asked == []
     pixels = np.asarray(listening.poster().convert("RGB")).astype(int)
     assert (
         (pixels[..., 0] > pixels[..., 1] + 40) & (pixels[..., 2] > pixels[..., 1] + 20)

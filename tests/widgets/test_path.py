@@ -108,7 +108,8 @@ def test_drawing_on_from_the_end_continues_the_path(page):
     scale = min(
         box["width"] / 8, box["height"] / 9
     )  # metres shown: 8 across, 9 up, the middle at z = 2.5
-    x, y = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2 + (2.5 - 1.0) * scale
+    x = box["x"] + box["width"] / 2
+    y = box["y"] + box["height"] / 2 + (2.5 - 1.0) * scale
     page.mouse.move(x, y)
     page.mouse.down()
     page.mouse.move(x - scale, y - scale, steps=4)

@@ -1,2 +1,4 @@
-"""The papers' tables and figures, recomputed on the course's data: `python -m tools.results` (or
-`make results`)."""
+"""The papers' tables and figures, recomputed on the course's data.
+
+`python -m tools.results` (or `make results`).
+"""

@@ -5,11 +5,12 @@
 Parts: walker-eps, walker-x0, walker-ddim10, their -lookahead lines, footsteps; dancer,
 dancer-plain, regression, unheard (music like none in training), attention, dance-time; mend
 (dropout and repairs), mend-both (both papers' repairs), inbetween, known-answer (ways of filling in
-where the right one is a formula). Those that train, for minutes a row: budget, dance-budget and
-mend-map; one row of them: budget.T_p-5, dance-budget.v. Without --only, all are measured that the
-shipped weights allow; --full adds those that train, whose records are else kept as they are. A
-training that was killed goes on. --quick measures little, into build/quick, and is for trying the
-code; --render only writes docs/RESULTS.md from the records that are there.
+where the right one is a formula). Those that train, for minutes a row: ladder (from the paper's
+walker to ours), budget, dance-budget and mend-map; one row of them: budget.T_p-5, dance-budget.v.
+Without --only, all are measured that the shipped weights allow; --full adds those that train, whose
+records are else kept as they are. A training that was killed goes on. --quick measures little, into
+build/quick, and is for trying the code; --render only writes docs/RESULTS.md from the records that
+are there.
 """
 
 import argparse
@@ -30,7 +31,7 @@ from .page.cards import add_metrics
 from .page.render import render
 from .repairs import both, dropout, mend, repair
 from .repairs.trials import names_of
-from .walks import budget
+from .walks import budget, ladder
 from .walks.parts import (
     FULL,
     LINES,
@@ -56,6 +57,7 @@ MENDED = {  # by these weights
     "inbetween": {"unconditional"},
 }
 TRAINED = {
+    "ladder": ("pace", "rates", *ladder.CELLS),
     "budget": tuple(budget.VARIANTS),
     "dance-budget": tuple(dance_budget.VARIANTS),
     "mend-map": tuple(dropout.RATES),
@@ -106,8 +108,9 @@ def weights_of(items: list[str]) -> dict[str, Path]:
 
 
 def parts_of(only: list[str], full: bool, lines: dict[str, Walks], weights: set[str]) -> list[str]:
-    """The parts asked for, row by row; none asked for: all that have weights, and with `full` what
-    trains.
+    """The parts asked for, row by row.
+
+    None asked for: all that have weights, and with `full` what trains.
 
     Leaves with the names there are when one is unknown.
     """
@@ -129,23 +132,25 @@ def parts_of(only: list[str], full: bool, lines: dict[str, Walks], weights: set[
     if unknown:
         there = ", ".join([*lines, *DANCES, *MEASURED, *MENDED, *rows])
         sys.exit(
-            f"no part is called {', '.join(unknown)}; there are: {there}; rows: budget.T_p-5, dance-budget.v ..."
+            f"no part is called {', '.join(unknown)}; there are: {there}; rows: "
+            "budget.T_p-5, dance-budget.v ..."
         )
     return parts
 
 
 def measure(asked: argparse.Namespace, folder: Path) -> None:
-    """Run the parts asked for and write their records; those of all other parts stay as they
-    are."""
+    """Run the parts asked for and write their records.
+
+    Those of all other parts stay as they are.
+    """
     extra = weights_of(asked.weights)
-    bench, lines = (
-        Bench(QUICK if asked.quick else FULL, extra),
-        LINES | {name: Walks(name, name) for name in extra},
-    )
+    bench = Bench(QUICK if asked.quick else FULL, extra)
+    lines = LINES | {name: Walks(name, name) for name in extra}
     stage = Stage(DANCE_QUICK if asked.quick else DANCE_FULL, extra)
     options = " --quick" * asked.quick + "".join(f" --weights {item}" for item in asked.weights)
     for part in parts_of(asked.only, asked.full, lines, set(bench.weights)):
-        began, command = time.monotonic(), f"python -m tools.results --only {part}{options}"
+        began = time.monotonic()
+        command = f"python -m tools.results --only {part}{options}"
         records = records_of(part, asked.quick, bench, stage, lines, folder, command)
         show([one for one in records if one["value"] is not None])
         write_records(folder / f"{part}.json", records)
@@ -157,6 +162,9 @@ def records_of(
 ) -> list[dict]:
     """The records of one part; its figure, where it has one, is written beside them."""
     group, _, row = part.partition(".")
+    if group == "ladder":
+        size, runs = (ladder.QUICK, folder / "runs") if quick else (ladder.FULL, RUNS / group)
+        return ladder.measure(row, folder / group, runs, size, command)
     if group == "budget":
         return budget.budget_records(row, budget.QUICK if quick else budget.FULL, command)
     if group == "dance-budget":
@@ -172,10 +180,8 @@ def records_of(
     if part == "mend":
         return mend.records(bench, repair.QUICK if quick else repair.FULL, command)
     if part == "inbetween":
-        dancer, digest = (
-            stage.dancer("unconditional"),
-            weights_digest(stage.weights["unconditional"]),
-        )
+        dancer = stage.dancer("unconditional")
+        digest = weights_digest(stage.weights["unconditional"])
         return inbetween.inbetween_records(
             dancer, digest, inbetween.QUICK if quick else inbetween.FULL, command
         )

@@ -1,5 +1,7 @@
-"""A figure with its interval: clips are drawn again with replacement, and the figure computed anew
-each time."""
+"""A figure with its interval.
+
+Clips are drawn again with replacement, and the figure computed anew each time.
+"""
 
 from collections.abc import Callable
 
@@ -11,10 +13,12 @@ DRAWS = 2000
 def interval(
     figure: Callable[..., float], *per_clip: np.ndarray, draws: int = DRAWS
 ) -> tuple[float, float, float]:
-    """The figure and its 95 % bootstrap interval; arrays have one row for each clip and are drawn
-    together.
+    """The figure and its 95 % bootstrap interval.
 
-    A figure that is not a number in some draws (no planted toe in any clip drawn) leaves those out.
+    Arrays have one row for each clip and are drawn together.
+
+    A figure that is not a number in some draws (no planted toe in any clip drawn) leaves those out;
+    scipy.stats.bootstrap then has no interval, and it refuses a single clip.
     """
     rng, n = np.random.default_rng(0), len(per_clip[0])
     values = []

@@ -7,8 +7,10 @@ from . import hiphop, house, latin, pop, waltz
 
 @dataclass(frozen=True)
 class Manner:
-    """How a genre moves: stillness at the keys, flow through them, the arms' spring, posture at
-    rest."""
+    """How a genre moves.
+
+    Stillness at the keys, flow through them, the arms' spring, posture at rest.
+    """
 
     moves: tuple
     calm: tuple  # for breaks

@@ -27,8 +27,10 @@ NAPE: Pose = (40, 118, -60, 138)
 def bounce(
     p: Sheet, low: float = 0.05, high: float = 0.012, each: float = 1.0, heels: float = 0.0
 ) -> None:
-    """Down on every count, up in between: knees, and a little of the chest and head; `heels`
-    degrees up when high."""
+    """Down on every count, up in between: knees, and a little of the chest and head.
+
+    `heels` degrees up when high.
+    """
     count = 0.0
     while count < p.n:
         p.key("drop", (count, low), (count + 0.5 * each, high))

@@ -58,8 +58,10 @@ def rock(p: Sheet) -> None:
 
 
 def running_man(p: Sheet) -> None:
-    """A knee comes up between the counts, lands ahead, and both feet slide together: running on the
-    spot."""
+    """A knee comes up between the counts, lands ahead, and both feet slide together.
+
+    Running on the spot.
+    """
     for k in range(p.n):
         foot, other = (L, R) if k % 2 == 0 else (R, L)
         s = 1 if foot == L else -1
@@ -97,11 +99,9 @@ def arm_wave(p: Sheet) -> None:
         # crest at: left hand, left elbow, chest, right elbow ... forth in four counts and back in
         # four
         at = k % 4 if k % 8 < 4 else 3 - k % 4
-        hand, elbow, quiet = (
-            (14, 78, -36, 62, -26, 2),
-            (4, 100, 22, 30, 34, 18),
-            (2, 73, 12, 17, 14, 0),
-        )
+        hand = (14, 78, -36, 62, -26, 2)
+        elbow = (4, 100, 22, 30, 34, 18)
+        quiet = (2, 73, 12, 17, 14, 0)
         p.arms(k, *((hand, quiet), (elbow, quiet), (quiet, elbow), (quiet, hand))[at])
         s = 1.5 - at
         p.key("weight", (k, 0.6 * s))
@@ -115,8 +115,10 @@ def arm_wave(p: Sheet) -> None:
 
 
 def party_machine(p: Sheet) -> None:
-    """On the spot: a knee crosses up, steps down wide, the arms pump like pistons and the chest
-    turns."""
+    """On the spot, a knee crosses up and steps down wide.
+
+    The arms pump like pistons and the chest turns.
+    """
     for k in range(p.n):
         foot = L if k % 2 == 0 else R
         s = 1 if foot == L else -1
@@ -164,8 +166,10 @@ def kick_step(p: Sheet) -> None:
 
 
 def criss_cross(p: Sheet) -> None:
-    """Jump apart, jump crossed, apart again, and together; the arms cross and open with the
-    legs."""
+    """Jump apart, jump crossed, apart again, and together.
+
+    The arms cross and open with the legs.
+    """
     for k in range(p.n):
         phase = k % 4
         z = 0.10 if k % 8 < 4 else -0.10

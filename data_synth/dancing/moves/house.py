@@ -7,8 +7,10 @@ L, R = 0, 1
 
 
 def jack(p: Sheet) -> None:
-    """The torso rocks: chest forward and down on the count, back and up after it; heels pump in
-    turn."""
+    """The torso rocks: chest forward and down on the count, back and up after it.
+
+    Heels pump in turn.
+    """
     p.step(L, 0, 0.17, 0.0)
     p.both(0.7)
     for k in range(p.n):
@@ -26,8 +28,10 @@ def jack(p: Sheet) -> None:
 
 
 def shuffle(p: Sheet) -> None:
-    """Scooting sideways: one foot turns in and out under the weight, the other taps out and in
-    after each count."""
+    """Scooting sideways.
+
+    One foot turns in and out under the weight, the other taps out and in after each count.
+    """
     for k in range(p.n):
         out = k % 2 == 0
         p.step(R, k, -0.09, 0.0, turn=-30 if out else 26, height=0.025, swing=0.45)
@@ -125,8 +129,10 @@ def stomp(p: Sheet) -> None:
 
 
 def skip(p: Sheet) -> None:
-    """Hopping on one foot while the other knee comes up, two counts a side: the step, and the hop
-    on it."""
+    """Hopping on one foot while the other knee comes up, two counts a side.
+
+    The step, and the hop on it.
+    """
     for k in range(p.n):
         s = 1 if k % 4 < 2 else -1
         foot, other = (L, R) if s > 0 else (R, L)
@@ -160,8 +166,10 @@ def farmer(p: Sheet) -> None:
 
 
 def sway_low(p: Sheet) -> None:
-    """For breaks: feet stay, the weight goes from side to side, head and shoulders keep the
-    count."""
+    """For breaks: feet stay, the weight goes from side to side.
+
+    Head and shoulders keep the count.
+    """
     p.step(L, 0, 0.16, 0.0)
     for k in range(1, p.n):
         s = 1 if k % 2 else -1

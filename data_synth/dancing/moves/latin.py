@@ -1,5 +1,7 @@
-"""Latin: small steps under a quiet chest, hips that settle over each foot, arms held and
-leading."""
+"""Latin: small steps under a quiet chest, hips that settle over each foot.
+
+The arms are held and lead.
+"""
 
 from ..sheet import Sheet
 from .grooves import HIGH_V, HIP, bounce, conduct, lift, onhips, pick, soft, sweep
@@ -35,8 +37,10 @@ def arms(p: Sheet) -> None:
 
 
 def basic(p: Sheet) -> None:
-    """Mambo: left ahead, right in place, left back home, hold; then right back, left in place,
-    right home, hold."""
+    """Mambo: left ahead, right in place, left back home, hold.
+
+    Then right back, left in place, right home, hold.
+    """
     for k in range(p.n):
         half, s = k % 4, 1 if k % 8 < 4 else -1
         foot, other = (L, R) if s > 0 else (R, L)
@@ -73,8 +77,10 @@ def side_basic(p: Sheet) -> None:
 
 
 def cumbia(p: Sheet) -> None:
-    """Back on the diagonal behind the other foot, in place, side, together: the body opens to each
-    side."""
+    """Back on the diagonal behind the other foot, in place, side, together.
+
+    The body opens to each side.
+    """
     for k in range(p.n):
         half, s = k % 4, 1 if k % 8 < 4 else -1
         foot, other = (L, R) if s > 0 else (R, L)
@@ -97,8 +103,10 @@ def cumbia(p: Sheet) -> None:
 
 
 def suzie_q(p: Sheet) -> None:
-    """Cross in front with a twist of the feet, open to the side, cross again: travelling
-    sideways."""
+    """Cross in front with a twist of the feet, open to the side, cross again.
+
+    Travelling sideways.
+    """
     for k in range(p.n):
         across, way = k % 2 == 0, 1 if k % 8 < 4 else -1
         lead, trail = (R, L) if way > 0 else (L, R)
@@ -160,8 +168,10 @@ def cucaracha(p: Sheet) -> None:
 
 
 def turn(p: Sheet) -> None:
-    """Spot turn: ahead and half round, half round, close; one hand overhead; then a basic to
-    breathe."""
+    """Spot turn: ahead and half round, half round, close; one hand overhead.
+
+    Then a basic to breathe.
+    """
     k = 0
     while k + 2 < p.n:
         p.step(L, k, 0.02, 0.22, turn=20)

@@ -69,12 +69,18 @@ def box_step(p: Sheet) -> None:
 
 
 POSES = (  # left arm, right arm, weight, side, twist, lean, drop, look
-    (HIGH_V, HIP, 0.8, -8, 10, 0, 0.05, 20), (HIP, HIGH_V, -0.8, 8, -10, 0, 0.05, -20),
-    (ASIDE, ASIDE, 0.0, 0, 0, 2, 0.09, 0), (CROSSED, CROSSED, 0.0, 0, 0, 14, 0.11, 0), (UP, UP, 0.3, 0, 0, -5, 0.01, 0),
-    (WING, ASIDE, -0.8, 7, -18, 6, 0.09, -35), (ASIDE, WING, 0.8, -7, 18, 6, 0.09, 35),
-    (CACTUS, CACTUS, 0.0, 0, 8, -2, 0.06, 0), (NAPE, HIP, 0.7, -10, -12, 2, 0.05, -15),
-    (HIP, NAPE, -0.7, 10, 12, 2, 0.05, 15), (GUARD, UP, -0.6, 6, -8, 0, 0.05, 10),
-)  # fmt: skip
+    (HIGH_V, HIP, 0.8, -8, 10, 0, 0.05, 20),
+    (HIP, HIGH_V, -0.8, 8, -10, 0, 0.05, -20),
+    (ASIDE, ASIDE, 0.0, 0, 0, 2, 0.09, 0),
+    (CROSSED, CROSSED, 0.0, 0, 0, 14, 0.11, 0),
+    (UP, UP, 0.3, 0, 0, -5, 0.01, 0),
+    (WING, ASIDE, -0.8, 7, -18, 6, 0.09, -35),
+    (ASIDE, WING, 0.8, -7, 18, 6, 0.09, 35),
+    (CACTUS, CACTUS, 0.0, 0, 8, -2, 0.06, 0),
+    (NAPE, HIP, 0.7, -10, -12, 2, 0.05, -15),
+    (HIP, NAPE, -0.7, 10, 12, 2, 0.05, 15),
+    (GUARD, UP, -0.6, 6, -8, 0, 0.05, 10),
+)
 
 
 def pose_hits(p: Sheet) -> None:

@@ -1,5 +1,6 @@
-"""Waltz: three steps a bar, down on the first and rising through the others, long arms, the figure
-turning as it goes.
+"""Waltz, with three steps a bar: down on the first, rising through the others.
+
+Long arms, and the figure turns as it goes.
 
 A bar may have any number of beats: the first step drives, the last one closes.
 """

@@ -1,5 +1,6 @@
-"""Checks of the exercises: `checks.q_sample(my_q_sample)`, in the same cell as the reader's own
-function.
+"""Checks of the exercises.
+
+`checks.q_sample(my_q_sample)`, in the same cell as the reader's own function.
 
 Not attempted, likely mistake, or right: _report.py says how to write one. One file per notebook:
 nb02.py and so on.

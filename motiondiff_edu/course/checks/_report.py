@@ -43,8 +43,10 @@ class CheckFailed(AssertionError):
     """An answer that is not right yet, with the likely mistake."""
 
     def _render_traceback_(self) -> list[str]:
-        """What IPython shows instead of a traceback through the check: the message, and the
-        reader's own lines."""
+        """What IPython shows instead of a traceback through the check.
+
+        The message, and the reader's own lines.
+        """
         lines = [f"{type(self).__name__}: {self}"]
         if self.__cause__ is not None:
             frames = traceback.extract_tb(self.__cause__.__traceback__)
@@ -67,7 +69,8 @@ def check(function: Callable[[Any], str | None]) -> Check:
     name = function.__name__
     if name in REGISTRY and REGISTRY[name].__module__ != function.__module__:
         raise ValueError(
-            f"two checks are called {name}: in {REGISTRY[name].__module__} and {function.__module__}"
+            f"two checks are called {name}: in {REGISTRY[name].__module__} and "
+            f"{function.__module__}"
         )
 
     @functools.wraps(function)
@@ -129,8 +132,9 @@ def expect_close(
     rtol: float = 1e-4,
     atol: float = 1e-5,
 ) -> None:
-    """Fail unless `got` equals `wanted`; name the mistake whose value it has, or else the place
-    that is farthest off.
+    """Fail unless `got` equals `wanted`.
+
+    Name the mistake whose value it has, or else the place that is farthest off.
 
     Numbers, lists, arrays and tensors are taken alike.
     """

@@ -27,9 +27,9 @@ def right_turn(mine):
         "90 degrees in one second; here the turn takes two": np.tile(
             [0.8, 0.0, -2 * quarter], (40, 1)
         ),
-        "90 is the whole turn in degrees; the control wants radians, and those of one second": np.tile(
-            [0.8, 0.0, -90.0], (40, 1)
-        ),
+        (
+            "90 is the whole turn in degrees; the control wants radians, and those of one second"
+        ): np.tile([0.8, 0.0, -90.0], (40, 1)),
         "this is the turn of one frame; the control counts per second": np.tile(
             [0.8, 0.0, -quarter / 20], (40, 1)
         ),
@@ -46,17 +46,20 @@ def right_turn(mine):
 
 @check
 def splice_control(mine):
-    """mine(past, new, T_h): the last T_h rows of the past, its last one leading into the first new
-    frame."""
-    past, new = np.arange(18.0).reshape(6, 3), 100 + np.arange(12.0).reshape(4, 3)
+    """Check mine(past, new, T_h).
+
+    The last T_h rows of the past, its last one leading into the first new frame.
+    """
+    past = np.arange(18.0).reshape(6, 3)
+    new = 100 + np.arange(12.0).reshape(4, 3)
     before = past.copy()
     got = mine(past, new, 5)
     expect(np.array_equal(past, before), "the recording's control was changed; work on a copy")
     wanted = np.concatenate([past[1:5], new[:1], new])
     mistakes = {
-        "the last past row still repeats its neighbour, and it leads into the first new frame": np.concatenate(
-            [past[1:], new]
-        ),
+        (
+            "the last past row still repeats its neighbour, and it leads into the first new frame"
+        ): np.concatenate([past[1:], new]),
         "one row is missing: the first row of `new` stands twice": np.concatenate([past[1:5], new]),
         "these are the first rows of the past; the walker sees the last ones": np.concatenate(
             [past[:4], new[:1], new]
@@ -67,4 +70,7 @@ def splice_control(mine):
         "past and future are the wrong way round": np.concatenate([new, past[1:5], new[:1]]),
     }
     expect_close(got, wanted, "5 rows of a past and 4 new ones", mistakes)
-    return "control[t] leads from frame t to t + 1: most off-by-one errors with motion are this sentence."
+    return (
+        "control[t] leads from frame t to t + 1: "
+        "most off-by-one errors with motion are this sentence."
+    )

@@ -28,13 +28,18 @@ def lengths_of_bones(mine):
         "the lengths of two poses with bones of 5, 12 and 3",
         mistakes,
     )
-    return "Three coordinates hold a joint, one number should hold a bone: nothing in 63 positions makes sure of it."
+    return (
+        "Three coordinates hold a joint, one number should hold a bone: "
+        "nothing in 63 positions makes sure of it."
+    )
 
 
 @check
 def place_in_world(mine):
-    """mine(pose, x, z, heading): four joints, turned and moved, at headings whose sines are
-    known."""
+    """Check mine(pose, x, z, heading).
+
+    Four joints, turned and moved, at headings whose sines are known.
+    """
     pose = np.array([[0.0, 1.0, 0.0], [0.2, 1.5, 0.0], [0.0, 0.1, 0.3], [-0.1, 0.4, 0.05]])
     quarter = mine(pose, 2.0, 5.0, np.pi / 2)  # facing +x, so left is -z
     x, y, z = pose.T
@@ -66,12 +71,16 @@ def _small_walk():
 
 
 def _expect_poses(seen, poses):
-    left_foot, right_foot, neck = 3, 7, 11  # by hand: the names of the skeleton
+    # by hand: the names of the skeleton
+    left_foot = 3
+    right_foot = 7
+    neck = 11
     mistakes = {
         "x is negated, but left and right must swap names too": poses[:, left_foot] * [-1, 1, 1],
-        "the names are swapped, but nothing was seen in a mirror: which coordinate changes sign?": poses[
-            :, right_foot
-        ],
+        (
+            "the names are swapped, but nothing was seen in a mirror: "
+            "which coordinate changes sign?"
+        ): poses[:, right_foot],
         "the wrong coordinate changes sign; x points to the left": poses[:, right_foot]
         * [1, 1, -1],
     }

@@ -32,19 +32,23 @@ def q_sample(mine):
             ),
         },
     )
-    return "sample 0 keeps 60 % of its amplitude and gets 80 % of noise: 0.36 + 0.64 = 1, in variances."
+    return (
+        "sample 0 keeps 60 % of its amplitude and gets 80 % of noise: "
+        "0.36 + 0.64 = 1, in variances."
+    )
 
 
 @check
 def posterior(mine):
     """Expected values by Bayes' rule on a grid, so that no formula is trusted."""
-    alpha_bar, s, x0, x_s = torch.tensor([1.0, 0.9, 0.7, 0.4], dtype=torch.float64), 3, 0.8, -0.6
+    alpha_bar = torch.tensor([1.0, 0.9, 0.7, 0.4], dtype=torch.float64)
+    s = 3
+    x0 = 0.8
+    x_s = -0.6
     before, alpha = 0.7, 0.4 / 0.7
     grid = torch.linspace(-8, 8, 160_001, dtype=torch.float64)
-    from_x0, from_x_s = (
-        (grid - before**0.5 * x0) ** 2 / (1 - before),
-        (x_s - alpha**0.5 * grid) ** 2 / (1 - alpha),
-    )
+    from_x0 = (grid - before**0.5 * x0) ** 2 / (1 - before)
+    from_x_s = (x_s - alpha**0.5 * grid) ** 2 / (1 - alpha)
     weight = (-(from_x0 + from_x_s) / 2).softmax(0)
     mean = (weight * grid).sum()
     variance = (weight * (grid - mean) ** 2).sum()
@@ -59,10 +63,14 @@ def posterior(mine):
         "the variance of x_2",
         mistakes={
             "that is beta_s, the variance of one step; what x0 knows must narrow it": 1 - alpha,
-            "x0 enters with the noise of step s; it is known how it became x_{s-1}, so use alpha_bar[s - 1]": 1
-            / (1 / 0.6 + alpha / (1 - alpha)),
-            "x_s speaks of sqrt(alpha_s) x_{s-1}: divide it by sqrt(alpha_s), and its variance by alpha_s": 1
-            / (1 / (1 - before) + 1 / (1 - alpha)),
+            (
+                "x0 enters with the noise of step s; "
+                "it is known how it became x_{s-1}, so use alpha_bar[s - 1]"
+            ): 1 / (1 / 0.6 + alpha / (1 - alpha)),
+            (
+                "x_s speaks of sqrt(alpha_s) x_{s-1}: "
+                "divide it by sqrt(alpha_s), and its variance by alpha_s"
+            ): 1 / (1 / (1 - before) + 1 / (1 - alpha)),
             "that is the standard deviation": variance**0.5,
             "that is the precision, 1 / variance": 1 / variance,
         },
@@ -70,8 +78,14 @@ def posterior(mine):
     late = variance * (0.4**0.5 * x0 / 0.6 + x_s / alpha**0.5 * alpha / (1 - alpha))
     unscaled = variance * (before**0.5 * x0 / (1 - before) + x_s / (1 - alpha))
     mistakes = {
-        "x0 enters with the noise of step s; it is known how it became x_{s-1}, so use alpha_bar[s - 1]": late,
-        "x_s speaks of sqrt(alpha_s) x_{s-1}: divide it by sqrt(alpha_s), and its variance by alpha_s": unscaled,
+        (
+            "x0 enters with the noise of step s; "
+            "it is known how it became x_{s-1}, so use alpha_bar[s - 1]"
+        ): late,
+        (
+            "x_s speaks of sqrt(alpha_s) x_{s-1}: "
+            "divide it by sqrt(alpha_s), and its variance by alpha_s"
+        ): unscaled,
     }
     expect_close(answer[0], mean, "the mean of x_2", mistakes)
     return f"knowing x0 narrows x_2 from +- {(1 - alpha) ** 0.5:.2f} to +- {variance**0.5:.2f}."
@@ -91,7 +105,10 @@ def constant_beta(mine):
             amplitude *= (1 - beta) ** 0.5
         expect(
             abs(amplitude - left**0.5) > 1e-6,
-            f"with S = {S} it is the variance of which {left:g} is left; the question was about the amplitude",
+            (
+                f"with S = {S} it is the variance of which {left:g} is left; "
+                "the question was about the amplitude"
+            ),
         )
         expect(
             abs(amplitude - left) < 1e-6,

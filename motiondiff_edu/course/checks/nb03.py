@@ -63,14 +63,15 @@ def best_guess(mine):
 
 @check
 def step_back(mine):
-    """mine(x_s, s, eps_hat, beta, alpha_bar, z), with tables whose roots at s = 2 are round
-    numbers."""
-    beta, alpha_bar = torch.tensor([0.0, 0.4375, 0.36]), torch.tensor([1.0, 0.5625, 0.36])
-    x, eps, z = (
-        torch.tensor([[1.0, -2.0, 0.5]]),
-        torch.tensor([[0.4, 1.0, -1.0]]),
-        torch.tensor([[10.0, -10.0, 5.0]]),
-    )
+    """Check mine(x_s, s, eps_hat, beta, alpha_bar, z).
+
+    The tables have roots at s = 2 that are round numbers.
+    """
+    beta = torch.tensor([0.0, 0.4375, 0.36])
+    alpha_bar = torch.tensor([1.0, 0.5625, 0.36])
+    x = torch.tensor([[1.0, -2.0, 0.5]])
+    eps = torch.tensor([[0.4, 1.0, -1.0]])
+    z = torch.tensor([[10.0, -10.0, 5.0]])
     mean = (x - 0.36 / 0.8 * eps) / 0.8
     expect_close(
         mine(x, 2, eps, beta, alpha_bar, z),
@@ -106,14 +107,16 @@ def step_back(mine):
 
 @check
 def leap(mine):
-    """mine(x_s, eps_hat, alpha_bar_s, alpha_bar_r, eta, z): one DDIM step, where the roots are
-    round numbers."""
-    now, then, eta = 0.36, 0.64, 0.5
-    x, eps, z = (
-        torch.tensor([[1.0, -2.0, 0.5]]),
-        torch.tensor([[0.4, 1.0, -1.0]]),
-        torch.tensor([[2.0, -1.0, 3.0]]),
-    )
+    """Check mine(x_s, eps_hat, alpha_bar_s, alpha_bar_r, eta, z).
+
+    One DDIM step, where the roots are round numbers.
+    """
+    now = 0.36
+    then = 0.64
+    eta = 0.5
+    x = torch.tensor([[1.0, -2.0, 0.5]])
+    eps = torch.tensor([[0.4, 1.0, -1.0]])
+    z = torch.tensor([[2.0, -1.0, 3.0]])
     x0 = (x - 0.8 * eps) / 0.6
     sure = 0.8 * x0 + 0.6 * eps
     expect_close(

@@ -11,10 +11,8 @@ from ._report import check, expect, expect_close
 @check
 def prior_term(mine):
     """Expected values from torch's own KL divergence."""
-    x0, alpha_bar = (
-        torch.linspace(-2, 1.5, 30, dtype=torch.float64).reshape(2, 5, 3),
-        torch.tensor(0.36).double(),
-    )
+    x0 = torch.linspace(-2, 1.5, 30, dtype=torch.float64).reshape(2, 5, 3)
+    alpha_bar = torch.tensor(0.36).double()
     each = kl_divergence(Normal(0.6 * x0, torch.full_like(x0, 0.8)), Normal(0.0, 1.0))
     half_means = (0.36 * x0**2).sum((1, 2)) / 2
     wrong_mean = each - 0.18 * x0**2 + (0.36 * x0) ** 2 / 2
@@ -41,8 +39,10 @@ def prior_term(mine):
 
 @check
 def x0_weight(mine):
-    """Expected values: distance of two posterior means for a unit error in x0, squared, over 2
-    beta."""
+    """Expected values.
+
+    Distance of two posterior means for a unit error in x0, squared, over 2 beta.
+    """
     beta = torch.tensor([0.0, 0.1, 0.2, 0.4, 0.5], dtype=torch.float64)
     alpha_bar = torch.tensor([1.0, 0.9, 0.72, 0.432, 0.216], dtype=torch.float64)
     moved = alpha_bar[:-1].sqrt() * beta[1:] / (1 - alpha_bar[1:])  # eq. 7: the factor of x0
@@ -60,14 +60,19 @@ def x0_weight(mine):
         "u_1 ... u_4",
         mistakes={
             "that is the weight of eps errors; an x0 error of 1 is another eps error": of_eps,
-            "an eps error is sqrt(alpha_bar / (1 - alpha_bar)) times the x0 error, and it enters squared": of_eps
-            * (a / (1 - a)).sqrt(),
+            (
+                "an eps error is sqrt(alpha_bar / (1 - alpha_bar)) times the x0 error, "
+                "and it enters squared"
+            ): of_eps * (a / (1 - a)).sqrt(),
             "the factor is upside down: at high noise a large x0 error is a small eps error": of_eps
             * (1 - a)
             / a,
         },
     )
-    return f"u_1 is {float(right[0] / right[-1]):.0f} times u_4 here: in x0, the bound cares for the last step most."
+    return (
+        f"u_1 is {float(right[0] / right[-1]):.0f} times u_4 here: "
+        "in x0, the bound cares for the last step most."
+    )
 
 
 @check
@@ -91,8 +96,8 @@ def tighter_bound(mine):
     deep = mine(ratio.log() - far)
     expect(
         torch.isfinite(torch.as_tensor(deep)).all(),
-        "at -2000 your answer is not finite: exp gives zero there. Take the largest of each column out before exp, "
-        "or ask torch",
+        "at -2000 your answer is not finite: exp gives zero there. "
+        "Take the largest of each column out before exp, or ask torch",
     )
     expect_close(
         deep,

@@ -1,5 +1,7 @@
-"""Checks of notebook 05: back to x0 from any target, the averaged weights, and the weight between
-two losses."""
+"""Checks of notebook 05.
+
+Back to x0 from any target, the averaged weights, and the weight between two losses.
+"""
 
 import numpy as np
 import torch
@@ -9,8 +11,10 @@ from ._report import check, expect, expect_close
 
 @check
 def back_to_x0(mine):
-    """mine(output, x_s, alpha_bar, target): each of eps, x0 and v leads back to the same x0, worked
-    out by hand."""
+    """Check mine(output, x_s, alpha_bar, target).
+
+    Each of eps, x0 and v leads back to the same x0, worked out by hand.
+    """
     # a = 0.8, b = 0.6 and a = 0.6, b = 0.8; x0 = 2, -1 and eps = -1, 3 by hand
     alpha_bar = torch.tensor([0.64, 0.36])
     x0, x_s = torch.tensor([2.0, -1.0]), torch.tensor([1.0, 1.8])
@@ -21,11 +25,16 @@ def back_to_x0(mine):
         mistakes = {
             "a is the square root of alpha_bar, b that of 1 - alpha_bar": roots_dropped,
             "a and b are swapped": _convert(output, x_s, b, a)[target],
-            "check the sign: x_s = a x0 + b eps, v = a eps - b x0": _convert(-output, x_s, a, b)[target],
-            "this is the noise, and x0 was asked for": {"eps": output, "x0": (x_s - a * x0) / b,
-                                                        "v": a * output + b * x_s}[target],
+            "check the sign: x_s = a x0 + b eps, v = a eps - b x0": (
+                _convert(-output, x_s, a, b)[target]
+            ),
+            "this is the noise, and x0 was asked for": {
+                "eps": output,
+                "x0": (x_s - a * x0) / b,
+                "v": a * output + b * x_s,
+            }[target],
             "undo the mixing completely: divide by a": x_s - b * output,
-        }  # fmt: skip
+        }
         expect_close(
             mine(output, x_s, alpha_bar, target),
             x0,
@@ -42,10 +51,8 @@ def _convert(output, x_s, a, b) -> dict:
 @check
 def averaged_weights(mine):
     """mine(means, new, decay) -> new averages; the old ones stay as they are."""
-    means, new = (
-        [np.array([1.0, -2.0]), np.zeros(3)],
-        [np.array([2.0, 2.0]), np.array([10.0, 0.0, -5.0])],
-    )
+    means = [np.array([1.0, -2.0]), np.zeros(3)]
+    new = [np.array([2.0, 2.0]), np.array([10.0, 0.0, -5.0])]
     got = mine(means, new, 0.9)
     expect(got is not None, "nothing comes back; return the new list of averages")
     expect(len(got) == 2, f"two arrays went in, {len(got)} came out")
@@ -72,4 +79,7 @@ def weight_between_losses(mine):
         "x0_hat - x0 has a in the denominator as well": 1 - alpha_bar,
     }
     expect_close(mine(alpha_bar), wanted, "the weight at alpha_bar = 0.9, 0.5, 0.2, 0.01", mistakes)
-    return "Choosing a target is choosing where to look: an unweighted eps loss looks away from high noise."
+    return (
+        "Choosing a target is choosing where to look: "
+        "an unweighted eps loss looks away from high noise."
+    )

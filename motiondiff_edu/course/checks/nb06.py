@@ -15,12 +15,10 @@ def _numbers(*shape: int, seed: int = 0) -> torch.Tensor:
 @check
 def attention_with_bias(mine):
     """mine(q, k, v, bias) against attention in two lines of PyTorch."""
-    q, k, v, bias = (
-        _numbers(3, 4),
-        _numbers(5, 4, seed=1),
-        _numbers(5, 2, seed=2),
-        2 * _numbers(3, 5, seed=3),
-    )
+    q = _numbers(3, 4)
+    k = _numbers(5, 4, seed=1)
+    v = _numbers(5, 2, seed=2)
+    bias = 2 * _numbers(3, 5, seed=3)
     raw, scaled = q @ k.T, q @ k.T / 2
     mistakes = {
         "something is missing under the scores: what does their size grow with?": (
@@ -65,9 +63,9 @@ def split_into_heads(mine):
     )
     got = mine(x, 3)
     mistakes = {
-        "frames and channels got mixed: cut the channels, then move the heads to the front": x.reshape(
-            2, 3, 5, 4
-        ),
+        (
+            "frames and channels got mixed: cut the channels, then move the heads to the front"
+        ): x.reshape(2, 3, 5, 4),
         "a head owns neighbouring channels, not every third": x.reshape(2, 5, 4, 3).permute(
             0, 3, 1, 2
         ),

@@ -1,5 +1,7 @@
-"""Checks of notebook 07: the control held over the future, and the rollout that repeats Algorithm
-2."""
+"""Checks of notebook 07.
+
+The control held over the future, and the rollout that repeats Algorithm 2.
+"""
 
 import torch
 
@@ -18,9 +20,9 @@ def hold_control(mine):
     wanted = torch.cat([before[:4], before[3:4].expand(3, 3)])
     mistakes = {
         "one row too late: row T_h belongs to a step that nobody knows yet": _held(before, 4, 4),
-        "one row too early: the step into the first predicted frame is known, it is row T_h - 1": _held(
-            before, 4, 2
-        ),
+        (
+            "one row too early: the step into the first predicted frame is known, it is row T_h - 1"
+        ): _held(before, 4, 2),
         "row T_h is a future row, too": torch.cat([before[:5], before[3:4].expand(2, 3)]),
         "nothing is held yet": before,
         "the future is not zero, it repeats the last known step": torch.cat(
@@ -50,9 +52,16 @@ class _Recorder:
 
 @check
 def rollout_by_hand(mine):
-    """mine(sample, past, control, frames, T_p) with a sampler that writes down what it was
-    given."""
-    B, T_h, T_p, D, C, frames = 2, 4, 3, 6, 1, 5
+    """Check mine(sample, past, control, frames, T_p).
+
+    The sampler writes down what it was given.
+    """
+    B = 2
+    T_h = 4
+    T_p = 3
+    D = 6
+    C = 1
+    frames = 5
     past = (
         torch.arange(T_h).float()[None, :, None].expand(B, T_h, D)
         * torch.tensor([1.0, -1.0])[:, None, None]
@@ -62,7 +71,10 @@ def rollout_by_hand(mine):
     got = mine(sample, past.clone(), control.clone(), frames, T_p)
     expect(sample.asked, "the sampler was never asked")
     _first_call(*sample.asked[0], past, control, T_h, T_p)
-    often = f"the sampler was asked {len(sample.asked)} times for {frames} frames; keep only the first pose of each window"
+    often = (
+        f"the sampler was asked {len(sample.asked)} times for {frames} frames; "
+        "keep only the first pose of each window"
+    )
     expect(len(sample.asked) == frames, often)
     shown = sample.asked[1][0]
     expect(
@@ -77,7 +89,10 @@ def rollout_by_hand(mine):
     expect_close(shown, torch.cat([past[:, 1:], new[:, None]], 1), "the past of the second window")
     steps = torch.cumsum(control[:, T_h - 1 : T_h - 1 + frames], dim=1)
     expect_close(got, past[:, -1:] + steps.expand(-1, -1, D), "the poses of the rollout", rtol=1e-3)
-    return "Every pose it sees after ten frames is its own: errors feed on themselves, and so does grace."
+    return (
+        "Every pose it sees after ten frames is its own: "
+        "errors feed on themselves, and so does grace."
+    )
 
 
 def _first_call(past_seen, control_seen, past, control, T_h: int, T_p: int):
@@ -87,9 +102,9 @@ def _first_call(past_seen, control_seen, past, control, T_h: int, T_p: int):
         "this is look-ahead: the future control is not known yet; hold the last row": control[
             :, : T_h + T_p
         ],
-        "the row that is held is one too late: which step leads into the first new frame?": torch.cat(
-            [rows[0], control[:, T_h : T_h + 1].expand(-1, T_p, -1)], dim=1
-        ),
+        (
+            "the row that is held is one too late: which step leads into the first new frame?"
+        ): torch.cat([rows[0], control[:, T_h : T_h + 1].expand(-1, T_p, -1)], dim=1),
         "the rows beside the past are one frame too late": torch.cat(
             [control[:, 1 : T_h + 1], control[:, T_h : T_h + 1].expand(-1, T_p, -1)], dim=1
         ),

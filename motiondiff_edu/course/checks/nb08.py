@@ -55,7 +55,8 @@ def toe_slide(mine):
     now = frame_low[np.arange(8), lower_now][toes[:-1, :, 1].min(1) < 0.03]
     whole = np.linalg.norm(np.diff(toes, axis=0), axis=-1)
     both = np.maximum(toes[1:, :, 1], toes[:-1, :, 1])
-    low, halfway = both.min(1) < 0.03, (toes[1:, :, 1] + toes[:-1, :, 1]) / 2
+    low = both.min(1) < 0.03
+    halfway = (toes[1:, :, 1] + toes[:-1, :, 1]) / 2
     expect_close(
         answer,
         10 * slides.mean(),

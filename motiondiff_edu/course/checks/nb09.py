@@ -1,5 +1,7 @@
-"""Checks of notebook 09: the batch of Algorithm 1 with its dropped past, what a linear fit sees of
-it, and the rate."""
+"""Checks of notebook 09.
+
+The batch of Algorithm 1 with its dropped past, what a linear fit sees of it, and the rate.
+"""
 
 import torch
 
@@ -12,16 +14,16 @@ ALPHA_BAR = torch.tensor(
 
 @check
 def batch_with_dropout(mine):
-    """mine(past, future, s, alpha_bar, rate, u, noise): (past as the network sees it, noised
-    future)."""
+    """Check mine(past, future, s, alpha_bar, rate, u, noise).
+
+    (past as the network sees it, noised future).
+    """
     draw = torch.Generator().manual_seed(9)
     past, future, first, second = torch.randn(4, 4, 3, 2, generator=draw, dtype=torch.float64)
-    s, u, rate, noise = (
-        torch.tensor([2, 1, 3, 2]),
-        torch.tensor([0.1, 0.7, 0.25, 0.9]),
-        0.3,
-        torch.stack([first, second]),
-    )
+    s = torch.tensor([2, 1, 3, 2])
+    u = torch.tensor([0.1, 0.7, 0.25, 0.9])
+    rate = 0.3
+    noise = torch.stack([first, second])
     given = past.clone(), future.clone()
     seen, x_s = _two(mine(*given, s, ALPHA_BAR, rate, u, noise))
     expect(
@@ -34,7 +36,10 @@ def batch_with_dropout(mine):
             torch.equal(one.nan_to_num(), two.nan_to_num())
             for one, two in zip((seen, x_s), again, strict=True)
         ),
-        "what you return differs from call to call; `u` and `noise` are given, so draw nothing yourself",
+        (
+            "what you return differs from call to call; "
+            "`u` and `noise` are given, so draw nothing yourself"
+        ),
     )
     a = torch.tensor([0.6, 0.8, 0.28, 0.6]).double()[:, None, None]
     b = torch.tensor([0.8, 0.6, 0.96, 0.8]).double()[:, None, None]
@@ -54,18 +59,23 @@ def batch_with_dropout(mine):
     if touched is not False and (touched.any(1) != touched.all(1)).any():
         expect(
             False,
-            "some frames of a past were noised and others not; one u decides over the whole past of a sample",
+            (
+                "some frames of a past were noised and others not; "
+                "one u decides over the whole past of a sample"
+            ),
         )
     noised = a * past + b * second
     mistakes = {
         "the mask is inverted: `u < rate` are the few that are noised": torch.where(
             hit, past, noised
         ),
-        "every past is noised; each sample has its own u, and only those with u < rate are hit": noised,
+        (
+            "every past is noised; each sample has its own u, and only those with u < rate are hit"
+        ): noised,
         "nothing is dropped yet": past,
-        "past and future have the same noise: the network could read the answer off the past": torch.where(
-            hit, a * past + b * first, past
-        ),
+        (
+            "past and future have the same noise: the network could read the answer off the past"
+        ): torch.where(hit, a * past + b * first, past),
         "this is zeroing: eq. 12 shrinks and adds noise": torch.where(hit, 0 * past, past),
         "nothing is divided by 1 - rate: that is nn.Dropout": torch.where(hit, noised, past)
         / (1 - rate),
@@ -78,7 +88,10 @@ def batch_with_dropout(mine):
         },
     }
     expect_close(seen, torch.where(hit, noised, past), "the past as the network sees it", mistakes)
-    return "Sample by sample, whole pasts, noise of their own: three things that are easily got wrong without a sound."
+    return (
+        "Sample by sample, whole pasts, noise of their own: "
+        "three things that are easily got wrong without a sound."
+    )
 
 
 def _two(got) -> list[torch.Tensor]:
@@ -114,8 +127,10 @@ def _wrong_noise(x, noise, a, b) -> dict:
 
 @check
 def dropped_products(mine):
-    """mine(xx, past, rate, alpha_bar): 2 past entries and 1 of control, worked out for two steps
-    and a rate of 1/2."""
+    """Check mine(xx, past, rate, alpha_bar).
+
+    2 past entries and 1 of control, worked out for two steps and a rate of 1/2.
+    """
     xx = torch.tensor([[2.0, 0.5, 1.0], [0.5, 3.0, -1.0], [1.0, -1.0, 4.0]], dtype=torch.float64)
     alpha_bar, rate = ALPHA_BAR[1:3], 0.5  # roots 0.8 and 0.6
     before = xx.clone()
@@ -124,9 +139,9 @@ def dropped_products(mine):
     # keep = 0.5 + 0.5 * 0.7, share = 0.5 + 0.5 * 0.5, floor = 0.5 * 0.5
     wanted = _products(xx, 0.85, 0.75, 0.25)
     mistakes = {
-        "past times past has two factors sqrt(alpha_bar): their product is alpha_bar itself": _products(
-            xx, 0.85, 0.85, 0.25
-        ),
+        (
+            "past times past has two factors sqrt(alpha_bar): their product is alpha_bar itself"
+        ): _products(xx, 0.85, 0.85, 0.25),
         "past times control has one factor sqrt(alpha_bar), not two": _products(
             xx, 0.75, 0.75, 0.25
         ),
@@ -177,13 +192,13 @@ def _products(xx, keep: float, share: float, floor: float):
 
 @check
 def rate_schedule(mine):
-    """mine(done, rates, calm): 0 while calm, then the rates one after the other."""
+    """mine(done, rates, start): 0 until `start`, then the rates one after the other."""
     rates, times = (0.1, 0.2, 0.4), torch.tensor([0.0, 0.39, 0.41, 0.59, 0.61, 0.79, 0.81, 0.999])
     got = [float(mine(float(t), rates, 0.4)) for t in times]
     steps = torch.tensor([0, 0, 0.1, 0.1, 0.2, 0.2, 0.4, 0.4])
     evenly = ((times - 0.4).clamp(min=0) / 0.6) * 0.4
     mistakes = {
-        "the calm part is missing: the rates begin at once": torch.tensor(
+        "the rates begin at once: until `start` the rate is 0": torch.tensor(
             [0.1, 0.2, 0.2, 0.2, 0.2, 0.4, 0.4, 0.4]
         ),
         "the rate jumps to the last one at once; it rises step by step": torch.where(
@@ -193,18 +208,21 @@ def rate_schedule(mine):
             [0, 0, 0.4, 0.4, 0.2, 0.2, 0.1, 0.1]
         ),
         "the rate rises in steps, it does not glide": evenly,
-        "the first rate never comes, or comes too late: each has a third of what is left": torch.tensor(
-            [0, 0, 0, 0, 0.1, 0.1, 0.2, 0.2]
-        ),
-        "the rates share what is left after the calm part, not the whole training": torch.tensor(
+        (
+            "the first rate never comes, or comes too late: each has a third of what is left"
+        ): torch.tensor([0, 0, 0, 0, 0.1, 0.1, 0.2, 0.2]),
+        "the rates share what is left after `start`, not the whole training": torch.tensor(
             [0, 0, 0.2, 0.2, 0.2, 0.4, 0.4, 0.4]
         ),
-        "the rates are 0 after the calm part and not before it": torch.tensor(
+        "the rates are 0 after `start` and not before it": torch.tensor(
             [0.1, 0.1, 0, 0, 0, 0, 0, 0]
         ),
     }
     expect_close(
-        got, steps, "the rate at 0, .39, .41, .59, .61, .79, .81 and .999, calm until .4", mistakes
+        got,
+        steps,
+        "the rate at 0, .39, .41, .59, .61, .79, .81 and .999, with start = .4",
+        mistakes,
     )
     expect_close(
         mine(1.0, rates, 0.4),
@@ -212,4 +230,7 @@ def rate_schedule(mine):
         "the rate when all is done",
         {"no rate comes after the last": 0.0},
     )
-    return "With the paper's rates, .05 to .25, and calm = .5, half of the training never meets a noised past."
+    return (
+        "With the paper's rates, .05 to .25, and start = .5, "
+        "half of the training never meets a noised past."
+    )

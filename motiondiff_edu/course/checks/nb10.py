@@ -9,15 +9,19 @@ T_H = 3
 
 
 def walk_on(past: torch.Tensor, control: torch.Tensor) -> torch.Tensor:
-    """A walker of two numbers, (B, 3, 2): one goes ahead with column 0 of the control, one turns
-    with column 2."""
+    """A walker of two numbers, (B, 3, 2).
+
+    One goes ahead with column 0 of the control, one turns with column 2.
+    """
     steps = control[:, T_H - 1 : 2 * T_H - 1][..., [0, 2]]
     return past[:, -1:] + steps.cumsum(1)
 
 
 class Watched:
-    """`walk_on`, which counts how often it is asked, and refuses a past or a control that is cut
-    short."""
+    """A `walk_on` that counts its calls.
+
+    It refuses a past or a control that is cut short.
+    """
 
     def __init__(self):
         self.calls = 0
@@ -28,11 +32,17 @@ class Watched:
         call = f"call {self.calls} of walk_on got"
         expect(
             past.shape == (2, T_H, 2),
-            f"{call} a past {tuple(past.shape)}; it goes on from all T_h = {T_H} frames, (2, {T_H}, 2)",
+            (
+                f"{call} a past {tuple(past.shape)}; "
+                f"it goes on from all T_h = {T_H} frames, (2, {T_H}, 2)"
+            ),
         )
         expect(
             control.shape == (2, 2 * T_H, 3),
-            f"{call} {rows} rows of control, and takes all {2 * T_H}: {T_H} beside the past, {T_H} for the new frames",
+            (
+                f"{call} {rows} rows of control, and takes all {2 * T_H}: "
+                f"{T_H} beside the past, {T_H} for the new frames"
+            ),
         )
         return walk_on(past, control)
 
@@ -52,8 +62,10 @@ def one_round(past, known, start, control, reverse=back_in_time, flip_ahead=True
 
 
 def material():
-    """Past with NaN in its holes, mask, mean pose, control, and what a round there and back makes
-    of them, by hand.
+    """What the checks of repairs need, worked out by hand.
+
+    Past with NaN in its holes, mask, mean pose, control, and what a round there and back makes of
+    them.
 
     Sample 0 knows its last frame: the way there ends at (12, 14.25), and the way back goes through
     the true places. Sample 1 knows only the first number there: the other starts at its mean 9 and
@@ -82,14 +94,18 @@ def time_reversal(mine):
     kept = control.clone()
     wanted = torch.tensor([[-3.0, -0.125, -16], [-2, -0.25, -8], [-1, -0.5, -4], [-1, -0.5, -4]])
     wanted = torch.stack([wanted, -10 * wanted])
-    flipped, last = control.flip(1), torch.cat([wanted[:, :3], -control[:, :1] * 0], dim=1)
+    flipped = control.flip(1)
+    last = torch.cat([wanted[:, :3], -control[:, :1] * 0], dim=1)
     expect_close(
         mine(control),
         wanted,
         "the control of two walks, played backwards",
         mistakes={
             "only the order is reversed; who walks backwards has a negative speed": flipped,
-            "the signs are right; but control[t] leads from frame t to t + 1, so one row has moved": -flipped,
+            (
+                "the signs are right; but control[t] leads from frame t to t + 1, "
+                "so one row has moved"
+            ): -flipped,
             "order and shift are right, the signs are not": -wanted,
             "turning has a sign, too: who turned left turns right on the way back": wanted
             * torch.tensor([1, 1, -1.0]),
@@ -125,12 +141,15 @@ def there_and_back(mine):
     answer = torch.as_tensor(answer)
     expect(
         not torch.isnan(answer[~known]).any(),
-        "there is NaN in the holes. The walker was given NaN, or the holes were not filled from the way back "
-        "(known * past is NaN, too: use torch.where)",
+        "there is NaN in the holes. The walker was given NaN, or the holes were not filled from "
+        "the way back (known * past is NaN, too: use torch.where)",
     )
     expect(
         watched.calls == 2,
-        f"calls of walk_on: {watched.calls}; one round takes two: there, and back from where that led",
+        (
+            f"calls of walk_on: {watched.calls}; one round takes two: "
+            "there, and back from where that led"
+        ),
     )
 
     def variant(**changes):
@@ -160,9 +179,9 @@ def there_and_back(mine):
             "time was never turned round: walking on twice leads farther ahead": variant(
                 flip_ahead=False, flip_back=False
             ),
-            "time was never turned round, nor the control: walking on twice leads farther ahead": variant(
-                reverse=lambda c: c, flip_ahead=False, flip_back=False
-            ),
+            (
+                "time was never turned round, nor the control: walking on twice leads farther ahead"
+            ): variant(reverse=lambda c: c, flip_ahead=False, flip_back=False),
             "the mask is the wrong way round: known is True where something was given": torch.where(
                 known, right, torch.where(known, past, mean)
             ),
@@ -171,7 +190,10 @@ def there_and_back(mine):
             "the holes still hold what they were started with": torch.where(known, past, mean),
         },
     )
-    return "one number of sample 1 is still its mean: this walker has no idea of a body that would tell it better."
+    return (
+        "one number of sample 1 is still its mean: "
+        "this walker has no idea of a body that would tell it better."
+    )
 
 
 @check

@@ -8,8 +8,10 @@ from ._report import as_array, check, expect, expect_close
 
 @check
 def log_mel_from_spectrum(mine):
-    """mine(X, filters, floor): 2 frames, 4 frequencies, 3 bands, the numbers by hand; one band is
-    silent."""
+    """Check mine(X, filters, floor): 2 frames, 4 frequencies, 3 bands, the numbers by hand.
+
+    One band is silent.
+    """
     X = torch.tensor([[3 + 4j, 0, 2j, 1], [0, 1j, 0, -2]], dtype=torch.complex64)
     filters = torch.tensor([[1.0, 0.5, 0, 0], [0, 0.5, 1, 0], [0, 0, 0, 0.25]])
     power = torch.tensor([[25.0, 4.0, 0.25], [0.5, 0.5, 1.0]])
@@ -18,7 +20,10 @@ def log_mel_from_spectrum(mine):
     loud = torch.tensor([[5.0, 2.0, 0.25], [0.5, 0.5, 0.5]])  # the same with magnitudes
     mistakes = {
         "those are magnitudes; power is their square": loud.log(),
-        "the bands come first; time is never last here, and never first either way: return (M, bands)": wanted.T,
+        (
+            "the bands come first; time is never last here, and never first either way: "
+            "return (M, bands)"
+        ): wanted.T,
         "that is the logarithm to base 10": power.log10(),
         "that is in decibels": 10 * power.log10(),
         "that is log(1 + power), which presses soft sounds flat": power.log1p(),
@@ -55,7 +60,10 @@ def mel_index(mine):
     motion = np.arange(T)
     late = index * 512 / 16_000 - motion / 20
     if (np.abs(late) <= 0.016 + 1e-6).all():
-        return f"at {motion[-1] / 20:.1f} s motion is at frame {T - 1}, sound at frame {int(index[-1])}."
+        return (
+            f"at {motion[-1] / 20:.1f} s motion is at frame {T - 1}, "
+            f"sound at frame {int(index[-1])}."
+        )
     for hint, wrong in {
         "that matches by index: frame t with frame t. They tick at different rates": motion,
         "a second has 31.25 Mel frames, not 32: after 50 s that is 1.2 s off": np.round(
@@ -74,14 +82,19 @@ def mel_index(mine):
     worst = int(np.abs(late).argmax())
     expect(
         False,
-        f"motion frame {worst} ({worst / 20:.2f} s) is matched with sound {late[worst]:+.3f} s away from it",
+        (
+            f"motion frame {worst} ({worst / 20:.2f} s) is matched with sound "
+            f"{late[worst]:+.3f} s away from it"
+        ),
     )
 
 
 @check
 def tracker_lag(mine):
-    """mine(found, true): the first beat missed, one invented half-way, one wild; the others 30 ms
-    late."""
+    """Check mine(found, true): the first beat missed, one invented half-way, one wild.
+
+    The others 30 ms late.
+    """
     true = np.array([0.5, 1.0, 1.5, 2.0, 2.5, 3.0, 3.5])
     found = np.array([1.03, 1.53, 1.79, 2.03, 2.53, 3.03, 3.53, 5.0])
     gaps = np.array([0.03, 0.03, -0.21, 0.03, 0.03, 0.03, 0.03, 1.5])

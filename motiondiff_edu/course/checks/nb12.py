@@ -1,5 +1,7 @@
-"""Checks of notebook 12: a frame convolution, motions of any length, and attention between two
-clocks."""
+"""Checks of notebook 12.
+
+A frame convolution, motions of any length, and attention between two clocks.
+"""
 
 import math
 
@@ -21,11 +23,10 @@ def _shifted(x: torch.Tensor, by: int) -> torch.Tensor:
 @check
 def frame_conv(mine):
     """mine(x, weight, bias, stride) against PyTorch's conv1d."""
-    x, weight, bias = (
-        _numbers(7, 2),
-        _numbers(4, 6, seed=1),
-        _numbers(4, seed=2),
-    )  # 7 frames of 2, answers of 4
+    # 7 frames of 2, answers of 4
+    x = _numbers(7, 2)
+    weight = _numbers(4, 6, seed=1)
+    bias = _numbers(4, seed=2)
     kernel = weight.unflatten(1, (3, 2)).transpose(1, 2)
 
     def mixed(*parts):
@@ -38,18 +39,20 @@ def frame_conv(mine):
         same_length = {
             f"this looks into the future only: {middle}": mixed(x, after, _shifted(x, 2)),
             f"this looks into the past only: {middle}": mixed(_shifted(x, -2), before, x),
-            "before and after are exchanged: the first third of the weights belongs to the frame before": mixed(
-                after, x, before
-            ),
+            (
+                "before and after are exchanged: "
+                "the first third of the weights belongs to the frame before"
+            ): mixed(after, x, before),
             "it wraps around: before the first frame comes not the last one, but zeros": mixed(
                 x.roll(1, 0), x, x.roll(-1, 0)
             ),
             "beyond both ends are zeros, and not the first and the last frame once more": mixed(
                 torch.cat([x[:1], x[:-1]]), x, torch.cat([x[1:], x[-1:]])
             ),
-            "these columns go channel by channel; the weights want one frame whole, then the next": mixed(
-                torch.stack([before, x, after], -1).flatten(1)
-            ),
+            (
+                "these columns go channel by channel; "
+                "the weights want one frame whole, then the next"
+            ): mixed(torch.stack([before, x, after], -1).flatten(1)),
         }
         mistakes = {hint: wrong[::stride] for hint, wrong in same_length.items()} | {
             "the bias is missing": wanted - bias
@@ -59,9 +62,10 @@ def frame_conv(mine):
             mistakes |= {
                 "every second frame is kept, the *first* one included": whole[1::2],
                 "the stride is not used": whole,
-                "neighbours first, then every second answer: here the frames between were never seen": (
-                    mixed(_shifted(x[::2], -1), x[::2], _shifted(x[::2], 1))
-                ),
+                (
+                    "neighbours first, then every second answer: "
+                    "here the frames between were never seen"
+                ): (mixed(_shifted(x[::2], -1), x[::2], _shifted(x[::2], 1))),
                 "the last frame got lost: of 7 frames, every second kept, 4 are left": whole[::2][
                     :3
                 ],
@@ -77,8 +81,10 @@ def frame_conv(mine):
 
 @check
 def any_length(mine):
-    """mine(network, x, multiple) with a network that knows where each frame lies, and what comes
-    after it."""
+    """Check mine(network, x, multiple).
+
+    The network knows where each frame lies, and what comes after it.
+    """
 
     def sums(x):  # what is put before the motion, cut off it, or filled in behind it shows
         return x.cumsum(1) + x.sum(1, keepdim=True) + torch.arange(x.shape[1])[:, None]
@@ -90,17 +96,24 @@ def any_length(mine):
             asked.append(x.shape[1])
             expect(
                 x.shape[0] == 2 and x.shape[2] == 3,
-                f"the network was given {tuple(x.shape)}: it is the frames, axis 1 of (B, T, D), that are filled up",
+                (
+                    f"the network was given {tuple(x.shape)}: "
+                    "it is the frames, axis 1 of (B, T, D), that are filled up"
+                ),
             )
             expect(
                 x.shape[1] % multiple == 0,
-                f"the network was given {x.shape[1]} frames, no multiple of {multiple}: fill up before you ask",
+                (
+                    f"the network was given {x.shape[1]} frames, no multiple of {multiple}: "
+                    "fill up before you ask"
+                ),
             )
             return sums(x)
 
         got = torch.as_tensor(mine(network, x, multiple))
         more = -(-T // multiple) * multiple
-        whole, late = sums(F.pad(x, (0, 0, 0, more - T))), sums(F.pad(x, (0, 0, more - T, 0)))
+        whole = sums(F.pad(x, (0, 0, 0, more - T)))
+        late = sums(F.pad(x, (0, 0, more - T, 0)))
         held = sums(torch.cat([x, x[:, -1:].expand(-1, more - T, -1)], 1))[:, :T]
         moved = "fill up behind the motion: before it, every frame moves to another time"
         expect(bool(asked), "the network was not asked at all")
@@ -122,29 +135,40 @@ def any_length(mine):
         expect_close(
             got, sums(x), f"the answer for {T} frames and multiples of {multiple}", mistakes
         )
-    return "In the library the filling is masked as well, so that attention and neighbours never see it."
+    return (
+        "In the library the filling is masked as well, "
+        "so that attention and neighbours never see it."
+    )
 
 
 @check
 def clocks(mine):
     """mine(q, k, fps_q, fps_k, f) against cosines of the time between."""
     q, k = _numbers(5, 4), _numbers(7, 4, seed=1)  # 5 frames, 7 tokens, two pairs
-    fps_q, fps_k, f = 20.0, 15.625, torch.tensor([0.3, 2.0])
+    fps_q = 20.0
+    fps_k = 15.625
+    f = torch.tensor([0.3, 2.0])
 
     def weights(t, u, root=2.0, softmax=-1):
-        """Pair by pair as complex numbers: the score of q and k is the real part of q conj(k) e^(i
-        angle)."""
-        a, b = torch.complex(q[:, :2], q[:, 2:]), torch.complex(k[:, :2], k[:, 2:])
+        """Pair by pair as complex numbers.
+
+        The score of q and k is the real part of q conj(k) e^(i angle).
+        """
+        a = torch.complex(q[:, :2], q[:, 2:])
+        b = torch.complex(k[:, :2], k[:, 2:])
         phase = torch.exp(1j * (t[:, None, None] - u[None, :, None]) * f)
         scores = (a[:, None] * b.conj()[None] * phase).real.sum(-1) / root
         return scores if softmax is None else scores.softmax(softmax)
 
-    n, m, turn = torch.arange(5.0), torch.arange(7.0), 2 * math.pi
+    n = torch.arange(5.0)
+    m = torch.arange(7.0)
+    turn = 2 * math.pi
     t, u = turn * n / fps_q, turn * m / fps_k
     mistakes = {
-        "these are indices: divide each by its own rate, for only seconds mean the same on both sides": weights(
-            turn * n, turn * m
-        ),
+        (
+            "these are indices: divide each by its own rate, "
+            "for only seconds mean the same on both sides"
+        ): weights(turn * n, turn * m),
         "both sides were counted by the motion's clock; the tokens have their own": weights(
             t, turn * m / fps_q
         ),
@@ -173,4 +197,7 @@ def clocks(mine):
         "the weights of 5 frames over 7 tokens",
         mistakes,
     )
-    return "A minute later on both clocks, and every weight is the same: only the time between them counts."
+    return (
+        "A minute later on both clocks, and every weight is the same: "
+        "only the time between them counts."
+    )

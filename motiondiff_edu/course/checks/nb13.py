@@ -1,5 +1,7 @@
-"""Checks of notebook 13: the clean guess, the skeleton loss, and the asymmetry from the network's
-own numbers."""
+"""Checks of notebook 13.
+
+The clean guess, the skeleton loss, and the asymmetry from the network's own numbers.
+"""
 
 import torch
 
@@ -8,17 +10,17 @@ from ._report import check, expect_close
 
 @check
 def x0_hat(mine):
-    """mine(x_s, s, eps_hat, alpha_bar): x0 comes back when eps_hat is right, each sample with its
-    own step."""
+    """Check mine(x_s, s, eps_hat, alpha_bar).
+
+    x0 comes back when eps_hat is right, each sample with its own step.
+    """
     # a, b by step: (1, 0), (0.8, 0.6), (0.6, 0.8), (0.28, 0.96)
     alpha_bar = torch.tensor([1.0, 0.64, 0.36, 0.0784], dtype=torch.float64)
     draw = torch.Generator().manual_seed(13)
     x0, eps = torch.randn(2, 2, 5, 3, generator=draw, dtype=torch.float64)
     s = torch.tensor([1, 2])
-    a, b = (
-        torch.tensor([0.8, 0.6]).double()[:, None, None],
-        torch.tensor([0.6, 0.8]).double()[:, None, None],
-    )
+    a = torch.tensor([0.8, 0.6]).double()[:, None, None]
+    b = torch.tensor([0.6, 0.8]).double()[:, None, None]
     x_s = a * x0 + b * eps
     mistakes = {
         "the second alpha_bar needs its index as well; this takes the last of the table": x_s / a
@@ -50,15 +52,18 @@ def skeleton_loss(mine):
         [[2.0, 5.0, 3.5], [1.0, 2.0, 4.0], [3.0, 2.0, 4.5], [2.0, 3.0, 4.0], [2.0, 3.0, 4.0]]
     )
     # bone 0: 2 / 4, bone 1: 6 / 4, bone 2: 0.5 / 4
-    wanted, off = torch.tensor((0.5 + 1.5 + 0.125) / 3), lengths - lengths.mean(0)
+    wanted = torch.tensor((0.5 + 1.5 + 0.125) / 3)
+    off = lengths - lengths.mean(0)
     mistakes = {
-        "this is the variance over the bones of a frame; bones may differ, but not over time": lengths.var(
-            1
-        ).mean(),
+        (
+            "this is the variance over the bones of a frame; bones may differ, but not over time"
+        ): lengths.var(1).mean(),
         "divide by the number of frames minus one": lengths.var(0, correction=0).mean(),
         "this is the standard deviation; equation 6 has no root": lengths.std(0).mean(),
         "the bones are averaged, not added up": lengths.var(0).sum(),
-        "this is the variance of all lengths together; each bone has a mean of its own": lengths.var(),
+        "this is the variance of all lengths together; each bone has a mean of its own": (
+            lengths.var()
+        ),
         "one mean for all bones: each bone has a mean of its own": ((lengths - lengths.mean()) ** 2)
         .sum(0)
         .mean()
@@ -84,8 +89,10 @@ def skeleton_loss(mine):
 
 @check
 def asymmetry_from_features(mine):
-    """mine(x0_hat, mean, std, bones, pairs): five joints, two frames, lengths of 3-4-5
-    triangles."""
+    """Check mine(x0_hat, mean, std, bones, pairs).
+
+    Five joints, two frames, lengths of 3-4-5 triangles.
+    """
     bones, pairs = ((0, 1), (1, 2), (0, 3), (3, 4)), ((0, 2), (1, 3))
     # pelvis in the world, then left hip, left knee, right hip, right knee minus the pelvis; metres
     about = torch.tensor(
@@ -98,25 +105,28 @@ def asymmetry_from_features(mine):
     # left: 0.5, 1.0 and 1.0, 1.2; right: 1.0, 1.5 and 0.5, 1.2
     wanted = torch.tensor((0.5 + 0.5 + 0.5 + 0.0) / 4)
     flat = about.flatten(1)
-    mean, std = torch.linspace(-0.4, 0.9, 15).double(), torch.linspace(0.2, 0.7, 15).double()
+    mean = torch.linspace(-0.4, 0.9, 15).double()
+    std = torch.linspace(0.2, 0.7, 15).double()
     x0_hat = (flat - mean) / std
     world = torch.cat([about[:, :1], about[:, 1:] + about[:, :1]], 1)
-    lengths, unscaled = _lengths(world, bones), x0_hat.unflatten(1, (5, 3))
+    lengths = _lengths(world, bones)
+    unscaled = x0_hat.unflatten(1, (5, 3))
     in_std = torch.cat([unscaled[:, :1], unscaled[:, 1:] + unscaled[:, :1]], 1)
     gap = lengths[:, [0, 1]] - lengths[:, [2, 3]]
     mistakes = {
         "these lengths are in standardised units; go back to metres first": _asymmetry(
             _lengths(in_std, bones), pairs
         ),
-        "standardised units, and the pelvis is not added: metres first, then the pelvis": _asymmetry(
-            _lengths(unscaled, bones), pairs
+        "standardised units, and the pelvis is not added: metres first, then the pelvis": (
+            _asymmetry(_lengths(unscaled, bones), pairs)
         ),
         "only half-way back to metres: the mean is missing": _asymmetry(
             _lengths(_placed((x0_hat * std).unflatten(1, (5, 3))), bones), pairs
         ),
-        "the pelvis is not added to the other joints, or is to itself as well: bones that start there err": _asymmetry(
-            _lengths(about, bones), pairs
-        ),
+        (
+            "the pelvis is not added to the other joints, or is to itself as well: "
+            "bones that start there err"
+        ): _asymmetry(_lengths(about, bones), pairs),
         "only half-way back to metres: the std is missing": _asymmetry(
             _lengths(_placed((x0_hat + mean).unflatten(1, (5, 3))), bones), pairs
         ),
@@ -138,7 +148,10 @@ def asymmetry_from_features(mine):
         "the mean over the frames as well, not their sum": gap.abs().sum(0).mean(),
     }
     expect_close(mine(x0_hat, mean, std, bones, pairs), wanted, "L_a of two frames", mistakes)
-    return "Bones are in metres: what the network says has to leave its own units before it can be judged."
+    return (
+        "Bones are in metres: what the network says has to leave its "
+        "own units before it can be judged."
+    )
 
 
 def _placed(about):

@@ -23,12 +23,11 @@ def shuffled_score(mine):
     table = np.array([[pair(stops, song) for song in SONGS] for stops in STOPS])
     others = ~np.eye(n, dtype=bool)
     right = table[others].mean()
-    own, all_pairs, next_only = (
-        np.diag(table).mean(),
-        table.mean(),
-        np.mean([table[i, (i + 1) % n] for i in range(n)]),
-    )
-    once, once_below = table[np.triu_indices(n, 1)].mean(), table[np.tril_indices(n, -1)].mean()
+    own = np.diag(table).mean()
+    all_pairs = table.mean()
+    next_only = np.mean([table[i, (i + 1) % n] for i in range(n)])
+    once = table[np.triu_indices(n, 1)].mean()
+    once_below = table[np.tril_indices(n, -1)].mean()
     before_only = np.mean([table[i, i - 1] for i in range(n)])
     music = np.array([[pair(song, stops) for song in SONGS] for stops in STOPS])[others].mean()
     expect_close(
@@ -87,26 +86,29 @@ def expenditure(mine):
         fps**2 * sizes.mean(),
         "the expenditure of a short path at 10 frames a second",
         mistakes={
-            "that is the published fault: the bracket closes after the earlier position": np.linalg.norm(
-                bracket, axis=1
-            ).mean(),
+            "that is the published fault: the bracket closes after the earlier position": (
+                np.linalg.norm(bracket, axis=1).mean()
+            ),
             "divide by the time of a frame twice, once for each difference": fps * sizes.mean(),
             "no frame's time is in it: metres a frame each frame": sizes.mean(),
             "divide by a frame's time, 1 / fps, which is to multiply by fps": sizes.mean() / fps**2,
             "the length of the vector, not the mean size of its coordinates": fps**2
             * np.abs(second).mean(),
             "the mean over the frames, not their sum": fps**2 * sizes.sum(),
-            "np.gradient looks over two frames at once; take each frame's difference to the next": fps
-            ** 2
+            (
+                "np.gradient looks over two frames at once; "
+                "take each frame's difference to the next"
+            ): fps**2
             * np.linalg.norm(np.gradient(np.gradient(path, axis=0), axis=0), axis=1).mean(),
             "fps is taken as 60; the argument was 10": 60**2 * sizes.mean(),
             "the lengths are squared; this feature is not": fps**4 * (sizes**2).mean(),
             "take the length in each frame, then the mean: to and fro must not cancel": fps**2
             * np.linalg.norm(second.mean(0)),
             "that is the speed; the acceleration is the change of the velocity": fps * speed.mean(),
-            "the change of the *speed* misses turning; take the change of the velocity, a vector": fps
-            ** 2
-            * np.abs(np.diff(speed)).mean(),
+            (
+                "the change of the *speed* misses turning; "
+                "take the change of the velocity, a vector"
+            ): fps**2 * np.abs(np.diff(speed)).mean(),
         },
         rtol=1e-6,
     )

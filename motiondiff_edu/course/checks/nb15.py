@@ -1,5 +1,7 @@
-"""Checks of notebook 15: the snapshot, the loop of masked sampling, and the way back to more
-noise."""
+"""Checks of notebook 15.
+
+The snapshot, the loop of masked sampling, and the way back to more noise.
+"""
 
 import math
 
@@ -15,7 +17,9 @@ def _numbers(*shape: int, seed: int = 0) -> torch.Tensor:
 @check
 def snapshot(mine):
     """mine(x_s, given, known, alpha_bar, noise), entry by entry by hand."""
-    x_s, given, noise = _numbers(2, 5, 3), _numbers(2, 5, 3, seed=1), _numbers(2, 5, 3, seed=2)
+    x_s = _numbers(2, 5, 3)
+    given = _numbers(2, 5, 3, seed=1)
+    noise = _numbers(2, 5, 3, seed=2)
     known = torch.zeros(2, 5, 3, dtype=torch.bool)
     known[0, :2], known[1, 3, 1:] = True, True
     for alpha_bar in (0.36, 0.9):
@@ -30,9 +34,10 @@ def snapshot(mine):
             wanted[tuple(place)] = a * given[tuple(place)] + b * noise[tuple(place)]
         mistakes = {
             "the mask is inverted: True is what is given": put(seen, ~known),
-            "these are the given entries clean, and the network expects them as noisy as all else": put(
-                given
-            ),
+            (
+                "these are the given entries clean, "
+                "and the network expects them as noisy as all else"
+            ): put(given),
             "take the root of alpha_bar, and of 1 - alpha_bar": put(
                 alpha_bar * given + (1 - alpha_bar) * noise
             ),
@@ -59,17 +64,24 @@ def snapshot(mine):
     holes = torch.where(known, given, torch.full_like(given, float("nan")))
     expect(
         torch.isfinite(torch.as_tensor(mine(x_s, holes, known, 0.36, noise))).all(),
-        "what is not known may be NaN, and 0 times NaN is NaN: choose with torch.where instead of multiplying",
+        (
+            "what is not known may be NaN, and 0 times NaN is NaN: "
+            "choose with torch.where instead of multiplying"
+        ),
     )
     return "What is given is seen through as much noise as everything else."
 
 
 class _Told:
-    """A leap and a snapshot that write down what happens: each is simple enough to be followed by
-    hand."""
+    """A leap and a snapshot that write down what happens.
+
+    Each is simple enough to be followed by hand.
+    """
 
     def __init__(self, given: torch.Tensor):
-        self.given, self.seen, self.drawn = given, [], []
+        self.given = given
+        self.seen = []
+        self.drawn = []
 
     def snapshot(self, s):
         self.drawn.append(int(s))
@@ -82,9 +94,13 @@ class _Told:
 
 @check
 def masked(mine):
-    """mine(leap, snapshot, x, visited, given, known) with a leap in which everything depends on
-    everything."""
-    x, given, visited = _numbers(2, 5), _numbers(2, 5, seed=1), [9, 6, 4, 1]
+    """Check mine(leap, snapshot, x, visited, given, known).
+
+    Everything in the leap depends on everything.
+    """
+    x = _numbers(2, 5)
+    given = _numbers(2, 5, seed=1)
+    visited = [9, 6, 4, 1]
     known = torch.tensor([[True, False, True, False, False], [False, True, False, False, True]])
 
     def by(order):
@@ -123,31 +139,31 @@ def masked(mine):
         "the mask is inverted, at the end as well": lambda t, x: torch.where(
             known, each(t, x, lambda t, x, s, a: torch.where(known, x, t.snapshot(s))), given
         ),
-        "the network was shown the given clean: take a snapshot, as noisy as x is at this step": lambda t, x: (
-            ended(each(t, x, lambda t, x, s, a: torch.where(known, given, x)))
-        ),
+        (
+            "the network was shown the given clean: take a snapshot, as noisy as x is at this step"
+        ): lambda t, x: ended(each(t, x, lambda t, x, s, a: torch.where(known, given, x))),
         "one snapshot was used for all steps: at each step draw one for that step": once,
-        "the snapshot is of the step after; x has the noise of s when the network sees it": lambda t, x: (
-            ended(each(t, x, lambda t, x, s, a: torch.where(known, t.snapshot(a), x)))
-        ),
-        "the known entries are put in after the leap: the network must see them before": lambda t, x: (
-            ended(
-                each(
-                    t,
-                    x,
-                    lambda t, x, s, a: x,
-                    lambda t, x, s, a: torch.where(known, t.snapshot(s), x),
-                )
+        (
+            "the snapshot is of the step after; x has the noise of s when the network sees it"
+        ): lambda t, x: ended(each(t, x, lambda t, x, s, a: torch.where(known, t.snapshot(a), x))),
+        (
+            "the known entries are put in after the leap: the network must see them before"
+        ): lambda t, x: ended(
+            each(
+                t,
+                x,
+                lambda t, x, s, a: x,
+                lambda t, x, s, a: torch.where(known, t.snapshot(s), x),
             )
         ),
-        "put in after the leap, the network's first look is at pure noise: put them in before": lambda t, x: (
-            ended(
-                each(
-                    t,
-                    x,
-                    lambda t, x, s, a: x,
-                    lambda t, x, s, a: torch.where(known, t.snapshot(a), x),
-                )
+        (
+            "put in after the leap, the network's first look is at pure noise: put them in before"
+        ): lambda t, x: ended(
+            each(
+                t,
+                x,
+                lambda t, x, s, a: x,
+                lambda t, x, s, a: torch.where(known, t.snapshot(a), x),
             )
         ),
         "at the end the given must be put back: the last leap changed it": lambda t, x: each(
@@ -173,7 +189,10 @@ def masked(mine):
     if len(steps) == len(visited):
         expect(
             steps == [(s, after) for s, after, _ in right.seen],
-            f"leaps lead from each visited step to the next, and from the last to 0; yours: {steps}",
+            (
+                "leaps lead from each visited step to the next, and from the last to 0; "
+                f"yours: {steps}"
+            ),
         )
     expect_close(got, wanted, "the end of four steps", named)
     return f"{len(right.drawn)} snapshots, one for each step, each with noise of its own."
@@ -187,9 +206,10 @@ def way_back(mine):
         ratio = then / now
         wanted = math.sqrt(ratio) * x + math.sqrt(1 - ratio) * noise
         mistakes = {
-            "this noises x as if it were clean: it has noise already, and alpha_bar falls from `now` to `then`": (
-                math.sqrt(then) * x + math.sqrt(1 - then) * noise
-            ),
+            (
+                "this noises x as if it were clean: "
+                "it has noise already, and alpha_bar falls from `now` to `then`"
+            ): (math.sqrt(then) * x + math.sqrt(1 - then) * noise),
             "the share is right; take its root, and the root of what is missing to 1": ratio * x
             + (1 - ratio) * noise,
             "the signal shrinks by the root of then / now, and not by the number itself": (
@@ -204,9 +224,10 @@ def way_back(mine):
             "variances add up, deviations do not: the noise needed is 1 - then / now in variance": (
                 math.sqrt(ratio) * x + (math.sqrt(1 - then) - math.sqrt(1 - now)) * noise
             ),
-            "the new noise is the difference of the noise levels, but x shrinks, and the noise in it as well": (
-                math.sqrt(ratio) * x + math.sqrt(now - then) * noise
-            ),
+            (
+                "the new noise is the difference of the noise levels, but x shrinks, "
+                "and the noise in it as well"
+            ): (math.sqrt(ratio) * x + math.sqrt(now - then) * noise),
             "no noise was added": math.sqrt(ratio) * x,
         }
         expect_close(

@@ -1,5 +1,7 @@
-"""BVH motion capture: `read_bvh(path)` reads a file as written, `write_bvh(path, positions)` writes
-one."""
+"""BVH motion capture.
+
+`read_bvh(path)` reads a file as written, `write_bvh(path, positions)` writes one.
+"""
 
 from .read import Bvh, read_bvh
 from .tokens import BvhError

@@ -1,5 +1,6 @@
-"""A constant-bone skeleton fitted to any motion: offsets, local rotations, Euler angles without
-flips.
+"""A constant-bone skeleton fitted to any motion.
+
+Offsets, local rotations, Euler angles without flips.
 
 A network's raw output has bones that vary a little; a BVH file cannot. `fit` finds the nearest
 motion that a file can hold and says how far the joints moved.
@@ -57,8 +58,9 @@ class FitReport:
     def __str__(self) -> str:
         frame, joint = np.unravel_index(int(self.shift_mm.argmax()), self.shift_mm.shape)
         return (
-            f"{self.path or 'fit'}: {len(self.positions)} frames, bones made constant; joints shifted by "
-            f"{self.mean_mm:.2f} mm on average, {self.max_mm:.2f} mm at most ({JOINTS[joint]}, frame {frame})"
+            f"{self.path or 'fit'}: {len(self.positions)} frames, bones made constant; joints "
+            f"shifted by {self.mean_mm:.2f} mm on average, "
+            f"{self.max_mm:.2f} mm at most ({JOINTS[joint]}, frame {frame})"
         )
 
 
@@ -75,8 +77,9 @@ class Fit:
 
 
 def fit(positions: Float[np.ndarray, "T 21 3"]) -> Fit:
-    """Fit the course's skeleton, with the motion's own median bone lengths, to world positions
-    (metres).
+    """Fit the course's skeleton to world positions (metres).
+
+    It takes the motion's own median bone lengths.
 
     A joint with several children turns by the least-squares rotation (Kabsch); one with a single
     child by the smallest rotation from its parent, so that no twist is invented.
@@ -110,7 +113,9 @@ def hierarchy(
     offsets: Float[np.ndarray, "21 3"],
 ) -> tuple[tuple[str, ...], np.ndarray, Float[np.ndarray, "N 3"]]:
     """Names, parents and offsets with the helper joints put in, each before its child."""
-    names, above, table = [], {}, []
+    names = []
+    above = {}
+    table = []
     helper_of = {child: helper for helper, (_, children) in HELPERS.items() for child in children}
     for joint, name in enumerate(JOINTS):
         helper = helper_of.get(name)
@@ -154,8 +159,10 @@ def global_turns(
 
 
 def guides(node: int, names: tuple[str, ...], parents: Int[np.ndarray, "N"]) -> list[int]:
-    """The joints that a node's rotation is read from: its children, without those that a helper
-    turns."""
+    """The joints that a node's rotation is read from.
+
+    Its children, without those that a helper turns.
+    """
     return [c for c in range(len(names)) if parents[c] == node and names[c] not in HELPERS]
 
 

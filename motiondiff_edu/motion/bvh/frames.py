@@ -14,8 +14,10 @@ EXACT_RATES = [float(n) for n in range(1, 1001)] + [n * 1000 / 1001 for n in (24
 
 
 def header(lines: list[str], motion: int, path: str | Path) -> tuple[int, int, str, int, int]:
-    """Declared frames and its line, text of the frame time and its line, index of the first data
-    line."""
+    """What the header of the motion says.
+
+    Declared frames and its line, text of the frame time and its line, index of the first data line.
+    """
     frames_at = next_filled(lines, motion + 1)
     time_at = next_filled(lines, frames_at + 1)
     frames = after_keyword(lines, frames_at, "frames", path)
@@ -91,7 +93,7 @@ def frame_rows(
     columns: list[tuple[str, str]],
     path: str | Path,
     declared_line: int,
-) -> Float[np.ndarray, "T C"]:
+) -> Float[np.ndarray, "T K"]:
     """All frames as an array (T, channels).
 
     A frame may be wrapped over several lines but must end where a line ends; so a lost or an
@@ -156,9 +158,13 @@ def row_of(
 def check_frame_ends(
     counts: list[tuple[int, int]], columns: list[tuple[str, str]], path: str | Path
 ) -> None:
-    """Raise BvhError unless every frame, a number for each of `columns`, ends at the end of a
-    line."""
-    held, begun, width = 0, 0, len(columns)
+    """Raise BvhError unless every frame ends at the end of a line.
+
+    A frame is a number for each of `columns`.
+    """
+    held = 0
+    begun = 0
+    width = len(columns)
     for line, count in counts:
         begun = line if held == 0 else begun
         held += count
@@ -172,8 +178,9 @@ def check_frame_ends(
         held %= width
     if held:
         raise BvhError(
-            f"the last frame, begun on line {begun}, has {held} of {width} numbers and ends before this one; "
-            "the file is cut off. Fetch it again, or remove that frame and count 'Frames:' down.",
+            f"the last frame, begun on line {begun}, has {held} of {width} numbers and ends "
+            "before this one; the file is cut off. "
+            "Fetch it again, or remove that frame and count 'Frames:' down.",
             path,
             counts[-1][0],
             "{} ({})".format(*columns[held]),

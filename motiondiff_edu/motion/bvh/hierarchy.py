@@ -65,12 +65,18 @@ def joint(reader: Reader, statement: Statement) -> None:
         )
     if statement.word == "root" and reader.nodes:
         first = reader.nodes[0]
-        problem = f"a second ROOT (the first, {first.name}, is on line {first.line}): two figures in one file."
+        problem = (
+            f"a second ROOT (the first, {first.name}, is on line {first.line}): "
+            "two figures in one file."
+        )
         raise BvhError(
             problem + " Export each figure to its own file.", reader.path, statement.line, name
         )
     if name in reader.lines:
-        problem = f"line {reader.lines[name]} has a joint of this name already; give every joint its own name."
+        problem = (
+            f"line {reader.lines[name]} has a joint of this name already; "
+            "give every joint its own name."
+        )
         raise BvhError(problem, reader.path, statement.line, name)
     if statement.word == "joint" and not reader.open:
         raise BvhError(
@@ -165,7 +171,10 @@ def finished(reader: Reader, line: int) -> list[Node]:
     if reader.open or reader.waiting is not None:
         node = reader.nodes[reader.waiting if reader.waiting is not None else reader.open[-1]]
         count = len(reader.open) + (reader.waiting is not None)
-        problem = f"its braces are never closed ({count} open where MOTION begins); add {count} '}}' before MOTION."
+        problem = (
+            f"its braces are never closed ({count} open where MOTION begins); "
+            f"add {count} '}}' before MOTION."
+        )
         raise reader.error(problem, line, node)
     if not reader.nodes:
         raise reader.error("the HIERARCHY holds no ROOT.", line)

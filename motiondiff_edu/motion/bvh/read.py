@@ -35,7 +35,7 @@ class Bvh:
     parents: Int[np.ndarray, " N"]
     offsets: Float[np.ndarray, "N 3"]
     channels: tuple[tuple[str, ...], ...]
-    frames: Float[np.ndarray, "T C"]
+    frames: Float[np.ndarray, "T K"]
     frame_time: float
     is_end: Bool[np.ndarray, " N"]
     source: str = ""
@@ -84,8 +84,10 @@ class Bvh:
         return turns
 
     def local_positions(self) -> Float[np.ndarray, "T N 3"]:
-        """The place of each node in its parent's frame: its offset, replaced where position
-        channels exist."""
+        """The place of each node in its parent's frame.
+
+        Its offset, replaced where position channels exist.
+        """
         places = np.broadcast_to(self.offsets, (len(self.frames), *self.offsets.shape)).copy()
         for node in range(len(self.names)):
             for axis, column in self.columns(node, "position"):
@@ -93,8 +95,10 @@ class Bvh:
         return places
 
     def world_positions(self, end_sites: bool = True) -> Float[np.ndarray, "T N 3"]:
-        """World positions of all nodes in every frame (file units); without end sites on
-        request."""
+        """World positions of all nodes in every frame (file units).
+
+        Without end sites on request.
+        """
         places = self.local_positions()
         positions, turns = forward_kinematics(
             self.local_rotations(), places[:, 0], self.offsets, self.parents
@@ -132,7 +136,7 @@ def read_bvh(path: str | Path, file_fps: float | int | None = None) -> Bvh:
 
 
 def assemble(
-    nodes: list[Node], frames: Float[np.ndarray, "T C"], seconds: float, source: str
+    nodes: list[Node], frames: Float[np.ndarray, "T K"], seconds: float, source: str
 ) -> Bvh:
     """The frozen record of what was read."""
     return Bvh(

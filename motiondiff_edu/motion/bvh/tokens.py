@@ -1,5 +1,7 @@
-"""From the bytes of a BVH file to numbered statements and numbers, refusing early what is no
-BVH."""
+"""From the bytes of a BVH file to numbered statements and numbers.
+
+What is no BVH is refused early.
+"""
 
 import re
 from dataclasses import dataclass
@@ -28,7 +30,9 @@ class BvhError(ValueError):
             if part
         ]
         super().__init__(f"{', '.join(place)}: {problem}" if place else problem)
-        self.path, self.line, self.joint = str(path), line, joint
+        self.path = str(path)
+        self.line = line
+        self.joint = joint
 
 
 @dataclass(frozen=True)
@@ -48,8 +52,9 @@ class Statement:
 
 
 def read_lines(path: str | Path) -> list[str]:
-    """The lines of a BVH file, whatever its line ends; anything that cannot be BVH is refused
-    unread.
+    """The lines of a BVH file, whatever its line ends.
+
+    Anything that cannot be BVH is refused unread.
 
     Raises BvhError for a folder, an empty, binary, UTF-16, HTML or oversized file.
     """
@@ -82,7 +87,10 @@ def refuse_foreign(start: bytes, path: Path) -> None:
         )
     if b"\0" in start:
         raise BvhError(
-            "this is a binary file, and BVH is text that starts with HIERARCHY; export the take as BVH.",
+            (
+                "this is a binary file, and BVH is text that starts with HIERARCHY; "
+                "export the take as BVH."
+            ),
             path,
         )
     if head.split(maxsplit=1)[0].lower() != b"hierarchy":
@@ -95,8 +103,10 @@ def refuse_foreign(start: bytes, path: Path) -> None:
 
 
 def decode(raw: bytes) -> str:
-    """UTF-8 (a byte-order mark is dropped), else Latin-1: only joint names can hold such
-    letters."""
+    """UTF-8 (a byte-order mark is dropped), else Latin-1.
+
+    Only joint names can hold such letters.
+    """
     try:
         return raw.decode("utf-8-sig")
     except UnicodeDecodeError:
@@ -142,5 +152,11 @@ def why_no_number(text: str) -> str:
     if re.fullmatch(r"[-+]?\d*,\d+([eE][-+]?\d+)?", text):
         return f"'{text}' has a decimal comma; export with decimal points (an English locale)."
     if RUN_TOGETHER.search(text):
-        return f"'{text}' looks like two numbers without a blank between them; put a blank before the second sign."
-    return f"'{text[:40]}' is not a number; only numbers may stand here. Remove the comment or repair the line."
+        return (
+            f"'{text}' looks like two numbers without a blank between them; "
+            "put a blank before the second sign."
+        )
+    return (
+        f"'{text[:40]}' is not a number; only numbers may stand here. "
+        "Remove the comment or repair the line."
+    )

@@ -25,8 +25,9 @@ TURN = "Zrotation Xrotation Yrotation"
 def write_bvh(
     path: str | Path, positions: Float[np.ndarray, "T 21 3"], fps: float | int = 20.0
 ) -> FitReport:
-    """Write world positions (metres) as a BVH file; prints and returns the joint shift of the
-    constant-bone fit.
+    """Write world positions (metres) as a BVH file.
+
+    Prints and returns the joint shift of the constant-bone fit.
 
     The file appears whole or not at all. Raises BvhError for an empty or non-finite motion, another
     shape, and a frame rate that no reader takes for one.
@@ -38,8 +39,9 @@ def write_bvh(
         raise BvhError(f"the motion {what}; nothing was written.", path)
     if positions.shape[1:] != (J, 3):
         raise BvhError(
-            f"positions are (T, {J}, 3), metres in the world; these are {positions.shape}. What a walker makes becomes "
-            f"that by root_frame.to_world(new.reshape(-1, {J}, 3), control). Nothing was written.",
+            f"positions are (T, {J}, 3), metres in the world; these are {positions.shape}. What a "
+            f"walker makes becomes that by root_frame.to_world(new.reshape(-1, {J}, 3), "
+            "control). Nothing was written.",
             path,
         )
     if not 1 / SLOWEST <= fps <= 1 / FASTEST:
@@ -73,8 +75,10 @@ def text(fitted: Fit, fps: float) -> str:
 
 
 def joint_lines(fitted: Fit, node: int, depth: int) -> list[str]:
-    """A joint and all below it; the columns of the motion stand in this order, which is the order
-    of the nodes."""
+    """A joint and all below it.
+
+    The columns of the motion stand in this order, which is the order of the nodes.
+    """
     name, pad = fitted.names[node], "\t" * depth
     kind = "ROOT" if depth == 0 else "JOINT"
     channels = f"6 Xposition Yposition Zposition {TURN}" if depth == 0 else f"3 {TURN}"

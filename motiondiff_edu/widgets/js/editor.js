@@ -7,10 +7,14 @@ import { bytes, unpack } from "./figures.js";
 import { smoothRoot } from "./paint.js";
 import { silentClock } from "./clock.js";
 import { timeline } from "./timeline.js";
-import { along, dragged, jointAt, paintStage } from "./stage.js";
+import { wire } from "./wire.js";
+import { along, dot, dragged, jointAt, paintStage } from "./stage.js";
 
-const HOME = { yaw: 0.6, pitch: 0.2, zoom: 1.1 }, CENTIMETRE = 0.01, SILENCE = 5000, NUDGES = 900; // milliseconds
+const HOME = { yaw: 0.6, pitch: 0.2, zoom: 1.1 }, CENTIMETRE = 0.01, NUDGES = 900; // milliseconds
 const ASLEEP = "needs a running notebook: run the cell that made this editor.";
+const MUTE = "The notebook's kernel does not answer: it is busy with another cell, or not running.";
+const GONE = "The notebook's kernel is gone. Your changes are still shown here, but nothing can be made or saved. "
+  + "Restart the kernel and run the notebook's cells again: the editor then starts anew.";
 const MORE_CSS = `
 .mde-editor canvas { touch-action: none; } .mde-editor canvas.mde-timeline { cursor: pointer; }
 .mde-editor canvas.mde-over { cursor: move; }
@@ -45,7 +49,7 @@ export function mount(model, el, { fill = false } = {}) {
   const next = button("\u203a", "The next in-between (])", { "aria-label": "Next in-between" }), which = element("output", { "aria-live": "polite" });
   const before = element("input", { type: "checkbox", title: "The motion before the edit, as a ghost (O)" });
   const undo = button("Undo", "Take the last change back (Z)"), reset = button("Reset", "Everything as at first (R); Undo leads back");
-  const file = element("input", { type: "text", "aria-label": "Name of the file", spellcheck: "false" }), save = button("Save as BVH", "Write the in-between that is shown");
+  const file = element("input", { type: "text", "aria-label": "Name of the file", spellcheck: "false" }), save = button("Save as BVH", "Write the in-between that is shown; before there is one, the motion with its pinned poses");
   const held = element("div", { class: "mde-held" }), said = element("div", { class: "mde-say", role: "status" }), measured = element("div", { class: "mde-measured" });
   const dots = { L: element("i"), R: element("i") }, key = (side, word) => element("span", { class: "mde-key" }, dots[side], word);
   const rail = timeline(listen, () => ({ frames: scene.frames, fps: scene.fps, frame, pins: state.pins, moved: state.moved, part: state.part, made: state.made }), (t) => halt(t), (t) => toggle(t), () => draw());
@@ -62,18 +66,24 @@ export function mount(model, el, { fill = false } = {}) {
 
   const view = { ...HOME, follow: true }, clock = silentClock(scene.frames / scene.fps, () => visible);
   let state, motion, samples, poses, frame = 0, chosen = 0, playing = false, visible = true, ticking = 0, sent = -1, told = 0;
-  let look = null, joint = null, hover = null, target = null, held_spot = null, grip = 0, nudged = null, pull = null;
-  let number = 0, waiting = null, queued = null, pressed = 0, begun = 0, silence = 0;
+  let look = null, joint = null, hover = null, target = null, held_spot = null, grip = null, grips = 0, pull = null;
+  let pressed = 0, begun = 0; // Generate: the number of its message, and when
+  const way = wire(model, () => state.heard, () => model.get("busy"), (gone) => {
+    pressed = 0; if (gone) target = null;
+    words(); say(gone ? GONE : MUTE); draw();
+  });
 
   // ---- what Python told
   const read = (where, frames) => unpack({ get: (name) => ({ scene: { joints: scene.joints, figures: frames.map((n) => ({ frames: n })) },
     joints: model.get(`${where}joints`), roots: model.get(`${where}roots`), contacts: new DataView(new ArrayBuffer(0)) })[name] });
-  function load() {
+  function load() { // false for an answer that was overtaken by a newer one
+    if (state && model.get("state").edition < state.edition) return false;
     state = { ...model.get("state") };
     samples = read("made_", Array(state.made).fill(scene.frames));
     const flat = new Float32Array(bytes(model.get("poses"))), size = 3 * scene.joints;
     poses = new Map(state.pins.map((t, i) => [t, Array.from({ length: scene.joints }, (_, j) => Array.from(flat.slice(i * size + 3 * j, i * size + 3 * j + 3)))]));
     chosen = clamp(model.get("chosen"), 0, Math.max(samples.length - 1, 0));
+    return true;
   }
   const base = () => samples[chosen] || motion;
   const figure = { frames: scene.frames, path: null, past: null, prints: [], planted: () => 0,
@@ -100,8 +110,9 @@ export function mount(model, el, { fill = false } = {}) {
     for (const side of ["L", "R"]) dots[side].style.background = rgba(theme.body[side]);
     const kept = new Set(state.kept), pinned = poses.has(frame);
     const wash = (part) => (pinned || samples.length || part.circles.every(([a, b]) => kept.has(a) && kept.has(b)) ? 0 : 0.6);
-    const ghosts = pinned ? [] : samples.filter((_, k) => k !== chosen).map((f) => f.pose(frame));
-    if (before.checked) ghosts.push(motion.pose(frame));
+    const others = pinned ? [] : samples.map((f, k) => ({ name: `in-between ${k + 1}`, pose: f.pose(frame) }));
+    const ghosts = others.filter((_, k) => k !== chosen);
+    if (before.checked) ghosts.push({ name: "motion before", pose: motion.pose(frame) });
     const spot = held_spot || (view.follow ? smoothRoot(figure, frame) : motion.middle);
     look = paintStage(ctx, { parts: scene.parts, figure, ghosts, frame, pinned: pinned && !playing, wash, spot, extent: view.follow ? 0 : motion.extent, joint, hover, target,
       names: scene.names, title: title(), hint: hint(), marks: state.pins.map((t) => poses.get(t)[0]), focus }, view, theme, w, h);
@@ -115,33 +126,36 @@ export function mount(model, el, { fill = false } = {}) {
     held.textContent = state.held[0].toUpperCase() + state.held.slice(1);
     measured.textContent = samples.length ? `In-between ${chosen + 1}${state.old ? " (made before the last change)" : ""}: ${state.measured[chosen]}.` : "";
     which.textContent = samples.length ? `${chosen + 1} of ${samples.length}` : "none yet";
-    const busy = pressed > 0 || model.get("busy");
+    const busy = generating();
     root.setAttribute("aria-busy", String(busy)); generate.setAttribute("aria-disabled", String(busy));
     generate.textContent = busy ? "Generating \u2026" : "Generate";
-    undo.setAttribute("aria-disabled", String(!state.undo)); save.setAttribute("aria-disabled", String(!samples.length));
+    undo.setAttribute("aria-disabled", String(!state.undo));
     for (const node of [previous, next]) node.setAttribute("aria-disabled", String(samples.length < 2));
     keep.value = state.part; canvas.setAttribute("aria-label", state.description); joints.value = joint == null ? "" : String(joint);
   }
   const say = (text) => { said.textContent = text; };
 
   // ---- what the page asks
+  const generating = () => !way.gone() && (pressed > 0 || model.get("busy"));
   function ask(content, what) {
-    if (!live) return say(`${what} ${ASLEEP}`);
-    number = Math.max(number, state.heard) + 1; model.send({ ...content, number });
-    clearTimeout(silence);
-    silence = setTimeout(() => {
-      if (stop.signal.aborted || state.heard >= number || model.get("busy")) return;
-      pressed = 0; waiting = null; words(); say("The notebook's kernel does not answer: it is busy with another cell, or not running.");
-    }, SILENCE);
+    if (live) return way.ask(content);
+    say(`${what} ${ASLEEP}`);
+    return 0;
   }
-  function pullTo(to, name) { // one drag on its way at a time: the last one asked for goes next
-    target = to; draw();
-    const content = { do: "drag", frame, joint, to, grip };
-    if (waiting != null) { queued = content; return; }
-    ask(content, name); waiting = live ? number : null;
+  function take(j) { // a grip is one change to Undo: a run of key presses, or one drag
+    way.handOn();
+    const more = target && grip && grip.frame === frame && grip.joint === j; // not answered yet
+    grips = Math.max(Date.now(), grips + 1);
+    grip = { id: grips, frame, joint: j, by: [0, 0, 0], from: more ? target : figure.pose(frame)[j] };
+    return grip;
+  }
+  function pullBy(by, held, name) { // metres in all since the grip began
+    if (!live) return say(`${name} ${ASLEEP}`);
+    held.by = by; target = along(held.from, by, 1); draw();
+    way.drag({ do: "drag", frame: held.frame, joint: held.joint, by, grip: held.id });
   }
   function toggle(t) {
-    if (live) return ask({ do: poses.has(t) ? "unpin" : "pin", frame: t }, "");
+    if (live) return ask({ do: "toggle", frame: t, chosen }, "");
     const on = !poses.has(t); // with no kernel pins are shown, and nothing follows from them
     if (on) poses.set(t, figure.pose(t)); else poses.delete(t);
     const moved = new Map(state.pins.map((f, i) => [f, state.moved[i]]));
@@ -150,11 +164,12 @@ export function mount(model, el, { fill = false } = {}) {
     words(); say(`Frame ${t} ${on ? "pinned" : "let go"}, on this page only.`); draw();
   }
   function make() {
-    if (pressed || model.get("busy")) return;
+    if (generating()) return;
     if (!live) return say(`Generating ${ASLEEP}`);
     halt(frame); begun = performance.now();
-    ask({ do: "generate", after: state.presses }, "");
-    pressed = number; words(); count_up();
+    const wanted = { count: Number(count.value), resample: Number(strength.value) };
+    pressed = ask({ do: "generate", after: state.heard, ...wanted }, "");
+    if (pressed) { words(); count_up(); }
   }
   function count_up() { // so that one sees that something goes on
     if (!pressed || stop.signal.aborted) return;
@@ -168,21 +183,20 @@ export function mount(model, el, { fill = false } = {}) {
   }
   function keepFile() { if (model.get("file") !== file.value) { model.set("file", file.value); model.save_changes(); } }
   function store() {
-    if (!samples.length) return say("There is no in-between to save yet: Generate makes some.");
-    keepFile(); ask({ do: "save", name: file.value }, "Saving");
+    keepFile(); ask({ do: "save", name: file.value, chosen }, "Saving");
   }
   function select(j) {
-    joint = j; target = null; nudged = null;
-    if (j != null && !poses.has(frame)) say(`${scene.names[j]} can be moved once this frame is pinned (Enter).`);
+    joint = j; target = null; grip = null;
+    if (j != null && !poses.has(frame) && !way.asking()) say(`${scene.names[j]} can be moved once this frame is pinned (Enter).`);
     words(); draw();
   }
-  function nudge(direction, sign, big) { // presses in quick succession are one change
-    if (!poses.has(frame)) return say(`Frame ${frame} is not pinned: press Enter to pin it, then move its joints.`);
-    const now = performance.now(), going = nudged && nudged.frame === frame && nudged.joint === joint;
-    if (!going || now - nudged.time > NUDGES) grip = Date.now();
-    const from = going && waiting != null ? nudged.to : poses.get(frame)[joint];
-    nudged = { frame, joint, time: now, to: along(from, direction, sign * CENTIMETRE * (big ? 5 : 1)) };
-    pullTo(nudged.to, "Moving a joint");
+  function nudge(direction, sign, big) { // presses in quick succession are one change; one that leads back is another
+    if (!poses.has(frame) && !way.asking()) return say(`Frame ${frame} is not pinned: press Enter to pin it, then move its joints.`);
+    const now = performance.now(), step = direction.map((v) => v * sign * CENTIMETRE * (big ? 5 : 1));
+    const going = grip && grip.step && now - grip.time < NUDGES && dot(grip.step, step) >= 0;
+    const held = going ? grip : take(joint);
+    Object.assign(held, { step, time: now });
+    pullBy(along(held.by, step, 1), held, "Moving a joint");
   }
 
   // ---- time
@@ -192,7 +206,7 @@ export function mount(model, el, { fill = false } = {}) {
   }
   function show(to, force = true) {
     const t = clamp(Math.round(to), 0, last);
-    if (t !== frame) { target = null; hover = null; nudged = null; held_spot = null; }
+    if (t !== frame) { target = hover = grip = held_spot = null; if (pull && !pull.turn) pull = null; }
     frame = t; draw(); tell(force);
   }
   function halt(to) { if (playing) setPlaying(false); clock.seek(clamp(to, 0, last) / scene.fps); show(to); }
@@ -216,12 +230,13 @@ export function mount(model, el, { fill = false } = {}) {
     const there = state.pins.filter((t) => (by > 0 ? t > frame : t < frame)), t = by > 0 ? there[0] : there.at(-1);
     if (t == null) say(by > 0 ? "No frame after this one is pinned." : "No frame before this one is pinned."); else halt(t);
   }
+  function takeBack() { grip = null; ask({ do: "undo" }, "Undo"); }
   function home() { Object.assign(view, HOME, { follow: true }); joint = target = null; halt(0); ask({ do: "reset" }, "Resetting the edit"); }
   function zoom(by) { view.zoom = clamp(view.zoom * by, 0.25, 5); draw(); }
 
   // ---- keys
   const common = {
-    " ": () => setPlaying(!playing), Enter: () => toggle(frame), "[": () => choose(-1), "]": () => choose(1), g: make, z: () => ask({ do: "undo" }, "Undo"),
+    " ": () => setPlaying(!playing), Enter: () => toggle(frame), "[": () => choose(-1), "]": () => choose(1), g: make, z: takeBack,
     ",": () => step(-1), ".": () => step(1), Home: () => halt(0), End: () => halt(last), r: home, "+": () => zoom(1.2), "=": () => zoom(1.2), "-": () => zoom(1 / 1.2),
     f: () => { view.follow = !view.follow; draw(); }, o: () => { before.checked = !before.checked; draw(); }, Escape: () => select(null),
     j: (shift) => select(joint == null ? (shift ? scene.joints - 1 : 0) : (joint + (shift ? -1 : 1) + scene.joints) % scene.joints),
@@ -246,9 +261,9 @@ export function mount(model, el, { fill = false } = {}) {
     canvas.setPointerCapture(e.pointerId); canvas.focus({ preventScroll: true });
     const j = over(e);
     if (j == null) { pull = { turn: [e.clientX, e.clientY] }; return; }
-    grip = Date.now(); held_spot = smoothRoot(figure, frame);
-    if (!view.follow) held_spot = motion.middle;
-    select(j); pull = { from: figure.pose(frame)[j], at: place(e), moved: false };
+    held_spot = view.follow ? smoothRoot(figure, frame) : motion.middle;
+    const held = take(j);
+    select(j); pull = { held, at: place(e), moved: false };
   });
   listen(canvas, "pointermove", (e) => {
     if (!pull) {
@@ -263,10 +278,10 @@ export function mount(model, el, { fill = false } = {}) {
     }
     const [x, y] = place(e), [dx, dy] = [x - pull.at[0], y - pull.at[1]];
     if (!pull.moved && Math.hypot(dx, dy) < 3) return;
-    pull.moved = true; pullTo(dragged(look, pull.from, dx, dy), "Dragging a joint");
+    pull.moved = true; pullBy(dragged(look, pull.held.from, dx, dy), pull.held, "Dragging a joint");
   });
   for (const name of ["pointerup", "pointercancel"]) listen(canvas, name, () => {
-    if (pull && !pull.turn) { held_spot = null; if (waiting == null && live) target = null; }
+    if (pull && !pull.turn) { held_spot = null; if (!way.dragging()) target = null; }
     pull = null; draw();
   });
   listen(canvas, "pointerleave", () => { if (hover != null) { hover = null; draw(); } });
@@ -276,9 +291,9 @@ export function mount(model, el, { fill = false } = {}) {
   }, { passive: false });
 
   // ---- the controls
-  const press = (node, act) => listen(node, "click", () => { if (node.getAttribute("aria-disabled") !== "true" || node === generate || node === save) act(); });
+  const press = (node, act) => listen(node, "click", () => { if (node.getAttribute("aria-disabled") !== "true" || node === generate) act(); });
   press(play, () => setPlaying(!playing)); press(pin, () => toggle(frame)); press(generate, make); press(previous, () => choose(-1)); press(next, () => choose(1));
-  press(undo, () => ask({ do: "undo" }, "Undo")); press(reset, home); press(save, store);
+  press(undo, takeBack); press(reset, home); press(save, store);
   listen(joints, "change", () => select(joints.value === "" ? null : Number(joints.value)));
   listen(keep, "change", () => { ask({ do: "keep", part: keep.value }, "Keeping a part"); if (!live) keep.value = state.part; });
   listen(count, "change", () => { model.set("count", Number(count.value)); model.save_changes(); });
@@ -289,16 +304,14 @@ export function mount(model, el, { fill = false } = {}) {
   // ---- Python's changes
   const onState = () => {
     const last_heard = state.heard;
-    load();
+    if (!load()) return;
     if (state.heard !== last_heard || !pressed) say(state.message);
     if (pressed && state.heard >= pressed) { pressed = 0; say(state.message); }
-    if (waiting != null && state.heard >= waiting) {
-      waiting = null;
-      if (queued) { const content = queued; queued = null; ask(content, ""); waiting = number; } else if (!pull) target = null;
-    }
+    way.answered();
+    if (!pull && !way.dragging()) target = null;
     words(); draw();
   };
-  const onChosen = () => { if (model.get("chosen") !== chosen) { load(); words(); draw(); } };
+  const onChosen = () => { chosen = clamp(model.get("chosen"), 0, Math.max(samples.length - 1, 0)); words(); draw(); };
   const onFrame = () => { if (model.get("frame") !== sent) { sent = model.get("frame"); clock.seek(sent / scene.fps); show(sent); } };
   const onControls = () => { count.value = String(model.get("count")); strength.value = String(model.get("resample")); file.value = model.get("file"); words(); };
   const changes = { "change:state": onState, "change:chosen": onChosen, "change:frame": onFrame, "change:busy": words, "change:count": onControls, "change:resample": onControls, "change:file": onControls };
@@ -308,11 +321,11 @@ export function mount(model, el, { fill = false } = {}) {
   [motion] = read("", [scene.frames]);
   const ends = [0, 2].map((k) => { const v = Array.from({ length: scene.frames }, (_, t) => motion.root(t)[k]); return [Math.min(...v), Math.max(...v)]; });
   motion.middle = ends.map(([a, b]) => (a + b) / 2); motion.extent = Math.hypot(...ends.map(([a, b]) => b - a));
-  load(); number = state.heard; frame = sent = clamp(model.get("frame"), 0, last); clock.seek(frame / scene.fps);
+  load(); frame = sent = clamp(model.get("frame"), 0, last); clock.seek(frame / scene.fps);
   onControls(); say(state.message); draw();
   sizes.observe(canvas); sights.observe(canvas); themes.observe(document.body, { attributes: true });
   return () => {
-    stop.abort(); clearTimeout(silence); cancelAnimationFrame(ticking); [sizes, sights, themes].forEach((o) => o.disconnect());
+    stop.abort(); way.close(); cancelAnimationFrame(ticking); [sizes, sights, themes].forEach((o) => o.disconnect());
     for (const [name, f] of Object.entries(changes)) model.off(name, f);
     root.remove();
   };

@@ -5,11 +5,12 @@ import { camera, paintBody, paintFloor, paintGround, paintText } from "./paint.j
 const REACH = { mouse: 16, pen: 18, touch: 26 }; // pixels from a joint within which it is meant
 
 export const along = (p, direction, metres) => p.map((v, k) => v + metres * direction[k]);
+export const dot = (a, b) => a.reduce((sum, v, k) => sum + v * b[k], 0);
 
-// Where a joint is dragged to: from `from` by so many pixels, in the plane that faces the viewer.
+// How far so many pixels move a joint that is at `from`, in the plane that faces the viewer: metres.
 export function dragged(look, from, dx, dy) {
   const scale = look(from).scale;
-  return along(along(from, look.right, dx / scale), look.up, -dy / scale);
+  return along(along([0, 0, 0], look.right, dx / scale), look.up, -dy / scale);
 }
 
 export function jointAt(look, pose, x, y, kind) { // the joint under the pointer, the nearer one of two; null for none
@@ -24,6 +25,27 @@ function ghost(ctx, width, height, paint) { // a whole figure, then made transpa
   pen.setTransform(ratio, 0, 0, ratio, 0, 0);
   paint(pen);
   ctx.save(); ctx.setTransform(1, 0, 0, 1, 0, 0); ctx.globalAlpha = 0.3; ctx.drawImage(layer, 0, 0); ctx.restore();
+}
+
+// The names of the ghosts, in a column beside their heads, each with a line to its own.
+function paintNames(ctx, look, ghosts, theme, width, height) {
+  const size = 13, step = size + 4, top = (pose) => look(pose.reduce((a, b) => (a[1] > b[1] ? a : b)));
+  const heads = ghosts.map(({ pose, name }) => ({ name, ...top(pose) })).filter((head) => head.seen);
+  if (!heads.length) return;
+  heads.sort((a, b) => a.y - b.y);
+  ctx.font = `600 ${size}px system-ui, sans-serif`;
+  const widest = Math.max(...heads.map(({ name }) => ctx.measureText(name).width));
+  const away = 0.45 * heads[0].scale, middle = heads.reduce((sum, { y }) => sum + y / heads.length, 0);
+  const right = Math.max(...heads.map(({ x }) => x)) + away, left = Math.min(...heads.map(({ x }) => x)) - away;
+  const side = right + widest < width - 4 ? 1 : -1;
+  const x = side > 0 ? Math.max(right, 4) : Math.max(left, widest + 4);
+  const tall = step * (heads.length - 1), low = height - 30 - tall;
+  const first = clamp(middle - tall / 2, 62, Math.max(low, 62)); // below the title
+  ctx.strokeStyle = rgba(theme.fg, 0.5); ctx.lineWidth = 1;
+  heads.forEach((head, i) => {
+    ctx.beginPath(); ctx.moveTo(head.x, head.y); ctx.lineTo(x - 4 * side, first + i * step - 4); ctx.stroke();
+  });
+  heads.forEach(({ name }, i) => paintText(ctx, theme, name, x, first + i * step, side > 0 ? "left" : "right", size));
 }
 
 function paintHandles(ctx, look, pose, theme, s, width) {
@@ -46,7 +68,7 @@ function paintHandles(ctx, look, pose, theme, s, width) {
   }
 }
 
-// `s`: parts, figure (solid), ghosts (poses), frame, pinned, wash(part), spot, extent, joint, hover, target, names, title,
+// `s`: parts, figure (solid), ghosts ({ pose, name }), frame, pinned, wash(part), spot, extent, joint, hover, target, names, title,
 // hint, marks (floor points of the pinned frames), focus. Returns the camera, for picking and dragging.
 export function paintStage(ctx, s, view, theme, width, height) {
   const sky = ctx.createLinearGradient(0, 0, 0, height);
@@ -62,9 +84,10 @@ export function paintStage(ctx, s, view, theme, width, height) {
     ctx.beginPath(); ctx.moveTo(q.x - size, q.y); ctx.lineTo(q.x, q.y - size / 2); ctx.lineTo(q.x + size, q.y); ctx.lineTo(q.x, q.y + size / 2); ctx.closePath();
     ctx.fillStyle = rgba(theme.fg, 0.75); ctx.fill();
   }
-  for (const pose of s.ghosts) ghost(ctx, width, height, (pen) => paintBody(pen, look, s.parts, pose, theme, 0.15, s.spot, [0, 0]));
+  for (const { pose } of s.ghosts) ghost(ctx, width, height, (pen) => paintBody(pen, look, s.parts, pose, theme, 0.15, s.spot, [0, 0]));
   const pose = s.figure.pose(s.frame);
   paintBody(ctx, look, s.parts, pose, theme, s.wash, s.spot, [0, 0]);
+  paintNames(ctx, look, s.ghosts, theme, width, height);
   if (s.pinned) paintHandles(ctx, look, pose, theme, s, width);
   const small = width < 520, lines = small ? s.title.split(" \u00b7 ") : [s.title];
   lines.forEach((line, i) => paintText(ctx, theme, line, 12, 24 + 19 * i, "left", small ? 14 : 17));

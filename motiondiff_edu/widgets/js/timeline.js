@@ -10,9 +10,9 @@ function labelStep(length, width) { // seconds between labels, so that they do n
 // `go(frame)`: show it; `press(frame)`: pin it or let it go. `facts()`: { frames, fps, frame, pins, moved, part, made }
 export function timeline(listen, facts, go, press, redraw) {
   const canvas = element("canvas", { class: "mde-lane mde-timeline", tabindex: "0", role: "slider", "aria-label": "Timeline",
-    "aria-valuemin": "0", title: "Ruler: go there. Ticks: click pins a frame, click again lets it go. Arrows: frames. Enter: pin." });
+    "aria-valuemin": "0", title: "Click or drag: go there. Double click or Enter: pin the frame, or let it go. Arrows: frames." });
   canvas.style.height = `${RULER + TRACK + BAND + 4}px`;
-  let grip = null, hover = null;
+  let held = false, hover = null;
   const across = (t, width) => EDGE + t / Math.max(facts().frames - 1, 1) * (width - 2 * EDGE);
   function under(event) { // the frame under the pointer; a pin close by is meant
     const box = canvas.getBoundingClientRect(), x = event.clientX - box.left, { frames, pins } = facts();
@@ -20,7 +20,6 @@ export function timeline(listen, facts, go, press, redraw) {
     if (near && near[0] < 6) return near[1];
     return clamp(Math.round((x - EDGE) / (box.width - 2 * EDGE) * (frames - 1)), 0, frames - 1);
   }
-  const onTrack = (event) => event.clientY - canvas.getBoundingClientRect().top > RULER;
 
   function diamond(pen, x, y, size, fill, edge) {
     pen.beginPath(); pen.moveTo(x, y - size); pen.lineTo(x + size, y); pen.lineTo(x, y + size); pen.lineTo(x - size, y); pen.closePath();
@@ -72,22 +71,14 @@ export function timeline(listen, facts, go, press, redraw) {
 
   listen(canvas, "pointerdown", (e) => {
     canvas.setPointerCapture(e.pointerId); canvas.focus({ preventScroll: true });
-    grip = { x: e.clientX, track: onTrack(e), moved: false };
-    if (!grip.track) go(under(e));
+    held = true; go(under(e));
   });
   listen(canvas, "pointermove", (e) => {
-    hover = under(e); canvas.style.cursor = onTrack(e) ? "pointer" : "ew-resize";
-    if (grip && Math.abs(e.clientX - grip.x) > 3) grip.moved = true;
-    if (grip && (grip.moved || !grip.track)) go(hover); else redraw();
+    hover = under(e);
+    if (held) go(hover); else redraw();
   });
-  listen(canvas, "pointerup", (e) => {
-    const was = grip; grip = null;
-    if (!was || !was.track || was.moved) return;
-    const t = under(e), there = facts().frame === t;
-    go(t);
-    if (there || !facts().pins.includes(t)) press(t); // a pin is looked at first, and let go by the next click
-  });
-  listen(canvas, "pointercancel", () => { grip = null; });
+  for (const name of ["pointerup", "pointercancel"]) listen(canvas, name, () => { held = false; });
+  listen(canvas, "dblclick", (e) => press(under(e)));
   listen(canvas, "pointerleave", () => { hover = null; redraw(); });
   return { canvas, draw };
 }

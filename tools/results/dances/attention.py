@@ -1,5 +1,6 @@
-"""MoFusion's Fig. 4 as a figure that can be wrong: does attention fall on the beats, more than by
-chance?
+"""MoFusion's Fig. 4 as a figure that can be wrong.
+
+Does attention fall on the beats, more than by chance?
 
 Over many unseen songs: the share of a level's attention within 0.1 s of a beat, over the share near
 the beats of other songs (which have their own tempo and place), and over the share near its own
@@ -51,13 +52,16 @@ def masses(
     own: int,
     seed: int,
 ) -> dict[str, tuple[float, ...]]:
-    """For each level the KINDS: share near the beats of song `own`, of the others, of its own
-    moved; seconds read."""
+    """For each level the KINDS.
+
+    Share near the beats of song `own`, of the others, of its own moved; seconds read.
+    """
     found = {}
     for name, weights in maps.items():
         others = [beat_mass(weights, times, other) for i, other in enumerate(beats) if i != own]
         moved = beat_mass_by_chance(weights, times, beats[own], np.random.default_rng(seed), SHIFTS)
-        here, read = beat_mass(weights, times, beats[own]), seconds_read(weights, times)
+        here = beat_mass(weights, times, beats[own])
+        read = seconds_read(weights, times)
         found[name] = here, float(np.mean(others)), float(moved.mean()), read
     return found
 
@@ -66,7 +70,8 @@ def rows_of(
     dancer: Dancer, songs: Songs, frames: int = TRAINED
 ) -> dict[str, dict[str, Float[np.ndarray, "N"]]]:
     """{level: {kind of KINDS: one number for each song}}, and "all", the mean over the levels."""
-    beats, danced = songs.beats(frames), dances_of(dancer, songs.mel, frames, seed=0)
+    beats = songs.beats(frames)
+    danced = dances_of(dancer, songs.mel, frames, seed=0)
     every = [
         masses(*maps_of(dancer, mel, danced[i], i), beats, i, i) for i, mel in enumerate(songs.mel)
     ]
@@ -83,8 +88,10 @@ def short(name: str) -> str:
 
 
 def attention_figures(rows: dict[str, dict[str, np.ndarray]]) -> list[Figure]:
-    """Shares and ratios with intervals over songs; those without a level's name are means over the
-    levels."""
+    """Shares and ratios with intervals over songs.
+
+    Those without a level's name are means over the levels.
+    """
     figures = []
     for level, row in rows.items():
         place = "" if level == "all" else f"{level}."
@@ -120,8 +127,10 @@ def attention_records(stage: Stage, command: str) -> list[dict]:
 
 
 def attention_picture(stage: Stage, song: int = 0, frames: int = TRAINED) -> Picture:
-    """Levels over the sound of one unseen song, as in the paper: the way down, the bottom, the last
-    on the way up."""
+    """Levels over the sound of one unseen song, as in the paper.
+
+    The way down, the bottom, the last on the way up.
+    """
     dancer, heard = stage.dancer("dancer"), stage.songs
     dance = dances_of(dancer, heard.mel[song : song + 1], frames, seed=0)[0]
     maps, times = maps_of(dancer, heard.mel[song], dance, song)
@@ -129,8 +138,9 @@ def attention_picture(stage: Stage, song: int = 0, frames: int = TRAINED) -> Pic
     shown = {name: maps[name] for k, name in enumerate(maps) if k <= levels or k == len(maps) - 1}
     audio, seconds = heard.songs[song].audio, frames / FPS
     words = (
-        "Where each level of the U-Net reads in the music while its dance is denoised, heads averaged. Rows are "
-        "moments of the dance; darker is more. Dotted lines are beats; an upright stripe is read by all moments."
+        "Where each level of the U-Net reads in the music while its dance is denoised, heads "
+        "averaged. Rows are moments of the dance; darker is more. Dotted lines are beats; "
+        "an upright stripe is read by all moments."
     )
     return levels_over_sound(
         audio[: round(seconds * 16_000)], shown, times, heard.songs[song].beats, seconds, words

@@ -1,5 +1,6 @@
-"""What is each choice of a dancer worth? Dancers trained for as many steps, each unlike another in
-one choice.
+"""What is each choice of a dancer worth?
+
+Dancers trained for as many steps, each unlike another in one choice.
 
 Where in diffusion time is the beat decided (the targets look hardest at different noise)? What do
 the kinematic losses do, and their weight over time? Is a linear layer enough for the music, a U-Net
@@ -18,7 +19,13 @@ from motiondiff_edu.baselines.transformer import TransformerConfig
 from motiondiff_edu.mofusion import MOFUSION_SMALL
 from motiondiff_edu.performers.dance_windows import DanceWindows
 from motiondiff_edu.performers.dancer import ETA, STEPS, Dancer
-from motiondiff_edu.recipes.dancers import KINEMATIC, X0, DanceRecipe
+from motiondiff_edu.recipes.dancers import (
+    DANCER_PLAIN,
+    KINEMATIC,
+    X0,
+    DanceLossWeights,
+    DanceRecipe,
+)
 from motiondiff_edu.recipes.train_dancer import train_dancer, training_windows
 
 from ..walks.scores import Figure
@@ -27,7 +34,10 @@ from .parts import Danced, DanceSize, Stage, danced
 from .scores import bone_gain, share_minus
 from .trials import UNSEEN, mel_of
 
-LIKE = "target x0, shifted schedule, no kinematic losses, changes weighted 5, feet 0.2, convolutions over the Mel"
+LIKE = (
+    "target x0, shifted schedule, no kinematic losses, changes weighted 5, feet 0.2, "
+    "convolutions over the Mel"
+)
 KIN = {
     name: {"kinematic": replace(KINEMATIC, over_time=name)}
     for name in ("constant", "alpha_bar", "snr")
@@ -36,7 +46,9 @@ PLAIN = TransformerConfig()  # 2.64 M numbers, the U-Net has 2.65 M
 EPS = replace(
     MOFUSION_SMALL, target="eps", skip=True
 )  # a network without it learns no eps in so few steps
-NO_FEET = {"feet": 0.0}  # errors of eps or v are no positions: no toes could be followed in them
+NO_FEET = {
+    "loss_weights": DanceLossWeights(changes=5.0)
+}  # errors of eps or v are no positions: no toes could be followed in them
 # name: (what differs, in words, from which other one, the network, settings of the training)
 VARIANTS = {
     "x0": (LIKE, "", X0, {}),
@@ -45,14 +57,14 @@ VARIANTS = {
         "errors of poses alone, as the paper has it",
         "no-feet",
         X0,
-        NO_FEET | {"changes": 0.0},
+        {"loss_weights": DanceLossWeights()},
     ),
     "eps": ("target eps, with its skip", "no-feet", EPS, NO_FEET),
     "eps-weighted": (
         "high noise weighted, up to 21 times",
         "eps",
         EPS,
-        NO_FEET | {"high_noise": 20.0},
+        {"loss_weights": DanceLossWeights(changes=5.0, high_noise=20.0)},
     ),
     "v": ("target v, with the skip", "no-feet", replace(EPS, target="v"), NO_FEET),
     "constant": ("kinematic losses, all steps alike", "x0", X0, KIN["constant"]),
@@ -102,7 +114,8 @@ def recipe_of(name: str, budget: Budget) -> DanceRecipe:
     sizes = {
         key: getattr(budget, key) for key in ("steps", "songs", "seconds", "batch", "save_every")
     }
-    return DanceRecipe(f"dance-budget.{name}", config, shake=0.0, **sizes, **settings)
+    settings = sizes | settings | {"config": config, "gain_noise": 0.0}
+    return replace(DANCER_PLAIN, name=f"dance-budget.{name}", **settings)
 
 
 @cache
@@ -123,8 +136,10 @@ def stage(name: str, budget: Budget) -> Stage:
 
 
 def trained(name: str, budget: Budget, runs: Path) -> Dancer:
-    """The dancer of one variant; a run that was killed goes on, one that is finished is only
-    read."""
+    """The dancer of one variant.
+
+    A run that was killed goes on, one that is finished is only read.
+    """
     heard = name if name in HEARD else ""
     runs.mkdir(parents=True, exist_ok=True)
     run, log = runs / f"{name}.safetensors", partial(print, flush=True)
@@ -137,9 +152,12 @@ def about(name: str, budget: Budget) -> str:
 
 
 def gains(name: str, found: Danced, runs: Path, budget: Budget) -> list[Figure]:
-    """Beside what a row is to be compared with, on the same songs: drawn together, so that their
-    luck is shared."""
-    figures, own = [], [rows[key] for rows in (found.own, found.data) for key in SHARE]
+    """What a row gains over the row that it is compared with, on the same songs.
+
+    Both are drawn together, so that their luck is shared.
+    """
+    figures = []
+    own = [rows[key] for rows in (found.own, found.data) for key in SHARE]
     for rival in filter(None, (VARIANTS[name][1], *RIVALS.get(name, ()))):
         kept = runs / f"{rival}.npz"
         other = dict(np.load(kept)) if kept.is_file() else {"about": ""}
@@ -169,7 +187,8 @@ def keep(name: str, found: Danced, runs: Path, budget: Budget) -> None:
 
 def budget_records(name: str, budget: Budget, runs: Path, command: str) -> list[dict]:
     """Train (or continue) one variant, and measure it."""
-    dancer, songs = trained(name, budget, runs), stage(name if name in HEARD else "", budget)
+    dancer = trained(name, budget, runs)
+    songs = stage(name if name in HEARD else "", budget)
     found = danced(songs, dancer)
     keep(name, found, runs, budget)
     size, recipe = budget.measured, recipe_of(name, budget)

@@ -42,8 +42,10 @@ def mfcc_and_beats(song: Song) -> Float[torch.Tensor, "M 22"]:
 
 
 def marks(times: Float[np.ndarray, "K"], frames: int) -> Float[np.ndarray, "{frames}"]:
-    """A 1 for each time (seconds), shared by the two frames around it, so that its place is not
-    rounded."""
+    """A 1 for each time (seconds).
+
+    It is shared by the two frames around it, so that its place is not rounded.
+    """
     where = times * FRAMES_PER_SECOND
     first = np.floor(where).astype(int)
     row = np.zeros(frames + 1)
@@ -56,8 +58,9 @@ def marks(times: Float[np.ndarray, "K"], frames: int) -> Float[np.ndarray, "{fra
 def heard_instead(
     windows: DanceWindows, hear: Hear, count: int, seed: int, seconds: float
 ) -> DanceWindows:
-    """The same windows of the same dances, with something else heard of the songs `songs(count,
-    seed, seconds)`.
+    """The same windows of the same dances, with another sound beside them.
+
+    `songs(count, seed, seconds)` gives it.
 
     Raises ValueError where it has not the frames of the Mel spectrograms.
     """

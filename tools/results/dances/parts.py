@@ -1,5 +1,7 @@
-"""What `make results` measures of the dancers: one part for each of the shipped weights, and one
-for unheard music."""
+"""What `make results` measures of the dancers.
+
+One part for each of the shipped weights, and one for unheard music.
+"""
 
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -49,7 +51,8 @@ class DanceSize:
     each: int = 10
 
 
-DANCE_FULL, DANCE_QUICK = DanceSize(), DanceSize(songs=6, seeds=1, pieces=3, each=3)
+DANCE_FULL = DanceSize()
+DANCE_QUICK = DanceSize(songs=6, seeds=1, pieces=3, each=3)
 
 
 class Stage:
@@ -58,7 +61,9 @@ class Stage:
     def __init__(
         self, size: DanceSize, weights: dict[str, Path] | None = None, hear: Hear = mel_of
     ):
-        self.size, self.weights, self.hear = size, checkpoints.available() | (weights or {}), hear
+        self.size = size
+        self.weights = checkpoints.available() | (weights or {})
+        self.hear = hear
 
     @cached_property
     def songs(self) -> Songs:
@@ -72,8 +77,10 @@ class Stage:
 
     @cached_property
     def data_features(self) -> np.ndarray:
-        """Kinetic features of the data's dances to the songs: what all features are normalised
-        by."""
+        """Kinetic features of the data's dances to the songs.
+
+        What all features are normalised by.
+        """
         return features_of(self.songs.truth[:, :, :TRAINED])[:, 0]
 
     def dancer(self, name: str) -> Dancer:
@@ -101,7 +108,8 @@ class Danced:
 def danced(stage: Stage, dancer: Dancer) -> Danced:
     """The figures that every dancer has."""
     made = dances(stage, dancer, TRAINED, stage.size.seeds)
-    own, data = rows_of(made, stage.songs.beats(TRAINED)), stage.data_rows(TRAINED)
+    own = rows_of(made, stage.songs.beats(TRAINED))
+    data = stage.data_rows(TRAINED)
     bones, squares = bone_figure(made)
     return Danced([*beat_figures(own, data), bones, *variety(stage, dancer)], own, data, squares)
 
@@ -120,8 +128,10 @@ def dancer_figures(stage: Stage, name: str) -> list[Figure]:
 
 
 def long_figures(stage: Stage, dancer: Dancer, found: Danced) -> list[Figure]:
-    """What is left of the alignment in dances two and four times as long as those trained on; how
-    much they repeat."""
+    """What is left of the alignment in dances two and four times as long as those trained on.
+
+    How much they repeat.
+    """
     names, figures = ("bas", "bas_shuffled"), []
     short = [rows[name] for rows in (found.own, found.data) for name in names]
     for frames in LONG:

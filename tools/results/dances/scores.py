@@ -25,8 +25,9 @@ Beats = Sequence[Float[np.ndarray, "_"]]
 def rows_of(
     dances: Float[np.ndarray, "R N T J 3"], beats: Beats
 ) -> dict[str, Float[np.ndarray, "N"]]:
-    """Of each song, the mean over R dances to it: score, score with other songs, chance, beats per
-    beat, speed.
+    """Of each song, the mean over R dances to it.
+
+    Score, score with other songs, chance, beats per beat, speed.
 
     `bas_music` is the form of MoFusion's eq. 10, averaged over the music's beats; `skating` is how
     fast standing toes slide, m/s.
@@ -126,8 +127,9 @@ def variety_figures(
     data: Float[np.ndarray, "N K F"],
     all_data: Float[np.ndarray, "P F"],
 ) -> list[Figure]:
-    """MultiModality (K dances to one song), Diversity and FID, on kinetic features normalised by
-    `all_data`.
+    """MultiModality (K dances to one song), Diversity and FID.
+
+    On kinetic features normalised by `all_data`.
 
     `fid_data`, of as many dances by the data, is what perfection gets: so few clips are never at 0.
     """
@@ -147,8 +149,10 @@ def variety_figures(
 
 
 def share_minus(name: str, own: list[np.ndarray], other: list[np.ndarray]) -> Figure:
-    """`share` of one dancer minus that of another, on the same songs; rows as `share` takes
-    them."""
+    """`share` of one dancer minus that of another, on the same songs.
+
+    Rows as `share` takes them.
+    """
     return figure_of(
         name, "of the data's", lambda *rows: share(*rows[:4]) - share(*rows[4:]), *own, *other
     )

@@ -1,5 +1,7 @@
-"""MoFusion's Table 1 beside ours, and what each choice of a dancer is worth: sections of
-docs/RESULTS.md."""
+"""MoFusion's Table 1 beside ours, and what each choice of a dancer is worth.
+
+Sections of docs/RESULTS.md.
+"""
 
 from motiondiff_edu.performers.dancer import ETA, STEPS
 
@@ -44,14 +46,21 @@ TABLE_1 = """## MoFusion's Table 1
 
 | here | in the paper | the same? |
 | --- | --- | --- |
-| beats of the music danced to, `bas_music` | BAS, eq. 10 | the formula, sigma 3 of 60 frames a second; beats are true ones here, librosa's there |
-| `fid`, `diversity`, `multimodality` | FID, Div, MModality | the kind, without the public code's misplaced bracket |
-| stops of the dance on a beat, `bas` | the words above eq. 10 | averaged over the stops of the dance, so that stopping all the time wins nothing |
-| share of the data's alignment, `bas_share` | none | how much of the data's own alignment, beyond that with other songs' beats, is there |
+| beats of the music danced to, `bas_music` | BAS, eq. 10 | the formula, sigma 3 of 60 frames a \
+second; beats are true ones here, librosa's there |
+| `fid`, `diversity`, `multimodality` | FID, Div, MModality | the kind, without the public code's \
+misplaced bracket |
+| stops of the dance on a beat, `bas` | the words above eq. 10 | averaged over the stops of the \
+dance, so that stopping all the time wins nothing |
+| share of the data's alignment, `bas_share` | none | how much of the data's own alignment, \
+beyond that with other songs' beats, is there |
 
-The data are not the same: AIST++ is recorded, ours composed and danced by a program, with other joints, clips of 5 s
-and fewer of them. Compare rows within a block, never across. FID falls with the number of clips; the data's row, other
-dances to the same pieces, is what perfection gets. One training seed each; **[low, high]** is over songs.
+The data are not the same: AIST++ is recorded, ours composed and danced by a program, \
+with other joints, clips of 5 s
+and fewer of them. Compare rows within a block, never across. FID falls with the number of clips; \
+the data's row, other
+dances to the same pieces, is what perfection gets. One training seed each; **[low, \
+high]** is over songs.
 
 """
 
@@ -88,7 +97,8 @@ def table_1(records: dict[str, dict]) -> str:
 def _block(records: dict[str, dict], names: dict[str, str], what: str) -> list[list[str]]:
     """The data's row, read from whatever was measured with it, and a row for each name."""
     there = [name for name in names if f"{name}.bas" in records]
-    made, unmeasured = STORED if what == "same steps" else ANEW, ["-"] * len(COLUMNS)
+    made = STORED if what == "same steps" else ANEW
+    unmeasured = ["-"] * len(COLUMNS)
     rows = []
     if there:
         data = [_of_data(records, there, kind) for kind in COLUMNS]
@@ -138,10 +148,11 @@ def choices(records: dict[str, dict]) -> str:
             [f"`{name}`: {words}", beside, *(cell(records.get(n), unit=False) for n in mine), said]
         )
     text = (
-        f"## What each choice of a dancer is worth\n\nTrained on the same songs with the same seed for {FULL.steps} "
-        f"steps of {FULL.batch} windows; each row differs from the row named beside it in one choice. "
-        f"{STEPS} DDIM steps (eta = {ETA:g}) for all. `share gained` and `bone error saved` are set against that row, "
-        "on the same songs. The trainings are short, one seed each: an order, not what a choice is worth in the end. "
+        "## What each choice of a dancer is worth\n\nTrained on the same songs with the same seed "
+        f"for {FULL.steps} steps of {FULL.batch} windows; each row differs from the row named "
+        f"beside it in one choice. {STEPS} DDIM steps (eta = {ETA:g}) for all. `share gained` and "
+        "`bone error saved` are set against that row, on the same songs. The trainings are short, "
+        "one seed each: an order, not what a choice is worth in the end. "
         "`make results FULL=1` trains them; `make results` keeps what is stored.\n\n"
     )
     return text + table(head, rows) + _times(records)
@@ -163,8 +174,9 @@ def _times(records: dict[str, dict]) -> str:
         return ""
     about = records[f"dance-time.{BASE}.step_ms"]["seeds"]
     text = (
-        f"\nCPU milliseconds of one thread: a training step (batch {about['batch']}), one pass through the plain "
-        f"network and a whole sampling ({about['dances']} dances of {about['frames']} frames at once, {about['steps']} "
-        "steps of DDIM; the U-Net by its fast twin, which keeps what it heard). Ratios are of the same round.\n\n"
+        f"\nCPU milliseconds of one thread: a training step (batch {about['batch']}), one pass "
+        f"through the plain network and a whole sampling ({about['dances']} dances of "
+        f"{about['frames']} frames at once, {about['steps']} steps of DDIM; "
+        "the U-Net by its fast twin, which keeps what it heard). Ratios are of the same round.\n\n"
     )
     return text + table(["network", *(f"`{kind}`" for kind in kinds)], rows)

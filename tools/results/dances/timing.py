@@ -12,20 +12,24 @@ import torch
 
 from benchmarks.records import record
 from motiondiff_edu.performers.dance_windows import DanceWindows
-from motiondiff_edu.performers.dancer import STEPS, Dancer, network
+from motiondiff_edu.performers.dancer import STEPS, Dancer
+from motiondiff_edu.performers.networks import network
 from motiondiff_edu.recipes.muon import optimizer_for
 from motiondiff_edu.recipes.train_dancer import loss_of, schedule_of
 from motiondiff_edu.training import TrainState, train_steps
 
 from .budget import HEARD, Budget, material, recipe_of
 
-BASE, TIMED = "x0", ("x0", "alpha_bar", "linear-music", "transformer", "mfcc", "regression")
+BASE = "x0"
+TIMED = ("x0", "alpha_bar", "linear-music", "transformer", "mfcc", "regression")
 DANCES = 8  # at once
 
 
 class Clock:
-    """One network with all that a step of training, a pass and a dance need; times are CPU-seconds
-    of one call."""
+    """One network with all that a step of training, a pass and a dance need.
+
+    Times are CPU-seconds of one call.
+    """
 
     def __init__(self, name: str, windows: DanceWindows, budget: Budget):
         recipe = recipe_of(name, budget)
@@ -53,7 +57,7 @@ class Clock:
     def dance(self) -> None:
         """As a user has it: DDIM, with the fast twin where there is one."""
         heard = self.dancer.mel_scaler.inverse(self.mel)
-        self.dancer.dance(heard, self.x_s.shape[1], generator=torch.Generator().manual_seed(0))
+        self.dancer.dance_mel(heard, self.x_s.shape[1], generator=torch.Generator().manual_seed(0))
 
 
 def spent(call) -> float:
@@ -64,8 +68,10 @@ def spent(call) -> float:
 
 
 def time_records(names: tuple[str, ...], budget: Budget, rounds: int, command: str) -> list[dict]:
-    """Steps, passes and dances of all names in turns; of each the median, and its ratio to BASE in
-    the same round."""
+    """Steps, passes and dances of all names in turns.
+
+    Of each the median, and its ratio to BASE in the same round.
+    """
     before = torch.get_num_threads()
     torch.set_num_threads(1)
     small = replace(budget, songs=2, seconds=8.0)  # how much there is to draw from costs nothing

@@ -1,5 +1,7 @@
-"""What a dancer is tried on: songs no dancer was trained on, their true beats, and the data's own
-dances to them."""
+"""What a dancer is tried on.
+
+Songs no dancer was trained on, their true beats, and the data's own dances to them.
+"""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -52,8 +54,10 @@ def unseen_songs(
     hear: Hear = mel_of,
     **compose,
 ) -> Songs:
-    """n songs long enough for `frames`, with `draws` dances of the data to each; `compose` goes to
-    the composer."""
+    """n songs long enough for `frames`, with `draws` dances of the data to each.
+
+    `compose` goes to the composer.
+    """
     made = list(songs(n, seed, frames / FPS + 1.0, **compose))
     mel = torch.stack([hear(song) for song in made])
     truth = [
@@ -68,5 +72,5 @@ def dances_of(
 ) -> Float[np.ndarray, "N T 21 3"]:
     """One dance to each song; metres."""
     draw = torch.Generator().manual_seed(seed)
-    parts = [dancer.dance(part, frames, generator=draw) for part in mel.split(batch)]
+    parts = [dancer.dance_mel(part, frames, generator=draw) for part in mel.split(batch)]
     return torch.cat(parts).double().numpy()

@@ -1,5 +1,6 @@
-"""In-betweens of unseen walks and dances at gaps of 5 to 60 frames, beside interpolation and
-sampling without a mask.
+"""In-betweens of unseen walks and dances at gaps of 5 to 60 frames.
+
+Beside interpolation and sampling without a mask.
 
 The network's are guided and blended at every step (`editing.inbetween.inbetween`); the paper's
 masked sampling stands beside.
@@ -32,20 +33,25 @@ BARS = (15, 30, 60)  # gaps that have a bar
 
 @dataclass(frozen=True)
 class InbetweenSize:
-    """Motions (half walks, half dances), samples of each, DDIM's steps, and how often each is
-    made."""
+    """How much is tried.
+
+    Motions (half walks, half dances), samples of each, DDIM's steps, and how often each is made.
+    """
 
     motions: int = 12
     samples: int = 10
     steps: int = 25
 
 
-FULL, QUICK = InbetweenSize(), InbetweenSize(motions=4, samples=3, steps=4)
+FULL = InbetweenSize()
+QUICK = InbetweenSize(motions=4, samples=3, steps=4)
 
 
 def trials(n: int) -> Float[np.ndarray, "N T J 3"]:
-    """Motions that no network was trained on, from their own beginning; walk, dance, walk, dance
-    ..."""
+    """Motions that no network was trained on, from their own beginning.
+
+    Walk, dance, walk, dance ...
+    """
     made = motions(n, UNSEEN, seconds=8.0)
     return np.stack([at_origin(positions[30 : 30 + T]) for positions, _ in made])
 
@@ -57,8 +63,10 @@ def middle(length: int) -> Bool[np.ndarray, "T J"]:
 
 @dataclass(frozen=True, eq=False)
 class Filled:
-    """What was made of the gap of one length: (samples, motions, frames, joints, 3), and by
-    interpolation."""
+    """What was made of the gap of one length.
+
+    (samples, motions, frames, joints, 3), and by interpolation.
+    """
 
     known: Bool[np.ndarray, "T J"]
     truth: Float[np.ndarray, "N T J 3"]
@@ -84,14 +92,18 @@ def filled(
 
 
 def figures_of(one: Filled) -> list[Figure]:
-    """Errors (metres to centimetres), spectra and seams of one gap, each with its interval over
-    motions."""
+    """Errors, spectra and seams of one gap, each with its interval over motions.
+
+    Errors in metres become centimetres.
+    """
 
     def error(made: np.ndarray) -> np.ndarray:
         return 100 * unknown_error(made, one.truth, one.known)
 
     single = np.stack([error(sample) for sample in one.made])
-    mean, straight, arcs = error(one.made.mean(0)), error(one.lines), error(one.arcs)
+    mean = error(one.made.mean(0))
+    straight = error(one.lines)
+    arcs = error(one.arcs)
     rival, rival_rows = min((("lines", straight), ("arcs", arcs)), key=lambda pair: pair[1].mean())
     own, straight_seam, masked_seam = (
         seam_jump(x, one.known) for x in (one.truth, one.lines, one.masked)
@@ -126,8 +138,10 @@ def within(one: Filled, positions: np.ndarray) -> np.ndarray:
 
 
 def sliding(one: Filled) -> list[Figure]:
-    """How fast planted toes slide within the gap, m/s, in one sample of each motion; clips without
-    any are left out."""
+    """How fast planted toes slide within the gap, m/s, in one sample of each motion.
+
+    Clips without any are left out.
+    """
     made = {"": one.made[0], "_masked": one.masked, "_lines": one.lines, "_data": one.truth}
     return [
         figure_of(f"skating{name}_mps", "m/s", np.nanmean, skating(x, np.zeros((*x.shape[:2], 3))))
@@ -136,8 +150,9 @@ def sliding(one: Filled) -> list[Figure]:
 
 
 def spectra(one: Filled, rival: str) -> list[Figure]:
-    """NPSS of single samples (their mean), of interpolation, and their ratio; over the joints as
-    they are.
+    """NPSS of single samples (their mean), of interpolation, and their ratio.
+
+    Over the joints as they are.
 
     There the mean place outweighs all movement, so the ratio stands once more for velocities within
     the gap.
@@ -154,8 +169,9 @@ def spectra(one: Filled, rival: str) -> list[Figure]:
 
 
 def parts(arrays: Sequence[np.ndarray]) -> tuple[tuple[np.ndarray, np.ndarray], np.ndarray]:
-    """Of the truth, interpolation and samples: NPSS' sums over each motion, (interpolation's,
-    samples' mean); weights.
+    """NPSS' sums over each motion, and their weights.
+
+    Of interpolation and of the samples (their mean), each against the truth.
 
     Sums can be drawn again a thousand times, spectra could not.
     """

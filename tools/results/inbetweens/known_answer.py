@@ -1,5 +1,6 @@
-"""Ways of filling in, judged where the right answer is a formula: windows of walking under a fitted
-mixture.
+"""Ways of filling in, judged where the right answer is a formula.
+
+Windows of walking under a fitted mixture.
 
 The denoiser is exact, so that the method alone errs. Each question is another window; the mixture
 is fitted once.
@@ -31,15 +32,19 @@ class KnownSize:
     clips: int = 40
 
 
-FULL, QUICK = KnownSize(), KnownSize(questions=2, samples=20, clips=6)
+FULL = KnownSize()
+QUICK = KnownSize(questions=2, samples=20, clips=6)
 ERRORS = ("mean", "spread", "share")
 
 
 def known_answer_records(size: KnownSize, command: str) -> list[dict]:
-    """Of every hole and way the errors of mean, spread and shares, with intervals over
-    questions."""
+    """Errors of mean, spread and shares for every hole and way.
+
+    With intervals over questions.
+    """
     walked = fit_walks(dataset(size.clips, seconds=6.0, seed=3), FRAMES, generator=_seeded(0))
-    windows, schedule = sample_mixture(walked.truth, size.questions, _seeded(1)), cosine_schedule(S)
+    windows = sample_mixture(walked.truth, size.questions, _seeded(1))
+    schedule = cosine_schedule(S)
     seeds = {"data": 3, "questions": size.questions, "samples": size.samples, "clips": size.clips}
     asked = [(name, known, False) for name, known in holes(FRAMES).items()]
     asked += [(f"past-{name}", known, True) for name, known in holes_in_the_past(FRAMES).items()]

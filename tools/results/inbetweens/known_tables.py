@@ -1,5 +1,7 @@
-"""Two sections of docs/RESULTS.md: filling in where the right answer is a formula, and both papers'
-repairs."""
+"""Two sections of docs/RESULTS.md.
+
+Filling in where the right answer is a formula, and both papers' repairs.
+"""
 
 from ..page.markdown import cell, table
 
@@ -11,8 +13,10 @@ KINDS = {
 
 
 def _part(records: dict[str, dict], prefix: str) -> tuple[list[str], list[str], dict]:
-    """What stands after the prefix: (columns, rows), each in the order of the records, and what
-    they were made from."""
+    """What stands after the prefix.
+
+    (columns, rows), each in the order of the records, and what they were made from.
+    """
     found = [name for name in records if name.startswith(prefix)]
     names = [name.removeprefix(prefix) for name in found]
     columns = list(dict.fromkeys(name.split(".")[0] for name in names))
@@ -27,12 +31,12 @@ def known_answers(records: dict[str, dict]) -> str:
     if not holes:
         return ""
     text = (
-        "## A known answer (MoFusion 4.4, MoDiff III-E)\n\nFive Gaussians fitted to windows of walking: how far each "
-        "way of filling in is from their true conditional, "
-        f"{seeds['questions']} windows, {seeds['samples']} samples each. "
-        "The denoiser is exact: the method alone errs. `masked.50.x5`: 50 steps, each made five times; `blended` and "
-        "`guided`: as in `inbetweening`; `gibbs`: there-and-back whose way back sees what is known; `exact`: draws "
-        "from the wanted, which err by counting only.\n"
+        "## A known answer (MoFusion 4.4, MoDiff III-E)\n\nFive Gaussians fitted to windows of "
+        "walking: how far each way of filling in is from their true conditional, "
+        f"{seeds['questions']} windows, {seeds['samples']} samples each. The denoiser is exact: "
+        "the method alone errs. `masked.50.x5`: 50 steps, each made five times; `blended` and "
+        "`guided`: as in `inbetweening`; `gibbs`: there-and-back whose way back sees what is "
+        "known; `exact`: draws from the wanted, which err by counting only.\n"
     )
     for kind, words in KINDS.items():
         rows = [
@@ -62,10 +66,12 @@ def both(records: dict[str, dict]) -> str:
     ]
     head = ["way", *(f"{fault}, {kind}" for fault, kind in columns)]
     return (
-        "## Both papers' repairs (MoDiff III-E beside MoFusion 4.4)\n\nThe same holes in ten past frames, filled by a "
-        "walker there and back (as in the paper; `_masked`: what is known held on the way back) and by the "
-        "unconditional network under a mask (as in the paper; `_blended`: by `editing.inbetween.inbetween`). Both know where the "
-        "walk goes, then and for ten frames more: the one by its control, the other by the pelvis itself, which is not "
-        f"scored. Errors in cm of what was missing, of the mean of {seeds['samples']} repairs and of one; "
-        f"{seeds['clips']} unseen pasts.\n\n" + table(head, rows)
+        "## Both papers' repairs (MoDiff III-E beside MoFusion 4.4)\n\nThe same holes in ten past "
+        "frames, filled by a walker there and back (as in the paper; `_masked`: what is known "
+        "held on the way back) and by the unconditional network under a mask (as in the paper; "
+        "`_blended`: by `editing.inbetween.inbetween`). Both know where the walk goes, then and "
+        "for ten frames more: the one by its control, the other by the pelvis itself, which is "
+        "not scored. Errors in cm of what was missing, "
+        f"of the mean of {seeds['samples']} repairs and of one; {seeds['clips']} unseen pasts.\n\n"
+        + table(head, rows)
     )

@@ -1,5 +1,7 @@
-"""The measured figures on the cards of the shipped weights: whoever opens a card sees how good they
-are."""
+"""The measured figures on the cards of the shipped weights.
+
+Whoever opens a card sees how good they are.
+"""
 
 from dataclasses import replace
 from pathlib import Path
@@ -8,8 +10,18 @@ from motiondiff_edu.pretrained import checkpoints
 
 from ..walks.parts import kept_records, weights_digest
 
-SHOWN = ("bone_rmse_cm", "adherence_mps", "adherence_excess_mps", "drift_ratio", "skating_mps", "diversity_over_data",
-         "bas_share", "speed_over_data", "beats_per_beat_over_data", "multimodality_over_data")  # fmt: skip
+SHOWN = (
+    "bone_rmse_cm",
+    "adherence_mps",
+    "adherence_excess_mps",
+    "drift_ratio",
+    "skating_mps",
+    "diversity_over_data",
+    "bas_share",
+    "speed_over_data",
+    "beats_per_beat_over_data",
+    "multimodality_over_data",
+)
 
 
 def metrics(folder: Path, name: str, digest: str) -> dict[str, float]:
@@ -24,10 +36,13 @@ def metrics(folder: Path, name: str, digest: str) -> dict[str, float]:
 
 
 def add_metrics(folder: Path) -> None:
-    """Write the figures of `folder` into the cards; a file whose card says so already is left
-    alone."""
+    """Write the figures of `folder` into the cards.
+
+    A file whose card says so already is left alone.
+    """
     for path in set(checkpoints.available().values()):
-        figure, found = checkpoints.load(path), metrics(folder, path.stem, weights_digest(path))
+        figure = checkpoints.load(path)
+        found = metrics(folder, path.stem, weights_digest(path))
         if figure.card.get("metrics", {}) != found:
             checkpoints.save(
                 replace(figure, card=figure.card | {"metrics": found}),

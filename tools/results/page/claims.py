@@ -1,5 +1,6 @@
-"""The paper's claims, each judged by a figure measured here: what agrees, what does not. No verdict
-is written by hand.
+"""The paper's claims, each judged by a figure measured here: what agrees, what does not.
+
+No verdict is written by hand.
 
 An interval that lies wholly on the right side of the limit agrees, one wholly on the wrong side
 does not, one across it leaves the claim undecided. A limit may itself be a measured figure: then
@@ -10,13 +11,20 @@ from dataclasses import dataclass
 
 from .markdown import cell, number, table
 
-AGREES, DIFFERS, OPEN, MISSING = "agrees", "does not agree", "undecided", "not measured yet"
+AGREES = "agrees"
+DIFFERS = "does not agree"
+OPEN = "undecided"
+MISSING = "not measured yet"
 TEXT = """## The paper's claims, tried
 
-Each claim of MoFusion that a figure of this course can judge. The verdict is computed: **agrees** when the whole 95 %
-interval lies on the right side of the limit, **does not agree** when on the wrong side, **undecided** across it.
-Data, sizes and length of training are ours: a verdict is of the idea at this scale, not of the paper's own figures.
-Intervals are over songs: another training seed may change more. Less repetition than the data's, or more spread, is
+Each claim of MoFusion that a figure of this course can judge. The verdict is computed: \
+**agrees** when the whole 95 %
+interval lies on the right side of the limit, **does not agree** when on the wrong side, \
+**undecided** across it.
+Data, sizes and length of training are ours: a verdict is of the idea at this scale, \
+not of the paper's own figures.
+Intervals are over songs: another training seed may change more. Less repetition than the data's, \
+or more spread, is
 what a claim asks for; it is not yet a better dance.
 
 """
@@ -24,8 +32,10 @@ what a claim asks for; it is not yet a better dance.
 
 @dataclass(frozen=True)
 class Claim:
-    """What the paper says, the record that judges it, and the limit: a number, or a share of
-    another record."""
+    """What the paper says, the record that judges it, and the limit.
+
+    A number, or a share of another record.
+    """
 
     words: str
     where: str
@@ -47,10 +57,8 @@ class Claim:
         needed = [records.get(name) for name in (self.figure, self.of) if name]
         if any(one is None or one["low"] is None for one in needed):
             return MISSING
-        (low, high), (least, most) = (
-            (needed[0][side] for side in ("low", "high")),
-            (self.limit, self.limit),
-        )
+        low, high = (needed[0][side] for side in ("low", "high"))
+        least, most = (self.limit, self.limit)
         if self.of:
             least, most = (self.limit * needed[1][side] for side in ("low", "high"))
         agrees, differs = (
@@ -63,46 +71,150 @@ KNOWN = {
     "limit": 0.7,
     "of": "dancer.bas_share",
 }  # seven tenths of the share it has with music like that of training
-MEL, CLEAN = "dance-budget.x0.bas_share", "dance-budget.no-feet.bas_share"
+MEL = "dance-budget.x0.bas_share"
+CLEAN = "dance-budget.no-feet.bas_share"
 WEIGHTED = "dance-budget.alpha_bar"
 CLAIMS = (
-    Claim("dances rarely repeat themselves: no more than the data", "1, 4.1", "dancer.repeat", -1,
-          of="dancer.repeat_data"),
-    Claim("dances repeat themselves less than those of a deterministic method", "4.1", "dancer.repeat", -1,
-          of="regression.repeat"),
-    Claim("raw Mel is enough: MFCC and given beats gain a tenth of the data's alignment at most", "2, 3.3",
-          "dance-budget.mfcc.bas_share_minus_x0", -1, 0.1, beside=(MEL, "dance-budget.mfcc.bas_share")),
-    Claim("a linear layer is enough for the music: it loses a tenth of the data's alignment at most", "3.3",
-          "dance-budget.linear-music.bas_share_minus_x0", 1, -0.1, beside=(MEL, "dance-budget.linear-music.bas_share")),
-    Claim("a metre that was never heard is danced to", "1", "dancer.unheard.metre5.bas_share", 1, **KNOWN),
-    Claim("a tempo that was never heard is danced to", "1", "dancer.unheard.tempo70.bas_share", 1, **KNOWN),
-    Claim("instruments that were never heard are danced to", "1", "dancer.unheard.mallets.bas_share", 1, **KNOWN),
-    Claim("the U-Net is light: a transformer of equal size dances no faster", "1",
-          "dance-time.transformer.dance_over_x0", 1, beside=("dance-time.transformer.pass_over_x0",)),
-    Claim("the U-Net is light: a transformer of equal size trains no faster", "1",
-          "dance-time.transformer.step_over_x0", 1),
-    Claim("lightness costs no quality: a transformer gains a tenth of the data's alignment at most", "1",
-          "dance-budget.transformer.bas_share_minus_x0", -1, 0.1,
-          beside=("dance-budget.transformer.bone_gain_over_x0",)),
-    Claim("kinematic losses help: bones err less (shipped weights)", "3.2", "dancer.bone_gain", 1, 0.0),
-    Claim("kinematic losses help: bones err less (trainings of equal length)", "3.2",
-          f"{WEIGHTED}.bone_gain_over_x0", 1, 0.0, beside=(f"{WEIGHTED}.bas_share_minus_x0",)),
-    Claim("their weight over time helps: bones err less than with all steps alike", "3.2",
-          f"{WEIGHTED}.bone_gain_over_constant", 1, 0.0),
-    Claim("their weight over time helps: more on the beat than with all steps alike", "3.2",
-          f"{WEIGHTED}.bas_share_minus_constant", 1, 0.0),
-    Claim("the noise, unweighted, is a good target: seven tenths of the alignment of x0", "3.1",
-          "dance-budget.eps.bas_share", 1, 0.7, CLEAN, ("dance-budget.eps-weighted.bas_share",)),
-    Claim("dances are on the beat at least as well as the data", "Table 1", "dancer.bas", 1, of="dancer.bas_data"),
-    Claim("one piece has many dances: as unlike one another as the data's", "Table 1",
-          "dancer.multimodality_over_data", 1, beside=("regression.multimodality",)),
-    Claim("attention falls on the beats, more than on those of other songs", "Fig. 4",
-          "attention.beat_mass_over_shuffled", 1, beside=("attention.beat_mass_over_shifted",)),
-    Claim("attention falls on the beats at the bottom of the U-Net", "Fig. 4",
-          "attention.bottom.beat_mass_over_shuffled", 1),
-    Claim("the bottom of the U-Net reads less of the music at a time than the top", "Fig. 4",
-          "attention.bottom_over_top_seconds", -1),
-)  # fmt: skip
+    Claim(
+        "dances rarely repeat themselves: no more than the data",
+        "1, 4.1",
+        "dancer.repeat",
+        -1,
+        of="dancer.repeat_data",
+    ),
+    Claim(
+        "dances repeat themselves less than those of a deterministic method",
+        "4.1",
+        "dancer.repeat",
+        -1,
+        of="regression.repeat",
+    ),
+    Claim(
+        "raw Mel is enough: MFCC and given beats gain a tenth of the data's alignment at most",
+        "2, 3.3",
+        "dance-budget.mfcc.bas_share_minus_x0",
+        -1,
+        0.1,
+        beside=(MEL, "dance-budget.mfcc.bas_share"),
+    ),
+    Claim(
+        "a linear layer is enough for the music: it loses a tenth of the data's alignment at most",
+        "3.3",
+        "dance-budget.linear-music.bas_share_minus_x0",
+        1,
+        -0.1,
+        beside=(MEL, "dance-budget.linear-music.bas_share"),
+    ),
+    Claim(
+        "a metre that was never heard is danced to",
+        "1",
+        "dancer.unheard.metre5.bas_share",
+        1,
+        **KNOWN,
+    ),
+    Claim(
+        "a tempo that was never heard is danced to",
+        "1",
+        "dancer.unheard.tempo70.bas_share",
+        1,
+        **KNOWN,
+    ),
+    Claim(
+        "instruments that were never heard are danced to",
+        "1",
+        "dancer.unheard.mallets.bas_share",
+        1,
+        **KNOWN,
+    ),
+    Claim(
+        "the U-Net is light: a transformer of equal size dances no faster",
+        "1",
+        "dance-time.transformer.dance_over_x0",
+        1,
+        beside=("dance-time.transformer.pass_over_x0",),
+    ),
+    Claim(
+        "the U-Net is light: a transformer of equal size trains no faster",
+        "1",
+        "dance-time.transformer.step_over_x0",
+        1,
+    ),
+    Claim(
+        "lightness costs no quality: a transformer gains a tenth of the data's alignment at most",
+        "1",
+        "dance-budget.transformer.bas_share_minus_x0",
+        -1,
+        0.1,
+        beside=("dance-budget.transformer.bone_gain_over_x0",),
+    ),
+    Claim(
+        "kinematic losses help: bones err less (shipped weights)", "3.2", "dancer.bone_gain", 1, 0.0
+    ),
+    Claim(
+        "kinematic losses help: bones err less (trainings of equal length)",
+        "3.2",
+        f"{WEIGHTED}.bone_gain_over_x0",
+        1,
+        0.0,
+        beside=(f"{WEIGHTED}.bas_share_minus_x0",),
+    ),
+    Claim(
+        "their weight over time helps: bones err less than with all steps alike",
+        "3.2",
+        f"{WEIGHTED}.bone_gain_over_constant",
+        1,
+        0.0,
+    ),
+    Claim(
+        "their weight over time helps: more on the beat than with all steps alike",
+        "3.2",
+        f"{WEIGHTED}.bas_share_minus_constant",
+        1,
+        0.0,
+    ),
+    Claim(
+        "the noise, unweighted, is a good target: seven tenths of the alignment of x0",
+        "3.1",
+        "dance-budget.eps.bas_share",
+        1,
+        0.7,
+        CLEAN,
+        ("dance-budget.eps-weighted.bas_share",),
+    ),
+    Claim(
+        "dances are on the beat at least as well as the data",
+        "Table 1",
+        "dancer.bas",
+        1,
+        of="dancer.bas_data",
+    ),
+    Claim(
+        "one piece has many dances: as unlike one another as the data's",
+        "Table 1",
+        "dancer.multimodality_over_data",
+        1,
+        beside=("regression.multimodality",),
+    ),
+    Claim(
+        "attention falls on the beats, more than on those of other songs",
+        "Fig. 4",
+        "attention.beat_mass_over_shuffled",
+        1,
+        beside=("attention.beat_mass_over_shifted",),
+    ),
+    Claim(
+        "attention falls on the beats at the bottom of the U-Net",
+        "Fig. 4",
+        "attention.bottom.beat_mass_over_shuffled",
+        1,
+    ),
+    Claim(
+        "the bottom of the U-Net reads less of the music at a time than the top",
+        "Fig. 4",
+        "attention.bottom_over_top_seconds",
+        -1,
+    ),
+)
 
 
 def claims(records: dict[str, dict]) -> str:

@@ -1,5 +1,7 @@
-"""docs/RESULTS.md, made from the records in docs/results/*.json and benchmarks/results/*.json;
-nothing is typed in."""
+"""docs/RESULTS.md, made from the records in docs/results/*.json and benchmarks/results/*.json.
+
+Nothing is typed in.
+"""
 
 import json
 from pathlib import Path
@@ -9,6 +11,7 @@ from motiondiff_edu._files import replacing
 from ..dances.tables import choices, table_1
 from ..inbetweens import known_tables
 from ..repairs import tables
+from ..walks import ladder_page
 from ..walks.budget import VARIANTS
 from ..walks.steps_table import PAPER_TABLE
 from .bars import BARS, Bar
@@ -19,11 +22,15 @@ from .words import GOALS
 
 HEAD = """## How to read this page
 
-Made by `make results` (and `make bench`) from the records in `docs/results` and `benchmarks/results`. Do not edit.
+Made by `make results` (and `make bench`) from the records in `docs/results` and \
+`benchmarks/results`. Do not edit.
 
-The course's data are synthetic, and neither paper's code nor its prepared data is public: figures stand beside the
-paper's for orientation, not as a reproduction. **[low, high]** is a 95 % interval (bootstrap) over clips; over pasts
-for diversity; over repeats for times. It is that of one training run: it does not hold what another training seed
+The course's data are synthetic, and neither paper's code nor its prepared data is public: \
+figures stand beside the
+paper's for orientation, not as a reproduction. **[low, \
+high]** is a 95 % interval (bootstrap) over clips; over pasts
+for diversity; over repeats for times. It is that of one training run: \
+it does not hold what another training seed
 would change.
 """
 
@@ -37,14 +44,17 @@ Made by `make results` and `make bench`. Do not edit.
 
 
 def read_records(*folders: Path) -> dict[str, dict]:
-    """All records by name; a name that stands in two files is an error, for then one of them is
-    old."""
+    """All records by name.
+
+    A name that stands in two files is an error, for then one of them is old.
+    """
     found, where = {}, {}
     for path in sorted(path for folder in folders for path in folder.glob("*.json")):
         for one in json.loads(path.read_text()):
             if one["name"] in found:
                 raise ValueError(
-                    f"{one['name']} stands in {where[one['name']]} and in {path}: delete the older file"
+                    f"{one['name']} stands in {where[one['name']]} and in {path}: "
+                    "delete the older file"
                 )
             found[one["name"]], where[one["name"]] = one, path
     return found
@@ -79,13 +89,16 @@ def walkers(records: dict[str, dict]) -> str:
         return "## The walkers\n\nNot measured yet.\n"
     seeds = {key: said for n in names for key, said in records[n]["seeds"].items()}
     return (
-        f"## The walkers\n\n{seeds.get('clips')} unseen pasts and controls of {seeds.get('seconds')} s, raw output, "
-        "DDPM with all steps (`ddim10`: ten DDIM steps), control held over the window (`lookahead`: the window sees "
-        "the control to come). `_data` rows judge the recorded motion under the same control. `diversity`: "
-        f"{seeds.get('each')} rollouts for each of {seeds.get('pasts')} pasts, from the end of the first second on. "
-        f"Seeds: pasts and controls {_seed(names, records, 'walk')}, those of the diversity "
-        f"{_seed(names, records, 'diversity')}, rollouts {seeds.get('rollouts')}."
-        "\n\n" + table(["figure", *columns], rows) + _beside_the_paper(records)
+        "## The walkers\n\n"
+        f"{seeds.get('clips')} unseen pasts and controls of {seeds.get('seconds')} s, raw output, "
+        "DDPM with all steps (`ddim10`: ten DDIM steps), control held over the window "
+        "(`lookahead`: the window sees the control to come). `_data` rows judge the recorded "
+        f"motion under the same control. `diversity`: {seeds.get('each')} rollouts for each of "
+        f"{seeds.get('pasts')} pasts, from the end of the first second on. Seeds: pasts and "
+        f"controls {_seed(names, records, 'walk')}, those of the diversity "
+        f"{_seed(names, records, 'diversity')}, rollouts {seeds.get('rollouts')}.\n\n"
+        + table(["figure", *columns], rows)
+        + _beside_the_paper(records)
     )
 
 
@@ -104,9 +117,10 @@ def _beside_the_paper(records: dict[str, dict]) -> str:
     if one is None or one["paper"] is None:
         return ""
     return (
-        f"\nMoDiff prints a bone RMSE of {number(one['paper'])} cm (Table I, without dropout); `walker-eps`, which has "
-        f"the paper's target, has {number(one['value'])} cm. Data, skeleton and sizes of the networks differ: only the "
-        "order of size can be compared. Of adherence, drift and diversity the paper has no figures.\n"
+        f"\nMoDiff prints a bone RMSE of {number(one['paper'])} cm (Table I, without dropout); "
+        f"`walker-eps`, which has the paper's target, has {number(one['value'])} cm. Data, "
+        "skeleton and sizes of the networks differ: only the order of size can be compared. "
+        "Of adherence, drift and diversity the paper has no figures.\n"
     )
 
 
@@ -129,13 +143,17 @@ def footsteps(records: dict[str, dict], folder: Path) -> str:
                 [f"**{who}**{note}", *(f"{number(c['value'])} {span(c)}" for c in cells), bones]
             )
     text = (
-        "## Footsteps: MoDiff's Table I and Fig. 3\n\nOur clips are others, and more of them: compare rows within "
-        "a block, never across. Notebook 08 shows why the paper's count follows noise; the robust count closes gaps of "
-        "one frame and drops steps shorter than 0.1 s.\n\n"
+        "## Footsteps: MoDiff's Table I and Fig. 3\n\nOur clips are others, and more of them: "
+        "compare rows within a block, never across. Notebook 08 shows why the paper's count "
+        "follows noise; the robust count closes gaps of one frame and "
+        "drops steps shorter than 0.1 s.\n\n"
     )
     picture = ""
     if (folder / "footsteps.png").exists():
-        picture = "\n![Number of footsteps against the velocity tolerance, data and walkers](results/footsteps.png)\n"
+        picture = (
+            "\n![Number of footsteps against the velocity tolerance, "
+            "data and walkers](results/footsteps.png)\n"
+        )
     return text + table(head, rows) + picture
 
 
@@ -156,11 +174,12 @@ def budget(records: dict[str, dict]) -> str:
     ]
     seeds = next(iter(mine.values()))["seeds"]
     text = (
-        f"## What each choice is worth\n\nSmall walkers trained for {seeds['cpu_seconds']:g} CPU-seconds each, one "
-        "thread, with half the shipped walkers' batch and fewer clips; each row differs from the row named beside it "
-        "in one choice. MoDiff (III-A) says that predicting more than one pose helps: see T_p. DDPM with S = 100, "
-        f"held control, one pose kept of every window, {seeds['clips']} unseen controls. One training seed each: small "
-        "differences mean nothing.\n\n"
+        f"## What each choice is worth\n\nSmall walkers trained for {seeds['cpu_seconds']:g} "
+        "CPU-seconds each, one thread, with half the shipped walkers' batch and fewer clips; each "
+        "row differs from the row named beside it in one choice. MoDiff (III-A) says that "
+        "predicting more than one pose helps: see T_p. DDPM with S = 100, held control, one pose "
+        f"kept of every window, {seeds['clips']} unseen controls. One training seed each: "
+        "small differences mean nothing.\n\n"
     )
     return text + table(["the choice", "compare with", *(f"`{kind}`" for kind in kinds)], rows)
 
@@ -177,10 +196,11 @@ def attention(records: dict[str, dict], folder: Path) -> str:
         for place, words in places.items()
     ]
     text = (
-        "## Attention over the beats: MoFusion's Fig. 4\n\nHow much of a level's attention lies within 0.1 s of a "
-        "beat, over the same near the beats of other songs (`shuffled`) and near its own beats moved together "
-        "(`shifted`): 1 is chance. `seconds_read`: how much music a frame reads. A level is named by its frames a "
-        "second; heads averaged, three diffusion steps. Seven levels are seven chances: one outlier is no finding.\n\n"
+        "## Attention over the beats: MoFusion's Fig. 4\n\nHow much of a level's attention lies "
+        "within 0.1 s of a beat, over the same near the beats of other songs (`shuffled`) and near "
+        "its own beats moved together (`shifted`): 1 is chance. `seconds_read`: how much music a "
+        "frame reads. A level is named by its frames a second; heads averaged, "
+        "three diffusion steps. Seven levels are seven chances: one outlier is no finding.\n\n"
     )
     if "attention.beat_mass" not in records:
         return text + "Not measured yet.\n"
@@ -194,7 +214,7 @@ def attention(records: dict[str, dict], folder: Path) -> str:
 
 def others(records: dict[str, dict]) -> str:
     """Everything that stands in no table above, with what makes it."""
-    shown = ("walker", "footsteps", "budget.", "dance-budget.", "dance-time.", "attention.")
+    shown = ("walker", "footsteps", "ladder.", "budget.", "dance-budget.", "dance-time.", "attention.")
     shown += ("mend", "known-answer.", "inbetween.")
     rest = [one for name, one in sorted(records.items()) if not name.startswith(shown)]
     rows = [
@@ -208,8 +228,10 @@ def others(records: dict[str, dict]) -> str:
 def render(docs: Path, benchmarks: Path = Path("benchmarks/results")) -> None:
     """Write RESULTS.md and RESULTS_ALL.md beside the records, each to a temporary name first."""
     records = read_records(docs / "results", benchmarks)
+    ladder_page.draw(records, docs / "results")
     parts = [HEAD, bars(records), walkers(records), footsteps(records, docs / "results")]
     parts += [
+        ladder_page.section(records, docs / "results"),
         budget(records),
         table_1(records),
         folded(choices(records), "What training and dancing cost in time"),

@@ -1,5 +1,6 @@
-"""Both papers' repairs on the same holes: there-and-back by a walker (III-E), masking by the
-unconditional net (4.4).
+"""Both papers' repairs on the same holes.
+
+There-and-back by a walker (III-E), masking by the unconditional net (4.4).
 
 Both see what is left of ten past frames, and where the walk goes during them and the ten after. The
 walker has that as its control, the other network as the pelvis' own path (height and sway included)
@@ -34,8 +35,10 @@ WINDOW, CLIPS = 20, 20  # frames that the masking network sees; pasts that are r
 def masked_window(
     trials: Trials, known: Bool[np.ndarray, "N T_h J"]
 ) -> tuple[Float[np.ndarray, "N W J 3"], Bool[np.ndarray, "N W J"]]:
-    """The same pasts in the world, what is known of them, and the pelvis' path for as long as a
-    walker has control."""
+    """The same pasts in the world, what is known of them, and the pelvis' path.
+
+    The path is as long as a walker has control.
+    """
     T_h = known.shape[1]
     poses = np.concatenate([trials.past, trials.truth], 1)[:, :WINDOW]
     world = np.stack(
@@ -57,9 +60,12 @@ def masked(
     samples: int,
     **how,
 ) -> Float[np.ndarray, "samples N W J 3"]:
-    """So many repairs of each of `masked_window`'s pasts by masked sampling; `how`: options of
-    `inbetween`."""
-    draw, holes = torch.Generator().manual_seed(0), np.where(known[..., None], world, np.nan)
+    """So many repairs of each of `masked_window`'s pasts by masked sampling.
+
+    `how`: options of `inbetween`.
+    """
+    draw = torch.Generator().manual_seed(0)
+    holes = np.where(known[..., None], world, np.nan)
     options = {"samples": samples, "steps": 25, "generator": draw, **how}
     made = [inbetween(dancer, one, seen, **options) for one, seen in zip(holes, known, strict=True)]
     return np.stack(made, 1)
@@ -72,10 +78,8 @@ def both_figures(walker: Walker, dancer: Dancer, trials: Trials, size: RepairSiz
     for fault, break_it in FAULTS.items():
         broken = break_it(few.past)
         world, known = masked_window(few, broken.known)
-        T_h, judged = (
-            few.past.shape[1],
-            replace(broken, known=broken.known | (np.arange(J) == HIPS)),
-        )
+        T_h = few.past.shape[1]
+        judged = replace(broken, known=broken.known | (np.arange(J) == HIPS))
         ways = {
             "there_and_back": (repaired(walker, few, broken, size, walked_back), few.past),
             "there_and_back_masked": (repaired(walker, few, broken, size, masked_back), few.past),

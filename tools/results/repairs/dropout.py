@@ -1,5 +1,6 @@
-"""What diffusion dropout is worth when part of the past is missing: pairs of walkers, and a map
-over rates.
+"""What diffusion dropout is worth when part of the past is missing.
+
+Pairs of walkers, and a map over rates.
 
 The pairs are shipped: the same network, data and steps, with and without, three training seeds
 each.
@@ -119,7 +120,8 @@ class MapBudget:
     save_every: int = 200
 
 
-MAP_FULL, MAP_QUICK = MapBudget(), MapBudget(steps=3, clips=2, save_every=2)
+MAP_FULL = MapBudget()
+MAP_QUICK = MapBudget(steps=3, clips=2, save_every=2)
 
 
 def map_recipe(name: str, budget: MapBudget) -> Recipe:
@@ -127,7 +129,11 @@ def map_recipe(name: str, budget: MapBudget) -> Recipe:
     rate = RATES[name]
     sizes = {"steps": budget.steps, "clips": budget.clips, "save_every": budget.save_every}
     return replace(
-        MEND_PLAIN, name=f"mend-map.{name}", dropout=(rate,) if rate else (), calm=0.0, **sizes
+        MEND_PLAIN,
+        name=f"mend-map.{name}",
+        dropout=(rate,) if rate else (),
+        dropout_start=0.0,
+        **sizes,
     )
 
 
@@ -139,8 +145,10 @@ def _clips(budget: MapBudget):
 def map_records(
     name: str, budget: MapBudget, trials: Trials, runs: Path, command: str
 ) -> list[dict]:
-    """Train (or continue) the walker of one rate, and measure it at every share of joints
-    missing."""
+    """Train (or continue) the walker of one rate.
+
+    It is measured at every share of joints missing.
+    """
     runs.mkdir(parents=True, exist_ok=True)
     recipe = map_recipe(name, budget)
     walker = train(recipe, runs / f"{name}.safetensors", _clips(budget))

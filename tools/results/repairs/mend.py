@@ -1,5 +1,7 @@
-"""The part `mend`: what diffusion dropout is worth, repairs beside what needs no walker, and
-MoDiff's Table II."""
+"""The part `mend`.
+
+What diffusion dropout is worth, repairs beside what needs no walker, and MoDiff's Table II.
+"""
 
 from motiondiff_edu.metrics.footsteps import PAPER, ROBUST
 from motiondiff_edu.pretrained import checkpoints

@@ -58,7 +58,7 @@ def repaired(
     control = torch.from_numpy(trials.control[:, : 2 * past.shape[1]]).float()
     start = None if guess is None else torch.from_numpy(guess).float().flatten(2)
     options = {"rounds": size.rounds, "steps": size.steps, "way_back": way_back, "guess": start}
-    options["settle"] = with_bones if bones else None
+    options["correct"] = with_bones if bones else None
     made = [
         repair(walker, past, known, control, generator=torch.Generator().manual_seed(k), **options)
         for k in range(size.samples)
@@ -79,8 +79,9 @@ def root_nanmean(squares: np.ndarray) -> float:
 
 
 def repair_figures(fault: str, walker: Walker, trials: Trials, size: RepairSize) -> list[Figure]:
-    """The mean of the repairs, one of them, the paper's repairs, and the rivals' guesses, all in
-    cm; and over rivals.
+    """The mean of the repairs, one of them, the paper's and the rivals' guesses, all in cm.
+
+    Also the mean's error over that of each rival.
 
     Ours begin with what ridge regression guesses, hold what is known on the way back, too, and keep
     bones; the paper's begin with the mean pose and do neither (the mean is of fewer). Intervals are
@@ -118,7 +119,8 @@ def repaired_windows(
 
     `re`: our way as it comes from the network; `re_bones`: bones kept; `re_paper`: the paper's way.
     """
-    broken, once = without(trials.past, SHARE), RepairSize(1, size.rounds, size.steps)
+    broken = without(trials.past, SHARE)
+    once = RepairSize(1, size.rounds, size.steps)
     guess = rivals(broken, trials)["ridge"]
     ours = {
         name: (masked_back, guess, bones) for name, bones in (("re", False), ("re_bones", True))
@@ -138,8 +140,9 @@ def table_2(
     who: str = "",
     keep: int = 1,
 ) -> tuple[list[Figure], list[np.ndarray]]:
-    """MoDiff's Table II: bone errors with 30 % of the past's joints missing, over those with a
-    complete past.
+    """MoDiff's Table II.
+
+    Bone errors with 30 % of the past's joints missing, over those with a complete past.
 
     Of `repaired_windows`, and of what follows the broken past (`ge`), which is returned as well,
     one set of walks for each walker. `who` names them; they keep `keep` poses of a window.
@@ -165,8 +168,10 @@ def table_2(
 
 
 def footsteps(name: str, walks: list[np.ndarray], trials: Trials, rule) -> Figure:
-    """Number of footsteps of walks (one set for each training) over that of the recorded motion, at
-    v95 of each."""
+    """Number of footsteps of walks over that of the recorded motion, at v95 of each.
+
+    One set of walks for each training.
+    """
     tables = np.stack([steps_table.tables(poses, trials.asked, rule) for poses in walks])
     data = np.broadcast_to(steps_table.tables(trials.truth, trials.asked, rule), tables.shape)
 

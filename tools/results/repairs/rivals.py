@@ -1,5 +1,7 @@
-"""What fills holes without a walker: the mean pose, ridge regression from what is visible, straight
-lines."""
+"""What fills holes without a walker.
+
+The mean pose, ridge regression from what is visible, straight lines.
+"""
 
 from functools import cache
 

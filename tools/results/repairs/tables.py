@@ -1,5 +1,7 @@
-"""Diffusion dropout, repairs and in-betweens: sections of docs/RESULTS.md, and their pictures, from
-the records."""
+"""Diffusion dropout, repairs and in-betweens.
+
+Sections of docs/RESULTS.md, and their pictures, from the records.
+"""
 
 from pathlib import Path
 
@@ -57,14 +59,17 @@ def dropout(records: dict[str, dict], folder: Path) -> str:
         for words in ("complete", "missing")
         for what in FIGURES
     ]
-    gains = [[f"`{n}`", cell(records.get(f"mend.{n}"))] for n in
-             ("dropout_gain_bone_cm", "dropout_gain_adherence_mps", "dropout_cost_complete")]  # fmt: skip
+    gains = [
+        [f"`{n}`", cell(records.get(f"mend.{n}"))]
+        for n in ("dropout_gain_bone_cm", "dropout_gain_adherence_mps", "dropout_cost_complete")
+    ]
     text = (
-        "## Diffusion dropout (MoDiff III-D)\n\nTwo kinds of small walkers: the same network, data and steps, without "
-        f"and with diffusion dropout, {seeds['trainings']} training seeds of each, all shipped. The next "
-        f"{seeds['frames']} frames of {seeds['clips']} unseen pasts, complete and with "
-        f"{seeds['missing']:.0%} of their joints missing throughout (zero after standardisation). Intervals are over "
-        "training seeds and clips; three seeds are few.\n\n"
+        "## Diffusion dropout (MoDiff III-D)\n\nTwo kinds of small walkers: the same network, data "
+        f"and steps, without and with diffusion dropout, {seeds['trainings']} training seeds of "
+        f"each, all shipped. The next {seeds['frames']} frames of {seeds['clips']} unseen pasts, "
+        f"complete and with {seeds['missing']:.0%} of their joints missing throughout "
+        "(zero after standardisation). Intervals are over training seeds and clips; "
+        "three seeds are few.\n\n"
     )
     text += (
         table(["past", "error", "plain", "with dropout"], rows)
@@ -90,12 +95,13 @@ def repairs(records: dict[str, dict], folder: Path) -> str:
         for fault in FAULTS
     ]
     text = (
-        "## Repairs (MoDiff III-E)\n\nErrors of what was missing of ten past frames, cm (root mean squared distance). "
-        "`rmse_cm`: of the mean of ten repairs; `one`: of one of them, which moves as the mean does not. Ours begin "
-        "with what ridge regression guesses, hold what is known on the way back, too, and keep bones; `paper`: from "
-        "the mean pose, and neither. `nearer_than`: the share of pasts in which the mean is nearer. Where "
-        "`rmse_over_ridge` is above 1, the regression that a repair starts from is nearer to the truth than the "
-        "repair.\n\n"
+        "## Repairs (MoDiff III-E)\n\nErrors of what was missing of ten past frames, cm "
+        "(root mean squared distance). `rmse_cm`: of the mean of ten repairs; `one`: of one of "
+        "them, which moves as the mean does not. Ours begin with what ridge regression guesses, "
+        "hold what is known on the way back, too, and keep bones; `paper`: from the mean pose, and "
+        "neither. `nearer_than`: the share of pasts in which the mean is nearer. Where "
+        "`rmse_over_ridge` is above 1, the regression that a repair starts from is nearer to the "
+        "truth than the repair.\n\n"
     )
     text += table(["missing", *(f"`{kind}`" for kind in kinds)], rows)
     text += (
@@ -108,13 +114,15 @@ def repairs(records: dict[str, dict], folder: Path) -> str:
         if n.startswith(("mend.table2", "mend.footsteps"))
     ]
     said = (
-        "\n### Table II\n\n30 % of the joints of the past missing throughout (zero; 6 of 21): the small walkers with "
-        "dropout, three trainings, frame by frame as in the paper. Beside them the same with five poses kept of every "
-        "window of ten (`keep5`), which crawl less; and, from fewer pasts, the shipped walker, trained for longer and "
-        "without dropout. `ge`: 12 s generated from the past as it is; `re`: the past repaired, our way, as it comes "
-        "from the network; `re_bones`: with its bones kept, which is how we repair; `re_paper`: the paper's way; "
-        "`whole`: 12 s from complete pasts. `ratio`: the larger of `ge` and `re` over `whole`. The paper, on other "
-        "data: 0.101 cm and 0.108 cm (MoDiff with dropout), 0.105 and 0.116 (without).\n\n"
+        "\n### Table II\n\n30 % of the joints of the past missing throughout (zero; 6 of 21): the "
+        "small walkers with dropout, three trainings, frame by frame as in the paper. Beside them "
+        "the same with five poses kept of every window of ten (`keep5`), which crawl less; and, "
+        "from fewer pasts, the shipped walker, trained for longer and without dropout. `ge`: 12 s "
+        "generated from the past as it is; `re`: the past repaired, our way, as it comes from the "
+        "network; `re_bones`: with its bones kept, which is how we repair; `re_paper`: the paper's "
+        "way; `whole`: 12 s from complete pasts. `ratio`: the larger of `ge` and `re` over "
+        "`whole`. The paper, on other data: "
+        "0.101 cm and 0.108 cm (MoDiff with dropout), 0.105 and 0.116 (without).\n\n"
     )
     return text + said + table(["figure", "measured"], second) if second else text
 
@@ -133,15 +141,20 @@ def inbetweens(records: dict[str, dict], folder: Path) -> str:
         for g in GAPS
     ]
     text = (
-        f"## In-betweens (MoFusion 4.4)\n\nThe unconditional network; {seeds['motions']} unseen walks and dances in "
-        f"equal halves, 100 frames each, a gap in the middle; {seeds['samples']} samples of each, {seeds['steps']} "
-        "DDIM steps, every guess guided and drawn through the given frames, bones kept and feet held at the end "
-        "(`editing.inbetween.inbetween`); `masked`: one sample as in the paper, without that. A mean of samples beats any sample "
-        "on error, and moves less than any: NPSS, the jump at the seam and the sliding of planted toes (`skating`) are "
-        "of single samples. Given frames are held exactly: "
-        f"`keyframe_error_cm` is {number(records['inbetween.keyframe_error_cm']['value'])}.\n\n"
+        f"## In-betweens (MoFusion 4.4)\n\nThe unconditional network; {seeds['motions']} unseen "
+        "walks and dances in equal halves, 100 frames each, a gap in the middle; "
+        f"{seeds['samples']} samples of each, {seeds['steps']} DDIM steps, every guess guided and "
+        "drawn through the given frames, bones kept and feet held at the end "
+        "(`editing.inbetween.inbetween`); `masked`: one sample as in the paper, without that. A "
+        "mean of samples beats any sample on error, and moves less than any: NPSS, the jump at the "
+        "seam and the sliding of planted toes (`skating`) are of single samples. Given frames are "
+        "held exactly: `keyframe_error_cm` is "
+        f"{number(records['inbetween.keyframe_error_cm']['value'])}.\n\n"
     )
-    picture = "\n![Errors, spectra, seams and sliding over the length of the gap](results/inbetween.png)\n"
+    picture = (
+        "\n![Errors, spectra, seams and sliding over the length of the "
+        "gap](results/inbetween.png)\n"
+    )
     head = ["gap, frames", *(named.get(kind, f"`{kind}`") for kind in kinds)]
     return text + table(head, rows) + picture * (folder / "inbetween.png").exists()
 
@@ -160,14 +173,23 @@ def draw(records: dict[str, dict], folder: Path) -> None:
             )
             for kind, words in (("bone", "bone RMSE, cm"), ("adherence", "adherence, m/s"))
         }
-        words = "Errors of the next ten frames, by the rate of dropout in training and the share of joints missing."
+        words = (
+            "Errors of the next ten frames, by the rate of dropout in training "
+            "and the share of joints missing."
+        )
         rates = [f"{RATES[name]:.0%}" for name in names]
         _save(
             rate_map(panels, rates, [f"{m} %" for m in missing], words), folder / "dropout-map.png"
         )
     if "mend.arm_rmse_cm" in records:
-        _save(by_fault(_repairs(records), "Errors of what was missing, with 95 % intervals over pasts.", "cm"),
-              folder / "repairs.png")  # fmt: skip
+        _save(
+            by_fault(
+                _repairs(records),
+                "Errors of what was missing, with 95 % intervals over pasts.",
+                "cm",
+            ),
+            folder / "repairs.png",
+        )
     if "inbetween.keyframe_error_cm" in records:
         measures = {
             "error, cm": METHODS,

@@ -1,5 +1,7 @@
-"""What menders are tried on: unseen pasts with known faults, given to walkers as zero after
-standardisation."""
+"""What menders are tried on.
+
+Unseen pasts with known faults, given to walkers as zero after standardisation.
+"""
 
 from collections.abc import Callable
 
@@ -30,8 +32,10 @@ def without(past: Float[np.ndarray, "N T_h J 3"], share: float, seed: int = 1) -
 
 
 def as_given(walker: Walker, broken: Imperfect) -> tuple[torch.Tensor, torch.Tensor]:
-    """(past, known), both (N, T_h, D): the network's columns in metres, the mean pose where nothing
-    is known."""
+    """(past, known), both (N, T_h, D).
+
+    The network's columns in metres, the mean pose where nothing is known.
+    """
     past = torch.from_numpy(broken.positions).float().flatten(2)
     known = columns_of(broken.known)
     return torch.where(known, past, walker.pose_scaler.mean.expand_as(past)), known
@@ -51,8 +55,9 @@ def continued(
     steps: int | None = None,
     keep: int = 1,
 ) -> Float[np.ndarray, "N n J 3"]:
-    """The next `frames` after a past of which a share of the joints is missing; control held, as in
-    all figures.
+    """The next `frames` after a past of which a share of the joints is missing.
+
+    Control held, as in all figures.
 
     `keep` poses of every predicted window are kept.
     """
@@ -65,8 +70,9 @@ def continued(
 def interval_over_seeds(
     figure: Callable[..., float], *rows: Float[np.ndarray, "K N *any"], draws: int = DRAWS
 ) -> tuple[float, float, float]:
-    """The figure with its 95 % bootstrap interval: training seeds and clips are both drawn again,
-    with replacement.
+    """The figure with its 95 % bootstrap interval.
+
+    Training seeds and clips are both drawn again, with replacement.
 
     Arrays have a row for each training seed, a column for each clip; seeds and clips are drawn for
     all of them alike.

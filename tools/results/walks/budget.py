@@ -1,8 +1,9 @@
-"""What is each choice worth? Small walkers trained for the same CPU-seconds, each unlike another in
-one choice.
+"""What is each choice worth?
+
+Small walkers trained for the same CPU-seconds, each unlike another in one choice.
 
 How many future poses should be predicted at once (MoDiff says that T_p > 1 helps, and gives no
-number)? What do the schedule, the optimizer, the shaken past, the weights of the loss, the
+number)? What do the schedule, the optimizer, the past noise, the weights of the loss, the
 footholds and the target do? All else is alike: network, data, seed, and the rollout, which keeps
 one pose of every window.  Source: MoDiff III-A; the rest is ours
 """
@@ -17,7 +18,8 @@ from motiondiff_edu.beyond.footholds import FootholdConfig
 from motiondiff_edu.modiff import MoDiffConfig
 from motiondiff_edu.motion.augment import augment
 from motiondiff_edu.motion.clip import Clip
-from motiondiff_edu.recipes.budget import train_for
+from motiondiff_edu.recipes.budget import BUDGET, train_for
+from motiondiff_edu.recipes.walkers import OURS, Recipe
 
 from .scores import Figure, score
 from .trials import T_H, UNSEEN, Trials, unseen, walker_generate
@@ -41,8 +43,17 @@ SMALL = MoDiffConfig(  # small enough to come far in minutes
 )
 FEET = FootholdConfig(**asdict(SMALL))
 EPS = replace(SMALL, target="eps", skip=True)
+HIGH_NOISE, JOINTS, SPREADS, ALIKE = (
+    {"loss_weights": replace(OURS, **changes)}
+    for changes in (
+        {"high_noise": 3.0},
+        {"bones": 0.0},
+        {"bones": 0.0, "metres": 0.0},
+        {"near": 0.0},
+    )
+)
 LIKE = "walker-x0's choices but for footholds, T_p = 10"
-# name: (what differs, in words, from which other one, the network, settings of the training)
+# name: (what differs, in words, from which other one, the network, changes of the recipe)
 VARIANTS = {
     "T_p-10": (LIKE, "", SMALL, {}),
     "T_p-1": ("T_p = 1", "T_p-10", replace(SMALL, T_p=1), {}),
@@ -56,11 +67,11 @@ VARIANTS = {
         SMALL,
         {"optimizer": "adam", "lr": 1e-3},
     ),
-    "unshaken": ("the past as it is", "T_p-10", SMALL, {"jitter": 0.0}),
-    "eps": ("eps with the skip, high noise weighted", "T_p-10", EPS, {"high_noise": 3.0}),
-    "joints": ("errors of joints alone, none of bones", "T_p-10", SMALL, {"bones": 0.0}),
-    "spreads": ("errors in standard deviations", "joints", SMALL, {"bones": 0.0, "metres": 0.0}),
-    "alike": ("all ten poses alike", "T_p-10", SMALL, {"near": 0.0}),
+    "unshaken": ("the past as it is", "T_p-10", SMALL, {"past_noise": 0.0}),
+    "eps": ("eps with the skip, high noise weighted", "T_p-10", EPS, HIGH_NOISE),
+    "joints": ("errors of joints alone, none of bones", "T_p-10", SMALL, JOINTS),
+    "spreads": ("errors in standard deviations", "joints", SMALL, SPREADS),
+    "alike": ("all ten poses alike", "T_p-10", SMALL, ALIKE),
 }
 
 
@@ -74,7 +85,8 @@ class Budget:
     walk_s: int = 8
 
 
-FULL, QUICK = Budget(), Budget(seconds=2, training=6, clips=8, walk_s=6)
+FULL = Budget()
+QUICK = Budget(seconds=2, training=6, clips=8, walk_s=6)
 
 
 @cache
@@ -83,11 +95,16 @@ def material(budget: Budget) -> tuple[list[Clip], Trials]:
     return augment(dataset(budget.training, 20.0, seed=1)), unseen(budget.clips, budget.walk_s)
 
 
+def recipe_of(name: str) -> Recipe:
+    """The training of one variant."""
+    _, _, config, changes = VARIANTS[name]
+    return replace(BUDGET, name=f"budget.{name}", config=config, **changes)
+
+
 def measure(name: str, budget: Budget) -> list[Figure]:
     """The figures of one variant, and the steps its seconds were enough for."""
-    _, _, config, training = VARIANTS[name]
     clips, trials = material(budget)
-    walker, steps = train_for(budget.seconds, clips, config, **training)
+    walker, steps = train_for(budget.seconds, clips, recipe_of(name))
     walks = walker_generate(walker)(trials.past, trials.control, 0)
     found = [figure for figure in score(walks, trials.asked, trials.truth) if figure.name in SHOWN]
     print(f"{name}: {steps} steps in {budget.seconds:g} CPU-seconds, T_h = {T_H}", flush=True)
@@ -95,8 +112,10 @@ def measure(name: str, budget: Budget) -> list[Figure]:
 
 
 def budget_records(name: str, budget: Budget, command: str) -> list[dict]:
-    """One thread, whatever the machine has: CPU-seconds are the budget. Compare what one machine
-    measured."""
+    """One thread, whatever the machine has: CPU-seconds are the budget.
+
+    Compare what one machine measured.
+    """
     before = torch.get_num_threads()
     torch.set_num_threads(1)
     seeds = {

@@ -1,5 +1,7 @@
-"""What `make results` measures, in parts that can be run alone; each part is a list of records and
-one JSON file."""
+"""What `make results` measures, in parts that can be run alone.
+
+Each part is a list of records and one JSON file.
+"""
 
 import hashlib
 import json
@@ -51,11 +53,14 @@ FULL, QUICK = Size(), Size(clips=12, pasts=3, each=8, seconds=7)
 
 
 class Bench:
-    """The trials, made once, and the rollouts on them, kept on disk by the weights they come
-    from."""
+    """The trials, made once, and the rollouts on them.
+
+    Rollouts are kept on disk by the weights they come from.
+    """
 
     def __init__(self, size: Size, weights: dict[str, Path] | None = None):
-        self.size, self.weights = size, checkpoints.available() | (weights or {})
+        self.size = size
+        self.weights = checkpoints.available() | (weights or {})
 
     @cached_property
     def trials(self) -> Trials:
@@ -66,15 +71,18 @@ class Bench:
         return choices(self.size.pasts, self.size.each)
 
     def rollouts(self, name: str, steps: int | None, hold: bool, what: str) -> np.ndarray:
-        """Poses of the walker `name` on the trials (what="walks") or on the choices
-        (what="choices")."""
+        """Poses of the walker `name`.
+
+        On the trials (what="walks") or on the choices (what="choices").
+        """
         path = self.weights.get(name) or checkpoints.available().get(name)
         if path is None:
             raise SystemExit(
                 f"no weights are called {name!r}; there are: {', '.join(self.weights) or 'none'}"
             )
         inputs = "-".join(_digest(x) for x in self._inputs(what))
-        key = f"{weights_digest(path)}-{steps}-{hold}-{what}-{json.dumps(asdict(self.size))}-{inputs}-{code_digest()}"
+        size = json.dumps(asdict(self.size))
+        key = f"{weights_digest(path)}-{steps}-{hold}-{what}-{size}-{inputs}-{code_digest()}"
         kept = CACHE / f"{name}-{hashlib.sha256(key.encode()).hexdigest()[:12]}.npy"
         if not kept.exists():
             generate = walker_generate(checkpoints.load_walker(path), steps, hold)
@@ -104,8 +112,10 @@ def weights_digest(path: Path) -> str:
 
 
 def code_digest() -> str:
-    """Of all code that turns weights and inputs into poses: when it changes, no old rollout is
-    taken for a new one."""
+    """Digest of all code that turns weights and inputs into poses.
+
+    When it changes, no old rollout is taken for a new one.
+    """
     files = [PACKAGE / name for name in ROLLING] + sorted((PACKAGE / "fast").glob("*.py"))
     return hashlib.sha256(b"".join(path.read_bytes() for path in files)).hexdigest()[:16]
 
@@ -174,8 +184,10 @@ def walker_records(bench: Bench, line: Walks, command: str) -> list[dict]:
 
 
 def as_record(prefix: str, figure: Figure, bench: Bench, line: Walks | None, command: str) -> dict:
-    """With all that settles the figure: seeds, how much was measured, which weights (none: the
-    data's own)."""
+    """A record with all that settles the figure.
+
+    Seeds, how much was measured, which weights (none: the data's own).
+    """
     size, seeds = bench.size, {"rollouts": 0}
     if figure.name.startswith("diversity"):
         seeds |= {"data": UNSEEN + 500_000, "pasts": size.pasts, "each": size.each}

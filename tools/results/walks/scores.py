@@ -1,5 +1,6 @@
-"""The figures of one walker on a set of trials, each with its interval over clips: names, values,
-units.
+"""The figures of one walker on a set of trials, each with its interval over clips.
+
+Names, values, units.
 
 `score` takes arrays, so that anything can be scored: the data itself is a walker with no error.
 """
@@ -39,8 +40,16 @@ class Figure:
         value, low, high = (
             float(f"{x:.5g}") if np.isfinite(x) else None for x in (self.value, self.low, self.high)
         )
-        return dict(name=prefix + self.name, value=value, low=low, high=high, seeds=seeds, unit=self.unit,
-                    paper=paper, command=command)  # fmt: skip
+        return dict(
+            name=prefix + self.name,
+            value=value,
+            low=low,
+            high=high,
+            seeds=seeds,
+            unit=self.unit,
+            paper=paper,
+            command=command,
+        )
 
 
 def squared_bone_error(poses: Float[np.ndarray, "N T J 3"]) -> Float[np.ndarray, "N"]:
@@ -54,8 +63,10 @@ def squared_stretch(poses: Float[np.ndarray, "N T J 3"]) -> Float[np.ndarray, "N
 
 
 def shuffled_adherence(poses: Float[np.ndarray, "N T J 3"], control: Float[np.ndarray, "N T 3"]):
-    """Adherence of every motion to the controls of three other clips (1/4, 1/2, 3/4 of the set
-    away), its mean."""
+    """Adherence of every motion to the controls of three other clips.
+
+    Their mean; the clips are 1/4, 1/2 and 3/4 of the set away.
+    """
     n = len(poses)
     shifts = sorted({max(1, n * k // 4) for k in (1, 2, 3)})
     return np.mean([adherence(poses, np.roll(control, shift, axis=0)) for shift in shifts], axis=0)
@@ -66,8 +77,10 @@ def score(
     control: Float[np.ndarray, "N n 3"],
     truth: Float[np.ndarray, "N n J 3"],
 ) -> list[Figure]:
-    """The figures of `poses` generated under `control`, beside those of the data's own answer
-    `truth`."""
+    """The figures of `poses` generated under `control`.
+
+    Beside those of the data's own answer `truth`.
+    """
     own, data = adherence(poses, control), adherence(truth, control)
     slide, slide_data = skating(poses, control), skating(truth, control)
     first, last = slice(None, EDGE), slice(-EDGE, None)
@@ -96,8 +109,10 @@ def score(
 def diversity(
     rollouts: Float[np.ndarray, "P n T J 3"], drawn: Float[np.ndarray, "P n T J 3"]
 ) -> list[Figure]:
-    """Spread of the rollouts, of the data's continuations, and their ratio; the interval is over
-    pasts."""
+    """Spread of the rollouts, of the data's continuations, and their ratio.
+
+    The interval is over pasts.
+    """
     own, data = spread(rollouts), spread(drawn)
     return [
         figure_of("diversity_m", "m", np.mean, own),
@@ -108,8 +123,10 @@ def diversity(
 
 
 def figure_of(name: str, unit: str, figure: Callable[..., float], *rows: np.ndarray) -> Figure:
-    """The figure `figure(*rows)` with its interval over the rows; NaN, without a warning, where
-    there is no number."""
+    """The figure `figure(*rows)` with its interval over the rows.
+
+    NaN, without a warning, where there is no number.
+    """
     with warnings.catch_warnings():
         warnings.simplefilter(
             "ignore", RuntimeWarning

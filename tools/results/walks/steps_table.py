@@ -1,5 +1,6 @@
-"""MoDiff's Table I and Fig. 3 on the course's data: a footstep curve for each set of motions, and
-the row read from it.
+"""MoDiff's Table I and Fig. 3 on the course's data.
+
+A footstep curve for each set of motions, and the row read from it.
 
 The bootstrap draws clips; for that every clip is reduced to a table (number of steps, sum and sum
 of squares of their durations) at every tolerance, which add up.
@@ -40,8 +41,10 @@ def curve(table: Float[np.ndarray, "N V 3"]) -> Float[np.ndarray, "V"]:
 
 
 def row(table: Float[np.ndarray, "N V 3"]) -> tuple[float, float, float, float]:
-    """f_est, v95, mean and std of the durations at v95: the same as `metrics.footsteps.footsteps`
-    on these clips."""
+    """f_est, v95, mean and std of the durations at v95.
+
+    The same as `metrics.footsteps.footsteps` on these clips.
+    """
     count, total, squares = table.sum(0).T
     at = int(np.argmax(count >= 0.95 * count.max()))
     if count.max() == 0:

@@ -22,8 +22,10 @@ Generate = Callable[[np.ndarray, np.ndarray, int], np.ndarray]
 
 @dataclass(frozen=True, eq=False)
 class Trials:
-    """N pasts with the control of past and future, and the recorded future; control row T_h belongs
-    to truth[:, 0]."""
+    """N pasts with the control of past and future, and the recorded future.
+
+    Control row T_h belongs to truth[:, 0].
+    """
 
     past: Float[np.ndarray, "N T_h J 3"]
     control: Float[np.ndarray, "N T 3"]
@@ -32,10 +34,8 @@ class Trials:
     @classmethod
     def of(cls, clips: Sequence[Clip], T_h: int = T_H) -> "Trials":
         """The first T_h frames of each clip are the past, the rest is what is asked for."""
-        poses, control = (
-            np.stack([clip.poses for clip in clips]),
-            np.stack([clip.control for clip in clips]),
-        )
+        poses = np.stack([clip.poses for clip in clips])
+        control = np.stack([clip.control for clip in clips])
         return cls(poses[:, :T_h], control, poses[:, T_h:])
 
     def first(self, n: int) -> "Trials":
@@ -82,7 +82,8 @@ class Choices:
 
 def choices(pasts: int = 20, n: int = 50, seconds: float = 3.0) -> Choices:
     """Pasts that have several right continuations, with `n` of them drawn from the data."""
-    clips, frames = dataset(pasts, seconds + T_H / FPS, seed=UNSEEN + 500_000), round(seconds * FPS)
+    clips = dataset(pasts, seconds + T_H / FPS, seed=UNSEEN + 500_000)
+    frames = round(seconds * FPS)
     drawn = [
         continuations(c.cut(0, T_H), c.control[T_H:], n, seed=UNSEEN + i)
         for i, c in enumerate(clips)

@@ -1,5 +1,6 @@
-"""The bug zoo: wrong answers one can expect, one file per notebook, each of which its check must
-refuse.
+"""The bug zoo: wrong answers one can expect.
+
+One file for each notebook; its check must refuse each of them.
 
 nb02.py holds `ZOO = {"q_sample": {"forgot the square root": wrong_q_sample, ...}}`: name of the
 check, then what is wrong in a few words, then the wrong answer itself. At least two for each check.
@@ -11,8 +12,10 @@ from collections.abc import Callable
 
 
 def load_all() -> dict[str, dict[str, Callable]]:
-    """All wrong answers: {check: {what is wrong: answer}}. Raises ValueError when two files claim
-    one check."""
+    """All wrong answers: {check: {what is wrong: answer}}.
+
+    Raises ValueError when two files claim one check.
+    """
     zoo: dict[str, dict[str, Callable]] = {}
     for module in pkgutil.iter_modules(__path__):
         for name, wrong in importlib.import_module(f"{__name__}.{module.name}").ZOO.items():

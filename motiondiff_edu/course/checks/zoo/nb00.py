@@ -21,8 +21,10 @@ def in_place(past_control, new, T_h):
 
 
 def row_missing(past_control, new, T_h):
-    """The row that leads into the first new frame is dropped, and all that follows comes a frame
-    early."""
+    """The row that leads into the first new frame is dropped.
+
+    All that follows comes a frame early.
+    """
     return np.concatenate([past_control[-T_h:-1], new])
 
 

@@ -28,8 +28,10 @@ def central_joints_stay(poses, control):
 
 
 def names_stay(poses, control):
-    """Mirrors the places but not the names: the left arm now hangs on the right side of the
-    body."""
+    """Mirrors the places but not the names.
+
+    The left arm now hangs on the right side of the body.
+    """
     return poses * _SEEN, control * _LED
 
 

@@ -8,8 +8,10 @@ def _shaped(alpha_bar, s):
 
 
 def root_dropped(x0, s, alpha_bar, noise):
-    """The shares are taken for amplitudes: variances add up to one, amplitudes do not, and x_s
-    comes out too small."""
+    """The shares are taken for amplitudes.
+
+    Variances add up to one, amplitudes do not, and x_s comes out too small.
+    """
     kept = _shaped(alpha_bar, s)
     return kept * x0 + (1 - kept) * noise
 
@@ -49,8 +51,10 @@ def _product(mean_1, variance_1, mean_2, variance_2):
 
 
 def step_variance(x0, x_s, s, alpha_bar):
-    """Shakes each step back by the variance of the step forwards, which is too much once x0 is
-    known."""
+    """Adds noise with the variance of the step forwards on each step back.
+
+    That is too much once x0 is known.
+    """
     alpha = alpha_bar[s] / alpha_bar[s - 1]
     mean, _ = _product(
         alpha_bar[s - 1] ** 0.5 * x0, 1 - alpha_bar[s - 1], x_s / alpha**0.5, (1 - alpha) / alpha

@@ -16,8 +16,10 @@ def not_shrunk(x_s, alpha_bar, data):
 
 
 def root_dropped(x_s, alpha_bar, data):
-    """Shrinks the data by alpha_bar instead of its square root, and measures from the wrong
-    places."""
+    """Shrinks the data by alpha_bar instead of its square root.
+
+    It therefore measures from the wrong places.
+    """
     return _guess(x_s, alpha_bar, data, shrink=1)
 
 
@@ -38,8 +40,10 @@ def wrong_axis(x_s, alpha_bar, data):
 
 
 def nearest_only(x_s, alpha_bar, data):
-    """Jumps from sample to sample instead of weighing them: even under much noise it is sure of
-    one."""
+    """Jumps from sample to sample instead of weighing them.
+
+    Even under much noise it is sure of one.
+    """
     return data[(x_s[:, None] - alpha_bar[:, None, None] ** 0.5 * data).square().sum(-1).argmin(1)]
 
 
@@ -70,8 +74,10 @@ def variance_for_deviation(x_s, s, eps_hat, beta, alpha_bar, z):
 
 
 def not_rescaled(x_s, s, eps_hat, beta, alpha_bar, z):
-    """Takes the noise away but does not undo the shrinking of each step: the samples come out too
-    small."""
+    """Takes the noise away but does not undo the shrinking of each step.
+
+    The samples come out too small.
+    """
     return _step(x_s, s, eps_hat, beta, alpha_bar, z, scale=1.0, shake=0.0 if s == 1 else None)
 
 

@@ -27,8 +27,10 @@ def root_dropped(x0, alpha_bar):
 
 
 def directions_swapped(x0, alpha_bar):
-    """The divergence of the prior from the last step, where that of the last step from the prior is
-    meant."""
+    """The divergence of the prior from the last step.
+
+    That of the last step from the prior is meant.
+    """
     left = 1 - alpha_bar
     return ((alpha_bar * x0**2 + 1) / left - 1 + torch.log(left)).sum((1, 2)) / 2
 

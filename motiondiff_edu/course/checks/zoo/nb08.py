@@ -44,7 +44,8 @@ def each_planted_toe(toes, fps=20, below=0.03):
 
 def mean_height(toes, fps=20, below=0.03):
     """Chooses by the mean of both ends, so that a toe still landing counts as planted."""
-    height, (_, speed) = (toes[1:, :, 1] + toes[:-1, :, 1]) / 2, _steps(toes)
+    height = (toes[1:, :, 1] + toes[:-1, :, 1]) / 2
+    _, speed = _steps(toes)
     return fps * _lower(speed, height)[height.min(1) < below].mean()
 
 

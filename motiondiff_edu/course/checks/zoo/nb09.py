@@ -23,14 +23,18 @@ def mask_inverted(past, future, s, alpha_bar, rate, u, noise):
 
 
 def one_throw_for_the_batch(past, future, s, alpha_bar, rate, u, noise):
-    """All pasts of a batch are noised, or none: the gradient of one step in twenty has never seen a
-    past."""
+    """All pasts of a batch are noised, or none.
+
+    The gradient of one step in twenty has never seen a past.
+    """
     return _batch(past, future, s, alpha_bar, rate, u, noise, hit=(u[0] < rate).expand(len(u)))
 
 
 def a_throw_for_each_frame(past, future, s, alpha_bar, rate, u, noise):
-    """Single frames are noised, and the clean ones beside them tell all: nothing has to come from
-    the control."""
+    """Single frames are noised, and the clean ones beside them tell all.
+
+    Nothing has to come from the control.
+    """
     hit = torch.rand(past.shape[:2], generator=torch.Generator().manual_seed(0)) < 0.5
     return torch.where(hit[..., None], _noised(past, s, alpha_bar, noise[1]), past), _noised(
         future, s, alpha_bar, noise[0]
@@ -38,8 +42,10 @@ def a_throw_for_each_frame(past, future, s, alpha_bar, rate, u, noise):
 
 
 def same_noise_for_both(past, future, s, alpha_bar, rate, u, noise):
-    """The past carries the very noise that is asked for: a low loss in training, and nothing to
-    read in sampling."""
+    """The past carries the very noise that is asked for.
+
+    A low loss in training, and nothing to read in sampling.
+    """
     return _batch(past, future, s, alpha_bar, rate, u, noise, own=0)
 
 
@@ -148,7 +154,8 @@ def no_noise(xx, past, rate, alpha_bar):
 
 def variance_subtracted(xx, past, rate, alpha_bar):
     """A minus before the noise's variance: the ridge is a pit."""
-    share, keep = 1 - rate + rate * alpha_bar.mean(), 1 - rate + rate * alpha_bar.sqrt().mean()
+    share = 1 - rate + rate * alpha_bar.mean()
+    keep = 1 - rate + rate * alpha_bar.sqrt().mean()
     return _expected(xx, past, keep, share, -rate * (1 - alpha_bar).mean())
 
 
@@ -165,7 +172,8 @@ def all_dropped(xx, past, rate, alpha_bar):
 
 def control_dropped_too(xx, past, rate, alpha_bar):
     """Puts the noise on the whole diagonal: then no weight could move to the control."""
-    share, floor = 1 - rate + rate * alpha_bar.mean(), rate * (1 - alpha_bar).mean()
+    share = 1 - rate + rate * alpha_bar.mean()
+    floor = rate * (1 - alpha_bar).mean()
     right = _expected(xx, past, 1 - rate + rate * alpha_bar.sqrt().mean(), share, floor)
     right[past:, past:] += floor * torch.eye(len(xx) - past)
     return right
@@ -173,43 +181,44 @@ def control_dropped_too(xx, past, rate, alpha_bar):
 
 def shares_inverted(xx, past, rate, alpha_bar):
     """`rate` and 1 - rate change places; at a rate of 1/2 nobody notices."""
-    share, keep = rate + (1 - rate) * alpha_bar.mean(), rate + (1 - rate) * alpha_bar.sqrt().mean()
+    share = rate + (1 - rate) * alpha_bar.mean()
+    keep = rate + (1 - rate) * alpha_bar.sqrt().mean()
     return _expected(xx, past, keep, share, (1 - rate) * (1 - alpha_bar).mean())
 
 
-def no_calm(done, rates, calm):
+def without_start(done, rates, start):
     """Begins with the first rate at once."""
     return rates[min(int(done * len(rates)), len(rates) - 1)]
 
 
-def at_once(done, rates, calm):
+def at_once(done, rates, start):
     """From nothing to the highest rate in one step."""
-    return 0.0 if done < calm else rates[-1]
+    return 0.0 if done < start else rates[-1]
 
 
-def downwards(done, rates, calm):
+def downwards(done, rates, start):
     """The hardest first."""
     return (
         0.0
-        if done < calm
-        else rates[::-1][min(int((done - calm) / (1 - calm) * len(rates)), len(rates) - 1)]
+        if done < start
+        else rates[::-1][min(int((done - start) / (1 - start) * len(rates)), len(rates) - 1)]
     )
 
 
-def gliding(done, rates, calm):
+def gliding(done, rates, start):
     """Rises evenly where the paper rises in steps."""
-    return max(0.0, (done - calm) / (1 - calm)) * rates[-1]
+    return max(0.0, (done - start) / (1 - start)) * rates[-1]
 
 
-def over_the_whole(done, rates, calm):
-    """Shares the whole training among the rates, so that the first ones pass while it is calm."""
-    return 0.0 if done < calm else rates[min(int(done * len(rates)), len(rates) - 1)]
+def over_the_whole(done, rates, start):
+    """Shares the whole training among the rates, so that the first ones pass before the start."""
+    return 0.0 if done < start else rates[min(int(done * len(rates)), len(rates) - 1)]
 
 
-def nothing_after_the_last(done, rates, calm):
+def nothing_after_the_last(done, rates, start):
     """When all is done there is no entry of the list left."""
-    k = int((done - calm) / (1 - calm) * len(rates) + 1e-9)
-    return 0.0 if done < calm or k >= len(rates) else rates[k]
+    k = int((done - start) / (1 - start) * len(rates) + 1e-9)
+    return 0.0 if done < start or k >= len(rates) else rates[k]
 
 
 ZOO = {
@@ -242,7 +251,7 @@ ZOO = {
         "shares inverted": shares_inverted,
     },
     "rate_schedule": {
-        "no calm": no_calm,
+        "no start": without_start,
         "at once": at_once,
         "downwards": downwards,
         "gliding": gliding,

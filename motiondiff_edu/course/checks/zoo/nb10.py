@@ -9,8 +9,10 @@ def order_only(control):
 
 
 def not_shifted(control):
-    """Nearly right: each step is taken one frame too early, and the path ends beside where it
-    began."""
+    """Each step is taken one frame too early.
+
+    It is nearly right: the path ends beside where it began.
+    """
     return -control.flip(1)
 
 
@@ -100,8 +102,10 @@ def two_rounds(walk_on, past, known, mean, control):
 
 
 def short_control(walk_on, past, known, mean, control):
-    """Only the rows beside the past go along: a walker then has no control for the frames it is to
-    make."""
+    """Only the rows beside the past go along.
+
+    A walker then has no control for the frames it is to make.
+    """
     ahead = walk_on(torch.where(known, past, mean), control[:, : past.shape[1]])
     back = walk_on(ahead.flip(1), -no_sign(control)).flip(1)
     return torch.where(known, past, back)

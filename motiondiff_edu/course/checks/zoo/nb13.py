@@ -35,8 +35,10 @@ def no_roots(x_s, s, eps_hat, alpha_bar):
 
 
 def second_root_forgotten(x_s, s, eps_hat, alpha_bar):
-    """Only one of the two roots is there: too little noise is taken away at small s, too much at
-    large s."""
+    """Only one of the two roots is there.
+
+    Too little noise is taken away at small s, too much at large s.
+    """
     share = alpha_bar[s][:, None, None]
     return x_s / share**0.5 - (1 / share - 1) * eps_hat
 
@@ -80,8 +82,10 @@ def mean_not_added(x0_hat, mean, std, bones, pairs):
 
 
 def root_dropped(x0_hat, mean, std, bones, pairs):
-    """The joints are still relative to the pelvis, so that bones at the pelvis begin at the wrong
-    place."""
+    """The joints are still relative to the pelvis.
+
+    Bones at the pelvis therefore begin at the wrong place.
+    """
     return _apart(_joints(x0_hat, mean, std, add_pelvis=False), bones, pairs).abs().mean()
 
 

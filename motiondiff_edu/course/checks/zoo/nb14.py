@@ -58,8 +58,10 @@ def exchanged(stops, songs, score):
 
 
 def published_bracket(path, fps):
-    """As it is printed: the bracket divides one position by the frame time instead of their
-    difference."""
+    """As it is printed.
+
+    The bracket divides one position by the frame time instead of their difference.
+    """
     dt = 1 / fps
     after = (path[2:] - path[1:-1]) / dt
     before = path[1:-1] - path[:-2] / dt
@@ -76,8 +78,10 @@ def one_frame_time(path, fps):
 
 
 def no_frame_time(path, fps):
-    """Metres a frame and frame: the same dance at 60 frames a second costs a ninth of that at
-    20."""
+    """Metres a frame and frame.
+
+    The same dance at 60 frames a second costs a ninth of that at 20.
+    """
     return np.linalg.norm(_second(path), axis=1).mean()
 
 

@@ -1,5 +1,7 @@
-"""The pictures of noise: they show what they are given, close themselves, and say in words what to
-see."""
+"""The pictures of noise.
+
+They show what they are given, close themselves, and say in words what to see.
+"""
 
 import matplotlib.pyplot as plt
 import numpy as np

@@ -1,5 +1,7 @@
-"""Synthetic songs: same seed, same bytes; beats that keep time; hits that sound when they should;
-files; errors."""
+"""Synthetic songs: same seed, same bytes; beats that keep time; hits that sound when they should.
+
+Files; errors.
+"""
 
 import json
 
@@ -39,7 +41,9 @@ def same(a, b):
 
 
 def test_same_seed_same_bytes():
-    first, again, other = compose(5, seconds=6.0), compose(5, seconds=6.0), compose(6, seconds=6.0)
+    first = compose(5, seconds=6.0)
+    again = compose(5, seconds=6.0)
+    other = compose(6, seconds=6.0)
     assert same(first, again) and np.array_equal(first.beats, again.beats)
     assert np.array_equal(first.energy, again.energy) and first.info == again.info
     assert not np.array_equal(first.audio, other.audio) and not np.array_equal(
@@ -107,8 +111,10 @@ def test_sound_is_finite_and_not_clipped(made):
 
 
 def rises(audio):
-    """Times (s), and how much louder 14 bands got within 16 ms: frames of 16 ms, logarithms, rises
-    summed."""
+    """Times (s), and how much louder 14 bands got within 16 ms.
+
+    Frames of 16 ms, logarithms, rises summed.
+    """
     hop, frame = 32, 256
     _, t, spectrum = stft(
         audio, SAMPLE_RATE, nperseg=frame, noverlap=frame - hop, boundary=None, padded=False
@@ -144,7 +150,10 @@ def test_drums_stay_near_the_grid():
 
 
 def test_breaks_are_quiet(made):
-    calm, busy, soft, loud = [], [], [], []
+    calm = []
+    busy = []
+    soft = []
+    loud = []
     for song in made:
         hits = np.sort(np.concatenate(list(song.hits.values())))
         ends = np.append(song.beats[1:], song.beats[-1] + 60 / song.tempo)
@@ -230,7 +239,13 @@ def test_roles_of_beats():
 
 
 def test_chords_by_hand():
-    c, d, e, f, g, a, b = 0, 2, 4, 5, 7, 9, 11
+    c = 0
+    d = 2
+    e = 4
+    f = 5
+    g = 7
+    a = 9
+    b = 11
     assert chord_on(0, c, "major", False).tones == (c, e, g)
     assert chord_on(4, a, "minor", False).tones == (
         e,

@@ -1,6 +1,7 @@
-"""`python -m motiondiff_edu doctor`: one page that says what works on this machine, and what to do
-about the rest."""
+"""`motiondiff-edu doctor`: one page that says what works on this machine, and what to do about the
+rest."""
 
+import argparse
 import importlib
 import importlib.metadata
 import io
@@ -12,9 +13,11 @@ import tempfile
 import webbrowser
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
-from pathlib import Path
 
-PACKAGE = Path(__file__).parent
+from .places import PACKAGE, notebook_folder, place_for_students, program
+
+HELP = "one page: what works here, and what to do about the rest"
+EXAMPLE = "doctor"
 INSTALL = "python -m pip install -c constraints.txt -e . (in the checkout), or make lab"
 
 
@@ -70,7 +73,9 @@ def versions() -> Finding:
         names = required()
     except importlib.metadata.PackageNotFoundError:
         return Finding("versions", "motiondiff-edu is not installed", INSTALL)
-    pins, missing, other = constraints(), [], []
+    pins = constraints()
+    missing = []
+    other = []
     for name in names:
         try:
             version = importlib.metadata.version(name).split("+")[0]
@@ -163,7 +168,7 @@ def sound() -> Finding:
 
 def weights() -> Finding:
     """The shipped weights can be read."""
-    from .pretrained.checkpoints import available, pretrained
+    from ..pretrained.checkpoints import available, pretrained
 
     if "walker" not in available():
         return Finding(
@@ -174,23 +179,19 @@ def weights() -> Finding:
 
 
 def writing() -> Finding:
-    """Notebooks and results can be written here."""
-    here = Path.cwd()
+    """Copies of the notebooks, and results, can be written where `lab` puts them."""
+    _, mine = place_for_students()
+    here = next(folder for folder in (mine, *mine.parents) if folder.is_dir())
     try:
         with tempfile.TemporaryFile(dir=here):
             return Finding("writing", f"allowed in {here}")
     except OSError as error:
-        return Finding(
-            "writing",
-            f"not allowed in {here} ({error.strerror})",
-            "start from a folder of your own",
-        )
+        remedy = f"start from a folder of your own, or name one: {program()} lab --folder FOLDER"
+        return Finding("writing", f"not allowed in {here} ({error.strerror})", remedy)
 
 
 def notebooks() -> Finding:
     """The notebooks are where `lab` looks."""
-    from .__main__ import notebook_folder
-
     folder = notebook_folder()
     count = len(list((folder / "student").glob("[0-9][0-9]*.ipynb")))
     return Finding("notebooks", f"{count} in {folder / 'student'}", "" if count else "make student")
@@ -207,6 +208,15 @@ def guarded(check: Callable[[], Finding]) -> Finding:
         return Finding(check.__name__, f"{type(error).__name__}: {error}".splitlines()[0], INSTALL)
 
 
+def arguments(parser: argparse.ArgumentParser) -> None:
+    """None."""
+
+
+def run(chosen: argparse.Namespace) -> int:
+    """Print the page; 1 when anything failed."""
+    return main()
+
+
 def main(checks: Iterable[Callable[[], Finding]] = CHECKS) -> int:
     """Print the page; 1 when anything failed."""
     failed = 0
@@ -215,7 +225,7 @@ def main(checks: Iterable[Callable[[], Finding]] = CHECKS) -> int:
         failed += bool(finding.remedy) and not finding.note
         print(finding, flush=True)
     print(
-        "\nAll well: python -m motiondiff_edu lab"
+        f"\nAll well: {program()} lab"
         if not failed
         else f"\n{failed} to mend, see the arrows above."
     )

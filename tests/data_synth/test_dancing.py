@@ -1,5 +1,7 @@
-"""Synthetic dances: same seed, same bytes; feet that stay, bones and knees that hold, on any beat
-grid."""
+"""Synthetic dances: same seed, same bytes.
+
+Feet that stay, bones and knees that hold, on any beat grid.
+"""
 
 from dataclasses import replace
 
@@ -73,7 +75,9 @@ def test_a_silent_score_is_a_song():
 
 def test_same_seed_same_bytes_and_two_seeds_differ():
     song = beat_song(17.0, 112.0)
-    first, again, other = dance(song, 7), dance(song, 7), dance(song, 8)
+    first = dance(song, 7)
+    again = dance(song, 7)
+    other = dance(song, 8)
     assert first.positions.tobytes() == again.positions.tobytes() and first.moves == again.moves
     apart = first.positions - first.positions[:, :1] - (other.positions - other.positions[:, :1])
     assert (
@@ -109,8 +113,10 @@ def test_planted_feet_stay_on_the_floor(danced, alone):
 
 
 def test_contacts_are_true(danced):
-    """A toe that lies still on the floor for three frames is planted, but for the first instants of
-    a step."""
+    """A toe that lies still on the floor for three frames is planted.
+
+    The first instants of a step are left out.
+    """
     for _, d in danced:
         toes = d.positions[:, TOES]
         still = (np.linalg.norm(np.diff(toes, axis=0), axis=-1) < 1e-7) & (toes[1:, :, 1] < 1e-7)
@@ -124,7 +130,9 @@ def test_knees_bend_one_way_and_not_too_far(danced, alone):
         p, ankle = d.positions, np.array(HEELS)
         angle = knee_angle(p)
         assert 10 < angle.min() and angle.max() < 140, name
-        hip, knee, foot = p[:, ankle - 2], p[:, ankle - 1], p[:, ankle]
+        hip = p[:, ankle - 2]
+        knee = p[:, ankle - 1]
+        foot = p[:, ankle]
         left = p[:, [1]] - p[:, [5]]
         ahead = np.cross(
             foot - hip, left
@@ -140,12 +148,15 @@ def test_no_joint_jumps(danced, alone):
 
 
 def test_the_weight_is_over_the_other_foot_when_a_foot_lifts(danced):
-    """Hips seen from above, along the line between the feet: past the middle, towards the foot that
-    stays."""
+    """Hips seen from above, along the line between the feet.
+
+    Past the middle, towards the foot that stays.
+    """
     shares = []
     for _, d in danced:
         for side in (0, 1):
-            ankle, other = d.positions[:, HEELS[side]], d.positions[:, HEELS[1 - side]]
+            ankle = d.positions[:, HEELS[side]]
+            other = d.positions[:, HEELS[1 - side]]
             lifts = np.flatnonzero(
                 d.contacts[:-1, side] & ~d.contacts[1:, side] & d.contacts[1:].any(1)
             )
@@ -217,8 +228,10 @@ def test_breaks_are_calmer():
 
 
 def test_a_mirrored_sheet_is_the_mirror():
-    """Keys and steps of a move written mirrored are those of the move with left and right
-    swapped."""
+    """A move written mirrored is the move with left and right swapped.
+
+    Its keys and steps are.
+    """
     found = []
     for mirrored in (False, True):
         script = Script()
@@ -259,8 +272,10 @@ def test_a_curve_is_still_at_its_keys():
 
 
 def test_a_spring_settles_and_overshoots():
-    """A step of height one: 9.5 % too far at damping 0.6 (exp(-pi d / sqrt(1 - d^2))), and then
-    there."""
+    """A step of height one.
+
+    9.5 % too far at damping 0.6 (exp(-pi d / sqrt(1 - d^2))), and then there.
+    """
     step = np.concatenate([np.zeros(3), np.ones(60)])[:, None]
     y = springy(step, 200.0, 4.0, 0.6)
     assert y[0, 0] == 0 and y.max() == pytest.approx(1 + np.exp(-np.pi * 0.6 / 0.8), abs=2e-3)

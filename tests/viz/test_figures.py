@@ -1,5 +1,7 @@
-"""Figures from plain arrays: they hold what was given, carry a caption, and refuse what does not
-fit."""
+"""Figures from plain arrays.
+
+They hold what was given, carry a caption, and refuse what does not fit.
+"""
 
 import io
 
@@ -113,12 +115,6 @@ def test_attention_map_shows_the_weights_and_parts_the_groups(weights):
     }
 
 
-def test_group_shares_reach_one(weights):
-    (axis,) = attention.group_shares(weights[1], [("past poses", 4), ("control", 7)]).axes
-    heights = np.array([bar.get_height() for bar in axis.patches]).reshape(2, 5)
-    assert np.allclose(heights.sum(0), 1) and np.allclose(heights[0], weights[1][:, :4].sum(1))
-
-
 def test_labels_and_groups_that_do_not_fit_are_refused(weights):
     with pytest.raises(ValueError, match="groups have 10 keys, the map has 11"):
         attention.attention_map(weights[0], [("past", 4), ("control", 6)])
@@ -143,15 +139,6 @@ def test_curves_draw_what_was_given_in_different_dashes():
     assert axis.get_yscale() == "log"
     with pytest.raises(ValueError, match=r"curve 'v': x has shape \(6,\), y has \(5,\)"):
         curves.loss_curves({"v": (x, x[1:])})
-
-
-def test_small_multiples_share_their_axes():
-    x = np.arange(4.0)
-    fig = curves.small_multiples(
-        {f"s = {k}": {"a": (x, k * x)} for k in range(1, 6)}, "time", "value", columns=3
-    )
-    assert len(fig.axes) == 6 and not fig.axes[5].axison
-    assert len({axis.get_ylim() for axis in fig.axes[:5]}) == 1
 
 
 def test_control_and_intervals_name_their_numbers():

@@ -1,5 +1,7 @@
-"""Do the synthetic dances lie where real ones do, and on the beat? The table, and the ruler it is
-measured with."""
+"""Do the synthetic dances lie where real ones do, and on the beat?
+
+The table, and the ruler it is measured with.
+"""
 
 import re
 import warnings
@@ -47,8 +49,10 @@ def test_nearly_every_dance_is_inside(found):
 
 
 def test_dances_meet_their_own_song_and_no_other(found):
-    """By chance exp(-d^2 / (2 0.05^2)) is some 0.05 sqrt(2 pi) / period: 0.16 to 0.35 at 80 to 165
-    beats a minute."""
+    """By chance exp(-d^2 / (2 0.05^2)) is some 0.05 sqrt(2 pi) / period.
+
+    0.16 to 0.35 at 80 to 165 beats a minute.
+    """
     lines = {line[0]: line for line in table(found[1], OWN)}
     assert 0.6 < lines["own_song"][1] < 0.85 and 0.15 < lines["other_song"][1] < 0.3
     assert lines["own_song"][2] > 0.4 and lines["beats_per_beat"][6] > 0.85
@@ -122,8 +126,10 @@ def test_a_loop_repeats_and_turning_does_not_hide_it():
 
 
 def test_the_ruler_finds_real_dances_inside(real_data):
-    """Two upright dances of CMU; a third clip, of a dab, crouches more than any of the eight that
-    made the range."""
+    """Two upright dances of CMU.
+
+    A third clip, of a dab, crouches more than any of the eight that made the range.
+    """
     for name, cut in (("cmu_05_06_dance", 0), ("cmu_acrnn_salsa_10", 90)):
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")

@@ -1,0 +1,117 @@
+"""What else an error can cost: departures from the papers' mean square, each a term or a weight
+with a name.
+
+A *loss* takes the error of the network's target (B, T, D) and the steps s (B,), and gives one
+number; `ddpm.squared_error` is the papers'. `total` adds losses. All of them are squares, so a
+weight of the squares is a root on the error, and `weighted` and `weighted_by_step` wrap any loss:
+
+    in_metres = weighted(squared_error, metre_weights(std))
+    loss = weighted(total(in_metres, bones(2, std)), near_weights(change))
+
+What each is worth stands in docs/RESULTS.md.  Ours; neither paper has them.
+Notebook: 07, 12
+"""
+
+from collections.abc import Callable
+
+import numpy as np
+from jaxtyping import Float, Int
+from torch import Tensor
+
+from ..ddpm import Schedule, Table, at
+from ..motion.dance_frame import to_positions
+from ..motion.skeleton import BONES, TOES
+
+Error = Float[Tensor, "B T D"]
+Loss = Callable[[Error, Int[Tensor, "B"]], Float[Tensor, ""]]
+
+
+def total(*losses: Loss) -> Loss:
+    """The sum of losses.  Notebook: 07"""
+    return lambda error, s: sum(loss(error, s) for loss in losses)
+
+
+# ---- weights -------------------------------------------------------------------------------------
+def weighted(loss: Loss, weights: Float[Tensor, "D"] | Float[Tensor, "T 1"]) -> Loss:
+    """A loss with weights of its squares, for columns (`metre_weights`) or frames
+    (`near_weights`).   Notebook: 07"""
+    roots = weights.sqrt()
+    return lambda error, s: loss(roots.to(error) * error, s)
+
+
+def weighted_by_step(loss: Loss, weights: Table) -> Loss:
+    """A loss with weights of its squares for the diffusion steps (`high_noise_weights`).
+    Notebook: 07"""
+    roots = weights.sqrt()
+    return lambda error, s: loss(at(roots, s, error) * error, s)
+
+
+def metre_weights(std: Float[Tensor, "D"], power: float = 2.0) -> Float[Tensor, "D"]:
+    """Weights of columns: std^power, with mean 1. 2 counts errors in metres, 0 in standard
+    deviations.
+
+    A toe moves ten times as far as a hip, and its errors are seen ten times as well.   Notebook: 07
+    """
+    weights = std**power
+    return weights / weights.mean()
+
+
+def near_weights(change: Float[Tensor, "T D"], power: float = 1.0) -> Float[Tensor, "T 1"]:
+    """Weights of future frames: 1 / (how far poses move until then)^power, with mean 1.
+
+    `change`: how far each column moves in 1, 2, ... frames, metres. The first frame moves least,
+    and a rollout keeps no other.   Notebook: 07
+    """
+    weights = 1 / change.square().mean(1, keepdim=True).sqrt() ** power
+    return weights / weights.mean()
+
+
+def high_noise_weights(schedule: Schedule, largest: float) -> Table:
+    """Weights of steps: 1 + min((1 - alpha_bar) / alpha_bar, largest).
+
+    For eps: at high noise eps is nearly x_s itself and costs little, while the pose is decided
+    there.   Notebook: 07
+    """
+    noise_over_signal = (1 - schedule.alpha_bar) / schedule.alpha_bar
+    return 1 + noise_over_signal.clamp_max(largest)
+
+
+# ---- terms ---------------------------------------------------------------------------------------
+def bones(weight: float, std: Float[Tensor, "D"]) -> Loss:
+    """`bone_errors`, over the mean variance of a column, times weight; for x0 in the root frame.
+
+    A shin keeps its length when knee and ankle err alike, which their own errors do not see.
+    `std` leads to metres.  Notebook: 07
+    """
+    share = weight / std.square().mean()
+    return lambda error, s: share.to(error) * bone_errors(error * std.to(error)).mean()
+
+
+def bone_errors(error: Float[Tensor, "B T D"]) -> Float[Tensor, "B T 20"]:
+    """Squared length of each joint's error against its parent's, a third for each axis; `error` is
+    in metres."""
+    joints = error.unflatten(-1, (-1, 3))
+    parents, children = np.array(BONES).T
+    return (joints[..., children, :] - joints[..., parents, :]).square().mean(-1)
+
+
+def changes(weight: float) -> Loss:
+    """The squared error of changes from frame to frame, times weight: a dance that trembles about
+    the right poses is not right.   Notebook: 12"""
+    return lambda error, s: weight * error.diff(dim=1).square().mean()
+
+
+def toe_changes(weight: float, std: Float[Tensor, "D"], moved: float) -> Loss:
+    """The squared error of the toes' changes in the world, over how far toes move, times weight;
+    for x0 in the dance frame.
+
+    For a foot to stand, pelvis and leg must err alike. `std` leads to metres; `moved` is the mean
+    square of a toe coordinate's change in a frame of the data, m^2
+    (`performers.dance_windows.toes_moved`).   Notebook: 12
+    """
+
+    def loss(error: Error, s: Int[Tensor, "B"]) -> Float[Tensor, ""]:
+        toes = to_positions(error * std.to(error))[:, :, list(TOES)]
+        return weight / moved * toes.diff(dim=1).square().mean()
+
+    return loss

@@ -1,0 +1,34 @@
+"""Past noise: in training the past gets errors like those that a rollout makes.
+
+A walker continues its own poses, which are never quite right. One that has only seen recorded
+pasts lets small errors grow. The paper's remedy is diffusion dropout (MoDiff III-D); this one is
+ours, and the shipped walkers have it.
+Notebook: 07
+"""
+
+import torch
+from jaxtyping import Float
+from torch import Tensor
+
+FRESH = 0.3  # of the amount: a new error in each frame of once what a frame changes
+
+
+def past_noise(
+    past: Float[Tensor, "B T_h D"],
+    amount: float,
+    change: Float[Tensor, "D"],
+    generator: torch.Generator,
+) -> Float[Tensor, "B T_h D"]:
+    """The past plus two errors: a steady one, the same in all frames, and a fresh one in each.
+
+    The steady error has a standard deviation of up to `amount`, in the units of `past`
+    (standardised). The fresh one has up to amount / 0.3 times `change`, which is how far each
+    column moves in one frame. Each past has its own two levels, drawn evenly on a log scale over
+    two decades: the network must keep small errors small, and mend large ones.
+    Notebook: 07
+    """
+    B, T_h, D = past.shape
+    steady, fresh = amount * 10 ** (-2 * torch.rand(2, B, 1, 1, generator=generator))
+    noise = steady * torch.randn(B, 1, D, generator=generator)
+    noise = noise + fresh / FRESH * change.cpu() * torch.randn(B, T_h, D, generator=generator)
+    return past + noise.to(past)

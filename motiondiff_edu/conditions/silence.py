@@ -1,0 +1,53 @@
+"""One sound taken out of a song: what is struck at a moment is not heard, all else is as it was.
+
+Notebook: 12
+"""
+
+import numpy as np
+from jaxtyping import Bool, Float
+from scipy.signal import istft, stft
+
+from .music import SAMPLE_RATE
+
+WIDTH = 0.12  # s of sound that is taken away
+BESIDE = 0.08  # s listened to on either side of it
+EDGE = 0.02  # s of cross-fade
+TINY = 1e-9  # below is silence
+
+
+def silence_hit(
+    audio: Float[np.ndarray, "N"], time: float, width: float = WIDTH
+) -> Float[np.ndarray, "N"]:
+    """The song (16 kHz) without what is struck at `time` seconds: for `width` seconds no frequency
+    may burst out.
+
+    Each is held down to a line, straight in decibels, from what it was before to what it is
+    afterwards: a note that sounds on sounds on, and outside of the span every sample is as it was.
+    Raises ValueError for a time outside of the song, or a width that is not positive.  Notebook: 12
+    """
+    if not 0 <= time < len(audio) / SAMPLE_RATE:
+        raise ValueError(
+            f"there is no sound at {time:g} s: this song has {len(audio) / SAMPLE_RATE:g} s"
+        )
+    if width <= 0:
+        raise ValueError(f"a width is a time above 0 s, not {width:g}")
+    shape = {"fs": SAMPLE_RATE, "nperseg": 512, "noverlap": 384}
+    _, centres, spectrum = stft(audio, **shape)
+    away, loud = centres - time, np.abs(spectrum)
+
+    def usual(span: Bool[np.ndarray, "F"]) -> Float[np.ndarray, "K"]:
+        return (
+            np.log(np.median(loud[:, span], axis=1) + TINY)
+            if span.any()
+            else np.full(len(loud), np.log(TINY))
+        )
+
+    before = usual((-BESIDE <= away) & (away < -EDGE))[:, None]
+    after = usual((width <= away) & (away < width + BESIDE))[:, None]
+    most = np.exp(before + np.clip(away / width, 0, 1) * (after - before))
+    quiet = istft(spectrum * np.minimum(1.0, most / np.maximum(loud, TINY)), **shape)[1][
+        : len(audio)
+    ]
+    t = np.arange(len(audio)) / SAMPLE_RATE - time
+    share = np.interp(t, [-EDGE, -EDGE / 2, width, width + EDGE], [0, 1, 1, 0])
+    return (audio + share * (quiet - audio)).astype(audio.dtype)

@@ -1,0 +1,38 @@
+"""Starting JupyterLab at one notebook, and ending it in good order."""
+
+import os
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+# defaults for the course, below a student's own settings: JupyterLab asks nothing about news
+CONFIG = Path(__file__).parent / "jupyter_config"
+
+
+def open_lab(root: Path, notebook: Path, options: list[str], environment: dict[str, str]) -> int:
+    """Start JupyterLab in `root` with `notebook` open; returns its exit status."""
+    address = "/lab/tree/" + notebook.relative_to(root).as_posix()
+    command = [sys.executable, "-m", "jupyterlab"]
+    command += [f"--ServerApp.root_dir={root}", f"--LabApp.default_url={address}"]
+    if hasattr(os, "geteuid") and os.geteuid() == 0:
+        # in a container everyone is root, and JupyterLab would refuse
+        command.append("--allow-root")
+    theirs = os.environ.get("JUPYTER_CONFIG_PATH")
+    config = os.pathsep.join([str(CONFIG)] + ([theirs] if theirs else []))
+    print(f"opening {notebook.name} in {notebook.parent} (stop with Ctrl-C)", flush=True)
+    return serve([*command, *options], {"JUPYTER_CONFIG_PATH": config} | environment)
+
+
+def serve(command: list[str], environment: dict[str, str]) -> int:
+    """Run the server; its exit status. Ctrl-C and SIGTERM end it, and its kernels with it."""
+    server = subprocess.Popen(command, env=os.environ | environment)
+    before = signal.signal(signal.SIGTERM, lambda *_: server.terminate())
+    try:
+        return server.wait()
+    except KeyboardInterrupt:
+        server.terminate()
+        server.wait()
+        return 0
+    finally:
+        signal.signal(signal.SIGTERM, before)

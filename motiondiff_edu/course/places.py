@@ -1,0 +1,62 @@
+"""Where the notebooks lie and where a student's copies go, in a checkout and from a wheel."""
+
+import os
+import sys
+from pathlib import Path
+
+PACKAGE = Path(__file__).parents[1]
+COPIES = "motiondiff_notebooks"
+
+
+class NotebookError(ValueError):
+    """There is no notebook of that number; the message lists those there are."""
+
+
+def in_checkout() -> bool:
+    """Whether the package runs from a checkout (or an unpacked archive), not from a wheel."""
+    above = PACKAGE.parent
+    return (above / "notebooks").is_dir() and (above / "pyproject.toml").is_file()
+
+
+def notebook_folder() -> Path:
+    """notebooks/ of the checkout, or the ones that came with the wheel; docs/ lies beside it."""
+    return (PACKAGE.parent if in_checkout() else PACKAGE) / "notebooks"
+
+
+def find(folder: Path, number: str) -> Path:
+    """The notebook of that number. Raises NotebookError with the numbers there are."""
+    there = sorted(folder.glob("[0-9][0-9]*.ipynb"))
+    wanted = [path for path in there if path.name[:2] == number.zfill(2)]
+    if not wanted:
+        numbers = ", ".join(path.name[:2] for path in there) or "none"
+        raise NotebookError(f"no notebook {number} in {folder}; there are: {numbers}")
+    return wanted[0]
+
+
+def place_for_students(chosen: Path | None = None) -> tuple[Path, Path]:
+    """Where JupyterLab starts, and the folder of the student's copies.
+
+    In a checkout JupyterLab starts at its top, so that the library can be read beside the
+    notebooks. From a wheel it starts in the folder of the copies, which is made in the current
+    folder.
+    """
+    if chosen is not None:
+        mine = chosen.expanduser().resolve()
+        return mine, mine
+    if in_checkout():
+        return PACKAGE.parent, PACKAGE.parent / COPIES
+    here = Path.cwd()
+    mine = here if here.name == COPIES else here / COPIES
+    return mine, mine
+
+
+def program() -> str:
+    """What was typed to get here: motiondiff-edu, or python -m motiondiff_edu."""
+    name = Path(sys.argv[0]).stem
+    return name if name == "motiondiff-edu" else "python -m motiondiff_edu"
+
+
+def word_for_fresh(number: str) -> str:
+    """What to type for a fresh copy of one notebook, with make or without."""
+    by_make = in_checkout() and "MAKELEVEL" in os.environ
+    return f"make lab FRESH={number}" if by_make else f"{program()} lab --fresh {number}"

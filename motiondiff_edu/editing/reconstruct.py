@@ -1,0 +1,146 @@
+"""Missing joints of a motion of any length: windows of ten frames cover each hole, and each is
+walked there and back.
+
+    guess -> every window there and back -> the mean where they overlap -> bones -> next guess
+A window repaired alone would not meet its neighbours: here each round begins with what all of them
+found together. The way back is drawn through what is known, so that holes join on both sides.
+Source: MoDiff III-E; the overlapping windows are ours.  Notebook: 10
+"""
+
+import math
+
+import numpy as np
+import torch
+from jaxtyping import Bool, Float, Int
+from torch import Tensor
+
+from ..beyond.back_with_known import FADE, drawn_back
+from ..beyond.constant_bones import given_lengths, steady_bones
+from ..beyond.foot_lock import steady_feet
+from ..beyond.guidance import blended
+from ..motion.dance_frame import heading
+from ..motion.directions import ARMS, UPLEGS
+from ..motion.motion import MotionError
+from ..motion.planting import spans
+from ..motion.root_frame import smoothed_root, to_root_frame, to_world
+from ..motion.skeleton import BONE_LENGTHS, HIPS, JOINTS, TOES, J
+from ..reconstruction import repair
+
+ROUNDS, STEPS = 3, 10  # there and back; of DDIM
+BATCH = 64  # windows at once
+
+
+def reconstruct(
+    walker,
+    positions: Float[np.ndarray, "T 21 3"],
+    known: Bool[np.ndarray, "T 21"],
+    *,
+    generator: torch.Generator,
+    rounds: int = ROUNDS,
+) -> Float[np.ndarray, "T 21 3"]:
+    """Find the joints that are not known of a motion in the world (metres, 20 frames/s); they may
+    be NaN.
+
+    Known joints come back bit by bit. The control comes from the pelvis and from where hips and
+    shoulders face, smoothed. Raises MotionError where a pelvis is missing, where nothing tells
+    which way the figure faces, where nothing is missing, and for a motion shorter than a window.
+    Source: MoDiff III-E.  Notebook: 10
+    """
+    T_h, firsts = walker.config.T_h, _windows(known, walker.config.T_h)
+    place, facing = path_of(positions, known)
+    poses, control = to_root_frame(np.where(known[..., None], positions, 0.0), place, facing)
+    mask = torch.from_numpy(np.repeat(known, 3, axis=1))
+    given = torch.where(mask, torch.from_numpy(poses).flatten(1), 0.0)
+    lengths = given_lengths(positions, known)
+    lengths = np.where(np.isnan(lengths), BONE_LENGTHS, lengths)
+    mean = walker.pose_scaler.mean.to(given).expand_as(given)
+    guess = blended(mean[None], given[None], mask[None], FADE)[0]
+    steer = torch.from_numpy(np.concatenate([control, np.repeat(control[-1:], T_h, axis=0)]))
+    for _ in range(rounds):
+        found = _once(walker, guess, mask, steer, firsts, generator)
+        joints = torch.where(mask, given, found).unflatten(-1, (J, 3)).numpy()
+        guess = torch.from_numpy(steady_bones(joints, known, lengths)).flatten(1)
+    start = (*place[0].tolist(), float(facing[0]))
+    made = to_world(guess.unflatten(-1, (J, 3)).numpy(), control, start)
+    whole = np.where(known[..., None], positions, made)
+    return whole if known[:, list(TOES)].all() else steady_feet(whole, known)
+
+
+def evaluations(walker, known: Bool[np.ndarray, "T 21"], rounds: int = ROUNDS) -> int:
+    """How often `reconstruct` asks the network, for a progress bar.  Raises as `reconstruct`."""
+    T_h, T_p = walker.config.T_h, walker.config.T_p
+    batches = math.ceil(len(_windows(known, T_h)) / BATCH)
+    return batches * rounds * 2 * math.ceil(T_h / T_p) * STEPS
+
+
+def _once(
+    walker,
+    guess: Float[Tensor, "T D"],
+    mask: Bool[Tensor, "T D"],
+    steer: Float[Tensor, "F 3"],
+    firsts: Int[np.ndarray, "W"],
+    generator: torch.Generator,
+) -> Float[Tensor, "T D"]:
+    """Every window there and back once; where they overlap their mean, the middle of a window
+    counting most."""
+    T_h = walker.config.T_h
+    weight = 1.0 + torch.arange(T_h).minimum(torch.arange(T_h).flip(0)).to(guess)[:, None]
+    found, total = torch.zeros_like(guess), torch.zeros_like(guess[:, :1])
+    for some in torch.from_numpy(firsts).split(BATCH):
+        rows = some[:, None] + torch.arange(T_h)
+        control = steer[some[:, None] + torch.arange(2 * T_h)].float()
+        past = guess[rows].float()
+        back = repair(
+            walker, past, mask[rows], control, guess=past, way_back=drawn_back, rounds=1,
+            steps=STEPS, generator=generator,
+        )  # fmt: skip
+        for where, window in zip(rows, back, strict=True):
+            found[where] += weight * window.to(guess)
+            total[where] += weight
+    return torch.where(total > 0, found / total.clamp(min=1.0), guess)
+
+
+def _windows(known: Bool[np.ndarray, "T 21"], T_h: int) -> Int[np.ndarray, "W"]:
+    """The first frames of windows that cover every hole, half a window apart, and reach beyond it
+    where there are frames."""
+    T, half = len(known), max(1, T_h // 2)
+    if known.all():
+        raise MotionError("nothing is missing: there is nothing to reconstruct")
+    if T < T_h:
+        raise MotionError(f"the motion has {T} frames; the walker's windows have {T_h}")
+    firsts = {
+        min(max(begin, 0), T - T_h)
+        for first, last in spans(~known.all(axis=1))
+        for begin in range(first - half, last, half)
+    }
+    return np.array(sorted(firsts))
+
+
+def path_of(
+    positions: Float[np.ndarray, "T 21 3"], known: Bool[np.ndarray, "T 21"]
+) -> tuple[Float[np.ndarray, "T 2"], Float[np.ndarray, "T"]]:
+    """Root path and heading of a motion with holes, by the pelvis and by hips and shoulders where
+    they are known.
+
+    Raises MotionError, with the frame, where the pelvis is not, or where neither hips nor shoulders
+    are known in any frame.
+    """
+    lost = np.flatnonzero(~known[:, HIPS])
+    if len(lost):
+        raise MotionError(
+            f"the pelvis ({JOINTS[HIPS]}) is not known in frame {lost[0]} ({len(lost)} such in "
+            f"all), and the walk's control is read from it. md.inbetween can make whole frames"
+        )
+    across, told = np.zeros((len(positions), 3)), np.zeros(len(positions), bool)
+    for left, right in (UPLEGS, ARMS):
+        both = known[:, left] & known[:, right]
+        across[both] += (positions[:, left] - positions[:, right])[both]
+        told |= both
+    if not told.any():
+        raise MotionError(
+            "nothing tells which way the figure faces: in no frame both hips or both shoulders are "
+            "known"
+        )
+    facing = np.unwrap(heading(across[told]))
+    facing = np.interp(np.arange(len(positions)), np.flatnonzero(told), facing)
+    return smoothed_root(positions[:, HIPS][:, [0, 2]], facing)

@@ -1,0 +1,147 @@
+"""`read_motion(path)`, and the two kinds of files that this layer reads and writes: BVH and npz.
+
+Notebook: 00
+"""
+
+import zipfile
+from pathlib import Path
+
+import numpy as np
+
+from .._files import replacing
+from . import registry
+from .bvh.write import write_bvh
+from .clip import Clip
+from .motion import Motion, MotionError
+from .retarget import load_clip
+from .root_frame import FPS
+from .skeleton import COURSE, Skeleton
+
+FORMAT = "motiondiff_edu motion 1"
+LARGEST = 2_000_000_000  # bytes, unpacked: half a day of motion
+# endings of files that people have, and what is to be done with them
+ELSEWHERE = {
+    (".fbx", ".c3d", ".glb", ".gltf", ".usd", ".blend"): "export it as BVH, from Blender for one",
+    (".amc", ".asf", ".vrma"): "export it as BVH",
+    (".wav", ".mp3", ".ogg", ".flac"): 'this is sound; md.load("dancer").dance(path) dances to it',
+    (".pkl", ".pickle"): "a pickle can run code and is not opened; save its arrays as npz",
+}
+
+
+def read_motion(path: str | Path) -> Motion:
+    """Read a motion from a file, by its name's ending: BVH of any humanoid (brought to the course's
+    skeleton and 20 frames/s), or npz.
+
+    Raises FileNotFoundError, or MotionError or BvhError (both ValueErrors) with file, fault and
+    what to do.  Notebook: 00
+    """
+    path = Path(path).expanduser()
+    if path.is_dir():
+        raise MotionError(f"{path} is a folder; name a file in it")
+    if not path.is_file():
+        where = "" if path.is_absolute() else f" in {Path.cwd()}"
+        raise FileNotFoundError(f"there is no file {path}{where}; check the spelling")
+    ending = path.suffix.lower()
+    read = registry.readers.get(ending)
+    if read is None:
+        advice = next((words for group, words in ELSEWHERE.items() if ending in group), "")
+        raise MotionError(
+            f"{path.name} is not read as a motion; {' and '.join(registry.readers.names())} are"
+            f"{f'. {advice}' if advice else ''}"
+        )
+    return read(path)
+
+
+@registry.readers.register(".bvh")
+def read_bvh_motion(path: Path) -> Motion:
+    """Any humanoid BVH, retargeted, where it stands in its file.  Raises BvhError."""
+    clip = load_clip(path)
+    return Motion.of_clip(clip, clip.info["start"])
+
+
+@registry.writers.register(".bvh")
+def write_bvh_motion(motion: Motion, path: Path) -> None:
+    """BVH for Blender; prints how far constant bones moved the joints.  Raises MotionError for
+    another skeleton, or where a joint is missing."""
+    if motion.skeleton != COURSE:
+        raise MotionError(
+            f"{motion.name} has {len(motion.skeleton)} joints; BVH is written for the "
+            f"{len(COURSE)} of the course's skeleton. .npz takes any"
+        )
+    motion.check_finite()
+    write_bvh(path, motion.positions, motion.fps)
+
+
+@registry.writers.register(".npz")
+def write_npz(motion: Motion, path: Path) -> None:
+    """All of it as plain arrays, exactly; no pickle."""
+    arrays = {
+        "format": np.array(FORMAT),
+        "positions": motion.positions,
+        "fps": np.array(motion.fps),
+        "names": np.array(motion.skeleton.names),
+        "parents": np.array(motion.skeleton.parents),
+        "sample_rate": np.array(motion.sample_rate),
+        "source": np.array(motion.source),
+    }
+    for name in ("root", "contacts", "audio"):
+        if getattr(motion, name) is not None:
+            arrays[name] = getattr(motion, name)
+    with replacing(path) as aside, open(aside, "wb") as file:
+        np.savez_compressed(file, **arrays)
+
+
+@registry.readers.register(".npz")
+def read_npz(path: Path) -> Motion:
+    """Our own npz, or one of data_synth's: walks have poses and control, dances have positions.
+
+    Raises MotionError, with the arrays there are, for another; pickled objects are not opened.
+    """
+    arrays = _arrays(path)
+    source = str(arrays["source"]) if "source" in arrays else path.stem
+    try:
+        if "positions" in arrays:
+            return _from_positions(arrays, source or path.stem)
+        if {"poses", "control"} <= arrays.keys():
+            fps = float(arrays.get("fps", FPS))
+            poses = arrays["poses"].astype(np.float64)
+            contacts = arrays.get("contacts")
+            return Motion.of_clip(Clip(poses, arrays["control"], fps, contacts, source))
+    except (ValueError, TypeError, IndexError) as error:
+        raise MotionError(f"{path.name}: {error}") from None
+    there = ", ".join(f"{name} {array.shape}" for name, array in arrays.items())
+    raise MotionError(
+        f"{path.name} holds {there or 'nothing'}; a motion has `positions` (frames, joints, 3) in "
+        f"metres and `fps`, and another skeleton its `names` and `parents`"
+    )
+
+
+def _from_positions(arrays: dict[str, np.ndarray], source: str) -> Motion:
+    skeleton = COURSE
+    if "names" in arrays and "parents" in arrays:
+        skeleton = Skeleton(tuple(arrays["names"].tolist()), tuple(arrays["parents"].tolist()))
+    along = {name: arrays[name] for name in ("root", "contacts", "audio") if name in arrays}
+    if "sample_rate" in arrays:
+        along["sample_rate"] = int(arrays["sample_rate"])
+    fps = float(arrays.get("fps", FPS))
+    return Motion(arrays["positions"], fps, skeleton, source=source, **along)
+
+
+def _arrays(path: Path) -> dict[str, np.ndarray]:
+    """The arrays of an npz file, without pickles.  Raises MotionError for what is none."""
+    try:
+        with zipfile.ZipFile(path) as packed:
+            size = sum(entry.file_size for entry in packed.infolist())
+        if size > LARGEST:
+            raise MotionError(
+                f"{path.name} unpacks to {size / 1e9:.0f} GB; cut it into shorter takes"
+            )
+        with np.load(path, allow_pickle=False) as file:
+            return {name: file[name] for name in file.files}
+    except MotionError:
+        raise
+    except (zipfile.BadZipFile, ValueError, OSError, EOFError, KeyError, MemoryError) as error:
+        reason = "it holds pickled objects" if "pickle" in str(error) else "it is none, or damaged"
+        raise MotionError(
+            f"{path.name} cannot be read as npz: {reason}. Save plain arrays by numpy.savez"
+        ) from None

@@ -1,0 +1,56 @@
+"""What moves in a dance when one sound is taken away: the dance with it and without, from the same
+noise.
+
+Source: ours; MoFusion Fig. 4 shows attention instead.  Notebook: 12
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+import torch
+from jaxtyping import Float
+
+from ..conditions.music import log_mel
+from ..conditions.silence import WIDTH, silence_hit
+from .dancer import Dancer
+
+
+@dataclass(frozen=True, eq=False)
+class Occlusion:
+    """A dance, the same from the same noise with each sound silenced, and how far each frame moved:
+    metres, the mean over the joints."""
+
+    times: Float[np.ndarray, "K"]
+    dance: Float[np.ndarray, "T 21 3"]
+    without: Float[np.ndarray, "K T 21 3"]
+
+    @property
+    def moved(self) -> Float[np.ndarray, "K T"]:
+        return np.linalg.norm(self.without - self.dance, axis=-1).mean(-1)
+
+
+def occlusion(
+    dancer: Dancer,
+    audio: Float[np.ndarray, "N"],
+    times: Float[np.ndarray, "K"],
+    frames: int,
+    *,
+    generator: torch.Generator | None = None,
+    width: float = WIDTH,
+    steps: int = 20,
+    together: int = 6,
+) -> Occlusion:
+    """Dance to the song, and again with the sound at each of `times` (seconds) silenced, always
+    from the same noise.
+
+    DDIM without noise of its own (eta = 0), so that nothing but the music differs; `together` songs
+    are danced to at once. Raises ValueError as `silence_hit` and `Dancer.dance` do.   Notebook: 12
+    """
+    start = torch.randn(1, frames, dancer.config.D, generator=generator)
+    heard = log_mel(np.stack([audio, *(silence_hit(audio, float(time), width) for time in times)]))
+    dances = [
+        dancer.dance_mel(mel, frames, start=start.expand(len(mel), -1, -1), steps=steps, eta=0.0)
+        for mel in heard.split(together)
+    ]
+    whole = torch.cat(dances).double().cpu().numpy()
+    return Occlusion(np.asarray(times, np.float64), whole[0], whole[1:])

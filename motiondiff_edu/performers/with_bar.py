@@ -1,0 +1,32 @@
+"""A walker or dancer whose work shows as a progress bar, without the samplers knowing of it."""
+
+import copy
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import TypeVar
+
+from ..motion.progress import bar
+
+Performer = TypeVar("Performer")  # what has a `denoiser` that its samplers ask for
+
+
+@contextmanager
+def with_bar(
+    performer: Performer, evaluations: int, what: str, shown: bool = True
+) -> Iterator[Performer]:
+    """The same performer, whose network moves a bar on by one each time it is evaluated."""
+    with bar(evaluations, what, shown) as step:
+        twin = copy.copy(performer)
+
+        def denoiser(*given, **named):
+            denoise = performer.denoiser(*given, **named)
+
+            def stepping(x_s, s):
+                answer = denoise(x_s, s)
+                step()
+                return answer
+
+            return stepping
+
+        vars(twin)["denoiser"] = denoiser  # the record is frozen; its twin lives as long as the bar
+        yield twin

@@ -1,0 +1,53 @@
+"""A ladder of recipes: one row for each, one panel for each measure, one dot for each training."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+from matplotlib.figure import Figure
+
+from .body import GREY
+from .style import MARKERS, OKABE_ITO, figure
+
+
+@dataclass(frozen=True)
+class Rung:
+    """A row: its words, its group, and for each measure one value for each training seed."""
+
+    words: str
+    group: str
+    values: Mapping[str, Sequence[float]]
+
+
+def ladder(rungs: Sequence[Rung], measures: Sequence[str], words: str) -> Figure:
+    """Dots of all seeds on logarithmic axes, groups by colour and marker; a line marks the mean of
+    the group's first row, from which its other rows differ in one choice.
+
+    Values that are not positive or not finite are left out.  Notebook: 07
+    """
+    groups = list(dict.fromkeys(rung.group for rung in rungs))
+    panels = len(measures)
+    fig, axes = figure(5 + 3.2 * panels, 1.6 + 0.34 * len(rungs), words, 1, panels, sharey=True)
+    for axis, measure in zip(axes, measures, strict=True):
+        for row, rung in enumerate(rungs):
+            k = groups.index(rung.group)
+            seen = [
+                x for x in rung.values.get(measure, ()) if x is not None and 0 < x < float("inf")
+            ]
+            axis.plot(seen, [row] * len(seen), MARKERS[k], color=OKABE_ITO[k], ms=7, alpha=0.8)
+        for k, group in enumerate(groups):
+            rows = [row for row, rung in enumerate(rungs) if rung.group == group]
+            first = _drawn(rungs[rows[0]], measure)
+            if first:
+                mean = sum(first) / len(first)
+                axis.plot([mean, mean], [rows[0], rows[-1]], "--", color=OKABE_ITO[k], lw=1.2)
+            if k:
+                axis.axhline(rows[0] - 0.5, color=GREY, lw=0.8)
+        axis.set(xscale="log", title=measure)
+        axis.set_yticks(range(len(rungs)), [rung.words for rung in rungs])
+    axes[0].invert_yaxis()
+    return fig
+
+
+def _drawn(rung: Rung, measure: str) -> list[float]:
+    """The values that a logarithmic axis can show."""
+    return [x for x in rung.values.get(measure, ()) if x is not None and 0 < x < float("inf")]

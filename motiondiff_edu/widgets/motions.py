@@ -1,0 +1,129 @@
+"""A Motion in the player, as a film and as a page: what it shows of itself, and .mp4 .gif .html.
+
+Notebook: 00
+"""
+
+import os
+import sys
+import tempfile
+import webbrowser
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+from jaxtyping import Float
+
+from ..motion import registry
+from ..motion.motion import Motion, MotionError, as_motion
+from ..motion.skeleton import COURSE
+from .player import Player
+
+
+def player_of(motions: Sequence[Motion], labels: Sequence[str] | None = None) -> Player:
+    """Several motions side by side, at the frame rate of the first, with the first sound there is.
+
+    Raises MotionError where a joint is missing, for two skeletons, and for labels that do not
+    match.
+    """
+    first = motions[0]
+    for motion in motions:
+        motion.check_finite()
+        if motion.skeleton != first.skeleton:
+            raise MotionError(
+                f"{first.name} and {motion.name} have different skeletons: play them one by one"
+            )
+    if labels is not None and len(labels) != len(motions):
+        raise MotionError(f"{len(labels)} labels for {len(motions)} motions: give one for each")
+    shown = [motion.resampled(first.fps) for motion in motions]
+    heard = next((motion for motion in shown if motion.audio is not None), first)
+    longest = max(shown, key=len)
+    sound = None if heard.audio is None else _as_long(heard, longest)
+    parents = None if first.skeleton == COURSE else list(first.skeleton.parents)
+    return Player(
+        [motion.positions for motion in shown], fps=first.fps, parents=parents,
+        contacts=[motion.contacts for motion in shown], audio=sound, sample_rate=heard.sample_rate,
+        labels=[motion.source for motion in shown] if labels is None else list(labels),
+    )  # fmt: skip
+
+
+def _as_long(heard: Motion, longest: Motion) -> Float[np.ndarray, "N"]:
+    """The sound, cut or filled up with silence to the length of the longest motion."""
+    count = round(longest.seconds * heard.sample_rate)
+    sound = heard.sound_in_step()[:count]
+    return np.pad(sound, (0, count - len(sound)))
+
+
+def play(
+    *motions: Motion | Sequence[Motion],
+    labels: Sequence[str] | None = None,
+    path: str | Path | None = None,
+    open_page: bool = True,
+) -> Path | None:
+    """Show motions side by side: in a notebook a player, elsewhere a page that the browser opens.
+
+    The page is written to `path` (by default to the folder for temporary files), and where it is,
+    is printed and returned; `open_page=False` leaves it at that.
+    Raises MotionError as `player_of`, TypeError for what is no Motion.  Notebook: 00
+    """
+    figures = []
+    for given in motions:
+        figures += list(given) if isinstance(given, list | tuple) else [given]
+    if not figures:
+        raise TypeError("play takes a motion at least; md.read_motion(path) reads one")
+    for one in figures:
+        as_motion(one)
+    player = player_of(figures, labels)
+    if path is None and _in_a_notebook():
+        from IPython.display import display
+
+        display(player)
+        return None
+    if path is None:
+        handle, name = tempfile.mkstemp(prefix="motiondiff_", suffix=".html")
+        os.close(handle)
+        path = name
+    page = player.save_html(Path(path).expanduser()).resolve()
+    print(f"the page is {page}", flush=True)
+    if open_page and _has_a_screen():
+        webbrowser.open(page.as_uri())
+    return page
+
+
+def _in_a_notebook() -> bool:
+    """Whether somebody looks at the outputs of this process' cells."""
+    shell = sys.modules["IPython"].get_ipython() if "IPython" in sys.modules else None
+    return shell is not None and hasattr(shell, "kernel")
+
+
+def _has_a_screen() -> bool:
+    """Whether a browser would have a window; one for the terminal would take the terminal."""
+    if os.environ.get("BROWSER") or sys.platform in ("win32", "darwin"):
+        return True
+    return bool(os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"))
+
+
+@registry.shows.register("player")
+def show(motion: Motion):
+    """The MIME bundle of the motion's player; its words where a joint is missing."""
+    if not motion.known.all():
+        return {"text/plain": repr(motion)}
+    bundle, metadata = player_of([motion])._repr_mimebundle_()
+    return bundle | {"text/plain": repr(motion)}, metadata
+
+
+@registry.writers.register(".html")
+def write_page(motion: Motion, path: Path) -> None:
+    """A page that plays anywhere, offline."""
+    player_of([motion]).save_html(path)
+
+
+@registry.writers.register(".gif")
+def write_gif(motion: Motion, path: Path) -> None:
+    """An endless GIF."""
+    player_of([motion]).save_gif(path)
+
+
+@registry.writers.register(".mp4")
+def write_mp4(motion: Motion, path: Path) -> None:
+    """A film with its sound.  Raises ImportError without imageio-ffmpeg."""
+    player_of([motion]).save_mp4(path)

@@ -1,0 +1,119 @@
+"""Terms and weights of the loss, each by hand on errors made for it."""
+
+import numpy as np
+import pytest
+import torch
+
+from motiondiff_edu.beyond.loss_terms import (
+    bone_errors,
+    bones,
+    changes,
+    high_noise_weights,
+    metre_weights,
+    near_weights,
+    toe_changes,
+    total,
+    weighted,
+    weighted_by_step,
+)
+from motiondiff_edu.ddpm import linear_schedule, squared_error
+from motiondiff_edu.motion.skeleton import HIPS, TOES, joint_index
+
+S1 = torch.tensor([1])
+
+
+def one_error(frame: int = 0, column: int = 0, size: float = 1.0, shape=(1, 3, 63)) -> torch.Tensor:
+    error = torch.zeros(shape)
+    error[0, frame, column] = size
+    return error
+
+
+def test_weights_are_weights_of_the_squares():
+    error = torch.tensor([[[1.0, 2.0], [3.0, 4.0], [0.0, 1.0]]])
+    columns, frames = torch.tensor([4.0, 1.0]), torch.tensor([[1.0], [10.0], [100.0]])
+    by_column = weighted(squared_error, columns)
+    assert by_column(error, S1).item() == pytest.approx((4 + 4 + 36 + 16 + 0 + 1) / 6)
+    by_frame = weighted(by_column, frames)
+    assert by_frame(error, S1).item() == pytest.approx((8 + 520 + 100) / 6)
+
+
+def test_weights_of_steps_go_by_each_sample_s_own_step():
+    error = torch.tensor([[[1.0]], [[2.0]], [[3.0]]])
+    loss = weighted_by_step(squared_error, torch.tensor([0.0, 1.0, 10.0, 100.0]))
+    assert loss(error, torch.tensor([3, 1, 2])).item() == pytest.approx((100 + 4 + 90) / 3)
+
+
+def test_losses_add_up():
+    both = total(squared_error, squared_error, lambda error, s: s.float().sum())
+    assert both(torch.full((1, 2, 2), 2.0), torch.tensor([5])).item() == 4 + 4 + 5
+
+
+@pytest.mark.parametrize("power", [1.0, 2.0])
+def test_columns_are_weighted_by_how_far_they_move(power):
+    """Squared errors in metres: a column that moves three times as far costs nine times as much."""
+    weights = metre_weights(torch.tensor([0.1, 0.3, 0.5]), power)
+    assert weights[1] / weights[0] == pytest.approx(3**power)
+    assert weights.mean().item() == pytest.approx(1)
+
+
+def test_frames_are_weighted_by_how_little_has_moved_till_then():
+    change = torch.tensor([[1.0, 7.0], [2.0, 14.0], [3.0, 21.0]])
+    for power in (0.5, 1.0):
+        weights = near_weights(change, power)
+        assert (weights[0] / weights[2]).item() == pytest.approx(3**power)
+        assert (weights[0] / weights[1]).item() == pytest.approx(2**power)
+        assert weights.mean().item() == pytest.approx(1)
+
+
+def test_steps_are_weighted_by_their_noise():
+    """beta 0.2, 0.35, 0.5, 0.65 ... leave 0.8, 0.52, 0.26, 0.091 of the signal; noise / signal is
+    capped at 3."""
+    wanted = [1, 1 + 0.2 / 0.8, 1 + 0.48 / 0.52, 1 + 0.74 / 0.26, 1 + 3, 1 + 3, 1 + 3]
+    found = high_noise_weights(linear_schedule(6, 0.2, 0.95), 3.0)
+    assert found.tolist() == pytest.approx(wanted)
+
+
+def test_bone_errors_by_hand():
+    """All joints off by the same: no bone errs. The left hand's tip alone off by 3 cm: its bone
+    errs, no other."""
+    error = torch.zeros(1, 2, 63)
+    error[:, 0] = 0.2
+    error[0, 1, 3 * 16 + 1] = 0.03
+    found = bone_errors(error)
+    assert not found[0, 0].any()
+    assert found[0, 1, 15] == pytest.approx(0.03**2 / 3) and found[0, 1].count_nonzero() == 1
+
+
+def test_bones_are_in_metres_over_the_mean_variance():
+    std = torch.linspace(0.1, 0.9, 63)
+    column = 3 * joint_index("LeftHandIndex1") + 2
+    error = one_error(1, column, 2.0)  # 2 std of the tip of the left hand, which is one bone
+    wanted = 5 * (2 * std[column]) ** 2 / 3 / (3 * 20) / std.square().mean()
+    assert bones(5.0, std)(error, S1).item() == pytest.approx(wanted.item())
+    assert bones(5.0, std)(torch.ones(1, 3, 63) / std, S1).item() == pytest.approx(0, abs=1e-9)
+
+
+def test_changes_from_frame_to_frame():
+    error = torch.zeros(1, 4, 2)
+    error[0, :, 0] = torch.tensor([1.0, 2.0, 4.0, 4.0])
+    assert changes(3.0)(error, S1).item() == pytest.approx(3 * (1 + 4 + 0) / 6)
+    assert changes(3.0)(torch.ones(1, 4, 2), S1) == 0
+
+
+def test_toes_err_in_the_world_where_pelvis_and_leg_do_not_err_alike():
+    std = torch.linspace(0.5, 2.0, 63)
+    drift = torch.tensor([0.0, 0.1, 0.3, 0.3])  # metres to the side
+    error = torch.zeros(1, 4, 63)
+    error[0, :, 3 * HIPS] = drift / std[0]
+    # two toes, three axes, three changes: both toes go with the pelvis
+    wanted = 2 / 0.05 * 2 * (0.1**2 + 0.2**2) / (2 * 3 * 3)
+    assert toe_changes(2.0, std, 0.05)(error, S1).item() == pytest.approx(wanted)
+    for toe in TOES:  # the toes stay in the world: minus the drift, about the pelvis
+        error[0, :, 3 * toe] = -drift / std[3 * toe]
+    assert toe_changes(2.0, std, 0.05)(error, S1).item() == pytest.approx(0, abs=1e-9)
+
+
+def test_weights_follow_the_errors_device_and_kind():
+    loss = weighted(total(squared_error, bones(1.0, torch.ones(63))), metre_weights(torch.ones(63)))
+    assert loss(torch.ones(1, 3, 63, dtype=torch.float64), S1).dtype == torch.float64
+    assert np.isfinite(loss(one_error(), S1).item())

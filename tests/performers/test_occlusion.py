@@ -1,0 +1,27 @@
+"""A dance with a sound and without it, from the same noise."""
+
+import numpy as np
+import pytest
+import torch
+from bursts import clicks
+from small_dancers import dancer_to_mel as dancer
+
+from motiondiff_edu.conditions.music import log_mel
+from motiondiff_edu.performers.occlusion import occlusion
+
+
+def test_occlusion_dances_again_from_the_same_noise():
+    one, song, times = dancer(), clicks(2.0, (0.5, 1.0), tone=0.0), np.array([0.5, 1.0, 1.6])
+    found = occlusion(one, song, times, 33, generator=torch.Generator().manual_seed(7), steps=3)
+    start = torch.randn(1, 33, 63, generator=torch.Generator().manual_seed(7))
+    plain = one.dance_mel(log_mel(song)[None], 33, start=start, steps=3, eta=0.0)[0].double().numpy()
+    assert found.dance == pytest.approx(plain, abs=1e-5)
+    assert found.without.shape == (3, 33, 21, 3) and found.moved.shape == (3, 33)
+    by_hand = np.sqrt(((found.without[1, 20] - plain[20]) ** 2).sum(-1)).mean()
+    assert found.moved[1, 20] == pytest.approx(by_hand, abs=1e-5)
+    assert found.moved[:2].max(1).min() > 1e-4  # a silenced burst changes something
+    assert found.moved[2].max() < 1e-5  # silenced silence changes nothing
+    in_turn = occlusion(
+        one, song, times, 33, generator=torch.Generator().manual_seed(7), steps=3, together=1
+    )
+    assert in_turn.without == pytest.approx(found.without, abs=1e-5)

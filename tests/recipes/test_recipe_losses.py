@@ -1,0 +1,197 @@
+"""A recipe's loss is Algorithm 1, or MoFusion's eq. 4, plus the departures it names: term by term
+the numbers that the shipped walkers and dancers were trained with."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import torch
+
+from motiondiff_edu.beyond.footholds import FootholdConfig
+from motiondiff_edu.ddpm import linear_schedule
+from motiondiff_edu.diffusion_dropout import Dropout
+from motiondiff_edu.kinematic_loss import KinematicWeights
+from motiondiff_edu.modiff import MoDiff, MoDiffConfig
+from motiondiff_edu.mofusion import MoFusion
+from motiondiff_edu.motion.clip import Clip
+from motiondiff_edu.performers.dance_windows import DanceWindows
+from motiondiff_edu.performers.networks import network as walker_network
+from motiondiff_edu.performers.walker import SCHEDULES
+from motiondiff_edu.performers.windows import Windows
+from motiondiff_edu.recipes import train_dancer, train_walker
+from motiondiff_edu.recipes.dancers import DANCER, DANCER_PLAIN, DanceLossWeights
+from motiondiff_edu.recipes.walkers import MEND_DROPOUT, WALKER_EPS, WALKER_X0, Recipe
+
+T_H, T_P = 4, 3
+SIZES = dict(
+    T_h=T_H, T_p=T_P, S=100, width=16, heads=2, hidden=24,
+    motion_layers=1, control_layers=1, cross_layers=1, decoder_layers=1,
+)  # fmt: skip
+FEET = FootholdConfig(**SIZES)
+
+
+@pytest.fixture(scope="module")
+def walks() -> Windows:
+    rng = np.random.default_rng(0)
+    poses = rng.normal(size=(90, 21, 3)).cumsum(0) * np.linspace(0.1, 1, 63).reshape(21, 3)
+    return Windows.of([Clip(poses, rng.normal(size=(90, 3)), source="drift")], T_H, T_P)
+
+
+def seeded(seed: int = 8) -> torch.Generator:
+    return torch.Generator().manual_seed(seed)
+
+
+# Recipe, rate of diffusion dropout, the loss of three batches of the code that trained what is
+# shipped, and the next random number after them
+TRAINED_WITH = {
+    "walker-x0": (
+        replace(WALKER_X0, config=FEET),
+        None,
+        [3.3518362045288086, 4.058508396148682, 6.164492130279541],
+        0.9624656438827515,
+    ),
+    "walker-eps": (
+        replace(WALKER_EPS, config=MoDiffConfig(**SIZES)),
+        None,
+        [2.936447858810425, 2.390742778778076, 4.571247100830078],
+        0.9624656438827515,
+    ),
+    "mend-dropout": (
+        replace(MEND_DROPOUT, config=MoDiffConfig(**SIZES, target="x0", skip=False)),
+        0.5,
+        [3.3518226146698, 3.5534024238586426, 3.255232095718384],
+        0.9755024313926697,
+    ),
+    "footholds, past noise and dropout": (
+        replace(WALKER_X0, config=FEET),
+        0.5,
+        [3.3649730682373047, 6.016450881958008, 4.705264091491699],
+        0.9719537496566772,
+    ),
+}
+
+
+@pytest.mark.parametrize("name", TRAINED_WITH)
+def test_walkers_losses_are_those_that_the_shipped_ones_were_trained_with(name, walks):
+    recipe, rate, losses, after = TRAINED_WITH[name]
+    schedule = SCHEDULES["leap"](100)
+    dropout = Dropout(schedule, lambda done: rate, 1, done=0.0) if rate else None
+    torch.manual_seed(0)
+    model = walker_network(recipe.config, walks.pose_scaler, walks.control_scaler)
+    loss_fn, generator = (
+        train_walker.loss_of(replace(recipe, batch=6), walks, schedule, dropout),
+        seeded(),
+    )
+    assert [loss_fn(model, generator).item() for _ in range(3)] == pytest.approx(losses, rel=2e-5)
+    assert torch.rand(1, generator=generator).item() == after  # as many numbers drawn
+
+
+def dances(music: bool = True) -> DanceWindows:
+    rng, parts = np.random.default_rng(0), []
+    for frames in (90, 74):
+        drift = 0.02 * rng.normal(size=(frames, 21, 3)).cumsum(0) + rng.normal(size=(1, 21, 3))
+        stands = rng.random((frames, 2)) < 0.5
+        parts.append((drift, stands, torch.from_numpy(rng.normal(size=(2 * frames, 5))).float()))
+    positions, contacts, mels = (list(part) for part in zip(*parts, strict=True))
+    return DanceWindows.of(positions, contacts, mels if music else None, 40)
+
+
+SMALL = dict(C=5, S=50, widths=(16, 24), heads=2, music_layers=1)
+EPS = replace(
+    DANCER,
+    config=replace(DANCER.config, **SMALL, target="eps", skip=True),
+    kinematic=KinematicWeights(40.0, 5.0, 0.7, 0.3, "snr"),
+    loss_weights=DanceLossWeights(changes=5.0, high_noise=20.0),
+    gain_noise=0.0,
+)
+DANCED_WITH = {
+    "dancer": (
+        replace(DANCER, config=replace(DANCER.config, **SMALL)),
+        [18.793155670166016, 19.05510711669922, 15.613136291503906],
+        0.8946988582611084,
+    ),
+    "dancer-plain": (
+        replace(DANCER_PLAIN, config=replace(DANCER.config, **SMALL)),
+        [17.623079299926758, 18.480873107910156, 14.08358097076416],
+        0.8946988582611084,
+    ),
+    "eps, snr, high noise": (
+        EPS,
+        [12.799775123596191, 7.470817565917969, 5.495769023895264],
+        0.5583015084266663,
+    ),
+    "unconditional": (
+        replace(DANCER, config=replace(DANCER.config, **SMALL | {"C": 0})),
+        [12.835821151733398, 13.1132230758667, 10.85567855834961],
+        0.8946988582611084,
+    ),
+}
+
+
+@pytest.mark.parametrize("name", DANCED_WITH)
+def test_dancers_losses_are_those_that_the_shipped_ones_were_trained_with(name):
+    recipe, losses, after = DANCED_WITH[name]
+    schedule = train_dancer.schedule_of(recipe)
+    torch.manual_seed(0)
+    model = MoFusion(recipe.config)
+    torch.nn.init.normal_(model.out.weight, std=0.1)
+    windows = dances(music=recipe.config.C > 0)
+    loss_fn, generator = (
+        train_dancer.loss_of(replace(recipe, batch=6), windows, schedule),
+        seeded(),
+    )
+    assert [loss_fn(model, generator).item() for _ in range(3)] == pytest.approx(losses, rel=2e-5)
+    assert torch.rand(1, generator=generator).item() == after
+
+
+@pytest.mark.parametrize("rate", [None, 0.6])
+def test_a_recipe_without_departures_is_algorithm_1(walks, rate):
+    """s ~ Uniform(1..S); with probability P_d the past is noised to step s; eps ~ N(0, I); the mean
+    of the squared error of eps. Written out with the same draws, in the same order."""
+    schedule = linear_schedule(6, 0.2, 0.95)
+    torch.manual_seed(0)
+    model = MoDiff(MoDiffConfig(**SIZES | {"S": 6}))
+    recipe = Recipe("printed", model.config, steps=1, batch=7, held_control=0.0)
+    dropout = Dropout(schedule, lambda done: rate, 1, done=0.0) if rate else None
+    loss = train_walker.loss_of(recipe, walks, schedule, dropout)(model, seeded())
+
+    generator = seeded()
+    start = walks.starts[torch.randint(len(walks.starts), (7,), generator=generator)]
+    torch.rand(7, generator=generator)  # who holds the control: nobody here
+    rows = start[:, None] + torch.arange(T_H + T_P)
+    past, y, c = walks.poses[rows[:, :T_H]], walks.poses[rows[:, T_H:]], walks.control[rows]
+    s = torch.randint(1, 7, (7,), generator=generator)
+    alpha_bar = torch.cumprod(1 - torch.linspace(0.2, 0.95, 6), 0)[s - 1][:, None, None]
+    if rate:
+        hit = torch.rand(7, generator=generator) < rate
+        noise = torch.randn(7, T_H, 63, generator=generator)
+        noised = alpha_bar**0.5 * past + (1 - alpha_bar) ** 0.5 * noise
+        past = torch.where(hit[:, None, None], noised, past)
+        assert 0 < hit.sum() < 7
+    eps = torch.randn(7, T_P, 63, generator=generator)
+    y_s = alpha_bar**0.5 * y + (1 - alpha_bar) ** 0.5 * eps
+    by_hand = (eps - model(y_s, s, past, c)).square().mean()
+    assert loss.item() == pytest.approx(by_hand.item(), rel=1e-5)
+
+
+def test_without_departures_a_dancer_s_loss_is_the_mean_square_of_eps():
+    recipe = replace(
+        EPS, kinematic=None, loss_weights=DanceLossWeights(), gain_noise=0.0, snr=1.0, batch=5
+    )
+    windows, schedule, generator = dances(), train_dancer.schedule_of(recipe), seeded()
+    torch.manual_seed(0)
+    model = MoFusion(recipe.config)
+    loss = train_dancer.loss_of(recipe, windows, schedule)(model, seeded())
+    x0, mel, _ = windows.draw(5, generator)
+    s = torch.randint(1, 51, (5,), generator=generator)
+    eps = torch.randn(x0.shape, generator=generator)
+    alpha_bar = schedule.alpha_bar[s].float()[:, None, None]
+    x_s = alpha_bar**0.5 * x0 + (1 - alpha_bar) ** 0.5 * eps
+    by_hand = (eps - model(x_s, s, model.listen(mel, windows.mel_times))).square().mean()
+    assert loss.item() == pytest.approx(by_hand.item(), rel=1e-5)
+
+
+@pytest.mark.parametrize("change", [{"batch": 0}, {"noises": 0}])
+def test_a_batch_needs_a_window_and_a_noise(change):
+    with pytest.raises(ValueError, match="a window and a noise at least"):
+        replace(WALKER_X0, **change)

@@ -1,0 +1,273 @@
+"""The verbs on the command line: what they write and say, and that mistakes cost no work."""
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+import soundfile
+
+import motiondiff_edu as md
+from data_synth.music import compose
+from data_synth.walking import walk
+from motiondiff_edu import __main__ as command
+from motiondiff_edu import _commands
+from motiondiff_edu._commands import control_words
+
+ARM = "RightArm,RightForeArm,RightHand"
+
+
+@pytest.fixture
+def folder(tmp_path, monkeypatch, capsys):
+    """A folder with a walk and a song, entered."""
+    monkeypatch.chdir(tmp_path)
+    control = np.tile([1.0, 0.0, 0.2], (50, 1))
+    md.Motion.of_clip(walk(control, seed=2)).save("my_walk.bvh")
+    soundfile.write("song.wav", compose(3, "pop", seconds=5).audio, 16_000)
+    capsys.readouterr()
+    return tmp_path
+
+
+def run(*words: str) -> int:
+    """The exit code of `motiondiff-edu words`."""
+    try:
+        return command.main(list(words))
+    except SystemExit as stopped:
+        return stopped.code
+
+
+def test_a_walk_is_continued_from_the_command_line(folder, capsys):
+    words = ["walk", "my_walk.bvh", "--control", "1s 1.2; 0.5s 1.0 turn 0.6"]
+    assert run(*words, "--out", "more.npz") == 0
+    said = capsys.readouterr()
+    assert "more.npz: 1.5 s, 30 frames" in said.out and "reading my_walk.bvh" in said.err
+    more = md.read_motion("more.npz")
+    np.testing.assert_allclose(more.control[5], [1.2, 0, 0], atol=1e-9)
+    # the turn sets in within half a second, by 3u^2 - 2u^3: at its end it is there
+    np.testing.assert_allclose(more.control[28, 2], 0.6 * (3 * 0.9**2 - 2 * 0.9**3), atol=1e-9)
+    assert run(*words, "--joined", "--out", "both.npz") == 0
+    both = md.read_motion("both.npz")
+    assert len(both) == 80
+    np.testing.assert_array_equal(both.positions[50:], more.positions)
+
+
+def test_a_song_is_danced_to_from_the_command_line(folder, capsys):
+    assert run("dance", "song.wav", "--seconds", "1.5", "--out", "dance.bvh") == 0
+    assert len(md.read_motion("dance.bvh")) == 30
+    assert "dance.bvh: 1.5 s, 30 frames" in capsys.readouterr().out
+
+
+def test_samples_go_to_numbered_files(folder, capsys):
+    words = ["inbetween", "my_walk.bvh", "--every", "10", "--samples", "2", "--out", "made.npz"]
+    assert run(*words) == 0
+    assert sorted(p.name for p in folder.glob("made*")) == ["made-1.npz", "made-2.npz"]
+    one, two = md.read_motion("made-1.npz"), md.read_motion("made-2.npz")
+    given = md.read_motion("my_walk.bvh")
+    frames = [0, 10, 20, 30, 40, 49]
+    np.testing.assert_array_equal(one.positions[frames], given.positions[frames])
+    assert not np.array_equal(one.positions, two.positions)
+    assert run(*words) == 1 and "made-1.npz is there already" in capsys.readouterr().err
+    assert run(*words, "--overwrite") == 0
+
+
+def test_missing_joints_are_found_from_the_command_line(folder, capsys):
+    words = ["reconstruct", "my_walk.bvh", "--missing", ARM, "--frames", "20-30,41-41"]
+    assert run(*words, "--out", "whole.npz") == 0
+    assert "reconstructing 36 joint positions" in capsys.readouterr().err  # (11 + 1) * 3
+    given, whole = md.read_motion("my_walk.bvh"), md.read_motion("whole.npz")
+    changed = (given.positions != whole.positions).any(-1)
+    assert changed.sum() == 36 and changed[20:31, 17:20].all() and changed[41, 17:20].all()
+
+
+def test_an_npz_with_holes_needs_no_names(folder):
+    given = md.read_motion("my_walk.bvh")
+    known = given.all_but(["Head"], 12, 17)
+    holes = np.where(known[..., None], given.positions, np.nan)
+    md.Motion(holes).save("holes.npz")
+    assert run("reconstruct", "holes.npz", "--out", "whole.npz") == 0
+    whole = md.read_motion("whole.npz")
+    assert whole.known.all()
+    np.testing.assert_array_equal(whole.positions[known], given.positions[known])
+
+
+def test_info_convert_and_play(folder, capsys):
+    assert run("convert", "my_walk.bvh", "my_walk.npz") == 0
+    assert run("info", "my_walk.npz", "my_walk.bvh") == 0
+    said = capsys.readouterr().out
+    # 49 steps of 5 cm; the pelvis sways about the path
+    assert said.count("2.5 s, 50 frames at 20 frames/s") == 2 and "the root goes 2.4" in said
+    assert run("play", "my_walk.bvh", "my_walk.npz", "--out", "page.html", "--no-open") == 0
+    assert "<!doctype html>" in (folder / "page.html").read_text("utf-8")
+    assert "the page is" in capsys.readouterr().out
+    words = ["play", "my_walk.bvh", "--out", "page.html", "--no-open"]
+    assert run(*words) == 1 and "is there already" in capsys.readouterr().err
+
+
+WALK = ["walk", "my_walk.bvh", "--control", "1s 1", "--out", "x.bvh"]
+MISTAKES = {
+    "no such file": (["info", "nope.bvh"], "there is no file nope.bvh in"),
+    "no motion": (["info", "song.wav"], "song.wav is not read as a motion"),
+    "a png": (["convert", "pic.png", "x.bvh"], "there is no file pic.png"),
+    "no song": (["dance", "my_walk.bvh", "--out", "x.bvh"], "is text, not sound"),
+    "negative seconds": (
+        ["dance", "song.wav", "--seconds", "-3", "--out", "x.bvh"],
+        "seconds must be above 0",
+    ),
+    "an ending": (["convert", "my_walk.bvh", "x.docx"], "nothing is written as .docx; there are"),
+    "no ending": (["convert", "my_walk.bvh", "x"], "the name has no ending; there are .bvh"),
+    "there already": (["convert", "my_walk.bvh", "my_walk.bvh"], "is there already"),
+    "a comma": (
+        ["walk", "my_walk.bvh", "--control", "1s 1,2", "--out", "x.bvh"],
+        "'1,2' is no number; write a decimal point (character 4 of the control)",
+    ),
+    "no samples": ([*WALK, "--samples", "0"], "--samples is a number from 1 on, not 0"),
+    "no keyframes": (
+        ["inbetween", "my_walk.bvh", "--every", "0", "--out", "x.bvh"],
+        "every is a whole number from 1 on",
+    ),
+    "no joint": (
+        ["reconstruct", "my_walk.bvh", "--missing", "Tail", "--out", "x.bvh"],
+        "reconstruct: no joint is called 'Tail'; the skeleton has Hips",
+    ),
+    "no pelvis": (
+        ["reconstruct", "my_walk.bvh", "--missing", "Hips", "--out", "x.bvh"],
+        "the pelvis (Hips) is not known in frame 0",
+    ),
+    "no such frames": (
+        ["reconstruct", "my_walk.bvh", "--missing", "Head", "--frames", "40-80", "--out", "x.bvh"],
+        "frames 40 to 80 are not within its 50 (0 to 49)",
+    ),
+    "no span": (
+        ["reconstruct", "my_walk.bvh", "--missing", "Head", "--frames", "9-3", "--out", "x.bvh"],
+        "'9-3' is no span of frames such as 40-80",
+    ),
+    "frames of nothing": (
+        ["reconstruct", "my_walk.bvh", "--frames", "3-9", "--out", "x.bvh"],
+        "say as well which joints",
+    ),
+    "nothing missing": (["reconstruct", "my_walk.bvh", "--out", "x.bvh"], "nothing is missing"),
+    "no page": (["play", "my_walk.bvh", "--out", "x.bvh"], "the page's name ends in .html"),
+}
+
+
+@pytest.mark.parametrize("name", MISTAKES)
+def test_a_mistake_is_answered_in_words_and_writes_nothing(name, folder, capsys):
+    words, told = MISTAKES[name]
+    before = sorted(folder.iterdir())
+    assert run(*words) == 1
+    said = capsys.readouterr().err
+    assert told in said and "Traceback" not in said
+    assert sorted(folder.iterdir()) == before
+
+
+def test_an_option_that_is_none_is_refused(folder, capsys):
+    assert run(*WALK, "--speed", "3") == 2
+    assert "walk does not know --speed 3" in capsys.readouterr().err
+    assert run("walk", "my_walk.bvh") == 2
+
+
+@pytest.mark.parametrize("verb", _commands.VERBS)
+def test_help_has_an_example(verb, capsys):
+    assert run(verb, "--help") == 0
+    said = capsys.readouterr().out
+    assert f"For example:\n  motiondiff-edu {verb} " in said
+
+
+def test_help_is_there_before_anything_heavy():
+    code = (
+        "import sys\nfrom motiondiff_edu import __main__ as m\n"
+        "try: m.main(['walk', '--help'])\nexcept SystemExit: pass\n"
+        "print('torch' in sys.modules, 'numpy' in sys.modules)"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.splitlines()[-1] == "False False"
+
+
+@pytest.mark.parametrize(
+    "words, wanted",
+    [
+        ("3s 1.2; 4s 1.0 turn 0.6", [(3, 1.2, 0, 0), (4, 1.0, 0, 0.6)]),
+        ("0.5s -1", [(0.5, -1, 0, 0)]),
+        (" 2s  0 left .3 ;1s 1 right 0.2 turn -1; ", [(2, 0, 0.3, 0), (1, 1, -0.2, -1)]),
+    ],
+)
+def test_control_in_words(words, wanted):
+    assert control_words.parse(words) == wanted
+
+
+@pytest.mark.parametrize(
+    "words, at, told",
+    [
+        ("", 0, "the control is empty"),
+        (" ; ", 0, "the control is empty"),
+        ("3 1.2", 0, "a piece begins with its seconds, as 3s, not '3'"),
+        ("3s 1.2; 4s", 10, "after the seconds comes the speed"),
+        ("3s 1.2; 4s fast", 11, "'fast' is no number"),
+        ("3s 1.2 turn", 11, "a number is missing after 'turn'"),
+        ("3s 1.2 up 4", 7, "'up' is none of left, right and turn"),
+        ("3s 1.2 left 1 right 2", 14, "'right': this was told already"),
+        ("3s 1.2;; 4s 1", 7, "nothing between two semicolons"),
+        ("3s nan", 3, "'nan' is no finite number"),
+        ("0s 1", 0, "seconds are above 0"),
+        ("-2s 1", 0, "seconds are above 0"),
+    ],
+)
+def test_words_that_are_no_control_are_marked_where_they_go_wrong(words, at, told):
+    with pytest.raises(ValueError) as caught:
+        control_words.parse(words)
+    first, shown, mark, *_ = str(caught.value).splitlines()
+    assert told in first and f"(character {at + 1} of the control)" in first
+    assert shown == f"  {words}" and mark == f"  {' ' * at}^"
+
+
+def interrupted(words: list[str], folder: Path, seen: str) -> tuple[int, str]:
+    """The exit code and stderr of a command that gets Ctrl-C once it has said `seen`."""
+    process = subprocess.Popen(
+        [sys.executable, "-m", "motiondiff_edu", *words],
+        cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, bufsize=0,
+        env=os.environ | {"PYTHONPATH": os.pathsep.join(sys.path)},
+    )  # fmt: skip
+    said = b""
+    while seen.encode() not in said and process.poll() is None:
+        said += process.stderr.read(1)
+    time.sleep(0.3)
+    process.send_signal(signal.SIGINT)
+    _, rest = process.communicate(timeout=60)
+    return process.returncode, (said + rest).decode()
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="Windows has no SIGINT for another process")
+def test_ctrl_c_ends_with_a_word_and_leaves_no_half_file(folder):
+    """While it walks, and while it draws a film: both told by the progress bar."""
+    before = sorted(folder.iterdir())
+    walking = ["walk", "my_walk.bvh", "--control", "90s 1.2", "--out", "more.bvh"]
+    code, said = interrupted(walking, folder, "walking: ")
+    assert "stopped" in said and "Traceback" not in said and code != 0
+    code, said = interrupted(["convert", "my_walk.bvh", "film.gif"], folder, "drawing: ")
+    assert "stopped" in said and "Traceback" not in said and code != 0
+    assert sorted(folder.iterdir()) == before
+
+
+def test_recordings_from_the_command_line(real_data, tmp_path, monkeypatch, capsys):
+    """As in the README, on files of strangers; the warnings are notes, not lines of code."""
+    monkeypatch.chdir(tmp_path)
+    walk = str(real_data / "bvh" / "cmu_12_01_walk_pybvh.bvh")
+    assert run("info", walk) == 0
+    said = capsys.readouterr()
+    assert "note: cmu_12_01_walk_pybvh: frame 0 is a calibration pose" in said.err
+    assert run("walk", walk, "--control", "1s 1.0", "--out", "more.bvh") == 0
+    song = str(real_data / "audio" / "nutcracker.ogg")
+    assert run("dance", song, "--seconds", "2", "--out", "dance.bvh") == 0
+    assert run("info", "more.bvh", "dance.bvh") == 0
+    said = capsys.readouterr().out
+    assert "1.0 s, 20 frames" in said and "2.0 s, 40 frames" in said
+    broken = sorted((real_data / "bvh_odd_and_broken").glob("bad_*.bvh"))
+    for path in broken:
+        assert run("convert", str(path), "out.npz") in (0, 1)
+        assert "Traceback" not in capsys.readouterr().err
+        Path("out.npz").unlink(missing_ok=True)
+    assert len(broken) > 15

@@ -1,0 +1,328 @@
+"""The front door as a stranger uses it: three lines each, on files of their own; and what they are
+told when it cannot be."""
+
+import json
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+from as_typed import outcomes
+
+import motiondiff_edu as md
+from data_synth.music import compose
+from data_synth.walking import walk
+from motiondiff_edu.motion.skeleton import HIPS, TOES, joint_index
+from motiondiff_edu.widgets import motions as shown
+from motiondiff_edu.widgets.player import Player
+
+HEAVY = (
+    "torch",
+    "numpy",
+    "scipy",
+    "matplotlib",
+    "ipywidgets",
+    "anywidget",
+    "librosa",
+    "PIL",
+    "tqdm",
+)
+ARM = ("RightArm", "RightForeArm", "RightHand", "RightHandIndex1")
+
+
+@pytest.fixture(scope="module")
+def walked() -> md.Motion:
+    """Five seconds that turn to the left, where and how they are known."""
+    control = np.tile([1.2, 0.0, 0.3], (100, 1))
+    return md.Motion.of_clip(walk(control, seed=12, style="neutral"), (1.0, 2.0, 0.5))
+
+
+@pytest.fixture
+def folder(tmp_path, monkeypatch, walked, capsys):
+    """A folder with a walk of one's own, entered."""
+    monkeypatch.chdir(tmp_path)
+    walked.save("my_walk.bvh")
+    capsys.readouterr()
+    return tmp_path
+
+
+def bone_lengths(motion: md.Motion) -> np.ndarray:
+    parents = np.array(motion.skeleton.parents[1:])
+    return np.linalg.norm(motion.positions[:, 1:] - motion.positions[:, parents], axis=-1)
+
+
+def test_a_walk_is_continued(folder):
+    walk = md.read_motion("my_walk.bvh")
+    more = md.load("walker").walk(walk, md.joystick([(3, 1.2, 0, 0)]), seed=0)
+    more.save("more.bvh")
+    assert len(more) == 60 and more.fps == 20 and (folder / "more.bvh").is_file()
+    step = more.positions[0, HIPS] - walk.positions[-1, HIPS]
+    assert 0.02 < np.linalg.norm(step) < 0.12  # metres: the next frame at 1.2 m/s is 6 cm on
+    way = np.linalg.norm(more.positions[-1, HIPS] - more.positions[0, HIPS])
+    assert abs(way - 1.2 * 59 / 20) < 0.25
+    before, after = walk.root[-1, 2], more.root[0, 2]
+    assert abs(after - before) < 0.05  # radians: it faces where the walk faced
+    assert np.abs(bone_lengths(more) - bone_lengths(walk)[0]).max() < 0.04
+    both = walk.then(more)
+    assert len(both) == 160 and np.isfinite(both.control).all()
+    np.testing.assert_allclose(both.control[-50:-1], [[1.2, 0, 0]] * 49, atol=1e-9)
+
+
+def test_a_continuation_is_drawn_by_its_seed(walked):
+    walker, control = md.load("walker"), md.joystick([(0.5, 1.2, 0, 0)])
+    one = walker.walk(walked, control, seed=1)
+    same, other = walker.walk(walked, control, seed=1), walker.walk(walked, control, seed=2)
+    np.testing.assert_array_equal(one.positions, same.positions)
+    assert not np.array_equal(one.positions, other.positions)
+    three = walker.walk(walked, control, samples=3)
+    assert len(three) == 3 and not np.array_equal(three[0].positions, three[1].positions)
+    longer = walker.walk(walked, control, seconds=0.8)
+    assert len(longer) == 16 and len(walker.walk(walked, control, seconds=0.3)) == 6
+    np.testing.assert_allclose(longer.control[-8:-1], np.tile(control[-1], (7, 1)), atol=1e-9)
+
+
+def test_a_motion_at_another_rate_is_continued(walked):
+    more = md.load("walker").walk(walked.resampled(60), md.joystick([(0.5, 1.2, 0, 0)]))
+    assert more.fps == 20 and len(more) == 10
+    assert np.linalg.norm(more.positions[0, HIPS] - walked.positions[-1, HIPS]) < 0.12
+
+
+def test_a_song_is_danced_to(folder):
+    sound = compose(3, "latin", seconds=6).audio
+    song = md.load("dancer").dance(sound, seconds=2, seed=0)
+    song.save("song.npz")
+    assert len(song) == 40 and len(song.audio) == 32_000
+    back = md.read_motion("song.npz")
+    np.testing.assert_array_equal(back.audio, sound[:32_000].astype(np.float32))
+
+
+def test_what_lies_between_keyframes_is_made(walked):
+    known = md.keyframes(walked, every=20)
+    assert known.shape == (100, 21) and known[0].all() and known[99].all() and known.sum() == 6 * 21
+    made = md.inbetween(walked, known, samples=2, steps=10)
+    assert len(made) == 2 and not np.array_equal(made[0].positions, made[1].positions)
+    for one in made:
+        np.testing.assert_array_equal(one.positions[known], walked.positions[known])
+        assert np.isfinite(one.positions).all()
+    assert isinstance(md.inbetween(walked[:7], md.keyframes(7, every=3), steps=3), md.Motion)
+
+
+def straight_lines(motion: md.Motion, known: np.ndarray) -> np.ndarray:
+    """Each joint's way about the pelvis, straight through its holes."""
+    frames, about = np.arange(len(motion)), motion.positions - motion.positions[:, :1]
+    lines = np.copy(about)
+    for joint in range(21):
+        given = known[:, joint]
+        for axis in range(3):
+            lines[:, joint, axis] = np.interp(frames, frames[given], about[given, joint, axis])
+    return lines + motion.positions[:, :1]
+
+
+def error_cm(found: np.ndarray, motion: md.Motion, known: np.ndarray) -> float:
+    away = np.linalg.norm(found - motion.positions, axis=-1)[~known]
+    return float(100 * np.sqrt((away**2).mean()))
+
+
+def test_a_missing_arm_is_found_again(walked):
+    """Known joints come back bit by bit; the arm is nearer than on straight lines, and joins.
+
+    An arm that swings: one that is raised in its hole only can be found by nobody.
+    """
+    known = walked.all_but(ARM, 30, 65)
+    known[80:83, 1:] = False  # and three frames of all but the pelvis
+    holes = md.Motion(np.where(known[..., None], walked.positions, np.nan))
+    whole = md.reconstruct(holes, known)
+    np.testing.assert_array_equal(whole.positions[known], walked.positions[known])
+    assert whole.known.all()
+    lines = error_cm(straight_lines(walked, known), walked, known)
+    assert lines > 8 and error_cm(whole.positions, walked, known) < 0.6 * lines
+    speed = 20 * np.linalg.norm(np.diff(whole.positions, axis=0), axis=-1)
+    true = 20 * np.linalg.norm(np.diff(walked.positions, axis=0), axis=-1)
+    edges = known[1:] != known[:-1]
+    assert speed[edges].max() < 1.3 * true.max()  # m/s: no jump where a hole begins or ends
+    assert np.abs(bone_lengths(whole) - bone_lengths(walked)[0]).max() < 0.03
+
+
+def test_a_long_motion_is_mended_wherever_it_is_broken():
+    """Half a minute with holes at its start, across its middle and at its end."""
+    control = np.tile([0.9, 0.0, 0.2], (600, 1))
+    motion = md.Motion.of_clip(walk(control, seed=5))
+    known = motion.all_but(ARM, 0, 25) & motion.all_but(["LeftLeg", "LeftFoot"], 290, 330)
+    known &= motion.all_but(["Head", "Neck1", "LeftHand"], 580, 600)
+    holes = md.Motion(np.where(known[..., None], motion.positions, np.nan))
+    whole = md.reconstruct(holes, known)
+    np.testing.assert_array_equal(whole.positions[known], motion.positions[known])
+    for first, last in ((0, 25), (290, 330), (580, 600)):
+        part = slice(first, last)
+        away = error_cm(whole.positions[part], motion[part], known[part])
+        assert away < 12, (first, away)
+
+
+def test_a_reconstruction_is_drawn_by_its_seed(walked):
+    known = walked.all_but(ARM, 40, 50)
+    first, same, other = (md.reconstruct(walked, known, seed=k).positions for k in (0, 0, 1))
+    np.testing.assert_array_equal(first, same)
+    assert not np.array_equal(first, other)
+
+
+def test_a_foot_that_was_made_anew_has_no_contacts(walked):
+    hand, foot = walked.all_but(ARM, 40, 44), walked.all_but(["LeftToeBase"], 40, 44)
+    np.testing.assert_array_equal(md.reconstruct(walked, hand).contacts, walked.contacts)
+    assert joint_index("LeftToeBase") in TOES and md.reconstruct(walked, foot).contacts is None
+
+
+def test_a_motion_shows_itself_as_a_player(walked):
+    bundle, _ = walked._repr_mimebundle_()
+    assert "application/vnd.jupyter.widget-view+json" in bundle and "image/png" in bundle
+    assert bundle["text/plain"] == repr(walked)
+    broken = md.Motion(np.where(np.arange(100)[:, None, None] == 4, np.nan, walked.positions))
+    assert broken._repr_mimebundle_() == {"text/plain": repr(broken)}
+
+
+def test_play_shows_several_side_by_side(walked, tmp_path, capsys):
+    song = md.Motion(walked.positions[:40], audio=np.zeros(16_000, np.float32))
+    page = md.play(walked, [song, walked[:10]], path=tmp_path / "p.html", open_page=False)
+    assert page == (tmp_path / "p.html").resolve() and str(page) in capsys.readouterr().out
+    assert "<!doctype html>" in page.read_text("utf-8")
+    player = shown.player_of([walked, song, walked.resampled(60)], ["a", "b", "c"])
+    figures = player.scene["figures"]
+    assert [figure["frames"] for figure in figures] == [100, 40, 100]
+    assert [figure["label"] for figure in figures] == ["a", "b", "c"]
+
+
+def test_play_in_a_notebook_displays_a_player(walked, monkeypatch):
+    import IPython.display
+
+    seen = []
+    monkeypatch.setattr(shown, "_in_a_notebook", lambda: True)
+    monkeypatch.setattr(IPython.display, "display", seen.append)
+    assert md.play(walked, walked) is None
+    (player,) = seen
+    assert isinstance(player, Player) and len(player.scene["figures"]) == 2
+
+
+@pytest.mark.parametrize("ending, begins", [("gif", b"GIF89a"), ("html", b"<!doc"), ("mp4", None)])
+def test_films_and_pages_are_written_whole(ending, begins, walked, tmp_path):
+    short = md.Motion(walked.positions[:6], audio=np.zeros(4_800, np.float32))
+    path = short.save(tmp_path / f"walk.{ending}")
+    head = path.read_bytes()[:12]
+    assert head.startswith(begins) if begins else b"ftyp" in head
+    assert [file.name for file in tmp_path.iterdir()] == [path.name]
+
+
+def test_importing_it_imports_nothing_heavy():
+    code = (
+        "import sys, motiondiff_edu as md; early = {n.split('.')[0] for n in sys.modules}; "
+        "listed = dir(md); md.read_motion; later = {n.split('.')[0] for n in sys.modules}; "
+        "import json; print(json.dumps([sorted(early), listed, sorted(later)]))"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    early, listed, later = json.loads(done.stdout)
+    assert not set(HEAVY) & set(early)
+    assert not {"matplotlib", "ipywidgets", "anywidget", "librosa", "PIL"} & set(later)
+    assert set(md.__all__) <= set(listed)
+
+
+def test_every_name_of_the_front_door_is_there():
+    assert sorted(md.__all__) == sorted(
+        "Motion read_motion load joystick keyframes inbetween reconstruct play".split()
+    )
+    assert all(callable(getattr(md, name)) for name in md.__all__)
+    with pytest.raises(AttributeError, match="no attribute 'dance'"):
+        md.dance  # noqa: B018
+
+
+SETUP = """
+from data_synth.walking import walk
+from motiondiff_edu.motion.skeleton import Skeleton
+control = np.tile([1.0, 0, 0], (30, 1))
+w = md.Motion.of_clip(walk(control, seed=1))
+ahead = md.joystick([(0.5, 1, 0, 0)])
+known = w.all_but("Head", 5, 9)
+stick = md.Motion(np.zeros((4, 2, 3)), 20, Skeleton(("a", "b"), (-1, 0)))
+nan = md.Motion(np.where(known[..., None], w.positions, np.nan))
+open("walk.png", "wb").write(b"png")
+np.savez("flat.npz", positions=np.zeros((2, 63)))
+walker = lambda: md.load("walker")
+dancer = lambda: md.load("dancer")
+"""
+# code as it is typed: what it is answered
+TOLD = {
+    'md.read_motion("nope.bvh")': "FileNotFoundError: there is no file nope.bvh in ",
+    'md.read_motion("walk.png")': "walk.png is not read as a motion; .bvh and .npz are",
+    'md.read_motion("flat.npz")': "flat.npz: positions are (frames, joints, 3) in metres",
+    'md.load("waker")': "CheckpointError: no weights are called 'waker'; there are: ",
+    'md.load("mine.safetensors")': "CheckpointError: ",
+    "md.Motion(np.zeros((4, 63)))": "MotionError: positions are (frames, joints, 3) in metres",
+    'md.Motion("walk.bvh")': "MotionError: positions are numbers",
+    "md.Motion(w.positions, root=w.root[:3])": "root are (3, 3); it takes (30, 3) numbers",
+    "md.Motion(w.positions, contacts=np.zeros((30, 3)))": "contacts are (30, 3); it takes (30, 2)",
+    "w[3]": "TypeError: a motion is cut by motion[first:last], not [3]",
+    'w.save("w.docx")': "w.docx: nothing is written as .docx; there are .bvh .npz .mp4 .gif .html",
+    'walker().walk("w.bvh", ahead)': "TypeError: this takes a Motion, not str; md.read_motion",
+    "walker().walk(w[:9], ahead)": "has 9 frames; the walker looks at the last 10 (0.5 s)",
+    "walker().walk(w, ahead, seconds=-3)": "ValueError: seconds must be above 0",
+    "walker().walk(w, [(3, 1.2, 0, 0)])": "ValueError: a control is (rows, 3)",
+    "walker().walk(w, np.full((9, 3), np.nan))": "row 0 of the control is [nan nan nan]",
+    "walker().walk(nan, ahead)": "Head in frame 5 has no position",
+    "walker().walk(stick, ahead)": "has 2 joints; the course's networks know the 21",
+    "walker().walk(w, ahead, samples=0)": "samples is a whole number from 1 on, not 0",
+    'dancer().dance("nope.ogg")': "AudioError: nope.ogg is not there; check the spelling",
+    "dancer().dance(np.zeros(32000), seconds=-3)": "seconds must be above 0",
+    "dancer().dance((np.ones(32000) * 9999).astype(np.int16))": "not int16; divide 16-bit",
+    "dancer().dance(np.full(32000, np.nan))": "32000 samples are NaN or infinite, the first at 0",
+    "dancer().dance(np.r_[np.zeros(99), 1e34])": "the one at 0.006 s is 1e+34",
+    "dancer().dance(w)": "sound is a file's name or its samples, not Motion",
+    "md.keyframes(w, every=0)": "every is a whole number from 1 on, not 0",
+    "md.inbetween(w, known[:3])": "known is bool (3, 21); it is bool (30, 21)",
+    "md.inbetween(w, known[..., None])": "known is bool (30, 21, 1); it is bool (30, 21)",
+    "md.inbetween(w, known.astype(int))": "known is int64 (30, 21); it is bool (30, 21)",
+    "md.inbetween(nan, known | True)": "Head in frame 5 is given and has no position",
+    'md.inbetween(w, w.all_but("Hips"))': "without the pelvis (Hips): give that as well",
+    "md.inbetween(w, w.known)": "all is known, there is nothing to make",
+    "md.inbetween(w.resampled(60), known)": "60 frames/s, the networks know 20",
+    "md.reconstruct(w, w.known)": "nothing is missing",
+    'md.reconstruct(w, w.all_but("Hips", 7, 9))': "pelvis (Hips) is not known in frame 7",
+    "md.reconstruct(w[:9], known[:9])": "has 9 frames; the walker's windows have 10",
+    "md.reconstruct(w, known[:, :5])": "known is bool (30, 5); it is bool (30, 21)",
+    "md.joystick([(3, 1.2)])": "a segment is (seconds, forward, left, yaw)",
+    "md.joystick([(-3, 1.2, 0, 0)])": "a segment lasts 0 seconds or more, not -3",
+    "md.play()": "TypeError: play takes a motion at least",
+    'md.play("walk.bvh")': "TypeError: this takes a Motion, not str",
+    "md.play(nan, open_page=False)": "Head in frame 5 has no position",
+    "md.play(w, stick, open_page=False)": "have different skeletons",
+    "md.play(w, w, labels=['a'], open_page=False)": "1 labels for 2 motions",
+}
+
+
+@pytest.fixture(scope="module")
+def answers(tmp_path_factory) -> dict[str, str]:
+    return outcomes({code: code for code in TOLD}, tmp_path_factory.mktemp("typed"), SETUP)
+
+
+@pytest.mark.parametrize("code", TOLD)
+def test_what_cannot_be_is_answered_in_words(code, answers):
+    assert TOLD[code] in answers[code] and "Traceback" not in answers[code]
+
+
+def test_a_recording_is_continued_filled_in_and_mended(real_data, tmp_path, monkeypatch, capsys):
+    """The README's promise, on files of strangers; the walk is somebody's, not ours."""
+    monkeypatch.chdir(tmp_path)
+    walk = md.read_motion(real_data / "bvh" / "cmu_12_01_walk_pybvh.bvh")
+    more = md.load("walker").walk(walk, md.joystick([(1.5, 1.0, 0, 0)]), seed=0)
+    more.save("more.bvh")
+    assert len(md.read_motion("more.bvh")) == 30
+    known = walk.all_but(ARM, 30, 60)
+    whole = md.reconstruct(walk, known)
+    lines = error_cm(straight_lines(walk, known), walk, known)
+    assert error_cm(whole.positions, walk, known) < 0.8 * lines
+    made = md.inbetween(walk, md.keyframes(walk, every=20), steps=20)
+    made.save("made.npz")
+    assert np.abs(made.positions).max() < 20  # metres: it does not fly off
+
+
+@pytest.mark.parametrize("song", ["vibe_ace.ogg", "trumpet_90bpm_44k_stereo.ogg"])
+def test_a_recorded_song_is_danced_to_in_one_line(song, real_data):
+    made = md.load("dancer").dance(real_data / "audio" / song, seconds=2, seed=0)
+    assert len(made) == 40 and len(made.audio) == 32_000 and made.known.all()
+    assert 0.5 < made.positions[:, HIPS, 1].mean() < 1.2

@@ -1,0 +1,125 @@
+"""The ladder from the paper's walker to ours: its section of docs/RESULTS.md, and its picture."""
+
+from pathlib import Path
+
+from motiondiff_edu._files import replacing
+from motiondiff_edu.viz.ladder import Rung, ladder
+
+from ..page.markdown import cell, table
+from .ladder import CELLS, CPU_SECONDS, FIGURES, SEEDS
+
+PICTURE = "ladder.png"
+GROUPS = {"ours": "our recipe, one choice taken out", "printed": "the printed recipe, one added"}
+# one choice, taken out of ours and added to the printed recipe
+PAIRS = {
+    "footholds (with x0)": ("ours-no-footholds", "printed-footholds"),
+    "x0 instead of eps": ("ours-eps", "printed-x0"),
+    "the skip of an eps network": ("", "printed-skip"),
+    "Muon": ("ours-adam", "printed-muon"),
+    "the leap schedule": ("ours-linear", "printed-leap"),
+    "the loss terms": ("ours-plain-loss", "printed-loss"),
+    "past noise": ("ours-clean-past", "printed-noise"),
+    "diffusion dropout": ("", "printed-clean-past"),
+    "held control": ("ours-never-held", "printed-held"),
+    "a tuned rate": ("", "printed-rate"),
+}
+WORDS = {
+    "bone_rmse_cm": "bone error, cm",
+    "adherence_excess_mps": "adherence above the data's, m/s",
+    "skating_mps": "skating, m/s",
+    "broken_over_whole": "bone error after a past with holes, over a whole one",
+}
+
+
+def measured(records: dict[str, dict]) -> list[str]:
+    """The cells that there are records of, in the order of the ladder."""
+    return [name for name in CELLS if f"ladder.{name}.bone_rmse_cm" in records]
+
+
+def section(records: dict[str, dict], folder: Path) -> str:
+    """The tables; nothing where no cell was measured."""
+    there = measured(records)
+    if not there:
+        return ""
+    waiting = [name for name in CELLS if name not in there]
+    text = (
+        "## From the paper's walker to ours\n\n"
+        f"Small walkers of one size, {SEEDS} training seeds each. Every training has the number of "
+        f"steps that {CPU_SECONDS} CPU-seconds are worth on one thread. From our recipe one choice "
+        "is taken out at a time; to the recipe that MoDiff prints one is added. The interval is "
+        "over training seeds and walks. DDPM with S = 100, control held, one pose kept of every "
+        "window.\n\n"
+    )
+    head = ["recipe", "steps", "rate", *(WORDS[kind] for kind in FIGURES)]
+    rows = []
+    for name in there:
+        seeds = records[f"ladder.{name}.bone_rmse_cm"]["seeds"]
+        base = CELLS[name].base
+        words = f"{'' if not base else base + ': '}{CELLS[name].words}"
+        figures = [cell(records.get(f"ladder.{name}.{kind}"), unit=False) for kind in FIGURES]
+        rows.append([words, str(seeds["steps"]), f"{seeds['rate']:g}", *figures])
+    text += table(head, rows)
+    if waiting:
+        text += f"\nNot trained yet: {', '.join(f'`{name}`' for name in waiting)}.\n"
+    if (folder / PICTURE).exists():
+        text += (
+            "\n![Bone error, adherence, skating and the cost of a past with holes for every recipe "
+            f"of the ladder, a dot for each training seed](results/{PICTURE})\n"
+        )
+    return text + gains(records)
+
+
+def gains(records: dict[str, dict]) -> str:
+    """What each choice gains when it is added, beside what is lost when it is taken out."""
+
+    def apart(name: str, kind: str) -> dict | None:
+        return records.get(f"ladder.{name}.{kind}_minus_base") if name else None
+
+    kinds = ("bone_rmse_cm", "adherence_excess_mps", "skating_mps")
+    rows = []
+    for words, (out, into) in PAIRS.items():
+        found = [(apart(out, kind), apart(into, kind)) for kind in kinds]
+        if any(one for pair in found for one in pair):
+            cells = [cell(one, unit=False) for pair in found for one in pair]
+            rows.append([words, *cells])
+    if not rows:
+        return ""
+    head = ["choice"]
+    for kind in kinds:
+        head += [f"{WORDS[kind]}: without it, minus ours", "with it, minus printed"]
+    words = (
+        "\n### Taken out of ours, added to the printed recipe\n\n"
+        "A positive number in a left column is what the choice is worth to us; a negative one in a "
+        "right column is what it brings the printed recipe (for diffusion dropout the right column "
+        "is the printed recipe without it).\n\n"
+    )
+    return words + table(head, rows)
+
+
+def draw(records: dict[str, dict], folder: Path) -> None:
+    """The picture, where there are records."""
+    there = measured(records)
+    if not there:
+        return
+    rungs = [rung(name, records) for name in there]
+    words = (
+        "Every recipe of the ladder, a dot for each training seed. The dashed lines are the means "
+        "of the two whole recipes. Smaller is better everywhere; the axes are logarithmic."
+    )
+    picture = ladder(rungs, [WORDS[kind] for kind in FIGURES], words)
+    with replacing(folder / PICTURE) as aside:
+        aside.write_bytes(picture.as_png())
+
+
+def rung(name: str, records: dict[str, dict]) -> Rung:
+    """One row of the picture."""
+    values = {
+        WORDS[kind]: [
+            records[key]["value"]
+            for seed in range(SEEDS)
+            if (key := f"ladder.{name}.{kind}.seed{seed}") in records
+        ]
+        for kind in FIGURES
+    }
+    group = GROUPS[CELLS[name].base or name]
+    return Rung(CELLS[name].words, group, values)
