@@ -31,9 +31,11 @@ def run(given: argparse.Namespace) -> int:
     """Do what was asked; the exit code. What goes wrong for a reason is said in words, without a
     traceback."""
     module = importlib.import_module(f"{__name__}.{given.command}")
-    warnings.showwarning = _as_a_note
     try:
-        module.run(given)
+        with warnings.catch_warnings():
+            warnings.simplefilter("default", UserWarning)
+            warnings.showwarning = _as_a_note
+            module.run(given)
     except KeyboardInterrupt:
         print("\nstopped; no half-written file is left", file=sys.stderr)
         return STOPPED
