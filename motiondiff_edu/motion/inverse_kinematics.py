@@ -84,12 +84,10 @@ def bends_to(pose: Pose, root: int) -> Float[np.ndarray, "2 3"]:
 def two_bones(
     limb: Float[np.ndarray, "3 3"], target: Point, bends: Float[np.ndarray, "2 3"]
 ) -> Float[np.ndarray, "3 3"]:
-    """Root, middle and end with the end at the target.
+    """Root, middle and end with the end at the target: a triangle of two bones and a distance.
 
-    A triangle of two bones a, b and the distance d.
-
-    The middle (`planting.triangle`) lies on the side where it was, which turns with the line. A target out of reach is drawn in along the line
-    from the root.
+    The middle (`planting.triangle`) lies on the side where it was, which turns with the line. A
+    target out of reach is drawn in along the line from the root.
     """
     root, middle, end = limb
     a, b, far = (float(np.linalg.norm(v)) for v in (middle - root, end - middle, end - root))
