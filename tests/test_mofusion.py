@@ -147,13 +147,18 @@ def test_fast_twin_needs_music():
         FastMoFusion(MoFusion(MoFusionConfig(**{**TINY.as_dict(), "C": 0})))
 
 
-def test_a_frame_convolution_is_torchs():
-    for stride, dilation in ((1, 1), (2, 1), (1, 4)):
-        conv = FrameConv(3, 5, stride, dilation)
-        kernel = conv.mix.weight.view(5, 3, 3).transpose(1, 2)  # (out, tap, in) -> (out, in, tap)
-        x = torch.randn(2, 11, 3)
-        wanted = torch.conv1d(x.mT, kernel, conv.mix.bias, stride, dilation, dilation).mT
-        torch.testing.assert_close(conv(x), wanted)
+@pytest.mark.parametrize("stride, dilation", [(1, 1), (2, 1), (1, 4)])
+def test_a_frame_is_mixed_from_itself_and_its_neighbours(stride, dilation):
+    conv, x = FrameConv(4, 5, stride, dilation), torch.randn(2, 11, 4)
+    out, nothing = conv(x), torch.zeros(2, 4)
+    assert out.shape == (2, -(-11 // stride), 5)
+    for k in range(out.shape[1]):
+        t = k * stride
+        frames = [x[:, i] if 0 <= i < 11 else nothing for i in (t - dilation, t, t + dilation)]
+        wanted = conv.mix.bias + sum(
+            frame @ conv.mix.weight[:, 4 * tap : 4 * tap + 4].T for tap, frame in enumerate(frames)
+        )
+        torch.testing.assert_close(out[:, k], wanted)
 
 
 def test_a_new_network_changes_nothing_between_its_ends():

@@ -14,7 +14,7 @@ from torch.nn import functional as F
 
 from ..cross_modal_attention import turned
 from ..modiff import step_embedding
-from ..mofusion import CrossAttentionBlock, MoFusion, ResBlock, View
+from ..mofusion import CrossAttentionBlock, FrameConv, MoFusion, ResBlock, View
 
 
 @dataclass(frozen=True, eq=False)
@@ -88,14 +88,14 @@ class FastMoFusion:
         levels = self.levels
         views = song.views
         x = F.pad(x_s, (0, 0, 0, -song.frames % 2**levels))
-        h, kept = model.into(x), []
+        h, kept = _conv(model.into, x), []
         for level in range(levels):
             h = self._block(level, h, s, song)
             kept.append(h)
-            h = model.shorten[level](h * views[level].mask)
+            h = _conv(model.shorten[level], h * views[level].mask)
         h = self._block(levels, h, s, song)
         for up, level in enumerate(range(levels - 1, -1, -1)):
-            h = model.lengthen[up](h.repeat_interleave(2, dim=1) * views[level].mask)
+            h = _conv(model.lengthen[up], h.repeat_interleave(2, dim=1) * views[level].mask)
             h = self._block(levels + 1 + up, torch.cat([h, kept[level]], dim=-1), s, song)
         out = model.out(h[:, : song.frames])
         return out if model.skip is None else out + model.skip[s].view(-1, 1, 1) * x_s
@@ -109,9 +109,18 @@ class FastMoFusion:
 
 def _res(block: ResBlock, x: Tensor, scale: Tensor, shift: Tensor, mask: Tensor) -> Tensor:
     """ResBlock.forward, with what the step says already worked out."""
-    h = block.conv_in(F.silu(block.norm_in(x)).mul_(mask))
+    h = _conv(block.conv_in, F.silu(block.norm_in(x)).mul_(mask))
     h = torch.addcmul(shift, block.norm_out(h), 1 + scale)
-    return block.conv_out(F.silu(h).mul_(mask)).add_(block.around(x))
+    return _conv(block.conv_out, F.silu(h).mul_(mask)).add_(block.around(x))
+
+
+def _conv(conv: FrameConv, x: Tensor) -> Tensor:
+    """FrameConv.forward as one product of a frame and its neighbours: a tenth faster for a few short
+    motions, and slower in training."""
+    n = conv.dilation
+    padded = F.pad(x, (0, 0, n, n))
+    together = torch.cat([padded[:, : -2 * n], x, padded[:, 2 * n :]], dim=-1)
+    return conv.mix(together[:, :: conv.stride])
 
 
 def _ask(block: CrossAttentionBlock, x: Tensor, keys: Tensor, values: Tensor, view: View) -> Tensor:
