@@ -212,7 +212,8 @@ def training_loss(
 ) -> Float[Tensor, ""]:
     """Algorithm 1: what a gradient step is taken on, for one batch (past, future, control).
 
-    || eps - eps_theta(x_s, s, x_d, c) ||^2,   x_s = sqrt(alpha_bar_s) x0 + sqrt(1 - alpha_bar_s) eps
+    || eps - eps_theta(x_s, s, x_d, c) ||^2
+    x_s = sqrt(alpha_bar_s) x0 + sqrt(1 - alpha_bar_s) eps
     s ~ Uniform(1..S), eps ~ N(0, I); the paper's x0 and x_s are y_0 and y_s.
     `dropout` makes x_d from the past x (`diffusion_dropout.Dropout`); without it x_d = x. Ours:
     the network may be asked for x0 or v instead (`model.config.target`), and another `loss` than

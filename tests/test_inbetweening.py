@@ -302,7 +302,8 @@ def test_what_cannot_be_given_is_said(spoil, message, monkeypatch):
 
 def test_blending_carries_the_correction_and_fades():
     made, given = torch.zeros(1, 9, 2), torch.full((1, 9, 2), float("nan"))
-    given[0, 4, 0], given[0, 2, 1], given[0, 6, 1] = 1.0, 1.0, 3.0
+    given[0, 4, 0] = 1.0
+    given[0, 2, 1], given[0, 6, 1] = 1.0, 3.0
     out = blended_guess(made, given, ~given.isnan(), 3)[0]
     torch.testing.assert_close(out[:, 0], torch.tensor([0, 0.25, 0.5, 0.75, 1, 0.75, 0.5, 0.25, 0]))
     torch.testing.assert_close(out[:, 1], torch.tensor([0.5, 0.75, 1, 1.5, 2, 2.5, 3, 2.25, 1.5]))

@@ -232,7 +232,8 @@ def ask(address: str, attempts: int = 60) -> dict:
 def test_jupyterlab_really_starts_and_serves_the_notebook(checkout):
     """Through the command itself: the server answers with the notebook that the address names."""
     code = (
-        "import sys, pathlib; from motiondiff_edu import __main__ as m; from motiondiff_edu.course import places; "
+        "import sys, pathlib; from motiondiff_edu import __main__ as m; "
+        "from motiondiff_edu.course import places; "
         f"places.PACKAGE = pathlib.Path({str(checkout / 'motiondiff_edu')!r}); "
         "sys.exit(m.main(['lab', '--no-browser', '--port=0', '--IdentityProvider.token=walk']))"
     )

@@ -298,7 +298,8 @@ def test_training_loss_takes_another_loss_of_the_error_and_its_steps():
 
 
 def test_every_step_is_drawn_and_none_beyond():
-    model, schedule, seen = lively(TINY), linear_schedule(TINY.S, 0.2, 0.95), set()
+    model, schedule = lively(TINY), linear_schedule(TINY.S, 0.2, 0.95)
+    seen = set()
     x0, _, past, control = inputs(TINY, batch=200)
     draws = torch.Generator().manual_seed(6)
 

@@ -42,12 +42,14 @@ from motiondiff_edu.widgets.player import Player
 from data_synth import mixtures
 import numpy as np
 
-walkers = {n: sum(p.numel() for p in checkpoints.pretrained(n).model.parameters()) for n in checkpoints.available()}
+models = {n: checkpoints.pretrained(n).model for n in checkpoints.available()}
+walkers = {n: sum(p.numel() for p in model.parameters()) for n, model in models.items()}
 player = Player(np.zeros((2, 21, 3)))
 root, mine = places.place_for_students()
 handout.hand_out(places.notebook_folder(), mine)
 print(json.dumps({
-    "package": motiondiff_edu.__file__, "data": data_synth.__file__, "version": motiondiff_edu.__version__,
+    "package": motiondiff_edu.__file__, "data": data_synth.__file__,
+    "version": motiondiff_edu.__version__,
     "walkers": walkers, "module": len(str(player._esm)), "pins": len(doctor.constraints()),
     "notebooks": sorted(p.name for p in (places.notebook_folder() / "student").glob("*.ipynb")),
     "place": [str(root), str(mine)],

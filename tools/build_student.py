@@ -59,7 +59,10 @@ def solution(source: str) -> str:
 
 
 def folded(source: str) -> str:
-    return f"<details>\n<summary>Solution</summary>\n\n```python\n{solution(source)}\n```\n\n</details>"
+    return (
+        "<details>\n<summary>Solution</summary>\n\n"
+        f"```python\n{solution(source)}\n```\n\n</details>"
+    )
 
 
 def student(notebook: dict, name: str) -> dict:

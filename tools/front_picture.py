@@ -40,7 +40,8 @@ from motiondiff_edu.widgets.player import Player  # noqa: E402
 OUT = ROOT / "docs" / "front.webp"
 FPS, PICTURES = 20, 120  # of the loop, and of the motions
 FIRST = 60  # the loop starts here, where all three panels show a figure moving
-WIDTHS, HEIGHT, CAPTION, GAP = (300, 270, 378), 412, 30, 6
+WIDTHS, HEIGHT = (300, 270, 378), 412
+CAPTION, GAP = 30, 6
 CAPTIONS = (
     "Draw a path: the walker follows it",
     "Add a song: the dancer dances",

@@ -20,7 +20,10 @@ def run(module: ModuleType, given: argparse.Namespace) -> int:
     """
     warnings.showwarning = _as_a_note
     try:
-        module.run(given)
+        with warnings.catch_warnings():
+            warnings.simplefilter("default", UserWarning)
+            warnings.showwarning = _as_a_note
+            module.run(given)
     except KeyboardInterrupt:
         print("\nstopped; no half-written file is left", file=sys.stderr)
         return STOPPED

@@ -89,8 +89,8 @@ def masked_back(
     config, schedule = walker.config, walker.schedule
     if config.T_p != config.T_h:
         raise ValueError(
-            f"this walker predicts {config.T_p} poses from {config.T_h}: its window is not the past. "
-            "Use held_back"
+            f"this walker predicts {config.T_p} poses from {config.T_h}: its window is not the "
+            "past. Use held_back"
         )
     given, ahead = (walker.pose_scaler.transform(x.float()) for x in (given, ahead))
     network = walker.denoiser(ahead, walker.control_scaler.transform(control.float()), fast=False)

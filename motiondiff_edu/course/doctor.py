@@ -99,8 +99,9 @@ def compute() -> Finding:
 
     a = torch.eye(3) * 2
     right = torch.equal(a @ a, torch.eye(3) * 4)
-    cores, wanted, gpu = os.cpu_count() or 1, torch.get_num_threads(), torch.cuda.is_available()
-    told = f"torch {torch.__version__}, {wanted} threads on {cores} cores, GPU: {'yes' if gpu else 'no'}"
+    cores, wanted = os.cpu_count() or 1, torch.get_num_threads()
+    gpu = "yes" if torch.cuda.is_available() else "no"
+    told = f"torch {torch.__version__}, {wanted} threads on {cores} cores, GPU: {gpu}"
     if not right:
         return Finding("torch", told + "; a product of matrices came out wrong", INSTALL)
     if wanted > cores:

@@ -82,7 +82,8 @@ def written_in(mine: Path) -> Iterator[None]:
         yield
     except OSError as error:
         raise FolderError(
-            f"your copies of the notebooks cannot be written to {mine} ({error.strerror or error}).\n"
+            f"your copies of the notebooks cannot be written to {mine} "
+            f"({error.strerror or error}).\n"
             f"Start from a folder of your own, or name one: {program()} lab --folder FOLDER"
         ) from error
 
@@ -99,7 +100,8 @@ def hand_out(notebooks: Path, mine: Path) -> Handout:
     course no longer has it. One that is changed, or of unknown origin, stays as it is.
     Raises FolderError where nothing can be written.
     """
-    record, renewed, kept = read_record(mine), [], []
+    record = read_record(mine)
+    renewed, kept = [], []
     now = shipped(notebooks)
     with written_in(mine):
         for name, content in now.items():
@@ -127,7 +129,8 @@ def make_fresh(notebooks: Path, mine: Path, name: str) -> Path | None:
 
     Raises FolderError where nothing can be written.
     """
-    content, path, aside = shipped(notebooks)[name], mine / name, None
+    content, path = shipped(notebooks)[name], mine / name
+    aside = None
     new = digest(name, content)
     with written_in(mine):
         if path.exists() and digest(name, path.read_bytes()) != new:

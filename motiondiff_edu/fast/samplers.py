@@ -22,7 +22,8 @@ class FastStep:
     __slots__ = ("s", "x_s", "_said", "_alpha_bar", "_clip")
 
     def __init__(self, s: int, x_s: Tensor, said: Tensor, alpha_bar: float, clip: float | None):
-        self.s, self.x_s, self._said = s, x_s, said
+        self.s, self.x_s = s, x_s
+        self._said = said
         self._alpha_bar, self._clip = alpha_bar, clip
 
     @property

@@ -1,5 +1,6 @@
-"""A Motion: where every joint is in every frame, and what came along; the front door takes and
-gives it.
+"""A Motion: where every joint is in every frame, and what came along.
+
+The front door takes motions and gives them.
 
     walk[20:60]   walk.between(1.0, 3.0)   walk.then(more)   walk.save("walk.bvh")
 `Clip` is its training view: poses in the root frame with their control.  Notebook: 00
@@ -166,9 +167,9 @@ class Motion:
         return self[round(first * self.fps) : round(last * self.fps)]
 
     def then(self, *others: "Motion") -> "Motion":
-        """This motion and then the others; each stays where it is in the world.
+        """This motion and then the others, one after the other.
 
-        What did not come along with all of them is left out.
+        Each stays where it is in the world. What did not come along with all of them is left out.
         Raises MotionError for another frame rate or skeleton.
         """
         parts = [self, *others]

@@ -1,5 +1,4 @@
-"""What other layers add to a Motion: endings it is read from and saved under, and how it shows
-itself.
+"""What other layers add to a Motion: endings of files, and how it shows itself.
 
     writers.register(".csv")(lambda motion, path: ...)      # now motion.save("walk.csv") works
 A function is registered when its module is imported. `announce` names the module beforehand; it is

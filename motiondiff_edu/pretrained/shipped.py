@@ -1,5 +1,4 @@
-"""The front door's verbs that need weights: `load` by name; `inbetween` and `reconstruct` with the
-shipped ones.
+"""The front door's verbs that need weights: `load`, and `inbetween` and `reconstruct`.
 
 Notebook: 00, 10, 15
 """

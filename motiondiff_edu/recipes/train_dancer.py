@@ -70,6 +70,7 @@ def train_dancer(
     schedule = schedule_of(recipe)
     torch.manual_seed(recipe.seed)
     model = network(config)
+    made_of = "mixed" if recipe.motions else "music and data_synth.dancing"
     trained, card = train_recipe(
         recipe,
         run_file,
@@ -77,7 +78,7 @@ def train_dancer(
         loss_of(recipe, windows, schedule),
         about={"network": type(model).__name__, "data": digest(windows)},
         facts={"windows": len(windows)},
-        data=f"data_synth.{'mixed' if recipe.motions else 'music and data_synth.dancing'}, synthetic",
+        data=f"data_synth.{made_of}, synthetic",
         warmup=300,
         log=log,
     )

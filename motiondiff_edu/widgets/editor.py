@@ -77,13 +77,16 @@ class Editor(anywidget.AnyWidget):
         motion = np.array(motion, np.float64)
         if motion.ndim != 3 or motion.shape[1:] != (J, 3):
             raise ValueError(
-                f"a motion to edit is (frames, {J}, 3), world positions in metres, not {motion.shape}"
+                f"a motion to edit is (frames, {J}, 3), world positions in metres, not "
+                f"{motion.shape}"
             )
         names = list(JOINTS if names is None else names)
         if len(names) != J:
             raise ValueError(f"{len(names)} names for the {J} joints")
-        self._fps, self._make, self._seed = float(fps), make, int(seed)
-        self._step, self._past, self._grip = _Step(Edit(motion)), [], _Grip()
+        self._fps, self._seed = float(fps), int(seed)
+        self._make = make
+        self._step, self._past = _Step(Edit(motion)), []
+        self._grip = _Grip()
         self._asked = 0  # the number of the page's last message that asked for in-betweens
         # what `make` raised last when Generate was pressed, with its traceback
         self.error: Exception | None = None
@@ -161,7 +164,8 @@ class Editor(anywidget.AnyWidget):
         finally:
             self.busy = False
         free = "" if self.known.any() else " Nothing was pinned or kept: the result is free."
-        words = f"In-betweens made: {self.count}, in {time.perf_counter() - begun:.1f} s (seed {seed}).{free}"
+        took = time.perf_counter() - begun
+        words = f"In-betweens made: {self.count}, in {took:.1f} s (seed {seed}).{free}"
         return self._go(_Step(self.edit, made, 0, self._step.presses + 1), words)
 
     def undo(self) -> str:
@@ -287,7 +291,8 @@ class Editor(anywidget.AnyWidget):
         with self.hold_sync():
             self.poses = editor_page.poses_of(edit)
             self.state = editor_page.state_of(edit, made) | {
-                "message": words, "undo": len(self._past), "heard": max(last.get("heard", 0), number or 0),
+                "message": words, "undo": len(self._past),
+                "heard": max(last.get("heard", 0), number or 0),
                 "edition": last.get("edition", 0) + 1,
                 "description": editor_page.described(edit, made, self._fps),
             }  # fmt: skip

@@ -101,8 +101,8 @@ def file_of(name: str) -> str:
     """
     if set(name) & set("/\\:"):
         raise ValueError(
-            f"not saved: {name!r} names a folder. Type a name alone: the file goes beside the notebook "
-            f"(into {Path.cwd()}). To write elsewhere, call editor.save(path) in a cell"
+            f"not saved: {name!r} names a folder. Type a name alone: the file goes beside the "
+            f"notebook (into {Path.cwd()}). To write elsewhere, call editor.save(path) in a cell"
         )
     found = ENDING.fullmatch(name)
     stem, ending = found.groups() if found else (name, ".bvh")

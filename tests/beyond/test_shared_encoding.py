@@ -17,7 +17,8 @@ def inputs() -> tuple:
 
 def test_the_answer_is_that_of_the_plain_call_and_each_window_is_encoded_once():
     torch.manual_seed(0)
-    model, given, seen = MoDiff(CONFIG), inputs(), []
+    model, given = MoDiff(CONFIG), inputs()
+    seen = []
     wanted, encode = model(*given), model.encode
     model.encode = lambda past, control: seen.append(past) or encode(past, control)
     torch.testing.assert_close(SharedEncoding(model, 3)(*given), wanted)

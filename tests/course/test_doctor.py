@@ -100,7 +100,8 @@ def test_doctor_still_speaks_where_torch_cannot_be_imported():
     code = (
         "import sys; sys.modules['torch'] = None; sys.argv = ['motiondiff_edu', 'doctor']; "
         "from motiondiff_edu import __main__ as command; from motiondiff_edu.course import doctor; "
-        "doctor.main.__defaults__ = ((doctor.python, doctor.compute, doctor.notebooks),); sys.exit(command.main())"
+        "doctor.main.__defaults__ = ((doctor.python, doctor.compute, doctor.notebooks),); "
+        "sys.exit(command.main())"
     )
     answer = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
     compute = answer.stdout[answer.stdout.index("FAIL") :]

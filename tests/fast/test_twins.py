@@ -11,7 +11,8 @@ from motiondiff_edu.motion.scaler import Scaler
 from motiondiff_edu.performers.dancer import Dancer
 from motiondiff_edu.performers.walker import Walker
 
-T_H, T_P, B = 4, 3, 2
+T_H, T_P = 4, 3
+B = 2
 
 
 def walker() -> Walker:

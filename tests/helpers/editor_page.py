@@ -19,12 +19,16 @@ window.asked = []; window.leaked = 0;
 document.addEventListener("keydown", () => { window.leaked++; });
 const fire = (name) => (listeners["change:" + name] || []).forEach((f) => f());
 window.take = (record) => {
-  for (const [name, value] of Object.entries(record)) state[name] = BINARY.includes(name) ? decode(value) : value;
+  for (const [name, value] of Object.entries(record)) {
+    state[name] = BINARY.includes(name) ? decode(value) : value;
+  }
   for (const name of Object.keys(record)) fire(name);
 };
 window.model = {
   get: (name) => state[name],
-  set: (name, value) => { if (state[name] !== value) { state[name] = value; dirty.add(name); fire(name); } },
+  set: (name, value) => {
+    if (state[name] !== value) { state[name] = value; dirty.add(name); fire(name); }
+  },
   save_changes: () => {
     const record = Object.fromEntries([...dirty].map((name) => [name, state[name]]));
     dirty.clear();

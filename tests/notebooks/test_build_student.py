@@ -196,7 +196,10 @@ def test_solution_cell_of_another_form_is_refused_by_name(tmp_path, capsys, sour
 
 
 def test_stub_within_a_loop_keeps_its_indent():
-    source = "def f(x):\n    for i in x:\n        # solution\n        y = i\n        # end solution\n    return y"
+    source = (
+        "def f(x):\n    for i in x:\n"
+        "        # solution\n        y = i\n        # end solution\n    return y"
+    )
     wanted = (
         'def f(x):\n    for i in x:\n        raise NotImplementedError("your turn")\n    return y'
     )

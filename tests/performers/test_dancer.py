@@ -212,7 +212,6 @@ def test_sound_that_cannot_be_danced_to_is_refused_in_words(sound, options, told
         one.dance(sound, **options)
 
 
-
 def test_a_dancer_moved_is_a_copy_that_dances_alike():
     one = dancer()
     moved = one.to("cpu")

@@ -20,7 +20,8 @@ from motiondiff_edu.performers.walker import Walker
 from motiondiff_edu.pretrained.checkpoints import CheckpointError, load, save
 from motiondiff_edu.rollout import generate
 
-T_H, T_P, S = 4, 3, 6
+T_H, T_P = 4, 3
+S = 6
 POSE = Scaler(torch.linspace(-2, 3, 63), torch.linspace(0.1, 0.6, 63))
 CONTROL = Scaler(torch.tensor([1.0, 0.1, -0.2]), torch.tensor([0.5, 0.2, 0.8]))
 

@@ -8,6 +8,7 @@ import pytest
 import torch
 
 from motiondiff_edu.beyond.footholds import FootholdConfig
+from motiondiff_edu.beyond.schedules import SCHEDULES
 from motiondiff_edu.ddpm import linear_schedule
 from motiondiff_edu.diffusion_dropout import Dropout
 from motiondiff_edu.kinematic_loss import KinematicWeights
@@ -15,8 +16,7 @@ from motiondiff_edu.modiff import MoDiff, MoDiffConfig
 from motiondiff_edu.mofusion import MoFusion
 from motiondiff_edu.motion.clip import Clip
 from motiondiff_edu.performers.dance_windows import DanceWindows
-from motiondiff_edu.performers.networks import network as walker_network
-from motiondiff_edu.performers.walker import SCHEDULES
+from motiondiff_edu.performers.networks import network
 from motiondiff_edu.performers.windows import Windows
 from motiondiff_edu.recipes import train_dancer, train_walker
 from motiondiff_edu.recipes.dancers import DANCER, DANCER_PLAIN, DanceLossWeights
@@ -77,7 +77,7 @@ def test_walkers_losses_are_those_that_the_shipped_ones_were_trained_with(name, 
     schedule = SCHEDULES["leap"](100)
     dropout = Dropout(schedule, lambda done: rate, 1, done=0.0) if rate else None
     torch.manual_seed(0)
-    model = walker_network(recipe.config, walks.pose_scaler, walks.control_scaler)
+    model = network(recipe.config, walks.pose_scaler, walks.control_scaler)
     loss_fn, generator = (
         train_walker.loss_of(replace(recipe, batch=6), walks, schedule, dropout),
         seeded(),
@@ -159,7 +159,8 @@ def test_a_recipe_without_departures_is_algorithm_1(walks, rate):
     start = walks.starts[torch.randint(len(walks.starts), (7,), generator=generator)]
     torch.rand(7, generator=generator)  # who holds the control: nobody here
     rows = start[:, None] + torch.arange(T_H + T_P)
-    past, y, c = walks.poses[rows[:, :T_H]], walks.poses[rows[:, T_H:]], walks.control[rows]
+    past, y = walks.poses[rows[:, :T_H]], walks.poses[rows[:, T_H:]]
+    c = walks.control[rows]
     s = torch.randint(1, 7, (7,), generator=generator)
     alpha_bar = torch.cumprod(1 - torch.linspace(0.2, 0.95, 6), 0)[s - 1][:, None, None]
     if rate:
@@ -178,7 +179,8 @@ def test_without_departures_a_dancer_s_loss_is_the_mean_square_of_eps():
     recipe = replace(
         EPS, kinematic=None, loss_weights=DanceLossWeights(), gain_noise=0.0, snr=1.0, batch=5
     )
-    windows, schedule, generator = dances(), train_dancer.schedule_of(recipe), seeded()
+    windows, schedule = dances(), train_dancer.schedule_of(recipe)
+    generator = seeded()
     torch.manual_seed(0)
     model = MoFusion(recipe.config)
     loss = train_dancer.loss_of(recipe, windows, schedule)(model, seeded())

@@ -104,7 +104,7 @@ def test_a_training_with_diffusion_dropout_is_another_and_goes_on_bit_for_bit(
 
 
 def test_dropout_rises_within_a_training_when_its_time_has_come(tmp_path: Path, monkeypatch):
-    """Four steps, and dropout from the third on: no past is noised in those, and every past in the others."""
+    """Four steps, dropout from the third on: it noises no past at first, and later every past."""
     usual, seen = Dropout.__call__, []
 
     def watched(self, past, s, generator):

@@ -128,8 +128,7 @@ def test_the_page_marks_what_is_stored(tmp_path):
         and line.count("0.4 [0.2, 0.6]") == len(tables.SHOWN)
     )
     assert (
-        "| down-20 | 1.2 [1, 1.4] | 1.2 [1, 1.4] | - | - |" in page
-        and "attention.png" not in page
+        "| down-20 | 1.2 [1, 1.4] | 1.2 [1, 1.4] | - | - |" in page and "attention.png" not in page
     )
     (tmp_path / "results" / "attention.png").touch()
     render(tmp_path, tmp_path / "bench")

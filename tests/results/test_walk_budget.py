@@ -1,4 +1,4 @@
-"""The table of choices: each variant's recipe differs from that of its base in what its words say."""
+"""The table of choices: each variant's recipe differs from its base in what its words say."""
 
 from dataclasses import asdict
 

@@ -254,7 +254,8 @@ class Table:
     def click_joint(self, name: str) -> None:
         """Where the camera of the still pictures sees the joint, from as far away as the
         bench's."""
-        box, frame, walked = self.figure.bounding_box(), int(self.data("frame")), CLIP.world()
+        box, frame = self.figure.bounding_box(), int(self.data("frame"))
+        walked = CLIP.world()
         camera = poster.camera_at(walked, frame, body.Camera(distance=4.2))
         spots, _ = body.project(walked[frame], camera, (box["width"], box["height"]))
         x, y = spots[JOINTS.index(name)]

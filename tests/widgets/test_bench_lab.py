@@ -19,8 +19,10 @@ CHECK = """
 hand, T_h = JOINTS.index("RightHand"), bench.bench.T_h
 truth, mean = clip.world()[bench.first : bench.first + T_h], bench.outcome.motions[0]
 off = np.linalg.norm(mean - truth, axis=-1)
-print(bench.shows_repairs, [divmod(n, len(JOINTS)) for n in bench.missing] == [(t, hand) for t in range(3)],
-      float(np.delete(off.flatten(), bench.missing).max()) < 1e-5, 0 < float(off.flatten()[bench.missing].mean()) < 0.3)
+lost = [divmod(n, len(JOINTS)) for n in bench.missing]
+print(bench.shows_repairs, lost == [(t, hand) for t in range(3)],
+      float(np.delete(off.flatten(), bench.missing).max()) < 1e-5,
+      0 < float(off.flatten()[bench.missing].mean()) < 0.3)
 """
 ROOT = "document.querySelector('.mde-bench').dataset"
 

@@ -496,9 +496,11 @@ def test_a_busy_editor_says_so_and_ignores_a_second_press(browser, tmp_path, mot
     with open_page(browser) as page:
         open_editor(page, tmp_path, editor)
         page.evaluate("""() => {
-            const b = document.querySelector(".mde-main"), root = document.querySelector(".mde-editor");
+            const b = document.querySelector(".mde-main");
+            const root = document.querySelector(".mde-editor");
             b.click(); b.click();
-            window.seen = [b.textContent, b.getAttribute("aria-disabled"), root.getAttribute("aria-busy")];
+            const off = b.getAttribute("aria-disabled"), busy = root.getAttribute("aria-busy");
+            window.seen = [b.textContent, off, busy];
         }""")
         assert page.evaluate("seen") == ["Generating …", "true", "true"]
         page.wait_for_function("model.get('state').made === 3")
@@ -543,8 +545,8 @@ def test_without_a_kernel_it_plays_and_pins_and_says_what_it_needs(browser, moti
     editor.generate()
     bundle, _ = editor._repr_mimebundle_()
     assert (
-        'alt="Motion editor: a skeleton moves for 1.6 s, 31 frames; 2 frames pinned. 3 in-betweens made."'
-        in bundle["text/html"]
+        'alt="Motion editor: a skeleton moves for 1.6 s, 31 frames; 2 frames pinned. 3 in-betweens '
+        'made."' in bundle["text/html"]
     )
     assert {"image/png", "application/vnd.jupyter.widget-view+json"} <= set(bundle)
     export = tmp_path / "export.html"

@@ -39,7 +39,10 @@ def test_pins_drags_and_in_betweens_in_jupyterlab(browser, lab):  # noqa: F811
         page.wait_for_function(f"{ROOT}.chosen === '1'")
         assert "keyframe error 0.0 mm" in page.locator(".mde-measured").inner_text()
         drawn(canvas)
-        asked = "print(editor.chosen, editor.edit, bool((editor.samples[:, [0, 39]] == editor.positions[[0, 39]]).all()))"
+        asked = (
+            "print(editor.chosen, editor.edit, "
+            "bool((editor.samples[:, [0, 39]] == editor.positions[[0, 39]]).all()))"
+        )
         heard = (page.evaluate(ASK, asked) for _ in range(40))
         assert "1 2 frames pinned (1 edited) True" in heard
         assert page.locator(".jp-Cell").count() == 1, "a key reached JupyterLab"

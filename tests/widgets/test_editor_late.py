@@ -13,7 +13,8 @@ from motiondiff_edu.motion.skeleton import joint_index
 from motiondiff_edu.viz.body import Camera, project
 from motiondiff_edu.widgets.editor import Editor
 
-T, FRAME, HAND = 31, 12, joint_index("LeftHand")
+T, FRAME = 31, 12
+HAND = joint_index("LeftHand")
 FIGURE = "canvas:not(.mde-lane)"
 
 

@@ -142,8 +142,10 @@ def test_show_replaces_what_is_given_and_an_error_changes_nothing(maps, moved):
 
 # ---- drawn
 
-COLOURS = """() => {  // per column of the lane: how purple the waveform's rows are, how green those of the curve
-  const c = document.querySelector(".mde-lane"), d = c.getContext("2d").getImageData(0, 0, c.width, c.height).data;
+# per column of the lane: how purple the waveform's rows are, how green those of the curve
+COLOURS = """() => {
+  const c = document.querySelector(".mde-lane");
+  const d = c.getContext("2d").getImageData(0, 0, c.width, c.height).data;
   const purple = [], green = [];
   for (let x = 0; x < c.width; x++) {
     let p = 0, g = 0;
@@ -207,7 +209,8 @@ def test_a_click_in_the_lane_goes_there_and_playing_goes_on(browser, listening, 
             3.0, abs=1e-3
         )
         lane = page.locator(".mde-lane")
-        assert [lane.get_attribute(f"aria-value{name}") for name in ("min", "max", "now", "text")] == [
+        told = ("min", "max", "now", "text")
+        assert [lane.get_attribute(f"aria-value{name}") for name in told] == [
             "0", "4.30", "3.00", "3.00 of 4.30 seconds, beat 6 of 8",
         ]  # fmt: skip
         page.keyboard.press("ArrowLeft")  # the lane has the focus

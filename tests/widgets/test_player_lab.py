@@ -11,7 +11,8 @@ from click_track import clicks
 from synthetic_walk import walk
 from motiondiff_edu.widgets.player import Player
 positions, contacts = walk(frames=40)
-player = Player(positions, contacts=contacts, past=10, labels="walker", audio=clicks([0.5, 1, 1.5], 2))
+sound = clicks([0.5, 1, 1.5], 2)
+player = Player(positions, contacts=contacts, past=10, labels="walker", audio=sound)
 player"""
 HEARD = "document.querySelector('.mde-player audio').currentTime"
 SHOWN = "Number(document.querySelector('.mde-player').dataset.frame)"

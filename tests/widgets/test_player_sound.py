@@ -31,16 +31,21 @@ HEARD = "document.querySelector('audio').currentTime"
 
 # ---- in the browser
 
-WATCH = """async (seconds) => {  // in every animation frame: the sound's time as it begins, the picture as it ends
-  const root = document.querySelector(".mde-player"), sound = root.querySelector("audio"), rows = [];
+# in every animation frame: the sound's time as it begins, the picture as it ends
+WATCH = """async (seconds) => {
+  const root = document.querySelector(".mde-player"), sound = root.querySelector("audio");
+  const rows = [];
   const small = document.createElement("canvas").getContext("2d", { willReadFrequently: true });
   while (sound.currentTime < seconds && rows.length < 1500) {
     const heard = await new Promise((done) => requestAnimationFrame(() => done(sound.currentTime)));
     small.drawImage(root.querySelector("canvas"), 0, 0, 48, 24);
-    const dark = small.getImageData(0, 0, 48, 12).data.map((v) => 255 - v); // the upper half: the body, no trail
+    // the upper half: the body, no trail
+    const dark = small.getImageData(0, 0, 48, 12).data.map((v) => 255 - v);
     let left = 0, right = 0;
     if (rows.length && heard < rows.at(-1)[0]) break; // it began again before it was seen to end
-    for (let i = 0; i < dark.length; i += 4) if (i / 4 % 48 < 24) left += dark[i]; else right += dark[i];
+    for (let i = 0; i < dark.length; i += 4) {
+      if (i / 4 % 48 < 24) left += dark[i]; else right += dark[i];
+    }
     rows.push([heard, left > right ? "left" : "right", Number(root.dataset.frame)]);
   }
   return rows;
@@ -68,7 +73,8 @@ def test_a_planted_beat_lands_on_its_click(browser, player, tmp_path):
 
 
 DECODED = """async () => {
-  const bytes = model.get("sound"), file = bytes.buffer.slice(bytes.byteOffset, bytes.byteOffset + bytes.byteLength);
+  const bytes = model.get("sound"), start = bytes.byteOffset;
+  const file = bytes.buffer.slice(start, start + bytes.byteLength);
   const heard = await new OfflineAudioContext(1, 16000, 16000).decodeAudioData(file);
   return Array.from(heard.getChannelData(0));
 }"""
@@ -144,7 +150,10 @@ def test_sound_and_picture_begin_again_together(browser, player, tmp_path):
 
 
 def test_speed_keeps_the_pitch_and_mute_is_a_button_and_a_key(browser, player, tmp_path):
-    sounding = "(() => { const a = document.querySelector('audio'); return [a.playbackRate, a.preservesPitch, a.muted]; })()"
+    sounding = (
+        "(() => { const a = document.querySelector('audio'); "
+        "return [a.playbackRate, a.preservesPitch, a.muted]; })()"
+    )
     with open_page(browser) as page:
         page.goto(player_page(tmp_path, player))
         page.get_by_label("Speed").select_option("2")
@@ -193,7 +202,8 @@ def test_exported_html_sounds_in_its_sandbox_offline(browser, player, tmp_path):
         inside.get_by_role("button", name="Play").click()
         page.frames[1].wait_for_function(
             "document.querySelector('.mde-player').dataset.frame >= 30"
-            " && document.querySelector('audio').currentTime > 1.3 && !document.querySelector('audio').paused"
+            " && document.querySelector('audio').currentTime > 1.3"
+            " && !document.querySelector('audio').paused"
         )
         assert inside.locator("audio").evaluate("a => a.duration") == pytest.approx(4.6, abs=0.01)
         assert page.problems == [] and page.asked == []

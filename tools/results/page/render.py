@@ -216,7 +216,15 @@ def attention(records: dict[str, dict], folder: Path) -> str:
 
 def others(records: dict[str, dict]) -> str:
     """Everything that stands in no table above, with what makes it."""
-    shown = ("walker", "footsteps", "ladder.", "budget.", "dance-budget.", "dance-time.", "attention.")
+    shown = (
+        "walker",
+        "footsteps",
+        "ladder.",
+        "budget.",
+        "dance-budget.",
+        "dance-time.",
+        "attention.",
+    )
     shown += ("mend", "known-answer.", "inbetween.")
     rest = [one for name, one in sorted(records.items()) if not name.startswith(shown)]
     rows = [
