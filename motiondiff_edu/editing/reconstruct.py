@@ -21,7 +21,7 @@ from ..beyond.guidance import blended
 from ..motion.dance_frame import heading
 from ..motion.directions import ARMS, UPLEGS
 from ..motion.motion import MotionError
-from ..motion.planting import spans
+from ..motion.planting import runs
 from ..motion.root_frame import smoothed_root, to_root_frame, to_world
 from ..motion.skeleton import BONE_LENGTHS, HIPS, JOINTS, TOES, J
 from ..reconstruction import repair
@@ -110,7 +110,7 @@ def _windows(known: Bool[np.ndarray, "T 21"], T_h: int) -> Int[np.ndarray, "W"]:
         raise MotionError(f"the motion has {T} frames; the walker's windows have {T_h}")
     firsts = {
         min(max(begin, 0), T - T_h)
-        for first, last in spans(~known.all(axis=1))
+        for first, last in runs(~known.all(axis=1)).tolist()
         for begin in range(first - half, last, half)
     }
     return np.array(sorted(firsts))

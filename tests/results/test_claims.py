@@ -68,7 +68,7 @@ def test_every_claim_is_listed_with_its_verdict_and_once_in_the_sum():
     )
     assert any("trains no faster" in line and f"**{DIFFERS}**" in line for line in lines)
     (agrees,) = [line for line in lines if line.startswith(f"* **{AGREES}** (1)")]
-    assert agrees.endswith("kinematic losses help: bones err less (shipped weights)")
+    assert agrees.endswith("kinematic losses help: the bone error falls (shipped weights)")
     assert f"* **{MISSING}** ({len(CLAIMS) - 2})" in found
 
 

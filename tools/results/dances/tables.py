@@ -46,21 +46,19 @@ TABLE_1 = """## MoFusion's Table 1
 
 | here | in the paper | the same? |
 | --- | --- | --- |
-| beats of the music danced to, `bas_music` | BAS, eq. 10 | the formula, sigma 3 of 60 frames a \
-second; beats are true ones here, librosa's there |
-| `fid`, `diversity`, `multimodality` | FID, Div, MModality | the kind, without the public code's \
-misplaced bracket |
+| beats of the music danced to, `bas_music` | BAS, eq. 10 | the same formula, with sigma = 3 of 60 \
+frames a second; we use the true beats, the paper those of librosa |
+| `fid`, `diversity`, `multimodality` | FID, Div, MModality | the same kind of score, without the \
+public code's misplaced bracket |
 | stops of the dance on a beat, `bas` | the words above eq. 10 | averaged over the stops of the \
-dance, so that stopping all the time wins nothing |
-| share of the data's alignment, `bas_share` | none | how much of the data's own alignment, \
-beyond that with other songs' beats, is there |
+dance, so that stopping all the time gains nothing |
+| share of the data's alignment, `bas_share` | none | how much of the data's own alignment is \
+reached, beyond that with other songs' beats |
 
-The data are not the same: AIST++ is recorded, ours composed and danced by a program, \
-with other joints, clips of 5 s
-and fewer of them. Compare rows within a block, never across. FID falls with the number of clips; \
-the data's row, other
-dances to the same pieces, is what perfection gets. One training seed each; **[low, \
-high]** is over songs.
+The data differ. AIST++ is recorded; our songs are composed and danced by a program, with other
+joints and with fewer clips, of 5 s. Compare rows within a block, never across blocks. FID falls
+with the number of clips. The data's row judges other dances to the same pieces: it is what a
+perfect dancer would get. There is one training seed each, and **[low, high]** is over songs.
 
 """
 
@@ -148,12 +146,13 @@ def choices(records: dict[str, dict]) -> str:
             [f"`{name}`: {words}", beside, *(cell(records.get(n), unit=False) for n in mine), said]
         )
     text = (
-        "## What each choice of a dancer is worth\n\nTrained on the same songs with the same seed "
-        f"for {FULL.steps} steps of {FULL.batch} windows; each row differs from the row named "
-        f"beside it in one choice. {STEPS} DDIM steps (eta = {ETA:g}) for all. `share gained` and "
-        "`bone error saved` are set against that row, on the same songs. The trainings are short, "
-        "one seed each: an order, not what a choice is worth in the end. "
-        "`make results FULL=1` trains them; `make results` keeps what is stored.\n\n"
+        "## What each choice of a dancer is worth\n\nAll dancers were trained on the same songs "
+        f"with the same seed, for {FULL.steps} steps of {FULL.batch} windows. Each row differs in "
+        f"one choice from the row named beside it. All dance with {STEPS} DDIM steps (eta = "
+        f"{ETA:g}). The share gained and the bone error saved are relative to that row, on the "
+        "same songs. The trainings are short, with one seed each: read these as a ranking, not as "
+        "what a choice is worth in the end. `make results FULL=1` trains them again; "
+        "`make results` keeps what is stored.\n\n"
     )
     return text + table(head, rows) + _times(records)
 
@@ -174,9 +173,9 @@ def _times(records: dict[str, dict]) -> str:
         return ""
     about = records[f"dance-time.{BASE}.step_ms"]["seeds"]
     text = (
-        f"\nCPU milliseconds of one thread: a training step (batch {about['batch']}), one pass "
-        f"through the plain network and a whole sampling ({about['dances']} dances of "
-        f"{about['frames']} frames at once, {about['steps']} steps of DDIM; "
-        "the U-Net by its fast twin, which keeps what it heard). Ratios are of the same round.\n\n"
+        f"\nCPU milliseconds on one thread for a training step (batch {about['batch']}), for one "
+        f"pass through the plain network, and for a whole sampling ({about['dances']} dances of "
+        f"{about['frames']} frames at once, {about['steps']} steps of DDIM). The U-Net samples by "
+        "its fast twin, which encodes the music once. Ratios are of the same round.\n\n"
     )
     return text + table(["network", *(f"`{kind}`" for kind in kinds)], rows)

@@ -6,9 +6,9 @@ Filling in where the right answer is a formula, and both papers' repairs.
 from ..page.markdown import cell, table
 
 KINDS = {
-    "mean": "the mean's error, in deviations of the truth (root mean square; 0 is right)",
-    "spread": "the spread over the true one (1 is right)",
-    "share": "what is wrong about the shares of the five parts (0 is right)",
+    "mean": "error of the mean, in standard deviations of the truth (root mean square; 0 is right)",
+    "spread": "standard deviation over the true one (1 is right)",
+    "share": "error of the shares of the five Gaussians (0 is right)",
 }
 
 
@@ -31,12 +31,11 @@ def known_answers(records: dict[str, dict]) -> str:
     if not holes:
         return ""
     text = (
-        "## A known answer (MoFusion 4.4, MoDiff III-E)\n\nFive Gaussians fitted to windows of "
-        "walking: how far each way of filling in is from their true conditional, "
-        f"{seeds['questions']} windows, {seeds['samples']} samples each. The denoiser is exact: "
-        "the method alone errs. `masked.50.x5`: 50 steps, each made five times; `blended` and "
-        "`guided`: as in `inbetweening`; `gibbs`: there-and-back whose way back sees what is "
-        "known; `exact`: draws from the wanted, which err by counting only.\n"
+        "## A known answer (MoFusion 4.4, MoDiff III-E)\n\nWe fit a mixture of five Gaussians to "
+        "windows of walking. Its conditional, given what is known of a window, is a formula, and "
+        "so is its denoiser. So every error here comes from the way of filling in, not from a "
+        f"network. There are {seeds['questions']} windows and {seeds['samples']} samples of each. "
+        "Draws from the right answer show the error that counting alone makes.\n"
     )
     for kind, words in KINDS.items():
         rows = [
@@ -67,11 +66,11 @@ def both(records: dict[str, dict]) -> str:
     head = ["way", *(f"{fault}, {kind}" for fault, kind in columns)]
     return (
         "## Both papers' repairs (MoDiff III-E beside MoFusion 4.4)\n\nThe same holes in ten past "
-        "frames, filled by a walker there and back (as in the paper; `_masked`: what is known "
-        "held on the way back) and by the unconditional network under a mask (as in the paper; "
-        "`_blended`: by `editing.inbetween.inbetween`). Both know where the walk goes, then and "
-        "for ten frames more: the one by its control, the other by the pelvis itself, which is "
-        "not scored. Errors in cm of what was missing, "
-        f"of the mean of {seeds['samples']} repairs and of one; {seeds['clips']} unseen pasts.\n\n"
+        "frames are filled in both ways. A walker goes there and back, as in MoDiff, or with what "
+        "is known held on the way back. The unconditional network fills in under a mask, as in "
+        "MoFusion, or by our `editing.inbetween.inbetween`. Both know where the walk goes in these "
+        "frames and the next ten: the walker from its control, the network from the pelvis, which "
+        f"is not scored. Errors are in cm, of the mean of {seeds['samples']} repairs and of one, "
+        f"on {seeds['clips']} unseen pasts.\n\n"
         + table(head, rows)
     )

@@ -17,15 +17,12 @@ OPEN = "undecided"
 MISSING = "not measured yet"
 TEXT = """## The paper's claims, tried
 
-Each claim of MoFusion that a figure of this course can judge. The verdict is computed: \
-**agrees** when the whole 95 %
-interval lies on the right side of the limit, **does not agree** when on the wrong side, \
-**undecided** across it.
-Data, sizes and length of training are ours: a verdict is of the idea at this scale, \
-not of the paper's own figures.
-Intervals are over songs: another training seed may change more. Less repetition than the data's, \
-or more spread, is
-what a claim asks for; it is not yet a better dance.
+These are the claims of MoFusion that a figure of this course can judge. The verdict is computed:
+**agrees** when the whole 95 % interval lies on the right side of the limit, **does not agree** when
+it lies on the wrong side, and **undecided** when it reaches across. The data, the sizes and the
+length of training are ours, so a verdict is about the idea at this scale, not about the paper's own
+figures. Intervals are over songs; another training seed may change more. A claim may ask for less
+repetition or more diversity than the data have. That alone does not make a better dance.
 
 """
 
@@ -90,7 +87,7 @@ CLAIMS = (
         of="regression.repeat",
     ),
     Claim(
-        "raw Mel is enough: MFCC and given beats gain a tenth of the data's alignment at most",
+        "raw Mel is enough: MFCC and given beats gain at most a tenth of the data's alignment",
         "2, 3.3",
         "dance-budget.mfcc.bas_share_minus_x0",
         -1,
@@ -98,7 +95,7 @@ CLAIMS = (
         beside=(MEL, "dance-budget.mfcc.bas_share"),
     ),
     Claim(
-        "a linear layer is enough for the music: it loses a tenth of the data's alignment at most",
+        "a linear layer is enough for the music: it loses at most a tenth of the data's alignment",
         "3.3",
         "dance-budget.linear-music.bas_share_minus_x0",
         1,
@@ -106,21 +103,21 @@ CLAIMS = (
         beside=(MEL, "dance-budget.linear-music.bas_share"),
     ),
     Claim(
-        "a metre that was never heard is danced to",
+        "the dancer dances to a metre that was not in training",
         "1",
         "dancer.unheard.metre5.bas_share",
         1,
         **KNOWN,
     ),
     Claim(
-        "a tempo that was never heard is danced to",
+        "the dancer dances to a tempo that was not in training",
         "1",
         "dancer.unheard.tempo70.bas_share",
         1,
         **KNOWN,
     ),
     Claim(
-        "instruments that were never heard are danced to",
+        "the dancer dances to instruments that were not in training",
         "1",
         "dancer.unheard.mallets.bas_share",
         1,
@@ -140,7 +137,7 @@ CLAIMS = (
         1,
     ),
     Claim(
-        "lightness costs no quality: a transformer gains a tenth of the data's alignment at most",
+        "lightness costs no quality: a transformer gains at most a tenth of the data's alignment",
         "1",
         "dance-budget.transformer.bas_share_minus_x0",
         -1,
@@ -148,10 +145,10 @@ CLAIMS = (
         beside=("dance-budget.transformer.bone_gain_over_x0",),
     ),
     Claim(
-        "kinematic losses help: bones err less (shipped weights)", "3.2", "dancer.bone_gain", 1, 0.0
+        "kinematic losses help: the bone error falls (shipped weights)", "3.2", "dancer.bone_gain", 1, 0.0
     ),
     Claim(
-        "kinematic losses help: bones err less (trainings of equal length)",
+        "kinematic losses help: the bone error falls (trainings of equal length)",
         "3.2",
         f"{WEIGHTED}.bone_gain_over_x0",
         1,
@@ -159,21 +156,21 @@ CLAIMS = (
         beside=(f"{WEIGHTED}.bas_share_minus_x0",),
     ),
     Claim(
-        "their weight over time helps: bones err less than with all steps alike",
+        "their weight over time helps: the bone error is smaller than with equal weights",
         "3.2",
         f"{WEIGHTED}.bone_gain_over_constant",
         1,
         0.0,
     ),
     Claim(
-        "their weight over time helps: more on the beat than with all steps alike",
+        "their weight over time helps: dances are more on the beat than with equal weights",
         "3.2",
         f"{WEIGHTED}.bas_share_minus_constant",
         1,
         0.0,
     ),
     Claim(
-        "the noise, unweighted, is a good target: seven tenths of the alignment of x0",
+        "the noise, unweighted, is a good target: it reaches seven tenths of the alignment of x0",
         "3.1",
         "dance-budget.eps.bas_share",
         1,
@@ -189,7 +186,7 @@ CLAIMS = (
         of="dancer.bas_data",
     ),
     Claim(
-        "one piece has many dances: as unlike one another as the data's",
+        "one piece has many dances, which differ as much as the data's",
         "Table 1",
         "dancer.multimodality_over_data",
         1,

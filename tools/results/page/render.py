@@ -22,24 +22,22 @@ from .words import GOALS
 
 HEAD = """## How to read this page
 
-Made by `make results` (and `make bench`) from the records in `docs/results` and \
-`benchmarks/results`. Do not edit.
+`make results` and `make bench` write this page from the records in `docs/results` and
+`benchmarks/results`. Do not edit it.
 
-The course's data are synthetic, and neither paper's code nor its prepared data is public: \
-figures stand beside the
-paper's for orientation, not as a reproduction. **[low, \
-high]** is a 95 % interval (bootstrap) over clips; over pasts
-for diversity; over repeats for times. It is that of one training run: \
-it does not hold what another training seed
-would change.
+The course's data are synthetic, and neither paper has published its code or its prepared data.
+Our figures stand beside the papers' for orientation: they do not reproduce them.
+
+**[low, high]** is a 95 % bootstrap interval. It is taken over clips, for diversity over pasts, and
+for times over repetitions. Unless a section says otherwise it belongs to one training run: another
+training seed can change a figure by more.
 """
 
 ALL = "RESULTS_ALL.md"
 FURTHER = """# Further figures
 
-Every figure that stands in no table of [RESULTS.md](RESULTS.md), with its 95 % interval \
-and the command that measures it.
-Made by `make results` and `make bench`. Do not edit.
+Every figure that stands in no table of [RESULTS.md](RESULTS.md), with its 95 % interval and the
+command that measures it. `make results` and `make bench` write this page. Do not edit it.
 
 """
 
@@ -91,13 +89,14 @@ def walkers(records: dict[str, dict]) -> str:
     seeds = {key: said for n in names for key, said in records[n]["seeds"].items()}
     return (
         "## The walkers\n\n"
-        f"{seeds.get('clips')} unseen pasts and controls of {seeds.get('seconds')} s, raw output, "
-        "DDPM with all steps (`ddim10`: ten DDIM steps), control held over the window "
-        "(`lookahead`: the window sees the control to come). `_data` rows judge the recorded "
-        f"motion under the same control. `diversity`: {seeds.get('each')} rollouts for each of "
-        f"{seeds.get('pasts')} pasts, from the end of the first second on. Seeds: pasts and "
-        f"controls {_seed(names, records, 'walk')}, those of the diversity "
-        f"{_seed(names, records, 'diversity')}, rollouts {seeds.get('rollouts')}.\n\n"
+        f"Each walker continues {seeds.get('clips')} unseen pasts for {seeds.get('seconds')} s. We "
+        "judge the network's raw output. All steps of DDPM are taken, with `ddim10` ten steps of "
+        "DDIM. The control is held over each window; with `lookahead` the window sees the control "
+        "to come. Rows of the data judge the recorded motion under the same control. Diversity "
+        f"compares {seeds.get('each')} rollouts for each of {seeds.get('pasts')} pasts, after "
+        f"their first second. Seeds: {_seed(names, records, 'walk')} for pasts and controls, "
+        f"{_seed(names, records, 'diversity')} for those of the diversity, "
+        f"{seeds.get('rollouts')} for the rollouts.\n\n"
         + table(["figure", *columns], rows)
         + _beside_the_paper(records)
     )
@@ -118,10 +117,10 @@ def _beside_the_paper(records: dict[str, dict]) -> str:
     if one is None or one["paper"] is None:
         return ""
     return (
-        f"\nMoDiff prints a bone RMSE of {number(one['paper'])} cm (Table I, without dropout); "
-        f"`walker-eps`, which has the paper's target, has {number(one['value'])} cm. Data, "
-        "skeleton and sizes of the networks differ: only the order of size can be compared. "
-        "Of adherence, drift and diversity the paper has no figures.\n"
+        f"\nMoDiff prints a bone RMSE of {number(one['paper'])} cm (Table I, without dropout). "
+        f"`walker-eps`, which has the paper's target, has {number(one['value'])} cm. The data, the "
+        "skeleton and the sizes of the networks differ, so only the order of magnitude can be "
+        "compared. The paper gives no figures for adherence to control, drift or diversity.\n"
     )
 
 
@@ -144,9 +143,9 @@ def footsteps(records: dict[str, dict], folder: Path) -> str:
                 [f"**{who}**{note}", *(f"{number(c['value'])} {span(c)}" for c in cells), bones]
             )
     text = (
-        "## Footsteps: MoDiff's Table I and Fig. 3\n\nOur clips are others, and more of them: "
-        "compare rows within a block, never across. Notebook 08 shows why the paper's count "
-        "follows noise; the robust count closes gaps of one frame and "
+        "## Footsteps: MoDiff's Table I and Fig. 3\n\nWe have other clips than the paper, and "
+        "more of them. Compare rows within a block, never across blocks. Notebook 08 shows why the "
+        "paper's count follows noise. The robust count closes gaps of one frame, and "
         "drops steps shorter than 0.1 s.\n\n"
     )
     picture = ""
@@ -175,12 +174,13 @@ def budget(records: dict[str, dict]) -> str:
     ]
     seeds = next(iter(mine.values()))["seeds"]
     text = (
-        f"## What each choice is worth\n\nSmall walkers trained for {seeds['cpu_seconds']:g} "
-        "CPU-seconds each, one thread, with half the shipped walkers' batch and fewer clips; each "
-        "row differs from the row named beside it in one choice. MoDiff (III-A) says that "
-        "predicting more than one pose helps: see T_p. DDPM with S = 100, held control, one pose "
-        f"kept of every window, {seeds['clips']} unseen controls. One training seed each: "
-        "small differences mean nothing.\n\n"
+        "## What each choice is worth\n\nSmall walkers, each trained for "
+        f"{seeds['cpu_seconds']:g} CPU-seconds on one thread, with half the shipped walkers' batch "
+        "and fewer clips. Each row differs in one choice from the row named beside it. MoDiff "
+        "(III-A) says that predicting more than one pose helps: see T_p. The walkers were sampled "
+        f"by DDPM with S = 100, under {seeds['clips']} unseen controls that were held, and kept "
+        "one pose of every window. With one training seed each, small differences mean nothing."
+        "\n\n"
     )
     return text + table(["the choice", "compare with", *(f"`{kind}`" for kind in kinds)], rows)
 
@@ -197,11 +197,12 @@ def attention(records: dict[str, dict], folder: Path) -> str:
         for place, words in places.items()
     ]
     text = (
-        "## Attention over the beats: MoFusion's Fig. 4\n\nHow much of a level's attention lies "
-        "within 0.1 s of a beat, over the same near the beats of other songs (`shuffled`) and near "
-        "its own beats moved together (`shifted`): 1 is chance. `seconds_read`: how much music a "
-        "frame reads. A level is named by its frames a second; heads averaged, "
-        "three diffusion steps. Seven levels are seven chances: one outlier is no finding.\n\n"
+        "## Attention over the beats: MoFusion's Fig. 4\n\nThe first column is the share of a "
+        "level's attention that lies within 0.1 s of a beat. The next two divide it by the share "
+        "near the beats of other songs, and near its own beats after all were shifted together: "
+        "1 is chance. The last column is how much music a frame reads. A level is named by its "
+        "frames per second. Heads and three diffusion steps are averaged. With seven levels, one "
+        "outlier may be chance.\n\n"
     )
     if "attention.beat_mass" not in records:
         return text + "Not measured yet.\n"

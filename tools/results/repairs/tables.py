@@ -31,8 +31,8 @@ SLIDING = {
     "skating_data_mps": "the data",
 }
 REPAIRS = {
-    "rmse_cm": "mean of ten repairs",
-    "one_rmse_cm": "one repair",
+    "rmse_cm": "mean of ten reconstructions",
+    "one_rmse_cm": "one reconstruction",
     "paper_rmse_cm": "as in the paper, mean",
     "rmse_ridge_cm": "ridge regression",
     "rmse_interpolation_cm": "straight lines",
@@ -64,12 +64,12 @@ def dropout(records: dict[str, dict], folder: Path) -> str:
         for n in ("dropout_gain_bone_cm", "dropout_gain_adherence_mps", "dropout_cost_complete")
     ]
     text = (
-        "## Diffusion dropout (MoDiff III-D)\n\nTwo kinds of small walkers: the same network, data "
-        f"and steps, without and with diffusion dropout, {seeds['trainings']} training seeds of "
-        f"each, all shipped. The next {seeds['frames']} frames of {seeds['clips']} unseen pasts, "
-        f"complete and with {seeds['missing']:.0%} of their joints missing throughout "
-        "(zero after standardisation). Intervals are over training seeds and clips; "
-        "three seeds are few.\n\n"
+        "## Diffusion dropout (MoDiff III-D)\n\nTwo kinds of small walkers have the same network, "
+        "data and training steps; one was trained with diffusion dropout. There are "
+        f"{seeds['trainings']} training seeds of each, all shipped. They continue "
+        f"{seeds['clips']} unseen pasts by {seeds['frames']} frames: once complete, and once with "
+        f"{seeds['missing']:.0%} of the joints missing throughout (zero after standardisation). "
+        "Intervals are over training seeds and clips; three seeds are few.\n\n"
     )
     text += (
         table(["past", "error", "plain", "with dropout"], rows)
@@ -95,17 +95,17 @@ def repairs(records: dict[str, dict], folder: Path) -> str:
         for fault in FAULTS
     ]
     text = (
-        "## Repairs (MoDiff III-E)\n\nErrors of what was missing of ten past frames, cm "
-        "(root mean squared distance). `rmse_cm`: of the mean of ten repairs; `one`: of one of "
-        "them, which moves as the mean does not. Ours begin with what ridge regression guesses, "
-        "hold what is known on the way back, too, and keep bones; `paper`: from the mean pose, and "
-        "neither. `nearer_than`: the share of pasts in which the mean is nearer. Where "
-        "`rmse_over_ridge` is above 1, the regression that a repair starts from is nearer to the "
-        "truth than the repair.\n\n"
+        "## Reconstruction (MoDiff III-E)\n\nWhat was missing in ten past frames is "
+        "reconstructed. Errors are root mean squared distances in cm, of the mean of ten "
+        "reconstructions and of one. A mean is closer to the truth, but it moves too little. Our "
+        "way starts from the guess of ridge regression, holds what is known on the way back as "
+        "well, and keeps the bones' lengths. The paper's way starts from the mean pose and does "
+        "neither. Where the error over ridge regression is above 1, the regression that the "
+        "reconstruction starts from is closer to the truth than the reconstruction.\n\n"
     )
     text += table(["missing", *(f"`{kind}`" for kind in kinds)], rows)
     text += (
-        "\n![Errors of repairs and of what needs no walker](results/repairs.png)\n"
+        "\n![Errors of reconstructions and of what needs no walker](results/repairs.png)\n"
         * (folder / "repairs.png").exists()
     )
     second = [
@@ -114,15 +114,15 @@ def repairs(records: dict[str, dict], folder: Path) -> str:
         if n.startswith(("mend.table2", "mend.footsteps"))
     ]
     said = (
-        "\n### Table II\n\n30 % of the joints of the past missing throughout (zero; 6 of 21): the "
-        "small walkers with dropout, three trainings, frame by frame as in the paper. Beside them "
-        "the same with five poses kept of every window of ten (`keep5`), which crawl less; and, "
-        "from fewer pasts, the shipped walker, trained for longer and without dropout. `ge`: 12 s "
-        "generated from the past as it is; `re`: the past repaired, our way, as it comes from the "
-        "network; `re_bones`: with its bones kept, which is how we repair; `re_paper`: the paper's "
-        "way; `whole`: 12 s from complete pasts. `ratio`: the larger of `ge` and `re` over "
-        "`whole`. The paper, on other data: "
-        "0.101 cm and 0.108 cm (MoDiff with dropout), 0.105 and 0.116 (without).\n\n"
+        "\n### Table II\n\nIn every past 30 % of the joints are missing throughout (6 of 21, set to "
+        "zero). The small walkers with dropout, three trainings, go frame by frame as in the "
+        "paper. The same walkers are also tried with five poses kept of every window of ten; their "
+        "errors grow less. The shipped walker, trained for longer, is tried on fewer pasts. Walks "
+        "of 12 s are generated from the broken pasts (`ge`) and from complete ones (`whole`). "
+        "Reconstructed pasts are judged as they come from the network (`re`), with their bones "
+        "kept, which is our way (`re_bones`), and by the paper's way (`re_paper`). The paper "
+        "prints, on other data, 0.101 cm and 0.108 cm for MoDiff with dropout, and 0.105 cm and "
+        "0.116 cm without.\n\n"
     )
     return text + said + table(["figure", "measured"], second) if second else text
 
@@ -141,14 +141,15 @@ def inbetweens(records: dict[str, dict], folder: Path) -> str:
         for g in GAPS
     ]
     text = (
-        f"## In-betweens (MoFusion 4.4)\n\nThe unconditional network; {seeds['motions']} unseen "
-        "walks and dances in equal halves, 100 frames each, a gap in the middle; "
-        f"{seeds['samples']} samples of each, {seeds['steps']} DDIM steps, every guess guided and "
-        "drawn through the given frames, bones kept and feet held at the end "
-        "(`editing.inbetween.inbetween`); `masked`: one sample as in the paper, without that. A "
-        "mean of samples beats any sample on error, and moves less than any: NPSS, the jump at the "
-        "seam and the sliding of planted toes (`skating`) are of single samples. Given frames are "
-        "held exactly: `keyframe_error_cm` is "
+        "## In-betweens (MoFusion 4.4)\n\nThe unconditional network fills a gap in the middle of "
+        f"{seeds['motions']} unseen motions of 100 frames, half of them walks and half dances. "
+        f"There are {seeds['samples']} samples of each, with {seeds['steps']} DDIM steps. Our way "
+        "(`editing.inbetween.inbetween`) uses guidance, blends each guess into the given frames, "
+        "and at the end keeps the bones' lengths and locks the feet. Columns that say *masked* "
+        "show one sample as in the paper, without these. The mean of several samples has a smaller "
+        "error than a sample, but it moves less. Therefore the spectral error (NPSS), the jump at "
+        "the seam and the sliding of planted toes are of single samples. Given frames stay exactly "
+        "as they are: the error there is "
         f"{number(records['inbetween.keyframe_error_cm']['value'])}.\n\n"
     )
     picture = (
