@@ -30,7 +30,11 @@ $(VENV)/.test: pyproject.toml constraints.txt setup.py | $(BIN)/python
 
 $(VENV)/.bench: pyproject.toml constraints.txt setup.py | $(BIN)/python
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt -e '.[bench]'
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt --no-deps $(BARE_PEERS)
 	@touch $@
+
+# Two peers of which one module each is used; with what they ask for comes a torchvision that does not fit a CPU torch.
+BARE_PEERS := smalldiffusion denoising-diffusion-pytorch
 
 lab: $(VENV)/.lab ## set up .venv and open JupyterLab at notebook 00
 	$(BIN)/python -m motiondiff_edu lab

@@ -42,7 +42,8 @@ def lucidrains():
     spec = importlib.util.find_spec(PEER)
     if spec is None:
         raise SystemExit(
-            f"{PEER} is not installed: pip install --no-deps denoising-diffusion-pytorch einops ema-pytorch"
+            f"{PEER} is not installed: `make bench` installs it, or pip install --no-deps {PEER} "
+            "and pip install einops ema-pytorch accelerate"
         )
     bare = ModuleType(PEER)
     bare.__path__ = list(spec.submodule_search_locations)
