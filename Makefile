@@ -47,11 +47,15 @@ $(VENV)/.test: pyproject.toml constraints.txt setup.py | $(BIN)/python
 	@touch $@ $(VENV)/.lab
 
 $(VENV)/.bench: pyproject.toml constraints.txt setup.py | $(BIN)/python
-	$(call install,[bench])
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt -e '.[bench]'
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt --no-deps $(BARE_PEERS)
 	@touch $@
 
-lab: $(VENV)/.lab ## set up .venv and open JupyterLab in your own copy of the notebooks (FRESH=03: a fresh copy of one)
-	@$(BIN)/python -m motiondiff_edu lab $(foreach number,$(FRESH),--fresh $(number)) $(OPTIONS)
+# Two peers of which one module each is used; with what they ask for comes a torchvision that does not fit a CPU torch.
+BARE_PEERS := smalldiffusion denoising-diffusion-pytorch
+
+lab: $(VENV)/.lab ## set up .venv and open JupyterLab at notebook 00
+	$(BIN)/python -m motiondiff_edu lab
 
 demo: $(VENV)/.lab ## open one notebook ready to show: make demo NB=07
 	@$(BIN)/python -m motiondiff_edu demo $(NB) $(OPTIONS)
