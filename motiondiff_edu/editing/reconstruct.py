@@ -17,7 +17,7 @@ from torch import Tensor
 from ..beyond.back_with_known import FADE, drawn_back
 from ..beyond.constant_bones import given_lengths, steady_bones
 from ..beyond.foot_lock import steady_feet
-from ..beyond.guidance import blended
+from ..beyond.guidance import blended_guess
 from ..motion.dance_frame import heading
 from ..motion.directions import ARMS, UPLEGS
 from ..motion.motion import MotionError
@@ -54,7 +54,7 @@ def reconstruct(
     lengths = given_lengths(positions, known)
     lengths = np.where(np.isnan(lengths), BONE_LENGTHS, lengths)
     mean = walker.pose_scaler.mean.to(given).expand_as(given)
-    guess = blended(mean[None], given[None], mask[None], FADE)[0]
+    guess = blended_guess(mean[None], given[None], mask[None], FADE)[0]
     steer = torch.from_numpy(np.concatenate([control, np.repeat(control[-1:], T_h, axis=0)]))
     for _ in range(rounds):
         found = _once(walker, guess, mask, steer, firsts, generator)
