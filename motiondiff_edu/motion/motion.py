@@ -232,7 +232,7 @@ class Motion:
             )
 
     def check_whole(self) -> None:
-        """Raise MotionError unless the course's joints all have their places, in two frames or more."""
+        """Raise MotionError unless the course's joints are all there, in two frames at least."""
         if self.skeleton != COURSE:
             raise MotionError(
                 f"{self.name} has {len(self.skeleton)} joints; the course's networks know the "
