@@ -1,5 +1,6 @@
-"""Cross-modal attention: queries from motion, keys and values from the condition; its maps can be
-watched.
+"""Cross-modal attention: queries from motion, keys and values from the condition.
+
+Its maps can be watched.
 
 weights = softmax(Q K^T / sqrt(d) + bias),   out = weights V
 Source: MoFusion eq. 8-9; MoDiff IV-A (T5-style relative positions).  Notebook: 06
@@ -65,8 +66,9 @@ def relative_position_bucket(
 
 
 class RelativeBias(nn.Module):
-    """One learned number for each head and bucket of time distance, added to the scores; all layers
-    share it.
+    """One learned number for each head and bucket of time distance, added to the scores.
+
+    All layers share it.
 
     The times of queries and keys are in frames and may belong to different modalities.   Notebook:
     06
@@ -85,8 +87,9 @@ class RelativeBias(nn.Module):
 def angles_of(
     times: Float[Tensor, "T"], width: int, slowest: float, fastest: float
 ) -> Float[Tensor, "T w"]:
-    """2 pi f t for width/2 frequencies f between `slowest` and `fastest` Hz, evenly on a log scale;
-    times in seconds.
+    """2 pi f t for width/2 frequencies f between `slowest` and `fastest` Hz, evenly on a log scale.
+
+    Times in seconds.
 
     Queries and keys turned by them (see `turned`) know how far apart in time they are, and nothing
     else of time.
@@ -136,8 +139,10 @@ class CrossModalAttention(nn.Module):
         bias: Float[Tensor, "#B #H T M"] | None = None,
         turns: tuple[Float[Tensor, "T w"], Float[Tensor, "M w"]] | None = None,
     ) -> Float[Tensor, "B T W"]:
-        """`bias` is added to the scores; `turns` are the angles of `turned` for queries and keys,
-        if there are any."""
+        """`bias` is added to the scores.
+
+        `turns` are the angles of `turned` for queries and keys, if there are any.
+        """
         q = self.split(self.q(x))
         k, v = (self.split(part) for part in self.kv(context).chunk(2, dim=-1))
         if turns is not None:

@@ -70,8 +70,11 @@ def make_schedule(beta: Float[Tensor, "S"], name: str = "schedule") -> Schedule:
 
 
 def linear_schedule(S: int = 100, beta_1: float = 1e-4, beta_S: float = 0.1) -> Schedule:
-    """beta grows evenly from beta_1 to beta_S. MoDiff gives no schedule: these are TimeGrad's
-    numbers. Notebook: 02."""
+    """beta grows evenly from beta_1 to beta_S.
+
+    MoDiff gives no schedule: these are TimeGrad's numbers.
+    Notebook: 02.
+    """
     return make_schedule(
         torch.linspace(beta_1, beta_S, S, dtype=torch.float64), f"linear {beta_1:g} to {beta_S:g}"
     )
@@ -115,8 +118,10 @@ def at(table: Table, s: Steps, x: X, first: int = 0) -> Tensor:
 
 
 def _range(s: Int[Tensor, "B"], first: int) -> tuple[int, int]:
-    """The smallest and the largest of some steps; of none, and of a tensor without values, `first`
-    twice."""
+    """The smallest and the largest of some steps.
+
+    For no steps, and for a tensor without values: `first` twice.
+    """
     if not s.numel() or s.is_meta:
         return first, first
     return int(s.min()), int(s.max())
@@ -125,8 +130,10 @@ def _range(s: Int[Tensor, "B"], first: int) -> tuple[int, int]:
 def draw(
     like: Float[Tensor, "*shape"], generator: torch.Generator | None = None
 ) -> Float[Tensor, "*shape"]:
-    """Standard normal noise in the shape of `like`; drawn where the generator lives, so that seeds
-    travel."""
+    """Standard normal noise in the shape of `like`.
+
+    Drawn where the generator lives, so that seeds travel.
+    """
     device = generator.device if generator else like.device
     return torch.randn(like.shape, generator=generator, dtype=like.dtype, device=device).to(
         like.device
@@ -135,15 +142,19 @@ def draw(
 
 # ---- forward: adding noise -----------------------------------------------------------------------
 def q_step(x_prev: X, s: Steps, schedule: Schedule, noise: X) -> X:
-    """Add one step: x_s = sqrt(1 - beta_s) x_{s-1} + sqrt(beta_s) noise. Source: MoDiff eq. 1;
-    MoFusion eq. 1."""
+    """Add one step: x_s = sqrt(1 - beta_s) x_{s-1} + sqrt(beta_s) noise.
+
+    Source: MoDiff eq. 1; MoFusion eq. 1.
+    """
     beta = at(schedule.beta, s, x_prev)
     return (1 - beta).sqrt() * x_prev + beta.sqrt() * noise
 
 
 def q_sample(x0: X, s: Steps, schedule: Schedule, noise: X) -> X:
-    """Add s steps: x_s = sqrt(alpha_bar_s) x0 + sqrt(1 - alpha_bar_s) noise. Source: MoDiff eq. 2;
-    MoFusion eq. 2."""
+    """Add s steps: x_s = sqrt(alpha_bar_s) x0 + sqrt(1 - alpha_bar_s) noise.
+
+    Source: MoDiff eq. 2; MoFusion eq. 2.
+    """
     signal, noise_share = at(schedule.alpha_bar, s, x0), at(1 - schedule.alpha_bar, s, x0)
     return signal.sqrt() * x0 + noise_share.sqrt() * noise
 
@@ -171,8 +182,10 @@ def q_posterior(x0: X, x_s: X, s: Steps, schedule: Schedule) -> tuple[X, Tensor]
 # ---- reverse: taking it away ---------------------------------------------------------------------
 @dataclass(frozen=True, eq=False)
 class Step:
-    """One moment of sampling: x_s, and what the denoiser says about it. At s = 0, x_s is the sample
-    itself."""
+    """One moment of sampling: x_s, and what the denoiser says about it.
+
+    At s = 0, x_s is the sample itself.
+    """
 
     s: int
     x_s: Tensor
@@ -196,8 +209,10 @@ def p_mean(x_s: X, s: Steps, eps_hat: X, schedule: Schedule) -> X:
 
 
 def p_sample(x_s: X, s: int, eps_hat: X, schedule: Schedule, noise: X, variance: str = "beta") -> X:
-    """x_{s-1} = p_mean + sigma_s noise; the last step, s = 1, adds none. Source: MoDiff eq. 11;
-    MoFusion eq. 3."""
+    """x_{s-1} = p_mean + sigma_s noise; the last step, s = 1, adds none.
+
+    Source: MoDiff eq. 11; MoFusion eq. 3.
+    """
     mean = p_mean(x_s, s, eps_hat, schedule)
     return mean if s == 1 else mean + at(p_variance(schedule, variance), s, x_s).sqrt() * noise
 
@@ -346,8 +361,11 @@ def squared_error(error: X, s: Int[Tensor, "B"]) -> Float[Tensor, ""]:
 def simple_loss(
     denoise: Denoiser, x0: X, s: Int[Tensor, "B"], schedule: Schedule, noise: X
 ) -> Float[Tensor, ""]:
-    """Mean of ||eps - eps_hat(x_s, s)||^2 for given steps and noise; `modiff.training_loss` draws
-    both. Source: MoDiff eq. 10. Notebook: 04."""
+    """Mean of ||eps - eps_hat(x_s, s)||^2 for given steps and noise.
+
+    `modiff.training_loss` draws both.
+    Source: MoDiff eq. 10.  Notebook: 04.
+    """
     return squared_error(noise - denoise(q_sample(x0, s, schedule, noise), s), s)
 
 

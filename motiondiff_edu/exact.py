@@ -17,8 +17,10 @@ from .ddpm import Denoiser, Schedule, at
 
 @dataclass(frozen=True, eq=False)
 class Mixture:
-    """A mixture of K Gaussians in D dimensions, kept in float64; covariances are held by their axes
-    and variances."""
+    """A mixture of K Gaussians in D dimensions, kept in float64.
+
+    Covariances are held by their axes and variances.
+    """
 
     weights: Float[Tensor, "K"]
     means: Float[Tensor, "K D"]
@@ -153,8 +155,9 @@ def dataset_mean(
 
 
 def exact_denoiser(given: Mixture, schedule: Schedule) -> Denoiser:
-    """The best denoiser there is for a mixture, eps_hat = E[eps | x_s]; x_s has D entries a sample,
-    in any shape.
+    """The best denoiser there is for a mixture, eps_hat = E[eps | x_s].
+
+    x_s has D entries a sample, in any shape.
 
     Notebook: 03.
     """

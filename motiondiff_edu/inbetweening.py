@@ -37,8 +37,9 @@ def inpaint_steps(
     eta: float = 1.0,
     generator: torch.Generator | None = None,
 ) -> Iterator[Step]:
-    """DDIM from `start` (x_S) on which the known entries of x_s are given's, noised; yields a
-    `Step` for each call of the denoiser.
+    """DDIM from `start` (x_S) on which the known entries of x_s are given's, noised.
+
+    Yields a `Step` for each call of the denoiser.
 
     `given` counts where `known` is True. Fresh noise is drawn for the snapshots at every step, and
     none where nothing is known: then the same generator gives the same sample as `ddim_steps`.

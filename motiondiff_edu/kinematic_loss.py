@@ -38,7 +38,10 @@ class KinematicWeights:
     over_time: str  # lambda(s): a name of OVER_TIME
 
     def total(self, parts: dict[str, Float[Tensor, "B"]]) -> Float[Tensor, "B"]:
-        """L_k, from `kinematic_parts`.  Source: MoFusion 3.2"""
+        """L_k, from `kinematic_parts`.
+
+        Source: MoFusion 3.2
+        """
         return sum(getattr(self, name) * loss for name, loss in parts.items())
 
 
@@ -134,8 +137,9 @@ def skeleton_loss(
 def asymmetry_loss(
     lengths: Float[Tensor, "B T K"], pairs: Bones, present: Bool[Tensor, "B T"] | None = None
 ) -> Float[Tensor, "B"]:
-    """L_a: how far a left bone's length is from its right partner's, on average; m. `pairs` are
-    indices of bones.
+    """L_a: how far a left bone's length is from its right partner's, on average; m.
+
+    `pairs` are indices of bones.
 
     Source: MoFusion 3.2 names it without a formula; this one is ours.  Notebook: 13
     """

@@ -145,8 +145,9 @@ class MoDiff(nn.Module):
     def encode(
         self, past: Float[Tensor, "B T_h D"], control: Float[Tensor, "B T C"]
     ) -> Float[Tensor, "B M width"]:
-        """The memory: past poses and control, encoded apart and then together; it does not depend
-        on s.
+        """The memory: past poses and control, encoded apart and then together.
+
+        It does not depend on s.
 
         Raises ValueError when past or control have another number of frames than the network was
         built for.

@@ -25,8 +25,9 @@ from .prediction import TARGETS
 
 @dataclass(frozen=True)
 class MoFusionConfig:
-    """Sizes of the network. The paper gives three levels and 80 Mel bands; widths, heads and the
-    rest are ours.
+    """Sizes of the network.
+
+    The paper gives three levels and 80 Mel bands; widths, heads and the rest are ours.
 
     `C` = 0 leaves the music out: keys and values come from the motion itself.  Source: MoFusion 3.3
     """
@@ -71,8 +72,9 @@ MOFUSION_SMALL = MoFusionConfig()
 
 
 class FrameConv(nn.Module):
-    """A convolution over time: each frame is mixed from itself and its two neighbours; outside the
-    motion there are zeros.
+    """A convolution over time: one linear layer of a frame and its two neighbours.
+
+    Outside the motion there are zeros.
 
     With stride 2 it keeps every second frame, the first included. The kernel is kept as one matrix,
     (outputs, 3 x inputs): the frame before, the frame, the one after.  Notebook: 12
@@ -225,8 +227,10 @@ class MoFusion(nn.Module):
         music: "Music | None" = None,
         lengths: Int[Tensor, "B"] | None = None,
     ) -> Float[Tensor, "B T D"]:
-        """What the target (eps, x0 or v) is thought to be; frames from `lengths` on are padding,
-        and come back as 0."""
+        """What the target (eps, x0 or v) is thought to be.
+
+        Frames from `lengths` on are padding, and come back as 0.
+        """
         if (music is None) != (self.music is None):
             raise ValueError(
                 "this network dances to music: give it"

@@ -1,5 +1,6 @@
-"""What a network may predict: the noise eps, the clean sample x0, or v. Each can be turned into the
-others.
+"""What a network may predict: the noise eps, the clean sample x0, or v.
+
+Each can be turned into the others.
 
 With a = sqrt(alpha_bar_s) and b = sqrt(1 - alpha_bar_s), x_s = a x0 + b eps and v = a eps - b x0:
 (x_s, v) is (x0, eps) turned by an angle, so every conversion is a line of algebra.

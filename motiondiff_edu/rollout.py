@@ -1,5 +1,6 @@
-"""Autoregression: predict T_p poses, keep the first few, move on; the control may change at every
-frame.
+"""Autoregression: predict T_p poses, keep the first few, move on.
+
+The control may change at every frame.
 
 A *window sampler* is a callable `sample(past (B, T_h, D), control (B, T_h + T_p, C), generator) ->
 (B, T_p, D)` in the network's units. `rollout_steps` repeats it; `generate` does so for a trained

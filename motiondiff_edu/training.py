@@ -38,8 +38,10 @@ class TrainState:
 
     @classmethod
     def start(cls, model: nn.Module, seed: int = 0, optimizer=None) -> "TrainState":
-        """A fresh run of this model, with Adam unless told. Every random number of the run comes
-        from `seed`."""
+        """A fresh run of this model, with Adam unless told.
+
+        Every random number of the run comes from `seed`.
+        """
         average = copy.deepcopy(model).requires_grad_(False).eval()
         optimizer = optimizer or torch.optim.Adam(model.parameters(), fused=True)
         return cls(model, average, optimizer, torch.Generator().manual_seed(seed))

@@ -20,8 +20,10 @@ ROUNDS = 30
 def given_lengths(
     positions: Float[np.ndarray, "T J 3"], known: Bool[np.ndarray, "T J"]
 ) -> Float[np.ndarray, "20"]:
-    """Of each bone the median length over the frames that give both of its ends, in metres; NaN
-    where none does."""
+    """Of each bone the median length over the frames that give both of its ends, in metres.
+
+    NaN where none does.
+    """
     found = np.full(len(BONES), np.nan)
     for k, (parent, child) in enumerate(BONES):
         both = known[:, parent] & known[:, child]

@@ -26,8 +26,9 @@ FLOOR = 5  # percentile of a toe's height
 def steady_feet(
     positions: Float[np.ndarray, "*B T 21 3"], known: Bool[np.ndarray, "T 21"], fps: float = 20.0
 ) -> Float[np.ndarray, "*B T 21 3"]:
-    """Legs that are not known (metres, world) moved so that feet do not slide; bones keep their
-    length.
+    """Legs that are not known (metres, world) moved so that feet do not slide.
+
+    Bones keep their length.
 
     A stand is a run of frames in which a toe is low and slow. It stays at its median place, or
     where it is given in the meantime; the correction passes smoothly from stand to stand, and is
@@ -42,8 +43,10 @@ def steady_feet(
 
 
 def _steady_leg(moved, known, toe: int, heel: int, fps: float) -> None:
-    """One leg, in place: hip, knee, ankle and toe are neighbours in the skeleton. The foot keeps
-    its direction."""
+    """One leg, in place: hip, knee, ankle and toe are neighbours in the skeleton.
+
+    The foot keeps its direction.
+    """
     leg = [heel - 2, heel - 1, heel]
     free = ~known[:, [*leg[1:], toe]].any(1)
     shift = to_stands(moved[:, toe], ~free, fps)
@@ -92,8 +95,10 @@ def closeness(given: Bool[np.ndarray, " T"]) -> Float[np.ndarray, " T"]:
 
 
 def stands(toe: Float[np.ndarray, "T 3"], fps: float) -> Bool[np.ndarray, " T"]:
-    """Frames in which a toe is low, and slow over the ground to or from the frame beside it; runs
-    of two at least."""
+    """Frames in which a toe is low, and slow over the ground to or from the frame beside it.
+
+    Runs of two at least.
+    """
     ground = np.linalg.norm(np.diff(toe[:, [0, 2]], axis=0), axis=-1) * fps
     slow = np.minimum(np.append(ground, np.inf), np.append(np.inf, ground)) < SLOW
     found = slow & (toe[:, 1] < np.percentile(toe[:, 1], FLOOR) + LOW)

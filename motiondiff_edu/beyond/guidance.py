@@ -45,7 +45,10 @@ def blended(
     known: Bool[Tensor, "B T D"],
     fade: Fade,
 ) -> Denoiser:
-    """The denoiser with `blended_guess` for its x0_hat.  Notebook: 15"""
+    """The denoiser with `blended_guess` for its x0_hat.
+
+    Notebook: 15
+    """
     return with_guess(denoise, schedule, lambda x0: blended_guess(x0, given, known, fade))
 
 

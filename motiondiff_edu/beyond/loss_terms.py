@@ -27,14 +27,19 @@ Loss = Callable[[Error, Int[Tensor, "B"]], Float[Tensor, ""]]
 
 
 def total(*losses: Loss) -> Loss:
-    """The sum of losses.  Notebook: 07"""
+    """The sum of losses.
+
+    Notebook: 07
+    """
     return lambda error, s: sum(loss(error, s) for loss in losses)
 
 
 # ---- weights -------------------------------------------------------------------------------------
 def weighted(loss: Loss, weights: Float[Tensor, "D"] | Float[Tensor, "T 1"]) -> Loss:
-    """A loss with weights of its squares, for columns (`metre_weights`) or frames
-    (`near_weights`).   Notebook: 07"""
+    """A loss with weights of its squares, for columns (`metre_weights`) or frames (`near_weights`).
+
+    Notebook: 07
+    """
     roots = weights.sqrt()
     return lambda error, s: loss(roots.to(error) * error, s)
 
@@ -88,8 +93,10 @@ def bones(weight: float, std: Float[Tensor, "D"]) -> Loss:
 
 
 def bone_errors(error: Float[Tensor, "B T D"]) -> Float[Tensor, "B T 20"]:
-    """Squared length of each joint's error against its parent's, a third for each axis; `error` is
-    in metres."""
+    """Squared length of each joint's error against its parent's, a third for each axis.
+
+    `error` is in metres.
+    """
     joints = error.unflatten(-1, (-1, 3))
     parents, children = np.array(BONES).T
     return (joints[..., children, :] - joints[..., parents, :]).square().mean(-1)
@@ -102,8 +109,9 @@ def changes(weight: float) -> Loss:
 
 
 def toe_changes(weight: float, std: Float[Tensor, "D"], moved: float) -> Loss:
-    """The squared error of the toes' changes in the world, over how far toes move, times weight;
-    for x0 in the dance frame.
+    """The squared error of the toes' changes in the world, over how far toes move, times weight.
+
+    For x0 in the dance frame.
 
     For a foot to stand, pelvis and leg must err alike. `std` leads to metres; `moved` is the mean
     square of a toe coordinate's change in a frame of the data, m^2

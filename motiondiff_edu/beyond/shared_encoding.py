@@ -15,7 +15,10 @@ from torch import Tensor, nn
 
 
 def repeated(batch: tuple[Tensor, ...], noises: int) -> tuple[Tensor, ...]:
-    """Every window of the batch `noises` times, one copy after the other.  Notebook: 07"""
+    """Every window of the batch `noises` times, one copy after the other.
+
+    Notebook: 07
+    """
     return tuple(part.repeat_interleave(noises, dim=0) for part in batch)
 
 

@@ -23,8 +23,10 @@ INSTALL = "python -m pip install -c constraints.txt -e . (in the checkout), or m
 
 @dataclass(frozen=True)
 class Finding:
-    """One line of the page; `remedy` is empty when all is well. A note is worth knowing and no
-    failure."""
+    """One line of the page; `remedy` is empty when all is well.
+
+    A note is worth knowing and no failure.
+    """
 
     name: str
     told: str
@@ -49,8 +51,10 @@ def python() -> Finding:
 
 
 def constraints() -> dict[str, str]:
-    """The pinned versions: of the checkout, or those that came with the wheel. Empty when the file
-    is nowhere."""
+    """The pinned versions: of the checkout, or those that came with the wheel.
+
+    Empty when the file is nowhere.
+    """
     found = [
         path
         for path in (PACKAGE.parent / "constraints.txt", PACKAGE / "constraints.txt")

@@ -1,5 +1,6 @@
-"""An edit of a motion: frames are pinned as keyframes, joints dragged, a part of the body kept; the
-rest is to be made.
+"""An edit of a motion: frames are pinned as keyframes, joints dragged, a part of the body kept.
+
+The rest is to be made.
 
 What is given follows from it: `known` and `positions`, as `editing.inbetween.inbetween` takes them.
 Source: MoFusion 4.4 (editing by seeds, keyframes and joints).  Notebook: 15
@@ -42,8 +43,10 @@ class Edit:
         return len(self.motion)
 
     def pin(self, frame: int, pose: Pose | None = None) -> "Edit":
-        """A frame held as a keyframe: as it is in the motion, or in this pose.  Raises IndexError
-        outside of it."""
+        """A frame held as a keyframe: as it is in the motion, or in this pose.
+
+        Raises IndexError outside of it.
+        """
         frame = self.index(frame)
         pose = np.array(
             self.motion[frame] if pose is None else pose, np.float64
@@ -56,8 +59,9 @@ class Edit:
         return replace(self, pins=_without(self.pins, frame), moved=_without(self.moved, frame))
 
     def drag(self, frame: int, joint: str, target: Float[np.ndarray, "3"]) -> "Edit":
-        """A joint of a pinned frame moved to a place (metres, world); the body follows, see
-        `inverse_kinematics.drag`.
+        """A joint of a pinned frame moved to a place (metres, world).
+
+        The body follows, see `inverse_kinematics.drag`.
 
         Raises ValueError for a frame that is not pinned, KeyError for a name that no joint has.
         """
@@ -71,8 +75,10 @@ class Edit:
         )
 
     def keep(self, part: str | None) -> "Edit":
-        """A part of the body held in every frame: one of `KEPT`, or None.  Raises KeyError with the
-        names there are."""
+        """A part of the body held in every frame: one of `KEPT`, or None.
+
+        Raises KeyError with the names there are.
+        """
         if part is not None and part not in KEPT:
             raise KeyError(f"no part is called {part!r}; there are {', '.join(KEPT)}, and None")
         return replace(self, part=part)
@@ -85,8 +91,10 @@ class Edit:
 
     @cached_property
     def positions(self) -> Float[np.ndarray, "T 21 3"]:
-        """The motion with the pinned poses in their places; where nothing is known it is the motion
-        still."""
+        """The motion with the pinned poses in their places.
+
+        Where nothing is known it is the motion still.
+        """
         positions = np.array(self.motion)
         for frame, pose in self.pins.items():
             positions[frame] = pose
@@ -112,8 +120,10 @@ class Edit:
         return ", ".join(words + ([] if self.part is None else [f"{self.part} kept"]))
 
     def index(self, frame: int) -> int:
-        """A frame's number from 0 on; -1 is the last frame.  Raises IndexError outside of the
-        motion."""
+        """A frame's number from 0 on; -1 is the last frame.
+
+        Raises IndexError outside of the motion.
+        """
         if not -len(self) <= frame < len(self):
             raise IndexError(
                 f"frame {frame} is not within a motion of {len(self)} frames (0 to {len(self) - 1})"

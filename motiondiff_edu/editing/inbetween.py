@@ -57,8 +57,9 @@ def inbetween(
     seed: int = 0,
     generator: torch.Generator | None = None,
 ) -> Float[np.ndarray, "samples T 21 3"]:
-    """Find what is not known of a motion (metres, 20 frames/s), `samples` times; `mel` for a dancer
-    that hears.
+    """Find what is not known of a motion (metres, 20 frames/s), `samples` times.
+
+    `mel` for a dancer that hears.
 
     Known entries come back bit by bit as they were given; the others may be NaN. The motion is
     `seen_from` where it begins to be known. Numbers are drawn from `generator`, or from a new one

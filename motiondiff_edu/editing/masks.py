@@ -55,7 +55,9 @@ def seed(T: int, frames: int = 40) -> Bool[np.ndarray, "{T} J"]:
 
 
 def keyframes(T: int, every: int) -> Bool[np.ndarray, "{T} J"]:
-    """Every so many frames one is given, the last one as well.  Notebook: 15
+    """Every so many frames one is given, the last one as well.
+
+    Notebook: 15
 
     Raises ValueError for every < 1.
     """
@@ -65,7 +67,9 @@ def keyframes(T: int, every: int) -> Bool[np.ndarray, "{T} J"]:
 
 
 def keyframes_of(motion: Sized | int, every: int = 20) -> Bool[np.ndarray, "T J"]:
-    """`keyframes` of a motion, or of so many frames.  Notebook: 15
+    """`keyframes` of a motion, or of so many frames.
+
+    Notebook: 15
 
     Raises ValueError for every < 1, or no frame.
     """
@@ -101,7 +105,9 @@ def checked_known(motion: Motion, known) -> Bool[np.ndarray, "T J"]:
 
 
 def gap(T: int, first: int, length: int) -> Bool[np.ndarray, "{T} J"]:
-    """All is given but `length` frames from `first` on.  Notebook: 15
+    """All is given but `length` frames from `first` on.
+
+    Notebook: 15
 
     Raises ValueError for a gap that is not inside.
     """
@@ -111,8 +117,10 @@ def gap(T: int, first: int, length: int) -> Bool[np.ndarray, "{T} J"]:
 
 
 def body_part(T: int, part: str) -> Bool[np.ndarray, "{T} J"]:
-    """A part of the body, by its name in PARTS, is given throughout; "trajectory" is the pelvis
-    alone.   Notebook: 15
+    """A part of the body, by its name in PARTS, is given throughout.
+
+    "trajectory" is the pelvis alone.
+    Notebook: 15
 
     Raises KeyError with the names there are.
     """

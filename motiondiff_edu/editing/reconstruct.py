@@ -38,8 +38,9 @@ def reconstruct(
     generator: torch.Generator,
     rounds: int = ROUNDS,
 ) -> Float[np.ndarray, "T 21 3"]:
-    """Find the joints that are not known of a motion in the world (metres, 20 frames/s); they may
-    be NaN.
+    """Find the joints that are not known of a motion in the world (metres, 20 frames/s).
+
+    They may be NaN.
 
     Known joints come back bit by bit. The control comes from the pelvis and from where hips and
     shoulders face, smoothed. Raises MotionError where a pelvis is missing, where nothing tells
@@ -81,8 +82,10 @@ def _once(
     firsts: Int[np.ndarray, "W"],
     generator: torch.Generator,
 ) -> Float[Tensor, "T D"]:
-    """Every window there and back once; where they overlap their mean, the middle of a window
-    counting most."""
+    """Every window there and back once.
+
+    Where they overlap their mean, the middle of a window counting most.
+    """
     T_h = walker.config.T_h
     weight = 1.0 + torch.arange(T_h).minimum(torch.arange(T_h).flip(0)).to(guess)[:, None]
     found, total = torch.zeros_like(guess), torch.zeros_like(guess[:, :1])

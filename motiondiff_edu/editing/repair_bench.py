@@ -20,8 +20,10 @@ from .repairs import Mended, mend_steps
 
 @dataclass(frozen=True, eq=False)
 class Outcome:
-    """Where the repairs are in the world (metres), the mean first and then each; and what is to be
-    said of them."""
+    """Where the repairs are in the world (metres), and what is to be said of them.
+
+    The mean comes first, and then each.
+    """
 
     motions: Float[np.ndarray, "n T_h J 3"]
     mended: Mended
@@ -30,8 +32,9 @@ class Outcome:
 
 @dataclass(frozen=True, eq=False)
 class RepairBench:
-    """A walk and a walker; `first` + T_h frames of the walk are the window, and T_h frames must
-    follow it.
+    """A walk and a walker.
+
+    `first` + T_h frames of the walk are the window, and T_h frames must follow it.
 
     `samples` repairs are drawn in `rounds` rounds with `steps` steps of DDIM, always from the same
     `seed`.
@@ -68,8 +71,9 @@ class RepairBench:
         return len(self.clip) - 2 * self.T_h
 
     def known(self, missing: Iterable[int]) -> Bool[np.ndarray, "T_h J"]:
-        """The mask of the window; `missing` counts joint by joint, then frame by frame: frame x 21
-        + joint.
+        """The mask of the window.
+
+        `missing` counts joint by joint, then frame by frame: frame x 21 + joint.
 
         Raises IndexError for a number beyond the window.
         """

@@ -1,5 +1,6 @@
-"""MoDiff for use: the context is encoded once a frame; keys, values and step embeddings are kept
-over the loop.
+"""MoDiff for use: the context is encoded once a frame.
+
+Keys, values and step embeddings are kept over the loop.
 
 The same numbers as the plain network in the core, to 1e-5 (tested). The plain one runs encoder and
 decoder at each of the S steps although past and control do not change meanwhile.  Source: MoDiff
@@ -56,8 +57,10 @@ class _Linear:
 
 
 class _Layer:
-    """One decoder block, laid out for few calls; x is (B*T, width), all frames of all samples in
-    rows."""
+    """One decoder block, laid out for few calls.
+
+    x is (B*T, width), all frames of all samples in rows.
+    """
 
     def __init__(self, block: Block):
         own = block.self_attention

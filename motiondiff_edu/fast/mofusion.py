@@ -1,5 +1,6 @@
-"""MoFusion for use: music is heard once a song; keys, values and what the step says are kept over
-the sampling loop.
+"""MoFusion for use: music is heard once a song.
+
+Keys, values and what the step says are kept over the sampling loop.
 
 The same numbers as the plain network in the core, but for rounding (tested).  Notebook: 12
 """

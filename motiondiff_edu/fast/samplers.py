@@ -16,8 +16,10 @@ from ..ddpm import Denoiser, Schedule, ddim_sigma, draw, falling, p_variance
 
 
 class FastStep:
-    """One moment of sampling, like `ddpm.Step`; x0_hat and eps_hat are computed when they are
-    read."""
+    """One moment of sampling, like `ddpm.Step`.
+
+    x0_hat and eps_hat are computed when they are read.
+    """
 
     __slots__ = ("s", "x_s", "_said", "_alpha_bar", "_clip")
 
@@ -77,7 +79,9 @@ def ddim_steps(
     noise: Float[Tensor, "S *any"] | None = None,
     clip: float | None = None,
 ) -> Iterator[FastStep]:
-    """`ddpm.ddim_steps`, faster: the same records for the same noise, to rounding.  Notebook: 12
+    """`ddpm.ddim_steps`, faster: the same records for the same noise, to rounding.
+
+    Notebook: 12
 
     Raises ValueError for steps that do not fall, or lie outside 1..S, and for an eta outside 0..1.
     """

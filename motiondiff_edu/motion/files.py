@@ -61,8 +61,10 @@ def read_bvh_motion(path: Path) -> Motion:
 
 @registry.writers.register(".bvh")
 def write_bvh_motion(motion: Motion, path: Path) -> None:
-    """BVH for Blender; prints how far constant bones moved the joints.  Raises MotionError for
-    another skeleton, or where a joint is missing."""
+    """BVH for Blender; prints how far constant bones moved the joints.
+
+    Raises MotionError for another skeleton, or where a joint is missing.
+    """
     if motion.skeleton != COURSE:
         raise MotionError(
             f"{motion.name} has {len(motion.skeleton)} joints; BVH is written for the "

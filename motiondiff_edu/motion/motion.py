@@ -67,7 +67,10 @@ class Motion:
 
     @classmethod
     def of_clip(cls, clip: Clip, start: tuple[float, float, float] = (0.0, 0.0, 0.0)) -> "Motion":
-        """A clip in the world, its root starting at `start` (x, z, heading).  Notebook: 01"""
+        """A clip in the world, its root starting at `start` (x, z, heading).
+
+        Notebook: 01
+        """
         place, heading = root_path(clip.control, start, clip.fps)
         root = np.concatenate([place, heading[:, None]], axis=1)
         return cls(clip.world(start), clip.fps, COURSE, root, clip.contacts, source=clip.source)
@@ -83,8 +86,10 @@ class Motion:
         return Clip(poses, control, self.fps, self.contacts, self.source)
 
     def rooted(self) -> "Motion":
-        """The same with a `root`: its own, or the smoothed pelvis on the ground.  Raises as
-        `to_clip`."""
+        """The same with a `root`: its own, or the smoothed pelvis on the ground.
+
+        Raises as `to_clip`.
+        """
         self.check_whole()
         if self.root is not None:
             return self
@@ -93,8 +98,10 @@ class Motion:
 
     @property
     def control(self) -> Float[np.ndarray, "T 3"]:
-        """Forward m/s, left m/s, turning rad/s of each frame; the last row repeats.  Raises
-        MotionError as `to_clip`."""
+        """Forward m/s, left m/s, turning rad/s of each frame; the last row repeats.
+
+        Raises MotionError as `to_clip`.
+        """
         root = self.rooted().root
         return control_from_path(root[:, :2], root[:, 2], self.fps)
 
@@ -136,8 +143,10 @@ class Motion:
         return len(self.positions)
 
     def __getitem__(self, frames: slice) -> "Motion":
-        """Frames first..last-1, with what came along.  Raises TypeError for a single number and for
-        a step, MotionError where no frame is left."""
+        """Frames first..last-1, with what came along.
+
+        Raises TypeError for a single number and for a step, MotionError where no frame is left.
+        """
         if not isinstance(frames, slice) or frames.step not in (None, 1):
             raise TypeError(
                 f"a motion is cut by motion[first:last], not [{frames!r}]; one pose is "
@@ -197,8 +206,9 @@ class Motion:
         return np.pad(self.audio[:length], (0, max(0, length - len(self.audio))))
 
     def resampled(self, fps: float) -> "Motion":
-        """The same motion at another frame rate: a spline; a low-pass first where half or more of
-        the frames go.
+        """The same motion at another frame rate: a spline.
+
+        A low-pass first where half or more of the frames go.
 
         Raises MotionError where a joint is missing, or for fewer than two frames.
         """
@@ -231,8 +241,7 @@ class Motion:
             )
 
     def check_whole(self) -> None:
-        """Raise MotionError unless every joint of the course's skeleton has its place, in two
-        frames at least."""
+        """Raise MotionError unless the course's joints are all there, in two frames at least."""
         if self.skeleton != COURSE:
             raise MotionError(
                 f"{self.name} has {len(self.skeleton)} joints; the course's networks know the "
@@ -244,8 +253,9 @@ class Motion:
             raise MotionError(f"{self.name} has one frame: a motion takes two at least")
 
     def save(self, path: str | Path) -> Path:
-        """Write it to a file, in the way its name's ending says: .bvh .npz .mp4 .gif .html; an
-        existing file is replaced.
+        """Write it to a file, in the way its name's ending says: .bvh .npz .mp4 .gif .html.
+
+        An existing file is replaced.
 
         Raises MotionError for an ending that nobody knows, with those there are.  Notebook: 00
         """

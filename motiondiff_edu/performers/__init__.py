@@ -1,2 +1,4 @@
-"""A trained network with all it needs to perform: units, schedule, data windows; and what it
-listened to."""
+"""A trained network with all it needs to perform: units, schedule, data windows.
+
+What it listened to is there as well.
+"""

@@ -45,8 +45,9 @@ def attention_maps(
     *,
     generator: torch.Generator | None = None,
 ) -> tuple[dict[str, Float[np.ndarray, "_ M2"]], Float[np.ndarray, "M2"]]:
-    """Where each level reads in the music while this dance, noised to step s, is denoised; the mean
-    over heads.
+    """Where each level reads in the music while this dance, noised to step s, is denoised.
+
+    The mean over heads.
 
     {level: (its motion frames, music tokens)}, each row summing to one, and the tokens' times in
     seconds. `mel` is log-Mel, as for `Dancer.dance`. Raises ValueError for a step that is not
@@ -129,8 +130,9 @@ def beat_mass_by_chance(
 
 
 def seconds_read(weights: Float[np.ndarray, "T M"], token_times: Float[np.ndarray, "M"]) -> float:
-    """How many seconds of music a frame reads: exp(entropy) of its row, times a token's length; the
-    mean over rows.
+    """How many seconds of music a frame reads: exp(entropy) of its row, times a token's length.
+
+    The mean over rows.
 
     Equal weights read all of it, a single weight one token. Few seconds are a sharp level, many a
     scattered one.

@@ -31,8 +31,9 @@ def mel_frames(n: int) -> int:
 
 @dataclass(frozen=True, eq=False)
 class DanceWindows:
-    """Windows of n frames, standardised, with the Mel frames of the same seconds; contacts say
-    which feet stand.
+    """Windows of n frames, standardised, with the Mel frames of the same seconds.
+
+    Contacts say which feet stand.
 
     Windows 2k and 2k + 1 are the same seconds, the second mirrored. They are cut when they are
     asked for: they overlap, and would take a dozen times the memory of the dances.
@@ -55,8 +56,9 @@ class DanceWindows:
         mels: Sequence[Float[Tensor, "_ C"]] | None,
         n: int = 100,
     ) -> "DanceWindows":
-        """Windows of dances and the log-Mel of their songs; dances in a row with the same tensor as
-        `mel` share it.
+        """Windows of dances and the log-Mel of their songs.
+
+        Dances in a row with the same tensor as `mel` share it.
 
         `mels` = None is for motion without music: nothing is heard, C = 0.
         Raises ValueError when no dance is long enough, or lists or lengths do not match.

@@ -1,5 +1,6 @@
-"""A dancer: MoFusion's network, its schedule, and the scalers that lead to metres and to log-Mel;
-music in, dance out.
+"""A dancer: MoFusion's network, its schedule, and the scalers that lead to metres and to log-Mel.
+
+Music in, dance out.
 
 Source: MoFusion 3, 4.1.  Notebook: 00, 12
 """
@@ -132,8 +133,9 @@ class Dancer:
         steps: int | None = STEPS,
         progress: bool = True,
     ) -> Motion | list[Motion]:
-        """Dance to a sound file, or to mono sound at 16 kHz (N,) from -1 to 1; the dance has the
-        sound along.
+        """Dance to a sound file, or to mono sound at 16 kHz (N,) from -1 to 1.
+
+        The dance has the sound along.
 
         `seconds` of the sound from its start, all of it by default and where it is shorter. With
         `samples` above 1 a list of so many different dances. `steps` of DDIM, or None for DDPM.
@@ -176,8 +178,9 @@ class Dancer:
         eta: float = ETA,
         start: Float[Tensor, "B T D"] | None = None,
     ) -> Float[Tensor, "B T 21 3"]:
-        """Dance to log-Mel spectrograms (`conditions.music.log_mel`), one dance each; metres, 20
-        frames a second.
+        """Dance to log-Mel spectrograms (`conditions.music.log_mel`), one dance each.
+
+        Metres, 20 frames a second.
 
         `frames`: how long, by default as long as the music. `steps`: of DDIM with `eta` (S where
         there are no more), or None for DDPM with all. `start`: the noise to begin with (by default

@@ -34,8 +34,11 @@ class LossOverTime:
     pull: Mapping[str, Float[Tensor, "N"]]
 
     def weighted(self, schedule: Schedule, kind: str) -> "LossOverTime":
-        """The same times lambda(s), the data term excepted.  Raises ValueError for an unknown
-        weight.   Notebook: 13"""
+        """The same times lambda(s), the data term excepted.
+
+        Raises ValueError for an unknown weight.
+        Notebook: 13
+        """
         share = over_time(schedule, kind)[list(self.steps)]
         parts = [
             {k: v if k == "data" else share.to(v) * v for k, v in x.items()}
@@ -54,7 +57,10 @@ def erring(error: float, seed: int = 0) -> Predictor:
 
 
 def predictor_of(denoise: Denoiser) -> Predictor:
-    """A denoiser as `predict`: it does not see eps.  Notebook: 13"""
+    """A denoiser as `predict`: it does not see eps.
+
+    Notebook: 13
+    """
     return lambda x_s, s, eps: denoise(x_s, s)
 
 
@@ -65,7 +71,10 @@ def clean_guess(
     s: int,
     schedule: Schedule,
 ) -> Float[Tensor, "B T D"]:
-    """x0_hat at step s, by way of eps_hat.  Source: MoFusion eq. 5.  Notebook: 13"""
+    """x0_hat at step s, by way of eps_hat.
+
+    Source: MoFusion eq. 5.  Notebook: 13
+    """
     return x0_from_eps(*_predicted(predict, x0, eps, s, schedule), schedule)
 
 

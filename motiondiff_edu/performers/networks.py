@@ -1,5 +1,6 @@
-"""Which networks a walker or a dancer may have. One call of `register`, and a network of one's own
-is built, saved and loaded like ours.
+"""Which networks a walker or a dancer may have.
+
+One call of `register`, and a network of one's own is built, saved and loaded like ours.
 
     register("walker", MyNetwork, MyConfig)
     save(Walker(MyNetwork(MyConfig()), schedule, poses, control), "mine.safetensors")

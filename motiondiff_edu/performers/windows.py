@@ -19,8 +19,10 @@ from ..motion.scaler import Scaler
 
 @dataclass(frozen=True, eq=False)
 class Windows:
-    """All frames of a data set, standardised, and where a window may start; a window never crosses
-    two clips."""
+    """All frames of a data set, standardised, and where a window may start.
+
+    A window never crosses two clips.
+    """
 
     poses: Float[Tensor, "N D"]
     control: Float[Tensor, "N C"]
@@ -75,8 +77,10 @@ class Windows:
     def draw(
         self, batch: int, generator: torch.Generator, held: float = 0.5
     ) -> tuple[Float[Tensor, "B T_h D"], Float[Tensor, "B T_p D"], Float[Tensor, "B T C"]]:
-        """A random batch (past, future, control); a share `held` of it holds control[T_h - 1] over
-        the future."""
+        """A random batch (past, future, control).
+
+        A share `held` of it holds control[T_h - 1] over the future.
+        """
         chosen = torch.randint(len(self.starts), (batch,), generator=generator)
         rows = self.starts[chosen][:, None] + torch.arange(self.T_h + self.T_p)
         poses, control = self.poses[rows], self.control[rows]
@@ -88,7 +92,9 @@ class Windows:
 
 
 def typical_change(windows: Windows, samples: int = 4096) -> Float[Tensor, "T_p D"]:
-    """How far poses move in 1 ... T_p frames: root mean square over windows, in standard
-    deviations."""
+    """How far poses move in 1 to T_p frames.
+
+    Root mean square over windows, in standard deviations.
+    """
     past, future, _ = windows.draw(samples, torch.Generator().manual_seed(0))
     return (future - past[:, -1:]).square().mean(0).sqrt()

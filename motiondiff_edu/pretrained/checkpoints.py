@@ -108,13 +108,20 @@ def load(path: str | Path) -> Walker | Dancer:
 
 
 def load_walker(path: str | Path) -> Walker:
-    """Read a walker.  Raises CheckpointError as `load`, and for a dancer.  Notebook: 07"""
+    """Read a walker.
+
+    Raises CheckpointError as `load`, and for a dancer.
+    Notebook: 07
+    """
     return _read(path, WALKER)
 
 
 def load_dancer(path: str | Path) -> Dancer:
-    """Read a dancer, or a baseline that dances.  Raises CheckpointError as `load`, and for a
-    walker.   Notebook: 12"""
+    """Read a dancer, or a baseline that dances.
+
+    Raises CheckpointError as `load`, and for a walker.
+    Notebook: 12
+    """
     return _read(path, DANCER)
 
 
@@ -145,8 +152,9 @@ def available() -> dict[str, Path]:
 
 
 def pretrained(name: str = "walker") -> Walker | Dancer:
-    """Shipped weights by name: "walker" is the better one of "walker-eps" and "walker-x0"; "dancer"
-    dances.
+    """Shipped weights by name: "walker" is the better one of "walker-eps" and "walker-x0".
+
+    "dancer" dances.
 
     Raises CheckpointError with the names there are.  Notebook: 00
     """

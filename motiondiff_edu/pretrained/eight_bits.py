@@ -30,8 +30,10 @@ def pack(tensors: dict[str, Tensor]) -> dict[str, Tensor]:
 
 
 def unpack(packed: dict[str, Tensor]) -> dict[str, Tensor]:
-    """Float32 again; what was never packed passes through.  Raises KeyError for an int8 matrix
-    without its scale."""
+    """Float32 again; what was never packed passes through.
+
+    Raises KeyError for an int8 matrix without its scale.
+    """
     tensors = {}
     for name, weight in packed.items():
         if name.endswith(SCALE) and name.removesuffix(SCALE) in packed:

@@ -45,8 +45,9 @@ def inbetween(
     steps: int = STEPS,
     progress: bool = True,
 ) -> Motion | list[Motion]:
-    """Make what is not `known` of a motion anew, by the shipped unconditional network; with
-    `samples` above 1 a list of so many.
+    """Make what is not `known` of a motion anew, by the shipped unconditional network.
+
+    With `samples` above 1 a list of so many.
 
     Known joints stay exactly where they are; a joint can be given only where the pelvis is.
     Raises MotionError and ValueError for what does not fit.  Source: MoFusion 4.4.  Notebook: 15
@@ -65,8 +66,9 @@ def inbetween(
 def reconstruct(
     motion: Motion, known: Bool[np.ndarray, "T J"], *, seed: int = 0, progress: bool = True
 ) -> Motion:
-    """Find the joints that are not `known`, by the shipped walker there and back; a motion of any
-    length.
+    """Find the joints that are not `known`, by the shipped walker there and back.
+
+    A motion of any length.
 
     Known joints stay exactly where they are. The pelvis must be known in every frame: the walk's
     control is read from it.

@@ -35,8 +35,10 @@ class CheckpointError(ValueError):
 def write_weights(
     path: str | Path, tensors: Mapping[str, Tensor], settings: dict, config: dict, card: dict
 ) -> Path:
-    """Write tensors, settings (texts) and card; a card.json is laid beside it. Temporary names
-    first, then renamed."""
+    """Write tensors, settings (texts) and card; a card.json is laid beside it.
+
+    Temporary names first, then renamed.
+    """
     path = Path(path)
     metadata = settings | {"config": json.dumps(config), "card": json.dumps(card)}
     tensors = {k: v.detach().cpu().clone().contiguous() for k, v in tensors.items()}
@@ -85,8 +87,10 @@ def read_weights(path: str | Path, kinds: Mapping[str, Assemble]) -> object:
 
 
 def config_of(metadata: dict[str, str], kinds: Mapping[str, type[Config]], default: str) -> Config:
-    """The configuration, every setting known and of its default's type; `kinds` by the name of the
-    network's class."""
+    """The configuration, every setting known and of its default's type.
+
+    `kinds` by the name of the network's class.
+    """
     name = metadata["file"]
     try:
         values = dict(json.loads(metadata["config"]))

@@ -1,2 +1,4 @@
-"""How the shipped weights were trained: recipes, optimisers, runs on disk. `python -m
-motiondiff_edu.recipes`."""
+"""How the shipped weights were trained: recipes, optimisers, runs on disk.
+
+`python -m motiondiff_edu.recipes`.
+"""

@@ -73,8 +73,10 @@ def build(name: str, run: Path, out: Path) -> Path:
 
 
 def point_alias(folder: Path, name: str) -> None:
-    """Let the name `walker` stand for `name`; exits with the names there are when the folder has no
-    such weights."""
+    """Let the name `walker` stand for `name`.
+
+    Exits with the names there are when the folder has no such weights.
+    """
     there = sorted(path.stem for path in folder.glob("*.safetensors"))
     if name not in there:
         raise SystemExit(

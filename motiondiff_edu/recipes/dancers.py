@@ -18,8 +18,9 @@ KINEMATIC = KinematicWeights(
 
 @dataclass(frozen=True)
 class DanceLossWeights:
-    """What the data term adds to the mean square, by names of `beyond.loss_terms`; 0 is the
-    paper's.
+    """What the data term adds to the mean square, by names of `beyond.loss_terms`.
+
+    0 is the paper's.
 
     `changes`: weight of `changes`.  `toes`: weight of `toe_changes`.
     `high_noise`: largest extra weight of `high_noise_weights`.

@@ -19,8 +19,10 @@ from ..training import TrainState
 def saver(
     path: str | Path, about: dict | None = None, notes: list | None = None
 ) -> Callable[[TrainState], Path]:
-    """A `save` for `training.train_steps`: writes the run to this file; `about` and `notes` as in
-    save_run."""
+    """A `save` for `training.train_steps`: writes the run to this file.
+
+    `about` and `notes` as in save_run.
+    """
     return lambda state: save_run(state, path, about, notes)
 
 
@@ -59,8 +61,9 @@ def save_run(
 
 
 def resume_run(state: TrainState, path: str | Path, about: dict | None = None) -> TrainState:
-    """Bring `state` to where the run at `path` was; of another model, load_state_dict says what
-    differs.
+    """Bring `state` to where the run at `path` was.
+
+    Of another model, load_state_dict says what differs.
 
     Raises ValueError when the file is damaged or no saved run, when another optimizer made it, or
     when the run is about something else than `about` (its settings, say): continued, it would be

@@ -61,8 +61,9 @@ def _unheard(count: int, seed: int, seconds: float, frames: int) -> DanceWindows
 def train_dancer(
     recipe: DanceRecipe, run_file: Path, windows: DanceWindows | None = None, log=print
 ) -> Dancer:
-    """Train (or continue) a recipe; `run_file` holds the run.  Returns the averaged network as a
-    dancer.
+    """Train (or continue) a recipe; `run_file` holds the run.
+
+    Returns the averaged network as a dancer.
 
     Raises ValueError when the run in `run_file` was begun with other settings.
     """

@@ -31,8 +31,9 @@ def train_recipe(
     log: Callable[[str], object],
     before: Callable[[int], object] | None = None,
 ) -> tuple[nn.Module, dict]:
-    """Train (or continue) a fresh network; `run_file` holds the run.  Returns the averaged network,
-    and its card.
+    """Train (or continue) a fresh network; `run_file` holds the run.
+
+    Returns the averaged network, and its card.
 
     A run goes on with the recipe and the `about` (which network, which data) that it was begun
     with; the card tells `facts`, and where the `data` are from. `before` is `train_steps`'s. The

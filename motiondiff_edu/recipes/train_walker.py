@@ -1,5 +1,7 @@
-"""Train a recipe into a walker: data, windows, Algorithm 1 with the recipe's departures, card. A
-killed run continues where it was saved last."""
+"""Train a recipe into a walker: data, windows, Algorithm 1 with the recipe's departures, card.
+
+A killed run continues where it was saved last.
+"""
 
 import hashlib
 from pathlib import Path
@@ -38,8 +40,9 @@ def training_clips(recipe: Recipe) -> list[Clip]:
 
 
 def train(recipe: Recipe, run_file: Path, clips: list[Clip] | None = None, log=print) -> Walker:
-    """Train (or continue) a recipe; `run_file` holds the run.  Returns the averaged network as a
-    walker.
+    """Train (or continue) a recipe; `run_file` holds the run.
+
+    Returns the averaged network as a walker.
 
     Raises ValueError when the run in `run_file` was begun with other settings.
     """

@@ -1,5 +1,6 @@
-"""How the shipped walkers are made: data, sizes, steps. One record each; nothing is tuned by hand
-afterwards.
+"""How the shipped walkers are made: data, sizes, steps.
+
+One record each; nothing is tuned by hand afterwards.
 
 Source: MoDiff IV-A gives Adam, batch 64, 5e-5 and 1000 epochs on a GPU: WALKER_PAPER. The others
 are ours, for a core and an hour; those that are shipped had four fifths of their steps in bfloat16,
@@ -29,8 +30,10 @@ class LossWeights:
 
 @dataclass(frozen=True)
 class Recipe:
-    """One training run of a walker. What is not said is the paper's, but for the rate, the number
-    of steps, the data, and the held control.
+    """One training run of a walker.
+
+    What is not said is the paper's, but for the rate, the number of steps, the data, and the held
+    control.
 
     `seconds` of each of `clips` clips are made with the data seed; mirrored and reversed later.
     """

@@ -19,8 +19,9 @@ class Rung:
 
 
 def ladder(rungs: Sequence[Rung], measures: Sequence[str], words: str) -> Figure:
-    """Dots of all seeds on logarithmic axes, groups by colour and marker; a line marks the mean of
-    the group's first row, from which its other rows differ in one choice.
+    """Dots of all seeds on logarithmic axes, groups by colour and marker.
+
+    A line marks the mean of the group's first row, from which its other rows differ in one choice.
 
     Values that are not positive or not finite are left out.  Notebook: 07
     """

@@ -141,8 +141,10 @@ class Editor(anywidget.AnyWidget):
         return self._do(edit, f"Let go of {listed(frames)}.")
 
     def drag(self, frame: int, joint: str, target) -> str:
-        """Move a joint of a pinned frame to a place (metres, world); the bones keep their
-        lengths."""
+        """Move a joint of a pinned frame to a place (metres, world).
+
+        The bones keep their lengths.
+        """
         return self._do(*self._dragged(self.edit, frame, joint, target))
 
     def keep(self, part: str | None) -> str:
@@ -153,8 +155,10 @@ class Editor(anywidget.AnyWidget):
         )
 
     def generate(self) -> str:
-        """Make `count` in-betweens; raises what `make` raises, and ValueError where there is
-        nothing to make."""
+        """Make `count` in-betweens.
+
+        Raises what `make` raises, and ValueError where there is nothing to make.
+        """
         begun, seed = time.perf_counter(), self._seed + self._step.presses
         self.busy = True
         try:

@@ -1,5 +1,6 @@
-"""What the page of the editor is told: its scene, the edit as it stands, words; and the page where
-no kernel runs.
+"""What the page of the editor is told: its scene, the edit as it stands, words.
+
+The page where no kernel runs is here, too.
 
 Notebook: 15
 """
@@ -28,8 +29,10 @@ PLAIN = ("scene", "state", "frame", "chosen", "count", "resample", "busy", "file
 
 
 def scene_of(edit: Edit, fps: float, names: list[str], strength: bool) -> dict:
-    """What does not change: the length, the joints' names, the drawn body; `strength`: `make` takes
-    a resampling."""
+    """What does not change: the length, the joints' names, the drawn body.
+
+    `strength`: `make` takes a resampling.
+    """
     return {"frames": len(edit), "joints": J, "fps": fps, "names": names,
             "parts": body.parts_record(body.BODY), "keep": list(KEPT), "most": MOST,
             "strength": strength, "height": 380}  # fmt: skip

@@ -20,7 +20,9 @@ _EXPORT = re.compile(r"^export (?=function|const)", re.MULTILINE)
 
 
 def joined(parts: tuple[str, ...] = PARTS) -> str:
-    """One ES module: the text of the parts without their imports; only what the last one exports is
-    exported."""
+    """One ES module: the text of the parts without their imports.
+
+    Only what the last one exports is exported.
+    """
     *inner, last = (_IMPORT.sub("", (FOLDER / f"{name}.js").read_text("utf-8")) for name in parts)
     return "\n".join([*(_EXPORT.sub("", text) for text in inner), last])
