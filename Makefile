@@ -47,7 +47,7 @@ $(VENV)/.test: pyproject.toml constraints.txt setup.py | $(BIN)/python
 	@touch $@ $(VENV)/.lab
 
 $(VENV)/.bench: pyproject.toml constraints.txt setup.py | $(BIN)/python
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt -e '.[bench]'
+	$(call install,[bench])
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt --no-deps $(BARE_PEERS)
 	@touch $@
 

@@ -116,8 +116,10 @@ def _res(block: ResBlock, x: Tensor, scale: Tensor, shift: Tensor, mask: Tensor)
 
 
 def _conv(conv: FrameConv, x: Tensor) -> Tensor:
-    """FrameConv.forward as one product of a frame and its neighbours: a tenth faster for a few short
-    motions, and slower in training."""
+    """FrameConv.forward as one product of a frame and its neighbours.
+
+    For a few short motions it is a tenth faster, and in training slower.
+    """
     n = conv.dilation
     padded = F.pad(x, (0, 0, n, n))
     together = torch.cat([padded[:, : -2 * n], x, padded[:, 2 * n :]], dim=-1)
