@@ -1,10 +1,11 @@
-"""Diffusion dropout: now and then the past is noised as the future is, so that the control must do.
+"""Diffusion dropout: sometimes the past is noised like the future, so that the network must use the
+control.
 
     q(x_s | x) = N(sqrt(alpha_bar_s) x, (1 - alpha_bar_s) I),
     with probability p_d for each sample of the batch
 
-Not nn.Dropout: nothing is set to zero, and nothing is rescaled. Rivals that set to zero stand
-beside it.
+It is not nn.Dropout: nothing is set to zero, and nothing is rescaled. Two rivals that set to zero
+are here as well: `frame_dropout` and `zeroing`.
 Source: MoDiff III-D, eq. 12, Alg. 1.  Notebook: 09
 """
 

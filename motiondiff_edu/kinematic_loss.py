@@ -1,9 +1,8 @@
-"""Kinematic losses: what is asked of the clean motion that the network has in mind, and how much at
-which step.
+"""Kinematic losses: losses of the clean motion x0_hat that a prediction implies, and their weight
+at each diffusion step.
 
     L = L_da + lambda(s) L_k,   L_k = w_s L_s + w_a L_a + w_m L_m (+ w_f L_f)
-L_da is the squared error of the target. L_k looks at x0_hat, the guess of the clean motion, in
-metres.
+L_da is the squared error of the network's target. L_k is computed from x0_hat, in metres.
 Source: MoFusion 3.2, eq. 4-7.  Notebook: 13
 """
 

@@ -142,8 +142,8 @@ class CleanFootholds:
 
     `clean`, `noised`: the past before and after `past_noise`.
     `foot_noise`: fraction of the past noise applied to the held feet, 0 to 1.
-    Where diffusion dropout changed the past once more, the feet are held at that past's last pose:
-    nothing clean may slip through.
+    Where diffusion dropout noised the past as well, the feet are held at the last pose of that
+    past: otherwise the network would still see the clean feet.
     Notebook: 07
     """
 
@@ -182,10 +182,10 @@ def openness(gate: Float[Tensor, "*B F"], leaning: bool = True) -> Float[Tensor,
     """How much of its place a joint keeps, 0 to 1, from the gate's logit: in training
     (leaning=False) its sigmoid.
 
-    In use the gate leans towards holding, by LEAN, and is stretched at both ends by STRETCH, so
-    that nearly all becomes all. A squared error hardly sees a foot creep by millimetres, and that
-    is what training asks about; the eye does. Both numbers were chosen on walks that no figure of
-    docs/RESULTS.md is of: more lean, and the bones suffer.
+    In use the gate is shifted towards holding by LEAN, and stretched at both ends by STRETCH, so
+    that a nearly open gate is fully open. Sliding by millimetres barely changes the training loss,
+    but it is visible. Both numbers were chosen on walks that no figure of docs/RESULTS.md is taken
+    from. A larger LEAN increases the bone error.
     Source: ours; the stretch is that of the hard concrete distribution (Louizos and others, 2018).
     Notebook: 07
     """

@@ -1,7 +1,7 @@
 """Training windows of MoDiff: ten past poses, ten future poses, the control of all twenty frames.
 
-Half of the windows hold the control of the step about to be taken over the future: whoever steers
-does not know what comes. Source: MoDiff III-A; the held half is ours.   Notebook: 07
+Half of the windows hold the control of the next step over the whole future: interactive use does
+not know the control to come. Source: MoDiff III-A; the held half is ours.   Notebook: 07
 """
 
 from collections.abc import Sequence

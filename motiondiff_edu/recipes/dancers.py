@@ -18,9 +18,9 @@ KINEMATIC = KinematicWeights(
 
 @dataclass(frozen=True)
 class DanceLossWeights:
-    """What the data term adds to the mean square, by names of `beyond.loss_terms`.
+    """What the data term adds to the mean square, by the names of `beyond.loss_terms`.
 
-    0 is the paper's.
+    All 0 is the paper's loss.
 
     `changes`: weight of `changes`.  `toes`: weight of `toe_changes`.
     `high_noise`: largest extra weight of `high_noise_weights`.
@@ -33,7 +33,7 @@ class DanceLossWeights:
 
 @dataclass(frozen=True)
 class DanceRecipe:
-    """One training run of a dancer. What is not said of the loss is the paper's.
+    """One training run of a dancer; by default with the paper's loss.
 
     `songs` songs of `seconds` each are made, `dances` to each song, every dance mirrored as well.
     """

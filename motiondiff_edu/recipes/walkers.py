@@ -16,7 +16,7 @@ from ..modiff import MODIFF_PAPER, MODIFF_SMALL, MoDiffConfig
 
 @dataclass(frozen=True)
 class LossWeights:
-    """What the loss adds to eq. 10, by names of `beyond.loss_terms`; 0 is the paper's.
+    """What the loss adds to eq. 10, by the names of `beyond.loss_terms`. All 0 is the paper's loss.
 
     `metres`: power of `metre_weights`.  `near`: power of `near_weights`.
     `high_noise`: largest extra weight of `high_noise_weights`.  `bones`: weight of `bones`.
@@ -32,10 +32,11 @@ class LossWeights:
 class Recipe:
     """One training run of a walker.
 
-    What is not said is the paper's, but for the rate, the number of steps, the data, and the held
-    control.
 
-    `seconds` of each of `clips` clips are made with the data seed; mirrored and reversed later.
+    The defaults of network input, schedule, optimizer and loss are the paper's, without its
+    diffusion dropout. The rate, the data and the held control are ours.
+    `clips` clips of `seconds` each are made from the data seed; later they are mirrored, and some
+    are reversed in time.
     """
 
     name: str
@@ -58,7 +59,7 @@ class Recipe:
     reversed_share: float = 0.25  # of the clips also played backwards
     data_seed: int = 1
     seed: int = 0
-    styles: tuple[str, ...] | None = None
+    styles: tuple[str, ...] | None = None  # of walking; None: all
     save_every: int = 2000  # steps
 
     def __post_init__(self):
