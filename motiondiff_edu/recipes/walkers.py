@@ -32,7 +32,6 @@ class LossWeights:
 class Recipe:
     """One training run of a walker.
 
-
     The defaults of network input, schedule, optimizer and loss are the paper's, without its
     diffusion dropout. The rate, the data and the held control are ours.
     `clips` clips of `seconds` each are made from the data seed; later they are mirrored, and some

@@ -1,0 +1,105 @@
+"""Find and mend docstrings that say `Notebook: 07` without reason.
+
+The tag is right where the notebook uses what the docstring describes.
+
+    python tools/notebook_tags.py          # list them
+    python tools/notebook_tags.py --mend   # take the wrong numbers out
+A definition's own name must occur in the notebook; a module's tag needs the module's name, or one
+of its public names.
+"""
+
+import argparse
+import ast
+import json
+import re
+import sys
+from collections.abc import Iterator
+from functools import cache
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[1]
+PACKAGES = ("motiondiff_edu", "data_synth")
+TAG = re.compile(r"Notebooks?:\s*(\d\d(?:,\s*\d\d)*)")
+ALONE = re.compile(r"(?:[ \t]*\n)*[ \t]*Notebooks?:\s*\d\d(?:,\s*\d\d)*\.?")
+DEFINITIONS = (ast.FunctionDef, ast.ClassDef)
+
+
+@cache
+def text_of(number: str) -> str:
+    """All cells of a notebook; nothing where there is none of that number."""
+    found = sorted((ROOT / "notebooks").glob(f"{number}_*.ipynb"))
+    cells = json.loads(found[0].read_text(encoding="utf-8"))["cells"] if found else []
+    return "\n".join("".join(cell["source"]) for cell in cells)
+
+
+def occurs(names: list[str], number: str) -> bool:
+    return any(re.search(rf"\b{re.escape(name)}\b", text_of(number)) for name in names)
+
+
+def tagged(path: Path) -> Iterator[tuple[str, ast.Constant, list[str]]]:
+    """Every docstring of a file: its owner, its place, and the names that vouch for it."""
+    tree = ast.parse(path.read_text(encoding="utf-8"))
+    public = [
+        n.name for n in tree.body if isinstance(n, DEFINITIONS) and not n.name.startswith("_")
+    ]
+    stem = path.parent.name if path.stem == "__init__" else path.stem
+    for node in ast.walk(tree):
+        if not isinstance(node, (ast.Module, *DEFINITIONS)) or not ast.get_docstring(node):
+            continue
+        names = [stem, *public] if isinstance(node, ast.Module) else [node.name]
+        yield getattr(node, "name", stem), node.body[0].value, names
+
+
+def wrong_in(path: Path) -> list[tuple[str, ast.Constant, list[str]]]:
+    """Of a file: the definition, its docstring, and the numbers that are wrong."""
+    found = []
+    for name, docstring, names in tagged(path):
+        numbers = [n for tag in TAG.findall(docstring.value) for n in re.findall(r"\d\d", tag)]
+        wrong = [number for number in numbers if not occurs(names, number)]
+        found += [(name, docstring, wrong)] if wrong else []
+    return found
+
+
+def files() -> list[Path]:
+    return sorted(path for package in PACKAGES for path in (ROOT / package).rglob("*.py"))
+
+
+def wrong_tags() -> list[str]:
+    """`performers/walker.py: Walker: 00`, one for each wrong tag."""
+    return [
+        f"{path.relative_to(ROOT)}: {name}: {', '.join(wrong)}"
+        for path in files()
+        for name, _, wrong in wrong_in(path)
+    ]
+
+
+def mend(path: Path) -> None:
+    """Take the wrong numbers out of a file's docstrings, and a tag that has none left."""
+    lines = path.read_text(encoding="utf-8").splitlines(keepends=True)
+    for _, docstring, wrong in reversed(wrong_in(path)):
+        first, last = docstring.lineno - 1, docstring.end_lineno
+        text = "".join(lines[first:last])
+
+        def without(match: re.Match, wrong=wrong) -> str:
+            left = [n for n in re.findall(r"\d\d", match[0]) if n not in wrong]
+            start = match[0][: match[0].index("Notebook")]
+            return f"{start}Notebook: {', '.join(left)}" if left else ""
+
+        lines[first:last] = [ALONE.sub(without, text)]
+    path.write_text("".join(lines), encoding="utf-8")
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--mend", action="store_true", help="take the wrong numbers out")
+    if parser.parse_args().mend:
+        for path in files():
+            if wrong_in(path):
+                mend(path)
+    wrong = wrong_tags()
+    print("\n".join(wrong) or "every tag names a notebook that uses what it describes")
+    return bool(wrong)
+
+
+if __name__ == "__main__":
+    sys.exit(main())
