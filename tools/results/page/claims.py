@@ -145,7 +145,11 @@ CLAIMS = (
         beside=("dance-budget.transformer.bone_gain_over_x0",),
     ),
     Claim(
-        "kinematic losses help: the bone error falls (shipped weights)", "3.2", "dancer.bone_gain", 1, 0.0
+        "kinematic losses help: the bone error falls (shipped weights)",
+        "3.2",
+        "dancer.bone_gain",
+        1,
+        0.0,
     ),
     Claim(
         "kinematic losses help: the bone error falls (trainings of equal length)",

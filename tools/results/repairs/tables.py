@@ -114,8 +114,8 @@ def repairs(records: dict[str, dict], folder: Path) -> str:
         if n.startswith(("mend.table2", "mend.footsteps"))
     ]
     said = (
-        "\n### Table II\n\nIn every past 30 % of the joints are missing throughout (6 of 21, set to "
-        "zero). The small walkers with dropout, three trainings, go frame by frame as in the "
+        "\n### Table II\n\nIn every past 30 % of the joints are missing throughout (6 of 21, set "
+        "to zero). The small walkers with dropout, three trainings, go frame by frame as in the "
         "paper. The same walkers are also tried with five poses kept of every window of ten; their "
         "errors grow less. The shipped walker, trained for longer, is tried on fewer pasts. Walks "
         "of 12 s are generated from the broken pasts (`ge`) and from complete ones (`whole`). "
