@@ -71,6 +71,5 @@ def both(records: dict[str, dict]) -> str:
         "MoFusion, or by our `editing.inbetween.inbetween`. Both know where the walk goes in these "
         "frames and the next ten: the walker from its control, the network from the pelvis, which "
         f"is not scored. Errors are in cm, of the mean of {seeds['samples']} repairs and of one, "
-        f"on {seeds['clips']} unseen pasts.\n\n"
-        + table(head, rows)
+        f"on {seeds['clips']} unseen pasts.\n\n" + table(head, rows)
     )
