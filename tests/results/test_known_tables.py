@@ -40,7 +40,7 @@ def test_the_table_has_a_row_for_each_way_and_a_column_for_each_hole(records):
     assert "| way | seed | keyframes | lower body | past-frames | past-leg |" in said
     assert (
         said.count("<br>`masked.50` |") == said.count("<br>`gibbs.20` |") == 3
-        and "2 windows, 30 samples" in said
+        and "2 windows and 30 samples" in said
     )
     assert known_tables.known_answers({}) == known_tables.both({}) == ""
 

@@ -29,9 +29,8 @@ def opening(records: dict[str, dict]) -> str:
     absent = [subject(bar) for bar in BARS if bar not in measured]
     text = f"# Results\n\n**What holds.** {len(met)} of {len(BARS)} goals are met.\n\n"
     text += "".join(f"* {line}\n" for line in (group(g, measured, met) for g in GROUPS) if line)
-    text += "\n**What was missed.** " + (
-        _list(missed) if missed else "No goal that was measured.\n"
-    )
+    none = " No goal that was measured.\n"
+    text += "\n**What was missed.**" + (_list(missed) if missed else none)
     if close:
         text += (
             "\n**What is not certain.** These goals are met, but their 95 % intervals reach past "

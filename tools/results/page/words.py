@@ -59,14 +59,14 @@ GOALS = {
     ),
     "mend.table2_ratio": "the small walkers' bone error with joints missing, over that without",
     "mend.footsteps_over_data": (
-        "the small walkers' footsteps with joints missing, over those of the data"
+        "the number of the small walkers' footsteps with joints missing, over that of the data"
     ),
     "mend.table2_walker_ge_over_whole": (
         "the walker's bone error with joints missing, over that without"
     ),
     "mend.table2_walker_bone_re_cm": "the bone error of pasts that the walker reconstructed",
     "mend.footsteps_walker_over_data": (
-        "the walker's footsteps with joints missing, over those of the data"
+        "the number of the walker's footsteps with joints missing, over that of the data"
     ),
     "inbetween.keyframe_error_cm": "the error of in-betweens at the given frames",
     "inbetween.gap15_error_over_interpolation": (
