@@ -1,5 +1,7 @@
-"""`python -m motiondiff_edu.recipes [NAME ...]`: train the shipped walkers and dancers (hours), or
-those named."""
+"""`python -m motiondiff_edu.recipes [NAME ...]`: train the shipped performers.
+
+Walkers and dancers, all of them (hours) or those named.
+"""
 
 import argparse
 import json
