@@ -25,7 +25,7 @@ EIGHT_BITS = {
 
 
 def main() -> None:
-    """python -m motiondiff_edu.recipes [NAME ...]"""
+    """Run `python -m motiondiff_edu.recipes [NAME ...]`."""
     parser = argparse.ArgumentParser(prog="python -m motiondiff_edu.recipes", description=__doc__)
     parser.add_argument(
         "names", nargs="*", help=f"which of {', '.join(ALL)}; none: all that are shipped"
