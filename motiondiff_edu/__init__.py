@@ -1,5 +1,6 @@
-"""Human-motion diffusion, taken apart in notebooks and put together again: MoDiff and MoFusion,
-readable and runnable.
+"""Human-motion diffusion, taken apart in notebooks and put together again.
+
+MoDiff and MoFusion, readable and runnable.
 
     import motiondiff_edu as md
 

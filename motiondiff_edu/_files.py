@@ -26,8 +26,10 @@ def replacing(path: str | Path) -> Iterator[Path]:
 
 
 def digest_of_tensors(tensors: Mapping[str, "torch.Tensor"]) -> str:
-    """SHA-256 of all tensors, in the order of their names: safetensors itself checks only its
-    header."""
+    """SHA-256 of all tensors, in the order of their names.
+
+    Safetensors itself checks only its header.
+    """
     # their type is a string because `lab` writes files also where torch cannot be imported
     digest = hashlib.sha256()
     for name in sorted(tensors):

@@ -101,8 +101,9 @@ def angles_of(
 
 
 def turned(x: Float[Tensor, "*B T d"], angles: Float[Tensor, "T w"]) -> Float[Tensor, "*B T d"]:
-    """Turn each pair (x[i], x[i + d/2]) by its angle: q_t . k_u then depends on the time between t
-    and u.
+    """Turn each pair (x[i], x[i + d/2]) by its angle.
+
+    Then q_t . k_u depends on the time between t and u.
 
     Source: rotary positions (Su and others, 2021).  Notebook: 12
     """
@@ -157,8 +158,9 @@ class CrossModalAttention(nn.Module):
 
 
 class Block(nn.Module):
-    """A transformer block, normalised first: self-attention, then (with_context) cross-attention,
-    then feed-forward.
+    """A transformer block, normalised first.
+
+    Self-attention, then (with_context) cross-attention, then feed-forward.
 
     Source: MoDiff III-F; MoFusion 3.3.  Notebook: 06
     """
@@ -192,8 +194,9 @@ class Block(nn.Module):
 
 @contextmanager
 def watch(model: nn.Module) -> Iterator[dict[str, list[Float[Tensor, "B H T M"]]]]:
-    """Collect the attention maps of every layer while the block runs: {layer name: [one map per
-    call]}.
+    """Collect the attention maps of every layer while the block runs.
+
+    The answer is {layer name: [one map per call]}.
 
     Outside of it nothing is computed or kept.  Notebook: 06
     """

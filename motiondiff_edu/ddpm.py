@@ -1,5 +1,6 @@
-"""Denoising diffusion (MoDiff, III-B and III-C): noise is added by a rule, and taken away by a
-learnt one, step by step (DDPM) or in leaps (DDIM).
+"""Denoising diffusion (MoDiff, III-B and III-C).
+
+Noise is added by a rule, and taken away by a learnt one, step by step (DDPM) or in leaps (DDIM).
 
 Steps are numbered s = 1..S, and every table has S + 1 entries, so that `alpha_bar[s]` is the
 paper's (and [0] is 1). A *denoiser* is any callable `denoise(x_s, s) -> eps_hat`, with s of shape
@@ -24,8 +25,10 @@ Denoiser = Callable[[Tensor, Tensor], Tensor]
 # ---- schedules -----------------------------------------------------------------------------------
 @dataclass(frozen=True, eq=False)
 class Schedule:
-    """How much noise each step adds: beta, alpha = 1 - beta and its running product alpha_bar,
-    indexed by s = 0..S."""
+    """How much noise each step adds.
+
+    It holds beta, alpha = 1 - beta and its running product alpha_bar, indexed by s = 0..S.
+    """
 
     beta: Table
     alpha: Table
@@ -38,14 +41,14 @@ class Schedule:
 
     @property
     def signal_left(self) -> float:
-        """sqrt(alpha_bar[S]): the share of the clean sample's amplitude that is still there after
-        the last step."""
+        """sqrt(alpha_bar[S]): what is left of the clean sample's amplitude after the last step."""
         return math.sqrt(float(self.alpha_bar[-1]))
 
 
 def make_schedule(beta: Float[Tensor, "S"], name: str = "schedule") -> Schedule:
-    """Build a schedule from beta_1..beta_S: alpha_s = 1 - beta_s, alpha_bar_s = alpha_1 * ... *
-    alpha_s.
+    """Build a schedule from beta_1..beta_S.
+
+    alpha_s = 1 - beta_s, alpha_bar_s = alpha_1 * ... * alpha_s.
 
     Raises ValueError unless every beta lies strictly between 0 and 1; warns where more than 10 % of
     the signal is left.
@@ -101,8 +104,9 @@ def schedule_card(schedule: Schedule) -> str:
 
 
 def at(table: Table, s: Steps, x: X, first: int = 0) -> Tensor:
-    """Look up table[s], shaped so that it multiplies x: one number, or one for each sample of the
-    batch.
+    """Look up table[s], shaped so that it multiplies x.
+
+    The step s is one number, or one for each sample of the batch.
 
     Raises IndexError for a step below `first` or beyond the table.
     """
@@ -257,8 +261,9 @@ def _clean_guess(
 
 
 def timesteps(S: int, steps: int) -> list[int]:
-    """Choose `steps` of the S diffusion steps, evenly spaced, S first: timesteps(100, 4) = [100,
-    75, 50, 25].
+    """Choose `steps` of the S diffusion steps, evenly spaced, S first.
+
+    For example, timesteps(100, 4) = [100, 75, 50, 25].
 
     Raises ValueError unless 1 <= steps <= S.  Notebook: 03
     """
@@ -301,8 +306,9 @@ def ddim_step(
     sigma: float = 0.0,
     noise: X | None = None,
 ) -> X:
-    """Leap to step `after`: sqrt(ab_after) x0_hat + sqrt(1 - ab_after - sigma^2) eps_hat + sigma
-    noise.
+    """Leap to step `after`.
+
+    x_after = sqrt(ab_after) x0_hat + sqrt(1 - ab_after - sigma^2) eps_hat + sigma noise.
 
     Source: DDIM (Song, Meng and Ermon, 2021).  Notebook: 03
     """
@@ -353,8 +359,11 @@ def _first(start: Tensor | tuple[int, ...], generator: torch.Generator | None) -
 
 # ---- the objective -------------------------------------------------------------------------------
 def squared_error(error: X, s: Int[Tensor, "B"]) -> Float[Tensor, ""]:
-    """Mean of error^2, alike for all entries and all steps s: the papers' loss (Algorithm 1 forgets
-    the square). Source: MoDiff eq. 10. Notebook: 07."""
+    """Mean of error^2, alike for all entries and all steps s.
+
+    It is the papers' loss (Algorithm 1 forgets the square).
+    Source: MoDiff eq. 10.  Notebook: 07.
+    """
     return error.square().mean()
 
 
@@ -370,8 +379,9 @@ def simple_loss(
 
 
 def dropped_weight(schedule: Schedule) -> Table:
-    """What eq. 10 leaves out before ||eps - eps_hat||^2: 1 / (2 beta_s) * beta_s^2 / (alpha_s (1 -
-    alpha_bar_s)).
+    """What eq. 10 leaves out before ||eps - eps_hat||^2.
+
+    The weight is 1 / (2 beta_s) * beta_s^2 / (alpha_s (1 - alpha_bar_s)).
 
     Source: MoDiff eq. 8-10. Notebook: 04.
     """
@@ -380,8 +390,11 @@ def dropped_weight(schedule: Schedule) -> Table:
 
 # ---- the variational bound, in nats, one number for each sample of the batch ---------------------
 def gaussian_kl(mean_1: X, variance_1: Tensor, mean_2: X, variance_2: Tensor) -> Float[Tensor, "B"]:
-    """KL(N(mean_1, variance_1 I) || N(mean_2, variance_2 I)), summed over all entries but the
-    batch. Notebook: 02."""
+    """KL(N(mean_1, variance_1 I) || N(mean_2, variance_2 I)).
+
+    The sum over all entries but the batch.
+    Notebook: 02.
+    """
     each = (
         (variance_2 / variance_1).log() + (variance_1 + (mean_1 - mean_2).square()) / variance_2 - 1
     )
@@ -395,8 +408,9 @@ def prior_kl(x0: X, schedule: Schedule) -> Float[Tensor, "B"]:
 
 
 def step_kl(x0: X, x_s: X, s: int, eps_hat: X, schedule: Schedule) -> Float[Tensor, "B"]:
-    """KL(q(x_{s-1} | x_s, x0) || p(x_{s-1} | x_s)), s >= 2: ||difference of the means||^2 / (2
-    beta_s) + a constant.
+    """KL(q(x_{s-1} | x_s, x0) || p(x_{s-1} | x_s)), s >= 2.
+
+    It is ||difference of the means||^2 / (2 beta_s) + a constant.
 
     Source: MoDiff eq. 5, 8. Notebook: 04.
     """
@@ -419,8 +433,9 @@ def reconstruction_nll(x0: X, x_1: X, eps_hat: X, schedule: Schedule) -> Float[T
 def bound_terms(
     denoise: Denoiser, x0: X, schedule: Schedule, generator: torch.Generator | None = None
 ) -> Float[Tensor, "S_plus_1 B"]:
-    """Estimate every term of the negative bound with one draw each: their sum over s is at least
-    -log p(x0) on average.
+    """Estimate every term of the negative bound with one draw each.
+
+    Their sum over s is at least -log p(x0) on average.
 
     Row 0 is the prior's term, row 1 -log p(x0 | x_1), rows 2..S the KL of step s. Source: MoDiff
     eq. 4-5. Notebook: 04.

@@ -53,8 +53,11 @@ def diffusion_dropout(
 
 
 def frame_dropout(past: Past, rate: float, generator: torch.Generator | None = None) -> Past:
-    """MoGlow's rival: each frame of each past is set to zero (the mean pose) with probability
-    `rate`.   Notebook: 09"""
+    """MoGlow's rival: frames of the past are dropped.
+
+    Each frame of each past is set to zero (the mean pose) with probability `rate`.
+    Notebook: 09
+    """
     hit = chosen(past.shape[0] * past.shape[1], rate, generator).to(past.device)
     return past.masked_fill(hit.view(*past.shape[:2], 1), 0.0)
 
@@ -74,8 +77,9 @@ def chosen(n: int, rate: float, generator: torch.Generator | None = None) -> Boo
 
 @dataclass
 class Dropout:
-    """Diffusion dropout for one training, as `modiff.training_loss` takes it: dropout(past, s,
-    generator).
+    """Diffusion dropout for one training.
+
+    `modiff.training_loss` takes it as dropout(past, s, generator).
 
     Its rate rises with `done`, the share of the training that is behind us, 0 to 1. A training
     loop sets it before each step: `train_steps(..., before=dropout.now)`.

@@ -1,5 +1,6 @@
-"""The exact denoiser of a known distribution: sampling with nothing trained, and a right answer to
-compare with.
+"""The exact denoiser of a known distribution.
+
+Sampling with nothing trained, and a right answer to compare with.
 
 Adding Gaussian noise to a Gaussian mixture gives a Gaussian mixture, so the density of x_s and the
 mean of x0 given x_s can be written down. A finite data set is a mixture whose parts have no width.
@@ -65,8 +66,10 @@ def sample_mixture(
 
 
 def noised(given: Mixture, s: int, schedule: Schedule) -> Mixture:
-    """The mixture that q(x_s) is: means times sqrt(alpha_bar_s), variances alpha_bar_s var + 1 -
-    alpha_bar_s."""
+    """The mixture that q(x_s) is.
+
+    Means are times sqrt(alpha_bar_s), variances alpha_bar_s var + 1 - alpha_bar_s.
+    """
     alpha_bar = schedule.alpha_bar[s]
     return Mixture(
         given.weights,
@@ -143,8 +146,9 @@ def conditional(given: Mixture, values: Float[Tensor, "D"], known: Bool[Tensor, 
 def dataset_mean(
     data: Float[Tensor, "N D"], x_s: Float[Tensor, "B D"], s: Int[Tensor, "B"], schedule: Schedule
 ) -> Float[Tensor, "B D"]:
-    """E[x0 | x_s] when x0 is one of N known samples: their mean, weighed by who could have become
-    x_s.
+    """E[x0 | x_s] when x0 is one of N known samples.
+
+    It is their mean, weighed by who could have become x_s.
 
     weights = softmax(-||x_s - a x_n||^2 / (2 (1 - a^2))), with a = sqrt(alpha_bar_s). Notebook: 03.
     """
@@ -171,8 +175,10 @@ def dataset_denoiser(data: Float[Tensor, "N *shape"], schedule: Schedule) -> Den
 
 
 def _denoiser(mean_of_x0: Callable[[Tensor, Tensor], Tensor], schedule: Schedule) -> Denoiser:
-    """eps_hat = (x_s - a E[x0 | x_s]) / sqrt(1 - a^2), in float64 inside, in the caller's shape and
-    dtype outside."""
+    """eps_hat = (x_s - a E[x0 | x_s]) / sqrt(1 - a^2).
+
+    It is float64 inside, and has the caller's shape and dtype outside.
+    """
 
     def denoise(x_s: Tensor, s: Tensor) -> Tensor:
         x = x_s.flatten(1).double()

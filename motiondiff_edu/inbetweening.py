@@ -1,5 +1,6 @@
-"""Some entries of a motion are given, the others are to be found: seeds, keyframes, parts of the
-body.
+"""Some entries of a motion are given, the others are to be found.
+
+Given may be seeds, keyframes, parts of the body.
 
     at every step s:  x_s = known ? noised snapshot of the given : x_s
                       then one step of sampling as ever

@@ -1,5 +1,6 @@
-"""Kinematic losses: losses of the clean motion x0_hat that a prediction implies, and their weight
-at each diffusion step.
+"""Kinematic losses: what is asked of the clean motion that the network has in mind.
+
+Here is also how much is asked at which step.
 
     L = L_da + lambda(s) L_k,   L_k = w_s L_s + w_a L_a + w_m L_m (+ w_f L_f)
 L_da is the squared error of the network's target. L_k is computed from x0_hat, in metres.
@@ -152,8 +153,9 @@ def motion_loss(
     x0: Float[Tensor, "B T D"],
     present: Bool[Tensor, "B T"] | None = None,
 ) -> Float[Tensor, "B"]:
-    """L_m: mean squared distance of the guess from the true motion, in the network's own
-    (standardised) units.
+    """L_m: mean squared distance of the guess from the true motion.
+
+    It is in the network's own (standardised) units.
 
     Source: MoFusion eq. 7, squared.  Notebook: 13
     """
@@ -166,8 +168,9 @@ def slide_loss(
     toes: tuple[int, int],
     present: Bool[Tensor, "B T"] | None = None,
 ) -> Float[Tensor, "B"]:
-    """L_f: how far a toe moves along the floor from a frame to the next where it should stand, on
-    average; m.
+    """L_f: how far a toe moves along the floor where it should stand; m.
+
+    The mean is over steps from a frame to the next.
 
     Source: MoFusion 3.2 invites such a loss; this one is ours.  Notebook: 13
     """

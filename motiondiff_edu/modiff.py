@@ -1,5 +1,6 @@
-"""MoDiff: two encoders, a cross-modal transformer and a decoder that predicts the noise of the
-future; and Algorithm 1, which trains them.
+"""MoDiff: two encoders, a cross-modal transformer, a decoder; and how they are trained.
+
+The decoder predicts the noise of the future, and Algorithm 1 trains all of them.
 
     past poses  --2 layers--+
                             +--concatenated in time--6 cross-modal layers--> memory
@@ -51,8 +52,7 @@ class MoDiffConfig:
     skip: bool = True
 
     def __post_init__(self):
-        """Raises ValueError for sizes of which no network can be built, and for an unknown
-        target."""
+        """Raise ValueError for an unknown target, or sizes of which no network can be built."""
         sizes = {
             field.name: getattr(self, field.name)
             for field in fields(self)

@@ -50,8 +50,7 @@ class MoFusionConfig:
     skip: bool = True
 
     def __post_init__(self):
-        """Raises ValueError for sizes of which no network can be built, and for an unknown
-        target."""
+        """Raise ValueError for an unknown target, or sizes of which no network can be built."""
         counts, rates = (self.D, self.S, self.heads), (self.fps, self.slowest, self.fastest)
         if min(counts) < 1 or min(rates) <= 0 or min(self.C, self.music_layers) < 0:
             raise ValueError(
@@ -120,8 +119,9 @@ class ResBlock(nn.Module):
 
 
 class CrossAttentionBlock(nn.Module):
-    """Cross-modal attention, then a feed-forward layer: queries from the motion, keys and values
-    from the music.
+    """Cross-modal attention, then a feed-forward layer.
+
+    Queries come from the motion, keys and values from the music.
 
     Without music (context=None) keys and values come from the motion: self-attention.
     Source: MoFusion 3.3, eq. 8-9 (which has Q from x in the unconditional case; K and V are meant).
@@ -142,8 +142,9 @@ class CrossAttentionBlock(nn.Module):
 
 
 class MusicEncoder(nn.Module):
-    """Mel frames to context: a linear layer, then (ours) convolutions that look ever further, up to
-    a second or two.
+    """Mel frames to context: a linear layer, then (ours) convolutions.
+
+    The convolutions look ever further, up to a second or two.
 
     Half of the frames are enough afterwards: 15.6 a second.
     Source: MoFusion 3.3 (the linear layer).  Notebook: 12
@@ -209,8 +210,9 @@ class MoFusion(nn.Module):
         times: Float[Tensor, "M"],
         mask: Bool[Tensor, "B M"] | None = None,
     ) -> "Music":
-        """The context of a piece of music: `mel` standardised, `times` in seconds from the first
-        motion frame.
+        """The context of a piece of music.
+
+        `mel` is standardised, `times` are seconds from the first motion frame.
 
         `mask` is True where there is music, for pieces of several lengths in one batch.
         """
@@ -265,8 +267,10 @@ class MoFusion(nn.Module):
 
 @dataclass(frozen=True, eq=False)
 class Music:
-    """The context that a network made of music: tokens, when each sounds (s), and which are there
-    at all."""
+    """The context that a network made of music.
+
+    Tokens, when each sounds (s), and which are there at all.
+    """
 
     tokens: Float[Tensor, "B M W"]
     times: Float[Tensor, "M"]
@@ -275,8 +279,10 @@ class Music:
 
 @dataclass(frozen=True, eq=False)
 class View:
-    """One level of the U-Net: which of its frames are motion, what they may attend to, and when
-    they are."""
+    """One level of the U-Net.
+
+    Which of its frames are motion, what they may attend to, and when they are.
+    """
 
     mask: Float[Tensor, "#B T 1"]
     bias: Float[Tensor, "#B 1 T M"] | None

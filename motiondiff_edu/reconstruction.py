@@ -1,5 +1,6 @@
-"""There and back: what is missing in the past is found by walking on, turning round, and walking
-back.
+"""There and back: how what is missing in the past is found.
+
+By walking on, turning round, and walking back.
 
     past with holes -> T_h new frames -> both reversed in time
                     -> T_h new frames: the past, as it may have been
@@ -23,8 +24,10 @@ from .rollout import AnyWalker, generate
 
 @dataclass(frozen=True, eq=False)
 class Round:
-    """One time there and back: the past as it is now, and how far the filled entries moved (metres,
-    RMS per sample)."""
+    """One time there and back.
+
+    The past as it is now, and how far the filled entries moved (metres, RMS per sample).
+    """
 
     number: int
     past: Float[Tensor, "B T_h D"]
@@ -75,8 +78,9 @@ def repair_steps(
     keep: int | None = None,
     correct: Callable[[Tensor, Tensor, Tensor], Tensor] | None = None,
 ) -> Iterator[Round]:
-    """Fill the holes of `past` (metres), round by round, until they move by less than `tolerance`
-    metres (RMS).
+    """Fill the holes of `past` (metres), round by round.
+
+    Rounds end when the entries move by less than `tolerance` metres (RMS).
 
     `control` has T_h rows beside the past and T_h for the way there. Holes are the mean pose at
     first (zero once standardised), or `guess` (metres), from a regression, say. Stops after

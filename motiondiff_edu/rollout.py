@@ -61,8 +61,10 @@ class AnyWalker(Protocol):
 
 @dataclass(frozen=True, eq=False)
 class Frame:
-    """One new frame: its number after the past (from 0), its pose, and the whole window it was
-    taken from."""
+    """One new frame.
+
+    Its number after the past (from 0), its pose, and the whole window it was taken from.
+    """
 
     t: int
     pose: Float[Tensor, "B D"]
@@ -113,8 +115,9 @@ def generate(
     keep: int = 1,
     hold: bool = True,
 ) -> Float[Tensor, "*B n D"]:
-    """Continue `past` (root-frame poses, metres) under `control` (m/s, m/s, rad/s): n = T - T_h new
-    poses, metres.
+    """Continue `past` (root-frame poses, metres) under `control` (m/s, m/s, rad/s).
+
+    Returns n = T - T_h new poses, metres.
 
     Rows 0..T_h-1 of the control belong to the past. steps=None is DDPM with all S steps, a number
     is DDIM with so many. A past and control without a batch axis give poses without one. Arrays of

@@ -1,5 +1,6 @@
-"""One training loop, a generator: it yields after every step, keeps an averaged copy, and can be
-killed and resumed.
+"""One training loop, a generator.
+
+It yields after every step, keeps an averaged copy, and can be killed and resumed.
 
 Nothing here knows what is trained: `loss_fn(model, generator)` draws its own batch and noise from
 the generator, which is why a resumed run continues bit for bit.  Source: MoDiff Alg. 1.   Notebook:
@@ -26,8 +27,10 @@ class NonFiniteLoss(RuntimeError):
 
 @dataclass(eq=False)
 class TrainState:
-    """Everything that a run consists of: what `recipes.runs.save_run` writes and
-    `recipes.runs.resume_run` reads."""
+    """Everything that a run consists of.
+
+    `recipes.runs.save_run` writes it and `recipes.runs.resume_run` reads it.
+    """
 
     model: nn.Module
     average: nn.Module  # exponential moving average of the weights: what is used after training

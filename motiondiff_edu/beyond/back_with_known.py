@@ -1,5 +1,6 @@
-"""Ways back that heed what is known while they walk, for
-`reconstruction.repair_steps(way_back=...)`.
+"""Ways back that heed what is known while they walk.
+
+They are for `reconstruction.repair_steps(way_back=...)`.
 
 The paper walks back as if nothing were known, and fills the holes from it. A frame that is known,
 or the joints of one that are, say much about what is missing beside them: here they are given to

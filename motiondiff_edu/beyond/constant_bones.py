@@ -1,5 +1,6 @@
-"""Bones that keep their length: joints that were made up are moved until every bone is as long as
-where it is given.
+"""Bones that keep their length.
+
+Joints that were made up are moved until every bone is as long as where it is given.
 
 A network's joints are free points; its bones come out nearly right. Given joints stay where they
 are.
@@ -40,8 +41,9 @@ def steady_bones(
     lengths: Float[np.ndarray, "*#B 20"],
     rounds: int = ROUNDS,
 ) -> Float[np.ndarray, "*B T J 3"]:
-    """Move the joints that are not known, bone by bone and again, until bones have these lengths
-    (NaN: any).
+    """Move the joints that are not known until bones have these lengths (NaN: any).
+
+    They move bone by bone, and again.
 
     A bone between two free joints moves both by half of what is wrong, beside a known one the free
     joint by all of it. Where known joints are farther apart than bones reach, what remains wrong is

@@ -1,5 +1,6 @@
-"""Feet that were made up stand where they stand: a low, slow toe is held in place, and the leg
-follows.
+"""Feet that were made up stand where they stand.
+
+A low, slow toe is held in place, and the leg follows.
 
 A network's feet slide by centimetres in each frame, which the eye sees first. Nothing but legs is
 moved, and nothing that is given; whoever lets the feet glide on purpose must do without.
@@ -87,8 +88,10 @@ def to_stands(
 
 
 def closeness(given: Bool[np.ndarray, " T"]) -> Float[np.ndarray, " T"]:
-    """1 in given frames, 0 from `FADE` frames away, smooth between: no stand may jump to where a
-    foot is given next."""
+    """1 in given frames, 0 from `FADE` frames away, smooth between.
+
+    No stand may jump to where a foot is given next.
+    """
     away = distance_transform_edt(~given) if given.any() else np.full(len(given), np.inf)
     u = np.minimum(away / FADE, 1)
     return 1 - (3 * u**2 - 2 * u**3)

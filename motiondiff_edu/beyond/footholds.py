@@ -31,8 +31,9 @@ COLUMNS = [3 * joint + axis for joint in FEET for axis in range(3)]
 def held_positions(
     joints: Float[Tensor, "B K 3"], control: Float[Tensor, "B T 3"], fps: float = 20.0
 ) -> Float[Tensor, "B T K 3"]:
-    """Where joints (metres, root frame) come to lie in the root frames ahead, if they stay put in
-    the world.
+    """Where joints (metres, root frame) come to lie if they stay put in the world.
+
+    They are told in the root frames ahead.
 
     Row t of the control takes the root on to frame t + 1, at the halfway heading; result t is as
     seen from there.
@@ -73,8 +74,10 @@ class FootholdConfig(MoDiffConfig):
 
 @dataclass(frozen=True, eq=False)
 class Standing:
-    """The memory of past and control, and where the feet would be if they stayed (standardised,
-    COLUMNS only)."""
+    """The memory of past and control, and where the feet would be if they stayed.
+
+    The feet's places are standardised, COLUMNS only.
+    """
 
     memory: Float[Tensor, "B M width"]
     held: Float[Tensor, "B T_p K"]
@@ -85,8 +88,9 @@ class Standing:
 
 
 class FootholdMoDiff(MoDiff):
-    """MoDiff for x0 whose head may leave ankles and toes where they stood, joint by joint and frame
-    by frame.
+    """MoDiff for x0 whose head may leave ankles and toes where they stood.
+
+    It decides joint by joint and frame by frame.
 
     The scalers lead to metres and m/s: where a foot stays is a matter of metres. They are not among
     the weights.
@@ -137,8 +141,9 @@ class FootholdMoDiff(MoDiff):
 
 @dataclass(frozen=True, eq=False)
 class CleanFootholds:
-    """A network with footholds in training: it sees the noised past, and holds the feet nearly
-    where the clean one has them.
+    """A network with footholds in training.
+
+    It sees the noised past, and holds the feet nearly where the clean one has them.
 
     `clean`, `noised`: the past before and after `past_noise`.
     `foot_noise`: fraction of the past noise applied to the held feet, 0 to 1.
@@ -179,8 +184,9 @@ def blend(
 
 
 def openness(gate: Float[Tensor, "*B F"], leaning: bool = True) -> Float[Tensor, "*B F"]:
-    """How much of its place a joint keeps, 0 to 1, from the gate's logit: in training
-    (leaning=False) its sigmoid.
+    """How much of its place a joint keeps, 0 to 1, from the gate's logit.
+
+    In training (leaning=False) it is the logit's sigmoid.
 
     In use the gate is shifted towards holding by LEAN, and stretched at both ends by STRETCH, so
     that a nearly open gate is fully open. Sliding by millimetres barely changes the training loss,

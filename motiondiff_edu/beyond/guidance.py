@@ -1,5 +1,6 @@
-"""Denoisers that heed what is given: wrappers that take a denoiser and return one, for
-`inbetweening.inpaint_steps`.
+"""Denoisers that heed what is given.
+
+Wrappers that take a denoiser and return one, for `inbetweening.inpaint_steps`.
 
     blended(guided(denoise, schedule, given, known), schedule, given, known, fade=10)
 A trained network's guess x0_hat and the given entries need not agree, and the difference is a jump
@@ -67,8 +68,9 @@ def with_guess(
 def guided_guess(
     denoise: Denoiser, x_s: X, s: Tensor, schedule: Schedule, given: X, known: Mask, weight: float
 ) -> X:
-    """x0_hat, with what is wrong at the given entries traced back to x_s, and from there to all
-    others.
+    """x0_hat, with what is wrong at the given entries traced back to x_s.
+
+    From there it is traced to all other entries.
 
         x0_hat + weight * length * pull
         pull = J^T (given - x0_hat)[known],   J = d x0_hat / d x_s
@@ -95,8 +97,9 @@ def blended_guess(
     known: Bool[Tensor, "B T D"],
     fade: Fade,
 ) -> Float[Tensor, "B T D"]:
-    """x0_hat drawn through the given entries: the correction there is interpolated to the frames
-    between them.
+    """x0_hat drawn through the given entries.
+
+    The correction there is interpolated to the frames between them.
 
     Before the first and after the last given frame it fades to nothing within `fade` frames (one
     number, or one for each column; infinity: it stays).  Notebook: 15

@@ -1,5 +1,6 @@
-"""What else an error can cost: departures from the papers' mean square, each a term or a weight
-with a name.
+"""What else an error can cost: departures from the papers' mean square.
+
+Each is a term or a weight with a name.
 
 A *loss* takes the error of the network's target (B, T, D) and the steps s (B,), and gives one
 number; `ddpm.squared_error` is the papers'. `total` adds losses. All of them are squares, so a
@@ -52,8 +53,9 @@ def weighted_by_step(loss: Loss, weights: Table) -> Loss:
 
 
 def metre_weights(std: Float[Tensor, "D"], power: float = 2.0) -> Float[Tensor, "D"]:
-    """Weights of columns: std^power, with mean 1. 2 counts errors in metres, 0 in standard
-    deviations.
+    """Weights of columns: std^power, with mean 1.
+
+    Power 2 counts errors in metres, 0 in standard deviations.
 
     A toe moves ten times as far as a hip, and its errors are seen ten times as well.   Notebook: 07
     """
@@ -103,8 +105,11 @@ def bone_errors(error: Float[Tensor, "B T D"]) -> Float[Tensor, "B T 20"]:
 
 
 def changes(weight: float) -> Loss:
-    """The squared error of changes from frame to frame, times weight: a dance that trembles about
-    the right poses is not right.   Notebook: 12"""
+    """The squared error of changes from frame to frame, times weight.
+
+    A dance that trembles about the right poses is not right.
+    Notebook: 12
+    """
     return lambda error, s: weight * error.diff(dim=1).square().mean()
 
 

@@ -12,8 +12,9 @@ from ..ddpm import Schedule, linear_schedule, make_schedule
 
 
 def shifted(schedule: Schedule, snr: float) -> Schedule:
-    """Multiply alpha_bar / (1 - alpha_bar) of every step by `snr`: alpha_bar' = snr ab / (1 - ab +
-    snr ab).
+    """Multiply alpha_bar / (1 - alpha_bar) of every step by `snr`.
+
+    With ab for alpha_bar: alpha_bar' = snr ab / (1 - ab + snr ab).
 
     1 leaves the schedule as it is.  Raises ValueError for a number that is not positive.
     Notebook: 12
@@ -31,8 +32,9 @@ def shifted(schedule: Schedule, snr: float) -> Schedule:
 def leap_schedule(
     S: int = 100, leap: float = 0.37, beta_2: float = 0.03, beta_S: float = 0.08
 ) -> Schedule:
-    """beta_1 = leap, then evenly from beta_2 to beta_S: step 1 brings noise of sqrt(leap / (1 -
-    leap)) of the signal, by default 0.77 of it.
+    """beta_1 = leap, then evenly from beta_2 to beta_S.
+
+    Step 1 brings noise of sqrt(leap / (1 - leap)) of the signal, by default 0.77 of it.
 
     At lower noise a small network sees no more of a pose than it can guess. Steps there add its
     errors again and again, and a rollout repeats them; one leap from step 1 to the clean pose does

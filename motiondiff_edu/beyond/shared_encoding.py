@@ -1,5 +1,6 @@
-"""One encoding for several noises: a window's past and control are encoded once and denoised at
-several diffusion steps.
+"""One encoding for several noises.
+
+A window's past and control are encoded once and denoised at several diffusion steps.
 
 Encoding dominates the cost of a training step of MoDiff, and does not depend on s. So `repeated`
 takes every window several times, and `SharedEncoding` encodes it once: the same loss, for about

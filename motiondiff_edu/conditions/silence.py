@@ -18,8 +18,9 @@ TINY = 1e-9  # below is silence
 def silence_hit(
     audio: Float[np.ndarray, "N"], time: float, width: float = WIDTH
 ) -> Float[np.ndarray, "N"]:
-    """The song (16 kHz) without what is struck at `time` seconds: for `width` seconds no frequency
-    may burst out.
+    """The song (16 kHz) without what is struck at `time` seconds.
+
+    For `width` seconds no frequency may burst out.
 
     Each is held down to a line, straight in decibels, from what it was before to what it is
     afterwards: a note that sounds on sounds on, and outside of the span every sample is as it was.

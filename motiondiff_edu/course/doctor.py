@@ -1,5 +1,7 @@
-"""`motiondiff-edu doctor`: one page that says what works on this machine, and what to do about the
-rest."""
+"""`motiondiff-edu doctor`: one page that says what works on this machine.
+
+It also says what to do about the rest.
+"""
 
 import argparse
 import importlib

@@ -27,8 +27,9 @@ CM, MM = 100.0, 1000.0
 
 @dataclass(frozen=True, eq=False)
 class Edit:
-    """A motion (metres) and what of it is held: pinned frames with their poses, and a part kept in
-    all frames.
+    """A motion (metres) and what of it is held.
+
+    Pinned frames with their poses, and a part kept in all frames.
 
     Each method returns another edit; `moved` names the joints that were dragged in each pinned
     frame.   Notebook: 15
@@ -137,8 +138,10 @@ def _without(table: Mapping, key) -> dict:
 
 @dataclass(frozen=True, eq=False)
 class Made:
-    """In-betweens of an edit, and what was measured on them (metres and m/s, one number for
-    each)."""
+    """In-betweens of an edit, and what was measured on them.
+
+    Measures are in metres and m/s, one number for each in-between.
+    """
 
     edit: Edit
     samples: Float[np.ndarray, "N T 21 3"]

@@ -1,5 +1,6 @@
-"""In-betweens of motions in metres: what is known of a walk or a dance is kept, bit by bit, and the
-rest is made.
+"""In-betweens of motions in metres.
+
+What is known of a walk or a dance is kept, bit by bit, and the rest is made.
 
 The sampling itself is `inbetweening.inpaint_steps`.  Source: MoFusion 4.4.  Notebook: 15
 """
@@ -103,16 +104,19 @@ def inbetween(
 
 
 def fading(frames: int) -> Float[Tensor, "63"]:
-    """So many frames for every column, but for where the pelvis is in the room: there is no place
-    to go back to."""
+    """So many frames for every column, but for where the pelvis is in the room.
+
+    There is no place to go back to.
+    """
     fade = torch.full((3 * J,), float(frames))
     fade[[3 * HIPS, 3 * HIPS + 2]] = math.inf
     return fade
 
 
 def seen_from(positions: Float[np.ndarray, "T 21 3"], known: Bool[np.ndarray, "T 21"]) -> Place:
-    """Where the motion begins to be known, and which way it faces there: near it the network's
-    motions start.
+    """Where the motion begins to be known, and which way it faces there.
+
+    The network's motions start near it.
 
     By the first frame that gives pelvis and hips, or else pelvis and shoulders; or else by the path
     of the pelvis, which is taken to go forward (along z where it goes nowhere at first). The

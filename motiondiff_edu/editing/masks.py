@@ -1,5 +1,6 @@
-"""What is given of a motion: masks over frames and joints, and what they mean for the network's
-columns.
+"""What is given of a motion: masks over frames and joints.
+
+Here is also what they mean for the network's columns.
 
 `known` is (T, J): True where a joint's place is given. The network sees the pelvis in the world and
 the other joints about it, so a joint can be held only where the pelvis is held, too.

@@ -104,8 +104,10 @@ def _once(
 
 
 def _windows(known: Bool[np.ndarray, "T 21"], T_h: int) -> Int[np.ndarray, "W"]:
-    """The first frames of windows that cover every hole, half a window apart, and reach beyond it
-    where there are frames."""
+    """The first frames of windows that cover every hole, half a window apart.
+
+    They reach beyond the hole where there are frames.
+    """
     T, half = len(known), max(1, T_h // 2)
     if known.all():
         raise MotionError("nothing is missing: there is nothing to reconstruct")
@@ -122,8 +124,9 @@ def _windows(known: Bool[np.ndarray, "T 21"], T_h: int) -> Int[np.ndarray, "W"]:
 def path_of(
     positions: Float[np.ndarray, "T 21 3"], known: Bool[np.ndarray, "T 21"]
 ) -> tuple[Float[np.ndarray, "T 2"], Float[np.ndarray, "T"]]:
-    """Root path and heading of a motion with holes, by the pelvis and by hips and shoulders where
-    they are known.
+    """Root path and heading of a motion with holes.
+
+    They come from the pelvis, and from hips and shoulders where they are known.
 
     Raises MotionError, with the frame, where the pelvis is not, or where neither hips nor shoulders
     are known in any frame.

@@ -1,5 +1,6 @@
-"""What happens at the repair bench: a window of a walk loses joints or frames, the walker mends it,
-and it is judged.
+"""What happens at the repair bench.
+
+A window of a walk loses joints or frames, the walker mends it, and it is judged.
 
 No browser here: the widget shows what comes out.  Source: MoDiff III-E, Fig. 6.  Notebook: 10
 """

@@ -1,5 +1,6 @@
-"""One past, mended several times over: from the same holes different draws lead to different
-repairs.
+"""One past, mended several times over.
+
+From the same holes different draws lead to different repairs.
 
 Their mean is nearest to the truth and hardly a motion; each of them is a motion. The repair bench
 shows both.
@@ -23,8 +24,10 @@ from ..rollout import AnyWalker
 
 @dataclass(frozen=True, eq=False)
 class Mended:
-    """`n` repairs of each past after so many rounds (root frame, metres), and how far the last one
-    moved them (m)."""
+    """`n` repairs of each past after so many rounds (root frame, metres).
+
+    It also holds how far the last round moved them (m).
+    """
 
     samples: Float[np.ndarray, "n *B T_h J 3"]
     known: Bool[np.ndarray, "*B T_h J"]
@@ -37,8 +40,10 @@ class Mended:
         return np.where(self.known[..., None], self.samples[0], self.samples.mean(0))
 
     def errors(self, truth: Float[np.ndarray, "*B T_h J 3"]) -> dict[str, float]:
-        """In cm: distance from the truth of one repair and of the mean, spread, and the bone error
-        of either."""
+        """In cm: distance from the truth, spread, and bone error.
+
+        Distance and bone error are told of one repair and of the mean.
+        """
         found = {
             "one repair": repair.missing_error(self.samples, truth, self.known),
             "their mean": repair.missing_error(self.mean, truth, self.known),
@@ -63,8 +68,9 @@ def mend_steps(
     rounds: int = 5,
     steps: int | None = 10,
 ) -> Iterator[Mended]:
-    """After each round there and back, `n` repairs of each past (root-frame positions, metres; NaN
-    in the holes).
+    """After each round there and back, `n` repairs of each past.
+
+    Pasts are root-frame positions (metres), with NaN in the holes.
 
     `control` has T_h rows beside the past and T_h after it (m/s, m/s, rad/s). A past without a
     batch axis is taken too.
@@ -94,8 +100,9 @@ def mend_steps(
 def with_bones(
     past: Float[Tensor, "B T_h D"], known: Bool[Tensor, "B T_h D"], walked: Float[Tensor, "B T D"]
 ) -> Float[Tensor, "B T_h D"]:
-    """The past, its missing joints moved until bones are as long as they are in `walked` (median
-    over its frames).
+    """The past, its missing joints moved until bones have their right lengths.
+
+    The right length is that in `walked` (median over its frames).
 
     For `reconstruction.repair_steps(correct=with_bones)`: otherwise the bone between a generated
     and a given joint changes its length.

@@ -22,8 +22,9 @@ from ..modiff import MoDiff, step_embedding
 
 @dataclass(frozen=True, eq=False)
 class Folded:
-    """A memory as one decoder layer asks it: keys with the queries' weights in them, values with
-    the outputs'.
+    """A memory as one decoder layer asks it.
+
+    Keys have the queries' weights in them, values the outputs'.
 
     q K^T = (x W_q) K^T = x (W_q K^T), and the bracket stays the same at all S steps; likewise (A V)
     W_o = A (V W_o). The heads lie side by side, as HM = H*M columns: a layer asks with one product
@@ -120,8 +121,9 @@ class _Layer:
 
 
 class FastMoDiff:
-    """A trained MoDiff, read once: `encode` a frame's context, then `denoise` as often as the
-    sampler asks.
+    """A trained MoDiff, read once.
+
+    `encode` a frame's context, then `denoise` as often as the sampler asks.
 
     It works on a copy: `model` may train on, in its own mode, and this twin keeps the weights of
     the time of building.
@@ -164,8 +166,10 @@ class FastMoDiff:
     def denoise(
         self, x_s: Float[Tensor, "B T_p D"], s: Int[Tensor, "B"] | int, context: Context
     ) -> Float[Tensor, "B T_p D"]:
-        """The network's output at step s, one for the whole batch or one for each: eps, x0 or v, as
-        its target says."""
+        """The network's output at step s, one for the whole batch or one for each.
+
+        It is eps, x0 or v, as the network's target says.
+        """
         out = self.head(self.attend(self.embed(x_s, s), context))
         return out if self.skip is None else out + self.skip[s].view(-1, 1, 1) * x_s
 

@@ -20,8 +20,10 @@ from ..mofusion import CrossAttentionBlock, FrameConv, MoFusion, ResBlock, View
 
 @dataclass(frozen=True, eq=False)
 class Listening:
-    """What the blocks need of a song, for motions of one length: keys and values block by block,
-    and the views."""
+    """What the blocks need of a song, for motions of one length.
+
+    Keys and values block by block, and the views.
+    """
 
     frames: int
     views: list[View]
@@ -30,8 +32,9 @@ class Listening:
 
 
 class FastMoFusion:
-    """A trained MoFusion, read once: `listen` to the music, then `denoise` as often as the sampler
-    asks.
+    """A trained MoFusion, read once.
+
+    `listen` to the music, then `denoise` as often as the sampler asks.
 
     It works on a copy, as FastMoDiff does; without music (C = 0) there is nothing to keep: use the
     plain network.
@@ -83,8 +86,10 @@ class FastMoFusion:
     def denoise(
         self, x_s: Float[Tensor, "B T D"], s: Int[Tensor, "B"] | int, song: Listening
     ) -> Float[Tensor, "B T D"]:
-        """The network's output at step s, one for the whole batch or one for each: eps, x0 or v, as
-        its target says."""
+        """The network's output at step s, one for the whole batch or one for each.
+
+        It is eps, x0 or v, as the network's target says.
+        """
         model = self.model
         levels = self.levels
         views = song.views

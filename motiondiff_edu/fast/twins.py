@@ -40,7 +40,9 @@ def _changes(tensor: Tensor) -> int:
 
 
 def watched(model: nn.Module) -> bool:
-    """Whether somebody collects this network's attention (`cross_modal_attention.watch`): a twin's
-    layers are others."""
+    """Whether somebody collects this network's attention.
+
+    See `cross_modal_attention.watch`: a twin's layers are others.
+    """
     layers = (m for m in model.modules() if isinstance(m, CrossModalAttention))
     return any(layer.watcher is not None for layer in layers)

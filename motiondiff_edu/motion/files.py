@@ -29,8 +29,9 @@ ELSEWHERE = {
 
 
 def read_motion(path: str | Path) -> Motion:
-    """Read a motion from a file, by its name's ending: BVH of any humanoid (brought to the course's
-    skeleton and 20 frames/s), or npz.
+    """Read a motion from a file, by its name's ending: BVH or npz.
+
+    BVH of any humanoid is brought to the course's skeleton and 20 frames/s.
 
     Raises FileNotFoundError, or MotionError or BvhError (both ValueErrors) with file, fault and
     what to do.  Notebook: 00

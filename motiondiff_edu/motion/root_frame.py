@@ -141,8 +141,10 @@ def estimate_root(
 def smoothed_root(
     pelvis: Float[np.ndarray, "T 2"], heading: Float[np.ndarray, "T"], fps: float = FPS
 ) -> tuple[Float[np.ndarray, "T 2"], Float[np.ndarray, "T"]]:
-    """Root path and heading from the pelvis' (x, z) and where the body faces (radians): the
-    Gaussians of `estimate_root`."""
+    """Root path and heading from the pelvis' (x, z) and where the body faces (radians).
+
+    They are smoothed by the Gaussians of `estimate_root`.
+    """
     return (
         _smooth(pelvis, ROOT_SMOOTHING * fps),
         _smooth(np.unwrap(heading), HEADING_SMOOTHING * fps),

@@ -22,8 +22,9 @@ NEAR = 0.1  # s: what lies so close to a beat is counted as the beat's
 
 
 def layers_of(config: MoFusionConfig) -> Iterator[tuple[str, int, str]]:
-    """Each block's attention layer, its level (every 2^level-th frame asks), and a name that says
-    how many a second.
+    """Each block's attention layer, its level, and its name.
+
+    Every 2^level-th frame asks; the name says how many a second.
 
     In the order of the computation: from the input down to the bottom of the U, and up again.
     Notebook: 12
@@ -84,8 +85,10 @@ def share_near(
     before: float = NEAR,
     after: float = NEAR,
 ) -> Float[np.ndarray, "T K"]:
-    """How much of each row's attention falls on tokens from `before` seconds before each moment to
-    `after` after it."""
+    """How much of each row's attention falls on the tokens near some moments.
+
+    Near is from `before` seconds before each moment to `after` seconds after it.
+    """
     away = token_times[:, None] - moments[None, :]
     return weights @ ((-before <= away) & (away <= after)).astype(weights.dtype)
 
@@ -116,8 +119,9 @@ def beat_mass_by_chance(
     times: int = 500,
     near: float = NEAR,
 ) -> Float[np.ndarray, "times"]:
-    """`beat_mass` with the beats moved together by random times, going round at the end of the
-    music.
+    """`beat_mass` with the beats moved together by random times.
+
+    They go round at the end of the music.
 
     The beats keep their rhythm and lose their place.  Raises ValueError for music without a beat.
     Notebook: 12

@@ -79,23 +79,29 @@ class Dancer:
 
     @property
     def fast(self) -> FastMoFusion | None:
-        """The fast twin with the weights of now: built at first use, and again when they have
-        changed. None for a network without music, or registered without a twin."""
+        """The fast twin with the weights of now.
+
+        It is built at first use, and again when they have changed. None for a network without
+        music, or registered without a twin.
+        """
         return self._twin and self._twin()
 
     def mel_input(
         self, mel: Float[Tensor, "B M C"], frames: int
     ) -> tuple[Float[Tensor, "B M2 C"], Float[Tensor, "M2"]]:
-        """The network's input for so many frames: the standardised Mel frames, and their times in
-        seconds."""
+        """The network's input for so many frames.
+
+        The standardised Mel frames, and their times in seconds.
+        """
         mel = self.mel_scaler.transform(mel[:, : mel_frames(frames)].to(self.device))
         return mel, frame_times(mel.shape[1]).float().to(self.device)
 
     def denoiser(
         self, mel: Float[Tensor, "B M C"] | None, frames: int, fast: bool = True
     ) -> Denoiser:
-        """`denoise(x_s, s) -> eps_hat` for this music (None for a network without), in the
-        network's units; the x0_hat of an eps network is held within FARTHEST.
+        """`denoise(x_s, s) -> eps_hat` for this music (None for a network without).
+
+        It is in the network's units; the x0_hat of an eps network is held within FARTHEST.
 
         `fast`: by the fast twin, where there is one and nobody watches the network's attention; it
         cannot be differentiated.

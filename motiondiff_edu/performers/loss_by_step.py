@@ -1,5 +1,6 @@
-"""What each loss is at each diffusion step, and how hard it pulls at the network: to measure a
-weight, not to quote it.
+"""What each loss is at each diffusion step, and how hard it pulls at the network.
+
+This is to measure a weight, not to quote it.
 
 x_s is made from known x0 and eps, `predict(x_s, s, eps)` returns eps_hat, and x0_hat follows.
 `predict` is a network, the exact denoiser, or the true noise with a given error.
@@ -22,8 +23,9 @@ Predictor = Callable[[Tensor, Tensor, Tensor], Tensor]  # (x_s, s, eps) -> eps_h
 
 @dataclass(frozen=True, eq=False)
 class LossOverTime:
-    """Losses at the diffusion steps `steps`, means over a batch, by the names of `kinematic_parts`
-    and "data".
+    """Losses at the diffusion steps `steps`, means over a batch.
+
+    They go by the names of `kinematic_parts` and "data".
 
     "data" is the squared error of the network's own target (L_da). `pull[name]` is the length of
     the gradient with respect to the network's output, for one motion: what training feels.
@@ -88,8 +90,9 @@ def losses_over_time(
     steps: Sequence[int],
     target: str = "eps",
 ) -> LossOverTime:
-    """All losses of x0_hat at each of `steps`, unweighted, and their pull at a network that
-    predicts `target`.
+    """All losses of x0_hat at each of `steps`, unweighted, and their pull.
+
+    The pull is at a network that predicts `target`.
 
     Raises IndexError for a step that the schedule has not, ValueError for an unknown target.
     Source: MoFusion eq. 4-7.  Notebook: 13
@@ -126,8 +129,9 @@ def _at_step(predict, x0, eps, planted, body, schedule, s, target) -> tuple[dict
 
 
 def eps_weight(schedule: Schedule, kind: str) -> Table:
-    """What lambda(s) L_m is in terms of eps: lambda(s) |x0_hat - x0|^2 = eps_weight(s) |eps_hat -
-    eps|^2.
+    """What lambda(s) L_m is in terms of eps.
+
+    lambda(s) |x0_hat - x0|^2 = eps_weight(s) |eps_hat - eps|^2.
 
     lambda(s) (1 - alpha_bar) / alpha_bar; with the paper's lambda = alpha_bar it is 1 - alpha_bar,
     largest at s = S.

@@ -1,5 +1,6 @@
-"""What moves in a dance when one sound is taken away: the dance with it and without, from the same
-noise.
+"""What moves in a dance when one sound is taken away.
+
+The dance with it and without, from the same noise.
 
 Source: ours; MoFusion Fig. 4 shows attention instead.  Notebook: 12
 """
@@ -40,8 +41,9 @@ def occlusion(
     steps: int = 20,
     together: int = 6,
 ) -> Occlusion:
-    """Dance to the song, and again with the sound at each of `times` (seconds) silenced, always
-    from the same noise.
+    """Dance to the song, and again with each of some sounds silenced.
+
+    Silenced are those at `times` (seconds); the noise is always the same.
 
     DDIM without noise of its own (eta = 0), so that nothing but the music differs; `together` songs
     are danced to at once. Raises ValueError as `silence_hit` and `Dancer.dance` do.   Notebook: 12

@@ -1,5 +1,6 @@
-"""A walker: a trained MoDiff with all that it needs to be used: schedule, scalers, and the card
-that says what it is.
+"""A walker: a trained MoDiff with all that it needs to be used.
+
+Schedule, scalers, and the card that says what it is.
 
 `walker.walk(motion, control)` continues a Motion; `rollout.generate(walker, past, control)` does so
 with tensors in the root frame.  Notebook: 00, 07
@@ -78,8 +79,11 @@ class Walker:
 
     @property
     def fast(self) -> FastMoDiff | None:
-        """The fast twin with the weights of now: built at first use, and again when they have
-        changed. None for a network that was registered without one."""
+        """The fast twin with the weights of now.
+
+        It is built at first use, and again when they have changed. None for a network that was
+        registered without one.
+        """
         return self._twin and self._twin()
 
     def walk(
@@ -93,8 +97,9 @@ class Walker:
         steps: int | None = STEPS,
         progress: bool = True,
     ) -> Motion | list[Motion]:
-        """Continue a motion under a control (forward m/s, left m/s, turning rad/s; 20 rows a
-        second).
+        """Continue a motion under a control.
+
+        The control is forward m/s, left m/s, turning rad/s; 20 rows a second.
 
         The result holds the new frames alone, in the same world: it begins one frame after the
         given motion ends, and `motion.then(more)` joins the two. `seconds` cuts the control, or

@@ -37,8 +37,11 @@ FOLDER = Path(__file__).parent
 
 @dataclass(frozen=True)
 class Kind:
-    """A performer in files: its name, its format there, its class, its scalers (of D and of C
-    columns), and its usual network."""
+    """A performer in files.
+
+    Its name, its format there, its class, its scalers (of D and of C columns), and its usual
+    network.
+    """
 
     name: str
     format: str
@@ -54,8 +57,9 @@ STORED = {8: pack, 16: lambda weights: {k: v.half() for k, v in weights.items()}
 
 
 def save(figure: Walker | Dancer, path: str | Path, bits: int = 16) -> Path:
-    """Write a walker or dancer: weights (in float16; `bits` = 32 as they are, 8 see `eight_bits`),
-    scalers, schedule.
+    """Write a walker or dancer: weights, scalers, schedule.
+
+    Weights are float16; `bits` = 32 leaves them as they are, 8 see `eight_bits`.
 
     A card.json is laid beside it. Written to a temporary name and renamed.
     Raises ValueError for other numbers of bits, for what is no performer, and for a network that is

@@ -1,5 +1,6 @@
-"""Weights in eight bits: half the space of float16, for errors of up to 0.4 % of each row's largest
-weight.
+"""Weights in eight bits: half the space of float16.
+
+Errors are up to 0.4 % of each row's largest weight.
 
     q = round(w / scale), scale = max |row| / 127,   and back:  w = q scale
 Rounding errs by half a scale at most, 1/254 of the largest (0.39 %), and by 1/sqrt(12) of a scale
@@ -15,8 +16,10 @@ SCALE = ".scale"
 
 
 def pack(tensors: dict[str, Tensor]) -> dict[str, Tensor]:
-    """Each matrix as int8 with a scale for each row beside it (`name.scale`), each vector in
-    float16."""
+    """Each matrix as int8 with a scale for each row, each vector in float16.
+
+    The scales lie beside the matrix (`name.scale`).
+    """
     packed = {}
     for name, weight in tensors.items():
         if weight.dim() < 2 or not weight.is_floating_point():

@@ -1,5 +1,6 @@
-"""A file of weights: safetensors (no code in them), settings, and a card that says how they were
-made.
+"""A file of weights: safetensors (no code in them), settings, and a card.
+
+The card says how they were made.
 
 A damaged or foreign file is refused with the reason. What lies in it is a matter of
 `pretrained/checkpoints.py`.
@@ -51,8 +52,9 @@ def write_weights(
 
 
 def read_weights(path: str | Path, kinds: Mapping[str, Assemble]) -> object:
-    """Read a file of one of the formats `kinds`, check it, and return kinds[format](tensors,
-    metadata).
+    """Read a file of one of the formats `kinds`, and check it.
+
+    Returns kinds[format](tensors, metadata).
 
     Raises CheckpointError for a file that is missing, damaged, or of another format.
     """
@@ -131,8 +133,10 @@ def config_of(metadata: dict[str, str], kinds: Mapping[str, type[Config]], defau
 
 
 def check_sizes(tensors: dict[str, Tensor], sizes: dict[str, int]) -> None:
-    """Raise ValueError for a vector of another length than it must have (`load_state_dict` does not
-    see those)."""
+    """Raise ValueError for a vector of another length than it must have.
+
+    `load_state_dict` does not see those.
+    """
     for name, size in sizes.items():
         if tuple(tensors[name].shape) != (size,):
             raise ValueError(
@@ -153,8 +157,10 @@ def _opened(path: Path) -> tuple[dict[str, str], dict[str, Tensor]]:
 
 
 def _digests(tensors: dict, metadata: dict[str, str]) -> dict[str, str]:
-    """Of the tensors alone (records of figures name the weights by it), and of what settles how
-    they are used."""
+    """Of the tensors alone, and of what settles how they are used.
+
+    Records of figures name the weights by the first.
+    """
     settings = {name: metadata.get(name, "") for name in SETTINGS}
     return {"sha256": digest_of_tensors(tensors), "sha256_settings": digest_of_texts(settings)}
 

@@ -1,5 +1,7 @@
-"""`python -m motiondiff_edu.recipes [NAME ...]`: train the shipped walkers and dancers (hours), or
-those named."""
+"""`python -m motiondiff_edu.recipes [NAME ...]`: train the shipped performers.
+
+Walkers and dancers, all of them (hours) or those named.
+"""
 
 import argparse
 import json
@@ -23,7 +25,7 @@ EIGHT_BITS = {
 
 
 def main() -> None:
-    """python -m motiondiff_edu.recipes [NAME ...]"""
+    """Run `python -m motiondiff_edu.recipes [NAME ...]`."""
     parser = argparse.ArgumentParser(prog="python -m motiondiff_edu.recipes", description=__doc__)
     parser.add_argument(
         "names", nargs="*", help=f"which of {', '.join(ALL)}; none: all that are shipped"

@@ -15,16 +15,19 @@ from ..mofusion import CrossAttentionBlock, ResBlock
 
 
 def optimizer_for(model: nn.Module, name: str):
-    """What `TrainState.start` needs for the optimizer a recipe names: "muon", or "adam" (None: it
-    has its own)."""
+    """What `TrainState.start` needs for the optimizer a recipe names.
+
+    The recipe names "muon", or "adam" (None: it has its own).
+    """
     if name not in ("muon", "adam"):
         raise ValueError(f'optimizer must be "muon" or "adam", not {name!r}')
     return MuonAndAdam(model) if name == "muon" else None
 
 
 class Muon(torch.optim.Optimizer):
-    """As torch.optim.Muon, in float32: that one computes in bfloat16, which many CPUs only imitate,
-    far more slowly.
+    """As torch.optim.Muon, in float32.
+
+    That one computes in bfloat16, which many CPUs only imitate, far more slowly.
 
     Source: Jordan and others, 2024; the size of a step, matched to Adam's, so that one learning
     rate serves both, is that of Liu and others, 2025.   Notebook: 07
@@ -45,8 +48,9 @@ class Muon(torch.optim.Optimizer):
 
 
 def whitened(matrix: Float[Tensor, "m n"], steps: int = 5) -> Float[Tensor, "m n"]:
-    """About the nearest matrix whose singular values are all one, by a polynomial that draws them
-    to .7 to 1.2.
+    """About the nearest matrix whose singular values are all one.
+
+    A polynomial draws them to .7 to 1.2.
 
     With x the singular values: a x + b x^3 + c x^5, five times; the three numbers were chosen by
     Jordan for speed.
@@ -63,8 +67,10 @@ def whitened(matrix: Float[Tensor, "m n"], steps: int = 5) -> Float[Tensor, "m n
 
 
 class MuonAndAdam:
-    """Two optimizers that look like one: what `training.train_steps` and `recipes.runs.save_run`
-    ask of an optimizer."""
+    """Two optimizers that look like one.
+
+    What `training.train_steps` and `recipes.runs.save_run` ask of an optimizer.
+    """
 
     def __init__(self, model: nn.Module, lr: float = 1e-3):
         blocks = [

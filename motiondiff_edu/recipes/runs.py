@@ -29,8 +29,9 @@ def saver(
 def save_run(
     state: TrainState, path: str | Path, about: dict | None = None, notes: list | None = None
 ) -> Path:
-    """Write weights, their average, the optimizer's moments, the random generators, and the step
-    and seconds so far.
+    """Write all of a run: weights, optimizer, random generators, step and seconds.
+
+    The weights' average and the optimizer's moments are among them.
 
     `about` is what the run must be resumed with; `notes` are for the reader (see notes_of).
     """

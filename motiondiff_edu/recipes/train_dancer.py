@@ -1,5 +1,7 @@
-"""Train a recipe into a dancer: songs, dances, windows, MoFusion's loss with the recipe's
-departures, card. A killed run continues where it was saved last."""
+"""Train a recipe into a dancer: songs, dances, windows, loss, card.
+
+The loss is MoFusion's with the recipe's departures. A killed run continues where it was saved last.
+"""
 
 from functools import lru_cache
 from pathlib import Path
@@ -92,8 +94,10 @@ def schedule_of(recipe: DanceRecipe) -> Schedule:
 
 
 def loss_of(recipe: DanceRecipe, windows: DanceWindows, schedule: Schedule) -> LossFn:
-    """The loss that a recipe asks for: MoFusion's, or the regression's where the network is
-    deterministic."""
+    """The loss that a recipe asks for.
+
+    It is MoFusion's, or the regression's where the network is deterministic.
+    """
     if getattr(recipe.config, "deterministic", False):
         return regression_loss(windows, batch=recipe.batch, gain_noise=recipe.gain_noise)
     loss, weights = weighted_loss(recipe.loss_weights, windows, schedule), recipe.kinematic
@@ -139,8 +143,10 @@ def weighted_loss(
 
 
 def digest(windows: DanceWindows) -> str:
-    """Of dances, music, and how windows are cut from them: a run goes on with what it was begun
-    with, or not at all."""
+    """Of dances, music, and how windows are cut from them.
+
+    A run goes on with what it was begun with, or not at all.
+    """
     some = torch.linspace(0, len(windows) - 1, min(len(windows), 100)).long()
     motion, mel, stands = windows.take(some)
     parts = {

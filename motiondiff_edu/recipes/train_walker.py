@@ -29,8 +29,10 @@ from .walkers import LossWeights, Recipe
 
 
 def training_clips(recipe: Recipe) -> list[Clip]:
-    """The recipe's data: made from its seed, every clip mirrored as well, a share of both reversed
-    in time."""
+    """The recipe's data: made from its seed, and multiplied.
+
+    Every clip is there mirrored as well, and a share of both reversed in time.
+    """
     from data_synth.walking import dataset  # data_synth lies beside the package, and imports it
 
     clips = dataset(recipe.clips, recipe.seconds, seed=recipe.data_seed, styles=recipe.styles)
@@ -125,7 +127,9 @@ def control_range(windows: Windows) -> dict[str, list[float]]:
 
 
 def digest(windows: Windows) -> str:
-    """Of the frames as the network sees them: a run goes on with the data it was begun with, or not
-    at all."""
+    """Of the frames as the network sees them.
+
+    A run goes on with the data it was begun with, or not at all.
+    """
     frames = (windows.poses.numpy(), windows.control.numpy())
     return hashlib.sha256(b"".join(array.tobytes() for array in frames)).hexdigest()[:16]

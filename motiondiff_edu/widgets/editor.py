@@ -1,5 +1,6 @@
-"""The editor: pin frames of a motion, drag joints, keep a part of the body, and have the rest made
-anew.
+"""The editor: hold some of a motion, and have the rest made anew.
+
+Pin frames, drag joints, keep a part of the body.
 
 In the page: a figure and a timeline. Enter pins a frame, J chooses a joint, arrows move it (1 cm; 5
 with Shift), Page Up and Page Down in depth; G generates, [ and ] choose among the in-betweens; Z
@@ -313,8 +314,10 @@ class Editor(anywidget.AnyWidget):
         return value
 
     def poster(self, n: int = 6):
-        """A strip of n poses as a pillow image: the motion with the pinned poses, and the chosen
-        in-between."""
+        """A strip of n poses as a pillow image.
+
+        The motion with the pinned poses, and the chosen in-between.
+        """
         return editor_page.strip(
             self.edit, None if self.samples is None else self.samples[self.chosen], self._fps, n
         )

@@ -130,8 +130,10 @@ def save_as(editor, name: str) -> str:
 
 
 def html_page(editor) -> str:
-    """A whole HTML page with the editor as it stands: needs no kernel and no network, and cannot
-    generate."""
+    """A whole HTML page with the editor as it stands.
+
+    It needs no kernel and no network, and cannot generate.
+    """
     record = {name: base64.b64encode(getattr(editor, name)).decode() for name in BINARY}
     record |= {name: getattr(editor, name) for name in PLAIN} | {"busy": False}
     text = json.dumps(record, allow_nan=False).replace("<", "\\u003c")
@@ -139,8 +141,10 @@ def html_page(editor) -> str:
 
 
 def strip(edit: Edit, sample: np.ndarray | None, fps: float, n: int = 6):
-    """n poses as a pillow image: the motion with the pinned poses, and below it the in-between that
-    is shown."""
+    """n poses as a pillow image.
+
+    The motion with the pinned poses, and below it the in-between that is shown.
+    """
     figures = [poster.Figure(edit.positions, "with the pinned poses" if edit.pins else "")]
     figures += [] if sample is None else [poster.Figure(sample, "in-between")]
     return poster.filmstrip(figures, fps, n)

@@ -1,5 +1,6 @@
-"""The ES modules of player, editor, bench: parts in js/, one after the other, are one module that
-imports nothing.
+"""The ES modules of player, editor, bench.
+
+Parts in js/, one after the other, are one module that imports nothing.
 
 The parts name what they take from each other as any ES modules do; joined, these lines have done
 their duty.
