@@ -20,6 +20,7 @@ ROOT = Path(__file__).resolve().parents[1]
 PACKAGES = ("motiondiff_edu", "data_synth")
 TAG = re.compile(r"Notebooks?:\s*(\d\d(?:,\s*\d\d)*)")
 ALONE = re.compile(r"(?:[ \t]*\n)*[ \t]*Notebooks?:\s*\d\d(?:,\s*\d\d)*\.?")
+WIDTH = 100
 DEFINITIONS = (ast.FunctionDef, ast.ClassDef)
 
 
@@ -84,8 +85,20 @@ def mend(path: Path) -> None:
             start = match[0][: match[0].index("Notebook")]
             return f"{start}Notebook: {', '.join(left)}" if left else ""
 
-        lines[first:last] = [ALONE.sub(without, text)]
+        lines[first:last] = [
+            within_width(line) for line in ALONE.sub(without, text).splitlines(True)
+        ]
     path.write_text("".join(lines), encoding="utf-8")
+
+
+def within_width(line: str) -> str:
+    """A line that a number taken out made too long, broken before the tag or the closing quotes."""
+    indent, body = " " * (len(line) - len(line.lstrip())), line.rstrip("\n")
+    for mark in ("Notebook: ", '"""'):
+        if len(body) > WIDTH and mark in body[len(indent) + 3 :]:
+            at = body.rindex(mark)
+            return f"{body[:at].rstrip()}\n{indent}{body[at:]}\n"
+    return line
 
 
 def main() -> int:

@@ -48,7 +48,11 @@ def test_wrong_numbers_are_taken_out_and_right_ones_stay(tmp_path, monkeypatch):
     notebook_tags.mend(path)
     assert notebook_tags.wrong_in(path) == []
     tree = ast.parse(path.read_text())
-    said = {getattr(n, "name", "file"): ast.get_docstring(n) for n in ast.walk(tree) if hasattr(n, "body")}
+    said = {
+        getattr(n, "name", "file"): ast.get_docstring(n)
+        for n in ast.walk(tree)
+        if hasattr(n, "body")
+    }
     assert said["file"] == "A file.  Notebook: 02" and said["q_sample"] == "Noise.\n\nNotebook: 02"
     assert said["Nowhere"] == "One sentence.\n\nRaises nothing."
     assert said["posterior"] == "Another. Notebook:\n03"
