@@ -94,7 +94,7 @@ def slide_loss(
     """L_f: how far a toe moves along the floor from a frame to the next where it should stand, on
     average; m.
 
-    Source: MoFusion 3.2 invites such a loss; this one is ours.  Notebook: 13
+    Source: MoFusion 3.2 invites such a loss; this one is ours.
     """
     step = positions[:, 1:, list(toes)] - positions[:, :-1, list(toes)]
     moved = step[..., [0, 2]].square().sum(-1).clamp_min(1e-12).sqrt()

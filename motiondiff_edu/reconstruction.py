@@ -32,8 +32,8 @@ class Round:
 def reverse_control(control: Float[Tensor, "*B T 3"]) -> Float[Tensor, "*B T 3"]:
     """The control of the same walk played backwards: -control[T - 2 - t]; the last row repeats.
 
-    Raises ValueError for a single row.  Source: MoDiff III-E, mended (sign and shift).   Notebook:
-    01, 10
+    Raises ValueError for a single row.  Source: MoDiff III-E, mended (sign and shift).
+    Notebook: 10
     """
     if control.shape[-2] < 2:
         raise ValueError(
@@ -52,7 +52,7 @@ def walked_back(
     walker: AnyWalker, ahead, control, given, known, **options
 ) -> Float[Tensor, "B T_h D"]:
     """The paper's: from what was walked ahead, no more (others: `beyond.back_with_known`).  Source: MoDiff
-    III-E.   Notebook: 10"""
+    III-E."""
     return generate(walker, ahead, control, hold=False, **options)
 
 
@@ -82,7 +82,6 @@ def repair_steps(
     `settle(past, known, ahead)` mends the filled past after each round:
     `editing.repairs.with_bones`, for one.
     Raises ValueError for what does not fit.  Source: MoDiff III-E, Fig. 6; the stop rule is ours.
-    Notebook: 10
     """
     past, known, control = map(torch.as_tensor, (past, known, control))
     T_h, D = walker.config.T_h, walker.config.D

@@ -21,7 +21,7 @@ from ..performers.windows import Windows
 @dataclass(frozen=True, eq=False)
 class ConditionalMean:
     """Mean and covariance of rows of numbers (float64), and the ridge that keeps the regression
-    calm.   Notebook: 10"""
+    calm."""
 
     mean: Float[Tensor, "F"]
     covariance: Float[Tensor, "F F"]

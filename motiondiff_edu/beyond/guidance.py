@@ -71,7 +71,6 @@ def guided_guess(
     J is, up to a factor, the covariance of what x_s leaves open (Tweedie): whatever goes with the
     given is moved along. `length`, for each sample, leaves least wrong at the given entries of this
     guess: entries that say the same must not pull twice. (The sources have a constant there.)
-    Notebook: 15
     Source: Ho and others, Video diffusion models (2022); Song and others, Pseudoinverse-guided
     diffusion (2023).
     """
@@ -95,7 +94,7 @@ def blended_guess(
     between them.
 
     Before the first and after the last given frame it fades to nothing within `fade` frames (one
-    number, or one for each column; infinity: it stays).  Notebook: 15
+    number, or one for each column; infinity: it stays).
     """
     T = x0_hat.shape[1]
     frames = torch.arange(T, device=x0_hat.device).view(1, T, 1).expand(known.shape)

@@ -16,7 +16,6 @@ def shifted(schedule: Schedule, snr: float) -> Schedule:
     snr ab).
 
     1 leaves the schedule as it is.  Raises ValueError for a number that is not positive.
-    Notebook: 12
     """
     if not snr > 0:
         raise ValueError(

@@ -2,7 +2,7 @@
 rest is to be made.
 
 What is given follows from it: `known` and `positions`, as `editing.inbetween.inbetween` takes them.
-Source: MoFusion 4.4 (editing by seeds, keyframes and joints).  Notebook: 15
+Source: MoFusion 4.4 (editing by seeds, keyframes and joints).
 """
 
 from collections.abc import Mapping
@@ -30,7 +30,7 @@ class Edit:
     all frames.
 
     Each method returns another edit; `moved` names the joints that were dragged in each pinned
-    frame.   Notebook: 15
+    frame.
     """
 
     motion: Float[np.ndarray, "T 21 3"]
@@ -180,7 +180,6 @@ def make_between(
 
     What comes back is measured, not put right.
     Raises ValueError where everything is held, and for an answer of another shape or not finite.
-    Notebook: 15
     """
     if edit.known.all():
         raise ValueError("every frame is pinned: there is nothing to make. Let some frames go")

@@ -98,7 +98,7 @@ def with_bones(
 
     For `reconstruction.repair_steps(settle=with_bones)`: a made joint beside a known one else tears
     the bone between.
-    Source: ours.  Notebook: 10
+    Source: ours.
     """
     joints, ahead = (x.double().unflatten(-1, (-1, 3)).numpy() for x in (past, walked))
     here = known.unflatten(-1, (-1, 3)).all(-1).numpy()

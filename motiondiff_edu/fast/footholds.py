@@ -22,7 +22,7 @@ class StandingContext(Context):
 
 class FastFoothold(FastMoDiff):
     """A trained network with footholds, read once; `encode` and `denoise` as FastMoDiff has them.
-    Notebook: 07"""
+    """
 
     model: FootholdMoDiff
 

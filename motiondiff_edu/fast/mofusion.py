@@ -34,7 +34,6 @@ class FastMoFusion:
 
     It works on a copy, as FastMoDiff does; without music (C = 0) there is nothing to keep: use the
     plain network.
-    Notebook: 12
     """
 
     @torch.inference_mode()

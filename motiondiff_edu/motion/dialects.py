@@ -1,7 +1,5 @@
 """Joint names over the dialects of BVH: which joint of a file plays which part of the course's
 figure.
-
-Notebook: 00
 """
 
 import re

@@ -2,7 +2,6 @@
 ours.
 
 Hips and chest are taken as rigid blocks, since every dialect places its spine joints elsewhere.
-Notebook: 00
 """
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Feet that stay where they stand: contacts, pinned toes, and legs that follow by two-bone inverse
 kinematics.
-
-Notebook: 00
 """
 
 import numpy as np

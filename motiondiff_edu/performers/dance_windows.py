@@ -183,7 +183,7 @@ def dance_loss(
     move: for a foot to stand, pelvis and leg must err alike. Both are of the target's errors: an
     eps network's are its x0_hat's, times sqrt(alpha_bar / (1 - alpha_bar)). `shake` is
     `DanceWindows.draw`'s. Raises ValueError for `feet` where no toe moves.
-    Source: MoFusion eq. 4; changes, feet and shake are ours.  Notebook: 12, 13
+    Source: MoFusion eq. 4; changes, feet and shake are ours.  Notebook: 13
     """
     noise_over_signal = ((1 - schedule.alpha_bar) / schedule.alpha_bar).float()
     data_weight = 1 + noise_over_signal.clamp_max(high_noise)

@@ -34,7 +34,7 @@ def train_for(
 
     The learning rate rises for 100 steps and falls to zero along a half cosine of the seconds.
     `loss` goes to `performers.windows.window_loss`; what it does not name is walker-x0's, with half
-    its batch.   Notebook: 07
+    its batch.
     """
     torch.manual_seed(seed)
     windows, levels = Windows.of(clips, config.T_h, config.T_p), SCHEDULES[schedule](config.S)

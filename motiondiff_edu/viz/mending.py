@@ -1,7 +1,5 @@
 """Figures of what was mended: errors over the length of a gap, and a map of dropout's rate against
 what is missing.
-
-Notebook: 09, 15
 """
 
 from collections.abc import Mapping, Sequence
@@ -25,8 +23,6 @@ def over_gaps(
 ) -> Figure:
     """One panel for each measure, a line in it for each method, its 95 % interval shaded; `log`:
     measures by powers.
-
-    Notebook: 15
     """
     fig, axes = figure(4.8 * len(panels), 6.0, words, 1, len(panels))
     for axis, (measure, lines) in zip(axes, panels.items(), strict=True):
@@ -48,8 +44,6 @@ def by_fault(
 ) -> Figure:
     """A panel for each fault, a row for each way of mending it: (value, low, high), by powers;
     further left is better.
-
-    Notebook: 10
     """
     fig, axes = figure(4.6 * len(panels), 4.2, words, 1, len(panels))
     names = list(dict.fromkeys(name for ways in panels.values() for name in ways))
@@ -81,7 +75,6 @@ def rate_map(
     small is good.
 
     Colours compare within a column (dark: the worst rate at that share), numbers are the errors.
-    Notebook: 09
     """
     fig, axes = figure(1.2 + 5.0 * len(panels), 1.4 + 0.5 * len(rates), words, 1, len(panels))
     for axis, (measure, errors) in zip(axes, panels.items(), strict=True):

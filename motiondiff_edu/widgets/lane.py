@@ -1,7 +1,5 @@
 """The music lane under the figure: what is heard, where its beats are, and the strips above and
 below it.
-
-Notebook: 12
 """
 
 from dataclasses import dataclass

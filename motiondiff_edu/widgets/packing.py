@@ -3,7 +3,6 @@ path as float32.
 
 Whole positions as int16 would overflow on a long walk; relative ones reach 16 m from the hips,
 which no body does.
-Notebook: 01
 """
 
 from collections.abc import Sequence

@@ -1,7 +1,5 @@
 """Still pictures of the player's scene, with pillow: the filmstrip where nothing runs, and the
 frames of a GIF or MP4.
-
-Notebook: 01
 """
 
 import io
