@@ -175,8 +175,7 @@ class Step:
 
 
 def p_variance(schedule: Schedule, variance: str = "beta") -> Table:
-    """Variance of p(x_{s-1} | x_s): beta_s, or the lower bound beta_tilde_s. Source: MoDiff eq. 3.
-    """
+    """Variance of p(x_{s-1} | x_s): beta_s, or the bound beta_tilde_s. Source: MoDiff eq. 3."""
     if variance not in ("beta", "posterior"):
         raise ValueError(f'variance must be "beta" or "posterior", not {variance!r}')
     return schedule.beta if variance == "beta" else posterior_variance(schedule)

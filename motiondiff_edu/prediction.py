@@ -65,8 +65,7 @@ def to_eps(
     schedule: Schedule,
     target: str,
 ) -> Float[Tensor, "B *shape"]:
-    """Turn a network's output into eps_hat; `target` says what the network was trained to predict.
-    """
+    """Turn a network's output into eps_hat; `target` says what it was trained to predict."""
     _check(target)
     if target == "eps":
         return output

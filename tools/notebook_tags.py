@@ -1,5 +1,5 @@
-"""Docstrings say `Notebook: 07` where the notebook uses what they describe: find those that err, and
-mend them.
+"""Docstrings say `Notebook: 07` where the notebook uses what they describe: find those that err,
+and mend them.
 
     python tools/notebook_tags.py          # list them
     python tools/notebook_tags.py --mend   # take the wrong numbers out
@@ -37,7 +37,7 @@ def occurs(names: list[str], number: str) -> bool:
 
 
 def tagged(path: Path) -> Iterator[tuple[str, ast.Constant, list[str]]]:
-    """Every docstring of a file: what it is of, where it stands, and the names that vouch for it."""
+    """Every docstring of a file: what it describes, where it stands, and the names that count."""
     tree = ast.parse(path.read_text(encoding="utf-8"))
     public = [
         n.name for n in tree.body if isinstance(n, DEFINITIONS) and not n.name.startswith("_")

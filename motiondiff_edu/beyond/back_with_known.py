@@ -39,8 +39,7 @@ def held_back(
     known: Bool[Tensor, "B _ _"],
     **options,
 ) -> Frames:
-    """Frame by frame, and each new frame has its known entries put right before the next is walked.
-    """
+    """Frame by frame: the known entries of each are put right before the next is walked."""
     steps, generator = options["steps"], options["generator"]
     sample, T_p = walker.window_sampler(steps), walker.config.T_p
     given, past = (walker.pose_scaler.transform(x.float()) for x in (given, ahead))
@@ -73,8 +72,8 @@ def masked_back(
     config, schedule = walker.config, walker.schedule
     if config.T_p != config.T_h:
         raise ValueError(
-            f"this walker predicts {config.T_p} poses from {config.T_h}: its window is not the past. "
-            "Use held_back"
+            f"this walker predicts {config.T_p} poses from {config.T_h}: its window is not the "
+            "past. Use held_back"
         )
     given, ahead = (walker.pose_scaler.transform(x.float()) for x in (given, ahead))
     network = walker.denoiser(ahead, walker.control_scaler.transform(control.float()), fast=False)

@@ -67,7 +67,8 @@ def guided_guess(
     """x0_hat, with what is wrong at the given entries traced back to x_s, and from there to all
     others.
 
-        x0_hat + weight * length * pull,   pull = J^T (given - x0_hat)[known],   J = d x0_hat / d x_s
+        x0_hat + weight * length * pull
+        pull = J^T (given - x0_hat)[known],   J = d x0_hat / d x_s
     J is, up to a factor, the covariance of what x_s leaves open (Tweedie): whatever goes with the
     given is moved along. `length`, for each sample, leaves least wrong at the given entries of this
     guess: entries that say the same must not pull twice. (The sources have a constant there.)

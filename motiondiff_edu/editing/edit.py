@@ -153,7 +153,7 @@ class Made:
 class Make(Protocol):
     """What finds the rest of an edit: `functools.partial(inbetween, dancer)` is one.
 
-    It is called with these five, three of them by name, and answers with `samples` motions (metres);
+    It is called with these five, three of them by name, and returns `samples` motions (metres).
     `resample` is how often each step is made.
     """
 

@@ -83,8 +83,8 @@ def two_bones(
     """Root, middle and end with the end at the target: a triangle of two bones a, b and the
     distance d.
 
-    The middle (`planting.triangle`) lies on the side where it was, which turns with the line. A target out of reach is drawn in along the line
-    from the root.
+    The middle (`planting.triangle`) lies on the side where it was, which turns with the line. A
+    target out of reach is drawn in along the line from the root.
     """
     root, middle, end = limb
     a, b, far = (float(np.linalg.norm(v)) for v in (middle - root, end - middle, end - root))

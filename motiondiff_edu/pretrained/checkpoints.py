@@ -70,7 +70,8 @@ def save(figure: Walker | Dancer, path: str | Path, bits: int = 16) -> Path:
     if kind_of(figure.model) is not networks_of(kind.name).get(network, MISSING):
         raise ValueError(
             f"{network} is not registered, and could not be loaded again: call "
-            f'performers.networks.register("{kind.name}", {network}, {type(figure.config).__name__})'
+            f'performers.networks.register("{kind.name}", {network}, '
+            f"{type(figure.config).__name__})"
         )
     scalers = {name: getattr(figure, f"{name}_scaler") for name in kind.scalers}
     weights = STORED[bits](figure.model.state_dict())

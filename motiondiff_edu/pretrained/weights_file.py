@@ -96,8 +96,8 @@ def config_of(metadata: dict[str, str], kinds: Mapping[str, type[Config]], defau
     kind = kinds.get(metadata.get("network", default))
     if kind is None:
         raise CheckpointError(
-            f"{name} holds an unknown network, {metadata['network']}; upgrade, or register it first "
-            "(performers.networks.register)"
+            f"{name} holds an unknown network, {metadata['network']}; upgrade, or register it "
+            "first (performers.networks.register)"
         )
     values = {k: v for k, v in values.items() if k not in RETIRED or v != RETIRED[k]}
     defaults = {field.name: field.default for field in fields(kind)}

@@ -10,7 +10,7 @@ def noise_over_signal(schedule):
     return ((1 - schedule.alpha_bar) / schedule.alpha_bar).sqrt()
 
 
-def test_the_leap_schedule_goes_from_nothing_to_three_quarters_in_one_step_and_the_linear_one_in_thirty():
+def test_the_leap_schedule_makes_in_one_step_what_the_linear_one_makes_in_thirty():
     schedule, linear = leap_schedule(), linear_schedule(100)
     noise = noise_over_signal(schedule)
     assert not ((noise > 0) & (noise < 0.76)).any()
