@@ -70,8 +70,7 @@ class RelativeBias(nn.Module):
 
     All layers share it.
 
-    The times of queries and keys are in frames and may belong to different modalities.   Notebook:
-    06
+    The times of queries and keys are in frames and may belong to different modalities.
     """
 
     def __init__(self, heads: int, query_times: Int[Tensor, "T"], key_times: Int[Tensor, "M"]):

@@ -164,8 +164,7 @@ def q_sample(x0: X, s: Steps, schedule: Schedule, noise: X) -> X:
 
 
 def posterior_variance(schedule: Schedule) -> Table:
-    """beta_tilde_s = beta_s (1 - alpha_bar_{s-1}) / (1 - alpha_bar_s). Source: MoDiff eq. 7.
-    Notebook: 02."""
+    """beta_tilde_s = beta_s (1 - alpha_bar_{s-1}) / (1 - alpha_bar_s). Source: MoDiff eq. 7."""
     left = 1 - schedule.alpha_bar
     return torch.cat([left[:1], schedule.beta[1:] * left[:-1] / left[1:]])
 
@@ -198,8 +197,7 @@ class Step:
 
 
 def p_variance(schedule: Schedule, variance: str = "beta") -> Table:
-    """Variance of p(x_{s-1} | x_s): beta_s, or the lower bound beta_tilde_s. Source: MoDiff eq. 3.
-    Notebook: 03."""
+    """Variance of p(x_{s-1} | x_s): beta_s, or the bound beta_tilde_s. Source: MoDiff eq. 3."""
     if variance not in ("beta", "posterior"):
         raise ValueError(f'variance must be "beta" or "posterior", not {variance!r}')
     return schedule.beta if variance == "beta" else posterior_variance(schedule)
@@ -207,7 +205,7 @@ def p_variance(schedule: Schedule, variance: str = "beta") -> Table:
 
 def p_mean(x_s: X, s: Steps, eps_hat: X, schedule: Schedule) -> X:
     """mean = (x_s - beta_s / sqrt(1 - alpha_bar_s) eps_hat) / sqrt(alpha_s). Source: MoDiff eq. 9.
-    Notebook: 03, 04."""
+    Notebook: 04"""
     share = at(schedule.beta, s, x_s, first=1) / at(1 - schedule.alpha_bar, s, x_s).sqrt()
     return (x_s - share * eps_hat) / at(schedule.alpha, s, x_s).sqrt()
 
@@ -290,7 +288,7 @@ def ddim_sigma(s: int, after: int, schedule: Schedule, eta: float) -> float:
     """Standard deviation of the noise that a leap from s to `after` draws.
 
     sigma^2 = eta^2 (1 - ab_after) / (1 - ab_s) (1 - ab_s / ab_after); eta = 1 is DDPM's posterior.
-    Raises ValueError for an eta outside 0..1.  Notebook: 03
+    Raises ValueError for an eta outside 0..1.
     """
     if not 0 <= eta <= 1:
         raise ValueError(f"eta must lie between 0 (no noise) and 1 (DDPM's), not {eta}")
@@ -310,7 +308,7 @@ def ddim_step(
 
     x_after = sqrt(ab_after) x0_hat + sqrt(1 - ab_after - sigma^2) eps_hat + sigma noise.
 
-    Source: DDIM (Song, Meng and Ermon, 2021).  Notebook: 03
+    Source: DDIM (Song, Meng and Ermon, 2021).
     """
     then = float(schedule.alpha_bar[after])
     x = math.sqrt(then) * x0_hat + math.sqrt(max(1 - then - sigma**2, 0.0)) * eps_hat
@@ -402,7 +400,7 @@ def gaussian_kl(mean_1: X, variance_1: Tensor, mean_2: X, variance_2: Tensor) ->
 
 
 def prior_kl(x0: X, schedule: Schedule) -> Float[Tensor, "B"]:
-    """KL(q(x_S | x0) || N(0, I)): nothing to learn here. Source: MoDiff eq. 5. Notebook: 04."""
+    """KL(q(x_S | x0) || N(0, I)): nothing to learn here. Source: MoDiff eq. 5."""
     alpha_bar, one = at(schedule.alpha_bar, schedule.S, x0), torch.ones((), dtype=x0.dtype)
     return gaussian_kl(alpha_bar.sqrt() * x0, 1 - alpha_bar, torch.zeros_like(x0), one)
 
@@ -412,7 +410,7 @@ def step_kl(x0: X, x_s: X, s: int, eps_hat: X, schedule: Schedule) -> Float[Tens
 
     It is ||difference of the means||^2 / (2 beta_s) + a constant.
 
-    Source: MoDiff eq. 5, 8. Notebook: 04.
+    Source: MoDiff eq. 5, 8.
     """
     mean, variance = q_posterior(x0, x_s, s, schedule)
     return gaussian_kl(
@@ -421,7 +419,7 @@ def step_kl(x0: X, x_s: X, s: int, eps_hat: X, schedule: Schedule) -> Float[Tens
 
 
 def reconstruction_nll(x0: X, x_1: X, eps_hat: X, schedule: Schedule) -> Float[Tensor, "B"]:
-    """-log p(x0 | x_1), with variance beta_1. Source: MoDiff eq. 5. Notebook: 04."""
+    """-log p(x0 | x_1), with variance beta_1. Source: MoDiff eq. 5."""
     variance = at(schedule.beta, 1, x_1)
     each = (x0 - p_mean(x_1, 1, eps_hat, schedule)).square() / variance + (
         2 * math.pi * variance

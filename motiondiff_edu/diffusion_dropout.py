@@ -53,11 +53,8 @@ def diffusion_dropout(
 
 
 def frame_dropout(past: Past, rate: float, generator: torch.Generator | None = None) -> Past:
-    """MoGlow's rival: frames of the past are dropped.
-
-    Each frame of each past is set to zero (the mean pose) with probability `rate`.
-    Notebook: 09
-    """
+    """MoGlow's rival: each frame of each past is set to zero (the mean pose) with probability
+    `rate`."""
     hit = chosen(past.shape[0] * past.shape[1], rate, generator).to(past.device)
     return past.masked_fill(hit.view(*past.shape[:2], 1), 0.0)
 

@@ -77,7 +77,7 @@ def resampled(visited: Sequence[int], R: int) -> list[int]:
 
     So unknown entries can come to agree with known ones. resampled([30, 20, 10], 2) = [30, 20, 30,
     20, 10, 20, 10].
-    Raises ValueError for R under 1.  Source: RePaint (Lugmayr and others, 2022).  Notebook: 15
+    Raises ValueError for R under 1.  Source: RePaint (Lugmayr and others, 2022).
     """
     if R < 1:
         raise ValueError(f"every step is made once at least, not R = {R}")

@@ -172,7 +172,7 @@ def slide_loss(
 
     The mean is over steps from a frame to the next.
 
-    Source: MoFusion 3.2 invites such a loss; this one is ours.  Notebook: 13
+    Source: MoFusion 3.2 invites such a loss; this one is ours.
     """
     step = positions[:, 1:, list(toes)] - positions[:, :-1, list(toes)]
     moved = step[..., [0, 2]].square().sum(-1).clamp_min(1e-12).sqrt()

@@ -78,7 +78,7 @@ MODIFF_SMALL = MoDiffConfig(width=128, hidden=256, cross_layers=2)
 
 def step_embedding(s: Int[Tensor, "B"], width: int) -> Float[Tensor, "B E"]:
     """Sines and cosines of the diffusion step, wavelengths from 2 pi to 10000 * 2 pi steps.
-    Notebook: 05, 07"""
+    Notebook: 05"""
     frequencies = torch.exp(
         -math.log(1e4) * torch.arange(width // 2, device=s.device) / (width // 2)
     )
@@ -88,7 +88,7 @@ def step_embedding(s: Int[Tensor, "B"], width: int) -> Float[Tensor, "B E"]:
 
 class Encoder(nn.Module):
     """Self-attention over tokens whose times (in frames) are known.  Source: MoDiff III-F.
-    Notebook: 06, 07"""
+    Notebook: 06"""
 
     def __init__(self, config: MoDiffConfig, layers: int, times: Int[Tensor, "T"]):
         super().__init__()

@@ -125,7 +125,6 @@ class CrossAttentionBlock(nn.Module):
 
     Without music (context=None) keys and values come from the motion: self-attention.
     Source: MoFusion 3.3, eq. 8-9 (which has Q from x in the unconditional case; K and V are meant).
-    Notebook: 12
     """
 
     def __init__(self, width: int, heads: int, context_width: int):
@@ -147,7 +146,7 @@ class MusicEncoder(nn.Module):
     The convolutions look ever further, up to a second or two.
 
     Half of the frames are enough afterwards: 15.6 a second.
-    Source: MoFusion 3.3 (the linear layer).  Notebook: 12
+    Source: MoFusion 3.3 (the linear layer).
     """
 
     def __init__(self, bands: int, width: int, layers: int):

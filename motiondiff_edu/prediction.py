@@ -22,7 +22,7 @@ def _ab(x: Tensor, s: Steps, schedule: Schedule) -> tuple[Tensor, Tensor]:
 def x0_from_eps(
     x_s: Float[Tensor, "B *shape"], s: Steps, eps: Float[Tensor, "B *shape"], schedule: Schedule
 ) -> Float[Tensor, "B *shape"]:
-    """x0 = x_s / a - (b / a) eps. Source: MoFusion eq. 5. Notebook: 03, 05."""
+    """x0 = x_s / a - (b / a) eps. Source: MoFusion eq. 5."""
     a, b = _ab(x_s, s, schedule)
     return (x_s - b * eps) / a
 
@@ -30,7 +30,7 @@ def x0_from_eps(
 def eps_from_x0(
     x_s: Float[Tensor, "B *shape"], s: Steps, x0: Float[Tensor, "B *shape"], schedule: Schedule
 ) -> Float[Tensor, "B *shape"]:
-    """eps = (x_s - a x0) / b. Source: MoFusion eq. 5, solved for eps. Notebook: 03, 05."""
+    """eps = (x_s - a x0) / b. Source: MoFusion eq. 5, solved for eps. Notebook: 05"""
     a, b = _ab(x_s, s, schedule)
     return (x_s - a * x0) / b
 
@@ -38,7 +38,7 @@ def eps_from_x0(
 def v_from_x0_eps(
     x0: Float[Tensor, "B *shape"], s: Steps, eps: Float[Tensor, "B *shape"], schedule: Schedule
 ) -> Float[Tensor, "B *shape"]:
-    """v = a eps - b x0. Notebook: 05."""
+    """v = a eps - b x0."""
     a, b = _ab(x0, s, schedule)
     return a * eps - b * x0
 
@@ -46,7 +46,7 @@ def v_from_x0_eps(
 def eps_from_v(
     x_s: Float[Tensor, "B *shape"], s: Steps, v: Float[Tensor, "B *shape"], schedule: Schedule
 ) -> Float[Tensor, "B *shape"]:
-    """eps = a v + b x_s. Notebook: 05."""
+    """eps = a v + b x_s."""
     a, b = _ab(x_s, s, schedule)
     return a * v + b * x_s
 
@@ -54,7 +54,7 @@ def eps_from_v(
 def x0_from_v(
     x_s: Float[Tensor, "B *shape"], s: Steps, v: Float[Tensor, "B *shape"], schedule: Schedule
 ) -> Float[Tensor, "B *shape"]:
-    """x0 = a x_s - b v. Notebook: 05."""
+    """x0 = a x_s - b v."""
     a, b = _ab(x_s, s, schedule)
     return a * x_s - b * v
 
@@ -66,8 +66,7 @@ def to_eps(
     schedule: Schedule,
     target: str,
 ) -> Float[Tensor, "B *shape"]:
-    """Turn a network's output into eps_hat; `target` says what the network was trained to predict.
-    Notebook: 05."""
+    """Turn a network's output into eps_hat; `target` says what it was trained to predict."""
     _check(target)
     if target == "eps":
         return output

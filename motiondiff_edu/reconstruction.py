@@ -37,8 +37,8 @@ class Round:
 def reverse_control(control: Float[Tensor, "*B T 3"]) -> Float[Tensor, "*B T 3"]:
     """The control of the same walk played backwards: -control[T - 2 - t]; the last row repeats.
 
-    Raises ValueError for a single row.  Source: MoDiff III-E, mended (sign and shift).   Notebook:
-    01, 10
+    Raises ValueError for a single row.  Source: MoDiff III-E, mended (sign and shift).
+    Notebook: 10
     """
     if control.shape[-2] < 2:
         raise ValueError(
@@ -57,9 +57,7 @@ def walked_back(
     walker: AnyWalker, ahead, control, given, known, **options
 ) -> Float[Tensor, "B T_h D"]:
     """The paper's: from what was walked ahead, no more (others: `beyond.back_with_known`).
-
-    Source: MoDiff III-E.  Notebook: 10
-    """
+    Source: MoDiff III-E."""
     return generate(walker, ahead, control, hold=False, **options)
 
 
@@ -85,13 +83,11 @@ def repair_steps(
     `control` has T_h rows beside the past and T_h for the way there. Holes are the mean pose at
     first (zero once standardised), or `guess` (metres), from a regression, say. Stops after
     `rounds` at the latest: a sampler's own spread may be above the tolerance. `way_back`: the
-    paper's, or one of `beyond.back_with_known`, which heed what is known. Of each window `keep`
-    poses are kept, by default all T_p; keep=1 is the paper's rollout (ten times dearer, and farther
-    off).
-    `correct(past, known, ahead)` is applied to the filled past after each round, such as
-    `editing.repairs.with_bones`.
+    paper's, or one of `beyond.back_with_known`, which heed what is known. Of each window `keep` poses
+    are kept, by default all T_p; keep=1 is the paper's rollout (ten times dearer, and farther off).
+    `settle(past, known, ahead)` mends the filled past after each round:
+    `editing.repairs.with_bones`, for one.
     Raises ValueError for what does not fit.  Source: MoDiff III-E, Fig. 6; the stop rule is ours.
-    Notebook: 10
     """
     past, known, control = map(torch.as_tensor, (past, known, control))
     T_h, D = walker.config.T_h, walker.config.D

@@ -89,7 +89,7 @@ def rollout_steps(
     fly, and the past is not rewritten. hold=True: the network sees the control up to the step it is
     about to take, held over the future; hold=False (look-ahead): it sees what comes, as far as is
     known now.
-    Raises ValueError unless 1 <= keep <= T_p.  Source: MoDiff III-C, Alg. 2.  Notebook: 07, 08
+    Raises ValueError unless 1 <= keep <= T_p.  Source: MoDiff III-C, Alg. 2.  Notebook: 07
     """
     if not 1 <= keep <= T_p:
         raise ValueError(f"keep must lie between 1 and T_p = {T_p}, got {keep}")

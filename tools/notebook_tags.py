@@ -1,6 +1,5 @@
-"""Find and mend docstrings that say `Notebook: 07` without reason.
-
-The tag is right where the notebook uses what the docstring describes.
+"""Docstrings say `Notebook: 07` where the notebook uses what they describe: find those that err,
+and mend them.
 
     python tools/notebook_tags.py          # list them
     python tools/notebook_tags.py --mend   # take the wrong numbers out
@@ -21,6 +20,7 @@ ROOT = Path(__file__).resolve().parents[1]
 PACKAGES = ("motiondiff_edu", "data_synth")
 TAG = re.compile(r"Notebooks?:\s*(\d\d(?:,\s*\d\d)*)")
 ALONE = re.compile(r"(?:[ \t]*\n)*[ \t]*Notebooks?:\s*\d\d(?:,\s*\d\d)*\.?")
+WIDTH = 100
 DEFINITIONS = (ast.FunctionDef, ast.ClassDef)
 
 
@@ -37,7 +37,7 @@ def occurs(names: list[str], number: str) -> bool:
 
 
 def tagged(path: Path) -> Iterator[tuple[str, ast.Constant, list[str]]]:
-    """Every docstring of a file: its owner, its place, and the names that vouch for it."""
+    """Every docstring of a file: what it describes, where it stands, and the names that count."""
     tree = ast.parse(path.read_text(encoding="utf-8"))
     public = [
         n.name for n in tree.body if isinstance(n, DEFINITIONS) and not n.name.startswith("_")
@@ -85,8 +85,20 @@ def mend(path: Path) -> None:
             start = match[0][: match[0].index("Notebook")]
             return f"{start}Notebook: {', '.join(left)}" if left else ""
 
-        lines[first:last] = [ALONE.sub(without, text)]
+        lines[first:last] = [
+            within_width(line) for line in ALONE.sub(without, text).splitlines(True)
+        ]
     path.write_text("".join(lines), encoding="utf-8")
+
+
+def within_width(line: str) -> str:
+    """A line that a number taken out made too long, broken before the tag or the closing quotes."""
+    indent, body = " " * (len(line) - len(line.lstrip())), line.rstrip("\n")
+    for mark in ("Notebook: ", '"""'):
+        if len(body) > WIDTH and mark in body[len(indent) + 3 :]:
+            at = body.rindex(mark)
+            return f"{body[:at].rstrip()}\n{indent}{body[at:]}\n"
+    return line
 
 
 def main() -> int:

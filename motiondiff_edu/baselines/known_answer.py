@@ -102,11 +102,8 @@ ROUNDS = (
 
 
 class Rest:
-    """Draws from p(the rest | these entries) of a mixture.
-
-    For many values of these entries at once.
-    Notebook: 15
-    """
+    """Draws from p(the rest | these entries) of a mixture, for many values of these entries at
+    once."""
 
     def __init__(self, given: Mixture, known: Bool[Tensor, "D"]):
         covariances = torch.einsum("kia,ka,kja->kij", given.axes, given.variances, given.axes)
@@ -152,7 +149,7 @@ def there_and_back(
     What is known of the future is given, too. As in III-E the way back does not look at what is
     known of the past: it reaches the holes through the future only. `keep`: it does look, which
     makes this Gibbs sampling, with the true conditional for its end.
-    Raises ValueError for a question that names no past.  Source: MoDiff III-E.  Notebook: 15
+    Raises ValueError for a question that names no past.  Source: MoDiff III-E.
     """
     if question.past is None:
         raise ValueError("there-and-back needs a past to start from: name it in the question")
@@ -215,10 +212,7 @@ class Errors:
 
 
 def errors_of(x: Float[Tensor, "N D"], question: Question) -> Errors:
-    """Samples against the true conditional.
-
-    Notebook: 15
-    """
+    """Samples against the true conditional."""
     wanted, judged = question.wanted, question.judged[~question.known]
     mean, variance = wanted.mean()[judged], wanted.covariance().diagonal()[judged]
     made = x[:, question.judged]

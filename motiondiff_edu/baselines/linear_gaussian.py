@@ -23,8 +23,7 @@ from ..rollout import WindowSampler
 
 @dataclass(frozen=True, eq=False)
 class LinearGaussian:
-    """The fitted numbers, in standardised units; one pose is predicted at a time (T_p = 1).
-    Notebook: 07"""
+    """The fitted numbers, in standardised units; one pose is predicted at a time (T_p = 1)."""
 
     weight: Float[Tensor, "F D"]
     spread: Float[Tensor, "D D"]  # L, lower triangular
@@ -90,7 +89,7 @@ def regressors(
 def design(windows: Windows) -> tuple[Float[Tensor, "K F"], Float[Tensor, "K D"]]:
     """All windows as least squares sees them: a row of regressors each, and the pose that follows.
 
-    Raises ValueError unless the windows predict one pose (T_p = 1).  Notebook: 07, 09
+    Raises ValueError unless the windows predict one pose (T_p = 1).  Notebook: 09
     """
     if windows.T_p != 1:
         raise ValueError(
@@ -119,10 +118,7 @@ def fit(windows: Windows, ridge: float = 1e-3) -> LinearGaussian:
 def fitted(
     windows: Windows, weight: Float[Tensor, "F D"], covariance: Float[Tensor, "D D"]
 ) -> LinearGaussian:
-    """The walker with these weights, whose noise has this covariance.
-
-    Notebook: 07, 09
-    """
+    """The walker with these weights, whose noise has this covariance.  Notebook: 09"""
     spread = torch.linalg.cholesky(
         covariance + 1e-12 * torch.eye(len(covariance), dtype=torch.float64)
     )

@@ -8,7 +8,6 @@ maximisation (EM). It is a crude model of walking, and that does not matter: sam
 against *it*, not against walking.
 Source: EM after Dempster, Laird and Rubin (1977); principal axes with an even rest after Tipping
 and Bishop (1999).
-Notebook: 15
 """
 
 from dataclasses import dataclass
@@ -24,8 +23,7 @@ from ..exact import Mixture, along_axes, mixture, part_log_densities, posterior_
 
 
 def responsibilities(given: Mixture, x: Float[Tensor, "N D"]) -> Float[Tensor, "N K"]:
-    """The probability that each part made each point: w_k N(x; m_k, C_k), scaled to sum to 1.
-    Notebook: 15"""
+    """The probability that each part made each point: w_k N(x; m_k, C_k), scaled to sum to 1."""
     off = along_axes(given, x.double()[:, None] - given.means)
     return part_log_densities(given.weights, off, given.variances).softmax(1)
 
@@ -41,7 +39,7 @@ def fit_mixture(
     """Fit K Gaussians by EM (scikit-learn's), begun at the clusters of k-means; every covariance
     gets `ridge` on its diagonal.
 
-    Raises ValueError for fewer different points than parts.  Notebook: 15
+    Raises ValueError for fewer different points than parts.
     """
     x = x.double()
     different = len(x.unique(dim=0))
@@ -105,7 +103,7 @@ def fit_windows(
     What is left over is spread evenly.
 
     No covariance is narrower than that rest.  Raises ValueError for more axes than windows or
-    columns.   Notebook: 15
+    columns.
     """
     N, D = x.shape
     if not axes < min(N, D):

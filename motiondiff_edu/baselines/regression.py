@@ -21,8 +21,7 @@ REGRESSION = TransformerConfig(deterministic=True)
 def regression_loss(
     windows: DanceWindows, *, batch: int = 32, gain_noise: float = 0.0
 ) -> Callable[[nn.Module, torch.Generator], Tensor]:
-    """Mean squared error of the motion itself, as a `loss_fn` for `training.train_steps`.
-    Notebook: 14"""
+    """Mean squared error of the motion itself, as a `loss_fn` for `training.train_steps`."""
 
     def loss_fn(model: nn.Module, generator: torch.Generator) -> Tensor:
         device = next(model.parameters()).device

@@ -21,11 +21,8 @@ from ..performers.windows import Windows
 
 @dataclass(frozen=True, eq=False)
 class ConditionalMean:
-    """Mean and covariance of rows of numbers (float64), and the regression's ridge.
-
-    The ridge keeps the regression calm.
-    Notebook: 10
-    """
+    """Mean and covariance of rows of numbers (float64), and the ridge that keeps the regression
+    calm."""
 
     mean: Float[Tensor, "F"]
     covariance: Float[Tensor, "F F"]

@@ -2,7 +2,7 @@
 
 Told the noised motion and the step, it is a denoiser of the U-Net's size (is the U-Net light?).
 Given nothing but the music it is a regression: see `regression.py`.  Source: AI Choreographer's
-cross-modal transformer (cited by MoFusion 4.1), made small; sizes are ours.   Notebook: 14
+cross-modal transformer (cited by MoFusion 4.1), made small; sizes are ours.
 """
 
 from dataclasses import asdict, dataclass
@@ -78,11 +78,8 @@ class Layer(nn.Module):
 
 
 class DanceTransformer(nn.Module):
-    """The same call as MoFusion's: (x_s, s, music) -> the target.
-
-    With `deterministic`, x_s only says how long.
-
-    Notebook: 14
+    """The same call as MoFusion's: (x_s, s, music) -> the target; with `deterministic`, x_s only
+    says how long.
     """
 
     def __init__(self, config: TransformerConfig):

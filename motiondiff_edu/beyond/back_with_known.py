@@ -5,7 +5,7 @@ They are for `reconstruction.repair_steps(way_back=...)`.
 The paper walks back as if nothing were known, and fills the holes from it. A frame that is known,
 or the joints of one that are, say much about what is missing beside them: here they are given to
 the walker as well.
-Source: ours; the mask is MoFusion 4.4's, the walk MoDiff III-E's.  Notebook: 10, 15
+Source: ours; the mask is MoFusion 4.4's, the walk MoDiff III-E's.  Notebook: 15
 """
 
 from typing import Protocol, runtime_checkable
@@ -56,8 +56,7 @@ def held_back(
     known: Bool[Tensor, "B _ _"],
     **options,
 ) -> Frames:
-    """Frame by frame, and each new frame has its known entries put right before the next is walked.
-    Notebook: 10"""
+    """Frame by frame: the known entries of each are put right before the next is walked."""
     steps, generator = options["steps"], options["generator"]
     sample, T_p = walker.window_sampler(steps), walker.config.T_p
     given, past = (walker.pose_scaler.transform(x.float()) for x in (given, ahead))
@@ -85,7 +84,7 @@ def masked_back(
 
     The sampling is `inbetweening.inpaint_steps`.
     Raises ValueError for a walker that predicts more or fewer poses than it is given.
-    Notebook: 10, 15
+    Notebook: 15
     """
     config, schedule = walker.config, walker.schedule
     if config.T_p != config.T_h:

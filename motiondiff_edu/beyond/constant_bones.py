@@ -6,7 +6,6 @@ A network's joints are free points; its bones come out nearly right. Given joint
 are.
 Source: position-based dynamics (Müller and others, 2007), distances only; MoFusion eq. 6 asks the
 same of the network.
-Notebook: 15
 """
 
 import numpy as np
@@ -47,7 +46,7 @@ def steady_bones(
 
     A bone between two free joints moves both by half of what is wrong, beside a known one the free
     joint by all of it. Where known joints are farther apart than bones reach, what remains wrong is
-    shared.   Notebook: 15
+    shared.
     """
     moved, free = np.array(positions, np.float64), (~known).astype(np.float64)
     for _ in range(rounds):

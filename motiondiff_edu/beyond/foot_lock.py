@@ -4,7 +4,7 @@ A low, slow toe is held in place, and the leg follows.
 
 A network's feet slide by centimetres in each frame, which the eye sees first. Nothing but legs is
 moved, and nothing that is given; whoever lets the feet glide on purpose must do without.
-Source: foot-skate cleanup for motion capture (Kovar and others, 2002), shortened.  Notebook: 15
+Source: foot-skate cleanup for motion capture (Kovar and others, 2002), shortened.
 """
 
 import numpy as np
@@ -34,7 +34,6 @@ def steady_feet(
     A stand is a run of frames in which a toe is low and slow. It stays at its median place, or
     where it is given in the meantime; the correction passes smoothly from stand to stand, and is
     nothing where the foot is given. An ankle out of the leg's reach slides on as little as it must.
-    Notebook: 15
     """
     every = np.array(positions, np.float64).reshape(-1, *positions.shape[-3:])
     for moved in every:

@@ -37,7 +37,6 @@ def held_positions(
 
     Row t of the control takes the root on to frame t + 1, at the halfway heading; result t is as
     seen from there.
-    Notebook: 07
     """
     forward, left, yaw = (control / fps).unbind(-1)
     heading = yaw.cumsum(1)
@@ -55,7 +54,6 @@ class FootholdConfig(MoDiffConfig):
     """Sizes of a network with footholds. It is asked for x0 and has no skip: a foothold is a place.
 
     Raises ValueError for another target, for a skip, or for another skeleton than the course's.
-    Notebook: 07
     """
 
     target: str = "x0"
@@ -94,7 +92,6 @@ class FootholdMoDiff(MoDiff):
 
     The scalers lead to metres and m/s: where a foot stays is a matter of metres. They are not among
     the weights.
-    Notebook: 07
     """
 
     def __init__(self, config: FootholdConfig, pose_scaler: Scaler, control_scaler: Scaler):

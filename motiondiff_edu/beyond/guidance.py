@@ -70,14 +70,11 @@ def guided_guess(
 ) -> X:
     """x0_hat, with what is wrong at the given entries traced back to x_s.
 
-    From there it is traced to all other entries.
-
         x0_hat + weight * length * pull
         pull = J^T (given - x0_hat)[known],   J = d x0_hat / d x_s
     J is, up to a factor, the covariance of what x_s leaves open (Tweedie): whatever goes with the
     given is moved along. `length`, for each sample, leaves least wrong at the given entries of this
     guess: entries that say the same must not pull twice. (The sources have a constant there.)
-    Notebook: 15
     Source: Ho and others, Video diffusion models (2022); Song and others, Pseudoinverse-guided
     diffusion (2023).
     """
@@ -102,7 +99,7 @@ def blended_guess(
     The correction there is interpolated to the frames between them.
 
     Before the first and after the last given frame it fades to nothing within `fade` frames (one
-    number, or one for each column; infinity: it stays).  Notebook: 15
+    number, or one for each column; infinity: it stays).
     """
     T = x0_hat.shape[1]
     frames = torch.arange(T, device=x0_hat.device).view(1, T, 1).expand(known.shape)

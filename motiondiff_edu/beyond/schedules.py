@@ -1,8 +1,8 @@
 """Two schedules of our own: more noise at every step, and no steps at low noise.
 
-More noise: what many entries tell together survives noise that hides each of them: images of more
-pixels, dances of more frames. A schedule made for small things then hurries through the noise at
-which much is decided.
+More noise: what many entries tell together survives noise that hides each of them (images of more
+pixels, dances of more frames). A schedule made for small things then hurries through the noise at which much
+is decided.
 Source: Hoogeboom and others, 2023 (simple diffusion), for images; for dances, ours.  Notebook: 12
 """
 
@@ -17,7 +17,6 @@ def shifted(schedule: Schedule, snr: float) -> Schedule:
     With ab for alpha_bar: alpha_bar' = snr ab / (1 - ab + snr ab).
 
     1 leaves the schedule as it is.  Raises ValueError for a number that is not positive.
-    Notebook: 12
     """
     if not snr > 0:
         raise ValueError(

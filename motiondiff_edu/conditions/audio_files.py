@@ -4,7 +4,7 @@ An AudioError says what is wrong with a file and what to do about it.
 
 wav, flac, ogg, mp3, aiff and what else libsndfile reads, told apart by content and not by name, at
 any rate.
-Notebook: 11, 19
+Notebook: 11
 """
 
 import re
@@ -133,7 +133,7 @@ def samples_of(sound: str | Path | np.ndarray | Tensor) -> Float[Tensor, "N"]:
 
 def resample(audio: Float[np.ndarray, "N"], rate: int) -> Float[np.ndarray, "n"]:
     """The same sound at 16 kHz, by soxr at its very high quality: what lies above the new 8 kHz, or
-    the old half rate, goes.  Notebook: 11"""
+    the old half rate, goes."""
     return audio if rate == SAMPLE_RATE else soxr.resample(audio, rate, SAMPLE_RATE, "VHQ")
 
 

@@ -143,7 +143,7 @@ def path_to_control(
     each of `stops` (metres along the path) it rests for `pause` seconds. Integrated, it is the
     rounded path.
     Raises ValueError for a path without length, a position that is not finite, or a speed outside
-    (0, 4].   Notebook: 00
+    (0, 4].
     """
     if not 0 < speed <= 4:
         raise ValueError(f"speed must lie in (0, 4] m/s, got {speed}; the walker knows up to 3")
@@ -176,7 +176,7 @@ def round_path(
 
     Both ends stay in place.
 
-    Raises ValueError for a path shorter than 5 cm or a position that is not finite.  Notebook: 00
+    Raises ValueError for a path shorter than 5 cm or a position that is not finite.
     """
     points = np.asarray(points, dtype=np.float64)
     if not np.isfinite(points).all():

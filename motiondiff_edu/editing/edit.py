@@ -3,7 +3,7 @@
 The rest is to be made.
 
 What is given follows from it: `known` and `positions`, as `editing.inbetween.inbetween` takes them.
-Source: MoFusion 4.4 (editing by seeds, keyframes and joints).  Notebook: 15
+Source: MoFusion 4.4 (editing by seeds, keyframes and joints).
 """
 
 from collections.abc import Mapping
@@ -32,7 +32,7 @@ class Edit:
     Pinned frames with their poses, and a part kept in all frames.
 
     Each method returns another edit; `moved` names the joints that were dragged in each pinned
-    frame.   Notebook: 15
+    frame.
     """
 
     motion: Float[np.ndarray, "T 21 3"]
@@ -166,8 +166,8 @@ class Made:
 class Make(Protocol):
     """What finds the rest of an edit: `functools.partial(inbetween, dancer)` is one.
 
-    It is called with these five, three of them by name, and answers with `samples` motions
-    (metres); `resample` is how often each step is made.
+    It is called with these five, three of them by name, and returns `samples` motions (metres).
+    `resample` is how often each step is made.
     """
 
     def __call__(
@@ -193,7 +193,6 @@ def make_between(
 
     What comes back is measured, not put right.
     Raises ValueError where everything is held, and for an answer of another shape or not finite.
-    Notebook: 15
     """
     if edit.known.all():
         raise ValueError("every frame is pinned: there is nothing to make. Let some frames go")

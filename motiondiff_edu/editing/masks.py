@@ -32,7 +32,6 @@ def known_frames(
     """These frames are given, of these joints and the pelvis.  Negative numbers count from the end.
 
     Raises IndexError for a frame that the motion has not, KeyError for a name that no joint has.
-    Notebook: 15
     """
     known, columns = np.zeros((T, J), bool), [HIPS, *(joint_index(name) for name in joints)]
     for frame in frames:

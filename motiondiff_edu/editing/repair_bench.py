@@ -2,7 +2,7 @@
 
 A window of a walk loses joints or frames, the walker mends it, and it is judged.
 
-No browser here: the widget shows what comes out.  Source: MoDiff III-E, Fig. 6.  Notebook: 10
+No browser here: the widget shows what comes out.  Source: MoDiff III-E, Fig. 6.
 """
 
 from collections.abc import Iterable, Iterator
@@ -39,7 +39,7 @@ class RepairBench:
 
     `samples` repairs are drawn in `rounds` rounds with `steps` steps of DDIM, always from the same
     `seed`.
-    Raises ValueError for a walk that is too short, or has not 20 frames/s.  Notebook: 10
+    Raises ValueError for a walk that is too short, or has not 20 frames/s.
     """
 
     walker: AnyWalker

@@ -102,11 +102,9 @@ def with_bones(
 ) -> Float[Tensor, "B T_h D"]:
     """The past, its missing joints moved until bones have their right lengths.
 
-    The right length is that in `walked` (median over its frames).
-
-    For `reconstruction.repair_steps(correct=with_bones)`: otherwise the bone between a generated
-    and a given joint changes its length.
-    Source: ours.  Notebook: 10
+    For `reconstruction.repair_steps(settle=with_bones)`: a made joint beside a known one else tears
+    the bone between.
+    Source: ours.
     """
     joints, ahead = (x.double().unflatten(-1, (-1, 3)).numpy() for x in (past, walked))
     here = known.unflatten(-1, (-1, 3)).all(-1).numpy()

@@ -21,8 +21,7 @@ class StandingContext(Context):
 
 
 class FastFoothold(FastMoDiff):
-    """A trained network with footholds, read once; `encode` and `denoise` as FastMoDiff has them.
-    Notebook: 07"""
+    """A trained network with footholds, read once; `encode` and `denoise` as in FastMoDiff."""
 
     model: FootholdMoDiff
 

@@ -127,7 +127,6 @@ class FastMoDiff:
 
     It works on a copy: `model` may train on, in its own mode, and this twin keeps the weights of
     the time of building.
-    Notebook: 07
     """
 
     @torch.inference_mode()

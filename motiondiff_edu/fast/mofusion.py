@@ -38,7 +38,6 @@ class FastMoFusion:
 
     It works on a copy, as FastMoDiff does; without music (C = 0) there is nothing to keep: use the
     plain network.
-    Notebook: 12
     """
 
     @torch.inference_mode()
@@ -121,10 +120,8 @@ def _res(block: ResBlock, x: Tensor, scale: Tensor, shift: Tensor, mask: Tensor)
 
 
 def _conv(conv: FrameConv, x: Tensor) -> Tensor:
-    """FrameConv.forward as one product of a frame and its neighbours.
-
-    For a few short motions it is a tenth faster, and in training slower.
-    """
+    """FrameConv.forward as one product of a frame and its neighbours: faster for a few short motions
+    (by a tenth), and slower in training."""
     n = conv.dilation
     padded = F.pad(x, (0, 0, n, n))
     together = torch.cat([padded[:, : -2 * n], x, padded[:, 2 * n :]], dim=-1)

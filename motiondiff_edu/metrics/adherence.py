@@ -25,7 +25,7 @@ def implied_root_velocity(
     (forward, left) in m/s at the halfway heading.
 
     With p the toe in the root frame and d = yaw / (2 fps):  implied[t] = fps * (R(-d) p[t] - R(+d)
-    p[t+1]). The yaw is the control's. NaN in steps where no toe is planted.   Notebook: 08
+    p[t+1]). The yaw is the control's. NaN in steps where no toe is planted.
     """
     turn_only = np.asarray(control, np.float64) * [0.0, 0.0, 1.0]
     return -planted_velocity(poses, turn_only, fps, below)[..., ::-1]

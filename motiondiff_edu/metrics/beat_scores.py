@@ -26,7 +26,7 @@ class BeatScores:
     bas: beat alignment, kinematic form; bas_shuffled: its mean with the beats of each other song;
     bas_chance: of stops at random times; beats_per_beat: kinematic beats per music beat; speed:
     mean joint speed in m/s. A clip without kinematic beats has NaN in bas and bas_shuffled, and is
-    left out of their means.   Notebook: 14
+    left out of their means.
     """
 
     bas_clips: Float[np.ndarray, "B"]

@@ -49,10 +49,7 @@ def smooth_speed(
     fps: float | int = FPS,
     smoothing: float | int = SMOOTHING,
 ) -> Float[np.ndarray, "*B T-1"]:
-    """`mean_speed`, smoothed along time by a Gaussian of `smoothing` seconds.
-
-    Notebook: 14
-    """
+    """`mean_speed`, smoothed along time by a Gaussian of `smoothing` seconds."""
     return gaussian_filter1d(mean_speed(positions, fps), smoothing * fps, axis=-1)
 
 
@@ -171,7 +168,7 @@ def f_measure(
 
     F = 2 hits / (K + M), a hit being a pair at most `window` seconds apart.
 
-    Each beat is used once. 0 when one side is empty. Times must be in order.  Notebook: 11, 14
+    Each beat is used once. 0 when one side is empty. Times must be in order.  Notebook: 11
     """
     hits = i = j = 0
     while i < len(found) and j < len(true):

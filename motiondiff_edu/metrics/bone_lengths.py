@@ -48,7 +48,7 @@ def bone_rmse_within_clip(positions: Float[np.ndarray, "*B T J 3"]) -> float:
     The same, against each clip's own mean lengths.
 
     RMSE = 100 * sqrt( mean over clips, t, b of (l_b(t) - mean_t l_b)^2 ): a figure that is too
-    large but rigid has 0. Ours, beside the paper's.   Notebook: 08
+    large but rigid has 0. Ours, beside the paper's.
     """
     lengths = bone_lengths(positions)
     return float(CM_PER_METRE * np.sqrt(np.mean((lengths - lengths.mean(-2, keepdims=True)) ** 2)))

@@ -28,7 +28,6 @@ class StepRule:
 
     min_duration_s: shorter steps are dropped.
     merge_gap_s: gaps up to this long are closed first.
-    Notebook: 08
     """
 
     min_duration_s: float | int = 0.0
@@ -73,8 +72,7 @@ def steps_of_heel(
     rule: StepRule = PAPER,
     fps: float | int = FPS,
 ) -> Int[np.ndarray, "n 2"]:
-    """The steps of one heel: runs of speed < tolerance (cm/s), then what `rule` changes.
-    Notebook: 08"""
+    """The steps of one heel: runs of speed < tolerance (cm/s), then what `rule` changes."""
     found = runs(speed < tolerance)
     if rule.merge_gap_s > 0:
         found = _merged(found, rule.merge_gap_s * fps)
@@ -96,10 +94,7 @@ def step_durations(
     rule: StepRule = PAPER,
     fps: float | int = FPS,
 ) -> Float[np.ndarray, "n"]:
-    """Duration in seconds of every step of both heels in all clips.
-
-    Notebook: 08
-    """
+    """Duration in seconds of every step of both heels in all clips."""
     found = [
         steps_of_heel(clip[:, heel], tolerance, rule, fps) for clip in speeds for heel in (0, 1)
     ]

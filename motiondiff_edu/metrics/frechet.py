@@ -48,7 +48,7 @@ def frechet_distance(
     The root is taken of a symmetric matrix, by its eigenvalues: real and never negative, also where
     C1 or C2 is singular. For covariances that commute it is |m1 - m2|^2 + |sqrt(l1) - sqrt(l2)|^2,
     l the paired eigenvalues.
-    Source: MoFusion 4.1.  Notebook: 14
+    Source: MoFusion 4.1.
     """
     values, vectors = np.linalg.eigh(covariance_1)
     root = (vectors * np.sqrt(np.maximum(values, 0.0))) @ vectors.T
@@ -67,7 +67,6 @@ def shrunk_covariance(features: Float[np.ndarray, "N F"]) -> Float[np.ndarray, "
 
     C* = (1 - w) C + w (tr C / F) I, the more the fewer the clips; it is never singular unless all
     clips are one.
-    Notebook: 14
     """
     return ledoit_wolf(features)[0]
 

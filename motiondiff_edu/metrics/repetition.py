@@ -23,7 +23,7 @@ def pose_changes(positions: Float[np.ndarray, "T 21 3"]) -> Float[np.ndarray, "T
 
     Metres.
 
-    The heading is that of hips and shoulders together. Raises ValueError for NaN.  Notebook: 14
+    The heading is that of hips and shoulders together. Raises ValueError for NaN.
     """
     if not np.isfinite(positions).all():
         raise ValueError(
@@ -65,7 +65,7 @@ def lag_similarity(
 
     For lag = 0, 1, ... as long as 2 s are left to compare.
 
-    Raises ValueError for a clip under 2 s, NaN, and a figure that keeps one pose.  Notebook: 14
+    Raises ValueError for a clip under 2 s, NaN, and a figure that keeps one pose.
     """
     x = _moving(pose_changes(positions))
     overlap = round(OVERLAP * fps)

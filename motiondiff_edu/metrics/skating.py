@@ -22,7 +22,7 @@ def ground_velocity(
 
     Step t is seen in the heading halfway between t and t+1, where the root moves by (v_left,
     v_forward) / fps. With d = yaw / (2 fps):  velocity = fps * (R(+d) p[t+1] - R(-d) p[t]) +
-    (v_left, v_forward).   Notebook: 08
+    (v_left, v_forward).
     """
     half_turn = np.asarray(control, np.float64)[..., :-1, None, 2] / (2 * fps)
     ground = np.asarray(points, np.float64)[..., [0, 2]]
@@ -62,11 +62,8 @@ def planted_velocity(
     fps: float | int = FPS,
     below: float | int = PLANTED_BELOW,
 ) -> Float[np.ndarray, "*B T-1 2"]:
-    """Velocity over the ground of the planted toe, (left, forward) in m/s.
-
-    NaN in steps where no toe is planted.
-
-    Notebook: 08
+    """Velocity over the ground of the planted toe, (left, forward) in m/s; NaN in steps where no
+    toe is planted.
     """
     side, planted = planted_toe(poses, below)
     velocity = ground_velocity(poses[..., TOES, :], control, fps)

@@ -2,7 +2,7 @@
 
 A pickle is a program; unpickling a stranger's file runs it. Here it may name four things: the numpy
 array, its type, and the two functions that put an array together. Everything else is refused by
-name. Centimetres become metres; 60 frames/s; y up; the floor is put to 0.   Notebook: 14, 19
+name. Centimetres become metres; 60 frames/s; y up; the floor is put to 0.
 """
 
 import io
@@ -51,8 +51,7 @@ class Keypoints:
     """A recorded dance: 17 joints (`COCO`) in metres at 60 frames/s, the floor at y = 0.
 
     `floor` is the height in metres that was taken off; `nan_frames` the frames with a missing joint
-    (left as NaN); `tempo` the music's beats a minute as the file's name tells, or None.   Notebook:
-    14
+    (left as NaN); `tempo` the music's beats a minute as the file's name tells, or None.
     """
 
     positions: Float[np.ndarray, "T 17 3"]
@@ -71,8 +70,7 @@ def read_keypoints(path: str | Path, optimised: bool = True) -> Keypoints:
     The floor is the 1st percentile over frames of the lowest joint: the ankles of a standing figure
     come to 0, since COCO has no toes, and one bad frame does not lower it.
     Raises AistError for anything else than such a file: other pickles (unread beyond the first
-    foreign name), .npy features, other shapes; FileNotFoundError where there is none.   Notebook:
-    14, 19
+    foreign name), .npy features, other shapes; FileNotFoundError where there is none.
     """
     path = Path(path).expanduser()
     if path.is_dir():
@@ -99,7 +97,7 @@ def tempo_of(name: str) -> float | None:
 
     House (mHO2) 110 + 5 * 2 = 120.
 
-    None where the name has no music in it.  Notebook: 14
+    None where the name has no music in it.
     """
     music = re.search(r"_m([A-Z]{2})(\d)(?:_|\.|$)", name)
     if music is None:

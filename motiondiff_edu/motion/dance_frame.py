@@ -76,8 +76,7 @@ def at_origin(positions: Float[np.ndarray, "*B T 21 3"]) -> Float[np.ndarray, "*
 
 
 def to_features(positions: Float[np.ndarray, "*B T J 3"]) -> Float[np.ndarray, "*B T 63"]:
-    """World positions as the network's 63 numbers.  Raises ValueError for another skeleton.
-    Notebook: 12"""
+    """World positions as the network's 63 numbers.  Raises ValueError for another skeleton."""
     if positions.shape[-2:] != (J, 3):
         raise ValueError(
             f"the course's skeleton has {J} joints with 3 coordinates, got {positions.shape[-2:]}"
@@ -86,10 +85,7 @@ def to_features(positions: Float[np.ndarray, "*B T J 3"]) -> Float[np.ndarray, "
 
 
 def placed_features(placed: Float[np.ndarray, "*B T J 3"]) -> Float[np.ndarray, "*B T 63"]:
-    """The 63 numbers of a motion that is where it should be already.
-
-    Notebook: 15
-    """
+    """The 63 numbers of a motion that is where it should be already."""
     about = placed[..., HIPS + 1 :, :] - placed[..., HIPS : HIPS + 1, :]
     whole = np.concatenate([placed[..., HIPS : HIPS + 1, :], about], axis=-2)
     return whole.reshape(*whole.shape[:-2], 3 * J)

@@ -1,8 +1,5 @@
-"""Joint names over the dialects of BVH.
-
-Which joint of a file plays which part of the course's figure.
-
-Notebook: 00
+"""Joint names over the dialects of BVH: which joint of a file plays which part of the course's
+figure.
 """
 
 import re

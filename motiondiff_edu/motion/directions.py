@@ -3,7 +3,6 @@
 Bone directions are kept, bone lengths are ours.
 
 Hips and chest are taken as rigid blocks, since every dialect places its spine joints elsewhere.
-Notebook: 00
 """
 
 import numpy as np

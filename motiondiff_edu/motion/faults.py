@@ -28,7 +28,7 @@ def wild_joints(
     Nothing is doubted unless some joint passes WILD. Then every joint is doubted while it passes
     HASTY and 0.05 s around, and between two such moments up to half a second apart: markers
     exchanged and exchanged back are wrong in between, though they are calm. Where the pelvis is
-    doubted, all is.   Notebook: 10
+    doubted, all is.
     """
     doubted = np.zeros((frames, speeds.shape[1]), bool)
     if not (np.nan_to_num(speeds) > WILD).any():

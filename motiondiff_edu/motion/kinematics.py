@@ -11,24 +11,17 @@ from scipy.spatial.transform import Rotation
 
 
 def rot_x(angle: Float[np.ndarray, "*N"] | float) -> Float[np.ndarray, "*N 3 3"]:
-    """Rotation about x by `angle` radians (right-handed).
-
-    Notebook: 01
-    """
+    """Rotation about x by `angle` radians (right-handed)."""
     return _axis_rotation(angle, 1, 2)
 
 
 def rot_y(angle: Float[np.ndarray, "*N"] | float) -> Float[np.ndarray, "*N 3 3"]:
-    """Rotation about y by `angle` radians: turns z towards x, counter-clockwise from above.
-    Notebook: 01"""
+    """Rotation about y by `angle` radians: turns z towards x, counter-clockwise from above."""
     return _axis_rotation(angle, 2, 0)
 
 
 def rot_z(angle: Float[np.ndarray, "*N"] | float) -> Float[np.ndarray, "*N 3 3"]:
-    """Rotation about z by `angle` radians (right-handed).
-
-    Notebook: 01
-    """
+    """Rotation about z by `angle` radians (right-handed)."""
     return _axis_rotation(angle, 0, 1)
 
 

@@ -1,8 +1,5 @@
-"""Feet that stay where they stand.
-
-Contacts, pinned toes, and legs that follow by two-bone inverse kinematics.
-
-Notebook: 00
+"""Feet that stay where they stand: contacts, pinned toes, and legs that follow by two-bone inverse
+kinematics.
 """
 
 import numpy as np

@@ -25,8 +25,7 @@ ROOT_SMOOTHING, HEADING_SMOOTHING = (
 def forward_left(
     heading: Float[np.ndarray, "*T"],
 ) -> tuple[Float[np.ndarray, "*T 2"], Float[np.ndarray, "*T 2"]]:
-    """Unit vectors (x, z) ahead of and to the left of a figure with this heading (radians).
-    Notebook: 01"""
+    """Unit vectors (x, z) ahead of and to the left of a figure with this heading (radians)."""
     sin, cos = np.sin(heading), np.cos(heading)
     return np.stack([sin, cos], -1), np.stack([cos, -sin], -1)
 
@@ -58,7 +57,7 @@ def control_from_path(
 
     The last row repeats.
 
-    Raises ValueError for fewer than two frames.  Notebook: 01
+    Raises ValueError for fewer than two frames.
     """
     if len(root_xz) < 2:
         raise ValueError(
@@ -97,11 +96,8 @@ def to_root_frame(
     heading: Float[np.ndarray, "T"],
     fps: float = FPS,
 ) -> tuple[Float[np.ndarray, "T J 3"], Float[np.ndarray, "T 3"]]:
-    """Root-frame poses and control of world positions, given the root's path.
-
-    The inverse of `to_world`.
-
-    Notebook: 01
+    """Root-frame poses and control of world positions, given the root's path (the inverse of
+    `to_world`).
     """
     ground = world[..., [0, 2]] - root_xz[:, None]
     forward, left = (v[:, None] for v in forward_left(heading))
@@ -110,11 +106,8 @@ def to_root_frame(
 
 
 def body_heading(world: Float[np.ndarray, "T 21 3"]) -> Float[np.ndarray, "T"]:
-    """Which way hips and shoulders together face, in radians, -pi to pi.
-
-    `dance_frame.facing` asks the hips alone.
-
-    Notebook: 01
+    """Which way hips and shoulders together face, in radians, -pi to pi (`dance_frame.facing` asks
+    the hips alone).
     """
     left, right = (
         world[:, [joint_index(s + "UpLeg"), joint_index(s + "Arm")]].sum(1)
@@ -133,7 +126,7 @@ def estimate_root(
 
     Gaussians of 0.25 s and 0.33 s; shorter ones leak the gait into the control. Beyond its ends the
     clip is continued by point reflection, so that a figure that walks does not seem to slow down
-    there.   Notebook: 01
+    there.
     """
     return smoothed_root(world[:, HIPS][:, [0, 2]], body_heading(world), fps)
 

@@ -2,7 +2,7 @@
 
 Poses and control have a scaler each. A missing input is zero *after* standardisation: the average
 pose.
-Source: MoDiff IV-A leaves it open; per-column z-scores are the corpus' own habit.  Notebook: 01
+Source: MoDiff IV-A leaves it open; per-column z-scores are the corpus' own habit.
 """
 
 from dataclasses import dataclass

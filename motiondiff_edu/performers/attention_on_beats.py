@@ -27,7 +27,6 @@ def layers_of(config: MoFusionConfig) -> Iterator[tuple[str, int, str]]:
     Every 2^level-th frame asks; the name says how many a second.
 
     In the order of the computation: from the input down to the bottom of the U, and up again.
-    Notebook: 12
     """
     levels = len(config.widths)
     for level in range(levels):

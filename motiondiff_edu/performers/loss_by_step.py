@@ -135,6 +135,6 @@ def eps_weight(schedule: Schedule, kind: str) -> Table:
 
     lambda(s) (1 - alpha_bar) / alpha_bar; with the paper's lambda = alpha_bar it is 1 - alpha_bar,
     largest at s = S.
-    Source: MoFusion eq. 5, 7.  Notebook: 13
+    Source: MoFusion eq. 5, 7.
     """
     return over_time(schedule, kind) * (1 - schedule.alpha_bar) / schedule.alpha_bar

@@ -63,7 +63,7 @@ def save(figure: Walker | Dancer, path: str | Path, bits: int = 16) -> Path:
 
     A card.json is laid beside it. Written to a temporary name and renamed.
     Raises ValueError for other numbers of bits, for what is no performer, and for a network that is
-    not registered (`performers.networks.register`).  Notebook: 07, 12
+    not registered (`performers.networks.register`).
     """
     if bits not in STORED:
         raise ValueError(f"weights are written in 8, 16 or 32 bits, not {bits}")
@@ -106,26 +106,19 @@ def bits_of(path: str | Path) -> int:
 def load(path: str | Path) -> Walker | Dancer:
     """Read a walker or a dancer, whichever it is.
 
-    Raises CheckpointError for a file that is missing, damaged, or not one of ours.  Notebook: 00
+    Raises CheckpointError for a file that is missing, damaged, or not one of ours.
     """
     return _read(path, *KINDS)
 
 
 def load_walker(path: str | Path) -> Walker:
-    """Read a walker.
-
-    Raises CheckpointError as `load`, and for a dancer.
-    Notebook: 07
-    """
+    """Read a walker.  Raises CheckpointError as `load`, and for a dancer."""
     return _read(path, WALKER)
 
 
 def load_dancer(path: str | Path) -> Dancer:
-    """Read a dancer, or a baseline that dances.
-
-    Raises CheckpointError as `load`, and for a walker.
-    Notebook: 12
-    """
+    """Read a dancer, or a baseline that dances.  Raises CheckpointError as `load`, and for a
+    walker."""
     return _read(path, DANCER)
 
 

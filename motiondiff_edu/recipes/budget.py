@@ -23,11 +23,9 @@ BUDGET = replace(WALKER_X0, name="budget", batch=32, lr=3e-3, decay=0.99)
 def train_for(seconds: float, clips: list[Clip], recipe: Recipe = BUDGET) -> tuple[Walker, int]:
     """A walker trained until the CPU-seconds of the loop are spent.
 
-    Returns also the number of steps it took.
-
-    The recipe's own steps, number of clips and data seed do not count here. The learning rate
-    rises for 100 steps and falls to zero along a half cosine of the seconds; diffusion dropout
-    rises with the seconds, too.   Notebook: 07
+    The learning rate rises for 100 steps and falls to zero along a half cosine of the seconds.
+    `loss` goes to `performers.windows.window_loss`; what it does not name is walker-x0's, with half
+    its batch.
     """
     torch.manual_seed(recipe.seed)
     config = recipe.config

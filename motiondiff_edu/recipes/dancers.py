@@ -1,7 +1,7 @@
 """How the shipped dancers are made: data, sizes, losses, steps. One record each.
 
 The paper gives neither widths nor steps nor the weights of its losses: all numbers are ours.
-Notebook: 12, 13
+Notebook: 13
 """
 
 from dataclasses import dataclass, replace

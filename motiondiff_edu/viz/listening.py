@@ -59,7 +59,7 @@ def attention_over_sound(
     A row of the map is a moment of the motion (`fps` rows a second), a column a token at its time
     in seconds. On the dashed line a moment looks at itself. Raises ValueError where times do not
     fit the map.
-    Source: MoFusion Fig. 4  Notebook: 12
+    Source: MoFusion Fig. 4
     """
     if (
         token_times.shape != weights.shape[1:]

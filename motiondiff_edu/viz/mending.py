@@ -1,8 +1,5 @@
-"""Figures of what was mended.
-
-Errors over the length of a gap, and a map of dropout's rate against what is missing.
-
-Notebook: 09, 15
+"""Figures of what was mended: errors over the length of a gap, and a map of dropout's rate against
+what is missing.
 """
 
 from collections.abc import Mapping, Sequence
@@ -26,8 +23,6 @@ def over_gaps(
 ) -> Figure:
     """One panel for each measure, a line in it for each method, its 95 % interval shaded; `log`:
     measures by powers.
-
-    Notebook: 15
     """
     fig, axes = figure(4.8 * len(panels), 6.0, words, 1, len(panels))
     for axis, (measure, lines) in zip(axes, panels.items(), strict=True):
@@ -47,11 +42,8 @@ def over_gaps(
 def by_fault(
     panels: Mapping[str, Mapping[str, tuple[float, float, float]]], words: str, xlabel: str
 ) -> Figure:
-    """A panel for each fault, a row for each way of mending it: (value, low, high), by powers.
-
-    Further left is better.
-
-    Notebook: 10
+    """A panel for each fault, a row for each way of mending it: (value, low, high), by powers;
+    further left is better.
     """
     fig, axes = figure(4.6 * len(panels), 4.2, words, 1, len(panels))
     names = list(dict.fromkeys(name for ways in panels.values() for name in ways))
@@ -84,7 +76,6 @@ def rate_map(
     Small is good.
 
     Colours compare within a column (dark: the worst rate at that share), numbers are the errors.
-    Notebook: 09
     """
     fig, axes = figure(1.2 + 5.0 * len(panels), 1.4 + 0.5 * len(rates), words, 1, len(panels))
     for axis, (measure, errors) in zip(axes, panels.items(), strict=True):

@@ -1,8 +1,5 @@
-"""The music lane under the figure.
-
-What is heard, where its beats are, and the strips above and below it.
-
-Notebook: 12
+"""The music lane under the figure: what is heard, where its beats are, and the strips above and
+below it.
 """
 
 from dataclasses import dataclass

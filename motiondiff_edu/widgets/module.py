@@ -4,7 +4,6 @@ Parts in js/, one after the other, are one module that imports nothing.
 
 The parts name what they take from each other as any ES modules do; joined, these lines have done
 their duty.
-Notebook: 00, 10, 15
 """
 
 import re

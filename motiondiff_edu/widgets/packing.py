@@ -4,7 +4,6 @@ Joints relative to the root as int16 at 1/2048 m, the root's path as float32.
 
 Whole positions as int16 would overflow on a long walk; relative ones reach 16 m from the hips,
 which no body does.
-Notebook: 01
 """
 
 from collections.abc import Sequence

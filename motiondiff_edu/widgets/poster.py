@@ -1,8 +1,5 @@
-"""Still pictures of the player's scene, with pillow.
-
-The filmstrip where nothing runs, and the frames of a GIF or MP4.
-
-Notebook: 01
+"""Still pictures of the player's scene, with pillow: the filmstrip where nothing runs, and the
+frames of a GIF or MP4.
 """
 
 import io

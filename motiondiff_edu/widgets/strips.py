@@ -4,7 +4,6 @@ Attention over the music, and how far a figure moved.
 
 Attention is kept in 8 bits, each row scaled by its own largest weight, which goes along: wrong by
 at most 1/510 of it.
-Notebook: 12
 """
 
 from collections.abc import Mapping

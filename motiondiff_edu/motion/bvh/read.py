@@ -123,7 +123,6 @@ def read_bvh(path: str | Path, file_fps: float | int | None = None) -> Bvh:
 
     Raises BvhError (a ValueError) with file, line, joint and what to do, for anything that is not
     a whole, unambiguous BVH file; FileNotFoundError when there is none.
-    Notebook: 00, 01.
     """
     lines = read_lines(path)
     found, motion = statements(lines, path)
