@@ -83,9 +83,9 @@ def repair_steps(
     `control` has T_h rows beside the past and T_h for the way there. Holes are the mean pose at
     first (zero once standardised), or `guess` (metres), from a regression, say. Stops after
     `rounds` at the latest: a sampler's own spread may be above the tolerance. `way_back`: the
-    paper's, or one of `beyond.back_with_known`, which heed what is known. Of each window `keep` poses
-    are kept, by default all T_p; keep=1 is the paper's rollout (ten times dearer, and farther off).
-    `settle(past, known, ahead)` mends the filled past after each round:
+    paper's, or one of `beyond.back_with_known`, which heed what is known. Of each window `keep`
+    poses are kept, by default all T_p; keep=1 is the paper's rollout (ten times dearer, and farther
+    off). `settle(past, known, ahead)` mends the filled past after each round:
     `editing.repairs.with_bones`, for one.
     Raises ValueError for what does not fit.  Source: MoDiff III-E, Fig. 6; the stop rule is ours.
     """

@@ -1,8 +1,8 @@
 """Two schedules of our own: more noise at every step, and no steps at low noise.
 
 More noise: what many entries tell together survives noise that hides each of them (images of more
-pixels, dances of more frames). A schedule made for small things then hurries through the noise at which much
-is decided.
+pixels, dances of more frames). A schedule made for small things then hurries through the noise at
+which much is decided.
 Source: Hoogeboom and others, 2023 (simple diffusion), for images; for dances, ours.  Notebook: 12
 """
 

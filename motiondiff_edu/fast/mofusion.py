@@ -120,8 +120,8 @@ def _res(block: ResBlock, x: Tensor, scale: Tensor, shift: Tensor, mask: Tensor)
 
 
 def _conv(conv: FrameConv, x: Tensor) -> Tensor:
-    """FrameConv.forward as one product of a frame and its neighbours: faster for a few short motions
-    (by a tenth), and slower in training."""
+    """FrameConv.forward as one product of a frame and its neighbours: faster for a few short
+    motions (by a tenth), and slower in training."""
     n = conv.dilation
     padded = F.pad(x, (0, 0, n, n))
     together = torch.cat([padded[:, : -2 * n], x, padded[:, 2 * n :]], dim=-1)
