@@ -54,8 +54,8 @@ $(VENV)/.bench: pyproject.toml constraints.txt setup.py | $(BIN)/python
 # Two peers of which one module each is used; with what they ask for comes a torchvision that does not fit a CPU torch.
 BARE_PEERS := smalldiffusion denoising-diffusion-pytorch
 
-lab: $(VENV)/.lab ## set up .venv and open JupyterLab at notebook 00
-	$(BIN)/python -m motiondiff_edu lab
+lab: $(VENV)/.lab ## set up .venv and open JupyterLab in your own copy of the notebooks (FRESH=03: a fresh copy of one)
+	@$(BIN)/python -m motiondiff_edu lab $(foreach number,$(FRESH),--fresh $(number)) $(OPTIONS)
 
 demo: $(VENV)/.lab ## open one notebook ready to show: make demo NB=07
 	@$(BIN)/python -m motiondiff_edu demo $(NB) $(OPTIONS)

@@ -19,7 +19,8 @@ CHAINS = (
     "editing viz widgets course",
     "pretrained course",  # doctor and demo ask which weights there are
 )
-FRONT = {"__init__", "__main__"}  # the front door and the command line reach everywhere
+# the front door and the command line reach everywhere
+FRONT = {"__init__", "__main__", "_commands"}
 # The data need conventions, measures and Gaussian mixtures, and no network.
 DATA_IMPORTS = {"_files", "motion", "metrics", "exact"}
 DATA_READERS = {"recipes", "course"}
@@ -53,7 +54,7 @@ def layer(module: str) -> str:
     """The layer of a module of motiondiff_edu: its folder, "syllabus", "_files" or "front"."""
     path = MODULES[module].relative_to(PACKAGE)
     if len(path.parts) > 1:
-        return path.parts[0]
+        return "front" if path.parts[0] in FRONT else path.parts[0]
     return "front" if path.stem in FRONT else "_files" if path.stem == "_files" else "syllabus"
 
 

@@ -9,8 +9,7 @@ from . import outputs
 
 HELP = "find joints that are missing"
 EXAMPLE = (
-    "motiondiff-edu reconstruct walk.bvh --missing RightArm,RightForeArm,RightHand "
-    "--frames 40-80 --out whole.bvh"
+    "reconstruct walk.bvh --missing RightArm,RightForeArm,RightHand --frames 40-80 --out whole.bvh"
 )
 
 

@@ -42,8 +42,7 @@ def drawn_back(
     known: Bool[Tensor, "B _ _"],
     **options,
 ) -> Frames:
-    """The paper's way back, drawn through the known entries afterwards: no jump where a hole ends.
-    Notebook: 10"""
+    """The paper's way back, drawn through the known entries: no jump where a hole ends."""
     back = walked_back(walker, ahead, control, given, known, **options)
     return blended_guess(back, given.to(back), known, FADE)
 

@@ -146,7 +146,6 @@ class CleanFootholds:
     `foot_noise`: fraction of the past noise applied to the held feet, 0 to 1.
     Where diffusion dropout noised the past as well, the feet are held at the last pose of that
     past: otherwise the network would still see the clean feet.
-    Notebook: 07
     """
 
     model: Callable  # a FootholdMoDiff, or its SharedEncoding

@@ -46,8 +46,7 @@ def weighted(loss: Loss, weights: Float[Tensor, "D"] | Float[Tensor, "T 1"]) -> 
 
 
 def weighted_by_step(loss: Loss, weights: Table) -> Loss:
-    """A loss with weights of its squares for the diffusion steps (`high_noise_weights`).
-    Notebook: 07"""
+    """A loss with weights of its squares for the diffusion steps (`high_noise_weights`)."""
     roots = weights.sqrt()
     return lambda error, s: loss(at(roots, s, error) * error, s)
 
@@ -67,7 +66,7 @@ def near_weights(change: Float[Tensor, "T D"], power: float = 1.0) -> Float[Tens
     """Weights of future frames: 1 / (how far poses move until then)^power, with mean 1.
 
     `change`: how far each column moves in 1, 2, ... frames, metres. The first frame moves least,
-    and a rollout keeps no other.   Notebook: 07
+    and a rollout keeps no other.
     """
     weights = 1 / change.square().mean(1, keepdim=True).sqrt() ** power
     return weights / weights.mean()
@@ -77,7 +76,7 @@ def high_noise_weights(schedule: Schedule, largest: float) -> Table:
     """Weights of steps: 1 + min((1 - alpha_bar) / alpha_bar, largest).
 
     For eps: at high noise eps is nearly x_s itself and costs little, while the pose is decided
-    there.   Notebook: 07
+    there.
     """
     noise_over_signal = (1 - schedule.alpha_bar) / schedule.alpha_bar
     return 1 + noise_over_signal.clamp_max(largest)
@@ -120,7 +119,7 @@ def toe_changes(weight: float, std: Float[Tensor, "D"], moved: float) -> Loss:
 
     For a foot to stand, pelvis and leg must err alike. `std` leads to metres; `moved` is the mean
     square of a toe coordinate's change in a frame of the data, m^2
-    (`performers.dance_windows.toes_moved`).   Notebook: 12
+    (`performers.dance_windows.toes_moved`).
     """
 
     def loss(error: Error, s: Int[Tensor, "B"]) -> Float[Tensor, ""]:

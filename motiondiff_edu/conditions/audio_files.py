@@ -100,7 +100,7 @@ def samples_of(sound: str | Path | np.ndarray | Tensor) -> Float[Tensor, "N"]:
     """A sound file read, or samples as they are: mono, 16 kHz, float32.
 
     Raises AudioError as `read_audio`, and for samples of another shape, in whole numbers, not
-    finite, or far beyond -1 to 1.   Notebook: 00, 12
+    finite, or far beyond -1 to 1.
     """
     if isinstance(sound, (str, Path)):
         return read_audio(Path(sound).expanduser())

@@ -69,8 +69,6 @@ def keyframes(T: int, every: int) -> Bool[np.ndarray, "{T} J"]:
 def keyframes_of(motion: Sized | int, every: int = 20) -> Bool[np.ndarray, "T J"]:
     """`keyframes` of a motion, or of so many frames.
 
-    Notebook: 15
-
     Raises ValueError for every < 1, or no frame.
     """
     T = motion if isinstance(motion, int) else len(motion)

@@ -4,7 +4,7 @@ walked there and back.
     guess -> every window there and back -> the mean where they overlap -> bones -> next guess
 A window repaired alone would not meet its neighbours: here each round begins with what all of them
 found together. The way back is drawn through what is known, so that holes join on both sides.
-Source: MoDiff III-E; the overlapping windows are ours.  Notebook: 10
+Source: MoDiff III-E; the overlapping windows are ours.
 """
 
 import math
@@ -45,7 +45,7 @@ def reconstruct(
     Known joints come back bit by bit. The control comes from the pelvis and from where hips and
     shoulders face, smoothed. Raises MotionError where a pelvis is missing, where nothing tells
     which way the figure faces, where nothing is missing, and for a motion shorter than a window.
-    Source: MoDiff III-E.  Notebook: 10
+    Source: MoDiff III-E.
     """
     T_h, firsts = walker.config.T_h, _windows(known, walker.config.T_h)
     place, facing = path_of(positions, known)

@@ -77,7 +77,7 @@ def write_bvh_motion(motion: Motion, path: Path) -> None:
 
 @registry.writers.register(".npz")
 def write_npz(motion: Motion, path: Path) -> None:
-    """All of it as plain arrays, exactly; no pickle."""
+    """All of it as plain arrays, exactly; nothing in the file can run."""
     arrays = {
         "format": np.array(FORMAT),
         "positions": motion.positions,

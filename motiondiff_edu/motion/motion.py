@@ -67,10 +67,7 @@ class Motion:
 
     @classmethod
     def of_clip(cls, clip: Clip, start: tuple[float, float, float] = (0.0, 0.0, 0.0)) -> "Motion":
-        """A clip in the world, its root starting at `start` (x, z, heading).
-
-        Notebook: 01
-        """
+        """A clip in the world, its root starting at `start` (x, z, heading)."""
         place, heading = root_path(clip.control, start, clip.fps)
         root = np.concatenate([place, heading[:, None]], axis=1)
         return cls(clip.world(start), clip.fps, COURSE, root, clip.contacts, source=clip.source)
@@ -79,7 +76,6 @@ class Motion:
         """Its training view: root-frame poses and control, by `root` or the smoothed pelvis.
 
         Raises MotionError where a joint is missing, for another skeleton, and for a single frame.
-        Notebook: 01
         """
         root = self.rooted().root
         poses, control = to_root_frame(self.positions, root[:, :2], root[:, 2], self.fps)

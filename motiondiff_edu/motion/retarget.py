@@ -2,7 +2,6 @@
 
 The chain: find the joints, metres from the leg length, y up, drop a T-pose, 20 frames/s, level
 floor, bone directions onto our bones, feet planted, root frame and control.
-Notebook: 00
 """
 
 from collections.abc import Mapping

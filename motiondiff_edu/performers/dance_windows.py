@@ -3,7 +3,7 @@
 Motion has 20 frames a second, the Mel spectrogram 31.25: only every 0.8 s do both have a frame at
 the same moment, so windows start there, and the music's frames lie at the same times in every
 window.
-Source: MoFusion 4.1 (100 frames and more at a time; lengths are ours).  Notebook: 12
+Source: MoFusion 4.1 (100 frames and more at a time; lengths are ours).
 """
 
 from collections.abc import Sequence

@@ -153,7 +153,7 @@ def pretrained(name: str = "walker") -> Walker | Dancer:
 
     "dancer" dances.
 
-    Raises CheckpointError with the names there are.  Notebook: 00
+    Raises CheckpointError with the names there are.
     """
     files = available()
     if name not in files:

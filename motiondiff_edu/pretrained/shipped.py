@@ -1,6 +1,6 @@
 """The front door's verbs that need weights: `load`, and `inbetween` and `reconstruct`.
 
-Notebook: 00, 10, 15
+Notebook: 00, 15
 """
 
 from functools import lru_cache
@@ -72,8 +72,7 @@ def reconstruct(
 
     Known joints stay exactly where they are. The pelvis must be known in every frame: the walk's
     control is read from it.
-    Raises MotionError where it is not, and for what does not fit.  Source: MoDiff III-E.  Notebook:
-    10
+    Raises MotionError where it is not, and for what does not fit.  Source: MoDiff III-E.
     """
     known, walker = _fitting(motion, known), _shipped("walker")
     total = reconstruction.evaluations(walker, known)

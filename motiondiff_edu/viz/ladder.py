@@ -23,7 +23,7 @@ def ladder(rungs: Sequence[Rung], measures: Sequence[str], words: str) -> Figure
 
     A line marks the mean of the group's first row, from which its other rows differ in one choice.
 
-    Values that are not positive or not finite are left out.  Notebook: 07
+    Values that are not positive or not finite are left out.
     """
     groups = list(dict.fromkeys(rung.group for rung in rungs))
     panels = len(measures)

@@ -63,7 +63,7 @@ def play(
 
     The page is written to `path` (by default to the folder for temporary files), and where it is,
     is printed and returned; `open_page=False` leaves it at that.
-    Raises MotionError as `player_of`, TypeError for what is no Motion.  Notebook: 00
+    Raises MotionError as `player_of`, TypeError for what is no Motion.
     """
     figures = []
     for given in motions:

@@ -158,4 +158,4 @@ def test_a_dancer_with_a_network_without_twin_dances(tmp_path: Path):
     scalers = Scaler(torch.zeros(63), torch.ones(63)), Scaler(torch.zeros(5), torch.ones(5))
     one = Dancer(DanceTransformer(config).eval(), cosine_schedule(12), *scalers)
     assert one.fast is None
-    assert one.dance(torch.randn(1, 40, 5), 20, steps=2).shape == (1, 20, 21, 3)
+    assert one.dance_mel(torch.randn(1, 40, 5), 20, steps=2).shape == (1, 20, 21, 3)

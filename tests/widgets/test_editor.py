@@ -181,7 +181,7 @@ def test_what_is_no_name_for_a_file_is_refused_and_nothing_written(
 
 
 def test_errors_are_told_in_the_page_and_leave_it_at_rest(motion, tmp_path):
-    def broken(positions, known, generator):
+    def broken(positions, known, generator, samples=1, resample=1):
         raise RuntimeError("out of memory")
 
     editor = Editor(motion, broken)
