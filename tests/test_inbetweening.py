@@ -331,7 +331,7 @@ def test_the_guesses_of_a_dancer_that_predicts_noise_are_held_within_what_dances
     assert guesses[wild].abs().max() == pytest.approx(FARTHEST, rel=1e-2)
     made = inbetween(wild, clip(), seed(40, 10), steps=5, bones=False, feet=False, blend=None)
     features = wild.motion_scaler.transform(torch.from_numpy(to_features(made)).float())
-    assert features[..., 3:].abs().max() < FARTHEST + 1e-3
+    assert features[..., 3:].abs().max() < 1.01 * FARTHEST
 
 
 def test_guidance_moves_what_goes_with_the_given():
