@@ -152,7 +152,7 @@ def receive(editor, **content) -> str:
 
 
 def test_errors_are_told_in_the_page_and_leave_it_at_rest(motion, tmp_path):
-    def broken(positions, known, generator):
+    def broken(positions, known, generator, samples=1, resample=1):
         raise RuntimeError("out of memory")
 
     editor = Editor(motion, broken)
