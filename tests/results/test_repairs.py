@@ -214,3 +214,16 @@ def test_both_papers_repairs_are_scored_where_both_had_to_guess(trials, monkeypa
     assert (
         found["frames.masked.one_cm"] == found["frames.masked_blended.mean_cm"] == pytest.approx(5)
     )
+
+
+def test_walks_from_broken_pasts_are_over_those_from_whole_ones(trials, monkeypatch):
+    """Bones 1 % too long after a broken past, half as much after a whole one: a ratio of two."""
+
+    def stretched(walker, asked, share, frames, **how):
+        return asked.truth * (1.01 if share else 1.005)
+
+    monkeypatch.setattr(repair, "continued", stretched)
+    windows = {"re": [trials.past]}
+    found, _ = repair.table_2([None], trials, repair.QUICK, windows)
+    value = {one.name: one.value for one in found}
+    assert value["table2_ge_over_whole"] == pytest.approx(2, rel=1e-6)

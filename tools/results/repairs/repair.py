@@ -164,6 +164,8 @@ def table_2(
     ratio = interval_over_seeds(
         lambda w, g, r: max(root_mean(g), root_mean(r)) / root_mean(w), *arrays
     )
+    ge = interval_over_seeds(lambda w, g: root_mean(g) / root_mean(w), *arrays[:2])
+    figures.append(Figure(f"table2_{who}ge_over_whole", *ge, "ratio"))
     return [*figures, Figure(f"table2_{who}ratio", *ratio, "ratio")], after
 
 
