@@ -7,7 +7,6 @@ Source: MoFusion 3, 4.1.  Notebook: 00, 12
 
 import copy
 from dataclasses import dataclass, field
-from functools import cached_property
 from pathlib import Path
 
 import numpy as np
@@ -21,7 +20,7 @@ from ..conditions.music import FRAMES_PER_SECOND, SAMPLE_RATE, frame_times, log_
 from ..ddpm import Denoiser, Schedule, draw
 from ..fast.mofusion import FastMoFusion
 from ..fast.samplers import ddim_steps, ddpm_steps
-from ..fast.twins import Twin, watched
+from ..fast.twins import watched
 from ..mofusion import MoFusion, MoFusionConfig
 from ..motion.checks import checked_count, checked_seconds
 from ..motion.dance_frame import to_positions
@@ -29,7 +28,8 @@ from ..motion.motion import Motion
 from ..motion.scaler import Scaler
 from ..prediction import denoiser_of
 from .dance_windows import FPS, mel_frames
-from .networks import Config, kind_of, register
+from .networks import register
+from .performer import Performer
 from .with_bar import with_bar
 
 STEPS, ETA = 50, 0.5  # of DDIM, unless told
@@ -42,7 +42,7 @@ register("dancer", MoFusion, MoFusionConfig, fast=FastMoFusion)
 
 
 @dataclass(frozen=True, eq=False)
-class Dancer:
+class Dancer(Performer):
     """The network, in its own units, and the scalers that lead there from metres and log-Mel."""
 
     model: nn.Module
@@ -51,13 +51,6 @@ class Dancer:
     mel_scaler: Scaler
     card: dict = field(default_factory=dict)
 
-    def __post_init__(self):
-        """Raises ValueError for a schedule with another number of steps than the network's."""
-        if self.schedule.S != self.model.config.S:
-            raise ValueError(
-                f"the schedule has {self.schedule.S} steps, the network {self.model.config.S}"
-            )
-
     def to(self, device: str | torch.device) -> "Dancer":
         """The same dancer on another device; music is brought there, and dances come from there."""
         model = copy.deepcopy(self.model).to(device)
@@ -65,26 +58,8 @@ class Dancer:
         return Dancer(model, self.schedule, *scalers, self.card)
 
     @property
-    def config(self) -> Config:
-        return self.model.config
-
-    @property
     def device(self) -> torch.device:
         return self.motion_scaler.mean.device
-
-    @cached_property
-    def _twin(self) -> Twin | None:
-        kind = kind_of(self.model)
-        return Twin(self.model, kind.fast) if kind and kind.fast and self.config.C else None
-
-    @property
-    def fast(self) -> FastMoFusion | None:
-        """The fast twin with the weights of now.
-
-        It is built at first use, and again when they have changed. None for a network without
-        music, or registered without a twin.
-        """
-        return self._twin and self._twin()
 
     def mel_input(
         self, mel: Float[Tensor, "B M C"], frames: int

@@ -8,7 +8,6 @@ with tensors in the root frame.  Notebook: 00, 07
 
 import copy
 from dataclasses import dataclass, field
-from functools import cached_property
 
 import numpy as np
 import torch
@@ -22,7 +21,7 @@ from ..ddpm import Denoiser, Schedule, draw
 from ..fast.footholds import FastFoothold
 from ..fast.modiff import FastMoDiff
 from ..fast.samplers import ddim_steps, ddpm_steps
-from ..fast.twins import Twin, watched
+from ..fast.twins import watched
 from ..modiff import MoDiff, MoDiffConfig
 from ..motion.checks import checked_count, checked_seconds
 from ..motion.motion import Motion, MotionError, as_motion
@@ -30,8 +29,9 @@ from ..motion.root_frame import FPS, root_path, to_world
 from ..motion.scaler import Scaler
 from ..motion.skeleton import J
 from ..prediction import denoiser_of
-from ..rollout import Sizes, WindowSampler
-from .networks import kind_of, register
+from ..rollout import WindowSampler
+from .networks import register
+from .performer import Performer
 from .with_bar import with_bar
 
 STEPS = 10  # of DDIM, unless told: as good as DDPM with all, and ten times as fast (RESULTS)
@@ -41,7 +41,7 @@ register("walker", FootholdMoDiff, FootholdConfig, build=FootholdMoDiff, fast=Fa
 
 
 @dataclass(frozen=True, eq=False)
-class Walker:
+class Walker(Performer):
     """The network, in its own units, and the scalers that lead there from metres and m/s."""
 
     model: nn.Module
@@ -49,13 +49,6 @@ class Walker:
     pose_scaler: Scaler
     control_scaler: Scaler
     card: dict = field(default_factory=dict)
-
-    def __post_init__(self):
-        """Raises ValueError for a schedule with another number of steps than the network's."""
-        if self.schedule.S != self.model.config.S:
-            raise ValueError(
-                f"the schedule has {self.schedule.S} steps, the network {self.model.config.S}"
-            )
 
     def to(self, device: str | torch.device) -> "Walker":
         """The same walker on another device; `rollout.generate` brings past and control there."""
@@ -67,24 +60,6 @@ class Walker:
             self.control_scaler.to(device),
             self.card,
         )
-
-    @property
-    def config(self) -> Sizes:
-        return self.model.config
-
-    @cached_property
-    def _twin(self) -> Twin | None:
-        kind = kind_of(self.model)
-        return Twin(self.model, kind.fast) if kind and kind.fast else None
-
-    @property
-    def fast(self) -> FastMoDiff | None:
-        """The fast twin with the weights of now.
-
-        It is built at first use, and again when they have changed. None for a network that was
-        registered without one.
-        """
-        return self._twin and self._twin()
 
     def walk(
         self,

@@ -30,6 +30,7 @@ ROLLING = (
     "rollout.py",
     "beyond/footholds.py",
     "motion/scaler.py",
+    "performers/performer.py",
     "performers/walker.py",
     "pretrained/checkpoints.py",
 )

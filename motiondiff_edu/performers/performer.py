@@ -1,0 +1,43 @@
+"""What walkers and dancers share: a network, its noise schedule, and the fast twin."""
+
+from functools import cached_property
+
+from torch import nn
+
+from ..ddpm import Schedule
+from ..fast.twins import Twin
+from .networks import Config, kind_of
+
+
+class Performer:
+    """A trained network and its schedule; `Walker` and `Dancer` add their units.
+
+    Raises ValueError for a schedule with another number of steps than the network's.
+    """
+
+    model: nn.Module
+    schedule: Schedule
+
+    def __post_init__(self):
+        if self.schedule.S != self.model.config.S:
+            raise ValueError(
+                f"the schedule has {self.schedule.S} steps, the network {self.model.config.S}"
+            )
+
+    @property
+    def config(self) -> Config:
+        return self.model.config
+
+    @cached_property
+    def _twin(self) -> Twin | None:
+        kind = kind_of(self.model)
+        return Twin(self.model, kind.fast) if kind and kind.fast and self.config.C else None
+
+    @property
+    def fast(self):
+        """The fast twin with the weights of now: of the kind that the network is registered with.
+
+        It is built at first use, and again when they have changed. None for a network without
+        a condition, or registered without a twin.
+        """
+        return self._twin and self._twin()
