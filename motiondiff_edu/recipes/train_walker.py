@@ -4,6 +4,7 @@ A killed run continues where it was saved last.
 """
 
 import hashlib
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -48,27 +49,48 @@ def train(recipe: Recipe, run_file: Path, clips: list[Clip] | None = None, log=p
 
     Raises ValueError when the run in `run_file` was begun with other settings.
     """
-    config = recipe.config
-    windows = Windows.of(clips or training_clips(recipe), config.T_h, config.T_p)
-    schedule, scalers = (
-        SCHEDULES[recipe.schedule](config.S),
-        (windows.pose_scaler, windows.control_scaler),
-    )
-    dropout = dropout_of(recipe, schedule)
-    torch.manual_seed(recipe.seed)
+    begun = prepared(recipe, clips or training_clips(recipe))
+    windows = begun.windows
     trained, card = train_recipe(
         recipe,
         run_file,
-        network(config, *scalers),
-        loss_of(recipe, windows, schedule, dropout),
-        before=dropout.now if dropout else None,
-        about={"network": type(config).__name__, "data": digest(windows)},
+        begun.model,
+        begun.loss_fn,
+        before=begun.dropout.now if begun.dropout else None,
+        about={"network": type(recipe.config).__name__, "data": digest(windows)},
         facts={"frames": len(windows.poses), "control_range": control_range(windows)},
         data="data_synth.walking, synthetic",
         warmup=500,
         log=log,
     )
-    return Walker(trained, schedule, *scalers, card)
+    return begun.walker(trained, card)
+
+
+@dataclass(frozen=True, eq=False)
+class Prepared:
+    """What a training begins with: data, noise schedule, a fresh network, its loss and dropout."""
+
+    windows: Windows
+    schedule: Schedule
+    model: nn.Module
+    loss_fn: LossFn
+    dropout: Dropout | None
+
+    def walker(self, trained: nn.Module, card: dict | None = None) -> Walker:
+        """The walker of a trained network, in the units of these data."""
+        scalers = self.windows.pose_scaler, self.windows.control_scaler
+        return Walker(trained, self.schedule, *scalers, card or {})
+
+
+def prepared(recipe: Recipe, clips: list[Clip]) -> Prepared:
+    """What a recipe trains on these clips; the network's first weights follow from its seed."""
+    config = recipe.config
+    windows = Windows.of(clips, config.T_h, config.T_p)
+    schedule = SCHEDULES[recipe.schedule](config.S)
+    dropout = dropout_of(recipe, schedule)
+    torch.manual_seed(recipe.seed)
+    model = network(config, windows.pose_scaler, windows.control_scaler)
+    return Prepared(windows, schedule, model, loss_of(recipe, windows, schedule, dropout), dropout)
 
 
 def loss_of(

@@ -20,13 +20,11 @@ import torch
 from data_synth.walking import dataset
 from motiondiff_edu._files import replacing
 from motiondiff_edu.beyond.footholds import FootholdConfig
-from motiondiff_edu.beyond.schedules import SCHEDULES
 from motiondiff_edu.diffusion_dropout import P_D
 from motiondiff_edu.metrics.adherence import adherence
 from motiondiff_edu.metrics.skating import skating
 from motiondiff_edu.motion.augment import augment
 from motiondiff_edu.motion.clip import Clip
-from motiondiff_edu.performers.networks import network
 from motiondiff_edu.performers.walker import Walker
 from motiondiff_edu.performers.windows import Windows
 from motiondiff_edu.recipes.muon import optimizer_for
@@ -34,6 +32,7 @@ from motiondiff_edu.recipes.train_recipe import mean_loss
 from motiondiff_edu.recipes.train_walker import (
     dropout_of,
     loss_of,
+    prepared,
     train,
     training_clips,
 )
@@ -237,15 +236,11 @@ def measure_pace(plan: Plan, size: Size, rounds: int = 5, steps: int = 4) -> Non
 
 def loop_of(recipe: Recipe, clips: list[Clip]) -> Iterator[TrainStep]:
     """The training loop of a recipe, with nothing saved."""
-    config = recipe.config
-    windows = Windows.of(clips, config.T_h, config.T_p)
-    schedule = SCHEDULES[recipe.schedule](config.S)
-    dropout = dropout_of(recipe, schedule)
-    model = network(config, windows.pose_scaler, windows.control_scaler)
-    state = TrainState.start(model, recipe.seed, optimizer_for(model, recipe.optimizer))
-    loss_fn = loss_of(recipe, windows, schedule, dropout)
-    before = dropout.now if dropout else None
-    return train_steps(state, loss_fn, recipe.steps, before=before, progress=False)
+    begun = prepared(recipe, clips)
+    optimizer = optimizer_for(begun.model, recipe.optimizer)
+    state = TrainState.start(begun.model, recipe.seed, optimizer)
+    before = begun.dropout.now if begun.dropout else None
+    return train_steps(state, begun.loss_fn, recipe.steps, before=before, progress=False)
 
 
 def choose_rates(plan: Plan, runs: Path, size: Size) -> None:
