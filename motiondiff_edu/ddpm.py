@@ -235,7 +235,7 @@ def sample_steps(
     noise[s - 1], when given, is the noise of step s; clip bounds x0_hat to [-clip, clip].
     Source: MoDiff Alg. 2. Notebook: 03.
     """
-    x_s = _first(start, generator)
+    x_s = starting_noise(start, generator)
     for s in range(schedule.S, 0, -1):
         eps_hat = denoise(x_s, torch.full((len(x_s),), s, device=x_s.device))
         x0_hat, eps_hat = _clean_guess(x_s, s, eps_hat, schedule, clip)
@@ -336,7 +336,7 @@ def ddim_steps(
     Notebook: 03
     """
     visited = falling(steps, schedule.S)
-    x_s = _first(start, generator)
+    x_s = starting_noise(start, generator)
     for s, after in zip(visited, [*visited[1:], 0], strict=True):
         sigma = ddim_sigma(s, after, schedule, eta)
         eps_hat = denoise(x_s, torch.full((len(x_s),), s, device=x_s.device))
@@ -347,7 +347,7 @@ def ddim_steps(
     yield Step(0, x_s, x_s, torch.zeros_like(x_s))
 
 
-def _first(start: Tensor | tuple[int, ...], generator: torch.Generator | None) -> Tensor:
+def starting_noise(start: Tensor | tuple[int, ...], generator: torch.Generator | None) -> Tensor:
     """x_S itself, or drawn in that shape where the generator lives."""
     if isinstance(start, Tensor):
         return start

@@ -18,7 +18,6 @@ def run(module: ModuleType, given: argparse.Namespace) -> int:
 
     What goes wrong for a reason is said in words, without a traceback.
     """
-    warnings.showwarning = _as_a_note
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("default", UserWarning)

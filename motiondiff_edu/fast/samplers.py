@@ -12,7 +12,7 @@ import torch
 from jaxtyping import Float
 from torch import Tensor
 
-from ..ddpm import Denoiser, Schedule, ddim_sigma, draw, falling, p_variance
+from ..ddpm import Denoiser, Schedule, ddim_sigma, draw, falling, p_variance, starting_noise
 
 
 class FastStep:
@@ -81,9 +81,8 @@ def ddim_steps(
 ) -> Iterator[FastStep]:
     """`ddpm.ddim_steps`, faster: the same records for the same noise, to rounding.
 
-    Notebook: 12
-
     Raises ValueError for steps that do not fall, or lie outside 1..S, and for an eta outside 0..1.
+    Notebook: 12
     """
     visited, alpha_bar = falling(steps, schedule.S), schedule.alpha_bar.tolist()
     plan = []
@@ -104,8 +103,7 @@ def _walk(
     clip: float | None,
 ) -> Iterator[FastStep]:
     """Follow a plan of (s, weight of x0_hat, weight of x_s, weight of eps_hat, sigma)."""
-    home = generator.device if generator else None
-    x = start if isinstance(start, Tensor) else torch.randn(start, generator=generator, device=home)
+    x = starting_noise(start, generator)
     labels = (
         torch.tensor([p[0] for p in plan], device=x.device)[:, None].repeat(1, len(x)).unbind(0)
     )
