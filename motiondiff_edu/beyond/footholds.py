@@ -80,9 +80,9 @@ class Standing:
     memory: Float[Tensor, "B M width"]
     held: Float[Tensor, "B T_p K"]
 
-    def repeat_interleave(self, repeats: int, dim: int = 0) -> "Standing":
-        parts = (self.memory, self.held)
-        return Standing(*(part.repeat_interleave(repeats, dim) for part in parts))
+    def index_select(self, dim: int, index: Int[Tensor, "N"]) -> "Standing":
+        """These samples of both, as torch.index_select."""
+        return Standing(*(part.index_select(dim, index) for part in (self.memory, self.held)))
 
 
 class FootholdMoDiff(MoDiff):

@@ -25,9 +25,10 @@ def repeated(batch: tuple[Tensor, ...], noises: int) -> tuple[Tensor, ...]:
 
 @dataclass(frozen=True, eq=False)
 class SharedEncoding:
-    """A MoDiff for `repeated` batches, which encodes only the first of each window's copies.
+    """A MoDiff for `repeated` batches, which encodes what is alike in a window's copies once.
 
-    Not together with diffusion dropout: it makes the copies of a past unlike.  Notebook: 07
+    Diffusion dropout makes some copies of a past unlike the first one: those are encoded as well.
+    Notebook: 07
     """
 
     model: nn.Module
@@ -38,15 +39,19 @@ class SharedEncoding:
         return self.model.config
 
     def encode(self, *inputs: Float[Tensor, "B ..."]):
-        """The memory of the repeated batch.  Raises ValueError where copies of a window differ."""
-        distinct = [part[:: self.noises] for part in inputs]
-        for part, again in zip(inputs, repeated(tuple(distinct), self.noises), strict=True):
-            if not torch.equal(part, again):
-                raise ValueError(
-                    f"windows are encoded once for {self.noises} noises, but their copies differ: "
-                    "repeat the batch with `repeated`, and use no diffusion dropout"
-                )
-        return self.model.encode(*distinct).repeat_interleave(self.noises, dim=0)
+        """The memory of the repeated batch, in its order."""
+        B = len(inputs[0])
+        first = torch.arange(0, B, self.noises)  # of each window's copies
+        unlike = torch.zeros(B, dtype=torch.bool)
+        for part in inputs:
+            again = part[first].repeat_interleave(self.noises, dim=0)
+            unlike |= (part != again).flatten(1).any(1).cpu()
+        others = unlike.nonzero()[:, 0]
+        row = torch.arange(B) // self.noises  # of the memory
+        row[others] = len(first) + torch.arange(len(others))
+        rows = torch.cat([first, others])
+        memory = self.model.encode(*(part[rows] for part in inputs))
+        return memory.index_select(0, row.to(inputs[0].device))
 
     def decode(self, x_s, s, memory) -> Float[Tensor, "B T_p D"]:
         return self.model.decode(x_s, s, memory)

@@ -10,6 +10,8 @@ from pathlib import Path
 import torch
 
 from .._files import replacing
+from ..performers.dancer import Dancer
+from ..performers.walker import Walker
 from ..pretrained.checkpoints import FOLDER, save
 from .dancers import DANCE_RECIPES, SHIPPED_DANCERS
 from .train_dancer import train_dancer
@@ -20,6 +22,9 @@ ALL = RECIPES | DANCE_RECIPES
 EIGHT_BITS = {
     "regression",
     "unconditional",
+    "walker-plain",
+    "walker-printed",
+    "walker-eps",
     *(recipe.name for recipe in PAIRS),
 }  # so that all fit into 25 MB
 
@@ -62,16 +67,22 @@ def main() -> None:
 
 def build(name: str, run: Path, out: Path) -> Path:
     """Train a recipe by its name, continuing `run` where there is one; write what comes of it."""
+    return save(trained(name, run), out, bits=8 if name in EIGHT_BITS else 16)
+
+
+def trained(name: str, run: Path) -> Walker | Dancer:
+    """The performer of a recipe; one that it begins with is trained before, beside `run`."""
 
     def log(line: str) -> None:
         print(line, flush=True)
 
-    figure = (
-        train(RECIPES[name], run, log=log)
-        if name in RECIPES
-        else train_dancer(DANCE_RECIPES[name], run, log=log)
-    )
-    return save(figure, out, bits=8 if name in EIGHT_BITS else 16)
+    if name in DANCE_RECIPES:
+        return train_dancer(DANCE_RECIPES[name], run, log=log)
+    recipe, first = RECIPES[name], None
+    if recipe.begins_with:
+        before = run.with_name(f"{recipe.begins_with}.safetensors")
+        first = trained(recipe.begins_with, before).model
+    return train(recipe, run, log=log, first=first)
 
 
 def point_alias(folder: Path, name: str) -> None:

@@ -9,10 +9,10 @@ from ..performers.walker import Walker
 from ..training import TrainState, train_steps
 from .muon import optimizer_for
 from .train_walker import prepared
-from .walkers import WALKER_X0, Recipe
+from .walkers import WALKER_TRUNK, Recipe
 
 WARM_UP = 100  # steps
-BUDGET = replace(WALKER_X0, name="budget", batch=32, lr=3e-3, decay=0.99)
+BUDGET = replace(WALKER_TRUNK, name="budget", batch=32, lr=3e-3, decay=0.99)
 
 
 def train_for(seconds: float, clips: list[Clip], recipe: Recipe = BUDGET) -> tuple[Walker, int]:

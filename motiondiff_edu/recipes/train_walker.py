@@ -11,6 +11,7 @@ import numpy as np
 import torch
 from torch import Tensor, nn
 
+from .._files import digest_of_tensors
 from ..beyond import loss_terms
 from ..beyond.footholds import CleanFootholds, FootholdConfig
 from ..beyond.past_noise import past_noise
@@ -42,23 +43,39 @@ def training_clips(recipe: Recipe) -> list[Clip]:
     return both + [reverse_time(clip) for clip, take in zip(both, chosen, strict=True) if take]
 
 
-def train(recipe: Recipe, run_file: Path, clips: list[Clip] | None = None, log=print) -> Walker:
+def train(
+    recipe: Recipe,
+    run_file: Path,
+    clips: list[Clip] | None = None,
+    log=print,
+    first: nn.Module | None = None,
+) -> Walker:
     """Train (or continue) a recipe; `run_file` holds the run.
 
     Returns the averaged network as a walker.
+    `first` is the trained network that the recipe begins with, if it names one.
 
-    Raises ValueError when the run in `run_file` was begun with other settings.
+    Raises ValueError when the run in `run_file` was begun with other settings, and when `first` is
+    missing or not wanted.
     """
+    if bool(recipe.begins_with) != (first is not None):
+        wanted = f"the network of {recipe.begins_with}" if recipe.begins_with else "a fresh network"
+        raise ValueError(f"{recipe.name} begins with {wanted}: pass it as `first`, or nothing")
     begun = prepared(recipe, clips or training_clips(recipe))
     windows = begun.windows
+    about = {"network": type(recipe.config).__name__, "data": digest(windows)}
+    if first is not None:
+        begun.model.load_state_dict(first.state_dict())
+        about["first"] = digest_of_tensors(first.state_dict())[:16]
+    facts = {"frames": len(windows.poses), "control_range": control_range(windows)}
     trained, card = train_recipe(
         recipe,
         run_file,
         begun.model,
         begun.loss_fn,
         before=begun.dropout.now if begun.dropout else None,
-        about={"network": type(recipe.config).__name__, "data": digest(windows)},
-        facts={"frames": len(windows.poses), "control_range": control_range(windows)},
+        about=about,
+        facts=facts | {key: about[key] for key in ("first",) if key in about},
         data="data_synth.walking, synthetic",
         warmup=500,
         log=log,
@@ -108,7 +125,7 @@ def loss_of(
             noised = past_noise(past, recipe.past_noise, change[0], generator)
         batch = tuple(part.to(device) for part in (past, noised, x0, control))
         past, noised, x0, control = repeated(batch, recipe.noises)
-        if recipe.noises > 1 and dropout is None:
+        if recipe.noises > 1:
             model = SharedEncoding(model, recipe.noises)
         if footholds:
             model = CleanFootholds(model, past, noised, recipe.foot_noise)

@@ -52,6 +52,7 @@ class Recipe:
     loss_weights: LossWeights = LossWeights()
     dropout: tuple[float, ...] = ()  # rates P_d of diffusion dropout in turn; none: no dropout
     dropout_start: float = START  # share of the training before the first of them
+    begins_with: str = ""  # the recipe whose network this training continues; none: a fresh one
     decay: float = 0.999
     clips: int = 720
     seconds: float = 20.0
@@ -72,8 +73,11 @@ class Recipe:
 
 SMALL_FEET = FootholdConfig(width=128, hidden=256, cross_layers=2)  # MODIFF_SMALL with footholds
 OURS = LossWeights(metres=2.0, near=1.0, bones=2.0)
-WALKER_X0 = Recipe(
-    "walker-x0",
+# The rate of diffusion dropout is 0 in the first half of Algorithm 1's training. So `walker` and
+# `walker-plain` have that half in common, WALKER_TRUNK, and each continues it: with the paper's
+# rates, and without. The learning rate falls to 0 in each half.
+WALKER_TRUNK = Recipe(
+    "walker-trunk",
     SMALL_FEET,
     steps=20_000,
     schedule="leap",
@@ -82,11 +86,32 @@ WALKER_X0 = Recipe(
     past_noise=0.3,
     loss_weights=OURS,
 )
+WALKER_PLAIN = replace(
+    WALKER_TRUNK,
+    name="walker-plain",
+    begins_with="walker-trunk",
+    steps=8000,
+    lr=1e-3,
+    seed=1,
+    save_every=500,
+)
+WALKER = replace(WALKER_PLAIN, name="walker", dropout=P_D, dropout_start=0.0)
 WALKER_EPS = replace(
-    WALKER_X0,
+    WALKER_TRUNK,
     name="walker-eps",
     config=MODIFF_SMALL,
     loss_weights=replace(OURS, high_noise=3.0),
+)
+# The paper's recipe as it stands, at our small size: eps without a skip, the linear schedule, Adam
+# at 5e-5, batch 64, the plain loss, diffusion dropout, control never held. Ours: the data, and the
+# warm-up and cosine of the rate.
+WALKER_PRINTED = Recipe(
+    "walker-printed",
+    replace(MODIFF_SMALL, skip=False),
+    steps=20_000,
+    lr=5e-5,
+    held_control=0.0,
+    dropout=P_D,
 )
 # The paper's sizes, Adam, 5e-5, batch 64, plain loss. Ours: the data, whose windows start at every
 # frame (so 300,000 steps, not epochs) and hold the control in half of the cases; the skip; the
@@ -107,7 +132,7 @@ MEND_CONFIG = MoDiffConfig(
     skip=False,
 )
 MEND_PLAIN = replace(
-    WALKER_X0,
+    WALKER_TRUNK,
     name="mend-plain",
     config=MEND_CONFIG,
     steps=8000,
@@ -124,5 +149,5 @@ PAIRS = tuple(
     for one in (MEND_PLAIN, MEND_DROPOUT)
 )
 
-SHIPPED = (WALKER_X0, WALKER_EPS, *PAIRS)
-RECIPES = {recipe.name: recipe for recipe in (*SHIPPED, WALKER_PAPER)}
+SHIPPED = (WALKER, WALKER_PLAIN, WALKER_PRINTED, WALKER_EPS, *PAIRS)
+RECIPES = {recipe.name: recipe for recipe in (*SHIPPED, WALKER_TRUNK, WALKER_PAPER)}

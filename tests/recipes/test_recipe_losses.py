@@ -20,7 +20,7 @@ from motiondiff_edu.performers.networks import network
 from motiondiff_edu.performers.windows import Windows
 from motiondiff_edu.recipes import train_dancer, train_walker
 from motiondiff_edu.recipes.dancers import DANCER, DANCER_PLAIN, DanceLossWeights
-from motiondiff_edu.recipes.walkers import MEND_DROPOUT, WALKER_EPS, WALKER_X0, Recipe
+from motiondiff_edu.recipes.walkers import MEND_DROPOUT, WALKER_EPS, WALKER_TRUNK, Recipe
 
 T_H, T_P = 4, 3
 SIZES = dict(
@@ -45,7 +45,7 @@ def seeded(seed: int = 8) -> torch.Generator:
 # shipped, and the next random number after them
 TRAINED_WITH = {
     "walker-x0": (
-        replace(WALKER_X0, config=FEET),
+        replace(WALKER_TRUNK, config=FEET),
         None,
         [3.3518362045288086, 4.058508396148682, 6.164492130279541],
         0.9624656438827515,
@@ -63,7 +63,7 @@ TRAINED_WITH = {
         0.9755024313926697,
     ),
     "footholds, past noise and dropout": (
-        replace(WALKER_X0, config=FEET),
+        replace(WALKER_TRUNK, config=FEET),
         0.5,
         [3.3649730682373047, 6.016450881958008, 4.705264091491699],
         0.9719537496566772,
@@ -196,4 +196,4 @@ def test_without_departures_a_dancer_s_loss_is_the_mean_square_of_eps():
 @pytest.mark.parametrize("change", [{"batch": 0}, {"noises": 0}])
 def test_a_batch_needs_a_window_and_a_noise(change):
     with pytest.raises(ValueError, match="a window and a noise at least"):
-        replace(WALKER_X0, **change)
+        replace(WALKER_TRUNK, **change)

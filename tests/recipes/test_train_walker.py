@@ -12,13 +12,15 @@ import torch
 
 from motiondiff_edu.beyond.footholds import FootholdConfig
 from motiondiff_edu.diffusion_dropout import P_D, Dropout
-from motiondiff_edu.modiff import MODIFF_SMALL
+from motiondiff_edu.modiff import MODIFF_SMALL, MoDiff
 from motiondiff_edu.pretrained.checkpoints import load_walker, save
+from motiondiff_edu.recipes import __main__ as command
 from motiondiff_edu.recipes import train_walker as train_module
 from motiondiff_edu.recipes.budget import BUDGET, train_for
+from motiondiff_edu.recipes.runs import notes_of
 from motiondiff_edu.recipes.train_recipe import commit_of
 from motiondiff_edu.recipes.train_walker import train, training_clips
-from motiondiff_edu.recipes.walkers import RECIPES, SHIPPED, WALKER_X0, LossWeights, Recipe
+from motiondiff_edu.recipes.walkers import RECIPES, SHIPPED, WALKER_TRUNK, LossWeights, Recipe
 
 TINY = replace(MODIFF_SMALL, width=16, heads=2, hidden=24, T_p=5)
 SHORT = Recipe("short", TINY, steps=6, batch=3, clips=2, seconds=2.0, reversed_share=1.0)
@@ -49,7 +51,11 @@ def test_a_recipe_becomes_a_walker_with_its_card(tmp_path: Path):
 
 
 FEET = FootholdConfig(width=16, heads=2, hidden=24, T_p=5)
-LIKE_SHIPPED = replace(WALKER_X0, config=FEET, steps=8, batch=3, clips=2, seconds=2.0, save_every=3)
+LIKE_SHIPPED = replace(
+    WALKER_TRUNK, config=FEET, steps=8, batch=3, clips=2, seconds=2.0, save_every=3
+)
+    WALKER_TRUNK, config=FEET, steps=8, batch=3, clips=2, seconds=2.0, save_every=3
+)
 
 
 class Killed(Exception):
@@ -119,6 +125,36 @@ def test_dropout_rises_within_a_training_when_its_time_has_come(tmp_path: Path, 
     assert seen[:4] == [0.0, 0.0, 1.0, 1.0]  # what follows is the final loss
 
 
+def test_a_recipe_that_begins_with_another_continues_its_network(tmp_path: Path):
+    first = train(SHORT, tmp_path / "first", log=quiet)
+    later = replace(SHORT, name="later", begins_with="short", steps=1, lr=0.0)
+    walker = train(later, tmp_path / "later", log=quiet, first=first.model)
+    for one, other in zip(first.model.parameters(), walker.model.parameters(), strict=True):
+        assert torch.equal(one, other)
+    assert walker.card["first"] == train(later, tmp_path / "later", first=first.model).card["first"]
+    with pytest.raises(ValueError, match="later begins with the network of short: pass it"):
+        train(later, tmp_path / "other", log=quiet)
+    with pytest.raises(ValueError, match="short begins with a fresh network"):
+        train(SHORT, tmp_path / "other", log=quiet, first=first.model)
+    with pytest.raises(ValueError, match="begun with first = "):
+        train(later, tmp_path / "later", log=quiet, first=MoDiff(TINY))
+
+
+def test_walker_and_its_plain_twin_differ_in_dropout_alone():
+    walker, plain = RECIPES["walker"], RECIPES["walker-plain"]
+    assert walker.dropout == P_D and walker.dropout_start == 0 and not plain.dropout
+    alike = replace(walker, name="walker-plain", dropout=(), dropout_start=plain.dropout_start)
+    assert alike == plain and RECIPES[plain.begins_with].dropout == ()
+
+
+def test_what_a_recipe_begins_with_is_trained_before_it(tmp_path: Path, monkeypatch):
+    later = replace(SHORT, name="later", begins_with="short", steps=1)
+    monkeypatch.setattr(command, "RECIPES", {"short": SHORT, "later": later})
+    command.build("later", tmp_path / "later.safetensors", tmp_path / "out.safetensors")
+    assert load_walker(tmp_path / "out.safetensors").card["name"] == "later"
+    assert notes_of(tmp_path / "short.safetensors")
+
+
 def test_a_run_is_continued_with_its_own_settings_and_data_or_not_at_all(tmp_path: Path):
     walker = train(SHORT, tmp_path / "run", log=quiet)
     again = train(SHORT, tmp_path / "run", log=quiet)  # nothing is left to do
@@ -162,7 +198,8 @@ def test_dropout_rises_with_the_seconds_of_a_budget(monkeypatch):
 
 def test_what_is_shipped_has_a_recipe_and_the_papers_one_is_the_papers():
     pairs = [f"mend-{kind}-{k}" for k in range(3) for kind in ("plain", "dropout")]
-    assert [recipe.name for recipe in SHIPPED] == ["walker-x0", "walker-eps", *pairs]
+    walkers = ["walker", "walker-plain", "walker-printed", "walker-eps"]
+    assert [recipe.name for recipe in SHIPPED] == [*walkers, *pairs]
     assert all(RECIPES[name].dropout == (P_D if "dropout" in name else ()) for name in pairs)
     paper = RECIPES["walker-paper"]
     assert (paper.optimizer, paper.lr, paper.batch, paper.config.width) == ("adam", 5e-5, 64, 256)

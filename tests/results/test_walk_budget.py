@@ -2,7 +2,7 @@
 
 from dataclasses import asdict
 
-from motiondiff_edu.recipes.walkers import WALKER_X0
+from motiondiff_edu.recipes.walkers import WALKER_TRUNK
 from tools.results.walks.budget import FEET, SMALL, VARIANTS, recipe_of
 
 
@@ -36,6 +36,6 @@ def test_each_variant_differs_from_its_base_in_what_its_words_say():
 
 
 def test_the_base_has_walker_x0_s_choices_but_for_footholds_and_the_budget():
-    own, shipped = (asdict(recipe) for recipe in (recipe_of("T_p-10"), WALKER_X0))
+    own, shipped = (asdict(recipe) for recipe in (recipe_of("T_p-10"), WALKER_TRUNK))
     differing = {key for key in own if own[key] != shipped[key]}
     assert differing == {"name", "config", "batch", "lr", "decay"}
