@@ -54,8 +54,6 @@ FEET = FootholdConfig(width=16, heads=2, hidden=24, T_p=5)
 LIKE_SHIPPED = replace(
     WALKER_TRUNK, config=FEET, steps=8, batch=3, clips=2, seconds=2.0, save_every=3
 )
-    WALKER_TRUNK, config=FEET, steps=8, batch=3, clips=2, seconds=2.0, save_every=3
-)
 
 
 class Killed(Exception):
