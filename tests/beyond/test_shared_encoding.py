@@ -41,7 +41,8 @@ def test_copies_that_differ_are_encoded_too(which):
     torch.manual_seed(0)
     model, given = MoDiff(CONFIG), [part.clone() for part in inputs()]
     given[which][[0, 4]] += 1  # the first copy of a window, and the second of another
-    wanted, encode, seen = model(*given), model.encode, []
+    seen = []
+    wanted, encode = model(*given), model.encode
     model.encode = lambda past, control: seen.append(past) or encode(past, control)
     torch.testing.assert_close(SharedEncoding(model, 3)(*given), wanted)
     assert len(seen[0]) == 2 + 2 + 1
