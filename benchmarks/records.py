@@ -1,9 +1,13 @@
 """Records of measured figures, kept in lists in JSON files.
 
-Each is {name, value, low, high, seeds, unit, paper, command}.
+Each is {name, value, low, high, seeds, unit, paper, command}. One of a benchmark also has
+`machine`: the processor that it was timed on, and how many of its cores were free to use.
 """
 
 import json
+import os
+import platform
+import re
 from pathlib import Path
 
 import numpy as np
@@ -11,6 +15,7 @@ import numpy as np
 from motiondiff_edu._files import replacing
 
 KEYS = ("name", "value", "low", "high", "seeds", "unit", "paper", "command")
+CPU_INFO = Path("/proc/cpuinfo")  # Linux; elsewhere Python's own answer is taken
 
 
 def record(
@@ -35,15 +40,29 @@ def record(
         unit=unit,
         paper=paper,
         command=command,
+        machine=machine(),
     )
+
+
+def machine() -> str:
+    """The processor's name, and the number of cores that this process may use."""
+    found = re.search(r"^model name\s*:\s*(.+)$", _cpu_info(), re.MULTILINE)
+    name = found[1].strip() if found else platform.processor() or platform.machine()
+    cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count()
+    return f"{name}, {cores} core{'s' * (cores != 1)}"
+
+
+def _cpu_info() -> str:
+    return CPU_INFO.read_text(encoding="utf-8") if CPU_INFO.is_file() else ""
 
 
 def write_records(path: str | Path, records: list[dict]) -> None:
     """Write records as JSON, to a temporary name first; raises ValueError where one lacks a key."""
     for one in records:
-        if set(one) != set(KEYS):
+        if set(one) - {"machine"} != set(KEYS):
             raise ValueError(
-                f"record {one.get('name')!r} must have exactly the keys {', '.join(KEYS)}"
+                f"record {one.get('name')!r} must have exactly the keys {', '.join(KEYS)}, and "
+                "machine where it was timed"
             )
     with replacing(path) as aside:
         aside.write_text(json.dumps(records, indent=1) + "\n", encoding="utf-8")

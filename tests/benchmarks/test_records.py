@@ -12,7 +12,7 @@ import records  # noqa: E402
 
 def test_a_record_has_median_and_interval():
     one = records.record("bench.x", [1.0, 2.0, 9.0, 3.0, 2.5], unit="ratio", command="python x.py")
-    assert set(one) == set(records.KEYS)
+    assert set(one) == {*records.KEYS, "machine"}
     assert (
         one["value"] == 2.5
         and one["low"] <= 2.5 <= one["high"]
@@ -20,6 +20,18 @@ def test_a_record_has_median_and_interval():
         and one["high"] <= 9
     )
     assert one["seeds"] == [0, 1, 2, 3, 4] and one["paper"] is None
+
+
+def test_the_record_names_the_processor(tmp_path, monkeypatch):
+    said = tmp_path / "cpuinfo"
+    said.write_text("processor\t: 0\nmodel name\t: Fast (R) Chip @ 3 GHz\nflags\t: avx\n")
+    monkeypatch.setattr(records, "CPU_INFO", said)
+    monkeypatch.setattr(records.os, "sched_getaffinity", lambda pid: {0, 1}, raising=False)
+    assert records.machine() == "Fast (R) Chip @ 3 GHz, 2 cores"
+    monkeypatch.setattr(records, "CPU_INFO", tmp_path / "none")
+    monkeypatch.setattr(records.platform, "processor", lambda: "riscv")
+    monkeypatch.setattr(records.os, "sched_getaffinity", lambda pid: {0}, raising=False)
+    assert records.machine() == "riscv, 1 core"
 
 
 @pytest.mark.parametrize("values", [[], [1.0, float("nan")]])
