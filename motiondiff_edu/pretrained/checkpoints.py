@@ -141,17 +141,12 @@ def _assembled(kind: Kind, tensors: dict[str, Tensor], metadata: dict[str, str])
 
 
 def available() -> dict[str, Path]:
-    """The shipped weights: {name: file}; an alias stands beside the name it points to."""
-    files = {path.stem: path for path in sorted(FOLDER.glob("*.safetensors"))}
-    aliases = FOLDER / "aliases.json"
-    named = json.loads(aliases.read_text()) if aliases.is_file() else {}
-    return files | {alias: files[name] for alias, name in named.items() if name in files}
+    """The shipped weights: {name: file}."""
+    return {path.stem: path for path in sorted(FOLDER.glob("*.safetensors"))}
 
 
 def pretrained(name: str = "walker") -> Walker | Dancer:
-    """Shipped weights by name: "walker" is the better one of "walker-eps" and "walker-x0".
-
-    "dancer" dances.
+    """Shipped weights by name: "walker" walks, "dancer" dances; `available` has all names.
 
     Raises CheckpointError with the names there are.
     """

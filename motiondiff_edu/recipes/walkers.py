@@ -73,9 +73,9 @@ class Recipe:
 
 SMALL_FEET = FootholdConfig(width=128, hidden=256, cross_layers=2)  # MODIFF_SMALL with footholds
 OURS = LossWeights(metres=2.0, near=1.0, bones=2.0)
-# The rate of diffusion dropout is 0 in the first half of Algorithm 1's training. So `walker` and
-# `walker-plain` have that half in common, WALKER_TRUNK, and each continues it: with the paper's
-# rates, and without. The learning rate falls to 0 in each half.
+# The paper's rate of diffusion dropout is 0 at first. So `walker` and `walker-plain` have the first
+# part of their training in common, WALKER_TRUNK, and each continues it: with the paper's rates, and
+# without. The learning rate falls to 0 in both parts.
 WALKER_TRUNK = Recipe(
     "walker-trunk",
     SMALL_FEET,
@@ -108,7 +108,7 @@ WALKER_EPS = replace(
 WALKER_PRINTED = Recipe(
     "walker-printed",
     replace(MODIFF_SMALL, skip=False),
-    steps=20_000,
+    steps=12_000,
     lr=5e-5,
     held_control=0.0,
     dropout=P_D,

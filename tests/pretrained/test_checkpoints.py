@@ -126,14 +126,11 @@ def test_the_card_lies_beside_it_and_no_temporary_file_stays(saved: Path):
     assert sorted(p.name for p in saved.parent.iterdir()) == ["tiny.json", "tiny.safetensors"]
 
 
-def test_aliases_and_unknown_names(saved: Path, monkeypatch: pytest.MonkeyPatch):
+def test_shipped_weights_have_their_files_names(saved: Path, monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setattr(checkpoints, "FOLDER", saved.parent)
-    (saved.parent / "aliases.json").write_text('{"walker": "tiny", "ghost": "gone"}')
-    assert available() == {"tiny": saved, "walker": saved}
-    assert pretrained("walker").card["name"] == "tiny"
-    with pytest.raises(
-        CheckpointError, match="no weights are called 'dancer'; there are: tiny, walker"
-    ):
+    assert available() == {"tiny": saved}
+    assert pretrained("tiny").card["name"] == "tiny"
+    with pytest.raises(CheckpointError, match="no weights are called 'dancer'; there are: tiny$"):
         pretrained("dancer")
 
 

@@ -82,9 +82,31 @@ def test_gains_and_cost_by_hand():
         *[pytest.approx(1.0)] * 3,
     )
     assert adherence.value == pytest.approx(-0.1) and adherence.unit == "m/s"
-    assert dropout_part.cost(plain, dropout).value == pytest.approx(
-        1.2
-    )  # the larger of 2/3 and 6/5
+    cost = dropout_part.cost("cost", plain, dropout)
+    assert cost.name == "cost" and cost.value == pytest.approx(1.2)  # the larger of 2/3 and 6/5
+
+
+def test_each_comparison_has_names_of_its_own(trials, monkeypatch):
+    """The shipped pair beside the small pairs: no figure of one overwrites one of the other."""
+    monkeypatch.setattr(dropout_part.checkpoints, "load_walker", lambda path: path)
+    monkeypatch.setattr(
+        dropout_part,
+        "measured",
+        lambda walkers, trials, share: {
+            kind: np.full((len(walkers), 4), 1 + share + ("plain" in walkers[0]))
+            for kind in dropout_part.FIGURES
+        },
+    )
+    weights = {n: n for n in ("walker", "walker-plain", *names_of("plain"), *names_of("dropout"))}
+    shipped, small = (
+        {one.name: one.value for one in dropout_part.dropout_figures(pair, trials, weights)}
+        for pair in (dropout_part.SHIPPED_PAIR, dropout_part.SMALL_PAIRS)
+    )
+    assert not set(shipped) & set(small) and len(shipped) == len(small)
+    assert shipped["dropout_cost_complete"] == small["pairs_dropout_cost_complete"]
+    assert shipped["dropout_cost_complete"] == pytest.approx(0.5**0.5)  # bones: roots of squares
+    assert shipped["walker_plain_missing_adherence_mps"] == pytest.approx(2.3)
+    assert small["dropout_complete_bone_cm"] == pytest.approx(1.0)
 
 
 def test_errors_of_a_repair_count_what_was_missing(trials):
@@ -151,13 +173,13 @@ def test_the_tables_say_what_the_records_say(tmp_path):
         )
 
     names = [
-        "mend.dropout_cost_complete",
+        "mend.pairs_dropout_cost_complete",
         "mend.plain_missing_bone_cm",
         "mend.dropout_missing_bone_cm",
     ]
     records = {name: one(name, 1.25 + k) for k, name in enumerate(names)}
     said = tables.dropout(records, tmp_path)
-    assert "| missing | bone | 2.25 cm | 3.25 cm |" in said and "7 unseen pasts" in said
+    assert "| missing | bone | - | - | 2.25 cm | 3.25 cm |" in said and "7 unseen pasts" in said
 
 
 def test_the_pairs_are_shipped_names():

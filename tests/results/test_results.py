@@ -21,7 +21,7 @@ from tools.results.intervals import interval  # noqa: E402
 from tools.results.page import cards
 from tools.results.page.bars import BARS, Bar  # noqa: E402
 from tools.results.page.render import read_records, render  # noqa: E402
-from tools.results.walks import parts, steps_table  # noqa: E402
+from tools.results.walks import steps_table  # noqa: E402
 from tools.results.walks.scores import diversity, score  # noqa: E402
 
 CONTROL = np.stack(
@@ -92,7 +92,7 @@ def test_the_page_is_made_from_the_records(tmp_path):
         low=0.1, high=0.3, seeds={}, unit="cm", paper=None, command="python -m tools.results"
     )
     (tmp_path / "results").mkdir()
-    path = tmp_path / "results" / "walker-x0.json"
+    path = tmp_path / "results" / "walker.json"
     path.write_text(json.dumps([dict(name="walker.bone_rmse_cm", value=0.2345, **keys)]))
     (tmp_path / "bench").mkdir()
     render(tmp_path, tmp_path / "bench")
@@ -104,21 +104,12 @@ def test_the_page_is_made_from_the_records(tmp_path):
         read_records(tmp_path / "results")
 
 
-def test_walker_is_written_from_the_records_of_whom_it_stands_for(tmp_path, monkeypatch):
-    monkeypatch.setattr(parts, "alias_of", lambda: "walker-x0")
-    assert parts.alias_records(tmp_path) == []
-    (tmp_path / "walker-x0.json").write_text(
-        json.dumps([{"name": "walker-x0.bone_rmse_cm", "value": 0.2}])
-    )
-    assert parts.alias_records(tmp_path) == [{"name": "walker.bone_rmse_cm", "value": 0.2}]
-
-
 def test_a_card_tells_only_figures_of_its_own_weights(tmp_path):
-    record = {"name": "walker-x0.bone_rmse_cm", "value": 0.2, "seeds": {"weights": "abc"}}
-    (tmp_path / "walker-x0.json").write_text(json.dumps([record]))
-    assert cards.metrics(tmp_path, "walker-x0", "abc") == {"bone_rmse_cm": 0.2}
+    record = {"name": "walker.bone_rmse_cm", "value": 0.2, "seeds": {"weights": "abc"}}
+    (tmp_path / "walker.json").write_text(json.dumps([record]))
+    assert cards.metrics(tmp_path, "walker", "abc") == {"bone_rmse_cm": 0.2}
     assert (
-        cards.metrics(tmp_path, "walker-x0", "other")
+        cards.metrics(tmp_path, "walker", "other")
         == {}
         == cards.metrics(tmp_path, "walker-eps", "abc")
     )

@@ -2,11 +2,12 @@
 
     python -m tools.results [--only PART ...] [--full] [--quick] [--weights NAME=FILE] [--render]
 
-Parts: walker-eps, walker-x0, walker-ddim10, their -lookahead lines, footsteps; dancer,
-dancer-plain, regression, unheard (music like none in training), attention, dance-time; mend
-(dropout and repairs), mend-both (both papers' repairs), inbetween, known-answer (ways of filling in
-where the right one is a formula). Those that train, for minutes a row: ladder (from the paper's
-walker to ours), budget, dance-budget and mend-map; one row of them: budget.T_p-5, dance-budget.v.
+Parts: walker, walker-plain, walker-printed, walker-eps, walker-ddim10, walker-lookahead,
+walker-eps-lookahead, footsteps; dancer, dancer-plain, regression, unheard (music like none in
+training), attention, dance-time; mend (dropout and repairs), mend-both (both papers' repairs),
+inbetween, known-answer (ways of filling in where the right one is a formula). Those that train, for
+minutes a row: ladder (from the paper's walker to ours), budget, dance-budget and mend-map; one row
+of them: budget.T_p-5, dance-budget.v.
 Without --only, all are measured that the shipped weights allow; --full adds those that train, whose
 records are else kept as they are. A training that was killed goes on. --quick measures little, into
 build/quick, and is for trying the code; --render only writes docs/RESULTS.md from the records that
@@ -38,7 +39,6 @@ from .walks.parts import (
     QUICK,
     Bench,
     Walks,
-    alias_records,
     footstep_records,
     walker_records,
     weights_digest,
@@ -52,7 +52,7 @@ MEASURED = (
     "known-answer",
 )  # by the shipped weights, or by none
 MENDED = {  # by these weights
-    "mend": {*names_of("plain"), *names_of("dropout")},
+    "mend": {"walker", "walker-plain", *names_of("plain"), *names_of("dropout")},
     "mend-both": {both.WALKER, "unconditional"},
     "inbetween": {"unconditional"},
 }
@@ -88,7 +88,6 @@ def main() -> None:
     docs = Path("build/quick") if asked.quick else DOCS
     if not asked.render:
         measure(asked, docs / "results")
-    write_records(docs / "results" / "walker.json", alias_records(docs / "results"))
     if not asked.quick:
         add_metrics(docs / "results")
     render(docs)

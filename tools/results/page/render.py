@@ -66,7 +66,13 @@ def bars(records: dict[str, dict]) -> str:
         for bar in BARS
     ]
     head = ["what", "figure", "bar", "measured", "interval", ""]
-    return "## The bars\n\n" + table(head, rows)
+    return "## The bars\n\n" + table(head, rows) + timed_on(records)
+
+
+def timed_on(records: dict[str, dict]) -> str:
+    """The processors that the benchmarks were timed on; nothing where no record names one."""
+    machines = sorted({one["machine"] for one in records.values() if "machine" in one})
+    return f"\nThe speeds were measured on: {'; '.join(machines)}.\n" if machines else ""
 
 
 def _verdict(bar: Bar, one: dict | None) -> list[str]:

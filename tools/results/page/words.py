@@ -50,7 +50,7 @@ GOALS = {
         "what diffusion dropout saves in control error, with joints missing"
     ),
     "mend.dropout_cost_complete": (
-        "the error with diffusion dropout, over that without, from complete pasts"
+        "the walker's error, over that of the walker without diffusion dropout, from complete pasts"
     ),
     "mend.arm_rmse_over_ridge": "the error of a reconstructed arm, over that of ridge regression",
     "mend.arm_rmse_over_meanpose": "the error of a reconstructed arm, over that of the mean pose",

@@ -1,10 +1,9 @@
 """What diffusion dropout is worth when part of the past is missing.
 
-Pairs of walkers, and a map over rates.
-
-The pairs are shipped: the same network, data and steps, with and without, three training seeds
-each.
-Source: MoDiff III-D, IV-C, Table II.  Notebook: 09
+Walkers trained with and without it, and a map over rates. Two comparisons, all weights shipped:
+three pairs of small walkers, and `walker` beside `walker-plain`. Both sides of a comparison have
+the same network, data and steps.
+Source: MoDiff III-D, IV-B, Table II.   Notebook: 09
 """
 
 from dataclasses import dataclass, replace
@@ -21,7 +20,7 @@ from motiondiff_edu.recipes.walkers import MEND_PLAIN, Recipe
 from ..walks.parts import weights_digest
 from ..walks.scores import Figure, root_mean, squared_bone_error
 from ..walks.trials import UNSEEN, Trials
-from .trials import SEEDS, SHARE, continued, interval_over_seeds, names_of
+from .trials import SHARE, continued, interval_over_seeds, names_of
 
 NEXT = 10  # frames
 SHARES = (0.0, 0.15, 0.3, 0.5, 0.7, 1.0)  # of the joints missing
@@ -39,6 +38,20 @@ def rows(made: np.ndarray, trials: Trials) -> dict[str, np.ndarray]:
     }
 
 
+@dataclass(frozen=True)
+class Comparison:
+    """Shipped weights without and with diffusion dropout, and how their figures are named."""
+
+    plain: tuple[str, ...]
+    dropout: tuple[str, ...]
+    prefix: str = ""
+    cost: str = "dropout_cost_complete"
+
+
+SMALL_PAIRS = Comparison(
+    tuple(names_of("plain")), tuple(names_of("dropout")), cost="pairs_dropout_cost_complete"
+)
+SHIPPED_PAIR = Comparison(("walker-plain",), ("walker",), prefix="walker_")
 FIGURES = {"bone": ("cm", root_mean), "adherence": ("mps", np.nanmean)}
 
 
@@ -55,7 +68,7 @@ def gains(plain: dict[str, np.ndarray], dropout: dict[str, np.ndarray]) -> list[
     return found
 
 
-def cost(plain: dict[str, np.ndarray], dropout: dict[str, np.ndarray]) -> Figure:
+def cost(name: str, plain: dict[str, np.ndarray], dropout: dict[str, np.ndarray]) -> Figure:
     """Dropout over plain on complete pasts, the larger of the two kinds of error."""
 
     def larger(*parts: np.ndarray) -> float:
@@ -63,7 +76,7 @@ def cost(plain: dict[str, np.ndarray], dropout: dict[str, np.ndarray]) -> Figure
         return max(mean(b) / mean(a) for (_, mean), (a, b) in pairs)
 
     arrays = [both[kind] for kind in FIGURES for both in (plain, dropout)]
-    return Figure("dropout_cost_complete", *interval_over_seeds(larger, *arrays), "ratio")
+    return Figure(name, *interval_over_seeds(larger, *arrays), "ratio")
 
 
 def measured(walkers: list, trials: Trials, share: float) -> dict[str, np.ndarray]:
@@ -72,16 +85,16 @@ def measured(walkers: list, trials: Trials, share: float) -> dict[str, np.ndarra
     return {kind: np.stack([one[kind] for one in each]) for kind in FIGURES}
 
 
-def dropout_figures(trials: Trials, weights: dict[str, Path]) -> list[Figure]:
+def dropout_figures(pairs: Comparison, trials: Trials, weights: dict[str, Path]) -> list[Figure]:
     """Gains, cost, and what both kinds have with and without faults."""
     walkers = {
-        kind: [checkpoints.load_walker(weights[n]) for n in names_of(kind)]
-        for kind in ("plain", "dropout")
+        kind: [checkpoints.load_walker(weights[name]) for name in names]
+        for kind, names in (("plain", pairs.plain), ("dropout", pairs.dropout))
     }
     whole, broken = (
         {k: measured(w, trials, share) for k, w in walkers.items()} for share in (0.0, SHARE)
     )
-    found = [*gains(broken["plain"], broken["dropout"]), cost(whole["plain"], whole["dropout"])]
+    found = [*gains(broken["plain"], broken["dropout"])]
     for words, both in (("complete", whole), ("missing", broken)):
         for kind, arrays in both.items():
             for what, (unit, mean) in FIGURES.items():
@@ -91,10 +104,14 @@ def dropout_figures(trials: Trials, weights: dict[str, Path]) -> list[Figure]:
                         f"{kind}_{words}_{what}_{unit}", *values, "cm" if unit == "cm" else "m/s"
                     )
                 )
-    return found
+    found = [replace(figure, name=f"{pairs.prefix}{figure.name}") for figure in found]
+    return [*found, cost(pairs.cost, whole["plain"], whole["dropout"])]
 
 
-def dropout_records(trials: Trials, weights: dict[str, Path], command: str) -> list[dict]:
+def dropout_records(
+    pairs: Comparison, trials: Trials, weights: dict[str, Path], command: str
+) -> list[dict]:
+    """The figures of one comparison as records."""
     seeds = {
         "data": UNSEEN,
         "clips": len(trials.past),
@@ -103,12 +120,11 @@ def dropout_records(trials: Trials, weights: dict[str, Path], command: str) -> l
         "rollouts": 0,
     }
     seeds |= {
-        "trainings": SEEDS,
-        "weights": [weights_digest(weights[n]) for k in ("plain", "dropout") for n in names_of(k)],
+        "trainings": len(pairs.plain),
+        "weights": [weights_digest(weights[name]) for name in (*pairs.plain, *pairs.dropout)],
     }
-    return [
-        figure.as_record("mend.", seeds, command) for figure in dropout_figures(trials, weights)
-    ]
+    found = dropout_figures(pairs, trials, weights)
+    return [figure.as_record("mend.", seeds, command) for figure in found]
 
 
 @dataclass(frozen=True)

@@ -7,49 +7,58 @@ from motiondiff_edu.metrics.footsteps import PAPER, ROBUST
 from motiondiff_edu.pretrained import checkpoints
 
 from ..walks.parts import Bench, weights_digest
-from ..walks.trials import UNSEEN
-from .dropout import dropout_records
-from .repair import FAULTS, RepairSize, footsteps, repair_figures, repaired_windows, table_2
+from ..walks.trials import UNSEEN, unseen
+from .dropout import SHIPPED_PAIR, SMALL_PAIRS, dropout_records
+from .repair import (
+    FAULTS,
+    QUICK,
+    RepairSize,
+    footsteps,
+    repair_figures,
+    repaired_windows,
+    table_2,
+)
 from .trials import SHARE, names_of
 
 KEEP = 5  # poses of every window of ten; frame by frame, each has noise of its own, and heels crawl
-CLIPS, FEW = 60, 20  # pasts of Table II, and of the larger walker beside it
+CLIPS = 60  # pasts of Table II
+PASTS, PAST_S = 300, 2  # pasts that are reconstructed, each with the control of so many seconds
 
 
 def records(bench: Bench, size: RepairSize, command: str) -> list[dict]:
-    """Everything of the part: pairs of small walkers, repairs by the shipped walker, Table II.
+    """Everything of the part: what dropout is worth, repairs by the shipped walker, Table II.
 
-    Table II is of the small walkers with dropout, frame by frame. Beside them: the same with half
-    of every window kept, and the shipped walker, which was trained for longer, without dropout.
+    Table II is of the small walkers with dropout, frame by frame. Beside them stand the same with
+    half of every window kept, and the shipped walker, which is larger and was trained for longer.
     """
     trials, weights = bench.trials, bench.weights
     best, pairs = (
         [checkpoints.load_walker(weights[name]) for name in names]
         for names in (["walker"], names_of("dropout"))
     )
-    figures = [one for fault in FAULTS for one in repair_figures(fault, best[0], trials, size)]
-    some, few = trials.first(CLIPS), trials.first(FEW)
-    for walkers, asked, names in (
-        (pairs, some, {"": 1, f"keep{KEEP}_": KEEP}),
-        (best, few, {"walker_": 1}),
-    ):
+    pasts = trials if size == QUICK else unseen(PASTS, PAST_S)
+    figures = [one for fault in FAULTS for one in repair_figures(fault, best[0], pasts, size)]
+    asked = trials.first(CLIPS)
+    for walkers, names in ((pairs, {"": 1, f"keep{KEEP}_": KEEP}), (best, {"walker_": 1})):
         windows = repaired_windows(walkers, asked, size)
         for who, keep in names.items():
             second, after = table_2(walkers, asked, size, windows, who, keep)
             figures += second
             for suffix, rule in (("", ROBUST), ("_paper", PAPER)):
                 figures.append(footsteps(f"footsteps_{who}over_data{suffix}", after, asked, rule))
-    seeds = {"data": UNSEEN, "clips": len(trials.past), "missing": SHARE, "samples": size.samples}
+    seeds = {"data": UNSEEN, "pasts": len(pasts.past), "missing": SHARE, "samples": size.samples}
     seeds |= {
         "rounds": size.rounds,
         "steps": size.steps,
         "keep": KEEP,
-        "table2_clips": CLIPS,
-        "table2_walker_clips": FEW,
+        "table2_clips": len(asked.past),
     }
     seeds |= {
         "weights": [weights_digest(weights[name]) for name in ("walker", *names_of("dropout"))]
     }
-    return dropout_records(trials, weights, command) + [
-        one.as_record("mend.", seeds, command) for one in figures
+    compared = [
+        one
+        for pair in (SHIPPED_PAIR, SMALL_PAIRS)
+        for one in dropout_records(pair, trials, weights, command)
     ]
+    return compared + [one.as_record("mend.", seeds, command) for one in figures]

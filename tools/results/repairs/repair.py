@@ -1,6 +1,6 @@
 """Repairs of broken pasts against the truth, beside what needs no walker; and MoDiff's Table II.
 
-Source: MoDiff III-E, IV-C, Table II, Fig. 6.  Notebook: 10
+Source: MoDiff III-E, IV-B, Table II, Fig. 6.  Notebook: 10
 """
 
 from collections.abc import Callable

@@ -12,9 +12,10 @@ from motiondiff_edu.viz.mending import by_fault, over_gaps, rate_map
 
 from ..inbetweens.inbetween import GAPS
 from ..page.markdown import cell, number, table
-from .dropout import FIGURES, RATES, SHARES
+from .dropout import FIGURES, RATES, SHARES, SHIPPED_PAIR, SMALL_PAIRS
 from .repair import FAULTS
 
+COMPARED = (SHIPPED_PAIR, SMALL_PAIRS)
 UNITS = {kind: f"{kind}_{unit}" for kind, (unit, _) in FIGURES.items()}
 METHODS = {
     "error_cm": "mean of the samples",
@@ -42,40 +43,36 @@ MASKED = {"error_masked_cm": "masked, as in the paper"}  # one sample
 
 
 def dropout(records: dict[str, dict], folder: Path) -> str:
-    """The pairs of walkers, then the map over rates."""
-    one = records.get("mend.dropout_cost_complete")
+    """The shipped walker and the small pairs, with dropout and without; the map over rates."""
+    one = records.get("mend.pairs_dropout_cost_complete")
     if one is None:
         return ""
     seeds = one["seeds"]
+    sides = [f"{pair.prefix}{kind}" for pair in COMPARED for kind in ("plain", "dropout")]
     rows = [
-        [
-            words,
-            what,
-            *(
-                cell(records.get(f"mend.{kind}_{words}_{UNITS[what]}"))
-                for kind in ("plain", "dropout")
-            ),
-        ]
+        [words, what, *(cell(records.get(f"mend.{side}_{words}_{UNITS[what]}")) for side in sides)]
         for words in ("complete", "missing")
         for what in FIGURES
     ]
     gains = [
         [f"`{n}`", cell(records.get(f"mend.{n}"))]
-        for n in ("dropout_gain_bone_cm", "dropout_gain_adherence_mps", "dropout_cost_complete")
+        for pair in COMPARED
+        for n in (*(f"{pair.prefix}dropout_gain_{unit}" for unit in UNITS.values()), pair.cost)
     ]
     text = (
-        "## Diffusion dropout (MoDiff III-D)\n\nTwo kinds of small walkers have the same network, "
-        "data and training steps; one was trained with diffusion dropout. There are "
-        f"{seeds['trainings']} training seeds of each, all shipped. They continue "
+        "## Diffusion dropout (MoDiff III-D)\n\nTwo comparisons. `walker` was trained with "
+        "diffusion dropout, and `walker-plain` without; they share the first part of the training, "
+        "in which the paper's rate of dropout is 0. The small pairs are alike from the beginning, "
+        f"with {seeds['trainings']} training seeds of each. All are shipped. Both sides of a "
+        "comparison have the same network, data and number of steps. They continue "
         f"{seeds['clips']} unseen pasts by {seeds['frames']} frames: once complete, and once with "
         f"{seeds['missing']:.0%} of the joints missing throughout (zero after standardisation). "
-        "Intervals are over training seeds and clips; three seeds are few.\n\n"
+        "Intervals are over clips, and for the small pairs over training seeds too; three seeds "
+        "are few. `gain` is the error without dropout minus the error with it, from broken pasts; "
+        "`cost` is the error with dropout over that without, from complete pasts.\n\n"
     )
-    text += (
-        table(["past", "error", "plain", "with dropout"], rows)
-        + "\n"
-        + table(["figure", "measured"], gains)
-    )
+    head = ["past", "error", "`walker-plain`", "`walker`", "small, plain", "small, with dropout"]
+    text += table(head, rows) + "\n" + table(["figure", "measured"], gains)
     picture = folder / "dropout-map.png"
     return (
         text
@@ -96,12 +93,13 @@ def repairs(records: dict[str, dict], folder: Path) -> str:
     ]
     text = (
         "## Reconstruction (MoDiff III-E)\n\nWhat was missing in ten past frames is "
-        "reconstructed. Errors are root mean squared distances in cm, of the mean of ten "
-        "reconstructions and of one. A mean is closer to the truth, but it moves too little. Our "
-        "way starts from the guess of ridge regression, holds what is known on the way back as "
-        "well, and keeps the bones' lengths. The paper's way starts from the mean pose and does "
-        "neither. Where the error over ridge regression is above 1, the regression that the "
-        "reconstruction starts from is closer to the truth than the reconstruction.\n\n"
+        f"reconstructed, for {_pasts(records)} unseen pasts. Errors are root mean squared "
+        "distances in cm, of the mean of ten reconstructions and of one. A mean is closer to the "
+        "truth, but it moves too little. Our way starts from the guess of ridge regression, holds "
+        "what is known on the way back as well, and keeps the bones' lengths. The paper's way "
+        "starts from the mean pose and does neither. Where the error over ridge regression is "
+        "above 1, the regression that the reconstruction starts from is closer to the truth than "
+        "the reconstruction.\n\n"
     )
     text += table(["missing", *(f"`{kind}`" for kind in kinds)], rows)
     text += (
@@ -117,7 +115,7 @@ def repairs(records: dict[str, dict], folder: Path) -> str:
         "\n### Table II\n\nIn every past 30 % of the joints are missing throughout (6 of 21, set "
         "to zero). The small walkers with dropout, three trainings, go frame by frame as in the "
         "paper. The same walkers are also tried with five poses kept of every window of ten; their "
-        "errors grow less. The shipped walker, trained for longer, is tried on fewer pasts. Walks "
+        "errors grow less. The shipped walker is larger and was trained for longer. Walks "
         "of 12 s are generated from the broken pasts (`ge`) and from complete ones (`whole`). "
         "Reconstructed pasts are judged as they come from the network (`re`), with their bones "
         "kept, which is our way (`re_bones`), and by the paper's way (`re_paper`). The paper "
@@ -207,6 +205,11 @@ def draw(records: dict[str, dict], folder: Path) -> None:
         }
         words = "In-betweens at gaps of 5 to 60 frames, with 95 % intervals over motions."
         _save(over_gaps(panels, words, log=["error, cm"]), folder / "inbetween.png")
+
+
+def _pasts(records: dict[str, dict]) -> str:
+    """How many pasts were reconstructed."""
+    return str(records.get("mend.arm_rmse_cm", {"seeds": {}})["seeds"].get("pasts", "the"))
 
 
 def _repairs(records: dict[str, dict]):

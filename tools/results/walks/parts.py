@@ -145,30 +145,15 @@ class Walks:
 LINES = {
     line.prefix: line
     for line in (
+        Walks("walker", "walker"),
+        Walks("walker-plain", "walker-plain", choose=False),
+        Walks("walker-printed", "walker-printed", choose=False),
         Walks("walker-eps", "walker-eps"),
-        Walks("walker-x0", "walker-x0"),
         Walks("walker-ddim10", "walker", steps=10),
+        Walks("walker-lookahead", "walker", hold=False, choose=False),
         Walks("walker-eps-lookahead", "walker-eps", hold=False, choose=False),
-        Walks("walker-x0-lookahead", "walker-x0", hold=False, choose=False),
     )
 }
-
-
-def alias_of(name: str = "walker") -> str:
-    """Which of the shipped weights `walker` stands for."""
-    files = checkpoints.available()
-    return next(
-        (other for other, path in files.items() if other != name and path == files.get(name)), name
-    )
-
-
-def alias_records(folder: Path) -> list[dict]:
-    """The records of the walker that the name `walker` stands for, once more under that name."""
-    name = alias_of()
-    return [
-        one | {"name": f"walker.{one['name'].removeprefix(name + '.')}"}
-        for one in kept_records(folder, name)
-    ]
 
 
 def kept_records(folder: Path, name: str) -> list[dict]:
