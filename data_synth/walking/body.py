@@ -85,7 +85,8 @@ def _pelvis_turn(gait: Gait, yaw, noise, style):
 
 def _hips(gait: Gait, forward, lean_shift, rows, noise, style, fps):
     """Pelvis about the root: sway to the standing foot, ripple ahead, height."""
-    turn, amount, run = 2 * np.pi * gait.clock, gait.amount, gait.run
+    turn = 2 * np.pi * gait.clock
+    amount, run = gait.amount, gait.run
     early = 0.4 * (
         follow(lean_shift, 0.2, fps) - lean_shift
     )  # the pelvis leans in before the feet have come out

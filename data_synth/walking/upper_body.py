@@ -41,7 +41,8 @@ def trunk(
     style: Style,
 ) -> Trunk:
     """Chest and head angles; `inward` is the lean into a turn (radians, left positive)."""
-    turn, amount, run = 2 * np.pi * gait.clock, gait.amount, gait.run
+    turn = 2 * np.pi * gait.clock
+    amount, run = gait.amount, gait.run
     chest = (
         -4.6
         * style.chest_yaw

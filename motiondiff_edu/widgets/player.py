@@ -120,7 +120,9 @@ class Player(anywidget.AnyWidget):
         look: Look = USUAL,
     ):
         super().__init__()
-        self._options, self._look, self._editions = {}, look, 0
+        self._options = {}
+        self._look = look
+        self._editions = 0
         self.show(positions, fps, past, contacts, labels, path, audio)
 
     def show(
