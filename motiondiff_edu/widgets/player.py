@@ -92,6 +92,7 @@ class Player(anywidget.AnyWidget):
     of contacts belongs to the first figure).
     `audio`: (N,) from -1 to 1 at 16 kHz, the bytes of a sound file, or a `Soundtrack`. It is played
     with the motion, cut or filled up to its length (with a warning), above its waveform.
+    `look`: layout, height, autoplay, and the parents of another skeleton's joints.
     `frame` and `playing` can be read and set.
     Raises ValueError with figure, frame and joint where a position is not finite or beyond reach,
     and for extras that do not fit the motion.   Notebook: 00, 12
