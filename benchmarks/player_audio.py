@@ -13,6 +13,7 @@ import argparse
 import shutil
 import sys
 import tempfile
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -25,7 +26,7 @@ from data_synth.walking import walk  # noqa: E402
 from motiondiff_edu.conditions.control import constant_control  # noqa: E402
 from motiondiff_edu.motion.root_frame import to_world  # noqa: E402
 from motiondiff_edu.widgets.listening import Listening  # noqa: E402
-from motiondiff_edu.widgets.player import Player  # noqa: E402
+from motiondiff_edu.widgets.player import Player, Soundtrack  # noqa: E402
 
 COMMAND = "python -m benchmarks player"
 FPS = 20
@@ -68,13 +69,12 @@ def players(seconds: float) -> dict[str, Player]:
     positions = to_world(clip.poses, clip.control)[:frames]
     audio, beats = click_track(seconds), np.arange(0, seconds, BEAT)
     weights, times = attention(frames, seconds, 125)
-    marks = {"beats": beats, "downbeats": beats[::4]}
+    heard = Listening(weights, times, moved=0.2 * weights.max(1), hit=2.0)
+    track = Soundtrack(audio, beats, beats[::4])
     return {
         "silent": Player(positions),
-        "sound": Player(positions, audio=audio, **marks),
-        "listening": Listening(
-            positions, audio, weights, times, moved=0.2 * weights.max(1), hit=2.0, **marks
-        ),
+        "sound": Player(positions, audio=track),
+        "listening": Player(positions, audio=replace(track, listening=heard)),
     }
 
 

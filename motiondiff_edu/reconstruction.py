@@ -23,6 +23,39 @@ from .rollout import AnyWalker, generate
 
 
 @dataclass(frozen=True, eq=False)
+class Rollout:
+    """A walker, and how it is sampled on both ways.
+
+    `steps`: as in `rollout.generate`. `keep`: poses kept of each window, by default all T_p.
+    keep=1 is the paper's rollout: T_p times the cost, and larger errors.
+    """
+
+    walker: AnyWalker
+    generator: torch.Generator
+    steps: int | None = 10
+    keep: int | None = None
+
+    def continued(
+        self, past: Float[Tensor, "B T_h D"], control: Float[Tensor, "B T 3"]
+    ) -> Float[Tensor, "B n D"]:
+        """The n = T - T_h poses after `past` (metres); the walker sees the control ahead."""
+        keep = self.keep or self.walker.config.T_p
+        how = {"generator": self.generator, "steps": self.steps, "keep": keep, "hold": False}
+        return generate(self.walker, past, control, **how)
+
+
+@dataclass(frozen=True)
+class Stop:
+    """When the rounds end: all holes at rest, or `rounds` done.
+
+    A sampler's own spread can keep the holes moving by more than the tolerance for ever.
+    """
+
+    rounds: int = 5
+    tolerance: float = 1e-3  # metres, RMS over the holes of a sample
+
+
+@dataclass(frozen=True, eq=False)
 class Round:
     """One time there and back.
 
@@ -48,48 +81,78 @@ def reverse_control(control: Float[Tensor, "*B T 3"]) -> Float[Tensor, "*B T 3"]
     return torch.cat([back, back[..., -1:, :]], dim=-2)
 
 
-# (walker, ahead, control, given, known, generator=, steps=) -> the frames before `ahead`; all
-# turned round in time
-WayBack = Callable[..., Tensor]
+# (rollout, ahead, control, given, known) -> the frames before `ahead`; all in reversed time
+WayBack = Callable[[Rollout, Tensor, Tensor, Tensor, Tensor], Tensor]
+# (past, known, ahead) -> the past, corrected; all in the order of time
+Correction = Callable[[Tensor, Tensor, Tensor], Tensor]
 
 
-def walked_back(
-    walker: AnyWalker, ahead, control, given, known, **options
-) -> Float[Tensor, "B T_h D"]:
-    """The paper's: from what was walked ahead, no more (others: `beyond.back_with_known`).
+def walked_back(rollout: Rollout, ahead, control, given, known) -> Float[Tensor, "B T_h D"]:
+    """The paper's: from what was walked ahead alone (others: `beyond.back_with_known`).
     Source: MoDiff III-E."""
-    return generate(walker, ahead, control, hold=False, **options)
+    return rollout.continued(ahead, control)
 
 
 def repair_steps(
-    walker: AnyWalker,
+    rollout: Rollout,
     past: Float[Any, "B _ _"],
     known: Shaped[Any, "_ _ _"],
     control: Float[Any, "_ _ _"],
     *,
     way_back: WayBack = walked_back,
     guess: Float[Tensor, "B T_h D"] | None = None,
-    rounds: int = 5,
-    tolerance: float = 1e-3,
-    generator: torch.Generator,
-    steps: int | None = 10,
-    keep: int | None = None,
-    correct: Callable[[Tensor, Tensor, Tensor], Tensor] | None = None,
+    correct: Correction | None = None,
+    stop: Stop = Stop(),
 ) -> Iterator[Round]:
-    """Fill the holes of `past` (metres), round by round.
+    """Fill the holes of `past` (metres), round by round, until `stop`.
 
-    Rounds end when the entries move by less than `tolerance` metres (RMS).
-
-    `control` has T_h rows beside the past and T_h for the way there. Holes are the mean pose at
-    first (zero once standardised), or `guess` (metres), from a regression, say. Stops after
-    `rounds` at the latest: a sampler's own spread may be above the tolerance. `way_back`: the
-    paper's, or one of `beyond.back_with_known`, which heed what is known. Of each window `keep`
-    poses are kept, by default all T_p; keep=1 is the paper's rollout (ten times dearer, and farther
-    off). `settle(past, known, ahead)` mends the filled past after each round:
-    `editing.repairs.with_bones`, for one.
+    `control`: T_h rows beside the past, then T_h for the way there.
+    `guess`: what the holes hold at first (metres), by default the mean pose.
+    `way_back`: the paper's, or one of `beyond.back_with_known`, which use what is known.
+    `correct`: applied to the filled past after each round, as `editing.repairs.with_bones`.
     Raises ValueError for what does not fit.  Source: MoDiff III-E, Fig. 6; the stop rule is ours.
     """
     past, known, control = map(torch.as_tensor, (past, known, control))
+    _check(rollout.walker, past, known, control)
+    if stop.rounds < 1:
+        raise ValueError(f"rounds = {stop.rounds}: give 1 at least, to fill the holes")
+    missing, mean = ~known, rollout.walker.pose_scaler.mean.to(past).expand_as(past)
+    filled = torch.where(known, past, mean if guess is None else guess.to(past))
+    reversed_control = reverse_control(control)
+    for number in range(1, stop.rounds + 1):
+        ahead = rollout.continued(filled, control)
+        turned = (ahead.flip(1), reversed_control, past.flip(1), known.flip(1))
+        back = way_back(rollout, *turned).flip(1).to(past)
+        before, filled = filled, torch.where(known, past, back)
+        filled = correct(filled, known, ahead) if correct else filled
+        moved = (filled - before).square().flatten(1).sum(1)
+        change = (moved / missing.flatten(1).sum(1).clamp(min=1)).sqrt()
+        yield Round(number, filled, change)
+        if not (change > stop.tolerance).any():
+            return
+
+
+def repair(
+    rollout: Rollout,
+    past: Float[Any, "B _ _"],
+    known: Shaped[Any, "_ _ _"],
+    control: Float[Any, "_ _ _"],
+    *,
+    way_back: WayBack = walked_back,
+    guess: Float[Tensor, "B T_h D"] | None = None,
+    correct: Correction | None = None,
+    stop: Stop = Stop(),
+) -> Float[Tensor, "B T_h D"]:
+    """The past after the last of `repair_steps`: known entries stay as given, bit by bit.
+    Notebook: 10"""
+    loop = repair_steps(
+        rollout, past, known, control, way_back=way_back, guess=guess, correct=correct, stop=stop
+    )
+    *_, last = loop
+    return last.past
+
+
+def _check(walker: AnyWalker, past: Tensor, known: Tensor, control: Tensor) -> None:
     T_h, D = walker.config.T_h, walker.config.D
     if past.shape[1:] != (T_h, D):
         raise ValueError(
@@ -108,29 +171,3 @@ def repair_steps(
         raise ValueError(
             f"of sample {int((~known.flatten(1).any(1)).nonzero()[0])} nothing is known at all"
         )
-    if rounds < 1:
-        raise ValueError(f"rounds = {rounds}: give 1 at least, to fill the holes")
-    missing, mean = ~known, walker.pose_scaler.mean.to(past).expand_as(past)
-    filled = torch.where(known, past, mean if guess is None else guess.to(past))
-    options = {"generator": generator, "steps": steps, "keep": keep or walker.config.T_p}
-    for number in range(1, rounds + 1):
-        ahead = generate(walker, filled, control, hold=False, **options)
-        turned = [x.flip(1) for x in (ahead, past, known)]
-        back = (
-            way_back(walker, turned[0], reverse_control(control), *turned[1:], **options)
-            .flip(1)
-            .to(past)
-        )
-        before, filled = filled, torch.where(known, past, back)
-        filled = correct(filled, known, ahead) if correct else filled
-        moved = (filled - before).square().flatten(1).sum(1)
-        change = (moved / missing.flatten(1).sum(1).clamp(min=1)).sqrt()
-        yield Round(number, filled, change)
-        if not (change > tolerance).any():
-            return
-
-
-def repair(walker: AnyWalker, past, known, control, **options) -> Float[Tensor, "B T_h D"]:
-    """The last of `repair_steps`: known entries come back bit by bit as they were given.
-    Notebook: 10"""
-    return list(repair_steps(walker, past, known, control, **options))[-1].past

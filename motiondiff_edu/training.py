@@ -36,18 +36,29 @@ class TrainState:
     average: nn.Module  # exponential moving average of the weights: what is used after training
     optimizer: Any  # a torch.optim.Optimizer, or muon.MuonAndAdam
     generator: torch.Generator
+    decay: float = 0.999  # share that the average keeps at each step, less in the first steps
     step: int = 0
     seconds: float = 0.0  # spent in training so far, by the clock on the wall
 
     @classmethod
-    def start(cls, model: nn.Module, seed: int = 0, optimizer=None) -> "TrainState":
+    def start(
+        cls, model: nn.Module, seed: int = 0, optimizer=None, decay: float = 0.999
+    ) -> "TrainState":
         """A fresh run of this model, with Adam unless told.
 
         Every random number of the run comes from `seed`.
         """
         average = copy.deepcopy(model).requires_grad_(False).eval()
         optimizer = optimizer or torch.optim.Adam(model.parameters(), fused=True)
-        return cls(model, average, optimizer, torch.Generator().manual_seed(seed))
+        return cls(model, average, optimizer, torch.Generator().manual_seed(seed), decay)
+
+
+@dataclass(frozen=True)
+class Saving:
+    """What writes a state, and every how many steps (`recipes.runs.saver` makes one)."""
+
+    write: Callable[[TrainState], object]
+    every: int = 1000
 
 
 @dataclass(frozen=True)
@@ -83,18 +94,16 @@ def train_steps(
     *,
     lr: float | Callable[[int], float] = 1e-3,
     clip: float = 1.0,
-    decay: float = 0.999,
-    save: Callable[[TrainState], object] | None = None,
-    save_every: int = 1000,
+    save: Saving | None = None,
     before: Callable[[int], object] | None = None,
     progress: bool = True,
 ) -> Iterator[TrainStep]:
     """Train until `state.step == steps`, yielding after each step.
 
-    Gradients are clipped to the norm `clip`; the average follows with `decay` (less in the first
-    steps). `save`, if given, is called with the state every `save_every` steps and at the end
-    (`recipes.runs.saver` makes one); `before` with the number of steps done, ahead of each one: for
-    losses that change on the way (`diffusion_dropout.Dropout.now`).
+    `clip`: largest norm of the gradient.
+    `save`: writes the state now and then, and at the end.
+    `before`: called ahead of each step with the number of steps done, for losses that change on
+    the way (`diffusion_dropout.Dropout.now`).
     Raises NonFiniteLoss with what to do; the last good weights stay in `state`, and are saved
     (broken ones are not).
     Source: MoDiff Alg. 1 (the loop).  Notebook: 05, 07
@@ -122,10 +131,10 @@ def train_steps(
             for group in state.optimizer.param_groups:
                 group["lr"] = rate
             state.optimizer.step()
-            _follow(state, decay)
+            _follow(state)
             state.step, state.seconds = state.step + 1, state.seconds + time.perf_counter() - began
-            if save and (state.step % save_every == 0 or state.step == steps):
-                save(state)
+            if save and (state.step % save.every == 0 or state.step == steps):
+                save.write(state)
             bar.update()
             report = TrainStep(state.step, loss.item(), norm.item(), rate)
             if state.step % 20 == 0:
@@ -135,20 +144,20 @@ def train_steps(
 
 
 @torch.no_grad()
-def _follow(state: TrainState, decay: float) -> None:
+def _follow(state: TrainState) -> None:
     """average <- decay average + (1 - decay) model, with a shorter memory at the start."""
-    decay = min(decay, (1 + state.step) / (10 + state.step))
+    decay = min(state.decay, (1 + state.step) / (10 + state.step))
     for mean, new in zip(
         state.average.state_dict().values(), state.model.state_dict().values(), strict=True
     ):
         mean.lerp_(new, 1 - decay) if mean.is_floating_point() else mean.copy_(new)
 
 
-def _stop(state: TrainState, loss: float, norm: float, rate: float, save: Callable | None) -> None:
+def _stop(state: TrainState, loss: float, norm: float, rate: float, save: Saving | None) -> None:
     weights = [*state.model.parameters(), *state.average.parameters()]
     if all(torch.isfinite(weight).all() for weight in weights):
         kept = "The weights are those of the last good step." + (
-            f" They are saved: {save(state)}." if save else ""
+            f" They are saved: {save.write(state)}." if save else ""
         )
     else:
         kept = (

@@ -15,7 +15,7 @@ from data_synth.mixtures import crossed_bars
 from data_synth.walking import random_control, walk
 from motiondiff_edu.beyond.guidance import blended, blended_guess, guided, guided_guess, with_guess
 from motiondiff_edu.ddpm import cosine_schedule, ddim_steps, timesteps
-from motiondiff_edu.editing.inbetween import PAPER, fading, inbetween, seen_from
+from motiondiff_edu.editing.inbetween import OURS, PAPER, Departures, fading, inbetween, seen_from
 from motiondiff_edu.editing.masks import (
     PARTS,
     body_part,
@@ -186,15 +186,12 @@ def test_known_entries_come_back_bit_by_bit_and_the_rest_is_made(known, C):
     truth = clip()
     mel = torch.randn(64, 5, generator=seeded(9)) if C else None
     holes = np.where(known[..., None], truth, np.nan)
-    made = inbetween(
-        dancer(C), holes, known, mel, samples=3, steps=5, resample=2, generator=seeded(1)
-    )
+    options = {"samples": 3, "steps": 5, "departures": Departures(resample=2)}
+    made = inbetween(dancer(C), holes, known, mel, generator=seeded(1), **options)
     assert made.shape == (3, 40, 21, 3) and np.isfinite(made).all()
     assert all(np.array_equal(one[known], truth[known]) for one in made)
     assert not np.allclose(made[0][~known], made[1][~known])
-    again = inbetween(
-        dancer(C), holes, known, mel, samples=3, steps=5, resample=2, generator=seeded(1)
-    )
+    again = inbetween(dancer(C), holes, known, mel, generator=seeded(1), **options)
     assert np.array_equal(made, again)
 
 
@@ -248,17 +245,18 @@ def test_a_trajectory_is_walked_forward():
 
 
 def test_what_sets_it_apart_from_the_papers_masking():
-    """Each option does what it is for; each is on by default but for resampling."""
+    """Each departure does what it is for; each is on by default but for resampling."""
     truth = clip()
     known = gap(40, 12, 14)
     one = checkpoints.pretrained("unconditional")
 
-    def made(**options):
-        return inbetween(one, truth, known, samples=2, steps=5, seed=4, **options)
+    def made(departures=OURS, seed=4):
+        options = {"departures": departures, "generator": seeded(seed)}
+        return inbetween(one, truth, known, samples=2, steps=5, **options)
 
     usual = made()
-    plain = made(**PAPER)
-    torn = made(bones=False, feet=False)
+    plain = made(PAPER)
+    torn = made(Departures(bones=False, feet=False))
     assert seam_jump(usual, known).mean() < 0.5 * seam_jump(plain, known).mean()
     lengths = bone_lengths(truth)[0]
     assert (
@@ -268,13 +266,16 @@ def test_what_sets_it_apart_from_the_papers_masking():
         < np.abs(bone_lengths(torn) - lengths).max()
     )
     changed = [
-        made(**{name: value})
-        for name, value in (("guidance", 0.0), ("feet", False), ("resample", 2))
+        made(replace(OURS, **{name: value}))
+        for name, value in (("guidance", 0.0), ("feet", False), ("resample", 2), ("blend", None))
     ]
-    assert all(np.abs(x - usual).max() > 1e-3 for x in (*changed, made(blend=None)))
-    ends = [inbetween(one, truth, seed(40, 10), steps=5, blend=frames) for frames in (2, 10)]
+    assert all(np.abs(x - usual).max() > 1e-3 for x in changed)
+    ends = [
+        inbetween(one, truth, seed(40, 10), steps=5, departures=Departures(blend=frames))
+        for frames in (2, 10)
+    ]
     assert np.abs(ends[0] - ends[1])[:, 10:20].max() > 1e-3
-    other = inbetween(one, truth, known, samples=2, steps=5, seed=5)
+    other = made(seed=5)
     assert np.array_equal(usual, made()) and not np.array_equal(usual, other)
     fade = fading(10).reshape(21, 3)
     assert fade[0].tolist() == [np.inf, 10, np.inf] and bool((fade[1:] == 10).all())
@@ -367,7 +368,8 @@ def test_the_guesses_of_a_dancer_that_predicts_noise_are_held_within_what_dances
         for who in (one, wild)
     }
     assert guesses[wild].abs().max() == pytest.approx(FARTHEST, rel=1e-2)
-    made = inbetween(wild, clip(), seed(40, 10), steps=5, bones=False, feet=False, blend=None)
+    raw = Departures(bones=False, feet=False, blend=None)
+    made = inbetween(wild, clip(), seed(40, 10), steps=5, departures=raw)
     features = wild.motion_scaler.transform(torch.from_numpy(to_features(made)).float())
     assert features[..., 3:].abs().max() < 1.01 * FARTHEST
 

@@ -44,7 +44,7 @@ def run(path, steps, resume=False, pause=0):
         resume_run(state, path)
     lr = cosine_lr(1e-2, 40, warmup=6)
     for report in train_steps(
-        state, toy_loss, steps, lr=lr, save=saver(path), save_every=8, progress=False
+        state, toy_loss, steps, lr=lr, save=saver(path, every=8), progress=False
     ):
         if report.step == pause:
             print("paused", flush=True)
@@ -195,7 +195,7 @@ def test_a_non_finite_loss_stops_and_keeps_the_last_good_weights(tmp_path: Path,
         NonFiniteLoss, match=r"^step 6: the loss is (nan|inf).*learning rate.*run\.safetensors"
     ):
         for _ in train_steps(
-            state, bad_at(6, value), 20, save=saver(path), save_every=100, progress=False
+            state, bad_at(6, value), 20, save=saver(path, every=100), progress=False
         ):
             good.append(state.model.weight.detach().clone())
     assert len(good) == state.step == 6
@@ -212,22 +212,20 @@ def test_broken_weights_are_not_saved_over_good_ones(tmp_path: Path):
 
     path, model = tmp_path / "run.safetensors", nn.Linear(3, 2)
     state, bad = TrainState.start(model, seed=1), bad_at(99, math.nan)
-    list(train_steps(state, bad, 5, save=saver(path), save_every=5, progress=False))
+    list(train_steps(state, bad, 5, save=saver(path, every=5), progress=False))
     before = path.read_bytes()
     state.optimizer = Breaks(model.parameters(), lr=0.1)
     with pytest.raises(
         NonFiniteLoss, match="step 6: .* had broken the weights already; they are not saved"
     ):
-        list(train_steps(state, bad, 20, save=saver(path), save_every=100, progress=False))
+        list(train_steps(state, bad, 20, save=saver(path, every=100), progress=False))
     assert path.read_bytes() == before
 
 
 def test_the_last_step_is_saved_whatever_its_number(tmp_path: Path):
     path = tmp_path / "run.safetensors"
     state = TrainState.start(nn.Linear(3, 2), seed=1)
-    list(
-        train_steps(state, bad_at(99, math.nan), 7, save=saver(path), save_every=5, progress=False)
-    )
+    list(train_steps(state, bad_at(99, math.nan), 7, save=saver(path, every=5), progress=False))
     assert resume_run(TrainState.start(nn.Linear(3, 2), seed=1), path).step == 7
 
 
@@ -254,13 +252,13 @@ def test_a_non_finite_gradient_stops_too():
 
 
 def test_the_average_is_exponential_with_a_shorter_memory_at_the_start():
-    state, decay = TrainState.start(nn.Linear(3, 2), seed=2), 0.7
+    state, decay = TrainState.start(nn.Linear(3, 2), seed=2, decay=0.7), 0.7
     mean = state.model.weight.detach().clone()
 
     def loss_fn(model, generator):
         return (model(torch.randn(4, 3, generator=generator)) - 1).square().mean()
 
-    for i, _ in enumerate(train_steps(state, loss_fn, 60, lr=0.1, decay=decay, progress=False)):
+    for i, _ in enumerate(train_steps(state, loss_fn, 60, lr=0.1, progress=False)):
         share = min(decay, (1 + i) / (10 + i))
         mean = share * mean + (1 - share) * state.model.weight.detach()
     assert share == decay  # the start is over: both branches were seen

@@ -35,7 +35,7 @@ from motiondiff_edu.editing.inbetween import inbetween  # noqa: E402
 from motiondiff_edu.motion.skeleton import joint_index  # noqa: E402
 from motiondiff_edu.widgets.editor import Editor  # noqa: E402
 from motiondiff_edu.widgets.path import PathPad  # noqa: E402
-from motiondiff_edu.widgets.player import Player  # noqa: E402
+from motiondiff_edu.widgets.player import Look, Player, Soundtrack  # noqa: E402
 
 OUT = ROOT / "docs" / "front.webp"
 FPS, PICTURES = 20, 120  # of the loop, and of the motions
@@ -74,7 +74,7 @@ def path_panel(browser, folder: Path) -> Iterator[Image.Image]:
     standing = md.Motion.of_clip(walk(constant_control(seconds=2), seed=1, style="neutral"))
     more = md.load("walker").walk(standing, pad.control()[:PICTURES], seed=0, steps=None)
     way = more.root[:, :2]  # the commanded one
-    player = Player(more.positions, path=way, autoplay=False)
+    player = Player(more.positions, path=way, look=Look(autoplay=False))
     yield from played(browser, folder, player, WIDTHS[0])
 
 
@@ -98,7 +98,9 @@ def dance_panel(browser, folder: Path) -> Iterator[Image.Image]:
     song = compose(2_025, "house", seconds=seconds)
     dance = md.load("dancer").dance(song.audio, seed=3)
     beats = song.beats[song.beats < dance.seconds]
-    player = Player(dance.positions, audio=dance.audio, beats=beats, autoplay=False)
+    player = Player(
+        dance.positions, audio=Soundtrack(dance.audio, beats), look=Look(autoplay=False)
+    )
     yield from played(browser, folder, player, WIDTHS[1])
 
 

@@ -11,7 +11,7 @@ from ..music.song import Song
 from ..walking.footsteps import TOE_AHEAD
 from .moves import MANNERS, Manner
 from .script import REST, Script
-from .sheet import Sheet
+from .sheet import Counts, Sheet
 
 CALM = 0.25  # energy below this is a break
 ROOM = 1.6  # metres from the start, beyond which the dancer comes back
@@ -100,14 +100,11 @@ def choreograph(
         count = max(1, round(length / move.rate))
         sheet = Sheet(
             script,
-            start,
-            count,
-            length / count,
+            Counts(start, count, length / count, song.metre),
             move.mirrored,
             move.size,
             stride * min(move.size, 1.08) ** 0.5,
             rest,
-            song.metre,
             rng,
         )
         _gather(sheet, script)

@@ -7,6 +7,7 @@ whole dance. It sees to the weight: before a foot lifts, the other one bears. An
 lengths in metres.
 """
 
+from dataclasses import dataclass
 from math import cos, hypot, radians, sin
 
 import numpy as np
@@ -19,8 +20,31 @@ ARRIVED = 0.62  # share of the weight that a foot has at the count it lands on
 NEAREST, WIDEST = 0.13, 0.62  # metres between the toes when a step lands
 
 
+@dataclass(frozen=True)
+class Counts:
+    """`n` counts, the first at beat `start`, `rate` beats apart; `metre` beats to a bar."""
+
+    start: float
+    n: int
+    rate: float
+    metre: int
+
+
+@dataclass(frozen=True)
+class Flight:
+    """How a foot goes through the air: metres up, counts on the way, degrees the toe points down.
+
+    `scaled`: a long stride of the dancer's carries it farther.
+    """
+
+    height: float
+    swing: float
+    kick: float = 0.0
+    scaled: bool = True
+
+
 class Sheet:
-    """The page of one move: `n` counts, the first at beat `start`, `rate` beats apart.
+    """The page of one move.
 
     `size` scales how far it goes, `stride` the steps; `mirrored` swaps left and right; `rng` is for
     its own choices.
@@ -29,25 +53,22 @@ class Sheet:
     def __init__(
         self,
         script: Script,
-        start: float,
-        n: int,
-        rate: float,
+        counts: Counts,
         mirrored: bool,
         size: float,
         stride: float,
         rest: dict[str, float],
-        metre: int,
         rng: np.random.Generator,
     ):
         self.script = script
-        self.start = start
-        self.n = n
-        self.rate = rate
+        self.start = counts.start
+        self.n = counts.n
+        self.rate = counts.rate
+        self.metre = counts.metre
         self.sign = -1 if mirrored else 1
         self.size = size
         self.stride = stride
         self.rest = rest
-        self.metre = metre
         self.rng = rng
         self.keys: dict[str, list[tuple[float, float]]] = {}
         self.drift = (
@@ -97,7 +118,6 @@ class Sheet:
         height: float = 0.06,
         weight: bool = True,
         swing: float = 0.74,
-        kick: float = 0.0,
     ) -> None:
         """Put a foot (0 left, 1 right) down at a count, its ankle at (x left, z ahead) of home.
 
@@ -105,7 +125,7 @@ class Sheet:
         `weight` is False.
         """
         side = 1 if foot == 0 else -1
-        lift = self._put(foot, count, x, z, turn, height, swing, kick)
+        lift = self._put(foot, count, x, z, turn, Flight(height, swing))
         if lift is None:
             return
         self.key("weight", ((lift - self.start) / self.rate, -0.93 * side))
@@ -124,7 +144,7 @@ class Sheet:
         """Both feet leave the floor together and come down at a count, at (x, z) each."""
         count -= 0.07  # the knees give after it
         lifts = [
-            self._put(foot, count, *at, turns[foot], height, swing, 22.0)
+            self._put(foot, count, *at, turns[foot], Flight(height, swing, 22.0))
             for foot, at in ((0, left), (1, right))
         ]
         self.both(count - 0.8 * swing)
@@ -147,7 +167,8 @@ class Sheet:
     ) -> None:
         """The standing foot leaves the floor where it is and comes down again at a count."""
         x, z = self.at(self.foot(foot))
-        if self._put(foot, count, x, z, turn, height, swing, 20.0, scaled=False) is not None:
+        flight = Flight(height, swing, 20.0, scaled=False)
+        if self._put(foot, count, x, z, turn, flight) is not None:
             self.key("drop", (count - 0.5 * swing, 0.015 - 0.6 * height))
             self.key(
                 "weight",
@@ -164,29 +185,26 @@ class Sheet:
         s, c = sin(heading), cos(heading)
         return self.sign * (dx * c - dz * s), dx * s + dz * c
 
-    def _put(
-        self, foot, count, x, z, turn, height, swing, kick, scaled: bool = True
-    ) -> float | None:
+    def _put(self, foot, count, x, z, turn, flight: Flight) -> float | None:
         """Write down one step.
 
         The beat at which it lifts, or None where there is no time for it.
         """
         side, real = (1 if foot == 0 else -1), self.foot(foot)
-        if scaled:
+        if flight.scaled:
             x = side * STANCE + self.stride * (x - side * STANCE)
             z = self.stride * z
             x = x + self.sign * self.drift[0] * count
             z = z + self.drift[1] * count
         px, pz, yaw = self.place(x, z, side * 7.0 if turn is None else turn)
         land = self.start + (count - 0.04) * self.rate
-        lift = max(land - max(swing * self.rate, 0.3), self.script.landed[real] + 0.25)
+        lift = max(land - max(flight.swing * self.rate, 0.3), self.script.landed[real] + 0.25)
         if land - lift < 0.26:
             return None
         toe = self._spread(real, px + TOE_AHEAD * sin(yaw), pz + TOE_AHEAD * cos(yaw)) + (yaw,)
         out = self._round_the_other(real, toe)
-        self.script.steps[real].append(
-            Step(lift, land, *toe, height * (0.6 + 0.4 * self.size), out, kick)
-        )
+        height = flight.height * (0.6 + 0.4 * self.size)
+        self.script.steps[real].append(Step(lift, land, *toe, height, out, flight.kick))
         self.script.toes[real], self.script.landed[real] = toe, land
         return lift
 

@@ -1,5 +1,7 @@
 """One walk, put together: control and noise in, poses of 21 joints in the root frame out."""
 
+from dataclasses import dataclass
+
 import numpy as np
 from jaxtyping import Bool, Float
 
@@ -10,10 +12,19 @@ from . import legs, upper_body
 from .behaviours import behaviours
 from .drive import drive
 from .footsteps import plan, planted
-from .gait_curves import running
+from .gait_curves import Gait, running
 from .styles import Style
 
 GRAVITY = 9.81
+
+
+@dataclass(frozen=True, eq=False)
+class Pelvis:
+    """Where the pelvis is in the root frame (metres), how it is turned, and its yaw (radians)."""
+
+    place: Float[np.ndarray, "T 3"]
+    rotation: Float[np.ndarray, "T 3 3"]
+    yaw: Float[np.ndarray, "T"]
 
 
 def body(
@@ -42,38 +53,40 @@ def body(
     ahead = (
         0.25 + 0.75 * np.tanh(np.abs(forward) / 0.7) ** 2
     )  # sideways and on the spot nothing swings much
-    pelvis_yaw, pelvis = _pelvis_turn(steps, ahead, run, yaw, noise, style)
-    hips = _hips(steps, forward, run, speed, lean_shift, rows, noise, style, fps)
-    hips = legs.hips_within_reach(hips, pelvis, feet)
-    feet = legs.not_folded(hips, pelvis, feet)
+    gait = Gait(steps.clock, steps.amount, ahead, run, speed)
+    pelvis_yaw, rotation = _pelvis_turn(gait, yaw, noise, style)
+    hips = _hips(gait, forward, lean_shift, rows, noise, style, fps)
+    hips = legs.hips_within_reach(hips, rotation, feet)
+    feet = legs.not_folded(hips, rotation, feet)
+    pelvis = Pelvis(hips, rotation, pelvis_yaw)
     joints = np.zeros((len(control), J, 3))
     joints[:, 0] = hips
-    _set_legs(joints, hips, pelvis, pelvis_yaw, feet)
-    _set_upper(
-        joints, hips, pelvis, pelvis_yaw, steps, ahead, run, speed, inward, rows, noise, style, fps
-    )
+    _set_legs(joints, pelvis, feet)
+    _set_upper(joints, pelvis, gait, inward, rows, noise, style, fps)
     return joints, planted(steps, feet.toe[..., 1])
 
 
-def _pelvis_turn(steps, ahead, run, yaw, noise, style):
-    turn = 2 * np.pi * steps.clock
+def _pelvis_turn(gait: Gait, yaw, noise, style):
+    turn = 2 * np.pi * gait.clock
     angle = (
         -np.radians(9.3 * style.pelvis_yaw)
         * np.cos(turn - 2 * np.pi * 0.03)
-        * steps.amount
-        * ahead
-        * (1 + 0.1 * run)
+        * gait.amount
+        * gait.ahead
+        * (1 + 0.1 * gait.run)
     )
     angle = angle + 0.05 * yaw + np.radians(0.7) * noise[:, 0]
     roll = (
-        legs.own_roll(steps.clock, steps.amount) * (1 + 0.9 * run) + np.radians(0.35) * noise[:, 1]
+        legs.own_roll(gait.clock, gait.amount) * (1 + 0.9 * gait.run)
+        + np.radians(0.35) * noise[:, 1]
     )
     return angle, legs.pelvis_rotation(angle, roll, np.zeros_like(roll))
 
 
-def _hips(steps, forward, run, speed, lean_shift, rows, noise, style, fps):
+def _hips(gait: Gait, forward, lean_shift, rows, noise, style, fps):
     """Pelvis about the root: sway to the standing foot, ripple ahead, height."""
-    turn, amount = 2 * np.pi * steps.clock, steps.amount
+    turn = 2 * np.pi * gait.clock
+    amount, run = gait.amount, gait.run
     early = 0.4 * (
         follow(lean_shift, 0.2, fps) - lean_shift
     )  # the pelvis leans in before the feet have come out
@@ -90,7 +103,7 @@ def _hips(steps, forward, run, speed, lean_shift, rows, noise, style, fps):
         * (1 - 0.5 * run)
     )
     height = (
-        legs.pelvis_height(steps.clock, amount, forward, run, speed, style)
+        legs.pelvis_height(gait.clock, amount, forward, run, gait.speed, style)
         + 0.0022 * noise[:, 3]
         - 0.14 * np.abs(lean_shift)
     )
@@ -104,38 +117,23 @@ def _hips(steps, forward, run, speed, lean_shift, rows, noise, style, fps):
     )
 
 
-def _set_legs(joints, hips, pelvis, pelvis_yaw, feet) -> None:
+def _set_legs(joints, pelvis: Pelvis, feet) -> None:
     for side, first in enumerate((1, 5)):
-        socket = hips + pelvis @ OFFSETS[first]
-        facing = 0.5 * pelvis_yaw + 0.5 * feet.yaw[:, side]
+        socket = pelvis.place + pelvis.rotation @ OFFSETS[first]
+        facing = 0.5 * pelvis.yaw + 0.5 * feet.yaw[:, side]
         toward = np.stack([np.sin(facing), np.zeros_like(facing), np.cos(facing)], -1)
         joints[:, first], joints[:, first + 2] = socket, feet.ankle[:, side]
         joints[:, first + 1] = legs.bend_knee(socket, feet.ankle[:, side], toward)
         joints[:, first + 3] = feet.toe[:, side]
 
 
-def _set_upper(
-    joints, hips, pelvis, pelvis_yaw, steps, ahead, run, speed, inward, rows, noise, style, fps
-) -> None:
-    doing = behaviours(uniform(rows[:, 30:34]), style.behaviours, run < 0.5, fps)
-    wave = np.sin(2 * np.pi * np.arange(len(rows)) * 1.4 / fps)[-len(hips) :]
-    pose = upper_body.trunk(
-        steps.clock, steps.amount, ahead, run, speed, inward, doing, noise[:, 5:9], style
-    )
-    column, shoulders = upper_body.spine(hips, pelvis, pose, pelvis_yaw)
+def _set_upper(joints, pelvis: Pelvis, gait: Gait, inward, rows, noise, style, fps) -> None:
+    doing = behaviours(uniform(rows[:, 30:34]), style.behaviours, gait.run < 0.5, fps)
+    wave = np.sin(2 * np.pi * np.arange(len(rows)) * 1.4 / fps)[-len(joints) :]
+    pose = upper_body.trunk(gait, inward, doing, noise[:, 5:9], style)
+    column, shoulders = upper_body.spine(pelvis.place, pelvis.rotation, pose, pelvis.yaw)
     joints[:, 9:13] = np.stack(column, 1)
     swing = drift(rows[:, 34], 2.0, fps)[:, None]
     arm_noise = np.concatenate([noise[:, 9:13], swing], -1)
-    arms = upper_body.both_arms(
-        column[2],
-        shoulders,
-        steps.clock,
-        steps.amount * ahead,
-        run,
-        speed,
-        doing,
-        arm_noise,
-        wave,
-        style,
-    )
+    arms = upper_body.both_arms(column[2], shoulders, gait, doing, arm_noise, wave, style)
     joints[:, 13:21] = np.stack(arms, 1)

@@ -8,6 +8,8 @@ straight walking, relations with speed follow straight lines through them; no re
 (README.md, "Licence and sources"). The rest is set by hand.
 """
 
+from dataclasses import dataclass
+
 import numpy as np
 from jaxtyping import Float
 from scipy.interpolate import PchipInterpolator
@@ -15,6 +17,17 @@ from scipy.interpolate import PchipInterpolator
 RUN_SPEED = 2.2  # m/s where walking gives way to running
 
 Frames = Float[np.ndarray, "*#T"]
+
+
+@dataclass(frozen=True, eq=False)
+class Gait:
+    """What the whole body follows, frame by frame."""
+
+    clock: Float[np.ndarray, "T"]  # cycles; the left heel strikes at whole numbers
+    amount: Float[np.ndarray, "T"]  # 0 standing, 1 walking at the full rate
+    ahead: Float[np.ndarray, "T"]  # share of the swing: little sideways and on the spot
+    run: Float[np.ndarray, "T"]  # 0 walking, 1 running
+    speed: Float[np.ndarray, "T"]  # m/s
 
 
 def running(speed: Frames) -> Frames:

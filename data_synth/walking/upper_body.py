@@ -12,7 +12,7 @@ from motiondiff_edu.motion.kinematics import rot_x, rot_y, rot_z
 from motiondiff_edu.motion.skeleton import OFFSETS
 
 from .behaviours import Behaviours, pose_arm, swing_factor
-from .gait_curves import ELBOW, HAND, periodic
+from .gait_curves import ELBOW, HAND, Gait, periodic
 from .styles import Style
 
 UPPER_ARM, FOREARM = 0.28, 0.25
@@ -34,29 +34,26 @@ class Trunk:
 
 
 def trunk(
-    clock,
-    amount,
-    ahead,
-    run,
-    speed,
-    inward,
+    gait: Gait,
+    inward: Float[np.ndarray, "T"],
     doing: Behaviours,
     noise: Float[np.ndarray, "T 4"],
     style: Style,
 ) -> Trunk:
     """Chest and head angles; `inward` is the lean into a turn (radians, left positive)."""
-    turn = 2 * np.pi * clock
+    turn = 2 * np.pi * gait.clock
+    amount, run = gait.amount, gait.run
     chest = (
         -4.6
         * style.chest_yaw
         * (1 + 0.9 * run)
         * np.cos(turn - np.radians(11 + 105 + 35 * run))
         * amount
-        * ahead
+        * gait.ahead
     )
     nod = 1.45 * np.cos(2 * turn - 4 * np.pi * 0.10) * amount
     look = doing.head[:, 0] - doing.head[:, 1]
-    lean = style.lean + 1.0 + 1.4 * np.clip(speed, 0, 2) + 5.5 * run + nod + 1.0 * noise[:, 0]
+    lean = style.lean + 1.0 + 1.4 * np.clip(gait.speed, 0, 2) + 5.5 * run + nod + 1.0 * noise[:, 0]
     roll = -1.0 * np.cos(turn - 2 * np.pi * 0.2) * amount + 0.5 * noise[:, 1]
     head = (
         0.45 * (style.lean - 3) * -0.6
@@ -92,16 +89,15 @@ def spine(
     return (p9, p10, p11, p11 + head @ OFFSETS[12]), shoulders
 
 
-def free_arm(
-    clock, side: int, amount, run, speed, swing, noise: Float[np.ndarray, "T 2"], style: Style
-):
+def free_arm(gait: Gait, side: int, swing, noise: Float[np.ndarray, "T 2"], style: Style):
     """(swing, abduction, twist, elbow) of an arm that just swings.
 
     The hand's angle follows the measured curve.
     """
-    p = clock if side == 0 else clock + 0.5
+    amount, run = gait.amount * gait.ahead, gait.run
+    p = gait.clock if side == 0 else gait.clock + 0.5
     size = (
-        (27 + 17 * np.clip(speed, 0, 1.8))
+        (27 + 17 * np.clip(gait.speed, 0, 1.8))
         / 50
         * style.arms
         * swing
@@ -144,9 +140,7 @@ def arm(
     return shoulder, p1, p2, p2 + hand @ (0.09 * DOWN)
 
 
-def both_arms(
-    neck, shoulders, clock, amount, run, speed, doing: Behaviours, noise, wave, style: Style
-) -> list:
+def both_arms(neck, shoulders, gait: Gait, doing: Behaviours, noise, wave, style: Style) -> list:
     """The eight joints of both arms, left first.
 
     `noise` (T, 5): a pair per arm, and the swing they share.
@@ -154,8 +148,6 @@ def both_arms(
     joints = []
     for side, joint in enumerate((13, 17)):
         swing = swing_factor(doing) * np.exp(0.16 * noise[:, 4])
-        free = free_arm(
-            clock, side, amount, run, speed, swing, noise[:, 2 * side : 2 * side + 2], style
-        )
+        free = free_arm(gait, side, swing, noise[:, 2 * side : 2 * side + 2], style)
         joints += arm(neck, shoulders, joint, pose_arm(free, side, doing, wave))
     return joints

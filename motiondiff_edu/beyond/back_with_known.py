@@ -16,7 +16,7 @@ from torch import Tensor
 
 from ..ddpm import Denoiser, Schedule, draw
 from ..inbetweening import inpaint_steps
-from ..reconstruction import walked_back
+from ..reconstruction import Rollout, walked_back
 from ..rollout import AnyWalker, rollout_steps
 from .guidance import blended_guess, guided
 
@@ -35,29 +35,27 @@ class MaskedWalker(AnyWalker, Protocol):
 
 
 def drawn_back(
-    walker: AnyWalker,
+    rollout: Rollout,
     ahead: Frames,
     control: Float[Tensor, "B T C"],
     given: Frames,
     known: Bool[Tensor, "B _ _"],
-    **options,
 ) -> Frames:
     """The paper's way back, drawn through the known entries: no jump where a hole ends."""
-    back = walked_back(walker, ahead, control, given, known, **options)
+    back = walked_back(rollout, ahead, control, given, known)
     return blended_guess(back, given.to(back), known, FADE)
 
 
 def held_back(
-    walker: AnyWalker,
+    rollout: Rollout,
     ahead: Frames,
     control: Float[Tensor, "B T C"],
     given: Frames,
     known: Bool[Tensor, "B _ _"],
-    **options,
 ) -> Frames:
     """Frame by frame: the known entries of each are put right before the next is walked."""
-    steps, generator = options["steps"], options["generator"]
-    sample, T_p = walker.window_sampler(steps), walker.config.T_p
+    walker, generator = rollout.walker, rollout.generator
+    sample, T_p = walker.window_sampler(rollout.steps), walker.config.T_p
     given, past = (walker.pose_scaler.transform(x.float()) for x in (given, ahead))
     velocities, rows = walker.control_scaler.transform(control.float()), []
     for t in range(ahead.shape[1]):
@@ -72,19 +70,20 @@ def held_back(
 
 @torch.no_grad()
 def masked_back(
-    walker: MaskedWalker,
+    rollout: Rollout,
     ahead: Frames,
     control: Float[Tensor, "B T C"],
     given: Frames,
     known: Bool[Tensor, "B _ _"],
-    **options,
 ) -> Frames:
     """All at once: the walker's one window, sampled with its known entries held and guided by them.
 
     The sampling is `inbetweening.inpaint_steps`.
+    The rollout's walker has to be a MaskedWalker.
     Raises ValueError for a walker that predicts more or fewer poses than it is given.
     Notebook: 15
     """
+    walker: MaskedWalker = rollout.walker
     config, schedule = walker.config, walker.schedule
     if config.T_p != config.T_h:
         raise ValueError(
@@ -93,15 +92,15 @@ def masked_back(
         )
     given, ahead = (walker.pose_scaler.transform(x.float()) for x in (given, ahead))
     network = walker.denoiser(ahead, walker.control_scaler.transform(control.float()), fast=False)
-    start = draw(given, options["generator"])
+    start = draw(given, rollout.generator)
     loop = inpaint_steps(
         guided(network, schedule, given, known, GUIDANCE),
         start,
         schedule,
         given,
         known,
-        steps=options["steps"] or config.S,
-        generator=options["generator"],
+        steps=rollout.steps or config.S,
+        generator=rollout.generator,
     )
     *_, last = loop
     return walker.pose_scaler.inverse(last.x_s)

@@ -6,6 +6,7 @@ Notebook: 00, 07
 """
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from jaxtyping import Float
@@ -122,6 +123,17 @@ def _smoothstep(u: np.ndarray) -> np.ndarray:
     return u * u * (3 - 2 * u)
 
 
+@dataclass(frozen=True)
+class Limits:
+    """How fast a walk along a path may change: m/s^2 along it, rad/s about the vertical."""
+
+    acceleration: float | int = 1.2
+    max_yaw: float | int = 1.8
+
+
+CALM = Limits()
+
+
 def path_to_control(
     points: Float[np.ndarray, "n 2"],
     speed: float | int,
@@ -129,8 +141,7 @@ def path_to_control(
     stops: Sequence[float | int] = (),
     pause: float | int = 1.5,
     rest: bool = True,
-    acceleration: float | int = 1.2,
-    max_yaw: float | int = 1.8,
+    limits: Limits = CALM,
     smoothing: float | int = 0.12,
 ) -> Float[np.ndarray, "T 3"]:
     """Control that walks along `points` ([x, z], metres) at `speed` m/s.
@@ -138,10 +149,10 @@ def path_to_control(
     It starts at the first point with heading 0.
 
     The path is resampled by arc length and rounded by a Gaussian of `smoothing` metres; speed keeps
-    to `acceleration` (m/s^2, from and to rest if `rest`) and drops where a bend would ask for more
-    than `max_yaw` rad/s. A path that does not set out along z is turned to on the spot first. At
-    each of `stops` (metres along the path) it rests for `pause` seconds. Integrated, it is the
-    rounded path.
+    to the acceleration of `limits` (from and to rest if `rest`) and drops where a bend would ask
+    for more than their `max_yaw`. A path that does not set out along z is turned to on the spot
+    first. At each of `stops` (metres along the path) it rests for `pause` seconds. Integrated, it
+    is the rounded path.
     Raises ValueError for a path without length, a position that is not finite, or a speed outside
     (0, 4].
     """
@@ -157,16 +168,15 @@ def path_to_control(
         step,
         turn,
         float(speed),
-        acceleration,
-        max_yaw,
+        limits,
         halts + ([0, len(curve) - 1] if rest else []),
     )
-    dt = np.maximum(2 * step / np.maximum(v[1:] + v[:-1], 1e-9), turn / max_yaw)
+    dt = np.maximum(2 * step / np.maximum(v[1:] + v[:-1], 1e-9), turn / limits.max_yaw)
     time = np.concatenate([[0.0], np.cumsum(dt)])
     for halt in halts:  # the pause sits in the step that leaves the halt
         time[halt + 1 :] += pause
     frames = np.arange(int(np.ceil(time[-1] * fps)) + 1) / fps
-    return _control_at(frames, time, curve, heading, halts, pause, fps, max_yaw)
+    return _control_at(frames, time, curve, heading, halts, pause, fps, limits.max_yaw)
 
 
 def round_path(
@@ -218,23 +228,22 @@ def _speeds(
     step: np.ndarray,
     turn: np.ndarray,
     speed: float,
-    acceleration: float | int,
-    max_yaw: float | int,
+    limits: Limits,
     halts: list[int],
 ) -> np.ndarray:
     """The fastest speed that is allowed at each point.
 
-    Within `speed`, `max_yaw`, SIDEWAYS and `acceleration`, and zero at `halts`.
+    Within `speed`, `limits` and SIDEWAYS, and zero at `halts`.
     """
     bend = np.concatenate([np.minimum(turn / np.maximum(step, 1e-9), 20.0), [0.0]])
     bend = np.maximum(gaussian_filter1d(bend, 0.1 / SPACING, mode="nearest"), 1e-9)
-    v = np.minimum(speed, np.minimum(max_yaw / bend, np.sqrt(SIDEWAYS / bend)))
+    v = np.minimum(speed, np.minimum(limits.max_yaw / bend, np.sqrt(SIDEWAYS / bend)))
     v[halts] = 0.0
     v[np.flatnonzero(turn > 0.5)] = 0.0  # half a radian within a centimetre: stop, turn on the spot
     for i in range(1, len(v)):
-        v[i] = min(v[i], np.sqrt(v[i - 1] ** 2 + 2 * acceleration * step[i - 1]))
+        v[i] = min(v[i], np.sqrt(v[i - 1] ** 2 + 2 * limits.acceleration * step[i - 1]))
     for i in range(len(v) - 2, -1, -1):
-        v[i] = min(v[i], np.sqrt(v[i + 1] ** 2 + 2 * acceleration * step[i]))
+        v[i] = min(v[i], np.sqrt(v[i + 1] ** 2 + 2 * limits.acceleration * step[i]))
     return v
 
 

@@ -164,10 +164,9 @@ class Made:
 
 @runtime_checkable
 class Make(Protocol):
-    """What finds the rest of an edit: `functools.partial(inbetween, dancer)` is one.
+    """What finds the rest of an edit: `editing.inbetween.maker(dancer)` is one.
 
-    It is called with these five, three of them by name, and returns `samples` motions (metres).
-    `resample` is how often each step is made.
+    It returns `samples` motions (metres). `resample` is how often each step is made.
     """
 
     def __call__(

@@ -6,6 +6,7 @@ The sampling itself is `inbetweening.inpaint_steps`.  Source: MoFusion 4.4.  Not
 """
 
 import math
+from dataclasses import dataclass, replace
 from typing import Protocol, runtime_checkable
 
 import numpy as np
@@ -22,13 +23,33 @@ from ..motion.dance_frame import GROUND, Place, heading, placed_features, to_pos
 from ..motion.directions import ARMS, UPLEGS
 from ..motion.scaler import Scaler
 from ..motion.skeleton import HIPS, JOINTS, J
+from .edit import Make
 from .masks import known_columns
 
-BLEND = 10  # frames within which a correction fades where nothing else is given
-GUIDANCE = 0.5  # more obeys sparse keyframes better, and jumps more at the seams of a gap
 AHEAD, SOMEWHERE = 20, 0.5  # frames of the path that tell where it leads, if so far (metres)
-# options of `inbetween` that make it masked sampling as in 4.4
-PAPER = {"blend": None, "guidance": 0.0, "bones": False, "feet": False}
+
+
+@dataclass(frozen=True)
+class Departures:
+    """Where `inbetween` departs from masked sampling as in 4.4.
+
+    `blend`: each guess of the network is drawn through what is given, and the correction fades
+    within so many frames where nothing more is given (`beyond.guidance.blended`).
+    `guidance`: > 0 applies `beyond.guidance.guided` first; it doubles the cost. More obeys sparse
+    keyframes better, and jumps more at the seams of a gap.
+    `bones`: generated bones get the lengths of the given ones (`beyond.constant_bones`).
+    `feet`: planted feet do not slide (`beyond.foot_lock`).
+    `resample`: how often each step is made (`inbetweening.resampled`).
+    """
+
+    blend: int | None = 10
+    guidance: float = 0.5
+    bones: bool = True
+    feet: bool = True
+    resample: int = 1
+
+
+OURS, PAPER = Departures(), Departures(blend=None, guidance=0.0, bones=False, feet=False)
 
 
 @runtime_checkable
@@ -49,13 +70,7 @@ def inbetween(
     *,
     samples: int = 1,
     steps: int = 50,
-    eta: float = 1.0,
-    resample: int = 1,
-    blend: int | None = BLEND,
-    guidance: float = GUIDANCE,
-    bones: bool = True,
-    feet: bool = True,
-    seed: int = 0,
+    departures: Departures = OURS,
     generator: torch.Generator | None = None,
 ) -> Float[np.ndarray, "samples T 21 3"]:
     """Find what is not known of a motion (metres, 20 frames/s), `samples` times.
@@ -63,19 +78,14 @@ def inbetween(
     `mel` for a dancer that hears.
 
     Known entries come back bit by bit as they were given; the others may be NaN. The motion is
-    `seen_from` where it begins to be known. Numbers are drawn from `generator`, or from a new one
-    with this `seed`. `blend`: the network's guesses are drawn through what is given, at every step,
-    and let go of within so many frames where nothing more is given (`beyond.guidance.blended`).
-    `guidance`: they are moved by its gradient before (`beyond.guidance.guided`), at twice the cost.
-    `bones`: they get the lengths that they have where they are given (`beyond.constant_bones`).
-    `feet`: theirs do not slide (`beyond.foot_lock`). Where nothing is known the result is a sample
-    as it comes, and none of the four changes it. `**PAPER`: none of the four, masked sampling
-    as in the paper.
+    `seen_from` where it begins to be known. Without a `generator` the seed is 0.
+    `departures`: `OURS`, or `PAPER` for masked sampling as printed. Where nothing is known the
+    result is a plain sample in both cases.
     Raises ValueError where a joint is given without the pelvis, or is given and not a number, and
     for shapes that do not fit.  Source: MoFusion 4.4.   Notebook: 15
     """
     positions, known = _checked(positions, known)
-    generator = generator or torch.Generator().manual_seed(seed)
+    generator = generator or torch.Generator().manual_seed(0)
     columns, place = torch.from_numpy(known_columns(known)), seen_from(positions, known)
     device = dancer.motion_scaler.mean.device
     at_home = np.where(known[..., None], place.enter(np.nan_to_num(positions)), 0.0)
@@ -85,22 +95,32 @@ def inbetween(
     heard = None if mel is None else mel[None].expand(samples, -1, -1)
     held, schedule = (given.expand(shape), columns.to(device).expand(shape)), dancer.schedule
     start = draw(held[0], generator)
-    steer = bool(guidance) and bool(known.any())
+    steer = bool(departures.guidance) and bool(known.any())
     denoise = dancer.denoiser(heard, len(given), fast=not steer)
     if steer:
-        denoise = guided(denoise, schedule, *held, guidance)
-    if blend is not None:
-        denoise = blended(denoise, schedule, *held, fading(blend).to(device))
-    visited = resampled(timesteps(schedule.S, steps), resample)
-    loop = inpaint_steps(
-        denoise, start, schedule, *held, steps=visited, eta=eta, generator=generator
-    )
+        denoise = guided(denoise, schedule, *held, departures.guidance)
+    if departures.blend is not None:
+        denoise = blended(denoise, schedule, *held, fading(departures.blend).to(device))
+    visited = resampled(timesteps(schedule.S, steps), departures.resample)
+    loop = inpaint_steps(denoise, start, schedule, *held, steps=visited, generator=generator)
     *_, last = loop
     poses = to_positions(dancer.motion_scaler.inverse(last.x_s))
     made = place.leave(poses.double().cpu().numpy())
     whole = np.where(known[..., None], positions, made)
-    whole = steady_bones(whole, known, given_lengths(positions, known)) if bones else whole
-    return steady_feet(whole, known) if feet and known.any() else whole
+    if departures.bones:
+        whole = steady_bones(whole, known, given_lengths(positions, known))
+    return steady_feet(whole, known) if departures.feet and known.any() else whole
+
+
+def maker(dancer: AnyDancer, *, steps: int = 50) -> Make:
+    """What finds the rest of an edit, for the editor and `editing.edit.make_between`.
+    Notebook: 15"""
+
+    def make(positions, known, *, samples, resample, generator):
+        how = {"steps": steps, "departures": replace(OURS, resample=resample)}
+        return inbetween(dancer, positions, known, samples=samples, generator=generator, **how)
+
+    return make
 
 
 def fading(frames: int) -> Float[Tensor, "63"]:

@@ -24,7 +24,7 @@ from ..motion.motion import MotionError
 from ..motion.planting import runs
 from ..motion.root_frame import smoothed_root, to_root_frame, to_world
 from ..motion.skeleton import BONE_LENGTHS, HIPS, JOINTS, TOES, J
-from ..reconstruction import repair
+from ..reconstruction import Rollout, Stop, repair
 
 ROUNDS, STEPS = 3, 10  # there and back; of DDIM
 BATCH = 64  # windows at once
@@ -57,8 +57,9 @@ def reconstruct(
     mean = walker.pose_scaler.mean.to(given).expand_as(given)
     guess = blended_guess(mean[None], given[None], mask[None], FADE)[0]
     steer = torch.from_numpy(np.concatenate([control, np.repeat(control[-1:], T_h, axis=0)]))
+    rollout = Rollout(walker, generator, STEPS)
     for _ in range(rounds):
-        found = _once(walker, guess, mask, steer, firsts, generator)
+        found = _once(rollout, guess, mask, steer, firsts)
         joints = torch.where(mask, given, found).unflatten(-1, (J, 3)).numpy()
         guess = torch.from_numpy(steady_bones(joints, known, lengths)).flatten(1)
     start = (*place[0].tolist(), float(facing[0]))
@@ -75,18 +76,17 @@ def evaluations(walker, known: Bool[np.ndarray, "T 21"], rounds: int = ROUNDS) -
 
 
 def _once(
-    walker,
+    rollout: Rollout,
     guess: Float[Tensor, "T D"],
     mask: Bool[Tensor, "T D"],
     steer: Float[Tensor, "F 3"],
     firsts: Int[np.ndarray, "W"],
-    generator: torch.Generator,
 ) -> Float[Tensor, "T D"]:
     """Every window there and back once.
 
     Where they overlap their mean, the middle of a window counting most.
     """
-    T_h = walker.config.T_h
+    T_h = rollout.walker.config.T_h
     weight = 1.0 + torch.arange(T_h).minimum(torch.arange(T_h).flip(0)).to(guess)[:, None]
     found, total = torch.zeros_like(guess), torch.zeros_like(guess[:, :1])
     for some in torch.from_numpy(firsts).split(BATCH):
@@ -94,9 +94,8 @@ def _once(
         control = steer[some[:, None] + torch.arange(2 * T_h)].float()
         past = guess[rows].float()
         back = repair(
-            walker, past, mask[rows], control, guess=past, way_back=drawn_back, rounds=1,
-            steps=STEPS, generator=generator,
-        )  # fmt: skip
+            rollout, past, mask[rows], control, way_back=drawn_back, guess=past, stop=Stop(rounds=1)
+        )
         for where, window in zip(rows, back, strict=True):
             found[where] += weight * window.to(guess)
             total[where] += weight

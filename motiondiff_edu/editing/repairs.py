@@ -18,7 +18,7 @@ from torch import Tensor
 from ..beyond.constant_bones import steady_bones
 from ..metrics import repair
 from ..metrics.bone_lengths import bone_lengths, bone_rmse
-from ..reconstruction import repair_steps
+from ..reconstruction import Rollout, Stop, repair_steps
 from ..rollout import AnyWalker
 
 
@@ -90,7 +90,7 @@ def mend_steps(
     rows = (np.reshape(past, (-1, T_h, 3 * J)), np.reshape(control, (-1, control.shape[-2], 3)))
     holes, steer = (torch.from_numpy(np.asarray(row, np.float32)) for row in rows)
     batch = [row.repeat(n, 1, 1) for row in (holes, mask, steer)]
-    for done in repair_steps(walker, *batch, rounds=rounds, generator=generator, steps=steps):
+    for done in repair_steps(Rollout(walker, generator, steps), *batch, stop=Stop(rounds)):
         samples = done.past.double().numpy().reshape(n, *past.shape)
         yield Mended(
             np.where(known[..., None], past, samples), known, done.number, float(done.change.mean())
@@ -102,8 +102,8 @@ def with_bones(
 ) -> Float[Tensor, "B T_h D"]:
     """The past, its missing joints moved until bones have their right lengths.
 
-    For `reconstruction.repair_steps(settle=with_bones)`: a made joint beside a known one else tears
-    the bone between.
+    For `reconstruction.repair_steps(correct=with_bones)`: otherwise the bone between a generated
+    and a given joint changes its length.
     Source: ours.
     """
     joints, ahead = (x.double().unflatten(-1, (-1, 3)).numpy() for x in (past, walked))

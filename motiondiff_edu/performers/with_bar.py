@@ -18,8 +18,8 @@ def with_bar(
     with bar(evaluations, what, shown) as step:
         twin = copy.copy(performer)
 
-        def denoiser(*given, **named):
-            denoise = performer.denoiser(*given, **named)
+        def denoiser(first, second, fast: bool = True):  # past and control, or mel and frames
+            denoise = performer.denoiser(first, second, fast)
 
             def stepping(x_s, s):
                 answer = denoise(x_s, s)

@@ -53,11 +53,12 @@ def inbetween(
     Raises MotionError and ValueError for what does not fit.  Source: MoFusion 4.4.  Notebook: 15
     """
     known, count = _fitting(motion, known), checked_count(samples, "samples")
+    draw = torch.Generator().manual_seed(seed)
     if known.all():
         raise MotionError(f"{motion.name}: all is known, there is nothing to make")
     with with_bar(_shipped("unconditional"), steps, "filling in", progress) as dancer:
         made = inbetweens.inbetween(
-            dancer, motion.positions, known, samples=count, steps=steps, seed=seed
+            dancer, motion.positions, known, samples=count, steps=steps, generator=draw
         )
     made = [_made(motion, known, positions, "in-betweens") for positions in made]
     return made if samples > 1 else made[0]

@@ -24,7 +24,7 @@ def train_for(seconds: float, clips: list[Clip], recipe: Recipe = BUDGET) -> tup
     """
     begun = prepared(recipe, clips)
     optimizer = optimizer_for(begun.model, recipe.optimizer)
-    state = TrainState.start(begun.model, recipe.seed, optimizer)
+    state = TrainState.start(begun.model, recipe.seed, optimizer, recipe.decay)
     start = time.process_time()
 
     def spent() -> float:
@@ -38,10 +38,7 @@ def train_for(seconds: float, clips: list[Clip], recipe: Recipe = BUDGET) -> tup
         if begun.dropout:
             begun.dropout.done = spent()
 
-    loop = train_steps(
-        state, begun.loss_fn, 10**9, lr=rate, decay=recipe.decay, before=before, progress=False
-    )
-    for _ in loop:
+    for _ in train_steps(state, begun.loss_fn, 10**9, lr=rate, before=before, progress=False):
         if spent() >= 1:
             break
     return begun.walker(state.average.eval()), state.step

@@ -5,7 +5,6 @@ old file.
 """
 
 import json
-from collections.abc import Callable
 from pathlib import Path
 
 import torch
@@ -13,17 +12,17 @@ from safetensors import SafetensorError, safe_open
 from safetensors.torch import save_file
 
 from .._files import digest_of_tensors, replacing
-from ..training import TrainState
+from ..training import Saving, TrainState
 
 
 def saver(
-    path: str | Path, about: dict | None = None, notes: list | None = None
-) -> Callable[[TrainState], Path]:
-    """A `save` for `training.train_steps`: writes the run to this file.
+    path: str | Path, about: dict | None = None, notes: list | None = None, every: int = 1000
+) -> Saving:
+    """A `save` for `training.train_steps`: writes the run to this file every so many steps.
 
     `about` and `notes` as in save_run.
     """
-    return lambda state: save_run(state, path, about, notes)
+    return Saving(lambda state: save_run(state, path, about, notes), every)
 
 
 def save_run(

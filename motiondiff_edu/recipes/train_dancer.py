@@ -22,7 +22,7 @@ from ..performers.dancer import Dancer
 from ..performers.networks import network
 from ..training import LossFn
 from .dancers import DanceLossWeights, DanceRecipe
-from .train_recipe import train_recipe
+from .train_recipe import Provenance, train_recipe
 
 
 def training_windows(recipe: DanceRecipe) -> DanceWindows:
@@ -73,15 +73,14 @@ def train_dancer(
     schedule = schedule_of(recipe)
     torch.manual_seed(recipe.seed)
     model = network(config)
+    about = {"network": type(model).__name__, "data": digest(windows)}
     made_of = "mixed" if recipe.motions else "music and data_synth.dancing"
     trained, card = train_recipe(
         recipe,
         run_file,
         model,
         loss_of(recipe, windows, schedule),
-        about={"network": type(model).__name__, "data": digest(windows)},
-        facts={"windows": len(windows)},
-        data=f"data_synth.{made_of}, synthetic",
+        Provenance(about, {"windows": len(windows)}, f"data_synth.{made_of}, synthetic"),
         warmup=300,
         log=log,
     )

@@ -4,7 +4,7 @@ import datetime
 import platform
 import subprocess
 from collections.abc import Callable
-from dataclasses import asdict
+from dataclasses import asdict, dataclass
 from pathlib import Path
 
 import numpy as np
@@ -18,15 +18,22 @@ from .runs import notes_of, resume_run, saver
 from .walkers import Recipe
 
 
+@dataclass(frozen=True)
+class Provenance:
+    """What a run begins with besides its recipe, and what its card says of it."""
+
+    about: dict[str, str]  # which network, which data: a run is resumed with the same alone
+    facts: dict  # entries of the card: how many windows, which control
+    data: str  # where the data are from, for the card
+
+
 def train_recipe(
     recipe: Recipe | DanceRecipe,
     run_file: Path,
     model: nn.Module,
     loss_fn: LossFn,
+    provenance: Provenance,
     *,
-    about: dict[str, str],
-    facts: dict,
-    data: str,
     warmup: int,
     log: Callable[[str], object],
     before: Callable[[int], object] | None = None,
@@ -35,15 +42,15 @@ def train_recipe(
 
     Returns the averaged network, and its card.
 
-    A run goes on with the recipe and the `about` (which network, which data) that it was begun
-    with; the card tells `facts`, and where the `data` are from. `before` is `train_steps`'s. The
-    rate rises for `warmup` steps, but a quarter of all at most.
+    `warmup`: steps in which the rate rises, at most a quarter of all.
+    `before`: as in `train_steps`.
     Raises ValueError when the run in `run_file` was begun with other settings.
     """
     device = "cuda" if torch.cuda.is_available() else "cpu"
     model = model.to(device)
-    state = TrainState.start(model, recipe.seed, optimizer_for(model, recipe.optimizer))
-    about = asdict(recipe) | about
+    optimizer = optimizer_for(model, recipe.optimizer)
+    state = TrainState.start(model, recipe.seed, optimizer, recipe.decay)
+    about = asdict(recipe) | provenance.about
     if run_file.exists():
         resume_run(state, run_file, about)
         log(f"{recipe.name}: continuing at step {state.step}")
@@ -51,20 +58,19 @@ def train_recipe(
     if state.step < recipe.steps:
         sittings = [*sittings, {"from_step": state.step, **where(device)}]
     rate = cosine_lr(recipe.lr, recipe.steps, warmup=min(warmup, recipe.steps // 4))
-    run_to_end(recipe, rate, state, loss_fn, saver(run_file, about, sittings), log, before)
-    if before:
-        before(
-            state.step
-        )  # the final loss is that of the end, also of a run that had nothing to do
+    save = saver(run_file, about, sittings, recipe.save_every)
+    run_to_end(recipe, rate, state, loss_fn, save, log, before)
+    if before:  # the final loss is that of the end, also of a run that had nothing to do
+        before(state.step)
     card = {
         "name": recipe.name,
         "target": recipe.config.target,
         "recipe": {k: v for k, v in asdict(recipe).items() if k not in ("config", "name")},
         "parameters": sum(p.numel() for p in state.model.parameters()),
-        **facts,
+        **provenance.facts,
         "minutes": round(state.seconds / 60, 1),
         "sittings": sittings,
-        "data": data,
+        "data": provenance.data,
         "final_loss": round(mean_loss(loss_fn, state.average), 6),
     }  # `make results` adds the measured figures
     return state.average.cpu().eval(), card
@@ -74,16 +80,9 @@ def run_to_end(
     recipe: Recipe | DanceRecipe, rate, state: TrainState, loss_fn: LossFn, save, log, before=None
 ) -> None:
     """Train to the last step, with a word every thousand steps, or twenty times."""
-    settings = {
-        "lr": rate,
-        "decay": recipe.decay,
-        "save": save,
-        "save_every": recipe.save_every,
-        "progress": False,
-    }
-    settings["before"] = before
     losses, every = [], min(1000, max(1, recipe.steps // 20))
-    for report in train_steps(state, loss_fn, recipe.steps, **settings):
+    how = {"lr": rate, "save": save, "before": before, "progress": False}
+    for report in train_steps(state, loss_fn, recipe.steps, **how):
         losses.append(report.loss)
         if report.step % every == 0:
             mean, minutes = np.mean(losses[-every:]), state.seconds / 60

@@ -26,7 +26,7 @@ from ..performers.networks import network
 from ..performers.walker import Walker
 from ..performers.windows import Windows, typical_change
 from ..training import LossFn
-from .train_recipe import train_recipe
+from .train_recipe import Provenance, train_recipe
 from .walkers import LossWeights, Recipe
 
 
@@ -68,17 +68,16 @@ def train(
         begun.model.load_state_dict(first.state_dict())
         about["first"] = digest_of_tensors(first.state_dict())[:16]
     facts = {"frames": len(windows.poses), "control_range": control_range(windows)}
+    facts |= {key: about[key] for key in ("first",) if key in about}
     trained, card = train_recipe(
         recipe,
         run_file,
         begun.model,
         begun.loss_fn,
-        before=begun.dropout.now if begun.dropout else None,
-        about=about,
-        facts=facts | {key: about[key] for key in ("first",) if key in about},
-        data="data_synth.walking, synthetic",
+        Provenance(about, facts, "data_synth.walking, synthetic"),
         warmup=500,
         log=log,
+        before=begun.dropout.now if begun.dropout else None,
     )
     return begun.walker(trained, card)
 

@@ -61,7 +61,7 @@ def control_curves(
     controls: Mapping[str, Float[np.ndarray, "_ 3"]], fps: float | int = 20.0, past: int = 0
 ) -> Figure:
     """Forward, left and yaw over time, one row each; the given past is shaded."""
-    fig, axes = figure(9, 5.4, f"Control over time: {', '.join(controls)}.", 3, 1, sharex=True)
+    fig, axes = figure(9, 5.4, f"Control over time: {', '.join(controls)}.", 3, 1, share="x")
     for k, (axis, name) in enumerate(
         zip(axes, ("forward (m/s)", "left (m/s)", "yaw (rad/s)"), strict=True)
     ):

@@ -29,7 +29,7 @@ def stops_and_beats(
 
     Its smoothed mean joint speed, dots where it slows down, and lines at the music's beats.
     """
-    fig, axes = figure(10, 0.9 + 1.9 * len(dances), words, rows=len(dances), sharex=True)
+    fig, axes = figure(10, 0.9 + 1.9 * len(dances), words, rows=len(dances), share="x")
     for axis, (name, positions) in zip(axes, dances.items(), strict=True):
         fine = resample(positions, fps) if fps < DANCE_FPS else positions
         rate = max(fps, DANCE_FPS)
@@ -106,7 +106,7 @@ def beside_floor(panels: Pairs, words: str) -> Figure:
 def _bars(panels: Pairs, words: str, mark: str, form: str) -> tuple[Figure, list[Axes]]:
     rows = list(next(iter(panels.values())))
     fig, axes = figure(
-        2.4 + 4.2 * len(panels), 1.5 + 0.5 * len(rows), words, 1, len(panels), sharey=True
+        2.4 + 4.2 * len(panels), 1.5 + 0.5 * len(rows), words, 1, len(panels), share="y"
     )
     for axis, (title, pairs) in zip(axes, panels.items(), strict=True):
         for k, (value, beside) in enumerate(pairs.values()):

@@ -28,7 +28,7 @@ def beside(
     All panels give a name the same colour and marker; one legend stands above them, if there are
     several names.
     """
-    fig, axes = figure(4.6 * len(panels), 4.1, words, 1, len(panels), sharex=True)
+    fig, axes = figure(4.6 * len(panels), 4.1, words, 1, len(panels), share="x")
     names = list(dict.fromkeys(name for curves in panels.values() for name in curves))
     for axis, (title, curves) in zip(axes, panels.items(), strict=True):
         for name, (x, y) in curves.items():
@@ -90,7 +90,7 @@ def who_meets_whom(
 
     The line below is what sampling asks for: a clean past at every step.
     """
-    fig, axes = figure(4.7 * len(meetings), 4.1, words, 1, len(meetings), sharex=True, sharey=True)
+    fig, axes = figure(4.7 * len(meetings), 4.1, words, 1, len(meetings), share="xy")
     for axis, (name, (target, past)) in zip(axes, meetings.items(), strict=True):
         axis.axhline(0, color=OKABE_ITO[1], lw=5, alpha=0.5, label="asked for in sampling")
         axis.plot(target, past, "o", ms=4, alpha=0.6, color=OKABE_ITO[0], label="met in training")

@@ -33,8 +33,8 @@ def slice_of_plane(
 
     Beside it, what each way found, as histograms under the true conditional density.
     """
-    fig, (plane, *beside) = figure(4.0 + 2.5 * len(made), 4.2, words, 1, 1 + len(made), sharey=True,
-                                   width_ratios=[1.7, *[1] * len(made)])  # fmt: skip
+    fig, (plane, *beside) = figure(4.0 + 2.5 * len(made), 4.2, words, 1, 1 + len(made), share="y",
+                                   widths=[1.7, *[1] * len(made)])  # fmt: skip
     plane.plot(*np.asarray(data).T, ".", ms=3, color=GREY, alpha=0.4)
     plane.axvline(at, color=OKABE_ITO[1], lw=1.5)
     first = np.asarray(next(iter(made.values())))[:300]
@@ -67,7 +67,7 @@ def ways(
     A dot for each seed, and a line at the right answer.
     """
     fig, axes = figure(
-        3.0 + 3.4 * len(right), 1.4 + 0.45 * len(found), words, 1, len(right), sharey=True
+        3.0 + 3.4 * len(right), 1.4 + 0.45 * len(found), words, 1, len(right), share="y"
     )
     for k, (axis, (name, value)) in enumerate(zip(axes, right.items(), strict=True)):
         axis.axvline(value, color=INK, lw=1.4, ls=":")
@@ -86,7 +86,7 @@ def masks(
     known: Mapping[str, Bool[np.ndarray, "T J"]], words: str, fps: float | int = 20
 ) -> Figure:
     """What is given: a panel for each mask, joints from top to bottom, time to the right."""
-    fig, axes = figure(2.5 * len(known), 2.9, words, 1, len(known), sharey=True)
+    fig, axes = figure(2.5 * len(known), 2.9, words, 1, len(known), share="y")
     for axis, (name, mask) in zip(axes, known.items(), strict=True):
         extent = (0, len(mask) / fps, mask.shape[1] - 0.5, -0.5)
         colours = ListedColormap([OPEN, GIVEN])

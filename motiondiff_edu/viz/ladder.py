@@ -27,7 +27,7 @@ def ladder(rungs: Sequence[Rung], measures: Sequence[str], words: str) -> Figure
     """
     groups = list(dict.fromkeys(rung.group for rung in rungs))
     panels = len(measures)
-    fig, axes = figure(5 + 3.2 * panels, 1.6 + 0.34 * len(rungs), words, 1, panels, sharey=True)
+    fig, axes = figure(5 + 3.2 * panels, 1.6 + 0.34 * len(rungs), words, 1, panels, share="y")
     for axis, measure in zip(axes, measures, strict=True):
         for row, rung in enumerate(rungs):
             k = groups.index(rung.group)

@@ -30,8 +30,8 @@ def levels_over_sound(
     Across: the music's time. Downwards: the dance's. Each map has its own scale; one alone, larger,
     is drawn by `attention_over_sound`.  Source: MoFusion Fig. 4.
     """
-    fig, axes = figure(10, 1.6 + 2.3 * len(maps), words, 1 + len(maps), 1, sharex=True,
-                       gridspec_kw={"height_ratios": [1.1, *[2] * len(maps)]})  # fmt: skip
+    fig, axes = figure(10, 1.6 + 2.3 * len(maps), words, 1 + len(maps), 1, share="x",
+                       heights=[1.1, *[2] * len(maps)])  # fmt: skip
     waves(axes[0], audio, sample_rate)
     axes[0].set(title="the song; dotted lines are beats", xlim=(0, seconds))
     for axis, (name, weights) in zip(axes[1:], maps.items(), strict=True):
@@ -77,7 +77,7 @@ def attention_over_sound(
         "on the dashed line motion and music are at the same moment; upright lines are beats."
     )
     fig, (wave, axis) = figure(
-        10, 6.6, f"{title}: {words}" if title else words, 2, sharex=True, height_ratios=(1, 3)
+        10, 6.6, f"{title}: {words}" if title else words, 2, share="x", heights=(1, 3)
     )
     waves(wave, audio, sample_rate)
     image = time_map(axis, weights, token_times, T / fps, "Blues")
@@ -103,7 +103,7 @@ def time_maps(
 
     Dashed: one moment.
     """
-    fig, axes = figure(4.6 * len(maps), 4.4, words, 1, len(maps), sharey=True)
+    fig, axes = figure(4.6 * len(maps), 4.4, words, 1, len(maps), share="y")
     for axis, (name, values) in zip(axes, maps.items(), strict=True):
         time_map(axis, values, columns, seconds)
         axis.plot([0, seconds], [0, seconds], color="#D55E00", lw=1.4, ls="--")
@@ -124,7 +124,7 @@ def weight_and_effect(
     Left: how much attention each moment of the dance gives it. Right: how far it moves that moment
     (cm) when it is silenced.
     """
-    fig, axes = figure(11, 4.8, words, 1, 2, sharey=True)
+    fig, axes = figure(11, 4.8, words, 1, 2, share="y")
     pictures = (
         (shares, "attention to the sound", "share"),
         (100 * moved.T, "moved when it is silenced", "cm"),
@@ -147,7 +147,7 @@ def before_and_after(
     words: str,
 ) -> Figure:
     """Log-Mel spectrograms on one scale, low bands below; dashed lines at `marks` (seconds)."""
-    fig, axes = figure(5 * len(pictures), 3.6, words, 1, len(pictures), sharey=True)
+    fig, axes = figure(5 * len(pictures), 3.6, words, 1, len(pictures), share="y")
     low = min(p.min() for p in pictures.values())
     top = max(p.max() for p in pictures.values())
     for axis, (name, picture) in zip(axes, pictures.items(), strict=True):

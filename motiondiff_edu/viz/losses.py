@@ -136,7 +136,7 @@ def over_steps(
     columns = min(columns, len(panels))
     rows = -(-len(panels) // columns)
     fig, axes = figure(
-        4.7 * columns if columns > 1 else 8, 3.3 * rows + 0.4, words, rows, columns, sharex=True
+        4.7 * columns if columns > 1 else 8, 3.3 * rows + 0.4, words, rows, columns, share="x"
     )
     for axis, (name, curves) in zip(axes, panels.items(), strict=False):
         _log_curves(axis, curves, at)
@@ -174,7 +174,7 @@ def moment(
 
     n poses of x0_hat, and below them each loss over s, with s marked.
     """
-    fig, axes = figure(11, 5.6, words, 2, max(n, len(panels)), height_ratios=[1.25, 1])
+    fig, axes = figure(11, 5.6, words, 2, max(n, len(panels)), heights=[1.25, 1])
     width = max(n, len(panels))
     draw_row(axes[:n], motion, f"x0_hat, s = {s}")
     for axis, (name, curves) in zip(axes[width:], panels.items(), strict=False):

@@ -99,7 +99,7 @@ def gates(
 
     Grey where that foot stands in truth.
     """
-    fig, axes = figure(9, 3.8, words, rows=2, sharex=True, sharey=True)
+    fig, axes = figure(9, 3.8, words, rows=2, share="xy")
     seconds = np.arange(len(gate)) / fps
     for side, (axis, label, colour) in enumerate(
         zip(axes, ("gate, left toe", "gate, right toe"), (LEFT_COLOUR, RIGHT_COLOUR), strict=True)

@@ -28,16 +28,16 @@ def _side_colour(joint: int) -> str:
     return LEFT_COLOUR if joint in LEFT else RIGHT_COLOUR if joint in RIGHT else CENTRE_COLOUR
 
 
-def _bones_2d(axes, pose: np.ndarray, **line) -> None:
+def _bones_2d(axes, pose: np.ndarray) -> None:
     """The bones of one pose (J, 2) on the given axes; the child's side gives the colour."""
     for parent, child in BONES:
-        style = {"color": _side_colour(child), "lw": 3, "solid_capstyle": "round"} | line
+        style = {"color": _side_colour(child), "lw": 3, "solid_capstyle": "round"}
         axes.plot(*pose[[parent, child]].T, **style)
 
 
 def joint_map(pose: Float[np.ndarray, "21 3"], caption: str) -> Figure:
     """The skeleton seen from the front, every joint with its number; a list of names beside it."""
-    figure, (drawn, listed) = captioned(9, 5.6, caption, 1, 2, width_ratios=[2, 1])
+    figure, (drawn, listed) = captioned(9, 5.6, caption, 1, 2, widths=[2, 1])
     drawn.grid(False)
     _bones_2d(drawn, pose[:, :2])
     drawn.plot(*pose[:, :2].T, "o", ms=14, mfc="white", mec=INK)
@@ -71,7 +71,7 @@ def limb_steps(
     Below, its length (m).
     """
     n = len(ways)
-    figure, axes = captioned(3.2 * n, 5.8, caption, 2, n, height_ratios=[2.4, 1], sharey="row")
+    figure, axes = captioned(3.2 * n, 5.8, caption, 2, n, share="rows", heights=[2.4, 1])
     reach = 1.3 * max(np.abs(limb).max() for limb in ways.values())
     for panel, curve, (name, limb) in zip(axes[:n], axes[n:], ways.items(), strict=True):
         for u, pose in zip(np.linspace(0, 1, len(limb)), limb, strict=True):

@@ -5,6 +5,8 @@ Curves, densities, paths and terms, each from plain arrays.
 Every function returns a figure that shows itself once; the caption under it says what to see.
 """
 
+from collections.abc import Sequence
+
 import numpy as np
 from matplotlib.figure import Figure
 
@@ -15,9 +17,19 @@ COLOURS = (BLUE, ORANGE, GREEN, PURPLE, SKY, INK)
 GREY = "#767676"
 
 
-def panels(n: int = 1, width: float = 9.0, height: float = 3.6, **kwargs):
-    """A figure of n panels side by side, and its axes; `finish` gives it its caption."""
-    return figure(width, height, "", 1, n, **kwargs)
+def panels(
+    n: int = 1,
+    width: float = 9.0,
+    height: float = 3.6,
+    *,
+    share: str = "",
+    widths: Sequence[float] | None = None,
+):
+    """A figure of n panels side by side, and its axes; `finish` gives it its caption.
+
+    `share` and `widths` as in `style.figure`.
+    """
+    return figure(width, height, "", 1, n, share=share, widths=widths)
 
 
 def finish(fig: Figure, words: str, labels: tuple[str, str] | None = None) -> Figure:
@@ -86,7 +98,7 @@ def noised_curve(
         label=f"what is left of x0: {100 * signal:.0f} %",
     )
     axis.set_ylim(-3.6, 3.6)
-    legend(axis, loc="upper right", ncol=2)
+    legend(axis, loc="upper right", ncols=2)
     caption = caption or (
         f"Step {s}: the blue curve is the clean one times {signal:.2f}; "
         f"the orange one adds noise of standard deviation {np.sqrt(1 - signal**2):.2f}."
@@ -96,7 +108,7 @@ def noised_curve(
 
 def noise_ladder(seconds, clean, noised: dict, caption: str) -> Figure:
     """The same curve at several diffusion steps, side by side: {s: x_s}."""
-    fig, axes = panels(len(noised), width=11, height=2.9, sharey=True)
+    fig, axes = panels(len(noised), width=11, height=2.9, share="y")
     for axis, (s, curve) in zip(axes, noised.items(), strict=True):
         axis.plot(seconds, clean, color=SKY, lw=1.2)
         axis.plot(seconds, curve, color=ORANGE, lw=1.2)
@@ -138,7 +150,7 @@ def histograms(
 
     Cut off at `top` times its peak.
     """
-    fig, axes = panels(len(samples), width=4.2 * max(len(samples), 2), height=3.4, sharey=True)
+    fig, axes = panels(len(samples), width=4.2 * max(len(samples), 2), height=3.4, share="y")
     for i, (axis, (name, values)) in enumerate(zip(axes, samples.items(), strict=True)):
         ends = float(grid[0]), float(grid[-1])
         inside = np.clip(np.asarray(values).ravel(), *ends)
@@ -155,9 +167,7 @@ def paths(steps, x, grid, at_start, at_end, caption: str, show: int = 60) -> Fig
     A density stands at either end.
     """
     x = np.asarray(x)
-    fig, (left, middle, right) = panels(
-        3, 10.5, 4, sharey=True, gridspec_kw={"width_ratios": [1, 5, 1]}
-    )
+    fig, (left, middle, right) = panels(3, 10.5, 4, share="y", widths=[1, 5, 1])
     middle.plot(steps, x[:, :show], color=BLUE, lw=0.8, alpha=0.45)
     middle.plot(steps, x[:, 0], color=ORANGE, lw=2)
     middle.invert_xaxis()
@@ -179,7 +189,7 @@ def paths(steps, x, grid, at_start, at_end, caption: str, show: int = 60) -> Fig
 
 def one_moment(grid, density, values, guesses, s: int, caption: str) -> Figure:
     """All samples at one step: where x_s lies, and what the denoiser answers for x0."""
-    fig, (left, right) = panels(2, width=10, height=3.4, sharey=True)
+    fig, (left, right) = panels(2, width=10, height=3.4, share="y")
     shown = {"bins": 90, "range": (float(grid[0]), float(grid[-1])), "density": True, "alpha": 0.5}
     for axis, data, colour, name in (
         (left, values, BLUE, f"x_s at s = {s}"),
@@ -215,7 +225,7 @@ def bound(terms, exact: float, caption: str) -> Figure:
 
 def maps(start, ends: dict, caption: str) -> Figure:
     """Where each starting noise ended, for several samplers side by side: {name: ends}."""
-    fig, axes = panels(len(ends), width=4.4 * len(ends), height=3.6, sharey=True)
+    fig, axes = panels(len(ends), width=4.4 * len(ends), height=3.6, share="y")
     for axis, (name, end), colour in zip(axes, ends.items(), COLOURS, strict=False):
         axis.plot(start, end, ".", ms=3, alpha=0.4, color=colour)
         axis.set_title(name)

@@ -71,7 +71,7 @@ def weight_against_effect(
 
     The mean is taken in each example: some examples move more than others whatever is hidden.
     """
-    fig, axes = figure(4.4 * len(groups), 4.2, words, 1, len(groups), sharey=True)
+    fig, axes = figure(4.4 * len(groups), 4.2, words, 1, len(groups), share="y")
     first = 0
     for k, (axis, (name, count)) in enumerate(zip(axes, groups, strict=True)):
         x, y = (values[:, first : first + count] for values in (weight, effect))

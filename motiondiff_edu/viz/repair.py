@@ -110,9 +110,7 @@ def faults_and_methods(
     NaN leaves a mark out.
     """
     faults = list(next(iter(panels.values())))
-    fig, axes = figure(
-        5.4 * len(panels), 1.4 + 0.8 * len(faults), words, 1, len(panels), sharey=True
-    )
+    fig, axes = figure(5.4 * len(panels), 1.4 + 0.8 * len(faults), words, 1, len(panels), share="y")
     for axis, (measure, rows) in zip(axes, panels.items(), strict=True):
         methods = len(rows[faults[0]])
         apart = min(

@@ -153,7 +153,7 @@ def onsets(seconds, strength, caption: str, beats: Sequence = (), found: Sequenc
     axis.set_xlim(seconds[0], seconds[-1])
     axis.set_xlabel("time (s)")
     axis.set_ylabel("strength")
-    legend(axis, ncol=3, loc="upper right", frameon=True)
+    legend(axis, ncols=3, loc="upper right", frameon=True)
     return fig
 
 
@@ -166,9 +166,7 @@ def tempogram(
     """
     tempi, values = np.asarray(tempi), np.asarray(values)
     keep = (tempi >= lowest) & (tempi <= highest)
-    fig, (left, right) = figure(
-        10, 3.8, caption, 1, 2, sharey=True, gridspec_kw={"width_ratios": [3, 1]}
-    )
+    fig, (left, right) = figure(10, 3.8, caption, 1, 2, share="y", widths=[3, 1])
     left.pcolormesh(
         seconds, tempi[keep], values[keep], cmap=HEAT, shading="nearest", rasterized=True
     )

@@ -75,13 +75,35 @@ def _html(words: str, png: str) -> str:
     )
 
 
+SHARED = {
+    "": {},
+    "x": {"sharex": True},
+    "y": {"sharey": True},
+    "xy": {"sharex": True, "sharey": True},
+    "rows": {"sharey": "row"},
+}
+
+
 def figure(
-    width: float | int, height: float | int, words: str, rows: int = 1, columns: int = 1, **options
+    width: float | int,
+    height: float | int,
+    words: str,
+    rows: int = 1,
+    columns: int = 1,
+    *,
+    share: str = "",
+    widths: Sequence[float] | None = None,
+    heights: Sequence[float] | None = None,
 ) -> tuple[CaptionedFigure, list[Axes]]:
-    """A figure of `width` x `height` inches with its caption, and its axes, always as a list."""
+    """A figure of `width` x `height` inches with its caption, and its axes, always as a list.
+
+    `share`: axes with one scale, "x", "y", "xy", or "rows" (one y for each row).
+    `widths`, `heights`: ratios of the columns and of the rows.
+    """
     with matplotlib.rc_context(_RC):
         fig = CaptionedFigure(figsize=(width, height), layout="constrained")
-        axes = fig.subplots(rows, columns, squeeze=False, **options)
+        ratios = {"width_ratios": widths, "height_ratios": heights}
+        axes = fig.subplots(rows, columns, squeeze=False, **SHARED[share], **ratios)
     fig.get_layout_engine().set(h_pad=0.1)
     fig.set_label(words)
     return fig, list(axes.flat)
@@ -113,7 +135,25 @@ def table(axis: Axes, rows: Sequence[str], columns: Sequence[str]) -> None:
     axis.spines[:].set_visible(False)
 
 
-def legend(axis: Axes, **options) -> None:
-    """A legend, where there is something to explain."""
+def legend(
+    axis: Axes,
+    *,
+    loc: str | None = None,
+    ncols: int = 1,
+    frameon: bool = False,
+    fontsize: float | int = SMALL,
+    bbox_to_anchor: tuple[float, float] | None = None,
+    handlelength: float | None = None,
+    handletextpad: float | None = None,
+) -> None:
+    """A legend, where there is something to explain; parameters as of `Axes.legend`."""
     if axis.get_legend_handles_labels()[0]:
-        axis.legend(**{"frameon": False, "fontsize": SMALL} | options)
+        axis.legend(
+            loc=loc,
+            ncols=ncols,
+            frameon=frameon,
+            fontsize=fontsize,
+            bbox_to_anchor=bbox_to_anchor,
+            handlelength=handlelength,
+            handletextpad=handletextpad,
+        )

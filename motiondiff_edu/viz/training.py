@@ -70,7 +70,7 @@ def clouds(
     panels: Mapping[str, Float[np.ndarray, "_ 2"]], words: str, reach: float = 2.6
 ) -> Figure:
     """Sets of points in the plane, a panel each, all with the same axes."""
-    fig, axes = figure(3.1 * len(panels), 3.7, words, 1, len(panels), sharex=True, sharey=True)
+    fig, axes = figure(3.1 * len(panels), 3.7, words, 1, len(panels), share="xy")
     for k, (axis, (name, points)) in enumerate(zip(axes, panels.items(), strict=True)):
         axis.plot(
             *np.clip(points, -reach, reach).T,
@@ -91,7 +91,7 @@ def guesses(
 
     Noised points (dots), the guess of x0 (end of the line), the exact guess (circle).
     """
-    fig, axes = figure(3.6 * len(panels), 4.1, words, 1, len(panels), sharex=True, sharey=True)
+    fig, axes = figure(3.6 * len(panels), 4.1, words, 1, len(panels), share="xy")
     for k, (axis, (name, guess)) in enumerate(zip(axes, panels.items(), strict=True)):
         axis.plot(*data.T, ".", ms=1.5, color=FAINT, zorder=0)
         axis.plot(*np.stack([x_s, guess], 1).transpose(2, 1, 0), color=OKABE_ITO[k], lw=0.9)

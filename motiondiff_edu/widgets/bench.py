@@ -25,6 +25,7 @@ from .player import PAGE, STACK
 
 MODULE = module.joined(module.BENCH)
 _BYTES = ("joints", "roots", "mended_joints", "mended_roots")
+HEIGHT = 400  # pixels
 GHOST = "#009E73"  # as in js/bench_paint.js
 _STATE = ("scene", "first", "missing", "repaired", "said")
 
@@ -65,7 +66,6 @@ class Bench(anywidget.AnyWidget):
         rounds=5,
         steps=10,
         seed=0,
-        height=400,
     ):
         super().__init__()
         self.bench = RepairBench(walker, clip, samples, rounds, steps, seed)
@@ -86,7 +86,7 @@ class Bench(anywidget.AnyWidget):
             "parents": PARENTS.tolist(),
             "parts": body.parts_record(body.BODY),
             "faults": buttons,
-            "height": int(height),
+            "height": HEIGHT,
             "kernel": True,
         }
         self.first = self.bench.last_first // 2 if first is None else int(first)

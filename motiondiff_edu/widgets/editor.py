@@ -49,8 +49,8 @@ class _Grip:
 class Editor(anywidget.AnyWidget):
     """Edit a motion (T, 21, 3), world positions in metres; `make` finds the rest.
 
-    `make` is an `editing.edit.Make`: `functools.partial(inbetween, dancer)` is one. It is called
-    with the page's numbers for `samples` and `resample`, and runs in the kernel; the
+    `make` is an `editing.edit.Make`: `editing.inbetween.maker(dancer)` is one. It is called with
+    the page's numbers for `samples` and `resample`, and runs in the kernel; the
     generator is seeded by `seed` + how often Generate was pressed before. `names` are the 21
     joints' names on the page. `known`, `positions`, `samples` and `chosen` can be read; `pin`,
     `unpin`, `drag`, `keep`, `generate`, `undo`, `reset` and `save` do what the page's controls do,

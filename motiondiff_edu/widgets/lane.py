@@ -3,11 +3,13 @@ below it.
 """
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from PIL import Image, ImageDraw, ImageFont
 
 from ..viz import body
+from .listening import Listening
 from .sound import Sound, as_sound, as_times, peaks
 from .strips import Strips
 
@@ -110,17 +112,37 @@ class Lane:
         return whole
 
 
-def from_options(options: dict, frames: int) -> Lane | None:
-    """The lane of a player's options, for a motion of so many frames; None without a sound.
+@dataclass(frozen=True, eq=False)
+class Soundtrack:
+    """What is played with a motion, and what is drawn around its waveform.
 
-    Raises ValueError for beats or strips without a sound, and where `as_sound` and `as_times` do.
+    `audio`: (N,) from -1 to 1 at `sample_rate` Hz, or the bytes of a sound file.
+    `beats`, `downbeats`: marked, seconds.
+    `codec`: "ogg", "flac" or "wav", as the page gets it.
+    `listening`: what a network reads of it.
     """
-    if options["audio"] is None:
-        if any(options[name] is not None for name in ("beats", "downbeats", "strips")):
-            raise ValueError("beats and attention are drawn over a waveform: give `audio` too")
+
+    audio: Any
+    beats: Any = None
+    downbeats: Any = None
+    sample_rate: int = 16_000
+    codec: str = "ogg"
+    listening: Listening | None = None
+
+
+def of(audio, frames: int, fps: float) -> Lane | None:
+    """The lane of a sound or Soundtrack under a motion of so many frames; None without a sound.
+
+    Raises ValueError for a Soundtrack without audio, and where `as_sound`, `as_times` and
+    `Listening.strips` do.
+    """
+    if audio is None:
         return None
-    seconds = frames / options["fps"]
-    sound = as_sound(options["audio"], options["sample_rate"], seconds, options["codec"])
-    beats, downbeats = (as_times(options[name], name, seconds) for name in ("beats", "downbeats"))
-    strips = Strips() if options["strips"] is None else options["strips"](frames)
-    return Lane(sound, beats, downbeats, strips, frames, options["fps"])
+    track = audio if isinstance(audio, Soundtrack) else Soundtrack(audio)
+    if track.audio is None:
+        raise ValueError("beats and attention are drawn over a waveform: give `audio` too")
+    seconds = frames / fps
+    sound = as_sound(track.audio, track.sample_rate, seconds, track.codec)
+    beats, downbeats = (as_times(getattr(track, n), n, seconds) for n in ("beats", "downbeats"))
+    strips = track.listening.strips(frames) if track.listening else Strips()
+    return Lane(sound, beats, downbeats, strips, frames, fps)

@@ -16,7 +16,7 @@ from jaxtyping import Float
 from ..motion import registry
 from ..motion.motion import Motion, MotionError, as_motion
 from ..motion.skeleton import COURSE
-from .player import Player
+from .player import Look, Player, Soundtrack
 
 
 def player_of(motions: Sequence[Motion], labels: Sequence[str] | None = None) -> Player:
@@ -37,13 +37,18 @@ def player_of(motions: Sequence[Motion], labels: Sequence[str] | None = None) ->
     shown = [motion.resampled(first.fps) for motion in motions]
     heard = next((motion for motion in shown if motion.audio is not None), first)
     longest = max(shown, key=len)
-    sound = None if heard.audio is None else _as_long(heard, longest)
-    parents = None if first.skeleton == COURSE else list(first.skeleton.parents)
+    sound = None
+    if heard.audio is not None:
+        sound = Soundtrack(_as_long(heard, longest), sample_rate=heard.sample_rate)
+    parents = None if first.skeleton == COURSE else first.skeleton.parents
     return Player(
-        [motion.positions for motion in shown], fps=first.fps, parents=parents,
-        contacts=[motion.contacts for motion in shown], audio=sound, sample_rate=heard.sample_rate,
+        [motion.positions for motion in shown],
+        fps=first.fps,
+        contacts=[motion.contacts for motion in shown],
         labels=[motion.source for motion in shown] if labels is None else list(labels),
-    )  # fmt: skip
+        audio=sound,
+        look=Look(parents=parents),
+    )
 
 
 def _as_long(heard: Motion, longest: Motion) -> Float[np.ndarray, "N"]:

@@ -14,6 +14,8 @@ import html
 import json
 import os
 import tempfile
+from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
 
 import anywidget
@@ -23,6 +25,9 @@ import traitlets
 from .._files import replacing
 from ..viz import body
 from . import lane, module, packing, poster, sound
+from .lane import Soundtrack
+
+__all__ = ["Look", "Player", "Soundtrack", "describe"]
 
 MODULE = module.joined()
 _TRAITS = ("joints", "roots", "contacts", "sound", "strips")
@@ -42,6 +47,41 @@ STACK = """<div style="position:relative;width:100%;max-width:{width}px;min-heig
  style="position:absolute;inset:0;width:100%;height:100%;border:0"></iframe></div>"""
 
 
+@dataclass(frozen=True)
+class Look:
+    """How figures are laid out and begin.
+
+    `layout`: "side" (a field each) or "together" (one floor, `offset` (x, z) metres apart).
+    `height`: pixels.
+    `autoplay`: by default only without a sound; with one the browser must allow it.
+    `follow`: the camera goes with the figure.
+    `parents`: each joint's parent, where the skeleton is not the course's.
+    Raises ValueError for another layout.
+    """
+
+    layout: str = "side"
+    offset: tuple[float, float] = (1.2, 0.0)
+    height: int = 430
+    autoplay: bool | None = None
+    follow: bool = True
+    parents: Sequence[int] | None = None
+
+    def __post_init__(self):
+        if self.layout not in ("side", "together"):
+            raise ValueError(f'layout is "side" or "together", not {self.layout!r}')
+
+
+USUAL = Look()
+
+
+class _AsBefore:
+    def __repr__(self) -> str:
+        return "as before"
+
+
+AS_BEFORE = _AsBefore()  # the default of each of `Player.show`'s parameters
+
+
 class Player(anywidget.AnyWidget):
     """Show one motion or several, world positions in metres, y up.
 
@@ -49,13 +89,11 @@ class Player(anywidget.AnyWidget):
 
     `past` frames were given and are drawn paler; `contacts` (T, 2) bool marks planted feet; `path`
     (n, 2) [x, z] is drawn on the floor; each may be one value for all figures or a list (one array
-    of contacts belongs to the first figure). `layout` is "side" (a field each) or "together" (one
-    floor; `offset` = (x, z) metres between figures). `parents` names each joint's parent where the
-    skeleton is another one. `frame` and `playing` can be read and set. `audio` (N,) from -1 to 1 at
-    `sample_rate` Hz, or the bytes of a sound file, is played with the motion, cut or filled up to
-    its length (with a warning), above a waveform with `beats` and `downbeats` (seconds) marked;
-    `codec` is "ogg", "flac" or "wav". Such a player waits for a click, unless `autoplay` is True
-    and the browser allows it.
+    of contacts belongs to the first figure).
+    `audio`: (N,) from -1 to 1 at 16 kHz, the bytes of a sound file, or a `Soundtrack`. It is played
+    with the motion, cut or filled up to its length (with a warning), above its waveform.
+    `look`: layout, height, autoplay, and the parents of another skeleton's joints.
+    `frame` and `playing` can be read and set.
     Raises ValueError with figure, frame and joint where a position is not finite or beyond reach,
     and for extras that do not fit the motion.   Notebook: 00, 12
     """
@@ -72,46 +110,44 @@ class Player(anywidget.AnyWidget):
     playing = traitlets.Bool(False).tag(sync=True)
 
     def __init__(
-        self, positions, fps=20.0, past=None, contacts=None, labels=None, path=None,
-        audio=None, sample_rate=16_000, beats=None, downbeats=None, codec="ogg",
-        layout="side", offset=(1.2, 0.0), height=430, autoplay=None, follow=True, parents=None,
-    ):  # fmt: skip
+        self,
+        positions,
+        fps=20.0,
+        past=None,
+        contacts=None,
+        labels=None,
+        path=None,
+        audio=None,
+        look: Look = USUAL,
+    ):
         super().__init__()
-        self._options = {
-            "fps": fps,
-            "past": past,
-            "contacts": contacts,
-            "labels": labels,
-            "path": path,
-            "audio": audio,
-            "sample_rate": sample_rate,
-            "beats": beats,
-            "downbeats": downbeats,
-            "codec": codec,
-            "strips": None,
-        }
-        self._look = _look(layout, offset, height, autoplay, follow, parents)
+        self._options = {}
+        self._look = look
         self._editions = 0
-        self.show(positions)
+        self.show(positions, fps, past, contacts, labels, path, audio)
 
-    def show(self, positions, **changes) -> None:
-        """Show another motion in the same place.
-
-        `changes` replaces past, contacts, labels, path, fps, audio ...
-        """
-        unknown = set(changes) - set(self._options)
-        if unknown:
-            raise TypeError(
-                f"show() does not know {sorted(unknown)}; it takes {sorted(self._options)}"
-            )
-        options = self._options | changes
+    def show(
+        self,
+        positions,
+        fps=AS_BEFORE,
+        past=AS_BEFORE,
+        contacts=AS_BEFORE,
+        labels=AS_BEFORE,
+        path=AS_BEFORE,
+        audio=AS_BEFORE,
+    ) -> None:
+        """Show another motion in the same place; what is not given stays as it was."""
+        given = {"fps": fps, "past": past, "contacts": contacts}
+        given |= {"labels": labels, "path": path, "audio": audio}
+        given = {name: value for name, value in given.items() if value is not AS_BEFORE}
+        options = self._options | given
         options["fps"] = float(options["fps"])
         if not 0 < options["fps"] < float("inf"):
             raise ValueError(f"fps are frames a second, more than 0: got {options['fps']:g}")
         arrays = packing.as_figures(positions)
         packed = packing.pack(arrays)
-        figures = _figures(arrays, options, self._look["parents"])
-        music = lane.from_options(options, max(packed.frames))
+        figures = _figures(arrays, options, self._look.parents)
+        music = lane.of(options["audio"], max(packed.frames), options["fps"])
         self._figures = figures
         self._options = options
         self._music = music
@@ -228,21 +264,7 @@ class Player(anywidget.AnyWidget):
         return Path(path)
 
 
-def _look(layout, offset, height, autoplay, follow, parents) -> dict:
-    if layout not in ("side", "together"):
-        raise ValueError(f'layout is "side" or "together", not {layout!r}')
-    offset = [float(v) for v in (offset if layout == "together" else (0, 0))]
-    return {
-        "layout": layout,
-        "offset": offset,
-        "height": int(height),
-        "autoplay": autoplay,
-        "follow": bool(follow),
-        "parents": None if parents is None else [int(p) for p in parents],
-    }
-
-
-def _figures(arrays: list, options: dict, parents: list | None) -> list[poster.Figure]:
+def _figures(arrays: list, options: dict, parents: Sequence | None) -> list[poster.Figure]:
     count = len(arrays)
     parts = body.parts_for(arrays[0].shape[1], parents)
     contacts = packing.as_contacts(options["contacts"], [len(a) for a in arrays])
@@ -259,7 +281,7 @@ def _figures(arrays: list, options: dict, parents: list | None) -> list[poster.F
     return [poster.Figure(a, label, past, c, p, parts) for a, label, past, c, p in columns]
 
 
-def _scene(figures: list[poster.Figure], fps: float, look: dict, music: lane.Lane | None) -> dict:
+def _scene(figures: list[poster.Figure], fps: float, look: Look, music: lane.Lane | None) -> dict:
     records = [
         {"frames": len(f), "label": f.label, "past": f.past, "contacts": f.contacts is not None,
          "path": None if f.path is None else f.path.round(4).tolist()}
@@ -269,9 +291,14 @@ def _scene(figures: list[poster.Figure], fps: float, look: dict, music: lane.Lan
         describe(figures, fps) if music is None else f"{describe(figures, fps)} {music.description}"
     )
     parts = body.parts_record(figures[0].parts)
-    autoplay = music is None if look["autoplay"] is None else bool(look["autoplay"])
+    autoplay = music is None if look.autoplay is None else bool(look.autoplay)
+    offset = look.offset if look.layout == "together" else (0, 0)
     return {
-        **look,
+        "layout": look.layout,
+        "offset": [float(v) for v in offset],
+        "height": int(look.height),
+        "follow": bool(look.follow),
+        "parents": None if look.parents is None else [int(p) for p in look.parents],
         "fps": fps,
         "figures": records,
         "joints": figures[0].positions.shape[1],

@@ -9,7 +9,7 @@ from motiondiff_edu import exact
 from motiondiff_edu.beyond.back_with_known import held_back, masked_back
 from motiondiff_edu.ddpm import linear_schedule
 from motiondiff_edu.motion.scaler import Scaler
-from motiondiff_edu.reconstruction import repair, walked_back
+from motiondiff_edu.reconstruction import Rollout, Stop, repair, walked_back
 
 T_H = 5
 T_P = 7
@@ -33,8 +33,8 @@ class Halving:
         )
 
 
-def options():
-    return {"generator": torch.Generator().manual_seed(0), "steps": None}
+def rollout(walker):
+    return Rollout(walker, torch.Generator().manual_seed(0), steps=None)
 
 
 def test_each_frame_goes_on_from_the_one_before_with_what_is_known_of_it_put_right():
@@ -44,11 +44,11 @@ def test_each_frame_goes_on_from_the_one_before_with_what_is_known_of_it_put_rig
     known = torch.zeros(B, T_H, D, dtype=torch.bool)
     known[:, 2, 1], given[:, 2, 1] = True, 0.5 + 2 * 40.0
     made = walker.pose_scaler.transform(
-        held_back(walker, ahead, torch.zeros(B, 2 * T_H, 3), given, known, **options())
+        held_back(rollout(walker), ahead, torch.zeros(B, 2 * T_H, 3), given, known)
     )
     want = torch.tensor([[4.0, 4.0], [2.0, 2.0], [1.0, 40.0], [0.5, 20.0], [0.25, 10.0]])
     torch.testing.assert_close(made, want.expand(B, -1, -1))
-    free = walked_back(walker, ahead, torch.zeros(B, 2 * T_H, 3), given, known, **options())
+    free = walked_back(rollout(walker), ahead, torch.zeros(B, 2 * T_H, 3), given, known)
     assert (walker.pose_scaler.transform(free)[:, 3] == 0.5).all()
 
 
@@ -64,7 +64,7 @@ def test_each_frame_is_walked_under_the_control_of_its_own_time():
     control = torch.randn(B, 2 * T_H, 3, generator=torch.Generator().manual_seed(2))
     zeros = torch.zeros(B, T_H, D)
     made = walker.pose_scaler.transform(
-        held_back(walker, zeros, control, zeros, zeros > 1, **options())
+        held_back(rollout(walker), zeros, control, zeros, zeros > 1)
     )
     torch.testing.assert_close(made, control[:, T_H:, :D])
 
@@ -97,7 +97,7 @@ def test_a_window_under_a_mask_has_about_the_mean_that_what_is_known_asks_for():
     given[known] = 0.5 + 2 * values.repeat(B)
     made = walker.pose_scaler.transform(
         masked_back(
-            walker, torch.zeros(B, T_H, D), torch.zeros(B, 2 * T_H, 3), given, known, **options()
+            rollout(walker), torch.zeros(B, T_H, D), torch.zeros(B, 2 * T_H, 3), given, known
         )
     )
     torch.testing.assert_close(made[known], values.repeat(B))
@@ -114,7 +114,8 @@ def test_a_window_under_a_mask_has_about_the_mean_that_what_is_known_asks_for():
 def test_a_mask_wants_a_window_as_long_as_the_past(T_p):
     with pytest.raises(ValueError, match=f"predicts {T_p} poses from 5.*held_back"):
         zeros = torch.zeros(2, T_H, D)
-        masked_back(Known(T_p), zeros, torch.zeros(2, 2 * T_H, 3), zeros, zeros > 1, **options())
+        control = torch.zeros(2, 2 * T_H, 3)
+        masked_back(rollout(Known(T_p)), zeros, control, zeros, zeros > 1)
 
 
 @pytest.mark.parametrize("way", [held_back, masked_back])
@@ -123,10 +124,10 @@ def test_all_is_made_where_the_inputs_are_and_drawn_where_the_generator_is(way):
     walker, known = Known(), torch.zeros(2, T_H, D, dtype=torch.bool)
     ahead, given = torch.zeros(2, T_H, D), torch.ones(2, T_H, D)
     known[:, 2] = True
-    arguments = walker, ahead, torch.zeros(2, 2 * T_H, 3), given, known
-    here, draws = way(*arguments, **options()), options()
+    arguments = ahead, torch.zeros(2, 2 * T_H, 3), given, known
+    here, again = way(rollout(walker), *arguments), rollout(walker)
     with torch.device("meta"):
-        there = way(*arguments, **draws)
+        there = way(again, *arguments)
     assert torch.equal(here, there)
 
 
@@ -136,10 +137,8 @@ def test_each_way_serves_the_repair_and_keeps_what_is_known(way):
     known = torch.ones(past.shape, dtype=torch.bool)
     known[:, 2] = False
     holes = past.masked_fill(~known, float("nan"))
-    draw = torch.Generator().manual_seed(1)
-    made = repair(
-        Halving(), holes, known, torch.zeros(2, 2 * T_H, 3), way_back=way, rounds=2, generator=draw
-    )
+    control, stop = torch.zeros(2, 2 * T_H, 3), Stop(rounds=2)
+    made = repair(rollout(Halving()), holes, known, control, way_back=way, stop=stop)
     assert torch.equal(made[known], past[known]) and torch.isfinite(made).all()
     assert not torch.equal(made[~known], walker_mean().expand(2, D).reshape(-1))
 

@@ -14,7 +14,7 @@ from data_synth.dancing.choreography import choreograph, slots
 from data_synth.dancing.curves import curve, felt_beats, least_jerk, springy, within_reach
 from data_synth.dancing.moves import MANNERS
 from data_synth.dancing.script import REST, TURNS_SIGN, Script
-from data_synth.dancing.sheet import Sheet
+from data_synth.dancing.sheet import Counts, Sheet
 from data_synth.music.score import beat_song
 from data_synth.music.song import GENRES, SAMPLE_RATE
 from motiondiff_edu.motion.bvh import read_bvh
@@ -237,7 +237,9 @@ def test_a_mirrored_sheet_is_the_mirror():
         script = Script()
         for name, value in REST.items():
             script.keys[name].append((-2.0, value))
-        sheet = Sheet(script, 0.0, 4, 1.0, mirrored, 1.0, 1.0, REST, 4, np.random.default_rng(3))
+        sheet = Sheet(
+            script, Counts(0.0, 4, 1.0, 4), mirrored, 1.0, 1.0, REST, np.random.default_rng(3)
+        )
         sheet.step(0, 0, 0.31, 0.12, turn=20)
         sheet.arms(1, (40, 20, 10, 60), (5, 70, 0, 20))
         sheet.key("twist", (1, 15))

@@ -386,10 +386,9 @@ def _broken_walk() -> tuple:
 
 
 def _repaired(walker, past, known, mean, control, rounds) -> torch.Tensor:
-    generator = torch.Generator()
-    return reconstruction.repair(
-        walker, past, known, control, rounds=rounds, tolerance=-1, generator=generator
-    )
+    there_and_back = reconstruction.Rollout(walker, torch.Generator())
+    stop = reconstruction.Stop(rounds, tolerance=-1)
+    return reconstruction.repair(there_and_back, past, known, control, stop=stop)
 
 
 def _conditional_mean(mean, covariance, x, known, rho) -> torch.Tensor:

@@ -88,13 +88,10 @@ def test_a_resumed_run_continues_bit_for_bit(tmp_path: Path):
         return TrainState.start(model, 3, MuonAndAdam(model))
 
     def run(state, steps, save=None):
-        return [
-            r.loss
-            for r in train_steps(state, block_loss, steps, save=save, save_every=5, progress=False)
-        ]
+        return [r.loss for r in train_steps(state, block_loss, steps, save=save, progress=False)]
 
     whole = run(start(), 12)
-    run(start(), 5, saver(tmp_path / "run"))
+    run(start(), 5, saver(tmp_path / "run", every=5))
     state = resume_run(start(), tmp_path / "run")
     assert state.step == 5 and run(state, 12) == whole[5:]
     forgetful = resume_run(

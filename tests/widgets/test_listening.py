@@ -1,6 +1,8 @@
 """Attention and silenced hits over the waveform: packed in Python, drawn in a browser, and as a
 figure."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from browser import open_page, player_page, until
@@ -12,6 +14,7 @@ from motiondiff_edu.viz.over_time import edges_of
 from motiondiff_edu.viz.style import caption
 from motiondiff_edu.widgets import strips
 from motiondiff_edu.widgets.listening import Listening
+from motiondiff_edu.widgets.player import Look, Player, Soundtrack
 
 T, SECONDS = 86, 4.3
 BEATS = np.arange(0.4, SECONDS, 0.5)
@@ -41,10 +44,9 @@ def moved():
 @pytest.fixture(scope="module")
 def listening(maps, moved):
     audio = clicks(BEATS, SECONDS)
-    marks = {"beats": BEATS, "downbeats": BEATS[::4]}
-    return Listening(
-        jumping(T, [30]), audio, maps, TIMES, moved=moved, hit=1.9, autoplay=False, **marks
-    )
+    heard = Listening(maps, TIMES, moved=moved, hit=1.9)
+    track = Soundtrack(audio, BEATS, BEATS[::4], listening=heard)
+    return Player(jumping(T, [30]), audio=track, look=Look(autoplay=False))
 
 
 # ---- packed
@@ -125,18 +127,26 @@ def test_the_record_says_how_the_bytes_are_to_be_read(listening, maps, moved):
 def test_what_is_no_attention_is_explained(wrong, message):
     audio = clicks(BEATS, SECONDS)
     with pytest.raises(ValueError, match=message):
-        Listening(jumping(T, [30]), **({"audio": audio} | wrong))
+        track = Soundtrack(wrong.pop("audio", audio), listening=Listening(**wrong))
+        Player(jumping(T, [30]), audio=track)
 
 
 def test_show_replaces_what_is_given_and_an_error_changes_nothing(maps, moved):
-    one = Listening(jumping(T, [30]), clicks(BEATS, SECONDS), maps, TIMES)
+    heard = Listening(maps, TIMES)
+    track = Soundtrack(clicks(BEATS, SECONDS), listening=heard)
+    one = Player(jumping(T, [30]), audio=track)
     before = one.music
+    doubled = replace(heard, attention=2 * maps["fine"])
     with pytest.raises(ValueError, match="row 0 sums"):
-        one.show(jumping(T, [40]), attention=2 * maps["fine"])
+        one.show(jumping(T, [40]), audio=replace(track, listening=doubled))
     assert one.music == before
-    one.show(jumping(T, [40]), moved=moved, hit=[1.9, 2.9])
+    one.show(jumping(T, [40]))
+    assert one.music == before
+    silenced = replace(heard, moved=moved, hit=[1.9, 2.9])
+    one.show(jumping(T, [40]), audio=replace(track, listening=silenced))
     assert one.music["moved"]["hits"] == [1.9, 2.9] and len(one.music["levels"]) == 2
-    one.show(jumping(T, [40]), attention=None)
+    unread = replace(silenced, attention=None)
+    one.show(jumping(T, [40]), audio=replace(track, listening=unread))
     assert one.music["levels"] == [] and one.music["moved"] is not None
 
 
@@ -290,7 +300,7 @@ def test_the_figure_has_map_waveform_and_beats_on_one_axis_of_time(maps):
 
 
 def test_without_attention_the_lane_has_only_the_waveform(browser, tmp_path):
-    plain = Listening(walk(frames=37)[0], clicks([0.5], 1.85), autoplay=False)
+    plain = Player(walk(frames=37)[0], audio=clicks([0.5], 1.85), look=Look(autoplay=False))
     with open_page(browser) as page:
         page.goto(player_page(tmp_path, plain))
         assert page.locator(".mde-lane").bounding_box()["height"] < 100

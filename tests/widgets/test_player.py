@@ -11,7 +11,7 @@ from synthetic_walk import walk
 
 from motiondiff_edu.motion.skeleton import JOINTS
 from motiondiff_edu.widgets import packing
-from motiondiff_edu.widgets.player import Player
+from motiondiff_edu.widgets.player import Look, Player
 
 
 @pytest.fixture(scope="module")
@@ -80,7 +80,7 @@ def test_wrong_extras_are_explained(motion):
     with pytest.raises(ValueError, match="3 values of `labels` for 1 figures"):
         Player(motion[0], labels=["a", "b", "c"])
     with pytest.raises(ValueError, match="layout"):
-        Player(motion[0], layout="diagonal")
+        Player(motion[0], look=Look(layout="diagonal"))
     for fps in (0, -20.0, float("nan")):
         with pytest.raises(ValueError, match="fps are frames a second, more than 0: got"):
             Player(motion[0], fps=fps)
@@ -121,10 +121,10 @@ def test_show_replaces_the_motion_and_keeps_the_frame_in_range(motion):
 
 def test_other_skeletons_are_drawn_with_their_parents():
     positions = np.random.default_rng(0).normal(size=(6, 4, 3))
-    player = Player(positions, parents=[-1, 0, 1, 1])
+    player = Player(positions, look=Look(parents=[-1, 0, 1, 1]))
     assert len(player.scene["parts"]) == 3 and player.scene["joints"] == 4
     with pytest.raises(ValueError, match="`parents` names 3 joints, the positions have 4"):
-        Player(positions, parents=[-1, 0, 1])
+        Player(positions, look=Look(parents=[-1, 0, 1]))
 
 
 def test_the_bundle_has_live_static_and_still_forms(motion):

@@ -5,7 +5,9 @@ import pytest
 from browser import ANOTHER_FRAME, coloured, drawn, ink, open_page, player_page, shown
 from synthetic_walk import walk
 
-from motiondiff_edu.widgets.player import Player
+from motiondiff_edu.widgets.player import Look, Player
+
+STILL = Look(autoplay=False)
 
 WHEELS = (
     "() => { window.wheels = 0; document.addEventListener('wheel', () => { window.wheels++; }); }"
@@ -24,7 +26,7 @@ ORANGE_HALVES = """() => {
 @pytest.fixture(scope="module")
 def player():
     positions, contacts = walk(frames=53, turn=0.3)
-    return Player(positions, contacts=contacts, past=20, labels="walker", autoplay=False)
+    return Player(positions, contacts=contacts, past=20, labels="walker", look=STILL)
 
 
 def test_keys_move_the_figure_and_do_not_leak(browser, player, tmp_path):
@@ -137,7 +139,7 @@ def test_past_is_paler_and_contacts_leave_marks(browser, tmp_path):
 
     def at(frame, **options):
         with open_page(browser) as page:
-            page.goto(player_page(tmp_path, Player(positions, autoplay=False, **options)))
+            page.goto(player_page(tmp_path, Player(positions, look=STILL, **options)))
             page.evaluate(f"model.set('frame', {frame})")
             return coloured(page.locator("canvas")), ink(page.locator("canvas"))
 
@@ -150,7 +152,9 @@ def test_past_is_paler_and_contacts_leave_marks(browser, tmp_path):
 def test_several_figures_are_all_drawn(browser, tmp_path, layout):
     positions, _ = walk(frames=53, turn=0.3)
     several = Player(
-        [positions, positions[:20]], layout=layout, labels=["long", "short"], autoplay=False
+        [positions, positions[:20]],
+        labels=["long", "short"],
+        look=Look(layout=layout, autoplay=False),
     )
     with open_page(browser) as page:
         page.goto(player_page(tmp_path, several))

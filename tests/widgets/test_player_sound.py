@@ -15,7 +15,7 @@ from click_track import RATE, clicks, jumping
 from synthetic_walk import walk
 
 from motiondiff_edu.widgets import module, sound
-from motiondiff_edu.widgets.player import MODULE, Player
+from motiondiff_edu.widgets.player import MODULE, Look, Player, Soundtrack
 
 JUMPS = [22, 47, 71]  # frames; the clicks are at k/20 s
 
@@ -23,7 +23,8 @@ JUMPS = [22, 47, 71]  # frames; the clicks are at k/20 s
 @pytest.fixture(scope="module")
 def player():
     audio = clicks(np.array(JUMPS) / 20, 4.6)
-    return Player(jumping(92, JUMPS), audio=audio, beats=np.array(JUMPS) / 20, follow=False)
+    track = Soundtrack(audio, beats=np.array(JUMPS) / 20)
+    return Player(jumping(92, JUMPS), audio=track, look=Look(follow=False))
 
 
 HEARD = "document.querySelector('audio').currentTime"
@@ -84,7 +85,8 @@ DECODED = """async () => {
 def test_the_browser_decodes_every_click_where_it_was_put(browser, tmp_path, codec):
     audio = clicks(np.array(JUMPS) / 20, 4.6)
     with open_page(browser) as page:
-        page.goto(player_page(tmp_path, Player(jumping(92, JUMPS), audio=audio, codec=codec)))
+        coded = Player(jumping(92, JUMPS), audio=Soundtrack(audio, codec=codec))
+        page.goto(player_page(tmp_path, coded))
         heard = np.array(page.evaluate(DECODED))
     assert abs(len(heard) - len(audio)) < 0.01 * RATE
     shift = np.correlate(heard, audio, "full").argmax() - (len(audio) - 1)
@@ -171,7 +173,7 @@ def test_speed_keeps_the_pitch_and_mute_is_a_button_and_a_key(browser, player, t
 
 
 def test_without_a_click_it_waits_and_says_so(browser, tmp_path):
-    waiting = Player(walk(frames=43)[0], audio=clicks([1.0], 2.15), autoplay=True)
+    waiting = Player(walk(frames=43)[0], audio=clicks([1.0], 2.15), look=Look(autoplay=True))
     with open_page(browser, reduced_motion="no-preference") as page:
         page.goto(player_page(tmp_path, waiting))
         page.get_by_text("browsers start sound only after a click").wait_for()
@@ -276,11 +278,12 @@ def test_a_sound_is_cut_or_filled_up_to_the_motion_and_that_is_said():
     with pytest.warns(
         UserWarning, match="the sound lasts 1.00 s, the motion 1.85 s: its last 0.85 s are silent"
     ):
-        Player(motion, audio=clicks([0.5], 1.0), codec="wav")
+        Player(motion, audio=Soundtrack(clicks([0.5], 1.0), codec="wav"))
     with pytest.warns(
         UserWarning, match="the sound lasts 3.00 s, the motion 1.85 s: the rest is cut off"
     ):
-        player = Player(motion, audio=clicks([0.5], 3.0), codec="wav", beats=[0.5, 2.5])
+        track = Soundtrack(clicks([0.5], 3.0), beats=[0.5, 2.5], codec="wav")
+        player = Player(motion, audio=track)
     with wave.open(io.BytesIO(player.sound)) as file:
         assert file.getnframes() == round(1.85 * RATE)
     assert player.music["beats"] == [0.5]
@@ -314,9 +317,9 @@ def test_other_wrong_arguments_are_explained_and_leave_the_player_as_it_was():
         (dict(beats=[0.5, np.nan]), "`beats` are increasing times"),
     ]:
         with pytest.raises(ValueError, match=message):
-            Player(motion, audio=audio, **wrong)
+            Player(motion, audio=Soundtrack(audio, **wrong))
     with pytest.raises(ValueError, match="give `audio` too"):
-        Player(motion, beats=[0.5])
+        Player(motion, audio=Soundtrack(None, beats=[0.5]))
     player = Player(motion, audio=audio)
     before = player.scene, player.sound
     with pytest.raises(ValueError, match="no samples"):

@@ -152,8 +152,9 @@ def there_and_back(mine):
         ),
     )
 
-    def variant(**changes):
-        return torch.where(known, past, one_round(past, known, mean, control, **changes))
+    def variant(reverse=back_in_time, flip_ahead=True, flip_back=True):
+        how = (reverse, flip_ahead, flip_back)
+        return torch.where(known, past, one_round(past, known, mean, control, *how))
 
     right = one_round(past, known, mean, control)
     zero = torch.where(known, past, one_round(past, known, torch.zeros(2), control))

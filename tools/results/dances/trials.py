@@ -52,13 +52,16 @@ def unseen_songs(
     frames: int = LONGEST,
     seed: int = UNSEEN,
     hear: Hear = mel_of,
-    **compose,
+    *,
+    tempo: float | None = None,
+    metre: int | None = None,
+    timbre: str | None = None,
 ) -> Songs:
     """n songs long enough for `frames`, with `draws` dances of the data to each.
 
-    `compose` goes to the composer.
+    Tempo, metre and timbre are the composer's own choice where they are None.
     """
-    made = list(songs(n, seed, frames / FPS + 1.0, **compose))
+    made = list(songs(n, seed, frames / FPS + 1.0, tempo=tempo, metre=metre, timbre=timbre))
     mel = torch.stack([hear(song) for song in made])
     truth = [
         [dance(song, seed + 1000 * k + i).positions[:frames] for k in range(draws)]

@@ -85,7 +85,7 @@ def filled(
     options = {"steps": size.steps, "generator": draw}
     holes = np.where(known[..., None], truth, np.nan)
     made = [inbetween(dancer, one, known, samples=size.samples, **options) for one in holes]
-    masked = [inbetween(dancer, one, known, **PAPER, **options)[0] for one in holes]
+    masked = [inbetween(dancer, one, known, departures=PAPER, **options)[0] for one in holes]
     free = [inbetween(dancer, one, np.zeros_like(known), **options)[0] for one in truth]
     flat = [[fill(one, known) for one in truth] for fill in (linear, spherical)]
     return Filled(known, truth, np.stack(made, 1), *map(np.stack, (masked, free, *flat)))

@@ -15,7 +15,7 @@ import torch
 from jaxtyping import Bool, Float
 
 from motiondiff_edu.beyond.back_with_known import masked_back
-from motiondiff_edu.editing.inbetween import PAPER, inbetween
+from motiondiff_edu.editing.inbetween import OURS, PAPER, Departures, inbetween
 from motiondiff_edu.motion.root_frame import to_world
 from motiondiff_edu.motion.skeleton import HIPS, J
 from motiondiff_edu.performers.dancer import Dancer
@@ -58,15 +58,12 @@ def masked(
     world: Float[np.ndarray, "N W J 3"],
     known: Bool[np.ndarray, "N W J"],
     samples: int,
-    **how,
+    departures: Departures = OURS,
 ) -> Float[np.ndarray, "samples N W J 3"]:
-    """So many repairs of each of `masked_window`'s pasts by masked sampling.
-
-    `how`: options of `inbetween`.
-    """
+    """So many repairs of each of `masked_window`'s pasts by masked sampling."""
     draw = torch.Generator().manual_seed(0)
     holes = np.where(known[..., None], world, np.nan)
-    options = {"samples": samples, "steps": 25, "generator": draw, **how}
+    options = {"samples": samples, "steps": 25, "generator": draw, "departures": departures}
     made = [inbetween(dancer, one, seen, **options) for one, seen in zip(holes, known, strict=True)]
     return np.stack(made, 1)
 
@@ -84,7 +81,7 @@ def both_figures(walker: Walker, dancer: Dancer, trials: Trials, size: RepairSiz
             "there_and_back": (repaired(walker, few, broken, size, walked_back), few.past),
             "there_and_back_masked": (repaired(walker, few, broken, size, masked_back), few.past),
             "masked": (
-                masked(dancer, world, known, size.samples, **PAPER)[:, :, :T_h],
+                masked(dancer, world, known, size.samples, PAPER)[:, :, :T_h],
                 world[:, :T_h],
             ),
             "masked_blended": (

@@ -14,7 +14,7 @@ from data_synth.imperfect import ARM, LEG, Imperfect, bursts, dead_joints, dropp
 from motiondiff_edu.beyond.back_with_known import masked_back
 from motiondiff_edu.editing.repairs import with_bones
 from motiondiff_edu.performers.walker import Walker
-from motiondiff_edu.reconstruction import WayBack, repair, walked_back
+from motiondiff_edu.reconstruction import Rollout, Stop, WayBack, repair, walked_back
 
 from ..walks import steps_table
 from ..walks.scores import Figure, figure_of, root_mean, squared_bone_error
@@ -57,11 +57,11 @@ def repaired(
     past, known = as_given(walker, broken)
     control = torch.from_numpy(trials.control[:, : 2 * past.shape[1]]).float()
     start = None if guess is None else torch.from_numpy(guess).float().flatten(2)
-    options = {"rounds": size.rounds, "steps": size.steps, "way_back": way_back, "guess": start}
+    options = {"way_back": way_back, "guess": start, "stop": Stop(size.rounds)}
     options["correct"] = with_bones if bones else None
+    draws = [torch.Generator().manual_seed(k) for k in range(size.samples)]
     made = [
-        repair(walker, past, known, control, generator=torch.Generator().manual_seed(k), **options)
-        for k in range(size.samples)
+        repair(Rollout(walker, draw, size.steps), past, known, control, **options) for draw in draws
     ]
     return torch.stack(made).unflatten(-1, (-1, 3)).double().numpy()
 

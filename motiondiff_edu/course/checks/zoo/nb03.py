@@ -52,8 +52,8 @@ def plain_mean(x_s, alpha_bar, data):
     return data.mean(0).expand(x_s.shape)
 
 
-def _step(x_s, s, eps_hat, beta, alpha_bar, z, take=None, scale=None, shake=None):
-    take = beta[s] / (1 - alpha_bar[s]) ** 0.5 if take is None else take
+def _step(x_s, s, eps_hat, beta, alpha_bar, z, scale=None, shake=None):
+    take = beta[s] / (1 - alpha_bar[s]) ** 0.5
     mean = (x_s - take * eps_hat) / ((1 - beta[s]) ** 0.5 if scale is None else scale)
     return mean + (beta[s] ** 0.5 * z if shake is None else shake * z)
 
@@ -83,16 +83,8 @@ def not_rescaled(x_s, s, eps_hat, beta, alpha_bar, z):
 
 def all_noise_taken(x_s, s, eps_hat, beta, alpha_bar, z):
     """Takes all noise at once where one step's share of it was asked for."""
-    return _step(
-        x_s,
-        s,
-        eps_hat,
-        beta,
-        alpha_bar,
-        z,
-        take=(1 - alpha_bar[s]) ** 0.5,
-        shake=0.0 if s == 1 else None,
-    )
+    mean = (x_s - (1 - alpha_bar[s]) ** 0.5 * eps_hat) / (1 - beta[s]) ** 0.5
+    return mean if s == 1 else mean + beta[s] ** 0.5 * z
 
 
 def noise_added_instead(x_s, s, eps_hat, beta, alpha_bar, z):

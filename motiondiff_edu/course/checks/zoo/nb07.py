@@ -1,5 +1,7 @@
 """Wrong answers to the exercises of notebook 07."""
 
+from dataclasses import dataclass
+
 import torch
 
 
@@ -35,49 +37,56 @@ def everything_held(control, T_h):
     return control[T_h - 1 : T_h].repeat(len(control), 1)
 
 
-def _roll(sample, past, control, frames, T_p, shift=0, keep=1, hold=True, feed=True, drop=True):
+@dataclass(frozen=True)
+class _Fault:
+    """Where a rollout goes wrong; as it stands it is right."""
+
+    shift: int = 0  # frames that the control is late
+    keep: int = 1  # poses kept of a window
+    hold: bool = True  # the control over the future
+    feed: bool = True  # the new pose back into the past
+    drop: bool = True  # the oldest pose of the past
+
+
+def _roll(sample, past, control, frames, T_p, fault):
     T_h, new = past.shape[1], []
     while sum(w.shape[1] for w in new) < frames:
-        t = sum(w.shape[1] for w in new) + shift
+        t = sum(w.shape[1] for w in new) + fault.shift
         rows = control[:, t : t + T_h]
-        ahead = rows[:, -1:].repeat(1, T_p, 1) if hold else control[:, t + T_h : t + T_h + T_p]
-        window = sample(past, torch.cat([rows, ahead], dim=1))[:, :keep]
+        ahead = control[:, t + T_h : t + T_h + T_p]
+        ahead = rows[:, -1:].repeat(1, T_p, 1) if fault.hold else ahead
+        window = sample(past, torch.cat([rows, ahead], dim=1))[:, : fault.keep]
         new.append(window)
-        if feed:
-            past = torch.cat([past[:, keep if drop else 0 :], window], dim=1)
+        if fault.feed:
+            past = torch.cat([past[:, fault.keep if fault.drop else 0 :], window], dim=1)
     return torch.cat(new, dim=1)[:, :frames]
 
 
 def look_ahead(sample, past, control, frames, T_p):
     """Gives the control that is to come where the last known row should be held."""
-    return _roll(
-        sample,
-        past,
-        torch.cat([control, control[:, -1:].repeat(1, T_p, 1)], 1),
-        frames,
-        T_p,
-        hold=False,
-    )
+    longer = torch.cat([control, control[:, -1:].repeat(1, T_p, 1)], 1)
+    return _roll(sample, past, longer, frames, T_p, _Fault(hold=False))
 
 
 def control_one_late(sample, past, control, frames, T_p):
     """Control and poses are a frame apart: the figure obeys too early."""
-    return _roll(sample, past, torch.cat([control, control[:, -1:]], 1), frames, T_p, shift=1)
+    longer = torch.cat([control, control[:, -1:]], 1)
+    return _roll(sample, past, longer, frames, T_p, _Fault(shift=1))
 
 
 def keeps_the_whole_window(sample, past, control, frames, T_p):
     """Takes all poses of a window and so hears of the control once in T_p frames only."""
-    return _roll(sample, past, control, frames, T_p, keep=T_p)
+    return _roll(sample, past, control, frames, T_p, _Fault(keep=T_p))
 
 
 def never_feeds_back(sample, past, control, frames, T_p):
     """Every window starts from the same past: the figure never gets going."""
-    return _roll(sample, past, control, frames, T_p, feed=False)
+    return _roll(sample, past, control, frames, T_p, _Fault(feed=False))
 
 
 def keeps_the_oldest(sample, past, control, frames, T_p):
     """The past grows by a pose each time, and is no longer what the network was trained on."""
-    return _roll(sample, past, control, frames, T_p, drop=False)
+    return _roll(sample, past, control, frames, T_p, _Fault(drop=False))
 
 
 def feeds_the_last_of_the_window(sample, past, control, frames, T_p):

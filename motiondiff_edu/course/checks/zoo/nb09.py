@@ -1,5 +1,8 @@
 """Wrong answers to the exercises of notebook 09."""
 
+from collections.abc import Callable
+from dataclasses import dataclass
+
 import torch
 
 
@@ -11,15 +14,24 @@ def _noised(x, s, alpha_bar, noise):
     return _shape(alpha_bar[s]) ** 0.5 * x + _shape(1 - alpha_bar[s]) ** 0.5 * noise
 
 
-def _batch(past, future, s, alpha_bar, rate, u, noise, hit=None, own=1, noised=_noised):
-    hit = u < rate if hit is None else hit
-    seen = torch.where(_shape(hit), noised(past, s, alpha_bar, noise[own]), past)
+@dataclass(frozen=True, eq=False)
+class _Fault:
+    """Where a batch goes wrong; as it stands it is right."""
+
+    hit: torch.Tensor | None = None  # which pasts are noised
+    own: int = 1  # which of the two noises is the past's
+    noised: Callable = _noised
+
+
+def _batch(past, future, s, alpha_bar, rate, u, noise, fault=_Fault()):
+    hit = u < rate if fault.hit is None else fault.hit
+    seen = torch.where(_shape(hit), fault.noised(past, s, alpha_bar, noise[fault.own]), past)
     return seen, _noised(future, s, alpha_bar, noise[0])
 
 
 def mask_inverted(past, future, s, alpha_bar, rate, u, noise):
     """Nearly every past is noise: the figure hardly learns to go on from where it is."""
-    return _batch(past, future, s, alpha_bar, rate, u, noise, hit=u > rate)
+    return _batch(past, future, s, alpha_bar, rate, u, noise, _Fault(hit=u > rate))
 
 
 def one_throw_for_the_batch(past, future, s, alpha_bar, rate, u, noise):
@@ -27,7 +39,8 @@ def one_throw_for_the_batch(past, future, s, alpha_bar, rate, u, noise):
 
     The gradient of one step in twenty has never seen a past.
     """
-    return _batch(past, future, s, alpha_bar, rate, u, noise, hit=(u[0] < rate).expand(len(u)))
+    fault = _Fault(hit=(u[0] < rate).expand(len(u)))
+    return _batch(past, future, s, alpha_bar, rate, u, noise, fault)
 
 
 def a_throw_for_each_frame(past, future, s, alpha_bar, rate, u, noise):
@@ -46,7 +59,7 @@ def same_noise_for_both(past, future, s, alpha_bar, rate, u, noise):
 
     A low loss in training, and nothing to read in sampling.
     """
-    return _batch(past, future, s, alpha_bar, rate, u, noise, own=0)
+    return _batch(past, future, s, alpha_bar, rate, u, noise, _Fault(own=0))
 
 
 def first_step_for_all(past, future, s, alpha_bar, rate, u, noise):
@@ -68,27 +81,19 @@ def rescaled(past, future, s, alpha_bar, rate, u, noise):
 
 def zeroed(past, future, s, alpha_bar, rate, u, noise):
     """Sets to zero, whatever the step."""
-    return _batch(past, future, s, alpha_bar, rate, u, noise, noised=lambda x, *_: 0 * x)
+    return _batch(past, future, s, alpha_bar, rate, u, noise, _Fault(noised=lambda x, *_: 0 * x))
 
 
 def not_shrunk(past, future, s, alpha_bar, rate, u, noise):
     """Noise on top of the whole signal: the past is louder than the data have ever been."""
-    return _batch(
-        past,
-        future,
-        s,
-        alpha_bar,
-        rate,
-        u,
-        noise,
-        noised=lambda x, s, t, e: x + _shape(1 - t[s]) ** 0.5 * e,
-    )
+    fault = _Fault(noised=lambda x, s, t, e: x + _shape(1 - t[s]) ** 0.5 * e)
+    return _batch(past, future, s, alpha_bar, rate, u, noise, fault)
 
 
 def no_roots(past, future, s, alpha_bar, rate, u, noise):
     """Takes shares of power for amplitudes: signal and noise together are too small."""
     wrong = lambda x, s, t, e: _shape(t[s]) * x + _shape(1 - t[s]) * e  # noqa: E731
-    return _batch(past, future, s, alpha_bar, rate, u, noise, noised=wrong)
+    return _batch(past, future, s, alpha_bar, rate, u, noise, _Fault(noised=wrong))
 
 
 def changed_in_place(past, future, s, alpha_bar, rate, u, noise):

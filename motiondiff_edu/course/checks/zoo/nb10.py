@@ -44,25 +44,21 @@ def in_place(control):
     return control
 
 
-def _round(
-    walk_on,
-    past,
-    known,
-    mean,
-    control,
-    reverse=lambda c: -no_sign(c),
-    flip_ahead=True,
-    flip_back=True,
-):
+def _reversed(control):
+    return -no_sign(control)
+
+
+def _round(walk_on, past, known, mean, control, reverse=_reversed, flip_ahead=True, flip_back=True):
     filled = torch.where(known, past, mean)
     ahead = walk_on(filled, control)
     back = walk_on(ahead.flip(1) if flip_ahead else ahead, reverse(control))
     return back.flip(1) if flip_back else back
 
 
-def _filled(**changes):
+def _filled(reverse=_reversed, flip_ahead=True, flip_back=True):
     def answer(walk_on, past, known, mean, control):
-        return torch.where(known, past, _round(walk_on, past, known, mean, control, **changes))
+        how = (reverse, flip_ahead, flip_back)
+        return torch.where(known, past, _round(walk_on, past, known, mean, control, *how))
 
     return answer
 

@@ -1,0 +1,89 @@
+"""A function says what it takes: at most eight parameters, and none hidden in `**options`."""
+
+import ast
+from pathlib import Path
+
+import notebook_cells
+import pytest
+
+ROOT = Path(__file__).parent.parent
+CODE = ("motiondiff_edu", "data_synth", "tools", "benchmarks")
+SOURCES = [
+    *sorted(path for folder in CODE for path in (ROOT / folder).rglob("*.py")),
+    *notebook_cells.sources(),
+]
+MOST = 8
+# functions that take any keyword, and why
+OPEN = {
+    "_repr_mimebundle_": "Jupyter calls it with keywords of its own",
+    "course/checks/_report.py answer": "it wraps a student's function, whatever that takes",
+    "widgets/explore.py explore": "the keywords are the parameters of the function that is drawn",
+    "results/walks/ladder.py left_out": "the keywords are fields of a Recipe, as in `replace`",
+    "results/walks/ladder.py added": "as `left_out`",
+}
+
+
+def functions(source: str) -> list[tuple[str, int, bool]]:
+    """Of each function: its name, how many parameters it names, whether it takes any keyword."""
+    found = []
+    for node in ast.walk(ast.parse(source)):
+        if not isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef | ast.Lambda):
+            continue
+        given = node.args
+        names = [one.arg for one in (*given.posonlyargs, *given.args, *given.kwonlyargs)]
+        count = len([name for name in names if name not in ("self", "cls")])
+        found.append((getattr(node, "name", "lambda"), count, given.kwarg is not None))
+    return found
+
+
+def cells_of(path: Path) -> list[str]:
+    if path.suffix == ".py":
+        return [path.read_text(encoding="utf-8")]
+    return [cell["source"] for cell in notebook_cells.code(notebook_cells.read(path))]
+
+
+def reason(path: Path, name: str) -> str | None:
+    """The entry of OPEN that lets this function take any keyword, if there is one."""
+    place = f"{path.as_posix()} {name}"
+    return next((one for one in OPEN if name == one or place.endswith(f"/{one}")), None)
+
+
+def test_parameters_are_counted():
+    source = """
+class One:
+    def method(self, a, /, b, *more, c=1): ...
+    @classmethod
+    async def made(cls, **options): ...
+def outer(a, b=2):
+    return lambda x, **_: x
+"""
+    assert sorted(functions(source)) == [
+        ("lambda", 1, True),
+        ("made", 0, True),
+        ("method", 3, False),
+        ("outer", 2, False),
+    ]
+
+
+def test_what_may_take_any_keyword_is_there():
+    """No entry of the list outlives its function."""
+    found = {
+        reason(path, name)
+        for path in SOURCES
+        for cell in cells_of(path)
+        for name, _, keywords in functions(cell)
+        if keywords
+    }
+    assert found == set(OPEN)
+    assert reason(ROOT / "motiondiff_edu/widgets/explore.py", "explore")
+    assert reason(ROOT / "motiondiff_edu/widgets/explore.py", "redraw") is None
+    assert reason(ROOT / "motiondiff_edu/course/checks/nb10.py", "answer") is None
+
+
+@pytest.mark.parametrize("path", SOURCES, ids=lambda path: path.relative_to(ROOT).as_posix())
+def test_what_a_function_takes_can_be_read_from_its_signature(path):
+    """What always goes together is a small dataclass; keywords are named one by one."""
+    for cell in cells_of(path):
+        for name, count, keywords in functions(cell):
+            assert count <= MOST, f"{name} takes {count} parameters: group what goes together"
+            assert not keywords or reason(path, name), f"{name} takes any keyword: name them"
