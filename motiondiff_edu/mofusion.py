@@ -234,9 +234,9 @@ class MoFusion(nn.Module):
         """
         if (music is None) != (self.music is None):
             raise ValueError(
-                "this network dances to music: give it"
+                "this network dances to music; pass its music"
                 if music is None
-                else "this network hears nothing"
+                else "this network takes no music; pass music=None"
             )
         T, levels = x_s.shape[1], len(self.config.widths)
         x = F.pad(x_s, (0, 0, 0, -T % 2**levels))

@@ -111,7 +111,7 @@ def test_info_convert_and_play(folder, capsys):
 WALK = ["walk", "my_walk.bvh", "--control", "1s 1", "--out", "x.bvh"]
 MISTAKES = {
     "no such file": (["info", "nope.bvh"], "there is no file nope.bvh in"),
-    "no motion": (["info", "song.wav"], "song.wav is not read as a motion"),
+    "no motion": (["info", "song.wav"], "song.wav cannot be read as a motion"),
     "a png": (["convert", "pic.png", "x.bvh"], "there is no file pic.png"),
     "no song": (["dance", "my_walk.bvh", "--out", "x.bvh"], "is text, not sound"),
     "negative seconds": (
@@ -128,7 +128,7 @@ MISTAKES = {
     "no samples": ([*WALK, "--samples", "0"], "--samples must be at least 1, not 0"),
     "no keyframes": (
         ["inbetween", "my_walk.bvh", "--every", "0", "--out", "x.bvh"],
-        "every is a whole number from 1 on",
+        "every must be a whole number of at least 1",
     ),
     "no joint": (
         ["reconstruct", "my_walk.bvh", "--missing", "Tail", "--out", "x.bvh"],

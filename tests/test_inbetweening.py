@@ -449,5 +449,5 @@ def test_masks_refuse_what_is_not_there():
         inbetween(dancer(), clip(), alone)
     with pytest.raises(ValueError, match="dances to music"):
         inbetween(dancer(5), clip(), seed(40, 10))
-    with pytest.raises(ValueError, match="hears nothing"):
+    with pytest.raises(ValueError, match="takes no music"):
         inbetween(dancer(), clip(), seed(40, 10), torch.zeros(64, 5))

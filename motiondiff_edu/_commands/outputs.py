@@ -1,4 +1,4 @@
-"""The files that a command reads and writes. Output names are checked before anything is computed."""
+"""The files that a command reads and writes; it checks output names before it computes anything."""
 
 import argparse
 import sys

@@ -17,8 +17,8 @@ from motiondiff_edu.motion.scaler import Scaler
 from motiondiff_edu.performers.loss_by_step import (
     clean_guess,
     eps_weight,
-    erring,
     losses_over_time,
+    noisy_predictor,
     predictor_of,
 )
 from motiondiff_edu.viz import losses as viz
@@ -33,7 +33,7 @@ EPS = torch.randn(X0.shape, generator=torch.Generator().manual_seed(1), dtype=to
 
 
 def measured(predict=None, steps=STEPS, target="eps"):
-    predict = predict or erring(0.05, seed=2)
+    predict = predict or noisy_predictor(0.05, seed=2)
     return losses_over_time(predict, X0, EPS, PLANTED, BODY, SCHEDULE, steps, target)
 
 
@@ -44,11 +44,11 @@ def carried(s):
 
 
 def test_an_error_of_five_percent_is_one_and_the_same_at_every_step():
-    off = erring(0.05)(X0, 1, EPS) - EPS
-    torch.testing.assert_close(erring(0.05)(X0, 30, EPS) - EPS, off)
-    assert not torch.equal(erring(0.05, seed=1)(X0, 1, EPS) - EPS, off)
+    off = noisy_predictor(0.05)(X0, 1, EPS) - EPS
+    torch.testing.assert_close(noisy_predictor(0.05)(X0, 30, EPS) - EPS, off)
+    assert not torch.equal(noisy_predictor(0.05, seed=1)(X0, 1, EPS) - EPS, off)
     assert off.square().mean().sqrt().item() == pytest.approx(0.05, rel=0.03)
-    torch.testing.assert_close(erring(0.0)(X0, 1, EPS), EPS)
+    torch.testing.assert_close(noisy_predictor(0.0)(X0, 1, EPS), EPS)
 
 
 def test_the_guess_is_off_by_b_over_a():
@@ -58,7 +58,7 @@ def test_the_guess_is_off_by_b_over_a():
 
 
 def test_who_is_right_pays_nothing():
-    loss = measured(erring(0.0))
+    loss = measured(noisy_predictor(0.0))
     assert all(
         loss.value[name].max() < 1e-4 for name in ("data", "skeleton", "asymmetry", "motion")
     )
@@ -75,7 +75,7 @@ def test_the_papers_weight_on_the_motion_is_a_reweighting(target, share):
         weighted.value["motion"] / loss.value["data"], wanted, rtol=1e-5, atol=0
     )
     torch.testing.assert_close(
-        weighted.pull["motion"] / loss.pull["data"], wanted, rtol=1e-5, atol=0
+        weighted.gradient["motion"] / loss.gradient["data"], wanted, rtol=1e-5, atol=0
     )
     torch.testing.assert_close(weighted.value["data"], loss.value["data"])
 
@@ -92,7 +92,7 @@ def test_pull_of_the_data_term_is_known():
     loss = measured(lambda x_s, s, eps: eps + 0.1)
     n = X0[0].numel()
     torch.testing.assert_close(
-        loss.pull["data"], torch.full((len(STEPS),), 2 * 0.1 / math.sqrt(n)).double()
+        loss.gradient["data"], torch.full((len(STEPS),), 2 * 0.1 / math.sqrt(n)).double()
     )
 
 
@@ -113,15 +113,15 @@ def test_pull_of_a_loss_is_what_small_steps_change():
         slopes.append(
             (at(wrong + way).value["skeleton"] - at(wrong - way).value["skeleton"]) / 2e-5
         )
-    wanted = at(wrong).pull["skeleton"]
+    wanted = at(wrong).gradient["skeleton"]
     assert (torch.stack(slopes).square().mean() * n).sqrt().item() == pytest.approx(
         wanted.item(), rel=0.3
     )
 
 
 def test_a_network_that_predicts_x0_feels_the_bones_less_by_a_over_b():
-    eps = measured().pull["skeleton"]
-    x0 = measured(target="x0").pull["skeleton"]
+    eps = measured().gradient["skeleton"]
+    x0 = measured(target="x0").gradient["skeleton"]
     torch.testing.assert_close(
         eps / x0, torch.tensor([carried(s) for s in STEPS]).double(), rtol=1e-5, atol=0
     )
