@@ -31,8 +31,8 @@ from .performer import Performer
 from .with_bar import with_bar
 
 STEPS, ETA = 50, 0.5  # defaults of DDIM
-# standard deviations from the mean pose: an eps network's x0_hat is held within, as DDPM's code
-# does
+# standard deviations from the mean pose, to which the x0_hat of an eps network is clamped, as in
+# DDPM's code
 FARTHEST = 5.0
 
 

@@ -155,7 +155,7 @@ def test_a_file_gives_the_same_dancer_back(config, tmp_path: Path):
 
 def test_a_dancer_is_no_walker(tmp_path: Path):
     path = save(dancer(), tmp_path / "one.safetensors")
-    with pytest.raises(CheckpointError, match="no walker .*dancer"):
+    with pytest.raises(CheckpointError, match="not a walker .*dancer"):
         load_walker(path)
 
 
