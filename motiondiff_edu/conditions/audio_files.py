@@ -128,7 +128,7 @@ def samples_of(sound: str | Path | np.ndarray | Tensor) -> Float[Tensor, "N"]:
 
 
 def resample(audio: Float[np.ndarray, "N"], rate: int) -> Float[np.ndarray, "n"]:
-    """The same sound at 16 kHz, by soxr at very high quality; it removes frequencies above 8 kHz."""
+    """The same sound at 16 kHz, resampled by soxr at very high quality, without aliasing."""
     return audio if rate == SAMPLE_RATE else soxr.resample(audio, rate, SAMPLE_RATE, "VHQ")
 
 

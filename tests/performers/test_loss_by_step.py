@@ -203,7 +203,7 @@ def test_poses_have_their_seconds_and_what_is_too_wide_is_cut():
 
 
 def test_the_table_shows_what_it_was_given():
-    figure = viz.noticed(
+    figure = viz.loss_table(
         np.array([[0.0, 2.0], [4.0, 0.5], [1e-9, 0.0]]), ["a", "b", "c"], ["L", "M"], "table"
     )
     assert [text.get_text() for text in figure.axes[0].texts] == ["0", "2", "4", "0.5", "0", "0"]
@@ -215,6 +215,6 @@ def test_curves_over_steps_are_what_was_given_and_the_moment_marks_its_step():
     np.testing.assert_allclose(figure.axes[1].lines[0].get_ydata(), [1.0, np.nan, 3.0])
     assert figure.axes[0].get_yscale() == "log"
     poses = np.random.default_rng(0).normal(size=(6, 21, 3))
-    figure = viz.moment(poses, {"p": lines, "q": lines}, 9, "now", n=3)
+    figure = viz.guess_and_losses(poses, {"p": lines, "q": lines}, 9, "now", n=3)
     marked = [line for axis in figure.axes for line in axis.lines if line.get_marker() == "o"]
     assert [float(line.get_xdata()[0]) for line in marked] == [9, 9]
