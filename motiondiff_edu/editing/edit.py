@@ -105,7 +105,7 @@ class Edit:
 
     def __str__(self) -> str:
         if not self.pins and self.part is None:
-            return "nothing is held"
+            return "nothing is pinned or kept"
         count = len(self.pins)
         words = [f"{count} frame{'s' * (count != 1)} pinned" if count else "no frame pinned"]
         if self.moved:

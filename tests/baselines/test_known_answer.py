@@ -214,5 +214,5 @@ def test_wrong_inputs():
     with pytest.raises(ValueError, match="not 'repaint'"):
         Way("repaint")
     asked = replace(question(chain(), [2.0, 0.0, 0.0], [True, False, False]))
-    with pytest.raises(ValueError, match="name it in the question"):
+    with pytest.raises(ValueError, match="set `past`"):
         there_and_back(asked, sample_mixture(chain(), 2), 1, seeded())

@@ -51,7 +51,7 @@ def test_the_ridge_keeps_parts_wide_where_points_lie_on_a_line():
 
 
 def test_no_part_lies_where_no_point_is():
-    with pytest.raises(ValueError, match="3 parts need as many different points at least, not 1"):
+    with pytest.raises(ValueError, match="3 parts need at least 3 different points, not 1"):
         fit_mixture(torch.full((10, 2), 100.0), 3, generator=seeded(17))
     crowd = torch.cat([50 + torch.randn(40, 2, generator=seeded(18)), torch.full((3, 2), 90.0)])
     found = fit_mixture(crowd, 6, generator=seeded(19))

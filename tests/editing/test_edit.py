@@ -34,7 +34,7 @@ def test_what_is_known_follows_from_pins_and_the_part_that_is_kept(motion):
     assert (
         not edit.known.any()
         and np.array_equal(edit.positions, motion)
-        and str(edit) == "nothing is held"
+        and str(edit) == "nothing is pinned or kept"
     )
     edit = edit.pin(3).pin(-1).keep("lower body")
     wanted = np.zeros((T, 21), bool)
