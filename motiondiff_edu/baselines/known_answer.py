@@ -26,7 +26,7 @@ from .mixture_fit import responsibilities
 
 
 @dataclass(frozen=True, eq=False)
-class Question:
+class Problem:
     """A mixture, its exact denoiser, and the values of its known entries.
 
     `past` marks the entries from which there-and-back starts. If it is given, only unknown entries
@@ -42,18 +42,18 @@ class Question:
     frames: int = 1  # number of frames in D, one after the other; `blend` needs it
 
     @cached_property
-    def wanted(self) -> Mixture:
+    def true_conditional(self) -> Mixture:
         """The true conditional of all unknown entries."""
         return conditional(self.truth, self.values, self.known)
 
     @property
-    def judged(self) -> Bool[Tensor, "D"]:
+    def compared(self) -> Bool[Tensor, "D"]:
         """The entries in which methods are compared."""
         return ~self.known if self.past is None else self.past & ~self.known
 
 
 @dataclass(frozen=True)
-class Way:
+class Method:
     """A method of filling in.
 
     Its kind is "exact", "masked" (with the options of `inpaint_steps`), "there-and-back" or "gibbs"
@@ -85,21 +85,21 @@ class Way:
         return self.kind + ends.get(self.kind, f".{self.rounds}")
 
 
-WAYS = (
-    Way("exact"),
-    *(Way("masked", steps) for steps in (5, 10, 50, 100)),
-    *(Way("masked", 50, resample) for resample in (2, 5, 10)),
-    Way("masked", 50, blend=3),
-    Way("masked", 50, guidance=1.0),
+METHODS = (
+    Method("exact"),
+    *(Method("masked", steps) for steps in (5, 10, 50, 100)),
+    *(Method("masked", 50, resample) for resample in (2, 5, 10)),
+    Method("masked", 50, blend=3),
+    Method("masked", 50, guidance=1.0),
 )
 ROUNDS = (
-    Way("there-and-back", rounds=1),
-    Way("there-and-back", rounds=20),
-    Way("gibbs", rounds=20),
+    Method("there-and-back", rounds=1),
+    Method("there-and-back", rounds=20),
+    Method("gibbs", rounds=20),
 )
 
 
-class Rest:
+class ConditionalSampler:
     """Draws from p(other entries | known entries) of a mixture, for many known values at once."""
 
     def __init__(self, given: Mixture, known: Bool[Tensor, "D"]):
@@ -133,7 +133,7 @@ class Rest:
 
 
 def there_and_back(
-    question: Question,
+    problem: Problem,
     x: Float[Tensor, "N D"],
     rounds: int,
     generator: torch.Generator,
@@ -145,47 +145,47 @@ def there_and_back(
     way back is not conditioned on the known entries of the past; they reach the holes only through
     the future. With `keep` it is, which makes this Gibbs sampling, with the true conditional as its
     limit.
-    Raises ValueError for a question without a past.  Source: MoDiff III-E.
+    Raises ValueError for a problem without a past.  Source: MoDiff III-E.
     """
-    if question.past is None:
+    if problem.past is None:
         raise ValueError("there-and-back needs a past to start from: set `past`")
-    known, past = question.known, question.past
-    ahead = Rest(question.truth, past | known)
-    back = Rest(question.truth, (~past | known) if keep else ~past)
+    known, past = problem.known, problem.past
+    ahead = ConditionalSampler(problem.truth, past | known)
+    back = ConditionalSampler(problem.truth, (~past | known) if keep else ~past)
     for _ in range(rounds):
         x = ahead.draw(x, generator)
         x = torch.where(known, x, back.draw(x, generator))
     return x
 
 
-def answers(
-    question: Question, way: Way, n: int, generator: torch.Generator
+def draw_samples(
+    problem: Problem, method: Method, n: int, generator: torch.Generator
 ) -> Float[Tensor, "n D"]:
     """n samples by one method: known entries stay, the others are filled in.
 
     Notebook: 15
     """
-    truth, known = question.truth, question.known
-    values = question.values.double().where(known, 0.0).expand(n, -1)
-    if way.kind == "exact":
-        return values.masked_scatter(~known, sample_mixture(question.wanted, n, generator))
-    if way.kind == "masked":
-        shape = (n, question.frames, -1)
+    truth, known = problem.truth, problem.known
+    values = problem.values.double().where(known, 0.0).expand(n, -1)
+    if method.kind == "exact":
+        return values.masked_scatter(~known, sample_mixture(problem.true_conditional, n, generator))
+    if method.kind == "masked":
+        shape = (n, problem.frames, -1)
         start = torch.randn(values.shape, generator=generator, dtype=torch.float64).view(shape)
-        denoise, schedule = _framed(question.denoise), question.schedule
+        denoise, schedule = _framed(problem.denoise), problem.schedule
         held = values.reshape(shape), known.expand(n, -1).reshape(shape)
-        if way.guidance:
-            denoise = guided(denoise, schedule, *held, way.guidance)
-        if way.blend is not None:
-            denoise = blended(denoise, schedule, *held, way.blend)
-        steps = resampled(timesteps(schedule.S, way.steps), way.resample)
+        if method.guidance:
+            denoise = guided(denoise, schedule, *held, method.guidance)
+        if method.blend is not None:
+            denoise = blended(denoise, schedule, *held, method.blend)
+        steps = resampled(timesteps(schedule.S, method.steps), method.resample)
         loop = inpaint_steps(denoise, start, schedule, *held, steps=steps, generator=generator)
         *_, last = loop
         return last.x_s.flatten(1)
     x = torch.where(
         known, values, truth.mean()
     )  # missing entries start at the mean, as in `reconstruction`
-    return there_and_back(question, x, way.rounds, generator, keep=way.kind == "gibbs")
+    return there_and_back(problem, x, method.rounds, generator, keep=method.kind == "gibbs")
 
 
 def _framed(denoise: Denoiser) -> Denoiser:
@@ -207,41 +207,45 @@ class Errors:
     share: float
 
 
-def errors_of(x: Float[Tensor, "N D"], question: Question) -> Errors:
+def errors_of(x: Float[Tensor, "N D"], problem: Problem) -> Errors:
     """The errors of samples against the true conditional."""
-    wanted, judged = question.wanted, question.judged[~question.known]
-    mean, variance = wanted.mean()[judged], wanted.covariance().diagonal()[judged]
-    made = x[:, question.judged]
-    share = responsibilities(question.truth, x).mean(0)
+    truth, compared = problem.true_conditional, problem.compared[~problem.known]
+    mean, variance = truth.mean()[compared], truth.covariance().diagonal()[compared]
+    made = x[:, problem.compared]
+    share = responsibilities(problem.truth, x).mean(0)
     return Errors(
         mean=float(((made.mean(0) - mean).square() / variance).mean().sqrt()),
         spread=float((made.var(0) / variance).mean().sqrt()),
-        share=float((share - wanted.weights).abs().sum() / 2),
+        share=float((share - truth.weights).abs().sum() / 2),
     )
 
 
 def conditional_errors(
-    question: Question, ways: Iterable[Way] = WAYS, *, seeds: Iterable[int] = range(5), n: int = 200
-) -> Iterator[tuple[Way, int, Errors]]:
+    problem: Problem,
+    methods: Iterable[Method] = METHODS,
+    *,
+    seeds: Iterable[int] = range(5),
+    n: int = 200,
+) -> Iterator[tuple[Method, int, Errors]]:
     """Every method with every seed, n samples each; yields (method, seed, errors).
 
     Notebook: 15
     """
     seeds = tuple(seeds)
-    for way in ways:
+    for method in methods:
         for seed in seeds:
-            x = answers(question, way, n, torch.Generator().manual_seed(seed))
-            yield way, seed, errors_of(x, question)
+            x = draw_samples(problem, method, n, torch.Generator().manual_seed(seed))
+            yield method, seed, errors_of(x, problem)
 
 
-def gathered(found: Iterable[tuple[Way, int, Errors]]) -> dict[str, dict[str, list[float]]]:
-    """One value per seed, by method and measure: gathered(...)["masked.50"]["mean"].
+def by_method(found: Iterable[tuple[Method, int, Errors]]) -> dict[str, dict[str, list[float]]]:
+    """One value per seed, by method and measure: by_method(...)["masked.50"]["mean"].
 
     Notebook: 15
     """
     table: dict[str, dict[str, list[float]]] = {}
-    for way, _, errors in found:
-        row = table.setdefault(way.name, {})
+    for method, _, errors in found:
+        row = table.setdefault(method.name, {})
         for figure, value in asdict(errors).items():
             row.setdefault(figure, []).append(value)
     return table

@@ -19,7 +19,7 @@ from ..editing.masks import body_part, keyframes, seed
 from ..motion.clip import Clip
 from ..motion.scaler import Scaler
 from ..motion.skeleton import JOINTS, J
-from .known_answer import Question
+from .known_answer import Problem
 from .mixture_fit import WindowMixture, fit_windows
 
 
@@ -41,13 +41,13 @@ class WalkMixture:
         poses = self.scaler.inverse(x.reshape(len(x), self.frames, -1))
         return poses.reshape(len(x), self.frames, J, 3).double().numpy()
 
-    def question(
+    def problem(
         self,
         window: Float[Tensor, "D"],
         known: Bool[np.ndarray, "T J"],
         schedule: Schedule,
         past: bool = False,
-    ) -> Question:
+    ) -> Problem:
         """The problem to fill in the unknown entries of this window.
 
         `past=True` compares only the first half, and allows there-and-back as a method.
@@ -55,7 +55,7 @@ class WalkMixture:
         columns = torch.from_numpy(np.repeat(known, 3, axis=1)).flatten()
         half = torch.arange(len(columns)) < (self.frames // 2) * 3 * J
         denoise = self.fitted.denoiser(schedule)
-        return Question(
+        return Problem(
             self.truth, denoise, schedule, window, columns, half if past else None, self.frames
         )
 
