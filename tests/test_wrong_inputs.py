@@ -38,11 +38,11 @@ def ddim(**options):
 
 
 MISTAKES = {
-    "steps that rise": (ddim(steps=[5, 10, 20]), "steps must fall, from 20 at most to 1 at least"),
-    "no steps": (ddim(steps=[]), "steps must fall"),
-    "a step 0": (ddim(steps=[20, 0]), "steps must fall"),
-    "a step beyond S": (ddim(steps=[21, 3]), "steps must fall"),
-    "eta beyond DDPM": (ddim(steps=4, eta=2.0), "eta must lie between 0"),
+    "steps that rise": (ddim(steps=[5, 10, 20]), "steps must decrease and be within 20 to 1"),
+    "no steps": (ddim(steps=[]), "steps must decrease"),
+    "a step 0": (ddim(steps=[20, 0]), "steps must decrease"),
+    "a step beyond S": (ddim(steps=[21, 3]), "steps must decrease"),
+    "eta beyond DDPM": (ddim(steps=4, eta=2.0), "eta must be between 0"),
     "a step back from clean data": (
         lambda: ddpm.p_sample(X, 0, X, SCHEDULE, X),
         "s = 0: steps must be 1 to 20 here",
@@ -63,9 +63,12 @@ MISTAKES = {
         lambda: slice_clips([CLIP], seconds=-1),
         "pieces of -1 s have no frame",
     ),
-    "a negative share": (lambda: split_by_source([CLIP], [1.5, -0.5], RNG), "shares that sum to 1"),
+    "a negative share": (
+        lambda: split_by_source([CLIP], [1.5, -0.5], RNG),
+        "0 or more and sum to 1",
+    ),
     "no data to scale": (lambda: Scaler.fit(torch.zeros(0, 3)), "there are no rows"),
-    "one frame": (lambda: adherence(CLIP.poses[:1], CLIP.control[:1]), "takes two frames"),
+    "one frame": (lambda: adherence(CLIP.poses[:1], CLIP.control[:1]), "needs two frames"),
     "no segments": (lambda: joystick([]), "four finite numbers, not nothing"),
     "a short segment": (lambda: joystick([(1, 2)]), "four finite numbers"),
     "a segment of NaN": (lambda: joystick([(1, math.nan, 0, 0)]), "four finite numbers"),
@@ -74,7 +77,7 @@ MISTAKES = {
         lambda: Walker(MoDiff(SMALL), SCHEDULE, *PLAIN),
         "has 20 steps, the network 6",
     ),
-    "heads that do not fit": (lambda: MoDiffConfig(width=16, heads=3), "shared evenly by 3 heads"),
+    "heads that do not fit": (lambda: MoDiffConfig(width=16, heads=3), "a multiple of 3 heads"),
 }
 
 
@@ -115,7 +118,7 @@ def test_a_rate_that_no_reader_takes_for_one_is_not_written(tmp_path, fps):
 
 SHAPES = {  # in a process of its own: here the tests' own check of shapes would speak first
     "write_bvh('x.bvh', np.zeros((5, 63)))": (
-        "positions are (T, 21, 3), metres in the world; these are (5, 63)."
+        "positions must be (T, 21, 3), world positions in metres; these are (5, 63)."
     ),
     "write_bvh('x.bvh', np.zeros((5, 20, 3)))": "these are (5, 20, 3)",
     "to_world(np.zeros((5, 21, 3)), np.zeros((1, 3)))": "5 poses but 1 rows of control",
@@ -150,7 +153,7 @@ def test_a_control_beyond_the_training_data_is_named():
     past, control = torch.zeros(4, 63), torch.zeros(7, 3)
     control[5, 2] = -45.0
     with pytest.warns(
-        UserWarning, match=r"row 5 of the control is -45 \(turning rate\); .* from -2 to 2"
+        UserWarning, match=r"row 5 of the control is -45 \(turning rate\); .* on -2 to 2"
     ):
         generate(walker, past, control)
     control[5, 2] = -2.5  # a tenth of the range, from -2 to 2, is 0.4

@@ -127,7 +127,7 @@ def test_errors_say_what_is_wrong():
         holed[broken][1, 2, 0] = torch.nan
         with pytest.raises(ValueError, match="NaN or infinity"):
             generate(walker, *holed)
-    with pytest.raises(ValueError, match="between 1 and 6 steps"):
+    with pytest.raises(ValueError, match="must be between 1 and 6"):
         generate(walker, past, control, steps=7)
 
 
