@@ -101,7 +101,7 @@ def test_the_words_are_the_librarys_figures():
     errors = outcomes[-1].mended.errors(CLIP.poses[9 : 9 + T_H])
     assert [o.words[:12] for o in outcomes] == ["Round 1 of 2", "Round 2 of 2"]
     assert f"{errors['their mean']:.1f} cm for the mean of 3 repairs" in outcomes[-1].words
-    assert f"one repair {errors['one repair']:.1f} cm" in outcomes[-1].words
+    assert f"{errors['one repair']:.1f} cm for one repair" in outcomes[-1].words
     assert f"{T_H} of {T_H * J} joint positions were missing" in outcomes[-1].words
 
 
