@@ -151,7 +151,7 @@ def test_a_retouched_pose_is_saved_before_anything_is_generated(motion, tmp_path
     hand = back.world_positions()[:, back.names.index("LeftHand")] / 100
     np.testing.assert_allclose(hand, editor.positions[:, HAND], atol=0.02)  # bones are evened out
     assert hand[4, 1] > motion[4, HAND, 1] + 0.17
-    assert ", over an older file: " in receive(editor, do="save", name="retouched.bvh")
+    assert ", which replaced an older file: " in receive(editor, do="save", name="retouched.bvh")
 
 
 @pytest.mark.parametrize(
@@ -159,11 +159,11 @@ def test_a_retouched_pose_is_saved_before_anything_is_generated(motion, tmp_path
     [
         (
             "/elsewhere/walk.bvh",
-            "'/elsewhere/walk.bvh' names a folder. Type a name alone: the file goes beside",
+            "'/elsewhere/walk.bvh' contains a folder. Type only a name: the file goes to",
         ),
-        ("../walk.bvh", "names a folder"),
-        ("~/walk", "names a folder"),
-        (r"C:\walk.bvh", "names a folder"),
+        ("../walk.bvh", "contains a folder"),
+        ("~/walk", "contains a folder"),
+        (r"C:\walk.bvh", "contains a folder"),
         ("my walk.txt", "Not saved: only .bvh can be written, not .txt. Type my walk.bvh."),
         (" ", "Give the file a name."),
         (".bvh", "Give the file a name."),

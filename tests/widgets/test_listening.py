@@ -91,7 +91,7 @@ def test_the_record_says_how_the_bytes_are_to_be_read(listening, maps, moved):
         ),
         (
             dict(attention=np.full((2, 5, 4), 0.25), token_times=np.arange(4.0)),
-            r"got \(2, 5, 4\); of several heads",
+            r"not \(2, 5, 4\); for several heads",
         ),
         (
             dict(attention=np.full((5, 4), np.nan), token_times=np.arange(4.0)),

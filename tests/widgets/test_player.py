@@ -64,7 +64,7 @@ def test_a_position_that_is_not_finite_is_named(motion, bad):
         (np.zeros((5, 17, 3)), "17 joints, the course's skeleton has 21: give `parents`"),
         (np.zeros((0, 21, 3)), "figure 0 has no frames"),
         ([], "no figure given"),
-        ([np.zeros((5, 21, 3)), np.zeros((5, 4, 3))], r"different joints: \[21, 4\]"),
+        ([np.zeros((5, 21, 3)), np.zeros((5, 4, 3))], r"different numbers of joints: \[21, 4\]"),
     ],
 )
 def test_wrong_shapes_are_explained(positions, message):
