@@ -1,6 +1,4 @@
-"""Human-motion diffusion, taken apart in notebooks and put together again.
-
-MoDiff and MoFusion, readable and runnable.
+"""Human-motion diffusion: two papers, MoDiff and MoFusion, as readable code and as a course.
 
     import motiondiff_edu as md
 
@@ -25,8 +23,8 @@ if TYPE_CHECKING:
     from .pretrained.shipped import inbetween, load, reconstruct
     from .widgets.motions import play
 
-# Where each of the names lies, (module, name in it): imported when it is asked for, so that
-# `import motiondiff_edu` takes no longer than `import torch`.
+# Public name -> (module, name in it). A module is imported at the first use of its name, so that
+# `import motiondiff_edu` is not slower than `import torch`.
 _FRONT_DOOR = {
     "Motion": (".motion.motion", "Motion"),
     "read_motion": (".motion.files", "read_motion"),
@@ -48,13 +46,13 @@ __all__ = [
     "reconstruct",
 ]
 
-# What a Motion shows of itself, and the films it is saved as, are brought by the layer that draws.
+# The player of a Motion, and the writers of films and pages, are registered by the widgets.
 registry.shows.announce(f"{__name__}.widgets.motions", "player")
 registry.writers.announce(f"{__name__}.widgets.motions", ".mp4", ".gif", ".html")
 
 
 def __getattr__(name: str) -> object:
-    """One of the names above, imported now."""
+    """Import one of the public names at its first use."""
     if name not in _FRONT_DOOR:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     module, inner = _FRONT_DOOR[name]

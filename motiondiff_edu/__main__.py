@@ -4,12 +4,12 @@ A new verb is one module and one line in VERBS. The module has
     HELP               one line that says what the verb does
     EXAMPLE            one command, without the program's name
     arguments(parser)  adds the verb's own arguments
-    run(chosen)        does it, and returns the exit status
-and imports nothing heavy before `run`. With PASSES_OPTIONS_ON = "JupyterLab" it also takes options
-that are not its own, in `chosen.options`, for the program of that name.
+    run(chosen)        runs it, and returns the exit status
+It imports nothing heavy before `run`. With PASSES_OPTIONS_ON = "JupyterLab" the verb also accepts
+options that are not its own; `chosen.options` holds them for the program of that name.
 
-An error whose class belongs to this project is a message for the person who typed the command, so
-it is printed without a traceback. Any other is a fault of the program, and keeps its traceback.
+An error whose class belongs to this project is a message for the user, so it is printed without a
+traceback. Any other error is a bug of the program, and keeps its traceback.
 """
 
 import argparse
@@ -27,7 +27,7 @@ VERBS = {name: f"_commands.{name}" for name in _commands.VERBS} | {
 
 
 def parser_of(verbs: dict) -> argparse.ArgumentParser:
-    """The parser of the whole command line, each verb with its arguments and an example."""
+    """The parser of the whole command line; each verb has its arguments and an example."""
     parser = argparse.ArgumentParser(
         prog=program(),
         description="Human-motion diffusion: the course, and the library.",

@@ -1,4 +1,4 @@
-"""Files that are there whole or not at all, and digests by which a damaged one is known."""
+"""Writing files completely or not at all, and checksums that detect damage."""
 
 import hashlib
 import os
@@ -10,13 +10,13 @@ from pathlib import Path
 
 @contextmanager
 def replacing(path: str | Path) -> Iterator[Path]:
-    """A name beside `path` to write to; renamed to `path` when all went well, removed when not.
+    """Yield a temporary name beside `path`; it is renamed to `path`, or removed after an error.
 
     with replacing("walk.bvh") as aside: aside.write_text(...)
     """
     path = Path(path)
     path.parent.mkdir(parents=True, exist_ok=True)
-    # a name for each writer, threads included; not tempfile: its files are for their owner alone
+    # a name of its own for each writer, including threads; files of tempfile would be private
     aside = path.with_name(f".{path.name}.{os.getpid()}.{secrets.token_hex(4)}.part")
     try:
         yield aside
@@ -30,7 +30,7 @@ def digest_of_tensors(tensors: Mapping[str, "torch.Tensor"]) -> str:
 
     Safetensors itself checks only its header.
     """
-    # their type is a string because `lab` writes files also where torch cannot be imported
+    # the type is a string, because `lab` also writes files where torch cannot be imported
     digest = hashlib.sha256()
     for name in sorted(tensors):
         digest.update(name.encode() + tensors[name].contiguous().numpy().tobytes())

@@ -1,6 +1,6 @@
 """Cross-modal attention: queries from motion, keys and values from the condition.
 
-Its maps can be watched.
+`watch` collects the attention maps.
 
 weights = softmax(Q K^T / sqrt(d) + bias),   out = weights V
 Source: MoFusion eq. 8-9; MoDiff IV-A (T5-style relative positions).  Notebook: 06
@@ -35,8 +35,10 @@ def attention(
     v: Float[Tensor, "B H M e"],
     bias: Float[Tensor, "#B #H T M"] | None = None,
 ) -> Float[Tensor, "B H T e"]:
-    """weights V, every query's weighted mean of the values.  Source: MoFusion eq. 8-9.   Notebook:
-    06"""
+    """weights V: every query's weighted mean of the values.
+
+    Source: MoFusion eq. 8-9.   Notebook: 06
+    """
     return attention_weights(q, k, bias) @ v
 
 
@@ -45,8 +47,8 @@ def relative_position_bucket(
 ) -> Int[Tensor, "*N"]:
     """T5's bucket of a distance (key time minus query time): exact when near, logarithmic when far.
 
-    Half of the buckets for each direction; in each, half are exact. Beyond `farthest` all share the
-    last one.
+    Each direction has half of the buckets, and half of these are exact. All distances beyond
+    `farthest` share the last bucket.
     Source: MoDiff IV-A names T5.  Notebook: 06
     """
     if bidirectional:
@@ -66,11 +68,9 @@ def relative_position_bucket(
 
 
 class RelativeBias(nn.Module):
-    """One learned number for each head and bucket of time distance, added to the scores.
+    """A learned bias of the scores for each head and bucket of time distance; all layers share it.
 
-    All layers share it.
-
-    The times of queries and keys are in frames and may belong to different modalities.
+    The times of queries and keys are in frames. They can belong to different modalities.
     """
 
     def __init__(self, heads: int, query_times: Int[Tensor, "T"], key_times: Int[Tensor, "M"]):
@@ -88,10 +88,8 @@ def angles_of(
 ) -> Float[Tensor, "T w"]:
     """2 pi f t for width/2 frequencies f between `slowest` and `fastest` Hz, evenly on a log scale.
 
-    Times in seconds.
-
-    Queries and keys turned by them (see `turned`) know how far apart in time they are, and nothing
-    else of time.
+    Times are in seconds. After queries and keys are rotated by these angles (see `turned`), their
+    product depends on the time between them, and on no other time.
     Source: rotary positions (Su and others, 2021), in seconds; MoFusion leaves positions open.
     Notebook: 12
     """
@@ -100,7 +98,7 @@ def angles_of(
 
 
 def turned(x: Float[Tensor, "*B T d"], angles: Float[Tensor, "T w"]) -> Float[Tensor, "*B T d"]:
-    """Turn each pair (x[i], x[i + d/2]) by its angle.
+    """Rotate each pair (x[i], x[i + d/2]) by its angle.
 
     Then q_t . k_u depends on the time between t and u.
 
@@ -112,24 +110,25 @@ def turned(x: Float[Tensor, "*B T d"], angles: Float[Tensor, "T w"]) -> Float[Te
 
 
 class CrossModalAttention(nn.Module):
-    """Multi-head attention: `x` asks, `context` answers; with context = x it is self-attention.
+    """Multi-head attention: queries from `x`, keys and values from `context`.
 
-    Ordinarily the maps are never formed (fused kernel); inside `watch(model)` they are, and kept.
+    With context = x it is self-attention. Usually the maps are never computed (fused kernel);
+    inside `watch(model)` they are computed and kept.
     Source: MoFusion eq. 8-9.  Notebook: 06
     """
 
     def __init__(self, width: int, heads: int, context_width: int | None = None):
         super().__init__()
         if width % heads:
-            raise ValueError(f"width {width} cannot be shared evenly by {heads} heads")
+            raise ValueError(f"width {width} must be a multiple of {heads} heads")
         self.heads = heads
         self.q = nn.Linear(width, width)
         self.kv = nn.Linear(context_width or width, 2 * width)
         self.out = nn.Linear(width, width)
-        self.watcher = None  # a list while somebody watches
+        self.watcher = None  # a list inside `watch`
 
     def split(self, x: Float[Tensor, "B T W"]) -> Float[Tensor, "B H T d"]:
-        """Cut the channels into heads: head h owns channels h*d ... (h+1)*d - 1."""
+        """Split the channels into heads: head h has channels h*d ... (h+1)*d - 1."""
         return x.unflatten(-1, (self.heads, -1)).transpose(1, 2)
 
     def forward(
@@ -141,7 +140,7 @@ class CrossModalAttention(nn.Module):
     ) -> Float[Tensor, "B T W"]:
         """`bias` is added to the scores.
 
-        `turns` are the angles of `turned` for queries and keys, if there are any.
+        `turns` are the angles of `turned` for queries and keys, or None.
         """
         q = self.split(self.q(x))
         k, v = (self.split(part) for part in self.kv(context).chunk(2, dim=-1))
@@ -157,9 +156,8 @@ class CrossModalAttention(nn.Module):
 
 
 class Block(nn.Module):
-    """A transformer block, normalised first.
-
-    Self-attention, then (with_context) cross-attention, then feed-forward.
+    """A pre-norm transformer block: self-attention, then cross-attention (with_context), then
+    feed-forward.
 
     Source: MoDiff III-F; MoFusion 3.3.  Notebook: 06
     """
@@ -193,11 +191,10 @@ class Block(nn.Module):
 
 @contextmanager
 def watch(model: nn.Module) -> Iterator[dict[str, list[Float[Tensor, "B H T M"]]]]:
-    """Collect the attention maps of every layer while the block runs.
+    """Collect the attention maps of every layer inside the `with` block.
 
-    The answer is {layer name: [one map per call]}.
-
-    Outside of it nothing is computed or kept.  Notebook: 06
+    It yields {layer name: [one map per call]}. Outside the block no map is computed or kept.
+    Notebook: 06
     """
     layers = {name: m for name, m in model.named_modules() if isinstance(m, CrossModalAttention)}
     maps = {name: [] for name in layers}

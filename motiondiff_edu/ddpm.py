@@ -1,10 +1,11 @@
 """Denoising diffusion (MoDiff, III-B and III-C).
 
-Noise is added by a rule, and taken away by a learnt one, step by step (DDPM) or in leaps (DDIM).
+The forward process adds noise by a fixed rule. A learned rule removes it again, step by step (DDPM)
+or in leaps (DDIM).
 
-Steps are numbered s = 1..S, and every table has S + 1 entries, so that `alpha_bar[s]` is the
-paper's (and [0] is 1). A *denoiser* is any callable `denoise(x_s, s) -> eps_hat`, with s of shape
-(B,).
+Steps are numbered s = 1..S, and every table has S + 1 entries, so that `alpha_bar[s]` is that of
+the paper, and alpha_bar[0] is 1. A *denoiser* is any callable `denoise(x_s, s) -> eps_hat`, with s
+of shape (B,).
 """
 
 import math
@@ -41,7 +42,7 @@ class Schedule:
 
     @property
     def signal_left(self) -> float:
-        """sqrt(alpha_bar[S]): what is left of the clean sample's amplitude after the last step."""
+        """sqrt(alpha_bar[S]): the fraction of the clean sample's amplitude after the last step."""
         return math.sqrt(float(self.alpha_bar[-1]))
 
 
@@ -50,8 +51,8 @@ def make_schedule(beta: Float[Tensor, "S"], name: str = "schedule") -> Schedule:
 
     alpha_s = 1 - beta_s, alpha_bar_s = alpha_1 * ... * alpha_s.
 
-    Raises ValueError unless every beta lies strictly between 0 and 1; warns where more than 10 % of
-    the signal is left.
+    Raises ValueError unless every beta lies strictly between 0 and 1. Warns if more than 10 % of
+    the signal is left after the last step.
     Source: MoDiff eq. 1-2. Notebook: 02.
     """
     beta = torch.cat([torch.zeros(1, dtype=torch.float64), beta.double()])
@@ -60,13 +61,13 @@ def make_schedule(beta: Float[Tensor, "S"], name: str = "schedule") -> Schedule:
         where = f"beta_{bad[0]} = {float(beta[bad[0]]):g}" if bad else "there is none"
         raise ValueError(
             f"{name}: every beta must lie between 0 and 1, but {where}; "
-            "take more steps or smaller betas"
+            "use more steps or smaller betas"
         )
     schedule = Schedule(beta, 1 - beta, torch.cumprod(1 - beta, 0), name)
     if schedule.signal_left > 0.1:
         what = (
             "Sampling starts from pure noise, which this schedule never reaches: "
-            "take more steps or larger betas."
+            "use more steps or larger betas."
         )
         warnings.warn(f"{schedule_card(schedule)} {what}", stacklevel=3)
     return schedule
@@ -84,8 +85,10 @@ def linear_schedule(S: int = 100, beta_1: float = 1e-4, beta_S: float = 0.1) -> 
 
 
 def scaled_linear_schedule(S: int = 100) -> Schedule:
-    """DDPM's 1e-4 to 0.02 over 1000 steps, scaled by 1000 / S so that fewer steps remove as much.
-    Notebook: 02."""
+    """DDPM's 1e-4 to 0.02 over 1000 steps, scaled by 1000 / S for fewer steps.
+
+    Notebook: 02.
+    """
     return make_schedule(torch.linspace(0.1 / S, 20 / S, S, dtype=torch.float64), "scaled linear")
 
 
@@ -97,8 +100,10 @@ def cosine_schedule(S: int = 1000, cap: float = 0.999) -> Schedule:
 
 
 def schedule_card(schedule: Schedule) -> str:
-    """Say in one line what a schedule leaves of the signal at its last step: sqrt(alpha_bar[S]).
-    Notebook: 02."""
+    """A line of text: the signal that a schedule leaves at its last step, sqrt(alpha_bar[S]).
+
+    Notebook: 02.
+    """
     left = f"{100 * schedule.signal_left:.2g} % of the signal's amplitude is left."
     return f"{schedule.name}, S = {schedule.S}: after the last step {left}"
 
@@ -113,8 +118,8 @@ def at(table: Table, s: Steps, x: X, first: int = 0) -> Tensor:
     low, high = (s, s) if isinstance(s, int) else _range(s, first)
     if not first <= low <= high < len(table):
         raise IndexError(
-            f"s = {low if low < first else high}: steps go from {first} to {len(table) - 1} here, "
-            "and 0 is clean data"
+            f"s = {low if low < first else high}: steps must be {first} to {len(table) - 1} here; "
+            "0 is clean data"
         )
     if isinstance(s, int):
         return table[s].to(x)
@@ -122,10 +127,7 @@ def at(table: Table, s: Steps, x: X, first: int = 0) -> Tensor:
 
 
 def _range(s: Int[Tensor, "B"], first: int) -> tuple[int, int]:
-    """The smallest and the largest of some steps.
-
-    For no steps, and for a tensor without values: `first` twice.
-    """
+    """The smallest and the largest step; `first` twice for no steps or a tensor without values."""
     if not s.numel() or s.is_meta:
         return first, first
     return int(s.min()), int(s.max())
@@ -136,7 +138,7 @@ def draw(
 ) -> Float[Tensor, "*shape"]:
     """Standard normal noise in the shape of `like`.
 
-    Drawn where the generator lives, so that seeds travel.
+    It is drawn on the generator's device, so that a seed gives the same noise on every device.
     """
     device = generator.device if generator else like.device
     return torch.randn(like.shape, generator=generator, dtype=like.dtype, device=device).to(
@@ -182,10 +184,10 @@ def q_posterior(x0: X, x_s: X, s: Steps, schedule: Schedule) -> tuple[X, Tensor]
     return mean, at(posterior_variance(schedule), s, x_s)
 
 
-# ---- reverse: taking it away ---------------------------------------------------------------------
+# ---- reverse: removing noise ---------------------------------------------------------------------
 @dataclass(frozen=True, eq=False)
 class Step:
-    """One moment of sampling: x_s, and what the denoiser says about it.
+    """One step of sampling: x_s, and the denoiser's x0_hat and eps_hat for it.
 
     At s = 0, x_s is the sample itself.
     """
@@ -204,8 +206,10 @@ def p_variance(schedule: Schedule, variance: str = "beta") -> Table:
 
 
 def p_mean(x_s: X, s: Steps, eps_hat: X, schedule: Schedule) -> X:
-    """mean = (x_s - beta_s / sqrt(1 - alpha_bar_s) eps_hat) / sqrt(alpha_s). Source: MoDiff eq. 9.
-    Notebook: 04"""
+    """mean = (x_s - beta_s / sqrt(1 - alpha_bar_s) eps_hat) / sqrt(alpha_s).
+
+    Source: MoDiff eq. 9. Notebook: 04
+    """
     share = at(schedule.beta, s, x_s, first=1) / at(1 - schedule.alpha_bar, s, x_s).sqrt()
     return (x_s - share * eps_hat) / at(schedule.alpha, s, x_s).sqrt()
 
@@ -230,9 +234,9 @@ def sample_steps(
     variance: str = "beta",
     clip: float | None = None,
 ) -> Iterator[Step]:
-    """Walk from x_S back to x0, yielding S + 1 records, s = S..0; `start` is x_S, or its shape.
+    """Sample from x_S back to x0, yielding S + 1 records, s = S..0; `start` is x_S, or its shape.
 
-    noise[s - 1], when given, is the noise of step s; clip bounds x0_hat to [-clip, clip].
+    noise[s - 1], if given, is the noise of step s. `clip` clamps x0_hat to [-clip, clip].
     Source: MoDiff Alg. 2. Notebook: 03.
     """
     x_s = starting_noise(start, generator)
@@ -248,7 +252,7 @@ def sample_steps(
 def _clean_guess(
     x_s: Tensor, s: int, eps_hat: Tensor, schedule: Schedule, clip: float | None
 ) -> tuple[Tensor, Tensor]:
-    """x0_hat, bounded if asked, and the eps_hat that goes with it."""
+    """x0_hat, clamped to +-clip if clip is given, and the eps_hat that belongs to it."""
     signal = at(schedule.alpha_bar, s, x_s).sqrt()
     sigma = at(1 - schedule.alpha_bar, s, x_s).sqrt()
     x0_hat = (x_s - sigma * eps_hat) / signal
@@ -266,21 +270,21 @@ def timesteps(S: int, steps: int) -> list[int]:
     Raises ValueError unless 1 <= steps <= S.  Notebook: 03
     """
     if not 1 <= steps <= S:
-        raise ValueError(f"can take between 1 and {S} steps, not {steps}")
+        raise ValueError(f"the number of steps must be between 1 and {S}, not {steps}")
     return [S - (i * S) // steps for i in range(steps)]
 
 
 def falling(steps: int | Sequence[int], S: int) -> list[int]:
     """The steps that a sampler visits: `timesteps(S, steps)`, or those of a list.
 
-    Raises ValueError for steps that do not fall, or lie outside 1..S.
+    Raises ValueError for steps that do not decrease, or are outside 1..S.
     """
     if isinstance(steps, int):
         return timesteps(S, steps)
     visited = list(steps)
     falls = visited == sorted(set(visited), reverse=True)
     if not visited or not falls or not 1 <= visited[-1] <= visited[0] <= S:
-        raise ValueError(f"steps must fall, from {S} at most to 1 at least; these are {visited}")
+        raise ValueError(f"steps must decrease and be within {S} to 1; these are {visited}")
     return visited
 
 
@@ -291,7 +295,7 @@ def ddim_sigma(s: int, after: int, schedule: Schedule, eta: float) -> float:
     Raises ValueError for an eta outside 0..1.
     """
     if not 0 <= eta <= 1:
-        raise ValueError(f"eta must lie between 0 (no noise) and 1 (DDPM's), not {eta}")
+        raise ValueError(f"eta must be between 0 (no noise) and 1 (as DDPM), not {eta}")
     now, then = float(schedule.alpha_bar[s]), float(schedule.alpha_bar[after])
     return eta * math.sqrt((1 - then) / (1 - now) * (1 - now / then))
 
@@ -329,10 +333,10 @@ def ddim_steps(
 ) -> Iterator[Step]:
     """Leap from x_S to x0 in a few `ddim_step`s, and yield a record of each, and of s = 0.
 
-    With eta = 0 no noise is drawn. Few steps with eta = 0 give samples that lie too close together:
-    DDIM is not DDPM, only faster. noise[s - 1], when given, is the noise of step s; clip bounds
+    With eta = 0 no noise is drawn. Few steps with eta = 0 give samples that vary too little, so
+    DDIM is not just a faster DDPM. noise[s - 1], if given, is the noise of step s. `clip` clamps
     x0_hat.
-    Raises ValueError for steps that do not fall, or lie outside 1..S, and for an eta outside 0..1.
+    Raises ValueError for steps that do not decrease or are outside 1..S, and for eta outside 0..1.
     Notebook: 03
     """
     visited = falling(steps, schedule.S)
@@ -348,7 +352,7 @@ def ddim_steps(
 
 
 def starting_noise(start: Tensor | tuple[int, ...], generator: torch.Generator | None) -> Tensor:
-    """x_S itself, or drawn in that shape where the generator lives."""
+    """x_S itself, or noise of that shape on the generator's device."""
     if isinstance(start, Tensor):
         return start
     home = generator.device if generator else None
@@ -357,9 +361,9 @@ def starting_noise(start: Tensor | tuple[int, ...], generator: torch.Generator |
 
 # ---- the objective -------------------------------------------------------------------------------
 def squared_error(error: X, s: Int[Tensor, "B"]) -> Float[Tensor, ""]:
-    """Mean of error^2, alike for all entries and all steps s.
+    """Mean of error^2, with the same weight for all entries and all steps s.
 
-    It is the papers' loss (Algorithm 1 forgets the square).
+    It is the loss of the papers (Algorithm 1 omits the square).
     Source: MoDiff eq. 10.  Notebook: 07.
     """
     return error.square().mean()
@@ -377,20 +381,20 @@ def simple_loss(
 
 
 def dropped_weight(schedule: Schedule) -> Table:
-    """What eq. 10 leaves out before ||eps - eps_hat||^2.
+    """The weight of ||eps - eps_hat||^2 that eq. 10 leaves out.
 
-    The weight is 1 / (2 beta_s) * beta_s^2 / (alpha_s (1 - alpha_bar_s)).
+    It is 1 / (2 beta_s) * beta_s^2 / (alpha_s (1 - alpha_bar_s)).
 
     Source: MoDiff eq. 8-10. Notebook: 04.
     """
     return (schedule.beta / (2 * schedule.alpha * (1 - schedule.alpha_bar))).nan_to_num(0)
 
 
-# ---- the variational bound, in nats, one number for each sample of the batch ---------------------
+# ---- the variational bound, in nats, one value for each sample of the batch ----------------------
 def gaussian_kl(mean_1: X, variance_1: Tensor, mean_2: X, variance_2: Tensor) -> Float[Tensor, "B"]:
     """KL(N(mean_1, variance_1 I) || N(mean_2, variance_2 I)).
 
-    The sum over all entries but the batch.
+    It is summed over all entries of a sample.
     Notebook: 02.
     """
     each = (
@@ -400,7 +404,7 @@ def gaussian_kl(mean_1: X, variance_1: Tensor, mean_2: X, variance_2: Tensor) ->
 
 
 def prior_kl(x0: X, schedule: Schedule) -> Float[Tensor, "B"]:
-    """KL(q(x_S | x0) || N(0, I)): nothing to learn here. Source: MoDiff eq. 5."""
+    """KL(q(x_S | x0) || N(0, I)), which has no parameters to learn. Source: MoDiff eq. 5."""
     alpha_bar, one = at(schedule.alpha_bar, schedule.S, x0), torch.ones((), dtype=x0.dtype)
     return gaussian_kl(alpha_bar.sqrt() * x0, 1 - alpha_bar, torch.zeros_like(x0), one)
 

@@ -1,11 +1,11 @@
-"""Diffusion dropout: sometimes the past is noised like the future, so that the network must use the
-control.
+"""Diffusion dropout: in some samples the past is noised like the future, so that the network must
+use the control.
 
     q(x_s | x) = N(sqrt(alpha_bar_s) x, (1 - alpha_bar_s) I),
     with probability p_d for each sample of the batch
 
-It is not nn.Dropout: nothing is set to zero, and nothing is rescaled. Two rivals that set to zero
-are here as well: `frame_dropout` and `zeroing`.
+It is not nn.Dropout: nothing is set to zero, and nothing is rescaled. Two alternatives here do set
+to zero: `frame_dropout` and `zeroing`.
 Source: MoDiff III-D, eq. 12, Alg. 1.  Notebook: 09
 """
 
@@ -19,7 +19,7 @@ from torch import Tensor
 from .ddpm import Schedule, draw, q_sample
 
 P_D = (0.0, 0.05, 0.10, 0.15, 0.20, 0.25)  # MoDiff IV-A: the rates, one after the other
-START = 0.5  # share of the training before the first rise: 500 of the paper's 1000 epochs
+START = 0.5  # fraction of the training before the first rise: 500 of the paper's 1000 epochs
 
 Past = Float[Tensor, "B T_h D"]
 
@@ -33,12 +33,12 @@ def diffusion_dropout(
     *,
     shared: bool = True,
 ) -> Past:
-    """Noise the past of some samples: each with probability `rate`, to its step s.
+    """Noise the past of each sample to its step s, with probability `rate`.
 
-    `s` is the target's step (Algorithm 1); with shared=False each past gets its own. The noise is
-    the past's own.
-    Raises ValueError for a rate outside 0..1, and unless past is (B, T_h, D) and s (B,), within
-    0..S.
+    `s` is the step of the target (Algorithm 1); with shared=False each past draws its own step. The
+    noise of the past is independent of the target's.
+    Raises ValueError for a rate outside 0..1, for a past that is not (B, T_h, D), and for steps
+    that are not (B,) within 0..S.
     Source: MoDiff eq. 12, Alg. 1; shared=False is ours.  Notebook: 09
     """
     if past.ndim != 3 or s.shape != past.shape[:1] or (s < 0).any() or (s > schedule.S).any():
@@ -53,45 +53,44 @@ def diffusion_dropout(
 
 
 def frame_dropout(past: Past, rate: float, generator: torch.Generator | None = None) -> Past:
-    """MoGlow's rival: each frame of each past is set to zero (the mean pose) with probability
-    `rate`."""
+    """MoGlow's dropout: each frame of a past becomes 0 (the mean pose) with probability `rate`."""
     hit = chosen(past.shape[0] * past.shape[1], rate, generator).to(past.device)
     return past.masked_fill(hit.view(*past.shape[:2], 1), 0.0)
 
 
 def zeroing(past: Past, rate: float, generator: torch.Generator | None = None) -> Past:
-    """The plain rival: the whole past of a sample is set to zero with probability `rate`.
-    Notebook: 09"""
+    """The simplest alternative: the whole past of a sample becomes 0 with probability `rate`.
+
+    Notebook: 09
+    """
     return past.masked_fill(chosen(len(past), rate, generator).to(past.device)[:, None, None], 0.0)
 
 
 def chosen(n: int, rate: float, generator: torch.Generator | None = None) -> Bool[Tensor, "n"]:
-    """Which of n are hit, each with probability `rate`."""
+    """True for each of n samples with probability `rate`."""
     if not 0 <= rate <= 1:
-        raise ValueError(f"a rate lies between 0 and 1, not {rate:g}")
+        raise ValueError(f"a rate must be between 0 and 1, not {rate:g}")
     return torch.rand(n, generator=generator) < rate
 
 
 @dataclass
 class Dropout:
-    """Diffusion dropout for one training.
+    """Diffusion dropout for one training run: `modiff.training_loss(..., dropout=dropout)`.
 
-    `modiff.training_loss` takes it as dropout(past, s, generator).
-
-    Its rate rises with `done`, the share of the training that is behind us, 0 to 1. A training
-    loop sets it before each step: `train_steps(..., before=dropout.now)`.
-    Raises RuntimeError when it is called before `done` is set.
+    Its rate rises with `done`, the completed fraction of the training, 0 to 1. A training loop sets
+    it before each step: `train_steps(..., before=dropout.now)`.
+    Raises RuntimeError if it is called before `done` is set.
     Source: MoDiff Alg. 1, III-D (the scheduler P_d).  Notebook: 09
     """
 
     schedule: Schedule
-    rate: Callable[[float], float]  # of what is done: `dropout_rate`
-    steps: int  # of the whole training
+    rate: Callable[[float], float]  # rate(done), such as `dropout_rate`
+    steps: int  # of the whole training run
     shared: bool = True
     done: float | None = None
 
     def now(self, step: int) -> None:
-        """Set `done`: so many of the steps are behind us."""
+        """Set `done` for a number of completed steps."""
         self.done = step / self.steps
 
     def __call__(
@@ -99,7 +98,7 @@ class Dropout:
     ) -> Past:
         if self.done is None:
             raise RuntimeError(
-                "diffusion dropout does not know how far the training is, and would never drop: "
+                "diffusion dropout does not know the progress of the training: "
                 "pass train_steps(..., before=dropout.now), or call dropout.now(step) yourself"
             )
         rate = self.rate(self.done)
@@ -109,15 +108,15 @@ class Dropout:
 def dropout_rate(rates: tuple[float, ...] = P_D, start: float = START) -> Callable[[float], float]:
     """The schedule P_d for a training of any length: `rate(done)`, where `done` goes from 0 to 1.
 
-    The rate is 0 until `start`, then each of the rates for an equal share of what is left. A first
-    rate of 0 is the part before `start` (in the paper: .05 from epoch 500 on, .25 from 900 to the
-    end).
-    Raises ValueError unless the rates lie in 0..1 and start in 0..1.  Source: MoDiff III-D, IV-A.
+    The rate is 0 until `start`. The rest of the training is divided equally among the rates; a
+    first rate of 0 stands for the part before `start`. (In the paper: .05 from epoch 500 on, .25
+    from 900 to the end.)
+    Raises ValueError unless the rates and start are in 0..1.  Source: MoDiff III-D, IV-A.
     Notebook: 09
     """
     risen = rates[1:] if len(rates) > 1 and rates[0] == 0 else rates
     if not risen or not all(0 <= rate <= 1 for rate in rates) or not 0 <= start <= 1:
-        raise ValueError(f"rates and start lie between 0 and 1, not {rates} and {start:g}")
+        raise ValueError(f"rates and start must be between 0 and 1, not {rates} and {start:g}")
 
     def rate(done: float) -> float:
         if done < start or start == 1:

@@ -1,9 +1,7 @@
-"""The exact denoiser of a known distribution.
+"""The exact denoiser of a known distribution: sampling without training, and a right answer.
 
-Sampling with nothing trained, and a right answer to compare with.
-
-Adding Gaussian noise to a Gaussian mixture gives a Gaussian mixture, so the density of x_s and the
-mean of x0 given x_s can be written down. A finite data set is a mixture whose parts have no width.
+A Gaussian mixture plus Gaussian noise is again a Gaussian mixture. So the density of x_s and the
+mean of x0 given x_s have formulas. A finite data set is a mixture whose parts have no width.
 """
 
 from collections.abc import Callable
@@ -20,7 +18,7 @@ from .ddpm import Denoiser, Schedule, at
 class Mixture:
     """A mixture of K Gaussians in D dimensions, kept in float64.
 
-    Covariances are held by their axes and variances.
+    Covariances are stored as their axes and variances.
     """
 
     weights: Float[Tensor, "K"]
@@ -32,7 +30,7 @@ class Mixture:
         return self.weights @ self.means
 
     def covariance(self) -> Float[Tensor, "D D"]:
-        """Spread inside the parts plus spread between their means."""
+        """The covariance within the parts plus the covariance of their means."""
         inside = torch.einsum(
             "k,kia,ka,kja->ij", self.weights, self.axes, self.variances, self.axes
         )
@@ -45,7 +43,7 @@ def mixture(
 ) -> Mixture:
     """Make a mixture from its weights (scaled to sum to 1), means and covariance matrices.
 
-    Raises ValueError for a weight that is not positive or a matrix that is no covariance.
+    Raises ValueError for a weight that is not positive or a matrix that is not a covariance.
     """
     variances, axes = torch.linalg.eigh(covariances.double())
     if (weights <= 0).any() or (variances < -1e-9).any():
@@ -59,16 +57,16 @@ def mixture(
 def sample_mixture(
     given: Mixture, n: int, generator: torch.Generator | None = None
 ) -> Float[Tensor, "n D"]:
-    """Draw n points: first the part, then a point of it."""
+    """Draw n points: for each, first a part and then a point of it."""
     k = torch.multinomial(given.weights, n, replacement=True, generator=generator)
     z = torch.randn(n, given.means.shape[1], generator=generator, dtype=torch.float64)
     return given.means[k] + torch.einsum("nij,nj->ni", given.axes[k], given.variances[k].sqrt() * z)
 
 
 def noised(given: Mixture, s: int, schedule: Schedule) -> Mixture:
-    """The mixture that q(x_s) is.
+    """The mixture q(x_s).
 
-    Means are times sqrt(alpha_bar_s), variances alpha_bar_s var + 1 - alpha_bar_s.
+    Means become sqrt(alpha_bar_s) mean, variances alpha_bar_s var + 1 - alpha_bar_s.
     """
     alpha_bar = schedule.alpha_bar[s]
     return Mixture(
@@ -92,7 +90,7 @@ def _on(device: torch.device, given: Mixture) -> Mixture:
 
 
 def along_axes(given: Mixture, off: Float[Tensor, "B K D"]) -> Float[Tensor, "B K D"]:
-    """Coordinates of each offset along the axes of its part, where a covariance is diagonal."""
+    """Coordinates of each offset along the axes in which its part has a diagonal covariance."""
     return torch.einsum("kij,bki->bkj", given.axes, off)
 
 
@@ -106,10 +104,10 @@ def part_log_densities(
 def posterior_mean(
     given: Mixture, x_s: Float[Tensor, "B D"], s: Int[Tensor, "B"], schedule: Schedule
 ) -> Float[Tensor, "B D"]:
-    """E[x0 | x_s] of a mixture: each part's own answer, weighed by the share it has in q(x_s).
+    """E[x0 | x_s] of a mixture: the parts' means, weighted by their probabilities given x_s.
 
-    One part: m + a C (a^2 C + (1 - a^2) I)^-1 (x_s - a m), with a = sqrt(alpha_bar_s). Notebook:
-    03.
+    For one part it is m + a C (a^2 C + (1 - a^2) I)^-1 (x_s - a m), with a = sqrt(alpha_bar_s).
+    Notebook: 03.
     """
     given, x = _on(x_s.device, given), x_s.double()[:, None]
     alpha_bar = at(schedule.alpha_bar, s, x)
@@ -123,14 +121,14 @@ def posterior_mean(
 
 
 def conditional(given: Mixture, values: Float[Tensor, "D"], known: Bool[Tensor, "D"]) -> Mixture:
-    """The unknown entries of a mixture when the known ones have these values: a mixture again.
+    """The distribution of the unknown entries given the values of the known ones: again a mixture.
 
-    Part k becomes N(m_u + G (x_k - m_k), C_uu - G C_ku) with G = C_uk C_kk^-1, and weighs w_k
-    N(x_k; m_k, C_kk).
-    Raises ValueError when nothing is known, or everything.  Notebook: 15
+    Part k becomes N(m_u + G (x_k - m_k), C_uu - G C_ku) with G = C_uk C_kk^-1, and its weight is
+    proportional to w_k N(x_k; m_k, C_kk).
+    Raises ValueError if nothing or everything is known.  Notebook: 15
     """
     if not known.any() or known.all():
-        raise ValueError("something must be known, and something not")
+        raise ValueError("at least one entry must be known, and at least one unknown")
     covariances = torch.einsum("kia,ka,kja->kij", given.axes, given.variances, given.axes)
     inside, across = covariances[:, known][:, :, known], covariances[:, ~known][:, :, known]
     gain = torch.linalg.solve(inside, across.mT).mT
@@ -146,9 +144,7 @@ def conditional(given: Mixture, values: Float[Tensor, "D"], known: Bool[Tensor, 
 def dataset_mean(
     data: Float[Tensor, "N D"], x_s: Float[Tensor, "B D"], s: Int[Tensor, "B"], schedule: Schedule
 ) -> Float[Tensor, "B D"]:
-    """E[x0 | x_s] when x0 is one of N known samples.
-
-    It is their mean, weighed by who could have become x_s.
+    """E[x0 | x_s] when x0 is one of N known samples: their mean, weighted by p(x_n | x_s).
 
     weights = softmax(-||x_s - a x_n||^2 / (2 (1 - a^2))), with a = sqrt(alpha_bar_s). Notebook: 03.
     """
@@ -159,9 +155,9 @@ def dataset_mean(
 
 
 def exact_denoiser(given: Mixture, schedule: Schedule) -> Denoiser:
-    """The best denoiser there is for a mixture, eps_hat = E[eps | x_s].
+    """The optimal denoiser for a mixture, eps_hat = E[eps | x_s].
 
-    x_s has D entries a sample, in any shape.
+    x_s has D entries per sample, in any shape.
 
     Notebook: 03.
     """
@@ -169,15 +165,17 @@ def exact_denoiser(given: Mixture, schedule: Schedule) -> Denoiser:
 
 
 def dataset_denoiser(data: Float[Tensor, "N *shape"], schedule: Schedule) -> Denoiser:
-    """The best denoiser there is for a finite data set: it can only give back what it holds.
-    Notebook: 03."""
+    """The optimal denoiser for a finite data set; it can only reproduce its samples.
+
+    Notebook: 03.
+    """
     return _denoiser(lambda x_s, s: dataset_mean(data.flatten(1), x_s, s, schedule), schedule)
 
 
 def _denoiser(mean_of_x0: Callable[[Tensor, Tensor], Tensor], schedule: Schedule) -> Denoiser:
-    """eps_hat = (x_s - a E[x0 | x_s]) / sqrt(1 - a^2).
+    """eps_hat = (x_s - a E[x0 | x_s]) / sqrt(1 - a^2), computed in float64.
 
-    It is float64 inside, and has the caller's shape and dtype outside.
+    The result has the caller's shape and dtype.
     """
 
     def denoise(x_s: Tensor, s: Tensor) -> Tensor:

@@ -1,14 +1,14 @@
-"""Some entries of a motion are given, the others are to be found.
+"""In-betweening: some entries of a motion are given, and a trained denoiser generates the others.
 
-Given may be seeds, keyframes, parts of the body.
+A seed, keyframes or a part of the body can be given.
 
     at every step s:  x_s = known ? noised snapshot of the given : x_s
-                      then one step of sampling as ever
+                      then one normal step of sampling
 
-at the end the given entries are put back as they were. A trained denoiser is enough: nothing is
-trained for it. Masking alone is not the conditional distribution (notebook 15): `resampled` goes
-there and back at every step. Nor does a trained network's guess agree with what is given: hand over
-a denoiser that does (`beyond/guidance.py`). In metres: `editing.inbetween.inbetween`.
+At the end the given entries are restored exactly. No extra training is needed. But masking alone
+does not sample the conditional distribution (notebook 15): `resampled` goes there and back at every
+step. A trained network's guess can also disagree with the given entries: pass a denoiser that
+respects them (`beyond/guidance.py`). `editing.inbetween.inbetween` does all this in metres.
 Source: MoFusion 4.4; resampling after RePaint (Lugmayr and others, 2022).  Notebook: 15
 """
 
@@ -38,24 +38,24 @@ def inpaint_steps(
     eta: float = 1.0,
     generator: torch.Generator | None = None,
 ) -> Iterator[Step]:
-    """DDIM from `start` (x_S) on which the known entries of x_s are given's, noised.
+    """DDIM from `start` (x_S); noised snapshots of `given` replace the known entries of each x_s.
 
-    Yields a `Step` for each call of the denoiser.
+    Yields a `Step` for each call of the denoiser; the last one has the given entries themselves.
 
-    `given` counts where `known` is True. Fresh noise is drawn for the snapshots at every step, and
-    none where nothing is known: then the same generator gives the same sample as `ddim_steps`.
+    `given` is used where `known` is True. The snapshots get new noise at every step. If nothing is
+    known, no such noise is drawn, and the same generator gives the same sample as `ddim_steps`.
     `steps` is their number, or a list of the steps to visit; where the list rises, noise is added
-    (`resampled`). The last record has the given entries themselves.
+    (`resampled`).
     Raises ValueError for steps outside 1..S.  Source: MoFusion 4.4; RePaint's resampling.
     Notebook: 15
     """
     some, x = bool(known.any()), start
     visited = timesteps(schedule.S, steps) if isinstance(steps, int) else list(steps)
     if not visited or not 1 <= min(visited) <= max(visited) <= schedule.S:
-        raise ValueError(f"steps must lie between 1 and {schedule.S}; these are {visited}")
-    if not some:  # what is made has nothing to agree with: no way back is needed
+        raise ValueError(f"steps must be between 1 and {schedule.S}; these are {visited}")
+    if not some:  # no given entries, so resampling is not needed
         visited = sorted(set(visited), reverse=True)
-    given = torch.where(known, given, torch.zeros_like(given))  # what is not known may be NaN
+    given = torch.where(known, given, torch.zeros_like(given))  # unknown entries can be NaN
     for s, after in pairwise([*visited, 0]):
         if after > s:
             x = _noised(x, s, after, schedule, generator)
@@ -73,19 +73,19 @@ def inpaint_steps(
 
 
 def resampled(visited: Sequence[int], R: int) -> list[int]:
-    """Make every leap but the last R times: there, back by as much noise, and there.
+    """Repeat every leap except for the last R times: forth, back by adding noise, and forth again.
 
-    So unknown entries can come to agree with known ones. resampled([30, 20, 10], 2) = [30, 20, 30,
-    20, 10, 20, 10].
+    This lets unknown entries adapt to known ones. resampled([30, 20, 10], 2) = [30, 20, 30, 20, 10,
+    20, 10].
     Raises ValueError for R under 1.  Source: RePaint (Lugmayr and others, 2022).
     """
     if R < 1:
-        raise ValueError(f"every step is made once at least, not R = {R}")
+        raise ValueError(f"R must be at least 1, not {R}")
     leaps = [(s, after) * R for s, after in pairwise(visited)]
     return [s for leap in leaps for s in leap[:-1]] + list(visited[-1:])
 
 
 def _noised(x: X, now: int, then: int, schedule: Schedule, generator: torch.Generator | None) -> X:
-    """The forward process from step `now` to a later one: as much noise as the leap took away."""
+    """The forward process from step `now` to a later one; it adds the noise that a leap removed."""
     left = float(schedule.alpha_bar[then]) / float(schedule.alpha_bar[now])
     return math.sqrt(left) * x + math.sqrt(1 - left) * draw(x, generator)

@@ -1,6 +1,4 @@
-"""Kinematic losses: what is asked of the clean motion that the network has in mind.
-
-Here is also how much is asked at which step.
+"""Kinematic losses of the clean motion x0_hat, and their weight over diffusion steps.
 
     L = L_da + lambda(s) L_k,   L_k = w_s L_s + w_a L_a + w_m L_m (+ w_f L_f)
 L_da is the squared error of the network's target. L_k is computed from x0_hat, in metres.
@@ -19,16 +17,17 @@ from .prediction import target_of, to_x0
 
 Motion = Float[Tensor, "B T D"]
 Bones = tuple[tuple[int, int], ...]
-SNR_LIMIT = 5.0  # of the signal-to-noise weight: without a limit it is infinite at s = 0
+SNR_LIMIT = 5.0  # limit of the signal-to-noise weight, which is otherwise infinite at s = 0
 
 
 @dataclass(frozen=True)
 class KinematicWeights:
-    """How much each loss counts. No defaults: MoFusion publishes none.
+    """The weight of each loss. No defaults: MoFusion publishes none.
 
-    `skeleton` is per m^2 (a bone that varies by 1 cm has L_s = 1e-4 m^2), `asymmetry` and `slide`
-    per metre, `motion` per squared standard deviation.  Source: MoFusion 3.2 (lambda_a, lambda_m;
-    the others are ours)
+    skeleton          per m^2; a bone that varies by 1 cm has L_s = 1e-4 m^2
+    asymmetry, slide  per metre
+    motion            per squared standard deviation
+    Source: MoFusion 3.2 (lambda_a, lambda_m; the others are ours)
     """
 
     skeleton: float
@@ -38,7 +37,7 @@ class KinematicWeights:
     over_time: str  # lambda(s): a name of OVER_TIME
 
     def total(self, parts: dict[str, Float[Tensor, "B"]]) -> Float[Tensor, "B"]:
-        """L_k, from `kinematic_parts`.
+        """L_k from the result of `kinematic_parts`.
 
         Source: MoFusion 3.2
         """
@@ -47,10 +46,12 @@ class KinematicWeights:
 
 @dataclass(frozen=True, eq=False)
 class Body:
-    """What the losses must know of a figure.
+    """The facts about a figure that the losses need.
 
-    `to_positions`: from the network's (standardised) features to joints in metres.
-    `bones`: (parent, child) joints.  `pairs`: (left, right) numbers of bones.  `toes`: two joints.
+    to_positions  from the network's (standardised) features to joints in metres
+    bones         (parent, child) joints
+    pairs         (left, right) indices of bones
+    toes          two joints
     """
 
     to_positions: Callable[[Motion], Float[Tensor, "B T J 3"]]
@@ -71,11 +72,12 @@ def training_loss(
 ) -> Float[Tensor, ""]:
     """MoFusion's whole loss, for one batch (x0, context): L_da + lambda_k(s) L_k.
 
-    `context` is what the model takes beside x_s and s: `mofusion.Music`, or None.
-    `kinematic(x0_hat, x0)` is L_k of each sample (`kinematic_parts`, weighted); None leaves it out.
-    `lambda_k` is a weight for each step (`over_time`), by default the paper's alpha_bar.
-    Ours: the network may be asked for x0 or v instead of eps (`model.config.target`), and another
-    `loss` may be taken of the target's error (`beyond.loss_terms`).
+    context    the model's input beside x_s and s: `mofusion.Music`, or None
+    kinematic  `kinematic(x0_hat, x0)` is L_k of each sample (`kinematic_parts`, weighted); None
+               leaves it out
+    lambda_k   a weight for each step (`over_time`); default: the paper's alpha_bar
+    loss       the loss of the target's error; others are in `beyond.loss_terms` (ours)
+    The network can predict x0 or v instead of eps (`model.config.target`), which is ours, too.
     Source: MoFusion eq. 4.  Notebook: 13
     """
     x0, context = batch
@@ -98,7 +100,7 @@ def kinematic_parts(
 ) -> dict[str, Float[Tensor, "B"]]:
     """L_s, L_a, L_m and the foot-slide loss of each sample, by the names of KinematicWeights.
 
-    `planted`: which feet stand in x0.  Source: MoFusion 3.2.  Notebook: 13
+    `planted` says which feet are planted in x0.  Source: MoFusion 3.2.  Notebook: 13
     """
     positions = body.to_positions(x0_hat)
     lengths = bone_lengths(positions, body.bones)
@@ -111,11 +113,13 @@ def kinematic_parts(
 
 
 def bone_lengths(positions: Float[Tensor, "B T J 3"], bones: Bones) -> Float[Tensor, "B T K"]:
-    """The length of each bone (parent, child) in each frame, metres.  Source: MoFusion eq. 6 (l_n).
-    Notebook: 13"""
+    """The length of each bone (parent, child) in each frame, in metres.
+
+    Source: MoFusion eq. 6 (l_n).  Notebook: 13
+    """
     parents, children = zip(*bones, strict=True)
     gap = positions[:, :, list(children)] - positions[:, :, list(parents)]
-    return gap.square().sum(-1).clamp_min(1e-12).sqrt()  # a root has no slope at 0
+    return gap.square().sum(-1).clamp_min(1e-12).sqrt()  # sqrt has no finite gradient at 0
 
 
 def skeleton_loss(
@@ -124,8 +128,8 @@ def skeleton_loss(
     """L_s: the variance of each bone's length over time, averaged over the bones; m^2.
 
     mean_b sum_n (l_nb - mean_n l_nb)^2 / (N - 1)
-    Source: MoFusion eq. 6, whose n is both index and count, and which does not say how bones are
-    put together.
+    Source: MoFusion eq. 6, in which n is both index and count; it does not say how to combine the
+    bones.
     Notebook: 13
     """
     here = _share(present, lengths)
@@ -137,7 +141,7 @@ def skeleton_loss(
 def asymmetry_loss(
     lengths: Float[Tensor, "B T K"], pairs: Bones, present: Bool[Tensor, "B T"] | None = None
 ) -> Float[Tensor, "B"]:
-    """L_a: how far a left bone's length is from its right partner's, on average; m.
+    """L_a: the mean difference in length between a left bone and its right partner; m.
 
     `pairs` are indices of bones.
 
@@ -168,9 +172,9 @@ def slide_loss(
     toes: tuple[int, int],
     present: Bool[Tensor, "B T"] | None = None,
 ) -> Float[Tensor, "B"]:
-    """L_f: how far a toe moves along the floor where it should stand; m.
+    """L_f: how far a toe moves along the floor while it should be planted; m.
 
-    The mean is over steps from a frame to the next.
+    It is the mean over steps from one frame to the next.
 
     Source: MoFusion 3.2 invites such a loss; this one is ours.
     """
@@ -192,15 +196,15 @@ def _mean(x: Float[Tensor, "B T"], present: Bool[Tensor, "B T"] | None) -> Float
 
 
 def over_time(schedule: Schedule, kind: str) -> Table:
-    """lambda(s): how much L_k counts at each step, by a name of OVER_TIME.
+    """lambda(s): the weight of L_k at each step, by a name of OVER_TIME.
 
-    "alpha_bar" is the paper's. It is the share of the signal's power, and hardly anything where x_s
-    is mostly noise. What that does to each loss, notebook 13 measures: for L_m it is no smaller
-    weight at all, since alpha_bar |x0_hat - x0|^2 = (1 - alpha_bar) |eps_hat - eps|^2.
+    "alpha_bar" is the paper's weight: the fraction of the signal's power, which is almost 0 where
+    x_s is mostly noise. Notebook 13 measures its effect on each loss. For L_m it is not a smaller
+    weight, since alpha_bar |x0_hat - x0|^2 = (1 - alpha_bar) |eps_hat - eps|^2.
     Raises ValueError for another name.  Source: MoFusion 3.2 (lambda_k).  Notebook: 13
     """
     if kind not in OVER_TIME:
-        raise ValueError(f"the weight over time is one of {', '.join(OVER_TIME)}, not {kind!r}")
+        raise ValueError(f"over_time must be one of {', '.join(OVER_TIME)}, not {kind!r}")
     return OVER_TIME[kind](schedule.alpha_bar)
 
 

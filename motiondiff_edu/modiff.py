@@ -1,6 +1,6 @@
-"""MoDiff: two encoders, a cross-modal transformer, a decoder; and how they are trained.
+"""MoDiff: two encoders, a cross-modal transformer and a decoder, and the loss that trains them.
 
-The decoder predicts the noise of the future, and Algorithm 1 trains all of them.
+The decoder predicts the noise of the future; Algorithm 1 trains all parts together.
 
     past poses  --2 layers--+
                             +--concatenated in time--6 cross-modal layers--> memory
@@ -28,7 +28,7 @@ Control = Float[Tensor, "B T C"]
 
 @dataclass(frozen=True)
 class MoDiffConfig:
-    """Sizes of the network. `target` says what its output means; `skip` adds w(s) x_s to it.
+    """Sizes of the network. `target` is what the network predicts; `skip` adds w(s) x_s to it.
 
     The paper gives width, heads, layers, T_h and S; T_p, the feed-forward width and dropout are
     ours.
@@ -52,7 +52,7 @@ class MoDiffConfig:
     skip: bool = True
 
     def __post_init__(self):
-        """Raise ValueError for an unknown target, or sizes of which no network can be built."""
+        """Raise ValueError for an unknown target, or for impossible sizes."""
         sizes = {
             field.name: getattr(self, field.name)
             for field in fields(self)
@@ -60,10 +60,10 @@ class MoDiffConfig:
         }
         bad = next((name for name, value in sizes.items() if value < ("layers" not in name)), None)
         if bad:
-            raise ValueError(f"{bad} = {sizes[bad]} makes no network")
+            raise ValueError(f"{bad} = {sizes[bad]} is not a possible size")
         if self.width % self.heads or self.width % 2:
             raise ValueError(
-                f"width = {self.width} must be even, and shared evenly by {self.heads} heads"
+                f"width = {self.width} must be even, and a multiple of {self.heads} heads"
             )
         if self.target not in TARGETS:
             raise ValueError(f"target must be one of {', '.join(TARGETS)}, not {self.target!r}")
@@ -77,8 +77,10 @@ MODIFF_SMALL = MoDiffConfig(width=128, hidden=256, cross_layers=2)
 
 
 def step_embedding(s: Int[Tensor, "B"], width: int) -> Float[Tensor, "B E"]:
-    """Sines and cosines of the diffusion step, wavelengths from 2 pi to 10000 * 2 pi steps.
-    Notebook: 05"""
+    """Sines and cosines of the diffusion step, with wavelengths from 2 pi to 10000 * 2 pi steps.
+
+    Notebook: 05
+    """
     frequencies = torch.exp(
         -math.log(1e4) * torch.arange(width // 2, device=s.device) / (width // 2)
     )
@@ -87,8 +89,10 @@ def step_embedding(s: Int[Tensor, "B"], width: int) -> Float[Tensor, "B E"]:
 
 
 class Encoder(nn.Module):
-    """Self-attention over tokens whose times (in frames) are known.  Source: MoDiff III-F.
-    Notebook: 06"""
+    """Self-attention over tokens with known times (in frames).
+
+    Source: MoDiff III-F.  Notebook: 06
+    """
 
     def __init__(self, config: MoDiffConfig, layers: int, times: Int[Tensor, "T"]):
         super().__init__()
@@ -106,10 +110,10 @@ class Encoder(nn.Module):
 class MoDiff(nn.Module):
     """eps_hat = net(x_s, s, past, control) + w(s) x_s.
 
-    w(s) is learned, one number a step, and starts at 1: at high noise eps is nearly x_s itself, and
-    the skip spares the network from carrying 63 independent noise values through its width (ours;
-    the paper has none). Times in frames: the past ends at 0, the future is 1..T_p, control has one
-    row for each of both.
+    w(s) is learned, one number per step, and starts at 1. At high noise eps is nearly x_s itself;
+    with the skip the network need not carry 63 independent noise values through its width (ours;
+    the paper has none). Times are in frames: the past ends at 0, the future is 1..T_p, and control
+    has a row for each of these frames.
     Source: MoDiff III-F, Fig. 2.  Notebook: 07
     """
 
@@ -117,13 +121,13 @@ class MoDiff(nn.Module):
         super().__init__()
         self.config, width = config, config.width
         past, future = torch.arange(1 - config.T_h, 1), torch.arange(1, config.T_p + 1)
-        both = torch.cat([past, future])  # the control's times
+        both = torch.cat([past, future])  # times of the control
         memory = torch.cat([past, both])
         self.past_in, self.control_in = nn.Linear(config.D, width), nn.Linear(config.C, width)
-        self.modality = nn.Parameter(0.02 * torch.randn(2, width))  # which of the two a token is
+        self.modality = nn.Parameter(0.02 * torch.randn(2, width))  # marks pose and control tokens
         self.time = nn.Parameter(
             step_embedding(8 * torch.arange(len(both)), width)
-        )  # and when: 8 tells frames apart
+        )  # marks the time of a token; wavelengths from 8 distinguish frames
         self.motion_encoder = Encoder(config, config.motion_layers, past)
         self.control_encoder = Encoder(config, config.control_layers, both)
         self.cross_encoder = Encoder(config, config.cross_layers, memory)
@@ -145,18 +149,17 @@ class MoDiff(nn.Module):
     def encode(
         self, past: Float[Tensor, "B T_h D"], control: Float[Tensor, "B T C"]
     ) -> Float[Tensor, "B M width"]:
-        """The memory: past poses and control, encoded apart and then together.
+        """The memory: past poses and control, encoded separately and then together.
 
         It does not depend on s.
 
-        Raises ValueError when past or control have another number of frames than the network was
-        built for.
+        Raises ValueError if past or control have the wrong number of frames.
         """
         frames = (self.config.T_h, self.config.T_h + self.config.T_p)
         if (past.shape[1], control.shape[1]) != frames:
             raise ValueError(
                 f"this network takes {frames[0]} past poses and {frames[1]} rows of control "
-                f"(past and future), got {past.shape[1]} and {control.shape[1]}"
+                f"(past and future), not {past.shape[1]} and {control.shape[1]}"
             )
         motion = (
             self.past_in(past) + self.time[: self.config.T_h] + self.modality[0]
@@ -170,16 +173,16 @@ class MoDiff(nn.Module):
     def decode(
         self, x_s: Float[Tensor, "B T_p D"], s: Int[Tensor, "B"], memory: Float[Tensor, "B M width"]
     ) -> Float[Tensor, "B T_p D"]:
-        """One look at the noised future: what the target (eps, x0 or v) is thought to be."""
+        """The network's prediction of its target (eps, x0 or v) from the noised future."""
         out = self.head(self.attend(self.embed(x_s, s), memory))
         return out if self.skip is None else out + self.skip[s][:, None, None] * x_s
 
     def embed(
         self, x_s: Float[Tensor, "B T_p D"], s: Int[Tensor, "B"]
     ) -> Float[Tensor, "B T_p width"]:
-        """The decoder's tokens: each noised pose, how noised it is, and when."""
+        """The decoder's tokens: each noised pose with its diffusion step and its time."""
         step = self.step_in(step_embedding(s, self.config.width))  # (B, width)
-        step = step[:, None].expand(-1, x_s.shape[1], -1)  # (B, T_p, width): alike for all poses
+        step = step[:, None].expand(-1, x_s.shape[1], -1)  # (B, T_p, width), equal for all poses
         x = self.future_in(torch.cat([x_s, step], dim=-1))
         return x + self.time[self.config.T_h :]
 
@@ -211,14 +214,15 @@ def training_loss(
     dropout: Callable[[Past, Int[Tensor, "B"], torch.Generator], Past] | None = None,
     loss: Callable[[Future, Int[Tensor, "B"]], Float[Tensor, ""]] = squared_error,
 ) -> Float[Tensor, ""]:
-    """Algorithm 1: what a gradient step is taken on, for one batch (past, future, control).
+    """Algorithm 1: the loss of one batch (past, future, control).
 
     || eps - eps_theta(x_s, s, x_d, c) ||^2
     x_s = sqrt(alpha_bar_s) x0 + sqrt(1 - alpha_bar_s) eps
     s ~ Uniform(1..S), eps ~ N(0, I); the paper's x0 and x_s are y_0 and y_s.
-    `dropout` makes x_d from the past x (`diffusion_dropout.Dropout`); without it x_d = x. Ours:
-    the network may be asked for x0 or v instead (`model.config.target`), and another `loss` than
-    eq. 10's mean square may be taken of the error (`beyond.loss_terms`).
+    dropout  makes x_d from the past x (`diffusion_dropout.Dropout`); without it x_d = x
+    loss     the loss of the error; default: the mean square of eq. 10, others are in
+             `beyond.loss_terms` (ours)
+    The network can predict x0 or v instead of eps (`model.config.target`), which is ours, too.
     Source: MoDiff Alg. 1, eq. 10.  Notebook: 05, 07
     """
     past, x0, control = batch

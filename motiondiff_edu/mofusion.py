@@ -1,12 +1,12 @@
-"""MoFusion's network: a 1D U-Net over motion frames; every block ends by asking the music.
+"""MoFusion's network: a 1D U-Net over motion frames; every block ends with attention to the music.
 
-    x_s -> [res, ask] --------------------------------------------------> [res, ask] -> eps_hat
-             halve -> [res, ask] ----------------------------> [res, ask] -> double
-                        halve -> [res, ask] ------> [res, ask] -> double
-                                   halve -> [res, ask] -> double
+    x_s -> [res, att] --------------------------------------------------> [res, att] -> eps_hat
+             halve -> [res, att] ----------------------------> [res, att] -> double
+                        halve -> [res, att] ------> [res, att] -> double
+                                   halve -> [res, att] -> double
 
 res: two convolutions over time, scaled and shifted by the step s (`ResBlock`).
-ask: cross-modal attention, keys and values from the music (`CrossAttentionBlock`).
+att: cross-modal attention with keys and values from the music (`CrossAttentionBlock`).
 Source: MoFusion 3.1-3.3, Fig. 3.  Notebook: 12
 """
 
@@ -39,22 +39,22 @@ class MoFusionConfig:
         96,
         96,
         128,
-    )  # of the levels: all frames, every second, every fourth (then eighth)
+    )  # of the levels, which have all frames, every second, every fourth (then eighth)
     heads: int = 4
-    # convolutions over the music before anybody asks; 0: one linear layer, as the paper has it
+    # convolutions over the music before attention; 0: only a linear layer, as in the paper
     music_layers: int = 4
     fps: float = 20.0  # of the motion
-    slowest: float = 0.05  # Hz, of the position code
+    slowest: float = 0.05  # lowest and highest frequency of the position code, Hz
     fastest: float = 8.0
     target: str = "eps"
     skip: bool = True
 
     def __post_init__(self):
-        """Raise ValueError for an unknown target, or sizes of which no network can be built."""
+        """Raise ValueError for an unknown target, or for impossible sizes."""
         counts, rates = (self.D, self.S, self.heads), (self.fps, self.slowest, self.fastest)
         if min(counts) < 1 or min(rates) <= 0 or min(self.C, self.music_layers) < 0:
             raise ValueError(
-                "D, S, heads must be 1 at least; C, music_layers 0 at least; rates above 0"
+                "D, S, heads must be at least 1; C, music_layers at least 0; rates above 0"
             )
         bad = next((w for w in self.widths if w < 2 * self.heads or w % (2 * self.heads)), None)
         if not self.widths or bad is not None:
@@ -73,10 +73,9 @@ MOFUSION_SMALL = MoFusionConfig()
 class FrameConv(nn.Module):
     """A convolution over time: one linear layer of a frame and its two neighbours.
 
-    Outside the motion there are zeros.
-
-    With stride 2 it keeps every second frame, the first included. The kernel is kept as one matrix,
-    (outputs, 3 x inputs): the frame before, the frame, the one after.  Notebook: 12
+    Frames outside the motion are zeros. With stride 2 it keeps every second frame, starting with
+    the first. The kernel is stored as one matrix (outputs, 3 x inputs): the frame before, the
+    frame, the frame after.  Notebook: 12
     """
 
     def __init__(self, inputs: int, outputs: int, stride: int = 1, dilation: int = 1):
@@ -92,11 +91,11 @@ class FrameConv(nn.Module):
 
 
 class ResBlock(nn.Module):
-    """Two convolutions around which x goes unchanged; the step scales and shifts what lies between.
+    """Two convolutions with a residual connection; the step scales and shifts between them.
 
-    Each frame is normalised by itself, so that neither padding nor a neighbour in the batch can
-    matter.
-    Source: MoFusion 3.3; scale and shift are usual, the paper does not say.  Notebook: 12
+    Each frame is normalised by itself, so that padding and other samples have no influence.
+    Source: MoFusion 3.3; scale and shift are usual, but the paper does not mention them.
+    Notebook: 12
     """
 
     def __init__(self, inputs: int, outputs: int, width: int):
@@ -105,7 +104,7 @@ class ResBlock(nn.Module):
         self.norm_out, self.conv_out = nn.LayerNorm(outputs), FrameConv(outputs, outputs)
         self.step = nn.Linear(width, 2 * outputs)
         self.around = nn.Linear(inputs, outputs) if inputs != outputs else nn.Identity()
-        for layer in (self.step, self.conv_out.mix):  # at first the block changes nothing
+        for layer in (self.step, self.conv_out.mix):  # at the start the block changes nothing
             nn.init.zeros_(layer.weight)
             nn.init.zeros_(layer.bias)
 
@@ -121,10 +120,10 @@ class ResBlock(nn.Module):
 class CrossAttentionBlock(nn.Module):
     """Cross-modal attention, then a feed-forward layer.
 
-    Queries come from the motion, keys and values from the music.
-
-    Without music (context=None) keys and values come from the motion: self-attention.
-    Source: MoFusion 3.3, eq. 8-9 (which has Q from x in the unconditional case; K and V are meant).
+    Queries come from the motion, keys and values from the music. Without music (context=None) keys
+    and values come from the motion, which is self-attention.
+    Source: MoFusion 3.3, eq. 8-9 (for the unconditional case the paper writes Q from x, but means K
+    and V).
     """
 
     def __init__(self, width: int, heads: int, context_width: int):
@@ -143,9 +142,8 @@ class CrossAttentionBlock(nn.Module):
 class MusicEncoder(nn.Module):
     """Mel frames to context: a linear layer, then (ours) convolutions.
 
-    The convolutions look ever further, up to a second or two.
-
-    Half of the frames are enough afterwards: 15.6 a second.
+    Each convolution sees further, up to a second or two. Then only every second frame is kept, 15.6
+    per second.
     Source: MoFusion 3.3 (the linear layer).
     """
 
@@ -171,8 +169,8 @@ class MusicEncoder(nn.Module):
 class MoFusion(nn.Module):
     """eps_hat = net(x_s, s, music) + w(s) x_s, for motions of any length.
 
-    Frame t of the motion lies at t / fps seconds; the music's frames say when they sound
-    (`listen`). Queries and keys are turned by these times (`turned`), alike on both sides.
+    Frame t of the motion is at t / fps seconds; the music's frames have their own times (`listen`).
+    Queries and keys are rotated by these times in the same way (`turned`).
     Source: MoFusion 3.3, Fig. 3; the skip w(s) and the position code are ours.  Notebook: 12
     """
 
@@ -211,9 +209,9 @@ class MoFusion(nn.Module):
     ) -> "Music":
         """The context of a piece of music.
 
-        `mel` is standardised, `times` are seconds from the first motion frame.
-
-        `mask` is True where there is music, for pieces of several lengths in one batch.
+        mel    a standardised log-Mel spectrogram
+        times  of its frames, in seconds from the first motion frame
+        mask   True where there is music, for pieces of several lengths in one batch
         """
         present = (
             mel.new_ones(1, mel.shape[1], 1) if mask is None else mask[..., None].to(mel.dtype)
@@ -228,15 +226,15 @@ class MoFusion(nn.Module):
         music: "Music | None" = None,
         lengths: Int[Tensor, "B"] | None = None,
     ) -> Float[Tensor, "B T D"]:
-        """What the target (eps, x0 or v) is thought to be.
+        """The network's prediction of its target (eps, x0 or v).
 
-        Frames from `lengths` on are padding, and come back as 0.
+        Frames from `lengths` on are padding, and their output is 0.
         """
         if (music is None) != (self.music is None):
             raise ValueError(
-                "this network dances to music: give it"
+                "this network dances to music; pass its music"
                 if music is None
-                else "this network hears nothing"
+                else "this network takes no music; pass music=None"
             )
         T, levels = x_s.shape[1], len(self.config.widths)
         x = F.pad(x_s, (0, 0, 0, -T % 2**levels))
@@ -266,10 +264,7 @@ class MoFusion(nn.Module):
 
 @dataclass(frozen=True, eq=False)
 class Music:
-    """The context that a network made of music.
-
-    Tokens, when each sounds (s), and which are there at all.
-    """
+    """The context that a network computed from music: tokens, their times (s), and their mask."""
 
     tokens: Float[Tensor, "B M W"]
     times: Float[Tensor, "M"]
@@ -278,10 +273,7 @@ class Music:
 
 @dataclass(frozen=True, eq=False)
 class View:
-    """One level of the U-Net.
-
-    Which of its frames are motion, what they may attend to, and when they are.
-    """
+    """One level of the U-Net: the mask of its frames, the attention bias, and rotation angles."""
 
     mask: Float[Tensor, "#B T 1"]
     bias: Float[Tensor, "#B 1 T M"] | None
@@ -299,7 +291,7 @@ class View:
         """The frames of a level are every 2^level-th of the T frames at the top."""
         frames = torch.arange(0, T, 2**level, device=lengths.device)
         inside, times = frames < lengths[:, None], frames / config.fps  # (B, T), and seconds
-        heard, seen = (times, inside) if music is None else (music.times, music.mask)
+        token_times, seen = (times, inside) if music is None else (music.times, music.mask)
         allowed = None if seen is None or bool(seen.all()) else seen[:, None, None]
         bias = (
             None
@@ -308,7 +300,7 @@ class View:
         )
         code = (config.slowest, config.fastest)
         turns = {
-            w: tuple(angles_of(t, w // config.heads, *code) for t in (times, heard))
+            w: tuple(angles_of(t, w // config.heads, *code) for t in (times, token_times))
             for w in set(config.widths)
         }
         return cls(inside[..., None].float(), bias, turns)

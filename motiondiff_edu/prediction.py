@@ -1,9 +1,8 @@
-"""What a network may predict: the noise eps, the clean sample x0, or v.
+"""The targets that a network can predict: the noise eps, the clean sample x0, or v.
 
-Each can be turned into the others.
-
-With a = sqrt(alpha_bar_s) and b = sqrt(1 - alpha_bar_s), x_s = a x0 + b eps and v = a eps - b x0:
-(x_s, v) is (x0, eps) turned by an angle, so every conversion is a line of algebra.
+Each can be converted into the others. With a = sqrt(alpha_bar_s) and b = sqrt(1 - alpha_bar_s),
+x_s = a x0 + b eps and v = a eps - b x0. So (x_s, v) is (x0, eps) rotated by an angle, and every
+conversion is a line of algebra.
 """
 
 import torch
@@ -66,7 +65,7 @@ def to_eps(
     schedule: Schedule,
     target: str,
 ) -> Float[Tensor, "B *shape"]:
-    """Turn a network's output into eps_hat; `target` says what it was trained to predict."""
+    """Convert a network's output to eps_hat; `target` is what it was trained to predict."""
     _check(target)
     if target == "eps":
         return output
@@ -80,8 +79,10 @@ def to_x0(
     schedule: Schedule,
     target: str,
 ) -> Float[Tensor, "B *shape"]:
-    """Turn a network's output into x0_hat; `target` says what the network was trained to predict.
-    Notebook: 05."""
+    """Convert a network's output to x0_hat; `target` is what it was trained to predict.
+
+    Notebook: 05.
+    """
     _check(target)
     if target == "x0":
         return output
@@ -95,17 +96,17 @@ def target_of(
     schedule: Schedule,
     target: str,
 ) -> Float[Tensor, "B *shape"]:
-    """What the network should have said: eps, x0 or v. Notebook: 05."""
+    """The right output of a network with this target: eps, x0 or v. Notebook: 05."""
     _check(target)
     return {"eps": eps, "x0": x0}[target] if target != "v" else v_from_x0_eps(x0, s, eps, schedule)
 
 
 def denoiser_of(network, schedule: Schedule, target: str):
-    """Wrap a network that predicts `target` as a denoiser, which always answers with eps_hat.
-    Notebook: 05.
+    """Wrap a network that predicts `target` as a denoiser, which always returns eps_hat.
 
-    It raises ValueError where a gradient is asked for and the network has none (the formulas have:
-    a wrong one).
+    The denoiser raises ValueError if x_s needs a gradient and the network's output has none; the
+    conversion alone would give a wrong one.
+    Notebook: 05.
     """
     _check(target)
 
@@ -113,7 +114,7 @@ def denoiser_of(network, schedule: Schedule, target: str):
         output = network(x_s, s)
         if torch.is_grad_enabled() and x_s.requires_grad and not output.requires_grad:
             raise ValueError(
-                "no gradient here: take the network, not its fast twin, "
+                "no gradient here: use the network, not its fast twin, "
                 "outside torch.inference_mode()"
             )
         return to_eps(output, x_s, s, schedule, target)

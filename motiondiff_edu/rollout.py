@@ -1,6 +1,6 @@
-"""Autoregression: predict T_p poses, keep the first few, move on.
+"""Autoregressive rollout: predict T_p poses, keep the first few, and repeat.
 
-The control may change at every frame.
+The control can change at every frame.
 
 A *window sampler* is a callable `sample(past (B, T_h, D), control (B, T_h + T_p, C), generator) ->
 (B, T_p, D)` in the network's units. `rollout_steps` repeats it; `generate` does so for a trained
@@ -23,7 +23,7 @@ Control = Tensor | Callable[[int], Tensor]
 
 @runtime_checkable
 class Units(Protocol):
-    """Between metres (or m/s) and a network's units; `mean` lies where the network does."""
+    """Conversion between metres (or m/s) and a network's units; `mean` is on its device."""
 
     mean: Tensor
 
@@ -34,7 +34,7 @@ class Units(Protocol):
 
 @runtime_checkable
 class Sizes(Protocol):
-    """Frames given and predicted; numbers in a pose and in a row of the control."""
+    """Frames given (T_h) and predicted (T_p); widths of a pose (D) and of a row of control (C)."""
 
     T_h: int
     T_p: int
@@ -44,10 +44,10 @@ class Sizes(Protocol):
 
 @runtime_checkable
 class AnyWalker(Protocol):
-    """What `generate` needs of a walker: sizes, units, and a window sampler.
+    """The interface of a walker for `generate`: sizes, units, and a window sampler.
 
-    `performers.walker.Walker` is one; whatever has these four can be walked with. A `card` that
-    says which control was seen in training is used where there is one.
+    `performers.walker.Walker` has it. If there is also a `card` with the range of control in
+    training, `generate` warns beyond that range.
     """
 
     @property
@@ -61,10 +61,7 @@ class AnyWalker(Protocol):
 
 @dataclass(frozen=True, eq=False)
 class Frame:
-    """One new frame.
-
-    Its number after the past (from 0), its pose, and the whole window it was taken from.
-    """
+    """One new frame: its index after the past (from 0), its pose, and its predicted window."""
 
     t: int
     pose: Float[Tensor, "B D"]
@@ -82,17 +79,17 @@ def rollout_steps(
     keep: int = 1,
     hold: bool = True,
 ) -> Iterator[Frame]:
-    """Yield `frames` new poses, one by one; of every predicted window the first `keep` are kept.
+    """Yield `frames` new poses, one by one; each predicted window gives its first `keep` poses.
 
-    `control` is (B, T, C), row 0 beside past[:, 0] and the last repeated past its end; or a
-    callable t -> (B, C) that is asked for a row when it is walked under, once: it can change on the
-    fly, and the past is not rewritten. hold=True: the network sees the control up to the step it is
-    about to take, held over the future; hold=False (look-ahead): it sees what comes, as far as is
-    known now.
+    control  (B, T, C), where row 0 belongs to past[:, 0] and the last row repeats; or a callable
+             t -> (B, C), called once for each row when it is needed, so that it can change on the
+             fly
+    hold     True: the network sees the control up to the next step, held over the future;
+             False (look-ahead): it sees the future control as far as it is known
     Raises ValueError unless 1 <= keep <= T_p.  Source: MoDiff III-C, Alg. 2.  Notebook: 07
     """
     if not 1 <= keep <= T_p:
-        raise ValueError(f"keep must lie between 1 and T_p = {T_p}, got {keep}")
+        raise ValueError(f"keep must be between 1 and T_p = {T_p}, not {keep}")
     T_h, rows = past.shape[1], []
     ask = control if callable(control) else lambda t: control[:, min(t, control.shape[1] - 1)]
     for t in range(0, frames, keep):
@@ -117,13 +114,13 @@ def generate(
 ) -> Float[Tensor, "*B n D"]:
     """Continue `past` (root-frame poses, metres) under `control` (m/s, m/s, rad/s).
 
-    Returns n = T - T_h new poses, metres.
+    Returns n = T - T_h new poses in metres, as a tensor.
 
-    Rows 0..T_h-1 of the control belong to the past. steps=None is DDPM with all S steps, a number
-    is DDIM with so many. A past and control without a batch axis give poses without one. Arrays of
-    numpy are taken too; a tensor comes back.
-    Raises ValueError when past and control do not fit the walker or hold NaN; warns where the
-    control asks for more than the walker saw in training.
+    Past and control are tensors or arrays of numpy, with or without a batch axis. Rows 0..T_h-1 of
+    the control belong to the past. steps=None is DDPM with all S steps, a number is DDIM with so
+    many.
+    Raises ValueError if past and control do not fit the walker or contain NaN. Warns where the
+    control goes beyond the training data.
     Source: MoDiff Alg. 2, Fig. 5.  Notebook: 07, 08
     """
     past, control = torch.as_tensor(past), torch.as_tensor(control)
@@ -137,21 +134,22 @@ def generate(
         or (past.shape[2], control.shape[-1]) != (D, C)
     ):
         raise ValueError(
-            f"past {tuple(past.shape)} and control {tuple(control.shape)} do not go together: the "
+            f"past {tuple(past.shape)} and control {tuple(control.shape)} do not fit together: the "
             f"walker takes (B, {T_h}, {D}) and (B, T, {C}), or both without B; "
             "flatten positions (T, 21, 3) to (T, 63)"
         )
     if past.shape[1] != T_h:
         raise ValueError(
-            f"the walker continues {T_h} past poses, got {past.shape[1]}: "
+            f"the walker continues {T_h} past poses, not {past.shape[1]}: "
             f"pass past[..., -{T_h}:, :]"
         )
     if frames < 1:
         raise ValueError(
-            f"control has {control.shape[1]} rows, {T_h} of them beside the past: none is left"
+            f"control has {control.shape[1]} rows and {T_h} of them belong to the past; "
+            "there is none for the future"
         )
     if not (torch.isfinite(past).all() and torch.isfinite(control).all()):
-        raise ValueError("past or control holds NaN or infinity; fill the holes first")
+        raise ValueError("past or control contains NaN or infinity; fill the holes first")
     _warn_beyond(control, getattr(walker, "card", {}).get("control_range"))
     generator = generator or torch.Generator().manual_seed(seed)
     past, control = (x.float().to(walker.pose_scaler.mean.device) for x in (past, control))
@@ -166,7 +164,7 @@ def generate(
 
 
 def _warn_beyond(control: Float[Tensor, "B T C"], seen: dict | None) -> None:
-    """Say which row asks for what no training clip asked for, by more than a tenth of the range."""
+    """Warn about a row beyond the control of the training clips by over a tenth of its range."""
     if not seen:
         return
     low, high = torch.tensor(seen["low"]), torch.tensor(seen["high"])
@@ -180,8 +178,7 @@ def _warn_beyond(control: Float[Tensor, "B T C"], seen: dict | None) -> None:
             else f"column {column}"
         )
         warnings.warn(
-            f"row {row} of the control asks for {control[batch, row, column]:.3g} ({name}); this "
-            f"walker learnt from {low[column]:.3g} to {high[column]:.3g}, "
-            "and will do something else",
+            f"row {row} of the control is {control[batch, row, column]:.3g} ({name}); this walker "
+            f"was trained on {low[column]:.3g} to {high[column]:.3g}, and will not follow it well",
             stacklevel=3,
         )

@@ -71,7 +71,7 @@ def test_samples_go_to_numbered_files(folder, capsys):
     frames = [0, 10, 20, 30, 40, 49]
     np.testing.assert_array_equal(one.positions[frames], given.positions[frames])
     assert not np.array_equal(one.positions, two.positions)
-    assert run(*words) == 1 and "made-1.npz is there already" in capsys.readouterr().err
+    assert run(*words) == 1 and "made-1.npz exists already" in capsys.readouterr().err
     assert run(*words, "--overwrite") == 0
 
 
@@ -100,35 +100,35 @@ def test_info_convert_and_play(folder, capsys):
     assert run("info", "my_walk.npz", "my_walk.bvh") == 0
     said = capsys.readouterr().out
     # 49 steps of 5 cm; the pelvis sways about the path
-    assert said.count("2.5 s, 50 frames at 20 frames/s") == 2 and "the root goes 2.4" in said
+    assert said.count("2.5 s, 50 frames at 20 frames/s") == 2 and "the root moves 2.4" in said
     assert run("play", "my_walk.bvh", "my_walk.npz", "--out", "page.html", "--no-open") == 0
     assert "<!doctype html>" in (folder / "page.html").read_text("utf-8")
     assert "the page is" in capsys.readouterr().out
     words = ["play", "my_walk.bvh", "--out", "page.html", "--no-open"]
-    assert run(*words) == 1 and "is there already" in capsys.readouterr().err
+    assert run(*words) == 1 and "exists already" in capsys.readouterr().err
 
 
 WALK = ["walk", "my_walk.bvh", "--control", "1s 1", "--out", "x.bvh"]
 MISTAKES = {
     "no such file": (["info", "nope.bvh"], "there is no file nope.bvh in"),
-    "no motion": (["info", "song.wav"], "song.wav is not read as a motion"),
+    "no motion": (["info", "song.wav"], "song.wav cannot be read as a motion"),
     "a png": (["convert", "pic.png", "x.bvh"], "there is no file pic.png"),
     "no song": (["dance", "my_walk.bvh", "--out", "x.bvh"], "is text, not sound"),
     "negative seconds": (
         ["dance", "song.wav", "--seconds", "-3", "--out", "x.bvh"],
         "seconds must be above 0",
     ),
-    "an ending": (["convert", "my_walk.bvh", "x.docx"], "nothing is written as .docx; there are"),
-    "no ending": (["convert", "my_walk.bvh", "x"], "the name has no ending; there are .bvh"),
-    "there already": (["convert", "my_walk.bvh", "my_walk.bvh"], "is there already"),
+    "an ending": (["convert", "my_walk.bvh", "x.docx"], "unknown ending .docx; use one of"),
+    "no ending": (["convert", "my_walk.bvh", "x"], "the name has no ending; use one of .bvh"),
+    "there already": (["convert", "my_walk.bvh", "my_walk.bvh"], "exists already"),
     "a comma": (
         ["walk", "my_walk.bvh", "--control", "1s 1,2", "--out", "x.bvh"],
-        "'1,2' is no number; write a decimal point (character 4 of the control)",
+        "'1,2' is not a number; write a decimal point (character 4 of the control)",
     ),
-    "no samples": ([*WALK, "--samples", "0"], "--samples is a number from 1 on, not 0"),
+    "no samples": ([*WALK, "--samples", "0"], "--samples must be at least 1, not 0"),
     "no keyframes": (
         ["inbetween", "my_walk.bvh", "--every", "0", "--out", "x.bvh"],
-        "every is a whole number from 1 on",
+        "every must be a whole number of at least 1",
     ),
     "no joint": (
         ["reconstruct", "my_walk.bvh", "--missing", "Tail", "--out", "x.bvh"],
@@ -144,14 +144,14 @@ MISTAKES = {
     ),
     "no span": (
         ["reconstruct", "my_walk.bvh", "--missing", "Head", "--frames", "9-3", "--out", "x.bvh"],
-        "'9-3' is no span of frames such as 40-80",
+        "'9-3' is not a span of frames such as 40-80",
     ),
     "frames of nothing": (
         ["reconstruct", "my_walk.bvh", "--frames", "3-9", "--out", "x.bvh"],
-        "say as well which joints",
+        "--frames needs --missing, which names the joints",
     ),
     "nothing missing": (["reconstruct", "my_walk.bvh", "--out", "x.bvh"], "nothing is missing"),
-    "no page": (["play", "my_walk.bvh", "--out", "x.bvh"], "the page's name ends in .html"),
+    "no page": (["play", "my_walk.bvh", "--out", "x.bvh"], "the page's name must end in .html"),
 }
 
 
@@ -205,16 +205,16 @@ def test_control_in_words(words, wanted):
     [
         ("", 0, "the control is empty"),
         (" ; ", 0, "the control is empty"),
-        ("3 1.2", 0, "a piece begins with its seconds, as 3s, not '3'"),
-        ("3s 1.2; 4s", 10, "after the seconds comes the speed"),
-        ("3s 1.2; 4s fast", 11, "'fast' is no number"),
+        ("3 1.2", 0, "a piece begins with its duration, as 3s, not '3'"),
+        ("3s 1.2; 4s", 10, "the forward speed (m/s) is missing after the duration"),
+        ("3s 1.2; 4s fast", 11, "'fast' is not a number"),
         ("3s 1.2 turn", 11, "a number is missing after 'turn'"),
-        ("3s 1.2 up 4", 7, "'up' is none of left, right and turn"),
-        ("3s 1.2 left 1 right 2", 14, "'right': this was told already"),
+        ("3s 1.2 up 4", 7, "'up' is not left, right or turn"),
+        ("3s 1.2 left 1 right 2", 14, "'right': this speed is already given"),
         ("3s 1.2;; 4s 1", 7, "nothing between two semicolons"),
-        ("3s nan", 3, "'nan' is no finite number"),
-        ("0s 1", 0, "seconds are above 0"),
-        ("-2s 1", 0, "seconds are above 0"),
+        ("3s nan", 3, "'nan' is not a finite number"),
+        ("0s 1", 0, "a duration is above 0"),
+        ("-2s 1", 0, "a duration is above 0"),
     ],
 )
 def test_words_that_are_no_control_are_marked_where_they_go_wrong(words, at, told):

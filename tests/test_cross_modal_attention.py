@@ -180,7 +180,7 @@ def test_heads_own_neighbouring_channels():
 
 
 def test_width_that_heads_cannot_share():
-    with pytest.raises(ValueError, match="width 10 cannot be shared evenly by 3 heads"):
+    with pytest.raises(ValueError, match="width 10 must be a multiple of 3 heads"):
         CrossModalAttention(10, 3)
 
 

@@ -84,7 +84,7 @@ def test_output_has_the_shape_of_the_future(config):
 def test_wrong_numbers_of_frames_are_told(frames):
     x_s, s, past, control = inputs(TINY)
     with pytest.raises(
-        ValueError, match=rf"4 past poses and 9 rows.*got {frames[0]}.* and {frames[1]}"
+        ValueError, match=rf"4 past poses and 9 rows.*not {frames[0]}.* and {frames[1]}"
     ):
         MoDiff(TINY)(x_s, s, torch.zeros(B, frames[0], TINY.D), torch.zeros(B, frames[1], TINY.C))
 

@@ -115,9 +115,9 @@ def test_without_music_the_motion_attends_to_itself():
     assert (model(far, s) - model(x, s))[
         :, 0
     ].abs().max() > 1e-5  # 20 frames away: through attention, or the depth
-    with pytest.raises(ValueError, match="hears nothing"):
+    with pytest.raises(ValueError, match="takes no music"):
         model(x, s, shaken(TINY).listen(*music(2, 30)))
-    with pytest.raises(ValueError, match="give it"):
+    with pytest.raises(ValueError, match="pass its music"):
         shaken(TINY)(x, s)
 
 

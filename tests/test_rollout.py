@@ -154,5 +154,5 @@ def test_a_function_and_a_table_say_the_same():
 
 @pytest.mark.parametrize("keep", [0, 4, -1])
 def test_keep_beyond_the_window_is_refused(keep: int):
-    with pytest.raises(ValueError, match=f"keep must lie between 1 and T_p = 3, got {keep}"):
+    with pytest.raises(ValueError, match=f"keep must be between 1 and T_p = 3, not {keep}"):
         roll(Echo(), numbered_control(9), 2, keep=keep)

@@ -16,11 +16,11 @@ WALKER = SimpleNamespace(config=SimpleNamespace(T_h=4, T_p=2, D=6, C=3))
 @pytest.mark.parametrize(
     "past, control, told",
     [
-        ((2, 4, 6), (3, 9, 3), r"past \(2, 4, 6\) and control \(3, 9, 3\) do not go together"),
+        ((2, 4, 6), (3, 9, 3), r"past \(2, 4, 6\) and control \(3, 9, 3\) do not fit together"),
         ((2, 4, 5), (2, 9, 3), r"the walker takes \(B, 4, 6\)"),
         ((4, 5), (9, 3), r"the walker takes \(B, 4, 6\)"),
-        ((2, 5, 6), (2, 9, 3), "continues 4 past poses, got 5"),
-        ((2, 4, 6), (2, 4, 3), "none is left"),
+        ((2, 5, 6), (2, 9, 3), "continues 4 past poses, not 5"),
+        ((2, 4, 6), (2, 4, 3), "there is none for the future"),
     ],
 )
 def test_past_and_control_that_do_not_fit_are_named(past, control, told):

@@ -38,22 +38,22 @@ def ddim(**options):
 
 
 MISTAKES = {
-    "steps that rise": (ddim(steps=[5, 10, 20]), "steps must fall, from 20 at most to 1 at least"),
-    "no steps": (ddim(steps=[]), "steps must fall"),
-    "a step 0": (ddim(steps=[20, 0]), "steps must fall"),
-    "a step beyond S": (ddim(steps=[21, 3]), "steps must fall"),
-    "eta beyond DDPM": (ddim(steps=4, eta=2.0), "eta must lie between 0"),
+    "steps that rise": (ddim(steps=[5, 10, 20]), "steps must decrease and be within 20 to 1"),
+    "no steps": (ddim(steps=[]), "steps must decrease"),
+    "a step 0": (ddim(steps=[20, 0]), "steps must decrease"),
+    "a step beyond S": (ddim(steps=[21, 3]), "steps must decrease"),
+    "eta beyond DDPM": (ddim(steps=4, eta=2.0), "eta must be between 0"),
     "a step back from clean data": (
         lambda: ddpm.p_sample(X, 0, X, SCHEDULE, X),
-        "s = 0: steps go from 1 to 20 here",
+        "s = 0: steps must be 1 to 20 here",
     ),
     "a posterior of clean data": (
         lambda: ddpm.q_posterior(X, X, 0, SCHEDULE),
-        "steps go from 1 to 20",
+        "steps must be 1 to 20",
     ),
     "the last step as a KL": (
         lambda: ddpm.step_kl(X, X, 1, X, SCHEDULE),
-        "s = 1: steps go from 2 to 20",
+        "s = 1: steps must be 2 to 20",
     ),
     "pieces without a frame": (
         lambda: slice_clips([CLIP], seconds=0),
@@ -63,9 +63,12 @@ MISTAKES = {
         lambda: slice_clips([CLIP], seconds=-1),
         "pieces of -1 s have no frame",
     ),
-    "a negative share": (lambda: split_by_source([CLIP], [1.5, -0.5], RNG), "shares that sum to 1"),
+    "a negative share": (
+        lambda: split_by_source([CLIP], [1.5, -0.5], RNG),
+        "0 or more and sum to 1",
+    ),
     "no data to scale": (lambda: Scaler.fit(torch.zeros(0, 3)), "there are no rows"),
-    "one frame": (lambda: adherence(CLIP.poses[:1], CLIP.control[:1]), "takes two frames"),
+    "one frame": (lambda: adherence(CLIP.poses[:1], CLIP.control[:1]), "needs two frames"),
     "no segments": (lambda: joystick([]), "four finite numbers, not nothing"),
     "a short segment": (lambda: joystick([(1, 2)]), "four finite numbers"),
     "a segment of NaN": (lambda: joystick([(1, math.nan, 0, 0)]), "four finite numbers"),
@@ -74,7 +77,7 @@ MISTAKES = {
         lambda: Walker(MoDiff(SMALL), SCHEDULE, *PLAIN),
         "has 20 steps, the network 6",
     ),
-    "heads that do not fit": (lambda: MoDiffConfig(width=16, heads=3), "shared evenly by 3 heads"),
+    "heads that do not fit": (lambda: MoDiffConfig(width=16, heads=3), "a multiple of 3 heads"),
 }
 
 
@@ -87,14 +90,14 @@ def test_it_is_refused_in_words(what):
 
 @pytest.mark.parametrize("s", [-1, 21])
 def test_a_step_that_is_not_there(s):
-    with pytest.raises(IndexError, match=f"s = {s}: steps go from 0 to 20 here, and 0 is clean"):
+    with pytest.raises(IndexError, match=f"s = {s}: steps must be 0 to 20 here; 0 is clean"):
         ddpm.q_sample(X, s, SCHEDULE, X)
 
 
 @pytest.mark.parametrize("steps, named", [([3, -1], -1), ([21, 20], 21), ([-4, 30], -4)])
 def test_steps_of_a_batch_are_checked_as_one_is(steps, named):
     """A tensor's -1 would read the last entry, and say nothing."""
-    with pytest.raises(IndexError, match=f"s = {named}: steps go from 0 to 20 here"):
+    with pytest.raises(IndexError, match=f"s = {named}: steps must be 0 to 20 here"):
         ddpm.q_sample(X, torch.tensor(steps), SCHEDULE, X)
 
 
@@ -102,7 +105,7 @@ def test_a_batch_with_clean_data_has_no_step_back():
     s = torch.tensor([7, 0])
     for call in (ddpm.q_posterior, ddpm.p_mean):
         order = (X, s, X) if call is ddpm.p_mean else (X, X, s)
-        with pytest.raises(IndexError, match="s = 0: steps go from 1 to 20 here"):
+        with pytest.raises(IndexError, match="s = 0: steps must be 1 to 20 here"):
             call(*order, SCHEDULE)
 
 
@@ -115,10 +118,10 @@ def test_a_rate_that_no_reader_takes_for_one_is_not_written(tmp_path, fps):
 
 SHAPES = {  # in a process of its own: here the tests' own check of shapes would speak first
     "write_bvh('x.bvh', np.zeros((5, 63)))": (
-        "positions are (T, 21, 3), metres in the world; these are (5, 63)."
+        "positions must be (T, 21, 3), world positions in metres; these are (5, 63)."
     ),
     "write_bvh('x.bvh', np.zeros((5, 20, 3)))": "these are (5, 20, 3)",
-    "to_world(np.zeros((5, 21, 3)), np.zeros((1, 3)))": "5 poses and 1 rows of control",
+    "to_world(np.zeros((5, 21, 3)), np.zeros((1, 3)))": "5 poses but 1 rows of control",
 }
 
 
@@ -150,11 +153,11 @@ def test_a_control_beyond_the_training_data_is_named():
     past, control = torch.zeros(4, 63), torch.zeros(7, 3)
     control[5, 2] = -45.0
     with pytest.warns(
-        UserWarning, match=r"row 5 of the control asks for -45 \(turning rate\); .* from -2 to 2"
+        UserWarning, match=r"row 5 of the control is -45 \(turning rate\); .* on -2 to 2"
     ):
         generate(walker, past, control)
     control[5, 2] = -2.5  # a tenth of the range, from -2 to 2, is 0.4
-    with pytest.warns(UserWarning, match="row 5 of the control asks for -2.5"):
+    with pytest.warns(UserWarning, match="row 5 of the control is -2.5"):
         generate(walker, past, control)
     control[5, 2] = -2.3
     with warnings.catch_warnings():

@@ -13,7 +13,7 @@ from scipy.interpolate import CubicSpline
 from scipy.ndimage import gaussian_filter1d
 from scipy.signal import argrelmin, welch
 
-from motiondiff_edu.metrics.repetition import likeness
+from motiondiff_edu.metrics.repetition import autocorrelation
 from motiondiff_edu.motion.skeleton import HEELS, joint_index
 
 SMOOTHING = 0.083  # seconds, of the mean joint speed before its minima are taken
@@ -78,7 +78,7 @@ def repeats(world: Float[np.ndarray, "T 21 3"], fps: float = 20.0, least: float 
     x = root_frame(world, fps)
     x = x - x.mean(0)
     lags = range(round(least * fps), len(x) // 2)
-    return max(likeness(x, lag) for lag in lags)
+    return max(autocorrelation(x, lag) for lag in lags)
 
 
 def statistics(world: Float[np.ndarray, "T 21 3"], fps: float = 20.0) -> dict[str, float]:

@@ -1,21 +1,21 @@
-"""Bring a motion from one kind of file to another, by their names' endings. A BVH file is brought
-to the course's skeleton and 20 frames a second on its way."""
+"""Convert a motion from one file format to another. The endings of the two names say which. A BVH
+file is retargeted to the course's skeleton and resampled to 20 frames a second."""
 
 import argparse
 from pathlib import Path
 
 from . import outputs
 
-HELP = "from one kind of file to another"
+HELP = "convert a motion from one file format to another"
 EXAMPLE = "convert my_walk.bvh my_walk.mp4"
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("file", type=Path, help="a motion: .bvh or .npz")
-    parser.add_argument("out", type=Path, help="what to write")
+    parser.add_argument("out", type=Path, help=f"the file to write: {outputs.endings()}")
     outputs.add_overwrite(parser)
 
 
-def run(given: argparse.Namespace) -> None:
-    paths = outputs.free_names(given.out, given.overwrite)
-    outputs.write_all(outputs.reading(given.file), paths)
+def run(args: argparse.Namespace) -> None:
+    paths = outputs.output_paths(args.out, args.overwrite)
+    outputs.write_all(outputs.read(args.file), paths)

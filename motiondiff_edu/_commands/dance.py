@@ -1,5 +1,6 @@
-"""Dance to a song: wav, flac, ogg, mp3. The dance lasts as long as the song, or --seconds of it. A
-film (.mp4) or page (.html) has the sound along, BVH cannot."""
+"""Generate a dance to a song (wav, flac, ogg, mp3). The dance lasts as long as the song, or
+--seconds of it. A film (.mp4), a page (.html) and an .npz file contain the song as well; a BVH file
+cannot."""
 
 import argparse
 from pathlib import Path
@@ -13,17 +14,20 @@ EXAMPLE = "dance song.ogg --seconds 20 --out dance.bvh"
 def arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("song", type=Path, help="a sound file")
     parser.add_argument(
-        "--seconds", type=float, metavar="S", help="of the song, from its start (default: all)"
+        "--seconds",
+        type=float,
+        metavar="S",
+        help="dance to the first S seconds (default: the whole song)",
     )
     outputs.add_out(parser)
     outputs.add_draws(parser, "dances")
 
 
-def run(given: argparse.Namespace) -> None:
-    paths = outputs.free_names(given.out, given.overwrite, given.samples)
-    outputs.say(f"dancing to {given.song}")
+def run(args: argparse.Namespace) -> None:
+    paths = outputs.output_paths(args.out, args.overwrite, args.samples)
+    outputs.say(f"dancing to {args.song}")
     from .. import load
 
-    draws = {"samples": given.samples, "seed": given.seed}
-    made = load("dancer").dance(given.song, seconds=given.seconds, **draws)
+    draws = {"samples": args.samples, "seed": args.seed}
+    made = load("dancer").dance(args.song, seconds=args.seconds, **draws)
     outputs.write_all(made, paths)

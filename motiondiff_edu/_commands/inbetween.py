@@ -1,12 +1,13 @@
-"""Keep every N-th frame of a motion as a keyframe, and make all frames between them anew."""
+"""Keep every N-th frame of a motion as a keyframe, and generate the frames between them. The first
+and the last frame are keyframes too."""
 
 import argparse
 from pathlib import Path
 
 from . import outputs
 
-HELP = "keep keyframes and make what lies between them"
-EXAMPLE = "inbetween walk.bvh --every 20 --samples 3 --out made.bvh"
+HELP = "keep keyframes and generate the frames between them"
+EXAMPLE = "inbetween my_walk.bvh --every 20 --samples 3 --out made.bvh"
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
@@ -18,11 +19,11 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     outputs.add_draws(parser, "versions")
 
 
-def run(given: argparse.Namespace) -> None:
-    paths = outputs.free_names(given.out, given.overwrite, given.samples)
-    motion = outputs.reading(given.file)
+def run(args: argparse.Namespace) -> None:
+    paths = outputs.output_paths(args.out, args.overwrite, args.samples)
+    motion = outputs.read(args.file)
     from .. import inbetween, keyframes
 
-    outputs.say("filling in")
-    known = keyframes(motion, every=given.every)
-    outputs.write_all(inbetween(motion, known, samples=given.samples, seed=given.seed), paths)
+    outputs.say("generating the frames between the keyframes")
+    known = keyframes(motion, every=args.every)
+    outputs.write_all(inbetween(motion, known, samples=args.samples, seed=args.seed), paths)

@@ -1,11 +1,12 @@
-"""Say what a file of motion holds: its length, how far and how fast it goes, what was put right."""
+"""Describe a motion file: its length, the distance and speed of the figure, and what was corrected
+while the file was read."""
 
 import argparse
 from pathlib import Path
 
 from . import outputs
 
-HELP = "what a file holds"
+HELP = "describe a motion file"
 EXAMPLE = "info my_walk.bvh"
 
 
@@ -13,28 +14,29 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("file", type=Path, nargs="+", help="motions: .bvh or .npz")
 
 
-def run(given: argparse.Namespace) -> None:
-    for path in given.file:
-        motion = outputs.reading(path)
+def run(args: argparse.Namespace) -> None:
+    for path in args.file:
+        motion = outputs.read(path)
         print(motion)
         for line in lines_of(motion):
             print(f"  {line}")
 
 
 def lines_of(motion) -> list[str]:
-    """What there is to say beside length and rate."""
+    """Facts about a motion beside its length and frame rate."""
     import numpy as np
 
     if not motion.known.all():
         missing = np.flatnonzero(~motion.known.all(0))
-        return [f"missing at times: {', '.join(motion.skeleton.names[j] for j in missing)}"]
+        names = ", ".join(motion.skeleton.names[j] for j in missing)
+        return [f"joints with missing positions: {names}"]
     ground = motion.positions[:, 0][:, [0, 2]]
-    way = np.linalg.norm(np.diff(ground, axis=0), axis=1).sum()
+    distance = np.linalg.norm(np.diff(ground, axis=0), axis=1).sum()
     away, heights = np.linalg.norm(ground[-1] - ground[0]), motion.positions[..., 1]
     lines = [
-        f"the root goes {way:.2f} m, {way / motion.seconds:.2f} m/s on average, and ends "
-        f"{away:.2f} m from its start",
-        f"height from {heights.min():.2f} to {heights.max():.2f} m",
+        f"the root moves {distance:.2f} m, {distance / motion.seconds:.2f} m/s on average, and "
+        f"ends {away:.2f} m from its start",
+        f"the joints are between {heights.min():.2f} and {heights.max():.2f} m high",
     ]
     if motion.audio is not None:
         lines.append(f"sound at {motion.sample_rate} Hz")

@@ -1,4 +1,4 @@
-"""Where a command writes: the name is looked at before anything is computed."""
+"""The files that a command reads and writes; it checks output names before it computes anything."""
 
 import argparse
 import sys
@@ -8,54 +8,71 @@ from pathlib import Path
 from ..motion import registry
 
 
+def endings() -> str:
+    """The file endings that can be written."""
+    return " ".join(registry.writers.names())
+
+
 def add_out(parser: argparse.ArgumentParser) -> None:
-    """--out and --overwrite."""
-    endings = " ".join(registry.writers.names())
+    """Add --out and --overwrite."""
     parser.add_argument(
-        "--out", required=True, type=Path, metavar="FILE", help=f"what to write: {endings}"
+        "--out", required=True, type=Path, metavar="FILE", help=f"the file to write: {endings()}"
     )
     add_overwrite(parser)
 
 
 def add_overwrite(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("--overwrite", action="store_true", help="replace a file that is there")
+    """Add --overwrite."""
+    parser.add_argument("--overwrite", action="store_true", help="replace an existing file")
 
 
 def add_draws(parser: argparse.ArgumentParser, what: str) -> None:
-    """--samples and --seed."""
+    """Add --samples and --seed."""
     parser.add_argument(
-        "--samples", type=int, default=1, metavar="N", help=f"so many {what}, in numbered files"
+        "--samples",
+        type=int,
+        default=1,
+        metavar="N",
+        help=f"the number of {what}, each in its own numbered file (default: 1)",
     )
+    add_seed(parser)
+
+
+def add_seed(parser: argparse.ArgumentParser) -> None:
+    """Add --seed."""
     parser.add_argument(
-        "--seed", type=int, default=0, metavar="N", help="another number, another result"
+        "--seed",
+        type=int,
+        default=0,
+        metavar="N",
+        help="the random seed; another seed gives another result (default: 0)",
     )
 
 
-def free_names(out: Path, overwrite: bool, samples: int = 1) -> list[Path]:
-    """The files to be written: `out`, or made-1.bvh, made-2.bvh ... for several samples.
+def output_paths(out: Path, overwrite: bool, samples: int = 1) -> list[Path]:
+    """The files to write: `out`, or made-1.bvh, made-2.bvh ... for several samples.
 
-    Raises ValueError for an ending that nobody writes, a folder, or a file that is there.
+    Raises ValueError for an unknown ending, a folder, or a file that exists.
     """
     if samples < 1:
-        raise ValueError(f"--samples is a number from 1 on, not {samples}")
-    there = registry.writers.names()
-    if out.suffix.lower() not in there:
-        what = f"nothing is written as {out.suffix}" if out.suffix else "the name has no ending"
-        raise ValueError(f"--out {out}: {what}; there are {' '.join(there)}")
+        raise ValueError(f"--samples must be at least 1, not {samples}")
+    if out.suffix.lower() not in registry.writers.names():
+        what = f"unknown ending {out.suffix}" if out.suffix else "the name has no ending"
+        raise ValueError(f"--out {out}: {what}; use one of {endings()}")
     out = out.expanduser()
     digits = len(str(samples))
     numbers = [""] if samples == 1 else [f"-{k:0{digits}d}" for k in range(1, samples + 1)]
     paths = [out.with_name(f"{out.stem}{number}{out.suffix}") for number in numbers]
     for path in paths:
         if path.is_dir():
-            raise ValueError(f"--out {path} is a folder; name a file in it")
+            raise ValueError(f"--out {path} is a folder; give the name of a file in it")
         if path.exists() and not overwrite:
-            raise ValueError(f"{path} is there already: choose another --out, or add --overwrite")
+            raise ValueError(f"{path} exists already: choose another --out, or add --overwrite")
     return paths
 
 
-def reading(path: Path):
-    """A motion from a file; says so first, for the libraries take a moment."""
+def read(path: Path):
+    """Read a motion. A line on stderr comes first, because the imports take a moment."""
     say(f"reading {path}")
     from .. import read_motion
 
@@ -63,7 +80,7 @@ def reading(path: Path):
 
 
 def write_all(motions: object, paths: Sequence[Path]) -> None:
-    """Write each motion to its file, and say what is there now."""
+    """Write each motion to its file, and print what was written."""
     motions = motions if isinstance(motions, list) else [motions]
     for motion, path in zip(motions, paths, strict=True):
         motion.save(path)
@@ -71,5 +88,5 @@ def write_all(motions: object, paths: Sequence[Path]) -> None:
 
 
 def say(words: str) -> None:
-    """To whoever waits, beside the output."""
+    """Print progress to stderr, so that stdout holds the results alone."""
     print(words, file=sys.stderr, flush=True)

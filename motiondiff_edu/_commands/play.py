@@ -1,4 +1,5 @@
-"""Show motions side by side on a page in the browser."""
+"""Show motions side by side on a page in the browser. Without --out the page is a temporary
+file."""
 
 import argparse
 from pathlib import Path
@@ -11,17 +12,17 @@ EXAMPLE = "play my_walk.bvh more.bvh"
 
 def arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("file", type=Path, nargs="+", help="motions: .bvh or .npz")
-    parser.add_argument("--out", type=Path, metavar="PAGE.html", help="where to keep the page")
-    parser.add_argument("--no-open", action="store_true", help="write the page, open nothing")
+    parser.add_argument("--out", type=Path, metavar="PAGE.html", help="where to save the page")
+    parser.add_argument("--no-open", action="store_true", help="do not open the browser")
     outputs.add_overwrite(parser)
 
 
-def run(given: argparse.Namespace) -> None:
-    if given.out is not None:
-        if given.out.suffix.lower() not in (".html", ".htm"):
-            raise ValueError(f"--out {given.out}: the page's name ends in .html")
-        (given.out,) = outputs.free_names(given.out.with_suffix(".html"), given.overwrite)
-    motions = [outputs.reading(path) for path in given.file]
+def run(args: argparse.Namespace) -> None:
+    if args.out is not None:
+        if args.out.suffix.lower() not in (".html", ".htm"):
+            raise ValueError(f"--out {args.out}: the page's name must end in .html")
+        (args.out,) = outputs.output_paths(args.out.with_suffix(".html"), args.overwrite)
+    motions = [outputs.read(path) for path in args.file]
     from .. import play
 
-    play(motions, path=given.out, open_page=not given.no_open)
+    play(motions, path=args.out, open_page=not args.no_open)

@@ -1,5 +1,6 @@
-"""Find joints that a recording lost. Without --missing they are those that the file itself leaves
-out (NaN in an npz). The pelvis (Hips) must be known throughout."""
+"""Reconstruct joints that are missing from a recording. --missing names them; without it they are
+the positions that the file itself lacks (NaN in an npz). The pelvis (Hips) must be known in every
+frame."""
 
 import argparse
 import re
@@ -7,40 +8,42 @@ from pathlib import Path
 
 from . import outputs
 
-HELP = "find joints that are missing"
+HELP = "reconstruct missing joints"
 EXAMPLE = (
-    "reconstruct walk.bvh --missing RightArm,RightForeArm,RightHand --frames 40-80 --out whole.bvh"
+    "reconstruct my_walk.bvh --missing RightArm,RightForeArm,RightHand --frames 40-80 "
+    "--out whole.bvh"
 )
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("file", type=Path, help="a motion: .bvh or .npz")
-    parser.add_argument("--missing", metavar="JOINTS", help="joints to find, with commas between")
+    parser.add_argument(
+        "--missing", metavar="JOINTS", help="the joints to reconstruct, separated by commas"
+    )
     parser.add_argument(
         "--frames",
         metavar="A-B",
-        help="in frames A to B, both included; several with commas (default: all frames)",
+        help="where they are missing: frames A to B, both included; separate several spans by "
+        "commas (default: all frames)",
     )
-    parser.add_argument(
-        "--seed", type=int, default=0, metavar="N", help="another number, another result"
-    )
+    outputs.add_seed(parser)
     outputs.add_out(parser)
 
 
-def run(given: argparse.Namespace) -> None:
-    frames = spans(given.frames)
-    if given.frames and not given.missing:
-        raise ValueError("--frames says when; say as well which joints, by --missing")
-    (path,) = outputs.free_names(given.out, given.overwrite)
-    motion = outputs.reading(given.file)
+def run(args: argparse.Namespace) -> None:
+    frames = spans(args.frames)
+    if args.frames and not args.missing:
+        raise ValueError("--frames needs --missing, which names the joints")
+    (path,) = outputs.output_paths(args.out, args.overwrite)
+    motion = outputs.read(args.file)
     from .. import reconstruct
 
     known = motion.known
-    for first, last in frames if given.missing else []:
-        joints = [name.strip() for name in given.missing.split(",") if name.strip()]
+    for first, last in frames if args.missing else []:
+        joints = [name.strip() for name in args.missing.split(",") if name.strip()]
         known &= motion.all_but(joints, first, last)
     outputs.say(f"reconstructing {int((~known).sum())} joint positions")
-    outputs.write_all(reconstruct(motion, known, seed=given.seed), [path])
+    outputs.write_all(reconstruct(motion, known, seed=args.seed), [path])
 
 
 def spans(words: str | None) -> list[tuple[int, int | None]]:
@@ -51,6 +54,6 @@ def spans(words: str | None) -> list[tuple[int, int | None]]:
     for piece in words.split(","):
         match = re.fullmatch(r"\s*(\d+)\s*-\s*(\d+)\s*", piece, re.ASCII)
         if not match or int(match[1]) > int(match[2]):
-            raise ValueError(f"--frames {words}: {piece!r} is no span of frames such as 40-80")
+            raise ValueError(f"--frames {words}: {piece!r} is not a span of frames such as 40-80")
         found.append((int(match[1]), int(match[2]) + 1))
     return found

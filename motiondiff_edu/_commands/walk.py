@@ -1,34 +1,37 @@
-"""Continue a walk under a control: seconds and speed ahead (m/s), then left, right (m/s) or turn
-(rad/s, to the left), with semicolons between the pieces. Written are the new frames; --joined puts
-the given ones before them."""
+"""Continue a recorded walk. The control is a list of pieces, separated by semicolons. A piece is a
+duration and a forward speed in m/s, then optionally left or right with a speed in m/s, and turn
+with a rate in rad/s (positive turns to the left). The output has only the new frames; --joined adds
+the given frames before them."""
 
 import argparse
 from pathlib import Path
 
 from . import control_words, outputs
 
-HELP = "continue a recorded walk as you steer it"
+HELP = "continue a recorded walk along a control"
 EXAMPLE = 'walk my_walk.bvh --control "3s 1.2; 4s 1.0 turn 0.6" --out more.bvh'
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("file", type=Path, help="the walk to continue: .bvh or .npz")
-    parser.add_argument("--control", required=True, metavar="WORDS", help="where to go")
+    parser.add_argument(
+        "--control", required=True, metavar="PIECES", help='for example "3s 1.2; 4s 1.0 turn 0.6"'
+    )
     parser.add_argument("--joined", action="store_true", help="write the given frames as well")
     outputs.add_out(parser)
     outputs.add_draws(parser, "continuations")
 
 
-def run(given: argparse.Namespace) -> None:
-    segments = control_words.parse(given.control)
-    paths = outputs.free_names(given.out, given.overwrite, given.samples)
-    motion = outputs.reading(given.file)
+def run(args: argparse.Namespace) -> None:
+    segments = control_words.parse(args.control)
+    paths = outputs.output_paths(args.out, args.overwrite, args.samples)
+    motion = outputs.read(args.file)
     from .. import joystick, load
 
     outputs.say("walking")
-    made = load("walker").walk(motion, joystick(segments), samples=given.samples, seed=given.seed)
+    made = load("walker").walk(motion, joystick(segments), samples=args.samples, seed=args.seed)
     made = made if isinstance(made, list) else [made]
-    if given.joined:
+    if args.joined:
         before = motion.resampled(made[0].fps)
         made = [before.then(more) for more in made]
     outputs.write_all(made, paths)

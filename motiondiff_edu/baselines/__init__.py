@@ -1,1 +1,1 @@
-"""What the networks are compared with, each on the same windows and walked by the same rollout."""
+"""Baselines for the networks; each uses the same windows, and walkers use the same rollout."""

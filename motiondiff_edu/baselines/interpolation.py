@@ -1,7 +1,8 @@
-"""In-betweens without a model: straight lines between what is given, or arcs that keep the bones.
+"""In-betweens without a model: straight lines between given joints, or arcs that keep the bones.
 
-Before the first and after the last given frame its pose is held.  Source: what every paper on
-in-betweening compares with; arcs are spherical interpolation (slerp) of the bones' directions.
+Before the first and after the last given frame its pose is held.
+Source: every paper on in-betweening compares with these; arcs are spherical interpolation (slerp)
+of the bones' directions.
 Notebook: 15
 """
 
@@ -14,7 +15,7 @@ from ..motion.skeleton import BONES
 def linear(
     positions: Float[np.ndarray, "T J 3"], known: Bool[np.ndarray, "T J"]
 ) -> Float[np.ndarray, "T J 3"]:
-    """Each joint goes straight from one given place to the next.
+    """Each joint moves in a straight line from one given position to the next.
 
     Raises ValueError for a joint that is never given.
 
@@ -34,11 +35,10 @@ def linear(
 def spherical(
     positions: Float[np.ndarray, "T J 3"], known: Bool[np.ndarray, "T J"]
 ) -> Float[np.ndarray, "T J 3"]:
-    """The pelvis goes straight.
+    """The pelvis moves in straight lines; every bone turns evenly and keeps its length.
 
-    Every bone turns evenly from one given direction to the next, and keeps its length.
-
-    A bone counts as given where both of its ends are; given joints stay where they are.
+    A bone turns from one given direction to the next. It is given where both of its ends are. Given
+    joints stay where they are.
     Raises ValueError for a joint that is never given.  Notebook: 15
     """
     _each_is_given(known)
@@ -59,11 +59,9 @@ def spherical(
 def _slerp(
     vectors: Float[np.ndarray, "K 3"], at: np.ndarray, times: np.ndarray
 ) -> Float[np.ndarray, "T 3"]:
-    """Vectors between those at the frames `at`.
+    """Interpolate vectors given at the frames `at`: directions on a great circle, lengths linearly.
 
-    Directions on the great circle, lengths on a straight line.
-
-    Opposite directions turn by any of the great circles between them.
+    Opposite directions turn along any of the great circles between them.
     """
     length = np.linalg.norm(vectors, axis=-1)
     unit = vectors / np.maximum(length, 1e-12)[:, None]
@@ -73,7 +71,7 @@ def _slerp(
     share = np.clip((times - at[first]) / span, 0, 1)[:, None]
     start, end = unit[first], unit[second]
     cos = (start * end).sum(-1, keepdims=True)
-    aside = end - cos * start  # at right angles to the start, as long as the sine
+    aside = end - cos * start  # at right angles to the start; its length is the sine
     sin = np.linalg.norm(aside, axis=-1, keepdims=True)
     any_side = np.cross(start, np.eye(3)[np.abs(start).argmin(-1)])
     aside = np.where(sin > 1e-9, aside, any_side)
@@ -85,6 +83,4 @@ def _slerp(
 def _each_is_given(known: Bool[np.ndarray, "T J"]) -> None:
     never = np.flatnonzero(~known.any(0))
     if len(never):
-        raise ValueError(
-            f"joint {int(never[0])} is never given: there is nothing to interpolate between"
-        )
+        raise ValueError(f"joint {int(never[0])} is never given, so it cannot be interpolated")

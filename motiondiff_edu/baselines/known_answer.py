@@ -1,13 +1,12 @@
-"""How far is each way of filling in from the true conditional?
+"""How far is each method of filling in from the true conditional? A test on Gaussian mixtures.
 
-Judged where that is known: on Gaussian mixtures.
-
-    wanted: p(unknown | known) of a mixture (`exact.conditional`)
-    asked:  the exact denoiser, so the method alone errs
-Ways: masked sampling (MoFusion 4.4), with and without resampling, in few steps or many;
-there-and-back (MoDiff III-E), which draws the future from the past and the past from the future;
-the same with what is known kept in view, which is Gibbs sampling; and draws from the wanted itself,
-whose errors are those of counting.
+    truth:     p(unknown | known) of a mixture (`exact.conditional`)
+    denoiser:  the exact one, so all errors come from the method
+Methods:
+    masked          masked sampling (MoFusion 4.4), with or without resampling
+    there-and-back  draws the future from the past and the past from the future (MoDiff III-E)
+    gibbs           the same, with the known entries given in both directions: Gibbs sampling
+    exact           draws from the truth; its errors are those of a finite number of samples
 Source: MoFusion 4.4; MoDiff III-E; the comparison is ours.  Notebook: 15
 """
 
@@ -27,13 +26,11 @@ from .mixture_fit import responsibilities
 
 
 @dataclass(frozen=True, eq=False)
-class Question:
-    """A mixture, its exact denoiser, and some of its entries given.
+class Problem:
+    """A mixture, its exact denoiser, and the values of its known entries.
 
-    `past` is what there-and-back starts from.
-
-    Only unknown entries of the past are judged where a past is named, so that all ways answer the
-    same question.
+    `past` marks the entries from which there-and-back starts. If it is given, only unknown entries
+    of the past are compared, so that all methods solve the same problem.
     """
 
     truth: Mixture
@@ -42,24 +39,25 @@ class Question:
     values: Float[Tensor, "D"]
     known: Bool[Tensor, "D"]
     past: Bool[Tensor, "D"] | None = None
-    frames: int = 1  # D is so many frames, one after the other: what `blend` goes by
+    frames: int = 1  # number of frames in D, one after the other; `blend` needs it
 
     @cached_property
-    def wanted(self) -> Mixture:
+    def true_conditional(self) -> Mixture:
         """The true conditional of all unknown entries."""
         return conditional(self.truth, self.values, self.known)
 
     @property
-    def judged(self) -> Bool[Tensor, "D"]:
-        """The entries in which ways are compared."""
+    def compared(self) -> Bool[Tensor, "D"]:
+        """The entries in which methods are compared."""
         return ~self.known if self.past is None else self.past & ~self.known
 
 
 @dataclass(frozen=True)
-class Way:
-    """A way to fill in.
+class Method:
+    """A method of filling in.
 
-    "exact", "masked" (with what `inpaint_steps` takes), "there-and-back" or "gibbs" (`rounds`).
+    Its kind is "exact", "masked" (with the options of `inpaint_steps`), "there-and-back" or "gibbs"
+    (with `rounds`).
     """
 
     kind: str
@@ -70,15 +68,15 @@ class Way:
     guidance: float = 0.0
 
     def __post_init__(self):
-        """Raises ValueError for a kind that is none."""
+        """Raise ValueError for an unknown kind."""
         if self.kind not in ("exact", "masked", "there-and-back", "gibbs"):
             raise ValueError(
-                f"the ways are exact, masked, there-and-back and gibbs, not {self.kind!r}"
+                f"kind must be exact, masked, there-and-back or gibbs, not {self.kind!r}"
             )
 
     @property
     def name(self) -> str:
-        """As `masked.50.x5`: fifty steps, each made five times."""
+        """For example `masked.50.x5`: fifty steps, each repeated five times."""
         turns = ("" if self.resample == 1 else f".x{self.resample}") + (
             ".blended" if self.blend is not None else ""
         )
@@ -87,23 +85,22 @@ class Way:
         return self.kind + ends.get(self.kind, f".{self.rounds}")
 
 
-WAYS = (
-    Way("exact"),
-    *(Way("masked", steps) for steps in (5, 10, 50, 100)),
-    *(Way("masked", 50, resample) for resample in (2, 5, 10)),
-    Way("masked", 50, blend=3),
-    Way("masked", 50, guidance=1.0),
+METHODS = (
+    Method("exact"),
+    *(Method("masked", steps) for steps in (5, 10, 50, 100)),
+    *(Method("masked", 50, resample) for resample in (2, 5, 10)),
+    Method("masked", 50, blend=3),
+    Method("masked", 50, guidance=1.0),
 )
 ROUNDS = (
-    Way("there-and-back", rounds=1),
-    Way("there-and-back", rounds=20),
-    Way("gibbs", rounds=20),
+    Method("there-and-back", rounds=1),
+    Method("there-and-back", rounds=20),
+    Method("gibbs", rounds=20),
 )
 
 
-class Rest:
-    """Draws from p(the rest | these entries) of a mixture, for many values of these entries at
-    once."""
+class ConditionalSampler:
+    """Draws from p(other entries | known entries) of a mixture, for many known values at once."""
 
     def __init__(self, given: Mixture, known: Bool[Tensor, "D"]):
         covariances = torch.einsum("kia,ka,kja->kij", given.axes, given.variances, given.axes)
@@ -116,9 +113,9 @@ class Rest:
         self.root = axes * variances.clamp(min=0).sqrt()[:, None]
 
     def draw(self, x: Float[Tensor, "N D"], generator: torch.Generator) -> Float[Tensor, "N D"]:
-        """x with the rest drawn anew.
+        """x with new draws of the other entries.
 
-        First the part that its known entries speak for, then a point of it.
+        First a part is drawn by its probability given the known entries, then a point of it.
         """
         value, filled = x[:, self.known], x.clone()
         part = torch.multinomial(responsibilities(self.seen, value), 1, generator=generator)[:, 0]
@@ -136,7 +133,7 @@ class Rest:
 
 
 def there_and_back(
-    question: Question,
+    problem: Problem,
     x: Float[Tensor, "N D"],
     rounds: int,
     generator: torch.Generator,
@@ -144,66 +141,65 @@ def there_and_back(
 ) -> Float[Tensor, "N D"]:
     """Draw the future given the past, then the past given the future, `rounds` times.
 
-    The holes are filled from each new past.
-
-    What is known of the future is given, too. As in III-E the way back does not look at what is
-    known of the past: it reaches the holes through the future only. `keep`: it does look, which
-    makes this Gibbs sampling, with the true conditional for its end.
-    Raises ValueError for a question that names no past.  Source: MoDiff III-E.
+    The holes are filled from each new past. Known entries of the future are given. As in III-E, the
+    way back is not conditioned on the known entries of the past; they reach the holes only through
+    the future. With `keep` it is, which makes this Gibbs sampling, with the true conditional as its
+    limit.
+    Raises ValueError for a problem without a past.  Source: MoDiff III-E.
     """
-    if question.past is None:
-        raise ValueError("there-and-back needs a past to start from: name it in the question")
-    known, past = question.known, question.past
-    ahead = Rest(question.truth, past | known)
-    back = Rest(question.truth, (~past | known) if keep else ~past)
+    if problem.past is None:
+        raise ValueError("there-and-back needs a past to start from: set `past`")
+    known, past = problem.known, problem.past
+    ahead = ConditionalSampler(problem.truth, past | known)
+    back = ConditionalSampler(problem.truth, (~past | known) if keep else ~past)
     for _ in range(rounds):
         x = ahead.draw(x, generator)
         x = torch.where(known, x, back.draw(x, generator))
     return x
 
 
-def answers(
-    question: Question, way: Way, n: int, generator: torch.Generator
+def draw_samples(
+    problem: Problem, method: Method, n: int, generator: torch.Generator
 ) -> Float[Tensor, "n D"]:
-    """n samples by one way: the known entries as they are, the others filled in.
+    """n samples by one method: known entries stay, the others are filled in.
 
     Notebook: 15
     """
-    truth, known = question.truth, question.known
-    values = question.values.double().where(known, 0.0).expand(n, -1)
-    if way.kind == "exact":
-        return values.masked_scatter(~known, sample_mixture(question.wanted, n, generator))
-    if way.kind == "masked":
-        shape = (n, question.frames, -1)
+    truth, known = problem.truth, problem.known
+    values = problem.values.double().where(known, 0.0).expand(n, -1)
+    if method.kind == "exact":
+        return values.masked_scatter(~known, sample_mixture(problem.true_conditional, n, generator))
+    if method.kind == "masked":
+        shape = (n, problem.frames, -1)
         start = torch.randn(values.shape, generator=generator, dtype=torch.float64).view(shape)
-        denoise, schedule = _framed(question.denoise), question.schedule
+        denoise, schedule = _framed(problem.denoise), problem.schedule
         held = values.reshape(shape), known.expand(n, -1).reshape(shape)
-        if way.guidance:
-            denoise = guided(denoise, schedule, *held, way.guidance)
-        if way.blend is not None:
-            denoise = blended(denoise, schedule, *held, way.blend)
-        steps = resampled(timesteps(schedule.S, way.steps), way.resample)
+        if method.guidance:
+            denoise = guided(denoise, schedule, *held, method.guidance)
+        if method.blend is not None:
+            denoise = blended(denoise, schedule, *held, method.blend)
+        steps = resampled(timesteps(schedule.S, method.steps), method.resample)
         loop = inpaint_steps(denoise, start, schedule, *held, steps=steps, generator=generator)
         *_, last = loop
         return last.x_s.flatten(1)
     x = torch.where(
         known, values, truth.mean()
-    )  # what is missing is the mean at first, as in `reconstruction`
-    return there_and_back(question, x, way.rounds, generator, keep=way.kind == "gibbs")
+    )  # missing entries start at the mean, as in `reconstruction`
+    return there_and_back(problem, x, method.rounds, generator, keep=method.kind == "gibbs")
 
 
 def _framed(denoise: Denoiser) -> Denoiser:
-    """The same for motions (N, T, D / T) as for points (N, D)."""
+    """A denoiser of points (N, D) as one of motions (N, T, D / T)."""
     return lambda x, s: denoise(x.flatten(1), s).view_as(x)
 
 
 @dataclass(frozen=True)
 class Errors:
-    """How far samples are from the wanted: 0, 1 and 0 for whoever draws from it.
+    """How far samples are from the true conditional: 0, 1 and 0 for perfect samples.
 
-    mean: root mean square over entries of (mean - wanted mean) / wanted deviation. spread: root of
-    the mean ratio of variances. share: largest possible difference in probability (total variation)
-    between shares of the parts.
+    mean    RMS over entries of (mean - true mean) / true standard deviation
+    spread  root of the mean ratio of variances
+    share   total variation distance between the probabilities of the parts
     """
 
     mean: float
@@ -211,37 +207,45 @@ class Errors:
     share: float
 
 
-def errors_of(x: Float[Tensor, "N D"], question: Question) -> Errors:
-    """Samples against the true conditional."""
-    wanted, judged = question.wanted, question.judged[~question.known]
-    mean, variance = wanted.mean()[judged], wanted.covariance().diagonal()[judged]
-    made = x[:, question.judged]
-    share = responsibilities(question.truth, x).mean(0)
+def errors_of(x: Float[Tensor, "N D"], problem: Problem) -> Errors:
+    """The errors of samples against the true conditional."""
+    truth, compared = problem.true_conditional, problem.compared[~problem.known]
+    mean, variance = truth.mean()[compared], truth.covariance().diagonal()[compared]
+    made = x[:, problem.compared]
+    share = responsibilities(problem.truth, x).mean(0)
     return Errors(
         mean=float(((made.mean(0) - mean).square() / variance).mean().sqrt()),
         spread=float((made.var(0) / variance).mean().sqrt()),
-        share=float((share - wanted.weights).abs().sum() / 2),
+        share=float((share - truth.weights).abs().sum() / 2),
     )
 
 
 def conditional_errors(
-    question: Question, ways: Iterable[Way] = WAYS, *, seeds: Iterable[int] = range(5), n: int = 200
-) -> Iterator[tuple[Way, int, Errors]]:
-    """Every way with every seed, n samples each: (way, seed, errors), as soon as each is known.
-    Notebook: 15"""
+    problem: Problem,
+    methods: Iterable[Method] = METHODS,
+    *,
+    seeds: Iterable[int] = range(5),
+    n: int = 200,
+) -> Iterator[tuple[Method, int, Errors]]:
+    """Every method with every seed, n samples each; yields (method, seed, errors).
+
+    Notebook: 15
+    """
     seeds = tuple(seeds)
-    for way in ways:
+    for method in methods:
         for seed in seeds:
-            x = answers(question, way, n, torch.Generator().manual_seed(seed))
-            yield way, seed, errors_of(x, question)
+            x = draw_samples(problem, method, n, torch.Generator().manual_seed(seed))
+            yield method, seed, errors_of(x, problem)
 
 
-def gathered(found: Iterable[tuple[Way, int, Errors]]) -> dict[str, dict[str, list[float]]]:
-    """By the ways' names and by figure, one number for each seed:
-    gathered(...)["masked.50"]["mean"].   Notebook: 15"""
+def by_method(found: Iterable[tuple[Method, int, Errors]]) -> dict[str, dict[str, list[float]]]:
+    """One value per seed, by method and measure: by_method(...)["masked.50"]["mean"].
+
+    Notebook: 15
+    """
     table: dict[str, dict[str, list[float]]] = {}
-    for way, _, errors in found:
-        row = table.setdefault(way.name, {})
+    for method, _, errors in found:
+        row = table.setdefault(method.name, {})
         for figure, value in asdict(errors).items():
             row.setdefault(figure, []).append(value)
     return table

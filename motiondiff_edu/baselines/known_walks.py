@@ -1,9 +1,7 @@
-"""Questions with a known answer about a body.
+"""In-betweening problems with a known answer: windows of walking under a fitted mixture.
 
-Windows of walking under a fitted mixture, and what is given of one.
-
-A window has `frames` poses, `every` frames of the recording apart; its first half is the past.
-Standardised columns.
+A window has `frames` poses, one in `every` frames of the recording; its first half is the past. Its
+columns are standardised.
 Source: ours; the holes are those of MoFusion 4.4 and MoDiff III-E.  Notebook: 15
 """
 
@@ -21,16 +19,13 @@ from ..editing.masks import body_part, keyframes, seed
 from ..motion.clip import Clip
 from ..motion.scaler import Scaler
 from ..motion.skeleton import JOINTS, J
-from .known_answer import Question
+from .known_answer import Problem
 from .mixture_fit import WindowMixture, fit_windows
 
 
 @dataclass(frozen=True, eq=False)
 class WalkMixture:
-    """A mixture of short windows of walking, and the scaler back to metres.
-
-    The scaler has one entry for each coordinate of a pose.
-    """
+    """A mixture fitted to short windows of walking, and the scaler of a pose's coordinates."""
 
     fitted: WindowMixture
     scaler: Scaler
@@ -46,21 +41,21 @@ class WalkMixture:
         poses = self.scaler.inverse(x.reshape(len(x), self.frames, -1))
         return poses.reshape(len(x), self.frames, J, 3).double().numpy()
 
-    def question(
+    def problem(
         self,
         window: Float[Tensor, "D"],
         known: Bool[np.ndarray, "T J"],
         schedule: Schedule,
         past: bool = False,
-    ) -> Question:
-        """What is the rest of this window?
+    ) -> Problem:
+        """The problem to fill in the unknown entries of this window.
 
-        `past`: of its first half only, with there-and-back among the ways.
+        `past=True` compares only the first half, and allows there-and-back as a method.
         """
         columns = torch.from_numpy(np.repeat(known, 3, axis=1)).flatten()
         half = torch.arange(len(columns)) < (self.frames // 2) * 3 * J
         denoise = self.fitted.denoiser(schedule)
-        return Question(
+        return Problem(
             self.truth, denoise, schedule, window, columns, half if past else None, self.frames
         )
 
@@ -76,9 +71,7 @@ def fit_walks(
 ) -> WalkMixture:
     """Fit K Gaussians to all windows of these walks, a fifth of a second apart.
 
-    Notebook: 15
-
-    Raises ValueError where no clip is long enough, and as `fit_windows`.
+    Raises ValueError if no clip is long enough, and as `fit_windows` does.  Notebook: 15
     """
     span = (frames - 1) * every + 1
     rows = [
@@ -87,7 +80,7 @@ def fit_walks(
         for first in range(0, len(clip) - span, 4)
     ]
     if not rows:
-        raise ValueError(f"no clip has more than {span} frames: there is no window to fit")
+        raise ValueError(f"no clip has more than {span} frames, so there is no window to fit")
     poses = torch.from_numpy(np.stack(rows))
     scaler = Scaler.fit(poses)
     return WalkMixture(
@@ -98,7 +91,7 @@ def fit_walks(
 
 
 def holes(frames: int) -> dict[str, Bool[np.ndarray, "T J"]]:
-    """What may be given of a window: a seed, keyframes, a part of the body.
+    """Masks for a window: a seed, keyframes, or a part of the body is given.
 
     Notebook: 15
     """
@@ -110,9 +103,9 @@ def holes(frames: int) -> dict[str, Bool[np.ndarray, "T J"]]:
 
 
 def holes_in_the_past(frames: int) -> dict[str, Bool[np.ndarray, "T J"]]:
-    """What may be missing from its first half: the frames between its ends, a leg.
+    """Masks whose first half lacks the frames between its ends, or a leg.
 
-    Of the second, all is missing.
+    The second half is missing completely.
     """
     past = np.arange(frames)[:, None] < frames // 2
     ends = np.isin(np.arange(frames), (0, frames // 2 - 1))[:, None]

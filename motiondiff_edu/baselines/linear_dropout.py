@@ -1,12 +1,10 @@
-"""Dropout of the past in least squares, in closed form.
+"""Dropout of the past in least squares, in closed form: each kind is a ridge regression.
 
-Every kind of it is a kind of ridge regression.
-
-Least squares knows a dropped past x~ by two means over what is drawn at random, no more:
+Least squares depends on a dropped past x~ only through two expectations:
     E[x~] = keep x,    E[x~ x~^T] = share * x x^T + floor I      (* entry by entry)
-so the fit to endlessly many dropped pasts is known. For V = keep W, W the weights of the past, its
-normal equations are those of clean pasts with a penalty: (share / keep^2 - 1) * X^T X + floor /
-keep^2 I.
+So the fit to infinitely many dropped pasts has a formula. With W the weights of the past and
+V = keep W, its normal equations are those of clean pasts with a penalty:
+(share / keep^2 - 1) * X^T X + floor / keep^2 I.
 Source: MoDiff III-D (what is dropped); the algebra is ours.  Notebook: 09
 """
 
@@ -20,18 +18,14 @@ from torch import Tensor
 from ..performers.windows import Windows
 from .linear_gaussian import LinearGaussian, design, fitted
 
-Drop = Callable[
-    [Tensor, torch.Generator], Tensor
-]  # a past (B, T_h, D) and who draws -> what is left of it
+Drop = Callable[[Tensor, torch.Generator], Tensor]  # (past (B, T_h, D), generator) -> dropped past
 
 
 @dataclass(frozen=True, eq=False)
 class Moments:
-    """What a dropout leaves of the past on average.
+    """The moments of a dropped past: E[x~] = keep x, E[x~ x~^T] = share * x x^T + floor I.
 
-    E[x~] = keep x, E[x~ x~^T] = share * x x^T + floor I.
-
-    Those made here raise ValueError for a rate outside 0..1.  Notebook: 09
+    The functions here that make them raise ValueError for a rate outside 0..1.  Notebook: 09
     """
 
     keep: float
@@ -41,9 +35,9 @@ class Moments:
 
 @dataclass(frozen=True, eq=False)
 class Products:
-    """All that least squares takes from the windows.
+    """Everything that least squares needs: means over windows of x x^T, x y^T and y y^T.
 
-    Means over them of x x^T, x y^T and y y^T, in standard units.
+    They are in standardised units.
     """
 
     xx: Float[Tensor, "F F"]
@@ -53,19 +47,21 @@ class Products:
 
     @property
     def past(self) -> int:
-        """How many of the F regressors are the past's; these come first."""
+        """How many of the F regressors belong to the past; these come first."""
         return self.windows.T_h * self.yy.shape[0]
 
 
 def check_rate(rate: float) -> None:
-    """Raises ValueError unless the rate is a probability."""
+    """Raise ValueError unless the rate is a probability."""
     if not 0 <= rate <= 1:
-        raise ValueError(f"a rate lies between 0 and 1, not {rate:g}")
+        raise ValueError(f"a rate must be between 0 and 1, not {rate:g}")
 
 
 def noised(rate: float, alpha_bar: Float[Tensor, "S"]) -> Moments:
-    """Diffusion dropout; each of these alpha_bar is as likely.  keep: their roots' mean; floor:
-    mean 1 - alpha_bar."""
+    """Diffusion dropout with equally likely steps, given by their alpha_bar.
+
+    For a dropped past, keep is the mean of their roots and floor the mean of 1 - alpha_bar.
+    """
     check_rate(rate)
     keep, share = 1 - rate + rate * alpha_bar.sqrt().mean(), 1 - rate + rate * alpha_bar.mean()
     return Moments(float(keep), share.double(), float(rate * (1 - alpha_bar).mean()))
@@ -74,7 +70,7 @@ def noised(rate: float, alpha_bar: Float[Tensor, "S"]) -> Moments:
 def zeroed(rate: float) -> Moments:
     """Whole pasts set to zero.
 
-    The penalty has the data's own shape, and shrinks all of the past alike.
+    The penalty is proportional to X^T X, so it shrinks all weights of the past by the same factor.
     """
     check_rate(rate)
     return Moments(1 - rate, torch.tensor(1 - rate, dtype=torch.float64))
@@ -83,7 +79,7 @@ def zeroed(rate: float) -> Moments:
 def frames_zeroed(rate: float, T_h: int, D: int) -> Moments:
     """MoGlow's frame dropout.
 
-    Two frames are both there with (1 - rate)^2, a frame and itself with 1 - rate.
+    Two different frames are both kept with probability (1 - rate)^2, one frame with 1 - rate.
     """
     check_rate(rate)
     frame = torch.arange(T_h * D) // D
@@ -92,15 +88,13 @@ def frames_zeroed(rate: float, T_h: int, D: int) -> Moments:
 
 
 def entries_rescaled(rate: float, entries: int) -> Moments:
-    """nn.Dropout on the past.
+    """nn.Dropout on the past: entries become zero, the others are divided by 1 - rate.
 
-    Entries set to zero, the others divided by 1 - rate, so that the mean stays.
+    So the mean does not change.
     """
     check_rate(rate)
     if rate == 1:
-        raise ValueError(
-            "nn.Dropout at rate 1 leaves nothing whose mean could stay; take a rate below 1"
-        )
+        raise ValueError("nn.Dropout at rate 1 leaves nothing to rescale; use a rate below 1")
     share = torch.ones(entries, entries, dtype=torch.float64)
     return Moments(1.0, share + rate / (1 - rate) * torch.eye(entries, dtype=torch.float64))
 
@@ -111,9 +105,7 @@ def products(
     draws: int = 1,
     generator: torch.Generator | None = None,
 ) -> Products:
-    """The products of all windows, with the past as `drop` leaves it.
-
-    It is dropped `draws` times at each window.
+    """The products of all windows, with each past dropped `draws` times by `drop`.
 
     Raises ValueError unless the windows predict one pose (T_p = 1).  Notebook: 09
     """
@@ -131,8 +123,10 @@ def products(
 
 
 def expected(clean: Products, moments: Moments) -> Products:
-    """What `products(windows, drop)` tends to with many draws, from the products of clean pasts.
-    Notebook: 09"""
+    """The limit of `products(windows, drop)` for many draws, from the products of clean pasts.
+
+    Notebook: 09
+    """
     P = clean.past
     xx = clean.xx.clone()
     xy = clean.xy.clone()
@@ -146,9 +140,8 @@ def expected(clean: Products, moments: Moments) -> Products:
 def fit(dropped: Products, clean: Products | None = None, ridge: float = 1e-6) -> LinearGaussian:
     """Least squares on dropped pasts.
 
-    The walker's noise is what this leaves over on clean ones, as it will be used.
-
-    Without `clean` the products are those of clean pasts: ordinary least squares.  Notebook: 09
+    The walker's noise is the residual on clean pasts, because it will be used with these. Without
+    `clean`, `dropped` are the products of clean pasts: ordinary least squares.  Notebook: 09
     """
     clean = clean or dropped
     weight = torch.linalg.solve(
@@ -159,9 +152,9 @@ def fit(dropped: Products, clean: Products | None = None, ridge: float = 1e-6) -
 
 
 def contributions(walker: LinearGaussian, clean: Products) -> tuple[float, float]:
-    """How far past and control move the next pose.
+    """How much past and control contribute to the next pose: RMS of each part of the sum.
 
-    RMS of either's part of the sum, in standard deviations.
+    They are in standard deviations.
 
     Notebook: 09
     """

@@ -1,11 +1,9 @@
-"""A walker with no network.
-
-The next pose is a linear function of past and control, plus Gaussian noise.
+"""A walker without a network: the next pose is linear in past and control, plus Gaussian noise.
 
     next = W [past T_h poses, T_h rows of control, 1] + L z,   z ~ N(0, I)
-W is ridge regression, L L^T the covariance of what it leaves over: a vector autoregression with
-input. It is what every network here has to beat. It has a walker's form, so `rollout.generate` lets
-it walk.
+W comes from ridge regression, and L L^T is the covariance of the residuals: a vector autoregression
+with input. Every network here has to beat it. It has the interface of a walker, so
+`rollout.generate` works with it.
 Source: MoDiff III-C (the rollout); the model is ours.  Notebook: 07
 """
 
@@ -23,7 +21,7 @@ from ..rollout import WindowSampler
 
 @dataclass(frozen=True, eq=False)
 class LinearGaussian:
-    """The fitted numbers, in standardised units; one pose is predicted at a time (T_p = 1)."""
+    """The fitted weights, in standardised units; one pose is predicted at a time (T_p = 1)."""
 
     weight: Float[Tensor, "F D"]
     spread: Float[Tensor, "D D"]  # L, lower triangular
@@ -33,7 +31,7 @@ class LinearGaussian:
 
     @property
     def config(self) -> SimpleNamespace:
-        """The sizes that `rollout.generate` asks for."""
+        """The sizes that `rollout.generate` needs."""
         return SimpleNamespace(
             T_h=self.T_h, T_p=1, D=self.weight.shape[1], C=len(self.control_scaler.mean)
         )
@@ -41,14 +39,16 @@ class LinearGaussian:
     def mean(
         self, past: Float[Tensor, "B T_h D"], control: Float[Tensor, "B T C"]
     ) -> Float[Tensor, "B D"]:
-        """The expected next pose; of the control, the rows beside the past are used.   Notebook:
-        07"""
+        """The expected next pose; it uses only the rows of control that belong to the past.
+
+        Notebook: 07
+        """
         return regressors(past, control[:, : self.T_h]) @ self.weight
 
     def window_sampler(self, steps: int | None = None, spread: float = 1.0) -> WindowSampler:
-        """Draw the next pose; `spread` scales the noise (0: the mean).
+        """A function that draws the next pose; `spread` scales the noise (0 gives the mean).
 
-        Without diffusion, `steps` changes nothing.
+        There is no diffusion, so `steps` has no effect.
 
         Notebook: 07
         """
@@ -60,11 +60,9 @@ class LinearGaussian:
         return sample
 
     def growth(self) -> float:
-        """The factor by which the longest-lived error changes in a frame.
+        """The factor by which the most persistent error grows per frame; above 1 it grows forever.
 
-        Above 1 it grows for ever.
-
-        The largest |eigenvalue| of the companion matrix, which moves T_h poses one frame on.
+        It is the largest |eigenvalue| of the companion matrix, which moves T_h poses on by a frame.
         Notebook: 07
         """
         D, size = self.weight.shape[1], self.T_h * self.weight.shape[1]
@@ -77,7 +75,7 @@ class LinearGaussian:
 def regressors(
     past: Float[Tensor, "B T_h D"], control: Float[Tensor, "B T_h C"]
 ) -> Float[Tensor, "B F"]:
-    """One row for each window: all its past poses, the control beside them, and 1.
+    """One row for each window: all its past poses, their control, and 1.
 
     Notebook: 07
     """
@@ -87,13 +85,13 @@ def regressors(
 
 
 def design(windows: Windows) -> tuple[Float[Tensor, "K F"], Float[Tensor, "K D"]]:
-    """All windows as least squares sees them: a row of regressors each, and the pose that follows.
+    """All windows for least squares: a row of regressors for each, and the pose that follows.
 
     Raises ValueError unless the windows predict one pose (T_p = 1).  Notebook: 09
     """
     if windows.T_p != 1:
         raise ValueError(
-            "this model predicts one pose at a time; "
+            "this model predicts one pose at a time: "
             f"make the windows with T_p=1, not {windows.T_p}"
         )
     rows = windows.starts[:, None] + torch.arange(windows.T_h + 1)
@@ -102,9 +100,9 @@ def design(windows: Windows) -> tuple[Float[Tensor, "K F"], Float[Tensor, "K D"]
 
 
 def fit(windows: Windows, ridge: float = 1e-3) -> LinearGaussian:
-    """Least squares over all windows: W = (X^T X + ridge K I)^-1 X^T Y, K windows.
+    """Least squares over all K windows: W = (X^T X + ridge K I)^-1 X^T Y.
 
-    L from the residuals' covariance.
+    L comes from the covariance of the residuals.
 
     Raises ValueError unless the windows predict one pose (T_p = 1).  Notebook: 07
     """
@@ -118,7 +116,7 @@ def fit(windows: Windows, ridge: float = 1e-3) -> LinearGaussian:
 def fitted(
     windows: Windows, weight: Float[Tensor, "F D"], covariance: Float[Tensor, "D D"]
 ) -> LinearGaussian:
-    """The walker with these weights, whose noise has this covariance.  Notebook: 09"""
+    """The walker with these weights and this covariance of its noise.  Notebook: 09"""
     spread = torch.linalg.cholesky(
         covariance + 1e-12 * torch.eye(len(covariance), dtype=torch.float64)
     )

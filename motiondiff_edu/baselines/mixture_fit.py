@@ -1,12 +1,10 @@
-"""A Gaussian mixture fitted to short windows of motion.
-
-Motion whose every conditional is known exactly.
+"""A Gaussian mixture fitted to short windows of motion: all its conditionals are known exactly.
 
     x = m + W z + e,   z ~ sum_k w_k N(mu_k, C_k),   e ~ N(0, rest I) across W
-W are the first principal axes of the windows, the mixture in them is fitted by expectation and
-maximisation (EM). It is a crude model of walking, and that does not matter: samplers are judged
-against *it*, not against walking.
-Source: EM after Dempster, Laird and Rubin (1977); principal axes with an even rest after Tipping
+W are the first principal axes of the windows; the mixture in them is fitted by expectation
+maximisation (EM). It is a crude model of walking. That does not matter, because samplers are
+compared with *it*, not with walking.
+Source: EM after Dempster, Laird and Rubin (1977); principal axes with isotropic noise after Tipping
 and Bishop (1999).
 """
 
@@ -23,7 +21,7 @@ from ..exact import Mixture, along_axes, mixture, part_log_densities, posterior_
 
 
 def responsibilities(given: Mixture, x: Float[Tensor, "N D"]) -> Float[Tensor, "N K"]:
-    """The probability that each part made each point: w_k N(x; m_k, C_k), scaled to sum to 1."""
+    """The probability of each part given each point: w_k N(x; m_k, C_k), scaled to sum to 1."""
     off = along_axes(given, x.double()[:, None] - given.means)
     return part_log_densities(given.weights, off, given.variances).softmax(1)
 
@@ -36,15 +34,15 @@ def fit_mixture(
     rounds: int = 200,
     generator: torch.Generator | None = None,
 ) -> Mixture:
-    """Fit K Gaussians by EM (scikit-learn's), begun at the clusters of k-means; every covariance
-    gets `ridge` on its diagonal.
+    """Fit K Gaussians by scikit-learn's EM, starting from the clusters of k-means.
 
-    Raises ValueError for fewer different points than parts.
+    Every covariance gets `ridge` on its diagonal. Raises ValueError for fewer different points than
+    parts.
     """
     x = x.double()
     different = len(x.unique(dim=0))
     if different < K:
-        raise ValueError(f"{K} parts need as many different points at least, not {different}")
+        raise ValueError(f"{K} parts need at least {K} different points, not {different}")
     seed = int(torch.randint(2**31 - 1, (1,), generator=generator))
     fitted = GaussianMixture(K, reg_covar=ridge, max_iter=rounds, random_state=seed).fit(x.numpy())
     parts = fitted.weights_, fitted.means_, fitted.covariances_
@@ -79,7 +77,7 @@ class WindowMixture:
     def denoiser(self, schedule: Schedule) -> Denoiser:
         """The exact denoiser, eps_hat = E[eps | x_s].
 
-        `exact_denoiser` of the whole, at the cost of the axes alone.
+        It equals `exact_denoiser(whole)`, but computes only in the principal axes.
         """
 
         def denoise(x_s: Tensor, s: Tensor) -> Tensor:
@@ -100,10 +98,8 @@ def fit_windows(
 ) -> WindowMixture:
     """Fit K Gaussians in the first principal axes of standardised windows.
 
-    What is left over is spread evenly.
-
-    No covariance is narrower than that rest.  Raises ValueError for more axes than windows or
-    columns.
+    The remaining variance is spread evenly over the other axes. No covariance is narrower than
+    that. Raises ValueError for more axes than windows or columns.
     """
     N, D = x.shape
     if not axes < min(N, D):

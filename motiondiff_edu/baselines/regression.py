@@ -1,10 +1,8 @@
-"""Dance by regression.
+"""Dance by regression: one dance for each song, the mean of all its possible dances.
 
-One right answer for each song, the mean of all the dances it might have had.
-
-No noise goes in, so the same song gives the same dance; where many continuations are right, the
-mean of them is what minimises the squared error, and a mean of dances hardly dances.
-Source: the idea of AI Choreographer, as MoFusion's Table 1 has it for a baseline.  Notebook: 14
+The network gets no noise, so the same song gives the same dance. If many continuations are right,
+their mean minimises the squared error, and a mean of dances hardly moves.
+Source: the idea of AI Choreographer, a baseline in MoFusion's Table 1.  Notebook: 14
 """
 
 from collections.abc import Callable

@@ -1,12 +1,10 @@
-"""Filling holes with no network.
-
-The expected value of what is missing, given what is there, under one Gaussian.
+"""Filling holes without a network: the expected missing values under one Gaussian.
 
     E[x_m | x_k] = mean_m + C_mk (C_kk + ridge I)^-1 (x_k - mean_k)
-One mean and one covariance C serve every mask: for each it is the ridge regression of the missing
-columns on the visible ones, in closed form. The answer is a mean: it says nothing of how else it
-might have been.
-Source: the rival is ours; the papers have none.  Notebook: 10
+One mean and one covariance C are enough for every mask. For each mask it is the ridge regression of
+the missing columns on the known ones, in closed form. The result is a mean, so it does not show
+which other values are possible.
+Source: this baseline is ours; the papers have none.  Notebook: 10
 """
 
 from dataclasses import dataclass
@@ -21,20 +19,17 @@ from ..performers.windows import Windows
 
 @dataclass(frozen=True, eq=False)
 class ConditionalMean:
-    """Mean and covariance of rows of numbers (float64), and the ridge that keeps the regression
-    calm."""
+    """Mean and covariance of rows (float64), and the ridge that stabilises the regression."""
 
     mean: Float[Tensor, "F"]
     covariance: Float[Tensor, "F F"]
     ridge: float = 1e-2
 
     def fill(self, x: Float[Tensor, "B F"], known: Bool[Tensor, "B F"]) -> Float[Tensor, "B F"]:
-        """The rows with what is not known replaced by its expected value.
+        """The rows with unknown entries replaced by their expected values.
 
-        What is known comes back as it was.
-
-        Where nothing is known that is the mean. What `x` holds in a hole is not looked at (NaN may
-        stand there).
+        Known entries stay exactly. If nothing is known, the result is the mean. The values of `x`
+        in a hole are ignored and can be NaN.
         """
         filled = x.clone()
         for row, have in enumerate(known):
@@ -52,7 +47,7 @@ class ConditionalMean:
 def fit(rows: Float[Tensor, "K F"], ridge: float = 1e-2) -> ConditionalMean:
     """Mean and covariance (divided by K) of training rows.
 
-    In units in which `ridge` means the same for all columns.
+    The rows must be in units in which one `ridge` suits all columns.
 
     Raises ValueError for fewer than two rows or a ridge that is not above 0.  Notebook: 10
     """
@@ -68,9 +63,9 @@ def fit(rows: Float[Tensor, "K F"], ridge: float = 1e-2) -> ConditionalMean:
 
 @dataclass(frozen=True, eq=False)
 class WindowRidge:
-    """The same for windows of a walk.
+    """ConditionalMean for windows of a walk: T_h poses with holes, and the control of all frames.
 
-    T_h poses with holes, and the control of all frames, which is never missing.
+    The control is never missing.
     """
 
     inner: ConditionalMean
@@ -95,7 +90,7 @@ class WindowRidge:
 
 
 def fit_windows(windows: Windows, ridge: float = 1e-2, every: int = 3) -> WindowRidge:
-    """Fit on every third window of training data: neighbours hold nearly the same.
+    """Fit on every third window of training data, because neighbours are nearly equal.
 
     Notebook: 10
     """

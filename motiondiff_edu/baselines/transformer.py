@@ -1,8 +1,9 @@
-"""A plain transformer that dances: frames attend to frames, and to the music; no U-Net.
+"""A plain transformer that dances, without a U-Net: frames attend to frames and to the music.
 
-Told the noised motion and the step, it is a denoiser of the U-Net's size (is the U-Net light?).
-Given nothing but the music it is a regression: see `regression.py`.  Source: AI Choreographer's
-cross-modal transformer (cited by MoFusion 4.1), made small; sizes are ours.
+With the noised motion and the step as input, it is a denoiser of the U-Net's size. With only the
+music as input, it is a regression (`regression.py`).
+Source: AI Choreographer's cross-modal transformer (cited by MoFusion 4.1), made small; the sizes
+are ours.
 """
 
 from dataclasses import asdict, dataclass
@@ -22,7 +23,7 @@ from ..prediction import TARGETS
 class TransformerConfig:
     """Sizes of the network.
 
-    `deterministic` leaves x_s and s out: the motion then follows from the music alone.
+    With `deterministic` the network ignores x_s and s; the motion then depends on the music alone.
     """
 
     D: int = 63
@@ -33,20 +34,17 @@ class TransformerConfig:
     layers: int = 7
     music_layers: int = 4
     fps: float = 20.0
-    slowest: float = 0.05  # Hz, of the position code
+    slowest: float = 0.05  # lowest and highest frequency of the position code, Hz
     fastest: float = 8.0
     target: str = "x0"
     deterministic: bool = False
 
     def __post_init__(self):
-        """Raises ValueError for sizes of which no network can be built.
-
-        Also for an unknown target.
-        """
+        """Raise ValueError for impossible sizes or an unknown target."""
         if min(self.D, self.C, self.S, self.heads, self.layers) < 1 or self.music_layers < 0:
-            raise ValueError("D, C, S, heads and layers must be 1 at least")
+            raise ValueError("D, C, S, heads and layers must be at least 1")
         if min(self.fps, self.slowest, self.fastest) <= 0:
-            raise ValueError("fps, slowest and fastest are rates above 0")
+            raise ValueError("fps, slowest and fastest must be above 0")
         if self.width < 1 or self.width % (2 * self.heads):
             raise ValueError(
                 f"the width must be a multiple of 2 x {self.heads} heads, not {self.width}"
@@ -59,10 +57,7 @@ class TransformerConfig:
 
 
 class Layer(nn.Module):
-    """Self-attention between frames, then what MoFusion's blocks have.
-
-    Attention to the music and a feed-forward.
-    """
+    """Self-attention between frames, attention to the music, and a feed-forward layer."""
 
     def __init__(self, width: int, heads: int):
         super().__init__()
@@ -78,8 +73,9 @@ class Layer(nn.Module):
 
 
 class DanceTransformer(nn.Module):
-    """The same call as MoFusion's: (x_s, s, music) -> the target; with `deterministic`, x_s only
-    says how long.
+    """A network with MoFusion's interface: (x_s, s, music) -> the target.
+
+    With `deterministic`, only the length of x_s matters.
     """
 
     def __init__(self, config: TransformerConfig):
@@ -97,7 +93,7 @@ class DanceTransformer(nn.Module):
         times: Float[Tensor, "M"],
         mask: Bool[Tensor, "B M"] | None = None,
     ) -> Music:
-        """As MoFusion.listen."""
+        """The context of a piece of music, as in MoFusion.listen."""
         present = (
             mel.new_ones(1, mel.shape[1], 1) if mask is None else mask[..., None].to(mel.dtype)
         )
@@ -114,13 +110,13 @@ class DanceTransformer(nn.Module):
             x_s, s = torch.zeros_like(x_s), torch.zeros_like(s)
         times = torch.arange(x_s.shape[1], device=x_s.device) / config.fps
         code = (config.width // config.heads, config.slowest, config.fastest)
-        frames, heard = angles_of(times, *code), angles_of(music.times, *code)
+        frames, tokens = angles_of(times, *code), angles_of(music.times, *code)
         bias = None
         if music.mask is not None:
             bias = torch.where(music.mask[:, None, None], 0.0, -1e4).expand(-1, -1, len(times), -1)
         x = self.into(x_s) + self.step_in(step_embedding(s, config.width))[:, None]
         for layer in self.layers:
-            x = layer(x, music, bias, (frames, frames), (frames, heard))
+            x = layer(x, music, bias, (frames, frames), (frames, tokens))
         return self.out(x)
 
 

@@ -1,4 +1,4 @@
-"""Departures from the papers, one idea a file.
+"""Departures from the papers, one idea per file.
 
-Each file says what it is, why, and what it gains (a row of docs/RESULTS.md).
+Each file says what the idea is, why it helps, and what it gains (a row of docs/RESULTS.md).
 """

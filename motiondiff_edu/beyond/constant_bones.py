@@ -1,11 +1,10 @@
 """Bones that keep their length.
 
-Joints that were made up are moved until every bone is as long as where it is given.
-
-A network's joints are free points; its bones come out nearly right. Given joints stay where they
-are.
-Source: position-based dynamics (Müller and others, 2007), distances only; MoFusion eq. 6 asks the
-same of the network.
+A network's joints are free points, so its bones are only nearly right. Here the generated joints
+are moved until every bone has the length that it has where it is given. Given joints stay where
+they are.
+Source: position-based dynamics (Müller and others, 2007), distances only; MoFusion eq. 6 has the
+same aim, as a loss.
 """
 
 import numpy as np
@@ -13,16 +12,17 @@ from jaxtyping import Bool, Float
 
 from ..motion.skeleton import BONES
 
-# through all bones; errors of centimetres fall below .1 mm unless the given joints contradict
+# rounds through all bones; errors of centimetres fall below .1 mm, unless the given joints
+# contradict the lengths
 ROUNDS = 30
 
 
 def given_lengths(
     positions: Float[np.ndarray, "T J 3"], known: Bool[np.ndarray, "T J"]
 ) -> Float[np.ndarray, "20"]:
-    """Of each bone the median length over the frames that give both of its ends, in metres.
+    """The median length of each bone over the frames that give both of its ends, in metres.
 
-    NaN where none does.
+    It is NaN for a bone that no frame gives.
     """
     found = np.full(len(BONES), np.nan)
     for k, (parent, child) in enumerate(BONES):
@@ -40,13 +40,11 @@ def steady_bones(
     lengths: Float[np.ndarray, "*#B 20"],
     rounds: int = ROUNDS,
 ) -> Float[np.ndarray, "*B T J 3"]:
-    """Move the joints that are not known until bones have these lengths (NaN: any).
+    """Move the joints that are not known until the bones have these lengths (NaN: any length).
 
-    They move bone by bone, and again.
-
-    A bone between two free joints moves both by half of what is wrong, beside a known one the free
-    joint by all of it. Where known joints are farther apart than bones reach, what remains wrong is
-    shared.
+    Each of `rounds` rounds corrects one bone after the other. If both joints of a bone are free,
+    each moves by half of the error; if one is known, the free joint moves by all of it. If known
+    joints are farther apart than the bones reach, the remaining error is shared between the bones.
     """
     moved, free = np.array(positions, np.float64), (~known).astype(np.float64)
     for _ in range(rounds):

@@ -1,9 +1,7 @@
-"""Feet that were made up stand where they stand.
+"""Foot lock: a generated toe that is low and slow is held in place, and the leg follows.
 
-A low, slow toe is held in place, and the leg follows.
-
-A network's feet slide by centimetres in each frame, which the eye sees first. Nothing but legs is
-moved, and nothing that is given; whoever lets the feet glide on purpose must do without.
+A network's feet slide by centimetres in each frame, and that is the first fault a viewer sees. Only
+legs are moved, and no given joint. Leave the foot lock out for motions that glide on purpose.
 Source: foot-skate cleanup for motion capture (Kovar and others, 2002), shortened.
 """
 
@@ -20,20 +18,18 @@ FADE = 6  # frames
 LOW, SLOW = (
     0.05,
     1.0,
-)  # m above the floor and m/s: a toe under both is taken to stand, however it slides
+)  # m above the floor and m/s: a toe under both counts as standing, even if it slides
 FLOOR = 5  # percentile of a toe's height
 
 
 def steady_feet(
     positions: Float[np.ndarray, "*B T 21 3"], known: Bool[np.ndarray, "T 21"], fps: float = 20.0
 ) -> Float[np.ndarray, "*B T 21 3"]:
-    """Legs that are not known (metres, world) moved so that feet do not slide.
+    """Move legs that are not known (metres, world) so that feet do not slide; bones keep lengths.
 
-    Bones keep their length.
-
-    A stand is a run of frames in which a toe is low and slow. It stays at its median place, or
-    where it is given in the meantime; the correction passes smoothly from stand to stand, and is
-    nothing where the foot is given. An ankle out of the leg's reach slides on as little as it must.
+    A stand is a run of frames in which a toe is low and slow. During a stand the toe stays at its
+    median place, or where it is given. Between stands the correction is interpolated smoothly; it
+    is zero where the foot is given. An ankle out of the leg's reach slides as little as possible.
     """
     every = np.array(positions, np.float64).reshape(-1, *positions.shape[-3:])
     for moved in every:
@@ -43,7 +39,7 @@ def steady_feet(
 
 
 def _steady_leg(moved, known, toe: int, heel: int, fps: float) -> None:
-    """One leg, in place: hip, knee, ankle and toe are neighbours in the skeleton.
+    """Correct one leg in place; its hip, knee, ankle and toe have consecutive indices.
 
     The foot keeps its direction.
     """
@@ -61,20 +57,20 @@ def _steady_leg(moved, known, toe: int, heel: int, fps: float) -> None:
 def to_stands(
     toe: Float[np.ndarray, "T 3"], given: Bool[np.ndarray, " T"], fps: float
 ) -> Float[np.ndarray, "T 3"]:
-    """What to add to a toe so that it does not slide while it stands; zero where it is given."""
+    """The shift that stops a toe from sliding while it stands; zero where the toe is given."""
     shift = np.zeros_like(toe)
     anchored = given.copy()
     frames = np.arange(len(toe))
     for first, last in runs(stands(toe, fps)):
         inside = np.flatnonzero(given[first:last]) + first
-        if len(inside):  # at the given places, and evenly from one to the next should they differ
+        if len(inside):  # at the given places; linear between them if they differ
             pin = np.stack(
                 [np.interp(np.arange(first, last), inside, toe[inside, k]) for k in range(3)], -1
             )
         else:
             pin = np.median(toe[first:last], axis=0)
         pull = 1 - closeness(given & ((frames < first) | (frames >= last)))[first:last]
-        # held over the ground; up and down it rolls as it did
+        # only the horizontal movement is stopped; the foot still rolls up and down
         shift[first:last] = pull[:, None] * (pin - toe[first:last]) * GROUND
         anchored[first:last] = True
     at = np.flatnonzero(anchored)
@@ -87,9 +83,9 @@ def to_stands(
 
 
 def closeness(given: Bool[np.ndarray, " T"]) -> Float[np.ndarray, " T"]:
-    """1 in given frames, 0 from `FADE` frames away, smooth between.
+    """1 in given frames, 0 from `FADE` frames away, and smooth between.
 
-    No stand may jump to where a foot is given next.
+    It lets a corrected foot move smoothly to where it is given next.
     """
     away = distance_transform_edt(~given) if given.any() else np.full(len(given), np.inf)
     u = np.minimum(away / FADE, 1)
@@ -97,9 +93,9 @@ def closeness(given: Bool[np.ndarray, " T"]) -> Float[np.ndarray, " T"]:
 
 
 def stands(toe: Float[np.ndarray, "T 3"], fps: float) -> Bool[np.ndarray, " T"]:
-    """Frames in which a toe is low, and slow over the ground to or from the frame beside it.
+    """Frames in which a toe is low, and slow over the ground to the next or from the last frame.
 
-    Runs of two at least.
+    Runs have at least two frames.
     """
     ground = np.linalg.norm(np.diff(toe[:, [0, 2]], axis=0), axis=-1) * fps
     slow = np.minimum(np.append(ground, np.inf), np.append(np.inf, ground)) < SLOW

@@ -1,14 +1,13 @@
-"""A foot that stands: MoDiff whose ankles and toes may stay where they are in the world.
+"""Footholds: a MoDiff whose ankles and toes can stay where they are in the world.
 
-A planted foot is at rest in the world, and moves in the root frame: backwards, as fast as the root
-goes forwards. A network that draws it anew in every frame misses by millimetres, and the foot
-slides. But where a joint of the last pose would be if it stayed is known exactly, from the control
-alone (`held`). So for each of these joints the network chooses, between 0 and 1, how much of that
-to take:
+A planted foot is at rest in the world. In the root frame it moves backwards, as fast as the root
+moves forwards. A network that predicts it in every frame errs by millimetres, so the foot slides.
+But the control alone gives the exact place of a joint that stays where it was in the last pose
+(`held`). So for each ankle and toe the network predicts a gate between 0 and 1:
 
     x0_hat = gate * held + (1 - gate) * free
-In training the past has noise (`past_noise`), and a foot held at a noised place is not at rest: the
-gate would learn never to hold. `CleanFootholds` takes most of it away under the feet.
+In training the past has noise (`past_noise`). A foot that is held at a noised place is wrong, so
+the gate would learn never to hold. `CleanFootholds` removes most of this noise under the feet.
 Ours; neither paper has it.  Notebook: 07
 """
 
@@ -24,19 +23,17 @@ from ..motion.scaler import Scaler
 from ..motion.skeleton import J, joint_index
 
 FEET = [joint_index(name) for name in ("LeftFoot", "LeftToeBase", "RightFoot", "RightToeBase")]
-LEAN, STRETCH = 0.25, 0.1  # see openness
+LEAN, STRETCH = 0.25, 0.1  # see `openness`
 COLUMNS = [3 * joint + axis for joint in FEET for axis in range(3)]
 
 
 def held_positions(
     joints: Float[Tensor, "B K 3"], control: Float[Tensor, "B T 3"], fps: float = 20.0
 ) -> Float[Tensor, "B T K 3"]:
-    """Where joints (metres, root frame) come to lie if they stay put in the world.
+    """The future positions, in the root frame, of joints that stay where they are in the world.
 
-    They are told in the root frames ahead.
-
-    Row t of the control takes the root on to frame t + 1, at the halfway heading; result t is as
-    seen from there.
+    `joints` are in metres, in the root frame of the last pose. Row t of the control takes the root
+    to frame t + 1, at the halfway heading; result t is in that frame.
     """
     forward, left, yaw = (control / fps).unbind(-1)
     heading = yaw.cumsum(1)
@@ -51,8 +48,9 @@ def held_positions(
 
 @dataclass(frozen=True)
 class FootholdConfig(MoDiffConfig):
-    """Sizes of a network with footholds. It is asked for x0 and has no skip: a foothold is a place.
+    """Sizes of a network with footholds.
 
+    A foothold is a position, so the target is x0, without the skip.
     Raises ValueError for another target, for a skip, or for another skeleton than the course's.
     """
 
@@ -62,7 +60,7 @@ class FootholdConfig(MoDiffConfig):
     def __post_init__(self):
         super().__post_init__()
         if self.target != "x0" or self.skip:
-            raise ValueError('a foothold is a place: it needs target="x0" and skip=False')
+            raise ValueError('a foothold is a position: it needs target="x0" and skip=False')
         if self.D != 3 * J:
             raise ValueError(
                 f"footholds are for the {J} joints of the course's skeleton, D = {3 * J}, "
@@ -72,25 +70,20 @@ class FootholdConfig(MoDiffConfig):
 
 @dataclass(frozen=True, eq=False)
 class Standing:
-    """The memory of past and control, and where the feet would be if they stayed.
-
-    The feet's places are standardised, COLUMNS only.
-    """
+    """The memory of past and control, and the standardised COLUMNS of feet that stay in place."""
 
     memory: Float[Tensor, "B M width"]
     held: Float[Tensor, "B T_p K"]
 
     def index_select(self, dim: int, index: Int[Tensor, "N"]) -> "Standing":
-        """These samples of both, as torch.index_select."""
+        """Select samples of both, as torch.index_select does."""
         return Standing(*(part.index_select(dim, index) for part in (self.memory, self.held)))
 
 
 class FootholdMoDiff(MoDiff):
-    """MoDiff for x0 whose head may leave ankles and toes where they stood.
+    """MoDiff for x0 with a gate for each ankle and toe, in each frame, that can hold it in place.
 
-    It decides joint by joint and frame by frame.
-
-    The scalers lead to metres and m/s: where a foot stays is a matter of metres. They are not among
+    It needs the scalers, because footholds are computed in metres and m/s. They are not saved with
     the weights.
     """
 
@@ -98,7 +91,7 @@ class FootholdMoDiff(MoDiff):
         super().__init__(config)
         self.gate = nn.Linear(config.width, len(FEET))
         nn.init.zeros_(self.gate.weight)
-        nn.init.constant_(self.gate.bias, -2.0)  # at first the feet are nearly free
+        nn.init.constant_(self.gate.bias, -2.0)  # at the start the feet are nearly free
         units = {
             "pose_mean": pose_scaler.mean[COLUMNS],
             "pose_std": pose_scaler.std[COLUMNS],
@@ -123,8 +116,7 @@ class FootholdMoDiff(MoDiff):
         control: Float[Tensor, "B T C"],
         standing: Float[Tensor, "B D"] | None = None,
     ) -> Standing:
-        """The memory, and where the feet of the pose `standing` (by default the last one given)
-        would stay."""
+        """The memory, and the footholds of the pose `standing` (default: the last given pose)."""
         memory = super().encode(past, control)
         return Standing(memory, self.held(past[:, -1] if standing is None else standing, control))
 
@@ -138,14 +130,12 @@ class FootholdMoDiff(MoDiff):
 
 @dataclass(frozen=True, eq=False)
 class CleanFootholds:
-    """A network with footholds in training.
+    """A network with footholds in training: it gets the noised past, but nearly clean footholds.
 
-    It sees the noised past, and holds the feet nearly where the clean one has them.
-
-    `clean`, `noised`: the past before and after `past_noise`.
-    `foot_noise`: fraction of the past noise applied to the held feet, 0 to 1.
-    Where diffusion dropout noised the past as well, the feet are held at the last pose of that
-    past: otherwise the network would still see the clean feet.
+    clean, noised  the past before and after `past_noise`
+    foot_noise     fraction of the past noise applied to the held feet, 0 to 1
+    If diffusion dropout noised the past as well, the footholds come from the last pose of that
+    past. Otherwise the network would still see the clean feet.
     """
 
     model: Callable  # a FootholdMoDiff, or its SharedEncoding
@@ -173,21 +163,19 @@ class CleanFootholds:
 def blend(
     free: Float[Tensor, "B T_p D"], share: Float[Tensor, "B T_p F"], held: Float[Tensor, "B T_p K"]
 ) -> Float[Tensor, "B T_p D"]:
-    """share * held + (1 - share) * free in the feet's columns, a share for each joint."""
+    """share * held + (1 - share) * free in the feet's columns, with one share per joint."""
     out = free.clone()
     out[..., COLUMNS] = torch.lerp(out[..., COLUMNS], held, share.repeat_interleave(3, dim=-1))
     return out
 
 
 def openness(gate: Float[Tensor, "*B F"], leaning: bool = True) -> Float[Tensor, "*B F"]:
-    """How much of its place a joint keeps, 0 to 1, from the gate's logit.
+    """The gate of a joint, 0 (free) to 1 (held), from its logit.
 
-    In training (leaning=False) it is the logit's sigmoid.
-
-    In use the gate is shifted towards holding by LEAN, and stretched at both ends by STRETCH, so
-    that a nearly open gate is fully open. Sliding by millimetres barely changes the training loss,
-    but it is visible. Both numbers were chosen on walks that no figure of docs/RESULTS.md is taken
-    from. A larger LEAN increases the bone error.
+    In training (leaning=False) it is the logit's sigmoid. In use it is shifted towards holding by
+    LEAN, and stretched at both ends by STRETCH, so that a nearly open gate is fully open. Sliding
+    by millimetres barely changes the training loss, but it is visible. Both numbers were chosen on
+    walks that docs/RESULTS.md does not use. A larger LEAN increases the bone error.
     Source: ours; the stretch is that of the hard concrete distribution (Louizos and others, 2018).
     Notebook: 07
     """

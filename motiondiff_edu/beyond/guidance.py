@@ -1,11 +1,11 @@
-"""Denoisers that heed what is given.
+"""Guidance and blending: wrappers that make a denoiser respect the given entries.
 
-Wrappers that take a denoiser and return one, for `inbetweening.inpaint_steps`.
+They take a denoiser and return one, for `inbetweening.inpaint_steps`.
 
     blended(guided(denoise, schedule, given, known), schedule, given, known, fade=10)
-A trained network's guess x0_hat and the given entries need not agree, and the difference is a jump
-where they meet. Guidance moves the guess by the network's own gradient; blending draws it through
-the given entries. Either changes x0_hat, and returns the eps_hat that goes with it.
+A trained network's guess x0_hat can differ from the given entries, and then the motion jumps where
+they meet. Guidance moves the guess by the network's own gradient; blending moves it through the
+given entries. Both change x0_hat, and return the eps_hat that belongs to it.
 Source: guidance after Ho and others (2022) and Song and others (2023); blending is ours, and motion
 graphs splice clips so.  Notebook: 15
 """
@@ -56,7 +56,7 @@ def blended(
 def with_guess(
     denoise: Denoiser, schedule: Schedule, change: Callable[[Tensor], Tensor]
 ) -> Denoiser:
-    """A denoiser whose x0_hat is `change(x0_hat)`, and whose eps_hat goes with it."""
+    """A denoiser whose x0_hat is `change(x0_hat)`; it returns the eps_hat that belongs to it."""
 
     def changed(x_s: Tensor, s: Tensor) -> Tensor:
         x0_hat = change(x0_from_eps(x_s, s, denoise(x_s, s), schedule))
@@ -68,24 +68,24 @@ def with_guess(
 def guided_guess(
     denoise: Denoiser, x_s: X, s: Tensor, schedule: Schedule, given: X, known: Mask, weight: float
 ) -> X:
-    """x0_hat, with what is wrong at the given entries traced back to x_s.
+    """x0_hat, moved along the gradient of its error at the given entries.
 
-        x0_hat + weight * length * pull
-        pull = J^T (given - x0_hat)[known],   J = d x0_hat / d x_s
-    J is, up to a factor, the covariance of what x_s leaves open (Tweedie): whatever goes with the
-    given is moved along. `length`, for each sample, leaves least wrong at the given entries of this
-    guess: entries that say the same must not pull twice. (The sources have a constant there.)
+        x0_hat + weight * length * direction
+        direction = J^T (given - x0_hat)[known],   J = d x0_hat / d x_s
+    J is, up to a factor, the covariance of x0 given x_s (Tweedie), so entries that are correlated
+    with the given ones move along. `length`, for each sample, minimises the remaining error at the
+    given entries; so redundant entries do not count twice. (The sources have a constant there.)
     Source: Ho and others, Video diffusion models (2022); Song and others, Pseudoinverse-guided
     diffusion (2023).
     """
     with torch.enable_grad():
         x = x_s.detach().requires_grad_()
         x0_hat = x0_from_eps(x, s, denoise(x, s), schedule)
-        wrong = (given - x0_hat).detach().where(known, 0.0)
-        (pull,) = torch.autograd.grad(x0_hat, x, wrong)
-    at_known = pull.where(known, 0.0).flatten(1)
-    length = (wrong.flatten(1) * at_known).sum(1) / at_known.square().sum(1).clamp(min=1e-12)
-    return x0_hat.detach() + weight * length.clamp(min=0).view(-1, *[1] * (x.ndim - 1)) * pull
+        error = (given - x0_hat).detach().where(known, 0.0)
+        (direction,) = torch.autograd.grad(x0_hat, x, error)
+    at_known = direction.where(known, 0.0).flatten(1)
+    length = (error.flatten(1) * at_known).sum(1) / at_known.square().sum(1).clamp(min=1e-12)
+    return x0_hat.detach() + weight * length.clamp(min=0).view(-1, *[1] * (x.ndim - 1)) * direction
 
 
 def blended_guess(
@@ -94,24 +94,23 @@ def blended_guess(
     known: Bool[Tensor, "B T D"],
     fade: Fade,
 ) -> Float[Tensor, "B T D"]:
-    """x0_hat drawn through the given entries.
+    """x0_hat, corrected so that it goes through the given entries.
 
-    The correction there is interpolated to the frames between them.
-
-    Before the first and after the last given frame it fades to nothing within `fade` frames (one
-    number, or one for each column; infinity: it stays).
+    The correction at the given frames is interpolated to the frames between them. Before the first
+    and after the last given frame it fades to zero within `fade` frames: one number, or one for
+    each column; with infinity it does not fade.
     """
     T = x0_hat.shape[1]
     frames = torch.arange(T, device=x0_hat.device).view(1, T, 1).expand(known.shape)
     before = (
         torch.where(known, frames, -1).cummax(1).values
-    )  # the known frame behind each frame, -1 for none
+    )  # the last known frame up to each frame, -1 for none
     after = (
         torch.where(known, frames, T).flip(1).cummin(1).values.flip(1)
-    )  # the one ahead, T for none
-    wrong = (given - x0_hat).where(known, 0.0)
-    behind = wrong.gather(1, before.clamp(min=0))
-    ahead = wrong.gather(1, after.clamp(max=T - 1))
+    )  # the next known frame from each frame on, T for none
+    errors = (given - x0_hat).where(known, 0.0)
+    behind = errors.gather(1, before.clamp(min=0))
+    ahead = errors.gather(1, after.clamp(max=T - 1))
     share = (frames - before) / (after - before).clamp(min=1)
     alone = (1 - torch.where(before < 0, after - frames, frames - before) / (fade + 1)).clamp(min=0)
     behind = behind * torch.where(after < T, 1 - share, alone).where(

@@ -1,15 +1,14 @@
-"""What else an error can cost: departures from the papers' mean square.
+"""Other losses than the papers' mean square: named terms and weights.
 
-Each is a term or a weight with a name.
-
-A *loss* takes the error of the network's target (B, T, D) and the steps s (B,), and gives one
-number; `ddpm.squared_error` is the papers'. `total` adds losses. All of them are squares, so a
-weight of the squares is a root on the error, and `weighted` and `weighted_by_step` wrap any loss:
+A *loss* takes the error of the network's target (B, T, D) and the steps s (B,), and returns one
+number; the papers use `ddpm.squared_error`. `total` adds losses. All of them are sums of squares,
+so a weight of the squares is its root times the error. So `weighted` and `weighted_by_step` can
+wrap any loss:
 
     in_metres = weighted(squared_error, metre_weights(std))
     loss = weighted(total(in_metres, bones(2, std)), near_weights(change))
 
-What each is worth stands in docs/RESULTS.md.  Ours; neither paper has them.
+docs/RESULTS.md has the gain of each.  Ours; neither paper has them.
 Notebook: 07, 12
 """
 
@@ -37,7 +36,7 @@ def total(*losses: Loss) -> Loss:
 
 # ---- weights -------------------------------------------------------------------------------------
 def weighted(loss: Loss, weights: Float[Tensor, "D"] | Float[Tensor, "T 1"]) -> Loss:
-    """A loss with weights of its squares, for columns (`metre_weights`) or frames (`near_weights`).
+    """A loss whose squares have weights, by column (`metre_weights`) or frame (`near_weights`).
 
     Notebook: 07
     """
@@ -46,7 +45,7 @@ def weighted(loss: Loss, weights: Float[Tensor, "D"] | Float[Tensor, "T 1"]) -> 
 
 
 def weighted_by_step(loss: Loss, weights: Table) -> Loss:
-    """A loss with weights of its squares for the diffusion steps (`high_noise_weights`)."""
+    """A loss whose squares have weights by diffusion step (`high_noise_weights`)."""
     roots = weights.sqrt()
     return lambda error, s: loss(at(roots, s, error) * error, s)
 
@@ -54,9 +53,9 @@ def weighted_by_step(loss: Loss, weights: Table) -> Loss:
 def metre_weights(std: Float[Tensor, "D"], power: float = 2.0) -> Float[Tensor, "D"]:
     """Weights of columns: std^power, with mean 1.
 
-    Power 2 counts errors in metres, 0 in standard deviations.
+    Power 2 measures errors in metres, power 0 in standard deviations.
 
-    A toe moves ten times as far as a hip, and its errors are seen ten times as well.   Notebook: 07
+    A toe moves ten times as far as a hip, so in metres its errors count more.   Notebook: 07
     """
     weights = std**power
     return weights / weights.mean()
@@ -65,8 +64,8 @@ def metre_weights(std: Float[Tensor, "D"], power: float = 2.0) -> Float[Tensor, 
 def near_weights(change: Float[Tensor, "T D"], power: float = 1.0) -> Float[Tensor, "T 1"]:
     """Weights of future frames: 1 / (how far poses move until then)^power, with mean 1.
 
-    `change`: how far each column moves in 1, 2, ... frames, metres. The first frame moves least,
-    and a rollout keeps no other.
+    `change` is how far each column moves in 1, 2, ... frames, in metres. The first frame moves
+    least and gets the largest weight; it is the only frame of a window that a rollout keeps.
     """
     weights = 1 / change.square().mean(1, keepdim=True).sqrt() ** power
     return weights / weights.mean()
@@ -75,8 +74,8 @@ def near_weights(change: Float[Tensor, "T D"], power: float = 1.0) -> Float[Tens
 def high_noise_weights(schedule: Schedule, largest: float) -> Table:
     """Weights of steps: 1 + min((1 - alpha_bar) / alpha_bar, largest).
 
-    For eps: at high noise eps is nearly x_s itself and costs little, while the pose is decided
-    there.
+    For eps: at high noise eps is nearly x_s itself, so its error is small, but these steps decide
+    the pose.
     """
     noise_over_signal = (1 - schedule.alpha_bar) / schedule.alpha_bar
     return 1 + noise_over_signal.clamp_max(largest)
@@ -84,17 +83,17 @@ def high_noise_weights(schedule: Schedule, largest: float) -> Table:
 
 # ---- terms ---------------------------------------------------------------------------------------
 def bones(weight: float, std: Float[Tensor, "D"]) -> Loss:
-    """`bone_errors`, over the mean variance of a column, times weight; for x0 in the root frame.
+    """weight * mean of `bone_errors` / mean variance of a column; for x0 in the root frame.
 
-    A shin keeps its length when knee and ankle err alike, which their own errors do not see.
-    `std` leads to metres.  Notebook: 07
+    If knee and ankle have the same error, the shin keeps its length; the errors of single joints do
+    not show that. `std` converts errors to metres.  Notebook: 07
     """
     share = weight / std.square().mean()
     return lambda error, s: share.to(error) * bone_errors(error * std.to(error)).mean()
 
 
 def bone_errors(error: Float[Tensor, "B T D"]) -> Float[Tensor, "B T 20"]:
-    """Squared length of each joint's error against its parent's, a third for each axis.
+    """Squared difference between each joint's error and its parent's, averaged over the axes.
 
     `error` is in metres.
     """
@@ -104,21 +103,20 @@ def bone_errors(error: Float[Tensor, "B T D"]) -> Float[Tensor, "B T 20"]:
 
 
 def changes(weight: float) -> Loss:
-    """The squared error of changes from frame to frame, times weight.
+    """weight * the squared error of changes from frame to frame.
 
-    A dance that trembles about the right poses is not right.
+    It is large for a dance that jitters about the right poses.
     Notebook: 12
     """
     return lambda error, s: weight * error.diff(dim=1).square().mean()
 
 
 def toe_changes(weight: float, std: Float[Tensor, "D"], moved: float) -> Loss:
-    """The squared error of the toes' changes in the world, over how far toes move, times weight.
+    """weight * the squared error of the toes' changes in the world / `moved`; for x0 in the dance
+    frame.
 
-    For x0 in the dance frame.
-
-    For a foot to stand, pelvis and leg must err alike. `std` leads to metres; `moved` is the mean
-    square of a toe coordinate's change in a frame of the data, m^2
+    A foot stands still only if the errors of pelvis and leg cancel. `std` converts errors to
+    metres. `moved` is the mean square change of a toe coordinate in a frame of the data, m^2
     (`performers.dance_windows.toes_moved`).
     """
 

@@ -10,7 +10,7 @@ import torch
 from jaxtyping import Float
 from torch import Tensor
 
-FRESH = 0.3  # of the amount: a new error in each frame of once what a frame changes
+FRESH = 0.3  # at this amount, the fresh error of a frame is as large as its change from the last
 
 
 def past_noise(
@@ -24,7 +24,7 @@ def past_noise(
     The steady error has a standard deviation of up to `amount`, in the units of `past`
     (standardised). The fresh one has up to amount / 0.3 times `change`, which is how far each
     column moves in one frame. Each past has its own two levels, drawn evenly on a log scale over
-    two decades: the network must keep small errors small, and mend large ones.
+    two decades: the network must keep small errors small, and correct large ones.
     Notebook: 07
     """
     B, T_h, D = past.shape

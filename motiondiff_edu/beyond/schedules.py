@@ -1,8 +1,8 @@
 """Two schedules of our own: more noise at every step, and no steps at low noise.
 
-More noise: what many entries tell together survives noise that hides each of them (images of more
-pixels, dances of more frames). A schedule made for small things then hurries through the noise at
-which much is decided.
+More noise: if many entries carry the same information, it survives noise that hides each single
+entry (images with more pixels, dances with more frames). A schedule for small samples then spends
+too few steps at the noise levels that decide the large structure.
 Source: Hoogeboom and others, 2023 (simple diffusion), for images; for dances, ours.  Notebook: 12
 """
 
@@ -16,11 +16,11 @@ def shifted(schedule: Schedule, snr: float) -> Schedule:
 
     With ab for alpha_bar: alpha_bar' = snr ab / (1 - ab + snr ab).
 
-    1 leaves the schedule as it is.  Raises ValueError for a number that is not positive.
+    1 leaves the schedule unchanged.  Raises ValueError for a number that is not positive.
     """
     if not snr > 0:
         raise ValueError(
-            f"the signal-to-noise ratio is multiplied by a number above 0, not {snr:g}"
+            f"snr multiplies the signal-to-noise ratio and must be above 0, not {snr:g}"
         )
     if snr == 1:
         return schedule
@@ -33,11 +33,11 @@ def leap_schedule(
 ) -> Schedule:
     """beta_1 = leap, then evenly from beta_2 to beta_S.
 
-    Step 1 brings noise of sqrt(leap / (1 - leap)) of the signal, by default 0.77 of it.
+    Step 1 adds noise of sqrt(leap / (1 - leap)) of the signal, by default 0.77 of it.
 
-    At lower noise a small network sees no more of a pose than it can guess. Steps there add its
-    errors again and again, and a rollout repeats them; one leap from step 1 to the clean pose does
-    not. Ours.  Notebook: 07
+    At lower noise, x_s tells a small network no more about a pose than it already knows. Each step
+    there would add the network's error again, and a rollout repeats these steps in each frame. One
+    leap from step 1 to the clean pose avoids that. Ours.  Notebook: 07
     """
     rest = torch.linspace(beta_2, beta_S, S - 1, dtype=torch.float64)
     return make_schedule(
@@ -45,4 +45,4 @@ def leap_schedule(
     )
 
 
-SCHEDULES = {"linear": linear_schedule, "leap": leap_schedule}  # by the names that recipes use
+SCHEDULES = {"linear": linear_schedule, "leap": leap_schedule}  # by their names in recipes

@@ -3,8 +3,8 @@
 A window's past and control are encoded once and denoised at several diffusion steps.
 
 Encoding dominates the cost of a training step of MoDiff, and does not depend on s. So `repeated`
-takes every window several times, and `SharedEncoding` encodes it once: the same loss, for about
-half the time at two noises. Ours: in Algorithm 1 each window has one step.
+takes every window several times, and `SharedEncoding` encodes it once. The loss is the same; with
+two noises it takes about half the time. Ours: in Algorithm 1 each window has one step.
 Notebook: 07
 """
 
@@ -16,7 +16,7 @@ from torch import Tensor, nn
 
 
 def repeated(batch: tuple[Tensor, ...], noises: int) -> tuple[Tensor, ...]:
-    """Every window of the batch `noises` times, one copy after the other.
+    """Every window of the batch, `noises` times in a row.
 
     Notebook: 07
     """
@@ -25,9 +25,9 @@ def repeated(batch: tuple[Tensor, ...], noises: int) -> tuple[Tensor, ...]:
 
 @dataclass(frozen=True, eq=False)
 class SharedEncoding:
-    """A MoDiff for `repeated` batches, which encodes what is alike in a window's copies once.
+    """A MoDiff for `repeated` batches: it encodes equal copies of a window once.
 
-    Diffusion dropout makes some copies of a past unlike the first one: those are encoded as well.
+    Diffusion dropout makes some copies of a past different from the first; they are encoded, too.
     Notebook: 07
     """
 
@@ -41,13 +41,13 @@ class SharedEncoding:
     def encode(self, *inputs: Float[Tensor, "B ..."]):
         """The memory of the repeated batch, in its order."""
         B = len(inputs[0])
-        first = torch.arange(0, B, self.noises)  # of each window's copies
+        first = torch.arange(0, B, self.noises)  # the first copy of each window
         unlike = torch.zeros(B, dtype=torch.bool)
         for part in inputs:
             again = part[first].repeat_interleave(self.noises, dim=0)
             unlike |= (part != again).flatten(1).any(1).cpu()
         others = unlike.nonzero()[:, 0]
-        row = torch.arange(B) // self.noises  # of the memory
+        row = torch.arange(B) // self.noises  # row of the memory for each copy
         row[others] = len(first) + torch.arange(len(others))
         rows = torch.cat([first, others])
         memory = self.model.encode(*(part[rows] for part in inputs))

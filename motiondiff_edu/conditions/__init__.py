@@ -1,1 +1,1 @@
-"""What a motion is asked to follow."""
+"""The conditions that a motion follows: a control, or music."""

@@ -1,9 +1,8 @@
 """Sound files to mono samples at 16 kHz.
 
-An AudioError says what is wrong with a file and what to do about it.
-
-wav, flac, ogg, mp3, aiff and what else libsndfile reads, told apart by content and not by name, at
-any rate.
+It reads wav, flac, ogg, mp3, aiff and every other format of libsndfile, at any sample rate. The
+content decides the format, not the name. An AudioError says what is wrong with a file and what to
+do.
 Notebook: 11
 """
 
@@ -22,12 +21,12 @@ from torch import Tensor
 from .music import SAMPLE_RATE
 
 SHORTEST = 1.0  # seconds
-# a file whose largest sample is below this, 80 dB under full scale, holds nothing to dance to
+# a file whose largest sample is below this, 80 dB under full scale, counts as silent
 SILENT = 1e-4
-LOUDEST = 10.0  # samples reach 1; more than a mix that clips is no sound, or in other units
-BLOCK = 4096  # samples read at a time, of a file that cannot be read in one piece
+LOUDEST = 10.0  # samples reach 1, or a little more; larger values have another unit
+BLOCK = 4096  # samples read at a time from a file that cannot be read in one piece
 
-# first bytes of what libsndfile does not read and ffmpeg does: (where, bytes): name
+# first bytes of formats that ffmpeg reads and libsndfile does not: (position, bytes): name
 VIDEO_AND_PHONES = {
     (4, b"ftyp"): "an MP4 file (m4a, mp4, mov)",
     (0, b"\x1a\x45\xdf\xa3"): "a Matroska file (mkv, webm)",
@@ -35,44 +34,41 @@ VIDEO_AND_PHONES = {
     (0, b"\xff\xf1"): "an AAC stream",
     (0, b"\xff\xf9"): "an AAC stream",
 }
-# in libsndfile's log: how many bytes a header claims, and how many there are
+# in libsndfile's log: how many bytes the header claims, and how many the file has
 PROMISED = re.compile(r"(?:data|SSND|Data Size)\s*: (\d+) \(should be (\d+)\)")
 
 
 class AudioError(ValueError):
-    """A file that cannot be danced to: which file, what is wrong, what to do."""
+    """The sound cannot be used; the message names the file, the fault, and what to do."""
 
 
 def read_audio(path: str | Path) -> Float[Tensor, "N"]:
     """A sound file as mono float32 samples at 16 kHz, without its constant offset.
 
-    Channels are averaged.
-
-    Where the file breaks off, what could be read is returned with a UserWarning.
-    Raises AudioError for a file that is missing, a folder, of another kind, damaged, empty, silent,
-    shorter than a second, or has samples that are not finite.  Source: MoFusion 3.3.   Notebook: 11
+    Channels are averaged. If the file is cut off, the readable part is returned with a UserWarning.
+    Raises AudioError for a missing file, a folder, another kind of file, a file that is damaged,
+    empty, silent or shorter than a second, and for samples that are not finite.
+    Source: MoFusion 3.3.   Notebook: 11
     """
     path = Path(path)
     if not path.is_file():
         what = (
-            "is a folder; name a sound file in it"
+            "is a folder; give the name of a sound file in it"
             if path.is_dir()
-            else "is not there; check the spelling"
+            else "does not exist; check the spelling"
         )
         raise AudioError(f"{path} {what}")
     channels, rate, loss = _decode(path)
     seconds = len(channels) / rate
     if seconds < SHORTEST:
-        length = f"holds {seconds:.2f} s of sound" if len(channels) else "holds no sound at all"
+        length = f"has only {seconds:.2f} s of sound" if len(channels) else "has no sound at all"
         length += f" and {loss}" if loss else ""
-        raise AudioError(
-            f"{path.name} {length}; give it at least {SHORTEST:g} s, or better a whole song"
-        )
+        raise AudioError(f"{path.name} {length}; at least {SHORTEST:g} s are needed")
     bad = np.flatnonzero(~np.isfinite(channels).all(1))
     if len(bad):
         raise AudioError(
             f"{path.name}: {len(bad)} samples are NaN or infinite, the first at "
-            f"{bad[0] / rate:.3f} s; the program that wrote it divided by zero: "
+            f"{bad[0] / rate:.3f} s; the program that wrote it probably divided by zero: "
             "export the sound again"
         )
     mono = _mono(channels, path.name)
@@ -84,7 +80,7 @@ def read_audio(path: str | Path) -> Float[Tensor, "N"]:
 
 
 def read_sound(sound: str | Path | bytes | memoryview) -> Float[Tensor, "N"]:
-    """`read_audio` of a sound file by its name, or of its bytes, as they come from an upload.
+    """`read_audio` of a sound file's name, or of its bytes, for example from an upload.
 
     Raises AudioError as `read_audio` does.  Notebook: 12
     """
@@ -97,25 +93,25 @@ def read_sound(sound: str | Path | bytes | memoryview) -> Float[Tensor, "N"]:
 
 
 def samples_of(sound: str | Path | np.ndarray | Tensor) -> Float[Tensor, "N"]:
-    """A sound file read, or samples as they are: mono, 16 kHz, float32.
+    """The samples of a sound file, or given samples after a check: mono, 16 kHz, float32.
 
-    Raises AudioError as `read_audio`, and for samples of another shape, in whole numbers, not
-    finite, or far beyond -1 to 1.
+    Raises AudioError as `read_audio` does, and for samples that have another shape, are whole
+    numbers, are not finite, or lie far outside -1 to 1.
     """
     if isinstance(sound, (str, Path)):
         return read_audio(Path(sound).expanduser())
     if not isinstance(sound, (np.ndarray, Tensor, list)):
-        raise AudioError(f"sound is a file's name or its samples, not {type(sound).__name__}")
+        raise AudioError(f"sound must be a file's name or samples, not {type(sound).__name__}")
     samples = np.asarray(sound)
     if samples.ndim != 1 or not len(samples):
         raise AudioError(
-            f"sound is one channel of samples (N,) at {SAMPLE_RATE} Hz, not {samples.shape}; the "
-            "mean of several channels is one"
+            f"sound must be one channel of samples (N,) at {SAMPLE_RATE} Hz, not {samples.shape}; "
+            "average the channels first"
         )
     if not np.issubdtype(samples.dtype, np.floating):
         raise AudioError(
-            f"sound is floating-point samples from -1 to 1, not {samples.dtype}; divide 16-bit "
-            "samples by 32768"
+            f"sound must be floating-point samples from -1 to 1, not {samples.dtype}; divide "
+            "16-bit samples by 32768"
         )
     bad = np.flatnonzero(~np.isfinite(samples))
     if len(bad):
@@ -125,20 +121,19 @@ def samples_of(sound: str | Path | np.ndarray | Tensor) -> Float[Tensor, "N"]:
     where = int(np.abs(samples).argmax())
     if abs(samples[where]) > LOUDEST:
         raise AudioError(
-            f"samples lie between -1 and 1; the one at {where / SAMPLE_RATE:.3f} s is "
-            f"{samples[where]:.3g}. Divide the sound by its largest sample, if it is sound"
+            f"samples must lie between -1 and 1; the one at {where / SAMPLE_RATE:.3f} s is "
+            f"{samples[where]:.3g}. Divide the sound by its largest absolute sample"
         )
     return torch.from_numpy(samples.astype(np.float32))
 
 
 def resample(audio: Float[np.ndarray, "N"], rate: int) -> Float[np.ndarray, "n"]:
-    """The same sound at 16 kHz, by soxr at its very high quality: what lies above the new 8 kHz, or
-    the old half rate, goes."""
+    """The same sound at 16 kHz, resampled by soxr at very high quality, without aliasing."""
     return audio if rate == SAMPLE_RATE else soxr.resample(audio, rate, SAMPLE_RATE, "VHQ")
 
 
 def _decode(path: Path) -> tuple[Float[np.ndarray, "N channels"], int, str]:
-    """All channels, the rate, and in words what of the file is lost (empty for a whole one)."""
+    """All channels, the rate, and a message about lost sound (empty for a complete file)."""
     import soundfile
 
     try:
@@ -157,9 +152,9 @@ def _decode(path: Path) -> tuple[Float[np.ndarray, "N channels"], int, str]:
 
 
 def _before_the_damage(path: Path) -> Float[np.ndarray, "N channels"]:
-    """Block by block, as far as it goes.
+    """The samples before the damage, read block by block.
 
-    Whole files are not read so, for seeking in an MP3 loses its place.
+    Complete files are not read this way, because seeking in an MP3 is not exact.
     """
     import soundfile
 
@@ -172,39 +167,37 @@ def _before_the_damage(path: Path) -> Float[np.ndarray, "N channels"]:
 
 
 def _lost(file, there: int) -> str:
-    """What a file promises and does not hold: libsndfile says so in its log at most."""
+    """What a file's header promises but the file lacks; only libsndfile's log shows it."""
     promised, log = file.frames, file.extra_info
     if found := PROMISED.search(log):
         claimed, actual = int(found[1]), max(int(found[2]), 1)
         promised = (
             there * claimed // actual if claimed < 2**31 - 1 else there
-        )  # else written before its end was known
+        )  # otherwise the header was written before the length was known
     if "reports a hole" in log:
         return (
             f"is damaged: {(promised - there) / file.samplerate:.2f} s are missing from its middle"
         )
     if promised > there:
-        return f"breaks off, for its header promises {promised / file.samplerate:.2f} s"
+        return f"is cut off: its header promises {promised / file.samplerate:.2f} s"
     if "lacks an end-of-stream" in log:
-        return "breaks off: its last page is missing"
+        return "is cut off: its last page is missing"
     return ""
 
 
 def _mono(channels: Float[np.ndarray, "N channels"], name: str) -> Float[np.ndarray, "N"]:
-    """The mean of the channels without its offset; the loudest one, where they cancel."""
+    """The mean of the channels without its offset; if they cancel, the loudest channel."""
     channels = channels - channels.mean(0, dtype=np.float64).astype(np.float32)
     mono, peaks = channels.mean(1), np.abs(channels).max(0)
     if np.abs(mono).max() < SILENT:
         mono = channels[:, peaks.argmax()]
     if peaks.max() < SILENT:
-        raise AudioError(
-            f"{name} is silent from end to end, nothing to dance to; was the right input recorded?"
-        )
+        raise AudioError(f"{name} is silent from start to end; was the right input recorded?")
     return mono
 
 
 def _other_kind(path: Path, error: Exception) -> str:
-    """What a file is that libsndfile does not read, and what to do with it."""
+    """The kind of a file that libsndfile cannot read, and what to do with it."""
     with path.open("rb") as file:
         head = file.read(64)
     for (where, mark), kind in VIDEO_AND_PHONES.items():
@@ -218,7 +211,7 @@ def _other_kind(path: Path, error: Exception) -> str:
     if head.isascii() and b"\0" not in head:
         return (
             f"is text, not sound; it begins with {head[:20].decode()!r}. "
-            "Was it downloaded by its page's address?"
+            "Was a web page downloaded instead of the sound?"
         )
     reason = getattr(error, "error_string", str(error)).rstrip(".")
-    return f"is no sound file that can be read ({reason}). Save it again as wav, flac, ogg or mp3"
+    return f"cannot be read as a sound file ({reason}). Save it again as wav, flac, ogg or mp3"

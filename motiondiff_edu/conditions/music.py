@@ -1,9 +1,7 @@
-"""What the network hears.
+"""The network's input from music: a log-Mel spectrogram, the times of its frames, and beats.
 
-The log-Mel spectrogram of a song, where its frames lie in time, and a tracker's beats.
-
-A Mel frame comes every 32 ms and a motion frame every 50 ms: the two are matched by seconds, never
-by index.
+A Mel frame comes every 32 ms and a motion frame every 50 ms, so the two are matched by seconds,
+never by index.
 Notebook: 11
 """
 
@@ -21,24 +19,22 @@ HOP = 512
 BANDS = 80
 F_MIN = 0.0
 F_MAX = 8000.0
-# 64 ms; the paper leaves it open. 512 = HOP would be deaf between two frames, 2048 would blur a
-# beat more
+# 64 ms; the paper leaves it open. With 512 = HOP the windows would give little weight to sounds
+# between two frames; 2048 would blur a beat more
 N_FFT = 1024
-TOGETHER = (
-    256  # frames at once: what lies between sound and bands then stays in the cache, 2 x faster
-)
-FLOOR = 1e-5  # power: the log's floor, about 80 dB under a full-scale sine; the paper names none
+FRAMES_AT_ONCE = 256  # so few spectra fit into the processor's cache, which is 2 x faster
+FLOOR = 1e-5  # smallest power in the log, about 80 dB under a full-scale sine; the paper has none
 FRAMES_PER_SECOND = SAMPLE_RATE / HOP  # 31.25
 
 TRACKER_HOP = 256  # samples: beats to 16 ms
-# seconds its beats come too late: 12-19 ms for drum hits, 22-30 ms in composed songs (tests)
+# the tracker's beats are late by 12-19 ms for drum hits, 22-30 ms in composed songs (tests)
 TRACKER_LAG = 0.02
 
 Samples = Float[Tensor, "*B N"] | Float[np.ndarray, "*B N"]
 
 
 def hz_to_mel(hz: Float[Tensor, "*n"]) -> Float[Tensor, "*n"]:
-    """Pitch on Slaney's Mel scale: straight up to 1000 Hz, then a logarithm.
+    """Pitch on Slaney's Mel scale: linear up to 1000 Hz, then logarithmic.
 
     mel = 3 f / 200 below 1000 Hz; 15 + 27 log(f / 1000) / log(6.4) above.  Notebook: 11
     """
@@ -48,7 +44,7 @@ def hz_to_mel(hz: Float[Tensor, "*n"]) -> Float[Tensor, "*n"]:
 
 
 def mel_to_hz(mel: Float[Tensor, "*n"]) -> Float[Tensor, "*n"]:
-    """The frequency of a Mel number: `hz_to_mel`, undone.
+    """The frequency of a Mel value: the inverse of `hz_to_mel`.
 
     Notebook: 11
     """
@@ -62,19 +58,16 @@ def mel_filters(
     f_min: float | int = F_MIN,
     f_max: float | int = F_MAX,
 ) -> Float[Tensor, "bands bins"]:
-    """Triangles over the frequencies of a spectrum, evenly spaced in Mel, each of area 1 in Hz.
+    """Triangular filters over the n_fft/2 + 1 frequencies of a spectrum, evenly spaced in Mel.
 
-    The spectrum has n_fft/2 + 1 frequencies.
-
-    Band b rises from edge b to edge b+1 and falls to edge b+2, and is 2 / (edge[b+2] - edge[b])
-    high.
-    Raises ValueError for frequencies that do not ascend within 0 .. sample_rate/2, or a band too
-    narrow for any bin.
+    Band b rises from edge b to edge b+1 and falls to edge b+2. Its height is
+    2 / (edge[b+2] - edge[b]), so its area is 1 in Hz.
+    Raises ValueError unless 0 <= f_min < f_max <= sample_rate/2, or if a band has no frequency.
     Source: MoFusion 3.3.  Notebook: 11
     """
     if not 0 <= f_min < f_max <= sample_rate / 2:
         raise ValueError(
-            f"bands must lie within 0 and {sample_rate / 2:g} Hz, ascending; "
+            f"f_min and f_max must ascend within 0 and {sample_rate / 2:g} Hz; "
             f"got {f_min:g} to {f_max:g}"
         )
     ends = hz_to_mel(torch.tensor([f_min, f_max], dtype=torch.float64))
@@ -98,34 +91,34 @@ def mel_filters(
 @lru_cache
 @torch.inference_mode(
     False
-)  # else a first call within inference mode would leave tools that no gradient can pass
+)  # otherwise a first call in inference mode would cache tensors that gradients cannot pass
 def _tools(device: torch.device, dtype: torch.dtype) -> tuple[Tensor, Tensor]:
-    """The window and the filters (bins, bands), made once for each device and precision."""
+    """The window and the filters (bins, bands), computed once for each device and precision."""
     window = torch.hann_window(N_FFT, dtype=torch.float64).to(device, dtype)
     return window, mel_filters().T.contiguous().to(device, dtype)
 
 
 def log_mel(audio: Samples) -> Float[Tensor, "*B M 80"]:
-    """The log-Mel spectrogram of sound at 16 kHz, M = 1 + N // 512 frames.
+    """The log-Mel spectrogram of sound at 16 kHz: M = 1 + N // 512 frames.
 
     Frame m is centred on sample 512 m.
 
-    log(max(FLOOR, filters @ |STFT|^2)), natural logarithm, Hann window of 1024 samples, zeros
-    beyond both ends. A full-scale sine comes to 5 (high) or 8 (low), digital silence to log(1e-5) =
-    -11.5.
+    log(max(FLOOR, filters @ |STFT|^2)), with the natural logarithm, a Hann window of 1024 samples,
+    and zeros beyond both ends. A full-scale sine gives 5 (high pitch) to 8 (low pitch), digital
+    silence log(1e-5) = -11.5.
     Raises ValueError for no samples, or whole numbers.
     Source: MoFusion 3.3.  Notebook: 11
     """
     audio = torch.as_tensor(audio)
     if not audio.is_floating_point() or not audio.shape[-1]:
         raise ValueError(
-            f"sound is float samples between -1 and 1, not {tuple(audio.shape)} of {audio.dtype}"
+            f"sound must be float samples from -1 to 1, not {tuple(audio.shape)} of {audio.dtype}"
         )
     window, filters = _tools(audio.device, audio.dtype)
     flat = F.pad(audio.reshape(-1, audio.shape[-1]), (N_FFT // 2, N_FFT // 2))
     M, bands = 1 + audio.shape[-1] // HOP, []
-    for first in range(0, M, TOGETHER):
-        last = min(first + TOGETHER, M) - 1
+    for first in range(0, M, FRAMES_AT_ONCE):
+        last = min(first + FRAMES_AT_ONCE, M) - 1
         piece = flat[:, first * HOP : last * HOP + N_FFT]
         spectrum = torch.stft(
             piece, N_FFT, HOP, window=window, center=False, return_complex=True
@@ -135,7 +128,7 @@ def log_mel(audio: Samples) -> Float[Tensor, "*B M 80"]:
 
 
 def frame_times(M: int) -> Float[Tensor, "M"]:
-    """When each of M Mel frames sounds: the seconds of its centre, 31.25 a second.
+    """The centres of M Mel frames in seconds; there are 31.25 frames per second.
 
     Notebook: 11
     """
@@ -147,9 +140,9 @@ def crop_seconds(
 ) -> tuple[Float[Tensor, "*B n bands"], Float[Tensor, "n"]]:
     """The Mel frames within `seconds` from `start`, and their times counted from `start`.
 
-    Always n = floor(31.25 seconds) of them, so that crops can be stacked; the first is at most 32
-    ms after `start`.
-    Raises ValueError where the span leaves the song.  Notebook: 11
+    There are always n = floor(31.25 seconds) frames, so that crops can be stacked. The first is at
+    most 32 ms after `start`.
+    Raises ValueError for a span outside the song.  Notebook: 11
     """
     first = int(np.ceil(start * FRAMES_PER_SECOND - 1e-6))
     n = int(np.floor(seconds * FRAMES_PER_SECOND + 1e-6))
@@ -165,15 +158,13 @@ def crop_seconds(
 def beats_of(
     audio: Float[Tensor, "N"] | Float[np.ndarray, "N"], lag: float = TRACKER_LAG
 ) -> Float[np.ndarray, "K"]:
-    """The beats of a recording at 16 kHz, in seconds.
+    """The beats of a recording at 16 kHz, in seconds, by librosa's tracker with its `lag` removed.
 
-    As librosa's tracker hears them, with its `lag` taken out.
-
-    The tracker takes steady tempo for granted and may follow every second or half beat; for silence
-    it finds none. A beat is where something starts to sound. Source: Ellis 2007, by librosa.
-    Notebook: 11
+    The tracker assumes a steady tempo. It can follow every second beat, or half beats; in silence
+    it finds none. A beat is the time at which something starts to sound.
+    Source: Ellis 2007, by librosa.  Notebook: 11
     """
-    # slow to import, and needed for recordings only: a composed song knows its beats
+    # slow to import, and needed only for recordings: a composed song has its beats
     import librosa
 
     framing = {"sr": SAMPLE_RATE, "hop_length": TRACKER_HOP}

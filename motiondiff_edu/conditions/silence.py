@@ -1,4 +1,4 @@
-"""One sound taken out of a song: what is struck at a moment is not heard, all else is as it was.
+"""One sound removed from a song: the hit at one moment is silenced, everything else stays.
 
 Notebook: 12
 """
@@ -9,29 +9,28 @@ from scipy.signal import istft, stft
 
 from .music import SAMPLE_RATE
 
-WIDTH = 0.12  # s of sound that is taken away
-BESIDE = 0.08  # s listened to on either side of it
+WIDTH = 0.12  # s of sound that is changed
+BESIDE = 0.08  # s on either side that give the levels before and after
 EDGE = 0.02  # s of cross-fade
-TINY = 1e-9  # below is silence
+TINY = 1e-9  # a smaller magnitude is silence
 
 
 def silence_hit(
     audio: Float[np.ndarray, "N"], time: float, width: float = WIDTH
 ) -> Float[np.ndarray, "N"]:
-    """The song (16 kHz) without what is struck at `time` seconds.
+    """The song (16 kHz) without the sound that starts at `time` seconds.
 
-    For `width` seconds no frequency may burst out.
-
-    Each is held down to a line, straight in decibels, from what it was before to what it is
-    afterwards: a note that sounds on sounds on, and outside of the span every sample is as it was.
-    Raises ValueError for a time outside of the song, or a width that is not positive.  Notebook: 12
+    For `width` seconds, the level of each frequency is limited to a straight line in decibels, from
+    its level before to its level after. So a sustained note continues, and the samples outside the
+    span do not change.
+    Raises ValueError for a time outside the song, or a width that is not positive.  Notebook: 12
     """
     if not 0 <= time < len(audio) / SAMPLE_RATE:
         raise ValueError(
             f"there is no sound at {time:g} s: this song has {len(audio) / SAMPLE_RATE:g} s"
         )
     if width <= 0:
-        raise ValueError(f"a width is a time above 0 s, not {width:g}")
+        raise ValueError(f"width must be above 0 s, not {width:g}")
     shape = {"fs": SAMPLE_RATE, "nperseg": 512, "noverlap": 384}
     _, centres, spectrum = stft(audio, **shape)
     away, loud = centres - time, np.abs(spectrum)

@@ -1,8 +1,7 @@
 """An edit of a motion: frames are pinned as keyframes, joints dragged, a part of the body kept.
 
-The rest is to be made.
-
-What is given follows from it: `known` and `positions`, as `editing.inbetween.inbetween` takes them.
+A network generates the rest. The edit gives `known` and `positions`, as
+`editing.inbetween.inbetween` takes them.
 Source: MoFusion 4.4 (editing by seeds, keyframes and joints).
 """
 
@@ -27,12 +26,9 @@ CM, MM = 100.0, 1000.0
 
 @dataclass(frozen=True, eq=False)
 class Edit:
-    """A motion (metres) and what of it is held.
+    """A motion (metres) with pinned frames and their poses, and a part of the body kept throughout.
 
-    Pinned frames with their poses, and a part kept in all frames.
-
-    Each method returns another edit; `moved` names the joints that were dragged in each pinned
-    frame.
+    Each method returns a new edit. `moved` names the joints that were dragged in each pinned frame.
     """
 
     motion: Float[np.ndarray, "T 21 3"]
@@ -44,27 +40,27 @@ class Edit:
         return len(self.motion)
 
     def pin(self, frame: int, pose: Pose | None = None) -> "Edit":
-        """A frame held as a keyframe: as it is in the motion, or in this pose.
+        """Pin a frame as a keyframe, with its pose in the motion or with the given pose.
 
-        Raises IndexError outside of it.
+        Raises IndexError for a frame outside the motion.
         """
         frame = self.index(frame)
         pose = np.array(
             self.motion[frame] if pose is None else pose, np.float64
-        )  # a copy: a pin is nobody else's
+        )  # a copy, so that later changes of `pose` do not change the edit
         return replace(self, pins={**self.pins, frame: pose}, moved=_without(self.moved, frame))
 
     def unpin(self, frame: int) -> "Edit":
-        """A frame is let go, and with it what was dragged there."""
+        """Release a frame, with everything that was dragged in it."""
         frame = self.index(frame)
         return replace(self, pins=_without(self.pins, frame), moved=_without(self.moved, frame))
 
     def drag(self, frame: int, joint: str, target: Float[np.ndarray, "3"]) -> "Edit":
-        """A joint of a pinned frame moved to a place (metres, world).
+        """Move a joint of a pinned frame to `target` (metres, world).
 
         The body follows, see `inverse_kinematics.drag`.
 
-        Raises ValueError for a frame that is not pinned, KeyError for a name that no joint has.
+        Raises ValueError for a frame that is not pinned, KeyError for an unknown joint.
         """
         frame = self.index(frame)
         if frame not in self.pins:
@@ -76,9 +72,9 @@ class Edit:
         )
 
     def keep(self, part: str | None) -> "Edit":
-        """A part of the body held in every frame: one of `KEPT`, or None.
+        """Keep a part of the body in every frame: one of `KEPT`, or None for no part.
 
-        Raises KeyError with the names there are.
+        Raises KeyError for another name, with a list of the parts.
         """
         if part is not None and part not in KEPT:
             raise KeyError(f"no part is called {part!r}; there are {', '.join(KEPT)}, and None")
@@ -86,16 +82,13 @@ class Edit:
 
     @cached_property
     def known(self) -> Bool[np.ndarray, "T 21"]:
-        """True where a joint's place is given."""
+        """True where a joint's position is given."""
         known = known_frames(len(self), self.pins)
         return known if self.part is None else known | body_part(len(self), self.part)
 
     @cached_property
     def positions(self) -> Float[np.ndarray, "T 21 3"]:
-        """The motion with the pinned poses in their places.
-
-        Where nothing is known it is the motion still.
-        """
+        """The motion with the pinned poses inserted; elsewhere it is unchanged."""
         positions = np.array(self.motion)
         for frame, pose in self.pins.items():
             positions[frame] = pose
@@ -103,8 +96,7 @@ class Edit:
 
     @property
     def torn(self) -> tuple[int, ...]:
-        """Pinned frames in which a joint that is kept throughout is elsewhere than in the motion:
-        expect a jump."""
+        """Pinned frames in which a kept joint is not where the motion has it; expect a jump."""
         if self.part is None:
             return ()
         kept = body_part(1, self.part)[0]
@@ -113,7 +105,7 @@ class Edit:
 
     def __str__(self) -> str:
         if not self.pins and self.part is None:
-            return "nothing is held"
+            return "nothing is pinned or kept"
         count = len(self.pins)
         words = [f"{count} frame{'s' * (count != 1)} pinned" if count else "no frame pinned"]
         if self.moved:
@@ -121,9 +113,9 @@ class Edit:
         return ", ".join(words + ([] if self.part is None else [f"{self.part} kept"]))
 
     def index(self, frame: int) -> int:
-        """A frame's number from 0 on; -1 is the last frame.
+        """The index of a frame, from 0 on; -1 is the last frame.
 
-        Raises IndexError outside of the motion.
+        Raises IndexError for a frame outside the motion.
         """
         if not -len(self) <= frame < len(self):
             raise IndexError(
@@ -138,25 +130,18 @@ def _without(table: Mapping, key) -> dict:
 
 @dataclass(frozen=True, eq=False)
 class Made:
-    """In-betweens of an edit, and what was measured on them.
-
-    Measures are in metres and m/s, one number for each in-between.
-    """
+    """In-betweens of an edit, with their measures in metres and m/s, one for each in-between."""
 
     edit: Edit
     samples: Float[np.ndarray, "N T 21 3"]
-    keyframe_error: Float[np.ndarray, "N"]  # NaN where nothing was given
-    seam_jump: Float[np.ndarray, "N"]  # NaN where there is no seam
-    motions_jump: float  # of the motion that was edited, at the same seams
+    keyframe_error: Float[np.ndarray, "N"]  # NaN if nothing is given
+    seam_jump: Float[np.ndarray, "N"]  # NaN without a seam
+    motions_jump: float  # seam jump of the edited motion, at the same seams
 
     def measured(self, which: int) -> str:
-        """One in-between's figures in words."""
+        """The measures of one in-between as a text."""
         error, jump = self.keyframe_error[which], self.seam_jump[which]
-        words = [
-            "nothing was given to keep"
-            if np.isnan(error)
-            else f"keyframe error {MM * error:.1f} mm"
-        ]
+        words = ["no keyframe" if np.isnan(error) else f"keyframe error {MM * error:.1f} mm"]
         if not np.isnan(jump):
             words.append(f"seam jump {jump:.2f} m/s (the motion before: {self.motions_jump:.2f})")
         return ", ".join(words)
@@ -164,9 +149,9 @@ class Made:
 
 @runtime_checkable
 class Make(Protocol):
-    """What finds the rest of an edit: `editing.inbetween.maker(dancer)` is one.
+    """A function that generates the rest of an edit: `editing.inbetween.maker(dancer)` is one.
 
-    It returns `samples` motions (metres). `resample` is how often each step is made.
+    It returns `samples` motions (metres). `resample` is how often each step is repeated.
     """
 
     def __call__(
@@ -188,13 +173,12 @@ def make_between(
     resample: int = 1,
     fps: float = 20.0,
 ) -> Made:
-    """Have `make` find what is not held, and measure the seams.
+    """Generate the rest of an edit with `make`, and measure the result; nothing is corrected.
 
-    What comes back is measured, not put right.
-    Raises ValueError where everything is held, and for an answer of another shape or not finite.
+    Raises ValueError if everything is given, or if the result has another shape or is not finite.
     """
     if edit.known.all():
-        raise ValueError("every frame is pinned: there is nothing to make. Let some frames go")
+        raise ValueError("every frame is pinned, so there is nothing to generate. Release some")
     answer = make(
         edit.positions, edit.known, samples=samples, resample=resample, generator=generator
     )
@@ -207,7 +191,7 @@ def make_between(
 
 
 def _checked(answer, shape: tuple[int, ...]) -> Float[np.ndarray, "N T 21 3"]:
-    """The answer as an array, if it has this shape and every number is finite."""
+    """The result as an array.  Raises ValueError unless it has this shape and is finite."""
     made = np.asarray(answer, np.float64)
     if made.shape != shape:
         raise ValueError(
@@ -226,11 +210,11 @@ def _checked(answer, shape: tuple[int, ...]) -> Float[np.ndarray, "N T 21 3"]:
 def drag_in_words(
     before: Edit, after: Edit, frame: int, joint: str, target: Float[np.ndarray, "3"]
 ) -> str:
-    """How far a drag has moved a joint, and how far from its target it had to stop."""
+    """A text: how far a drag has moved a joint, and how far from its target it had to stop."""
     j, frame = joint_index(joint), after.index(frame)
     old, new = before.pins[frame][j], after.pins[frame][j]
     words = f"moved by {CM * np.linalg.norm(new - old):.0f} cm"
     short = CM * np.linalg.norm(np.asarray(target) - new)
     return words + (
-        f"; its bones reach no further, {short:.0f} cm are missing" if short > 0.5 else ""
+        f"; the target is {short:.0f} cm out of reach of its bones" if short > 0.5 else ""
     )

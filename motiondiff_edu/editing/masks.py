@@ -1,9 +1,7 @@
-"""What is given of a motion: masks over frames and joints.
+"""Masks over frames and joints that say what is given of a motion, and the network's columns.
 
-Here is also what they mean for the network's columns.
-
-`known` is (T, J): True where a joint's place is given. The network sees the pelvis in the world and
-the other joints about it, so a joint can be held only where the pelvis is held, too.
+`known` is (T, J): True where a joint's position is given. The network has the pelvis in the world
+and the other joints relative to it, so a joint can be given only where the pelvis is given, too.
 Source: MoFusion 4.4 (the mask delta).  Notebook: 15
 """
 
@@ -23,15 +21,15 @@ PARTS = {
     "upper body": UPPER,
     "lower body": LOWER,
     "trajectory": (),
-}  # with the pelvis each
+}  # each with the pelvis
 
 
 def known_frames(
     T: int, frames: Iterable[int], joints: Sequence[str] = JOINTS
 ) -> Bool[np.ndarray, "{T} J"]:
-    """These frames are given, of these joints and the pelvis.  Negative numbers count from the end.
+    """In these frames, these joints and the pelvis are given. Negative frames count from the end.
 
-    Raises IndexError for a frame that the motion has not, KeyError for a name that no joint has.
+    Raises IndexError for a frame outside the motion, KeyError for an unknown joint.
     """
     known, columns = np.zeros((T, J), bool), [HIPS, *(joint_index(name) for name in joints)]
     for frame in frames:
@@ -42,72 +40,68 @@ def known_frames(
 
 
 def seed(T: int, frames: int = 40) -> Bool[np.ndarray, "{T} J"]:
-    """The first frames are given, the rest is to be made: 40 frames, 2 s.  Source: MoFusion 4.4.
-    Notebook: 15
+    """The first frames are given; 40 frames are 2 s.
 
     Raises ValueError for a seed that is longer than the motion.
+    Source: MoFusion 4.4.  Notebook: 15
     """
     if not 0 <= frames <= T:
         raise ValueError(
-            f"a seed of {frames} frames does not fit into {T}: say how many with frames="
+            f"a seed of {frames} frames does not fit into {T}: pass a smaller number as frames="
         )
     return known_frames(T, range(frames))
 
 
 def keyframes(T: int, every: int) -> Bool[np.ndarray, "{T} J"]:
-    """Every so many frames one is given, the last one as well.
+    """One frame in `every` is given, and so is the last one.
 
-    Notebook: 15
-
-    Raises ValueError for every < 1.
+    Raises ValueError for every < 1.  Notebook: 15
     """
     if every < 1:
-        raise ValueError(f"a keyframe every {every} frames: it takes 1 (all of them) or more")
+        raise ValueError(f"every must be 1 (all frames) or more, not {every}")
     return known_frames(T, sorted({*range(0, T, every), T - 1}))
 
 
 def keyframes_of(motion: Sized | int, every: int = 20) -> Bool[np.ndarray, "T J"]:
-    """`keyframes` of a motion, or of so many frames.
+    """The mask for a keyframe every `every` frames and at the last one: True where it is given.
 
-    Raises ValueError for every < 1, or no frame.
+    Pass a motion, or its number of frames. Raises ValueError for every < 1, or no frames.
     """
     T = motion if isinstance(motion, int) else len(motion)
     return keyframes(checked_count(T, "a motion's number of frames"), checked_count(every, "every"))
 
 
 def checked_known(motion: Motion, known) -> Bool[np.ndarray, "T J"]:
-    """A mask that fits a motion of the course's skeleton: True where a joint is given.
+    """The mask, after a check that it fits a motion of the course's skeleton.
 
-    Raises MotionError for another skeleton, another shape, what is not True or False, and a joint
-    that is given and missing.
+    Raises MotionError for another skeleton, another shape, values other than True and False, and a
+    joint that is given but has no position.
     """
     if motion.skeleton != COURSE:
         raise MotionError(
             f"{motion.name} has {len(motion.skeleton)} joints; the course's networks know the {J} "
-            f"of their own skeleton. Read the figure from a BVH file: it is retargeted"
+            f"of their own skeleton. Read the figure from a BVH file, which retargets it"
         )
     array = np.asarray(known)
     if array.shape != (len(motion), J) or array.dtype != bool:
         raise MotionError(
-            f"known is {array.dtype} {array.shape}; it is bool ({len(motion)}, {J}), a row for "
-            f"each frame and True where the joint is given. md.keyframes(motion) makes one"
+            f"known is {array.dtype} {array.shape}; it must be bool ({len(motion)}, {J}): a row "
+            f"for each frame, True where a joint is given. md.keyframes(motion) makes one"
         )
     wrong = np.argwhere(array & ~motion.known)
     if len(wrong):
         frame, joint = wrong[0]
         raise MotionError(
-            f"{JOINTS[joint]} in frame {frame} is given and has no position (NaN): "
-            f"known & motion.known lets such joints go"
+            f"{JOINTS[joint]} in frame {frame} is given but has no position (NaN): pass "
+            f"known & motion.known, which leaves out such joints"
         )
     return array
 
 
 def gap(T: int, first: int, length: int) -> Bool[np.ndarray, "{T} J"]:
-    """All is given but `length` frames from `first` on.
+    """Everything is given except for `length` frames from `first` on.
 
-    Notebook: 15
-
-    Raises ValueError for a gap that is not inside.
+    Raises ValueError for a gap outside the motion.  Notebook: 15
     """
     if not (0 < length and 0 <= first and first + length <= T):
         raise ValueError(f"a gap of {length} frames from frame {first} is not within {T} frames")
@@ -115,12 +109,10 @@ def gap(T: int, first: int, length: int) -> Bool[np.ndarray, "{T} J"]:
 
 
 def body_part(T: int, part: str) -> Bool[np.ndarray, "{T} J"]:
-    """A part of the body, by its name in PARTS, is given throughout.
+    """A part of the body, by its name in PARTS, is given in every frame.
 
     "trajectory" is the pelvis alone.
-    Notebook: 15
-
-    Raises KeyError with the names there are.
+    Raises KeyError for another name, with a list of the parts.  Notebook: 15
     """
     if part not in PARTS:
         raise KeyError(f"no part is called {part!r}; there are {', '.join(PARTS)}")
@@ -128,16 +120,15 @@ def body_part(T: int, part: str) -> Bool[np.ndarray, "{T} J"]:
 
 
 def known_columns(known: Bool[np.ndarray, "*B T J"]) -> Bool[np.ndarray, "*B T 63"]:
-    """The mask over the network's 63 numbers.
+    """The mask over the network's 63 features.
 
-    Raises ValueError where a joint is given and the pelvis is not: its place in the world is then
-    no column.
+    Raises ValueError where a joint is given without the pelvis: no feature is then known.
     """
     loose = known.any(-1) & ~known[..., HIPS]
     if loose.any():
         frame = int(np.argwhere(loose)[0][-1])
         name = JOINTS[int(np.argmax(known[tuple(np.argwhere(loose)[0])]))]
         raise ValueError(
-            f"frame {frame} gives {name} without the pelvis ({JOINTS[HIPS]}): give that as well"
+            f"frame {frame} gives {name} without the pelvis ({JOINTS[HIPS]}); give the pelvis too"
         )
     return np.repeat(known, 3, axis=-1)

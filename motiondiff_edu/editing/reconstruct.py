@@ -1,9 +1,9 @@
-"""Missing joints of a motion of any length: windows of ten frames cover each hole, and each is
-walked there and back.
+"""Missing joints of a motion of any length: windows of ten frames cover each hole, and each window
+is repaired by a walk there and back.
 
     guess -> every window there and back -> the mean where they overlap -> bones -> next guess
-A window repaired alone would not meet its neighbours: here each round begins with what all of them
-found together. The way back is drawn through what is known, so that holes join on both sides.
+Windows that are repaired alone do not fit together. So each round begins with the mean of all
+windows. The way back is conditioned on the known joints, so that a hole joins on both sides.
 Source: MoDiff III-E; the overlapping windows are ours.
 """
 
@@ -26,7 +26,7 @@ from ..motion.root_frame import smoothed_root, to_root_frame, to_world
 from ..motion.skeleton import BONE_LENGTHS, HIPS, JOINTS, TOES, J
 from ..reconstruction import Rollout, Stop, repair
 
-ROUNDS, STEPS = 3, 10  # there and back; of DDIM
+ROUNDS, STEPS = 3, 10  # rounds there and back; steps of DDIM
 BATCH = 64  # windows at once
 
 
@@ -38,14 +38,12 @@ def reconstruct(
     generator: torch.Generator,
     rounds: int = ROUNDS,
 ) -> Float[np.ndarray, "T 21 3"]:
-    """Find the joints that are not known of a motion in the world (metres, 20 frames/s).
+    """Reconstruct the joints that are not known, in a motion in the world (metres, 20 frames/s).
 
-    They may be NaN.
-
-    Known joints come back bit by bit. The control comes from the pelvis and from where hips and
-    shoulders face, smoothed. Raises MotionError where a pelvis is missing, where nothing tells
-    which way the figure faces, where nothing is missing, and for a motion shorter than a window.
-    Source: MoDiff III-E.
+    Unknown joints can be NaN; known joints come back unchanged, bit by bit. The control comes from
+    the pelvis and from the direction of hips and shoulders, smoothed.
+    Raises MotionError if a pelvis is missing, if no frame shows which way the figure faces, if
+    nothing is missing, and for a motion shorter than a window.  Source: MoDiff III-E.
     """
     T_h, firsts = walker.config.T_h, _windows(known, walker.config.T_h)
     place, facing = path_of(positions, known)
@@ -69,7 +67,7 @@ def reconstruct(
 
 
 def evaluations(walker, known: Bool[np.ndarray, "T 21"], rounds: int = ROUNDS) -> int:
-    """How often `reconstruct` asks the network, for a progress bar.  Raises as `reconstruct`."""
+    """How often `reconstruct` runs the network, for a progress bar.  Raises as `reconstruct`."""
     T_h, T_p = walker.config.T_h, walker.config.T_p
     batches = math.ceil(len(_windows(known, T_h)) / BATCH)
     return batches * rounds * 2 * math.ceil(T_h / T_p) * STEPS
@@ -82,9 +80,9 @@ def _once(
     steer: Float[Tensor, "F 3"],
     firsts: Int[np.ndarray, "W"],
 ) -> Float[Tensor, "T D"]:
-    """Every window there and back once.
+    """Repair every window once, there and back, and average where windows overlap.
 
-    Where they overlap their mean, the middle of a window counting most.
+    The middle of a window has the largest weight.
     """
     T_h = rollout.walker.config.T_h
     weight = 1.0 + torch.arange(T_h).minimum(torch.arange(T_h).flip(0)).to(guess)[:, None]
@@ -105,11 +103,11 @@ def _once(
 def _windows(known: Bool[np.ndarray, "T 21"], T_h: int) -> Int[np.ndarray, "W"]:
     """The first frames of windows that cover every hole, half a window apart.
 
-    They reach beyond the hole where there are frames.
+    Windows extend beyond a hole where the motion has frames.
     """
     T, half = len(known), max(1, T_h // 2)
     if known.all():
-        raise MotionError("nothing is missing: there is nothing to reconstruct")
+        raise MotionError("nothing is missing, so there is nothing to reconstruct")
     if T < T_h:
         raise MotionError(f"the motion has {T} frames; the walker's windows have {T_h}")
     firsts = {
@@ -127,25 +125,24 @@ def path_of(
 
     They come from the pelvis, and from hips and shoulders where they are known.
 
-    Raises MotionError, with the frame, where the pelvis is not, or where neither hips nor shoulders
-    are known in any frame.
+    Raises MotionError, with the frame, if the pelvis is not known there, or if neither hips nor
+    shoulders are known in any frame.
     """
     lost = np.flatnonzero(~known[:, HIPS])
     if len(lost):
         raise MotionError(
-            f"the pelvis ({JOINTS[HIPS]}) is not known in frame {lost[0]} ({len(lost)} such in "
-            f"all), and the walk's control is read from it. md.inbetween can make whole frames"
+            f"the pelvis ({JOINTS[HIPS]}) is not known in frame {lost[0]} ({len(lost)} frames in "
+            f"all), but the control is derived from it. md.inbetween can generate whole frames"
         )
-    across, told = np.zeros((len(positions), 3)), np.zeros(len(positions), bool)
+    across, has_direction = np.zeros((len(positions), 3)), np.zeros(len(positions), bool)
     for left, right in (UPLEGS, ARMS):
         both = known[:, left] & known[:, right]
         across[both] += (positions[:, left] - positions[:, right])[both]
-        told |= both
-    if not told.any():
+        has_direction |= both
+    if not has_direction.any():
         raise MotionError(
-            "nothing tells which way the figure faces: in no frame both hips or both shoulders are "
-            "known"
+            "the direction of the figure is unknown: no frame has both hips or both shoulders"
         )
-    facing = np.unwrap(heading(across[told]))
-    facing = np.interp(np.arange(len(positions)), np.flatnonzero(told), facing)
+    facing = np.unwrap(heading(across[has_direction]))
+    facing = np.interp(np.arange(len(positions)), np.flatnonzero(has_direction), facing)
     return smoothed_root(positions[:, HIPS][:, [0, 2]], facing)

@@ -1,8 +1,7 @@
-"""What happens at the repair bench.
+"""The model behind the repair bench, without a browser.
 
-A window of a walk loses joints or frames, the walker mends it, and it is judged.
-
-No browser here: the widget shows what comes out.  Source: MoDiff III-E, Fig. 6.
+A window of a walk loses joints or frames; the walker repairs it, and the repair is compared with
+the truth. The widget shows the outcome.  Source: MoDiff III-E, Fig. 6.
 """
 
 from collections.abc import Iterable, Iterator
@@ -21,10 +20,7 @@ from .repairs import Mended, mend_steps
 
 @dataclass(frozen=True, eq=False)
 class Outcome:
-    """Where the repairs are in the world (metres), and what is to be said of them.
-
-    The mean comes first, and then each.
-    """
+    """The mean of the repairs and then each repair, in the world (metres), and words about them."""
 
     motions: Float[np.ndarray, "n T_h J 3"]
     mended: Mended
@@ -33,13 +29,11 @@ class Outcome:
 
 @dataclass(frozen=True, eq=False)
 class RepairBench:
-    """A walk and a walker.
+    """A walk, and a walker that repairs windows of it.
 
-    `first` + T_h frames of the walk are the window, and T_h frames must follow it.
-
-    `samples` repairs are drawn in `rounds` rounds with `steps` steps of DDIM, always from the same
-    `seed`.
-    Raises ValueError for a walk that is too short, or has not 20 frames/s.
+    A window is T_h frames of the walk; at least T_h frames must follow it. `samples` repairs are
+    drawn in `rounds` rounds with `steps` steps of DDIM, always from the same `seed`.
+    Raises ValueError for a walk that is too short, or not at 20 frames/s.
     """
 
     walker: AnyWalker
@@ -53,11 +47,11 @@ class RepairBench:
         if len(self.clip) < 2 * self.T_h:
             raise ValueError(
                 f"the walk has {len(self.clip)} frames; the bench needs {2 * self.T_h}: "
-                f"{self.T_h} to be mended, and the control of {self.T_h} to walk there and back"
+                f"{self.T_h} to repair, and the control of {self.T_h} more to walk there and back"
             )
         if self.clip.fps != FPS:
             raise ValueError(
-                f"the walker knows {FPS:g} frames/s, and the walk has {self.clip.fps:g}: "
+                f"the walker needs {FPS:g} frames/s, but the walk has {self.clip.fps:g}: "
                 "resample it first"
             )
 
@@ -68,7 +62,7 @@ class RepairBench:
 
     @property
     def last_first(self) -> int:
-        """The last frame at which a window may begin."""
+        """The last frame at which a window can begin."""
         return len(self.clip) - 2 * self.T_h
 
     def known(self, missing: Iterable[int]) -> Bool[np.ndarray, "T_h J"]:
@@ -82,20 +76,19 @@ class RepairBench:
         for number in missing:
             if not 0 <= number < len(known):
                 raise IndexError(
-                    f"entry {number} is not among the {len(known)} of the window ({self.T_h} x {J})"
+                    f"entry {number} is outside the window's {len(known)} ({self.T_h} x {J})"
                 )
             known[number] = False
         return known.reshape(self.T_h, J)
 
     def mend(self, first: int, missing: Iterable[int]) -> Iterator[Outcome]:
-        """After each round there and back, the repairs in the world and what is to be said.
+        """Repair the window at frame `first`; yield the outcome after each round there and back.
 
-        Raises ValueError for a window that is not within the walk, or in which nothing, or all, is
-        missing.
+        Raises ValueError for a window outside the walk, or if nothing or everything is missing.
         """
         if not 0 <= first <= self.last_first:
             raise ValueError(
-                f"the window begins at frame {first}; it may begin at 0 to {self.last_first}"
+                f"the window begins at frame {first}; it can begin at 0 to {self.last_first}"
             )
         known, T_h = self.known(missing), self.T_h
         truth = self.clip.poses[first : first + T_h]
@@ -116,9 +109,9 @@ class RepairBench:
     def _words(self, mended: Mended, truth: Float[np.ndarray, "T_h J 3"]) -> str:
         found, holes = mended.errors(truth), int((~mended.known).sum())
         return (
-            f"Round {mended.round} of {self.rounds}: {holes} of {mended.known.size} places were "
-            f"missing. From the truth the mean of {len(mended.samples)} repairs is "
-            f"{found['their mean']:.1f} cm away, one repair {found['one repair']:.1f} cm; bones "
-            f"err by {found['bones of the mean']:.2f} and {found['bones of one']:.2f} cm. "
+            f"Round {mended.round} of {self.rounds}: {holes} of {mended.known.size} joint "
+            f"positions were missing. Distance to the truth: {found['their mean']:.1f} cm for the "
+            f"mean of {len(mended.samples)} repairs, {found['one repair']:.1f} cm for one repair. "
+            f"Bone error: {found['bones of the mean']:.2f} cm and {found['bones of one']:.2f} cm. "
             f"The last round moved the repairs by {100 * mended.change:.1f} cm."
         )

@@ -1,9 +1,7 @@
-"""One past, mended several times over.
+"""One past, repaired several times: different random draws fill the same holes differently.
 
-From the same holes different draws lead to different repairs.
-
-Their mean is nearest to the truth and hardly a motion; each of them is a motion. The repair bench
-shows both.
+The mean of the repairs is closest to the truth but hardly moves; each single repair is a motion.
+The repair bench shows both.
 Source: MoDiff III-E; drawing several is ours.  Notebook: 10
 """
 
@@ -24,9 +22,9 @@ from ..rollout import AnyWalker
 
 @dataclass(frozen=True, eq=False)
 class Mended:
-    """`n` repairs of each past after so many rounds (root frame, metres).
+    """`n` repairs of each past after `round` rounds (root frame, metres).
 
-    It also holds how far the last round moved them (m).
+    `change` is how far the last round moved them (m).
     """
 
     samples: Float[np.ndarray, "n *B T_h J 3"]
@@ -36,13 +34,13 @@ class Mended:
 
     @property
     def mean(self) -> Float[np.ndarray, "*B T_h J 3"]:
-        """The mean of the repairs; what was given is in it as it was."""
+        """The mean of the repairs; the known joints are unchanged."""
         return np.where(self.known[..., None], self.samples[0], self.samples.mean(0))
 
     def errors(self, truth: Float[np.ndarray, "*B T_h J 3"]) -> dict[str, float]:
-        """In cm: distance from the truth, spread, and bone error.
+        """Distance from the truth, spread, and bone error, in cm.
 
-        Distance and bone error are told of one repair and of the mean.
+        Distance and bone error are given for one repair and for the mean.
         """
         found = {
             "one repair": repair.missing_error(self.samples, truth, self.known),
@@ -68,23 +66,21 @@ def mend_steps(
     rounds: int = 5,
     steps: int | None = 10,
 ) -> Iterator[Mended]:
-    """After each round there and back, `n` repairs of each past.
+    """Repair each past `n` times; yield the repairs after each round there and back.
 
-    Pasts are root-frame positions (metres), with NaN in the holes.
-
-    `control` has T_h rows beside the past and T_h after it (m/s, m/s, rad/s). A past without a
-    batch axis is taken too.
+    Pasts are root-frame positions (metres), with NaN in the holes and with or without a batch axis.
+    `control` has T_h rows for the past and T_h rows after it (m/s, m/s, rad/s).
     Raises ValueError when nothing is missing, nothing is known, or shapes do not fit.  Notebook: 10
     """
     if known.shape != past.shape[:-1]:
         raise ValueError(
-            f"known is {known.shape}, and must have an entry for each joint of "
+            f"known is {known.shape}; it must have an entry for each joint of "
             f"each frame: {past.shape[:-1]}"
         )
     if known.all():
-        raise ValueError("nothing is missing: there is nothing to repair")
+        raise ValueError("nothing is missing, so there is nothing to repair")
     if not known.any():
-        raise ValueError("nothing is known: there is nothing to go by")
+        raise ValueError("nothing is known, so the repair has no information")
     T_h, J = known.shape[-2:]
     mask = torch.from_numpy(known.reshape(-1, T_h, J)).repeat_interleave(3, dim=-1)
     rows = (np.reshape(past, (-1, T_h, 3 * J)), np.reshape(control, (-1, control.shape[-2], 3)))
@@ -100,10 +96,10 @@ def mend_steps(
 def with_bones(
     past: Float[Tensor, "B T_h D"], known: Bool[Tensor, "B T_h D"], walked: Float[Tensor, "B T D"]
 ) -> Float[Tensor, "B T_h D"]:
-    """The past, its missing joints moved until bones have their right lengths.
+    """The past, with its missing joints moved until the bones have their right lengths.
 
-    For `reconstruction.repair_steps(correct=with_bones)`: otherwise the bone between a generated
-    and a given joint changes its length.
+    For `reconstruction.repair_steps(correct=with_bones)`. Otherwise the bone between a generated
+    and a known joint changes its length.
     Source: ours.
     """
     joints, ahead = (x.double().unflatten(-1, (-1, 3)).numpy() for x in (past, walked))

@@ -1,1 +1,1 @@
-"""Fast twins of the core: each is tested equal to the plain version that the course explains."""
+"""Fast twins of the core: tests compare each with the plain version that the course explains."""

@@ -1,10 +1,9 @@
-"""MoDiff for use: the context is encoded once a frame.
+"""A fast MoDiff: the context is encoded once per frame.
 
-Keys, values and step embeddings are kept over the loop.
-
-The same numbers as the plain network in the core, to 1e-5 (tested). The plain one runs encoder and
-decoder at each of the S steps although past and control do not change meanwhile.  Source: MoDiff
-III-F, Fig. 2.   Notebook: 07
+Keys, values and step embeddings are kept over the sampling loop. The plain network runs encoder and
+decoder at each of the S steps, although past and control do not change between steps. The outputs
+agree to 1e-5 (tested).
+Source: MoDiff III-F, Fig. 2.   Notebook: 07
 """
 
 import copy
@@ -22,13 +21,12 @@ from ..modiff import MoDiff, step_embedding
 
 @dataclass(frozen=True, eq=False)
 class Folded:
-    """A memory as one decoder layer asks it.
+    """A memory prepared for one decoder layer.
 
-    Keys have the queries' weights in them, values the outputs'.
-
-    q K^T = (x W_q) K^T = x (W_q K^T), and the bracket stays the same at all S steps; likewise (A V)
-    W_o = A (V W_o). The heads lie side by side, as HM = H*M columns: a layer asks with one product
-    and is answered with another.
+    The keys contain the weights of the queries, the values those of the output:
+    q K^T = (x W_q) K^T = x (W_q K^T) and (A V) W_o = A (V W_o). The brackets are the same at all S
+    steps. The heads lie side by side, as HM = H*M columns, so one product gives the scores of all
+    heads and one their mixed values.
     """
 
     keys: Float[Tensor, "B W HM"]
@@ -38,15 +36,16 @@ class Folded:
 
 @dataclass(frozen=True, eq=False)
 class Context:
-    """What the decoder needs of past and control, layer by layer."""
+    """The past and the control, prepared for each layer of the decoder."""
 
     layers: tuple[Folded, ...]
 
 
 class _Linear:
-    """Linear layers of one input as one product: the same numbers as theirs side by side.
+    """Several linear layers of one input as one product; their outputs stand side by side.
 
-    The weight lies transposed, which suits the ten rows of a frame (`python -m benchmarks frame`).
+    The weight is stored transposed, which is faster for the ten rows of a frame
+    (`python -m benchmarks frame`).
     """
 
     def __init__(self, *layers: nn.Linear):
@@ -58,10 +57,7 @@ class _Linear:
 
 
 class _Layer:
-    """One decoder block, laid out for few calls.
-
-    x is (B*T, width), all frames of all samples in rows.
-    """
+    """One decoder block with few calls; x is (B*T, width), all frames of all samples in rows."""
 
     def __init__(self, block: Block):
         own = block.self_attention
@@ -75,7 +71,7 @@ class _Layer:
         self.first, self.last = _Linear(first), _Linear(last)
 
     def fold(self, memory: Float[Tensor, "B M W"], bias: Float[Tensor, "1 H T M"]) -> Folded:
-        """A memory's keys and values with this layer's weights in them; done once a frame."""
+        """A memory's keys and values with this layer's weights included; done once per frame."""
         cross = self.cross
         B, M, W = memory.shape
         H = self.heads
@@ -83,16 +79,15 @@ class _Layer:
             part.reshape(B * M, H, -1).transpose(0, 1) for part in cross.kv(memory).chunk(2, dim=-1)
         )
         k = k / math.sqrt(W // H)  # (H, B*M, d), as v
-        asking = cross.q.weight.unflatten(0, (H, -1))  # (H, d, W)
-        answering = cross.out.weight.unflatten(1, (H, -1)).permute(1, 2, 0)  # (H, d, W)
+        query_weight = cross.q.weight.unflatten(0, (H, -1))  # (H, d, W)
+        out_weight = cross.out.weight.unflatten(1, (H, -1)).permute(1, 2, 0)  # (H, d, W)
         keys, values = (
             torch.bmm(part, weight).view(H, B, M, W).transpose(0, 1).reshape(B, H * M, W)
-            for part, weight in ((k, asking), (v, answering))
+            for part, weight in ((k, query_weight), (v, out_weight))
         )
-        own = (
-            torch.bmm(k, cross.q.bias.view(H, -1, 1)).view(H, B, 1, M).transpose(0, 1)
-        )  # what q's bias asks
-        return Folded(keys.transpose(1, 2), (bias + own).transpose(1, 2).flatten(2), values)
+        # the part of the scores that comes from the queries' bias
+        query_bias = torch.bmm(k, cross.q.bias.view(H, -1, 1)).view(H, B, 1, M).transpose(0, 1)
+        return Folded(keys.transpose(1, 2), (bias + query_bias).transpose(1, 2).flatten(2), values)
 
     def __call__(
         self,
@@ -121,12 +116,11 @@ class _Layer:
 
 
 class FastMoDiff:
-    """A trained MoDiff, read once.
+    """A fast copy of a trained MoDiff.
 
-    `encode` a frame's context, then `denoise` as often as the sampler asks.
+    `encode` computes a frame's context once; `denoise` then runs at every step of the sampler.
 
-    It works on a copy: `model` may train on, in its own mode, and this twin keeps the weights of
-    the time of building.
+    `model` can be trained further; this copy keeps the weights that it was built with.
     """
 
     @torch.inference_mode()
@@ -154,20 +148,20 @@ class FastMoDiff:
 
     @torch.inference_mode()
     def encode(self, past: Float[Tensor, "B T_h D"], control: Float[Tensor, "B T C"]) -> Context:
-        """Run the encoders once, and make every decoder layer's keys and values."""
+        """Run the encoders once, and prepare the keys and values of every decoder layer."""
         return self.context_of(self.model.encode(past, control))
 
     def context_of(self, memory: Float[Tensor, "B M width"]) -> Context:
-        """A memory as every decoder layer asks it."""
+        """A memory, prepared for every decoder layer."""
         return Context(tuple(layer.fold(memory, self.memory_bias) for layer in self.layers))
 
     @torch.inference_mode()
     def denoise(
         self, x_s: Float[Tensor, "B T_p D"], s: Int[Tensor, "B"] | int, context: Context
     ) -> Float[Tensor, "B T_p D"]:
-        """The network's output at step s, one for the whole batch or one for each.
+        """The network's output (eps, x0 or v, its target) at step s.
 
-        It is eps, x0 or v, as the network's target says.
+        `s` is one step for the whole batch, or one for each sample.
         """
         out = self.head(self.attend(self.embed(x_s, s), context))
         return out if self.skip is None else out + self.skip[s].view(-1, 1, 1) * x_s

@@ -1,8 +1,7 @@
-"""MoFusion for use: music is heard once a song.
+"""A fast MoFusion: the music is encoded once per song.
 
-Keys, values and what the step says are kept over the sampling loop.
-
-The same numbers as the plain network in the core, but for rounding (tested).  Notebook: 12
+Keys, values and the modulations of each diffusion step are kept over the sampling loop. The output
+equals that of the plain network up to rounding (tested).  Notebook: 12
 """
 
 import copy
@@ -19,11 +18,8 @@ from ..mofusion import CrossAttentionBlock, FrameConv, MoFusion, ResBlock, View
 
 
 @dataclass(frozen=True, eq=False)
-class Listening:
-    """What the blocks need of a song, for motions of one length.
-
-    Keys and values block by block, and the views.
-    """
+class SongContext:
+    """A song, prepared for motions of one length: keys and values of each block, and the views."""
 
     frames: int
     views: list[View]
@@ -32,19 +28,19 @@ class Listening:
 
 
 class FastMoFusion:
-    """A trained MoFusion, read once.
+    """A fast copy of a trained MoFusion.
 
-    `listen` to the music, then `denoise` as often as the sampler asks.
+    `listen` encodes the music once; `denoise` then runs at every step of the sampler.
 
-    It works on a copy, as FastMoDiff does; without music (C = 0) there is nothing to keep: use the
-    plain network.
+    As in FastMoDiff, the copy keeps the weights that it was built with. Without music (C = 0) there
+    is nothing to keep, so use the plain network.
     """
 
     @torch.inference_mode()
     def __init__(self, model: MoFusion):
         if model.music is None:
             raise ValueError(
-                "a network without music has no keys and values to keep: use the plain one"
+                "a network without music has no keys and values to keep: use the plain network"
             )
         model = copy.deepcopy(model).eval()
         self.model = model
@@ -58,15 +54,14 @@ class FastMoFusion:
                 torch.arange(self.config.S + 1, device=device), 4 * self.config.widths[0]
             )
         )
-        self.told = [
-            block["res"].step(steps).chunk(2, dim=-1) for block in self.blocks
-        ]  # scale, shift for every s
+        # (scale, shift) of each block, for every s
+        self.modulations = [block["res"].step(steps).chunk(2, dim=-1) for block in self.blocks]
 
     @torch.inference_mode()
     def listen(
         self, mel: Float[Tensor, "B M C"], times: Float[Tensor, "M"], frames: int
-    ) -> Listening:
-        """The keys and values of a song, turned by their times, for a dance of so many frames."""
+    ) -> SongContext:
+        """The keys and values of a song, rotated by their times, for a dance of `frames` frames."""
         music = self.model.listen(mel, times)
         padded = frames + -frames % 2**self.levels
         lengths = torch.full((1,), frames, device=mel.device)
@@ -79,15 +74,15 @@ class FastMoFusion:
             k, v = (attention.split(part) for part in attention.kv(music.tokens).chunk(2, dim=-1))
             keys.append(turned(k, views[level].turns[attention.q.out_features][1]).contiguous())
             values.append(v.contiguous())
-        return Listening(frames, views, tuple(keys), tuple(values))
+        return SongContext(frames, views, tuple(keys), tuple(values))
 
     @torch.inference_mode()
     def denoise(
-        self, x_s: Float[Tensor, "B T D"], s: Int[Tensor, "B"] | int, song: Listening
+        self, x_s: Float[Tensor, "B T D"], s: Int[Tensor, "B"] | int, song: SongContext
     ) -> Float[Tensor, "B T D"]:
-        """The network's output at step s, one for the whole batch or one for each.
+        """The network's output (eps, x0 or v, its target) at step s.
 
-        It is eps, x0 or v, as the network's target says.
+        `s` is one step for the whole batch, or one for each sample.
         """
         model = self.model
         levels = self.levels
@@ -105,31 +100,35 @@ class FastMoFusion:
         out = model.out(h[:, : song.frames])
         return out if model.skip is None else out + model.skip[s].view(-1, 1, 1) * x_s
 
-    def _block(self, k: int, h: Tensor, s, song: Listening) -> Tensor:
+    def _block(self, k: int, h: Tensor, s, song: SongContext) -> Tensor:
         view = song.views[self.level_of[k]]
-        scale, shift = (part[s].view(-1, 1, part.shape[-1]) for part in self.told[k])
+        scale, shift = (part[s].view(-1, 1, part.shape[-1]) for part in self.modulations[k])
         h = _res(self.blocks[k]["res"], h, scale, shift, view.mask)
-        return _ask(self.blocks[k]["ask"], h, song.keys[k], song.values[k], view)
+        return _attend(self.blocks[k]["ask"], h, song.keys[k], song.values[k], view)
 
 
 def _res(block: ResBlock, x: Tensor, scale: Tensor, shift: Tensor, mask: Tensor) -> Tensor:
-    """ResBlock.forward, with what the step says already worked out."""
+    """ResBlock.forward, with the step's scale and shift already computed."""
     h = _conv(block.conv_in, F.silu(block.norm_in(x)).mul_(mask))
     h = torch.addcmul(shift, block.norm_out(h), 1 + scale)
     return _conv(block.conv_out, F.silu(h).mul_(mask)).add_(block.around(x))
 
 
 def _conv(conv: FrameConv, x: Tensor) -> Tensor:
-    """FrameConv.forward as one product of a frame and its neighbours: faster for a few short
-    motions (by a tenth), and slower in training."""
+    """FrameConv.forward as one product of a frame and its neighbours.
+
+    It is a tenth faster for a few short motions, and slower in training.
+    """
     n = conv.dilation
     padded = F.pad(x, (0, 0, n, n))
     together = torch.cat([padded[:, : -2 * n], x, padded[:, 2 * n :]], dim=-1)
     return conv.mix(together[:, :: conv.stride])
 
 
-def _ask(block: CrossAttentionBlock, x: Tensor, keys: Tensor, values: Tensor, view: View) -> Tensor:
-    """CrossAttentionBlock.forward, with keys and values at hand."""
+def _attend(
+    block: CrossAttentionBlock, x: Tensor, keys: Tensor, values: Tensor, view: View
+) -> Tensor:
+    """CrossAttentionBlock.forward, with keys and values already computed."""
     attention = block.attention
     q = turned(attention.split(attention.q(block.norm(x))), view.turns[x.shape[-1]][0])
     mixed = F.scaled_dot_product_attention(q, keys, values, attn_mask=view.bias)

@@ -1,8 +1,8 @@
-"""Samplers with almost no cost of their own: DDPM and DDIM as in `ddpm`, to rounding (tested).
+"""Samplers with almost no cost of their own: DDPM and DDIM as in `ddpm`, up to rounding (tested).
 
-Every sampler here is one rule, x_next = keep * x_s + turn * eps_hat + sigma * noise, with three
-numbers for each step. They are Python floats made before the loop: around a small network it is a
-scheduler's own arithmetic that takes time.
+Every sampler here is one rule, x_next = a * x0_hat + b * x_s + c * eps_hat + sigma * noise, with
+four numbers for each step. They are Python floats, computed before the loop: with a small network
+the arithmetic of the scheduler itself takes much of the time.
 """
 
 import math
@@ -16,30 +16,27 @@ from ..ddpm import Denoiser, Schedule, ddim_sigma, draw, falling, p_variance, st
 
 
 class FastStep:
-    """One moment of sampling, like `ddpm.Step`.
+    """One step of sampling, like `ddpm.Step`; x0_hat and eps_hat are computed on use."""
 
-    x0_hat and eps_hat are computed when they are read.
-    """
+    __slots__ = ("s", "x_s", "_output", "_alpha_bar", "_clip")
 
-    __slots__ = ("s", "x_s", "_said", "_alpha_bar", "_clip")
-
-    def __init__(self, s: int, x_s: Tensor, said: Tensor, alpha_bar: float, clip: float | None):
+    def __init__(self, s: int, x_s: Tensor, output: Tensor, alpha_bar: float, clip: float | None):
         self.s, self.x_s = s, x_s
-        self._said = said
+        self._output = output
         self._alpha_bar, self._clip = alpha_bar, clip
 
     @property
     def x0_hat(self) -> Tensor:
-        """(x_s - sqrt(1 - alpha_bar_s) eps_hat) / sqrt(alpha_bar_s), bounded if asked."""
+        """(x_s - sqrt(1 - alpha_bar_s) eps_hat) / sqrt(alpha_bar_s), clamped to +-clip."""
         signal, noise = math.sqrt(self._alpha_bar), math.sqrt(1 - self._alpha_bar)
-        x0_hat = (self.x_s - noise * self._said) / signal
+        x0_hat = (self.x_s - noise * self._output) / signal
         return x0_hat if self._clip is None else x0_hat.clamp(-self._clip, self._clip)
 
     @property
     def eps_hat(self) -> Tensor:
-        """What the denoiser says, or what goes with a bounded x0_hat."""
+        """The denoiser's output, or the eps_hat that belongs to a clamped x0_hat."""
         if self._clip is None or not self.s:
-            return self._said
+            return self._output
         signal, noise = math.sqrt(self._alpha_bar), math.sqrt(1 - self._alpha_bar)
         return (self.x_s - signal * self.x0_hat) / noise
 
@@ -54,7 +51,7 @@ def ddpm_steps(
     variance: str = "beta",
     clip: float | None = None,
 ) -> Iterator[FastStep]:
-    """`ddpm.sample_steps`, faster: the same records for the same noise, to rounding.
+    """`ddpm.sample_steps`, faster: the same records for the same noise, up to rounding.
 
     Source: MoDiff Alg. 2.  Notebook: 03
     """
@@ -79,9 +76,9 @@ def ddim_steps(
     noise: Float[Tensor, "S *any"] | None = None,
     clip: float | None = None,
 ) -> Iterator[FastStep]:
-    """`ddpm.ddim_steps`, faster: the same records for the same noise, to rounding.
+    """`ddpm.ddim_steps`, faster: the same records for the same noise, up to rounding.
 
-    Raises ValueError for steps that do not fall, or lie outside 1..S, and for an eta outside 0..1.
+    Raises ValueError for steps that do not decrease or are outside 1..S, and for eta outside 0..1.
     Notebook: 12
     """
     visited, alpha_bar = falling(steps, schedule.S), schedule.alpha_bar.tolist()

@@ -1,7 +1,8 @@
-"""The fast twin of a network, made anew when the network's weights have changed since.
+"""The fast twin of a network, rebuilt when the network's weights have changed.
 
-A twin works on a copy of the weights. Training on, loading other weights, or changing one in place
-makes the copy stale: torch counts the changes of every tensor, and the count is compared.
+A twin works on a copy of the weights. Training, loading other weights, or changing one in place
+makes the copy stale. torch counts the in-place changes of every tensor; a different count triggers
+a new copy.
 """
 
 from collections.abc import Callable
@@ -12,9 +13,9 @@ from ..cross_modal_attention import CrossModalAttention
 
 
 class Twin:
-    """`twin()` is the fast twin of `model`, with its weights of now.
+    """`twin()` returns the fast twin of `model` with its current weights.
 
-    Only a change through `.data` escapes it: torch does not count those.
+    Changes through `.data` are missed, because torch does not count them.
     """
 
     def __init__(self, model: nn.Module, make: Callable[[nn.Module], object]):
@@ -29,20 +30,20 @@ class Twin:
 
 
 def stamp_of(model: nn.Module) -> tuple:
-    """Where every weight and buffer lies, and how often it was changed in place."""
+    """The address of every weight and buffer, and how often it was changed in place."""
     tensors = [*model.parameters(), *model.buffers()]
     return tuple((tensor.data_ptr(), _changes(tensor)) for tensor in tensors)
 
 
 def _changes(tensor: Tensor) -> int:
-    """A tensor made in inference mode counts nothing, and cannot be trained."""
+    """The count of in-place changes; torch keeps none for tensors made in inference mode."""
     return 0 if tensor.is_inference() else tensor._version
 
 
 def watched(model: nn.Module) -> bool:
-    """Whether somebody collects this network's attention.
+    """Whether `cross_modal_attention.watch` collects this network's attention.
 
-    See `cross_modal_attention.watch`: a twin's layers are others.
+    A twin has other layers, so the network must then run itself.
     """
     layers = (m for m in model.modules() if isinstance(m, CrossModalAttention))
     return any(layer.watcher is not None for layer in layers)

@@ -1,2 +1,4 @@
-"""Measures of motion, as pure functions of arrays: what each counts, and what it is blind to.
-Notebook: 08"""
+"""Measures of motion, as pure functions of arrays. Each file says what its measure does not see.
+
+Notebook: 08
+"""

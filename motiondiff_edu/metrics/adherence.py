@@ -1,10 +1,9 @@
-"""Does the figure go where it is told?
+"""Does the figure follow the control?
 
-Not to be read from the root, which follows the control by construction.
-
-The feet tell. A planted toe says how the root must move for the toe to stay still; the control says
-how it does move. Their difference is slow in a good walk (each step ripples, and the ripples
-cancel) and large in one that walks at its own speed. Metres a second.   Notebook: 08
+The root cannot answer this, because it follows the control by construction. The feet can. A planted
+toe implies how the root must move for the toe to stay still; the control says how it does move. In
+a good walk the difference averages out over each step. It is large if the figure walks at its own
+speed. In metres a second.   Notebook: 08
 """
 
 import numpy as np
@@ -22,10 +21,9 @@ def implied_root_velocity(
 ) -> Float[np.ndarray, "*B T-1 2"]:
     """The root velocity that would keep the planted toe still.
 
-    (forward, left) in m/s at the halfway heading.
-
-    With p the toe in the root frame and d = yaw / (2 fps):  implied[t] = fps * (R(-d) p[t] - R(+d)
-    p[t+1]). The yaw is the control's. NaN in steps where no toe is planted.
+    It is (forward, left) in m/s at the halfway heading. With p the toe in the root frame, and
+    d = yaw / (2 fps) from the control:  implied[t] = fps * (R(-d) p[t] - R(+d) p[t+1]).
+    It is NaN in steps where no toe is planted.
     """
     turn_only = np.asarray(control, np.float64) * [0.0, 0.0, 1.0]
     return -planted_velocity(poses, turn_only, fps, below)[..., ::-1]
@@ -37,11 +35,9 @@ def residual_velocity(
     fps: float | int = FPS,
     below: float | int = PLANTED_BELOW,
 ) -> Float[np.ndarray, "*B T-1 2"]:
-    """What the feet say minus what the control says.
+    """Implied root velocity - control, (forward, left) in m/s.
 
-    Implied root velocity - control, (forward, left) in m/s.
-
-    It is also minus the velocity at which the planted toe slides. NaN in flight.  Notebook: 08
+    It is also the negative velocity of the sliding toe. It is NaN in flight.  Notebook: 08
     """
     return implied_root_velocity(poses, control, fps, below) - control[..., :-1, :2]
 
@@ -56,20 +52,19 @@ def adherence(
 
     |mean of the residual over a second|, averaged over seconds.
 
-    The seconds follow each other without overlap; a last one shorter than half is left out. Flight
-    is left out of a second's mean, a second all in flight out of the average; a clip with no
-    planted toe at all gives NaN. Recorded motion is not at 0 either: print the data's own value
-    beside it.
-    Raises ValueError for fewer than two frames, or a control that has not a row for each frame.
+    The seconds do not overlap; a last one shorter than half a second is dropped. A second's mean
+    leaves out flight, and the average leaves out seconds that are all flight. A clip without any
+    planted toe gives NaN. Recorded motion is not at 0 either: print the data's own value beside it.
+    Raises ValueError for fewer than two frames, or a control without a row for each frame.
     Notebook: 08
     """
     if poses.shape[:-2] != control.shape[:-1]:
         frames, rows = (tuple(map(int, shape)) for shape in (poses.shape[:-2], control.shape[:-1]))
         raise ValueError(
-            f"poses for frames {frames} and control for {rows}: pass a row of control for each pose"
+            f"poses for {frames} frames and control for {rows}: pass a row of control for each pose"
         )
     if poses.shape[-3] < 2:
-        raise ValueError("a velocity takes two frames, and this motion has one")
+        raise ValueError("a velocity needs two frames, and this motion has one")
     residual = residual_velocity(poses, control, fps, below)
     means = np.stack(
         [mean_where(np.moveaxis(second, -1, -2)) for second in _seconds(residual, fps)], -2

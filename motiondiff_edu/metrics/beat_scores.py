@@ -1,8 +1,6 @@
-"""A set of dances against their songs, in one record.
+"""A set of dances against their songs: the beat score, and numbers that show what it means.
 
-The score, and beside it what shows whether it means anything.
-
-That is: the same with other songs' beats, the level of chance, kinematic beats per music beat (a
+These are the score with other songs' beats, the level of chance, kinematic beats per music beat (a
 figure that stops all the time meets many beats), and the speed (a figure that hardly moves stops
 anywhere).   Notebook: 14
 """
@@ -21,12 +19,14 @@ from .skating import mean_where
 
 @dataclass(frozen=True, eq=False)
 class BeatScores:
-    """One row of numbers for each clip (for intervals), and their means over clips as properties.
+    """One value per clip (`..._clips`, for intervals), and their means over clips as properties.
 
-    bas: beat alignment, kinematic form; bas_shuffled: its mean with the beats of each other song;
-    bas_chance: of stops at random times; beats_per_beat: kinematic beats per music beat; speed:
-    mean joint speed in m/s. A clip without kinematic beats has NaN in bas and bas_shuffled, and is
-    left out of their means.
+    bas             beat alignment, in the kinematic form
+    bas_shuffled    its mean with the beats of each other song
+    bas_chance      the same for stops at random times
+    beats_per_beat  kinematic beats per music beat
+    speed           mean joint speed in m/s
+    A clip without kinematic beats has NaN in bas and bas_shuffled; their means leave it out.
     """
 
     bas_clips: Float[np.ndarray, "B"]
@@ -64,11 +64,10 @@ def beat_scores(
 ) -> BeatScores:
     """Score B dances, each against the beats of its song.
 
-    Times in seconds from the clip's first frame.
-
-    Beats before the first and after the last frame may be given: a stop may be near them; they
-    count as music beats only within the clip. One NoBeatsWarning tells how many clips never slow
-    down. `bas_shuffled` is NaN for one clip.
+    `music` are times in seconds from the clip's first frame. Beats before the first and after the
+    last frame can be included, because a stop can be near them; only beats within the clip count as
+    music beats. One NoBeatsWarning says how many clips never slow down. For a single clip
+    `bas_shuffled` is NaN.
     Raises ValueError unless there is one list of beats for each dance, each with a beat within the
     clip.
     Source: MoFusion eq. 10, Table 1.  Notebook: 14
@@ -101,7 +100,7 @@ def beat_scores(
 def _every_pair(
     found: Sequence[np.ndarray], music: Sequence[np.ndarray], sigma: float | int
 ) -> np.ndarray:
-    """Score of dance i with song j."""
+    """Entry (i, j) is the score of dance i with song j."""
     still = sum(len(beats) == 0 for beats in found)
     if still:
         warnings.warn(

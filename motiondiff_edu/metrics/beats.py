@@ -1,11 +1,9 @@
-"""Does the dance keep time?
+"""Does the dance keep time? The moments at which the body slows down, against the music's beats.
 
-Moments at which the body slows down, compared with the beats of the music.
-
-A kinematic beat is a local minimum of the mean joint speed: a stop between two moves. Times are in
-seconds throughout. A score without its chance level says nothing: the published ones, .23 to .25,
-are what random stops get. The papers' own forms, with their faults: `published_beats.py`.  Source:
-MoFusion eq. 10.   Notebook: 14
+A kinematic beat is a local minimum of the mean joint speed: a stop between two moves. All times are
+in seconds. A score means nothing without its chance level: random stops get .23 to .25, which are
+the published scores. `published_beats.py` has the forms of the papers' code, with their faults.
+Source: MoFusion eq. 10.   Notebook: 14
 """
 
 import warnings
@@ -19,13 +17,13 @@ from scipy.special import erf
 from ..motion.resample import DANCE_FPS, resample
 from ..motion.root_frame import FPS
 
-SMOOTHING = 0.083  # s, of the speed: at 60 frames/s the papers' 5 frames
-SIGMA = 0.05  # s, of the score: at 60 frames/s the papers' 3 frames
-DUST = 1e-4  # m/s: a dip less deep than this is rounding
+SMOOTHING = 0.083  # s, for the speed: the papers' 5 frames at 60 frames/s
+SIGMA = 0.05  # s, for the score: the papers' 3 frames at 60 frames/s
+MIN_DEPTH = 1e-4  # m/s: a shallower minimum is rounding
 
 
 class NoBeatsWarning(UserWarning):
-    """A dance never slows down, so that its beats cannot be scored; the score is NaN."""
+    """A dance never slows down, so it has no beats to score; the score is NaN."""
 
 
 def mean_speed(
@@ -38,7 +36,7 @@ def mean_speed(
     Raises ValueError for fewer than two frames.  Source: MoFusion 4.1.  Notebook: 14
     """
     if positions.shape[-3] < 2:
-        raise ValueError("a speed takes two frames, and this motion has one")
+        raise ValueError("a speed needs two frames, and this motion has one")
     return (
         np.linalg.norm(np.diff(np.asarray(positions, np.float64), axis=-3), axis=-1).mean(-1) * fps
     )
@@ -60,10 +58,11 @@ def kinematic_beats(
 ) -> Float[np.ndarray, "K"]:
     """Times in seconds at which the smoothed mean joint speed has a local minimum.
 
-    Motion of fewer frames is brought to 60 a second first; the speed between frames t and t+1
-    stands at t + 1/2; each minimum is refined by the parabola through it and its neighbours. So 20
-    and 60 frames/s find the same beats, within milliseconds. The smoothing moves a stop between
-    unequal moves by some 30 ms, towards the slower one. A figure that never slows down has none.
+    Motion at a lower rate is first resampled to 60 frames/s. The speed between frames t and t+1
+    belongs to t + 1/2. Each minimum is refined by the parabola through it and its neighbours. So 20
+    and 60 frames/s give the same beats within milliseconds. The smoothing moves a stop between
+    unequal moves by about 30 ms, towards the slower one. A figure that never slows down has no
+    beats.
     Raises ValueError for NaN.  Source: MoFusion 4.1.   Notebook: 14
     """
     if fps < DANCE_FPS:
@@ -71,9 +70,9 @@ def kinematic_beats(
     speed = smooth_speed(positions, fps, smoothing)
     if not np.isfinite(speed).all():
         raise ValueError(
-            "positions hold NaN or infinity: fill or cut them before looking for beats"
+            "positions contain NaN or infinity: fill or cut them before you look for beats"
         )
-    low = find_peaks(-speed, prominence=DUST)[0]
+    low = find_peaks(-speed, prominence=MIN_DEPTH)[0]
     before = speed[low - 1]
     here = speed[low]
     after = speed[low + 1]
@@ -85,21 +84,23 @@ def kinematic_beats(
 def beat_alignment(
     kinematic: Float[np.ndarray, "K"], music: Float[np.ndarray, "M"], sigma: float | int = SIGMA
 ) -> float:
-    """How near to a music beat the dance slows down, 0 to 1.
+    """How close to a music beat the dance slows down, 0 to 1.
 
     Mean over *kinematic* beats b of exp(-d(b)^2 / 2 sigma^2).
 
-    d(b) = min_m |b - m|, m the music beats. The kinematic form: of AIST++'s authors, and of
-    MoFusion's sentence. Exchange the arguments for the music form of MoFusion's formula and of
-    Bailando (`music_alignment`). No kinematic beat gives NaN and a NoBeatsWarning.
+    d(b) = min_m |b - m| over the music beats m. AIST++'s authors use this kinematic form, and so
+    does MoFusion's text. MoFusion's formula and Bailando use the music form (`music_alignment`),
+    which exchanges the arguments. Without kinematic beats the score is NaN, with a NoBeatsWarning.
     Raises ValueError for music without a beat, or sigma not positive.  Source: MoFusion eq. 10.
     Notebook: 14
     """
     if sigma <= 0:
-        raise ValueError(f"sigma is a time in seconds above 0, got {sigma}")
-    _some_music(music)
+        raise ValueError(f"sigma must be a time in seconds above 0, not {sigma}")
+    _check_music(music)
     if len(kinematic) == 0:
-        warnings.warn("this dance never slows down: no score", NoBeatsWarning, stacklevel=2)
+        warnings.warn(
+            "this dance never slows down, so its score is NaN", NoBeatsWarning, stacklevel=2
+        )
         return float("nan")
     nearest = np.abs(np.asarray(kinematic)[:, None] - np.asarray(music)[None, :]).min(1)
     return float(np.exp(-(nearest**2) / (2 * sigma**2)).mean())
@@ -110,28 +111,28 @@ def music_alignment(
 ) -> float:
     """The music form: mean over *music* beats m of exp(-min_b |b - m|^2 / 2 sigma^2).
 
-    It rewards whoever stops often.
+    It rewards a figure that stops often.
 
-    No kinematic beat gives 0: no music beat was met. Raises ValueError for music without a beat.
+    Without kinematic beats the score is 0. Raises ValueError for music without a beat.
     Source: MoFusion eq. 10.  Notebook: 14
     """
-    _some_music(music)
+    _check_music(music)
     return beat_alignment(music, kinematic, sigma) if len(kinematic) else 0.0
 
 
 def chance_level(
     music: Float[np.ndarray, "M"], seconds: float | int, sigma: float | int = SIGMA
 ) -> float:
-    """What stops at random times within [0, seconds] score on average in the kinematic form; exact.
+    """The exact mean score, in the kinematic form, of stops at random times within [0, seconds].
 
-    (1 / seconds) * integral of exp(-min_m |t - m|^2 / 2 sigma^2) dt, by erf from beat to the middle
-    between beats. For a steady beat of period P: sigma sqrt(2 pi) / P, less the tails. Faster
-    music, better score.
-    Raises ValueError for music without a beat, or no time.  Notebook: 14
+    (1 / seconds) * integral of exp(-min_m |t - m|^2 / 2 sigma^2) dt, by erf between each beat and
+    the middle to the next. For a steady beat of period P it is sigma sqrt(2 pi) / P, less the
+    tails: faster music gives a better score.
+    Raises ValueError for music without a beat, or seconds not positive.  Notebook: 14
     """
-    _some_music(music)
+    _check_music(music)
     if seconds <= 0:
-        raise ValueError(f"chance is counted over a time above 0, got {seconds} s")
+        raise ValueError(f"the length must be above 0 s, not {seconds}")
     music = np.sort(np.asarray(music, np.float64))
     middle = (music[1:] + music[:-1]) / 2
     edges = np.clip(np.concatenate([[0.0], middle, [float(seconds)]]), 0.0, float(seconds))
@@ -147,12 +148,10 @@ def shifted_level(
     rng: np.random.Generator,
     times: int = 200,
 ) -> float:
-    """The chance level of any score.
+    """The chance level of any score: its mean after random shifts of the dance in time.
 
-    Its mean when the dance begins at a random time, going round at `seconds`.
-
-    `score` is `beat_alignment`, `music_alignment` ... The dance keeps its rhythm and loses its
-    place in the music.
+    `score` is `beat_alignment`, `music_alignment` or another function. The shift is circular with
+    period `seconds`: the dance keeps its rhythm and loses its place in the music.
     Notebook: 14
     """
     shifts = rng.uniform(0, seconds, times)
@@ -164,11 +163,11 @@ def shifted_level(
 def f_measure(
     found: Float[np.ndarray, "K"], true: Float[np.ndarray, "M"], window: float | int = 0.07
 ) -> float:
-    """Beats found against true ones, 0 to 1.
+    """F-measure of found beats against true ones, 0 to 1.
 
-    F = 2 hits / (K + M), a hit being a pair at most `window` seconds apart.
+    F = 2 hits / (K + M); a hit is a pair at most `window` seconds apart.
 
-    Each beat is used once. 0 when one side is empty. Times must be in order.  Notebook: 11
+    Each beat is used once. F is 0 when one side is empty. Times must be sorted.  Notebook: 11
     """
     hits = i = j = 0
     while i < len(found) and j < len(true):
@@ -183,9 +182,8 @@ def f_measure(
     return 2 * hits / (len(found) + len(true)) if hits else 0.0
 
 
-def _some_music(music: Float[np.ndarray, "M"]) -> None:
+def _check_music(music: Float[np.ndarray, "M"]) -> None:
     if len(music) == 0:
         raise ValueError(
-            "this music has no beat to be compared with: "
-            "was it silent, or cut before its first beat?"
+            "this music has no beat to compare with: is it silent, or cut before its first beat?"
         )

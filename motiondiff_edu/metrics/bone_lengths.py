@@ -1,9 +1,7 @@
-"""Do the limbs keep their length?
+"""Do the limbs keep their length? The networks generate 21 free points; no rule fixes the bones.
 
-The networks draw 21 free points: nothing but learning holds the bones together.
-
-Positions in metres, errors in centimetres, as in the papers' tables. Root frame and world give the
-same figures.
+Positions are in metres, errors in centimetres, as in the papers' tables. Root frame and world give
+the same numbers.
 Source: MoDiff IV-B, Tables I and II.  Notebook: 08
 """
 
@@ -24,7 +22,7 @@ def bone_lengths(positions: Float[np.ndarray, "*B T J 3"]) -> Float[np.ndarray, 
     """
     if positions.shape[-2] != len(PARENTS):
         raise ValueError(
-            f"bones are measured on the course's {len(PARENTS)} joints, these positions have "
+            f"bones are measured on the course's {len(PARENTS)} joints, but these positions have "
             f"{positions.shape[-2]}: retarget the motion first (motion.retarget)"
         )
     positions = np.asarray(positions, np.float64)
@@ -37,18 +35,16 @@ def bone_rmse(
     """The paper's bone-length error in cm, over all clips, frames and bones together.
 
     RMSE = 100 * sqrt( mean over clips, t, b of (l_b(t) - reference_b)^2 ), lengths in metres.
-    A constant error counts as well as a trembling one. Source: MoDiff IV-B, Table I.  Notebook: 08
+    Constant errors and jitter both count. Source: MoDiff IV-B, Table I.  Notebook: 08
     """
     return float(CM_PER_METRE * np.sqrt(np.mean((bone_lengths(positions) - reference) ** 2)))
 
 
 def bone_rmse_within_clip(positions: Float[np.ndarray, "*B T J 3"]) -> float:
-    """How much the bones stretch while the clip runs, in cm.
+    """How much the bone lengths vary within a clip, in cm: the error against the clip's own means.
 
-    The same, against each clip's own mean lengths.
-
-    RMSE = 100 * sqrt( mean over clips, t, b of (l_b(t) - mean_t l_b)^2 ): a figure that is too
-    large but rigid has 0. Ours, beside the paper's.
+    RMSE = 100 * sqrt( mean over clips, t, b of (l_b(t) - mean_t l_b)^2 ). A figure that is too
+    large but rigid has 0. This measure is ours, beside the paper's.
     """
     lengths = bone_lengths(positions)
     return float(CM_PER_METRE * np.sqrt(np.mean((lengths - lengths.mean(-2, keepdims=True)) ** 2)))

@@ -1,11 +1,9 @@
-"""Footsteps counted as MoDiff's Tables I, II and Fig. 3 do.
-
-With the whole curve, and what makes the count break.
+"""Footsteps counted as in MoDiff's Tables I, II and Fig. 3.
 
 A step is an interval in which a heel is slower over the ground than a tolerance v. Too small a
-tolerance finds no step; noise or sliding near the tolerance cuts each step into crumbs, and the
-paper's count is then a count of crumbs. Speeds in cm/s, durations in seconds.  Source: MoDiff IV-B,
-Fig. 3.   Notebook: 08
+tolerance finds no steps. Noise or sliding near the tolerance cuts each step into fragments, and the
+paper's count then counts fragments. Speeds are in cm/s, durations in seconds.
+Source: MoDiff IV-B, Fig. 3.   Notebook: 08
 """
 
 from collections.abc import Sequence
@@ -19,12 +17,12 @@ from ..motion.root_frame import FPS
 from ..motion.skeleton import HEELS
 from .skating import ground_velocity
 
-TOLERANCES = np.arange(1.0, 61.0)  # cm/s; the paper's own are the integers 5 and 6
+TOLERANCES = np.arange(1.0, 61.0)  # cm/s; the paper's own values are 5 and 6
 
 
 @dataclass(frozen=True)
 class StepRule:
-    """What counts as a step. The default is the paper's; every other setting is ours.
+    """What counts as a step. The default is the paper's rule; every other setting is ours.
 
     min_duration_s: shorter steps are dropped.
     merge_gap_s: gaps up to this long are closed first.
@@ -40,10 +38,7 @@ ROBUST = StepRule(min_duration_s=0.1, merge_gap_s=0.05)
 
 @dataclass(frozen=True)
 class Footsteps:
-    """The curve f_est(v), and the row of MoDiff's Table I that is read from it.
-
-    Count, v95, mean_s, std_s.
-    """
+    """The curve f_est(v) (`tolerances`, `counts`), and the row of MoDiff's Table I at v95."""
 
     tolerances: Float[np.ndarray, "V"]
     counts: Float[np.ndarray, "V"]
@@ -58,10 +53,9 @@ def heel_speed(
     control: Float[np.ndarray, "*B T 3"],
     fps: float | int = FPS,
 ) -> Float[np.ndarray, "*B T-1 2"]:
-    """Horizontal speed over the ground of the left and the right heel joint, in cm/s.  Source:
-    MoDiff IV-B.
+    """Horizontal speed over the ground of the left and the right heel joint, in cm/s.
 
-    Notebook: 08
+    Source: MoDiff IV-B.  Notebook: 08
     """
     return 100 * np.linalg.norm(ground_velocity(poses[..., HEELS, :], control, fps), axis=-1)
 
@@ -72,7 +66,7 @@ def steps_of_heel(
     rule: StepRule = PAPER,
     fps: float | int = FPS,
 ) -> Int[np.ndarray, "n 2"]:
-    """The steps of one heel: runs of speed < tolerance (cm/s), then what `rule` changes."""
+    """The steps of one heel: runs of speed < tolerance (cm/s), merged and filtered by `rule`."""
     found = runs(speed < tolerance)
     if rule.merge_gap_s > 0:
         found = _merged(found, rule.merge_gap_s * fps)
@@ -109,11 +103,11 @@ def footsteps(
 ) -> Footsteps:
     """Footsteps of a set of clips, each given by its `heel_speed`.
 
-    The row of Table I at v95, and the whole curve.
-
     f_est(v) = number of steps at tolerance v;  v95 = min{ v : f_est(v) >= 0.95 max_u f_est(u) };
-    count, mean_s, std_s: number, mean and population deviation of the step durations at v95.
-    No step at any tolerance gives count 0 and NaN. Raises ValueError for no clips.
+    count, mean_s and std_s are the number, mean and population standard deviation of the step
+    durations at v95.
+    Without a step at any tolerance, count is 0 and the others are NaN. Raises ValueError for no
+    clips.
     Source: MoDiff IV-B, Tables I and II, Fig. 3.  Notebook: 08
     """
     if len(speeds) == 0:

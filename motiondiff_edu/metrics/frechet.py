@@ -1,11 +1,9 @@
-"""How far one cloud of feature vectors is from another.
+"""FID: the distance between two sets of feature vectors, and how it depends on the number of clips.
 
-FID, and what it owes to the number of clips.
-
-Two clouds are compared by their means and covariances alone. A covariance of D features needs many
+FID compares two sets by their means and covariances alone. A covariance of D features needs many
 more than D clips; the published table had 40 generated dances for 72 features. With few clips the
-distance is too large, even between two halves of the data: so print `fid_floor` beside it.  Source:
-MoFusion 4.1 (FID), Table 1.   Notebook: 14
+distance is too large, even between two halves of the data. So print `fid_floor` beside it.
+Source: MoFusion 4.1 (FID), Table 1.   Notebook: 14
 """
 
 import warnings
@@ -18,17 +16,17 @@ from sklearn.covariance import ledoit_wolf
 class FewSamplesWarning(UserWarning):
     """There are too few clips for so many features.
 
-    The figure is usable beside others of as many clips only.
+    Compare the value only with others from the same number of clips.
     """
 
 
 def normalise(
     features: Float[np.ndarray, "*N F"], data: Float[np.ndarray, "M F"]
 ) -> Float[np.ndarray, "*N F"]:
-    """(features - mean) / std, mean and population std being those of the *data's* features.
+    """(features - mean) / std, with the mean and population std of the *data's* features.
 
-    A feature that never changes in the data is only shifted: without this, rounding would be
-    divided by rounding.
+    A feature that is constant in the data is only shifted; otherwise rounding errors would be
+    divided by rounding errors.
     Source: MoFusion 4.1, and the code it follows.  Notebook: 14
     """
     mean, std = data.mean(0), data.std(0)
@@ -45,9 +43,9 @@ def frechet_distance(
 
     d^2 = |m1 - m2|^2 + tr(C1 + C2 - 2 (C1^1/2 C2 C1^1/2)^1/2).
 
-    The root is taken of a symmetric matrix, by its eigenvalues: real and never negative, also where
-    C1 or C2 is singular. For covariances that commute it is |m1 - m2|^2 + |sqrt(l1) - sqrt(l2)|^2,
-    l the paired eigenvalues.
+    The matrix under the root is symmetric, so its root comes from its eigenvalues: d^2 is real and
+    never negative, even where C1 or C2 is singular. For covariances that commute it is
+    |m1 - m2|^2 + |sqrt(l1) - sqrt(l2)|^2, with l the paired eigenvalues.
     Source: MoFusion 4.1.
     """
     values, vectors = np.linalg.eigh(covariance_1)
@@ -57,16 +55,15 @@ def frechet_distance(
     distance = (
         ((mean_1 - mean_2) ** 2).sum() + np.trace(covariance_1) + np.trace(covariance_2) - 2 * mixed
     )
-    return float(max(distance, 0.0))  # rounding may take a distance of 0 below
+    return float(max(distance, 0.0))  # rounding can make a distance of 0 negative
 
 
 def shrunk_covariance(features: Float[np.ndarray, "N F"]) -> Float[np.ndarray, "F F"]:
-    """The covariance (divided by N) drawn towards a multiple of the identity.
+    """The covariance (divided by N), shrunk towards a multiple of the identity.
 
-    As far as Ledoit and Wolf (2004) advise.
+    C* = (1 - w) C + w (tr C / F) I, with the weight w of Ledoit and Wolf (2004).
 
-    C* = (1 - w) C + w (tr C / F) I, the more the fewer the clips; it is never singular unless all
-    clips are one.
+    The weight is larger for fewer clips. C* is singular only if all clips are equal.
     """
     return ledoit_wolf(features)[0]
 
@@ -74,13 +71,11 @@ def shrunk_covariance(features: Float[np.ndarray, "N F"]) -> Float[np.ndarray, "
 def fid(generated: Float[np.ndarray, "N F"], data: Float[np.ndarray, "M F"]) -> float:
     """Frechet distance between features of generated and recorded clips.
 
-    In units of the data's deviations.
-
-    Both are normalised by the data; unbiased covariances. Warns (FewSamplesWarning) unless both
-    have more clips than features: the figure is then too large by much, and only to be set beside
-    `fid_floor` of as many clips.
-    Raises ValueError for fewer than two clips or features that are not finite.  Source: MoFusion
-    4.1.   Notebook: 14
+    Both sets are normalised by the data; the covariances are unbiased. Unless both sets have more
+    clips than features, the value is much too large and a FewSamplesWarning says so: compare it
+    only with `fid_floor` for the same number of clips.
+    Raises ValueError for fewer than two clips or features that are not finite.
+    Source: MoFusion 4.1.   Notebook: 14
     """
     generated, data = _checked(generated, data)
     if min(len(generated), len(data)) <= data.shape[1]:
@@ -97,9 +92,7 @@ def fid(generated: Float[np.ndarray, "N F"], data: Float[np.ndarray, "M F"]) -> 
 
 
 def shrunk_fid(generated: Float[np.ndarray, "N F"], data: Float[np.ndarray, "M F"]) -> float:
-    """The same with `shrunk_covariance`.
-
-    Less noise and bias where clips are few, and not the published number.
+    """`fid` with `shrunk_covariance`: less noise and bias for few clips, but not the published FID.
 
     Raises ValueError for fewer than two clips or features that are not finite.  Notebook: 14
     """
@@ -112,17 +105,15 @@ def shrunk_fid(generated: Float[np.ndarray, "N F"], data: Float[np.ndarray, "M F
 def fid_floor(
     data: Float[np.ndarray, "M F"], n: int, rng: np.random.Generator, distance=fid, times: int = 10
 ) -> tuple[float, float]:
-    """What perfection scores.
+    """The FID of a perfect generator: n random clips of the data against all other clips.
 
-    Mean and deviation of the FID between n clips of the data, by chance, and all others.
-
-    A generator whose n clips come near this figure cannot be told from the data. `distance` is
-    `fid`, `shrunk_fid` ...
-    Raises ValueError unless two clips are left on both sides.  Notebook: 14
+    Returns the mean and standard deviation over `times` draws. A generator whose n clips reach this
+    mean cannot be distinguished from the data. `distance` is `fid`, `shrunk_fid` ...
+    Raises ValueError unless both sides have two clips.  Notebook: 14
     """
     if not 2 <= n <= len(data) - 2:
         raise ValueError(
-            f"of {len(data)} clips {n} cannot be set against the others: "
+            f"{n} of {len(data)} clips cannot be compared with the others: "
             "two are needed on both sides"
         )
     found = []
@@ -135,7 +126,7 @@ def fid_floor(
 
 
 def _covariance(features: np.ndarray) -> np.ndarray:
-    """Unbiased; of a single feature it is a matrix, too."""
+    """The unbiased covariance; it is a matrix for a single feature, too."""
     return np.atleast_2d(np.cov(features.T))
 
 
@@ -143,10 +134,9 @@ def _checked(generated: np.ndarray, data: np.ndarray) -> tuple[np.ndarray, np.nd
     for name, features in (("generated", generated), ("data's", data)):
         if len(features) < 2:
             raise ValueError(
-                "a covariance takes two clips, and there is "
-                f"{len(features)} among the {name} features"
+                f"a covariance needs at least 2 clips; the {name} features have {len(features)}"
             )
         if not np.isfinite(features).all():
             bad = int(np.flatnonzero(~np.isfinite(features).all(1))[0])
-            raise ValueError(f"row {bad} of the {name} features is not finite: which clip is that?")
+            raise ValueError(f"row {bad} of the {name} features is not finite: check that clip")
     return normalise(generated, data), normalise(data, data)

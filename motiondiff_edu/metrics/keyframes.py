@@ -1,9 +1,10 @@
 """Measures of in-betweens.
 
-Are the given frames kept, how far are the others from the truth, is there a jump where they meet?
+Are the given frames kept? How far are the others from the truth? Is there a jump where they meet?
 
-All in metres; positions (N, T, J, 3) of N motions, `known` (T, J).  Source: CondMDI and GMD for the
-first two, with every frame counted once; NPSS: Gopalakrishnan and others, 2019; the seam is ours.
+Distances are in metres, for positions (N, T, J, 3) of N motions and `known` (T, J).
+Source: CondMDI and GMD for the first two, with every frame counted once; NPSS: Gopalakrishnan and
+others, 2019; the measure of the seam is ours.
 Notebook: 15
 """
 
@@ -16,36 +17,36 @@ Motions = Float[np.ndarray, "N T J 3"]
 def keyframe_error(
     made: Motions, truth: Motions, known: Bool[np.ndarray, "T J"]
 ) -> Float[np.ndarray, "N"]:
-    """Mean distance of the given joints from where they were given; 0 for whoever keeps them.
+    """Mean distance of the given joints from their given positions; 0 if they are kept.
 
     Raises ValueError when nothing was given.  Notebook: 15
     """
-    return _distance(made, truth, known, "nothing was given")
+    return _distance(made, truth, known, "no joint is known")
 
 
 def unknown_error(
     made: Motions, truth: Motions, known: Bool[np.ndarray, "T J"]
 ) -> Float[np.ndarray, "N"]:
-    """Mean distance of all other joints from the truth. A mean of samples beats every sample here.
+    """Mean distance of all other joints from the truth.
+
+    The mean of several samples is closer than the samples are on average.
 
     Raises ValueError when everything was given.  Notebook: 15
     """
-    return _distance(made, truth, ~known, "everything was given")
+    return _distance(made, truth, ~known, "every joint is known")
 
 
-def _distance(made, truth, counted, complaint: str):
+def _distance(made, truth, counted, problem: str):
     if not counted.any():
-        raise ValueError(complaint + ": there is nothing to measure")
+        raise ValueError(problem + ": there is nothing to measure")
     return np.linalg.norm(made - truth, axis=-1)[:, counted].mean(-1)
 
 
 def npss(made: Float[np.ndarray, "N T D"], truth: Float[np.ndarray, "N T D"]) -> float:
-    """Normalised power spectrum similarity.
+    """Normalised power spectrum similarity (NPSS) of two sets of motions; 0 means equal spectra.
 
-    How differently two sets of motions spread over frequencies; 0 is alike.
-
-    For each motion and column the power spectra, scaled to sum to 1, are compared by the earth
-    mover's distance (in frequency bins); the mean is weighted by the power of the truth.
+    For each motion and column, the two power spectra are scaled to sum 1 and compared by the earth
+    mover's distance (in frequency bins). The mean is weighted by the power of the truth.
     Notebook: 15
     """
     moved, weight = npss_parts(made, truth)
@@ -55,22 +56,19 @@ def npss(made: Float[np.ndarray, "N T D"], truth: Float[np.ndarray, "N T D"]) ->
 def npss_parts(
     made: Float[np.ndarray, "N T D"], truth: Float[np.ndarray, "N T D"]
 ) -> tuple[Float[np.ndarray, "N"], Float[np.ndarray, "N"]]:
-    """Of each motion the sum of its weighted distances, and of the weights.
+    """For each motion the sum of its weighted distances, and the sum of its weights.
 
-    `npss` is the one over the other.
+    `npss` is the ratio of the two, summed over motions.
     """
     power = [np.abs(np.fft.rfft(x, axis=1)) ** 2 for x in (made, truth)]
-    spread = [np.cumsum(p / np.maximum(p.sum(1, keepdims=True), 1e-12), axis=1) for p in power]
-    moved = np.abs(spread[0] - spread[1]).sum(1)
+    cumulated = [np.cumsum(p / np.maximum(p.sum(1, keepdims=True), 1e-12), axis=1) for p in power]
+    moved = np.abs(cumulated[0] - cumulated[1]).sum(1)
     weight = power[1].sum(1)
     return (moved * weight).sum(-1), weight.sum(-1)
 
 
 def seams(known: Bool[np.ndarray, "T J"]) -> Int[np.ndarray, "K"]:
-    """The inner frames on either side of which (or at which) it changes what is given.
-
-    t and t + 1 of each change.
-    """
+    """The frames before and after each change of `known`, without the clip's first and last."""
     change = np.flatnonzero((known[1:] != known[:-1]).any(-1))
     frames = np.unique(np.concatenate([change, change + 1]))
     return frames[(frames > 0) & (frames < len(known) - 1)]
@@ -79,11 +77,11 @@ def seams(known: Bool[np.ndarray, "T J"]) -> Int[np.ndarray, "K"]:
 def seam_jump(
     made: Motions, known: Bool[np.ndarray, "T J"], fps: float = 20.0
 ) -> Float[np.ndarray, "N"]:
-    """How much velocities change at the seams, m/s.
+    """How much velocities change at the seams, in m/s.
 
     Mean over seams and joints of |v[t] - v[t - 1]|.
 
-    The data have some as well: set theirs at the same frames beside it. NaN where there is no seam.
+    The data are not at 0 either: compare with their value at the same frames. NaN without a seam.
     Notebook: 15
     """
     at = seams(known)

@@ -1,11 +1,9 @@
-"""A dance in three numbers for each joint, as FID, Diversity and MultiModality count it.
+"""A dance as three energies per joint: the features for FID, Diversity and MultiModality.
 
-How much energy goes where.
-
-`kinetic_features` is what the numbers are said to be. `published_kinetic_features` is what the code
-behind the published tables computes: there a misplaced bracket makes the third number measure the
-distance from the origin. Everything is at 60 frames/s; metres, seconds, y up.  Source: MoFusion 4.1
-(FID, Div, MModality).   Notebook: 14
+`kinetic_features` computes what the papers describe. `published_kinetic_features` computes what the
+code behind the published tables does: there a missing bracket makes the third number measure the
+distance from the origin. Both use 60 frames/s, metres, seconds, and y up.
+Source: MoFusion 4.1 (FID, Div, MModality).   Notebook: 14
 """
 
 import numpy as np
@@ -24,11 +22,10 @@ def kinetic_features(
 
     Each has (horizontal energy, vertical energy, energy expenditure): F = 3 J numbers.
 
-    v[t], a[t]: velocity and acceleration at 60 frames/s, each averaged over two frames to either
-    side; horizontal = mean_t |v_xz|^2, vertical = mean_t v_y^2 in (m/s)^2; expenditure = mean_t |a|
-    in m/s^2. Where the dancer stands in the world makes no difference. Raises ValueError for fewer
-    than three frames.
-    Source: MoFusion 4.1.  Notebook: 14
+    v[t] and a[t] are velocity and acceleration at 60 frames/s, each averaged over two frames to
+    either side. Horizontal = mean_t |v_xz|^2 and vertical = mean_t v_y^2, in (m/s)^2; expenditure =
+    mean_t |a| in m/s^2. The dancer's place in the world makes no difference.
+    Raises ValueError for fewer than three frames.  Source: MoFusion 4.1.  Notebook: 14
     """
     positions = _at_60(positions, fps)
     steps = np.diff(positions, axis=0) * DANCE_FPS
@@ -38,14 +35,12 @@ def kinetic_features(
 def published_kinetic_features(
     positions: Float[np.ndarray, "T J 3"], fps: float | int = FPS
 ) -> Float[np.ndarray, "F"]:
-    """The same features with the fault of the public code, to compare with published figures.
+    """The same features with the fault of the public code, to compare with published numbers.
 
-    The code is that of fairmotion, AIST++ and Bailando.
-
-    There the earlier velocity is p[t] - p[t-1] / dt instead of (p[t] - p[t-1]) / dt, so that the
-    expenditure is about 59 * 60 * mean_t |p|: it tells the distance from the origin, and a
-    motionless joint has one, too. Bailando moves the first root to the origin before
-    (`from_the_origin`), AIST++ does not: their figures differ.
+    The code is that of fairmotion, AIST++ and Bailando. Its earlier velocity is p[t] - p[t-1] / dt
+    instead of (p[t] - p[t-1]) / dt, so the expenditure is about 59 * 60 * mean_t |p|. It measures
+    the distance from the origin, and is not 0 for a motionless joint. Bailando first moves the root
+    to the origin (`from_the_origin`) and AIST++ does not, so their numbers differ.
     Raises ValueError for fewer than three frames.  Source: MoFusion 4.1.  Notebook: 14
     """
     positions = _at_60(positions, fps)
@@ -55,24 +50,23 @@ def published_kinetic_features(
 
 
 def from_the_origin(positions: Float[np.ndarray, "T J 3"]) -> Float[np.ndarray, "T J 3"]:
-    """The motion moved so that joint 0 starts at (0, 0, 0), as Bailando does before its features.
-    Notebook: 14"""
+    """The motion moved so that joint 0 starts at (0, 0, 0), as in Bailando's code.
+
+    Notebook: 14
+    """
     return positions - positions[:1, :1]
 
 
 def _at_60(positions: np.ndarray, fps: float | int) -> np.ndarray:
     if len(positions) < 3:
         raise ValueError(
-            f"an acceleration takes three frames, and this motion has {len(positions)}"
+            f"an acceleration needs three frames, and this motion has {len(positions)}"
         )
     return resample(positions, fps)
 
 
 def _averaged(rates: Float[np.ndarray, "N J 3"], frames: int) -> Float[np.ndarray, "{frames} J 3"]:
-    """Mean of the rates over a window around each of so many frames.
-
-    At the ends over what there is of it.
-    """
+    """Mean of the rates over a window around each frame; the window is cut at the ends."""
     total = np.concatenate([np.zeros((1, *rates.shape[1:])), np.cumsum(rates, axis=0)])
     at = np.arange(
         frames
@@ -85,7 +79,7 @@ def _averaged(rates: Float[np.ndarray, "N J 3"], frames: int) -> Float[np.ndarra
 def _together(
     steps: Float[np.ndarray, "N J 3"], changes: Float[np.ndarray, "_ J 3"]
 ) -> Float[np.ndarray, "F"]:
-    """The three numbers of each joint from its velocities and its accelerations, frame by frame."""
+    """The three energies of each joint, from velocities (`steps`) and accelerations (`changes`)."""
     velocity = _averaged(steps, len(steps))
     acceleration = _averaged(changes, len(steps))
     horizontal = (velocity[..., [0, 2]] ** 2).sum(-1).mean(0)

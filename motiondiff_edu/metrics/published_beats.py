@@ -1,14 +1,12 @@
-"""The beat scores of the published tables, in the form their code has, with its faults.
+"""The beat scores of the published tables as their code computes them, with its faults.
 
-For comparing like with like.
-
-Both count in frames and take 60 of them a second for granted: at 20 frames/s the same code, with
-its sigma of 3 frames, gives a chance level of .75 and not .25. Resample first (motion.resample).
-What is mended: `beats.py`.
+Use them only to compare with published scores. Both count in frames and assume 60 frames/s: at 20
+frames/s the same code, with its sigma of 3 frames, gives a chance level of .75 and not .25.
+Resample first (motion.resample). `beats.py` has the corrected scores.
 
                       AIST++'s authors                      Bailando; the formula of MoFusion eq. 10
-averaged over         kinematic beats                       music beats: who stops often, wins
-speed                 unsmoothed, so that jitter stops      smoothed by 5 frames
+averaged over         kinematic beats                       music beats, which rewards many stops
+speed                 unsmoothed, so jitter makes stops     smoothed by 5 frames
 minima                lowest within 10 frames either side   any local minimum
 time of a minimum     half a frame late                     half a frame early
 no kinematic beat     0                                     an error
@@ -26,12 +24,10 @@ SIGMA_FRAMES = 3.0
 
 
 def aist_beats(positions: Float[np.ndarray, "T J 3"]) -> Int[np.ndarray, "K"]:
-    """Kinematic beats as AIST++'s authors find them.
+    """Kinematic beats as AIST++'s authors find them: frame numbers at 60 frames/s.
 
-    Frames at 60 frames/s, from the unsmoothed sum of joint speeds.
-
-    A 0 is set before the speeds, so that entry t is the step from t-1 to t.  Source: MoFusion 4.1.
-    Notebook: 14
+    They are minima of the unsmoothed sum of joint speeds. A 0 is put before the speeds, so entry t
+    is the step from t-1 to t.  Source: MoFusion 4.1.  Notebook: 14
     """
     speed = np.concatenate(
         [[0.0], mean_speed(positions, 1)]
@@ -46,19 +42,17 @@ def aist_score(
 ) -> float:
     """Mean over kinematic beats (frames at 60 frames/s) of exp(-min_m |b - m|^2 / 2 sigma^2).
 
-    0 where there are none.
-
-    Raises ValueError for music without a beat.  Source: MoFusion 4.1.  Notebook: 14
+    It is 0 without kinematic beats. Raises ValueError for music without a beat.
+    Source: MoFusion 4.1.  Notebook: 14
     """
     return _mean_over(kinematic, music, sigma) if len(kinematic) else 0.0
 
 
 def bailando_beats(positions: Float[np.ndarray, "T J 3"]) -> Int[np.ndarray, "K"]:
-    """Kinematic beats as Bailando finds them.
+    """Kinematic beats as Bailando finds them: frame numbers at 60 frames/s.
 
-    Frames at 60 frames/s, from the mean joint speed smoothed by 5 frames.
-
-    Entry t is the step from t to t+1.  Source: MoFusion 4.1.  Notebook: 14
+    They are minima of the mean joint speed, smoothed by 5 frames. Entry t is the step from t to
+    t+1.  Source: MoFusion 4.1.  Notebook: 14
     """
     return argrelextrema(gaussian_filter1d(mean_speed(positions, 1), 5), np.less)[0]
 
@@ -70,10 +64,8 @@ def bailando_score(
 ) -> float:
     """Mean over music beats (frames at 60 frames/s) of exp(-min_b |b - m|^2 / 2 sigma^2).
 
-    The formula of eq. 10.
-
-    Raises ValueError where either side has no beat, as their code does.  Source: MoFusion eq. 10.
-    Notebook: 14
+    Raises ValueError where either side has no beat, as Bailando's code does.
+    Source: MoFusion eq. 10.  Notebook: 14
     """
     return _mean_over(music, kinematic, sigma)
 
@@ -83,8 +75,8 @@ def _mean_over(
 ) -> float:
     if len(these) == 0 or len(others) == 0:
         raise ValueError(
-            "one side has no beat at all: this form of the score is not "
-            "defined then (see metrics.beats)"
+            "one side has no beats, and this form of the score is then undefined; "
+            "metrics.beats has one that is defined"
         )
     nearest = np.abs(these[:, None] - others[None, :]).min(1)
     return float(np.exp(-(nearest**2) / (2 * sigma**2)).mean())

@@ -1,11 +1,11 @@
 """Measures of repairs.
 
-How far what was missing is from the truth, how well it joins the rest, and whether it moves.
+How far are the reconstructed joints from the truth? How well do they join the rest? Do they move?
 
-Positions in metres, results in centimetres. `known` says of each joint in each frame whether it was
-given; several repairs of the same past stand in front, (n, ..., T, J, 3), and share it.
-Source: MoDiff IV-C (RMSE_re is of bones; the distance to the truth is ours: here the truth is
-known).   Notebook: 10
+Positions are in metres, results in centimetres. `known` is True for each joint of each frame that
+was given. Several repairs of the same past share it; they have a leading axis, (n, ..., T, J, 3).
+Source: MoDiff IV-C (its RMSE_re is of bones; the distance to the truth is ours, because here the
+truth is known).   Notebook: 10
 """
 
 import numpy as np
@@ -19,11 +19,10 @@ Known = Bool[np.ndarray, "*B T J"]
 
 
 def missing_error(made: Poses, truth: Float[np.ndarray, "*B T J 3"], known: Known) -> float:
-    """Mean distance of the missing joints from the truth, cm.
+    """Mean distance of the missing joints from the truth, in cm.
 
-    Over all of them, in all frames and motions.
-
-    A mean of repairs can only win here: |mean_i x_i - truth| <= mean_i |x_i - truth|.
+    The mean of several repairs always scores at least as well as they do on average:
+    |mean_i x_i - truth| <= mean_i |x_i - truth|.
     Raises ValueError when nothing is missing.  Notebook: 10
     """
     distance = np.linalg.norm(np.asarray(made, np.float64) - truth, axis=-1)
@@ -31,11 +30,9 @@ def missing_error(made: Poses, truth: Float[np.ndarray, "*B T J 3"], known: Know
 
 
 def joined_bones(made: Poses, known: Known) -> float:
-    """The error of bones that have a missing end, cm.
+    """RMS error of the length of bones with a missing end, in cm.
 
-    RMS against the true lengths.
-
-    The paper's RMSE_re does not say whether it counts the others, whose length is given;
+    The paper does not say whether its RMSE_re also counts the other bones, whose length is given;
     `bone_rmse` counts all.
     Raises ValueError when nothing is missing.  Source: MoDiff Table II.  Notebook: 10
     """
@@ -48,9 +45,9 @@ def joined_bones(made: Poses, known: Known) -> float:
 
 
 def missing_step(made: Poses, known: Known) -> float:
-    """How far joints move from one frame to the next where either of the two is missing, mean, cm.
+    """Mean movement of a joint from one frame to the next where either is missing, in cm.
 
-    A motion that is a mean of motions moves too little: set the truth's own step beside it.
+    A mean of several motions moves too little: compare with the truth's own value.
     Raises ValueError when nothing is missing.  Notebook: 10
     """
     step = np.linalg.norm(np.diff(np.asarray(made, np.float64), axis=-3), axis=-1)
@@ -58,11 +55,9 @@ def missing_step(made: Poses, known: Known) -> float:
 
 
 def missing_spread(samples: Float[np.ndarray, "n *B T J 3"], known: Known) -> float:
-    """How far n repairs of the same past lie from their mean, cm.
+    """RMS distance of n repairs of the same past from their mean, in cm, with n - 1.
 
-    RMS over the missing joints, with n - 1.
-
-    Repairs that know how uncertain they are spread about as far as the truth is from their mean.
+    Calibrated repairs spread about as far as the truth is from their mean.
     Raises ValueError for fewer than two repairs, and when nothing is missing.  Notebook: 10
     """
     if len(samples) < 2:
@@ -74,7 +69,7 @@ def missing_spread(samples: Float[np.ndarray, "n *B T J 3"], known: Known) -> fl
 def _where(
     counted: Bool[np.ndarray, "..."], values: Float[np.ndarray, "..."]
 ) -> Float[np.ndarray, "K"]:
-    """The values that count; masks of single motions serve all repairs in front."""
+    """The values where `counted` is True; one mask serves all repairs of a motion."""
     if not counted.any():
         raise ValueError("nothing is missing: there is no repair to measure")
     return values[np.broadcast_to(counted, values.shape)]

@@ -1,7 +1,7 @@
-"""Does the foot that stands slide? The speed over the ground of the toe that carries the figure.
+"""Does the standing foot slide? The speed over the ground of the toe that carries the figure.
 
-A foot is never called planted because it is slow: its speed is what is being judged. It is planted
-because it is low. Metres and metres a second. Notebook: 08
+A toe counts as planted because it is low, never because it is slow: its speed is what is judged.
+In metres and metres a second.  Notebook: 08
 """
 
 import numpy as np
@@ -18,9 +18,9 @@ def ground_velocity(
     control: Float[np.ndarray, "*B T 3"],
     fps: float | int = FPS,
 ) -> Float[np.ndarray, "*B T-1 K 2"]:
-    """Velocity over the ground, (left, forward) in m/s, of points that are given in the root frame.
+    """Velocity over the ground, (left, forward) in m/s, of points in the root frame.
 
-    Step t is seen in the heading halfway between t and t+1, where the root moves by (v_left,
+    Step t is expressed in the heading halfway between t and t+1, where the root moves by (v_left,
     v_forward) / fps. With d = yaw / (2 fps):  velocity = fps * (R(+d) p[t+1] - R(-d) p[t]) +
     (v_left, v_forward).
     """
@@ -33,10 +33,7 @@ def ground_velocity(
 def _turn(
     xz: Float[np.ndarray, "*B K 2"], angle: Float[np.ndarray, "*B 1"]
 ) -> Float[np.ndarray, "*B K 2"]:
-    """(left, forward) coordinates of a figure that faces `angle`.
-
-    Read in the frame that faces 0.
-    """
+    """(left, forward) coordinates in a frame that faces `angle`, converted to one that faces 0."""
     x, z = xz[..., 0], xz[..., 1]
     sin, cos = np.sin(angle), np.cos(angle)
     return np.stack([x * cos + z * sin, z * cos - x * sin], -1)
@@ -45,11 +42,10 @@ def _turn(
 def planted_toe(
     poses: Float[np.ndarray, "*B T J 3"], below: float | int = PLANTED_BELOW
 ) -> tuple[Int[np.ndarray, "*B T-1"], Bool[np.ndarray, "*B T-1"]]:
-    """For the step from t to t+1.
+    """The lower toe in each step from t to t+1 (0 left, 1 right), and whether it is planted.
 
-    Which toe is lower (0 left, 1 right; left if equal), and is it under `below` metres.
-
-    Low is judged at both ends of the step: the higher of the two heights counts.  Notebook: 08
+    It is planted if it is under `below` metres at both ends of the step. If both toes are equally
+    low, the left one is taken.  Notebook: 08
     """
     height = poses[..., TOES, 1]
     height = np.maximum(height[..., 1:, :], height[..., :-1, :])
@@ -62,9 +58,7 @@ def planted_velocity(
     fps: float | int = FPS,
     below: float | int = PLANTED_BELOW,
 ) -> Float[np.ndarray, "*B T-1 2"]:
-    """Velocity over the ground of the planted toe, (left, forward) in m/s; NaN in steps where no
-    toe is planted.
-    """
+    """Velocity over the ground of the planted toe, (left, forward) in m/s; NaN without one."""
     side, planted = planted_toe(poses, below)
     velocity = ground_velocity(poses[..., TOES, :], control, fps)
     velocity = np.take_along_axis(velocity, side[..., None, None], axis=-2)[..., 0, :]
@@ -77,12 +71,11 @@ def skating(
     fps: float | int = FPS,
     below: float | int = PLANTED_BELOW,
 ) -> float | Float[np.ndarray, "*B"]:
-    """How fast the planted toe slides, in m/s, mean over the steps where one is planted.
+    """How fast the planted toe slides, in m/s; one value per clip.
 
-    One figure for each clip.
-
-    skating = mean_t |velocity over the ground of the planted toe|. Flight is left out; a clip where
-    no toe is ever under `below` has no figure: NaN, never a flattering 0 (see `planted_share`).
+    skating = mean_t |velocity over the ground of the planted toe|, over the steps with a planted
+    toe. A clip where no toe is ever under `below` has NaN, not a flattering 0 (see
+    `planted_share`).
     Notebook: 08
     """
     return mean_where(np.linalg.norm(planted_velocity(poses, control, fps, below), axis=-1))
@@ -91,9 +84,9 @@ def skating(
 def planted_share(
     poses: Float[np.ndarray, "*B T J 3"], below: float | int = PLANTED_BELOW
 ) -> float | Float[np.ndarray, "*B"]:
-    """The share of steps with a planted toe.
+    """The fraction of steps (frame to frame) with a planted toe.
 
-    1 in a walk, less in a run, 0 for a figure that floats; NaN for no step.
+    It is 1 in a walk, less in a run, and 0 for a figure that floats; NaN for a single frame.
 
     Notebook: 08
     """
@@ -101,7 +94,7 @@ def planted_share(
 
 
 def mean_where(values: Float[np.ndarray, "*B N"]) -> float | Float[np.ndarray, "*B"]:
-    """Mean over the last axis of what is not NaN; NaN, without a warning, where nothing is left."""
+    """Mean over the last axis without NaNs; NaN, without a warning, where no value is left."""
     known = ~np.isnan(values)
     total, count = np.where(known, values, 0.0).sum(-1), known.sum(-1)
     return np.where(count > 0, total / np.maximum(count, 1), np.nan)[()]

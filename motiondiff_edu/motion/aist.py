@@ -1,8 +1,8 @@
-"""Dances from AIST++: keypoints3d pickles, read without running what a pickle may hold.
+"""Dances from AIST++: keypoints3d pickles, read without running code that a pickle may contain.
 
-A pickle is a program; unpickling a stranger's file runs it. Here it may name four things: the numpy
-array, its type, and the two functions that put an array together. Everything else is refused by
-name. Centimetres become metres; 60 frames/s; y up; the floor is put to 0.
+A pickle is a program; unpickling a file from a stranger runs it. Here a pickle may name only four
+things: the numpy array, its dtype, and the two functions that build an array. Every other name
+raises an error. The result is in metres, at 60 frames/s, with y up and the floor at 0.
 """
 
 import io
@@ -40,9 +40,9 @@ FLOOR_PERCENTILE = 1.0
 
 
 class AistError(ValueError):
-    """A file is no AIST++ keypoints file, or not a safe one.
+    """The file is not an AIST++ keypoints file, or not a safe one.
 
-    The message says what it is and what to do.
+    The message says what the file is and what to do.
     """
 
 
@@ -50,8 +50,9 @@ class AistError(ValueError):
 class Keypoints:
     """A recorded dance: 17 joints (`COCO`) in metres at 60 frames/s, the floor at y = 0.
 
-    `floor` is the height in metres that was taken off; `nan_frames` the frames with a missing joint
-    (left as NaN); `tempo` the music's beats a minute as the file's name tells, or None.
+    `floor` is the height in metres that was subtracted. `nan_frames` lists the frames with a
+    missing joint, which stays NaN. `tempo` is the music's beats per minute according to the file's
+    name, or None.
     """
 
     positions: Float[np.ndarray, "T 17 3"]
@@ -65,19 +66,19 @@ class Keypoints:
 def read_keypoints(path: str | Path, optimised: bool = True) -> Keypoints:
     """Read a keypoints3d pickle of AIST++.
 
-    `optimised` takes keypoints3d_optim, which has no gaps, else the raw ones.
+    `optimised=True` reads keypoints3d_optim, which has no gaps; False reads the raw keypoints3d.
 
-    The floor is the 1st percentile over frames of the lowest joint: the ankles of a standing figure
-    come to 0, since COCO has no toes, and one bad frame does not lower it.
-    Raises AistError for anything else than such a file: other pickles (unread beyond the first
-    foreign name), .npy features, other shapes; FileNotFoundError where there is none.
+    The floor is the 1st percentile over frames of the lowest joint. COCO has no toes, so the ankles
+    of a standing figure come to height 0. One bad frame does not lower the floor.
+    Raises AistError for any other file: other pickles (reading stops at the first foreign name),
+    .npy features, other shapes. Raises FileNotFoundError for a missing file.
     """
     path = Path(path).expanduser()
     if path.is_dir():
         raise AistError(f"{path.name}: this is a folder; give one of the .pkl files in it.")
     if path.stat().st_size > LARGEST:
         raise AistError(
-            f"{path.name}: larger than {LARGEST // 1_000_000} MB, and no keypoints file is."
+            f"{path.name}: larger than {LARGEST // 1_000_000} MB, so it is not a keypoints file."
         )
     content = _load(path)
     key = "keypoints3d_optim" if optimised else "keypoints3d"
@@ -93,11 +94,10 @@ def read_keypoints(path: str | Path, optimised: bool = True) -> Keypoints:
 
 
 def tempo_of(name: str) -> float | None:
-    """Beats a minute of the music that an AIST++ name tells: mBR2 is 80 + 10 * 2 = 100.
+    """The music's beats per minute, from an AIST++ file name: mBR2 is 80 + 10 * 2 = 100.
 
-    House (mHO2) 110 + 5 * 2 = 120.
-
-    None where the name has no music in it.
+    House music starts higher: mHO2 is 110 + 5 * 2 = 120. Returns None where the name contains no
+    music.
     """
     music = re.search(r"_m([A-Z]{2})(\d)(?:_|\.|$)", name)
     if music is None:
@@ -117,7 +117,7 @@ for _numpy in ("numpy.core", "numpy._core"):  # before and since numpy 2
 
 
 class _Restricted(pickle.Unpickler):
-    """An unpickler that finds nothing but what an array is made of."""
+    """An unpickler that finds only the names that an array needs."""
 
     def find_class(self, module: str, name: str):
         if (module, name) not in _ADMITTED:
@@ -129,39 +129,38 @@ class _Restricted(pickle.Unpickler):
 
 
 def _encode(text: str, encoding: str) -> bytes:
-    """What pickles of Python 2 spell their bytes with."""
+    """Replaces `_codecs.encode`, which pickles of Python 2 use for their bytes."""
     if encoding not in ("latin1", "latin-1"):
-        raise AistError(f"it asks for the codec {encoding!r}, and only latin1 is needed")
+        raise AistError(f"it uses the codec {encoding!r}, and only latin1 is needed")
     return text.encode("latin1")
 
 
 def _load(path: Path):
-    """What is in the file, or an AistError that says what sort of file it is."""
+    """The content of the file.  Raises AistError, which says what sort of file it is."""
     raw = path.read_bytes()
     if raw.startswith(b"\x93NUMPY"):
-        raise AistError(f"{path.name}: {_told_of_npy(raw)}")
+        raise AistError(f"{path.name}: {_describe_npy(raw)}")
     try:
         return _Restricted(io.BytesIO(raw), encoding="latin1").load()
     except AistError as error:
         raise AistError(f"{path.name}: not read: {error}.") from None
     except Exception as error:  # a damaged pickle may raise anything
         raise AistError(
-            f"{path.name}: no pickle, or a damaged one ({type(error).__name__}: {error})."
+            f"{path.name}: not a pickle, or a damaged one ({type(error).__name__}: {error})."
         ) from None
 
 
-def _told_of_npy(raw: bytes) -> str:
-    wanted = (
-        "what is wanted is a pickle of AIST++'s folder keypoints3d, with positions (frames, 17, 3)."
-    )
+def _describe_npy(raw: bytes) -> str:
+    """What a .npy file contains, and which file to give instead."""
+    wanted = "give a pickle of AIST++'s folder keypoints3d, with positions (frames, 17, 3)."
     try:
         shape = np.load(io.BytesIO(raw), allow_pickle=False).shape
     except ValueError:
-        return f"a .npy file that holds Python objects; {wanted}"
+        return f"a .npy file that contains Python objects; {wanted}"
     if shape[-1:] == (34,):
         return (
-            f"a .npy file of shape {shape}: 34 music or motion features a frame, normalised, "
-            f"and no joints; {wanted}"
+            f"a .npy file of shape {shape}: 34 normalised music or motion features per frame, "
+            f"without joints; {wanted}"
         )
     return f"a .npy file of shape {shape}; {wanted}"
 
@@ -176,10 +175,10 @@ def _array(content, key: str, name: str) -> Float[np.ndarray, "T 17 3"]:
             if "smpl_poses" in holds
             else ""
         )
-        raise AistError(f"{name}: holds {holds}, and no {key}.{hint}")
+        raise AistError(f"{name}: contains {holds}, but no {key}.{hint}")
     found = content[key]
     if not isinstance(found, np.ndarray) or found.dtype.kind != "f":
-        raise AistError(f"{name}: {key} is no array of numbers.")
+        raise AistError(f"{name}: {key} is not an array of numbers.")
     if found.ndim != 3 or found.shape[1:] != (len(COCO), 3) or len(found) == 0:
-        raise AistError(f"{name}: {key} has shape {found.shape}, and should have (frames, 17, 3).")
+        raise AistError(f"{name}: {key} has shape {found.shape}; it should be (frames, 17, 3).")
     return found.astype(np.float64)

@@ -20,15 +20,12 @@ _FLIP_CONTROL = np.array([1.0, -1.0, -1.0])  # control: forward stays, left and 
 
 
 def mirror(clip: Clip) -> Clip:
-    """The clip seen in a mirror: every joint's x is negated, left and right swap names.
+    """The clip seen in a mirror: every joint's x is negated, left and right are exchanged.
 
-    So do the contacts.
-
-    Twice is the identity.  Notebook: 01
+    The contacts of the feet are exchanged too. Mirroring twice is the identity.  Notebook: 01
     """
-    contacts = (
-        None if clip.contacts is None else clip.contacts[:, ::-1].copy()
-    )  # torch takes no backward view
+    # torch accepts no array with a negative stride
+    contacts = None if clip.contacts is None else clip.contacts[:, ::-1].copy()
     return replace(
         clip,
         poses=clip.poses[:, MIRROR] * _FLIP_X,
@@ -42,8 +39,8 @@ def reverse_time(clip: Clip) -> Clip:
 
     control'[t] = -control[T-2-t], since control[t] leads from frame t to t+1.
 
-    Twice is the identity but for the last row of control, which repeats its neighbour by
-    convention.
+    Reversing twice is the identity, except for the last row of control: it repeats the row before
+    by convention.
     Source: MoDiff III-E.  Notebook: 01
     """
     control = np.empty_like(clip.control)
@@ -54,9 +51,9 @@ def reverse_time(clip: Clip) -> Clip:
 
 
 def augment(clips: Sequence[Clip]) -> list[Clip]:
-    """Four clips from each: as it is, mirrored, reversed, both.
+    """Four clips from each: unchanged, mirrored, reversed, and both.
 
-    The source stays, so splits stay clean.
+    They keep their `source`, so a split by source stays clean.
 
     Source: MoDiff III-E.  Notebook: 01
     """

@@ -1,4 +1,4 @@
-"""Numbers that a person hands over: refused in words where they cannot be meant."""
+"""Checks of numbers that a user passes: a value out of range raises a clear error."""
 
 import math
 from numbers import Integral, Real
@@ -9,21 +9,21 @@ LONGEST = 3600.0  # seconds: an hour
 def checked_seconds(seconds: float) -> float:
     """Seconds above 0 and up to an hour.  Raises ValueError for anything else."""
     if isinstance(seconds, bool) or not isinstance(seconds, Real) or not math.isfinite(seconds):
-        raise ValueError(f"seconds is a number above 0, not {seconds!r}")
+        raise ValueError(f"seconds must be a number above 0, not {seconds!r}")
     if not 0 < seconds <= LONGEST:
         raise ValueError(f"seconds must be above 0 and at most {LONGEST:g}, not {seconds:g}")
     return float(seconds)
 
 
 def checked_count(count: int, name: str) -> int:
-    """A whole number from 1 on.  Raises ValueError for anything else."""
+    """A whole number of at least 1.  Raises ValueError for anything else."""
     if isinstance(count, bool) or not isinstance(count, Integral) or count < 1:
-        raise ValueError(f"{name} is a whole number from 1 on, not {count!r}")
+        raise ValueError(f"{name} must be a whole number of at least 1, not {count!r}")
     return int(count)
 
 
 def checked_rate(fps: float, name: str = "fps") -> float:
     """Frames a second, above 0 and up to 10,000.  Raises ValueError for anything else."""
     if isinstance(fps, bool) or not isinstance(fps, Real) or not 0 < fps <= 10_000:
-        raise ValueError(f"{name} is a number of frames a second above 0, not {fps!r}")
+        raise ValueError(f"{name} must be a number of frames a second above 0, not {fps!r}")
     return float(fps)

@@ -1,4 +1,4 @@
-"""A clip: root-frame poses with their control; cutting clips into windows, and splitting by source.
+"""A clip: root-frame poses with their control. Cutting clips into windows, and splitting by source.
 
 Source: MoDiff IV-A (4-second clips, 20 frames/s, 50 % overlap).  Notebook: 01
 """
@@ -44,13 +44,13 @@ class Clip:
         return to_world(self.poses, self.control, start, self.fps)
 
     def features(self) -> Float[np.ndarray, "T 63"]:
-        """The 63 numbers a frame that the networks see, float32."""
+        """The 63 features per frame that the networks take, in float32."""
         return self.poses.reshape(len(self), -1).astype(np.float32)
 
     def cut(self, first: int, last: int) -> "Clip":
         """Frames first..last-1 as a clip of the same source.
 
-        `info` stays that of the whole clip.
+        `info` is still that of the whole clip.
         """
         contacts = None if self.contacts is None else self.contacts[first:last]
         return replace(
@@ -59,12 +59,12 @@ class Clip:
 
 
 def slice_clips(clips: Sequence[Clip], seconds: float = 4.0, overlap: float = 0.5) -> list[Clip]:
-    """Cut clips into pieces of `seconds` that overlap by the share `overlap`.
+    """Cut clips into pieces of `seconds` that overlap by the fraction `overlap`.
 
-    A shorter rest is left out.
+    A shorter rest at the end is dropped.
 
-    Raises ValueError unless 0 <= overlap < 1 and a piece has a frame.  Source: MoDiff IV-A.
-    Notebook: 01
+    Raises ValueError unless 0 <= overlap < 1 and a piece has at least one frame.
+    Source: MoDiff IV-A.  Notebook: 01
     """
     if not 0 <= overlap < 1:
         raise ValueError(f"overlap must lie in [0, 1), got {overlap}")
@@ -83,14 +83,15 @@ def slice_clips(clips: Sequence[Clip], seconds: float = 4.0, overlap: float = 0.
 def split_by_source(
     clips: Sequence[Clip], fractions: Sequence[float], rng: np.random.Generator
 ) -> tuple[list[Clip], ...]:
-    """Split into groups so that no source stands in two of them.
+    """Split clips into groups so that no source is in two of them.
 
-    Slices of one recording share frames.
+    Slices of one recording share frames, so they must stay together.
 
-    `fractions` are shares of the sources and sum to 1. Raises ValueError otherwise.  Notebook: 01
+    `fractions` of the sources go to each group; they sum to 1. Raises ValueError otherwise.
+    Notebook: 01
     """
     if min(fractions) < 0 or abs(sum(fractions) - 1) > 1e-9:
-        raise ValueError(f"fractions are shares that sum to 1, not {list(fractions)}")
+        raise ValueError(f"fractions must be 0 or more and sum to 1, not {list(fractions)}")
     sources = np.array(sorted({clip.source for clip in clips}))
     rng.shuffle(sources)
     bounds = np.round(np.cumsum([0.0, *fractions]) * len(sources)).astype(int)

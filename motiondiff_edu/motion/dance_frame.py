@@ -1,10 +1,8 @@
-"""Dance as the network sees it: where the pelvis is, and the other joints about it.
+"""The features of a dance: the place of the pelvis, and the other joints relative to it.
 
-No turning from frame to frame.
-
-Columns 0:3 are the pelvis (x, y, z), which starts at x = z = 0, facing z; then x, y, z of each of
-the 20 other joints minus the pelvis, same axes. Metres.  Source: MoFusion 3 (root-relative joints
-and the root's path).   Notebook: 12
+Columns 0:3 are the pelvis (x, y, z), which starts at x = z = 0, facing z. Then come x, y, z of each
+of the 20 other joints minus the pelvis, in metres. The axes do not turn with the figure.
+Source: MoFusion 3 (root-relative joints and the root's path).   Notebook: 12
 """
 
 from dataclasses import dataclass
@@ -18,18 +16,18 @@ from ..kinematic_loss import Body
 from .scaler import Scaler
 from .skeleton import BONE_PAIRS, BONES, HIPS, MIRROR, TOES, J, joint_index
 
-GROUND = np.array([1.0, 0.0, 1.0])  # what of a place is on the floor
+GROUND = np.array([1.0, 0.0, 1.0])  # projects a point onto the floor
 HIP_LEFT = joint_index("LeftUpLeg")
 HIP_RIGHT = joint_index("RightUpLeg")
 
 
 def facing(positions: Float[np.ndarray, "*B 21 3"]) -> Float[np.ndarray, "*B"]:
-    """Which way the pelvis faces: radians, counter-clockwise seen from above, 0 along z."""
+    """The direction that the pelvis faces: radians, counter-clockwise from above, 0 along z."""
     return heading(positions[..., HIP_LEFT, :] - positions[..., HIP_RIGHT, :])
 
 
 def heading(across: Float[np.ndarray, "*B 3"]) -> Float[np.ndarray, "*B"]:
-    """Which way somebody faces whose hips, or shoulders, lie along this line from right to left."""
+    """The direction that a figure faces, from the line of its hips or shoulders, right to left."""
     return np.asarray(np.arctan2(-across[..., 2], across[..., 0]))
 
 
@@ -37,7 +35,7 @@ def heading(across: Float[np.ndarray, "*B 3"]) -> Float[np.ndarray, "*B"]:
 class Place:
     """Where a figure stands and which way it faces.
 
-    The way from the world to its own frame, and back.
+    `enter` transforms positions from the world to this frame, `leave` transforms them back.
     """
 
     ground: Float[np.ndarray, "*B 3"]  # below the pelvis: x, 0, z
@@ -48,18 +46,18 @@ class Place:
         return cls(pose[..., HIPS, :] * GROUND, facing(pose[..., None, :, :])[..., 0])
 
     def enter(self, positions: Float[np.ndarray, "*B T J 3"]) -> Float[np.ndarray, "*B T J 3"]:
-        """World positions as seen from here."""
+        """World positions in this frame."""
         return _turned(positions - self.ground[..., None, None, :], self.heading)
 
     def leave(self, positions: Float[np.ndarray, "*B T J 3"]) -> Float[np.ndarray, "*B T J 3"]:
-        """Back to the world."""
+        """Positions in this frame, back in the world."""
         return _turned(positions, self.heading, back=True) + self.ground[..., None, None, :]
 
 
 def _turned(
     positions: Float[np.ndarray, "*B T J 3"], heading: Float[np.ndarray, "*#B"], back: bool = False
 ) -> Float[np.ndarray, "*B T J 3"]:
-    """Turned so that who faced `heading` faces z; `back` the other way."""
+    """Rotate so that the direction `heading` becomes z; `back` rotates the other way."""
     sin = np.sin(heading)[..., None, None]
     cos = np.cos(heading)[..., None, None]
     sin = -sin if back else sin
@@ -68,43 +66,44 @@ def _turned(
 
 
 def at_origin(positions: Float[np.ndarray, "*B T 21 3"]) -> Float[np.ndarray, "*B T 21 3"]:
-    """The same motion, moved and turned to its own beginning.
-
-    It starts with the pelvis over x = z = 0, facing z.
-    """
+    """The same motion, moved and turned so that its first pelvis is over x = z = 0, facing z."""
     return Place.of(positions[..., 0, :, :]).enter(positions)
 
 
 def to_features(positions: Float[np.ndarray, "*B T J 3"]) -> Float[np.ndarray, "*B T 63"]:
-    """World positions as the network's 63 numbers.  Raises ValueError for another skeleton."""
+    """World positions as the network's 63 features.  Raises ValueError for another skeleton."""
     if positions.shape[-2:] != (J, 3):
         raise ValueError(
-            f"the course's skeleton has {J} joints with 3 coordinates, got {positions.shape[-2:]}"
+            f"the course's skeleton has {J} joints with 3 coordinates, not {positions.shape[-2:]}"
         )
     return placed_features(at_origin(positions))
 
 
 def placed_features(placed: Float[np.ndarray, "*B T J 3"]) -> Float[np.ndarray, "*B T 63"]:
-    """The 63 numbers of a motion that is where it should be already."""
+    """The 63 features of a motion that starts at the origin already."""
     about = placed[..., HIPS + 1 :, :] - placed[..., HIPS : HIPS + 1, :]
     whole = np.concatenate([placed[..., HIPS : HIPS + 1, :], about], axis=-2)
     return whole.reshape(*whole.shape[:-2], 3 * J)
 
 
 def to_positions(features: Float[Tensor, "*B T 63"]) -> Float[Tensor, "*B T 21 3"]:
-    """The network's 63 numbers as world positions, differentiable (the losses need it).   Notebook:
-    12, 13"""
+    """The network's 63 features as world positions, differentiable for the losses.
+
+    Notebook: 12, 13
+    """
     joints = features.unflatten(-1, (J, 3))
     pelvis = joints[..., :1, :]
     return torch.cat([pelvis, joints[..., 1:, :] + pelvis], dim=-2)
 
 
 def body_of(scaler: Scaler) -> Body:
-    """The course's figure for the kinematic losses of motions that `scaler` standardised.
-    Notebook: 13"""
+    """The course's figure, for kinematic losses of motions that `scaler` standardised.
+
+    Notebook: 13
+    """
     return Body(lambda x: to_positions(scaler.inverse(x)), BONES, BONE_PAIRS, TOES)
 
 
 def mirror(positions: Float[np.ndarray, "*B T 21 3"]) -> Float[np.ndarray, "*B T 21 3"]:
-    """The same dance in a mirror: left is right, every joint included."""
+    """The same dance in a mirror: left and right are exchanged."""
     return positions[..., MIRROR, :] * np.array([-1.0, 1.0, 1.0])

@@ -1,6 +1,4 @@
-"""Joint names over the dialects of BVH: which joint of a file plays which part of the course's
-figure.
-"""
+"""Joint names in the dialects of BVH: which joint of a file is which joint of the course."""
 
 import re
 from collections.abc import Mapping
@@ -9,9 +7,9 @@ from .bvh import Bvh
 from .bvh.tokens import BvhError
 from .skeleton import JOINTS
 
-# The joints of one side, best spelling first; the side stands before or after, a word or a letter
-# (LeftKnee, Knee_L). One word can mean two joints (LeftHip a thigh or a corner of the pelvis,
-# LeftFoot an ankle or a toe), hence the order.
+# The joints of one side, best spelling first. The side is a word or a letter, before or after the
+# name (LeftKnee, Knee_L). One word can mean two joints: LeftHip is a thigh or a corner of the
+# pelvis, LeftFoot an ankle or a toe. So the order matters.
 SIDED = {
     "UpLeg": "upleg upperleg thigh hip femur",
     "Leg": "leg lowleg lowerleg shin knee calf tibia",
@@ -33,7 +31,7 @@ CENTRAL = {
     "Spine1": "spine1 chest2 chest upperchest spine02 spine2 spine3 thorax",
 }
 PREFIX = re.compile(r"^(bip\d+|mixamorig\d*|character\d*)")
-# What a figure must have; the others can be made up from these.
+# The joints that a file must have; the others can be computed from these.
 NEEDED = ["Hips", "Head"]
 NEEDED += [
     side + part
@@ -49,7 +47,7 @@ def plain(name: str) -> str:
 
 
 def spellings(joint: str) -> list[str]:
-    """The plain names under which files know a joint of the course, best first."""
+    """The plain names that files use for a joint of the course, best first."""
     if joint in CENTRAL:
         return CENTRAL[joint].split()
     side, part = ("Left", joint[4:]) if joint.startswith("Left") else ("Right", joint[5:])
@@ -58,11 +56,11 @@ def spellings(joint: str) -> list[str]:
 
 
 def guess_mapping(bvh: Bvh, given: Mapping[str, str] | None = None) -> dict[str, str]:
-    """{course joint: node of the file}: what is `given`, the rest guessed from the joint names.
+    """{course joint: node of the file}: the entries of `given`, the rest guessed from the names.
 
-    End sites serve as toe and hand tip. Joints that no spelling fits are left out (only those that
-    can be made up).
-    Raises BvhError when the figure lacks a needed joint; the message lists the file's joints.
+    End sites serve as toes and hand tips. A joint without a match is left out if it can be computed
+    from others.
+    Raises BvhError when a needed joint is missing; the message lists the file's joints.
     """
     known = {plain(name): name for name in reversed(bvh.joints)}
     mapping = dict(given or {})
@@ -87,21 +85,22 @@ TIPS = (("ToeBase", "Foot"), ("HandIndex1", "Hand"))
 
 
 def end_of(bvh: Bvh, joint: str) -> list[str]:
-    """The end site of a joint, or nothing."""
+    """The end site of a joint, as a list of one name or none."""
     parent = bvh.names.index(joint)
     children = [n for n, own in enumerate(bvh.parents) if own == parent and bvh.is_end[n]]
     return [bvh.names[n] for n in children[:1]]
 
 
 def check_mapping(mapping: Mapping[str, str], bvh: Bvh) -> dict[str, str]:
-    """A mapping given by hand, completed by the guess where it says nothing.
+    """A mapping given by hand, with the missing joints guessed.
 
-    Raises BvhError for names that neither the course nor the file knows.
+    Raises BvhError for a name that is not in the course's skeleton or not in the file.
     """
     wrong = [name for name in mapping if name not in JOINTS]
     if wrong:
         raise BvhError(
-            f"the mapping names '{wrong[0]}', which is no joint of the course: {', '.join(JOINTS)}."
+            f"the mapping names '{wrong[0]}', which is no joint of the course. Its joints are "
+            f"{', '.join(JOINTS)}."
         )
     missing = [name for name in mapping.values() if name not in bvh.names]
     if missing:
@@ -115,7 +114,7 @@ def check_mapping(mapping: Mapping[str, str], bvh: Bvh) -> dict[str, str]:
 def refuse_incomplete(mapping: Mapping[str, str], bvh: Bvh) -> None:
     """Raise BvhError when a needed joint has no counterpart.
 
-    Show what there is and how to name it.
+    The message lists the file's joints and shows how to map them.
     """
     lacking = [joint for joint in NEEDED if joint not in mapping]
     if lacking:

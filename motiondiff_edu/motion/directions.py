@@ -1,8 +1,7 @@
 """The pose of another skeleton on the course's bones.
 
-Bone directions are kept, bone lengths are ours.
-
-Hips and chest are taken as rigid blocks, since every dialect places its spine joints elsewhere.
+The bones keep their directions and get the course's lengths. Hips and chest are rigid blocks,
+because every dialect places its spine joints elsewhere.
 """
 
 import numpy as np
@@ -16,7 +15,8 @@ HIPS, SPINE, SPINE1, NECK, HEAD = (
     joint_index(name) for name in ("Hips", "Spine", "Spine1", "Neck1", "Head")
 )
 UPLEGS, ARMS = (1, 5), (13, 17)
-FLAT_PITCH = float(np.arctan2(-OFFSETS[4, 1], OFFSETS[4, 2]))  # of our foot on the floor, downwards
+# downward pitch of the course's foot, from ankle to toe, while it stands on the floor
+FLAT_PITCH = float(np.arctan2(-OFFSETS[4, 1], OFFSETS[4, 2]))
 
 
 def unit(vector: Float[np.ndarray, "... 3"]) -> Float[np.ndarray, "... 3"]:
@@ -38,18 +38,18 @@ def calibrated(
     frame: Float[np.ndarray, "T 3 3"],
     target: Float[np.ndarray, "3"],
 ) -> Float[np.ndarray, "T 3"]:
-    """Directions turned by one constant rotation in a body frame.
+    """Directions turned by one constant rotation in a body frame, so that their mean is `target`.
 
-    Their mean there becomes `target`.
-
-    This removes how a dialect places a joint and keeps how the person moves it.
+    The rotation removes where a dialect places a joint and keeps how the person moves it.
     """
     local = np.einsum("tji,tj->ti", frame, unit(direction))
-    turn = between(unit(local.mean(0)), unit(target))
+    turn = rotation_between(unit(local.mean(0)), unit(target))
     return np.einsum("tij,tj->ti", frame, local @ turn.T)
 
 
-def between(start: Float[np.ndarray, "3"], end: Float[np.ndarray, "3"]) -> Float[np.ndarray, "3 3"]:
+def rotation_between(
+    start: Float[np.ndarray, "3"], end: Float[np.ndarray, "3"]
+) -> Float[np.ndarray, "3 3"]:
     """The smallest rotation that takes one unit vector to another."""
     axis = np.cross(start, end)
     sine = np.linalg.norm(axis)
@@ -60,7 +60,7 @@ def between(start: Float[np.ndarray, "3"], end: Float[np.ndarray, "3"]) -> Float
 def complete(points: Float[np.ndarray, "T 21 3"]) -> Float[np.ndarray, "T 21 3"]:
     """Fill joints that a file lacks.
 
-    Neck and spine on the line from hips to head, hand tips along the forearm.
+    Neck and spine go on the lines between hips, shoulders and head; hand tips extend the forearm.
     """
     points = points.copy()
     hips, shoulders = points[:, UPLEGS].mean(1), points[:, ARMS].mean(1)
@@ -78,10 +78,7 @@ def complete(points: Float[np.ndarray, "T 21 3"]) -> Float[np.ndarray, "T 21 3"]
 
 
 def has_our_bones(points: Float[np.ndarray, "T 21 3"]) -> bool:
-    """True when every bone has the course's length within 2 %.
-
-    Files that this course wrote have it.
-    """
+    """True when every bone has the course's length within 2 %, as in the course's own files."""
     lengths = np.array(
         [np.median(np.linalg.norm(points[:, c] - points[:, p], axis=-1)) for p, c in BONES]
     )
@@ -100,7 +97,7 @@ def bone_directions(
 ) -> Float[np.ndarray, "T 21 3"]:
     """Unit direction of every bone (row 0 unused) for our figure, from another figure's joints.
 
-    `standing` is true where a foot lies flat; it tells which pitch of that foot means flat. `lean`
+    `standing` is true where a foot lies flat, which defines the pitch of a flat foot. `lean`
     (radians, backwards) is the slope of the trunk, from hip joints to shoulders, when the figure
     stands upright.
     """
@@ -123,9 +120,8 @@ def bone_directions(
 def rest_lean(rest: Float[np.ndarray, "21 3"]) -> float:
     """How far the trunk slopes backwards in a rest pose (radians).
 
-    A matter of where joints are placed, not of posture.
-
-    Zero when the rest pose does not stand, or slopes more than a standing figure does.
+    The slope comes from the placement of the joints, not from posture. It is 0 when the rest pose
+    does not stand, or slopes more than a standing figure does.
     """
     across = unit(rest[UPLEGS[0]] - rest[UPLEGS[1]])
     trunk = rest[list(ARMS)].mean(0) - rest[list(UPLEGS)].mean(0)
@@ -137,9 +133,8 @@ def rest_lean(rest: Float[np.ndarray, "21 3"]) -> float:
 def trunk_frames(points: Float[np.ndarray, "T 21 3"], lean: float) -> tuple[np.ndarray, np.ndarray]:
     """Frames of pelvis and chest.
 
-    Across from hip and shoulder line, up from the lower and the upper trunk.
-
-    The trunk bends where the file has a spine joint near its middle; its mean shape is
+    Their left axes are the lines of the hips and shoulders, their up axes the lower and the upper
+    trunk. The trunk bends where the file has a spine joint near its middle. Its mean shape is
     straightened.
     """
     hips, shoulders = points[:, UPLEGS].mean(1), points[:, ARMS].mean(1)
@@ -158,16 +153,13 @@ def mid_trunk(
     hips: Float[np.ndarray, "T 3"],
     trunk: Float[np.ndarray, "T 3"],
 ) -> Float[np.ndarray, "T 3"]:
-    """The spine joint nearest to half way up the trunk.
-
-    The point half way where none is near.
-    """
+    """The spine joint nearest to the middle of the trunk, or the middle itself if none is near."""
     height = np.einsum("tji,ti->tj", points[:, [SPINE, SPINE1, NECK]] - hips[:, None], trunk)
-    share = np.median(height / (trunk**2).sum(-1)[:, None], axis=0)
-    best = int(np.abs(share - 0.5).argmin())
+    fraction = np.median(height / (trunk**2).sum(-1)[:, None], axis=0)
+    best = int(np.abs(fraction - 0.5).argmin())
     return (
         points[:, [SPINE, SPINE1, NECK][best]]
-        if abs(share[best] - 0.5) < 0.25
+        if abs(fraction[best] - 0.5) < 0.25
         else hips + trunk / 2
     )
 
@@ -178,21 +170,18 @@ def foot_direction(
     pelvis: Float[np.ndarray, "T 3 3"],
     standing: Bool[np.ndarray, " T"],
 ) -> Float[np.ndarray, "T 3"]:
-    """Direction from ankle to toe, pitched by a constant.
+    """Direction from ankle to toe, pitched by a constant so that a flat foot fits our ankle height.
 
-    A foot flat on the floor is then flat with our ankle height.
-
-    A foot that is missing, or points straight down from the shank, becomes a flat foot square to
-    the shank.
+    A foot that is missing, or points straight along the shank, becomes a flat foot at right angles
+    to the shank.
     """
     lengthwise = np.abs(np.einsum("ti,ti->t", unit(foot), unit(shank)))
     if np.isnan(foot).any() or np.median(lengthwise) > 0.9:
         return frame_of(pelvis[..., 0], shank) @ unit(OFFSETS[TOES[0]])
     foot = unit(foot)
     pitch = -np.arcsin(np.clip(foot[:, 1], -1, 1))
-    flat = np.percentile(
-        pitch[standing] if standing.sum() > 3 else pitch, 20
-    )  # the rest may kneel on its toes
+    # a low percentile, because the figure can kneel on its toes in other frames
+    flat = np.percentile(pitch[standing] if standing.sum() > 3 else pitch, 20)
     across = unit(np.cross(shank, foot))
     return Rotation.from_rotvec(across * (FLAT_PITCH - flat)).apply(foot)
 

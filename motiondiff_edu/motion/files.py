@@ -1,4 +1,4 @@
-"""`read_motion(path)`, and the two kinds of files that this layer reads and writes: BVH and npz.
+"""`read_motion(path)`, and the two file formats of this layer: BVH and npz.
 
 Notebook: 00
 """
@@ -19,9 +19,9 @@ from .skeleton import COURSE, Skeleton
 
 FORMAT = "motiondiff_edu motion 1"
 LARGEST = 2_000_000_000  # bytes, unpacked: half a day of motion
-# endings of files that people have, and what is to be done with them
+# endings of other files, and what to do with them
 ELSEWHERE = {
-    (".fbx", ".c3d", ".glb", ".gltf", ".usd", ".blend"): "export it as BVH, from Blender for one",
+    (".fbx", ".c3d", ".glb", ".gltf", ".usd", ".blend"): "export it as BVH, for example in Blender",
     (".amc", ".asf", ".vrma"): "export it as BVH",
     (".wav", ".mp3", ".ogg", ".flac"): 'this is sound; md.load("dancer").dance(path) dances to it',
     (".pkl", ".pickle"): "a pickle can run code and is not opened; save its arrays as npz",
@@ -29,16 +29,16 @@ ELSEWHERE = {
 
 
 def read_motion(path: str | Path) -> Motion:
-    """Read a motion from a file, by its name's ending: BVH or npz.
+    """Read a motion from a file; the name's ending says whether it is BVH or npz.
 
-    BVH of any humanoid is brought to the course's skeleton and 20 frames/s.
+    Any humanoid BVH is retargeted to the course's skeleton and resampled to 20 frames/s.
 
-    Raises FileNotFoundError, or MotionError or BvhError (both ValueErrors) with file, fault and
-    what to do.  Notebook: 00
+    Raises FileNotFoundError for a missing file. Raises MotionError or BvhError (both are
+    ValueErrors) for a faulty one, with the file, the fault and what to do.  Notebook: 00
     """
     path = Path(path).expanduser()
     if path.is_dir():
-        raise MotionError(f"{path} is a folder; name a file in it")
+        raise MotionError(f"{path} is a folder; give the name of a file in it")
     if not path.is_file():
         where = "" if path.is_absolute() else f" in {Path.cwd()}"
         raise FileNotFoundError(f"there is no file {path}{where}; check the spelling")
@@ -47,7 +47,7 @@ def read_motion(path: str | Path) -> Motion:
     if read is None:
         advice = next((words for group, words in ELSEWHERE.items() if ending in group), "")
         raise MotionError(
-            f"{path.name} is not read as a motion; {' and '.join(registry.readers.names())} are"
+            f"{path.name} cannot be read as a motion; {' and '.join(registry.readers.names())} can"
             f"{f'. {advice}' if advice else ''}"
         )
     return read(path)
@@ -55,21 +55,21 @@ def read_motion(path: str | Path) -> Motion:
 
 @registry.readers.register(".bvh")
 def read_bvh_motion(path: Path) -> Motion:
-    """Any humanoid BVH, retargeted, where it stands in its file.  Raises BvhError."""
+    """Any humanoid BVH, retargeted; the figure keeps its place in the world.  Raises BvhError."""
     clip = load_clip(path)
     return Motion.of_clip(clip, clip.info["start"])
 
 
 @registry.writers.register(".bvh")
 def write_bvh_motion(motion: Motion, path: Path) -> None:
-    """BVH for Blender; prints how far constant bones moved the joints.
+    """Write BVH, for example for Blender; print how far the constant bones moved the joints.
 
     Raises MotionError for another skeleton, or where a joint is missing.
     """
     if motion.skeleton != COURSE:
         raise MotionError(
-            f"{motion.name} has {len(motion.skeleton)} joints; BVH is written for the "
-            f"{len(COURSE)} of the course's skeleton. .npz takes any"
+            f"{motion.name} has {len(motion.skeleton)} joints; BVH can only be written for the "
+            f"{len(COURSE)} of the course's skeleton. Save as .npz, which takes any skeleton"
         )
     motion.check_finite()
     write_bvh(path, motion.positions, motion.fps)
@@ -77,7 +77,7 @@ def write_bvh_motion(motion: Motion, path: Path) -> None:
 
 @registry.writers.register(".npz")
 def write_npz(motion: Motion, path: Path) -> None:
-    """All of it as plain arrays, exactly; nothing in the file can run."""
+    """Write the whole motion exactly, as plain arrays; the file contains no code."""
     arrays = {
         "format": np.array(FORMAT),
         "positions": motion.positions,
@@ -96,9 +96,9 @@ def write_npz(motion: Motion, path: Path) -> None:
 
 @registry.readers.register(".npz")
 def read_npz(path: Path) -> Motion:
-    """Our own npz, or one of data_synth's: walks have poses and control, dances have positions.
+    """Read our own npz, or one of data_synth: walks have poses and control, dances have positions.
 
-    Raises MotionError, with the arrays there are, for another; pickled objects are not opened.
+    Raises MotionError for another npz, with a list of its arrays. Pickled objects are not opened.
     """
     arrays = _arrays(path)
     source = str(arrays["source"]) if "source" in arrays else path.stem
@@ -114,8 +114,8 @@ def read_npz(path: Path) -> Motion:
         raise MotionError(f"{path.name}: {error}") from None
     there = ", ".join(f"{name} {array.shape}" for name, array in arrays.items())
     raise MotionError(
-        f"{path.name} holds {there or 'nothing'}; a motion has `positions` (frames, joints, 3) in "
-        f"metres and `fps`, and another skeleton its `names` and `parents`"
+        f"{path.name} contains {there or 'nothing'}; a motion has `positions` (frames, joints, 3) "
+        f"in metres and `fps`, and for another skeleton `names` and `parents` as well"
     )
 
 
@@ -131,7 +131,7 @@ def _from_positions(arrays: dict[str, np.ndarray], source: str) -> Motion:
 
 
 def _arrays(path: Path) -> dict[str, np.ndarray]:
-    """The arrays of an npz file, without pickles.  Raises MotionError for what is none."""
+    """The arrays of an npz file, without pickles.  Raises MotionError for another file."""
     try:
         with zipfile.ZipFile(path) as packed:
             size = sum(entry.file_size for entry in packed.infolist())
@@ -144,7 +144,8 @@ def _arrays(path: Path) -> dict[str, np.ndarray]:
     except MotionError:
         raise
     except (zipfile.BadZipFile, ValueError, OSError, EOFError, KeyError, MemoryError) as error:
-        reason = "it holds pickled objects" if "pickle" in str(error) else "it is none, or damaged"
+        pickled = "pickle" in str(error)
+        reason = "it contains pickled objects" if pickled else "it is not an npz file, or damaged"
         raise MotionError(
-            f"{path.name} cannot be read as npz: {reason}. Save plain arrays by numpy.savez"
+            f"{path.name} cannot be read as npz: {reason}. Save plain arrays with numpy.savez"
         ) from None

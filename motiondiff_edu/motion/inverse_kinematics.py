@@ -1,11 +1,14 @@
-"""A joint is dragged and the body follows.
+"""Inverse kinematics: a joint is dragged and the body follows.
 
-Every bone keeps its length, and what need not move stays.
+Every bone keeps its length, and joints that need not move stay. The method depends on the joint:
 
-Elbows and knees turn about shoulder and hip; wrists and ankles are reached by two bones (the
-triangle of their lengths); fingertips and toes tow hand and foot; head, neck, spine and shoulders
-(one block with the chest) bend the trunk by FABRIK; the pelvis carries the body, and the feet stay
-where they stand as far as the legs reach. What cannot be reached is pointed at.
+    elbow, knee             turns about the shoulder or the hip
+    wrist, ankle            two bones, by the triangle of their lengths
+    fingertip, toe          tows the hand or the foot
+    head, neck, spine,
+    shoulders               bend the trunk by FABRIK; shoulders are one block with the chest
+    pelvis                  carries the body; the feet stay as far as the legs reach
+The limb points towards a target that is out of reach.
 Source: FABRIK: Aristidou and Lasenby, 2011; two bones: the law of cosines.  Notebook: 15
 """
 
@@ -20,11 +23,10 @@ from .skeleton import HEELS, HIPS, JOINTS, PARENTS, J
 Pose = Float[np.ndarray, "21 3"]
 Point = Float[np.ndarray, "3"]
 
-STRAIGHTEST = (
-    0.9995  # of its length: a limb is not stretched further, or its bend would have no side
-)
-# m: a joint so near to the line through its limb shows no side to bend to; the body's own is mixed
-# in
+# fraction of its length to which a limb is stretched; a straight limb would have no side to bend to
+STRAIGHTEST = 0.9995
+# m: a middle joint nearer than this to the line through its limb does not define the side to which
+# the limb bends; the body's own direction is mixed in
 STIFF = 0.03
 PELVIS = (HIPS, *UPLEGS)  # one rigid piece
 
@@ -32,11 +34,9 @@ PELVIS = (HIPS, *UPLEGS)  # one rigid piece
 def drag(pose: Pose, joint: int, target: Point) -> Pose:
     """The pose with a joint at `target` (metres, world), or as near as its bones reach.
 
-    All bones as long as before.
-
-    Dragging a joint to where it is changes nothing.
-    Raises IndexError for a joint that the skeleton has not, ValueError for a target that is not
-    finite.   Notebook: 15
+    All bones keep their lengths. Dragging a joint to where it is changes nothing.
+    Raises IndexError for a joint that does not exist, ValueError for a target that is not finite.
+    Notebook: 15
     """
     if not 0 <= joint < J:
         raise IndexError(f"joint {joint} is not one of the skeleton's {J} (0 to {J - 1})")
@@ -58,11 +58,10 @@ def drag(pose: Pose, joint: int, target: Point) -> Pose:
 
 
 def chain_to(joint: int) -> list[int]:
-    """The joints that reach for it, from the one that stays.
+    """The chain of joints that moves `joint`, from the joint that stays.
 
-    Hip or shoulder for a limb, the pelvis for the trunk.
-
-    A shoulder hangs from the chest, which is one block: the neck is left out on the way.
+    A limb's chain starts at the hip or shoulder, the trunk's at the pelvis. A shoulder hangs from
+    the chest, which is one block, so its chain leaves out the neck.
     """
     chain = [joint, SPINE1] if joint in ARMS else [joint]
     while chain[-1] != HIPS and (len(chain) == 1 or chain[-1] not in (*UPLEGS, *ARMS)):
@@ -71,11 +70,10 @@ def chain_to(joint: int) -> list[int]:
 
 
 def bends_to(pose: Pose, root: int) -> Float[np.ndarray, "2 3"]:
-    """Where a straight limb starts to bend, and where else if it points there.
+    """Two directions in which a straight limb can start to bend.
 
-    Knees ahead or up, elbows back or down.
-
-    `root` is the limb's first joint, a hip or a shoulder.
+    The second serves when the limb points along the first. Knees bend ahead or up, elbows back or
+    down. `root` is the limb's first joint, a hip or a shoulder.
     """
     sense = 1.0 if root in UPLEGS else -1.0
     return sense * np.stack([pelvis_ahead(pose[None])[0], [0.0, 1.0, 0.0]])
@@ -84,10 +82,11 @@ def bends_to(pose: Pose, root: int) -> Float[np.ndarray, "2 3"]:
 def two_bones(
     limb: Float[np.ndarray, "3 3"], target: Point, bends: Float[np.ndarray, "2 3"]
 ) -> Float[np.ndarray, "3 3"]:
-    """Root, middle and end with the end at the target: a triangle of two bones and a distance.
+    """Root, middle and end of a limb, with the end at the target.
 
-    The middle (`planting.triangle`) lies on the side where it was, which turns with the line. A
-    target out of reach is drawn in along the line from the root.
+    Two bones and a distance form a triangle (`planting.triangle`). The middle joint stays on its
+    side, which turns with the line from root to end. A target out of reach is moved closer along
+    the line from the root.
     """
     root, middle, end = limb
     a, b, far = (float(np.linalg.norm(v)) for v in (middle - root, end - middle, end - root))
@@ -104,9 +103,9 @@ def two_bones(
 
 
 def _first_aside(directions: Float[np.ndarray, "2 3"], line: Point) -> Point:
-    """The first of two directions at right angles to the line.
+    """The part of the first direction at right angles to the line.
 
-    The second where the first points along it.
+    The second direction serves where the first points along the line.
     """
     first, second = (perpendicular(v[None], line[None])[0] for v in directions)
     return unit(first) if np.linalg.norm(first) > 0.2 else unit(second)
@@ -115,10 +114,7 @@ def _first_aside(directions: Float[np.ndarray, "2 3"], line: Point) -> Point:
 def towed(
     limb: Float[np.ndarray, "4 3"], target: Point, bends: Float[np.ndarray, "2 3"]
 ) -> Float[np.ndarray, "4 3"]:
-    """Two bones and a last one that is drawn by its tip, as a cart by its shaft.
-
-    Hand or foot, and what carries it.
-    """
+    """Two bones and a hand or foot, which is drawn by its tip, as a cart by its shaft."""
     three, last = limb[:3], float(np.linalg.norm(limb[3] - limb[2]))
     tip = limb[3]
     for _ in range(20):
@@ -134,13 +130,13 @@ def towed(
 def fabrik(
     chain: Float[np.ndarray, "N 3"], target: Point, rounds: int = 60
 ) -> Float[np.ndarray, "N 3"]:
-    """The chain with its end at the target, its start where it was.
+    """The chain with its end at the target and its start unchanged.
 
-    From the end and from the start by turns, each joint is put on the line to its neighbour's new
-    place, at the bone's length.
+    The method alternates between passes from the end and from the start. A pass puts each joint on
+    the line to its neighbour's new place, at the bone's length.
 
-    A target out of reach leaves the chain straight. Two joints in one place leave their bone the
-    direction it had.
+    A target out of reach makes the chain straight. If two joints coincide, their bone keeps its
+    direction.
     """
     lengths = np.linalg.norm(np.diff(chain, axis=0), axis=-1)
     places = np.array(chain)
@@ -161,9 +157,9 @@ def fabrik(
 
 
 def carried(pose: Pose, chain: list[int], places: Float[np.ndarray, "N 3"]) -> Pose:
-    """The pose with a chain at new places; what hangs from it turns with the bone that leads there.
+    """The pose with a chain at new places; the joints below turn with the bone that carries them.
 
-    A foot whose ankle is dragged keeps its direction, so that the sole stays as it was.
+    A foot whose ankle is dragged keeps its direction, so that the sole keeps its angle.
     """
     moved = np.array(pose)
     for k in range(1, len(chain)):
@@ -181,9 +177,9 @@ def carried(pose: Pose, chain: list[int], places: Float[np.ndarray, "N 3"]) -> P
 
 
 def block(joint: int, above: int) -> list[int]:
-    """What turns with the bone between two joints, a chain's neighbours.
+    """The joints that turn with the bone between two neighbours of a chain.
 
-    The first joint on the way, and all below.
+    They are the first joint on the way from `above` to `joint`, and all joints below it.
     """
     first = joint
     while PARENTS[first] != above:
@@ -201,7 +197,7 @@ def descendants(joint: int, itself: bool = False) -> list[int]:
 
 
 def pelvis_moved(pose: Pose, shift: Point) -> Pose:
-    """The body moved; each ankle stays, its foot with it, as far as the leg reaches."""
+    """The body moved; each ankle and its foot stay, as far as the leg reaches."""
     moved = pose + shift
     for heel in HEELS:
         leg = chain_to(heel)
@@ -216,5 +212,5 @@ def _bone(pose: Pose, chain: list[int], target: Point) -> Point:
 
 
 def _aim(wanted: Point, before: Point) -> Point:
-    """The wanted direction, of length one; the one before where nothing tells which is wanted."""
+    """The wanted direction with length one, or the one before where `wanted` is zero."""
     return unit(wanted if np.linalg.norm(wanted) > 1e-9 else before)

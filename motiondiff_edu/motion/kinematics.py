@@ -42,8 +42,8 @@ def euler_to_matrix(angles: Float[np.ndarray, "*N K"], order: str) -> Float[np.n
 
     Order "ZXY" means R = Rz @ Rx @ Ry, as BVH files mean it.
 
-    Raises ValueError when the order has a letter other than X, Y, Z, or one twice in a row, or does
-    not fit the angles.  Notebook: 01
+    Raises ValueError when the order has a letter other than X, Y, Z, repeats a letter in a row, or
+    does not fit the number of angles.  Notebook: 01
     """
     twice = any(a == b for a, b in pairwise(order))
     if not 1 <= len(order) == angles.shape[-1] <= 3 or set(order) - set("XYZ") or twice:

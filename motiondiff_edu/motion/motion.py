@@ -1,9 +1,9 @@
-"""A Motion: where every joint is in every frame, and what came along.
+"""A Motion: the position of every joint in every frame, with root path, contacts and sound.
 
-The front door takes motions and gives them.
+The functions of the package's front door take motions and return them.
 
     walk[20:60]   walk.between(1.0, 3.0)   walk.then(more)   walk.save("walk.bvh")
-`Clip` is its training view: poses in the root frame with their control.  Notebook: 00
+A `Clip` is the same motion for training: poses in the root frame with their control.  Notebook: 00
 """
 
 from dataclasses import dataclass, replace
@@ -20,21 +20,24 @@ from .resample import resample as up
 from .root_frame import FPS, control_from_path, estimate_root, root_path, to_root_frame
 from .skeleton import COURSE, Skeleton
 
-FARTHEST = 1e6  # metres from the origin; more is a fault of a file
+FARTHEST = 1e6  # metres from the origin; a larger value is a fault of the file
 SAMPLE_RATE = 16_000
 
 
 class MotionError(ValueError):
-    """A motion, or a file of one, that cannot be used: what is wrong, where, what to do."""
+    """A motion or its file cannot be used; the message says what is wrong, where, what to do."""
 
 
 @dataclass(frozen=True, eq=False)
 class Motion:
-    """World positions in metres (y up), `fps` frames a second; a joint that is missing is NaN.
+    """World positions in metres (y up), `fps` frames a second; a missing joint is NaN.
 
-    What may come along: `root`, the way on the ground (x, z in metres, heading in radians), from
-    which the control follows; `contacts`, left and right foot planted; `audio`, mono sound from -1
-    to 1 at `sample_rate` Hz that begins with the first frame; `source`, where it comes from.
+    Optional:
+        root      the path on the ground (x, z in metres, heading in radians); control follows from
+                  it
+        contacts  whether the left and the right foot are planted
+        audio     mono sound from -1 to 1 at `sample_rate` Hz; it begins with the first frame
+        source    where the motion comes from
     Raises MotionError, with frame and joint, for arrays that do not fit.  Notebook: 00
     """
 
@@ -59,8 +62,8 @@ class Motion:
             "sample_rate": int(self.sample_rate),
         }
         T = len(values["positions"])
-        values["root"] = _beside(self.root, "root", (T, 3), np.float64)
-        values["contacts"] = _beside(self.contacts, "contacts", (T, 2), bool)
+        values["root"] = _per_frame(self.root, "root", (T, 3), np.float64)
+        values["contacts"] = _per_frame(self.contacts, "contacts", (T, 2), bool)
         values["audio"] = _sound(self.audio, values["sample_rate"])
         for name, value in values.items():
             object.__setattr__(self, name, value)
@@ -73,18 +76,18 @@ class Motion:
         return cls(clip.world(start), clip.fps, COURSE, root, clip.contacts, source=clip.source)
 
     def to_clip(self) -> Clip:
-        """Its training view: root-frame poses and control, by `root` or the smoothed pelvis.
+        """Root-frame poses and control for training, from `root` or from the smoothed pelvis.
 
-        Raises MotionError where a joint is missing, for another skeleton, and for a single frame.
+        Raises MotionError for a missing joint, another skeleton, or a single frame.
         """
         root = self.rooted().root
         poses, control = to_root_frame(self.positions, root[:, :2], root[:, 2], self.fps)
         return Clip(poses, control, self.fps, self.contacts, self.source)
 
     def rooted(self) -> "Motion":
-        """The same with a `root`: its own, or the smoothed pelvis on the ground.
+        """The same motion with a `root`: its own, or the smoothed pelvis on the ground.
 
-        Raises as `to_clip`.
+        Raises MotionError as `to_clip` does.
         """
         self.check_whole()
         if self.root is not None:
@@ -94,21 +97,21 @@ class Motion:
 
     @property
     def control(self) -> Float[np.ndarray, "T 3"]:
-        """Forward m/s, left m/s, turning rad/s of each frame; the last row repeats.
+        """The speeds of each frame: forward m/s, left m/s, turning rad/s; the last row repeats.
 
-        Raises MotionError as `to_clip`.
+        Raises MotionError as `to_clip` does.
         """
         root = self.rooted().root
         return control_from_path(root[:, :2], root[:, 2], self.fps)
 
     @property
     def name(self) -> str:
-        """Its source, or "motion"."""
+        """The source of the motion, or "motion"."""
         return self.source or "motion"
 
     @property
     def seconds(self) -> float:
-        """How long it is: frames over frames a second."""
+        """Its length in seconds: the number of frames / fps."""
         return len(self) / self.fps
 
     @property
@@ -119,10 +122,10 @@ class Motion:
     def all_but(
         self, joints: str | list[str] | tuple[str, ...], first: int = 0, last: int | None = None
     ) -> Bool[np.ndarray, "T J"]:
-        """`known`, but False for these joints in frames first to last - 1 (by default to the end):
-        what `reconstruct` is to find.
+        """`known`, but False for these joints in frames first to last - 1 (default: to the end).
 
-        Raises KeyError for a name no joint has, MotionError for frames that are not there.
+        `reconstruct` then fills these joints.
+        Raises KeyError for an unknown joint, MotionError for frames outside the motion.
         """
         end = len(self) if last is None else last
         if not 0 <= first < end <= len(self):
@@ -139,14 +142,14 @@ class Motion:
         return len(self.positions)
 
     def __getitem__(self, frames: slice) -> "Motion":
-        """Frames first..last-1, with what came along.
+        """Frames first..last-1, with their root, contacts and sound.
 
-        Raises TypeError for a single number and for a step, MotionError where no frame is left.
+        Raises TypeError for a single index or a step, MotionError where no frame is left.
         """
         if not isinstance(frames, slice) or frames.step not in (None, 1):
             raise TypeError(
-                f"a motion is cut by motion[first:last], not [{frames!r}]; one pose is "
-                f"motion.positions[frame], fewer frames are motion.resampled(fps)"
+                f"cut a motion with motion[first:last], not [{frames!r}]; "
+                f"motion.positions[frame] is one pose, motion.resampled(fps) changes the rate"
             )
         first, last, _ = frames.indices(len(self))
         if last <= first:
@@ -164,7 +167,7 @@ class Motion:
         return replace(self, **cut)
 
     def between(self, first: float, last: float) -> "Motion":
-        """What lies between two moments, in seconds.  Raises MotionError where nothing does."""
+        """The part between two times in seconds.  Raises MotionError outside the motion."""
         if not (0 <= first < last <= self.seconds + 1 / self.fps):
             raise MotionError(
                 f"{self.name}: {first:g} to {last:g} s are not within its {self.seconds:.2f} s"
@@ -172,9 +175,10 @@ class Motion:
         return self[round(first * self.fps) : round(last * self.fps)]
 
     def then(self, *others: "Motion") -> "Motion":
-        """This motion and then the others, one after the other.
+        """This motion, followed by the others.
 
-        Each stays where it is in the world. What did not come along with all of them is left out.
+        Each part stays where it is in the world. `root`, `contacts` and `audio` are kept only if
+        all parts have them.
         Raises MotionError for another frame rate or skeleton.
         """
         parts = [self, *others]
@@ -195,25 +199,25 @@ class Motion:
         return replace(self, **joined)
 
     def sound_in_step(self) -> Float[np.ndarray, "N"] | None:
-        """The sound, cut or filled up with silence to the length of the motion."""
+        """The sound, cut or padded with silence to the length of the motion."""
         if self.audio is None:
             return None
         length = round(self.seconds * self.sample_rate)
         return np.pad(self.audio[:length], (0, max(0, length - len(self.audio))))
 
     def resampled(self, fps: float) -> "Motion":
-        """The same motion at another frame rate: a spline.
+        """The same motion at another frame rate, by a cubic spline.
 
-        A low-pass first where half or more of the frames go.
+        A low-pass comes first when half or more of the frames are removed.
 
-        Raises MotionError where a joint is missing, or for fewer than two frames.
+        Raises MotionError for a missing joint, or for fewer than two frames.
         """
         fps = checked_rate(fps)
         if abs(fps - self.fps) < 1e-6:
             return self
         if not self.known.all() or len(self) < 2:
             self.check_finite()
-            raise MotionError(f"{self.name}: one frame cannot be brought to another rate")
+            raise MotionError(f"{self.name}: a single frame cannot be resampled")
         faster = fps > self.fps
         positions = (up if faster else down)(self.positions, self.fps, fps)
         then, now = np.arange(len(self)) / self.fps, np.arange(len(positions)) / fps
@@ -233,27 +237,27 @@ class Motion:
             frame, joint = missing[0]
             raise MotionError(
                 f"{self.name}: {self.skeleton.names[joint]} in frame {frame} has no position (NaN; "
-                f"{len(missing)} such in all). md.reconstruct(motion, motion.known) can find them"
+                f"{len(missing)} in all). md.reconstruct(motion, motion.known) can fill them in"
             )
 
     def check_whole(self) -> None:
-        """Raise MotionError unless the course's joints are all there, in two frames at least."""
+        """Raise MotionError unless it has all joints of the course, in at least two frames."""
         if self.skeleton != COURSE:
             raise MotionError(
                 f"{self.name} has {len(self.skeleton)} joints; the course's networks know the "
-                f"{len(COURSE)} of their own skeleton. Read the figure from a BVH file: it is "
-                f"retargeted"
+                f"{len(COURSE)} of their own skeleton. Read the figure from a BVH file, which "
+                f"retargets it"
             )
         self.check_finite()
         if len(self) < 2:
-            raise MotionError(f"{self.name} has one frame: a motion takes two at least")
+            raise MotionError(f"{self.name} has one frame; at least two are needed")
 
     def save(self, path: str | Path) -> Path:
-        """Write it to a file, in the way its name's ending says: .bvh .npz .mp4 .gif .html.
+        """Write the motion to a file; the name's ending is .bvh, .npz, .mp4, .gif or .html.
 
         An existing file is replaced.
 
-        Raises MotionError for an ending that nobody knows, with those there are.  Notebook: 00
+        Raises MotionError for an unknown ending, with a list of the known ones.  Notebook: 00
         """
         path = Path(path).expanduser()
         registry.writers.get(check_ending(path))(self, path)
@@ -269,7 +273,7 @@ class Motion:
         return f"Motion {self.name!r}: {self.seconds:.1f} s, {', '.join(has)}"
 
     def _repr_mimebundle_(self, include=None, exclude=None):
-        """The player, where a layer above brings one; else its words."""
+        """The player, if a layer above has registered one, else the text of `repr`."""
         show = registry.shows.get("player")
         if show is None:
             return {"text/plain": repr(self)}
@@ -277,7 +281,7 @@ class Motion:
 
 
 def as_motion(given: object) -> Motion:
-    """A Motion as it is.  Raises TypeError, with what to do, for anything else."""
+    """The Motion, unchanged.  Raises TypeError, with what to do, for anything else."""
     if not isinstance(given, Motion):
         raise TypeError(
             f"this takes a Motion, not {type(given).__name__}; md.read_motion(path) reads one from "
@@ -287,61 +291,61 @@ def as_motion(given: object) -> Motion:
 
 
 def check_ending(path: str | Path) -> str:
-    """The ending by which `save` writes.  Raises MotionError for one that nobody knows."""
+    """The ending that says how to save.  Raises MotionError for an unknown one."""
     ending = Path(path).suffix.lower()
     if registry.writers.get(ending) is None:
         there = " ".join(registry.writers.names())
-        what = f"nothing is written as {ending}" if ending else "the name has no ending"
-        raise MotionError(f"{Path(path).name}: {what}; there are {there}")
+        what = f"unknown ending {ending}" if ending else "the name has no ending"
+        raise MotionError(f"{Path(path).name}: {what}; use one of {there}")
     return ending
 
 
 def _positions(positions, skeleton: Skeleton) -> np.ndarray:
-    """A copy in float64, if every joint is somewhere or missing."""
+    """A copy in float64.  Raises MotionError unless every joint is near the origin or missing."""
     try:
         array = np.array(positions, np.float64)
     except (TypeError, ValueError):
-        raise MotionError("positions are numbers, (frames, joints, 3), in metres") from None
+        raise MotionError("positions must be numbers (frames, joints, 3) in metres") from None
     if array.ndim != 3 or array.shape[-1] != 3 or not len(array):
         raise MotionError(
-            f"positions are (frames, joints, 3) in metres, with a frame at least; these are "
+            f"positions must be (frames, joints, 3) in metres, with at least one frame; these are "
             f"{array.shape}"
         )
     if array.shape[1] != len(skeleton):
         raise MotionError(
-            f"positions have {array.shape[1]} joints, the skeleton {len(skeleton)}: for another "
-            f"one pass skeleton=Skeleton(names, parents)"
+            f"positions have {array.shape[1]} joints, the skeleton {len(skeleton)}; for another "
+            f"skeleton pass skeleton=Skeleton(names, parents)"
         )
     array[np.isnan(array).any(-1)] = np.nan
     wild = np.argwhere((np.abs(array) > FARTHEST).any(-1))
     if len(wild):
         frame, joint = wild[0]
         raise MotionError(
-            f"{skeleton.names[joint]} in frame {frame} is at {array[frame, joint]} m, which is "
-            f"nowhere: look where it was computed"
+            f"{skeleton.names[joint]} in frame {frame} is at {array[frame, joint]} m, which is not "
+            f"plausible; check where it was computed"
         )
     return array
 
 
-def _beside(values, name: str, shape: tuple[int, int], dtype: type) -> np.ndarray | None:
-    """A copy of what came along, if it has a row for each frame."""
+def _per_frame(values, name: str, shape: tuple[int, int], dtype: type) -> np.ndarray | None:
+    """A copy of an array.  Raises MotionError unless it has a finite row for each frame."""
     if values is None:
         return None
     array = np.array(values, dtype)
     if array.shape != shape or not np.isfinite(array).all():
-        what = f"are {array.shape}" if array.shape != shape else "hold NaN or infinity"
-        raise MotionError(f"{name} {what}; it takes {shape} numbers, a row for each frame")
+        what = f"has shape {array.shape}" if array.shape != shape else "has NaN or infinite values"
+        raise MotionError(f"{name} {what}; it must be {shape}, a row for each frame")
     return array
 
 
 def _sound(audio, sample_rate: int) -> np.ndarray | None:
-    """A copy in float32, if it can be heard."""
+    """A copy in float32.  Raises MotionError unless it is finite mono sound."""
     if audio is None:
         return None
     array = np.array(audio, np.float32)
     if array.ndim != 1 or not len(array) or not np.isfinite(array).all() or sample_rate < 1:
         raise MotionError(
-            f"audio is one channel of finite samples (N,) at so many Hz, not {array.shape} at "
-            f"{sample_rate}"
+            f"audio must be one channel of finite samples (N,) and sample_rate at least 1 Hz, not "
+            f"{array.shape} at {sample_rate}"
         )
     return array

@@ -1,6 +1,6 @@
 """A figure from a BVH file in the course's terms: metres, y up, 20 frames/s, no T-pose, floor at 0.
 
-Nothing of this stands in the file; each rule is read off the body or the motion.
+The file states none of this; each rule derives it from the body or the motion.
 Notebook: 00
 """
 
@@ -17,14 +17,14 @@ from .bvh.tokens import BvhError
 from .skeleton import HEELS, JOINTS, TOES, joint_index
 
 LEG = 0.835  # m, thigh plus shank of the course's figure
-SLOW = 0.35  # m/s, a toe slower than this stands
-STEEPEST = 0.06  # a floor tilted more than this is no fault of the capture
-CUT_HZ = 8.0  # walking and dancing keep 99 % of their velocity power below
+SLOW = 0.35  # m/s, a toe slower than this is taken as standing
+STEEPEST = 0.06  # a larger slope of the floor is not a fault of the capture, and is kept
+CUT_HZ = 8.0  # 99 % of the velocity power of walking and dancing is below
 FLIP_X = np.array([-1.0, 1.0, 1.0])  # positions seen in a mirror
 
 
 class MotionWarning(UserWarning):
-    """Something in a file was put right or looks wrong; the clip is usable."""
+    """Something in a file was corrected or looks wrong; the clip is usable."""
 
 
 def pick(
@@ -46,16 +46,16 @@ def leg_length(points: Float[np.ndarray, "T 21 3"]) -> float:
 def to_metres(
     points: Float[np.ndarray, "T 21 3"], source: str = ""
 ) -> tuple[Float[np.ndarray, "T 21 3"], float]:
-    """Scale so that thigh plus shank is 0.835 m; returns metres per unit too.
+    """Scale so that thigh plus shank is 0.835 m; also return the metres per unit of the file.
 
-    Raises BvhError for a figure without legs.  Source: the stature behind the course's bones (1.70
-    m).
+    Raises BvhError for a figure without legs.
+    Source: the height of the course's figure, 1.70 m.
     """
     length = leg_length(points)
     if not length > 1e-9:
         raise BvhError(
             (
-                "the legs have no length, so the unit cannot be told; "
+                "the legs have no length, so the unit of the file is unknown; "
                 "check the mapping of UpLeg, Leg, Foot."
             ),
             source,
@@ -64,9 +64,9 @@ def to_metres(
 
 
 def up_axis(points: Float[np.ndarray, "T 21 3"], rest: Float[np.ndarray, "21 3"]) -> str:
-    """ "+y" or "+z" and so on: the axis along which the head is above the feet.
+    """The axis along which the head is above the feet: "+y", "+z" and so on.
 
-    The motion decides while it is clear (upright for most of the clip), else the rest pose.
+    The motion decides if the figure is upright for most of the clip, else the rest pose does.
     """
     upright = np.median(body_axis(points), axis=0)
     if np.abs(upright).max() < 0.8:
@@ -76,13 +76,13 @@ def up_axis(points: Float[np.ndarray, "T 21 3"], rest: Float[np.ndarray, "21 3"]
 
 
 def body_axis(points: Float[np.ndarray, "T 21 3"]) -> Float[np.ndarray, "T 3"]:
-    """Unit vector from between the feet to the head."""
+    """Unit vector from the middle between the feet to the head."""
     axis = points[:, joint_index("Head")] - points[:, list(HEELS)].mean(1)
     return axis / np.linalg.norm(axis, axis=-1, keepdims=True)
 
 
-def turn_up(points: Float[np.ndarray, "... 3"], up: str) -> Float[np.ndarray, "... 3"]:
-    """Turn (never mirror) so that the axis `up` becomes +y."""
+def rotate_y_up(points: Float[np.ndarray, "... 3"], up: str) -> Float[np.ndarray, "... 3"]:
+    """Rotate (never mirror) so that the axis `up` becomes +y."""
     sign = -1.0 if up[0] == "-" else 1.0
     first, second = {"x": (1, 2), "y": (2, 0), "z": (0, 1)}[up[1]]
     turned = points[..., [second, "xyz".index(up[1]), first]] * np.array([1.0, sign, sign])
@@ -90,9 +90,9 @@ def turn_up(points: Float[np.ndarray, "... 3"], up: str) -> Float[np.ndarray, ".
 
 
 def unmirror(points: Float[np.ndarray, "T 21 3"]) -> tuple[Float[np.ndarray, "T 21 3"], bool]:
-    """Reflect x when left and right are exchanged against the toes.
+    """Reflect x when left and right are exchanged; also return whether that was so.
 
-    Left x up must point where the toes do.
+    The cross product left x up must point where the toes do.
     """
     left = points[:, joint_index("LeftUpLeg")] - points[:, joint_index("RightUpLeg")]
     ahead = np.cross(left, body_axis(points))
@@ -106,11 +106,10 @@ def unmirror(points: Float[np.ndarray, "T 21 3"]) -> tuple[Float[np.ndarray, "T 
 
 
 def calibration_frames(points: Float[np.ndarray, "T 21 3"]) -> int:
-    """How many first frames are no motion.
+    """How many frames at the start are a calibration pose (a T-pose) and not motion.
 
-    A T-pose from which a joint leaps 20 cm, five times its usual step.
-
-    Further leaps of 12 cm that follow at once (a blend into the take) go too.
+    Such a pose ends with a jump: a joint moves more than 20 cm and five times its usual step.
+    Jumps of more than 12 cm directly after it, a blend into the take, are counted too.
     """
     leap = np.nanmax(np.linalg.norm(np.diff(points[:40], axis=0), axis=-1), axis=1)
     usual = np.median(leap) if len(leap) > 3 else np.inf
@@ -123,11 +122,10 @@ def calibration_frames(points: Float[np.ndarray, "T 21 3"]) -> int:
 def resample(
     points: Float[np.ndarray, "T 21 3"], from_fps: float, to_fps: float
 ) -> Float[np.ndarray, "F 21 3"]:
-    """Cubic spline to another rate.
+    """Resample to another frame rate by a cubic spline.
 
-    A zero-phase low-pass of 8 Hz comes first when at least half of the frames go.
-
-    A joint that the file lacks (NaN) stays unknown.
+    A zero-phase low-pass of 8 Hz comes first when at least half of the frames are removed. A joint
+    that the file lacks stays NaN.
     """
     known = np.isfinite(points).all((0, 2))  # a spline takes no NaN
     times, moving = np.arange(len(points)) / from_fps, points[:, known]
@@ -149,11 +147,10 @@ def speed(points: Float[np.ndarray, "T ... 3"], fps: float) -> Float[np.ndarray,
 
 
 def floor_plane(toes: Float[np.ndarray, "T 2 3"], fps: float) -> Float[np.ndarray, "3"]:
-    """The floor through the toes that stand.
+    """The floor through the standing toes: (height at the origin, slope along x, slope along z).
 
-    (height at the origin, slope along x, slope along z).
-
-    Least squares, repeated without the points more than 3 cm above (a toe held still in the air).
+    It is a least-squares fit, repeated without the points more than 3 cm above it, which are toes
+    held still in the air.
     """
     stand = toes[speed(toes, fps) < SLOW]
     if len(stand) < 10:
@@ -162,10 +159,9 @@ def floor_plane(toes: Float[np.ndarray, "T 2 3"], fps: float) -> Float[np.ndarra
     for _ in range(6):
         x, z = (stand - middle)[:, [0, 2]].T
         design = np.stack([np.ones_like(x), x, z], 1)
-        calm = np.diag([0.0, 0.01, 0.01]) * len(
-            stand
-        )  # a figure on the spot tells nothing of the slope
-        plane = np.linalg.solve(design.T @ design + calm, design.T @ stand[:, 1])
+        # a figure that stays in one place does not determine the slope
+        ridge = np.diag([0.0, 0.01, 0.01]) * len(stand)
+        plane = np.linalg.solve(design.T @ design + ridge, design.T @ stand[:, 1])
         above = stand[:, 1] - design @ plane
         keep = above < max(0.03, np.percentile(above, 50))
         if keep.all():
@@ -191,7 +187,7 @@ def level(
     return (points - np.array([0.0, plane[0], 0.0])) @ turn.T
 
 
-def tell(message: str, source: str) -> str:
-    """Warn, and hand the words on for the clip's record."""
+def warn(message: str, source: str) -> str:
+    """Issue a MotionWarning, and return the message for the clip's notes."""
     warnings.warn(f"{source}: {message}", MotionWarning, stacklevel=2)
     return message

@@ -1,6 +1,4 @@
-"""Feet that stay where they stand: contacts, pinned toes, and legs that follow by two-bone inverse
-kinematics.
-"""
+"""Feet that stay where they stand: contacts, pinned toes, and two-bone inverse kinematics."""
 
 import numpy as np
 from jaxtyping import Bool, Float, Int
@@ -16,7 +14,7 @@ LOW, STILL = 0.04, 0.4  # m and m/s: a toe lower and slower than this is planted
 
 
 def find_contacts(toes: Float[np.ndarray, "T 2 3"], fps: float) -> Bool[np.ndarray, "T 2"]:
-    """Toes that are low and slow; gaps and contacts of a single frame are flipped."""
+    """Toes that are low and slow; gaps and contacts of a single frame are removed."""
     contact = (toes[..., 1] < LOW) & (speed(toes, fps) < STILL)
     for value in (False, True):  # first fill single gaps, then drop single contacts
         alone = (contact[1:-1] == value) & (contact[:-2] != value) & (contact[2:] != value)
@@ -34,15 +32,15 @@ Length = float | Float[np.ndarray, "*T"]
 
 
 def runs(mask: Bool[np.ndarray, "N"]) -> Int[np.ndarray, "n 2"]:
-    """First frame and first frame after of every longest stretch of True.  Notebook: 08"""
+    """First frame of every run of True, and the first frame after the run.  Notebook: 08"""
     edges = np.flatnonzero(np.diff(np.concatenate([[False], mask, [False]]).astype(int)))
     return edges.reshape(-1, 2)
 
 
 def triangle(a: Length, b: Length, d: Length) -> tuple[Length, Length]:
-    """Where two bones a and b meet whose ends are d apart: how far along the line between the ends,
-    and aside of it.
+    """The place where two bones of lengths a and b meet, if their ends are d apart.
 
+    Returns the distance along the line between the ends, and the distance aside of it:
     (a^2 - b^2 + d^2) / 2d and sqrt(a^2 - that^2), by the law of cosines.
     """
     along = (a**2 - b**2 + d**2) / (2 * d)
@@ -52,10 +50,10 @@ def triangle(a: Length, b: Length, d: Length) -> tuple[Length, Length]:
 def shift_to_pins(
     toe: Float[np.ndarray, "T 3"], contact: Bool[np.ndarray, " T"]
 ) -> Float[np.ndarray, "T 3"]:
-    """What to add to a toe so that it rests on one point of the floor during each contact.
+    """The shift that keeps a toe on one point of the floor during each contact.
 
-    Between contacts the shift passes smoothly (3u^2 - 2u^3) from one to the next; outside it is
-    held.
+    Between two contacts the shift is interpolated smoothly (3u^2 - 2u^3). Before the first and
+    after the last contact it is constant.
     """
     shift = np.zeros_like(toe)
     pinned = runs(contact).tolist()
@@ -76,12 +74,10 @@ def shift_to_pins(
 def plant(
     world: Float[np.ndarray, "T 21 3"], contacts: Bool[np.ndarray, "T 2"], fps: float
 ) -> Float[np.ndarray, "T 21 3"]:
-    """Move toes to their pins and keep every bone.
+    """Move the toes to their pinned places and keep every bone length.
 
-    The body follows the mean shift, the legs take up the rest.
-
-    Between contacts no toe goes below the floor. Where a leg would have to be too long, the hips
-    come down.
+    The body follows the mean shift of both feet; the legs bend to make up the rest. Between
+    contacts no toe goes below the floor. Where a leg would have to be too long, the hips come down.
     """
     shift = np.stack(
         [shift_to_pins(world[:, toe], contacts[:, side]) for side, toe in enumerate(TOES)], axis=1
@@ -103,7 +99,7 @@ def plant(
 
 
 def pelvis_ahead(world: Float[np.ndarray, "T 21 3"]) -> Float[np.ndarray, "T 3"]:
-    """Where the hips face."""
+    """Unit vector in the direction that the hips face."""
     return unit(np.cross(world[:, 1] - world[:, 5], world[:, 9] - world[:, 0]))
 
 
@@ -124,11 +120,10 @@ def solve_leg(
     knee: Float[np.ndarray, "T 3"],
     ahead: Float[np.ndarray, "T 3"],
 ) -> tuple[Float[np.ndarray, "T 3"], Float[np.ndarray, "T 3"]]:
-    """Knee and ankle with thigh and shank at their lengths.
+    """Knee and ankle, with the course's lengths of thigh and shank.
 
-    The knee bends to the side where it was, never back.
-
-    An ankle out of reach is drawn in along the line from the hip.
+    The knee stays on the side to which it bends, and never bends backwards. An ankle out of reach
+    is moved closer along the line from the hip.
     """
     line = unit(ankle - hip)
     distance = np.clip(np.linalg.norm(ankle - hip, axis=-1), 0.2, REACH)

@@ -1,8 +1,8 @@
-"""What other layers add to a Motion: endings of files, and how it shows itself.
+"""Functions that other layers add to a Motion: readers and writers of files, and its player.
 
     writers.register(".csv")(lambda motion, path: ...)      # now motion.save("walk.csv") works
-A function is registered when its module is imported. `announce` names the module beforehand; it is
-imported when somebody asks for the ending. So motion/ needs to know nothing of what draws it.
+A function is registered when its module is imported. `announce` names that module beforehand; it is
+imported at the first use of the ending. So motion/ does not depend on the layers that draw it.
 """
 
 import importlib
@@ -17,11 +17,11 @@ class Registry:
         self._announced: dict[str, str] = {}
 
     def announce(self, module: str, *names: str) -> None:
-        """`module` (its dotted name) registers these names when it is imported."""
+        """Declare that `module` (a dotted name) registers these names when it is imported."""
         self._announced |= dict.fromkeys(names, module)
 
     def register(self, *names: str) -> Callable[[Callable], Callable]:
-        """A decorator: the function is found by these names from now on."""
+        """A decorator that stores the function under these names."""
 
         def remember(function: Callable) -> Callable:
             self._functions |= dict.fromkeys(names, function)
@@ -30,11 +30,11 @@ class Registry:
         return remember
 
     def names(self) -> list[str]:
-        """All names there are, in the order they came."""
+        """All names, in the order of their registration."""
         return list(self._announced | self._functions)
 
     def get(self, name: str) -> Callable | None:
-        """The function of this name, or None where there is none."""
+        """The function of this name, or None."""
         if name not in self._functions and name in self._announced:
             importlib.import_module(self._announced[name])
         return self._functions.get(name)

@@ -2,8 +2,8 @@
 
 Dances are compared at 60 frames/s.
 
-Beats, speeds and energies change with the frame rate they are counted at. Whoever compares with the
-published figures goes to their 60 frames/s first.   Notebook: 14
+Beats, speeds and energies depend on the frame rate at which they are measured. Resample to the 60
+frames/s of the published numbers before you compare with them.   Notebook: 14
 """
 
 import numpy as np
@@ -20,25 +20,25 @@ def resample(
 
     new[k] = spline(k / to), cubic, through positions[t] at t / fps.
 
-    The first frame stays as it is, and so does the last where `to` is a whole multiple of `fps`;
-    elsewhere the new motion ends less than 1 / to before the old one. Movement up to a quarter of
+    The first frame stays as it is. The last frame does too if `to` is a whole multiple of `fps`;
+    otherwise the new motion ends less than 1 / to before the old one. Movement up to a quarter of
     `fps` (5 Hz at 20 frames/s) is kept.
-    Raises ValueError when frames would be lost (motion.normalise.resample does that, with a
-    low-pass), for a rate that is not positive, for fewer than two frames, and for NaN.   Notebook:
-    14
+    Raises ValueError for a lower rate (motion.normalise.resample does that, with a low-pass), for a
+    rate that is not positive, for fewer than two frames, and for NaN.
+    Notebook: 14
     """
     if not (fps > 0 and to > 0):
-        raise ValueError(f"frame rates are positive, got {fps} and {to}")
+        raise ValueError(f"frame rates must be positive, not {fps} and {to}")
     if to < fps - 1e-6:
         raise ValueError(
-            f"from {fps:g} down to {to:g} frames/s fast movement must be taken out first: "
+            f"from {fps:g} down to {to:g} frames/s, fast movement must be filtered out first: "
             "motion.normalise.resample"
         )
     if len(positions) < 2:
-        raise ValueError(f"a motion of {len(positions)} frames has nothing between its frames")
+        raise ValueError(f"a motion of {len(positions)} frames cannot be resampled; 2 are needed")
     if not np.isfinite(positions).all():
         bad = int(np.flatnonzero(~np.isfinite(positions).reshape(len(positions), -1).all(1))[0])
-        raise ValueError(f"frame {bad} is not finite: fill or cut it before resampling")
+        raise ValueError(f"frame {bad} is not finite: fill it or cut it off before resampling")
     positions = np.asarray(positions, np.float64)
     if abs(fps - to) < 1e-6:
         return positions
@@ -46,5 +46,5 @@ def resample(
     new = CubicSpline(np.arange(len(positions)) / fps, positions)(np.arange(count) / to)
     new[0] = positions[0]
     if abs((count - 1) / to - (len(positions) - 1) / fps) < 1e-9:
-        new[-1] = positions[-1]  # a spline meets its knots to rounding only
+        new[-1] = positions[-1]  # a spline passes through its knots only up to rounding
     return new

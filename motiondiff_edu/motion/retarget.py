@@ -1,7 +1,8 @@
 """Any humanoid BVH as a clip of the course: `load_clip("walk.bvh")`.
 
-The chain: find the joints, metres from the leg length, y up, drop a T-pose, 20 frames/s, level
-floor, bone directions onto our bones, feet planted, root frame and control.
+The steps: find the joints, scale to metres by the leg length, rotate y up, drop a T-pose, resample
+to 20 frames/s, level the floor, put the bone directions on our bones, plant the feet, and compute
+the root frame and the control.
 """
 
 from collections.abc import Mapping
@@ -30,19 +31,19 @@ from .normalise import (
     level,
     pick,
     resample,
+    rotate_y_up,
     speed,
-    tell,
     to_metres,
-    turn_up,
     unmirror,
     up_axis,
+    warn,
 )
 from .planting import find_contacts, flat_feet, plant
 from .root_frame import estimate_root, to_root_frame
 from .skeleton import HEELS, HIPS, JOINTS, TOES
 
-SHORTEST = 0.5  # s; less has no gait and no heading
-SUNK = -0.05  # metres: no joint of somebody on their feet is so low
+SHORTEST = 0.5  # s; a shorter clip shows no gait and no heading
+SUNK = -0.05  # metres: no joint of a standing figure is so low
 
 
 def load_clip(
@@ -50,19 +51,19 @@ def load_clip(
 ) -> Clip:
     """Read a BVH file and retarget it.
 
-    `mapping` {course joint: joint of the file} where names are not guessed.
+    `mapping` {course joint: joint of the file} names joints that are not guessed from their names.
+    `file_fps` replaces the file's frame time.
 
-    `file_fps` overrules the file's frame time. Raises BvhError; warns (MotionWarning) about what
-    was put right.
+    Raises BvhError. Issues a MotionWarning for each correction.
     """
     return retarget(read_bvh(path, file_fps), mapping)
 
 
 def retarget(bvh: Bvh, mapping: Mapping[str, str] | None = None, fps: float | int = 20.0) -> Clip:
-    """A motion on the course's 21 joints and bones, `fps` frames/s, metres, feet on floor 0.
+    """A motion with the course's 21 joints and bones, `fps` frames/s, in metres, with floor 0.
 
-    Bone directions are the source's; toes stay still while planted. `clip.info` records what was
-    found.
+    The bones keep the directions of the file, and planted toes stay still. `clip.info` records the
+    units, the corrections and the mapping.
     Raises BvhError when joints are missing or the motion is shorter than half a second.
     """
     fps = float(fps)
@@ -89,24 +90,23 @@ def retarget(bvh: Bvh, mapping: Mapping[str, str] | None = None, fps: float | in
 def normalised(
     bvh: Bvh, mapping: Mapping[str, str], fps: float
 ) -> tuple[Float[np.ndarray, "T 21 3"], dict]:
-    """The figure in metres, y up, at `fps`, on a level floor.
-
-    And a record of what had to be done.
-    """
+    """The figure in metres, y up, at `fps`, on a level floor; and a record of the corrections."""
     points, notes = pick(bvh.world_positions(), bvh, mapping), []
     rest = pick(bvh.rest_positions()[None], bvh, mapping)
     up = up_axis(points, rest[0])
-    points, unit = to_metres(turn_up(points, up), bvh.source)
+    points, unit = to_metres(rotate_y_up(points, up), bvh.source)
     points, mirrored = unmirror(points)
-    rest = turn_up(rest, up)[0]
+    rest = rotate_y_up(rest, up)[0]
     if mirrored:
-        rest = rest * FLIP_X  # else its left and right would tell the wrong front
-        notes.append(tell("left and right are exchanged; the figure was mirrored", bvh.source))
+        rest = rest * FLIP_X  # otherwise its hips would face backwards
+        notes.append(
+            warn("left and right were exchanged in the file; the figure was mirrored", bvh.source)
+        )
     dropped = calibration_frames(points)
     if dropped:
         which = "frame 0 is" if dropped == 1 else f"frames 0 to {dropped - 1} are"
         notes.append(
-            tell(f"{which} a calibration pose, far from the motion, and dropped", bvh.source)
+            warn(f"{which} a calibration pose, not part of the motion; dropped", bvh.source)
         )
     points = complete(points[dropped:])
     refuse_short(len(points), bvh)
@@ -138,7 +138,7 @@ def onto_our_bones(
 ) -> tuple[Float[np.ndarray, "T 21 3"], Bool[np.ndarray, "T 2"]]:
     """World positions with the course's bones and planted feet, and the contacts.
 
-    A figure that has the course's bones already, as in the files we write, is taken as it stands.
+    A figure that already has the course's bones, as in files that the course wrote, keeps its pose.
     """
     contacts = find_contacts(ground_points(points), fps)
     if has_our_bones(points):
@@ -153,12 +153,12 @@ def onto_our_bones(
 def warn_sunk(
     world: Float[np.ndarray, "T 21 3"], fps: float, source: str, notes: list[str]
 ) -> None:
-    """Warn about joints deep in the floor: a fault of the capture, or somebody who rolls on it."""
+    """Warn about joints deep in the floor: the capture is faulty, or the person rolls on it."""
     t, joint = np.unravel_index(world[..., 1].argmin(), world.shape[:2])
     if world[t, joint, 1] < SUNK:
         depth, when = -100 * world[t, joint, 1], t / fps
         notes.append(
-            tell(
+            warn(
                 f"{JOINTS[joint]} is {depth:.0f} cm under the floor {when:.2f} s into the clip",
                 source,
             )
@@ -166,25 +166,25 @@ def warn_sunk(
 
 
 def refuse_short(count: int, bvh: Bvh) -> None:
-    """Raise BvhError for a clip too short to tell a way from."""
+    """Raise BvhError for a clip that is too short to show a heading."""
     if count / bvh.fps < SHORTEST:
         problem = (
             f"{count} frames at {bvh.fps:g} frames/s are {count / bvh.fps:.2f} s; "
-            f"{SHORTEST} s are needed."
+            f"at least {SHORTEST} s are needed."
         )
         raise BvhError(problem + " If the frame time is wrong, pass file_fps=.", bvh.source)
 
 
 def warn_wild(speeds: Float[np.ndarray, "T 21"], bvh: Bvh, dropped: int, notes: list[str]) -> None:
-    """Warn about joints faster than any actor's.
+    """Warn about joints that are faster than any actor's, which is a fault of the capture.
 
-    The capture has a fault there (`info["wild"]` says which joints).
+    `info["wild"]` says which joints are affected.
     """
     wild = np.flatnonzero(np.nanmax(speeds, axis=1) > WILD)
     if len(wild):
         where = f"frames {wild[0] + dropped} to {wild[-1] + dropped}"
         notes.append(
-            tell(
+            warn(
                 f"a joint moves faster than {WILD:g} m/s within {where}: a fault of the capture?",
                 bvh.source,
             )

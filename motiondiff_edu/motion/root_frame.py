@@ -1,11 +1,10 @@
-"""World <-> root frame + control.
-
-The figure as it sees itself, and the velocities that carry it along.
+"""World <-> root frame + control: the poses as the figure sees itself, and the velocities that
+carry it along.
 
 The root is the point on the ground under the figure. control[t] = (forward m/s, left m/s, yaw
-rad/s) takes root[t] to root[t+1], expressed in the heading halfway between; so mirroring and time
-reversal are exact sign changes. Heading psi is counter-clockwise seen from above: forward = (sin
-psi, cos psi), left = (cos psi, -sin psi) in (x, z).
+rad/s) takes root[t] to root[t+1]. It is expressed in the heading halfway between the two, so
+mirroring and time reversal are exact sign changes. Heading psi is counter-clockwise seen from
+above: forward = (sin psi, cos psi), left = (cos psi, -sin psi) in (x, z).
 Source: MoDiff IV-A (control in R^3).  Notebook: 01
 """
 
@@ -16,10 +15,8 @@ from scipy.ndimage import gaussian_filter1d
 from .skeleton import HIPS, joint_index
 
 FPS = 20.0
-ROOT_SMOOTHING, HEADING_SMOOTHING = (
-    0.25,
-    0.33,
-)  # seconds: shorter ones leak the gait into the control
+# standard deviations in seconds; shorter ones leak the gait into the control
+ROOT_SMOOTHING, HEADING_SMOOTHING = 0.25, 0.33
 
 
 def forward_left(
@@ -61,7 +58,7 @@ def control_from_path(
     """
     if len(root_xz) < 2:
         raise ValueError(
-            f"a path needs at least 2 frames to have a velocity, this one has {len(root_xz)}"
+            f"a path needs at least 2 frames to have a velocity; this one has {len(root_xz)}"
         )
     yaw = np.diff(heading)
     forward, left = forward_left(heading[:-1] + yaw / 2)
@@ -76,13 +73,13 @@ def to_world(
     start: tuple[float, float, float] = (0.0, 0.0, 0.0),
     fps: float = FPS,
 ) -> Float[np.ndarray, "T J 3"]:
-    """Place root-frame poses in the world, along the path that the control draws from `start`.
+    """Place root-frame poses in the world, on the path that the control gives from `start`.
 
     Raises ValueError unless there is a row of control for each pose.  Notebook: 01
     """
     if len(poses) != len(control):
         raise ValueError(
-            f"{len(poses)} poses and {len(control)} rows of control: each pose needs its row"
+            f"{len(poses)} poses but {len(control)} rows of control; each pose needs one row"
         )
     root_xz, heading = root_path(control, start, fps)
     forward, left = (v[:, None] for v in forward_left(heading))
@@ -96,9 +93,7 @@ def to_root_frame(
     heading: Float[np.ndarray, "T"],
     fps: float = FPS,
 ) -> tuple[Float[np.ndarray, "T J 3"], Float[np.ndarray, "T 3"]]:
-    """Root-frame poses and control of world positions, given the root's path (the inverse of
-    `to_world`).
-    """
+    """Root-frame poses and control of world positions along a root path (inverse of `to_world`)."""
     ground = world[..., [0, 2]] - root_xz[:, None]
     forward, left = (v[:, None] for v in forward_left(heading))
     x, z = (ground * left).sum(-1), (ground * forward).sum(-1)
@@ -106,8 +101,9 @@ def to_root_frame(
 
 
 def body_heading(world: Float[np.ndarray, "T 21 3"]) -> Float[np.ndarray, "T"]:
-    """Which way hips and shoulders together face, in radians, -pi to pi (`dance_frame.facing` asks
-    the hips alone).
+    """The direction that hips and shoulders together face, in radians, -pi to pi.
+
+    `dance_frame.facing` uses the hips alone.
     """
     left, right = (
         world[:, [joint_index(s + "UpLeg"), joint_index(s + "Arm")]].sum(1)
@@ -122,11 +118,9 @@ def estimate_root(
 ) -> tuple[Float[np.ndarray, "T 2"], Float[np.ndarray, "T"]]:
     """Root path and heading of a real clip.
 
-    The pelvis on the ground and the facing of hips and shoulders, smoothed.
-
-    Gaussians of 0.25 s and 0.33 s; shorter ones leak the gait into the control. Beyond its ends the
-    clip is continued by point reflection, so that a figure that walks does not seem to slow down
-    there.
+    They are the pelvis on the ground and the direction of hips and shoulders, smoothed by Gaussians
+    of 0.25 s and 0.33 s; shorter ones leak the gait into the control. Beyond its ends the clip is
+    continued by point reflection, so that a walking figure does not seem to slow down there.
     """
     return smoothed_root(world[:, HIPS][:, [0, 2]], body_heading(world), fps)
 
@@ -134,9 +128,9 @@ def estimate_root(
 def smoothed_root(
     pelvis: Float[np.ndarray, "T 2"], heading: Float[np.ndarray, "T"], fps: float = FPS
 ) -> tuple[Float[np.ndarray, "T 2"], Float[np.ndarray, "T"]]:
-    """Root path and heading from the pelvis' (x, z) and where the body faces (radians).
+    """Root path and heading from the pelvis' (x, z) and the direction of the body (radians).
 
-    They are smoothed by the Gaussians of `estimate_root`.
+    The Gaussians are those of `estimate_root`.
     """
     return (
         _smooth(pelvis, ROOT_SMOOTHING * fps),
@@ -145,12 +139,10 @@ def smoothed_root(
 
 
 def _smooth(x: np.ndarray, sigma: float) -> np.ndarray:
-    """Gaussian along time.
+    """Smooth along time by a Gaussian.
 
-    Before the first and after the last frame x goes on point-reflected: 2 x[0] - x[t].
-
-    A clip shorter than the Gaussian is reflected again and again, so that it goes on at its own
-    speed.
+    Before the first and after the last frame x is continued by point reflection, 2 x[0] - x[t]. A
+    clip shorter than the Gaussian is reflected repeatedly, so that it continues at its own speed.
     """
     reach = int(4 * sigma) + 1
     width = [(reach, reach)] + [(0, 0)] * (x.ndim - 1)

@@ -1,8 +1,8 @@
-"""Standardisation: zero mean and unit spread for every feature, and back.
+"""Standardisation: zero mean and unit standard deviation for every feature, and back.
 
-Poses and control have a scaler each. A missing input is zero *after* standardisation: the average
-pose.
-Source: MoDiff IV-A leaves it open; per-column z-scores are the corpus' own habit.
+Poses and control have one scaler each. A missing input is zero *after* standardisation, which is
+the average pose.
+Source: MoDiff IV-A leaves it open; its corpus uses per-column z-scores.
 """
 
 from dataclasses import dataclass
@@ -11,7 +11,7 @@ import torch
 from jaxtyping import Float
 from torch import Tensor
 
-_STILL = 1e-4  # m, m/s or rad/s: a column that moves less, moves by rounding only
+_STILL = 1e-4  # m, m/s or rad/s: a column that varies less is constant up to rounding
 
 
 @dataclass(frozen=True, eq=False)
@@ -27,22 +27,21 @@ class Scaler:
 
         Raises ValueError on NaN, infinity, or no rows.
 
-        A column that never moves gets std 1: it stays in its own unit, so that a value unseen in
-        training (the first step to the side) arrives as itself and not as thousands of standard
-        deviations.
+        A constant column gets std 1 and keeps its unit. Otherwise a value unseen in training, such
+        as the first step to the side, would become thousands of standard deviations.
         """
         flat = x.reshape(-1, x.shape[-1]).double()
         if not len(flat):
-            raise ValueError("there are no rows to take mean and deviation of")
+            raise ValueError("there are no rows to compute mean and standard deviation from")
         if not torch.isfinite(flat).all():
             bad = int((~torch.isfinite(flat)).any(-1).nonzero()[0])
-            raise ValueError(f"row {bad} of the data to be scaled is not finite; clean it first")
+            raise ValueError(f"row {bad} of the data is not finite; clean the data first")
         std = flat.std(0, correction=0)
         return cls(flat.mean(0).float(), std.where(std > _STILL, 1.0).float())
 
     @classmethod
     def nothing(cls, D: int) -> "Scaler":
-        """The scaler that leaves D columns as they are."""
+        """The scaler that leaves D columns unchanged."""
         return cls(torch.zeros(D), torch.ones(D))
 
     def to(self, device) -> "Scaler":
@@ -50,9 +49,9 @@ class Scaler:
         return Scaler(self.mean.to(device), self.std.to(device))
 
     def transform(self, x: Float[Tensor, "*N D"]) -> Float[Tensor, "*N D"]:
-        """To the network's units."""
+        """Standardise: from metres (or m/s, rad/s) to the network's units."""
         return (x - self.mean) / self.std
 
     def inverse(self, x: Float[Tensor, "*N D"]) -> Float[Tensor, "*N D"]:
-        """Back to metres (or m/s, rad/s)."""
+        """Undo `transform`: from the network's units back to metres (or m/s, rad/s)."""
         return x * self.std + self.mean

@@ -40,12 +40,10 @@ J: int = len(JOINTS)
 PARENTS: np.ndarray = np.array([parent for _, parent, _ in _TABLE])
 OFFSETS: np.ndarray = np.array([offset for _, _, offset in _TABLE])  # (21, 3), metres
 
-BONES: tuple[tuple[int, int], ...] = tuple(
-    (int(PARENTS[j]), j) for j in range(1, J)
-)  # (parent, child)
-BONE_LENGTHS: np.ndarray = np.linalg.norm(
-    OFFSETS[1:], axis=-1
-)  # (20,), metres, in the order of BONES
+# (parent, child)
+BONES: tuple[tuple[int, int], ...] = tuple((int(PARENTS[j]), j) for j in range(1, J))
+# (20,), metres, in the order of BONES
+BONE_LENGTHS: np.ndarray = np.linalg.norm(OFFSETS[1:], axis=-1)
 
 HIPS = 0
 HEELS = (3, 7)  # the Foot joints: the ankle, which the corpus calls heel
@@ -61,11 +59,10 @@ def _mirror_permutation() -> np.ndarray:
     return np.array([JOINTS.index(name) for name in partner])
 
 
-MIRROR: np.ndarray = (
-    _mirror_permutation()
-)  # MIRROR[j] is the joint on the other side (a central joint is its own)
+# MIRROR[j] is the joint on the other side; a central joint is its own
+MIRROR: np.ndarray = _mirror_permutation()
 
-# numbers of bones, left and right
+# (left bone, right bone), as indices into BONES
 BONE_PAIRS: tuple[tuple[int, int], ...] = tuple(
     (k, BONES.index((int(PARENTS[MIRROR[child]]), int(MIRROR[child]))))
     for k, (_, child) in enumerate(BONES)
@@ -74,7 +71,7 @@ BONE_PAIRS: tuple[tuple[int, int], ...] = tuple(
 
 
 def joint_index(name: str) -> int:
-    """The index of a joint by its name; the error lists the names there are."""
+    """The index of a joint by its name.  Raises KeyError with a list of all names."""
     if name not in JOINTS:
         raise KeyError(f"no joint is called {name!r}; the skeleton has {', '.join(JOINTS)}")
     return JOINTS.index(name)
@@ -84,7 +81,7 @@ def joint_index(name: str) -> int:
 class Skeleton:
     """Joints by name, and the number of each joint's parent (-1 for the root, which comes first).
 
-    Raises ValueError where the two do not fit together.
+    Raises ValueError where names and parents do not fit together.
     """
 
     names: tuple[str, ...]
@@ -97,21 +94,21 @@ class Skeleton:
         object.__setattr__(self, "parents", parents)
         if len(names) != len(parents) or len(set(names)) != len(names) or not names:
             raise ValueError(
-                f"a skeleton has a parent for each of its joints, and no name twice; these are "
+                f"a skeleton has one parent for each joint, and no name twice; these are "
                 f"{len(names)} names ({len(set(names))} different), {len(parents)} parents"
             )
         for joint, parent in enumerate(parents):
             if not -1 <= parent < joint:
                 raise ValueError(
-                    f"the parent of {names[joint]} (joint {joint}) is {parent}: a parent comes "
-                    f"before its children, and -1 is for a root"
+                    f"the parent of {names[joint]} (joint {joint}) is {parent}: a parent must come "
+                    f"before its children, and -1 marks the root"
                 )
 
     def __len__(self) -> int:
         return len(self.names)
 
     def index(self, name: str) -> int:
-        """The number of a joint.  Raises KeyError with the names there are."""
+        """The index of a joint by its name.  Raises KeyError with a list of all names."""
         if name not in self.names:
             raise KeyError(f"no joint is called {name!r}; the skeleton has {', '.join(self.names)}")
         return self.names.index(name)

@@ -1,4 +1,4 @@
-"""A trained network with all it needs to perform: units, schedule, data windows.
+"""A trained network with everything it needs for use: units, schedule, data windows.
 
-What it listened to is there as well.
+This package also measures which parts of the music a dancer uses.
 """

@@ -1,7 +1,7 @@
 """Where a dancer's attention reads in the music, and how much of it falls on the beats.
 
-A weight says where values were read; what a change does is another question, and may have another
-answer (`occlusion`).
+An attention weight shows where values are read. It does not show what changes in the dance if the
+music changes; `occlusion` measures that.
 Source: MoFusion Fig. 4.  Notebook: 12
 """
 
@@ -18,15 +18,14 @@ from ..mofusion import MoFusionConfig
 from ..motion.dance_frame import to_features
 from .dancer import Dancer
 
-NEAR = 0.1  # s: what lies so close to a beat is counted as the beat's
+NEAR = 0.1  # s: tokens closer than this to a beat count as on the beat
 
 
 def layers_of(config: MoFusionConfig) -> Iterator[tuple[str, int, str]]:
-    """Each block's attention layer, its level, and its name.
+    """Each block's attention layer, its level, and its name, in the order of the computation.
 
-    Every 2^level-th frame asks; the name says how many a second.
-
-    In the order of the computation: from the input down to the bottom of the U, and up again.
+    At a level, every 2^level-th frame has a query; the name says how many there are per second.
+    The order is from the input down to the bottom of the U, and up again.
     """
     levels = len(config.widths)
     for level in range(levels):
@@ -47,17 +46,15 @@ def attention_maps(
 ) -> tuple[dict[str, Float[np.ndarray, "_ M2"]], Float[np.ndarray, "M2"]]:
     """Where each level reads in the music while this dance, noised to step s, is denoised.
 
-    The mean over heads.
-
-    {level: (its motion frames, music tokens)}, each row summing to one, and the tokens' times in
-    seconds. `mel` is log-Mel, as for `Dancer.dance`. Raises ValueError for a step that is not
-    there, and for a network that is no U-Net, or hears no music.  Source: MoFusion Fig. 4.
-    Notebook: 12
+    Returns {level: weights (its motion frames, music tokens)}, averaged over heads, and the tokens'
+    times in seconds. Each row sums to one. `mel` is log-Mel, as for `Dancer.dance_mel`.
+    Raises ValueError for a step outside the schedule, and for a network that is not a U-Net or has
+    no music.  Source: MoFusion Fig. 4.  Notebook: 12
     """
     model, T = dancer.model, len(dance)
     if not hasattr(model.config, "widths") or model.music is None:
         raise ValueError(
-            f"these maps are of a U-Net that hears music, not of {type(model).__name__} without"
+            f"these maps need a U-Net with music; this is a {type(model).__name__} without"
         )
     if not 1 <= s <= dancer.schedule.S:
         raise ValueError(f"this dancer's steps are 1 to {dancer.schedule.S}, not {s}")
@@ -67,11 +64,8 @@ def attention_maps(
     with watch(model) as seen:
         music = model.listen(*dancer.mel_input(mel[None], T))
         model(x_s, torch.tensor([s], device=dancer.device), music)
-    maps = {
-        name: seen[layer][0][0]
-        .mean(0)[: -(-T // 2**level)]
-        .cpu()
-        .numpy()  # rows beyond the dance are padding
+    maps = {  # rows beyond the dance are padding
+        name: seen[layer][0][0].mean(0)[: -(-T // 2**level)].cpu().numpy()
         for layer, level, name in layers_of(model.config)
     }
     return maps, music.times.double().cpu().numpy()
@@ -84,9 +78,9 @@ def share_near(
     before: float = NEAR,
     after: float = NEAR,
 ) -> Float[np.ndarray, "T K"]:
-    """How much of each row's attention falls on the tokens near some moments.
+    """The share of each row's attention on the tokens near each of the `moments` (seconds).
 
-    Near is from `before` seconds before each moment to `after` seconds after it.
+    Near is from `before` seconds before the moment to `after` seconds after it.
     """
     away = token_times[:, None] - moments[None, :]
     return weights @ ((-before <= away) & (away <= after)).astype(weights.dtype)
@@ -100,12 +94,12 @@ def beat_mass(
 ) -> float:
     """The share of all attention that falls on tokens within `near` seconds of some beat, 0 to 1.
 
-    It says nothing without `beat_mass_by_chance`: at 120 beats a minute 0.1 s around each are
-    already 0.4 of all time.
+    Compare it with `beat_mass_by_chance`: at 120 beats a minute, 0.1 s around each beat is already
+    0.4 of all time.
     Raises ValueError for music without a beat.  Source: MoFusion Fig. 4.  Notebook: 12
     """
     if not len(beats):
-        raise ValueError("this music has no beat that attention could fall on")
+        raise ValueError("this music has no beats, so attention on beats is undefined")
     nearest = np.abs(token_times[:, None] - beats[None, :]).min(1)
     return float(weights[:, nearest <= near].sum(1).mean())
 
@@ -118,12 +112,10 @@ def beat_mass_by_chance(
     times: int = 500,
     near: float = NEAR,
 ) -> Float[np.ndarray, "times"]:
-    """`beat_mass` with the beats moved together by random times.
+    """`beat_mass` after random circular shifts of the beats: they keep their rhythm and lose their
+    place in the music.
 
-    They go round at the end of the music.
-
-    The beats keep their rhythm and lose their place.  Raises ValueError for music without a beat.
-    Notebook: 12
+    Raises ValueError for music without a beat.  Notebook: 12
     """
     first, seconds = token_times[0], token_times[-1] - token_times[0]
     moved = (
@@ -135,15 +127,13 @@ def beat_mass_by_chance(
 def seconds_read(weights: Float[np.ndarray, "T M"], token_times: Float[np.ndarray, "M"]) -> float:
     """How many seconds of music a frame reads: exp(entropy) of its row, times a token's length.
 
-    The mean over rows.
-
-    Equal weights read all of it, a single weight one token. Few seconds are a sharp level, many a
-    scattered one.
+    The result is the mean over rows. Equal weights give the whole music, a single weight one token.
+    So few seconds mean sharp attention, and many mean scattered attention.
     Raises ValueError for a single token.  Notebook: 12
     """
     if len(token_times) < 2:
         raise ValueError(
-            "one token is all the music there is: nothing can be read from where it is read"
+            "the music has a single token, so the attention on it says nothing; 2 are needed"
         )
     logs = np.log(weights, out=np.zeros_like(weights), where=weights > 0)
     tokens = np.exp(-(weights * logs).sum(1)).mean()

@@ -1,8 +1,7 @@
-"""Training windows of dance: seconds of motion, and the music that sounds meanwhile.
+"""Training windows of dance: seconds of motion, with the music of the same seconds.
 
-Motion has 20 frames a second, the Mel spectrogram 31.25: only every 0.8 s do both have a frame at
-the same moment, so windows start there, and the music's frames lie at the same times in every
-window.
+Motion has 20 frames a second, the Mel spectrogram 31.25. Both have a frame at the same moment only
+every 0.8 s. Windows start there, so that the Mel frames have the same times in every window.
 Source: MoFusion 4.1 (100 frames and more at a time; lengths are ours).
 """
 
@@ -20,23 +19,21 @@ from ..motion.scaler import Scaler
 from ..motion.skeleton import TOES
 
 FPS, D = 20.0, 63
-FITTED = 5000  # windows, of which the motion's scaler is taken
+FITTED = 5000  # at most so many windows are used to fit the motion's scaler
 MOTION_GRID, MEL_GRID = 16, 25  # frames in 0.8 s
 
 
 def mel_frames(n: int) -> int:
-    """How many Mel frames sound during n frames of motion, the one at the start included."""
+    """How many Mel frames lie within n frames of motion, including the one at the start."""
     return n * MEL_GRID // MOTION_GRID + 1
 
 
 @dataclass(frozen=True, eq=False)
 class DanceWindows:
-    """Windows of n frames, standardised, with the Mel frames of the same seconds.
+    """Windows of n frames, standardised, with the Mel frames and the contacts of the same seconds.
 
-    Contacts say which feet stand.
-
-    Windows 2k and 2k + 1 are the same seconds, the second mirrored. They are cut when they are
-    asked for: they overlap, and would take a dozen times the memory of the dances.
+    Windows 2k and 2k + 1 are the same seconds, the second one mirrored. Windows overlap and would
+    need a dozen times the memory of the dances, so each is cut when it is taken.
     """
 
     n: int
@@ -58,9 +55,8 @@ class DanceWindows:
     ) -> "DanceWindows":
         """Windows of dances and the log-Mel of their songs.
 
-        Dances in a row with the same tensor as `mel` share it.
-
-        `mels` = None is for motion without music: nothing is heard, C = 0.
+        Consecutive dances with the same tensor in `mels` share it. `mels=None` is for motion
+        without music, C = 0.
         Raises ValueError when no dance is long enough, or lists or lengths do not match.
         """
         mels = (
@@ -69,23 +65,23 @@ class DanceWindows:
         if not len(dances) == len(contacts) == len(mels):
             raise ValueError(
                 f"{len(dances)} dances, {len(contacts)} contacts and {len(mels)} songs: "
-                "each needs its own"
+                "each dance needs its contacts and its song"
             )
         lengths = enumerate(zip(map(len, dances), map(len, contacts), strict=True))
         uneven = next(((k, *both) for k, both in lengths if both[0] != both[1]), None)
         if uneven:
             raise ValueError(
-                "dance {} has {} frames, and contacts for {}: one for each frame".format(*uneven)
+                "dance {} has {} frames but contacts for {}; each frame needs one".format(*uneven)
             )
         starts = []
         song_starts = []
-        heard = []
+        songs = []
         first = 0
         song = 0
         for dance, mel in zip(dances, mels, strict=True):
-            if not heard or mel is not heard[-1]:
-                song += len(heard[-1]) if heard else 0
-                heard.append(mel)
+            if not songs or mel is not songs[-1]:
+                song += len(songs[-1]) if songs else 0
+                songs.append(mel)
             last = min(len(dance) - n, (len(mel) - mel_frames(n)) // MEL_GRID * MOTION_GRID)
             starts += range(first, first + last + 1, MOTION_GRID)
             song_starts += (
@@ -97,7 +93,7 @@ class DanceWindows:
         if not starts:
             raise ValueError(f"no dance has {n} frames with music")
         positions = torch.from_numpy(np.concatenate(dances)).float()
-        stands, mel = torch.from_numpy(np.concatenate(contacts)), torch.cat(heard).float()
+        stands, mel = torch.from_numpy(np.concatenate(contacts)), torch.cat(songs).float()
         units = Scaler.fit(mel) if mel.shape[1] else Scaler.nothing(0)
         at = torch.tensor(starts), torch.tensor(song_starts)
         raw = cls(
@@ -111,33 +107,33 @@ class DanceWindows:
 
     @property
     def mel_times(self) -> Float[Tensor, "M"]:
-        """When the Mel frames of a window sound: seconds from its first frame."""
+        """The times of a window's Mel frames, in seconds from its first frame."""
         return frame_times(mel_frames(self.n)).float()
 
     def take(
         self, chosen: Int[Tensor, "B"]
     ) -> tuple[Float[Tensor, "B T D"], Float[Tensor, "B M C"], Bool[Tensor, "B T 2"]]:
-        """The windows of these numbers: motion, music, and which feet stand."""
+        """The windows with these indices: motion, music, and which feet are planted."""
         k, mirrored = chosen // 2, chosen % 2 == 1
         frames = self.starts[k][:, None] + torch.arange(self.n)
         positions, stands = self.dances[frames].double().numpy(), self.contacts[frames]
         positions[mirrored.numpy()] = mirror(positions[mirrored.numpy()])
         motion = torch.from_numpy(to_features(positions)).float()
-        heard = self.mel[self.song_starts[k][:, None] + torch.arange(mel_frames(self.n))]
+        music = self.mel[self.song_starts[k][:, None] + torch.arange(mel_frames(self.n))]
         return (
             self.motion_scaler.transform(motion),
-            heard,
+            music,
             stands.where(~mirrored[:, None, None], stands.flip(-1)),
         )
 
     def draw(
         self, batch: int, generator: torch.Generator, gain_noise: float = 0.0
     ) -> tuple[Float[Tensor, "B T D"], Float[Tensor, "B M C"], Bool[Tensor, "B T 2"]]:
-        """A random batch: motion, music, and which feet stand.
+        """A random batch: motion, music, and which feet are planted.
 
-        `gain_noise`: how much the music's level and its balance of low and high change from window
-        to window (standard deviation, of the standardised log-Mel), as they do from one
-        loudspeaker to another.
+        `gain_noise` changes the music's level and its balance of low and high frequencies at random
+        from window to window, as different loudspeakers do. It is the standard deviation of that
+        change, in units of the standardised log-Mel.
         """
         motion, mel, stands = self.take(torch.randint(len(self), (batch,), generator=generator))
         if gain_noise:
@@ -147,13 +143,13 @@ class DanceWindows:
 
 
 def toes_moved(windows: DanceWindows, samples: int = 1000) -> float:
-    """How far toes move in a frame of the data: the mean square of a coordinate's change, m^2.
+    """The mean square change of a toe's coordinate from one frame of the data to the next, in m^2.
 
-    Raises ValueError where none moves.
+    Raises ValueError if no toe moves.
     """
     some = torch.linspace(0, len(windows) - 1, min(len(windows), samples)).long()
     positions = to_positions(windows.motion_scaler.inverse(windows.take(some)[0]))
     moved = float(positions[:, :, list(TOES)].diff(dim=1).square().mean())
     if not moved:
-        raise ValueError("no toe moves in these windows: errors of feet have no measure")
+        raise ValueError("no toe moves in these windows, so errors of feet cannot be scaled")
     return moved

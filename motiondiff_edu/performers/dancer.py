@@ -1,6 +1,4 @@
-"""A dancer: MoFusion's network, its schedule, and the scalers that lead to metres and to log-Mel.
-
-Music in, dance out.
+"""A dancer: MoFusion's network, its schedule, and its scalers. It turns music into a dance.
 
 Source: MoFusion 3, 4.1.  Notebook: 00, 12
 """
@@ -32,9 +30,9 @@ from .networks import register
 from .performer import Performer
 from .with_bar import with_bar
 
-STEPS, ETA = 50, 0.5  # of DDIM, unless told
-# standard deviations from the mean pose: an eps network's x0_hat is held within, as DDPM's code
-# does
+STEPS, ETA = 50, 0.5  # defaults of DDIM
+# standard deviations from the mean pose, to which the x0_hat of an eps network is clamped, as in
+# DDPM's code
 FARTHEST = 5.0
 
 
@@ -43,7 +41,7 @@ register("dancer", MoFusion, MoFusionConfig, fast=FastMoFusion)
 
 @dataclass(frozen=True, eq=False)
 class Dancer(Performer):
-    """The network, in its own units, and the scalers that lead there from metres and log-Mel."""
+    """A network, and the scalers that convert metres and log-Mel to its units and back."""
 
     model: nn.Module
     schedule: Schedule
@@ -52,7 +50,7 @@ class Dancer(Performer):
     card: dict = field(default_factory=dict)
 
     def to(self, device: str | torch.device) -> "Dancer":
-        """The same dancer on another device; music is brought there, and dances come from there."""
+        """The same dancer on another device; it moves the music there itself."""
         model = copy.deepcopy(self.model).to(device)
         scalers = self.motion_scaler.to(device), self.mel_scaler.to(device)
         return Dancer(model, self.schedule, *scalers, self.card)
@@ -64,9 +62,8 @@ class Dancer(Performer):
     def mel_input(
         self, mel: Float[Tensor, "B M C"], frames: int
     ) -> tuple[Float[Tensor, "B M2 C"], Float[Tensor, "M2"]]:
-        """The network's input for so many frames.
-
-        The standardised Mel frames, and their times in seconds.
+        """The network's music for a dance of `frames` frames: standardised Mel frames, and their
+        times in seconds.
         """
         mel = self.mel_scaler.transform(mel[:, : mel_frames(frames)].to(self.device))
         return mel, frame_times(mel.shape[1]).float().to(self.device)
@@ -74,27 +71,26 @@ class Dancer(Performer):
     def denoiser(
         self, mel: Float[Tensor, "B M C"] | None, frames: int, fast: bool = True
     ) -> Denoiser:
-        """`denoise(x_s, s) -> eps_hat` for this music (None for a network without).
+        """`denoise(x_s, s) -> eps_hat` for this music (None for a network without music).
 
-        It is in the network's units; the x0_hat of an eps network is held within FARTHEST.
+        It works in the network's units. The x0_hat of an eps network is clamped to FARTHEST.
 
-        `fast`: by the fast twin, where there is one and nobody watches the network's attention; it
-        cannot be differentiated.
-        Raises ValueError where a network that dances to music has none, or one without music is
-        given some.
+        `fast=True` uses the fast twin if there is one and no one watches the network's attention;
+        the twin cannot be differentiated.
+        Raises ValueError for a network with music but no `mel`, or the reverse.
         """
         if (mel is None) != (self.config.C == 0):
             raise ValueError(
-                "this network hears nothing"
+                "this network takes no music; pass mel=None"
                 if mel is not None
-                else "this network dances to music: give it"
+                else "this network dances to music; pass its log-Mel as mel"
             )
         if mel is None:
             return self._as_eps(self.model)
         twin = self.fast if fast and not watched(self.model) else None
         if twin is not None:
-            listening = twin.listen(*self.mel_input(mel, frames), frames)
-            return self._as_eps(lambda x_s, s: twin.denoise(x_s, s, listening))
+            song = twin.listen(*self.mel_input(mel, frames), frames)
+            return self._as_eps(lambda x_s, s: twin.denoise(x_s, s, song))
         music = self.model.listen(*self.mel_input(mel, frames))
         return self._as_eps(lambda x_s, s: self.model(x_s, s, music))
 
@@ -116,20 +112,21 @@ class Dancer(Performer):
     ) -> Motion | list[Motion]:
         """Dance to a sound file, or to mono sound at 16 kHz (N,) from -1 to 1.
 
-        The dance has the sound along.
+        The returned motion contains the sound.
 
-        `seconds` of the sound from its start, all of it by default and where it is shorter. With
-        `samples` above 1 a list of so many different dances. `steps` of DDIM, or None for DDPM.
-        Raises AudioError for sound that cannot be danced to (`conditions.audio_files`), ValueError
-        for numbers that cannot be meant.  Source: MoFusion 3.  Notebook: 00, 12
+        seconds  use so much of the sound from its start (default: all of it)
+        samples  with more than 1, return a list of so many different dances
+        steps    of DDIM, or None for DDPM with all steps
+        Raises AudioError for unusable sound (`conditions.audio_files`), ValueError for `seconds` or
+        `samples` out of range.  Source: MoFusion 3.  Notebook: 00, 12
         """
         count = checked_count(samples, "samples")
         longest = None if seconds is None else round(checked_seconds(seconds) * SAMPLE_RATE)
-        heard = samples_of(sound)[:longest]
-        frames = int(len(heard) / SAMPLE_RATE * FPS)
+        audio = samples_of(sound)[:longest]
+        frames = int(len(audio) / SAMPLE_RATE * FPS)
         if not frames:
-            raise ValueError(f"{len(heard) / SAMPLE_RATE:.3f} s of sound are less than a frame")
-        mel = log_mel(heard)[None].expand(count, -1, -1)
+            raise ValueError(f"{len(audio) / SAMPLE_RATE:.3f} s of sound are less than a frame")
+        mel = log_mel(audio)[None].expand(count, -1, -1)
         generator = torch.Generator().manual_seed(seed)
         evaluations = min(steps or self.schedule.S, self.schedule.S)
         with with_bar(self, evaluations, "dancing", progress) as one:
@@ -140,7 +137,7 @@ class Dancer(Performer):
             Motion(
                 dance,
                 FPS,
-                audio=heard.numpy(),
+                audio=audio.numpy(),
                 sample_rate=SAMPLE_RATE,
                 source=f"{name}, danced to",
             )
@@ -161,12 +158,12 @@ class Dancer(Performer):
     ) -> Float[Tensor, "B T 21 3"]:
         """Dance to log-Mel spectrograms (`conditions.music.log_mel`), one dance each.
 
-        Metres, 20 frames a second.
+        Dances are in metres, at 20 frames a second.
 
-        `frames`: how long, by default as long as the music. `steps`: of DDIM with `eta` (S where
-        there are no more), or None for DDPM with all. `start`: the noise to begin with (by default
-        drawn), so that two songs can be danced to from the same noise.
-        Raises ValueError for more frames than there is music.  Notebook: 12
+        frames  the length of the dance (default: that of the music)
+        steps   of DDIM with `eta`, at most S; None for DDPM with all steps
+        start   the noise to begin with (default: drawn); pass the same noise to compare two songs
+        Raises ValueError for more frames than the music has.  Notebook: 12
         """
         longest = int((mel.shape[1] - 1) / FRAMES_PER_SECOND * FPS) + 1
         frames = longest if frames is None else frames
@@ -190,7 +187,7 @@ class Dancer(Performer):
         return to_positions(self.motion_scaler.inverse(last.x_s))
 
     def _regress(self, mel: Float[Tensor, "B M C"], frames: int) -> Float[Tensor, "B T 21 3"]:
-        """The one dance that a regression has for each song."""
+        """The single dance that a regression gives for each song."""
         music = self.model.listen(*self.mel_input(mel, frames))
         nothing = torch.zeros(len(mel), frames, self.config.D, device=self.device)
         s = torch.zeros(len(mel), dtype=torch.long, device=self.device)

@@ -1,8 +1,7 @@
-"""What each loss is at each diffusion step, and how hard it pulls at the network.
+"""Each loss at each diffusion step, and the size of its gradient.
 
-This is to measure a weight, not to quote it.
-
-x_s is made from known x0 and eps, `predict(x_s, s, eps)` returns eps_hat, and x0_hat follows.
+They show what a loss weight really does. x_s is computed from known x0 and eps;
+`predict(x_s, s, eps)` returns eps_hat, and x0_hat follows.
 `predict` is a network, the exact denoiser, or the true noise with a given error.
 Source: MoFusion 3.2, eq. 4-7.  Notebook: 13
 """
@@ -25,41 +24,40 @@ Predictor = Callable[[Tensor, Tensor, Tensor], Tensor]  # (x_s, s, eps) -> eps_h
 class LossOverTime:
     """Losses at the diffusion steps `steps`, means over a batch.
 
-    They go by the names of `kinematic_parts` and "data".
-
-    "data" is the squared error of the network's own target (L_da). `pull[name]` is the length of
-    the gradient with respect to the network's output, for one motion: what training feels.
+    The keys are the names of `kinematic_parts` and "data", the squared error of the network's own
+    target (L_da). `gradient[name]` is the norm of the loss's gradient with respect to the network's
+    output, for one motion: it decides what training does.
     """
 
     steps: tuple[int, ...]
     value: Mapping[str, Float[Tensor, "N"]]
-    pull: Mapping[str, Float[Tensor, "N"]]
+    gradient: Mapping[str, Float[Tensor, "N"]]
 
     def weighted(self, schedule: Schedule, kind: str) -> "LossOverTime":
-        """The same times lambda(s), the data term excepted.
+        """The same losses times lambda(s), except for the data term.
 
         Raises ValueError for an unknown weight.
         Notebook: 13
         """
-        share = over_time(schedule, kind)[list(self.steps)]
+        weight = over_time(schedule, kind)[list(self.steps)]
         parts = [
-            {k: v if k == "data" else share.to(v) * v for k, v in x.items()}
-            for x in (self.value, self.pull)
+            {k: v if k == "data" else weight.to(v) * v for k, v in x.items()}
+            for x in (self.value, self.gradient)
         ]
         return LossOverTime(self.steps, *parts)
 
 
-def erring(error: float, seed: int = 0) -> Predictor:
-    """The true noise, wrong by `error` everywhere: eps_hat = eps + error N(0, I); 0.05 is 5 %.
+def noisy_predictor(error: float, seed: int = 0) -> Predictor:
+    """A predictor with a given error: eps_hat = eps + error N(0, I); 0.05 is 5 %.
 
-    The error is drawn from `seed` afresh each time, so that it is the same at every step.
+    The error comes from `seed` in each call, so it is the same at every step.
     Notebook: 13
     """
     return lambda x_s, s, eps: eps + error * draw(eps, torch.Generator().manual_seed(seed))
 
 
 def predictor_of(denoise: Denoiser) -> Predictor:
-    """A denoiser as `predict`: it does not see eps.
+    """A denoiser as a Predictor; it does not use eps.
 
     Notebook: 13
     """
@@ -73,7 +71,7 @@ def clean_guess(
     s: int,
     schedule: Schedule,
 ) -> Float[Tensor, "B T D"]:
-    """x0_hat at step s, by way of eps_hat.
+    """x0_hat at step s, computed from eps_hat.
 
     Source: MoFusion eq. 5.  Notebook: 13
     """
@@ -90,18 +88,18 @@ def losses_over_time(
     steps: Sequence[int],
     target: str = "eps",
 ) -> LossOverTime:
-    """All losses of x0_hat at each of `steps`, unweighted, and their pull.
+    """All losses of x0_hat at each of `steps`, unweighted, and the norms of their gradients.
 
-    The pull is at a network that predicts `target`.
+    The gradients are with respect to the output of a network that predicts `target`.
 
-    Raises IndexError for a step that the schedule has not, ValueError for an unknown target.
+    Raises IndexError for a step outside the schedule, ValueError for an unknown target.
     Source: MoFusion eq. 4-7.  Notebook: 13
     """
     rows = [_at_step(predict, x0, eps, planted, body, schedule, s, target) for s in steps]
-    value, pull = (
+    value, gradient = (
         {name: torch.stack([row[k][name] for row in rows]) for name in rows[0][k]} for k in (0, 1)
     )
-    return LossOverTime(tuple(steps), value, pull)
+    return LossOverTime(tuple(steps), value, gradient)
 
 
 def _predicted(
@@ -119,22 +117,22 @@ def _at_step(predict, x0, eps, planted, body, schedule, s, target) -> tuple[dict
     with torch.enable_grad():
         parts = {"data": (output - target_of(x0, eps, s, schedule, target)).square().mean((1, 2))}
         parts |= kinematic_parts(to_x0(output, x_s, s, schedule, target), x0, body, planted)
-        pulls = {
+        gradients = {
             k: torch.autograd.grad(v.sum(), output, retain_graph=True)[0] for k, v in parts.items()
         }
     return (
         {k: v.detach().mean() for k, v in parts.items()},
-        {k: g.flatten(1).norm(dim=1).mean() for k, g in pulls.items()},
+        {k: g.flatten(1).norm(dim=1).mean() for k, g in gradients.items()},
     )
 
 
 def eps_weight(schedule: Schedule, kind: str) -> Table:
-    """What lambda(s) L_m is in terms of eps.
+    """The weight of the eps error that equals lambda(s) times the x0 error.
 
     lambda(s) |x0_hat - x0|^2 = eps_weight(s) |eps_hat - eps|^2.
 
-    lambda(s) (1 - alpha_bar) / alpha_bar; with the paper's lambda = alpha_bar it is 1 - alpha_bar,
-    largest at s = S.
+    It is lambda(s) (1 - alpha_bar) / alpha_bar. With the paper's lambda = alpha_bar it becomes
+    1 - alpha_bar, which is largest at s = S.
     Source: MoFusion eq. 5, 7.
     """
     return over_time(schedule, kind) * (1 - schedule.alpha_bar) / schedule.alpha_bar

@@ -1,10 +1,10 @@
-"""Which networks a walker or a dancer may have.
+"""The networks that a walker or a dancer can have.
 
-One call of `register`, and a network of one's own is built, saved and loaded like ours.
+After one call of `register`, your own network is built, saved and loaded like ours.
 
     register("walker", MyNetwork, MyConfig)
     save(Walker(MyNetwork(MyConfig()), schedule, poses, control), "mine.safetensors")
-    load("mine.safetensors")        # in a program that has registered it, too
+    load("mine.safetensors")        # another program must register it first, too
 Notebook: 07
 """
 
@@ -14,13 +14,13 @@ from typing import Protocol, runtime_checkable
 
 from torch import nn
 
-# what a configuration must name, so that samplers and scalers fit it
+# the fields that samplers and scalers need in a configuration
 NEEDED = {"walker": ("D", "C", "S", "T_h", "T_p", "target"), "dancer": ("D", "C", "S", "target")}
 
 
 @runtime_checkable
 class Config(Protocol):
-    """Numbers in a pose and in a row of the condition, diffusion steps, and what is predicted."""
+    """The widths of a pose (D) and of a condition's row (C), the diffusion steps S, the target."""
 
     D: int
     C: int
@@ -30,7 +30,7 @@ class Config(Protocol):
 
 @dataclass(frozen=True)
 class Network:
-    """A kind of network: its class, its configuration, how it is built, and its fast twin."""
+    """A kind of network: its class, its configuration, its builder, and its fast twin."""
 
     performer: str
     model: type[nn.Module]
@@ -50,54 +50,57 @@ def register(
     build: Callable[..., nn.Module] | None = None,
     fast: Callable[[nn.Module], object] | None = None,
 ) -> None:
-    """Let a "walker" or a "dancer" have this network; files name it by its class.
+    """Register a network for a "walker" or a "dancer"; files name it by its class.
 
-    `config` is a frozen dataclass with a default for every field, `target` among them; the network
-    keeps it as `.config`. A walker's network is called (x_s, s, past, control), a dancer's (x_s, s,
-    music) with a method `listen(mel, times)`; both return the target.
-    `build(config, *scalers)` makes a fresh network, by default `model(config)`; the scalers are
-    those of poses and control, or of motion and Mel.
-    `fast(network)` makes its fast twin, with the methods of `fast.modiff.FastMoDiff` or of
-    `fast.mofusion.FastMoFusion`; without one the network itself is used.
+    model   the class; a walker's network is called with (x_s, s, past, control), a dancer's with
+            (x_s, s, music) and has a method `listen(mel, times)`; both return the target
+    config  a frozen dataclass with a default for every field, including `target`; the network keeps
+            it as `.config`
+    build   `build(config, *scalers)` makes a new network (default: `model(config)`); the scalers
+            are those of poses and control, or of motion and Mel
+    fast    `fast(network)` makes its fast twin, with the methods of `fast.modiff.FastMoDiff` or
+            `fast.mofusion.FastMoFusion`; without it the network itself is used
     Raises ValueError for an unknown performer, a name that another class has, and a configuration
-    that lacks something.
+    that lacks a field or a default.
     """
     if performer not in NEEDED:
-        raise ValueError(f'a network is for a "walker" or a "dancer", not for {performer!r}')
+        raise ValueError(f'performer must be "walker" or "dancer", not {performer!r}')
     names = {field.name for field in fields(config)}
     missing = [name for name in NEEDED[performer] if name not in names]
     bare = [f.name for f in fields(config) if f.default is MISSING]
     if missing or bare:
         what = f"lacks {', '.join(missing)}" if missing else f"has no default for {', '.join(bare)}"
-        raise ValueError(f"{config.__name__} {what}: a {performer}'s network cannot do without")
+        raise ValueError(f"{config.__name__} {what}; a {performer}'s network needs that")
     taken = _NETWORKS.get(model.__name__)
     if taken and _full_name(taken.model) != _full_name(model):
         other = _full_name(taken.model)
-        raise ValueError(f"{model.__name__} is the name of {other}: call yours something else")
+        raise ValueError(f"{model.__name__} is the name of {other}: choose another name")
     make = build or (lambda config, *scalers: model(config))
     _NETWORKS[model.__name__] = Network(performer, model, config, make, fast)
 
 
 def networks_of(performer: str) -> dict[str, Network]:
-    """The networks that a "walker" or a "dancer" may have, by the names of their classes."""
+    """The networks registered for a "walker" or a "dancer", by the names of their classes."""
     return {name: one for name, one in _NETWORKS.items() if one.performer == performer}
 
 
 def kind_of(model: nn.Module) -> Network | None:
-    """What a network was registered as; None where it was not."""
+    """The registration of a network's class, or None."""
     found = _NETWORKS.get(type(model).__name__)
     return found if found and _full_name(found.model) == _full_name(type(model)) else None
 
 
 def network(config: Config, *scalers) -> nn.Module:
-    """A fresh network of the kind that a configuration is for.
+    """A new network for a configuration.
 
-    Raises ValueError for a configuration of which no network is registered.
+    Raises ValueError for a configuration without a registered network.
     """
     for one in _NETWORKS.values():
         if one.config is type(config):
             return one.build(config, *scalers)
-    raise ValueError(f"no network is registered for a {type(config).__name__}: see register")
+    raise ValueError(
+        f"no network is registered for {type(config).__name__}; call performers.networks.register"
+    )
 
 
 def _full_name(kind: type) -> str:

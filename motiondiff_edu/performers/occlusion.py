@@ -1,6 +1,5 @@
-"""What moves in a dance when one sound is taken away.
-
-The dance with it and without, from the same noise.
+"""What changes in a dance when one sound is removed? The dance with it and without, from the same
+noise.
 
 Source: ours; MoFusion Fig. 4 shows attention instead.  Notebook: 12
 """
@@ -18,8 +17,10 @@ from .dancer import Dancer
 
 @dataclass(frozen=True, eq=False)
 class Occlusion:
-    """A dance, the same from the same noise with each sound silenced, and how far each frame moved:
-    metres, the mean over the joints."""
+    """A dance, and for each silenced sound the dance `without` it, from the same noise.
+
+    `moved` is the distance between the two in each frame, in metres, averaged over the joints.
+    """
 
     times: Float[np.ndarray, "K"]
     dance: Float[np.ndarray, "T 21 3"]
@@ -39,20 +40,19 @@ def occlusion(
     generator: torch.Generator | None = None,
     width: float = WIDTH,
     steps: int = 20,
-    together: int = 6,
+    batch: int = 6,
 ) -> Occlusion:
-    """Dance to the song, and again with each of some sounds silenced.
+    """Dance to the song, and again with the sound at each of `times` (seconds) silenced.
 
-    Silenced are those at `times` (seconds); the noise is always the same.
-
-    DDIM without noise of its own (eta = 0), so that nothing but the music differs; `together` songs
-    are danced to at once. Raises ValueError as `silence_hit` and `Dancer.dance` do.   Notebook: 12
+    The start noise is the same, and DDIM adds none (eta = 0), so only the music differs. `batch`
+    songs are danced to at once.
+    Raises ValueError as `silence_hit` and `Dancer.dance` do.   Notebook: 12
     """
     start = torch.randn(1, frames, dancer.config.D, generator=generator)
-    heard = log_mel(np.stack([audio, *(silence_hit(audio, float(time), width) for time in times)]))
+    mels = log_mel(np.stack([audio, *(silence_hit(audio, float(time), width) for time in times)]))
     dances = [
         dancer.dance_mel(mel, frames, start=start.expand(len(mel), -1, -1), steps=steps, eta=0.0)
-        for mel in heard.split(together)
+        for mel in mels.split(batch)
     ]
     whole = torch.cat(dances).double().cpu().numpy()
     return Occlusion(np.asarray(times, np.float64), whole[0], whole[1:])

@@ -35,9 +35,9 @@ class Performer:
 
     @property
     def fast(self):
-        """The fast twin with the weights of now: of the kind that the network is registered with.
+        """The fast twin of the network with its current weights.
 
-        It is built at first use, and again when they have changed. None for a network without
-        a condition, or registered without a twin.
+        It is built at first use, and again when the weights have changed. It is None for a network
+        without a condition, or registered without a twin.
         """
         return self._twin and self._twin()

@@ -1,9 +1,7 @@
-"""A walker: a trained MoDiff with all that it needs to be used.
+"""A walker: a trained MoDiff with its schedule, its scalers, and the card that describes it.
 
-Schedule, scalers, and the card that says what it is.
-
-`walker.walk(motion, control)` continues a Motion; `rollout.generate(walker, past, control)` does so
-with tensors in the root frame.  Notebook: 00, 07
+`walker.walk(motion, control)` continues a Motion; `rollout.generate(walker, past, control)` works
+on tensors in the root frame.  Notebook: 00, 07
 """
 
 import copy
@@ -34,7 +32,7 @@ from .networks import register
 from .performer import Performer
 from .with_bar import with_bar
 
-STEPS = 10  # of DDIM, unless told: as good as DDPM with all, and ten times as fast (RESULTS)
+STEPS = 10  # default of DDIM: as good as DDPM with all steps, and ten times as fast (RESULTS)
 
 register("walker", MoDiff, MoDiffConfig, fast=FastMoDiff)
 register("walker", FootholdMoDiff, FootholdConfig, build=FootholdMoDiff, fast=FastFoothold)
@@ -42,7 +40,7 @@ register("walker", FootholdMoDiff, FootholdConfig, build=FootholdMoDiff, fast=Fa
 
 @dataclass(frozen=True, eq=False)
 class Walker(Performer):
-    """The network, in its own units, and the scalers that lead there from metres and m/s."""
+    """A network, and the scalers that convert metres and m/s to its units and back."""
 
     model: nn.Module
     schedule: Schedule
@@ -51,7 +49,7 @@ class Walker(Performer):
     card: dict = field(default_factory=dict)
 
     def to(self, device: str | torch.device) -> "Walker":
-        """The same walker on another device; `rollout.generate` brings past and control there."""
+        """The same walker on another device; `rollout.generate` moves past and control there."""
         model = copy.deepcopy(self.model).to(device)
         return Walker(
             model,
@@ -72,43 +70,45 @@ class Walker(Performer):
         steps: int | None = STEPS,
         progress: bool = True,
     ) -> Motion | list[Motion]:
-        """Continue a motion under a control.
+        """Continue a motion along a control.
 
-        The control is forward m/s, left m/s, turning rad/s; 20 rows a second.
+        The result has only the new frames. It begins one frame after the given motion, in the same
+        world; `motion.then(more)` joins the two.
 
-        The result holds the new frames alone, in the same world: it begins one frame after the
-        given motion ends, and `motion.then(more)` joins the two. `seconds` cuts the control, or
-        holds its last row, by default it is taken as it is. With `samples` above 1 a list of so
-        many different continuations. `steps` of DDIM, or None for DDPM with all.
-        Raises MotionError and ValueError for what cannot be continued or meant; warns where the
-        control asks for more than the walker saw in training.  Source: MoDiff Alg. 2.  Notebook: 00
+        control  forward m/s, left m/s, turning rad/s; 20 rows a second
+        seconds  cut the control to this length, or hold its last row (default: keep its length)
+        samples  with more than 1, return a list of so many different continuations
+        steps    of DDIM, or None for DDPM with all steps
+        Raises MotionError for a motion that cannot be continued, ValueError for numbers out of
+        range. Warns where the control goes beyond the training data.
+        Source: MoDiff Alg. 2.  Notebook: 00
         """
         as_motion(motion).check_whole()
         count, T_h = checked_count(samples, "samples"), self.config.T_h
         length = None if seconds is None else round(checked_seconds(seconds) * FPS)
-        told = as_long(control, length)
+        ahead = as_long(control, length)
         given = motion.resampled(FPS).rooted()
         clip = given.to_clip()
         if len(clip) < T_h:
             raise MotionError(
-                f"{motion.name} has {len(clip)} frames; the walker looks at the last {T_h} "
-                f"({T_h / FPS:g} s) and needs so many"
+                f"{motion.name} has {len(clip)} frames; the walker needs at least {T_h} "
+                f"({T_h / FPS:g} s) to continue it"
             )
-        rows = splice(clip.control, told, T_h)
+        rows = splice(clip.control, ahead, T_h)
         past = torch.from_numpy(clip.features()[-T_h:]).expand(count, -1, -1)
         steer = torch.from_numpy(rows).float().expand(count, -1, -1)
-        evaluations = len(told) * (steps or self.schedule.S)
+        evaluations = len(ahead) * (steps or self.schedule.S)
         with with_bar(self, evaluations, "walking", progress) as walker:
             new = rollout.generate(walker, past, steer, seed=seed, steps=steps)
         poses = new.double().cpu().numpy().reshape(count, -1, J, 3)
         place, heading = root_path(rows, tuple(given.root[-T_h]))
-        way = np.column_stack([place, heading])
+        path = np.column_stack([place, heading])
         made = []
         for one in poses:
             whole = np.concatenate([clip.poses[-T_h:], one])
-            world = to_world(whole, rows, tuple(way[0]))
+            world = to_world(whole, rows, tuple(path[0]))
             made.append(
-                Motion(world[T_h:], FPS, root=way[T_h:], source=f"{motion.name}, continued")
+                Motion(world[T_h:], FPS, root=path[T_h:], source=f"{motion.name}, continued")
             )
         return made if samples > 1 else made[0]
 
@@ -117,8 +117,8 @@ class Walker(Performer):
     ) -> Denoiser:
         """`denoise(x_s, s) -> eps_hat` for this past and control, in the network's units.
 
-        `fast`: by the fast twin, where there is one and nobody watches the network's attention; it
-        cannot be differentiated.
+        `fast=True` uses the fast twin if there is one and no one watches the network's attention;
+        the twin cannot be differentiated.
         """
         twin = self.fast if fast and not watched(self.model) else None
         if twin is None:
@@ -130,8 +130,10 @@ class Walker(Performer):
         return denoiser_of(network, self.schedule, self.config.target)
 
     def window_sampler(self, steps: int | None = None) -> WindowSampler:
-        """Draw a window of T_p poses: DDPM with all steps, or DDIM with `steps` of them.
-        Notebook: 08"""
+        """A function that draws a window of T_p poses: DDPM with all steps, or DDIM with `steps`.
+
+        Notebook: 08
+        """
 
         @torch.inference_mode()
         def sample(past: Tensor, control: Tensor, generator: torch.Generator) -> Tensor:

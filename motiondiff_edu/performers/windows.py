@@ -1,7 +1,8 @@
 """Training windows of MoDiff: ten past poses, ten future poses, the control of all twenty frames.
 
-Half of the windows hold the control of the next step over the whole future: interactive use does
-not know the control to come. Source: MoDiff III-A; the held half is ours.   Notebook: 07
+Half of the windows hold the control of the next step over the whole future, because interactive use
+does not know the future control.
+Source: MoDiff III-A; the held half is ours.   Notebook: 07
 """
 
 from collections.abc import Sequence
@@ -19,9 +20,9 @@ from ..motion.scaler import Scaler
 
 @dataclass(frozen=True, eq=False)
 class Windows:
-    """All frames of a data set, standardised, and where a window may start.
+    """All frames of a data set, standardised, and the frames where a window can start.
 
-    A window never crosses two clips.
+    No window contains frames of two clips.
     """
 
     poses: Float[Tensor, "N D"]
@@ -40,9 +41,9 @@ class Windows:
         T_p: int = 10,
         scalers: tuple[Scaler, Scaler] | None = None,
     ) -> "Windows":
-        """Collect clips; the scalers are fitted on them unless given (pose, control).
+        """Collect clips; the scalers (pose, control) are fitted on them unless given.
 
-        Raises ValueError when no clip is as long as a window, or one has not 20 frames/s.
+        Raises ValueError when no clip is as long as a window, or one is not at 20 frames/s.
         Notebook: 07
         """
         length = T_h + T_p
@@ -51,7 +52,7 @@ class Windows:
         other = next((clip for clip in clips if clip.fps != FPS), None)
         if other:
             raise ValueError(
-                f"clip {other.source!r} has {other.fps:g} frames/s; bring it to {FPS:g} first"
+                f"clip {other.source!r} has {other.fps:g} frames/s; resample it to {FPS:g} first"
             )
         for clip in clips:
             starts.append(np.arange(first, first + len(clip) - length + 1))
@@ -79,7 +80,7 @@ class Windows:
     ) -> tuple[Float[Tensor, "B T_h D"], Float[Tensor, "B T_p D"], Float[Tensor, "B T C"]]:
         """A random batch (past, future, control).
 
-        A share `held` of it holds control[T_h - 1] over the future.
+        A fraction `held` of the batch holds control[T_h - 1] over the future.
         """
         chosen = torch.randint(len(self.starts), (batch,), generator=generator)
         rows = self.starts[chosen][:, None] + torch.arange(self.T_h + self.T_p)
@@ -92,9 +93,6 @@ class Windows:
 
 
 def typical_change(windows: Windows, samples: int = 4096) -> Float[Tensor, "T_p D"]:
-    """How far poses move in 1 to T_p frames.
-
-    Root mean square over windows, in standard deviations.
-    """
+    """The RMS movement of poses in 1 to T_p frames, over windows, in standard deviations."""
     past, future, _ = windows.draw(samples, torch.Generator().manual_seed(0))
     return (future - past[:, -1:]).square().mean(0).sqrt()

@@ -1,12 +1,11 @@
 """Weights in eight bits: half the space of float16.
 
-Errors are up to 0.4 % of each row's largest weight.
-
     q = round(w / scale), scale = max |row| / 127,   and back:  w = q scale
-Rounding errs by half a scale at most, 1/254 of the largest (0.39 %), and by 1/sqrt(12) of a scale
-(0.23 %) RMS. Vectors (biases, norms) are few and dear: they stay in float16. Used for weights that
-would not fit otherwise, and every figure is taken from what is shipped.  Source: symmetric
-quantisation, one scale a row, as is usual.   Notebook: none
+The rounding error is at most half a scale, 1/254 of a row's largest weight (0.39 %); its RMS is
+1/sqrt(12) of a scale (0.23 %). Vectors (biases, norms) are small but sensitive, so they stay in
+float16. Eight bits are used for weights that would be too large otherwise. Every published number
+comes from the shipped weights.
+Source: symmetric quantisation with one scale per row, as usual.   Notebook: none
 """
 
 import torch
@@ -16,10 +15,7 @@ SCALE = ".scale"
 
 
 def pack(tensors: dict[str, Tensor]) -> dict[str, Tensor]:
-    """Each matrix as int8 with a scale for each row, each vector in float16.
-
-    The scales lie beside the matrix (`name.scale`).
-    """
+    """Each matrix as int8 with one scale per row (`name.scale`), each vector in float16."""
     packed = {}
     for name, weight in tensors.items():
         if weight.dim() < 2 or not weight.is_floating_point():
@@ -33,7 +29,7 @@ def pack(tensors: dict[str, Tensor]) -> dict[str, Tensor]:
 
 
 def unpack(packed: dict[str, Tensor]) -> dict[str, Tensor]:
-    """Float32 again; what was never packed passes through.
+    """Unpack to float32; tensors that were never packed pass through.
 
     Raises KeyError for an int8 matrix without its scale.
     """

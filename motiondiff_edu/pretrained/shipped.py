@@ -1,4 +1,4 @@
-"""The front door's verbs that need weights: `load`, and `inbetween` and `reconstruct`.
+"""The front door's functions that need weights: `load`, `inbetween` and `reconstruct`.
 
 Notebook: 00, 15
 """
@@ -22,13 +22,13 @@ from ..performers.walker import Walker
 from ..performers.with_bar import with_bar
 from . import checkpoints
 
-STEPS = 50  # of DDIM, for in-betweens
+STEPS = 50  # of DDIM, for in-betweens by default
 
 
 def load(name: str | Path) -> Walker | Dancer:
-    """A walker or dancer: shipped weights by name ("walker", "dancer" ...), or a file of your own.
+    """A walker or dancer: shipped weights by name ("walker", "dancer" ...), or your own file.
 
-    Raises CheckpointError with the names there are, or with what is wrong with the file.
+    Raises CheckpointError for an unknown name, with a list of the names, or for a faulty file.
     Notebook: 00
     """
     if str(name).endswith(".safetensors"):
@@ -45,17 +45,17 @@ def inbetween(
     steps: int = STEPS,
     progress: bool = True,
 ) -> Motion | list[Motion]:
-    """Make what is not `known` of a motion anew, by the shipped unconditional network.
+    """Generate the joints that are not `known`, with the shipped unconditional network.
 
-    With `samples` above 1 a list of so many.
-
-    Known joints stay exactly where they are; a joint can be given only where the pelvis is.
-    Raises MotionError and ValueError for what does not fit.  Source: MoFusion 4.4.  Notebook: 15
+    Known joints stay exactly where they are. In a frame with a known joint, the pelvis must be
+    known too. With `samples` above 1, the result is a list of so many motions.
+    Raises MotionError or ValueError if motion, mask or numbers do not fit.
+    Source: MoFusion 4.4.  Notebook: 15
     """
     known, count = _fitting(motion, known), checked_count(samples, "samples")
     draw = torch.Generator().manual_seed(seed)
     if known.all():
-        raise MotionError(f"{motion.name}: all is known, there is nothing to make")
+        raise MotionError(f"{motion.name}: every joint is known, so there is nothing to generate")
     with with_bar(_shipped("unconditional"), steps, "filling in", progress) as dancer:
         made = inbetweens.inbetween(
             dancer, motion.positions, known, samples=count, steps=steps, generator=draw
@@ -67,13 +67,11 @@ def inbetween(
 def reconstruct(
     motion: Motion, known: Bool[np.ndarray, "T J"], *, seed: int = 0, progress: bool = True
 ) -> Motion:
-    """Find the joints that are not `known`, by the shipped walker there and back.
+    """Reconstruct the joints that are not `known`, with the shipped walker; any length of motion.
 
-    A motion of any length.
-
-    Known joints stay exactly where they are. The pelvis must be known in every frame: the walk's
-    control is read from it.
-    Raises MotionError where it is not, and for what does not fit.  Source: MoDiff III-E.
+    Known joints stay exactly where they are. The pelvis must be known in every frame, because the
+    control of the walk is derived from it.
+    Raises MotionError if it is not, or if motion and mask do not fit.  Source: MoDiff III-E.
     """
     known, walker = _fitting(motion, known), _shipped("walker")
     total = reconstruction.evaluations(walker, known)
@@ -89,17 +87,17 @@ def _shipped(name: str) -> Walker | Dancer:
 
 
 def _fitting(motion: Motion, known) -> Bool[np.ndarray, "T J"]:
-    """The mask, if it fits, for a motion at the networks' frame rate."""
+    """The mask, checked.  Raises MotionError unless mask and frame rate fit the networks."""
     if abs(as_motion(motion).fps - FPS) > 1e-6:
         raise MotionError(
-            f"{motion.name} has {motion.fps:g} frames/s, the networks know {FPS:g}: bring it there "
-            f"by motion.resampled({FPS:g}), and make `known` for that"
+            f"{motion.name} has {motion.fps:g} frames/s, but the networks need {FPS:g}: use "
+            f"motion.resampled({FPS:g}), and a `known` mask for that motion"
         )
     return checked_known(motion, known)
 
 
 def _made(motion: Motion, known: np.ndarray, positions: np.ndarray, how: str) -> Motion:
-    """The motion with other positions; its contacts only where no toe was made anew."""
+    """The motion with new positions; it keeps its contacts if no toe was generated."""
     kept = motion.contacts if known[:, list(TOES)].all() else None
     along = {"audio": motion.audio, "sample_rate": motion.sample_rate, "contacts": kept}
     return Motion(positions, motion.fps, source=f"{motion.name}, {how}", **along)

@@ -1,9 +1,7 @@
-"""A file of weights: safetensors (no code in them), settings, and a card.
+"""A file of weights: safetensors (which contain no code), settings, and a card.
 
-The card says how they were made.
-
-A damaged or foreign file is refused with the reason. What lies in it is a matter of
-`pretrained/checkpoints.py`.
+The card says how the weights were made. A damaged or foreign file raises an error with the reason.
+`pretrained/checkpoints.py` knows what the tensors mean.
 """
 
 import json
@@ -21,41 +19,39 @@ from torch import Tensor
 from .._files import digest_of_tensors, digest_of_texts, replacing
 
 Config = TypeVar("Config")
-Assemble = Callable[
-    [dict[str, Tensor], dict[str, str]], object
-]  # (tensors, metadata) -> what they are
-# settings of earlier versions, with the value that says nothing
+# (tensors, metadata) -> the object that they describe
+Assemble = Callable[[dict[str, Tensor], dict[str, str]], object]
+# settings of earlier versions; with this value they had no effect and are ignored
 RETIRED = {"reach": 0.0}
-SETTINGS = ("format", "network", "config", "schedule")  # what settles how the tensors are used
+SETTINGS = ("format", "network", "config", "schedule")  # they decide how the tensors are used
 
 
 class CheckpointError(ValueError):
-    """A weights file that cannot be used, with the reason and what to do."""
+    """A weights file cannot be used; the message has the reason and what to do."""
 
 
 def write_weights(
     path: str | Path, tensors: Mapping[str, Tensor], settings: dict, config: dict, card: dict
 ) -> Path:
-    """Write tensors, settings (texts) and card; a card.json is laid beside it.
+    """Write tensors, settings (strings) and card; also write the card as .json beside the file.
 
-    Temporary names first, then renamed.
+    The files get temporary names first and are then renamed.
     """
     path = Path(path)
     metadata = settings | {"config": json.dumps(config), "card": json.dumps(card)}
     tensors = {k: v.detach().cpu().clone().contiguous() for k, v in tensors.items()}
     with replacing(path) as aside:
         save_file(tensors, aside, metadata | _digests(tensors, metadata))
-        os.chmod(aside, 0o644)  # safetensors writes for its owner alone; weights are for everybody
+        os.chmod(aside, 0o644)  # safetensors makes the file readable by its owner alone
     with replacing(path.with_suffix(".json")) as aside:
         aside.write_text(json.dumps(card | {"config": config}, indent=1) + "\n")
     return path
 
 
 def read_weights(path: str | Path, kinds: Mapping[str, Assemble]) -> object:
-    """Read a file of one of the formats `kinds`, and check it.
+    """Read and check a file, and return kinds[format](tensors, metadata).
 
-    Returns kinds[format](tensors, metadata).
-
+    `kinds` has a function for each format that is accepted.
     Raises CheckpointError for a file that is missing, damaged, or of another format.
     """
     path = Path(path)
@@ -64,19 +60,18 @@ def read_weights(path: str | Path, kinds: Mapping[str, Assemble]) -> object:
     if assemble is None:
         wanted = " or ".join(name.split()[1] for name in kinds)
         raise CheckpointError(
-            f"{path.name} is no {wanted} of this project ({_looks_like(metadata, tensors)})"
+            f"{path.name} is not a {wanted} of this project ({_looks_like(metadata, tensors)})"
         )
     for what, digest in _digests(tensors, metadata).items():
         if metadata.get(what) != digest:
             part = "tensors" if what == "sha256" else "settings"
             raise CheckpointError(
-                f"{path.name} is damaged: its {part} are not those that were written; "
-                "fetch it again"
+                f"{path.name} is damaged: its {part} do not match their checksum; download it again"
             )
     bad = [name for name, tensor in tensors.items() if not torch.isfinite(tensor.float()).all()]
     if bad:
         raise CheckpointError(
-            f"{path.name}: {bad[0]} holds NaN or infinity; the training that wrote it had failed"
+            f"{path.name}: {bad[0]} contains NaN or infinity; its training must have failed"
         )
     try:
         return assemble(tensors, metadata | {"file": path.name})
@@ -84,26 +79,26 @@ def read_weights(path: str | Path, kinds: Mapping[str, Assemble]) -> object:
         raise
     except (RuntimeError, KeyError, ValueError, AssertionError) as error:
         raise CheckpointError(
-            f"{path.name}: weights and configuration disagree ({error}); fetch it again"
+            f"{path.name}: weights and configuration disagree ({error}); download it again"
         ) from error
 
 
 def config_of(metadata: dict[str, str], kinds: Mapping[str, type[Config]], default: str) -> Config:
-    """The configuration, every setting known and of its default's type.
+    """The configuration; every setting must be known and have the type of its default.
 
-    `kinds` by the name of the network's class.
+    `kinds` has a configuration class for each name of a network's class.
     """
     name = metadata["file"]
     try:
         values = dict(json.loads(metadata["config"]))
     except (KeyError, ValueError, TypeError) as error:
         raise CheckpointError(
-            f"{name}: its configuration cannot be read ({error}); fetch it again"
+            f"{name}: its configuration cannot be read ({error}); download it again"
         ) from error
     kind = kinds.get(metadata.get("network", default))
     if kind is None:
         raise CheckpointError(
-            f"{name} holds an unknown network, {metadata['network']}; upgrade, or register it "
+            f"{name} contains an unknown network, {metadata['network']}; upgrade, or register it "
             "first (performers.networks.register)"
         )
     values = {k: v for k, v in values.items() if k not in RETIRED or v != RETIRED[k]}
@@ -121,26 +116,23 @@ def config_of(metadata: dict[str, str], kinds: Mapping[str, type[Config]], defau
         )
         if not fits:
             raise CheckpointError(
-                f"{name}: its setting {setting} = {value!r} makes no sense; fetch it again"
+                f"{name}: its setting {setting} = {value!r} is not valid; download it again"
             )
     values = {k: tuple(v) if isinstance(v, list) else v for k, v in values.items()}
     try:
         return kind(**values)
     except ValueError as error:
         raise CheckpointError(
-            f"{name}: its settings make no network ({error}); fetch it again"
+            f"{name}: its settings do not define a network ({error}); download it again"
         ) from error
 
 
 def check_sizes(tensors: dict[str, Tensor], sizes: dict[str, int]) -> None:
-    """Raise ValueError for a vector of another length than it must have.
-
-    `load_state_dict` does not see those.
-    """
+    """Raise ValueError for a vector of the wrong length; `load_state_dict` misses those."""
     for name, size in sizes.items():
         if tuple(tensors[name].shape) != (size,):
             raise ValueError(
-                f"{name} has the shape {tuple(tensors[name].shape)} where ({size},) belongs"
+                f"{name} has the shape {tuple(tensors[name].shape)}; it must be ({size},)"
             )
 
 
@@ -152,14 +144,14 @@ def _opened(path: Path) -> tuple[dict[str, str], dict[str, Tensor]]:
             return file.metadata() or {}, {name: file.get_tensor(name) for name in file.keys()}
     except (SafetensorError, OSError, ValueError) as error:
         raise CheckpointError(
-            f"{path.name} is damaged or is no safetensors file ({error}); fetch it again"
+            f"{path.name} is damaged or not a safetensors file ({error}); download it again"
         ) from error
 
 
 def _digests(tensors: dict, metadata: dict[str, str]) -> dict[str, str]:
-    """Of the tensors alone, and of what settles how they are used.
+    """Checksums of the tensors alone, and of the settings that decide how they are used.
 
-    Records of figures name the weights by the first.
+    Published results name the weights by the first.
     """
     settings = {name: metadata.get(name, "") for name in SETTINGS}
     return {"sha256": digest_of_tensors(tensors), "sha256_settings": digest_of_texts(settings)}
@@ -167,6 +159,6 @@ def _digests(tensors: dict, metadata: dict[str, str]) -> dict[str, str]:
 
 def _looks_like(metadata: dict[str, str], tensors: dict) -> str:
     if metadata.get("format"):
-        return f"it says that it is: {metadata['format']}"
+        return f"its format is {metadata['format']}"
     first = ", ".join(sorted(tensors)[:3])
-    return f"its tensors begin with {first}" if first else "it holds no tensors"
+    return f"its tensors begin with {first}" if first else "it contains no tensors"

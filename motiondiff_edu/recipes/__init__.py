@@ -1,4 +1,4 @@
-"""How the shipped weights were trained: recipes, optimisers, runs on disk.
+"""How the shipped weights are trained: recipes, optimisers, runs on disk.
 
-`python -m motiondiff_edu.recipes`.
+`python -m motiondiff_edu.recipes` trains them.
 """

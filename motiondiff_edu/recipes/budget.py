@@ -1,4 +1,4 @@
-"""Train for a number of CPU-seconds instead of steps: how comparisons at one budget are made."""
+"""Training for a number of CPU-seconds instead of steps, to compare recipes at equal cost."""
 
 import math
 import time
@@ -16,11 +16,11 @@ BUDGET = replace(WALKER_TRUNK, name="budget", batch=32, lr=3e-3, decay=0.99)
 
 
 def train_for(seconds: float, clips: list[Clip], recipe: Recipe = BUDGET) -> tuple[Walker, int]:
-    """A walker trained until the CPU-seconds of the loop are spent.
+    """Train a walker until the CPU-seconds of the loop are spent; return it with its steps.
 
-    Returns it with the number of steps it took. The recipe's own steps, number of clips and data
-    seed do not count here. The learning rate rises for 100 steps and falls to zero along a half
-    cosine of the seconds; diffusion dropout rises with the seconds, too.
+    The recipe's own number of steps, number of clips and data seed are ignored. The learning rate
+    rises for 100 steps and falls to zero along a half cosine of the seconds. Diffusion dropout
+    rises with the seconds, too.
     """
     begun = prepared(recipe, clips)
     optimizer = optimizer_for(begun.model, recipe.optimizer)

@@ -1,6 +1,6 @@
-"""How the shipped dancers are made: data, sizes, losses, steps. One record each.
+"""Recipes of the shipped dancers: data, sizes, losses and steps, in one record each.
 
-The paper gives neither widths nor steps nor the weights of its losses: all numbers are ours.
+The paper gives no widths, no steps and no weights of its losses, so all numbers are ours.
 Notebook: 13
 """
 
@@ -18,12 +18,11 @@ KINEMATIC = KinematicWeights(
 
 @dataclass(frozen=True)
 class DanceLossWeights:
-    """What the data term adds to the mean square, by the names of `beyond.loss_terms`.
+    """Weights of the terms of `beyond.loss_terms` in the data loss. All 0 is the paper's loss.
 
-    All 0 is the paper's loss.
-
-    `changes`: weight of `changes`.  `toes`: weight of `toe_changes`.
-    `high_noise`: largest extra weight of `high_noise_weights`.
+    changes     weight of `changes`
+    toes        weight of `toe_changes`
+    high_noise  largest extra weight of `high_noise_weights`
     """
 
     changes: float = 0.0
@@ -35,7 +34,8 @@ class DanceLossWeights:
 class DanceRecipe:
     """One training run of a dancer; by default with the paper's loss.
 
-    `songs` songs of `seconds` each are made, `dances` to each song, every dance mirrored as well.
+    The data are `songs` songs of `seconds` each with `dances` dances each; every dance is also
+    mirrored.
     """
 
     name: str
@@ -43,17 +43,17 @@ class DanceRecipe:
     steps: int
     kinematic: KinematicWeights | None = None
     loss_weights: DanceLossWeights = DanceLossWeights()
-    gain_noise: float = 0.0  # of the music's level and balance: `DanceWindows.draw`
-    snr: float = 1.0  # of the cosine schedule: its signal-to-noise ratio is multiplied by it
-    frames: int = 100  # of a window
+    gain_noise: float = 0.0  # random level and balance of the music: `DanceWindows.draw`
+    snr: float = 1.0  # factor on the signal-to-noise ratio of the cosine schedule
+    frames: int = 100  # per window
     lr: float = 3e-3
     optimizer: str = "muon"
     batch: int = 32
     decay: float = 0.999
     songs: int = 1500
     seconds: float = 20.0
-    dances: int = 2  # to each song
-    motions: int = 0  # walks and dances without music, in place of songs
+    dances: int = 2  # per song
+    motions: int = 0  # if not 0: so many walks and dances without music, instead of songs
     data_seed: int = 1
     seed: int = 0
     save_every: int = 250  # steps
@@ -66,7 +66,7 @@ DANCER_PLAIN = DanceRecipe(
 )
 DANCER = replace(DANCER_PLAIN, name="dancer", kinematic=KINEMATIC)
 REGRESSED = DanceRecipe("regression", REGRESSION, steps=3000, gain_noise=0.3, snr=0.1)
-FULL = replace(MOFUSION_FULL, target="x0", skip=False)  # never trained: it wants a GPU
+FULL = replace(MOFUSION_FULL, target="x0", skip=False)  # never trained: it needs a GPU
 DANCER_FULL = replace(DANCER, name="dancer-full", config=FULL, steps=200_000, batch=64)
 
 UNCONDITIONAL = replace(

@@ -1,9 +1,9 @@
 """Adam for most weights, Muon for the matrices of the attention and feed-forward layers.
 
-Adam scales every number by itself. Muon replaces the averaged gradient of a whole matrix by the
-nearest matrix whose singular values are all one: directions that rarely show in the gradient learn
-as fast as the common ones. A step takes longer, and the walkers need far fewer of them; `python -m
-tools.results --only budget` compares both. Ours: the papers use Adam.   Notebook: 07
+Adam scales every weight separately. Muon replaces the averaged gradient of a whole matrix by the
+nearest matrix whose singular values are all one. So directions that are rare in the gradient learn
+as fast as the common ones. A step takes longer, but the walkers need far fewer steps;
+`python -m tools.results --only budget` compares both. Ours: the papers use Adam.   Notebook: 07
 """
 
 import torch
@@ -15,9 +15,9 @@ from ..mofusion import CrossAttentionBlock, ResBlock
 
 
 def optimizer_for(model: nn.Module, name: str):
-    """What `TrainState.start` needs for the optimizer a recipe names.
+    """The `optimizer` argument of `TrainState.start` for a recipe's optimizer, "muon" or "adam".
 
-    The recipe names "muon", or "adam" (None: it has its own).
+    It is None for "adam", which is the default there.
     """
     if name not in ("muon", "adam"):
         raise ValueError(f'optimizer must be "muon" or "adam", not {name!r}')
@@ -25,12 +25,10 @@ def optimizer_for(model: nn.Module, name: str):
 
 
 class Muon(torch.optim.Optimizer):
-    """As torch.optim.Muon, in float32.
+    """torch.optim.Muon in float32; the original uses bfloat16, which is slow on many CPUs.
 
-    That one computes in bfloat16, which many CPUs only imitate, far more slowly.
-
-    Source: Jordan and others, 2024; the size of a step, matched to Adam's, so that one learning
-    rate serves both, is that of Liu and others, 2025.   Notebook: 07
+    Source: Jordan and others, 2024. The size of a step follows Liu and others, 2025: it matches
+    Adam's, so that one learning rate works for both.   Notebook: 07
     """
 
     def __init__(self, params: list[nn.Parameter], lr: float = 1e-3, momentum: float = 0.95):
@@ -38,22 +36,20 @@ class Muon(torch.optim.Optimizer):
 
     @torch.no_grad()
     def step(self) -> None:
-        """One step against the gradients (those of None are left alone)."""
+        """One step against the gradients; parameters without a gradient do not change."""
         for group in self.param_groups:
             for matrix in (p for p in group["params"] if p.grad is not None):
                 mean = self.state[matrix].setdefault("momentum_buffer", torch.zeros_like(matrix))
                 mean.lerp_(matrix.grad, 1 - group["momentum"])
-                ahead = matrix.grad.lerp(mean, group["momentum"])  # Nesterov's
+                ahead = matrix.grad.lerp(mean, group["momentum"])  # Nesterov's momentum
                 matrix.add_(whitened(ahead), alpha=-0.2 * max(matrix.shape) ** 0.5 * group["lr"])
 
 
 def whitened(matrix: Float[Tensor, "m n"], steps: int = 5) -> Float[Tensor, "m n"]:
-    """About the nearest matrix whose singular values are all one.
+    """Approximately the nearest matrix whose singular values are all one; they become .7 to 1.2.
 
-    A polynomial draws them to .7 to 1.2.
-
-    With x the singular values: a x + b x^3 + c x^5, five times; the three numbers were chosen by
-    Jordan for speed.
+    Each singular value x becomes a x + b x^3 + c x^5, five times. Jordan chose the three numbers
+    for speed.
     """
     a = 3.4445
     b = -4.7750
@@ -67,10 +63,7 @@ def whitened(matrix: Float[Tensor, "m n"], steps: int = 5) -> Float[Tensor, "m n
 
 
 class MuonAndAdam:
-    """Two optimizers that look like one.
-
-    What `training.train_steps` and `recipes.runs.save_run` ask of an optimizer.
-    """
+    """Two optimizers with the interface of one, for `training.train_steps` and `save_run`."""
 
     def __init__(self, model: nn.Module, lr: float = 1e-3):
         blocks = [
@@ -83,7 +76,7 @@ class MuonAndAdam:
         others = [p for p in model.parameters() if id(p) not in matrices]
         if not first:
             raise ValueError(
-                f"{type(model).__name__} has no transformer block: nothing for Muon to do; use Adam"
+                f"{type(model).__name__} has no transformer block, which Muon needs; use Adam"
             )
         self.parts = [Muon(first, lr=lr), torch.optim.Adam(others, lr=lr, fused=True)]
 
@@ -100,7 +93,7 @@ class MuonAndAdam:
             part.step()
 
     def state_dict(self) -> dict:
-        """{"state": {number of the parameter: its moments}}, Muon's parameters first."""
+        """{"state": {index of the parameter: its moments}}, with Muon's parameters first."""
         state, offset = {}, 0
         for part in self.parts:
             state |= {offset + i: moments for i, moments in part.state_dict()["state"].items()}

@@ -1,7 +1,7 @@
-"""A training run on disk: everything it consists of, so that a killed run continues bit for bit.
+"""A training run on disk, with its whole state: a killed run continues bit for bit.
 
-Safetensors: reading one runs no code. Written to a temporary name and renamed, so a kill leaves the
-old file.
+The file is safetensors, so reading it runs no code. It is written under a temporary name and then
+renamed, so a kill during writing leaves the old file.
 """
 
 import json
@@ -18,9 +18,9 @@ from ..training import Saving, TrainState
 def saver(
     path: str | Path, about: dict | None = None, notes: list | None = None, every: int = 1000
 ) -> Saving:
-    """A `save` for `training.train_steps`: writes the run to this file every so many steps.
+    """A `Saving` for `training.train_steps` that writes the run to this file.
 
-    `about` and `notes` as in save_run.
+    `about` and `notes` are as in `save_run`.
     """
     return Saving(lambda state: save_run(state, path, about, notes), every)
 
@@ -28,11 +28,10 @@ def saver(
 def save_run(
     state: TrainState, path: str | Path, about: dict | None = None, notes: list | None = None
 ) -> Path:
-    """Write all of a run: weights, optimizer, random generators, step and seconds.
+    """Write the whole run: weights, their average, optimizer, random generators, step and seconds.
 
-    The weights' average and the optimizer's moments are among them.
-
-    `about` is what the run must be resumed with; `notes` are for the reader (see notes_of).
+    `about` (the settings) must be the same when the run is resumed. `notes` are for the reader (see
+    `notes_of`).
     """
     tensors = {f"model.{k}": v for k, v in state.model.state_dict().items()}
     tensors |= {f"average.{k}": v for k, v in state.average.state_dict().items()}
@@ -61,13 +60,11 @@ def save_run(
 
 
 def resume_run(state: TrainState, path: str | Path, about: dict | None = None) -> TrainState:
-    """Bring `state` to where the run at `path` was.
+    """Load the saved run at `path` into `state`.
 
-    Of another model, load_state_dict says what differs.
-
-    Raises ValueError when the file is damaged or no saved run, when another optimizer made it, or
-    when the run is about something else than `about` (its settings, say): continued, it would be
-    neither the one nor the other.
+    Raises ValueError if the file is damaged or not a saved run, if another optimizer made it, or if
+    its `about` differs: the continued run would then mix two settings. For another model,
+    load_state_dict raises RuntimeError with the differences.
     """
     try:
         with safe_open(path, "pt") as file:
@@ -75,12 +72,11 @@ def resume_run(state: TrainState, path: str | Path, about: dict | None = None) -
             counts = file.metadata() or {}
     except (SafetensorError, OSError) as error:
         raise ValueError(
-            f"{path} cannot be resumed: damaged, or no safetensors file ({error}); delete it"
+            f"{path} cannot be resumed: damaged, or not a safetensors file ({error}); delete it"
         ) from error
     if counts.get("sha256", "") != digest_of_tensors(tensors) and "step" in counts:
         raise ValueError(
-            f"{path} cannot be resumed: damaged, "
-            "its tensors are not those that were saved; delete it"
+            f"{path} cannot be resumed: damaged, its tensors do not match their checksum; delete it"
         )
     parts: dict[str, dict] = {}
     for name, tensor in tensors.items():
@@ -89,14 +85,14 @@ def resume_run(state: TrainState, path: str | Path, about: dict | None = None) -
     missing = {"model", "average", "random"} - set(parts) or {"step"} - set(counts)
     if missing:
         raise ValueError(
-            f"{path} is no saved run: it has no {sorted(missing)[0]}; "
+            f"{path} is not a saved run: it has no {sorted(missing)[0]}; "
             "give another file, or delete it"
         )
-    _same(about, json.loads(counts.get("about", "null")), path)
+    _check_about(about, json.loads(counts.get("about", "null")), path)
     kind = json.loads(counts.get("optimizer", "null"))
     if kind != _kind(state):
         raise ValueError(
-            f"{path} was trained by {kind}, not by {_kind(state)}: use that one, or delete the file"
+            f"{path} was trained by {kind}, not by {_kind(state)}: use {kind}, or delete the file"
         )
     state.model.load_state_dict(parts["model"])
     state.average.load_state_dict(parts["average"])
@@ -115,7 +111,7 @@ def resume_run(state: TrainState, path: str | Path, about: dict | None = None) -
 
 
 def notes_of(path: str | Path) -> list:
-    """The notes that a run was saved with; none when there is no such run."""
+    """The notes that a run was saved with; an empty list if the run does not exist."""
     if not Path(path).is_file():
         return []
     with safe_open(path, "pt") as file:
@@ -123,18 +119,18 @@ def notes_of(path: str | Path) -> list:
 
 
 def _kind(state: TrainState) -> str:
-    """Whose moments these are: the moments of one optimizer mean nothing to another."""
+    """The kind of optimizer; the moments of one kind do not fit another."""
     return type(state.optimizer).__name__
 
 
-def _same(asked: dict | None, found: dict | None, path: str | Path) -> None:
-    """Compare what a run should be about with what it is about."""
-    asked = json.loads(json.dumps(asked))  # as the file has it: lists for tuples
-    if asked is None or asked == found:
+def _check_about(wanted: dict | None, found: dict | None, path: str | Path) -> None:
+    """Raise ValueError if the settings of a saved run differ from the wanted ones."""
+    wanted = json.loads(json.dumps(wanted))  # as in the file: lists for tuples
+    if wanted is None or wanted == found:
         return
     found = found or {}
-    name = next(key for key in [*asked, *found] if asked.get(key) != found.get(key))
+    name = next(key for key in [*wanted, *found] if wanted.get(key) != found.get(key))
     raise ValueError(
-        f"{path} was begun with {name} = {found.get(name)!r}, and {asked.get(name)!r} is asked "
-        "for: delete the file to start anew, or ask for what it was begun with"
+        f"{path} was begun with {name} = {found.get(name)!r}, not {wanted.get(name)!r}: "
+        "delete the file to start again, or use the settings that it was begun with"
     )

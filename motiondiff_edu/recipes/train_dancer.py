@@ -1,6 +1,6 @@
-"""Train a recipe into a dancer: songs, dances, windows, loss, card.
+"""Train a dancer by its recipe: songs, dances, windows, loss, card.
 
-The loss is MoFusion's with the recipe's departures. A killed run continues where it was saved last.
+The loss is MoFusion's with the departures of the recipe. A killed run continues from its last save.
 """
 
 from functools import lru_cache
@@ -26,26 +26,28 @@ from .train_recipe import Provenance, train_recipe
 
 
 def training_windows(recipe: DanceRecipe) -> DanceWindows:
-    """The recipe's data, made from its seed: songs, dances to each, and the Mel spectrograms.
+    """The recipe's data, generated from its seed: songs, dances, and Mel spectrograms.
 
-    Recipes in a row that want the same data share it: it takes minutes to make.
+    The last data set is kept, because it takes minutes to generate.
     """
     if recipe.motions:
-        return _unheard(recipe.motions, recipe.data_seed, recipe.seconds, recipe.frames)
-    return _made(recipe.songs, recipe.data_seed, recipe.seconds, recipe.dances, recipe.frames)
+        return _motion_windows(recipe.motions, recipe.data_seed, recipe.seconds, recipe.frames)
+    return _song_windows(
+        recipe.songs, recipe.data_seed, recipe.seconds, recipe.dances, recipe.frames
+    )
 
 
 @lru_cache(maxsize=1)
-def _made(songs: int, seed: int, seconds: float, each: int, frames: int) -> DanceWindows:
-    from data_synth.dancing import dances  # data_synth lies beside the package, and imports it
+def _song_windows(songs: int, seed: int, seconds: float, each: int, frames: int) -> DanceWindows:
+    from data_synth.dancing import dances  # here, because data_synth imports this package
 
     positions = []
     contacts = []
     mels = []
-    heard = None
+    last_song = None
     for song, danced in dances(songs, seed, seconds, each=each):
-        if song is not heard:
-            heard, mel = song, log_mel(torch.from_numpy(song.audio).float())
+        if song is not last_song:
+            last_song, mel = song, log_mel(torch.from_numpy(song.audio).float())
         positions.append(danced.positions)
         contacts.append(danced.contacts)
         mels.append(mel)
@@ -53,7 +55,7 @@ def _made(songs: int, seed: int, seconds: float, each: int, frames: int) -> Danc
 
 
 @lru_cache(maxsize=1)
-def _unheard(count: int, seed: int, seconds: float, frames: int) -> DanceWindows:
+def _motion_windows(count: int, seed: int, seconds: float, frames: int) -> DanceWindows:
     from data_synth.mixed import motions
 
     positions, contacts = zip(*motions(count, seed, seconds), strict=True)
@@ -63,9 +65,7 @@ def _unheard(count: int, seed: int, seconds: float, frames: int) -> DanceWindows
 def train_dancer(
     recipe: DanceRecipe, run_file: Path, windows: DanceWindows | None = None, log=print
 ) -> Dancer:
-    """Train (or continue) a recipe; `run_file` holds the run.
-
-    Returns the averaged network as a dancer.
+    """Train by a recipe, or continue the run in `run_file`; return a dancer with averaged weights.
 
     Raises ValueError when the run in `run_file` was begun with other settings.
     """
@@ -88,15 +88,12 @@ def train_dancer(
 
 
 def schedule_of(recipe: DanceRecipe) -> Schedule:
-    """The cosine schedule, shifted as the recipe says."""
+    """The cosine schedule, shifted by the recipe's `snr`."""
     return shifted(cosine_schedule(recipe.config.S), recipe.snr)
 
 
 def loss_of(recipe: DanceRecipe, windows: DanceWindows, schedule: Schedule) -> LossFn:
-    """The loss that a recipe asks for.
-
-    It is MoFusion's, or the regression's where the network is deterministic.
-    """
+    """The loss of a recipe: MoFusion's, or a regression's if the network is deterministic."""
     if getattr(recipe.config, "deterministic", False):
         return regression_loss(windows, batch=recipe.batch, gain_noise=recipe.gain_noise)
     loss, weights = weighted_loss(recipe.loss_weights, windows, schedule), recipe.kinematic
@@ -142,9 +139,9 @@ def weighted_loss(
 
 
 def digest(windows: DanceWindows) -> str:
-    """Of dances, music, and how windows are cut from them.
+    """A checksum of dances, music, and window starts.
 
-    A run goes on with what it was begun with, or not at all.
+    A run can only be resumed with the data that it was begun with.
     """
     some = torch.linspace(0, len(windows) - 1, min(len(windows), 100)).long()
     motion, mel, stands = windows.take(some)

@@ -1,4 +1,4 @@
-"""Figures from plain arrays, with matplotlib.
+"""Plots of plain arrays with matplotlib, each with a caption.
 
-Colour-blind safe, readable on a projector, each with its caption.
+The colours are safe for colour-blind readers, and the text is readable on a projector.
 """

@@ -1,8 +1,7 @@
-"""Attention maps: who looks where.
+"""Attention maps: which query reads which keys.
 
-A row is a query and sums to one; groups of keys are named and parted by lines.
-
-A map says where values were read, not why: a weight is not an explanation.  Notebook: 06
+A row is a query and sums to one. Groups of keys are named and separated by lines. A map shows where
+values are read, not why: a weight is not an explanation.  Notebook: 06
 """
 
 from collections.abc import Sequence
@@ -19,10 +18,7 @@ Groups = Sequence[tuple[str, int]]  # (name, how many keys), in the order of the
 
 
 def modiff_groups(T_h: int = 10, T_p: int = 10) -> list[tuple[str, int]]:
-    """The keys of MoDiff's memory, in order.
-
-    Past poses, control of the past, control of the future.
-    """
+    """The keys of MoDiff's memory in order: past poses, control of the past and of the future."""
     return [("past poses", T_h), ("control, past", T_h), ("control, future", T_p)]
 
 
@@ -35,11 +31,11 @@ def attention_map(
     query_name: str = "future frame (query)",
     key_name: str = "key",
 ) -> Figure:
-    """One map, dark where much is read.
+    """One attention map; larger weights are darker.
 
-    `weights` of several heads: take one, or their mean, or `attention_heads`.
+    For several heads pass one of them or their mean, or use `attention_heads`.
 
-    Raises ValueError where groups or labels do not fit the map.
+    Raises ValueError if groups or labels do not fit the map.
     """
     _check(weights.shape, groups, query_labels, key_labels)
     T, M = weights.shape
@@ -61,7 +57,7 @@ def attention_heads(
     groups: Groups | None = None,
     titles: Sequence[str] | None = None,
 ) -> Figure:
-    """A map for each head, all on one scale."""
+    """One map for each head, all on one scale."""
     _check(weights.shape[1:], groups, None, None)
     heads = len(weights)
     columns = min(heads, 4)
@@ -87,7 +83,7 @@ def _check(
 ) -> None:
     T, M = shape
     if groups is not None and sum(count for _, count in groups) != M:
-        raise ValueError(f"the groups have {sum(c for _, c in groups)} keys, the map has {M}")
+        raise ValueError(f"the groups have {sum(c for _, c in groups)} keys, but the map has {M}")
     for labels, size, what in ((query_labels, T, "query"), (key_labels, M, "key")):
         if labels is not None and len(labels) != size:
             raise ValueError(f"{len(labels)} {what} labels for {size} {what} positions")
@@ -116,7 +112,7 @@ def _paint(axis: Axes, weights: np.ndarray, groups: Groups | None, top: float, s
 
 
 def _label(set_ticks, size: int, labels: Sequence[str] | None) -> None:
-    """All labels where they fit, else every few; frames are counted from 1."""
+    """All labels if they fit, else every few; without labels, frames are counted from 1."""
     every = 1 if size <= 12 else 2 if size <= 24 else 5
     ticks = np.arange(0 if every == 1 or labels is not None else every - 1, size, every)
     set_ticks(ticks, [labels[i] if labels is not None else str(i + 1) for i in ticks], fontsize=10)

@@ -1,7 +1,7 @@
-"""The drawn body: which joints carry which thickness, a camera, and polygons ready to be filled.
+"""The drawn body: the thickness at each joint, a camera, and polygons to fill.
 
-The browser's player draws from the same table of parts, so the poster and the live figure are the
-same figure.
+The browser's player draws from the same table of parts, so the poster and the live figure look the
+same.
 Notebook: 01
 """
 
@@ -21,7 +21,7 @@ RIGHT_COLOUR = "#D55E00"
 CENTRE_COLOUR = GREY
 PATH_COLOUR = "#009E73"
 COLOURS = {"L": LEFT_COLOUR, "R": RIGHT_COLOUR, "C": CENTRE_COLOUR}
-PAST_WASH = 0.55  # how far the colours of given frames are washed out towards the paper
+PAST_WASH = 0.55  # how far the colours of given frames are mixed with the background
 
 ANGLES = np.linspace(0, 2 * np.pi, 20, endpoint=False)
 _RING = np.stack([np.cos(ANGLES), np.sin(ANGLES)], -1)
@@ -29,10 +29,7 @@ _RING = np.stack([np.cos(ANGLES), np.sin(ANGLES)], -1)
 
 @dataclass(frozen=True)
 class Part:
-    """The convex hull of circles.
-
-    (joint a, joint b, w, radius in metres), centred at a + w (b - a).
-    """
+    """The convex hull of circles (joint a, joint b, w, radius in m), centred at a + w (b - a)."""
 
     side: str  # L, R or C
     circles: tuple[tuple[int, int, float, float], ...]
@@ -72,19 +69,16 @@ BODY: tuple[Part, ...] = (
 
 
 def stick_parts(parents: list[int], radius: float = 0.025) -> tuple[Part, ...]:
-    """Parts for any other skeleton: one thin limb a bone, a ball for a lone root."""
+    """Parts for any other skeleton: one thin limb per bone, a ball for a root without bones."""
     bones = [_limb("C", (p, radius), (j, radius)) for j, p in enumerate(parents) if p >= 0]
     return tuple(bones) or (_limb("C", (0, radius)),)
 
 
 def parts_for(joints: int, parents: list[int] | None = None) -> tuple[Part, ...]:
-    """The course's body for 21 joints, sticks for another skeleton.
-
-    Another skeleton needs its `parents`.
-    """
+    """The course's body for 21 joints, sticks for another skeleton, which needs its `parents`."""
     if parents is not None:
         if len(parents) != joints:
-            raise ValueError(f"`parents` names {len(parents)} joints, the positions have {joints}")
+            raise ValueError(f"`parents` has {len(parents)} joints, but the positions {joints}")
         return stick_parts(list(parents))
     if joints != J:
         raise ValueError(
@@ -105,8 +99,8 @@ class Camera:
 
     Yaw 0 stands at the figure's right side.
 
-    `focal` is in picture heights: a thing of h metres at the target covers focal h / distance of
-    the picture.
+    `focal` is in picture heights: an object of h metres at the target covers focal h / distance of
+    the picture's height.
     """
 
     x: float = 0.0
@@ -118,7 +112,7 @@ class Camera:
     focal: float = 2.05
 
     def at(self, x: float, z: float) -> "Camera":
-        """The same camera, looking at another place on the floor."""
+        """The same camera, which looks at another place on the floor."""
         return replace(self, x=float(x), z=float(z))
 
     def axes(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -135,9 +129,9 @@ class Camera:
 def project(
     points: Float[np.ndarray, "*N 3"], camera: Camera, size: tuple[int, int]
 ) -> tuple[Float[np.ndarray, "*N 2"], Float[np.ndarray, "*N"]]:
-    """Pixels (x to the right, y down) and pixels per metre at each point.
+    """Pixels (x to the right, y down) and pixels per metre at each point, in a picture of `size`.
 
-    In a picture of `size` (width, height).
+    `size` is (width, height).
     """
     right, up, ahead = camera.axes()
     target = np.array([camera.x, camera.height, camera.z])
@@ -168,7 +162,7 @@ def _turn(a: tuple, b: tuple, c: tuple) -> float:
 
 
 def circle_centres(pose: Float[np.ndarray, "J 3"], part: Part) -> Float[np.ndarray, "N 3"]:
-    """Where the circles of a part sit."""
+    """The centres of a part's circles."""
     a, b, w, _ = (np.array(column) for column in zip(*part.circles, strict=True))
     return pose[a] + w[:, None] * (pose[b] - pose[a])
 
@@ -181,7 +175,7 @@ def outline(
 
 
 def mix(colour: str, other: str, share: float) -> str:
-    """`colour` with `share` of `other` mixed in, both #RRGGBB."""
+    """`colour` mixed with a fraction `share` of `other`, both #RRGGBB."""
     a, b = (np.array([int(c[i : i + 2], 16) for i in (1, 3, 5)]) for c in (colour, other))
     return "#" + "".join(f"{int(round(v)):02X}" for v in a + share * (b - a))
 
@@ -193,11 +187,10 @@ def body_polygons(
     parts: tuple[Part, ...] = BODY,
     wash: float = 0.0,
 ) -> list[tuple[Float[np.ndarray, "_ 2"], str, bool]]:
-    """Filled polygons of one pose, far ones first.
+    """Filled polygons of one pose (points, colour, is outline), far ones first.
 
-    Per part its outline (True) and a lighter streak that rounds it.
-
-    Parts behind the body's middle are washed out a little: the depth cue.
+    Each part has its outline and a lighter streak that makes it look round. Parts behind the middle
+    of the body are a little paler, which shows depth.
     """
     drawn = []
     _, middle = project(np.array([[camera.x, camera.height, camera.z]]), camera, size)
@@ -222,7 +215,7 @@ def shadow_polygons(
     size: tuple[int, int],
     parts: tuple[Part, ...] = BODY,
 ) -> list[Float[np.ndarray, "_ 2"]]:
-    """What the body darkens on the floor, under a light from above, a little aside."""
+    """The shadow on the floor, under a light from above and a little to the side."""
     shadows = []
     for part in parts:
         centres = circle_centres(pose, part)

@@ -1,6 +1,4 @@
-"""Curves that several notebooks draw.
-
-Losses, small multiples, control over time, values with intervals.
+"""Plots for several notebooks: losses, control over time, values with intervals.
 
 Every line has its own colour and its own dashes.  Notebook: 05, 07
 """
@@ -19,7 +17,7 @@ Curves = Mapping[str, tuple]  # name -> (x, y), equally long
 
 
 def running_mean(y: Float[np.ndarray, "T"], window: int) -> Float[np.ndarray, "T"]:
-    """Mean of the last `window` values; the first ones over as many as there are."""
+    """Mean of the last `window` values; at the start, of all values so far."""
     total = np.concatenate([[0.0], np.cumsum(y)])
     last = np.arange(1, len(y) + 1)
     first = np.maximum(0, last - window)
@@ -43,7 +41,7 @@ def loss_curves(
 ) -> Figure:
     """Training losses over steps.
 
-    With `smooth` > 1 the running mean, the raw values faint behind it.
+    `smooth` > 1 draws the running mean, with the raw values faint behind it.
     """
     words = f"{title or 'Loss'} over training steps: {', '.join(curves)}."
     fig, (axis,) = figure(
@@ -92,12 +90,12 @@ def intervals(
     reference_name: str = "data",
     title: str = "",
 ) -> Figure:
-    """Values with their intervals, a row each: records are (name, value, low, high).
+    """Values with their intervals, one row each: records are (name, value, low, high).
 
     A line marks the reference.
     """
-    told = [f"{name} {value:.3g} ({low:.3g} to {high:.3g})" for name, value, low, high in records]
-    fig, (axis,) = figure(9, 1.3 + 0.5 * len(records), f"{title or xlabel}: {'; '.join(told)}.")
+    values = [f"{name} {value:.3g} ({low:.3g} to {high:.3g})" for name, value, low, high in records]
+    fig, (axis,) = figure(9, 1.3 + 0.5 * len(records), f"{title or xlabel}: {'; '.join(values)}.")
     for k, (_name, value, low, high) in enumerate(records):
         axis.plot([low, high], [k, k], color=OKABE_ITO[0], lw=4, alpha=0.4, solid_capstyle="round")
         axis.plot(value, k, "o", color=OKABE_ITO[0], ms=9)

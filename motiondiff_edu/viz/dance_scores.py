@@ -1,8 +1,6 @@
-"""Figures of measured dances.
+"""Plots of measured dances: where they slow down, scores with their chance level, repetition.
 
-Where they slow down, scores beside their chance level, how they repeat themselves.
-
-Plain arrays in, a captioned Figure out.  Notebook: 14
+The functions take plain arrays and return a Figure with a caption.  Notebook: 14
 """
 
 from collections.abc import Mapping
@@ -25,9 +23,9 @@ def stops_and_beats(
     words: str,
     fps: float | int = 20,
 ) -> Figure:
-    """A row for each dance.
+    """Each dance's smoothed mean joint speed, dots where it slows down, lines at music beats.
 
-    Its smoothed mean joint speed, dots where it slows down, and lines at the music's beats.
+    Each dance has one row.
     """
     fig, axes = figure(10, 0.9 + 1.9 * len(dances), words, rows=len(dances), share="x")
     for axis, (name, positions) in zip(axes, dances.items(), strict=True):
@@ -69,15 +67,11 @@ def stops_and_beats(
     return fig
 
 
-Pairs = Mapping[
-    str, Mapping[str, tuple[float, float]]
-]  # panel -> row -> (value, what it is to be read beside)
+Pairs = Mapping[str, Mapping[str, tuple[float, float]]]  # panel -> row -> (value, reference)
 
 
 def beside_chance(panels: Pairs, words: str) -> Figure:
-    """A panel for each score, with a bar for each dance.
-
-    A line across the bar marks its chance level.
+    """A panel for each score, with a bar for each dance and a line at its chance level.
 
     panels[score][dance] = (value, chance).
     """
@@ -88,9 +82,9 @@ def beside_chance(panels: Pairs, words: str) -> Figure:
 
 
 def beside_floor(panels: Pairs, words: str) -> Figure:
-    """The same for distances, which have no upper end: logarithmic, but for the first unit.
+    """The same for distances; the line is their floor.
 
-    The line is their floor.
+    Distances have no upper limit, so the axis is logarithmic above 1.
     """
     fig, axes = _bars(panels, words, "data against data", "{:.0f}")
     highest = max(max(pair) for rows in panels.values() for pair in rows.values())
@@ -142,7 +136,7 @@ def chance_over_tempo(
     published: Mapping[str, float],
     words: str,
 ) -> Figure:
-    """The chance level over the music's tempo, and published scores as level lines."""
+    """The chance level over the music's tempo, with published scores as horizontal lines."""
     fig, (axis,) = figure(9, 4.2, words)
     axis.plot(tempo, chance, color=OKABE_ITO[1], lw=3, label="stops at random times")
     for k, (name, score) in enumerate(published.items()):
@@ -164,9 +158,9 @@ def over_clips(
     curves: Mapping[str, tuple[Float[np.ndarray, "N"], Float[np.ndarray, "N"]]],
     words: str,
 ) -> Figure:
-    """A distance over the number of clips it was counted on, with a band of one deviation.
+    """A distance over the number of clips, with a band of one standard deviation.
 
-    Both axes logarithmic.
+    Both axes are logarithmic.
     """
     fig, (axis,) = figure(9, 4.2, words)
     for k, (name, (mean, std)) in enumerate(curves.items()):
@@ -191,9 +185,9 @@ def over_clips(
 def similarity_matrices(
     matrices: Mapping[str, Float[np.ndarray, "_ _"]], words: str, fps: float | int = 20
 ) -> Figure:
-    """Self-similarity of several dances side by side.
+    """Self-similarity of several dances side by side, time against time.
 
-    Time against time, dark blue alike, red opposite.
+    Dark blue means equal poses, red opposite ones.
     """
     fig, axes = figure(4.1 * len(matrices) + 0.8, 4.4, words, 1, len(matrices))
     for k, (axis, (name, matrix)) in enumerate(zip(axes, matrices.items(), strict=True)):

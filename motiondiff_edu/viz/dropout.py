@@ -1,6 +1,4 @@
-"""Pictures of dropout.
-
-Curves side by side with an axis each, where a linear walker's weight lies, steps that meet.
+"""Plots of diffusion dropout: curves side by side, a linear walker's weights, noise of the past.
 
 Notebook: 09
 """
@@ -21,12 +19,10 @@ HATCHES = ("", "//", "..", "xx", "\\\\")
 def beside(
     panels: Mapping[str, Curves], words: str, xlabel: str, log: Sequence[str] = ()
 ) -> Figure:
-    """Panels of named curves with one x axis, and a y axis each.
+    """Panels of named curves, with one x axis and a y axis for each panel.
 
-    It begins at 0, or is logarithmic for those named in `log`.
-
-    All panels give a name the same colour and marker; one legend stands above them, if there are
-    several names.
+    The y axis begins at 0, or is logarithmic for panels named in `log`. A name has the same colour
+    and marker in all panels. If there are several names, one legend stands above the panels.
     """
     fig, axes = figure(4.6 * len(panels), 4.1, words, 1, len(panels), share="x")
     names = list(dict.fromkeys(name for curves in panels.values() for name in curves))
@@ -54,12 +50,12 @@ def beside(
     return fig
 
 
-def where_the_weight_lies(
+def weights_by_input(
     weights: Mapping[str, Float[np.ndarray, "F D"]], T_h: int, words: str
 ) -> Figure:
-    """For each linear walker a bar for each past frame and for the control.
+    """For each linear walker, the size of its weights on each past frame and on the control.
 
-    The root of its squared weights' sum.
+    The size is the root of the sum of squared weights.
     """
     fig, (axis,) = figure(10, 4.2, words)
     width = 0.84 / len(weights)
@@ -81,19 +77,18 @@ def where_the_weight_lies(
     return fig
 
 
-def who_meets_whom(
+def noise_pairs(
     meetings: Mapping[str, tuple[Float[np.ndarray, "N"], Float[np.ndarray, "N"]]], words: str
 ) -> Figure:
-    """One panel for each way of dropping.
+    """The noise of the target (x axis) and of its past (y axis), 0..1, in training windows.
 
-    How noised the target is (across) and how noised its past is (up), both 0..1.
-
-    The line below is what sampling asks for: a clean past at every step.
+    Each way of dropping has one panel. The line at the bottom is what sampling needs: a clean past
+    at every step.
     """
     fig, axes = figure(4.7 * len(meetings), 4.1, words, 1, len(meetings), share="xy")
     for axis, (name, (target, past)) in zip(axes, meetings.items(), strict=True):
-        axis.axhline(0, color=OKABE_ITO[1], lw=5, alpha=0.5, label="asked for in sampling")
-        axis.plot(target, past, "o", ms=4, alpha=0.6, color=OKABE_ITO[0], label="met in training")
+        axis.axhline(0, color=OKABE_ITO[1], lw=5, alpha=0.5, label="needed in sampling")
+        axis.plot(target, past, "o", ms=4, alpha=0.6, color=OKABE_ITO[0], label="seen in training")
         axis.set(title=name, xlim=(-0.03, 1.03), ylim=(-0.06, 1.06))
     axes[0].set_ylabel("noise of its past", fontsize=MEDIUM)
     fig.supxlabel("noise of the target: sqrt(1 - alpha_bar)", fontsize=MEDIUM)

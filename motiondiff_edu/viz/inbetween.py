@@ -1,8 +1,6 @@
-"""Figures of in-betweens.
+"""Plots of in-betweens: conditionals in the plane, methods against the right answer, masks, joints.
 
-A slice of a plane and who fills it how, ways beside the right answer, masks, joints in time.
-
-Plain arrays in, a captioned Figure out.  Notebook: 15
+The functions take plain arrays and return a Figure with a caption.  Notebook: 15
 """
 
 from collections.abc import Mapping, Sequence
@@ -27,11 +25,10 @@ def slice_of_plane(
     density: Float[np.ndarray, "M"],
     words: str,
 ) -> Figure:
-    """Points of a plane, and on one line of it the ways of filling in.
+    """Points of a plane, and what several methods fill in on one vertical line of it.
 
-    The first coordinate of that line is `at`; the second is drawn as the first way has it.
-
-    Beside it, what each way found, as histograms under the true conditional density.
+    The line's first coordinate is `at`. The plane shows the samples of the first method. Beside it,
+    each method has a histogram under the true conditional density.
     """
     fig, (plane, *beside) = figure(4.0 + 2.5 * len(made), 4.2, words, 1, 1 + len(made), share="y",
                                    widths=[1.7, *[1] * len(made)])  # fmt: skip
@@ -39,7 +36,7 @@ def slice_of_plane(
     plane.axvline(at, color=OKABE_ITO[1], lw=1.5)
     first = np.asarray(next(iter(made.values())))[:300]
     plane.plot(np.full(len(first), at), first, "_", ms=9, color=OKABE_ITO[1], alpha=0.5)
-    plane.set(title="the data", xlabel="x, given", ylabel="y, wanted")
+    plane.set(title="the data", xlabel="x, given", ylabel="y, unknown")
     for k, (axis, (name, y)) in enumerate(zip(beside, made.items(), strict=True)):
         bars = {"bins": 60, "range": (float(grid[0]), float(grid[-1])), "density": True}
         axis.hist(
@@ -62,9 +59,9 @@ def ways(
     titles: Mapping[str, str],
     words: str,
 ) -> Figure:
-    """A panel for each figure, a row for each way.
+    """A panel for each measure, with a row for each method.
 
-    A dot for each seed, and a line at the right answer.
+    Each seed has a dot; a line marks the right answer.
     """
     fig, axes = figure(
         3.0 + 3.4 * len(right), 1.4 + 0.45 * len(found), words, 1, len(right), share="y"
@@ -85,7 +82,7 @@ def ways(
 def masks(
     known: Mapping[str, Bool[np.ndarray, "T J"]], words: str, fps: float | int = 20
 ) -> Figure:
-    """What is given: a panel for each mask, joints from top to bottom, time to the right."""
+    """A panel for each mask: joints from top to bottom, time to the right."""
     fig, axes = figure(2.5 * len(known), 2.9, words, 1, len(known), share="y")
     for axis, (name, mask) in zip(axes, known.items(), strict=True):
         extent = (0, len(mask) / fps, mask.shape[1] - 0.5, -0.5)
@@ -102,7 +99,7 @@ def masks(
         axis.set(title=name, xlabel="time (s)")
         axis.grid(False)
     axes[0].set_ylabel("joint")
-    keys = [Patch(color=GIVEN, label="given"), Patch(fc=OPEN, ec=GREY, label="to be found")]
+    keys = [Patch(color=GIVEN, label="given"), Patch(fc=OPEN, ec=GREY, label="to be generated")]
     fig.legend(handles=keys, loc="outside lower right", ncols=2, frameon=False, fontsize=SMALL)
     return fig
 
@@ -115,9 +112,9 @@ def over_time(
     ylabel: str,
     fps: float | int = 20,
 ) -> Figure:
-    """One number of a pose over time: samples as thin lines, others named.
+    """One value of a pose over time: samples as thin lines, other motions as named lines.
 
-    Frames that were given are shaded.
+    Given frames are shaded.
     """
     fig, (axis,) = figure(9, 3.8, words)
     seconds = np.arange(len(given)) / fps

@@ -1,4 +1,4 @@
-"""A ladder of recipes: one row for each, one panel for each measure, one dot for each training."""
+"""A comparison of recipes: a row per recipe, a panel per measure, a dot per training run."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -11,7 +11,7 @@ from .style import MARKERS, OKABE_ITO, figure
 
 @dataclass(frozen=True)
 class Rung:
-    """A row: its words, its group, and for each measure one value for each training seed."""
+    """A row: its label, its group, and for each measure one value for each training seed."""
 
     words: str
     group: str
@@ -19,11 +19,10 @@ class Rung:
 
 
 def ladder(rungs: Sequence[Rung], measures: Sequence[str], words: str) -> Figure:
-    """Dots of all seeds on logarithmic axes, groups by colour and marker.
+    """Dots of all seeds on logarithmic axes; groups differ in colour and marker.
 
-    A line marks the mean of the group's first row, from which its other rows differ in one choice.
-
-    Values that are not positive or not finite are left out.
+    A line marks the mean of the group's first row. The other rows of the group differ from that row
+    in one choice. Values that are not positive or not finite are left out.
     """
     groups = list(dict.fromkeys(rung.group for rung in rungs))
     panels = len(measures)

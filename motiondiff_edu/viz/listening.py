@@ -1,6 +1,6 @@
-"""What is read in the music, over the sound itself; and beside it what a silenced sound changes.
+"""Plots of attention over the music, and of the change when a sound is silenced.
 
-Plain arrays in, a captioned Figure out.  Notebook: 12
+The functions take plain arrays and return a Figure with a caption.  Notebook: 12
 """
 
 from collections.abc import Mapping, Sequence
@@ -25,10 +25,9 @@ def levels_over_sound(
 ) -> Figure:
     """A song with its beats, and below it where each level reads.
 
-    The dance lasts `seconds`; the picture is the paper's.
-
-    Across: the music's time. Downwards: the dance's. Each map has its own scale; one alone, larger,
-    is drawn by `attention_over_sound`.  Source: MoFusion Fig. 4.
+    The x axis is the time of the music, the y axis the time of the dance, which lasts `seconds`.
+    Each map has its own scale. `attention_over_sound` draws a single, larger map.
+    Source: MoFusion Fig. 4.
     """
     fig, axes = figure(10, 1.6 + 2.3 * len(maps), words, 1 + len(maps), 1, share="x",
                        heights=[1.1, *[2] * len(maps)])  # fmt: skip
@@ -54,12 +53,11 @@ def attention_over_sound(
     downbeats: Float[np.ndarray, "K2"] | None = None,
     title: str = "",
 ) -> Figure:
-    """The waveform with its beats above the map of who looks where in it, on one axis of time.
+    """The waveform with its beats above an attention map, on one axis of time.
 
-    A row of the map is a moment of the motion (`fps` rows a second), a column a token at its time
-    in seconds. On the dashed line a moment looks at itself. Raises ValueError where times do not
-    fit the map.
-    Source: MoFusion Fig. 4
+    A row of the map is a frame of the motion (`fps` rows a second), a column a token at its time in
+    seconds. On the dashed line motion and music are at the same time.
+    Raises ValueError if the times do not fit the map.  Source: MoFusion Fig. 4
     """
     if (
         token_times.shape != weights.shape[1:]
@@ -67,14 +65,14 @@ def attention_over_sound(
         or (np.diff(token_times) <= 0).any()
     ):
         raise ValueError(
-            f"token_times are {weights.shape[1]} (two or more) increasing seconds: "
+            f"token_times must be {weights.shape[1]} (two or more) increasing seconds: "
             f"{token_times!r:.80}"
         )
     T, seconds = len(weights), len(audio) / sample_rate
     words = (
         f"Attention of {T / fps:.1f} s of motion over {seconds:.1f} s of music, below its "
-        "waveform; a row sums to one, darker is more; "
-        "on the dashed line motion and music are at the same moment; upright lines are beats."
+        "waveform. A row sums to one; darker is more. "
+        "On the dashed line motion and music are at the same time; vertical lines are beats."
     )
     fig, (wave, axis) = figure(
         10, 6.6, f"{title}: {words}" if title else words, 2, share="x", heights=(1, 3)
@@ -101,7 +99,7 @@ def time_maps(
 ) -> Figure:
     """Maps side by side, each on its own scale: rows over `seconds`, columns at their times.
 
-    Dashed: one moment.
+    On the dashed line both times are equal.
     """
     fig, axes = figure(4.6 * len(maps), 4.4, words, 1, len(maps), share="y")
     for axis, (name, values) in zip(axes, maps.items(), strict=True):
@@ -119,10 +117,10 @@ def weight_and_effect(
     seconds: float,
     words: str,
 ) -> Figure:
-    """For each sound at `times`, the attention it gets and how far it moves the dance.
+    """For each sound at `times`, the attention to it and its effect on the dance.
 
-    Left: how much attention each moment of the dance gives it. Right: how far it moves that moment
-    (cm) when it is silenced.
+    Left: the share of attention to the sound in each frame of the dance. Right: how far that frame
+    moves (cm) when the sound is silenced.
     """
     fig, axes = figure(11, 4.8, words, 1, 2, share="y")
     pictures = (

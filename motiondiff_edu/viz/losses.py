@@ -1,6 +1,4 @@
-"""Pictures of the kinematic losses.
-
-Figures whose bones stretch, what each loss notices, losses over diffusion time.
+"""Plots of the kinematic losses: stretched bones, a table of losses, losses over diffusion steps.
 
 Notebook: 13
 """
@@ -24,9 +22,9 @@ from .style import DASHES, MEDIUM, OKABE_ITO, SMALL, figure, legend, table
 SHORT_TO_LONG = matplotlib.colors.LinearSegmentedColormap.from_list(
     "bones", ["#0072B2", "#C9CDD4", "#D55E00"]
 )
-STRETCH = Normalize(-0.3, 0.3, clip=True)  # of a bone: its length over the true one, minus 1
-ROUNDING = 1e-10  # what lies below is float32's rounding, and not drawn
-REACH = 1.15  # m from the hips to the edge of a picture, at least
+STRETCH = Normalize(-0.3, 0.3, clip=True)  # a bone's length / its true length - 1
+ROUNDING = 1e-10  # smaller values are rounding of float32 and not drawn
+REACH = 1.15  # smallest distance from the hips to the edge of a picture, metres
 
 
 def stretched(
@@ -38,16 +36,16 @@ def stretched(
 ) -> Figure:
     """A row of n poses for each motion, seen from the front.
 
-    Bones are blue where too short, orange where too long.
+    Bones that are too short are blue, those that are too long are orange.
 
-    With `fps` the seconds stand above the first row; what reaches out of a picture `widest` metres
-    wide is cut off.
+    With `fps`, the times in seconds stand above the first row. Pictures are at most `widest` metres
+    wide; everything outside is cut off.
     """
     fig, axes = figure(1.45 * n + 1.0, 1.5 * len(rows) + 0.3, words, len(rows), n)
     for row, (name, motion) in enumerate(rows.items()):
         draw_row(axes[row * n : row * n + n], motion, name, widest)
     if fps:
-        for axis, frame in zip(axes[:n], _spread(next(iter(rows.values())), n), strict=True):
+        for axis, frame in zip(axes[:n], _evenly_spaced(next(iter(rows.values())), n), strict=True):
             axis.set_title(f"{frame / fps:.1f} s", fontsize=SMALL)
     colours = ScalarMappable(STRETCH, SHORT_TO_LONG)
     bar = fig.colorbar(
@@ -57,7 +55,7 @@ def stretched(
     return fig
 
 
-def _spread(motion: Float[np.ndarray, "_ 21 3"], n: int) -> Int[np.ndarray, "n"]:
+def _evenly_spaced(motion: Float[np.ndarray, "_ 21 3"], n: int) -> Int[np.ndarray, "n"]:
     return np.linspace(0, len(motion) - 1, n).round().astype(int)
 
 
@@ -67,21 +65,21 @@ def draw_row(
     name: str,
     widest: float | int = math.inf,
 ) -> None:
-    """One motion, a pose in each axis, all at one scale.
+    """One motion, with a pose in each axis, all at one scale.
 
-    The scale is told where it is not the usual one.
+    The row's name includes the scale if it is not the usual one.
     """
-    poses = np.asarray(motion, np.float64)[_spread(motion, len(axes))]
+    poses = np.asarray(motion, np.float64)[_evenly_spaced(motion, len(axes))]
     far = float(np.abs(poses - poses[:, HIPS : HIPS + 1])[..., :2].max())
     reach = REACH if far <= REACH else min(1.05 * far, widest / 2)
     for axis, pose in zip(axes, poses, strict=True):
         _sticks(axis, pose, reach)
     shown = f"{2 * reach:.1f} m wide" if reach > far else f"{2 * reach:.1f} of {2 * far:.1f} m"
-    told = name if reach == REACH else f"{name}\n({shown})"
+    label = name if reach == REACH else f"{name}\n({shown})"
     axes[0].text(
         -0.04,
         0.5,
-        told,
+        label,
         rotation=90,
         va="center",
         ha="right",
@@ -99,17 +97,14 @@ def _sticks(axis: Axes, pose: Float[np.ndarray, "21 3"], reach: float) -> None:
     axis.plot(*about.T, ".", color=INK, ms=3)
     axis.set(
         xlim=(reach, -reach), ylim=(-reach, reach), aspect="equal"
-    )  # x is the figure's left; we look at its face
+    )  # x is the figure's left; the view is from the front
     axis.set_axis_off()
 
 
-def noticed(
+def loss_table(
     values: Float[np.ndarray, "R K"], rows: Sequence[str], columns: Sequence[str], words: str
 ) -> Figure:
-    """A table of losses.
-
-    In each column the shade goes from white (nothing) to the column's largest value.
-    """
+    """A table of losses; in each column the shade goes from white (0) to the largest value."""
     fig, (axis,) = figure(2.6 + 1.9 * len(columns), 0.9 + 0.52 * len(rows), words)
     share = values / np.maximum(values.max(axis=0), 1e-30)
     axis.imshow(np.sqrt(share), cmap="Oranges", vmin=0, vmax=1.6, aspect="auto")
@@ -129,7 +124,7 @@ def over_steps(
     at: int | None = None,
     columns: int = 2,
 ) -> Figure:
-    """Panels of named curves (s, y) over the diffusion step, y on a log axis of its own.
+    """Panels of named curves (s, y) over the diffusion step; each panel has its own log axis.
 
     `at` marks one step.
     """
@@ -144,7 +139,7 @@ def over_steps(
     for axis in axes[len(panels) :]:
         axis.set_axis_off()
     legend(axes[0])
-    fig.supxlabel("diffusion step s (1: hardly any noise)", fontsize=MEDIUM)
+    fig.supxlabel("diffusion step s (1: almost no noise)", fontsize=MEDIUM)
     if ylabel:
         fig.supylabel(ylabel, fontsize=MEDIUM)
     return fig
@@ -163,16 +158,16 @@ def _log_curves(axis: Axes, curves: Mapping[str, tuple], at: int | None = None) 
     axis.set_ylim(max(low, ROUNDING), max(high, 10 * ROUNDING))
 
 
-def moment(
+def guess_and_losses(
     motion: Float[np.ndarray, "T 21 3"],
     panels: Mapping[str, Mapping[str, tuple]],
     s: int,
     words: str,
     n: int = 4,
 ) -> Figure:
-    """What the network has in mind at step s.
+    """The network's guess at step s: n poses of x0_hat, and below them each loss over s.
 
-    n poses of x0_hat, and below them each loss over s, with s marked.
+    Step s is marked.
     """
     fig, axes = figure(11, 5.6, words, 2, max(n, len(panels)), heights=[1.25, 1])
     width = max(n, len(panels))

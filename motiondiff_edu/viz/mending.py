@@ -1,5 +1,5 @@
-"""Figures of what was mended: errors over the length of a gap, and a map of dropout's rate against
-what is missing.
+"""Plots of repairs: errors over the length of a gap, and a map of dropout rate against what is
+missing.
 """
 
 from collections.abc import Mapping, Sequence
@@ -21,8 +21,9 @@ def over_gaps(
     xlabel: str = "length of the gap (frames of 1/20 s)",
     log: Sequence[str] = (),
 ) -> Figure:
-    """One panel for each measure, a line in it for each method, its 95 % interval shaded; `log`:
-    measures by powers.
+    """One panel for each measure, with a line for each method and its 95 % interval shaded.
+
+    Measures in `log` have a logarithmic axis.
     """
     fig, axes = figure(4.8 * len(panels), 6.0, words, 1, len(panels))
     for axis, (measure, lines) in zip(axes, panels.items(), strict=True):
@@ -42,8 +43,9 @@ def over_gaps(
 def by_fault(
     panels: Mapping[str, Mapping[str, tuple[float, float, float]]], words: str, xlabel: str
 ) -> Figure:
-    """A panel for each fault, a row for each way of mending it: (value, low, high), by powers;
-    further left is better.
+    """A panel for each fault, with a row (value, low, high) for each method of repair.
+
+    The axis is logarithmic; further left is better.
     """
     fig, axes = figure(4.6 * len(panels), 4.2, words, 1, len(panels))
     names = list(dict.fromkeys(name for ways in panels.values() for name in ways))
@@ -71,11 +73,10 @@ def rate_map(
     missing: Sequence[str],
     words: str,
 ) -> Figure:
-    """A map for each measure: rates of dropout in rows, shares of the past missing in columns.
+    """A map for each measure: dropout rates in rows, missing shares of the past in columns.
 
-    Small is good.
-
-    Colours compare within a column (dark: the worst rate at that share), numbers are the errors.
+    The numbers are errors, so small is good. Colours compare within a column; the worst rate for a
+    missing share is dark.
     """
     fig, axes = figure(1.2 + 5.0 * len(panels), 1.4 + 0.5 * len(rates), words, 1, len(panels))
     for axis, (measure, errors) in zip(axes, panels.items(), strict=True):

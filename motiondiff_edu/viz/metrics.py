@@ -1,6 +1,4 @@
-"""Figures of measured walks.
-
-Footstep curves, drift over time, what a planted foot does, scores beside each other.
+"""Plots of measured walks: footstep curves, drift over time, planted feet, tables of scores.
 
 Notebook: 08
 """
@@ -24,8 +22,10 @@ def footstep_curves(
         "Number of footsteps against the velocity tolerance; a dot at 95 % of the maximum."
     ),
 ) -> Figure:
-    """Number of footsteps against the tolerance 1, 2, 3 ... cm/s, a dot at each v95.  Source:
-    MoDiff Fig. 3."""
+    """Number of footsteps against the tolerance 1, 2, 3 ... cm/s, with a dot at each v95.
+
+    Source: MoDiff Fig. 3.
+    """
     fig, (axis,) = figure(9, 4.6, words)
     for i, (label, counts) in enumerate(curves.items()):
         at = int(np.argmax(counts >= 0.95 * counts.max()))
@@ -41,10 +41,7 @@ def over_time(
     words: str,
     shade_to: float | int = 0,
 ) -> Figure:
-    """One panel for each measure, with one line for each motion.
-
-    A point for each second of the rollout.
-    """
+    """One panel for each measure, with a line for each motion and a point for each second."""
     fig, axes = figure(5.2 * len(panels), 4, words, 1, len(panels))
     for axis, (measure, lines) in zip(axes, panels.items(), strict=True):
         for i, (label, values) in enumerate(lines.items()):
@@ -71,7 +68,7 @@ def toe_heights(
 ) -> Figure:
     """Height of the toes over time, in cm.
 
-    Grey where the lower one, under `below` metres, is planted.
+    The background is grey while the lower toe is planted, under `below` metres.
     """
     fig, (axis,) = figure(9, 3.4, words)
     seconds = np.arange(len(height)) / fps
@@ -95,9 +92,9 @@ def gates(
     words: str,
     fps: float | int = 20,
 ) -> Figure:
-    """How far two gates are open (0 to 1), left above right.
+    """How far the gates of the two feet are open (0 to 1), left above right.
 
-    Grey where that foot stands in truth.
+    The background is grey while that foot is planted in the data.
     """
     fig, axes = figure(9, 3.8, words, rows=2, share="xy")
     seconds = np.arange(len(gate)) / fps
@@ -112,7 +109,7 @@ def gates(
 
 
 def _shade(axis: Axes, planted: np.ndarray, fps: float | int) -> None:
-    """Grey for as long as a foot is planted."""
+    """Draw a grey background while a foot is planted."""
     for begin, end in runs(planted):
         axis.axvspan(begin / fps, end / fps, color="0.9", lw=0)
 
@@ -120,12 +117,10 @@ def _shade(axis: Axes, planted: np.ndarray, fps: float | int) -> None:
 def score_table(
     scores: Mapping[str, Mapping[str, float]], words: str, digits: int = 2, log: Sequence[str] = ()
 ) -> Figure:
-    """Rows of motions, columns of measures, to so many digits.
+    """A table with motions in rows and measures in columns; larger values are darker.
 
-    A cell is darker the larger it is in its column.
-
-    The shade goes with the value, from 0 on, or in the columns named in `log` with its logarithm,
-    from the smallest on.
+    The shade is proportional to the value within its column. For columns in `log`, it goes with the
+    logarithm, from the smallest value on.
     """
     rows, columns = list(scores), list(next(iter(scores.values())))
     values = np.array([[scores[row][column] for column in columns] for row in rows], dtype=float)
@@ -142,9 +137,9 @@ def score_table(
 
 
 def _shades(column: Float[np.ndarray, "R"], log: bool) -> Float[np.ndarray, "R"]:
-    """How dark each value is, 1 for the largest.
+    """How dark each value is, 0 to 1 for the largest.
 
-    Nothing where there is no value, or none above 0 for a logarithm.
+    It is 0 without a value, and for a logarithm also for values that are not positive.
     """
     if not log:
         return np.nan_to_num(column) / max(float(np.nan_to_num(column).max()), 1e-12)

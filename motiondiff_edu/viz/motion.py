@@ -1,8 +1,6 @@
-"""Figures of what motion is made of.
+"""Plots of the parts of motion: joints by number, poses in between, paths from above, windows.
 
-The joints by number, poses in between, paths seen from above, control, windows.
-
-Plain arrays in, a matplotlib Figure with its caption out.  Notebook: 01
+The functions take plain arrays and return a Figure with a caption.  Notebook: 01
 """
 
 from collections.abc import Mapping, Sequence
@@ -21,7 +19,7 @@ SERIES = (
     "#E69F00",
     LEFT_COLOUR,
     PATH_COLOUR,
-)  # told apart by colour-blind readers, and by marker and label
+)  # colour-blind readers can distinguish them, also by marker and label
 
 
 def _side_colour(joint: int) -> str:
@@ -36,7 +34,7 @@ def _bones_2d(axes, pose: np.ndarray) -> None:
 
 
 def joint_map(pose: Float[np.ndarray, "21 3"], caption: str) -> Figure:
-    """The skeleton seen from the front, every joint with its number; a list of names beside it."""
+    """The skeleton from the front, with the number of every joint, and a list of their names."""
     figure, (drawn, listed) = captioned(9, 5.6, caption, 1, 2, widths=[2, 1])
     drawn.grid(False)
     _bones_2d(drawn, pose[:, :2])
@@ -66,9 +64,9 @@ def limb_steps(
     true_length: float,
     caption: str,
 ) -> Figure:
-    """A limb of K joints at U moments between two poses, one panel for each way of going.
+    """A limb of K joints at U moments between two poses, with a panel for each interpolation.
 
-    Below, its length (m).
+    Below it is the length of the bone (m).
     """
     n = len(ways)
     figure, axes = captioned(3.2 * n, 5.8, caption, 2, n, share="rows", heights=[2.4, 1])
@@ -84,7 +82,7 @@ def limb_steps(
         panel.set(xlim=(-reach, reach), ylim=(-reach, reach))
         curve.plot(np.linspace(0, 1, len(lengths[name])), lengths[name], color=LEFT_COLOUR)
         curve.axhline(true_length, color=INK, lw=0.8, ls="--")
-        curve.set(xlabel="share of the way, u", ylim=(0, 1.15 * true_length))
+        curve.set(xlabel="fraction of the way, u", ylim=(0, 1.15 * true_length))
     axes[0].set_ylabel("y (m)")
     axes[n].set_ylabel("bone (m)")
     return figure
@@ -95,7 +93,7 @@ def paths_from_above(
     caption: str,
     every: int = 10,
 ) -> Figure:
-    """Root paths (x, z) seen from above, headings (radians) as arrows.
+    """Root paths (x, z) seen from above, with headings (radians) as arrows.
 
     The figure's left is on the left.
     """
@@ -118,7 +116,7 @@ def paths_from_above(
             width=0.005,
             zorder=3,
         )
-    axes.invert_xaxis()  # from above, and looking along z, left is on the left
+    axes.invert_xaxis()  # seen from above and along z, the figure's left is on the left
     axes.set(aspect="equal", xlabel="x: left (m)", ylabel="z: forward (m)")
     if len(paths) > 1:
         axes.legend(loc="center left", bbox_to_anchor=(1.02, 0.5), frameon=False)
@@ -132,9 +130,9 @@ def windows_in_time(
     caption: str,
     fps: float = 20.0,
 ) -> Figure:
-    """Windows as bars.
+    """Training windows as bars over time.
 
-    starts[k] are the first frames of the windows of recording k, groups[k] "train" or "test".
+    starts[k] are the first frames of the windows of recording k, groups[k] are "train" or "test".
     """
     figure, (axes,) = captioned(9, 1.3 + 0.6 * len(starts), caption)
     axes.grid(False)

@@ -1,8 +1,7 @@
-"""Pictures of noise going in and coming out.
+"""Plots of noise that is added and removed: curves, densities, paths and terms of the bound.
 
-Curves, densities, paths and terms, each from plain arrays.
-
-Every function returns a figure that shows itself once; the caption under it says what to see.
+The functions take plain arrays. They return a Figure that is shown once; its caption says what to
+see.
 """
 
 from collections.abc import Sequence
@@ -25,15 +24,15 @@ def panels(
     share: str = "",
     widths: Sequence[float] | None = None,
 ):
-    """A figure of n panels side by side, and its axes; `finish` gives it its caption.
+    """A figure of n panels side by side, and its axes; `finish` adds the caption.
 
-    `share` and `widths` as in `style.figure`.
+    `share` and `widths` are as in `style.figure`.
     """
     return figure(width, height, "", 1, n, share=share, widths=widths)
 
 
 def finish(fig: Figure, words: str, labels: tuple[str, str] | None = None) -> Figure:
-    """Give the figure its caption, and name the axes."""
+    """Add a caption to the figure, and label the axes."""
     for axis in fig.axes if labels else ():
         axis.set_xlabel(labels[0])
     if labels:
@@ -51,7 +50,7 @@ def lines(
     marks: dict | None = None,
     ylim=None,
 ) -> Figure:
-    """Several named curves over x; `marks` are named horizontal levels."""
+    """Several named curves over x; `marks` are named horizontal lines."""
     fig, (axis,) = panels()
     for i, (name, y) in enumerate(curves.items()):
         axis.plot(
@@ -87,7 +86,7 @@ def noised_curve(
 ) -> Figure:
     """One coordinate over time, clean and at diffusion step s.
 
-    The caption says what share of its amplitude is left.
+    The caption says which fraction of the amplitude is left.
     """
     fig, (axis,) = panels(height=3.2)
     axis.plot(seconds, noised, color=ORANGE, lw=1.4, marker=".", label=f"x_s at s = {s}")
@@ -119,10 +118,7 @@ def noise_ladder(seconds, clean, noised: dict, caption: str) -> Figure:
 def densities(
     grid, curves: dict, caption: str, labels=("value", "density"), *, points: dict | None = None
 ) -> Figure:
-    """Named densities over one grid, filled lightly.
-
-    `points` are named values marked on the axis.
-    """
+    """Named densities over one grid, lightly filled; `points` are named values on the axis."""
     fig, (axis,) = panels()
     for i, (name, y) in enumerate(curves.items()):
         axis.plot(grid, y, label=name, color=COLOURS[i], ls=DASHES[i])
@@ -148,7 +144,7 @@ def histograms(
 ) -> Figure:
     """A histogram for each named set of samples, each under the same exact density.
 
-    Cut off at `top` times its peak.
+    The y axis ends at `top` times the peak of the density.
     """
     fig, axes = panels(len(samples), width=4.2 * max(len(samples), 2), height=3.4, share="y")
     for i, (axis, (name, values)) in enumerate(zip(axes, samples.items(), strict=True)):
@@ -164,7 +160,7 @@ def histograms(
 def paths(steps, x, grid, at_start, at_end, caption: str, show: int = 60) -> Figure:
     """Sampling paths x (steps, n) from noise on the left to samples on the right.
 
-    A density stands at either end.
+    Each end has a density.
     """
     x = np.asarray(x)
     fig, (left, middle, right) = panels(3, 10.5, 4, share="y", widths=[1, 5, 1])
@@ -188,7 +184,7 @@ def paths(steps, x, grid, at_start, at_end, caption: str, show: int = 60) -> Fig
 
 
 def one_moment(grid, density, values, guesses, s: int, caption: str) -> Figure:
-    """All samples at one step: where x_s lies, and what the denoiser answers for x0."""
+    """All samples at one step: the values of x_s, and the denoiser's guesses of x0."""
     fig, (left, right) = panels(2, width=10, height=3.4, share="y")
     shown = {"bins": 90, "range": (float(grid[0]), float(grid[-1])), "density": True, "alpha": 0.5}
     for axis, data, colour, name in (
@@ -203,9 +199,9 @@ def one_moment(grid, density, values, guesses, s: int, caption: str) -> Figure:
 
 
 def bound(terms, exact: float, caption: str) -> Figure:
-    """Terms of the negative bound over s, and their running sum beside -E log q(x0).
+    """Terms of the negative bound over s, and their running sum with -E log q(x0).
 
-    terms[0] is the prior's.
+    terms[0] is the term of the prior.
     """
     fig, (left, right) = panels(2, width=10.5, height=4)
     terms, s = np.asarray(terms), np.arange(1, len(terms))
@@ -224,7 +220,7 @@ def bound(terms, exact: float, caption: str) -> Figure:
 
 
 def maps(start, ends: dict, caption: str) -> Figure:
-    """Where each starting noise ended, for several samplers side by side: {name: ends}."""
+    """The sample of each starting noise, for several samplers side by side: {name: samples}."""
     fig, axes = panels(len(ends), width=4.4 * len(ends), height=3.6, share="y")
     for axis, (name, end), colour in zip(axes, ends.items(), COLOURS, strict=False):
         axis.plot(start, end, ".", ms=3, alpha=0.4, color=colour)

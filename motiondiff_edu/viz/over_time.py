@@ -1,7 +1,4 @@
-"""What figures and lanes of music are made of.
-
-A waveform's outline, and maps whose columns are moments in time.
-"""
+"""Parts of the plots and lanes of music: a waveform's outline, and maps with columns in time."""
 
 import numpy as np
 from jaxtyping import Float
@@ -11,9 +8,7 @@ from .body import INK
 
 
 def edges_of(times: Float[np.ndarray, "M"]) -> Float[np.ndarray, "M1"]:
-    """Where columns begin and end.
-
-    Halfway between their times, the outer ones as wide as their neighbours.
+    """The edges of columns, halfway between their times; the outer columns are symmetric.
 
     A single column is one second wide.
     """
@@ -26,7 +21,7 @@ def edges_of(times: Float[np.ndarray, "M"]) -> Float[np.ndarray, "M1"]:
 def lows_and_highs(
     samples: Float[np.ndarray, "N"], bins: int
 ) -> tuple[Float[np.ndarray, "K"], Float[np.ndarray, "K"], Float[np.ndarray, "K"]]:
-    """First index, lowest and highest sample of each of (at most) `bins` equal stretches."""
+    """First index, lowest and highest sample of each of (at most) `bins` equal pieces."""
     starts = np.linspace(0, len(samples), min(bins, len(samples)) + 1).astype(int)[:-1]
     low = np.minimum.reduceat(samples, starts)
     high = np.maximum.reduceat(samples, starts)
@@ -36,10 +31,7 @@ def lows_and_highs(
 def waves(
     axis: Axes, audio: Float[np.ndarray, "N"], sample_rate: float | int, bins: int = 1200
 ) -> None:
-    """A waveform over seconds.
-
-    What lies between the lowest and the highest sample of each of `bins` stretches.
-    """
+    """A waveform over seconds: the range of samples in each of `bins` pieces."""
     starts, low, high = lows_and_highs(audio, bins)
     axis.fill_between(starts / sample_rate, low, high, color=INK, lw=0)
     axis.set_yticks([])
@@ -53,9 +45,9 @@ def time_map(
     seconds: float,
     colours: str = "Purples",
 ):
-    """A map whose rows share `seconds` evenly, from the top down, columns at their times.
+    """A map with rows evenly over `seconds`, from the top down, and columns at their times.
 
-    The larger, the darker.
+    Larger values are darker.
     """
     rows = np.linspace(0, seconds, len(values) + 1)
     image = axis.pcolormesh(

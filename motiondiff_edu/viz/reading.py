@@ -1,8 +1,6 @@
-"""What attention reads, and what it is worth.
+"""Plots of attention: buckets of time distance, sharpness, and weight against measured effect.
 
-Buckets of time, sharpness, and weight against measured effect.
-
-Plain arrays in, a captioned Figure out.  Notebook: 06
+The functions take plain arrays and return a Figure with a caption.  Notebook: 06
 """
 
 from collections.abc import Mapping
@@ -18,10 +16,7 @@ from .style import OKABE_ITO, figure, legend
 def bucket_map(
     distance: Int[np.ndarray, "N"], bucket: Int[np.ndarray, "N"], window: int, words: str
 ) -> Figure:
-    """Bucket over time distance (frames, key minus query).
-
-    The distances within +-window are shaded.
-    """
+    """Bucket over time distance (frames, key minus query); distances within +-window are shaded."""
     fig, (axis,) = figure(9, 3.8, words)
     for past, colour, name in (
         (True, OKABE_ITO[0], "key in the past"),
@@ -45,7 +40,7 @@ def sharpness(
 ) -> Figure:
     """The largest weight of a row over the size d of queries and keys.
 
-    `floor` is that of equal weights.
+    `floor` is its value for equal weights.
     """
     fig, (axis,) = figure(9, 3.8, words)
     for k, (name, values) in enumerate(curves.items()):
@@ -65,11 +60,10 @@ def weight_against_effect(
     groups: list[tuple[str, int]],
     words: str,
 ) -> Figure:
-    """The attention that each key of each example got, and the effect of hiding it.
+    """The attention to each key of each example, against the effect of hiding the key.
 
-    Both over their group's mean there.
-
-    The mean is taken in each example: some examples move more than others whatever is hidden.
+    Both are divided by their group's mean in the example, because some examples move more than
+    others, whichever key is hidden.
     """
     fig, axes = figure(4.4 * len(groups), 4.2, words, 1, len(groups), share="y")
     first = 0

@@ -1,4 +1,4 @@
-"""Figures of repairs: round by round, poses with all their repairs, and faults against methods.
+"""Plots of repairs: round by round, poses with all their repairs, and faults against methods.
 
 Notebook: 10
 """
@@ -17,7 +17,7 @@ from .skeleton import SIDES, draw_pose
 from .style import DASHES, LARGE, MARKERS, MEDIUM, OKABE_ITO, SMALL, figure, legend
 
 GHOST = "#009E73"
-_CAMERA, _SIZE = body.Camera(focal=2.3), (270, 420)  # those of `draw_pose`
+_CAMERA, _SIZE = body.Camera(focal=2.3), (270, 420)  # as in `draw_pose`
 
 
 def by_round(
@@ -25,9 +25,9 @@ def by_round(
     words: str,
     marks: Mapping[str, tuple[str, float]] | None = None,
 ) -> Figure:
-    """One panel for each measure, a line in it for each fault, a point for each round.
+    """One panel for each measure, with a line for each fault and a point for each round.
 
-    `marks` are dotted levels.
+    `marks` are dotted horizontal lines.
     """
     fig, axes = figure(5.2 * len(panels), 4, words, 1, len(panels))
     for axis, (measure, lines) in zip(axes, panels.items(), strict=True):
@@ -43,7 +43,7 @@ def by_round(
             name, level = marks[measure]
             axis.axhline(
                 level, color=body.INK, ls=":", lw=1.2, label=name
-            )  # told in the legend: points lie beside it
+            )  # its name is in the legend, because points lie near the line
         axis.set(xlabel="round", title=measure, ylim=(0, None))
         axis.xaxis.get_major_locator().set_params(integer=True)
     legend(axes[0])
@@ -57,11 +57,10 @@ def with_ghosts(
     words: str,
     frames: Sequence[int],
 ) -> Figure:
-    """A row of poses for each name.
+    """A row of poses for each name; for names in `samples`, a second row with single repairs.
 
-    Below those in `samples` a row of their limbs with a missing end, thin and green.
-
-    So the pose that is to be judged is not covered.
+    The second row draws the limbs with a missing end, thin and green. They have their own row so
+    that they do not cover the pose.
     """
     rows = [row for name in poses for row in [(name, False), (name, True)][: 1 + (name in samples)]]
     n = len(frames)
@@ -70,7 +69,9 @@ def with_ghosts(
         (name, ghosts), t = rows[i // n], frames[i % n]
         draw_pose(axis, poses[name][t], washed=ghosts)
         if ghosts:
-            _haunt(axis, samples[name][:, t], known[t], _CAMERA.at(*poses[name][t, HIPS, [0, 2]]))
+            _draw_ghosts(
+                axis, samples[name][:, t], known[t], _CAMERA.at(*poses[name][t, HIPS, [0, 2]])
+            )
         if i < n:
             axis.set_title(f"frame {t}", fontsize=SMALL)
         if i % n == 0:
@@ -89,7 +90,7 @@ def with_ghosts(
     return fig
 
 
-def _haunt(
+def _draw_ghosts(
     axis: Axes,
     samples: Float[np.ndarray, "n 21 3"],
     known: Bool[np.ndarray, "21"],
@@ -105,9 +106,9 @@ def _haunt(
 def faults_and_methods(
     panels: Mapping[str, Mapping[str, Mapping[str, float]]], words: str, log: bool = True
 ) -> Figure:
-    """A panel for each measure: a row for each fault, a mark in it for each method.
+    """A panel for each measure, with a row for each fault and a mark for each method.
 
-    NaN leaves a mark out.
+    A NaN value has no mark.
     """
     faults = list(next(iter(panels.values())))
     fig, axes = figure(5.4 * len(panels), 1.4 + 0.8 * len(faults), words, 1, len(panels), share="y")
@@ -115,7 +116,7 @@ def faults_and_methods(
         methods = len(rows[faults[0]])
         apart = min(
             0.2, 0.7 / methods
-        )  # rows of marks within the row of a fault, so that none hides another
+        )  # methods at different heights within a fault's row, so that marks do not overlap
         for k, method in enumerate(rows[faults[0]]):
             values = [rows[fault][method] for fault in faults]
             rows_at = np.arange(len(faults)) + apart * (k - (methods - 1) / 2)

@@ -1,6 +1,4 @@
-"""Skeletons on paper.
-
-A strip of poses, several motions side by side, a path from above with its footprints.
+"""Plots of skeletons: a strip of poses, several motions side by side, a path with footprints.
 
 Positions are world positions in metres, (T, 21, 3), y up.  Notebook: 01
 """
@@ -31,7 +29,7 @@ def pose_strip(
 ) -> Figure:
     """n poses, evenly spaced from the first frame to the last.
 
-    The first `past` frames paler: they were given.
+    The first `past` frames are paler, because they were given.
     """
     words = f"{n} poses over {len(positions) / fps:.1f} s, left limbs blue, right limbs orange"
     words += "." if past is None else f"; the paler ones, up to {past / fps:.1f} s, were given."
@@ -56,10 +54,7 @@ def side_by_side(
     fps: float | int = 20.0,
     past: int | None = None,
 ) -> Figure:
-    """A row of n poses for each motion, at the same times.
-
-    A motion that has ended shows nothing.
-    """
+    """A row of n poses for each motion, at the same times; after its end a row is empty."""
     names = (
         list(labels) if labels is not None else [f"motion {i}" for i in range(1, len(motions) + 1)]
     )
@@ -85,7 +80,7 @@ def side_by_side(
 def noise_to_motion(
     moments: Mapping[int, Float[np.ndarray, "T 21 3"]], words: str, n: int = 4
 ) -> Figure:
-    """A row for each diffusion step (as ordered in `moments`), n poses of the window in each.
+    """A row for each diffusion step, in the order of `moments`, with n poses of the window.
 
     Source: MoDiff Fig. 1; MoFusion Fig. 2.  Notebook: 07
     """
@@ -102,7 +97,7 @@ def noise_to_motion(
 
 
 def _name_row(axis: Axes, name: str) -> None:
-    """Upright, to the left of the first axis of a row."""
+    """Write the name vertically, to the left of the first axis of a row."""
     axis.text(
         -0.05,
         0.5,
@@ -121,10 +116,7 @@ def draw_pose(
     camera: body.Camera | None = None,
     washed: bool = False,
 ) -> None:
-    """One figure in one axis, standing on a bit of floor.
-
-    Seen from its right and a little ahead.
-    """
+    """One figure in one axis, on a piece of floor, seen from its right and a little ahead."""
     size = (270, 420)
     pose = np.asarray(pose, np.float64)
     camera = (camera or body.Camera(focal=2.3)).at(*pose[HIPS, [0, 2]])
@@ -146,11 +138,11 @@ def top_view(
     paths: Mapping[str, Float[np.ndarray, "_ 2"]] | None = None,
     title: str = "",
 ) -> Figure:
-    """The floor from above, x to the left.
+    """The floor from above, x to the left: the path of the hips, footprints, and given paths.
 
-    Where the hips went, a footprint for each step, and given paths [x, z].
+    Paths are [x, z].
     """
-    words = "The floor seen from above, one square a metre; the start is at the bottom arrow."
+    words = "The floor from above; a square is one metre wide, and the arrow marks the start."
     fig, (axis,) = figure(
         6.2, 6.2, words if positions is None else words + " Footprints: left blue, right orange."
     )
@@ -180,7 +172,7 @@ def _floor(axis: Axes, title: str) -> None:
 
 
 def _footprints(axis: Axes, positions: np.ndarray, contacts: np.ndarray) -> None:
-    """Ankle to toe on the floor, in the middle of every run of contact."""
+    """Draw a line from ankle to toe on the floor, in the middle of every contact."""
     for side, colour in enumerate((body.LEFT_COLOUR, body.RIGHT_COLOUR)):
         for i, (begin, end) in enumerate(runs(contacts[:, side])):
             foot = positions[(begin + end - 1) // 2][[HEELS[side], TOES[side]]][:, [0, 2]]

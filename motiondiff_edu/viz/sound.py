@@ -1,7 +1,4 @@
-"""Pictures of sound.
-
-Waves, spectra, filters, spectrograms, onsets, tempo and beats, each from plain arrays.
-"""
+"""Plots of sound from plain arrays: waves, spectra, filters, spectrograms, onsets, tempo, beats."""
 
 from collections.abc import Mapping, Sequence
 
@@ -17,13 +14,13 @@ HEAT = "magma"
 
 
 def _beats(axis: Axes, beats, low: float, high: float, colour: str, name: str) -> None:
-    """Dashed lines at the beats that lie in the picture, the first one named in the legend."""
+    """Dashed lines at the beats within the plot; the first one has a name in the legend."""
     for i, beat in enumerate(beat for beat in beats if low <= beat <= high):
         axis.axvline(beat, color=colour, lw=1.5, ls="--", label=name if i == 0 else None)
 
 
 def waveform(seconds, audio, caption: str, beats: Sequence = ()) -> Figure:
-    """Samples over time, with the beats."""
+    """Samples over time, with lines at the beats."""
     fig, (axis,) = figure(10, 2.8, caption)
     axis.plot(seconds, audio, color=BLUE, lw=0.7)
     _beats(axis, beats, seconds[0], seconds[-1], ORANGE, "beat")
@@ -37,7 +34,7 @@ def waveform(seconds, audio, caption: str, beats: Sequence = ()) -> Figure:
 def spectra(
     hz, curves: Mapping[str, np.ndarray], caption: str, *, mark: float | None = None
 ) -> Figure:
-    """Magnitude spectra in decibels below the loudest bin of each."""
+    """Magnitude spectra in decibels, relative to the loudest bin of each."""
     fig, (axis,) = figure(9, 3.4, caption)
     for i, (name, magnitude) in enumerate(curves.items()):
         magnitude = np.asarray(magnitude)
@@ -60,7 +57,7 @@ def spectra(
 
 
 def filters(hz, triangles, caption: str, every: int = 1) -> Figure:
-    """Filters (bands, bins) over frequency, every so many of them, each in a colour."""
+    """Filters (bands, bins) over frequency, one in `every`, each in its own colour."""
     fig, (axis,) = figure(10, 3.2, caption)
     for i, band in enumerate(np.asarray(triangles)[::every]):
         inside = np.flatnonzero(band)
@@ -84,7 +81,7 @@ def spectrogram(
 ) -> Figure:
     """Values (M, bins) as colours over time and frequency (Hz, rising).
 
-    `top` cuts the frequencies off.
+    `top` is the highest frequency shown.
     """
     fig, (axis,) = figure(10, 3.6, caption)
     _heat(fig, axis, seconds, frequencies, values)
@@ -98,10 +95,7 @@ def spectrogram(
 def mel_spectrogram(
     seconds, centres, values, caption: str, *, beats: Sequence = (), title: str = ""
 ) -> Figure:
-    """Log-Mel values (M, bands) as colours, one row for each band.
-
-    `centres` are the bands' middles in Hz.
-    """
+    """Log-Mel values (M, bands) as colours, one row for each band; `centres` are in Hz."""
     fig, (axis,) = figure(10, 3.6, caption)
     rows = np.arange(len(centres))
     marks = (100, 500, 1000, 2000, 4000, 7000)
@@ -123,18 +117,18 @@ def _heat(fig: Figure, axis: Axes, seconds, rows, values) -> None:
 
 
 def two_clocks(seconds, errors: Mapping[str, np.ndarray], caption: str) -> Figure:
-    """How many seconds too far each way of matching motion and sound looks, over time."""
+    """The error in seconds of each way to match sound frames to motion frames, over time."""
     fig, (axis,) = figure(9, 3.2, caption)
     for i, (name, error) in enumerate(errors.items()):
         axis.plot(seconds, error, color=OKABE_ITO[i], ls=DASHES[i], label=name)
     axis.set_xlabel("time of the motion frame (s)")
-    axis.set_ylabel("sound heard then,\nminus that (s)")
+    axis.set_ylabel("time of the matched sound\nminus that time (s)")
     legend(axis)
     return fig
 
 
 def onsets(seconds, strength, caption: str, beats: Sequence = (), found: Sequence = ()) -> Figure:
-    """Onset strength over time; true beats as lines, the tracker's as triangles on top."""
+    """Onset strength over time, with true beats as lines and the tracker's beats as triangles."""
     fig, (axis,) = figure(10, 3, caption)
     axis.plot(seconds, strength, color=BLUE, lw=1.3, label="onset strength")
     _beats(axis, beats, seconds[0], seconds[-1], ORANGE, "beat, from the score")
@@ -160,9 +154,9 @@ def onsets(seconds, strength, caption: str, beats: Sequence = (), found: Sequenc
 def tempogram(
     seconds, tempi, values, tempo: float, caption: str, lowest: float = 30, highest: float = 320
 ) -> Figure:
-    """How strongly onsets recur at each tempo (values: tempi, M), over time and in the mean.
+    """How strongly onsets repeat at each tempo (values: tempi, M), over time and on average.
 
-    The true one dashed.
+    A dashed line marks the true tempo.
     """
     tempi, values = np.asarray(tempi), np.asarray(values)
     keep = (tempi >= lowest) & (tempi <= highest)
@@ -178,16 +172,16 @@ def tempogram(
     left.set_yticks([40, 60, 80, 120, 160, 240])
     left.yaxis.set_major_formatter(FuncFormatter(lambda y, _: f"{y:g}"))
     left.set_xlabel("time (s)")
-    left.set_ylabel("beats a minute")
+    left.set_ylabel("beats per minute")
     right.set_xlabel("mean")
     legend(right, loc="upper right")
     return fig
 
 
 def lags(offsets: Mapping[str, np.ndarray], caption: str, lag: float, reach: float = 120) -> Figure:
-    """For each named song, how many milliseconds after the nearest true beat each found one comes.
+    """For each song, the delay in ms of each found beat after the nearest true beat.
 
-    `lag` marked.
+    A line marks `lag`.
     """
     fig, (axis,) = figure(9, 0.5 * len(offsets) + 1.6, caption)
     for row, values in enumerate(offsets.values()):

@@ -1,6 +1,4 @@
-"""Pictures of training.
-
-Loss beside its floor, clouds of samples, what a denoiser guesses in the plane, learnt weights.
+"""Plots of training: losses with their floor, clouds of samples, a denoiser's guesses in the plane.
 
 Notebook: 05, 07
 """
@@ -23,7 +21,7 @@ def over_s(
     log: bool = True,
     marks: Mapping[str, float] | None = None,
 ) -> Figure:
-    """Named curves (s, y) over the diffusion step; `marks` are named horizontal levels."""
+    """Named curves (s, y) over the diffusion step; `marks` are named horizontal lines."""
     fig, (axis,) = figure(9, 4.4, words)
     for k, (name, (s, y)) in enumerate(curves.items()):
         axis.plot(
@@ -34,7 +32,7 @@ def over_s(
         axis.annotate(
             name, (0.01, level), xycoords=("axes fraction", "data"), va="bottom", color="#444444"
         )
-    axis.set(xlabel="diffusion step s (1: hardly any noise)", ylabel=ylabel)
+    axis.set(xlabel="diffusion step s (1: almost no noise)", ylabel=ylabel)
     if log:
         axis.set_yscale("log")
     legend(axis)
@@ -44,7 +42,7 @@ def over_s(
 def loss_above_floor(
     losses: Mapping[str, float], floors: Mapping[str, float], words: str
 ) -> Figure:
-    """A bar for each loss; the grey part is what the exact denoiser would also have to pay."""
+    """A bar for each loss; the grey part is the loss that even the exact denoiser has."""
     fig, (axis,) = figure(9, 1.4 + 0.6 * len(losses), words)
     for k, name in enumerate(losses):
         axis.barh(
@@ -69,7 +67,7 @@ def loss_above_floor(
 def clouds(
     panels: Mapping[str, Float[np.ndarray, "_ 2"]], words: str, reach: float = 2.6
 ) -> Figure:
-    """Sets of points in the plane, a panel each, all with the same axes."""
+    """Sets of points in the plane, one panel each, all with the same axes."""
     fig, axes = figure(3.1 * len(panels), 3.7, words, 1, len(panels), share="xy")
     for k, (axis, (name, points)) in enumerate(zip(axes, panels.items(), strict=True)):
         axis.plot(
@@ -87,9 +85,8 @@ def guesses(
     data: Float[np.ndarray, "_ 2"], x_s: Float[np.ndarray, "N 2"], right: Float[np.ndarray, "N 2"],
     panels: Mapping[str, Float[np.ndarray, "N 2"]], words: str, reach: float = 3.0,
 ) -> Figure:  # fmt: skip
-    """One panel for each network.
-
-    Noised points (dots), the guess of x0 (end of the line), the exact guess (circle).
+    """One panel for each network: noised points (dots), its guesses of x0 (ends of the lines), and
+    the exact guesses (circles).
     """
     fig, axes = figure(3.6 * len(panels), 4.1, words, 1, len(panels), share="xy")
     for k, (axis, (name, guess)) in enumerate(zip(axes, panels.items(), strict=True)):

@@ -1,4 +1,1 @@
-"""Canvas and controls for notebooks.
-
-They show what the library computed and hold no arithmetic of their own.
-"""
+"""Widgets for notebooks. They show what the library computed, and compute nothing themselves."""

@@ -1,11 +1,9 @@
-"""The editor: hold some of a motion, and have the rest made anew.
+"""The editor: pin frames, drag joints, keep a part of the body, and generate the rest.
 
-Pin frames, drag joints, keep a part of the body.
-
-In the page: a figure and a timeline. Enter pins a frame, J chooses a joint, arrows move it (1 cm; 5
-with Shift), Page Up and Page Down in depth; G generates, [ and ] choose among the in-betweens; Z
-undoes, R resets. Python holds the edit and does the inverse kinematics; the page draws, and says
-how far a joint was moved.   Notebook: 15
+The page has a figure and a timeline. Enter pins a frame. J chooses a joint; arrows move it by 1 cm
+(5 with Shift), Page Up and Page Down move it in depth. G generates; [ and ] choose an in-between.
+Z undoes, R resets. Python keeps the edit and computes the inverse kinematics; the page draws, and
+sends how far a joint was moved.   Notebook: 15
 """
 
 import time
@@ -28,33 +26,34 @@ from .editor_page import MODULE, MOST, complaint, listed
 
 @dataclass(frozen=True, eq=False)
 class _Step:
-    """What Undo goes back to."""
+    """A state that Undo restores."""
 
     edit: Edit
     made: Made | None = None
     chosen: int = 0
-    presses: int = 0  # of Generate, up to here
+    presses: int = 0  # how often Generate was pressed before
 
 
 @dataclass(frozen=True, eq=False)
 class _Grip:
-    """A run of small drags that Undo takes back together."""
+    """A run of small drags that Undo reverts together."""
 
-    name: int | None = None  # as the page numbers its grips
-    by: Float[np.ndarray, "3"] = field(default_factory=lambda: np.zeros(3))  # metres in all
-    before: Edit | None = None  # what the drags start from; None once something else was done
+    name: int | None = None  # the page's number of this grip
+    by: Float[np.ndarray, "3"] = field(default_factory=lambda: np.zeros(3))  # total, metres
+    before: Edit | None = None  # the edit before the drags; None after any other change
     since: Float[np.ndarray, "3"] = field(default_factory=lambda: np.zeros(3))  # `by` at `before`
 
 
 class Editor(anywidget.AnyWidget):
-    """Edit a motion (T, 21, 3), world positions in metres; `make` finds the rest.
+    """Edit a motion (T, 21, 3), world positions in metres; `make` generates the rest.
 
-    `make` is an `editing.edit.Make`: `editing.inbetween.maker(dancer)` is one. It is called with
-    the page's numbers for `samples` and `resample`, and runs in the kernel; the
-    generator is seeded by `seed` + how often Generate was pressed before. `names` are the 21
-    joints' names on the page. `known`, `positions`, `samples` and `chosen` can be read; `pin`,
-    `unpin`, `drag`, `keep`, `generate`, `undo`, `reset` and `save` do what the page's controls do,
-    and raise what these tell.
+    make   an `editing.edit.Make`, for example `editing.inbetween.maker(dancer)`; it runs in the
+           kernel with `samples` and `resample` from the page
+    names  the names of the 21 joints on the page
+    seed   the generator's seed is `seed` + the number of times Generate was pressed before
+    `known`, `positions`, `samples` and `chosen` can be read. `pin`, `unpin`, `drag`, `keep`,
+    `generate`, `undo`, `reset` and `save` do the same as the page's controls; errors that the page
+    shows as messages are raised.
     Raises ValueError for a motion of another shape, or not finite.  Notebook: 15
     """
 
@@ -78,7 +77,7 @@ class Editor(anywidget.AnyWidget):
         motion = np.array(motion, np.float64)
         if motion.ndim != 3 or motion.shape[1:] != (J, 3):
             raise ValueError(
-                f"a motion to edit is (frames, {J}, 3), world positions in metres, not "
+                f"a motion to edit must be (frames, {J}, 3), world positions in metres, not "
                 f"{motion.shape}"
             )
         names = list(JOINTS if names is None else names)
@@ -88,8 +87,8 @@ class Editor(anywidget.AnyWidget):
         self._make = make
         self._step, self._past = _Step(Edit(motion)), []
         self._grip = _Grip()
-        self._asked = 0  # the number of the page's last message that asked for in-betweens
-        # what `make` raised last when Generate was pressed, with its traceback
+        self._asked = 0  # the number of the page's last message that requested in-betweens
+        # the last error of `make` after Generate was pressed, with its traceback
         self.error: Exception | None = None
         packed = packing.pack([motion])
         with self.hold_sync():
@@ -100,32 +99,34 @@ class Editor(anywidget.AnyWidget):
 
     @property
     def edit(self) -> Edit:
-        """The edit as it stands."""
+        """The current edit."""
         return self._step.edit
 
     @property
     def known(self) -> Bool[np.ndarray, "T 21"]:
-        """True where a joint's place is given."""
+        """True where a joint's position is given."""
         return self.edit.known
 
     @property
     def positions(self) -> Float[np.ndarray, "T 21 3"]:
-        """The motion with the pinned poses as they were edited."""
+        """The motion with the pinned and edited poses."""
         return self.edit.positions
 
     @property
     def samples(self) -> Float[np.ndarray, "N T 21 3"] | None:
-        """The in-betweens made last; None before."""
+        """The last in-betweens, or None before the first ones."""
         return None if self._step.made is None else self._step.made.samples
 
     @property
     def description(self) -> str:
-        """What is to be seen, in one sentence: the alternative text."""
+        """The alternative text: one sentence about what is shown."""
         return self.state["description"]
 
     def pin(self, *frames: int) -> str:
-        """Pin frames with the pose seen there: the chosen in-between's, or the motion's.
-        IndexError outside."""
+        """Pin frames with the pose that is shown: the chosen in-between's, or the motion's.
+
+        Raises IndexError for a frame outside the motion.
+        """
         edit, frames = self.edit, [self.edit.index(frame) for frame in frames]
         for frame in frames:
             if frame not in edit.pins:
@@ -135,66 +136,61 @@ class Editor(anywidget.AnyWidget):
         return self._do(edit, f"Pinned {listed(frames)}.")
 
     def unpin(self, *frames: int) -> str:
-        """Let frames go."""
+        """Release frames."""
         edit, frames = self.edit, [self.edit.index(frame) for frame in frames]
         for frame in frames:
             edit = edit.unpin(frame)
-        return self._do(edit, f"Let go of {listed(frames)}.")
+        return self._do(edit, f"Released {listed(frames)}.")
 
     def drag(self, frame: int, joint: str, target) -> str:
-        """Move a joint of a pinned frame to a place (metres, world).
-
-        The bones keep their lengths.
-        """
+        """Move a joint of a pinned frame to `target` (metres, world); bones keep their lengths."""
         return self._do(*self._dragged(self.edit, frame, joint, target))
 
     def keep(self, part: str | None) -> str:
-        """Keep a part of the body in every frame, or None.  KeyError with the names there are."""
+        """Keep a part of the body in every frame, or None.  Raises KeyError for another name."""
         return self._do(
             self.edit.keep(part),
             f"The {part} is kept in every frame." if part else "No part is kept.",
         )
 
     def generate(self) -> str:
-        """Make `count` in-betweens.
+        """Generate `count` in-betweens.
 
-        Raises what `make` raises, and ValueError where there is nothing to make.
+        Raises the errors of `make`, and ValueError if there is nothing to generate.
         """
         begun, seed = time.perf_counter(), self._seed + self._step.presses
         self.busy = True
         try:
             draw = torch.Generator().manual_seed(seed)
             made = make_between(self.edit, self._make, draw, self.count, self.resample, self._fps)
-            packing.pack(list(made.samples))  # what cannot be shown is not taken
+            packing.pack(list(made.samples))  # raises for samples that cannot be shown
         finally:
             self.busy = False
-        free = "" if self.known.any() else " Nothing was pinned or kept: the result is free."
+        free = "" if self.known.any() else " Nothing was pinned or kept, so the result is random."
         took = time.perf_counter() - begun
-        words = f"In-betweens made: {self.count}, in {took:.1f} s (seed {seed}).{free}"
+        words = f"In-betweens generated: {self.count}, in {took:.1f} s (seed {seed}).{free}"
         return self._go(_Step(self.edit, made, 0, self._step.presses + 1), words)
 
     def undo(self) -> str:
-        """Take the last thing done back.  IndexError where nothing was done."""
+        """Undo the last change.  Raises IndexError if there is none."""
         if not self._past:
             raise IndexError("there is nothing to undo")
         return self._go(self._past.pop(), "Undone.", remember=False)
 
     def reset(self) -> str:
-        """Back to the motion as it was given."""
-        return self._go(
-            _Step(Edit(self.edit.motion)), "Everything as at first; Undo brings the edit back."
-        )
+        """Return to the original motion, without pins; undo() brings the edit back."""
+        return self._go(_Step(Edit(self.edit.motion)), "The edit is reset; Undo brings it back.")
 
     def save(self, path: str | Path) -> FitReport:
-        """Write the chosen in-between as BVH; before there is one, the motion with its pins.
+        """Write the chosen in-between as BVH, or the motion with its pins if there is none yet.
 
-        The file is written whole or not at all. Returns how far bones had to be evened out.
-        Raises what `write_bvh` raises.
+        The file is written completely or not at all. Returns how far the constant-bone fit moved
+        the joints. Raises the errors of `write_bvh`.
         """
         return write_bvh(Path(path), self._shown(), self._fps)
 
     def _receive(self, _, content: dict, buffers) -> None:
-        if content["do"] == "ping":  # the page only tries whether there is a kernel
+        if content["do"] == "ping":  # the page only tests whether the kernel answers
             return
         acts = {
             "toggle": lambda c: self._toggle(c["frame"]),
@@ -210,12 +206,12 @@ class Editor(anywidget.AnyWidget):
             words = acts[content["do"]](content)
         except KeyboardInterrupt:
             words = "Stopped."
-        except Exception as error:  # told in the page: a handler's error reaches nobody
+        except Exception as error:  # shown in the page, and nowhere else
             words = complaint(error)
         self._tell(words, content["number"])
 
     def _see(self, content: dict) -> None:
-        """Set the traits that a message relies on: their own messages may arrive after it."""
+        """Set the traits that a message needs, because their own messages can arrive later."""
         if "chosen" in content:
             last = 0 if self.samples is None else len(self.samples) - 1
             self.chosen = min(content["chosen"], last)
@@ -226,15 +222,15 @@ class Editor(anywidget.AnyWidget):
         return self.unpin(frame) if self.edit.index(frame) in self.edit.pins else self.pin(frame)
 
     def _pull(self, frame: int, joint: str, by: list, grip: int) -> str:
-        """Move a joint by `by` metres, counted from where its grip began.
+        """Move a joint by `by` metres from where its grip began.
 
         The drags of one grip start from the same pose, and are undone together. After another
-        change (Undo, say) the grip starts again from the pose that is there then, and only what
-        it is moved since is added.
+        change, such as Undo, the grip starts again from the current pose, and only later movement
+        is added.
         """
         by = np.asarray(by, np.float64)
         if by.shape != (3,) or not np.isfinite(by).all():
-            raise ValueError(f"{joint} is moved by three numbers of metres, not by {by.tolist()}")
+            raise ValueError(f"{joint} must be moved by three numbers (metres), not {by.tolist()}")
         last = self._grip if self._grip.name == grip else _Grip(grip)
         going = last.before is not None
         before, since = (last.before, last.since) if going else (self.edit, last.by)
@@ -253,7 +249,7 @@ class Editor(anywidget.AnyWidget):
         return edit, f"{name} in frame {frame} {drag_in_words(before, edit, frame, joint, target)}."
 
     def _pressed(self, after: int, number: int) -> str | None:
-        """Generate; not while others are made, nor for a press from before the last answer."""
+        """Generate, except while another run is active, or for a press before the last answer."""
         if self.busy or after < self._asked:
             return None
         try:
@@ -288,7 +284,7 @@ class Editor(anywidget.AnyWidget):
             return self._tell(words)
 
     def _tell(self, words: str | None, number: int | None = None) -> str:
-        """The page's copy of the edit; `number` is that of the message that is answered."""
+        """Send the edit to the page; `number` is that of the message that is answered."""
         edit = self.edit
         made = self._step.made
         last = self.state
@@ -310,14 +306,11 @@ class Editor(anywidget.AnyWidget):
             len(self.edit) if name == "frame" else 1 if self.samples is None else len(self.samples)
         )
         if not 0 <= value < count:
-            raise traitlets.TraitError(f"{name} is a number from 0 to {count - 1}, not {value}")
+            raise traitlets.TraitError(f"{name} must be from 0 to {count - 1}, not {value}")
         return value
 
     def poster(self, n: int = 6):
-        """A strip of n poses as a pillow image.
-
-        The motion with the pinned poses, and the chosen in-between.
-        """
+        """A strip of n poses as a pillow image: the motion with its pins, and the in-between."""
         return editor_page.strip(
             self.edit, None if self.samples is None else self.samples[self.chosen], self._fps, n
         )

@@ -1,6 +1,6 @@
-"""What the page of the editor is told: its scene, the edit as it stands, words.
+"""The data that the editor sends to its page: the scene, the current edit, and texts.
 
-The page where no kernel runs is here, too.
+It also makes the page for places where no kernel runs.
 
 Notebook: 15
 """
@@ -23,15 +23,15 @@ from . import module, poster
 from .player import PAGE, STACK
 
 MODULE = module.joined(module.EDITOR)
-MOST = 6  # in-betweens at once: more ghosts than that cannot be told apart
+MOST = 6  # in-betweens at once: more ghosts are hard to distinguish
 BINARY = ("joints", "roots", "poses", "made_joints", "made_roots")
 PLAIN = ("scene", "state", "frame", "chosen", "count", "resample", "busy", "file")
 
 
 def scene_of(edit: Edit, fps: float, names: list[str], strength: bool) -> dict:
-    """What does not change: the length, the joints' names, the drawn body.
+    """The data that do not change: the length, the joints' names, the drawn body.
 
-    `strength`: `make` takes a resampling.
+    `strength` says whether `make` has a resampling.
     """
     return {"frames": len(edit), "joints": J, "fps": fps, "names": names,
             "parts": body.parts_record(body.BODY), "keep": list(KEPT), "most": MOST,
@@ -39,7 +39,7 @@ def scene_of(edit: Edit, fps: float, names: list[str], strength: bool) -> dict:
 
 
 def state_of(edit: Edit, made: Made | None) -> dict:
-    """The edit and its in-betweens in numbers and words."""
+    """The edit and its in-betweens as numbers and texts."""
     pins = sorted(edit.pins)
     kept = [] if edit.part is None else np.flatnonzero(body_part(1, edit.part)[0]).tolist()
     return {
@@ -53,24 +53,24 @@ def state_of(edit: Edit, made: Made | None) -> dict:
 
 
 def held(edit: Edit) -> str:
-    """What is known now, and where it contradicts itself."""
+    """A text: what is given now, and the frames where it contradicts itself."""
     words = f"{edit}."
     if edit.torn:
         words += (
-            f" In {listed(edit.torn)} what is kept throughout is elsewhere than "
-            "in the motion: expect a jump."
+            f" In {listed(edit.torn)} the pinned pose moves the part that is kept throughout: "
+            "expect a jump."
         )
     return words
 
 
 def poses_of(edit: Edit) -> bytes:
-    """float32, the pinned poses in the order of their frames."""
+    """The pinned poses in the order of their frames, as bytes of float32."""
     return np.array([edit.pins[frame] for frame in sorted(edit.pins)], "<f4").tobytes()
 
 
 def described(edit: Edit, made: Made | None, fps: float) -> str:
-    """One sentence for those who cannot see it."""
-    some = "" if made is None else f" {len(made.samples)} in-betweens made."
+    """The alternative text."""
+    some = "" if made is None else f" {len(made.samples)} in-betweens generated."
     return (
         f"Motion editor: a skeleton moves for {len(edit) / fps:.1f} s, "
         f"{len(edit)} frames; {edit}.{some}"
@@ -78,14 +78,14 @@ def described(edit: Edit, made: Made | None, fps: float) -> str:
 
 
 def listed(frames) -> str:
-    """Frames in words, the first six of them."""
+    """The first six frames as a text."""
     frames = sorted(frames)
     some = ", ".join(map(str, frames[:6])) + (" ..." if len(frames) > 6 else "")
     return f"frame{'s' * (len(frames) != 1)} {some}"
 
 
 def complaint(error: Exception) -> str:
-    """An error in words; of one that is not ours, its kind as well."""
+    """The message of an error; for an error of another library, with its type."""
     text = str(error.args[0]) if isinstance(error, KeyError) and error.args else str(error)
     ours = isinstance(error, ValueError | IndexError | KeyError)
     text = text if ours and text else f"{type(error).__name__}: {text}"
@@ -100,12 +100,13 @@ ENDING = re.compile(
 def file_of(name: str) -> str:
     """A name typed on the page, with the ending of the file that is written.
 
-    Raises ValueError for no name, one with a folder, and the ending of another kind of file.
+    Raises ValueError for an empty name, a name with a folder, and another ending.
     """
     if set(name) & set("/\\:"):
         raise ValueError(
-            f"not saved: {name!r} names a folder. Type a name alone: the file goes beside the "
-            f"notebook (into {Path.cwd()}). To write elsewhere, call editor.save(path) in a cell"
+            f"not saved: {name!r} contains a folder. Type only a name: the file goes to the "
+            f"notebook's folder ({Path.cwd()}). To write elsewhere, call editor.save(path) in a "
+            "cell"
         )
     found = ENDING.fullmatch(name)
     stem, ending = found.groups() if found else (name, ".bvh")
@@ -117,22 +118,22 @@ def file_of(name: str) -> str:
 
 
 def save_as(editor, name: str) -> str:
-    """Save beside the notebook, under a name typed on the page, and tell where."""
+    """Save to the notebook's folder under a name typed on the page; return a message."""
     path = Path(file_of(name))
     there = path.exists()
-    with contextlib.redirect_stdout(io.StringIO()):  # what it prints is told on the page
-        told = str(editor.save(path)).split(": ", 1)[1]
+    with contextlib.redirect_stdout(io.StringIO()):  # the page shows what `save` prints
+        report = str(editor.save(path)).split(": ", 1)[1]
     what = "the in-between that is shown"
     if editor.samples is None:
         what = "the motion with its pinned poses; nothing is generated yet"
-    over = ", over an older file" * there
-    return f"Saved {path.resolve()} ({what}){over}: {told}."
+    over = ", which replaced an older file" * there
+    return f"Saved {path.resolve()} ({what}){over}: {report}."
 
 
 def html_page(editor) -> str:
-    """A whole HTML page with the editor as it stands.
+    """An HTML page with the editor in its current state.
 
-    It needs no kernel and no network, and cannot generate.
+    It needs no kernel and no network, but it cannot generate.
     """
     record = {name: base64.b64encode(getattr(editor, name)).decode() for name in BINARY}
     record |= {name: getattr(editor, name) for name in PLAIN} | {"busy": False}
@@ -141,17 +142,14 @@ def html_page(editor) -> str:
 
 
 def strip(edit: Edit, sample: np.ndarray | None, fps: float, n: int = 6):
-    """n poses as a pillow image.
-
-    The motion with the pinned poses, and below it the in-between that is shown.
-    """
+    """n poses as a pillow image: the motion with pinned poses, and below it the in-between."""
     figures = [poster.Figure(edit.positions, "with the pinned poses" if edit.pins else "")]
     figures += [] if sample is None else [poster.Figure(sample, "in-between")]
     return poster.filmstrip(figures, fps, n)
 
 
 def bundle(editor, live: dict) -> dict:
-    """The live widget, and beside it a page over a picture, for wherever that does not run."""
+    """The live widget, with a page and a picture for places where the widget does not run."""
     png = base64.b64encode(poster.as_png(editor.poster())).decode()
     stack = STACK.format(
         width=1200, height=editor.scene["height"] + 330,

@@ -1,4 +1,4 @@
-"""Sliders for a figure function: turn a knob, see the same figure again. No arithmetic here."""
+"""Sliders for a function that draws a figure: each change draws the figure again."""
 
 import ipywidgets
 
@@ -6,19 +6,18 @@ from ..viz.style import as_html
 
 
 def explore(draw, **start) -> ipywidgets.VBox:
-    """Show draw(**values) with a control for each argument.
+    """Show draw(**values) with a control for each argument, and a button that resets them all.
 
-    A slider, a list or a tick box each, and a button that resets them all.
-
-    explore(draw, s=(1, 100, 50), name=["linear", "cosine"], noise=True): (low, high, start), the
-    choices, or on/off. `draw` returns a matplotlib Figure, whose label becomes the picture's
-    alternative text. Errors in `draw` are raised.
-    Raises ValueError for an argument that is none of these.
+        explore(draw, s=(1, 100, 50), name=["linear", "cosine"], noise=True)
+    (low, high, start) gives a slider, a list gives choices, True or False gives a tick box. `draw`
+    returns a matplotlib Figure, whose label becomes the picture's alternative text. Errors in
+    `draw` are raised.
+    Raises ValueError for an argument of another kind.
     """
     controls = {name: _control(name, value) for name, value in start.items()}
     first = {name: control.value for name, control in controls.items()}
     picture = ipywidgets.HTML()
-    reset = ipywidgets.Button(description="Reset", tooltip="back to the start")
+    reset = ipywidgets.Button(description="Reset", tooltip="reset all values")
 
     def refresh(_=None):
         picture.value = as_html(
@@ -43,7 +42,7 @@ def _control(name: str, value) -> ipywidgets.Widget:
         return ipywidgets.Dropdown(options=value, value=value[0], description=name)
     if not (isinstance(value, tuple) and len(value) == 3):
         raise ValueError(
-            f"{name} takes (low, high, start), a list of choices, or True or False; got {value!r}"
+            f"{name} takes (low, high, start), a list of choices, or True or False; not {value!r}"
         )
     low, high, begin = value
     kind = ipywidgets.IntSlider if isinstance(begin, int) else ipywidgets.FloatSlider

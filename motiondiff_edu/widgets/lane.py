@@ -1,6 +1,4 @@
-"""The music lane under the figure: what is heard, where its beats are, and the strips above and
-below it.
-"""
+"""The music lane under the figure: the sound, its beats, and the strips above and below it."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -23,10 +21,7 @@ CURVE = 36
 
 @dataclass(frozen=True, eq=False)
 class Lane:
-    """A sound as long as `frames` frames of motion.
-
-    With its beats and downbeats (seconds), and the strips.
-    """
+    """A sound for `frames` frames of motion, its beats and downbeats (seconds), and strips."""
 
     sound: Sound
     beats: list[float]
@@ -37,7 +32,7 @@ class Lane:
 
     @property
     def description(self) -> str:
-        """What is heard and seen of the music, in one sentence: the alternative text."""
+        """The alternative text: one sentence about the music and its strips."""
         beats = f"{len(self.beats)} beats marked" if self.beats else ""
         said = [
             f"Music: {self.sound.seconds:.1f} s, its waveform below the figure",
@@ -48,15 +43,12 @@ class Lane:
 
     @property
     def height(self) -> int:
-        """Pixels that the lane takes in the page, with the line of words below it."""
+        """The height of the lane in the page in pixels, with the line of text below it."""
         more = bool(self.strips.levels) or self.strips.moved is not None
         return 96 + 36 * more + (54 if self.strips.moved is not None else 0)
 
     def traits(self) -> tuple[bytes, bytes, dict]:
-        """What the page needs.
-
-        The sound file, the bytes of waveform and attention, and the record explaining them.
-        """
+        """The page's data: the sound file, bytes of waveform and attention, and their record."""
         wave = peaks(self.sound.samples)
         record = {
             "mime": self.sound.mime,
@@ -72,7 +64,7 @@ class Lane:
         return self.sound.data, wave.tobytes() + self.strips.codes(), record
 
     def under(self, picture: Image.Image) -> Image.Image:
-        """The picture with the lane drawn below it; of attention, the mean over the motion."""
+        """The picture with the lane below it; attention is drawn as its mean over the motion."""
         width, moved = picture.width, self.strips.moved
         height = TICKS + WAVE + AXIS + (0 if moved is None else CURVE)
         whole = Image.new("RGB", (width, picture.height + height), body.PAPER)
@@ -140,7 +132,7 @@ def of(audio, frames: int, fps: float) -> Lane | None:
         return None
     track = audio if isinstance(audio, Soundtrack) else Soundtrack(audio)
     if track.audio is None:
-        raise ValueError("beats and attention are drawn over a waveform: give `audio` too")
+        raise ValueError("beats and attention are drawn over a waveform: pass `audio` too")
     seconds = frames / fps
     sound = as_sound(track.audio, track.sample_rate, seconds, track.codec)
     beats, downbeats = (as_times(getattr(track, n), n, seconds) for n in ("beats", "downbeats"))

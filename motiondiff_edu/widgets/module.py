@@ -1,16 +1,14 @@
-"""The ES modules of player, editor, bench.
+"""The ES modules of player, editor and bench.
 
-Parts in js/, one after the other, are one module that imports nothing.
-
-The parts name what they take from each other as any ES modules do; joined, these lines have done
-their duty.
+Each is made from the files in js/, joined into one module that imports nothing. The files import
+from each other as usual; joining removes these lines.
 """
 
 import re
 from pathlib import Path
 
 FOLDER = Path(__file__).parent / "js"
-# each takes from those before it only
+# each file imports only from those before it
 PARTS = ("dom", "figures", "paint", "clock", "lane", "player")
 EDITOR = ("dom", "figures", "paint", "clock", "timeline", "stage", "wire", "editor")
 BENCH = ("dom", "figures", "paint", "clock", "bench_paint", "bench")
@@ -22,7 +20,7 @@ _EXPORT = re.compile(r"^export (?=function|const)", re.MULTILINE)
 def joined(parts: tuple[str, ...] = PARTS) -> str:
     """One ES module: the text of the parts without their imports.
 
-    Only what the last one exports is exported.
+    Only the exports of the last part remain.
     """
     *inner, last = (_IMPORT.sub("", (FOLDER / f"{name}.js").read_text("utf-8")) for name in parts)
     return "\n".join([*(_EXPORT.sub("", text) for text in inner), last])

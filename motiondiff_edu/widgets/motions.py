@@ -1,4 +1,4 @@
-"""A Motion in the player, as a film and as a page: what it shows of itself, and .mp4 .gif .html.
+"""A Motion in the player, as a film (.mp4, .gif) and as a page (.html).
 
 Notebook: 00
 """
@@ -20,26 +20,25 @@ from .player import Look, Player, Soundtrack
 
 
 def player_of(motions: Sequence[Motion], labels: Sequence[str] | None = None) -> Player:
-    """Several motions side by side, at the frame rate of the first, with the first sound there is.
+    """Several motions side by side, at the frame rate of the first, with the first sound.
 
-    Raises MotionError where a joint is missing, for two skeletons, and for labels that do not
-    match.
+    Raises MotionError for a missing joint, different skeletons, or a wrong number of labels.
     """
     first = motions[0]
     for motion in motions:
         motion.check_finite()
         if motion.skeleton != first.skeleton:
             raise MotionError(
-                f"{first.name} and {motion.name} have different skeletons: play them one by one"
+                f"{first.name} and {motion.name} have different skeletons: play them separately"
             )
     if labels is not None and len(labels) != len(motions):
-        raise MotionError(f"{len(labels)} labels for {len(motions)} motions: give one for each")
+        raise MotionError(f"{len(labels)} labels for {len(motions)} motions: pass one for each")
     shown = [motion.resampled(first.fps) for motion in motions]
-    heard = next((motion for motion in shown if motion.audio is not None), first)
+    sounding = next((motion for motion in shown if motion.audio is not None), first)
     longest = max(shown, key=len)
     sound = None
-    if heard.audio is not None:
-        sound = Soundtrack(_as_long(heard, longest), sample_rate=heard.sample_rate)
+    if sounding.audio is not None:
+        sound = Soundtrack(_as_long(sounding, longest), sample_rate=sounding.sample_rate)
     parents = None if first.skeleton == COURSE else first.skeleton.parents
     return Player(
         [motion.positions for motion in shown],
@@ -51,10 +50,10 @@ def player_of(motions: Sequence[Motion], labels: Sequence[str] | None = None) ->
     )
 
 
-def _as_long(heard: Motion, longest: Motion) -> Float[np.ndarray, "N"]:
-    """The sound, cut or filled up with silence to the length of the longest motion."""
-    count = round(longest.seconds * heard.sample_rate)
-    sound = heard.sound_in_step()[:count]
+def _as_long(sounding: Motion, longest: Motion) -> Float[np.ndarray, "N"]:
+    """The sound, cut or padded with silence to the length of the longest motion."""
+    count = round(longest.seconds * sounding.sample_rate)
+    sound = sounding.sound_in_step()[:count]
     return np.pad(sound, (0, count - len(sound)))
 
 
@@ -64,17 +63,17 @@ def play(
     path: str | Path | None = None,
     open_page: bool = True,
 ) -> Path | None:
-    """Show motions side by side: in a notebook a player, elsewhere a page that the browser opens.
+    """Show motions side by side: in a notebook as a player, elsewhere as a page in the browser.
 
-    The page is written to `path` (by default to the folder for temporary files), and where it is,
-    is printed and returned; `open_page=False` leaves it at that.
-    Raises MotionError as `player_of`, TypeError for what is no Motion.
+    path       where to write the page (default: a temporary file); it is printed and returned
+    open_page  False writes the page without opening the browser
+    Raises MotionError as `player_of` does, TypeError for anything but a Motion.
     """
     figures = []
     for given in motions:
         figures += list(given) if isinstance(given, list | tuple) else [given]
     if not figures:
-        raise TypeError("play takes a motion at least; md.read_motion(path) reads one")
+        raise TypeError("play needs at least one motion; md.read_motion(path) reads one")
     for one in figures:
         as_motion(one)
     player = player_of(figures, labels)
@@ -95,13 +94,13 @@ def play(
 
 
 def _in_a_notebook() -> bool:
-    """Whether somebody looks at the outputs of this process' cells."""
+    """Whether this process shows its outputs in a notebook."""
     shell = sys.modules["IPython"].get_ipython() if "IPython" in sys.modules else None
     return shell is not None and hasattr(shell, "kernel")
 
 
 def _has_a_screen() -> bool:
-    """Whether a browser would have a window; one for the terminal would take the terminal."""
+    """Whether a browser can open a window; a text browser would block the terminal."""
     if os.environ.get("BROWSER") or sys.platform in ("win32", "darwin"):
         return True
     return bool(os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"))
@@ -109,7 +108,7 @@ def _has_a_screen() -> bool:
 
 @registry.shows.register("player")
 def show(motion: Motion):
-    """The MIME bundle of the motion's player; its words where a joint is missing."""
+    """The MIME bundle of the motion's player, or its text if a joint is missing."""
     if not motion.known.all():
         return {"text/plain": repr(motion)}
     bundle, metadata = player_of([motion])._repr_mimebundle_()
@@ -118,17 +117,17 @@ def show(motion: Motion):
 
 @registry.writers.register(".html")
 def write_page(motion: Motion, path: Path) -> None:
-    """A page that plays anywhere, offline."""
+    """Write a page that plays in any browser, offline."""
     player_of([motion]).save_html(path)
 
 
 @registry.writers.register(".gif")
 def write_gif(motion: Motion, path: Path) -> None:
-    """An endless GIF."""
+    """Write a GIF that repeats forever."""
     player_of([motion]).save_gif(path)
 
 
 @registry.writers.register(".mp4")
 def write_mp4(motion: Motion, path: Path) -> None:
-    """A film with its sound.  Raises ImportError without imageio-ffmpeg."""
+    """Write a film with its sound.  Raises ImportError without imageio-ffmpeg."""
     player_of([motion]).save_mp4(path)

@@ -2,8 +2,8 @@
 
 Joints relative to the root as int16 at 1/2048 m, the root's path as float32.
 
-Whole positions as int16 would overflow on a long walk; relative ones reach 16 m from the hips,
-which no body does.
+World positions as int16 would overflow on a long walk; relative ones reach 16 m from the hips,
+which is enough for any body.
 """
 
 from collections.abc import Sequence
@@ -42,23 +42,23 @@ def _relative_units(positions: Float[np.ndarray, "T J 3"]) -> Float[np.ndarray, 
 
 
 def check_positions(positions: Float[np.ndarray, "T J 3"], figure: int = 0) -> None:
-    """Raise ValueError where a position is not finite or too far from the root.
+    """Raise ValueError if a position is not finite or too far from the root.
 
-    It names figure, frame and joint.
+    The message names figure, frame and joint.
     """
     if not len(positions):
-        raise ValueError(f"figure {figure} has no frames: nothing to draw")
+        raise ValueError(f"figure {figure} has no frames")
     bad = ~np.isfinite(positions).all(-1)
     if bad.any():
         raise ValueError(
-            f"{_where(bad, figure)}: the position is not finite ({int(bad.sum())} such joints in "
-            "all). Look where the motion was computed; a diverged rollout is the usual cause"
+            f"{_where(bad, figure)}: the position is not finite ({int(bad.sum())} joints in all). "
+            "Check where the motion was computed; a diverged rollout is the usual cause"
         )
     far = (np.abs(_relative_units(positions)) > 32767).any(-1)
     if far.any():
         raise ValueError(
             f"{_where(far, figure)}: more than {REACH:.0f} m from joint 0. "
-            "Positions are in metres: are these cm?"
+            "Positions must be in metres: are these cm?"
         )
 
 
@@ -73,24 +73,24 @@ def as_figures(positions: object) -> list[Float[np.ndarray, "T J 3"]]:
         array = np.asarray(positions, dtype=np.float64)
         figures = list(array) if array.ndim == 4 else [array]
     if not figures:
-        raise ValueError("no figure given: nothing to draw")
+        raise ValueError("no figure given")
     for i, figure in enumerate(figures):
         if figure.ndim != 3 or figure.shape[-1] != 3:
             raise ValueError(
-                f"figure {i} has shape {figure.shape}; positions are (frames, joints, 3) in metres"
+                f"figure {i} has shape {figure.shape}; it must be (frames, joints, 3) in metres"
             )
     if len({figure.shape[1] for figure in figures}) > 1:
         raise ValueError(
-            f"figures have different joints: {[figure.shape[1] for figure in figures]}"
+            f"figures have different numbers of joints: {[figure.shape[1] for figure in figures]}"
         )
     return figures
 
 
 def pack(figures: Sequence[Float[np.ndarray, "_ J 3"]]) -> Packed:
-    """Pack figures; raises ValueError where `check_positions` does, and never clips.
+    """Pack figures; positions are never clipped.  Raises ValueError as `check_positions` does.
 
-    Stored joints are within 1/4096 m (0.24 mm) of the given ones, plus float32's rounding of the
-    root.
+    Stored joints are within 1/4096 m (0.24 mm) of the given ones, plus the rounding of the root to
+    float32.
     """
     joints, roots = [], []
     for i, positions in enumerate(figures):
@@ -103,7 +103,7 @@ def pack(figures: Sequence[Float[np.ndarray, "_ J 3"]]) -> Packed:
 
 
 def unpack(packed: Packed) -> list[Float[np.ndarray, "_ J 3"]]:
-    """The positions again, as the browser reads them."""
+    """Unpack the positions, as the browser does."""
     joints = (
         np.frombuffer(packed.joints, "<i2").reshape(-1, packed.joint_count, 3) / UNITS_PER_METRE
     )
@@ -112,7 +112,7 @@ def unpack(packed: Packed) -> list[Float[np.ndarray, "_ J 3"]]:
 
 
 def as_contacts(contacts: object, frames: Sequence[int]) -> list[Bool[np.ndarray, "_ 2"] | None]:
-    """Per figure (T, 2) bool (left, right planted) or None, checked against the figure's frames."""
+    """For each figure (T, 2) bool (left, right planted) or None, after a check of its frames."""
     given = (
         list(contacts)
         if isinstance(contacts, Sequence)
@@ -124,7 +124,7 @@ def as_contacts(contacts: object, frames: Sequence[int]) -> list[Bool[np.ndarray
     for i, (c, n) in enumerate(zip(out, frames, strict=True)):
         if c is not None and c.shape != (n, 2):
             raise ValueError(
-                f"contacts of figure {i} have shape {c.shape}; expected ({n}, 2): left, right"
+                f"contacts of figure {i} have shape {c.shape}; they must be ({n}, 2): left, right"
             )
     return out
 
@@ -132,10 +132,7 @@ def as_contacts(contacts: object, frames: Sequence[int]) -> list[Bool[np.ndarray
 def pack_contacts(
     contacts: Sequence[Bool[np.ndarray, "_ 2"] | None], frames: Sequence[int]
 ) -> bytes:
-    """One byte a frame.
-
-    1 for left, 2 for right, 3 for both planted; 0 also where nothing is known.
-    """
+    """One byte per frame: 1 for left, 2 for right, 3 for both planted; 0 for none or unknown."""
     codes = [
         np.zeros(n, np.uint8) if c is None else (c[:, 0] + 2 * c[:, 1]).astype(np.uint8)
         for c, n in zip(contacts, frames, strict=True)
@@ -144,7 +141,7 @@ def pack_contacts(
 
 
 def per_figure(value: object, count: int, name: str) -> list:
-    """One value for all figures, or a list with one each."""
+    """A list with one value for each figure, from such a list or a single value."""
     values = list(value) if isinstance(value, list | tuple) else [value] * count
     if len(values) != count:
         raise ValueError(f"{len(values)} values of `{name}` for {count} figures")

@@ -1,8 +1,6 @@
-"""The path pad: draw on the floor where a figure shall walk.
+"""The path pad: draw the path of a walk on the floor, by mouse or keyboard, or choose a ready one.
 
-By mouse, keyboard or a ready-made path.
-
-Arrows add half a metre, Backspace takes it back, C clears, R resets.  Notebook: 00
+Arrows add half a metre, Backspace removes it, C clears, R resets.  Notebook: 00
 """
 
 import base64
@@ -25,16 +23,18 @@ class PathPad(anywidget.AnyWidget):
 
     Its left (x) is to the left.
 
-    `points` (n, 2) [x, z], `speed` (m/s) and `stops` (metres along the path) can be read and set;
-    `control()` is what walks along them; `on_change(f)` calls f(pad) after each change.   Notebook:
-    00
+    points   the path (n, 2) [x, z]; it can be read and set
+    speed    m/s; it can be read and set
+    stops    metres along the path; they can be read and set
+    `control()` returns the control that follows the path. `on_change(f)` calls f(pad) after each
+    change.   Notebook: 00
     """
 
     _esm = Path(__file__).with_suffix(".js")
     line = traitlets.List().tag(sync=True)
     stops = traitlets.List(traitlets.Float()).tag(sync=True)
     speed = traitlets.Float(1.2, min=0.3, max=3.0).tag(sync=True)
-    seconds = traitlets.Float(0.0).tag(sync=True)  # what the walk takes; 0 where no path is drawn
+    seconds = traitlets.Float(0.0).tag(sync=True)  # duration of the walk; 0 without a path
     preset = traitlets.Unicode("").tag(sync=True)
     presets = traitlets.List(list(walks.PRESETS)).tag(sync=True)
     height = traitlets.Int(460).tag(sync=True)
@@ -48,7 +48,7 @@ class PathPad(anywidget.AnyWidget):
 
     @property
     def points(self) -> Float[np.ndarray, "n 2"]:
-        """The drawn path, (n, 2) [x, z] in metres; n is 0 where nothing is drawn."""
+        """The drawn path, (n, 2) [x, z] in metres; n is 0 without a path."""
         return np.array(self.line, dtype=np.float64).reshape(-1, 2)
 
     @points.setter
@@ -56,7 +56,7 @@ class PathPad(anywidget.AnyWidget):
         points = np.asarray(value, dtype=np.float64)
         if points.ndim != 2 or points.shape[1] != 2 or not np.isfinite(points).all():
             raise ValueError(
-                f"points are (n, 2) finite numbers [x, z] in metres, got shape {points.shape}"
+                f"points must be (n, 2) finite numbers [x, z] in metres, not shape {points.shape}"
             )
         with self.hold_trait_notifications():
             self.preset = ""
@@ -67,7 +67,7 @@ class PathPad(anywidget.AnyWidget):
     def _known_preset(self, proposal):
         if proposal["value"] and proposal["value"] not in walks.PRESETS:
             raise traitlets.TraitError(
-                f"no path is called {proposal['value']!r}; there are {', '.join(walks.PRESETS)}"
+                f"no path is called {proposal['value']!r}; use one of {', '.join(walks.PRESETS)}"
             )
         return proposal["value"]
 
@@ -82,36 +82,33 @@ class PathPad(anywidget.AnyWidget):
     def _time_it(self, change):
         try:
             self.seconds = len(self.control()) / 20
-        except ValueError:  # too short to walk along, said by control()
+        except ValueError:  # the path is too short; control() raises the message
             self.seconds = 0.0
 
     def control(self, fps: float | int = 20.0) -> Float[np.ndarray, "T 3"]:
-        """The control that walks along the path at the chosen speed, from rest to rest.
+        """The control that follows the path at the chosen speed, from rest to rest.
 
         See `path_to_control`.
         """
         return walks.path_to_control(self.points, self.speed, fps, self.stops)
 
     def on_change(self, callback: Callable[["PathPad"], object]) -> None:
-        """Call `callback(pad)` whenever path, stops or speed have changed.
+        """Call `callback(pad)` once after each change of path, stops, speed or several of them."""
+        last = [(self.line, self.stops, self.speed)]
 
-        Once, when they change together.
-        """
-        told = [(self.line, self.stops, self.speed)]
-
-        def tell(change):
+        def notify(change):
             now = (self.line, self.stops, self.speed)
-            if now != told[0]:
-                told[0] = now
+            if now != last[0]:
+                last[0] = now
                 callback(self)
 
-        self.observe(tell, names=["line", "stops", "speed"])
+        self.observe(notify, names=["line", "stops", "speed"])
 
     @property
     def description(self) -> str:
-        """What is drawn, in one sentence: the alternative text."""
+        """The alternative text: one sentence about the path."""
         if not self.line:
-            return "A floor seen from above, nothing drawn on it."
+            return "A floor seen from above, without a path."
         x, z = self.points[-1]
         return (
             f"A path seen from above: {len(self.line)} points, "

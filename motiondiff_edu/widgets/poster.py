@@ -1,5 +1,5 @@
-"""Still pictures of the player's scene, with pillow: the filmstrip where nothing runs, and the
-frames of a GIF or MP4.
+"""Still pictures of the player's scene, with pillow: a filmstrip for places where no widget runs,
+and the frames of a GIF or MP4.
 """
 
 import io
@@ -15,16 +15,13 @@ from ..motion.progress import DELAY
 from ..motion.skeleton import BONES, HEELS, TOES
 from ..viz import body
 
-SMOOTH = 2  # pictures are drawn this much larger, then shrunk: pillow has no smooth edges
+SMOOTH = 2  # pictures are drawn larger by this factor and then shrunk: pillow has no antialiasing
 GROUND, LINE = "#F1F3F5", "#9AA3AE"
 
 
 @dataclass(frozen=True, eq=False)
 class Thin:
-    """Thin limbs over a figure's body, of n motions.
-
-    The bones that have an end in `away`, dashed or not.
-    """
+    """Thin limbs of n motions over a figure's body: the bones with an end in `away`."""
 
     motions: Float[np.ndarray, "n T J 3"]
     away: Bool[np.ndarray, "T J"]
@@ -34,10 +31,7 @@ class Thin:
 
 @dataclass(frozen=True, eq=False)
 class Figure:
-    """One figure of a scene.
-
-    `past` frames were given, `path` is drawn on the floor ((n, 2) metres, [x, z]).
-    """
+    """One figure of a scene; `past` frames were given, `path` (metres, [x, z]) is on the floor."""
 
     positions: Float[np.ndarray, "T J 3"]
     label: str = ""
@@ -51,21 +45,18 @@ class Figure:
         return len(self.positions)
 
     def tense(self, t: int) -> str:
-        """Whether frame t was given or generated, in words; empty where no past is known."""
+        """The word given or generated for frame t; empty if `past` is None."""
         return "" if self.past is None else ("past" if t < self.past else "future")
 
 
 def camera_at(positions: Float[np.ndarray, "T J 3"], t: int, camera: body.Camera) -> body.Camera:
-    """The camera over the root, averaged over a second around frame t, so that it does not bob."""
+    """The camera that follows the root, averaged over a second around frame t for a calm view."""
     around = positions[np.clip(np.arange(t - 10, t + 11), 0, len(positions) - 1), 0]
     return camera.at(*around[:, [0, 2]].mean(0))
 
 
 def floor_lines(camera: body.Camera, reach: int = 5) -> Iterator[tuple[np.ndarray, float]]:
-    """Segments of a 1 m grid around the camera's target, with their strength 0..1.
-
-    The strength fades outwards.
-    """
+    """Segments of a 1 m grid around the camera's target; their strength 1..0 fades outwards."""
     centre = np.round([camera.x, camera.z])
     for i in range(-reach, reach + 1):
         for k in range(-reach, reach):
@@ -123,7 +114,7 @@ def _ground(
 def _thin_limbs(
     pen: ImageDraw.ImageDraw, thin: Thin, t: int, camera: body.Camera, size: tuple
 ) -> None:
-    """Over a body; a dashed one is five dashes a bone."""
+    """Draw thin limbs over a body; a dashed limb has five dashes per bone."""
     bones = [bone for bone in BONES if thin.away[t, list(bone)].any()]
     shares = np.linspace(0, 1, 10 if thin.dashed else 2).reshape(-1, 2)
     for pose in thin.motions[:, t]:
@@ -136,9 +127,9 @@ def _thin_limbs(
 def render(
     figure: Figure, t: int, size: tuple[int, int], camera: body.Camera | None = None
 ) -> Image.Image:
-    """Frame t of one figure, the camera following.
+    """Frame t of one figure, with a camera that follows it; `size` is in pixels.
 
-    It is the last frame once the figure has ended; `size` is in pixels.
+    After the figure's end it is the last frame.
     """
     t = min(t, len(figure) - 1)
     big = (size[0] * SMOOTH, size[1] * SMOOTH)
@@ -186,9 +177,9 @@ def filmstrip(
     width: int = 960,
     between: Sequence[int] | None = None,
 ) -> Image.Image:
-    """n poses from first to last, or of the frames `between` (both inclusive).
+    """n poses from the first to the last frame, or of the frames `between` (both inclusive).
 
-    A row for each figure, times above.
+    Each figure has a row; the times stand above.
     """
     cell, head = width // n, 30
     tall = int(cell * {1: 2.1, 2: 1.45}.get(len(figures), 1.2))
@@ -208,7 +199,7 @@ def filmstrip(
 
 
 def as_png(picture: Image.Image) -> bytes:
-    """PNG bytes of a picture, in 128 colours: a third of the size, no difference to the eye."""
+    """PNG bytes of a picture in 128 colours: a third of the size, without a visible difference."""
     buffer = io.BytesIO()
     picture.quantize(128, dither=Image.Dither.NONE).save(buffer, "PNG", optimize=True)
     return buffer.getvalue()
@@ -217,10 +208,7 @@ def as_png(picture: Image.Image) -> bytes:
 def film(
     figures: list[Figure], fps: float, size: tuple[int, int] = (400, 360)
 ) -> Iterator[Image.Image]:
-    """Every frame, the figures side by side.
-
-    Each in a field of `size` with label, tense and time.
-    """
+    """Every frame, with the figures side by side, each in a field of `size` with its label."""
     for t in tqdm(range(max(map(len, figures))), desc="drawing", delay=DELAY, leave=False):
         picture = Image.new("RGB", (size[0] * len(figures), size[1]), body.PAPER)
         pen = ImageDraw.Draw(picture)
@@ -234,9 +222,9 @@ def film(
 
 
 def film_palette(figures: list[Figure], size: tuple[int, int]) -> Image.Image:
-    """One palette of 96 colours for all frames.
+    """One palette of 96 colours for all frames, from the first and the last frame.
 
-    From the first and the last, which hold past and future shades.
+    These two have the colours of the past and of the future.
     """
     both = Image.new("RGB", (2 * size[0], size[1]))
     for i, t in enumerate((0, len(figures[0]) - 1)):

@@ -1,11 +1,9 @@
-"""Sound for the player.
+"""Sound for the player: one channel as long as the motion, as a small file that browsers play.
 
-One channel of samples, as long as the motion, as a small file that browsers play.
-
-Opus in Ogg (10 s take 10-40 KB) where soundfile can write it, else WAV (320 KB); `codec="flac"`
-(exact, about 200 KB) and "wav" play in older Safaris, too. MP3 and Vorbis are not written: in
-Chromium a jump lands up to 70 ms beside the time it tells (MP3) or 30 ms (Vorbis), and short Vorbis
-files of libsndfile break off.
+The default is Opus in Ogg (10-40 KB for 10 s), or WAV (320 KB) if soundfile cannot write Opus.
+`codec="flac"` (exact, about 200 KB) and "wav" also play in older Safaris. MP3 and Vorbis are not
+used: in Chromium a jump misses its time by up to 70 ms (MP3) or 30 ms (Vorbis), and libsndfile cuts
+off short Vorbis files.
 Notebook: 12
 """
 
@@ -22,17 +20,14 @@ from ..viz.over_time import lows_and_highs
 
 CODECS = {"ogg": ("OGG", "OPUS"), "flac": ("FLAC", "PCM_16"), "wav": ("WAV", "PCM_16")}
 OPUS_RATES = (8_000, 12_000, 16_000, 24_000, 48_000)
-RATES = (8_000, 96_000)  # Hz: what browsers agree on
+RATES = (8_000, 96_000)  # Hz: the range that all browsers play
 # samples written at once: libsndfile's Ogg encoders have overflowed their stack on long ones
 BLOCK = 8192
 
 
 @dataclass(frozen=True, eq=False)
 class Sound:
-    """What is heard: the samples, and the same as the bytes of a file.
-
-    `seconds` is the length of both.
-    """
+    """A sound as samples, and as the bytes of a file with MIME type `mime`."""
 
     samples: Float[np.ndarray, "N"]
     sample_rate: int
@@ -48,16 +43,16 @@ class Sound:
 def as_sound(
     audio: object, sample_rate: int = 16_000, seconds: float | None = None, codec: str = "ogg"
 ) -> Sound:
-    """Sound cut or filled up to `seconds`.
+    """A Sound, cut or padded to `seconds`.
 
-    Samples (N,) between -1 and 1, or the bytes of a WAV, FLAC, Ogg or MP3 file.
-
-    Louder samples are scaled down together; channels of a file are averaged. A sound that had to be
-    cut or filled up by more than 0.05 s is told in a warning. Raises ValueError for another shape,
-    integers, samples that are not finite, and bytes nobody can read.
+    `audio` is samples (N,) between -1 and 1, or the bytes of a WAV, FLAC, Ogg or MP3 file. Louder
+    samples are scaled down together; channels of a file are averaged. A warning reports when more
+    than 0.05 s are cut or added.
+    Raises ValueError for another shape, integers, samples that are not finite, and unreadable
+    bytes.
     """
     if codec not in CODECS:
-        raise ValueError(f"codec is one of {', '.join(CODECS)}, not {codec!r}")
+        raise ValueError(f"codec must be one of {', '.join(CODECS)}, not {codec!r}")
     if isinstance(audio, bytes | bytearray | memoryview):
         audio, sample_rate = _decoded(bytes(audio))
     samples = _fitted(_checked(audio, sample_rate), sample_rate, seconds)
@@ -67,10 +62,7 @@ def as_sound(
 def encode(
     samples: Float[np.ndarray, "N"], sample_rate: int, codec: str = "ogg"
 ) -> tuple[bytes, str]:
-    """The bytes of a sound file and their MIME type.
-
-    WAV by the standard library where soundfile cannot write it.
-    """
+    """The bytes of a sound file and their MIME type; WAV if soundfile cannot write the codec."""
     try:
         import soundfile
 
@@ -93,18 +85,18 @@ def encode(
 
 
 def peaks(samples: Float[np.ndarray, "N"], bins: int = 1000) -> Int8[np.ndarray, "_ 2"]:
-    """The waveform: lowest and highest sample of each of (at most) `bins` equal stretches.
+    """The waveform: lowest and highest sample of each of (at most) `bins` equal pieces.
 
-    127 is the largest of all.
+    The largest absolute sample becomes 127.
     """
     both = np.stack(lows_and_highs(samples, bins)[1:], 1)
     return np.rint(both / max(np.abs(both).max(), 1e-9) * 127).astype(np.int8)
 
 
 def as_times(times: object, name: str, seconds: float) -> list[float]:
-    """Increasing times in seconds, those beyond the end left out.
+    """Increasing times in seconds, without those beyond the end.
 
-    Raises ValueError for anything else.
+    Raises ValueError for anything but increasing times.
     """
     values = np.asarray([] if times is None else times, dtype=np.float64)
     if (
@@ -114,7 +106,7 @@ def as_times(times: object, name: str, seconds: float) -> list[float]:
         or (values < 0).any()
     ):
         raise ValueError(
-            f"`{name}` are increasing times in seconds from the start, one number each: "
+            f"`{name}` must be increasing times in seconds from the start, one number each: "
             f"got {times!r:.80}"
         )
     return values[values < seconds].round(4).tolist()
@@ -123,27 +115,27 @@ def as_times(times: object, name: str, seconds: float) -> list[float]:
 def _checked(audio: object, sample_rate: int) -> Float[np.ndarray, "N"]:
     if not RATES[0] <= sample_rate <= RATES[1] or int(sample_rate) != sample_rate:
         raise ValueError(
-            f"sample_rate is a whole number of Hz from {RATES[0]} to {RATES[1]}, not {sample_rate}"
+            f"sample_rate must be a whole number from {RATES[0]} to {RATES[1]} Hz, not "
+            f"{sample_rate}"
         )
     samples = np.asarray(audio)
     if samples.ndim != 1:
         raise ValueError(
             f"audio has shape {samples.shape}; "
-            "give one channel (N,), the mean of several for instance"
+            "pass one channel (N,), for example the mean of several"
         )
     if not len(samples):
-        raise ValueError("audio has no samples: nothing to play")
+        raise ValueError("audio has no samples")
     if not np.issubdtype(samples.dtype, np.floating):
         raise ValueError(
-            f"audio holds {samples.dtype}; give floats from -1 to 1 "
-            "(16-bit samples divided by 32768)"
+            f"audio is {samples.dtype}; pass floats from -1 to 1 (16-bit samples divided by 32768)"
         )
     bad = ~np.isfinite(samples)
     if bad.any():
         at = int(np.argmax(bad))
         raise ValueError(
             f"audio is not finite at sample {at} ({at / sample_rate:.2f} s); "
-            f"{int(bad.sum())} such samples in all"
+            f"{int(bad.sum())} samples in all"
         )
     return (samples / max(1.0, float(np.abs(samples).max()))).astype(np.float32)
 
@@ -153,10 +145,10 @@ def _fitted(samples: np.ndarray, sample_rate: int, seconds: float | None) -> np.
         return samples
     wanted, given = round(seconds * sample_rate), len(samples)
     if abs(given - wanted) > 0.05 * sample_rate:
-        told = f"the sound lasts {given / sample_rate:.2f} s, the motion {seconds:.2f} s: "
+        lengths = f"the sound lasts {given / sample_rate:.2f} s, the motion {seconds:.2f} s: "
         left = (wanted - given) / sample_rate
         warnings.warn(
-            told + (f"its last {left:.2f} s are silent" if left > 0 else "the rest is cut off"),
+            lengths + (f"the last {left:.2f} s are silent" if left > 0 else "the rest is cut off"),
             stacklevel=5,
         )
     return np.pad(samples, (0, max(0, wanted - given)))[:wanted]
@@ -169,13 +161,13 @@ def _decoded(data: bytes) -> tuple[np.ndarray, int]:
         samples, sample_rate = soundfile.read(io.BytesIO(data), dtype="float32", always_2d=True)
     except (OSError, RuntimeError) as error:
         raise ValueError(
-            f"these {len(data)} bytes are no WAV, FLAC, Ogg or MP3 file: {error}"
+            f"these {len(data)} bytes are not a WAV, FLAC, Ogg or MP3 file: {error}"
         ) from error
     return samples.mean(1), sample_rate
 
 
 def _resampled(samples: np.ndarray, sample_rate: int) -> tuple[np.ndarray, int]:
-    """At the next rate that Opus knows."""
+    """Resample to the next rate that Opus supports."""
     from scipy.signal import resample_poly
 
     rate = next((r for r in OPUS_RATES if r >= sample_rate), OPUS_RATES[-1])

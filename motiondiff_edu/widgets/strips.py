@@ -1,9 +1,7 @@
-"""What the music lane shows besides the waveform, packed small.
+"""Data of the music lane besides the waveform: attention over the music, and a figure's movement.
 
-Attention over the music, and how far a figure moved.
-
-Attention is kept in 8 bits, each row scaled by its own largest weight, which goes along: wrong by
-at most 1/510 of it.
+Attention is stored in 8 bits. Each row is scaled by its largest weight, which is stored too; the
+error is at most 1/510 of that weight.
 """
 
 from collections.abc import Mapping
@@ -18,35 +16,32 @@ from .sound import as_times
 
 @dataclass(frozen=True, eq=False)
 class Level:
-    """One attention map.
+    """One attention map: rows over the motion's time, columns between `edges` (seconds).
 
-    Rows over the motion's time, columns over `edges` (seconds), `tops` the rows' largest.
+    `tops` are the largest weights of the rows.
     """
 
     name: str
     codes: UInt8[np.ndarray, "T M"]
     tops: Float[np.ndarray, "T"]
     edges: Float[np.ndarray, "M1"]
-    full: float | None  # the weight that is painted in full colour; None: the row's largest
+    full: float | None  # the weight that has full colour; None: the row's largest
 
     def weights(self) -> Float[np.ndarray, "T M"]:
-        """The map again, as the browser reads it."""
+        """Unpack the map, as the browser does."""
         return self.codes / 255 * self.tops[:, None]
 
 
 @dataclass(frozen=True, eq=False)
 class Strips:
-    """Attention maps, and how far the figure moved when the sound at `hits` was silenced.
-
-    The curve is in metres.
-    """
+    """Attention maps, and how far the figure `moved` (m) when the sound at `hits` is silenced."""
 
     levels: tuple[Level, ...] = ()
     moved: Float[np.ndarray, "T"] | None = None
     hits: tuple[float, ...] = ()
 
     def record(self) -> dict:
-        """What the module needs besides the codes; equal edges are written once."""
+        """The page's record besides the codes; equal edges are stored once."""
         edges = [level.edges.round(4).tolist() for level in self.levels]
         once = [e for i, e in enumerate(edges) if e not in edges[:i]]
         levels = [
@@ -70,7 +65,7 @@ class Strips:
         return b"".join(level.codes.tobytes() for level in self.levels)
 
     def words(self) -> str:
-        """What is shown, for those who cannot see it."""
+        """The alternative text."""
         said = (
             [f"attention of {', '.join(level.name for level in self.levels)} as colour"]
             if self.levels
@@ -82,20 +77,19 @@ class Strips:
 
 
 def pack_levels(attention: object, token_times: object, scale: str = "map") -> tuple[Level, ...]:
-    """One map (T, M) or a dictionary of named maps.
+    """Pack one map (T, M) or a dictionary of named maps.
 
-    Rows lie over the whole motion (a map may have fewer than frames) and sum to one.
-
-    `token_times`: the time in seconds of each column (or {name: times}); a column reaches halfway
-    to its neighbours. Full colour is the largest weight of the whole map, or with `scale="frame"`
-    of each row, which shows where it looks but not how sharply. Raises ValueError for maps that are
-    no attention, and where times do not fit.
+    Rows sum to one and cover the whole motion evenly; a map can have fewer rows than frames.
+    `token_times` are the times in seconds of the columns (or {name: times}); a column reaches
+    halfway to its neighbours. Full colour is the largest weight of the whole map. With
+    `scale="frame"` it is that of each row, which shows where a row looks but not how sharply.
+    Raises ValueError for maps that are not attention, and for times that do not fit.
     """
     if scale not in ("map", "frame"):
-        raise ValueError(f'scale is "map" or "frame", not {scale!r}')
+        raise ValueError(f'scale must be "map" or "frame", not {scale!r}')
     maps = attention if isinstance(attention, Mapping) else {"attention": attention}
     if not maps:
-        raise ValueError("attention is empty: give a map (T, M), or {name: map}")
+        raise ValueError("attention is empty: pass a map (T, M), or {name: map}")
     return tuple(
         _level(str(name), m, _times_of(name, token_times), scale) for name, m in maps.items()
     )
@@ -104,15 +98,12 @@ def pack_levels(attention: object, token_times: object, scale: str = "map") -> t
 def pack_moved(
     moved: object, frames: int, hit: object = None
 ) -> tuple[np.ndarray, tuple[float, ...]]:
-    """The curve (T,) in metres, one value a frame.
-
-    Beside it the silenced hits' times in seconds (one or several).
-    """
+    """The curve (T,) in metres, one value per frame, and the times of silenced hits in seconds."""
     curve = np.asarray(moved, dtype=np.float64)
     if curve.shape != (frames,) or not np.isfinite(curve).all() or (curve < 0).any():
         raise ValueError(
-            f"`moved` is one finite distance in metres a frame, ({frames},); "
-            f"got shape {curve.shape}"
+            f"`moved` must be one finite distance in metres per frame, ({frames},), not shape "
+            f"{curve.shape}"
         )
     times = None if hit is None else np.atleast_1d(hit)
     return curve, tuple(as_times(times, "hit", np.inf))
@@ -121,25 +112,25 @@ def pack_moved(
 def check_attention(
     weights: Float[np.ndarray, "..."], times: Float[np.ndarray, "_"], name: str = "attention"
 ) -> None:
-    """Raise ValueError unless rows sum to one and times increase, one a column.
+    """Raise ValueError unless rows are finite, not negative and sum to one, and times increase.
 
-    Rows are finite and not negative.
+    There must be one time for each column.
     """
     if weights.ndim != 2 or not weights.size:
         raise ValueError(
-            f"{name}: a map is (motion rows, tokens), got {weights.shape}; "
-            "of several heads take one"
+            f"{name}: a map must be (motion rows, tokens), not {weights.shape}; "
+            "for several heads pass one of them"
         )
     if not np.isfinite(weights).all() or (weights < -1e-6).any():
         raise ValueError(
-            f"{name}: weights are finite and not negative; these are scores perhaps: softmax first"
+            f"{name}: weights must be finite and not negative; if these are scores, apply softmax"
         )
     off = np.abs(weights.sum(1) - 1)
     if off.max() > 1e-2:
         row = int(off.argmax())
         raise ValueError(
             f"{name}: row {row} sums to {weights[row].sum():.3g}, not 1. "
-            "Is the map (motion, music), and after softmax?"
+            "Is the map (motion, music), and taken after softmax?"
         )
     if (
         times.shape != weights.shape[1:]
@@ -147,8 +138,8 @@ def check_attention(
         or (np.diff(times) <= 0).any()
     ):
         raise ValueError(
-            f"{name}: token_times are increasing seconds, "
-            f"one for each of the {weights.shape[1]} columns; got shape {times.shape}"
+            f"{name}: token_times must be increasing seconds, "
+            f"one for each of the {weights.shape[1]} columns, not shape {times.shape}"
         )
 
 

@@ -11,13 +11,13 @@ import torch
 
 from data_synth.mixtures import crossed_bars, ring
 from motiondiff_edu.baselines.known_answer import (
-    Question,
-    Rest,
-    Way,
-    answers,
+    ConditionalSampler,
+    Method,
+    Problem,
+    by_method,
     conditional_errors,
+    draw_samples,
     errors_of,
-    gathered,
     there_and_back,
 )
 from motiondiff_edu.ddpm import cosine_schedule
@@ -31,8 +31,8 @@ def seeded(seed: int = 0) -> torch.Generator:
     return torch.Generator().manual_seed(seed)
 
 
-def question(truth, values, known, past=None):
-    return Question(
+def problem_of(truth, values, known, past=None):
+    return Problem(
         truth,
         exact_denoiser(truth, SCHEDULE),
         SCHEDULE,
@@ -76,9 +76,9 @@ def masked_by_hand(x: float, visited: list[int], resample: int) -> tuple[float, 
 
 @pytest.mark.parametrize("steps, resample", [(5, 1), (40, 1), (20, 3)])
 def test_masked_sampling_of_a_gaussian_is_a_recursion_done_by_hand(steps, resample):
-    asked = question(correlated(), [1.5, math.nan], [True, False])
+    problem = problem_of(correlated(), [1.5, math.nan], [True, False])
     mean, variance = masked_by_hand(1.5, [40 - i * 40 // steps for i in range(steps)], resample)
-    x = answers(asked, Way("masked", steps, resample), 3000, seeded(1))[:, 1]
+    x = draw_samples(problem, Method("masked", steps, resample), 3000, seeded(1))[:, 1]
     assert x.mean().item() == pytest.approx(mean, abs=4 * math.sqrt(variance / 3000))
     assert x.var().item() == pytest.approx(variance, rel=0.12)
 
@@ -89,10 +89,10 @@ def test_a_blended_way_draws_the_guess_through_what_is_given():
     The guess is next to nothing, and what is left is the correction, by hand.
     """
     truth = mixture(torch.ones(1), torch.zeros(1, 6), torch.eye(6)[None])
-    asked = question(truth, [1.0, 0, 3.0, 0, 0, 0], [True, False, True, False, False, False])
-    asked = replace(asked, frames=6)
+    problem = problem_of(truth, [1.0, 0, 3.0, 0, 0, 0], [True, False, True, False, False, False])
+    problem = replace(problem, frames=6)
     plain, blended = (
-        answers(asked, Way("masked", 1, blend=b), 500, seeded(7)).mean(0).tolist()
+        draw_samples(problem, Method("masked", 1, blend=b), 500, seeded(7)).mean(0).tolist()
         for b in (None, 3)
     )
     assert plain == pytest.approx([1, 0, 3, 0, 0, 0], abs=0.02)
@@ -100,9 +100,9 @@ def test_a_blended_way_draws_the_guess_through_what_is_given():
 
 
 def test_a_guided_way_hears_of_what_is_given():
-    asked = question(correlated(), [1.5, math.nan], [True, False])
-    ways = Way("masked", 40), Way("masked", 40, guidance=1.0)
-    plain, guided = (e.mean for _, _, e in conditional_errors(asked, ways, seeds=[8], n=1000))
+    problem = problem_of(correlated(), [1.5, math.nan], [True, False])
+    ways = Method("masked", 40), Method("masked", 40, guidance=1.0)
+    plain, guided = (e.mean for _, _, e in conditional_errors(problem, ways, seeds=[8], n=1000))
     assert guided < 0.5 * plain
 
 
@@ -114,13 +114,13 @@ def test_by_hand_masking_misses_and_resampling_mends():
 
 
 def test_errors_are_in_units_of_the_wanted():
-    asked = question(correlated(), [1.0, 0.0], [True, False])
+    problem = problem_of(correlated(), [1.0, 0.0], [True, False])
     deviation = math.sqrt(1 - RHO**2)
     z = torch.tensor([-1.0, 1.0], dtype=torch.float64)
     x = torch.stack(
         [torch.ones(2, dtype=torch.float64), RHO + deviation * (0.5 + 3 * z / math.sqrt(2))], 1
     )
-    found = errors_of(x, asked)
+    found = errors_of(x, problem)
     assert (found.mean, found.spread, found.share) == pytest.approx((0.5, 3.0, 0.0))
 
 
@@ -129,15 +129,15 @@ def test_shares_of_the_parts_are_compared():
 
     Half of the mass is in the wrong place.
     """
-    asked = question(ring(6), [0.75, 0.0], [True, False])
+    problem = problem_of(ring(6), [0.75, 0.0], [True, False])
     low = torch.tensor([[0.75, -1.3]], dtype=torch.float64).expand(7, 2)
-    assert errors_of(low, asked).share == pytest.approx(0.5, abs=0.01)
+    assert errors_of(low, problem).share == pytest.approx(0.5, abs=0.01)
 
 
 def test_the_rest_is_drawn_from_the_conditional():
     truth, known = crossed_bars(), torch.tensor([True, False])
     x = torch.tensor([[-0.9, 9.0], [0.6, 9.0]], dtype=torch.float64).repeat(4000, 1)
-    drawn = Rest(truth, known).draw(x, seeded(2))
+    drawn = ConditionalSampler(truth, known).draw(x, seeded(2))
     assert torch.equal(drawn[:, 0], x[:, 0])
     for i, value in enumerate((-0.9, 0.6)):
         wanted = conditional(truth, torch.tensor([value, 0.0]), known)
@@ -160,11 +160,11 @@ def test_there_and_back_hears_of_the_known_through_the_future_only_and_gibbs_doe
 
     There-and-back forgets the known wholly, by hand.
     """
-    asked = question(chain(), [2.0, 0.0, 0.0], [True, False, False], [True, True, False])
+    problem = problem_of(chain(), [2.0, 0.0, 0.0], [True, False, False], [True, True, False])
     found = {
         way.kind: e
         for way, _, e in conditional_errors(
-            asked, (Way("there-and-back"), Way("gibbs")), seeds=[3], n=4000
+            problem, (Method("there-and-back"), Method("gibbs")), seeds=[3], n=4000
         )
     }
     deviation = math.sqrt(1 - 0.36)
@@ -180,39 +180,41 @@ def test_what_is_known_of_the_future_is_given_too(kind, past):
 
     With nothing known of the past both ways are Gibbs sampling, and come to the wanted.
     """
-    asked = question(chain(), [math.nan, math.nan, 2.0], [False, False, True], past)
-    x = answers(asked, Way(kind), 4000, seeded(6))
+    problem = problem_of(chain(), [math.nan, math.nan, 2.0], [False, False, True], past)
+    x = draw_samples(problem, Method(kind), 4000, seeded(6))
     assert (x[:, 2] == 2).all()
     assert x.mean(0).tolist() == pytest.approx([2 * 0.36, 2 * 0.6, 2.0], abs=0.06)
     assert x.var(0).tolist() == pytest.approx([1 - 0.36**2, 1 - 0.6**2, 0.0], abs=0.06)
 
 
 def test_exact_draws_have_no_error_but_that_of_counting():
-    asked = question(crossed_bars(), [-0.9, math.nan], [True, False])
-    ((way, seed, found),) = conditional_errors(asked, [Way("exact")], seeds=[4], n=4000)
+    problem = problem_of(crossed_bars(), [-0.9, math.nan], [True, False])
+    ((way, seed, found),) = conditional_errors(problem, [Method("exact")], seeds=[4], n=4000)
     assert (way.name, seed) == ("exact", 4)
     assert found.mean < 0.06 and found.spread == pytest.approx(1, abs=0.05) and found.share < 0.02
 
 
 def test_what_is_known_stays_and_seeds_repeat():
-    asked = question(chain(), [2.0, math.nan, math.nan], [True, False, False], [True, True, False])
+    problem = problem_of(
+        chain(), [2.0, math.nan, math.nan], [True, False, False], [True, True, False]
+    )
     ways = (
-        Way("exact"),
-        Way("masked", 10, 2),
-        Way("there-and-back", rounds=2),
-        Way("gibbs", rounds=2),
+        Method("exact"),
+        Method("masked", 10, 2),
+        Method("there-and-back", rounds=2),
+        Method("gibbs", rounds=2),
     )
     for way in ways:
-        x, again = (answers(asked, way, 5, seeded(5)) for _ in range(2))
+        x, again = (draw_samples(problem, way, 5, seeded(5)) for _ in range(2))
         assert torch.equal(x, again) and (x[:, 0] == 2).all() and torch.isfinite(x).all(), way
-    table = gathered(conditional_errors(asked, ways, seeds=[0, 1], n=5))
+    table = by_method(conditional_errors(problem, ways, seeds=[0, 1], n=5))
     assert list(table) == ["exact", "masked.10.x2", "there-and-back.2", "gibbs.2"]
     assert all(len(values) == 2 for row in table.values() for values in row.values())
 
 
 def test_wrong_inputs():
     with pytest.raises(ValueError, match="not 'repaint'"):
-        Way("repaint")
-    asked = replace(question(chain(), [2.0, 0.0, 0.0], [True, False, False]))
-    with pytest.raises(ValueError, match="name it in the question"):
-        there_and_back(asked, sample_mixture(chain(), 2), 1, seeded())
+        Method("repaint")
+    problem = replace(problem_of(chain(), [2.0, 0.0, 0.0], [True, False, False]))
+    with pytest.raises(ValueError, match="set `past`"):
+        there_and_back(problem, sample_mixture(chain(), 2), 1, seeded())

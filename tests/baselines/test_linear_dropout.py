@@ -148,10 +148,10 @@ def test_windows_of_several_futures_are_refused(windows):
     ],
 )
 def test_a_rate_that_is_no_probability_is_refused(moments, rate):
-    with pytest.raises(ValueError, match=f"a rate lies between 0 and 1, not {rate:g}"):
+    with pytest.raises(ValueError, match=f"a rate must be between 0 and 1, not {rate:g}"):
         moments(rate)
 
 
 def test_entries_that_are_all_dropped_cannot_keep_their_mean():
-    with pytest.raises(ValueError, match="take a rate below 1"):
+    with pytest.raises(ValueError, match="use a rate below 1"):
         ld.entries_rescaled(1.0, T_H * D)

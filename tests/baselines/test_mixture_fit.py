@@ -51,7 +51,7 @@ def test_the_ridge_keeps_parts_wide_where_points_lie_on_a_line():
 
 
 def test_no_part_lies_where_no_point_is():
-    with pytest.raises(ValueError, match="3 parts need as many different points at least, not 1"):
+    with pytest.raises(ValueError, match="3 parts need at least 3 different points, not 1"):
         fit_mixture(torch.full((10, 2), 100.0), 3, generator=seeded(17))
     crowd = torch.cat([50 + torch.randn(40, 2, generator=seeded(18)), torch.full((3, 2), 90.0)])
     found = fit_mixture(crowd, 6, generator=seeded(19))
@@ -123,15 +123,15 @@ def test_windows_of_walking_are_metres_in_the_root_frame(walks):
 
 def test_questions_ask_for_the_joints_that_the_mask_leaves_open(walks):
     known = holes_in_the_past(4)["leg"]
-    asked = walks[1].question(torch.zeros(252), known, SCHEDULE, past=True)
-    open_joints = asked.judged.reshape(4, 21, 3).any(-1)
+    problem = walks[1].problem(torch.zeros(252), known, SCHEDULE, past=True)
+    open_joints = problem.compared.reshape(4, 21, 3).any(-1)
     assert [JOINTS[j] for j in open_joints[0].nonzero()[:, 0]] == [
         "RightUpLeg",
         "RightLeg",
         "RightFoot",
         "RightToeBase",
     ]
-    assert not open_joints[2:].any() and not asked.known.reshape(4, 63)[2:].any()
+    assert not open_joints[2:].any() and not problem.known.reshape(4, 63)[2:].any()
     assert holes_in_the_past(8)["frames"].any(1).nonzero()[0].tolist() == [0, 3]
     assert all(
         mask.shape == (8, 21) and mask.any() and not mask.all() for mask in holes(8).values()

@@ -30,28 +30,28 @@ FILES = {
     "cpython_pluck-pcm8.wav": (SHORT, None),
     "cpython_pluck-ulaw.au": (SHORT, None),
     "dc_offset_half.wav": (
-        "is silent from end to end",
+        "is silent from start to end",
         None,
     ),  # a constant, and no sound on top of it
     "empty_0samples.wav": ("holds no sound at all", None),
     "ogg_named.wav": (20.985, "its last page is missing"),
     "scipy_test-44100Hz-be-1ch-4bytes.wav": (SHORT, None),
     "scipy_test-44100Hz-le-1ch-4bytes-early-eof-no-data.wav": (
-        "no sound file that can be read.*No 'data' chunk",
+        "cannot be read as a sound file.*No 'data' chunk",
         None,
     ),
     "scipy_test-44100Hz-le-1ch-4bytes-early-eof.wav": (
-        "0.01 s of sound and breaks off.*promises 0.10 s",
+        "0.01 s of sound and is cut off.*promises 0.10 s",
         None,
     ),
     "scipy_test-44100Hz-le-1ch-4bytes-incomplete-chunk.wav": (
-        "no sound file that can be read",
+        "cannot be read as a sound file",
         None,
     ),
     "scipy_test-48000Hz-2ch-64bit-float-le-wavex.wav": (SHORT, None),
     "scipy_test-8000Hz-le-2ch-1byteu.wav": (SHORT, None),
     "scipy_test-8000Hz-le-3ch-5S-24bit.wav": (SHORT, None),
-    "silence_5s.wav": ("is silent from end to end", None),
+    "silence_5s.wav": ("is silent from start to end", None),
     "text_named.wav": ("is text, not sound; it begins with 'this is not", None),
     "trumpet_90bpm_44k_stereo_pcm16.wav": (5.333, None),
     "trumpet_90bpm_8bit_u8.wav": (5.333, None),
@@ -59,7 +59,7 @@ FILES = {
     "truncated_half.ogg": (20.985, "its last page is missing"),
     "very_short_100samples.wav": (SHORT, None),
     "wav_header_says_more_than_there_is.wav": (
-        "holds 0.45 s of sound and breaks off.*promises 10.00 s",
+        "has only 0.45 s of sound and is cut off.*promises 10.00 s",
         None,
     ),
 }
@@ -170,21 +170,27 @@ def written(folder, name: str, samples, rate: int = 16000, **options):
 @pytest.mark.parametrize(
     "make, words",
     [
-        (lambda d: d / "gone.wav", "gone.wav is not there; check the spelling"),
-        (lambda d: d, "is a folder; name a sound file"),
-        (lambda d: written(d, "none.wav", np.zeros(0)), "none.wav holds no sound at all; give it"),
-        (lambda d: written(d, "none.ogg", np.zeros(0)), "none.ogg holds no sound at all; give it"),
+        (lambda d: d / "gone.wav", "gone.wav does not exist; check the spelling"),
+        (lambda d: d, "is a folder; give the name of a sound file"),
+        (
+            lambda d: written(d, "none.wav", np.zeros(0)),
+            "none.wav has no sound at all; at least 1 s",
+        ),
+        (
+            lambda d: written(d, "none.ogg", np.zeros(0)),
+            "none.ogg has no sound at all; at least 1 s",
+        ),
         (
             lambda d: written(d, "short.wav", chord(16000)[:15999]),
-            "short.wav holds 1.00 s of sound; give it",
+            "short.wav has only 1.00 s of sound; at least",
         ),
         (
             lambda d: written(d, "still.flac", np.zeros(20_000)),
-            "still.flac is silent from end to end",
+            "still.flac is silent from start to end",
         ),
         (
             lambda d: written(d, "hum.wav", np.full(20_000, 0.4)),
-            "hum.wav is silent from end to end",
+            "hum.wav is silent from start to end",
         ),
         (
             lambda d: written(d, "nan.wav", with_nan(np.nan), subtype="FLOAT"),
@@ -220,7 +226,7 @@ def with_nan(value: float) -> np.ndarray:
         ("song.wma", b"\x30\x26\xb2\x75\x8e\x66", "Windows Media file .*needs ffmpeg"),
         ("page.mp3", b"<!DOCTYPE html><html>", "is text, not sound; it begins with '<!DOCTYPE"),
         ("nothing.wav", b"", "is an empty file"),
-        ("noise.ogg", bytes(range(200, 256)) * 9, "no sound file that can be read .*Save it again"),
+        ("noise.ogg", bytes(range(200, 256)) * 9, "cannot be read as a sound file .*Save it again"),
     ],
 )
 def test_other_files_are_told_by_their_content(tmp_path, name, content, words):

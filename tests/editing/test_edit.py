@@ -32,7 +32,7 @@ def test_what_is_known_follows_from_pins_and_the_part_that_is_kept(motion):
     assert (
         not edit.known.any()
         and np.array_equal(edit.positions, motion)
-        and str(edit) == "nothing is held"
+        and str(edit) == "nothing is pinned or kept"
     )
     edit = edit.pin(3).pin(-1).keep("lower body")
     wanted = np.zeros((T, 21), bool)
@@ -61,7 +61,7 @@ def test_a_dragged_joint_changes_its_frame_alone_and_the_edit_before_stays(motio
     assert after.unpin(7).moved == {} == after.pin(7).moved
     assert drag_in_words(before, after, 7, "RightHand", target) == "moved by 22 cm"
     far = before.drag(7, "RightHand", motion[7, HAND] + [9.0, 0, 0])
-    assert "its bones reach no further" in drag_in_words(
+    assert "out of reach of its bones" in drag_in_words(
         before, far, 7, "RightHand", motion[7, HAND] + [9.0, 0, 0]
     )
 
@@ -150,7 +150,7 @@ def test_measures_are_the_answers_own_and_said_in_words(motion):
     )
     assert made.measured(0).startswith("keyframe error 16.7 mm, seam jump ")
     free = make_between(Edit(motion), lambda p, k, **_: p[None], seeded())
-    assert free.measured(0) == "nothing was given to keep"
+    assert free.measured(0) == "no keyframe"
 
 
 @pytest.mark.parametrize(
@@ -175,5 +175,5 @@ def test_nothing_left_to_make(motion):
     for frame in range(T):
         edit = edit.pin(frame)
     assert edit.known.sum() == T * len(JOINTS)
-    with pytest.raises(ValueError, match="every frame is pinned: there is nothing to make"):
+    with pytest.raises(ValueError, match="every frame is pinned, so there is nothing to generate"):
         make_between(edit, lambda p, k, **_: p[None], seeded())

@@ -151,7 +151,7 @@ def test_what_is_empty_is_told():
 def test_a_hole_in_the_motion_is_told_at_every_frame_rate(fps):
     dance = stopping_at(UNEVEN, 4.5, fps)
     dance[30] = np.nan
-    with pytest.raises(ValueError, match="frame 30 is not finite|hold NaN"):
+    with pytest.raises(ValueError, match="frame 30 is not finite|contain NaN"):
         kinematic_beats(dance, fps)
 
 

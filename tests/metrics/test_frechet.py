@@ -120,7 +120,10 @@ def test_the_covariance_is_shrunk_as_ledoit_and_wolf_say(features):
 
 @pytest.mark.parametrize(
     "generated, told",
-    [(cloud(1), "there is 1"), (np.where(cloud(9) > -1e9, np.nan, 0.0), "row 0 of the generated")],
+    [
+        (cloud(1), "generated features have 1"),
+        (np.where(cloud(9) > -1e9, np.nan, 0.0), "row 0 of the generated"),
+    ],
 )
 def test_what_has_no_covariance_is_refused(generated, told):
     with pytest.raises(ValueError, match=told):
@@ -139,7 +142,7 @@ def test_diversity_is_the_mean_distance_of_all_pairs():
         np.array([4.0, 8.0])
     )
     assert diversity(np.zeros((7, 3))) == 0
-    with pytest.raises(ValueError, match="there is 1"):
+    with pytest.raises(ValueError, match="at least 2 motions, not 1"):
         diversity(corners[:1])
 
 

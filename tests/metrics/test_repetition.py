@@ -88,7 +88,7 @@ def test_lag_similarity_by_hand():
     [
         (np.tile(rest_pose(), (90, 1, 1)), "keeps one pose"),
         (aimless(39), "too short"),
-        (aimless(50), "leave no lag"),
+        (aimless(50), "too short for a lag"),
         (np.where(np.arange(90)[:, None, None] == 3, np.nan, aimless(90)), "NaN"),
     ],
 )

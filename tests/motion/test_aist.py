@@ -134,11 +134,11 @@ def test_only_the_codec_of_old_pickles_is_admitted(tmp_path):
         ),
         (
             {"keypoints3d_optim": np.zeros((3, 24, 3))},
-            r"has shape \(3, 24, 3\), and should have \(frames, 17, 3\)",
+            r"has shape \(3, 24, 3\); it should be \(frames, 17, 3\)",
         ),
         ({"keypoints3d_optim": np.zeros((0, 17, 3))}, r"shape \(0, 17, 3\)"),
-        ({"keypoints3d_optim": [1, 2]}, "no array of numbers"),
-        ([1, 2], "holds list, and no keypoints3d_optim"),
+        ({"keypoints3d_optim": [1, 2]}, "is not an array of numbers"),
+        ([1, 2], "contains list, but no keypoints3d_optim"),
     ],
 )
 def test_other_contents_are_told_apart(tmp_path, content, told):
@@ -148,7 +148,7 @@ def test_other_contents_are_told_apart(tmp_path, content, told):
 
 def test_other_files_are_told_apart(tmp_path, real_data):
     np.save(tmp_path / "dance.npy", np.zeros((90, 34)))
-    with pytest.raises(AistError, match="34 music or motion features"):
+    with pytest.raises(AistError, match="34 normalised music or motion features"):
         read_keypoints(tmp_path / "dance.npy")
     np.save(tmp_path / "joints.npy", np.zeros((90, 22, 3)))
     with pytest.raises(AistError, match=r"shape \(90, 22, 3\)"):
@@ -163,7 +163,7 @@ def test_other_files_are_told_apart(tmp_path, real_data):
         ("page.pkl", b"<html>not found</html>"),
     ):
         (tmp_path / name).write_bytes(raw)
-        with pytest.raises(AistError, match=f"{name}: no pickle, or a damaged one"):
+        with pytest.raises(AistError, match=f"{name}: not a pickle, or a damaged one"):
             read_keypoints(tmp_path / name)
     with pytest.raises(AistError, match="folder"):
         read_keypoints(tmp_path)

@@ -31,7 +31,7 @@ REAL = {
     "bad_unknown_channel": (5, "Hips", "Wrotation"),
     "bad_utf16": (1, None, "UTF-16"),
     "bad_zero_frame_time": (119, None, "positive"),
-    "bad_zero_frames": (118, None, "no frames"),
+    "bad_zero_frames": (118, None, "0 frames"),
     "odd_two_roots": (117, "Hips2", "two figures"),
 }
 
@@ -92,7 +92,7 @@ def refused(tmp_path: Path, text: str | bytes) -> BvhError:
         (lambda s: s.replace("JOINT Chest", "JOINT"), 15, "Hips", "without a name"),
         (lambda s: s.replace("JOINT Chest", "BONE Chest"), 15, "Hips", "not understood"),
         (lambda s: s.replace("ROOT Hips\n{", "ROOT Hips\n"), 4, None, "outside the braces"),
-        (lambda s: s.replace("MOTION", "}\nMOTION"), 21, None, "one too many"),
+        (lambda s: s.replace("MOTION", "}\nMOTION"), 21, None, "no matching '{'"),
         (lambda s: s.replace("Frames: 3", "Frames: many"), 22, None, "number of frames"),
         (lambda s: s.replace("Frames: 3\n", ""), 22, None, "'Frames:'"),
         (lambda s: s.replace("Frame Time: 0.04", "Frame Time: 1"), 23, None, "fps="),

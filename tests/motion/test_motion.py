@@ -126,10 +126,10 @@ HOLE = np.where(np.arange(252).reshape(4, 21, 3) == 100, np.inf, 0.0)
 @pytest.mark.parametrize(
     "make, told",
     [
-        (lambda: Motion(np.zeros((0, 21, 3))), "a frame at least"),
+        (lambda: Motion(np.zeros((0, 21, 3))), "at least one frame"),
         (lambda: Motion(np.zeros((4, 17, 3))), "17 joints, the skeleton 21"),
         (lambda: Motion(HOLE), f"{JOINTS[12]} in frame 1 is at"),
-        (lambda: Motion(P + 2e6), "nowhere"),
+        (lambda: Motion(P + 2e6), "not plausible"),
         (lambda: Motion(P, fps=0), "frames a second above 0, not 0"),
         (lambda: Motion(P, fps=float("nan")), "frames a second above 0"),
         (lambda: Motion(P, audio=np.full(9, np.nan)), "one channel of finite samples"),
@@ -192,8 +192,8 @@ def test_files_of_data_synth_are_read(tmp_path):
 
 
 def test_an_unknown_ending_says_which_there_are(tmp_path):
-    for name, told in (("m.xyz", "nothing is written as .xyz"), ("m", "the name has no ending")):
-        with pytest.raises(MotionError, match=told + "; there are .bvh .npz .mp4 .gif .html"):
+    for name, told in (("m.xyz", "unknown ending .xyz"), ("m", "the name has no ending")):
+        with pytest.raises(MotionError, match=told + "; use one of .bvh .npz .mp4 .gif .html"):
             Motion(P).save(tmp_path / name)
     assert not list(tmp_path.iterdir())
 
@@ -231,10 +231,13 @@ WRONG_FILES = {
     "half.npz": (_broken_npz, "cannot be read as npz"),
     "head.npz": (_huge, "cannot be read as npz"),
     "pickle.npz": (lambda p: _npz(p, positions=np.array([{}], object)), "pickled objects"),
-    "other.npz": (lambda p: _npz(p, trans=np.zeros((2, 3))), r"holds trans \(2, 3\)"),
+    "other.npz": (lambda p: _npz(p, trans=np.zeros((2, 3))), r"contains trans \(2, 3\)"),
     "rate.npz": (lambda p: _npz(p, positions=P, fps=-20.0), "frames a second above 0"),
     "smpl.npz": (lambda p: _npz(p, poses=np.zeros((2, 156)), control=np.zeros((2, 3))), "smpl.npz"),
-    "walk.png": (lambda p: p.write_bytes(b"\x89PNG"), "is not read as a motion; .bvh and .npz are"),
+    "walk.png": (
+        lambda p: p.write_bytes(b"\x89PNG"),
+        "cannot be read as a motion; .bvh and .npz can",
+    ),
     "song.ogg": (lambda p: p.write_bytes(b"OggS"), "this is sound"),
     "walk.fbx": (lambda p: p.write_bytes(b"Kaydara"), "export it as BVH"),
     "walk.pkl": (lambda p: p.write_bytes(b"\x80"), "a pickle can run code"),

@@ -61,7 +61,7 @@ def test_the_same_rate_changes_nothing():
     [
         (np.zeros((9, 3)), 120, "motion.normalise.resample"),
         (np.zeros((9, 3)), 0, "positive"),
-        (np.zeros((1, 3)), 20, "nothing between"),
+        (np.zeros((1, 3)), 20, "2 are needed"),
         (
             np.where(np.arange(9)[:, None] == 4, np.nan, np.zeros((9, 3))),
             20,

@@ -73,7 +73,7 @@ def test_left_and_right_exchanged_make_no_difference(tmp_path):
     bvh = read_bvh(foreign(tmp_path / "walk.bvh", turn=0.3))
     bvh.offsets[bvh.names.index("Neck1"), 2] -= 0.05 / 0.0254  # shoulders that lie behind the hips
     usual = retarget(bvh)
-    with pytest.warns(MotionWarning, match="left and right are exchanged"):
+    with pytest.warns(MotionWarning, match="left and right were exchanged"):
         clip = retarget(seen_in_a_mirror(bvh))
     assert np.degrees(usual.info["rest_lean"]) > 4
     assert clip.info["rest_lean"] == pytest.approx(usual.info["rest_lean"])

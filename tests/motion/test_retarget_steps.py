@@ -11,7 +11,7 @@ from motiondiff_edu.motion.normalise import (
     floor_plane,
     level,
     resample,
-    turn_up,
+    rotate_y_up,
     unmirror,
 )
 from motiondiff_edu.motion.planting import find_contacts, plant, runs, shift_to_pins, solve_leg
@@ -22,7 +22,7 @@ from motiondiff_edu.motion.skeleton import BONE_LENGTHS, HEELS, OFFSETS, PARENTS
 def test_turning_up_keeps_handedness():
     axes = np.eye(3)
     for up in ("+x", "-x", "+y", "-y", "+z", "-z"):
-        turned = turn_up(axes, up)
+        turned = rotate_y_up(axes, up)
         sign = -1 if up[0] == "-" else 1
         assert np.linalg.det(turned) == pytest.approx(1) and turned["xyz".index(up[1]), 1] == sign
 

@@ -83,7 +83,7 @@ def test_maps_come_from_the_seed_and_depend_on_the_step():
 
 
 def test_a_network_without_music_and_a_step_too_far_are_named():
-    with pytest.raises(ValueError, match="hears music"):
+    with pytest.raises(ValueError, match="need a U-Net with music"):
         maps(C=0)
     with pytest.raises(ValueError, match="1 to 12, not 13"):
         maps(s=13)
@@ -101,7 +101,7 @@ def test_beat_mass_by_hand():
     assert attention_on_beats.beat_mass(
         weights, times, np.array([0.3]), near=0.03
     ) == pytest.approx((0.1 + 0.75) / 2)
-    with pytest.raises(ValueError, match="no beat"):
+    with pytest.raises(ValueError, match="no beats"):
         attention_on_beats.beat_mass(weights, times, np.array([]))
 
 

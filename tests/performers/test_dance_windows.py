@@ -106,9 +106,9 @@ def test_music_with_gain_noise_differs_in_level_and_balance_alone():
 
 def test_wrong_inputs():
     dances, contacts, mels = material()
-    with pytest.raises(ValueError, match="each needs its own"):
+    with pytest.raises(ValueError, match="each dance needs its"):
         DanceWindows.of(dances, contacts, mels[:1], 40)
-    with pytest.raises(ValueError, match="dance 1 has .* frames, and contacts for"):
+    with pytest.raises(ValueError, match="dance 1 has .* frames but contacts for"):
         DanceWindows.of(dances, [contacts[0], contacts[1][:-10]], mels, 40)
     with pytest.raises(ValueError, match="no dance has 400 frames"):
         DanceWindows.of(dances, contacts, mels, 400)

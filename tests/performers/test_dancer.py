@@ -155,7 +155,7 @@ def test_a_file_gives_the_same_dancer_back(config, tmp_path: Path):
 
 def test_a_dancer_is_no_walker(tmp_path: Path):
     path = save(dancer(), tmp_path / "one.safetensors")
-    with pytest.raises(CheckpointError, match="no walker .*dancer"):
+    with pytest.raises(CheckpointError, match="not a walker .*dancer"):
         load_walker(path)
 
 
@@ -203,7 +203,7 @@ def test_dancing_to_sound(tmp_path: Path):
         (np.zeros(700), {}, "less than a frame"),
         (np.zeros(16_000), {"seconds": -3}, "seconds must be above 0"),
         (np.zeros(16_000), {"seconds": np.nan}, "a number above 0"),
-        (np.zeros(16_000), {"samples": 0}, "samples is a whole number from 1 on, not 0"),
+        (np.zeros(16_000), {"samples": 0}, "samples must be a whole number of at least 1, not 0"),
     ],
 )
 def test_sound_that_cannot_be_danced_to_is_refused_in_words(sound, options, told):

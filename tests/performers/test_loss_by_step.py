@@ -17,8 +17,8 @@ from motiondiff_edu.motion.scaler import Scaler
 from motiondiff_edu.performers.loss_by_step import (
     clean_guess,
     eps_weight,
-    erring,
     losses_over_time,
+    noisy_predictor,
     predictor_of,
 )
 from motiondiff_edu.viz import losses as viz
@@ -33,7 +33,7 @@ EPS = torch.randn(X0.shape, generator=torch.Generator().manual_seed(1), dtype=to
 
 
 def measured(predict=None, steps=STEPS, target="eps"):
-    predict = predict or erring(0.05, seed=2)
+    predict = predict or noisy_predictor(0.05, seed=2)
     return losses_over_time(predict, X0, EPS, PLANTED, BODY, SCHEDULE, steps, target)
 
 
@@ -44,11 +44,11 @@ def carried(s):
 
 
 def test_an_error_of_five_percent_is_one_and_the_same_at_every_step():
-    off = erring(0.05)(X0, 1, EPS) - EPS
-    torch.testing.assert_close(erring(0.05)(X0, 30, EPS) - EPS, off)
-    assert not torch.equal(erring(0.05, seed=1)(X0, 1, EPS) - EPS, off)
+    off = noisy_predictor(0.05)(X0, 1, EPS) - EPS
+    torch.testing.assert_close(noisy_predictor(0.05)(X0, 30, EPS) - EPS, off)
+    assert not torch.equal(noisy_predictor(0.05, seed=1)(X0, 1, EPS) - EPS, off)
     assert off.square().mean().sqrt().item() == pytest.approx(0.05, rel=0.03)
-    torch.testing.assert_close(erring(0.0)(X0, 1, EPS), EPS)
+    torch.testing.assert_close(noisy_predictor(0.0)(X0, 1, EPS), EPS)
 
 
 def test_the_guess_is_off_by_b_over_a():
@@ -58,7 +58,7 @@ def test_the_guess_is_off_by_b_over_a():
 
 
 def test_who_is_right_pays_nothing():
-    loss = measured(erring(0.0))
+    loss = measured(noisy_predictor(0.0))
     assert all(
         loss.value[name].max() < 1e-4 for name in ("data", "skeleton", "asymmetry", "motion")
     )
@@ -75,7 +75,7 @@ def test_the_papers_weight_on_the_motion_is_a_reweighting(target, share):
         weighted.value["motion"] / loss.value["data"], wanted, rtol=1e-5, atol=0
     )
     torch.testing.assert_close(
-        weighted.pull["motion"] / loss.pull["data"], wanted, rtol=1e-5, atol=0
+        weighted.gradient["motion"] / loss.gradient["data"], wanted, rtol=1e-5, atol=0
     )
     torch.testing.assert_close(weighted.value["data"], loss.value["data"])
 
@@ -92,7 +92,7 @@ def test_pull_of_the_data_term_is_known():
     loss = measured(lambda x_s, s, eps: eps + 0.1)
     n = X0[0].numel()
     torch.testing.assert_close(
-        loss.pull["data"], torch.full((len(STEPS),), 2 * 0.1 / math.sqrt(n)).double()
+        loss.gradient["data"], torch.full((len(STEPS),), 2 * 0.1 / math.sqrt(n)).double()
     )
 
 
@@ -113,15 +113,15 @@ def test_pull_of_a_loss_is_what_small_steps_change():
         slopes.append(
             (at(wrong + way).value["skeleton"] - at(wrong - way).value["skeleton"]) / 2e-5
         )
-    wanted = at(wrong).pull["skeleton"]
+    wanted = at(wrong).gradient["skeleton"]
     assert (torch.stack(slopes).square().mean() * n).sqrt().item() == pytest.approx(
         wanted.item(), rel=0.3
     )
 
 
 def test_a_network_that_predicts_x0_feels_the_bones_less_by_a_over_b():
-    eps = measured().pull["skeleton"]
-    x0 = measured(target="x0").pull["skeleton"]
+    eps = measured().gradient["skeleton"]
+    x0 = measured(target="x0").gradient["skeleton"]
     torch.testing.assert_close(
         eps / x0, torch.tensor([carried(s) for s in STEPS]).double(), rtol=1e-5, atol=0
     )
@@ -203,7 +203,7 @@ def test_poses_have_their_seconds_and_what_is_too_wide_is_cut():
 
 
 def test_the_table_shows_what_it_was_given():
-    figure = viz.noticed(
+    figure = viz.loss_table(
         np.array([[0.0, 2.0], [4.0, 0.5], [1e-9, 0.0]]), ["a", "b", "c"], ["L", "M"], "table"
     )
     assert [text.get_text() for text in figure.axes[0].texts] == ["0", "2", "4", "0.5", "0", "0"]
@@ -215,6 +215,6 @@ def test_curves_over_steps_are_what_was_given_and_the_moment_marks_its_step():
     np.testing.assert_allclose(figure.axes[1].lines[0].get_ydata(), [1.0, np.nan, 3.0])
     assert figure.axes[0].get_yscale() == "log"
     poses = np.random.default_rng(0).normal(size=(6, 21, 3))
-    figure = viz.moment(poses, {"p": lines, "q": lines}, 9, "now", n=3)
+    figure = viz.guess_and_losses(poses, {"p": lines, "q": lines}, 9, "now", n=3)
     marked = [line for axis in figure.axes for line in axis.lines if line.get_marker() == "o"]
     assert [float(line.get_xdata()[0]) for line in marked] == [9, 9]

@@ -84,7 +84,7 @@ def test_without_registering_it_is_neither_saved_nor_loaded(registry, tmp_path: 
     del networks._NETWORKS["LinearWalker"]
     with pytest.raises(CheckpointError, match="unknown network, LinearWalker.*register it first"):
         load(path)
-    with pytest.raises(ValueError, match="no network is registered for a LinearConfig"):
+    with pytest.raises(ValueError, match="no network is registered for LinearConfig"):
         network(LinearConfig())
 
 
@@ -131,7 +131,7 @@ class Bare:
 @pytest.mark.parametrize(
     "arguments, words",
     [
-        (("singer", LinearWalker, LinearConfig), "not for 'singer'"),
+        (("singer", LinearWalker, LinearConfig), "not 'singer'"),
         (("walker", LinearWalker, WithoutTarget), "WithoutTarget lacks target"),
         (("walker", LinearWalker, Bare), "Bare has no default for D"),
     ],

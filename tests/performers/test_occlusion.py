@@ -24,6 +24,6 @@ def test_occlusion_dances_again_from_the_same_noise():
     assert found.moved[:2].max(1).min() > 1e-4  # a silenced burst changes something
     assert found.moved[2].max() < 1e-5  # silenced silence changes nothing
     in_turn = occlusion(
-        one, song, times, 33, generator=torch.Generator().manual_seed(7), steps=3, together=1
+        one, song, times, 33, generator=torch.Generator().manual_seed(7), steps=3, batch=1
     )
     assert in_turn.without == pytest.approx(found.without, abs=1e-5)

@@ -112,7 +112,7 @@ def test_steps_and_keep_change_the_work_not_the_shape():
 
 def test_errors_say_what_is_wrong():
     walker, (past, control) = tiny_walker(), inputs()
-    with pytest.raises(ValueError, match=r"continues 4 past poses, got 3.*past\[\.\.\., -4:, :\]"):
+    with pytest.raises(ValueError, match=r"continues 4 past poses, not 3.*past\[\.\.\., -4:, :\]"):
         generate(walker, past[:, :3], control)
     with pytest.raises(ValueError, match=r"flatten positions \(T, 21, 3\)"):
         inspect.unwrap(generate)(
@@ -120,14 +120,14 @@ def test_errors_say_what_is_wrong():
         )  # past the tests' own type checks
     with pytest.raises(ValueError, match=r"and \(B, T, 3\)"):
         generate(walker, past, control[..., :2])
-    with pytest.raises(ValueError, match="4 rows, 4 of them beside the past: none is left"):
+    with pytest.raises(ValueError, match="4 rows and 4 of them belong to the past"):
         generate(walker, past, control[:, :T_H])
     for broken in (0, 1):
         holed = [past.clone(), control.clone()]
         holed[broken][1, 2, 0] = torch.nan
         with pytest.raises(ValueError, match="NaN or infinity"):
             generate(walker, *holed)
-    with pytest.raises(ValueError, match="between 1 and 6 steps"):
+    with pytest.raises(ValueError, match="must be between 1 and 6"):
         generate(walker, past, control, steps=7)
 
 

@@ -85,7 +85,7 @@ def test_clips_that_are_too_short_are_refused():
 
 
 def test_clips_of_another_frame_rate_are_refused():
-    with pytest.raises(ValueError, match="clip 'quick' has 60 frames/s; bring it to 20 first"):
+    with pytest.raises(ValueError, match="clip 'quick' has 60 frames/s; resample it to 20 first"):
         Windows.of([ramp_clip(0, 30), replace(ramp_clip(1, 30), fps=60, source="quick")], T_H, T_P)
 
 

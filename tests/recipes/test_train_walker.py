@@ -157,7 +157,7 @@ def test_a_run_is_continued_with_its_own_settings_and_data_or_not_at_all(tmp_pat
     walker = train(SHORT, tmp_path / "run", log=quiet)
     again = train(SHORT, tmp_path / "run", log=quiet)  # nothing is left to do
     assert again.card == walker.card
-    with pytest.raises(ValueError, match="begun with lr = 0.002, and 0.1 is asked for"):
+    with pytest.raises(ValueError, match="begun with lr = 0.002, not 0.1"):
         train(replace(SHORT, lr=0.1), tmp_path / "run", log=quiet)
     with pytest.raises(ValueError, match="begun with data = "):
         train(SHORT, tmp_path / "run", clips=training_clips(replace(SHORT, data_seed=2)), log=quiet)

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from motiondiff_edu.baselines.known_answer import Way
+from motiondiff_edu.baselines.known_answer import Method
 from motiondiff_edu.motion.root_frame import to_world
 from tools.results.inbetweens import known_answer, known_tables
 from tools.results.inbetweens.known_answer import KnownSize
@@ -15,7 +15,9 @@ from tools.results.walks.trials import unseen
 @pytest.fixture(scope="module")
 def records():
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(known_answer, "WAYS", (Way("exact"), Way("masked", 50)))  # the quick ones
+        patch.setattr(
+            known_answer, "METHODS", (Method("exact"), Method("masked", 50))
+        )  # the quick ones
         found = known_answer.known_answer_records(
             KnownSize(questions=2, samples=30, clips=6), "a command"
         )

@@ -29,14 +29,14 @@ def test_bars_are_the_roots_of_summed_squares_frame_by_frame():
     weight[4] = 2  # the last one: sqrt(12)
     weight[6, 2], weight[7, 0] = 5, 12  # control: 13
     weight[8] = 99  # the constant is not shown
-    fig = viz.where_the_weight_lies({"x": weight, "y": 2 * weight}, 2, "words")
+    fig = viz.weights_by_input({"x": weight, "y": 2 * weight}, 2, "words")
     heights = [bar.get_height() for bar in fig.axes[0].patches]
     assert heights == pytest.approx([5, 12**0.5, 13, 10, 2 * 12**0.5, 26])
     assert [tick.get_text() for tick in fig.axes[0].get_xticklabels()] == ["-1", "last", "control"]
 
 
 def test_each_target_stands_above_its_past():
-    fig = viz.who_meets_whom(
+    fig = viz.noise_pairs(
         {"x": (np.array([0.1, 0.9]), np.array([0.0, 0.5])), "y": (np.zeros(3), np.ones(3))}, "words"
     )
     dots = [axis.lines[1].get_xydata().tolist() for axis in fig.axes]

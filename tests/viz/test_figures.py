@@ -116,7 +116,7 @@ def test_attention_map_shows_the_weights_and_parts_the_groups(weights):
 
 
 def test_labels_and_groups_that_do_not_fit_are_refused(weights):
-    with pytest.raises(ValueError, match="groups have 10 keys, the map has 11"):
+    with pytest.raises(ValueError, match="groups have 10 keys, but the map has 11"):
         attention.attention_map(weights[0], [("past", 4), ("control", 6)])
     with pytest.raises(ValueError, match="3 query labels for 5 query positions"):
         attention.attention_map(weights[0], query_labels=["a", "b", "c"])

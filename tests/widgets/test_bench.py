@@ -100,19 +100,21 @@ def test_the_words_are_the_librarys_figures():
     outcomes = list(RepairBench(Standing(), CLIP, samples=3, rounds=2).mend(9, HAND))
     errors = outcomes[-1].mended.errors(CLIP.poses[9 : 9 + T_H])
     assert [o.words[:12] for o in outcomes] == ["Round 1 of 2", "Round 2 of 2"]
-    assert f"the mean of 3 repairs is {errors['their mean']:.1f} cm away" in outcomes[-1].words
-    assert f"one repair {errors['one repair']:.1f} cm" in outcomes[-1].words
-    assert f"{T_H} of {T_H * J} places were missing" in outcomes[-1].words
+    assert f"{errors['their mean']:.1f} cm for the mean of 3 repairs" in outcomes[-1].words
+    assert f"{errors['one repair']:.1f} cm for one repair" in outcomes[-1].words
+    assert f"{T_H} of {T_H * J} joint positions were missing" in outcomes[-1].words
 
 
 def test_asking_answers_and_says_what_cannot_be_done():
     widget = bench()
     widget.asked = 1  # nothing is knocked out
-    assert widget.said == "Not repaired: nothing is missing: there is nothing to repair."
+    assert widget.said == "Not repaired: nothing is missing, so there is nothing to repair."
     assert widget.answered == 1 and widget.repaired == {}
     widget.missing = list(range(T_H * J))
     widget.asked = 2
-    assert "nothing is known: there is nothing to go by" in widget.said and widget.answered == 2
+    assert (
+        "nothing is known, so the repair has no information" in widget.said and widget.answered == 2
+    )
     widget.missing = HAND
     widget.asked = 3
     assert (
@@ -139,7 +141,7 @@ def test_an_old_repair_no_longer_counts():
         not widget.shows_repairs and "7 of 168 places of joints are missing." in widget.description
     )
     widget.missing = HAND
-    assert widget.shows_repairs and "cm away" in widget.description
+    assert widget.shows_repairs and "cm for one repair" in widget.description
     widget.first = 3
     assert not widget.shows_repairs
 
@@ -152,9 +154,9 @@ def test_wrong_inputs():
     widget = bench()
     with pytest.raises(traitlets.TraitError, match="frame 0 to 15, not 16"):
         widget.first = 16
-    with pytest.raises(traitlets.TraitError, match="entry 168 is not among the 168"):
+    with pytest.raises(traitlets.TraitError, match="entry 168 is outside the window's 168"):
         widget.missing = [168]
-    with pytest.raises(ValueError, match="may begin at 0 to 15"):
+    with pytest.raises(ValueError, match="can begin at 0 to 15"):
         next(widget.bench.mend(16, HAND))
 
 
@@ -283,7 +285,10 @@ def test_a_clicked_hand_is_mended_as_the_library_mends_it(table):
     assert min(drawn.values()) > 200
     table.click_joint("RightHand")
     assert table.saved("missing") == HAND and table.data("missing") == str(T_H)
-    assert "RightHand is missing in the whole window. 8 of 168 places are missing." in table.note()
+    assert (
+        "RightHand is missing in the whole window. 8 of 168 joint positions are missing."
+        in table.note()
+    )
     broken = ink(table.figure)
     # the forearm has gone
     assert broken != whole and coloured(table.figure)["orange"] < drawn["orange"]
@@ -297,7 +302,7 @@ def test_a_clicked_hand_is_mended_as_the_library_mends_it(table):
     np.testing.assert_allclose(
         shown(table.widget)[0], by_the_library(9, table.saved("missing")), atol=6e-4
     )
-    assert table.data("repairs") == "4" and "the mean of 3 repairs is" in table.note()
+    assert table.data("repairs") == "4" and "the mean of 3 repairs" in table.note()
     # it plays of itself
     table.page.wait_for_function("document.querySelector('.mde-bench').dataset.frame > 5")
     assert (
@@ -334,7 +339,7 @@ def test_keyboard_alone_knocks_out_restores_and_does_not_leak(table):
         table.saved("missing") == [t * J + forearm for t in range(T_H)]
         and table.data("frame") == "14"
     )
-    page.get_by_label("A click on a joint counts for").select_option("one")
+    page.get_by_label("A click on a joint changes it").select_option("one")
     table.figure.focus()
     page.keyboard.press(" ")
     assert len(table.saved("missing")) == T_H - 1 and 5 * J + forearm not in table.saved("missing")

@@ -31,7 +31,7 @@ def test_a_hand_is_knocked_out_and_mended_in_jupyterlab(browser, lab):  # noqa: 
     with open_page(browser, offline=False, viewport={"width": 1300, "height": 1000}) as page:
         page.set_default_timeout(120_000)
         canvas = run_all(page, lab, "mde-bench")
-        page.get_by_label("A click on a joint counts for").select_option("one")
+        page.get_by_label("A click on a joint changes it").select_option("one")
         canvas.focus()
         page.keyboard.press("Home")
         # the right hand, in the first three frames
@@ -42,7 +42,7 @@ def test_a_hand_is_knocked_out_and_mended_in_jupyterlab(browser, lab):  # noqa: 
         page.wait_for_function(f"{ROOT}.repairs === '4'")
         # of itself, so that the repair is seen
         page.wait_for_function(f"{ROOT}.playing === 'true'")
-        assert "the mean of 3 repairs is" in page.locator("output.mde-said").inner_text()
+        assert "the mean of 3 repairs" in page.locator("output.mde-said").inner_text()
         canvas.focus()
         page.keyboard.press("Home")
         page.wait_for_function(f"{ROOT}.state === 'mean of 3 repairs'")

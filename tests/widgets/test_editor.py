@@ -39,7 +39,7 @@ def test_the_page_is_told_what_is_held(motion):
     state = editor.state
     assert (state["pins"], state["moved"], state["part"]) == ([4, 20], [[HAND], []], "upper body")
     assert state["held"].startswith(
-        "2 frames pinned (1 edited), upper body kept. In frame 4 what is kept throughout"
+        "2 frames pinned (1 edited), upper body kept. In frame 4 the pinned pose moves the part"
     )
     assert state["message"] == "LeftHand in frame 4 moved by 21 cm."
     np.testing.assert_allclose(
@@ -56,7 +56,7 @@ def test_the_last_frame_by_its_number_from_the_end_is_the_same_frame(motion):
     assert editor.drag(-1, "LeftHand", target) == f"LeftHand in frame {T - 1} moved by 21 cm."
     editor.pin(-1)  # pinned already: what was dragged there stays
     np.testing.assert_allclose(editor.positions[-1, HAND], target, atol=1e-9)
-    assert editor.unpin(-1) == f"Let go of frame {T - 1}." and not editor.known.any()
+    assert editor.unpin(-1) == f"Released frame {T - 1}." and not editor.known.any()
     with pytest.raises(IndexError, match=f"frame {T} is not within"):
         editor.pin(T)
 
@@ -73,7 +73,7 @@ def test_generating_tells_what_was_measured_and_the_same_seed_makes_the_same(mot
     )
     assert np.array_equal(one[:, [0, 15, 30]], np.stack([motion[[0, 15, 30]]] * 2))
     assert re.fullmatch(
-        r"In-betweens made: 2, in \d+\.\d s \(seed 5\)\.", editors[0].state["message"]
+        r"In-betweens generated: 2, in \d+\.\d s \(seed 5\)\.", editors[0].state["message"]
     )
     assert re.fullmatch(r"keyframe error 0\.0 mm, seam jump \d.*", editors[0].state["measured"][1])
     unpacked = packing.unpack(
@@ -106,7 +106,7 @@ def test_undo_goes_back_step_by_step_and_reset_can_be_undone(motion):
     assert (
         editor.samples is None
         and editor.made_joints == b""
-        and editor.state["held"] == "nothing is held."
+        and editor.state["held"] == "nothing is pinned or kept."
     )
     editor.undo()
     assert editor.state["pins"] == [] and editor.samples is made and editor.chosen == 1
@@ -151,7 +151,7 @@ def test_a_retouched_pose_is_saved_before_anything_is_generated(motion, tmp_path
     hand = back.world_positions()[:, back.names.index("LeftHand")] / 100
     np.testing.assert_allclose(hand, editor.positions[:, HAND], atol=0.02)  # bones are evened out
     assert hand[4, 1] > motion[4, HAND, 1] + 0.17
-    assert ", over an older file: " in receive(editor, do="save", name="retouched.bvh")
+    assert ", which replaced an older file: " in receive(editor, do="save", name="retouched.bvh")
 
 
 @pytest.mark.parametrize(
@@ -159,11 +159,11 @@ def test_a_retouched_pose_is_saved_before_anything_is_generated(motion, tmp_path
     [
         (
             "/elsewhere/walk.bvh",
-            "'/elsewhere/walk.bvh' names a folder. Type a name alone: the file goes beside",
+            "'/elsewhere/walk.bvh' contains a folder. Type only a name: the file goes to",
         ),
-        ("../walk.bvh", "names a folder"),
-        ("~/walk", "names a folder"),
-        (r"C:\walk.bvh", "names a folder"),
+        ("../walk.bvh", "contains a folder"),
+        ("~/walk", "contains a folder"),
+        (r"C:\walk.bvh", "contains a folder"),
         ("my walk.txt", "Not saved: only .bvh can be written, not .txt. Type my walk.bvh."),
         (" ", "Give the file a name."),
         (".bvh", "Give the file a name."),
@@ -195,7 +195,7 @@ def test_errors_are_told_in_the_page_and_leave_it_at_rest(motion, tmp_path):
     assert receive(editor, do="save", name=" ") == "Give the file a name."
     editor.pin(*range(T))
     assert receive(editor, do="generate", after=5).startswith(
-        "Every frame is pinned: there is nothing to make."
+        "Every frame is pinned, so there is nothing to generate. Release some."
     )
     assert editor.state["heard"] == 6
 
@@ -211,7 +211,7 @@ def test_a_press_while_another_is_answered_is_ignored(motion):
 
     editor = Editor(motion, make)
     editor.pin(0, 30)
-    assert receive(editor, do="generate", after=0).startswith("In-betweens made: 3")
+    assert receive(editor, do="generate", after=0).startswith("In-betweens generated: 3")
     receive(editor, do="generate", after=0)  # pressed before the answer had come
     assert calls == [0]
     receive(editor, do="generate", after=1)
@@ -254,7 +254,7 @@ def test_a_grip_goes_on_after_an_undo_with_what_it_was_moved_since(motion):
     assert height(editor) == pytest.approx(8)
     receive(editor, do="undo")
     assert height(editor) == pytest.approx(7)
-    assert "not by [0.0, nan, 0.0]" in receive(
+    assert "not [0.0, nan, 0.0]" in receive(
         editor, do="drag", frame=8, joint=HAND, by=[0, None, 0], grip=3
     )
     receive(editor, do="drag", frame=8, joint=HAND, by=[0, 0.02, 0], grip=3)
@@ -278,9 +278,9 @@ def test_a_frame_is_turned_over_as_it_is_here_and_pinned_as_it_is_shown_there(mo
     editor.generate()
     receive(editor, do="toggle", frame=11, chosen=2)
     assert np.array_equal(editor.positions[11], editor.samples[2, 11]) and editor.chosen == 2
-    assert receive(editor, do="toggle", frame=11, chosen=2) == "Let go of frame 11."
+    assert receive(editor, do="toggle", frame=11, chosen=2) == "Released frame 11."
     receive(editor, do="ping")
-    assert editor.state["message"] == "Let go of frame 11."
+    assert editor.state["message"] == "Released frame 11."
 
 
 def test_what_is_no_motion_is_refused(motion):
@@ -292,9 +292,9 @@ def test_what_is_no_motion_is_refused(motion):
         Editor(np.where(np.arange(T * 21).reshape(T, 21, 1) == 2 * 21 + 5, np.nan, motion), guess)
     with pytest.raises(ValueError, match="3 names for the 21 joints"):
         Editor(motion, guess, names=["a", "b", "c"])
-    with pytest.raises(traitlets.TraitError, match="frame is a number from 0 to 30, not 31"):
+    with pytest.raises(traitlets.TraitError, match="frame must be from 0 to 30, not 31"):
         Editor(motion, guess).frame = T
-    with pytest.raises(traitlets.TraitError, match="chosen is a number from 0 to 0, not 1"):
+    with pytest.raises(traitlets.TraitError, match="chosen must be from 0 to 0, not 1"):
         Editor(motion, guess).chosen = 1
 
 
@@ -425,7 +425,7 @@ def test_a_click_on_the_timeline_goes_there_and_a_double_click_pins(page, editor
         page.locator(RAIL).get_attribute("aria-valuetext") == "frame 20 of 30, 1.00 seconds, pinned"
     )
     press(page, "Enter")
-    assert editor.state["pins"] == [] and "Nothing is held" in words(page)
+    assert editor.state["pins"] == [] and "Nothing is pinned or kept" in words(page)
 
 
 LABELS = """() => {  // boxes of the labels written on the stage

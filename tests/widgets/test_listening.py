@@ -93,19 +93,19 @@ def test_the_record_says_how_the_bytes_are_to_be_read(listening, maps, moved):
         ),
         (
             dict(attention=np.full((2, 5, 4), 0.25), token_times=np.arange(4.0)),
-            r"got \(2, 5, 4\); of several heads",
+            r"not \(2, 5, 4\); for several heads",
         ),
         (
             dict(attention=np.full((5, 4), np.nan), token_times=np.arange(4.0)),
-            "weights are finite and not negative",
+            "weights must be finite and not negative",
         ),
-        (dict(attention=np.eye(4) * 2 - 0.25, token_times=np.arange(4.0)), "softmax first"),
+        (dict(attention=np.eye(4) * 2 - 0.25, token_times=np.arange(4.0)), "apply softmax"),
         (
             dict(attention=np.eye(4), token_times=np.arange(5.0)),
-            r"one for each of the 4 columns; got shape \(5,\)",
+            r"one for each of the 4 columns, not shape \(5,\)",
         ),
-        (dict(attention=np.eye(4), token_times=[0, 2, 1, 3]), "token_times are increasing"),
-        (dict(attention=np.eye(4)), r"token_times are increasing seconds.* got shape \(0,\)"),
+        (dict(attention=np.eye(4), token_times=[0, 2, 1, 3]), "token_times must be increasing"),
+        (dict(attention=np.eye(4)), r"token_times must be increasing seconds.* not shape \(0,\)"),
         (
             dict(attention={"a": np.eye(4)}, token_times={"b": np.arange(4)}),
             "no times for 'a'; it has b",
@@ -113,15 +113,15 @@ def test_the_record_says_how_the_bytes_are_to_be_read(listening, maps, moved):
         (dict(attention={}), "attention is empty"),
         (
             dict(attention=np.eye(4), token_times=np.arange(4), scale="row"),
-            'scale is "map" or "frame"',
+            'scale must be "map" or "frame"',
         ),
         (
             dict(moved=np.zeros(9)),
-            r"one finite distance in metres a frame, \(86,\); got shape \(9,\)",
+            r"one finite distance in metres per frame, \(86,\), not shape \(9,\)",
         ),
-        (dict(moved=-np.ones(T)), "`moved` is one finite distance"),
-        (dict(moved=np.zeros(T), hit=-1.0), "`hit` are increasing times"),
-        (dict(audio=None, attention=np.eye(4), token_times=np.arange(4)), "give `audio` too"),
+        (dict(moved=-np.ones(T)), "`moved` must be one finite distance"),
+        (dict(moved=np.zeros(T), hit=-1.0), "`hit` must be increasing times"),
+        (dict(audio=None, attention=np.eye(4), token_times=np.arange(4)), "pass `audio` too"),
     ],
 )
 def test_what_is_no_attention_is_explained(wrong, message):

@@ -52,7 +52,7 @@ def test_changes_are_told_once_each():
 def test_what_cannot_be_a_path_is_refused():
     pad = PathPad()
     with pytest.raises(
-        ValueError, match=r"\(n, 2\) finite numbers \[x, z\] in metres, got shape \(4, 3\)"
+        ValueError, match=r"\(n, 2\) finite numbers \[x, z\] in metres, not shape \(4, 3\)"
     ):
         pad.points = np.zeros((4, 3))
     with pytest.raises(traitlets.TraitError, match="moonwalk.*figure eight"):

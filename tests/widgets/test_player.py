@@ -64,7 +64,7 @@ def test_a_position_that_is_not_finite_is_named(motion, bad):
         (np.zeros((5, 17, 3)), "17 joints, the course's skeleton has 21: give `parents`"),
         (np.zeros((0, 21, 3)), "figure 0 has no frames"),
         ([], "no figure given"),
-        ([np.zeros((5, 21, 3)), np.zeros((5, 4, 3))], r"different joints: \[21, 4\]"),
+        ([np.zeros((5, 21, 3)), np.zeros((5, 4, 3))], r"different numbers of joints: \[21, 4\]"),
     ],
 )
 def test_wrong_shapes_are_explained(positions, message):
@@ -74,7 +74,7 @@ def test_wrong_shapes_are_explained(positions, message):
 
 def test_wrong_extras_are_explained(motion):
     with pytest.raises(
-        ValueError, match=r"contacts of figure 0 have shape \(36, 2\); expected \(37, 2\)"
+        ValueError, match=r"contacts of figure 0 have shape \(36, 2\); they must be \(37, 2\)"
     ):
         Player(motion[0], contacts=motion[1][1:])
     with pytest.raises(ValueError, match="3 values of `labels` for 1 figures"):
@@ -123,7 +123,7 @@ def test_other_skeletons_are_drawn_with_their_parents():
     positions = np.random.default_rng(0).normal(size=(6, 4, 3))
     player = Player(positions, look=Look(parents=[-1, 0, 1, 1]))
     assert len(player.scene["parts"]) == 3 and player.scene["joints"] == 4
-    with pytest.raises(ValueError, match="`parents` names 3 joints, the positions have 4"):
+    with pytest.raises(ValueError, match="`parents` has 3 joints, but the positions 4"):
         Player(positions, look=Look(parents=[-1, 0, 1]))
 
 

@@ -276,7 +276,7 @@ def test_ten_seconds_are_a_small_page():
 def test_a_sound_is_cut_or_filled_up_to_the_motion_and_that_is_said():
     motion = walk(frames=37)[0]  # 1.85 s
     with pytest.warns(
-        UserWarning, match="the sound lasts 1.00 s, the motion 1.85 s: its last 0.85 s are silent"
+        UserWarning, match="the sound lasts 1.00 s, the motion 1.85 s: the last 0.85 s are silent"
     ):
         Player(motion, audio=Soundtrack(clicks([0.5], 1.0), codec="wav"))
     with pytest.warns(
@@ -295,11 +295,11 @@ def test_a_sound_is_cut_or_filled_up_to_the_motion_and_that_is_said():
 @pytest.mark.parametrize(
     "audio, message",
     [
-        (np.zeros((2, 500)), r"audio has shape \(2, 500\); give one channel \(N,\)"),
+        (np.zeros((2, 500)), r"audio has shape \(2, 500\); pass one channel \(N,\)"),
         (np.zeros(0), "audio has no samples"),
-        (np.zeros(500, np.int16), "audio holds int16; give floats"),
-        (np.array([0, np.nan, np.nan, 0]), r"not finite at sample 1 \(0.00 s\); 2 such samples"),
-        (b"no sound at all", "these 15 bytes are no WAV, FLAC, Ogg or MP3 file"),
+        (np.zeros(500, np.int16), "audio is int16; pass floats"),
+        (np.array([0, np.nan, np.nan, 0]), r"not finite at sample 1 \(0.00 s\); 2 samples in all"),
+        (b"no sound at all", "these 15 bytes are not a WAV, FLAC, Ogg or MP3 file"),
     ],
 )
 def test_sounds_that_are_none_are_explained(audio, message):
@@ -310,15 +310,18 @@ def test_sounds_that_are_none_are_explained(audio, message):
 def test_other_wrong_arguments_are_explained_and_leave_the_player_as_it_was():
     audio, motion = clicks([0.5], 1.85), walk(frames=37)[0]
     for wrong, message in [
-        (dict(sample_rate=200), "sample_rate is a whole number of Hz from 8000 to 96000, not 200"),
-        (dict(codec="aac"), "codec is one of ogg, flac, wav, not 'aac'"),
-        (dict(beats=[1.0, 0.5]), "`beats` are increasing times in seconds"),
-        (dict(downbeats=[[0.5]]), "`downbeats` are increasing times"),
-        (dict(beats=[0.5, np.nan]), "`beats` are increasing times"),
+        (
+            dict(sample_rate=200),
+            "sample_rate must be a whole number from 8000 to 96000 Hz, not 200",
+        ),
+        (dict(codec="aac"), "codec must be one of ogg, flac, wav, not 'aac'"),
+        (dict(beats=[1.0, 0.5]), "`beats` must be increasing times in seconds"),
+        (dict(downbeats=[[0.5]]), "`downbeats` must be increasing times"),
+        (dict(beats=[0.5, np.nan]), "`beats` must be increasing times"),
     ]:
         with pytest.raises(ValueError, match=message):
             Player(motion, audio=Soundtrack(audio, **wrong))
-    with pytest.raises(ValueError, match="give `audio` too"):
+    with pytest.raises(ValueError, match="pass `audio` too"):
         Player(motion, audio=Soundtrack(None, beats=[0.5]))
     player = Player(motion, audio=audio)
     before = player.scene, player.sound

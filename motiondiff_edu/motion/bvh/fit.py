@@ -1,9 +1,7 @@
-"""A constant-bone skeleton fitted to any motion.
+"""A constant-bone skeleton fitted to any motion: offsets, local rotations, continuous Euler angles.
 
-Offsets, local rotations, Euler angles without flips.
-
-A network's raw output has bones that vary a little; a BVH file cannot. `fit` finds the nearest
-motion that a file can hold and says how far the joints moved.
+In a network's raw output the bone lengths vary a little; a BVH file has constant bones. `fit` finds
+a close motion with constant bones and reports how far the joints moved.
 Notebook: 00, 01
 """
 
@@ -16,8 +14,8 @@ from scipy.spatial.transform import Rotation
 from ..kinematics import forward_kinematics
 from ..skeleton import BONES, HIPS, JOINTS, OFFSETS, PARENTS, joint_index
 
-# Three joints of length zero, as capture files have them: spine and collars turn apart from hips
-# and neck.
+# Three joints of length zero, as in capture files: with them, spine and collars turn independently
+# of hips and neck.
 HELPERS = {
     "LowerBack": ("Hips", ("Spine",)),
     "LeftShoulder": ("Neck1", ("LeftArm",)),
@@ -34,10 +32,10 @@ END_SITES = {  # metres, so that programs draw toes, hands and head
 
 @dataclass(frozen=True, eq=False)
 class FitReport:
-    """What was written: the fitted positions and how far each joint is from the motion given.
+    """The fitted positions and how far each joint is from the given motion.
 
-    `positions` in metres; `shift_mm` per frame and joint; `bone_mm` the spread (standard deviation)
-    of the given bones, the part of the shift that no constant skeleton can avoid.
+    `positions` are in metres. `shift_mm` is the distance per frame and joint. `bone_mm` is the mean
+    standard deviation of the given bone lengths; no constant skeleton can avoid this part.
     """
 
     positions: Float[np.ndarray, "T 21 3"]
@@ -66,7 +64,7 @@ class FitReport:
 
 @dataclass(frozen=True, eq=False)
 class Fit:
-    """A hierarchy and its motion, ready to be written. Lengths in metres, angles in degrees."""
+    """A hierarchy and its motion, ready to write. Lengths are in metres, angles in degrees."""
 
     names: tuple[str, ...]
     parents: np.ndarray
@@ -79,15 +77,14 @@ class Fit:
 def fit(positions: Float[np.ndarray, "T 21 3"]) -> Fit:
     """Fit the course's skeleton to world positions (metres).
 
-    It takes the motion's own median bone lengths.
-
-    A joint with several children turns by the least-squares rotation (Kabsch); one with a single
-    child by the smallest rotation from its parent, so that no twist is invented.
+    The bones get the motion's median lengths. A joint with several children turns by the
+    least-squares rotation (Kabsch). A joint with a single child turns by the smallest rotation from
+    its parent, so that no twist is added.
     """
     lengths = np.array(
         [np.median(np.linalg.norm(positions[:, c] - positions[:, p], axis=-1)) for p, c in BONES]
     )
-    spread = np.array(
+    deviation = np.array(
         [np.std(np.linalg.norm(positions[:, c] - positions[:, p], axis=-1)) for p, c in BONES]
     )
     names, parents, offsets = hierarchy(scaled_offsets(lengths))
@@ -97,7 +94,7 @@ def fit(positions: Float[np.ndarray, "T 21 3"]) -> Fit:
     world, _ = forward_kinematics(local, points[:, HIPS], offsets, parents)
     ours = world[:, [names.index(name) for name in JOINTS]]
     shift = 1000 * np.linalg.norm(ours - positions, axis=-1)
-    report = FitReport(ours, shift, float(1000 * spread.mean()))
+    report = FitReport(ours, shift, float(1000 * deviation.mean()))
     return Fit(names, parents, offsets, points[:, HIPS], euler_zxy(local), report)
 
 
@@ -112,7 +109,7 @@ def scaled_offsets(lengths: Float[np.ndarray, "20"]) -> Float[np.ndarray, "21 3"
 def hierarchy(
     offsets: Float[np.ndarray, "21 3"],
 ) -> tuple[tuple[str, ...], np.ndarray, Float[np.ndarray, "N 3"]]:
-    """Names, parents and offsets with the helper joints put in, each before its child."""
+    """Names, parents and offsets with the helper joints inserted, each before its child."""
     names = []
     above = {}
     table = []
@@ -136,10 +133,10 @@ def global_turns(
     parents: Int[np.ndarray, "N"],
     offsets: Float[np.ndarray, "N 3"],
 ) -> tuple[Float[np.ndarray, "T N 3 3"], Float[np.ndarray, "T N 3"]]:
-    """Global rotation and place of every node, root first.
+    """Global rotation and position of every node, root first.
 
-    A bone points from its parent's fitted place to its child's given one, so errors do not add up
-    along a limb.
+    A bone points from the fitted position of its parent to the given position of its child, so
+    errors do not add up along a limb.
     """
     turns = np.zeros((len(positions), len(names), 3, 3))
     points = np.zeros((len(positions), len(names), 3))
@@ -148,7 +145,7 @@ def global_turns(
         before = turns[:, parent] if parent >= 0 else np.broadcast_to(np.eye(3), turns[:, 0].shape)
         if parent >= 0:
             points[:, node] = points[:, parent] + before @ offsets[node]
-        children = guides(node, names, parents)
+        children = guiding_children(node, names, parents)
         rest = np.array([OFFSETS[joint_index(names[c])] for c in children])
         aims = np.array([positions[:, joint_index(names[c])] - points[:, node] for c in children])
         if len(children) > 1:
@@ -158,11 +155,8 @@ def global_turns(
     return turns, points
 
 
-def guides(node: int, names: tuple[str, ...], parents: Int[np.ndarray, "N"]) -> list[int]:
-    """The joints that a node's rotation is read from.
-
-    Its children, without those that a helper turns.
-    """
+def guiding_children(node: int, names: tuple[str, ...], parents: Int[np.ndarray, "N"]) -> list[int]:
+    """The joints that determine a node's rotation: its children without helper joints."""
     return [c for c in range(len(names)) if parents[c] == node and names[c] not in HELPERS]
 
 
@@ -189,8 +183,8 @@ def least_turn(
 def euler_zxy(local: Float[np.ndarray, "T N 3 3"]) -> Float[np.ndarray, "T N 3"]:
     """Degrees for the channels Zrotation Xrotation Yrotation, without jumps between frames.
 
-    (z, x, y) and (z + 180, 180 - x, y + 180) are the same turn; the one nearer to the frame before
-    is kept.
+    (z, x, y) and (z + 180, 180 - x, y + 180) are the same rotation; the one closer to the frame
+    before is chosen.
     """
     frames, nodes = local.shape[:2]
     angles = Rotation.from_matrix(local.reshape(-1, 3, 3)).as_euler("ZXY").reshape(frames, nodes, 3)

@@ -9,14 +9,15 @@ from jaxtyping import Float
 
 from .tokens import BvhError, to_number
 
-SLOWEST, FASTEST = 0.5, 0.001  # s per frame; outside this a frame time is taken for a mistake
+SLOWEST, FASTEST = 0.5, 0.001  # s per frame; a frame time outside this range is an error
 EXACT_RATES = [float(n) for n in range(1, 1001)] + [n * 1000 / 1001 for n in (24, 30, 60, 120)]
 
 
 def header(lines: list[str], motion: int, path: str | Path) -> tuple[int, int, str, int, int]:
-    """What the header of the motion says.
+    """The header of the motion section.
 
-    Declared frames and its line, text of the frame time and its line, index of the first data line.
+    Returns the declared number of frames and its line, the text of the frame time and its line, and
+    the index of the first data line.
     """
     frames_at = next_filled(lines, motion + 1)
     time_at = next_filled(lines, frames_at + 1)
@@ -24,7 +25,7 @@ def header(lines: list[str], motion: int, path: str | Path) -> tuple[int, int, s
     time = after_keyword(lines, time_at, "frame time", path)
     if not frames.isdigit():
         raise BvhError(
-            f"'{frames}' is no number of frames; 'Frames:' takes a whole number.",
+            f"'{frames}' is not a number of frames; 'Frames:' takes a whole number.",
             path,
             frames_at + 1,
         )
@@ -37,7 +38,7 @@ def next_filled(lines: list[str], start: int) -> int:
 
 
 def after_keyword(lines: list[str], index: int, keyword: str, path: str | Path) -> str:
-    """What follows `keyword:` on a line; blank, tab or nothing may stand between."""
+    """The text after `keyword:` on a line; blanks, tabs or nothing can stand between."""
     text = " ".join(lines[index].split()) if index < len(lines) else ""
     if not text.lower().startswith(keyword):
         shown = f"'{text[:40]}'" if text else "the end of the file"
@@ -47,10 +48,10 @@ def after_keyword(lines: list[str], index: int, keyword: str, path: str | Path) 
 
 
 def frame_time(text: str, line: int, path: str | Path, file_fps: float | None) -> float:
-    """Seconds per frame; `file_fps` overrules what the file says.
+    """Seconds per frame; `file_fps` replaces the value of the file.
 
-    Accepted: 0.001 to 0.5 s. A frame time of 24 or 1 is a rate, or a place-holder, in the wrong
-    field.
+    Values from 0.001 to 0.5 s are accepted. A frame time of 24 or 1 is a frame rate or a
+    placeholder in the wrong field.
     """
     if file_fps is not None:
         if not 0 < file_fps < np.inf:
@@ -72,8 +73,8 @@ def frame_time(text: str, line: int, path: str | Path, file_fps: float | None) -
             else " Write seconds per frame"
         )
         raise BvhError(
-            f"a frame time of {text} s is not plausible ({FASTEST} to {SLOWEST} s are read)."
-            f"{hint}, or pass file_fps= to overrule the file.",
+            f"a frame time of {text} s is not plausible ({FASTEST} to {SLOWEST} s are accepted)."
+            f"{hint}, or pass file_fps= to replace the value of the file.",
             path,
             line,
         )
@@ -96,13 +97,13 @@ def frame_rows(
 ) -> Float[np.ndarray, "T K"]:
     """All frames as an array (T, channels).
 
-    A frame may be wrapped over several lines but must end where a line ends; so a lost or an
-    additional number is noticed in the frame where it happens, not at the end of the file.
+    A frame can be wrapped over several lines but must end where a line ends. So a missing or an
+    additional number is found in the frame where it is, not at the end of the file.
     `columns` are (joint, channel) pairs. Raises BvhError.
     """
     if declared == 0:
         raise BvhError(
-            "the file declares no frames; export it with its motion.", path, declared_line
+            "the file declares 0 frames; export it with its motion.", path, declared_line
         )
     if not columns:
         raise BvhError(
@@ -115,7 +116,9 @@ def frame_rows(
     found = len(values) // len(columns)
     if found != declared:
         what = (
-            "frames were lost or the file is cut off" if found < declared else "the count is wrong"
+            "frames are missing or the file is cut off"
+            if found < declared
+            else "the count is wrong"
         )
         raise BvhError(
             f"'Frames: {declared}', but {found} frames follow: {what}. "
@@ -129,7 +132,7 @@ def frame_rows(
 def numbers(
     lines: list[str], first: int, columns: list[tuple[str, str]], path: str | Path
 ) -> tuple[np.ndarray, list[tuple[int, int]]]:
-    """Every number of the data block, and (line, how many) of each line that holds some."""
+    """Every number of the data block, and (line, count) of each line that has numbers."""
     values, counts = array("d"), []
     for index in range(first, len(lines)):
         words = lines[index].split()
@@ -142,7 +145,7 @@ def numbers(
 def row_of(
     words: list[str], before: int, columns: list[tuple[str, str]], path: str | Path, line: int
 ) -> list[float]:
-    """The words of one line as numbers; the slow look at each word only where one is bad."""
+    """The words of one line as numbers; each word is checked only if one of them is bad."""
     try:
         row = list(map(float, words))
         if isfinite(sum(row)) and "_" not in "".join(words):
@@ -170,8 +173,8 @@ def check_frame_ends(
         held += count
         if held > width:
             raise BvhError(
-                f"the frame that begins on line {begun} has {held} numbers, {width} are due; "
-                "a number was lost or added, or CHANNELS does not fit the data.",
+                f"the frame that begins on line {begun} has {held} numbers, but {width} are "
+                "expected; a number is missing or added, or CHANNELS does not fit the data.",
                 path,
                 line,
             )

@@ -11,7 +11,7 @@ SPELLED = {channel.lower(): channel for channel in CHANNELS}
 
 @dataclass
 class Node:
-    """A joint or an end site while it is being read."""
+    """A joint or an end site while the file is read."""
 
     name: str
     parent: int
@@ -23,11 +23,11 @@ class Node:
 
 @dataclass
 class Reader:
-    """Where the reader stands: the nodes found and the open ones, outermost first."""
+    """The state of the reader: all nodes so far, and the open ones, outermost first."""
 
     path: str | Path
     nodes: list[Node] = field(default_factory=list)
-    lines: dict[str, int] = field(default_factory=dict)  # of each joint, by its name
+    lines: dict[str, int] = field(default_factory=dict)  # joint name -> line
     open: list[int] = field(default_factory=list)
     waiting: int | None = None  # a node whose brace has not come yet
 
@@ -57,7 +57,7 @@ def current(reader: Reader) -> Node | None:
 
 
 def joint(reader: Reader, statement: Statement) -> None:
-    """ROOT or JOINT: blanks inside the name are kept, so 'Right Up Leg' is one joint."""
+    """Read ROOT or JOINT; blanks inside the name are kept, so 'Right Up Leg' is one joint."""
     name = " ".join(statement.rest.split())
     if not name:
         raise reader.error(
@@ -67,7 +67,7 @@ def joint(reader: Reader, statement: Statement) -> None:
         first = reader.nodes[0]
         problem = (
             f"a second ROOT (the first, {first.name}, is on line {first.line}): "
-            "two figures in one file."
+            "the file contains two figures."
         )
         raise BvhError(
             problem + " Export each figure to its own file.", reader.path, statement.line, name
@@ -87,7 +87,7 @@ def joint(reader: Reader, statement: Statement) -> None:
 
 
 def end_site(reader: Reader, statement: Statement) -> None:
-    """End Site: a point without channels, named after its joint."""
+    """Read an End Site: a point without channels, named after its joint."""
     parent = current(reader)
     if parent is None:
         raise reader.error("an End Site outside a joint.", statement.line)
@@ -95,7 +95,7 @@ def end_site(reader: Reader, statement: Statement) -> None:
 
 
 def add(reader: Reader, node: Node) -> None:
-    """Take a node in; its '{' must follow."""
+    """Add a node; its '{' must follow."""
     if reader.waiting is not None:
         raise reader.error("'{' is missing after it.", node.line, reader.nodes[reader.waiting])
     reader.waiting = len(reader.nodes)
@@ -103,7 +103,7 @@ def add(reader: Reader, node: Node) -> None:
 
 
 def opened(reader: Reader, statement: Statement) -> None:
-    """'{': what comes now belongs to the node that was just named."""
+    """Read '{': the next statements belong to the node that was just named."""
     if reader.waiting is None:
         raise reader.error(
             "'{' without ROOT, JOINT or End Site before it.", statement.line, current(reader)
@@ -113,10 +113,10 @@ def opened(reader: Reader, statement: Statement) -> None:
 
 
 def closed(reader: Reader, statement: Statement) -> None:
-    """'}': the innermost node ends, and must be complete."""
+    """Read '}': the innermost node ends, and must be complete."""
     node = current(reader)
     if node is None:
-        raise reader.error("'}' closes nothing; there is one too many.", statement.line)
+        raise reader.error("this '}' has no matching '{'; remove it.", statement.line)
     if node.offset is None:
         raise reader.error(
             "it has no OFFSET line; add one (0 0 0 when it sits on its parent).", node.line, node
@@ -131,7 +131,7 @@ def closed(reader: Reader, statement: Statement) -> None:
 
 
 def inside(reader: Reader, statement: Statement) -> Node:
-    """The node that a property belongs to."""
+    """The node to which a property belongs."""
     node = current(reader)
     if node is None or reader.waiting is not None:
         raise reader.error(
@@ -141,16 +141,16 @@ def inside(reader: Reader, statement: Statement) -> Node:
 
 
 def offset(reader: Reader, statement: Statement) -> None:
-    """OFFSET x y z: where the node lies from its parent."""
+    """Read OFFSET x y z: the position of the node relative to its parent."""
     node = inside(reader, statement)
     words = statement.rest.split()
     if len(words) != 3:
-        raise reader.error(f"OFFSET takes 3 numbers, here are {len(words)}.", statement.line, node)
+        raise reader.error(f"OFFSET takes 3 numbers, not {len(words)}.", statement.line, node)
     node.offset = tuple(to_number(word, reader.path, statement.line, node.name) for word in words)
 
 
 def channels(reader: Reader, statement: Statement) -> None:
-    """CHANNELS n and n names; any subset of the six, in any order, each at most once."""
+    """Read CHANNELS n and n names: any subset of the six, in any order, each at most once."""
     node = inside(reader, statement)
     count, *names = statement.rest.split() or [""]
     unknown = [name for name in names if name.lower() not in SPELLED]
@@ -167,7 +167,7 @@ def channels(reader: Reader, statement: Statement) -> None:
 
 
 def finished(reader: Reader, line: int) -> list[Node]:
-    """The nodes, once every brace is closed; end sites get names that no joint has."""
+    """The nodes after every brace is closed; end sites get names that no joint has."""
     if reader.open or reader.waiting is not None:
         node = reader.nodes[reader.waiting if reader.waiting is not None else reader.open[-1]]
         count = len(reader.open) + (reader.waiting is not None)
@@ -177,7 +177,7 @@ def finished(reader: Reader, line: int) -> list[Node]:
         )
         raise reader.error(problem, line, node)
     if not reader.nodes:
-        raise reader.error("the HIERARCHY holds no ROOT.", line)
+        raise reader.error("the HIERARCHY has no ROOT.", line)
     taken = set(reader.lines)
     for node in (node for node in reader.nodes if node.end):
         while node.name in taken:

@@ -1,10 +1,12 @@
 """Reading BVH motion capture: `read_bvh(path)` returns every frame of the file, as written.
 
-Rules for what files leave open (each has its test): position channels replace a joint's OFFSET,
-whether they stand before or after the rotations; a rotation order is the order of the channels, so
-Zrotation Xrotation Yrotation is R = Rz Rx Ry; end sites may be missing; a joint with CHANNELS 0
-keeps its offset; two figures in one file are refused; units and the upward axis are not in the file
-and are left as they are (`retarget` finds them).
+Rules for cases that the format leaves open (each has its test):
+    Position channels replace a joint's OFFSET, before or after the rotations.
+    The rotation order is the order of the channels: Zrotation Xrotation Yrotation is Rz Rx Ry.
+    End sites can be missing.
+    A joint with CHANNELS 0 keeps its offset.
+    Two figures in one file raise an error.
+    The file states no unit and no upward axis; they stay unknown here (`retarget` finds them).
 """
 
 from dataclasses import dataclass
@@ -52,7 +54,7 @@ class Bvh:
 
     @cached_property
     def orders(self) -> tuple[str, ...]:
-        """The rotation order of each node, as "ZXY"; empty where it cannot turn."""
+        """The rotation order of each node, such as "ZXY"; empty for a node without rotations."""
         return tuple(
             "".join(name[0] for name in names if name.endswith("rotation"))
             for names in self.channels
@@ -73,7 +75,7 @@ class Bvh:
         ]
 
     def local_rotations(self) -> Float[np.ndarray, "T N 3 3"]:
-        """The turn of each node against its parent, R = R_first R_second R_third."""
+        """The rotation of each node relative to its parent, R = R_first R_second R_third."""
         turns = np.broadcast_to(np.eye(3), (len(self.frames), len(self.names), 3, 3)).copy()
         for order in set(self.orders) - {""}:
             nodes = [n for n, own in enumerate(self.orders) if own == order]
@@ -84,10 +86,7 @@ class Bvh:
         return turns
 
     def local_positions(self) -> Float[np.ndarray, "T N 3"]:
-        """The place of each node in its parent's frame.
-
-        Its offset, replaced where position channels exist.
-        """
+        """The position of each node in its parent's frame: its position channels, or its offset."""
         places = np.broadcast_to(self.offsets, (len(self.frames), *self.offsets.shape)).copy()
         for node in range(len(self.names)):
             for axis, column in self.columns(node, "position"):
@@ -95,18 +94,17 @@ class Bvh:
         return places
 
     def world_positions(self, end_sites: bool = True) -> Float[np.ndarray, "T N 3"]:
-        """World positions of all nodes in every frame (file units).
+        """World positions of the nodes in every frame, in the file's units.
 
-        Without end sites on request.
+        `end_sites=False` leaves out the end sites.
         """
         places = self.local_positions()
         positions, turns = forward_kinematics(
             self.local_rotations(), places[:, 0], self.offsets, self.parents
         )
         if (places[:, 1:] != self.offsets[1:]).any():
-            for node, parent in list(enumerate(self.parents))[
-                1:
-            ]:  # joints that also move in their parent's frame
+            # joints that also move in their parent's frame
+            for node, parent in list(enumerate(self.parents))[1:]:
                 positions[:, node] = positions[:, parent] + np.einsum(
                     "tij,tj->ti", turns[:, parent], places[:, node]
                 )
@@ -119,10 +117,10 @@ class Bvh:
 
 
 def read_bvh(path: str | Path, file_fps: float | int | None = None) -> Bvh:
-    """Read a BVH file; `file_fps` overrules its frame time, for files that state a wrong one.
+    """Read a BVH file; `file_fps` replaces its frame time, for files that state a wrong one.
 
-    Raises BvhError (a ValueError) with file, line, joint and what to do, for anything that is not
-    a whole, unambiguous BVH file; FileNotFoundError when there is none.
+    Raises BvhError (a ValueError) for anything but a complete, unambiguous BVH file; the message
+    has the file, the line, the joint and what to do. Raises FileNotFoundError for a missing file.
     """
     lines = read_lines(path)
     found, motion = statements(lines, path)
@@ -137,7 +135,7 @@ def read_bvh(path: str | Path, file_fps: float | int | None = None) -> Bvh:
 def assemble(
     nodes: list[Node], frames: Float[np.ndarray, "T K"], seconds: float, source: str
 ) -> Bvh:
-    """The frozen record of what was read."""
+    """Assemble the Bvh from its parts."""
     return Bvh(
         names=tuple(node.name for node in nodes),
         parents=np.array([node.parent for node in nodes]),

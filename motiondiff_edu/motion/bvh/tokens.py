@@ -1,6 +1,6 @@
-"""From the bytes of a BVH file to numbered statements and numbers.
+"""From the bytes of a BVH file to statements with line numbers, and to numbers.
 
-What is no BVH is refused early.
+A file that is not BVH raises an error early.
 """
 
 import re
@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-LARGEST = 300_000_000  # bytes: an hour of a detailed skeleton at 120 frames/s stays below
+LARGEST = 300_000_000  # bytes: an hour of a detailed skeleton at 120 frames/s is smaller
 SNIFF = 65_536
 BRACES = re.compile(r"([{}])")
 RUN_TOGETHER = re.compile(r"\d[-+]\d*\.?\d")
@@ -52,9 +52,7 @@ class Statement:
 
 
 def read_lines(path: str | Path) -> list[str]:
-    """The lines of a BVH file, whatever its line ends.
-
-    Anything that cannot be BVH is refused unread.
+    """The lines of a BVH file, with any kind of line ends.
 
     Raises BvhError for a folder, an empty, binary, UTF-16, HTML or oversized file.
     """
@@ -87,26 +85,22 @@ def refuse_foreign(start: bytes, path: Path) -> None:
         )
     if b"\0" in start:
         raise BvhError(
-            (
-                "this is a binary file, and BVH is text that starts with HIERARCHY; "
-                "export the take as BVH."
-            ),
+            "this is a binary file, but BVH is text that starts with HIERARCHY; "
+            "export the take as BVH.",
             path,
         )
     if head.split(maxsplit=1)[0].lower() != b"hierarchy":
         shown = head[:40].decode("latin-1").split("\n")[0].strip()
         raise BvhError(
-            f"a BVH file starts with HIERARCHY, this one with '{shown}'; export the take as BVH.",
+            f"a BVH file starts with HIERARCHY, but this one with '{shown}'; "
+            "export the take as BVH.",
             path,
             1,
         )
 
 
 def decode(raw: bytes) -> str:
-    """UTF-8 (a byte-order mark is dropped), else Latin-1.
-
-    Only joint names can hold such letters.
-    """
+    """Decode UTF-8 (without a byte-order mark), else Latin-1, which only joint names can need."""
     try:
         return raw.decode("utf-8-sig")
     except UnicodeDecodeError:
@@ -123,14 +117,14 @@ def statements(lines: list[str], path: str | Path) -> tuple[list[Statement], int
         found.extend(Statement(index + 1, piece) for piece in pieces if piece)
     last = max((index for index, line in enumerate(lines) if line.strip()), default=0)
     raise BvhError(
-        "the file ends without a MOTION section; it is cut off or holds a skeleton only.",
+        "the file ends without a MOTION section; it is cut off, or contains only a skeleton.",
         path,
         last + 1,
     )
 
 
 def to_number(text: str, path: str | Path, line: int, joint: str | None = None) -> float:
-    """One finite number; BvhError names the usual mistakes."""
+    """One finite number.  Raises BvhError, which names the usual mistakes."""
     try:
         value = float(text) if "_" not in text else None
     except ValueError:
@@ -153,10 +147,10 @@ def why_no_number(text: str) -> str:
         return f"'{text}' has a decimal comma; export with decimal points (an English locale)."
     if RUN_TOGETHER.search(text):
         return (
-            f"'{text}' looks like two numbers without a blank between them; "
-            "put a blank before the second sign."
+            f"'{text}' looks like two numbers without a space between them; "
+            "put a space before the second sign."
         )
     return (
-        f"'{text[:40]}' is not a number; only numbers may stand here. "
+        f"'{text[:40]}' is not a number; only numbers can stand here. "
         "Remove the comment or repair the line."
     )

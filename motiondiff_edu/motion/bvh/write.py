@@ -1,9 +1,9 @@
 """Writing a motion as BVH: `write_bvh(path, clip.world(), fps=20)`.
 
-Centimetres, y up, channels Zrotation Xrotation Yrotation; the root's OFFSET is zero, so that
-programs which add it to the position channels and programs which replace it by them agree. Three
-joints of length zero (LowerBack, LeftShoulder, RightShoulder) let spine and collars turn freely, as
-in files of the CMU library.
+The file is in centimetres, y up, with channels Zrotation Xrotation Yrotation. The root's OFFSET is
+zero: some programs add it to the position channels, others replace it by them, and with zero they
+agree. Three joints of length zero (LowerBack, LeftShoulder, RightShoulder) let spine and collars
+turn freely, as in files of the CMU library.
 Notebook: 00
 """
 
@@ -27,21 +27,21 @@ def write_bvh(
 ) -> FitReport:
     """Write world positions (metres) as a BVH file.
 
-    Prints and returns the joint shift of the constant-bone fit.
+    Prints and returns how far the constant-bone fit moves the joints.
 
-    The file appears whole or not at all. Raises BvhError for an empty or non-finite motion, another
-    shape, and a frame rate that no reader takes for one.
+    The file is written completely or not at all. Raises BvhError for an empty or non-finite motion,
+    another shape, and a frame rate outside the range that readers accept.
     """
     path = Path(path)
     positions = np.asarray(positions, dtype=np.float64)
     if not len(positions) or not np.isfinite(positions).all():
-        what = "has no frames" if not len(positions) else "holds values that are not finite"
+        what = "has no frames" if not len(positions) else "has values that are not finite"
         raise BvhError(f"the motion {what}; nothing was written.", path)
     if positions.shape[1:] != (J, 3):
         raise BvhError(
-            f"positions are (T, {J}, 3), metres in the world; these are {positions.shape}. What a "
-            f"walker makes becomes that by root_frame.to_world(new.reshape(-1, {J}, 3), "
-            "control). Nothing was written.",
+            f"positions must be (T, {J}, 3), world positions in metres; these are "
+            f"{positions.shape}. For a walker's output use "
+            f"root_frame.to_world(new.reshape(-1, {J}, 3), control). Nothing was written.",
             path,
         )
     if not 1 / SLOWEST <= fps <= 1 / FASTEST:
@@ -60,7 +60,7 @@ def write_bvh(
 
 
 def text(fitted: Fit, fps: float) -> str:
-    """The whole file."""
+    """The text of the whole file."""
     columns = [CM * fitted.root, *np.moveaxis(fitted.angles, 1, 0)]
     rows = np.concatenate(columns, axis=1)
     lines = [" ".join(f"{value:.6f}" for value in row) for row in rows]
@@ -75,9 +75,9 @@ def text(fitted: Fit, fps: float) -> str:
 
 
 def joint_lines(fitted: Fit, node: int, depth: int) -> list[str]:
-    """A joint and all below it.
+    """The lines of a joint and of all joints below it.
 
-    The columns of the motion stand in this order, which is the order of the nodes.
+    The columns of the motion have the same order as these nodes.
     """
     name, pad = fitted.names[node], "\t" * depth
     kind = "ROOT" if depth == 0 else "JOINT"

@@ -1,5 +1,5 @@
-// The repair bench: a figure whose joints are knocked out by a click, a map of frames and joints below it, and what the
-// kernel mended: the mean as a body, each repair as thin limbs, the truth as an outline. `model` needs get, set,
+// The repair bench: a figure whose joints are removed by a click, a map of frames and joints below it, and the kernel's
+// repair: the mean as a body, each repair as thin limbs, the truth as an outline. `model` needs get, set,
 // save_changes, on, off.
 
 import { CSS, GREEN, clamp, element, mix, readTheme, rgba } from "./dom.js";
@@ -19,12 +19,12 @@ export function mount(model, el, { fill = false } = {}) {
   const scene = model.get("scene"), { T_h, names, frames, fps } = scene, J = names.length, size = T_h * J;
   const button = (text, extra = {}) => element("button", { type: "button", ...extra }, text);
   const canvas = element("canvas", { tabindex: "0", class: "mde-figure", role: "application", "aria-roledescription": "repair bench",
-    title: "Click a joint: knock it out or restore it. Drag: turn. Arrows: frame and joint, Space: knock out. P: play. T: truth. R: reset." });
+    title: "Click a joint: remove it or restore it. Drag: turn. Arrows: frame and joint, Space: remove. P: play. T: truth. R: reset." });
   const map = element("canvas", { tabindex: "0", class: "mde-lane", role: "application", "aria-roledescription": "map of the frames",
-    title: "Click a frame of the window: knock it out or restore it. Arrows: frame, Space: knock out." });
+    title: "Click a frame of the window: remove it or restore it. Arrows: frame, Space: remove." });
   const play = button("", { class: "mde-play" }), repair = button("Repair", { style: "font-weight:600" }), reset = button("Reset");
   const speeds = element("select", { "aria-label": "Speed" }, ...[0.1, 0.25, 0.5, 1].map((v) => element("option", { value: String(v) }, `${v}\u00d7`)));
-  const scope = element("select", { "aria-label": "A click on a joint counts for" }, element("option", { value: "all" }, "in the whole window"), element("option", { value: "one" }, "in this frame only"));
+  const scope = element("select", { "aria-label": "A click on a joint changes it" }, element("option", { value: "all" }, "in the whole window"), element("option", { value: "one" }, "in this frame only"));
   const truth = element("input", { type: "checkbox", checked: true });
   const body = element("select", { "aria-label": "Which repair is the body" });
   const from = element("input", { type: "range", min: "0", max: String(scene.last_first), step: "1", "aria-label": "First frame of the window" });
@@ -33,8 +33,8 @@ export function mount(model, el, { fill = false } = {}) {
   const key = (colour, word) => element("span", { class: "mde-key" }, element("i", { style: `background:${colour}` }), word);
   const label = (...inside) => element("label", { class: "mde-key" }, ...inside), row = (...inside) => element("div", { class: "mde-row" }, ...inside);
   const root = element("div", { class: "mde-player mde-bench" + (fill ? " mde-fill" : ""), "data-lm-suppress-shortcuts": "true" }, element("style", {}, CSS + STYLE),
-    canvas, map, row(label("a click on a joint counts", scope), ...faults.map(([node]) => node)),
-    row(repair, play, label("speed", speeds), label("body", body), label(truth, "truth"), reset), row(label("window starts at", from), key("#9AA3AE", "given"), key(rgba(PURPLE), "missing"), key(rgba(GREEN), "mended")), row(note));
+    canvas, map, row(label("a click on a joint changes it", scope), ...faults.map(([node]) => node)),
+    row(repair, play, label("speed", speeds), label("body", body), label(truth, "truth"), reset), row(label("window starts at", from), key("#9AA3AE", "given"), key(rgba(PURPLE), "missing"), key(rgba(GREEN), "repaired")), row(note));
   el.append(root);
   const calm = matchMedia("(prefers-reduced-motion: reduce)").matches, stop = new AbortController();
   const listen = (node, name, f, options = {}) => node.addEventListener(name, f, { signal: stop.signal, ...options });
@@ -48,7 +48,7 @@ export function mount(model, el, { fill = false } = {}) {
   const within = (t) => t >= first && t < first + T_h, number = (t, j) => (t - first) * J + j;
   const lost = (t, j) => within(t) && gone.has(number(t, j));
   const busy = () => model.get("asked") > model.get("answered");
-  function current() { // the repairs, unless something was knocked out, restored or moved since
+  function current() { // the repairs, unless a joint was removed or restored or the window moved since
     const told = model.get("repaired");
     const same = told.edition && told.first === first && told.missing.length === gone.size && told.missing.every((n) => gone.has(n));
     return same ? mended : [];
@@ -77,15 +77,15 @@ export function mount(model, el, { fill = false } = {}) {
     if (!canvas.clientWidth || !canvas.clientHeight) return;
     const theme = readTheme(root), state = drawFigure(theme);
     paintMap(map, theme, { first, last: first + T_h, frame, frames, J }, lost, current().length > 0 ? GREEN : PURPLE);
-    canvas.setAttribute("aria-label", `Figure, frame ${frame}: ${state}. ${names[joint]} is ${lost(frame, joint) ? "missing" : "given"}. ${gone.size} of ${size} places are missing in the window.`);
+    canvas.setAttribute("aria-label", `Figure, frame ${frame}: ${state}. ${names[joint]} is ${lost(frame, joint) ? "missing" : "given"}. ${gone.size} of ${size} joint positions are missing in the window.`);
     map.setAttribute("aria-label", `Frames 0 to ${frames - 1}, the window is ${first} to ${first + T_h - 1}. Frame ${frame} is chosen.`);
     repair.disabled = busy(); from.value = String(first);
     Object.assign(root.dataset, { frame, playing, missing: gone.size, repairs: current().length, state });
   }
 
-  function tell(words) { // the kernel hears of every change; an old repair no longer fits and is not shown
+  function tell(words) { // the kernel gets every change; an old repair no longer fits and is not shown
     model.set("first", first); model.set("missing", [...gone].sort((a, b) => a - b)); model.save_changes();
-    note.textContent = `${words} ${gone.size} of ${size} places are missing.`; draw();
+    note.textContent = `${words} ${gone.size} of ${size} joint positions are missing.`; draw();
   }
   function put(numbers, away) { for (const n of numbers) if (away) gone.add(n); else gone.delete(n); }
   const outside = () => { note.textContent = `Frame ${frame} is outside the window (frames ${first} to ${first + T_h - 1}): choose one inside.`; };
@@ -123,7 +123,7 @@ export function mount(model, el, { fill = false } = {}) {
     if (next !== frame) { frame = next; draw(); }
     ticking = requestAnimationFrame(tick);
   }
-  function load() { // what the kernel mended
+  function load() { // the repairs of the kernel
     const told = model.get("repaired"), count = told.figures || 0, kept = body.value;
     mended = count ? figures(model.get("mended_joints"), model.get("mended_roots"), Array.from({ length: count }, () => ({ frames: T_h }))) : [];
     body.replaceChildren(...Array.from({ length: Math.max(count, 1) }, (_, k) => element("option", { value: String(k) }, k ? `repair ${k}` : "mean of repairs")));
@@ -135,14 +135,14 @@ export function mount(model, el, { fill = false } = {}) {
   }
   const keys = {
     ArrowLeft: () => go(frame - 1), ArrowRight: () => go(frame + 1), Home: () => go(first), End: () => go(first + T_h - 1),
-    p: () => setPlaying(!playing), t: () => { truth.checked = !truth.checked; draw(); }, r: () => { home(); tell("As at the start."); },
+    p: () => setPlaying(!playing), t: () => { truth.checked = !truth.checked; draw(); }, r: () => { home(); tell("Reset."); },
     "+": () => { view.zoom = clamp(view.zoom * 1.2, 0.4, 4); draw(); }, "-": () => { view.zoom = clamp(view.zoom / 1.2, 0.4, 4); draw(); },
   };
   const onFigure = { ArrowUp: () => { joint = (joint + J - 1) % J; go(frame); }, ArrowDown: () => { joint = (joint + 1) % J; go(frame); }, " ": () => strikeJoint(joint) };
   const onMap = { " ": () => strikeFrame(frame) };
   listen(root, "keydown", (event) => {
     if (event.ctrlKey || event.metaKey || event.altKey) return;
-    event.stopPropagation(); // else JupyterLab takes the key for its own
+    event.stopPropagation(); // otherwise JupyterLab handles the key
     const own = event.target === canvas ? { ...keys, ...onFigure } : event.target === map ? { ...keys, ...onMap } : {};
     const act = own[event.key.length === 1 ? event.key.toLowerCase() : event.key];
     if (act) { event.preventDefault(); act(); }
@@ -180,7 +180,7 @@ export function mount(model, el, { fill = false } = {}) {
   if (!fill) canvas.style.height = `${scene.height}px`;
   map.style.height = `${MAP_HEIGHT}px`;
   sizes.observe(canvas); sights.observe(canvas); themes.observe(document.body, { attributes: true });
-  load(); home(); note.textContent = current().length ? model.get("said") : "Click a joint or a frame to knock it out, then press Repair.";
+  load(); home(); note.textContent = current().length ? model.get("said") : "Click a joint or a frame to remove it, then press Repair.";
   return () => {
     stop.abort(); cancelAnimationFrame(ticking); [sizes, sights, themes].forEach((o) => o.disconnect());
     for (const [name, f] of Object.entries(changes)) model.off(name, f);

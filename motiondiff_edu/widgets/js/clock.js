@@ -1,4 +1,4 @@
-// What the dance is timed by: the sound where there is one, else the page's own clock. Seconds from the motion's start.
+// The clock of the player: the sound if there is one, else the page's own clock. Seconds from the motion's start.
 // A clock has start(), stop(), seek(seconds), rate(factor) and now().
 
 export function silentClock(length, visible) { // stands still while the figure is out of sight
@@ -20,7 +20,7 @@ export function silentClock(length, visible) { // stands still while the figure 
 // The sound's own time moves in steps, coarse ones in some browsers, and starts late. Between two readings the page's
 // clock runs on, by no more than the longest step seen so far (60 ms at first); a new reading puts it right. A reading may
 // be late but not early: one that is ahead is taken as it is, one a little behind is approached. When the sound stutters,
-// nothing told is taken back: the picture waits for the sound. A jump, the loop and a stall are taken at once.
+// the reported time never goes back: the picture waits for the sound. A jump, the loop and a stall are taken at once.
 const FAR = 0.06, STALLED = 0.3, PULL = 0.1;
 
 export function soundClock(audio) {

@@ -1,6 +1,6 @@
-// The editor: pin frames, drag joints, keep a part, have in-betweens made, choose one, save it. Python holds the edit and
-// bends the figure; the page draws, and says what was pressed and where a joint was dragged to. `model` needs get, set,
-// save_changes, on, off; without send there is no kernel, and what needs one is told.
+// The editor: pin frames, drag joints, keep a part, generate in-betweens, choose one, save it. Python keeps the edit and
+// poses the figure; the page draws, and sends what was pressed and how far a joint was dragged. `model` needs get, set,
+// save_changes, on, off; without send there is no kernel, and a message says what needs one.
 
 import { CSS, clamp, element, parse, readTheme, rgba } from "./dom.js";
 import { bytes, unpack } from "./figures.js";
@@ -13,8 +13,8 @@ import { along, dot, dragged, jointAt, paintStage } from "./stage.js";
 const HOME = { yaw: 0.6, pitch: 0.2, zoom: 1.1 }, CENTIMETRE = 0.01, NUDGES = 900; // milliseconds
 const ASLEEP = "needs a running notebook: run the cell that made this editor.";
 const MUTE = "The notebook's kernel does not answer: it is busy with another cell, or not running.";
-const GONE = "The notebook's kernel is gone. Your changes are still shown here, but nothing can be made or saved. "
-  + "Restart the kernel and run the notebook's cells again: the editor then starts anew.";
+const GONE = "The notebook's kernel is gone. Your changes are still shown here, but nothing can be generated or saved. "
+  + "Restart the kernel and run the notebook's cells again: the editor then starts again from the beginning.";
 const MORE_CSS = `
 .mde-editor canvas { touch-action: none; } .mde-editor canvas.mde-timeline { cursor: pointer; }
 .mde-editor canvas.mde-over { cursor: move; }
@@ -43,13 +43,13 @@ export function mount(model, el, { fill = false } = {}) {
   const pin = button("", "Enter", { class: "mde-pin", "aria-pressed": "false" }), shown = element("output", { class: "mde-count" });
   const joints = choice("Joint to move", [["", "no joint chosen"], ...scene.names.map((name, j) => [j, name])]);
   const keep = choice("Part of the body kept throughout", [["", "no part"], ...scene.keep.map((name) => [name, `the ${name}`])]);
-  const count = choice("Number of in-betweens", upTo(scene.most)), strength = choice("Resampling: how often each step is made", upTo(10));
+  const count = choice("Number of in-betweens", upTo(scene.most)), strength = choice("Resampling: how often each step is repeated", upTo(10));
   const generate = button("Generate", "Make in-betweens (G)", { class: "mde-main" });
-  const previous = button("\u2039", "The in-between before ([)", { "aria-label": "Previous in-between" });
+  const previous = button("\u2039", "The previous in-between ([)", { "aria-label": "Previous in-between" });
   const next = button("\u203a", "The next in-between (])", { "aria-label": "Next in-between" }), which = element("output", { "aria-live": "polite" });
   const before = element("input", { type: "checkbox", title: "The motion before the edit, as a ghost (O)" });
-  const undo = button("Undo", "Take the last change back (Z)"), reset = button("Reset", "Everything as at first (R); Undo leads back");
-  const file = element("input", { type: "text", "aria-label": "Name of the file", spellcheck: "false" }), save = button("Save as BVH", "Write the in-between that is shown; before there is one, the motion with its pinned poses");
+  const undo = button("Undo", "Undo the last change (Z)"), reset = button("Reset", "Reset the edit (R); Undo brings it back");
+  const file = element("input", { type: "text", "aria-label": "Name of the file", spellcheck: "false" }), save = button("Save as BVH", "Write the in-between that is shown, or before the first one the motion with its pinned poses");
   const held = element("div", { class: "mde-held" }), said = element("div", { class: "mde-say", role: "status" }), measured = element("div", { class: "mde-measured" });
   const dots = { L: element("i"), R: element("i") }, key = (side, word) => element("span", { class: "mde-key" }, dots[side], word);
   const rail = timeline(listen, () => ({ frames: scene.frames, fps: scene.fps, frame, pins: state.pins, moved: state.moved, part: state.part, made: state.made }), (t) => halt(t), (t) => toggle(t), () => draw());
@@ -59,7 +59,7 @@ export function mount(model, el, { fill = false } = {}) {
     element("style", {}, CSS + MORE_CSS), canvas, rail.canvas,
     row(play, pin, shown, element("label", {}, "move", joints), key("L", "left"), key("R", "right")),
     row(element("label", {}, "keep throughout", keep), element("label", {}, "in-betweens", count),
-      ...(scene.strength ? [element("label", { title: "More: the in-betweens fit what is pinned better, and take longer" }, "resampling", strength)] : []), generate, chooser, element("label", {}, before, "motion before")),
+      ...(scene.strength ? [element("label", { title: "More resampling fits the pinned frames better, and takes longer" }, "resampling", strength)] : []), generate, chooser, element("label", {}, before, "motion before")),
     row(undo, reset, element("label", { class: "mde-push" }, "file", file), save),
     element("div", { class: "mde-told" }, held, said, measured));
   el.append(root);
@@ -73,7 +73,7 @@ export function mount(model, el, { fill = false } = {}) {
     words(); say(gone ? GONE : MUTE); draw();
   });
 
-  // ---- what Python told
+  // ---- messages from Python
   const read = (where, frames) => unpack({ get: (name) => ({ scene: { joints: scene.joints, figures: frames.map((n) => ({ frames: n })) },
     joints: model.get(`${where}joints`), roots: model.get(`${where}roots`), contacts: new DataView(new ArrayBuffer(0)) })[name] });
   function load() { // false for an answer that was overtaken by a newer one
@@ -93,8 +93,8 @@ export function mount(model, el, { fill = false } = {}) {
   function title() {
     const where = `frame ${frame}`;
     if (poses.has(frame)) return `${where} \u00b7 pinned${(state.moved[state.pins.indexOf(frame)] || []).length ? ", edited" : ""}`;
-    if (!samples.length) return `${where} \u00b7 ${state.part ? `the ${state.part} kept, the rest` : "the motion before,"} to be made anew`;
-    return `${where} \u00b7 in-between ${chosen + 1} of ${samples.length}${state.old ? " (made before the last change)" : ""}`;
+    if (!samples.length) return `${where} \u00b7 ${state.part ? `the ${state.part} kept, the rest` : "the motion before the edit,"} to be generated`;
+    return `${where} \u00b7 in-between ${chosen + 1} of ${samples.length}${state.old ? " (from before the last change)" : ""}`;
   }
   function hint() {
     if (playing) return "";
@@ -124,7 +124,7 @@ export function mount(model, el, { fill = false } = {}) {
   }
   function words() {
     held.textContent = state.held[0].toUpperCase() + state.held.slice(1);
-    measured.textContent = samples.length ? `In-between ${chosen + 1}${state.old ? " (made before the last change)" : ""}: ${state.measured[chosen]}.` : "";
+    measured.textContent = samples.length ? `In-between ${chosen + 1}${state.old ? " (from before the last change)" : ""}: ${state.measured[chosen]}.` : "";
     which.textContent = samples.length ? `${chosen + 1} of ${samples.length}` : "none yet";
     const busy = generating();
     root.setAttribute("aria-busy", String(busy)); generate.setAttribute("aria-disabled", String(busy));
@@ -135,7 +135,7 @@ export function mount(model, el, { fill = false } = {}) {
   }
   const say = (text) => { said.textContent = text; };
 
-  // ---- what the page asks
+  // ---- messages to Python
   const generating = () => !way.gone() && (pressed > 0 || model.get("busy"));
   function ask(content, what) {
     if (live) return way.ask(content);
@@ -161,7 +161,7 @@ export function mount(model, el, { fill = false } = {}) {
     const moved = new Map(state.pins.map((f, i) => [f, state.moved[i]]));
     state.pins = [...poses.keys()].sort((a, b) => a - b); state.moved = state.pins.map((f) => moved.get(f) || []);
     state.held = `${state.pins.length} frames pinned${state.part ? `, ${state.part} kept` : ""}.`;
-    words(); say(`Frame ${t} ${on ? "pinned" : "let go"}, on this page only.`); draw();
+    words(); say(`Frame ${t} ${on ? "pinned" : "released"}, on this page only.`); draw();
   }
   function make() {
     if (generating()) return;
@@ -177,7 +177,7 @@ export function mount(model, el, { fill = false } = {}) {
     setTimeout(count_up, 500);
   }
   function choose(by) {
-    if (!samples.length) return say("There are no in-betweens yet: Generate makes some.");
+    if (!samples.length) return say("There are no in-betweens yet: press Generate.");
     chosen = (chosen + by + samples.length) % samples.length;
     model.set("chosen", chosen); model.save_changes(); words(); draw();
   }
@@ -249,7 +249,7 @@ export function mount(model, el, { fill = false } = {}) {
     const keys = event.target === canvas ? onStage : event.target === rail.canvas ? onRail : null, name = event.key.length === 1 ? event.key.toLowerCase() : event.key;
     const undoes = (event.ctrlKey || event.metaKey) && name === "z" && keys;
     if ((event.ctrlKey || event.metaKey || event.altKey) && !undoes) return;
-    event.stopPropagation(); // else JupyterLab takes the key for its own
+    event.stopPropagation(); // otherwise JupyterLab handles the key
     if (event.target === file && name === "Enter") { event.preventDefault(); store(); }
     if (keys && keys[name]) { event.preventDefault(); keys[name](event.shiftKey); }
   });

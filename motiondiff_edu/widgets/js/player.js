@@ -101,7 +101,7 @@ export function mount(model, el, { fill = false } = {}) {
     root.dataset.frame = String(frame); root.dataset.playing = String(playing);
   }
 
-  function tell(force) { // the kernel hears at most five times a second, and at once when something is decided
+  function tell(force) { // messages to the kernel: at most five a second, and at once for a final value
     if (sent === frame && model.get("playing") === playing) return;
     if (!force && performance.now() - told < 200) return;
     told = performance.now(); sent = frame;
@@ -156,7 +156,7 @@ export function mount(model, el, { fill = false } = {}) {
   listen(root, "keydown", (event) => {
     const own = event.target === canvas || event.target === lane.canvas || (event.target === scrub && event.key !== "Tab");
     if (event.ctrlKey || event.metaKey || event.altKey) return;
-    event.stopPropagation(); // else JupyterLab takes the key for its own
+    event.stopPropagation(); // otherwise JupyterLab handles the key
     if (own && keys[event.key]) { event.preventDefault(); keys[event.key](); }
   });
   listen(play, "click", () => setPlaying(!playing));

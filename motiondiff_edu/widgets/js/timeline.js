@@ -7,10 +7,10 @@ function labelStep(length, width) { // seconds between labels, so that they do n
   return [0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 60].find((s) => s / length * width > 58) || 300;
 }
 
-// `go(frame)`: show it; `press(frame)`: pin it or let it go. `facts()`: { frames, fps, frame, pins, moved, part, made }
+// `go(frame)` shows it; `press(frame)` pins or releases it. `facts()`: { frames, fps, frame, pins, moved, part, made }
 export function timeline(listen, facts, go, press, redraw) {
   const canvas = element("canvas", { class: "mde-lane mde-timeline", tabindex: "0", role: "slider", "aria-label": "Timeline",
-    "aria-valuemin": "0", title: "Click or drag: go there. Double click or Enter: pin the frame, or let it go. Arrows: frames." });
+    "aria-valuemin": "0", title: "Click or drag: go there. Double click or Enter: pin or release the frame. Arrows: frames." });
   canvas.style.height = `${RULER + TRACK + BAND + 4}px`;
   let held = false, hover = null;
   const across = (t, width) => EDGE + t / Math.max(facts().frames - 1, 1) * (width - 2 * EDGE);

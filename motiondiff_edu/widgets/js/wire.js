@@ -1,5 +1,5 @@
-// The way from the editor's page to Python. Each message tells a difference (a frame pinned or let go,
-// a joint moved by so much since it was gripped) and none tells a pose: the pose on the page may be old,
+// The way from the editor's page to Python. Each message sends a difference (a frame pinned or released,
+// a joint moved by so much since it was gripped) and none sends a pose: the pose on the page may be old,
 // and Python adds the difference to its own. So nothing has to wait for an answer.
 
 const SILENCE = 5000, PATIENCE = 1000; // milliseconds
@@ -51,7 +51,7 @@ export function wire(model, heard, busy, trouble) {
     close,
     handOn,
     gone: () => gone,
-    asking: () => !gone && number > heard(), // something was asked that is not answered yet
+    asking: () => !gone && number > heard(), // a request that is not answered yet
     dragging: () => waiting != null || (!gone && dragged > heard()),
     ask(content) { // the number of the message, or 0 where none can be sent; drags go before it
       handOn();

@@ -13,7 +13,7 @@ import numpy as np
 import torch
 
 from data_synth.walking import dataset
-from motiondiff_edu.baselines.known_answer import ROUNDS, WAYS, answers, errors_of
+from motiondiff_edu.baselines.known_answer import METHODS, ROUNDS, draw_samples, errors_of
 from motiondiff_edu.baselines.known_walks import fit_walks, holes, holes_in_the_past
 from motiondiff_edu.ddpm import cosine_schedule
 from motiondiff_edu.exact import sample_mixture
@@ -50,15 +50,15 @@ def known_answer_records(size: KnownSize, command: str) -> list[dict]:
     asked += [(f"past-{name}", known, True) for name, known in holes_in_the_past(FRAMES).items()]
     records = []
     for name, known, past in asked:
-        questions = [walked.question(window, known, schedule, past) for window in windows]
-        for way in (*WAYS, *ROUNDS) if past else WAYS:
+        questions = [walked.problem(window, known, schedule, past) for window in windows]
+        for method in (*METHODS, *ROUNDS) if past else METHODS:
             found = [
-                errors_of(answers(one, way, size.samples, _seeded(k)), one)
+                errors_of(draw_samples(one, method, size.samples, _seeded(k)), one)
                 for k, one in enumerate(questions)
             ]
             rows = {kind: np.array([asdict(one)[kind] for one in found]) for kind in ERRORS}
             figures = [
-                figure_of(f"{way.name}.{kind}", "", np.mean, row) for kind, row in rows.items()
+                figure_of(f"{method.name}.{kind}", "", np.mean, row) for kind, row in rows.items()
             ]
             records += [
                 figure.as_record(f"known-answer.{name}.", seeds, command) for figure in figures
