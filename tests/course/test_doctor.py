@@ -114,4 +114,4 @@ def test_writing_is_tried_where_lab_puts_the_copies(monkeypatch, tmp_path):
     monkeypatch.setattr(doctor, "place_for_students", lambda: (tmp_path, tmp_path / "a" / "b"))
     assert doctor.writing() == Finding("writing", f"files can be written in {tmp_path}")
     (tmp_path / "a" / "b").mkdir(parents=True)
-    assert doctor.writing() == Finding("writing", f"allowed in {tmp_path / 'a' / 'b'}")
+    assert doctor.writing() == Finding("writing", f"files can be written in {tmp_path / 'a' / 'b'}")
