@@ -29,7 +29,7 @@ def find(folder: Path, number: str) -> Path:
     wanted = [path for path in there if path.name[:2] == number.zfill(2)]
     if not wanted:
         numbers = ", ".join(path.name[:2] for path in there) or "none"
-        raise NotebookError(f"there is no notebook {number} in {folder}; there are: {numbers}")
+        raise NotebookError(f"no notebook {number} in {folder}; there are: {numbers}")
     return wanted[0]
 
 

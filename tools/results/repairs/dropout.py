@@ -1,10 +1,10 @@
-"""What diffusion dropout is worth when part of the past is missing.
+"""The value of diffusion dropout when part of the past is missing.
 
-Pairs of walkers, and a map over rates.
+It is measured on pairs of walkers, and in a map over rates.
 
-The pairs are shipped: the same network, data and steps, with and without, three training seeds
-each.
-Source: MoDiff III-D, IV-C, Table II.  Notebook: 09
+The pairs are shipped: the same network, data and steps, with and without dropout, three training
+seeds each.
+Source: MoDiff III-D, IV-B, Table II.  Notebook: 09
 """
 
 from dataclasses import dataclass, replace
@@ -31,7 +31,7 @@ RATES = {
 
 
 def rows(made: np.ndarray, trials: Trials) -> dict[str, np.ndarray]:
-    """Of each clip: squared bone error (cm^2) and distance from the control (m/s)."""
+    """Squared bone error (cm^2) and distance from the control (m/s) of each clip."""
     frames = made.shape[1]
     return {
         "bone": squared_bone_error(made),
@@ -43,7 +43,7 @@ FIGURES = {"bone": ("cm", root_mean), "adherence": ("mps", np.nanmean)}
 
 
 def gains(plain: dict[str, np.ndarray], dropout: dict[str, np.ndarray]) -> list[Figure]:
-    """Plain minus dropout on broken pasts; arrays (seeds, clips)."""
+    """Errors without dropout minus those with it, on incomplete pasts; arrays (seeds, clips)."""
     found = []
     for kind, (unit, mean) in FIGURES.items():
         values = interval_over_seeds(
@@ -56,7 +56,7 @@ def gains(plain: dict[str, np.ndarray], dropout: dict[str, np.ndarray]) -> list[
 
 
 def cost(plain: dict[str, np.ndarray], dropout: dict[str, np.ndarray]) -> Figure:
-    """Dropout over plain on complete pasts, the larger of the two kinds of error."""
+    """Errors with dropout over those without, on complete pasts: the larger of the two ratios."""
 
     def larger(*parts: np.ndarray) -> float:
         pairs = zip(FIGURES.values(), (parts[:2], parts[2:]), strict=True)
@@ -73,7 +73,7 @@ def measured(walkers: list, trials: Trials, share: float) -> dict[str, np.ndarra
 
 
 def dropout_figures(trials: Trials, weights: dict[str, Path]) -> list[Figure]:
-    """Gains, cost, and what both kinds have with and without faults."""
+    """Gains, cost, and the errors of both kinds with and without faults."""
     walkers = {
         kind: [checkpoints.load_walker(weights[n]) for n in names_of(kind)]
         for kind in ("plain", "dropout")
@@ -113,7 +113,7 @@ def dropout_records(trials: Trials, weights: dict[str, Path], command: str) -> l
 
 @dataclass(frozen=True)
 class MapBudget:
-    """How long each walker of the map is trained, on what."""
+    """The length and the data of the training of each walker of the map."""
 
     steps: int = 4000
     clips: int = 200
@@ -125,7 +125,7 @@ MAP_QUICK = MapBudget(steps=3, clips=2, save_every=2)
 
 
 def map_recipe(name: str, budget: MapBudget) -> Recipe:
-    """A walker with one rate of dropout from beginning to end."""
+    """The recipe of a walker with one constant rate of dropout."""
     rate = RATES[name]
     sizes = {"steps": budget.steps, "clips": budget.clips, "save_every": budget.save_every}
     return replace(
@@ -147,7 +147,7 @@ def map_records(
 ) -> list[dict]:
     """Train (or continue) the walker of one rate.
 
-    It is measured at every share of joints missing.
+    It is measured for every share of missing joints.
     """
     runs.mkdir(parents=True, exist_ok=True)
     recipe = map_recipe(name, budget)

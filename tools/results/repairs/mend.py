@@ -1,6 +1,6 @@
 """The part `mend`.
 
-What diffusion dropout is worth, repairs beside what needs no walker, and MoDiff's Table II.
+It measures diffusion dropout, repairs beside methods without a walker, and MoDiff's Table II.
 """
 
 from motiondiff_edu.metrics.footsteps import PAPER, ROBUST
@@ -12,15 +12,15 @@ from .dropout import dropout_records
 from .repair import FAULTS, RepairSize, footsteps, repair_figures, repaired_windows, table_2
 from .trials import SHARE, names_of
 
-KEEP = 5  # poses of every window of ten; frame by frame, each has noise of its own, and heels crawl
-CLIPS, FEW = 60, 20  # pasts of Table II, and of the larger walker beside it
+KEEP = 5  # poses kept of every window of ten; frame by frame, each has other noise, and heels creep
+CLIPS, FEW = 60, 20  # pasts of Table II, and of the larger walker
 
 
 def records(bench: Bench, size: RepairSize, command: str) -> list[dict]:
-    """Everything of the part: pairs of small walkers, repairs by the shipped walker, Table II.
+    """All records of the part: pairs of small walkers, repairs by the shipped walker, Table II.
 
-    Table II is of the small walkers with dropout, frame by frame. Beside them: the same with half
-    of every window kept, and the shipped walker, which was trained for longer, without dropout.
+    Table II is of the small walkers with dropout, frame by frame. It is also measured with half of
+    every window kept, and for the shipped walker, which was trained for longer, without dropout.
     """
     trials, weights = bench.trials, bench.weights
     best, pairs = (
