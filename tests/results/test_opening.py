@@ -60,7 +60,10 @@ def test_what_is_met_by_its_value_alone_is_not_certain_and_what_is_absent_is_sai
     assert uncertain.endswith(
         "the goal: the walker's error in the last 3 s, over that in the first 3 s."
     )
-    assert absent == "the beat alignment of the dances beyond chance, over that of the data."
+    assert absent == (
+        "These figures are missing: "
+        "the beat alignment of the dances beyond chance, over that of the data."
+    )
 
 
 def test_a_page_without_misses_says_so(monkeypatch):

@@ -42,7 +42,7 @@ PAPER_BONES = {
 
 @dataclass(frozen=True)
 class Size:
-    """The amount of measurement: for the goals 100 controls and 20 x 50 continuations, or little."""
+    """The amount of measurement: 100 controls and 20 x 50 continuations, or little."""
 
     clips: int = 100
     pasts: int = 20
