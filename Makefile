@@ -1,5 +1,5 @@
 # Two commands matter: `make lab` opens the course, `make test` runs everything. `make help` lists the rest.
-# Nothing is needed beforehand but Python 3.11 or newer with its venv module.
+# They need only Python 3.11 or newer with its venv module.
 VENV := .venv
 BIN  := $(VENV)/bin
 NB   ?= 07
@@ -24,20 +24,20 @@ $(BIN)/python:
 	@$(PYTHON) -m venv $(VENV) || { rm -rf $(VENV); \
 		echo "$(PYTHON) cannot make virtual environments. On Debian or Ubuntu: apt-get install python3-venv"; exit 1; }
 
-# Installs the course with the extras in $(1), or says in plain words why it cannot. All that pip said is in $(VENV)/pip.log.
+# Installs the course with the extras in $(1), or says in plain words why it cannot. The full output of pip is in $(VENV)/pip.log.
 NO_NETWORK := NewConnectionError|ConnectTimeoutError|NameResolutionError|Failed to establish|Network is unreachable|from versions: none
 define install
 @$(BIN)/python -c '$(NEW_ENOUGH)' || { echo "$(VENV) was made with a Python older than 3.11."; \
-	echo "Remove it (rm -rf $(VENV)) and type the same again."; exit 1; }
+	echo "Remove it (rm -rf $(VENV)) and run the same command again."; exit 1; }
 @echo "installing into $(VENV); this happens once and takes a minute or more"
 @$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt -e '.$(1)' >$(VENV)/pip.log 2>&1 || { \
 	if grep -qE '$(NO_NETWORK)' $(VENV)/pip.log; then \
-		echo "No network: pip could not reach the package index, and the first time it has to."; \
-		echo "Go online and type the same again. What pip said is in $(VENV)/pip.log"; \
-	else cat $(VENV)/pip.log; echo "pip could not install the course; what it said is above."; fi; exit 1; }
+		echo "No network: pip could not reach the package index, which it needs for the first installation."; \
+		echo "Connect to the network and run the same command again. The output of pip is in $(VENV)/pip.log"; \
+	else cat $(VENV)/pip.log; echo "pip could not install the course; its output is above."; fi; exit 1; }
 endef
 
-# A stamp each, so that the second `make lab` starts at once and a changed requirement installs again.
+# Each installation leaves a stamp file. So a second `make lab` starts at once, and a changed requirement installs again.
 $(VENV)/.lab: pyproject.toml constraints.txt setup.py | $(BIN)/python
 	$(call install,)
 	@touch $@
@@ -51,7 +51,7 @@ $(VENV)/.bench: pyproject.toml constraints.txt setup.py | $(BIN)/python
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt --no-deps $(BARE_PEERS)
 	@touch $@
 
-# Two peers of which one module each is used; with what they ask for comes a torchvision that does not fit a CPU torch.
+# The benchmarks use one module of each of these two peers. Their requirements would bring a torchvision that does not fit a CPU torch.
 BARE_PEERS := smalldiffusion denoising-diffusion-pytorch
 
 lab: $(VENV)/.lab ## set up .venv and open JupyterLab in your own copy of the notebooks (FRESH=03: a fresh copy of one)
@@ -65,13 +65,13 @@ doctor: $(VENV)/.lab ## one page: what works here, and what to do about the rest
 
 test: lint unit notebooks browser ## set up .venv and run everything: lint, unit tests, notebooks, browser
 
-# A worker that dies ends the run as a failure: pytest-xdist would start another one and may wait for ever.
+# A worker that dies ends the run as a failure. By default pytest-xdist starts another one, and may then wait for ever.
 WORKERS := -n auto --max-worker-restart=0
 
 unit: $(VENV)/.test ## only the unit tests
 	OMP_NUM_THREADS=1 $(BIN)/python -m pytest -q $(WORKERS) --dist loadfile -m "not browser"
 
-# Two at once with one thread each. With torch's own threads two at once would take four times as long as in turn.
+# The notebooks run in parallel with one thread each. With torch's own threads, two in parallel take four times as long as in turn.
 notebooks: $(VENV)/.test ## only the notebooks, and their student edition
 	OMP_NUM_THREADS=1 $(BIN)/python -m pytest -q $(WORKERS) --nbmake --nbmake-timeout=600 --durations=0 notebooks
 
@@ -84,10 +84,10 @@ lint: $(VENV)/.test ## ruff, the form of the notebooks, the student edition
 	$(BIN)/python tools/check_notebooks.py
 	$(BIN)/python tools/build_student.py --check
 
-student: $(VENV)/.test ## rebuild notebooks/student from notebooks (FORCE=1: also what was changed there by hand)
+student: $(VENV)/.test ## rebuild notebooks/student from notebooks (FORCE=1: also files that were changed by hand)
 	@$(BIN)/python tools/build_student.py $(if $(FORCE),--force)
 
-results: $(VENV)/.lab ## recompute docs/results and docs/RESULTS.md; with FULL=1 train what is compared as well (hours)
+results: $(VENV)/.lab ## recompute docs/results and docs/RESULTS.md; with FULL=1 also train the compared networks (hours)
 	$(BIN)/python -m tools.results $(if $(FULL),--full)
 
 bench: $(VENV)/.bench ## measure against the public peers into benchmarks/results
@@ -96,5 +96,5 @@ bench: $(VENV)/.bench ## measure against the public peers into benchmarks/result
 pretrained: $(VENV)/.lab ## train all shipped weights again (hours)
 	$(BIN)/python -m motiondiff_edu.recipes
 
-clean: ## remove .venv and what the build left, but for trainings under way (build/runs) and rollouts (build/results)
+clean: ## remove .venv and build files; keep trainings in progress (build/runs) and rollouts (build/results)
 	rm -rf $(VENV) build/bdist* build/numba build/lib build/quick dist *.egg-info .pytest_cache .ruff_cache

@@ -3,7 +3,7 @@
 python -m benchmarks [import | frame | mel | unet | walker | player ...]
 
 Records go to benchmarks/results/*.json; `python -m tools.results --render` puts them into
-docs/RESULTS.md. On a shared machine only the ratios mean something: both sides are timed in turn,
+docs/RESULTS.md. On a shared machine only the ratios are meaningful: both sides are timed in turn,
 in one run.
 """
 

@@ -1,6 +1,6 @@
-"""How long `import motiondiff_edu` takes beside `import torch`.
+"""The time of `import motiondiff_edu` compared with `import torch`.
 
-Fresh processes, CPU seconds, in turn.
+Both run in turn in fresh processes; times are CPU seconds.
 
 Run: python benchmarks/import_time.py [--repeats 15] [--out benchmarks/results/import_time.json]
 """
@@ -18,7 +18,7 @@ TIMED = "import time; start = time.process_time(); import {}; print(time.process
 
 
 def cpu_seconds(module: str) -> float:
-    """CPU seconds that importing a module takes in a process that has imported nothing."""
+    """CPU seconds of importing a module in a new process."""
     done = subprocess.run(
         [sys.executable, "-c", TIMED.format(module)], capture_output=True, text=True, check=True
     )
@@ -26,7 +26,7 @@ def cpu_seconds(module: str) -> float:
 
 
 def measure(repeats: int) -> dict[str, np.ndarray]:
-    """Both modules in every repeat, the order turned round each time.
+    """Times of both modules in every repeat; the order changes each time.
 
     The first repeat only fills the disk cache.
     """

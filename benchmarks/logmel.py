@@ -1,4 +1,4 @@
-"""Log-Mel of one minute of sound: ours beside warm librosa, on one thread, in one run.
+"""Log-Mel of one minute of sound: ours compared with warm librosa, on one thread, in one run.
 
 `bench.logmel_x` has librosa at our settings (window of 1024 samples),
 `bench.logmel_x_default_window` at its own 2048. Each repeat times all of them, the best of three,

@@ -1,6 +1,6 @@
 """One autoregressive frame of MoDiff, S = 100, batch 1.
 
-Ours beside the whole network under diffusers' DDPMScheduler.
+Ours is compared with the whole network under diffusers' DDPMScheduler.
 
 Both sides have the same weights and the same noise, and end at the same poses (checked first). Ours
 encodes past and control once a frame and keeps keys, values and step embeddings. Timed in turn, in
@@ -29,9 +29,9 @@ Sampler = Callable[[torch.Tensor, torch.Tensor, torch.Generator], torch.Tensor]
 
 
 def network(config: MoDiffConfig) -> Walker:
-    """A MoDiff with random weights, with scalers that do nothing.
+    """A MoDiff with random weights and scalers that do nothing.
 
-    What it predicts does not matter here.
+    Its predictions do not matter here.
     """
     torch.manual_seed(0)
     unit = [Scaler(torch.zeros(n), torch.ones(n)) for n in (config.D, config.C)]
@@ -83,7 +83,7 @@ def check_equal(runs: dict[str, Sampler], past: torch.Tensor, control: torch.Ten
 
 
 def measure(runs: dict[str, Sampler], past, control, repeats: int) -> dict[str, np.ndarray]:
-    """Milliseconds a frame of every sampler in every repeat."""
+    """Milliseconds per frame of every sampler in every repeat."""
     generator = torch.Generator()
     frames = {
         name: lambda run=run: run(past, control, generator.manual_seed(3))
@@ -93,9 +93,9 @@ def measure(runs: dict[str, Sampler], past, control, repeats: int) -> dict[str, 
 
 
 def records_of(size: str, threads: int, times: dict[str, np.ndarray], bar: bool) -> list[dict]:
-    """Milliseconds, median and least, and how many times faster.
+    """Records of milliseconds, median and least, and of the speed ratio.
 
-    The bar's own name for the number of cores at hand.
+    With `bar` the ratio has the name of the goal.
     """
     stem, records = f"bench.modiff_frame_{size}", []
     middle = f"{stem}_{threads}thread{'s' * (threads > 1)}"

@@ -1,6 +1,6 @@
-"""How far picture and sound are apart while the player plays.
+"""The offset between picture and sound while the player plays.
 
-In a real Chromium, all that it can show being drawn.
+It is measured in a real Chromium, with everything that the player can show.
 
 At random moments the sound's clock t and the painted frame k are read; their distance is that of t
 from the frame's interval [k/20, (k+1)/20), zero inside. A run's figure is the 95th percentile of
@@ -55,7 +55,7 @@ def click_track(seconds: float) -> np.ndarray:
 
 
 def attention(rows: int, seconds: float, tokens: int) -> tuple[np.ndarray, np.ndarray]:
-    """A made-up map that looks around the present, and the tokens' times."""
+    """An artificial attention map around the present, and the tokens' times."""
     times = (np.arange(tokens) + 0.5) * seconds / tokens
     now = (np.arange(rows) + 0.5) * seconds / rows
     weights = np.exp(-((now[:, None] - times) ** 2))
@@ -79,7 +79,7 @@ def players(seconds: float) -> dict[str, Player]:
 
 
 def offsets_ms(browser: Browser, page_path: Path, seconds: float) -> np.ndarray:
-    """Distances of the sound's clock from the painted frame's interval, from a click on Play on."""
+    """Distances of the sound's clock from the painted frame's interval, after a click on Play."""
     page = browser.new_page(viewport={"width": 1280, "height": 720})
     page.goto(page_path.as_uri())
     page.get_by_role("button", name="Play").click()
@@ -88,7 +88,7 @@ def offsets_ms(browser: Browser, page_path: Path, seconds: float) -> np.ndarray:
     page.close()
     if np.ptp(t) < 0.8 * seconds:
         raise RuntimeError(
-            f"the sound went on by {np.ptp(t):.1f} s in {seconds} s: it did not play"
+            f"the sound went on by {np.ptp(t):.1f} s in {seconds} s, so it did not play"
         )
     return 1000 * np.maximum(0, np.maximum(frame / FPS - t, t - (frame + 1) / FPS))
 

@@ -1,4 +1,4 @@
-"""Records of measured figures, kept in lists in JSON files.
+"""Records of measured figures, in lists in JSON files.
 
 Each is {name, value, low, high, seeds, unit, paper, command}. One of a benchmark also has
 `machine`: the processor that it was timed on, and how many of its cores were free to use.
@@ -21,9 +21,9 @@ CPU_INFO = Path("/proc/cpuinfo")  # Linux; elsewhere Python's own answer is take
 def record(
     name: str, values, *, unit: str, command: str, seeds=None, paper=None, center=np.median
 ) -> dict:
-    """Summarise repeated measurements: their median, and the 95 % bootstrap interval of it.
+    """Summarise repeated measurements by their median and its 95 % bootstrap interval.
 
-    `seeds` lists what was repeated (default 0..n-1); `paper` is the paper's own figure, or None.
+    `seeds` lists the repetitions (default 0..n-1); `paper` is the paper's own figure, or None.
     """
     values = np.asarray(values, float).ravel()
     if not len(values) or not np.isfinite(values).all():

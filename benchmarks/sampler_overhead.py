@@ -1,6 +1,6 @@
-"""What a sampler costs around a model that costs nothing.
+"""The cost of a sampler around a model that costs nothing.
 
-Ours beside diffusers and smalldiffusion, in one run.
+Ours is compared with diffusers and smalldiffusion, in one run.
 
 Each repeat times all of them one after the other, in changing order; a figure is the median of the
 ratios of repeats. Run: python benchmarks/sampler_overhead.py [--repeats 40] [--out
@@ -25,7 +25,7 @@ ANSWER = torch.zeros(SHAPE)
 
 
 def trivial(x, s):
-    """A model that costs nothing, so that what is timed is the sampler."""
+    """A model that costs nothing, so that only the sampler is timed."""
     return ANSWER
 
 
@@ -54,7 +54,7 @@ def run_diffusers(kind):
 
 
 def smalldiffusion_sampler():
-    """Its sampling module from its own file: importing the whole package would need torchvision."""
+    """Its sampling module, loaded from its file: the whole package would need torchvision."""
     spec = importlib.util.find_spec("smalldiffusion")
     path = spec.submodule_search_locations[0] + "/diffusion.py"
     spec = importlib.util.spec_from_file_location("smalldiffusion_sampling", path)

@@ -1,6 +1,6 @@
-"""Runs timed in turn, in changing order.
+"""Time runs in turn, in changing order.
 
-What else goes on in the machine befalls all of them alike.
+So other load of the machine affects all of them alike.
 """
 
 import time
@@ -14,7 +14,7 @@ def in_turn(
 ) -> dict[str, np.ndarray]:
     """Milliseconds of every run in every repeat: the best of `best_of`.
 
-    `warmup` repeats before are thrown away.
+    The `warmup` repeats before them are not counted.
     """
     times, rng = {name: [] for name in runs}, np.random.default_rng(0)
     for repeat in range(-warmup, repeats):
@@ -26,7 +26,7 @@ def in_turn(
 
 
 def seconds(run: Callable[[], object]) -> float:
-    """By the clock on the wall."""
+    """Wall-clock seconds of one call."""
     start = time.perf_counter()
     run()
     return time.perf_counter() - start

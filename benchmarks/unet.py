@@ -1,11 +1,11 @@
-"""MoFusion's U-Net, music included, beside two unconditioned ones.
+"""MoFusion's U-Net, with its music, compared with two unconditioned ones.
 
-Those are lucidrains' Unet1D and diffusers' UNet1DModel.
+These are lucidrains' Unet1D and diffusers' UNet1DModel.
 
-Networks of about as many parameters (widths are chosen for that), random weights: sampling is ten
-DDIM steps for eight motions, each side with its own sampler; training is a forward and a backward
-pass and a step of Adam. In turn. Run: python -m benchmarks unet [--repeats 12] [--out
-benchmarks/results/unet.json]
+The networks have about equally many parameters (widths are chosen for that) and random weights.
+Sampling is ten DDIM steps for eight motions, each side with its own sampler. Training is a forward
+and a backward pass and a step of Adam. All are timed in turn. Run: python -m benchmarks unet
+[--repeats 12] [--out benchmarks/results/unet.json]
 """
 
 import argparse
@@ -57,7 +57,7 @@ def lucidrains():
 
 
 def closest(build, sizes, wanted: int) -> torch.nn.Module:
-    """The network whose number of parameters is nearest to the one wanted."""
+    """The network whose number of parameters is nearest to `wanted`."""
     torch.manual_seed(0)
     return build(min(sizes, key=lambda size: abs(count(build(size)) - wanted)))
 
@@ -121,7 +121,7 @@ def samplers(dancer: Dancer, nets: dict[str, torch.nn.Module], B: int, N: int) -
     runs = {"ours": ours_once, "lucidrains": lucidrains_once}
     return runs | (
         {"diffusers": diffusers_once} if N == 64 else {}
-    )  # 200 frames are more than it can halve
+    )  # it cannot halve 200 frames often enough
 
 
 def trainers(dancer: Dancer, nets: dict[str, torch.nn.Module], B: int, N: int) -> dict:

@@ -1,6 +1,6 @@
-"""What 80 CPU-seconds of training give.
+"""A walker after 80 CPU-seconds of training.
 
-A small walker on three sets of walks, judged on unseen controls of the same.
+A small walker is trained on each of three sets of walks, and measured on unseen controls.
 
     one person   neutral, no waving and looking about, straight ahead and in curves:
                  notebook 07's data (the bars)
@@ -67,7 +67,7 @@ SETS: dict[str, tuple[str, Callable]] = {  # name: (prefix of its records, what 
 
 
 def measure(name: str, seconds: float, unseen: int, seed: int) -> list[dict]:
-    """Train on one set of walks, walk unseen controls of the same, and score the raw output.
+    """Train on one set of walks, walk unseen controls of that set, and score the raw output.
 
     Each walk is mirrored, too.
     """

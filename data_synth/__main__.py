@@ -14,7 +14,7 @@ KINDS = {"walks": write_walks.main, "dances": write_dances.main, "songs": write_
 
 
 def main(arguments: list[str] | None = None) -> None:
-    """Write what the first word names; the rest is for `data_synth.<kind>.write`."""
+    """Write the data that the first word names; `data_synth.<kind>.write` reads the rest."""
     parser = argparse.ArgumentParser(
         prog="python -m data_synth", description=__doc__, add_help=False
     )

@@ -1,10 +1,10 @@
-"""Faults as motion capture has them, with the truth known.
+"""Typical faults of motion capture, with the truth known.
 
-Dead joints, dropped frames, bursts, jitter.
+There are dead joints, dropped frames, bursts and jitter.
 
-A fault takes clean positions and gives (faulty positions, known): what is missing is NaN and False
-in `known`; what trembles is there, and wrong.  Source: MoDiff III-E, IV-C names the first two.
-Notebook: 10
+A fault takes clean positions and gives (faulty positions, known). A missing position is NaN, and
+False in `known`; a trembling one is known, and wrong.  Source: MoDiff III-E, IV-B names the first
+two.  Notebook: 10
 """
 
 from collections.abc import Sequence
@@ -15,23 +15,20 @@ from jaxtyping import Bool, Float
 
 from motiondiff_edu.motion.skeleton import JOINTS, joint_index
 
-ARM = ("RightArm", "RightForeArm", "RightHand", "RightHandIndex1")  # what MoDiff's Fig. 6 misses
+ARM = ("RightArm", "RightForeArm", "RightHand", "RightHandIndex1")  # missing in MoDiff's Fig. 6
 LEG = ("RightUpLeg", "RightLeg", "RightFoot", "RightToeBase")
 
 
 @dataclass(frozen=True, eq=False)
 class Imperfect:
-    """A motion with a fault.
-
-    Positions with NaN where nothing is known, and the mask that says so.
-    """
+    """A motion with a fault: positions with NaN where nothing is known, and the mask of these."""
 
     positions: Float[np.ndarray, "*B T J 3"]
     known: Bool[np.ndarray, "*B T J"]
 
 
 def dead_joints(positions: Float[np.ndarray, "*B T J 3"], names: Sequence[str] = ARM) -> Imperfect:
-    """These joints are missing throughout.  Raises KeyError for a name that no joint has.
+    """The named joints are missing throughout.  Raises KeyError for a name that no joint has.
     Notebook: 10"""
     known = np.ones(positions.shape[:-1], bool)
     known[..., [joint_index(name) for name in names]] = False
@@ -41,9 +38,9 @@ def dead_joints(positions: Float[np.ndarray, "*B T J 3"], names: Sequence[str] =
 def random_joints(
     positions: Float[np.ndarray, "*B T J 3"], share: float, rng: np.random.Generator
 ) -> Imperfect:
-    """In each motion a share of the joints is missing throughout, others in each: Table II's 30 %.
+    """In each motion another share of the joints is missing throughout, as in Table II (30 %).
 
-    Raises ValueError for a share outside 0..1.  Source: MoDiff IV-C, Table II.  Notebook: 10
+    Raises ValueError for a share outside 0..1.  Source: MoDiff IV-B, Table II.  Notebook: 10
     """
     _share(share)
     J = positions.shape[-2]
@@ -75,11 +72,10 @@ def bursts(
     every: float = 20.0,
     longest: int = 6,
 ) -> Imperfect:
-    """Now and then a joint is lost for a few frames, as when a marker is hidden.
+    """Now and then a joint is lost for a few frames, like a hidden marker.
 
-    Once in `every` frames and joint.
-
-    Each loss lasts 1 to `longest` frames.  Notebook: 10
+    On average each joint is lost once in `every` frames. Each loss lasts 1 to `longest` frames.
+    Notebook: 10
     """
     known = np.ones(positions.shape[:-1], bool)
     flat = np.moveaxis(known, -2, -1).reshape(
@@ -97,7 +93,7 @@ def jitter(
 ) -> Imperfect:
     """Every coordinate trembles by `size` metres (standard deviation).
 
-    Nothing is missing, so all is "known".
+    Nothing is missing, so everything is "known".
     """
     noisy = positions + size * rng.standard_normal(positions.shape)
     return Imperfect(noisy, np.ones(positions.shape[:-1], bool))

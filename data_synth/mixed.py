@@ -1,6 +1,6 @@
-"""Motion without music: walks and dances in equal halves, for a network that is to know both.
+"""Motion without music: walks and dances in equal halves, for a network that learns both.
 
-The dances follow silent scores (`score.beat_song`): the genres take turns, tempi are their own.
+The dances follow silent scores (`score.beat_song`). The genres take turns, with their own tempi.
 """
 
 from collections.abc import Iterator
@@ -17,11 +17,9 @@ Motion = tuple[Float[np.ndarray, "T 21 3"], Bool[np.ndarray, "T 2"]]
 
 
 def motions(n: int, seed: int, seconds: float = 20.0) -> Iterator[Motion]:
-    """n motions, positions in the world (metres, 20 frames/s) and which feet stand.
+    """n motions: positions in the world (metres, 20 frames/s), and which feet stand.
 
-    Walk, dance, walk, dance ...
-
-    The same seed gives the same bytes; different seeds share none.
+    Walks and dances alternate. The same seed gives the same bytes; different seeds share no motion.
     Raises ValueError as `beat_song` and `random_control` do.  Notebook: 15
     """
     for k in range(n):

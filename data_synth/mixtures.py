@@ -1,4 +1,4 @@
-"""Small Gaussian mixtures whose density is known exactly: the laboratory of notebooks 02 to 04."""
+"""Small Gaussian mixtures whose density is known exactly: the examples of notebooks 02 to 04."""
 
 import math
 
@@ -44,10 +44,7 @@ def ring(parts: int = 6, radius: float = 1.5, std: float = 0.2) -> Mixture:
 
 
 def crossed_bars(length: float = 1.0, width: float = 0.15) -> Mixture:
-    """Two long hills in the plane that lean towards each other.
-
-    The coordinates depend on one another.
-    """
+    """Two long hills in the plane that lean towards each other, so that x and y depend."""
     bar = torch.tensor([[length**2 + width**2, length**2 - width**2]], dtype=torch.float64) / 2
     rising = torch.stack([bar[0], bar[0].flip(0)])
     falling = rising * torch.tensor([[1.0, -1.0], [-1.0, 1.0]], dtype=torch.float64)
@@ -56,7 +53,7 @@ def crossed_bars(length: float = 1.0, width: float = 0.15) -> Mixture:
 
 
 def nearest_part(given: Mixture, x: Float[Tensor, "B D"]) -> Int[Tensor, "B"]:
-    """The part that most likely made each point: the mode it belongs to."""
+    """The part that most likely produced each point: the mode to which it belongs."""
     off = along_axes(given, x.double()[:, None] - given.means)
     return part_log_densities(given.weights, off, given.variances).argmax(1)
 

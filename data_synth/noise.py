@@ -1,10 +1,8 @@
-"""Seeded randomness that can be redrawn from one frame on.
+"""Seeded random numbers that can be redrawn from one frame on; those before stay the same.
 
-Everything before that frame stays as it was.
-
-Every random thing about a walk is a causal function of one table of white noise, a row per frame. A
-continuation keeps the rows of its past and draws new ones after it: what the past has settled
-stays, what it has not is drawn afresh.
+All randomness of a walk is a causal function of one table of white noise, a row per frame. A
+continuation keeps the rows of its past and draws new ones after it: it keeps what the past has
+decided, and draws the rest again.
 """
 
 from collections.abc import Sequence
@@ -15,7 +13,7 @@ from scipy.signal import lfilter
 from scipy.special import ndtr
 
 CHANNELS = 40
-PREROLL = 400  # rows before the first frame: slow processes start in their stationary state
+PREROLL = 400  # rows before the first frame, so that slow processes start in their stationary state
 
 
 def white(
@@ -25,7 +23,7 @@ def white(
 
     From each (frame, seed) in `redraw` on, the rows come from that seed instead.
 
-    Longer tables begin with the shorter ones.  Raises ValueError for a negative seed.
+    A longer table begins with the shorter one.  Raises ValueError for a negative seed.
     """
     if seed < 0:
         raise ValueError(f"a seed is a whole number from 0 on, got {seed}")
@@ -42,7 +40,7 @@ def white(
 def drift(rows: Float[np.ndarray, "rows *k"], tau: float, fps: float) -> Float[np.ndarray, "n *k"]:
     """Unit-variance smooth noise with memory of about 2 tau seconds: two low-passes in a row.
 
-    PREROLL is cut off.
+    The rows of PREROLL are cut off.
     """
     a = np.exp(-1.0 / (fps * tau))
     y = lfilter([1.0], [1.0, -2 * a, a * a], rows, axis=0)
@@ -54,7 +52,7 @@ def follow(
 ) -> Float[np.ndarray, "T *k"]:
     """Low-pass of `target` by `poles` equal one-pole filters of time constant tau.
 
-    Starts at target[0], causal.
+    It starts at target[0] and is causal.
     """
     a = np.exp(-1.0 / (fps * tau))
     y = np.asarray(target, dtype=np.float64)
@@ -64,5 +62,5 @@ def follow(
 
 
 def uniform(rows: Float[np.ndarray, "rows *k"]) -> Float[np.ndarray, "n *k"]:
-    """The rows as numbers uniform on (0, 1); PREROLL is cut off."""
+    """The rows as numbers uniform on (0, 1); the rows of PREROLL are cut off."""
     return ndtr(rows[PREROLL:])

@@ -11,8 +11,8 @@ import bpy
 from io_anim_bvh import import_bvh
 
 source, target = sys.argv[sys.argv.index("--") + 1 :]
-# Blender 3.4 opens the file with mode "rU", which Python 3.11 no longer knows; newer Blenders do
-# not need this line.
+# Blender 3.4 opens the file with mode "rU", which Python 3.11 no longer supports. Newer versions
+# of Blender do not need this line.
 import_bvh.open = lambda path, mode="r", **more: builtins.open(path, mode.replace("U", ""), **more)
 
 bpy.ops.wm.read_factory_settings(use_empty=True)

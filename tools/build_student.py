@@ -6,7 +6,7 @@ turn")` there, and then the solution, folded. Everything else stays. The same in
 bytes.
 
     python tools/build_student.py            write, unless a file there was changed by hand
-    python tools/build_student.py --force    write over what was changed by hand, too
+    python tools/build_student.py --force    write, also over files that were changed by hand
     python tools/build_student.py --check    write nothing; exit 1 when the edition is stale
 """
 
@@ -24,7 +24,7 @@ from notebook_cells import NOTEBOOKS, tags
 from motiondiff_edu._files import replacing
 
 REGION = re.compile(r"^( *)# solution *\n(.*?\n)\1# end solution *$", re.MULTILINE | re.DOTALL)
-# a link that leaves the folder leaves one folder more from notebooks/student
+# a link out of the folder needs one more .. in notebooks/student
 UPWARDS = re.compile(r'(\]\(|src="|href=")\.\./')
 # in the edition's folder, not committed: {name: SHA-256} of what was written last
 RECORD = ".generated.json"
@@ -85,22 +85,22 @@ def student(notebook: dict, name: str) -> dict:
             "tags": ["exercise" if tag == "solution" else tag for tag in tags(cell)]
         }
         cells.append(cell | {"source": stub(source, f"{name}, cell {index} ({identity})")})
-        told = {
+        solution_cell = {
             "cell_type": "markdown",
             "id": f"{identity[:55]}-solution",
             "metadata": {},
             "source": folded(source),
         }
-        cells.append(told)
+        cells.append(solution_cell)
     kernel = {"display_name": "Python 3 (ipykernel)", "language": "python", "name": "python3"}
     metadata = {"kernelspec": kernel, "language_info": {"name": "python"}}
     return {"cells": cells, "metadata": metadata, "nbformat": 4, "nbformat_minor": 5}
 
 
 def text(notebook: dict) -> str:
-    """The bytes of a notebook as Jupyter writes them.
+    """The text of a notebook as Jupyter writes it.
 
-    Sources by line, keys sorted, one space of indent.
+    Sources are lists of lines, keys are sorted, and the indent is one space.
     """
     cells = [
         cell | {"source": cell["source"].splitlines(keepends=True)} for cell in notebook["cells"]
@@ -111,7 +111,7 @@ def text(notebook: dict) -> str:
 
 
 def edition(folder: Path) -> dict[Path, str]:
-    """What belongs into folder/student: {path: text}."""
+    """The files of folder/student: {path: text}."""
     paths = sorted(path for path in folder.glob("*.ipynb") if re.match(r"\d\d", path.name))
     return {
         folder / "student" / path.name: text(student(notebook_cells.read(path), path.name))
@@ -120,7 +120,7 @@ def edition(folder: Path) -> dict[Path, str]:
 
 
 def stale(folder: Path) -> list[str]:
-    """What is missing, changed or left over in folder/student."""
+    """The files that are missing, changed or superfluous in folder/student."""
     wanted = edition(folder)
     there = set((folder / "student").glob("*.ipynb"))
     changed = [
@@ -162,7 +162,7 @@ def committed(path: Path) -> bool:
 
 
 def by_hand(folder: Path) -> list[Path]:
-    """What would be lost in folder/student: neither as it was written last, nor as it will be, nor
+    """Files of folder/student that would be lost: not as written last, nor as they will be, nor
     committed."""
     last = last_written(folder)
     wanted = {path: digest(content) for path, content in edition(folder).items()}
@@ -178,7 +178,7 @@ def by_hand(folder: Path) -> list[Path]:
 
 
 def write(folder: Path) -> int:
-    """Write the edition, remove what is left over, and return how many notebooks it has."""
+    """Write the edition, remove superfluous files, and return the number of notebooks."""
     wanted = edition(folder)
     (folder / "student").mkdir(exist_ok=True)
     for path in set((folder / "student").glob("*.ipynb")) - set(wanted):
@@ -193,7 +193,7 @@ def write(folder: Path) -> int:
 
 
 def refusal(paths: list[Path]) -> str:
-    """What to say instead of overwriting work."""
+    """The message when files would be lost."""
     return "\n".join(
         [
             "not written: these were changed by hand, and would be lost:",
@@ -209,7 +209,9 @@ def main(arguments: list[str] | None = None) -> int:
     parser.add_argument(
         "--check", action="store_true", help="write nothing; exit 1 when the edition is stale"
     )
-    parser.add_argument("--force", action="store_true", help="write over what was changed by hand")
+    parser.add_argument(
+        "--force", action="store_true", help="also overwrite files that were changed by hand"
+    )
     parser.add_argument("--folder", type=Path, default=NOTEBOOKS)
     options = parser.parse_args(arguments)
     try:

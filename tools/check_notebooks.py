@@ -1,8 +1,8 @@
 """The form of a notebook.
 
-Length, opening, tags, exercises, closing, nothing that ties it to one machine.
+It has rules for length, opening, tags, exercises and closing, and against ties to one machine.
 
-python tools/check_notebooks.py [NOTEBOOK ...]     lists what is wrong; exit 1 when anything is
+python tools/check_notebooks.py [NOTEBOOK ...]     lists all faults; exit 1 if there are any
 """
 
 import ast
@@ -22,9 +22,9 @@ LONG_SHARE = 0.10
 LINES_AT_MOST = 16
 ROWS_AT_MOST = 32
 COLUMNS = 88
-NO_TWINS = {"00"}  # start here: nothing is built by hand
+NO_TWINS = {"00"}  # notebook 00: nothing is built by hand
 
-OPENING = {  # what the cells before the imports must say
+OPENING = {  # texts that the cells before the imports must have
     "what you will be able to do": r"you (will|can).{0,20} be able to|be able to",
     "what it needs": r"\bneeds?\b",
     "the paper's section": r"\b(MoDiff|MoFusion|paper)\b",
@@ -46,7 +46,7 @@ FORBIDDEN = {
 
 
 def lines(cell: dict) -> int:
-    """Logical lines of code: a statement counts once, over however many rows it is wrapped."""
+    """Logical lines of code: a statement counts once, also when it is wrapped over several rows."""
     return sum(isinstance(node, ast.stmt) for node in ast.walk(parsed(cell)))
 
 
@@ -80,7 +80,7 @@ def length(notebook: dict) -> Iterator[str]:
 
 
 def width(notebook: dict) -> Iterator[str]:
-    """Code of at most 88 columns: beside the file browser a laptop shows no more."""
+    """Code of at most 88 columns: a laptop with the file browser open shows no more."""
     for cell in code(notebook):
         for number, row in enumerate(cell["source"].splitlines(), 1):
             if len(row) > COLUMNS:
@@ -149,7 +149,7 @@ def closing(notebook: dict) -> Iterator[str]:
 def exercises(notebook: dict, name: str) -> Iterator[str]:
     """Two or more exercises, each with minutes, difficulty, a hint and a check.
 
-    The text stands before it, the check in the same cell.
+    The text is before the cell, the check is in it.
     """
     cells = notebook["cells"]
     found = [
@@ -161,12 +161,12 @@ def exercises(notebook: dict, name: str) -> Iterator[str]:
         yield f"{len(found)} cells tagged `solution`; a notebook has two exercises or more"
     for index in found:
         where = f"exercise in cell {cells[index].get('id')}"
-        told = before(cells, index)
-        if not re.search(r"\bmin(utes?)?\b", told) or not re.search(
-            r"difficulty|easy|medium|hard|[★☆●○]", told, re.I
+        text = before(cells, index)
+        if not re.search(r"\bmin(utes?)?\b", text) or not re.search(
+            r"difficulty|easy|medium|hard|[★☆●○]", text, re.I
         ):
             yield f"{where}: the text before it must give minutes and difficulty"
-        if "<details" not in told or not re.search("hint", told, re.I):
+        if "<details" not in text or not re.search("hint", text, re.I):
             yield f"{where}: the text before it must fold a hint into <details>"
         if not re.search(r"^checks\.\w+\(", cells[index]["source"], re.M):
             yield f"{where}: the same cell must call its check"
@@ -177,7 +177,7 @@ def exercises(notebook: dict, name: str) -> Iterator[str]:
 
 
 def before(cells: list[dict], index: int) -> str:
-    """The markdown directly before a cell, down to the next code cell upwards."""
+    """The markdown between a cell and the code cell before it."""
     text = []
     while index and cells[index - 1]["cell_type"] == "markdown":
         index -= 1
@@ -200,7 +200,7 @@ def lesson(notebook: dict, name: str) -> Iterator[str]:
 
 
 def portable(notebook: dict) -> Iterator[str]:
-    """Nothing that installs, downloads, edits paths or knows one machine."""
+    """No code that installs, downloads, edits paths or depends on one machine."""
     text = "\n".join(cell["source"] for cell in code(notebook))
     yield from (
         f"{what} in a code cell" for what, pattern in FORBIDDEN.items() if re.search(pattern, text)
@@ -208,7 +208,7 @@ def portable(notebook: dict) -> Iterator[str]:
 
 
 def faults(path: Path) -> list[str]:
-    """All that is wrong with the form of one notebook."""
+    """All faults in the form of one notebook."""
     notebook = notebook_cells.read(path)
     plain = [rule(notebook) for rule in (length, width, storage, opening, closing, portable)]
     return [
@@ -220,9 +220,9 @@ def faults(path: Path) -> list[str]:
 
 def main(arguments: list[str]) -> int:
     paths = [Path(argument) for argument in arguments] or notebook_cells.sources()
-    told = [f"{path.name}: {fault}" for path in paths for fault in faults(path)]
-    print("\n".join(told) or f"{len(paths)} notebooks have the form")
-    return 1 if told else 0
+    found = [f"{path.name}: {fault}" for path in paths for fault in faults(path)]
+    print("\n".join(found) or f"{len(paths)} notebooks have the form")
+    return 1 if found else 0
 
 
 if __name__ == "__main__":

@@ -4,7 +4,7 @@
 
 Three panels: a path is drawn on the path pad, and the shipped walker walks it; the shipped dancer
 dances to a composed song; keyframes are pinned in the editor, one is changed, and the unconditional
-network makes what lies between. Each picture is a screenshot of the widget's page. `--frames`
+network makes the frames between. Each picture is a screenshot of the widget's page. `--frames`
 writes every tenth picture as a PNG too, for looking at.
 """
 

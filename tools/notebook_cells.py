@@ -1,6 +1,6 @@
 """Reading notebooks for the tools and tests.
 
-Cells, tags, and running the tagged cells outside a kernel.
+It gives cells and tags, and runs tagged cells without a kernel.
 """
 
 import json
@@ -11,7 +11,7 @@ NOTEBOOKS = Path(__file__).parent.parent / "notebooks"
 
 
 def sources() -> list[Path]:
-    """The notebooks as they are written (not the student edition), in order."""
+    """The notebooks (not the student edition), in order."""
     return sorted(path for path in NOTEBOOKS.glob("*.ipynb") if re.match(r"\d\d", path.name))
 
 
@@ -51,6 +51,6 @@ def run(cells: list[dict], namespace: dict, name: str = "notebook") -> dict:
 def start(notebook: dict, name: str = "notebook") -> dict:
     """The namespace after the cells tagged `imports` and `setup`.
 
-    Tagged cells may rely on it.
+    Tagged cells can use its names.
     """
     return run(code(notebook, "imports", "setup"), {}, name)

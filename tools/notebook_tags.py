@@ -1,5 +1,6 @@
-"""Docstrings say `Notebook: 07` where the notebook uses what they describe: find those that err,
-and mend them.
+"""Docstrings say `Notebook: 07` if that notebook uses what they describe.
+
+This tool finds wrong tags, and corrects them.
 
     python tools/notebook_tags.py          # list them
     python tools/notebook_tags.py --mend   # take the wrong numbers out
@@ -26,7 +27,7 @@ DEFINITIONS = (ast.FunctionDef, ast.ClassDef)
 
 @cache
 def text_of(number: str) -> str:
-    """All cells of a notebook; nothing where there is none of that number."""
+    """The text of all cells of a notebook; empty if there is no such notebook."""
     found = sorted((ROOT / "notebooks").glob(f"{number}_*.ipynb"))
     cells = json.loads(found[0].read_text(encoding="utf-8"))["cells"] if found else []
     return "\n".join("".join(cell["source"]) for cell in cells)
@@ -37,7 +38,7 @@ def occurs(names: list[str], number: str) -> bool:
 
 
 def tagged(path: Path) -> Iterator[tuple[str, ast.Constant, list[str]]]:
-    """Every docstring of a file: what it describes, where it stands, and the names that count."""
+    """Every docstring of a file: what it describes, its node, and the names to look for."""
     tree = ast.parse(path.read_text(encoding="utf-8"))
     public = [
         n.name for n in tree.body if isinstance(n, DEFINITIONS) and not n.name.startswith("_")
@@ -51,7 +52,7 @@ def tagged(path: Path) -> Iterator[tuple[str, ast.Constant, list[str]]]:
 
 
 def wrong_in(path: Path) -> list[tuple[str, ast.Constant, list[str]]]:
-    """Of a file: the definition, its docstring, and the numbers that are wrong."""
+    """The wrong tags of a file: the definition, its docstring, and the wrong numbers."""
     found = []
     for name, docstring, names in tagged(path):
         numbers = [n for tag in TAG.findall(docstring.value) for n in re.findall(r"\d\d", tag)]
@@ -92,7 +93,7 @@ def mend(path: Path) -> None:
 
 
 def within_width(line: str) -> str:
-    """A line that a number taken out made too long, broken before the tag or the closing quotes."""
+    """Break a line that has become too long before its tag or its closing quotes."""
     indent, body = " " * (len(line) - len(line.lstrip())), line.rstrip("\n")
     for mark in ("Notebook: ", '"""'):
         if len(body) > WIDTH and mark in body[len(indent) + 3 :]:

@@ -1,6 +1,6 @@
 """Dances to a song.
 
-Phrases of moves from the genre's own vocabulary, on the beat, on feet that stay planted.
+A dance has phrases of moves from the genre's vocabulary, on the beat, with feet that stay planted.
 """
 
 from .performance import GENRES, Dance, dance, dances, perform

@@ -1,10 +1,10 @@
-"""Do synthetic dances lie where real ones do, and on the beat?
+"""Are synthetic dances like real ones, and on the beat?
 
-The table over dozens of dances, beside the real range.
+The table compares dozens of dances with the real range.
 
 python -m data_synth.dancing.acceptance [--dances 30] [--seconds 30]
 
-The dances are danced to silent scores that cover the tempi of each genre: what README.md shows.
+The dances follow silent scores that cover the tempi of each genre; README.md shows the result.
 """
 
 import argparse
@@ -30,9 +30,9 @@ UPRIGHT = {
     "jerk": (31, 362),
     "power4": (0.79, 0.99),
 }
-# what we ask of ourselves: with the right song; the share of the music's beats that the body marks
+# our own goals: with the right song; the share of the music's beats that the body marks
 OWN = {"own_song": (0.6, 0.85), "other_song": (0.15, 0.35), "beats_per_beat": (0.6, 1.3)}
-# genres whose mean over dances lies outside, and why; the data card tells more
+# genres whose mean over dances lies outside, and why; the data card says more
 OUTSIDE = {
     "waltz neither_planted": (
         "three steps a bar, each landing before the next lifts, and planted feet are still"
@@ -70,10 +70,10 @@ def acceptance(
     count: int = 30, seconds: float = 30.0
 ) -> tuple[list[Dance], list[dict[str, float]]]:
     """The dances, and the figures of each."""
-    heard = songs(count, seconds)
-    danced = [dance(song, k) for k, song in enumerate(heard)]
-    others = [heard[(k + 7) % count] for k in range(count)]
-    return danced, [figures(d, s, o) for d, s, o in zip(danced, heard, others, strict=True)]
+    scores = songs(count, seconds)
+    danced = [dance(song, k) for k, song in enumerate(scores)]
+    others = [scores[(k + 7) % count] for k in range(count)]
+    return danced, [figures(d, s, o) for d, s, o in zip(danced, scores, others, strict=True)]
 
 
 def means_outside(danced: list[Dance], rows: list[dict[str, float]]) -> set[str]:
@@ -91,9 +91,9 @@ def means_outside(danced: list[Dance], rows: list[dict[str, float]]) -> set[str]
 
 
 def limits(danced: list[Dance]) -> dict[str, float]:
-    """The worst of all frames.
+    """The worst values of all frames.
 
-    Slipping feet, the lowest joint (mm), bones (m), knees (degrees), hands (m/s).
+    They are for slipping feet, the lowest joint (mm), bones (m), knees (degrees), hands (m/s).
     """
     slip = 0.0
     low = np.inf

@@ -1,9 +1,9 @@
 """From the channels of a dance to the 21 joints.
 
-Pelvis over the feet, a spine that bends in three places, arms, legs.
+The pelvis is over the feet, the spine bends in three places; arms and legs follow.
 
-Per frame and vectorised; world frame, metres; the channels are those of dance_script.REST, in
-degrees and metres.
+All is per frame and vectorised, in the world frame and metres. The channels are those of
+script.REST, in degrees and metres.
 """
 
 import numpy as np
@@ -19,7 +19,7 @@ from .script import ARM, LENGTHS
 from .steps import Track
 
 STAND = 0.957  # height of the Hips joint over flat feet before `drop`
-# metres that the hips give way for each unit of sine of the trunk's lean, so that the weight stays
+# metres that the hips move away per unit of sine of the trunk's lean, so that the weight stays
 UPPER_SHARE = 0.17
 
 
@@ -28,7 +28,7 @@ def dancer(
     tracks: tuple[Track, Track],
     heading: Float[np.ndarray, "T"],
 ) -> Float[np.ndarray, "T 21 3"]:
-    """The joints of a figure whose feet are at `tracks` and whose body is as the channels say."""
+    """The joints of a figure with its feet at `tracks` and its body as in the channels."""
     c = {name: value if name in LENGTHS else np.radians(value) for name, value in channels.items()}
     yaw = heading + c["hip_yaw"]
     pelvis = legs.pelvis_rotation(yaw, c["hip_roll"], c["hip_tilt"])
@@ -57,7 +57,7 @@ def dancer(
 
 
 def _hips(c, tracks, heading) -> Float[np.ndarray, "T 3"]:
-    """The pelvis over the foot that bears, moved by sway and surge.
+    """The pelvis over the supporting foot, moved by sway and surge.
 
     It also moves away from where the trunk leans.
     """
@@ -71,9 +71,9 @@ def _hips(c, tracks, heading) -> Float[np.ndarray, "T 3"]:
 
 
 def _knee_side(hip, ankle, facing) -> Float[np.ndarray, "T 3"]:
-    """Where the knee points.
+    """The direction of the knee.
 
-    Ahead of a hanging leg, up from one that is kicked out, down from one kicked back.
+    It is ahead for a hanging leg, up for a leg kicked forward, down for one kicked back.
     """
     left = np.stack([np.cos(facing), np.zeros_like(facing), -np.sin(facing)], -1)
     return np.cross(ankle - hip, left)
@@ -101,7 +101,7 @@ def _spine(joints, hips, yaw, c) -> Float[np.ndarray, "T 3 3"]:
     joints[:, 11] = joints[:, 10] + top @ OFFSETS[11]
     steady = (
         0.45 * c["twist"] - 0.5 * c["hip_yaw"] + c["look"]
-    )  # the head keeps more to where the dance faces
+    )  # the head stays nearer to the heading of the dance
     head = (
         rot_y(yaw + steady)
         @ rot_z(0.3 * c["side"] + c["cock"])

@@ -1,6 +1,6 @@
-"""Which move when: the choreographer draws them phrase by phrase, repeats, mirrors and varies them.
+"""The choice of moves: they are drawn phrase by phrase, repeated, mirrored and varied.
 
-It knows the score (beats, bars, phrases, energy), never the sound.
+It uses the score (beats, bars, phrases, energy), never the sound.
 """
 
 from dataclasses import dataclass, replace
@@ -19,9 +19,9 @@ ROOM = 1.6  # metres from the start, beyond which the dancer comes back
 
 @dataclass(frozen=True)
 class Move:
-    """A move as it was danced.
+    """A move of a dance.
 
-    From which beat, over how many, its name, whether left and right were swapped.
+    It has the first beat, the number of beats, its name, and whether left and right are swapped.
     """
 
     start: int
@@ -35,7 +35,7 @@ class Move:
 def slots(song: Song, rng: np.random.Generator) -> list[tuple[int, int]]:
     """(first beat, beats).
 
-    Phrases and breaks cut into whole bars, 4 to 8 beats where the metre allows it.
+    Phrases and breaks are cut into whole bars, 4 to 8 beats where the metre allows it.
     """
     edges = np.flatnonzero(np.diff(song.phrase) | np.diff(song.energy < CALM)) + 1
     cuts = []
@@ -52,7 +52,7 @@ def slots(song: Song, rng: np.random.Generator) -> list[tuple[int, int]]:
             length = min(bars * song.metre + pick_up, int(last) - at)
             if int(last) - at - length < 4:
                 length = int(last) - at
-            if cuts and min(length, cuts[-1][1]) < 3:  # a pick-up, or what is left of the last bar
+            if cuts and min(length, cuts[-1][1]) < 3:  # a pick-up, or the rest of the last bar
                 cuts[-1] = (cuts[-1][0], cuts[-1][1] + length)
             else:
                 cuts.append((at, length))
@@ -61,7 +61,7 @@ def slots(song: Song, rng: np.random.Generator) -> list[tuple[int, int]]:
 
 
 def rate_of(song: Song, calm: bool, rng: np.random.Generator) -> float:
-    """Beats a count: half time at high tempo, now and then double at a low one."""
+    """Beats per count: half time at high tempo, and sometimes double time at a low one."""
     period = 60.0 / song.tempo
     if period < 0.44 and song.metre % 2 == 0:
         return 2.0 if rng.random() < (0.75 if period < 0.40 else 0.35) else 1.0
@@ -75,7 +75,7 @@ def rate_of(song: Song, calm: bool, rng: np.random.Generator) -> float:
 def choreograph(
     song: Song, rng: np.random.Generator, only: str | None = None
 ) -> tuple[Script, list[Move]]:
-    """The script of a dance to this song, and the moves it is made of.
+    """The script of a dance to this song, and its moves.
 
     `only` names the one move to dance.
 
@@ -118,7 +118,7 @@ def choreograph(
 def _draw(song, manner: Manner, start, length, moves, taste, rng) -> Move:
     """The next move: the last one mirrored, or a new one.
 
-    Small in breaks, large where energy is high.
+    It is small in breaks, and large where energy is high.
     """
     energy = float(song.energy[start : start + length].mean())
     calm = energy < CALM
@@ -141,9 +141,9 @@ def _draw(song, manner: Manner, start, length, moves, taste, rng) -> Move:
 
 
 def _drift(script: Script, count: int, rng: np.random.Generator) -> tuple[float, float]:
-    """A way to go during a move (metres a count, left and ahead).
+    """The travel during a move (metres per count, left and ahead).
 
-    Anywhere, but back when far from the start.
+    It is random, but leads back when the dancer is far from the start.
     """
     x, z, heading = script.home
     pull = min(np.hypot(x, z) / ROOM, 1.0)
@@ -154,7 +154,7 @@ def _drift(script: Script, count: int, rng: np.random.Generator) -> tuple[float,
 
 
 def _gather(sheet: Sheet, script: Script) -> None:
-    """Home is between the feet again, so that what a move left behind is not carried on."""
+    """Set home between the feet again, so that offsets of a move do not add up."""
     middle = np.mean([toe[:2] for toe in script.toes], 0)
     x, z, heading = script.home
     back = TOE_AHEAD * np.array([np.sin(heading), np.cos(heading)])
@@ -162,7 +162,7 @@ def _gather(sheet: Sheet, script: Script) -> None:
 
 
 def _end(script: Script, rest: dict[str, float], beats: int) -> None:
-    """After the last beat the dancer comes to rest on both feet."""
+    """Let the dancer come to rest on both feet after the last beat."""
     script.enter(
         {name: [(beats + 0.5, value), (beats + 1.5, value)] for name, value in rest.items()}
     )

@@ -1,8 +1,8 @@
-"""From keys in beats to curves in time: a dancer arrives on the beat, rests a moment, and goes on.
+"""From keys in beats to curves in time: a dancer arrives on the beat, rests, and moves on.
 
-Between two keys a movement runs as a person reaches for something: it starts and ends with no speed
-and no acceleration (the quintic of least jerk). `hold` is the share of the time between keys that
-is spent still; `flow` mixes in a curve that passes through the keys without stopping.
+Between two keys a movement is like a person's reach for something: it starts and ends with no speed
+and no acceleration (the minimum-jerk quintic). `hold` is the share of the time between keys without
+movement; `flow` mixes in a curve that passes through the keys without a stop.
 """
 
 import numpy as np
@@ -27,11 +27,11 @@ def least_jerk(u: Float[np.ndarray, "*T"]) -> Float[np.ndarray, "*T"]:
 def felt_beats(
     beats: Float[np.ndarray, "K"], rng: np.random.Generator, jitter: float, off: float
 ) -> tuple[Float[np.ndarray, "N"], Float[np.ndarray, "N"]]:
-    """When the dancer feels each half beat.
+    """The dancer's own times of each half beat.
 
-    Seconds, and the beat's number (-AROUND ... K - 1 + AROUND).
+    Returns seconds, and the beat's number (-AROUND ... K - 1 + AROUND).
 
-    Each is missed by N(0, jitter) seconds, halves by 1.3 times that, and all by `off`.
+    A time has an error of N(0, jitter) seconds, half beats 1.3 times that; all are late by `off`.
     """
     first, last = beats[1] - beats[0], beats[-1] - beats[-2]
     steps = np.arange(1, AROUND + 1)
@@ -48,7 +48,7 @@ def felt_beats(
 def curve(
     b: Float[np.ndarray, "T"], keys: list[tuple[float, float]], hold: float, flow: float
 ) -> Float[np.ndarray, "T"]:
-    """The value of a channel at beats b; before the first and after the last key it is held."""
+    """The value of a channel at beats b; it is constant before the first and after the last key."""
     at, value = np.array(keys).T
     if len(at) == 1:
         return np.full(len(b), value[0])
@@ -63,9 +63,9 @@ def curve(
 def within_reach(
     keys: list[tuple[float, float]], seconds: Float[np.ndarray, "K2"], fastest: float
 ) -> list[tuple[float, float]]:
-    """The keys, none farther from the one before than `fastest` a second allows.
+    """The keys, limited to `fastest` per second from the one before.
 
-    Without the time, a hit is smaller.
+    When there is too little time, a hit is smaller.
     """
     kept = [keys[0]]
     for i in range(1, len(keys)):
@@ -78,7 +78,7 @@ def within_reach(
 def springy(
     x: Float[np.ndarray, "T k"], fps: float, hertz: float, damping: float
 ) -> Float[np.ndarray, "T k"]:
-    """What follows x on a spring: a little late, and a little too far at first."""
+    """A curve that follows x like a spring: a little late, and a little too far at first."""
     w = 2 * np.pi * hertz
     num, den, _ = cont2discrete(([w * w], [1.0, 2 * damping * w, w * w]), 1 / fps, "foh")
     return x[:1] + lfilter(np.squeeze(num), den, x - x[:1], axis=0)

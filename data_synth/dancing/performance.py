@@ -1,10 +1,10 @@
 """Dances to a song.
 
-Phrases of moves from the genre's own vocabulary, arriving on the beat, on feet that stay planted.
+A dance has phrases of moves from the genre's vocabulary, on the beat, with feet that stay planted.
 
     python -m data_synth dances --out FOLDER   # BVH for Blender, npz (no pickle) for all else
 
-What a dance depends on is the song's score and a seed: two seeds give two dances to one song.
+A dance depends on the song's score and a seed: two seeds give two dances to one song.
 """
 
 from collections.abc import Iterator
@@ -29,7 +29,7 @@ DANCES_A_SEED = 100_000
 DAMPING, ARMS_LEAD = (
     0.6,
     1.0,
-)  # of the arms' spring; the share of its delay that the arms set out earlier
+)  # of the arms' spring; the share of its delay by which the arms start earlier
 ARMS = [f"{side}_{name}" for side in "lr" for name in ARM]
 FASTEST = 250.0  # degrees a second, on average between two keys, that an arm's angle may change
 START = ((STANCE, TOE_AHEAD, 0.12), (-STANCE, TOE_AHEAD, -0.12))  # toe x, toe z, direction
@@ -58,7 +58,7 @@ class Dance:
 def dance(song: Song, seed: int, only: str | None = None) -> Dance:
     """A dance to the song's score, 20 frames/s, from (0, 0) facing z.
 
-    `only` names one move to fill it with.
+    With `only` it consists of that one move.
 
     Raises ValueError when the song has fewer than two beats, its genre has no such moves, or the
     seed is negative.
@@ -83,10 +83,10 @@ def dances(
 ) -> Iterator[tuple[Song, Dance]]:
     """n songs as `music.songs` has them, with `each` dances to every one.
 
-    What dancers are trained on.
+    The dancers are trained on these.
 
     The dances to one song follow one another. Different seeds share no song, and no dancer's seed.
-    Raises ValueError as `songs` and `dance` do, for no dance to a song, and for more dances than a
+    Raises ValueError as `songs` and `dance` do, when `each` is below 1, and for more dances than a
     seed has.
     """
     if each < 1 or n * each > DANCES_A_SEED:
@@ -105,7 +105,7 @@ def dances(
 def perform(
     script: Script, song: Song, seed: int
 ) -> tuple[Float[np.ndarray, "T 21 3"], Bool[np.ndarray, "T 2"]]:
-    """A person dances the script: with their own timing, posture, spring and drift."""
+    """Let a person dance the script, with their own timing, posture, spring and drift."""
     rng = np.random.default_rng([seed, song.seed, 32])
     manner = MANNERS[song.genre]
     t = np.arange(int(song.seconds * FPS)) / FPS
@@ -115,7 +115,7 @@ def perform(
     b = np.interp(t, seconds, number)
     delay = (
         2 * DAMPING / (2 * np.pi * manner.spring)
-    )  # the arms' spring is late by this: they set out so much earlier
+    )  # the arms' spring is late by this, so they start that much earlier
     early = np.interp(t + ARMS_LEAD * delay, seconds, number)
     channels = _channels(script, b, early, (seconds, number), manner, seed, rng)
     heading = curve(b, script.keys["heading"], hold=0.0, flow=0.8)
@@ -128,7 +128,7 @@ def _channels(
 ) -> dict[str, Float[np.ndarray, "T"]]:
     """Every channel at every frame, with the person's posture and slow drift.
 
-    The arms on a spring.
+    The arms follow like a spring.
     """
     wander = noise.drift(noise.white(seed, len(b))[:, : len(REST)], 0.45, FPS)
     channels = {}
@@ -148,9 +148,9 @@ def _channels(
 
 
 def _person(name: str) -> tuple[float, float]:
-    """How much a channel drifts, and how much its posture differs between persons.
+    """The drift of a channel, and the difference of its posture between persons.
 
-    Standard deviations, in degrees or metres.
+    Both are standard deviations, in degrees or metres.
     """
     if name == "weight" or name.endswith("heel"):
         return 0.0, 0.0
@@ -160,7 +160,7 @@ def _person(name: str) -> tuple[float, float]:
 
 
 def _foot(script: Script, foot: int, t, seconds, number, channels, rng) -> Track:
-    """One foot's steps at the moments the dancer makes them, each a few milliseconds off."""
+    """One foot's steps at the dancer's own times, each with an error of some milliseconds."""
     steps = script.steps[foot]
     times = np.interp([(s.lift, s.land) for s in steps], number, seconds).reshape(-1, 2)
     times = times + 0.006 * rng.standard_normal(times.shape)

@@ -1,9 +1,7 @@
-"""What a dance is written down as.
+"""The script of a dance: key poses by channel, and footsteps, in beats of the song.
 
-Key poses by channel, and footsteps, all counted in beats of the song.
-
-Angles in degrees, lengths in metres. A move does not write here but on a `Sheet` of its own
-(dance_sheet.py).
+Angles are in degrees, lengths in metres. A move does not write here, but on its own `Sheet`
+(sheet.py).
 """
 
 from dataclasses import dataclass, field
@@ -69,7 +67,7 @@ class Step:
 
 @dataclass
 class Script:
-    """The whole dance as it is being written."""
+    """The whole dance while it is being written."""
 
     keys: dict[str, list[tuple[float, float]]] = field(
         default_factory=lambda: {name: [] for name in (*REST, "heading")}
@@ -83,7 +81,7 @@ class Script:
     heading_at: float = -9.0
 
     def enter(self, keys: dict[str, list[tuple[float, float]]]) -> None:
-        """Add the keys of a move: what older ones say from there on is struck out."""
+        """Add the keys of a move; later keys of older moves are removed."""
         for name, fresh in keys.items():
             fresh = sorted(fresh, key=lambda k: k[0])
             kept = [k for k in self.keys[name] if k[0] < fresh[0][0] - 0.12]

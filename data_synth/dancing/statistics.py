@@ -1,10 +1,10 @@
-"""What is measured of a dance, the same way for ours and for real ones.
+"""The measures of a dance, the same for ours and for real ones.
 
-20 frames/s, world positions in metres.
+They take world positions in metres, at 20 frames/s.
 
-The range of real dances was measured with this ruler, and holds for it alone. Three functions here
-have relatives in motiondiff_edu.metrics that measure a little otherwise: `joint_speed`,
-`kinematic_beats` and `root_frame` say how.
+The range of real dances was measured with these functions, and holds only for them. Three of them
+differ a little from similar functions in motiondiff_edu.metrics: `joint_speed`, `kinematic_beats`
+and `root_frame` say how.
 """
 
 import numpy as np
@@ -23,9 +23,9 @@ FINE = 3  # the speed is resampled this many times finer before its minima are t
 def joint_speed(world: Float[np.ndarray, "T 21 3"], fps: float) -> Float[np.ndarray, "T2"]:
     """Mean joint speed, in m/s.
 
-    Mean over joints of |p(t + 1) - p(t - 1)| fps / 2, of the frames that have two neighbours.
+    It is the mean over joints of |p(t + 1) - p(t - 1)| fps / 2, for frames with two neighbours.
 
-    `metrics.beats.mean_speed` is of a single step: quick movements count more there.
+    `metrics.beats.mean_speed` uses a single step: quick movements count more there.
     """
     return np.linalg.norm(world[2:] - world[:-2], axis=-1).mean(-1) * fps / 2
 
@@ -35,10 +35,10 @@ def kinematic_beats(
 ) -> Float[np.ndarray, "N"]:
     """Times (s) of the local minima of the mean joint speed.
 
-    Smoothed by a Gaussian of SMOOTHING, timed on a cubic spline.
+    The speed is smoothed by a Gaussian of SMOOTHING; the times come from a cubic spline.
 
-    `metrics.beats.kinematic_beats` brings the motion itself to 60 frames/s first, and so sees stops
-    that the two-frame speed here passes over: 2 % more on our dances.
+    `metrics.beats.kinematic_beats` first resamples the motion itself to 60 frames/s, and so finds
+    stops that the two-frame speed misses: 2 % more on our dances.
     """
     speed = gaussian_filter1d(joint_speed(world, fps), SMOOTHING * fps)
     t = (1 + np.arange(len(speed))) / fps
@@ -56,7 +56,7 @@ def looks_planted(world: Float[np.ndarray, "T 21 3"], fps: float) -> Bool[np.nda
 def root_frame(world: Float[np.ndarray, "T 21 3"], fps: float) -> Float[np.ndarray, "T 63"]:
     """Joints minus hips, turned so that hips and shoulders face z (smoothed by 0.1 s).
 
-    `metrics.repetition.pose_changes` leaves the hips their height, and smoothes nothing.
+    `metrics.repetition.pose_changes` keeps the height of the hips, and does not smooth.
     """
     across = sum(
         world[:, joint_index("Left" + n)] - world[:, joint_index("Right" + n)]
@@ -82,7 +82,7 @@ def repeats(world: Float[np.ndarray, "T 21 3"], fps: float = 20.0, least: float 
 
 
 def statistics(world: Float[np.ndarray, "T 21 3"], fps: float = 20.0) -> dict[str, float]:
-    """The figures that the acceptance table asks for; metres, seconds, shares."""
+    """The figures of the acceptance table; metres, seconds, shares."""
     speed = joint_speed(world, fps)
     planted = looks_planted(world, fps)
     local = root_frame(world, fps)

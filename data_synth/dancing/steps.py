@@ -1,6 +1,6 @@
-"""Where the feet of a dance are at every frame.
+"""The feet of a dance at every frame.
 
-Toes that stay while planted, and swing, lift and roll in between.
+Toes stay while they are planted, and swing, lift and roll between.
 """
 
 from dataclasses import dataclass
@@ -19,8 +19,8 @@ from .script import Step
 class Track:
     """One foot over time.
 
-    Toe joint, direction and pitch (radians, heel up), whether it is planted, where it carries
-    weight.
+    It has the toe joint, direction and pitch (radians, heel up), whether it is planted, and where
+    it carries weight.
     """
 
     toe: Float[np.ndarray, "T 3"]
@@ -30,7 +30,7 @@ class Track:
     ground: Float[np.ndarray, "T 2"]  # of the flat ankle (x, z), without the detours of a swing
 
     def ankle(self) -> Float[np.ndarray, "T 3"]:
-        """The Foot joint: behind the toe, and higher the more the foot is pitched."""
+        """The Foot joint: it is behind the toe, and rises with the pitch of the foot."""
         sin, cos = np.sin(self.pitch), np.cos(self.pitch)
         back = TOE_AHEAD * cos - ANKLE * sin
         up = ANKLE * cos + TOE_AHEAD * sin
@@ -98,7 +98,7 @@ def _pitch(step: Step, far: float, lift: float, land: float) -> list[tuple[float
 def _rolled(keys: list[tuple[float, float]], t: Float[np.ndarray, "T"]) -> Float[np.ndarray, "T"]:
     """A smooth curve through the keys.
 
-    Keys that come before their forerunners are left out.
+    Keys that are out of order are left out.
     """
     kept = keys[:1]
     for key in keys[1:]:

@@ -1,4 +1,4 @@
-"""Writing to files: songs and their dances as BVH for Blender and as npz for everything else."""
+"""Write dances and the beats of their songs to files: BVH for Blender, npz for everything else."""
 
 import argparse
 from itertools import islice
@@ -13,9 +13,9 @@ from .performance import Dance, dances
 
 
 def save_npz(danced: Dance, song: Song, path: Path) -> None:
-    """Positions, contacts, moves and the song's beats as plain arrays.
+    """Save positions, contacts, moves and the song's beats as plain arrays.
 
-    Written aside, then renamed.
+    The file is written under another name and then renamed.
     """
     starts, names, mirrored = zip(*danced.moves, strict=True)
     with replacing(path) as aside, open(aside, "wb") as f:

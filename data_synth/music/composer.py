@@ -2,8 +2,8 @@
 
 python -m data_synth songs --out FOLDER [--songs 10] [--seconds 30] [--seed 0] [--genre NAME]
 
-The order is a musician's: a form (form.py), a groove (grooves.py), harmony and tune (harmony.py),
-instruments (kits.py, voices.py), a recording (mixing.py).
+The order is like a musician's: a form (form.py), a groove (grooves.py), harmony and tune
+(harmony.py), instruments (kits.py, voices.py), a recording (mixing.py).
 """
 
 from collections.abc import Iterator
@@ -16,10 +16,10 @@ from .harmony import draw_chords, write_bass, write_chords, write_melody
 from .mixing import Played, mix, play
 from .song import DRUMS, GENRES, SAMPLE_RATE, TIMBRES, TRAINING_TIMBRES, Song
 
-SLOWEST, FASTEST = 40.0, 240.0  # BPM that can be asked for
+SLOWEST, FASTEST = 40.0, 240.0  # possible BPM
 SHORTEST, LONGEST = 2.0, 1200.0  # seconds
 SONGS_A_SEED = 1_000_000
-# genre: (how probably it swings, least, most, the short notes' length in beats)
+# genre: (probability of swing, least, most, the short notes' length in beats)
 SWING = {
     "hiphop": (0.8, 0.54, 0.64, 0.25),
     "waltz": (0.4, 0.58, 0.66, 0.5),
@@ -60,14 +60,14 @@ def compose(
     metre: int | None = None,
     timbre: str | None = None,
 ) -> Song:
-    """One song; what is not given is drawn.
+    """One song; arguments that are not given are drawn at random.
 
-    A genre, its tempo (BPM) and metre, one of TRAINING_TIMBRES.
+    These are a genre, its tempo (BPM) and metre, and one of TRAINING_TIMBRES.
 
     The same arguments give the same bytes. With another `timbre` it is the same music on other
     instruments.
-    Raises ValueError for what is not there: an unknown genre or timbre, a metre outside 2-7, a
-    tempo outside 40-240.
+    Raises ValueError for an unknown genre or timbre, a metre outside 2-7, or a tempo outside
+    40-240.
     """
     _check(seed, genre, seconds, tempo, metre, timbre)
     rng = np.random.default_rng([seed, 7])
@@ -80,17 +80,17 @@ def compose(
     notes += write_melody(form, chords, genre, tune)
     audio = mix(form, played, notes, genre, timbre, seconds, studio)
 
-    heard = np.flatnonzero((form.times >= 0) & (form.times < seconds))
-    bars = [form.bars[b // metre] for b in heard]
-    beats = form.times[heard]
+    inside = np.flatnonzero((form.times >= 0) & (form.times < seconds))
+    bars = [form.bars[b // metre] for b in inside]
+    beats = form.times[inside]
     phrase = np.array([bar.phrase for bar in bars])
     mean = 60.0 * (len(beats) - 1) / (beats[-1] - beats[0]) if len(beats) > 1 else tempo
     return Song(
         audio=audio,
         beats=beats,
-        bar_position=heard % metre,
+        bar_position=inside % metre,
         phrase=phrase - phrase[0],
-        energy=energies(form, strength)[heard],
+        energy=energies(form, strength)[inside],
         hits=_hits(played, len(audio) / SAMPLE_RATE),
         genre=genre,
         tempo=float(mean),
@@ -102,9 +102,9 @@ def compose(
 
 
 def _chosen(genre, tempo, metre, timbre, rng: np.random.Generator) -> tuple[str, float, int, str]:
-    """What is not given is drawn.
+    """Draw the arguments that are not given.
 
-    All of it is drawn in any case, so that nothing given changes what comes after.
+    All of them are drawn in any case, so that a given one does not change later draws.
     """
     drawn = str(rng.choice(list(GENRES))), rng.random(), str(rng.choice(TRAINING_TIMBRES))
     genre, timbre = genre or drawn[0], timbre or drawn[2]
@@ -118,14 +118,14 @@ def _chosen(genre, tempo, metre, timbre, rng: np.random.Generator) -> tuple[str,
 
 
 def _hits(played: Played, seconds: float) -> dict[str, np.ndarray]:
-    """When each drum is struck within the song, in seconds."""
+    """Times of each drum's strokes within the song, in seconds."""
     names = np.array([hit.drum for hit in played.hits])
     sounds = (played.seconds >= 0) & (played.seconds < seconds)
     return {drum: np.sort(played.seconds[sounds & (names == drum)]) for drum in DRUMS}
 
 
 def _swing(genre: str, rng: np.random.Generator) -> tuple[float, float]:
-    """Where the second of two short notes falls, and their length in beats."""
+    """Position of the second of two short notes, and their length in beats."""
     chance, least, most, unit = SWING.get(genre, (0.0, 0.5, 0.5, 0.25))
     swings, where = rng.random() < chance, rng.uniform(least, most)
     return (where if swings else 0.5), unit
@@ -141,7 +141,7 @@ def songs(
     metre: int | None = None,
     timbre: str | None = None,
 ) -> Iterator[Song]:
-    """n songs one after another, made when asked for; without `genre` the genres take turns.
+    """Generator of n songs; without `genre` the genres take turns.
 
     Song k is compose(seed * SONGS_A_SEED + k, its genre, ...): different seeds share no song.
     Raises ValueError if n is not between 1 and SONGS_A_SEED, and as compose does.

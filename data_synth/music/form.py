@@ -1,10 +1,10 @@
-"""The form of a song before any note is written.
+"""The form of a song, without its notes.
 
-Beats in time, bars, phrases and sections, breaks and fills.
+It has the times of beats, bars, phrases and sections, breaks and fills.
 
 A phrase is two bars; in 3 it may be four. A section (intro, verse, chorus, bridge) is one to four
-phrases. What leads to a chorus may end in a break: a bar or two without drums, in which the beats
-go on.
+phrases. A section before a chorus may end in a break: a bar or two without drums, in which the
+beats continue.
 """
 
 from dataclasses import dataclass
@@ -20,7 +20,7 @@ NEXT = {
     "bridge": ("chorus",),
 }
 NEXT |= {"chorus": ("verse", "verse", "bridge")}
-# beats as groups of two and three: where the ear expects a stress
+# beats as groups of two and three: a listener expects a stress at the start of each
 GROUPS = {
     2: ((2,),),
     3: ((3,),),
@@ -29,15 +29,15 @@ GROUPS = {
     6: ((3, 3),),
     7: ((2, 2, 3), (3, 2, 2)),
 }
-LEAD = 3.0  # seconds of music before the recording begins, for what still rings
-DRIFT = 0.02  # the beat's length stays within this share of the mean
+LEAD = 3.0  # seconds of music before the recording begins, for sounds that still ring
+DRIFT = 0.02  # the length of a beat stays within this share of the mean
 
 
 @dataclass(frozen=True)
 class Bar:
     """One bar of a song's form.
 
-    Which section and phrase it is of, how loud the section, and what happens at its end.
+    It has its section and phrase, the loudness of the section, and the events at its end.
     """
 
     number: int
@@ -54,7 +54,7 @@ class Bar:
 class Form:
     """Bars, and the time of every beat from the first of bars[0] on.
 
-    Negative before the recording begins.
+    Times are negative before the recording begins.
     """
 
     bars: list[Bar]
@@ -70,7 +70,7 @@ class Form:
         return sum(self.groups)
 
     def at(self, position: Float[np.ndarray, "n"]) -> Float[np.ndarray, "n"]:
-        """Seconds of positions in beats; between the beats the swing shifts them."""
+        """Times in seconds of positions in beats; between the beats the swing shifts them."""
         whole, part = np.divmod(position / (2 * self.swing_unit), 1.0)
         late = np.where(
             part < 0.5, 2 * self.swing * part, self.swing + (2 * part - 1) * (1 - self.swing)
@@ -81,7 +81,7 @@ class Form:
 
 
 def roles(groups: tuple[int, ...]) -> list[str]:
-    """What each beat of a bar is.
+    """The role of each beat of a bar.
 
     "one", "strong" (another group's first), "back" (a group's last), "weak" or "last".
 
@@ -92,7 +92,7 @@ def roles(groups: tuple[int, ...]) -> list[str]:
 
 
 def _sections(rng: np.random.Generator, phrase_bars: int, silent_bars: int):
-    """Endless (name, bars, bars of break at its end)."""
+    """Endless generator of (name, bars, bars of break at its end)."""
     now = (
         "silence"
         if silent_bars
@@ -140,9 +140,9 @@ def _bars(
 
 
 def _periods(rng: np.random.Generator, n: int) -> Float[np.ndarray, "n"]:
-    """Lengths of n beats over their mean.
+    """Lengths of n beats divided by their mean.
 
-    A slow random walk within DRIFT, or all 1 in a steady song.
+    They are a slow random walk within DRIFT, or all 1 in a steady song.
     """
     steady, spread = rng.random() < 0.35, rng.uniform(0.3, 1.0)
     steps, walk = rng.standard_normal(n), np.zeros(n)
@@ -155,9 +155,9 @@ def _periods(rng: np.random.Generator, n: int) -> Float[np.ndarray, "n"]:
 def draw_form(
     rng: np.random.Generator, seconds: float, tempo: float, metre: int, swing: tuple[float, float]
 ) -> Form:
-    """Draw the form of a song that begins anywhere, one in four at its beginning.
+    """Draw the form of a song. The recording begins anywhere, one in four at the song's beginning.
 
-    `swing` is where and its unit.
+    `swing` has the position of the second short note, and the length of such notes.
     """
     groups = GROUPS[metre][int(rng.integers(len(GROUPS[metre])))]
     phrase_bars = int(rng.choice([2, 4])) if metre == 3 else 2
@@ -180,7 +180,7 @@ def draw_form(
 def energies(form: Form, rng: np.random.Generator) -> Float[np.ndarray, "B"]:
     """Energy of every beat.
 
-    Its section's, rising towards a section's end, at most 0.1 in a break.
+    It is that of the section, rises towards the section's end, and is at most 0.1 in a break.
     """
     quiet = rng.uniform(0, 0.1)
     level = np.repeat([bar.level for bar in form.bars], form.metre)

@@ -1,6 +1,6 @@
-"""What the drums play.
+"""The drum parts.
 
-Patterns per genre as four sixteenths a beat, and how a song part makes its bars of them.
+Each genre has patterns of four sixteenths a beat, from which a song part makes its bars.
 
 A pattern has five cells, for the beats "one back strong last weak" of form.roles, so that it serves
 every metre: a bar of 4 is one back strong last, of 3 one weak last, of 5 one weak back strong last.
@@ -15,7 +15,7 @@ from .form import Bar, Form, roles
 
 ROLES = ("one", "back", "strong", "last", "weak")
 VELOCITY = {"X": 1.0, "x": 0.8, "o": 0.55, "g": 0.27}
-# genre -> drum -> patterns, of which a part draws one
+# genre -> drum -> patterns; a part draws one of them
 GROOVES = {
     "house": {
         "kick": ("X... X... X... X... X...", "X... X... X... X... X...", "X... X... X... X..o X...",
@@ -94,7 +94,7 @@ GROOVES = {
         "tom": ("o... .... .... .... ....", ".... .... .... o.o. ...."),
     },
 }  # fmt: skip
-# how probably a part has the drum at all, and how loud a section must be for it
+# the probability that a part has the drum, and how loud a section must be for it
 PLAYS = {
     "kick": (0.95, 0.35),
     "snare": (0.9, 0.4),
@@ -105,7 +105,7 @@ PLAYS = {
     "shaker": (0.35, 0.5),
     "tom": (0.15, 0.45),
 }
-OWN = {  # where a genre departs from that probability
+OWN = {  # genres with another probability
     "house": {"kick": 1.0, "clap": 1.0, "hat": 1.0, "snare": 0.2, "open hat": 0.3},
     "hiphop": {"snare": 1.0},
     "pop": {"snare": 1.0},
@@ -119,7 +119,7 @@ FILLS = ("xxxx", "x.xx", "xx.x", "..xx", "x.x.", ".xxx")
 class Hit:
     """One stroke of a drum.
 
-    Which drum, where in beats from the form's first, how hard (0-1), and which of its sounds.
+    It has the drum, the beats since the form's first, the strength (0-1), and the sound's number.
     """
 
     drum: str
@@ -135,7 +135,7 @@ def cells(pattern: str, groups: tuple[int, ...]) -> list[str]:
 
 
 def marks(bar: list[str]) -> list[tuple[float, str]]:
-    """(beats from the bar's first, mark) of everything that is not a rest."""
+    """(beats since the bar's first, mark) of everything that is not a rest."""
     return [
         (b + k / len(cell), mark)
         for b, cell in enumerate(bar)
@@ -147,7 +147,7 @@ def marks(bar: list[str]) -> list[tuple[float, str]]:
 def draw_part(
     genre: str, groups: tuple[int, ...], rng: np.random.Generator
 ) -> dict[str, tuple[list, list]]:
-    """The marks of every drum's bar, and of the bar that answers it at a phrase's end."""
+    """The marks of each drum's bar, and of the varied bar at a phrase's end."""
     part = {}
     for drum, patterns in GROOVES[genre].items():
         first, answer = rng.choice(len(patterns)), rng.random(2)
@@ -172,7 +172,7 @@ def draw_part(
             part[drum] = (bar, other)
     if (
         "clap" in part and "snare" in part and genre in ("hiphop", "pop", "waltz")
-    ):  # they agree where the backbeat is
+    ):  # all of them have the backbeat at the same place
         part["clap"] = tuple(
             [(at, "x") for at, mark in bar if mark in "Xx"] for bar in part["snare"]
         )
@@ -180,7 +180,7 @@ def draw_part(
 
 
 def fill(bar: Bar, metre: int, rng: np.random.Generator) -> list[Hit]:
-    """The last beats of a bar on snare and toms, getting louder; or, rarely, silence."""
+    """The last beats of a bar on snare and toms, getting louder, or rarely silence."""
     start, style = bar.number * metre + metre - bar.fill, rng.random()
     if style < 0.12:
         return []
@@ -203,10 +203,10 @@ def fill(bar: Bar, metre: int, rng: np.random.Generator) -> list[Hit]:
 
 
 def write_drums(form: Form, genre: str, rng: np.random.Generator) -> list[Hit]:
-    """Every stroke of the song, without the player's unevenness; breaks are all but empty."""
+    """All strokes of the song, without the player's unevenness; breaks are almost empty."""
     parts = {name: draw_part(genre, form.groups, rng) for name in ("verse", "chorus")}
     kept = ("kick", "snare") if rng.random() < 0.6 else ()
-    # the chorus has all the drums of the verse and more; often its kick and snare are the verse's
+    # the chorus has all drums of the verse and more; often kick and snare play the same as there
     parts["chorus"] |= {
         d: p for d, p in parts["verse"].items() if d in kept or d not in parts["chorus"]
     }
@@ -220,7 +220,7 @@ def write_drums(form: Form, genre: str, rng: np.random.Generator) -> list[Hit]:
             hits += _in_break(bar, metre, rng)
         elif bar.section != "silence":
             played = _bar(bar, parts["chorus" if bar.section == "chorus" else "verse"], form, rng)
-            if shifted:  # the kick comes half a beat late, all the song long
+            if shifted:  # the kick is half a beat late, during the whole song
                 played = [
                     Hit(h.drum, h.position + 0.5 * (h.drum == "kick"), h.velocity, h.sound)
                     for h in played
@@ -243,7 +243,7 @@ def _bar(bar: Bar, part: dict, form: Form, rng: np.random.Generator) -> list[Hit
                 pick = int(rng.integers(3))
                 sound = (
                     int(4 * at) % 3 if drum == "tom" else pick
-                )  # toms are a tune, the others three takes of one
+                )  # toms play a tune; each other drum has three sounds
                 hits.append(Hit(drum, start + at, min(VELOCITY[mark] * loud, 1.0), sound))
     if bar.fill:
         hits += fill(bar, form.metre, rng)
@@ -253,7 +253,7 @@ def _bar(bar: Bar, part: dict, form: Form, rng: np.random.Generator) -> list[Hit
 
 
 def _in_break(bar: Bar, metre: int, rng: np.random.Generator) -> list[Hit]:
-    """Nothing; or a faint hat on the beats; and sometimes a roll that leads out of it."""
+    """Nothing, or a soft hat on the beats; sometimes a roll that leads out of the break."""
     start, hits = bar.number * metre, []
     if rng.random() < 0.3:
         hits += [Hit("hat", start + b, 0.2, int(rng.integers(3))) for b in range(metre)]

@@ -1,6 +1,6 @@
-"""What the pitched instruments play.
+"""The parts of the pitched instruments.
 
-Chords that lead into one another, a bass below, a melody that comes back.
+They are chords that lead into one another, a bass below them, and a melody that comes back.
 
 Patterns have five cells like those of grooves.py. Bass: R root, F fifth, O octave, T third, A one
 step from the next root. Chords: L held until the next, s short, a one note of the chord after
@@ -48,7 +48,7 @@ PROGRESSIONS = {
         "dorian": ((0, 1, 0, 6),),
     },
 }
-MODES = {  # how probable: major, minor, dorian
+MODES = {  # probabilities of major, minor, dorian
     "house": (0.2, 0.45, 0.35),
     "hiphop": (0.2, 0.5, 0.3),
     "pop": (0.6, 0.3, 0.1),
@@ -79,7 +79,7 @@ CHORDS = {
     "waltz": (".... s... .... s... s...", "L... .... .... .... ....", "a.a. a.a. a.a. a.a. a.a.",
               ".... s... s... s... s.s.", "s... ..s. s... ..s. ...."),
 }  # fmt: skip
-RHYTHMS = {  # of the melody; what comes often stands more than once
+RHYTHMS = {  # of the melody; frequent ones are listed more than once
     "house": ("x..x", "..x.", "x...", ".x.x", "...."),
     "hiphop": ("x.x.", "..xx", "x...", ".x.x", "....", "...x"),
     "pop": ("x.x.", "x...", "x..x", "..x.", "...."),
@@ -90,7 +90,7 @@ RHYTHMS = {  # of the melody; what comes often stands more than once
 
 @dataclass(frozen=True)
 class Note:
-    """One note: which voice, where and how long in beats, MIDI pitch, how hard (0-1)."""
+    """One note: its voice, start and length in beats, MIDI pitch, and strength (0-1)."""
 
     voice: str
     position: float
@@ -103,7 +103,7 @@ class Note:
 class Chord:
     """Pitch classes of a bar.
 
-    The root first, then the chord's, and the scale that holds under it.
+    First comes the root, then the other notes of the chord, and the scale of the bar.
     """
 
     root: int
@@ -128,7 +128,7 @@ def chord_on(degree: int, tonic: int, mode: str, sevenths: bool) -> Chord:
 def lead(tones: tuple[int, ...], before: tuple[int, ...], centre: int = 62) -> tuple[int, ...]:
     """The chord's notes, each pitch class once, near `before` and around `centre`.
 
-    As little movement as can be.
+    They move as little as possible.
     """
     near = [[p for p in range(centre - 9, centre + 12) if p % 12 == tone] for tone in tones]
 
@@ -142,7 +142,7 @@ def lead(tones: tuple[int, ...], before: tuple[int, ...], centre: int = 62) -> t
 
 
 def draw_chords(form: Form, genre: str, rng: np.random.Generator) -> list[Chord]:
-    """One chord for every bar; a section's last bar leads back."""
+    """One chord for every bar; the last bar of a section leads back."""
     tonic = int(rng.integers(12))
     mode = str(rng.choice(list(SCALES), p=MODES[genre]))
     sevenths = rng.random() < {"house": 0.7, "hiphop": 0.8, "latin": 0.5}.get(genre, 0.25)
@@ -159,7 +159,7 @@ def draw_chords(form: Form, genre: str, rng: np.random.Generator) -> list[Chord]
 
 
 def write_bass(form: Form, chords: list[Chord], genre: str, rng: np.random.Generator) -> list[Note]:
-    """Roots and what leads to the next; it rests in breaks and quiet beginnings."""
+    """Roots, and notes that lead to the next; the bass rests in breaks and quiet beginnings."""
     patterns = {
         n: marks(cells(BASS[genre][rng.integers(len(BASS[genre]))], form.groups))
         for n in ("verse", "chorus")
@@ -202,7 +202,7 @@ def write_chords(
         n: marks(cells(CHORDS[genre][rng.integers(len(CHORDS[genre]))], form.groups))
         for n in ("verse", "chorus")
     }
-    # a song of drums and bass, but for its breaks
+    # a song with only drums and bass, except in its breaks
     voicing = ()
     notes = []
     turn = 0
@@ -229,9 +229,9 @@ def write_chords(
 
 @dataclass(frozen=True)
 class Motif:
-    """A phrase's tune before it meets the chords.
+    """The tune of a phrase, without the chords.
 
-    Where its notes are (beats), how the line moves (scale steps).
+    It has the positions of its notes (beats), and the movement of the line (scale steps).
     """
 
     at: list[float]
@@ -239,9 +239,9 @@ class Motif:
 
 
 def draw_motif(form: Form, genre: str, rng: np.random.Generator) -> Motif:
-    """One bar's rhythm, repeated with a change in later bars, a breath at the end.
+    """The rhythm of one bar, repeated with a change in later bars, and a rest at the end.
 
-    Sometimes a pickup.
+    Sometimes it has a pickup.
     """
     choice = RHYTHMS[genre]
     bar = [str(choice[rng.integers(len(choice))]) for _ in range(form.metre)]
@@ -266,9 +266,9 @@ def draw_motif(form: Form, genre: str, rng: np.random.Generator) -> Motif:
 def write_melody(
     form: Form, chords: list[Chord], genre: str, rng: np.random.Generator
 ) -> list[Note]:
-    """A tune in choruses, often in verses: phrases a a a b.
+    """A tune in choruses, and often in verses: phrases a a a b.
 
-    Chord tones on the beats, the root or third at the end.
+    It has chord tones on the beats, and the root or third at the end.
     """
     motifs = {
         name: (draw_motif(form, genre, rng), draw_motif(form, genre, rng))

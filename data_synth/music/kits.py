@@ -1,6 +1,6 @@
-"""Drums by synthesis.
+"""Synthesised drums.
 
-Each is a struck body (a tone that bends) and noise between two frequencies, dying away.
+Each is a struck body (a tone whose pitch falls) and noise between two frequencies, which decay.
 """
 
 from dataclasses import dataclass, replace
@@ -14,12 +14,12 @@ from .song import SAMPLE_RATE
 
 @dataclass(frozen=True)
 class Strike:
-    """How a drum sounds; Hz and seconds. A `shape` of "square" is buzzing, "sine" pure."""
+    """The sound of a drum; Hz and seconds. A `shape` of "square" buzzes, "sine" is pure."""
 
     level: float
     body: float  # share of the tone; the rest is noise
     start: float = 200.0  # Hz when struck
-    end: float = 200.0  # and where it settles
+    end: float = 200.0  # Hz at the end
     bend: float = 0.02
     decay: float = 0.1
     overtones: tuple[float, ...] = ()  # further partials, as multiples
@@ -157,7 +157,7 @@ KITS = {
                         fade=0.4),
     },
 }  # fmt: skip
-KITS["lofi"] = {  # the machine, recorded badly
+KITS["lofi"] = {  # a drum machine, recorded badly
     name: replace(
         s, high=min(s.high, 5200.0), low=0.6 * s.low, decay=0.8 * s.decay, fade=0.75 * s.fade
     )
@@ -167,7 +167,7 @@ TOM_PITCH = (1.35, 1.0, 0.75)  # high to low
 
 
 def _envelope(t: np.ndarray, decay: float, attack: float, bursts: int = 1) -> np.ndarray:
-    """Rise in `attack`, fall by 1/e in `decay`.
+    """Rise in `attack` seconds, and fall to 1/e in `decay` seconds.
 
     Of several bursts 11 ms apart only the last rings.
     """
@@ -182,7 +182,7 @@ def _envelope(t: np.ndarray, decay: float, attack: float, bursts: int = 1) -> np
 
 
 def own_kit(timbre: str, rng: np.random.Generator) -> dict[str, Strike]:
-    """A kit as one player has it: tuned, damped and balanced a little differently each time."""
+    """One player's kit: tuned, damped and balanced a little differently each time."""
     kit = {}
     for name, strike in KITS[timbre].items():
         pitch, ring, loud = np.exp(rng.normal(0, (0.09, 0.2, 0.25)))
@@ -208,8 +208,8 @@ def sound(strike: Strike, rng: np.random.Generator, pitch: float = 1.0) -> Float
         )
         / SAMPLE_RATE
     )
-    settle = strike.bend * (1 - np.exp(-t / strike.bend))
-    cycles = pitch * (strike.end * t + (strike.start - strike.end) * settle)
+    bent = strike.bend * (1 - np.exp(-t / strike.bend))
+    cycles = pitch * (strike.end * t + (strike.start - strike.end) * bent)
     tone = np.zeros_like(t)
     for k, ratio in enumerate((1.0, *strike.overtones)):
         if pitch * ratio * max(strike.start, strike.end) < 0.48 * SAMPLE_RATE:
@@ -226,7 +226,7 @@ def sound(strike: Strike, rng: np.random.Generator, pitch: float = 1.0) -> Float
     tone, hiss = (part / max(np.abs(part).max(), 1e-9) for part in (tone, hiss))
     y = (strike.body * tone + (1 - strike.body) * hiss) * np.clip(
         (t[-1] - t) / (0.4 * t[-1]), 0, 1
-    )  # no cut, not even of a cymbal
+    )  # the end fades out, also that of a cymbal
     return strike.level * y / np.abs(y).max()
 
 

@@ -1,6 +1,6 @@
-"""From strokes and notes to one sound: each is rendered once and added where it is played.
+"""From strokes and notes to one sound: each is rendered once and added at its times.
 
-Then room and loudness.
+Room and loudness follow.
 """
 
 from collections.abc import Sequence
@@ -28,7 +28,7 @@ LEVELS = {
 
 @dataclass(frozen=True, eq=False)
 class Played:
-    """Strokes as they really fall: seconds and strength, one entry a stroke."""
+    """Strokes with the player's timing: seconds and strength, one entry a stroke."""
 
     hits: list[Hit]
     seconds: Float[np.ndarray, "n"]
@@ -36,9 +36,9 @@ class Played:
 
 
 def play(form: Form, hits: list[Hit], rng: np.random.Generator) -> Played:
-    """A player's unevenness: some ms early or late, each drum with its habit, at most 15.
+    """Add a player's unevenness: each drum has its own mean delay, and strokes vary, at most 15 ms.
 
-    The beats stay the grid.
+    The beats themselves do not change.
     """
     spread, uneven = rng.uniform(0.001, 0.005), rng.uniform(0.03, 0.1)
     habit = dict(zip(DRUMS, rng.uniform(-0.003, 0.005, len(DRUMS)), strict=True))
@@ -62,13 +62,13 @@ def _add(out: np.ndarray, second: float, y: np.ndarray, gain: float) -> None:
 def drum_bus(
     played: Played, timbre: str, length: int, rng: np.random.Generator
 ) -> Float[np.ndarray, "N"]:
-    """All strokes; three sounds of every drum, so that no two in a row are the same."""
+    """All strokes; each drum has three sounds, so that no two in a row are the same."""
     kit = own_kit(timbre, rng)
     ready = {}
     out = np.zeros(length)
     sources = dict(
         zip(DRUMS, rng.spawn(len(DRUMS)), strict=True)
-    )  # a drum's sound does not depend on what else plays
+    )  # a drum's sound does not depend on the other drums
     raw = {}
     for drum in sorted({hit.drum for hit in played.hits}):
         pitches = TOM_PITCH if drum == "tom" else np.exp(sources[drum].normal(0, 0.015, 3))
@@ -106,7 +106,7 @@ def voice_bus(
 
 
 def duck(played: Played, length: int, depth: float, recover: float) -> Float[np.ndarray, "N"]:
-    """Gain that the kick pushes down and that comes back within `recover` seconds."""
+    """Gain that falls at each kick and comes back within `recover` seconds."""
     push = np.zeros(length)
     for hit, second in zip(played.hits, played.seconds, strict=True):
         at = round((second + LEAD) * SAMPLE_RATE)
@@ -119,9 +119,9 @@ def duck(played: Played, length: int, depth: float, recover: float) -> Float[np.
 def room(
     y: Float[np.ndarray, "N"], seconds: float, rng: np.random.Generator
 ) -> Float[np.ndarray, "N"]:
-    """The sound of a room alone.
+    """The sound of the room alone.
 
-    Noise that has fallen by 60 dB after `seconds`, duller towards its end.
+    It is noise that falls by 60 dB in `seconds`, and gets duller towards its end.
     """
     t = np.arange(round(seconds * SAMPLE_RATE)) / SAMPLE_RATE
     tail = lfilter([0.5], [1, -0.5], rng.standard_normal(len(t))) * 10 ** (-3 * t / seconds)
@@ -130,9 +130,9 @@ def room(
 
 
 def compress(y: Float[np.ndarray, "N"], amount: float) -> Float[np.ndarray, "N"]:
-    """What is louder than the average is turned down, smoothly.
+    """Smoothly turn down sounds that are louder than the average.
 
-    `amount` 0 not at all, 1 nearly to the average.
+    With `amount` 0 nothing changes; with 1 they become nearly the average.
     """
     a = np.exp(-1 / (0.03 * SAMPLE_RATE))
     loud = lfilter([1 - a], [1, -a], y * y)

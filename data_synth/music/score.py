@@ -1,6 +1,6 @@
 """A silent score: beats, bars and phrases, with no music.
 
-For tests, and for dances to a count of one's own.
+It is for tests, and for dances to your own count.
 """
 
 import numpy as np
@@ -19,13 +19,13 @@ def beat_song(
     *,
     drift: float = 0.0,
 ) -> Song:
-    """A silent Song whose beats stand `60 / tempo` s apart.
+    """A silent Song whose beats are `60 / tempo` s apart.
 
-    The first comes after a pause that the seed draws.
+    The first beat comes after a random pause.
 
     `drift` bends the tempo by up to that share, slowly; the last bars of every fourth phrase are a
     break (energy 0.15).
-    Raises ValueError unless there is time for two beats, the genre is known and the metre is 2 or
+    Raises ValueError unless there is time for two beats, the genre is known, and the metre is 2 or
     more.
     """
     if genre not in GENRES:

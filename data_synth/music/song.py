@@ -1,10 +1,9 @@
-"""A song: how it sounds, and what is known of it.
+"""A song: its sound, and its score.
 
-Every beat, every drum hit, where the bars and the phrases begin.
+The score has every beat, every drum hit, and the starts of bars and phrases.
 
-The music is composed in `music.py`; the dance in `dance.py` follows the score (beats, bars,
-phrases, energy), never the sound, so that what a network hears and what it must move to meet only
-in the data.
+The music is composed in `composer.py`. A dance follows the score (beats, bars, phrases, energy),
+never the sound: so only the data connect the sound that a network hears with the dance.
 """
 
 from dataclasses import dataclass, field
@@ -22,16 +21,16 @@ GENRES = {  # name: (slowest, fastest BPM, beats in a bar)
     "waltz": (80, 132, 3),
 }
 TRAINING_TIMBRES = ("machine", "acoustic", "brushes", "lofi", "percussion", "chip")
-HELD_OUT_TIMBRE = "mallets"  # clay pots and wooden bars: never drawn, only when asked for
+HELD_OUT_TIMBRE = "mallets"  # clay pots and wooden bars: never drawn at random
 TIMBRES = (*TRAINING_TIMBRES, HELD_OUT_TIMBRE)
 DRUMS = ("kick", "snare", "clap", "rim", "hat", "open hat", "shaker", "tom", "crash")
 
 
 @dataclass(frozen=True, eq=False)
 class Song:
-    """Mono sound at SAMPLE_RATE, and the score behind it.
+    """Mono sound at SAMPLE_RATE, and its score.
 
-    All times in seconds from the first sample.
+    All times are in seconds from the first sample.
 
     `bar_position` is 0 on a downbeat; `phrase` counts from 0 and changes on a downbeat; `energy` is
     0 (a break) to 1. `hits` has the time of every drum hit by the drum's name, one of DRUMS; a drum

@@ -1,6 +1,6 @@
-"""Pitched instruments from one cycle of a wave.
+"""Pitched instruments, made from one cycle of a wave.
 
-A dark part that lasts and a bright part that dies away first.
+The low partials last; the high ones decay first.
 """
 
 from dataclasses import dataclass
@@ -16,13 +16,13 @@ TABLE = 2048  # samples of one cycle
 
 @dataclass(frozen=True)
 class Voice:
-    """A wave's partials and how it begins and ends; seconds.
+    """A wave's partials, and its beginning and end; times are in seconds.
 
     `decay` is to 1/e; `sustain` the share that stays.
     """
 
     roll: float  # partial k has amplitude k ** -roll
-    odd: float = 1.0  # what the even partials are multiplied with
+    odd: float = 1.0  # factor on the even partials
     attack: float = 0.004
     decay: float = 0.4
     sustain: float = 0.3
@@ -52,7 +52,7 @@ CLARINET = Voice(1.2, 0.15, 0.03, 1, 0.8, 0.08, 0.6, 0, 15)
 FIDDLE = Voice(1.1, 0.9, 0.03, 1, 0.8, 0.1, 0.8, 0, 18)
 SQUARE = Voice(1.0, 0.0, 0.001, 0.3, 0.5, 0.02, 2)
 NASAL = Voice(1.0, 0.6, 0.001, 0.5, 0.6, 0.02, 2, 0, 14)
-# timbre -> voice -> what a song draws one of
+# timbre -> voice -> choices, of which a song draws one
 VOICES = {
     "machine": {"bass": (SYNTH, SUB), "chords": (PAD, SAW, DRAWBARS), "lead": (SAW, SQUARE)},
     "acoustic": {
@@ -78,9 +78,9 @@ VOICES = {
 
 @lru_cache(maxsize=4096)
 def _cycle(voice: Voice, highest: int) -> tuple[np.ndarray, np.ndarray]:
-    """One cycle with partials up to `highest` only, so that none folds back.
+    """One cycle with partials up to `highest` only, so that there is no aliasing.
 
-    The dark part and the bright.
+    Returns its low and its high partials.
     """
     amplitude = np.array(
         voice.partials or [k**-voice.roll * (1 if k % 2 else voice.odd) for k in range(1, 33)]
@@ -92,7 +92,7 @@ def _cycle(voice: Voice, highest: int) -> tuple[np.ndarray, np.ndarray]:
         spectrum = np.zeros(TABLE // 2 + 1, complex)
         spectrum[k] = np.where(chosen, amplitude, 0) * np.exp(
             2.4j * k * k
-        )  # phases apart: no spike in the wave
+        )  # different phases, so that the wave has no spike
         parts.append(np.fft.irfft(spectrum, TABLE) * TABLE / np.sqrt((amplitude**2).sum()))
     return parts[0], parts[1]
 
@@ -103,7 +103,7 @@ def note(voice: Voice, pitch: int, seconds: float) -> Float[np.ndarray, "n"]:
     t = np.arange(round((seconds + 5 * voice.release) * SAMPLE_RATE)) / SAMPLE_RATE
     dark, bright = _cycle(voice, int(0.45 * SAMPLE_RATE / hertz))
     cycles = hertz * t
-    if voice.vibrato:  # sets in late, as singers and players have it
+    if voice.vibrato:  # begins late, as with singers and players
         depth = hertz * voice.vibrato * np.log(2) / 1200 * np.clip((t - 0.15) / 0.3, 0, 1)
         cycles = cycles + depth * np.sin(2 * np.pi * 5.3 * t) / (2 * np.pi * 5.3)
     glow = np.exp(-t / voice.bright)

@@ -1,4 +1,4 @@
-"""Writing to files: songs as WAV files, and beside each what is known of it as JSON."""
+"""Write songs to files: the sound as WAV, and beside it the score as JSON."""
 
 import argparse
 import json
@@ -14,9 +14,9 @@ from .song import GENRES, SAMPLE_RATE, TIMBRES, Song
 
 
 def score(song: Song) -> dict:
-    """What is known of a song as lists and numbers.
+    """The score of a song as lists and numbers.
 
-    Times in seconds, to a tenth of a millisecond.
+    Times are in seconds, to a tenth of a millisecond.
     """
 
     def rounded(times):
@@ -41,7 +41,7 @@ def score(song: Song) -> dict:
 
 
 def save_song(song: Song, path: Path) -> None:
-    """path.wav, 16 bits, and path.json; each written aside, then renamed."""
+    """Write path.wav, 16 bits, and path.json, each under another name that is then replaced."""
     with replacing(path.with_suffix(".wav")) as aside, open(aside, "wb") as f:
         wavfile.write(f, SAMPLE_RATE, np.round(song.audio * 32767).astype(np.int16))
     with replacing(path.with_suffix(".json")) as aside:

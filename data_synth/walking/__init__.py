@@ -1,6 +1,6 @@
-"""Walks: a commanded path in, a figure that walks it out.
+"""Walks: a figure walks along a commanded path.
 
-And several right continuations of one past.
+One past has several right continuations.
 """
 
 from .styles import STYLES

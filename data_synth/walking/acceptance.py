@@ -1,10 +1,10 @@
-"""Do synthetic walks lie where real ones do?
+"""Are synthetic walks like real ones?
 
-The table: ours over many walkers, beside the range of real clips.
+The table compares many of our walkers with the range of real clips.
 
 python -m data_synth.walking.acceptance [--walks 24]
 
-Prints this table, then the data's own figures and limits: what README.md shows.
+It prints this table, and then the data's own figures and limits, which README.md shows.
 """
 
 import argparse
@@ -67,7 +67,7 @@ NEUTRAL = {
     "pca95": (3, 4),
     "pca99": (4, 8),
 }
-# means of ours that lie outside, and why; the data card tells more
+# our means that lie outside, and why; the data card says more
 OUTSIDE = {
     "slip": "planted toes are exactly still by construction",
     "sd_thigh": (
@@ -97,7 +97,7 @@ RUN = {
 
 
 def steady_walk(speed: float, seed: int, seconds: float = 13.0) -> dict[str, float]:
-    """Statistics of a neutral walker going straight at one speed.
+    """Statistics of a neutral walker who goes straight at one speed.
 
     It has no arm or head behaviours.
     """
@@ -110,7 +110,7 @@ def steady_walk(speed: float, seed: int, seconds: float = 13.0) -> dict[str, flo
 
 
 def table(rows: list[dict[str, float]], ranges: dict[str, tuple[float, float]]) -> list[tuple]:
-    """Rows that set our walks beside the real range.
+    """Rows that compare our walks with the real range.
 
     (name, mean, smallest, largest of ours, lowest, highest real, share of walkers inside the range
     +- 10 %).

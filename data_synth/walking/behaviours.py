@@ -1,6 +1,6 @@
 """What arms and head do besides walking: waving, hands on hips, looking about.
 
-Begun and ended at random times.
+These behaviours begin and end at random times.
 
 A pose of an arm is (swing, abduction, twist, elbow) in degrees: swing forward +, twist inward +,
 elbow bent +.
@@ -13,7 +13,7 @@ from jaxtyping import Bool, Float
 
 from ..noise import follow
 
-# kind -> pose of (left, right) arm, or None where the arm just goes on swinging
+# kind -> pose of (left, right) arm, or None where the arm keeps swinging
 _WAVE = (12.0, 62.0, -78.0, 88.0)
 _HIP = (-20.0, 41.0, 62.0, 84.0)
 _HELD = (14.0, 10.0, 22.0, 96.0)
@@ -28,7 +28,7 @@ ARM_POSES = {
 }
 ARM_KINDS = (*ARM_POSES, "arms still", "arms swinging")
 HEAD_KINDS = ("look left", "look right", "look down")
-LASTS = {"arms": (1.5, 2.0), "head": (0.8, 1.2)}  # seconds: at least, and on average after that
+LASTS = {"arms": (1.5, 2.0), "head": (0.8, 1.2)}  # seconds: the least, and the mean beyond it
 
 
 @dataclass(frozen=True)
@@ -47,9 +47,9 @@ def _states(
     calm: np.ndarray,
     fps: float,
 ):
-    """One-hot rows of what is going on.
+    """One-hot rows of the present behaviour.
 
-    It begins and ends by chance, never before its least duration.
+    A behaviour begins and ends at random, but it lasts at least its shortest duration.
     """
     on = np.zeros((len(u), kinds))
     kind, since = -1, 0
@@ -69,9 +69,9 @@ def _states(
 def behaviours(
     u: Float[np.ndarray, "T 4"], per_minute: float, calm: Bool[np.ndarray, "T"], fps: float
 ) -> Behaviours:
-    """Draw what happens from uniform numbers.
+    """Draw the behaviours from uniform numbers.
 
-    Nothing begins where `calm` is False (running fast).
+    None begins where `calm` is False (in a fast run).
     """
     arms = _states(u[:, :2], len(ARM_KINDS), per_minute / 100, LASTS["arms"], calm, fps)
     head = _states(u[:, 2:], len(HEAD_KINDS), per_minute / 100, LASTS["head"], calm, fps)
@@ -81,7 +81,7 @@ def behaviours(
 def pose_arm(
     free: Float[np.ndarray, "T 4"], side: int, doing: Behaviours, wave: Float[np.ndarray, "T"]
 ) -> Float[np.ndarray, "T 4"]:
-    """Mix the freely swinging arm (side 0 left, 1 right) with the poses that are going on.
+    """Mix the freely swinging arm (side 0 left, 1 right) with the poses of present behaviours.
 
     `wave` in -1..1.
     """
@@ -98,6 +98,6 @@ def pose_arm(
 
 
 def swing_factor(doing: Behaviours) -> Float[np.ndarray, "T"]:
-    """What the behaviours do to the arm swing: held nearly still, or swung wide."""
+    """Factor on the arm swing: some behaviours hold the arms nearly still, others swing wide."""
     k = len(ARM_POSES)
     return 1 - 0.8 * doing.arms[:, k] + 0.55 * doing.arms[:, k + 1]

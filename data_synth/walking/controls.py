@@ -1,11 +1,11 @@
-"""What somebody at a joystick might command: targets held for a while, reached by smooth ramps."""
+"""Controls like those from a joystick: targets held for a while, reached by smooth ramps."""
 
 import numpy as np
 from jaxtyping import Float
 from scipy.ndimage import gaussian_filter1d
 
 FPS = 20.0
-# kinds and their shares in a dataset
+# the kinds and their shares in a data set
 KINDS = {
     "mixed": 0.3,
     "straight": 0.16,
@@ -81,9 +81,9 @@ def _ramp(targets: np.ndarray, fps: float, rise: tuple[float, float, float]) -> 
 def random_control(
     seconds: float, rng: np.random.Generator, kind: str = "mixed", fps: float = FPS
 ) -> Float[np.ndarray, "T 3"]:
-    """A control of one of KINDS.
+    """A random control of one of KINDS.
 
-    Targets held 1-5 s, ramps of 0.3-1 s, as smooth as a real root path.
+    Targets last 1-5 s and ramps 0.3-1 s; it is as smooth as a real root path.
 
     Raises ValueError for an unknown kind.
     """
@@ -103,9 +103,9 @@ def random_control(
 
 
 def _possible(control: np.ndarray) -> np.ndarray:
-    """Turning and stepping aside are limited by speed.
+    """Limit turning and stepping aside by the speed.
 
-    |v w| at most 2.3 m/s2, no fast sideways running.
+    |v w| is at most 2.3 m/s2, and there is no fast sideways running.
     """
     speed = np.abs(control[:, 0])
     most = np.minimum(MAX_YAW, 2.3 / np.maximum(speed, 0.5))

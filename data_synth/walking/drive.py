@@ -1,6 +1,6 @@
-"""What the control asks of the feet: rates and velocities per frame, and where a foot belongs.
+"""What the control means for the feet: rates and velocities per frame, and where a foot belongs.
 
-Causal: the velocity at frame t is control[t-1], which brought the root there.
+It is causal: the velocity at frame t is control[t-1], which brought the root there.
 """
 
 from dataclasses import dataclass
@@ -17,7 +17,7 @@ LEFT_FOOT, RIGHT_FOOT = 0, 1
 
 @dataclass(frozen=True)
 class Drive:
-    """Per frame: what the clock and the feet are driven by."""
+    """Inputs of the clock and the feet, per frame."""
 
     x: list
     z: list
@@ -43,7 +43,7 @@ def drive(control, root_xz, heading, rows, style: Style, lean_shift, run, fps: f
     slow = drift(rows[:, 0], 3.0, fps)
     fast = drift(rows[:, 1], 0.3, fps)
     rate = cadence(*smooth.T, run) * style.cadence * np.exp(0.032 * slow + 0.012 * fast)
-    # a velocity that changes is carried a little further
+    # a changing velocity is extrapolated a little
     ahead = arrived + np.clip(1.2 * (arrived - smooth), -0.15, 0.15)
     need = np.sqrt(arrived[:, 0] ** 2 + arrived[:, 1] ** 2 + (0.25 * arrived[:, 2]) ** 2)
     columns = (
@@ -60,7 +60,7 @@ def drive(control, root_xz, heading, rows, style: Style, lean_shift, run, fps: f
 def home(
     d: Drive, t: int, foot: int, style: Style, tau: float, ahead: float
 ) -> tuple[float, float, float]:
-    """Where this foot belongs tau seconds from frame t if the velocity lasts: x, z, heading.
+    """Where this foot belongs tau seconds after frame t if the velocity lasts: x, z, heading.
 
     `ahead`: the same for walking ahead (a foot passes under the hip before the middle of its
     stance).

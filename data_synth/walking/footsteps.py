@@ -1,10 +1,10 @@
 """When and where the feet go.
 
-A gait clock driven by the control, and footprints that never move once made.
+The control drives a gait clock. A footprint never moves after it is made.
 
-Causal: frame t depends on the root path up to t and on the noise up to t; so a held control decides
-everything. A swinging foot aims at its middle of stance, should the present velocity last; the aim
-freezes before it lands.
+It is causal: frame t depends on the root path and the noise up to t, so a held control decides
+everything. A swinging foot aims at the middle of its next stance, for the present velocity; the
+aim is fixed before it lands.
 """
 
 from dataclasses import dataclass
@@ -18,7 +18,7 @@ from .gait_curves import swing_progress
 from .styles import Style
 
 TOE_AHEAD = 0.115  # of the ankle, foot flat (metres)
-ACTIVE = 0.09  # m/s below which a figure with its feet in place stands
+ACTIVE = 0.09  # m/s below which a figure stands, if its feet are in place
 
 
 @dataclass(frozen=True)
@@ -30,7 +30,7 @@ class Steps:
     ground: Float[np.ndarray, "T 2 2"]  # where the flat foot's ankle is, (x, z) in the world
     yaw: Float[np.ndarray, "T 2"]  # heading of the foot, radians
     progress: Float[np.ndarray, "T 2"]  # 0..1 through stance, 1..2 through swing
-    stride: Float[np.ndarray, "T 2"]  # length of the swing under way, metres (0 in stance)
+    stride: Float[np.ndarray, "T 2"]  # length of the present swing, metres (0 in stance)
     toe_up: Float[np.ndarray, "T 2"]  # how much the toe is raised at heel strike, 0..1
 
 
@@ -54,7 +54,7 @@ class _Feet:
         self.start = list(places)
         self.aim = list(places)
         self.swing, self.off_phase = [False, False], [0.65, 0.65]
-        self.error = [(0.0, 0.0), (0.0, 0.0)]  # ahead and aside, of the swing under way
+        self.error = [(0.0, 0.0), (0.0, 0.0)]  # ahead and aside, of the present swing
 
     def phase(self, foot: int) -> float:
         return (self.clock + self.offset[foot]) % 1.0
@@ -87,7 +87,7 @@ class _Feet:
         self.amount[1] += k * (self.amount[0] - self.amount[1])
 
     def overstretched(self, t: int) -> float:
-        """How much quicker the step must come because a planted foot is far from the root, 0..1."""
+        """How much faster the step must be because a planted foot is far from the root, 0..1."""
         far = 0.0
         for foot in (0, 1):
             if not self.swing[foot] and self.phase(foot) > 0.25:
@@ -97,9 +97,9 @@ class _Feet:
         return min(max((far - 0.50) / 0.15, 0.0), 1.2)
 
     def first_foot(self, t: int) -> None:
-        """From standing either foot may go first.
+        """Choose the first foot from standing: it may be either.
 
-        Sideways and turning the near one usually does.
+        For sideways steps and turns it is usually the near one.
         """
         d = self.d
         lift_next = LEFT_FOOT if self.phase(0) > self.phase(1) else RIGHT_FOOT
@@ -166,7 +166,7 @@ class _Feet:
         return side * max(0.0, 0.10 - apart) * (1 - min(abs(self.d.forward[t]) / 0.5, 1.0))
 
     def pivot(self, t: int, foot: int, r: float, dt: float) -> None:
-        """Late in stance a turning figure pivots about the planted toe."""
+        """Turn the foot about its planted toe, late in the stance of a turning figure."""
         ease = min(max((r - 0.55) / 0.3, 0.0), 1.0)
         turn = 0.5 * self.d.yaw[t] * dt * ease * self.amount[1]
         x, z, yaw = self.place[foot]

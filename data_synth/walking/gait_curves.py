@@ -1,10 +1,10 @@
-"""What walking and running do over one cycle, and how that depends on speed.
+"""How the body moves in one cycle of walking or running, and how that depends on speed.
 
-Curves and relations, no state.
+There are curves and relations, and no state.
 
 Phase p = 0 is the heel strike of one's own foot, p = 1 the next one. `run` is 0 for walking, 1 for
 running. HAND, ELBOW, ROLL and HEIGHT follow mean curves measured on eight public recordings of
-straight walking, relations with speed follow straight lines through them; no recorded pose is here
+straight walking; relations with speed follow straight lines through them. No recorded pose is here
 (README.md, "Licence and sources"). The rest is set by hand.
 """
 
@@ -14,7 +14,7 @@ import numpy as np
 from jaxtyping import Float
 from scipy.interpolate import PchipInterpolator
 
-RUN_SPEED = 2.2  # m/s where walking gives way to running
+RUN_SPEED = 2.2  # m/s at which walking becomes running
 
 Frames = Float[np.ndarray, "*#T"]
 
@@ -38,7 +38,7 @@ def running(speed: Frames) -> Frames:
 def cadence(forward: Frames, left: Frames, yaw: Frames, run: Frames) -> Frames:
     """Steps per second: (74 + 27 v) / 60 walking straight, (137 + 4.5 v) / 60 running.
 
-    Sideways, backward and turning steps come quicker.
+    Sideways, backward and turning steps are faster.
     """
     ahead = np.where(forward < 0, -1.5 * forward, forward)
     v = np.hypot(ahead, 2.2 * left)
@@ -49,9 +49,9 @@ def cadence(forward: Frames, left: Frames, yaw: Frames, run: Frames) -> Frames:
 def stance_fraction(forward: Frames, run: Frames) -> Frames:
     """Share of the cycle until the toe leaves.
 
-    0.63 - 0.044 v walking, below one half (flight) in a run.
+    It is 0.63 - 0.044 v in a walk, and below one half (flight) in a run.
 
-    A contact detector sees some 0.05 more: it counts the toe as down until it is faster than the
+    A contact detector finds some 0.05 more: it counts the toe as down until it is faster than the
     pelvis.
     """
     walk = 0.63 - 0.044 * np.abs(forward) - 0.03 * np.maximum(forward - 1.5, 0)
@@ -121,13 +121,13 @@ def foot_pitch(x: Frames, run: Frames) -> Frames:
 
 
 def swing_progress(u: float, run: float) -> float:
-    """How far a swinging foot has come, 0..1, standing still at both ends."""
+    """Progress of a swinging foot, 0..1; its speed is 0 at both ends."""
     w = u ** (1 + 0.35 * run)
     return w * w * (3 - 2 * w) + (1.7 - 1.7 * run) * u**2 * (1 - u) ** 3
 
 
 def swing_lift(u: Frames, run: Frames) -> Frames:
-    """Height of the swinging foot's pivot, as a share of its largest."""
+    """Height of the swinging foot's pivot, as a share of the maximum."""
     u = np.clip(u, 0, 1)
     walk = u**1.35 * (1 - u) ** 4.4 / 0.0439
     return walk + (u**1.3 * (1 - u) ** 1.7 / 0.1314 - walk) * run

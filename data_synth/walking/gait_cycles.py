@@ -1,9 +1,8 @@
 """Gait cycles of a walk given as world positions.
 
-Foot contact by height and speed, angles over the cycle.
+It finds foot contact by height and speed, and angles over the cycle.
 
-Works on real clips and synthetic ones alike; contact is found from the motion, not taken from the
-truth.
+It works for real and synthetic clips: contact comes from the motion, not from the truth.
 """
 
 from dataclasses import dataclass
@@ -32,7 +31,7 @@ class Walk:
     level: Float[np.ndarray, "2"]  # stance height of the Foot joints
 
     def joint(self, name: str) -> Float[np.ndarray, "T 3"]:
-        """Where this joint is, in the world."""
+        """World positions of this joint."""
         return self.world[:, joint_index(name)]
 
     def sagittal(self, frm: str, to: str, up: float = -1.0) -> Float[np.ndarray, "T"]:
@@ -44,7 +43,7 @@ class Walk:
 
 @dataclass(frozen=True)
 class Cycle:
-    """Heel strike to next heel strike of one foot, frame numbers."""
+    """One cycle, from heel strike to the next of the same foot, in frame numbers."""
 
     side: int
     start: int

@@ -1,8 +1,6 @@
-"""The numbers by which a walk is judged.
+"""Statistics of a walk: one value per statistic and clip, measured as on real walks.
 
-One value per statistic and clip, as measured on real walks.
-
-Lengths mm except step length (m), angles degrees, times seconds unless the name says otherwise.
+Lengths are in mm (step length in m), angles in degrees, times in seconds, unless the name differs.
 """
 
 import numpy as np
@@ -36,7 +34,7 @@ def statistics(world: Float[np.ndarray, "T 21 3"], fps: float = 20.0) -> dict[st
 
 
 def mean_curves(world: Float[np.ndarray, "T 21 3"], fps: float = 20.0) -> dict[str, np.ndarray]:
-    """Curves over the cycle (0, 2, ... 100 %), averaged over steady cycles, own side."""
+    """Curves of the own side over the cycle (0, 2, ... 100 %), averaged over steady cycles."""
     walk = analyse(world, fps)
     found, c = cycles(walk), curves(walk)
     names = (
@@ -191,7 +189,7 @@ def _width(walk: Walk, found: list[Cycle]) -> float:
 
 
 def _variation(walk: Walk, found: list[Cycle], rows: list[dict], c: dict) -> dict[str, float]:
-    """Spread between cycles, sides centred separately, and the difference of the sides."""
+    """Variation between cycles, with sides centred separately, and the difference of the sides."""
 
     def spread(name):
         return [

@@ -1,4 +1,4 @@
-"""From footprints to legs.
+"""Legs that follow footprints.
 
 The feet roll over heel and toe, the pelvis rides above, knees bend to fit.
 
@@ -74,7 +74,7 @@ def _behind(x: np.ndarray, z: np.ndarray, yaw: np.ndarray) -> np.ndarray:
 
 
 def _clear(steps: Steps, x: np.ndarray) -> np.ndarray:
-    """How far a swinging foot moves outward, to go round the other one.
+    """How far a swinging foot moves outward, to pass the other one.
 
     In metres, left positive.
     """
@@ -101,9 +101,9 @@ def _roll(steps: Steps, x, z, yaw, forward, run, style: Style):
 
 
 def pelvis_height(clock, amount, forward, run, speed, style: Style) -> Float[np.ndarray, "T"]:
-    """Height of the Hips joint before the legs have their say.
+    """Height of the Hips joint before the reach of the legs limits it.
 
-    Highest at mid-stance, lower when faster.
+    It is highest at mid-stance, and lower at higher speed.
     """
     swing = np.clip(0.055 * speed - 0.031, 0.012, 0.06) * style.bounce
     walk = 0.957 - (0.02 + 0.008 * (speed - 1.2) + 0.02 * softplus(speed - 1.35, 0.1)) * amount
@@ -113,7 +113,7 @@ def pelvis_height(clock, amount, forward, run, speed, style: Style) -> Float[np.
 
 
 def pelvis_rotation(yaw, roll, pitch) -> Float[np.ndarray, "T 3 3"]:
-    """Yaw counter-clockwise, roll left side up, pitch forward (radians)."""
+    """Rotation of the pelvis: yaw counter-clockwise, roll left side up, pitch forward (radians)."""
     return rot_y(yaw) @ rot_z(roll) @ rot_x(pitch)
 
 
@@ -127,9 +127,9 @@ def own_roll(
 def hips_within_reach(
     hips: Float[np.ndarray, "T 3"], rotation: Float[np.ndarray, "T 3 3"], feet: Feet
 ) -> Float[np.ndarray, "T 3"]:
-    """Lower the pelvis, smoothly, where a leg would have to be longer than it is.
+    """Lower the pelvis smoothly where a leg would not reach the ground.
 
-    Long steps pull it along.
+    Long steps also pull it along.
     """
     hips = hips.copy()
     sockets = [rotation @ OFFSETS[joint] for joint in (1, 5)]
@@ -153,7 +153,7 @@ def not_folded(
 ) -> Feet:
     """Lower a swinging foot that comes too near its hip.
 
-    The knee would fold beyond 135 degrees or so.
+    Otherwise the knee would bend by more than about 135 degrees.
     """
     sockets = np.stack([hips + rotation @ OFFSETS[j] for j in (1, 5)], 1)
     near = softplus(0.34 - np.linalg.norm(feet.ankle - sockets, axis=-1), 0.012)

@@ -1,8 +1,7 @@
-"""What the walking data themselves score.
+"""The scores of the walking data themselves.
 
-Spread of continuations, adherence, skating, lean in turns; and their limits.
-
-These stand beside every figure of a network that was trained on them.
+They are the spread of continuations, adherence, skating and the lean in turns, with their limits.
+Every figure of a network that was trained on these data is compared with them.
 """
 
 import time
@@ -22,9 +21,9 @@ from .walks import continuations, dataset, random_control, walk
 
 
 def spreads(pasts: int, n: int, seconds: float, seed: int = 0) -> Float[np.ndarray, "pasts"]:
-    """Root-frame RMS spread (m) from 1 s on of n continuations.
+    """Root-frame RMS spread (m) of n continuations, from 1 s on.
 
-    For `pasts` pasts and the controls they had anyway.
+    There are `pasts` pasts, each with its own control.
     """
     found = []
     for k, whole in enumerate(dataset(pasts, 4 + seconds, seed)):
@@ -36,9 +35,9 @@ def spreads(pasts: int, n: int, seconds: float, seed: int = 0) -> Float[np.ndarr
 def own_figures(
     clips: int = 60, pasts: int = 20, n: int = 50, seconds: float = 12.0
 ) -> dict[str, float]:
-    """Means over clips.
+    """Means over clips of all measures.
 
-    Spread (m), adherence and skating (m/s), slope and correlation of the lean in turns.
+    These are spread (m), adherence and skating (m/s), slope and correlation of the lean in turns.
     """
     apart = spreads(pasts, n, seconds)
     walks = dataset(clips, seconds, 1)
@@ -56,9 +55,9 @@ def own_figures(
 
 
 def limits(clips: int = 600, seconds: float = 12.0, spots: int = 60) -> dict[str, float]:
-    """What no frame of `clips` walks exceeds.
+    """The largest values in any frame of `clips` walks.
 
-    With it how near the feet come on `spots` fast turns, and the speed of making.
+    Also the smallest distance of the feet in `spots` fast turns, and the speed of generation.
     """
     begun = time.process_time()
     walks = dataset(clips, seconds, 1)
@@ -81,7 +80,7 @@ def limits(clips: int = 600, seconds: float = 12.0, spots: int = 60) -> dict[str
 
 
 def knee_angles(clip: Clip) -> Float[np.ndarray, "T 2"]:
-    """How far the knees are bent (degrees, 0 straight), left and right."""
+    """Bend of the knees (degrees, 0 is straight), left and right."""
     thigh = clip.poses[:, [2, 6]] - clip.poses[:, [1, 5]]
     shank = clip.poses[:, [3, 7]] - clip.poses[:, [2, 6]]
     cos = (thigh * shank).sum(-1) / np.linalg.norm(thigh, axis=-1) / np.linalg.norm(shank, axis=-1)
@@ -89,7 +88,7 @@ def knee_angles(clip: Clip) -> Float[np.ndarray, "T 2"]:
 
 
 def planted_slip(clip: Clip) -> float:
-    """The farthest that a planted toe moves in a frame (m)."""
+    """The largest movement of a planted toe in one frame (m)."""
     moved = np.linalg.norm(np.diff(clip.world()[:, TOES], axis=0), axis=-1)
     return float((moved * (clip.contacts[1:] & clip.contacts[:-1])).max())
 
@@ -100,10 +99,7 @@ def bone_error(clip: Clip) -> float:
 
 
 def feet_apart(clip: Clip) -> Float[np.ndarray, "T"]:
-    """Smallest distance (m) of the lines from ankle to toe of both feet.
-
-    At eleven points of each.
-    """
+    """Smallest distance (m) between the ankle-to-toe lines of both feet, at eleven points each."""
     share = np.linspace(0, 1, 11)[:, None]
     left, right = (
         p[:, :1] + share * (p[:, 1:] - p[:, :1]) for p in (clip.poses[:, 3:5], clip.poses[:, 7:9])

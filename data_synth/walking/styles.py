@@ -1,4 +1,4 @@
-"""How somebody walks: the numbers that stay the same through a clip, for a handful of characters.
+"""Walking styles: the numbers that stay constant through a clip, for a few characters.
 
 A style shows in trunk lean, elbows, arm swing, width of the track and turning of the chest; the
 timing of steps varies much less. Angles in degrees, lengths in metres, factors relative to the
@@ -17,7 +17,7 @@ class Style:
     name: str = "neutral"
     cadence: float = 1.0  # factor on steps per minute
     stance: float = 0.0  # added to the stance fraction
-    asymmetry: float = 0.0  # share of a cycle by which the right foot comes late
+    asymmetry: float = 0.0  # share of a cycle by which the right foot is late
     width: float = 0.075  # distance between the two lines of footprints
     toe_out: float = 6.0
     crouch: float = 0.0  # metres the pelvis is lower
@@ -32,7 +32,7 @@ class Style:
     arms_right: float = 1.0  # the right arm's swing over the left's
     elbow: float = 0.0  # added to the elbows
     abduct: float = 8.0  # upper arms away from the body
-    behaviours: float = 6.0  # events a minute: looking about, waving, hands on hips
+    behaviours: float = 6.0  # behaviours per minute: looking about, waving, hands on hips
 
 
 STYLES: dict[str, Style] = {
@@ -143,7 +143,7 @@ STYLES: dict[str, Style] = {
 }
 SHARES = {"neutral": 0.45, "old": 0.1, "strut": 0.12, "crouch": 0.08, "brisk": 0.13, "tired": 0.12}
 
-# how much people of one style differ: sd of each number (factors: of their logarithm)
+# how much persons of one style differ: sd of each number (for factors, of the logarithm)
 SPREAD = {
     "cadence": 0.025,
     "stance": 0.008,
@@ -178,14 +178,14 @@ def draw_style(name: str | None, rng: np.random.Generator) -> str:
 
 
 def person(style: Style, rng: np.random.Generator) -> Style:
-    """One walker of this style: every constant moved by its SPREAD (at most 2 sd)."""
+    """One walker of this style: each constant is changed at random by its SPREAD (at most 2 sd)."""
     new = {}
     for f in fields(style):
         if f.name in SPREAD:
             shift = SPREAD[f.name] * float(np.clip(rng.standard_normal(), -2, 2))
             old = getattr(style, f.name)
             new[f.name] = old * float(np.exp(shift)) if f.name in FACTORS else old + shift
-    side = 1.0 if rng.random() < 0.5 else -1.0  # nobody is quite symmetric
+    side = 1.0 if rng.random() < 0.5 else -1.0  # no person is exactly symmetric
     new["asymmetry"] += 0.006 * side
     new["width"] = max(new["width"], 0.02)
     return replace(style, **new)

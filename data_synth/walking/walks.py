@@ -1,10 +1,8 @@
-"""Walks: a commanded path in, a figure that walks it out.
-
-And several right continuations of one past.
+"""Walks: a figure walks along a commanded path. One past has several right continuations.
 
     python -m data_synth walks --out FOLDER [--clips 20] [--seconds 12] [--seed 0]
 
-The root is the commanded path, exactly; the pelvis sways about it. All is a causal function of
+The root is exactly the commanded path; the pelvis sways about it. All is a causal function of
 control and noise.
 """
 
@@ -22,7 +20,7 @@ from .body import body
 from .controls import KINDS, random_control
 from .styles import STYLES, Style, draw_style, person
 
-WARM_UP = 60  # frames walked before the first one, the first control held
+WARM_UP = 60  # frames of walking before the first one, with the first control
 
 __all__ = ["continuations", "dataset", "random_control", "walk"]
 
@@ -44,13 +42,12 @@ def walk(control: Float[np.ndarray, "T 3"], seed: int, style: str | Style | None
 
 
 def continuations(past: Clip, control: Float[np.ndarray, "n 3"], n: int, seed: int) -> list[Clip]:
-    """n walks of len(control) frames that go on from the last frame of `past`.
+    """n walks of len(control) frames that continue from the last frame of `past`.
 
-    Each is right, and each is different.
+    All are right, and they differ.
 
     control[0] belongs to the first new frame; the step into it is the past's last control. Person,
-    pose, clock, footprints and behaviours under way come from the past; noise after it is drawn
-    afresh.
+    pose, clock, footprints and present behaviours come from the past; later noise is drawn again.
     Raises ValueError unless `past` was made by `walk` or `continuations` (whole, or cut, not
     mirrored).
     """
@@ -86,7 +83,7 @@ def dataset(
 def drawn_walk(
     seconds: float, rng: np.random.Generator, styles: Sequence[str] | None = None
 ) -> Clip:
-    """A walk of `seconds`: kind of control, control, style and person are all drawn."""
+    """A walk of `seconds` with a random kind of control, control, style and person."""
     kind = str(rng.choice(list(KINDS), p=list(KINDS.values())))
     name = draw_style(None, rng) if styles is None else str(rng.choice(list(styles)))
     return walk(random_control(seconds, rng, kind), int(rng.integers(2**31)), name)
@@ -112,7 +109,7 @@ def _checked(control: np.ndarray) -> np.ndarray:
 
 
 def _clip(control: np.ndarray, seed: int, style: Style, phase: float, redraw: list) -> Clip:
-    """The walk; `redraw` [(frame, seed)] draws the noise afresh from that frame on."""
+    """The walk; `redraw` [(frame, seed)] draws new noise from that frame on."""
     led = np.concatenate([np.repeat(control[:1], WARM_UP, 0), control])
     root_xz, heading = root_path(led)
     rows = white(seed, len(led), [(f + WARM_UP, s) for f, s in redraw])

@@ -1,4 +1,4 @@
-"""Writing to files: walks as BVH for Blender and as npz for everything else."""
+"""Write walks to files: BVH for Blender, npz for everything else."""
 
 import argparse
 from pathlib import Path
@@ -13,9 +13,9 @@ from .walks import dataset
 
 
 def save_npz(clip: Clip, path: Path) -> None:
-    """Poses, control, contacts, fps and source as plain arrays.
+    """Save poses, control, contacts, fps and source as plain arrays.
 
-    Written aside, then renamed.
+    The file is written under another name and then renamed.
     """
     with replacing(path) as aside, open(aside, "wb") as f:
         np.savez_compressed(
@@ -41,7 +41,9 @@ def main(arguments: list[str] | None = None) -> None:
     parser.add_argument("--seconds", type=float, default=12.0)
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument(
-        "--style", choices=list(STYLES), help="one style only; without it, all by their shares"
+        "--style",
+        choices=list(STYLES),
+        help="one style only; without it, all are drawn by their shares",
     )
     given = parser.parse_args(arguments)
     if given.clips < 1 or given.seconds < 0.5:

@@ -1,4 +1,4 @@
-"""What only notebooks use.
+"""Code that only the notebooks use.
 
-Profile and seed, exercise checks and their bug zoo, doctor, lab and demo.
+It holds profile and seed, the checks of the exercises and their bug zoo, doctor, lab and demo.
 """

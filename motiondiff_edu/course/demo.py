@@ -13,7 +13,7 @@ HELP = "open one notebook ready to show"
 EXAMPLE = "demo 07"
 PASSES_OPTIONS_ON = "JupyterLab"
 
-# what a projector wants: matplotlib's type, and JupyterLab's
+# large type for a projector: matplotlib's, and JupyterLab's
 LARGE_FIGURES = "figure.dpi: 150\nfont.size: 13\nlines.linewidth: 2.2\n"
 LARGE_SIZES = {"code-font-size": "19px", "content-font-size1": "21px", "ui-font-size1": "17px"}
 
@@ -30,12 +30,12 @@ def run(chosen: argparse.Namespace) -> int:
     with temporary as folder:
         home = Path(folder).resolve()
         notebook = find(place_for_demo(notebooks, home), chosen.number)
-        print("a copy to show: what you change in it is not kept")
+        print("This is a copy to show. Your changes to it will not be kept.")
         return open_lab(home, notebook, chosen.options, demo_environment(home))
 
 
 def place_for_demo(notebooks: Path, home: Path) -> Path:
-    """A copy of the notebooks, and of docs/ that they link to: the sources stay as they are."""
+    """Copy the notebooks, and docs/, to which they link. The sources stay as they are."""
     target = home / "notebooks"
     shutil.copytree(
         notebooks, target, ignore=shutil.ignore_patterns("student", ".ipynb_checkpoints")
@@ -46,7 +46,7 @@ def place_for_demo(notebooks: Path, home: Path) -> Path:
 
 
 def demo_environment(home: Path) -> dict[str, str]:
-    """What makes a notebook ready to show, and keeps the demo's tabs out of later sessions."""
+    """Settings for a notebook to show. They also keep the demo's tabs out of later sessions."""
     folder = home / "settings" / "@jupyterlab" / "apputils-extension"
     folder.mkdir(parents=True)
     large_type = json.dumps({"overrides": LARGE_SIZES})

@@ -18,44 +18,44 @@ from dataclasses import dataclass
 
 from .places import PACKAGE, notebook_folder, place_for_students, program
 
-HELP = "one page: what works here, and what to do about the rest"
+HELP = "say on one page what works here, and what to do about the rest"
 EXAMPLE = "doctor"
 INSTALL = "python -m pip install -c constraints.txt -e . (in the checkout), or make lab"
 
 
 @dataclass(frozen=True)
 class Finding:
-    """One line of the page; `remedy` is empty when all is well.
+    """One line of the page; `remedy` is empty when nothing is wrong.
 
-    A note is worth knowing and no failure.
+    A note is worth knowing, but it is no failure.
     """
 
     name: str
-    told: str
+    detail: str
     remedy: str = ""
     note: bool = False
 
     def __str__(self) -> str:
         mark = "ok  " if not self.remedy else "note" if self.note else "FAIL"
-        return f"{mark}  {self.name:<9} {self.told}" + (
+        return f"{mark}  {self.name:<9} {self.detail}" + (
             f"\n{'':16}-> {self.remedy}" if self.remedy else ""
         )
 
 
 def python() -> Finding:
     """Python itself: 3.11 or newer."""
-    told = f"{sys.version.split()[0]} at {sys.executable}"
+    detail = f"{sys.version.split()[0]} at {sys.executable}"
     return Finding(
         "python",
-        told,
+        detail,
         "" if sys.version_info >= (3, 11) else "install Python 3.11 or newer, then make lab",
     )
 
 
 def constraints() -> dict[str, str]:
-    """The pinned versions: of the checkout, or those that came with the wheel.
+    """The pinned versions, from the checkout or from the wheel.
 
-    Empty when the file is nowhere.
+    Empty when there is no such file.
     """
     found = [
         path
@@ -68,13 +68,13 @@ def constraints() -> dict[str, str]:
 
 
 def required() -> list[str]:
-    """The packages that the course itself asks for."""
-    asked = importlib.metadata.requires("motiondiff-edu") or []
-    return [re.match(r"[\w.-]+", line)[0].lower() for line in asked if "extra ==" not in line]
+    """The packages that the course itself requires."""
+    lines = importlib.metadata.requires("motiondiff-edu") or []
+    return [re.match(r"[\w.-]+", line)[0].lower() for line in lines if "extra ==" not in line]
 
 
 def versions() -> Finding:
-    """What is installed, against constraints.txt."""
+    """The installed versions are those of constraints.txt."""
     try:
         names = required()
     except importlib.metadata.PackageNotFoundError:
@@ -100,21 +100,24 @@ def versions() -> Finding:
 
 
 def compute() -> Finding:
-    """torch computes, and with how many threads."""
+    """torch computes, with no more threads than cores."""
     import torch
 
     a = torch.eye(3) * 2
     right = torch.equal(a @ a, torch.eye(3) * 4)
     cores, wanted = os.cpu_count() or 1, torch.get_num_threads()
     gpu = "yes" if torch.cuda.is_available() else "no"
-    told = f"torch {torch.__version__}, {wanted} threads on {cores} cores, GPU: {gpu}"
+    detail = f"torch {torch.__version__}, {wanted} threads on {cores} cores, GPU: {gpu}"
     if not right:
-        return Finding("torch", told + "; a product of matrices came out wrong", INSTALL)
+        return Finding("torch", detail + "; it computed a wrong matrix product", INSTALL)
     if wanted > cores:
         return Finding(
-            "torch", told, "more threads than cores are slow: set OMP_NUM_THREADS", note=True
+            "torch",
+            detail,
+            "more threads than cores are slow: set OMP_NUM_THREADS to the number of cores",
+            note=True,
         )
-    return Finding("torch", told)
+    return Finding("torch", detail)
 
 
 def kernel() -> Finding:
@@ -130,16 +133,16 @@ def kernel() -> Finding:
         client.stop_channels()
         manager.shutdown_kernel(now=True)
     if reply["content"]["status"] == "ok":
-        return Finding("kernel", "starts, and finds motiondiff_edu")
+        return Finding("kernel", "it starts, and finds motiondiff_edu")
     return Finding(
         "kernel",
-        f"starts, but cannot import motiondiff_edu ({reply['content'].get('evalue')})",
+        f"it starts, but cannot import motiondiff_edu ({reply['content'].get('evalue')})",
         INSTALL,
     )
 
 
 def canvas() -> Finding:
-    """The moving figure: anywidget, the ES module of the package, and a browser to show it."""
+    """There is all that a moving figure needs: anywidget, the ES module, and a browser."""
     importlib.import_module("anywidget")
     modules = sorted(path.name for path in (PACKAGE / "widgets").glob("*.js"))
     if not modules:
@@ -149,8 +152,8 @@ def canvas() -> Finding:
     except webbrowser.Error:
         return Finding(
             "canvas",
-            "no browser found here",
-            "open the address that lab prints elsewhere",
+            "there is no browser here",
+            "open the address that lab prints in a browser elsewhere",
             note=True,
         )
     return Finding(
@@ -160,7 +163,7 @@ def canvas() -> Finding:
 
 
 def sound() -> Finding:
-    """A sound is written and read back."""
+    """soundfile writes a sound and reads it back."""
     import numpy as np
 
     soundfile = importlib.import_module("soundfile")
@@ -170,7 +173,7 @@ def sound() -> Finding:
     samples, rate = soundfile.read(file)
     if len(samples) == 220 and rate == 22050:
         return Finding("sound", f"soundfile {soundfile.__version__} writes and reads")
-    return Finding("sound", "a sound did not read back as written", INSTALL)
+    return Finding("sound", "a sound that was written is read back differently", INSTALL)
 
 
 def weights() -> Finding:
@@ -179,22 +182,24 @@ def weights() -> Finding:
 
     if "walker" not in available():
         return Finding(
-            "weights", "no walker in pretrained/", "get the file again, or make pretrained (hours)"
+            "weights",
+            "no walker in pretrained/",
+            "install again, or type make pretrained (this takes hours)",
         )
-    numbers = sum(parameter.numel() for parameter in pretrained("walker").model.parameters())
-    return Finding("weights", f"walker, {numbers / 1e6:.1f} million numbers")
+    parameters = sum(parameter.numel() for parameter in pretrained("walker").model.parameters())
+    return Finding("weights", f"walker, {parameters / 1e6:.1f} million parameters")
 
 
 def writing() -> Finding:
-    """Copies of the notebooks, and results, can be written where `lab` puts them."""
+    """Files can be written where `lab` puts the copies of the notebooks."""
     _, mine = place_for_students()
     here = next(folder for folder in (mine, *mine.parents) if folder.is_dir())
     try:
         with tempfile.TemporaryFile(dir=here):
-            return Finding("writing", f"allowed in {here}")
+            return Finding("writing", f"files can be written in {here}")
     except OSError as error:
         remedy = f"start from a folder of your own, or name one: {program()} lab --folder FOLDER"
-        return Finding("writing", f"not allowed in {here} ({error.strerror})", remedy)
+        return Finding("writing", f"files cannot be written in {here} ({error.strerror})", remedy)
 
 
 def notebooks() -> Finding:
@@ -208,7 +213,7 @@ CHECKS = (python, versions, compute, kernel, canvas, sound, weights, writing, no
 
 
 def guarded(check: Callable[[], Finding]) -> Finding:
-    """What the check finds; when it breaks, that is the finding."""
+    """The check's finding; an exception of the check becomes a failure."""
     try:
         return check()
     except Exception as error:
@@ -216,7 +221,7 @@ def guarded(check: Callable[[], Finding]) -> Finding:
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
-    """None."""
+    """Add no arguments."""
 
 
 def run(chosen: argparse.Namespace) -> int:
@@ -232,8 +237,8 @@ def main(checks: Iterable[Callable[[], Finding]] = CHECKS) -> int:
         failed += bool(finding.remedy) and not finding.note
         print(finding, flush=True)
     print(
-        f"\nAll well: {program()} lab"
+        f"\nEverything works. To open the course: {program()} lab"
         if not failed
-        else f"\n{failed} to mend, see the arrows above."
+        else f"\nFailures: {failed}. The arrows above say what to do."
     )
     return int(failed > 0)

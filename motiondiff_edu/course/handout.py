@@ -1,7 +1,7 @@
-"""A student's own copies of the notebooks: handed out, renewed while untouched, never overwritten.
+"""A student's own copies of the notebooks. A copy is renewed only while it is unchanged.
 
-A copy counts as changed when its cells differ from those handed out: their kind, text or outputs.
-What JupyterLab writes into a notebook's metadata when it is only looked at does not count.
+A copy counts as changed when its cells differ from those handed out, in kind, text or outputs.
+JupyterLab also writes into the metadata of a notebook that is only opened; that does not count.
 """
 
 import hashlib
@@ -16,23 +16,23 @@ from .._files import replacing
 from .places import program
 
 RECORD = ".lab/handed_out.json"
-PAGES = {".md", ".png", ".py"}  # of docs/: setup.py puts the same into a wheel
+PAGES = {".md", ".png", ".py"}  # of docs/; setup.py puts the same files into a wheel
 
 
 class FolderError(ValueError):
-    """The folder of the copies cannot be written."""
+    """The folder of the copies is not writable."""
 
 
 @dataclass(frozen=True)
 class Handout:
-    """What `hand_out` did: names of copies that it renewed, and of old ones that it kept."""
+    """The result of `hand_out`: the copies that it renewed, and the old ones that it kept."""
 
     renewed: tuple[str, ...]
     kept: tuple[str, ...]
 
 
 def shipped(notebooks: Path) -> dict[str, bytes]:
-    """{name: content} of all that a student gets: the student edition, and the pages it links to.
+    """{name: content} of a student's files: the student edition, and the pages it links to.
 
     The pages go to docs/ below the copies, and the links of the notebooks follow them there.
     """
@@ -55,12 +55,12 @@ def digest(name: str, content: bytes) -> str:
             seen = [[c["cell_type"], "".join(c["source"]), c.get("outputs", [])] for c in cells]
             content = json.dumps(seen, sort_keys=True).encode()
         except (ValueError, KeyError, TypeError):
-            pass  # no notebook any more: its bytes decide
+            pass  # this is no notebook any more: compare its bytes
     return hashlib.sha256(content).hexdigest()
 
 
 def read_record(mine: Path) -> dict[str, str]:
-    """{name: digest} of what was handed out; empty where there is no readable record."""
+    """{name: digest} of the files handed out; empty when there is no readable record."""
     try:
         record = json.loads((mine / RECORD).read_text(encoding="utf-8"))
     except (OSError, ValueError):
@@ -75,7 +75,7 @@ def write_record(mine: Path, record: dict[str, str]) -> None:
 
 @contextmanager
 def written_in(mine: Path) -> Iterator[None]:
-    """Turns a failed write into a FolderError that says where, why, and what to do."""
+    """Turn a failed write into a FolderError that says where, why, and what to do."""
     try:
         mine.mkdir(parents=True, exist_ok=True)
         tempfile.TemporaryFile(dir=mine).close()
@@ -96,9 +96,9 @@ def put(path: Path, content: bytes) -> None:
 def hand_out(notebooks: Path, mine: Path) -> Handout:
     """Bring the copies in `mine` up to date, and say which old ones were kept.
 
-    A copy that is missing is made. One that is old and untouched is replaced, or removed where the
-    course no longer has it. One that is changed, or of unknown origin, stays as it is.
-    Raises FolderError where nothing can be written.
+    A missing copy is made. An old copy that is unchanged is replaced, or removed when the course no
+    longer has it. A changed copy, or one of unknown origin, stays as it is.
+    Raises FolderError when the folder is not writable.
     """
     record = read_record(mine)
     renewed, kept = [], []
@@ -125,9 +125,9 @@ def hand_out(notebooks: Path, mine: Path) -> Handout:
 
 
 def make_fresh(notebooks: Path, mine: Path, name: str) -> Path | None:
-    """Make a fresh copy of one notebook; a changed one goes beside it, to the path returned.
+    """Make a fresh copy of one notebook; return the path to which a changed one was moved.
 
-    Raises FolderError where nothing can be written.
+    Raises FolderError when the folder is not writable.
     """
     content, path = shipped(notebooks)[name], mine / name
     aside = None

@@ -1,4 +1,4 @@
-"""Starting JupyterLab at one notebook, and ending it in good order."""
+"""Start JupyterLab at one notebook, and stop it with its kernels."""
 
 import os
 import signal
@@ -6,7 +6,7 @@ import subprocess
 import sys
 from pathlib import Path
 
-# defaults for the course, below a student's own settings: JupyterLab asks nothing about news
+# defaults of the course: JupyterLab does not ask about news; a student's own settings come first
 CONFIG = Path(__file__).parent / "jupyter_config"
 
 
@@ -16,7 +16,7 @@ def open_lab(root: Path, notebook: Path, options: list[str], environment: dict[s
     command = [sys.executable, "-m", "jupyterlab"]
     command += [f"--ServerApp.root_dir={root}", f"--LabApp.default_url={address}"]
     if hasattr(os, "geteuid") and os.geteuid() == 0:
-        # in a container everyone is root, and JupyterLab would refuse
+        # in a container the user is root, and JupyterLab refuses that by default
         command.append("--allow-root")
     theirs = os.environ.get("JUPYTER_CONFIG_PATH")
     config = os.pathsep.join([str(CONFIG)] + ([theirs] if theirs else []))
@@ -25,7 +25,7 @@ def open_lab(root: Path, notebook: Path, options: list[str], environment: dict[s
 
 
 def serve(command: list[str], environment: dict[str, str]) -> int:
-    """Run the server; its exit status. Ctrl-C and SIGTERM end it, and its kernels with it."""
+    """Run the server; returns its exit status. Ctrl-C and SIGTERM stop it and its kernels."""
     server = subprocess.Popen(command, env=os.environ | environment)
     before = signal.signal(signal.SIGTERM, lambda *_: server.terminate())
     try:

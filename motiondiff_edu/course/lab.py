@@ -1,11 +1,11 @@
-"""`motiondiff-edu lab`: JupyterLab in a student's own copies of the student edition."""
+"""`motiondiff-edu lab`: open JupyterLab in a student's own copies of the student edition."""
 
 import argparse
 from pathlib import Path
 
 from .handout import Handout, hand_out, make_fresh
 from .jupyter import open_lab
-from .places import find, notebook_folder, place_for_students, word_for_fresh
+from .places import command_for_fresh, find, notebook_folder, place_for_students
 
 HELP = "open JupyterLab at notebook 00, in your own copy of the notebooks"
 EXAMPLE = "lab --no-browser"
@@ -18,12 +18,12 @@ def arguments(parser: argparse.ArgumentParser) -> None:
         metavar="NB",
         action="append",
         default=[],
-        help="a fresh copy of notebook NB; yours stays beside it as ..._mine.ipynb",
+        help="make a fresh copy of notebook NB; yours stays beside it as ..._mine.ipynb",
     )
     parser.add_argument(
         "--folder",
         type=Path,
-        help="where your copies are (default: motiondiff_notebooks)",
+        help="the folder of your copies (default: motiondiff_notebooks)",
     )
 
 
@@ -36,20 +36,20 @@ def run(chosen: argparse.Namespace) -> int:
     for name in wanted if chosen.fresh else []:
         aside = make_fresh(notebooks, mine, name)
         print(f"{name} is fresh" + (f"; yours is now {aside.name}" if aside else ""))
-    tell(handout, but=chosen.fresh and wanted)
+    report(handout, leave_out=chosen.fresh and wanted)
     own_tabs = {"JUPYTERLAB_WORKSPACES_DIR": str(mine / ".lab" / "workspaces")}
     return open_lab(root, mine / wanted[0], chosen.options, own_tabs)
 
 
-def tell(handout: Handout, but: list[str]) -> None:
-    """Say which copies were renewed, and which old ones were kept and how to get the new ones.
+def report(handout: Handout, leave_out: list[str]) -> None:
+    """Print which copies were renewed, which old ones were kept, and how to get the new ones.
 
-    Nothing is said of pages, nor of the notebooks in `but`.
+    Pages, and the notebooks in `leave_out`, are not mentioned.
     """
     renewed = [name for name in handout.renewed if name.endswith(".ipynb")]
-    kept = [name for name in handout.kept if name.endswith(".ipynb") and name not in but]
+    kept = [name for name in handout.kept if name.endswith(".ipynb") and name not in leave_out]
     if renewed:
-        print("renewed, you had not changed them: " + ", ".join(renewed))
+        print("Renewed, because you had not changed them: " + ", ".join(renewed))
     if kept:
-        print("kept as you left them, although the course has newer ones: " + ", ".join(kept))
-        print(f"  for a new one, with yours beside it: {word_for_fresh(kept[0][:2])}")
+        print("Kept as you left them, although the course has newer ones: " + ", ".join(kept))
+        print(f"  To get a new one, with yours beside it: {command_for_fresh(kept[0][:2])}")

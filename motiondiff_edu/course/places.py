@@ -1,4 +1,4 @@
-"""Where the notebooks lie and where a student's copies go, in a checkout and from a wheel."""
+"""Where the notebooks are and where a student's copies go, in a checkout and from a wheel."""
 
 import os
 import sys
@@ -9,7 +9,7 @@ COPIES = "motiondiff_notebooks"
 
 
 class NotebookError(ValueError):
-    """There is no notebook of that number; the message lists those there are."""
+    """No notebook has that number; the message lists the numbers that exist."""
 
 
 def in_checkout() -> bool:
@@ -19,12 +19,12 @@ def in_checkout() -> bool:
 
 
 def notebook_folder() -> Path:
-    """notebooks/ of the checkout, or the ones that came with the wheel; docs/ lies beside it."""
+    """notebooks/ of the checkout, or of the wheel; docs/ is beside it."""
     return (PACKAGE.parent if in_checkout() else PACKAGE) / "notebooks"
 
 
 def find(folder: Path, number: str) -> Path:
-    """The notebook of that number. Raises NotebookError with the numbers there are."""
+    """The notebook of that number. Raises NotebookError if there is none."""
     there = sorted(folder.glob("[0-9][0-9]*.ipynb"))
     wanted = [path for path in there if path.name[:2] == number.zfill(2)]
     if not wanted:
@@ -34,7 +34,7 @@ def find(folder: Path, number: str) -> Path:
 
 
 def place_for_students(chosen: Path | None = None) -> tuple[Path, Path]:
-    """Where JupyterLab starts, and the folder of the student's copies.
+    """The folder in which JupyterLab starts, and the folder of the student's copies.
 
     In a checkout JupyterLab starts at its top, so that the library can be read beside the
     notebooks. From a wheel it starts in the folder of the copies, which is made in the current
@@ -51,12 +51,12 @@ def place_for_students(chosen: Path | None = None) -> tuple[Path, Path]:
 
 
 def program() -> str:
-    """What was typed to get here: motiondiff-edu, or python -m motiondiff_edu."""
+    """The command that was typed: motiondiff-edu, or python -m motiondiff_edu."""
     name = Path(sys.argv[0]).stem
     return name if name == "motiondiff-edu" else "python -m motiondiff_edu"
 
 
-def word_for_fresh(number: str) -> str:
-    """What to type for a fresh copy of one notebook, with make or without."""
+def command_for_fresh(number: str) -> str:
+    """The command for a fresh copy of one notebook, with make or without."""
     by_make = in_checkout() and "MAKELEVEL" in os.environ
     return f"make lab FRESH={number}" if by_make else f"{program()} lab --fresh {number}"

@@ -1,6 +1,6 @@
-"""Where a notebook runs: fast or full, the seed, the device, the threads.
+"""The settings of a notebook's run: profile, seed, device and threads.
 
-The one place that reads MOTIONDIFF_PROFILE.
+Only this file reads MOTIONDIFF_PROFILE.
 
 A notebook's first code cell calls `run = runtime.start(notebook="03", seed=0)`; later ones use
 `run.fast`, `run.generator` and `run.pick(400, 20_000)`.
@@ -19,15 +19,15 @@ Choice = TypeVar("Choice")
 
 
 class ProfileError(ValueError):
-    """MOTIONDIFF_PROFILE holds a word that is no profile."""
+    """MOTIONDIFF_PROFILE is set to a word that is no profile."""
 
 
 def profile() -> Profile:
-    """The profile in force.
+    """The chosen profile: `fast` (the default) or `full`.
 
-    `fast` (the default) or `full`: longer trainings, more clips, a GPU where there is one.
+    `full` means longer trainings, more clips, and a GPU where there is one.
 
-    Raises ProfileError when the environment variable MOTIONDIFF_PROFILE holds anything else.
+    Raises ProfileError when the environment variable MOTIONDIFF_PROFILE has another value.
     """
     word = os.environ.get("MOTIONDIFF_PROFILE", "fast").strip().lower() or "fast"
     if word not in ("fast", "full"):
@@ -40,7 +40,7 @@ def profile() -> Profile:
 def demo() -> bool:
     """True when the notebook was opened by `python -m motiondiff_edu demo`.
 
-    Shipped weights, no training.
+    Such a notebook uses shipped weights and trains nothing.
     """
     return os.environ.get("MOTIONDIFF_DEMO", "") not in ("", "0")
 
@@ -48,23 +48,20 @@ def demo() -> bool:
 def device() -> torch.device:
     """The device for training: the GPU in the full profile where there is one, else the CPU.
 
-    Fast stays on the CPU: its networks are so small that a GPU gains nothing and figures would
-    differ between machines.
+    Fast stays on the CPU: its networks are so small that a GPU would gain nothing, and the numbers
+    would differ between machines.
     """
     return torch.device("cuda" if profile() == "full" and torch.cuda.is_available() else "cpu")
 
 
 def threads() -> int:
-    """How many threads torch computes with (OMP_NUM_THREADS sets it before the start)."""
+    """The number of torch's threads. Set OMP_NUM_THREADS before the start to change it."""
     return torch.get_num_threads()
 
 
 @dataclass(frozen=True)
 class Run:
-    """What a notebook needs to know about where it runs.
-
-    The generators were seeded once, at the start.
-    """
+    """The settings of a run, and its random generators, which are seeded once at the start."""
 
     notebook: str
     profile: Profile
@@ -91,10 +88,10 @@ class Run:
 
 
 def start(notebook: str, seed: int = 0) -> Run:
-    """Seed everything, say in one line where the notebook runs, and return the record.
+    """Seed all random generators, print the settings in one line, and return them.
 
-    Also seeds the global generators of torch, numpy and Python: the initial weights of a network
-    come from there.
+    This also seeds the global generators of torch, numpy and Python, because the initial weights
+    of a network come from them.
     """
     torch.manual_seed(seed)
     random.seed(seed)

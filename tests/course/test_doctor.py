@@ -25,9 +25,9 @@ def test_the_page_fails_when_a_finding_fails_and_not_for_a_note(capsys):
     odd = Finding("b", "y", "z", note=True)
     bad = Finding("c", "y", "z")
     assert doctor.main([lambda: well, lambda: odd]) == 0
-    assert "All well" in capsys.readouterr().out
+    assert "Everything works" in capsys.readouterr().out
     assert doctor.main([lambda: well, lambda: bad]) == 1
-    assert "1 to mend" in capsys.readouterr().out
+    assert "Failures: 1" in capsys.readouterr().out
 
 
 def test_a_check_that_breaks_is_a_finding():
@@ -37,7 +37,7 @@ def test_a_check_that_breaks_is_a_finding():
     finding = doctor.guarded(canvas)
     assert (
         finding.name == "canvas"
-        and "No module named 'anywidget'" in finding.told
+        and "No module named 'anywidget'" in finding.detail
         and finding.remedy
     )
 
@@ -50,14 +50,14 @@ def test_missing_and_different_packages_are_named(monkeypatch):
     installed = {"torch": "2.13.0+cpu", "anywidget": "0.10.0", "tqdm": "4.70.1"}
     monkeypatch.setattr(importlib.metadata, "version", installed.__getitem__)
     finding = doctor.versions()
-    assert finding.note and finding.told == "anywidget 0.10.0 (tested: 0.11.0)"
+    assert finding.note and finding.detail == "anywidget 0.10.0 (tested: 0.11.0)"
 
     def version(name):
         raise importlib.metadata.PackageNotFoundError(name)
 
     monkeypatch.setattr(importlib.metadata, "version", version)
     finding = doctor.versions()
-    assert not finding.note and finding.told == "missing: torch, anywidget, tqdm"
+    assert not finding.note and finding.detail == "missing: torch, anywidget, tqdm"
 
 
 def test_the_pins_are_read_from_the_checkout():
@@ -72,7 +72,7 @@ def test_this_machine_is_sound(check):
 
 
 def test_the_kernel_starts_and_finds_the_package():
-    assert doctor.kernel() == Finding("kernel", "starts, and finds motiondiff_edu")
+    assert doctor.kernel() == Finding("kernel", "it starts, and finds motiondiff_edu")
 
 
 def test_a_folder_that_cannot_be_written_is_said(monkeypatch):
@@ -81,7 +81,7 @@ def test_a_folder_that_cannot_be_written_is_said(monkeypatch):
 
     monkeypatch.setattr(doctor.tempfile, "TemporaryFile", refuse)
     finding = doctor.writing()
-    assert "Permission denied" in finding.told and "folder of your own" in finding.remedy
+    assert "Permission denied" in finding.detail and "folder of your own" in finding.remedy
 
 
 def test_no_browser_is_a_note_and_no_module_a_failure(monkeypatch, tmp_path):
@@ -91,7 +91,7 @@ def test_no_browser_is_a_note_and_no_module_a_failure(monkeypatch, tmp_path):
     monkeypatch.setattr(webbrowser, "get", none)
     (tmp_path / "widgets").mkdir()
     monkeypatch.setattr(doctor, "PACKAGE", tmp_path)
-    assert "ES module" in doctor.canvas().told and not doctor.canvas().note
+    assert "ES module" in doctor.canvas().detail and not doctor.canvas().note
     (tmp_path / "widgets" / "player.js").touch()
     assert doctor.canvas().note
 
@@ -107,11 +107,11 @@ def test_doctor_still_speaks_where_torch_cannot_be_imported():
     compute = answer.stdout[answer.stdout.index("FAIL") :]
     assert answer.returncode == 1 and answer.stdout.startswith("ok    python")
     assert compute.startswith("FAIL  compute") and "-> python -m pip install" in compute
-    assert "ok    notebooks" in compute and "1 to mend" in compute
+    assert "ok    notebooks" in compute and "Failures: 1" in compute
 
 
 def test_writing_is_tried_where_lab_puts_the_copies(monkeypatch, tmp_path):
     monkeypatch.setattr(doctor, "place_for_students", lambda: (tmp_path, tmp_path / "a" / "b"))
-    assert doctor.writing() == Finding("writing", f"allowed in {tmp_path}")
+    assert doctor.writing() == Finding("writing", f"files can be written in {tmp_path}")
     (tmp_path / "a" / "b").mkdir(parents=True)
-    assert doctor.writing() == Finding("writing", f"allowed in {tmp_path / 'a' / 'b'}")
+    assert doctor.writing() == Finding("writing", f"files can be written in {tmp_path / 'a' / 'b'}")

@@ -14,7 +14,7 @@ from data_synth.music import compose, songs
 from motiondiff_edu.conditions.music import log_mel
 from motiondiff_edu.recipes.dancers import DANCER
 from motiondiff_edu.recipes.train_dancer import training_windows
-from tools.results.dances.mfcc import heard_instead, marks, mfcc_and_beats
+from tools.results.dances.mfcc import marks, mfcc_and_beats, with_music_features
 from tools.results.dances.trials import mel_of
 
 
@@ -53,12 +53,12 @@ def test_coefficients_are_the_cosine_transform_of_the_log_mel():
 def test_the_same_windows_with_other_ears():
     recipe = replace(DANCER, songs=2, seconds=8.0, frames=40)
     windows = training_windows(recipe)
-    other = heard_instead(windows, mfcc_and_beats, 2, recipe.data_seed, recipe.seconds)
+    other = with_music_features(windows, mfcc_and_beats, 2, recipe.data_seed, recipe.seconds)
     assert torch.equal(other.dances, windows.dances) and torch.equal(
         other.song_starts, windows.song_starts
     )
     assert other.mel.shape == (len(windows.mel), 22)
-    back = heard_instead(other, mel_of, 2, recipe.data_seed, recipe.seconds)
+    back = with_music_features(other, mel_of, 2, recipe.data_seed, recipe.seconds)
     torch.testing.assert_close(back.mel, windows.mel)
     second = list(songs(2, recipe.data_seed, recipe.seconds))[1]
     frames = len(mfcc_and_beats(second))
@@ -66,4 +66,4 @@ def test_the_same_windows_with_other_ears():
         other.mel_scaler.inverse(other.mel[-frames:]), mfcc_and_beats(second), atol=1e-3, rtol=0
     )
     with pytest.raises(ValueError, match="frames are heard"):
-        heard_instead(windows, mfcc_and_beats, 1, recipe.data_seed, recipe.seconds)
+        with_music_features(windows, mfcc_and_beats, 1, recipe.data_seed, recipe.seconds)

@@ -60,14 +60,17 @@ def test_what_is_met_by_its_value_alone_is_not_certain_and_what_is_absent_is_sai
     assert uncertain.endswith(
         "the goal: the walker's error in the last 3 s, over that in the first 3 s."
     )
-    assert absent == "the beat alignment of the dances beyond chance, over that of the data."
+    assert absent == (
+        "These figures are missing: "
+        "the beat alignment of the dances beyond chance, over that of the data."
+    )
 
 
 def test_a_page_without_misses_says_so(monkeypatch):
     monkeypatch.setattr(page, "BARS", (GOOD,))
     text = page.opening({GOOD.name: record(GOOD, 0.1, 0.1, 0.1, "cm")})
     assert "**What holds.** 1 of 1 goals are met." in text
-    assert "**What was missed.** No goal that was measured.\n" in text
+    assert "**What was missed.** No measured goal was missed.\n" in text
     assert "What is not" not in text
     assert "0 agree with what we measured, 0 do not, 0 remain undecided, and 20 have not" in text
 
@@ -97,7 +100,9 @@ def test_a_key_alone_gets_its_words():
         "pasts<br>`mend.table2_keep5_ratio` | 3 |",
     ]
     assert words.in_words("there-and-back.1") == "there and back, once"
-    assert words.in_words("gibbs.20").startswith("there and back, 20 times, what is known seen")
+    assert words.in_words("gibbs.20").startswith(
+        "there and back, 20 times, with known entries seen"
+    )
     assert words.in_words("no_such_key") is None
 
 

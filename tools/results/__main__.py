@@ -5,13 +5,13 @@
 Parts: walker, walker-plain, walker-printed, walker-eps, walker-ddim10, walker-lookahead,
 walker-eps-lookahead, footsteps; dancer, dancer-plain, regression, unheard (music like none in
 training), attention, dance-time; mend (dropout and repairs), mend-both (both papers' repairs),
-inbetween, known-answer (ways of filling in where the right one is a formula). Those that train, for
-minutes a row: ladder (from the paper's walker to ours), budget, dance-budget and mend-map; one row
-of them: budget.T_p-5, dance-budget.v.
-Without --only, all are measured that the shipped weights allow; --full adds those that train, whose
-records are else kept as they are. A training that was killed goes on. --quick measures little, into
-build/quick, and is for trying the code; --render only writes docs/RESULTS.md from the records that
-are there.
+inbetween, known-answer (methods of filling in, on tasks whose answer is a formula). These parts
+train, for minutes a row: ladder (from the paper's walker to ours), budget, dance-budget and
+mend-map. One row of them is a part as well: budget.T_p-5, dance-budget.v. Without --only, all parts
+are measured for which there are shipped weights. --full adds the parts that train; otherwise their
+records stay as they are. A training that was killed continues. --quick measures little, into
+build/quick, and is for trying the code. --render only writes docs/RESULTS.md from the existing
+records.
 """
 
 import argparse
@@ -50,8 +50,8 @@ MEASURED = (
     "attention",
     "dance-time",
     "known-answer",
-)  # by the shipped weights, or by none
-MENDED = {  # by these weights
+)  # parts that need shipped weights, or none
+MENDED = {  # parts that need these weights
     "mend": {"walker", "walker-plain", *names_of("plain"), *names_of("dropout")},
     "mend-both": {both.WALKER, "unconditional"},
     "inbetween": {"unconditional"},
@@ -72,23 +72,25 @@ def arguments() -> argparse.Namespace:
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     parser.add_argument("--only", nargs="+", default=[], metavar="PART", help="only these parts")
-    parser.add_argument("--full", action="store_true", help="what trains as well (hours)")
+    parser.add_argument("--full", action="store_true", help="also the parts that train (hours)")
     parser.add_argument("--quick", action="store_true", help="few clips; written to build/quick")
     parser.add_argument(
         "--weights", nargs="+", default=[], metavar="NAME=FILE", help="weights that are not shipped"
     )
     parser.add_argument(
-        "--render", action="store_true", help="only docs/RESULTS.md, from the records there"
+        "--render",
+        action="store_true",
+        help="only write docs/RESULTS.md, from the existing records",
     )
     return parser.parse_args()
 
 
 def main() -> None:
-    asked = arguments()
-    docs = Path("build/quick") if asked.quick else DOCS
-    if not asked.render:
-        measure(asked, docs / "results")
-    if not asked.quick:
+    chosen = arguments()
+    docs = Path("build/quick") if chosen.quick else DOCS
+    if not chosen.render:
+        measure(chosen, docs / "results")
+    if not chosen.quick:
         add_metrics(docs / "results")
     render(docs)
     print(f"written: {docs / 'RESULTS.md'}")
@@ -107,19 +109,19 @@ def weights_of(items: list[str]) -> dict[str, Path]:
 
 
 def parts_of(only: list[str], full: bool, lines: dict[str, Walks], weights: set[str]) -> list[str]:
-    """The parts asked for, row by row.
+    """The chosen parts, row by row.
 
-    None asked for: all that have weights, and with `full` what trains.
+    Without a choice these are all parts that have weights, and with `full` those that train.
 
-    Leaves with the names there are when one is unknown.
+    Exits with the list of names when one is unknown.
     """
     there = [prefix for prefix, line in lines.items() if line.name in weights]
     there += [part for part, name in DANCES.items() if name in weights]
     there += [part for part in MEASURED if part != "attention" or "dancer" in weights]
     there += [part for part, names in MENDED.items() if names <= weights]
     rows = {part: [f"{part}.{name}" for name in names] for part, names in TRAINED.items()}
-    asked = only or [*there, *(rows if full else ())]
-    parts = [row for part in asked for row in rows.get(part, [part])]
+    wanted = only or [*there, *(rows if full else ())]
+    parts = [row for part in wanted for row in rows.get(part, [part])]
     known = {
         *lines,
         *DANCES,
@@ -137,20 +139,20 @@ def parts_of(only: list[str], full: bool, lines: dict[str, Walks], weights: set[
     return parts
 
 
-def measure(asked: argparse.Namespace, folder: Path) -> None:
-    """Run the parts asked for and write their records.
+def measure(chosen: argparse.Namespace, folder: Path) -> None:
+    """Run the chosen parts and write their records.
 
-    Those of all other parts stay as they are.
+    The records of all other parts stay as they are.
     """
-    extra = weights_of(asked.weights)
-    bench = Bench(QUICK if asked.quick else FULL, extra)
+    extra = weights_of(chosen.weights)
+    bench = Bench(QUICK if chosen.quick else FULL, extra)
     lines = LINES | {name: Walks(name, name) for name in extra}
-    stage = Stage(DANCE_QUICK if asked.quick else DANCE_FULL, extra)
-    options = " --quick" * asked.quick + "".join(f" --weights {item}" for item in asked.weights)
-    for part in parts_of(asked.only, asked.full, lines, set(bench.weights)):
+    stage = Stage(DANCE_QUICK if chosen.quick else DANCE_FULL, extra)
+    suffix = " --quick" * chosen.quick + "".join(f" --weights {item}" for item in chosen.weights)
+    for part in parts_of(chosen.only, chosen.full, lines, set(bench.weights)):
         began = time.monotonic()
-        command = f"python -m tools.results --only {part}{options}"
-        records = records_of(part, asked.quick, bench, stage, lines, folder, command)
+        command = f"python -m tools.results --only {part}{suffix}"
+        records = records_of(part, chosen.quick, bench, stage, lines, folder, command)
         show([one for one in records if one["value"] is not None])
         write_records(folder / f"{part}.json", records)
         print(f"{part}: {time.monotonic() - began:.0f} s", flush=True)

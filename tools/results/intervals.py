@@ -1,6 +1,6 @@
 """A figure with its interval.
 
-Clips are drawn again with replacement, and the figure computed anew each time.
+Clips are drawn with replacement, and the figure is computed again each time.
 """
 
 from collections.abc import Callable
@@ -17,7 +17,7 @@ def interval(
 
     Arrays have one row for each clip and are drawn together.
 
-    A figure that is not a number in some draws (no planted toe in any clip drawn) leaves those out;
+    Draws for which the figure is NaN (no planted toe in any drawn clip) are left out;
     scipy.stats.bootstrap then has no interval, and it refuses a single clip.
     """
     rng, n = np.random.default_rng(0), len(per_clip[0])

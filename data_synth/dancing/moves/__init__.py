@@ -1,4 +1,4 @@
-"""The vocabularies: what each genre can do, a file a genre, and how it carries itself."""
+"""The vocabularies: the moves and the manner of each genre, one file each."""
 
 from dataclasses import dataclass
 
@@ -7,9 +7,9 @@ from . import hiphop, house, latin, pop, waltz
 
 @dataclass(frozen=True)
 class Manner:
-    """How a genre moves.
+    """The manner of a genre.
 
-    Stillness at the keys, flow through them, the arms' spring, posture at rest.
+    It has the stillness at the keys, the flow through them, the arms' spring, and the rest posture.
     """
 
     moves: tuple
@@ -17,9 +17,7 @@ class Manner:
     hold: float  # share of the time between two keys that is still
     flow: float  # 0 stops at each key, 1 passes through
     spring: float  # Hz: how tightly the arms follow
-    lead: (
-        float  # seconds by which the dancer sets out early, so that the stillness comes on the beat
-    )
+    lead: float  # seconds by which the dancer starts early, so that the stillness is on the beat
     rest: dict[str, float]
 
 

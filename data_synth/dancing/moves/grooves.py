@@ -1,12 +1,10 @@
-"""What many moves share: how the body bounces on the count, and what the arms do meanwhile."""
+"""Parts that many moves share: how the body bounces on the count, and arm patterns."""
 
 from collections.abc import Callable
 
 from ..sheet import Sheet
 
-Pose = tuple[
-    float, ...
-]  # (swing, out, twist, elbow[, wrist[, shrug]]) in degrees, see dance_script.ARM
+Pose = tuple[float, ...]  # (swing, out, twist, elbow[, wrist[, shrug]]) in degrees, see script.ARM
 
 DOWN: Pose = (4, 13, 18, 28)
 LOW: Pose = (-8, 22, 10, 20)
@@ -29,7 +27,7 @@ def bounce(
 ) -> None:
     """Down on every count, up in between: knees, and a little of the chest and head.
 
-    `heels` degrees up when high.
+    The heels are `heels` degrees up when the body is high.
     """
     count = 0.0
     while count < p.n:
@@ -139,5 +137,5 @@ def soft(p: Sheet) -> None:
 
 
 def pick(p: Sheet, *choices: Callable[[Sheet], None]) -> None:
-    """One of several arm patterns, drawn afresh."""
+    """Draw one of several arm patterns."""
     choices[int(p.rng.integers(len(choices)))](p)

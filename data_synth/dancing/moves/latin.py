@@ -1,4 +1,4 @@
-"""Latin: small steps under a quiet chest, hips that settle over each foot.
+"""Latin: small steps under a quiet chest, and hips that go out over each foot.
 
 The arms are held and lead.
 """
@@ -10,7 +10,7 @@ L, R = 0, 1
 
 
 def settle(p: Sheet, counts: list[tuple[float, int]], size: float = 1.0) -> None:
-    """The hip goes out over the foot that has just taken the weight: (count, 1 left or -1 right)
+    """The hip goes out over the foot with the new weight: (count, 1 left or -1 right)
     ..."""
     for k, s in counts:
         p.key("hip_roll", (k, 12 * size * s))
@@ -147,7 +147,7 @@ def figure_eight(p: Sheet) -> None:
 
 
 def cucaracha(p: Sheet) -> None:
-    """Press out to the side, hip over it, recover, close, hold: the weight never quite goes."""
+    """Press out to the side, hip over it, recover, close, hold: the weight goes only partly."""
     for k in range(p.n):
         half, s = k % 4, 1 if k % 8 < 4 else -1
         foot = L if s > 0 else R
@@ -170,7 +170,7 @@ def cucaracha(p: Sheet) -> None:
 def turn(p: Sheet) -> None:
     """Spot turn: ahead and half round, half round, close; one hand overhead.
 
-    Then a basic to breathe.
+    A basic follows as a rest.
     """
     k = 0
     while k + 2 < p.n:

@@ -84,7 +84,7 @@ POSES = (  # left arm, right arm, weight, side, twist, lean, drop, look
 
 
 def pose_hits(p: Sheet) -> None:
-    """A pose on every other count or on each of two, hit and held, drawn from a dozen."""
+    """A pose on every other count or on two in a row, hit and held, one of a dozen."""
     p.step(L, 0, 0.24, 0.0, turn=14)
     beats, k = [], 0
     while k < p.n:

@@ -48,7 +48,7 @@ def sway(p: Sheet, size: float = 7.0) -> None:
 
 
 def couple(p: Sheet) -> None:
-    """Arms held as if about a partner, breathing with the bar."""
+    """Arms held as if around a partner, moving a little with the bar."""
     for k, m, s in bars(p):
         p.arms(k, HOLD, EMBRACE)
         p.arms(k + 1, *[(a[0] + 14 * s, a[1] + 20, *a[2:]) for a in (HOLD, EMBRACE)])
@@ -84,7 +84,7 @@ def high_arm(p: Sheet) -> None:
 
 
 def arms(p: Sheet) -> None:
-    """One of the three."""
+    """Draw one of the three arm patterns."""
     (couple, open_arms, high_arm)[int(p.rng.integers(3))](p)
 
 

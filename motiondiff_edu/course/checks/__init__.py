@@ -1,9 +1,9 @@
 """Checks of the exercises.
 
-`checks.q_sample(my_q_sample)`, in the same cell as the reader's own function.
+A reader calls `checks.q_sample(my_q_sample)` in the cell of the function.
 
-Not attempted, likely mistake, or right: _report.py says how to write one. One file per notebook:
-nb02.py and so on.
+The check says that nothing was attempted, names the likely mistake, or says that the answer is
+right. _report.py says how to write one. There is one file for each notebook: nb02.py and so on.
 """
 
 import importlib
@@ -23,7 +23,7 @@ def load_all() -> dict[str, Check]:
 
 
 def __getattr__(name: str) -> Check:
-    """`checks.q_sample`: the files of checks are imported when the first check is asked for."""
+    """`checks.q_sample`: the files of checks are imported when the first check is used."""
     if name.startswith("_") or name in ("zoo",):
         raise AttributeError(name)
     known = load_all()

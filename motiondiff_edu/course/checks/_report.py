@@ -1,4 +1,4 @@
-"""How a check speaks: "not attempted yet", the likely mistake, or one line of content.
+"""What a check prints: "not attempted yet", the likely mistake, or one sentence about the result.
 
 To write one, put a plain function of `mine` (the reader's answer) into checks/nbXX.py:
 
@@ -11,18 +11,18 @@ To write one, put a plain function of `mine` (the reader's answer) into checks/n
                      mistakes={"take the square root of alpha_bar, too": 0.36 * x0 + 0.8 * noise})
         return "at alpha_bar = 0.36 six tenths of the signal are left."
 
-* The value it must have comes from somewhere else than the solution: by hand, closed form, torch,
-another's numbers.
-* `mistakes` maps what to tell the reader to the value it gives. Hint at the operation, do not give
-the line.
-* The sentence returned is printed when all is right; it says something worth knowing.
-* Sizes pairwise different (B=2, T=5, J=3), so that swapped axes are found. Fixed numbers or own
-generator; under 1 s.
+* The expected value does not come from the solution: work it out by hand, or take a closed form,
+torch, or published numbers.
+* `mistakes` maps a hint to the value that this mistake gives. The hint names the operation, not the
+line of code.
+* The returned sentence is printed when the answer is right. It says something worth knowing.
+* Sizes are pairwise different (B=2, T=5, J=3), so that swapped axes are found. Numbers are fixed,
+or come from the check's own generator. A check takes less than 1 s.
 * Wrong answers go to checks/zoo/nbXX.py. A test runs each check on the solution, the stub and the
 wrong answers.
 
-A stub raises NotImplementedError: that is reported, never raised, so that Run All passes over blank
-stubs.
+A stub raises NotImplementedError. The check reports it and does not raise it, so that Run All does
+not stop at empty stubs.
 """
 
 import functools
@@ -40,12 +40,12 @@ NOT_ATTEMPTED = "not attempted yet"
 
 
 class CheckFailed(AssertionError):
-    """An answer that is not right yet, with the likely mistake."""
+    """An answer is not right yet; the message names the likely mistake."""
 
     def _render_traceback_(self) -> list[str]:
-        """What IPython shows instead of a traceback through the check.
+        """The lines that IPython shows instead of a traceback through the check.
 
-        The message, and the reader's own lines.
+        They are the message, and the reader's own lines.
         """
         lines = [f"{type(self).__name__}: {self}"]
         if self.__cause__ is not None:
@@ -61,10 +61,10 @@ class CheckFailed(AssertionError):
 
 
 def check(function: Callable[[Any], str | None]) -> Check:
-    """Turn a plain function of `mine` into a check, and enter it in the register under its name.
+    """Turn a plain function of `mine` into a check, and register it under its name.
 
-    Raises CheckFailed for a wrong answer, also when the answer itself raises; ValueError when the
-    name is taken.
+    The check raises CheckFailed for a wrong answer, also when the answer itself raises.
+    Raises ValueError when the name is taken.
     """
     name = function.__name__
     if name in REGISTRY and REGISTRY[name].__module__ != function.__module__:
@@ -82,9 +82,9 @@ def check(function: Callable[[Any], str | None]) -> Check:
         except CheckFailed as error:
             raise CheckFailed(f"{name}: {error}") from None
         except Exception as error:
-            told = "".join(f" ({note})" for note in getattr(error, "__notes__", []))
+            notes = "".join(f" ({note})" for note in getattr(error, "__notes__", []))
             raise CheckFailed(
-                f"{name}: your answer raised {type(error).__name__}: {error}{told}"
+                f"{name}: your answer raised {type(error).__name__}: {error}{notes}"
             ) from error
         else:
             print(f"{name}: right. {content or ''}".rstrip())
@@ -94,7 +94,7 @@ def check(function: Callable[[Any], str | None]) -> Check:
 
 
 def _answering(mine: Any) -> Any:
-    """`mine`, which fails with the likeliest reason when nothing comes back."""
+    """`mine`, wrapped so that an answer of None fails with the likely reason."""
     if not callable(mine):
         return mine
 
@@ -112,7 +112,7 @@ def _answering(mine: Any) -> Any:
 
 
 def _shown(value: Any) -> str:
-    """An argument in a few words."""
+    """A short text for an argument."""
     if isinstance(value, torch.Tensor | np.ndarray) and value.ndim:
         return f"an array {tuple(value.shape)}"
     return reprlib.repr(value)
@@ -134,9 +134,8 @@ def expect_close(
 ) -> None:
     """Fail unless `got` equals `wanted`.
 
-    Name the mistake whose value it has, or else the place that is farthest off.
-
-    Numbers, lists, arrays and tensors are taken alike.
+    The message names the mistake that gives the same value, or else the entry with the largest
+    error. Numbers, lists, arrays and tensors are accepted.
     """
     expect(got is not None, f"{what}: your answer returns nothing; is a `return` missing?")
     mine, right = as_array(got), as_array(wanted)
@@ -150,7 +149,7 @@ def expect_close(
     expect(
         mine.shape == right.shape, f"{what} has shape {mine.shape}, and should have {right.shape}"
     )
-    expect(np.isfinite(mine).all(), f"{what} holds NaN or infinity")
+    expect(np.isfinite(mine).all(), f"{what} contains NaN or infinity")
     difference = np.abs(mine - right)
     where = np.unravel_index(difference.argmax(), difference.shape)
     place = f" at {tuple(int(i) for i in where)}" if where else ""

@@ -17,10 +17,10 @@ def lengths_of_bones(mine):
     neighbours = np.linalg.norm(np.diff(positions, axis=1), axis=-1)
     vectors = np.stack([positions[:, c] - positions[:, p] for p, c in bones], 1)
     mistakes = {
-        "these are squared lengths; the root is missing": wanted**2,
+        "these are squared lengths; the square root is missing": wanted**2,
         "a bone joins a joint to its parent, not to the joint before it in the list": neighbours,
         "sum over x, y, z, not over the frames": np.sqrt((vectors**2).sum(0)),
-        "these are sums of coordinates; how long is an arrow in space?": np.abs(vectors).sum(-1),
+        "these are sums of coordinates; how long is a vector in space?": np.abs(vectors).sum(-1),
     }
     expect_close(
         mine(positions, bones),
@@ -29,8 +29,7 @@ def lengths_of_bones(mine):
         mistakes,
     )
     return (
-        "Three coordinates hold a joint, one number should hold a bone: "
-        "nothing in 63 positions makes sure of it."
+        "A bone should have one length. Nothing in the 63 coordinates of a pose makes sure of that."
     )
 
 
@@ -38,7 +37,7 @@ def lengths_of_bones(mine):
 def place_in_world(mine):
     """Check mine(pose, x, z, heading).
 
-    Four joints, turned and moved, at headings whose sines are known.
+    The check turns and moves four joints, at headings whose sines are known.
     """
     pose = np.array([[0.0, 1.0, 0.0], [0.2, 1.5, 0.0], [0.0, 0.1, 0.3], [-0.1, 0.4, 0.05]])
     quarter = mine(pose, 2.0, 5.0, np.pi / 2)  # facing +x, so left is -z
@@ -48,10 +47,10 @@ def place_in_world(mine):
         "the figure turned clockwise; yaw is counter-clockwise seen from above": np.stack(
             [2 - z, y, 5 + x], -1
         ),
-        "turn the pose first, then move it: the root's place must not be turned": np.stack(
+        "turn the pose first, then move it: the root's position must not be turned": np.stack(
             [5 + z, y, -2 - x], -1
         ),
-        "the root's place is missing": np.stack([z, y, -x], -1),
+        "the root's position is missing": np.stack([z, y, -x], -1),
         "the pose was moved but not turned": pose + [2, 0, 5],
         "the height must stay as it is": np.stack([2 + z, 0 * y, 5 - x], -1),
     }
@@ -61,7 +60,7 @@ def place_in_world(mine):
     expect_close(
         eighth, np.stack([c * x + s * z, y, -s * x + c * z], -1), "a pose turned by 30 degrees"
     )
-    return "One turn and one shift a frame: that is all that separates the two frames."
+    return "One turn and one shift for each pose lead from the root frame to the world."
 
 
 def _small_walk():
@@ -78,8 +77,8 @@ def _expect_poses(seen, poses):
     mistakes = {
         "x is negated, but left and right must swap names too": poses[:, left_foot] * [-1, 1, 1],
         (
-            "the names are swapped, but nothing was seen in a mirror: "
-            "which coordinate changes sign?"
+            "left and right are swapped, but no coordinate has changed its sign: "
+            "which one does a mirror change?"
         ): poses[:, right_foot],
         "the wrong coordinate changes sign; x points to the left": poses[:, right_foot]
         * [1, 1, -1],
@@ -88,11 +87,7 @@ def _expect_poses(seen, poses):
         seen[:, left_foot], poses[:, right_foot] * [-1, 1, 1], "the mirrored left foot", mistakes
     )
     expect_close(seen[:, right_foot], poses[:, left_foot] * [-1, 1, 1], "the mirrored right foot")
-    stayed = {
-        "the central joints lie in the mirror's world, too: their x changes sign as well": poses[
-            :, neck
-        ]
-    }
+    stayed = {"the central joints are mirrored, too: their x changes sign as well": poses[:, neck]}
     expect_close(seen[:, neck], poses[:, neck] * [-1, 1, 1], "the mirrored neck", stayed)
 
 
@@ -117,4 +112,4 @@ def mirror_walk(mine):
         "a figure in a mirror still walks forwards": -control,
     }
     expect_close(answer[1], np.stack([forward, -aside, -yaw], -1), "the mirrored control", wrong)
-    return "Twice as much data for one sign and one permutation, if every joint takes part."
+    return "One sign and one permutation give twice as much data, if every joint takes part."

@@ -7,7 +7,7 @@ from ._report import check, expect, expect_close
 
 @check
 def q_sample(mine):
-    """mine(x0, s, alpha_bar, noise) at two steps, where the roots are round numbers."""
+    """mine(x0, s, alpha_bar, noise) at two steps whose square roots are round numbers."""
     x0 = torch.arange(30.0).reshape(2, 5, 3) / 10 - 1
     noise = torch.linspace(2, -1, 30).reshape(2, 5, 3)
     s, alpha_bar = torch.tensor([2, 1]), torch.tensor([1.0, 0.64, 0.36])
@@ -23,24 +23,24 @@ def q_sample(mine):
             "alpha_bar is a variance: amplitudes need its square root": mix(
                 [0.36, 0.64], [0.64, 0.36]
             ),
-            "the signal has its square root, the noise lacks it": mix([0.6, 0.8], [0.64, 0.36]),
-            "the signal lacks its square root": mix([0.36, 0.64], [0.8, 0.6]),
-            "signal and noise have changed places": mix([0.8, 0.6], [0.6, 0.8]),
-            "both samples have the step of the first one": mix([0.6, 0.6], [0.8, 0.8]),
+            "the signal has its square root, but the noise has none": mix([0.6, 0.8], [0.64, 0.36]),
+            "the square root of the signal is missing": mix([0.36, 0.64], [0.8, 0.6]),
+            "signal and noise are swapped": mix([0.8, 0.6], [0.6, 0.8]),
+            "both samples use the step of the first one": mix([0.6, 0.6], [0.8, 0.8]),
             "the table was read one row too low: alpha_bar[0] belongs to clean data": mix(
                 [0.8, 1.0], [0.6, 0.0]
             ),
         },
     )
     return (
-        "sample 0 keeps 60 % of its amplitude and gets 80 % of noise: "
-        "0.36 + 0.64 = 1, in variances."
+        "Sample 0 keeps 60 % of its amplitude and gets 80 % of the noise's: "
+        "as variances, 0.36 + 0.64 = 1."
     )
 
 
 @check
 def posterior(mine):
-    """Expected values by Bayes' rule on a grid, so that no formula is trusted."""
+    """The expected values come from Bayes' rule on a grid, not from a formula."""
     alpha_bar = torch.tensor([1.0, 0.9, 0.7, 0.4], dtype=torch.float64)
     s = 3
     x0 = 0.8
@@ -62,13 +62,13 @@ def posterior(mine):
         variance,
         "the variance of x_2",
         mistakes={
-            "that is beta_s, the variance of one step; what x0 knows must narrow it": 1 - alpha,
+            "that is beta_s, the variance of one step; knowing x0 makes it smaller": 1 - alpha,
             (
                 "x0 enters with the noise of step s; "
-                "it is known how it became x_{s-1}, so use alpha_bar[s - 1]"
+                "it must describe x_{s-1}, so use alpha_bar[s - 1]"
             ): 1 / (1 / 0.6 + alpha / (1 - alpha)),
             (
-                "x_s speaks of sqrt(alpha_s) x_{s-1}: "
+                "x_s measures sqrt(alpha_s) x_{s-1}: "
                 "divide it by sqrt(alpha_s), and its variance by alpha_s"
             ): 1 / (1 / (1 - before) + 1 / (1 - alpha)),
             "that is the standard deviation": variance**0.5,
@@ -79,16 +79,15 @@ def posterior(mine):
     unscaled = variance * (before**0.5 * x0 / (1 - before) + x_s / (1 - alpha))
     mistakes = {
         (
-            "x0 enters with the noise of step s; "
-            "it is known how it became x_{s-1}, so use alpha_bar[s - 1]"
+            "x0 enters with the noise of step s; it must describe x_{s-1}, so use alpha_bar[s - 1]"
         ): late,
         (
-            "x_s speaks of sqrt(alpha_s) x_{s-1}: "
+            "x_s measures sqrt(alpha_s) x_{s-1}: "
             "divide it by sqrt(alpha_s), and its variance by alpha_s"
         ): unscaled,
     }
     expect_close(answer[0], mean, "the mean of x_2", mistakes)
-    return f"knowing x0 narrows x_2 from +- {(1 - alpha) ** 0.5:.2f} to +- {variance**0.5:.2f}."
+    return f"Knowing x0 narrows x_2 from +- {(1 - alpha) ** 0.5:.2f} to +- {variance**0.5:.2f}."
 
 
 @check
@@ -106,12 +105,12 @@ def constant_beta(mine):
         expect(
             abs(amplitude - left**0.5) > 1e-6,
             (
-                f"with S = {S} it is the variance of which {left:g} is left; "
-                "the question was about the amplitude"
+                f"with S = {S} your beta leaves {left:g} of the variance; "
+                "the question is about the amplitude"
             ),
         )
         expect(
             abs(amplitude - left) < 1e-6,
-            f"with S = {S} your beta leaves {amplitude:.4g} of it, not {left:g}",
+            f"with S = {S} your beta leaves {amplitude:.4g} of the amplitude, not {left:g}",
         )
-    return "ten times the steps need about a tenth of the beta: noise adds up."
+    return "Ten times as many steps need about a tenth of the beta, because noise adds up."

@@ -9,7 +9,7 @@ from ._report import check, expect_close
 
 @check
 def best_guess(mine):
-    """Expected values by Bayes' rule, sample by sample, in plain Python."""
+    """The expected values come from Bayes' rule, sample by sample, in plain Python."""
     x_s = torch.tensor([[0.3, -0.2, 0.5], [-0.8, 0.1, 0.9]], dtype=torch.float64)
     data = torch.tensor(
         [[-1, 0, 0.4], [1, 0.5, -1], [0.2, -0.6, 1], [0, 1, 1.2]], dtype=torch.float64
@@ -41,31 +41,35 @@ def best_guess(mine):
             "the candidates must be shrunk by sqrt(alpha_bar) before they are compared": answer(
                 scale=lambda a: 1.0
             ),
-            "alpha_bar shrinks variances; the candidates shrink by its root": answer(
+            "alpha_bar scales variances; the candidates are scaled by its square root": answer(
                 scale=lambda a: a
             ),
-            "a Gaussian's exponent is divided by TWO variances": answer(spread=lambda a: 1 - a),
+            "a Gaussian's exponent is divided by TWICE the variance": answer(
+                spread=lambda a: 1 - a
+            ),
             "the noise in x_s has variance 1 - alpha_bar; that is missing in the exponent": answer(
                 spread=lambda a: 2.0
             ),
             "the exponent is divided by a standard deviation, not by the variance": answer(
                 spread=lambda a: 2 * math.sqrt(1 - a)
             ),
-            "the shares add up to 1 over the samples; they must over the candidates": answer(
+            "the weights add up to 1 over the samples; over the candidates they should": answer(
                 over_data=False
             ),
-            "both samples have the alpha_bar of the first": answer(order=(0, 0)),
-            "that is the plain mean of the data: nobody was weighed": data.mean(0).expand(2, 3),
+            "both samples use the alpha_bar of the first": answer(order=(0, 0)),
+            "that is the plain mean of the data: the candidates have no weights": data.mean(
+                0
+            ).expand(2, 3),
         },
     )
-    return "it is no row of the data: the best guess is a mean, and a mean need not be a sample."
+    return "The best guess is no row of the data: it is a mean, and a mean need not be a sample."
 
 
 @check
 def step_back(mine):
     """Check mine(x_s, s, eps_hat, beta, alpha_bar, z).
 
-    The tables have roots at s = 2 that are round numbers.
+    At s = 2 the square roots of the tables are round numbers.
     """
     beta = torch.tensor([0.0, 0.4375, 0.36])
     alpha_bar = torch.tensor([1.0, 0.5625, 0.36])
@@ -78,10 +82,10 @@ def step_back(mine):
         mean + 0.6 * z,
         "x_1",
         mistakes={
-            "noise is added by its variance; take the standard deviation": mean + 0.36 * z,
-            "no noise was added, but only the last step, s = 1, goes without": mean,
+            "the noise is multiplied by the variance; take the standard deviation": mean + 0.36 * z,
+            "no noise was added; only the last step, s = 1, adds none": mean,
             "the re-scaling by 1 / sqrt(alpha_s) is missing": x - 0.36 / 0.8 * eps + 0.6 * z,
-            "the whole noise was taken away; one step takes beta_s / sqrt(1 - alpha_bar_s) of it": (
+            "all the noise was removed; one step removes beta_s / sqrt(1 - alpha_bar_s) of it": (
                 x - 0.8 * eps
             )
             / 0.8
@@ -89,10 +93,10 @@ def step_back(mine):
             "divide by the root of 1 - alpha_bar_s, not by 1 - alpha_bar_s": (x - 0.36 / 0.64 * eps)
             / 0.8
             + 0.6 * z,
-            "the root of alpha_bar_s was taken for that of alpha_s": (x - 0.36 / 0.8 * eps) / 0.6
+            "this divides by the root of alpha_bar_s; take that of alpha_s": (x - 0.36 / 0.8 * eps)
+            / 0.6
             + 0.6 * z,
-            "the predicted noise was added; it is to be taken away": (x + 0.36 / 0.8 * eps) / 0.8
-            + 0.6 * z,
+            "the predicted noise was added; subtract it": (x + 0.36 / 0.8 * eps) / 0.8 + 0.6 * z,
         },
     )
     last = (x - 0.4375**0.5 * eps) / 0.75
@@ -100,16 +104,16 @@ def step_back(mine):
         mine(x, 1, eps, beta, alpha_bar, z),
         last,
         "x_0",
-        mistakes={"the last step adds no noise: samples would tremble": last + 0.4375**0.5 * z},
+        mistakes={"the last step adds no noise; otherwise samples tremble": last + 0.4375**0.5 * z},
     )
-    return "and at s = 1 the step lands on x0_hat itself."
+    return "At s = 1 the step lands on x0_hat itself."
 
 
 @check
 def leap(mine):
     """Check mine(x_s, eps_hat, alpha_bar_s, alpha_bar_r, eta, z).
 
-    One DDIM step, where the roots are round numbers.
+    The check takes one DDIM step whose square roots are round numbers.
     """
     now = 0.36
     then = 0.64
@@ -129,8 +133,8 @@ def leap(mine):
             + 0.6 * eps,
             "the predicted noise keeps the size it had at s; at r it is smaller": 0.8 * x0
             + 0.8 * eps,
-            "the predicted noise is gone; at r there is still some": 0.8 * x0,
-            "roots are missing: alpha_bar are variances": 0.64 * (x - 0.64 * eps) / 0.36
+            "the predicted noise is missing; at r there is still some": 0.8 * x0,
+            "square roots are missing: alpha_bar is a variance": 0.64 * (x - 0.64 * eps) / 0.36
             + 0.36 * eps,
         },
     )
@@ -140,9 +144,9 @@ def leap(mine):
         0.8 * x0 + (0.36 - variance) ** 0.5 * eps + variance**0.5 * z,
         "x_r for eta = 0.5",
         mistakes={
-            "the predicted noise must give up the variance that the fresh noise brings": sure
+            "fresh noise adds variance: the predicted noise must have less of it": sure
             + variance**0.5 * z,
-            "fresh noise enters by its standard deviation": 0.8 * x0
+            "the fresh noise is multiplied by its variance; take the standard deviation": 0.8 * x0
             + (0.36 - variance) ** 0.5 * eps
             + variance * z,
             "eta is squared in the variance": 0.8 * x0
@@ -153,4 +157,4 @@ def leap(mine):
     )
     everything = mine(x, eps, now, 1.0, 0.0, z)
     expect_close(everything, x0, "a leap to the end (alpha_bar = 1)")
-    return "a leap to the very end gives x0_hat: one-step DDIM shows an average."
+    return "A leap to the very end gives x0_hat: one-step DDIM shows an average."

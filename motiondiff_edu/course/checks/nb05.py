@@ -28,7 +28,7 @@ def back_to_x0(mine):
             "check the sign: x_s = a x0 + b eps, v = a eps - b x0": (
                 _convert(-output, x_s, a, b)[target]
             ),
-            "this is the noise, and x0 was asked for": {
+            "this is the noise; return x0": {
                 "eps": output,
                 "x0": (x_s - a * x0) / b,
                 "v": a * output + b * x_s,
@@ -38,10 +38,10 @@ def back_to_x0(mine):
         expect_close(
             mine(output, x_s, alpha_bar, target),
             x0,
-            f"x0 from a network that says {target}",
+            f"x0 from a network that predicts {target}",
             mistakes,
         )
-    return "One rotation by the angle whose cosine is a: that is all that separates the three."
+    return "The three targets differ by one rotation: its angle has the cosine a."
 
 
 def _convert(output, x_s, a, b) -> dict:
@@ -54,10 +54,12 @@ def averaged_weights(mine):
     means = [np.array([1.0, -2.0]), np.zeros(3)]
     new = [np.array([2.0, 2.0]), np.array([10.0, 0.0, -5.0])]
     got = mine(means, new, 0.9)
-    expect(got is not None, "nothing comes back; return the new list of averages")
+    expect(got is not None, "your answer returns nothing; return the new list of averages")
     expect(len(got) == 2, f"two arrays went in, {len(got)} came out")
     mistakes = {
-        "the shares are swapped: with decay 0.9 nine tenths stay": 0.1 * means[0] + 0.9 * new[0],
+        "the shares are swapped: with decay 0.9, nine tenths of the old average stay": 0.1
+        * means[0]
+        + 0.9 * new[0],
         "this adds the new weights in full; they get the share 1 - decay": 0.9 * means[0] + new[0],
         "this is the plain mean of the two": 0.5 * (means[0] + new[0]),
     }
@@ -73,13 +75,13 @@ def weight_between_losses(mine):
     alpha_bar = torch.tensor([0.9, 0.5, 0.2, 0.01])
     wanted = torch.tensor([1 / 9, 1.0, 4.0, 99.0])
     mistakes = {
-        "this turns an x0 loss into an eps loss: the other way round": 1 / wanted,
+        "this is the error of eps over that of x0; take the inverse": 1 / wanted,
         "the errors are squared, so the factor is squared, too": wanted.sqrt(),
-        "squared once too often: alpha_bar is already a square": wanted**2,
+        "this is squared once too often: alpha_bar is already a square": wanted**2,
         "x0_hat - x0 has a in the denominator as well": 1 - alpha_bar,
     }
     expect_close(mine(alpha_bar), wanted, "the weight at alpha_bar = 0.9, 0.5, 0.2, 0.01", mistakes)
     return (
-        "Choosing a target is choosing where to look: "
-        "an unweighted eps loss looks away from high noise."
+        "The target decides which steps count: "
+        "an unweighted eps loss gives little weight to high noise."
     )

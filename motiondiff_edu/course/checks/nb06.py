@@ -21,7 +21,7 @@ def attention_with_bias(mine):
     bias = 2 * _numbers(3, 5, seed=3)
     raw, scaled = q @ k.T, q @ k.T / 2
     mistakes = {
-        "something is missing under the scores: what does their size grow with?": (
+        "the scores are not divided by anything: what does their size grow with?": (
             raw + bias
         ).softmax(-1)
         @ v,
@@ -64,7 +64,7 @@ def split_into_heads(mine):
     got = mine(x, 3)
     mistakes = {
         (
-            "frames and channels got mixed: cut the channels, then move the heads to the front"
+            "frames and channels are mixed: split the channels, then move the heads to the front"
         ): x.reshape(2, 3, 5, 4),
         "a head owns neighbouring channels, not every third": x.reshape(2, 5, 4, 3).permute(
             0, 3, 1, 2
@@ -73,11 +73,11 @@ def split_into_heads(mine):
     flat = torch.as_tensor(got)
     expect(
         tuple(flat.shape) != (2, 5, 3, 4),
-        "the channels are cut well; the heads must come before the frames",
+        "the channels are split correctly; the heads must come before the frames",
     )
     expect(tuple(flat.shape) != (2, 4, 5, 3), "there are 3 heads of 4 channels, not 4 of 3")
     expect_close(got, wanted, "the heads of 12 channels", mistakes)
-    return "Heads cost nothing: the same numbers, read as several short vectors."
+    return "Heads cost nothing: they are the same numbers, read as several short vectors."
 
 
 @check
@@ -100,7 +100,7 @@ def relative_bias(mine):
     }
     got = mine(table, query, key)
     shape = tuple(torch.as_tensor(got).shape)
-    expect(shape != (2, 5, 3), "the values are looked up; the heads must come first: (H, T, M)")
+    expect(shape != (2, 5, 3), "the values are right; the heads must come first: (H, T, M)")
     expect(shape != (3, 5, 2), "queries are rows and keys are columns: (H, T, M)")
     expect_close(got, table[buckets].permute(2, 0, 1), "the bias of 2 queries and 5 keys", mistakes)
     return "The table knows only distances, so it also serves a window that begins elsewhere."

@@ -10,7 +10,7 @@ from ._report import check, expect, expect_close
 
 @check
 def hold_control(mine):
-    """mine(control, T_h): the row that takes the last past frame on, repeated to the end."""
+    """mine(control, T_h): the row that leads out of the last past frame, repeated to the end."""
     control = torch.arange(21.0).reshape(7, 3)
     before = control.clone()
     got = mine(control, 4)
@@ -19,19 +19,19 @@ def hold_control(mine):
     )
     wanted = torch.cat([before[:4], before[3:4].expand(3, 3)])
     mistakes = {
-        "one row too late: row T_h belongs to a step that nobody knows yet": _held(before, 4, 4),
+        "one row too late: row T_h is a step that is not known yet": _held(before, 4, 4),
         (
             "one row too early: the step into the first predicted frame is known, it is row T_h - 1"
         ): _held(before, 4, 2),
         "row T_h is a future row, too": torch.cat([before[:5], before[3:4].expand(2, 3)]),
-        "nothing is held yet": before,
+        "the control is unchanged: hold one row over the future": before,
         "the future is not zero, it repeats the last known step": torch.cat(
             [before[:4], torch.zeros(3, 3)]
         ),
-        "the past must stay as it was; only what comes is unknown": before[3:4].expand(7, 3),
+        "the past must stay as it was; only the future is unknown": before[3:4].expand(7, 3),
     }
     expect_close(got, wanted, "control of 7 frames, held after a past of 4", mistakes)
-    return "Whoever steers knows one step ahead: the one about to be taken."
+    return "The walker knows one step ahead: the step that it is about to take."
 
 
 def _held(control, T_h: int, row: int):
@@ -39,13 +39,13 @@ def _held(control, T_h: int, row: int):
 
 
 class _Recorder:
-    """A sampler that adds its control to the last pose, and remembers what it was given."""
+    """A sampler that adds its control to the last pose, and records its inputs."""
 
     def __init__(self, T_p: int):
-        self.T_p, self.asked = T_p, []
+        self.T_p, self.calls = T_p, []
 
     def __call__(self, past, control):
-        self.asked.append((past.clone(), control.clone()))
+        self.calls.append((past.clone(), control.clone()))
         future = past[:, -1:, :1] + torch.cumsum(control[:, -self.T_p :, :1], dim=1)
         return future.expand(-1, -1, past.shape[2])
 
@@ -54,7 +54,7 @@ class _Recorder:
 def rollout_by_hand(mine):
     """Check mine(sample, past, control, frames, T_p).
 
-    The sampler writes down what it was given.
+    The sampler records its inputs.
     """
     B = 2
     T_h = 4
@@ -69,14 +69,14 @@ def rollout_by_hand(mine):
     control = (10.0 ** torch.arange(T_h + frames))[None, :, None].expand(B, -1, C).contiguous()
     sample = _Recorder(T_p)
     got = mine(sample, past.clone(), control.clone(), frames, T_p)
-    expect(sample.asked, "the sampler was never asked")
-    _first_call(*sample.asked[0], past, control, T_h, T_p)
+    expect(sample.calls, "the sampler was never called")
+    _first_call(*sample.calls[0], past, control, T_h, T_p)
     often = (
-        f"the sampler was asked {len(sample.asked)} times for {frames} frames; "
+        f"the sampler was called {len(sample.calls)} times for {frames} frames; "
         "keep only the first pose of each window"
     )
-    expect(len(sample.asked) == frames, often)
-    shown = sample.asked[1][0]
+    expect(len(sample.calls) == frames, often)
+    shown = sample.calls[1][0]
     expect(
         not torch.equal(shown, past),
         "the second window still has the first past: append the pose that was kept",
@@ -89,10 +89,7 @@ def rollout_by_hand(mine):
     expect_close(shown, torch.cat([past[:, 1:], new[:, None]], 1), "the past of the second window")
     steps = torch.cumsum(control[:, T_h - 1 : T_h - 1 + frames], dim=1)
     expect_close(got, past[:, -1:] + steps.expand(-1, -1, D), "the poses of the rollout", rtol=1e-3)
-    return (
-        "Every pose it sees after ten frames is its own: "
-        "errors feed on themselves, and so does grace."
-    )
+    return "After ten frames the network sees only its own poses, so its errors can add up."
 
 
 def _first_call(past_seen, control_seen, past, control, T_h: int, T_p: int):

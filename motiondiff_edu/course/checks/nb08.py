@@ -63,28 +63,29 @@ def toe_slide(mine):
         "skating of two toes at 10 frames a second",
         mistakes={
             "a speed is per second: multiply by fps": slides.mean(),
-            "fps came in as 20; the argument was 10": 20 * slides.mean(),
-            "steps without a planted toe count as sliding by nothing; leave them out": 10
+            "you used 20 for fps; the argument was 10": 20 * slides.mean(),
+            "steps without a planted toe count as sliding of zero; leave them out": 10
             * slides.sum()
             / 8,
-            "both toes count; only the lower one is judged": 10 * frame_low[low].mean(),
-            "each toe under `below` counts; where both are, only the lower one is judged": 10
+            "both toes are counted; count only the lower one": 10 * frame_low[low].mean(),
+            "each toe under `below` is counted; where both are, count only the lower one": 10
             * frame_low[both < 0.03].mean(),
             "the height of a step is that of its higher end, not the mean of both": 10
             * slides_of(halfway, frame_low),
-            "the upper toe was judged": 10 * frame_low[np.arange(8), both.argmax(1)][low].mean(),
-            "steps in the air count, too; is a toe under `below`?": 10
+            "this is the higher toe; take the lower one": 10
+            * frame_low[np.arange(8), both.argmax(1)][low].mean(),
+            "steps in the air are counted, too; is a toe under `below`?": 10
             * frame_low[np.arange(8), both.argmin(1)].mean(),
-            "the toe is looked up at the first end of the step only": 10 * now.mean(),
-            "the slower toe was judged; but its speed is the question, so choose by height": 10
+            "the height is taken at the first end of the step only": 10 * now.mean(),
+            "this is the slower toe; speed is what we measure, so choose by height": 10
             * frame_low[low].min(1).mean(),
-            "going up is no sliding: only x and z": 10
+            "upward movement is no sliding: use only x and z": 10
             * whole[np.arange(8), both.argmin(1)][low].mean(),
         },
     )
     still = np.zeros((4, 2, 3))
     expect_close(mine(still, fps=20, below=0.03), 0.0, "skating of toes that stand still")
-    return "half of the steps here are in the air, and say nothing about sliding."
+    return "Half of the steps here are in the air, and say nothing about sliding."
 
 
 @check
@@ -99,22 +100,22 @@ def merge_steps(mine):
     one = pairs(mine(list(runs), 1))
     expect(
         one != [(0, 5), (6, 9), (13, 14), (17, 20)],
-        "three crumbs in a row must become one step, yours made two",
+        "three short runs in a row must become one step; yours made two",
     )
     expect(one != runs, "a gap of exactly `gap` frames is closed as well")
     expect(one != [(0, 9), (17, 20)] and one != [(0, 9), (13, 14)], "a step is missing at the end")
     expect(
         one == [(0, 9), (13, 14), (17, 20)],
-        f"of {runs} with gap 1 you make {one}; the gaps are 1, 1, 4 and 3 frames wide",
+        f"from {runs} with gap 1 you make {one}; the gaps are 1, 1, 4 and 3 frames wide",
     )
     wide = pairs(mine(list(runs), 3))
     expect(
         wide == [(0, 9), (13, 20)],
-        f"of {runs} with gap 3 you make {wide}; the gaps are 1, 1, 4 and 3 frames wide",
+        f"from {runs} with gap 3 you make {wide}; the gaps are 1, 1, 4 and 3 frames wide",
     )
     expect(pairs(mine(list(runs), 0)) == runs, "with gap 0 nothing here may be joined")
     expect(pairs(mine([], 2)) == [], "without runs there is nothing to join: return an empty list")
     kept = list(runs)
     mine(kept, 4)
     expect(kept == runs, "your function changes the list it was given; build a new one")
-    return "now a single noisy frame no longer makes two steps out of one."
+    return "Now a single noisy frame no longer turns one step into two."

@@ -28,7 +28,7 @@ def batch_with_dropout(mine):
     seen, x_s = _two(mine(*given, s, ALPHA_BAR, rate, u, noise))
     expect(
         torch.equal(given[0], past) and torch.equal(given[1], future),
-        "the data themselves were changed; put what is noised into arrays of its own",
+        "the data themselves were changed; write the noised values into new arrays",
     )
     again = _two(mine(past.clone(), future.clone(), s, ALPHA_BAR, rate, u, noise))
     expect(
@@ -45,11 +45,11 @@ def batch_with_dropout(mine):
     b = torch.tensor([0.8, 0.6, 0.96, 0.8]).double()[:, None, None]
     hit = torch.tensor([True, False, True, False])[:, None, None]
     mistakes = {
-        "past and future change places in what you return": torch.where(
+        "past and future are swapped in what you return": torch.where(
             hit, a * past + b * second, past
         ),
         "the first noise belongs to the future, the second to the past": a * future + b * second,
-        "the future is noised always, not with probability `rate`": torch.where(
+        "the future is always noised, not with probability `rate`": torch.where(
             hit, a * future + b * first, future
         ),
         **_wrong_noise(future, first, a, b),
@@ -61,25 +61,25 @@ def batch_with_dropout(mine):
             False,
             (
                 "some frames of a past were noised and others not; "
-                "one u decides over the whole past of a sample"
+                "one u decides for the whole past of a sample"
             ),
         )
     noised = a * past + b * second
     mistakes = {
-        "the mask is inverted: `u < rate` are the few that are noised": torch.where(
+        "the mask is inverted: the pasts with `u < rate` are noised": torch.where(
             hit, past, noised
         ),
-        (
-            "every past is noised; each sample has its own u, and only those with u < rate are hit"
-        ): noised,
-        "nothing is dropped yet": past,
+        ("every past is noised; each sample has its own u, and only u < rate means noise"): noised,
+        "no past is noised yet": past,
         (
             "past and future have the same noise: the network could read the answer off the past"
         ): torch.where(hit, a * past + b * first, past),
-        "this is zeroing: eq. 12 shrinks and adds noise": torch.where(hit, 0 * past, past),
-        "nothing is divided by 1 - rate: that is nn.Dropout": torch.where(hit, noised, past)
+        "this sets the past to zero; eq. 12 scales it and adds noise": torch.where(
+            hit, 0 * past, past
+        ),
+        "do not divide by 1 - rate: only nn.Dropout does that": torch.where(hit, noised, past)
         / (1 - rate),
-        "those that are not hit stay as they are; dividing by 1 - rate is nn.Dropout": torch.where(
+        "pasts without noise stay as they are: only nn.Dropout divides by 1 - rate": torch.where(
             hit, noised, past / (1 - rate)
         ),
         **{
@@ -89,8 +89,8 @@ def batch_with_dropout(mine):
     }
     expect_close(seen, torch.where(hit, noised, past), "the past as the network sees it", mistakes)
     return (
-        "Sample by sample, whole pasts, noise of their own: "
-        "three things that are easily got wrong without a sound."
+        "Each sample decides for itself, its whole past is noised, and the noise is its own: "
+        "a mistake in any of these three raises no error."
     )
 
 
@@ -112,11 +112,11 @@ def _wrong_noise(x, noise, a, b) -> dict:
     """Eq. 12 on all samples, with one thing wrong in each."""
     early = torch.tensor([0.8, 1.0, 0.6, 0.8]).double()[:, None, None]
     return {
-        "roots are missing: alpha_bar is a share of power, not of amplitude": a**2 * x
+        "square roots are missing: alpha_bar is a share of power, not of amplitude": a**2 * x
         + b**2 * noise,
         "the root of alpha_bar is missing": a**2 * x + b * noise,
         "the root of 1 - alpha_bar is missing": a * x + b**2 * noise,
-        "the signal is not shrunk: it is multiplied by the root of alpha_bar": x + b * noise,
+        "the signal is not scaled: multiply it by the root of alpha_bar": x + b * noise,
         "the noise is missing": a * x,
         "the noise is added, not subtracted": a * x - b * noise,
         "every sample has its own step; this uses the first one's for all": 0.6 * x + 0.8 * noise,
@@ -129,7 +129,7 @@ def _wrong_noise(x, noise, a, b) -> dict:
 def dropped_products(mine):
     """Check mine(xx, past, rate, alpha_bar).
 
-    2 past entries and 1 of control, worked out for two steps and a rate of 1/2.
+    There are 2 entries of the past and 1 of the control; the rate is 1/2, with two steps.
     """
     xx = torch.tensor([[2.0, 0.5, 1.0], [0.5, 3.0, -1.0], [1.0, -1.0, 4.0]], dtype=torch.float64)
     alpha_bar, rate = ALPHA_BAR[1:3], 0.5  # roots 0.8 and 0.6
@@ -148,26 +148,26 @@ def dropped_products(mine):
         "this is the root of the mean; take the mean of the roots": _products(
             xx, 0.5 + 0.5 * 0.5**0.5, 0.75, 0.25
         ),
-        "past times control shrinks as well": _products(xx, 1.0, 0.75, 0.25),
-        "past times past holds the mean of squares, not the square of the mean root": _products(
+        "past times control is scaled as well": _products(xx, 1.0, 0.75, 0.25),
+        "past times past has the mean of squares, not the square of the mean root": _products(
             xx, 0.85, 0.85**2, 0.25
         ),
         "the variance of the noise is added, whatever the noise's sign": _products(
             xx, 0.85, 0.75, -0.25
         ),
-        "past times past is not shrunk": _products(xx, 0.85, 1.0, 0.25),
-        "the noise is missing: its variance stands on the diagonal": _products(xx, 0.85, 0.75, 0.0),
+        "past times past is not scaled": _products(xx, 0.85, 1.0, 0.25),
+        "the noise is missing: add its variance on the diagonal": _products(xx, 0.85, 0.75, 0.0),
         "only a share `rate` of the pasts is noised": _products(xx, 0.7, 0.5, 0.5),
-        "the noise comes with probability `rate`, too": _products(xx, 0.85, 0.75, 0.5),
+        "the noise is there only with probability `rate`, too": _products(xx, 0.85, 0.75, 0.5),
         "the variance of the noise is 1 - alpha_bar, without a root": _products(
             xx, 0.85, 0.75, 0.5 * 0.7
         ),
         "the mask is inverted: 1 - rate of the pasts are clean": _products(
             xx, 0.5 + 0.5 * 0.7, 0.75, 0.75
         ),
-        "the noise is in the past alone; the control's diagonal stays": wanted
+        "only the past has noise; the control's diagonal stays": wanted
         + torch.diag(torch.tensor([0, 0, 0.25])),
-        "independent noises: only the diagonal gets their variance": wanted
+        "the noises are independent: only the diagonal gets their variance": wanted
         + 0.25 * torch.tensor([[0.0, 1, 0], [1, 0, 0], [0, 0, 0]]),
         "the control is never dropped: its products stay": torch.diag(
             torch.tensor([0.25, 0.25, 0.0])
@@ -176,11 +176,11 @@ def dropped_products(mine):
     }
     expect_close(got, wanted, "the products of half-dropped pasts", mistakes)
     few = mine(xx, 2, 0.25, torch.tensor([0.36], dtype=torch.float64))
-    wrong = {"1 - rate and rate have changed places": _products(xx, 0.7, 0.52, 0.48)}
+    wrong = {"1 - rate and rate are swapped": _products(xx, 0.7, 0.52, 0.48)}
     expect_close(
         few, _products(xx, 0.9, 0.84, 0.16), "the products at a rate of 1/4 and one step", wrong
     )
-    return "Least squares sees no more of the noise than this: a diagonal, that is, a ridge."
+    return "For least squares, the noise is no more than a diagonal: a ridge."
 
 
 def _products(xx, keep: float, share: float, floor: float):
@@ -204,14 +204,14 @@ def rate_schedule(mine):
         "the rate jumps to the last one at once; it rises step by step": torch.where(
             steps > 0, 0.4, 0.0
         ),
-        "the rates are passed through from the highest down": torch.tensor(
+        "the rates go down from the highest one; they should rise": torch.tensor(
             [0, 0, 0.4, 0.4, 0.2, 0.2, 0.1, 0.1]
         ),
-        "the rate rises in steps, it does not glide": evenly,
+        "the rate rises in steps, not continuously": evenly,
         (
-            "the first rate never comes, or comes too late: each has a third of what is left"
+            "the first rate is missing, or comes too late: each rate has a third of the time left"
         ): torch.tensor([0, 0, 0, 0, 0.1, 0.1, 0.2, 0.2]),
-        "the rates share what is left after `start`, not the whole training": torch.tensor(
+        "the rates share the time after `start`, not the whole training": torch.tensor(
             [0, 0, 0.2, 0.2, 0.2, 0.4, 0.4, 0.4]
         ),
         "the rates are 0 after `start` and not before it": torch.tensor(
@@ -227,10 +227,10 @@ def rate_schedule(mine):
     expect_close(
         mine(1.0, rates, 0.4),
         0.4,
-        "the rate when all is done",
-        {"no rate comes after the last": 0.0},
+        "the rate at the end of training",
+        {"the last rate stays until the end": 0.0},
     )
     return (
         "With the paper's rates, .05 to .25, and start = .5, "
-        "half of the training never meets a noised past."
+        "half of the training has no noised pasts."
     )

@@ -9,9 +9,9 @@ T_H = 3
 
 
 def walk_on(past: torch.Tensor, control: torch.Tensor) -> torch.Tensor:
-    """A walker of two numbers, (B, 3, 2).
+    """A walker whose pose is two numbers, (B, 3, 2).
 
-    One goes ahead with column 0 of the control, one turns with column 2.
+    Column 0 of the control changes the first number, column 2 the second.
     """
     steps = control[:, T_H - 1 : 2 * T_H - 1][..., [0, 2]]
     return past[:, -1:] + steps.cumsum(1)
@@ -20,7 +20,7 @@ def walk_on(past: torch.Tensor, control: torch.Tensor) -> torch.Tensor:
 class Watched:
     """A `walk_on` that counts its calls.
 
-    It refuses a past or a control that is cut short.
+    It refuses a past or a control that is too short.
     """
 
     def __init__(self):
@@ -32,16 +32,13 @@ class Watched:
         call = f"call {self.calls} of walk_on got"
         expect(
             past.shape == (2, T_H, 2),
-            (
-                f"{call} a past {tuple(past.shape)}; "
-                f"it goes on from all T_h = {T_H} frames, (2, {T_H}, 2)"
-            ),
+            (f"{call} a past {tuple(past.shape)}; it needs all T_h = {T_H} frames, (2, {T_H}, 2)"),
         )
         expect(
             control.shape == (2, 2 * T_H, 3),
             (
-                f"{call} {rows} rows of control, and takes all {2 * T_H}: "
-                f"{T_H} beside the past, {T_H} for the new frames"
+                f"{call} {rows} rows of control; it needs all {2 * T_H}: "
+                f"{T_H} for the past, {T_H} for the new frames"
             ),
         )
         return walk_on(past, control)
@@ -54,7 +51,7 @@ def back_in_time(control: torch.Tensor) -> torch.Tensor:
 
 
 def one_round(past, known, start, control, reverse=back_in_time, flip_ahead=True, flip_back=True):
-    """There and back on filled holes: what the walker finds for each of the past frames."""
+    """One round from the filled past: what the walker gives for each of the past frames."""
     filled = torch.where(known, past, start)
     ahead = walk_on(filled, control)
     back = walk_on(ahead.flip(1) if flip_ahead else ahead, reverse(control))
@@ -62,14 +59,11 @@ def one_round(past, known, start, control, reverse=back_in_time, flip_ahead=True
 
 
 def material():
-    """What the checks of repairs need, worked out by hand.
+    """Past with NaN in its holes, mask, mean pose, control, and the result of one round.
 
-    Past with NaN in its holes, mask, mean pose, control, and what a round there and back makes of
-    them.
-
-    Sample 0 knows its last frame: the way there ends at (12, 14.25), and the way back goes through
-    the true places. Sample 1 knows only the first number there: the other starts at its mean 9 and
-    walks to 9 again.
+    All are worked out by hand. The last frame of sample 0 is known: the way there ends at
+    (12, 14.25), and the way back goes through the true places. In the last frame of sample 1 only
+    the first number is known: the other starts at its mean 9 and comes back to 9.
     """
     nan = float("nan")
     past = torch.tensor(
@@ -101,17 +95,17 @@ def time_reversal(mine):
         wanted,
         "the control of two walks, played backwards",
         mistakes={
-            "only the order is reversed; who walks backwards has a negative speed": flipped,
+            "only the order is reversed; a walk backwards has a negative speed": flipped,
             (
                 "the signs are right; but control[t] leads from frame t to t + 1, "
-                "so one row has moved"
+                "so the rows move by one"
             ): -flipped,
             "order and shift are right, the signs are not": -wanted,
-            "turning has a sign, too: who turned left turns right on the way back": wanted
+            "turning has a sign, too: a left turn is a right turn on the way back": wanted
             * torch.tensor([1, 1, -1.0]),
             "speed to the left has a sign, too": wanted * torch.tensor([1, -1.0, 1]),
             "the last row repeats the one before, it is not zero": last,
-            "the signs are right, but in the old order": -control,
+            "the signs are right, but the rows are in the old order": -control,
             "nothing has changed": kept,
             "the sample axis was reversed; time is axis 1": wanted.flip(0),
         },
@@ -120,7 +114,7 @@ def time_reversal(mine):
         torch.equal(control, kept),
         "your function changes the control it was given; build a new one",
     )
-    return "backwards in time, all three velocities change their sign, and all rows move by one."
+    return "Backwards in time, all three velocities change their sign, and all rows move by one."
 
 
 @check
@@ -141,14 +135,14 @@ def there_and_back(mine):
     answer = torch.as_tensor(answer)
     expect(
         not torch.isnan(answer[~known]).any(),
-        "there is NaN in the holes. The walker was given NaN, or the holes were not filled from "
+        "there is NaN in the holes. Either the walker got NaN, or the holes were not filled from "
         "the way back (known * past is NaN, too: use torch.where)",
     )
     expect(
         watched.calls == 2,
         (
             f"calls of walk_on: {watched.calls}; one round takes two: "
-            "there, and back from where that led"
+            "there, and back from the result"
         ),
     )
 
@@ -173,27 +167,29 @@ def there_and_back(mine):
             "turning (column 2) keeps its sign on your way back": variant(
                 reverse=lambda c: back_in_time(c) * torch.tensor([1, 1, -1.0])
             ),
-            "the new frames go back into the walker in their old order": variant(flip_ahead=False),
-            "what comes back runs backwards in time; turn it round before you fill": variant(
+            "the new frames are not reversed before they go into the walker again": variant(
+                flip_ahead=False
+            ),
+            "the result of the way back is reversed in time; reverse it before you fill": variant(
                 flip_back=False
             ),
-            "time was never turned round: walking on twice leads farther ahead": variant(
+            "time was never reversed: walking on twice leads farther ahead": variant(
                 flip_ahead=False, flip_back=False
             ),
             (
-                "time was never turned round, nor the control: walking on twice leads farther ahead"
+                "neither time nor the control was reversed: walking on twice leads farther ahead"
             ): variant(reverse=lambda c: c, flip_ahead=False, flip_back=False),
-            "the mask is the wrong way round: known is True where something was given": torch.where(
+            "the mask is inverted: known is True where something was given": torch.where(
                 known, right, torch.where(known, past, mean)
             ),
-            "what was given is overwritten by what the walker made": right,
+            "the given entries are overwritten by the walker's": right,
             "holes start at 0 metres, which is on the floor; start them at the mean pose": zero,
-            "the holes still hold what they were started with": torch.where(known, past, mean),
+            "the holes still have their starting values": torch.where(known, past, mean),
         },
     )
     return (
-        "one number of sample 1 is still its mean: "
-        "this walker has no idea of a body that would tell it better."
+        "One number of sample 1 is still its mean: "
+        "this walker has learnt nothing about bodies that could improve it."
     )
 
 
@@ -219,16 +215,18 @@ def moved_by(mine):
         "the change of two samples",
         mistakes={
             "that is the mean of squares; take its root": [25 / 3, 25.0],
-            "what is known counts, too; it is put back anyhow": moved.flatten(1).mean(1).sqrt(),
+            "known entries are counted, too; measure only the holes": moved.flatten(1)
+            .mean(1)
+            .sqrt(),
             "the known entries were measured instead of the holes": (moved * known)
             .flatten(1)
             .sum(1)
             .sqrt()
             / known.flatten(1).sum(1).sqrt(),
-            "it is divided by all entries; divide by the number of holes": (
+            "this is divided by the number of all entries; divide by the number of holes": (
                 (moved * missing).flatten(1).mean(1)
             ).sqrt(),
-            "one number came for both samples; each stops for itself": (
+            "this is one number for both samples; return one for each": (
                 moved[missing].mean()
             ).sqrt(),
             "that is the mean distance; the rule takes the root of the mean square": [7 / 3, 4.0],
@@ -245,4 +243,4 @@ def moved_by(mine):
         torch.equal(torch.as_tensor(whole), torch.zeros(2)),
         "where nothing is missing the change is 0; yours is not (0 / 0?)",
     )
-    return "each sample is asked by itself, but the loop goes on until all have come to rest."
+    return "Each sample has its own change, but the loop runs until all of them are small."

@@ -23,7 +23,7 @@ def _shifted(x: torch.Tensor, by: int) -> torch.Tensor:
 @check
 def frame_conv(mine):
     """mine(x, weight, bias, stride) against PyTorch's conv1d."""
-    # 7 frames of 2, answers of 4
+    # 7 frames of 2 numbers in, of 4 numbers out
     x = _numbers(7, 2)
     weight = _numbers(4, 6, seed=1)
     bias = _numbers(4, seed=2)
@@ -40,18 +40,18 @@ def frame_conv(mine):
             f"this looks into the future only: {middle}": mixed(x, after, _shifted(x, 2)),
             f"this looks into the past only: {middle}": mixed(_shifted(x, -2), before, x),
             (
-                "before and after are exchanged: "
+                "the frames before and after are swapped: "
                 "the first third of the weights belongs to the frame before"
             ): mixed(after, x, before),
-            "it wraps around: before the first frame comes not the last one, but zeros": mixed(
+            "this wraps around: before the first frame there are zeros, not the last frame": mixed(
                 x.roll(1, 0), x, x.roll(-1, 0)
             ),
-            "beyond both ends are zeros, and not the first and the last frame once more": mixed(
+            "beyond both ends there are zeros, not copies of the first and the last frame": mixed(
                 torch.cat([x[:1], x[:-1]]), x, torch.cat([x[1:], x[-1:]])
             ),
             (
-                "these columns go channel by channel; "
-                "the weights want one frame whole, then the next"
+                "these columns are ordered by channel; "
+                "the weights expect one whole frame, then the next"
             ): mixed(torch.stack([before, x, after], -1).flatten(1)),
         }
         mistakes = {hint: wrong[::stride] for hint, wrong in same_length.items()} | {
@@ -60,52 +60,50 @@ def frame_conv(mine):
         if stride == 2:
             whole = mixed(before, x, after)
             mistakes |= {
-                "every second frame is kept, the *first* one included": whole[1::2],
+                "keep every second frame, and begin with the *first* one": whole[1::2],
                 "the stride is not used": whole,
                 (
-                    "neighbours first, then every second answer: "
-                    "here the frames between were never seen"
+                    "take the neighbours first, then every second result: "
+                    "here the frames between are never used"
                 ): (mixed(_shifted(x[::2], -1), x[::2], _shifted(x[::2], 1))),
-                "the last frame got lost: of 7 frames, every second kept, 4 are left": whole[::2][
-                    :3
-                ],
+                "the last frame is missing: every second one of 7 frames makes 4": whole[::2][:3],
             }
         expect_close(
             mine(x, weight, bias, stride),
             wanted,
-            f"the answer for 7 frames and stride {stride}",
+            f"the output for 7 frames and stride {stride}",
             mistakes,
         )
-    return "Three frames in, one out; the same weights at every moment, so that any length will do."
+    return "Three frames go in, one comes out. All use the same weights: so any length will do."
 
 
 @check
 def any_length(mine):
     """Check mine(network, x, multiple).
 
-    The network knows where each frame lies, and what comes after it.
+    The network of this check depends on each frame's position, and on all other frames.
     """
 
-    def sums(x):  # what is put before the motion, cut off it, or filled in behind it shows
+    def sums(x):  # shows whether frames were added before or after the motion, or cut off
         return x.cumsum(1) + x.sum(1, keepdim=True) + torch.arange(x.shape[1])[:, None]
 
     for T, multiple in ((13, 8), (16, 8), (1, 8), (3, 4)):
-        x, asked = _numbers(2, T, 3, seed=T), []
+        x, lengths = _numbers(2, T, 3, seed=T), []
 
-        def network(x, asked=asked, multiple=multiple):
-            asked.append(x.shape[1])
+        def network(x, lengths=lengths, multiple=multiple):
+            lengths.append(x.shape[1])
             expect(
                 x.shape[0] == 2 and x.shape[2] == 3,
                 (
                     f"the network was given {tuple(x.shape)}: "
-                    "it is the frames, axis 1 of (B, T, D), that are filled up"
+                    "add the zeros to the frames, axis 1 of (B, T, D)"
                 ),
             )
             expect(
                 x.shape[1] % multiple == 0,
                 (
                     f"the network was given {x.shape[1]} frames, no multiple of {multiple}: "
-                    "fill up before you ask"
+                    "fill up before you call it"
                 ),
             )
             return sums(x)
@@ -115,35 +113,35 @@ def any_length(mine):
         whole = sums(F.pad(x, (0, 0, 0, more - T)))
         late = sums(F.pad(x, (0, 0, more - T, 0)))
         held = sums(torch.cat([x, x[:, -1:].expand(-1, more - T, -1)], 1))[:, :T]
-        moved = "fill up behind the motion: before it, every frame moves to another time"
-        expect(bool(asked), "the network was not asked at all")
+        moved = "add the zeros after the motion: before it, they move every frame to another time"
+        expect(bool(lengths), "the network was not called at all")
         expect(
             got.shape[1] >= T,
-            f"{T} frames came in and {got.shape[1]} went out: the last ones got lost",
+            f"{T} frames came in and {got.shape[1]} came out: the last ones are missing",
         )
         expect(
             got.shape[1] == T,
-            f"{T} frames came in and {got.shape[1]} went out: crop what was filled up",
+            f"{T} frames came in and {got.shape[1]} came out: cut off what you added",
         )
-        expect(asked[-1] == more, f"{T} frames need {more - T} more, and not {asked[-1] - T}")
+        expect(lengths[-1] == more, f"{T} frames need {more - T} more, not {lengths[-1] - T}")
         mistakes = {
             moved: late[:, :T],
-            f"{moved}, also when the crop brings it back": late[:, more - T :],
-            "crop at the end, not at the start": whole[:, more - T :],
-            "fill up with zeros: the last frame once more says that the dancer freezes": held,
+            f"{moved}, even if you cut them off again": late[:, more - T :],
+            "cut off at the end, not at the start": whole[:, more - T :],
+            "fill up with zeros: copies of the last frame mean that the dancer freezes": held,
         }
         expect_close(
-            got, sums(x), f"the answer for {T} frames and multiples of {multiple}", mistakes
+            got, sums(x), f"the output for {T} frames and multiples of {multiple}", mistakes
         )
     return (
-        "In the library the filling is masked as well, "
-        "so that attention and neighbours never see it."
+        "The library also masks the added frames, "
+        "so that attention and convolutions never see them."
     )
 
 
 @check
 def clocks(mine):
-    """mine(q, k, fps_q, fps_k, f) against cosines of the time between."""
+    """mine(q, k, fps_q, fps_k, f) against cosines of the time differences."""
     q, k = _numbers(5, 4), _numbers(7, 4, seed=1)  # 5 frames, 7 tokens, two pairs
     fps_q = 20.0
     fps_k = 15.625
@@ -167,21 +165,19 @@ def clocks(mine):
     mistakes = {
         (
             "these are indices: divide each by its own rate, "
-            "for only seconds mean the same on both sides"
+            "because only seconds mean the same on both sides"
         ): weights(turn * n, turn * m),
-        "both sides were counted by the motion's clock; the tokens have their own": weights(
-            t, turn * m / fps_q
-        ),
-        "both sides were counted by the tokens' clock; the motion has its own": weights(
-            turn * n / fps_k, u
-        ),
+        "both sides use the motion's rate; the tokens have their own": weights(t, turn * m / fps_q),
+        "both sides use the tokens' rate; the motion has its own": weights(turn * n / fps_k, u),
         "frame n is at n / fps seconds: divide by the rate": weights(
             turn * n * fps_q, turn * m * fps_k
         ),
-        "the rates are exchanged": weights(turn * n / fps_k, turn * m / fps_q),
+        "the rates are swapped": weights(turn * n / fps_k, turn * m / fps_q),
         "only the queries are turned": weights(t, 0 * u),
         "only the keys are turned": weights(0 * t, u),
-        "queries and keys turn against one another: turn both the same way": weights(t, -u),
+        "queries and keys are turned in opposite directions: turn both the same way": weights(
+            t, -u
+        ),
         "a whole turn is 2 pi": weights(t / turn, u / turn),
         "the scores are not divided by the root of d": weights(t, u, root=1.0),
         "divide by the root of d, not by d": weights(t, u, root=4.0),
@@ -198,6 +194,5 @@ def clocks(mine):
         mistakes,
     )
     return (
-        "A minute later on both clocks, and every weight is the same: "
-        "only the time between them counts."
+        "A minute later on both clocks, every weight is the same: only the time difference counts."
     )

@@ -12,7 +12,7 @@ from ._report import check, expect_close
 def x0_hat(mine):
     """Check mine(x_s, s, eps_hat, alpha_bar).
 
-    x0 comes back when eps_hat is right, each sample with its own step.
+    With the right eps_hat the result is x0. Each sample has its own step.
     """
     # a, b by step: (1, 0), (0.8, 0.6), (0.6, 0.8), (0.28, 0.96)
     alpha_bar = torch.tensor([1.0, 0.64, 0.36, 0.0784], dtype=torch.float64)
@@ -33,21 +33,20 @@ def x0_hat(mine):
             [x_s[0], (x_s[1] - 0.6 * eps[1]) / 0.8]
         ),
         "every sample has its own step; this uses the first one's for all": (x_s - 0.6 * eps) / 0.8,
-        "roots are missing": x_s / a**2 - (b / a) ** 2 * eps,
+        "the square roots are missing": x_s / a**2 - (b / a) ** 2 * eps,
         "the first root is missing": x_s / a**2 - b / a * eps,
-        "what is divided by the root of alpha_bar is x_s and the noise, not x_s alone": x_s / a
-        - b * eps,
+        "divide both x_s and the noise by the root of alpha_bar, not x_s alone": x_s / a - b * eps,
         "the root of 1 / alpha_bar - 1 is missing": x_s / a - (b / a) ** 2 * eps,
-        "the noise came in with a plus, so it is taken away": x_s / a + b / a * eps,
-        "undo the mixing completely: the signal was made smaller, too": x_s - b * eps,
+        "the noise was added, so it is subtracted": x_s / a + b / a * eps,
+        "undo the mixing completely: the signal was scaled down, too": x_s - b * eps,
     }
     expect_close(mine(x_s, s, eps, alpha_bar), x0, "x0_hat of a right eps_hat", mistakes)
-    return "An error of eps_hat arrives here b / a times as large, and b / a has no upper limit."
+    return "An error of eps_hat becomes b / a times as large here, and b / a has no upper limit."
 
 
 @check
 def skeleton_loss(mine):
-    """mine(lengths) of one motion (T, K): worked out by hand, and by torch.var."""
+    """mine(lengths) of one motion (T, K); expected values by hand, and from torch.var."""
     lengths = torch.tensor(
         [[2.0, 5.0, 3.5], [1.0, 2.0, 4.0], [3.0, 2.0, 4.5], [2.0, 3.0, 4.0], [2.0, 3.0, 4.0]]
     )
@@ -60,38 +59,38 @@ def skeleton_loss(mine):
         ): lengths.var(1).mean(),
         "divide by the number of frames minus one": lengths.var(0, correction=0).mean(),
         "this is the standard deviation; equation 6 has no root": lengths.std(0).mean(),
-        "the bones are averaged, not added up": lengths.var(0).sum(),
+        "average over the bones, do not add them up": lengths.var(0).sum(),
         "this is the variance of all lengths together; each bone has a mean of its own": (
             lengths.var()
         ),
-        "one mean for all bones: each bone has a mean of its own": ((lengths - lengths.mean()) ** 2)
+        "there is one mean for all bones here: each bone has a mean of its own": (
+            (lengths - lengths.mean()) ** 2
+        )
         .sum(0)
         .mean()
         / 4,
-        "the bones' mean is missing: this is one number for each bone": lengths.var(0),
+        "the mean over the bones is missing: this is one number for each bone": lengths.var(0),
         "these are squared lengths; take the length itself": (lengths**2).var(0).mean(),
         "this compares with the first frame; compare with the mean": ((lengths - lengths[0]) ** 2)
         .sum(0)
         .mean()
         / 4,
         "the deviations are not squared": off.abs().sum(0).mean() / 4,
-        "lengths are compared as one frame with the next; compare with the mean": (
+        "this compares each frame with the next; compare with the mean": (
             lengths.diff(dim=0) ** 2
         ).mean(),
     }
     expect_close(mine(lengths), wanted, "L_s of a motion of 5 frames and 3 bones", mistakes)
     still = torch.tensor([[0.4, 0.1]]).repeat(7, 1)
     expect_close(mine(still), torch.tensor(0.0), "L_s of bones that never change")
-    return (
-        "A bone that is too long all the time costs nothing here: somebody else has to notice it."
-    )
+    return "A bone that is always too long costs nothing here: another loss has to notice it."
 
 
 @check
 def asymmetry_from_features(mine):
     """Check mine(x0_hat, mean, std, bones, pairs).
 
-    Five joints, two frames, lengths of 3-4-5 triangles.
+    There are five joints and two frames, and the lengths are those of 3-4-5 triangles.
     """
     bones, pairs = ((0, 1), (1, 2), (0, 3), (3, 4)), ((0, 2), (1, 3))
     # pelvis in the world, then left hip, left knee, right hip, right knee minus the pelvis; metres
@@ -117,15 +116,15 @@ def asymmetry_from_features(mine):
         "these lengths are in standardised units; go back to metres first": _asymmetry(
             _lengths(in_std, bones), pairs
         ),
-        "standardised units, and the pelvis is not added: metres first, then the pelvis": (
+        "these are standardised units without the pelvis: first metres, then the pelvis": (
             _asymmetry(_lengths(unscaled, bones), pairs)
         ),
         "only half-way back to metres: the mean is missing": _asymmetry(
             _lengths(_placed((x0_hat * std).unflatten(1, (5, 3))), bones), pairs
         ),
         (
-            "the pelvis is not added to the other joints, or is to itself as well: "
-            "bones that start there err"
+            "the pelvis is not added to the other joints, or is added to itself as well: "
+            "bones at the pelvis come out wrong"
         ): _asymmetry(_lengths(about, bones), pairs),
         "only half-way back to metres: the std is missing": _asymmetry(
             _lengths(_placed((x0_hat + mean).unflatten(1, (5, 3))), bones), pairs
@@ -140,17 +139,17 @@ def asymmetry_from_features(mine):
         "left and right are paired the wrong way: follow `pairs`": (
             (lengths[:, [0, 2]] - lengths[:, [1, 3]]).abs().mean()
         ),
-        "longer and shorter must not cancel: take the size of each difference": gap.mean(),
-        "longer and shorter must not cancel: take the size before the mean": gap.mean().abs(),
+        "the signs must not cancel: take the absolute value of each difference": gap.mean(),
+        "the signs must not cancel: take absolute values before the mean": gap.mean().abs(),
         "L_a is in metres: the difference itself, not its square": gap.square().mean(),
-        "the mean over pairs and frames, not their sum": gap.abs().sum(),
-        "the mean over the pairs as well, not their sum": gap.abs().sum(1).mean(),
-        "the mean over the frames as well, not their sum": gap.abs().sum(0).mean(),
+        "take the mean over pairs and frames, not the sum": gap.abs().sum(),
+        "take the mean over the pairs as well, not the sum": gap.abs().sum(1).mean(),
+        "take the mean over the frames as well, not the sum": gap.abs().sum(0).mean(),
     }
     expect_close(mine(x0_hat, mean, std, bones, pairs), wanted, "L_a of two frames", mistakes)
     return (
-        "Bones are in metres: what the network says has to leave its "
-        "own units before it can be judged."
+        "Bone lengths are in metres, so the network's output must be "
+        "converted to metres before they can be measured."
     )
 
 

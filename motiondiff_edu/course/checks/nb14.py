@@ -37,26 +37,23 @@ def shuffled_score(mine):
         mistakes={
             "this is each dance with its *own* song": own,
             "a dance's own song is among the others; leave it out": all_pairs,
-            "each dance met one other song only; let it meet all": next_only,
-            "every dance met the song before its own only; let it meet all": before_only,
+            "each dance is scored with one other song only; score it with all": next_only,
+            "each dance is scored with the song before its own; score it with all": before_only,
             "dance 1 with song 2 is not dance 2 with song 1: both count": once,
             "dance 2 with song 1 is not dance 1 with song 2: both count": once_below,
             "this is divided by the number of dances; how many pairs are there?": table[
                 others
             ].sum()
             / n,
-            "the own song counts as 0 here; leave it out of the number of pairs, too": table[
-                others
-            ].sum()
-            / n**2,
-            "stops and beats are exchanged: score(stops, song)": music,
+            "the own song counts as 0 here; do not count it as a pair": table[others].sum() / n**2,
+            "stops and beats are swapped: score(stops, song)": music,
             "take the mean over all pairs, not their sum": table[others].sum(),
         },
         rtol=1e-6,
     )
     constant = mine([np.array([1.0])] * 5, [np.array([1.0])] * 5, lambda stops, song: 0.25)
     expect_close(constant, 0.25, "the shuffled score when every pair scores 0.25")
-    return "With songs shuffled, what is left is chance and a rhythm that all songs share."
+    return "With shuffled songs, the score comes from chance and from rhythm that all songs share."
 
 
 @check
@@ -89,20 +86,19 @@ def expenditure(mine):
             "that is the published fault: the bracket closes after the earlier position": (
                 np.linalg.norm(bracket, axis=1).mean()
             ),
-            "divide by the time of a frame twice, once for each difference": fps * sizes.mean(),
-            "no frame's time is in it: metres a frame each frame": sizes.mean(),
-            "divide by a frame's time, 1 / fps, which is to multiply by fps": sizes.mean() / fps**2,
-            "the length of the vector, not the mean size of its coordinates": fps**2
+            "divide by the frame time twice, once for each difference": fps * sizes.mean(),
+            "the frame time is missing: these are metres per frame, per frame": sizes.mean(),
+            "divide by the frame time, 1 / fps: that means multiply by fps": sizes.mean() / fps**2,
+            "take the length of the vector, not the mean size of its coordinates": fps**2
             * np.abs(second).mean(),
-            "the mean over the frames, not their sum": fps**2 * sizes.sum(),
-            (
-                "np.gradient looks over two frames at once; "
-                "take each frame's difference to the next"
-            ): fps**2
+            "take the mean over the frames, not the sum": fps**2 * sizes.sum(),
+            ("np.gradient spans two frames; take each frame's difference to the next"): fps**2
             * np.linalg.norm(np.gradient(np.gradient(path, axis=0), axis=0), axis=1).mean(),
-            "fps is taken as 60; the argument was 10": 60**2 * sizes.mean(),
-            "the lengths are squared; this feature is not": fps**4 * (sizes**2).mean(),
-            "take the length in each frame, then the mean: to and fro must not cancel": fps**2
+            "you used 60 for fps; the argument was 10": 60**2 * sizes.mean(),
+            "the lengths are squared; this feature does not square them": fps**4
+            * (sizes**2).mean(),
+            "take the length in each frame, then the mean: opposite directions must not cancel": fps
+            ** 2
             * np.linalg.norm(second.mean(0)),
             "that is the speed; the acceleration is the change of the velocity": fps * speed.mean(),
             (
@@ -119,6 +115,6 @@ def expenditure(mine):
     expect_close(
         mine(np.tile(np.linspace(0, 7, 8)[:, None], 3), 4),
         0.0,
-        "that of a straight line at constant speed",
+        "the expenditure of a straight line at constant speed",
     )
-    return "The same movement costs the same wherever it is danced."
+    return "The same movement has the same expenditure wherever it is danced."

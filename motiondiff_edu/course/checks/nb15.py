@@ -16,7 +16,7 @@ def _numbers(*shape: int, seed: int = 0) -> torch.Tensor:
 
 @check
 def snapshot(mine):
-    """mine(x_s, given, known, alpha_bar, noise), entry by entry by hand."""
+    """mine(x_s, given, known, alpha_bar, noise) against a loop over the entries."""
     x_s = _numbers(2, 5, 3)
     given = _numbers(2, 5, 3, seed=1)
     noise = _numbers(2, 5, 3, seed=2)
@@ -35,25 +35,24 @@ def snapshot(mine):
         mistakes = {
             "the mask is inverted: True is what is given": put(seen, ~known),
             (
-                "these are the given entries clean, "
-                "and the network expects them as noisy as all else"
+                "these are the clean given entries; the network expects them as noisy as all others"
             ): put(given),
             "take the root of alpha_bar, and of 1 - alpha_bar": put(
                 alpha_bar * given + (1 - alpha_bar) * noise
             ),
-            "signal and noise are exchanged: alpha_bar is what is left of the signal": put(
+            "signal and noise are swapped: alpha_bar is what is left of the signal": put(
                 b * given + a * noise
             ),
             "where is the noise?": put(a * given),
-            "noise is added to what keeps its whole size; the signal shrinks as well": put(
+            "noise is added, but the signal keeps its size; it must be scaled as well": put(
                 given + b * noise
             ),
-            "it is the given that is noised, and not what was there": put(a * x_s + b * noise),
-            "everything was replaced: what is not known stays x_s": seen,
-            "x_s itself is to be left alone where nothing is known, noise included": torch.where(
+            "add noise to the given values, not to the values of x_s": put(a * x_s + b * noise),
+            "everything was replaced: unknown entries stay as in x_s": seen,
+            "where nothing is known, x_s stays as it is: add no noise there": torch.where(
                 known, seen, a * x_s + b * noise
             ),
-            "nothing was put in": x_s,
+            "the given entries were not put in": x_s,
         }
         expect_close(
             mine(x_s.clone(), given, known, alpha_bar, noise),
@@ -65,17 +64,17 @@ def snapshot(mine):
     expect(
         torch.isfinite(torch.as_tensor(mine(x_s, holes, known, 0.36, noise))).all(),
         (
-            "what is not known may be NaN, and 0 times NaN is NaN: "
+            "unknown entries may be NaN, and 0 times NaN is NaN: "
             "choose with torch.where instead of multiplying"
         ),
     )
-    return "What is given is seen through as much noise as everything else."
+    return "The network sees the given entries with as much noise as all others."
 
 
-class _Told:
-    """A leap and a snapshot that write down what happens.
+class _Recorder:
+    """A leap and a snapshot that record their calls.
 
-    Each is simple enough to be followed by hand.
+    Each is simple enough to follow by hand.
     """
 
     def __init__(self, given: torch.Tensor):
@@ -96,7 +95,7 @@ class _Told:
 def masked(mine):
     """Check mine(leap, snapshot, x, visited, given, known).
 
-    Everything in the leap depends on everything.
+    In the leap of this check, each entry depends on all entries.
     """
     x = _numbers(2, 5)
     given = _numbers(2, 5, seed=1)
@@ -104,32 +103,32 @@ def masked(mine):
     known = torch.tensor([[True, False, True, False, False], [False, True, False, False, True]])
 
     def by(order):
-        told = _Told(given)
-        return order(told, x.clone()), told
+        record = _Recorder(given)
+        return order(record, x.clone()), record
 
-    def each(told, x, put, after_leap=None):
+    def each(record, x, put, after_leap=None):
         for s, after in zip(visited, [*visited[1:], 0], strict=True):
-            x = told.leap(put(told, x, s, after), s, after)
-            x = x if after_leap is None else after_leap(told, x, s, after)
+            x = record.leap(put(record, x, s, after), s, after)
+            x = x if after_leap is None else after_leap(record, x, s, after)
         return x
 
-    def here(told, x, s, after):
-        return torch.where(known, told.snapshot(s), x)
+    def here(record, x, s, after):
+        return torch.where(known, record.snapshot(s), x)
 
     def ended(x):
         return torch.where(known, given, x)
 
-    def once(told, x):
-        kept = told.snapshot(visited[0])
-        return ended(each(told, x, lambda t, x, s, a: torch.where(known, kept, x)))
+    def once(record, x):
+        kept = record.snapshot(visited[0])
+        return ended(each(record, x, lambda t, x, s, a: torch.where(known, kept, x)))
 
-    def short(told, x, put):
+    def short(record, x, put):
         for s, after in zip(visited[:-1], visited[1:], strict=True):
-            x = told.leap(put(told, x, s, after), s, after)
+            x = record.leap(put(record, x, s, after), s, after)
         return x
 
     wrong = {
-        "the mask is inverted: what is known is replaced, the rest is sampled": lambda t, x: (
+        "the mask is inverted: replace the known entries, and sample the others": lambda t, x: (
             torch.where(
                 known,
                 x * 0 + given,
@@ -140,9 +139,9 @@ def masked(mine):
             known, each(t, x, lambda t, x, s, a: torch.where(known, x, t.snapshot(s))), given
         ),
         (
-            "the network was shown the given clean: take a snapshot, as noisy as x is at this step"
+            "the network saw clean given entries: take a snapshot, as noisy as x is at this step"
         ): lambda t, x: ended(each(t, x, lambda t, x, s, a: torch.where(known, given, x))),
-        "one snapshot was used for all steps: at each step draw one for that step": once,
+        "one snapshot was used for all steps: draw a new one at each step": once,
         (
             "the snapshot is of the step after; x has the noise of s when the network sees it"
         ): lambda t, x: ended(each(t, x, lambda t, x, s, a: torch.where(known, t.snapshot(a), x))),
@@ -157,7 +156,7 @@ def masked(mine):
             )
         ),
         (
-            "put in after the leap, the network's first look is at pure noise: put them in before"
+            "the network sees pure noise first: put the known entries in before the leap"
         ): lambda t, x: ended(
             each(
                 t,
@@ -166,24 +165,24 @@ def masked(mine):
                 lambda t, x, s, a: torch.where(known, t.snapshot(a), x),
             )
         ),
-        "at the end the given must be put back: the last leap changed it": lambda t, x: each(
-            t, x, here
+        "at the end the given entries must be put back: the last leap changed them": lambda t, x: (
+            each(t, x, here)
         ),
-        "they were put in at the end only, so that the network never saw them": lambda t, x: ended(
-            each(t, x, lambda t, x, s, a: x)
+        "the known entries were put in at the end only: the network never saw them": lambda t, x: (
+            ended(each(t, x, lambda t, x, s, a: x))
         ),
         "the last step, from the last visited to 0, is missing": lambda t, x: ended(
             short(t, x, here)
         ),
-        "everything was put in at the end: the unknown is what was sampled": lambda t, x: (
+        "everything was put in at the end: unknown entries stay as sampled": lambda t, x: (
             given + 0 * each(t, x, here)
         ),
     }
 
     wanted, right = by(lambda t, x: ended(each(t, x, here)))
-    told = _Told(given)
-    got = mine(told.leap, told.snapshot, x.clone(), list(visited), given, known)
-    steps = [(s, after) for s, after, _ in told.seen]
+    record = _Recorder(given)
+    got = mine(record.leap, record.snapshot, x.clone(), list(visited), given, known)
+    steps = [(s, after) for s, after, _ in record.seen]
     named = {hint: by(order)[0] for hint, order in wrong.items()}
     expect(steps, "no leap was made")
     if len(steps) == len(visited):
@@ -195,12 +194,12 @@ def masked(mine):
             ),
         )
     expect_close(got, wanted, "the end of four steps", named)
-    return f"{len(right.drawn)} snapshots, one for each step, each with noise of its own."
+    return f"You took {len(right.drawn)} snapshots, one for each step, each with its own noise."
 
 
 @check
 def way_back(mine):
-    """mine(x, now, then, noise): where a clean signal and its noise must be afterwards."""
+    """mine(x, now, then, noise): the shares of signal and noise in the result."""
     x, noise = _numbers(3, 5), _numbers(3, 5, seed=1)
     for now, then in ((0.9, 0.4), (0.5, 0.45)):
         ratio = then / now
@@ -210,27 +209,27 @@ def way_back(mine):
                 "this noises x as if it were clean: "
                 "it has noise already, and alpha_bar falls from `now` to `then`"
             ): (math.sqrt(then) * x + math.sqrt(1 - then) * noise),
-            "the share is right; take its root, and the root of what is missing to 1": ratio * x
+            "the ratio is right; take its root, and the root of 1 minus the ratio": ratio * x
             + (1 - ratio) * noise,
-            "the signal shrinks by the root of then / now, and not by the number itself": (
+            "the signal is scaled by the root of then / now, not by then / now": (
                 ratio * x + math.sqrt(1 - ratio) * noise
             ),
-            "noise comes in, and x does not shrink: its variance would grow at every turn": (
+            "noise is added, but x is not scaled: its variance would grow every time": (
                 x + math.sqrt(1 - ratio) * noise
             ),
-            "the new noise is too much: some of it is there already": (
+            "this adds too much noise: x already has some": (
                 math.sqrt(ratio) * x + math.sqrt(1 - then) * noise
             ),
-            "variances add up, deviations do not: the noise needed is 1 - then / now in variance": (
+            "variances add up, standard deviations do not: add a variance of 1 - then / now": (
                 math.sqrt(ratio) * x + (math.sqrt(1 - then) - math.sqrt(1 - now)) * noise
             ),
             (
-                "the new noise is the difference of the noise levels, but x shrinks, "
-                "and the noise in it as well"
+                "the new noise is the difference of the noise levels; "
+                "but when x is scaled, its noise is scaled, too"
             ): (math.sqrt(ratio) * x + math.sqrt(now - then) * noise),
             "no noise was added": math.sqrt(ratio) * x,
         }
         expect_close(
             mine(x, now, then, noise), wanted, f"x, from alpha_bar = {now} back to {then}", mistakes
         )
-    return "One step of notebook 02's forward process, however many steps it stands for."
+    return "This is one step of notebook 02's forward process, even if it replaces several."

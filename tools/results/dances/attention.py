@@ -1,10 +1,10 @@
-"""MoFusion's Fig. 4 as a figure that can be wrong.
+"""MoFusion's Fig. 4 as a statistic.
 
 Does attention fall on the beats, more than by chance?
 
-Over many unseen songs: the share of a level's attention within 0.1 s of a beat, over the share near
-the beats of other songs (which have their own tempo and place), and over the share near its own
-beats in the wrong place.
+Over many unseen songs we take the share of a level's attention within 0.1 s of a beat. It is
+divided by the share near the beats of other songs (with other tempi and times), and by the share
+near its own beats after they are moved.
 Source: MoFusion 4.1, Fig. 4; the measure is ours
 """
 
@@ -27,7 +27,7 @@ from ..walks.scores import Figure, figure_of, ratio
 from .parts import TRAINED, Stage
 from .trials import FPS, UNSEEN, Songs, dances_of
 
-NOISE = (0.25, 0.5, 0.75)  # of the diffusion steps: maps are averaged over these
+NOISE = (0.25, 0.5, 0.75)  # diffusion steps over which the maps are averaged
 SHIFTS = 100
 KINDS = ("own", "shuffled", "shifted", "read")
 Maps = tuple[dict[str, np.ndarray], np.ndarray]
@@ -36,7 +36,7 @@ Maps = tuple[dict[str, np.ndarray], np.ndarray]
 def maps_of(
     dancer: Dancer, mel: Float[torch.Tensor, "M C"], dance: Float[np.ndarray, "T 21 3"], seed: int
 ) -> Maps:
-    """Where each level reads while its own dance is denoised, and the times of the columns."""
+    """Attention of each level while the song's own dance is denoised, and the columns' times."""
     draw = torch.Generator().manual_seed(seed)
     steps = [max(1, round(share * dancer.schedule.S)) for share in NOISE]
     found = [attention_maps(dancer, mel, dance, s, generator=draw) for s in steps]
@@ -52,9 +52,10 @@ def masses(
     own: int,
     seed: int,
 ) -> dict[str, tuple[float, ...]]:
-    """For each level the KINDS.
+    """The KINDS for each level.
 
-    Share near the beats of song `own`, of the others, of its own moved; seconds read.
+    They are the shares near the beats of song `own`, of the others, and of its own after a shift;
+    and the seconds that are read.
     """
     found = {}
     for name, weights in maps.items():
@@ -129,19 +130,19 @@ def attention_records(stage: Stage, command: str) -> list[dict]:
 def attention_picture(stage: Stage, song: int = 0, frames: int = TRAINED) -> Picture:
     """Levels over the sound of one unseen song, as in the paper.
 
-    The way down, the bottom, the last on the way up.
+    It has the levels on the way down, the bottom, and the last level on the way up.
     """
-    dancer, heard = stage.dancer("dancer"), stage.songs
-    dance = dances_of(dancer, heard.mel[song : song + 1], frames, seed=0)[0]
-    maps, times = maps_of(dancer, heard.mel[song], dance, song)
+    dancer, songs = stage.dancer("dancer"), stage.songs
+    dance = dances_of(dancer, songs.mel[song : song + 1], frames, seed=0)[0]
+    maps, times = maps_of(dancer, songs.mel[song], dance, song)
     levels = len(maps) // 2
     shown = {name: maps[name] for k, name in enumerate(maps) if k <= levels or k == len(maps) - 1}
-    audio, seconds = heard.songs[song].audio, frames / FPS
+    audio, seconds = songs.songs[song].audio, frames / FPS
     words = (
         "Where each level of the U-Net reads in the music while its dance is denoised, heads "
         "averaged. Rows are moments of the dance; darker is more. Dotted lines are beats; "
         "an upright stripe is read by all moments."
     )
     return levels_over_sound(
-        audio[: round(seconds * 16_000)], shown, times, heard.songs[song].beats, seconds, words
+        audio[: round(seconds * 16_000)], shown, times, songs.songs[song].beats, seconds, words
     )

@@ -1,10 +1,10 @@
-"""What is each choice of a dancer worth?
+"""The value of each choice of a dancer.
 
-Dancers trained for as many steps, each unlike another in one choice.
+The dancers are trained for equally many steps, and each differs from another in one choice.
 
 Where in diffusion time is the beat decided (the targets look hardest at different noise)? What do
 the kinematic losses do, and their weight over time? Is a linear layer enough for the music, a U-Net
-better than a transformer, Mel as good as MFCC with the beats given? All else is alike: data, seed,
+better than a transformer, Mel as good as MFCC with the beats given? All else is equal: data, seed,
 steps, sampler.  Source: MoFusion 3, 4.1; choices are ours
 """
 
@@ -29,7 +29,7 @@ from motiondiff_edu.recipes.dancers import (
 from motiondiff_edu.recipes.train_dancer import train_dancer, training_windows
 
 from ..walks.scores import Figure
-from .mfcc import CHANNELS, heard_instead, mfcc_and_beats
+from .mfcc import CHANNELS, mfcc_and_beats, with_music_features
 from .parts import Danced, DanceSize, Stage, danced
 from .scores import bone_gain, share_minus
 from .trials import UNSEEN, mel_of
@@ -42,13 +42,13 @@ KIN = {
     name: {"kinematic": replace(KINEMATIC, over_time=name)}
     for name in ("constant", "alpha_bar", "snr")
 }
-PLAIN = TransformerConfig()  # 2.64 M numbers, the U-Net has 2.65 M
+PLAIN = TransformerConfig()  # 2.64 M parameters; the U-Net has 2.65 M
 EPS = replace(
     MOFUSION_SMALL, target="eps", skip=True
-)  # a network without it learns no eps in so few steps
+)  # a network without it does not learn eps in so few steps
 NO_FEET = {
     "loss_weights": DanceLossWeights(changes=5.0)
-}  # errors of eps or v are no positions: no toes could be followed in them
+}  # errors of eps or v are not positions, so they have no toes
 # name: (what differs, in words, from which other one, the network, settings of the training)
 VARIANTS = {
     "x0": (LIKE, "", X0, {}),
@@ -87,14 +87,14 @@ VARIANTS = {
         {},
     ),
 }
-RIVALS = {"alpha_bar": ("constant",), "snr": ("constant", "alpha_bar")}  # set beside these as well
-HEARD = {"mfcc": mfcc_and_beats}  # all others hear log-Mel
+RIVALS = {"alpha_bar": ("constant",), "snr": ("constant", "alpha_bar")}  # also compared with these
+MUSIC_FEATURES = {"mfcc": mfcc_and_beats}  # all others use log-Mel
 SHARE = ("bas", "bas_shuffled")
 
 
 @dataclass(frozen=True)
 class Budget:
-    """How long is trained, on what, and how much is measured."""
+    """The length of training, its data, and the number of measurements."""
 
     steps: int = 1200
     songs: int = 400
@@ -120,41 +120,41 @@ def recipe_of(name: str, budget: Budget) -> DanceRecipe:
 
 @cache
 def material(name: str, budget: Budget) -> DanceWindows:
-    """What is trained on: by the name of another hearing in HEARD, or "" for log-Mel."""
+    """The training data: `name` is one of MUSIC_FEATURES, or "" for log-Mel."""
     recipe = recipe_of("x0", budget)
     if not name:
         return training_windows(recipe)
-    return heard_instead(
-        material("", budget), HEARD[name], recipe.songs, recipe.data_seed, recipe.seconds
+    return with_music_features(
+        material("", budget), MUSIC_FEATURES[name], recipe.songs, recipe.data_seed, recipe.seconds
     )
 
 
 @cache
 def stage(name: str, budget: Budget) -> Stage:
-    """What is danced to: the same songs for all, heard as in training."""
-    return Stage(budget.measured, hear=HEARD.get(name, mel_of))
+    """The songs of the measurement: the same for all, with the features of training."""
+    return Stage(budget.measured, hear=MUSIC_FEATURES.get(name, mel_of))
 
 
 def trained(name: str, budget: Budget, runs: Path) -> Dancer:
     """The dancer of one variant.
 
-    A run that was killed goes on, one that is finished is only read.
+    A run that was killed continues; one that is finished is only read.
     """
-    heard = name if name in HEARD else ""
+    features = name if name in MUSIC_FEATURES else ""
     runs.mkdir(parents=True, exist_ok=True)
     run, log = runs / f"{name}.safetensors", partial(print, flush=True)
-    return train_dancer(recipe_of(name, budget), run, material(heard, budget), log)
+    return train_dancer(recipe_of(name, budget), run, material(features, budget), log)
 
 
 def about(name: str, budget: Budget) -> str:
-    """What a row was measured under: training, songs and sampler."""
+    """The settings of a row: training, songs and sampler."""
     return repr((recipe_of(name, budget), budget.measured, STEPS, ETA))
 
 
 def gains(name: str, found: Danced, runs: Path, budget: Budget) -> list[Figure]:
-    """What a row gains over the row that it is compared with, on the same songs.
+    """The gains of a row over the row with which it is compared, on the same songs.
 
-    Both are drawn together, so that their luck is shared.
+    The bootstrap draws both together.
     """
     figures = []
     own = [rows[key] for rows in (found.own, found.data) for key in SHARE]
@@ -163,7 +163,8 @@ def gains(name: str, found: Danced, runs: Path, budget: Budget) -> list[Figure]:
         other = dict(np.load(kept)) if kept.is_file() else {"about": ""}
         if str(other["about"]) != about(rival, budget):
             print(
-                f"{name}: {rival} was not measured here under the same budget: no differences to it"
+                f"{name}: {rival} was not measured here under the same budget, "
+                "so there are no differences to it"
             )
             continue
         figures.append(
@@ -178,7 +179,7 @@ def gains(name: str, found: Danced, runs: Path, budget: Budget) -> list[Figure]:
 
 
 def keep(name: str, found: Danced, runs: Path, budget: Budget) -> None:
-    """The rows of each song, for those that are set beside this one."""
+    """Save the rows of each song, for variants that are compared with this one."""
     rows = {f"own_{key}": found.own[key] for key in SHARE} | {"squares": found.squares}
     rows["about"] = np.array(about(name, budget))
     with replacing(runs / f"{name}.npz") as aside, open(aside, "wb") as file:
@@ -188,7 +189,7 @@ def keep(name: str, found: Danced, runs: Path, budget: Budget) -> None:
 def budget_records(name: str, budget: Budget, runs: Path, command: str) -> list[dict]:
     """Train (or continue) one variant, and measure it."""
     dancer = trained(name, budget, runs)
-    songs = stage(name if name in HEARD else "", budget)
+    songs = stage(name if name in MUSIC_FEATURES else "", budget)
     found = danced(songs, dancer)
     keep(name, found, runs, budget)
     size, recipe = budget.measured, recipe_of(name, budget)

@@ -1,7 +1,7 @@
-"""The rival of raw Mel: what earlier dancers were given, MFCC by librosa and the beats themselves.
+"""The alternative to raw Mel: MFCC by librosa and the beats, the input of earlier dancers.
 
-Here the beats are the song's true ones, which no tracker could beat.  Source: MoFusion 3.3 names
-the rival
+Here the beats are the song's true ones, which are better than any tracker's.  Source: MoFusion 3.3
+names the alternative
 """
 
 from dataclasses import replace
@@ -26,7 +26,7 @@ from motiondiff_edu.performers.dance_windows import DanceWindows
 
 from .trials import Hear
 
-COEFFICIENTS = 20  # as AI Choreographer has them
+COEFFICIENTS = 20  # as in AI Choreographer
 CHANNELS = COEFFICIENTS + 2
 
 
@@ -37,14 +37,14 @@ def mfcc_and_beats(song: Song) -> Float[torch.Tensor, "M 22"]:
     framing = {"n_fft": N_FFT, "hop_length": HOP, "n_mels": BANDS, "fmin": F_MIN, "fmax": F_MAX}
     framing |= {"sr": SAMPLE_RATE, "n_mfcc": COEFFICIENTS, "pad_mode": "constant"}
     spectrum = librosa.feature.mfcc(y=song.audio.astype(np.float32), **framing).T
-    told = [marks(times, len(spectrum)) for times in (song.beats, song.downbeats)]
-    return torch.from_numpy(np.column_stack([spectrum, *told])).float()
+    beat_channels = [marks(times, len(spectrum)) for times in (song.beats, song.downbeats)]
+    return torch.from_numpy(np.column_stack([spectrum, *beat_channels])).float()
 
 
 def marks(times: Float[np.ndarray, "K"], frames: int) -> Float[np.ndarray, "{frames}"]:
     """A 1 for each time (seconds).
 
-    It is shared by the two frames around it, so that its place is not rounded.
+    It is divided between the two frames around it, so that its time is not rounded.
     """
     where = times * FRAMES_PER_SECOND
     first = np.floor(where).astype(int)
@@ -55,19 +55,19 @@ def marks(times: Float[np.ndarray, "K"], frames: int) -> Float[np.ndarray, "{fra
     return row[:frames]
 
 
-def heard_instead(
+def with_music_features(
     windows: DanceWindows, hear: Hear, count: int, seed: int, seconds: float
 ) -> DanceWindows:
-    """The same windows of the same dances, with another sound beside them.
+    """The same windows of the same dances, with other features of their music.
 
-    `songs(count, seed, seconds)` gives it.
+    The music is that of `songs(count, seed, seconds)`.
 
-    Raises ValueError where it has not the frames of the Mel spectrograms.
+    Raises ValueError unless there are as many frames as in the Mel spectrograms.
     """
-    heard = torch.cat([hear(song) for song in songs(count, seed, seconds)])
-    if len(heard) != len(windows.mel):
+    features = torch.cat([hear(song) for song in songs(count, seed, seconds)])
+    if len(features) != len(windows.mel):
         raise ValueError(
-            f"{len(heard)} frames are heard, and the windows were cut for {len(windows.mel)}"
+            f"{len(features)} frames of features do not fit windows of {len(windows.mel)}"
         )
-    scaler = Scaler.fit(heard)
-    return replace(windows, mel=scaler.transform(heard), mel_scaler=scaler)
+    scaler = Scaler.fit(features)
+    return replace(windows, mel=scaler.transform(features), mel_scaler=scaler)

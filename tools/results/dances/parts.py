@@ -1,6 +1,6 @@
-"""What `make results` measures of the dancers.
+"""The measurements of the dancers by `make results`.
 
-One part for each of the shipped weights, and one for unheard music.
+There is one part for each of the shipped weights, and one for music unlike that of training.
 """
 
 from dataclasses import dataclass, replace
@@ -34,7 +34,7 @@ DANCES = {
     "regression": "regression",
     "unheard": "dancer",
 }  # weights
-UNHEARD = {  # what no training song has: one of them at a time
+UNHEARD = {  # properties that no training song has, one at a time
     "metre5": {"metre": 5},
     "tempo70": {"tempo": 70.0},
     "mallets": {"timbre": "mallets"},
@@ -43,11 +43,11 @@ UNHEARD = {  # what no training song has: one of them at a time
 
 @dataclass(frozen=True)
 class DanceSize:
-    """How much is measured: the bars' 50 songs and 3 sampling seeds, or a quick look."""
+    """The amount of measurement: the goals' 50 songs and 3 sampling seeds, or a quick try."""
 
     songs: int = 50
     seeds: int = 3
-    pieces: int = 20  # of music, for what differs between dances to one piece
+    pieces: int = 20  # of music, for the variety of dances to one piece
     each: int = 10
 
 
@@ -79,7 +79,7 @@ class Stage:
     def data_features(self) -> np.ndarray:
         """Kinetic features of the data's dances to the songs.
 
-        What all features are normalised by.
+        All features are normalised by these.
         """
         return features_of(self.songs.truth[:, :, :TRAINED])[:, 0]
 
@@ -106,7 +106,7 @@ class Danced:
 
 
 def danced(stage: Stage, dancer: Dancer) -> Danced:
-    """The figures that every dancer has."""
+    """The figures of any dancer."""
     made = dances(stage, dancer, TRAINED, stage.size.seeds)
     own = rows_of(made, stage.songs.beats(TRAINED))
     data = stage.data_rows(TRAINED)
@@ -115,7 +115,7 @@ def danced(stage: Stage, dancer: Dancer) -> Danced:
 
 
 def dancer_figures(stage: Stage, name: str) -> list[Figure]:
-    """All figures of one of the weights."""
+    """All figures of one set of weights."""
     dancer = stage.dancer(name)
     found = danced(stage, dancer)
     if name != "dancer":
@@ -128,10 +128,7 @@ def dancer_figures(stage: Stage, name: str) -> list[Figure]:
 
 
 def long_figures(stage: Stage, dancer: Dancer, found: Danced) -> list[Figure]:
-    """What is left of the alignment in dances two and four times as long as those trained on.
-
-    How much they repeat.
-    """
+    """The alignment of dances two and four times as long as in training, and their repetition."""
     names, figures = ("bas", "bas_shuffled"), []
     short = [rows[name] for rows in (found.own, found.data) for name in names]
     for frames in LONG:
@@ -144,7 +141,7 @@ def long_figures(stage: Stage, dancer: Dancer, found: Danced) -> list[Figure]:
 
 
 def repeats(stage: Stage, made: np.ndarray) -> list[Figure]:
-    """How much the longest dances repeat themselves, and how much the data's do."""
+    """Repetition in the longest dances, and in the data's."""
     return [
         repeat_figure(made),
         replace(repeat_figure(stage.songs.truth[:, 0]), name="repeat_data"),
@@ -152,7 +149,7 @@ def repeats(stage: Stage, made: np.ndarray) -> list[Figure]:
 
 
 def variety(stage: Stage, dancer: Dancer) -> list[Figure]:
-    """How the dances to one piece differ from one another, and all of them from the data's."""
+    """The variety of dances to one piece, and the distance of all of them from the data's."""
     mel = stage.pieces.mel.repeat_interleave(stage.size.each, dim=0)
     made = dances_of(dancer, mel, TRAINED, seed=0).reshape(stage.pieces.truth.shape)
     return variety_figures(features_of(made), features_of(stage.pieces.truth), stage.data_features)
@@ -161,11 +158,11 @@ def variety(stage: Stage, dancer: Dancer) -> list[Figure]:
 def unheard_figures(stage: Stage) -> list[Figure]:
     """Alignment with music of a metre, a tempo and a timbre that no training song has."""
     figures, dancer = [], stage.dancer("dancer")
-    for name, asked in UNHEARD.items():
-        heard = unseen_songs(stage.size.songs, frames=TRAINED, seed=UNSEEN + 2, **asked)
-        beats = heard.beats(TRAINED)
-        made = dances_of(dancer, heard.mel, TRAINED, seed=0)
-        found = beat_figures(rows_of(made[None], beats), rows_of(heard.truth[:, 0][None], beats))
+    for name, changes in UNHEARD.items():
+        songs = unseen_songs(stage.size.songs, frames=TRAINED, seed=UNSEEN + 2, **changes)
+        beats = songs.beats(TRAINED)
+        made = dances_of(dancer, songs.mel, TRAINED, seed=0)
+        found = beat_figures(rows_of(made[None], beats), rows_of(songs.truth[:, 0][None], beats))
         figures += [Figure(f"{name}.{f.name}", f.value, f.low, f.high, f.unit) for f in found]
     return figures
 

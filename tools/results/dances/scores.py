@@ -1,4 +1,4 @@
-"""The figures of dances, each with its interval over songs: names, values, units.
+"""The figures of dances, each with its interval over songs.
 
 The functions take arrays: the data's own dances are scored by the same code.
 """
@@ -25,9 +25,9 @@ Beats = Sequence[Float[np.ndarray, "_"]]
 def rows_of(
     dances: Float[np.ndarray, "R N T J 3"], beats: Beats
 ) -> dict[str, Float[np.ndarray, "N"]]:
-    """Of each song, the mean over R dances to it.
+    """The mean over R dances to each song.
 
-    Score, score with other songs, chance, beats per beat, speed.
+    The measures are score, score with other songs, chance, beats per beat, speed.
 
     `bas_music` is the form of MoFusion's eq. 10, averaged over the music's beats; `skating` is how
     fast standing toes slide, m/s.
@@ -54,7 +54,7 @@ def rows_of(
 
 
 def _music_form(dances: Float[np.ndarray, "N T J 3"], beats: Beats) -> Float[np.ndarray, "N"]:
-    """Beats within the clip only: none could be danced to outside of it."""
+    """Use only beats within the clip: a dancer cannot dance to the others."""
     end = (dances.shape[1] - 1) / FPS
     within = [music[(music >= 0) & (music <= end)] for music in beats]
     return np.array(
@@ -63,7 +63,7 @@ def _music_form(dances: Float[np.ndarray, "N T J 3"], beats: Beats) -> Float[np.
 
 
 def beat_figures(own: dict[str, np.ndarray], data: dict[str, np.ndarray]) -> list[Figure]:
-    """Beat alignment beside all that shows whether it means anything."""
+    """Beat alignment, with all figures that are needed to interpret it."""
     figures = {
         "bas": ("", np.nanmean, own["bas"]),
         "bas_shuffled": ("", np.nanmean, own["bas_shuffled"]),
@@ -91,7 +91,7 @@ def beat_figures(own: dict[str, np.ndarray], data: dict[str, np.ndarray]) -> lis
 
 
 def share(own, own_shuffled, data, data_shuffled) -> float:
-    """How much of the data's own alignment (beyond that with other songs) a dancer has."""
+    """A dancer's alignment beyond that with other songs, divided by the same of the data."""
     return (np.nanmean(own) - np.nanmean(own_shuffled)) / (
         np.nanmean(data) - np.nanmean(data_shuffled)
     )
@@ -131,7 +131,7 @@ def variety_figures(
 
     On kinetic features normalised by `all_data`.
 
-    `fid_data`, of as many dances by the data, is what perfection gets: so few clips are never at 0.
+    `fid_data`, of as many dances of the data, is a perfect dancer's FID: few clips never give 0.
     """
     modes, modes_data = (diversity(normalise(x, all_data)) for x in (own, data))
     pooled, pooled_data = (x.reshape(-1, x.shape[-1]) for x in (own, data))
@@ -159,5 +159,5 @@ def share_minus(name: str, own: list[np.ndarray], other: list[np.ndarray]) -> Fi
 
 
 def repeat_figure(dances: Float[np.ndarray, "N T J 3"]) -> Figure:
-    """How much a dance repeats itself at some lag of 1 to 8 s."""
+    """The repetition of a dance at the best lag of 1 to 8 s."""
     return figure_of("repeat", "", np.mean, np.array([repeat_score(one) for one in dances]))

@@ -1,7 +1,7 @@
-"""What a step of training and a dance cost, network beside network: is MoFusion's U-Net light?
+"""The time of a training step and of a dance, for several networks: is MoFusion's U-Net light?
 
-CPU-seconds of one thread, networks taking turns in every round, so that a ratio is of the same
-minutes. The networks are untrained: what the weights are does not matter here.  Source: MoFusion 1
+Times are CPU-seconds of one thread. The networks take turns in every round, so that a ratio is of
+the same minutes. They are untrained, because the weights do not matter here.  Source: MoFusion 1
 (lightweight); the measure is ours
 """
 
@@ -18,7 +18,7 @@ from motiondiff_edu.recipes.muon import optimizer_for
 from motiondiff_edu.recipes.train_dancer import loss_of, schedule_of
 from motiondiff_edu.training import TrainState, train_steps
 
-from .budget import HEARD, Budget, material, recipe_of
+from .budget import MUSIC_FEATURES, Budget, material, recipe_of
 
 BASE = "x0"
 TIMED = ("x0", "alpha_bar", "linear-music", "transformer", "mfcc", "regression")
@@ -26,7 +26,7 @@ DANCES = 8  # at once
 
 
 class Clock:
-    """One network with all that a step of training, a pass and a dance need.
+    """One network with the inputs of a training step, a pass and a dance.
 
     Times are CPU-seconds of one call.
     """
@@ -55,9 +55,9 @@ class Clock:
         self.dancer.model(self.x_s, torch.full((len(self.x_s),), 500), music)
 
     def dance(self) -> None:
-        """As a user has it: DDIM, with the fast twin where there is one."""
-        heard = self.dancer.mel_scaler.inverse(self.mel)
-        self.dancer.dance_mel(heard, self.x_s.shape[1], generator=torch.Generator().manual_seed(0))
+        """A dance as for a user: DDIM, with the fast twin where there is one."""
+        mel = self.dancer.mel_scaler.inverse(self.mel)
+        self.dancer.dance_mel(mel, self.x_s.shape[1], generator=torch.Generator().manual_seed(0))
 
 
 def spent(call) -> float:
@@ -68,15 +68,18 @@ def spent(call) -> float:
 
 
 def time_records(names: tuple[str, ...], budget: Budget, rounds: int, command: str) -> list[dict]:
-    """Steps, passes and dances of all names in turns.
+    """Steps, passes and dances of all networks in turns.
 
-    Of each the median, and its ratio to BASE in the same round.
+    Each has a record of its median, and of its ratio to BASE in the same round.
     """
     before = torch.get_num_threads()
     torch.set_num_threads(1)
-    small = replace(budget, songs=2, seconds=8.0)  # how much there is to draw from costs nothing
+    small = replace(
+        budget, songs=2, seconds=8.0
+    )  # the amount of training data does not change the time
     clocks = {
-        name: Clock(name, material(name if name in HEARD else "", small), budget) for name in names
+        name: Clock(name, material(name if name in MUSIC_FEATURES else "", small), budget)
+        for name in names
     }
     spans: dict[tuple[str, str], list[float]] = {}
     for turn in range(rounds + 1):
@@ -84,7 +87,7 @@ def time_records(names: tuple[str, ...], budget: Budget, rounds: int, command: s
             calls = {"step": clock.step, "pass": clock.one_pass, "dance": clock.dance}
             for what, call in calls.items():
                 seconds = spent(call)
-                if turn:  # the first is for warming up
+                if turn:  # the first round is a warm-up
                     spans.setdefault((name, what), []).append(seconds)
     torch.set_num_threads(before)
     about = {

@@ -1,9 +1,9 @@
 """In-betweens of unseen walks and dances at gaps of 5 to 60 frames.
 
-Beside interpolation and sampling without a mask.
+They are compared with interpolation and with sampling without a mask.
 
-The network's are guided and blended at every step (`editing.inbetween.inbetween`); the paper's
-masked sampling stands beside.
+The network's are guided and blended at every step (`editing.inbetween.inbetween`). The paper's
+masked sampling is measured as well.
 Source: MoFusion 4.4; what is measured, `metrics.keyframes`.  Notebook: 15
 """
 
@@ -33,9 +33,10 @@ BARS = (15, 30, 60)  # gaps that have a bar
 
 @dataclass(frozen=True)
 class InbetweenSize:
-    """How much is tried.
+    """The amount of measurement.
 
-    Motions (half walks, half dances), samples of each, DDIM's steps, and how often each is made.
+    It has the number of motions (half walks, half dances), of samples of each, of DDIM's steps, and
+    of repetitions of each step.
     """
 
     motions: int = 12
@@ -48,24 +49,21 @@ QUICK = InbetweenSize(motions=4, samples=3, steps=4)
 
 
 def trials(n: int) -> Float[np.ndarray, "N T J 3"]:
-    """Motions that no network was trained on, from their own beginning.
-
-    Walk, dance, walk, dance ...
-    """
+    """Unseen motions, from their own beginning; walks and dances alternate."""
     made = motions(n, UNSEEN, seconds=8.0)
     return np.stack([at_origin(positions[30 : 30 + T]) for positions, _ in made])
 
 
 def middle(length: int) -> Bool[np.ndarray, "T J"]:
-    """A gap of so many frames in the middle."""
+    """The mask of a gap of `length` frames in the middle."""
     return gap(T, (T - length) // 2, length)
 
 
 @dataclass(frozen=True, eq=False)
 class Filled:
-    """What was made of the gap of one length.
+    """The results for gaps of one length.
 
-    (samples, motions, frames, joints, 3), and by interpolation.
+    They are (samples, motions, frames, joints, 3), and those of interpolation.
     """
 
     known: Bool[np.ndarray, "T J"]
@@ -80,7 +78,7 @@ class Filled:
 def filled(
     dancer: Dancer, truth: Float[np.ndarray, "N T J 3"], length: int, size: InbetweenSize
 ) -> Filled:
-    """Every motion's gap, filled in all ways."""
+    """The gap of every motion, filled by all methods."""
     known, draw = middle(length), torch.Generator().manual_seed(length)
     options = {"steps": size.steps, "generator": draw}
     holes = np.where(known[..., None], truth, np.nan)
@@ -140,7 +138,7 @@ def within(one: Filled, positions: np.ndarray) -> np.ndarray:
 def sliding(one: Filled) -> list[Figure]:
     """How fast planted toes slide within the gap, m/s, in one sample of each motion.
 
-    Clips without any are left out.
+    Clips without planted toes are left out.
     """
     made = {"": one.made[0], "_masked": one.masked, "_lines": one.lines, "_data": one.truth}
     return [
@@ -152,10 +150,8 @@ def sliding(one: Filled) -> list[Figure]:
 def spectra(one: Filled, rival: str) -> list[Figure]:
     """NPSS of single samples (their mean), of interpolation, and their ratio.
 
-    Over the joints as they are.
-
-    There the mean place outweighs all movement, so the ratio stands once more for velocities within
-    the gap.
+    They are of joint positions. There the mean position outweighs all movement, so the ratio is
+    also given for velocities within the gap.
     """
     arrays = (one.truth, getattr(one, rival), *one.made)
     places, weight = parts(arrays)
@@ -171,9 +167,9 @@ def spectra(one: Filled, rival: str) -> list[Figure]:
 def parts(arrays: Sequence[np.ndarray]) -> tuple[tuple[np.ndarray, np.ndarray], np.ndarray]:
     """NPSS' sums over each motion, and their weights.
 
-    Of interpolation and of the samples (their mean), each against the truth.
+    They are of interpolation and of the samples (their mean), each against the truth.
 
-    Sums can be drawn again a thousand times, spectra could not.
+    The bootstrap can draw sums a thousand times; it could not recompute spectra.
     """
     truth, *others = (x.reshape(*x.shape[:2], -1) for x in arrays)
     sums = [npss_parts(x, truth) for x in others]
@@ -187,7 +183,7 @@ def ratio_of_sums(above: np.ndarray, below: np.ndarray) -> float:
 def inbetween_records(
     dancer: Dancer, weights: str, size: InbetweenSize, command: str
 ) -> list[dict]:
-    """All gaps; the worst of the spectra and of the seams under names of their own."""
+    """The records of all gaps; the worst spectrum and seam also have their own names."""
     truth = trials(size.motions)
     seeds = {"data": UNSEEN, "motions": size.motions, "samples": size.samples, "weights": weights}
     seeds |= {"steps": size.steps}

@@ -1,9 +1,9 @@
-"""Ways of filling in, judged where the right answer is a formula.
+"""Methods of filling in, measured on tasks whose answer is a formula.
 
-Windows of walking under a fitted mixture.
+The data are windows of walking under a fitted mixture.
 
-The denoiser is exact, so that the method alone errs. Each question is another window; the mixture
-is fitted once.
+The denoiser is exact, so that all errors come from the method. Each question is another window; the
+mixture is fitted once.
 Source: MoFusion 4.4; MoDiff III-E; the comparison is ours.  Notebook: 15
 """
 
@@ -25,7 +25,7 @@ FRAMES, S = 8, 100  # of a window; diffusion steps
 
 @dataclass(frozen=True)
 class KnownSize:
-    """Windows asked about, samples of each answer, walks the mixture is fitted to."""
+    """Number of windows, of samples of each answer, and of walks for the mixture."""
 
     questions: int = 5
     samples: int = 100
@@ -38,23 +38,25 @@ ERRORS = ("mean", "spread", "share")
 
 
 def known_answer_records(size: KnownSize, command: str) -> list[dict]:
-    """Errors of mean, spread and shares for every hole and way.
+    """Errors of mean, standard deviation and shares for every hole and method.
 
-    With intervals over questions.
+    The intervals are over windows.
     """
     walked = fit_walks(dataset(size.clips, seconds=6.0, seed=3), FRAMES, generator=_seeded(0))
     windows = sample_mixture(walked.truth, size.questions, _seeded(1))
     schedule = cosine_schedule(S)
     seeds = {"data": 3, "questions": size.questions, "samples": size.samples, "clips": size.clips}
-    asked = [(name, known, False) for name, known in holes(FRAMES).items()]
-    asked += [(f"past-{name}", known, True) for name, known in holes_in_the_past(FRAMES).items()]
+    questions = [(name, known, False) for name, known in holes(FRAMES).items()]
+    questions += [
+        (f"past-{name}", known, True) for name, known in holes_in_the_past(FRAMES).items()
+    ]
     records = []
-    for name, known, past in asked:
-        questions = [walked.problem(window, known, schedule, past) for window in windows]
+    for name, known, past in questions:
+        problems = [walked.problem(window, known, schedule, past) for window in windows]
         for method in (*METHODS, *ROUNDS) if past else METHODS:
             found = [
                 errors_of(draw_samples(one, method, size.samples, _seeded(k)), one)
-                for k, one in enumerate(questions)
+                for k, one in enumerate(problems)
             ]
             rows = {kind: np.array([asdict(one)[kind] for one in found]) for kind in ERRORS}
             figures = [

@@ -1,6 +1,6 @@
 """Two sections of docs/RESULTS.md.
 
-Filling in where the right answer is a formula, and both papers' repairs.
+They are about filling in where the answer is a formula, and about both papers' repairs.
 """
 
 from ..page.markdown import cell, table
@@ -13,9 +13,9 @@ KINDS = {
 
 
 def _part(records: dict[str, dict], prefix: str) -> tuple[list[str], list[str], dict]:
-    """What stands after the prefix.
+    """The parts of the names after the prefix.
 
-    (columns, rows), each in the order of the records, and what they were made from.
+    Returns (columns, rows), each in the order of the records, and their settings.
     """
     found = [name for name in records if name.startswith(prefix)]
     names = [name.removeprefix(prefix) for name in found]
@@ -25,7 +25,7 @@ def _part(records: dict[str, dict], prefix: str) -> tuple[list[str], list[str], 
 
 
 def known_answers(records: dict[str, dict]) -> str:
-    """A table for each kind of error: ways of filling in by what is missing."""
+    """A table for each kind of error: methods of filling in against the missing part."""
     prefix = "known-answer."
     holes, ways, seeds = _part(records, prefix)
     if not holes:

@@ -1,4 +1,4 @@
-"""The goals that the figures are held against, by the names of their records."""
+"""The goals of the figures, by the names of their records."""
 
 from dataclasses import dataclass
 

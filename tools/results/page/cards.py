@@ -1,6 +1,6 @@
 """The measured figures on the cards of the shipped weights.
 
-Whoever opens a card sees how good they are.
+So a card shows how good its weights are.
 """
 
 from dataclasses import replace
@@ -25,7 +25,7 @@ SHOWN = (
 
 
 def metrics(folder: Path, name: str, digest: str) -> dict[str, float]:
-    """What the records of a walker or dancer say, where they are of these very weights."""
+    """The recorded figures of a walker or dancer, if they are of exactly these weights."""
     records = {one["name"]: one for one in kept_records(folder, name)}
     mine = {kind: records.get(f"{name}.{kind}") for kind in SHOWN}
     return {
@@ -38,7 +38,7 @@ def metrics(folder: Path, name: str, digest: str) -> dict[str, float]:
 def add_metrics(folder: Path) -> None:
     """Write the figures of `folder` into the cards.
 
-    A file whose card says so already is left alone.
+    A file whose card has them already is not written.
     """
     for path in set(checkpoints.available().values()):
         figure = checkpoints.load(path)

@@ -2,9 +2,9 @@
 
 No verdict is written by hand.
 
-An interval that lies wholly on the right side of the limit agrees, one wholly on the wrong side
-does not, one across it leaves the claim undecided. A limit may itself be a measured figure: then
-its interval counts as well.
+When the whole interval lies on the right side of the limit, the claim agrees; when the whole
+interval lies on the wrong side, it does not; otherwise it is undecided. A limit can be a measured
+figure: then its interval counts as well.
 """
 
 from dataclasses import dataclass
@@ -29,9 +29,9 @@ repetition or more diversity than the data have. That alone does not make a bett
 
 @dataclass(frozen=True)
 class Claim:
-    """What the paper says, the record that judges it, and the limit.
+    """A claim of the paper, the record that tests it, and the limit.
 
-    A number, or a share of another record.
+    The limit is a number, or a share of another record.
     """
 
     words: str
@@ -67,7 +67,7 @@ class Claim:
 KNOWN = {
     "limit": 0.7,
     "of": "dancer.bas_share",
-}  # seven tenths of the share it has with music like that of training
+}  # seven tenths of the share with music like that of training
 MEL = "dance-budget.x0.bas_share"
 CLEAN = "dance-budget.no-feet.bas_share"
 WEIGHTED = "dance-budget.alpha_bar"
@@ -219,7 +219,7 @@ CLAIMS = (
 
 
 def claims(records: dict[str, dict]) -> str:
-    """What agrees and what does not; then, folded, a line for each claim."""
+    """The claims that agree and those that do not; then, folded, a line for each claim."""
     judged = [(claim, claim.verdict(records)) for claim in CLAIMS]
     rows = [
         [one.words, one.where, f"**{said}**", _measured(one, records), one.rule]

@@ -1,4 +1,4 @@
-"""Numbers, intervals and tables as Markdown has them."""
+"""Numbers, intervals and tables in Markdown."""
 
 import re
 
@@ -36,7 +36,7 @@ def cell(one: dict | None, unit: bool = True) -> str:
 
 
 def table(head: list[str], rows: list[list[str]]) -> str:
-    """A table with a head; where a heading or a row's name is a key alone, its words are added."""
+    """A table with a head; a heading or a row's name that is only a key gets its words."""
     named = [[label(row[0]), *row[1:]] for row in rows]
     lines = [
         "| " + " | ".join(row) + " |" for row in (map(label, head), ["---"] * len(head), *named)
@@ -45,7 +45,7 @@ def table(head: list[str], rows: list[list[str]]) -> str:
 
 
 def folded(section: str, summary: str, tables: int = 1) -> str:
-    """A section whose text after so many tables is folded away; as it is where there is no more."""
+    """A section whose text after `tables` tables is folded; unchanged if there is no more text."""
     ends = [found.end() for found in re.finditer(r"(?:^\|.*\n)+", section, re.M)]
     if len(ends) <= tables:
         return section

@@ -1,4 +1,4 @@
-"""How docs/RESULTS.md opens: which goals are met and which were missed, in sentences, then the
+"""The opening of docs/RESULTS.md: which goals are met and which were missed, in sentences, then the
 contents. All of it is computed from the records and the bars.
 """
 
@@ -9,7 +9,7 @@ from .claims import AGREES, CLAIMS, DIFFERS, MISSING, OPEN
 from .markdown import number, span
 from .words import GOALS
 
-# Of each group the beginnings of its bars' names, and the figure that its sentence shows.
+# For each group, the beginnings of its bars' names, and the figure in its sentence.
 GROUPS = {
     "The walker": (("walker.",), "walker.bone_rmse_cm"),
     "The dancer": (("dancer.", "regression."), "dancer.bas_share"),
@@ -17,11 +17,11 @@ GROUPS = {
     "In-betweens": (("inbetween.",), "inbetween.gap30_error_over_interpolation"),
     "Speed, and sound in the player": (("bench.", "player."), "bench.sampler_over_diffusers"),
 }
-UNITS = ("cm", "m/s", "ms", "s", "m")  # the others are ratios: nothing to write after the number
+UNITS = ("cm", "m/s", "ms", "s", "m")  # the others are ratios, which have no unit
 
 
 def opening(records: dict[str, dict]) -> str:
-    """What holds, what was missed, what lies close to its goal, and what was not measured."""
+    """Which goals are met, missed, close, and not measured."""
     measured = {bar: one for bar in BARS if (one := _measured(bar, records))}
     met = {bar for bar, one in measured.items() if bar.met(one["value"])}
     missed = [missed_sentence(bar, one) for bar, one in measured.items() if bar not in met]
@@ -29,7 +29,7 @@ def opening(records: dict[str, dict]) -> str:
     absent = [subject(bar) for bar in BARS if bar not in measured]
     text = f"# Results\n\n**What holds.** {len(met)} of {len(BARS)} goals are met.\n\n"
     text += "".join(f"* {line}\n" for line in (group(g, measured, met) for g in GROUPS) if line)
-    none = " No goal that was measured.\n"
+    none = " No measured goal was missed.\n"
     text += "\n**What was missed.**" + (_list(missed) if missed else none)
     if close:
         text += (
@@ -37,7 +37,7 @@ def opening(records: dict[str, dict]) -> str:
         )
         text += f"the goal: {'; '.join(close)}.\n"
     if absent:
-        text += f"\n**What is not measured yet.** {'; '.join(absent)}.\n"
+        text += f"\n**What is not measured yet.** These figures are missing: {'; '.join(absent)}.\n"
     return text + "\n" + paper(records)
 
 
@@ -69,12 +69,12 @@ def missed_sentence(bar: Bar, one: dict) -> str:
 
 
 def subject(bar: Bar) -> str:
-    """What the bar is about, in words; its key where it has none yet."""
+    """The subject of the bar in words; its key if it has no words yet."""
     return GOALS.get(bar.name, f"`{bar.name}`")
 
 
 def amount(one: dict) -> str:
-    """The value with its unit, where that is one."""
+    """The value with its unit, if it has one."""
     return number(one["value"]) + (f" {one['unit']}" if one["unit"] in UNITS else "")
 
 
@@ -104,7 +104,7 @@ def anchor(head: str) -> str:
 
 
 def _what(bar: Bar) -> str:
-    """The subject as a sentence begins with it; "a, over b" gets its second comma."""
+    """The subject at the beginning of a sentence; "a, over b" gets its second comma."""
     words = subject(bar)
     return words[:1].upper() + words[1:] + "," * ("," in words)
 

@@ -1,6 +1,6 @@
 """docs/RESULTS.md, made from the records in docs/results/*.json and benchmarks/results/*.json.
 
-Nothing is typed in.
+No number is typed in.
 """
 
 import json
@@ -36,7 +36,7 @@ training seed can change a figure by more.
 ALL = "RESULTS_ALL.md"
 FURTHER = """# Further figures
 
-Every figure that stands in no table of [RESULTS.md](RESULTS.md), with its 95 % interval and the
+These figures are in no table of [RESULTS.md](RESULTS.md). Each has its 95 % interval and the
 command that measures it. `make results` and `make bench` write this page. Do not edit it.
 
 """
@@ -45,7 +45,7 @@ command that measures it. `make results` and `make bench` write this page. Do no
 def read_records(*folders: Path) -> dict[str, dict]:
     """All records by name.
 
-    A name that stands in two files is an error, for then one of them is old.
+    A name in two files is an error, because one of the files must be old.
     """
     found, where = {}, {}
     for path in sorted(path for folder in folders for path in folder.glob("*.json")):
@@ -96,9 +96,10 @@ def walkers(records: dict[str, dict]) -> str:
     return (
         "## The walkers\n\n"
         f"Each walker continues {seeds.get('clips')} unseen pasts for {seeds.get('seconds')} s. We "
-        "judge the network's raw output. All steps of DDPM are taken, with `ddim10` ten steps of "
-        "DDIM. The control is held over each window; with `lookahead` the window sees the control "
-        "to come. Rows of the data judge the recorded motion under the same control. Diversity "
+        "measure the network's raw output. The sampler is DDPM with all its steps; `ddim10` takes "
+        "ten steps of DDIM. The control is held over each window; with `lookahead` the window sees "
+        "the future control. Rows of the data are of the recorded motion under the same control. "
+        "Diversity "
         f"compares {seeds.get('each')} rollouts for each of {seeds.get('pasts')} pasts, after "
         f"their first second. Seeds: {_seed(names, records, 'walk')} for pasts and controls, "
         f"{_seed(names, records, 'diversity')} for those of the diversity, "
@@ -109,7 +110,7 @@ def walkers(records: dict[str, dict]) -> str:
 
 
 def _seed(names: list[str], records: dict[str, dict], what: str) -> str:
-    """The data's seed of the figures of diversity, or of all others."""
+    """The data's seed for the figures of diversity, or for all others."""
     found = {
         records[n]["seeds"].get("data")
         for n in names
@@ -164,7 +165,7 @@ def footsteps(records: dict[str, dict], folder: Path) -> str:
 
 
 def budget(records: dict[str, dict]) -> str:
-    """One row for each choice that was tried at the same budget."""
+    """One row for each choice that was measured with the same budget."""
     mine = {n: r for n, r in records.items() if n.startswith("budget.")}
     if not mine:
         return ""
@@ -180,7 +181,7 @@ def budget(records: dict[str, dict]) -> str:
     ]
     seeds = next(iter(mine.values()))["seeds"]
     text = (
-        "## What each choice is worth\n\nSmall walkers, each trained for "
+        "## What each choice is worth\n\nThese are small walkers. Each was trained for "
         f"{seeds['cpu_seconds']:g} CPU-seconds on one thread, with half the shipped walkers' batch "
         "and fewer clips. Each row differs in one choice from the row named beside it. MoDiff "
         "(III-A) says that predicting more than one pose helps: see T_p. The walkers were sampled "
@@ -221,7 +222,7 @@ def attention(records: dict[str, dict], folder: Path) -> str:
 
 
 def others(records: dict[str, dict]) -> str:
-    """Everything that stands in no table above, with what makes it."""
+    """All figures that are in no table above, with the commands that measure them."""
     shown = (
         "walker",
         "footsteps",

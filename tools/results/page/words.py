@@ -1,8 +1,8 @@
-"""Words for the keys of the records, as the tables and the opening of docs/RESULTS.md have them."""
+"""Words for the keys of the records, for the tables and the opening of docs/RESULTS.md."""
 
 import re
 
-# Of figures with a goal: what is measured, as the subject of "... is 0.22 cm".
+# For figures with a goal: the subject of a sentence "... is 0.22 cm".
 GOALS = {
     "walker.bone_rmse_cm": "the walker's bone error",
     "walker.adherence_excess_mps": "the walker's control error beyond that of the data",
@@ -82,7 +82,7 @@ GOALS = {
     "inbetween.seam_jump_over_data": "the jump at the ends of a gap, over that of the data",
 }
 
-# Of columns and rows: the last part of a key.
+# For columns and rows: the last part of a key.
 KINDS = {
     "bone_rmse_cm": "bone error",
     "bone_rmse_within_clip_cm": "bone error around each clip's own lengths",
@@ -139,7 +139,7 @@ KINDS = {
     "rmse_over_interpolation": "over straight lines",
     "nearer_than_interpolation": "share nearer than straight lines",
     "there_and_back": "MoDiff's, there and back",
-    "there_and_back_masked": "the same, what is known held on the way back",
+    "there_and_back_masked": "the same, with known entries held on the way back",
     "masked": "MoFusion's, under a mask",
     "masked_blended": "the same, blended and guided",
     "exact": "draws from the right answer",
@@ -168,7 +168,7 @@ FOOTSTEPS = {
 
 
 def in_words(key: str) -> str | None:
-    """What a key stands for; None where it has no words yet."""
+    """The words of a key; None if it has none yet."""
     second = re.fullmatch(r"mend\.table2_(keep5_|walker_|)(\w+)", key)
     if second and second[2] in TABLE_2:
         return f"{WALKERS[second[1]]}: {TABLE_2[second[2]]}"
@@ -179,7 +179,7 @@ def in_words(key: str) -> str | None:
 
 
 def way_in_words(key: str) -> str | None:
-    """Of a way to fill in, such as `masked.50.x5`: how many steps, and what was added."""
+    """The words of a method such as `masked.50.x5`: the number of steps, and what was added."""
     way = re.fullmatch(r"(masked|there-and-back|gibbs)\.(\d+)(?:\.(x(\d+)|blended|guided))?", key)
     if way is None:
         return None
@@ -188,12 +188,12 @@ def way_in_words(key: str) -> str | None:
         added = f", each {times} times" if times else f", {more}" if more else ""
         return f"under a mask, {steps} steps{added}"
     rounds = "once" if steps == "1" else f"{steps} times"
-    held = ", what is known seen on the way back" if kind == "gibbs" else ""
+    held = ", with known entries seen on the way back" if kind == "gibbs" else ""
     return f"there and back, {rounds}{held}"
 
 
 def label(cell: str) -> str:
-    """A cell that is a key alone gets its words before it; any other stays as it is."""
+    """Add the words before a cell that is only a key; any other cell stays as it is."""
     key = re.fullmatch(r"`([^`]+)`", cell)
     words = in_words(key[1]) if key else None
     return f"{words}<br>{cell}" if words else cell

@@ -1,4 +1,4 @@
-"""What diffusion dropout is worth when part of the past is missing.
+"""The value of diffusion dropout when part of the past is missing.
 
 Walkers trained with and without it, and a map over rates. Two comparisons, all weights shipped:
 three pairs of small walkers, and `walker` beside `walker-plain`. Both sides of a comparison have
@@ -30,7 +30,7 @@ RATES = {
 
 
 def rows(made: np.ndarray, trials: Trials) -> dict[str, np.ndarray]:
-    """Of each clip: squared bone error (cm^2) and distance from the control (m/s)."""
+    """Squared bone error (cm^2) and distance from the control (m/s) of each clip."""
     frames = made.shape[1]
     return {
         "bone": squared_bone_error(made),
@@ -56,7 +56,7 @@ FIGURES = {"bone": ("cm", root_mean), "adherence": ("mps", np.nanmean)}
 
 
 def gains(plain: dict[str, np.ndarray], dropout: dict[str, np.ndarray]) -> list[Figure]:
-    """Plain minus dropout on broken pasts; arrays (seeds, clips)."""
+    """Errors without dropout minus those with it, on incomplete pasts; arrays (seeds, clips)."""
     found = []
     for kind, (unit, mean) in FIGURES.items():
         values = interval_over_seeds(
@@ -69,7 +69,7 @@ def gains(plain: dict[str, np.ndarray], dropout: dict[str, np.ndarray]) -> list[
 
 
 def cost(name: str, plain: dict[str, np.ndarray], dropout: dict[str, np.ndarray]) -> Figure:
-    """Dropout over plain on complete pasts, the larger of the two kinds of error."""
+    """Errors with dropout over those without, on complete pasts: the larger of the two ratios."""
 
     def larger(*parts: np.ndarray) -> float:
         pairs = zip(FIGURES.values(), (parts[:2], parts[2:]), strict=True)
@@ -86,7 +86,7 @@ def measured(walkers: list, trials: Trials, share: float) -> dict[str, np.ndarra
 
 
 def dropout_figures(pairs: Comparison, trials: Trials, weights: dict[str, Path]) -> list[Figure]:
-    """Gains, cost, and what both kinds have with and without faults."""
+    """Gains, cost, and the errors of both kinds with and without faults."""
     walkers = {
         kind: [checkpoints.load_walker(weights[name]) for name in names]
         for kind, names in (("plain", pairs.plain), ("dropout", pairs.dropout))
@@ -129,7 +129,7 @@ def dropout_records(
 
 @dataclass(frozen=True)
 class MapBudget:
-    """How long each walker of the map is trained, on what."""
+    """The length and the data of the training of each walker of the map."""
 
     steps: int = 4000
     clips: int = 200
@@ -141,7 +141,7 @@ MAP_QUICK = MapBudget(steps=3, clips=2, save_every=2)
 
 
 def map_recipe(name: str, budget: MapBudget) -> Recipe:
-    """A walker with one rate of dropout from beginning to end."""
+    """The recipe of a walker with one constant rate of dropout."""
     rate = RATES[name]
     sizes = {"steps": budget.steps, "clips": budget.clips, "save_every": budget.save_every}
     return replace(
@@ -163,7 +163,7 @@ def map_records(
 ) -> list[dict]:
     """Train (or continue) the walker of one rate.
 
-    It is measured at every share of joints missing.
+    It is measured for every share of missing joints.
     """
     runs.mkdir(parents=True, exist_ok=True)
     recipe = map_recipe(name, budget)

@@ -1,6 +1,6 @@
 """The part `mend`.
 
-What diffusion dropout is worth, repairs beside what needs no walker, and MoDiff's Table II.
+It measures diffusion dropout, repairs beside methods without a walker, and MoDiff's Table II.
 """
 
 from motiondiff_edu.metrics.footsteps import PAPER, ROBUST
@@ -20,16 +20,16 @@ from .repair import (
 )
 from .trials import SHARE, names_of
 
-KEEP = 5  # poses of every window of ten; frame by frame, each has noise of its own, and heels crawl
+KEEP = 5  # poses kept of every window of ten; frame by frame, each has other noise, and heels creep
 CLIPS = 60  # pasts of Table II
 PASTS, PAST_S = 300, 2  # pasts that are reconstructed, each with the control of so many seconds
 
 
 def records(bench: Bench, size: RepairSize, command: str) -> list[dict]:
-    """Everything of the part: what dropout is worth, repairs by the shipped walker, Table II.
+    """All records of the part: the value of dropout, repairs by the shipped walker, Table II.
 
-    Table II is of the small walkers with dropout, frame by frame. Beside them stand the same with
-    half of every window kept, and the shipped walker, which is larger and was trained for longer.
+    Table II is of the small walkers with dropout, frame by frame. It is also measured with half of
+    every window kept, and for the shipped walker, which is larger and was trained for longer.
     """
     trials, weights = bench.trials, bench.weights
     best, pairs = (

@@ -1,4 +1,4 @@
-"""Repairs of broken pasts against the truth, beside what needs no walker; and MoDiff's Table II.
+"""Repairs of faulty pasts against the truth, beside methods without a walker; MoDiff's Table II.
 
 Source: MoDiff III-E, IV-B, Table II, Fig. 6.  Notebook: 10
 """
@@ -33,7 +33,7 @@ FAULTS: dict[str, Callable[[Past], Imperfect]] = {
 
 @dataclass(frozen=True)
 class RepairSize:
-    """Samples of each repair, rounds there and back, DDIM's steps."""
+    """Number of samples of each repair, of rounds there and back, and of DDIM's steps."""
 
     samples: int = 10
     rounds: int = 2
@@ -41,7 +41,7 @@ class RepairSize:
 
 
 FULL, QUICK = RepairSize(), RepairSize(samples=2, rounds=1, steps=3)
-PAPER_SAMPLES = 3  # of the paper's own repairs, which stand beside
+PAPER_SAMPLES = 3  # of the paper's own repairs, for comparison
 
 
 def repaired(
@@ -53,7 +53,7 @@ def repaired(
     guess: Past | None = None,
     bones: bool = False,
 ) -> Float[np.ndarray, "S N T_h J 3"]:
-    """So many repairs of each past; metres."""
+    """`samples` repairs of each past, in metres."""
     past, known = as_given(walker, broken)
     control = torch.from_numpy(trials.control[:, : 2 * past.shape[1]]).float()
     start = None if guess is None else torch.from_numpy(guess).float().flatten(2)
@@ -67,7 +67,7 @@ def repaired(
 
 
 def squared_errors(made: Past, truth: Past, broken: Imperfect) -> Float[np.ndarray, "N"]:
-    """Of each past the mean squared distance (cm^2) of what was missing; NaN where nothing was."""
+    """Mean squared distance (cm^2) of the missing joints of each past; NaN if none is missing."""
     squares = 1e4 * ((made - truth) ** 2).sum(-1)
     missing = ~broken.known
     with np.errstate(invalid="ignore"):
@@ -79,13 +79,13 @@ def root_nanmean(squares: np.ndarray) -> float:
 
 
 def repair_figures(fault: str, walker: Walker, trials: Trials, size: RepairSize) -> list[Figure]:
-    """The mean of the repairs, one of them, the paper's and the rivals' guesses, all in cm.
+    """Errors of the repairs' mean, of one, of the paper's way and of other methods, all in cm.
 
-    Also the mean's error over that of each rival.
+    The error of the mean is also divided by that of each other method.
 
-    Ours begin with what ridge regression guesses, hold what is known on the way back, too, and keep
-    bones; the paper's begin with the mean pose and do neither (the mean is of fewer). Intervals are
-    over pasts.
+    Ours start from the guess of ridge regression, hold known entries also on the way back, and keep
+    bones. The paper's start from the mean pose and do neither (their mean is of fewer). Intervals
+    are over pasts.
     """
     broken = FAULTS[fault](trials.past)
     guesses = rivals(broken, trials)
@@ -144,8 +144,9 @@ def table_2(
 
     Bone errors with 30 % of the past's joints missing, over those with a complete past.
 
-    Of `repaired_windows`, and of what follows the broken past (`ge`), which is returned as well,
-    one set of walks for each walker. `who` names them; they keep `keep` poses of a window.
+    They are of `repaired_windows`, and of the walks after the faulty past (`ge`). These walks are
+    returned as well, one set for each walker. `who` names the walkers; they keep `keep` poses of a
+    window.
     """
     frames = trials.truth.shape[1]
     whole = [
@@ -172,7 +173,7 @@ def table_2(
 def footsteps(name: str, walks: list[np.ndarray], trials: Trials, rule) -> Figure:
     """Number of footsteps of walks over that of the recorded motion, at v95 of each.
 
-    One set of walks for each training.
+    There is one set of walks for each training.
     """
     tables = np.stack([steps_table.tables(poses, trials.asked, rule) for poses in walks])
     data = np.broadcast_to(steps_table.tables(trials.truth, trials.asked, rule), tables.shape)

@@ -1,6 +1,6 @@
-"""What fills holes without a walker.
+"""Methods that fill holes without a walker.
 
-The mean pose, ridge regression from what is visible, straight lines.
+They are the mean pose, ridge regression from known entries, and straight lines.
 """
 
 from functools import cache
@@ -20,7 +20,7 @@ from ..walks.trials import Trials
 from .trials import columns_of
 
 Past = Float[np.ndarray, "N T_h J 3"]
-CLIPS = 200  # that the regression is fitted on, each in four versions
+CLIPS = 200  # for the fit of the regression, each in four versions
 
 
 @cache
@@ -29,7 +29,7 @@ def _regression() -> ridge.WindowRidge:
 
 
 def rivals(broken: Imperfect, trials: Trials) -> dict[str, Past]:
-    """Guesses by their names; straight lines only where every joint is known at some time."""
+    """Guesses by name; straight lines only if every joint is known at some time."""
     fitted, known = _regression(), columns_of(broken.known)
     past = torch.from_numpy(np.nan_to_num(broken.positions)).float().flatten(2)
     control = torch.from_numpy(trials.control[:, : 2 * past.shape[1]]).float()

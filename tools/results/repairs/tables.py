@@ -82,7 +82,7 @@ def dropout(records: dict[str, dict], folder: Path) -> str:
 
 
 def repairs(records: dict[str, dict], folder: Path) -> str:
-    """Each fault beside what needs no walker; then Table II."""
+    """Each fault, also with methods that need no walker; then Table II."""
     ours = tuple(f"mend.{fault}_" for fault in FAULTS)
     kinds = list(dict.fromkeys(n.split("_", 1)[1] for n in records if n.startswith(ours)))
     if not kinds:
@@ -103,7 +103,7 @@ def repairs(records: dict[str, dict], folder: Path) -> str:
     )
     text += table(["missing", *(f"`{kind}`" for kind in kinds)], rows)
     text += (
-        "\n![Errors of reconstructions and of what needs no walker](results/repairs.png)\n"
+        "\n![Errors of reconstructions and of methods without a walker](results/repairs.png)\n"
         * (folder / "repairs.png").exists()
     )
     second = [
@@ -126,7 +126,7 @@ def repairs(records: dict[str, dict], folder: Path) -> str:
 
 
 def inbetweens(records: dict[str, dict], folder: Path) -> str:
-    """Errors over the length of the gap, and what errors do not tell."""
+    """Errors over the length of the gap, and measures that errors do not show."""
     if "inbetween.keyframe_error_cm" not in records:
         return ""
     seeds = records["inbetween.keyframe_error_cm"]["seeds"]
@@ -159,7 +159,7 @@ def inbetweens(records: dict[str, dict], folder: Path) -> str:
 
 
 def draw(records: dict[str, dict], folder: Path) -> None:
-    """The pictures whose records are there."""
+    """Draw the pictures whose records exist."""
     missing = [round(100 * share) for share in SHARES]
     names = [name for name in RATES if f"mend-map.{name}.missing-0.{UNITS['bone']}" in records]
     if names:
@@ -213,7 +213,7 @@ def _pasts(records: dict[str, dict]) -> str:
 
 
 def _repairs(records: dict[str, dict]):
-    """Of each fault the ways that there are, in the order of REPAIRS."""
+    """The methods of each fault, in the order of REPAIRS."""
     sides = ("value", "low", "high")
     return {
         fault: {

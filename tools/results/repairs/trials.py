@@ -1,6 +1,6 @@
-"""What menders are tried on.
+"""The trials of repair methods.
 
-Unseen pasts with known faults, given to walkers as zero after standardisation.
+They are unseen pasts with known faults; walkers get zero after standardisation for missing joints.
 """
 
 from collections.abc import Callable
@@ -27,14 +27,14 @@ def names_of(kind: str) -> list[str]:
 
 
 def without(past: Float[np.ndarray, "N T_h J 3"], share: float, seed: int = 1) -> Imperfect:
-    """A share of the joints of each past missing throughout, drawn with a seed of its own."""
+    """Pasts with a share of their joints missing throughout, drawn with their own seed."""
     return random_joints(past, share, np.random.default_rng(seed))
 
 
 def as_given(walker: Walker, broken: Imperfect) -> tuple[torch.Tensor, torch.Tensor]:
-    """(past, known), both (N, T_h, D).
+    """(past, known), both (N, T_h, D): the network's columns in metres.
 
-    The network's columns in metres, the mean pose where nothing is known.
+    Unknown entries have the mean pose.
     """
     past = torch.from_numpy(broken.positions).float().flatten(2)
     known = columns_of(broken.known)
@@ -55,9 +55,9 @@ def continued(
     steps: int | None = None,
     keep: int = 1,
 ) -> Float[np.ndarray, "N n J 3"]:
-    """The next `frames` after a past of which a share of the joints is missing.
+    """The next `frames` after a past with a share of its joints missing.
 
-    Control held, as in all figures.
+    The control is held, as in all figures.
 
     `keep` poses of every predicted window are kept.
     """
@@ -72,10 +72,10 @@ def interval_over_seeds(
 ) -> tuple[float, float, float]:
     """The figure with its 95 % bootstrap interval.
 
-    Training seeds and clips are both drawn again, with replacement.
+    Training seeds and clips are both drawn with replacement.
 
-    Arrays have a row for each training seed, a column for each clip; seeds and clips are drawn for
-    all of them alike.
+    Arrays have a row for each training seed and a column for each clip; the same draw is used for
+    all arrays.
     """
     rng, (K, N) = np.random.default_rng(0), rows[0].shape[:2]
     values = []

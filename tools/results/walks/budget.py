@@ -1,10 +1,10 @@
-"""What is each choice worth?
+"""The value of each choice of a walker.
 
-Small walkers trained for the same CPU-seconds, each unlike another in one choice.
+Small walkers are trained for the same CPU-seconds, and each differs from another in one choice.
 
 How many future poses should be predicted at once (MoDiff says that T_p > 1 helps, and gives no
 number)? What do the schedule, the optimizer, the past noise, the weights of the loss, the
-footholds and the target do? All else is alike: network, data, seed, and the rollout, which keeps
+footholds and the target do? All else is equal: network, data, seed, and the rollout, which keeps
 one pose of every window.  Source: MoDiff III-A; the rest is ours
 """
 
@@ -31,7 +31,7 @@ SHOWN = (
     "skating_mps",
     "drift_ratio",
 )
-SMALL = MoDiffConfig(  # small enough to come far in minutes
+SMALL = MoDiffConfig(  # small enough to learn much in minutes
     width=64,
     hidden=256,
     motion_layers=1,
@@ -77,7 +77,7 @@ VARIANTS = {
 
 @dataclass(frozen=True)
 class Budget:
-    """CPU-seconds of training each, clips to train on, clips to walk, and for how long."""
+    """CPU-seconds of each training, number of training and of test clips, and their length."""
 
     seconds: float = 160
     training: int = 300
@@ -91,7 +91,7 @@ QUICK = Budget(seconds=2, training=6, clips=8, walk_s=6)
 
 @cache
 def material(budget: Budget) -> tuple[list[Clip], Trials]:
-    """What all variants train on and walk."""
+    """The training clips and the trials of all variants."""
     return augment(dataset(budget.training, 20.0, seed=1)), unseen(budget.clips, budget.walk_s)
 
 
@@ -102,7 +102,7 @@ def recipe_of(name: str) -> Recipe:
 
 
 def measure(name: str, budget: Budget) -> list[Figure]:
-    """The figures of one variant, and the steps its seconds were enough for."""
+    """The figures of one variant, and its number of training steps."""
     clips, trials = material(budget)
     walker, steps = train_for(budget.seconds, clips, recipe_of(name))
     walks = walker_generate(walker)(trials.past, trials.control, 0)
@@ -112,9 +112,9 @@ def measure(name: str, budget: Budget) -> list[Figure]:
 
 
 def budget_records(name: str, budget: Budget, command: str) -> list[dict]:
-    """One thread, whatever the machine has: CPU-seconds are the budget.
+    """The records of one variant, trained on one thread: the budget is in CPU-seconds.
 
-    Compare what one machine measured.
+    Compare only records of one machine.
     """
     before = torch.get_num_threads()
     torch.set_num_threads(1)

@@ -1,4 +1,4 @@
-"""What `make results` measures, in parts that can be run alone.
+"""The measurements of the walkers by `make results`, in parts that can be run alone.
 
 Each part is a list of records and one JSON file.
 """
@@ -20,7 +20,7 @@ from . import steps_table
 from .scores import Figure, diversity, score
 from .trials import UNSEEN, Choices, Trials, choices, rollouts_of, unseen, walker_generate
 
-CACHE = Path("build/results")  # rollouts, so that a new metric needs no new rollouts
+CACHE = Path("build/results")  # rollouts are kept, so that a new metric needs no new ones
 PACKAGE = Path(checkpoints.__file__).parents[1]
 ROLLING = (
     "cross_modal_attention.py",
@@ -42,7 +42,7 @@ PAPER_BONES = {
 
 @dataclass(frozen=True)
 class Size:
-    """How much is measured: the bars' 100 controls and 20 x 50 continuations, or a quick look."""
+    """The amount of measurement: 100 controls and 20 x 50 continuations, or little."""
 
     clips: int = 100
     pasts: int = 20
@@ -54,9 +54,9 @@ FULL, QUICK = Size(), Size(clips=12, pasts=3, each=8, seconds=7)
 
 
 class Bench:
-    """The trials, made once, and the rollouts on them.
+    """The trials, which are made once, and the rollouts on them.
 
-    Rollouts are kept on disk by the weights they come from.
+    Rollouts are kept on disk under the digest of their weights.
     """
 
     def __init__(self, size: Size, weights: dict[str, Path] | None = None):
@@ -74,7 +74,7 @@ class Bench:
     def rollouts(self, name: str, steps: int | None, hold: bool, what: str) -> np.ndarray:
         """Poses of the walker `name`.
 
-        On the trials (what="walks") or on the choices (what="choices").
+        They are on the trials (what="walks") or on the choices (what="choices").
         """
         path = self.weights.get(name) or checkpoints.available().get(name)
         if path is None:
@@ -107,7 +107,7 @@ def _digest(array: np.ndarray) -> str:
 
 
 def weights_digest(path: Path) -> str:
-    """Of the tensors in a weights file, not of its card."""
+    """Digest of the tensors in a weights file, without its card."""
     with safe_open(path, "pt") as file:
         return file.metadata()["sha256"][:16]
 
@@ -115,7 +115,7 @@ def weights_digest(path: Path) -> str:
 def code_digest() -> str:
     """Digest of all code that turns weights and inputs into poses.
 
-    When it changes, no old rollout is taken for a new one.
+    When it changes, old rollouts are not used.
     """
     files = [PACKAGE / name for name in ROLLING] + sorted((PACKAGE / "fast").glob("*.py"))
     return hashlib.sha256(b"".join(path.read_bytes() for path in files)).hexdigest()[:16]
@@ -123,13 +123,13 @@ def code_digest() -> str:
 
 @dataclass(frozen=True)
 class Walks:
-    """One line of the bars: which weights, which sampler, what control it sees."""
+    """One line of measurements: its weights, its sampler, and the control that it sees."""
 
     prefix: str
     name: str
     steps: int | None = None
     hold: bool = True
-    choose: bool = True  # measure the diversity too
+    choose: bool = True  # also measure the diversity
 
     def figures(self, bench: Bench) -> list[Figure]:
         trials = bench.trials
@@ -157,7 +157,7 @@ LINES = {
 
 
 def kept_records(folder: Path, name: str) -> list[dict]:
-    """The records of a part; none before it was measured."""
+    """The records of a part; none if it was not measured yet."""
     kept = folder / f"{name}.json"
     return json.loads(kept.read_text()) if kept.is_file() else []
 
@@ -170,9 +170,9 @@ def walker_records(bench: Bench, line: Walks, command: str) -> list[dict]:
 
 
 def as_record(prefix: str, figure: Figure, bench: Bench, line: Walks | None, command: str) -> dict:
-    """A record with all that settles the figure.
+    """A record with all settings of the figure.
 
-    Seeds, how much was measured, which weights (none: the data's own).
+    These are seeds, the amount of measurement, and the weights (none for the data's own figures).
     """
     size, seeds = bench.size, {"rollouts": 0}
     if figure.name.startswith("diversity"):

@@ -2,7 +2,7 @@
 
 Names, values, units.
 
-`score` takes arrays, so that anything can be scored: the data itself is a walker with no error.
+`score` takes arrays, so it can also score the data themselves.
 """
 
 import warnings
@@ -21,7 +21,7 @@ from motiondiff_edu.motion.skeleton import BONE_LENGTHS
 from ..intervals import interval
 
 FPS = 20
-SKATING_FLOOR = 0.02  # m/s: data that slide less count as this
+SKATING_FLOOR = 0.02  # m/s: this is used for data that slide less
 EDGE = 3 * FPS  # drift compares the first three seconds with the last three
 
 
@@ -36,7 +36,7 @@ class Figure:
     unit: str
 
     def as_record(self, prefix: str, seeds: dict, command: str, paper: float | None = None) -> dict:
-        """As it is kept in docs/results: five digits, None where there is no number."""
+        """The record for docs/results: five digits, None for NaN."""
         value, low, high = (
             float(f"{x:.5g}") if np.isfinite(x) else None for x in (self.value, self.low, self.high)
         )
@@ -53,7 +53,7 @@ class Figure:
 
 
 def squared_bone_error(poses: Float[np.ndarray, "N T J 3"]) -> Float[np.ndarray, "N"]:
-    """Mean squared bone-length error of each clip, cm^2: its mean's root is the paper's RMSE."""
+    """Mean squared bone-length error of each clip, cm^2; its mean's root is the paper's RMSE."""
     return 1e4 * ((bone_lengths(poses) - BONE_LENGTHS) ** 2).mean((-2, -1))
 
 
@@ -65,7 +65,7 @@ def squared_stretch(poses: Float[np.ndarray, "N T J 3"]) -> Float[np.ndarray, "N
 def shuffled_adherence(poses: Float[np.ndarray, "N T J 3"], control: Float[np.ndarray, "N T 3"]):
     """Adherence of every motion to the controls of three other clips.
 
-    Their mean; the clips are 1/4, 1/2 and 3/4 of the set away.
+    It is their mean; these clips are 1/4, 1/2 and 3/4 of the set away.
     """
     n = len(poses)
     shifts = sorted({max(1, n * k // 4) for k in (1, 2, 3)})
@@ -77,10 +77,7 @@ def score(
     control: Float[np.ndarray, "N n 3"],
     truth: Float[np.ndarray, "N n J 3"],
 ) -> list[Figure]:
-    """The figures of `poses` generated under `control`.
-
-    Beside those of the data's own answer `truth`.
-    """
+    """The figures of `poses` generated under `control`, and those of the data's own `truth`."""
     own, data = adherence(poses, control), adherence(truth, control)
     slide, slide_data = skating(poses, control), skating(truth, control)
     first, last = slice(None, EDGE), slice(-EDGE, None)
@@ -125,22 +122,22 @@ def diversity(
 def figure_of(name: str, unit: str, figure: Callable[..., float], *rows: np.ndarray) -> Figure:
     """The figure `figure(*rows)` with its interval over the rows.
 
-    NaN, without a warning, where there is no number.
+    It is NaN, without a warning, when there is no number.
     """
     with warnings.catch_warnings():
         warnings.simplefilter(
             "ignore", RuntimeWarning
-        )  # the mean of no number is NaN, and shown as such
+        )  # the mean of no numbers is NaN, and is shown as NaN
         return Figure(name, *interval(figure, *rows), unit)
 
 
 def root_mean(squares: Float[np.ndarray, "N"]) -> float:
-    """sqrt(mean of squares): an RMSE, from each clip's mean squared error."""
+    """sqrt(mean of squares): an RMSE from each clip's mean squared error."""
     return np.sqrt(squares.mean())
 
 
 def ratio(over: Float[np.ndarray, "N"], under: Float[np.ndarray, "N"]) -> float:
-    """Mean over mean (not the mean of ratios), clips without a number left out of each."""
+    """Mean divided by mean (not the mean of ratios); each leaves out clips without a number."""
     return np.nanmean(over) / np.nanmean(under)
 
 

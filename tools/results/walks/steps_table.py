@@ -1,9 +1,9 @@
 """MoDiff's Table I and Fig. 3 on the course's data.
 
-A footstep curve for each set of motions, and the row read from it.
+Each set of motions has a footstep curve, and a row that is read from it.
 
-The bootstrap draws clips; for that every clip is reduced to a table (number of steps, sum and sum
-of squares of their durations) at every tolerance, which add up.
+The bootstrap draws clips. So every clip is reduced to a table (number of steps, sum and sum of
+squares of their durations) at every tolerance; these tables can be added.
 """
 
 import numpy as np
@@ -29,7 +29,7 @@ PAPER_TABLE = {
 def tables(
     poses: Float[np.ndarray, "N T J 3"], control: Float[np.ndarray, "N T 3"], rule: StepRule = PAPER
 ) -> Float[np.ndarray, "N V 3"]:
-    """For every clip and tolerance: number of steps, sum of their durations, sum of the squares."""
+    """Number of steps, sum of durations and sum of their squares, for every clip and tolerance."""
     speeds = heel_speed(poses, control)
     durations = [[step_durations([speed], float(v), rule) for v in TOLERANCES] for speed in speeds]
     return np.array([[(len(d), d.sum(), (d**2).sum()) for d in clip] for clip in durations])

@@ -1,4 +1,4 @@
-"""What a walker is tried on: unseen pasts, unseen controls, and the data's own answer to both."""
+"""The trials of a walker: unseen pasts, unseen controls, and the data's own continuations."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -13,7 +13,7 @@ from motiondiff_edu.motion.clip import Clip
 
 from .scores import FPS
 
-UNSEEN = 900_000  # seeds from here on belong to no training set
+UNSEEN = 900_000  # seeds from here on are in no training set
 SECONDS, T_H = 12, 10
 
 # (past (N, T_h, J, 3), control (N, T_h + n, 3), seed) -> new poses (N, n, J, 3), metres
@@ -33,7 +33,7 @@ class Trials:
 
     @classmethod
     def of(cls, clips: Sequence[Clip], T_h: int = T_H) -> "Trials":
-        """The first T_h frames of each clip are the past, the rest is what is asked for."""
+        """The first T_h frames of each clip are the past; the rest is the future."""
         poses = np.stack([clip.poses for clip in clips])
         control = np.stack([clip.control for clip in clips])
         return cls(poses[:, :T_h], control, poses[:, T_h:])
@@ -49,7 +49,7 @@ class Trials:
 
 
 def unseen(n: int = 100, seconds: float = SECONDS) -> Trials:
-    """n trials of `seconds` whose pasts and controls no walker was trained on."""
+    """n trials of `seconds` with pasts and controls that are in no training set."""
     return Trials.of(dataset(n, seconds + T_H / FPS, seed=UNSEEN))
 
 
@@ -97,7 +97,7 @@ def choices(pasts: int = 20, n: int = 50, seconds: float = 3.0) -> Choices:
 def rollouts_of(
     generate: Generate, asked: Choices, seed: int = 0
 ) -> Float[np.ndarray, "P n frames J 3"]:
-    """As many rollouts of each past as futures were drawn from the data."""
+    """Rollouts of each past, as many as futures were drawn from the data."""
     n = asked.drawn.shape[1]
     past, control = (np.repeat(x, n, axis=0) for x in (asked.past, asked.control))
     return generate(past, control, seed).reshape(asked.drawn.shape)

@@ -1,9 +1,9 @@
-"""The bug zoo: wrong answers one can expect.
+"""The bug zoo: wrong answers that one can expect.
 
-One file for each notebook; its check must refuse each of them.
+There is one file for each notebook. The check must refuse every wrong answer.
 
 nb02.py holds `ZOO = {"q_sample": {"forgot the square root": wrong_q_sample, ...}}`: name of the
-check, then what is wrong in a few words, then the wrong answer itself. At least two for each check.
+check, then what is wrong in a few words, then the wrong answer itself. Each check has at least two.
 """
 
 import importlib

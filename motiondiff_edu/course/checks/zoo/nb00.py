@@ -21,15 +21,12 @@ def in_place(past_control, new, T_h):
 
 
 def row_missing(past_control, new, T_h):
-    """The row that leads into the first new frame is dropped.
-
-    All that follows comes a frame early.
-    """
+    """The row that leads into the first new frame is missing, so all others come a frame early."""
     return np.concatenate([past_control[-T_h:-1], new])
 
 
 def first_rows(past_control, new, T_h):
-    """Keeps the beginning of the past; what counts for going on is its end."""
+    """Keeps the beginning of the past; a continuation needs its end."""
     past = past_control[:T_h].copy()
     past[-1] = new[0]
     return np.concatenate([past, new])

@@ -21,14 +21,14 @@ def _turn(pose, heading):
 
 
 def central_joints_stay(poses, control):
-    """What the corpus' public preprocessing does."""
+    """The public preprocessing of the data set does this."""
     seen = poses[:, MIRROR] * _SEEN
     seen[:, CENTRE, 0] = poses[:, CENTRE, 0]
     return seen, control * _LED
 
 
 def names_stay(poses, control):
-    """Mirrors the places but not the names.
+    """Mirrors the positions but not the names.
 
     The left arm now hangs on the right side of the body.
     """
@@ -36,7 +36,7 @@ def names_stay(poses, control):
 
 
 def control_stays(poses, control):
-    """The body steps for a turn to the other side, and its control leads it to the old one."""
+    """The body steps into a turn to one side, and its control turns to the other."""
     return poses[:, MIRROR] * _SEEN, control.copy()
 
 

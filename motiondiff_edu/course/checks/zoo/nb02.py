@@ -8,22 +8,22 @@ def _shaped(alpha_bar, s):
 
 
 def root_dropped(x0, s, alpha_bar, noise):
-    """The shares are taken for amplitudes.
+    """Uses the shares of the variance as amplitudes.
 
-    Variances add up to one, amplitudes do not, and x_s comes out too small.
+    Variances add up to one, and amplitudes do not: x_s becomes too small.
     """
     kept = _shaped(alpha_bar, s)
     return kept * x0 + (1 - kept) * noise
 
 
 def root_dropped_from_the_noise(x0, s, alpha_bar, noise):
-    """Right signal under too little noise: the variance of x_s no longer adds up to one."""
+    """Adds too little noise to the right signal: the variance of x_s is no longer one."""
     kept = _shaped(alpha_bar, s)
     return kept**0.5 * x0 + (1 - kept) * noise
 
 
 def one_step_for_all(x0, s, alpha_bar, noise):
-    """Reads the table for the first example only; with a batch of one nobody notices."""
+    """Reads the table for the first example only; a batch of one does not show it."""
     kept = alpha_bar[s[0]]
     return kept**0.5 * x0 + (1 - kept) ** 0.5 * noise
 
@@ -41,7 +41,7 @@ def signal_and_noise_swapped(x0, s, alpha_bar, noise):
 
 
 def returns_nothing(x0, s, alpha_bar, noise):
-    """Computes something and leaves it there."""
+    """Computes something and returns nothing."""
     _shaped(alpha_bar, s) * x0
 
 
@@ -51,9 +51,9 @@ def _product(mean_1, variance_1, mean_2, variance_2):
 
 
 def step_variance(x0, x_s, s, alpha_bar):
-    """Adds noise with the variance of the step forwards on each step back.
+    """Uses the variance of the forward step for the step back.
 
-    That is too much once x0 is known.
+    That is too much when x0 is known.
     """
     alpha = alpha_bar[s] / alpha_bar[s - 1]
     mean, _ = _product(
@@ -63,7 +63,7 @@ def step_variance(x0, x_s, s, alpha_bar):
 
 
 def wrong_row_for_x0(x0, x_s, s, alpha_bar):
-    """Multiplies with what x0 says about x_s, where what it says about x_{s-1} is asked for."""
+    """Multiplies by the density of x_s given x0, instead of that of x_{s-1} given x0."""
     alpha = alpha_bar[s] / alpha_bar[s - 1]
     return _product(
         alpha_bar[s] ** 0.5 * x0, 1 - alpha_bar[s], x_s / alpha**0.5, (1 - alpha) / alpha
@@ -71,13 +71,13 @@ def wrong_row_for_x0(x0, x_s, s, alpha_bar):
 
 
 def last_step_not_undone(x0, x_s, s, alpha_bar):
-    """Takes x_s for a measurement of x_{s-1} without undoing the shrinking of the step."""
+    """Uses x_s as a measurement of x_{s-1} without undoing the step's scaling."""
     alpha = alpha_bar[s] / alpha_bar[s - 1]
     return _product(alpha_bar[s - 1] ** 0.5 * x0, 1 - alpha_bar[s - 1], x_s, 1 - alpha)
 
 
 def deviation_for_variance(x0, x_s, s, alpha_bar):
-    """Right mean; the second number is the square root of what was asked for."""
+    """The mean is right; the second number is the square root of the variance."""
     alpha = alpha_bar[s] / alpha_bar[s - 1]
     mean, var = _product(
         alpha_bar[s - 1] ** 0.5 * x0, 1 - alpha_bar[s - 1], x_s / alpha**0.5, (1 - alpha) / alpha
@@ -86,7 +86,7 @@ def deviation_for_variance(x0, x_s, s, alpha_bar):
 
 
 def mean_only(x0, x_s, s, alpha_bar):
-    """Half of an answer: a Gaussian has a variance, too."""
+    """This is half of the answer: a Gaussian has a variance, too."""
     return step_variance(x0, x_s, s, alpha_bar)[0]
 
 

@@ -11,26 +11,23 @@ def _each(x0, alpha_bar):
 
 
 def variance_forgotten(x0, alpha_bar):
-    """Counts how far the means lie apart, and not that the widths differ."""
+    """Counts the distance of the means, but not the difference of the widths."""
     return (alpha_bar * x0**2).sum((1, 2)) / 2
 
 
 def logarithm_forgotten(x0, alpha_bar):
-    """Without its logarithm a divergence may come out negative."""
+    """Without its logarithm a divergence can be negative."""
     return (alpha_bar * x0**2 - alpha_bar).sum((1, 2)) / 2
 
 
 def root_dropped(x0, alpha_bar):
-    """Squares alpha_bar with x0, although the mean holds only its root."""
+    """Squares alpha_bar with x0, although the mean has only its root."""
     left = 1 - alpha_bar
     return ((alpha_bar * x0) ** 2 + left - 1 - torch.log(left)).sum((1, 2)) / 2
 
 
 def directions_swapped(x0, alpha_bar):
-    """The divergence of the prior from the last step.
-
-    That of the last step from the prior is meant.
-    """
+    """Computes KL(prior || last step) instead of KL(last step || prior)."""
     left = 1 - alpha_bar
     return ((alpha_bar * x0**2 + 1) / left - 1 + torch.log(left)).sum((1, 2)) / 2
 
@@ -41,12 +38,12 @@ def _of_eps(beta, alpha_bar):
 
 
 def weight_of_eps(beta, alpha_bar):
-    """The weight that belongs to the error of eps; an error of x0 has another size."""
+    """This weight belongs to the error of eps; an error of x0 has another size."""
     return _of_eps(beta, alpha_bar)[0]
 
 
 def not_squared(beta, alpha_bar):
-    """Carries the error over from eps to x0, but the loss squares it."""
+    """Converts the error from eps to x0, but does not square the factor."""
     weight, a = _of_eps(beta, alpha_bar)
     return weight * (a / (1 - a)) ** 0.5
 
@@ -58,7 +55,7 @@ def upside_down(beta, alpha_bar):
 
 
 def one_row_too_many(beta, alpha_bar):
-    """Has an entry for s = 0, where there is nothing to be taken back."""
+    """Has an entry for s = 0, which is no step."""
     weight, a = _of_eps(beta, alpha_bar)
     return torch.cat([torch.zeros(1), weight * a / (1 - a)])
 

@@ -6,33 +6,33 @@ def _to_x0(output, x_s, a, b, target):
 
 
 def roots_dropped(output, x_s, alpha_bar, target):
-    """Signal and noise are weighted by their shares of the variance, not by the roots of these."""
+    """Weights signal and noise by their shares of the variance, not by the square roots."""
     return _to_x0(output, x_s, alpha_bar, 1 - alpha_bar, target)
 
 
 def signal_and_noise_swapped(output, x_s, alpha_bar, target):
-    """Each weight stands where the other belongs; at alpha_bar = 0.5 nobody notices."""
+    """Swaps the two weights; at alpha_bar = 0.5 this makes no difference."""
     return _to_x0(output, x_s, (1 - alpha_bar) ** 0.5, alpha_bar**0.5, target)
 
 
 def sign_of_v(output, x_s, alpha_bar, target):
-    """Takes v for its negative: eps and x0 come out right, and v does not."""
+    """Uses the wrong sign of v; eps and x0 come out right."""
     output = -output if target == "v" else output
     return _to_x0(output, x_s, alpha_bar**0.5, (1 - alpha_bar) ** 0.5, target)
 
 
 def not_divided(output, x_s, alpha_bar, target):
-    """Takes the noise away from x_s and leaves x0 at its shrunken size."""
+    """Removes the noise from x_s and does not scale x0 back up."""
     return x_s - (1 - alpha_bar) ** 0.5 * output if target == "eps" else output
 
 
 def shares_swapped(means, new, decay):
-    """With a decay of 0.999 the mean is almost the newest weights: it smooths nothing."""
+    """With a decay of 0.999 the mean is almost the newest weights, so it smooths nothing."""
     return [(1 - decay) * m + decay * n for m, n in zip(means, new, strict=True)]
 
 
 def changed_in_place(means, new, decay):
-    """Right numbers, but the means that were given change with them."""
+    """The numbers are right, but the given means are changed."""
     for m, n in zip(means, new, strict=True):
         m *= decay
         m += (1 - decay) * n

@@ -13,19 +13,19 @@ def _lower(values, height):
 
 
 def per_frame(toes, fps=20, below=0.03):
-    """Metres a frame, a twentieth of the speed: every foot seems to stand still."""
+    """Gives metres per frame, a twentieth of the speed: every foot seems to stand still."""
     height, speed = _steps(toes)
     return _lower(speed, height)[height.min(1) < below].mean()
 
 
 def in_the_air(toes, fps=20, below=0.03):
-    """A swinging toe is fast and meant to be: it is judged as if it slid."""
+    """A swinging toe is fast, and should be; here it counts as sliding."""
     height, speed = _steps(toes)
     return fps * _lower(speed, height).mean()
 
 
 def nothing_is_a_score(toes, fps=20, below=0.03):
-    """Frames without a planted toe count as perfect, so that whoever flies wins."""
+    """Frames without a planted toe count as perfect, so a figure that flies wins."""
     height, speed = _steps(toes)
     return fps * np.where(height.min(1) < below, _lower(speed, height), 0).mean()
 
@@ -50,7 +50,7 @@ def mean_height(toes, fps=20, below=0.03):
 
 
 def slower_toe(toes, fps=20, below=0.03):
-    """The one that sounds right and judges itself."""
+    """Chooses the toe by its speed, which is what it should measure."""
     height, speed = _steps(toes)
     return fps * speed.min(1)[height.min(1) < below].mean()
 
@@ -67,7 +67,7 @@ def upwards_too(toes, fps=20, below=0.03):
 
 
 def first_end_only(toes, fps=20, below=0.03):
-    """A toe that is low at first and leaves in the same step counts as planted."""
+    """A toe that is low at first and rises in the same step counts as planted."""
     height, (_, speed) = toes[:-1, :, 1], _steps(toes)
     return fps * _lower(speed, height)[height.min(1) < below].mean()
 
@@ -88,7 +88,7 @@ def _merge(runs, gap):
 
 
 def pairs_once(runs, gap):
-    """Joins two and goes on behind them: a third crumb of the same step stays alone."""
+    """Joins two runs and skips both: a third short run of the same step stays alone."""
     merged, k = [], 0
     while k < len(runs):
         join = k + 1 < len(runs) and runs[k + 1][0] - runs[k][1] <= gap
@@ -98,17 +98,17 @@ def pairs_once(runs, gap):
 
 
 def last_one_lost(runs, gap):
-    """Adds a step when the next one begins, and after the last one none does."""
+    """Adds a step when the next one begins, so the last step is never added."""
     return _merge(runs, gap)[:-1]
 
 
 def crumbs_dropped(runs, gap):
-    """Throws short runs away instead of joining them: a step that flickers is lost."""
+    """Drops short runs instead of joining them: a step with gaps is lost."""
     return [(first, after) for first, after in runs if after - first > gap]
 
 
 def in_place(runs, gap):
-    """Right steps, but the caller's list has become them."""
+    """The steps are right, but the caller's list is changed."""
     runs[:] = _merge(runs, gap)
     return runs
 

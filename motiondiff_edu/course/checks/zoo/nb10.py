@@ -4,42 +4,39 @@ import torch
 
 
 def order_only(control):
-    """What the paper says. The figure is told to walk ahead while its film runs backwards."""
+    """Does what the paper says: the control still leads ahead while time runs backwards."""
     return control.flip(1)
 
 
 def not_shifted(control):
-    """Each step is taken one frame too early.
-
-    It is nearly right: the path ends beside where it began.
-    """
+    """Each step comes one frame too early, so the path ends near its start, but not at it."""
     return -control.flip(1)
 
 
 def no_sign(control):
-    """The rows are where they belong, the figure still walks ahead."""
+    """The rows are in the right order, but the figure still walks ahead."""
     back = control[:, :-1].flip(1)
     return torch.cat([back, back[:, -1:]], dim=1)
 
 
 def yaw_kept(control):
-    """It walks backwards, and turns off to the wrong side."""
+    """The figure walks backwards, and turns to the wrong side."""
     return -no_sign(control) * torch.tensor([1, 1, -1.0])
 
 
 def left_kept(control):
-    """As in a mirror: but a mirror leaves time alone."""
+    """The figure walks backwards, and steps to the wrong side."""
     return -no_sign(control) * torch.tensor([1, -1.0, 1])
 
 
 def last_zero(control):
-    """In the last frame it stands still."""
+    """The figure stands still in the last frame."""
     back = -control[:, :-1].flip(1)
     return torch.cat([back, torch.zeros_like(back[:, :1])], dim=1)
 
 
 def in_place(control):
-    """Right, but the walk that was given now has another control."""
+    """The numbers are right, but the given control is changed."""
     control.copy_(-no_sign(control))
     return control
 
@@ -71,44 +68,41 @@ def mask_inverted(walk_on, past, known, mean, control):
 
 
 def overwritten(walk_on, past, known, mean, control):
-    """A smooth past, but no longer the one that was given."""
+    """The past is smooth, but it is no longer the given one."""
     return _round(walk_on, past, known, mean, control)
 
 
 def raw_zero(walk_on, past, known, mean, control):
-    """The missing hand starts on the floor, and the walker takes it for what it saw."""
+    """The missing hand starts on the floor, and the walker uses it like a given one."""
     return torch.where(known, past, _round(walk_on, past, known, torch.zeros_like(mean), control))
 
 
 def nan_to_the_walker(walk_on, past, known, mean, control):
-    """Fills the holes afterwards only: the walker has eaten NaN."""
+    """Fills the holes only afterwards: the walker has computed with NaN."""
     return _round(walk_on, past, known, past, control)
 
 
 def start_returned(walk_on, past, known, mean, control):
-    """Has walked there and back, and forgets to use it."""
+    """Walks there and back, and does not use the result."""
     _round(walk_on, past, known, mean, control)
     return torch.where(known, past, mean)
 
 
 def two_rounds(walk_on, past, known, mean, control):
-    """Right where it ends, but it was asked for one round."""
+    """Makes two rounds instead of one."""
     once = torch.where(known, past, _round(walk_on, past, known, mean, control))
     return torch.where(known, past, _round(walk_on, once, known, mean, control))
 
 
 def short_control(walk_on, past, known, mean, control):
-    """Only the rows beside the past go along.
-
-    A walker then has no control for the frames it is to make.
-    """
+    """Gives only the control of the past; the walker has none for the new frames."""
     ahead = walk_on(torch.where(known, past, mean), control[:, : past.shape[1]])
     back = walk_on(ahead.flip(1), -no_sign(control)).flip(1)
     return torch.where(known, past, back)
 
 
 def last_pose_only(walk_on, past, known, mean, control):
-    """Walks back from one pose: the walker goes on from as many as it was trained with."""
+    """Walks back from one pose; the walker needs as many as it was trained with."""
     ahead = walk_on(torch.where(known, past, mean), control)
     back = walk_on(ahead.flip(1)[:, -1:], -no_sign(control)).flip(1)
     return torch.where(known, past, back)
@@ -124,7 +118,7 @@ def _moved(before, after, known):
 
 
 def no_root(before, after, known):
-    """Square metres: a centimetre seems to be a tenth of a millimetre."""
+    """Gives square metres: a centimetre becomes 0.0001."""
     moved, holes = _moved(before, after, known)
     return moved.flatten(1).sum(1) / holes
 
@@ -135,30 +129,30 @@ def all_entries(before, after, known):
 
 
 def divided_by_all(before, after, known):
-    """A small hole seems to have come to rest long before it has."""
+    """A small hole seems to stop changing long before it does."""
     return _moved(before, after, known)[0].flatten(1).mean(1).sqrt()
 
 
 def one_for_all(before, after, known):
-    """One number for the whole batch: a restless sample hides among many calm ones."""
+    """Gives one number for the whole batch, which hides one sample that still moves."""
     return (after - before)[~known].square().mean().sqrt()
 
 
 def mean_distance(before, after, known):
-    """Metres, but not the root of the mean square."""
+    """Gives the mean distance, not the root of the mean square."""
     holes = ~known
     return ((after - before).abs() * holes).flatten(1).sum(1) / holes.flatten(1).sum(1).clamp(min=1)
 
 
 def before_in_place(before, after, known):
-    """Right, but the holes as they were are lost to the next round."""
+    """The numbers are right, but the old values of the holes are lost."""
     before -= after
     moved = before.square() * ~known
     return (moved.flatten(1).sum(1) / (~known).flatten(1).sum(1).clamp(min=1)).sqrt()
 
 
 def after_in_place(before, after, known):
-    """Right, but what was found is gone."""
+    """The numbers are right, but the new values are changed."""
     after[known] = before[known]
     return (
         ((after - before).square()).flatten(1).sum(1) / (~known).flatten(1).sum(1).clamp(min=1)
@@ -166,7 +160,7 @@ def after_in_place(before, after, known):
 
 
 def nothing_by_nothing(before, after, known):
-    """0 / 0 where nothing is missing: NaN is never below a tolerance, and the loop runs on."""
+    """Divides 0 by 0 when nothing is missing: NaN is below no tolerance, and the loop runs on."""
     holes = ~known
     return (((after - before).square() * holes).flatten(1).sum(1) / holes.flatten(1).sum(1)).sqrt()
 

@@ -9,17 +9,17 @@ def _power(X, filters):
 
 
 def magnitude(X, filters, floor):
-    """Bands are filled with magnitudes; energy is what adds up, the square of them."""
+    """Adds magnitudes in the bands; energies should be added, the squares of them."""
     return (X.abs() @ filters.T).clamp(min=floor).log()
 
 
 def no_floor(X, filters, floor):
-    """Silence becomes minus infinity, and one such value spoils every mean."""
+    """Silence becomes minus infinity, and one such value ruins every mean."""
     return _power(X, filters).log()
 
 
 def floor_after_the_log(X, filters, floor):
-    """Silence gets the floor itself where the floor's logarithm was meant."""
+    """Silence gets the floor itself instead of its logarithm."""
     return torch.nan_to_num(_power(X, filters).log(), neginf=floor)
 
 

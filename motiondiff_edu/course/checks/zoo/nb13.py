@@ -9,12 +9,12 @@ def _guess(x_s, eps_hat, first, second):
 
 
 def index_left_out(x_s, s, eps_hat, alpha_bar):
-    """As it is printed: one alpha_bar has its index and the other has none."""
+    """As printed in the paper: one alpha_bar has its index and the other has none."""
     return _guess(x_s, eps_hat, alpha_bar[s], alpha_bar[-1])
 
 
 def last_step_for_all(x_s, s, eps_hat, alpha_bar):
-    """Treats every sample as pure noise, which makes the guess of a clean one enormous."""
+    """Treats every sample as pure noise: the guess for a clean one becomes enormous."""
     return _guess(x_s, eps_hat, alpha_bar[-1], alpha_bar[-1])
 
 
@@ -24,37 +24,34 @@ def one_step_earlier(x_s, s, eps_hat, alpha_bar):
 
 
 def first_step_for_all(x_s, s, eps_hat, alpha_bar):
-    """Reads the table for the first sample only; with a batch of one nobody notices."""
+    """Reads the table for the first sample only; a batch of one does not show it."""
     return _guess(x_s, eps_hat, alpha_bar[s[0]], alpha_bar[s[0]])
 
 
 def no_roots(x_s, s, eps_hat, alpha_bar):
-    """Takes shares of the variance for amplitudes."""
+    """Uses the shares of the variance as amplitudes."""
     share = alpha_bar[s][:, None, None]
     return x_s / share - (1 / share - 1) * eps_hat
 
 
 def second_root_forgotten(x_s, s, eps_hat, alpha_bar):
-    """Only one of the two roots is there.
-
-    Too little noise is taken away at small s, too much at large s.
-    """
+    """Takes one root of two: too little noise is removed at small s, too much at large s."""
     share = alpha_bar[s][:, None, None]
     return x_s / share**0.5 - (1 / share - 1) * eps_hat
 
 
 def noise_added_again(x_s, s, eps_hat, alpha_bar):
-    """A sign turned: the noise is doubled instead of removed."""
+    """The sign is wrong: the noise is doubled instead of removed."""
     return _guess(x_s, -eps_hat, alpha_bar[s], alpha_bar[s])
 
 
 def mean_over_bones(lengths):
-    """Asks whether all bones are equally long, which no body's are."""
+    """Compares the bones with each other, and no body has bones of one length."""
     return ((lengths - lengths.mean(1, keepdim=True)) ** 2).sum(1).div(lengths.shape[1] - 1).mean()
 
 
 def divided_by_n(lengths):
-    """The squares about a mean of their own are too small; N - 1 makes up for that."""
+    """Squares around their own mean are too small; N - 1 corrects that."""
     return ((lengths - lengths.mean(0)) ** 2).mean()
 
 
@@ -72,25 +69,22 @@ def _apart(joints, bones, pairs):
 
 
 def standardised_units(x0_hat, mean, std, bones, pairs):
-    """Distances between standardised numbers are no lengths: every coordinate has its own unit."""
+    """Measures in standardised units, in which every coordinate has its own scale."""
     return _apart(_joints(x0_hat, 0.0, 1.0), bones, pairs).abs().mean()
 
 
 def mean_not_added(x0_hat, mean, std, bones, pairs):
-    """Multiplies by the deviation but forgets the mean, without which the joints lie in a heap."""
+    """Multiplies by the standard deviation but forgets the mean: the joints lie in a heap."""
     return _apart(_joints(x0_hat, 0.0, std), bones, pairs).abs().mean()
 
 
 def root_dropped(x0_hat, mean, std, bones, pairs):
-    """The joints are still relative to the pelvis.
-
-    Bones at the pelvis therefore begin at the wrong place.
-    """
+    """The joints stay relative to the pelvis, so bones at the pelvis have a wrong start."""
     return _apart(_joints(x0_hat, mean, std, add_pelvis=False), bones, pairs).abs().mean()
 
 
 def left_with_left(x0_hat, mean, std, bones, pairs):
-    """Compares each left bone with the next left one: a thigh is no upper arm."""
+    """Compares each left bone with the next left one, a thigh with an upper arm."""
     left = [i for i, _ in pairs]
     return (
         _apart(
@@ -107,7 +101,7 @@ def sign_kept(x0_hat, mean, std, bones, pairs):
 
 
 def squared(x0_hat, mean, std, bones, pairs):
-    """Squares where the distance is asked for, so that small asymmetries vanish."""
+    """Squares the differences, so that small asymmetries vanish."""
     return _apart(_joints(x0_hat, mean, std), bones, pairs).square().mean()
 
 

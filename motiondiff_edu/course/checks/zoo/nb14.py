@@ -12,56 +12,53 @@ def _own_left_out(table):
 
 
 def own_song(stops, songs, score):
-    """The score itself, with which the shuffled one was to be compared."""
+    """This is the score itself, with which the shuffled one should be compared."""
     return np.mean([score(s, song) for s, song in zip(stops, songs, strict=True)])
 
 
 def own_song_too(stops, songs, score):
-    """The dance's own song is among the strangers and raises their level."""
+    """The dance's own song is among the others and raises their mean."""
     return _table(stops, songs, score).mean()
 
 
 def next_song_only(stops, songs, score):
-    """One stranger for each dance, where all of them were asked for."""
+    """Takes one other song for each dance instead of all."""
     return np.mean([score(s, song) for s, song in zip(stops, songs[1:] + songs[:1], strict=True)])
 
 
 def each_pair_once(stops, songs, score):
-    """Half of the pairs are missing: the score of dance a to song b is not that of b to a."""
+    """Half of the pairs are missing: dance a to song b is not dance b to song a."""
     return _table(stops, songs, score)[np.triu_indices(len(stops), 1)].mean()
 
 
 def half_of_the_pairs(stops, songs, score):
-    """The other half: each dance with the songs before its own."""
+    """Takes the other half: each dance with the songs before its own."""
     return _table(stops, songs, score)[np.tril_indices(len(stops), -1)].mean()
 
 
 def the_song_before(stops, songs, score):
-    """One stranger for each dance, the one before."""
+    """Takes one other song for each dance, the one before."""
     return np.mean([score(s, songs[i - 1]) for i, s in enumerate(stops)])
 
 
 def divided_by_dances(stops, songs, score):
-    """The sum over pairs, divided by the number of dances."""
+    """Divides the sum over pairs by the number of dances."""
     table = _table(stops, songs, score)
     return table[~np.eye(len(table), dtype=bool)].sum() / len(table)
 
 
 def own_song_as_nothing(stops, songs, score):
-    """Own songs count as zeros, which lowers the level the more, the fewer the dances."""
+    """Own songs count as zeros, which lowers the mean most when there are few dances."""
     return (_table(stops, songs, score) * (1 - np.eye(len(stops)))).mean()
 
 
 def exchanged(stops, songs, score):
-    """Asks how near the beats are to the stops, which is the other form of the score."""
+    """Measures from the beats to the stops, which is the other form of the score."""
     return _own_left_out(_table(songs, stops, score))
 
 
 def published_bracket(path, fps):
-    """As it is printed.
-
-    The bracket divides one position by the frame time instead of their difference.
-    """
+    """Closes the bracket as published: one position is divided by the frame time, not both."""
     dt = 1 / fps
     after = (path[2:] - path[1:-1]) / dt
     before = path[1:-1] - path[:-2] / dt
@@ -73,30 +70,30 @@ def _second(path):
 
 
 def one_frame_time(path, fps):
-    """Divides by the frame time once; an acceleration has it twice."""
+    """Divides by the frame time once; an acceleration needs it twice."""
     return np.linalg.norm(_second(path), axis=1).mean() * fps
 
 
 def no_frame_time(path, fps):
-    """Metres a frame and frame.
+    """Gives metres per frame, per frame.
 
-    The same dance at 60 frames a second costs a ninth of that at 20.
+    The same dance has a ninth of the expenditure at 60 frames a second as at 20.
     """
     return np.linalg.norm(_second(path), axis=1).mean()
 
 
 def squared(path, fps):
-    """The mean square weighs one jerk more than a whole lively dance."""
+    """In a mean of squares one jerk counts more than a whole lively dance."""
     return ((_second(path) * fps**2) ** 2).sum(1).mean()
 
 
 def cancelled(path, fps):
-    """Averages the vectors before it measures them: to and fro add up to nothing."""
+    """Averages the vectors before it takes their length: opposite ones cancel."""
     return np.linalg.norm(_second(path).mean(0)) * fps**2
 
 
 def change_of_speed(path, fps):
-    """Going round at a steady speed is accelerated, too, and here costs nothing."""
+    """Moving in a circle at a steady speed is accelerated, too, but costs nothing here."""
     speed = np.linalg.norm(np.diff(path, axis=0), axis=1) * fps
     return np.abs(np.diff(speed)).mean() * fps
 

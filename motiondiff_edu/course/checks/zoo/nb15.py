@@ -10,19 +10,19 @@ def _seen(given, alpha_bar, noise):
 
 
 def _with_mask(value):
-    """A wrong value where something is known."""
+    """Puts a wrong value where something is known."""
     return lambda x_s, given, known, alpha_bar, noise: torch.where(
         known, value(x_s, given, alpha_bar, noise), x_s
     )
 
 
 def by_product(x_s, given, known, alpha_bar, noise):
-    """Where nothing is known, 0 times NaN is NaN."""
+    """Multiplies by the mask: where nothing is known, 0 times NaN is NaN."""
     return known * _seen(given, alpha_bar, noise) + ~known * x_s
 
 
 def _sampled(put, leap, x, visited, after_leap=None):
-    """The loop, with something of its own before every leap, and after it."""
+    """The loop, with a given change before every leap, and after it."""
     for s, after in zip(visited, [*visited[1:], 0], strict=True):
         x = leap(put(x, s, after), s, after)
         x = x if after_leap is None else after_leap(x, s, after)
@@ -30,32 +30,32 @@ def _sampled(put, leap, x, visited, after_leap=None):
 
 
 def inverted(leap, snapshot, x, visited, given, known):
-    """What was given is made up, and what was open is held."""
+    """Replaces the unknown entries and samples the known ones."""
     x = _sampled(lambda x, s, after: torch.where(known, x, snapshot(s)), leap, x, visited)
     return torch.where(known, x, given)
 
 
 def clean(leap, snapshot, x, visited, given, known):
-    """Clean entries amid noise: nothing the network was trained on."""
+    """Puts clean entries among noisy ones, which the network never saw in training."""
     x = _sampled(lambda x, s, after: torch.where(known, given, x), leap, x, visited)
     return torch.where(known, given, x)
 
 
 def one_snapshot(leap, snapshot, x, visited, given, known):
-    """The noise of the first step at all steps: to the end, what is given looks like noise."""
+    """Uses the first step's noise at all steps: the given entries look like noise to the end."""
     kept = snapshot(visited[0])
     x = _sampled(lambda x, s, after: torch.where(known, kept, x), leap, x, visited)
     return torch.where(known, given, x)
 
 
 def of_the_step_after(leap, snapshot, x, visited, given, known):
-    """Too little noise for the step that the network is told."""
+    """Adds too little noise for the step that the network gets."""
     x = _sampled(lambda x, s, after: torch.where(known, snapshot(after), x), leap, x, visited)
     return torch.where(known, given, x)
 
 
 def after_the_leap(leap, snapshot, x, visited, given, known):
-    """The network sees pure noise first, and then a snapshot of a step gone by."""
+    """The network sees pure noise first, and then the snapshot of the step before."""
     x = _sampled(
         lambda x, s, after: x,
         leap,
@@ -67,7 +67,7 @@ def after_the_leap(leap, snapshot, x, visited, given, known):
 
 
 def after_the_leap_for_the_next(leap, snapshot, x, visited, given, known):
-    """Nearly right: only the first look is at pure noise."""
+    """This is nearly right: the network sees pure noise only at the first step."""
     x = _sampled(
         lambda x, s, after: x,
         leap,
@@ -79,17 +79,17 @@ def after_the_leap_for_the_next(leap, snapshot, x, visited, given, known):
 
 
 def not_put_back(leap, snapshot, x, visited, given, known):
-    """The last leap moves what was given: near it, and not it."""
+    """The last leap moves the given entries a little."""
     return _sampled(lambda x, s, after: torch.where(known, snapshot(s), x), leap, x, visited)
 
 
 def at_the_end_only(leap, snapshot, x, visited, given, known):
-    """A sample that never heard of the given, and the given pasted over it."""
+    """Samples without the given entries, and pastes them over the result."""
     return torch.where(known, given, _sampled(lambda x, s, after: x, leap, x, visited))
 
 
 def last_step_missing(leap, snapshot, x, visited, given, known):
-    """Stops at the last visited step, where noise is left."""
+    """Stops at the last visited step, at which noise is left."""
     for s, after in zip(visited[:-1], visited[1:], strict=True):
         x = leap(torch.where(known, snapshot(s), x), s, after)
     return torch.where(known, given, x)
