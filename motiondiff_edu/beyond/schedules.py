@@ -37,7 +37,7 @@ def leap_schedule(
 
     At lower noise, x_s tells a small network no more about a pose than it already knows. Each step
     there would add the network's error again, and a rollout repeats these steps in each frame. One
-    leap from step 1 to the clean pose avoids that. Ours.  Notebook: 07
+    leap from step 1 to the clean pose avoids that. Ours.
     """
     rest = torch.linspace(beta_2, beta_S, S - 1, dtype=torch.float64)
     return make_schedule(

@@ -1,0 +1,63 @@
+"""Notebook 07's table of three recipes says what the recipes say."""
+
+import re
+
+import notebook_cells
+import pytest
+
+from motiondiff_edu.diffusion_dropout import P_D
+from motiondiff_edu.modiff import MODIFF_PAPER, MoDiffConfig
+from motiondiff_edu.recipes.walkers import WALKER, WALKER_PAPER, WALKER_PLAIN, WALKER_TRUNK
+
+
+@pytest.fixture(scope="module")
+def cells() -> list[dict]:
+    (path,) = (p for p in notebook_cells.sources() if p.name.startswith("07_"))
+    return notebook_cells.read(path)["cells"]
+
+
+@pytest.fixture(scope="module")
+def table(cells) -> dict[str, list[str]]:
+    """{first column: the others}."""
+    (text,) = (t for t in ("".join(c["source"]) for c in cells) if "Three recipes side" in t)
+    rows = [line.split("|")[1:-1] for line in text.splitlines() if line.startswith("> |")]
+    return {head.strip(): [one.strip() for one in rest] for head, *rest in rows[2:]}
+
+
+def layers(config: MoDiffConfig) -> str:
+    counts = (config.motion_layers, config.control_layers, config.cross_layers)
+    return ", ".join(map(str, (*counts, config.decoder_layers)))
+
+
+def test_the_paper_and_the_shipped_walker_are_as_the_recipes_are(table):
+    paper, _, shipped = zip(*table.values(), strict=True)
+    said = dict(zip(table, zip(paper, shipped, strict=True), strict=True))
+    sizes = (MODIFF_PAPER, WALKER.config)
+    assert said["width"] == tuple(str(one.width) for one in sizes)
+    assert said["layers: motion, control, cross-modal, decoder"] == tuple(map(layers, sizes))
+    assert said["optimiser, first rate"][0] == f"Adam, {WALKER_PAPER.lr:g}".replace("e-0", "e-")
+    assert WALKER.optimizer == WALKER_TRUNK.optimizer == "muon" and WALKER_PAPER.optimizer == "adam"
+    rates = [f"{one.lr * 1e3:g}e-3" for one in (WALKER_TRUNK, WALKER)]
+    assert said["optimiser, first rate"][1] == f"Muon, {rates[0]}, then {rates[1]}"
+    assert said["noise schedule"] == (WALKER_PAPER.schedule, f"*{WALKER.schedule}*")
+    assert said["steps"][1] == f"{WALKER_TRUNK.steps:,}, then {WALKER.steps:,}"
+    assert said["windows a step"] == (str(WALKER_PAPER.batch), str(WALKER.batch))
+    assert f"noise, {WALKER.past_noise:g};" in said["past"][1]
+    assert WALKER.dropout == P_D and not WALKER_PLAIN.dropout and not WALKER_TRUNK.dropout
+    assert WALKER.loss_weights.metres == 2 and WALKER.loss_weights.near > 0
+
+
+def test_what_is_trained_in_the_notebook_is_as_its_cells_are(table, cells):
+    code = "\n".join("".join(c["source"]) for c in cells if c["cell_type"] == "code")
+    live = {head: row[1] for head, row in table.items()}
+    number = lambda pattern: re.search(pattern, code)[1]  # noqa: E731
+    kinds = ("motion", "control", "cross", "decoder")
+    assert live["width"] == number(r"width=(\d+)")
+    counted = ", ".join(number(rf"{kind}_layers=(\d+)") for kind in kinds)
+    assert live["layers: motion, control, cross-modal, decoder"] == counted
+    steps = int(number(r"run.pick[(](\d+)"))
+    assert live["steps"] == f"{steps:,}"
+    assert live["windows a step"] == number(r"data_set.draw[(](\d+), generator")
+    assert live["optimiser, first rate"] == "Adam, " + number(r"cosine_lr[(]([-e0-9]+)")
+    assert live["past"] == "noise, " + number(r"past_noise[(]past, ([.0-9]+)")
+    assert "ddpm.linear_schedule(100)" in code and "power=1.0" in code
