@@ -44,7 +44,7 @@ def seeded(seed: int = 8) -> torch.Generator:
 # Recipe, rate of diffusion dropout, the loss of three batches of the code that trained what is
 # shipped, and the next random number after them
 TRAINED_WITH = {
-    "walker-x0": (
+    "walker-trunk": (
         replace(WALKER_TRUNK, config=FEET),
         None,
         [3.3518362045288086, 4.058508396148682, 6.164492130279541],

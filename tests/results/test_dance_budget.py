@@ -191,7 +191,7 @@ def test_times_are_of_every_network_and_the_base_is_one(tiny):
 
 def test_what_trains_is_run_when_asked_for_only():
     weights = {"dancer"}
-    lines = {"walker-x0": Walks("walker-x0", "walker-x0")}
+    lines = {"walker": Walks("walker", "walker")}
     plain = command.parts_of([], False, lines, weights)  # there are no weights of that walker
     assert plain == ["dancer", "unheard", "footsteps", "attention", "dance-time", "known-answer"]
     full = command.parts_of([], True, {}, weights)

@@ -35,7 +35,7 @@ def test_each_variant_differs_from_its_base_in_what_its_words_say():
     assert type(FEET) is not type(SMALL) and recipe_of("footholds").config is FEET
 
 
-def test_the_base_has_walker_x0_s_choices_but_for_footholds_and_the_budget():
+def test_the_base_has_the_trunk_s_choices_but_for_footholds_and_the_budget():
     own, shipped = (asdict(recipe) for recipe in (recipe_of("T_p-10"), WALKER_TRUNK))
     differing = {key for key in own if own[key] != shipped[key]}
     assert differing == {"name", "config", "batch", "lr", "decay"}

@@ -34,10 +34,14 @@ ROLLING = (
     "performers/walker.py",
     "pretrained/checkpoints.py",
 )
-PAPER_BONES = {
-    "walker-eps.bone_rmse_cm": 0.089,
-    "walker-paper.bone_rmse_cm": 0.089,
-}  # Table I, without dropout
+# the rows of Table I that our walkers stand beside
+PAPER_ROWS = {
+    "data": "Recorded data",
+    "walker": "MoDiff (drop)",
+    "walker-plain": "MoDiff (no drop)",
+    "walker-printed": "MoDiff (drop)",
+    "walker-eps": "MoDiff (no drop)",
+}
 
 
 @dataclass(frozen=True)
@@ -181,7 +185,14 @@ def as_record(prefix: str, figure: Figure, bench: Bench, line: Walks | None, com
         seeds |= {"data": UNSEEN, "clips": size.clips, "seconds": size.seconds}
     if line:
         seeds |= {"weights": weights_digest(bench.weights[line.name]), "steps": line.steps or "all"}
-    return figure.as_record(prefix, seeds, command, PAPER_BONES.get(prefix + figure.name))
+    return figure.as_record(prefix, seeds, command, _paper_bones(prefix + figure.name))
+
+
+def _paper_bones(name: str) -> float | None:
+    """Table I's bone RMSE for a record of ours."""
+    who, _, what = name.partition(".")
+    row = PAPER_ROWS.get(who)
+    return steps_table.PAPER_TABLE[row][-1] if row and what == "bone_rmse_cm" else None
 
 
 def footstep_records(bench: Bench, command: str) -> tuple[list[dict], dict[str, np.ndarray]]:
@@ -208,6 +219,6 @@ def footstep_records(bench: Bench, command: str) -> tuple[list[dict], dict[str, 
 
 def _paper_figure(name: str) -> float | None:
     kind, who, what = name.split(".")
-    row = {"data": "Recorded data", "walker-eps": "MoDiff (no drop)"}.get(who)
+    row = PAPER_ROWS.get(who)
     column = ("f_est", "v95_cmps", "mean_s", "std_s").index(what)
     return steps_table.PAPER_TABLE[row][column] if row and kind == "footsteps" else None
