@@ -286,7 +286,7 @@ TOLD = {
     "md.reconstruct(w, known[:, :5])": "known is bool (30, 5); it must be bool (30, 21)",
     "md.joystick([(3, 1.2)])": "a segment is (seconds, forward, left, yaw)",
     "md.joystick([(-3, 1.2, 0, 0)])": "a segment lasts 0 seconds or more, not -3",
-    "md.play()": "TypeError: play takes a motion at least",
+    "md.play()": "TypeError: play needs at least one motion",
     'md.play("walk.bvh")': "TypeError: this takes a Motion, not str",
     "md.play(nan, open_page=False)": "Head in frame 5 has no position",
     "md.play(w, stick, open_page=False)": "have different skeletons",

@@ -104,7 +104,7 @@ def test_lab_says_which_copies_it_renewed(checkout, calls, capsys):
     (checkout / "notebooks" / "student" / "00_start.ipynb").write_text("a newer edition")
     assert (
         command.main(["lab"]) == 0
-        and "renewed, you had not changed them: 00_start" in capsys.readouterr().out
+        and "Renewed, because you had not changed them: 00_start" in capsys.readouterr().out
     )
 
 

@@ -36,7 +36,7 @@ def test_fractions_get_a_fractional_slider():
 @pytest.mark.parametrize("value", [(1, 9), 5, "cosine", (1, 2, 3, 4)])
 def test_what_is_no_control_is_explained(value):
     with pytest.raises(
-        ValueError, match=r"s takes \(low, high, start\), a list of choices, or True or False; got "
+        ValueError, match=r"s takes \(low, high, start\), a list of choices, or True or False; not "
     ):
         explore(lambda s: None, s=value)
 
