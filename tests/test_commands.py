@@ -231,6 +231,8 @@ def interrupted(words: list[str], folder: Path, seen: str) -> tuple[int, str]:
         [sys.executable, "-m", "motiondiff_edu", *words],
         cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, bufsize=0,
         env=os.environ | {"PYTHONPATH": os.pathsep.join(sys.path)},
+        # a shell starts background jobs with Ctrl-C ignored, and what they start inherits that
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
     )  # fmt: skip
     said = b""
     while seen.encode() not in said and process.poll() is None:
