@@ -59,7 +59,14 @@ def test_a_walk_is_continued_from_the_command_line(folder, capsys):
 def test_a_song_is_danced_to_from_the_command_line(folder, capsys):
     assert run("dance", "song.wav", "--seconds", "1.5", "--out", "dance.bvh") == 0
     assert len(md.read_motion("dance.bvh")) == 30
-    assert "dance.bvh: 1.5 s, 30 frames" in capsys.readouterr().out
+    said = capsys.readouterr()
+    assert "dance.bvh: 1.5 s, 30 frames" in said.out and "the dance ends" not in said.err
+
+
+def test_a_song_shorter_than_asked_is_said(folder, capsys):
+    assert run("dance", "song.wav", "--seconds", "60", "--out", "dance.bvh") == 0
+    lasts = md.read_motion("dance.bvh").seconds
+    assert f"song.wav lasts {lasts:.1f} s: the dance ends with it" in capsys.readouterr().err
 
 
 def test_samples_go_to_numbered_files(folder, capsys):

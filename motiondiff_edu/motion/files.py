@@ -48,7 +48,7 @@ def read_motion(path: str | Path) -> Motion:
         advice = next((words for group, words in ELSEWHERE.items() if ending in group), "")
         raise MotionError(
             f"{path.name} cannot be read as a motion; {' and '.join(registry.readers.names())} can"
-            f"{f'. {advice}' if advice else ''}"
+            f"{f'. {advice[0].upper()}{advice[1:]}' if advice else ''}"
         )
     return read(path)
 

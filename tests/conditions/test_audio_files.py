@@ -19,7 +19,7 @@ from motiondiff_edu.conditions.music import log_mel
 
 # what becomes of each file of the real data's audio_formats_and_broken: seconds, or words of the
 # refusal; words warned
-SHORT = r"holds 0.\d\d s of sound; give it at least 1 s"
+SHORT = r"has only 0.\d\d s of sound; at least 1 s"
 FILES = {
     "brahms_10s.flac": (10.0, None),
     "brahms_10s.mp3": (10.0, None),
@@ -33,7 +33,7 @@ FILES = {
         "is silent from start to end",
         None,
     ),  # a constant, and no sound on top of it
-    "empty_0samples.wav": ("holds no sound at all", None),
+    "empty_0samples.wav": ("has no sound at all", None),
     "ogg_named.wav": (20.985, "its last page is missing"),
     "scipy_test-44100Hz-be-1ch-4bytes.wav": (SHORT, None),
     "scipy_test-44100Hz-le-1ch-4bytes-early-eof-no-data.wav": (

@@ -238,7 +238,7 @@ WRONG_FILES = {
         lambda p: p.write_bytes(b"\x89PNG"),
         "cannot be read as a motion; .bvh and .npz can",
     ),
-    "song.ogg": (lambda p: p.write_bytes(b"OggS"), "this is sound"),
+    "song.ogg": (lambda p: p.write_bytes(b"OggS"), "npz can. This is sound"),
     "walk.fbx": (lambda p: p.write_bytes(b"Kaydara"), "export it as BVH"),
     "walk.pkl": (lambda p: p.write_bytes(b"\x80"), "a pickle can run code"),
     "empty.bvh": (lambda p: p.write_bytes(b""), "the file is empty"),
