@@ -546,7 +546,7 @@ def test_without_a_kernel_it_plays_and_pins_and_says_what_it_needs(browser, moti
     bundle, _ = editor._repr_mimebundle_()
     assert (
         'alt="Motion editor: a skeleton moves for 1.6 s, 31 frames; 2 frames pinned. 3 in-betweens '
-        'made."' in bundle["text/html"]
+        'generated."' in bundle["text/html"]
     )
     assert {"image/png", "application/vnd.jupyter.widget-view+json"} <= set(bundle)
     export = tmp_path / "export.html"
