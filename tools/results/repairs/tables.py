@@ -71,7 +71,7 @@ def dropout(records: dict[str, dict], folder: Path) -> str:
         "are few. `gain` is the error without dropout minus the error with it, from broken pasts; "
         "`cost` is the error with dropout over that without, from complete pasts.\n\n"
     )
-    head = ["past", "error", "`walker-plain`", "`walker`", "small, plain", "small, with dropout"]
+    head = ["past", "error", "walker-plain", "walker", "small, plain", "small, with dropout"]
     text += table(head, rows) + "\n" + table(["figure", "measured"], gains)
     picture = folder / "dropout-map.png"
     return (
