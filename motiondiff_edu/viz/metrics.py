@@ -29,8 +29,10 @@ def footstep_curves(
     fig, (axis,) = figure(9, 4.6, words)
     for i, (label, counts) in enumerate(curves.items()):
         at = int(np.argmax(counts >= 0.95 * counts.max()))
-        line = axis.plot(np.arange(1, len(counts) + 1), counts, DASHES[i % 8], label=label)[0]
-        axis.plot([at + 1], [counts[at]], MARKERS[i % 8], color=line.get_color(), ms=9)
+        dash = DASHES[i % len(DASHES)]  # a name or a pattern, which is no format string
+        (line,) = axis.plot(np.arange(1, len(counts) + 1), counts, linestyle=dash, label=label)
+        marker = MARKERS[i % len(MARKERS)]
+        axis.plot([at + 1], [counts[at]], marker, color=line.get_color(), ms=9)
     axis.set(xlabel="tolerance v (cm/s)", ylabel="footsteps f_est(v)", ylim=(0, None))
     legend(axis)
     return fig
@@ -48,7 +50,7 @@ def over_time(
             axis.plot(
                 np.arange(len(values)) + 0.5,
                 values,
-                DASHES[i % 8],
+                ls=DASHES[i % 8],
                 marker=MARKERS[i % 8],
                 label=label,
             )

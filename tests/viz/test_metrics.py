@@ -35,6 +35,16 @@ def test_seconds_are_drawn_at_their_middle_in_each_panel():
     assert fig.axes[1].get_title() == "off" and len(fig.axes[1].patches) == 1
 
 
+def test_six_lines_have_six_patterns():
+    """The fifth pattern and those after it are dash lengths, not names."""
+    curves = {str(k): np.arange(1.0, 6.0) for k in range(6)}
+    fig = viz.footstep_curves(curves, "words")
+    drawn = [str(line._unscaled_dash_pattern) for line in fig.axes[0].lines[::2]]
+    assert len(set(drawn)) == 6
+    over = viz.over_time({"bones": curves}, "words")
+    assert len(over.axes[0].lines) == 6
+
+
 def test_planted_steps_are_grey_for_as_long_as_they_last():
     height = np.linspace(0, 0.1, 12).reshape(6, 2)
     fig = viz.toe_heights(height, np.array([True, True, False, False, True]), "words", fps=10)
