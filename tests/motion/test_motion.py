@@ -239,8 +239,8 @@ WRONG_FILES = {
         "cannot be read as a motion; .bvh and .npz can",
     ),
     "song.ogg": (lambda p: p.write_bytes(b"OggS"), "npz can. This is sound"),
-    "walk.fbx": (lambda p: p.write_bytes(b"Kaydara"), "export it as BVH"),
-    "walk.pkl": (lambda p: p.write_bytes(b"\x80"), "a pickle can run code"),
+    "walk.fbx": (lambda p: p.write_bytes(b"Kaydara"), "Export it as BVH"),
+    "walk.pkl": (lambda p: p.write_bytes(b"\x80"), "A pickle can run code"),
     "empty.bvh": (lambda p: p.write_bytes(b""), "the file is empty"),
     "png.bvh": (lambda p: p.write_bytes(b"\x89PNG\0\0"), "binary file"),
 }
