@@ -78,10 +78,7 @@ def test_packed_assignments_are_found():
 @pytest.mark.parametrize("path", SOURCES, ids=lambda path: path.relative_to(ROOT).as_posix())
 def test_one_assignment_a_line(path):
     """At most two values are assigned at once, as in a swap; more go on lines of their own."""
-    if path.suffix == ".py":
-        cells = [path.read_text(encoding="utf-8")]
-    else:
-        cells = [cell["source"] for cell in notebook_cells.code(notebook_cells.read(path))]
+    cells = notebook_cells.python_of(path)
     assert [line for cell in cells for line in packed(cell)] == []
 
 

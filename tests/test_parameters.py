@@ -36,12 +36,6 @@ def functions(source: str) -> list[tuple[str, int, bool]]:
     return found
 
 
-def cells_of(path: Path) -> list[str]:
-    if path.suffix == ".py":
-        return [path.read_text(encoding="utf-8")]
-    return [cell["source"] for cell in notebook_cells.code(notebook_cells.read(path))]
-
-
 def reason(path: Path, name: str) -> str | None:
     """The entry of OPEN that lets this function take any keyword, if there is one."""
     place = f"{path.as_posix()} {name}"
@@ -70,7 +64,7 @@ def test_what_may_take_any_keyword_is_there():
     found = {
         reason(path, name)
         for path in SOURCES
-        for cell in cells_of(path)
+        for cell in notebook_cells.python_of(path)
         for name, _, keywords in functions(cell)
         if keywords
     }
@@ -83,7 +77,7 @@ def test_what_may_take_any_keyword_is_there():
 @pytest.mark.parametrize("path", SOURCES, ids=lambda path: path.relative_to(ROOT).as_posix())
 def test_what_a_function_takes_can_be_read_from_its_signature(path):
     """What always goes together is a small dataclass; keywords are named one by one."""
-    for cell in cells_of(path):
+    for cell in notebook_cells.python_of(path):
         for name, count, keywords in functions(cell):
             assert count <= MOST, f"{name} takes {count} parameters: group what goes together"
             assert not keywords or reason(path, name), f"{name} takes any keyword: name them"

@@ -36,6 +36,13 @@ def code(notebook: dict, *wanted: str) -> list[dict]:
     return [cell for cell in cells if not wanted or set(wanted) & set(tags(cell))]
 
 
+def python_of(path: Path) -> list[str]:
+    """The Python of a file: a module's whole text, or each code cell of a notebook."""
+    if path.suffix == ".py":
+        return [path.read_text(encoding="utf-8")]
+    return [cell["source"] for cell in code(read(path))]
+
+
 def markdown(notebook: dict) -> list[dict]:
     return [cell for cell in notebook["cells"] if cell["cell_type"] == "markdown"]
 

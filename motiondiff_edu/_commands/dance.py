@@ -30,7 +30,7 @@ def run(args: argparse.Namespace) -> None:
 
     draws = {"samples": args.samples, "seed": args.seed}
     made = load("dancer").dance(args.song, seconds=args.seconds, **draws)
-    lasts = (made[0] if isinstance(made, list) else made).seconds
+    lasts = outputs.listed(made)[0].seconds
     if args.seconds and lasts < args.seconds - 0.05:
         outputs.say(f"{args.song} lasts {lasts:.1f} s: the dance ends with it")
     outputs.write_all(made, paths)

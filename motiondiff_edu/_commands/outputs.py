@@ -79,10 +79,14 @@ def read(path: Path):
     return read_motion(path)
 
 
-def write_all(motions: object, paths: Sequence[Path]) -> None:
+def listed(made: object) -> list:
+    """The result of a verb as a list: it is one motion, or a list for several samples."""
+    return made if isinstance(made, list) else [made]
+
+
+def write_all(made: object, paths: Sequence[Path]) -> None:
     """Write each motion to its file, and print what was written."""
-    motions = motions if isinstance(motions, list) else [motions]
-    for motion, path in zip(motions, paths, strict=True):
+    for motion, path in zip(listed(made), paths, strict=True):
         motion.save(path)
         print(f"{path}: {motion.seconds:.1f} s, {len(motion)} frames")
 

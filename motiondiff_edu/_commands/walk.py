@@ -30,7 +30,7 @@ def run(args: argparse.Namespace) -> None:
 
     outputs.say("walking")
     made = load("walker").walk(motion, joystick(segments), samples=args.samples, seed=args.seed)
-    made = made if isinstance(made, list) else [made]
+    made = outputs.listed(made)
     if args.joined:
         before = motion.resampled(made[0].fps)
         made = [before.then(more) for more in made]

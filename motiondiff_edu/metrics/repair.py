@@ -4,7 +4,7 @@ How far are the reconstructed joints from the truth? How well do they join the r
 
 Positions are in metres, results in centimetres. `known` is True for each joint of each frame that
 was given. Several repairs of the same past share it; they have a leading axis, (n, ..., T, J, 3).
-Source: MoDiff IV-C (its RMSE_re is of bones; the distance to the truth is ours, because here the
+Source: MoDiff IV-B (its RMSE_re is of bones; the distance to the truth is ours, because here the
 truth is known).   Notebook: 10
 """
 

@@ -63,12 +63,12 @@ def train(
         raise ValueError(f"{recipe.name} begins with {wanted}: pass it as `first`, or nothing")
     begun = prepared(recipe, clips or training_clips(recipe))
     windows = begun.windows
-    about = {"network": type(recipe.config).__name__, "data": digest(windows)}
+    begins = {}
     if first is not None:
         begun.model.load_state_dict(first.state_dict())
-        about["first"] = digest_of_tensors(first.state_dict())[:16]
-    facts = {"frames": len(windows.poses), "control_range": control_range(windows)}
-    facts |= {key: about[key] for key in ("first",) if key in about}
+        begins = {"first": digest_of_tensors(first.state_dict())[:16]}
+    about = {"network": type(recipe.config).__name__, "data": digest(windows)} | begins
+    facts = {"frames": len(windows.poses), "control_range": control_range(windows)} | begins
     trained, card = train_recipe(
         recipe,
         run_file,

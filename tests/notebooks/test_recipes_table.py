@@ -11,15 +11,16 @@ from motiondiff_edu.recipes.walkers import WALKER, WALKER_PAPER, WALKER_PLAIN, W
 
 
 @pytest.fixture(scope="module")
-def cells() -> list[dict]:
+def notebook() -> dict:
     (path,) = (p for p in notebook_cells.sources() if p.name.startswith("07_"))
-    return notebook_cells.read(path)["cells"]
+    return notebook_cells.read(path)
 
 
 @pytest.fixture(scope="module")
-def table(cells) -> dict[str, list[str]]:
+def table(notebook) -> dict[str, list[str]]:
     """{first column: the others}."""
-    (text,) = (t for t in ("".join(c["source"]) for c in cells) if "Three recipes side" in t)
+    texts = [cell["source"] for cell in notebook_cells.markdown(notebook)]
+    (text,) = (one for one in texts if "Three recipes side" in one)
     rows = [line.split("|")[1:-1] for line in text.splitlines() if line.startswith("> |")]
     return {head.strip(): [one.strip() for one in rest] for head, *rest in rows[2:]}
 
@@ -47,8 +48,8 @@ def test_the_paper_and_the_shipped_walker_are_as_the_recipes_are(table):
     assert WALKER.loss_weights.metres == 2 and WALKER.loss_weights.near > 0
 
 
-def test_what_is_trained_in_the_notebook_is_as_its_cells_are(table, cells):
-    code = "\n".join("".join(c["source"]) for c in cells if c["cell_type"] == "code")
+def test_what_is_trained_in_the_notebook_is_as_its_cells_are(table, notebook):
+    code = "\n".join(cell["source"] for cell in notebook_cells.code(notebook))
     live = {head: row[1] for head, row in table.items()}
     number = lambda pattern: re.search(pattern, code)[1]  # noqa: E731
     kinds = ("motion", "control", "cross", "decoder")

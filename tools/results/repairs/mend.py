@@ -9,20 +9,12 @@ from motiondiff_edu.pretrained import checkpoints
 from ..walks.parts import Bench, weights_digest
 from ..walks.trials import UNSEEN, unseen
 from .dropout import SHIPPED_PAIR, SMALL_PAIRS, dropout_records
-from .repair import (
-    FAULTS,
-    QUICK,
-    RepairSize,
-    footsteps,
-    repair_figures,
-    repaired_windows,
-    table_2,
-)
+from .repair import FAULTS, RepairSize, footsteps, repair_figures, repaired_windows, table_2
 from .trials import SHARE, names_of
 
 KEEP = 5  # poses kept of every window of ten; frame by frame, each has other noise, and heels creep
 CLIPS = 60  # pasts of Table II
-PASTS, PAST_S = 300, 2  # pasts that are reconstructed, each with the control of so many seconds
+PAST_S = 2  # seconds of control beside each past that is reconstructed
 
 
 def records(bench: Bench, size: RepairSize, command: str) -> list[dict]:
@@ -36,7 +28,7 @@ def records(bench: Bench, size: RepairSize, command: str) -> list[dict]:
         [checkpoints.load_walker(weights[name]) for name in names]
         for names in (["walker"], names_of("dropout"))
     )
-    pasts = trials if size == QUICK else unseen(PASTS, PAST_S)
+    pasts = unseen(size.pasts, PAST_S)
     figures = [one for fault in FAULTS for one in repair_figures(fault, best[0], pasts, size)]
     asked = trials.first(CLIPS)
     for walkers, names in ((pairs, {"": 1, f"keep{KEEP}_": KEEP}), (best, {"walker_": 1})):

@@ -33,14 +33,15 @@ FAULTS: dict[str, Callable[[Past], Imperfect]] = {
 
 @dataclass(frozen=True)
 class RepairSize:
-    """Number of samples of each repair, of rounds there and back, and of DDIM's steps."""
+    """Numbers: samples of each repair, rounds there and back, DDIM steps, repaired pasts."""
 
     samples: int = 10
     rounds: int = 2
     steps: int = 10
+    pasts: int = 300
 
 
-FULL, QUICK = RepairSize(), RepairSize(samples=2, rounds=1, steps=3)
+FULL, QUICK = RepairSize(), RepairSize(samples=2, rounds=1, steps=3, pasts=12)
 PAPER_SAMPLES = 3  # of the paper's own repairs, for comparison
 
 
