@@ -13,6 +13,7 @@ from torch import Tensor, nn
 
 from .._files import digest_of_tensors
 from ..beyond import loss_terms
+from ..beyond.dropped_weight import DroppedWeight
 from ..beyond.footholds import CleanFootholds, FootholdConfig
 from ..beyond.past_noise import past_noise
 from ..beyond.schedules import SCHEDULES
@@ -129,7 +130,11 @@ def loss_of(
         if footholds:
             model = CleanFootholds(model, past, noised, recipe.foot_noise)
         batch = (noised, x0, control)
-        return training_loss(model, batch, schedule, generator, dropout=dropout, loss=loss)
+        if dropout is None:
+            return training_loss(model, batch, schedule, generator, loss=loss)
+        light = DroppedWeight(dropout, recipe.dropped_weight)
+        both = {"dropout": light, "loss": light.weighted(loss)}
+        return training_loss(model, batch, schedule, generator, **both)
 
     return loss_fn
 
