@@ -96,9 +96,7 @@ WALKER_PLAIN = replace(
     seed=1,
     save_every=500,
 )
-WALKER = replace(
-    WALKER_PLAIN, name="walker", dropout=P_D, dropout_start=0.0, dropped_weight=0.1
-)
+WALKER = replace(WALKER_PLAIN, name="walker", dropout=P_D, dropout_start=0.0, dropped_weight=0.1)
 WALKER_EPS = replace(
     WALKER_TRUNK,
     name="walker-eps",
