@@ -91,12 +91,12 @@ WALKER_PLAIN = replace(
     WALKER_TRUNK,
     name="walker-plain",
     begins_with="walker-trunk",
-    steps=8000,
+    steps=12_000,
     lr=1e-3,
     seed=1,
     save_every=500,
 )
-WALKER = replace(WALKER_PLAIN, name="walker", dropout=P_D, dropout_start=0.0, dropped_weight=0.1)
+WALKER = replace(WALKER_PLAIN, name="walker", dropout=P_D, dropout_start=0.0, dropped_weight=0.2)
 WALKER_EPS = replace(
     WALKER_TRUNK,
     name="walker-eps",

@@ -144,14 +144,16 @@ def test_dancers_losses_are_those_that_the_shipped_ones_were_trained_with(name):
     assert torch.rand(1, generator=generator).item() == after
 
 
-@pytest.mark.parametrize("rate", [None, 0.6])
-def test_a_recipe_without_departures_is_algorithm_1(walks, rate):
+@pytest.mark.parametrize("rate, weight", [(None, 1.0), (0.6, 1.0), (0.6, 0.1)])
+def test_a_recipe_without_departures_is_algorithm_1(walks, rate, weight):
     """s ~ Uniform(1..S); with probability P_d the past is noised to step s; eps ~ N(0, I); the mean
-    of the squared error of eps. Written out with the same draws, in the same order."""
+    of the squared error of eps. Written out with the same draws, in the same order. A weight other
+    than 1 multiplies the squares where the past was noised."""
     schedule = linear_schedule(6, 0.2, 0.95)
     torch.manual_seed(0)
     model = MoDiff(MoDiffConfig(**SIZES | {"S": 6}))
     recipe = Recipe("printed", model.config, steps=1, batch=7, held_control=0.0)
+    recipe = replace(recipe, dropped_weight=weight)
     dropout = Dropout(schedule, lambda done: rate, 1, done=0.0) if rate else None
     loss = train_walker.loss_of(recipe, walks, schedule, dropout)(model, seeded())
 
@@ -171,8 +173,10 @@ def test_a_recipe_without_departures_is_algorithm_1(walks, rate):
         assert 0 < hit.sum() < 7
     eps = torch.randn(7, T_P, 63, generator=generator)
     y_s = alpha_bar**0.5 * y + (1 - alpha_bar) ** 0.5 * eps
-    by_hand = (eps - model(y_s, s, past, c)).square().mean()
-    assert loss.item() == pytest.approx(by_hand.item(), rel=1e-5)
+    squares = (eps - model(y_s, s, past, c)).square()
+    if rate:
+        squares = torch.where(hit[:, None, None], weight * squares, squares)
+    assert loss.item() == pytest.approx(squares.mean().item(), rel=1e-5)
 
 
 def test_without_departures_a_dancer_s_loss_is_the_mean_square_of_eps():
