@@ -415,6 +415,29 @@ def test_one_guided_guess_by_hand():
     torch.testing.assert_close(alpha_bar**0.5 * out + (1 - alpha_bar) ** 0.5 * eps_hat, x)
 
 
+def test_many_moves_of_guidance_solve_for_all_given_entries():
+    """For a Gaussian J is a covariance C, so the end is x0_hat + C_uk C_kk^-1 error."""
+    root = torch.randn(6, 6, generator=seeded(3), dtype=torch.float64)
+    covariance = root @ root.T / 6 + 0.3 * torch.eye(6)
+    truth = mixture(torch.ones(1), torch.randn(1, 6, generator=seeded(4)), covariance[None])
+    denoise, s = exact_denoiser(truth, SCHEDULE), torch.full((7,), 40)
+    x, given = (torch.randn(7, 6, generator=seeded(k), dtype=torch.float64) for k in (5, 6))
+    known = torch.tensor([True, False, True, False, False, True]).expand(7, 6)
+
+    def guess(moves: int, weight: float = 1.0):
+        return guided_guess(denoise, x, s, SCHEDULE, given, known, weight, moves)
+
+    a = SCHEDULE.alpha_bar[40].item()
+    plain = x0_from_eps(x, s, denoise(x, s), SCHEDULE)
+    J = a**0.5 * covariance @ torch.linalg.inv(a * covariance + (1 - a) * torch.eye(6))
+    here = known[0]
+    pull = J[:, here] @ torch.linalg.solve(J[here][:, here], (given - plain)[:, here].T)
+    torch.testing.assert_close(guess(300), plain + pull.T, atol=1e-3, rtol=1e-3)
+    torch.testing.assert_close(guess(300, 0.5), plain + 0.5 * pull.T, atol=1e-3, rtol=1e-3)
+    missed = [(guess(moves) - given)[known].norm() for moves in (1, 2, 4, 8)]
+    assert all(later < 0.9 * sooner for sooner, later in zip(missed, missed[1:], strict=False))
+
+
 def test_guidance_through_a_fast_twin_is_refused():
     who, mel = dancer(5), torch.randn(1, 64, 5, generator=seeded(9))
     start = torch.zeros(1, 40, 63)
