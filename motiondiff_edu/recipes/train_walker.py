@@ -13,8 +13,8 @@ from torch import Tensor, nn
 
 from .._files import digest_of_tensors
 from ..beyond import loss_terms
-from ..beyond.dropped_weight import DroppedWeight
 from ..beyond.footholds import CleanFootholds, FootholdConfig
+from ..beyond.noised_past_weight import NoisedPastWeight
 from ..beyond.past_noise import past_noise
 from ..beyond.schedules import SCHEDULES
 from ..beyond.shared_encoding import SharedEncoding, repeated
@@ -132,7 +132,7 @@ def loss_of(
         batch = (noised, x0, control)
         if dropout is None:
             return training_loss(model, batch, schedule, generator, loss=loss)
-        light = DroppedWeight(dropout, recipe.dropped_weight)
+        light = NoisedPastWeight(dropout, recipe.noised_past_weight)
         both = {"dropout": light, "loss": light.weighted(loss)}
         return training_loss(model, batch, schedule, generator, **both)
 

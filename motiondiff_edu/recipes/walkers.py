@@ -52,7 +52,7 @@ class Recipe:
     loss_weights: LossWeights = LossWeights()
     dropout: tuple[float, ...] = ()  # rates P_d of diffusion dropout in turn; none: no dropout
     dropout_start: float = START  # share of the training before the first of them
-    dropped_weight: float = 1.0  # of windows with a noised past: `beyond.dropped_weight`
+    noised_past_weight: float = 1.0  # of windows with a noised past: `beyond.noised_past_weight`
     begins_with: str = ""  # the recipe whose network this training continues; none: a fresh one
     decay: float = 0.999
     clips: int = 720
@@ -96,7 +96,9 @@ WALKER_PLAIN = replace(
     seed=1,
     save_every=500,
 )
-WALKER = replace(WALKER_PLAIN, name="walker", dropout=P_D, dropout_start=0.0, dropped_weight=0.2)
+WALKER = replace(
+    WALKER_PLAIN, name="walker", dropout=P_D, dropout_start=0.0, noised_past_weight=0.2
+)
 WALKER_EPS = replace(
     WALKER_TRUNK,
     name="walker-eps",

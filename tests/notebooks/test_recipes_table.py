@@ -44,7 +44,7 @@ def test_the_paper_and_the_shipped_walker_are_as_the_recipes_are(table):
     assert said["steps"][1] == f"{WALKER_TRUNK.steps:,}, then {WALKER.steps:,}"
     assert said["windows a step"] == (str(WALKER_PAPER.batch), str(WALKER.batch))
     assert f"noise, {WALKER.past_noise:g};" in said["past"][1]
-    assert said["past"][1].endswith(f"weight {WALKER.dropped_weight:g}")
+    assert said["past"][1].endswith(f"weight {WALKER.noised_past_weight:g}")
     assert WALKER.dropout == P_D and not WALKER_PLAIN.dropout and not WALKER_TRUNK.dropout
     assert WALKER.loss_weights.metres == 2 and WALKER.loss_weights.near > 0
 

@@ -153,7 +153,7 @@ def test_a_recipe_without_departures_is_algorithm_1(walks, rate, weight):
     torch.manual_seed(0)
     model = MoDiff(MoDiffConfig(**SIZES | {"S": 6}))
     recipe = Recipe("printed", model.config, steps=1, batch=7, held_control=0.0)
-    recipe = replace(recipe, dropped_weight=weight)
+    recipe = replace(recipe, noised_past_weight=weight)
     dropout = Dropout(schedule, lambda done: rate, 1, done=0.0) if rate else None
     loss = train_walker.loss_of(recipe, walks, schedule, dropout)(model, seeded())
 

@@ -141,7 +141,7 @@ def test_a_recipe_that_begins_with_another_continues_its_network(tmp_path: Path)
 def test_walker_and_its_plain_twin_differ_in_dropout_alone():
     walker, plain = RECIPES["walker"], RECIPES["walker-plain"]
     assert walker.dropout == P_D and walker.dropout_start == 0 and not plain.dropout
-    fields = ("name", "dropout", "dropout_start", "dropped_weight")
+    fields = ("name", "dropout", "dropout_start", "noised_past_weight")
     alike = replace(walker, **{name: getattr(plain, name) for name in fields})
     assert alike == plain and RECIPES[plain.begins_with].dropout == ()
 

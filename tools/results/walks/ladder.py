@@ -107,7 +107,7 @@ CELLS = {
     ),
     "ours-both": left_out("diffusion dropout beside past noise", dropout=P_D),
     "ours-both-light": left_out(
-        "both, noised pasts with a tenth of the weight", dropout=P_D, dropped_weight=0.1
+        "both, noised pasts with a fifth of the weight", dropout=P_D, noised_past_weight=0.2
     ),
     "ours-never-held": left_out("control never held", held_control=0.0),
     "ours-T_p-1": left_out("T_p = 1", config=replace(FOOTHOLDS, T_p=1)),

@@ -5,7 +5,7 @@ from dataclasses import replace
 import pytest
 import torch
 
-from motiondiff_edu.beyond.dropped_weight import DroppedWeight
+from motiondiff_edu.beyond.noised_past_weight import NoisedPastWeight
 from motiondiff_edu.ddpm import linear_schedule, squared_error
 from motiondiff_edu.diffusion_dropout import Dropout, diffusion_dropout
 from motiondiff_edu.modiff import MoDiff, MoDiffConfig, training_loss
@@ -31,26 +31,26 @@ def seeded() -> torch.Generator:
 
 def test_the_pasts_are_those_of_the_dropout(dropout):
     past, s, _ = batch()
-    light = DroppedWeight(dropout, 0.1)
+    light = NoisedPastWeight(dropout, 0.1)
     plain = diffusion_dropout(past, s, dropout.schedule, 0.4, seeded())
     assert torch.equal(light(past, s, seeded()), plain)
-    assert 0 < light.dropped.sum() < B
-    assert torch.equal(light.dropped, (plain != past).any(2).any(1))
+    assert 0 < light.noised.sum() < B
+    assert torch.equal(light.noised, (plain != past).any(2).any(1))
 
 
 @pytest.mark.parametrize("weight", [0.0, 0.1, 1.0, 2.5])
 def test_squares_of_dropped_windows_have_the_weight(dropout, weight):
     past, s, error = batch()
-    light = DroppedWeight(dropout, weight)
+    light = NoisedPastWeight(dropout, weight)
     light(past, s, seeded())
     squares = error.square().mean((1, 2))
-    by_hand = (squares * torch.tensor([weight if x else 1.0 for x in light.dropped])).mean()
+    by_hand = (squares * torch.tensor([weight if x else 1.0 for x in light.noised])).mean()
     assert light.weighted(squared_error)(error, s).item() == pytest.approx(by_hand.item(), rel=1e-5)
 
 
 def test_a_loss_of_steps_still_gets_the_steps(dropout):
     past, s, error = batch()
-    light = DroppedWeight(dropout, 0.0)
+    light = NoisedPastWeight(dropout, 0.0)
     light(past, s, seeded())
     assert light.weighted(lambda error, s: s.float().mean())(error, s) == s.float().mean()
 
@@ -63,7 +63,7 @@ def test_weight_1_is_algorithm_1(dropout):
     data = (past, future, torch.randn(B, T_H + T_P, 3, generator=torch.Generator().manual_seed(1)))
     plain = training_loss(model, data, dropout.schedule, seeded(), dropout=dropout)
     for weight, same in ((1.0, True), (0.1, False)):
-        light = DroppedWeight(replace(dropout), weight)
+        light = NoisedPastWeight(replace(dropout), weight)
         loss = light.weighted(squared_error)
         now = training_loss(model, data, dropout.schedule, seeded(), dropout=light, loss=loss)
         assert (now.item() == pytest.approx(plain.item(), rel=1e-6)) is same
@@ -72,6 +72,6 @@ def test_weight_1_is_algorithm_1(dropout):
 def test_what_is_wrong_is_said(dropout):
     past, s, error = batch()
     with pytest.raises(ValueError, match="must not be negative, not -0.5"):
-        DroppedWeight(dropout, -0.5)
+        NoisedPastWeight(dropout, -0.5)
     with pytest.raises(RuntimeError, match="pass dropout=self"):
-        DroppedWeight(dropout, 0.1).weighted(squared_error)(error, s)
+        NoisedPastWeight(dropout, 0.1).weighted(squared_error)(error, s)

@@ -21,12 +21,12 @@ Past = Float[Tensor, "B T_h D"]
 
 
 @dataclass
-class DroppedWeight:
+class NoisedPastWeight:
     """A dropout for one batch that weighs the windows whose past it noised.
 
     Pass both to `modiff.training_loss`:
 
-        light = DroppedWeight(dropout, 0.1)
+        light = NoisedPastWeight(dropout, 0.2)
         training_loss(..., dropout=light, loss=light.weighted(loss))
     dropout  makes the noised past, such as `diffusion_dropout.Dropout`
     weight   of the squares of a window with a noised past; 1 changes nothing
@@ -36,7 +36,7 @@ class DroppedWeight:
 
     dropout: Callable[[Past, Int[Tensor, "B"], torch.Generator | None], Past]
     weight: float
-    dropped: Bool[Tensor, "B"] | None = field(default=None, init=False)
+    noised: Bool[Tensor, "B"] | None = field(default=None, init=False)
 
     def __post_init__(self):
         if self.weight < 0:
@@ -46,16 +46,16 @@ class DroppedWeight:
         self, past: Past, s: Int[Tensor, "B"], generator: torch.Generator | None = None
     ) -> Past:
         noised = self.dropout(past, s, generator)
-        self.dropped = (noised != past).flatten(1).any(1)
+        self.noised = (noised != past).flatten(1).any(1)
         return noised
 
     def weighted(self, loss: Loss) -> Loss:
         """The loss whose squares have `weight` in windows with a noised past."""
 
         def lighter(error: Error, s: Int[Tensor, "B"]) -> Float[Tensor, ""]:
-            if self.dropped is None:
-                raise RuntimeError("no past was dropped yet: pass dropout=self as well")
-            factor = torch.where(self.dropped, self.weight**0.5, 1.0).to(error)
+            if self.noised is None:
+                raise RuntimeError("no past was noised yet: pass dropout=self as well")
+            factor = torch.where(self.noised, self.weight**0.5, 1.0).to(error)
             return loss(factor[:, None, None] * error, s)
 
         return lighter

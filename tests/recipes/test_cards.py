@@ -1,0 +1,20 @@
+"""The card of what is shipped says how it was made, in the names of the recipe."""
+
+import json
+from dataclasses import asdict
+
+import pytest
+
+from motiondiff_edu.pretrained import checkpoints
+from motiondiff_edu.recipes.dancers import SHIPPED_DANCERS
+from motiondiff_edu.recipes.walkers import SHIPPED
+
+
+@pytest.mark.parametrize("recipe", [*SHIPPED, *SHIPPED_DANCERS], ids=lambda one: one.name)
+def test_a_card_has_its_recipe(recipe):
+    said = checkpoints.pretrained(recipe.name).card["recipe"]
+    is_now = json.loads(json.dumps(asdict(recipe)))
+    config, name = is_now.pop("config"), is_now.pop("name")
+    assert name == recipe.name and config
+    # the share of the steps in bfloat16 was a choice of a training, and is none of a recipe
+    assert {k: v for k, v in said.items() if k != "bfloat16_share"} == is_now
