@@ -20,7 +20,7 @@ from ..reconstruction import Rollout, walked_back
 from ..rollout import AnyWalker, rollout_steps
 from .guidance import blended_guess, guided
 
-MOVES = 4  # of guidance, in masked_back
+WEIGHT, MOVES = 0.7, 4  # of guidance, in masked_back
 FADE = 10  # frames within which drawn_back's correction fades where nothing more is known
 Frames = Float[Tensor, "B T_h D"]
 
@@ -94,7 +94,7 @@ def masked_back(
     network = walker.denoiser(ahead, walker.control_scaler.transform(control.float()), fast=False)
     start = draw(given, rollout.generator)
     loop = inpaint_steps(
-        guided(network, schedule, given, known, moves=MOVES),
+        guided(network, schedule, given, known, WEIGHT, MOVES),
         start,
         schedule,
         given,
