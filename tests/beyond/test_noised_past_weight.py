@@ -10,7 +10,9 @@ from motiondiff_edu.ddpm import linear_schedule, squared_error
 from motiondiff_edu.diffusion_dropout import Dropout, diffusion_dropout
 from motiondiff_edu.modiff import MoDiff, MoDiffConfig, training_loss
 
-S, B, T_H, T_P, D = 9, 40, 4, 3, 5
+S, B = 9, 40
+D = 5
+T_H, T_P = 4, 3
 
 
 @pytest.fixture

@@ -106,8 +106,10 @@ CELLS = {
         "diffusion dropout instead of past noise", past_noise=0.0, dropout=P_D
     ),
     "ours-both": left_out("diffusion dropout beside past noise", dropout=P_D),
-    "ours-both-light": left_out(
-        "both, noised pasts with a fifth of the weight", dropout=P_D, noised_past_weight=0.2
+    "ours-both-light": Cell(
+        "both, noised pasts with a fifth of the weight",
+        "ours-both",
+        replace(OUR_CELL, dropout=P_D, noised_past_weight=0.2),
     ),
     "ours-never-held": left_out("control never held", held_control=0.0),
     "ours-T_p-1": left_out("T_p = 1", config=replace(FOOTHOLDS, T_p=1)),
@@ -213,10 +215,15 @@ class Plan:
         return replace(cell.recipe, name=f"ladder-{name}", steps=steps, lr=rate, seed=seed)
 
 
+def root(name: str) -> str:
+    """The whole recipe, "ours" or "printed", that a cell or the base of its base departs from."""
+    base = CELLS[name].base
+    return root(base) if base else name
+
+
 def rate_key(name: str) -> str:
-    """Cells of one base and one optimiser share a rate: only the choice that is named differs."""
-    cell = CELLS[name]
-    return f"{cell.base or name}-{cell.recipe.optimizer}"
+    """Cells of one root and one optimiser share a rate: only the choice that is named differs."""
+    return f"{root(name)}-{CELLS[name].recipe.optimizer}"
 
 
 def measure_pace(plan: Plan, size: Size, rounds: int = 5, steps: int = 4) -> None:

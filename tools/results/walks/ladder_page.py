@@ -6,7 +6,7 @@ from motiondiff_edu._files import replacing
 from motiondiff_edu.viz.ladder import Rung, ladder
 
 from ..page.markdown import cell, table
-from .ladder import CELLS, CPU_SECONDS, FIGURES, SEEDS
+from .ladder import CELLS, CPU_SECONDS, FIGURES, SEEDS, root
 
 PICTURE = "ladder.png"
 GROUPS = {"ours": "our recipe, one choice taken out", "printed": "the printed recipe, one added"}
@@ -121,5 +121,5 @@ def rung(name: str, records: dict[str, dict]) -> Rung:
         ]
         for kind in FIGURES
     }
-    group = GROUPS[CELLS[name].base or name]
+    group = GROUPS[root(name)]
     return Rung(CELLS[name].words, group, values)
