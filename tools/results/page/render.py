@@ -149,8 +149,15 @@ def footsteps(records: dict[str, dict], folder: Path) -> str:
                 records[f"{kind}.{who}.{what}"] for what in ("f_est", "v95_cmps", "mean_s", "std_s")
             ]
             bones = number(bone["value"]) if bone else "-"
+            mine = cells[0]["seeds"].get("weights")
+            before = who != "data" and bone and mine != bone["seeds"].get("weights")
+            earlier = ", footsteps of earlier weights" if before else ""
             rows.append(
-                [f"**{who}**{note}", *(f"{number(c['value'])} {span(c)}" for c in cells), bones]
+                [
+                    f"**{who}**{note}{earlier}",
+                    *(f"{number(c['value'])} {span(c)}" for c in cells),
+                    bones,
+                ]
             )
     text = (
         "## Footsteps: MoDiff's Table I and Fig. 3\n\nWe have other clips than the paper, and "
