@@ -54,6 +54,14 @@ def test_what_was_missed_has_its_interval_and_whether_that_reaches_the_goal(reco
     ]
 
 
+@pytest.mark.parametrize(
+    "value, shown",
+    [(1.57, "1.57"), (1.504, "1.504"), (1.50004, "1.50004"), (1.5, "1.5"), (1.4961, "1.5")],
+)
+def test_rounding_hides_no_miss(value, shown):
+    assert BAD.figure(value) == shown
+
+
 def test_what_is_met_by_its_value_alone_is_not_certain_and_what_is_absent_is_said(records):
     text = page.opening(records)
     uncertain, absent = re.findall(r"\*\*What is not \w+(?: yet)?\.\*\* (.*)\n", text)

@@ -2,6 +2,8 @@
 
 from dataclasses import dataclass
 
+from .markdown import number
+
 
 @dataclass(frozen=True)
 class Bar:
@@ -23,6 +25,11 @@ class Bar:
         return (self.at_least is None or value >= self.at_least) and (
             self.at_most is None or value <= self.at_most
         )
+
+    def figure(self, value: float) -> str:
+        """Three digits, or as many as show on which side of the goal the value lies."""
+        texts = (number(value), *(f"{value:.{digits}g}" for digits in range(4, 18)))
+        return next(text for text in texts if self.met(float(text)) == self.met(value))
 
 
 BARS = (

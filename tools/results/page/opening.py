@@ -6,7 +6,7 @@ import re
 
 from .bars import BARS, Bar
 from .claims import AGREES, CLAIMS, DIFFERS, MISSING, OPEN
-from .markdown import number, span
+from .markdown import span
 from .words import GOALS
 
 # For each group, the beginnings of its bars' names, and the figure in its sentence.
@@ -56,16 +56,15 @@ def group(name: str, measured: dict[Bar, dict], met: set[Bar]) -> str:
 
 def sentence(bar: Bar, one: dict) -> str:
     """A figure and its goal."""
-    return f"{_what(bar)} is {amount(one)}; the goal is {bar.text}."
+    return f"{_what(bar)} is {amount(bar, one)}; the goal is {bar.text}."
 
 
 def missed_sentence(bar: Bar, one: dict) -> str:
     """A figure that misses its goal, with its interval, and whether that reaches the goal."""
     reaches = any(bar.met(one[side]) for side in ("low", "high") if one[side] is not None)
     more = ", which the interval reaches" if reaches else ""
-    return (
-        f"{_what(bar)} is {amount(one)} {span(one)}; the goal is {bar.text}{more} (`{bar.name}`)."
-    )
+    figure = f"{amount(bar, one)} {span(one)}"
+    return f"{_what(bar)} is {figure}; the goal is {bar.text}{more} (`{bar.name}`)."
 
 
 def subject(bar: Bar) -> str:
@@ -73,9 +72,9 @@ def subject(bar: Bar) -> str:
     return GOALS.get(bar.name, f"`{bar.name}`")
 
 
-def amount(one: dict) -> str:
+def amount(bar: Bar, one: dict) -> str:
     """The value with its unit, if it has one."""
-    return number(one["value"]) + (f" {one['unit']}" if one["unit"] in UNITS else "")
+    return bar.figure(one["value"]) + (f" {one['unit']}" if one["unit"] in UNITS else "")
 
 
 def paper(records: dict[str, dict]) -> str:

@@ -79,7 +79,7 @@ def timed_on(records: dict[str, dict]) -> str:
 def _verdict(bar: Bar, one: dict | None) -> list[str]:
     if one is None or one["value"] is None:
         return ["-", "-", "not measured"]
-    return [number(one["value"]), span(one), "met" if bar.met(one["value"]) else "**missed**"]
+    return [bar.figure(one["value"]), span(one), "met" if bar.met(one["value"]) else "**missed**"]
 
 
 def walkers(records: dict[str, dict]) -> str:
