@@ -53,6 +53,14 @@ def test_steps_are_the_budget_over_the_pace(tmp_path):
     assert ladder.Plan.read(plan.path) == plan
 
 
+def test_the_records_of_pace_and_rates_have_no_name_in_common(tmp_path):
+    plan = ladder.Plan(tmp_path / "plan.json", {"ours": 40.0}, {"ours-muon": 3e-3})
+    names = [
+        [one["name"] for one in ladder.plan_records(plan, row, "c")] for row in ("pace", "rates")
+    ]
+    assert names == [["ladder.plan.ours.step_ms"], ["ladder.plan.ours-muon.rate"]]
+
+
 def rows(values: list[float]) -> dict[str, list[float]]:
     keys = ("bone", "bone_broken", "adherence", "adherence_data", "skating")
     return {key: [k * value for value in values] for k, key in enumerate(keys, 1)}
