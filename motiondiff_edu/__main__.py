@@ -8,8 +8,8 @@ A new verb is one module and one line in VERBS. The module has
 It imports nothing heavy before `run`. With PASSES_OPTIONS_ON = "JupyterLab" the verb also accepts
 options that are not its own; `chosen.options` holds them for the program of that name.
 
-An error whose class belongs to this project is a message for the user, so it is printed without a
-traceback. Any other error is a bug of the program, and keeps its traceback.
+An error that is for the user is printed as a message; any other is a bug of the program, and keeps
+its traceback (`_commands.expected`).
 """
 
 import argparse
@@ -70,7 +70,7 @@ def main(arguments: list[str] | None = None) -> int:
     try:
         return verb.run(chosen)
     except Exception as error:
-        if not type(error).__module__.startswith("motiondiff_edu."):
+        if not _commands.expected(error):
             raise
         print(error, file=sys.stderr)
         return 1

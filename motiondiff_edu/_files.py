@@ -33,8 +33,15 @@ def digest_of_tensors(tensors: Mapping[str, "torch.Tensor"]) -> str:
     # the type is a string, because `lab` also writes files where torch cannot be imported
     digest = hashlib.sha256()
     for name in sorted(tensors):
-        digest.update(name.encode() + tensors[name].contiguous().numpy().tobytes())
+        digest.update(name.encode() + _bytes_of(tensors[name]))
     return digest.hexdigest()
+
+
+def _bytes_of(tensor: "torch.Tensor") -> bytes:
+    """The bytes of a tensor of any type; numpy has no bfloat16."""
+    import torch
+
+    return tensor.detach().cpu().contiguous().flatten().view(torch.uint8).numpy().tobytes()
 
 
 def digest_of_texts(texts: Mapping[str, str]) -> str:

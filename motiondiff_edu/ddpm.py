@@ -9,9 +9,11 @@ of shape (B,).
 """
 
 import math
+import operator
 import warnings
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from typing import SupportsIndex
 
 import torch
 from jaxtyping import Float, Int
@@ -115,15 +117,20 @@ def at(table: Table, s: Steps, x: X, first: int = 0) -> Tensor:
 
     Raises IndexError for a step below `first` or beyond the table.
     """
-    low, high = (s, s) if isinstance(s, int) else _range(s, first)
-    if not first <= low <= high < len(table):
-        raise IndexError(
-            f"s = {low if low < first else high}: steps must be {first} to {len(table) - 1} here; "
-            "0 is clean data"
-        )
-    if isinstance(s, int):
-        return table[s].to(x)
+    if not isinstance(s, Tensor):
+        return table[checked_step(s, len(table) - 1, first)].to(x)
+    low, high = _range(s, first)
+    checked_step(low, len(table) - 1, first)
+    checked_step(high, len(table) - 1, first)
     return table.to(x.device)[s].to(x).reshape(-1, *[1] * (x.dim() - 1))
+
+
+def checked_step(s: SupportsIndex, S: int, first: int = 0) -> int:
+    """The step as a number.  Raises IndexError below `first` or above S."""
+    step = operator.index(s)
+    if not first <= step <= S:
+        raise IndexError(f"s = {step}: steps must be {first} to {S} here; 0 is clean data")
+    return step
 
 
 def _range(s: Int[Tensor, "B"], first: int) -> tuple[int, int]:
@@ -292,10 +299,11 @@ def ddim_sigma(s: int, after: int, schedule: Schedule, eta: float) -> float:
     """Standard deviation of the noise that a leap from s to `after` draws.
 
     sigma^2 = eta^2 (1 - ab_after) / (1 - ab_s) (1 - ab_s / ab_after); eta = 1 is DDPM's posterior.
-    Raises ValueError for an eta outside 0..1.
+    Raises ValueError for an eta outside 0..1, IndexError unless 0 <= after < s <= S.
     """
     if not 0 <= eta <= 1:
         raise ValueError(f"eta must be between 0 (no noise) and 1 (as DDPM), not {eta}")
+    checked_step(after, checked_step(s, schedule.S, first=1) - 1)
     now, then = float(schedule.alpha_bar[s]), float(schedule.alpha_bar[after])
     return eta * math.sqrt((1 - then) / (1 - now) * (1 - now / then))
 
@@ -314,7 +322,7 @@ def ddim_step(
 
     Source: DDIM (Song, Meng and Ermon, 2021).
     """
-    then = float(schedule.alpha_bar[after])
+    then = float(schedule.alpha_bar[checked_step(after, schedule.S)])
     x = math.sqrt(then) * x0_hat + math.sqrt(max(1 - then - sigma**2, 0.0)) * eps_hat
     return x + sigma * noise if sigma else x
 

@@ -5,7 +5,7 @@ use the control.
     with probability p_d for each sample of the batch
 
 It is not nn.Dropout: nothing is set to zero, and nothing is rescaled. Two alternatives here do set
-to zero: `frame_dropout` and `zeroing`.
+to zero: `frame_dropout` and `zeroing`; `baselines.linear_dropout` has their exact effect.
 Source: MoDiff III-D, eq. 12, Alg. 1.  Notebook: 09
 """
 
@@ -43,8 +43,8 @@ def diffusion_dropout(
     """
     if past.ndim != 3 or s.shape != past.shape[:1] or (s < 0).any() or (s > schedule.S).any():
         raise ValueError(
-            f"past {tuple(past.shape)}, s {s.tolist()!r:.50}; "
-            f"pass (B, T_h, D), B steps 0..{schedule.S}"
+            f"the past is {tuple(past.shape)} and s {s.tolist()!r:.50}: pass a past (B, T_h, D), "
+            f"and for each of its samples a step from 0 to {schedule.S}"
         )
     hit = chosen(len(past), rate, generator).to(past.device)
     if not shared:
@@ -71,6 +71,11 @@ def chosen(n: int, rate: float, generator: torch.Generator | None = None) -> Boo
     if not 0 <= rate <= 1:
         raise ValueError(f"a rate must be between 0 and 1, not {rate:g}")
     return torch.rand(n, generator=generator) < rate
+
+
+def changed(before: Float[Tensor, "B ..."], after: Float[Tensor, "B ..."]) -> Bool[Tensor, "B"]:
+    """Which samples of a batch a dropout has changed."""
+    return (before != after).flatten(1).any(1)
 
 
 @dataclass

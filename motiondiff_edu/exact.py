@@ -11,7 +11,7 @@ import torch
 from jaxtyping import Bool, Float, Int
 from torch import Tensor
 
-from .ddpm import Denoiser, Schedule, at
+from .ddpm import Denoiser, Schedule, at, checked_step
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,7 +68,7 @@ def noised(given: Mixture, s: int, schedule: Schedule) -> Mixture:
 
     Means become sqrt(alpha_bar_s) mean, variances alpha_bar_s var + 1 - alpha_bar_s.
     """
-    alpha_bar = schedule.alpha_bar[s]
+    alpha_bar = schedule.alpha_bar[checked_step(s, schedule.S)]
     return Mixture(
         given.weights,
         alpha_bar.sqrt() * given.means,

@@ -58,9 +58,12 @@ class MoDiffConfig:
             for field in fields(self)
             if type(field.default) is int
         }
-        bad = next((name for name, value in sizes.items() if value < ("layers" not in name)), None)
+        least = {name: 0 if "layers" in name else 1 for name in sizes}
+        bad = next((name for name, value in sizes.items() if value < least[name]), None)
         if bad:
-            raise ValueError(f"{bad} = {sizes[bad]} is not a possible size")
+            raise ValueError(f"{bad} = {sizes[bad]} must be at least {least[bad]}")
+        if not 0 <= self.dropout < 1:
+            raise ValueError(f"dropout = {self.dropout:g} must be from 0 to below 1")
         if self.width % self.heads or self.width % 2:
             raise ValueError(
                 f"width = {self.width} must be even, and a multiple of {self.heads} heads"
@@ -72,7 +75,7 @@ class MoDiffConfig:
         return asdict(self)
 
 
-MODIFF_PAPER = MoDiffConfig(dropout=0.1)
+MODIFF_PAPER = MoDiffConfig(dropout=0.1, skip=False)
 MODIFF_SMALL = MoDiffConfig(width=128, hidden=256, cross_layers=2)
 
 
@@ -127,7 +130,7 @@ class MoDiff(nn.Module):
         self.modality = nn.Parameter(0.02 * torch.randn(2, width))  # marks pose and control tokens
         self.time = nn.Parameter(
             step_embedding(8 * torch.arange(len(both)), width)
-        )  # marks the time of a token; wavelengths from 8 distinguish frames
+        )  # marks the time of a token; times 8, so that neighbouring frames differ clearly
         self.motion_encoder = Encoder(config, config.motion_layers, past)
         self.control_encoder = Encoder(config, config.control_layers, both)
         self.cross_encoder = Encoder(config, config.cross_layers, memory)

@@ -114,6 +114,8 @@ def repair_steps(
     """
     past, known, control = map(torch.as_tensor, (past, known, control))
     _check(rollout.walker, past, known, control)
+    home, there = past.device, rollout.walker.pose_scaler.mean.device
+    past, known, control = (x.to(there) for x in (past, known, control))
     if stop.rounds < 1:
         raise ValueError(f"rounds = {stop.rounds}: give 1 at least, to fill the holes")
     missing, mean = ~known, rollout.walker.pose_scaler.mean.to(past).expand_as(past)
@@ -127,7 +129,7 @@ def repair_steps(
         filled = correct(filled, known, ahead) if correct else filled
         moved = (filled - before).square().flatten(1).sum(1)
         change = (moved / missing.flatten(1).sum(1).clamp(min=1)).sqrt()
-        yield Round(number, filled, change)
+        yield Round(number, filled.to(home), change.to(home))
         if not (change > stop.tolerance).any():
             return
 
@@ -167,7 +169,9 @@ def _check(walker: AnyWalker, past: Tensor, known: Tensor, control: Tensor) -> N
         raise ValueError(
             f"control is {tuple(control.shape)}; give ({len(past)}, {2 * T_h}, 3): past + way there"
         )
-    if not known.flatten(1).any(1).all():
+    nothing = (~known.flatten(1).any(1)).nonzero()
+    if len(nothing):
+        sample = int(nothing[0])
         raise ValueError(
-            f"of sample {int((~known.flatten(1).any(1)).nonzero()[0])} nothing is known at all"
+            f"sample {sample} has no known entry: mark at least one True in known[{sample}]"
         )

@@ -125,19 +125,21 @@ def generate(
     """
     past, control = torch.as_tensor(past), torch.as_tensor(control)
     single = past.dim() == 2
-    past, control = (x[None] if single else x for x in (past, control))
-    T_h, frames = walker.config.T_h, control.shape[1] - past.shape[1]
+    T_h = walker.config.T_h
     D, C = walker.config.D, walker.config.C
     if (
-        past.dim() != 3
-        or past.shape[0] != control.shape[0]
-        or (past.shape[2], control.shape[-1]) != (D, C)
+        past.dim() not in (2, 3)
+        or past.dim() != control.dim()
+        or past.shape[:-2] != control.shape[:-2]
+        or (past.shape[-1], control.shape[-1]) != (D, C)
     ):
         raise ValueError(
             f"past {tuple(past.shape)} and control {tuple(control.shape)} do not fit together: the "
             f"walker takes (B, {T_h}, {D}) and (B, T, {C}), or both without B; "
             "flatten positions (T, 21, 3) to (T, 63)"
         )
+    past, control = (x[None] if single else x for x in (past, control))
+    frames = control.shape[1] - past.shape[1]
     if past.shape[1] != T_h:
         raise ValueError(
             f"the walker continues {T_h} past poses, not {past.shape[1]}: "
@@ -150,7 +152,7 @@ def generate(
         )
     if not (torch.isfinite(past).all() and torch.isfinite(control).all()):
         raise ValueError("past or control contains NaN or infinity; fill the holes first")
-    _warn_beyond(control, getattr(walker, "card", {}).get("control_range"))
+    _warn_beyond(control, T_h, getattr(walker, "card", {}).get("control_range"))
     generator = generator or torch.Generator().manual_seed(seed)
     past, control = (x.float().to(walker.pose_scaler.mean.device) for x in (past, control))
     poses = walker.pose_scaler.transform(past)
@@ -163,13 +165,17 @@ def generate(
     return new[0] if single else new
 
 
-def _warn_beyond(control: Float[Tensor, "B T C"], seen: dict | None) -> None:
-    """Warn about a row beyond the control of the training clips by over a tenth of its range."""
+def _warn_beyond(control: Float[Tensor, "B T C"], T_h: int, seen: dict | None) -> None:
+    """Warn about a row beyond the control of the training clips by over a tenth of its range.
+
+    The first T_h rows are of the past, and nobody can change them.
+    """
     if not seen:
         return
-    low, high = torch.tensor(seen["low"]), torch.tensor(seen["high"])
+    low, high = (torch.tensor(seen[end], device=control.device) for end in ("low", "high"))
     slack = 0.1 * (high - low)
-    beyond = ((control < low - slack) | (control > high + slack)).nonzero()
+    ahead = control[:, T_h:]
+    beyond = ((ahead < low - slack) | (ahead > high + slack)).nonzero()
     if len(beyond):
         batch, row, column = beyond[0].tolist()
         name = (
@@ -178,7 +184,7 @@ def _warn_beyond(control: Float[Tensor, "B T C"], seen: dict | None) -> None:
             else f"column {column}"
         )
         warnings.warn(
-            f"row {row} of the control is {control[batch, row, column]:.3g} ({name}); this walker "
-            f"was trained on {low[column]:.3g} to {high[column]:.3g}, and will not follow it well",
+            f"row {row + T_h} of the control ({row} of its future) is "
+            f"{ahead[batch, row, column]:.3g} ({name}); this walker was trained on {low[column]:.3g} to {high[column]:.3g}, and will not follow it well",
             stacklevel=3,
         )

@@ -11,6 +11,7 @@ import copy
 import math
 import time
 from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Any
 
@@ -116,9 +117,9 @@ def train_steps(
         unit="step",
         mininterval=1.0,
     )
-    state.model.train()
-    with bar:
+    with bar, _evaluating_after(state.model):
         while state.step < steps:
+            state.model.train()  # each time: whoever took the last step may have sampled since
             began, rate = time.perf_counter(), lr(state.step) if callable(lr) else lr
             if before:
                 before(state.step)
@@ -140,7 +141,15 @@ def train_steps(
             if state.step % 20 == 0:
                 bar.set_postfix_str(f"loss {report.loss:.4f}", refresh=False)
             yield report
-    state.model.eval()
+
+
+@contextmanager
+def _evaluating_after(model: nn.Module) -> Iterator[None]:
+    """The model is in evaluation mode afterwards, also after an error or a `break`."""
+    try:
+        yield
+    finally:
+        model.eval()
 
 
 @torch.no_grad()

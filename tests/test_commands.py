@@ -6,11 +6,14 @@ import signal
 import subprocess
 import sys
 import time
+from argparse import Namespace
 from pathlib import Path
+from types import ModuleType
 
 import numpy as np
 import pytest
 import soundfile
+import torch
 
 import motiondiff_edu as md
 from data_synth.music import compose
@@ -18,6 +21,7 @@ from data_synth.walking import walk
 from motiondiff_edu import __main__ as command
 from motiondiff_edu import _commands
 from motiondiff_edu._commands import control_words
+from motiondiff_edu.motion.motion import MotionError
 
 ARM = "RightArm,RightForeArm,RightHand"
 
@@ -170,6 +174,38 @@ def test_a_mistake_is_answered_in_words_and_writes_nothing(name, folder, capsys)
     said = capsys.readouterr().err
     assert told in said and "Traceback" not in said
     assert sorted(folder.iterdir()) == before
+
+
+def failing(how):
+    def run(chosen):
+        how()
+
+    verb = ModuleType("verb")
+    verb.run = run
+    return verb
+
+
+def named():
+    raise MotionError("the walk has no feet")
+
+
+def of_numpy():
+    np.zeros(3) + np.zeros(4)
+
+
+def of_a_key():
+    return {}["root"]
+
+
+@pytest.mark.parametrize("bug", [of_numpy, of_a_key, lambda: torch.zeros(2, 3).view(5)])
+def test_a_bug_keeps_its_traceback(bug):
+    with pytest.raises((ValueError, KeyError, RuntimeError)):
+        _commands.run(failing(bug), Namespace(verb="walk"))
+
+
+def test_an_error_of_the_projects_own_is_a_message(capsys):
+    assert _commands.run(failing(named), Namespace(verb="walk")) == 1
+    assert capsys.readouterr().err == "walk: the walk has no feet\n"
 
 
 def test_an_option_that_is_none_is_refused(folder, capsys):

@@ -10,7 +10,10 @@ import torch
 
 from motiondiff_edu.beyond.schedules import leap_schedule, shifted
 from motiondiff_edu.ddpm import (
+    at,
     cosine_schedule,
+    ddim_sigma,
+    ddim_step,
     draw,
     linear_schedule,
     make_schedule,
@@ -194,6 +197,22 @@ def test_q_sample_takes_a_step_for_each_sample():
         torch.testing.assert_close(
             both[i : i + 1], q_sample(x0[i : i + 1], s, schedule, noise[i : i + 1])
         )
+
+
+@pytest.mark.parametrize(
+    "wrong",
+    [
+        lambda x, plan: ddim_step(x, x, -1, plan),
+        lambda x, plan: ddim_step(x, x, 101, plan),
+        lambda x, plan: ddim_sigma(5, 9, plan, 1.0),
+        lambda x, plan: ddim_sigma(0, 0, plan, 1.0),
+        lambda x, plan: at(plan.alpha_bar, -1, x),
+        lambda x, plan: at(plan.alpha_bar, torch.tensor([3, 101]), x),
+    ],
+)
+def test_a_step_that_is_none_is_refused(wrong):
+    with pytest.raises(IndexError, match="steps must be"):
+        wrong(torch.zeros(2, 3), linear_schedule(100))
 
 
 def test_posterior_is_bayes_rule_on_a_grid():

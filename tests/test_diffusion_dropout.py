@@ -142,11 +142,11 @@ def test_wrong_inputs():
 @pytest.mark.parametrize(
     "past, s, told",
     [
-        ((7, 63), [5] * 7, r"past \(7, 63\), s .* pass \(B, T_h, D\), B steps 0..100"),
-        ((7, 2, 3, 21), [5] * 7, r"past \(7, 2, 3, 21\), s .* pass \(B, T_h, D\)"),
-        ((2, 3, 4), [5], r"past \(2, 3, 4\), s \[5\]; pass .*, B steps"),
-        ((2, 3, 4), [5, -3], r"s \[5, -3\]; pass .*, B steps 0..100"),
-        ((2, 3, 4), [5, 101], r"s \[5, 101\]; pass .*, B steps 0..100"),
+        ((7, 63), [5] * 7, r"past is \(7, 63\) .* a past \(B, T_h, D\)"),
+        ((7, 2, 3, 21), [5] * 7, r"past is \(7, 2, 3, 21\) .* a past \(B, T_h, D\)"),
+        ((2, 3, 4), [5], r"past is \(2, 3, 4\) and s \[5\]: .* each of its samples"),
+        ((2, 3, 4), [5, -3], r"s \[5, -3\]: .* a step from 0 to 100"),
+        ((2, 3, 4), [5, 101], r"s \[5, 101\]: .* a step from 0 to 100"),
     ],
 )
 @pytest.mark.parametrize("shared", [True, False])

@@ -194,11 +194,9 @@ def test_demo_shows_a_copy_with_large_type_and_the_shipped_weights(checkout, cal
     assert command.main(["demo", number]) == 0
     arguments, environment, files = calls[0]
     assert "--LabApp.default_url=/lab/tree/notebooks/07_modiff.ipynb" in arguments
-    assert {"notebooks/07_modiff.ipynb", "docs/walk.gif", "matplotlibrc"} <= set(files)
+    assert {"notebooks/07_modiff.ipynb", "docs/walk.gif"} <= set(files)
     assert not any("student" in name for name in files)
-    assert environment["MOTIONDIFF_DEMO"] == "1" and environment["MATPLOTLIBRC"].endswith(
-        "matplotlibrc"
-    )
+    assert environment["MOTIONDIFF_DEMO"] == "1"
     assert not any(str(checkout) in argument for argument in arguments)
     home = next(a.split("=")[1] for a in arguments if "root_dir" in a)
     assert environment["JUPYTERLAB_WORKSPACES_DIR"].startswith(home)  # its tabs end with it
@@ -209,12 +207,17 @@ def test_a_notebook_that_is_not_there_is_answered_with_those_that_are(checkout, 
     assert "no notebook 12" in (told := capsys.readouterr().err) and "00, 07" in told and not calls
 
 
-def test_matplotlib_takes_the_large_type(tmp_path):
-    environment = demo.demo_environment(tmp_path)
-    import matplotlib
-
-    values = matplotlib.rc_params_from_file(environment["MATPLOTLIBRC"], use_default_template=False)
-    assert values["figure.dpi"] == 150
+def test_figures_of_a_demo_are_half_as_large_again(tmp_path):
+    code = (
+        "import io; from PIL import Image; from motiondiff_edu.viz import style; "
+        "print(Image.open(io.BytesIO(style.figure(4, 3, 'words')[0].as_png())).size)"
+    )
+    sizes = []
+    for demo_or_not in ({}, demo.demo_environment(tmp_path)):
+        run = [sys.executable, "-c", code]
+        env = {k: v for k, v in os.environ.items() if k != "MOTIONDIFF_DEMO"} | demo_or_not
+        sizes.append(subprocess.run(run, capture_output=True, text=True, env=env).stdout.strip())
+    assert sizes == ["(400, 300)", "(600, 450)"]
 
 
 def ask(address: str, attempts: int = 60) -> dict:

@@ -1,10 +1,14 @@
 """MoFusion's U-Net: lengths, the batch, time in seconds, and its fast twin."""
 
+from dataclasses import replace
+
 import pytest
 import torch
+import torch.nn.functional as F
 
 from motiondiff_edu.cross_modal_attention import angles_of, turned
 from motiondiff_edu.fast.mofusion import FastMoFusion
+from motiondiff_edu.modiff import step_embedding
 from motiondiff_edu.mofusion import (
     MOFUSION_FULL,
     MOFUSION_SMALL,
@@ -33,6 +37,60 @@ def music(B: int, M: int, C: int = 5, seed: int = 1):
     return torch.randn(B, M, C, generator=torch.Generator().manual_seed(seed)), torch.arange(
         M
     ) / MEL_FPS
+
+
+def conv3(layer, x, stride=1, dilation=1):
+    """A convolution over three frames, written out: zeros beyond both ends."""
+    B, T, W = x.shape
+    padded = torch.cat([x.new_zeros(B, dilation, W), x, x.new_zeros(B, dilation, W)], 1)
+    neighbours = [padded[:, k * dilation : k * dilation + T : stride] for k in range(3)]
+    return torch.cat(neighbours, -1) @ layer.mix.weight.T + layer.mix.bias
+
+
+@torch.no_grad()
+def test_the_music_encoder_by_hand():
+    """Four layers see 1, 2, 4 and 8 frames further, and each adds to what came in."""
+    model = shaken(replace(TINY, music_layers=4))
+    encoder, (mel, _) = model.music, music(2, 40)
+    h = conv3(encoder.shorten, F.silu(encoder.project(mel)), stride=2)
+    for norm, conv, dilation in zip(encoder.norms, encoder.convs, (1, 2, 4, 8), strict=True):
+        h = h + F.silu(conv3(conv, norm(h), dilation=dilation))
+    made = encoder(mel, torch.ones(1, 40, 1))
+    assert made.shape == (2, 20, 24)
+    torch.testing.assert_close(made, encoder.norm(h), atol=1e-5, rtol=1e-4)
+
+
+@torch.no_grad()
+def test_the_wiring_by_hand():
+    """One level down and up, written out: every norm, residual, skip and turn at its place."""
+    config = replace(TINY, widths=(16,), target="eps", skip=True, music_layers=0)
+    model, (mel, times) = shaken(config), music(2, 30)
+    x_s, s = torch.randn(2, 12, 7), torch.tensor([4, 19])
+    heard, step = model.music.norm(model.music.project(mel)), model.step_in(step_embedding(s, 64))
+
+    def res(part, x):
+        h = conv3(part.conv_in, F.silu(part.norm_in(x)))
+        scale, shift = part.step(step)[:, None].chunk(2, dim=-1)
+        h = conv3(part.conv_out, F.silu(part.norm_out(h) * (1 + scale) + shift))
+        return part.around(x) + h
+
+    def attend(part, x, frames):
+        code = (config.slowest, config.fastest)
+        turns = tuple(angles_of(t, 8, *code) for t in (frames / config.fps, times))
+        x = x + part.attention(part.norm(x), heard, None, turns)
+        return x + part.ff(part.norm_ff(x))
+
+    def block(parts, x, frames):
+        return attend(parts["ask"], res(parts["res"], x), frames)
+
+    fine, coarse = torch.arange(12), torch.arange(0, 12, 2)
+    top = block(model.down[0], conv3(model.into, x_s), fine)
+    low = block(model.middle, conv3(model.shorten[0], top, stride=2), coarse)
+    back = conv3(model.lengthen[0], low.repeat_interleave(2, dim=1))
+    out = model.out(block(model.up[0], torch.cat([back, top], -1), fine))
+    wanted = out + model.skip[s][:, None, None] * x_s
+    made = model(x_s, s, model.listen(mel, times))
+    torch.testing.assert_close(made, wanted, atol=1e-5, rtol=1e-4)
 
 
 @torch.no_grad()

@@ -207,7 +207,7 @@ MISTAKES = {
     "a past too long": ({"past": lambda x: torch.cat([x, x], 1)}, r"past is \(3, 12, 8\)"),
     "nothing known": (
         {"known": lambda x: x & (torch.arange(3) != 1)[:, None, None]},
-        "of sample 1 nothing is known",
+        "sample 1 has no known entry",
     ),
     "no rounds": ({"stop": lambda x: Stop(rounds=0)}, "rounds = 0: give 1 at least"),
 }

@@ -1,5 +1,6 @@
 """What does not fit a walker is refused in its own words, before the network sees it."""
 
+import warnings
 from types import SimpleNamespace
 
 import numpy as np
@@ -19,6 +20,9 @@ WALKER = SimpleNamespace(config=SimpleNamespace(T_h=4, T_p=2, D=6, C=3))
         ((2, 4, 6), (3, 9, 3), r"past \(2, 4, 6\) and control \(3, 9, 3\) do not fit together"),
         ((2, 4, 5), (2, 9, 3), r"the walker takes \(B, 4, 6\)"),
         ((4, 5), (9, 3), r"the walker takes \(B, 4, 6\)"),
+        ((4, 6), (1, 9, 3), r"past \(4, 6\) and control \(1, 9, 3\) do not fit together"),
+        ((4, 6), (3,), r"past \(4, 6\) and control \(3,\) do not fit together"),
+        ((2, 4, 6), (2, 1, 9, 3), r"control \(2, 1, 9, 3\) do not fit together"),
         ((2, 5, 6), (2, 9, 3), "continues 4 past poses, not 5"),
         ((2, 4, 6), (2, 4, 3), "there is none for the future"),
     ],
@@ -39,3 +43,18 @@ def test_arrays_are_taken_as_they_are_and_the_same_walk_comes_back():
         walker, torch.from_numpy(past), torch.from_numpy(clip.control).float(), seed=1, steps=3
     )
     assert new.shape == (4, 63) and torch.equal(new, same)
+
+
+def test_a_control_beyond_the_training_is_named_by_the_row_of_the_future():
+    """Rows of the past are the recording's own, and nobody can change them."""
+    clip = walk(np.tile([1.0, 0.0, 0.2], (14, 1)), seed=5)
+    control = clip.control.copy()
+    control[3] = 40.0
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        generate(pretrained("walker"), clip.features()[:10], control, steps=1)
+    control[12] = 40.0
+    with pytest.warns(
+        UserWarning, match="row 12 of the control .2 of its future. is 40 .forward speed."
+    ):
+        generate(pretrained("walker"), clip.features()[:10], control, steps=1)

@@ -97,6 +97,23 @@ def test_a_killed_run_resumes_bit_for_bit(tmp_path: Path):
     assert different == []
 
 
+def test_a_look_at_the_model_between_steps_changes_nothing():
+    """Who samples on the way switches dropout off; the next step has it again."""
+    plain, looked_at = TrainState.start(network(), seed=4), TrainState.start(network(), seed=4)
+    modes = []
+
+    def loss_fn(model, generator):
+        modes.append(model.training)
+        return toy_loss(model, generator)
+
+    for _ in train_steps(looked_at, loss_fn, 5, progress=False):
+        looked_at.model.eval()
+    assert modes == [True] * 5
+    for _ in train_steps(plain, toy_loss, 5, progress=False):
+        break
+    assert not plain.model.training  # it was stopped half-way, and can be used
+
+
 def test_another_seed_gives_another_run(tmp_path: Path):
     """So that the test above could fail."""
     one = run(tmp_path / "a", 8)

@@ -6,17 +6,20 @@ the description that `--help` shows. Slow imports stand inside `run`, so that `-
 
 import argparse
 import sys
+import traceback
 import warnings
 from types import ModuleType
 
 VERBS = ("walk", "dance", "inbetween", "reconstruct", "info", "convert", "play")
+OURS = __name__.split(".")[0]
 STOPPED = 130  # the exit code of a command that Ctrl-C ended
 
 
 def run(module: ModuleType, args: argparse.Namespace) -> int:
     """Run one verb, and return the exit status.
 
-    An expected error is printed as one message, without a traceback.
+    An expected error is printed as one message, without a traceback; any other is a bug of the
+    program and keeps its traceback.
     """
     try:
         with warnings.catch_warnings():
@@ -28,10 +31,28 @@ def run(module: ModuleType, args: argparse.Namespace) -> int:
         return STOPPED
     except BrokenPipeError:
         return 1
-    except (ValueError, KeyError, OSError, ImportError, MemoryError) as error:
+    except Exception as error:
+        if not expected(error):
+            raise
         print(f"{args.verb}: {_message(error)}", file=sys.stderr)
         return 1
     return 0
+
+
+def expected(error: Exception) -> bool:
+    """Whether an error is for the user: a class of this project, raised by it, or from outside.
+
+    A ValueError that numpy or torch raised in the middle of our work is a bug, and so is a KeyError
+    without words.
+    """
+    if isinstance(error, (OSError, ImportError, MemoryError)):
+        return True
+    if type(error).__module__.split(".")[0] == OURS:
+        return True
+    *_, (frame, _) = traceback.walk_tb(error.__traceback__)
+    raised_here = frame.f_globals.get("__name__", "").split(".")[0] in (OURS, "data_synth")
+    words = isinstance(error, ValueError) or " " in _message(error)
+    return raised_here and words and isinstance(error, (ValueError, KeyError))
 
 
 def _message(error: Exception) -> str:

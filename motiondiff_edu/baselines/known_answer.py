@@ -76,11 +76,13 @@ class Method:
 
     @property
     def name(self) -> str:
-        """For example `masked.50.x5`: fifty steps, each repeated five times."""
-        turns = ("" if self.resample == 1 else f".x{self.resample}") + (
-            ".blended" if self.blend is not None else ""
-        )
-        turns += ".guided" if self.guidance else ""
+        """For example `masked.50.x5`: fifty steps, each repeated five times.
+
+        Methods that differ in an option that their kind uses have different names.
+        """
+        turns = "" if self.resample == 1 else f".x{self.resample}"
+        turns += "" if self.blend is None else f".blended{self.blend}"
+        turns += f".guided{self.guidance:g}" if self.guidance else ""
         ends = {"exact": "", "masked": f".{self.steps}{turns}"}
         return self.kind + ends.get(self.kind, f".{self.rounds}")
 

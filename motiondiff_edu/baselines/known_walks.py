@@ -77,10 +77,10 @@ def fit_walks(
     rows = [
         clip.features()[first : first + span : every]
         for clip in clips
-        for first in range(0, len(clip) - span, 4)
+        for first in range(0, len(clip) - span + 1, 4)
     ]
     if not rows:
-        raise ValueError(f"no clip has more than {span} frames, so there is no window to fit")
+        raise ValueError(f"no clip has {span} frames or more, so there is no window to fit")
     poses = torch.from_numpy(np.stack(rows))
     scaler = Scaler.fit(poses)
     return WalkMixture(

@@ -1,10 +1,7 @@
-"""Ways back that heed what is known while they walk.
+"""Ways back that also use the known entries: for `reconstruction.repair_steps(way_back=...)`.
 
-They are for `reconstruction.repair_steps(way_back=...)`.
-
-The paper walks back as if nothing were known, and fills the holes from it. A frame that is known,
-or the joints of one that are, say much about what is missing beside them: here they are given to
-the walker as well.
+The paper walks back as if nothing were known, and fills the holes from the result. But known joints
+constrain the missing ones beside them, and known frames those before and after.
 Source: ours; the mask is MoFusion 4.4's, the walk MoDiff III-E's.  Notebook: 15
 """
 
@@ -17,7 +14,7 @@ from torch import Tensor
 from ..ddpm import Denoiser, Schedule, draw
 from ..inbetweening import inpaint_steps
 from ..reconstruction import Rollout, walked_back
-from ..rollout import AnyWalker, rollout_steps
+from ..rollout import AnyWalker
 from .guidance import blended_guess, guided
 
 WEIGHT, MOVES = 0.7, 4  # of guidance, in masked_back
@@ -27,7 +24,7 @@ Frames = Float[Tensor, "B T_h D"]
 
 @runtime_checkable
 class MaskedWalker(AnyWalker, Protocol):
-    """What `masked_back` needs besides: the schedule, and a denoiser with a gradient."""
+    """A walker that also has a schedule and a denoiser that can be differentiated."""
 
     schedule: Schedule
 
@@ -44,28 +41,6 @@ def drawn_back(
     """The paper's way back, drawn through the known entries: no jump where a hole ends."""
     back = walked_back(rollout, ahead, control, given, known)
     return blended_guess(back, given.to(back), known, FADE)
-
-
-def held_back(
-    rollout: Rollout,
-    ahead: Frames,
-    control: Float[Tensor, "B T C"],
-    given: Frames,
-    known: Bool[Tensor, "B _ _"],
-) -> Frames:
-    """Frame by frame: the known entries of each are put right before the next is walked."""
-    walker, generator = rollout.walker, rollout.generator
-    sample, T_p = walker.window_sampler(rollout.steps), walker.config.T_p
-    given, past = (walker.pose_scaler.transform(x.float()) for x in (given, ahead))
-    velocities, rows = walker.control_scaler.transform(control.float()), []
-    for t in range(ahead.shape[1]):
-        frame = next(
-            rollout_steps(sample, past, velocities[:, t:], 1, T_p, generator=generator, hold=False)
-        )
-        pose = torch.where(known[:, t], given[:, t], frame.pose)
-        rows.append(pose)
-        past = torch.cat([past[:, 1:], pose[:, None]], 1)
-    return walker.pose_scaler.inverse(torch.stack(rows, 1))
 
 
 @torch.no_grad()
@@ -88,7 +63,7 @@ def masked_back(
     if config.T_p != config.T_h:
         raise ValueError(
             f"this walker predicts {config.T_p} poses from {config.T_h}: its window is not the "
-            "past. Use held_back"
+            "past. Use drawn_back"
         )
     given, ahead = (walker.pose_scaler.transform(x.float()) for x in (given, ahead))
     network = walker.denoiser(ahead, walker.control_scaler.transform(control.float()), fast=False)

@@ -15,6 +15,7 @@ import torch
 from jaxtyping import Bool, Float, Int
 from torch import Tensor
 
+from ..diffusion_dropout import changed
 from .loss_terms import Error, Loss
 
 Past = Float[Tensor, "B T_h D"]
@@ -30,8 +31,8 @@ class NoisedPastWeight:
         training_loss(..., dropout=light, loss=light.weighted(loss))
     dropout  makes the noised past, such as `diffusion_dropout.Dropout`
     weight   of the squares of a window with a noised past; 1 changes nothing
-    Raises ValueError for a weight below 0, and RuntimeError if the loss is asked before the
-    dropout.
+    Raises ValueError for a weight below 0, and RuntimeError if the loss is called without the
+    dropout of its batch.
     """
 
     dropout: Callable[[Past, Int[Tensor, "B"], torch.Generator | None], Past]
@@ -46,7 +47,7 @@ class NoisedPastWeight:
         self, past: Past, s: Int[Tensor, "B"], generator: torch.Generator | None = None
     ) -> Past:
         noised = self.dropout(past, s, generator)
-        self.noised = (noised != past).flatten(1).any(1)
+        self.noised = changed(past, noised)
         return noised
 
     def weighted(self, loss: Loss) -> Loss:
@@ -54,8 +55,12 @@ class NoisedPastWeight:
 
         def lighter(error: Error, s: Int[Tensor, "B"]) -> Float[Tensor, ""]:
             if self.noised is None:
-                raise RuntimeError("no past was noised yet: pass dropout=self as well")
+                raise RuntimeError(
+                    "this loss needs the dropout of the same batch: pass the NoisedPastWeight as "
+                    "`dropout`, beside the loss that it weighs"
+                )
             factor = torch.where(self.noised, self.weight**0.5, 1.0).to(error)
+            self.noised = None  # of this batch alone
             return loss(factor[:, None, None] * error, s)
 
         return lighter

@@ -14,6 +14,8 @@ import torch
 from jaxtyping import Float, Int
 from torch import Tensor, nn
 
+from ..diffusion_dropout import changed
+
 
 def repeated(batch: tuple[Tensor, ...], noises: int) -> tuple[Tensor, ...]:
     """Every window of the batch, `noises` times in a row.
@@ -41,11 +43,16 @@ class SharedEncoding:
     def encode(self, *inputs: Float[Tensor, "B ..."]):
         """The memory of the repeated batch, in its order."""
         B = len(inputs[0])
+        if B % self.noises:
+            raise ValueError(
+                f"a batch of {B} cannot be {self.noises} copies of each window: make it with "
+                f"`repeated(batch, {self.noises})`"
+            )
         first = torch.arange(0, B, self.noises)  # the first copy of each window
         unlike = torch.zeros(B, dtype=torch.bool)
         for part in inputs:
             again = part[first].repeat_interleave(self.noises, dim=0)
-            unlike |= (part != again).flatten(1).any(1).cpu()
+            unlike |= changed(again, part).cpu()
         others = unlike.nonzero()[:, 0]
         row = torch.arange(B) // self.noises  # row of the memory for each copy
         row[others] = len(first) + torch.arange(len(others))

@@ -13,8 +13,7 @@ HELP = "open one notebook ready to show"
 EXAMPLE = "demo 07"
 PASSES_OPTIONS_ON = "JupyterLab"
 
-# large type for a projector: matplotlib's, and JupyterLab's
-LARGE_FIGURES = "figure.dpi: 150\nfont.size: 13\nlines.linewidth: 2.2\n"
+# JupyterLab's large type for a projector; `viz.style` enlarges the figures
 LARGE_SIZES = {"code-font-size": "19px", "content-font-size1": "21px", "ui-font-size1": "17px"}
 
 
@@ -51,10 +50,8 @@ def demo_environment(home: Path) -> dict[str, str]:
     folder.mkdir(parents=True)
     large_type = json.dumps({"overrides": LARGE_SIZES})
     (folder / "themes.jupyterlab-settings").write_text(large_type, encoding="utf-8")
-    (home / "matplotlibrc").write_text(LARGE_FIGURES, encoding="utf-8")
     return {
         "MOTIONDIFF_DEMO": "1",
         "JUPYTERLAB_SETTINGS_DIR": str(home / "settings"),
         "JUPYTERLAB_WORKSPACES_DIR": str(home / "workspaces"),
-        "MATPLOTLIBRC": str(home / "matplotlibrc"),
     }

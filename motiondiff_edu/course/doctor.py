@@ -16,10 +16,15 @@ import webbrowser
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
+from ..widgets import module
 from .places import PACKAGE, notebook_folder, place_for_students, program
 
 HELP = "say on one page what works here, and what to do about the rest"
 EXAMPLE = "doctor"
+ES_MODULES = (
+    "path.js",
+    *(f"js/{name}.js" for name in dict.fromkeys((*module.PARTS, *module.EDITOR, *module.BENCH))),
+)
 INSTALL = "python -m pip install -c constraints.txt -e . (in the checkout), or make lab"
 
 
@@ -144,9 +149,10 @@ def kernel() -> Finding:
 def canvas() -> Finding:
     """There is all that a moving figure needs: anywidget, the ES module, and a browser."""
     importlib.import_module("anywidget")
-    modules = sorted(path.name for path in (PACKAGE / "widgets").glob("*.js"))
-    if not modules:
-        return Finding("canvas", "the package has no ES module in widgets/", INSTALL)
+    missing = [name for name in ES_MODULES if not (PACKAGE / "widgets" / name).is_file()]
+    if missing:
+        words = f"the package lacks ES modules in widgets/: {', '.join(missing)}"
+        return Finding("canvas", words, INSTALL)
     try:
         browser = webbrowser.get()
     except webbrowser.Error:
@@ -158,7 +164,8 @@ def canvas() -> Finding:
         )
     return Finding(
         "canvas",
-        f"{', '.join(modules)}; opens in {getattr(browser, 'name', 'the default browser')}",
+        f"all {len(ES_MODULES)} ES modules; opens in "
+        f"{getattr(browser, 'name', 'the default browser')}",
     )
 
 

@@ -102,7 +102,7 @@ def with_bones(
     and a known joint changes its length.
     Source: ours.
     """
-    joints, ahead = (x.double().unflatten(-1, (-1, 3)).numpy() for x in (past, walked))
-    here = known.unflatten(-1, (-1, 3)).all(-1).numpy()
+    joints, ahead = (x.double().cpu().unflatten(-1, (-1, 3)).numpy() for x in (past, walked))
+    here = known.cpu().unflatten(-1, (-1, 3)).all(-1).numpy()
     lengths = np.median(bone_lengths(ahead), axis=-2)
     return torch.from_numpy(steady_bones(joints, here, lengths)).flatten(-2).to(past)

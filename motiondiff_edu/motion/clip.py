@@ -87,13 +87,24 @@ def split_by_source(
 
     Slices of one recording share frames, so they must stay together.
 
-    `fractions` of the sources go to each group; they sum to 1. Raises ValueError otherwise.
+    `fractions` of the sources go to each group; they sum to 1.
+    Raises ValueError for other fractions, for a clip without a source, and if there are too few
+    sources to give each group one.
     Notebook: 01
     """
     if min(fractions) < 0 or abs(sum(fractions) - 1) > 1e-9:
         raise ValueError(f"fractions must be 0 or more and sum to 1, not {list(fractions)}")
+    nameless = next((k for k, clip in enumerate(clips) if not clip.source), None)
+    if nameless is not None:
+        raise ValueError(f"clip {nameless} has no source: it cannot be kept with clips like it")
     sources = np.array(sorted({clip.source for clip in clips}))
     rng.shuffle(sources)
     bounds = np.round(np.cumsum([0.0, *fractions]) * len(sources)).astype(int)
+    empty = [k for k in range(len(fractions)) if fractions[k] and bounds[k] == bounds[k + 1]]
+    if empty:
+        raise ValueError(
+            f"{len(sources)} sources leave group {empty[0]} without one: give more recordings, or "
+            f"a larger fraction than {fractions[empty[0]]:g}"
+        )
     groups = [set(sources[a:b]) for a, b in zip(bounds[:-1], bounds[1:], strict=True)]
     return tuple([clip for clip in clips if clip.source in group] for group in groups)

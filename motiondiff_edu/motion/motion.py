@@ -34,7 +34,7 @@ class Motion:
 
     Optional:
         root      the path on the ground (x, z in metres, heading in radians); control follows from
-                  it
+                  it. Jumps of the heading by whole turns are taken out
         contacts  whether the left and the right foot are planted
         audio     mono sound from -1 to 1 at `sample_rate` Hz; it begins with the first frame
         source    where the motion comes from
@@ -62,7 +62,7 @@ class Motion:
             "sample_rate": int(self.sample_rate),
         }
         T = len(values["positions"])
-        values["root"] = _per_frame(self.root, "root", (T, 3), np.float64)
+        values["root"] = _continuous(_per_frame(self.root, "root", (T, 3), np.float64))
         values["contacts"] = _per_frame(self.contacts, "contacts", (T, 2), bool)
         values["audio"] = _sound(self.audio, values["sample_rate"])
         for name, value in values.items():
@@ -168,7 +168,7 @@ class Motion:
 
     def between(self, first: float, last: float) -> "Motion":
         """The part between two times in seconds.  Raises MotionError outside the motion."""
-        if not (0 <= first < last <= self.seconds + 1 / self.fps):
+        if not (0 <= first < last <= self.seconds + 1e-6):
             raise MotionError(
                 f"{self.name}: {first:g} to {last:g} s are not within its {self.seconds:.2f} s"
             )
@@ -208,7 +208,7 @@ class Motion:
     def resampled(self, fps: float) -> "Motion":
         """The same motion at another frame rate, by a cubic spline.
 
-        A low-pass comes first when half or more of the frames are removed.
+        A low-pass comes first when frames are removed.
 
         Raises MotionError for a missing joint, or for fewer than two frames.
         """
@@ -336,6 +336,13 @@ def _per_frame(values, name: str, shape: tuple[int, int], dtype: type) -> np.nda
         what = f"has shape {array.shape}" if array.shape != shape else "has NaN or infinite values"
         raise MotionError(f"{name} {what}; it must be {shape}, a row for each frame")
     return array
+
+
+def _continuous(root: np.ndarray | None) -> np.ndarray | None:
+    """The root without jumps by whole turns, such as from pi to -pi or where two motions join."""
+    if root is not None:
+        root[:, 2] = np.unwrap(root[:, 2])
+    return root
 
 
 def _sound(audio, sample_rate: int) -> np.ndarray | None:

@@ -124,15 +124,15 @@ def resample(
 ) -> Float[np.ndarray, "F 21 3"]:
     """Resample to another frame rate by a cubic spline.
 
-    A zero-phase low-pass of 8 Hz comes first when at least half of the frames are removed. A joint
-    that the file lacks stays NaN.
+    Where frames are removed, a zero-phase low-pass comes first, at 0.4 of the new rate (8 Hz for 20
+    frames/s). A joint that the file lacks stays NaN.
     """
     known = np.isfinite(points).all((0, 2))  # a spline takes no NaN
     times, moving = np.arange(len(points)) / from_fps, points[:, known]
-    if from_fps >= 2 * to_fps - 1e-6 and len(points) > 30:
-        moving = sosfiltfilt(
-            butter(4, CUT_HZ * to_fps / 20, fs=from_fps, output="sos"), moving, axis=0
-        )
+    if from_fps > to_fps + 1e-6 and len(points) > 1:
+        low_pass = butter(4, CUT_HZ * to_fps / 20, fs=from_fps, output="sos")
+        ends = min(15, len(points) - 1)  # frames mirrored at both ends; 15 is scipy's own number
+        moving = sosfiltfilt(low_pass, moving, axis=0, padlen=ends)
     if abs(from_fps - to_fps) > 1e-6:
         count = int(np.floor(times[-1] * to_fps + 1e-6)) + 1
         moving = CubicSpline(times, moving)(np.arange(count) / to_fps)

@@ -86,13 +86,13 @@ class Dancer(Performer):
                 else "this network dances to music; pass its log-Mel as mel"
             )
         if mel is None:
-            return self._as_eps(self.model)
+            return self._as_eps(self._evaluated)
         twin = self.fast if fast and not watched(self.model) else None
         if twin is not None:
             song = twin.listen(*self.mel_input(mel, frames), frames)
             return self._as_eps(lambda x_s, s: twin.denoise(x_s, s, song))
         music = self.model.listen(*self.mel_input(mel, frames))
-        return self._as_eps(lambda x_s, s: self.model(x_s, s, music))
+        return self._as_eps(lambda x_s, s: self._evaluated(x_s, s, music))
 
     def _as_eps(self, network) -> Denoiser:
         denoise = denoiser_of(network, self.schedule, self.config.target)
@@ -191,5 +191,5 @@ class Dancer(Performer):
         music = self.model.listen(*self.mel_input(mel, frames))
         nothing = torch.zeros(len(mel), frames, self.config.D, device=self.device)
         s = torch.zeros(len(mel), dtype=torch.long, device=self.device)
-        out = self.model(nothing, s, music)
+        out = self._evaluated(nothing, s, music)
         return to_positions(self.motion_scaler.inverse(out))

@@ -13,7 +13,7 @@ import torch
 from jaxtyping import Bool, Float
 from torch import Tensor
 
-from ..ddpm import Denoiser, Schedule, Table, draw, q_sample
+from ..ddpm import Denoiser, Schedule, draw, q_sample
 from ..kinematic_loss import Body, kinematic_parts, over_time
 from ..prediction import target_of, to_x0, x0_from_eps
 
@@ -124,15 +124,3 @@ def _at_step(predict, x0, eps, planted, body, schedule, s, target) -> tuple[dict
         {k: v.detach().mean() for k, v in parts.items()},
         {k: g.flatten(1).norm(dim=1).mean() for k, g in gradients.items()},
     )
-
-
-def eps_weight(schedule: Schedule, kind: str) -> Table:
-    """The weight of the eps error that equals lambda(s) times the x0 error.
-
-    lambda(s) |x0_hat - x0|^2 = eps_weight(s) |eps_hat - eps|^2.
-
-    It is lambda(s) (1 - alpha_bar) / alpha_bar. With the paper's lambda = alpha_bar it becomes
-    1 - alpha_bar, which is largest at s = S.
-    Source: MoFusion eq. 5, 7.
-    """
-    return over_time(schedule, kind) * (1 - schedule.alpha_bar) / schedule.alpha_bar

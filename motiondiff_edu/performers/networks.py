@@ -60,8 +60,8 @@ def register(
             are those of poses and control, or of motion and Mel
     fast    `fast(network)` makes its fast twin, with the methods of `fast.modiff.FastMoDiff` or
             `fast.mofusion.FastMoFusion`; without it the network itself is used
-    Raises ValueError for an unknown performer, a name that another class has, and a configuration
-    that lacks a field or a default.
+    Raises ValueError for an unknown performer, a name or a configuration that another class has,
+    and a configuration that lacks a field or a default.
     """
     if performer not in NEEDED:
         raise ValueError(f'performer must be "walker" or "dancer", not {performer!r}')
@@ -75,6 +75,12 @@ def register(
     if taken and _full_name(taken.model) != _full_name(model):
         other = _full_name(taken.model)
         raise ValueError(f"{model.__name__} is the name of {other}: choose another name")
+    same = [one for one in _NETWORKS.values() if one.config is config]
+    if same and _full_name(same[0].model) != _full_name(model):
+        raise ValueError(
+            f"{config.__name__} belongs to {_full_name(same[0].model)}: a configuration names one "
+            f"network, so make a subclass of it for {model.__name__}"
+        )
     make = build or (lambda config, *scalers: model(config))
     _NETWORKS[model.__name__] = Network(performer, model, config, make, fast)
 

@@ -2,7 +2,7 @@
 
 from functools import cached_property
 
-from torch import nn
+from torch import Tensor, nn
 
 from ..ddpm import Schedule
 from ..fast.twins import Twin
@@ -41,3 +41,12 @@ class Performer:
         without a condition, or registered without a twin.
         """
         return self._twin and self._twin()
+
+    def _evaluated(self, *inputs) -> Tensor:
+        """The network's output in evaluation mode, without dropout; then it is as it was."""
+        training = self.model.training
+        self.model.eval()
+        try:
+            return self.model(*inputs)
+        finally:
+            self.model.train(training)

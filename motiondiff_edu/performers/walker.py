@@ -122,7 +122,7 @@ class Walker(Performer):
         """
         twin = self.fast if fast and not watched(self.model) else None
         if twin is None:
-            return self._as_eps(lambda x_s, s: self.model(x_s, s, past, control))
+            return self._as_eps(lambda x_s, s: self._evaluated(x_s, s, past, control))
         context = twin.encode(past, control)
         return self._as_eps(lambda x_s, s: twin.denoise(x_s, s, context))
 
@@ -147,4 +147,5 @@ class Walker(Performer):
                 last = step
             return last.x_s
 
-        return sample
+        # outside of inference mode, so that the result can be changed in place
+        return lambda *inputs: sample(*inputs).clone()

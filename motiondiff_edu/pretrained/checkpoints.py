@@ -1,7 +1,6 @@
 """Trained walkers and dancers on disk, and the shipped ones by name.
 
-Safetensors with a card that says what they are and how they were made; float16 unless told
-otherwise.
+Safetensors with a card that says what they are and how they were made; float16 by default.
 Notebook: 00, 07, 12
 """
 
@@ -61,15 +60,17 @@ def save(figure: Walker | Dancer, path: str | Path, bits: int = 16) -> Path:
 
     Weights are float16; `bits` = 32 leaves them as they are, 8 see `eight_bits`.
 
-    A card.json is laid beside it. Written to a temporary name and renamed.
-    Raises ValueError for other numbers of bits, for what is no performer, and for a network that is
-    not registered (`performers.networks.register`).
+    NAME.json, the card, is written beside NAME.safetensors. Both get a temporary name first.
+    Raises ValueError for other numbers of bits or another ending, for what is no performer, and for
+    a network that is not registered (`performers.networks.register`).
     """
     if bits not in STORED:
         raise ValueError(f"weights are written in 8, 16 or 32 bits, not {bits}")
     kind = next((kind for kind in KINDS if isinstance(figure, kind.performer)), None)
     if kind is None:
-        raise ValueError(f"a walker or a dancer is saved, not a {type(figure).__name__}")
+        raise ValueError(f"save takes a Walker or a Dancer, not a {type(figure).__name__}")
+    if Path(path).suffix != ".safetensors":
+        raise ValueError(f"weights are written to a file .safetensors, not to {Path(path).name!r}")
     network = type(figure.model).__name__
     if kind_of(figure.model) is not networks_of(kind.name).get(network, MISSING):
         raise ValueError(

@@ -12,7 +12,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from .body import INK
-from .style import MEDIUM, SMALL, figure
+from .style import SMALL, figure
 
 Groups = Sequence[tuple[str, int]]  # (name, how many keys), in the order of the keys
 
@@ -33,7 +33,7 @@ def attention_map(
 ) -> Figure:
     """One attention map; larger weights are darker.
 
-    For several heads pass one of them or their mean, or use `attention_heads`.
+    For several heads pass one of them or their mean.
 
     Raises ValueError if groups or labels do not fit the map.
     """
@@ -52,32 +52,6 @@ def attention_map(
     return fig
 
 
-def attention_heads(
-    weights: Float[np.ndarray, "H T M"],
-    groups: Groups | None = None,
-    titles: Sequence[str] | None = None,
-) -> Figure:
-    """One map for each head, all on one scale."""
-    _check(weights.shape[1:], groups, None, None)
-    heads = len(weights)
-    columns = min(heads, 4)
-    rows = -(-heads // columns)
-    words = f"Attention maps of {heads} heads on one scale; rows are queries, darker is more."
-    fig, axes = figure(3.6 * columns, 3.4 * rows + 0.4, words, rows, columns)
-    for i, axis in enumerate(axes):
-        if i >= heads:
-            axis.set_axis_off()
-            continue
-        image = _paint(axis, weights[i], groups, float(weights.max()), short=True)
-        axis.set_title(titles[i] if titles else f"head {i + 1}", pad=36 if groups else 6)
-        _label(axis.set_xticks, weights.shape[2], None)
-        _label(axis.set_yticks, weights.shape[1], None)
-    fig.colorbar(image, ax=axes, label="weight", shrink=0.8)
-    fig.supxlabel("key", fontsize=MEDIUM)
-    fig.supylabel("query", fontsize=MEDIUM)
-    return fig
-
-
 def _check(
     shape: tuple, groups: Groups | None, query_labels: Sequence | None, key_labels: Sequence | None
 ) -> None:
@@ -89,7 +63,7 @@ def _check(
             raise ValueError(f"{len(labels)} {what} labels for {size} {what} positions")
 
 
-def _paint(axis: Axes, weights: np.ndarray, groups: Groups | None, top: float, short: bool = False):
+def _paint(axis: Axes, weights: np.ndarray, groups: Groups | None, top: float):
     image = axis.imshow(
         weights, cmap="Blues", vmin=0, vmax=top, aspect="auto", interpolation="nearest"
     )
@@ -98,14 +72,13 @@ def _paint(axis: Axes, weights: np.ndarray, groups: Groups | None, top: float, s
     for name, count in groups or []:
         if first:
             axis.axvline(first - 0.5, color=INK, lw=1.2)
-        words = name.replace(", ", "\n").replace(" ", "\n") if short else name
         axis.text(
             first + count / 2 - 0.5,
             -0.75,
-            words,
+            name,
             ha="center",
             va="bottom",
-            fontsize=9 if short else SMALL,
+            fontsize=SMALL,
         )
         first += count
     return image

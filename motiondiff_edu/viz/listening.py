@@ -9,9 +9,9 @@ import numpy as np
 from jaxtyping import Float
 from matplotlib.figure import Figure
 
-from .body import GREY, INK
+from .body import GREY
 from .over_time import time_map, waves
-from .style import OKABE_ITO, SMALL, figure
+from .style import SMALL, figure
 
 
 def levels_over_sound(
@@ -26,7 +26,7 @@ def levels_over_sound(
     """A song with its beats, and below it where each level reads.
 
     The x axis is the time of the music, the y axis the time of the dance, which lasts `seconds`.
-    Each map has its own scale. `attention_over_sound` draws a single, larger map.
+    Each map has its own scale.
     Source: MoFusion Fig. 4.
     """
     fig, axes = figure(10, 1.6 + 2.3 * len(maps), words, 1 + len(maps), 1, share="x",
@@ -40,53 +40,6 @@ def levels_over_sound(
         for beat in beats[beats < seconds]:
             axis.axvline(beat, color=GREY, lw=1, ls=":")
     axes[-1].set_xlabel("music (s)")
-    return fig
-
-
-def attention_over_sound(
-    weights: Float[np.ndarray, "T M"],
-    token_times: Float[np.ndarray, "M"],
-    audio: Float[np.ndarray, "N"],
-    sample_rate: float | int = 16_000,
-    fps: float | int = 20.0,
-    beats: Float[np.ndarray, "K"] | None = None,
-    downbeats: Float[np.ndarray, "K2"] | None = None,
-    title: str = "",
-) -> Figure:
-    """The waveform with its beats above an attention map, on one axis of time.
-
-    A row of the map is a frame of the motion (`fps` rows a second), a column a token at its time in
-    seconds. On the dashed line motion and music are at the same time.
-    Raises ValueError if the times do not fit the map.  Source: MoFusion Fig. 4
-    """
-    if (
-        token_times.shape != weights.shape[1:]
-        or len(token_times) < 2
-        or (np.diff(token_times) <= 0).any()
-    ):
-        raise ValueError(
-            f"token_times must be {weights.shape[1]} (two or more) increasing seconds: "
-            f"{token_times!r:.80}"
-        )
-    T, seconds = len(weights), len(audio) / sample_rate
-    words = (
-        f"Attention of {T / fps:.1f} s of motion over {seconds:.1f} s of music, below its "
-        "waveform. A row sums to one; darker is more. "
-        "On the dashed line motion and music are at the same time; vertical lines are beats."
-    )
-    fig, (wave, axis) = figure(
-        10, 6.6, f"{title}: {words}" if title else words, 2, share="x", heights=(1, 3)
-    )
-    waves(wave, audio, sample_rate)
-    image = time_map(axis, weights, token_times, T / fps, "Blues")
-    for panel, alpha in ((wave, 0.6), (axis, 0.3)):
-        for times, width in ((beats, 0.8), (downbeats, 2.0)):
-            for t in () if times is None else times:
-                panel.axvline(t, color=OKABE_ITO[1], lw=width, alpha=alpha)
-    axis.plot([0, T / fps], [0, T / fps], "--", color=INK, lw=1.2)
-    axis.set(xlabel="music, s", ylabel="motion, s", xlim=(0, seconds))
-    wave.set(ylabel="sound", title=title)
-    fig.colorbar(image, ax=axis, label="weight", shrink=0.85)
     return fig
 
 

@@ -82,9 +82,9 @@ def lines(
 
 
 def noised_curve(
-    seconds, clean, noised, s: int, signal: float, caption: str | None = None
+    seconds, clean, noised, s: int, signal: float, caption: str | None = None, *, name: str
 ) -> Figure:
-    """One coordinate over time, clean and at diffusion step s.
+    """One coordinate over time, clean and at diffusion step s; `name` labels its axis.
 
     The caption says which fraction of the amplitude is left.
     """
@@ -102,17 +102,17 @@ def noised_curve(
         f"Step {s}: the blue curve is the clean one times {signal:.2f}; "
         f"the orange one adds noise of standard deviation {np.sqrt(1 - signal**2):.2f}."
     )
-    return finish(fig, caption, ("time (s)", "left heel (standardised)"))
+    return finish(fig, caption, ("time (s)", name))
 
 
-def noise_ladder(seconds, clean, noised: dict, caption: str) -> Figure:
-    """The same curve at several diffusion steps, side by side: {s: x_s}."""
+def noise_ladder(seconds, clean, noised: dict, caption: str, *, name: str) -> Figure:
+    """The curve `name` at several diffusion steps, side by side: {s: x_s}."""
     fig, axes = panels(len(noised), width=11, height=2.9, share="y")
     for axis, (s, curve) in zip(axes, noised.items(), strict=True):
         axis.plot(seconds, clean, color=SKY, lw=1.2)
         axis.plot(seconds, curve, color=ORANGE, lw=1.2)
         axis.set_title(f"s = {s}")
-    return finish(fig, caption, ("time (s)", "left heel"))
+    return finish(fig, caption, ("time (s)", name))
 
 
 def densities(

@@ -6,6 +6,7 @@ Large type, Okabe-Ito colours, and a caption that goes with the picture as its a
 import base64
 import html
 import io
+import os
 from collections.abc import Sequence
 
 import matplotlib
@@ -18,7 +19,8 @@ DASHES = ("-", "--", "-.", ":", (0, (5, 1)), (0, (1, 1)), (0, (8, 2, 1, 2)), (0,
 LARGE = 16
 MEDIUM = 14
 SMALL = 12
-DPI = 100
+# pixels an inch; more for a notebook that is shown to a room (`motiondiff-edu demo`)
+DPI = 150 if os.environ.get("MOTIONDIFF_DEMO", "0") not in ("", "0") else 100
 
 _RC = {
     "font.size": MEDIUM,

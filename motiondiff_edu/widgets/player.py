@@ -12,10 +12,12 @@ Notebook: 00, 12
 import base64
 import html
 import json
+import math
 import os
 import tempfile
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from pathlib import Path
 
 import anywidget
@@ -30,6 +32,7 @@ from .lane import Soundtrack
 __all__ = ["Look", "Player", "Soundtrack", "describe"]
 
 MODULE = module.joined()
+GIF_FPS = 50  # browsers slow a GIF down whose pictures stay for less than 20 ms
 _TRAITS = ("joints", "roots", "contacts", "sound", "strips")
 
 PAGE = """<!doctype html><html lang="en"><head><meta charset="utf-8"><title>{title}</title>
@@ -220,16 +223,18 @@ class Player(anywidget.AnyWidget):
     def save_gif(self, path: str | os.PathLike, size: tuple[int, int] = (400, 360)) -> Path:
         """Write the figure as an endless GIF, each figure `size` pixels."""
         palette = poster.film_palette(self._figures, size)
-        pictures = poster.film(self._figures, self._options["fps"], size)
+        fps = self._options["fps"]
+        every = math.ceil(fps / GIF_FPS)
+        pictures = poster.film(self._figures, fps, size, every)
         first, *rest = (p.quantize(palette=palette, dither=0) for p in pictures)
-        pause = round(100 / self._options["fps"]) * 10  # GIF counts in hundredths of a second
+        pauses = _hundredths(1 + len(rest), fps / every)
         with replacing(path) as part:
             first.save(
                 part,
                 "GIF",
                 save_all=True,
                 append_images=rest,
-                duration=pause,
+                duration=pauses,
                 loop=0,
                 optimize=False,
             )
@@ -257,11 +262,22 @@ class Player(anywidget.AnyWidget):
                 str(part), (width, size[1]), fps=self._options["fps"], macro_block_size=2,
                 output_params=["-f", "mp4"], **extra,
             )  # fmt: skip
-            writer.send(None)
-            for picture in poster.film(self._figures, self._options["fps"], size):
-                writer.send(np.ascontiguousarray(picture))
-            writer.close()
+            try:
+                writer.send(None)
+                for picture in poster.film(self._figures, self._options["fps"], size):
+                    writer.send(np.ascontiguousarray(picture))
+            finally:
+                writer.close()  # on an error, too: ffmpeg must let go of the file
         return Path(path)
+
+
+def _hundredths(n: int, fps: float) -> list[int]:
+    """How long to show each of n pictures, in ms: whole hundredths of a second that sum up right.
+
+    A GIF knows no shorter time, so at 30 pictures a second some stay for 3 and some for 4.
+    """
+    ends = [10 * round(100 * k / fps) for k in range(n + 1)]
+    return [end - start for start, end in pairwise(ends)]
 
 
 def _figures(arrays: list, options: dict, parents: Sequence | None) -> list[poster.Figure]:

@@ -12,6 +12,7 @@ from PIL import Image, ImageDraw, ImageFont
 from tqdm.auto import tqdm
 
 from ..motion.progress import DELAY
+from ..motion.root_frame import FPS
 from ..motion.skeleton import BONES, HEELS, TOES
 from ..viz import body
 
@@ -49,9 +50,12 @@ class Figure:
         return "" if self.past is None else ("past" if t < self.past else "future")
 
 
-def camera_at(positions: Float[np.ndarray, "T J 3"], t: int, camera: body.Camera) -> body.Camera:
+def camera_at(
+    positions: Float[np.ndarray, "T J 3"], t: int, camera: body.Camera, fps: float = FPS
+) -> body.Camera:
     """The camera that follows the root, averaged over a second around frame t for a calm view."""
-    around = positions[np.clip(np.arange(t - 10, t + 11), 0, len(positions) - 1), 0]
+    half = round(fps / 2)
+    around = positions[np.clip(np.arange(t - half, t + half + 1), 0, len(positions) - 1), 0]
     return camera.at(*around[:, [0, 2]].mean(0))
 
 
@@ -125,7 +129,11 @@ def _thin_limbs(
 
 
 def render(
-    figure: Figure, t: int, size: tuple[int, int], camera: body.Camera | None = None
+    figure: Figure,
+    t: int,
+    size: tuple[int, int],
+    camera: body.Camera | None = None,
+    fps: float = FPS,
 ) -> Image.Image:
     """Frame t of one figure, with a camera that follows it; `size` is in pixels.
 
@@ -133,7 +141,7 @@ def render(
     """
     t = min(t, len(figure) - 1)
     big = (size[0] * SMOOTH, size[1] * SMOOTH)
-    camera = camera_at(figure.positions, t, camera or body.Camera())
+    camera = camera_at(figure.positions, t, camera or body.Camera(), fps)
     picture = Image.new("RGB", big, GROUND)
     _ground(ImageDraw.Draw(picture), figure, t, camera, big)
     shade = Image.new("L", big, 0)
@@ -188,7 +196,8 @@ def filmstrip(
     moments = np.linspace(*(between or (0, max(map(len, figures)) - 1)), n).round().astype(int)
     for row, figure in enumerate(figures):
         for column, t in enumerate(moments):
-            picture.paste(render(figure, int(t), (cell, tall)), (column * cell, head + row * tall))
+            drawn = render(figure, int(t), (cell, tall), fps=fps)
+            picture.paste(drawn, (column * cell, head + row * tall))
             _write(pen, (column * cell + 6, head + row * tall + 5), figure.tense(int(t)), 15)
         if figure.label:
             _write(pen, (6, head + (row + 1) * tall - 22), figure.label, 16)
@@ -206,14 +215,18 @@ def as_png(picture: Image.Image) -> bytes:
 
 
 def film(
-    figures: list[Figure], fps: float, size: tuple[int, int] = (400, 360)
+    figures: list[Figure], fps: float, size: tuple[int, int] = (400, 360), every: int = 1
 ) -> Iterator[Image.Image]:
-    """Every frame, with the figures side by side, each in a field of `size` with its label."""
-    for t in tqdm(range(max(map(len, figures))), desc="drawing", delay=DELAY, leave=False):
+    """Each frame, or each n-th with every=n, with the figures side by side.
+
+    Each figure has a field of `size` with its label.
+    """
+    frames = range(0, max(map(len, figures)), every)
+    for t in tqdm(frames, desc="drawing", delay=DELAY, leave=False):
         picture = Image.new("RGB", (size[0] * len(figures), size[1]), body.PAPER)
         pen = ImageDraw.Draw(picture)
         for i, figure in enumerate(figures):
-            picture.paste(render(figure, t, size), (i * size[0], 0))
+            picture.paste(render(figure, t, size, fps=fps), (i * size[0], 0))
             words = " · ".join(w for w in (figure.label, figure.tense(t)) if w)
             _write(pen, (i * size[0] + 10, 8), words, 18)
         _write(pen, (10, size[1] - 28), f"{t / fps:.1f} s", 18)

@@ -101,7 +101,7 @@ def test_wrong_inputs():
         fit_mixture(torch.randn(2, 2), 3)
     with pytest.raises(ValueError, match="9 axes need more"):
         fit_windows(torch.randn(20, 9), axes=9)
-    with pytest.raises(ValueError, match="no clip has more"):
+    with pytest.raises(ValueError, match="no clip has 15 frames"):
         fit_walks([walk(random_control(0.5, np.random.default_rng(0), "turn"), 0)])
 
 

@@ -6,7 +6,8 @@ import pytest
 import torch
 
 from motiondiff_edu import exact
-from motiondiff_edu.beyond.back_with_known import held_back, masked_back
+from motiondiff_edu.beyond import back_with_known
+from motiondiff_edu.beyond.back_with_known import FADE, MOVES, drawn_back, masked_back
 from motiondiff_edu.ddpm import linear_schedule
 from motiondiff_edu.motion.scaler import Scaler
 from motiondiff_edu.reconstruction import Rollout, Stop, repair, walked_back
@@ -37,36 +38,25 @@ def rollout(walker):
     return Rollout(walker, torch.Generator().manual_seed(0), steps=None)
 
 
-def test_each_frame_goes_on_from_the_one_before_with_what_is_known_of_it_put_right():
+def test_the_way_back_is_drawn_through_what_is_known():
+    """Halving walks 4, 2, 1, .5, .25; one entry is known to be 40, 39 more than was walked.
+
+    The correction fades over FADE frames on both sides, in the column of the known entry alone.
+    """
     walker, B = Halving(), 3
     ahead = torch.full((B, T_H, D), 0.5 + 2 * 8.0)
     given = torch.full((B, T_H, D), float("nan"))
     known = torch.zeros(B, T_H, D, dtype=torch.bool)
     known[:, 2, 1], given[:, 2, 1] = True, 0.5 + 2 * 40.0
-    made = walker.pose_scaler.transform(
-        held_back(rollout(walker), ahead, torch.zeros(B, 2 * T_H, 3), given, known)
+    arguments = ahead, torch.zeros(B, 2 * T_H, 3), given, known
+    made, free = (
+        walker.pose_scaler.transform(way(rollout(walker), *arguments))
+        for way in (drawn_back, walked_back)
     )
-    want = torch.tensor([[4.0, 4.0], [2.0, 2.0], [1.0, 40.0], [0.5, 20.0], [0.25, 10.0]])
-    torch.testing.assert_close(made, want.expand(B, -1, -1))
-    free = walked_back(rollout(walker), ahead, torch.zeros(B, 2 * T_H, 3), given, known)
-    assert (walker.pose_scaler.transform(free)[:, 3] == 0.5).all()
-
-
-class Obedient(Halving):
-    """Its next pose is what the control says of that frame."""
-
-    def window_sampler(self, steps=None):
-        return lambda past, control, generator: control[:, T_H:, :D]
-
-
-def test_each_frame_is_walked_under_the_control_of_its_own_time():
-    walker, B = Obedient(), 3
-    control = torch.randn(B, 2 * T_H, 3, generator=torch.Generator().manual_seed(2))
-    zeros = torch.zeros(B, T_H, D)
-    made = walker.pose_scaler.transform(
-        held_back(rollout(walker), zeros, control, zeros, zeros > 1)
-    )
-    torch.testing.assert_close(made, control[:, T_H:, :D])
+    torch.testing.assert_close(free[0, :, 0], torch.tensor([4.0, 2.0, 1.0, 0.5, 0.25]))
+    shares = 1 - torch.tensor([2.0, 1.0, 0.0, 1.0, 2.0]) / (FADE + 1)
+    torch.testing.assert_close(made[..., 1], (free[..., 1] + 39 * shares).expand(B, -1))
+    torch.testing.assert_close(made[..., 0], free[..., 0])
 
 
 class Known(Halving):
@@ -110,28 +100,46 @@ def test_a_window_under_a_mask_has_about_the_mean_that_what_is_known_asks_for():
     assert off.mean() < 0.25 < 0.5 < off_unheeded.mean()
 
 
+def test_more_moves_come_nearer_to_what_is_known(monkeypatch):
+    """A Gaussian's exact conditional is reached by many; one move explains the easiest part."""
+    walker, B = Known(), 300
+    known = torch.zeros(B, T_H, D, dtype=torch.bool)
+    known[:, 1] = known[:, 3] = True
+    given = torch.where(known, torch.tensor([3.5, -1.5]), 0.0)
+    apart = []
+    for moves in (1, MOVES):
+        monkeypatch.setattr(back_with_known, "MOVES", moves)
+        made = masked_back(
+            rollout(walker), torch.zeros(B, T_H, D), torch.zeros(B, 2 * T_H, 3), given, known
+        )
+        units = walker.pose_scaler.transform(given)[0].flatten().double()
+        wanted = exact.conditional(walker.given, units, known[0].flatten()).mean().float()
+        made = walker.pose_scaler.transform(made)[:, ~known[0]].mean(0)
+        apart.append((made - wanted).abs().mean())
+    assert apart[1] < 0.8 * apart[0]
+
+
 @pytest.mark.parametrize("T_p", [T_H - 1, T_P])
 def test_a_mask_wants_a_window_as_long_as_the_past(T_p):
-    with pytest.raises(ValueError, match=f"predicts {T_p} poses from 5.*held_back"):
+    with pytest.raises(ValueError, match=f"predicts {T_p} poses from 5.*drawn_back"):
         zeros = torch.zeros(2, T_H, D)
         control = torch.zeros(2, 2 * T_H, 3)
         masked_back(rollout(Known(T_p)), zeros, control, zeros, zeros > 1)
 
 
-@pytest.mark.parametrize("way", [held_back, masked_back])
-def test_all_is_made_where_the_inputs_are_and_drawn_where_the_generator_is(way):
+def test_all_is_made_where_the_inputs_are_and_drawn_where_the_generator_is():
     """With another default device, new tensors still land beside the inputs."""
     walker, known = Known(), torch.zeros(2, T_H, D, dtype=torch.bool)
     ahead, given = torch.zeros(2, T_H, D), torch.ones(2, T_H, D)
     known[:, 2] = True
     arguments = ahead, torch.zeros(2, 2 * T_H, 3), given, known
-    here, again = way(rollout(walker), *arguments), rollout(walker)
+    here, again = masked_back(rollout(walker), *arguments), rollout(walker)
     with torch.device("meta"):
-        there = way(again, *arguments)
+        there = masked_back(again, *arguments)
     assert torch.equal(here, there)
 
 
-@pytest.mark.parametrize("way", [walked_back, held_back])
+@pytest.mark.parametrize("way", [walked_back, drawn_back])
 def test_each_way_serves_the_repair_and_keeps_what_is_known(way):
     past = torch.randn(2, T_H, D, generator=torch.Generator().manual_seed(5))
     known = torch.ones(past.shape, dtype=torch.bool)

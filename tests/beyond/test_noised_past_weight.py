@@ -75,5 +75,5 @@ def test_what_is_wrong_is_said(dropout):
     past, s, error = batch()
     with pytest.raises(ValueError, match="must not be negative, not -0.5"):
         NoisedPastWeight(dropout, -0.5)
-    with pytest.raises(RuntimeError, match="pass dropout=self"):
+    with pytest.raises(RuntimeError, match="needs the dropout of the same batch"):
         NoisedPastWeight(dropout, 0.1).weighted(squared_error)(error, s)

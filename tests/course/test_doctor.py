@@ -1,6 +1,7 @@
 """course/doctor.py: each finding on a sound machine and on a broken one, and the page."""
 
 import importlib.metadata
+import shutil
 import subprocess
 import sys
 import webbrowser
@@ -89,11 +90,13 @@ def test_no_browser_is_a_note_and_no_module_a_failure(monkeypatch, tmp_path):
         raise webbrowser.Error("none")
 
     monkeypatch.setattr(webbrowser, "get", none)
-    (tmp_path / "widgets").mkdir()
+    folder = tmp_path / "widgets"
+    shutil.copytree(doctor.PACKAGE / "widgets", folder)
     monkeypatch.setattr(doctor, "PACKAGE", tmp_path)
-    assert "ES module" in doctor.canvas().detail and not doctor.canvas().note
-    (tmp_path / "widgets" / "player.js").touch()
     assert doctor.canvas().note
+    for name in ("js/player.js", "path.js"):
+        (folder / name).unlink()
+        assert name in doctor.canvas().detail and not doctor.canvas().note
 
 
 def test_doctor_still_speaks_where_torch_cannot_be_imported():

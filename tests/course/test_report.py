@@ -33,6 +33,16 @@ def test_stub_is_reported_and_never_raised(double, capsys):
     assert capsys.readouterr().out == "double: not attempted yet.\n"
 
 
+@pytest.mark.parametrize(
+    "wrong",
+    [lambda x: torch.arange(3).softmax(0), lambda x: torch.nn.Module()(x)],
+    ids=["softmax of whole numbers", "a module without forward"],
+)
+def test_what_torch_has_not_implemented_is_a_wrong_answer(double, wrong):
+    with pytest.raises(CheckFailed, match="your answer raised NotImplementedError"):
+        double(wrong)
+
+
 def test_likely_mistake_is_named(double):
     with pytest.raises(CheckFailed, match="^double: the double of 3: this is the square$"):
         double(lambda x: x**2)

@@ -51,7 +51,7 @@ def test_no_source_stands_on_two_sides(seed):
     Slices of one recording share frames, so they must share a side.
     """
     rng = np.random.default_rng(seed)
-    sources = [f"take {k}" for k in range(int(rng.integers(3, 12)))]
+    sources = [f"take {k}" for k in range(int(rng.integers(5, 12)))]
     clips = [
         clip_of(int(rng.integers(80, 260)), source, seed=k) for k, source in enumerate(sources)
     ]
@@ -63,6 +63,14 @@ def test_no_source_stands_on_two_sides(seed):
     assert sum(map(len, groups)) == len(pieces)  # none lost, none twice
     frames = [{row.tobytes() for clip in group for row in clip.poses} for group in groups]
     assert not (frames[0] & frames[1] or frames[0] & frames[2])  # and so no frame is shared either
+
+
+def test_a_split_that_leaves_a_group_empty_says_which():
+    clips = [clip_of(5, f"s{k}", k) for k in range(3)]
+    with pytest.raises(ValueError, match="3 sources leave group 2 without one"):
+        split_by_source(clips, (0.8, 0.1, 0.1), np.random.default_rng(0))
+    with pytest.raises(ValueError, match="clip 1 has no source"):
+        split_by_source([clips[0], clip_of(5, "", 1)], (0.5, 0.5), np.random.default_rng(0))
 
 
 def test_split_is_by_shares_of_the_sources_and_follows_its_generator():

@@ -2,6 +2,7 @@
 
 import json
 import zipfile
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -82,6 +83,19 @@ def test_joining_leaves_out_what_only_one_of_them_has():
     assert len(joined) == 74 and joined.root is None and joined.contacts is None
     with pytest.raises(MotionError, match="30 frames/s"):
         motion.then(Motion(motion.positions, fps=30))
+
+
+@pytest.mark.parametrize("cut", [1, 9, 18, 30, 36])
+def test_joining_two_parts_makes_nobody_spin(cut):
+    """Each part knows its heading only up to whole turns."""
+    whole = walking()
+    turned = whole.root + np.array([0, 0, 2 * np.pi])
+    parts = whole[:cut], replace(whole, root=turned)[cut:]
+    np.testing.assert_allclose(parts[0].then(parts[1]).control, whole.control, atol=1e-9)
+    wrapped = whole.root.copy()
+    wrapped[:, 2] = (wrapped[:, 2] + 2.1 + np.pi) % (2 * np.pi) - np.pi
+    assert np.ptp(wrapped[:, 2]) > 6  # it jumps at pi
+    assert np.abs(replace(whole, root=wrapped).control[:, 2]).max() < 1
 
 
 def test_resampling_there_and_back():

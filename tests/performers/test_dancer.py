@@ -8,12 +8,15 @@ import pytest
 import torch
 from synthetic_dance import windows
 
+from motiondiff_edu import ddpm
 from motiondiff_edu.baselines.regression import REGRESSION, regression_loss
 from motiondiff_edu.baselines.transformer import DanceTransformer, TransformerConfig
 from motiondiff_edu.ddpm import cosine_schedule
 from motiondiff_edu.mofusion import MoFusion, MoFusionConfig
+from motiondiff_edu.motion.dance_frame import to_positions
 from motiondiff_edu.motion.scaler import Scaler
 from motiondiff_edu.performers.dancer import Dancer
+from motiondiff_edu.prediction import to_eps
 from motiondiff_edu.pretrained.checkpoints import (
     CheckpointError,
     load,
@@ -77,6 +80,32 @@ def test_an_eps_network_does_not_tear_the_figure_apart(steps):
     dance = wild.dance_mel(mel(), 30, generator=seeded(), steps=steps, eta=0.0)
     about = torch.cat([dance[:, :, :1], dance[:, :, 1:] - dance[:, :, :1]], dim=2)
     assert 0.49 < about.abs().max() < 0.501  # held, and by nothing closer
+
+
+@pytest.mark.parametrize("steps", [5, None])
+def test_a_dance_is_the_sampler_on_the_plain_network_in_its_own_units(steps):
+    """DDIM with half of DDPM's noise, or DDPM with the posterior's; both scalers are felt."""
+    one = dancer()
+    motion = Scaler(0.2 * torch.randn(63, generator=seeded(1)), torch.full((63,), 0.1))
+    heard = Scaler(torch.full((5,), -3.0), torch.full((5,), 4.0))
+    one = replace(one, motion_scaler=motion, mel_scaler=heard)
+    log_mel = 4 * mel() - 3
+    made = one.dance_mel(log_mel, 30, generator=seeded(7), steps=steps)
+    random = seeded(7)
+    x_S = torch.randn(2, 30, 63, generator=random)
+    music = one.model.listen(mel()[:, :47], torch.arange(47) * 512 / 16_000)  # 1.45 s of music
+
+    @torch.no_grad()
+    def denoise(x_s, s):
+        return to_eps(one.model(x_s, s, music), x_s, s, one.schedule, "x0")
+
+    if steps is None:
+        loop = ddpm.sample_steps(denoise, x_S, one.schedule, generator=random, variance="posterior")
+    else:
+        loop = ddpm.ddim_steps(denoise, x_S, one.schedule, steps, 0.5, generator=random)
+    *_, last = loop
+    wanted = to_positions(motion.mean + motion.std * last.x_s)
+    torch.testing.assert_close(made, wanted, atol=2e-4, rtol=1e-3)
 
 
 def test_the_same_noise_and_other_music_give_another_dance():

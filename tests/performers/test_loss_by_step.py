@@ -16,7 +16,6 @@ from motiondiff_edu.motion.dance_frame import body_of
 from motiondiff_edu.motion.scaler import Scaler
 from motiondiff_edu.performers.loss_by_step import (
     clean_guess,
-    eps_weight,
     losses_over_time,
     noisy_predictor,
     predictor_of,
@@ -78,13 +77,6 @@ def test_the_papers_weight_on_the_motion_is_a_reweighting(target, share):
         weighted.gradient["motion"] / loss.gradient["data"], wanted, rtol=1e-5, atol=0
     )
     torch.testing.assert_close(weighted.value["data"], loss.value["data"])
-
-
-def test_eps_weight_is_that_reweighting():
-    torch.testing.assert_close(eps_weight(SCHEDULE, "alpha_bar"), 1 - SCHEDULE.alpha_bar)
-    share = float(SCHEDULE.alpha_bar[30])
-    assert eps_weight(SCHEDULE, "constant")[30].item() == pytest.approx((1 - share) / share)
-    assert (eps_weight(SCHEDULE, "none") == 0).all()
 
 
 def test_pull_of_the_data_term_is_known():

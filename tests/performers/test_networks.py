@@ -152,6 +152,27 @@ def test_a_name_belongs_to_one_class_which_may_be_defined_again(registry):
     assert kind_of(linear_walker().model).model is again
 
 
+def test_a_configuration_names_one_network(registry):
+    with pytest.raises(ValueError, match="MoDiffConfig belongs to motiondiff_edu.modiff.MoDiff"):
+        register("walker", LinearWalker, MoDiffConfig)
+    assert type(network(MoDiffConfig(width=16, heads=2))) is MoDiff
+
+
+class Forgetful(LinearWalker):
+    """It forgets half of its past, in training."""
+
+    def forward(self, x_s, s, past, control):
+        return self.ahead(nn.functional.dropout(past, 0.5, self.training).mT).mT
+
+
+def test_a_network_left_in_training_is_used_without_dropout(registry):
+    torch.manual_seed(0)
+    model = Forgetful(LinearConfig())
+    one = Walker(model.train(), linear_schedule(S, 0.2, 0.95), POSE, CONTROL)
+    assert torch.equal(walked(one), walked(one)) and model.training
+    assert torch.equal(walked(one), walked(linear_walker()))
+
+
 def test_a_dancer_with_a_network_without_twin_dances(tmp_path: Path):
     torch.manual_seed(0)
     config = TransformerConfig(C=5, S=12, width=16, heads=2, layers=1, music_layers=1)

@@ -56,6 +56,12 @@ def rewrite(path: Path, change, metadata=None) -> None:
     save_file(tensors, path, metadata | weights_file._digests(tensors, metadata))
 
 
+def test_the_card_never_overwrites_the_weights(tmp_path: Path):
+    with pytest.raises(ValueError, match="to a file .safetensors, not to 'walker.json'"):
+        save(tiny_walker(), tmp_path / "walker.json")
+    assert not list(tmp_path.iterdir())
+
+
 def test_round_trip_in_full_precision_is_exact(tmp_path: Path):
     walker = tiny_walker()
     back = load_walker(path := save(walker, tmp_path / "tiny.safetensors", bits=32))

@@ -204,6 +204,9 @@ def test_what_is_shipped_has_a_recipe_and_the_papers_one_is_the_papers():
     assert (paper.optimizer, paper.lr, paper.batch, paper.config.width) == ("adam", 5e-5, 64, 256)
     assert paper.past_noise == 0 and paper.noises == 1 and paper.loss_weights == LossWeights()
     assert paper.schedule == "linear" and paper.config.target == "eps"
+    assert paper.dropout == P_D and not paper.config.skip and paper.held_control == 0
+    same = replace(paper, name="walker-printed", config=RECIPES["walker-printed"].config)
+    assert replace(same, steps=12_000, clips=720) == RECIPES["walker-printed"]
 
 
 def test_the_commit_of_a_folder_that_is_no_checkout(tmp_path: Path):

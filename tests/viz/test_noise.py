@@ -17,8 +17,8 @@ def figures():
     yield viz.lines(
         X, {"a": X, "b": X**2}, "caption", ("x", "y"), marks={"level": 1.0}, ylim=(-1, 4)
     )
-    yield viz.noised_curve(X, X, -X, 7, 0.6)
-    yield viz.noise_ladder(X, X, {1: X, 9: -X}, "caption")
+    yield viz.noised_curve(X, X, -X, 7, 0.6, name="toe")
+    yield viz.noise_ladder(X, X, {1: X, 9: -X}, "caption", name="toe")
     yield viz.densities(X, {"p": bell, "q": bell / 2}, "caption", points={"x0": 0.3})
     yield viz.histograms({"one": rng.normal(size=50)}, X, bell, "caption")
     yield viz.paths(range(5, -1, -1), torch.randn(6, 80), torch.tensor(X), bell, bell, "caption")

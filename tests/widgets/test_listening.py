@@ -9,7 +9,7 @@ from browser import open_page, player_page, until
 from click_track import clicks, jumping
 from synthetic_walk import walk
 
-from motiondiff_edu.viz.listening import attention_over_sound
+from motiondiff_edu.viz.listening import levels_over_sound
 from motiondiff_edu.viz.over_time import edges_of
 from motiondiff_edu.viz.style import caption
 from motiondiff_edu.widgets import strips
@@ -282,21 +282,17 @@ def test_exported_it_shows_the_same_and_the_poster_has_the_lane(browser, listeni
 
 def test_the_figure_has_map_waveform_and_beats_on_one_axis_of_time(maps):
     audio = clicks(BEATS, SECONDS)
-    fig = attention_over_sound(
-        maps["fine"], TIMES, audio, beats=BEATS, downbeats=BEATS[::4], title="fine"
-    )
+    fig = levels_over_sound(audio, {"fine": maps["fine"]}, TIMES, BEATS, SECONDS, "words")
     wave, axis = fig.axes[:2]
     (mesh,) = [c for c in axis.collections if c.get_array() is not None]
     np.testing.assert_allclose(np.asarray(mesh.get_array()).reshape(T, 43), maps["fine"])
     corners = mesh.get_coordinates()
     np.testing.assert_allclose(corners[0, :, 0], np.arange(44) * 0.1, atol=1e-9)
-    np.testing.assert_allclose(corners[:, 0, 1], np.arange(T + 1) / 20)
-    upright = [line.get_xdata()[0] for line in axis.lines if list(line.get_ydata()) == [0, 1]]
-    np.testing.assert_allclose(sorted(upright), sorted([*BEATS, *BEATS[::4]]))
-    assert wave.get_xlim() == axis.get_xlim() == (0, SECONDS)
-    assert caption(fig).startswith("fine: Attention of 4.3 s of motion over 4.3 s of music")
-    with pytest.raises(ValueError, match="43 .* increasing seconds"):
-        attention_over_sound(maps["fine"], TIMES[::-1].copy(), audio)
+    np.testing.assert_allclose(corners[:, 0, 1], np.linspace(0, SECONDS, T + 1))
+    for panel in (wave, axis):
+        upright = [line.get_xdata()[0] for line in panel.lines if list(line.get_ydata()) == [0, 1]]
+        np.testing.assert_allclose(sorted(upright), BEATS[BEATS < SECONDS])
+    assert wave.get_xlim() == axis.get_xlim() == (0, SECONDS) and caption(fig) == "words"
 
 
 def test_without_attention_the_lane_has_only_the_waveform(browser, tmp_path):

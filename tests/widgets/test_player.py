@@ -165,6 +165,19 @@ def test_gif_and_mp4_have_every_frame(motion, tmp_path):
     assert sorted(p.name for p in tmp_path.iterdir()) == ["walk.gif", "walk.mp4"]
 
 
+@pytest.mark.parametrize("fps, pictures", [(20, 24), (30, 24), (60, 12), (120, 8)])
+def test_a_gif_lasts_as_long_as_the_motion(motion, tmp_path, fps, pictures):
+    """Its clock counts in hundredths of a second, and browsers slow down pictures under 20 ms."""
+    player = Player(motion[0][:24], fps=fps)
+    with Image.open(player.save_gif(tmp_path / "walk.gif", (90, 80))) as gif:
+        pauses = []
+        for frame in range(gif.n_frames):
+            gif.seek(frame)
+            pauses.append(gif.info["duration"])
+    assert len(pauses) == pictures and min(pauses) >= 20
+    assert sum(pauses) == pytest.approx(1000 * 24 / fps, abs=5)
+
+
 def test_a_file_that_cannot_be_written_leaves_nothing_behind(motion, tmp_path):
     (tmp_path / "walk.html").mkdir()  # a folder has the name already
     with pytest.raises(OSError):

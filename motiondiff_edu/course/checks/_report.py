@@ -37,6 +37,7 @@ import torch
 Check = Callable[[Any], None]
 REGISTRY: dict[str, Check] = {}
 NOT_ATTEMPTED = "not attempted yet"
+STUBS = ("your turn", "")  # messages of an exercise left as it is; torch raises with others
 
 
 class CheckFailed(AssertionError):
@@ -77,11 +78,12 @@ def check(function: Callable[[Any], str | None]) -> Check:
     def run(mine: Any) -> None:
         try:
             content = function(_answering(mine))
-        except NotImplementedError:
-            print(f"{name}: {NOT_ATTEMPTED}.")
         except CheckFailed as error:
             raise CheckFailed(f"{name}: {error}") from None
         except Exception as error:
+            if type(error) is NotImplementedError and str(error) in STUBS:
+                print(f"{name}: {NOT_ATTEMPTED}.")
+                return
             notes = "".join(f" ({note})" for note in getattr(error, "__notes__", []))
             raise CheckFailed(
                 f"{name}: your answer raised {type(error).__name__}: {error}{notes}"

@@ -183,10 +183,12 @@ def in_words(key: str) -> str | None:
 
 def way_in_words(key: str) -> str | None:
     """The words of a method such as `masked.50.x5`: the number of steps, and what was added."""
-    way = re.fullmatch(r"(masked|there-and-back|gibbs)\.(\d+)(?:\.(x(\d+)|blended|guided))?", key)
+    way = re.fullmatch(
+        r"(masked|there-and-back|gibbs)\.(\d+)(?:\.(?:x(\d+)|(blended|guided)[\d.]+))?", key
+    )
     if way is None:
         return None
-    kind, steps, more, times = way.groups()
+    kind, steps, times, more = way.groups()
     if kind == "masked":
         added = f", each {times} times" if times else f", {more}" if more else ""
         return f"under a mask, {steps} steps{added}"
