@@ -185,6 +185,7 @@ def _warn_beyond(control: Float[Tensor, "B T C"], T_h: int, seen: dict | None) -
         )
         warnings.warn(
             f"row {row + T_h} of the control ({row} of its future) is "
-            f"{ahead[batch, row, column]:.3g} ({name}); this walker was trained on {low[column]:.3g} to {high[column]:.3g}, and will not follow it well",
+            f"{ahead[batch, row, column]:.3g} ({name}); this walker was trained on "
+            f"{low[column]:.3g} to {high[column]:.3g}, and will not follow it well",
             stacklevel=3,
         )

@@ -51,7 +51,7 @@ def stretched(
     bar = fig.colorbar(
         colours, ax=axes, location="right", shrink=0.6, aspect=25, ticks=[-0.3, 0, 0.3]
     )
-    bar.ax.set_yticklabels(["30 % short", "right", "30 % long"], fontsize=SMALL)
+    bar.ax.set_yticklabels(["30 % short", "true length", "30 % long"], fontsize=SMALL)
     return fig
 
 
@@ -74,7 +74,8 @@ def draw_row(
     reach = REACH if far <= REACH else min(1.05 * far, widest / 2)
     for axis, pose in zip(axes, poses, strict=True):
         _sticks(axis, pose, reach)
-    shown = f"{2 * reach:.1f} m wide" if reach > far else f"{2 * reach:.1f} of {2 * far:.1f} m"
+    cut = "" if reach > far else f" of {2 * far:.1f} m"
+    shown = f"shows {2 * reach:.1f} m{cut}"
     label = name if reach == REACH else f"{name}\n({shown})"
     axes[0].text(
         -0.04,

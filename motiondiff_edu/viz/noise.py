@@ -65,12 +65,11 @@ def lines(
         axis.axhline(level, color=GREY, lw=1.3, ls=":")
         axis.annotate(
             name,
-            (1, level),
+            (1.01, level),
             xycoords=("axes fraction", "data"),
-            ha="right",
-            va="bottom",
+            ha="left",
+            va="center",
             color="#555555",
-            bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.75, "pad": 1},
         )
     axis.set_xscale("log" if log[0] else "linear")
     axis.set_yscale("log" if log[1] else "linear")

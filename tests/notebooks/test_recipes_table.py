@@ -21,7 +21,7 @@ def table(notebook) -> dict[str, list[str]]:
     """{first column: the others}."""
     texts = [cell["source"] for cell in notebook_cells.markdown(notebook)]
     (text,) = (one for one in texts if "Three recipes side" in one)
-    rows = [line.split("|")[1:-1] for line in text.splitlines() if line.startswith("> |")]
+    rows = [line.split("|")[1:-1] for line in text.splitlines() if line.startswith("|")]
     return {head.strip(): [one.strip() for one in rest] for head, *rest in rows[2:]}
 
 
