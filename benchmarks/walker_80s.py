@@ -13,6 +13,7 @@ benchmarks/results/walker_80s.json]
 """
 
 import argparse
+import json
 import sys
 from collections.abc import Callable
 from dataclasses import replace
@@ -84,6 +85,13 @@ def measure(name: str, seconds: float, unseen: int, seed: int) -> list[dict]:
     return [figure.as_record(prefix, seeds, COMMAND) for figure in found if figure.name in NAMES]
 
 
+def others(path: Path, measured: list[str]) -> list[dict]:
+    """The records of the sets that are not measured now; they stay as they are."""
+    kept = json.loads(path.read_text(encoding="utf-8")) if path.is_file() else []
+    begins = tuple(SETS[name][0] for name in measured)
+    return [one for one in kept if not one["name"].startswith(begins)]
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--seconds", type=float, default=80)
@@ -97,7 +105,7 @@ def main() -> None:
     for name in args.only:
         records += measure(name, args.seconds, args.clips, args.seed)
         show([one for one in records[-len(NAMES) :] if one["value"] is not None])
-    write_records(args.out, records)
+    write_records(args.out, [*others(Path(args.out), args.only), *records])
 
 
 if __name__ == "__main__":

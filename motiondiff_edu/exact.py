@@ -125,7 +125,7 @@ def conditional(given: Mixture, values: Float[Tensor, "D"], known: Bool[Tensor, 
 
     Part k becomes N(m_u + G (x_k - m_k), C_uu - G C_ku) with G = C_uk C_kk^-1, and its weight is
     proportional to w_k N(x_k; m_k, C_kk).
-    Raises ValueError if nothing or everything is known.  Notebook: 15
+    Raises ValueError if nothing or everything is known.
     """
     if not known.any() or known.all():
         raise ValueError("at least one entry must be known, and at least one unknown")

@@ -1,6 +1,7 @@
 """Who imports whom: each folder of the package is a layer, and nothing imports upwards."""
 
 import ast
+import re
 import sys
 import tomllib
 from graphlib import CycleError, TopologicalSorter
@@ -170,21 +171,40 @@ def test_a_package_of_one_layer_stays_there(package, places):
     assert importers and [name for name in importers if not name.startswith(places)] == []
 
 
-def test_every_third_party_import_is_declared():
-    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
-    extras = [line for lines in project["optional-dependencies"].values() for line in lines]
-    names = {
-        line.split(">")[0].split("=")[0].replace("-", "_").lower()
-        for line in project["dependencies"] + extras
-    }
-    names |= {"PIL", "sklearn"}  # pillow, scikit-learn
-    names |= {
-        "jupyter_client",
-        "IPython",
-        "traitlets",
-    }  # without these there is no JupyterLab and no ipywidgets
+RENAMED = {"pillow": "PIL", "scikit-learn": "sklearn", "ipython": "IPython"}
+
+
+def declared(lines: list[str]) -> set[str]:
+    """What is imported under the requirements of these lines."""
+    names = [re.split(r"[><=\[]", line)[0] for line in lines]
+    return {RENAMED.get(name, name.replace("-", "_")) for name in names}
+
+
+def project() -> dict:
+    return tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+
+
+def test_what_the_package_imports_is_a_dependency():
+    """Of the package itself: an extra is not there after a plain install."""
     used = set().union(*(third_party(path) for path in ALL))
-    assert used <= names, f"imported, and not in pyproject.toml: {used - names}"
+    missing = used - declared(project()["dependencies"])
+    assert not missing, f"imported, and no dependency in pyproject.toml: {missing}"
+
+
+ALONE = {"smalldiffusion", "denoising_diffusion_pytorch"}  # `make bench` installs them by itself
+
+
+@pytest.mark.parametrize(
+    "folder, extras", [("benchmarks", ["bench"]), ("tools", ["test", "bench"])]
+)
+def test_what_tools_and_benchmarks_import_is_in_their_extras(folder, extras):
+    there = declared(project()["dependencies"]) | ALONE | {folder, "benchmarks", "tools"}
+    for extra in extras:
+        there |= declared(project()["optional-dependencies"][extra])
+    shared = (ROOT / "tests" / "helpers").glob("*.py")  # of the tests; tools draw pages with them
+    own_files = {path.stem for path in [*(ROOT / folder).rglob("*.py"), *shared]}
+    used = set().union(*(third_party(path) for path in (ROOT / folder).rglob("*.py")))
+    assert not used - there - own_files, f"in no extra of {folder}: {used - there - own_files}"
 
 
 def test_no_file_puts_annotations_off():

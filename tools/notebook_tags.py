@@ -25,16 +25,30 @@ WIDTH = 100
 DEFINITIONS = (ast.FunctionDef, ast.ClassDef)
 
 
+CODE = re.compile(r"`[^`\n]+`")
+A_WORD = re.compile(r"[a-z]+")  # a name that may be an ordinary word of a text
+
+
 @cache
-def text_of(number: str) -> str:
-    """The text of all cells of a notebook; empty if there is no such notebook."""
+def texts_of(number: str) -> tuple[str, str]:
+    """All of a notebook's text, and what of it is code; both empty without such a notebook."""
     found = sorted((ROOT / "notebooks").glob(f"{number}_*.ipynb"))
     cells = json.loads(found[0].read_text(encoding="utf-8"))["cells"] if found else []
-    return "\n".join("".join(cell["source"]) for cell in cells)
+    texts = [(cell["cell_type"], "".join(cell["source"])) for cell in cells]
+    code = [text if kind == "code" else " ".join(CODE.findall(text)) for kind, text in texts]
+    return "\n".join(text for _, text in texts), "\n".join(code)
 
 
 def occurs(names: list[str], number: str) -> bool:
-    return any(re.search(rf"\b{re.escape(name)}\b", text_of(number)) for name in names)
+    """Whether a notebook uses one of the names.
+
+    A word of its prose, as in "with a joystick", is no use of the function `joystick`.
+    """
+    whole, code = texts_of(number)
+    return any(
+        re.search(rf"\b{re.escape(name)}\b", code if A_WORD.fullmatch(name) else whole)
+        for name in names
+    )
 
 
 def tagged(path: Path) -> Iterator[tuple[str, ast.Constant, list[str]]]:

@@ -63,14 +63,12 @@ def main(arguments: list[str] | None = None) -> None:
 
     songs = -(-given.dances // given.each)
     made = dances(songs, given.seed, given.seconds, each=given.each, genre=given.genre)
+    genres = []
     for k, (song, danced) in enumerate(islice(made, given.dances)):
+        genres += [song.genre] if song.genre not in genres else []
         save_npz(danced, song, given.out / f"dance_{k:03d}.npz")
         write_bvh(given.out / f"dance_{k:03d}.bvh", danced.positions, danced.fps)
-    genres = list(GENRES) if given.genre is None else [given.genre]
-    print(
-        f"{given.dances} dances of {given.seconds:g} s "
-        f"({', '.join(genres[: given.dances])}) in {given.out}"
-    )
+    print(f"{given.dances} dances of {given.seconds:g} s ({', '.join(genres)}) in {given.out}")
 
 
 __all__ = ["main", "save_npz"]

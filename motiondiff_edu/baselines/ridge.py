@@ -49,7 +49,7 @@ def fit(rows: Float[Tensor, "K F"], ridge: float = 1e-2) -> ConditionalMean:
 
     The rows must be in units in which one `ridge` suits all columns.
 
-    Raises ValueError for fewer than two rows or a ridge that is not above 0.  Notebook: 10
+    Raises ValueError for fewer than two rows or a ridge that is not above 0.
     """
     if len(rows) < 2 or ridge <= 0:
         raise ValueError(

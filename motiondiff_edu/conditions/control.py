@@ -39,7 +39,7 @@ def hold(control: Float[np.ndarray, "T 3"], t: int) -> Float[np.ndarray, "T 3"]:
 
     Rows after t repeat row t, for nobody knows what the hand does next.
 
-    Raises IndexError where there is no row t.  Notebook: 07
+    Raises IndexError where there is no row t.
     """
     if not 0 <= t < len(control):
         raise IndexError(f"control has rows 0 to {len(control) - 1}, row {t} cannot be held")
@@ -96,7 +96,6 @@ def joystick(
 
     r(u) = u^2 (3 - 2u) leads from the value left behind to the new one.
     Raises ValueError for no segment, one that is not four finite numbers, or negative seconds.
-    Notebook: 07
     """
     bad = next(
         (segment for segment in segments if len(segment) != 4 or not np.isfinite(segment).all()),

@@ -9,7 +9,7 @@ Every bone keeps its length, and joints that need not move stay. The method depe
     shoulders               bend the trunk by FABRIK; shoulders are one block with the chest
     pelvis                  carries the body; the feet stay as far as the legs reach
 The limb points towards a target that is out of reach.
-Source: FABRIK: Aristidou and Lasenby, 2011; two bones: the law of cosines.  Notebook: 15
+Source: FABRIK: Aristidou and Lasenby, 2011; two bones: the law of cosines.
 """
 
 import numpy as np
@@ -36,7 +36,6 @@ def drag(pose: Pose, joint: int, target: Point) -> Pose:
 
     All bones keep their lengths. Dragging a joint to where it is changes nothing.
     Raises IndexError for a joint that does not exist, ValueError for a target that is not finite.
-    Notebook: 15
     """
     if not 0 <= joint < J:
         raise IndexError(f"joint {joint} is not one of the skeleton's {J} (0 to {J - 1})")

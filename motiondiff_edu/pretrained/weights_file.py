@@ -44,7 +44,7 @@ def write_weights(
         save_file(tensors, aside, metadata | _digests(tensors, metadata))
         os.chmod(aside, 0o644)  # safetensors makes the file readable by its owner alone
     with replacing(path.with_suffix(".json")) as aside:
-        aside.write_text(json.dumps(card | {"config": config}, indent=1) + "\n")
+        aside.write_text(json.dumps(card | {"config": config}, indent=1) + "\n", encoding="utf-8")
     return path
 
 

@@ -2,6 +2,7 @@
 
 import math
 import time
+from collections.abc import Callable
 from dataclasses import replace
 
 from ..motion.clip import Clip
@@ -15,20 +16,25 @@ WARM_UP = 100  # steps
 BUDGET = replace(WALKER_TRUNK, name="budget", batch=32, lr=3e-3, decay=0.99)
 
 
-def train_for(seconds: float, clips: list[Clip], recipe: Recipe = BUDGET) -> tuple[Walker, int]:
+def train_for(
+    seconds: float,
+    clips: list[Clip],
+    recipe: Recipe = BUDGET,
+    clock: Callable[[], float] = time.process_time,
+) -> tuple[Walker, int]:
     """Train a walker until the CPU-seconds of the loop are spent; return it with its steps.
 
     The recipe's own number of steps, number of clips and data seed are ignored. The learning rate
     rises for 100 steps and falls to zero along a half cosine of the seconds. Diffusion dropout
-    rises with the seconds, too.
+    rises with the seconds, too. `clock` tells the seconds; by default those of this process.
     """
     begun = prepared(recipe, clips)
     optimizer = optimizer_for(begun.model, recipe.optimizer)
     state = TrainState.start(begun.model, recipe.seed, optimizer, recipe.decay)
-    start = time.process_time()
+    start = clock()
 
     def spent() -> float:
-        return min(1.0, (time.process_time() - start) / seconds)
+        return min(1.0, (clock() - start) / seconds)
 
     def rate(step: int) -> float:
         warm_up = min(1, (step + 1) / WARM_UP)

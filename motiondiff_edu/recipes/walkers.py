@@ -4,7 +4,7 @@ One record each; nothing is tuned by hand afterwards.
 
 Source: MoDiff IV-A gives Adam, batch 64, 5e-5 and 1000 epochs on a GPU: WALKER_PAPER. The others
 are ours, for one core and about an hour each. WALKER_TRUNK and `walker-eps` had four fifths of
-their steps in bfloat16; the card of `walker-eps` says so.   Notebook: 07
+their steps in bfloat16; the card of `walker-eps` says so.
 """
 
 from dataclasses import dataclass, replace

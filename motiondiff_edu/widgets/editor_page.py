@@ -1,8 +1,6 @@
 """The data that the editor sends to its page: the scene, the current edit, and texts.
 
 It also makes the page for places where no kernel runs.
-
-Notebook: 15
 """
 
 import base64

@@ -28,7 +28,7 @@ class Nowhere:
 
     def posterior(self):
         """Another. Notebook:
-        03"""
+        03, 04"""
 
 
 def unheard_of():
@@ -39,12 +39,21 @@ def unheard_of():
 
 
 def test_wrong_numbers_are_taken_out_and_right_ones_stay(tmp_path, monkeypatch):
-    texts = {"02": "ddpm.q_sample(x)", "03": "posterior", "04": ""}
-    monkeypatch.setattr(notebook_tags, "text_of", lambda number: texts.get(number, ""))
+    texts = {  # all of the notebook, and what of it is code
+        "02": ("ddpm.q_sample(x)", "ddpm.q_sample(x)"),
+        "03": ("the `posterior`; unheard_of", "`posterior`"),
+        "04": ("a posterior, written as prose", ""),
+    }
+    monkeypatch.setattr(notebook_tags, "texts_of", lambda number: texts.get(number, ("", "")))
     path = tmp_path / "noise.py"
     path.write_text(WRONG)
     wrong = [(name, numbers) for name, _, numbers in notebook_tags.wrong_in(path)]
-    assert sorted(wrong) == [("Nowhere", ["02", "03"]), ("noise", ["77"]), ("unheard_of", ["04"])]
+    assert sorted(wrong) == [
+        ("Nowhere", ["02", "03"]),
+        ("noise", ["77"]),
+        ("posterior", ["04"]),
+        ("unheard_of", ["04"]),
+    ]
     notebook_tags.mend(path)
     assert notebook_tags.wrong_in(path) == []
     tree = ast.parse(path.read_text())

@@ -2,7 +2,6 @@
 
 In a network's raw output the bone lengths vary a little; a BVH file has constant bones. `fit` finds
 a close motion with constant bones and reports how far the joints moved.
-Notebook: 00, 01
 """
 
 from dataclasses import dataclass

@@ -4,7 +4,6 @@ The file is in centimetres, y up, with channels Zrotation Xrotation Yrotation. T
 zero: some programs add it to the position channels, others replace it by them, and with zero they
 agree. Three joints of length zero (LowerBack, LeftShoulder, RightShoulder) let spine and collars
 turn freely, as in files of the CMU library.
-Notebook: 00
 """
 
 from pathlib import Path

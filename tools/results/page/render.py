@@ -50,7 +50,7 @@ def read_records(*folders: Path) -> dict[str, dict]:
     """
     found, where = {}, {}
     for path in sorted(path for folder in folders for path in folder.glob("*.json")):
-        for one in json.loads(path.read_text()):
+        for one in json.loads(path.read_text(encoding="utf-8")):
             if one["name"] in found:
                 raise ValueError(
                     f"{one['name']} stands in {where[one['name']]} and in {path}: "
@@ -272,4 +272,4 @@ def render(docs: Path, benchmarks: Path = Path("benchmarks/results")) -> None:
     parts = [opening(records), contents(parts), *parts]
     for name, text in (("RESULTS.md", "\n".join(filter(None, parts))), (ALL, others(records))):
         with replacing(docs / name) as aside:
-            aside.write_text(text)
+            aside.write_text(text, encoding="utf-8")

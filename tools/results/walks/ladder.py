@@ -196,7 +196,11 @@ class Plan:
 
     @classmethod
     def read(cls, path: Path) -> "Plan":
-        return cls(path, **json.loads(path.read_text())) if path.is_file() else cls(path)
+        return (
+            cls(path, **json.loads(path.read_text(encoding="utf-8")))
+            if path.is_file()
+            else cls(path)
+        )
 
     def write(self) -> None:
         kept = {"pace": self.pace, "rates": self.rates, "tried": self.tried}
@@ -316,7 +320,7 @@ def train_cell(name: str, plan: Plan, runs: Path, rows_file: Path, size: Size) -
 
 def read_rows(path: Path) -> dict:
     """What was measured of a cell: its steps and rate, and for each training seed the rows."""
-    return json.loads(path.read_text()) if path.is_file() else {"seeds": {}}
+    return json.loads(path.read_text(encoding="utf-8")) if path.is_file() else {"seeds": {}}
 
 
 def arrays(kept: dict) -> dict[str, np.ndarray]:

@@ -33,6 +33,8 @@ ROLLING = (
     "performers/performer.py",
     "performers/walker.py",
     "pretrained/checkpoints.py",
+    "pretrained/eight_bits.py",
+    "pretrained/weights_file.py",
 )
 # the rows of Table I that our walkers stand beside
 PAPER_ROWS = {
@@ -163,7 +165,7 @@ LINES = {
 def kept_records(folder: Path, name: str) -> list[dict]:
     """The records of a part; none if it was not measured yet."""
     kept = folder / f"{name}.json"
-    return json.loads(kept.read_text()) if kept.is_file() else []
+    return json.loads(kept.read_text(encoding="utf-8")) if kept.is_file() else []
 
 
 def walker_records(bench: Bench, line: Walks, command: str) -> list[dict]:
