@@ -160,6 +160,9 @@ def test_a_long_motion_is_mended_wherever_it_is_broken():
 def test_a_reconstruction_is_drawn_by_its_seed(walked):
     known = walked.all_but(ARM, 40, 50)
     first, same, other = (md.reconstruct(walked, known, seed=k).positions for k in (0, 0, 1))
+    both = md.reconstruct(walked, known, samples=2)
+    np.testing.assert_array_equal(both[0].positions, first)
+    assert len(both) == 2 and not np.array_equal(both[1].positions, first)
     np.testing.assert_array_equal(first, same)
     assert not np.array_equal(first, other)
 

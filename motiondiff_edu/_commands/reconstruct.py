@@ -26,15 +26,15 @@ def arguments(parser: argparse.ArgumentParser) -> None:
         help="where they are missing: frames A to B, both included; separate several spans by "
         "commas (default: all frames)",
     )
-    outputs.add_seed(parser)
     outputs.add_out(parser)
+    outputs.add_draws(parser, "reconstructions")
 
 
 def run(args: argparse.Namespace) -> None:
     frames = spans(args.frames)
     if args.frames and not args.missing:
         raise ValueError("--frames needs --missing, which names the joints")
-    (path,) = outputs.output_paths(args.out, args.overwrite)
+    paths = outputs.output_paths(args.out, args.overwrite, args.samples)
     motion = outputs.read(args.file)
     from .. import reconstruct
 
@@ -43,7 +43,7 @@ def run(args: argparse.Namespace) -> None:
         joints = [name.strip() for name in args.missing.split(",") if name.strip()]
         known &= motion.all_but(joints, first, last)
     outputs.say(f"reconstructing {int((~known).sum())} joint positions")
-    outputs.write_all(reconstruct(motion, known, seed=args.seed), [path])
+    outputs.write_all(reconstruct(motion, known, samples=args.samples, seed=args.seed), paths)
 
 
 def spans(words: str | None) -> list[tuple[int, int | None]]:

@@ -65,20 +65,31 @@ def inbetween(
 
 
 def reconstruct(
-    motion: Motion, known: Bool[np.ndarray, "T J"], *, seed: int = 0, progress: bool = True
-) -> Motion:
+    motion: Motion,
+    known: Bool[np.ndarray, "T J"],
+    *,
+    samples: int = 1,
+    seed: int = 0,
+    progress: bool = True,
+) -> Motion | list[Motion]:
     """Reconstruct the joints that are not `known`, with the shipped walker; any length of motion.
 
     Known joints stay exactly where they are. The pelvis must be known in every frame, because the
-    control of the walk is derived from it.
-    Raises MotionError if it is not, or if motion and mask do not fit.  Source: MoDiff III-E.
+    control of the walk is derived from it. With `samples` above 1, the result is a list of so many
+    motions.
+    Raises MotionError if it is not, or if motion and mask do not fit, ValueError for a number of
+    samples under 1.  Source: MoDiff III-E.
     """
-    known, walker = _fitting(motion, known), _shipped("walker")
-    total = reconstruction.evaluations(walker, known)
-    generator = torch.Generator().manual_seed(seed)
+    known, count = _fitting(motion, known), checked_count(samples, "samples")
+    walker, draw = _shipped("walker"), torch.Generator().manual_seed(seed)
+    total = count * reconstruction.evaluations(walker, known)
     with with_bar(walker, total, "reconstructing", progress) as walker:
-        whole = reconstruction.reconstruct(walker, motion.positions, known, generator=generator)
-    return _made(motion, known, whole, "reconstructed")
+        made = [
+            reconstruction.reconstruct(walker, motion.positions, known, generator=draw)
+            for _ in range(count)
+        ]
+    made = [_made(motion, known, positions, "reconstructed") for positions in made]
+    return made if samples > 1 else made[0]
 
 
 @lru_cache(maxsize=4)

@@ -64,5 +64,5 @@ def test_wrong_numbers_are_taken_out_and_right_ones_stay(tmp_path, monkeypatch):
     }
     assert said["file"] == "A file.  Notebook: 02" and said["q_sample"] == "Noise.\n\nNotebook: 02"
     assert said["Nowhere"] == "One sentence.\n\nRaises nothing."
-    assert said["posterior"] == "Another. Notebook:\n03"
+    assert said["posterior"] == "Another. Notebook: 03"
     assert said["unheard_of"] == "Nothing.\nSource: ours."

@@ -1,0 +1,95 @@
+"""Reconstruction of a motion of any length: its windows, how they are joined, and its path."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+import torch
+
+from data_synth.walking import walk
+from motiondiff_edu.editing import reconstruct as module
+from motiondiff_edu.editing.reconstruct import _once, _windows, path_of
+from motiondiff_edu.motion.directions import ARMS, UPLEGS
+from motiondiff_edu.motion.motion import Motion, MotionError
+from motiondiff_edu.motion.scaler import Scaler
+from motiondiff_edu.motion.skeleton import HIPS
+from motiondiff_edu.reconstruction import Rollout
+
+T_H = 10
+
+
+def mask(frames: int, *holes: tuple[int, int]) -> np.ndarray:
+    known = np.ones((frames, 21), bool)
+    for first, last in holes:
+        known[first:last, 5] = False
+    return known
+
+
+@pytest.mark.parametrize(
+    "holes, firsts",
+    [
+        ([(12, 15)], [7, 12]),  # from half a window before the hole, half a window apart
+        ([(0, 3)], [0]),
+        ([(38, 40)], [30]),  # the last window ends with the motion
+        ([(12, 15), (30, 31)], [7, 12, 25, 30]),
+        ([(0, 40)], [0, 5, 10, 15, 20, 25, 30]),
+    ],
+)
+def test_windows_cover_the_holes_and_stay_within_the_motion(holes, firsts):
+    known = mask(40, *holes)
+    assert _windows(known, T_H).tolist() == firsts
+    covered = {frame for first in firsts for frame in range(first, first + T_H)}
+    assert set(np.flatnonzero(~known.all(1))) <= covered and max(covered) < 40
+
+
+def test_where_windows_overlap_the_middle_of_a_window_counts_most(monkeypatch):
+    """Two windows, from frames 0 and 5, filled with 1 and with 4; what no window holds stays."""
+    seen = []
+
+    def repair(rollout, past, known, control, **options):
+        seen.append((past, known, control))
+        return torch.stack([torch.full_like(past[0], 1.0), torch.full_like(past[1], 4.0)])
+
+    monkeypatch.setattr(module, "repair", repair)
+    walker = SimpleNamespace(config=SimpleNamespace(T_h=T_H), window_sampler=print)
+    walker.pose_scaler = walker.control_scaler = Scaler.nothing(2)
+    rollout = Rollout(walker, torch.Generator(), 1)
+    guess = torch.arange(18.0, dtype=torch.float64)[:, None].expand(-1, 2).contiguous()
+    steer = torch.arange(28.0, dtype=torch.float64)[:, None].expand(-1, 3)
+    known = torch.zeros(18, 2, dtype=torch.bool)
+    made = _once(rollout, guess, known, steer, np.array([0, 5]))
+    rise = [1, 2, 3, 4, 5, 5, 4, 3, 2, 1]
+    both = [(1 * a + 4 * b) / (a + b) for a, b in zip(rise[5:], rise[:5], strict=True)]
+    wanted = [1.0] * 5 + both + [4.0] * 5 + [15.0, 16.0, 17.0]
+    assert made[:, 0].tolist() == pytest.approx(wanted) and torch.equal(made[:, 0], made[:, 1])
+    past, _, control = seen[0]
+    assert past[1, :, 0].tolist() == list(range(5, 15))
+    assert control[1, :, 0].tolist() == list(range(5, 25))  # its own rows, and those of the way on
+
+
+def walking() -> Motion:
+    return Motion.of_clip(walk(np.tile([1.1, 0.0, 0.3], (60, 1)), seed=3), (2.0, -1.0, 0.7))
+
+
+@pytest.mark.parametrize("hidden", [UPLEGS, ARMS])
+def test_the_path_needs_hips_or_shoulders(hidden):
+    one = walking()
+    known = one.known
+    known[20:40, list(hidden)] = False
+    positions = np.where(known[..., None], one.positions, np.nan)
+    place, facing = path_of(positions, known)
+    whole, all_facing = path_of(one.positions, one.known)
+    np.testing.assert_allclose(place, whole, atol=1e-9)
+    assert np.abs(facing - all_facing).max() < 0.15  # hips and shoulders turn a little apart
+
+
+def test_what_shows_no_path_is_said():
+    one = walking()
+    known = one.known
+    known[7, HIPS] = False
+    with pytest.raises(MotionError, match=r"pelvis \(Hips\) is not known in frame 7 \(1 frames"):
+        path_of(one.positions, known)
+    known = one.known
+    known[:, [UPLEGS[0], ARMS[1]]] = False
+    with pytest.raises(MotionError, match="no frame has both hips or both shoulders"):
+        path_of(one.positions, known)
