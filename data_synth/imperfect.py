@@ -1,10 +1,8 @@
-"""Typical faults of motion capture, with the truth known.
+"""Typical faults of motion capture: dead joints, dropped frames, bursts and jitter.
 
-There are dead joints, dropped frames, bursts and jitter.
-
-A fault takes clean positions and gives (faulty positions, known). A missing position is NaN, and
-False in `known`; a trembling one is known, and wrong.  Source: MoDiff III-E, IV-B names the first
-two.  Notebook: 10
+A fault takes clean positions and returns (faulty positions, known), so the truth is there. A
+missing position is NaN, and False in `known`; a position with jitter is True in `known`.
+Source: MoDiff III-E; IV-B names the first two.  Notebook: 10
 """
 
 from collections.abc import Sequence

@@ -46,10 +46,10 @@ def mixture(
     Raises ValueError for a weight that is not positive or a matrix that is not a covariance.
     """
     variances, axes = torch.linalg.eigh(covariances.double())
-    if (weights <= 0).any() or (variances < -1e-9).any():
-        raise ValueError(
-            "a mixture needs positive weights, and covariances without negative eigenvalues"
-        )
+    for k, (weight, least) in enumerate(zip(weights, variances.amin(-1), strict=True)):
+        if weight <= 0 or least < -1e-9:
+            what = f"has weight {weight:g}" if weight <= 0 else f"has a variance of {least:g}"
+            raise ValueError(f"part {k} of the mixture {what}; make it positive")
     weights = weights.double()
     return Mixture(weights / weights.sum(), means.double(), axes, variances.clamp(min=0))
 

@@ -51,13 +51,17 @@ class MoFusionConfig:
 
     def __post_init__(self):
         """Raise ValueError for an unknown target, or for impossible sizes."""
-        counts, rates = (self.D, self.S, self.heads), (self.fps, self.slowest, self.fastest)
-        if min(counts) < 1 or min(rates) <= 0 or min(self.C, self.music_layers) < 0:
-            raise ValueError(
-                "D, S, heads must be at least 1; C, music_layers at least 0; rates above 0"
-            )
+        least = {"D": 1, "S": 1, "heads": 1, "C": 0, "music_layers": 0}
+        for name, at_least in least.items():
+            if getattr(self, name) < at_least:
+                raise ValueError(f"{name} = {getattr(self, name)} must be at least {at_least}")
+        for name in ("fps", "slowest", "fastest"):
+            if not getattr(self, name) > 0:
+                raise ValueError(f"{name} = {getattr(self, name):g} must be above 0")
+        if not self.widths:
+            raise ValueError("widths = (): a U-Net needs one level at least")
         bad = next((w for w in self.widths if w < 2 * self.heads or w % (2 * self.heads)), None)
-        if not self.widths or bad is not None:
+        if bad is not None:
             raise ValueError(f"each width must be a multiple of 2 x {self.heads} heads, not {bad}")
         if self.target not in TARGETS:
             raise ValueError(f"target must be one of {', '.join(TARGETS)}, not {self.target!r}")

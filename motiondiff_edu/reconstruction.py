@@ -1,6 +1,4 @@
-"""There and back: how what is missing in the past is found.
-
-By walking on, turning round, and walking back.
+"""Reconstruction: continue the motion, reverse it in time, continue it again, and fill the holes.
 
     past with holes -> T_h new frames -> both reversed in time
                     -> T_h new frames: the past, as it may have been

@@ -45,7 +45,7 @@ class TrainState:
     def start(
         cls, model: nn.Module, seed: int = 0, optimizer=None, decay: float = 0.999
     ) -> "TrainState":
-        """A fresh run of this model, with Adam unless told.
+        """A fresh run of this model; the default optimizer is Adam.
 
         Every random number of the run comes from `seed`.
         """
@@ -56,7 +56,7 @@ class TrainState:
 
 @dataclass(frozen=True)
 class Saving:
-    """What writes a state, and every how many steps (`recipes.runs.saver` makes one)."""
+    """A function that writes a state, and the interval in steps; `recipes.runs.saver` makes one."""
 
     write: Callable[[TrainState], object]
     every: int = 1000
@@ -102,7 +102,7 @@ def train_steps(
     """Train until `state.step == steps`, yielding after each step.
 
     `clip`: largest norm of the gradient.
-    `save`: writes the state now and then, and at the end.
+    `save`: writes the state every `save.every` steps, and at the end.
     `before`: called ahead of each step with the number of steps done, for losses that change on
     the way (`diffusion_dropout.Dropout.now`).
     Raises NonFiniteLoss with what to do; the last good weights stay in `state`, and are saved

@@ -91,10 +91,7 @@ def means_outside(danced: list[Dance], rows: list[dict[str, float]]) -> set[str]
 
 
 def limits(danced: list[Dance]) -> dict[str, float]:
-    """The worst values of all frames.
-
-    They are for slipping feet, the lowest joint (mm), bones (m), knees (degrees), hands (m/s).
-    """
+    """The worst slip of a foot (mm), lowest joint (mm), bone (m), knee (degrees), hand (m/s)."""
     slip = 0.0
     low = np.inf
     bones = 0.0

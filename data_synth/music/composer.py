@@ -60,9 +60,7 @@ def compose(
     metre: int | None = None,
     timbre: str | None = None,
 ) -> Song:
-    """One song; arguments that are not given are drawn at random.
-
-    These are a genre, its tempo (BPM) and metre, and one of TRAINING_TIMBRES.
+    """One song. What is not given is drawn: genre, tempo (BPM), metre, one of TRAINING_TIMBRES.
 
     The same arguments give the same bytes. With another `timbre` it is the same music on other
     instruments.

@@ -140,9 +140,8 @@ def _bars(
 
 
 def _periods(rng: np.random.Generator, n: int) -> Float[np.ndarray, "n"]:
-    """Lengths of n beats divided by their mean.
-
-    They are a slow random walk within DRIFT, or all 1 in a steady song.
+    """Lengths of n beats divided by their mean:
+    a slow random walk within DRIFT, or all 1 in a steady song.
     """
     steady, spread = rng.random() < 0.35, rng.uniform(0.3, 1.0)
     steps, walk = rng.standard_normal(n), np.zeros(n)

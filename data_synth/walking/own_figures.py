@@ -21,9 +21,9 @@ from .walks import continuations, dataset, random_control, walk
 
 
 def spreads(pasts: int, n: int, seconds: float, seed: int = 0) -> Float[np.ndarray, "pasts"]:
-    """Root-frame RMS spread (m) of n continuations, from 1 s on.
+    """Root-frame RMS spread (m) of n continuations, from 1 s on, for each of `pasts` pasts.
 
-    There are `pasts` pasts, each with its own control.
+    Each past has its own control.
     """
     found = []
     for k, whole in enumerate(dataset(pasts, 4 + seconds, seed)):
@@ -35,9 +35,8 @@ def spreads(pasts: int, n: int, seconds: float, seed: int = 0) -> Float[np.ndarr
 def own_figures(
     clips: int = 60, pasts: int = 20, n: int = 50, seconds: float = 12.0
 ) -> dict[str, float]:
-    """Means over clips of all measures.
-
-    These are spread (m), adherence and skating (m/s), slope and correlation of the lean in turns.
+    """Means over clips of spread (m), adherence, skating (m/s), and of the lean in turns
+    (slope and correlation).
     """
     apart = spreads(pasts, n, seconds)
     walks = dataset(clips, seconds, 1)

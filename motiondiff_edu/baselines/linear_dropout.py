@@ -37,7 +37,7 @@ class Moments:
 class Products:
     """Everything that least squares needs: means over windows of x x^T, x y^T and y y^T.
 
-    They are in standardised units.
+    All are of standardised values.
     """
 
     xx: Float[Tensor, "F F"]
@@ -152,9 +152,9 @@ def fit(dropped: Products, clean: Products | None = None, ridge: float = 1e-6) -
 
 
 def contributions(walker: LinearGaussian, clean: Products) -> tuple[float, float]:
-    """How much past and control contribute to the next pose: RMS of each part of the sum.
+    """How much past and control contribute to the next pose: RMS of each part of the sum,
+    in standard deviations.
 
-    They are in standard deviations.
 
     Notebook: 09
     """

@@ -35,9 +35,7 @@ def constant_control(
 
 
 def hold(control: Float[np.ndarray, "T 3"], t: int) -> Float[np.ndarray, "T 3"]:
-    """The control as known at frame t.
-
-    Rows after t repeat row t, for nobody knows what the hand does next.
+    """The control as known at frame t: rows after t repeat row t, for the future is not known.
 
     Raises IndexError where there is no row t.
     """
@@ -51,12 +49,10 @@ def hold(control: Float[np.ndarray, "T 3"], t: int) -> Float[np.ndarray, "T 3"]:
 def splice(
     past: Float[np.ndarray, "T 3"], new: Float[np.ndarray, "n 3"], T_h: int
 ) -> Float[np.ndarray, "m 3"]:
-    """The control of the last T_h past frames and of n new ones.
+    """The control for a rollout: m = T_h + n rows, of the last T_h past frames and of n new ones.
 
-    What a rollout is told, m = T_h + n.
-
-    Nobody knows where a recording would have gone: its last row only repeats the one before. Here
-    it leads into the first new frame, so it becomes the first row of `new`.
+    The last row of a recording's control only repeats the one before, because its next frame is not
+    known. Here it leads into the first new frame, so it becomes the first row of `new`.
     Raises ValueError where the past has fewer than T_h frames.  Notebook: 00
     """
     if len(past) < T_h:

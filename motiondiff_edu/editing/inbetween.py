@@ -1,6 +1,4 @@
-"""In-betweens of motions in metres.
-
-What is known of a walk or a dance is kept, bit by bit, and the rest is made.
+"""In-betweens of motions in metres: known entries are kept, bit by bit, and the rest is generated.
 
 The sampling itself is `inbetweening.inpaint_steps`.  Source: MoFusion 4.4.  Notebook: 15
 """
@@ -73,10 +71,9 @@ def inbetween(
     departures: Departures = OURS,
     generator: torch.Generator | None = None,
 ) -> Float[np.ndarray, "samples T 21 3"]:
-    """Find what is not known of a motion (metres, 20 frames/s), `samples` times.
+    """Generate what is not known of a motion (metres, 20 frames/s), `samples` times.
 
-    `mel` for a dancer that hears.
-
+    `mel`: the log-Mel spectrogram of the song, for a dancer with music.
     Known entries come back bit by bit as they were given; the others may be NaN. The motion is
     `seen_from` where it begins to be known. Without a `generator` the seed is 0.
     `departures`: `OURS`, or `PAPER` for masked sampling as printed. Where nothing is known the
@@ -113,7 +110,7 @@ def inbetween(
 
 
 def maker(dancer: AnyDancer, *, steps: int = 50) -> Make:
-    """What finds the rest of an edit, for the editor and `editing.edit.make_between`.
+    """A function that generates the rest of an edit, for the editor and `edit.make_between`.
     Notebook: 15"""
 
     def make(positions, known, *, samples, resample, generator):
@@ -124,9 +121,9 @@ def maker(dancer: AnyDancer, *, steps: int = 50) -> Make:
 
 
 def fading(frames: int) -> Float[Tensor, "63"]:
-    """So many frames for every column, but for where the pelvis is in the room.
+    """Fade lengths for `blended`: `frames` for every column, infinity for the pelvis' x and z.
 
-    There is no place to go back to.
+    So the figure does not return to where it started.
     """
     fade = torch.full((3 * J,), float(frames))
     fade[[3 * HIPS, 3 * HIPS + 2]] = math.inf
@@ -134,13 +131,11 @@ def fading(frames: int) -> Float[Tensor, "63"]:
 
 
 def seen_from(positions: Float[np.ndarray, "T 21 3"], known: Bool[np.ndarray, "T 21"]) -> Place:
-    """Where the motion begins to be known, and which way it faces there.
+    """The place and the heading of the first known pose; the network's motions start near it.
 
-    The network's motions start near it.
-
-    By the first frame that gives pelvis and hips, or else pelvis and shoulders; or else by the path
-    of the pelvis, which is taken to go forward (along z where it goes nowhere at first). The
-    world's origin where nothing is known.
+    The first frame with pelvis and hips decides, or else with pelvis and shoulders, or else the
+    path of the pelvis, which is taken to go forward (along z if it does not move at first). If
+    nothing is known, it is the world's origin.
     """
     for left, right in (UPLEGS, ARMS):
         whole = known[:, [HIPS, left, right]].all(-1)

@@ -26,8 +26,8 @@ SIGMA_FRAMES = 3.0
 def aist_beats(positions: Float[np.ndarray, "T J 3"]) -> Int[np.ndarray, "K"]:
     """Kinematic beats as AIST++'s authors find them: frame numbers at 60 frames/s.
 
-    They are minima of the unsmoothed sum of joint speeds. A 0 is put before the speeds, so entry t
-    is the step from t-1 to t.  Source: MoFusion 4.1.  Notebook: 14
+    A beat is a minimum of the unsmoothed sum of joint speeds. A 0 is put before the speeds, so
+    entry t is the step from t-1 to t.  Source: MoFusion 4.1.  Notebook: 14
     """
     speed = np.concatenate(
         [[0.0], mean_speed(positions, 1)]
@@ -51,7 +51,7 @@ def aist_score(
 def bailando_beats(positions: Float[np.ndarray, "T J 3"]) -> Int[np.ndarray, "K"]:
     """Kinematic beats as Bailando finds them: frame numbers at 60 frames/s.
 
-    They are minima of the mean joint speed, smoothed by 5 frames. Entry t is the step from t to
+    A beat is a minimum of the mean joint speed, smoothed by 5 frames. Entry t is the step from t to
     t+1.  Source: MoFusion 4.1.  Notebook: 14
     """
     return argrelextrema(gaussian_filter1d(mean_speed(positions, 1), 5), np.less)[0]

@@ -19,7 +19,7 @@ OVERLAP = 2.0  # s to compare at each lag; a shorter overlap can agree by chance
 def pose_changes(positions: Float[np.ndarray, "T 21 3"]) -> Float[np.ndarray, "T 63"]:
     """Poses with the pelvis above the origin, facing z in every frame, minus the clip's mean pose.
 
-    They are in metres. The heading is that of hips and shoulders together.
+    In metres. The heading is that of hips and shoulders together.
     Raises ValueError for NaN.
     """
     if not np.isfinite(positions).all():

@@ -176,9 +176,8 @@ def carried(pose: Pose, chain: list[int], places: Float[np.ndarray, "N 3"]) -> P
 
 
 def block(joint: int, above: int) -> list[int]:
-    """The joints that turn with the bone between two neighbours of a chain.
-
-    They are the first joint on the way from `above` to `joint`, and all joints below it.
+    """The joints that turn with the bone between two neighbours of a chain:
+    the first joint on the way from `above` to `joint`, and all joints below it.
     """
     first = joint
     while PARENTS[first] != above:

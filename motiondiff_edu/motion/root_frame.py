@@ -118,7 +118,7 @@ def estimate_root(
 ) -> tuple[Float[np.ndarray, "T 2"], Float[np.ndarray, "T"]]:
     """Root path and heading of a real clip.
 
-    They are the pelvis on the ground and the direction of hips and shoulders, smoothed by Gaussians
+    That is the pelvis on the ground, and the direction of hips and shoulders, smoothed by Gaussians
     of 0.25 s and 0.33 s; shorter ones leak the gait into the control. Beyond its ends the clip is
     continued by point reflection, so that a walking figure does not seem to slow down there.
     """

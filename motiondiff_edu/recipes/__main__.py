@@ -23,7 +23,7 @@ EIGHT_BITS = {
     "walker-plain",
     "walker-printed",
     *(recipe.name for recipe in PAIRS),
-}  # what stands for comparison; what the course performs with has sixteen
+}  # models for comparison; the others are stored in 16
 
 
 def main() -> None:
@@ -58,7 +58,7 @@ def main() -> None:
 
 
 def build(name: str, run: Path, out: Path) -> Path:
-    """Train a recipe by its name, continuing `run` where there is one; write what comes of it."""
+    """Train a recipe by its name, continuing `run` where there is one, and save it as `out`."""
     return save(trained(name, run), out, bits=8 if name in EIGHT_BITS else 16)
 
 

@@ -22,7 +22,7 @@ from .walkers import Recipe
 class Provenance:
     """What a run begins with besides its recipe, and what its card says of it."""
 
-    about: dict[str, str]  # which network, which data: a run is resumed with the same alone
+    about: dict[str, str]  # which network, which data; resuming requires equal values
     facts: dict  # entries of the card: how many windows, which control
     data: str  # where the data are from, for the card
 
@@ -79,7 +79,7 @@ def train_recipe(
 def run_to_end(
     recipe: Recipe | DanceRecipe, rate, state: TrainState, loss_fn: LossFn, save, log, before=None
 ) -> None:
-    """Train to the last step, with a word every thousand steps, or twenty times."""
+    """Train to the last step, with a line of log every 1000 steps, or twenty times in all."""
     losses, every = [], min(1000, max(1, recipe.steps // 20))
     how = {"lr": rate, "save": save, "before": before, "progress": False}
     for report in train_steps(state, loss_fn, recipe.steps, **how):
@@ -91,7 +91,7 @@ def run_to_end(
 
 @torch.no_grad()
 def mean_loss(loss_fn: LossFn, network: nn.Module, batches: int = 50) -> float:
-    """Of the averaged network, on batches drawn with a seed of their own."""
+    """The mean loss of a network over `batches`, which are drawn with seed 1."""
     generator = torch.Generator().manual_seed(1)
     return float(np.mean([loss_fn(network, generator).item() for _ in range(batches)]))
 

@@ -32,9 +32,9 @@ from .walkers import LossWeights, Recipe
 
 
 def training_clips(recipe: Recipe) -> list[Clip]:
-    """The recipe's data: made from its seed, and multiplied.
+    """The recipe's data, made from its seed.
 
-    Every clip is there mirrored as well, and a share of both reversed in time.
+    Each clip also appears mirrored, and a share of both reversed in time.
     """
     from data_synth.walking import dataset  # data_synth lies beside the package, and imports it
 
@@ -170,9 +170,6 @@ def control_range(windows: Windows) -> dict[str, list[float]]:
 
 
 def digest(windows: Windows) -> str:
-    """Of the frames as the network sees them.
-
-    A run goes on with the data it was begun with, or not at all.
-    """
+    """A checksum of the standardised frames; a run resumes only with the same data."""
     frames = (windows.poses.numpy(), windows.control.numpy())
     return hashlib.sha256(b"".join(array.tobytes() for array in frames)).hexdigest()[:16]

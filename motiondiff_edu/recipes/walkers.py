@@ -64,7 +64,12 @@ class Recipe:
     save_every: int = 2000  # steps
 
     def __post_init__(self):
-        """Raises ValueError for batch or noises under 1."""
+        """Raises ValueError for batch or noises under 1, and an unknown schedule or optimizer."""
+        for name, there in (("schedule", ("linear", "leap")), ("optimizer", ("adam", "muon"))):
+            if getattr(self, name) not in there:
+                raise ValueError(
+                    f"{name} must be {' or '.join(there)}, not {getattr(self, name)!r}"
+                )
         if min(self.batch, self.noises) < 1:
             raise ValueError(
                 f"a batch needs a window and a noise at least, not batch = {self.batch}, "

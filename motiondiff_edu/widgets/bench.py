@@ -1,6 +1,6 @@
 """The repair bench.
 
-Knock joints and frames out of a walk, let the walker mend it, see how far off it is.
+Remove joints and frames from a walk, let the walker reconstruct them, see how far off they are.
 
 Click a joint, or a frame below; the buttons bring ready-made faults. Keys: left and right choose a
 frame, up and down a joint, Space knocks out or restores; P plays, T shows or hides the truth, R
@@ -100,7 +100,7 @@ class Bench(anywidget.AnyWidget):
         return np.flatnonzero(~known).tolist()
 
     def repair(self) -> None:
-        """Mend the window as it is now, and show it; each round is told as it is done.
+        """Mend the window as it is now, and show it and the progress after each round.
 
         Raises ValueError when nothing, or all, is missing.
         """
@@ -122,7 +122,7 @@ class Bench(anywidget.AnyWidget):
             self.repair()
         except (
             Exception
-        ) as error:  # nobody sees what a callback raises: it is told where it was asked
+        ) as error:  # nobody sees what a callback raises, so it is shown in the widget
             known = isinstance(error, ValueError)
             self.said = (
                 f"Not repaired: {error}."

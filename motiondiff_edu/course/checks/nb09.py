@@ -129,7 +129,7 @@ def _wrong_noise(x, noise, a, b) -> dict:
 def dropped_products(mine):
     """Check mine(xx, past, rate, alpha_bar).
 
-    There are 2 entries of the past and 1 of the control; the rate is 1/2, with two steps.
+    The past has 2 entries and the control 1; the rate is 1/2, with two steps.
     """
     xx = torch.tensor([[2.0, 0.5, 1.0], [0.5, 3.0, -1.0], [1.0, -1.0, 4.0]], dtype=torch.float64)
     alpha_bar, rate = ALPHA_BAR[1:3], 0.5  # roots 0.8 and 0.6

@@ -90,7 +90,7 @@ def skeleton_loss(mine):
 def asymmetry_from_features(mine):
     """Check mine(x0_hat, mean, std, bones, pairs).
 
-    There are five joints and two frames, and the lengths are those of 3-4-5 triangles.
+    Five joints in two frames; the lengths are those of 3-4-5 triangles.
     """
     bones, pairs = ((0, 1), (1, 2), (0, 3), (3, 4)), ((0, 2), (1, 3))
     # pelvis in the world, then left hip, left knee, right hip, right knee minus the pelvis; metres

@@ -52,9 +52,8 @@ def masses(
     own: int,
     seed: int,
 ) -> dict[str, tuple[float, ...]]:
-    """The KINDS for each level.
-
-    They are the shares near the beats of song `own`, of the others, and of its own after a shift;
+    """The KINDS for each level:
+    the shares near the beats of song `own`, of the others, and of its own after a shift;
     and the seconds that are read.
     """
     found = {}

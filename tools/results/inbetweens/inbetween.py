@@ -61,9 +61,8 @@ def middle(length: int) -> Bool[np.ndarray, "T J"]:
 
 @dataclass(frozen=True, eq=False)
 class Filled:
-    """The results for gaps of one length.
-
-    They are (samples, motions, frames, joints, 3), and those of interpolation.
+    """The results for gaps of one length: samples (samples, motions, frames, joints, 3), and those
+    of interpolation.
     """
 
     known: Bool[np.ndarray, "T J"]
@@ -150,7 +149,7 @@ def sliding(one: Filled) -> list[Figure]:
 def spectra(one: Filled, rival: str) -> list[Figure]:
     """NPSS of single samples (their mean), of interpolation, and their ratio.
 
-    They are of joint positions. There the mean position outweighs all movement, so the ratio is
+    NPSS is of joint positions. There the mean position outweighs all movement, so the ratio is
     also given for velocities within the gap.
     """
     arrays = (one.truth, getattr(one, rival), *one.made)
@@ -165,9 +164,7 @@ def spectra(one: Filled, rival: str) -> list[Figure]:
 
 
 def parts(arrays: Sequence[np.ndarray]) -> tuple[tuple[np.ndarray, np.ndarray], np.ndarray]:
-    """NPSS' sums over each motion, and their weights.
-
-    They are of interpolation and of the samples (their mean), each against the truth.
+    """NPSS' sums over each motion and their weights, for interpolation and for the samples' mean.
 
     The bootstrap can draw sums a thousand times; it could not recompute spectra.
     """

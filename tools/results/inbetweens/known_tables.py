@@ -1,6 +1,5 @@
-"""Two sections of docs/RESULTS.md.
-
-They are about filling in where the answer is a formula, and about both papers' repairs.
+"""Two sections of docs/RESULTS.md: filling in where the answer is a formula, and both papers'
+repairs.
 """
 
 from ..page.markdown import cell, table

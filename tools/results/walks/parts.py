@@ -176,9 +176,9 @@ def walker_records(bench: Bench, line: Walks, command: str) -> list[dict]:
 
 
 def as_record(prefix: str, figure: Figure, bench: Bench, line: Walks | None, command: str) -> dict:
-    """A record with all settings of the figure.
+    """A record with all settings of the figure: seeds, the amount of measurement, and the weights.
 
-    These are seeds, the amount of measurement, and the weights (none for the data's own figures).
+    The data's own figures have no weights.
     """
     size, seeds = bench.size, {"rollouts": 0}
     if figure.name.startswith("diversity"):
