@@ -31,16 +31,16 @@ class ConditionalMean:
         Known entries stay exactly. If nothing is known, the result is the mean. The values of `x`
         in a hole are ignored and can be NaN.
         """
-        filled = x.clone()
-        for row, have in enumerate(known):
-            lack, away = ~have, (x[row, have] - self.mean[have]).double()
-            visible = (
-                self.covariance[have][:, have] + self.ridge * torch.eye(int(have.sum())).double()
-            )
-            guess = self.mean[lack] + self.covariance[lack][:, have] @ torch.linalg.solve(
-                visible, away
-            )
-            filled[row, lack] = guess.to(x)
+        filled, masks = x.clone(), known.unique(dim=0, return_inverse=True)
+        for have, rows in ((mask, masks[1] == k) for k, mask in enumerate(masks[0])):
+            lack = ~have
+            visible = self.covariance[have][:, have]
+            visible = visible + self.ridge * torch.eye(len(visible)).double()
+            weights = torch.linalg.solve(visible, self.covariance[have][:, lack])
+            away = x[rows][:, have].double() - self.mean[have]
+            guess = torch.where(have, x[rows], x.new_zeros(()))
+            guess[:, lack] = (self.mean[lack] + away @ weights).to(x)
+            filled[rows] = guess
         return filled
 
 

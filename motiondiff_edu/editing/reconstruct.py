@@ -25,13 +25,14 @@ from ..motion.planting import runs
 from ..motion.root_frame import smoothed_root, to_root_frame, to_world
 from ..motion.skeleton import BONE_LENGTHS, HIPS, JOINTS, TOES, J
 from ..reconstruction import Rollout, Stop, repair
+from ..rollout import AnyWalker
 
 ROUNDS, STEPS = 3, 10  # rounds there and back; steps of DDIM
 BATCH = 64  # windows at once
 
 
 def reconstruct(
-    walker,
+    walker: AnyWalker,
     positions: Float[np.ndarray, "T 21 3"],
     known: Bool[np.ndarray, "T 21"],
     *,
@@ -66,7 +67,7 @@ def reconstruct(
     return whole if known[:, list(TOES)].all() else steady_feet(whole, known)
 
 
-def evaluations(walker, known: Bool[np.ndarray, "T 21"], rounds: int = ROUNDS) -> int:
+def evaluations(walker: AnyWalker, known: Bool[np.ndarray, "T 21"], rounds: int = ROUNDS) -> int:
     """How often `reconstruct` runs the network, for a progress bar.  Raises as `reconstruct`."""
     T_h, T_p = walker.config.T_h, walker.config.T_p
     batches = math.ceil(len(_windows(known, T_h)) / BATCH)

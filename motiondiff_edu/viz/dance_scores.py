@@ -164,12 +164,14 @@ def over_clips(
     """
     fig, (axis,) = figure(9, 4.2, words)
     for k, (name, (mean, std)) in enumerate(curves.items()):
-        axis.plot(sizes, mean, color=OKABE_ITO[k], ls=DASHES[k], marker=MARKERS[k], label=name)
+        axis.plot(
+            sizes, mean, color=OKABE_ITO[k % 7], ls=DASHES[k % 8], marker=MARKERS[k % 8], label=name
+        )
         axis.fill_between(
             sizes,
             np.maximum(mean - std, mean / 10),
             mean + std,
-            color=OKABE_ITO[k],
+            color=OKABE_ITO[k % 7],
             alpha=0.15,
             lw=0,
         )

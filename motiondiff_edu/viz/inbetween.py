@@ -70,7 +70,12 @@ def ways(
         axis.axvline(value, color=INK, lw=1.4, ls=":")
         for row, figures in enumerate(found.values()):
             axis.plot(
-                figures[name], [row] * len(figures[name]), "o", ms=8, color=OKABE_ITO[k], alpha=0.75
+                figures[name],
+                [row] * len(figures[name]),
+                "o",
+                ms=8,
+                color=OKABE_ITO[k % 7],
+                alpha=0.75,
             )
         axis.set(title=titles[name], ylim=(len(found) - 0.5, -0.5))
         low, high = axis.get_xlim()

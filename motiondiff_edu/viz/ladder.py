@@ -33,13 +33,15 @@ def ladder(rungs: Sequence[Rung], measures: Sequence[str], words: str) -> Figure
             seen = [
                 x for x in rung.values.get(measure, ()) if x is not None and 0 < x < float("inf")
             ]
-            axis.plot(seen, [row] * len(seen), MARKERS[k], color=OKABE_ITO[k], ms=7, alpha=0.8)
+            axis.plot(
+                seen, [row] * len(seen), MARKERS[k % 8], color=OKABE_ITO[k % 7], ms=7, alpha=0.8
+            )
         for k, group in enumerate(groups):
             rows = [row for row, rung in enumerate(rungs) if rung.group == group]
             first = _drawn(rungs[rows[0]], measure)
             if first:
                 mean = sum(first) / len(first)
-                axis.plot([mean, mean], [rows[0], rows[-1]], "--", color=OKABE_ITO[k], lw=1.2)
+                axis.plot([mean, mean], [rows[0], rows[-1]], "--", color=OKABE_ITO[k % 7], lw=1.2)
             if k:
                 axis.axhline(rows[0] - 0.5, color=GREY, lw=0.8)
         axis.set(xscale="log", title=measure)

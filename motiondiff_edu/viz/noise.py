@@ -120,8 +120,8 @@ def densities(
     """Named densities over one grid, lightly filled; `points` are named values on the axis."""
     fig, (axis,) = panels()
     for i, (name, y) in enumerate(curves.items()):
-        axis.plot(grid, y, label=name, color=COLOURS[i], ls=DASHES[i])
-        axis.fill_between(grid, y, color=COLOURS[i], alpha=0.10)
+        axis.plot(grid, y, label=name, color=COLOURS[i % 6], ls=DASHES[i % 8])
+        axis.fill_between(grid, y, color=COLOURS[i % 6], alpha=0.10)
     for i, (name, value) in enumerate((points or {}).items()):
         axis.plot(
             [value],
@@ -149,7 +149,7 @@ def histograms(
     for i, (axis, (name, values)) in enumerate(zip(axes, samples.items(), strict=True)):
         ends = float(grid[0]), float(grid[-1])
         inside = np.clip(np.asarray(values).ravel(), *ends)
-        axis.hist(inside, bins=80, range=ends, density=True, color=COLOURS[i], alpha=0.45)
+        axis.hist(inside, bins=80, range=ends, density=True, color=COLOURS[i % 6], alpha=0.45)
         axis.plot(grid, density, color=INK, lw=1.8)
         axis.set_title(name)
         axis.set_ylim(0, top * float(max(density)))

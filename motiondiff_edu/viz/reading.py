@@ -45,7 +45,12 @@ def sharpness(
     fig, (axis,) = figure(9, 3.8, words)
     for k, (name, values) in enumerate(curves.items()):
         axis.plot(
-            sizes, values, color=OKABE_ITO[k], marker="os"[k % 2], ls=("-", "--")[k % 2], label=name
+            sizes,
+            values,
+            color=OKABE_ITO[k % 7],
+            marker="os"[k % 2],
+            ls=("-", "--")[k % 2],
+            label=name,
         )
     axis.axhline(floor, color=GREY, lw=1.2, ls=":", label="all weights equal")
     axis.set(xlabel="size d of queries and keys", ylabel="largest weight (mean)", ylim=(0, 1.02))
@@ -71,7 +76,7 @@ def weight_against_effect(
         x, y = (values[:, first : first + count] for values in (weight, effect))
         x, y = x / x.mean(1, keepdims=True), y / y.mean(1, keepdims=True)
         axis.plot([0, x.max()], [0, x.max()], color=GREY, lw=1.2, ls=":")
-        axis.plot(x.ravel(), y.ravel(), ".", color=OKABE_ITO[k], alpha=0.35, ms=6)
+        axis.plot(x.ravel(), y.ravel(), ".", color=OKABE_ITO[k % 7], alpha=0.35, ms=6)
         axis.set(title=name, xlabel="attention / mean", ylim=(0, None))
         first += count
     axes[0].set_ylabel("effect of hiding / mean")

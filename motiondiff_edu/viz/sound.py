@@ -42,8 +42,8 @@ def spectra(
         axis.plot(
             hz,
             level,
-            color=OKABE_ITO[i],
-            ls=DASHES[i],
+            color=OKABE_ITO[i % 7],
+            ls=DASHES[i % 8],
             label=name,
             marker="." if len(hz) < 120 else None,
         )
@@ -120,7 +120,7 @@ def two_clocks(seconds, errors: Mapping[str, np.ndarray], caption: str) -> Figur
     """The error in seconds of each way to match sound frames to motion frames, over time."""
     fig, (axis,) = figure(9, 3.2, caption)
     for i, (name, error) in enumerate(errors.items()):
-        axis.plot(seconds, error, color=OKABE_ITO[i], ls=DASHES[i], label=name)
+        axis.plot(seconds, error, color=OKABE_ITO[i % 7], ls=DASHES[i % 8], label=name)
     axis.set_xlabel("time of the motion frame (s)")
     axis.set_ylabel("time of the matched sound\nminus that time (s)")
     legend(axis)

@@ -91,8 +91,8 @@ def guesses(
     fig, axes = figure(3.6 * len(panels), 4.1, words, 1, len(panels), share="xy")
     for k, (axis, (name, guess)) in enumerate(zip(axes, panels.items(), strict=True)):
         axis.plot(*data.T, ".", ms=1.5, color=FAINT, zorder=0)
-        axis.plot(*np.stack([x_s, guess], 1).transpose(2, 1, 0), color=OKABE_ITO[k], lw=0.9)
-        axis.plot(*x_s.T, ".", ms=5, color=OKABE_ITO[k], label="x_s")
+        axis.plot(*np.stack([x_s, guess], 1).transpose(2, 1, 0), color=OKABE_ITO[k % 7], lw=0.9)
+        axis.plot(*x_s.T, ".", ms=5, color=OKABE_ITO[k % 7], label="x_s")
         axis.plot(*right.T, "o", ms=8, mfc="none", mec=INK, label="exact guess")
         axis.set(title=name, aspect="equal", xlim=(-reach, reach), ylim=(-reach, reach))
     legend(axes[0], loc="upper left", handletextpad=0.1)
