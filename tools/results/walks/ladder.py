@@ -46,7 +46,7 @@ from .trials import T_H, UNSEEN, Trials
 SEEDS = 3
 CPU_SECONDS = 600
 VALIDATION = 700_000  # data seed of the clips that the rates are chosen on
-RATES = {"adam": (1e-3, 3e-3, 1e-2), "muon": (3e-3, 1e-2, 3e-2)}
+RATES = {"adam": (3e-3, 1e-2, 3e-2), "muon": (3e-3, 1e-2, 3e-2)}
 PRINTED_RATE = 5e-5  # MoDiff IV-A
 LONGER = 4  # times the budget, for the printed recipe
 TRIAL = 0.25  # share of the budget that each rate is tried for
