@@ -2,11 +2,15 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from textwrap import wrap
 
 from matplotlib.figure import Figure
+from matplotlib.ticker import NullFormatter
 
 from .body import GREY
 from .style import MARKERS, OKABE_ITO, figure
+
+WIDE = 5
 
 
 @dataclass(frozen=True)
@@ -19,8 +23,9 @@ class Rung:
 
 
 def ladder(rungs: Sequence[Rung], measures: Sequence[str], words: str) -> Figure:
-    """Dots of all seeds on logarithmic axes; groups differ in colour and marker.
+    """Dots of all seeds; groups differ in colour and marker.
 
+    An axis is logarithmic where its values differ by more than a factor of WIDE.
     A line marks the mean of the group's first row. The other rows of the group differ from that row
     in one choice. Values that are not positive or not finite are left out.
     """
@@ -30,9 +35,7 @@ def ladder(rungs: Sequence[Rung], measures: Sequence[str], words: str) -> Figure
     for axis, measure in zip(axes, measures, strict=True):
         for row, rung in enumerate(rungs):
             k = groups.index(rung.group)
-            seen = [
-                x for x in rung.values.get(measure, ()) if x is not None and 0 < x < float("inf")
-            ]
+            seen = _drawn(rung, measure)
             axis.plot(
                 seen, [row] * len(seen), MARKERS[k % 8], color=OKABE_ITO[k % 7], ms=7, alpha=0.8
             )
@@ -44,12 +47,17 @@ def ladder(rungs: Sequence[Rung], measures: Sequence[str], words: str) -> Figure
                 axis.plot([mean, mean], [rows[0], rows[-1]], "--", color=OKABE_ITO[k % 7], lw=1.2)
             if k:
                 axis.axhline(rows[0] - 0.5, color=GREY, lw=0.8)
-        axis.set(xscale="log", title=measure)
+        axis.set_title("\n".join(wrap(measure, 28)))
+        drawn = [x for rung in rungs for x in _drawn(rung, measure)]
+        if drawn and max(drawn) > WIDE * min(drawn):
+            axis.set_xscale("log")
+            axis.xaxis.set_major_formatter(lambda x, _: f"{x:g}")
+            axis.xaxis.set_minor_formatter(NullFormatter())
         axis.set_yticks(range(len(rungs)), [rung.words for rung in rungs])
     axes[0].invert_yaxis()
     return fig
 
 
 def _drawn(rung: Rung, measure: str) -> list[float]:
-    """The values that a logarithmic axis can show."""
+    """The values that can be drawn, also on a logarithmic axis."""
     return [x for x in rung.values.get(measure, ()) if x is not None and 0 < x < float("inf")]

@@ -49,8 +49,8 @@ def section(records: dict[str, dict], folder: Path) -> str:
         "is taken out at a time; to the recipe that MoDiff prints one is added. The interval is "
         "over training seeds and walks. DDPM with S = 100, control held, one pose kept of every "
         "window.\n\n"
-        f"The printed recipe keeps the paper's rate, {PRINTED_RATE:g}, unless rate or Muon are what "
-        "is added. All other rates are the best of "
+        f"The printed recipe keeps the paper's rate, {PRINTED_RATE:g}, unless rate or Muon is "
+        "what is added. All other rates are the best of "
         f"{', '.join(f'{rate:g}' for rate in RATES['muon'])}: least loss on validation clips after "
         f"{TRIAL:.0%} of the budget, for each of both recipes and each optimiser.\n\n"
     )
@@ -108,7 +108,7 @@ def draw(records: dict[str, dict], folder: Path) -> None:
     rungs = [rung(name, records) for name in there]
     words = (
         "Every recipe of the ladder, a dot for each training seed. The dashed lines are the means "
-        "of the two whole recipes. Smaller is better everywhere; the axes are logarithmic."
+        "of the two whole recipes. Smaller is better everywhere; wide axes are logarithmic."
     )
     picture = ladder(rungs, [WORDS[kind] for kind in FIGURES], words)
     with replacing(folder / PICTURE) as aside:
