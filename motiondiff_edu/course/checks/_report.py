@@ -29,6 +29,7 @@ import functools
 import reprlib
 import traceback
 from collections.abc import Callable, Mapping
+from textwrap import fill
 from typing import Any
 
 import numpy as np
@@ -37,6 +38,7 @@ import torch
 Check = Callable[[Any], None]
 REGISTRY: dict[str, Check] = {}
 NOT_ATTEMPTED = "not attempted yet"
+WIDTH = 92  # characters that a page shows in one line
 STUBS = ("your turn", "")  # messages of an exercise left as it is; torch raises with others
 
 
@@ -89,7 +91,7 @@ def check(function: Callable[[Any], str | None]) -> Check:
                 f"{name}: your answer raised {type(error).__name__}: {error}{notes}"
             ) from error
         else:
-            print(f"{name}: right. {content or ''}".rstrip())
+            print(fill(f"{name}: right. {content or ''}", WIDTH, subsequent_indent="  "))
 
     REGISTRY[name] = run
     return run
