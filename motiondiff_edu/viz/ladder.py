@@ -15,11 +15,14 @@ WIDE = 5
 
 @dataclass(frozen=True)
 class Rung:
-    """A row: its label, its group, and for each measure one value for each training seed."""
+    """A row: its label, its group, and for each measure a value for each training seed.
+
+    None stands for a training that gave no number.
+    """
 
     words: str
     group: str
-    values: Mapping[str, Sequence[float]]
+    values: Mapping[str, Sequence[float | None]]
 
 
 def ladder(rungs: Sequence[Rung], measures: Sequence[str], words: str) -> Figure:
