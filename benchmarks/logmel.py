@@ -2,7 +2,7 @@
 
 `bench.logmel_x` has librosa at our settings (window of 1024 samples),
 `bench.logmel_x_default_window` at its own 2048. Each repeat times all of them, the best of three,
-in changing order; a figure is the median of the ratios of repeats. Run: python benchmarks/logmel.py
+in changing order; a record is the median of the ratios of repeats. Run: python benchmarks/logmel.py
 [--repeats 40] [--out benchmarks/results/logmel.json]
 """
 

@@ -3,7 +3,7 @@
 It is measured in a real Chromium, with everything that the player can show.
 
 At random moments the sound's clock t and the painted frame k are read; their distance is that of t
-from the frame's interval [k/20, (k+1)/20), zero inside. A run's figure is the 95th percentile of
+from the frame's interval [k/20, (k+1)/20), zero inside. A run's number is the 95th percentile of
 its distances. The sizes of the exported page with and without sound are recorded beside it. Run:
 python benchmarks/player_audio.py [--runs 5] [--seconds 8] [--out
 benchmarks/results/player_audio.json]

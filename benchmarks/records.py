@@ -1,4 +1,4 @@
-"""Records of measured figures, in lists in JSON files.
+"""Records of what was measured, in lists in JSON files.
 
 Each is {name, value, low, high, seeds, unit, paper, command}. One of a benchmark also has
 `machine`: the processor that it was timed on, and how many of its cores were free to use.
@@ -23,7 +23,7 @@ def record(
 ) -> dict:
     """Summarise repeated measurements by their median and its 95 % bootstrap interval.
 
-    `seeds` lists the repetitions (default 0..n-1); `paper` is the paper's own figure, or None.
+    `seeds` lists the repetitions (default 0..n-1); `paper` is the paper's own number, or None.
     """
     values = np.asarray(values, float).ravel()
     if not len(values) or not np.isfinite(values).all():

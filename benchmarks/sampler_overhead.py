@@ -2,7 +2,7 @@
 
 Ours is compared with diffusers and smalldiffusion, in one run.
 
-Each repeat times all of them one after the other, in changing order; a figure is the median of the
+Each repeat times all of them one after the other, in changing order; a record is the median of the
 ratios of repeats. Run: python benchmarks/sampler_overhead.py [--repeats 40] [--out
 benchmarks/results/sampler_overhead.json]
 """

@@ -82,7 +82,7 @@ def measure(name: str, seconds: float, unseen: int, seed: int) -> list[dict]:
     walks = walker_generate(walker)(trials.past, trials.control, 0)
     seeds = {"data": UNSEEN, "training": seed, "clips": unseen}
     found = score(walks, trials.asked, trials.truth)
-    return [figure.as_record(prefix, seeds, COMMAND) for figure in found if figure.name in NAMES]
+    return [measure.as_record(prefix, seeds, COMMAND) for measure in found if measure.name in NAMES]
 
 
 def others(path: Path, measured: list[str]) -> list[dict]:

@@ -55,7 +55,7 @@ def songs(count: int, seconds: float, first_seed: int = 0) -> list[Song]:
     return found
 
 
-def figures(danced: Dance, song: Song, other: Song) -> dict[str, float]:
+def measures(danced: Dance, song: Song, other: Song) -> dict[str, float]:
     """Statistics of one dance, with its alignment to its own song and to another."""
     moved = kinematic_beats(danced.positions, danced.fps)
     return statistics(danced.positions, danced.fps) | {
@@ -69,11 +69,11 @@ def figures(danced: Dance, song: Song, other: Song) -> dict[str, float]:
 def acceptance(
     count: int = 30, seconds: float = 30.0
 ) -> tuple[list[Dance], list[dict[str, float]]]:
-    """The dances, and the figures of each."""
+    """The dances, and the measures of each."""
     scores = songs(count, seconds)
     danced = [dance(song, k) for k, song in enumerate(scores)]
     others = [scores[(k + 7) % count] for k in range(count)]
-    return danced, [figures(d, s, o) for d, s, o in zip(danced, scores, others, strict=True)]
+    return danced, [measures(d, s, o) for d, s, o in zip(danced, scores, others, strict=True)]
 
 
 def means_outside(danced: list[Dance], rows: list[dict[str, float]]) -> set[str]:

@@ -82,7 +82,7 @@ def repeats(world: Float[np.ndarray, "T 21 3"], fps: float = 20.0, least: float 
 
 
 def statistics(world: Float[np.ndarray, "T 21 3"], fps: float = 20.0) -> dict[str, float]:
-    """The figures of the acceptance table; metres, seconds, shares."""
+    """The measures of the acceptance table; metres, seconds, shares."""
     speed = joint_speed(world, fps)
     planted = looks_planted(world, fps)
     local = root_frame(world, fps)

@@ -4,7 +4,7 @@ The table compares many of our walkers with the range of real clips.
 
 python -m data_synth.walking.acceptance [--walks 24]
 
-It prints this table, and then the data's own figures and limits, which README.md shows.
+It prints this table, and then the data's own measures and limits, which README.md shows.
 """
 
 import argparse
@@ -13,7 +13,7 @@ from dataclasses import replace
 import numpy as np
 
 from .gait_statistics import statistics
-from .own_figures import limits, own_figures
+from .own_measures import limits, own_measures
 from .styles import STYLES, person
 from .walks import walk
 
@@ -165,4 +165,4 @@ if __name__ == "__main__":
     parser.add_argument("--walks", type=int, default=24)
     for part in acceptance(parser.parse_args().walks):
         print(show(part))
-    print("\n".join(f"{name}: {value:.3g}" for name, value in (own_figures() | limits()).items()))
+    print("\n".join(f"{name}: {value:.3g}" for name, value in (own_measures() | limits()).items()))

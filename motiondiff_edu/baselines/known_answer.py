@@ -248,6 +248,6 @@ def by_method(found: Iterable[tuple[Method, int, Errors]]) -> dict[str, dict[str
     table: dict[str, dict[str, list[float]]] = {}
     for method, _, errors in found:
         row = table.setdefault(method.name, {})
-        for figure, value in asdict(errors).items():
-            row.setdefault(figure, []).append(value)
+        for measure, value in asdict(errors).items():
+            row.setdefault(measure, []).append(value)
     return table

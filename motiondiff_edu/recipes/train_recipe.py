@@ -72,7 +72,7 @@ def train_recipe(
         "sittings": sittings,
         "data": provenance.data,
         "final_loss": round(mean_loss(loss_fn, state.average), 6),
-    }  # `make results` adds the measured figures
+    }  # `make results` adds what it measures
     return state.average.cpu().eval(), card
 
 

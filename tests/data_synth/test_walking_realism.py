@@ -21,7 +21,7 @@ from data_synth.walking.acceptance import (
 )
 from data_synth.walking.gait_cycles import GRID, analyse, cycles
 from data_synth.walking.gait_statistics import mean_curves, statistics, turning_lean
-from data_synth.walking.own_figures import limits, own_figures
+from data_synth.walking.own_measures import limits, own_measures
 from motiondiff_edu.metrics.adherence import adherence
 from motiondiff_edu.metrics.skating import skating
 from motiondiff_edu.motion.retarget import load_clip
@@ -93,10 +93,10 @@ def test_the_data_obey_their_own_control():
 
 
 def card(row: str) -> list[float]:
-    """The numbers in the second column of a row of the card's own figures."""
+    """The numbers in the second column of a row of the card's own numbers."""
     line = re.search(
         rf"^\| {row} \|([^|]*)\|",
-        CARD.split("## Its own figures")[1].split("\n## ")[0],
+        CARD.split("## Its own numbers")[1].split("\n## ")[0],
         re.MULTILINE,
     )
     return [float(number) for number in re.findall(r"-?\d[\d.]*(?:e-\d+)?", line[1])]
@@ -104,7 +104,7 @@ def card(row: str) -> list[float]:
 
 def test_the_data_score_what_the_card_says():
     """Ten pasts with five continuations each, not twenty with fifty: their spread is 0.078 m."""
-    found = own_figures(clips=20, pasts=10, n=5)
+    found = own_measures(clips=20, pasts=10, n=5)
     mean, smallest, largest = card("spread of continuations")
     assert smallest < mean < largest and found["spread_m"] == pytest.approx(mean, rel=0.25)
     assert found["adherence_mps"] == pytest.approx(card("adherence")[0], abs=0.0005)

@@ -11,7 +11,7 @@ import torch
 from small_dancers import dancer_to_mel as dancer
 
 from tools.results.dances.attention import (
-    attention_figures,
+    attention_measures,
     attention_picture,
     masses,
     rows_of,
@@ -40,7 +40,7 @@ def few_draws(monkeypatch):
 
 
 def named(rows) -> dict[str, float]:
-    return {figure.name: figure.value for figure in attention_figures(rows)}
+    return {measure.name: measure.value for measure in attention_measures(rows)}
 
 
 def table(weights_of) -> dict:

@@ -72,18 +72,18 @@ def test_every_claim_is_listed_with_its_verdict_and_once_in_the_sum():
     assert f"* **{MISSING}** ({len(CLAIMS) - 2})" in found
 
 
-def test_claims_ask_for_figures_that_are_measured():
+def test_claims_ask_for_measures_that_are_measured():
     rows = {f"dance-budget.{name}" for name in VARIANTS}
     for claim in CLAIMS:
-        for name in filter(None, (claim.figure, claim.of, *claim.beside)):
-            group, _, figure = name.rpartition(".")
+        for name in filter(None, (claim.measure, claim.of, *claim.beside)):
+            group, _, measure = name.rpartition(".")
             if not group.startswith("dance-budget"):
                 continue
             assert group in rows
             for kind in ("_minus_", "_over_"):
-                if kind in figure and not figure.endswith("_data"):
+                if kind in measure and not measure.endswith("_data"):
                     own = group.removeprefix("dance-budget.")
-                    rival = figure.split(kind)[1]
+                    rival = measure.split(kind)[1]
                     assert rival in (VARIANTS[own][1], *RIVALS.get(own, ()))
 
 

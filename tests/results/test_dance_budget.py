@@ -123,11 +123,11 @@ def test_rows_of_another_budget_or_sampler_are_not_set_beside_it(tiny, tmp_path,
     worse = Danced([], {**rows, "bas": np.full(4, 0.35)}, data, 4 * squares)
     budget.keep("constant", worse, tmp_path, SMALL)
     found = Danced([], rows, data, squares)
-    figures = {
-        figure.name: figure.value for figure in budget.gains("alpha_bar", found, tmp_path, SMALL)
+    measures = {
+        measure.name: measure.value for measure in budget.gains("alpha_bar", found, tmp_path, SMALL)
     }
-    assert figures["bas_share_minus_constant"] == pytest.approx(0.3 / 0.6 - 0.15 / 0.6)
-    assert figures["bone_gain_over_constant"] == pytest.approx(0.5) and len(figures) == 2
+    assert measures["bas_share_minus_constant"] == pytest.approx(0.3 / 0.6 - 0.15 / 0.6)
+    assert measures["bone_gain_over_constant"] == pytest.approx(0.5) and len(measures) == 2
     for other in (
         replace(SMALL, steps=4),
         replace(SMALL, measured=DanceSize(songs=3, seeds=1, pieces=2, each=3)),

@@ -1,4 +1,4 @@
-"""The dancers' figures.
+"""The dancers' measures.
 
 The data scores as the data, shifted dances lose it, gains and ratios are what they say.
 """
@@ -7,15 +7,15 @@ import numpy as np
 import pytest
 
 from tools.results.dances.scores import (
-    beat_figures,
-    bone_figure,
+    beat_measures,
     bone_gain,
+    bone_measure,
     features_of,
     longer,
-    repeat_figure,
+    repeat_measure,
     rows_of,
     share,
-    variety_figures,
+    variety_measures,
 )
 from tools.results.dances.trials import FPS, unseen_songs
 
@@ -25,8 +25,8 @@ def songs():
     return unseen_songs(5, draws=3, frames=100)
 
 
-def named(figures) -> dict[str, float]:
-    return {figure.name: figure.value for figure in figures}
+def named(measures) -> dict[str, float]:
+    return {measure.name: measure.value for measure in measures}
 
 
 def test_songs_and_dances_are_of_the_same_seconds(songs):
@@ -37,17 +37,17 @@ def test_songs_and_dances_are_of_the_same_seconds(songs):
     assert len({song.genre for song in songs.songs}) > 2
 
 
-def test_the_datas_own_dances_have_the_datas_figures(songs):
+def test_the_datas_own_dances_have_the_datas_measures(songs):
     beats = songs.beats(100)
     data = rows_of(songs.truth[:, 0][None], beats)
-    found = named(beat_figures(data, data))
+    found = named(beat_measures(data, data))
     assert found["skating_mps"] == found["skating_data_mps"] < 0.05
     slid = songs.truth[:, 1][None] + 0.01 * np.arange(songs.truth.shape[2])[:, None, None] * [
         1.0,
         0.0,
         0.0,
     ]
-    assert named(beat_figures(rows_of(slid, beats), data))["skating_mps"] == pytest.approx(
+    assert named(beat_measures(rows_of(slid, beats), data))["skating_mps"] == pytest.approx(
         0.2, abs=0.05
     )
     assert (
@@ -57,10 +57,10 @@ def test_the_datas_own_dances_have_the_datas_figures(songs):
         == pytest.approx(1)
     )
     assert found["bas"] > found["bas_shuffled"] + 0.15
-    other = named(beat_figures(rows_of(songs.truth[:, 1][None], beats), data))
+    other = named(beat_measures(rows_of(songs.truth[:, 1][None], beats), data))
     assert 0.5 < other["bas_share"] < 1.6  # another right dance to the same songs
     late = np.roll(songs.truth[:, 0], 6, axis=1)  # 0.3 s: no beat any more
-    assert named(beat_figures(rows_of(late[None], beats), data))["bas_share"] < 0.4
+    assert named(beat_measures(rows_of(late[None], beats), data))["bas_share"] < 0.4
 
 
 def test_share_by_hand():
@@ -72,11 +72,11 @@ def test_share_by_hand():
 
 
 def test_bones(songs):
-    still, squares = bone_figure(songs.truth[:, 0][None])
+    still, squares = bone_measure(songs.truth[:, 0][None])
     assert still.value == pytest.approx(0, abs=1e-9)
     longer_legs = songs.truth[:, 0].copy()
     longer_legs[..., [3, 4], :] += [0.0, -0.02, 0.0]
-    wrong, more = bone_figure(longer_legs[None])
+    wrong, more = bone_measure(longer_legs[None])
     assert wrong.value > 0.2
     assert bone_gain(more / 4, more).value == pytest.approx(
         0.5
@@ -86,13 +86,13 @@ def test_bones(songs):
 def test_variety(songs):
     features = features_of(songs.truth)
     pooled = features_of(songs.truth[:, :1])[:, 0]
-    found = named(variety_figures(features, features, pooled))
+    found = named(variety_measures(features, features, pooled))
     assert found["multimodality_over_data"] == pytest.approx(1) and found["multimodality"] > 0
     same = np.repeat(features[:, :1], 3, axis=1)
-    assert named(variety_figures(same, features, pooled))["multimodality"] == 0
+    assert named(variety_measures(same, features, pooled))["multimodality"] == 0
 
 
 def test_a_loop_repeats_and_a_dance_less(songs):
     loop = np.tile(songs.truth[:1, 0, :40], (1, 5, 1, 1))
     long = unseen_songs(2, frames=200).truth[:, 0]
-    assert repeat_figure(loop).value > 0.99 > repeat_figure(long).value
+    assert repeat_measure(loop).value > 0.99 > repeat_measure(long).value

@@ -1,6 +1,6 @@
 """In-betweens as they are measured.
 
-Errors, rivals, seams and spectra of motions whose figures are known.
+Errors, rivals, seams and spectra of motions whose measures are known.
 """
 
 from types import SimpleNamespace
@@ -14,8 +14,8 @@ from tools.results.inbetweens.inbetween import (
     GAPS,
     Filled,
     InbetweenSize,
-    figures_of,
     inbetween_records,
+    measures_of,
     middle,
     trials,
 )
@@ -45,7 +45,7 @@ def filled(truth, **changed):
 
 
 def values(one):
-    return {figure.name: figure.value for figure in figures_of(one)}
+    return {measure.name: measure.value for measure in measures_of(one)}
 
 
 def test_errors_are_those_of_the_mean_of_one_and_of_the_best(truth):

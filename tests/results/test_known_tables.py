@@ -60,13 +60,13 @@ def test_the_masking_network_sees_what_the_walker_sees():
 
 
 def test_both_papers_repairs_in_a_row_each():
-    figures = [
+    measures = [
         (f, w, k)
         for f in ("arm", "leg")
         for w in ("masked", "there_and_back")
         for k in ("mean", "one")
     ]
-    names = [f"mend-both.{fault}.{way}.{kind}_cm" for fault, way, kind in figures]
+    names = [f"mend-both.{fault}.{way}.{kind}_cm" for fault, way, kind in measures]
     seeds = {"samples": 10, "clips": 40}
     records = {
         n: {"value": i, "low": i, "high": i, "seeds": seeds, "unit": "cm"}

@@ -1,4 +1,4 @@
-"""The ladder: one choice a cell, figures by hand, and no cell is trained twice."""
+"""The ladder: one choice a cell, measures by hand, and no cell is trained twice."""
 
 import json
 from dataclasses import asdict
@@ -66,7 +66,7 @@ def rows(values: list[float]) -> dict[str, list[float]]:
     return {key: [k * value for value in values] for k, key in enumerate(keys, 1)}
 
 
-def test_figures_of_a_cell_by_hand(tmp_path):
+def test_measures_of_a_cell_by_hand(tmp_path):
     """Two seeds, two walks: root mean squares, differences of means, and those minus the base's."""
     for name, scale in (("ours", 1.0), ("ours-adam", 4.0)):
         seeds = {"0": rows([scale, scale]), "1": rows([9 * scale, 9 * scale])}
@@ -93,7 +93,7 @@ def test_a_cell_is_trained_measured_and_not_trained_again(tmp_path, monkeypatch)
     monkeypatch.setattr(ladder, "rows_of", lambda walker, trials, seed: rows_now(walker))
 
     def rows_now(walker):
-        made = rows([float(walker.model.head[1].bias.sum()), 1.0])
+        made = rows([float(walker.model.head[1].bias.square().sum()), 1.0])
         return {key: np.array(values) for key, values in made.items()}
 
     records = ladder.measure("ours", tmp_path, tmp_path / "runs", SMALL, "c")
@@ -109,7 +109,7 @@ def test_a_cell_is_trained_measured_and_not_trained_again(tmp_path, monkeypatch)
 def test_the_section_shows_what_was_measured_and_names_what_was_not(tmp_path):
     made = {}
     for name in ("ours", "ours-adam"):
-        for kind in ladder.FIGURES:
+        for kind in ladder.MEASURES:
             for key in (kind, f"{kind}.seed0", f"{kind}_minus_base"):
                 full = f"ladder.{name}.{key}"
                 about = {"steps": 7, "rate": 0.1, "trainings": 1, "clips": 2}

@@ -59,7 +59,7 @@ def test_what_was_missed_has_its_interval_and_whether_that_reaches_the_goal(reco
     [(1.57, "1.57"), (1.504, "1.504"), (1.50004, "1.50004"), (1.5, "1.5"), (1.4961, "1.5")],
 )
 def test_rounding_hides_no_miss(value, shown):
-    assert BAD.figure(value) == shown
+    assert BAD.shown(value) == shown
 
 
 def test_what_is_met_by_its_value_alone_is_not_certain_and_what_is_absent_is_said(records):
@@ -69,7 +69,7 @@ def test_what_is_met_by_its_value_alone_is_not_certain_and_what_is_absent_is_sai
         "the goal: the walker's error in the last 3 s, over that in the first 3 s."
     )
     assert absent == (
-        "These figures are missing: "
+        "These measures are missing: "
         "the beat alignment of the dances beyond chance, over that of the data."
     )
 

@@ -1,6 +1,6 @@
 """What menders are measured by.
 
-Holes as they should be, figures by hand, intervals over trainings and clips.
+Holes as they should be, measures by hand, intervals over trainings and clips.
 """
 
 from types import SimpleNamespace
@@ -87,19 +87,19 @@ def test_gains_and_cost_by_hand():
 
 
 def test_each_comparison_has_names_of_its_own(trials, monkeypatch):
-    """The shipped pair beside the small pairs: no figure of one overwrites one of the other."""
+    """The shipped pair beside the small pairs: no measure of one overwrites one of the other."""
     monkeypatch.setattr(dropout_part.checkpoints, "load_walker", lambda path: path)
     monkeypatch.setattr(
         dropout_part,
         "measured",
         lambda walkers, trials, share: {
             kind: np.full((len(walkers), 4), 1 + share + ("plain" in walkers[0]))
-            for kind in dropout_part.FIGURES
+            for kind in dropout_part.MEASURES
         },
     )
     weights = {n: n for n in ("walker", "walker-plain", *names_of("plain"), *names_of("dropout"))}
     shipped, small = (
-        {one.name: one.value for one in dropout_part.dropout_figures(pair, trials, weights)}
+        {one.name: one.value for one in dropout_part.dropout_measures(pair, trials, weights)}
         for pair in (dropout_part.SHIPPED_PAIR, dropout_part.SMALL_PAIRS)
     )
     assert not set(shipped) & set(small) and len(shipped) == len(small)
@@ -143,7 +143,7 @@ def test_rivals_fill_what_they_can(trials):
 
 def test_repairs_of_a_walker_that_stands_are_the_mean_pose(trials):
     size = repair.RepairSize(samples=2, rounds=1, steps=3)
-    found = {f.name: f for f in repair.repair_figures("arm", Standing(), trials, size)}
+    found = {f.name: f for f in repair.repair_measures("arm", Standing(), trials, size)}
     assert found["arm_paper_rmse_cm"].value == pytest.approx(found["arm_paper_one_rmse_cm"].value)
     broken = repair.FAULTS["arm"](trials.past)
     either = [
@@ -229,7 +229,7 @@ def test_both_papers_repairs_are_scored_where_both_had_to_guess(trials, monkeypa
         "masked",
         lambda dancer, world, known, n, departures=None: (world + 5 / 3 * side)[None],
     )
-    found = {one.name: one.value for one in both.both_figures(None, None, trials, repair.QUICK)}
+    found = {one.name: one.value for one in both.both_measures(None, None, trials, repair.QUICK)}
     assert (
         found["arm.there_and_back.one_cm"] == pytest.approx(3)
         and found["arm.there_and_back.mean_cm"] < 3

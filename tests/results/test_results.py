@@ -33,8 +33,8 @@ CONTROL = np.stack(
 WALKS = np.stack([gait(control) for control in CONTROL])
 
 
-def values(figures):
-    return {figure.name: figure.value for figure in figures}
+def values(measures):
+    return {measure.name: measure.value for measure in measures}
 
 
 def test_the_data_as_a_walker_has_no_excess_and_follows_only_its_own_control():
@@ -104,7 +104,7 @@ def test_the_page_is_made_from_the_records(tmp_path):
         read_records(tmp_path / "results")
 
 
-def test_a_card_tells_only_figures_of_its_own_weights(tmp_path):
+def test_a_card_tells_only_measures_of_its_own_weights(tmp_path):
     record = {"name": "walker.bone_rmse_cm", "value": 0.2, "seeds": {"weights": "abc"}}
     (tmp_path / "walker.json").write_text(json.dumps([record]))
     assert cards.metrics(tmp_path, "walker", "abc") == {"bone_rmse_cm": 0.2}

@@ -23,7 +23,7 @@ from motiondiff_edu.performers.dancer import STEPS, Dancer
 from motiondiff_edu.viz.listening import levels_over_sound
 
 from ..walks.parts import weights_digest
-from ..walks.scores import Figure, figure_of, ratio
+from ..walks.scores import Measure, measure_of, ratio
 from .parts import TRAINED, Stage
 from .trials import FPS, UNSEEN, Songs, dances_of
 
@@ -87,34 +87,36 @@ def short(name: str) -> str:
     return where if where == "bottom" else f"{where}-{rate.replace('.', '_')}"
 
 
-def attention_figures(rows: dict[str, dict[str, np.ndarray]]) -> list[Figure]:
+def attention_measures(rows: dict[str, dict[str, np.ndarray]]) -> list[Measure]:
     """Shares and ratios with intervals over songs.
 
     Those without a level's name are means over the levels.
     """
-    figures = []
+    measures = []
     for level, row in rows.items():
         place = "" if level == "all" else f"{level}."
-        figures += [
-            figure_of(f"{place}beat_mass", "share", np.mean, row["own"]),
-            figure_of(
+        measures += [
+            measure_of(f"{place}beat_mass", "share", np.mean, row["own"]),
+            measure_of(
                 f"{place}beat_mass_over_shuffled", "ratio", ratio, row["own"], row["shuffled"]
             ),
-            figure_of(f"{place}beat_mass_over_shifted", "ratio", ratio, row["own"], row["shifted"]),
-            figure_of(f"{place}seconds_read", "s", np.mean, row["read"]),
+            measure_of(
+                f"{place}beat_mass_over_shifted", "ratio", ratio, row["own"], row["shifted"]
+            ),
+            measure_of(f"{place}seconds_read", "s", np.mean, row["read"]),
         ]
     top = next(level for level in rows if level.startswith("down"))
-    figures.append(
-        figure_of(
+    measures.append(
+        measure_of(
             "bottom_over_top_seconds", "ratio", ratio, rows["bottom"]["read"], rows[top]["read"]
         )
     )
-    return figures
+    return measures
 
 
 def attention_records(stage: Stage, command: str) -> list[dict]:
     """The statistic of Fig. 4 for the shipped dancer."""
-    figures = attention_figures(rows_of(stage.dancer("dancer"), stage.songs))
+    measures = attention_measures(rows_of(stage.dancer("dancer"), stage.songs))
     seeds = {
         "data": UNSEEN,
         "songs": stage.size.songs,
@@ -123,7 +125,7 @@ def attention_records(stage: Stage, command: str) -> list[dict]:
         "noise": list(NOISE),
     }
     seeds["weights"] = weights_digest(stage.weights["dancer"])
-    return [figure.as_record("attention.", seeds, command) for figure in figures]
+    return [measure.as_record("attention.", seeds, command) for measure in measures]
 
 
 def attention_picture(stage: Stage, song: int = 0, frames: int = TRAINED) -> Picture:

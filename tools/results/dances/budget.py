@@ -28,7 +28,7 @@ from motiondiff_edu.recipes.dancers import (
 )
 from motiondiff_edu.recipes.train_dancer import train_dancer, training_windows
 
-from ..walks.scores import Figure
+from ..walks.scores import Measure
 from .mfcc import CHANNELS, mfcc_and_beats, with_music_features
 from .parts import Danced, DanceSize, Stage, danced
 from .scores import bone_gain, share_minus
@@ -151,12 +151,12 @@ def about(name: str, budget: Budget) -> str:
     return repr((recipe_of(name, budget), budget.measured, STEPS, ETA))
 
 
-def gains(name: str, found: Danced, runs: Path, budget: Budget) -> list[Figure]:
+def gains(name: str, found: Danced, runs: Path, budget: Budget) -> list[Measure]:
     """The gains of a row over the row with which it is compared, on the same songs.
 
     The bootstrap draws both together.
     """
-    figures = []
+    measures = []
     own = [rows[key] for rows in (found.own, found.data) for key in SHARE]
     for rival in filter(None, (VARIANTS[name][1], *RIVALS.get(name, ()))):
         kept = runs / f"{rival}.npz"
@@ -167,15 +167,15 @@ def gains(name: str, found: Danced, runs: Path, budget: Budget) -> list[Figure]:
                 "so there are no differences to it"
             )
             continue
-        figures.append(
+        measures.append(
             share_minus(
                 f"bas_share_minus_{rival}", own, [other["own_" + k] for k in SHARE] + own[2:]
             )
         )
-        figures.append(
+        measures.append(
             replace(bone_gain(found.squares, other["squares"]), name=f"bone_gain_over_{rival}")
         )
-    return figures
+    return measures
 
 
 def keep(name: str, found: Danced, runs: Path, budget: Budget) -> None:
@@ -202,5 +202,5 @@ def budget_records(name: str, budget: Budget, runs: Path, command: str) -> list[
     }
     seeds |= {"training": recipe.seed, "trained_steps": recipe.steps, "trained_songs": recipe.songs}
     seeds |= {"batch": recipe.batch, "weights": digest_of_tensors(dancer.model.state_dict())[:16]}
-    figures = [*found.figures, *gains(name, found, runs, budget)]
-    return [figure.as_record(f"dance-budget.{name}.", seeds, command) for figure in figures]
+    measures = [*found.measures, *gains(name, found, runs, budget)]
+    return [measure.as_record(f"dance-budget.{name}.", seeds, command) for measure in measures]

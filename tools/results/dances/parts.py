@@ -13,16 +13,16 @@ from motiondiff_edu.performers.dancer import STEPS, Dancer
 from motiondiff_edu.pretrained import checkpoints
 
 from ..walks.parts import weights_digest
-from ..walks.scores import Figure
+from ..walks.scores import Measure
 from .scores import (
-    beat_figures,
-    bone_figure,
+    beat_measures,
     bone_gain,
+    bone_measure,
     features_of,
     longer,
-    repeat_figure,
+    repeat_measure,
     rows_of,
-    variety_figures,
+    variety_measures,
 )
 from .trials import UNSEEN, Hear, Songs, dances_of, mel_of, unseen_songs
 
@@ -97,80 +97,80 @@ def dances(stage: Stage, dancer: Dancer, frames: int, seeds: int) -> np.ndarray:
 
 @dataclass(frozen=True, eq=False)
 class Danced:
-    """One dancer's figures, and the rows (one for each song) behind them."""
+    """One dancer's measures, and the rows (one for each song) behind them."""
 
-    figures: list[Figure]
+    measures: list[Measure]
     own: dict[str, np.ndarray]
     data: dict[str, np.ndarray]
     squares: np.ndarray  # errors of bones, cm^2
 
 
 def danced(stage: Stage, dancer: Dancer) -> Danced:
-    """The figures of any dancer."""
+    """The measures of any dancer."""
     made = dances(stage, dancer, TRAINED, stage.size.seeds)
     own = rows_of(made, stage.songs.beats(TRAINED))
     data = stage.data_rows(TRAINED)
-    bones, squares = bone_figure(made)
-    return Danced([*beat_figures(own, data), bones, *variety(stage, dancer)], own, data, squares)
+    bones, squares = bone_measure(made)
+    return Danced([*beat_measures(own, data), bones, *variety(stage, dancer)], own, data, squares)
 
 
-def dancer_figures(stage: Stage, name: str) -> list[Figure]:
-    """All figures of one set of weights."""
+def dancer_measures(stage: Stage, name: str) -> list[Measure]:
+    """All measures of one set of weights."""
     dancer = stage.dancer(name)
     found = danced(stage, dancer)
     if name != "dancer":
-        return found.figures + repeats(stage, dances(stage, dancer, max(LONG), 1)[0])
+        return found.measures + repeats(stage, dances(stage, dancer, max(LONG), 1)[0])
     gain = []
     if "dancer-plain" in stage.weights:
         plain = dances(stage, stage.dancer("dancer-plain"), TRAINED, stage.size.seeds)
-        gain = [bone_gain(found.squares, bone_figure(plain)[1])]
-    return found.figures + gain + long_figures(stage, dancer, found)
+        gain = [bone_gain(found.squares, bone_measure(plain)[1])]
+    return found.measures + gain + long_measures(stage, dancer, found)
 
 
-def long_figures(stage: Stage, dancer: Dancer, found: Danced) -> list[Figure]:
+def long_measures(stage: Stage, dancer: Dancer, found: Danced) -> list[Measure]:
     """The alignment of dances two and four times as long as in training, and their repetition."""
-    names, figures = ("bas", "bas_shuffled"), []
+    names, measures = ("bas", "bas_shuffled"), []
     short = [rows[name] for rows in (found.own, found.data) for name in names]
     for frames in LONG:
         made = dances(stage, dancer, frames, 1)
         rows = rows_of(made, stage.songs.beats(frames)), stage.data_rows(frames)
-        figures.append(
+        measures.append(
             longer(f"long{frames}_over_100", [row[name] for row in rows for name in names], short)
         )
-    return figures + repeats(stage, made[0])
+    return measures + repeats(stage, made[0])
 
 
-def repeats(stage: Stage, made: np.ndarray) -> list[Figure]:
+def repeats(stage: Stage, made: np.ndarray) -> list[Measure]:
     """Repetition in the longest dances, and in the data's."""
     return [
-        repeat_figure(made),
-        replace(repeat_figure(stage.songs.truth[:, 0]), name="repeat_data"),
+        repeat_measure(made),
+        replace(repeat_measure(stage.songs.truth[:, 0]), name="repeat_data"),
     ]
 
 
-def variety(stage: Stage, dancer: Dancer) -> list[Figure]:
+def variety(stage: Stage, dancer: Dancer) -> list[Measure]:
     """The variety of dances to one piece, and the distance of all of them from the data's."""
     mel = stage.pieces.mel.repeat_interleave(stage.size.each, dim=0)
     made = dances_of(dancer, mel, TRAINED, seed=0).reshape(stage.pieces.truth.shape)
-    return variety_figures(features_of(made), features_of(stage.pieces.truth), stage.data_features)
+    return variety_measures(features_of(made), features_of(stage.pieces.truth), stage.data_features)
 
 
-def unheard_figures(stage: Stage) -> list[Figure]:
+def unheard_measures(stage: Stage) -> list[Measure]:
     """Alignment with music of a metre, a tempo and a timbre that no training song has."""
-    figures, dancer = [], stage.dancer("dancer")
+    measures, dancer = [], stage.dancer("dancer")
     for name, changes in UNHEARD.items():
         songs = unseen_songs(stage.size.songs, frames=TRAINED, seed=UNSEEN + 2, **changes)
         beats = songs.beats(TRAINED)
         made = dances_of(dancer, songs.mel, TRAINED, seed=0)
-        found = beat_figures(rows_of(made[None], beats), rows_of(songs.truth[:, 0][None], beats))
-        figures += [Figure(f"{name}.{f.name}", f.value, f.low, f.high, f.unit) for f in found]
-    return figures
+        found = beat_measures(rows_of(made[None], beats), rows_of(songs.truth[:, 0][None], beats))
+        measures += [Measure(f"{name}.{f.name}", f.value, f.low, f.high, f.unit) for f in found]
+    return measures
 
 
 def dance_records(stage: Stage, part: str, command: str) -> list[dict]:
     """The records of a part: "dancer", "dancer-plain", "regression", or "unheard"."""
     unheard = part == "unheard"
-    figures = unheard_figures(stage) if unheard else dancer_figures(stage, part)
+    measures = unheard_measures(stage) if unheard else dancer_measures(stage, part)
     seeds = {
         "data": UNSEEN,
         "songs": stage.size.songs,
@@ -179,4 +179,4 @@ def dance_records(stage: Stage, part: str, command: str) -> list[dict]:
     }
     seeds["weights"] = weights_digest(stage.weights[DANCES[part]])
     prefix = "dancer.unheard." if unheard else f"{part}."
-    return [figure.as_record(prefix, seeds, command) for figure in figures]
+    return [measure.as_record(prefix, seeds, command) for measure in measures]

@@ -1,4 +1,4 @@
-"""The figures of dances, each with its interval over songs.
+"""The measures of dances, each with its interval over songs.
 
 The functions take arrays: the data's own dances are scored by the same code.
 """
@@ -17,7 +17,7 @@ from motiondiff_edu.metrics.kinetic_features import kinetic_features
 from motiondiff_edu.metrics.repetition import repeat_score
 from motiondiff_edu.metrics.skating import skating
 
-from ..walks.scores import FPS, Figure, figure_of, ratio, root_mean, squared_bone_error
+from ..walks.scores import FPS, Measure, measure_of, ratio, root_mean, squared_bone_error
 
 Beats = Sequence[Float[np.ndarray, "_"]]
 
@@ -62,9 +62,9 @@ def _music_form(dances: Float[np.ndarray, "N T J 3"], beats: Beats) -> Float[np.
     )
 
 
-def beat_figures(own: dict[str, np.ndarray], data: dict[str, np.ndarray]) -> list[Figure]:
-    """Beat alignment, with all figures that are needed to interpret it."""
-    figures = {
+def beat_measures(own: dict[str, np.ndarray], data: dict[str, np.ndarray]) -> list[Measure]:
+    """Beat alignment, with all measures that are needed to interpret it."""
+    measures = {
         "bas": ("", np.nanmean, own["bas"]),
         "bas_shuffled": ("", np.nanmean, own["bas_shuffled"]),
         "bas_chance": ("", np.nanmean, own["bas_chance"]),
@@ -87,7 +87,7 @@ def beat_figures(own: dict[str, np.ndarray], data: dict[str, np.ndarray]) -> lis
         "skating_mps": ("m/s", np.nanmean, own["skating"]),
         "skating_data_mps": ("m/s", np.nanmean, data["skating"]),
     }
-    return [figure_of(name, unit, figure, *rows) for name, (unit, figure, *rows) in figures.items()]
+    return [measure_of(name, unit, value, *rows) for name, (unit, value, *rows) in measures.items()]
 
 
 def share(own, own_shuffled, data, data_shuffled) -> float:
@@ -97,22 +97,22 @@ def share(own, own_shuffled, data, data_shuffled) -> float:
     )
 
 
-def longer(name: str, long: list[np.ndarray], short: list[np.ndarray]) -> Figure:
+def longer(name: str, long: list[np.ndarray], short: list[np.ndarray]) -> Measure:
     """`share` of long dances over that of short ones; rows as `share` takes them."""
-    return figure_of(
+    return measure_of(
         name, "ratio", lambda *rows: share(*rows[:4]) / share(*rows[4:]), *long, *short
     )
 
 
-def bone_figure(dances: Float[np.ndarray, "R N T J 3"]) -> tuple[Figure, Float[np.ndarray, "N"]]:
+def bone_measure(dances: Float[np.ndarray, "R N T J 3"]) -> tuple[Measure, Float[np.ndarray, "N"]]:
     """Bone-length RMSE in cm, and the squared errors of each song behind it."""
     squares = np.mean([squared_bone_error(one) for one in dances], axis=0)
-    return figure_of("bone_rmse_cm", "cm", root_mean, squares), squares
+    return measure_of("bone_rmse_cm", "cm", root_mean, squares), squares
 
 
-def bone_gain(with_losses: Float[np.ndarray, "N"], without: Float[np.ndarray, "N"]) -> Figure:
+def bone_gain(with_losses: Float[np.ndarray, "N"], without: Float[np.ndarray, "N"]) -> Measure:
     """1 - RMSE with / RMSE without kinematic losses."""
-    return figure_of(
+    return measure_of(
         "bone_gain", "share", lambda a, b: 1 - root_mean(a) / root_mean(b), with_losses, without
     )
 
@@ -122,11 +122,11 @@ def features_of(dances: Float[np.ndarray, "N K T J 3"]) -> Float[np.ndarray, "N 
     return np.stack([np.stack([kinetic_features(one) for one in row]) for row in dances])
 
 
-def variety_figures(
+def variety_measures(
     own: Float[np.ndarray, "N K F"],
     data: Float[np.ndarray, "N K F"],
     all_data: Float[np.ndarray, "P F"],
-) -> list[Figure]:
+) -> list[Measure]:
     """MultiModality (K dances to one song), Diversity and FID.
 
     On kinetic features normalised by `all_data`.
@@ -141,23 +141,23 @@ def variety_figures(
     once |= {"diversity": diversity(normalise(pooled, all_data))}
     once |= {"diversity_data": diversity(normalise(pooled_data, all_data))}
     return [
-        figure_of("multimodality", "", np.mean, modes),
-        figure_of("multimodality_data", "", np.mean, modes_data),
-        figure_of("multimodality_over_data", "ratio", ratio, modes, modes_data),
-        *(Figure(name, *(3 * [float(value)]), "") for name, value in once.items()),
+        measure_of("multimodality", "", np.mean, modes),
+        measure_of("multimodality_data", "", np.mean, modes_data),
+        measure_of("multimodality_over_data", "ratio", ratio, modes, modes_data),
+        *(Measure(name, *(3 * [float(value)]), "") for name, value in once.items()),
     ]
 
 
-def share_minus(name: str, own: list[np.ndarray], other: list[np.ndarray]) -> Figure:
+def share_minus(name: str, own: list[np.ndarray], other: list[np.ndarray]) -> Measure:
     """`share` of one dancer minus that of another, on the same songs.
 
     Rows as `share` takes them.
     """
-    return figure_of(
+    return measure_of(
         name, "of the data's", lambda *rows: share(*rows[:4]) - share(*rows[4:]), *own, *other
     )
 
 
-def repeat_figure(dances: Float[np.ndarray, "N T J 3"]) -> Figure:
+def repeat_measure(dances: Float[np.ndarray, "N T J 3"]) -> Measure:
     """The repetition of a dance at the best lag of 1 to 8 s."""
-    return figure_of("repeat", "", np.mean, np.array([repeat_score(one) for one in dances]))
+    return measure_of("repeat", "", np.mean, np.array([repeat_score(one) for one in dances]))

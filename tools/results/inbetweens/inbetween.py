@@ -23,7 +23,7 @@ from motiondiff_edu.metrics.skating import skating
 from motiondiff_edu.motion.dance_frame import at_origin
 from motiondiff_edu.performers.dancer import Dancer
 
-from ..walks.scores import Figure, figure_of, ratio
+from ..walks.scores import Measure, measure_of, ratio
 from ..walks.trials import UNSEEN
 
 T = 100  # frames, as trained
@@ -88,7 +88,7 @@ def filled(
     return Filled(known, truth, np.stack(made, 1), *map(np.stack, (masked, free, *flat)))
 
 
-def figures_of(one: Filled) -> list[Figure]:
+def measures_of(one: Filled) -> list[Measure]:
     """Errors, spectra and seams of one gap, each with its interval over motions.
 
     Errors in metres become centimetres.
@@ -108,20 +108,20 @@ def figures_of(one: Filled) -> list[Figure]:
     seam = np.mean([seam_jump(sample, one.known) for sample in one.made], 0)
     kept = np.max([keyframe_error(sample, one.truth, one.known) for sample in one.made], 0)
     found = [
-        figure_of("error_cm", "cm", np.mean, mean),
-        figure_of("error_one_cm", "cm", np.mean, single.mean(0)),
-        figure_of("error_best_cm", "cm", np.mean, single.min(0)),
-        figure_of("error_lines_cm", "cm", np.mean, straight),
-        figure_of("error_arcs_cm", "cm", np.mean, arcs),
-        figure_of("error_masked_cm", "cm", np.mean, error(one.masked)),
-        figure_of("error_free_cm", "cm", np.mean, error(one.free)),
-        figure_of("error_over_interpolation", "ratio", ratio, mean, rival_rows),
-        figure_of("error_one_over_interpolation", "ratio", ratio, single.mean(0), rival_rows),
-        figure_of("error_best_over_interpolation", "ratio", ratio, single.min(0), rival_rows),
-        figure_of("seam_jump_over_data", "ratio", ratio, seam, own),
-        figure_of("seam_jump_lines_over_data", "ratio", ratio, straight_seam, own),
-        figure_of("seam_jump_masked_over_data", "ratio", ratio, masked_seam, own),
-        figure_of("keyframe_error_cm", "cm", lambda x: 100 * np.max(x), kept),
+        measure_of("error_cm", "cm", np.mean, mean),
+        measure_of("error_one_cm", "cm", np.mean, single.mean(0)),
+        measure_of("error_best_cm", "cm", np.mean, single.min(0)),
+        measure_of("error_lines_cm", "cm", np.mean, straight),
+        measure_of("error_arcs_cm", "cm", np.mean, arcs),
+        measure_of("error_masked_cm", "cm", np.mean, error(one.masked)),
+        measure_of("error_free_cm", "cm", np.mean, error(one.free)),
+        measure_of("error_over_interpolation", "ratio", ratio, mean, rival_rows),
+        measure_of("error_one_over_interpolation", "ratio", ratio, single.mean(0), rival_rows),
+        measure_of("error_best_over_interpolation", "ratio", ratio, single.min(0), rival_rows),
+        measure_of("seam_jump_over_data", "ratio", ratio, seam, own),
+        measure_of("seam_jump_lines_over_data", "ratio", ratio, straight_seam, own),
+        measure_of("seam_jump_masked_over_data", "ratio", ratio, masked_seam, own),
+        measure_of("keyframe_error_cm", "cm", lambda x: 100 * np.max(x), kept),
         *spectra(one, rival),
         *sliding(one),
     ]
@@ -134,19 +134,19 @@ def within(one: Filled, positions: np.ndarray) -> np.ndarray:
     return positions[..., first - 1 : last + 2, :, :]
 
 
-def sliding(one: Filled) -> list[Figure]:
+def sliding(one: Filled) -> list[Measure]:
     """How fast planted toes slide within the gap, m/s, in one sample of each motion.
 
     Clips without planted toes are left out.
     """
     made = {"": one.made[0], "_masked": one.masked, "_lines": one.lines, "_data": one.truth}
     return [
-        figure_of(f"skating{name}_mps", "m/s", np.nanmean, skating(x, np.zeros((*x.shape[:2], 3))))
+        measure_of(f"skating{name}_mps", "m/s", np.nanmean, skating(x, np.zeros((*x.shape[:2], 3))))
         for name, x in ((name, within(one, x)) for name, x in made.items())
     ]
 
 
-def spectra(one: Filled, rival: str) -> list[Figure]:
+def spectra(one: Filled, rival: str) -> list[Measure]:
     """NPSS of single samples (their mean), of interpolation, and their ratio.
 
     NPSS is of joint positions. There the mean position outweighs all movement, so the ratio is
@@ -156,10 +156,10 @@ def spectra(one: Filled, rival: str) -> list[Figure]:
     places, weight = parts(arrays)
     velocities, weight_v = parts([np.diff(within(one, x), axis=1) for x in arrays])
     return [
-        figure_of("npss", "", ratio_of_sums, places[1], weight),
-        figure_of("npss_interpolation", "", ratio_of_sums, places[0], weight),
-        figure_of("npss_over_interpolation", "ratio", ratio_of_sums, *places[::-1]),
-        figure_of("npss_velocity_over_interpolation", "ratio", ratio_of_sums, *velocities[::-1]),
+        measure_of("npss", "", ratio_of_sums, places[1], weight),
+        measure_of("npss_interpolation", "", ratio_of_sums, places[0], weight),
+        measure_of("npss_over_interpolation", "ratio", ratio_of_sums, *places[::-1]),
+        measure_of("npss_velocity_over_interpolation", "ratio", ratio_of_sums, *velocities[::-1]),
     ]
 
 
@@ -187,7 +187,7 @@ def inbetween_records(
     records, every = [], {}
     for length in GAPS:
         every[length] = {
-            figure.name: figure for figure in figures_of(filled(dancer, truth, length, size))
+            measure.name: measure for measure in measures_of(filled(dancer, truth, length, size))
         }
         records += [
             f.as_record(f"inbetween.gap{length}.", seeds, command) for f in every[length].values()
@@ -198,7 +198,7 @@ def inbetween_records(
     }
     for kind in ("npss_over_interpolation", "seam_jump_over_data", "keyframe_error_cm"):
         barred[kind] = max(
-            (found[kind] for found in every.values()), key=lambda figure: figure.value
+            (found[kind] for found in every.values()), key=lambda measure: measure.value
         )
     return records + [
         f.as_record("inbetween.", seeds, command) | {"name": f"inbetween.{n}"}

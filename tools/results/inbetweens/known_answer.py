@@ -18,7 +18,7 @@ from motiondiff_edu.baselines.known_walks import fit_walks, holes, holes_in_the_
 from motiondiff_edu.ddpm import cosine_schedule
 from motiondiff_edu.exact import sample_mixture
 
-from ..walks.scores import figure_of
+from ..walks.scores import measure_of
 
 FRAMES, S = 8, 100  # of a window; diffusion steps
 
@@ -59,11 +59,11 @@ def known_answer_records(size: KnownSize, command: str) -> list[dict]:
                 for k, one in enumerate(problems)
             ]
             rows = {kind: np.array([asdict(one)[kind] for one in found]) for kind in ERRORS}
-            figures = [
-                figure_of(f"{method.name}.{kind}", "", np.mean, row) for kind, row in rows.items()
+            measures = [
+                measure_of(f"{method.name}.{kind}", "", np.mean, row) for kind, row in rows.items()
             ]
             records += [
-                figure.as_record(f"known-answer.{name}.", seeds, command) for figure in figures
+                measure.as_record(f"known-answer.{name}.", seeds, command) for measure in measures
             ]
     return records
 

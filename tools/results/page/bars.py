@@ -1,4 +1,4 @@
-"""The goals of the figures, by the names of their records."""
+"""The goals of the measures, by the names of their records."""
 
 from dataclasses import dataclass
 
@@ -7,7 +7,7 @@ from .markdown import number
 
 @dataclass(frozen=True)
 class Bar:
-    """A figure and the range it should lie in; an open side is None."""
+    """A measure and the range it should lie in; an open side is None."""
 
     name: str
     at_least: float | None = None
@@ -26,7 +26,7 @@ class Bar:
             self.at_most is None or value <= self.at_most
         )
 
-    def figure(self, value: float) -> str:
+    def shown(self, value: float) -> str:
         """Three digits, or as many as show on which side of the goal the value lies."""
         texts = (number(value), *(f"{value:.{digits}g}" for digits in range(4, 18)))
         return next(text for text in texts if self.met(float(text)) == self.met(value))

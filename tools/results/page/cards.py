@@ -1,4 +1,4 @@
-"""The measured figures on the cards of the shipped weights.
+"""The measured numbers on the cards of the shipped weights.
 
 So a card shows how good its weights are.
 """
@@ -25,7 +25,7 @@ SHOWN = (
 
 
 def metrics(folder: Path, name: str, digest: str) -> dict[str, float]:
-    """The recorded figures of a walker or dancer, if they are of exactly these weights."""
+    """The recorded measures of a walker or dancer, if they are of exactly these weights."""
     records = {one["name"]: one for one in kept_records(folder, name)}
     mine = {kind: records.get(f"{name}.{kind}") for kind in SHOWN}
     return {
@@ -36,16 +36,16 @@ def metrics(folder: Path, name: str, digest: str) -> dict[str, float]:
 
 
 def add_metrics(folder: Path) -> None:
-    """Write the figures of `folder` into the cards.
+    """Write the measures of `folder` into the cards.
 
     A file whose card has them already is not written.
     """
     for path in set(checkpoints.available().values()):
-        figure = checkpoints.load(path)
+        performer = checkpoints.load(path)
         found = metrics(folder, path.stem, weights_digest(path))
-        if figure.card.get("metrics", {}) != found:
+        if performer.card.get("metrics", {}) != found:
             checkpoints.save(
-                replace(figure, card=figure.card | {"metrics": found}),
+                replace(performer, card=performer.card | {"metrics": found}),
                 path,
                 checkpoints.bits_of(path),
             )

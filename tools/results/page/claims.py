@@ -1,10 +1,10 @@
-"""The paper's claims, each judged by a figure measured here: what agrees, what does not.
+"""The paper's claims, each judged by a number measured here: what agrees, what does not.
 
 No verdict is written by hand.
 
 When the whole interval lies on the right side of the limit, the claim agrees; when the whole
 interval lies on the wrong side, it does not; otherwise it is undecided. A limit can be a measured
-figure: then its interval counts as well.
+measure: then its interval counts as well.
 """
 
 from dataclasses import dataclass
@@ -17,11 +17,11 @@ OPEN = "undecided"
 MISSING = "not measured yet"
 TEXT = """## The paper's claims, tried
 
-These are the claims of MoFusion that a figure of this course can judge. The verdict is computed:
+These are the claims of MoFusion that a measure of this course can judge. The verdict is computed:
 **agrees** when the whole 95 % interval lies on the right side of the limit, **does not agree** when
 it lies on the wrong side, and **undecided** when it reaches across. The data, the sizes and the
 length of training are ours, so a verdict is about the idea at this scale, not about the paper's own
-figures. Intervals are over songs; another training seed may change more. A claim may ask for less
+measures. Intervals are over songs; another training seed may change more. A claim may ask for less
 repetition or more diversity than the data have. That alone does not make a better dance.
 
 """
@@ -36,7 +36,7 @@ class Claim:
 
     words: str
     where: str
-    figure: str
+    measure: str
     sign: int  # 1: at least the limit; -1: at most
     limit: float = 1.0
     of: str = ""  # the record whose share `limit` is
@@ -51,7 +51,7 @@ class Claim:
 
     def verdict(self, records: dict[str, dict]) -> str:
         """One of AGREES, DIFFERS, OPEN, MISSING."""
-        needed = [records.get(name) for name in (self.figure, self.of) if name]
+        needed = [records.get(name) for name in (self.measure, self.of) if name]
         if any(one is None or one["low"] is None for one in needed):
             return MISSING
         low, high = (needed[0][side] for side in ("low", "high"))
@@ -231,10 +231,10 @@ def claims(records: dict[str, dict]) -> str:
         for said in (AGREES, DIFFERS, OPEN, MISSING)
         for of in [[claim.words for claim, found in judged if found == said]]
     ]
-    fold = f"<details><summary>Each claim with its figures</summary>\n\n{judgements}\n</details>\n"
+    fold = f"<details><summary>Each claim with its measures</summary>\n\n{judgements}\n</details>\n"
     return TEXT + "\n".join(sums) + "\n\n" + fold
 
 
 def _measured(claim: Claim, records: dict[str, dict]) -> str:
-    names = [name for name in (claim.figure, claim.of, *claim.beside) if name]
+    names = [name for name in (claim.measure, claim.of, *claim.beside) if name]
     return "; ".join(f"`{name}` {cell(records.get(name), unit=False)}" for name in names)

@@ -22,7 +22,7 @@ def span(one: dict) -> str:
 def cell(one: dict | None, unit: bool = True) -> str:
     """Value, interval and unit of a record.
 
-    A figure that was computed once, over all clips, has no interval. Ratios and shares have no
+    A measure that was computed once, over all clips, has no interval. Ratios and shares have no
     unit.
     """
     if one is None or one["value"] is None:

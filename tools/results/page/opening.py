@@ -9,7 +9,7 @@ from .claims import AGREES, CLAIMS, DIFFERS, MISSING, OPEN
 from .markdown import span
 from .words import GOALS
 
-# For each group, the beginnings of its bars' names, and the figure in its sentence.
+# For each group, the beginnings of its bars' names, and the measure in its sentence.
 GROUPS = {
     "The walker": (("walker.",), "walker.bone_rmse_cm"),
     "The dancer": (("dancer.", "regression."), "dancer.bas_share"),
@@ -37,7 +37,9 @@ def opening(records: dict[str, dict]) -> str:
         )
         text += f"the goal: {'; '.join(close)}.\n"
     if absent:
-        text += f"\n**What is not measured yet.** These figures are missing: {'; '.join(absent)}.\n"
+        text += (
+            f"\n**What is not measured yet.** These measures are missing: {'; '.join(absent)}.\n"
+        )
     return text + "\n" + paper(records)
 
 
@@ -55,16 +57,16 @@ def group(name: str, measured: dict[Bar, dict], met: set[Bar]) -> str:
 
 
 def sentence(bar: Bar, one: dict) -> str:
-    """A figure and its goal."""
+    """A measure and its goal."""
     return f"{_what(bar)} is {amount(bar, one)}; the goal is {bar.text}."
 
 
 def missed_sentence(bar: Bar, one: dict) -> str:
-    """A figure that misses its goal, with its interval, and whether that reaches the goal."""
+    """A measure that misses its goal, with its interval, and whether that reaches the goal."""
     reaches = any(bar.met(one[side]) for side in ("low", "high") if one[side] is not None)
     more = ", which the interval reaches" if reaches else ""
-    figure = f"{amount(bar, one)} {span(one)}"
-    return f"{_what(bar)} is {figure}; the goal is {bar.text}{more} (`{bar.name}`)."
+    number = f"{amount(bar, one)} {span(one)}"
+    return f"{_what(bar)} is {number}; the goal is {bar.text}{more} (`{bar.name}`)."
 
 
 def subject(bar: Bar) -> str:
@@ -74,7 +76,7 @@ def subject(bar: Bar) -> str:
 
 def amount(bar: Bar, one: dict) -> str:
     """The value with its unit, if it has one."""
-    return bar.figure(one["value"]) + (f" {one['unit']}" if one["unit"] in UNITS else "")
+    return bar.shown(one["value"]) + (f" {one['unit']}" if one["unit"] in UNITS else "")
 
 
 def paper(records: dict[str, dict]) -> str:

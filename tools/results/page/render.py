@@ -27,17 +27,17 @@ HEAD = """## How to read this page
 `benchmarks/results`. Do not edit it.
 
 The course's data are synthetic, and neither paper has published its code or its prepared data.
-Our figures stand beside the papers' for orientation: they do not reproduce them.
+Our numbers stand beside the papers' for orientation: they do not reproduce them.
 
 **[low, high]** is a 95 % bootstrap interval. It is taken over clips, for diversity over pasts, and
 for times over repetitions. Unless a section says otherwise it belongs to one training run: another
-training seed can change a figure by more.
+training seed can change a number by more.
 """
 
 ALL = "RESULTS_ALL.md"
-FURTHER = """# Further figures
+FURTHER = """# Further measures
 
-These figures are in no table of [RESULTS.md](RESULTS.md). Each has its 95 % interval and the
+These measures are in no table of [RESULTS.md](RESULTS.md). Each has its 95 % interval and the
 command that measures it. `make results` and `make bench` write this page. Do not edit it.
 
 """
@@ -61,12 +61,12 @@ def read_records(*folders: Path) -> dict[str, dict]:
 
 
 def bars(records: dict[str, dict]) -> str:
-    """Every bar with the measured figure: met, missed, or not measured."""
+    """Every bar with what was measured: met, missed, or not measured."""
     rows = [
         [GOALS.get(bar.name, ""), f"`{bar.name}`", bar.text, *_verdict(bar, records.get(bar.name))]
         for bar in BARS
     ]
-    head = ["what", "figure", "bar", "measured", "interval", ""]
+    head = ["what", "measure", "bar", "measured", "interval", ""]
     return "## The bars\n\n" + table(head, rows) + timed_on(records)
 
 
@@ -79,11 +79,11 @@ def timed_on(records: dict[str, dict]) -> str:
 def _verdict(bar: Bar, one: dict | None) -> list[str]:
     if one is None or one["value"] is None:
         return ["-", "-", "not measured"]
-    return [bar.figure(one["value"]), span(one), "met" if bar.met(one["value"]) else "**missed**"]
+    return [bar.shown(one["value"]), span(one), "met" if bar.met(one["value"]) else "**missed**"]
 
 
 def walkers(records: dict[str, dict]) -> str:
-    """One column for each walker, one row for each figure, value and interval in a cell."""
+    """One column for each walker, one row for each measure, value and interval in a cell."""
     names = [n for n in records if n.split(".")[0].startswith("walker") and n.count(".") == 1]
     columns = sorted({n.split(".")[0] for n in names}, key=lambda c: (c != "walker", len(c), c))
     kinds = list(dict.fromkeys(n.split(".")[1] for n in names))
@@ -105,13 +105,13 @@ def walkers(records: dict[str, dict]) -> str:
         f"their first second. Seeds: {_seed(names, records, 'walk')} for pasts and controls, "
         f"{_seed(names, records, 'diversity')} for those of the diversity, "
         f"{seeds.get('rollouts')} for the rollouts.\n\n"
-        + table(["figure", *columns], rows)
+        + table(["measure", *columns], rows)
         + _beside_the_paper(records)
     )
 
 
 def _seed(names: list[str], records: dict[str, dict], what: str) -> str:
-    """The data's seed for the figures of diversity, or for all others."""
+    """The data's seed for the measures of diversity, or for all others."""
     found = {
         records[n]["seeds"].get("data")
         for n in names
@@ -129,7 +129,7 @@ def _beside_the_paper(records: dict[str, dict]) -> str:
         f"dropout). `walker` has {number(one['value'])} cm, and `walker-printed`, the paper's "
         f"recipe at our size for {WALKER_PRINTED.steps:,} steps, {number(printed['value'])} cm. "
         "The data, the skeleton, the sizes of the networks and the length of training differ, so "
-        "only the order of magnitude can be compared. The paper gives no figures for adherence to "
+        "only the order of magnitude can be compared. The paper gives no numbers for adherence to "
         "control, drift or diversity.\n"
     )
 
@@ -232,7 +232,7 @@ def attention(records: dict[str, dict], folder: Path) -> str:
 
 
 def others(records: dict[str, dict]) -> str:
-    """All figures that are in no table above, with the commands that measure them."""
+    """All measures that are in no table above, with the commands that measure them."""
     shown = (
         "walker",
         "footsteps",
@@ -248,7 +248,7 @@ def others(records: dict[str, dict]) -> str:
         [f"`{r['name']}`", number(r["value"]), span(r), r["unit"], f"`{r['command']}`"]
         for r in rest
     ]
-    head = ["figure", "value", "interval", "unit", "made by"]
+    head = ["measure", "value", "interval", "unit", "made by"]
     return FURTHER + table(head, rows) if rows else ""
 
 

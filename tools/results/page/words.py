@@ -2,7 +2,7 @@
 
 import re
 
-# For figures with a goal: the subject of a sentence "... is 0.22 cm".
+# For measures with a goal: the subject of a sentence "... is 0.22 cm".
 GOALS = {
     "walker.bone_rmse_cm": "the walker's bone error",
     "walker.adherence_excess_mps": "the walker's control error beyond that of the data",

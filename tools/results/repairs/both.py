@@ -24,7 +24,7 @@ from motiondiff_edu.pretrained import checkpoints
 from motiondiff_edu.reconstruction import walked_back
 
 from ..walks.parts import Bench, weights_digest
-from ..walks.scores import Figure, figure_of
+from ..walks.scores import Measure, measure_of
 from ..walks.trials import UNSEEN, Trials
 from .repair import FAULTS, RepairSize, repaired, root_nanmean, squared_errors
 
@@ -68,7 +68,9 @@ def masked(
     return np.stack(made, 1)
 
 
-def both_figures(walker: Walker, dancer: Dancer, trials: Trials, size: RepairSize) -> list[Figure]:
+def both_measures(
+    walker: Walker, dancer: Dancer, trials: Trials, size: RepairSize
+) -> list[Measure]:
     """For each fault and way: the error of the mean of the repairs, and of one of them, cm."""
     few = trials.first(CLIPS)
     found = []
@@ -92,16 +94,16 @@ def both_figures(walker: Walker, dancer: Dancer, trials: Trials, size: RepairSiz
         for way, (made, truth) in ways.items():
             for kind, guess in (("mean", made.mean(0)), ("one", made[0])):
                 rows = squared_errors(guess, truth, judged)
-                found.append(figure_of(f"{fault}.{way}.{kind}_cm", "cm", root_nanmean, rows))
+                found.append(measure_of(f"{fault}.{way}.{kind}_cm", "cm", root_nanmean, rows))
     return found
 
 
 def both_records(bench: Bench, dancer: Dancer, size: RepairSize, command: str) -> list[dict]:
-    """The figures as records."""
+    """The measures as records."""
     walker = checkpoints.load_walker(bench.weights[WALKER])
     seeds = {"data": UNSEEN, "clips": CLIPS, "samples": size.samples, "rounds": size.rounds}
     seeds |= {
         "weights": [weights_digest(bench.weights[name]) for name in (WALKER, "unconditional")]
     }
-    found = both_figures(walker, dancer, bench.trials, size)
-    return [figure.as_record("mend-both.", seeds, command) for figure in found]
+    found = both_measures(walker, dancer, bench.trials, size)
+    return [measure.as_record("mend-both.", seeds, command) for measure in found]

@@ -18,7 +18,7 @@ from motiondiff_edu.recipes.train_walker import train, training_clips
 from motiondiff_edu.recipes.walkers import MEND_PLAIN, Recipe
 
 from ..walks.parts import weights_digest
-from ..walks.scores import Figure, root_mean, squared_bone_error
+from ..walks.scores import Measure, root_mean, squared_bone_error
 from ..walks.trials import UNSEEN, Trials
 from .trials import SHARE, continued, interval_over_seeds, names_of
 
@@ -40,7 +40,7 @@ def rows(made: np.ndarray, trials: Trials) -> dict[str, np.ndarray]:
 
 @dataclass(frozen=True)
 class Comparison:
-    """Shipped weights without and with diffusion dropout, and how their figures are named."""
+    """Shipped weights without and with diffusion dropout, and how their measures are named."""
 
     plain: tuple[str, ...]
     dropout: tuple[str, ...]
@@ -52,40 +52,40 @@ SMALL_PAIRS = Comparison(
     tuple(names_of("plain")), tuple(names_of("dropout")), cost="pairs_dropout_cost_complete"
 )
 SHIPPED_PAIR = Comparison(("walker-plain",), ("walker",), prefix="walker_")
-FIGURES = {"bone": ("cm", root_mean), "adherence": ("mps", np.nanmean)}
+MEASURES = {"bone": ("cm", root_mean), "adherence": ("mps", np.nanmean)}
 
 
-def gains(plain: dict[str, np.ndarray], dropout: dict[str, np.ndarray]) -> list[Figure]:
+def gains(plain: dict[str, np.ndarray], dropout: dict[str, np.ndarray]) -> list[Measure]:
     """Errors without dropout minus those with it, on incomplete pasts; arrays (seeds, clips)."""
     found = []
-    for kind, (unit, mean) in FIGURES.items():
+    for kind, (unit, mean) in MEASURES.items():
         values = interval_over_seeds(
             lambda a, b, mean=mean: mean(a) - mean(b), plain[kind], dropout[kind]
         )
         found.append(
-            Figure(f"dropout_gain_{kind}_{unit}", *values, "cm" if unit == "cm" else "m/s")
+            Measure(f"dropout_gain_{kind}_{unit}", *values, "cm" if unit == "cm" else "m/s")
         )
     return found
 
 
-def cost(name: str, plain: dict[str, np.ndarray], dropout: dict[str, np.ndarray]) -> Figure:
+def cost(name: str, plain: dict[str, np.ndarray], dropout: dict[str, np.ndarray]) -> Measure:
     """Errors with dropout over those without, on complete pasts: the larger of the two ratios."""
 
     def larger(*parts: np.ndarray) -> float:
-        pairs = zip(FIGURES.values(), (parts[:2], parts[2:]), strict=True)
+        pairs = zip(MEASURES.values(), (parts[:2], parts[2:]), strict=True)
         return max(mean(b) / mean(a) for (_, mean), (a, b) in pairs)
 
-    arrays = [both[kind] for kind in FIGURES for both in (plain, dropout)]
-    return Figure(name, *interval_over_seeds(larger, *arrays), "ratio")
+    arrays = [both[kind] for kind in MEASURES for both in (plain, dropout)]
+    return Measure(name, *interval_over_seeds(larger, *arrays), "ratio")
 
 
 def measured(walkers: list, trials: Trials, share: float) -> dict[str, np.ndarray]:
     """`rows` of several walkers, (seeds, clips); each draws with the same seed."""
     each = [rows(continued(walker, trials, share, NEXT), trials) for walker in walkers]
-    return {kind: np.stack([one[kind] for one in each]) for kind in FIGURES}
+    return {kind: np.stack([one[kind] for one in each]) for kind in MEASURES}
 
 
-def dropout_figures(pairs: Comparison, trials: Trials, weights: dict[str, Path]) -> list[Figure]:
+def dropout_measures(pairs: Comparison, trials: Trials, weights: dict[str, Path]) -> list[Measure]:
     """Gains, cost, and the errors of both kinds with and without faults."""
     walkers = {
         kind: [checkpoints.load_walker(weights[name]) for name in names]
@@ -97,21 +97,21 @@ def dropout_figures(pairs: Comparison, trials: Trials, weights: dict[str, Path])
     found = [*gains(broken["plain"], broken["dropout"])]
     for words, both in (("complete", whole), ("missing", broken)):
         for kind, arrays in both.items():
-            for what, (unit, mean) in FIGURES.items():
+            for what, (unit, mean) in MEASURES.items():
                 values = interval_over_seeds(mean, arrays[what])
                 found.append(
-                    Figure(
+                    Measure(
                         f"{kind}_{words}_{what}_{unit}", *values, "cm" if unit == "cm" else "m/s"
                     )
                 )
-    found = [replace(figure, name=f"{pairs.prefix}{figure.name}") for figure in found]
+    found = [replace(measure, name=f"{pairs.prefix}{measure.name}") for measure in found]
     return [*found, cost(pairs.cost, whole["plain"], whole["dropout"])]
 
 
 def dropout_records(
     pairs: Comparison, trials: Trials, weights: dict[str, Path], command: str
 ) -> list[dict]:
-    """The figures of one comparison as records."""
+    """The measures of one comparison as records."""
     seeds = {
         "data": UNSEEN,
         "clips": len(trials.past),
@@ -123,8 +123,8 @@ def dropout_records(
         "trainings": len(pairs.plain),
         "weights": [weights_digest(weights[name]) for name in (*pairs.plain, *pairs.dropout)],
     }
-    found = dropout_figures(pairs, trials, weights)
-    return [figure.as_record("mend.", seeds, command) for figure in found]
+    found = dropout_measures(pairs, trials, weights)
+    return [measure.as_record("mend.", seeds, command) for measure in found]
 
 
 @dataclass(frozen=True)
@@ -179,13 +179,13 @@ def map_records(
     found = []
     for share in SHARES:
         one = measured([walker], trials, share)
-        for what, (unit, mean) in FIGURES.items():
+        for what, (unit, mean) in MEASURES.items():
             values = interval_over_seeds(mean, one[what])
             found.append(
-                Figure(
+                Measure(
                     f"missing-{round(100 * share)}.{what}_{unit}",
                     *values,
                     "cm" if unit == "cm" else "m/s",
                 )
             )
-    return [figure.as_record(f"mend-map.{name}.", seeds, command) for figure in found]
+    return [measure.as_record(f"mend-map.{name}.", seeds, command) for measure in found]

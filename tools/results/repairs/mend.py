@@ -9,7 +9,7 @@ from motiondiff_edu.pretrained import checkpoints
 from ..walks.parts import Bench, weights_digest
 from ..walks.trials import UNSEEN, unseen
 from .dropout import SHIPPED_PAIR, SMALL_PAIRS, dropout_records
-from .repair import FAULTS, RepairSize, footsteps, repair_figures, repaired_windows, table_2
+from .repair import FAULTS, RepairSize, footsteps, repair_measures, repaired_windows, table_2
 from .trials import SHARE, names_of
 
 KEEP = 5  # poses kept of every window of ten; frame by frame, each has other noise, and heels creep
@@ -29,15 +29,15 @@ def records(bench: Bench, size: RepairSize, command: str) -> list[dict]:
         for names in (["walker"], names_of("dropout"))
     )
     pasts = unseen(size.pasts, PAST_S)
-    figures = [one for fault in FAULTS for one in repair_figures(fault, best[0], pasts, size)]
+    measures = [one for fault in FAULTS for one in repair_measures(fault, best[0], pasts, size)]
     asked = trials.first(CLIPS)
     for walkers, names in ((pairs, {"": 1, f"keep{KEEP}_": KEEP}), (best, {"walker_": 1})):
         windows = repaired_windows(walkers, asked, size)
         for who, keep in names.items():
             second, after = table_2(walkers, asked, size, windows, who, keep)
-            figures += second
+            measures += second
             for suffix, rule in (("", ROBUST), ("_paper", PAPER)):
-                figures.append(footsteps(f"footsteps_{who}over_data{suffix}", after, asked, rule))
+                measures.append(footsteps(f"footsteps_{who}over_data{suffix}", after, asked, rule))
     seeds = {"data": UNSEEN, "pasts": len(pasts.past), "missing": SHARE, "samples": size.samples}
     seeds |= {
         "rounds": size.rounds,
@@ -53,4 +53,4 @@ def records(bench: Bench, size: RepairSize, command: str) -> list[dict]:
         for pair in (SHIPPED_PAIR, SMALL_PAIRS)
         for one in dropout_records(pair, trials, weights, command)
     ]
-    return compared + [one.as_record("mend.", seeds, command) for one in figures]
+    return compared + [one.as_record("mend.", seeds, command) for one in measures]

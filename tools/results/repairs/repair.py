@@ -17,7 +17,7 @@ from motiondiff_edu.performers.walker import Walker
 from motiondiff_edu.reconstruction import Rollout, Stop, WayBack, repair, walked_back
 
 from ..walks import steps_table
-from ..walks.scores import Figure, figure_of, root_mean, squared_bone_error
+from ..walks.scores import Measure, measure_of, root_mean, squared_bone_error
 from ..walks.trials import Trials
 from .rivals import rivals
 from .trials import SHARE, as_given, continued, interval_over_seeds, without
@@ -79,7 +79,7 @@ def root_nanmean(squares: np.ndarray) -> float:
     return float(np.sqrt(np.nanmean(squares)))
 
 
-def repair_figures(fault: str, walker: Walker, trials: Trials, size: RepairSize) -> list[Figure]:
+def repair_measures(fault: str, walker: Walker, trials: Trials, size: RepairSize) -> list[Measure]:
     """Errors of the repairs' mean, of one, of the paper's way and of other methods, all in cm.
 
     The error of the mean is also divided by that of each other method.
@@ -100,16 +100,16 @@ def repair_figures(fault: str, walker: Walker, trials: Trials, size: RepairSize)
     }
     others = {name: squared_errors(guess, trials.past, broken) for name, guess in guesses.items()}
     rows |= {f"rmse_{name}_cm": row for name, row in others.items()}
-    found = [figure_of(f"{fault}_{name}", "cm", root_nanmean, row) for name, row in rows.items()]
+    found = [measure_of(f"{fault}_{name}", "cm", root_nanmean, row) for name, row in rows.items()]
     for name, row in others.items():
         over = f"{fault}_rmse_over_{name}", "ratio", lambda a, b: root_nanmean(a) / root_nanmean(b)
-        found.append(figure_of(*over, rows["rmse_cm"], row))
+        found.append(measure_of(*over, rows["rmse_cm"], row))
         won = (
             f"{fault}_nearer_than_{name}",
             "share",
             lambda a, b: float(np.nanmean(np.where(np.isnan(b), b, a < b))),
         )
-        found.append(figure_of(*won, rows["rmse_cm"], row))
+        found.append(measure_of(*won, rows["rmse_cm"], row))
     return found
 
 
@@ -140,7 +140,7 @@ def table_2(
     windows: dict[str, list[np.ndarray]],
     who: str = "",
     keep: int = 1,
-) -> tuple[list[Figure], list[np.ndarray]]:
+) -> tuple[list[Measure], list[np.ndarray]]:
     """MoDiff's Table II.
 
     Bone errors with 30 % of the past's joints missing, over those with a complete past.
@@ -158,8 +158,8 @@ def table_2(
     ]
     sets = {"whole": whole, "ge": after, **windows}
     squares = {name: np.stack([squared_bone_error(x) for x in each]) for name, each in sets.items()}
-    figures = [
-        Figure(f"table2_{who}bone_{name}_cm", *interval_over_seeds(root_mean, x), "cm")
+    measures = [
+        Measure(f"table2_{who}bone_{name}_cm", *interval_over_seeds(root_mean, x), "cm")
         for name, x in squares.items()
     ]
     arrays = [squares[name] for name in ("whole", "ge", "re")]
@@ -167,11 +167,11 @@ def table_2(
         lambda w, g, r: max(root_mean(g), root_mean(r)) / root_mean(w), *arrays
     )
     ge = interval_over_seeds(lambda w, g: root_mean(g) / root_mean(w), *arrays[:2])
-    figures.append(Figure(f"table2_{who}ge_over_whole", *ge, "ratio"))
-    return [*figures, Figure(f"table2_{who}ratio", *ratio, "ratio")], after
+    measures.append(Measure(f"table2_{who}ge_over_whole", *ge, "ratio"))
+    return [*measures, Measure(f"table2_{who}ratio", *ratio, "ratio")], after
 
 
-def footsteps(name: str, walks: list[np.ndarray], trials: Trials, rule) -> Figure:
+def footsteps(name: str, walks: list[np.ndarray], trials: Trials, rule) -> Measure:
     """Number of footsteps of walks over that of the recorded motion, at v95 of each.
 
     There is one set of walks for each training.
@@ -187,4 +187,4 @@ def footsteps(name: str, walks: list[np.ndarray], trials: Trials, rule) -> Figur
             ]
         )
 
-    return Figure(name, *interval_over_seeds(over, tables, data), "ratio")
+    return Measure(name, *interval_over_seeds(over, tables, data), "ratio")

@@ -12,11 +12,11 @@ from motiondiff_edu.viz.mending import by_fault, over_gaps, rate_map
 
 from ..inbetweens.inbetween import GAPS
 from ..page.markdown import cell, number, table
-from .dropout import FIGURES, RATES, SHARES, SHIPPED_PAIR, SMALL_PAIRS
+from .dropout import MEASURES, RATES, SHARES, SHIPPED_PAIR, SMALL_PAIRS
 from .repair import FAULTS
 
 COMPARED = (SHIPPED_PAIR, SMALL_PAIRS)
-UNITS = {kind: f"{kind}_{unit}" for kind, (unit, _) in FIGURES.items()}
+UNITS = {kind: f"{kind}_{unit}" for kind, (unit, _) in MEASURES.items()}
 METHODS = {
     "error_cm": "mean of the samples",
     "error_one_cm": "one sample",
@@ -52,7 +52,7 @@ def dropout(records: dict[str, dict], folder: Path) -> str:
     rows = [
         [words, what, *(cell(records.get(f"mend.{side}_{words}_{UNITS[what]}")) for side in sides)]
         for words in ("complete", "missing")
-        for what in FIGURES
+        for what in MEASURES
     ]
     gains = [
         [f"`{n}`", cell(records.get(f"mend.{n}"))]
@@ -72,7 +72,7 @@ def dropout(records: dict[str, dict], folder: Path) -> str:
         "`cost` is the error with dropout over that without, from complete pasts.\n\n"
     )
     head = ["past", "error", "walker-plain", "walker", "small, plain", "small, with dropout"]
-    text += table(head, rows) + "\n" + table(["figure", "measured"], gains)
+    text += table(head, rows) + "\n" + table(["measure", "measured"], gains)
     picture = folder / "dropout-map.png"
     return (
         text
@@ -122,7 +122,7 @@ def repairs(records: dict[str, dict], folder: Path) -> str:
         "prints, on other data, 0.101 cm and 0.108 cm for MoDiff with dropout, and 0.105 cm and "
         "0.116 cm without.\n\n"
     )
-    return text + said + table(["figure", "measured"], second) if second else text
+    return text + said + table(["measure", "measured"], second) if second else text
 
 
 def inbetweens(records: dict[str, dict], folder: Path) -> str:

@@ -57,7 +57,7 @@ def continued(
 ) -> Float[np.ndarray, "N n J 3"]:
     """The next `frames` after a past with a share of its joints missing.
 
-    The control is held, as in all figures.
+    The control is held, as in all measurements.
 
     `keep` poses of every predicted window are kept.
     """
@@ -68,9 +68,9 @@ def continued(
 
 
 def interval_over_seeds(
-    figure: Callable[..., float], *rows: Float[np.ndarray, "K N *any"], draws: int = DRAWS
+    value_of: Callable[..., float], *rows: Float[np.ndarray, "K N *any"], draws: int = DRAWS
 ) -> tuple[float, float, float]:
-    """The figure with its 95 % bootstrap interval.
+    """`value_of` of the rows with its 95 % bootstrap interval.
 
     Training seeds and clips are both drawn with replacement.
 
@@ -81,6 +81,6 @@ def interval_over_seeds(
     values = []
     for _ in range(draws):
         chosen = np.ix_(rng.integers(K, size=K), rng.integers(N, size=N))
-        values.append(figure(*(x[chosen] for x in rows)))
+        values.append(value_of(*(x[chosen] for x in rows)))
     low, high = np.nanpercentile(values, [2.5, 97.5])
-    return float(figure(*rows)), float(low), float(high)
+    return float(value_of(*rows)), float(low), float(high)

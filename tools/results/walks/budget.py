@@ -21,7 +21,7 @@ from motiondiff_edu.motion.clip import Clip
 from motiondiff_edu.recipes.budget import BUDGET, train_for
 from motiondiff_edu.recipes.walkers import OURS, Recipe
 
-from .scores import Figure, score
+from .scores import Measure, score
 from .trials import T_H, UNSEEN, Trials, unseen, walker_generate
 
 SHOWN = (
@@ -101,14 +101,14 @@ def recipe_of(name: str) -> Recipe:
     return replace(BUDGET, name=f"budget.{name}", config=config, **changes)
 
 
-def measure(name: str, budget: Budget) -> list[Figure]:
-    """The figures of one variant, and its number of training steps."""
+def measure(name: str, budget: Budget) -> list[Measure]:
+    """The measures of one variant, and its number of training steps."""
     clips, trials = material(budget)
     walker, steps = train_for(budget.seconds, clips, recipe_of(name))
     walks = walker_generate(walker)(trials.past, trials.control, 0)
-    found = [figure for figure in score(walks, trials.asked, trials.truth) if figure.name in SHOWN]
+    found = [one for one in score(walks, trials.asked, trials.truth) if one.name in SHOWN]
     print(f"{name}: {steps} steps in {budget.seconds:g} CPU-seconds, T_h = {T_H}", flush=True)
-    return [*found, Figure("steps", steps, steps, steps, "")]
+    return [*found, Measure("steps", steps, steps, steps, "")]
 
 
 def budget_records(name: str, budget: Budget, command: str) -> list[dict]:
@@ -125,8 +125,6 @@ def budget_records(name: str, budget: Budget, command: str) -> list[dict]:
         "clips": budget.clips,
         "cpu_seconds": budget.seconds,
     }
-    records = [
-        figure.as_record(f"budget.{name}.", seeds, command) for figure in measure(name, budget)
-    ]
+    records = [one.as_record(f"budget.{name}.", seeds, command) for one in measure(name, budget)]
     torch.set_num_threads(before)
     return records

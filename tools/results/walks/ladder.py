@@ -40,7 +40,7 @@ from motiondiff_edu.recipes.walkers import MEND_CONFIG, OURS, LossWeights, Recip
 from motiondiff_edu.training import TrainState, TrainStep, train_steps
 
 from ..repairs.trials import SHARE, continued, interval_over_seeds
-from .scores import FPS, Figure, root_mean, squared_bone_error
+from .scores import FPS, Measure, root_mean, squared_bone_error
 from .trials import T_H, UNSEEN, Trials
 
 SEEDS = 3
@@ -167,8 +167,8 @@ def rows_of(walker: Walker, trials: Trials, seed: int) -> dict[str, np.ndarray]:
     }
 
 
-# name: (unit, figure of the rows)
-FIGURES = {
+# name: (unit, measure of the rows)
+MEASURES = {
     "bone_rmse_cm": ("cm", ("bone",), root_mean),
     "adherence_excess_mps": (
         "m/s",
@@ -330,24 +330,24 @@ def arrays(kept: dict) -> dict[str, np.ndarray]:
 
 
 def ladder_records(name: str, rows_file: Path, base_file: Path | None, command: str) -> list[dict]:
-    """The figures of a cell, of each of its seeds, and what they are minus the base's."""
+    """The measures of a cell, of each of its seeds, and what they are minus the base's."""
     kept = read_rows(rows_file)
     rows = arrays(kept)
     about = {"data": UNSEEN, "trainings": len(kept["seeds"]), "clips": rows["bone"].shape[1]}
     about |= {"steps": kept["steps"], "rate": kept["rate"], "cpu_seconds": CPU_SECONDS}
     base = arrays(read_rows(base_file)) if base_file is not None and base_file.is_file() else None
     found = []
-    for figure, (unit, keys, value) in FIGURES.items():
+    for kind, (unit, keys, value) in MEASURES.items():
         mine = [rows[key] for key in keys]
-        found.append(Figure(figure, *interval_over_seeds(value, *mine), unit))
+        found.append(Measure(kind, *interval_over_seeds(value, *mine), unit))
         for seed in range(len(mine[0])):
             one = float(value(*(row[seed] for row in mine)))
-            found.append(Figure(f"{figure}.seed{seed}", one, one, one, unit))
+            found.append(Measure(f"{kind}.seed{seed}", one, one, one, unit))
         if base is not None and len(base["bone"]) == len(rows["bone"]):
             both = [*mine, *(base[key] for key in keys)]
             n = len(keys)
             apart = interval_over_seeds(lambda *x, n=n, v=value: v(*x[:n]) - v(*x[n:]), *both)
-            found.append(Figure(f"{figure}_minus_base", *apart, unit))
+            found.append(Measure(f"{kind}_minus_base", *apart, unit))
     return [one.as_record(f"ladder.{name}.", about, command) for one in found]
 
 
@@ -380,7 +380,7 @@ def measure(row: str, folder: Path, runs: Path, size: Size, command: str) -> lis
 def plan_records(plan: Plan, row: str, command: str) -> list[dict]:
     """Row "pace": milliseconds of a step of each cell. Row "rates": that of each optimiser."""
     found = {
-        "pace": [Figure(f"{name}.step_ms", ms, ms, ms, "ms") for name, ms in plan.pace.items()],
-        "rates": [Figure(f"{key}.rate", rate, rate, rate, "") for key, rate in plan.rates.items()],
+        "pace": [Measure(f"{name}.step_ms", ms, ms, ms, "ms") for name, ms in plan.pace.items()],
+        "rates": [Measure(f"{key}.rate", rate, rate, rate, "") for key, rate in plan.rates.items()],
     }
     return [one.as_record("ladder.plan.", {"threads": 1}, command) for one in found[row]]

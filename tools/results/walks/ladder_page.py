@@ -6,7 +6,7 @@ from motiondiff_edu._files import replacing
 from motiondiff_edu.viz.ladder import Rung, ladder
 
 from ..page.markdown import cell, table
-from .ladder import CELLS, CPU_SECONDS, FIGURES, PRINTED_RATE, RATES, SEEDS, TRIAL, root
+from .ladder import CELLS, CPU_SECONDS, MEASURES, PRINTED_RATE, RATES, SEEDS, TRIAL, root
 
 PICTURE = "ladder.png"
 GROUPS = {"ours": "our recipe, one choice taken out", "printed": "the printed recipe, one added"}
@@ -54,14 +54,14 @@ def section(records: dict[str, dict], folder: Path) -> str:
         f"{', '.join(f'{rate:g}' for rate in RATES['muon'])}: least loss on validation clips after "
         f"{TRIAL:.0%} of the budget, for each of both recipes and each optimiser.\n\n"
     )
-    head = ["recipe", "steps", "rate", *(WORDS[kind] for kind in FIGURES)]
+    head = ["recipe", "steps", "rate", *(WORDS[kind] for kind in MEASURES)]
     rows = []
     for name in there:
         seeds = records[f"ladder.{name}.bone_rmse_cm"]["seeds"]
         base = CELLS[name].base
         words = f"{'' if not base else base + ': '}{CELLS[name].words}"
-        figures = [cell(records.get(f"ladder.{name}.{kind}"), unit=False) for kind in FIGURES]
-        rows.append([words, str(seeds["steps"]), f"{seeds['rate']:g}", *figures])
+        measures = [cell(records.get(f"ladder.{name}.{kind}"), unit=False) for kind in MEASURES]
+        rows.append([words, str(seeds["steps"]), f"{seeds['rate']:g}", *measures])
     text += table(head, rows)
     if waiting:
         text += f"\nNot trained yet: {', '.join(f'`{name}`' for name in waiting)}.\n"
@@ -110,7 +110,7 @@ def draw(records: dict[str, dict], folder: Path) -> None:
         "Every recipe of the ladder, a dot for each training seed. The dashed lines are the means "
         "of the two whole recipes. Smaller is better everywhere; wide axes are logarithmic."
     )
-    picture = ladder(rungs, [WORDS[kind] for kind in FIGURES], words)
+    picture = ladder(rungs, [WORDS[kind] for kind in MEASURES], words)
     with replacing(folder / PICTURE) as aside:
         aside.write_bytes(picture.as_png())
 
@@ -123,7 +123,7 @@ def rung(name: str, records: dict[str, dict]) -> Rung:
             for seed in range(SEEDS)
             if (key := f"ladder.{name}.{kind}.seed{seed}") in records
         ]
-        for kind in FIGURES
+        for kind in MEASURES
     }
     group = GROUPS[root(name)]
     return Rung(CELLS[name].words, group, values)

@@ -17,7 +17,7 @@ from motiondiff_edu.metrics.footsteps import PAPER, ROBUST
 from motiondiff_edu.pretrained import checkpoints
 
 from . import steps_table
-from .scores import Figure, diversity, score
+from .scores import Measure, diversity, score
 from .trials import UNSEEN, Choices, Trials, choices, rollouts_of, unseen, walker_generate
 
 CACHE = Path("build/results")  # rollouts are kept, so that a new metric needs no new ones
@@ -137,7 +137,7 @@ class Walks:
     hold: bool = True
     choose: bool = True  # also measure the diversity
 
-    def figures(self, bench: Bench) -> list[Figure]:
+    def measures(self, bench: Bench) -> list[Measure]:
         trials = bench.trials
         walks = bench.rollouts(self.name, self.steps, self.hold, "walks")
         found = score(walks, trials.asked, trials.truth)
@@ -169,25 +169,28 @@ def kept_records(folder: Path, name: str) -> list[dict]:
 
 
 def walker_records(bench: Bench, line: Walks, command: str) -> list[dict]:
-    """The figures of one line as records."""
+    """The measures of one line as records."""
     return [
-        as_record(f"{line.prefix}.", figure, bench, line, command) for figure in line.figures(bench)
+        as_record(f"{line.prefix}.", measure, bench, line, command)
+        for measure in line.measures(bench)
     ]
 
 
-def as_record(prefix: str, figure: Figure, bench: Bench, line: Walks | None, command: str) -> dict:
-    """A record with all settings of the figure: seeds, the amount of measurement, and the weights.
+def as_record(
+    prefix: str, measure: Measure, bench: Bench, line: Walks | None, command: str
+) -> dict:
+    """A record with all settings of the measure: seeds, the amount of measurement, and the weights.
 
-    The data's own figures have no weights.
+    The data's own measures have no weights.
     """
     size, seeds = bench.size, {"rollouts": 0}
-    if figure.name.startswith("diversity"):
+    if measure.name.startswith("diversity"):
         seeds |= {"data": UNSEEN + 500_000, "pasts": size.pasts, "each": size.each}
     else:
         seeds |= {"data": UNSEEN, "clips": size.clips, "seconds": size.seconds}
     if line:
         seeds |= {"weights": weights_digest(bench.weights[line.name]), "steps": line.steps or "all"}
-    return figure.as_record(prefix, seeds, command, _paper_bones(prefix + figure.name))
+    return measure.as_record(prefix, seeds, command, _paper_bones(prefix + measure.name))
 
 
 def _paper_bones(name: str) -> float | None:
@@ -209,17 +212,17 @@ def footstep_records(bench: Bench, command: str) -> tuple[list[dict], dict[str, 
         for suffix, rule in (("", PAPER), ("-robust", ROBUST)):
             table = steps_table.tables(poses, bench.trials.asked, rule)
             curves[name + suffix] = steps_table.curve(table)
-            found = steps_table.figures(table)
+            found = steps_table.measures(table)
             records += [
-                as_record(f"footsteps{suffix}.{name}.", figure, bench, line, command)
-                for figure in found
+                as_record(f"footsteps{suffix}.{name}.", measure, bench, line, command)
+                for measure in found
             ]
     for one in records:
-        one["paper"] = _paper_figure(one["name"])
+        one["paper"] = _paper_measure(one["name"])
     return records, curves
 
 
-def _paper_figure(name: str) -> float | None:
+def _paper_measure(name: str) -> float | None:
     kind, who, what = name.split(".")
     row = PAPER_ROWS.get(who)
     column = ("f_est", "v95_cmps", "mean_s", "std_s").index(what)

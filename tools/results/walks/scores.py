@@ -1,4 +1,4 @@
-"""The figures of one walker on a set of trials, each with its interval over clips.
+"""The measures of one walker on a set of trials, each with its interval over clips.
 
 Names, values, units.
 
@@ -26,8 +26,8 @@ EDGE = 3 * FPS  # drift compares the first three seconds with the last three
 
 
 @dataclass(frozen=True)
-class Figure:
-    """One measured figure, before it becomes a record."""
+class Measure:
+    """One measured number, before it becomes a record."""
 
     name: str
     value: float
@@ -76,14 +76,14 @@ def score(
     poses: Float[np.ndarray, "N n J 3"],
     control: Float[np.ndarray, "N n 3"],
     truth: Float[np.ndarray, "N n J 3"],
-) -> list[Figure]:
-    """The figures of `poses` generated under `control`, and those of the data's own `truth`."""
+) -> list[Measure]:
+    """The measures of `poses` generated under `control`, and those of the data's own `truth`."""
     own, data = adherence(poses, control), adherence(truth, control)
     slide, slide_data = skating(poses, control), skating(truth, control)
     first, last = slice(None, EDGE), slice(-EDGE, None)
     bones = [squared_bone_error(poses[:, part]) for part in (first, last)]
     kept = [adherence(poses[:, part], control[:, part]) for part in (first, last)]
-    figures = {
+    measures = {
         "bone_rmse_cm": ("cm", root_mean, squared_bone_error(poses)),
         "bone_rmse_within_clip_cm": ("cm", root_mean, squared_stretch(poses)),
         "bone_rmse_data_cm": ("cm", root_mean, squared_bone_error(truth)),
@@ -100,27 +100,27 @@ def score(
         "planted_share": ("share", np.nanmean, planted_share(poses)),
         "planted_share_data": ("share", np.nanmean, planted_share(truth)),
     }
-    return [figure_of(name, unit, figure, *rows) for name, (unit, figure, *rows) in figures.items()]
+    return [measure_of(name, unit, value, *rows) for name, (unit, value, *rows) in measures.items()]
 
 
 def diversity(
     rollouts: Float[np.ndarray, "P n T J 3"], drawn: Float[np.ndarray, "P n T J 3"]
-) -> list[Figure]:
+) -> list[Measure]:
     """Spread of the rollouts, of the data's continuations, and their ratio.
 
     The interval is over pasts.
     """
     own, data = spread(rollouts), spread(drawn)
     return [
-        figure_of("diversity_m", "m", np.mean, own),
-        figure_of("diversity_data_m", "m", np.mean, data),
-        figure_of("diversity_over_data", "ratio", ratio, own, data),
-        figure_of("diversity_over_data_median", "ratio", lambda a, b: np.median(a / b), own, data),
+        measure_of("diversity_m", "m", np.mean, own),
+        measure_of("diversity_data_m", "m", np.mean, data),
+        measure_of("diversity_over_data", "ratio", ratio, own, data),
+        measure_of("diversity_over_data_median", "ratio", lambda a, b: np.median(a / b), own, data),
     ]
 
 
-def figure_of(name: str, unit: str, figure: Callable[..., float], *rows: np.ndarray) -> Figure:
-    """The figure `figure(*rows)` with its interval over the rows.
+def measure_of(name: str, unit: str, value: Callable[..., float], *rows: np.ndarray) -> Measure:
+    """The number `value(*rows)` with its interval over the rows.
 
     It is NaN, without a warning, when there is no number.
     """
@@ -128,7 +128,7 @@ def figure_of(name: str, unit: str, figure: Callable[..., float], *rows: np.ndar
         warnings.simplefilter(
             "ignore", RuntimeWarning
         )  # the mean of no numbers is NaN, and is shown as NaN
-        return Figure(name, *interval(figure, *rows), unit)
+        return Measure(name, *interval(value, *rows), unit)
 
 
 def root_mean(squares: Float[np.ndarray, "N"]) -> float:

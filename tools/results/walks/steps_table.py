@@ -11,7 +11,7 @@ from jaxtyping import Float
 
 from motiondiff_edu.metrics.footsteps import PAPER, TOLERANCES, StepRule, heel_speed, step_durations
 
-from .scores import Figure, figure_of
+from .scores import Measure, measure_of
 
 # f_est, v95 (cm/s), mean and std of step duration (s), bone RMSE (cm): MoDiff Table I, Edinburgh,
 # CMU and HDM05 data
@@ -58,10 +58,10 @@ def row(table: Float[np.ndarray, "N V 3"]) -> tuple[float, float, float, float]:
     )
 
 
-def figures(table: Float[np.ndarray, "N V 3"]) -> list[Figure]:
-    """The row of Table I as figures with intervals."""
+def measures(table: Float[np.ndarray, "N V 3"]) -> list[Measure]:
+    """The row of Table I as measures with intervals."""
     names = (("f_est", "steps"), ("v95_cmps", "cm/s"), ("mean_s", "s"), ("std_s", "s"))
     return [
-        figure_of(name, unit, lambda t, i=i: row(t)[i], table)
+        measure_of(name, unit, lambda t, i=i: row(t)[i], table)
         for i, (name, unit) in enumerate(names)
     ]

@@ -1,7 +1,7 @@
 """The scores of the walking data themselves.
 
 They are the spread of continuations, adherence, skating and the lean in turns, with their limits.
-Every figure of a network that was trained on these data is compared with them.
+Every number of a network that was trained on these data is compared with them.
 """
 
 import time
@@ -32,7 +32,7 @@ def spreads(pasts: int, n: int, seconds: float, seed: int = 0) -> Float[np.ndarr
     return np.array(found)
 
 
-def own_figures(
+def own_measures(
     clips: int = 60, pasts: int = 20, n: int = 50, seconds: float = 12.0
 ) -> dict[str, float]:
     """Means over clips of spread (m), adherence, skating (m/s), and of the lean in turns
