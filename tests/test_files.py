@@ -143,3 +143,12 @@ def test_threads_that_write_one_file_do_not_tear_it(tmp_path):
         list(pool.map(write, texts))
     assert set(read) <= set(texts) and len(read) == 80
     assert [p.name for p in tmp_path.iterdir()] == ["one.txt"]
+
+
+@pytest.mark.parametrize(
+    "path", sorted((ROOT / "motiondiff_edu/widgets/js").glob("*.js")), ids=lambda path: path.name
+)
+def test_javascript_has_100_columns_and_one_declaration_a_line(path):
+    lines = path.read_text(encoding="utf-8").splitlines()
+    assert [n for n, line in enumerate(lines, 1) if len(line) > 100] == []
+    assert [n for n, line in enumerate(lines, 1) if re.search(r";\s*(const|let)\s", line)] == []

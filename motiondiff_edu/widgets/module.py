@@ -13,7 +13,7 @@ PARTS = ("dom", "figures", "paint", "clock", "lane", "player")
 EDITOR = ("dom", "figures", "paint", "clock", "timeline", "stage", "wire", "editor")
 BENCH = ("dom", "figures", "paint", "clock", "bench_paint", "bench")
 
-_IMPORT = re.compile(r'^import \{.*\} from "\./\w+\.js";\n', re.MULTILINE)
+_IMPORT = re.compile(r'^import \{[^}]*\} from "\./\w+\.js";\n', re.MULTILINE)
 _EXPORT = re.compile(r"^export (?=function|const)", re.MULTILINE)
 
 

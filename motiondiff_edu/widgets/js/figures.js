@@ -1,20 +1,29 @@
-// The motion as the page holds it: bytes -> per figure { frames, root(t), pose(t), planted(t), prints }.
+// The motion as the page holds it: bytes -> per figure { frames, root(t), pose(t), planted(t),
+// prints }.
 import { clamp } from "./dom.js";
 
-export function bytes(view) { return view.buffer.slice(view.byteOffset, view.byteOffset + view.byteLength); }
+export function bytes(view) {
+  return view.buffer.slice(view.byteOffset, view.byteOffset + view.byteLength);
+}
 
 export function unpack(model) {
-  const scene = model.get("scene"), J = scene.joints;
-  const joints = new Int16Array(bytes(model.get("joints"))), roots = new Float32Array(bytes(model.get("roots")));
+  const scene = model.get("scene");
+  const J = scene.joints;
+  const joints = new Int16Array(bytes(model.get("joints")));
+  const roots = new Float32Array(bytes(model.get("roots")));
   const codes = new Uint8Array(bytes(model.get("contacts")));
   let start = 0;
   return scene.figures.map((info) => {
-    const first = start; start += info.frames;
+    const first = start;
+    start += info.frames;
     const at = (t) => first + clamp(t, 0, info.frames - 1);
     const root = (t) => [0, 1, 2].map((k) => roots[3 * at(t) + k]);
     const pose = (t) => {
-      const r = root(t), base = 3 * J * at(t);
-      return Array.from({ length: J }, (_, j) => [0, 1, 2].map((k) => r[k] + joints[base + 3 * j + k] / 2048));
+      const r = root(t);
+      const base = 3 * J * at(t);
+      return Array.from({ length: J }, (_, j) =>
+        [0, 1, 2].map((k) => r[k] + joints[base + 3 * j + k] / 2048),
+      );
     };
     const figure = { ...info, root, pose, planted: (t) => (info.contacts ? codes[at(t)] : 0) };
     figure.prints = info.contacts ? footprints(figure) : [];
@@ -22,9 +31,13 @@ export function unpack(model) {
   });
 }
 
-export function footprints(figure) { // one print for each run of contact: where ankle and toe are in its middle
+export function footprints(figure) {
+  // one print for each run of contact: where ankle and toe are in its middle
   const prints = [];
-  [[1, 3, 4, "L"], [2, 7, 8, "R"]].forEach(([bit, ankle, toe, side]) => {
+  [
+    [1, 3, 4, "L"],
+    [2, 7, 8, "R"],
+  ].forEach(([bit, ankle, toe, side]) => {
     for (let t = 0; t < figure.frames; t++) {
       if (!(figure.planted(t) & bit)) continue;
       const begin = t;

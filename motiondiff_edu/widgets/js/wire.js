@@ -1,18 +1,30 @@
-// The way from the editor's page to Python. Each message sends a difference (a frame pinned or released,
-// a joint moved by so much since it was gripped) and none sends a pose: the pose on the page may be old,
-// and Python adds the difference to its own. So nothing has to wait for an answer.
+// The way from the editor's page to Python. Each message sends a difference (a frame pinned or
+// released, a joint moved by so much since it was gripped) and none sends a pose: the pose on the
+// page may be old, and Python adds the difference to its own. So nothing has to wait for an answer.
 
-const SILENCE = 5000, PATIENCE = 1000; // milliseconds
+const SILENCE = 5000;
+const PATIENCE = 1000; // milliseconds
 
 // `heard()`: the number of the message that Python answered last; `busy()`: it makes in-betweens.
-// `trouble(gone)` is called when no answer comes (false), or no message can be sent any more (true).
+// `trouble(gone)` is called when no answer comes (false), or no message can be sent any more
+// (true).
 export function wire(model, heard, busy, trouble) {
-  let number = 0, waiting = null, dragged = 0, gone = false, silence = 0, patience = 0;
+  let number = 0;
+  let waiting = null;
+  let dragged = 0;
+  let gone = false;
+  let silence = 0;
+  let patience = 0;
 
-  function reach(content) { // `send` throws once the kernel was shut down or restarted
-    try { model.send(content); } catch {
-      gone = true; waiting = null;
-      close(); trouble(true);
+  function reach(content) {
+    // `send` throws once the kernel was shut down or restarted
+    try {
+      model.send(content);
+    } catch {
+      gone = true;
+      waiting = null;
+      close();
+      trouble(true);
       return false;
     }
     gone = false;
@@ -34,18 +46,25 @@ export function wire(model, heard, busy, trouble) {
     else if (reach({ do: "ping" })) silence = setTimeout(miss, SILENCE);
   }
 
-  // One drag at a time is on its way, so that a slow kernel is not flooded; the newest goes next, and
-  // holds all that its grip moved. Without an answer it goes all the same.
+  // One drag at a time is on its way, so that a slow kernel is not flooded; the newest goes next,
+  // and holds all that its grip moved. Without an answer it goes all the same.
   function handOn() {
     const content = waiting;
     waiting = null;
     if (!content || !send(content)) return;
     dragged = number;
     clearTimeout(patience);
-    patience = setTimeout(() => { patience = 0; handOn(); }, PATIENCE);
+    patience = setTimeout(() => {
+      patience = 0;
+      handOn();
+    }, PATIENCE);
   }
 
-  function close() { clearTimeout(silence); clearTimeout(patience); patience = 0; }
+  function close() {
+    clearTimeout(silence);
+    clearTimeout(patience);
+    patience = 0;
+  }
 
   return {
     close,
@@ -53,7 +72,8 @@ export function wire(model, heard, busy, trouble) {
     gone: () => gone,
     asking: () => !gone && number > heard(), // a request that is not answered yet
     dragging: () => waiting != null || (!gone && dragged > heard()),
-    ask(content) { // the number of the message, or 0 where none can be sent; drags go before it
+    ask(content) {
+      // the number of the message, or 0 where none can be sent; drags go before it
       handOn();
       return send(content) ? number : 0;
     },
@@ -63,7 +83,8 @@ export function wire(model, heard, busy, trouble) {
     },
     answered() {
       if (heard() < dragged) return;
-      clearTimeout(patience); patience = 0;
+      clearTimeout(patience);
+      patience = 0;
       handOn();
     },
   };
