@@ -132,14 +132,14 @@ class Dancer(Performer):
         with with_bar(self, evaluations, "dancing", progress) as one:
             dances = one.dance_mel(mel, frames, generator=generator, steps=steps)
         dances = dances.double().cpu().numpy()
-        name = Path(sound).stem if isinstance(sound, (str, Path)) else "sound"
+        name = Path(sound).stem if isinstance(sound, (str, Path)) else "the sound given"
         made = [
             Motion(
                 dance,
                 FPS,
                 audio=audio.numpy(),
                 sample_rate=SAMPLE_RATE,
-                source=f"{name}, danced to",
+                source=f"dance to {name}",
             )
             for dance in dances
         ]

@@ -87,9 +87,13 @@ def ways(
 def masks(
     known: Mapping[str, Bool[np.ndarray, "T J"]], words: str, fps: float | int = 20
 ) -> Figure:
-    """A panel for each mask: joints from top to bottom, time to the right."""
-    fig, axes = figure(2.5 * len(known), 2.9, words, 1, len(known), share="y")
-    for axis, (name, mask) in zip(axes, known.items(), strict=True):
+    """A panel for each mask, three in a row: joints from top to bottom, time to the right."""
+    rows = -(-len(known) // 3)
+    columns = min(len(known), 3)
+    fig, axes = figure(10, 0.5 + 2.6 * rows, words, rows, columns, share="xy")
+    for axis in axes[len(known) :]:
+        axis.remove()
+    for axis, (name, mask) in zip(axes, known.items(), strict=False):
         extent = (0, len(mask) / fps, mask.shape[1] - 0.5, -0.5)
         colours = ListedColormap([OPEN, GIVEN])
         axis.imshow(
@@ -101,9 +105,10 @@ def masks(
             aspect="auto",
             interpolation="nearest",
         )
-        axis.set(title=name, xlabel="time (s)")
+        axis.set_title(name)
         axis.grid(False)
-    axes[0].set_ylabel("joint")
+    fig.supxlabel("time (s)")
+    fig.supylabel("joint")
     keys = [Patch(color=GIVEN, label="given"), Patch(fc=OPEN, ec=GREY, label="to be generated")]
     fig.legend(handles=keys, loc="outside lower right", ncols=2, frameon=False, fontsize=SMALL)
     return fig

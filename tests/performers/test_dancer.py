@@ -215,7 +215,7 @@ def test_dancing_to_sound(tmp_path: Path):
     assert len(first) == len(second) == 40 and not (first.positions == second.positions).all()
     soundfile.write(tmp_path / "noise.wav", sound.numpy(), 16_000, subtype="FLOAT")
     read = one.dance(tmp_path / "noise.wav", steps=2)
-    assert len(read) == 40 and read.source == "noise, danced to"
+    assert len(read) == 40 and read.source == "dance to noise"
     assert abs(read.audio - (sound - sound.mean()).numpy()).max() < 1e-3
     with pytest.raises(ValueError, match="spelling"):
         one.dance(tmp_path / "nothing.wav")
