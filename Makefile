@@ -94,7 +94,7 @@ bench: $(VENV)/.bench ## measure against the public peers into benchmarks/result
 	$(BIN)/python -m benchmarks
 
 pretrained: $(VENV)/.lab ## train all shipped weights again (hours)
-	$(BIN)/python -m motiondiff_edu.recipes
+	$(BIN)/python -m motiondiff_edu.recipes --out motiondiff_edu/pretrained
 
 clean: ## remove .venv and build files; keep trainings in progress (build/runs) and rollouts (build/results)
 	rm -rf $(VENV) build/bdist* build/numba build/lib build/quick dist *.egg-info .pytest_cache .ruff_cache

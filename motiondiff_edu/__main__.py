@@ -14,7 +14,9 @@ its traceback (`_commands.expected`).
 
 import argparse
 import importlib
+import os
 import sys
+from contextlib import suppress
 
 from . import _commands
 from .course.places import program
@@ -52,7 +54,20 @@ def parser_of(verbs: dict) -> argparse.ArgumentParser:
 
 
 def main(arguments: list[str] | None = None) -> int:
-    """Run one verb; returns the exit status."""
+    """Run one verb; returns the exit status, also where Ctrl-C or a closed pipe ends it."""
+    try:
+        return _run(arguments)
+    except KeyboardInterrupt:
+        print("\nstopped", file=sys.stderr)
+        return _commands.STOPPED
+    except BrokenPipeError:
+        # what is still to be written has no reader, and Python would complain about it at its end
+        with suppress(OSError):
+            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return 1
+
+
+def _run(arguments: list[str] | None) -> int:
     verbs = {
         name: importlib.import_module(f"motiondiff_edu.{module}") for name, module in VERBS.items()
     }
@@ -69,10 +84,12 @@ def main(arguments: list[str] | None = None) -> int:
         return _commands.run(verb, chosen)
     try:
         return verb.run(chosen)
+    except BrokenPipeError:
+        raise
     except Exception as error:
         if not _commands.expected(error):
             raise
-        print(error, file=sys.stderr)
+        print(_commands.message(error), file=sys.stderr)
         return 1
 
 

@@ -19,6 +19,7 @@ from torch import Tensor
 
 WindowSampler = Callable[[Tensor, Tensor, torch.Generator], Tensor]
 Control = Tensor | Callable[[int], Tensor]
+COLUMNS = ("forward speed", "speed to the left", "turning rate")  # m/s, m/s, rad/s
 
 
 @runtime_checkable
@@ -166,7 +167,7 @@ def generate(
 
 
 def _warn_beyond(control: Float[Tensor, "B T C"], T_h: int, seen: dict | None) -> None:
-    """Warn about a row beyond the control of the training clips by over a tenth of its range.
+    """Warn about speeds beyond the control of the training clips by over a tenth of its range.
 
     The first T_h rows are of the past, and nobody can change them.
     """
@@ -175,17 +176,18 @@ def _warn_beyond(control: Float[Tensor, "B T C"], T_h: int, seen: dict | None) -
     low, high = (torch.tensor(seen[end], device=control.device) for end in ("low", "high"))
     slack = 0.1 * (high - low)
     ahead = control[:, T_h:]
-    beyond = ((ahead < low - slack) | (ahead > high + slack)).nonzero()
-    if len(beyond):
-        batch, row, column = beyond[0].tolist()
-        name = (
-            ("forward speed", "speed to the left", "turning rate")[column]
-            if len(low) == 3
-            else f"column {column}"
+    beyond = (ahead < low - slack) | (ahead > high + slack)
+    found = []
+    for column in beyond.any(1).any(0).nonzero().flatten().tolist():
+        batch, row = beyond[..., column].nonzero()[0].tolist()
+        name = COLUMNS[column] if len(low) == len(COLUMNS) else f"column {column}"
+        found.append(
+            f"a {name} of {ahead[batch, row, column]:.3g} in frame {row} of the future (training: "
+            f"{low[column]:.3g} to {high[column]:.3g})"
         )
+    if found:
         warnings.warn(
-            f"row {row + T_h} of the control ({row} of its future) is "
-            f"{ahead[batch, row, column]:.3g} ({name}); this walker was trained on "
-            f"{low[column]:.3g} to {high[column]:.3g}, and will not follow it well",
+            f"the control asks for more than this walker was trained on, and it will not follow "
+            f"well: {'; '.join(found)}",
             stacklevel=3,
         )

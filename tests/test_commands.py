@@ -7,6 +7,7 @@ import subprocess
 import sys
 import time
 from argparse import Namespace
+from contextlib import suppress
 from pathlib import Path
 from types import ModuleType
 
@@ -20,7 +21,8 @@ from data_synth.music import compose
 from data_synth.walking import walk
 from motiondiff_edu import __main__ as command
 from motiondiff_edu import _commands
-from motiondiff_edu._commands import control_words
+from motiondiff_edu._commands import control_words, outputs
+from motiondiff_edu.course import doctor
 from motiondiff_edu.motion.motion import MotionError
 
 ARM = "RightArm,RightForeArm,RightHand"
@@ -208,6 +210,47 @@ def test_an_error_of_the_projects_own_is_a_message(capsys):
     assert capsys.readouterr().err == "walk: the walk has no feet\n"
 
 
+def test_a_folder_that_cannot_be_written_is_told_before_the_work(folder, capsys, monkeypatch):
+    monkeypatch.setattr(outputs.os, "access", lambda *_: False)
+    assert run(*WALK[:-1], "locked/more.bvh") == 1
+    assert "you may not write in" in capsys.readouterr().err
+    monkeypatch.undo()
+    assert run(*WALK[:-1], str(folder / "my_walk.bvh/more.bvh")) == 1
+    said = capsys.readouterr().err
+    assert "my_walk.bvh is a file, not a folder" in said and "reading" not in said
+
+
+def test_ctrl_c_and_a_closed_pipe_end_any_verb_quietly(monkeypatch, capsys):
+    for error, status in ((KeyboardInterrupt(), 130), (BrokenPipeError(), 1)):
+
+        def stopped(_, error=error):
+            raise error
+
+        monkeypatch.setattr(doctor, "run", stopped)
+        assert run("doctor") == status
+    assert "Traceback" not in capsys.readouterr().err
+
+
+def test_a_missing_package_says_what_to_do():
+    words = _commands.message(ModuleNotFoundError("No module named 'torch'", name="torch"))
+    assert "torch is not installed for" in words and "make" in words
+
+
+def test_convert_takes_names_of_joints_and_a_frame_rate(folder, capsys):
+    text = Path("my_walk.bvh").read_text().replace("LeftUpLeg", "zzz")
+    Path("odd.bvh").write_text(text.replace("Frame Time: 0.05", "Frame Time: 1"))
+    assert run("convert", "odd.bvh", "odd.npz") == 1
+    assert "--file-fps" in capsys.readouterr().err
+    assert run("convert", "odd.bvh", "odd.npz", "--file-fps", "20") == 1
+    assert "no joint found for LeftUpLeg" in capsys.readouterr().err
+    words = ["convert", "odd.bvh", "odd.npz", "--file-fps", "20", "--joints", "LeftUpLeg=zzz"]
+    assert run(*words) == 0
+    ours = md.read_motion("my_walk.bvh")
+    np.testing.assert_allclose(md.read_motion("odd.npz").positions, ours.positions, atol=1e-9)
+    assert run("convert", "odd.bvh", "two.npz", "--joints", "LeftUpLeg") == 1
+    assert "write JOINT=NAME" in capsys.readouterr().err
+
+
 def test_an_option_that_is_none_is_refused(folder, capsys):
     assert run(*WALK, "--speed", "3") == 2
     assert "walk does not know --speed 3" in capsys.readouterr().err
@@ -269,21 +312,36 @@ def test_words_that_are_no_control_are_marked_where_they_go_wrong(words, at, tol
 
 
 def interrupted(words: list[str], folder: Path, seen: str) -> tuple[int, str]:
-    """The exit code and stderr of a command that gets Ctrl-C once it has said `seen`."""
+    """The exit code and stderr of a command that gets Ctrl-C once it has said `seen`.
+
+    Its stderr is a terminal, because a progress bar shows only there.
+    """
+    import fcntl  # none of these on Windows
+    import pty
+    import struct
+    import termios
+
+    terminal, end = pty.openpty()
+    fcntl.ioctl(end, termios.TIOCSWINSZ, struct.pack("HHHH", 24, 80, 0, 0))
     process = subprocess.Popen(
         [sys.executable, "-m", "motiondiff_edu", *words],
-        cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, bufsize=0,
+        cwd=folder, stdout=subprocess.PIPE, stderr=end,
         env=os.environ | {"PYTHONPATH": os.pathsep.join(sys.path)},
         # a shell starts background jobs with Ctrl-C ignored, and what they start inherits that
         preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
     )  # fmt: skip
     said = b""
-    while seen.encode() not in said and process.poll() is None:
-        said += process.stderr.read(1)
-    time.sleep(0.3)
-    process.send_signal(signal.SIGINT)
-    _, rest = process.communicate(timeout=60)
-    return process.returncode, (said + rest).decode()
+    os.close(end)
+    with suppress(OSError):  # the other end was closed: the command has ended
+        while seen.encode() not in said:
+            said += os.read(terminal, 1000)
+        time.sleep(0.3)
+        process.send_signal(signal.SIGINT)
+        while True:
+            said += os.read(terminal, 1000)
+    process.communicate(timeout=60)
+    os.close(terminal)
+    return process.returncode, said.decode()
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="Windows has no SIGINT for another process")

@@ -4,6 +4,7 @@ told when it cannot be."""
 import json
 import subprocess
 import sys
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -12,7 +13,9 @@ from as_typed import outcomes
 import motiondiff_edu as md
 from data_synth.music import compose
 from data_synth.walking import walk
+from motiondiff_edu.motion.normalise import MotionWarning
 from motiondiff_edu.motion.skeleton import HIPS, TOES, joint_index
+from motiondiff_edu.pretrained import shipped
 from motiondiff_edu.widgets import motions as shown
 from motiondiff_edu.widgets.player import Player
 
@@ -192,6 +195,42 @@ def test_play_shows_several_side_by_side(walked, tmp_path, capsys):
     assert [figure["label"] for figure in figures] == ["a", "b", "c"]
 
 
+def test_a_performer_says_which_other_one_can():
+    with pytest.raises(AttributeError, match="a walker cannot dance; md.load..dancer.. can"):
+        md.load("walker").dance("song.ogg")
+    with pytest.raises(AttributeError, match="a dancer cannot walk; md.load..walker.. can"):
+        md.load("dancer").walk(None, None)
+    with pytest.raises(AttributeError, match="'Dancer' has no attribute 'sing'"):
+        md.load("dancer").sing()
+
+
+def test_motions_of_one_name_are_numbered(walked):
+    player = shown.player_of([walked, replace(walked, source="other"), walked])
+    labels = [figure["label"] for figure in player.scene["figures"]]
+    assert labels == [f"{walked.source} (1)", "other", f"{walked.source} (2)"]
+
+
+def test_an_unlike_motion_is_told_of_where_the_in_betweens_jump(walked, monkeypatch):
+    """The network is replaced by one that leaves the way; the message has frames and speeds."""
+
+    def astray(dancer, positions, known, *, samples, **_):
+        made = np.stack([positions] * samples)
+        made[:, 30:35] += 2.0
+        return made
+
+    monkeypatch.setattr(shipped.inbetweens, "inbetween", astray)
+    with pytest.warns(MotionWarning, match="between frames 20 and 40, where 1.* m/s would do"):
+        md.inbetween(walked, md.keyframes(walked), progress=False)
+
+
+def test_an_npz_without_a_frame_rate_or_in_centimetres_is_noted(walked, tmp_path):
+    np.savez(tmp_path / "bare.npz", positions=100 * walked.positions)
+    with pytest.warns(MotionWarning) as notes:
+        md.read_motion(tmp_path / "bare.npz")
+    said = " ".join(str(note.message) for note in notes)
+    assert "no `fps`; 20 frames/s are assumed" in said and "100 times as long" in said
+
+
 def test_play_in_a_notebook_displays_a_player(walked, monkeypatch):
     import IPython.display
 
@@ -242,6 +281,7 @@ w = md.Motion.of_clip(walk(control, seed=1))
 ahead = md.joystick([(0.5, 1, 0, 0)])
 known = w.all_but("Head", 5, 9)
 stick = md.Motion(np.zeros((4, 2, 3)), 20, Skeleton(("a", "b"), (-1, 0)))
+huge = md.Motion(100 * w.positions)
 nan = md.Motion(np.where(known[..., None], w.positions, np.nan))
 open("walk.png", "wb").write(b"png")
 np.savez("flat.npz", positions=np.zeros((2, 63)))
@@ -266,6 +306,16 @@ TOLD = {
     "walker().walk(w, ahead, seconds=-3)": "ValueError: seconds must be above 0",
     "walker().walk(w, [(3, 1.2, 0, 0)])": "ValueError: a control is (rows, 3)",
     "walker().walk(w, np.full((9, 3), np.nan))": "row 0 of the control is [nan nan nan]",
+    "walker().walk(w, np.full((9, 3), 1e30))": "row 0 of the control is [1.e+30 1.e+30 1.e+30]",
+    "walker().walk(w, ahead, seed='a')": "seed must be a whole number from 0 to 2^63 - 1, not 'a'",
+    "walker().walk(huge, ahead)": "the bones are 100 times as long as the course's",
+    "md.inbetween(huge, known)": "Centimetres? Then pass 0.01 * positions",
+    "md.reconstruct(huge, known)": "the bones are 100 times as long",
+    "w.then(3)": "TypeError: this takes a Motion, not int",
+    "w.all_but(13)": "TypeError: name the joints, such as 'LeftArm'",
+    'md.keyframes("walk.bvh")': "TypeError: this takes a Motion, not str",
+    'md.read_motion("flat.npz", file_fps=30)': "`mapping` and `file_fps` are for BVH",
+    "w.resampled(1e6)": "above 0 and at most 10,000",
     "walker().walk(nan, ahead)": "Head in frame 5 has no position",
     "walker().walk(stick, ahead)": "has 2 joints; the course's networks know the 21",
     "walker().walk(w, ahead, samples=0)": "samples must be a whole number of at least 1, not 0",
@@ -288,11 +338,15 @@ TOLD = {
     "md.reconstruct(w[:9], known[:9])": "has 9 frames; the walker's windows have 10",
     "md.reconstruct(w, known[:, :5])": "known is bool (30, 5); it must be bool (30, 21)",
     "md.joystick([(3, 1.2)])": "a segment is (seconds, forward, left, yaw)",
+    "md.joystick((3, 1.2, 0, 0))": "joystick takes a list of segments",
+    "md.joystick([('3', 1.2, 0, 0)])": "four finite numbers, not ('3', 1.2, 0, 0)",
+    "md.joystick([(3, 1.2, 0, 0)], fps=0)": "fps must be a number of frames a second above 0",
     "md.joystick([(-3, 1.2, 0, 0)])": "a segment lasts 0 seconds or more, not -3",
     "md.play()": "TypeError: play needs at least one motion",
     'md.play("walk.bvh")': "TypeError: this takes a Motion, not str",
     "md.play(nan, open_page=False)": "Head in frame 5 has no position",
     "md.play(w, stick, open_page=False)": "have different skeletons",
+    "md.play(w, path='w.txt')": "its name ends in .html",
     "md.play(w, w, labels=['a'], open_page=False)": "1 labels for 2 motions",
 }
 

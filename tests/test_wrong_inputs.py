@@ -154,11 +154,11 @@ def test_a_control_beyond_the_training_data_is_named():
     control[5, 2] = -45.0
     with pytest.warns(
         UserWarning,
-        match=r"row 5 of the control \(1 of its future\) is -45 \(turning rate\); .* on -2 to 2",
+        match=r"a turning rate of -45 in frame 1 of the future \(training: -2 to 2\)",
     ):
         generate(walker, past, control)
     control[5, 2] = -2.5  # a tenth of the range, from -2 to 2, is 0.4
-    with pytest.warns(UserWarning, match="row 5 of the control .* is -2.5"):
+    with pytest.warns(UserWarning, match="a turning rate of -2.5 in frame 1"):
         generate(walker, past, control)
     control[5, 2] = -2.3
     with warnings.catch_warnings():

@@ -30,11 +30,11 @@ def run(module: ModuleType, args: argparse.Namespace) -> int:
         print("\nstopped; no incomplete file is left", file=sys.stderr)
         return STOPPED
     except BrokenPipeError:
-        return 1
+        raise
     except Exception as error:
         if not expected(error):
             raise
-        print(f"{args.verb}: {_message(error)}", file=sys.stderr)
+        print(f"{args.verb}: {message(error)}", file=sys.stderr)
         return 1
     return 0
 
@@ -51,14 +51,19 @@ def expected(error: Exception) -> bool:
         return True
     *_, (frame, _) = traceback.walk_tb(error.__traceback__)
     raised_here = frame.f_globals.get("__name__", "").split(".")[0] in (OURS, "data_synth")
-    words = isinstance(error, ValueError) or " " in _message(error)
+    words = isinstance(error, ValueError) or " " in message(error)
     return raised_here and words and isinstance(error, (ValueError, KeyError))
 
 
-def _message(error: Exception) -> str:
+def message(error: Exception) -> str:
     """The message of an exception; `str` of a KeyError would put it into quotes."""
     if isinstance(error, MemoryError):
         return "there is not enough memory for this; try a shorter motion or song"
+    if isinstance(error, ModuleNotFoundError):
+        return (
+            f"{error.name} is not installed for {sys.executable}. From a clone use make, or "
+            f".venv/bin/python -m {OURS}; elsewhere install the package with pip"
+        )
     if isinstance(error, KeyError) and error.args:
         return str(error.args[0])
     return str(error) or type(error).__name__

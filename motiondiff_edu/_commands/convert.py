@@ -13,9 +13,31 @@ EXAMPLE = "convert my_walk.bvh my_walk.mp4"
 def arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("file", type=Path, help="a motion: .bvh or .npz")
     parser.add_argument("out", type=Path, help=f"the file to write: {outputs.endings()}")
+    parser.add_argument(
+        "--joints",
+        metavar="NAMES",
+        default="",
+        help="BVH: joints whose names are not recognised, such as LeftArm=arm_l,RightArm=arm_r",
+    )
+    parser.add_argument(
+        "--file-fps",
+        type=float,
+        metavar="FPS",
+        help="BVH: the frames a second, if the file is wrong",
+    )
     outputs.add_overwrite(parser)
 
 
 def run(args: argparse.Namespace) -> None:
+    mapping = _mapping(args.joints)
     paths = outputs.output_paths(args.out, args.overwrite)
-    outputs.write_all(outputs.read(args.file), paths)
+    outputs.write_all(outputs.read(args.file, mapping, args.file_fps), paths)
+
+
+def _mapping(names: str) -> dict[str, str] | None:
+    """{joint of the course: joint of the file}, or None for no names."""
+    pairs = [pair.split("=") for pair in names.split(",") if pair.strip()]
+    wrong = next((pair for pair in pairs if len(pair) != 2), None)
+    if wrong:
+        raise ValueError(f"--joints {'='.join(wrong)}: write JOINT=NAME, such as LeftArm=arm_l")
+    return {ours.strip(): theirs.strip() for ours, theirs in pairs} or None

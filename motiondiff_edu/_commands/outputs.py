@@ -1,6 +1,7 @@
 """The files that a command reads and writes; it checks output names before it computes anything."""
 
 import argparse
+import os
 import sys
 from collections.abc import Sequence
 from pathlib import Path
@@ -52,7 +53,8 @@ def add_seed(parser: argparse.ArgumentParser) -> None:
 def output_paths(out: Path, overwrite: bool, samples: int = 1) -> list[Path]:
     """The files to write: `out`, or made-1.bvh, made-2.bvh ... for several samples.
 
-    Raises ValueError for an unknown ending, a folder, or a file that exists.
+    Raises ValueError for an unknown ending, a folder, a file that exists, and for a folder that
+    cannot be made or written to.
     """
     if samples < 1:
         raise ValueError(f"--samples must be at least 1, not {samples}")
@@ -60,6 +62,7 @@ def output_paths(out: Path, overwrite: bool, samples: int = 1) -> list[Path]:
         what = f"unknown ending {out.suffix}" if out.suffix else "the name has no ending"
         raise ValueError(f"--out {out}: {what}; use one of {endings()}")
     out = out.expanduser()
+    _check_folder(out)
     digits = len(str(samples))
     numbers = [""] if samples == 1 else [f"-{k:0{digits}d}" for k in range(1, samples + 1)]
     paths = [out.with_name(f"{out.stem}{number}{out.suffix}") for number in numbers]
@@ -71,12 +74,21 @@ def output_paths(out: Path, overwrite: bool, samples: int = 1) -> list[Path]:
     return paths
 
 
-def read(path: Path):
+def _check_folder(out: Path) -> None:
+    """Raise ValueError unless the file's folder is there, or can be made, and can be written to."""
+    there = next(folder for folder in out.absolute().parents if folder.exists())
+    if not there.is_dir():
+        raise ValueError(f"--out {out}: {there} is a file, not a folder; choose another --out")
+    if not os.access(there, os.W_OK | os.X_OK):
+        raise ValueError(f"--out {out}: you may not write in {there}; choose another --out")
+
+
+def read(path: Path, mapping: dict[str, str] | None = None, file_fps: float | None = None):
     """Read a motion. A line on stderr comes first, because the imports take a moment."""
     say(f"reading {path}")
     from .. import read_motion
 
-    return read_motion(path)
+    return read_motion(path, mapping=mapping, file_fps=file_fps)
 
 
 def listed(made: object) -> list:

@@ -7,16 +7,19 @@ Notebook: 00, 07
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from numbers import Real
 
 import numpy as np
 from jaxtyping import Float
 from scipy.ndimage import gaussian_filter1d
 
+from ..motion.checks import checked_rate
 from ..motion.root_frame import FPS, control_from_path
 
 SPACING = 0.01  # metres between the points that a path is resampled to
 # m/s^2, speed times yaw rate: more than this and a runner would have to lean far into the bend
 SIDEWAYS = 2.5
+FASTEST = 1000.0  # m/s, rad/s: beyond any control that is meant
 RAMP = 0.5  # seconds that a joystick takes from one position to the next
 
 
@@ -73,14 +76,23 @@ def as_long(control: Float[np.ndarray, "n 3"], rows: int | None) -> Float[np.nda
             f"a control is (rows, 3): forward m/s, left m/s, turning rad/s, {FPS:g} rows a second; "
             f"this is {array.shape}. joystick([(seconds, forward, left, turning), ...]) makes one"
         )
-    bad = np.flatnonzero(~np.isfinite(array).all(1))
+    bad = np.flatnonzero(~(np.abs(array) <= FASTEST).all(1))
     if len(bad):
-        raise ValueError(f"row {bad[0]} of the control is {array[bad[0]]}: give finite numbers")
+        raise ValueError(
+            f"row {bad[0]} of the control is {array[bad[0]]}: give numbers (m/s, m/s, rad/s) from "
+            f"-{FASTEST:g} to {FASTEST:g}"
+        )
     if rows is None:
         return array
     if rows < 1:
         raise ValueError(f"a control of {rows} rows has no frame: a frame is {1 / FPS:g} s")
     return array[np.minimum(np.arange(rows), len(array) - 1)]
+
+
+def _four_numbers(segment: object) -> bool:
+    if not isinstance(segment, (list, tuple, np.ndarray)) or len(segment) != 4:
+        return False
+    return all(isinstance(value, Real) and np.isfinite(value) for value in segment)
 
 
 def joystick(
@@ -91,16 +103,15 @@ def joystick(
     Each change takes `ramp` seconds, smoothly.
 
     r(u) = u^2 (3 - 2u) leads from the value left behind to the new one.
-    Raises ValueError for no segment, one that is not four finite numbers, or negative seconds.
+    Raises ValueError for no segment, one that is not four finite numbers, negative seconds, or a
+    frame rate that is not positive.
     """
-    bad = next(
-        (segment for segment in segments if len(segment) != 4 or not np.isfinite(segment).all()),
-        None,
-    )
+    fps = checked_rate(fps)
+    bad = next((segment for segment in segments if not _four_numbers(segment)), None)
     if bad is not None or not segments:
         raise ValueError(
-            "a segment is (seconds, forward, left, yaw), four finite numbers, "
-            f"not {bad or 'nothing'}"
+            "joystick takes a list of segments, and a segment is (seconds, forward, left, yaw), "
+            f"four finite numbers, not {'nothing' if bad is None else repr(bad)}"
         )
     backwards = next((segment for segment in segments if segment[0] < 0), None)
     if backwards is not None:

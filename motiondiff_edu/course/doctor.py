@@ -17,7 +17,7 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
 from ..widgets import module
-from .places import PACKAGE, notebook_folder, place_for_students, program
+from .places import PACKAGE, command_for_lab, notebook_folder, place_for_students, program
 
 HELP = "say on one page what works here, and what to do about the rest"
 EXAMPLE = "doctor"
@@ -244,7 +244,7 @@ def main(checks: Iterable[Callable[[], Finding]] = CHECKS) -> int:
         failed += bool(finding.remedy) and not finding.note
         print(finding, flush=True)
     print(
-        f"\nEverything works. To open the course: {program()} lab"
+        f"\nEverything works. To open the course: {command_for_lab()}"
         if not failed
         else f"\nFailures: {failed}. The arrows above say what to do."
     )

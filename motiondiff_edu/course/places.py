@@ -56,6 +56,12 @@ def program() -> str:
     return name if name == "motiondiff-edu" else "python -m motiondiff_edu"
 
 
+def command_for_lab() -> str:
+    """The command that opens the course, with make or without."""
+    by_make = in_checkout() and "MAKELEVEL" in os.environ
+    return "make lab" if by_make else f"{program()} lab"
+
+
 def command_for_fresh(number: str) -> str:
     """The command for a fresh copy of one notebook, with make or without."""
     by_make = in_checkout() and "MAKELEVEL" in os.environ

@@ -5,13 +5,13 @@ and the other joints relative to it, so a joint can be given only where the pelv
 Source: MoFusion 4.4 (the mask delta).  Notebook: 15
 """
 
-from collections.abc import Iterable, Sequence, Sized
+from collections.abc import Iterable, Sequence
 
 import numpy as np
 from jaxtyping import Bool
 
 from ..motion.checks import checked_count
-from ..motion.motion import Motion, MotionError
+from ..motion.motion import Motion, MotionError, as_motion
 from ..motion.skeleton import COURSE, HIPS, JOINTS, J, joint_index
 
 LOWER = tuple(name for name in JOINTS if name.endswith(("UpLeg", "Leg", "Foot", "ToeBase")))
@@ -62,12 +62,13 @@ def keyframes(T: int, every: int) -> Bool[np.ndarray, "{T} J"]:
     return known_frames(T, sorted({*range(0, T, every), T - 1}))
 
 
-def keyframes_of(motion: Sized | int, every: int = 20) -> Bool[np.ndarray, "T J"]:
+def keyframes_of(motion: Motion | int, every: int = 20) -> Bool[np.ndarray, "T J"]:
     """The mask for a keyframe every `every` frames and at the last one: True where it is given.
 
-    Pass a motion, or its number of frames. Raises ValueError for every < 1, or no frames.
+    Pass a motion, or its number of frames. Raises ValueError for every < 1, or no frames,
+    TypeError for anything but a motion or a number.
     """
-    T = motion if isinstance(motion, int) else len(motion)
+    T = motion if isinstance(motion, int) else len(as_motion(motion))
     return keyframes(checked_count(T, "a motion's number of frames"), checked_count(every, "every"))
 
 

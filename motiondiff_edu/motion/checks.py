@@ -15,6 +15,13 @@ def checked_seconds(seconds: float) -> float:
     return float(seconds)
 
 
+def checked_seed(seed: int) -> int:
+    """A whole number from 0 to 2^63 - 1, as torch takes it.  Raises ValueError for others."""
+    if isinstance(seed, bool) or not isinstance(seed, Integral) or not 0 <= seed < 2**63:
+        raise ValueError(f"seed must be a whole number from 0 to 2^63 - 1, not {seed!r:.40}")
+    return int(seed)
+
+
 def checked_count(count: int, name: str) -> int:
     """A whole number of at least 1.  Raises ValueError for anything else."""
     if isinstance(count, bool) or not isinstance(count, Integral) or count < 1:
@@ -25,5 +32,7 @@ def checked_count(count: int, name: str) -> int:
 def checked_rate(fps: float, name: str = "fps") -> float:
     """Frames a second, above 0 and up to 10,000.  Raises ValueError for anything else."""
     if isinstance(fps, bool) or not isinstance(fps, Real) or not 0 < fps <= 10_000:
-        raise ValueError(f"{name} must be a number of frames a second above 0, not {fps!r}")
+        raise ValueError(
+            f"{name} must be a number of frames a second above 0 and at most 10,000, not {fps!r}"
+        )
     return float(fps)

@@ -120,7 +120,7 @@ def refuse_incomplete(mapping: Mapping[str, str], bvh: Bvh) -> None:
     if lacking:
         raise BvhError(
             f"no joint found for {', '.join(lacking)}. The file has: {', '.join(bvh.joints)}. "
-            "Give the missing ones, for instance load_clip(path, "
-            f"mapping={{'{lacking[0]}': '<its joint>', ...}}).",
+            f"Give the missing ones: md.read_motion(path, mapping={{'{lacking[0]}': '<its joint>', "
+            "...}), or motiondiff-edu convert with --joints.",
             bvh.source,
         )

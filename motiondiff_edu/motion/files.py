@@ -3,7 +3,10 @@
 Notebook: 00
 """
 
+import warnings
 import zipfile
+from collections.abc import Mapping
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -12,7 +15,8 @@ from .._files import replacing
 from . import registry
 from .bvh.write import write_bvh
 from .clip import Clip
-from .motion import Motion, MotionError
+from .motion import Motion, MotionError, unlike_a_body
+from .normalise import MotionWarning
 from .retarget import load_clip
 from .root_frame import FPS
 from .skeleton import COURSE, Skeleton
@@ -28,11 +32,18 @@ ELSEWHERE = {
 }
 
 
-def read_motion(path: str | Path) -> Motion:
+def read_motion(
+    path: str | Path,
+    *,
+    mapping: Mapping[str, str] | None = None,
+    file_fps: float | int | None = None,
+) -> Motion:
     """Read a motion from a file; the name's ending says whether it is BVH or npz.
 
     Any humanoid BVH is retargeted to the course's skeleton and resampled to 20 frames/s.
 
+    mapping   for a BVH file: {joint of the course: joint of the file}, for names not recognised
+    file_fps  for a BVH file: its frames a second, if the file states a wrong number
     Raises FileNotFoundError for a missing file. Raises MotionError or BvhError (both are
     ValueErrors) for a faulty one, with the file, the fault and what to do.  Notebook: 00
     """
@@ -50,13 +61,21 @@ def read_motion(path: str | Path) -> Motion:
             f"{path.name} cannot be read as a motion; {' and '.join(registry.readers.names())} can"
             f"{f'. {advice[0].upper()}{advice[1:]}' if advice else ''}"
         )
+    if mapping is not None or file_fps is not None:
+        if ending != ".bvh":
+            raise MotionError(f"{path.name} is no BVH file; `mapping` and `file_fps` are for BVH")
+        read = partial(read, mapping=mapping, file_fps=file_fps)
     return read(path)
 
 
 @registry.readers.register(".bvh")
-def read_bvh_motion(path: Path) -> Motion:
+def read_bvh_motion(
+    path: Path,
+    mapping: Mapping[str, str] | None = None,
+    file_fps: float | int | None = None,
+) -> Motion:
     """Any humanoid BVH, retargeted; the figure keeps its place in the world.  Raises BvhError."""
-    clip = load_clip(path)
+    clip = load_clip(path, mapping, file_fps)
     return Motion.of_clip(clip, clip.info["start"])
 
 
@@ -103,8 +122,14 @@ def read_npz(path: Path) -> Motion:
     arrays = _arrays(path)
     source = str(arrays["source"]) if "source" in arrays else path.stem
     try:
+        if {"positions", "poses"} & arrays.keys() and "fps" not in arrays:
+            _note(path, f"the file has no `fps`; {FPS:g} frames/s are assumed")
         if "positions" in arrays:
-            return _from_positions(arrays, source or path.stem)
+            motion = _from_positions(arrays, source or path.stem)
+            words = unlike_a_body(motion)
+            if words:
+                _note(path, words)
+            return motion
         if {"poses", "control"} <= arrays.keys():
             fps = float(arrays.get("fps", FPS))
             poses = arrays["poses"].astype(np.float64)
@@ -128,6 +153,10 @@ def _from_positions(arrays: dict[str, np.ndarray], source: str) -> Motion:
         along["sample_rate"] = int(arrays["sample_rate"])
     fps = float(arrays.get("fps", FPS))
     return Motion(arrays["positions"], fps, skeleton, source=source, **along)
+
+
+def _note(path: Path, words: str) -> None:
+    warnings.warn(f"{path.name}: {words}", MotionWarning, stacklevel=4)
 
 
 def _arrays(path: Path) -> dict[str, np.ndarray]:

@@ -18,7 +18,7 @@ from .clip import Clip
 from .normalise import resample as down
 from .resample import resample as up
 from .root_frame import FPS, control_from_path, estimate_root, root_path, to_root_frame
-from .skeleton import COURSE, Skeleton
+from .skeleton import BONE_LENGTHS, BONES, COURSE, Skeleton
 
 FARTHEST = 1e6  # metres from the origin; a larger value is a fault of the file
 SAMPLE_RATE = 16_000
@@ -125,7 +125,8 @@ class Motion:
         """`known`, but False for these joints in frames first to last - 1 (default: to the end).
 
         `reconstruct` then fills these joints.
-        Raises KeyError for an unknown joint, MotionError for frames outside the motion.
+        Raises KeyError for an unknown joint, TypeError for what is no name, MotionError for frames
+        outside the motion.
         """
         end = len(self) if last is None else last
         if not 0 <= first < end <= len(self):
@@ -133,7 +134,11 @@ class Motion:
                 f"{self.name}: frames {first} to {end - 1} are not within its {len(self)} "
                 f"(0 to {len(self) - 1})"
             )
-        wanted = [joints] if isinstance(joints, str) else list(joints)
+        wanted = [joints] if isinstance(joints, str) else joints
+        if not isinstance(wanted, (list, tuple)) or not all(isinstance(x, str) for x in wanted):
+            raise TypeError(
+                f"name the joints, such as 'LeftArm' or ['LeftArm', 'LeftForeArm'], not {joints!r}"
+            )
         known = self.known
         known[first:end, [self.skeleton.index(joint) for joint in wanted]] = False
         return known
@@ -179,9 +184,9 @@ class Motion:
 
         Each part stays where it is in the world. `root`, `contacts` and `audio` are kept only if
         all parts have them.
-        Raises MotionError for another frame rate or skeleton.
+        Raises MotionError for another frame rate or skeleton, TypeError for anything but a Motion.
         """
-        parts = [self, *others]
+        parts = [self, *map(as_motion, others)]
         for other in others:
             if abs(other.fps - self.fps) > 1e-6 or other.skeleton != self.skeleton:
                 raise MotionError(
@@ -251,6 +256,13 @@ class Motion:
         self.check_finite()
         if len(self) < 2:
             raise MotionError(f"{self.name} has one frame; at least two are needed")
+        self.check_size()
+
+    def check_size(self) -> None:
+        """Raise MotionError if the figure is not about as large as the course's, in metres."""
+        words = unlike_a_body(self)
+        if words:
+            raise MotionError(f"{self.name}: {words}")
 
     def save(self, path: str | Path) -> Path:
         """Write the motion to a file; the name's ending is .bvh, .npz, .mp4, .gif or .html.
@@ -288,6 +300,29 @@ def as_motion(given: object) -> Motion:
             f"a file, md.Motion(positions, fps) makes one"
         )
     return given
+
+
+def unlike_a_body(motion: Motion) -> str:
+    """What is wrong with the size of a figure on the course's skeleton, in words; "" if nothing.
+
+    Its bones, all together, must be half to twice as long as the course's.
+    """
+    if motion.skeleton != COURSE:
+        return ""
+    bones = np.diff(motion.positions[:, np.array(BONES)], axis=2)[:, :, 0]
+    long = np.linalg.norm(bones, axis=-1)
+    seen = np.isfinite(long)
+    if not seen.any():
+        return ""
+    size = float(long[seen].sum() / np.broadcast_to(BONE_LENGTHS, long.shape)[seen].sum())
+    if 0.5 < size < 2:
+        return ""
+    if not size:
+        return "all joints of a frame are in one place, so this is no figure"
+    return (
+        f"the bones are {size:.3g} times as long as the course's, but positions are in metres and "
+        f"the figure is 1.70 m tall. Centimetres? Then pass 0.01 * positions"
+    )
 
 
 def check_ending(path: str | Path) -> str:

@@ -10,8 +10,16 @@ DELAY = 1.0  # seconds before it appears: a shorter computation shows no bar
 
 @contextmanager
 def bar(total: int, what: str, shown: bool = True) -> Iterator[Callable[[], object]]:
-    """Yield a function to call after each of `total` steps; the bar disappears at the end."""
+    """Yield a function to call after each of `total` steps; the bar disappears at the end.
+
+    Where nobody watches, as in a log file, there is none.
+    """
     with tqdm(
-        total=total, desc=what, delay=DELAY, mininterval=0.5, leave=False, disable=not shown
+        total=total,
+        desc=what,
+        delay=DELAY,
+        mininterval=0.5,
+        leave=False,
+        disable=None if shown else True,
     ) as progress:
         yield progress.update

@@ -12,6 +12,7 @@ import numpy as np
 from jaxtyping import Bool, Float
 
 from .bvh import Bvh, BvhError, read_bvh
+from .bvh.frames import REPLACE_FPS
 from .clip import Clip
 from .dialects import check_mapping, guess_mapping
 from .directions import (
@@ -169,10 +170,10 @@ def refuse_short(count: int, bvh: Bvh) -> None:
     """Raise BvhError for a clip that is too short to show a heading."""
     if count / bvh.fps < SHORTEST:
         problem = (
-            f"{count} frames at {bvh.fps:g} frames/s are {count / bvh.fps:.2f} s; "
-            f"at least {SHORTEST} s are needed."
+            f"{count} frame{'s' * (count != 1)} at {bvh.fps:g} frames/s last "
+            f"{count / bvh.fps:.2f} s; at least {SHORTEST} s are needed."
         )
-        raise BvhError(problem + " If the frame time is wrong, pass file_fps=.", bvh.source)
+        raise BvhError(f"{problem} If the frame time is wrong, {REPLACE_FPS}.", bvh.source)
 
 
 def warn_wild(speeds: Float[np.ndarray, "T 21"], bvh: Bvh, dropped: int, notes: list[str]) -> None:

@@ -20,7 +20,7 @@ from ..fast.mofusion import FastMoFusion
 from ..fast.samplers import ddim_steps, ddpm_steps
 from ..fast.twins import watched
 from ..mofusion import MoFusion, MoFusionConfig
-from ..motion.checks import checked_count, checked_seconds
+from ..motion.checks import checked_count, checked_seconds, checked_seed
 from ..motion.dance_frame import to_positions
 from ..motion.motion import Motion
 from ..motion.scaler import Scaler
@@ -127,7 +127,7 @@ class Dancer(Performer):
         if not frames:
             raise ValueError(f"{len(audio) / SAMPLE_RATE:.3f} s of sound are less than a frame")
         mel = log_mel(audio)[None].expand(count, -1, -1)
-        generator = torch.Generator().manual_seed(seed)
+        generator = torch.Generator().manual_seed(checked_seed(seed))
         evaluations = min(steps or self.schedule.S, self.schedule.S)
         with with_bar(self, evaluations, "dancing", progress) as one:
             dances = one.dance_mel(mel, frames, generator=generator, steps=steps)

@@ -24,6 +24,15 @@ class Performer:
                 f"the schedule has {self.schedule.S} steps, the network {self.model.config.S}"
             )
 
+    def __getattr__(self, name: str):
+        """Only for what is missing: a walker that is asked to dance says what it can do."""
+        verb = {"walk": "walker", "dance": "dancer"}.get(name)
+        if verb:
+            raise AttributeError(
+                f"a {type(self).__name__.lower()} cannot {name}; md.load({verb!r}) can"
+            )
+        raise AttributeError(f"{type(self).__name__!r} has no attribute {name!r}")
+
     @property
     def config(self) -> Config:
         return self.model.config

@@ -21,7 +21,7 @@ from ..fast.modiff import FastMoDiff
 from ..fast.samplers import ddim_steps, ddpm_steps
 from ..fast.twins import watched
 from ..modiff import MoDiff, MoDiffConfig
-from ..motion.checks import checked_count, checked_seconds
+from ..motion.checks import checked_count, checked_seconds, checked_seed
 from ..motion.motion import Motion, MotionError, as_motion
 from ..motion.root_frame import FPS, root_path, to_world
 from ..motion.scaler import Scaler
@@ -99,7 +99,7 @@ class Walker(Performer):
         steer = torch.from_numpy(rows).float().expand(count, -1, -1)
         evaluations = len(ahead) * (steps or self.schedule.S)
         with with_bar(self, evaluations, "walking", progress) as walker:
-            new = rollout.generate(walker, past, steer, seed=seed, steps=steps)
+            new = rollout.generate(walker, past, steer, seed=checked_seed(seed), steps=steps)
         poses = new.double().cpu().numpy().reshape(count, -1, J, 3)
         place, heading = root_path(rows, tuple(given.root[-T_h]))
         path = np.column_stack([place, heading])

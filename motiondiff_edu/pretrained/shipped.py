@@ -3,6 +3,7 @@
 Notebook: 00, 15
 """
 
+import warnings
 from functools import lru_cache
 from pathlib import Path
 
@@ -13,8 +14,10 @@ from jaxtyping import Bool
 from ..editing import inbetween as inbetweens
 from ..editing import reconstruct as reconstruction
 from ..editing.masks import checked_known
-from ..motion.checks import checked_count
+from ..editing.plausible import wilder_than_given
+from ..motion.checks import checked_count, checked_seed
 from ..motion.motion import Motion, MotionError, as_motion
+from ..motion.normalise import MotionWarning
 from ..motion.root_frame import FPS
 from ..motion.skeleton import TOES
 from ..performers.dancer import Dancer
@@ -49,17 +52,21 @@ def inbetween(
 
     Known joints stay exactly where they are. In a frame with a known joint, the pelvis must be
     known too. With `samples` above 1, the result is a list of so many motions.
-    Raises MotionError or ValueError if motion, mask or numbers do not fit.
+    Raises MotionError or ValueError if motion, mask or numbers do not fit. Issues a MotionWarning
+    if the result moves much faster than what is given asks for.
     Source: MoFusion 4.4.  Notebook: 15
     """
     known, count = _fitting(motion, known), checked_count(samples, "samples")
-    draw = torch.Generator().manual_seed(seed)
+    draw = torch.Generator().manual_seed(checked_seed(seed))
     if known.all():
         raise MotionError(f"{motion.name}: every joint is known, so there is nothing to generate")
     with with_bar(_shipped("unconditional"), steps, "filling in", progress) as dancer:
         made = inbetweens.inbetween(
             dancer, motion.positions, known, samples=count, steps=steps, generator=draw
         )
+    words = wilder_than_given(made, motion.positions, known)
+    if words:
+        warnings.warn(f"{motion.name}: {words}", MotionWarning, stacklevel=2)
     made = [_made(motion, known, positions, "in-betweens") for positions in made]
     return made if samples > 1 else made[0]
 
@@ -81,7 +88,7 @@ def reconstruct(
     samples under 1.  Source: MoDiff III-E.
     """
     known, count = _fitting(motion, known), checked_count(samples, "samples")
-    walker, draw = _shipped("walker"), torch.Generator().manual_seed(seed)
+    walker, draw = _shipped("walker"), torch.Generator().manual_seed(checked_seed(seed))
     total = count * reconstruction.evaluations(walker, known)
     with with_bar(walker, total, "reconstructing", progress) as walker:
         made = [
@@ -104,6 +111,7 @@ def _fitting(motion: Motion, known) -> Bool[np.ndarray, "T J"]:
             f"{motion.name} has {motion.fps:g} frames/s, but the networks need {FPS:g}: use "
             f"motion.resampled({FPS:g}), and a `known` mask for that motion"
         )
+    motion.check_size()
     return checked_known(motion, known)
 
 

@@ -4,13 +4,14 @@ Walkers and dancers, all of them (hours) or those named.
 """
 
 import argparse
+import sys
 from pathlib import Path
 
 import torch
 
 from ..performers.dancer import Dancer
 from ..performers.walker import Walker
-from ..pretrained.checkpoints import FOLDER, save
+from ..pretrained.checkpoints import save
 from .dancers import DANCE_RECIPES, SHIPPED_DANCERS
 from .train_dancer import train_dancer
 from .train_walker import train
@@ -36,9 +37,15 @@ def main() -> None:
         "--runs",
         type=Path,
         default=Path("build/runs"),
-        help="where runs are saved and resumed from",
+        help="where runs are saved and resumed from (default: build/runs)",
     )
-    parser.add_argument("--out", type=Path, default=FOLDER, help="where the weights go")
+    parser.add_argument(
+        "--out",
+        type=Path,
+        default=Path("trained"),
+        help="the folder for the weights (default: trained, in the current folder); a file of the "
+        "same name is replaced",
+    )
     parser.add_argument("--threads", type=int, default=torch.get_num_threads())
     arguments = parser.parse_args()
     unknown = set(arguments.names) - set(ALL)
@@ -78,4 +85,8 @@ def trained(name: str, run: Path) -> Walker | Dancer:
 
 
 if __name__ == "__main__":
-    main()
+    try:
+        main()
+    except KeyboardInterrupt:
+        print("\nstopped; the same command continues from the last save", file=sys.stderr)
+        sys.exit(130)

@@ -44,10 +44,20 @@ def player_of(motions: Sequence[Motion], labels: Sequence[str] | None = None) ->
         [motion.positions for motion in shown],
         fps=first.fps,
         contacts=[motion.contacts for motion in shown],
-        labels=[motion.source for motion in shown] if labels is None else list(labels),
+        labels=_told_apart(shown) if labels is None else list(labels),
         audio=sound,
         look=Look(parents=parents),
     )
+
+
+def _told_apart(motions: Sequence[Motion]) -> list[str]:
+    """The sources of the motions; those that occur more than once are numbered."""
+    names = [motion.source for motion in motions]
+    many = {name for name in names if name and names.count(name) > 1}
+    return [
+        f"{name} ({names[: k + 1].count(name)})" if name in many else name
+        for k, name in enumerate(names)
+    ]
 
 
 def _as_long(sounding: Motion, longest: Motion) -> Float[np.ndarray, "N"]:
@@ -76,6 +86,10 @@ def play(
         raise TypeError("play needs at least one motion; md.read_motion(path) reads one")
     for one in figures:
         as_motion(one)
+    if path is not None and Path(path).suffix.lower() not in (".html", ".htm"):
+        raise MotionError(
+            f"{path}: play writes a page, so its name ends in .html; motion.save(path) writes films"
+        )
     player = player_of(figures, labels)
     if path is None and _in_a_notebook():
         from IPython.display import display

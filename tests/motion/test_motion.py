@@ -144,7 +144,7 @@ HOLE = np.where(np.arange(252).reshape(4, 21, 3) == 100, np.inf, 0.0)
         (lambda: Motion(np.zeros((4, 17, 3))), "17 joints, the skeleton 21"),
         (lambda: Motion(HOLE), f"{JOINTS[12]} in frame 1 is at"),
         (lambda: Motion(P + 2e6), "not plausible"),
-        (lambda: Motion(P, fps=0), "frames a second above 0, not 0"),
+        (lambda: Motion(P, fps=0), "frames a second above 0 and at most 10,000, not 0"),
         (lambda: Motion(P, fps=float("nan")), "frames a second above 0"),
         (lambda: Motion(P, audio=np.full(9, np.nan)), "one channel of finite samples"),
         (lambda: Motion(P)[7:], r"no frame lies within \[7:None\]"),

@@ -10,6 +10,7 @@ from jaxtyping import Float
 from .tokens import BvhError, to_number
 
 SLOWEST, FASTEST = 0.5, 0.001  # s per frame; a frame time outside this range is an error
+REPLACE_FPS = "pass file_fps= to md.read_motion, or --file-fps to motiondiff-edu convert"
 EXACT_RATES = [float(n) for n in range(1, 1001)] + [n * 1000 / 1001 for n in (24, 30, 60, 120)]
 
 
@@ -62,7 +63,7 @@ def frame_time(text: str, line: int, path: str | Path, file_fps: float | None) -
     value = to_number(text, path, line)
     if value <= 0:
         raise BvhError(
-            f"the frame time is {text} s; it must be positive. Correct it, or pass file_fps=.",
+            f"the frame time is {text} s; it must be positive. Correct it, or {REPLACE_FPS}.",
             path,
             line,
         )
@@ -74,7 +75,7 @@ def frame_time(text: str, line: int, path: str | Path, file_fps: float | None) -
         )
         raise BvhError(
             f"a frame time of {text} s is not plausible ({FASTEST} to {SLOWEST} s are accepted)."
-            f"{hint}, or pass file_fps= to replace the value of the file.",
+            f"{hint}, or {REPLACE_FPS}, to replace the value of the file.",
             path,
             line,
         )
