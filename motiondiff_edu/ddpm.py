@@ -11,9 +11,10 @@ of shape (B,).
 import math
 import operator
 import warnings
-from collections.abc import Callable, Iterator, Sequence
+from collections import deque
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
-from typing import SupportsIndex
+from typing import SupportsIndex, TypeVar
 
 import torch
 from jaxtyping import Float, Int
@@ -23,6 +24,7 @@ Steps = Int[Tensor, "B"] | int
 X = Float[Tensor, "B *shape"]  # a batch of anything: points, poses, windows
 Table = Float[Tensor, "S_plus_1"]  # one number for each step
 Denoiser = Callable[[Tensor, Tensor], Tensor]
+Record = TypeVar("Record")  # what a sampling loop yields, such as Step
 
 
 # ---- schedules -----------------------------------------------------------------------------------
@@ -357,6 +359,11 @@ def ddim_steps(
         z = None if not sigma else draw(x_s, generator) if noise is None else noise[s - 1]
         x_s = ddim_step(x0_hat, eps_hat, after, schedule, sigma, z)
     yield Step(0, x_s, x_s, torch.zeros_like(x_s))
+
+
+def final(loop: Iterable[Record]) -> Record:
+    """The last record of a sampling loop. Unlike `*_, last = loop`, it keeps no other."""
+    return deque(loop, maxlen=1).pop()
 
 
 def starting_noise(start: Tensor | tuple[int, ...], generator: torch.Generator | None) -> Tensor:

@@ -17,6 +17,7 @@ import torch
 from jaxtyping import Float, Shaped
 from torch import Tensor
 
+from .ddpm import final
 from .rollout import AnyWalker, generate
 
 
@@ -148,8 +149,7 @@ def repair(
     loop = repair_steps(
         rollout, past, known, control, way_back=way_back, guess=guess, correct=correct, stop=stop
     )
-    *_, last = loop
-    return last.past
+    return final(loop).past
 
 
 def _check(walker: AnyWalker, past: Tensor, known: Tensor, control: Tensor) -> None:

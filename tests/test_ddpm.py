@@ -15,6 +15,7 @@ from motiondiff_edu.ddpm import (
     ddim_sigma,
     ddim_step,
     draw,
+    final,
     linear_schedule,
     make_schedule,
     p_mean,
@@ -381,3 +382,26 @@ def test_the_dancers_row_of_the_table():
     assert float(snr) == DANCER.snr and f" {left} of" in schedule_card(
         shifted(cosine_schedule(1000), DANCER.snr)
     )
+
+
+def test_final_keeps_only_the_last_record():
+    """Earlier records are freed while the loop runs, so that a long one needs little memory."""
+
+    class Noted:
+        alive = 0
+
+        def __init__(self):
+            type(self).alive += 1
+            assert self.alive <= 3
+
+        def __del__(self):
+            type(self).alive -= 1
+
+    made = []
+
+    def loop():
+        for k in range(50):
+            made.append(k)
+            yield Noted()
+
+    assert isinstance(final(loop()), Noted) and len(made) == 50

@@ -19,7 +19,7 @@ from jaxtyping import Bool, Float
 from torch import Tensor
 
 from ..beyond.guidance import blended, guided
-from ..ddpm import Denoiser, Schedule, timesteps
+from ..ddpm import Denoiser, Schedule, final, timesteps
 from ..exact import Mixture, conditional, mixture, sample_mixture
 from ..inbetweening import inpaint_steps, resampled
 from .mixture_fit import responsibilities
@@ -182,8 +182,7 @@ def draw_samples(
             denoise = blended(denoise, schedule, *held, method.blend)
         steps = resampled(timesteps(schedule.S, method.steps), method.resample)
         loop = inpaint_steps(denoise, start, schedule, *held, steps=steps, generator=generator)
-        *_, last = loop
-        return last.x_s.flatten(1)
+        return final(loop).x_s.flatten(1)
     x = torch.where(
         known, values, truth.mean()
     )  # missing entries start at the mean, as in `reconstruction`

@@ -11,7 +11,7 @@ import torch
 from jaxtyping import Bool, Float
 from torch import Tensor
 
-from ..ddpm import Denoiser, Schedule, draw
+from ..ddpm import Denoiser, Schedule, draw, final
 from ..inbetweening import inpaint_steps
 from ..reconstruction import Rollout, walked_back
 from ..rollout import AnyWalker
@@ -77,5 +77,4 @@ def masked_back(
         steps=rollout.steps or config.S,
         generator=rollout.generator,
     )
-    *_, last = loop
-    return walker.pose_scaler.inverse(last.x_s)
+    return walker.pose_scaler.inverse(final(loop).x_s)

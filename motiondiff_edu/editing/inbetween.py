@@ -15,7 +15,7 @@ from torch import Tensor
 from ..beyond.constant_bones import given_lengths, steady_bones
 from ..beyond.foot_lock import steady_feet
 from ..beyond.guidance import blended, guided
-from ..ddpm import Denoiser, Schedule, draw, timesteps
+from ..ddpm import Denoiser, Schedule, draw, final, timesteps
 from ..inbetweening import inpaint_steps, resampled
 from ..motion.dance_frame import GROUND, Place, heading, placed_features, to_positions
 from ..motion.directions import ARMS, UPLEGS
@@ -100,8 +100,7 @@ def inbetween(
         denoise = blended(denoise, schedule, *held, fading(departures.blend).to(device))
     visited = resampled(timesteps(schedule.S, steps), departures.resample)
     loop = inpaint_steps(denoise, start, schedule, *held, steps=visited, generator=generator)
-    *_, last = loop
-    poses = to_positions(dancer.motion_scaler.inverse(last.x_s))
+    poses = to_positions(dancer.motion_scaler.inverse(final(loop).x_s))
     made = place.leave(poses.double().cpu().numpy())
     whole = np.where(known[..., None], positions, made)
     if departures.bones:

@@ -15,7 +15,7 @@ from torch import Tensor, nn
 from ..beyond.guidance import with_guess
 from ..conditions.audio_files import samples_of
 from ..conditions.music import FRAMES_PER_SECOND, SAMPLE_RATE, frame_times, log_mel
-from ..ddpm import Denoiser, Schedule, draw
+from ..ddpm import Denoiser, Schedule, draw, final
 from ..fast.mofusion import FastMoFusion
 from ..fast.samplers import ddim_steps, ddpm_steps
 from ..fast.twins import watched
@@ -182,9 +182,7 @@ class Dancer(Performer):
         else:
             steps = min(steps, self.schedule.S)
             loop = ddim_steps(denoise, x_S, self.schedule, steps, eta, **options)
-        for step in loop:
-            last = step
-        return to_positions(self.motion_scaler.inverse(last.x_s))
+        return to_positions(self.motion_scaler.inverse(final(loop).x_s))
 
     def _regress(self, mel: Float[Tensor, "B M C"], frames: int) -> Float[Tensor, "B T 21 3"]:
         """The single dance that a regression gives for each song."""

@@ -15,7 +15,7 @@ from torch import Tensor, nn
 from .. import rollout
 from ..beyond.footholds import FootholdConfig, FootholdMoDiff
 from ..conditions.control import as_long, splice
-from ..ddpm import Denoiser, Schedule, draw
+from ..ddpm import Denoiser, Schedule, draw, final
 from ..fast.footholds import FastFoothold
 from ..fast.modiff import FastMoDiff
 from ..fast.samplers import ddim_steps, ddpm_steps
@@ -143,9 +143,7 @@ class Walker(Performer):
                 loop = ddpm_steps(denoise, x_S, self.schedule, generator=generator)
             else:
                 loop = ddim_steps(denoise, x_S, self.schedule, steps=steps, generator=generator)
-            for step in loop:
-                last = step
-            return last.x_s
+            return final(loop).x_s
 
         # outside of inference mode, so that the result can be changed in place
         return lambda *inputs: sample(*inputs).clone()
