@@ -210,17 +210,20 @@ def test_motions_of_one_name_are_numbered(walked):
     assert labels == [f"{walked.source} (1)", "other", f"{walked.source} (2)"]
 
 
-def test_an_unlike_motion_is_told_of_where_the_in_betweens_jump(walked, monkeypatch):
-    """The network is replaced by one that leaves the way; the message has frames and speeds."""
+@pytest.mark.parametrize("better, said", [(True, "So it was made again"), (False, "no better")])
+def test_in_betweens_that_jump_are_made_again_without_guidance(better, said, walked, monkeypatch):
+    """The network is replaced by one that leaves the way, with guidance or always."""
 
-    def astray(dancer, positions, known, *, samples, **_):
+    def astray(dancer, positions, known, *, samples, departures, **_):
         made = np.stack([positions] * samples)
-        made[:, 30:35] += 2.0
+        if departures.guidance or not better:
+            made[:, 30:35] += 2.0
         return made
 
     monkeypatch.setattr(shipped.inbetweens, "inbetween", astray)
-    with pytest.warns(MotionWarning, match="between frames 20 and 40, where 1.* m/s would do"):
-        md.inbetween(walked, md.keyframes(walked), progress=False)
+    with pytest.warns(MotionWarning, match=f"between frames 20 and 40, where 1.* m/s.*{said}"):
+        made = md.inbetween(walked, md.keyframes(walked), progress=False)
+    assert np.array_equal(made.positions, walked.positions) == better
 
 
 def test_an_npz_without_a_frame_rate_or_in_centimetres_is_noted(walked, tmp_path):

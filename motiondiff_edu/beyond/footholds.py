@@ -24,7 +24,7 @@ from ..motion.scaler import Scaler
 from ..motion.skeleton import J, joint_index
 
 FEET = [joint_index(name) for name in ("LeftFoot", "LeftToeBase", "RightFoot", "RightToeBase")]
-LEAN, STRETCH = 0.25, 0.1  # see `openness`
+LEAN, NEAR, STRETCH = 1.5, 0.015, 0.1  # see `openness`; NEAR in metres
 COLUMNS = [3 * joint + axis for joint in FEET for axis in range(3)]
 
 
@@ -126,7 +126,19 @@ class FootholdMoDiff(MoDiff):
     ) -> Float[Tensor, "B T_p D"]:
         """x0_hat: free for most joints, between free and held for the feet."""
         x = self.attend(self.embed(x_s, s), context.memory)
-        return blend(self.head(x), openness(self.gate(x), leaning=not self.training), context.held)
+        return self.placed(self.head(x), self.gate(x), context.held)
+
+    def placed(
+        self,
+        free: Float[Tensor, "B T_p D"],
+        gate: Float[Tensor, "B T_p F"],
+        held: Float[Tensor, "B T_p K"],
+    ) -> Float[Tensor, "B T_p D"]:
+        """`free` with the feet between free and held: by the gate, in use by its `openness`."""
+        if self.training:
+            return blend(free, torch.sigmoid(gate), held)
+        apart = ((held - free[..., COLUMNS]) * self.pose_std).unflatten(-1, (-1, 3)).norm(dim=-1)
+        return blend(free, openness(gate, apart), held)
 
 
 @dataclass(frozen=True, eq=False)
@@ -170,16 +182,22 @@ def blend(
     return out
 
 
-def openness(gate: Float[Tensor, "*B F"], leaning: bool = True) -> Float[Tensor, "*B F"]:
-    """The gate of a joint, 0 (free) to 1 (held), from its logit.
+def openness(
+    gate: Float[Tensor, "*B F"], apart: Float[Tensor, "*B F"] | float = 0.0
+) -> Float[Tensor, "*B F"]:
+    """How far the gate of a joint is open in use, from 0 (free) to 1 (held).
 
-    In training (leaning=False) it is the logit's sigmoid. In use it is shifted towards holding by
-    LEAN, and stretched at both ends by STRETCH, so that a nearly open gate is fully open. Sliding
-    by millimetres barely changes the training loss, but it is visible. Both numbers were chosen on
-    walks that docs/RESULTS.md does not use. A larger LEAN increases the bone error.
+    gate   its logit; in training, the share of the held place is the logit's sigmoid
+    apart  metres between the held place and the one where the network puts the joint
+
+        share = (1 + 2 STRETCH) sigmoid(gate + LEAN exp(-(apart / NEAR)^2)) - STRETCH, within 0..1
+
+    Sliding by millimetres barely changes the training loss, but it is visible. So where both places
+    are near each other, the gate leans towards holding. It does not where they are centimetres
+    apart: there the foot lifts, or the last pose is wrong. The stretch fully opens a gate that is
+    nearly open. The numbers were chosen on walks that docs/RESULTS.md does not use.
     Source: ours; the stretch is that of the hard concrete distribution (Louizos and others, 2018).
     Notebook: 07
     """
-    if not leaning:
-        return torch.sigmoid(gate)
-    return ((1 + 2 * STRETCH) * torch.sigmoid(gate + LEAN) - STRETCH).clamp(0, 1)
+    near = torch.exp(-((torch.as_tensor(apart) / NEAR) ** 2))
+    return ((1 + 2 * STRETCH) * torch.sigmoid(gate + LEAN * near) - STRETCH).clamp(0, 1)

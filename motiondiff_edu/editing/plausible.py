@@ -35,13 +35,12 @@ def wilder_than_given(
         pace = paces[first:last].max()
         if pace > FACTOR * asked + SLACK:
             found.append((pace, asked, first, last))
-    advice = "look at the result; more keyframes, or straight lines between them, may be better"
     if found:
         pace, asked, first, last = max(found)
         return (
             f"the generated figure moves at up to {pace:.1f} m/s between frames {first} and {last},"
             f" where {asked:.1f} m/s would do ({len(found)} such gaps). The network knows walks and"
-            f" dances, and this motion may be too different: {advice}"
+            f" dances, and this motion may be too different"
         )
     joints = FPS * np.linalg.norm(np.diff(made, axis=1), axis=-1)
     joints = np.where((known[1:] & known[:-1])[None], 0.0, joints)
@@ -49,6 +48,6 @@ def wilder_than_given(
         frame = int(np.unravel_index(joints.argmax(), joints.shape)[1])
         return (
             f"a generated joint moves at {joints.max():.0f} m/s near frame {frame}, faster than any"
-            f" actor's: {advice}"
+            f" actor's"
         )
     return ""

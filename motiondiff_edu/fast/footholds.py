@@ -9,7 +9,7 @@ import torch
 from jaxtyping import Float, Int
 from torch import Tensor
 
-from ..beyond.footholds import FootholdMoDiff, blend, openness
+from ..beyond.footholds import FootholdMoDiff
 from .modiff import Context, FastMoDiff
 
 
@@ -37,4 +37,4 @@ class FastFoothold(FastMoDiff):
         self, x_s: Float[Tensor, "B T_p D"], s: Int[Tensor, "B"] | int, context: FootholdContext
     ) -> Float[Tensor, "B T_p D"]:
         x = self.attend(self.embed(x_s, s), context)
-        return blend(self.head(x), openness(self.model.gate(x)), context.held)
+        return self.model.placed(self.head(x), self.model.gate(x), context.held)

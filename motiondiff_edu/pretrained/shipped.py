@@ -4,15 +4,17 @@ Notebook: 00, 15
 """
 
 import warnings
+from dataclasses import replace
 from functools import lru_cache
 from pathlib import Path
 
 import numpy as np
 import torch
-from jaxtyping import Bool
+from jaxtyping import Bool, Float
 
 from ..editing import inbetween as inbetweens
 from ..editing import reconstruct as reconstruction
+from ..editing.inbetween import OURS, Departures
 from ..editing.masks import checked_known
 from ..editing.plausible import wilder_than_given
 from ..motion.checks import checked_count, checked_seed
@@ -26,6 +28,8 @@ from ..performers.with_bar import with_bar
 from . import checkpoints
 
 STEPS = 50  # of DDIM, for in-betweens by default
+AGAIN = "So it was made again without guidance, by blending alone: look whether it is good enough"
+STILL = "Without guidance it is no better: give more keyframes, or draw straight lines between them"
 
 
 def load(name: str | Path) -> Walker | Dancer:
@@ -52,21 +56,34 @@ def inbetween(
 
     Known joints stay exactly where they are. In a frame with a known joint, the pelvis must be
     known too. With `samples` above 1, the result is a list of so many motions.
-    Raises MotionError or ValueError if motion, mask or numbers do not fit. Issues a MotionWarning
-    if the result moves much faster than what is given asks for.
+    On a motion unlike those of the training, guidance can fail, and the figure jumps. A result that
+    moves much faster than what is given asks for is made again by blending alone (notebook 15), and
+    a MotionWarning says so.
+    Raises MotionError or ValueError if motion, mask or numbers do not fit.
     Source: MoFusion 4.4.  Notebook: 15
     """
     known, count = _fitting(motion, known), checked_count(samples, "samples")
-    draw = torch.Generator().manual_seed(checked_seed(seed))
     if known.all():
         raise MotionError(f"{motion.name}: every joint is known, so there is nothing to generate")
-    with with_bar(_shipped("unconditional"), steps, "filling in", progress) as dancer:
-        made = inbetweens.inbetween(
-            dancer, motion.positions, known, samples=count, steps=steps, generator=draw
-        )
+
+    def generate(departures: Departures) -> Float[np.ndarray, "samples T 21 3"]:
+        draw = torch.Generator().manual_seed(checked_seed(seed))
+        with with_bar(_shipped("unconditional"), steps, "filling in", progress) as dancer:
+            return inbetweens.inbetween(
+                dancer, motion.positions, known, samples=count, steps=steps, generator=draw,
+                departures=departures,
+            )  # fmt: skip
+
+    made = generate(OURS)
     words = wilder_than_given(made, motion.positions, known)
     if words:
-        warnings.warn(f"{motion.name}: {words}", MotionWarning, stacklevel=2)
+        made = generate(replace(OURS, guidance=0.0))
+        still = wilder_than_given(made, motion.positions, known)
+        warnings.warn(
+            f"{motion.name}: {still or words}. {STILL if still else AGAIN}",
+            MotionWarning,
+            stacklevel=2,
+        )
     made = [_made(motion, known, positions, "in-betweens") for positions in made]
     return made if samples > 1 else made[0]
 

@@ -255,17 +255,20 @@ def test_feet_are_held_alike_where_the_encoding_is_shared():
 def test_in_use_a_gate_leans_towards_holding_and_goes_all_the_way():
     """Where a sigmoid stops short of 0 and 1 the stretched one is there.
 
-    Halfway lies a quarter lower.
+    Where both places agree, halfway lies at -1.5; 15 mm apart at 1/e of that, far apart at 0.
     """
-    gate = torch.tensor([-9.0, -2.65, -0.25, 2.15, 9.0])
+    gate = torch.tensor([-9.0, -3.9, -1.5, 0.9, 9.0])
     torch.testing.assert_close(openness(gate), torch.tensor([0.0, 0.0, 0.5, 1.0, 1.0]))
-    torch.testing.assert_close(openness(gate, leaning=False), torch.sigmoid(gate))
+    for apart, lean in ((0.015, 1.5 / np.e), (0.2, 0.0)):
+        same = openness(gate - lean, torch.full((5,), apart)), 1.2 * torch.sigmoid(gate) - 0.1
+        torch.testing.assert_close(same[0], same[1].clamp(0, 1))
 
 
 def test_training_sees_the_plain_gate_and_use_the_leaning_one():
     x_s, s, past, control = inputs()
     model = tiny()
-    shares = []
+    std = torch.linspace(0.5, 2.0, 12)
+    model.pose_std.copy_(std)
     for training in (True, False):
         part = model.train(training)
         with torch.no_grad():
@@ -274,11 +277,13 @@ def test_training_sees_the_plain_gate_and_use_the_leaning_one():
             gate = part.gate(x)
             free = part.head(x)
             out = part(x_s, s, past, control)
-        for leaning in (False, True):
-            shares.append(
-                torch.allclose(out, blend(free, openness(gate, leaning), context.held), atol=1e-6)
-            )
-    assert shares == [True, False, False, True]
+        metres = (context.held - free[..., COLUMNS]).unflatten(-1, (4, 3)) * std.view(4, 3)
+        in_use = openness(gate, metres.square().sum(-1).sqrt())
+        torch.testing.assert_close(
+            out, blend(free, torch.sigmoid(gate) if training else in_use, context.held)
+        )
+        other = blend(free, in_use if training else torch.sigmoid(gate), context.held)
+        assert not torch.allclose(out, other, atol=1e-4)
 
 
 def test_gates_are_those_the_answer_was_made_with():
@@ -287,7 +292,9 @@ def test_gates_are_those_the_answer_was_made_with():
     with torch.no_grad():
         context = model.encode(past, control)
         x = model.attend(model.embed(x_s, s), context.memory)
-        gates, free = openness(model.gate(x)), model.head(x)
+        free, held = model.head(x), context.held
+        apart = ((held - free[..., COLUMNS]) * model.pose_std).unflatten(-1, (4, 3)).norm(dim=-1)
+        gates = openness(model.gate(x), apart)
         out = model(x_s, s, past, control)
     assert gates.shape == (B, T_P, 4) and 0 <= gates.min() < 0.3 and 0.7 < gates.max() <= 1
     share = (
