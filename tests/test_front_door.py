@@ -200,7 +200,7 @@ def test_a_performer_says_which_other_one_can():
         md.load("walker").dance("song.ogg")
     with pytest.raises(AttributeError, match="a dancer cannot walk; md.load..walker.. can"):
         md.load("dancer").walk(None, None)
-    with pytest.raises(AttributeError, match="'Dancer' has no attribute 'sing'"):
+    with pytest.raises(AttributeError, match="'Dancer' object has no attribute 'sing'"):
         md.load("dancer").sing()
 
 

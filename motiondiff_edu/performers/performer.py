@@ -31,7 +31,7 @@ class Performer:
             raise AttributeError(
                 f"a {type(self).__name__.lower()} cannot {name}; md.load({verb!r}) can"
             )
-        raise AttributeError(f"{type(self).__name__!r} has no attribute {name!r}")
+        return object.__getattribute__(self, name)  # the usual error, or that inside a property
 
     @property
     def config(self) -> Config:
