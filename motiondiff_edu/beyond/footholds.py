@@ -24,7 +24,8 @@ from ..motion.scaler import Scaler
 from ..motion.skeleton import J, joint_index
 
 FEET = [joint_index(name) for name in ("LeftFoot", "LeftToeBase", "RightFoot", "RightToeBase")]
-LEAN, NEAR, STRETCH = 1.5, 0.015, 0.1  # see `openness`; NEAR in metres
+LEAN, STRETCH = 1.5, 0.1  # see `openness`
+NEAR = 0.015  # metres
 COLUMNS = [3 * joint + axis for joint in FEET for axis in range(3)]
 
 
