@@ -24,7 +24,7 @@ from ..motion.scaler import Scaler
 from ..motion.skeleton import J, joint_index
 
 FEET = [joint_index(name) for name in ("LeftFoot", "LeftToeBase", "RightFoot", "RightToeBase")]
-LEAN, STRETCH = 1.5, 0.1  # see `openness`
+LEAN, AWAY, STRETCH = 2.0, 0.25, 0.1  # see `openness`
 NEAR = 0.015  # metres
 COLUMNS = [3 * joint + axis for joint in FEET for axis in range(3)]
 
@@ -191,14 +191,17 @@ def openness(
     gate   its logit; in training, the share of the held place is the logit's sigmoid
     apart  metres between the held place and the one where the network puts the joint
 
-        share = (1 + 2 STRETCH) sigmoid(gate + LEAN exp(-(apart / NEAR)^2)) - STRETCH, within 0..1
+        w = exp(-(apart / NEAR)^2)
+        share = (1 + 2 STRETCH) sigmoid(gate + LEAN w - AWAY (1 - w)) - STRETCH, within 0..1
 
     Sliding by millimetres barely changes the training loss, but it is visible. So where both places
-    are near each other, the gate leans towards holding. It does not where they are centimetres
-    apart: there the foot lifts, or the last pose is wrong. The stretch fully opens a gate that is
-    nearly open. The numbers were chosen on walks that docs/RESULTS.md does not use.
+    are near each other (w near 1), the gate leans towards holding. Where they are centimetres apart
+    it leans a little away from it: there the foot lifts, or the last pose is wrong. The stretch
+    fully opens a gate that is nearly open. The numbers were chosen on walks that docs/RESULTS.md
+    does not use.
     Source: ours; the stretch is that of the hard concrete distribution (Louizos and others, 2018).
     Notebook: 07
     """
-    near = torch.exp(-((torch.as_tensor(apart) / NEAR) ** 2))
-    return ((1 + 2 * STRETCH) * torch.sigmoid(gate + LEAN * near) - STRETCH).clamp(0, 1)
+    w = torch.exp(-((torch.as_tensor(apart) / NEAR) ** 2))
+    leaning = gate + LEAN * w - AWAY * (1 - w)
+    return ((1 + 2 * STRETCH) * torch.sigmoid(leaning) - STRETCH).clamp(0, 1)

@@ -255,11 +255,11 @@ def test_feet_are_held_alike_where_the_encoding_is_shared():
 def test_in_use_a_gate_leans_towards_holding_and_goes_all_the_way():
     """Where a sigmoid stops short of 0 and 1 the stretched one is there.
 
-    Where both places agree, halfway lies at -1.5; 15 mm apart at 1/e of that, far apart at 0.
+    Where both places agree, halfway lies at -2; far apart at +0.25; 15 mm apart 1/e of the way.
     """
-    gate = torch.tensor([-9.0, -3.9, -1.5, 0.9, 9.0])
+    gate = torch.tensor([-9.0, -4.4, -2.0, 0.4, 9.0])
     torch.testing.assert_close(openness(gate), torch.tensor([0.0, 0.0, 0.5, 1.0, 1.0]))
-    for apart, lean in ((0.015, 1.5 / np.e), (0.2, 0.0)):
+    for apart, lean in ((0.015, -0.25 + 2.25 / np.e), (0.2, -0.25)):
         same = openness(gate - lean, torch.full((5,), apart)), 1.2 * torch.sigmoid(gate) - 0.1
         torch.testing.assert_close(same[0], same[1].clamp(0, 1))
 
