@@ -12,11 +12,12 @@ import argparse
 import numpy as np
 
 from motiondiff_edu.metrics.beats import beat_alignment
-from motiondiff_edu.motion.skeleton import BONE_LENGTHS, BONES, HEELS, TOES
+from motiondiff_edu.motion.skeleton import BONE_LENGTHS, BONES, TOES
 
 from ..music.score import beat_song
 from ..music.song import GENRES, Song
 from ..walking.acceptance import show, table
+from ..walking.own_measures import knee_angles
 from .performance import Dance, dance
 from .statistics import kinematic_beats, repeats, statistics
 
@@ -104,7 +105,8 @@ def limits(danced: list[Dance]) -> dict[str, float]:
         low = min(low, float(p[..., 1].min()))
         lengths = np.linalg.norm(p[:, [b for _, b in BONES]] - p[:, [a for a, _ in BONES]], axis=-1)
         bones = max(bones, float(np.abs(lengths - BONE_LENGTHS).max()))
-        knees += [knee_angle(p).min(), knee_angle(p).max()]
+        bend = knee_angles(p)
+        knees += [bend.min(), bend.max()]
         hands = max(hands, float(np.linalg.norm(np.diff(p, axis=0), axis=-1).max() * d.fps))
     return {
         "planted_toe_mm_a_frame": 1e3 * slip,
@@ -114,15 +116,6 @@ def limits(danced: list[Dance]) -> dict[str, float]:
         "knee_largest_deg": float(max(knees)),
         "fastest_joint_mps": hands,
     }
-
-
-def knee_angle(world: np.ndarray) -> np.ndarray:
-    """Degrees between thigh and shank, (T, 2): 0 is a straight leg."""
-    ankle = np.array(HEELS)
-    thigh = world[:, ankle - 1] - world[:, ankle - 2]
-    shank = world[:, ankle] - world[:, ankle - 1]
-    cos = (thigh * shank).sum(-1) / np.linalg.norm(thigh, axis=-1) / np.linalg.norm(shank, axis=-1)
-    return np.degrees(np.arccos(np.clip(cos, -1, 1)))
 
 
 if __name__ == "__main__":

@@ -13,6 +13,8 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Bool, Float
 
+from motiondiff_edu.motion.root_frame import FPS
+
 from .. import noise
 from ..music import songs
 from ..music.song import GENRES, Song
@@ -24,7 +26,6 @@ from .moves import MANNERS, Manner
 from .script import ARM, LENGTHS, REST, STANCE, Script
 from .steps import Track, track
 
-FPS = 20.0
 DANCES_A_SEED = 100_000
 DAMPING, ARMS_LEAD = (
     0.6,

@@ -4,7 +4,8 @@ import numpy as np
 from jaxtyping import Float
 from scipy.ndimage import gaussian_filter1d
 
-FPS = 20.0
+from motiondiff_edu.motion.root_frame import FPS
+
 # the kinds and their shares in a data set
 KINDS = {
     "mixed": 0.3,

@@ -61,7 +61,7 @@ def limits(clips: int = 600, seconds: float = 12.0, spots: int = 60) -> dict[str
     begun = time.process_time()
     walks = dataset(clips, seconds, 1)
     out = {"made_per_cpu_second": clips * seconds / (time.process_time() - begun)}
-    knees = np.concatenate([knee_angles(c) for c in walks])
+    knees = np.concatenate([knee_angles(c.poses) for c in walks])
     controls = np.concatenate([c.control for c in walks])
     out |= {"knee_smallest_deg": knees.min(), "knee_largest_deg": knees.max()}
     out["lowest_joint_mm"] = 1e3 * min(c.poses[..., 1].min() for c in walks)
@@ -78,10 +78,10 @@ def limits(clips: int = 600, seconds: float = 12.0, spots: int = 60) -> dict[str
     return {name: float(value) for name, value in out.items()}
 
 
-def knee_angles(clip: Clip) -> Float[np.ndarray, "T 2"]:
+def knee_angles(positions: Float[np.ndarray, "T 21 3"]) -> Float[np.ndarray, "T 2"]:
     """Bend of the knees (degrees, 0 is straight), left and right."""
-    thigh = clip.poses[:, [2, 6]] - clip.poses[:, [1, 5]]
-    shank = clip.poses[:, [3, 7]] - clip.poses[:, [2, 6]]
+    thigh = positions[:, [2, 6]] - positions[:, [1, 5]]
+    shank = positions[:, [3, 7]] - positions[:, [2, 6]]
     cos = (thigh * shank).sum(-1) / np.linalg.norm(thigh, axis=-1) / np.linalg.norm(shank, axis=-1)
     return np.degrees(np.arccos(np.clip(cos, -1, 1)))
 

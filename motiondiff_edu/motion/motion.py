@@ -15,8 +15,7 @@ from jaxtyping import Bool, Float
 from . import registry
 from .checks import checked_rate
 from .clip import Clip
-from .normalise import resample as down
-from .resample import resample as up
+from .resample import resample
 from .root_frame import FPS, control_from_path, estimate_root, root_path, to_root_frame
 from .skeleton import BONE_LENGTHS, BONES, COURSE, Skeleton
 
@@ -223,8 +222,7 @@ class Motion:
         if not self.known.all() or len(self) < 2:
             self.check_finite()
             raise MotionError(f"{self.name}: a single frame cannot be resampled")
-        faster = fps > self.fps
-        positions = (up if faster else down)(self.positions, self.fps, fps)
+        positions = resample(self.positions, self.fps, fps)
         then, now = np.arange(len(self)) / self.fps, np.arange(len(positions)) / fps
         changed = {"positions": positions, "fps": fps}
         if self.root is not None:

@@ -9,8 +9,6 @@ from collections.abc import Mapping
 
 import numpy as np
 from jaxtyping import Float
-from scipy.interpolate import CubicSpline
-from scipy.signal import butter, sosfiltfilt
 
 from .bvh import Bvh
 from .bvh.tokens import BvhError
@@ -19,7 +17,6 @@ from .skeleton import HEELS, JOINTS, TOES, joint_index
 LEG = 0.835  # m, thigh plus shank of the course's figure
 SLOW = 0.35  # m/s, a toe slower than this is taken as standing
 STEEPEST = 0.06  # a larger slope of the floor is not a fault of the capture, and is kept
-CUT_HZ = 8.0  # 99 % of the velocity power of walking and dancing is below
 FLIP_X = np.array([-1.0, 1.0, 1.0])  # positions seen in a mirror
 
 
@@ -117,28 +114,6 @@ def calibration_frames(points: Float[np.ndarray, "T 21 3"]) -> int:
         return 0
     wild = leap > max(0.12, 5 * usual)
     return int(wild.argmin()) if not wild.all() else 1
-
-
-def resample(
-    points: Float[np.ndarray, "T 21 3"], from_fps: float, to_fps: float
-) -> Float[np.ndarray, "F 21 3"]:
-    """Resample to another frame rate by a cubic spline.
-
-    Where frames are removed, a zero-phase low-pass comes first, at 0.4 of the new rate (8 Hz for 20
-    frames/s). A joint that the file lacks stays NaN.
-    """
-    known = np.isfinite(points).all((0, 2))  # a spline takes no NaN
-    times, moving = np.arange(len(points)) / from_fps, points[:, known]
-    if from_fps > to_fps + 1e-6 and len(points) > 1:
-        low_pass = butter(4, CUT_HZ * to_fps / 20, fs=from_fps, output="sos")
-        ends = min(15, len(points) - 1)  # frames mirrored at both ends; 15 is scipy's own number
-        moving = sosfiltfilt(low_pass, moving, axis=0, padlen=ends)
-    if abs(from_fps - to_fps) > 1e-6:
-        count = int(np.floor(times[-1] * to_fps + 1e-6)) + 1
-        moving = CubicSpline(times, moving)(np.arange(count) / to_fps)
-    out = np.full((len(moving), *points.shape[1:]), np.nan)
-    out[:, known] = moving
-    return out
 
 
 def speed(points: Float[np.ndarray, "T ... 3"], fps: float) -> Float[np.ndarray, "T ..."]:

@@ -31,7 +31,6 @@ from .normalise import (
     floor_plane,
     level,
     pick,
-    resample,
     rotate_y_up,
     speed,
     to_metres,
@@ -40,6 +39,7 @@ from .normalise import (
     warn,
 )
 from .planting import find_contacts, flat_feet, plant
+from .resample import resample_present
 from .root_frame import estimate_root, to_root_frame
 from .skeleton import HEELS, HIPS, JOINTS, TOES
 
@@ -113,7 +113,7 @@ def normalised(
     refuse_short(len(points), bvh)
     speeds = speed(points, bvh.fps)
     warn_wild(speeds, bvh, dropped, notes)
-    points = resample(points, bvh.fps, fps)
+    points = resample_present(points, bvh.fps, fps)
     wild = wild_joints(speeds, bvh.fps, len(points), fps)
     ours = has_our_bones(points)
     plane = np.zeros(3) if ours else floor_plane(ground_points(points), fps)

@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 
 from data_synth.dancing import dance, dances
-from data_synth.dancing.acceptance import knee_angle
 from data_synth.dancing.choreography import choreograph, slots
 from data_synth.dancing.curves import curve, felt_beats, least_jerk, springy, within_reach
 from data_synth.dancing.moves import MANNERS
@@ -17,6 +16,7 @@ from data_synth.dancing.script import REST, TURNS_SIGN, Script
 from data_synth.dancing.sheet import Counts, Sheet
 from data_synth.music.score import beat_song
 from data_synth.music.song import GENRES, SAMPLE_RATE
+from data_synth.walking.own_measures import knee_angles
 from motiondiff_edu.motion.bvh import read_bvh
 from motiondiff_edu.motion.skeleton import BONE_LENGTHS, BONES, HEELS, MIRROR, TOES
 from motiondiff_edu.recipes.dancers import DANCER
@@ -128,7 +128,7 @@ def test_knees_bend_one_way_and_not_too_far(danced, alone):
         [*danced, *((None, d) for d in alone)], [*range(len(danced)), *EVERY_MOVE], strict=True
     ):
         p, ankle = d.positions, np.array(HEELS)
-        angle = knee_angle(p)
+        angle = knee_angles(p)
         assert 10 < angle.min() and angle.max() < 140, name
         hip = p[:, ankle - 2]
         knee = p[:, ankle - 1]

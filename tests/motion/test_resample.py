@@ -1,6 +1,7 @@
 """motion.resample.
 
-Sums of sines come back at the new frames, the ends stay, and what cannot be done is refused.
+Sums of sines come back at the new frames, the ends stay, what the new rate cannot show is filtered
+out, and what cannot be done is refused.
 """
 
 import numpy as np
@@ -56,10 +57,26 @@ def test_the_same_rate_changes_nothing():
     assert np.array_equal(resample(old, 60), old)
 
 
+def test_at_a_lower_rate_slow_movement_stays_and_fast_movement_goes():
+    """From 120 to 20 frames/s: 3 Hz stays without delay; 17 Hz would come back as 3 Hz."""
+    fine, coarse = np.arange(481) / 120, np.arange(81) / 20
+    slow, fast = (np.sin(2 * np.pi * hz * fine) for hz in (3, 17))
+    wanted = np.sin(2 * np.pi * 3 * coarse)
+    new = resample(slow + fast, 120, 20)
+    assert new.shape == wanted.shape
+    assert np.abs(new - wanted)[10:-10].max() < 0.03
+    assert np.abs(resample(fast, 120, 20))[10:-10].max() < 0.03 < np.abs(fast[::6]).max()
+
+
+def test_a_lower_rate_ends_before_the_old_end():
+    new = resample(np.arange(47.0) / 30, 30, 20)
+    assert len(new) == 31
+    np.testing.assert_allclose(new[3:-3], (np.arange(31) / 20)[3:-3], atol=2e-3)
+
+
 @pytest.mark.parametrize(
     "positions, fps, told",
     [
-        (np.zeros((9, 3)), 120, "motion.normalise.resample"),
         (np.zeros((9, 3)), 0, "positive"),
         (np.zeros((1, 3)), 20, "2 are needed"),
         (

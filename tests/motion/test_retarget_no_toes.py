@@ -9,7 +9,7 @@ from foreign_walk import foreign, sound, without
 
 from motiondiff_edu.motion.bvh import read_bvh
 from motiondiff_edu.motion.dialects import guess_mapping
-from motiondiff_edu.motion.normalise import resample
+from motiondiff_edu.motion.resample import resample, resample_present
 from motiondiff_edu.motion.retarget import retarget
 from motiondiff_edu.motion.skeleton import TOES
 
@@ -24,7 +24,7 @@ def test_joints_that_a_file_lacks_stay_unknown_and_the_others_are_resampled():
     cut[:, [4, 16]] = np.nan
     for fps, count in ((120.0, 8), (30.0, 31)):  # with the low-pass before the spline, and without
         whole = resample(points, fps, 20.0)
-        partly = resample(cut, fps, 20.0)
+        partly = resample_present(cut, fps, 20.0)
         assert partly.shape == (count, 21, 3)
         assert np.isnan(partly[:, [4, 16]]).all()
         others = [j for j in range(21) if j not in (4, 16)]

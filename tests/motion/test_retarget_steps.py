@@ -1,4 +1,4 @@
-"""The steps of retargeting one by one: axes, floor, rate, T-pose, contacts, planted feet."""
+"""The steps of retargeting one by one: axes, floor, T-pose, contacts, planted feet."""
 
 import numpy as np
 import pytest
@@ -10,7 +10,6 @@ from motiondiff_edu.motion.normalise import (
     calibration_frames,
     floor_plane,
     level,
-    resample,
     rotate_y_up,
     unmirror,
 )
@@ -49,17 +48,6 @@ def test_a_tilted_floor_is_found_and_levelled():
     assert np.allclose(
         np.linalg.norm(flat[:, 3] - flat[:, 11], axis=-1), apart
     )  # turned, not sheared
-
-
-def test_resampling_keeps_slow_motion_and_drops_fast():
-    t = np.arange(481) / 120
-    # 16 Hz would look like 4 Hz
-    slow = np.sin(2 * np.pi * 1.0 * t)
-    fast = 0.1 * np.sin(2 * np.pi * 16 * t)
-    points = np.broadcast_to((slow + fast)[:, None, None], (481, 21, 3)).copy()
-    out = resample(points, 120.0, 20.0)
-    assert out.shape == (81, 21, 3)
-    assert np.abs(out[10:-10, 0, 0] - np.sin(2 * np.pi * np.arange(81) / 20)[10:-10]).max() < 0.01
 
 
 def test_calibration_frames_are_counted():
