@@ -18,7 +18,7 @@ import os
 import sys
 from contextlib import suppress
 
-from . import _commands
+from . import __version__, _commands
 from .course.places import program
 
 VERBS = {name: f"_commands.{name}" for name in _commands.VERBS} | {
@@ -35,6 +35,7 @@ def parser_of(verbs: dict) -> argparse.ArgumentParser:
         description="Human-motion diffusion: the course, and the library.",
         allow_abbrev=False,
     )
+    parser.add_argument("--version", action="version", version=f"motiondiff_edu {__version__}")
     commands = parser.add_subparsers(dest="verb", metavar="VERB")
     for name, verb in verbs.items():
         further = getattr(verb, "PASSES_OPTIONS_ON", "")

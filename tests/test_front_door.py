@@ -324,6 +324,7 @@ TOLD = {
     "walker().walk(w, ahead, samples=0)": "samples must be a whole number of at least 1, not 0",
     'dancer().dance("nope.ogg")': "AudioError: nope.ogg does not exist; check the spelling",
     "dancer().dance(np.zeros(32000), seconds=-3)": "seconds must be above 0",
+    "dancer().dance(np.zeros(32000))": "the samples are silent from start to end",
     "dancer().dance((np.ones(32000) * 9999).astype(np.int16))": "not int16; divide 16-bit",
     "dancer().dance(np.full(32000, np.nan))": "32000 samples are NaN or infinite, the first at 0",
     "dancer().dance(np.r_[np.zeros(99), 1e34])": "the one at 0.006 s is 1e+34",

@@ -13,6 +13,7 @@ from pathlib import Path
 
 import pytest
 
+import motiondiff_edu
 from motiondiff_edu import __main__ as command
 from motiondiff_edu.course import demo, jupyter, lab, places
 
@@ -145,6 +146,13 @@ def test_without_a_verb_all_are_listed(capsys):
     assert command.main([]) == 2
     told = capsys.readouterr().out
     assert all(verb in told for verb in ("lab", "demo", "doctor"))
+
+
+def test_the_version_is_the_packages(capsys):
+    with pytest.raises(SystemExit) as ended:
+        command.main(["--version"])
+    assert ended.value.code == 0
+    assert capsys.readouterr().out == f"motiondiff_edu {motiondiff_edu.__version__}\n"
 
 
 def test_options_go_on_to_jupyterlab_but_not_from_doctor(checkout, calls, capsys):

@@ -96,7 +96,7 @@ def samples_of(sound: str | Path | np.ndarray | Tensor) -> Float[Tensor, "N"]:
     """The samples of a sound file, or given samples after a check: mono, 16 kHz, float32.
 
     Raises AudioError as `read_audio` does, and for samples that have another shape, are whole
-    numbers, are not finite, or lie far outside -1 to 1.
+    numbers, are not finite, are silent, or lie far outside -1 to 1.
     """
     if isinstance(sound, (str, Path)):
         return read_audio(Path(sound).expanduser())
@@ -118,6 +118,8 @@ def samples_of(sound: str | Path | np.ndarray | Tensor) -> Float[Tensor, "N"]:
         raise AudioError(
             f"{len(bad)} samples are NaN or infinite, the first at {bad[0] / SAMPLE_RATE:.3f} s"
         )
+    if np.abs(samples).max() < SILENT:
+        raise AudioError("the samples are silent from start to end")
     where = int(np.abs(samples).argmax())
     if abs(samples[where]) > LOUDEST:
         raise AudioError(
