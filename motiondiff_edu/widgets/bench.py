@@ -18,7 +18,9 @@ import traitlets
 from jaxtyping import Bool
 
 from ..editing.repair_bench import RepairBench
+from ..motion.clip import Clip
 from ..motion.skeleton import JOINTS, PARENTS, J
+from ..rollout import AnyWalker
 from ..viz import body
 from . import module, packing, poster
 from .player import PAGE, STACK
@@ -58,14 +60,14 @@ class Bench(anywidget.AnyWidget):
 
     def __init__(
         self,
-        walker,
-        clip,
-        first=None,
+        walker: AnyWalker,
+        clip: Clip,
+        first: int | None = None,
         faults: Mapping[str, Bool[np.ndarray, "T_h J"]] | None = None,
-        samples=10,
-        rounds=5,
-        steps=10,
-        seed=0,
+        samples: int = 10,
+        rounds: int = 5,
+        steps: int = 10,
+        seed: int = 0,
     ):
         super().__init__()
         self.bench = RepairBench(walker, clip, samples, rounds, steps, seed)

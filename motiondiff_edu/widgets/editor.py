@@ -7,6 +7,7 @@ sends how far a joint was moved.   Notebook: 15
 """
 
 import time
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
@@ -15,6 +16,7 @@ import numpy as np
 import torch
 import traitlets
 from jaxtyping import Bool, Float
+from numpy.typing import ArrayLike
 
 from ..editing.edit import Edit, Made, Make, drag_in_words, make_between
 from ..motion.bvh.fit import FitReport
@@ -72,7 +74,15 @@ class Editor(anywidget.AnyWidget):
     busy = traitlets.Bool(False).tag(sync=True)
     file = traitlets.Unicode("in-between.bvh").tag(sync=True)
 
-    def __init__(self, motion, make: Make, *, fps=20.0, names=None, seed=0):
+    def __init__(
+        self,
+        motion: ArrayLike,
+        make: Make,
+        *,
+        fps: float | int = 20.0,
+        names: Sequence[str] | None = None,
+        seed: int = 0,
+    ):
         super().__init__()
         motion = np.array(motion, np.float64)
         if motion.ndim != 3 or motion.shape[1:] != (J, 3):

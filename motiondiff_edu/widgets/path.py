@@ -13,6 +13,7 @@ import anywidget
 import numpy as np
 import traitlets
 from jaxtyping import Float
+from numpy.typing import ArrayLike
 
 from ..conditions import control as walks
 from ..viz.skeleton import top_view
@@ -39,7 +40,13 @@ class PathPad(anywidget.AnyWidget):
     presets = traitlets.List(list(walks.PRESETS)).tag(sync=True)
     height = traitlets.Int(460).tag(sync=True)
 
-    def __init__(self, points=None, speed=1.2, preset="slalom", height=460):
+    def __init__(
+        self,
+        points: ArrayLike | None = None,
+        speed: float | int = 1.2,
+        preset: str = "slalom",
+        height: int = 460,
+    ):
         super().__init__(speed=float(speed), height=int(height))
         if points is None:
             self.preset = preset
@@ -52,7 +59,7 @@ class PathPad(anywidget.AnyWidget):
         return np.array(self.line, dtype=np.float64).reshape(-1, 2)
 
     @points.setter
-    def points(self, value) -> None:
+    def points(self, value: ArrayLike) -> None:
         points = np.asarray(value, dtype=np.float64)
         if points.ndim != 2 or points.shape[1] != 2 or not np.isfinite(points).all():
             raise ValueError(

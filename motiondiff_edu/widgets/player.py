@@ -19,10 +19,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from pathlib import Path
+from typing import TypeVar
 
 import anywidget
 import numpy as np
 import traitlets
+from numpy.typing import ArrayLike
 
 from .._files import replacing
 from ..viz import body
@@ -34,6 +36,11 @@ __all__ = ["Look", "Player", "Soundtrack", "describe"]
 MODULE = module.joined()
 GIF_FPS = 50  # browsers slow a GIF down whose pictures stay for less than 20 ms
 _TRAITS = ("joints", "roots", "contacts", "sound", "strips")
+
+Value = TypeVar("Value")
+PerFigure = Value | Sequence[Value | None] | None  # one value for all figures, or a list
+Figures = ArrayLike | Sequence[ArrayLike]  # (T, J, 3), (N, T, J, 3), or a list of (T, J, 3)
+Audio = ArrayLike | bytes | bytearray | memoryview | Soundtrack | None
 
 PAGE = """<!doctype html><html lang="en"><head><meta charset="utf-8"><title>{title}</title>
 <style>html,body{{margin:0;height:100%}}@media print{{html,body{{height:auto}}}}</style></head>\
@@ -114,13 +121,13 @@ class Player(anywidget.AnyWidget):
 
     def __init__(
         self,
-        positions,
-        fps=20.0,
-        past=None,
-        contacts=None,
-        labels=None,
-        path=None,
-        audio=None,
+        positions: Figures,
+        fps: float | int = 20.0,
+        past: PerFigure[int] = None,
+        contacts: PerFigure[ArrayLike] = None,
+        labels: PerFigure[str] = None,
+        path: PerFigure[ArrayLike] = None,
+        audio: Audio = None,
         look: Look = USUAL,
     ):
         super().__init__()
@@ -131,13 +138,13 @@ class Player(anywidget.AnyWidget):
 
     def show(
         self,
-        positions,
-        fps=AS_BEFORE,
-        past=AS_BEFORE,
-        contacts=AS_BEFORE,
-        labels=AS_BEFORE,
-        path=AS_BEFORE,
-        audio=AS_BEFORE,
+        positions: Figures,
+        fps: float | int | _AsBefore = AS_BEFORE,
+        past: PerFigure[int] | _AsBefore = AS_BEFORE,
+        contacts: PerFigure[ArrayLike] | _AsBefore = AS_BEFORE,
+        labels: PerFigure[str] | _AsBefore = AS_BEFORE,
+        path: PerFigure[ArrayLike] | _AsBefore = AS_BEFORE,
+        audio: Audio | _AsBefore = AS_BEFORE,
     ) -> None:
         """Show another motion in the same place; what is not given stays as it was."""
         given = {"fps": fps, "past": past, "contacts": contacts}
