@@ -17,7 +17,7 @@ from ..reconstruction import Rollout, walked_back
 from ..rollout import AnyWalker
 from .guidance import blended_guess, guided
 
-WEIGHT, MOVES = 0.7, 4  # of guidance, in masked_back
+WEIGHT, MOVES = 0.6, 5  # of guidance, in masked_back
 FADE = 10  # frames within which drawn_back's correction fades where nothing more is known
 Frames = Float[Tensor, "B T_h D"]
 
