@@ -36,7 +36,7 @@ def dead_joints(positions: Float[np.ndarray, "*B T J 3"], names: Sequence[str] =
 def random_joints(
     positions: Float[np.ndarray, "*B T J 3"], share: float, rng: np.random.Generator
 ) -> Imperfect:
-    """In each motion another share of the joints is missing throughout, as in Table II (30 %).
+    """In each motion `share` of the joints, drawn at random, are missing throughout (Table II).
 
     Raises ValueError for a share outside 0..1.  Source: MoDiff IV-B, Table II.  Notebook: 10
     """
@@ -89,7 +89,7 @@ def bursts(
 def jitter(
     positions: Float[np.ndarray, "*B T J 3"], size: float, rng: np.random.Generator
 ) -> Imperfect:
-    """Every coordinate trembles by `size` metres (standard deviation).
+    """Gaussian noise on every coordinate, with a standard deviation of `size` metres.
 
     Nothing is missing, so everything is "known".
     """

@@ -1,6 +1,6 @@
 """In-betweening: some entries of a motion are given, and a trained denoiser generates the others.
 
-A seed, keyframes or a part of the body can be given.
+The first frames (the paper's "seed"), keyframes or a part of the body can be given.
 
     at every step s:  x_s = known ? noised snapshot of the given : x_s
                       then one normal step of sampling
@@ -73,7 +73,7 @@ def inpaint_steps(
 
 
 def resampled(visited: Sequence[int], R: int) -> list[int]:
-    """Repeat every leap except for the last R times: forth, back by adding noise, and forth again.
+    """Take every leap but the last R times: forth, back by adding noise, and forth again.
 
     This lets unknown entries adapt to known ones. resampled([30, 20, 10], 2) = [30, 20, 30, 20, 10,
     20, 10].

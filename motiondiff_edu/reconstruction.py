@@ -3,7 +3,8 @@
     past with holes -> T_h new frames -> both reversed in time
                     -> T_h new frames: the past, as it may have been
 
-The holes are filled from it, and again, until filling changes nothing. Nothing is trained for it.
+The holes are filled from it. This repeats until the filled entries stop changing. No extra training
+is needed.
 Where we differ: "reverse the order" is not enough for the control: velocities change their sign,
 and since control[t] leads from frame t to t + 1 they move by one frame.
 Source: MoDiff III-E.  Notebook: 10
@@ -45,9 +46,9 @@ class Rollout:
 
 @dataclass(frozen=True)
 class Stop:
-    """When the rounds end: all holes at rest, or `rounds` done.
+    """The rounds end when no sample's holes change by more than `tolerance`, or after `rounds`.
 
-    A sampler's own spread can keep the holes moving by more than the tolerance for ever.
+    Sampling is random, so the change can stay above the tolerance in every round.
     """
 
     rounds: int = 5
@@ -56,9 +57,9 @@ class Stop:
 
 @dataclass(frozen=True, eq=False)
 class Round:
-    """One time there and back.
+    """One round, there and back.
 
-    The past as it is now, and how far the filled entries moved (metres, RMS per sample).
+    It has the past after it, and how far the filled entries moved (metres, RMS per sample).
     """
 
     number: int
@@ -87,8 +88,10 @@ Correction = Callable[[Tensor, Tensor, Tensor], Tensor]
 
 
 def walked_back(rollout: Rollout, ahead, control, given, known) -> Float[Tensor, "B T_h D"]:
-    """The paper's: from what was walked ahead alone (others: `beyond.back_with_known`).
-    Source: MoDiff III-E."""
+    """The paper's way back: it uses only the new frames `ahead`, not the known entries.
+
+    `beyond.back_with_known` has others.  Source: MoDiff III-E.
+    """
     return rollout.continued(ahead, control)
 
 
@@ -109,7 +112,8 @@ def repair_steps(
     `guess`: what the holes hold at first (metres), by default the mean pose.
     `way_back`: the paper's, or one of `beyond.back_with_known`, which use what is known.
     `correct`: applied to the filled past after each round, as `editing.repairs.with_bones`.
-    Raises ValueError for what does not fit.  Source: MoDiff III-E, Fig. 6; the stop rule is ours.
+    Raises ValueError if shapes do not fit the walker, a sample has no known entry, or
+    `stop.rounds` is below 1.  Source: MoDiff III-E, Fig. 6; the stop rule is ours.
     """
     past, known, control = map(torch.as_tensor, (past, known, control))
     _check(rollout.walker, past, known, control)

@@ -23,7 +23,7 @@ LossFn = Callable[[nn.Module, torch.Generator], Tensor]
 
 
 class NonFiniteLoss(RuntimeError):
-    """The loss became NaN or infinite; the message says what the weights are."""
+    """The loss became NaN or infinite; the message says which weights were kept."""
 
 
 @dataclass(eq=False)
@@ -39,7 +39,7 @@ class TrainState:
     generator: torch.Generator
     decay: float = 0.999  # share that the average keeps at each step, less in the first steps
     step: int = 0
-    seconds: float = 0.0  # spent in training so far, by the clock on the wall
+    seconds: float = 0.0  # spent in training so far (wall-clock time)
 
     @classmethod
     def start(

@@ -1,6 +1,4 @@
-"""The page a move is written on.
-
-In its own counts, as danced by someone who begins with the left foot.
+"""A sheet on which a move is written, in its own counts and beginning with the left foot.
 
 The sheet mirrors the move, scales it, slows or quickens it, and enters it in the script of the
 whole dance. It sees to the weight: before a foot lifts, the other one bears. Angles in degrees,

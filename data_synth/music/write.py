@@ -41,7 +41,7 @@ def score(song: Song) -> dict:
 
 
 def save_song(song: Song, path: Path) -> None:
-    """Write path.wav, 16 bits, and path.json, each under another name that is then replaced."""
+    """Write path.wav, 16 bits, and path.json, each under a temporary name that is then changed."""
     with replacing(path.with_suffix(".wav")) as aside, open(aside, "wb") as f:
         wavfile.write(f, SAMPLE_RATE, np.round(song.audio * 32767).astype(np.int16))
     with replacing(path.with_suffix(".json")) as aside:

@@ -60,7 +60,8 @@ def check_rate(rate: float) -> None:
 def noised(rate: float, alpha_bar: Float[Tensor, "S"]) -> Moments:
     """Diffusion dropout with equally likely steps, given by their alpha_bar.
 
-    For a dropped past, keep is the mean of their roots and floor the mean of 1 - alpha_bar.
+    In a noised past, keep is the mean of sqrt(alpha_bar), share that of alpha_bar, floor that of
+    1 - alpha_bar; a clean past has 1, 1 and 0.
     """
     check_rate(rate)
     keep, share = 1 - rate + rate * alpha_bar.sqrt().mean(), 1 - rate + rate * alpha_bar.mean()

@@ -38,7 +38,7 @@ def drawn_back(
     given: Frames,
     known: Bool[Tensor, "B _ _"],
 ) -> Frames:
-    """The paper's way back, drawn through the known entries: no jump where a hole ends."""
+    """The paper's way back, corrected by `blended_guess`: it does not jump where a hole ends."""
     back = walked_back(rollout, ahead, control, given, known)
     return blended_guess(back, given.to(back), known, FADE)
 
@@ -51,9 +51,9 @@ def masked_back(
     given: Frames,
     known: Bool[Tensor, "B _ _"],
 ) -> Frames:
-    """All at once: the walker's one window, sampled with its known entries held and guided by them.
+    """Sample the past as the window after `ahead`, by masked sampling guided by the known entries.
 
-    The sampling is `inbetweening.inpaint_steps`.
+    The sampling is `inbetweening.inpaint_steps`, in reversed time.
     The rollout's walker has to be a MaskedWalker.
     Raises ValueError for a walker that predicts more or fewer poses than it is given.
     Notebook: 15

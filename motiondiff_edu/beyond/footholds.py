@@ -135,7 +135,7 @@ class FootholdMoDiff(MoDiff):
         gate: Float[Tensor, "B T_p F"],
         held: Float[Tensor, "B T_p K"],
     ) -> Float[Tensor, "B T_p D"]:
-        """`free` with the feet between free and held: by the gate, in use by its `openness`."""
+        """Move the feet from free to held: by sigmoid(gate) in training, else by `openness`."""
         if self.training:
             return blend(free, torch.sigmoid(gate), held)
         apart = ((held - free[..., COLUMNS]) * self.pose_std).unflatten(-1, (-1, 3)).norm(dim=-1)

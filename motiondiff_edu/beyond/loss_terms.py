@@ -2,8 +2,8 @@
 
 A *loss* takes the error of the network's target (B, T, D) and the steps s (B,), and returns one
 number; the papers use `ddpm.squared_error`. `total` adds losses. All of them are sums of squares,
-so a weight of the squares is its root times the error. So `weighted` and `weighted_by_step` can
-wrap any loss:
+so the error times sqrt(w) has a square with the weight w. In this way `weighted` and
+`weighted_by_step` can wrap any loss:
 
     in_metres = weighted(squared_error, metre_weights(std))
     loss = weighted(total(in_metres, bones(2, std)), near_weights(change))

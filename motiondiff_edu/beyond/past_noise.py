@@ -1,7 +1,7 @@
 """Past noise: in training the past gets errors like those that a rollout makes.
 
-A walker continues its own poses, which are never quite right. One that has only seen recorded
-pasts lets small errors grow. The paper's remedy is diffusion dropout (MoDiff III-D); this one is
+A walker continues its own poses, which are never quite right. If it was trained on clean
+pasts alone, small errors grow. The paper's remedy is diffusion dropout (MoDiff III-D); this one is
 ours, and the shipped walkers have it.
 Notebook: 07
 """

@@ -33,7 +33,7 @@ def leap_schedule(
 ) -> Schedule:
     """beta_1 = leap, then evenly from beta_2 to beta_S.
 
-    Step 1 adds noise of sqrt(leap / (1 - leap)) of the signal, by default 0.77 of it.
+    After step 1 the noise is sqrt(leap / (1 - leap)) times the signal, by default 0.77 times.
 
     At lower noise, x_s tells a small network no more about a pose than it already knows. Each step
     there would add the network's error again, and a rollout repeats these steps in each frame. One

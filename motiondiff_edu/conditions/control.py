@@ -66,7 +66,7 @@ def splice(
 
 
 def as_long(control: Float[np.ndarray, "n 3"], rows: int | None) -> Float[np.ndarray, "m 3"]:
-    """A control of so many rows: cut, or its last row held; None leaves its length.
+    """A control of `rows` rows: cut, or continued by its last row; None keeps its length.
 
     Raises ValueError for another shape, no row, and rows that are not finite.
     """
@@ -98,11 +98,11 @@ def _four_numbers(segment: object) -> bool:
 def joystick(
     segments: Sequence[tuple], fps: float | int = FPS, ramp: float | int = RAMP
 ) -> Float[np.ndarray, "T 3"]:
-    """Control from a list of (seconds, forward, left, yaw).
+    """Control from a list of (seconds, forward m/s, left m/s, yaw rad/s).
 
-    Each change takes `ramp` seconds, smoothly.
+    The first segment begins at its own speeds. Each later one is reached within `ramp` seconds:
 
-    r(u) = u^2 (3 - 2u) leads from the value left behind to the new one.
+    old + (new - old) u^2 (3 - 2u), with u from 0 to 1.
     Raises ValueError for no segment, one that is not four finite numbers, negative seconds, or a
     frame rate that is not positive.
     """
@@ -155,10 +155,10 @@ def path_to_control(
     It starts at the first point with heading 0.
 
     The path is resampled by arc length and rounded by a Gaussian of `smoothing` metres; speed keeps
-    to the acceleration of `limits` (from and to rest if `rest`) and drops where a bend would ask
-    for more than their `max_yaw`. A path that does not set out along z is turned to on the spot
-    first. At each of `stops` (metres along the path) it rests for `pause` seconds. Integrated, it
-    is the rounded path.
+    to the acceleration of `limits` (from and to rest if `rest`) and drops where a bend would need
+    more than their `max_yaw`, or more than SIDEWAYS m/s^2. If the path does not start along z, the
+    figure first turns on the spot. At each of `stops` (metres along the path) it rests for `pause`
+    seconds. The integral of the control is the rounded path.
     Raises ValueError for a path without length, a position that is not finite, or a speed outside
     (0, 4].
     """

@@ -31,10 +31,11 @@ AHEAD, SOMEWHERE = 20, 0.5  # frames of the path that tell where it leads, if so
 class Departures:
     """Where `inbetween` departs from masked sampling as in 4.4.
 
-    `blend`: each guess of the network is drawn through what is given, and the correction fades
-    within so many frames where nothing more is given (`beyond.guidance.blended`).
-    `guidance`: > 0 applies `beyond.guidance.guided` first; it doubles the cost. More obeys sparse
-    keyframes better, and jumps more at the seams of a gap.
+    `blend`: x0_hat is corrected at each step so that it goes through the given entries. Before the
+    first and after the last of them the correction fades within so many frames; None: no blending
+    (`beyond.guidance.blended`).
+    `guidance`: > 0 applies `beyond.guidance.guided` first; it doubles the cost. A larger value
+    follows sparse keyframes better, but the motion jumps more at the ends of a gap.
     `bones`: generated bones get the lengths of the given ones (`beyond.constant_bones`).
     `feet`: planted feet do not slide (`beyond.foot_lock`).
     `resample`: how often each step is made (`inbetweening.resampled`).
@@ -74,12 +75,13 @@ def inbetween(
     """Generate what is not known of a motion (metres, 20 frames/s), `samples` times.
 
     `mel`: the log-Mel spectrogram of the song, for a dancer with music.
-    Known entries come back bit by bit as they were given; the others may be NaN. The motion is
-    `seen_from` where it begins to be known. Without a `generator` the seed is 0.
+    Known entries come back bit by bit as they were given; the others may be NaN. For the network
+    the motion is moved and turned, so that it starts at its first known pose (`seen_from`). Without
+    a `generator` the seed is 0.
     `departures`: `OURS`, or `PAPER` for masked sampling as printed. Where nothing is known the
     result is a plain sample in both cases.
-    Raises ValueError where a joint is given without the pelvis, or is given and not a number, and
-    for shapes that do not fit.  Source: MoFusion 4.4.   Notebook: 15
+    Raises ValueError where a joint is given without the pelvis, or is given but NaN or infinite,
+    and for shapes that do not fit.  Source: MoFusion 4.4.   Notebook: 15
     """
     positions, known = _checked(positions, known)
     generator = generator or torch.Generator().manual_seed(0)
@@ -161,7 +163,7 @@ def _checked(positions, known) -> tuple[Float[np.ndarray, "T 21 3"], Bool[np.nda
     if len(wrong):
         frame, joint = wrong[0]
         raise ValueError(
-            f"{JOINTS[joint]} in frame {frame} is given and not a number: "
-            "mend it, or do not give it"
+            f"{JOINTS[joint]} in frame {frame} is given but not finite: "
+            "correct it, or set known to False there"
         )
     return positions, known

@@ -22,8 +22,8 @@ def wilder_than_given(
     """What is not plausible about generated motions, in words; "" if nothing was found.
 
     Between two frames with a known pelvis, the given motion asks for a speed: the distance over the
-    time. A pelvis much faster than that has left the way. Joints faster than any actor's count too.
-    Ends that lead nowhere are not judged: there the network is free.
+    time. A pelvis that moves much faster is not plausible, nor is a joint faster than any actor's.
+    Frames before the first and after the last known pelvis are not judged by this speed.
     """
     there = np.flatnonzero(known[:, HIPS])
     paces = FPS * np.linalg.norm(np.diff(made[:, :, HIPS], axis=1), axis=-1).max(0)

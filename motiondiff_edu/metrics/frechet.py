@@ -69,7 +69,7 @@ def shrunk_covariance(features: Float[np.ndarray, "N F"]) -> Float[np.ndarray, "
 
 
 def fid(generated: Float[np.ndarray, "N F"], data: Float[np.ndarray, "M F"]) -> float:
-    """Frechet distance between features of generated and recorded clips.
+    """Frechet distance between the features of generated clips and those of the data.
 
     Both sets are normalised by the data; the covariances are unbiased. Unless both sets have more
     clips than features, the value is much too large and a FewSamplesWarning says so: compare it

@@ -1,7 +1,7 @@
 """The beat scores of the published tables as their code computes them, with its faults.
 
 Use them only to compare with published scores. Both count in frames and assume 60 frames/s: at 20
-frames/s the same code, with its sigma of 3 frames, gives a chance level of .75 and not .25.
+frames/s the same code, with its sigma of 3 frames, gives a chance level of .68 and not .25.
 Resample first (motion.resample). `beats.py` has the corrected scores.
 
                       AIST++'s authors                      Bailando; the formula of MoFusion eq. 10

@@ -4,7 +4,7 @@ Every bone keeps its length, and joints that need not move stay. The method depe
 
     elbow, knee             turns about the shoulder or the hip
     wrist, ankle            two bones, by the triangle of their lengths
-    fingertip, toe          tows the hand or the foot
+    fingertip, toe          pulls the hand or the foot
     head, neck, spine,
     shoulders               bend the trunk by FABRIK; shoulders are one block with the chest
     pelvis                  carries the body; the feet stay as far as the legs reach
@@ -113,7 +113,7 @@ def _first_aside(directions: Float[np.ndarray, "2 3"], line: Point) -> Point:
 def towed(
     limb: Float[np.ndarray, "4 3"], target: Point, bends: Float[np.ndarray, "2 3"]
 ) -> Float[np.ndarray, "4 3"]:
-    """Two bones and a hand or foot, which is drawn by its tip, as a cart by its shaft."""
+    """Two bones and a hand or foot: its tip moves to the target, and the rest follows the tip."""
     three, last = limb[:3], float(np.linalg.norm(limb[3] - limb[2]))
     tip = limb[3]
     for _ in range(20):

@@ -1,5 +1,5 @@
-"""World <-> root frame + control: the poses as the figure sees itself, and the velocities that
-carry it along.
+"""World <-> root frame and control: poses relative to the figure's root, and the velocities that
+move the root.
 
 The root is the point on the ground under the figure. control[t] = (forward m/s, left m/s, yaw
 rad/s) takes root[t] to root[t+1]. It is expressed in the heading halfway between the two, so

@@ -54,7 +54,8 @@ def attention_maps(
     model, T = dancer.model, len(dance)
     if not hasattr(model.config, "widths") or model.music is None:
         raise ValueError(
-            f"these maps need a U-Net with music; this is a {type(model).__name__} without"
+            f"these maps need a U-Net with music; this dancer has a {type(model).__name__}, "
+            f"C = {model.config.C}"
         )
     if not 1 <= s <= dancer.schedule.S:
         raise ValueError(f"this dancer's steps are 1 to {dancer.schedule.S}, not {s}")

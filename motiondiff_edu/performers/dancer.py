@@ -75,7 +75,7 @@ class Dancer(Performer):
 
         It works in the network's units. The x0_hat of an eps network is clamped to FARTHEST.
 
-        `fast=True` uses the fast twin if there is one and no one watches the network's attention;
+        `fast=True` uses the fast twin if there is one, unless `watch` collects the attention;
         the twin cannot be differentiated.
         Raises ValueError for a network with music but no `mel`, or the reverse.
         """

@@ -117,7 +117,7 @@ class Walker(Performer):
     ) -> Denoiser:
         """`denoise(x_s, s) -> eps_hat` for this past and control, in the network's units.
 
-        `fast=True` uses the fast twin if there is one and no one watches the network's attention;
+        `fast=True` uses the fast twin if there is one, unless `watch` collects the attention;
         the twin cannot be differentiated.
         """
         twin = self.fast if fast and not watched(self.model) else None

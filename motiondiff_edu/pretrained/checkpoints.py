@@ -58,7 +58,7 @@ STORED = {8: pack, 16: lambda weights: {k: v.half() for k, v in weights.items()}
 def save(figure: Walker | Dancer, path: str | Path, bits: int = 16) -> Path:
     """Write a walker or dancer: weights, scalers, schedule.
 
-    Weights are float16; `bits` = 32 leaves them as they are, 8 see `eight_bits`.
+    Weights are stored as float16; `bits=32` leaves them unchanged, `bits=8` uses `eight_bits`.
 
     NAME.json, the card, is written beside NAME.safetensors. Both get a temporary name first.
     Raises ValueError for other numbers of bits or another ending, for what is no performer, and for

@@ -28,7 +28,7 @@ from ..performers.with_bar import with_bar
 from . import checkpoints
 
 STEPS = 50  # of DDIM, for in-betweens by default
-AGAIN = "So it was made again without guidance, by blending alone: look whether it is good enough"
+AGAIN = "So it was generated again without guidance, with blending only. Check the result"
 STILL = "Without guidance it is no better: give more keyframes, or draw straight lines between them"
 
 
@@ -101,8 +101,8 @@ def reconstruct(
     Known joints stay exactly where they are. The pelvis must be known in every frame, because the
     control of the walk is derived from it. With `samples` above 1, the result is a list of so many
     motions.
-    Raises MotionError if it is not, or if motion and mask do not fit, ValueError for a number of
-    samples under 1.  Source: MoDiff III-E.
+    Raises MotionError if the pelvis is missing in a frame, or if motion and mask do not fit, and
+    ValueError for a number of samples under 1.  Source: MoDiff III-E.
     """
     known, count = _fitting(motion, known), checked_count(samples, "samples")
     walker, draw = _shipped("walker"), torch.Generator().manual_seed(checked_seed(seed))

@@ -24,7 +24,7 @@ EIGHT_BITS = {
     "walker-plain",
     "walker-printed",
     *(recipe.name for recipe in PAIRS),
-}  # models for comparison; the others are stored in 16
+}  # to keep the package small; the others are stored in 16 bits
 
 
 def main() -> None:

@@ -26,7 +26,7 @@ def train_for(
 
     The recipe's own number of steps, number of clips and data seed are ignored. The learning rate
     rises for 100 steps and falls to zero along a half cosine of the seconds. Diffusion dropout
-    rises with the seconds, too. `clock` tells the seconds; by default those of this process.
+    rises with the seconds, too. `clock` returns seconds; by default the CPU time of this process.
     """
     begun = prepared(recipe, clips)
     optimizer = optimizer_for(begun.model, recipe.optimizer)

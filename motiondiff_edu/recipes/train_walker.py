@@ -60,8 +60,10 @@ def train(
     missing or not wanted.
     """
     if bool(recipe.begins_with) != (first is not None):
-        wanted = f"the network of {recipe.begins_with}" if recipe.begins_with else "a fresh network"
-        raise ValueError(f"{recipe.name} begins with {wanted}: pass it as `first`, or nothing")
+        advice = "a fresh network: leave out `first`"
+        if recipe.begins_with:
+            advice = f"the network of {recipe.begins_with}: pass it as `first`"
+        raise ValueError(f"{recipe.name} begins with {advice}")
     begun = prepared(recipe, clips or training_clips(recipe))
     windows = begun.windows
     begins = {}

@@ -33,7 +33,7 @@ _STATE = ("scene", "first", "missing", "repaired", "said")
 
 
 class Bench(anywidget.AnyWidget):
-    """A walk whose window of T_h frames can be broken, and is mended by `walker`.
+    """A walk: joints and frames of a window of T_h frames can be removed; `walker` repairs them.
 
     The walk is a Clip in the root frame.
 

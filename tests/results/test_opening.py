@@ -48,8 +48,8 @@ def test_the_opening_counts_and_says_what_holds(records):
 def test_what_was_missed_has_its_interval_and_whether_that_reaches_the_goal(records):
     missed = page.opening(records).split("**What was missed.**")[1].split("**What is not")[0]
     assert missed.split("\n* ")[1:] == [
-        "The small walkers' bone error with joints missing, over that without, is 1.57 "
-        "[1.33, 1.82]; the goal is at most 1.5, which the interval reaches (`mend.table2_ratio`).",
+        "The small walkers' bone error with joints missing (walks or reconstructed pasts, "
+        "whichever is larger), over that without, is 1.57 [1.33, 1.82]; the goal is at most 1.5, which the interval reaches (`mend.table2_ratio`).",
         "`bench.new_x` is 1.2 [1.1, 1.3]; the goal is at least 2 (`bench.new_x`).\n\n",
     ]
 
@@ -66,7 +66,8 @@ def test_what_is_met_by_its_value_alone_is_not_certain_and_what_is_absent_is_sai
     text = page.opening(records)
     uncertain, absent = re.findall(r"\*\*What is not \w+(?: yet)?\.\*\* (.*)\n", text)
     assert uncertain.endswith(
-        "the goal: the walker's error in the last 3 s, over that in the first 3 s."
+        "the goal: the walker's bone or control error, whichever grows more, in the last 3 s, "
+        "over that in the first 3 s."
     )
     assert absent == (
         "These measures are missing: "

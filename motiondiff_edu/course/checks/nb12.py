@@ -103,7 +103,7 @@ def any_length(mine):
                 x.shape[1] % multiple == 0,
                 (
                     f"the network was given {x.shape[1]} frames, no multiple of {multiple}: "
-                    "fill up before you call it"
+                    "pad with zeros before you call it"
                 ),
             )
             return sums(x)
@@ -128,7 +128,7 @@ def any_length(mine):
             moved: late[:, :T],
             f"{moved}, even if you cut them off again": late[:, more - T :],
             "cut off at the end, not at the start": whole[:, more - T :],
-            "fill up with zeros: copies of the last frame mean that the dancer freezes": held,
+            "pad with zeros: copies of the last frame mean that the dancer freezes": held,
         }
         expect_close(
             got, sums(x), f"the output for {T} frames and multiples of {multiple}", mistakes

@@ -182,9 +182,9 @@ def check_frame_ends(
         held %= width
     if held:
         raise BvhError(
-            f"the last frame, begun on line {begun}, has {held} of {width} numbers and ends "
-            "before this one; the file is cut off. "
-            "Fetch it again, or remove that frame and count 'Frames:' down.",
+            f"the last frame, begun on line {begun}, has only {held} of {width} numbers; this one "
+            "is the first that is missing: the file is cut off. "
+            "Fetch it again, or remove that frame and lower 'Frames:' by one.",
             path,
             counts[-1][0],
             "{} ({})".format(*columns[held]),

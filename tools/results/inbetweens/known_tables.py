@@ -34,14 +34,14 @@ def known_answers(records: dict[str, dict]) -> str:
         "windows of walking. Its conditional, given what is known of a window, is a formula, and "
         "so is its denoiser. So every error here comes from the way of filling in, not from a "
         f"network. There are {seeds['questions']} windows and {seeds['samples']} samples of each. "
-        "Draws from the right answer show the error that counting alone makes.\n"
+        "Draws from the true conditional show the error of a finite number of samples.\n"
     )
     for kind, words in KINDS.items():
         rows = [
             [f"`{way}`", *(cell(records.get(f"{prefix}{hole}.{way}.{kind}")) for hole in holes)]
             for way in ways
         ]
-        text += f"\n{words.capitalize()}:\n\n" + table(["way", *holes], rows)
+        text += f"\n{words[:1].upper() + words[1:]}:\n\n" + table(["way", *holes], rows)
     return text
 
 

@@ -15,7 +15,7 @@ AGREES = "agrees"
 DIFFERS = "does not agree"
 OPEN = "undecided"
 MISSING = "not measured yet"
-TEXT = """## The paper's claims, tried
+TEXT = """## The paper's claims, tested
 
 These are the claims of MoFusion that a measure of this course can judge. The verdict is computed:
 **agrees** when the whole 95 % interval lies on the right side of the limit, **does not agree** when

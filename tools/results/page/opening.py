@@ -85,7 +85,7 @@ def paper(records: dict[str, dict]) -> str:
     agrees, differs, undecided = (verdicts.count(said) for said in (AGREES, DIFFERS, OPEN))
     missing = verdicts.count(MISSING)
     more = f", and {missing} have not been measured" if missing else ""
-    place = anchor("The paper's claims, tried")
+    place = anchor("The paper's claims, tested")
     return (
         f"**MoFusion's claims.** Of the {len(CLAIMS)} claims that we can judge at this scale, "
         f"{agrees} agree with what we measured, {differs} do not, {undecided} remain "

@@ -66,8 +66,8 @@ def bars(records: dict[str, dict]) -> str:
         [GOALS.get(bar.name, ""), f"`{bar.name}`", bar.text, *_verdict(bar, records.get(bar.name))]
         for bar in BARS
     ]
-    head = ["what", "measure", "bar", "measured", "interval", ""]
-    return "## The bars\n\n" + table(head, rows) + timed_on(records)
+    head = ["what", "measure", "goal", "measured", "interval", ""]
+    return "## The goals\n\n" + table(head, rows) + timed_on(records)
 
 
 def timed_on(records: dict[str, dict]) -> str:
@@ -98,9 +98,9 @@ def walkers(records: dict[str, dict]) -> str:
         "## The walkers\n\n"
         f"Each walker continues {seeds.get('clips')} unseen pasts for {seeds.get('seconds')} s. We "
         "measure the network's raw output. The sampler is DDPM with all its steps; `ddim10` takes "
-        "ten steps of DDIM. The control is held over each window; with `lookahead` the window sees "
-        "the future control. Rows of the data are of the recorded motion under the same control. "
-        "Diversity "
+        "ten steps of DDIM. The control is held over each window; in columns named `lookahead` the "
+        "window sees the future control. Rows of the data measure the data's own motion under the "
+        "same control. Diversity "
         f"compares {seeds.get('each')} rollouts for each of {seeds.get('pasts')} pasts, after "
         f"their first second. Seeds: {_seed(names, records, 'walk')} for pasts and controls, "
         f"{_seed(names, records, 'diversity')} for those of the diversity, "

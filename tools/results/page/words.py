@@ -9,8 +9,13 @@ GOALS = {
     "walker.adherence_shuffled_over_own": (
         "the walker's error on other clips' controls, over that on its own"
     ),
-    "walker.drift_ratio": "the walker's error in the last 3 s, over that in the first 3 s",
-    "walker.skating_over_data": "the sliding of the walker's planted feet, over that of the data",
+    "walker.drift_ratio": (
+        "the walker's bone or control error, whichever grows more, in the last 3 s, over that "
+        "in the first 3 s"
+    ),
+    "walker.skating_over_data": (
+        "the sliding of the walker's planted feet, over the data's or 0.02 m/s if that is larger"
+    ),
     "walker.diversity_over_data": "the diversity of the walker's walks, over that of the data",
     "bench.modiff_frame_paper_x": (
         "the speed of a frame at the paper's size, over a plain loop with diffusers"
@@ -50,14 +55,18 @@ GOALS = {
         "what diffusion dropout saves in control error, with joints missing"
     ),
     "mend.dropout_cost_complete": (
-        "the walker's error, over that of the walker without diffusion dropout, from complete pasts"
+        "the walker's bone or control error, whichever ratio is larger, over that of the walker "
+        "without diffusion dropout, from complete pasts"
     ),
     "mend.arm_rmse_over_ridge": "the error of a reconstructed arm, over that of ridge regression",
     "mend.arm_rmse_over_meanpose": "the error of a reconstructed arm, over that of the mean pose",
     "mend.frames_rmse_over_interpolation": (
         "the error of reconstructed frames, over that of straight lines"
     ),
-    "mend.table2_ratio": "the small walkers' bone error with joints missing, over that without",
+    "mend.table2_ratio": (
+        "the small walkers' bone error with joints missing (walks or reconstructed pasts, "
+        "whichever is larger), over that without"
+    ),
     "mend.footsteps_over_data": (
         "the number of the small walkers' footsteps with joints missing, over that of the data"
     ),
@@ -96,7 +105,7 @@ KINDS = {
     "drift_ratio": "drift: the larger of both",
     "skating_mps": "sliding of planted feet",
     "skating_data_mps": "sliding of planted feet, data",
-    "skating_over_data": "sliding over the data's",
+    "skating_over_data": "sliding over the data's, or over 0.02 m/s if that is larger",
     "planted_share": "share of frames with a planted foot",
     "planted_share_data": "share of frames with a planted foot, data",
     "diversity_m": "diversity",
@@ -145,7 +154,7 @@ KINDS = {
     "there_and_back_masked": "the same, with known entries held on the way back",
     "masked": "MoFusion's, under a mask",
     "masked_blended": "the same, blended and guided",
-    "exact": "draws from the right answer",
+    "exact": "draws from the true conditional",
     "npss_over_interpolation": "NPSS over straight lines'",
     "npss_velocity_over_interpolation": "NPSS of velocities over straight lines'",
     "seam_jump_over_data": "jump at the seam over the data's",
@@ -157,16 +166,16 @@ KINDS = {
 TABLE_2 = {
     "bone_whole_cm": "bone error, complete pasts",
     "bone_ge_cm": "bone error of walks from broken pasts",
-    "bone_re_cm": "bone error of reconstructed pasts, our way",
-    "bone_re_bones_cm": "the same, bones kept",
+    "bone_re_cm": "bone error of reconstructed pasts, as the network gives them",
+    "bone_re_bones_cm": "the same with bones kept, our way",
     "bone_re_paper_cm": "bone error of reconstructed pasts, the paper's way",
     "ratio": "the larger of walks and reconstructions, over complete pasts",
     "ge_over_whole": "walks from broken pasts over complete pasts",
 }
 WALKERS = {"": "small walkers", "keep5_": "small walkers, five poses kept", "walker_": "`walker`"}
 FOOTSTEPS = {
-    "": "footsteps over the data's, our way",
-    "_paper": "footsteps over the data's, the paper's way",
+    "": "footsteps over the data's, robust count",
+    "_paper": "footsteps over the data's, the paper's count",
 }
 
 

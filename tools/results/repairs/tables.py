@@ -69,7 +69,8 @@ def dropout(records: dict[str, dict], folder: Path) -> str:
         f"{seeds['missing']:.0%} of the joints missing throughout (zero after standardisation). "
         "Intervals are over clips, and for the small pairs over training seeds too; three seeds "
         "are few. `gain` is the error without dropout minus the error with it, from broken pasts; "
-        "`cost` is the error with dropout over that without, from complete pasts.\n\n"
+        "`cost` is the error with dropout over that without, from complete pasts: the larger of "
+        "the ratios of bone and control error.\n\n"
     )
     head = ["past", "error", "walker-plain", "walker", "small, plain", "small, with dropout"]
     text += table(head, rows) + "\n" + table(["measure", "measured"], gains)

@@ -44,15 +44,15 @@ def section(records: dict[str, dict], folder: Path) -> str:
     waiting = [name for name in CELLS if name not in there]
     text = (
         "## From the paper's walker to ours\n\n"
-        f"Small walkers of one size, {SEEDS} training seeds each. Every training has the number of "
-        f"steps that {CPU_SECONDS} CPU-seconds are worth on one thread. From our recipe one choice "
-        "is taken out at a time; to the recipe that MoDiff prints one is added. The interval is "
-        "over training seeds and walks. DDPM with S = 100, control held, one pose kept of every "
-        "window.\n\n"
-        f"The printed recipe keeps the paper's rate, {PRINTED_RATE:g}, unless rate or Muon is "
-        "what is added. All other rates are the best of "
-        f"{', '.join(f'{rate:g}' for rate in RATES['muon'])}: least loss on validation clips after "
-        f"{TRIAL:.0%} of the budget, for each of both recipes and each optimiser.\n\n"
+        f"Small walkers of one size, {SEEDS} training seeds each. Every training has as many "
+        f"steps as fit into {CPU_SECONDS} CPU-seconds on one thread. Each row takes one choice out "
+        "of our recipe, or adds one to the recipe that MoDiff prints. The interval is over "
+        "training seeds and walks. The sampler is DDPM with S = 100; the control is held, and one "
+        "pose of every window is kept.\n\n"
+        f"The printed recipe keeps the paper's rate, {PRINTED_RATE:g}, unless the row adds a tuned "
+        "rate or Muon. The other rates were chosen for each of the two recipes and each optimiser: "
+        f"the one of {', '.join(f'{rate:g}' for rate in RATES['muon'])} with the least loss on "
+        f"validation clips after {TRIAL:.0%} of the budget.\n\n"
     )
     head = ["recipe", "steps", "rate", *(WORDS[kind] for kind in MEASURES)]
     rows = []
