@@ -170,6 +170,20 @@ def test_a_reconstruction_is_drawn_by_its_seed(walked):
     assert not np.array_equal(first, other)
 
 
+def test_a_reconstruction_keeps_the_root_and_so_the_control(walked):
+    given = walked.rooted()
+    made = md.reconstruct(given, given.all_but("LeftArm"))
+    np.testing.assert_array_equal(made.root, given.root)
+    np.testing.assert_array_equal(made.control, given.control)
+
+
+def test_in_betweens_without_a_pelvis_have_a_root_of_their_own(walked):
+    given = walked.rooted()
+    gap = given.known
+    gap[20:30] = False
+    assert md.inbetween(given, gap, steps=2).root is None
+
+
 def test_a_foot_that_was_made_anew_has_no_contacts(walked):
     hand, foot = walked.all_but(ARM, 40, 44), walked.all_but(["LeftToeBase"], 40, 44)
     np.testing.assert_array_equal(md.reconstruct(walked, hand).contacts, walked.contacts)
@@ -210,7 +224,9 @@ def test_motions_of_one_name_are_numbered(walked):
     assert labels == [f"{walked.source} (1)", "other", f"{walked.source} (2)"]
 
 
-@pytest.mark.parametrize("better, said", [(True, "So it was made again"), (False, "no better")])
+@pytest.mark.parametrize(
+    "better, said", [(True, "So it was generated again"), (False, "no better")]
+)
 def test_in_betweens_that_jump_are_made_again_without_guidance(better, said, walked, monkeypatch):
     """The network is replaced by one that leaves the way, with guidance or always."""
 

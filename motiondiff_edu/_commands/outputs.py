@@ -60,7 +60,7 @@ def output_paths(out: Path, overwrite: bool, samples: int = 1) -> list[Path]:
         raise ValueError(f"--samples must be at least 1, not {samples}")
     if out.suffix.lower() not in registry.writers.names():
         what = f"unknown ending {out.suffix}" if out.suffix else "the name has no ending"
-        raise ValueError(f"--out {out}: {what}; use one of {endings()}")
+        raise ValueError(f"{out}: {what}; use one of {endings()}")
     out = out.expanduser()
     _check_folder(out)
     digits = len(str(samples))
@@ -68,9 +68,9 @@ def output_paths(out: Path, overwrite: bool, samples: int = 1) -> list[Path]:
     paths = [out.with_name(f"{out.stem}{number}{out.suffix}") for number in numbers]
     for path in paths:
         if path.is_dir():
-            raise ValueError(f"--out {path} is a folder; give the name of a file in it")
+            raise ValueError(f"{path} is a folder; give the name of a file in it")
         if path.exists() and not overwrite:
-            raise ValueError(f"{path} exists already: choose another --out, or add --overwrite")
+            raise ValueError(f"{path} exists already: choose another name, or add --overwrite")
     return paths
 
 
@@ -78,9 +78,9 @@ def _check_folder(out: Path) -> None:
     """Raise ValueError unless the file's folder is there, or can be made, and can be written to."""
     there = next(folder for folder in out.absolute().parents if folder.exists())
     if not there.is_dir():
-        raise ValueError(f"--out {out}: {there} is a file, not a folder; choose another --out")
+        raise ValueError(f"{out}: {there} is a file, not a folder; choose another place")
     if not os.access(there, os.W_OK | os.X_OK):
-        raise ValueError(f"--out {out}: you may not write in {there}; choose another --out")
+        raise ValueError(f"{out}: you may not write in {there}; choose another place")
 
 
 def read(path: Path, mapping: dict[str, str] | None = None, file_fps: float | None = None):

@@ -21,7 +21,7 @@ from ..motion.checks import checked_count, checked_seed
 from ..motion.motion import Motion, MotionError, as_motion
 from ..motion.normalise import MotionWarning
 from ..motion.root_frame import FPS
-from ..motion.skeleton import TOES
+from ..motion.skeleton import HIPS, TOES
 from ..performers.dancer import Dancer
 from ..performers.walker import Walker
 from ..performers.with_bar import with_bar
@@ -133,7 +133,14 @@ def _fitting(motion: Motion, known) -> Bool[np.ndarray, "T J"]:
 
 
 def _made(motion: Motion, known: np.ndarray, positions: np.ndarray, how: str) -> Motion:
-    """The motion with new positions; it keeps its contacts if no toe was generated."""
-    kept = motion.contacts if known[:, list(TOES)].all() else None
-    along = {"audio": motion.audio, "sample_rate": motion.sample_rate, "contacts": kept}
-    return Motion(positions, motion.fps, source=f"{motion.name}, {how}", **along)
+    """The motion with new positions.
+
+    It keeps its root if no pelvis was generated, and its contacts if no toe was.
+    """
+    return replace(
+        motion,
+        positions=positions,
+        root=motion.root if known[:, HIPS].all() else None,
+        contacts=motion.contacts if known[:, list(TOES)].all() else None,
+        source=f"{motion.name}, {how}",
+    )

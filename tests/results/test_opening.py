@@ -49,7 +49,8 @@ def test_what_was_missed_has_its_interval_and_whether_that_reaches_the_goal(reco
     missed = page.opening(records).split("**What was missed.**")[1].split("**What is not")[0]
     assert missed.split("\n* ")[1:] == [
         "The small walkers' bone error with joints missing (walks or reconstructed pasts, "
-        "whichever is larger), over that without, is 1.57 [1.33, 1.82]; the goal is at most 1.5, which the interval reaches (`mend.table2_ratio`).",
+        "whichever is larger), over that without, is 1.57 [1.33, 1.82]; the goal is at most 1.5, "
+        "which the interval reaches (`mend.table2_ratio`).",
         "`bench.new_x` is 1.2 [1.1, 1.3]; the goal is at least 2 (`bench.new_x`).\n\n",
     ]
 
