@@ -88,7 +88,7 @@ def angles_of(
 ) -> Float[Tensor, "T w"]:
     """2 pi f t for width/2 frequencies f between `slowest` and `fastest` Hz, evenly on a log scale.
 
-    Times are in seconds. After queries and keys are rotated by these angles (see `turned`), their
+    Times are in seconds. After queries and keys are rotated by these angles (see `rotary`), their
     product depends on the time between them, and on no other time.
     Source: rotary positions (Su and others, 2021), in seconds; MoFusion leaves positions open.
     Notebook: 12
@@ -97,7 +97,7 @@ def angles_of(
     return 2 * math.pi * times[:, None] * f
 
 
-def turned(x: Float[Tensor, "*B T d"], angles: Float[Tensor, "T w"]) -> Float[Tensor, "*B T d"]:
+def rotary(x: Float[Tensor, "*B T d"], angles: Float[Tensor, "T w"]) -> Float[Tensor, "*B T d"]:
     """Rotate each pair (x[i], x[i + d/2]) by its angle.
 
     Then q_t . k_u depends on the time between t and u.
@@ -136,16 +136,16 @@ class CrossModalAttention(nn.Module):
         x: Float[Tensor, "B T W"],
         context: Float[Tensor, "B M C"],
         bias: Float[Tensor, "#B #H T M"] | None = None,
-        turns: tuple[Float[Tensor, "T w"], Float[Tensor, "M w"]] | None = None,
+        angles: tuple[Float[Tensor, "T w"], Float[Tensor, "M w"]] | None = None,
     ) -> Float[Tensor, "B T W"]:
         """`bias` is added to the scores.
 
-        `turns` are the angles of `turned` for queries and keys, or None.
+        `angles`: of `rotary`, for queries and keys; None: no rotation.
         """
         q = self.split(self.q(x))
         k, v = (self.split(part) for part in self.kv(context).chunk(2, dim=-1))
-        if turns is not None:
-            q, k = turned(q, turns[0]), turned(k, turns[1])
+        if angles is not None:
+            q, k = rotary(q, angles[0]), rotary(k, angles[1])
         if self.watcher is None:
             out = F.scaled_dot_product_attention(q, k, v, attn_mask=bias)
         else:

@@ -137,9 +137,9 @@ class CrossAttentionBlock(nn.Module):
         self.norm_ff = nn.LayerNorm(width)
         self.ff = nn.Sequential(nn.Linear(width, 2 * width), nn.GELU(), nn.Linear(2 * width, width))
 
-    def forward(self, x: Float[Tensor, "B T W"], context, bias, turns) -> Float[Tensor, "B T W"]:
+    def forward(self, x: Float[Tensor, "B T W"], context, bias, angles) -> Float[Tensor, "B T W"]:
         normed = self.norm(x)
-        x = x + self.attention(normed, normed if context is None else context, bias, turns)
+        x = x + self.attention(normed, normed if context is None else context, bias, angles)
         return x + self.ff(self.norm_ff(x))
 
 
@@ -174,7 +174,7 @@ class MoFusion(nn.Module):
     """eps_hat = net(x_s, s, music) + w(s) x_s, for motions of any length.
 
     Frame t of the motion is at t / fps seconds; the music's frames have their own times (`listen`).
-    Queries and keys are rotated by these times in the same way (`turned`).
+    Queries and keys are rotated by these times in the same way (`rotary`).
     Source: MoFusion 3.3, Fig. 3; the skip w(s) and the position code are ours.  Notebook: 12
     """
 
@@ -262,7 +262,7 @@ class MoFusion(nn.Module):
     def _block(self, block, h, step, music, view):
         h = block["res"](h, step, view.mask)
         return block["ask"](
-            h, None if music is None else music.tokens, view.bias, view.turns[h.shape[-1]]
+            h, None if music is None else music.tokens, view.bias, view.angles[h.shape[-1]]
         )
 
 
@@ -281,7 +281,7 @@ class View:
 
     mask: Float[Tensor, "#B T 1"]
     bias: Float[Tensor, "#B 1 T M"] | None
-    turns: dict[int, tuple[Tensor, Tensor]]  # by the width of the features
+    angles: dict[int, tuple[Tensor, Tensor]]  # by the width of the features
 
     @classmethod
     def of(
@@ -303,8 +303,8 @@ class View:
             else torch.where(allowed, 0.0, -1e4).expand(-1, -1, len(times), -1)
         )
         code = (config.slowest, config.fastest)
-        turns = {
+        angles = {
             w: tuple(angles_of(t, w // config.heads, *code) for t in (times, token_times))
             for w in set(config.widths)
         }
-        return cls(inside[..., None].float(), bias, turns)
+        return cls(inside[..., None].float(), bias, angles)

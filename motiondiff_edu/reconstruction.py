@@ -87,7 +87,7 @@ WayBack = Callable[[Rollout, Tensor, Tensor, Tensor, Tensor], Tensor]
 Correction = Callable[[Tensor, Tensor, Tensor], Tensor]
 
 
-def walked_back(rollout: Rollout, ahead, control, given, known) -> Float[Tensor, "B T_h D"]:
+def plain_way_back(rollout: Rollout, ahead, control, given, known) -> Float[Tensor, "B T_h D"]:
     """The paper's way back: it uses only the new frames `ahead`, not the known entries.
 
     `beyond.back_with_known` has others.  Source: MoDiff III-E.
@@ -95,13 +95,13 @@ def walked_back(rollout: Rollout, ahead, control, given, known) -> Float[Tensor,
     return rollout.continued(ahead, control)
 
 
-def repair_steps(
+def reconstruct_steps(
     rollout: Rollout,
     past: Float[Any, "B _ _"],
     known: Shaped[Any, "_ _ _"],
     control: Float[Any, "_ _ _"],
     *,
-    way_back: WayBack = walked_back,
+    way_back: WayBack = plain_way_back,
     guess: Float[Tensor, "B T_h D"] | None = None,
     correct: Correction | None = None,
     stop: Stop = Stop(),
@@ -137,20 +137,20 @@ def repair_steps(
             return
 
 
-def repair(
+def reconstruct(
     rollout: Rollout,
     past: Float[Any, "B _ _"],
     known: Shaped[Any, "_ _ _"],
     control: Float[Any, "_ _ _"],
     *,
-    way_back: WayBack = walked_back,
+    way_back: WayBack = plain_way_back,
     guess: Float[Tensor, "B T_h D"] | None = None,
     correct: Correction | None = None,
     stop: Stop = Stop(),
 ) -> Float[Tensor, "B T_h D"]:
-    """The past after the last of `repair_steps`: known entries stay as given, bit by bit.
+    """The past after the last of `reconstruct_steps`: known entries stay as given, bit by bit.
     Notebook: 10"""
-    loop = repair_steps(
+    loop = reconstruct_steps(
         rollout, past, known, control, way_back=way_back, guess=guess, correct=correct, stop=stop
     )
     return final(loop).past

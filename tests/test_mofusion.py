@@ -6,7 +6,7 @@ import pytest
 import torch
 import torch.nn.functional as F
 
-from motiondiff_edu.cross_modal_attention import angles_of, turned
+from motiondiff_edu.cross_modal_attention import angles_of, rotary
 from motiondiff_edu.fast.mofusion import FastMoFusion
 from motiondiff_edu.modiff import step_embedding
 from motiondiff_edu.mofusion import (
@@ -145,7 +145,7 @@ def test_only_the_distance_in_time_counts():
 
     def scores(shift: float):
         turn = [angles_of(t + shift, 8, 0.05, 8.0) for t in (frames, heard)]
-        return turned(q, turn[0]) @ turned(k, turn[1]).mT
+        return rotary(q, turn[0]) @ rotary(k, turn[1]).mT
 
     torch.testing.assert_close(scores(0.0), scores(60.0), atol=2e-3, rtol=1e-3)
     assert (scores(0.0) - q @ k.mT).abs().max() > 0.1
@@ -154,8 +154,8 @@ def test_only_the_distance_in_time_counts():
 def test_a_turn_keeps_lengths_and_zero_turns_nothing():
     x = torch.randn(2, 5, 8)
     angles = angles_of(torch.arange(5) / 20, 8, 0.05, 8.0)
-    torch.testing.assert_close(turned(x, angles).norm(dim=-1), x.norm(dim=-1))
-    assert torch.equal(turned(x, torch.zeros(5, 4)), x)
+    torch.testing.assert_close(rotary(x, angles).norm(dim=-1), x.norm(dim=-1))
+    assert torch.equal(rotary(x, torch.zeros(5, 4)), x)
     assert angles[3].tolist() == pytest.approx(
         [2 * torch.pi * 0.15 * f for f in (0.05, 0.2714, 1.4736, 8.0)], rel=1e-3
     )

@@ -12,7 +12,13 @@ import torch
 from data_synth.walking import random_control, walk
 from motiondiff_edu.motion.augment import reverse_time
 from motiondiff_edu.motion.scaler import Scaler
-from motiondiff_edu.reconstruction import Rollout, Stop, repair, repair_steps, reverse_control
+from motiondiff_edu.reconstruction import (
+    Rollout,
+    Stop,
+    reconstruct,
+    reconstruct_steps,
+    reverse_control,
+)
 from motiondiff_edu.rollout import generate
 
 T_H, D = 6, 8
@@ -77,7 +83,7 @@ def test_missing_frames_are_found_by_a_walker_that_knows_the_way():
     known = torch.ones(past.shape, dtype=torch.bool)
     known[:, 1:4] = False
     holes = past.masked_fill(~known, float("nan"))
-    done = list(repair_steps(there_and_back(), holes, known, control))
+    done = list(reconstruct_steps(there_and_back(), holes, known, control))
     torch.testing.assert_close(done[-1].past, past, atol=1e-4, rtol=1e-4)
     assert torch.equal(done[-1].past[known], past[known])
     assert (
@@ -92,8 +98,8 @@ def test_a_first_guess_is_where_the_way_begins():
         False  # the frame from which the walk goes on: nothing can make up for a wrong one
     )
     once, guess = Stop(rounds=1), past + 0.0
-    from_mean = repair(there_and_back(), past, known, control, stop=once)
-    from_truth = repair(there_and_back(), past, known, control, guess=guess, stop=once)
+    from_mean = reconstruct(there_and_back(), past, known, control, stop=once)
+    from_truth = reconstruct(there_and_back(), past, known, control, guess=guess, stop=once)
     assert (from_truth - past).abs().max() < 1e-3 < 0.1 < (from_mean - past).abs().max()
 
 
@@ -101,14 +107,14 @@ def test_a_reversal_without_the_sign_fails():
     past, control = material()
     known = torch.ones(past.shape, dtype=torch.bool)
     known[:, 1:4] = False
-    straight = repair(there_and_back(), past, known, control)
+    straight = reconstruct(there_and_back(), past, known, control)
     assert (straight - past).abs().max() < 1e-3
     from motiondiff_edu import reconstruction
 
     before = reconstruction.reverse_control
     try:
         reconstruction.reverse_control = lambda c: c.flip(-2)  # what the paper says
-        wrong = repair(there_and_back(), past, known, control)
+        wrong = reconstruct(there_and_back(), past, known, control)
     finally:
         reconstruction.reverse_control = before
     assert (wrong - past).abs().max() > 0.3
@@ -118,9 +124,9 @@ def test_it_stops_when_told_though_a_sampler_spreads():
     past, control = material()
     known = torch.ones(past.shape, dtype=torch.bool)
     known[:, :, 3:] = False
-    done = list(repair_steps(there_and_back(0.1), past, known, control, stop=Stop(4)))
+    done = list(reconstruct_steps(there_and_back(0.1), past, known, control, stop=Stop(4)))
     assert [d.number for d in done] == [1, 2, 3, 4] and torch.isfinite(done[-1].past).all()
-    again = list(repair_steps(there_and_back(0.1), past, known, control, stop=Stop(4)))
+    again = list(reconstruct_steps(there_and_back(0.1), past, known, control, stop=Stop(4)))
     assert torch.equal(done[-1].past, again[-1].past)
 
 
@@ -128,7 +134,7 @@ def test_one_sample_at_rest_does_not_end_the_others():
     past, control = material(2)
     known = torch.ones(past.shape, dtype=torch.bool)
     known[1, 2:4] = False  # of sample 0 nothing is missing
-    found = list(repair_steps(there_and_back(0.5), past, known, control, stop=Stop(3)))
+    found = list(reconstruct_steps(there_and_back(0.5), past, known, control, stop=Stop(3)))
     assert len(found) == 3 and found[0].change[0] == 0 < found[0].change[1]
 
 
@@ -143,7 +149,7 @@ def test_what_corrects_a_past_is_in_it_and_in_its_change():
 
     once = {"guess": past, "stop": Stop(rounds=1)}  # a walker that knows the way changes nothing
     (plain,), (corrected,) = (
-        list(repair_steps(there_and_back(), past, known, control, correct=s, **once))
+        list(reconstruct_steps(there_and_back(), past, known, control, correct=s, **once))
         for s in (None, raised)
     )
     torch.testing.assert_close(corrected.past, plain.past + 1.0 * ~known)
@@ -164,7 +170,7 @@ def test_the_way_back_is_told_everything_turned_round_and_how_many_poses_to_keep
     once = {"guess": past, "way_back": way, "stop": Stop(rounds=1)}
     for keep, kept in ((1, 1), (None, 2)):  # all of a window, if nothing else is said
         rollout = there_and_back(keep=keep)
-        repair(rollout, past, known, control, **once)
+        reconstruct(rollout, past, known, control, **once)
         assert torch.equal(told["given"], past.flip(1)) and torch.equal(told["seen"], known.flip(1))
         assert torch.equal(told["rows"], reverse_control(control)) and told["rollout"] is rollout
         like = {"hold": False, "generator": seeded(), "steps": 10, "keep": kept}
@@ -175,7 +181,7 @@ def test_the_way_back_is_told_everything_turned_round_and_how_many_poses_to_keep
 def test_nothing_missing_is_returned_as_it_is():
     past, control = material()
     known = torch.ones(past.shape, dtype=torch.bool)
-    done = list(repair_steps(there_and_back(), past, known, control))
+    done = list(reconstruct_steps(there_and_back(), past, known, control))
     assert len(done) == 1 and torch.equal(done[0].past, past) and (done[0].change == 0).all()
 
 
@@ -225,7 +231,7 @@ def test_wrong_inputs(what):
     changes, words = MISTAKES[what]
     given |= {name: change(given[name]) for name, change in changes.items()}
     with pytest.raises(ValueError, match=words) as caught:
-        repair(there_and_back(), **given)
+        reconstruct(there_and_back(), **given)
     assert ("control" in changes) == (
         "control" in str(caught.value)
     )  # what is right is not spoken of
@@ -235,8 +241,8 @@ def test_arrays_of_numpy_are_taken():
     past, control = material()
     known = torch.ones(past.shape, dtype=torch.bool)
     known[:, 1:4] = False
-    ours = repair(there_and_back(), past.numpy(), known.numpy(), control.numpy())
-    assert torch.equal(ours, repair(there_and_back(), past, known, control))
+    ours = reconstruct(there_and_back(), past.numpy(), known.numpy(), control.numpy())
+    assert torch.equal(ours, reconstruct(there_and_back(), past, known, control))
 
 
 def test_a_single_row_of_control_cannot_be_reversed():

@@ -72,7 +72,7 @@ class WindowRidge:
     pose_scaler: Scaler
     control_scaler: Scaler
 
-    def repair(
+    def reconstruct(
         self,
         past: Float[Tensor, "B T_h D"],
         known: Bool[Tensor, "B T_h D"],

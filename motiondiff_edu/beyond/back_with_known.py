@@ -1,4 +1,4 @@
-"""Ways back that also use the known entries: for `reconstruction.repair_steps(way_back=...)`.
+"""Ways back that also use the known entries: for `reconstruction.reconstruct_steps(way_back=...)`.
 
 The paper walks back as if nothing were known, and fills the holes from the result. But known joints
 constrain the missing ones beside them, and known frames those before and after.
@@ -13,12 +13,12 @@ from torch import Tensor
 
 from ..ddpm import Denoiser, Schedule, draw, final
 from ..inbetweening import inpaint_steps
-from ..reconstruction import Rollout, walked_back
+from ..reconstruction import Rollout, plain_way_back
 from ..rollout import AnyWalker
 from .guidance import blended_guess, guided
 
-WEIGHT, MOVES = 0.6, 5  # of guidance, in masked_back
-FADE = 10  # frames within which drawn_back's correction fades where nothing more is known
+WEIGHT, MOVES = 0.6, 5  # of guidance, in masked_way_back
+FADE = 10  # frames within which blended_way_back's correction fades where nothing more is known
 Frames = Float[Tensor, "B T_h D"]
 
 
@@ -31,7 +31,7 @@ class MaskedWalker(AnyWalker, Protocol):
     def denoiser(self, past: Tensor, control: Tensor, fast: bool = True) -> Denoiser: ...
 
 
-def drawn_back(
+def blended_way_back(
     rollout: Rollout,
     ahead: Frames,
     control: Float[Tensor, "B T C"],
@@ -39,12 +39,12 @@ def drawn_back(
     known: Bool[Tensor, "B _ _"],
 ) -> Frames:
     """The paper's way back, corrected by `blended_guess`: it does not jump where a hole ends."""
-    back = walked_back(rollout, ahead, control, given, known)
+    back = plain_way_back(rollout, ahead, control, given, known)
     return blended_guess(back, given.to(back), known, FADE)
 
 
 @torch.no_grad()
-def masked_back(
+def masked_way_back(
     rollout: Rollout,
     ahead: Frames,
     control: Float[Tensor, "B T C"],
@@ -63,7 +63,7 @@ def masked_back(
     if config.T_p != config.T_h:
         raise ValueError(
             f"this walker predicts {config.T_p} poses from {config.T_h}: its window is not the "
-            "past. Use drawn_back"
+            "past. Use blended_way_back"
         )
     given, ahead = (walker.pose_scaler.transform(x.float()) for x in (given, ahead))
     network = walker.denoiser(ahead, walker.control_scaler.transform(control.float()), fast=False)

@@ -24,7 +24,8 @@ from ..motion.scaler import Scaler
 from ..motion.skeleton import J, joint_index
 
 FEET = [joint_index(name) for name in ("LeftFoot", "LeftToeBase", "RightFoot", "RightToeBase")]
-LEAN, AWAY, STRETCH = 2.0, 0.25, 0.1  # see `openness`
+LEAN, AWAY = 2.0, 0.25  # see `openness`
+STRETCH = 0.1
 NEAR = 0.015  # metres
 COLUMNS = [3 * joint + axis for joint in FEET for axis in range(3)]
 

@@ -14,7 +14,8 @@ import torch
 from jaxtyping import Bool, Float, Int
 from torch import Tensor
 
-from ..beyond.back_with_known import FADE, drawn_back
+from .. import reconstruction
+from ..beyond.back_with_known import FADE, blended_way_back
 from ..beyond.constant_bones import given_lengths, steady_bones
 from ..beyond.foot_lock import steady_feet
 from ..beyond.guidance import blended_guess
@@ -24,7 +25,7 @@ from ..motion.motion import MotionError
 from ..motion.planting import runs
 from ..motion.root_frame import smoothed_root, to_root_frame, to_world
 from ..motion.skeleton import BONE_LENGTHS, HIPS, JOINTS, TOES, J
-from ..reconstruction import Rollout, Stop, repair
+from ..reconstruction import Rollout, Stop
 from ..rollout import AnyWalker
 
 ROUNDS, STEPS = 3, 10  # rounds there and back; steps of DDIM
@@ -92,8 +93,14 @@ def _once(
         rows = some[:, None] + torch.arange(T_h)
         control = steer[some[:, None] + torch.arange(2 * T_h)].float()
         past = guess[rows].float()
-        back = repair(
-            rollout, past, mask[rows], control, way_back=drawn_back, guess=past, stop=Stop(rounds=1)
+        back = reconstruction.reconstruct(
+            rollout,
+            past,
+            mask[rows],
+            control,
+            way_back=blended_way_back,
+            guess=past,
+            stop=Stop(rounds=1),
         )
         for where, window in zip(rows, back, strict=True):
             found[where] += weight * window.to(guess)

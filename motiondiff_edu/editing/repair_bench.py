@@ -15,7 +15,7 @@ from ..motion.clip import Clip
 from ..motion.root_frame import FPS, root_path, to_world
 from ..motion.skeleton import J
 from ..rollout import AnyWalker
-from .repairs import Mended, mend_steps
+from .repairs import Reconstructions, sample_reconstructions
 
 
 @dataclass(frozen=True, eq=False)
@@ -23,7 +23,7 @@ class Outcome:
     """The mean of the repairs and then each repair, in the world (metres), and words about them."""
 
     motions: Float[np.ndarray, "n T_h J 3"]
-    mended: Mended
+    mended: Reconstructions
     words: str
 
 
@@ -96,7 +96,7 @@ class RepairBench:
         path, heading = root_path(self.clip.control)
         start = (*path[first], heading[first])
         holes = np.where(known[..., None], truth, np.nan)
-        loop = mend_steps(
+        loop = sample_reconstructions(
             self.walker, holes, known, control, self.samples, rounds=self.rounds, steps=self.steps,
             generator=torch.Generator().manual_seed(self.seed),
         )  # fmt: skip
@@ -106,7 +106,7 @@ class RepairBench:
             ]
             yield Outcome(np.stack(world), mended, self._words(mended, truth))
 
-    def _words(self, mended: Mended, truth: Float[np.ndarray, "T_h J 3"]) -> str:
+    def _words(self, mended: Reconstructions, truth: Float[np.ndarray, "T_h J 3"]) -> str:
         found, holes = mended.errors(truth), int((~mended.known).sum())
         return (
             f"Round {mended.round} of {self.rounds}: {holes} of {mended.known.size} joint "

@@ -14,14 +14,14 @@ from jaxtyping import Bool, Float
 from torch import Tensor
 
 from ..beyond.constant_bones import steady_bones
-from ..metrics import repair
+from ..metrics import reconstruction as measures
 from ..metrics.bone_lengths import bone_lengths, bone_rmse
-from ..reconstruction import Rollout, Stop, repair_steps
+from ..reconstruction import Rollout, Stop, reconstruct_steps
 from ..rollout import AnyWalker
 
 
 @dataclass(frozen=True, eq=False)
-class Mended:
+class Reconstructions:
     """`n` repairs of each past after `round` rounds (root frame, metres).
 
     `change` is how far the last round moved them (m).
@@ -43,19 +43,19 @@ class Mended:
         Distance and bone error are given for one repair and for the mean.
         """
         found = {
-            "one repair": repair.missing_error(self.samples, truth, self.known),
-            "their mean": repair.missing_error(self.mean, truth, self.known),
+            "one repair": measures.missing_error(self.samples, truth, self.known),
+            "their mean": measures.missing_error(self.mean, truth, self.known),
             "bones of one": bone_rmse(self.samples),
             "bones of the mean": bone_rmse(self.mean),
         }
         return found | (
-            {"spread": repair.missing_spread(self.samples, self.known)}
+            {"spread": measures.missing_spread(self.samples, self.known)}
             if len(self.samples) > 1
             else {}
         )
 
 
-def mend_steps(
+def sample_reconstructions(
     walker: AnyWalker,
     past: Float[np.ndarray, "*B T_h J 3"],
     known: Bool[np.ndarray, "*_ _ _"],
@@ -65,7 +65,7 @@ def mend_steps(
     generator: torch.Generator,
     rounds: int = 5,
     steps: int | None = 10,
-) -> Iterator[Mended]:
+) -> Iterator[Reconstructions]:
     """Repair each past `n` times; yield the repairs after each round there and back.
 
     Pasts are root-frame positions (metres), with NaN in the holes and with or without a batch axis.
@@ -86,9 +86,9 @@ def mend_steps(
     rows = (np.reshape(past, (-1, T_h, 3 * J)), np.reshape(control, (-1, control.shape[-2], 3)))
     holes, steer = (torch.from_numpy(np.asarray(row, np.float32)) for row in rows)
     batch = [row.repeat(n, 1, 1) for row in (holes, mask, steer)]
-    for done in repair_steps(Rollout(walker, generator, steps), *batch, stop=Stop(rounds)):
+    for done in reconstruct_steps(Rollout(walker, generator, steps), *batch, stop=Stop(rounds)):
         samples = done.past.double().numpy().reshape(n, *past.shape)
-        yield Mended(
+        yield Reconstructions(
             np.where(known[..., None], past, samples), known, done.number, float(done.change.mean())
         )
 
@@ -98,8 +98,8 @@ def with_bones(
 ) -> Float[Tensor, "B T_h D"]:
     """The past, with its missing joints moved until the bones have their right lengths.
 
-    For `reconstruction.repair_steps(correct=with_bones)`. Otherwise the bone between a generated
-    and a known joint changes its length.
+    For `reconstruct_steps(correct=with_bones)`. Otherwise the bone between a generated and a known
+    joint changes its length.
     Source: ours.
     """
     joints, ahead = (x.double().cpu().unflatten(-1, (-1, 3)).numpy() for x in (past, walked))

@@ -12,7 +12,7 @@ from jaxtyping import Float, Int
 from torch import Tensor
 from torch.nn import functional as F
 
-from ..cross_modal_attention import turned
+from ..cross_modal_attention import rotary
 from ..modiff import step_embedding
 from ..mofusion import CrossAttentionBlock, FrameConv, MoFusion, ResBlock, View
 
@@ -72,7 +72,7 @@ class FastMoFusion:
         for block, level in zip(self.blocks, self.level_of, strict=True):
             attention = block["ask"].attention
             k, v = (attention.split(part) for part in attention.kv(music.tokens).chunk(2, dim=-1))
-            keys.append(turned(k, views[level].turns[attention.q.out_features][1]).contiguous())
+            keys.append(rotary(k, views[level].angles[attention.q.out_features][1]).contiguous())
             values.append(v.contiguous())
         return SongContext(frames, views, tuple(keys), tuple(values))
 
@@ -130,7 +130,7 @@ def _attend(
 ) -> Tensor:
     """CrossAttentionBlock.forward, with keys and values already computed."""
     attention = block.attention
-    q = turned(attention.split(attention.q(block.norm(x))), view.turns[x.shape[-1]][0])
+    q = rotary(attention.split(attention.q(block.norm(x))), view.angles[x.shape[-1]][0])
     mixed = F.scaled_dot_product_attention(q, keys, values, attn_mask=view.bias)
     x = attention.out(mixed.transpose(1, 2).flatten(-2)).add_(x)
     return block.ff(block.norm_ff(x)).add_(x)

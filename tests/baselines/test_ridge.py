@@ -68,7 +68,7 @@ def test_windows_of_walks_are_filled_better_than_by_the_mean_pose():
     known = torch.ones(poses.shape, dtype=torch.bool)
     known[:, :, 3:15] = False  # the left leg
     holes = poses.masked_fill(~known, float("nan"))
-    repaired = model.repair(holes, known, control)
+    repaired = model.reconstruct(holes, known, control)
     assert torch.equal(repaired[known], poses[known])
     far = (windows.pose_scaler.mean - poses)[~known].square().mean()
     assert (repaired - poses)[~known].square().mean() < 0.25 * far

@@ -7,10 +7,10 @@ import torch
 
 from motiondiff_edu import exact
 from motiondiff_edu.beyond import back_with_known
-from motiondiff_edu.beyond.back_with_known import FADE, MOVES, drawn_back, masked_back
+from motiondiff_edu.beyond.back_with_known import FADE, MOVES, blended_way_back, masked_way_back
 from motiondiff_edu.ddpm import linear_schedule
 from motiondiff_edu.motion.scaler import Scaler
-from motiondiff_edu.reconstruction import Rollout, Stop, repair, walked_back
+from motiondiff_edu.reconstruction import Rollout, Stop, plain_way_back, reconstruct
 
 T_H = 5
 T_P = 7
@@ -51,7 +51,7 @@ def test_the_way_back_is_drawn_through_what_is_known():
     arguments = ahead, torch.zeros(B, 2 * T_H, 3), given, known
     made, free = (
         walker.pose_scaler.transform(way(rollout(walker), *arguments))
-        for way in (drawn_back, walked_back)
+        for way in (blended_way_back, plain_way_back)
     )
     torch.testing.assert_close(free[0, :, 0], torch.tensor([4.0, 2.0, 1.0, 0.5, 0.25]))
     shares = 1 - torch.tensor([2.0, 1.0, 0.0, 1.0, 2.0]) / (FADE + 1)
@@ -86,7 +86,7 @@ def test_a_window_under_a_mask_has_about_the_mean_that_what_is_known_asks_for():
     given = torch.full((B, T_H, D), float("nan"))
     given[known] = 0.5 + 2 * values.repeat(B)
     made = walker.pose_scaler.transform(
-        masked_back(
+        masked_way_back(
             rollout(walker), torch.zeros(B, T_H, D), torch.zeros(B, 2 * T_H, 3), given, known
         )
     )
@@ -109,7 +109,7 @@ def test_more_moves_come_nearer_to_what_is_known(monkeypatch):
     apart = []
     for moves in (1, MOVES):
         monkeypatch.setattr(back_with_known, "MOVES", moves)
-        made = masked_back(
+        made = masked_way_back(
             rollout(walker), torch.zeros(B, T_H, D), torch.zeros(B, 2 * T_H, 3), given, known
         )
         units = walker.pose_scaler.transform(given)[0].flatten().double()
@@ -121,10 +121,10 @@ def test_more_moves_come_nearer_to_what_is_known(monkeypatch):
 
 @pytest.mark.parametrize("T_p", [T_H - 1, T_P])
 def test_a_mask_wants_a_window_as_long_as_the_past(T_p):
-    with pytest.raises(ValueError, match=f"predicts {T_p} poses from 5.*drawn_back"):
+    with pytest.raises(ValueError, match=f"predicts {T_p} poses from 5.*blended_way_back"):
         zeros = torch.zeros(2, T_H, D)
         control = torch.zeros(2, 2 * T_H, 3)
-        masked_back(rollout(Known(T_p)), zeros, control, zeros, zeros > 1)
+        masked_way_back(rollout(Known(T_p)), zeros, control, zeros, zeros > 1)
 
 
 def test_all_is_made_where_the_inputs_are_and_drawn_where_the_generator_is():
@@ -133,20 +133,20 @@ def test_all_is_made_where_the_inputs_are_and_drawn_where_the_generator_is():
     ahead, given = torch.zeros(2, T_H, D), torch.ones(2, T_H, D)
     known[:, 2] = True
     arguments = ahead, torch.zeros(2, 2 * T_H, 3), given, known
-    here, again = masked_back(rollout(walker), *arguments), rollout(walker)
+    here, again = masked_way_back(rollout(walker), *arguments), rollout(walker)
     with torch.device("meta"):
-        there = masked_back(again, *arguments)
+        there = masked_way_back(again, *arguments)
     assert torch.equal(here, there)
 
 
-@pytest.mark.parametrize("way", [walked_back, drawn_back])
+@pytest.mark.parametrize("way", [plain_way_back, blended_way_back])
 def test_each_way_serves_the_repair_and_keeps_what_is_known(way):
     past = torch.randn(2, T_H, D, generator=torch.Generator().manual_seed(5))
     known = torch.ones(past.shape, dtype=torch.bool)
     known[:, 2] = False
     holes = past.masked_fill(~known, float("nan"))
     control, stop = torch.zeros(2, 2 * T_H, 3), Stop(rounds=2)
-    made = repair(rollout(Halving()), holes, known, control, way_back=way, stop=stop)
+    made = reconstruct(rollout(Halving()), holes, known, control, way_back=way, stop=stop)
     assert torch.equal(made[known], past[known]) and torch.isfinite(made).all()
     assert not torch.equal(made[~known], walker_mean().expand(2, D).reshape(-1))
 

@@ -46,11 +46,11 @@ def test_where_windows_overlap_the_middle_of_a_window_counts_most(monkeypatch):
     """Two windows, from frames 0 and 5, filled with 1 and with 4; what no window holds stays."""
     seen = []
 
-    def repair(rollout, past, known, control, **options):
+    def constants(rollout, past, known, control, **options):
         seen.append((past, known, control))
         return torch.stack([torch.full_like(past[0], 1.0), torch.full_like(past[1], 4.0)])
 
-    monkeypatch.setattr(module, "repair", repair)
+    monkeypatch.setattr(module.reconstruction, "reconstruct", constants)
     walker = SimpleNamespace(config=SimpleNamespace(T_h=T_H), window_sampler=print)
     walker.pose_scaler = walker.control_scaler = Scaler.nothing(2)
     rollout = Rollout(walker, torch.Generator(), 1)

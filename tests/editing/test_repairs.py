@@ -11,8 +11,8 @@ import torch
 
 from data_synth.imperfect import ARM, dead_joints
 from data_synth.walking import walk
-from motiondiff_edu.editing.repairs import Mended, mend_steps, with_bones
-from motiondiff_edu.metrics import repair
+from motiondiff_edu.editing.repairs import Reconstructions, sample_reconstructions, with_bones
+from motiondiff_edu.metrics import reconstruction as measures
 from motiondiff_edu.metrics.bone_lengths import bone_rmse
 from motiondiff_edu.motion.scaler import Scaler
 
@@ -42,7 +42,7 @@ class Drawing:
 def mended(fault, **options):
     generator = torch.Generator().manual_seed(1)
     return list(
-        mend_steps(
+        sample_reconstructions(
             Drawing(), fault.positions, fault.known, CLIP.control, generator=generator, **options
         )
     )
@@ -63,7 +63,7 @@ def test_each_repair_keeps_what_was_given_and_fills_the_rest_in_its_own_way():
 def test_the_errors_are_those_of_the_measures():
     fault = dead_joints(CLIP.poses[:T_H])
     samples = np.where(fault.known[..., None], CLIP.poses[:T_H], CLIP.poses[:T_H] + 0.01)
-    found = Mended(
+    found = Reconstructions(
         np.stack([samples, samples + np.where(fault.known[..., None], 0, 0.01)]),
         fault.known,
         1,
@@ -73,15 +73,17 @@ def test_the_errors_are_those_of_the_measures():
     assert (
         errors["one repair"] == pytest.approx(1.5 * 3**0.5) == pytest.approx(errors["their mean"])
     )
-    assert errors["spread"] == repair.missing_spread(found.samples, fault.known)
-    assert "spread" not in Mended(samples[None], fault.known, 1, 0.0).errors(CLIP.poses[:T_H])
+    assert errors["spread"] == measures.missing_spread(found.samples, fault.known)
+    assert "spread" not in Reconstructions(samples[None], fault.known, 1, 0.0).errors(
+        CLIP.poses[:T_H]
+    )
 
 
 def test_several_pasts_are_mended_as_each_alone_but_for_the_draws():
     fault = dead_joints(np.stack([CLIP.poses[:T_H], CLIP.poses[3 : 3 + T_H] + 0.1]))
     control = np.stack([CLIP.control] * 2)
     generator = torch.Generator().manual_seed(1)
-    *_, both = mend_steps(
+    *_, both = sample_reconstructions(
         Drawing(), fault.positions, fault.known, control, 5, generator=generator, rounds=2
     )
     assert both.samples.shape == (5, 2, T_H, 21, 3) and both.mean.shape == (2, T_H, 21, 3)

@@ -388,7 +388,7 @@ def _broken_walk() -> tuple:
 def _repaired(walker, past, known, mean, control, rounds) -> torch.Tensor:
     there_and_back = reconstruction.Rollout(walker, torch.Generator())
     stop = reconstruction.Stop(rounds, tolerance=-1)
-    return reconstruction.repair(there_and_back, past, known, control, stop=stop)
+    return reconstruction.reconstruct(there_and_back, past, known, control, stop=stop)
 
 
 def _conditional_mean(mean, covariance, x, known, rho) -> torch.Tensor:
@@ -443,7 +443,7 @@ TWINS["12"] = {
     "res_by_hand": Twin(
         lambda block, x, told: block(x, told, torch.ones(1, 7, 1, dtype=torch.float64)), _told_block
     ),
-    "turn_loop": Twin(cross.turned, lambda: (_normal(5, 6, seed=126), _normal(5, 3, seed=127))),
+    "turn_loop": Twin(cross.rotary, lambda: (_normal(5, 6, seed=126), _normal(5, 3, seed=127))),
 }
 
 

@@ -10,12 +10,12 @@ import pytest
 import torch
 
 from data_synth.imperfect import ARM, dead_joints, dropped_frames
-from motiondiff_edu.beyond.back_with_known import masked_back
+from motiondiff_edu.beyond.back_with_known import masked_way_back
 from motiondiff_edu.ddpm import cosine_schedule
 from motiondiff_edu.metrics.bone_lengths import bone_rmse
 from motiondiff_edu.motion.scaler import Scaler
 from motiondiff_edu.motion.skeleton import JOINTS
-from motiondiff_edu.reconstruction import walked_back
+from motiondiff_edu.reconstruction import plain_way_back
 from tools.results.repairs import both, repair, tables
 from tools.results.repairs import dropout as dropout_part
 from tools.results.repairs import rivals as rivals_part
@@ -147,7 +147,8 @@ def test_repairs_of_a_walker_that_stands_are_the_mean_pose(trials):
     assert found["arm_paper_rmse_cm"].value == pytest.approx(found["arm_paper_one_rmse_cm"].value)
     broken = repair.FAULTS["arm"](trials.past)
     either = [
-        repair.repaired(Standing(), trials, broken, size, way) for way in (walked_back, masked_back)
+        repair.repaired(Standing(), trials, broken, size, way)
+        for way in (plain_way_back, masked_way_back)
     ]
     np.testing.assert_allclose(*either, atol=1e-3)
     assert found["arm_rmse_over_ridge"].value == pytest.approx(

@@ -3,7 +3,7 @@
 import numpy as np
 
 from motiondiff_edu.viz import inbetween as viz
-from motiondiff_edu.viz.mending import by_fault, over_gaps
+from motiondiff_edu.viz.gaps_and_faults import by_fault, over_gaps
 from motiondiff_edu.viz.style import caption
 
 RNG = np.random.default_rng(0)

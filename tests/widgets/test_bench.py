@@ -16,7 +16,7 @@ from PIL import Image
 
 from data_synth.walking import walk
 from motiondiff_edu.editing.repair_bench import RepairBench
-from motiondiff_edu.editing.repairs import mend_steps
+from motiondiff_edu.editing.repairs import sample_reconstructions
 from motiondiff_edu.motion.root_frame import root_path, to_world
 from motiondiff_edu.motion.scaler import Scaler
 from motiondiff_edu.motion.skeleton import JOINTS, J
@@ -66,7 +66,7 @@ def by_the_library(first: int, missing: list[int]) -> np.ndarray:
     past = CLIP.poses[first : first + T_H]
     control = CLIP.control[first : first + 2 * T_H]
     options = {"n": 3, "rounds": 2, "generator": torch.Generator().manual_seed(0)}
-    *_, last = mend_steps(
+    *_, last = sample_reconstructions(
         Standing(), np.where(known[..., None], past, np.nan), known, control, **options
     )
     path, heading = root_path(CLIP.control)

@@ -14,14 +14,14 @@ import numpy as np
 import torch
 from jaxtyping import Bool, Float
 
-from motiondiff_edu.beyond.back_with_known import masked_back
+from motiondiff_edu.beyond.back_with_known import masked_way_back
 from motiondiff_edu.editing.inbetween import OURS, PAPER, Departures, inbetween
 from motiondiff_edu.motion.root_frame import to_world
 from motiondiff_edu.motion.skeleton import HIPS, J
 from motiondiff_edu.performers.dancer import Dancer
 from motiondiff_edu.performers.walker import Walker
 from motiondiff_edu.pretrained import checkpoints
-from motiondiff_edu.reconstruction import walked_back
+from motiondiff_edu.reconstruction import plain_way_back
 
 from ..walks.parts import Bench, weights_digest
 from ..walks.scores import Measure, measure_of
@@ -80,8 +80,11 @@ def both_measures(
         T_h = few.past.shape[1]
         judged = replace(broken, known=broken.known | (np.arange(J) == HIPS))
         ways = {
-            "there_and_back": (repaired(walker, few, broken, size, walked_back), few.past),
-            "there_and_back_masked": (repaired(walker, few, broken, size, masked_back), few.past),
+            "there_and_back": (repaired(walker, few, broken, size, plain_way_back), few.past),
+            "there_and_back_masked": (
+                repaired(walker, few, broken, size, masked_way_back),
+                few.past,
+            ),
             "masked": (
                 masked(dancer, world, known, size.samples, PAPER)[:, :, :T_h],
                 world[:, :T_h],

@@ -11,10 +11,11 @@ import torch
 from jaxtyping import Float
 
 from data_synth.imperfect import ARM, LEG, Imperfect, bursts, dead_joints, dropped_frames
-from motiondiff_edu.beyond.back_with_known import masked_back
+from motiondiff_edu import reconstruction
+from motiondiff_edu.beyond.back_with_known import masked_way_back
 from motiondiff_edu.editing.repairs import with_bones
 from motiondiff_edu.performers.walker import Walker
-from motiondiff_edu.reconstruction import Rollout, Stop, WayBack, repair, walked_back
+from motiondiff_edu.reconstruction import Rollout, Stop, WayBack, plain_way_back
 
 from ..walks import steps_table
 from ..walks.scores import Measure, measure_of, root_mean, squared_bone_error
@@ -50,7 +51,7 @@ def repaired(
     trials: Trials,
     broken: Imperfect,
     size: RepairSize,
-    way_back: WayBack = walked_back,
+    way_back: WayBack = plain_way_back,
     guess: Past | None = None,
     bones: bool = False,
 ) -> Float[np.ndarray, "S N T_h J 3"]:
@@ -62,7 +63,10 @@ def repaired(
     options["correct"] = with_bones if bones else None
     draws = [torch.Generator().manual_seed(k) for k in range(size.samples)]
     made = [
-        repair(Rollout(walker, draw, size.steps), past, known, control, **options) for draw in draws
+        reconstruction.reconstruct(
+            Rollout(walker, draw, size.steps), past, known, control, **options
+        )
+        for draw in draws
     ]
     return torch.stack(made).unflatten(-1, (-1, 3)).double().numpy()
 
@@ -90,7 +94,7 @@ def repair_measures(fault: str, walker: Walker, trials: Trials, size: RepairSize
     """
     broken = FAULTS[fault](trials.past)
     guesses = rivals(broken, trials)
-    ours = repaired(walker, trials, broken, size, masked_back, guesses["ridge"], bones=True)
+    ours = repaired(walker, trials, broken, size, masked_way_back, guesses["ridge"], bones=True)
     theirs = repaired(
         walker, trials, broken, replace(size, samples=min(size.samples, PAPER_SAMPLES))
     )
@@ -124,7 +128,7 @@ def repaired_windows(
     once = RepairSize(1, size.rounds, size.steps)
     guess = rivals(broken, trials)["ridge"]
     ours = {
-        name: (masked_back, guess, bones) for name, bones in (("re", False), ("re_bones", True))
+        name: (masked_way_back, guess, bones) for name, bones in (("re", False), ("re_bones", True))
     }
     ways = ours | {"re_paper": ()}
     return {

@@ -34,7 +34,7 @@ def rivals(broken: Imperfect, trials: Trials) -> dict[str, Past]:
     past = torch.from_numpy(np.nan_to_num(broken.positions)).float().flatten(2)
     control = torch.from_numpy(trials.control[:, : 2 * past.shape[1]]).float()
     mean = torch.where(known, past, fitted.pose_scaler.mean.expand_as(past))
-    guesses = {"ridge": fitted.repair(past, known, control), "meanpose": mean}
+    guesses = {"ridge": fitted.reconstruct(past, known, control), "meanpose": mean}
     found = {name: guess.unflatten(-1, (-1, 3)).double().numpy() for name, guess in guesses.items()}
     if broken.known.any(1).all():
         pairs = zip(np.nan_to_num(broken.positions), broken.known, strict=True)

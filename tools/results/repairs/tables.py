@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from motiondiff_edu._files import replacing
-from motiondiff_edu.viz.mending import by_fault, over_gaps, rate_map
+from motiondiff_edu.viz.gaps_and_faults import by_fault, over_gaps, rate_map
 
 from ..inbetweens.inbetween import GAPS
 from ..page.markdown import cell, number, table

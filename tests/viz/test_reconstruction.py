@@ -5,7 +5,7 @@ import numpy as np
 from data_synth.walking import walk
 from motiondiff_edu.motion.skeleton import BONES, J
 from motiondiff_edu.viz import metrics
-from motiondiff_edu.viz import repair as viz
+from motiondiff_edu.viz import reconstruction as viz
 
 POSES = walk(np.tile([1.2, 0.0, 0.0], (7, 1)), seed=1).poses
 
