@@ -128,7 +128,7 @@ STYLES: dict[str, Style] = {
 SHARES = {"neutral": 0.45, "old": 0.1, "strut": 0.12, "crouch": 0.08, "brisk": 0.13, "tired": 0.12}
 
 # how much persons of one style differ: sd of each number (for factors, of the logarithm)
-SPREAD = {
+STD = {
     "cadence": 0.025,
     "stance": 0.008,
     "asymmetry": 0.006,
@@ -136,7 +136,7 @@ SPREAD = {
     "toe_out": 2.5,
     "crouch": 0.006,
 }
-SPREAD |= {
+STD |= {
     "bounce": 0.08,
     "sway": 0.1,
     "lift": 0.06,
@@ -145,7 +145,7 @@ SPREAD |= {
     "lean": 1.5,
     "head": 2.0,
 }
-SPREAD |= {"arms": 0.14, "arms_right": 0.08, "elbow": 3.5, "abduct": 2.0}
+STD |= {"arms": 0.14, "arms_right": 0.08, "elbow": 3.5, "abduct": 2.0}
 FACTORS = ("cadence", "bounce", "sway", "lift", "pelvis_yaw", "chest_yaw", "arms", "arms_right")
 
 
@@ -162,11 +162,11 @@ def draw_style(name: str | None, rng: np.random.Generator) -> str:
 
 
 def person(style: Style, rng: np.random.Generator) -> Style:
-    """One walker of this style: each constant is changed at random by its SPREAD (at most 2 sd)."""
+    """One walker of this style: each constant is changed at random by its standard deviation STD, at most by two of them."""
     new = {}
     for f in fields(style):
-        if f.name in SPREAD:
-            shift = SPREAD[f.name] * float(np.clip(rng.standard_normal(), -2, 2))
+        if f.name in STD:
+            shift = STD[f.name] * float(np.clip(rng.standard_normal(), -2, 2))
             old = getattr(style, f.name)
             new[f.name] = old * float(np.exp(shift)) if f.name in FACTORS else old + shift
     side = 1.0 if rng.random() < 0.5 else -1.0  # no person is exactly symmetric

@@ -24,7 +24,7 @@ class LinearGaussian:
     """The fitted weights, in standardised units; one pose is predicted at a time (T_p = 1)."""
 
     weight: Float[Tensor, "F D"]
-    spread: Float[Tensor, "D D"]  # L, lower triangular
+    noise_factor: Float[Tensor, "D D"]  # L, lower triangular; L L^T is the noise's covariance
     T_h: int
     pose_scaler: Scaler
     control_scaler: Scaler
@@ -45,8 +45,8 @@ class LinearGaussian:
         """
         return regressors(past, control[:, : self.T_h]) @ self.weight
 
-    def window_sampler(self, steps: int | None = None, spread: float = 1.0) -> WindowSampler:
-        """A function that draws the next pose; `spread` scales the noise (0 gives the mean).
+    def window_sampler(self, steps: int | None = None, noise_scale: float = 1.0) -> WindowSampler:
+        """A function that draws the next pose; `noise_scale` scales the noise (0 gives the mean).
 
         There is no diffusion, so `steps` has no effect.
 
@@ -55,7 +55,7 @@ class LinearGaussian:
 
         def sample(past: Tensor, control: Tensor, generator: torch.Generator) -> Tensor:
             noise = torch.randn(len(past), self.weight.shape[1], generator=generator)
-            return (self.mean(past, control) + spread * noise @ self.spread.T)[:, None]
+            return (self.mean(past, control) + noise_scale * noise @ self.noise_factor.T)[:, None]
 
         return sample
 
@@ -117,9 +117,13 @@ def fitted(
     windows: Windows, weight: Float[Tensor, "F D"], covariance: Float[Tensor, "D D"]
 ) -> LinearGaussian:
     """The walker with these weights and this covariance of its noise.  Notebook: 09"""
-    spread = torch.linalg.cholesky(
+    noise_factor = torch.linalg.cholesky(
         covariance + 1e-12 * torch.eye(len(covariance), dtype=torch.float64)
     )
     return LinearGaussian(
-        weight.float(), spread.float(), windows.T_h, windows.pose_scaler, windows.control_scaler
+        weight.float(),
+        noise_factor.float(),
+        windows.T_h,
+        windows.pose_scaler,
+        windows.control_scaler,
     )

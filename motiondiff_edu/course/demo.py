@@ -13,7 +13,7 @@ HELP = "open one notebook ready to show"
 EXAMPLE = "demo 07"
 PASSES_OPTIONS_ON = "JupyterLab"
 
-# JupyterLab's large type for a projector; `viz.style` enlarges the figures
+# JupyterLab's large type for a projector; `viz.style` enlarges the plots
 LARGE_SIZES = {"code-font-size": "19px", "content-font-size1": "21px", "ui-font-size1": "17px"}
 
 

@@ -1,4 +1,4 @@
-"""How all figures look.
+"""How all plots look.
 
 Large type, Okabe-Ito colours, and a caption that goes with the picture as its alt text.
 """
@@ -39,7 +39,7 @@ _RC = {
 
 
 class CaptionedFigure(Figure):
-    """A matplotlib figure that shows itself, once, with its caption below it.
+    """A plot that shows itself, once, with its caption below it.
 
     The caption is its alternative text as well.
     """
@@ -53,7 +53,7 @@ class CaptionedFigure(Figure):
         }
 
     def as_png(self) -> bytes:
-        """The figure as PNG bytes."""
+        """The plot as PNG bytes."""
         return _png(self, DPI)
 
 
@@ -97,7 +97,7 @@ def figure(
     widths: Sequence[float] | None = None,
     heights: Sequence[float] | None = None,
 ) -> tuple[CaptionedFigure, list[Axes]]:
-    """A figure of `width` x `height` inches with its caption, and its axes, always as a list.
+    """A plot of `width` x `height` inches with its caption, and its axes, always as a list.
 
     `share`: axes with one scale, "x", "y", "xy", or "rows" (one y for each row).
     `widths`, `heights`: ratios of the columns and of the rows.
@@ -112,7 +112,7 @@ def figure(
 
 
 def caption(fig: Figure) -> str:
-    """What the figure shows, in a sentence or two.
+    """What the plot shows, in a sentence or two.
 
     Its caption, and the text for those who cannot see it.
     """
@@ -120,7 +120,7 @@ def caption(fig: Figure) -> str:
 
 
 def add_caption(fig: Figure, words: str) -> Figure:
-    """Replace the caption, to say what is to be seen here; returns the figure."""
+    """Replace the caption, to say what is to be seen here; returns the plot."""
     fig.set_label(words)
     return fig
 

@@ -101,7 +101,7 @@ def test_without_dropout_it_is_ordinary_least_squares(windows, clean):
     again = ld.fit(clean, ridge=1e-3)
     wanted = linear_gaussian.fit(windows, ridge=1e-3)
     torch.testing.assert_close(again.weight, wanted.weight, rtol=1e-4, atol=1e-5)
-    torch.testing.assert_close(again.spread, wanted.spread, rtol=1e-3, atol=1e-4)
+    torch.testing.assert_close(again.noise_factor, wanted.noise_factor, rtol=1e-3, atol=1e-4)
 
 
 def test_weight_moves_from_the_past_to_the_control(clean):

@@ -54,14 +54,14 @@ def test_its_noise_has_the_spread_of_what_the_fit_leaves_over(fitted: LinearGaus
     assert drawn.shape == (5000, 1, D)
     assert torch.allclose(drawn.std(0), torch.tensor(0.3), atol=0.03)
     assert torch.allclose(drawn.mean(0)[0], fitted.mean(past, control)[0], atol=0.03)
-    still = fitted.window_sampler(spread=0.0)(*many, torch.Generator().manual_seed(1))
+    still = fitted.window_sampler(noise_scale=0.0)(*many, torch.Generator().manual_seed(1))
     assert torch.allclose(still.std(0), torch.tensor(0.0), atol=1e-6)
 
 
 def test_growth_is_the_largest_root(fitted: LinearGaussian):
     assert fitted.growth() == pytest.approx(np.sqrt(0.3), abs=0.15)  # roots of z^2 - 0.6 z + 0.3
     runaway = LinearGaussian(
-        fitted.weight * 3, fitted.spread, T_H, fitted.pose_scaler, fitted.control_scaler
+        fitted.weight * 3, fitted.noise_factor, T_H, fitted.pose_scaler, fitted.control_scaler
     )
     assert runaway.growth() > 1
 

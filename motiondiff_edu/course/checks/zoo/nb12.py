@@ -5,7 +5,7 @@ import math
 import torch
 from torch.nn import functional as F
 
-from ....cross_modal_attention import turned
+from ....cross_modal_attention import rotary
 
 
 def _mix(x, weight, bias, offsets, stride=1):
@@ -25,7 +25,7 @@ def _filled(x, multiple):
 
 
 def _weights(q, k, t, u, f, root=True, axis=-1):
-    q, k = (turned(x, 2 * math.pi * times[:, None] * f) for x, times in ((q, t), (k, u)))
+    q, k = (rotary(x, 2 * math.pi * times[:, None] * f) for x, times in ((q, t), (k, u)))
     scores = q @ k.T / (math.sqrt(q.shape[-1]) if root else 1.0)
     return scores if axis is None else scores.softmax(axis)
 
