@@ -1,6 +1,7 @@
 """The time of `import motiondiff_edu` compared with `import torch`.
 
-Both run in turn in fresh processes; times are CPU seconds.
+The package imports its parts at their first use, so the first `md.read_motion` and `md.load` are
+timed as well. All run in turn in fresh processes; times are CPU seconds.
 
 Run: python benchmarks/import_time.py [--repeats 15] [--out benchmarks/results/import_time.json]
 """
@@ -13,30 +14,34 @@ import numpy as np
 from records import record, show, write_records
 
 COMMAND = "python -m benchmarks import"
-MODULES = ("torch", "motiondiff_edu")
-TIMED = "import time; start = time.process_time(); import {}; print(time.process_time() - start)"
+STATEMENTS = {
+    "torch": "import torch",
+    "motiondiff_edu": "import motiondiff_edu",
+    "front_door": "import motiondiff_edu as md; md.read_motion; md.load",
+}
+TIMED = "import time; start = time.process_time(); {}; print(time.process_time() - start)"
 
 
-def cpu_seconds(module: str) -> float:
-    """CPU seconds of importing a module in a new process."""
+def cpu_seconds(statement: str) -> float:
+    """CPU seconds of a statement in a new process."""
     done = subprocess.run(
-        [sys.executable, "-c", TIMED.format(module)], capture_output=True, text=True, check=True
+        [sys.executable, "-c", TIMED.format(statement)], capture_output=True, text=True, check=True
     )
     return float(done.stdout)
 
 
 def measure(repeats: int) -> dict[str, np.ndarray]:
-    """Times of both modules in every repeat; the order changes each time.
+    """Times of all statements in every repeat; the order changes each time.
 
     The first repeat only fills the disk cache.
     """
-    times = {module: [] for module in MODULES}
+    times = {name: [] for name in STATEMENTS}
     for repeat in range(repeats + 1):
-        for module in MODULES[:: 1 if repeat % 2 else -1]:
-            seconds = cpu_seconds(module)
+        for name in list(STATEMENTS)[:: 1 if repeat % 2 else -1]:
+            seconds = cpu_seconds(STATEMENTS[name])
             if repeat:
-                times[module].append(seconds)
-    return {module: np.array(values) for module, values in times.items()}
+                times[name].append(seconds)
+    return {name: np.array(values) for name, values in times.items()}
 
 
 def main() -> None:
@@ -46,11 +51,12 @@ def main() -> None:
     args = parser.parse_args()
     times = measure(args.repeats)
     records = [
-        record(f"bench.import_{m}_s", values, unit="CPU s", command=COMMAND)
-        for m, values in times.items()
+        record(f"bench.import_{name}_s", values, unit="CPU s", command=COMMAND)
+        for name, values in times.items()
     ]
-    ratio = times["motiondiff_edu"] / times["torch"]
-    records.append(record("bench.import_over_torch", ratio, unit="ratio", command=COMMAND))
+    for name, timed in (("import", "motiondiff_edu"), ("front_door", "front_door")):
+        values = times[timed] / times["torch"]
+        records.append(record(f"bench.{name}_over_torch", values, unit="ratio", command=COMMAND))
     show(records)
     write_records(args.out, records)
 
