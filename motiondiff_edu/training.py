@@ -17,6 +17,7 @@ from typing import Any
 
 import torch
 from torch import Tensor, nn
+from torch.autograd.graph import increment_version
 from tqdm.auto import tqdm
 
 LossFn = Callable[[nn.Module, torch.Generator], Tensor]
@@ -119,7 +120,7 @@ def train_steps(
     )
     with bar, _evaluating_after(state.model):
         while state.step < steps:
-            state.model.train()  # each time: whoever took the last step may have sampled since
+            state.model.train()  # at each step: the caller may have sampled since the last one
             began, rate = time.perf_counter(), lr(state.step) if callable(lr) else lr
             if before:
                 before(state.step)
@@ -132,6 +133,8 @@ def train_steps(
             for group in state.optimizer.param_groups:
                 group["lr"] = rate
             state.optimizer.step()
+            # fused optimizers leave torch's count of changes as it was, and `fast.twins` needs it
+            increment_version(list(state.model.parameters()))
             _follow(state)
             state.step, state.seconds = state.step + 1, state.seconds + time.perf_counter() - began
             if save and (state.step % save.every == 0 or state.step == steps):

@@ -162,7 +162,7 @@ def draw_style(name: str | None, rng: np.random.Generator) -> str:
 
 
 def person(style: Style, rng: np.random.Generator) -> Style:
-    """One walker of this style: each constant is changed at random by its standard deviation STD, at most by two of them."""
+    """One walker of this style: each constant differs at random, by at most two of its STD."""
     new = {}
     for f in fields(style):
         if f.name in STD:

@@ -15,7 +15,9 @@ from ..cross_modal_attention import CrossModalAttention
 class Twin:
     """`twin()` returns the fast twin of `model` with its current weights.
 
-    Changes through `.data` are missed, because torch does not count them.
+    Changes through `.data` and by fused optimizers are missed, because torch does not count them.
+    `training.train_steps` counts its own steps; after a loop of yours with `fused=True`, call
+    `torch.autograd.graph.increment_version` on the parameters.
     """
 
     def __init__(self, model: nn.Module, make: Callable[[nn.Module], object]):

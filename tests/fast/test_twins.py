@@ -10,6 +10,7 @@ from motiondiff_edu.mofusion import MoFusion, MoFusionConfig
 from motiondiff_edu.motion.scaler import Scaler
 from motiondiff_edu.performers.dancer import Dancer
 from motiondiff_edu.performers.walker import Walker
+from motiondiff_edu.training import TrainState, train_steps
 
 T_H, T_P = 4, 3
 B = 2
@@ -52,6 +53,15 @@ def train_a_step(model) -> None:
     optimizer.step()
 
 
+def train_as_the_recipes_do(model) -> None:
+    """One step of `train_steps`; its optimizer is fused."""
+
+    def loss_fn(network, generator):
+        return sum(weight.square().sum() for weight in network.parameters())
+
+    next(train_steps(TrainState.start(model), loss_fn, 1, lr=0.05, progress=False))
+
+
 def load_others(model) -> None:
     other = {name: 1.2 * value + 0.01 for name, value in model.state_dict().items()}
     model.load_state_dict(other)
@@ -65,7 +75,9 @@ def give_another_tensor(model) -> None:
 
 
 @pytest.mark.parametrize("make", [walker, dancer])
-@pytest.mark.parametrize("change", [train_a_step, load_others, give_another_tensor])
+@pytest.mark.parametrize(
+    "change", [train_a_step, train_as_the_recipes_do, load_others, give_another_tensor]
+)
 def test_a_twin_has_the_weights_of_now(make, change):
     who = make()
     before = ask(who, fast=True)
