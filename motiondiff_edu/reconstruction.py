@@ -108,7 +108,7 @@ def reconstruct_steps(
 ) -> Iterator[Round]:
     """Fill the holes of `past` (metres), round by round, until `stop`.
 
-    `control`: T_h rows beside the past, then T_h for the way there.
+    `control`: T_h rows for the past, then T_h rows for its continuation.
     `guess`: what the holes hold at first (metres), by default the mean pose.
     `way_back`: the paper's, or one of `beyond.back_with_known`, which use what is known.
     `correct`: applied to the filled past after each round, as `editing.repairs.with_bones`.

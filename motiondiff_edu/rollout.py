@@ -118,8 +118,8 @@ def generate(
     Returns n = T - T_h new poses in metres, as a tensor.
 
     Past and control are tensors or arrays of numpy, with or without a batch axis. Rows 0..T_h-1 of
-    the control belong to the past. steps=None is DDPM with all S steps, a number is DDIM with so
-    many.
+    the control belong to the past. steps=None is DDPM with all S steps, a number is
+    DDIM with that many.
     Raises ValueError if past and control do not fit the walker or contain NaN. Warns where the
     control goes beyond the training data.
     Source: MoDiff Alg. 2, Fig. 5.  Notebook: 07, 08
@@ -169,7 +169,7 @@ def generate(
 def _warn_beyond(control: Float[Tensor, "B T C"], T_h: int, seen: dict | None) -> None:
     """Warn about speeds beyond the control of the training clips by over a tenth of its range.
 
-    The first T_h rows are of the past, and nobody can change them.
+    The first T_h rows belong to the past and are not checked.
     """
     if not seen:
         return

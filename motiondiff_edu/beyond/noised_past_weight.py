@@ -5,7 +5,8 @@ future after a clean past. So at the paper's last rate, a quarter of the windows
 the loss, and the network learns the millimetres of a clean past less well. With a weight below 1
 these windows count less. The best prediction for each window stays the same; only a network that
 is too small or trained too briefly for both is moved towards the clean ones.
-Ours; in Algorithm 1 all windows have weight 1.
+Its gain: the ladder in docs/RESULTS.md, where it is measured. Ours; in Algorithm 1 all windows
+have weight 1.
 """
 
 from collections.abc import Callable
@@ -23,7 +24,7 @@ Past = Float[Tensor, "B T_h D"]
 
 @dataclass
 class NoisedPastWeight:
-    """A dropout for one batch that weighs the windows whose past it noised.
+    """Wraps diffusion dropout, and lowers the loss weight of the windows whose past it noised.
 
     Pass both to `modiff.training_loss`:
 

@@ -60,7 +60,7 @@ def splice(
     """
     if len(past) < T_h:
         raise ValueError(
-            f"the walker wants the control of {T_h} past frames, this past has {len(past)}"
+            f"the walker needs control for {T_h} past frames; this past has {len(past)}"
         )
     return np.concatenate([past[len(past) - T_h : -1], new[:1], new])
 
@@ -70,7 +70,7 @@ def as_long(control: Float[np.ndarray, "n 3"], rows: int | None) -> Float[np.nda
 
     Raises ValueError for another shape, no row, and rows that are not finite.
     """
-    array = np.array(control, np.float64)
+    array = np.array(np.asarray(control), np.float64)
     if array.ndim != 2 or array.shape[1] != 3 or not len(array):
         raise ValueError(
             f"a control is (rows, 3): forward m/s, left m/s, turning rad/s, {FPS:g} rows a second; "
@@ -276,10 +276,10 @@ def _control_at(
     first = _turn_on_the_spot(facing[0], fps, max_yaw)
     root = np.concatenate([np.repeat(root[:1], len(first), 0), root])
     facing = gaussian_filter1d(np.concatenate([first, facing]), 0.15 * fps, mode="nearest")
-    settle = 1 - _smoothstep(
+    remaining = 1 - _smoothstep(
         np.clip(np.arange(len(facing)) / fps, 0, 1)
     )  # what is left of an angle goes in a second
-    return control_from_path(root, facing - facing[0] * settle, float(fps))
+    return control_from_path(root, facing - facing[0] * remaining, float(fps))
 
 
 def _turn_on_the_spot(angle: float, fps: float | int, max_yaw: float | int) -> np.ndarray:

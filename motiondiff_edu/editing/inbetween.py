@@ -91,11 +91,11 @@ def inbetween(
     features = torch.from_numpy(placed_features(at_home)).float().to(device)
     given = dancer.motion_scaler.transform(features)
     shape = (samples, *given.shape)
-    heard = None if mel is None else mel[None].expand(samples, -1, -1)
+    music = None if mel is None else mel[None].expand(samples, -1, -1)
     held, schedule = (given.expand(shape), columns.to(device).expand(shape)), dancer.schedule
     start = draw(held[0], generator)
     steer = bool(departures.guidance) and bool(known.any())
-    denoise = dancer.denoiser(heard, len(given), fast=not steer)
+    denoise = dancer.denoiser(music, len(given), fast=not steer)
     if steer:
         denoise = guided(denoise, schedule, *held, departures.guidance)
     if departures.blend is not None:

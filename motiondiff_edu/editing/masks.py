@@ -6,6 +6,7 @@ Source: MoFusion 4.4 (the mask delta).  Notebook: 15
 """
 
 from collections.abc import Iterable, Sequence
+from numbers import Integral
 
 import numpy as np
 from jaxtyping import Bool
@@ -68,7 +69,7 @@ def keyframes_of(motion: Motion | int, every: int = 20) -> Bool[np.ndarray, "T J
     Pass a motion, or its number of frames. Raises ValueError for every < 1, or no frames,
     TypeError for anything but a motion or a number.
     """
-    T = motion if isinstance(motion, int) else len(as_motion(motion))
+    T = int(motion) if isinstance(motion, Integral) else len(as_motion(motion))
     return keyframes(checked_count(T, "a motion's number of frames"), checked_count(every, "every"))
 
 

@@ -29,6 +29,14 @@ def checked_count(count: int, name: str) -> int:
     return int(count)
 
 
+def checked_steps(steps: int | None) -> int | None:
+    """A number of diffusion steps: a whole number of at least 1, or None for all of them.
+
+    Raises ValueError for anything else.
+    """
+    return None if steps is None else checked_count(steps, "steps")
+
+
 def checked_rate(fps: float, name: str = "fps") -> float:
     """Frames a second, above 0 and up to 10,000.  Raises ValueError for anything else."""
     if isinstance(fps, bool) or not isinstance(fps, Real) or not 0 < fps <= 10_000:

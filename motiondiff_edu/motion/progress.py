@@ -12,7 +12,7 @@ DELAY = 1.0  # seconds before it appears: a shorter computation shows no bar
 def bar(total: int, what: str, shown: bool = True) -> Iterator[Callable[[], object]]:
     """Yield a function to call after each of `total` steps; the bar disappears at the end.
 
-    Where nobody watches, as in a log file, there is none.
+    No bar is shown when the output is not a terminal.
     """
     with tqdm(
         total=total,

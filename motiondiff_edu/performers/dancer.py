@@ -20,7 +20,7 @@ from ..fast.mofusion import FastMoFusion
 from ..fast.samplers import ddim_steps, ddpm_steps
 from ..fast.twins import watched
 from ..mofusion import MoFusion, MoFusionConfig
-from ..motion.checks import checked_count, checked_seconds, checked_seed
+from ..motion.checks import checked_count, checked_seconds, checked_seed, checked_steps
 from ..motion.dance_frame import to_positions
 from ..motion.motion import Motion
 from ..motion.scaler import Scaler
@@ -81,7 +81,7 @@ class Dancer(Performer):
         """
         if (mel is None) != (self.config.C == 0):
             raise ValueError(
-                "this network takes no music; pass mel=None"
+                'this network takes no music: use md.inbetween, or md.load("dancer") to dance'
                 if mel is not None
                 else "this network dances to music; pass its log-Mel as mel"
             )
@@ -115,12 +115,12 @@ class Dancer(Performer):
         The returned motion contains the sound.
 
         seconds  use so much of the sound from its start (default: all of it)
-        samples  with more than 1, return a list of so many different dances
+        samples  above 1: a list with this many different dances
         steps    of DDIM, or None for DDPM with all steps
         Raises AudioError for unusable sound (`conditions.audio_files`), ValueError for `seconds` or
         `samples` out of range.  Source: MoFusion 3.  Notebook: 00, 12
         """
-        count = checked_count(samples, "samples")
+        count, steps = checked_count(samples, "samples"), checked_steps(steps)
         longest = None if seconds is None else round(checked_seconds(seconds) * SAMPLE_RATE)
         audio = samples_of(sound)[:longest]
         frames = int(len(audio) / SAMPLE_RATE * FPS)

@@ -25,7 +25,7 @@ class Performer:
             )
 
     def __getattr__(self, name: str):
-        """Only for what is missing: a walker that is asked to dance says what it can do."""
+        """Called for missing attributes: `walker.dance` raises an error that names the dancer."""
         verb = {"walk": "walker", "dance": "dancer"}.get(name)
         if verb:
             raise AttributeError(

@@ -21,7 +21,7 @@ from ..fast.modiff import FastMoDiff
 from ..fast.samplers import ddim_steps, ddpm_steps
 from ..fast.twins import watched
 from ..modiff import MoDiff, MoDiffConfig
-from ..motion.checks import checked_count, checked_seconds, checked_seed
+from ..motion.checks import checked_count, checked_seconds, checked_seed, checked_steps
 from ..motion.motion import Motion, MotionError, as_motion
 from ..motion.root_frame import FPS, root_path, to_world
 from ..motion.scaler import Scaler
@@ -77,7 +77,7 @@ class Walker(Performer):
 
         control  forward m/s, left m/s, turning rad/s; 20 rows a second
         seconds  cut the control to this length, or hold its last row (default: keep its length)
-        samples  with more than 1, return a list of so many different continuations
+        samples  above 1: a list with this many different continuations
         steps    of DDIM, or None for DDPM with all steps
         Raises MotionError for a motion that cannot be continued, ValueError for numbers out of
         range. Warns where the control goes beyond the training data.
@@ -85,6 +85,7 @@ class Walker(Performer):
         """
         as_motion(motion).check_whole()
         count, T_h = checked_count(samples, "samples"), self.config.T_h
+        steps = checked_steps(steps)
         length = None if seconds is None else round(checked_seconds(seconds) * FPS)
         ahead = as_long(control, length)
         given = motion.resampled(FPS).rooted()

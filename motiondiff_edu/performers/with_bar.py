@@ -1,4 +1,4 @@
-"""A walker or dancer whose work shows as a progress bar, without the samplers knowing of it."""
+"""Wrap a performer: each evaluation of its network advances a progress bar."""
 
 import copy
 from collections.abc import Iterator

@@ -55,14 +55,15 @@ def inbetween(
     """Generate the joints that are not `known`, with the shipped unconditional network.
 
     Known joints stay exactly where they are. In a frame with a known joint, the pelvis must be
-    known too. With `samples` above 1, the result is a list of so many motions.
-    On a motion unlike those of the training, guidance can fail, and the figure jumps. A result that
-    moves much faster than what is given asks for is made again by blending alone (notebook 15), and
-    a MotionWarning says so.
+    known too. With `samples` above 1, the result is a list with this many motions.
+    On a motion unlike those of the training, guidance can fail, and the figure jumps. If a result
+    moves much faster than the given frames require, it is generated again with blending only
+    (notebook 15), and a MotionWarning says so.
     Raises MotionError or ValueError if motion, mask or numbers do not fit.
     Source: MoFusion 4.4.  Notebook: 15
     """
     known, count = _fitting(motion, known), checked_count(samples, "samples")
+    steps = checked_count(steps, "steps")
     if known.all():
         raise MotionError(f"{motion.name}: every joint is known, so there is nothing to generate")
 
@@ -99,8 +100,8 @@ def reconstruct(
     """Reconstruct the joints that are not `known`, with the shipped walker; any length of motion.
 
     Known joints stay exactly where they are. The pelvis must be known in every frame, because the
-    control of the walk is derived from it. With `samples` above 1, the result is a list of so many
-    motions.
+    control of the walk is derived from it. With `samples` above 1, the result is a list with this
+    many motions.
     Raises MotionError if the pelvis is missing in a frame, or if motion and mask do not fit, and
     ValueError for a number of samples under 1.  Source: MoDiff III-E.
     """

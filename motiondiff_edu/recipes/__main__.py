@@ -70,7 +70,10 @@ def build(name: str, run: Path, out: Path) -> Path:
 
 
 def trained(name: str, run: Path) -> Walker | Dancer:
-    """The performer of a recipe; one that it begins with is trained before, beside `run`."""
+    """The performer of a recipe.
+
+    If the recipe continues another one, that is trained first; its run file lies beside `run`.
+    """
 
     def log(line: str) -> None:
         print(line, flush=True)

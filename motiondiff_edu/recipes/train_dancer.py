@@ -95,7 +95,7 @@ def schedule_of(recipe: DanceRecipe) -> Schedule:
 def loss_of(recipe: DanceRecipe, windows: DanceWindows, schedule: Schedule) -> LossFn:
     """The loss of a recipe: MoFusion's, or a regression's if the network is deterministic."""
     if getattr(recipe.config, "deterministic", False):
-        return regression_loss(windows, batch=recipe.batch, gain_noise=recipe.gain_noise)
+        return regression_loss_of(recipe, windows)
     loss, weights = weighted_loss(recipe.loss_weights, windows, schedule), recipe.kinematic
     lambda_k = over_time(schedule, weights.over_time) if weights else None
 
@@ -118,6 +118,18 @@ def loss_of(recipe: DanceRecipe, windows: DanceWindows, schedule: Schedule) -> L
             lambda_k=lambda_k,
             loss=loss,
         )
+
+    return loss_fn
+
+
+def regression_loss_of(recipe: DanceRecipe, windows: DanceWindows) -> LossFn:
+    """The loss of a regression, which gets neither noise nor a step."""
+
+    def loss_fn(model: nn.Module, generator: torch.Generator) -> Tensor:
+        device = next(model.parameters()).device
+        x0, mel, _ = windows.draw(recipe.batch, generator, recipe.gain_noise)
+        times = windows.mel_times.to(device)
+        return regression_loss(model, x0.to(device), mel.to(device), times)
 
     return loss_fn
 

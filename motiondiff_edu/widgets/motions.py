@@ -44,13 +44,13 @@ def player_of(motions: Sequence[Motion], labels: Sequence[str] | None = None) ->
         [motion.positions for motion in shown],
         fps=first.fps,
         contacts=[motion.contacts for motion in shown],
-        labels=_told_apart(shown) if labels is None else list(labels),
+        labels=_distinct_labels(shown) if labels is None else list(labels),
         audio=sound,
         look=Look(parents=parents),
     )
 
 
-def _told_apart(motions: Sequence[Motion]) -> list[str]:
+def _distinct_labels(motions: Sequence[Motion]) -> list[str]:
     """The sources of the motions; those that occur more than once are numbered."""
     names = [motion.source for motion in motions]
     many = {name for name in names if name and names.count(name) > 1}

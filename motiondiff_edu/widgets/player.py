@@ -262,8 +262,8 @@ class Player(anywidget.AnyWidget):
         with replacing(path) as part, tempfile.TemporaryDirectory() as folder:
             extra = {}
             if self._music is not None:
-                heard, file = self._music.sound, Path(folder) / "sound.wav"
-                file.write_bytes(sound.encode(heard.samples, heard.sample_rate, "wav")[0])
+                wave, file = self._music.sound, Path(folder) / "sound.wav"
+                file.write_bytes(sound.encode(wave.samples, wave.sample_rate, "wav")[0])
                 extra = {"audio_path": str(file), "audio_codec": "aac", "ffmpeg_log_level": "error"}
             writer = imageio_ffmpeg.write_frames(
                 str(part), (width, size[1]), fps=self._options["fps"], macro_block_size=2,

@@ -52,7 +52,7 @@ HIGH_NOISE, JOINTS, SPREADS, ALIKE = (
         {"near": 0.0},
     )
 )
-LIKE = "the shipped walker's choices before diffusion dropout but for footholds, T_p = 10"
+LIKE = "the shipped walker's recipe without footholds and diffusion dropout, T_p = 10"
 # name: (what differs, in words, from which other one, the network, changes of the recipe)
 VARIANTS = {
     "T_p-10": (LIKE, "", SMALL, {}),

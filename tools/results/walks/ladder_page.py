@@ -93,9 +93,9 @@ def gains(records: dict[str, dict]) -> str:
         head += [f"{WORDS[kind]}: without it, minus ours", "with it, minus printed"]
     words = (
         "\n### Taken out of ours, added to the printed recipe\n\n"
-        "A positive number in a left column is what the choice is worth to us; a negative one in a "
-        "right column is what it brings the printed recipe (for diffusion dropout the right column "
-        "is the printed recipe without it).\n\n"
+        "Left columns: above 0, the choice improves our recipe. Right columns: below 0, it "
+        "improves the printed one (for diffusion dropout the right column is the printed recipe "
+        "without it).\n\n"
     )
     return words + table(head, rows)
 
