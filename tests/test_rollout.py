@@ -3,10 +3,14 @@
 The samplers here are fakes.
 """
 
+import warnings
+from types import SimpleNamespace
+
 import pytest
 import torch
 
-from motiondiff_edu.rollout import rollout_steps
+from motiondiff_edu.motion.scaler import Scaler
+from motiondiff_edu.rollout import generate, rollout_steps
 
 B = 2
 T_H = 4
@@ -156,3 +160,27 @@ def test_a_function_and_a_table_say_the_same():
 def test_keep_beyond_the_window_is_refused(keep: int):
     with pytest.raises(ValueError, match=f"keep must be between 1 and T_p = 3, not {keep}"):
         roll(Echo(), numbered_control(9), 2, keep=keep)
+
+
+def trained_between(low: float, high: float) -> SimpleNamespace:
+    """A walker that says which control it was trained on."""
+    return SimpleNamespace(
+        config=SimpleNamespace(T_h=T_H, T_p=T_P, D=D, C=C),
+        pose_scaler=Scaler.nothing(D),
+        control_scaler=Scaler.nothing(C),
+        window_sampler=lambda steps: Echo(),
+        card={"control_range": {"low": [low], "high": [high]}},
+    )
+
+
+@pytest.mark.parametrize(("value", "named"), [(3.3, True), (3.1, False), (0.9, False), (0.7, True)])
+def test_a_control_is_named_when_it_is_a_tenth_of_the_range_beyond_the_training(value, named):
+    """From 1 to 3 the range is 2, and a tenth of it 0.2."""
+    walker, control = trained_between(1.0, 3.0), torch.full((T_H + 2, C), 2.0)
+    control[T_H + 1] = value
+    with warnings.catch_warnings(record=True) as told:
+        warnings.simplefilter("always")
+        generate(walker, torch.zeros(T_H, D), control)
+    assert len(told) == named
+    if named:
+        assert f"a column 0 of {value} in frame 1 of the future" in str(told[0].message)

@@ -97,6 +97,22 @@ def test_a_killed_run_resumes_bit_for_bit(tmp_path: Path):
     assert different == []
 
 
+def test_before_each_step_is_told_how_many_are_done():
+    """The first is told 0, and a training that goes on continues the count."""
+    state, told, at_loss = TrainState.start(network(), seed=4), [], []
+
+    def loss_fn(model, generator):
+        at_loss.append(told[-1])
+        return toy_loss(model, generator)
+
+    for _ in train_steps(state, loss_fn, 3, before=told.append, progress=False):
+        pass
+    assert told == at_loss == [0, 1, 2]
+    for _ in train_steps(state, loss_fn, 5, before=told.append, progress=False):
+        pass
+    assert told == at_loss == [0, 1, 2, 3, 4]
+
+
 def test_a_look_at_the_model_between_steps_changes_nothing():
     """Who samples on the way switches dropout off; the next step has it again."""
     plain, looked_at = TrainState.start(network(), seed=4), TrainState.start(network(), seed=4)

@@ -7,7 +7,13 @@ import torch
 
 from motiondiff_edu import exact
 from motiondiff_edu.beyond import back_with_known
-from motiondiff_edu.beyond.back_with_known import FADE, MOVES, blended_way_back, masked_way_back
+from motiondiff_edu.beyond.back_with_known import (
+    FADE,
+    MOVES,
+    WEIGHT,
+    blended_way_back,
+    masked_way_back,
+)
 from motiondiff_edu.ddpm import linear_schedule
 from motiondiff_edu.motion.scaler import Scaler
 from motiondiff_edu.reconstruction import Rollout, Stop, plain_way_back, reconstruct
@@ -117,6 +123,53 @@ def test_more_moves_come_nearer_to_what_is_known(monkeypatch):
         made = walker.pose_scaler.transform(made)[:, ~known[0]].mean(0)
         apart.append((made - wanted).abs().mean())
     assert apart[1] < 0.8 * apart[0]
+
+
+def test_a_smaller_weight_leaves_more_of_the_spread_that_a_gaussian_has(monkeypatch):
+    """Moves of their whole length bring the samples too near to one another."""
+    walker, B = Known(), 1500
+    known = torch.zeros(B, T_H, D, dtype=torch.bool)
+    known[:, 1] = known[:, 3] = True
+    given = torch.where(known, torch.tensor([3.5, -1.5]), 0.0)
+    units = walker.pose_scaler.transform(given)[0].flatten().double()
+    wanted = exact.conditional(walker.given, units, known[0].flatten()).covariance().float()
+    apart = []
+    for weight in (1.0, WEIGHT):
+        monkeypatch.setattr(back_with_known, "WEIGHT", weight)
+        made = masked_way_back(
+            rollout(walker), torch.zeros(B, T_H, D), torch.zeros(B, 2 * T_H, 3), given, known
+        )
+        made = walker.pose_scaler.transform(made)[:, ~known[0]]
+        apart.append((torch.cov(made.T) - wanted).norm())
+    assert apart[1] < 0.75 * apart[0]
+
+
+class Listening(Known):
+    """It remembers the past and the control that its network is given."""
+
+    def __init__(self):
+        super().__init__()
+        self.control_scaler = Scaler(torch.tensor([1.0, 0.1, -0.2]), torch.tensor([0.5, 0.2, 0.8]))
+        self.heard = []
+
+    def denoiser(self, past, control, fast=True):
+        self.heard.append((past, control, fast))
+        return super().denoiser(past, control, fast)
+
+
+def test_under_a_mask_the_network_is_given_its_own_units():
+    """And it is no fast twin: that could not be differentiated."""
+    walker, random = Listening(), torch.Generator().manual_seed(4)
+    ahead = torch.randn(2, T_H, D, generator=random)
+    control = torch.randn(2, 2 * T_H, 3, generator=random)
+    known = torch.zeros(2, T_H, D, dtype=torch.bool)
+    known[:, 2] = True
+    masked_way_back(rollout(walker), ahead, control, torch.ones(2, T_H, D), known)
+    ((past, steer, fast),) = walker.heard
+    torch.testing.assert_close(past, (ahead - 0.5) / 2)
+    middle, spread = torch.tensor([1.0, 0.1, -0.2]), torch.tensor([0.5, 0.2, 0.8])
+    torch.testing.assert_close(steer, (control - middle) / spread)
+    assert not fast
 
 
 @pytest.mark.parametrize("T_p", [T_H - 1, T_P])

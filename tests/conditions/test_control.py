@@ -108,7 +108,7 @@ def test_a_spliced_control_leads_into_the_first_new_frame():
     rows = splice(past, new, T_h=5)
     assert rows.tolist() == [[1.0, 0.0, 0.0]] * 4 + [[0.0, 0.5, 0.2]] * 5
     assert np.array_equal(past, before)
-    with pytest.raises(ValueError, match="13 past frames, this past has 12"):
+    with pytest.raises(ValueError, match="13 past frames; this past has 12"):
         splice(past, new, T_h=13)
 
 

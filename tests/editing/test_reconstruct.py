@@ -6,13 +6,16 @@ import numpy as np
 import pytest
 import torch
 
+from data_synth.imperfect import ARM
 from data_synth.walking import walk
 from motiondiff_edu.editing import reconstruct as module
-from motiondiff_edu.editing.reconstruct import _once, _windows, path_of
+from motiondiff_edu.editing.reconstruct import _once, _windows, path_of, reconstruct
+from motiondiff_edu.metrics.bone_lengths import bone_lengths
 from motiondiff_edu.motion.directions import ARMS, UPLEGS
 from motiondiff_edu.motion.motion import Motion, MotionError
+from motiondiff_edu.motion.root_frame import estimate_root
 from motiondiff_edu.motion.scaler import Scaler
-from motiondiff_edu.motion.skeleton import HIPS
+from motiondiff_edu.motion.skeleton import HIPS, joint_index
 from motiondiff_edu.reconstruction import Rollout
 
 T_H = 10
@@ -81,6 +84,69 @@ def test_the_path_needs_hips_or_shoulders(hidden):
     whole, all_facing = path_of(one.positions, one.known)
     np.testing.assert_allclose(place, whole, atol=1e-9)
     assert np.abs(facing - all_facing).max() < 0.15  # hips and shoulders turn a little apart
+
+
+def test_the_path_of_a_whole_motion_is_the_smoothed_root():
+    """Without smoothing, pelvis and hips would bring the gait into the control."""
+    one = walking()
+    place, facing = path_of(one.positions, one.known)
+    smooth, smooth_facing = estimate_root(one.positions)
+    np.testing.assert_allclose(place, smooth, atol=1e-9)
+    np.testing.assert_allclose(facing, smooth_facing, atol=1e-9)
+    assert np.abs(place - one.positions[:, HIPS][:, [0, 2]]).max() > 0.005
+
+
+def without_an_arm() -> tuple[Motion, np.ndarray]:
+    """A walk whose right arm is hidden for a second."""
+    one = walking()
+    known = one.known
+    known[20:40, [joint_index(name) for name in ARM]] = False
+    return one, known
+
+
+def standing() -> SimpleNamespace:
+    """As much of a walker as `reconstruct` asks for, when its rounds are another's."""
+    config = SimpleNamespace(T_h=T_H, T_p=T_H, D=63, C=3)
+    scalers = {"pose_scaler": Scaler.nothing(63), "control_scaler": Scaler.nothing(3)}
+    return SimpleNamespace(config=config, window_sampler=print, **scalers)
+
+
+def test_every_round_begins_with_what_the_one_before_found_and_there_are_three(monkeypatch):
+    """What a round fills in is the last guess and a metre; the bones are left alone here."""
+    one, known = without_an_arm()
+    begun = []
+
+    def higher(rollout, guess, mask, steer, firsts):
+        begun.append(guess)
+        return guess + 1.0
+
+    monkeypatch.setattr(module, "_once", higher)
+    monkeypatch.setattr(module, "steady_bones", lambda joints, known, lengths: joints)
+    reconstruct(standing(), one.positions, known, generator=torch.Generator())
+    assert len(begun) == 3
+    missing = ~torch.from_numpy(known.repeat(3, axis=1))
+    for before, after in zip(begun, begun[1:], strict=False):
+        torch.testing.assert_close(after[missing], before[missing] + 1.0)
+        torch.testing.assert_close(after[~missing], before[~missing])
+    begun.clear()
+    reconstruct(standing(), one.positions, known, generator=torch.Generator(), rounds=1)
+    assert len(begun) == 1
+
+
+def test_what_is_reconstructed_has_the_bones_of_what_is_given(monkeypatch):
+    """The rounds find joints that are centimetres away; the bones of the hidden arm are held."""
+    one, known = without_an_arm()
+    random = torch.Generator().manual_seed(2)
+
+    def far(rollout, guess, mask, steer, firsts):
+        return guess + 0.03 * torch.randn(guess.shape, generator=random, dtype=guess.dtype)
+
+    monkeypatch.setattr(module, "_once", far)
+    made = reconstruct(standing(), one.positions, known, generator=torch.Generator())
+    assert np.array_equal(made[known], one.positions[known])
+    assert not np.allclose(made[~known], one.positions[~known], atol=0.01)
+    off = np.abs(bone_lengths(made) - np.median(bone_lengths(one.positions), axis=0))
+    assert off.max() < 0.002
 
 
 def test_what_shows_no_path_is_said():

@@ -255,6 +255,21 @@ def test_a_dancer_moved_is_a_copy_that_dances_alike():
     torch.testing.assert_close(*both)
 
 
+def places(one: Dancer) -> set[str]:
+    """The devices of all weights, buffers and scalers."""
+    scalers = one.motion_scaler, one.mel_scaler
+    units = [x for scaler in scalers for x in (scaler.mean, scaler.std)]
+    tensors = [*one.model.parameters(), *one.model.buffers(), *units]
+    return {tensor.device.type for tensor in tensors}
+
+
+@pytest.mark.parametrize("config", [UNET, PLAIN])
+def test_all_of_a_dancer_is_moved_and_the_first_one_stays(config):
+    one = dancer(config)
+    assert places(one.to("meta")) == {"meta"}
+    assert places(one) == {"cpu"}
+
+
 @pytest.mark.parametrize("steps", [3, None])
 def test_all_lies_where_the_dancer_is_and_noise_is_drawn_where_the_generator_is(steps):
     """With another default device, whatever is made without regard to the inputs lands beside

@@ -136,3 +136,17 @@ def test_a_walker_moved_is_a_copy_that_walks_alike():
     moved = walker.to("cpu")
     assert moved.model is not walker.model and moved.card == walker.card
     torch.testing.assert_close(generate(moved, past, control), generate(walker, past, control))
+
+
+def places(walker: Walker) -> set[str]:
+    """The devices of all weights, buffers and scalers."""
+    scalers = walker.pose_scaler, walker.control_scaler
+    units = [x for scaler in scalers for x in (scaler.mean, scaler.std)]
+    tensors = [*walker.model.parameters(), *walker.model.buffers(), *units]
+    return {tensor.device.type for tensor in tensors}
+
+
+def test_all_of_a_walker_is_moved_and_the_first_one_stays():
+    walker = tiny_walker()
+    assert places(walker.to("meta")) == {"meta"}
+    assert places(walker) == {"cpu"}
