@@ -27,15 +27,19 @@ def dancer(
     channels: dict[str, Float[np.ndarray, "T"]],
     tracks: tuple[Track, Track],
     heading: Float[np.ndarray, "T"],
+    level: float = legs.LEVEL,
 ) -> Float[np.ndarray, "T 21 3"]:
-    """The joints of a figure with its feet at `tracks` and its body as in the channels."""
+    """The joints of a figure with its feet at `tracks` and its body as in the channels.
+
+    `level` as in `legs.hips_within_reach`.
+    """
     c = {name: value if name in LENGTHS else np.radians(value) for name, value in channels.items()}
     yaw = heading + c["hip_yaw"]
     pelvis = legs.pelvis_rotation(yaw, c["hip_roll"], c["hip_tilt"])
     feet = legs.Feet(
         *(np.stack(v, 1) for v in zip(*((k.ankle(), k.toe, k.yaw) for k in tracks), strict=True))
     )
-    hips = legs.hips_within_reach(_hips(c, tracks, heading), pelvis, feet)
+    hips = legs.hips_within_reach(_hips(c, tracks, heading), pelvis, feet, level)
     feet = legs.not_folded(hips, pelvis, feet)
     joints = np.zeros((len(heading), J, 3))
     joints[:, 0] = hips

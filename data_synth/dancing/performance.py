@@ -33,7 +33,8 @@ DAMPING, ARMS_LEAD = (
 )  # of the arms' spring; the share of its delay by which the arms start earlier
 ARMS = [f"{side}_{name}" for side in "lr" for name in ARM]
 FASTEST = 250.0  # degrees a second, on average between two keys, that an arm's angle may change
-START = ((STANCE, TOE_AHEAD, 0.12), (-STANCE, TOE_AHEAD, -0.12))  # toe x, toe z, direction
+Toe = tuple[float, float, float]  # x, z (metres) and direction (radians) of a planted toe
+START: tuple[Toe, Toe] = ((STANCE, TOE_AHEAD, 0.12), (-STANCE, TOE_AHEAD, -0.12))
 
 
 @dataclass(frozen=True, eq=False)
@@ -110,9 +111,28 @@ def perform(
     rng = np.random.default_rng([seed, song.seed, 32])
     manner = MANNERS[song.genre]
     t = np.arange(int(song.seconds * FPS)) / FPS
-    seconds, number = felt_beats(
+    felt = felt_beats(
         song.beats, rng, jitter=rng.uniform(0.012, 0.020), off=rng.normal(-manner.lead, 0.006)
     )
+    return performed(script, t, felt, manner, seed, rng)
+
+
+def performed(
+    script: Script,
+    t: Float[np.ndarray, "T"],
+    felt: tuple[Float[np.ndarray, "N"], Float[np.ndarray, "N"]],
+    manner: Manner,
+    seed: int,
+    rng: np.random.Generator,
+    start: tuple[Toe, Toe] = START,
+) -> tuple[Float[np.ndarray, "T 21 3"], Bool[np.ndarray, "T 2"]]:
+    """Positions and contacts at the times t (seconds) of a script whose beats are felt at `felt`.
+
+    felt   seconds, and the number of the beat at each
+    seed   of the slow drift of the posture; `rng` draws the person
+    start  where the toes stand before the first step
+    """
+    seconds, number = felt
     b = np.interp(t, seconds, number)
     delay = (
         2 * DAMPING / (2 * np.pi * manner.spring)
@@ -120,8 +140,11 @@ def perform(
     early = np.interp(t + ARMS_LEAD * delay, seconds, number)
     channels = _channels(script, b, early, (seconds, number), manner, seed, rng)
     heading = curve(b, script.keys["heading"], hold=0.0, flow=0.8)
-    tracks = tuple(_foot(script, foot, t, seconds, number, channels, rng) for foot in (0, 1))
-    return dancer(channels, tracks, heading), np.stack([k.planted for k in tracks], -1)
+    tracks = tuple(
+        _foot(script, foot, start[foot], t, seconds, number, channels, rng) for foot in (0, 1)
+    )
+    positions = dancer(channels, tracks, heading, manner.level)
+    return positions, np.stack([k.planted for k in tracks], -1)
 
 
 def _channels(
@@ -142,7 +165,8 @@ def _channels(
         flow = 0.5 * manner.flow if name == "drop" else manner.flow
         drifts, own = _person(name)
         value = curve((early if is_arm else b) - late, keys, manner.hold, flow)
-        channels[name] = value + drifts * wander[:, i] + own * rng.standard_normal()
+        own = manner.variety * own * rng.standard_normal()
+        channels[name] = value + drifts * wander[:, i] + own
     hertz = manner.spring * float(np.exp(0.12 * rng.standard_normal()))
     arms = springy(np.stack([channels[name] for name in ARMS], -1), FPS, hertz, DAMPING)
     return channels | dict(zip(ARMS, arms.T, strict=True))
@@ -160,7 +184,7 @@ def _person(name: str) -> tuple[float, float]:
     return (0.003, 0.008) if name in LENGTHS else (0.9, 3.0)
 
 
-def _foot(script: Script, foot: int, t, seconds, number, channels, rng) -> Track:
+def _foot(script: Script, foot: int, start: Toe, t, seconds, number, channels, rng) -> Track:
     """One foot's steps at the dancer's own times, each with an error of some milliseconds."""
     steps = script.steps[foot]
     times = np.interp([(s.lift, s.land) for s in steps], number, seconds).reshape(-1, 2)
@@ -168,7 +192,7 @@ def _foot(script: Script, foot: int, t, seconds, number, channels, rng) -> Track
     flat = np.maximum.accumulate(times.ravel()).reshape(-1, 2)
     flat[:, 1] = np.maximum(flat[:, 1], flat[:, 0] + 0.06)
     heel = np.maximum(channels[f"{'lr'[foot]}_heel"], 0.0)
-    return track(steps, START[foot], flat, t, heel)
+    return track(steps, start, flat, t, heel)
 
 
-__all__ = ["Dance", "GENRES", "dance", "dances", "perform"]
+__all__ = ["Dance", "GENRES", "dance", "dances", "perform", "performed"]

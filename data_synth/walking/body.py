@@ -11,7 +11,7 @@ from ..noise import drift, follow, uniform
 from . import legs, upper_body
 from .behaviours import behaviours
 from .drive import drive
-from .footsteps import plan, planted
+from .footsteps import Place, plan, planted
 from .gait_curves import Gait, running
 from .styles import Style
 
@@ -35,19 +35,19 @@ def body(
     style: Style,
     phase: float,
     fps: float,
+    places: list[Place] | None = None,
 ) -> tuple[Float[np.ndarray, "T 21 3"], Bool[np.ndarray, "T 2"]]:
     """Poses and contacts of a walk.
 
-    `rows` is the noise of noise.white, `phase` where the clock starts.
+    `rows` is the noise of noise.white, `phase` where the clock starts; `places` as in `plan`.
     """
     forward, left, yaw = follow(np.concatenate([control[:1], control[:-1]]), 0.07, fps).T
     run = follow(running(forward), 0.09, fps)
     speed = np.hypot(np.where(forward < 0, -forward, forward), left)
     inward = 0.78 * np.arctan(forward * yaw / GRAVITY)
     lean_shift = -1.58 * (1 - 0.25 * run) * np.tan(inward)
-    steps = plan(
-        drive(control, root_xz, heading, rows, style, lean_shift, run, fps), style, phase, fps
-    )
+    driven = drive(control, root_xz, heading, rows, style, lean_shift, run, fps)
+    steps = plan(driven, style, phase, fps, places)
     feet = legs.place_feet(steps, root_xz, heading, forward, run, style)
     noise = drift(rows[:, 8:28], 0.5, fps)
     ahead = (

@@ -18,6 +18,7 @@ from .gait_curves import swing_progress
 from .styles import Style
 
 TOE_AHEAD = 0.115  # of the ankle, foot flat (metres)
+Place = tuple[float, float, float]  # x, z (metres) and direction (radians) of a flat foot's ankle
 ACTIVE = 0.09  # m/s below which a figure stands, if its feet are in place
 
 
@@ -37,7 +38,7 @@ class Steps:
 class _Feet:
     """State of the loop: both feet and the clock."""
 
-    def __init__(self, d: Drive, style: Style, phase: float):
+    def __init__(self, d: Drive, style: Style, phase: float, places: list[Place] | None = None):
         self.d = d
         self.style = style
         self.clock = phase
@@ -49,7 +50,7 @@ class _Feet:
             self.rate = 0.0
             self.amount = [0.0, 0.0]
         self.toe_up = [0.0, 0.0]
-        places = [home(d, 0, foot, style, 0.0, 0.0) for foot in (0, 1)]
+        places = places or [home(d, 0, foot, style, 0.0, 0.0) for foot in (0, 1)]
         self.place = list(places)
         self.start = list(places)
         self.aim = list(places)
@@ -175,9 +176,14 @@ class _Feet:
         self.place[foot] = (x, z, yaw + turn)
 
 
-def plan(d: Drive, style: Style, phase: float, fps: float) -> Steps:
-    """Run the clock and the feet over all frames."""
-    feet, n = _Feet(d, style, phase), len(d.x)
+def plan(
+    d: Drive, style: Style, phase: float, fps: float, places: list[Place] | None = None
+) -> Steps:
+    """Run the clock and the feet over all frames.
+
+    `places`: where the feet stand at first; else where they belong.
+    """
+    feet, n = _Feet(d, style, phase, places), len(d.x)
     rows = []
     for t in range(n):
         if t:

@@ -21,6 +21,7 @@ from .styles import Style
 ANKLE = 0.075  # height of the Foot joint over the floor, foot flat
 HEEL_BEHIND = 0.04  # of the ankle
 THIGH, SHANK = 0.41, 0.425
+LEVEL = 0.53  # metres, of a long step
 REACH = 0.9935 * (THIGH + SHANK)
 
 
@@ -125,18 +126,21 @@ def own_roll(
 
 
 def hips_within_reach(
-    hips: Float[np.ndarray, "T 3"], rotation: Float[np.ndarray, "T 3 3"], feet: Feet
+    hips: Float[np.ndarray, "T 3"],
+    rotation: Float[np.ndarray, "T 3 3"],
+    feet: Feet,
+    level: float = LEVEL,
 ) -> Float[np.ndarray, "T 3"]:
     """Lower the pelvis smoothly where a leg would not reach the ground.
 
-    Long steps also pull it along.
+    A foot that is more than `level` metres beside its hip also pulls the pelvis along.
     """
     hips = hips.copy()
     sockets = [rotation @ OFFSETS[joint] for joint in (1, 5)]
     for side, socket in enumerate(sockets):
         gap = (feet.ankle[:, side] - hips - socket)[:, [0, 2]]
-        level = np.linalg.norm(gap, axis=-1, keepdims=True)
-        hips[:, [0, 2]] += softplus(level - 0.53, 0.015) * gap / level
+        beside = np.linalg.norm(gap, axis=-1, keepdims=True)
+        hips[:, [0, 2]] += softplus(beside - level, 0.015) * gap / beside
     for side, socket in enumerate(sockets):
         gap = feet.ankle[:, side] - hips - socket
         highest = (

@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 
+from ...walking.legs import LEVEL
 from . import hiphop, house, latin, pop, waltz
 
 
@@ -19,6 +20,8 @@ class Manner:
     spring: float  # Hz: how tightly the arms follow
     lead: float  # seconds by which the dancer starts early, so that the stillness is on the beat
     rest: dict[str, float]
+    variety: float = 1.0  # factor on the differences of posture between persons
+    level: float = LEVEL  # metres: a foot farther beside its hip pulls the pelvis along
 
 
 _BENT = {
