@@ -1,16 +1,22 @@
 """Write synthetic motion and music as files.
 
-`python -m data_synth walks | dances | songs --out FOLDER`
+`python -m data_synth walks | dances | songs | actions --out FOLDER`
 """
 
 import argparse
 import sys
 
+from .actions import write as write_actions
 from .dancing import write as write_dances
 from .music import write as write_songs
 from .walking import write as write_walks
 
-KINDS = {"walks": write_walks.main, "dances": write_dances.main, "songs": write_songs.main}
+KINDS = {
+    "walks": write_walks.main,
+    "dances": write_dances.main,
+    "songs": write_songs.main,
+    "actions": write_actions.main,
+}
 
 
 def main(arguments: list[str] | None = None) -> None:

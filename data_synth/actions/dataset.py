@@ -1,0 +1,69 @@
+"""Clips with their sentences and captions; mirrored ones; three splits that share no clip."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from motiondiff_edu.motion.skeleton import MIRROR
+
+from .acts import Phrase, Sentence, mirrored
+from .captions import caption, exchanged
+from .performance import Acted, act_out
+from .sentences import draw, held_out, in_training, pairs
+
+SPLITS = {"train": 0, "validation": 1, "test": 2, "combinations": 3}
+WORDINGS_EACH = 4
+
+
+@dataclass(frozen=True, eq=False)
+class Described:
+    """A clip with several captions."""
+
+    acted: Acted
+    captions: tuple[str, ...]
+
+
+def clips(
+    n: int, seed: int, split: str = "train", seconds: float | None = None
+) -> Iterator[Described]:
+    """n clips of a split, each with WORDINGS_EACH captions.
+
+    train, validation, test  sentences without a held-out pair
+    combinations             sentences with one: each word is seen in training, the pair never
+    Raises ValueError for an unknown split.
+    """
+    if split not in SPLITS:
+        raise ValueError(f"no split is called {split!r}; there are {', '.join(SPLITS)}")
+    for k in range(n):
+        rng = np.random.default_rng([seed, SPLITS[split], k, 13])
+        sentence, length = draw(rng, seconds)
+        while in_training(sentence) == (split == "combinations"):
+            sentence, length = draw(rng, seconds)
+        acted = act_out(sentence, length, int(rng.integers(2**31)))
+        yield Described(acted, worded(sentence, rng))
+
+
+def worded(
+    sentence: Sentence, rng: np.random.Generator, new_verbs: bool = False
+) -> tuple[str, ...]:
+    """WORDINGS_EACH different captions of a sentence; `new_verbs`: by the held-out verbs."""
+    found: dict[str, None] = {}
+    while len(found) < WORDINGS_EACH:
+        found[caption(sentence, rng, new_verbs)] = None
+    return tuple(found)
+
+
+def mirror(clip: Described) -> Described:
+    """Left and right exchanged in motion, truth and words."""
+    acted = clip.acted
+    positions = acted.positions[:, MIRROR] * np.array([-1.0, 1.0, 1.0])
+    sentence = tuple(Phrase(mirrored(p.legs), mirrored(p.arms)) for p in acted.sentence)
+    spans = tuple(replace(span, act=mirrored(span.act)) for span in acted.spans)
+    turned = replace(
+        acted, positions=positions, contacts=acted.contacts[:, ::-1], spans=spans, sentence=sentence
+    )
+    return Described(turned, tuple(exchanged(text) for text in clip.captions))
+
+
+__all__ = ["Described", "clips", "held_out", "mirror", "pairs", "worded"]

@@ -1,0 +1,59 @@
+"""From one way of moving to another: a walk fades into an act on the spot, and back.
+
+Both motions exist for a moment, with both feet planted in the same places. Bones are mixed by
+their directions, so they keep their lengths, and the feet do not slide.
+"""
+
+import numpy as np
+from jaxtyping import Float
+
+from motiondiff_edu.motion.skeleton import BONE_LENGTHS, BONES, PARENTS
+
+from ..walking.legs import REACH, bend_knee
+
+LENGTH = {child: float(length) for (_, child), length in zip(BONES, BONE_LENGTHS, strict=True)}
+UPPER = (9, 10, 11, 12, *range(13, 21))
+LEGS = ((1, 2, 3, 4), (5, 6, 7, 8))  # socket, knee, ankle, toe
+
+
+def crossfade(
+    a: Float[np.ndarray, "T 21 3"],
+    b: Float[np.ndarray, "T 21 3"],
+    share: Float[np.ndarray, "T"],
+    feet: Float[np.ndarray, "T 21 3"],
+) -> Float[np.ndarray, "T 21 3"]:
+    """The mix of two motions, `share` of b; toes are those of `feet`, a or b.
+
+    Toes that are planted in both motions must be in one place.
+    """
+    w = share[:, None]
+    out = np.empty_like(a)
+    out[:, 0] = a[:, 0] + w * (b[:, 0] - a[:, 0])
+    for joint in UPPER:
+        out[:, joint] = out[:, PARENTS[joint]] + _bone(a, b, w, joint)
+    for socket, knee, ankle, toe in LEGS:
+        out[:, socket] = out[:, 0] + _bone(a, b, w, socket)
+        out[:, toe] = feet[:, toe]
+        out[:, ankle] = out[:, toe] - _bone(a, b, w, toe)
+        out[:, ankle] = _reached(out[:, socket], out[:, ankle])
+        bend = [p[:, knee] - (p[:, socket] + p[:, ankle]) / 2 for p in (a, b)]
+        toward = [one / np.linalg.norm(one, axis=-1, keepdims=True) for one in bend]
+        out[:, knee] = bend_knee(
+            out[:, socket], out[:, ankle], toward[0] + w * (toward[1] - toward[0])
+        )
+    return out
+
+
+def _bone(a, b, w, joint: int) -> Float[np.ndarray, "T 3"]:
+    """A bone from its parent, in the mixed direction."""
+    first, second = (p[:, joint] - p[:, PARENTS[joint]] for p in (a, b))
+    mixed = first + w * (second - first)
+    return mixed * (LENGTH[joint] / np.linalg.norm(mixed, axis=-1, keepdims=True))
+
+
+def _reached(socket, ankle) -> Float[np.ndarray, "T 3"]:
+    """The ankle itself; raises ValueError where no leg reaches it."""
+    far = np.linalg.norm(ankle - socket, axis=-1).max()
+    if far > REACH + 0.005:
+        raise ValueError(f"a leg of {REACH:.3f} m does not reach its foot, {far:.3f} m away")
+    return ankle

@@ -1,0 +1,255 @@
+"""Perform a sentence: acts in a row and at once, by one figure, with the truth of what is when."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from jaxtyping import Bool, Float
+
+from motiondiff_edu.motion.root_frame import FPS
+
+from ..dancing.curves import least_jerk
+from . import arms, spot, way
+from .acts import FACTORS, UNEVEN, VERBS, Act, Phrase, Sentence
+from .join import crossfade
+from .way import Piece, Standing
+
+JOIN = 0.4  # seconds of a join
+STOPPING = {"run": 2.4, "walk": 1.6}  # seconds that an act on the way needs to come to rest
+OTHERS_STOP = 1.4
+TRIES = 8  # each with more time for the stops
+
+
+@dataclass(frozen=True)
+class Span:
+    """When an act happens, in seconds of the clip."""
+
+    first: float
+    last: float
+    act: Act
+
+
+@dataclass(frozen=True, eq=False)
+class Acted:
+    """World positions (metres), true contacts (left, right), and when each act happens."""
+
+    positions: Float[np.ndarray, "T 21 3"]
+    contacts: Bool[np.ndarray, "T 2"]
+    spans: tuple[Span, ...]
+    sentence: Sentence
+    seed: int
+    fps: float = FPS
+
+    def __len__(self) -> int:
+        return len(self.positions)
+
+
+@dataclass(frozen=True)
+class Slot:
+    """A phrase with its duration (seconds) and the period of its act on the spot."""
+
+    phrase: Phrase
+    seconds: float
+    period: float  # of the legs' act on the spot, or of the arms' act
+    legs: Act
+
+    @property
+    def kind(self) -> str:
+        return VERBS[self.legs.verb].kind
+
+
+STAND = Act("stand")
+Start = tuple[float, float, float]  # x, z (metres) and heading (radians) of a figure on its way
+
+
+def act_out(sentence: Sentence, seconds: float, seed: int) -> Acted:
+    """A clip of `seconds` in which a figure does what the sentence says.
+
+    The same seed gives the same bytes; other seeds give other right motions.
+    Raises ValueError for an empty sentence, and for one that does not fit into the clip.
+    """
+    late = 0.0
+    for _ in range(TRIES):
+        acted, over = _performed(sentence, seconds, late, seed)
+        if over <= 0:
+            return acted
+        late += max(over, 0.2) + 0.05  # the feet stop at steps, not at any time
+    raise ValueError(f"the sentence does not end within the {seconds:g} s of the clip")
+
+
+def _performed(sentence: Sentence, seconds: float, late: float, seed: int) -> tuple[Acted, float]:
+    """The clip, and how many seconds after its end the last act ends.
+
+    `late`: seconds that the stops take beyond what is expected.
+    """
+    rng = np.random.default_rng([seed, 11])
+    slots = scheduled(sentence, seconds, late, rng)
+    style = way.walker_of(rng)
+    frames = round(seconds * FPS)
+    blocks = _blocks(slots)
+    made, at = None, 0
+    spans: list[Span] = []
+    state: Start | Standing = (0.0, 0.0, 0.0)
+    for k, block in enumerate(blocks):
+        room = frames - at if k == len(blocks) - 1 else None
+        if block[0].kind == "way":
+            piece, cut, inner = _on_the_way(block, state, style, rng, room, seed + 101 * k)
+            state = way.standing_at(piece, cut - 1 if room is not None else cut)
+        else:
+            standing = state if isinstance(state, Standing) else _first_stand(style, rng)
+            piece, cut, inner, state = _on_the_spot(block, standing, room, seed)
+        spans += [Span(at / FPS + first, at / FPS + end, act) for first, end, act in inner]
+        made = piece if made is None else _joined(made, piece, at, block[0].kind == "way")
+        at += cut
+    over = max((s.last for s in spans if VERBS[s.act.verb].kind == "spot"), default=0.0) - seconds
+    timed = _arms(slots, spans, rng)
+    over = max([over, *(one.last - seconds for one in timed)])
+    positions = arms.laid_over(made.positions[:frames], timed, seed)
+    spans += [Span(one.first, one.last, one.act) for one in timed]
+    spans.sort(key=lambda span: span.first)
+    kept = tuple(replace(span, last=min(span.last, seconds)) for span in spans)
+    return Acted(positions, made.contacts[:frames], kept, sentence, seed), over
+
+
+def stops(sentence: Sentence) -> float:
+    """Seconds that the figure needs in all to come to rest before acts on the spot."""
+    legs = [(phrase.legs or STAND).verb for phrase in sentence]
+    return sum(
+        STOPPING.get(a, OTHERS_STOP)
+        for a, b in zip(legs, legs[1:], strict=False)
+        if VERBS[a].kind == "way" and VERBS[b].kind == "spot"
+    )
+
+
+def scheduled(
+    sentence: Sentence, seconds: float, late: float, rng: np.random.Generator
+) -> list[Slot]:
+    """How long each phrase lasts; what is left over goes to the phrases on the way, or before and
+    after the acts on the spot.
+
+    Raises ValueError for an empty sentence, and for one that does not fit into the clip.
+    """
+    if not sentence:
+        raise ValueError("a sentence needs a phrase at least")
+    slots = [_slot(phrase, rng) for phrase in sentence]
+    left = seconds - sum(slot.seconds for slot in slots) - stops(sentence) - late
+    if left < 0:
+        raise ValueError(
+            f"the sentence needs {seconds - left:.1f} s, and the clip has {seconds:g} s"
+        )
+    elastic = [k for k, s in enumerate(slots) if s.kind == "way" and s.legs.verb != "turn"]
+    if not elastic:
+        before = Slot(Phrase(STAND), float(left * rng.uniform(0.05, 0.6)), 0.0, STAND)
+        return [before, *slots] if before.seconds > 0.3 else slots
+    shares = rng.dirichlet(np.full(len(elastic), 3.0))
+    for k, share in zip(elastic, shares, strict=True):
+        slots[k] = replace(slots[k], seconds=slots[k].seconds + float(left * share))
+    return slots
+
+
+def _slot(phrase: Phrase, rng: np.random.Generator) -> Slot:
+    """The least duration of a phrase, and the period of its acts."""
+    legs = phrase.legs or STAND
+    period, need = 0.0, VERBS[legs.verb].period
+    if legs.verb == "turn":
+        need = way.turning_seconds(legs)
+    if VERBS[legs.verb].kind == "spot":
+        period = period_of(legs, rng)
+        need = legs.count * period
+    if phrase.arms is not None:
+        own = period_of(phrase.arms, rng)
+        need = max(need, phrase.arms.count * own + arms.FADE)
+        period = period or own
+    return Slot(phrase, need, period, legs)
+
+
+def period_of(act: Act, rng: np.random.Generator) -> float:
+    """Seconds of one time of an act: by its speed, never by its count."""
+    return VERBS[act.verb].period * FACTORS[act.speed] * float(1 + rng.uniform(-UNEVEN, UNEVEN))
+
+
+def _blocks(slots: list[Slot]) -> list[list[Slot]]:
+    """Slots in a row of one kind."""
+    blocks: list[list[Slot]] = []
+    for slot in slots:
+        if blocks and blocks[-1][0].kind == slot.kind:
+            blocks[-1].append(slot)
+        else:
+            blocks.append([slot])
+    return blocks
+
+
+def _first_stand(style, rng: np.random.Generator) -> Standing:
+    """Where the feet stand at first: the toes."""
+    out = np.radians(style.toe_out)
+    half = float(rng.uniform(0.075, 0.11))
+    return Standing(((half, 0.115, out), (-half, 0.115, -out)))
+
+
+def _on_the_way(block: list[Slot], state, style, rng, room: int | None, seed: int):
+    """(piece, frame at which the next block begins, spans within the block)."""
+    from_rest = isinstance(state, Standing)
+    targets, inner, at = [], [], 0.0
+    for slot in block:
+        goal = way.target(slot.legs, float(rng.uniform(0.92, 1.08)))
+        targets.append((goal, slot.seconds))
+        if slot.phrase.legs is not None:
+            inner.append((at, at + slot.seconds, slot.legs))
+        at += slot.seconds
+    if room is not None:  # the last block fills the clip; after a turn the figure stands
+        spare = max(0.0, room / FPS - at) + 0.2
+        goal = (0.0, 0.0, 0.0) if block[-1].legs.verb == "turn" else targets[-1][0]
+        targets.append((goal, spare))
+    control = way.control_of(targets, from_rest, to_rest=room is None)
+    piece = way.walked(control, state, style, seed, float(rng.random()))
+    if room is not None:
+        return piece, room, inner
+    cut = way.settled(piece, round((at - 0.1) * FPS), round(JOIN * FPS) + 1)
+    inner = [(first, min(end, cut / FPS), act) for first, end, act in inner]
+    return piece, cut, inner
+
+
+def _on_the_spot(block: list[Slot], standing: Standing, room: int | None, seed: int):
+    """(piece, frame at which the next block begins, spans within it, where the feet stand)."""
+    timed, at = [], 0.05
+    for slot in block:
+        timed.append(spot.Timed(slot.legs, at, slot.period))
+        at = timed[-1].last + max(0.0, slot.seconds - slot.legs.count * slot.period)
+    seconds = (room / FPS if room is not None else at) + JOIN + 0.2
+    piece, after = spot.acted(timed, standing, seconds, seed)
+    inner = [(one.first, one.last, one.act) for one in timed]
+    return piece, int(np.ceil(at * FPS)), inner, after
+
+
+def _joined(made: Piece, piece: Piece, at: int, on_the_way: bool) -> Piece:
+    """The motion so far until `at`, faded into the next piece, whose frame 0 is frame `at`."""
+    n = min(round(JOIN * FPS) + 1, len(made) - at, len(piece))
+    share = least_jerk(np.arange(n) / max(n - 1, 1))
+    before, after = made.positions[at : at + n], piece.positions[:n]
+    mixed = crossfade(before, after, share, after if on_the_way else before)
+    contacts = piece.contacts[:n] if on_the_way else made.contacts[at : at + n]
+    return Piece(
+        np.concatenate([made.positions[:at], mixed, piece.positions[n:]]),
+        np.concatenate([made.contacts[:at], contacts, piece.contacts[n:]]),
+    )
+
+
+def _arms(slots: list[Slot], spans: list[Span], rng) -> list[arms.TimedArms]:
+    """The acts of the arms at the times of their phrases."""
+    timed, clock = [], 0.0
+    legs = iter(spans)
+    for slot in slots:
+        span = next(legs) if slot.phrase.legs is not None else None
+        first = span.first if span else clock
+        clock = span.last if span else clock + slot.seconds
+        act = slot.phrase.arms
+        if act is None:
+            continue
+        own = slot.period if VERBS[slot.legs.verb].kind == "way" else period_of(act, rng)
+        spare = max(0.0, clock - first - act.count * own - arms.FADE)
+        begins = first + 0.5 * arms.FADE + spare * float(rng.uniform(0.1, 0.8))
+        ends = begins + act.count * own
+        if act.verb in ("wave", "point"):
+            begins = first + 0.5 * arms.FADE
+            ends = clock - 0.5 * arms.FADE
+        timed.append(arms.TimedArms(act, begins, own, ends))
+    return timed

@@ -1,0 +1,160 @@
+"""Random sentences, and those that a training never sees.
+
+The form of a sentence (its verbs) and the length of the clip are drawn first, and the counts last.
+So a clip has room for the largest count, whatever its own is, and its length does not tell it.
+"""
+
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+
+from .acts import FACTORS as SPEED
+from .acts import PHRASES, UNEVEN, VERBS, Act, Phrase, Sentence
+from .performance import JOIN, stops
+from .way import turning_seconds
+
+LEAST, LONGEST = 2.0, 10.0  # seconds of a clip
+MARGIN = 0.8  # seconds left over in every clip
+WAY, SPOT, ARMS = (
+    tuple(name for name, verb in VERBS.items() if verb.kind == kind)
+    for kind in ("way", "spot", "arms")
+)
+WITH_ARMS = (*WAY, "squat", "sit")  # acts of the legs that leave the arms free
+KINDS = {"way": 0.2, "spot": 0.32, "arms": 0.18, "way and arms": 0.22, "spot and arms": 0.08}
+SEVERAL = (0.0, 0.45, 0.38, 0.17)  # shares of sentences with 0, 1, 2, 3 phrases
+HELD_OUT = 0.16  # share of the pairs that a training never sees
+
+Pair = tuple[str, str, str]  # how two words belong together, a verb, and the other word
+
+
+def draw(rng: np.random.Generator, seconds: float | None = None) -> tuple[Sentence, float]:
+    """A sentence and the length of its clip in seconds (LEAST to LONGEST, or the one given)."""
+    while True:
+        n = int(rng.choice(PHRASES + 1, p=SEVERAL))
+        form = tuple(_phrase(rng) for _ in range(n))
+        if any(a.legs == b.legs and a.arms == b.arms for a, b in zip(form, form[1:], strict=False)):
+            continue
+        if any(_same_legs(a, b) for a, b in zip(form, form[1:], strict=False)):
+            continue
+        need = max(LEAST, room(form))
+        if need > (LONGEST if seconds is None else seconds):
+            continue
+        length = float(rng.uniform(need, LONGEST)) if seconds is None else seconds
+        return tuple(_counted(phrase, rng) for phrase in form), round(length, 1)
+
+
+def _same_legs(a: Phrase, b: Phrase) -> bool:
+    return a.legs is not None and b.legs is not None and a.legs.verb == b.legs.verb
+
+
+def room(form: Sentence) -> float:
+    """Seconds that the sentence needs at most."""
+    return sum(_longest(phrase) for phrase in form) + stops(form) + MARGIN
+
+
+def _longest(phrase: Phrase) -> float:
+    """Seconds that a phrase whose counts are the largest ones can need."""
+    found = []
+    for act in phrase.acts:
+        verb = VERBS[act.verb]
+        slow = 1.0 if verb.kind == "way" else SPEED[act.speed] * (1 + UNEVEN)
+        least = turning_seconds(act) if act.verb == "turn" else verb.period
+        found.append(act.count * slow * least + (JOIN if verb.kind == "arms" else 0.0))
+    return max(found)
+
+
+def _phrase(rng: np.random.Generator) -> Phrase:
+    """A phrase of random verbs with their largest counts."""
+    kind = str(rng.choice(list(KINDS), p=list(KINDS.values())))
+    legs = arms = None
+    if kind.startswith("way"):
+        legs = _act(str(rng.choice(WAY[:-1] if kind == "way" else WAY)), rng)
+    elif kind.startswith("spot"):
+        free = [verb for verb in SPOT if verb in WITH_ARMS]
+        legs = _act(str(rng.choice(SPOT if kind == "spot" else free)), rng)
+    if kind.endswith("arms"):
+        arms = _act(str(rng.choice(ARMS)), rng)
+    return Phrase(legs, arms)
+
+
+def _act(verb: str, rng: np.random.Generator) -> Act:
+    """An act with its largest count; one speed of three is said."""
+    one = VERBS[verb]
+    speeds = one.speeds if rng.random() < 0.45 else ("",)
+    return Act(
+        verb,
+        str(rng.choice(one.sides)),
+        one.most,
+        str(rng.choice(speeds)),
+        str(rng.choice(one.directions)),
+    )
+
+
+def _counted(phrase: Phrase, rng: np.random.Generator) -> Phrase:
+    """The phrase with random counts."""
+
+    def with_count(act: Act | None) -> Act | None:
+        return act and replace(act, count=int(rng.integers(1, act.count + 1)))
+
+    return Phrase(with_count(phrase.legs), with_count(phrase.arms))
+
+
+def pairs(sentence: Sentence) -> set[Pair]:
+    """The pairs of a verb with its side, speed or direction, and with another verb."""
+    found: set[Pair] = set()
+    for phrase in sentence:
+        for act in phrase.acts:
+            found |= {
+                (kind, act.verb, word)
+                for kind in ("side", "speed", "direction")
+                if (word := getattr(act, kind))
+            }
+        if len(phrase.acts) == 2:
+            found.add(("while", *(act.verb for act in phrase.acts)))
+    for a, b in zip(sentence, sentence[1:], strict=False):
+        found |= {("then", x.verb, y.verb) for x in a.acts for y in b.acts}
+    return found
+
+
+def all_pairs() -> list[Pair]:
+    """Every pair that a sentence can have."""
+    found = []
+    for name, verb in VERBS.items():
+        found += [("side", name, word) for word in verb.sides if word]
+        found += [("speed", name, word) for word in verb.speeds if word]
+        found += [("direction", name, word) for word in verb.directions if word]
+    found += [("while", legs, arms) for legs in WITH_ARMS for arms in ARMS]
+    found += [("then", a, b) for a in VERBS for b in VERBS if a != b or VERBS[a].kind == "arms"]
+    return found
+
+
+@cache
+def held_out() -> frozenset[Pair]:
+    """The pairs that a training never sees: HELD_OUT of each kind, and every word stays in others.
+
+    A side is held out for one hand or foot only, so its other side teaches the verb.
+    """
+    rng = np.random.default_rng(17)
+    every, found = all_pairs(), set()
+    for kind in ("side", "speed", "direction", "while", "then"):
+        own = [pair for pair in every if pair[0] == kind]
+        rng.shuffle(order := np.arange(len(own)))
+        wanted = int(np.ceil(HELD_OUT * len(own)))
+        taken: list[Pair] = []
+        for pair in (own[k] for k in order):
+            if len(taken) == wanted:
+                break
+            if kind in ("side", "speed", "direction") and any(pair[1] == t[1] for t in taken):
+                continue
+            taken.append(pair)
+        found |= set(taken)
+    return frozenset(found)
+
+
+def in_training(sentence: Sentence) -> bool:
+    """Whether none of the sentence's pairs is held out."""
+    return not pairs(sentence) & held_out()
+
+
+__all__ = ["all_pairs", "draw", "held_out", "in_training", "pairs", "room"]
