@@ -99,7 +99,8 @@ def test_a_killed_run_resumes_bit_for_bit(tmp_path: Path):
 
 def test_before_each_step_is_told_how_many_are_done():
     """The first is told 0, and a training that goes on continues the count."""
-    state, told, at_loss = TrainState.start(network(), seed=4), [], []
+    state = TrainState.start(network(), seed=4)
+    told, at_loss = [], []
 
     def loss_fn(model, generator):
         at_loss.append(told[-1])

@@ -188,7 +188,8 @@ def _first_stand(style, rng: np.random.Generator) -> Standing:
 def _on_the_way(block: list[Slot], state, style, rng, room: int | None, seed: int):
     """(piece, frame at which the next block begins, spans within the block)."""
     from_rest = isinstance(state, Standing)
-    targets, inner, at = [], [], 0.0
+    targets, inner = [], []
+    at = 0.0
     for slot in block:
         goal = way.target(slot.legs, float(rng.uniform(0.92, 1.08)))
         targets.append((goal, slot.seconds))

@@ -113,7 +113,9 @@ def kick(p: Sheet, at: float, period: float, act: Act) -> None:
 def sit(p: Sheet, at: float, period: float, act: Act) -> None:
     """Down to a chair's height, upright there for a moment, and up again."""
     seat = float(p.rng.uniform(0.42, 0.45))
-    down, rise, up = at + 0.36 * period, at + 0.62 * period, at + 0.97 * period
+    down = at + 0.36 * period
+    rise = at + 0.62 * period
+    up = at + 0.97 * period
     for name, rest, value in (("drop", 0.015, seat), ("surge", 0.0, -0.24)):
         p.key(name, (at + 0.04, rest), (down, value))
         _hold(p, name, rise)
@@ -128,7 +130,9 @@ def sit(p: Sheet, at: float, period: float, act: Act) -> None:
 
 def bow(p: Sheet, at: float, period: float, act: Act) -> None:
     """The trunk bends forward from the hips, and comes up again."""
-    low, hold, up = at + 0.42 * period, at + 0.52 * period, at + 0.95 * period
+    low = at + 0.42 * period
+    hold = at + 0.52 * period
+    up = at + 0.95 * period
     bend = float(p.rng.uniform(38.0, 52.0))
     for name, rest, value in (("lean", 3.0, bend), ("hip_tilt", 0.0, 22.0), ("nod", 0.0, 14.0)):
         p.key(name, (at + 0.04, rest), (low, value), (hold, value), (up, rest))
