@@ -176,7 +176,8 @@ def trained_between(low: float, high: float) -> SimpleNamespace:
 @pytest.mark.parametrize(("value", "named"), [(3.3, True), (3.1, False), (0.9, False), (0.7, True)])
 def test_a_control_is_named_when_it_is_a_tenth_of_the_range_beyond_the_training(value, named):
     """From 1 to 3 the range is 2, and a tenth of it 0.2."""
-    walker, control = trained_between(1.0, 3.0), torch.full((T_H + 2, C), 2.0)
+    walker = trained_between(1.0, 3.0)
+    control = torch.full((T_H + 2, C), 2.0)
     control[T_H + 1] = value
     with warnings.catch_warnings(record=True) as told:
         warnings.simplefilter("always")

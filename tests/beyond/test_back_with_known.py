@@ -127,7 +127,8 @@ def test_more_moves_come_nearer_to_what_is_known(monkeypatch):
 
 def test_a_smaller_weight_leaves_more_of_the_spread_that_a_gaussian_has(monkeypatch):
     """Moves of their whole length bring the samples too near to one another."""
-    walker, B = Known(), 1500
+    walker = Known()
+    B = 1500
     known = torch.zeros(B, T_H, D, dtype=torch.bool)
     known[:, 1] = known[:, 3] = True
     given = torch.where(known, torch.tensor([3.5, -1.5]), 0.0)
@@ -159,7 +160,8 @@ class Listening(Known):
 
 def test_under_a_mask_the_network_is_given_its_own_units():
     """And it is no fast twin: that could not be differentiated."""
-    walker, random = Listening(), torch.Generator().manual_seed(4)
+    walker = Listening()
+    random = torch.Generator().manual_seed(4)
     ahead = torch.randn(2, T_H, D, generator=random)
     control = torch.randn(2, 2 * T_H, 3, generator=random)
     known = torch.zeros(2, T_H, D, dtype=torch.bool)
@@ -167,7 +169,8 @@ def test_under_a_mask_the_network_is_given_its_own_units():
     masked_way_back(rollout(walker), ahead, control, torch.ones(2, T_H, D), known)
     ((past, steer, fast),) = walker.heard
     torch.testing.assert_close(past, (ahead - 0.5) / 2)
-    middle, spread = torch.tensor([1.0, 0.1, -0.2]), torch.tensor([0.5, 0.2, 0.8])
+    middle = torch.tensor([1.0, 0.1, -0.2])
+    spread = torch.tensor([0.5, 0.2, 0.8])
     torch.testing.assert_close(steer, (control - middle) / spread)
     assert not fast
 
