@@ -9,9 +9,9 @@ from itertools import product
 import numpy as np
 from jaxtyping import Float
 
-from motiondiff_edu.motion.skeleton import BONE_LENGTHS, BONES, TOES
+from motiondiff_edu.motion.planting import runs
 
-from ..walking.own_measures import knee_angles
+from ..walking.own_measures import bone_error, knee_angles, planted_slip
 from .acts import VERBS, Act, Phrase
 from .dataset import clips
 from .performance import Acted, act_out
@@ -36,14 +36,11 @@ def joins(seed: int = 0) -> dict[tuple[str, str], Acted]:
 def measures(acted: Acted) -> dict[str, float]:
     """Slip of a planted toe (mm a frame), lowest joint (mm), bones (m), knees, speeds, jolts."""
     p = acted.positions
-    still = acted.contacts[1:] & acted.contacts[:-1]
-    steps = np.linalg.norm(np.diff(p[:, TOES], axis=0), axis=-1)
-    lengths = np.linalg.norm(p[:, [b for _, b in BONES]] - p[:, [a for a, _ in BONES]], axis=-1)
     knees = knee_angles(p)
     return {
-        "slip_mm": float(1e3 * (steps * still).max()),
+        "slip_mm": 1e3 * planted_slip(p, acted.contacts),
         "lowest_mm": float(1e3 * p[..., 1].min()),
-        "bone_m": float(np.abs(lengths - BONE_LENGTHS).max()),
+        "bone_m": bone_error(p),
         "knee_smallest": float(knees.min()),
         "knee_largest": float(knees.max()),
         "fastest_mps": float(speeds(acted).max()),
@@ -65,10 +62,8 @@ def stands_between(acted: Acted) -> float:
         if "stand" in (a.act.verb, b.act.verb):
             continue
         first, last = round(a.last * acted.fps), round((b.first + 0.2) * acted.fps)
-        run = 0
-        for quiet in still[first:last]:
-            run = run + 1 if quiet else 0
-            longest = max(longest, run / acted.fps)
+        for begun, ended in runs(still[first:last]):
+            longest = max(longest, (ended - begun) / acted.fps)
     return longest
 
 

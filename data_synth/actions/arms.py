@@ -11,12 +11,14 @@ import numpy as np
 from jaxtyping import Float
 from scipy.ndimage import gaussian_filter1d
 
+from motiondiff_edu.motion.directions import frame_of
 from motiondiff_edu.motion.kinematics import rot_x, rot_y, rot_z
 from motiondiff_edu.motion.root_frame import FPS
 
 from ..dancing.curves import least_jerk
 from ..walking.upper_body import DOWN, FOREARM, UPPER_ARM
 from .acts import Act
+from .join import mixed_bone
 
 HAND = 0.09
 FADE = 0.35  # seconds in which an arm leaves what it did before, and comes back to it
@@ -149,18 +151,12 @@ def _set_arm(joints: np.ndarray, side: str, pose, share: Float[np.ndarray, "T"])
     bones = ((upper, UPPER_ARM), (fore, FOREARM), (fore @ rot_x(-wrist), HAND))
     old = np.diff(joints[:, first : first + 4], axis=1)
     for k, (turn, length) in enumerate(bones):
-        there = old[:, k] / length
-        mixed = there + share[:, None] * (turn @ DOWN - there)
-        mixed *= length / np.linalg.norm(mixed, axis=-1, keepdims=True)
-        joints[:, first + k + 1] = joints[:, first + k] + mixed
+        bone = mixed_bone(old[:, k], length * (turn @ DOWN), share[:, None], length)
+        joints[:, first + k + 1] = joints[:, first + k] + bone
 
 
 def _shoulders(joints: Float[np.ndarray, "T 21 3"]) -> Float[np.ndarray, "T 3 3"]:
     """The rotation of the shoulders: left, up along the chest, ahead."""
     left = joints[:, SHOULDERS["left"]] - joints[:, SHOULDERS["right"]]
     left = gaussian_filter1d(left, 0.04 * FPS, axis=0, mode="nearest")
-    left /= np.linalg.norm(left, axis=-1, keepdims=True)
-    chest = joints[:, 11] - joints[:, 10]
-    ahead = np.cross(left, chest)
-    ahead /= np.linalg.norm(ahead, axis=-1, keepdims=True)
-    return np.stack([left, np.cross(ahead, left), ahead], -1)
+    return frame_of(left, joints[:, 11] - joints[:, 10])

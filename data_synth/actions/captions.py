@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .acts import VERBS, Act, Phrase, Sentence
+from .acts import OTHER_SIDE, VERBS, Act, Phrase, Sentence
 
 
 @dataclass(frozen=True)
@@ -243,25 +243,13 @@ def _in_order(parts: list[tuple[str, str]], rng: np.random.Generator) -> str:
 
 def exchanged(text: str) -> str:
     """The words left and right exchanged."""
-    swap = {"left": "right", "right": "left"}
-    return re.sub(r"\b(left|right)\b", lambda found: swap[found[0]], text)
+    return re.sub(r"\b(left|right)\b", lambda found: OTHER_SIDE[found[0]], text)
 
 
 def vocabulary(held_out: bool = False) -> set[str]:
     """All words of the captions, in lower case; with `held_out` also those of held-out verbs."""
-    texts = [*SUBJECTS, *sum(TIMES.values(), ()), *sum(ADVERBS.values(), ()), "left", "right"]
-    texts += [
-        "both arms",
-        "the",
-        "arm",
-        "while",
-        "at the same time",
-        "first",
-        "then",
-        "and",
-        "after",
-    ]
-    texts += ["after that"]
+    texts = [*SUBJECTS, *sum(TIMES.values(), ()), *sum(ADVERBS.values(), ())]
+    texts.append("left right both arms the arm while at the same time first then and after that")
     for choices in WORDINGS.values():
         for one in choices if held_out else choices[:-1]:
             texts += [one.third, one.gerund, one.tail.format(side="", limb="")]

@@ -5,12 +5,12 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from motiondiff_edu.motion.skeleton import MIRROR
+from motiondiff_edu.motion import dance_frame
 
 from .acts import Phrase, Sentence, mirrored
 from .captions import caption, exchanged
 from .performance import Acted, act_out
-from .sentences import draw, held_out, in_training, pairs
+from .sentences import draw, in_training
 
 SPLITS = {"train": 0, "validation": 1, "test": 2, "combinations": 3}
 WORDINGS_EACH = 4
@@ -57,13 +57,10 @@ def worded(
 def mirror(clip: Described) -> Described:
     """Left and right exchanged in motion, truth and words."""
     acted = clip.acted
-    positions = acted.positions[:, MIRROR] * np.array([-1.0, 1.0, 1.0])
+    positions = dance_frame.mirror(acted.positions)
     sentence = tuple(Phrase(mirrored(p.legs), mirrored(p.arms)) for p in acted.sentence)
     spans = tuple(replace(span, act=mirrored(span.act)) for span in acted.spans)
     turned = replace(
         acted, positions=positions, contacts=acted.contacts[:, ::-1], spans=spans, sentence=sentence
     )
     return Described(turned, tuple(exchanged(text) for text in clip.captions))
-
-
-__all__ = ["Described", "clips", "held_out", "mirror", "pairs", "worded"]

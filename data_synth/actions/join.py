@@ -7,6 +7,7 @@ their directions, so they keep their lengths, and the feet do not slide.
 import numpy as np
 from jaxtyping import Float
 
+from motiondiff_edu.motion.directions import unit
 from motiondiff_edu.motion.skeleton import BONE_LENGTHS, BONES, PARENTS
 
 from ..walking.legs import REACH, bend_knee
@@ -35,9 +36,8 @@ def crossfade(
         out[:, socket] = out[:, 0] + _bone(a, b, w, socket)
         out[:, toe] = feet[:, toe]
         out[:, ankle] = out[:, toe] - _bone(a, b, w, toe)
-        out[:, ankle] = _reached(out[:, socket], out[:, ankle])
-        bend = [p[:, knee] - (p[:, socket] + p[:, ankle]) / 2 for p in (a, b)]
-        toward = [one / np.linalg.norm(one, axis=-1, keepdims=True) for one in bend]
+        _check_reach(out[:, socket], out[:, ankle])
+        toward = [unit(p[:, knee] - (p[:, socket] + p[:, ankle]) / 2) for p in (a, b)]
         out[:, knee] = bend_knee(
             out[:, socket], out[:, ankle], toward[0] + w * (toward[1] - toward[0])
         )
@@ -47,13 +47,21 @@ def crossfade(
 def _bone(a, b, w, joint: int) -> Float[np.ndarray, "T 3"]:
     """A bone from its parent, in the mixed direction."""
     first, second = (p[:, joint] - p[:, PARENTS[joint]] for p in (a, b))
-    mixed = first + w * (second - first)
-    return mixed * (LENGTH[joint] / np.linalg.norm(mixed, axis=-1, keepdims=True))
+    return mixed_bone(first, second, w, LENGTH[joint])
 
 
-def _reached(socket, ankle) -> Float[np.ndarray, "T 3"]:
-    """The ankle itself; raises ValueError where no leg reaches it."""
+def mixed_bone(
+    first: Float[np.ndarray, "T 3"],
+    second: Float[np.ndarray, "T 3"],
+    share: Float[np.ndarray, "T 1"],
+    length: float,
+) -> Float[np.ndarray, "T 3"]:
+    """A bone of this length in the mixed direction of two, `share` of the second."""
+    return length * unit(first + share * (second - first))
+
+
+def _check_reach(socket: Float[np.ndarray, "T 3"], ankle: Float[np.ndarray, "T 3"]) -> None:
+    """Raise ValueError where no leg reaches the ankle."""
     far = np.linalg.norm(ankle - socket, axis=-1).max()
     if far > REACH + 0.005:
         raise ValueError(f"a leg of {REACH:.3f} m does not reach its foot, {far:.3f} m away")
-    return ankle

@@ -8,6 +8,7 @@ from jaxtyping import Bool, Float
 from motiondiff_edu.motion.root_frame import FPS
 
 from ..dancing.curves import least_jerk
+from ..walking.footsteps import TOE_AHEAD
 from . import arms, spot, way
 from .acts import FACTORS, UNEVEN, VERBS, Act, Phrase, Sentence
 from .join import crossfade
@@ -16,6 +17,7 @@ from .way import Piece, Standing
 JOIN = 0.4  # seconds of a join
 STOPPING = {"run": 2.4, "walk": 1.6}  # seconds that an act on the way needs to come to rest
 OTHERS_STOP = 1.4
+STAND = Act("stand")
 TRIES = 8  # each with more time for the stops
 
 
@@ -50,14 +52,17 @@ class Slot:
     phrase: Phrase
     seconds: float
     period: float  # of the legs' act on the spot, or of the arms' act
-    legs: Act
+
+    @property
+    def legs(self) -> Act:
+        """What the legs do; if nothing is said of them, they stand."""
+        return self.phrase.legs or STAND
 
     @property
     def kind(self) -> str:
         return VERBS[self.legs.verb].kind
 
 
-STAND = Act("stand")
 Start = tuple[float, float, float]  # x, z (metres) and heading (radians) of a figure on its way
 
 
@@ -93,16 +98,17 @@ def _performed(sentence: Sentence, seconds: float, late: float, seed: int) -> tu
         room = frames - at if k == len(blocks) - 1 else None
         if block[0].kind == "way":
             piece, cut, inner = _on_the_way(block, state, style, rng, room, seed + 101 * k)
-            state = way.standing_at(piece, cut - 1 if room is not None else cut)
+            if room is None:
+                state = way.standing_at(piece, cut)
         else:
             standing = state if isinstance(state, Standing) else _first_stand(style, rng)
             piece, cut, inner, state = _on_the_spot(block, standing, room, seed)
         spans += [Span(at / FPS + first, at / FPS + end, act) for first, end, act in inner]
         made = piece if made is None else _joined(made, piece, at, block[0].kind == "way")
         at += cut
-    over = max((s.last for s in spans if VERBS[s.act.verb].kind == "spot"), default=0.0) - seconds
     timed = _arms(slots, spans, rng)
-    over = max([over, *(one.last - seconds for one in timed)])
+    ends = [span.last for span in spans if VERBS[span.act.verb].kind == "spot"]
+    over = max([0.0, *ends, *(one.last for one in timed)]) - seconds
     positions = arms.laid_over(made.positions[:frames], timed, seed)
     spans += [Span(one.first, one.last, one.act) for one in timed]
     spans.sort(key=lambda span: span.first)
@@ -138,7 +144,7 @@ def scheduled(
         )
     elastic = [k for k, s in enumerate(slots) if s.kind == "way" and s.legs.verb != "turn"]
     if not elastic:
-        before = Slot(Phrase(STAND), float(left * rng.uniform(0.05, 0.6)), 0.0, STAND)
+        before = Slot(Phrase(STAND), float(left * rng.uniform(0.05, 0.6)), 0.0)
         return [before, *slots] if before.seconds > 0.3 else slots
     shares = rng.dirichlet(np.full(len(elastic), 3.0))
     for k, share in zip(elastic, shares, strict=True):
@@ -149,17 +155,17 @@ def scheduled(
 def _slot(phrase: Phrase, rng: np.random.Generator) -> Slot:
     """The least duration of a phrase, and the period of its acts."""
     legs = phrase.legs or STAND
-    period, need = 0.0, VERBS[legs.verb].period
-    if legs.verb == "turn":
-        need = way.turning_seconds(legs)
     if VERBS[legs.verb].kind == "spot":
         period = period_of(legs, rng)
         need = legs.count * period
+    else:
+        period = 0.0
+        need = way.least_seconds(legs)
     if phrase.arms is not None:
         own = period_of(phrase.arms, rng)
         need = max(need, phrase.arms.count * own + arms.FADE)
         period = period or own
-    return Slot(phrase, need, period, legs)
+    return Slot(phrase, need, period)
 
 
 def period_of(act: Act, rng: np.random.Generator) -> float:
@@ -182,7 +188,7 @@ def _first_stand(style, rng: np.random.Generator) -> Standing:
     """Where the feet stand at first: the toes."""
     out = np.radians(style.toe_out)
     half = float(rng.uniform(0.075, 0.11))
-    return Standing(((half, 0.115, out), (-half, 0.115, -out)))
+    return Standing(((half, TOE_AHEAD, out), (-half, TOE_AHEAD, -out)))
 
 
 def _on_the_way(block: list[Slot], state, style, rng, room: int | None, seed: int):
@@ -245,7 +251,7 @@ def _arms(slots: list[Slot], spans: list[Span], rng) -> list[arms.TimedArms]:
         act = slot.phrase.arms
         if act is None:
             continue
-        own = slot.period if VERBS[slot.legs.verb].kind == "way" else period_of(act, rng)
+        own = slot.period if slot.kind == "way" else period_of(act, rng)
         spare = max(0.0, clock - first - act.count * own - arms.FADE)
         begins = first + 0.5 * arms.FADE + spare * float(rng.uniform(0.1, 0.8))
         ends = begins + act.count * own

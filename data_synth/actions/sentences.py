@@ -12,7 +12,7 @@ import numpy as np
 from .acts import FACTORS as SPEED
 from .acts import PHRASES, UNEVEN, VERBS, Act, Phrase, Sentence
 from .performance import JOIN, stops
-from .way import turning_seconds
+from .way import least_seconds
 
 LEAST, LONGEST = 2.0, 10.0  # seconds of a clip
 MARGIN = 0.8  # seconds left over in every clip
@@ -33,9 +33,7 @@ def draw(rng: np.random.Generator, seconds: float | None = None) -> tuple[Senten
     while True:
         n = int(rng.choice(PHRASES + 1, p=SEVERAL))
         form = tuple(_phrase(rng) for _ in range(n))
-        if any(a.legs == b.legs and a.arms == b.arms for a, b in zip(form, form[1:], strict=False)):
-            continue
-        if any(_same_legs(a, b) for a, b in zip(form, form[1:], strict=False)):
+        if any(a == b or _same_legs(a, b) for a, b in zip(form, form[1:], strict=False)):
             continue
         need = max(LEAST, room(form))
         if need > (LONGEST if seconds is None else seconds):
@@ -58,9 +56,11 @@ def _longest(phrase: Phrase) -> float:
     found = []
     for act in phrase.acts:
         verb = VERBS[act.verb]
-        slow = 1.0 if verb.kind == "way" else SPEED[act.speed] * (1 + UNEVEN)
-        least = turning_seconds(act) if act.verb == "turn" else verb.period
-        found.append(act.count * slow * least + (JOIN if verb.kind == "arms" else 0.0))
+        if verb.kind == "way":
+            found.append(least_seconds(act))
+        else:
+            slowest = act.count * SPEED[act.speed] * (1 + UNEVEN) * verb.period
+            found.append(slowest + (JOIN if verb.kind == "arms" else 0.0))
     return max(found)
 
 
@@ -139,10 +139,9 @@ def held_out() -> frozenset[Pair]:
     every, found = all_pairs(), set()
     for kind in ("side", "speed", "direction", "while", "then"):
         own = [pair for pair in every if pair[0] == kind]
-        rng.shuffle(order := np.arange(len(own)))
         wanted = int(np.ceil(HELD_OUT * len(own)))
         taken: list[Pair] = []
-        for pair in (own[k] for k in order):
+        for pair in (own[k] for k in rng.permutation(len(own))):
             if len(taken) == wanted:
                 break
             if kind in ("side", "speed", "direction") and any(pair[1] == t[1] for t in taken):

@@ -82,7 +82,7 @@ def jump(p: Sheet, at: float, period: float, act: Act) -> None:
     p.arms(off + 0.16, (105.0, 14.0, 8.0, 26.0))
     p.arms(land + 0.12, (35.0, 16.0, 12.0, 34.0))
     if ahead:
-        p.go(land, z=ahead / max(p.stride, 1e-6), during=flight)
+        p.go(land, z=ahead, during=flight)
         places = [(x, 0.0) for x, _ in places]
     p.jump(land + 0.07, *places, height=height, swing=flight)
     p.key("drop", (land + 0.16, 0.14), (max(at + 0.97 * period, land + 0.3), 0.015))
@@ -176,8 +176,8 @@ def acted(
     script.keys["heading"].append((-2.0, script.home[2]))
     rng = np.random.default_rng([seed, 7])
     for one in timed:
-        n = max(1, int(np.ceil(one.last)))
-        sheet = Sheet(script, Counts(0.0, n, 1.0, 4), False, 1.0, 1.0, rest, rng)
+        counts = Counts(0.0, int(np.ceil(one.last)), 1.0, 4)
+        sheet = Sheet(script, counts, False, 1.0, 1.0, rest, rng)
         for k in range(one.act.count):
             WRITERS[one.act.verb](sheet, one.first + k * one.period, one.period, one.act)
         sheet.key("weight", (one.last, 0.0))

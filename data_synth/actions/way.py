@@ -10,13 +10,15 @@ from jaxtyping import Bool, Float
 from scipy.ndimage import gaussian_filter1d
 
 from motiondiff_edu.motion.root_frame import FPS, root_path, to_world
+from motiondiff_edu.motion.skeleton import HEELS, TOES
 
+from ..dancing.performance import Toe
 from ..noise import white
 from ..walking.body import body
 from ..walking.footsteps import TOE_AHEAD, Place
-from ..walking.styles import STYLES, Style, draw_style, person
+from ..walking.styles import STYLES, Style, person
 from ..walking.walks import WARM_UP
-from .acts import Act
+from .acts import VERBS, Act
 
 SPEEDS = {  # m/s: ahead or, for "aside", to a side
     "walk": {"slowly": 0.65, "": 1.15, "quickly": 1.75},
@@ -24,13 +26,12 @@ SPEEDS = {  # m/s: ahead or, for "aside", to a side
     "back": {"slowly": -0.25, "": -0.48},
     "aside": {"slowly": 0.28, "": 0.5},
 }
+SHARES = {"neutral": 0.5, "brisk": 0.2, "tired": 0.12, "old": 0.08, "strut": 0.1}  # of styles
 TURNS = {"": 90.0, "around": 180.0}  # degrees
 TURNING = 1.75  # rad/s
 RISE = (2.6, 1.6, 6.0)  # m/s^2 ahead and aside, rad/s^2
 SMOOTH = 0.12  # seconds
 TAIL = 4.5  # seconds without control, within which a walk comes to rest
-
-Toe = tuple[float, float, float]
 
 
 @dataclass(frozen=True, eq=False)
@@ -65,12 +66,7 @@ class Standing:
 
 def walker_of(rng: np.random.Generator) -> Style:
     """A person who does nothing with arms and head but walk."""
-    name = draw_style(
-        str(
-            rng.choice(["neutral", "brisk", "tired", "old", "strut"], p=[0.5, 0.2, 0.12, 0.08, 0.1])
-        ),
-        rng,
-    )
+    name = str(rng.choice(list(SHARES), p=list(SHARES.values())))
     return replace(person(STYLES[name], rng), behaviours=0.0)
 
 
@@ -85,9 +81,11 @@ def target(act: Act, uneven: float) -> tuple[float, float, float]:
     return (0.0, sign * speed, 0.0) if act.verb == "aside" else (speed, 0.0, 0.0)
 
 
-def turning_seconds(act: Act) -> float:
-    """How long the target of a turn lasts."""
-    return float(np.radians(TURNS[act.direction]) / TURNING)
+def least_seconds(act: Act) -> float:
+    """How long an act on the way lasts at least; a turn needs the time of its angle."""
+    if act.verb == "turn":
+        return float(np.radians(TURNS[act.direction]) / TURNING)
+    return VERBS[act.verb].period
 
 
 def control_of(
@@ -146,7 +144,7 @@ def settled(piece: Piece, least: int, frames: int) -> int:
 def standing_at(piece: Piece, t: int) -> Standing:
     """Where the feet stand at frame t: from ankle and toe joints."""
     toes = []
-    for ankle, toe in ((3, 4), (7, 8)):
+    for ankle, toe in zip(HEELS, TOES, strict=True):
         ahead = piece.positions[t, toe] - piece.positions[t, ankle]
         x, _, z = piece.positions[t, toe]
         toes.append((float(x), float(z), float(np.arctan2(ahead[0], ahead[2]))))

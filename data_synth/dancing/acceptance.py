@@ -12,12 +12,11 @@ import argparse
 import numpy as np
 
 from motiondiff_edu.metrics.beats import beat_alignment
-from motiondiff_edu.motion.skeleton import BONE_LENGTHS, BONES, TOES
 
 from ..music.score import beat_song
 from ..music.song import GENRES, Song
 from ..walking.acceptance import show, table
-from ..walking.own_measures import knee_angles
+from ..walking.own_measures import bone_error, knee_angles, planted_slip
 from .performance import Dance, dance
 from .statistics import kinematic_beats, repeats, statistics
 
@@ -100,11 +99,9 @@ def limits(danced: list[Dance]) -> dict[str, float]:
     hands = 0.0
     for d in danced:
         p = d.positions
-        still = d.contacts[1:] & d.contacts[:-1]
-        slip = max(slip, float(np.linalg.norm(np.diff(p[:, TOES], axis=0), axis=-1)[still].max()))
+        slip = max(slip, planted_slip(p, d.contacts))
         low = min(low, float(p[..., 1].min()))
-        lengths = np.linalg.norm(p[:, [b for _, b in BONES]] - p[:, [a for a, _ in BONES]], axis=-1)
-        bones = max(bones, float(np.abs(lengths - BONE_LENGTHS).max()))
+        bones = max(bones, bone_error(p))
         bend = knee_angles(p)
         knees += [bend.min(), bend.max()]
         hands = max(hands, float(np.linalg.norm(np.diff(p, axis=0), axis=-1).max() * d.fps))

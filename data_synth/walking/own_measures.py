@@ -7,7 +7,7 @@ Every number of a network that was trained on these data is compared with them.
 import time
 
 import numpy as np
-from jaxtyping import Float
+from jaxtyping import Bool, Float
 
 from motiondiff_edu.metrics.adherence import adherence
 from motiondiff_edu.metrics.bone_lengths import bone_lengths
@@ -65,8 +65,8 @@ def limits(clips: int = 600, seconds: float = 12.0, spots: int = 60) -> dict[str
     controls = np.concatenate([c.control for c in walks])
     out |= {"knee_smallest_deg": knees.min(), "knee_largest_deg": knees.max()}
     out["lowest_joint_mm"] = 1e3 * min(c.poses[..., 1].min() for c in walks)
-    out["planted_toe_mm_a_frame"] = 1e3 * max(planted_slip(c) for c in walks)
-    out["bone_error_m"] = max(bone_error(c) for c in walks)
+    out["planted_toe_mm_a_frame"] = 1e3 * max(planted_slip(c.world(), c.contacts) for c in walks)
+    out["bone_error_m"] = max(bone_error(c.poses) for c in walks)
     out |= {"ahead_slowest_mps": controls[:, 0].min(), "ahead_fastest_mps": controls[:, 0].max()}
     out["aside_mps"] = np.abs(controls[:, 1]).max()
     out["turning_dps"] = np.degrees(np.abs(controls[:, 2]).max())
@@ -86,15 +86,15 @@ def knee_angles(positions: Float[np.ndarray, "T 21 3"]) -> Float[np.ndarray, "T 
     return np.degrees(np.arccos(np.clip(cos, -1, 1)))
 
 
-def planted_slip(clip: Clip) -> float:
+def planted_slip(world: Float[np.ndarray, "T 21 3"], contacts: Bool[np.ndarray, "T 2"]) -> float:
     """The largest movement of a planted toe in one frame (m)."""
-    moved = np.linalg.norm(np.diff(clip.world()[:, TOES], axis=0), axis=-1)
-    return float((moved * (clip.contacts[1:] & clip.contacts[:-1])).max())
+    moved = np.linalg.norm(np.diff(world[:, TOES], axis=0), axis=-1)
+    return float((moved * (contacts[1:] & contacts[:-1])).max())
 
 
-def bone_error(clip: Clip) -> float:
+def bone_error(positions: Float[np.ndarray, "T 21 3"]) -> float:
     """The largest difference of a bone from its length (m)."""
-    return float(np.abs(bone_lengths(clip.poses) - BONE_LENGTHS).max())
+    return float(np.abs(bone_lengths(positions) - BONE_LENGTHS).max())
 
 
 def feet_apart(clip: Clip) -> Float[np.ndarray, "T"]:
