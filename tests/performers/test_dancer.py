@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import torch
+from devices import devices_of
 from synthetic_dance import windows
 
 from motiondiff_edu import ddpm
@@ -256,11 +257,8 @@ def test_a_dancer_moved_is_a_copy_that_dances_alike():
 
 
 def places(one: Dancer) -> set[str]:
-    """The devices of all weights, buffers and scalers."""
-    scalers = one.motion_scaler, one.mel_scaler
-    units = [x for scaler in scalers for x in (scaler.mean, scaler.std)]
-    tensors = [*one.model.parameters(), *one.model.buffers(), *units]
-    return {tensor.device.type for tensor in tensors}
+    """The devices of all that a performer needs."""
+    return devices_of(one.model, one.motion_scaler, one.mel_scaler)
 
 
 @pytest.mark.parametrize("config", [UNET, PLAIN])

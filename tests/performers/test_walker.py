@@ -7,6 +7,7 @@ import inspect
 
 import pytest
 import torch
+from devices import devices_of
 
 from motiondiff_edu.ddpm import linear_schedule, sample_steps
 from motiondiff_edu.fast.samplers import ddim_steps
@@ -139,11 +140,8 @@ def test_a_walker_moved_is_a_copy_that_walks_alike():
 
 
 def places(walker: Walker) -> set[str]:
-    """The devices of all weights, buffers and scalers."""
-    scalers = walker.pose_scaler, walker.control_scaler
-    units = [x for scaler in scalers for x in (scaler.mean, scaler.std)]
-    tensors = [*walker.model.parameters(), *walker.model.buffers(), *units]
-    return {tensor.device.type for tensor in tensors}
+    """The devices of all that a performer needs."""
+    return devices_of(walker.model, walker.pose_scaler, walker.control_scaler)
 
 
 def test_all_of_a_walker_is_moved_and_the_first_one_stays():
