@@ -24,6 +24,7 @@ Steps = Int[Tensor, "B"] | int
 X = Float[Tensor, "B *shape"]  # a batch of anything: points, poses, windows
 Table = Float[Tensor, "S_plus_1"]  # one number for each step
 Denoiser = Callable[[Tensor, Tensor], Tensor]
+Generators = torch.Generator | Sequence[torch.Generator]  # of a whole batch, or one for each row
 Record = TypeVar("Record")  # what a sampling loop yields, such as Step
 
 
@@ -143,12 +144,15 @@ def _range(s: Int[Tensor, "B"], first: int) -> tuple[int, int]:
 
 
 def draw(
-    like: Float[Tensor, "*shape"], generator: torch.Generator | None = None
+    like: Float[Tensor, "*shape"], generator: Generators | None = None
 ) -> Float[Tensor, "*shape"]:
     """Standard normal noise in the shape of `like`.
 
-    It is drawn on the generator's device, so that a seed gives the same noise on every device.
+    It is drawn on the generator's device, so that a seed gives the same noise on every device. With
+    a generator for each row of a batch, a row does not depend on the size of the batch.
     """
+    if isinstance(generator, Sequence):
+        return torch.stack([draw(row, one) for row, one in zip(like, generator, strict=True)])
     device = generator.device if generator else like.device
     return torch.randn(like.shape, generator=generator, dtype=like.dtype, device=device).to(
         like.device
@@ -238,7 +242,7 @@ def sample_steps(
     start: Tensor | tuple[int, ...],
     schedule: Schedule,
     *,
-    generator: torch.Generator | None = None,
+    generator: Generators | None = None,
     noise: Float[Tensor, "S *any"] | None = None,
     variance: str = "beta",
     clip: float | None = None,
@@ -337,7 +341,7 @@ def ddim_steps(
     steps: int | Sequence[int] = 10,
     eta: float = 0.0,
     *,
-    generator: torch.Generator | None = None,
+    generator: Generators | None = None,
     noise: Float[Tensor, "S *any"] | None = None,
     clip: float | None = None,
 ) -> Iterator[Step]:
@@ -366,12 +370,12 @@ def final(loop: Iterable[Record]) -> Record:
     return deque(loop, maxlen=1).pop()
 
 
-def starting_noise(start: Tensor | tuple[int, ...], generator: torch.Generator | None) -> Tensor:
+def starting_noise(start: Tensor | tuple[int, ...], generator: Generators | None) -> Tensor:
     """x_S itself, or noise of that shape on the generator's device."""
     if isinstance(start, Tensor):
         return start
-    home = generator.device if generator else None
-    return torch.randn(start, generator=generator, device=home)
+    first = generator[0] if isinstance(generator, Sequence) else generator
+    return draw(torch.empty(start, device=first.device if first else None), generator)
 
 
 # ---- the objective -------------------------------------------------------------------------------

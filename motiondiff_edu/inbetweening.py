@@ -20,7 +20,17 @@ import torch
 from jaxtyping import Bool, Float
 from torch import Tensor
 
-from .ddpm import Denoiser, Schedule, Step, ddim_sigma, ddim_step, draw, q_sample, timesteps
+from .ddpm import (
+    Denoiser,
+    Generators,
+    Schedule,
+    Step,
+    ddim_sigma,
+    ddim_step,
+    draw,
+    q_sample,
+    timesteps,
+)
 from .prediction import x0_from_eps
 
 X = Float[Tensor, "B *shape"]
@@ -36,7 +46,7 @@ def inpaint_steps(
     *,
     steps: int | Sequence[int] = 50,
     eta: float = 1.0,
-    generator: torch.Generator | None = None,
+    generator: Generators | None = None,
 ) -> Iterator[Step]:
     """DDIM from `start` (x_S); noised snapshots of `given` replace the known entries of each x_s.
 
@@ -85,7 +95,7 @@ def resampled(visited: Sequence[int], R: int) -> list[int]:
     return [s for leap in leaps for s in leap[:-1]] + list(visited[-1:])
 
 
-def _noised(x: X, now: int, then: int, schedule: Schedule, generator: torch.Generator | None) -> X:
+def _noised(x: X, now: int, then: int, schedule: Schedule, generator: Generators | None) -> X:
     """The forward process from step `now` to a later one; it adds the noise that a leap removed."""
     left = float(schedule.alpha_bar[then]) / float(schedule.alpha_bar[now])
     return math.sqrt(left) * x + math.sqrt(1 - left) * draw(x, generator)

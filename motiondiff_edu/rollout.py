@@ -17,7 +17,9 @@ import torch
 from jaxtyping import Float
 from torch import Tensor
 
-WindowSampler = Callable[[Tensor, Tensor, torch.Generator], Tensor]
+from .ddpm import Generators
+
+WindowSampler = Callable[[Tensor, Tensor, Generators], Tensor]
 Control = Tensor | Callable[[int], Tensor]
 COLUMNS = ("forward speed", "speed to the left", "turning rate")  # m/s, m/s, rad/s
 
@@ -76,7 +78,7 @@ def rollout_steps(
     frames: int,
     T_p: int,
     *,
-    generator: torch.Generator,
+    generator: Generators,
     keep: int = 1,
     hold: bool = True,
 ) -> Iterator[Frame]:
@@ -108,7 +110,7 @@ def generate(
     control: Float[Any, "*B T C"],
     *,
     seed: int = 0,
-    generator: torch.Generator | None = None,
+    generator: Generators | None = None,
     steps: int | None = None,
     keep: int = 1,
     hold: bool = True,

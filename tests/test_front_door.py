@@ -30,6 +30,8 @@ HEAVY = (
     "PIL",
     "tqdm",
 )
+CONTROL = np.tile([1.2, 0.0, 0.0], (20, 1))
+SOUND = compose(3, "house", seconds=2.0).audio
 ARM = ("RightArm", "RightForeArm", "RightHand", "RightHandIndex1")
 
 
@@ -240,6 +242,41 @@ def test_in_betweens_that_jump_are_made_again_without_guidance(better, said, wal
     with pytest.warns(MotionWarning, match=f"between frames 20 and 40, where 1.* m/s.*{said}"):
         made = md.inbetween(walked, md.keyframes(walked), progress=False)
     assert np.array_equal(made.positions, walked.positions) == better
+
+
+@pytest.mark.parametrize(
+    "make",
+    [
+        lambda motion, n: md.load("walker").walk(motion, CONTROL, samples=n, progress=False),
+        lambda motion, n: md.load("dancer").dance(SOUND, samples=n, steps=3, progress=False),
+        lambda motion, n: md.inbetween(
+            motion, md.keyframes(motion), samples=n, steps=3, progress=False
+        ),
+        lambda motion, n: md.reconstruct(
+            motion, motion.all_but(["LeftHand"], 20, 25), samples=n, progress=False
+        ),
+    ],
+    ids=["walk", "dance", "inbetween", "reconstruct"],
+)
+def test_the_first_of_several_samples_is_the_sample_alone(make, walked):
+    alone, (first, second) = make(walked, 1), make(walked, 2)
+    assert np.abs(first.positions - alone.positions).max() < 1e-4
+    assert np.abs(second.positions - alone.positions).max() > 1e-2
+
+
+def test_another_song_gets_another_dance_although_the_seed_is_the_same():
+    """About as different as with another seed; with the same noise it was half of that."""
+    songs = [compose(k, genre, seconds=5.0).audio for k, genre in enumerate(("house", "latin"))]
+    options = {"steps": 10, "progress": False}
+    ours = [md.load("dancer").dance(songs[0], seed=seed, **options).positions for seed in range(4)]
+    others = [md.load("dancer").dance(songs[1], seed=seed, **options).positions for seed in (0, 1)]
+
+    def apart(a, b):
+        return np.linalg.norm((a - a[:, :1]) - (b - b[:, :1]), axis=-1).mean()
+
+    by_seed = np.mean([apart(ours[0], ours[1]), apart(ours[2], ours[3])])
+    by_song = np.mean([apart(ours[0], others[0]), apart(ours[1], others[1])])
+    assert by_song > 0.7 * by_seed, (by_song, by_seed)
 
 
 def test_an_npz_without_a_frame_rate_or_in_centimetres_is_noted(walked, tmp_path):

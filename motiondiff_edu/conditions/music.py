@@ -51,6 +51,14 @@ def mel_to_hz(mel: Float[Tensor, "*n"]) -> Float[Tensor, "*n"]:
     return torch.where(mel < 15, 200 * mel / 3, 1000 * ((mel - 15) * (np.log(6.4) / 27)).exp())
 
 
+def fingerprint(mel: Float[Tensor, "M C"]) -> list[int]:
+    """The mean of each band in tenths: whole numbers that differ from song to song.
+
+    They hardly depend on how a file was decoded, as a hash of the samples would.
+    """
+    return (10 * mel.mean(0)).round().abs().long().tolist()
+
+
 def mel_filters(
     sample_rate: int = SAMPLE_RATE,
     n_fft: int = N_FFT,

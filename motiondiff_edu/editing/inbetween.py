@@ -15,7 +15,7 @@ from torch import Tensor
 from ..beyond.constant_bones import given_lengths, steady_bones
 from ..beyond.foot_lock import steady_feet
 from ..beyond.guidance import blended, guided
-from ..ddpm import Denoiser, Schedule, draw, final, timesteps
+from ..ddpm import Denoiser, Generators, Schedule, draw, final, timesteps
 from ..inbetweening import inpaint_steps, resampled
 from ..motion.dance_frame import GROUND, Place, heading, placed_features, to_positions
 from ..motion.directions import ARMS, UPLEGS
@@ -70,7 +70,7 @@ def inbetween(
     samples: int = 1,
     steps: int = 50,
     departures: Departures = OURS,
-    generator: torch.Generator | None = None,
+    generator: Generators | None = None,
 ) -> Float[np.ndarray, "samples T 21 3"]:
     """Generate what is not known of a motion (metres, 20 frames/s), `samples` times.
 

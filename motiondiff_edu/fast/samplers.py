@@ -12,7 +12,16 @@ import torch
 from jaxtyping import Float
 from torch import Tensor
 
-from ..ddpm import Denoiser, Schedule, ddim_sigma, draw, falling, p_variance, starting_noise
+from ..ddpm import (
+    Denoiser,
+    Generators,
+    Schedule,
+    ddim_sigma,
+    draw,
+    falling,
+    p_variance,
+    starting_noise,
+)
 
 
 class FastStep:
@@ -46,7 +55,7 @@ def ddpm_steps(
     start: Tensor | tuple[int, ...],
     schedule: Schedule,
     *,
-    generator: torch.Generator | None = None,
+    generator: Generators | None = None,
     noise: Float[Tensor, "S *any"] | None = None,
     variance: str = "beta",
     clip: float | None = None,
@@ -72,7 +81,7 @@ def ddim_steps(
     steps: int | Sequence[int] = 10,
     eta: float = 0.0,
     *,
-    generator: torch.Generator | None = None,
+    generator: Generators | None = None,
     noise: Float[Tensor, "S *any"] | None = None,
     clip: float | None = None,
 ) -> Iterator[FastStep]:
@@ -95,7 +104,7 @@ def _walk(
     start: Tensor | tuple[int, ...],
     alpha_bar: list[float],
     plan: list[tuple],
-    generator: torch.Generator | None,
+    generator: Generators | None,
     noise: Tensor | None,
     clip: float | None,
 ) -> Iterator[FastStep]:

@@ -4,6 +4,7 @@ Source: MoFusion 3, 4.1.  Notebook: 00, 12
 """
 
 import copy
+import warnings
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -14,20 +15,20 @@ from torch import Tensor, nn
 
 from ..beyond.guidance import with_guess
 from ..conditions.audio_files import samples_of
-from ..conditions.music import FRAMES_PER_SECOND, SAMPLE_RATE, frame_times, log_mel
-from ..ddpm import Denoiser, Schedule, draw, final
+from ..conditions.music import FRAMES_PER_SECOND, SAMPLE_RATE, fingerprint, frame_times, log_mel
+from ..ddpm import Denoiser, Generators, Schedule, draw, final
 from ..fast.mofusion import FastMoFusion
 from ..fast.samplers import ddim_steps, ddpm_steps
 from ..fast.twins import watched
 from ..mofusion import MoFusion, MoFusionConfig
-from ..motion.checks import checked_count, checked_seconds, checked_seed, checked_steps
+from ..motion.checks import checked_count, checked_seconds, checked_steps
 from ..motion.dance_frame import to_positions
 from ..motion.motion import Motion
 from ..motion.scaler import Scaler
 from ..prediction import denoiser_of
 from .dance_windows import FPS, mel_frames
 from .networks import register
-from .performer import Performer
+from .performer import Performer, generators
 from .with_bar import with_bar
 
 STEPS, ETA = 50, 0.5  # defaults of DDIM
@@ -115,24 +116,31 @@ class Dancer(Performer):
         The returned motion contains the sound.
 
         seconds  use so much of the sound from its start (default: all of it)
-        samples  above 1: a list with this many different dances
+        samples  above 1: a list with this many dances; the first is that of samples=1
+        seed     chooses the dance together with the sound: other music gets other moves. To dance
+                 with the same noise to two songs, pass `start` to `dance_mel`
         steps    of DDIM, or None for DDPM with all steps
         Raises AudioError for unusable sound (`conditions.audio_files`), ValueError for `seconds` or
-        `samples` out of range.  Source: MoFusion 3.  Notebook: 00, 12
+        `samples` out of range. Warns where the sound is shorter than `seconds`.
+        Source: MoFusion 3.  Notebook: 00, 12
         """
         count, steps = checked_count(samples, "samples"), checked_steps(steps)
         longest = None if seconds is None else round(checked_seconds(seconds) * SAMPLE_RATE)
         audio = samples_of(sound)[:longest]
-        frames = int(len(audio) / SAMPLE_RATE * FPS)
+        name = Path(sound).stem if isinstance(sound, (str, Path)) else "the sound given"
+        lasts = len(audio) / SAMPLE_RATE
+        frames = int(lasts * FPS)
         if not frames:
-            raise ValueError(f"{len(audio) / SAMPLE_RATE:.3f} s of sound are less than a frame")
-        mel = log_mel(audio)[None].expand(count, -1, -1)
-        generator = torch.Generator().manual_seed(checked_seed(seed))
+            raise ValueError(f"{lasts:.3f} s of sound are less than a frame")
+        if seconds is not None and lasts < seconds - 1 / FPS:
+            warnings.warn(f"{name} lasts {lasts:.1f} s, and the dance ends with it", stacklevel=2)
+        mel = log_mel(audio)
+        draws = generators(seed, count, *fingerprint(mel))
         evaluations = min(steps or self.schedule.S, self.schedule.S)
         with with_bar(self, evaluations, "dancing", progress) as one:
-            dances = one.dance_mel(mel, frames, generator=generator, steps=steps)
+            songs = mel.expand(count, -1, -1)
+            dances = one.dance_mel(songs, frames, generator=draws, steps=steps)
         dances = dances.double().cpu().numpy()
-        name = Path(sound).stem if isinstance(sound, (str, Path)) else "the sound given"
         made = [
             Motion(
                 dance,
@@ -151,7 +159,7 @@ class Dancer(Performer):
         mel: Float[Tensor, "B M C"],
         frames: int | None = None,
         *,
-        generator: torch.Generator | None = None,
+        generator: Generators | None = None,
         steps: int | None = STEPS,
         eta: float = ETA,
         start: Float[Tensor, "B T D"] | None = None,

@@ -2,11 +2,27 @@
 
 from functools import cached_property
 
+import numpy as np
+import torch
 from torch import Tensor, nn
 
 from ..ddpm import Schedule
 from ..fast.twins import Twin
+from ..motion.checks import checked_seed
 from .networks import Config, kind_of
+
+
+def generators(seed: int, count: int, *also: int) -> list[torch.Generator]:
+    """A generator for each of `count` samples. The first ones are those of a smaller count.
+
+    `also`: whole numbers of 0 or more that are mixed into the seed.
+    Raises ValueError for a seed that torch does not take.
+    """
+    seed = checked_seed(seed)
+    if also:
+        seed = int(np.random.SeedSequence([seed, *also]).generate_state(1, np.uint64)[0])
+    further = np.random.SeedSequence(seed).generate_state(count, np.uint64)[1:]
+    return [torch.Generator().manual_seed(one) for one in (seed, *further.tolist())]
 
 
 class Performer:

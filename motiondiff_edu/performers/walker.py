@@ -15,13 +15,13 @@ from torch import Tensor, nn
 from .. import rollout
 from ..beyond.footholds import FootholdConfig, FootholdMoDiff
 from ..conditions.control import as_long, splice
-from ..ddpm import Denoiser, Schedule, draw, final
+from ..ddpm import Denoiser, Generators, Schedule, draw, final
 from ..fast.footholds import FastFoothold
 from ..fast.modiff import FastMoDiff
 from ..fast.samplers import ddim_steps, ddpm_steps
 from ..fast.twins import watched
 from ..modiff import MoDiff, MoDiffConfig
-from ..motion.checks import checked_count, checked_seconds, checked_seed, checked_steps
+from ..motion.checks import checked_count, checked_seconds, checked_steps
 from ..motion.motion import Motion, MotionError, as_motion
 from ..motion.root_frame import FPS, root_path, to_world
 from ..motion.scaler import Scaler
@@ -29,7 +29,7 @@ from ..motion.skeleton import J
 from ..prediction import denoiser_of
 from ..rollout import WindowSampler
 from .networks import register
-from .performer import Performer
+from .performer import Performer, generators
 from .with_bar import with_bar
 
 STEPS = 10  # default of DDIM: as good as DDPM with all steps, and ten times as fast (RESULTS)
@@ -77,7 +77,7 @@ class Walker(Performer):
 
         control  forward m/s, left m/s, turning rad/s; 20 rows a second
         seconds  cut the control to this length, or hold its last row (default: keep its length)
-        samples  above 1: a list with this many different continuations
+        samples  above 1: a list with this many continuations; the first is that of samples=1
         steps    of DDIM, or None for DDPM with all steps
         Raises MotionError for a motion that cannot be continued, ValueError for numbers out of
         range. Warns where the control goes beyond the training data.
@@ -98,9 +98,9 @@ class Walker(Performer):
         rows = splice(clip.control, ahead, T_h)
         past = torch.from_numpy(clip.features()[-T_h:]).expand(count, -1, -1)
         steer = torch.from_numpy(rows).float().expand(count, -1, -1)
-        evaluations = len(ahead) * (steps or self.schedule.S)
+        evaluations, draws = len(ahead) * (steps or self.schedule.S), generators(seed, count)
         with with_bar(self, evaluations, "walking", progress) as walker:
-            new = rollout.generate(walker, past, steer, seed=checked_seed(seed), steps=steps)
+            new = rollout.generate(walker, past, steer, generator=draws, steps=steps)
         poses = new.double().cpu().numpy().reshape(count, -1, J, 3)
         place, heading = root_path(rows, tuple(given.root[-T_h]))
         path = np.column_stack([place, heading])
@@ -137,7 +137,7 @@ class Walker(Performer):
         """
 
         @torch.inference_mode()
-        def sample(past: Tensor, control: Tensor, generator: torch.Generator) -> Tensor:
+        def sample(past: Tensor, control: Tensor, generator: Generators) -> Tensor:
             denoise = self.denoiser(past, control)
             x_S = draw(past.new_empty(len(past), self.config.T_p, self.config.D), generator)
             if steps is None:

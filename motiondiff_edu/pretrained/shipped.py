@@ -9,27 +9,25 @@ from functools import lru_cache
 from pathlib import Path
 
 import numpy as np
-import torch
 from jaxtyping import Bool, Float
 
 from ..editing import inbetween as inbetweens
 from ..editing import reconstruct as reconstruction
 from ..editing.inbetween import OURS, Departures
 from ..editing.masks import checked_known
-from ..editing.plausible import wilder_than_given
-from ..motion.checks import checked_count, checked_seed
+from ..editing.plausible import plausible
+from ..motion.checks import checked_count
 from ..motion.motion import Motion, MotionError, as_motion
 from ..motion.normalise import MotionWarning
 from ..motion.root_frame import FPS
 from ..motion.skeleton import HIPS, TOES
 from ..performers.dancer import Dancer
+from ..performers.performer import generators
 from ..performers.walker import Walker
 from ..performers.with_bar import with_bar
 from . import checkpoints
 
 STEPS = 50  # of DDIM, for in-betweens by default
-AGAIN = "So it was generated again without guidance, with blending only. Check the result"
-STILL = "Without guidance it is no better: give more keyframes, or draw straight lines between them"
 
 
 def load(name: str | Path) -> Walker | Dancer:
@@ -58,7 +56,9 @@ def inbetween(
     known too. With `samples` above 1, the result is a list with this many motions.
     On a motion unlike those of the training, guidance can fail, and the figure jumps. If a result
     moves much faster than the given frames require, it is generated again with blending only
-    (notebook 15), and a MotionWarning says so.
+    (notebook 15), and a MotionWarning says so. A result whose feet glide is drawn again, up to
+    three times; a MotionWarning says if it did not help. The samples of a smaller number are the
+    first ones of a larger number.
     Raises MotionError or ValueError if motion, mask or numbers do not fit.
     Source: MoFusion 4.4.  Notebook: 15
     """
@@ -67,25 +67,23 @@ def inbetween(
     if known.all():
         raise MotionError(f"{motion.name}: every joint is known, so there is nothing to generate")
 
-    def generate(departures: Departures) -> Float[np.ndarray, "samples T 21 3"]:
-        draw = torch.Generator().manual_seed(checked_seed(seed))
+    def generate(draws: list, departures: Departures) -> Float[np.ndarray, "samples T 21 3"]:
         with with_bar(_shipped("unconditional"), steps, "filling in", progress) as dancer:
             return inbetweens.inbetween(
-                dancer, motion.positions, known, samples=count, steps=steps, generator=draw,
+                dancer, motion.positions, known, samples=len(draws), steps=steps, generator=draws,
                 departures=departures,
             )  # fmt: skip
 
-    made = generate(OURS)
-    words = wilder_than_given(made, motion.positions, known)
-    if words:
-        made = generate(replace(OURS, guidance=0.0))
-        still = wilder_than_given(made, motion.positions, known)
-        warnings.warn(
-            f"{motion.name}: {still or words}. {STILL if still else AGAIN}",
-            MotionWarning,
-            stacklevel=2,
+    draws, made, notes = generators(seed, count), [], []
+    for draw, first in zip(draws, generate(draws, OURS), strict=True):
+        positions, note = plausible(
+            first, motion.positions, known, lambda how, draw=draw: generate([draw], how)[0]
         )
-    made = [_made(motion, known, positions, "in-betweens") for positions in made]
+        made.append(_made(motion, known, positions, "in-betweens"))
+        notes += [note] if note else []
+    if notes:
+        which = f" ({len(notes)} of {count} samples)" if count > 1 else ""
+        warnings.warn(f"{motion.name}{which}: {notes[0]}", MotionWarning, stacklevel=2)
     return made if samples > 1 else made[0]
 
 
@@ -101,17 +99,17 @@ def reconstruct(
 
     Known joints stay exactly where they are. The pelvis must be known in every frame, because the
     control of the walk is derived from it. With `samples` above 1, the result is a list with this
-    many motions.
+    many motions; the first is that of samples=1.
     Raises MotionError if the pelvis is missing in a frame, or if motion and mask do not fit, and
     ValueError for a number of samples under 1.  Source: MoDiff III-E.
     """
     known, count = _fitting(motion, known), checked_count(samples, "samples")
-    walker, draw = _shipped("walker"), torch.Generator().manual_seed(checked_seed(seed))
+    walker, draws = _shipped("walker"), generators(seed, count)
     total = count * reconstruction.evaluations(walker, known)
     with with_bar(walker, total, "reconstructing", progress) as walker:
         made = [
             reconstruction.reconstruct(walker, motion.positions, known, generator=draw)
-            for _ in range(count)
+            for draw in draws
         ]
     made = [_made(motion, known, positions, "reconstructed") for positions in made]
     return made if samples > 1 else made[0]

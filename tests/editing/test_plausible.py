@@ -5,8 +5,9 @@ import pytest
 from gaits import rest_pose
 
 from motiondiff_edu.editing.masks import keyframes
-from motiondiff_edu.editing.plausible import wilder_than_given
-from motiondiff_edu.motion.skeleton import JOINTS
+from motiondiff_edu.editing.inbetween import OURS
+from motiondiff_edu.editing.plausible import DRAWS, longest_glide, plausible, wilder_than_given
+from motiondiff_edu.motion.skeleton import JOINTS, TOES
 
 
 def standing(frames: int = 41, speed: float = 0.0) -> np.ndarray:
@@ -22,21 +23,21 @@ KNOWN = keyframes(41, 20)
 @pytest.mark.parametrize("speed", [0.0, 1.4, 6.0])
 def test_a_motion_that_does_what_the_keyframes_ask_is_plausible(speed):
     given = standing(speed=speed)
-    assert wilder_than_given(given[None], given, KNOWN) == ""
+    assert wilder_than_given(given, given, KNOWN) == ""
 
 
 def test_a_pelvis_that_leaves_the_way_is_told_with_its_gap():
     given = standing(speed=1.0)
-    made = np.stack([given, given])
-    made[1, 25:30, :, 0] += 1.5  # there and back: 1.5 m in a frame
+    made = given.copy()
+    made[25:30, :, 0] += 1.5  # there and back: 1.5 m in a frame
     words = wilder_than_given(made, given, KNOWN)
-    assert "30.0 m/s between frames 20 and 40, where 1.0 m/s would do (1 such gaps)" in words
+    assert "30.0 m/s between frames 20 and 40, where 1.0 m/s would do. The network" in words
 
 
 def test_a_hand_faster_than_any_actors_is_told():
     given = standing()
-    made = given[None].copy()
-    made[0, 10, JOINTS.index("LeftHand"), 1] += 2.0
+    made = given.copy()
+    made[10, JOINTS.index("LeftHand"), 1] += 2.0
     assert "40 m/s near frame" in wilder_than_given(made, given, KNOWN)
 
 
@@ -44,7 +45,7 @@ def test_a_given_joint_may_be_as_fast_as_it_is():
     given = standing()
     given[20, JOINTS.index("LeftHand"), 1] += 2.0
     everything = np.ones((41, len(JOINTS)), bool)
-    assert wilder_than_given(given[None], given, everything) == ""
+    assert wilder_than_given(given, given, everything) == ""
 
 
 def test_an_end_that_leads_nowhere_is_free():
@@ -52,6 +53,44 @@ def test_an_end_that_leads_nowhere_is_free():
     given = standing()
     known = np.zeros((41, len(JOINTS)), bool)
     known[:10] = True
-    made = given[None].copy()
-    made[0, 10:, :, 2] += 0.2 * np.arange(31)[:, None]
+    made = given.copy()
+    made[10:, :, 2] += 0.2 * np.arange(31)[:, None]
     assert wilder_than_given(made, given, known) == ""
+
+
+def test_a_figure_that_stands_and_moves_glides():
+    made = standing(speed=1.0)
+    assert longest_glide(made, KNOWN) == (0, 40)
+    assert longest_glide(standing(speed=0.5), KNOWN) == (0, 0)  # slower than SLIDES
+    assert longest_glide(made, np.ones_like(KNOWN)) == (0, 0)  # it was given so
+    made[21:, TOES[0], 1] += 0.2  # from here on one foot is in the air
+    assert longest_glide(made, KNOWN) == (0, 20)
+    made[8:, TOES[1], 1] += 0.2
+    assert longest_glide(made, KNOWN) == (0, 0)  # 0.35 s
+
+
+def test_a_glide_is_drawn_again_until_a_figure_steps():
+    glides, stands, drawn = standing(speed=1.0), standing(), []
+
+    def again(how):
+        drawn.append(how)
+        return stands if len(drawn) == 2 else glides
+
+    made, note = plausible(glides, glides, KNOWN, again)
+    assert made is stands and note == "" and drawn == [OURS, OURS]
+
+
+def test_where_every_draw_glides_the_shortest_is_given_back_and_it_is_said():
+    glides, shorter = standing(speed=1.0), standing(speed=1.0)
+    shorter[30:, TOES[0], 1] += 0.2
+    draws = [glides, shorter, glides]
+    left = list(draws)
+    made, note = plausible(glides, glides, KNOWN, lambda how: left.pop(0))
+    assert not left and len(draws) == DRAWS - 1
+    assert made is shorter and "both feet slide between frames 0 and 29" in note
+
+
+def test_a_plausible_motion_is_given_back_as_it_is():
+    given = standing()
+    made, note = plausible(given, given, KNOWN, lambda how: pytest.fail("drawn again"))
+    assert made is given and note == ""

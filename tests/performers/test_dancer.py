@@ -216,7 +216,8 @@ def test_dancing_to_sound(tmp_path: Path):
     assert (out.positions == again.positions).all() and not (out.positions == other.positions).all()
     cut = one.dance(sound, seconds=1.5, steps=2)
     assert len(cut) == 30 and len(cut.audio) == 24_000
-    assert len(one.dance(sound, seconds=99, steps=2)) == 40  # as long as there is sound
+    with pytest.warns(UserWarning, match="lasts 2.0 s, and the dance ends with it"):
+        assert len(one.dance(sound, seconds=99, steps=2)) == 40
     first, second = one.dance(sound, samples=2, steps=2)
     assert len(first) == len(second) == 40 and not (first.positions == second.positions).all()
     soundfile.write(tmp_path / "noise.wav", sound.numpy(), 16_000, subtype="FLOAT")
