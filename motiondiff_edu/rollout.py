@@ -8,6 +8,7 @@ walker, in metres and m/s.
 Source: MoDiff III-C, Alg. 2.  Notebook: 08
 """
 
+import math
 import warnings
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
@@ -21,6 +22,8 @@ from .ddpm import Generators
 
 WindowSampler = Callable[[Tensor, Tensor, Generators], Tensor]
 Control = Tensor | Callable[[int], Tensor]
+# shares of the training's range of control; beyond it by more, `generate` warns or refuses
+SLACK, FAR = 0.1, 0.5
 COLUMNS = ("forward speed", "speed to the left", "turning rate")  # m/s, m/s, rad/s
 
 
@@ -122,8 +125,8 @@ def generate(
     Past and control are tensors or arrays of numpy, with or without a batch axis. Rows 0..T_h-1 of
     the control belong to the past. steps=None is DDPM with all S steps, a number is
     DDIM with that many.
-    Raises ValueError if past and control do not fit the walker or contain NaN. Warns where the
-    control goes beyond the training data.
+    Raises ValueError if past and control do not fit the walker or contain NaN, and for a control
+    beyond twice the range of the training data. Warns where it goes beyond this range.
     Source: MoDiff Alg. 2, Fig. 5.  Notebook: 07, 08
     """
     past, control = torch.as_tensor(past), torch.as_tensor(control)
@@ -155,7 +158,7 @@ def generate(
         )
     if not (torch.isfinite(past).all() and torch.isfinite(control).all()):
         raise ValueError("past or control contains NaN or infinity; fill the holes first")
-    _warn_beyond(control, T_h, getattr(walker, "card", {}).get("control_range"))
+    _check_range(control, T_h, getattr(walker, "card", {}).get("control_range"))
     generator = generator or torch.Generator().manual_seed(seed)
     past, control = (x.float().to(walker.pose_scaler.mean.device) for x in (past, control))
     poses = walker.pose_scaler.transform(past)
@@ -168,28 +171,37 @@ def generate(
     return new[0] if single else new
 
 
-def _warn_beyond(control: Float[Tensor, "B T C"], T_h: int, seen: dict | None) -> None:
+def _check_range(control: Float[Tensor, "B T C"], T_h: int, seen: dict | None) -> None:
     """Warn about speeds beyond the control of the training clips by over a tenth of its range.
 
-    The first T_h rows belong to the past and are not checked.
+    Raises ValueError beyond twice the range. The first T_h rows belong to the past and are not
+    checked.
     """
     if not seen:
         return
     low, high = (torch.tensor(seen[end], device=control.device) for end in ("low", "high"))
-    slack = 0.1 * (high - low)
-    ahead = control[:, T_h:]
-    beyond = (ahead < low - slack) | (ahead > high + slack)
-    found = []
-    for column in beyond.any(1).any(0).nonzero().flatten().tolist():
-        batch, row = beyond[..., column].nonzero()[0].tolist()
-        name = COLUMNS[column] if len(low) == len(COLUMNS) else f"column {column}"
-        found.append(
-            f"a {name} of {ahead[batch, row, column]:.3g} in frame {row} of the future (training: "
-            f"{low[column]:.3g} to {high[column]:.3g})"
+    far, ahead = (low - control[:, T_h:]).maximum(control[:, T_h:] - high), control[:, T_h:]
+
+    def asked(share: float) -> str:
+        """The columns that leave the range by more than a share of it, in words."""
+        beyond, found = far > share * (high - low), []
+        for column in beyond.any(1).any(0).nonzero().flatten().tolist():
+            batch, row = beyond[..., column].nonzero()[0].tolist()
+            name = COLUMNS[column] if len(low) == len(COLUMNS) else f"column {column}"
+            found.append(
+                f"a {name} of {ahead[batch, row, column]:.3g} in frame {row} of the future "
+                f"(training: {low[column]:.3g} to {high[column]:.3g})"
+            )
+        return "; ".join(found)
+
+    if words := asked(FAR):
+        raise ValueError(
+            f"the control asks for over twice what this walker was trained on: {words}. Speeds are "
+            f"in m/s, turning is in rad/s; 90 degrees a second are {math.pi / 2:.2f} rad/s"
         )
-    if found:
+    if words := asked(SLACK):
         warnings.warn(
             f"the control asks for more than this walker was trained on, and it will not follow "
-            f"well: {'; '.join(found)}",
+            f"well: {words}",
             stacklevel=3,
         )

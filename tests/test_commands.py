@@ -24,6 +24,7 @@ from motiondiff_edu import _commands
 from motiondiff_edu._commands import control_words, outputs
 from motiondiff_edu.course import doctor
 from motiondiff_edu.motion.motion import MotionError
+from motiondiff_edu.motion.skeleton import JOINTS
 
 ARM = "RightArm,RightForeArm,RightHand"
 
@@ -72,7 +73,39 @@ def test_a_song_is_danced_to_from_the_command_line(folder, capsys):
 def test_a_song_shorter_than_asked_is_said(folder, capsys):
     assert run("dance", "song.wav", "--seconds", "60", "--out", "dance.bvh") == 0
     lasts = md.read_motion("dance.bvh").seconds
-    assert f"song.wav lasts {lasts:.1f} s: the dance ends with it" in capsys.readouterr().err
+    told = capsys.readouterr().err
+    assert f"note: song lasts {lasts:.1f} s, and the dance ends with it" in told
+
+
+def test_info_describes_every_file_that_can_be_read(folder, capsys):
+    (folder / "a.bvh").write_text("HIERARCHY")
+    assert run("info", "a.bvh", "my_walk.bvh", "b.bvh") == 1
+    told = capsys.readouterr()
+    assert "Motion 'my_walk'" in told.out and "there is no file b.bvh" in told.err
+    assert "info: 2 of 3 files cannot be read" in told.err
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        ["dance", "nope.ogg"],
+        ["dance", "song.wav", "--seconds", "-3"],
+        ["inbetween", "my_walk.bvh", "--every", "0"],
+    ],
+)
+def test_no_work_is_announced_before_its_arguments_are_checked(words, folder, capsys):
+    assert run(*words, "--out", "x.bvh") == 1
+    (only,) = capsys.readouterr().err.splitlines()
+    assert only.startswith(f"{words[0]}: ")
+
+
+def test_missing_joints_are_separated_by_commas_or_spaces(folder):
+    for names in (["LeftHand,LeftForeArm"], ["LeftHand,", "LeftForeArm"], ["LeftHand LeftForeArm"]):
+        words = ["reconstruct", "my_walk.bvh", "--missing", *names, "--frames", "20-24"]
+        assert run(*words, "--out", "whole.npz", "--overwrite") == 0
+        apart = md.read_motion("whole.npz").positions - md.read_motion("my_walk.bvh").positions
+        moved = np.abs(apart).max((0, 2)) > 1e-4
+        assert set(np.array(JOINTS)[moved]) == {"LeftHand", "LeftForeArm"}
 
 
 def test_samples_go_to_numbered_files(folder, capsys):
@@ -126,7 +159,7 @@ MISTAKES = {
     "no such file": (["info", "nope.bvh"], "there is no file nope.bvh in"),
     "no motion": (["info", "song.wav"], "song.wav cannot be read as a motion"),
     "a png": (["convert", "pic.png", "x.bvh"], "there is no file pic.png"),
-    "no song": (["dance", "my_walk.bvh", "--out", "x.bvh"], "is text, not sound"),
+    "no song": (["dance", "my_walk.bvh", "--out", "x.bvh"], "is a motion (BVH), not sound"),
     "negative seconds": (
         ["dance", "song.wav", "--seconds", "-3", "--out", "x.bvh"],
         "seconds must be above 0",
@@ -138,7 +171,10 @@ MISTAKES = {
         ["walk", "my_walk.bvh", "--control", "1s 1,2", "--out", "x.bvh"],
         "'1,2' is not a number; write a decimal point (character 4 of the control)",
     ),
-    "no samples": ([*WALK, "--samples", "0"], "--samples must be at least 1, not 0"),
+    "no samples": (
+        [*WALK, "--samples", "0"],
+        "--samples must be a whole number of at least 1",
+    ),
     "no keyframes": (
         ["inbetween", "my_walk.bvh", "--every", "0", "--out", "x.bvh"],
         "every must be a whole number of at least 1",
@@ -163,7 +199,10 @@ MISTAKES = {
         ["reconstruct", "my_walk.bvh", "--frames", "3-9", "--out", "x.bvh"],
         "--frames needs --missing, which names the joints",
     ),
-    "nothing missing": (["reconstruct", "my_walk.bvh", "--out", "x.bvh"], "nothing is missing"),
+    "nothing missing": (
+        ["reconstruct", "my_walk.bvh", "--out", "x.bvh"],
+        "lacks no joint",
+    ),
     "no page": (["play", "my_walk.bvh", "--out", "x.bvh"], "the page's name must end in .html"),
 }
 
@@ -291,7 +330,7 @@ def test_control_in_words(words, wanted):
     [
         ("", 0, "the control is empty"),
         (" ; ", 0, "the control is empty"),
-        ("3 1.2", 0, "a piece begins with its duration, as 3s, not '3'"),
+        ("3 1.2", 0, "a segment begins with its duration, as 3s, not '3'"),
         ("3s 1.2; 4s", 10, "the forward speed (m/s) is missing after the duration"),
         ("3s 1.2; 4s fast", 11, "'fast' is not a number"),
         ("3s 1.2 turn", 11, "a number is missing after 'turn'"),

@@ -4,6 +4,7 @@ told when it cannot be."""
 import json
 import subprocess
 import sys
+import warnings
 from dataclasses import replace
 
 import numpy as np
@@ -13,7 +14,7 @@ from as_typed import outcomes
 import motiondiff_edu as md
 from data_synth.music import compose
 from data_synth.walking import walk
-from motiondiff_edu.motion.normalise import MotionWarning
+from motiondiff_edu.motion.motion import MotionWarning
 from motiondiff_edu.motion.skeleton import HIPS, TOES, joint_index
 from motiondiff_edu.pretrained import shipped
 from motiondiff_edu.widgets import motions as shown
@@ -264,6 +265,21 @@ def test_the_first_of_several_samples_is_the_sample_alone(make, walked):
     assert np.abs(second.positions - alone.positions).max() > 1e-2
 
 
+def test_what_is_known_of_nothing_is_noted(walked):
+    nothing = np.zeros_like(walked.known)
+    with pytest.warns(MotionWarning, match="no joint is known, so the result has nothing to do"):
+        md.inbetween(walked, nothing, steps=2, progress=False)
+
+
+def test_a_jump_from_one_part_to_the_next_is_told(walked):
+    aside = replace(walked, positions=walked.positions + 2.0, root=None)
+    with pytest.warns(MotionWarning, match="the figure jumps by"):
+        walked.then(aside)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        walked[:50].then(walked[50:])
+
+
 def test_another_song_gets_another_dance_although_the_seed_is_the_same():
     """About as different as with another seed; with the same noise it was half of that."""
     songs = [compose(k, genre, seconds=5.0).audio for k, genre in enumerate(("house", "latin"))]
@@ -394,9 +410,14 @@ TOLD = {
     'md.reconstruct(w, w.all_but("Hips", 7, 9))': "pelvis (Hips) is not known in frame 7",
     "md.reconstruct(w[:9], known[:9])": "has 9 frames; the walker's windows have 10",
     "md.reconstruct(w, known[:, :5])": "known is bool (30, 5); it must be bool (30, 21)",
-    "md.joystick([(3, 1.2)])": "a segment is (seconds, forward, left, yaw)",
+    "md.joystick([(3, 1.2)])": "numbers, (seconds, forward, left, turning), not (3, 1.2)",
+    "md.joystick([(0.01, 1, 0, 0)])": "last less than a frame (0.05 s), all together",
+    'walker().walk(w, "3s 1.2")': "a control is an array, not the text '3s 1.2'; joystick([",
+    'md.load("waler")': "Did you mean 'walker'?",
+    'w.all_but("LeftArm,LeftHand")': "Pass several joints as a list",
+    'w.all_but("LeftArms")': "Did you mean 'LeftArm'?",
     "md.joystick((3, 1.2, 0, 0))": "joystick takes a list of segments",
-    "md.joystick([('3', 1.2, 0, 0)])": "four finite numbers, not ('3', 1.2, 0, 0)",
+    "md.joystick([('3', 1.2, 0, 0)])": "turning), not ('3', 1.2, 0, 0)",
     "md.joystick([(3, 1.2, 0, 0)], fps=0)": "fps must be a number of frames a second above 0",
     "md.joystick([(-3, 1.2, 0, 0)])": "a segment lasts 0 seconds or more, not -3",
     "md.play()": "TypeError: play needs at least one motion",

@@ -117,6 +117,25 @@ def test_a_wrong_number_after_a_right_one_moves_nothing(checkout, calls, capsys)
     assert "no notebook 12" in capsys.readouterr().err and mine.read_text() == "my answers"
 
 
+def test_lab_opens_the_notebook_whose_number_comes_first(checkout, calls, capsys):
+    there = checkout / "notebooks" / "student" / "01_next.ipynb"
+    there.write_text("{}")
+    assert command.main(["lab", "1", "--no-browser"]) == 0
+    arguments, _, files = calls[0]
+    assert "--LabApp.default_url=/lab/tree/motiondiff_notebooks/01_next.ipynb" in arguments
+    assert arguments[-1] == "--no-browser" and "1" not in arguments
+    assert command.main(["lab", "--port", "8890"]) == 0  # the value of an option is no number
+    assert calls[1][0][-2:] == ["--port", "8890"]
+    assert command.main(["lab", "7"]) == 1 and len(calls) == 2
+    assert "no notebook 7" in capsys.readouterr().err
+
+
+def test_a_folder_of_copies_that_is_a_file_is_refused(checkout, calls, tmp_path, capsys):
+    (tmp_path / "file").touch()
+    assert command.main(["lab", "--folder", str(tmp_path / "file")]) == 1 and not calls
+    assert "is a file; --folder takes the folder of your copies" in capsys.readouterr().err
+
+
 def test_lab_takes_a_folder_by_name(checkout, calls, tmp_path):
     assert command.main(["lab", "--folder", str(tmp_path / "mine")]) == 0
     arguments, _, files = calls[0]

@@ -54,5 +54,5 @@ def test_a_control_beyond_the_training_is_named_by_the_row_of_the_future():
         warnings.simplefilter("error")
         generate(pretrained("walker"), clip.features()[:10], control, steps=1)
     control[12] = 40.0
-    with pytest.warns(UserWarning, match="a forward speed of 40 in frame 2 of the future"):
+    with pytest.raises(ValueError, match="a forward speed of 40 in frame 2 of the future"):
         generate(pretrained("walker"), clip.features()[:10], control, steps=1)

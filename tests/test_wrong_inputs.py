@@ -69,7 +69,7 @@ MISTAKES = {
     ),
     "no data to scale": (lambda: Scaler.fit(torch.zeros(0, 3)), "there are no rows"),
     "one frame": (lambda: adherence(CLIP.poses[:1], CLIP.control[:1]), "needs two frames"),
-    "no segments": (lambda: joystick([]), "four finite numbers, not nothing"),
+    "no segments": (lambda: joystick([]), "turning\\), not nothing"),
     "a short segment": (lambda: joystick([(1, 2)]), "four finite numbers"),
     "a segment of NaN": (lambda: joystick([(1, math.nan, 0, 0)]), "four finite numbers"),
     "an odd width": (lambda: MoDiffConfig(width=7, heads=7), "width = 7 must be even"),
@@ -151,11 +151,14 @@ def test_a_control_beyond_the_training_data_is_named():
     seen = {"control_range": {"low": [-0.5, -0.6, -2.0], "high": [3.0, 0.6, 2.0]}}
     walker = Walker(MoDiff(SMALL).eval(), ddpm.linear_schedule(6, 0.2, 0.95), *PLAIN, seen)
     past, control = torch.zeros(4, 63), torch.zeros(7, 3)
-    control[5, 2] = -45.0
-    with pytest.warns(
-        UserWarning,
-        match=r"a turning rate of -45 in frame 1 of the future \(training: -2 to 2\)",
+    control[5, 2] = -4.5  # half of the range, from -2 to 2, is 2
+    with pytest.raises(
+        ValueError,
+        match=r"twice .* a turning rate of -4.5 in frame 1 of the future \(training: -2 to 2\)",
     ):
+        generate(walker, past, control)
+    control[5, 2] = -3.9
+    with pytest.warns(UserWarning, match="a turning rate of -3.9 in frame 1"):
         generate(walker, past, control)
     control[5, 2] = -2.5  # a tenth of the range, from -2 to 2, is 0.4
     with pytest.warns(UserWarning, match="a turning rate of -2.5 in frame 1"):

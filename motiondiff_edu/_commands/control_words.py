@@ -2,8 +2,8 @@
 
 "3s 1.2; 4s 1.0 turn 0.6" is three seconds at 1.2 m/s, then four seconds at 1.0 m/s in a left turn.
 
-    piece   = SECONDS"s" FORWARD [left SPEED | right SPEED] [turn RATE]
-    control = piece; piece; ...
+    segment = SECONDS"s" FORWARD [left SPEED | right SPEED] [turn RATE]
+    control = segment; segment; ...
 Speeds are in m/s; a negative FORWARD walks backwards. RATE is in rad/s, counter-clockwise (to the
 left) seen from above.
 """
@@ -32,14 +32,14 @@ class ControlError(ValueError):
 def parse(words: str) -> list[tuple[float, float, float, float]]:
     """Segments for `joystick`: (seconds, forward, left, turn).  Raises ControlError."""
     segments, at = [], 0
-    for piece in words.split(";"):
-        found = [(match.group(), at + match.start()) for match in re.finditer(r"\S+", piece)]
+    for part in words.split(";"):
+        found = [(match.group(), at + match.start()) for match in re.finditer(r"\S+", part)]
         if found:
-            segments.append(_segment(found, words, at + len(piece)))
-        elif segments or at + len(piece) < len(words):
+            segments.append(_segment(found, words, at + len(part)))
+        elif segments or at + len(part) < len(words):
             if words[at:].strip(" ;\t\n"):
                 raise ControlError("there is nothing between two semicolons", words, at)
-        at += len(piece) + 1
+        at += len(part) + 1
     if not segments:
         raise ControlError("the control is empty", words, 0)
     if sum(segment[0] for segment in segments) > LONGEST:
@@ -48,10 +48,10 @@ def parse(words: str) -> list[tuple[float, float, float, float]]:
 
 
 def _segment(found: list, words: str, end: int) -> tuple[float, float, float, float]:
-    """Parse one piece, word by word."""
+    """Parse one segment, word by word."""
     (first, at), *rest = found
     if not first.endswith("s"):
-        raise ControlError(f"a piece begins with its duration, as 3s, not {first!r}", words, at)
+        raise ControlError(f"a segment begins with its duration, as 3s, not {first!r}", words, at)
     seconds = _number(first[:-1], words, at)
     if not 0 < seconds <= LONGEST:
         raise ControlError(f"a duration is above 0 and at most {LONGEST:g} s", words, at)

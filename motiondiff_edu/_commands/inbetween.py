@@ -4,6 +4,7 @@ and the last frame are keyframes too."""
 import argparse
 from pathlib import Path
 
+from ..motion.checks import checked_count
 from . import outputs
 
 HELP = "keep keyframes and generate the frames between them"
@@ -21,9 +22,10 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> None:
     paths = outputs.output_paths(args.out, args.overwrite, args.samples)
+    every = checked_count(args.every, "--every")
     motion = outputs.read(args.file)
     from .. import inbetween, keyframes
 
     outputs.say("generating the frames between the keyframes")
-    known = keyframes(motion, every=args.every)
+    known = keyframes(motion, every=every)
     outputs.write_all(inbetween(motion, known, samples=args.samples, seed=args.seed), paths)

@@ -15,11 +15,22 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> None:
+    """Describe every file that can be read; then raise ValueError if there was another."""
+    faulty = 0
     for path in args.file:
-        motion = outputs.read(path)
+        try:
+            motion = outputs.read(path)
+        except (ValueError, OSError) as error:
+            if len(args.file) == 1:
+                raise
+            faulty += 1
+            outputs.say(f"  {error}")
+            continue
         print(motion)
         for line in lines_of(motion):
             print(f"  {line}")
+    if faulty:
+        raise ValueError(f"{faulty} of {len(args.file)} files cannot be read")
 
 
 def lines_of(motion) -> list[str]:

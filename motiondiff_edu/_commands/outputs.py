@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from ..motion import registry
+from ..motion.checks import checked_count
 
 
 def endings() -> str:
@@ -56,8 +57,7 @@ def output_paths(out: Path, overwrite: bool, samples: int = 1) -> list[Path]:
     Raises ValueError for an unknown ending, a folder, a file that exists, and for a folder that
     cannot be made or written to.
     """
-    if samples < 1:
-        raise ValueError(f"--samples must be at least 1, not {samples}")
+    checked_count(samples, "--samples")
     if out.suffix.lower() not in registry.writers.names():
         what = f"unknown ending {out.suffix}" if out.suffix else "the name has no ending"
         raise ValueError(f"{out}: {what}; use one of {endings()}")
@@ -83,8 +83,16 @@ def _check_folder(out: Path) -> None:
         raise ValueError(f"{out}: you may not write in {there}; choose another place")
 
 
+def check_there(path: Path) -> None:
+    """Raise FileNotFoundError if there is no such file."""
+    if not path.expanduser().exists():
+        where = "" if path.is_absolute() else f" in {Path.cwd()}"
+        raise FileNotFoundError(f"there is no file {path}{where}; check the spelling")
+
+
 def read(path: Path, mapping: dict[str, str] | None = None, file_fps: float | None = None):
     """Read a motion. A line on stderr comes first, because the imports take a moment."""
+    check_there(path)
     say(f"reading {path}")
     from .. import read_motion
 

@@ -19,9 +19,9 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> None:
     if args.out is not None:
-        if args.out.suffix.lower() not in (".html", ".htm"):
+        if args.out.suffix.lower() != ".html":
             raise ValueError(f"--out {args.out}: the page's name must end in .html")
-        (args.out,) = outputs.output_paths(args.out.with_suffix(".html"), args.overwrite)
+        (args.out,) = outputs.output_paths(args.out, args.overwrite)
     motions = [outputs.read(path) for path in args.file]
     from .. import play
 

@@ -18,7 +18,10 @@ EXAMPLE = (
 def arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("file", type=Path, help="a motion: .bvh or .npz")
     parser.add_argument(
-        "--missing", metavar="JOINTS", help="the joints to reconstruct, separated by commas"
+        "--missing",
+        metavar="JOINTS",
+        nargs="+",
+        help="the joints to reconstruct, separated by commas or spaces",
     )
     parser.add_argument(
         "--frames",
@@ -40,8 +43,10 @@ def run(args: argparse.Namespace) -> None:
 
     known = motion.known
     for first, last in frames if args.missing else []:
-        joints = [name.strip() for name in args.missing.split(",") if name.strip()]
+        joints = re.split(r"[,\s]+", " ".join(args.missing).strip(", "))
         known &= motion.all_but(joints, first, last)
+    if known.all():
+        raise ValueError(f"{args.file} lacks no joint: name some, such as --missing LeftHand")
     outputs.say(f"reconstructing {int((~known).sum())} joint positions")
     outputs.write_all(reconstruct(motion, known, samples=args.samples, seed=args.seed), paths)
 

@@ -1,7 +1,7 @@
-"""Continue a recorded walk. The control is a list of pieces, separated by semicolons. A piece is a
-duration and a forward speed in m/s, then optionally left or right with a speed in m/s, and turn
-with a rate in rad/s (positive turns to the left). The output has only the new frames; --joined adds
-the given frames before them."""
+"""Continue a recorded walk. The control is a list of segments, separated by semicolons. A segment
+is a duration and a forward speed in m/s, then optionally left or right with a speed in m/s, and
+turn with a rate in rad/s (positive turns to the left). The output has only the new frames; --joined
+adds the given frames before them."""
 
 import argparse
 from pathlib import Path
@@ -15,7 +15,7 @@ EXAMPLE = 'walk my_walk.bvh --control "3s 1.2; 4s 1.0 turn 0.6" --out more.bvh'
 def arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("file", type=Path, help="the walk to continue: .bvh or .npz")
     parser.add_argument(
-        "--control", required=True, metavar="PIECES", help='for example "3s 1.2; 4s 1.0 turn 0.6"'
+        "--control", required=True, metavar="SEGMENTS", help='for example "3s 1.2; 4s 1.0 turn 0.6"'
     )
     parser.add_argument("--joined", action="store_true", help="write the given frames as well")
     outputs.add_out(parser)

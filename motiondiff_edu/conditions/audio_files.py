@@ -119,7 +119,9 @@ def samples_of(sound: str | Path | np.ndarray | Tensor) -> Float[Tensor, "N"]:
             f"{len(bad)} samples are NaN or infinite, the first at {bad[0] / SAMPLE_RATE:.3f} s"
         )
     if np.abs(samples).max() < SILENT:
-        raise AudioError("the samples are silent from start to end")
+        raise AudioError(
+            "the samples are silent from start to end, so there is nothing to dance to"
+        )
     where = int(np.abs(samples).argmax())
     if abs(samples[where]) > LOUDEST:
         raise AudioError(
@@ -194,7 +196,7 @@ def _mono(channels: Float[np.ndarray, "N channels"], name: str) -> Float[np.ndar
     if np.abs(mono).max() < SILENT:
         mono = channels[:, peaks.argmax()]
     if peaks.max() < SILENT:
-        raise AudioError(f"{name} is silent from start to end; was the right input recorded?")
+        raise AudioError(f"{name} is silent from start to end, so there is nothing to dance to")
     return mono
 
 
@@ -210,6 +212,8 @@ def _other_kind(path: Path, error: Exception) -> str:
             )
     if not head:
         return "is an empty file (0 bytes): copy or download it again"
+    if head.lstrip().startswith(b"HIERARCHY"):
+        return "is a motion (BVH), not sound; md.read_motion(path) reads it"
     if head.isascii() and b"\0" not in head:
         return (
             f"is text, not sound; it begins with {head[:20].decode()!r}. "

@@ -70,6 +70,11 @@ def as_long(control: Float[np.ndarray, "n 3"], rows: int | None) -> Float[np.nda
 
     Raises ValueError for another shape, no row, and rows that are not finite.
     """
+    if isinstance(control, str):
+        raise ValueError(
+            f"a control is an array, not the text {control!r:.40}; "
+            "joystick([(seconds, forward, left, turning), ...]) makes one"
+        )
     array = np.array(np.asarray(control), np.float64)
     if array.ndim != 2 or array.shape[1] != 3 or not len(array):
         raise ValueError(
@@ -98,20 +103,20 @@ def _four_numbers(segment: object) -> bool:
 def joystick(
     segments: Sequence[tuple], fps: float | int = FPS, ramp: float | int = RAMP
 ) -> Float[np.ndarray, "T 3"]:
-    """Control from a list of (seconds, forward m/s, left m/s, yaw rad/s).
+    """Control from a list of (seconds, forward m/s, left m/s, turning rad/s).
 
     The first segment begins at its own speeds. Each later one is reached within `ramp` seconds:
 
     old + (new - old) u^2 (3 - 2u), with u from 0 to 1.
-    Raises ValueError for no segment, one that is not four finite numbers, negative seconds, or a
-    frame rate that is not positive.
+    Raises ValueError for no segment, one that is not four finite numbers, negative seconds, less
+    than a frame in all, or a frame rate that is not positive.
     """
     fps = checked_rate(fps)
     bad = next((segment for segment in segments if not _four_numbers(segment)), None)
     if bad is not None or not segments:
         raise ValueError(
-            "joystick takes a list of segments, and a segment is (seconds, forward, left, yaw), "
-            f"four finite numbers, not {'nothing' if bad is None else repr(bad)}"
+            "joystick takes a list of segments, and a segment is four finite numbers, "
+            f"(seconds, forward, left, turning), not {'nothing' if bad is None else repr(bad)}"
         )
     backwards = next((segment for segment in segments if segment[0] < 0), None)
     if backwards is not None:
@@ -122,7 +127,10 @@ def joystick(
         u = np.clip(np.arange(1, round(seconds * fps) + 1) / max(1.0, ramp * fps), 0, 1)[:, None]
         rows.append(value + _smoothstep(u) * (goal - value))
         value = rows[-1][-1] if len(u) else value
-    return np.concatenate(rows)
+    control = np.concatenate(rows)
+    if not len(control):
+        raise ValueError(f"the segments last less than a frame ({1 / fps:g} s), all together")
+    return control
 
 
 def _smoothstep(u: np.ndarray) -> np.ndarray:

@@ -162,6 +162,15 @@ def canvas() -> Finding:
             "open the address that lab prints in a browser elsewhere",
             note=True,
         )
+    from ..widgets.motions import has_a_screen
+
+    if not has_a_screen():
+        return Finding(
+            "canvas",
+            "there is no display here, so no browser can open a window",
+            "open the address that lab prints in a browser elsewhere",
+            note=True,
+        )
     return Finding(
         "canvas",
         f"all {len(ES_MODULES)} ES modules; opens in "

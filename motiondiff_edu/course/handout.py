@@ -13,14 +13,10 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from .._files import replacing
-from .places import program
+from .places import FolderError, program
 
 RECORD = ".lab/handed_out.json"
 PAGES = {".md", ".png", ".py"}  # of docs/; setup.py puts the same files into a wheel
-
-
-class FolderError(ValueError):
-    """The folder of the copies is not writable."""
 
 
 @dataclass(frozen=True)

@@ -1,4 +1,4 @@
-"""`motiondiff-edu lab`: open JupyterLab in a student's own copies of the student edition."""
+"""`motiondiff-edu lab [NB]`: open JupyterLab in a student's own copies of the student edition."""
 
 import argparse
 from pathlib import Path
@@ -7,8 +7,8 @@ from .handout import Handout, hand_out, make_fresh
 from .jupyter import open_lab
 from .places import command_for_fresh, find, notebook_folder, place_for_students
 
-HELP = "open JupyterLab at notebook 00, in your own copy of the notebooks"
-EXAMPLE = "lab --no-browser"
+HELP = "open JupyterLab at notebook 00, or at the one whose number comes first, in your own copies"
+EXAMPLE = "lab 07 --no-browser"
 PASSES_OPTIONS_ON = "JupyterLab"
 
 
@@ -29,16 +29,21 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(chosen: argparse.Namespace) -> int:
     """Bring the copies up to date, say what happened to them, and open JupyterLab."""
-    notebooks = notebook_folder()
-    wanted = [find(notebooks / "student", number).name for number in chosen.fresh or ["00"]]
+    notebooks, options = notebook_folder(), list(chosen.options)
+    if options and not options[0].startswith("-"):  # after an option, a word can be its value
+        opened = [options.pop(0)]
+    else:
+        opened = chosen.fresh or ["00"]
+    first, *_ = (find(notebooks / "student", number).name for number in opened)
+    renewed = [find(notebooks / "student", number).name for number in chosen.fresh]
     root, mine = place_for_students(chosen.folder)
     handout = hand_out(notebooks, mine)
-    for name in wanted if chosen.fresh else []:
+    for name in renewed:
         aside = make_fresh(notebooks, mine, name)
         print(f"{name} is fresh" + (f"; yours is now {aside.name}" if aside else ""))
-    report(handout, leave_out=chosen.fresh and wanted)
+    report(handout, leave_out=renewed)
     own_tabs = {"JUPYTERLAB_WORKSPACES_DIR": str(mine / ".lab" / "workspaces")}
-    return open_lab(root, mine / wanted[0], chosen.options, own_tabs)
+    return open_lab(root, mine / first, options, own_tabs)
 
 
 def report(handout: Handout, leave_out: list[str]) -> None:

@@ -12,6 +12,10 @@ class NotebookError(ValueError):
     """No notebook has that number; the message lists the numbers that exist."""
 
 
+class FolderError(ValueError):
+    """The folder of the copies cannot be used."""
+
+
 def in_checkout() -> bool:
     """Whether the package runs from a checkout (or an unpacked archive), not from a wheel."""
     above = PACKAGE.parent
@@ -42,6 +46,8 @@ def place_for_students(chosen: Path | None = None) -> tuple[Path, Path]:
     """
     if chosen is not None:
         mine = chosen.expanduser().resolve()
+        if mine.exists() and not mine.is_dir():
+            raise FolderError(f"{chosen} is a file; --folder takes the folder of your copies")
         return mine, mine
     if in_checkout():
         return PACKAGE.parent, PACKAGE.parent / COPIES

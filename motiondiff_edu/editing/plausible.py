@@ -18,10 +18,11 @@ from .inbetween import OURS, Departures
 
 FACTOR, SLACK = 3.0, 1.0  # the pelvis may be so many times, plus m/s, as fast as is needed
 FASTEST = 15.0  # m/s: no joint of an actor is faster
-# Both toes under this height (m, above the 5th percentile) and over this speed (m/s) for so long
-# (s): a glide. In recorded walks and dances both slide for at most 0.35 s (a turn in a salsa); in
-# failed in-betweens of a walk for 0.7 s and more.
-LOW, SLIDES, GLIDE = 0.08, 0.6, 0.4
+# In recorded walks and dances both feet slide for at most 0.35 s (a turn in a salsa); in failed
+# in-betweens of a walk for 0.7 s and more.
+LOW = 0.08  # m above the 5th percentile of the toes' heights
+SLIDES = 0.6  # m/s
+GLIDE = 0.4  # s
 
 AGAIN = "So it was generated again without guidance, with blending only. Check the result"
 STILL = "Without guidance it is no better: give more keyframes, or draw straight lines between them"

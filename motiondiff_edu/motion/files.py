@@ -15,8 +15,7 @@ from .._files import replacing
 from . import registry
 from .bvh.write import write_bvh
 from .clip import Clip
-from .motion import Motion, MotionError, unlike_a_body
-from .normalise import MotionWarning
+from .motion import Motion, MotionError, MotionWarning, unlike_a_body
 from .retarget import load_clip
 from .root_frame import FPS
 from .skeleton import COURSE, Skeleton

@@ -6,7 +6,9 @@ The functions of the package's front door take motions and return them.
 A `Clip` is the same motion for training: poses in the root frame with their control.  Notebook: 00
 """
 
+import warnings
 from dataclasses import dataclass, replace
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -21,10 +23,15 @@ from .skeleton import BONE_LENGTHS, BONES, COURSE, Skeleton
 
 FARTHEST = 1e6  # metres from the origin; a larger value is a fault of the file
 SAMPLE_RATE = 16_000
+FASTEST = 15.0  # m/s: nobody runs faster
 
 
 class MotionError(ValueError):
     """A motion or its file cannot be used; the message says what is wrong, where, what to do."""
+
+
+class MotionWarning(UserWarning):
+    """Something was corrected or looks wrong; the motion is usable."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -181,8 +188,8 @@ class Motion:
     def then(self, *others: "Motion") -> "Motion":
         """This motion, followed by the others.
 
-        Each part stays where it is in the world. `root`, `contacts` and `audio` are kept only if
-        all parts have them.
+        Each part stays where it is in the world; a MotionWarning tells where the figure jumps from
+        one part to the next. `root`, `contacts` and `audio` are kept only if all parts have them.
         Raises MotionError for another frame rate or skeleton, TypeError for anything but a Motion.
         """
         parts = [self, *map(as_motion, others)]
@@ -192,6 +199,14 @@ class Motion:
                     f"{other.name} has {other.fps:g} frames/s and {len(other.skeleton)} joints, "
                     f"{self.name} {self.fps:g} and {len(self.skeleton)}; resampled(fps) changes "
                     f"the rate"
+                )
+        for one, other in pairwise(parts):
+            jump = float(np.linalg.norm(other.positions[0, 0] - one.positions[-1, 0]))
+            if jump * self.fps > FASTEST:
+                warnings.warn(
+                    f"the figure jumps by {jump:.1f} m from {one.name} to {other.name}",
+                    MotionWarning,
+                    stacklevel=2,
                 )
         joined = {"positions": np.concatenate([part.positions for part in parts])}
         for name in ("root", "contacts"):

@@ -12,16 +12,13 @@ from jaxtyping import Float
 
 from .bvh import Bvh
 from .bvh.tokens import BvhError
+from .motion import MotionWarning
 from .skeleton import HEELS, JOINTS, TOES, joint_index
 
 LEG = 0.835  # m, thigh plus shank of the course's figure
 SLOW = 0.35  # m/s, a toe slower than this is taken as standing
 STEEPEST = 0.06  # a larger slope of the floor is not a fault of the capture, and is kept
 FLIP_X = np.array([-1.0, 1.0, 1.0])  # positions seen in a mirror
-
-
-class MotionWarning(UserWarning):
-    """Something in a file was corrected or looks wrong; the clip is usable."""
 
 
 def pick(

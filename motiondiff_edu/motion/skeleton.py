@@ -7,6 +7,7 @@ Source: MoDiff IV-A.  Notebook: 01
 """
 
 from dataclasses import dataclass
+from difflib import get_close_matches
 
 import numpy as np
 
@@ -110,7 +111,12 @@ class Skeleton:
     def index(self, name: str) -> int:
         """The index of a joint by its name.  Raises KeyError with a list of all names."""
         if name not in self.names:
-            raise KeyError(f"no joint is called {name!r}; the skeleton has {', '.join(self.names)}")
+            near = get_close_matches(name, self.names, n=1)
+            meant = f". Did you mean {near[0]!r}?" if near else ""
+            several = ". Pass several joints as a list" if "," in name else meant
+            raise KeyError(
+                f"no joint is called {name!r}; the skeleton has {', '.join(self.names)}{several}"
+            )
         return self.names.index(name)
 
 

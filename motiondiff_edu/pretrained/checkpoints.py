@@ -6,6 +6,7 @@ Notebook: 00, 07, 12
 
 import json
 from dataclasses import MISSING, asdict, dataclass
+from difflib import get_close_matches
 from functools import partial
 from pathlib import Path
 
@@ -154,5 +155,7 @@ def pretrained(name: str = "walker") -> Walker | Dancer:
     files = available()
     if name not in files:
         there = ", ".join(files) or "none (run make pretrained)"
-        raise CheckpointError(f"no weights are called {name!r}; there are: {there}")
+        near = get_close_matches(name.lower(), files, n=1)
+        meant = f". Did you mean {near[0]!r}?" if near else ""
+        raise CheckpointError(f"no weights are called {name!r}; there are: {there}{meant}")
     return load(files[name])

@@ -17,8 +17,7 @@ from ..editing.inbetween import OURS, Departures
 from ..editing.masks import checked_known
 from ..editing.plausible import plausible
 from ..motion.checks import checked_count
-from ..motion.motion import Motion, MotionError, as_motion
-from ..motion.normalise import MotionWarning
+from ..motion.motion import Motion, MotionError, MotionWarning, as_motion
 from ..motion.root_frame import FPS
 from ..motion.skeleton import HIPS, TOES
 from ..performers.dancer import Dancer
@@ -66,6 +65,9 @@ def inbetween(
     steps = checked_count(steps, "steps")
     if known.all():
         raise MotionError(f"{motion.name}: every joint is known, so there is nothing to generate")
+    if not known.any():
+        words = "no joint is known, so the result has nothing to do with this motion"
+        warnings.warn(f"{motion.name}: {words}", MotionWarning, stacklevel=2)
 
     def generate(draws: list, departures: Departures) -> Float[np.ndarray, "samples T 21 3"]:
         with with_bar(_shipped("unconditional"), steps, "filling in", progress) as dancer:
@@ -74,7 +76,8 @@ def inbetween(
                 departures=departures,
             )  # fmt: skip
 
-    draws, made, notes = generators(seed, count), [], []
+    draws = generators(seed, count)
+    made, notes = [], []
     for draw, first in zip(draws, generate(draws, OURS), strict=True):
         positions, note = plausible(
             first, motion.positions, known, lambda how, draw=draw: generate([draw], how)[0]

@@ -86,7 +86,7 @@ def play(
         raise TypeError("play needs at least one motion; md.read_motion(path) reads one")
     for one in figures:
         as_motion(one)
-    if path is not None and Path(path).suffix.lower() not in (".html", ".htm"):
+    if path is not None and Path(path).suffix.lower() != ".html":
         raise MotionError(
             f"{path}: play writes a page, so its name ends in .html; motion.save(path) writes films"
         )
@@ -102,7 +102,7 @@ def play(
         path = name
     page = player.save_html(Path(path).expanduser()).resolve()
     print(f"the page is {page}", flush=True)
-    if open_page and _has_a_screen():
+    if open_page and has_a_screen():
         webbrowser.open(page.as_uri())
     return page
 
@@ -113,7 +113,7 @@ def _in_a_notebook() -> bool:
     return shell is not None and hasattr(shell, "kernel")
 
 
-def _has_a_screen() -> bool:
+def has_a_screen() -> bool:
     """Whether a browser can open a window; a text browser would block the terminal."""
     if os.environ.get("BROWSER") or sys.platform in ("win32", "darwin"):
         return True

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from gaits import rest_pose
 
-from motiondiff_edu.editing.masks import keyframes
 from motiondiff_edu.editing.inbetween import OURS
+from motiondiff_edu.editing.masks import keyframes
 from motiondiff_edu.editing.plausible import DRAWS, longest_glide, plausible, wilder_than_given
 from motiondiff_edu.motion.skeleton import JOINTS, TOES
 
@@ -70,7 +70,8 @@ def test_a_figure_that_stands_and_moves_glides():
 
 
 def test_a_glide_is_drawn_again_until_a_figure_steps():
-    glides, stands, drawn = standing(speed=1.0), standing(), []
+    glides, stands = standing(speed=1.0), standing()
+    drawn = []
 
     def again(how):
         drawn.append(how)

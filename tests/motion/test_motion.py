@@ -184,7 +184,7 @@ def test_bvh_there_and_back_within_its_rounding(tmp_path, capsys):
     """The file holds centimetres and degrees with six digits; the figure stands where it stood."""
     given = walking()
     back = read_motion(given.save(tmp_path / "m.bvh"))
-    assert "joints shifted by" in capsys.readouterr().out
+    assert "the joints exactly where they were" in capsys.readouterr().out
     assert len(back) == 37 and back.source == "m"
     np.testing.assert_allclose(back.positions, given.positions, atol=1e-6)
     np.testing.assert_allclose(

@@ -28,6 +28,8 @@ END_SITES = {  # metres, so that programs draw toes, hands and head
     "RightHandIndex1": (-0.08, 0.0, 0.0),
 }
 
+EXACT = 0.01  # mm: less is not worth a word
+
 
 @dataclass(frozen=True, eq=False)
 class FitReport:
@@ -53,9 +55,12 @@ class FitReport:
         return float(self.shift_mm.max())
 
     def __str__(self) -> str:
+        begin = f"{self.path or 'fit'}: {len(self.positions)} frames"
+        if self.max_mm < EXACT:
+            return f"{begin}, the joints exactly where they were"
         frame, joint = np.unravel_index(int(self.shift_mm.argmax()), self.shift_mm.shape)
         return (
-            f"{self.path or 'fit'}: {len(self.positions)} frames, bones made constant; joints "
+            f"{begin}, bones made constant; joints "
             f"shifted by {self.mean_mm:.2f} mm on average, "
             f"{self.max_mm:.2f} mm at most ({JOINTS[joint]}, frame {frame})"
         )
