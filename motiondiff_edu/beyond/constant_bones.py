@@ -2,7 +2,8 @@
 
 A network's joints are free points, so its bones are only nearly right. Here the generated joints
 are moved until every bone has the length that it has where it is given. Given joints stay where
-they are.
+they are. Errors and seams stay as they are; only the bones gain.
+Gain: docs/RESULTS.md, *In-betweens* (`inbetween-departures.no-bones.*`).
 Source: position-based dynamics (Müller and others, 2007), distances only; MoFusion eq. 6 has the
 same aim, as a loss.
 """

@@ -2,6 +2,7 @@
 
 A network's feet slide by centimetres in each frame, and that is the first fault a viewer sees. Only
 legs are moved, and no given joint. Leave the foot lock out for motions that glide on purpose.
+Gain: docs/RESULTS.md, *In-betweens* (`inbetween-departures.no-feet.*`).
 Source: foot-skate cleanup for motion capture (Kovar and others, 2002), shortened.
 """
 
@@ -15,10 +16,8 @@ from ..motion.planting import runs
 from ..motion.skeleton import HEELS, TOES
 
 FADE = 6  # frames
-LOW, SLOW = (
-    0.05,
-    1.0,
-)  # m above the floor and m/s: a toe under both counts as standing, even if it slides
+# m above the floor, and m/s: a toe under both counts as standing, even if it slides
+LOW, SLOW = 0.05, 1.0
 FLOOR = 5  # percentile of a toe's height
 
 

@@ -4,7 +4,9 @@ A window's past and control are encoded once and denoised at several diffusion s
 
 Encoding dominates the cost of a training step of MoDiff, and does not depend on s. So `repeated`
 takes every window several times, and `SharedEncoding` encodes it once. The loss is the same; with
-two noises it takes about half the time. Ours: in Algorithm 1 each window has one step.
+two noises a step takes about seven tenths of the time of one on twice as many windows.
+Gain: docs/RESULTS_ALL.md (`bench.shared_encoding_over_apart`).
+Ours: in Algorithm 1 each window has one step.
 Notebook: 07
 """
 

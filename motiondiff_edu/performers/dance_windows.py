@@ -127,19 +127,10 @@ class DanceWindows:
         )
 
     def draw(
-        self, batch: int, generator: torch.Generator, gain_noise: float = 0.0
+        self, batch: int, generator: torch.Generator
     ) -> tuple[Float[Tensor, "B T D"], Float[Tensor, "B M C"], Bool[Tensor, "B T 2"]]:
-        """A random batch: motion, music, and which feet are planted.
-
-        `gain_noise` changes the music's level and its balance of low and high frequencies at random
-        from window to window, as different loudspeakers do. It is the standard deviation of that
-        change, in units of the standardised log-Mel.
-        """
-        motion, mel, stands = self.take(torch.randint(len(self), (batch,), generator=generator))
-        if gain_noise:
-            level, tilt = gain_noise * torch.randn(2, batch, 1, 1, generator=generator)
-            mel = mel + level + tilt * torch.linspace(-1, 1, mel.shape[-1])
-        return motion, mel, stands
+        """A random batch: motion, music, and which feet are planted."""
+        return self.take(torch.randint(len(self), (batch,), generator=generator))
 
 
 def toes_moved(windows: DanceWindows, samples: int = 1000) -> float:

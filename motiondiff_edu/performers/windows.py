@@ -76,19 +76,12 @@ class Windows:
         )
 
     def draw(
-        self, batch: int, generator: torch.Generator, held: float = 0.5
+        self, batch: int, generator: torch.Generator
     ) -> tuple[Float[Tensor, "B T_h D"], Float[Tensor, "B T_p D"], Float[Tensor, "B T C"]]:
-        """A random batch (past, future, control).
-
-        A fraction `held` of the batch holds control[T_h - 1] over the future.
-        """
+        """A random batch (past, future, control)."""
         chosen = torch.randint(len(self.starts), (batch,), generator=generator)
         rows = self.starts[chosen][:, None] + torch.arange(self.T_h + self.T_p)
         poses, control = self.poses[rows], self.control[rows]
-        hold = torch.rand(batch, generator=generator) < held
-        control[:, self.T_h :] = torch.where(
-            hold[:, None, None], control[:, self.T_h - 1 : self.T_h], control[:, self.T_h :]
-        )
         return poses[:, : self.T_h], poses[:, self.T_h :], control
 
 

@@ -43,7 +43,7 @@ class DanceRecipe:
     steps: int
     kinematic: KinematicWeights | None = None
     loss_weights: DanceLossWeights = DanceLossWeights()
-    gain_noise: float = 0.0  # random level and balance of the music: `DanceWindows.draw`
+    gain_noise: float = 0.0  # `beyond.gain_noise`
     snr: float = 1.0  # factor on the signal-to-noise ratio of the cosine schedule
     frames: int = 100  # per window
     lr: float = 3e-3

@@ -12,6 +12,7 @@ from torch import Tensor, nn
 from .._files import digest_of_tensors
 from ..baselines.regression import regression_loss
 from ..beyond import loss_terms
+from ..beyond.gain_noise import gain_noise
 from ..beyond.schedules import shifted
 from ..conditions.music import log_mel
 from ..ddpm import Schedule, cosine_schedule, squared_error
@@ -101,8 +102,7 @@ def loss_of(recipe: DanceRecipe, windows: DanceWindows, schedule: Schedule) -> L
 
     def loss_fn(model: nn.Module, generator: torch.Generator) -> Tensor:
         device = next(model.parameters()).device
-        drawn = windows.draw(recipe.batch, generator, recipe.gain_noise)
-        x0, mel, planted = (part.to(device) for part in drawn)
+        x0, mel, planted = (part.to(device) for part in drawn(recipe, windows, generator))
         music = model.listen(mel, windows.mel_times.to(device)) if model.config.C else None
         body = body_of(windows.motion_scaler.to(device))
 
@@ -122,12 +122,20 @@ def loss_of(recipe: DanceRecipe, windows: DanceWindows, schedule: Schedule) -> L
     return loss_fn
 
 
+def drawn(recipe: DanceRecipe, windows: DanceWindows, generator: torch.Generator) -> tuple:
+    """A random batch: motion, music (with the recipe's gain noise), and which feet are planted."""
+    motion, mel, planted = windows.draw(recipe.batch, generator)
+    if recipe.gain_noise:
+        mel = gain_noise(mel, recipe.gain_noise, generator)
+    return motion, mel, planted
+
+
 def regression_loss_of(recipe: DanceRecipe, windows: DanceWindows) -> LossFn:
     """The loss of a regression, which gets neither noise nor a step."""
 
     def loss_fn(model: nn.Module, generator: torch.Generator) -> Tensor:
         device = next(model.parameters()).device
-        x0, mel, _ = windows.draw(recipe.batch, generator, recipe.gain_noise)
+        x0, mel, _ = drawn(recipe, windows, generator)
         times = windows.mel_times.to(device)
         return regression_loss(model, x0.to(device), mel.to(device), times)
 

@@ -14,6 +14,7 @@ from torch import Tensor, nn
 from .._files import digest_of_tensors
 from ..beyond import loss_terms
 from ..beyond.footholds import CleanFootholds, FootholdConfig
+from ..beyond.held_control import held_control
 from ..beyond.noised_past_weight import NoisedPastWeight
 from ..beyond.past_noise import past_noise
 from ..beyond.schedules import SCHEDULES
@@ -121,7 +122,8 @@ def loss_of(
 
     def loss_fn(model: nn.Module, generator: torch.Generator) -> Tensor:
         device = next(model.parameters()).device
-        past, x0, control = windows.draw(recipe.batch, generator, recipe.held_control)
+        past, x0, control = windows.draw(recipe.batch, generator)
+        control = held_control(control, windows.T_h, recipe.held_control, generator)
         noised = past
         if recipe.past_noise:
             noised = past_noise(past, recipe.past_noise, change[0], generator)

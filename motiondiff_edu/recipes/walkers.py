@@ -46,7 +46,7 @@ class Recipe:
     optimizer: str = "adam"  # or "muon": `recipes.muon`
     batch: int = 64  # windows a step
     noises: int = 1  # diffusion steps drawn for each window: `beyond.shared_encoding`
-    held_control: float = 0.5  # share of the windows that hold the control over the future
+    held_control: float = 0.5  # share of the windows: `beyond.held_control`
     past_noise: float = 0.0  # standard deviations: `beyond.past_noise`
     foot_noise: float = 0.05  # fraction of it under the held feet: `beyond.footholds`
     loss_weights: LossWeights = LossWeights()

@@ -26,8 +26,8 @@ def windows() -> Windows:
     )
 
 
-def metres(windows: Windows, batch: int = 400, held: float = 0.5):
-    past, future, control = windows.draw(batch, torch.Generator().manual_seed(1), held)
+def metres(windows: Windows, batch: int = 400):
+    past, future, control = windows.draw(batch, torch.Generator().manual_seed(1))
     back = windows.pose_scaler.inverse
     return back(past)[..., 0], back(future)[..., 0], windows.control_scaler.inverse(control)[..., 0]
 
@@ -45,22 +45,9 @@ def test_a_window_never_crosses_two_clips(windows: Windows):
     )  # the clip of 5 frames is too short
 
 
-def test_control_lies_beside_its_pose_and_half_is_held(windows: Windows):
+def test_control_lies_beside_its_pose(windows: Windows):
     past, future, control = metres(windows)
-    assert torch.allclose(control[:, :T_H], past, atol=0.01)
-    held = (control[:, T_H:] - control[:, T_H - 1 : T_H]).abs().amax(1) < 0.01
-    assert torch.allclose(control[~held][:, T_H:], future[~held], atol=0.01)
-    assert 0.4 < held.float().mean() < 0.6
-    for share in (0.0, 1.0):
-        _, _, control = metres(windows, held=share)
-        is_held = (control[:, T_H:] - control[:, T_H - 1 : T_H]).abs().amax(1) < 0.01
-        assert is_held.float().mean() == share
-
-
-def test_drawing_a_held_batch_leaves_the_data_alone(windows: Windows):
-    before = windows.control.clone()
-    windows.draw(50, torch.Generator().manual_seed(2), held=1.0)
-    assert torch.equal(windows.control, before)
+    assert torch.allclose(control, torch.cat([past, future], 1), atol=0.01)
 
 
 def test_scalers_standardise_and_lead_back(windows: Windows):

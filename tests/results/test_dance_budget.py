@@ -53,6 +53,7 @@ def test_each_variant_differs_from_its_base_in_what_its_words_say():
         "snr": {"kinematic"},
         "slide": {"kinematic"},
         "cosine": {"snr"},
+        "gain-noise": {"gain_noise"},
         "linear-music": {"config.music_layers"},
         "mfcc": {"config.C"},
         "regression": {"config.deterministic"},

@@ -7,9 +7,11 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+import torch
 
+from motiondiff_edu.metrics.bone_lengths import bone_lengths
 from motiondiff_edu.metrics.keyframes import npss
-from tools.results.inbetweens import inbetween
+from tools.results.inbetweens import departures, inbetween
 from tools.results.inbetweens.inbetween import (
     GAPS,
     Filled,
@@ -149,3 +151,37 @@ def test_every_way_is_asked_for_what_it_is_for(monkeypatch, truth):
     assert all(set(one.options) == {"steps", "generator"} and one.samples == 3 for one in usual)
     assert all(one.options["departures"] == inbetween.PAPER for one in paper)
     assert not any(one.known.any() for one in free)
+
+
+def test_departures_are_measured_on_the_same_noise_one_left_out_at_a_time(monkeypatch):
+    """The network is replaced by one that stretches the gap where bones may change, and errs."""
+    asked = []
+
+    def made(dancer, positions, known, *, samples, steps, departures, generator):
+        asked.append((departures, torch.rand(1, generator=generator).item()))
+        whole = np.array(left.pop(0))
+        hole = ~known.any(1)
+        whole[hole] *= 1.0 if departures.bones else 1.1
+        whole[hole] += [0.0, 0.0, 0.01 if departures.guidance else 0.03]
+        return np.stack([whole] * samples)
+
+    size = InbetweenSize(motions=2, samples=2)
+    truth = inbetween.trials(2)
+    left = [one for _ in departures.ROWS for one in truth]
+    monkeypatch.setattr(departures, "inbetween", made)
+    found = {
+        one["name"].removeprefix("inbetween-departures."): one["value"]
+        for one in departures.departure_records(None, "digest", size, "a command")
+    }
+    assert len(asked) == 2 * len(departures.ROWS)
+    for k, (_, how) in enumerate(departures.ROWS.values()):
+        assert asked[2 * k][0] == asked[2 * k + 1][0] == how
+        assert [noise for _, noise in asked[2 * k : 2 * k + 2]] == [noise for _, noise in asked[:2]]
+    assert found["ours.error_one_cm"] == pytest.approx(1.0)
+    assert found["no-guidance.error_one_cm"] == pytest.approx(3.0)
+    assert found["no-guidance.error_one_minus_ours_cm"] == pytest.approx(2.0)
+    lengths = 100 * bone_lengths(truth[:, ~middle(departures.GAP).any(1)])
+    tenth = 0.1 * np.sqrt((lengths**2).mean())
+    assert found["no-bones.bone_rmse_cm"] == pytest.approx(tenth, rel=0.01)
+    assert found["ours.bone_rmse_cm"] < 0.01 < found["paper.bone_rmse_cm"]
+    assert len({how for _, how in departures.ROWS.values()}) == len(departures.ROWS)

@@ -5,13 +5,13 @@
 Parts: walker, walker-plain, walker-printed, walker-eps, walker-ddim10, walker-lookahead,
 walker-eps-lookahead, footsteps; dancer, dancer-plain, regression, unheard (music like none in
 training), attention, dance-time; mend (dropout and repairs), mend-both (both papers' repairs),
-inbetween, known-answer (methods of filling in, on tasks whose answer is a formula). These parts
-train, for minutes a row: ladder (from the paper's walker to ours), budget, dance-budget and
-mend-map. One row of them is a part as well: budget.T_p-5, dance-budget.v. Without --only, all parts
-are measured for which there are shipped weights. --full adds the parts that train; otherwise their
-records stay as they are. A training that was killed continues. --quick measures little, into
-build/quick, and is for trying the code. --render only writes docs/RESULTS.md from the existing
-records.
+inbetween, inbetween-departures (what each is worth), known-answer (methods of filling in, on tasks
+whose answer is a formula). These parts train, for minutes a row: ladder (from the paper's walker to
+ours), budget, dance-budget and mend-map. One row of them is a part as well: budget.T_p-5,
+dance-budget.v. Without --only, all parts are measured for which there are shipped weights. --full
+adds the parts that train; otherwise their records stay as they are. A training that was killed
+continues. --quick measures little, into build/quick, and is for trying the code. --render only
+writes docs/RESULTS.md from the existing records.
 """
 
 import argparse
@@ -27,7 +27,7 @@ from .dances import budget as dance_budget
 from .dances.attention import attention_picture, attention_records
 from .dances.parts import DANCE_FULL, DANCE_QUICK, DANCES, Stage, dance_records
 from .dances.timing import TIMED, time_records
-from .inbetweens import inbetween, known_answer
+from .inbetweens import departures, inbetween, known_answer
 from .page.cards import add_metrics
 from .page.render import render
 from .repairs import both, dropout, mend, repair
@@ -55,6 +55,7 @@ MENDED = {  # parts that need these weights
     "mend": {"walker", "walker-plain", *names_of("plain"), *names_of("dropout")},
     "mend-both": {both.WALKER, "unconditional"},
     "inbetween": {"unconditional"},
+    "inbetween-departures": {"unconditional"},
 }
 TRAINED = {
     "ladder": ("pace", "rates", *ladder.CELLS),
@@ -180,12 +181,13 @@ def records_of(
         return dropout.map_records(row, size, bench.trials, runs, command)
     if part == "mend":
         return mend.records(bench, repair.QUICK if quick else repair.FULL, command)
-    if part == "inbetween":
+    if part.startswith("inbetween"):
         dancer = stage.dancer("unconditional")
         digest = weights_digest(stage.weights["unconditional"])
-        return inbetween.inbetween_records(
-            dancer, digest, inbetween.QUICK if quick else inbetween.FULL, command
-        )
+        size = inbetween.QUICK if quick else inbetween.FULL
+        if part == "inbetween":
+            return inbetween.inbetween_records(dancer, digest, size, command)
+        return departures.departure_records(dancer, digest, size, command)
     if part == "mend-both":
         size = repair.QUICK if quick else repair.FULL
         return both.both_records(bench, stage.dancer("unconditional"), size, command)

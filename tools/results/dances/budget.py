@@ -77,6 +77,7 @@ VARIANTS = {
     ),
     "slide": ("a foot loss of 2", "alpha_bar", X0, {"kinematic": replace(KINEMATIC, slide=2.0)}),
     "cosine": ("the cosine schedule as it is", "x0", X0, {"snr": 1.0}),
+    "gain-noise": ("music as from different loudspeakers", "x0", X0, {"gain_noise": 0.3}),
     "linear-music": ("one linear layer for the music", "x0", replace(X0, music_layers=0), {}),
     "transformer": ("a plain transformer of equal size", "x0", PLAIN, {}),
     "mfcc": ("MFCC and the true beats instead of Mel", "x0", replace(X0, C=CHANNELS), {}),
@@ -114,7 +115,7 @@ def recipe_of(name: str, budget: Budget) -> DanceRecipe:
     sizes = {
         key: getattr(budget, key) for key in ("steps", "songs", "seconds", "batch", "save_every")
     }
-    settings = sizes | settings | {"config": config, "gain_noise": 0.0}
+    settings = sizes | {"config": config, "gain_noise": 0.0} | settings
     return replace(DANCER_PLAIN, name=f"dance-budget.{name}", **settings)
 
 

@@ -242,7 +242,7 @@ def others(records: dict[str, dict]) -> str:
         "dance-time.",
         "attention.",
     )
-    shown += ("mend", "known-answer.", "inbetween.")
+    shown += ("mend", "known-answer.", "inbetween.", "inbetween-departures.")
     rest = [one for name, one in sorted(records.items()) if not name.startswith(shown)]
     rows = [
         [f"`{r['name']}`", number(r["value"]), span(r), r["unit"], f"`{r['command']}`"]

@@ -10,6 +10,7 @@ import numpy as np
 from motiondiff_edu._files import replacing
 from motiondiff_edu.viz.gaps_and_faults import by_fault, over_gaps, rate_map
 
+from ..inbetweens.departures import ROWS
 from ..inbetweens.inbetween import GAPS
 from ..page.markdown import cell, number, table
 from .dropout import MEASURES, RATES, SHARES, SHIPPED_PAIR, SMALL_PAIRS
@@ -156,7 +157,35 @@ def inbetweens(records: dict[str, dict], folder: Path) -> str:
         "gap](results/inbetween.png)\n"
     )
     head = ["gap, frames", *(named.get(kind, f"`{kind}`") for kind in kinds)]
-    return text + table(head, rows) + picture * (folder / "inbetween.png").exists()
+    shown = text + table(head, rows) + picture * (folder / "inbetween.png").exists()
+    return shown + in_between_departures(records)
+
+
+DEPARTURES = {
+    "error_one_cm": "error of a sample",
+    "error_one_minus_ours_cm": "minus that of all",
+    "seam_jump_over_data": "jump at the seam over the data's",
+    "bone_rmse_cm": "bone error",
+    "skating_mps": "sliding of planted feet",
+    "skating_minus_ours_mps": "minus that of all",
+}
+
+
+def in_between_departures(records: dict[str, dict]) -> str:
+    """What each departure from masked sampling gains: all of them, and all but one."""
+    first = records.get("inbetween-departures.ours.error_one_cm")
+    if first is None:
+        return ""
+    rows = [
+        [words, *(cell(records.get(f"inbetween-departures.{name}.{kind}")) for kind in DEPARTURES)]
+        for name, (words, _) in ROWS.items()
+    ]
+    text = (
+        "\n### What each departure is worth\n\nThe same gaps of "
+        f"{first['seeds']['gap']} frames, motions and noise in every row; one departure is left "
+        "out at a time. Bone errors are those of the generated frames against the given ones.\n\n"
+    )
+    return text + table(["", *DEPARTURES.values()], rows)
 
 
 def draw(records: dict[str, dict], folder: Path) -> None:
