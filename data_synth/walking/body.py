@@ -103,7 +103,7 @@ def _hips(gait: Gait, forward, lean_shift, rows, noise, style, fps):
         * (1 - 0.5 * run)
     )
     height = (
-        legs.pelvis_height(gait.clock, amount, forward, run, gait.speed, style)
+        legs.pelvis_height(gait.clock, amount, run, gait.speed, style)
         + 0.0022 * noise[:, 3]
         - 0.14 * np.abs(lean_shift)
     )

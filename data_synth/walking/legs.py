@@ -44,7 +44,14 @@ def heel_rise(behind: Float[np.ndarray, "*T"]) -> Float[np.ndarray, "*T"]:
     return 190 * softplus(behind - 0.18, 0.02)
 
 
-def place_feet(steps: Steps, root_xz, heading, forward, run, style: Style) -> Feet:
+def place_feet(
+    steps: Steps,
+    root_xz: Float[np.ndarray, "T 2"],
+    heading: Float[np.ndarray, "T"],
+    forward: Float[np.ndarray, "T"],
+    run: Float[np.ndarray, "T"],
+    style: Style,
+) -> Feet:
     """Roll each foot about its heel or its toe, and lift it in between.
 
     About the heel after landing, about the toe before leaving.
@@ -83,7 +90,15 @@ def _clear(steps: Steps, x: np.ndarray) -> np.ndarray:
     return short * np.sin(np.pi * np.clip(steps.progress - 1, 0, 1)) ** 2 * np.array([1.0, -1.0])
 
 
-def _roll(steps: Steps, x, z, yaw, forward, run, style: Style):
+def _roll(
+    steps: Steps,
+    x: Float[np.ndarray, "T 2"],
+    z: Float[np.ndarray, "T 2"],
+    yaw: Float[np.ndarray, "T 2"],
+    forward: Float[np.ndarray, "T 1"],
+    run: Float[np.ndarray, "T 1"],
+    style: Style,
+) -> tuple[Float[np.ndarray, "T 2"], Float[np.ndarray, "T 2"], Float[np.ndarray, "T 2"]]:
     """Pitch (radians, heel up), pivot (0 toe, 1 heel) and height of the pivot, for both feet."""
     progress = steps.progress
     curve = foot_pitch(progress, run)
@@ -101,7 +116,13 @@ def _roll(steps: Steps, x, z, yaw, forward, run, style: Style):
     return np.radians(degrees), pivot, lift
 
 
-def pelvis_height(clock, amount, forward, run, speed, style: Style) -> Float[np.ndarray, "T"]:
+def pelvis_height(
+    clock: Float[np.ndarray, "T"],
+    amount: Float[np.ndarray, "T"],
+    run: Float[np.ndarray, "T"],
+    speed: Float[np.ndarray, "T"],
+    style: Style,
+) -> Float[np.ndarray, "T"]:
     """Height of the Hips joint before the reach of the legs limits it.
 
     It is highest at mid-stance, and lower at higher speed.
@@ -113,7 +134,9 @@ def pelvis_height(clock, amount, forward, run, speed, style: Style) -> Float[np.
     return walk + wave * swing * (1 - run) + (bounce + 0.024) * run - style.crouch * (1 - 0.7 * run)
 
 
-def pelvis_rotation(yaw, roll, pitch) -> Float[np.ndarray, "T 3 3"]:
+def pelvis_rotation(
+    yaw: Float[np.ndarray, "T"], roll: Float[np.ndarray, "T"], pitch: Float[np.ndarray, "T"]
+) -> Float[np.ndarray, "T 3 3"]:
     """Rotation of the pelvis: yaw counter-clockwise, roll left side up, pitch forward (radians)."""
     return rot_y(yaw) @ rot_z(roll) @ rot_x(pitch)
 

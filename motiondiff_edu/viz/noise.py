@@ -7,7 +7,9 @@ see.
 from collections.abc import Sequence
 
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from numpy.typing import ArrayLike
 
 from .style import DASHES, OKABE_ITO, add_caption, figure, legend
 
@@ -23,7 +25,7 @@ def panels(
     *,
     share: str = "",
     widths: Sequence[float] | None = None,
-):
+) -> tuple[Figure, list[Axes]]:
     """A figure of n panels side by side, and its axes; `finish` adds the caption.
 
     `share` and `widths` are as in `style.figure`.
@@ -41,14 +43,14 @@ def finish(fig: Figure, words: str, labels: tuple[str, str] | None = None) -> Fi
 
 
 def lines(
-    x,
+    x: ArrayLike,
     curves: dict,
     caption: str,
     labels: tuple[str, str],
     *,
-    log=(False, False),
+    log: tuple[bool, bool] = (False, False),
     marks: dict | None = None,
-    ylim=None,
+    ylim: tuple[float, float] | None = None,
 ) -> Figure:
     """Several named curves over x; `marks` are named horizontal lines."""
     fig, (axis,) = panels()
@@ -81,7 +83,14 @@ def lines(
 
 
 def noised_curve(
-    seconds, clean, noised, s: int, signal: float, caption: str | None = None, *, name: str
+    seconds: ArrayLike,
+    clean: ArrayLike,
+    noised: ArrayLike,
+    s: int,
+    signal: float,
+    caption: str | None = None,
+    *,
+    name: str,
 ) -> Figure:
     """One coordinate over time, clean and at diffusion step s; `name` labels its axis.
 
@@ -104,7 +113,9 @@ def noised_curve(
     return finish(fig, caption, ("time (s)", name))
 
 
-def noise_ladder(seconds, clean, noised: dict, caption: str, *, name: str) -> Figure:
+def noise_ladder(
+    seconds: ArrayLike, clean: ArrayLike, noised: dict, caption: str, *, name: str
+) -> Figure:
     """The curve `name` at several diffusion steps, side by side: {s: x_s}."""
     fig, axes = panels(len(noised), width=11, height=2.9, share="y")
     for axis, (s, curve) in zip(axes, noised.items(), strict=True):
@@ -115,7 +126,12 @@ def noise_ladder(seconds, clean, noised: dict, caption: str, *, name: str) -> Fi
 
 
 def densities(
-    grid, curves: dict, caption: str, labels=("value", "density"), *, points: dict | None = None
+    grid: ArrayLike,
+    curves: dict,
+    caption: str,
+    labels: tuple[str, str] = ("value", "density"),
+    *,
+    points: dict | None = None,
 ) -> Figure:
     """Named densities over one grid, lightly filled; `points` are named values on the axis."""
     fig, (axis,) = panels()
@@ -139,7 +155,12 @@ def densities(
 
 
 def histograms(
-    samples: dict, grid, density, caption: str, label: str = "value", top: float = 1.35
+    samples: dict,
+    grid: ArrayLike,
+    density: ArrayLike,
+    caption: str,
+    label: str = "value",
+    top: float = 1.35,
 ) -> Figure:
     """A histogram for each named set of samples, each under the same exact density.
 
@@ -156,7 +177,15 @@ def histograms(
     return finish(fig, caption, (label, "density"))
 
 
-def paths(steps, x, grid, at_start, at_end, caption: str, show: int = 60) -> Figure:
+def paths(
+    steps: ArrayLike,
+    x: ArrayLike,
+    grid: ArrayLike,
+    at_start: ArrayLike,
+    at_end: ArrayLike,
+    caption: str,
+    show: int = 60,
+) -> Figure:
     """Sampling paths x (steps, n) from noise on the left to samples on the right.
 
     Each end has a density.
@@ -182,7 +211,9 @@ def paths(steps, x, grid, at_start, at_end, caption: str, show: int = 60) -> Fig
     return finish(fig, caption)
 
 
-def one_moment(grid, density, values, guesses, s: int, caption: str) -> Figure:
+def one_moment(
+    grid: ArrayLike, density: ArrayLike, values: ArrayLike, guesses: ArrayLike, s: int, caption: str
+) -> Figure:
     """All samples at one step: the values of x_s, and the denoiser's guesses of x0."""
     fig, (left, right) = panels(2, width=10, height=3.4, share="y")
     shown = {"bins": 90, "range": (float(grid[0]), float(grid[-1])), "density": True, "alpha": 0.5}
@@ -197,7 +228,7 @@ def one_moment(grid, density, values, guesses, s: int, caption: str) -> Figure:
     return finish(fig, caption, ("value", "density"))
 
 
-def bound(terms, exact: float, caption: str) -> Figure:
+def bound(terms: ArrayLike, exact: float, caption: str) -> Figure:
     """Terms of the negative bound over s, and their running sum with -E log q(x0).
 
     terms[0] is the term of the prior.
@@ -218,7 +249,7 @@ def bound(terms, exact: float, caption: str) -> Figure:
     return finish(fig, caption, ("diffusion step s", "nats"))
 
 
-def maps(start, ends: dict, caption: str) -> Figure:
+def maps(start: ArrayLike, ends: dict, caption: str) -> Figure:
     """The sample of each starting noise, for several samplers side by side: {name: samples}."""
     fig, axes = panels(len(ends), width=4.4 * len(ends), height=3.6, share="y")
     for axis, (name, end), colour in zip(axes, ends.items(), COLOURS, strict=False):

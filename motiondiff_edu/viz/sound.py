@@ -6,6 +6,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter
+from numpy.typing import ArrayLike
 
 from .style import DASHES, OKABE_ITO, figure, legend
 
@@ -13,13 +14,13 @@ BLUE, ORANGE, GREEN, PURPLE, YELLOW, SKY, INK = OKABE_ITO[:7]
 HEAT = "magma"
 
 
-def _beats(axis: Axes, beats, low: float, high: float, colour: str, name: str) -> None:
+def _beats(axis: Axes, beats: Sequence, low: float, high: float, colour: str, name: str) -> None:
     """Dashed lines at the beats within the plot; the first one has a name in the legend."""
     for i, beat in enumerate(beat for beat in beats if low <= beat <= high):
         axis.axvline(beat, color=colour, lw=1.5, ls="--", label=name if i == 0 else None)
 
 
-def waveform(seconds, audio, caption: str, beats: Sequence = ()) -> Figure:
+def waveform(seconds: ArrayLike, audio: ArrayLike, caption: str, beats: Sequence = ()) -> Figure:
     """Samples over time, with lines at the beats."""
     fig, (axis,) = figure(10, 2.8, caption)
     axis.plot(seconds, audio, color=BLUE, lw=0.7)
@@ -32,7 +33,7 @@ def waveform(seconds, audio, caption: str, beats: Sequence = ()) -> Figure:
 
 
 def spectra(
-    hz, curves: Mapping[str, np.ndarray], caption: str, *, mark: float | None = None
+    hz: ArrayLike, curves: Mapping[str, np.ndarray], caption: str, *, mark: float | None = None
 ) -> Figure:
     """Magnitude spectra in decibels, relative to the loudest bin of each."""
     fig, (axis,) = figure(9, 3.4, caption)
@@ -56,7 +57,7 @@ def spectra(
     return fig
 
 
-def filters(hz, triangles, caption: str, every: int = 1) -> Figure:
+def filters(hz: ArrayLike, triangles: ArrayLike, caption: str, every: int = 1) -> Figure:
     """Filters (bands, bins) over frequency, one in `every`, each in its own colour."""
     fig, (axis,) = figure(10, 3.2, caption)
     for i, band in enumerate(np.asarray(triangles)[::every]):
@@ -70,9 +71,9 @@ def filters(hz, triangles, caption: str, every: int = 1) -> Figure:
 
 
 def spectrogram(
-    seconds,
-    frequencies,
-    values,
+    seconds: ArrayLike,
+    frequencies: ArrayLike,
+    values: ArrayLike,
     caption: str,
     *,
     beats: Sequence = (),
@@ -93,7 +94,13 @@ def spectrogram(
 
 
 def mel_spectrogram(
-    seconds, centres, values, caption: str, *, beats: Sequence = (), title: str = ""
+    seconds: ArrayLike,
+    centres: ArrayLike,
+    values: ArrayLike,
+    caption: str,
+    *,
+    beats: Sequence = (),
+    title: str = "",
 ) -> Figure:
     """Log-Mel values (M, bands) as colours, one row for each band; `centres` are in Hz."""
     fig, (axis,) = figure(10, 3.6, caption)
@@ -106,7 +113,7 @@ def mel_spectrogram(
     return fig
 
 
-def _heat(fig: Figure, axis: Axes, seconds, rows, values) -> None:
+def _heat(fig: Figure, axis: Axes, seconds: ArrayLike, rows: ArrayLike, values: ArrayLike) -> None:
     image = axis.pcolormesh(
         seconds, rows, np.asarray(values).T, cmap=HEAT, shading="nearest", rasterized=True
     )
@@ -116,7 +123,7 @@ def _heat(fig: Figure, axis: Axes, seconds, rows, values) -> None:
     axis.set_ylabel("frequency (Hz)")
 
 
-def two_clocks(seconds, errors: Mapping[str, np.ndarray], caption: str) -> Figure:
+def two_clocks(seconds: ArrayLike, errors: Mapping[str, np.ndarray], caption: str) -> Figure:
     """The error in seconds of each way to match sound frames to motion frames, over time."""
     fig, (axis,) = figure(9, 3.2, caption)
     for i, (name, error) in enumerate(errors.items()):
@@ -127,7 +134,13 @@ def two_clocks(seconds, errors: Mapping[str, np.ndarray], caption: str) -> Figur
     return fig
 
 
-def onsets(seconds, strength, caption: str, beats: Sequence = (), found: Sequence = ()) -> Figure:
+def onsets(
+    seconds: ArrayLike,
+    strength: ArrayLike,
+    caption: str,
+    beats: Sequence = (),
+    found: Sequence = (),
+) -> Figure:
     """Onset strength over time, with true beats as lines and the tracker's beats as triangles."""
     fig, (axis,) = figure(10, 3, caption)
     axis.plot(seconds, strength, color=BLUE, lw=1.3, label="onset strength")
@@ -152,7 +165,13 @@ def onsets(seconds, strength, caption: str, beats: Sequence = (), found: Sequenc
 
 
 def tempogram(
-    seconds, tempi, values, tempo: float, caption: str, lowest: float = 30, highest: float = 320
+    seconds: ArrayLike,
+    tempi: ArrayLike,
+    values: ArrayLike,
+    tempo: float,
+    caption: str,
+    lowest: float = 30,
+    highest: float = 320,
 ) -> Figure:
     """How strongly onsets repeat at each tempo (values: tempi, M), over time and on average.
 

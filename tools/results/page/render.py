@@ -32,6 +32,9 @@ Our numbers stand beside the papers' for orientation: they do not reproduce them
 **[low, high]** is a 95 % bootstrap interval. It is taken over clips, for diversity over pasts, and
 for times over repetitions. Unless a section says otherwise it belongs to one training run: another
 training seed can change a number by more.
+
+**Control error** is how far the velocity of a walk is from the one asked for: the measure
+*adherence* of notebook 08, in m/s.
 """
 
 ALL = "RESULTS_ALL.md"
