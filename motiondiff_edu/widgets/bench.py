@@ -29,7 +29,7 @@ MODULE = module.joined(module.BENCH)
 _BYTES = ("joints", "roots", "mended_joints", "mended_roots")
 HEIGHT = 400  # pixels
 GHOST = "#009E73"  # as in js/bench_paint.js
-_STATE = ("scene", "first", "missing", "repaired", "said")
+_STATE = ("scene", "first", "missing", "repaired", "message")
 
 
 class Bench(anywidget.AnyWidget):
@@ -56,7 +56,7 @@ class Bench(anywidget.AnyWidget):
     repaired = traitlets.Dict().tag(sync=True)  # of which window and holes the repairs below are
     mended_joints = traitlets.Bytes().tag(sync=True)
     mended_roots = traitlets.Bytes().tag(sync=True)
-    said = traitlets.Unicode("").tag(sync=True)
+    message = traitlets.Unicode("").tag(sync=True)
 
     def __init__(
         self,
@@ -108,7 +108,7 @@ class Bench(anywidget.AnyWidget):
         """
         asked = {"first": self.first, "missing": list(self.missing)}
         for outcome in self.bench.mend(**asked):
-            self.said = outcome.words
+            self.message = outcome.words
         packed = packing.pack(list(outcome.motions))
         self.outcome = outcome
         with self.hold_sync():
@@ -126,7 +126,7 @@ class Bench(anywidget.AnyWidget):
             Exception
         ) as error:  # nobody sees what a callback raises, so it is shown in the widget
             known = isinstance(error, ValueError)
-            self.said = (
+            self.message = (
                 f"Not repaired: {error}."
                 if known
                 else f"Not repaired, {type(error).__name__}: {error}."
@@ -164,7 +164,7 @@ class Bench(anywidget.AnyWidget):
             f"A walk of {scene['frames'] / scene['fps']:.1f} s. In the window, frames {self.first} "
             f"to {last}, {len(self.missing)} of {self.bench.T_h * J} places of joints are missing."
         )
-        return f"{words} {self.said}" if self.shows_repairs else words
+        return f"{words} {self.message}" if self.shows_repairs else words
 
     def page(self) -> str:
         """A whole HTML page that plays the walk, mended where it was mended.

@@ -303,7 +303,7 @@ class Editor(anywidget.AnyWidget):
             self.poses = editor_page.poses_of(edit)
             self.state = editor_page.state_of(edit, made) | {
                 "message": words, "undo": len(self._past),
-                "heard": max(last.get("heard", 0), number or 0),
+                "received": max(last.get("received", 0), number or 0),
                 "edition": last.get("edition", 0) + 1,
                 "description": editor_page.described(edit, made, self._fps),
             }  # fmt: skip

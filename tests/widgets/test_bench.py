@@ -108,17 +108,16 @@ def test_the_words_are_the_librarys_figures():
 def test_asking_answers_and_says_what_cannot_be_done():
     widget = bench()
     widget.asked = 1  # nothing is knocked out
-    assert widget.said == "Not repaired: nothing is missing, so there is nothing to repair."
+    assert widget.message == "Not repaired: nothing is missing, so there is nothing to repair."
     assert widget.answered == 1 and widget.repaired == {}
     widget.missing = list(range(T_H * J))
     widget.asked = 2
-    assert (
-        "nothing is known, so the repair has no information" in widget.said and widget.answered == 2
-    )
+    assert "nothing is known, so the repair has no information" in widget.message
+    assert widget.answered == 2
     widget.missing = HAND
     widget.asked = 3
     assert (
-        widget.said.startswith("Round 2 of 2")
+        widget.message.startswith("Round 2 of 2")
         and widget.repaired["edition"] == 1
         and widget.answered == 3
     )
@@ -129,7 +128,7 @@ def test_a_walkers_failure_is_told_too(monkeypatch):
     widget.missing = HAND
     monkeypatch.setattr(Standing, "window_sampler", lambda self, steps: 1 / 0)
     widget.asked = 1
-    assert "ZeroDivisionError" in widget.said and widget.answered == 1
+    assert "ZeroDivisionError" in widget.message and widget.answered == 1
 
 
 def test_an_old_repair_no_longer_counts():
@@ -217,7 +216,7 @@ def test_thin_limbs_are_those_with_a_missing_end():
         assert (pictures[0] != pictures[1]).any() == differs
 
 
-STATE = ("scene", "first", "missing", "repaired", "said", "asked", "answered")
+STATE = ("scene", "first", "missing", "repaired", "message", "asked", "answered")
 SEND = """([state, binary]) => {
   const data = (s) => new DataView(Uint8Array.from(atob(s), (c) => c.charCodeAt(0)).buffer);
   for (const [name, value] of Object.entries(binary)) model.set(name, data(value));
@@ -250,7 +249,7 @@ class Table:
             name: base64.b64encode(getattr(self.widget, name)).decode()
             for name in ("mended_joints", "mended_roots")
         }
-        state = {name: getattr(self.widget, name) for name in ("said", "repaired", "answered")}
+        state = {name: getattr(self.widget, name) for name in ("message", "repaired", "answered")}
         self.page.evaluate(SEND, [state, binary])
 
     def click_joint(self, name: str) -> None:

@@ -136,7 +136,7 @@ def test_a_saved_file_reads_back_as_the_chosen_in_between(motion, tmp_path, caps
 
 
 def receive(editor, **content) -> str:
-    editor._receive(editor, {"number": editor.state["heard"] + 1, **content}, [])
+    editor._receive(editor, {"number": editor.state["received"] + 1, **content}, [])
     return editor.state["message"]
 
 
@@ -197,7 +197,7 @@ def test_errors_are_told_in_the_page_and_leave_it_at_rest(motion, tmp_path):
     assert receive(editor, do="generate", after=5).startswith(
         "Every frame is pinned, so there is nothing to generate. Release some."
     )
-    assert editor.state["heard"] == 6
+    assert editor.state["received"] == 6
 
 
 def test_a_press_while_another_is_answered_is_ignored(motion):

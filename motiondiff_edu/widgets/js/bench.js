@@ -430,8 +430,8 @@ export function mount(model, el, { fill = false } = {}) {
   });
   const changes = {
     "change:repaired": load,
-    "change:said": () => {
-      note.textContent = model.get("said");
+    "change:message": () => {
+      note.textContent = model.get("message");
     },
     "change:first": () => {
       first = model.get("first");
@@ -463,7 +463,7 @@ export function mount(model, el, { fill = false } = {}) {
   load();
   home();
   note.textContent = current().length
-    ? model.get("said")
+    ? model.get("message")
     : "Click a joint or a frame to remove it, then press Repair.";
   return () => {
     stop.abort();

@@ -188,7 +188,7 @@ export function mount(model, el, { fill = false } = {}) {
   let begun = 0; // Generate: the number of its message, and when
   const way = wire(
     model,
-    () => state.heard,
+    () => state.received,
     () => model.get("busy"),
     (gone) => {
       pressed = 0;
@@ -395,7 +395,7 @@ export function mount(model, el, { fill = false } = {}) {
     halt(frame);
     begun = performance.now();
     const wanted = { count: Number(count.value), resample: Number(strength.value) };
-    pressed = ask({ do: "generate", after: state.heard, ...wanted }, "");
+    pressed = ask({ do: "generate", after: state.received, ...wanted }, "");
     if (pressed) {
       words();
       count_up();
@@ -691,10 +691,10 @@ export function mount(model, el, { fill = false } = {}) {
 
   // ---- Python's changes
   const onState = () => {
-    const last_heard = state.heard;
+    const last_received = state.received;
     if (!load()) return;
-    if (state.heard !== last_heard || !pressed) say(state.message);
-    if (pressed && state.heard >= pressed) {
+    if (state.received !== last_received || !pressed) say(state.message);
+    if (pressed && state.received >= pressed) {
       pressed = 0;
       say(state.message);
     }

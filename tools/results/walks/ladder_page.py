@@ -9,11 +9,6 @@ from ..page.markdown import cell, table
 from .ladder import CELLS, CPU_SECONDS, MEASURES, PRINTED_RATE, RATES, SEEDS, TRIAL, root
 
 PICTURE = "ladder.png"
-# to be removed when these cells are trained again
-EARLIER_GATES = (
-    "The rows of `ours` and `ours-dropout` were measured before the foot gates got their present "
-    "constants (`beyond/footholds.py`: LEAN was 1.5, AWAY was 0). The other rows have no gates."
-)
 GROUPS = {"ours": "our recipe, one choice taken out", "printed": "the printed recipe, one added"}
 # one choice, taken out of ours and added to the printed recipe
 PAIRS = {
@@ -58,7 +53,6 @@ def section(records: dict[str, dict], folder: Path) -> str:
         "rate or Muon. The other rates were chosen for each of the two recipes and each optimiser: "
         f"the one of {', '.join(f'{rate:g}' for rate in RATES['muon'])} with the least loss on "
         f"validation clips after {TRIAL:.0%} of the budget.\n\n"
-        f"{EARLIER_GATES}\n\n"
     )
     head = ["recipe", "steps", "rate", *(WORDS[kind] for kind in MEASURES)]
     rows = []
