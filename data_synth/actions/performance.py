@@ -47,11 +47,12 @@ class Acted:
 
 @dataclass(frozen=True)
 class Slot:
-    """A phrase with its duration (seconds) and the period of its act on the spot."""
+    """A phrase with its duration and the periods of its acts, in seconds."""
 
     phrase: Phrase
     seconds: float
-    period: float  # of the legs' act on the spot, or of the arms' act
+    legs_period: float = 0.0  # of an act on the spot
+    arms_period: float = 0.0
 
     @property
     def legs(self) -> Act:
@@ -144,7 +145,7 @@ def scheduled(
         )
     elastic = [k for k, s in enumerate(slots) if s.kind == "way" and s.legs.verb != "turn"]
     if not elastic:
-        before = Slot(Phrase(STAND), float(left * rng.uniform(0.05, 0.6)), 0.0)
+        before = Slot(Phrase(STAND), float(left * rng.uniform(0.05, 0.6)))
         return [before, *slots] if before.seconds > 0.3 else slots
     shares = rng.dirichlet(np.full(len(elastic), 3.0))
     for k, share in zip(elastic, shares, strict=True):
@@ -155,17 +156,16 @@ def scheduled(
 def _slot(phrase: Phrase, rng: np.random.Generator) -> Slot:
     """The least duration of a phrase, and the period of its acts."""
     legs = phrase.legs or STAND
+    legs_period = arms_period = 0.0
     if VERBS[legs.verb].kind == "spot":
-        period = period_of(legs, rng)
-        need = legs.count * period
+        legs_period = period_of(legs, rng)
+        need = legs.count * legs_period
     else:
-        period = 0.0
         need = way.least_seconds(legs)
     if phrase.arms is not None:
-        own = period_of(phrase.arms, rng)
-        need = max(need, phrase.arms.count * own + arms.FADE)
-        period = period or own
-    return Slot(phrase, need, period)
+        arms_period = period_of(phrase.arms, rng)
+        need = max(need, phrase.arms.count * arms_period + arms.FADE)
+    return Slot(phrase, need, legs_period, arms_period)
 
 
 def period_of(act: Act, rng: np.random.Generator) -> float:
@@ -219,8 +219,8 @@ def _on_the_spot(block: list[Slot], standing: Standing, room: int | None, seed: 
     """(piece, frame at which the next block begins, spans within it, where the feet stand)."""
     timed, at = [], 0.05
     for slot in block:
-        timed.append(spot.Timed(slot.legs, at, slot.period))
-        at = timed[-1].last + max(0.0, slot.seconds - slot.legs.count * slot.period)
+        timed.append(spot.Timed(slot.legs, at, slot.legs_period))
+        at = timed[-1].last + max(0.0, slot.seconds - slot.legs.count * slot.legs_period)
     seconds = (room / FPS if room is not None else at) + JOIN + 0.2
     piece, after = spot.acted(timed, standing, seconds, seed)
     inner = [(one.first, one.last, one.act) for one in timed]
@@ -251,7 +251,7 @@ def _arms(slots: list[Slot], spans: list[Span], rng) -> list[arms.TimedArms]:
         act = slot.phrase.arms
         if act is None:
             continue
-        own = slot.period if slot.kind == "way" else period_of(act, rng)
+        own = slot.arms_period
         spare = max(0.0, clock - first - act.count * own - arms.FADE)
         begins = first + 0.5 * arms.FADE + spare * float(rng.uniform(0.1, 0.8))
         ends = begins + act.count * own
