@@ -194,19 +194,20 @@ def _first_stand(style, rng: np.random.Generator) -> Standing:
 def _on_the_way(block: list[Slot], state, style, rng, room: int | None, seed: int):
     """(piece, frame at which the next block begins, spans within the block)."""
     from_rest = isinstance(state, Standing)
-    targets, inner = [], []
+    goals, inner = [], []
     at = 0.0
     for slot in block:
-        goal = way.target(slot.legs, float(rng.uniform(0.92, 1.08)))
-        targets.append((goal, slot.seconds))
+        own = way.targets(slot.legs, float(rng.uniform(0.92, 1.08)), slot.seconds)
+        goals += own
         if slot.phrase.legs is not None:
-            inner.append((at, at + slot.seconds, slot.legs))
+            lasts = own[0][1] if slot.legs.verb == "turn" else slot.seconds
+            inner.append((at, at + lasts, slot.legs))
         at += slot.seconds
     if room is not None:  # the last block fills the clip; after a turn the figure stands
         spare = max(0.0, room / FPS - at) + 0.2
-        goal = (0.0, 0.0, 0.0) if block[-1].legs.verb == "turn" else targets[-1][0]
-        targets.append((goal, spare))
-    control = way.control_of(targets, from_rest, to_rest=room is None)
+        goal = way.STILL if block[-1].legs.verb == "turn" else goals[-1][0]
+        goals.append((goal, spare))
+    control = way.control_of(goals, from_rest, to_rest=room is None)
     piece = way.walked(control, state, style, seed, float(rng.random()))
     if room is not None:
         return piece, room, inner
@@ -248,6 +249,8 @@ def _arms(slots: list[Slot], spans: list[Span], rng) -> list[arms.TimedArms]:
         span = next(legs) if slot.phrase.legs is not None else None
         first = span.first if span else clock
         clock = span.last if span else clock + slot.seconds
+        if slot.legs.verb == "turn":  # after a turn the figure stands until the phrase ends
+            clock = max(clock, first + slot.seconds)
         act = slot.phrase.arms
         if act is None:
             continue

@@ -28,7 +28,7 @@ SPEEDS = {  # m/s: ahead or, for "aside", to a side
 }
 SHARES = {"neutral": 0.5, "brisk": 0.2, "tired": 0.12, "old": 0.08, "strut": 0.1}  # of styles
 TURNS = {"": 90.0, "around": 180.0}  # degrees
-TURNING = 1.75  # rad/s
+TURNING, SLOWEST_TURN = 1.75, 0.8  # rad/s
 RISE = (2.6, 1.6, 6.0)  # m/s^2 ahead and aside, rad/s^2
 SMOOTH = 0.12  # seconds
 TAIL = 4.5  # seconds without control, within which a walk comes to rest
@@ -70,15 +70,26 @@ def walker_of(rng: np.random.Generator) -> Style:
     return replace(person(STYLES[name], rng), behaviours=0.0)
 
 
-def target(act: Act, uneven: float) -> tuple[float, float, float]:
-    """The commanded velocity of an act: m/s ahead, m/s left, rad/s."""
+Goal = tuple[float, float, float]  # m/s ahead, m/s left, rad/s
+STILL: Goal = (0.0, 0.0, 0.0)
+
+
+def targets(act: Act, uneven: float, seconds: float) -> list[tuple[Goal, float]]:
+    """The commanded velocities of an act, and how long each lasts.
+
+    A turn has its angle, however long it has; if it has very long, the figure stands after it.
+    """
     sign = -1.0 if act.side == "right" else 1.0
     if act.verb == "turn":
-        return 0.0, 0.0, sign * TURNING
+        angle = np.radians(TURNS[act.direction])
+        rate = float(np.clip(angle / seconds, SLOWEST_TURN, TURNING))
+        turning = float(angle / rate)
+        rest = [(STILL, seconds - turning)] if seconds > turning else []
+        return [((0.0, 0.0, sign * rate), turning), *rest]
     if act.verb == "stand":
-        return 0.0, 0.0, 0.0
+        return [(STILL, seconds)]
     speed = SPEEDS[act.verb][act.speed] * uneven
-    return (0.0, sign * speed, 0.0) if act.verb == "aside" else (speed, 0.0, 0.0)
+    return [((0.0, sign * speed, 0.0) if act.verb == "aside" else (speed, 0.0, 0.0), seconds)]
 
 
 def least_seconds(act: Act) -> float:
@@ -89,19 +100,19 @@ def least_seconds(act: Act) -> float:
 
 
 def control_of(
-    targets: list[tuple[tuple[float, float, float], float]], from_rest: bool, to_rest: bool
+    goals: list[tuple[Goal, float]], from_rest: bool, to_rest: bool
 ) -> Float[np.ndarray, "T 3"]:
-    """The control of targets that last some seconds each, ramped and smoothed.
+    """The control of goals that last some seconds each, ramped and smoothed.
 
     `to_rest`: TAIL seconds without control follow.
     """
-    rows = [np.repeat([goal], round(seconds * FPS), 0) for goal, seconds in targets]
+    rows = [np.repeat([goal], round(seconds * FPS), 0) for goal, seconds in goals]
     still = np.zeros((round(TAIL * FPS), 3))
-    goals = np.concatenate([*rows, still]) if to_rest else np.concatenate(rows)
-    before = np.zeros(3) if from_rest else goals[0]
-    out = np.empty_like(goals)
+    wanted = np.concatenate([*rows, still]) if to_rest else np.concatenate(rows)
+    before = np.zeros(3) if from_rest else wanted[0]
+    out = np.empty_like(wanted)
     step = np.array(RISE) / FPS
-    for t, goal in enumerate(goals):
+    for t, goal in enumerate(wanted):
         before = before + np.clip(goal - before, -step, step)
         out[t] = before
     if from_rest:

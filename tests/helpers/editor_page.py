@@ -104,9 +104,9 @@ def open_editor(page, folder: Path, editor: Editor, background: str = "#fff") ->
 
 
 def settled(page) -> None:
-    """Wait until Python has got all that was sent, and the page has heard the answers."""
-    heard = "!asked.length || model.get('state').heard >= asked.at(-1).number"
-    page.wait_for_function(f"sent === received && ({heard})")
+    """Wait until Python has got all that was sent, and the page has got the answers."""
+    answered = "!asked.length || model.get('state').received >= asked.at(-1).number"
+    page.wait_for_function(f"sent === received && ({answered})")
 
 
 def received(page) -> None:

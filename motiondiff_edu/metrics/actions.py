@@ -1,0 +1,335 @@
+"""Which actions a motion shows, read off by rules, without a network.
+
+Peaks are counted, sides are told by hands and feet, and travel by the smoothed path of the pelvis.
+So a generated motion can be compared with its sentence where a learnt score is blind: to sides,
+counts and order. The rules were fixed before any network was trained on sentences.
+Notebook: 17
+"""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from jaxtyping import Bool, Float
+from scipy.ndimage import gaussian_filter1d, maximum_filter1d
+from scipy.signal import find_peaks, peak_widths
+
+from ..motion.dance_frame import heading
+from ..motion.planting import runs
+from ..motion.root_frame import FPS
+from ..motion.skeleton import BONE_LENGTHS, HIPS, TOES, joint_index
+from .bone_lengths import bone_lengths
+
+SIDES = ("left", "right")
+UPLEGS, SHOULDERS, ELBOWS, HANDS = (
+    tuple(joint_index(f"{side}{name}") for side in ("Left", "Right"))
+    for name in ("UpLeg", "Arm", "ForeArm", "Hand")
+)
+SPINE, NECK = joint_index("Spine1"), joint_index("Neck1")
+REACH = 0.53  # metres from shoulder to wrist of a straight arm
+STRANGE = 0.03  # metres: with a larger RMS error of its bones, a motion shows no body
+
+
+@dataclass(frozen=True)
+class Recognised:
+    """One action: what it is, and from when to when (seconds).
+
+    `side` is "left", "right", "both" or ""; `direction` "forward", "aside", "around" or "".
+    """
+
+    verb: str
+    side: str
+    count: int
+    direction: str
+    first: float
+    last: float
+
+
+@dataclass(frozen=True, eq=False)
+class Signals:
+    """What the rules look at, for every frame; all in metres, seconds, radians.
+
+    `ahead`, `left`, `turning`: the velocity of the pelvis in the frame of the figure, smoothed.
+    `hands` (T, 2, 3): from the shoulder to the wrist; to the own side, up, ahead of the chest.
+    """
+
+    fps: float
+    ahead: Float[np.ndarray, "T"]
+    left: Float[np.ndarray, "T"]
+    turning: Float[np.ndarray, "T"]
+    heading: Float[np.ndarray, "T"]
+    pelvis: Float[np.ndarray, "T"]  # height over the floor
+    back: Float[np.ndarray, "T"]  # of the pelvis behind the feet
+    lean: Float[np.ndarray, "T"]  # of the trunk
+    toes: Float[np.ndarray, "T 2"]  # heights
+    feet_ahead: Float[np.ndarray, "T 2"]  # of the toes before the pelvis
+    hands: Float[np.ndarray, "T 2 3"]
+    reach: Float[np.ndarray, "T 2"]  # from shoulder to wrist
+    apart: Float[np.ndarray, "T"]  # of the wrists
+
+
+def actions(positions: Float[np.ndarray, "T 21 3"], fps: float = FPS) -> list[Recognised]:
+    """All actions of a motion (metres, world), in the order of their beginnings.
+
+    Standing still is no action. A motion whose bones are not those of the course's figure shows no
+    body, and so no action.
+    """
+    if len(positions) < fps or not np.isfinite(positions).all() or not has_a_body(positions):
+        return []
+    seen = signals(positions, fps)
+    spot = on_the_spot(seen)
+    found = [*spot, *on_the_way(seen, spot), *of_the_arms(seen, spot)]
+    return sorted(found, key=lambda one: one.first)
+
+
+def has_a_body(positions: Float[np.ndarray, "T 21 3"]) -> bool:
+    """Whether the bones have about the lengths of the course's figure."""
+    error = bone_lengths(positions) - BONE_LENGTHS
+    return float(np.sqrt(np.mean(error**2))) < STRANGE
+
+
+def signals(positions: Float[np.ndarray, "T 21 3"], fps: float = FPS) -> Signals:
+    """The curves that the rules look at."""
+
+    def smooth(x: np.ndarray, seconds: float) -> np.ndarray:
+        return gaussian_filter1d(x, seconds * fps, axis=0, mode="nearest")
+
+    hips = positions[:, UPLEGS[0]] - positions[:, UPLEGS[1]]
+    chest = positions[:, SHOULDERS[0]] - positions[:, SHOULDERS[1]]
+    facing = np.unwrap(heading(smooth(hips + 0.5 * chest, 0.1)))
+    slow = smooth(facing, 0.25)
+    path = smooth(positions[:, HIPS][:, [0, 2]], 0.25)
+    speed = np.gradient(path, 1 / fps, axis=0)
+    ahead = np.stack([np.sin(slow), np.cos(slow)], -1)
+    aside = np.stack([np.cos(slow), -np.sin(slow)], -1)
+    floor = np.percentile(positions[:, list(TOES), 1], 5)
+    toes = smooth(positions[:, list(TOES)], 0.04)
+    pelvis = smooth(positions[:, HIPS], 0.06)
+    trunk = smooth(positions[:, NECK] - positions[:, HIPS], 0.06)
+    forward = np.stack([np.sin(facing), 0 * facing, np.cos(facing)], -1)
+    middle = toes.mean(1) - pelvis
+    wide = smooth(chest, 0.1)
+    wide /= np.linalg.norm(wide, axis=-1, keepdims=True)
+    up = smooth(positions[:, NECK] - positions[:, SPINE], 0.06)
+    up /= np.linalg.norm(up, axis=-1, keepdims=True)
+    front = np.cross(wide, up)
+    arms = smooth(positions[:, list(HANDS)] - positions[:, list(SHOULDERS)], 0.04)
+    own = np.stack([wide, -wide], 1)
+    return Signals(
+        fps,
+        (speed * ahead).sum(-1),
+        (speed * aside).sum(-1),
+        np.gradient(slow, 1 / fps),
+        facing,
+        pelvis[:, 1] - floor,
+        (middle * forward).sum(-1),
+        np.arctan2(np.linalg.norm(trunk[:, [0, 2]], axis=-1), trunk[:, 1])
+        * np.sign((trunk * forward).sum(-1)),
+        toes[..., 1] - floor,
+        ((toes - pelvis[:, None]) * forward[:, None]).sum(-1),
+        np.stack(
+            [(arms * own).sum(-1), (arms * up[:, None]).sum(-1), (arms * front[:, None]).sum(-1)],
+            -1,
+        ),
+        np.linalg.norm(arms, axis=-1),
+        np.linalg.norm(smooth(positions[:, HANDS[0]] - positions[:, HANDS[1]], 0.04), axis=-1),
+    )
+
+
+# ---- acts of the legs on the spot ----------------------------------------------------------------
+LONGEST = {  # seconds from one time of a counted act to the next, at most
+    "squat": 2.4,
+    "jump": 1.5,
+    "kick": 2.4,
+    "sit": 1.0,
+    "bow": 3.0,
+    "raise": 2.8,
+    "punch": 1.6,
+    "clap": 1.3,
+}
+SITS = 0.27  # m: behind its feet, a low pelvis sits; otherwise the figure squats
+UNEVEN = 1.5  # times as long as the shortest, a gap between two times ends a run of them
+
+
+def on_the_spot(s: Signals) -> list[Recognised]:
+    """Squats, jumps, kicks, sitting down, and bows."""
+    slow = maximum_filter1d(np.hypot(s.ahead, s.left), round(s.fps)) < 1.5  # m/s
+    found = []
+    low = peaks(-s.pelvis, -0.74, 0.12, s.fps, half=2.6)
+    found += counted("squat", "", {t: x for t, x in low.items() if s.back[t] <= SITS}, s.fps)
+    sits = counted("sit", "", {t: x for t, x in low.items() if s.back[t] > SITS}, s.fps)
+    found += [replace(one, count=1) for one in sits]
+    off = peaks(np.minimum(s.toes.min(1), s.pelvis - 0.98), 0.05, 0.04, s.fps)
+    for jumps in counted("jump", "", {t: x for t, x in off.items() if slow[t]}, s.fps):
+        first, last = (round(x * s.fps) for x in (jumps.first, jumps.last))
+        gone = s.ahead[first : last + 1].sum() / s.fps
+        ahead = gone > 0.16 * jumps.count
+        found.append(replace(jumps, direction="forward" if ahead else ""))
+    for k, side in enumerate(SIDES):
+        high = peaks(s.toes[:, k], 0.3, 0.2, s.fps)
+        ahead = {t: x for t, x in high.items() if s.feet_ahead[t, k] > 0.3 and slow[t]}
+        found += counted("kick", side, ahead, s.fps)
+    bent = peaks(s.lean, np.radians(31.0), np.radians(14.0), s.fps)
+    found += counted("bow", "", {t: x for t, x in bent.items() if s.pelvis[t] > 0.85}, s.fps)
+    return found
+
+
+def peaks(
+    curve: Float[np.ndarray, "T"], least: float, rise: float, fps: float, half: float = 0.8
+) -> dict[int, tuple[float, float]]:
+    """Maxima of at least `least` that rise by `rise` over what is beside them.
+
+    The frame of each, and where it begins and ends, in seconds, at most `half` away.
+    """
+    edge = np.concatenate([[curve.min()], curve, [curve.min()]])  # a maximum may be the last frame
+    at, _ = find_peaks(edge, height=least, prominence=rise, distance=max(1, round(0.25 * fps)))
+    begin, end = peak_widths(edge, at, rel_height=0.9)[2:]
+    middle = at[:, None] - 1
+    ends = np.stack([begin, end], -1) - 1
+    times = np.clip(ends, middle - half * fps, middle + half * fps) / fps
+    times = np.clip(times, 0, len(curve) / fps)
+    return {int(t) - 1: tuple(pair) for t, pair in zip(at, times.tolist(), strict=True)}
+
+
+def counted(
+    verb: str, side: str, at: dict[int, tuple[float, float]], fps: float
+) -> list[Recognised]:
+    """Runs of times of one act: those that follow one another evenly, and soon."""
+    found: list[list[int]] = []
+    for t in at:
+        if found:
+            gaps = np.diff([*found[-1], t]) / fps
+            if gaps[-1] <= LONGEST[verb] and gaps[-1] <= UNEVEN * gaps.min():
+                found[-1].append(t)
+                continue
+        found.append([t])
+    return [Recognised(verb, side, len(r), "", at[r[0]][0], at[r[-1]][1]) for r in found]
+
+
+# ---- acts of the legs on the way -----------------------------------------------------------------
+def on_the_way(s: Signals, spot: list[Recognised]) -> list[Recognised]:
+    """Walking, running, going backwards or aside, and turning."""
+    state = np.full(len(s.ahead), "", dtype="<U12")
+    travels = np.abs(s.left) > np.abs(s.ahead)
+    state[s.ahead > 0.36] = "walk"
+    state[s.ahead > 2.05] = "run"
+    state[(s.ahead < -0.15) & ~travels] = "back"
+    state[(s.left > 0.16) & travels] = "aside left"
+    state[(s.left < -0.16) & travels] = "aside right"
+    turns = (np.abs(s.turning) > 0.6) & (s.ahead < 1.9)
+    state[turns & (s.turning > 0)] = "turn left"
+    state[turns & (s.turning < 0)] = "turn right"
+    for one in spot:
+        state[round(one.first * s.fps) : round(one.last * s.fps) + 1] = ""
+    found = []
+    for word in ("walk", "run", "back", "aside left", "aside right", "turn left", "turn right"):
+        verb, _, side = word.partition(" ")
+        for first, last in joined(state == word, 0.3 * s.fps):
+            seconds = (last - first) / s.fps
+            if verb == "turn":
+                beside = slice(max(0, first - round(0.3 * s.fps)), last + round(0.3 * s.fps))
+                angle = np.ptp(s.heading[beside])
+                if angle < np.radians(45.0):
+                    continue
+                direction = "around" if angle > np.radians(135.0) else ""
+            elif seconds < 0.8:
+                continue
+            else:
+                direction = ""
+            found.append(Recognised(verb, side, 1, direction, first / s.fps, last / s.fps))
+    return without_passages(found)
+
+
+def joined(mask: Bool[np.ndarray, "T"], gap: float) -> list[tuple[int, int]]:
+    """Runs of True, where gaps of up to `gap` frames count as True."""
+    found: list[tuple[int, int]] = []
+    for first, last in runs(mask).tolist():
+        if found and first - found[-1][1] <= gap:
+            first = found.pop()[0]
+        found.append((first, last))
+    return found
+
+
+def without_passages(found: list[Recognised]) -> list[Recognised]:
+    """Without the short walks within which a figure begins or ends to run."""
+    running = [one for one in found if one.verb == "run"]
+
+    def passage(one: Recognised) -> bool:
+        near = any(one.last > run.first - 0.2 and one.first < run.last + 0.2 for run in running)
+        return one.verb == "walk" and near and one.last - one.first < 1.3
+
+    return [one for one in found if not passage(one)]
+
+
+# ---- acts of the arms ----------------------------------------------------------------------------
+def of_the_arms(s: Signals, spot: list[Recognised]) -> list[Recognised]:
+    """Waving, raising, punching, clapping and pointing.
+
+    Jumps, kicks and bows have movements of the arms of their own; nothing is looked for there.
+    """
+    free = np.ones(len(s.ahead), bool)
+    for one in spot:
+        if one.verb in ("jump", "kick", "bow"):
+            free[max(0, round((one.first - 0.2) * s.fps)) : round((one.last + 0.4) * s.fps)] = False
+    busy = np.zeros(len(free), bool)
+    for one in spot:
+        if one.verb in ("squat", "sit"):
+            busy[round(one.first * s.fps) : round(one.last * s.fps) + 1] = True
+    out, up, front = np.moveaxis(s.hands, -1, 0)
+    found = []
+    rising = np.gradient(up, 1 / s.fps, axis=0)
+    forth = np.gradient(front, 1 / s.fps, axis=0)
+    alike = np.abs(forth[:, 0] - forth[:, 1]) < 0.8  # m/s: the arms of a runner are not
+    near = peaks(-s.apart, -0.22, 0.2, s.fps)
+    near = {t: x for t, x in near.items() if front[t].min() > 0.27 and free[t] and alike[t]}
+    found += counted("clap", "", near, s.fps)
+    claps = np.zeros(len(free), bool)
+    for one in found:
+        claps[round(one.first * s.fps) : round(one.last * s.fps) + 1] = True
+    high = [{t: x for t, x in peaks(up[:, k], 0.38, 0.2, s.fps).items() if free[t]} for k in (0, 1)]
+    both = {t: x for t, x in high[0].items() if any(abs(t - u) < 0.3 * s.fps for u in high[1])}
+    paired = [u for u in high[1] if any(abs(t - u) < 0.3 * s.fps for t in both)]
+    found += counted("raise", "both", both, s.fps)
+    for k, side in enumerate(SIDES):
+        alone = {t: x for t, x in high[k].items() if t not in (*both, *paired)}
+        found += counted("raise", side, alone, s.fps)
+        other = 1 - k
+        level = (s.reach > 0.44) & (np.abs(up) < 0.34)
+        shows = free & (s.reach[:, k] > 0.47) & (np.abs(up[:, k]) < 0.24) & ~claps
+        for direction, ahead in (("forward", front), ("aside", out)):
+            alone = shows & (ahead[:, k] > 0.4) & ~(level[:, other] & (ahead[:, other] > 0.3))
+            for first, last in joined(alone, 0.2 * s.fps):
+                # who squats or sits holds the arms ahead for a moment
+                least = 1.25 if busy[first:last].any() else 0.75
+                if last - first >= least * s.fps:
+                    times = first / s.fps, last / s.fps
+                    found.append(Recognised("point", side, 1, direction, *times))
+        held = [one for one in found if one.verb == "point" and one.side == side]
+        swings = peaks(front[:, other], 0.3, 0.1, s.fps)  # of the other arm, beside it
+        reach_back = round(0.8 * s.fps)
+        hits = {
+            t: x
+            for t, x in peaks(front[:, k], 0.40, 0.15, s.fps).items()
+            if free[t]
+            and not claps[t]
+            and not any(abs(t - u) < 0.3 * s.fps for u in swings)
+            and abs(up[t, k]) < 0.3
+            and abs(rising[t, k]) < 0.8
+            and s.reach[max(0, t - reach_back) : t + reach_back, k].min() < 0.45
+            and not any(one.first - 0.2 < t / s.fps < one.last + 0.2 for one in held)
+        }
+        found += counted("punch", side, hits, s.fps)
+        found += waves(s, k, free)
+    return found
+
+
+def waves(s: Signals, k: int, free: Bool[np.ndarray, "T"]) -> list[Recognised]:
+    """A hand beside the head with the elbow bent, that swings out and in."""
+    out, up, _ = np.moveaxis(s.hands[:, k], -1, 0)
+    beside = free & (up > 0.08) & (out > 0.1) & (s.reach[:, k] < 0.46)
+    found = []
+    for first, last in joined(beside, 0.25 * s.fps):
+        swing = np.diff(out[first:last])
+        changes = int((np.diff(np.sign(swing)) != 0).sum())
+        if last - first >= 0.8 * s.fps and changes >= 2 and np.ptp(out[first:last]) > 0.05:
+            found.append(Recognised("wave", SIDES[k], 1, "", first / s.fps, last / s.fps))
+    return found
