@@ -249,11 +249,18 @@ def exchanged(text: str) -> str:
 def vocabulary(held_out: bool = False) -> set[str]:
     """All words of the captions, in lower case; with `held_out` also those of held-out verbs."""
     texts = [*SUBJECTS, *sum(TIMES.values(), ()), *sum(ADVERBS.values(), ())]
-    texts.append("left right both arms the arm while at the same time first then and after that")
+    texts.append(
+        "left right both arms the arm while at the same time first then and after that get knee"
+    )
     for choices in WORDINGS.values():
         for one in choices if held_out else choices[:-1]:
-            texts += [one.third, one.gerund, one.tail.format(side="", limb="")]
+            texts += [one.third, one.gerund, base(one.third), one.tail.format(side="", limb="")]
     return {word for text in texts for word in words_of(text)}
+
+
+def base(third: str) -> str:
+    """The base form of a verb in the third person: walk of walks, punch of punches."""
+    return third[:-2] if third.endswith(("ches", "shes", "oes")) else third.removesuffix("s")
 
 
 def words_of(text: str) -> list[str]:

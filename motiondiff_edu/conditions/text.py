@@ -1,0 +1,160 @@
+"""Text: the words of a sentence, as a network knows them. What it does not know is said.
+
+    "She strolls ahead, 3 times!"  ->  walk  ahead  3  times     "she" is passed over
+                                        *strolls* is read as *walk*
+
+A word is taken in its base form (`lemma`). Other words are read as known ones of about the same
+meaning, openly, or refused by name; none becomes numbers in silence.
+Notebook: 16
+"""
+
+import json
+import re
+from collections.abc import Container, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from difflib import get_close_matches
+from functools import cache
+from pathlib import Path
+
+LONGEST = 48  # words of a text
+IRREGULAR = {
+    "feet": "foot",
+    "men": "man",
+    "women": "woman",
+    "people": "person",
+    "ran": "run",
+    "went": "go",
+    "stood": "stand",
+    "sat": "sit",
+    "took": "take",
+    "gave": "give",
+    "made": "make",
+    "got": "get",
+    "threw": "throw",
+    "bent": "bend",
+    "struck": "strike",
+    "swung": "swing",
+    "held": "hold",
+    "brought": "bring",
+}
+# words that say nothing about a movement
+PASSED_OVER = frozenset(
+    "a an the is are was were be being been does do did has have had will would can could should"
+    " it its he she they him her them his hers their theirs i me my we us our you your who that"
+    " this these those there here of in on at by from into onto very really just please now so"
+    " some any own little bit quite he's she's someone somebody guy lady boy girl dancer actor"
+    " character avatar stickman robot human individual".split()
+)
+
+
+class TextError(ValueError):
+    """The text cannot be used; the message names the words, and says what to do."""
+
+
+@dataclass(frozen=True)
+class Read:
+    """A text as a network gets it: its words, all known, and notes on how others were read."""
+
+    words: tuple[str, ...]
+    notes: tuple[str, ...] = ()
+
+
+@cache
+def synonyms() -> Mapping[str, str]:
+    """Words and the known words that they are read as: derived from WordNet 3.0, read over by hand.
+
+    `tools/synonyms.py` finds the candidates.
+    """
+    path = Path(__file__).with_name("synonyms.json")
+    return json.loads(path.read_text(encoding="utf-8"))["words"]
+
+
+def words_of(text: str) -> list[str]:
+    """The words and numbers of a text, in lower case."""
+    return re.findall(r"[a-z]+(?:'[a-z]+)?|\d+", text.lower())
+
+
+def lemma(word: str, known: Container[str]) -> str:
+    """The base form of a word, if that is known; otherwise the word itself.
+
+    walks, walking and walked are walk; feet are foot.
+    """
+    if word in known:
+        return word
+    return next((form for form in base_forms(word) if form in known), word)
+
+
+def base_forms(word: str) -> Iterator[str]:
+    """What a word may be a form of, by the endings -s, -es, -ing, -ed, -d."""
+    if word in IRREGULAR:
+        yield IRREGULAR[word]
+    for ending in ("s", "es", "ing", "ed", "d", "ly"):
+        stem = word.removesuffix(ending)
+        if stem == word or len(stem) < 2:
+            continue
+        yield stem
+        if ending in ("ing", "ed"):
+            yield stem + "e"
+            if stem[-1] == stem[-2:-1]:
+                yield stem[:-1]
+
+
+def base_vocabulary(words: set[str]) -> tuple[str, ...]:
+    """The words that are not forms of others among them, in alphabetical order."""
+    return tuple(sorted(word for word in words if not any(f in words for f in base_forms(word))))
+
+
+def read(text: str, vocabulary: Sequence[str], others: Mapping[str, str] | None = None) -> Read:
+    """The words of a text that a network with this vocabulary can use.
+
+    Base forms are taken, and words without a meaning for movement are passed over. `others` (by
+    default `synonyms()`) has words that are read as known ones; the notes say so.
+    Raises TextError for a text without a known word, for unknown words, and for more than LONGEST
+    words.  Notebook: 16
+    """
+    given = words_of(text)
+    if not given:
+        what = "is empty" if not text.strip() else "has no English words"
+        raise TextError(
+            f'the text {what}: say what the figure does, such as "walks forward, then waves with '
+            f'the left hand"'
+        )
+    if len(given) > LONGEST:
+        raise TextError(f"the text has {len(given)} words; the network reads {LONGEST} at most")
+    known, others = frozenset(vocabulary), synonyms() if others is None else others
+    found: list[str] = []
+    notes: list[str] = []
+    unknown: list[str] = []
+    for word in given:
+        base = lemma(word, known)
+        if base in known:
+            found.append(base)
+            continue
+        other = others.get(lemma(word, others), "")
+        parts = [lemma(part, known) for part in other.split()]
+        if parts and known.issuperset(parts):
+            found += parts
+            notes.append(f"{word!r} is read as {other!r}")
+        elif word not in PASSED_OVER:
+            unknown.append(word)
+    if unknown:
+        raise TextError(_unknown(list(dict.fromkeys(unknown)), vocabulary))
+    if not found:
+        raise TextError(
+            f"{text.strip()!r} says nothing about a movement that the network knows; it knows "
+            f"{', '.join(vocabulary[:12])} ..."
+        )
+    return Read(tuple(found), tuple(dict.fromkeys(notes)))
+
+
+def _unknown(words: list[str], vocabulary: Sequence[str]) -> str:
+    """The message for words that are not known, with the nearest known ones."""
+    told = []
+    for word in words[:5]:
+        near = get_close_matches(word, vocabulary, n=3, cutoff=0.7)
+        told.append(f"{word!r}" + (f" (did you mean {' or '.join(near)}?)" if near else ""))
+    more = f" and {len(words) - 5} more" if len(words) > 5 else ""
+    return (
+        f"the network does not know {', '.join(told)}{more}. It was trained on a small vocabulary: "
+        f"say it in other words, or leave it out"
+    )

@@ -1,0 +1,96 @@
+"""Words as a network knows them: base forms, synonyms in the open, and refusals by name."""
+
+import numpy as np
+import pytest
+
+from data_synth.actions import captions, clips
+from data_synth.actions.dataset import worded
+from motiondiff_edu.conditions.text import (
+    LONGEST,
+    TextError,
+    base_vocabulary,
+    lemma,
+    read,
+    synonyms,
+    words_of,
+)
+
+WORDS = ("a", "clap", "foot", "hand", "kick", "left", "raise", "run", "stride", "times", "walk")
+
+
+def test_words_are_lower_case_and_without_marks():
+    assert words_of("Walks, then KICKS 3 times!") == ["walks", "then", "kicks", "3", "times"]
+    assert words_of("She's  walking\n- left") == ["she's", "walking", "left"]
+
+
+@pytest.mark.parametrize(
+    "form, base",
+    [
+        ("walks", "walk"),
+        ("walking", "walk"),
+        ("walked", "walk"),
+        ("striding", "stride"),
+        ("raises", "raise"),
+        ("clapped", "clap"),
+        ("clapping", "clap"),
+        ("running", "run"),
+        ("ran", "run"),
+        ("feet", "foot"),
+        ("times", "times"),
+        ("walrus", "walrus"),
+    ],
+)
+def test_forms_of_a_word_are_the_word(form, base):
+    assert lemma(form, set(WORDS)) == base
+
+
+def test_known_words_are_read_and_others_passed_over_or_replaced_in_the_open():
+    found = read("She strolls, then kicks with... the left feet", [*WORDS, "then", "with"],
+                 {"stroll": "walk"})  # fmt: skip
+    assert found.words == ("walk", "then", "kick", "with", "left", "foot")
+    assert found.notes == ("'strolls' is read as 'walk'",)
+
+
+@pytest.mark.parametrize(
+    "text, said",
+    [
+        ("", "is empty: say what the figure does"),
+        ("  \n", "is empty"),
+        ("歩く", "has no English words"),
+        ("?!", "has no English words"),
+        ("is it", "says nothing about a movement"),
+        ("a cartwheel", "does not know 'cartwheel'. It was trained on a small vocabulary"),
+        ("wlak left", r"'wlak' \(did you mean walk\?\)"),
+        ("er geht nach vorne und winkt", "does not know 'er', 'geht', .* and 1 more"),
+        ("walk " * (LONGEST + 1), f"has {LONGEST + 1} words; the network reads {LONGEST}"),
+    ],
+)
+def test_what_cannot_be_read_is_said(text, said):
+    with pytest.raises(TextError, match=said):
+        read(text, WORDS)
+
+
+def test_every_caption_is_read_whole_and_held_out_verbs_are_unknown():
+    words = base_vocabulary(captions.vocabulary())
+
+    rng = np.random.default_rng(0)
+    refused = 0
+    for clip in clips(30, 5):
+        for text in clip.captions:
+            assert read(text, words, {}).notes == ()
+        for text in worded(clip.acted.sentence, rng, new_verbs=True):
+            try:
+                read(text, words, {})
+            except TextError:
+                refused += 1
+    assert refused > 100 and len(words) < 140
+
+
+def test_synonyms_lead_from_unknown_words_to_known_ones():
+    known = set(base_vocabulary(captions.vocabulary()))
+    table = synonyms()
+    assert len(table) > 150 and not known & set(table)
+    assert {lemma(part, known) for other in table.values() for part in other.split()} <= known
+    found = read("He marches ahead rapidly, then applauds thrice", sorted(known))
+    assert " ".join(found.words) == "walk ahead quick then clap three time"
+    assert found.notes[0] == "'marches' is read as 'walk'" and len(found.notes) == 4
