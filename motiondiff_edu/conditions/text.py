@@ -16,7 +16,7 @@ from difflib import get_close_matches
 from functools import cache
 from pathlib import Path
 
-LONGEST = 48  # words of a text
+LONGEST = 64  # words of a text
 IRREGULAR = {
     "feet": "foot",
     "men": "man",

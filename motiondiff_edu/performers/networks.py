@@ -15,7 +15,11 @@ from typing import Protocol, runtime_checkable
 from torch import nn
 
 # the fields that samplers and scalers need in a configuration
-NEEDED = {"walker": ("D", "C", "S", "T_h", "T_p", "target"), "dancer": ("D", "C", "S", "target")}
+NEEDED = {
+    "walker": ("D", "C", "S", "T_h", "T_p", "target"),
+    "dancer": ("D", "C", "S", "target"),
+    "mover": ("D", "C", "S", "target", "words"),
+}
 
 
 @runtime_checkable
@@ -64,7 +68,9 @@ def register(
     and a configuration that lacks a field or a default.
     """
     if performer not in NEEDED:
-        raise ValueError(f'performer must be "walker" or "dancer", not {performer!r}')
+        raise ValueError(
+            f"performer must be one of {', '.join(map(repr, NEEDED))}, not {performer!r}"
+        )
     names = {field.name for field in fields(config)}
     missing = [name for name in NEEDED[performer] if name not in names]
     bare = [f.name for f in fields(config) if f.default is MISSING]

@@ -1,4 +1,4 @@
-"""What walkers and dancers share: a network, its noise schedule, and the fast twin."""
+"""What walkers, dancers and movers share: a network, its noise schedule, and the fast twin."""
 
 from functools import cached_property
 
@@ -26,7 +26,7 @@ def generators(seed: int, count: int, *also: int) -> list[torch.Generator]:
 
 
 class Performer:
-    """A trained network and its schedule; `Walker` and `Dancer` add their units.
+    """A trained network and its schedule; `Walker`, `Dancer` and `Mover` add their units.
 
     Raises ValueError for a schedule with another number of steps than the network's.
     """
@@ -42,7 +42,7 @@ class Performer:
 
     def __getattr__(self, name: str):
         """Called for missing attributes: `walker.dance` raises an error that names the dancer."""
-        verb = {"walk": "walker", "dance": "dancer"}.get(name)
+        verb = {"walk": "walker", "dance": "dancer", "act": "mover"}.get(name)
         if verb:
             raise AttributeError(
                 f"a {type(self).__name__.lower()} cannot {name}; md.load({verb!r}) can"

@@ -1,4 +1,4 @@
-"""Trained walkers and dancers on disk, and the shipped ones by name.
+"""Trained walkers, dancers and movers on disk, and the shipped ones by name.
 
 Safetensors with a card that says what they are and how they were made; float16 by default.
 Notebook: 00, 07, 12
@@ -17,6 +17,7 @@ from ..baselines import transformer  # noqa: F401  registers the network of two 
 from ..ddpm import make_schedule
 from ..motion.scaler import Scaler
 from ..performers.dancer import Dancer
+from ..performers.mover import Mover
 from ..performers.networks import kind_of, networks_of
 from ..performers.walker import Walker
 from .eight_bits import pack, unpack
@@ -39,24 +40,25 @@ FOLDER = Path(__file__).parent
 class Kind:
     """A performer in files.
 
-    Its name, its format there, its class, its scalers (of D and of C columns), and its usual
-    network.
+    Its name, its format there, its class, its scalers with the width of each ("D" or "C" of the
+    configuration), and its usual network.
     """
 
     name: str
     format: str
     performer: type
-    scalers: tuple[str, str]
+    scalers: dict[str, str]
     usual: str
 
 
-WALKER = Kind("walker", "motiondiff_edu walker 2", Walker, ("pose", "control"), "MoDiff")
-DANCER = Kind("dancer", "motiondiff_edu dancer 1", Dancer, ("motion", "mel"), "MoFusion")
-KINDS = (WALKER, DANCER)
+WALKER = Kind("walker", "motiondiff_edu walker 2", Walker, {"pose": "D", "control": "C"}, "MoDiff")
+DANCER = Kind("dancer", "motiondiff_edu dancer 1", Dancer, {"motion": "D", "mel": "C"}, "MoFusion")
+MOVER = Kind("mover", "motiondiff_edu mover 1", Mover, {"motion": "D"}, "TextMoFusion")
+KINDS = (WALKER, DANCER, MOVER)
 STORED = {8: pack, 16: lambda weights: {k: v.half() for k, v in weights.items()}, 32: dict}
 
 
-def save(figure: Walker | Dancer, path: str | Path, bits: int = 16) -> Path:
+def save(figure: Walker | Dancer | Mover, path: str | Path, bits: int = 16) -> Path:
     """Write a walker or dancer: weights, scalers, schedule.
 
     Weights are stored as float16; `bits=32` leaves them unchanged, `bits=8` uses `eight_bits`.
@@ -69,7 +71,7 @@ def save(figure: Walker | Dancer, path: str | Path, bits: int = 16) -> Path:
         raise ValueError(f"weights are written in 8, 16 or 32 bits, not {bits}")
     kind = next((kind for kind in KINDS if isinstance(figure, kind.performer)), None)
     if kind is None:
-        raise ValueError(f"save takes a Walker or a Dancer, not a {type(figure).__name__}")
+        raise ValueError(f"save takes a Walker, a Dancer or a Mover, not a {type(figure).__name__}")
     if Path(path).suffix != ".safetensors":
         raise ValueError(f"weights are written to a file .safetensors, not to {Path(path).name!r}")
     network = type(figure.model).__name__
@@ -105,8 +107,8 @@ def bits_of(path: str | Path) -> int:
     return 8 if "I8" in kinds else 16 if "F16" in kinds else 32
 
 
-def load(path: str | Path) -> Walker | Dancer:
-    """Read a walker or a dancer, whichever it is.
+def load(path: str | Path) -> Walker | Dancer | Mover:
+    """Read a walker, a dancer or a mover, whichever it is.
 
     Raises CheckpointError for a file that is missing, damaged, or not one of ours.
     """
@@ -124,14 +126,16 @@ def load_dancer(path: str | Path) -> Dancer:
     return _read(path, DANCER)
 
 
-def _read(path: str | Path, *kinds: Kind) -> Walker | Dancer:
+def _read(path: str | Path, *kinds: Kind) -> Walker | Dancer | Mover:
     return read_weights(path, {kind.format: partial(_assembled, kind) for kind in kinds})
 
 
-def _assembled(kind: Kind, tensors: dict[str, Tensor], metadata: dict[str, str]) -> Walker | Dancer:
+def _assembled(
+    kind: Kind, tensors: dict[str, Tensor], metadata: dict[str, str]
+) -> Walker | Dancer | Mover:
     networks = networks_of(kind.name)
     config = config_of(metadata, {name: one.config for name, one in networks.items()}, kind.usual)
-    sizes = dict(zip(kind.scalers, (config.D, config.C), strict=True))
+    sizes = {name: getattr(config, width) for name, width in kind.scalers.items()}
     vectors = {f"{name}.{part}": size for name, size in sizes.items() for part in ("mean", "std")}
     check_sizes(tensors, vectors | {"schedule.beta": config.S})
     scalers = [Scaler(tensors[f"{name}.mean"], tensors[f"{name}.std"]) for name in kind.scalers]
@@ -147,7 +151,7 @@ def available() -> dict[str, Path]:
     return {path.stem: path for path in sorted(FOLDER.glob("*.safetensors"))}
 
 
-def pretrained(name: str = "walker") -> Walker | Dancer:
+def pretrained(name: str = "walker") -> Walker | Dancer | Mover:
     """Shipped weights by name: "walker" walks, "dancer" dances; `available` has all names.
 
     Raises CheckpointError with the names there are.

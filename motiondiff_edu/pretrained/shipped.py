@@ -21,6 +21,7 @@ from ..motion.motion import Motion, MotionError, MotionWarning, as_motion
 from ..motion.root_frame import FPS
 from ..motion.skeleton import HIPS, TOES
 from ..performers.dancer import Dancer
+from ..performers.mover import Mover
 from ..performers.performer import generators
 from ..performers.walker import Walker
 from ..performers.with_bar import with_bar
@@ -29,7 +30,7 @@ from . import checkpoints
 STEPS = 50  # of DDIM, for in-betweens by default
 
 
-def load(name: str | Path) -> Walker | Dancer:
+def load(name: str | Path) -> Walker | Dancer | Mover:
     """A walker or dancer: shipped weights by name ("walker", "dancer" ...), or your own file.
 
     Raises CheckpointError for an unknown name, with a list of the names, or for a faulty file.
@@ -119,7 +120,7 @@ def reconstruct(
 
 
 @lru_cache(maxsize=4)
-def _shipped(name: str) -> Walker | Dancer:
+def _shipped(name: str) -> Walker | Dancer | Mover:
     return checkpoints.pretrained(name)
 
 

@@ -58,7 +58,8 @@ def read_weights(path: str | Path, kinds: Mapping[str, Assemble]) -> object:
     metadata, tensors = _opened(path)
     assemble = kinds.get(metadata.get("format", ""))
     if assemble is None:
-        wanted = " or ".join(name.split()[1] for name in kinds)
+        *others, last = (name.split()[1] for name in kinds)
+        wanted = f"{', '.join(others)} or {last}" if others else last
         raise CheckpointError(
             f"{path.name} is not a {wanted} of this project ({_looks_like(metadata, tensors)})"
         )
@@ -111,9 +112,9 @@ def config_of(metadata: dict[str, str], kinds: Mapping[str, type[Config]], defau
     for setting, value in values.items():
         usual = type(defaults[setting])
         fits = type(value) is usual or (type(value) is int and usual is float)  # dropout = 0
-        fits = fits or (
-            usual is tuple and type(value) is list and all(type(v) is int for v in value)
-        )
+        if usual is tuple and type(value) is list:  # of numbers, or of words
+            inner = {type(v) for v in defaults[setting]} or {str}
+            fits = all(type(v) in inner for v in value)
         if not fits:
             raise CheckpointError(
                 f"{name}: its setting {setting} = {value!r} is not valid; download it again"

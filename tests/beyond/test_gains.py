@@ -24,6 +24,8 @@ TRAINED = [f"ladder.{cell}.x" for cell in CELLS] + [f"dance-budget.{one}.x" for 
 @pytest.mark.parametrize("path", FILES, ids=lambda path: path.stem)
 def test_a_departure_names_the_rows_of_its_gain(path):
     head = path.read_text(encoding="utf-8").split('"""')[1]
+    if re.search(r"^Gain: not measured yet", head, re.M):
+        return
     told = re.search(r"^Gain: docs/RESULTS(?:_ALL)?\.md.*?(?=^\S+: |\Z)", head, re.M | re.S)
     assert told, f"{path.name} does not say where its gain is measured"
     rows = re.findall(r"`([\w.-]+?)(?:\.\*)?`", told[0])

@@ -1,0 +1,138 @@
+"""A mover: MoFusion from text with its units. It turns a sentence into motions.
+
+Source: MoFusion 3, 4.2.  Notebook: 16
+"""
+
+import copy
+import warnings
+from dataclasses import dataclass, field
+
+import torch
+from jaxtyping import Float, Int
+from torch import Tensor, nn
+
+from ..beyond.classifier_free import guided_by_text
+from ..conditions.text import read
+from ..conditions.word_encoder import ids_of
+from ..ddpm import Denoiser, Generators, Schedule, draw, final
+from ..fast.samplers import ddim_steps, ddpm_steps
+from ..motion.checks import checked_count, checked_seconds, checked_steps
+from ..motion.dance_frame import to_positions
+from ..motion.motion import Motion
+from ..motion.root_frame import FPS
+from ..motion.scaler import Scaler
+from ..prediction import denoiser_of
+from . import text_mofusion  # noqa: F401  registers the network
+from .performer import Performer, generators
+from .with_bar import with_bar
+
+STEPS, ETA = 50, 0.5  # defaults of DDIM
+SECONDS = 6.0
+SHORTEST, LONGEST = 2.0, 10.0  # seconds, as in training
+
+
+@dataclass(frozen=True, eq=False)
+class Mover(Performer):
+    """A network, and the scaler that converts its units to metres."""
+
+    model: nn.Module
+    schedule: Schedule
+    motion_scaler: Scaler
+    card: dict = field(default_factory=dict)
+
+    def to(self, device: str | torch.device) -> "Mover":
+        """The same mover on another device."""
+        model = copy.deepcopy(self.model).to(device)
+        return Mover(model, self.schedule, self.motion_scaler.to(device), self.card)
+
+    @property
+    def device(self) -> torch.device:
+        return self.motion_scaler.mean.device
+
+    def denoiser(
+        self, ids: Int[Tensor, "B M"], guidance: float = 1.0, fast: bool = True
+    ) -> Denoiser:
+        """`denoise(x_s, s) -> eps_hat` for these texts (`conditions.word_encoder.ids_of`).
+
+        `guidance`: w of `beyond.classifier_free`; 1 is the conditional network.
+        """
+        texts = [ids] if guidance == 1 else [ids, ids_of([()] * len(ids), ())]
+        contexts = [self.model.listen(one.to(self.device)) for one in texts]
+        conditional, *nothing = (
+            denoiser_of(
+                lambda x_s, s, context=context: self._evaluated(x_s, s, context),
+                self.schedule,
+                self.config.target,
+            )
+            for context in contexts
+        )
+        return guided_by_text(conditional, nothing[0], guidance) if nothing else conditional
+
+    def act(
+        self,
+        text: str,
+        *,
+        seconds: float = SECONDS,
+        samples: int = 1,
+        seed: int = 0,
+        steps: int | None = STEPS,
+        guidance: float = 1.0,
+        progress: bool = True,
+    ) -> Motion | list[Motion]:
+        """Do what a sentence says, such as "walks forward, then waves with the left hand".
+
+        The figure begins at the origin, facing z. A warning says which words were read as others.
+
+        seconds   of the motion, from 2 to 10; a long sentence needs the time that it takes
+        samples   above 1: a list with this many motions; the first is that of samples=1
+        steps     of DDIM, or None for DDPM with all steps
+        guidance  above 1 it follows the text more closely, at twice the cost
+                  (`beyond.classifier_free`)
+        Raises TextError for a text that cannot be read, ValueError for numbers out of range.
+        Source: MoFusion 3.  Notebook: 16
+        """
+        found = read(text, self.config.words)
+        for note in found.notes:
+            warnings.warn(note, stacklevel=2)
+        count, steps = checked_count(samples, "samples"), checked_steps(steps)
+        if not SHORTEST <= checked_seconds(seconds) <= LONGEST:
+            raise ValueError(
+                f"seconds must be from {SHORTEST:g} to {LONGEST:g}, as in training, not {seconds:g}"
+            )
+        ids = ids_of([found.words] * count, self.config.words)
+        draws, frames = generators(seed, count), round(seconds * FPS)
+        evaluations = min(steps or self.schedule.S, self.schedule.S)
+        with with_bar(self, evaluations, "moving", progress) as one:
+            made = one.act_ids(ids, frames, generator=draws, steps=steps, guidance=guidance)
+        source = f"{text.strip():.60}"
+        made = [Motion(x, FPS, source=source) for x in made.double().cpu().numpy()]
+        return made if samples > 1 else made[0]
+
+    @torch.inference_mode()
+    def act_ids(
+        self,
+        ids: Int[Tensor, "B M"],
+        frames: int,
+        *,
+        generator: Generators | None = None,
+        steps: int | None = STEPS,
+        eta: float = ETA,
+        guidance: float = 1.0,
+        start: Float[Tensor, "B T D"] | None = None,
+    ) -> Float[Tensor, "B T 21 3"]:
+        """Motions in metres for texts as ids, one each.
+
+        `start` is the noise to begin with (default: drawn); pass the same to compare two texts.
+        Notebook: 16
+        """
+        denoise = self.denoiser(ids, guidance)
+        where = self.motion_scaler.mean.new_empty(len(ids), frames, self.config.D)
+        x_S = draw(where, generator) if start is None else start.to(self.device)
+        if steps is None:
+            loop = ddpm_steps(
+                denoise, x_S, self.schedule, variance="posterior", generator=generator
+            )
+        else:
+            steps = min(steps, self.schedule.S)
+            loop = ddim_steps(denoise, x_S, self.schedule, steps, eta, generator=generator)
+        return to_positions(self.motion_scaler.inverse(final(loop).x_s))

@@ -1,0 +1,172 @@
+"""A mover: sentences to motions, its files, and what it refuses."""
+
+import warnings
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import torch
+
+import motiondiff_edu as md
+from data_synth.actions import captions, clips
+from motiondiff_edu.conditions.text import TextError, base_vocabulary
+from motiondiff_edu.conditions.word_encoder import NOTHING, PADDING, WordEncoder, ids_of, present
+from motiondiff_edu.ddpm import cosine_schedule
+from motiondiff_edu.kinematic_loss import training_loss
+from motiondiff_edu.motion.scaler import Scaler
+from motiondiff_edu.performers.described_windows import DescribedWindows
+from motiondiff_edu.performers.mover import Mover
+from motiondiff_edu.performers.text_mofusion import TextMoFusion, TextMoFusionConfig
+from motiondiff_edu.pretrained import checkpoints
+from motiondiff_edu.training import TrainState, train_steps
+
+WORDS = base_vocabulary(captions.vocabulary())
+SMALL = TextMoFusionConfig(widths=(16, 24), heads=2, C=20, S=30, words=WORDS, word_layers=1)
+
+
+def seeded(seed: int = 0) -> torch.Generator:
+    return torch.Generator().manual_seed(seed)
+
+
+@pytest.fixture(scope="module")
+def mover() -> Mover:
+    torch.manual_seed(0)
+    model = TextMoFusion(SMALL)
+    for parameter in model.parameters():  # blocks that begin at zero would hide their inputs
+        if not parameter.any():
+            torch.nn.init.normal_(parameter, std=0.1)
+    scaler = Scaler(torch.linspace(-1, 1, 63), torch.linspace(0.5, 2, 63))
+    return Mover(model.eval(), cosine_schedule(30), scaler, {"name": "tiny"})
+
+
+@pytest.fixture(scope="module")
+def windows() -> DescribedWindows:
+    made = list(clips(24, 3))
+    return DescribedWindows.of(
+        [one.acted.positions for one in made],
+        [one.acted.contacts for one in made],
+        [one.captions for one in made],
+        WORDS,
+    )
+
+
+def test_ids_of_texts_are_padded_and_the_empty_text_has_a_token_of_its_own():
+    ids = ids_of([("walk", "then", "kick"), ("kick",), ()], WORDS)
+    assert ids.shape == (3, 3) and ids[1, 0] == ids[0, 2] and ids[1, 1] == PADDING
+    assert ids[2].tolist() == [NOTHING, PADDING, PADDING]
+    assert present(ids).sum(1).tolist() == [3, 1, 1]
+
+
+def test_padding_changes_no_token_and_the_order_of_words_does():
+    torch.manual_seed(1)
+    encoder = WordEncoder(5, 12, 2, 2, 9).eval()
+    ids = torch.tensor([[2, 3, 4], [4, 3, 2]])
+    tokens = encoder(ids)
+    padded = encoder(torch.nn.functional.pad(ids, (0, 4)))
+    torch.testing.assert_close(padded[:, :3], tokens)
+    assert (tokens[0, 1] - tokens[1, 1]).abs().max() > 0.01  # the same word, among others
+
+
+def test_a_sentence_makes_motions(mover):
+    alone = mover.act("walks forward", seconds=2.5, steps=3, progress=False)
+    assert alone.positions.shape == (50, 21, 3) and alone.source == "walks forward"
+    first, second = mover.act("walks forward", seconds=2.5, samples=2, steps=3, progress=False)
+    assert np.abs(first.positions - alone.positions).max() < 1e-4
+    assert np.abs(second.positions - alone.positions).max() > 0.01
+    other = mover.act("kicks with the left foot", seconds=2.5, steps=3, progress=False)
+    assert np.abs(other.positions - alone.positions).max() > 0.001
+
+
+def test_guidance_of_one_is_the_conditional_network_and_more_leads_away_from_no_text(mover):
+    ids, nothing = ids_of([("walk",)], WORDS), ids_of([()], WORDS)
+    x, s = torch.randn(1, 40, 63, generator=seeded()), torch.full((1,), 20)
+    with torch.no_grad():
+        plain, free = mover.denoiser(ids)(x, s), mover.denoiser(nothing)(x, s)
+        torch.testing.assert_close(mover.denoiser(ids, 2.5)(x, s), 2.5 * plain - 1.5 * free)
+    assert (plain - free).abs().max() > 1e-3
+    assert mover.model.training is False
+
+
+@pytest.mark.parametrize(
+    "text, options, told",
+    [
+        ("", {}, "is empty"),
+        ("does a cartwheel", {}, "does not know 'cartwheel'"),
+        ("walks", {"seconds": 1.0}, "seconds must be from 2 to 10"),
+        ("walks", {"seconds": 20.0}, "seconds must be from 2 to 10"),
+        ("walks", {"samples": 0}, "samples must be a whole number of at least 1"),
+        ("walks", {"seed": -1}, "seed must be a whole number"),
+    ],
+)
+def test_what_cannot_be_acted_is_refused_in_words(mover, text, options, told):
+    with pytest.raises((TextError, ValueError), match=told):
+        mover.act(text, progress=False, **options)
+
+
+def test_a_word_that_is_read_as_another_is_said(mover):
+    with pytest.warns(UserWarning, match="'marches' is read as 'walk'"):
+        marched = mover.act("marches ahead", seconds=2, steps=2, progress=False)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        walked = mover.act("walks ahead", seconds=2, steps=2, progress=False)
+    assert np.array_equal(marched.positions, walked.positions)
+
+
+def test_a_mover_comes_back_from_its_file(mover, tmp_path):
+    path = checkpoints.save(mover, tmp_path / "mine.safetensors", bits=32)
+    back = md.load(path)
+    assert isinstance(back, Mover) and back.config == mover.config and back.card == mover.card
+    one, two = (who.act("turns left", seconds=2, steps=2, progress=False) for who in (mover, back))
+    np.testing.assert_array_equal(one.positions, two.positions)
+    with pytest.raises(AttributeError, match="a mover cannot walk; md.load"):
+        back.walk()
+
+
+def test_batches_have_one_length_and_about_the_frames_that_were_asked_for(windows):
+    assert len(windows) == 24 and all(n % 8 == 0 for n in windows.motions)
+    for seed in range(6):
+        x, ids, planted = windows.draw(400, seeded(seed))
+        assert len(x) == len(ids) == len(planted) == max(1, 400 // x.shape[1])
+        assert x.shape[1] == planted.shape[1] and (ids != PADDING).any(1).all()
+    again = windows.draw(400, seeded(5))
+    assert all(torch.equal(a, b) for a, b in zip((x, ids, planted), again, strict=True))
+
+
+def test_a_mirrored_motion_has_its_words_exchanged(windows):
+    left, right = ids_of([("left", "right")], WORDS)[0].tolist()
+    assert windows.exchanged[left] == right and windows.exchanged[right] == left
+    others = [k for k in range(2 + len(WORDS)) if k not in (left, right)]
+    assert windows.exchanged[others].tolist() == others
+    n = max(windows.motions, key=lambda n: len(windows.motions[n]))
+    only = replace(
+        windows,
+        motions={n: windows.motions[n][:1]},
+        contacts={n: windows.contacts[n][:1]},
+        captions={n: windows.captions[n][:1, :1]},
+        scaler=Scaler.nothing(63),
+    )
+    x, ids, planted = only.draw(40 * n, seeded(1))
+    turned = (x - x[0]).abs().amax((1, 2)) > 1e-4
+    assert 8 < turned.sum() < 32  # of 40, both ways occur
+    one, other = x[~turned][0], x[turned][0]
+    torch.testing.assert_close(one[:, 0], -other[:, 0])  # the pelvis, x
+    torch.testing.assert_close(one[:, 1:3], other[:, 1:3])
+    assert torch.equal(windows.exchanged[ids[~turned][0]], ids[turned][0])
+    assert torch.equal(planted[~turned][0], planted[turned][0].flip(-1))
+
+
+def test_a_mover_can_be_trained(windows):
+    """A few steps on a few clips: the loss falls, and the words get gradients."""
+    torch.manual_seed(0)
+    model, schedule = TextMoFusion(SMALL), cosine_schedule(30)
+
+    def loss_fn(network, generator):
+        x, ids, _ = windows.draw(300, generator)
+        return training_loss(network, (x, network.listen(ids)), schedule, generator)
+
+    state = TrainState.start(model, 0, torch.optim.Adam(model.parameters(), 3e-3), 0.9)
+    losses = [
+        one.loss for one in train_steps(state, loss_fn, 60, lr=lambda k: 3e-3, progress=False)
+    ]
+    assert np.mean(losses[-10:]) < 0.8 * np.mean(losses[:10])
+    assert model.words.embed.weight.grad.abs().sum() > 0
