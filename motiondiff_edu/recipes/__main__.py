@@ -1,6 +1,6 @@
 """`python -m motiondiff_edu.recipes [NAME ...]`: train the shipped performers.
 
-Walkers and dancers, all of them (hours) or those named.
+Walkers, dancers and movers, all that are shipped (hours) or those named.
 """
 
 import argparse
@@ -10,14 +10,17 @@ from pathlib import Path
 import torch
 
 from ..performers.dancer import Dancer
+from ..performers.mover import Mover
 from ..performers.walker import Walker
 from ..pretrained.checkpoints import save
 from .dancers import DANCE_RECIPES, SHIPPED_DANCERS
+from .movers import MOVER_RECIPES
 from .train_dancer import train_dancer
+from .train_mover import train_mover
 from .train_walker import train
 from .walkers import PAIRS, RECIPES, SHIPPED
 
-ALL = RECIPES | DANCE_RECIPES
+ALL = RECIPES | DANCE_RECIPES | MOVER_RECIPES
 EIGHT_BITS = {
     "regression",
     "unconditional",
@@ -69,7 +72,7 @@ def build(name: str, run: Path, out: Path) -> Path:
     return save(trained(name, run), out, bits=8 if name in EIGHT_BITS else 16)
 
 
-def trained(name: str, run: Path) -> Walker | Dancer:
+def trained(name: str, run: Path) -> Walker | Dancer | Mover:
     """The performer of a recipe.
 
     If the recipe continues another one, that is trained first; its run file lies beside `run`.
@@ -80,6 +83,8 @@ def trained(name: str, run: Path) -> Walker | Dancer:
 
     if name in DANCE_RECIPES:
         return train_dancer(DANCE_RECIPES[name], run, log=log)
+    if name in MOVER_RECIPES:
+        return train_mover(MOVER_RECIPES[name], run, log=log)
     recipe, first = RECIPES[name], None
     if recipe.begins_with:
         before = run.with_name(f"{recipe.begins_with}.safetensors")

@@ -13,6 +13,7 @@ from torch import nn
 
 from ..training import LossFn, TrainState, cosine_lr, train_steps
 from .dancers import DanceRecipe
+from .movers import MoverRecipe
 from .muon import optimizer_for
 from .runs import notes_of, resume_run, saver
 from .walkers import Recipe
@@ -28,7 +29,7 @@ class Provenance:
 
 
 def train_recipe(
-    recipe: Recipe | DanceRecipe,
+    recipe: Recipe | DanceRecipe | MoverRecipe,
     run_file: Path,
     model: nn.Module,
     loss_fn: LossFn,
@@ -77,7 +78,13 @@ def train_recipe(
 
 
 def run_to_end(
-    recipe: Recipe | DanceRecipe, rate, state: TrainState, loss_fn: LossFn, save, log, before=None
+    recipe: Recipe | DanceRecipe | MoverRecipe,
+    rate,
+    state: TrainState,
+    loss_fn: LossFn,
+    save,
+    log,
+    before=None,
 ) -> None:
     """Train to the last step, with a line of log every 1000 steps, or twenty times in all."""
     losses, every = [], min(1000, max(1, recipe.steps // 20))

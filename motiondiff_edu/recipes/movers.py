@@ -1,0 +1,48 @@
+"""Recipes of the movers: data, sizes, losses and steps, in one record each.
+
+The paper gives no widths, no steps and no weights of its losses, so all numbers are ours.
+Notebook: 16
+"""
+
+from dataclasses import dataclass, replace
+
+from ..kinematic_loss import KinematicWeights
+from ..performers.text_mofusion import TextMoFusionConfig
+from .dancers import KINEMATIC, OURS, DanceLossWeights
+
+
+@dataclass(frozen=True)
+class MoverRecipe:
+    """One training run of a mover; by default with the paper's loss.
+
+    The data are `clips` described clips of `data_synth.actions`; every clip is also mirrored, with
+    its words. The words of the configuration are those of the captions.
+    """
+
+    name: str
+    config: TextMoFusionConfig
+    steps: int
+    kinematic: KinematicWeights | None = None
+    loss_weights: DanceLossWeights = DanceLossWeights()
+    snr: float = 1.0  # factor on the signal-to-noise ratio of the cosine schedule
+    frames: int = 3072  # of a batch, all motions together
+    no_text: float = 0.0  # share of the texts left out: `beyond.classifier_free`
+    lr: float = 2e-3
+    optimizer: str = "muon"
+    decay: float = 0.999
+    clips: int = 12_000
+    data_seed: int = 1
+    seed: int = 0
+    save_every: int = 250  # steps
+
+
+MOVER_PLAIN = MoverRecipe(
+    "mover-plain",
+    TextMoFusionConfig(),
+    steps=16_000,
+    loss_weights=OURS,
+    snr=0.1,
+    no_text=0.1,
+)
+MOVER = replace(MOVER_PLAIN, name="mover", kinematic=KINEMATIC)
+MOVER_RECIPES = {recipe.name: recipe for recipe in (MOVER, MOVER_PLAIN)}

@@ -1,0 +1,142 @@
+"""Train a mover by its recipe: described clips, words, loss, card.
+
+The loss is MoFusion's with the departures of the recipe. A killed run continues from its last save.
+"""
+
+from dataclasses import replace
+from functools import lru_cache
+from pathlib import Path
+
+import torch
+from jaxtyping import Int
+from torch import Tensor, nn
+
+from .._files import digest_of_tensors
+from ..beyond import loss_terms
+from ..beyond.schedules import shifted
+from ..conditions.text import base_vocabulary
+from ..conditions.word_encoder import NOTHING, PADDING
+from ..ddpm import Schedule, cosine_schedule, squared_error
+from ..kinematic_loss import kinematic_parts, over_time, training_loss
+from ..motion.dance_frame import body_of, to_positions
+from ..motion.skeleton import TOES
+from ..performers.described_windows import DescribedWindows
+from ..performers.mover import Mover
+from ..performers.networks import network
+from ..training import LossFn
+from .movers import MoverRecipe
+from .train_recipe import Provenance, train_recipe
+
+
+@lru_cache(maxsize=1)
+def training_clips(clips: int, seed: int) -> DescribedWindows:
+    """The data of a training, generated from its seed; the last data set is kept."""
+    from data_synth.actions import captions  # here, because data_synth imports this package
+    from data_synth.actions import clips as described
+
+    positions = []
+    contacts = []
+    texts = []
+    for one in described(clips, seed):
+        positions.append(one.acted.positions)
+        contacts.append(one.acted.contacts)
+        texts.append(one.captions)
+    words = base_vocabulary(captions.vocabulary())
+    return DescribedWindows.of(positions, contacts, texts, words)
+
+
+def train_mover(
+    recipe: MoverRecipe, run_file: Path, windows: DescribedWindows | None = None, log=print
+) -> Mover:
+    """Train by a recipe, or continue the run in `run_file`; return a mover with averaged weights.
+
+    Raises ValueError when the run in `run_file` was begun with other settings.
+    """
+    if windows is None:
+        windows = training_clips(recipe.clips, recipe.data_seed)
+    recipe = replace(recipe, config=replace(recipe.config, words=windows.words))
+    schedule = shifted(cosine_schedule(recipe.config.S), recipe.snr)
+    torch.manual_seed(recipe.seed)
+    model = network(recipe.config)
+    about = {"network": type(model).__name__, "data": digest(windows)}
+    trained, card = train_recipe(
+        recipe,
+        run_file,
+        model,
+        loss_of(recipe, windows, schedule),
+        Provenance(about, {"clips": len(windows)}, "data_synth.actions, synthetic"),
+        warmup=300,
+        log=log,
+    )
+    return Mover(trained, schedule, windows.scaler, card)
+
+
+def loss_of(recipe: MoverRecipe, windows: DescribedWindows, schedule: Schedule) -> LossFn:
+    """The loss of a recipe: its data, MoFusion's eq. 4, and the departures that it names."""
+    loss, weights = weighted_loss(recipe, windows, schedule), recipe.kinematic
+    lambda_k = over_time(schedule, weights.over_time) if weights else None
+
+    def loss_fn(model: nn.Module, generator: torch.Generator) -> Tensor:
+        device = next(model.parameters()).device
+        x0, ids, planted = windows.draw(recipe.frames, generator)
+        ids = without_some(ids, recipe.no_text, generator)
+        x0, ids, planted = (part.to(device) for part in (x0, ids, planted))
+        body = body_of(windows.scaler.to(device))
+
+        def kinematic(x0_hat: Tensor, x0: Tensor) -> Tensor:
+            return weights.total(kinematic_parts(x0_hat, x0, body, planted))
+
+        return training_loss(
+            model,
+            (x0, model.listen(ids)),
+            schedule,
+            generator,
+            kinematic=kinematic if weights else None,
+            lambda_k=lambda_k,
+            loss=loss,
+        )
+
+    return loss_fn
+
+
+def without_some(
+    ids: Int[Tensor, "B M"], share: float, generator: torch.Generator
+) -> Int[Tensor, "B M"]:
+    """The texts, of which a share is replaced by the empty text."""
+    empty = torch.full_like(ids, PADDING)
+    empty[:, 0] = NOTHING
+    left_out = torch.rand(len(ids), generator=generator) < share
+    return torch.where(left_out[:, None], empty, ids)
+
+
+def weighted_loss(
+    recipe: MoverRecipe, windows: DescribedWindows, schedule: Schedule
+) -> loss_terms.Loss:
+    """The mean square of eq. 4's data term, with the weights and terms that are not 0."""
+    weights, loss = recipe.loss_weights, squared_error
+    if weights.changes:
+        loss = loss_terms.total(loss, loss_terms.changes(weights.changes))
+    if weights.toes:
+        toes = loss_terms.toe_changes(weights.toes, windows.scaler.std, toes_moved(windows))
+        loss = loss_terms.total(loss, toes)
+    if weights.high_noise:
+        steps = loss_terms.high_noise_weights(schedule, weights.high_noise)
+        loss = loss_terms.weighted_by_step(loss, steps)
+    return loss
+
+
+def toes_moved(windows: DescribedWindows) -> float:
+    """The mean square change of a toe's coordinate from frame to frame, m^2, over many clips."""
+    generator = torch.Generator().manual_seed(0)
+    moved = []
+    for _ in range(8):
+        positions = to_positions(windows.scaler.inverse(windows.draw(4000, generator)[0]))
+        moved.append(positions[:, :, list(TOES)].diff(dim=1).square().mean())
+    return float(torch.stack(moved).mean())
+
+
+def digest(windows: DescribedWindows) -> str:
+    """A checksum of all clips and captions; a run is resumed only with the data it began with."""
+    parts = {f"{name}.{n}": x for name in ("motions", "captions", "contacts")
+             for n, x in getattr(windows, name).items()}  # fmt: skip
+    return digest_of_tensors(parts)[:16]

@@ -1,0 +1,101 @@
+"""A mover's training: eq. 4 with what the recipe names, resumed after a kill, with a card."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import torch
+
+from motiondiff_edu.conditions.word_encoder import NOTHING, PADDING
+from motiondiff_edu.ddpm import cosine_schedule, draw, q_sample
+from motiondiff_edu.performers.mover import Mover
+from motiondiff_edu.performers.text_mofusion import TextMoFusion, TextMoFusionConfig
+from motiondiff_edu.recipes.dancers import KINEMATIC, DanceLossWeights
+from motiondiff_edu.recipes.movers import MOVER, MOVER_PLAIN, MoverRecipe
+from motiondiff_edu.recipes.train_mover import (
+    loss_of,
+    toes_moved,
+    train_mover,
+    training_clips,
+    without_some,
+)
+
+TINY = TextMoFusionConfig(widths=(16, 24), heads=2, C=20, S=20, word_layers=1)
+SHORT = MoverRecipe("tiny", TINY, steps=6, clips=10, frames=200, save_every=2)
+
+
+@pytest.fixture(scope="module")
+def windows():
+    return training_clips(SHORT.clips, SHORT.data_seed)
+
+
+def quiet(line: str) -> None:
+    pass
+
+
+def test_a_recipe_without_departures_is_equation_4_without_kinematics(windows):
+    """By hand: the mean square of x0_hat, with the generator's own draws in their order."""
+    torch.manual_seed(3)
+    config = replace(TINY, words=windows.words)
+    model, schedule = TextMoFusion(config).eval(), cosine_schedule(20)
+    found = loss_of(SHORT, windows, schedule)(model, torch.Generator().manual_seed(4))
+    generator = torch.Generator().manual_seed(4)
+    x0, ids, _ = windows.draw(SHORT.frames, generator)
+    torch.rand(len(ids), generator=generator)
+    s = torch.randint(1, 21, (len(x0),), generator=generator)
+    x_s = q_sample(x0, s, schedule, draw(x0, generator))
+    wanted = (x0 - model(x_s, s, model.listen(ids))).square().mean()
+    torch.testing.assert_close(found, wanted)
+
+
+def test_each_departure_changes_the_loss(windows):
+    torch.manual_seed(3)
+    model = TextMoFusion(replace(TINY, words=windows.words)).eval()
+
+    def loss(**changes):
+        loss_fn = loss_of(replace(SHORT, **changes), windows, cosine_schedule(20))
+        return loss_fn(model, torch.Generator().manual_seed(4)).item()
+
+    plain = loss()
+    weights = [DanceLossWeights(changes=5.0), DanceLossWeights(toes=0.2)]
+    assert all(loss(loss_weights=one) > plain for one in weights)
+    assert loss(kinematic=KINEMATIC) > plain and loss(no_text=1.0) != plain
+    assert toes_moved(windows) > 1e-4
+
+
+def test_a_share_of_the_texts_is_left_out():
+    ids = torch.randint(2, 9, (2000, 4))
+    kept = without_some(ids, 0.25, torch.Generator().manual_seed(0))
+    empty = (kept == torch.tensor([NOTHING, PADDING, PADDING, PADDING])).all(1)
+    assert 0.2 < empty.float().mean() < 0.3 and torch.equal(kept[~empty], ids[~empty])
+
+
+def test_a_killed_training_continues_and_ends_like_one_in_one_go(windows, tmp_path):
+    whole = train_mover(SHORT, tmp_path / "whole.safetensors", windows, log=quiet)
+    assert isinstance(whole, Mover) and whole.config.words == windows.words
+    assert whole.card["clips"] == 10 and whole.card["recipe"]["frames"] == 200
+
+    class Killed(Exception):
+        pass
+
+    seen = []
+
+    def until(line: str) -> None:
+        seen.append(line)
+        if len(seen) == 4:
+            raise Killed
+
+    run = tmp_path / "killed.safetensors"
+    with pytest.raises(Killed):
+        train_mover(SHORT, run, windows, log=until)
+    resumed = train_mover(SHORT, run, windows, log=quiet)
+    assert len(resumed.card["sittings"]) == 2
+    for (name, a), (_, b) in zip(
+        whole.model.state_dict().items(), resumed.model.state_dict().items(), strict=True
+    ):
+        assert np.allclose(a, b, atol=1e-6), name
+
+
+def test_the_shipped_recipes_differ_in_the_kinematic_losses_alone():
+    assert replace(MOVER, name="mover-plain", kinematic=None) == MOVER_PLAIN
+    assert MOVER.no_text == 0.1 and MOVER.kinematic == KINEMATIC
