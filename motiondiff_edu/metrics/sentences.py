@@ -1,0 +1,107 @@
+"""How far a motion does what a sentence says, by the actions that are recognised in it.
+
+A sentence is a list of phrases, each a list of what is asked for at one time.
+Notebook: 17
+"""
+
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Float
+
+from .actions import Recognised
+
+COUNTED = frozenset(("squat", "jump", "kick", "bow", "raise", "punch", "clap"))
+
+
+@dataclass(frozen=True)
+class Asked:
+    """One act of a sentence; standing is not asked for, because it is no action."""
+
+    verb: str
+    side: str = ""
+    count: int = 1
+    direction: str = ""
+
+
+Phrases = Sequence[Sequence[Asked]]
+
+
+@dataclass(frozen=True)
+class Agreement:
+    """The shares of one motion that are right, from 0 to 1; NaN where nothing can be right.
+
+    action  acts found, over the acts that were asked for or the recognised ones, whichever are more
+    side    of the acts found that have a side: with this side
+    count   of the acts found that are counted: exactly so often
+    order   of the pairs of acts in different phrases, both found: in the order of the phrases
+    """
+
+    action: float
+    side: float
+    count: float
+    order: float
+
+
+def agreement(phrases: Phrases, found: Sequence[Recognised]) -> Agreement:
+    """Compare a sentence with what was recognised. Each act is matched with one recognised action.
+
+    Among recognised actions with the verb, that with the same side and count is taken first.
+    Notebook: 17
+    """
+    acts = [(k, act) for k, phrase in enumerate(phrases) for act in phrase]
+    left = list(found)
+    matched = []
+    for k, act in sorted(acts, key=lambda pair: -_specific(pair[1], found)):
+        same = [one for one in left if one.verb == act.verb]
+        if same:
+            best = max(same, key=lambda one: (one.side == act.side, one.count == act.count))
+            left.remove(best)
+            matched.append((k, act, best))
+    most = max(len(acts), len(found))
+    middles = [(k, (one.first + one.last) / 2) for k, _, one in matched]
+    return Agreement(
+        len(matched) / most if most else np.nan,
+        _share([one.side == act.side for _, act, one in matched if act.side]),
+        _share([one.count == act.count for _, act, one in matched if act.verb in COUNTED]),
+        _share([a < b for i, a in middles for j, b in middles if i < j]),
+    )
+
+
+def _specific(act: Asked, found: Sequence[Recognised]) -> int:
+    """How well the best recognised action fits: acts that fit exactly choose first."""
+    same = [one for one in found if one.verb == act.verb]
+    return max(((one.side == act.side) + (one.count == act.count) for one in same), default=-1)
+
+
+def _share(right: list[bool]) -> float:
+    return float(np.mean(right)) if right else np.nan
+
+
+def rows_of(
+    sentences: Sequence[Phrases], found: Sequence[Sequence[Recognised]]
+) -> dict[str, Float[np.ndarray, "N"]]:
+    """The agreement of many motions, an array for each kind."""
+    every = [agreement(phrases, one) for phrases, one in zip(sentences, found, strict=True)]
+    return {
+        kind: np.array([getattr(one, kind) for one in every])
+        for kind in ("action", "side", "count", "order")
+    }
+
+
+def confusion(
+    sentences: Sequence[Phrases], found: Sequence[Sequence[Recognised]]
+) -> dict[tuple[str, str], int]:
+    """How often an asked side was recognised as which, of acts with one side, by (asked, found)."""
+    table: Counter[tuple[str, str]] = Counter()
+    for phrases, recognised in zip(sentences, found, strict=True):
+        for act in (act for phrase in phrases for act in phrase if act.side in ("left", "right")):
+            same = [one for one in recognised if one.verb == act.verb and one.side]
+            sides = {one.side for one in same}
+            if same:
+                table[act.side, act.side if act.side in sides else same[0].side] += 1
+            else:
+                table[act.side, "none"] += 1
+    return dict(table)

@@ -1,0 +1,77 @@
+"""How far a motion does what a sentence says: by hand, and on performed sentences."""
+
+import numpy as np
+import pytest
+
+from data_synth.actions import clips
+from motiondiff_edu.metrics.actions import Recognised, actions
+from motiondiff_edu.metrics.sentences import Asked, agreement, confusion, rows_of
+
+
+def seen(verb: str, side: str = "", count: int = 1, at: float = 1.0) -> Recognised:
+    return Recognised(verb, side, count, "", at - 0.5, at + 0.5)
+
+
+KICK = Asked("kick", "left", 2)
+WAVE = Asked("wave", "right")
+WALK = Asked("walk")
+
+
+@pytest.mark.parametrize(
+    "phrases, found, wanted",
+    [
+        ([[KICK]], [seen("kick", "left", 2)], (1.0, 1.0, 1.0, np.nan)),
+        ([[KICK]], [seen("kick", "right", 3)], (1.0, 0.0, 0.0, np.nan)),
+        ([[KICK]], [], (0.0, np.nan, np.nan, np.nan)),
+        ([[KICK]], [seen("kick", "left", 2), seen("jump")], (0.5, 1.0, 1.0, np.nan)),
+        ([[KICK], [WALK]], [seen("kick", "left", 2), seen("walk", at=4)], (1.0, 1.0, 1.0, 1.0)),
+        ([[KICK], [WALK]], [seen("kick", "left", 2, 4), seen("walk")], (1.0, 1.0, 1.0, 0.0)),
+        ([[WALK, WAVE]], [seen("walk", at=2), seen("wave", "right")], (1.0, 1.0, np.nan, np.nan)),
+        ([[WALK, WAVE], [KICK]], [seen("walk")], (1 / 3, np.nan, np.nan, np.nan)),
+        ([], [], (np.nan,) * 4),
+        ([], [seen("jump")], (0.0, np.nan, np.nan, np.nan)),
+    ],
+)
+def test_agreement_by_hand(phrases, found, wanted):
+    one = agreement(phrases, found)
+    np.testing.assert_allclose((one.action, one.side, one.count, one.order), wanted)
+
+
+def test_two_acts_of_one_verb_are_matched_by_their_sides():
+    """In whichever order they are asked for, and with one of them missing."""
+    left, right = Asked("punch", "left", 3), Asked("punch", "right", 1)
+    found = [seen("punch", "right", 1, 5.0), seen("punch", "left", 3, 1.0)]
+    assert agreement([[left], [right]], found).order == 1
+    assert agreement([[right], [left]], found).order == 0
+    for phrases in ([[left], [right]], [[right], [left]]):
+        one = agreement(phrases, found)
+        assert (one.action, one.side, one.count) == (1.0, 1.0, 1.0)
+        lone = agreement(phrases, found[1:])
+        assert (lone.action, lone.side, lone.count) == (0.5, 1.0, 1.0)
+
+
+def asked_of(acted) -> list[list[Asked]]:
+    return [
+        [Asked(a.verb, a.side, a.count, a.direction) for a in phrase.acts if a.verb != "stand"]
+        for phrase in acted.sentence
+    ]
+
+
+def test_performed_sentences_agree_and_shuffled_ones_do_not():
+    made = [clip.acted for clip in clips(60, 95, "test")]
+    sentences, found = [asked_of(one) for one in made], [actions(one.positions) for one in made]
+    own = {kind: np.nanmean(row) for kind, row in rows_of(sentences, found).items()}
+    assert own["action"] > 0.97 and min(own["side"], own["count"], own["order"]) > 0.95
+    other = rows_of(sentences[7:] + sentences[:7], found)
+    assert np.nanmean(other["action"]) < 0.25
+
+
+def test_confusion_counts_sides():
+    sentences = [[[KICK]], [[KICK]], [[KICK]], [[WAVE]], [[WALK]]]
+    found = [[seen("kick", "left")], [seen("kick", "right")], [], [seen("wave", "right")], []]
+    assert confusion(sentences, found) == {
+        ("left", "left"): 1,
+        ("left", "right"): 1,
+        ("left", "none"): 1,
+        ("right", "right"): 1,
+    }
