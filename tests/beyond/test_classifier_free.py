@@ -1,0 +1,45 @@
+"""Classifier-free guidance, exactly: on a mixture whose conditional is one of its two humps."""
+
+import pytest
+import torch
+
+from motiondiff_edu.beyond.classifier_free import guided_by_text
+from motiondiff_edu.ddpm import cosine_schedule, ddim_steps, final
+from motiondiff_edu.exact import exact_denoiser, mixture
+
+SCHEDULE = cosine_schedule(100)
+MEANS, STD = (-1.0, 1.0), 0.6
+BOTH = mixture(torch.ones(2) / 2, torch.tensor(MEANS)[:, None], torch.full((2, 1, 1), STD**2))
+RIGHT = mixture(torch.ones(1), torch.tensor(MEANS[1:])[:, None], torch.full((1, 1, 1), STD**2))
+
+
+def denoisers():
+    return exact_denoiser(RIGHT, SCHEDULE), exact_denoiser(BOTH, SCHEDULE)
+
+
+def test_one_is_the_conditional_itself_and_nought_the_unconditional():
+    conditional, unconditional = denoisers()
+    assert guided_by_text(conditional, unconditional, 1) is conditional
+    x, s = torch.linspace(-2, 2, 9)[:, None], torch.full((9,), 30)
+    torch.testing.assert_close(
+        guided_by_text(conditional, unconditional, 0)(x, s), unconditional(x, s)
+    )
+    wanted = 3 * conditional(x, s) - 2 * unconditional(x, s)
+    torch.testing.assert_close(guided_by_text(conditional, unconditional, 3)(x, s), wanted)
+
+
+def sampled(w: float) -> torch.Tensor:
+    start = torch.randn(4000, 1, generator=torch.Generator().manual_seed(1))
+    loop = ddim_steps(guided_by_text(*denoisers(), w), start, SCHEDULE, steps=100)
+    return final(loop).x_s
+
+
+def test_more_guidance_leads_away_from_the_other_hump_and_narrows_the_samples():
+    """The conditional is N(1, 0.6); with w > 1 the samples are no sample of it any more."""
+    found = {w: sampled(w) for w in (1.0, 2.5, 5.0)}
+    assert found[1.0].mean().item() == pytest.approx(1.0, abs=0.05)
+    assert found[1.0].std().item() == pytest.approx(STD, abs=0.05)
+    means, stds = ([x(found[w]).item() for w in found] for x in (torch.mean, torch.std))
+    assert means[0] < means[1] < means[2] and stds[0] > stds[1] > stds[2]
+    wrong = [(one < 0).float().mean().item() for one in found.values()]  # nearer the other hump
+    assert wrong[0] > 0.03 and wrong[1] < 0.5 * wrong[0]
