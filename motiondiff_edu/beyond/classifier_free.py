@@ -5,7 +5,7 @@ w = 1 is the conditional network, as in the paper. A larger w follows the text m
 samples differ less; the result is no sample of the conditional any more. In training, some texts
 are left out, so that one network is both. It costs two evaluations at every step.
 Gain: not measured yet; no mover is shipped.
-Source: Ho and Salimans, 2022. Ours; MoFusion has no guidance.  Notebook: 16
+Source: Ho and Salimans, 2022. Ours; MoFusion has no guidance.
 """
 
 from ..ddpm import Denoiser
@@ -13,8 +13,6 @@ from ..ddpm import Denoiser
 
 def guided_by_text(conditional: Denoiser, unconditional: Denoiser, w: float) -> Denoiser:
     """A denoiser between the two for w from 0 to 1, and beyond the conditional one above 1.
-
-    Notebook: 16
     """
     if w == 1:
         return conditional

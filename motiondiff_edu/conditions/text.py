@@ -5,7 +5,6 @@
 
 A word is taken in its base form (`lemma`). Other words are read as known ones of about the same
 meaning, openly, or refused by name; none becomes numbers in silence.
-Notebook: 16
 """
 
 import json
@@ -110,7 +109,7 @@ def read(text: str, vocabulary: Sequence[str], others: Mapping[str, str] | None 
     Base forms are taken, and words without a meaning for movement are passed over. `others` (by
     default `synonyms()`) has words that are read as known ones; the notes say so.
     Raises TextError for a text without a known word, for unknown words, and for more than LONGEST
-    words.  Notebook: 16
+    words.
     """
     given = words_of(text)
     if not given:

@@ -3,7 +3,7 @@
 So "left" in "kicks with the left foot" knows what is left, and "waves, then kicks" differs from
 "kicks, then waves", which a bag of words cannot tell apart.
 Source: MoFusion 3.3 has CLIP's tokens here (`conditions/clip_text.py`); these are ours, trained
-with the motions.  Notebook: 16
+with the motions.
 """
 
 import torch

@@ -6,7 +6,7 @@
 Both know only what the network knows: use them beside the recogniser (`metrics/actions.py`), and
 with the data's own value.
 Source: Guo and others, 2022 (HumanML3D), which MoFusion's Table 2 uses; this network is ours, and
-learns by contrast (Radford and others, 2021).  Notebook: 17
+learns by contrast (Radford and others, 2021).
 """
 
 from collections.abc import Hashable, Sequence
@@ -33,7 +33,7 @@ def r_precision(
 
     `truths`: what each text says; a pool has no two equal ones, so that only one motion is right.
     Texts that are left over at the end are not counted. Chance is 1, 2, 3 over `pool`.
-    Raises ValueError where there are fewer than `pool` different truths.  Notebook: 17
+    Raises ValueError where there are fewer than `pool` different truths.
     """
     hits, counted = np.zeros(TOP), 0
     for members in pools(truths, rng, pool):
@@ -71,8 +71,6 @@ def pools(truths: Sequence[Hashable], rng: np.random.Generator, pool: int) -> li
 
 def mm_dist(texts: Float[np.ndarray, "N E"], motions: Float[np.ndarray, "N E"]) -> float:
     """The mean distance between a text and its motion, in the space of the network.
-
-    Notebook: 17
     """
     return float(np.linalg.norm(texts - motions, axis=-1).mean())
 
@@ -119,7 +117,7 @@ def contrast(
     """The loss by which a space is learnt: each text's motion is nearer than the others', and back.
 
     `same`: 1 where two texts of the batch say the same, which is then not held against them.
-    Source: Radford and others, 2021.  Notebook: 17
+    Source: Radford and others, 2021.
     """
     likeness = space.text_points(ids) @ space.motion_points(motions).mT * space.sharpness.exp()
     own = torch.eye(len(ids), device=ids.device)

@@ -1,7 +1,6 @@
 """How far a motion does what a sentence says, by the actions that are recognised in it.
 
 A sentence is a list of phrases, each a list of what is asked for at one time.
-Notebook: 17
 """
 
 from collections import Counter
@@ -49,7 +48,6 @@ def agreement(phrases: Phrases, found: Sequence[Recognised]) -> Agreement:
     """Compare a sentence with what was recognised. Each act is matched with one recognised action.
 
     Among recognised actions with the verb, that with the same side and count is taken first.
-    Notebook: 17
     """
     acts = [(k, act) for k, phrase in enumerate(phrases) for act in phrase]
     left = list(found)

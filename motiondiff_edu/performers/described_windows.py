@@ -1,7 +1,7 @@
 """Training data of a mover: whole motions with their captions, mirrored with their words.
 
 A batch holds motions of one length, so nothing is padded, and it has about as many frames whatever
-the length is. Source: MoFusion 4.2 (motions and texts; lengths and batches are ours).  Notebook: 16
+the length is. Source: MoFusion 4.2 (motions and texts; lengths and batches are ours).
 """
 
 from collections.abc import Sequence

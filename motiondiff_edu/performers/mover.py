@@ -1,6 +1,6 @@
 """A mover: MoFusion from text with its units. It turns a sentence into motions.
 
-Source: MoFusion 3, 4.2.  Notebook: 16
+Source: MoFusion 3, 4.2.
 """
 
 import copy
@@ -89,7 +89,7 @@ class Mover(Performer):
         guidance  above 1 it follows the text more closely, at twice the cost
                   (`beyond.classifier_free`)
         Raises TextError for a text that cannot be read, ValueError for numbers out of range.
-        Source: MoFusion 3.  Notebook: 16
+        Source: MoFusion 3.
         """
         found = read(text, self.config.words)
         for note in found.notes:
@@ -123,7 +123,6 @@ class Mover(Performer):
         """Motions in metres for texts as ids, one each.
 
         `start` is the noise to begin with (default: drawn); pass the same to compare two texts.
-        Notebook: 16
         """
         denoise = self.denoiser(ids, guidance)
         where = self.motion_scaler.mean.new_empty(len(ids), frames, self.config.D)

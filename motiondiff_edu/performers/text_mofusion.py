@@ -2,7 +2,7 @@
 
 Words have no times, so their keys are not rotated; a query still knows its own time. The same
 network takes tokens from its own word encoder or from elsewhere (`conditions/clip_text.py`).
-Source: MoFusion 3.3.  Notebook: 16
+Source: MoFusion 3.3.
 """
 
 from dataclasses import dataclass

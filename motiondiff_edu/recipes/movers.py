@@ -1,7 +1,6 @@
 """Recipes of the movers: data, sizes, losses and steps, in one record each.
 
 The paper gives no widths, no steps and no weights of its losses, so all numbers are ours.
-Notebook: 16
 """
 
 from dataclasses import dataclass, replace
