@@ -12,8 +12,7 @@ from ..ddpm import Denoiser
 
 
 def guided_by_text(conditional: Denoiser, unconditional: Denoiser, w: float) -> Denoiser:
-    """A denoiser between the two for w from 0 to 1, and beyond the conditional one above 1.
-    """
+    """A denoiser between the two for w from 0 to 1, and beyond the conditional one above 1."""
     if w == 1:
         return conditional
     return lambda x_s, s: (1 - w) * unconditional(x_s, s) + w * conditional(x_s, s)

@@ -70,8 +70,7 @@ def pools(truths: Sequence[Hashable], rng: np.random.Generator, pool: int) -> li
 
 
 def mm_dist(texts: Float[np.ndarray, "N E"], motions: Float[np.ndarray, "N E"]) -> float:
-    """The mean distance between a text and its motion, in the space of the network.
-    """
+    """The mean distance between a text and its motion, in the space of the network."""
     return float(np.linalg.norm(texts - motions, axis=-1).mean())
 
 
