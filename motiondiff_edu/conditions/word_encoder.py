@@ -2,8 +2,7 @@
 
 So "left" in "kicks with the left foot" knows what is left, and "waves, then kicks" differs from
 "kicks, then waves", which a bag of words cannot tell apart.
-Source: MoFusion 3.3 has CLIP's tokens here (`conditions/clip_text.py`); these are ours, trained
-with the motions.
+Source: MoFusion 3.3, which has the tokens of CLIP here; these are ours, trained with the motions.
 """
 
 import torch

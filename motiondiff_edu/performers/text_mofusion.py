@@ -1,7 +1,8 @@
 """MoFusion from text: the U-Net of the dancers, whose keys and values come from words.
 
-Words have no times, so their keys are not rotated; a query still knows its own time. The same
-network takes tokens from its own word encoder or from elsewhere (`conditions/clip_text.py`).
+Words have no times, so their keys are not rotated; a query still knows its own time. The lowest
+levels also attend to the motion itself (`beyond/self_attention.py`). The same network takes tokens
+from its own word encoder or from elsewhere.
 Source: MoFusion 3.3.
 """
 
@@ -11,9 +12,10 @@ import torch
 from jaxtyping import Float, Int
 from torch import Tensor, nn
 
+from ..beyond.self_attention import SelfAttendingMoFusion
 from ..conditions.text import LONGEST
 from ..conditions.word_encoder import WordEncoder, present
-from ..mofusion import MoFusion, MoFusionConfig, Music
+from ..mofusion import MoFusionConfig, Music
 from .networks import register
 
 
@@ -38,7 +40,7 @@ class TextMoFusion(nn.Module):
         self.config = config
         sizes = (config.C, config.word_layers, config.heads, config.longest)
         self.words = WordEncoder(len(config.words), *sizes)
-        self.unet = MoFusion(config)
+        self.unet = SelfAttendingMoFusion(config)
 
     def listen(self, ids: Int[Tensor, "B M"]) -> Music:
         """The context of texts (`word_encoder.ids_of`)."""
