@@ -5,11 +5,12 @@ What is given comes back, what is not follows the true conditional once it is re
 
 import pytest
 import torch
+from two_numbers import correlated, given_first
 
 from data_synth.mixtures import crossed_bars
 from motiondiff_edu.beyond.guidance import with_guess
 from motiondiff_edu.ddpm import cosine_schedule, ddim_steps, timesteps
-from motiondiff_edu.exact import conditional, exact_denoiser, log_density, mixture, sample_mixture
+from motiondiff_edu.exact import conditional, exact_denoiser, log_density, sample_mixture
 from motiondiff_edu.inbetweening import inpaint_steps, resampled
 
 SCHEDULE = cosine_schedule(100)
@@ -22,15 +23,6 @@ def seeded(seed: int = 0) -> torch.Generator:
 def last(loop):
     *_, end = loop
     return end.x_s
-
-
-def correlated(rho: float = 0.9):
-    """One Gaussian in the plane whose coordinates agree.
-
-    The second is rho times the first, and some noise.
-    """
-    covariance = torch.tensor([[[1.0, rho], [rho, 1.0]]], dtype=torch.float64)
-    return mixture(torch.ones(1), torch.tensor([[0.3, -0.2]]), covariance)
 
 
 def test_the_conditional_is_the_joint_density_over_the_marginal_one():
@@ -51,11 +43,6 @@ def test_the_conditional_of_one_gaussian_is_the_textbook_s():
     for known in (torch.tensor([True, True]), torch.tensor([False, False])):
         with pytest.raises(ValueError, match="one entry must be known"):
             conditional(correlated(), torch.zeros(2), known)
-
-
-def given_first(value: float, n: int):
-    known = torch.tensor([True, False]).expand(n, 2)
-    return torch.tensor([value, float("nan")]).expand(n, 2), known
 
 
 def test_masking_with_the_exact_denoiser_misses_the_conditional_until_it_resamples():

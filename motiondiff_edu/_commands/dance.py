@@ -5,7 +5,7 @@ cannot."""
 import argparse
 from pathlib import Path
 
-from ..motion.checks import checked_seconds
+from ..motion.checks import check_there, checked_seconds
 from . import outputs
 
 HELP = "dance to a song"
@@ -28,7 +28,7 @@ def run(args: argparse.Namespace) -> None:
     paths = outputs.output_paths(args.out, args.overwrite, args.samples)
     if args.seconds is not None:
         checked_seconds(args.seconds)
-    outputs.check_there(args.song)
+    check_there(args.song)
     outputs.say(f"dancing to {args.song}")
     from .. import load
 

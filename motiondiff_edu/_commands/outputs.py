@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from ..motion import registry
-from ..motion.checks import checked_count
+from ..motion.checks import check_there, checked_count
 
 
 def endings() -> str:
@@ -81,13 +81,6 @@ def _check_folder(out: Path) -> None:
         raise ValueError(f"{out}: {there} is a file, not a folder; choose another place")
     if not os.access(there, os.W_OK | os.X_OK):
         raise ValueError(f"{out}: you may not write in {there}; choose another place")
-
-
-def check_there(path: Path) -> None:
-    """Raise FileNotFoundError if there is no such file."""
-    if not path.expanduser().exists():
-        where = "" if path.is_absolute() else f" in {Path.cwd()}"
-        raise FileNotFoundError(f"there is no file {path}{where}; check the spelling")
 
 
 def read(path: Path, mapping: dict[str, str] | None = None, file_fps: float | None = None):

@@ -11,13 +11,13 @@ from dataclasses import replace
 import numpy as np
 from jaxtyping import Bool, Float
 
+from ..motion.faults import WILD
 from ..motion.planting import runs
 from ..motion.root_frame import FPS
 from ..motion.skeleton import HIPS, TOES
 from .inbetween import OURS, Departures
 
 FACTOR, SLACK = 3.0, 1.0  # the pelvis may be so many times, plus m/s, as fast as is needed
-FASTEST = 15.0  # m/s: no joint of an actor is faster
 # In recorded walks and dances both feet slide for at most 0.35 s (a turn in a salsa); in failed
 # in-betweens of a walk for 0.7 s and more.
 LOW = 0.08  # m above the 5th percentile of the toes' heights
@@ -91,7 +91,7 @@ def wilder_than_given(
         )
     joints = FPS * np.linalg.norm(np.diff(made, axis=0), axis=-1)
     joints = np.where(known[1:] & known[:-1], 0.0, joints)
-    if joints.size and joints.max() > FASTEST:
+    if joints.size and joints.max() > WILD:
         frame = int(np.unravel_index(joints.argmax(), joints.shape)[0])
         return (
             f"a generated joint moves at {joints.max():.0f} m/s near frame {frame}, faster than any"

@@ -19,12 +19,11 @@ from ..motion.skeleton import BONE_LENGTHS, HIPS, TOES, joint_index
 from .bone_lengths import bone_lengths
 
 SIDES = ("left", "right")
-UPLEGS, SHOULDERS, ELBOWS, HANDS = (
+UPLEGS, SHOULDERS, HANDS = (
     tuple(joint_index(f"{side}{name}") for side in ("Left", "Right"))
-    for name in ("UpLeg", "Arm", "ForeArm", "Hand")
+    for name in ("UpLeg", "Arm", "Hand")
 )
 SPINE, NECK = joint_index("Spine1"), joint_index("Neck1")
-REACH = 0.53  # metres from shoulder to wrist of a straight arm
 STRANGE = 0.03  # metres: with a larger RMS error of its bones, a motion shows no body
 
 
@@ -217,8 +216,7 @@ def on_the_way(s: Signals, spot: list[Recognised]) -> list[Recognised]:
     turns = (np.abs(s.turning) > 0.6) & (s.ahead < 1.9)
     state[turns & (s.turning > 0)] = "turn left"
     state[turns & (s.turning < 0)] = "turn right"
-    for one in spot:
-        state[round(one.first * s.fps) : round(one.last * s.fps) + 1] = ""
+    state[during(spot, s)] = ""
     found = []
     for word in ("walk", "run", "back", "aside left", "aside right", "turn left", "turn right"):
         verb, _, side = word.partition(" ")
@@ -236,6 +234,14 @@ def on_the_way(s: Signals, spot: list[Recognised]) -> list[Recognised]:
                 direction = ""
             found.append(Recognised(verb, side, 1, direction, first / s.fps, last / s.fps))
     return without_passages(found)
+
+
+def during(acts: list[Recognised], s: Signals) -> Bool[np.ndarray, "T"]:
+    """The frames of these acts."""
+    mask = np.zeros(len(s.ahead), bool)
+    for one in acts:
+        mask[round(one.first * s.fps) : round(one.last * s.fps) + 1] = True
+    return mask
 
 
 def joined(mask: Bool[np.ndarray, "T"], gap: float) -> list[tuple[int, int]]:
@@ -269,10 +275,7 @@ def of_the_arms(s: Signals, spot: list[Recognised]) -> list[Recognised]:
     for one in spot:
         if one.verb in ("jump", "kick", "bow"):
             free[max(0, round((one.first - 0.2) * s.fps)) : round((one.last + 0.4) * s.fps)] = False
-    busy = np.zeros(len(free), bool)
-    for one in spot:
-        if one.verb in ("squat", "sit"):
-            busy[round(one.first * s.fps) : round(one.last * s.fps) + 1] = True
+    busy = during([one for one in spot if one.verb in ("squat", "sit")], s)
     out, up, front = np.moveaxis(s.hands, -1, 0)
     found = []
     rising = np.gradient(up, 1 / s.fps, axis=0)
@@ -281,9 +284,8 @@ def of_the_arms(s: Signals, spot: list[Recognised]) -> list[Recognised]:
     near = peaks(-s.apart, -0.22, 0.2, s.fps)
     near = {t: x for t, x in near.items() if front[t].min() > 0.27 and free[t] and alike[t]}
     found += counted("clap", "", near, s.fps)
-    claps = np.zeros(len(free), bool)
-    for one in found:
-        claps[round(one.first * s.fps) : round(one.last * s.fps) + 1] = True
+    claps = during(found, s)
+    level = (s.reach > 0.44) & (np.abs(up) < 0.34)
     high = [{t: x for t, x in peaks(up[:, k], 0.38, 0.2, s.fps).items() if free[t]} for k in (0, 1)]
     both = {t: x for t, x in high[0].items() if any(abs(t - u) < 0.3 * s.fps for u in high[1])}
     paired = [u for u in high[1] if any(abs(t - u) < 0.3 * s.fps for t in both)]
@@ -292,7 +294,6 @@ def of_the_arms(s: Signals, spot: list[Recognised]) -> list[Recognised]:
         alone = {t: x for t, x in high[k].items() if t not in (*both, *paired)}
         found += counted("raise", side, alone, s.fps)
         other = 1 - k
-        level = (s.reach > 0.44) & (np.abs(up) < 0.34)
         shows = free & (s.reach[:, k] > 0.47) & (np.abs(up[:, k]) < 0.24) & ~claps
         for direction, ahead in (("forward", front), ("aside", out)):
             alone = shows & (ahead[:, k] > 0.4) & ~(level[:, other] & (ahead[:, other] > 0.3))

@@ -83,7 +83,6 @@ class Space(nn.Module):
 
     def __init__(self, D: int, words: int, width: int = 128):
         super().__init__()
-        self.sizes = {"D": D, "words": words, "width": width}
         self.shorten = nn.Sequential(
             nn.Conv1d(D, width, 4, 2, 1), nn.GELU(), nn.Conv1d(width, width, 4, 2, 1), nn.GELU()
         )

@@ -1,7 +1,8 @@
-"""Checks of numbers that a user passes: a value out of range raises a clear error."""
+"""Checks of what a user passes: a value out of range, or a missing file, raises a clear error."""
 
 import math
 from numbers import Integral, Real
+from pathlib import Path
 
 LONGEST = 3600.0  # seconds: an hour
 
@@ -35,6 +36,13 @@ def checked_steps(steps: int | None) -> int | None:
     Raises ValueError for anything else.
     """
     return None if steps is None else checked_count(steps, "steps")
+
+
+def check_there(path: Path) -> None:
+    """Raise FileNotFoundError if there is neither a file nor a folder of that name."""
+    if not path.expanduser().is_file() and not path.expanduser().is_dir():
+        where = "" if path.is_absolute() else f" in {Path.cwd()}"
+        raise FileNotFoundError(f"there is no file {path}{where}; check the spelling")
 
 
 def checked_rate(fps: float, name: str = "fps") -> float:

@@ -14,6 +14,7 @@ import numpy as np
 from .._files import replacing
 from . import registry
 from .bvh.write import write_bvh
+from .checks import check_there
 from .clip import Clip
 from .motion import Motion, MotionError, MotionWarning, unlike_a_body
 from .retarget import load_clip
@@ -49,9 +50,7 @@ def read_motion(
     path = Path(path).expanduser()
     if path.is_dir():
         raise MotionError(f"{path} is a folder; give the name of a file in it")
-    if not path.is_file():
-        where = "" if path.is_absolute() else f" in {Path.cwd()}"
-        raise FileNotFoundError(f"there is no file {path}{where}; check the spelling")
+    check_there(path)
     ending = path.suffix.lower()
     read = registry.readers.get(ending)
     if read is None:

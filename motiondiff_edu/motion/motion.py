@@ -17,13 +17,13 @@ from jaxtyping import Bool, Float
 from . import registry
 from .checks import checked_rate
 from .clip import Clip
+from .faults import WILD
 from .resample import resample
 from .root_frame import FPS, control_from_path, estimate_root, root_path, to_root_frame
 from .skeleton import BONE_LENGTHS, BONES, COURSE, Skeleton
 
 FARTHEST = 1e6  # metres from the origin; a larger value is a fault of the file
 SAMPLE_RATE = 16_000
-FASTEST = 15.0  # m/s: nobody runs faster
 
 
 class MotionError(ValueError):
@@ -202,7 +202,7 @@ class Motion:
                 )
         for one, other in pairwise(parts):
             jump = float(np.linalg.norm(other.positions[0, 0] - one.positions[-1, 0]))
-            if jump * self.fps > FASTEST:
+            if jump * self.fps > WILD:
                 warnings.warn(
                     f"the figure jumps by {jump:.1f} m from {one.name} to {other.name}",
                     MotionWarning,

@@ -16,9 +16,8 @@ from torch import Tensor, nn
 from ..beyond.guidance import with_guess
 from ..conditions.audio_files import samples_of
 from ..conditions.music import FRAMES_PER_SECOND, SAMPLE_RATE, fingerprint, frame_times, log_mel
-from ..ddpm import Denoiser, Generators, Schedule, draw, final
+from ..ddpm import Denoiser, Generators, Schedule, draw
 from ..fast.mofusion import FastMoFusion
-from ..fast.samplers import ddim_steps, ddpm_steps
 from ..fast.twins import watched
 from ..mofusion import MoFusion, MoFusionConfig
 from ..motion.checks import checked_count, checked_seconds, checked_steps
@@ -28,7 +27,7 @@ from ..motion.scaler import Scaler
 from ..prediction import denoiser_of
 from .dance_windows import FPS, mel_frames
 from .networks import register
-from .performer import Performer, generators
+from .performer import Performer, generators, sampled
 from .with_bar import with_bar
 
 STEPS, ETA = 50, 0.5  # defaults of DDIM
@@ -184,13 +183,8 @@ class Dancer(Performer):
         denoise = self.denoiser(mel, frames)
         where = self.motion_scaler.mean.new_empty(len(mel), frames, self.config.D)
         x_S = draw(where, generator) if start is None else start.to(self.device)
-        options = {"generator": generator}
-        if steps is None:
-            loop = ddpm_steps(denoise, x_S, self.schedule, variance="posterior", **options)
-        else:
-            steps = min(steps, self.schedule.S)
-            loop = ddim_steps(denoise, x_S, self.schedule, steps, eta, **options)
-        return to_positions(self.motion_scaler.inverse(final(loop).x_s))
+        x0 = sampled(denoise, x_S, self.schedule, steps, eta, generator)
+        return to_positions(self.motion_scaler.inverse(x0))
 
     def _regress(self, mel: Float[Tensor, "B M C"], frames: int) -> Float[Tensor, "B T 21 3"]:
         """The single dance that a regression gives for each song."""

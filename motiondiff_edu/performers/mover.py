@@ -14,8 +14,7 @@ from torch import Tensor, nn
 from ..beyond.classifier_free import guided_by_text
 from ..conditions.text import read
 from ..conditions.word_encoder import ids_of
-from ..ddpm import Denoiser, Generators, Schedule, draw, final
-from ..fast.samplers import ddim_steps, ddpm_steps
+from ..ddpm import Denoiser, Generators, Schedule, draw
 from ..motion.checks import checked_count, checked_seconds, checked_steps
 from ..motion.dance_frame import to_positions
 from ..motion.motion import Motion
@@ -23,7 +22,7 @@ from ..motion.root_frame import FPS
 from ..motion.scaler import Scaler
 from ..prediction import denoiser_of
 from . import text_mofusion  # noqa: F401  registers the network
-from .performer import Performer, generators
+from .performer import Performer, generators, sampled
 from .with_bar import with_bar
 
 STEPS, ETA = 50, 0.5  # defaults of DDIM
@@ -127,11 +126,5 @@ class Mover(Performer):
         denoise = self.denoiser(ids, guidance)
         where = self.motion_scaler.mean.new_empty(len(ids), frames, self.config.D)
         x_S = draw(where, generator) if start is None else start.to(self.device)
-        if steps is None:
-            loop = ddpm_steps(
-                denoise, x_S, self.schedule, variance="posterior", generator=generator
-            )
-        else:
-            steps = min(steps, self.schedule.S)
-            loop = ddim_steps(denoise, x_S, self.schedule, steps, eta, generator=generator)
-        return to_positions(self.motion_scaler.inverse(final(loop).x_s))
+        x0 = sampled(denoise, x_S, self.schedule, steps, eta, generator)
+        return to_positions(self.motion_scaler.inverse(x0))

@@ -4,9 +4,11 @@ from functools import cached_property
 
 import numpy as np
 import torch
+from jaxtyping import Float
 from torch import Tensor, nn
 
-from ..ddpm import Schedule
+from ..ddpm import Denoiser, Generators, Schedule, final
+from ..fast.samplers import ddim_steps, ddpm_steps
 from ..fast.twins import Twin
 from ..motion.checks import checked_seed
 from .networks import Config, kind_of
@@ -23,6 +25,23 @@ def generators(seed: int, count: int, *also: int) -> list[torch.Generator]:
         seed = int(np.random.SeedSequence([seed, *also]).generate_state(1, np.uint64)[0])
     further = np.random.SeedSequence(seed).generate_state(count, np.uint64)[1:]
     return [torch.Generator().manual_seed(one) for one in (seed, *further.tolist())]
+
+
+def sampled(
+    denoise: Denoiser,
+    x_S: Float[Tensor, "B T D"],
+    schedule: Schedule,
+    steps: int | None,
+    eta: float,
+    generator: Generators | None,
+) -> Float[Tensor, "B T D"]:
+    """A whole motion from noise: DDIM with at most S steps, or for None DDPM with all of them."""
+    if steps is None:
+        loop = ddpm_steps(denoise, x_S, schedule, variance="posterior", generator=generator)
+    else:
+        steps = min(steps, schedule.S)
+        loop = ddim_steps(denoise, x_S, schedule, steps, eta, generator=generator)
+    return final(loop).x_s
 
 
 class Performer:

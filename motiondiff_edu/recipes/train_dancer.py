@@ -3,7 +3,7 @@
 The loss is MoFusion's with the departures of the recipe. A killed run continues from its last save.
 """
 
-from functools import lru_cache
+from functools import lru_cache, partial
 from pathlib import Path
 
 import torch
@@ -11,18 +11,16 @@ from torch import Tensor, nn
 
 from .._files import digest_of_tensors
 from ..baselines.regression import regression_loss
-from ..beyond import loss_terms
 from ..beyond.gain_noise import gain_noise
 from ..beyond.schedules import shifted
 from ..conditions.music import log_mel
-from ..ddpm import Schedule, cosine_schedule, squared_error
-from ..kinematic_loss import kinematic_parts, over_time, training_loss
-from ..motion.dance_frame import body_of
+from ..ddpm import Schedule, cosine_schedule
 from ..performers.dance_windows import DanceWindows, toes_moved
 from ..performers.dancer import Dancer
 from ..performers.networks import network
 from ..training import LossFn
-from .dancers import DanceLossWeights, DanceRecipe
+from .dancers import DanceRecipe
+from .mofusion_loss import batch_loss, weighted_loss
 from .train_recipe import Provenance, train_recipe
 
 
@@ -97,27 +95,15 @@ def loss_of(recipe: DanceRecipe, windows: DanceWindows, schedule: Schedule) -> L
     """The loss of a recipe: MoFusion's, or a regression's if the network is deterministic."""
     if getattr(recipe.config, "deterministic", False):
         return regression_loss_of(recipe, windows)
-    loss, weights = weighted_loss(recipe.loss_weights, windows, schedule), recipe.kinematic
-    lambda_k = over_time(schedule, weights.over_time) if weights else None
+    scaler = windows.motion_scaler
+    loss = weighted_loss(recipe.loss_weights, schedule, scaler, partial(toes_moved, windows))
+    of_batch = batch_loss(recipe.kinematic, loss, schedule, scaler)
 
     def loss_fn(model: nn.Module, generator: torch.Generator) -> Tensor:
         device = next(model.parameters()).device
         x0, mel, planted = (part.to(device) for part in drawn(recipe, windows, generator))
         music = model.listen(mel, windows.mel_times.to(device)) if model.config.C else None
-        body = body_of(windows.motion_scaler.to(device))
-
-        def kinematic(x0_hat: Tensor, x0: Tensor) -> Tensor:
-            return weights.total(kinematic_parts(x0_hat, x0, body, planted))
-
-        return training_loss(
-            model,
-            (x0, music),
-            schedule,
-            generator,
-            kinematic=kinematic if weights else None,
-            lambda_k=lambda_k,
-            loss=loss,
-        )
+        return of_batch(model, x0, music, planted, generator)
 
     return loss_fn
 
@@ -140,22 +126,6 @@ def regression_loss_of(recipe: DanceRecipe, windows: DanceWindows) -> LossFn:
         return regression_loss(model, x0.to(device), mel.to(device), times)
 
     return loss_fn
-
-
-def weighted_loss(
-    weights: DanceLossWeights, windows: DanceWindows, schedule: Schedule
-) -> loss_terms.Loss:
-    """The mean square of eq. 4's data term, with the weights and terms that are not 0."""
-    loss = squared_error
-    if weights.changes:
-        loss = loss_terms.total(loss, loss_terms.changes(weights.changes))
-    if weights.toes:
-        std, moved = windows.motion_scaler.std, toes_moved(windows)
-        loss = loss_terms.total(loss, loss_terms.toe_changes(weights.toes, std, moved))
-    if weights.high_noise:
-        steps = loss_terms.high_noise_weights(schedule, weights.high_noise)
-        loss = loss_terms.weighted_by_step(loss, steps)
-    return loss
 
 
 def digest(windows: DanceWindows) -> str:

@@ -4,7 +4,7 @@ The loss is MoFusion's with the departures of the recipe. A killed run continues
 """
 
 from dataclasses import replace
-from functools import lru_cache
+from functools import lru_cache, partial
 from pathlib import Path
 
 import torch
@@ -12,18 +12,17 @@ from jaxtyping import Int
 from torch import Tensor, nn
 
 from .._files import digest_of_tensors
-from ..beyond import loss_terms
 from ..beyond.schedules import shifted
 from ..conditions.text import base_vocabulary
 from ..conditions.word_encoder import NOTHING, PADDING
-from ..ddpm import Schedule, cosine_schedule, squared_error
-from ..kinematic_loss import kinematic_parts, over_time, training_loss
-from ..motion.dance_frame import body_of, to_positions
+from ..ddpm import Schedule, cosine_schedule
+from ..motion.dance_frame import to_positions
 from ..motion.skeleton import TOES
 from ..performers.described_windows import DescribedWindows
 from ..performers.mover import Mover
 from ..performers.networks import network
 from ..training import LossFn
+from .mofusion_loss import batch_loss, weighted_loss
 from .movers import MoverRecipe
 from .train_recipe import Provenance, train_recipe
 
@@ -73,28 +72,16 @@ def train_mover(
 
 def loss_of(recipe: MoverRecipe, windows: DescribedWindows, schedule: Schedule) -> LossFn:
     """The loss of a recipe: its data, MoFusion's eq. 4, and the departures that it names."""
-    loss, weights = weighted_loss(recipe, windows, schedule), recipe.kinematic
-    lambda_k = over_time(schedule, weights.over_time) if weights else None
+    scaler = windows.scaler
+    loss = weighted_loss(recipe.loss_weights, schedule, scaler, partial(toes_moved, windows))
+    of_batch = batch_loss(recipe.kinematic, loss, schedule, scaler)
 
     def loss_fn(model: nn.Module, generator: torch.Generator) -> Tensor:
         device = next(model.parameters()).device
         x0, ids, planted = windows.draw(recipe.frames, generator)
         ids = without_some(ids, recipe.no_text, generator)
         x0, ids, planted = (part.to(device) for part in (x0, ids, planted))
-        body = body_of(windows.scaler.to(device))
-
-        def kinematic(x0_hat: Tensor, x0: Tensor) -> Tensor:
-            return weights.total(kinematic_parts(x0_hat, x0, body, planted))
-
-        return training_loss(
-            model,
-            (x0, model.listen(ids)),
-            schedule,
-            generator,
-            kinematic=kinematic if weights else None,
-            lambda_k=lambda_k,
-            loss=loss,
-        )
+        return of_batch(model, x0, model.listen(ids), planted, generator)
 
     return loss_fn
 
@@ -107,22 +94,6 @@ def without_some(
     empty[:, 0] = NOTHING
     left_out = torch.rand(len(ids), generator=generator) < share
     return torch.where(left_out[:, None], empty, ids)
-
-
-def weighted_loss(
-    recipe: MoverRecipe, windows: DescribedWindows, schedule: Schedule
-) -> loss_terms.Loss:
-    """The mean square of eq. 4's data term, with the weights and terms that are not 0."""
-    weights, loss = recipe.loss_weights, squared_error
-    if weights.changes:
-        loss = loss_terms.total(loss, loss_terms.changes(weights.changes))
-    if weights.toes:
-        toes = loss_terms.toe_changes(weights.toes, windows.scaler.std, toes_moved(windows))
-        loss = loss_terms.total(loss, toes)
-    if weights.high_noise:
-        steps = loss_terms.high_noise_weights(schedule, weights.high_noise)
-        loss = loss_terms.weighted_by_step(loss, steps)
-    return loss
 
 
 def toes_moved(windows: DescribedWindows) -> float:

@@ -3,6 +3,7 @@
 import pytest
 import torch
 from small_dancers import dancer_of_bands as dancer
+from two_numbers import correlated, given_first
 
 from motiondiff_edu.beyond.guidance import blended, blended_guess, guided, guided_guess, with_guess
 from motiondiff_edu.ddpm import cosine_schedule
@@ -20,20 +21,6 @@ def seeded(seed: int = 0) -> torch.Generator:
 def last(loop):
     *_, end = loop
     return end.x_s
-
-
-def correlated(rho: float = 0.9):
-    """One Gaussian in the plane whose coordinates agree.
-
-    The second is rho times the first, and some noise.
-    """
-    covariance = torch.tensor([[[1.0, rho], [rho, 1.0]]], dtype=torch.float64)
-    return mixture(torch.ones(1), torch.tensor([[0.3, -0.2]]), covariance)
-
-
-def given_first(value: float, n: int):
-    known = torch.tensor([True, False]).expand(n, 2)
-    return torch.tensor([value, float("nan")]).expand(n, 2), known
 
 
 def test_blending_carries_the_correction_and_fades():

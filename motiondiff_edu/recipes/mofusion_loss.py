@@ -1,0 +1,70 @@
+"""What the losses of dancers and movers share: eq. 4 with the terms that a recipe names."""
+
+from collections.abc import Callable
+
+import torch
+from jaxtyping import Bool, Float
+from torch import Tensor, nn
+
+from ..beyond import loss_terms
+from ..ddpm import Schedule, squared_error
+from ..kinematic_loss import KinematicWeights, kinematic_parts, over_time, training_loss
+from ..mofusion import Music
+from ..motion.dance_frame import body_of
+from ..motion.scaler import Scaler
+from .dancers import DanceLossWeights
+
+BatchLoss = Callable[[nn.Module, Tensor, Music | None, Tensor, torch.Generator], Tensor]
+
+
+def batch_loss(
+    weights: KinematicWeights | None, loss: loss_terms.Loss, schedule: Schedule, scaler: Scaler
+) -> BatchLoss:
+    """A function of (model, x0, context, planted, generator): eq. 4, with `loss` as its data term.
+
+    `weights` None leaves the kinematic losses out. The parts of the batch are on one device.
+    """
+    lambda_k = over_time(schedule, weights.over_time) if weights else None
+
+    def of_batch(
+        model: nn.Module,
+        x0: Float[Tensor, "B T D"],
+        context: Music | None,
+        planted: Bool[Tensor, "B T 2"],
+        generator: torch.Generator,
+    ) -> Float[Tensor, ""]:
+        body = body_of(scaler.to(x0.device))
+
+        def kinematic(x0_hat: Tensor, x0: Tensor) -> Tensor:
+            return weights.total(kinematic_parts(x0_hat, x0, body, planted))
+
+        return training_loss(
+            model,
+            (x0, context),
+            schedule,
+            generator,
+            kinematic=kinematic if weights else None,
+            lambda_k=lambda_k,
+            loss=loss,
+        )
+
+    return of_batch
+
+
+def weighted_loss(
+    weights: DanceLossWeights, schedule: Schedule, scaler: Scaler, moved: Callable[[], float]
+) -> loss_terms.Loss:
+    """The mean square of eq. 4's data term, with the weights and terms that are not 0.
+
+    `moved()`: the mean square change of a toe's coordinate in the data; asked for with toes alone.
+    """
+    loss = squared_error
+    if weights.changes:
+        loss = loss_terms.total(loss, loss_terms.changes(weights.changes))
+    if weights.toes:
+        toes = loss_terms.toe_changes(weights.toes, scaler.std, moved())
+        loss = loss_terms.total(loss, toes)
+    if weights.high_noise:
+        steps = loss_terms.high_noise_weights(schedule, weights.high_noise)
+        loss = loss_terms.weighted_by_step(loss, steps)
+    return loss
