@@ -280,6 +280,7 @@ class View:
     """One level of the U-Net: the mask of its frames, the attention bias, and rotation angles."""
 
     mask: Float[Tensor, "#B T 1"]
+    times: Float[Tensor, "T"]  # seconds
     bias: Float[Tensor, "#B 1 T M"] | None
     angles: dict[int, tuple[Tensor, Tensor]]  # by the width of the features
 
@@ -307,4 +308,4 @@ class View:
             w: tuple(angles_of(t, w // config.heads, *code) for t in (times, token_times))
             for w in set(config.widths)
         }
-        return cls(inside[..., None].float(), bias, angles)
+        return cls(inside[..., None].float(), times, bias, angles)

@@ -58,9 +58,14 @@ def mirror(clip: Described) -> Described:
     """Left and right exchanged in motion, truth and words."""
     acted = clip.acted
     positions = dance_frame.mirror(acted.positions)
-    sentence = tuple(Phrase(mirrored(p.legs), mirrored(p.arms)) for p in acted.sentence)
+    sentence = mirrored_sentence(acted.sentence)
     spans = tuple(replace(span, act=mirrored(span.act)) for span in acted.spans)
     turned = replace(
         acted, positions=positions, contacts=acted.contacts[:, ::-1], spans=spans, sentence=sentence
     )
     return Described(turned, tuple(exchanged(text) for text in clip.captions))
+
+
+def mirrored_sentence(sentence: Sentence) -> Sentence:
+    """The same sentence with left and right exchanged."""
+    return tuple(Phrase(mirrored(phrase.legs), mirrored(phrase.arms)) for phrase in sentence)

@@ -21,11 +21,11 @@ from jaxtyping import Float, Int
 from torch import Tensor
 
 from ..ddpm import Schedule, Table, at
-from ..motion.dance_frame import to_positions
 from ..motion.skeleton import BONES, TOES
 
 Error = Float[Tensor, "B T D"]
 Loss = Callable[[Error, Int[Tensor, "B"]], Float[Tensor, ""]]
+Moves = Callable[[Error], Float[Tensor, "B T2 21 3"]]
 
 
 def total(*losses: Loss) -> Loss:
@@ -113,17 +113,17 @@ def changes(weight: float) -> Loss:
     return lambda error, s: weight * error.diff(dim=1).square().mean()
 
 
-def toe_changes(weight: float, std: Float[Tensor, "D"], moved: float) -> Loss:
-    """weight * the squared error of the toes' changes in the world / `moved`; for x0 in the dance
-    frame.
+def toe_changes(weight: float, moves: Moves, std: Float[Tensor, "D"], moved: float) -> Loss:
+    """weight * the squared error of the toes' changes in the world / `moved`; for x0.
 
-    A foot stands still only if the errors of pelvis and leg cancel. `std` converts errors to
-    metres. `moved` is the mean square change of a toe coordinate in a frame of the data, m^2
+    A foot stands still only if the errors of pelvis and leg cancel. `moves` of features gives the
+    changes of joints (`dance_frame.moves`, `moving_frame.moves`); `std` converts errors to metres.
+    `moved` is the mean square change of a toe coordinate in a frame of the data, m^2
     (`performers.dance_windows.toes_moved`).
     """
 
     def loss(error: Error, s: Int[Tensor, "B"]) -> Float[Tensor, ""]:
-        toes = to_positions(error * std.to(error))[:, :, list(TOES)]
-        return weight / moved * toes.diff(dim=1).square().mean()
+        toes = moves(error * std.to(error))[:, :, list(TOES)]
+        return weight / moved * toes.square().mean()
 
     return loss

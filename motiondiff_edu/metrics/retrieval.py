@@ -78,11 +78,12 @@ class Space(nn.Module):
     """Texts and motions to points on a sphere of dimension `width`.
 
     Motions (B, T, D) are halved twice by convolutions, then read forwards and backwards; texts are
-    ids (B, M), 0 is padding. Motions of one batch have one length.
+    ids (B, M) below `words`, 0 is padding. Motions of one batch have one length.
     """
 
     def __init__(self, D: int, words: int, width: int = 128):
         super().__init__()
+        self.width = width
         self.shorten = nn.Sequential(
             nn.Conv1d(D, width, 4, 2, 1), nn.GELU(), nn.Conv1d(width, width, 4, 2, 1), nn.GELU()
         )

@@ -96,6 +96,11 @@ def to_positions(features: Float[Tensor, "*B T 63"]) -> Float[Tensor, "*B T 21 3
     return torch.cat([pelvis, joints[..., 1:, :] + pelvis], dim=-2)
 
 
+def moves(features: Float[Tensor, "*B T 63"]) -> Float[Tensor, "*B T2 21 3"]:
+    """How far each joint moves from frame to frame, in metres; linear in the features."""
+    return to_positions(features).diff(dim=-3)
+
+
 def body_of(scaler: Scaler) -> Body:
     """The course's figure, for kinematic losses of motions that `scaler` standardised.
 

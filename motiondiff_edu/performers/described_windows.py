@@ -15,12 +15,12 @@ from torch.nn.functional import pad
 
 from ..conditions.text import read
 from ..conditions.word_encoder import NOTHING, PADDING, ids_of
-from ..motion.dance_frame import mirror, to_features
+from ..motion.moving_frame import mirrored, to_features
 from ..motion.scaler import Scaler
 
 GRID = 8  # frames: lengths are cut to multiples of it
 OTHER = {"left": "right", "right": "left"}
-Batch = tuple[Float[Tensor, "B T 63"], Int[Tensor, "B M"], Bool[Tensor, "B T 2"]]
+Batch = tuple[Float[Tensor, "B T 66"], Int[Tensor, "B M"], Bool[Tensor, "B T 2"]]
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,7 +31,7 @@ class DescribedWindows:
     (K, W, M).
     """
 
-    motions: dict[int, Float[Tensor, "K T 63"]]
+    motions: dict[int, Float[Tensor, "K T 66"]]
     contacts: dict[int, Bool[Tensor, "K T 2"]]
     captions: dict[int, Int[Tensor, "K W M"]]
     exchanged: Int[Tensor, "V"]  # the id of each word with left and right exchanged
@@ -46,7 +46,7 @@ class DescribedWindows:
         captions: Sequence[Sequence[str]],
         words: tuple[str, ...],
     ) -> "DescribedWindows":
-        """Motions (metres) that begin at the origin, facing z; each has as many captions.
+        """Motions (metres, world); each has as many captions.
 
         Raises ValueError for lists of different lengths, and TextError for unknown words.
         """
@@ -78,15 +78,26 @@ class DescribedWindows:
 
         Every motion is as likely as another, and half of them are mirrored, with their words.
         """
+        return self.take(self.choose(frames, generator))
+
+    def choose(self, frames: int, generator: torch.Generator) -> "Chosen":
+        """What a random batch is made of."""
         lengths = sorted(self.motions)
         weights = torch.tensor([len(self.motions[n]) * n for n in lengths], dtype=torch.float64)
         n = lengths[int(torch.multinomial(weights, 1, generator=generator))]
         batch = max(1, frames // n)
-        chosen = torch.randint(len(self.motions[n]), (batch,), generator=generator)
-        wording = torch.randint(self.captions[n].shape[1], (batch,), generator=generator)
-        turned = torch.rand(batch, generator=generator) < 0.5
-        x, planted = self.motions[n][chosen], self.contacts[n][chosen]
-        ids = self.captions[n][chosen, wording]
+        return Chosen(
+            n,
+            torch.randint(len(self.motions[n]), (batch,), generator=generator),
+            torch.randint(self.captions[n].shape[1], (batch,), generator=generator),
+            torch.rand(batch, generator=generator) < 0.5,
+        )
+
+    def take(self, chosen: "Chosen") -> Batch:
+        """The motions, captions and planted feet that were chosen."""
+        n, turned = chosen.length, chosen.turned
+        x, planted = self.motions[n][chosen.which], self.contacts[n][chosen.which]
+        ids = self.captions[n][chosen.which, chosen.wording]
         x = torch.where(turned[:, None, None], mirrored(x), x)
         planted = planted.where(~turned[:, None, None], planted.flip(-1))
         ids = torch.where(turned[:, None], self.exchanged[ids], ids)
@@ -94,7 +105,11 @@ class DescribedWindows:
         return self.scaler.transform(x), ids, planted
 
 
-def mirrored(features: Float[Tensor, "B T 63"]) -> Float[Tensor, "B T 63"]:
-    """The features of the mirrored motions: left and right joints exchanged, x negated."""
-    joints = features.unflatten(-1, (21, 3)).numpy()
-    return torch.from_numpy(mirror(joints)).to(features).flatten(-2)
+@dataclass(frozen=True, eq=False)
+class Chosen:
+    """A batch of motions of one length: which ones, by which caption, and which are mirrored."""
+
+    length: int
+    which: Int[Tensor, "B"]
+    wording: Int[Tensor, "B"]
+    turned: Bool[Tensor, "B"]

@@ -16,8 +16,8 @@ from ..conditions.text import read
 from ..conditions.word_encoder import ids_of
 from ..ddpm import Denoiser, Generators, Schedule, draw
 from ..motion.checks import checked_count, checked_seconds, checked_steps
-from ..motion.dance_frame import to_positions
 from ..motion.motion import Motion
+from ..motion.moving_frame import to_positions
 from ..motion.root_frame import FPS
 from ..motion.scaler import Scaler
 from ..prediction import denoiser_of

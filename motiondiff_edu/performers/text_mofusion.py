@@ -16,6 +16,7 @@ from ..beyond.self_attention import SelfAttendingMoFusion
 from ..conditions.text import LONGEST
 from ..conditions.word_encoder import WordEncoder, present
 from ..mofusion import MoFusionConfig, Music
+from ..motion import moving_frame
 from .networks import register
 
 
@@ -23,6 +24,7 @@ from .networks import register
 class TextMoFusionConfig(MoFusionConfig):
     """MoFusion's sizes, and those of the words: `C` is the width of a token."""
 
+    D: int = moving_frame.D
     C: int = 96
     music_layers: int = 0
     words: tuple[str, ...] = ()

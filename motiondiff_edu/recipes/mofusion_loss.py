@@ -8,9 +8,8 @@ from torch import Tensor, nn
 
 from ..beyond import loss_terms
 from ..ddpm import Schedule, squared_error
-from ..kinematic_loss import KinematicWeights, kinematic_parts, over_time, training_loss
+from ..kinematic_loss import Body, KinematicWeights, kinematic_parts, over_time, training_loss
 from ..mofusion import Music
-from ..motion.dance_frame import body_of
 from ..motion.scaler import Scaler
 from .dancers import DanceLossWeights
 
@@ -18,11 +17,16 @@ BatchLoss = Callable[[nn.Module, Tensor, Music | None, Tensor, torch.Generator],
 
 
 def batch_loss(
-    weights: KinematicWeights | None, loss: loss_terms.Loss, schedule: Schedule, scaler: Scaler
+    weights: KinematicWeights | None,
+    loss: loss_terms.Loss,
+    schedule: Schedule,
+    scaler: Scaler,
+    body_of: Callable[[Scaler], Body],
 ) -> BatchLoss:
     """A function of (model, x0, context, planted, generator): eq. 4, with `loss` as its data term.
 
     `weights` None leaves the kinematic losses out. The parts of the batch are on one device.
+    `body_of` is that of the features' frame, `dance_frame.body_of` for instance.
     """
     lambda_k = over_time(schedule, weights.over_time) if weights else None
 
@@ -52,17 +56,22 @@ def batch_loss(
 
 
 def weighted_loss(
-    weights: DanceLossWeights, schedule: Schedule, scaler: Scaler, moved: Callable[[], float]
+    weights: DanceLossWeights,
+    schedule: Schedule,
+    scaler: Scaler,
+    moves: loss_terms.Moves,
+    moved: Callable[[], float],
 ) -> loss_terms.Loss:
     """The mean square of eq. 4's data term, with the weights and terms that are not 0.
 
+    `moves` is that of the features' frame, `dance_frame.moves` for instance.
     `moved()`: the mean square change of a toe's coordinate in the data; asked for with toes alone.
     """
     loss = squared_error
     if weights.changes:
         loss = loss_terms.total(loss, loss_terms.changes(weights.changes))
     if weights.toes:
-        toes = loss_terms.toe_changes(weights.toes, scaler.std, moved())
+        toes = loss_terms.toe_changes(weights.toes, moves, scaler.std, moved())
         loss = loss_terms.total(loss, toes)
     if weights.high_noise:
         steps = loss_terms.high_noise_weights(schedule, weights.high_noise)

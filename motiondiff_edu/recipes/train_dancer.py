@@ -15,6 +15,7 @@ from ..beyond.gain_noise import gain_noise
 from ..beyond.schedules import shifted
 from ..conditions.music import log_mel
 from ..ddpm import Schedule, cosine_schedule
+from ..motion import dance_frame
 from ..performers.dance_windows import DanceWindows, toes_moved
 from ..performers.dancer import Dancer
 from ..performers.networks import network
@@ -96,8 +97,9 @@ def loss_of(recipe: DanceRecipe, windows: DanceWindows, schedule: Schedule) -> L
     if getattr(recipe.config, "deterministic", False):
         return regression_loss_of(recipe, windows)
     scaler = windows.motion_scaler
-    loss = weighted_loss(recipe.loss_weights, schedule, scaler, partial(toes_moved, windows))
-    of_batch = batch_loss(recipe.kinematic, loss, schedule, scaler)
+    moved = partial(toes_moved, windows)
+    loss = weighted_loss(recipe.loss_weights, schedule, scaler, dance_frame.moves, moved)
+    of_batch = batch_loss(recipe.kinematic, loss, schedule, scaler, dance_frame.body_of)
 
     def loss_fn(model: nn.Module, generator: torch.Generator) -> Tensor:
         device = next(model.parameters()).device

@@ -3,6 +3,7 @@
 The loss is MoFusion's with the departures of the recipe. A killed run continues from its last save.
 """
 
+from collections.abc import Hashable
 from dataclasses import replace
 from functools import lru_cache, partial
 from pathlib import Path
@@ -16,9 +17,9 @@ from ..beyond.schedules import shifted
 from ..conditions.text import base_vocabulary
 from ..conditions.word_encoder import NOTHING, PADDING
 from ..ddpm import Schedule, cosine_schedule
-from ..motion.dance_frame import to_positions
+from ..motion import moving_frame
 from ..motion.skeleton import TOES
-from ..performers.described_windows import DescribedWindows
+from ..performers.described_windows import GRID, DescribedWindows
 from ..performers.mover import Mover
 from ..performers.networks import network
 from ..training import LossFn
@@ -26,22 +27,37 @@ from .mofusion_loss import batch_loss, weighted_loss
 from .movers import MoverRecipe
 from .train_recipe import Provenance, train_recipe
 
+Truths = dict[int, list[tuple[Hashable, Hashable]]]
+
+
+def training_clips(clips: int, seed: int) -> DescribedWindows:
+    """The data of a training, generated from its seed."""
+    return training_data(clips, seed)[0]
+
 
 @lru_cache(maxsize=1)
-def training_clips(clips: int, seed: int) -> DescribedWindows:
-    """The data of a training, generated from its seed; the last data set is kept."""
+def training_data(clips: int, seed: int) -> tuple[DescribedWindows, Truths]:
+    """The data, and what they show; the last data set is kept.
+
+    `truths[n]` has for each motion of n frames its sentence, and that of its mirrored twin.
+    """
     from data_synth.actions import captions  # here, because data_synth imports this package
     from data_synth.actions import clips as described
+    from data_synth.actions.dataset import mirrored_sentence
 
     positions = []
     contacts = []
     texts = []
+    truths: Truths = {}
     for one in described(clips, seed):
-        positions.append(one.acted.positions)
-        contacts.append(one.acted.contacts)
+        acted = one.acted
+        positions.append(acted.positions)
+        contacts.append(acted.contacts)
         texts.append(one.captions)
+        both = (acted.sentence, mirrored_sentence(acted.sentence))
+        truths.setdefault(len(acted) // GRID * GRID, []).append(both)
     words = base_vocabulary(captions.vocabulary())
-    return DescribedWindows.of(positions, contacts, texts, words)
+    return DescribedWindows.of(positions, contacts, texts, words), truths
 
 
 def train_mover(
@@ -73,8 +89,9 @@ def train_mover(
 def loss_of(recipe: MoverRecipe, windows: DescribedWindows, schedule: Schedule) -> LossFn:
     """The loss of a recipe: its data, MoFusion's eq. 4, and the departures that it names."""
     scaler = windows.scaler
-    loss = weighted_loss(recipe.loss_weights, schedule, scaler, partial(toes_moved, windows))
-    of_batch = batch_loss(recipe.kinematic, loss, schedule, scaler)
+    moved = partial(toes_moved, windows)
+    loss = weighted_loss(recipe.loss_weights, schedule, scaler, moving_frame.moves, moved)
+    of_batch = batch_loss(recipe.kinematic, loss, schedule, scaler, moving_frame.body_of)
 
     def loss_fn(model: nn.Module, generator: torch.Generator) -> Tensor:
         device = next(model.parameters()).device
@@ -101,8 +118,8 @@ def toes_moved(windows: DescribedWindows) -> float:
     generator = torch.Generator().manual_seed(0)
     moved = []
     for _ in range(8):
-        positions = to_positions(windows.scaler.inverse(windows.draw(4000, generator)[0]))
-        moved.append(positions[:, :, list(TOES)].diff(dim=1).square().mean())
+        features = windows.scaler.inverse(windows.draw(4000, generator)[0])
+        moved.append(moving_frame.moves(features)[:, :, list(TOES)].square().mean())
     return float(torch.stack(moved).mean())
 
 

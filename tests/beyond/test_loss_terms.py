@@ -17,6 +17,7 @@ from motiondiff_edu.beyond.loss_terms import (
     weighted_by_step,
 )
 from motiondiff_edu.ddpm import linear_schedule, squared_error
+from motiondiff_edu.motion import dance_frame
 from motiondiff_edu.motion.skeleton import HIPS, TOES, joint_index
 
 S1 = torch.tensor([1])
@@ -107,10 +108,10 @@ def test_toes_err_in_the_world_where_pelvis_and_leg_do_not_err_alike():
     error[0, :, 3 * HIPS] = drift / std[0]
     # two toes, three axes, three changes: both toes go with the pelvis
     wanted = 2 / 0.05 * 2 * (0.1**2 + 0.2**2) / (2 * 3 * 3)
-    assert toe_changes(2.0, std, 0.05)(error, S1).item() == pytest.approx(wanted)
+    assert toe_changes(2.0, dance_frame.moves, std, 0.05)(error, S1).item() == pytest.approx(wanted)
     for toe in TOES:  # the toes stay in the world: minus the drift, about the pelvis
         error[0, :, 3 * toe] = -drift / std[3 * toe]
-    assert toe_changes(2.0, std, 0.05)(error, S1).item() == pytest.approx(0, abs=1e-9)
+    assert toe_changes(2.0, dance_frame.moves, std, 0.05)(error, S1).item() == pytest.approx(0, abs=1e-9)
 
 
 def test_weights_follow_the_errors_device_and_kind():

@@ -35,7 +35,7 @@ def mover() -> Mover:
     for parameter in model.parameters():  # blocks that begin at zero would hide their inputs
         if not parameter.any():
             torch.nn.init.normal_(parameter, std=0.1)
-    scaler = Scaler(torch.linspace(-1, 1, 63), torch.linspace(0.5, 2, 63))
+    scaler = Scaler(torch.linspace(-1, 1, 66), torch.linspace(0.5, 2, 66))
     return Mover(model.eval(), cosine_schedule(30), scaler, {"name": "tiny"})
 
 
@@ -79,7 +79,7 @@ def test_a_sentence_makes_motions(mover):
 
 def test_guidance_of_one_is_the_conditional_network_and_more_leads_away_from_no_text(mover):
     ids, nothing = ids_of([("walk",)], WORDS), ids_of([()], WORDS)
-    x, s = torch.randn(1, 40, 63, generator=seeded()), torch.full((1,), 20)
+    x, s = torch.randn(1, 40, 66, generator=seeded()), torch.full((1,), 20)
     with torch.no_grad():
         plain, free = mover.denoiser(ids)(x, s), mover.denoiser(nothing)(x, s)
         torch.testing.assert_close(mover.denoiser(ids, 2.5)(x, s), 2.5 * plain - 1.5 * free)
@@ -143,7 +143,7 @@ def test_a_mirrored_motion_has_its_words_exchanged(windows):
         motions={n: windows.motions[n][:1]},
         contacts={n: windows.contacts[n][:1]},
         captions={n: windows.captions[n][:1, :1]},
-        scaler=Scaler.nothing(63),
+        scaler=Scaler.nothing(66),
     )
     x, ids, planted = only.draw(40 * n, seeded(1))
     turned = (x - x[0]).abs().amax((1, 2)) > 1e-4

@@ -1,0 +1,87 @@
+"""Editing by words: a motion is noised part of the way, and denoised under another sentence.
+
+    x_s0 = noised x0,  then sampling from s0 with the new text
+The more noise, the more the text decides; the less, the more of the motion stays. A part of the
+body or a span of time can be kept besides, by masks as in in-betweening.
+MoFusion says that its motions can be edited by text, but not how; this way is ours.
+Source: SDEdit (Meng and others, 2022); the masks of MoFusion 4.4.
+"""
+
+import numpy as np
+import torch
+from jaxtyping import Bool, Float
+from torch import Tensor
+
+from ..beyond.guidance import blended
+from ..conditions.text import read
+from ..conditions.word_encoder import ids_of
+from ..ddpm import Generators, draw, final, q_sample, timesteps
+from ..inbetweening import inpaint_steps
+from ..motion.dance_frame import Place
+from ..motion.moving_frame import D, to_features, to_positions
+from ..motion.root_frame import estimate_root
+from ..motion.skeleton import HIPS, J
+from ..performers.mover import ETA, STEPS, Mover
+
+STRENGTH = 0.85  # share of the diffusion steps that the motion is noised by
+FADE = 10  # frames within which a generated part joins a kept span of time
+
+
+def edit_by_words(
+    mover: Mover,
+    positions: Float[np.ndarray, "T 21 3"],
+    text: str,
+    known: Bool[np.ndarray, "T 21"] | None = None,
+    *,
+    strength: float = STRENGTH,
+    samples: int = 1,
+    steps: int = STEPS,
+    guidance: float = 1.0,
+    generator: Generators | None = None,
+) -> Float[np.ndarray, "samples T 21 3"]:
+    """Motions (metres, 20 frames/s) that do what `text` says, made out of this motion.
+
+    known     what stays, seen from the figure: a joint keeps its place about the root. Where the
+              pelvis is known, the root keeps its velocity, too. Default: nothing is masked
+    strength  above 0, up to 1; with 1 nothing but the known part is left of the motion
+    steps     of DDIM for the whole way; a smaller strength takes fewer
+    Without a `generator` the seed is 0. The first frame stays where it was, facing the same way.
+    Raises TextError for a text that cannot be read, ValueError for a strength out of range.
+    """
+    if not 0 < strength <= 1:
+        raise ValueError(f"strength must be above 0 and at most 1, not {strength:g}")
+    ids = ids_of([read(text, mover.config.words).words] * samples, mover.config.words)
+    generator = generator or torch.Generator().manual_seed(0)
+    scaler, schedule = mover.motion_scaler, mover.schedule
+    features = torch.from_numpy(to_features(positions)).float().to(scaler.mean.device)
+    given = scaler.transform(features).expand(samples, -1, -1)
+    mask = torch.zeros(len(positions), J, dtype=torch.bool)
+    if known is not None:
+        mask = torch.from_numpy(np.asarray(known))
+    held = columns(mask).to(given.device).expand(given.shape)
+    visited = [s for s in timesteps(schedule.S, steps) if s <= round(strength * schedule.S)]
+    visited = visited or [timesteps(schedule.S, steps)[-1]]
+    start = q_sample(given, visited[0], schedule, draw(given, generator))
+    denoise = mover.denoiser(ids, guidance)
+    if held.any():
+        denoise = blended(denoise, schedule, given, held, fade=FADE)
+    loop = inpaint_steps(
+        denoise, start, schedule, given, held, steps=visited, eta=ETA, generator=generator
+    )
+    with torch.inference_mode():
+        made = to_positions(scaler.inverse(final(loop).x_s)).double().cpu().numpy()
+    return at_the_start_of(positions, made)
+
+
+def columns(known: Bool[Tensor, "T 21"]) -> Bool[Tensor, "T 66"]:
+    """The network's columns of these joints; the root's velocity is known with the pelvis."""
+    joints = known.repeat_interleave(3, dim=-1)
+    return torch.cat([joints, known[:, HIPS, None].expand(-1, D - 3 * J)], -1)
+
+
+def at_the_start_of(
+    positions: Float[np.ndarray, "T 21 3"], made: Float[np.ndarray, "*B T 21 3"]
+) -> Float[np.ndarray, "*B T 21 3"]:
+    """Motions that begin at the origin, facing z, placed where this motion begins."""
+    root, heading = estimate_root(positions)
+    return Place(np.array([root[0, 0], 0.0, root[0, 1]]), np.asarray(heading[0])).leave(made)

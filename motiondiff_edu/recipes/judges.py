@@ -1,0 +1,93 @@
+"""Train the judges of words: spaces of texts and motions, learnt by contrast.
+
+They see the captions and clips of the training split alone, as the movers do.
+"""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import torch
+from jaxtyping import Float
+from torch import Tensor, nn
+
+from ..conditions.word_encoder import FIRST
+from ..metrics.retrieval import Space, contrast
+from ..motion.moving_frame import D
+from ..performers.described_windows import Chosen, DescribedWindows
+from ..pretrained.judges import Judge
+from ..training import LossFn
+from .train_mover import Truths, digest, training_data
+from .train_recipe import Provenance, train_recipe
+
+SEEDS = (0, 1, 2)
+
+
+@dataclass(frozen=True)
+class SpaceConfig:
+    """What the card of a judge says of its network."""
+
+    width: int = 128
+    target: str = "contrast"
+
+
+@dataclass(frozen=True)
+class JudgeRecipe:
+    """One training run of a judge."""
+
+    name: str
+    config: SpaceConfig = SpaceConfig()
+    steps: int = 3000
+    frames: int = 14_000  # of a batch, all motions together
+    lr: float = 1e-3
+    optimizer: str = "adam"
+    decay: float = 0.999
+    clips: int = 12_000
+    data_seed: int = 1
+    seed: int = 0
+    save_every: int = 250  # steps
+
+
+JUDGES = {f"judge-{seed}": JudgeRecipe(f"judge-{seed}", seed=seed) for seed in SEEDS}
+
+
+def train_judge(recipe: JudgeRecipe, run_file: Path, log=print) -> Judge:
+    """Train by a recipe, or continue the run in `run_file`; return a judge with averaged weights.
+
+    Raises ValueError when the run in `run_file` was begun with other settings.
+    """
+    windows, truths = training_data(recipe.clips, recipe.data_seed)
+    torch.manual_seed(recipe.seed)
+    space = Space(D, FIRST + len(windows.words), recipe.config.width)
+    trained, card = train_recipe(
+        recipe,
+        run_file,
+        space,
+        loss_of(recipe, windows, truths),
+        Provenance({"data": digest(windows)}, {"clips": len(windows)}, "data_synth.actions"),
+        warmup=100,
+        log=log,
+    )
+    return Judge(trained, windows.scaler, windows.words, card)
+
+
+def loss_of(recipe: JudgeRecipe, windows: DescribedWindows, truths: Truths) -> LossFn:
+    """The loss by contrast over random batches; texts that say the same are not set apart."""
+
+    def loss_fn(model: nn.Module, generator: torch.Generator) -> Tensor:
+        chosen = windows.choose(recipe.frames, generator)
+        x, ids, _ = windows.take(chosen)
+        device = next(model.parameters()).device
+        return contrast(model, x.to(device), ids.to(device), same(chosen, truths).to(device))
+
+    return loss_fn
+
+
+def same(chosen: Chosen, truths: Truths) -> Float[Tensor, "B B"]:
+    """1 where two motions of a batch show the same."""
+    shown = [
+        truths[chosen.length][k][int(turned)]
+        for k, turned in zip(chosen.which.tolist(), chosen.turned.tolist(), strict=True)
+    ]
+    numbers = {truth: number for number, truth in enumerate(dict.fromkeys(shown))}
+    rows = torch.tensor([numbers[truth] for truth in shown])
+    return (rows[:, None] == rows).float()

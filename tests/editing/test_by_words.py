@@ -1,0 +1,112 @@
+"""Editing by words: what stays, what changes, where it stands, and what is refused."""
+
+import numpy as np
+import pytest
+import torch
+
+from data_synth.actions import captions, clips
+from motiondiff_edu.conditions.text import TextError, base_vocabulary
+from motiondiff_edu.ddpm import at, cosine_schedule
+from motiondiff_edu.editing.by_words import at_the_start_of, columns, edit_by_words
+from motiondiff_edu.editing.masks import UPPER
+from motiondiff_edu.motion.moving_frame import D, to_features, to_positions
+from motiondiff_edu.motion.scaler import Scaler
+from motiondiff_edu.motion.skeleton import HIPS, joint_index
+from motiondiff_edu.performers.mover import Mover
+from motiondiff_edu.performers.text_mofusion import TextMoFusion, TextMoFusionConfig
+
+WORDS = base_vocabulary(captions.vocabulary())
+SMALL = TextMoFusionConfig(widths=(16, 24), heads=2, C=20, S=30, words=WORDS, word_layers=1)
+
+
+@pytest.fixture(scope="module")
+def positions() -> np.ndarray:
+    return next(iter(clips(1, 8))).acted.positions[:64]
+
+
+@pytest.fixture(scope="module")
+def mover(positions) -> Mover:
+    torch.manual_seed(0)
+    model = TextMoFusion(SMALL)
+    for parameter in model.parameters():  # blocks that begin at zero would hide their inputs
+        if not parameter.any():
+            torch.nn.init.normal_(parameter, std=0.1)
+    scaler = Scaler.fit(torch.from_numpy(to_features(positions)).float())
+    return Mover(model.eval().requires_grad_(False), cosine_schedule(30), scaler)
+
+
+def seen_from_the_figure(positions: np.ndarray) -> np.ndarray:
+    return to_features(positions)[:, : D - 3].reshape(len(positions), 21, 3)
+
+
+def apart(a: np.ndarray, b: np.ndarray) -> float:
+    return float(np.abs(a - b).max())
+
+
+class Exact(Mover):
+    """A mover whose motions are standard normal, whatever the text; its denoiser is exact."""
+
+    def denoiser(self, ids, guidance=1.0, fast=True):
+        return lambda x_s, s: x_s * (1 - at(self.schedule.alpha_bar, s, x_s)).sqrt()
+
+
+def test_the_less_noise_the_more_of_the_motion_stays(mover, positions):
+    exact = Exact(mover.model, mover.schedule, mover.motion_scaler)
+    errors = [
+        np.abs(edit_by_words(exact, positions, "walks", strength=s, steps=30)[0] - positions).mean()
+        for s in (0.04, 0.4, 1.0)
+    ]
+    assert errors[0] < 0.5 * errors[1] < errors[1] < errors[2]
+
+
+def test_without_any_of_the_motion_it_is_a_sample_of_the_text(mover, positions):
+    """With all noise, the motion counts by x_S = sqrt(alpha_bar_S) x0 + ... alone."""
+    made = edit_by_words(mover, positions, "walks", strength=1.0, steps=30)
+    other = edit_by_words(mover, positions[::-1].copy(), "walks", strength=1.0, steps=30)
+    again = edit_by_words(mover, positions, "kicks", strength=1.0, steps=30)
+    assert made.shape == (1, 64, 21, 3)
+    assert apart(*(to_start(one[0]) for one in (made, other))) < 0.05
+    assert apart(made, again) > 1e-4
+
+
+def to_start(positions: np.ndarray) -> np.ndarray:
+    return to_positions(torch.from_numpy(to_features(positions))).numpy()
+
+
+def test_the_edit_begins_where_the_motion_began(mover, positions):
+    turned = positions @ np.array([[0.0, 0, 1], [0, 1, 0], [-1, 0, 0]]).T + [5.0, 0.0, 2.0]
+    assert apart(at_the_start_of(turned, to_start(turned)), turned) < 1e-9
+    made = edit_by_words(mover, turned, "walks", strength=0.04, steps=30)[0]
+    assert np.linalg.norm(made[0, HIPS] - turned[0, HIPS]) < 0.3
+
+
+def test_a_kept_part_of_the_body_stays_about_the_root_and_the_rest_changes(mover, positions):
+    known = np.zeros((64, 21), bool)
+    upper = [joint_index(name) for name in UPPER]
+    known[:, upper] = True
+    features = torch.from_numpy(to_features(positions)).float()
+    made = edit_by_words(mover, positions, "kicks", known, strength=1.0, steps=10)[0]
+    # judged before the root is estimated anew: bones between kept joints keep their vectors
+    kept = made[:, upper] - made[:, upper[:1]]
+    wanted = positions[:, upper] - positions[:, upper[:1]]
+    lengths = np.linalg.norm(kept, axis=-1), np.linalg.norm(wanted, axis=-1)
+    np.testing.assert_allclose(*lengths, atol=1e-4)
+    legs = [k for k in range(21) if k not in upper]
+    assert np.abs(made[:, legs] - positions[:, legs]).mean() > 0.02 and len(features) == 64
+
+
+def test_with_the_pelvis_the_path_stays_and_a_kept_span_is_the_motion_itself(mover, positions):
+    known = np.zeros((64, 21), bool)
+    known[:40] = True
+    made = edit_by_words(mover, positions, "kicks", known, steps=10, samples=2)
+    assert apart(made[:, :40], positions[None, :40]) < 1e-4
+    assert np.abs(made[0, 50:] - made[1, 50:]).max() > 0.01
+    assert columns(torch.from_numpy(known)).sum() == 40 * D
+
+
+def test_what_cannot_be_edited_is_refused(mover, positions):
+    for strength in (0.0, 1.5, float("nan")):
+        with pytest.raises(ValueError, match="strength must be above 0 and at most 1"):
+            edit_by_words(mover, positions, "walks", strength=strength)
+    with pytest.raises(TextError, match="does not know 'cartwheel'"):
+        edit_by_words(mover, positions, "does a cartwheel")
