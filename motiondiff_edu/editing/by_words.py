@@ -48,8 +48,7 @@ def edit_by_words(
     Without a `generator` the seed is 0. The first frame stays where it was, facing the same way.
     Raises TextError for a text that cannot be read, ValueError for a strength out of range.
     """
-    if not 0 < strength <= 1:
-        raise ValueError(f"strength must be above 0 and at most 1, not {strength:g}")
+    ways = visited(mover.schedule.S, steps, strength)
     ids = ids_of([read(text, mover.config.words).words] * samples, mover.config.words)
     generator = generator or torch.Generator().manual_seed(0)
     scaler, schedule = mover.motion_scaler, mover.schedule
@@ -59,18 +58,27 @@ def edit_by_words(
     if known is not None:
         mask = torch.from_numpy(np.asarray(known))
     held = columns(mask).to(given.device).expand(given.shape)
-    visited = [s for s in timesteps(schedule.S, steps) if s <= round(strength * schedule.S)]
-    visited = visited or [timesteps(schedule.S, steps)[-1]]
-    start = q_sample(given, visited[0], schedule, draw(given, generator))
+    start = q_sample(given, ways[0], schedule, draw(given, generator))
     denoise = mover.denoiser(ids, guidance)
     if held.any():
         denoise = blended(denoise, schedule, given, held, fade=FADE)
     loop = inpaint_steps(
-        denoise, start, schedule, given, held, steps=visited, eta=ETA, generator=generator
+        denoise, start, schedule, given, held, steps=ways, eta=ETA, generator=generator
     )
     with torch.inference_mode():
         made = to_positions(scaler.inverse(final(loop).x_s)).double().cpu().numpy()
     return at_the_start_of(positions, made)
+
+
+def visited(S: int, steps: int, strength: float) -> list[int]:
+    """The diffusion steps of an edit: those of DDIM up to `strength` S; the last one at least.
+
+    Raises ValueError for a strength that is not above 0 and at most 1.
+    """
+    if not 0 < strength <= 1:
+        raise ValueError(f"strength must be above 0 and at most 1, not {strength:g}")
+    every = timesteps(S, min(steps, S))
+    return [s for s in every if s <= round(strength * S)] or every[-1:]
 
 
 def columns(known: Bool[Tensor, "T 21"]) -> Bool[Tensor, "T 66"]:

@@ -6,7 +6,8 @@ Parts: walker, walker-plain, walker-printed, walker-eps, walker-ddim10, walker-l
 walker-eps-lookahead, footsteps; dancer, dancer-plain, regression, unheard (music like none in
 training), attention, dance-time; mend (dropout and repairs), mend-both (both papers' repairs),
 inbetween, inbetween-departures (what each is worth), known-answer (methods of filling in, on tasks
-whose answer is a formula). These parts train, for minutes a row: ladder (from the paper's walker to
+whose answer is a formula); words (motion from text: Table 2, captions that nobody trained for,
+editing). These parts train, for minutes a row: ladder (from the paper's walker to
 ours), budget, dance-budget and mend-map. One row of them is a part as well: budget.T_p-5,
 dance-budget.v. Without --only, all parts are measured for which there are shipped weights. --full
 adds the parts that train; otherwise their records stay as they are. A training that was killed
@@ -43,6 +44,7 @@ from .walks.parts import (
     walker_records,
     weights_digest,
 )
+from .words import parts as words
 
 DOCS, RUNS = Path("docs"), Path("build/runs")
 MEASURED = (
@@ -56,6 +58,7 @@ MENDED = {  # parts that need these weights
     "mend-both": {both.WALKER, "unconditional"},
     "inbetween": {"unconditional"},
     "inbetween-departures": {"unconditional"},
+    "words": {"mover"},
 }
 TRAINED = {
     "ladder": ("pace", "rates", *ladder.CELLS),
@@ -191,6 +194,8 @@ def records_of(
     if part == "mend-both":
         size = repair.QUICK if quick else repair.FULL
         return both.both_records(bench, stage.dancer("unconditional"), size, command)
+    if part == "words":
+        return words.word_records(words.Studio(words.size_of(quick), bench.weights), command)
     if part == "known-answer":
         return known_answer.known_answer_records(
             known_answer.QUICK if quick else known_answer.FULL, command

@@ -14,6 +14,7 @@ GROUPS = {
     "The walker": (("walker.",), "walker.bone_rmse_cm"),
     "The dancer": (("dancer.", "regression."), "dancer.bas_share"),
     "Diffusion dropout and reconstruction": (("mend.",), "mend.frames_rmse_over_interpolation"),
+    "Words": (("words.",), "words.action_accuracy"),
     "In-betweens": (("inbetween.",), "inbetween.gap30_error_over_interpolation"),
     "Speed, and sound in the player": (("bench.", "player."), "bench.sampler_over_diffusers"),
 }

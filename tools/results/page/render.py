@@ -15,6 +15,7 @@ from ..repairs import tables
 from ..walks import ladder_page
 from ..walks.budget import VARIANTS
 from ..walks.steps_table import PAPER_TABLE
+from ..words.tables import table_2
 from .bars import BARS, Bar
 from .claims import claims
 from .markdown import cell, folded, number, span, table
@@ -245,7 +246,7 @@ def others(records: dict[str, dict]) -> str:
         "dance-time.",
         "attention.",
     )
-    shown += ("mend", "known-answer.", "inbetween.", "inbetween-departures.")
+    shown += ("mend", "words.", "known-answer.", "inbetween.", "inbetween-departures.")
     rest = [one for name, one in sorted(records.items()) if not name.startswith(shown)]
     rows = [
         [f"`{r['name']}`", number(r["value"]), span(r), r["unit"], f"`{r['command']}`"]
@@ -271,7 +272,7 @@ def render(docs: Path, benchmarks: Path = Path("benchmarks/results")) -> None:
     parts += [tables.dropout(records, docs / "results"), tables.repairs(records, docs / "results")]
     known = folded(known_tables.known_answers(records), "The spread, and the shares of the parts")
     parts += [known_tables.both(records), known]
-    parts += [tables.inbetweens(records, docs / "results"), claims(records)]
+    parts += [tables.inbetweens(records, docs / "results"), table_2(records), claims(records)]
     parts = [opening(records), contents(parts), *parts]
     for name, text in (("RESULTS.md", "\n".join(filter(None, parts))), (ALL, others(records))):
         with replacing(docs / name) as aside:

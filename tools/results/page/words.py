@@ -89,6 +89,36 @@ GOALS = {
     ),
     "inbetween.npss_over_interpolation": "the spectral error (NPSS), over that of straight lines",
     "inbetween.seam_jump_over_data": "the jump at the ends of a gap, over that of the data",
+    "words.action_accuracy": "the share of the acts asked for that the mover's motions show",
+    "words.side_accuracy": "the share of the mover's acts on the side asked for",
+    "words.count_accuracy": "the share of the mover's acts that happen as often as asked",
+    "words.order_accuracy": "the share of the mover's acts in the order asked for",
+    "words.minimal_pair": (
+        "how often a motion is nearer to its own caption than to one that differs in one thing"
+    ),
+    "words.heldout_minimal_pair": "the same for combinations that nobody trained for",
+    "words.r_precision_top3_over_real": "the mover's R-Precision (top 3), over that of the data",
+    "words.heldout_action_accuracy": (
+        "the share of acts that are shown, of combinations that nobody trained for"
+    ),
+    "words.heldout_r_precision_top3_over_real": (
+        "the R-Precision (top 3) of such combinations, over that of the data"
+    ),
+    "words.wording_action_accuracy": "the share of acts that are shown, by verbs never seen",
+    "words.bone_rmse_cm": "the mover's bone error",
+    "words.skating_over_data": (
+        "the sliding of the mover's planted feet, over the data's or 0.02 m/s if that is larger"
+    ),
+    "words.multimodality_over_data": "the variety of motions to one text, over that of the data",
+    "words.speed_over_data": "the speed of the mover's motions, over that of the data",
+    "words.nearest_training_over_data": (
+        "the distance of the mover's motions to the nearest training motion, over that of the data"
+    ),
+    "words.edit_changes": "how often an edit by words shows what was asked for",
+    "words.edit_keeps_over_resampled": (
+        "how far legs and path move in an edit by words, over sampling the new sentence alone"
+    ),
+    "bench.mover_seconds": "the seconds for four answers of 6 s to a sentence",
 }
 
 # For columns and rows: the last part of a key.

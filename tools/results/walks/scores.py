@@ -96,7 +96,7 @@ def score(
         "drift_ratio": ("ratio", _larger, *bones, *kept),
         "skating_mps": ("m/s", np.nanmean, slide),
         "skating_data_mps": ("m/s", np.nanmean, slide_data),
-        "skating_over_data": ("ratio", _over_floor, slide, slide_data),
+        "skating_over_data": ("ratio", over_floor, slide, slide_data),
         "planted_share": ("share", np.nanmean, planted_share(poses)),
         "planted_share_data": ("share", np.nanmean, planted_share(truth)),
     }
@@ -145,7 +145,8 @@ def _difference(own, data):
     return np.nanmean(own) - np.nanmean(data)
 
 
-def _over_floor(own, data):
+def over_floor(own: Float[np.ndarray, "N"], data: Float[np.ndarray, "N"]) -> float:
+    """Mean sliding over that of the data, which counts as SKATING_FLOOR at least."""
     return np.nanmean(own) / max(np.nanmean(data), SKATING_FLOOR)
 
 

@@ -1,0 +1,113 @@
+"""Editing by words, measured: other arms for a figure on its way, without a mask and with one.
+
+What was asked for should be there, and the legs and the path should stay as they were.
+"""
+
+from dataclasses import dataclass, replace
+from itertools import islice
+
+import numpy as np
+import torch
+
+from data_synth.actions import Phrase, Sentence, caption, clips
+from data_synth.actions.acts import VERBS
+from data_synth.actions.sentences import ARMS, in_training
+from motiondiff_edu.editing.by_words import STRENGTH, edit_by_words
+from motiondiff_edu.editing.masks import LOWER
+from motiondiff_edu.metrics.actions import actions
+from motiondiff_edu.motion.skeleton import HIPS, joint_index
+from motiondiff_edu.performers.mover import Mover
+
+from ..walks.scores import Measure, measure_of, ratio
+from .trials import UNSEEN, Positions, asked
+
+ON_THE_WAY = ("walk", "run", "back", "aside")
+STAYS = (HIPS, *(joint_index(name) for name in LOWER))
+LEAST = 80  # frames
+
+
+@dataclass(frozen=True, eq=False)
+class EditTrial:
+    """A motion of the data, and a sentence with the same legs and other arms."""
+
+    positions: Positions
+    sentence: Sentence
+    text: str
+
+
+def edit_trials(n: int, seed: int = UNSEEN + 1) -> list[EditTrial]:
+    """n unseen clips of one phrase on the way, each with a sentence of trained combinations."""
+    rng = np.random.default_rng([seed, 9])
+    found = []
+    for one in islice(clips(100 * n, seed, "test"), 100 * n):
+        (phrase, *more), frames = one.acted.sentence, len(one.acted) // 8 * 8
+        if more or frames < LEAST or phrase.legs is None or phrase.legs.verb not in ON_THE_WAY:
+            continue
+        sentence = with_other_arms(phrase, rng)
+        text = caption(sentence, rng)
+        found.append(EditTrial(one.acted.positions[:frames], sentence, text))
+        if len(found) == n:
+            break
+    return found
+
+
+def with_other_arms(phrase: Phrase, rng: np.random.Generator) -> Sentence:
+    """The phrase with another act of the arms, once."""
+    others = [verb for verb in ARMS if phrase.arms is None or verb != phrase.arms.verb]
+    while True:
+        verb = str(rng.choice(others))
+        act = replace(
+            phrase.legs,
+            verb=verb,
+            side=str(rng.choice(VERBS[verb].sides)),
+            count=int(rng.integers(1, VERBS[verb].most + 1)),
+            speed="",
+            direction=str(rng.choice(VERBS[verb].directions)),
+        )
+        sentence = (Phrase(phrase.legs, act),)
+        if in_training(sentence):
+            return sentence
+
+
+def edit_measures(mover: Mover, trials: list[EditTrial]) -> list[Measure]:
+    """`edit_changes`, `edit_keeps_over_resampled`, and the same with the legs given by a mask."""
+    measures = []
+    plain = np.array([kept_error(t, edited(mover, t, k, 1.0)) for k, t in enumerate(trials)])
+    for prefix, masked in (("edit", False), ("edit_masked", True)):
+        made = [edited(mover, t, k, STRENGTH, masked) for k, t in enumerate(trials)]
+        there = np.array([shows(t, one) for t, one in zip(trials, made, strict=True)])
+        kept = np.array([kept_error(t, one) for t, one in zip(trials, made, strict=True)])
+        measures += [
+            measure_of(f"{prefix}_changes", "share", np.mean, there),
+            measure_of(f"{prefix}_keeps_m", "m", np.mean, kept),
+            measure_of(f"{prefix}_keeps_over_resampled", "ratio", ratio, kept, plain),
+        ]
+    before = np.array([shows(t, t.positions) for t in trials])
+    return [*measures, measure_of("edit_changes_before", "share", np.mean, before)]
+
+
+def edited(
+    mover: Mover, trial: EditTrial, seed: int, strength: float, masked: bool = False
+) -> Positions:
+    """One edit; with strength 1 it is plain sampling under the new sentence."""
+    known = None
+    if masked:
+        known = np.zeros(trial.positions.shape[:2], bool)
+        known[:, STAYS] = True
+    draws = torch.Generator().manual_seed(seed)
+    made = edit_by_words(
+        mover, trial.positions, trial.text, known, strength=strength, generator=draws
+    )
+    return made[0]
+
+
+def shows(trial: EditTrial, positions: Positions) -> bool:
+    """Is the new act of the arms recognised, with its side?"""
+    wanted = asked(trial.sentence)[0][-1]
+    return any(one.verb == wanted.verb and one.side == wanted.side for one in actions(positions))
+
+
+def kept_error(trial: EditTrial, positions: Positions) -> float:
+    """The RMS distance of legs and pelvis from where they were, in the world, metres."""
+    apart = positions[:, STAYS] - trial.positions[:, STAYS]
+    return float(np.sqrt(np.square(apart).sum(-1).mean()))

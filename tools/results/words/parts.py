@@ -1,0 +1,126 @@
+"""The measurements of the movers by `make results`: Table 2, its fools, held-out trials, edits."""
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+from pathlib import Path
+
+import numpy as np
+
+from motiondiff_edu.performers.mover import Mover
+from motiondiff_edu.pretrained import checkpoints
+from motiondiff_edu.pretrained.judges import Judge, judges
+
+from ..walks.parts import weights_digest
+from ..walks.scores import Measure
+from .edits import edit_measures, edit_trials
+from .rows import STEPS, Make, TrainingClips, noise, performed, shuffled
+from .scores import bodies, multimodality, nearest_training, pairs, recognised, retrieved
+from .trials import UNSEEN, Positions, Trials, unseen
+
+GUIDANCE = 2.5
+HELD_OUT = {"heldout": {"split": "combinations"}, "wording": {"new_verbs": True}}
+
+
+@dataclass(frozen=True)
+class WordSize:
+    """The amount of measurement."""
+
+    trials: int = 640
+    held_out: int = 320
+    texts: int = 32  # for the variety of motions to one caption
+    each: int = 10
+    edits: int = 100
+    training: int = 12_000
+
+
+WORD_FULL = WordSize()
+WORD_QUICK = WordSize(trials=64, held_out=40, texts=4, each=3, edits=4, training=200)
+
+
+def size_of(quick: bool) -> WordSize:
+    """The amount of a full or a quick measurement."""
+    return WORD_QUICK if quick else WORD_FULL
+
+
+class Studio:
+    """The trials, made once, the judges, and the movers by name."""
+
+    def __init__(self, size: WordSize, weights: dict[str, Path] | None = None):
+        self.size = size
+        self.weights = weights or checkpoints.available()
+
+    @cached_property
+    def trials(self) -> Trials:
+        return unseen(self.size.trials)
+
+    @cached_property
+    def judges(self) -> list[Judge]:
+        return judges()
+
+    @cached_property
+    def training(self) -> TrainingClips:
+        return TrainingClips(self.size.training)
+
+    def mover(self, name: str) -> Mover:
+        return checkpoints.load(self.weights[name])
+
+    def scored(self, made: list[Positions], trials: Trials | None = None) -> list[Measure]:
+        """What is measured of every row."""
+        trials = trials or self.trials
+        return [
+            *recognised(trials, made),
+            *retrieved(self.judges, trials, made),
+            *bodies(trials, made),
+            *pairs(self.judges, trials, made),
+        ]
+
+    def varied(self, make: Make) -> list[Measure]:
+        """The variety of motions to one caption."""
+        some = unseen(self.size.texts, seed=UNSEEN + 2)
+        made = [make(some, draw) for draw in range(self.size.each)]
+        data = [some.second(draw) for draw in range(1, self.size.each + 1)]
+        return multimodality(self.judges, made, data)
+
+    def copied(self, made: list[Positions]) -> list[Measure]:
+        """How near the training motions are."""
+        training = [one.acted.positions for one in self.training.every]
+        return nearest_training(self.trials, made, training)
+
+
+def fools(studio: Studio, mover: Mover) -> dict[str, list[Positions]]:
+    """The rows of Table 2 without a network."""
+    trials = studio.trials
+    return {
+        "data": trials.truth,
+        "second": trials.second(),
+        "shuffled": shuffled(trials, 0),
+        "noise": noise(mover)(trials, 0),
+        "nearest": studio.training.nearest_caption(trials, 0),
+    }
+
+
+def word_records(studio: Studio, command: str) -> list[dict]:
+    """All measures of the shipped mover, and of the rows without a network."""
+    mover, size = studio.mover("mover"), studio.size
+    seeds = {"data": UNSEEN, "trials": size.trials, "sampling": 0, "steps": STEPS}
+    seeds |= {"weights": weights_digest(studio.weights["mover"]), "judges": len(studio.judges)}
+    found = {"words.": []}
+    make = performed(mover)
+    made = make(studio.trials, 0)
+    found["words."] += [*studio.scored(made), *studio.varied(make), *studio.copied(made)]
+    for name, how in HELD_OUT.items():
+        trials = unseen(size.held_out, **how)
+        rows = studio.scored(make(trials, 0), trials)
+        found["words."] += [replace(one, name=f"{name}_{one.name}") for one in rows]
+    found["words."] += edit_measures(mover, edit_trials(size.edits))
+    guided = performed(mover, GUIDANCE)
+    found["words.guided."] = [*studio.scored(guided(studio.trials, 0)), *studio.varied(guided)]
+    for name, motions in fools(studio, mover).items():
+        found[f"words.{name}."] = studio.scored(motions)
+    found["words.nearest."] += studio.copied(studio.training.nearest_caption(studio.trials, 0))
+    return [
+        measure.as_record(prefix, seeds, command)
+        for prefix, measures in found.items()
+        for measure in measures
+        if np.isfinite(measure.value)
+    ]

@@ -1,0 +1,97 @@
+"""The rows of Table 2: what is shown for each caption, by data, fools and networks."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+import torch
+from sklearn.feature_extraction.text import TfidfVectorizer
+
+from data_synth.actions import Described, clips, mirror
+from motiondiff_edu.conditions.text import read
+from motiondiff_edu.conditions.word_encoder import ids_of
+from motiondiff_edu.motion import moving_frame
+from motiondiff_edu.performers.mover import ETA, Mover
+from motiondiff_edu.recipes.movers import MOVER
+
+from .trials import Positions, Trials, other_captions
+
+STEPS = 25  # of DDIM
+BATCH_FRAMES = 6000  # of one batch, all motions together
+
+Make = Callable[[Trials, int], list[Positions]]  # of trials and a seed
+
+
+def performed(mover: Mover, guidance: float = 1.0, steps: int = STEPS) -> Make:
+    """A row of a network: one motion for each caption, as long as the data's."""
+
+    def make(trials: Trials, seed: int) -> list[Positions]:
+        known: dict = {}
+        words = [read(text, mover.config.words, known).words for text in trials.captions]
+        made: list[Positions | None] = [None] * len(trials)
+        draws = torch.Generator().manual_seed(seed)
+        for frames, members in by_length(trials.frames):
+            ids = ids_of([words[k] for k in members], mover.config.words)
+            poses = mover.act_ids(
+                ids, frames, generator=draws, steps=steps, eta=ETA, guidance=guidance
+            )
+            for k, positions in zip(members, poses.double().cpu().numpy(), strict=True):
+                made[k] = positions
+        return made
+
+    return make
+
+
+def by_length(frames: Sequence[int]) -> list[tuple[int, list[int]]]:
+    """Indices of equal length in batches of about BATCH_FRAMES frames."""
+    batches = []
+    for n in sorted(set(frames)):
+        members = [k for k, one in enumerate(frames) if one == n]
+        size = max(1, BATCH_FRAMES // n)
+        batches += [(n, members[i : i + size]) for i in range(0, len(members), size)]
+    return batches
+
+
+def shuffled(trials: Trials, seed: int) -> list[Positions]:
+    """The data's motions, each beside another caption."""
+    where = other_captions(trials, np.random.default_rng(seed))
+    return [trials.truth[k] for k in where]
+
+
+def noise(mover: Mover) -> Make:
+    """Normal noise in the network's units."""
+
+    def make(trials: Trials, seed: int) -> list[Positions]:
+        draws = torch.Generator().manual_seed(seed)
+        units = [torch.randn(n, moving_frame.D, generator=draws) for n in trials.frames]
+        scaled = (mover.motion_scaler.inverse(x) for x in units)
+        return [moving_frame.to_positions(x).double().numpy() for x in scaled]
+
+    return make
+
+
+@dataclass(frozen=True, eq=False)
+class TrainingClips:
+    """The clips that the movers were trained on, mirrored ones too."""
+
+    clips: int = MOVER.clips
+    seed: int = MOVER.data_seed
+
+    @cached_property
+    def every(self) -> list[Described]:
+        made = list(clips(self.clips, self.seed))
+        return made + [mirror(one) for one in made]
+
+    @cached_property
+    def _captions(self) -> tuple[TfidfVectorizer, object]:
+        texts = [text for one in self.every for text in one.captions]
+        words = TfidfVectorizer(ngram_range=(1, 2), token_pattern=r"\w+")
+        return words, words.fit_transform(texts)
+
+    def nearest_caption(self, trials: Trials, seed: int) -> list[Positions]:
+        """The training clip whose caption has most words and pairs of words in common."""
+        words, there = self._captions
+        each = len(self.every[0].captions)
+        alike = (words.transform(trials.captions) @ there.T).toarray()
+        return [self.every[k // each].acted.positions for k in alike.argmax(1)]

@@ -1,0 +1,144 @@
+"""What a mover is tried on: unseen clips with captions, and captions that differ in one thing.
+
+Nothing here was seen in training; `clips` of `data_synth.actions` says what each split leaves out.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from jaxtyping import Float
+
+from data_synth.actions import Phrase, Sentence, act_out, caption, clips
+from data_synth.actions.acts import ONE_SIDE, OTHER_SIDE, VERBS, Act
+from data_synth.actions.dataset import worded
+from motiondiff_edu.metrics.sentences import Asked, Phrases
+from motiondiff_edu.performers.described_windows import GRID
+
+Positions = Float[np.ndarray, "_ 21 3"]
+UNSEEN = 77  # the seed of all trials; the training has another one
+KINDS = ("side", "count", "order", "speed")  # what two captions of a pair differ in
+OPPOSITE = {"slowly": "quickly", "quickly": "slowly"}
+
+
+@dataclass(frozen=True, eq=False)
+class Trials:
+    """Captions with what they mean, and the data's own motion for each (metres, 20 frames/s)."""
+
+    sentences: list[Sentence]
+    captions: list[str]
+    truth: list[Positions]
+    seed: int
+
+    def __len__(self) -> int:
+        return len(self.captions)
+
+    @property
+    def frames(self) -> list[int]:
+        return [len(one) for one in self.truth]
+
+    @property
+    def phrases(self) -> list[Phrases]:
+        """The sentences as `metrics.sentences` takes them; standing is not asked for."""
+        return [asked(sentence) for sentence in self.sentences]
+
+    def second(self, draw: int = 1) -> list[Positions]:
+        """Other motions of the data for the same sentences, as long as the first."""
+        made = [
+            act_out(sentence, frames / 20, seed=1_000_003 * draw + k).positions
+            for k, (sentence, frames) in enumerate(zip(self.sentences, self.frames, strict=True))
+        ]
+        return made
+
+
+def unseen(n: int, split: str = "test", new_verbs: bool = False, seed: int = UNSEEN) -> Trials:
+    """n clips of a split; with `new_verbs`, in wordings whose verbs no training caption has."""
+    made = list(clips(n, seed, split))
+    texts = [one.captions[0] for one in made]
+    if new_verbs:
+        rng = np.random.default_rng([seed, 5])
+        texts = [worded(one.acted.sentence, rng, new_verbs=True)[0] for one in made]
+    truth = [one.acted.positions[: len(one.acted) // GRID * GRID] for one in made]
+    return Trials([one.acted.sentence for one in made], texts, truth, seed)
+
+
+def asked(sentence: Sentence) -> Phrases:
+    """What the recogniser should find in a motion of this sentence."""
+    return [
+        [
+            Asked(act.verb, act.side, act.count, act.direction)
+            for act in phrase.acts
+            if act.verb != "stand"
+        ]
+        for phrase in sentence
+    ]
+
+
+@dataclass(frozen=True)
+class Pair:
+    """Two captions of a trial that differ in one thing: its own, and the other one."""
+
+    trial: int
+    kind: str
+    own: str
+    other: str
+
+
+def minimal_pairs(trials: Trials) -> list[Pair]:
+    """For each trial and each kind, a pair where the sentence has one; both in the same wording."""
+    found = []
+    for k, sentence in enumerate(trials.sentences):
+        for kind in KINDS:
+            other = changed(sentence, kind, np.random.default_rng([trials.seed, k, 1]))
+            if other is None or other == sentence:
+                continue
+            texts = (
+                caption(one, np.random.default_rng([trials.seed, k, 2]))
+                for one in (sentence, other)
+            )
+            found.append(Pair(k, kind, *texts))
+    return found
+
+
+def changed(sentence: Sentence, kind: str, rng: np.random.Generator) -> Sentence | None:
+    """The sentence with one thing changed; None where it has nothing of this kind."""
+    if kind == "order":
+        return sentence[::-1] if len(sentence) > 1 else None
+    change = {"side": _side, "count": _count, "speed": _speed}[kind]
+    places = [
+        (p, part)
+        for p, phrase in enumerate(sentence)
+        for part in ("legs", "arms")
+        if (act := getattr(phrase, part)) is not None and change(act, rng) is not None
+    ]
+    if not places:
+        return None
+    p, part = places[int(rng.integers(len(places)))]
+    act = change(getattr(sentence[p], part), rng)
+    return (*sentence[:p], replace(sentence[p], **{part: act}), *sentence[p + 1 :])
+
+
+def _side(act: Act, rng: np.random.Generator) -> Act | None:
+    return replace(act, side=OTHER_SIDE[act.side]) if act.side in ONE_SIDE else None
+
+
+def _count(act: Act, rng: np.random.Generator) -> Act | None:
+    most = VERBS[act.verb].most
+    others = [count for count in range(1, most + 1) if count != act.count]
+    return replace(act, count=int(rng.choice(others))) if others else None
+
+
+def _speed(act: Act, rng: np.random.Generator) -> Act | None:
+    other = OPPOSITE.get(act.speed, "")
+    return replace(act, speed=other) if other in VERBS[act.verb].speeds and other else None
+
+
+def other_captions(trials: Trials, rng: np.random.Generator) -> Sequence[int]:
+    """For each trial another one, of which it will get the motion."""
+    order = rng.permutation(len(trials))
+    where = np.empty(len(trials), int)
+    where[order] = np.roll(order, 1)
+    return where.tolist()
+
+
+__all__ = ["Pair", "Phrase", "Trials", "asked", "minimal_pairs", "unseen"]
