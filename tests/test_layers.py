@@ -161,6 +161,8 @@ def test_nothing_imports_in_a_circle():
     "package, places",
     [
         ("librosa", ("motiondiff_edu.conditions.music",)),
+        ("transformers", ("motiondiff_edu.conditions.clip",)),
+        ("huggingface_hub", ("motiondiff_edu.conditions.clip",)),
         ("ipywidgets", ("motiondiff_edu.widgets.",)),
         ("anywidget", ("motiondiff_edu.widgets.",)),
         ("matplotlib", ("motiondiff_edu.viz.", "motiondiff_edu.widgets.")),
@@ -171,6 +173,8 @@ def test_a_package_of_one_layer_stays_there(package, places):
     assert importers and [name for name in importers if not name.startswith(places)] == []
 
 
+# imported inside functions, and the extra that has it
+OPTIONAL = {"transformers": "clip", "huggingface_hub": "clip"}
 RENAMED = {"pillow": "PIL", "scikit-learn": "sklearn", "ipython": "IPython"}
 
 
@@ -186,9 +190,20 @@ def project() -> dict:
 
 def test_what_the_package_imports_is_a_dependency():
     """Of the package itself: an extra is not there after a plain install."""
-    used = set().union(*(third_party(path) for path in ALL))
+    used = set().union(*(third_party(path) for path in ALL)) - set(OPTIONAL)
     missing = used - declared(project()["dependencies"])
     assert not missing, f"imported, and no dependency in pyproject.toml: {missing}"
+
+
+@pytest.mark.parametrize("package, extra", OPTIONAL.items())
+def test_a_package_of_an_extra_is_imported_inside_functions_alone(package, extra):
+    assert package in declared(project()["optional-dependencies"][extra])
+    for path in ALL:
+        names = set()
+        for node in ast.parse(path.read_text(encoding="utf-8")).body:
+            names |= {alias.name for alias in getattr(node, "names", ())}
+            names |= {getattr(node, "module", None) or ""}
+        assert package not in {name.split(".")[0] for name in names}, path.name
 
 
 ALONE = {"smalldiffusion", "denoising_diffusion_pytorch"}  # `make bench` installs them by itself

@@ -114,10 +114,7 @@ def read(text: str, vocabulary: Sequence[str], others: Mapping[str, str] | None 
     given = words_of(text)
     if not given:
         what = "is empty" if not text.strip() else "has no English words"
-        raise TextError(
-            f'the text {what}: say what the figure does, such as "walks forward, then waves with '
-            f'the left hand"'
-        )
+        raise empty(what)
     if len(given) > LONGEST:
         raise TextError(f"the text has {len(given)} words; the network reads {LONGEST} at most")
     known, others = frozenset(vocabulary), synonyms() if others is None else others
@@ -144,6 +141,14 @@ def read(text: str, vocabulary: Sequence[str], others: Mapping[str, str] | None 
             f"{', '.join(vocabulary[:12])} ..."
         )
     return Read(tuple(found), tuple(dict.fromkeys(notes)))
+
+
+def empty(what: str) -> TextError:
+    """The error for a text that says nothing; `what` it is or has, such as "is empty"."""
+    return TextError(
+        f'the text {what}: say what the figure does, such as "walks forward, then waves with the '
+        f'left hand"'
+    )
 
 
 def _unknown(words: list[str], vocabulary: Sequence[str]) -> str:

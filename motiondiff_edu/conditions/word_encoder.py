@@ -2,12 +2,18 @@
 
 So "left" in "kicks with the left foot" knows what is left, and "waves, then kicks" differs from
 "kicks, then waves", which a bag of words cannot tell apart.
-Source: MoFusion 3.3, which has the tokens of CLIP here; these are ours, trained with the motions.
+Source: MoFusion 3.3, which has the tokens of CLIP here (`conditions/clip.py`); these are ours,
+trained with the motions.
 """
+
+from collections.abc import Sequence
+from dataclasses import dataclass
 
 import torch
 from jaxtyping import Bool, Float, Int
 from torch import Tensor, nn
+
+from .text import Read, read
 
 # ids
 PADDING = 0  # of no word
@@ -34,6 +40,12 @@ class WordEncoder(nn.Module):
         h = self.embed(ids) + self.place(places)
         return self.norm(self.layers(h, src_key_padding_mask=~present(ids)))
 
+    def tokens_of(
+        self, ids: Int[Tensor, "B M"]
+    ) -> tuple[Float[Tensor, "B M C"], Bool[Tensor, "B M"]]:
+        """The tokens of texts, and where there is one."""
+        return self(ids), present(ids)
+
 
 def present(ids: Int[Tensor, "B M"]) -> Bool[Tensor, "B M"]:
     """True where there is a word, and for the empty text its one token."""
@@ -49,3 +61,18 @@ def ids_of(texts: list[tuple[str, ...]], vocabulary: tuple[str, ...]) -> Int[Ten
     rows = [[index[word] for word in text] or [NOTHING] for text in texts]
     longest = max(map(len, rows))
     return torch.tensor([row + [PADDING] * (longest - len(row)) for row in rows])
+
+
+@dataclass(frozen=True)
+class WordReader:
+    """How a network with a vocabulary reads; `clip.Clip` has the same two methods."""
+
+    words: tuple[str, ...]
+
+    def read(self, text: str) -> Read:
+        """The words of a text.  Raises TextError as `text.read`."""
+        return read(text, self.words)
+
+    def encoded(self, texts: Sequence[tuple[str, ...]]) -> Int[Tensor, "B M"]:
+        """What the network takes of texts that were read; () is the empty text."""
+        return ids_of(list(texts), self.words)

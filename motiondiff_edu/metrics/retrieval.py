@@ -112,15 +112,24 @@ def contrast(
     motions: Float[Tensor, "B T D"],
     ids: Int[Tensor, "B M"],
     same: Float[Tensor, "B B"] | None = None,
+    wrong: Int[Tensor, "B M2"] | None = None,
 ) -> Float[Tensor, ""]:
     """The loss by which a space is learnt: each text's motion is nearer than the others', and back.
 
-    `same`: 1 where two texts of the batch say the same, which is then not held against them.
-    Source: Radford and others, 2021.
+    same   1 where two texts of the batch say the same, which is then not held against them
+    wrong  for each motion a text that differs from its own in one thing. Without such texts nothing
+           in a batch tells "waves, then kicks" from "kicks, then waves", and the space does not
+           learn it.
+    Source: Radford and others, 2021; the wrong texts after Yuksekgonul and others, 2023.
     """
-    likeness = space.text_points(ids) @ space.motion_points(motions).mT * space.sharpness.exp()
+    points, sharpness = space.motion_points(motions), space.sharpness.exp()
+    likeness = space.text_points(ids) @ points.mT * sharpness
     own = torch.eye(len(ids), device=ids.device)
     if same is not None:
         likeness = likeness.masked_fill((same > 0) & (own == 0), -1e4)
+    of_motions = likeness.mT
+    if wrong is not None:
+        to_wrong = (space.text_points(wrong) * points).sum(-1, keepdim=True) * sharpness
+        of_motions = torch.cat([of_motions, to_wrong], 1)
     target = torch.arange(len(ids), device=ids.device)
-    return (F.cross_entropy(likeness, target) + F.cross_entropy(likeness.mT, target)) / 2
+    return (F.cross_entropy(likeness, target) + F.cross_entropy(of_motions, target)) / 2

@@ -4,6 +4,7 @@ A batch holds motions of one length, so nothing is padded, and it has about as m
 the length is. Source: MoFusion 4.2 (motions and texts; lengths and batches are ours).
 """
 
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -11,7 +12,6 @@ import numpy as np
 import torch
 from jaxtyping import Bool, Float, Int
 from torch import Tensor
-from torch.nn.functional import pad
 
 from ..conditions.text import read
 from ..conditions.word_encoder import NOTHING, PADDING, ids_of
@@ -28,7 +28,7 @@ class DescribedWindows:
     """Motions by length, standardised when drawn, each with the ids of its captions.
 
     `motions[n]` and `contacts[n]` hold all motions of n frames; `captions[n]` their captions as ids
-    (K, W, M).
+    (K, W, M) of `words`. For a network that reads by CLIP each whole caption is one such "word".
     """
 
     motions: dict[int, Float[Tensor, "K T 66"]]
@@ -51,12 +51,36 @@ class DescribedWindows:
         Raises ValueError for lists of different lengths, and TextError for unknown words.
         """
         texts = [[read(text, words, {}).words for text in each] for each in captions]
-        longest = max(len(text) for each in texts for text in each)
+        return cls._of(positions, contacts, texts, words)
+
+    @classmethod
+    def of_texts(
+        cls,
+        positions: Sequence[Float[np.ndarray, "_ 21 3"]],
+        contacts: Sequence[Bool[np.ndarray, "_ 2"]],
+        captions: Sequence[Sequence[str]],
+    ) -> "DescribedWindows":
+        """The same for CLIP, with captions in any words; `words` are the captions, both ways round.
+
+        Raises ValueError for lists of different lengths.
+        """
+        texts = [[(text,) for text in each] for each in captions]
+        both = {one for each in captions for text in each for one in (text, exchanged_sides(text))}
+        return cls._of(positions, contacts, texts, tuple(sorted(both)))
+
+    @classmethod
+    def _of(
+        cls,
+        positions: Sequence[Float[np.ndarray, "_ 21 3"]],
+        contacts: Sequence[Bool[np.ndarray, "_ 2"]],
+        texts: Sequence[Sequence[tuple[str, ...]]],
+        words: tuple[str, ...],
+    ) -> "DescribedWindows":
+        every = ids_of([text for each in texts for text in each], words)
+        of_each = every.split([len(each) for each in texts])
         groups: dict[int, list[tuple]] = {}
-        for moved, stands, each in zip(positions, contacts, texts, strict=True):
+        for moved, stands, ids in zip(positions, contacts, of_each, strict=True):
             n = len(moved) // GRID * GRID
-            ids = ids_of(each, words)
-            ids = pad(ids, (0, longest - ids.shape[1]), value=PADDING)
             features = torch.from_numpy(to_features(moved[:n])).float()
             groups.setdefault(n, []).append((features, torch.from_numpy(stands[:n].copy()), ids))
         columns = {
@@ -64,10 +88,8 @@ class DescribedWindows:
         }
         motions, planted, ids = ({n: x[k] for n, x in columns.items()} for k in range(3))
         some = torch.cat([x[:: max(1, len(x) // 64)].flatten(0, 1) for x in motions.values()])
-        swap = {word: OTHER.get(word, word) for word in words}
-        exchanged = torch.tensor(
-            [PADDING, NOTHING, *ids_of([tuple(swap[word] for word in words)], words)[0].tolist()]
-        )
+        mirrored_words = ids_of([tuple(map(exchanged_sides, words))], words)[0]
+        exchanged = torch.tensor([PADDING, NOTHING, *mirrored_words.tolist()])
         return cls(motions, planted, ids, exchanged, Scaler.fit(some), words)
 
     def __len__(self) -> int:
@@ -103,6 +125,11 @@ class DescribedWindows:
         ids = torch.where(turned[:, None], self.exchanged[ids], ids)
         ids = ids[:, : int((ids != PADDING).sum(1).max())]
         return self.scaler.transform(x), ids, planted
+
+
+def exchanged_sides(text: str) -> str:
+    """A text with the words left and right exchanged, as the mirrored motion needs it."""
+    return re.sub(r"\b(left|right)\b", lambda found: OTHER[found[0].lower()], text, flags=re.I)
 
 
 @dataclass(frozen=True, eq=False)

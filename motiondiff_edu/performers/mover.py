@@ -8,12 +8,12 @@ import warnings
 from dataclasses import dataclass, field
 
 import torch
-from jaxtyping import Float, Int
+from jaxtyping import Float
 from torch import Tensor, nn
 
 from ..beyond.classifier_free import guided_by_text
-from ..conditions.text import read
-from ..conditions.word_encoder import ids_of
+from ..conditions.clip import Clip, check
+from ..conditions.word_encoder import WordReader
 from ..ddpm import Denoiser, Generators, Schedule, draw
 from ..motion.checks import checked_count, checked_seconds, checked_steps
 from ..motion.motion import Motion
@@ -21,8 +21,8 @@ from ..motion.moving_frame import to_positions
 from ..motion.root_frame import FPS
 from ..motion.scaler import Scaler
 from ..prediction import denoiser_of
-from . import text_mofusion  # noqa: F401  registers the network
 from .performer import Performer, generators, sampled
+from .text_mofusion import Texts
 from .with_bar import with_bar
 
 STEPS, ETA = 50, 0.5  # defaults of DDIM
@@ -32,30 +32,49 @@ SHORTEST, LONGEST = 2.0, 10.0  # seconds, as in training
 
 @dataclass(frozen=True, eq=False)
 class Mover(Performer):
-    """A network, and the scaler that converts its units to metres."""
+    """A network, and the scaler that converts its units to metres.
+
+    A network that reads by CLIP needs that `clip` (`conditions.clip.load`), and no other takes one.
+    Raises ValueError for a schedule that does not fit the network, for no CLIP or one too many, and
+    ClipError for another CLIP than that of the training.
+    """
 
     model: nn.Module
     schedule: Schedule
     motion_scaler: Scaler
     card: dict = field(default_factory=dict)
+    clip: Clip | None = None
+
+    def __post_init__(self):
+        super().__post_init__()
+        name = getattr(self.config, "clip", "")
+        if name and self.clip is None:
+            raise ValueError(f"the network reads by CLIP: pass clip=conditions.clip.load({name!r})")
+        if self.clip is not None and not name:
+            raise ValueError("the network reads words of its own, and takes no CLIP")
+        if self.clip is not None:
+            check(self.clip, self.config.clip_width, self.card.get("clip_sample"))
 
     def to(self, device: str | torch.device) -> "Mover":
         """The same mover on another device."""
         model = copy.deepcopy(self.model).to(device)
-        return Mover(model, self.schedule, self.motion_scaler.to(device), self.card)
+        return Mover(model, self.schedule, self.motion_scaler.to(device), self.card, self.clip)
 
     @property
     def device(self) -> torch.device:
         return self.motion_scaler.mean.device
 
-    def denoiser(
-        self, ids: Int[Tensor, "B M"], guidance: float = 1.0, fast: bool = True
-    ) -> Denoiser:
-        """`denoise(x_s, s) -> eps_hat` for these texts (`conditions.word_encoder.ids_of`).
+    @property
+    def reader(self) -> WordReader | Clip:
+        """How this network reads: `read(text)`, and `encoded(...)` for what the network takes."""
+        return self.clip or WordReader(self.config.words)
+
+    def denoiser(self, ids: Texts, guidance: float = 1.0, fast: bool = True) -> Denoiser:
+        """`denoise(x_s, s) -> eps_hat` for these texts (`reader.encoded`).
 
         `guidance`: w of `beyond.classifier_free`; 1 is the conditional network.
         """
-        texts = [ids] if guidance == 1 else [ids, ids_of([()] * len(ids), ())]
+        texts = [ids] if guidance == 1 else [ids, self.reader.encoded([()] * len(ids))]
         contexts = [self.model.listen(one.to(self.device)) for one in texts]
         conditional, *nothing = (
             denoiser_of(
@@ -90,7 +109,7 @@ class Mover(Performer):
         Raises TextError for a text that cannot be read, ValueError for numbers out of range.
         Source: MoFusion 3.
         """
-        found = read(text, self.config.words)
+        found = self.reader.read(text)
         for note in found.notes:
             warnings.warn(note, stacklevel=2)
         count, steps = checked_count(samples, "samples"), checked_steps(steps)
@@ -98,7 +117,7 @@ class Mover(Performer):
             raise ValueError(
                 f"seconds must be from {SHORTEST:g} to {LONGEST:g}, as in training, not {seconds:g}"
             )
-        ids = ids_of([found.words] * count, self.config.words)
+        ids = self.reader.encoded([found.words] * count)
         draws, frames = generators(seed, count), round(seconds * FPS)
         evaluations = min(steps or self.schedule.S, self.schedule.S)
         with with_bar(self, evaluations, "moving", progress) as one:
@@ -110,7 +129,7 @@ class Mover(Performer):
     @torch.inference_mode()
     def act_ids(
         self,
-        ids: Int[Tensor, "B M"],
+        ids: Texts,
         frames: int,
         *,
         generator: Generators | None = None,
@@ -119,7 +138,7 @@ class Mover(Performer):
         guidance: float = 1.0,
         start: Float[Tensor, "B T D"] | None = None,
     ) -> Float[Tensor, "B T 21 3"]:
-        """Motions in metres for texts as ids, one each.
+        """Motions in metres for texts as the network takes them (`reader.encoded`), one each.
 
         `start` is the noise to begin with (default: drawn); pass the same to compare two texts.
         """

@@ -1,28 +1,35 @@
-"""MoFusion from text: the U-Net of the dancers, whose keys and values come from words.
+"""MoFusion from text: the U-Net of the dancers, whose keys and values come from a text.
 
 Words have no times, so their keys are not rotated; a query still knows its own time. The lowest
-levels also attend to the motion itself (`beyond/self_attention.py`). The same network takes tokens
-from its own word encoder or from elsewhere.
+levels also attend to the motion itself (`beyond/self_attention.py`). The tokens are those of its
+own word encoder, or as in the paper those of CLIP.
 Source: MoFusion 3.3.
 """
 
 from dataclasses import dataclass
 
-import torch
 from jaxtyping import Float, Int
 from torch import Tensor, nn
 
 from ..beyond.self_attention import SelfAttendingMoFusion
+from ..conditions import clip as clips
+from ..conditions.clip_encoder import ClipEncoder, ClipTokens
 from ..conditions.text import LONGEST
-from ..conditions.word_encoder import WordEncoder, present
+from ..conditions.word_encoder import WordEncoder
 from ..mofusion import MoFusionConfig, Music
 from ..motion import moving_frame
 from .networks import register
 
+# ids of words (`word_encoder.ids_of`), or tokens of CLIP (`Clip.tokens`)
+Texts = Int[Tensor, "B M"] | ClipTokens
+
 
 @dataclass(frozen=True)
 class TextMoFusionConfig(MoFusionConfig):
-    """MoFusion's sizes, and those of the words: `C` is the width of a token."""
+    """MoFusion's sizes, and those of the text: `C` is the width of a token.
+
+    It reads `words` of its own, or with `clip` what the CLIP of this name makes of a text.
+    """
 
     D: int = moving_frame.D
     C: int = 96
@@ -30,28 +37,46 @@ class TextMoFusionConfig(MoFusionConfig):
     words: tuple[str, ...] = ()
     word_layers: int = 2
     longest: int = LONGEST
+    clip: str = ""
+    clip_width: int = clips.WIDTH  # of a token of that CLIP
     target: str = "x0"
     skip: bool = False
 
+    def __post_init__(self):
+        """Raise ValueError for impossible sizes, and for words beside a CLIP."""
+        super().__post_init__()
+        if self.clip_width < 1:
+            raise ValueError(f"clip_width = {self.clip_width} must be at least 1")
+        if self.clip and self.words:
+            raise ValueError(f"a network reads words of its own or {self.clip}, not both")
+
 
 class TextMoFusion(nn.Module):
-    """eps_hat (or x0_hat) = net(x_s, s, words), for motions of any length."""
+    """eps_hat (or x0_hat) = net(x_s, s, text), for motions of any length."""
 
     def __init__(self, config: TextMoFusionConfig):
         super().__init__()
         self.config = config
-        sizes = (config.C, config.word_layers, config.heads, config.longest)
-        self.words = WordEncoder(len(config.words), *sizes)
+        self.words = encoder_of(config)
         self.unet = SelfAttendingMoFusion(config)
 
-    def listen(self, ids: Int[Tensor, "B M"]) -> Music:
-        """The context of texts (`word_encoder.ids_of`)."""
-        return self.unet.listen(self.words(ids), torch.zeros(ids.shape[1]), present(ids))
+    def listen(self, texts: Texts) -> Music:
+        """The context of texts."""
+        tokens, mask = self.words.tokens_of(texts)
+        return self.unet.listen(tokens, tokens.new_zeros(tokens.shape[1]), mask)
 
     def forward(
         self, x_s: Float[Tensor, "B T D"], s: Int[Tensor, "B"], context: Music
     ) -> Float[Tensor, "B T D"]:
         return self.unet(x_s, s, context)
+
+
+def encoder_of(config: TextMoFusionConfig) -> WordEncoder | ClipEncoder:
+    """The part of the network that makes tokens of a text."""
+    if config.clip:
+        return ClipEncoder(config.clip_width, config.C)
+    sizes = (config.C, config.word_layers, config.heads, config.longest)
+    return WordEncoder(len(config.words), *sizes)
 
 
 register("mover", TextMoFusion, TextMoFusionConfig)

@@ -14,6 +14,8 @@ from safetensors import safe_open
 from torch import Tensor
 
 from ..baselines import transformer  # noqa: F401  registers the network of two shipped files
+from ..conditions.clip import Clip, ClipError
+from ..conditions.clip import load as load_clip
 from ..ddpm import make_schedule
 from ..motion.scaler import Scaler
 from ..performers.dancer import Dancer
@@ -107,12 +109,15 @@ def bits_of(path: str | Path) -> int:
     return 8 if "I8" in kinds else 16 if "F16" in kinds else 32
 
 
-def load(path: str | Path) -> Walker | Dancer | Mover:
+def load(path: str | Path, clip: Clip | str | Path | None = None) -> Walker | Dancer | Mover:
     """Read a walker, a dancer or a mover, whichever it is.
 
-    Raises CheckpointError for a file that is missing, damaged, or not one of ours.
+    `clip`: for a mover that reads by CLIP, that CLIP or its folder; without it the CLIP is looked
+    for by the name in the file (`conditions.clip.load`), on this machine.
+    Raises CheckpointError for a file that is missing, damaged, or not one of ours, and for a CLIP
+    that is missing or another one.
     """
-    return _read(path, *KINDS)
+    return _read(path, *KINDS, clip=clip)
 
 
 def load_walker(path: str | Path) -> Walker:
@@ -126,12 +131,17 @@ def load_dancer(path: str | Path) -> Dancer:
     return _read(path, DANCER)
 
 
-def _read(path: str | Path, *kinds: Kind) -> Walker | Dancer | Mover:
-    return read_weights(path, {kind.format: partial(_assembled, kind) for kind in kinds})
+def _read(
+    path: str | Path, *kinds: Kind, clip: Clip | str | Path | None = None
+) -> Walker | Dancer | Mover:
+    return read_weights(path, {kind.format: partial(_assembled, kind, clip=clip) for kind in kinds})
 
 
 def _assembled(
-    kind: Kind, tensors: dict[str, Tensor], metadata: dict[str, str]
+    kind: Kind,
+    tensors: dict[str, Tensor],
+    metadata: dict[str, str],
+    clip: Clip | str | Path | None = None,
 ) -> Walker | Dancer | Mover:
     networks = networks_of(kind.name)
     config = config_of(metadata, {name: one.config for name, one in networks.items()}, kind.usual)
@@ -143,7 +153,18 @@ def _assembled(
     model.load_state_dict(unpack({k[6:]: v for k, v in tensors.items() if k.startswith("model.")}))
     schedule = make_schedule(tensors["schedule.beta"], metadata["schedule"])
     card = json.loads(metadata.get("card", "{}")) or {}
-    return kind.performer(model.eval().requires_grad_(False), schedule, *scalers, card)
+    trained = (model.eval().requires_grad_(False), schedule, *scalers, card)
+    name = getattr(config, "clip", "")
+    if not name and clip is None:
+        return kind.performer(*trained)
+    if not name:
+        raise CheckpointError(f"{metadata['file']} does not read by CLIP: leave `clip` out")
+    try:
+        return Mover(*trained, clip if isinstance(clip, Clip) else load_clip(clip or name))
+    except ClipError as error:
+        raise CheckpointError(
+            f"{metadata['file']} reads texts by {name}, or by its folder in `clip`: {error}"
+        ) from error
 
 
 def available() -> dict[str, Path]:

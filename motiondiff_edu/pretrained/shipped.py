@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 from jaxtyping import Bool, Float
 
+from ..conditions.clip import Clip
 from ..conditions.text import read
 from ..editing import by_words
 from ..editing import inbetween as inbetweens
@@ -33,14 +34,15 @@ from . import checkpoints
 STEPS = 50  # of DDIM, for in-betweens by default
 
 
-def load(name: str | Path) -> Walker | Dancer | Mover:
+def load(name: str | Path, clip: Clip | str | Path | None = None) -> Walker | Dancer | Mover:
     """A walker or dancer: shipped weights by name ("walker", "dancer" ...), or your own file.
 
+    `clip`: for your own mover that reads by CLIP, the folder of that CLIP (`checkpoints.load`).
     Raises CheckpointError for an unknown name, with a list of the names, or for a faulty file.
     Notebook: 00
     """
     if str(name).endswith(".safetensors"):
-        return checkpoints.load(Path(name).expanduser())
+        return checkpoints.load(Path(name).expanduser(), clip)
     return checkpoints.pretrained(str(name))
 
 

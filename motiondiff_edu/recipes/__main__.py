@@ -9,6 +9,7 @@ from pathlib import Path
 
 import torch
 
+from ..conditions import clip as clips
 from ..performers.dancer import Dancer
 from ..performers.mover import Mover
 from ..performers.walker import Walker
@@ -49,6 +50,11 @@ def main() -> None:
         help="the folder for the weights (default: trained, in the current folder); a file of the "
         "same name is replaced",
     )
+    parser.add_argument(
+        "--clip",
+        metavar="FOLDER",
+        help="where the CLIP of mover-clip is (default: where transformers keeps its downloads)",
+    )
     parser.add_argument("--threads", type=int, default=torch.get_num_threads())
     arguments = parser.parse_args()
     unknown = set(arguments.names) - set(ALL)
@@ -59,21 +65,21 @@ def main() -> None:
     torch.set_num_threads(arguments.threads)
     arguments.runs.mkdir(parents=True, exist_ok=True)
     for name in arguments.names or [recipe.name for recipe in (*SHIPPED, *SHIPPED_DANCERS)]:
-        print(
-            "wrote",
-            build(
-                name, arguments.runs / f"{name}.safetensors", arguments.out / f"{name}.safetensors"
-            ),
-        )
+        file = f"{name}.safetensors"
+        try:
+            made = build(name, arguments.runs / file, arguments.out / file, arguments.clip)
+        except (clips.ClipError, clips.NoTransformers) as error:
+            parser.exit(1, f"{name}: {error}\n")
+        print("wrote", made)
 
 
-def build(name: str, run: Path, out: Path) -> Path:
+def build(name: str, run: Path, out: Path, clip: str | None = None) -> Path:
     """Train a recipe by its name, continuing `run` where there is one, and save it as `out`."""
-    return save(trained(name, run), out, bits=8 if name in EIGHT_BITS else 16)
+    return save(trained(name, run, clip), out, bits=8 if name in EIGHT_BITS else 16)
 
 
-def trained(name: str, run: Path) -> Walker | Dancer | Mover:
-    """The performer of a recipe.
+def trained(name: str, run: Path, clip: str | None = None) -> Walker | Dancer | Mover:
+    """The performer of a recipe; `clip` is the folder of a CLIP, for a recipe that needs one.
 
     If the recipe continues another one, that is trained first; its run file lies beside `run`.
     """
@@ -84,7 +90,9 @@ def trained(name: str, run: Path) -> Walker | Dancer | Mover:
     if name in DANCE_RECIPES:
         return train_dancer(DANCE_RECIPES[name], run, log=log)
     if name in MOVER_RECIPES:
-        return train_mover(MOVER_RECIPES[name], run, log=log)
+        recipe = MOVER_RECIPES[name]
+        reader = clips.load(clip) if clip and recipe.config.clip else None
+        return train_mover(recipe, run, log=log, clip=reader)
     recipe, first = RECIPES[name], None
     if recipe.begins_with:
         before = run.with_name(f"{recipe.begins_with}.safetensors")

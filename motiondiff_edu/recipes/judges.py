@@ -13,10 +13,10 @@ from torch import Tensor, nn
 from ..conditions.word_encoder import FIRST
 from ..metrics.retrieval import Space, contrast
 from ..motion.moving_frame import D
-from ..performers.described_windows import Chosen, DescribedWindows
+from ..performers.described_windows import Chosen
 from ..pretrained.judges import Judge
 from ..training import LossFn
-from .train_mover import Truths, digest, training_data
+from .train_mover import DescribedData, Truths, described, digest
 from .train_recipe import Provenance, train_recipe
 
 SEEDS = (0, 1, 2)
@@ -55,14 +55,15 @@ def train_judge(recipe: JudgeRecipe, run_file: Path, log=print) -> Judge:
 
     Raises ValueError when the run in `run_file` was begun with other settings.
     """
-    windows, truths = training_data(recipe.clips, recipe.data_seed)
+    data = described(recipe.clips, recipe.data_seed)
+    windows = data.windows
     torch.manual_seed(recipe.seed)
     space = Space(D, FIRST + len(windows.words), recipe.config.width)
     trained, card = train_recipe(
         recipe,
         run_file,
         space,
-        loss_of(recipe, windows, truths),
+        loss_of(recipe, data),
         Provenance({"data": digest(windows)}, {"clips": len(windows)}, "data_synth.actions"),
         warmup=100,
         log=log,
@@ -70,14 +71,17 @@ def train_judge(recipe: JudgeRecipe, run_file: Path, log=print) -> Judge:
     return Judge(trained, windows.scaler, windows.words, card)
 
 
-def loss_of(recipe: JudgeRecipe, windows: DescribedWindows, truths: Truths) -> LossFn:
+def loss_of(recipe: JudgeRecipe, data: DescribedData) -> LossFn:
     """The loss by contrast over random batches; texts that say the same are not set apart."""
 
     def loss_fn(model: nn.Module, generator: torch.Generator) -> Tensor:
-        chosen = windows.choose(recipe.frames, generator)
-        x, ids, _ = windows.take(chosen)
         device = next(model.parameters()).device
-        return contrast(model, x.to(device), ids.to(device), same(chosen, truths).to(device))
+        chosen = data.windows.choose(recipe.frames, generator)
+        x, ids, _ = data.windows.take(chosen)
+        wrong = data.wrong[chosen.length][chosen.which]
+        wrong = torch.where(chosen.turned[:, None], data.windows.exchanged[wrong], wrong)
+        parts = (x, ids, same(chosen, data.truths), wrong)
+        return contrast(model, *(part.to(device) for part in parts))
 
     return loss_fn
 

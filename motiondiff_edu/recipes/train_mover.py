@@ -3,25 +3,29 @@
 The loss is MoFusion's with the departures of the recipe. A killed run continues from its last save.
 """
 
-from collections.abc import Hashable
-from dataclasses import replace
+from collections.abc import Callable, Hashable
+from dataclasses import dataclass, replace
 from functools import lru_cache, partial
 from pathlib import Path
 
+import numpy as np
 import torch
 from jaxtyping import Int
 from torch import Tensor, nn
 
-from .._files import digest_of_tensors
+from .._files import digest_of_tensors, digest_of_texts
 from ..beyond.schedules import shifted
-from ..conditions.text import base_vocabulary
-from ..conditions.word_encoder import NOTHING, PADDING
+from ..conditions.clip import Clip, check
+from ..conditions.clip import load as load_clip
+from ..conditions.text import base_vocabulary, read
+from ..conditions.word_encoder import NOTHING, PADDING, ids_of
 from ..ddpm import Schedule, cosine_schedule
 from ..motion import moving_frame
 from ..motion.skeleton import TOES
 from ..performers.described_windows import GRID, DescribedWindows
 from ..performers.mover import Mover
 from ..performers.networks import network
+from ..performers.text_mofusion import Texts
 from ..training import LossFn
 from .mofusion_loss import batch_loss, weighted_loss
 from .movers import MoverRecipe
@@ -31,63 +35,141 @@ Truths = dict[int, list[tuple[Hashable, Hashable]]]
 
 
 def training_clips(clips: int, seed: int) -> DescribedWindows:
-    """The data of a training, generated from its seed."""
-    return training_data(clips, seed)[0]
+    """The data of a training, generated from its seed; the last data set is kept."""
+    return described(clips, seed).windows
+
+
+@dataclass(frozen=True, eq=False)
+class DescribedData:
+    """Clips for a training, and what judges need besides.
+
+    truths  `truths[n]` has for each motion of n frames its sentence, and that of its mirrored twin
+    wrong   `wrong[n]` has for each motion the ids of a caption that differs in one thing (K, M)
+    """
+
+    windows: DescribedWindows
+    truths: Truths
+    wrong: dict[int, Int[Tensor, "K M"]]
 
 
 @lru_cache(maxsize=1)
-def training_data(clips: int, seed: int) -> tuple[DescribedWindows, Truths]:
-    """The data, and what they show; the last data set is kept.
-
-    `truths[n]` has for each motion of n frames its sentence, and that of its mirrored twin.
-    """
-    from data_synth.actions import captions  # here, because data_synth imports this package
-    from data_synth.actions import clips as described
+def described(clips: int, seed: int) -> DescribedData:
+    """The data of a training, generated from its seed."""
+    from data_synth.actions import (
+        caption,
+        captions,
+    )  # here, because data_synth imports this package
+    from data_synth.actions import clips as drawn
     from data_synth.actions.dataset import mirrored_sentence
+    from data_synth.actions.neighbours import neighbour
 
     positions = []
     contacts = []
     texts = []
     truths: Truths = {}
-    for one in described(clips, seed):
-        acted = one.acted
+    others: dict[int, list[tuple[str, ...]]] = {}
+    words = base_vocabulary(captions.vocabulary())
+    for k, one in enumerate(drawn(clips, seed)):
+        acted, rng = one.acted, np.random.default_rng([seed, k, 3])
         positions.append(acted.positions)
         contacts.append(acted.contacts)
         texts.append(one.captions)
-        both = (acted.sentence, mirrored_sentence(acted.sentence))
-        truths.setdefault(len(acted) // GRID * GRID, []).append(both)
-    words = base_vocabulary(captions.vocabulary())
-    return DescribedWindows.of(positions, contacts, texts, words), truths
+        n, other = len(acted) // GRID * GRID, neighbour(acted.sentence, rng)
+        truths.setdefault(n, []).append((acted.sentence, mirrored_sentence(acted.sentence)))
+        wrong = read(caption(other, rng), words, {}).words if other else ()
+        others.setdefault(n, []).append(wrong)
+    windows = DescribedWindows.of(positions, contacts, texts, words)
+    return DescribedData(windows, truths, {n: ids_of(x, words) for n, x in others.items()})
+
+
+@lru_cache(maxsize=1)
+def training_texts(clips: int, seed: int) -> DescribedWindows:
+    """The same data with whole captions, for a network that reads by CLIP."""
+    from data_synth.actions import clips as drawn
+
+    made = list(drawn(clips, seed))
+    return DescribedWindows.of_texts(
+        [one.acted.positions for one in made],
+        [one.acted.contacts for one in made],
+        [one.captions for one in made],
+    )
 
 
 def train_mover(
-    recipe: MoverRecipe, run_file: Path, windows: DescribedWindows | None = None, log=print
+    recipe: MoverRecipe,
+    run_file: Path,
+    windows: DescribedWindows | None = None,
+    log=print,
+    clip: Clip | None = None,
 ) -> Mover:
     """Train by a recipe, or continue the run in `run_file`; return a mover with averaged weights.
 
-    Raises ValueError when the run in `run_file` was begun with other settings.
+    A recipe that names a CLIP takes it from `clip`, or looks for it on this machine by its name; it
+    needs windows of whole texts (`DescribedWindows.of_texts`).
+    Raises ValueError when the run in `run_file` was begun with other settings, or windows or `clip`
+    do not fit the recipe; ClipError for a CLIP that is missing or has tokens of another width.
     """
+    if recipe.config.clip:
+        clip = clip or load_clip(recipe.config.clip)
+        check(clip, recipe.config.clip_width)
+    elif clip is not None:
+        raise ValueError(f"{recipe.name} reads words of its own: its configuration names no CLIP")
     if windows is None:
-        windows = training_clips(recipe.clips, recipe.data_seed)
-    recipe = replace(recipe, config=replace(recipe.config, words=windows.words))
+        windows = (training_texts if clip else training_clips)(recipe.clips, recipe.data_seed)
+    if any(" " in word for word in windows.words) and not clip:
+        raise ValueError(f"{recipe.name} reads words, and these windows hold whole texts")
+    facts = {"clips": len(windows)}
+    if clip:
+        facts |= {"clip_sample": clip.sample()}
+        log(f"{recipe.name}: CLIP reads {len(windows.words)} captions")
+    else:
+        recipe = replace(recipe, config=replace(recipe.config, words=windows.words))
     schedule = shifted(cosine_schedule(recipe.config.S), recipe.snr)
     torch.manual_seed(recipe.seed)
     model = network(recipe.config)
     about = {"network": type(model).__name__, "data": digest(windows)}
+    if clip:
+        about |= {"texts": digest_of_texts({"texts": "\n".join(windows.words)})[:16]}
+        about |= {"clip": " ".join(f"{x:.1f}" for x in facts["clip_sample"])}
     trained, card = train_recipe(
         recipe,
         run_file,
         model,
-        loss_of(recipe, windows, schedule),
-        Provenance(about, {"clips": len(windows)}, "data_synth.actions, synthetic"),
+        loss_of(recipe, windows, schedule, texts_by(clip, windows) if clip else texts_as_ids),
+        Provenance(about, facts, "data_synth.actions, synthetic"),
         warmup=300,
         log=log,
     )
-    return Mover(trained, schedule, windows.scaler, card)
+    return Mover(trained, schedule, windows.scaler, card, clip)
 
 
-def loss_of(recipe: MoverRecipe, windows: DescribedWindows, schedule: Schedule) -> LossFn:
-    """The loss of a recipe: its data, MoFusion's eq. 4, and the departures that it names."""
+def texts_as_ids(ids: Int[Tensor, "B M"]) -> Texts:
+    """What a network with words of its own takes: their ids as they are."""
+    return ids
+
+
+def texts_by(clip: Clip, windows: DescribedWindows) -> Callable[[Tensor], Texts]:
+    """What a network that reads by CLIP takes: the tokens of all captions, which are encoded now.
+
+    Raises ValueError for windows that hold words instead of whole texts.
+    """
+    if any(ids.shape[-1] > 1 for ids in windows.captions.values()):
+        raise ValueError("CLIP reads whole texts, and these windows hold words: use `of_texts`")
+    clip.model.to("cuda" if torch.cuda.is_available() else "cpu")
+    table = clip.table(["", "", *windows.words])  # the rows of PADDING, which none is, and NOTHING
+    return lambda ids: table[ids[:, 0]]
+
+
+def loss_of(
+    recipe: MoverRecipe,
+    windows: DescribedWindows,
+    schedule: Schedule,
+    texts_of: Callable[[Tensor], Texts] = texts_as_ids,
+) -> LossFn:
+    """The loss of a recipe: its data, MoFusion's eq. 4, and the departures that it names.
+
+    `texts_of` makes of the windows' ids what the network takes.
+    """
     scaler = windows.scaler
     moved = partial(toes_moved, windows)
     loss = weighted_loss(recipe.loss_weights, schedule, scaler, moving_frame.moves, moved)
@@ -97,8 +179,8 @@ def loss_of(recipe: MoverRecipe, windows: DescribedWindows, schedule: Schedule) 
         device = next(model.parameters()).device
         x0, ids, planted = windows.draw(recipe.frames, generator)
         ids = without_some(ids, recipe.no_text, generator)
-        x0, ids, planted = (part.to(device) for part in (x0, ids, planted))
-        return of_batch(model, x0, model.listen(ids), planted, generator)
+        x0, texts, planted = (part.to(device) for part in (x0, texts_of(ids), planted))
+        return of_batch(model, x0, model.listen(texts), planted, generator)
 
     return loss_fn
 

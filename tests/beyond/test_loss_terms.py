@@ -111,7 +111,9 @@ def test_toes_err_in_the_world_where_pelvis_and_leg_do_not_err_alike():
     assert toe_changes(2.0, dance_frame.moves, std, 0.05)(error, S1).item() == pytest.approx(wanted)
     for toe in TOES:  # the toes stay in the world: minus the drift, about the pelvis
         error[0, :, 3 * toe] = -drift / std[3 * toe]
-    assert toe_changes(2.0, dance_frame.moves, std, 0.05)(error, S1).item() == pytest.approx(0, abs=1e-9)
+    assert toe_changes(2.0, dance_frame.moves, std, 0.05)(error, S1).item() == pytest.approx(
+        0, abs=1e-9
+    )
 
 
 def test_weights_follow_the_errors_device_and_kind():

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Float
 
+from data_synth.actions.neighbours import KINDS
 from motiondiff_edu.metrics import diversity, frechet
 from motiondiff_edu.metrics.actions import actions
 from motiondiff_edu.metrics.retrieval import TOP, mm_dist, r_precision
@@ -23,7 +24,7 @@ from ..walks.scores import (
     root_mean,
     squared_bone_error,
 )
-from .trials import KINDS, Positions, Trials, minimal_pairs
+from .trials import Positions, Trials, minimal_pairs
 
 REPLICATIONS = 20  # of the pools of R-Precision, as is usual
 EVERY = 4  # frames: distances to training motions compare five frames a second

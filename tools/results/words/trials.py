@@ -4,21 +4,19 @@ Nothing here was seen in training; `clips` of `data_synth.actions` says what eac
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from jaxtyping import Float
 
-from data_synth.actions import Phrase, Sentence, act_out, caption, clips
-from data_synth.actions.acts import ONE_SIDE, OTHER_SIDE, VERBS, Act
+from data_synth.actions import Sentence, act_out, caption, clips
 from data_synth.actions.dataset import worded
+from data_synth.actions.neighbours import KINDS, changed
 from motiondiff_edu.metrics.sentences import Asked, Phrases
 from motiondiff_edu.performers.described_windows import GRID
 
 Positions = Float[np.ndarray, "_ 21 3"]
 UNSEEN = 77  # the seed of all trials; the training has another one
-KINDS = ("side", "count", "order", "speed")  # what two captions of a pair differ in
-OPPOSITE = {"slowly": "quickly", "quickly": "slowly"}
 
 
 @dataclass(frozen=True, eq=False)
@@ -100,45 +98,9 @@ def minimal_pairs(trials: Trials) -> list[Pair]:
     return found
 
 
-def changed(sentence: Sentence, kind: str, rng: np.random.Generator) -> Sentence | None:
-    """The sentence with one thing changed; None where it has nothing of this kind."""
-    if kind == "order":
-        return sentence[::-1] if len(sentence) > 1 else None
-    change = {"side": _side, "count": _count, "speed": _speed}[kind]
-    places = [
-        (p, part)
-        for p, phrase in enumerate(sentence)
-        for part in ("legs", "arms")
-        if (act := getattr(phrase, part)) is not None and change(act, rng) is not None
-    ]
-    if not places:
-        return None
-    p, part = places[int(rng.integers(len(places)))]
-    act = change(getattr(sentence[p], part), rng)
-    return (*sentence[:p], replace(sentence[p], **{part: act}), *sentence[p + 1 :])
-
-
-def _side(act: Act, rng: np.random.Generator) -> Act | None:
-    return replace(act, side=OTHER_SIDE[act.side]) if act.side in ONE_SIDE else None
-
-
-def _count(act: Act, rng: np.random.Generator) -> Act | None:
-    most = VERBS[act.verb].most
-    others = [count for count in range(1, most + 1) if count != act.count]
-    return replace(act, count=int(rng.choice(others))) if others else None
-
-
-def _speed(act: Act, rng: np.random.Generator) -> Act | None:
-    other = OPPOSITE.get(act.speed, "")
-    return replace(act, speed=other) if other in VERBS[act.verb].speeds and other else None
-
-
 def other_captions(trials: Trials, rng: np.random.Generator) -> Sequence[int]:
     """For each trial another one, of which it will get the motion."""
     order = rng.permutation(len(trials))
     where = np.empty(len(trials), int)
     where[order] = np.roll(order, 1)
     return where.tolist()
-
-
-__all__ = ["Pair", "Phrase", "Trials", "asked", "minimal_pairs", "unseen"]
