@@ -33,15 +33,19 @@ def clips(
     combinations             sentences with one: each word is seen in training, the pair never
     Raises ValueError for an unknown split.
     """
+    return (clip_of(k, seed, split, seconds) for k in range(n))
+
+
+def clip_of(k: int, seed: int, split: str = "train", seconds: float | None = None) -> Described:
+    """The clip number k of `clips`, by itself.  Raises ValueError for an unknown split."""
     if split not in SPLITS:
         raise ValueError(f"no split is called {split!r}; there are {', '.join(SPLITS)}")
-    for k in range(n):
-        rng = np.random.default_rng([seed, SPLITS[split], k, 13])
+    rng = np.random.default_rng([seed, SPLITS[split], k, 13])
+    sentence, length = draw(rng, seconds)
+    while in_training(sentence) == (split == "combinations"):
         sentence, length = draw(rng, seconds)
-        while in_training(sentence) == (split == "combinations"):
-            sentence, length = draw(rng, seconds)
-        acted = act_out(sentence, length, int(rng.integers(2**31)))
-        yield Described(acted, worded(sentence, rng))
+    acted = act_out(sentence, length, int(rng.integers(2**31)))
+    return Described(acted, worded(sentence, rng))
 
 
 def worded(

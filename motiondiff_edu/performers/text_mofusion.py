@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from jaxtyping import Float, Int
 from torch import Tensor, nn
 
-from ..beyond.self_attention import SelfAttendingMoFusion
+from ..beyond.self_attention import DEPTH, SelfAttendingMoFusion
 from ..conditions import clip as clips
 from ..conditions.clip_encoder import ClipEncoder, ClipTokens
 from ..conditions.text import LONGEST
@@ -36,6 +36,7 @@ class TextMoFusionConfig(MoFusionConfig):
     music_layers: int = 0
     words: tuple[str, ...] = ()
     word_layers: int = 2
+    depth: int = DEPTH  # layers in the middle (`beyond.self_attention`)
     longest: int = LONGEST
     clip: str = ""
     clip_width: int = clips.WIDTH  # of a token of that CLIP
@@ -58,7 +59,7 @@ class TextMoFusion(nn.Module):
         super().__init__()
         self.config = config
         self.words = encoder_of(config)
-        self.unet = SelfAttendingMoFusion(config)
+        self.unet = SelfAttendingMoFusion(config, depth=config.depth)
 
     def listen(self, texts: Texts) -> Music:
         """The context of texts."""

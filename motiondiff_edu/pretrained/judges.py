@@ -38,8 +38,7 @@ class Judge:
     @torch.inference_mode()
     def of_texts(self, texts: Sequence[str]) -> Float[np.ndarray, "N E"]:
         """The points of captions.  Raises TextError for a text that cannot be read."""
-        known: dict = {}
-        ids = ids_of([read(text, self.words, known).words for text in texts], self.words)
+        ids = ids_of([read(text, self.words).words for text in texts], self.words)
         return self.space.text_points(ids).double().numpy()
 
     @torch.inference_mode()

@@ -1,6 +1,6 @@
 """`python -m motiondiff_edu.recipes [NAME ...]`: train the shipped performers.
 
-Walkers, dancers and movers, all that are shipped (hours) or those named.
+Walkers, dancers, movers and the judges of words: all that are shipped (hours), or those named.
 """
 
 import argparse
@@ -14,14 +14,16 @@ from ..performers.dancer import Dancer
 from ..performers.mover import Mover
 from ..performers.walker import Walker
 from ..pretrained.checkpoints import save
+from ..pretrained.judges import save_judge
 from .dancers import DANCE_RECIPES, SHIPPED_DANCERS
+from .judges import JUDGES, train_judge
 from .movers import MOVER_RECIPES
 from .train_dancer import train_dancer
 from .train_mover import train_mover
 from .train_walker import train
 from .walkers import PAIRS, RECIPES, SHIPPED
 
-ALL = RECIPES | DANCE_RECIPES | MOVER_RECIPES
+ALL = RECIPES | DANCE_RECIPES | MOVER_RECIPES | JUDGES
 EIGHT_BITS = {
     "regression",
     "unconditional",
@@ -29,6 +31,8 @@ EIGHT_BITS = {
     "walker-printed",
     *(recipe.name for recipe in PAIRS),
 }  # to keep the package small; the others are stored in 16 bits
+
+EVERY = [recipe.name for recipe in (*SHIPPED, *SHIPPED_DANCERS, *JUDGES.values())]
 
 
 def main() -> None:
@@ -64,7 +68,7 @@ def main() -> None:
         )
     torch.set_num_threads(arguments.threads)
     arguments.runs.mkdir(parents=True, exist_ok=True)
-    for name in arguments.names or [recipe.name for recipe in (*SHIPPED, *SHIPPED_DANCERS)]:
+    for name in arguments.names or EVERY:
         file = f"{name}.safetensors"
         try:
             made = build(name, arguments.runs / file, arguments.out / file, arguments.clip)
@@ -74,7 +78,12 @@ def main() -> None:
 
 
 def build(name: str, run: Path, out: Path, clip: str | None = None) -> Path:
-    """Train a recipe by its name, continuing `run` where there is one, and save it as `out`."""
+    """Train a recipe by its name, continuing `run` where there is one, and save it as `out`.
+
+    A judge is saved in a folder of its own beside `out`.
+    """
+    if name in JUDGES:
+        return save_judge(train_judge(JUDGES[name], run, say), out.parent / "judges" / out.name)
     return save(trained(name, run, clip), out, bits=8 if name in EIGHT_BITS else 16)
 
 
@@ -83,21 +92,22 @@ def trained(name: str, run: Path, clip: str | None = None) -> Walker | Dancer | 
 
     If the recipe continues another one, that is trained first; its run file lies beside `run`.
     """
-
-    def log(line: str) -> None:
-        print(line, flush=True)
-
     if name in DANCE_RECIPES:
-        return train_dancer(DANCE_RECIPES[name], run, log=log)
+        return train_dancer(DANCE_RECIPES[name], run, log=say)
     if name in MOVER_RECIPES:
         recipe = MOVER_RECIPES[name]
         reader = clips.load(clip) if clip and recipe.config.clip else None
-        return train_mover(recipe, run, log=log, clip=reader)
+        return train_mover(recipe, run, log=say, clip=reader)
     recipe, first = RECIPES[name], None
     if recipe.begins_with:
         before = run.with_name(f"{recipe.begins_with}.safetensors")
         first = trained(recipe.begins_with, before).model
-    return train(recipe, run, log=log, first=first)
+    return train(recipe, run, log=say, first=first)
+
+
+def say(line: str) -> None:
+    """Print a line of a training's log."""
+    print(line, flush=True)
 
 
 if __name__ == "__main__":

@@ -6,17 +6,29 @@ import subprocess
 from collections.abc import Callable
 from dataclasses import asdict, dataclass
 from pathlib import Path
+from typing import Protocol, runtime_checkable
 
 import numpy as np
 import torch
 from torch import nn
 
 from ..training import LossFn, TrainState, cosine_lr, train_steps
-from .dancers import DanceRecipe
-from .movers import MoverRecipe
 from .muon import optimizer_for
 from .runs import notes_of, resume_run, saver
-from .walkers import Recipe
+
+
+@runtime_checkable
+class AnyRecipe(Protocol):
+    """What every recipe says of its training: a frozen dataclass with the network's `config`."""
+
+    name: str
+    config: object
+    steps: int
+    lr: float
+    optimizer: str
+    decay: float
+    seed: int
+    save_every: int  # steps
 
 
 @dataclass(frozen=True)
@@ -29,7 +41,7 @@ class Provenance:
 
 
 def train_recipe(
-    recipe: Recipe | DanceRecipe | MoverRecipe,
+    recipe: AnyRecipe,
     run_file: Path,
     model: nn.Module,
     loss_fn: LossFn,
@@ -78,7 +90,7 @@ def train_recipe(
 
 
 def run_to_end(
-    recipe: Recipe | DanceRecipe | MoverRecipe,
+    recipe: AnyRecipe,
     rate,
     state: TrainState,
     loss_fn: LossFn,

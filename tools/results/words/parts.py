@@ -11,9 +11,9 @@ from motiondiff_edu.pretrained import checkpoints
 from motiondiff_edu.pretrained.judges import Judge, judges
 
 from ..walks.parts import weights_digest
-from ..walks.scores import Measure
+from ..walks.scores import Measure, measure_of
 from .edits import edit_measures, edit_trials
-from .rows import STEPS, Make, TrainingClips, noise, performed, shuffled
+from .rows import STEPS, Make, TrainingClips, noise, performed, shuffled, understood
 from .scores import bodies, multimodality, nearest_training, pairs, recognised, retrieved
 from .trials import UNSEEN, Positions, Trials, unseen
 
@@ -83,8 +83,7 @@ class Studio:
 
     def copied(self, made: list[Positions]) -> list[Measure]:
         """How near the training motions are."""
-        training = [one.acted.positions for one in self.training.every]
-        return nearest_training(self.trials, made, training)
+        return nearest_training(self.trials, made, self.training.sketches)
 
 
 def fools(studio: Studio, mover: Mover) -> dict[str, list[Positions]]:
@@ -111,6 +110,8 @@ def word_records(studio: Studio, command: str) -> list[dict]:
     for name, how in HELD_OUT.items():
         trials = unseen(size.held_out, **how)
         rows = studio.scored(make(trials, 0), trials)
+        told = np.array([bool(understood(text, mover)) for text in trials.captions])
+        rows.append(measure_of("understood", "share", np.mean, told))
         found["words."] += [replace(one, name=f"{name}_{one.name}") for one in rows]
     found["words."] += edit_measures(mover, edit_trials(size.edits))
     guided = performed(mover, GUIDANCE)

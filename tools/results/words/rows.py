@@ -8,27 +8,32 @@ import numpy as np
 import torch
 from sklearn.feature_extraction.text import TfidfVectorizer
 
-from data_synth.actions import Described, clips, mirror
-from motiondiff_edu.conditions.text import read
+from data_synth.actions import clips, mirror
+from data_synth.actions.dataset import WORDINGS_EACH, clip_of
+from motiondiff_edu.conditions.text import TextError, read
 from motiondiff_edu.conditions.word_encoder import ids_of
 from motiondiff_edu.motion import moving_frame
+from motiondiff_edu.motion.dance_frame import at_origin
 from motiondiff_edu.performers.mover import ETA, Mover
 from motiondiff_edu.recipes.movers import MOVER
 
 from .trials import Positions, Trials, other_captions
 
 STEPS = 25  # of DDIM
+EVERY = 4  # frames: distances to training motions compare five frames a second
 BATCH_FRAMES = 6000  # of one batch, all motions together
 
 Make = Callable[[Trials, int], list[Positions]]  # of trials and a seed
 
 
 def performed(mover: Mover, guidance: float = 1.0, steps: int = STEPS) -> Make:
-    """A row of a network: one motion for each caption, as long as the data's."""
+    """A row of a network: one motion for each caption, as long as the data's.
+
+    A caption that the network refuses counts as the empty text.
+    """
 
     def make(trials: Trials, seed: int) -> list[Positions]:
-        known: dict = {}
-        words = [read(text, mover.config.words, known).words for text in trials.captions]
+        words = [understood(text, mover) for text in trials.captions]
         made: list[Positions | None] = [None] * len(trials)
         draws = torch.Generator().manual_seed(seed)
         for frames, members in by_length(trials.frames):
@@ -41,6 +46,14 @@ def performed(mover: Mover, guidance: float = 1.0, steps: int = STEPS) -> Make:
         return made
 
     return make
+
+
+def understood(text: str, mover: Mover) -> tuple[str, ...]:
+    """The words of a caption; none where the network refuses it."""
+    try:
+        return read(text, mover.config.words).words
+    except TextError:
+        return ()
 
 
 def by_length(frames: Sequence[int]) -> list[tuple[int, list[int]]]:
@@ -73,25 +86,46 @@ def noise(mover: Mover) -> Make:
 
 @dataclass(frozen=True, eq=False)
 class TrainingClips:
-    """The clips that the movers were trained on, mirrored ones too."""
+    """The clips that the movers were trained on, each followed by its mirrored twin."""
 
     clips: int = MOVER.clips
     seed: int = MOVER.data_seed
 
     @cached_property
-    def every(self) -> list[Described]:
-        made = list(clips(self.clips, self.seed))
-        return made + [mirror(one) for one in made]
+    def _read(self) -> tuple[list[str], list[Positions]]:
+        """All captions, and a sketch of each motion: a frame in EVERY, from the origin."""
+        texts, sketches = [], []
+        for one in clips(self.clips, self.seed):
+            for twin in (one, mirror(one)):
+                texts += twin.captions
+                sketches.append(sketch(twin.acted.positions))
+        return texts, sketches
+
+    @property
+    def captions(self) -> list[str]:
+        return self._read[0]
+
+    @property
+    def sketches(self) -> list[Positions]:
+        return self._read[1]
 
     @cached_property
-    def _captions(self) -> tuple[TfidfVectorizer, object]:
-        texts = [text for one in self.every for text in one.captions]
+    def _words(self) -> tuple[TfidfVectorizer, object]:
         words = TfidfVectorizer(ngram_range=(1, 2), token_pattern=r"\w+")
-        return words, words.fit_transform(texts)
+        return words, words.fit_transform(self.captions)
 
     def nearest_caption(self, trials: Trials, seed: int) -> list[Positions]:
         """The training clip whose caption has most words and pairs of words in common."""
-        words, there = self._captions
-        each = len(self.every[0].captions)
+        words, there = self._words
         alike = (words.transform(trials.captions) @ there.T).toarray()
-        return [self.every[k // each].acted.positions for k in alike.argmax(1)]
+        return [self.motion(int(k) // WORDINGS_EACH) for k in alike.argmax(1)]
+
+    def motion(self, k: int) -> Positions:
+        """The motion number k, made again; odd ones are mirrored."""
+        one = clip_of(k // 2, self.seed)
+        return (mirror(one) if k % 2 else one).acted.positions
+
+
+def sketch(positions: Positions) -> Positions:
+    """A frame in EVERY of a motion that begins at the origin, facing z."""
+    return at_origin(positions)[::EVERY].astype(np.float32)

@@ -12,7 +12,6 @@ from motiondiff_edu.metrics.actions import actions
 from motiondiff_edu.metrics.retrieval import TOP, mm_dist, r_precision
 from motiondiff_edu.metrics.sentences import rows_of
 from motiondiff_edu.metrics.skating import skating
-from motiondiff_edu.motion.dance_frame import at_origin
 from motiondiff_edu.pretrained.judges import Judge
 
 from ..walks.scores import (
@@ -24,10 +23,10 @@ from ..walks.scores import (
     root_mean,
     squared_bone_error,
 )
+from .rows import sketch
 from .trials import Positions, Trials, minimal_pairs
 
 REPLICATIONS = 20  # of the pools of R-Precision, as is usual
-EVERY = 4  # frames: distances to training motions compare five frames a second
 
 
 def recognised(trials: Trials, made: Sequence[Positions]) -> list[Measure]:
@@ -45,7 +44,7 @@ class Points:
 
     @classmethod
     def of(cls, judge: Judge, trials: Trials, made: Sequence[Positions]) -> "Points":
-        return cls(judge.of_texts(trials.captions), judge.of_motions(made))
+        return cls(judge.of_texts(trials.plain), judge.of_motions(made))
 
 
 def retrieved(judges: Sequence[Judge], trials: Trials, made: Sequence[Positions]) -> list[Measure]:
@@ -146,30 +145,34 @@ def pairs(judges: Sequence[Judge], trials: Trials, made: Sequence[Positions]) ->
 
 
 def nearest_training(
-    trials: Trials, made: Sequence[Positions], training: Sequence[Positions]
+    trials: Trials, made: Sequence[Positions], sketches: Sequence[Positions]
 ) -> list[Measure]:
-    """The distance to the nearest training motion of the same length, over that of the data.
+    """The distance to the nearest training motion that lasts as long, over that of the data.
 
-    RMS over joints and time, in metres, of motions that begin at one place. A copy has 0.
+    `sketches` are those of the training (`rows.sketch`); longer ones are cut. RMS over joints and
+    time, in metres, of motions that begin at one place. A copy has 0.
     """
-    there: dict[int, list[Positions]] = {}
-    for one in training:
-        there.setdefault(len(one) // 8, []).append(one)
-    flat = {n: np.stack([_flat(one[: 8 * n]) for one in every]) for n, every in there.items()}
-    own, data = (
-        np.array([_nearest(_flat(one), flat[len(one) // 8]) for one in every])
-        for every in (made, trials.truth)
-    )
+    own, data = (to_nearest(every, sketches) for every in (made, trials.truth))
     return [
-        measure_of("nearest_training_m", "m", np.mean, own),
-        measure_of("nearest_training_data_m", "m", np.mean, data),
+        measure_of("nearest_training_m", "m", np.nanmean, own),
+        measure_of("nearest_training_data_m", "m", np.nanmean, data),
         measure_of("nearest_training_over_data", "ratio", ratio, own, data),
     ]
 
 
-def _flat(positions: Positions) -> Float[np.ndarray, "F"]:
-    return at_origin(positions)[::EVERY].astype(np.float32).ravel()
+def to_nearest(made: Sequence[Positions], sketches: Sequence[Positions]) -> Float[np.ndarray, "N"]:
+    """The distance of each motion to the nearest sketch; NaN where none is as long."""
+    own, found = [sketch(one) for one in made], np.full(len(made), np.nan)
+    for n in sorted({len(one) for one in own}):
+        there = [one[:n].ravel() for one in sketches if len(one) >= n]
+        if there:
+            members = [k for k, one in enumerate(own) if len(one) == n]
+            every = np.stack(there)
+            found[members] = [nearest(own[k], every) for k in members]
+    return found
 
 
-def _nearest(one: Float[np.ndarray, "F"], every: Float[np.ndarray, "N F"]) -> float:
-    return float(np.sqrt(((every - one) ** 2).sum(-1).min() * 3 / one.size))
+def nearest(one: Positions, every: Float[np.ndarray, "N F"]) -> float:
+    """The RMS distance of joints to the nearest of many motions, metres."""
+    squares = (every * every).sum(1) - 2 * every @ one.ravel() + np.square(one).sum()
+    return float(np.sqrt(max(float(squares.min()), 0.0) * 3 / one.size))

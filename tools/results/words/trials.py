@@ -21,10 +21,14 @@ UNSEEN = 77  # the seed of all trials; the training has another one
 
 @dataclass(frozen=True, eq=False)
 class Trials:
-    """Captions with what they mean, and the data's own motion for each (metres, 20 frames/s)."""
+    """Captions with what they mean, and the data's own motion for each (metres, 20 frames/s).
+
+    `plain`: captions by known verbs, for the judges; the same ones, unless verbs are held out.
+    """
 
     sentences: list[Sentence]
     captions: list[str]
+    plain: list[str]
     truth: list[Positions]
     seed: int
 
@@ -52,12 +56,12 @@ class Trials:
 def unseen(n: int, split: str = "test", new_verbs: bool = False, seed: int = UNSEEN) -> Trials:
     """n clips of a split; with `new_verbs`, in wordings whose verbs no training caption has."""
     made = list(clips(n, seed, split))
-    texts = [one.captions[0] for one in made]
+    plain = texts = [one.captions[0] for one in made]
     if new_verbs:
         rng = np.random.default_rng([seed, 5])
         texts = [worded(one.acted.sentence, rng, new_verbs=True)[0] for one in made]
     truth = [one.acted.positions[: len(one.acted) // GRID * GRID] for one in made]
-    return Trials([one.acted.sentence for one in made], texts, truth, seed)
+    return Trials([one.acted.sentence for one in made], texts, plain, truth, seed)
 
 
 def asked(sentence: Sentence) -> Phrases:

@@ -1,0 +1,192 @@
+"""Table 2: the trials, the rows, their measures, and the page."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import torch
+
+from data_synth.actions import captions
+from motiondiff_edu.conditions.text import base_vocabulary
+from motiondiff_edu.ddpm import cosine_schedule
+from motiondiff_edu.motion.moving_frame import D, to_features
+from motiondiff_edu.motion.scaler import Scaler
+from motiondiff_edu.performers.mover import Mover
+from motiondiff_edu.performers.text_mofusion import TextMoFusion, TextMoFusionConfig
+from motiondiff_edu.pretrained.judges import judges
+from tools.results.words import edits, parts, rows, scores, tables, trials
+
+WORDS = base_vocabulary(captions.vocabulary())
+SMALL = TextMoFusionConfig(widths=(16, 24), heads=2, C=20, S=30, words=WORDS, word_layers=1)
+
+
+@pytest.fixture(scope="module")
+def some() -> trials.Trials:
+    return trials.unseen(40)
+
+
+@pytest.fixture(scope="module")
+def mover(some) -> Mover:
+    torch.manual_seed(0)
+    scaler = Scaler.fit(torch.from_numpy(to_features(some.truth[0])).float())
+    model = TextMoFusion(SMALL).eval().requires_grad_(False)
+    return Mover(model, cosine_schedule(30), scaler, {"name": "tiny"})
+
+
+def by_name(measures) -> dict[str, float]:
+    return {one.name: one.value for one in measures}
+
+
+def test_the_data_are_right_and_the_shuffled_data_are_not(some):
+    data, mixed = (
+        by_name(scores.recognised(some, made)) for made in (some.truth, rows.shuffled(some, 0))
+    )
+    assert data["action_accuracy"] > 0.95 and data["side_accuracy"] == 1
+    assert mixed["action_accuracy"] < 0.4
+    assert data["order_accuracy"] == 1 and data["count_accuracy"] > 0.9
+
+
+def test_retrieval_of_the_data_is_that_of_the_data(some):
+    found = by_name(scores.retrieved(judges(), some, some.truth))
+    assert found["r_precision_top3_over_real"] == 1 and found["mm_dist_over_real"] == 1
+    assert found["fid"] < 1e-3 and found["r_precision_top1"] > 0.9
+    mixed = by_name(scores.retrieved(judges(), some, rows.shuffled(some, 0)))
+    assert mixed["r_precision_top3"] < 0.3 and mixed["mm_dist_over_real"] > 2
+
+
+def test_a_pair_differs_in_one_thing_and_the_data_are_nearer_to_their_own(some):
+    pairs = trials.minimal_pairs(some)
+    assert {pair.kind for pair in pairs} == set(trials.KINDS)
+    assert all(pair.own != pair.other for pair in pairs)
+    counts = [pair for pair in pairs if pair.kind == "side"]
+    assert all(
+        sorted(pair.own.replace("left", "right").split())
+        == sorted(pair.other.replace("left", "right").split())
+        for pair in counts
+    )
+    found = by_name(scores.pairs(judges(), some, some.truth))
+    assert found["minimal_pair"] > 0.9
+    mixed = by_name(scores.pairs(judges(), some, rows.shuffled(some, 0)))
+    assert mixed["minimal_pair"] < 0.7
+
+
+def test_bodies_by_hand(some):
+    longer = [one * np.array([1.0, 1.1, 1.0]) for one in some.truth]
+    data, tall = (by_name(scores.bodies(some, made)) for made in (some.truth, longer))
+    assert data["bone_rmse_cm"] < 0.01 and 1 < tall["bone_rmse_cm"] < 5
+    assert data["speed_over_data"] == 1 < tall["speed_over_data"] < 1.1
+    slow = replace(some, truth=[one[::2] for one in some.truth])
+    assert by_name(scores.bodies(slow, some.truth))["speed_over_data"] == pytest.approx(0.5, 0.05)
+    drifting = [one + 0.01 * np.arange(len(one))[:, None, None] * [1, 0, 0] for one in some.truth]
+    slide = by_name(scores.bodies(some, drifting))["skating_mps"]
+    assert slide == pytest.approx(0.2, abs=0.02)
+
+
+def test_a_copy_is_no_distance_from_the_training(some):
+    first = first_of(some, 12)
+    sketches = [rows.sketch(one) for one in some.truth]
+    copied = by_name(scores.nearest_training(first, first.truth, sketches))
+    assert copied["nearest_training_m"] == pytest.approx(0, abs=2e-3)
+    others = by_name(scores.nearest_training(first, first.truth, sketches[12:]))
+    assert others["nearest_training_m"] > 0.05 and others["nearest_training_over_data"] == 1
+    one, every = sketches[0], np.stack([one[:10].ravel() for one in sketches[1:] if len(one) > 9])
+    apart = every.reshape(len(every), 10, 21, 3) - one[:10]
+    wanted = np.sqrt((apart**2).sum(-1).mean((1, 2))).min()
+    assert scores.nearest(one[:10], every) == pytest.approx(wanted, rel=1e-4)
+
+
+def first_of(some: trials.Trials, n: int) -> trials.Trials:
+    parts = ("sentences", "captions", "plain", "truth")
+    return replace(some, **{part: getattr(some, part)[:n] for part in parts})
+
+
+def test_the_variety_of_the_data_is_that_of_the_data(some):
+    few = first_of(some, 3)
+    data = [few.second(k) for k in (1, 2, 3)]
+    same = by_name(scores.multimodality(judges()[:1], data, data))
+    assert same["multimodality_over_data"] == 1 and same["multimodality"] > 0.01
+    stuck = by_name(scores.multimodality(judges()[:1], [few.truth] * 3, data))
+    assert stuck["multimodality"] == pytest.approx(0, abs=1e-6)
+
+
+def test_a_network_makes_one_motion_for_each_caption_as_long_as_the_data(some, mover):
+    few = first_of(some, 5)
+    made = rows.performed(mover, steps=2)(few, 0)
+    assert [len(one) for one in made] == few.frames
+    again = rows.performed(mover, steps=2)(few, 0)
+    other = rows.performed(mover, steps=2)(few, 1)
+    assert all(np.array_equal(a, b) for a, b in zip(made, again, strict=True))
+    assert not np.array_equal(made[0], other[0])
+    assert [len(one) for one in rows.noise(mover)(few, 0)] == few.frames
+
+
+def test_a_caption_that_is_refused_counts_as_the_empty_text(some, mover):
+    few = replace(first_of(some, 2), captions=["does a cartwheel", "walks"])
+    assert rows.understood("does a cartwheel", mover) == () != rows.understood("walks", mover)
+    assert len(rows.performed(mover, steps=2)(few, 0)) == 2
+    held = trials.unseen(12, new_verbs=True)
+    assert held.captions != held.plain and len(judges()[0].of_texts(held.plain)) == 12
+
+
+def test_batches_have_one_length_and_all_indices():
+    frames = [40, 48, 40, 48, 40]
+    found = rows.by_length(frames)
+    assert sorted(k for _, members in found for k in members) == [0, 1, 2, 3, 4]
+    assert all(frames[k] == n for n, members in found for k in members)
+
+
+def test_the_nearest_caption_is_that_of_a_training_clip():
+    training = rows.TrainingClips(clips=20)
+    texts = [training.captions[30], training.captions[101]]
+    found = training.nearest_caption(trials.Trials([], texts, texts, [], 0), 0)
+    for text, positions in zip(texts, found, strict=True):
+        near = [np.abs(rows.sketch(positions)[:8] - one[:8]).max() for one in training.sketches]
+        owner = int(np.argmin(near))
+        assert near[owner] == 0 and text in training.captions[4 * owner : 4 * owner + 4]
+    assert len(training.sketches) == 40 and len(training.captions) == 160
+
+
+def test_edits_ask_for_other_arms_and_the_same_legs():
+    found = edits.edit_trials(6)
+    assert len(found) == 6
+    for one in found:
+        (phrase,) = one.sentence
+        assert phrase.legs.verb in edits.ON_THE_WAY and phrase.arms is not None
+        assert edits.kept_error(one, one.positions) == 0
+    assert np.mean([edits.shows(one, one.positions) for one in found]) < 0.5
+
+
+def test_an_edit_that_gives_the_motion_back_keeps_everything_and_changes_nothing(
+    monkeypatch, mover
+):
+    some = edits.edit_trials(3)
+    monkeypatch.setattr(
+        edits,
+        "edited",
+        lambda m, trial, seed, strength, masked=False: (
+            trial.positions if strength < 1 else trial.positions + 0.1
+        ),
+    )
+    found = by_name(edits.edit_measures(mover, some))
+    assert found["edit_keeps_over_resampled"] == 0
+    assert found["edit_changes"] == found["edit_changes_before"]
+
+
+def test_all_records_are_made_and_stand_in_the_page(monkeypatch, mover):
+    size = replace(parts.WORD_QUICK, trials=40, held_out=60, texts=2, each=2, edits=2, training=30)
+    studio = parts.Studio(size, {"mover": __file__})
+    monkeypatch.setattr(parts, "judges", lambda: judges()[:1])
+    monkeypatch.setattr(scores, "REPLICATIONS", 2)
+    monkeypatch.setattr(parts.Studio, "mover", lambda self, name: mover)
+    monkeypatch.setattr(parts, "weights_digest", lambda path: "0")
+    monkeypatch.setattr(rows, "STEPS", 2)
+    monkeypatch.setattr(parts, "performed", lambda m, w=1.0: rows.performed(m, w, 2))
+    records = {one["name"]: one for one in parts.word_records(studio, "python -m x")}
+    wanted = {"words.heldout_action_accuracy", "words.wording_minimal_pair", "words.edit_changes"}
+    wanted |= {"words.guided.mm_dist", "words.nearest.r_precision_top3", "words.data.fid"}
+    wanted |= {"words.multimodality_over_data", "words.nearest_training_over_data"}
+    assert wanted <= set(records)
+    page = tables.table_2(records)
+    assert all(row in page for row in ("**the mover**", "noise", "held out", "Editing by words"))
+    assert "MoFusion (Ours) | 8.82 | 2.52 | 0.492" in page
+    assert "not measured yet" in tables.table_2({}) and D == 66
