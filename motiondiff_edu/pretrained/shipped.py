@@ -1,4 +1,4 @@
-"""The front door's functions that need weights: `load`, `inbetween`, `reconstruct`, `edit`.
+"""The front door's functions that need weights: `load`, `inbetween` and `reconstruct`.
 
 Notebook: 00, 15
 """
@@ -12,11 +12,8 @@ import numpy as np
 from jaxtyping import Bool, Float
 
 from ..conditions.clip import Clip
-from ..conditions.text import read
-from ..editing import by_words
 from ..editing import inbetween as inbetweens
 from ..editing import reconstruct as reconstruction
-from ..editing.by_words import STRENGTH
 from ..editing.inbetween import OURS, Departures
 from ..editing.masks import checked_known
 from ..editing.plausible import plausible
@@ -25,7 +22,7 @@ from ..motion.motion import Motion, MotionError, MotionWarning, as_motion
 from ..motion.root_frame import FPS
 from ..motion.skeleton import HIPS, TOES
 from ..performers.dancer import Dancer
-from ..performers.mover import LONGEST, SHORTEST, Mover
+from ..performers.mover import Mover
 from ..performers.performer import generators
 from ..performers.walker import Walker
 from ..performers.with_bar import with_bar
@@ -121,52 +118,6 @@ def reconstruct(
             for draw in draws
         ]
     made = [_made(motion, known, positions, "reconstructed") for positions in made]
-    return made if samples > 1 else made[0]
-
-
-def edit(
-    motion: Motion,
-    text: str,
-    known: Bool[np.ndarray, "T J"] | None = None,
-    *,
-    strength: float = STRENGTH,
-    samples: int = 1,
-    seed: int = 0,
-    guidance: float = 1.0,
-    progress: bool = True,
-) -> Motion | list[Motion]:
-    """Make a motion do what a sentence says, and keep what it can of it; with the shipped mover.
-
-    The motion is noised part of the way, and denoised under the sentence. `known` joints stay about
-    the root; where the pelvis is known, the path stays, too. `strength`: how much is made anew, up
-    to 1, with which only what is known is left. With `samples` above 1, the result is a list with
-    this many motions; the first is that of samples=1.
-    Raises MotionError if motion and mask do not fit, or the motion is shorter or longer than those
-    of the training, TextError for a text that cannot be read, and ValueError for numbers out of
-    range.
-    Source: SDEdit (Meng and others, 2022); MoFusion claims edits by text without a method.
-    """
-    everything = np.ones((len(motion), len(motion.skeleton)), bool)
-    _fitting(motion, motion.known & everything)
-    if not motion.known.all():
-        raise MotionError(f"{motion.name}: joints are missing; md.reconstruct fills them in")
-    if not SHORTEST <= motion.seconds <= LONGEST:
-        raise MotionError(
-            f"{motion.name} lasts {motion.seconds:.1f} s; edits by words take {SHORTEST:g} to "
-            f"{LONGEST:g} s: cut it"
-        )
-    mask = None if known is None else _fitting(motion, known)
-    count, mover = checked_count(samples, "samples"), _shipped("mover")
-    for note in read(text, mover.config.words).notes:
-        warnings.warn(note, stacklevel=2)
-    visited = by_words.visited(mover.schedule.S, by_words.STEPS, strength)
-    with with_bar(mover, len(visited), "editing", progress) as one:
-        made = by_words.edit_by_words(
-            one, motion.positions, text, mask, strength=strength, samples=count,
-            guidance=guidance, generator=generators(seed, count),
-        )  # fmt: skip
-    nothing = np.zeros((len(motion), len(motion.skeleton)), bool)
-    made = [_made(motion, nothing, positions, f"edited: {text.strip():.40}") for positions in made]
     return made if samples > 1 else made[0]
 
 
