@@ -61,15 +61,19 @@ def weighted_loss(
     scaler: Scaler,
     moves: loss_terms.Moves,
     moved: Callable[[], float],
+    columns: Float[Tensor, "D"] | None = None,
 ) -> loss_terms.Loss:
     """The mean square of eq. 4's data term, with the weights and terms that are not 0.
 
     `moves` is that of the features' frame, `dance_frame.moves` for instance.
+    `columns`: weights of the features, for the errors of poses and of their changes.
     `moved()`: the mean square change of a toe's coordinate in the data; asked for with toes alone.
     """
     loss = squared_error
     if weights.changes:
         loss = loss_terms.total(loss, loss_terms.changes(weights.changes))
+    if columns is not None:
+        loss = loss_terms.weighted(loss, columns)
     if weights.toes:
         toes = loss_terms.toe_changes(weights.toes, moves, scaler.std, moved())
         loss = loss_terms.total(loss, toes)

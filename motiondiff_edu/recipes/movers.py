@@ -24,6 +24,7 @@ class MoverRecipe:
     steps: int
     kinematic: KinematicWeights | None = None
     loss_weights: DanceLossWeights = DanceLossWeights()
+    metres: float = 0.0  # power of `beyond.loss_terms.metre_weights`; 0: all columns alike
     snr: float = 1.0  # factor on the signal-to-noise ratio of the cosine schedule
     frames: int = 3072  # of a batch, all motions together
     no_text: float = 0.0  # share of the texts left out: `beyond.classifier_free`
@@ -39,8 +40,9 @@ class MoverRecipe:
 MOVER_PLAIN = MoverRecipe(
     "mover-plain",
     TextMoFusionConfig(),
-    steps=24_000,
+    steps=16_000,
     loss_weights=OURS,
+    metres=1.0,
     snr=0.1,
     no_text=0.1,
 )

@@ -14,6 +14,7 @@ from jaxtyping import Int
 from torch import Tensor, nn
 
 from .._files import digest_of_tensors, digest_of_texts
+from ..beyond import loss_terms
 from ..beyond.schedules import shifted
 from ..conditions.clip import Clip, check
 from ..conditions.clip import load as load_clip
@@ -172,7 +173,8 @@ def loss_of(
     """
     scaler = windows.scaler
     moved = partial(toes_moved, windows)
-    loss = weighted_loss(recipe.loss_weights, schedule, scaler, moving_frame.moves, moved)
+    columns = loss_terms.metre_weights(scaler.std, recipe.metres) if recipe.metres else None
+    loss = weighted_loss(recipe.loss_weights, schedule, scaler, moving_frame.moves, moved, columns)
     of_batch = batch_loss(recipe.kinematic, loss, schedule, scaler, moving_frame.body_of)
 
     def loss_fn(model: nn.Module, generator: torch.Generator) -> Tensor:

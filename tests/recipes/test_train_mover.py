@@ -60,6 +60,7 @@ def test_each_departure_changes_the_loss(windows):
     weights = [DanceLossWeights(changes=5.0), DanceLossWeights(toes=0.2)]
     assert all(loss(loss_weights=one) > plain for one in weights)
     assert loss(kinematic=KINEMATIC) > plain and loss(no_text=1.0) != plain
+    assert loss(metres=1.0) != plain
     assert toes_moved(windows) > 1e-4
 
 
