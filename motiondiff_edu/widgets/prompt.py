@@ -1,0 +1,87 @@
+"""A prompt box: a sentence, how long, which seed; below it four motions that do what it says.
+
+Type and press Enter, or press the button. What cannot be acted is said in words, and the motions
+before it stay.
+"""
+
+import html
+import warnings
+
+import ipywidgets
+
+from ..conditions.text import TextError
+from ..performers.mover import LONGEST, SECONDS, SHORTEST, Mover
+from .player import Player
+
+ANSWERS = 4
+SENTENCE = "walks forward, then waves with the left hand"
+SEEDS = 10_000
+
+
+class Prompt(ipywidgets.VBox):
+    """A box for sentences, and a player with `ANSWERS` motions of a mover for the last one.
+
+    `motions` are those on show. `act()` does what the button does.
+    Raises TextError and ValueError as `Mover.act`, for the first sentence.
+    """
+
+    def __init__(self, mover: Mover, text: str = SENTENCE, seconds: float = SECONDS, seed: int = 0):
+        self.mover = mover
+        self.motions = []
+        self._answered = None
+        wide = ipywidgets.Layout(width="100%")
+        self.text = ipywidgets.Text(
+            text, description="sentence", continuous_update=False, layout=wide
+        )
+        self.seconds = ipywidgets.FloatSlider(
+            seconds, min=SHORTEST, max=LONGEST, step=0.5, description="seconds",
+            continuous_update=False,
+        )  # fmt: skip
+        self.seed = ipywidgets.BoundedIntText(seed, min=0, max=SEEDS, description="seed")
+        self.button = ipywidgets.Button(
+            description="Act", tooltip="make four motions of this sentence", button_style="primary"
+        )
+        self.message = ipywidgets.HTML()
+        self.player = None
+        self._answer()
+        self.player = Player([one.positions for one in self.motions], labels=self._labels())
+        for control in (self.text, self.seconds, self.seed):
+            control.observe(lambda _: self.act(), names="value")
+        self.button.on_click(lambda _: self.act())
+        controls = ipywidgets.HBox([self.seconds, self.seed, self.button])
+        super().__init__([self.text, controls, self.message, self.player])
+
+    def act(self) -> None:
+        """Answer the sentence in the box, unless it is answered already."""
+        if self._asked() == self._answered:
+            return
+        self.button.disabled = True
+        self._say("moving ...")
+        try:
+            self._answer()
+        except (TextError, ValueError) as error:
+            self._say(str(error), "alert")
+        else:
+            self.player.show([one.positions for one in self.motions], labels=self._labels())
+        finally:
+            self.button.disabled = False
+
+    def _asked(self) -> tuple[str, float, int]:
+        return self.text.value.strip(), self.seconds.value, self.seed.value
+
+    def _answer(self) -> None:
+        text, seconds, seed = asked = self._asked()
+        with warnings.catch_warnings(record=True) as notes:
+            warnings.simplefilter("always")
+            self.motions = self.mover.act(
+                text, seconds=seconds, samples=ANSWERS, seed=seed, progress=False
+            )
+        self._answered = asked
+        self._say("; ".join(dict.fromkeys(str(note.message) for note in notes)))
+
+    def _labels(self) -> list[str]:
+        return [f"answer {k + 1}" for k in range(len(self.motions))]
+
+    def _say(self, words: str, role: str = "status") -> None:
+        """Show plain text below the box; a screen reader reads it."""
+        self.message.value = f'<div role="{role}">{html.escape(words)}</div>'

@@ -1,0 +1,68 @@
+"""Attention over words: rows, layers, padding of the sentence, and what is refused."""
+
+import numpy as np
+import pytest
+import torch
+
+from data_synth.actions import captions, clips
+from motiondiff_edu.conditions.text import TextError, base_vocabulary
+from motiondiff_edu.ddpm import cosine_schedule
+from motiondiff_edu.motion.moving_frame import to_features
+from motiondiff_edu.motion.scaler import Scaler
+from motiondiff_edu.performers.attention_on_words import WordMaps, attention_on_words
+from motiondiff_edu.performers.mover import Mover
+from motiondiff_edu.performers.text_mofusion import TextMoFusion, TextMoFusionConfig
+
+WORDS = base_vocabulary(captions.vocabulary())
+SMALL = TextMoFusionConfig(
+    widths=(16, 24), heads=2, C=20, S=30, words=WORDS, word_layers=1, depth=2
+)
+
+
+@pytest.fixture(scope="module")
+def positions() -> np.ndarray:
+    return next(iter(clips(1, 8))).acted.positions[:64]
+
+
+@pytest.fixture(scope="module")
+def mover(positions) -> Mover:
+    torch.manual_seed(0)
+    scaler = Scaler.fit(torch.from_numpy(to_features(positions)).float())
+    return Mover(TextMoFusion(SMALL).eval(), cosine_schedule(30), scaler)
+
+
+def maps(mover, text, positions, s=20) -> WordMaps:
+    return attention_on_words(mover, text, positions, s, generator=torch.Generator().manual_seed(0))
+
+
+def test_each_layer_has_a_row_for_each_of_its_frames_that_sums_to_one(mover, positions):
+    found = maps(mover, "a person kicks with the left foot", positions)
+    assert "kick" in found.words and "left" in found.words
+    rows = {name: weights.shape for name, weights in found.levels.items()}
+    M = len(found.words)
+    assert rows["down.0.ask"] == (64, M) and rows["down.1.ask"] == (32, M)
+    assert rows["middle.ask"] == rows["middle.deep.1.ask"] == (16, M) and len(rows) == 7
+    for weights in found.levels.values():
+        np.testing.assert_allclose(weights.sum(1), 1, atol=1e-5)
+
+
+def test_the_mean_by_frame_repeats_the_rows_of_slow_layers():
+    slow = np.array([[1.0, 0.0], [0.0, 1.0]])
+    fast = np.full((4, 2), 0.5)
+    found = WordMaps(("left", "right"), {"slow": slow, "fast": fast}).by_frame(4)
+    np.testing.assert_allclose(found[:, 0], [0.75, 0.75, 0.25, 0.25])
+
+
+def test_the_words_are_those_that_the_network_reads(mover, positions):
+    walk = maps(mover, "marches ahead", positions)  # read as walk
+    assert walk.words[0] == "walk"
+    other = maps(mover, "walks ahead", positions)
+    np.testing.assert_array_equal(walk.by_frame(64), other.by_frame(64))
+
+
+def test_what_has_no_map_is_refused(mover, positions):
+    for s in (0, 31):
+        with pytest.raises(ValueError, match="steps are 1 to 30"):
+            maps(mover, "walks", positions, s)
+    with pytest.raises(TextError):
+        maps(mover, "does a cartwheel", positions)

@@ -1,0 +1,85 @@
+"""The prompt box: sentences, notes, refusals, and what stays on show."""
+
+import numpy as np
+import pytest
+import torch
+
+from data_synth.actions import captions
+from motiondiff_edu.conditions.text import TextError, base_vocabulary
+from motiondiff_edu.ddpm import cosine_schedule
+from motiondiff_edu.motion.scaler import Scaler
+from motiondiff_edu.performers.mover import Mover
+from motiondiff_edu.performers.text_mofusion import TextMoFusion, TextMoFusionConfig
+from motiondiff_edu.widgets.prompt import ANSWERS, Prompt
+
+WORDS = base_vocabulary(captions.vocabulary())
+SMALL = TextMoFusionConfig(widths=(16, 24), heads=2, C=20, S=4, words=WORDS, word_layers=1)
+
+
+@pytest.fixture(scope="module")
+def mover() -> Mover:
+    torch.manual_seed(0)
+    return Mover(TextMoFusion(SMALL).eval(), cosine_schedule(4), Scaler.nothing(SMALL.D))
+
+
+def test_the_box_opens_with_four_answers_and_gives_those_of_act(mover):
+    box = Prompt(mover, "walks", seconds=2.0, seed=5)
+    wanted = mover.act("walks", seconds=2.0, samples=ANSWERS, seed=5, progress=False)
+    assert len(box.motions) == ANSWERS == len(wanted)
+    for one, other in zip(box.motions, wanted, strict=True):
+        np.testing.assert_array_equal(one.positions, other.positions)
+
+
+def test_a_new_sentence_length_or_seed_is_answered(mover):
+    box = Prompt(mover, "walks", seconds=2.0)
+    before = box.motions[0].positions
+    box.text.value = "kicks with the left foot"
+    assert np.abs(box.motions[0].positions - before).max() > 1e-6
+    box.seconds.value = 3.0
+    assert len(box.motions[0]) == 60
+    before = box.motions[0].positions
+    box.seed.value = 1
+    assert np.abs(box.motions[0].positions - before).max() > 1e-3
+    assert not box.button.disabled
+
+
+def test_the_same_question_is_answered_once(mover, monkeypatch):
+    box, asked = Prompt(mover, "walks", seconds=2.0), []
+    act = Mover.act
+    monkeypatch.setattr(Mover, "act", lambda *a, **k: asked.append(a) or act(*a, **k))
+    box.act()
+    box.button.click()
+    assert not asked
+    box.text.value = "runs"
+    box.button.click()
+    assert len(asked) == 1
+
+
+@pytest.mark.parametrize(
+    "text, told",
+    [
+        ("", "the text is empty"),
+        ("does a cartwheel", "does not know"),
+        ("geht vorwärts", "does not know"),
+        ("walks " * 80, "the network reads"),
+        ("<b>walks</b> <script>alert(1)</script>", "&#x27;script&#x27;"),
+    ],
+)
+def test_what_cannot_be_acted_is_said_and_the_motions_stay(mover, text, told):
+    box = Prompt(mover, "walks", seconds=2.0)
+    before = box.motions
+    box.text.value = text
+    if not text:
+        box.act()
+    assert told in box.message.value and 'role="alert"' in box.message.value
+    assert box.motions is before and "<script>" not in box.message.value
+    box.text.value = "walks back"
+    assert "alert" not in box.message.value and box.motions is not before
+    with pytest.raises(TextError):
+        Prompt(mover, "does a cartwheel")
+
+
+def test_a_word_that_is_read_as_another_is_said_below_the_box(mover):
+    box = Prompt(mover, "walks", seconds=2.0)
+    box.text.value = "marches ahead"
+    assert "&#x27;marches&#x27; is read as &#x27;walk&#x27;" in box.message.value
