@@ -18,7 +18,8 @@ from ..mofusion import CrossAttentionBlock, MoFusion, MoFusionConfig, Music, Vie
 
 LEVELS = 2  # the middle, and the level above it on both sides
 DEPTH = 4  # further layers in the middle
-SLOWEST, FASTEST, CURVES = 0.02, 1.0, 8  # Hz, of the code of a time
+SLOWEST, FASTEST = 0.02, 1.0  # Hz, of the code of a time
+CURVES = 8
 
 
 class SelfAttendingMoFusion(MoFusion):

@@ -36,7 +36,6 @@ def edit_by_words(
     strength: float = STRENGTH,
     samples: int = 1,
     steps: int = STEPS,
-    guidance: float = 1.0,
     generator: Generators | None = None,
 ) -> Float[np.ndarray, "samples T 21 3"]:
     """Motions (metres, 20 frames/s) that do what `text` says, made out of this motion.
@@ -59,7 +58,7 @@ def edit_by_words(
         mask = torch.from_numpy(np.asarray(known))
     held = columns(mask).to(given.device).expand(given.shape)
     start = q_sample(given, ways[0], schedule, draw(given, generator))
-    denoise = mover.denoiser(ids, guidance)
+    denoise = mover.denoiser(ids)
     if held.any():
         denoise = blended(denoise, schedule, given, held, fade=FADE)
     loop = inpaint_steps(
