@@ -11,7 +11,7 @@ EXAMPLE = "info my_walk.bvh"
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("file", type=Path, nargs="+", help="motions: .bvh or .npz")
+    parser.add_argument("file", type=Path, nargs="+", help="motions: .bvh, .npz or .npy")
 
 
 def run(args: argparse.Namespace) -> None:

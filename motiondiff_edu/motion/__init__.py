@@ -6,4 +6,5 @@ The skeleton, forward kinematics, the root frame, clips, and the files they come
 from . import registry
 
 registry.readers.announce(f"{__name__}.files", ".bvh", ".npz")
+registry.readers.announce(f"{__name__}.humanml3d", ".npy")
 registry.writers.announce(f"{__name__}.files", ".bvh", ".npz")

@@ -38,9 +38,10 @@ def read_motion(
     mapping: Mapping[str, str] | None = None,
     file_fps: float | int | None = None,
 ) -> Motion:
-    """Read a motion from a file; the name's ending says whether it is BVH or npz.
+    """Read a motion from a file; the name's ending says whether it is BVH, npz or npy.
 
-    Any humanoid BVH is retargeted to the course's skeleton and resampled to 20 frames/s.
+    Any humanoid BVH is retargeted to the course's skeleton and resampled to 20 frames/s. An npy is
+    a motion of HumanML3D (`motion/humanml3d.py`).
 
     mapping   for a BVH file: {joint of the course: joint of the file}, for names not recognised
     file_fps  for a BVH file: its frames a second, if the file states a wrong number
@@ -55,8 +56,9 @@ def read_motion(
     read = registry.readers.get(ending)
     if read is None:
         advice = next((words for group, words in ELSEWHERE.items() if ending in group), "")
+        *others, last = sorted(registry.readers.names())
         raise MotionError(
-            f"{path.name} cannot be read as a motion; {' and '.join(registry.readers.names())} can"
+            f"{path.name} cannot be read as a motion; {', '.join(others)} and {last} can"
             f"{f'. {advice[0].upper()}{advice[1:]}' if advice else ''}"
         )
     if mapping is not None or file_fps is not None:

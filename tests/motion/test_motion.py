@@ -250,7 +250,7 @@ WRONG_FILES = {
     "smpl.npz": (lambda p: _npz(p, poses=np.zeros((2, 156)), control=np.zeros((2, 3))), "smpl.npz"),
     "walk.png": (
         lambda p: p.write_bytes(b"\x89PNG"),
-        "cannot be read as a motion; .bvh and .npz can",
+        "cannot be read as a motion; .bvh, .npy and .npz can",
     ),
     "song.ogg": (lambda p: p.write_bytes(b"OggS"), "npz can. This is sound"),
     "walk.fbx": (lambda p: p.write_bytes(b"Kaydara"), "Export it as BVH"),
