@@ -35,11 +35,10 @@ class SelfAttendingMoFusion(MoFusion):
             block["when"] = nn.Linear(4 * CURVES, width)
         self.middle["deep"] = nn.ModuleList(self._layer(config) for _ in range(depth))
 
-    @staticmethod
-    def _layer(config: MoFusionConfig) -> nn.ModuleDict:
+    def _layer(self, config: MoFusionConfig) -> nn.ModuleDict:
         """A layer of the middle: attention to the condition, then to the motion."""
         *_, width = config.widths
-        context = config.widths[1 if len(config.widths) > 1 else 0] if config.C else width
+        context = self.music.project.out_features if self.music else width
         ask = CrossAttentionBlock(width, config.heads, context)
         return nn.ModuleDict({"ask": ask, "own": CrossAttentionBlock(width, config.heads, width)})
 

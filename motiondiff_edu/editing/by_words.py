@@ -13,8 +13,6 @@ from jaxtyping import Bool, Float
 from torch import Tensor
 
 from ..beyond.guidance import blended
-from ..conditions.text import read
-from ..conditions.word_encoder import ids_of
 from ..ddpm import Generators, draw, final, q_sample, timesteps
 from ..inbetweening import inpaint_steps
 from ..motion.dance_frame import Place
@@ -48,17 +46,15 @@ def edit_by_words(
     Raises TextError for a text that cannot be read, ValueError for a strength out of range.
     """
     ways = visited(mover.schedule.S, steps, strength)
-    ids = ids_of([read(text, mover.config.words).words] * samples, mover.config.words)
+    texts = mover.reader.encoded([mover.reader.read(text).words] * samples)
     generator = generator or torch.Generator().manual_seed(0)
     scaler, schedule = mover.motion_scaler, mover.schedule
     features = torch.from_numpy(to_features(positions)).float().to(scaler.mean.device)
     given = scaler.transform(features).expand(samples, -1, -1)
-    mask = torch.zeros(len(positions), J, dtype=torch.bool)
-    if known is not None:
-        mask = torch.from_numpy(np.asarray(known))
-    held = columns(mask).to(given.device).expand(given.shape)
+    mask = np.zeros((len(positions), J), bool) if known is None else np.asarray(known)
+    held = columns(torch.from_numpy(mask)).to(given.device).expand(given.shape)
     start = q_sample(given, ways[0], schedule, draw(given, generator))
-    denoise = mover.denoiser(ids)
+    denoise = mover.denoiser(texts)
     if held.any():
         denoise = blended(denoise, schedule, given, held, fade=FADE)
     loop = inpaint_steps(

@@ -14,7 +14,7 @@ from torch import Tensor
 
 from ..kinematic_loss import Body
 from .scaler import Scaler
-from .skeleton import BONE_PAIRS, BONES, HIPS, MIRROR, TOES, J, joint_index
+from .skeleton import BONE_PAIRS, BONES, HIPS, MIRROR, TOES, J, check_joints, joint_index
 
 GROUND = np.array([1.0, 0.0, 1.0])  # projects a point onto the floor
 HIP_LEFT = joint_index("LeftUpLeg")
@@ -72,10 +72,7 @@ def at_origin(positions: Float[np.ndarray, "*B T 21 3"]) -> Float[np.ndarray, "*
 
 def to_features(positions: Float[np.ndarray, "*B T J 3"]) -> Float[np.ndarray, "*B T 63"]:
     """World positions as the network's 63 features.  Raises ValueError for another skeleton."""
-    if positions.shape[-2:] != (J, 3):
-        raise ValueError(
-            f"the course's skeleton has {J} joints with 3 coordinates, not {positions.shape[-2:]}"
-        )
+    check_joints(positions)
     return placed_features(at_origin(positions))
 
 

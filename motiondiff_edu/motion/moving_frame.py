@@ -15,7 +15,7 @@ from torch import Tensor
 from ..kinematic_loss import Body
 from .root_frame import FPS, estimate_root, to_root_frame
 from .scaler import Scaler
-from .skeleton import BONE_PAIRS, BONES, MIRROR, TOES, J
+from .skeleton import BONE_PAIRS, BONES, MIRROR, TOES, J, check_joints
 
 D = 3 * J + 3  # 66
 
@@ -25,10 +25,7 @@ def to_features(positions: Float[np.ndarray, "T J 3"]) -> Float[np.ndarray, "T 6
 
     Raises ValueError for another skeleton.
     """
-    if positions.shape[-2:] != (J, 3):
-        raise ValueError(
-            f"the course's skeleton has {J} joints with 3 coordinates, not {positions.shape[-2:]}"
-        )
+    check_joints(positions)
     poses, control = to_root_frame(positions, *estimate_root(positions))
     return np.concatenate([poses.reshape(len(poses), 3 * J), control], axis=-1)
 

@@ -78,6 +78,14 @@ def joint_index(name: str) -> int:
     return JOINTS.index(name)
 
 
+def check_joints(positions: np.ndarray) -> None:
+    """Raise ValueError unless the last two axes are the course's joints and their coordinates."""
+    if positions.shape[-2:] != (J, 3):
+        raise ValueError(
+            f"the course's skeleton has {J} joints with 3 coordinates, not {positions.shape[-2:]}"
+        )
+
+
 @dataclass(frozen=True)
 class Skeleton:
     """Joints by name, and the number of each joint's parent (-1 for the root, which comes first).

@@ -11,7 +11,7 @@ from functools import partial
 from pathlib import Path
 
 from safetensors import safe_open
-from torch import Tensor
+from torch import Tensor, nn
 
 from ..baselines import transformer  # noqa: F401  registers the network of two shipped files
 from ..conditions.clip import Clip, ClipError
@@ -148,12 +148,10 @@ def _assembled(
     sizes = {name: getattr(config, width) for name, width in kind.scalers.items()}
     vectors = {f"{name}.{part}": size for name, size in sizes.items() for part in ("mean", "std")}
     check_sizes(tensors, vectors | {"schedule.beta": config.S})
-    scalers = [Scaler(tensors[f"{name}.mean"], tensors[f"{name}.std"]) for name in kind.scalers]
+    scalers = [scaler_of(tensors, name) for name in kind.scalers]
     model = networks[metadata.get("network", kind.usual)].build(config, *scalers)
-    model.load_state_dict(unpack({k[6:]: v for k, v in tensors.items() if k.startswith("model.")}))
     schedule = make_schedule(tensors["schedule.beta"], metadata["schedule"])
-    card = json.loads(metadata.get("card", "{}")) or {}
-    trained = (model.eval().requires_grad_(False), schedule, *scalers, card)
+    trained = (with_weights(model, tensors), schedule, *scalers, card_of(metadata))
     name = getattr(config, "clip", "")
     if not name and clip is None:
         return kind.performer(*trained)
@@ -165,6 +163,22 @@ def _assembled(
         raise CheckpointError(
             f"{metadata['file']} reads texts by {name}, or by its folder in `clip`: {error}"
         ) from error
+
+
+def with_weights(model: nn.Module, tensors: dict[str, Tensor]) -> nn.Module:
+    """The network with the weights of a file, in evaluation mode and without gradients."""
+    model.load_state_dict(unpack({k[6:]: v for k, v in tensors.items() if k.startswith("model.")}))
+    return model.eval().requires_grad_(False)
+
+
+def scaler_of(tensors: dict[str, Tensor], name: str) -> Scaler:
+    """One of the scalers of a file."""
+    return Scaler(tensors[f"{name}.mean"], tensors[f"{name}.std"])
+
+
+def card_of(metadata: dict[str, str]) -> dict:
+    """The card of a file; empty where there is none."""
+    return json.loads(metadata.get("card", "{}")) or {}
 
 
 def available() -> dict[str, Path]:

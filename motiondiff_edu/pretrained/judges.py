@@ -18,8 +18,8 @@ from ..conditions.word_encoder import FIRST, ids_of
 from ..metrics.retrieval import Space
 from ..motion.moving_frame import D, to_features
 from ..motion.scaler import Scaler
-from .checkpoints import FOLDER
-from .eight_bits import pack, unpack
+from .checkpoints import FOLDER, card_of, scaler_of, with_weights
+from .eight_bits import pack
 from .weights_file import check_sizes, read_weights, write_weights
 
 FORMAT = "motiondiff_edu judge 1"
@@ -76,7 +76,5 @@ def _assembled(tensors: dict[str, Tensor], metadata: dict[str, str]) -> Judge:
     words = tuple(config["words"])
     check_sizes(tensors, {"motion.mean": D, "motion.std": D})
     space = Space(D, FIRST + len(words), config["width"])
-    space.load_state_dict(unpack({k[6:]: v for k, v in tensors.items() if k.startswith("model.")}))
-    scaler = Scaler(tensors["motion.mean"], tensors["motion.std"])
-    card = json.loads(metadata.get("card", "{}")) or {}
-    return Judge(space.eval().requires_grad_(False), scaler, words, card)
+    scaler = scaler_of(tensors, "motion")
+    return Judge(with_weights(space, tensors), scaler, words, card_of(metadata))

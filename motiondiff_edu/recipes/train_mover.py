@@ -56,10 +56,8 @@ class DescribedData:
 @lru_cache(maxsize=1)
 def described(clips: int, seed: int) -> DescribedData:
     """The data of a training, generated from its seed."""
-    from data_synth.actions import (
-        caption,
-        captions,
-    )  # here, because data_synth imports this package
+    # here, because data_synth imports this package
+    from data_synth.actions import caption, captions
     from data_synth.actions import clips as drawn
     from data_synth.actions.dataset import mirrored_sentence
     from data_synth.actions.neighbours import neighbour

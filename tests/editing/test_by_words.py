@@ -3,20 +3,17 @@
 import numpy as np
 import pytest
 import torch
+from small_movers import mover_of
 
-from data_synth.actions import captions, clips
-from motiondiff_edu.conditions.text import TextError, base_vocabulary
-from motiondiff_edu.ddpm import at, cosine_schedule
+from data_synth.actions import clips
+from motiondiff_edu.conditions.text import TextError
+from motiondiff_edu.ddpm import at
 from motiondiff_edu.editing.by_words import at_the_start_of, columns, edit_by_words
 from motiondiff_edu.editing.masks import UPPER
 from motiondiff_edu.motion.moving_frame import D, to_features, to_positions
 from motiondiff_edu.motion.scaler import Scaler
 from motiondiff_edu.motion.skeleton import HIPS, joint_index
 from motiondiff_edu.performers.mover import Mover
-from motiondiff_edu.performers.text_mofusion import TextMoFusion, TextMoFusionConfig
-
-WORDS = base_vocabulary(captions.vocabulary())
-SMALL = TextMoFusionConfig(widths=(16, 24), heads=2, C=20, S=30, words=WORDS, word_layers=1)
 
 
 @pytest.fixture(scope="module")
@@ -26,17 +23,7 @@ def positions() -> np.ndarray:
 
 @pytest.fixture(scope="module")
 def mover(positions) -> Mover:
-    torch.manual_seed(0)
-    model = TextMoFusion(SMALL)
-    for parameter in model.parameters():  # blocks that begin at zero would hide their inputs
-        if not parameter.any():
-            torch.nn.init.normal_(parameter, std=0.1)
-    scaler = Scaler.fit(torch.from_numpy(to_features(positions)).float())
-    return Mover(model.eval().requires_grad_(False), cosine_schedule(30), scaler)
-
-
-def seen_from_the_figure(positions: np.ndarray) -> np.ndarray:
-    return to_features(positions)[:, : D - 3].reshape(len(positions), 21, 3)
+    return mover_of(scaler=Scaler.fit(torch.from_numpy(to_features(positions)).float()))
 
 
 def apart(a: np.ndarray, b: np.ndarray) -> float:

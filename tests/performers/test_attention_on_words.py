@@ -1,22 +1,20 @@
 """Attention over words: rows, layers, padding of the sentence, and what is refused."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
+import small_movers
 import torch
 
-from data_synth.actions import captions, clips
-from motiondiff_edu.conditions.text import TextError, base_vocabulary
-from motiondiff_edu.ddpm import cosine_schedule
+from data_synth.actions import clips
+from motiondiff_edu.conditions.text import TextError
 from motiondiff_edu.motion.moving_frame import to_features
 from motiondiff_edu.motion.scaler import Scaler
 from motiondiff_edu.performers.attention_on_words import WordMaps, attention_on_words
 from motiondiff_edu.performers.mover import Mover
-from motiondiff_edu.performers.text_mofusion import TextMoFusion, TextMoFusionConfig
 
-WORDS = base_vocabulary(captions.vocabulary())
-SMALL = TextMoFusionConfig(
-    widths=(16, 24), heads=2, C=20, S=30, words=WORDS, word_layers=1, depth=2
-)
+SMALL = replace(small_movers.SMALL, depth=2)
 
 
 @pytest.fixture(scope="module")
@@ -26,9 +24,8 @@ def positions() -> np.ndarray:
 
 @pytest.fixture(scope="module")
 def mover(positions) -> Mover:
-    torch.manual_seed(0)
     scaler = Scaler.fit(torch.from_numpy(to_features(positions)).float())
-    return Mover(TextMoFusion(SMALL).eval(), cosine_schedule(30), scaler)
+    return small_movers.mover_of(SMALL, scaler)
 
 
 def maps(mover, text, positions, s=20) -> WordMaps:

@@ -7,16 +7,15 @@ import pytest
 import tiny_clip
 import torch
 from safetensors import safe_open
+from small_movers import mover_of
 
 import motiondiff_edu as md
 from motiondiff_edu.conditions import clip
 from motiondiff_edu.conditions.clip_encoder import ClipTokens
 from motiondiff_edu.conditions.text import TextError
-from motiondiff_edu.ddpm import cosine_schedule
-from motiondiff_edu.motion.scaler import Scaler
 from motiondiff_edu.performers.described_windows import DescribedWindows, exchanged_sides
 from motiondiff_edu.performers.mover import Mover
-from motiondiff_edu.performers.text_mofusion import TextMoFusion, TextMoFusionConfig
+from motiondiff_edu.performers.text_mofusion import TextMoFusionConfig
 from motiondiff_edu.pretrained import checkpoints
 from motiondiff_edu.pretrained.checkpoints import CheckpointError
 from motiondiff_edu.pretrained.weights_file import write_weights
@@ -37,20 +36,9 @@ def tiny(folder) -> clip.Clip:
     return clip.load(folder)
 
 
-def mover_of(config: TextMoFusionConfig, reader: clip.Clip | None = None) -> Mover:
-    torch.manual_seed(0)
-    model = TextMoFusion(config)
-    for parameter in model.parameters():  # blocks that begin at zero would hide their inputs
-        if not parameter.any():
-            torch.nn.init.normal_(parameter, std=0.1)
-    scaler = Scaler(torch.linspace(-1, 1, 66), torch.linspace(0.5, 2, 66))
-    card = {"name": "tiny"} | ({"clip_sample": reader.sample()} if reader else {})
-    return Mover(model.eval(), cosine_schedule(30), scaler, card, reader)
-
-
 @pytest.fixture(scope="module")
 def mover(tiny) -> Mover:
-    return mover_of(SMALL, tiny)
+    return mover_of(SMALL, card={"name": "tiny", "clip_sample": tiny.sample()}, clip=tiny)
 
 
 def test_any_sentence_makes_a_motion(mover):
@@ -145,7 +133,7 @@ def test_another_clip_than_that_of_the_training_is_refused(mover, tmp_path):
 def test_a_network_reads_one_way(mover, tiny, tmp_path):
     with pytest.raises(ValueError, match="pass clip=conditions.clip.load..somebody/tiny"):
         Mover(mover.model, mover.schedule, mover.motion_scaler)
-    words = mover_of(WORDS)
+    words = mover_of(WORDS, card={"name": "tiny"})
     with pytest.raises(ValueError, match="reads words of its own, and takes no CLIP"):
         replace(words, clip=tiny)
     path = checkpoints.save(words, tmp_path / "words.safetensors")
@@ -158,7 +146,7 @@ def test_a_network_reads_one_way(mover, tiny, tmp_path):
 
 
 def test_a_file_from_before_clip_is_read_as_it_was(tmp_path):
-    words = mover_of(WORDS)
+    words = mover_of(WORDS, card={"name": "tiny"})
     path = checkpoints.save(words, tmp_path / "old.safetensors", bits=32)
     with safe_open(path, "pt") as file:
         tensors = {name: file.get_tensor(name) for name in file.keys()}

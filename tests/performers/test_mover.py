@@ -6,22 +6,20 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import torch
+from small_movers import SMALL, WORDS, mover_of
 
 import motiondiff_edu as md
-from data_synth.actions import captions, clips
-from motiondiff_edu.conditions.text import TextError, base_vocabulary
+from data_synth.actions import clips
+from motiondiff_edu.conditions.text import TextError
 from motiondiff_edu.conditions.word_encoder import NOTHING, PADDING, WordEncoder, ids_of, present
 from motiondiff_edu.ddpm import cosine_schedule
 from motiondiff_edu.kinematic_loss import training_loss
 from motiondiff_edu.motion.scaler import Scaler
 from motiondiff_edu.performers.described_windows import DescribedWindows
 from motiondiff_edu.performers.mover import Mover
-from motiondiff_edu.performers.text_mofusion import TextMoFusion, TextMoFusionConfig
+from motiondiff_edu.performers.text_mofusion import TextMoFusion
 from motiondiff_edu.pretrained import checkpoints
 from motiondiff_edu.training import TrainState, train_steps
-
-WORDS = base_vocabulary(captions.vocabulary())
-SMALL = TextMoFusionConfig(widths=(16, 24), heads=2, C=20, S=30, words=WORDS, word_layers=1)
 
 
 def seeded(seed: int = 0) -> torch.Generator:
@@ -30,13 +28,7 @@ def seeded(seed: int = 0) -> torch.Generator:
 
 @pytest.fixture(scope="module")
 def mover() -> Mover:
-    torch.manual_seed(0)
-    model = TextMoFusion(SMALL)
-    for parameter in model.parameters():  # blocks that begin at zero would hide their inputs
-        if not parameter.any():
-            torch.nn.init.normal_(parameter, std=0.1)
-    scaler = Scaler(torch.linspace(-1, 1, 66), torch.linspace(0.5, 2, 66))
-    return Mover(model.eval(), cosine_schedule(30), scaler, {"name": "tiny"})
+    return mover_of(card={"name": "tiny"})
 
 
 @pytest.fixture(scope="module")

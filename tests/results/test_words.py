@@ -5,19 +5,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import torch
+from small_movers import mover_of
 
-from data_synth.actions import captions
-from motiondiff_edu.conditions.text import base_vocabulary
-from motiondiff_edu.ddpm import cosine_schedule
 from motiondiff_edu.motion.moving_frame import D, to_features
 from motiondiff_edu.motion.scaler import Scaler
 from motiondiff_edu.performers.mover import Mover
-from motiondiff_edu.performers.text_mofusion import TextMoFusion, TextMoFusionConfig
 from motiondiff_edu.pretrained.judges import judges
 from tools.results.words import edits, parts, rows, scores, tables, trials
-
-WORDS = base_vocabulary(captions.vocabulary())
-SMALL = TextMoFusionConfig(widths=(16, 24), heads=2, C=20, S=30, words=WORDS, word_layers=1)
 
 
 @pytest.fixture(scope="module")
@@ -27,10 +21,13 @@ def some() -> trials.Trials:
 
 @pytest.fixture(scope="module")
 def mover(some) -> Mover:
-    torch.manual_seed(0)
     scaler = Scaler.fit(torch.from_numpy(to_features(some.truth[0])).float())
-    model = TextMoFusion(SMALL).eval().requires_grad_(False)
-    return Mover(model, cosine_schedule(30), scaler, {"name": "tiny"})
+    return mover_of(scaler=scaler, card={"name": "tiny"})
+
+
+@pytest.fixture(scope="module")
+def panel(some) -> scores.Panel:
+    return scores.Panel(judges(), some)
 
 
 def by_name(measures) -> dict[str, float]:
@@ -46,15 +43,15 @@ def test_the_data_are_right_and_the_shuffled_data_are_not(some):
     assert data["order_accuracy"] == 1 and data["count_accuracy"] > 0.9
 
 
-def test_retrieval_of_the_data_is_that_of_the_data(some):
-    found = by_name(scores.retrieved(judges(), some, some.truth))
+def test_retrieval_of_the_data_is_that_of_the_data(some, panel):
+    found = by_name(scores.retrieved(panel, panel.row(some.truth)))
     assert found["r_precision_top3_over_real"] == 1 and found["mm_dist_over_real"] == 1
     assert found["fid"] < 1e-3 and found["r_precision_top1"] > 0.9
-    mixed = by_name(scores.retrieved(judges(), some, rows.shuffled(some, 0)))
+    mixed = by_name(scores.retrieved(panel, panel.row(rows.shuffled(some, 0))))
     assert mixed["r_precision_top3"] < 0.3 and mixed["mm_dist_over_real"] > 2
 
 
-def test_a_pair_differs_in_one_thing_and_the_data_are_nearer_to_their_own(some):
+def test_a_pair_differs_in_one_thing_and_the_data_are_nearer_to_their_own(some, panel):
     pairs = trials.minimal_pairs(some)
     assert {pair.kind for pair in pairs} == set(trials.KINDS)
     assert all(pair.own != pair.other for pair in pairs)
@@ -64,9 +61,9 @@ def test_a_pair_differs_in_one_thing_and_the_data_are_nearer_to_their_own(some):
         == sorted(pair.other.replace("left", "right").split())
         for pair in counts
     )
-    found = by_name(scores.pairs(judges(), some, some.truth))
+    found = by_name(scores.pairs(panel, panel.row(some.truth)))
     assert found["minimal_pair"] > 0.9
-    mixed = by_name(scores.pairs(judges(), some, rows.shuffled(some, 0)))
+    mixed = by_name(scores.pairs(panel, panel.row(rows.shuffled(some, 0))))
     assert mixed["minimal_pair"] < 0.7
 
 
@@ -85,9 +82,11 @@ def test_bodies_by_hand(some):
 def test_a_copy_is_no_distance_from_the_training(some):
     first = first_of(some, 12)
     sketches = [rows.sketch(one) for one in some.truth]
-    copied = by_name(scores.nearest_training(first, first.truth, sketches))
+    zero = scores.to_nearest(first.truth, sketches)
+    copied = by_name(scores.nearest_training(zero, zero))
     assert copied["nearest_training_m"] == pytest.approx(0, abs=2e-3)
-    others = by_name(scores.nearest_training(first, first.truth, sketches[12:]))
+    far = scores.to_nearest(first.truth, sketches[12:])
+    others = by_name(scores.nearest_training(far, far))
     assert others["nearest_training_m"] > 0.05 and others["nearest_training_over_data"] == 1
     one, every = sketches[0], np.stack([one[:10].ravel() for one in sketches[1:] if len(one) > 9])
     apart = every.reshape(len(every), 10, 21, 3) - one[:10]
@@ -138,7 +137,7 @@ def test_batches_have_one_length_and_all_indices():
 def test_the_nearest_caption_is_that_of_a_training_clip():
     training = rows.TrainingClips(clips=20)
     texts = [training.captions[30], training.captions[101]]
-    found = training.nearest_caption(trials.Trials([], texts, texts, [], 0), 0)
+    found = training.nearest_caption(trials.Trials([], texts, texts, [], 0))
     for text, positions in zip(texts, found, strict=True):
         near = [np.abs(rows.sketch(positions)[:8] - one[:8]).max() for one in training.sketches]
         owner = int(np.argmin(near))

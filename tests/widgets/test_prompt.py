@@ -1,25 +1,22 @@
 """The prompt box: sentences, notes, refusals, and what stays on show."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
-import torch
+import small_movers
 
-from data_synth.actions import captions
-from motiondiff_edu.conditions.text import TextError, base_vocabulary
-from motiondiff_edu.ddpm import cosine_schedule
+from motiondiff_edu.conditions.text import TextError
 from motiondiff_edu.motion.scaler import Scaler
 from motiondiff_edu.performers.mover import Mover
-from motiondiff_edu.performers.text_mofusion import TextMoFusion, TextMoFusionConfig
 from motiondiff_edu.widgets.prompt import ANSWERS, Prompt
 
-WORDS = base_vocabulary(captions.vocabulary())
-SMALL = TextMoFusionConfig(widths=(16, 24), heads=2, C=20, S=4, words=WORDS, word_layers=1)
+SMALL = replace(small_movers.SMALL, S=4)
 
 
 @pytest.fixture(scope="module")
 def mover() -> Mover:
-    torch.manual_seed(0)
-    return Mover(TextMoFusion(SMALL).eval(), cosine_schedule(4), Scaler.nothing(SMALL.D))
+    return small_movers.mover_of(SMALL, Scaler.nothing(SMALL.D))
 
 
 def test_the_box_opens_with_four_answers_and_gives_those_of_act(mover):

@@ -3,26 +3,27 @@
 What was asked for should be there, and the legs and the path should stay as they were.
 """
 
-from dataclasses import dataclass, replace
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
 from itertools import islice
 
 import numpy as np
 import torch
 
-from data_synth.actions import Phrase, Sentence, caption, clips
+from data_synth.actions import Act, Described, Phrase, Sentence, caption, clips
 from data_synth.actions.acts import VERBS
 from data_synth.actions.sentences import ARMS, in_training
 from motiondiff_edu.editing.by_words import STRENGTH, edit_by_words
-from motiondiff_edu.editing.masks import LOWER
+from motiondiff_edu.editing.masks import body_part
 from motiondiff_edu.metrics.actions import actions
-from motiondiff_edu.motion.skeleton import HIPS, joint_index
+from motiondiff_edu.performers.described_windows import GRID
 from motiondiff_edu.performers.mover import Mover
 
 from ..walks.scores import Measure, measure_of, ratio
 from .trials import UNSEEN, Positions, asked
 
 ON_THE_WAY = ("walk", "run", "back", "aside")
-STAYS = (HIPS, *(joint_index(name) for name in LOWER))
+STAYS = "lower body"  # and the pelvis
 LEAST = 80  # frames
 
 
@@ -38,17 +39,16 @@ class EditTrial:
 def edit_trials(n: int, seed: int = UNSEEN + 1) -> list[EditTrial]:
     """n unseen clips of one phrase on the way, each with a sentence of trained combinations."""
     rng = np.random.default_rng([seed, 9])
-    found = []
-    for one in islice(clips(100 * n, seed, "test"), 100 * n):
-        (phrase, *more), frames = one.acted.sentence, len(one.acted) // 8 * 8
+    return list(islice(_edit_trials(clips(100 * n, seed, "test"), rng), n))
+
+
+def _edit_trials(made: Iterable[Described], rng: np.random.Generator) -> Iterator[EditTrial]:
+    for one in made:
+        (phrase, *more), frames = one.acted.sentence, len(one.acted) // GRID * GRID
         if more or frames < LEAST or phrase.legs is None or phrase.legs.verb not in ON_THE_WAY:
             continue
         sentence = with_other_arms(phrase, rng)
-        text = caption(sentence, rng)
-        found.append(EditTrial(one.acted.positions[:frames], sentence, text))
-        if len(found) == n:
-            break
-    return found
+        yield EditTrial(one.acted.positions[:frames], sentence, caption(sentence, rng))
 
 
 def with_other_arms(phrase: Phrase, rng: np.random.Generator) -> Sentence:
@@ -56,12 +56,10 @@ def with_other_arms(phrase: Phrase, rng: np.random.Generator) -> Sentence:
     others = [verb for verb in ARMS if phrase.arms is None or verb != phrase.arms.verb]
     while True:
         verb = str(rng.choice(others))
-        act = replace(
-            phrase.legs,
-            verb=verb,
+        act = Act(
+            verb,
             side=str(rng.choice(VERBS[verb].sides)),
             count=int(rng.integers(1, VERBS[verb].most + 1)),
-            speed="",
             direction=str(rng.choice(VERBS[verb].directions)),
         )
         sentence = (Phrase(phrase.legs, act),)
@@ -90,10 +88,7 @@ def edited(
     mover: Mover, trial: EditTrial, seed: int, strength: float, masked: bool = False
 ) -> Positions:
     """One edit; with strength 1 it is plain sampling under the new sentence."""
-    known = None
-    if masked:
-        known = np.zeros(trial.positions.shape[:2], bool)
-        known[:, STAYS] = True
+    known = body_part(len(trial.positions), STAYS) if masked else None
     draws = torch.Generator().manual_seed(seed)
     made = edit_by_words(
         mover, trial.positions, trial.text, known, strength=strength, generator=draws
@@ -109,5 +104,5 @@ def shows(trial: EditTrial, positions: Positions) -> bool:
 
 def kept_error(trial: EditTrial, positions: Positions) -> float:
     """The RMS distance of legs and pelvis from where they were, in the world, metres."""
-    apart = positions[:, STAYS] - trial.positions[:, STAYS]
+    apart = (positions - trial.positions)[body_part(len(positions), STAYS)]
     return float(np.sqrt(np.square(apart).sum(-1).mean()))

@@ -5,6 +5,7 @@ from functools import cached_property
 from pathlib import Path
 
 import numpy as np
+from jaxtyping import Float
 
 from motiondiff_edu.performers.mover import Mover
 from motiondiff_edu.pretrained import checkpoints
@@ -14,7 +15,16 @@ from ..walks.parts import weights_digest
 from ..walks.scores import Measure, measure_of
 from .edits import edit_measures, edit_trials
 from .rows import STEPS, Make, TrainingClips, noise, performed, shuffled, understood
-from .scores import bodies, multimodality, nearest_training, pairs, recognised, retrieved
+from .scores import (
+    Panel,
+    bodies,
+    multimodality,
+    nearest_training,
+    pairs,
+    recognised,
+    retrieved,
+    to_nearest,
+)
 from .trials import UNSEEN, Positions, Trials, unseen
 
 GUIDANCE = 2.5
@@ -50,12 +60,17 @@ class Studio:
         self.weights = weights or checkpoints.available()
 
     @cached_property
-    def trials(self) -> Trials:
-        return unseen(self.size.trials)
-
-    @cached_property
     def judges(self) -> list[Judge]:
         return judges()
+
+    @cached_property
+    def panel(self) -> Panel:
+        """The judges and the trials of Table 2."""
+        return Panel(self.judges, unseen(self.size.trials))
+
+    @property
+    def trials(self) -> Trials:
+        return self.panel.trials
 
     @cached_property
     def training(self) -> TrainingClips:
@@ -64,14 +79,15 @@ class Studio:
     def mover(self, name: str) -> Mover:
         return checkpoints.load(self.weights[name])
 
-    def scored(self, made: list[Positions], trials: Trials | None = None) -> list[Measure]:
+    def scored(self, made: list[Positions], panel: Panel | None = None) -> list[Measure]:
         """What is measured of every row."""
-        trials = trials or self.trials
+        panel = panel or self.panel
+        row = panel.row(made)
         return [
-            *recognised(trials, made),
-            *retrieved(self.judges, trials, made),
-            *bodies(trials, made),
-            *pairs(self.judges, trials, made),
+            *recognised(panel.trials, made),
+            *retrieved(panel, row),
+            *bodies(panel.trials, made),
+            *pairs(panel, row),
         ]
 
     def varied(self, make: Make) -> list[Measure]:
@@ -83,7 +99,12 @@ class Studio:
 
     def copied(self, made: list[Positions]) -> list[Measure]:
         """How near the training motions are."""
-        return nearest_training(self.trials, made, self.training.sketches)
+        return nearest_training(to_nearest(made, self.training.sketches), self.data_to_training)
+
+    @cached_property
+    def data_to_training(self) -> Float[np.ndarray, "N"]:
+        """How near the training motions the data's own are, metres."""
+        return to_nearest(self.trials.truth, self.training.sketches)
 
 
 def fools(studio: Studio, mover: Mover) -> dict[str, list[Positions]]:
@@ -94,7 +115,7 @@ def fools(studio: Studio, mover: Mover) -> dict[str, list[Positions]]:
         "second": trials.second(),
         "shuffled": shuffled(trials, 0),
         "noise": noise(mover)(trials, 0),
-        "nearest": studio.training.nearest_caption(trials, 0),
+        "nearest": studio.training.nearest_caption(trials),
     }
 
 
@@ -108,17 +129,18 @@ def word_records(studio: Studio, command: str) -> list[dict]:
     made = make(studio.trials, 0)
     found["words."] += [*studio.scored(made), *studio.varied(make), *studio.copied(made)]
     for name, how in HELD_OUT.items():
-        trials = unseen(size.held_out, **how)
-        rows = studio.scored(make(trials, 0), trials)
-        told = np.array([bool(understood(text, mover)) for text in trials.captions])
+        panel = Panel(studio.judges, unseen(size.held_out, **how))
+        rows = studio.scored(make(panel.trials, 0), panel)
+        told = np.array([bool(understood(text, mover)) for text in panel.trials.captions])
         rows.append(measure_of("understood", "share", np.mean, told))
         found["words."] += [replace(one, name=f"{name}_{one.name}") for one in rows]
     found["words."] += edit_measures(mover, edit_trials(size.edits))
     guided = performed(mover, GUIDANCE)
     found["words.guided."] = [*studio.scored(guided(studio.trials, 0)), *studio.varied(guided)]
-    for name, motions in fools(studio, mover).items():
+    without_network = fools(studio, mover)
+    for name, motions in without_network.items():
         found[f"words.{name}."] = studio.scored(motions)
-    found["words.nearest."] += studio.copied(studio.training.nearest_caption(studio.trials, 0))
+    found["words.nearest."] += studio.copied(without_network["nearest"])
     return [
         measure.as_record(prefix, seeds, command)
         for prefix, measures in found.items()

@@ -10,8 +10,7 @@ from sklearn.feature_extraction.text import TfidfVectorizer
 
 from data_synth.actions import clips, mirror
 from data_synth.actions.dataset import WORDINGS_EACH, clip_of
-from motiondiff_edu.conditions.text import TextError, read
-from motiondiff_edu.conditions.word_encoder import ids_of
+from motiondiff_edu.conditions.text import TextError
 from motiondiff_edu.motion import moving_frame
 from motiondiff_edu.motion.dance_frame import at_origin
 from motiondiff_edu.performers.mover import ETA, Mover
@@ -37,9 +36,9 @@ def performed(mover: Mover, guidance: float = 1.0, steps: int = STEPS) -> Make:
         made: list[Positions | None] = [None] * len(trials)
         draws = torch.Generator().manual_seed(seed)
         for frames, members in by_length(trials.frames):
-            ids = ids_of([words[k] for k in members], mover.config.words)
+            texts = mover.reader.encoded([words[k] for k in members])
             poses = mover.act_ids(
-                ids, frames, generator=draws, steps=steps, eta=ETA, guidance=guidance
+                texts, frames, generator=draws, steps=steps, eta=ETA, guidance=guidance
             )
             for k, positions in zip(members, poses.double().cpu().numpy(), strict=True):
                 made[k] = positions
@@ -51,7 +50,7 @@ def performed(mover: Mover, guidance: float = 1.0, steps: int = STEPS) -> Make:
 def understood(text: str, mover: Mover) -> tuple[str, ...]:
     """The words of a caption; none where the network refuses it."""
     try:
-        return read(text, mover.config.words).words
+        return mover.reader.read(text).words
     except TextError:
         return ()
 
@@ -114,7 +113,7 @@ class TrainingClips:
         words = TfidfVectorizer(ngram_range=(1, 2), token_pattern=r"\w+")
         return words, words.fit_transform(self.captions)
 
-    def nearest_caption(self, trials: Trials, seed: int) -> list[Positions]:
+    def nearest_caption(self, trials: Trials) -> list[Positions]:
         """The training clip whose caption has most words and pairs of words in common."""
         words, there = self._words
         alike = (words.transform(trials.captions) @ there.T).toarray()

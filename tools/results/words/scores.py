@@ -1,7 +1,8 @@
 """The measures of one row: what is recognised, how near texts and motions are, and the body."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 from jaxtyping import Float
@@ -9,13 +10,13 @@ from jaxtyping import Float
 from data_synth.actions.neighbours import KINDS
 from motiondiff_edu.metrics import diversity, frechet
 from motiondiff_edu.metrics.actions import actions
+from motiondiff_edu.metrics.beats import mean_speed
 from motiondiff_edu.metrics.retrieval import TOP, mm_dist, r_precision
 from motiondiff_edu.metrics.sentences import rows_of
 from motiondiff_edu.metrics.skating import skating
 from motiondiff_edu.pretrained.judges import Judge
 
 from ..walks.scores import (
-    FPS,
     Measure,
     measure_of,
     over_floor,
@@ -24,7 +25,7 @@ from ..walks.scores import (
     squared_bone_error,
 )
 from .rows import sketch
-from .trials import Positions, Trials, minimal_pairs
+from .trials import Pair, Positions, Trials, minimal_pairs
 
 REPLICATIONS = 20  # of the pools of R-Precision, as is usual
 
@@ -37,36 +38,62 @@ def recognised(trials: Trials, made: Sequence[Positions]) -> list[Measure]:
 
 @dataclass(frozen=True, eq=False)
 class Points:
-    """Trials and a row in the space of one judge."""
+    """Captions and motions in the space of one judge."""
 
     texts: Float[np.ndarray, "N E"]
     motions: Float[np.ndarray, "N E"]
 
-    @classmethod
-    def of(cls, judge: Judge, trials: Trials, made: Sequence[Positions]) -> "Points":
-        return cls(judge.of_texts(trials.plain), judge.of_motions(made))
+
+@dataclass(frozen=True, eq=False)
+class Panel:
+    """Judges and trials; what does not depend on the row is put into their spaces once."""
+
+    judges: Sequence[Judge]
+    trials: Trials
+
+    @cached_property
+    def data(self) -> list[Points]:
+        """The trials with the data's own motions, for each judge."""
+        texts, truth = self.trials.plain, self.trials.truth
+        return [Points(judge.of_texts(texts), judge.of_motions(truth)) for judge in self.judges]
+
+    def row(self, made: Sequence[Positions]) -> list[Points]:
+        """The trials with the motions of a row, for each judge."""
+        return [
+            replace(data, motions=judge.of_motions(made))
+            for judge, data in zip(self.judges, self.data, strict=True)
+        ]
+
+    @cached_property
+    def pairs(self) -> list[Pair]:
+        return minimal_pairs(self.trials)
+
+    @cached_property
+    def pair_texts(self) -> list[tuple[Float[np.ndarray, "P E"], Float[np.ndarray, "P E"]]]:
+        """The own and the other caption of each pair, for each judge."""
+        both = [pair.own for pair in self.pairs], [pair.other for pair in self.pairs]
+        return [tuple(map(judge.of_texts, both)) for judge in self.judges]
 
 
-def retrieved(judges: Sequence[Judge], trials: Trials, made: Sequence[Positions]) -> list[Measure]:
+def retrieved(panel: Panel, row: Sequence[Points]) -> list[Measure]:
     """R-Precision, MM-Dist, FID and Diversity; the mean over judges and over pools.
 
     The interval has 95 % of the values of the single judges and pools.
     """
     found = {name: [] for name in (*TOPS, *(f"{top}_over_real" for top in TOPS), *OTHERS)}
-    for judge in judges:
-        row, data = (Points.of(judge, trials, one) for one in (made, trials.truth))
+    for mine, data in zip(row, panel.data, strict=True):
         for draw in range(REPLICATIONS):
             own, real = (
-                r_precision(x.texts, x.motions, trials.sentences, np.random.default_rng(draw))
-                for x in (row, data)
+                r_precision(x.texts, x.motions, panel.trials.sentences, np.random.default_rng(draw))
+                for x in (mine, data)
             )
             for k, top in enumerate(TOPS):
                 found[top].append(own[k])
                 found[f"{top}_over_real"].append(own[k] / real[k])
-        found["mm_dist"].append(mm_dist(row.texts, row.motions))
+        found["mm_dist"].append(mm_dist(mine.texts, mine.motions))
         found["mm_dist_over_real"].append(found["mm_dist"][-1] / mm_dist(data.texts, data.motions))
-        found["fid"].append(frechet.fid(row.motions, data.motions))
-        found["diversity"].append(diversity.diversity(row.motions))
+        found["fid"].append(frechet.fid(mine.motions, data.motions))
+        found["diversity"].append(diversity.diversity(mine.motions))
     units = {"mm_dist": "distance", "fid": "FID", "diversity": "distance"}
     return [spread(name, values, units.get(name, "share")) for name, values in found.items()]
 
@@ -122,21 +149,17 @@ def sliding(positions: Positions) -> float:
 
 def speed(positions: Positions) -> float:
     """The mean speed of all joints, m/s."""
-    return float(np.linalg.norm(np.diff(positions, axis=0), axis=-1).mean() * FPS)
+    return float(mean_speed(positions).mean())
 
 
-def pairs(judges: Sequence[Judge], trials: Trials, made: Sequence[Positions]) -> list[Measure]:
+def pairs(panel: Panel, row: Sequence[Points]) -> list[Measure]:
     """How often a motion is nearer to its own caption than to one that differs in one thing."""
-    every = minimal_pairs(trials)
-    right = np.zeros(len(every))
-    for judge in judges:
-        motions = judge.of_motions(made)[[pair.trial for pair in every]]
-        own, other = (
-            np.linalg.norm(judge.of_texts([getattr(p, which) for p in every]) - motions, axis=-1)
-            for which in ("own", "other")
-        )
-        right += (own < other) / len(judges)
-    kinds = np.array([pair.kind for pair in every])
+    which = [pair.trial for pair in panel.pairs]
+    right = np.zeros(len(which))
+    for mine, texts in zip(row, panel.pair_texts, strict=True):
+        own, other = (np.linalg.norm(text - mine.motions[which], axis=-1) for text in texts)
+        right += (own < other) / len(row)
+    kinds = np.array([pair.kind for pair in panel.pairs])
     parts = {f".{kind}": right[kinds == kind] for kind in KINDS if (kinds == kind).any()}
     return [
         measure_of(f"minimal_pair{name}", "share", np.mean, x)
@@ -144,15 +167,8 @@ def pairs(judges: Sequence[Judge], trials: Trials, made: Sequence[Positions]) ->
     ]
 
 
-def nearest_training(
-    trials: Trials, made: Sequence[Positions], sketches: Sequence[Positions]
-) -> list[Measure]:
-    """The distance to the nearest training motion that lasts as long, over that of the data.
-
-    `sketches` are those of the training (`rows.sketch`); longer ones are cut. RMS over joints and
-    time, in metres, of motions that begin at one place. A copy has 0.
-    """
-    own, data = (to_nearest(every, sketches) for every in (made, trials.truth))
+def nearest_training(own: Float[np.ndarray, "N"], data: Float[np.ndarray, "N"]) -> list[Measure]:
+    """The distance to the nearest training motion (`to_nearest`), over that of the data's own."""
     return [
         measure_of("nearest_training_m", "m", np.nanmean, own),
         measure_of("nearest_training_data_m", "m", np.nanmean, data),
@@ -161,7 +177,11 @@ def nearest_training(
 
 
 def to_nearest(made: Sequence[Positions], sketches: Sequence[Positions]) -> Float[np.ndarray, "N"]:
-    """The distance of each motion to the nearest sketch; NaN where none is as long."""
+    """The distance of each motion to the nearest training motion that lasts as long.
+
+    `sketches` are those of the training (`rows.sketch`); longer ones are cut. RMS over joints and
+    time, in metres, of motions that begin at one place. A copy has 0; NaN where none is as long.
+    """
     own, found = [sketch(one) for one in made], np.full(len(made), np.nan)
     for n in sorted({len(one) for one in own}):
         there = [one[:n].ravel() for one in sketches if len(one) >= n]

@@ -12,7 +12,6 @@ PAPER_TABLE = {
     "Guo et al.": (9.188, 2.090, 0.740),
     "MoFusion (Ours)": (8.82, 2.521, 0.492),
 }
-PRINTED = ("diversity", "multimodality", "r_precision_top3")
 RETRIEVAL = (
     "r_precision_top1",
     "r_precision_top2",

@@ -13,6 +13,7 @@ from data_synth.actions import Sentence, act_out, caption, clips
 from data_synth.actions.dataset import worded
 from data_synth.actions.neighbours import KINDS, changed
 from motiondiff_edu.metrics.sentences import Asked, Phrases
+from motiondiff_edu.motion.root_frame import FPS
 from motiondiff_edu.performers.described_windows import GRID
 
 Positions = Float[np.ndarray, "_ 21 3"]
@@ -46,11 +47,10 @@ class Trials:
 
     def second(self, draw: int = 1) -> list[Positions]:
         """Other motions of the data for the same sentences, as long as the first."""
-        made = [
-            act_out(sentence, frames / 20, seed=1_000_003 * draw + k).positions
+        return [
+            act_out(sentence, frames / FPS, seed=1_000_003 * draw + k).positions
             for k, (sentence, frames) in enumerate(zip(self.sentences, self.frames, strict=True))
         ]
-        return made
 
 
 def unseen(n: int, split: str = "test", new_verbs: bool = False, seed: int = UNSEEN) -> Trials:
