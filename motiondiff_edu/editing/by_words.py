@@ -16,7 +16,7 @@ from ..beyond.guidance import blended
 from ..ddpm import Generators, draw, final, q_sample, timesteps
 from ..inbetweening import inpaint_steps
 from ..motion.dance_frame import Place
-from ..motion.moving_frame import D, to_features, to_positions
+from ..motion.moving_frame import D
 from ..motion.root_frame import estimate_root
 from ..motion.skeleton import HIPS, J
 from ..performers.mover import ETA, STEPS, Mover
@@ -48,11 +48,9 @@ def edit_by_words(
     ways = visited(mover.schedule.S, steps, strength)
     texts = mover.reader.encoded([mover.reader.read(text).words] * samples)
     generator = generator or torch.Generator().manual_seed(0)
-    scaler, schedule = mover.motion_scaler, mover.schedule
-    features = torch.from_numpy(to_features(positions)).float().to(scaler.mean.device)
-    given = scaler.transform(features).expand(samples, -1, -1)
+    given, schedule = mover.units_of(positions).expand(samples, -1, -1), mover.schedule
     mask = np.zeros((len(positions), J), bool) if known is None else np.asarray(known)
-    held = columns(torch.from_numpy(mask)).to(given.device).expand(given.shape)
+    held = columns(torch.from_numpy(mask), mover.config.D).to(given.device).expand(given.shape)
     start = q_sample(given, ways[0], schedule, draw(given, generator))
     denoise = mover.denoiser(texts)
     if held.any():
@@ -61,7 +59,7 @@ def edit_by_words(
         denoise, start, schedule, given, held, steps=ways, eta=ETA, generator=generator
     )
     with torch.inference_mode():
-        made = to_positions(scaler.inverse(final(loop).x_s)).double().cpu().numpy()
+        made = mover.positions_of(final(loop).x_s).double().cpu().numpy()
     return at_the_start_of(positions, made)
 
 
@@ -76,10 +74,14 @@ def visited(S: int, steps: int, strength: float) -> list[int]:
     return [s for s in every if s <= round(strength * S)] or every[-1:]
 
 
-def columns(known: Bool[Tensor, "T 21"]) -> Bool[Tensor, "T 66"]:
-    """The network's columns of these joints; the root's velocity is known with the pelvis."""
+def columns(known: Bool[Tensor, "T 21"], F: int = D) -> Bool[Tensor, "T {F}"]:
+    """The network's columns of these joints; the root's velocity is known with the pelvis.
+
+    Nothing is known of columns behind the 66 of a motion.
+    """
     joints = known.repeat_interleave(3, dim=-1)
-    return torch.cat([joints, known[:, HIPS, None].expand(-1, D - 3 * J)], -1)
+    of_a_motion = torch.cat([joints, known[:, HIPS, None].expand(-1, D - 3 * J)], -1)
+    return torch.nn.functional.pad(of_a_motion, (0, F - D))
 
 
 def at_the_start_of(

@@ -74,5 +74,8 @@ def mirrored(features: Float[Tensor, "*B T 66"]) -> Float[Tensor, "*B T 66"]:
 
 
 def body_of(scaler: Scaler) -> Body:
-    """The course's figure, for kinematic losses of motions that `scaler` standardised."""
-    return Body(lambda x: to_positions(scaler.inverse(x)), BONES, BONE_PAIRS, TOES)
+    """The course's figure, for kinematic losses of motions that `scaler` standardised.
+
+    Columns behind the 66 (`beyond/timeline.py`) are no part of the figure.
+    """
+    return Body(lambda x: to_positions(scaler.inverse(x)[..., :D]), BONES, BONE_PAIRS, TOES)

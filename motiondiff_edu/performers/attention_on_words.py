@@ -15,7 +15,6 @@ from ..conditions.text import read
 from ..conditions.word_encoder import ids_of
 from ..cross_modal_attention import watch
 from ..ddpm import draw, q_sample
-from ..motion.moving_frame import to_features
 from .mover import Mover
 
 
@@ -58,8 +57,7 @@ def attention_on_words(
     if not 1 <= s <= mover.schedule.S:
         raise ValueError(f"this mover's steps are 1 to {mover.schedule.S}, not {s}")
     words = read(text, mover.config.words).words
-    features = torch.from_numpy(to_features(positions)).float().to(mover.device)
-    x0 = mover.motion_scaler.transform(features)[None]
+    x0 = mover.units_of(positions)[None]
     x_s = q_sample(x0, s, mover.schedule, draw(x0, generator))
     with watch(mover.model) as seen:
         context = mover.model.listen(ids_of([words], mover.config.words).to(mover.device))

@@ -6,21 +6,22 @@ the length is. Source: MoFusion 4.2 (motions and texts; lengths and batches are 
 
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import torch
 from jaxtyping import Bool, Float, Int
 from torch import Tensor
 
+from ..beyond import timeline
 from ..conditions.text import read
 from ..conditions.word_encoder import NOTHING, PADDING, ids_of
-from ..motion.moving_frame import mirrored, to_features
+from ..motion.moving_frame import D, mirrored, to_features
 from ..motion.scaler import Scaler
 
 GRID = 8  # frames: lengths are cut to multiples of it
 OTHER = {"left": "right", "right": "left"}
-Batch = tuple[Float[Tensor, "B T 66"], Int[Tensor, "B M"], Bool[Tensor, "B T 2"]]
+Batch = tuple[Float[Tensor, "B T F"], Int[Tensor, "B M"], Bool[Tensor, "B T 2"]]
 
 
 @dataclass(frozen=True, eq=False)
@@ -28,10 +29,12 @@ class DescribedWindows:
     """Motions by length, standardised when drawn, each with the ids of its captions.
 
     `motions[n]` and `contacts[n]` hold all motions of n frames; `captions[n]` their captions as ids
-    (K, W, M) of `words`. For a network that reads by CLIP each whole caption is one such "word".
+    (K, W, M) of `words`. A motion has the 66 columns of `motion/moving_frame.py`, and behind them
+    those of a timeline, if there are any (`beyond/timeline.py`). For a network that reads by CLIP
+    each whole caption is one such "word".
     """
 
-    motions: dict[int, Float[Tensor, "K T 66"]]
+    motions: dict[int, Float[Tensor, "K T F"]]
     contacts: dict[int, Bool[Tensor, "K T 2"]]
     captions: dict[int, Int[Tensor, "K W M"]]
     exchanged: Int[Tensor, "V"]  # the id of each word with left and right exchanged
@@ -45,13 +48,14 @@ class DescribedWindows:
         contacts: Sequence[Bool[np.ndarray, "_ 2"]],
         captions: Sequence[Sequence[str]],
         words: tuple[str, ...],
+        timelines: Sequence[Float[np.ndarray, "_ 22"]] | None = None,
     ) -> "DescribedWindows":
-        """Motions (metres, world); each has as many captions.
+        """Motions (metres, world); each has as many captions, and a timeline as long as it is.
 
         Raises ValueError for lists of different lengths, and TextError for unknown words.
         """
         texts = [[read(text, words, {}).words for text in each] for each in captions]
-        return cls._of(positions, contacts, texts, words)
+        return cls._of(positions, contacts, texts, words, timelines)
 
     @classmethod
     def of_texts(
@@ -59,6 +63,7 @@ class DescribedWindows:
         positions: Sequence[Float[np.ndarray, "_ 21 3"]],
         contacts: Sequence[Bool[np.ndarray, "_ 2"]],
         captions: Sequence[Sequence[str]],
+        timelines: Sequence[Float[np.ndarray, "_ 22"]] | None = None,
     ) -> "DescribedWindows":
         """The same for CLIP, with captions in any words; `words` are the captions, both ways round.
 
@@ -66,7 +71,7 @@ class DescribedWindows:
         """
         texts = [[(text,) for text in each] for each in captions]
         both = {one for each in captions for text in each for one in (text, exchanged_sides(text))}
-        return cls._of(positions, contacts, texts, tuple(sorted(both)))
+        return cls._of(positions, contacts, texts, tuple(sorted(both)), timelines)
 
     @classmethod
     def _of(
@@ -75,13 +80,16 @@ class DescribedWindows:
         contacts: Sequence[Bool[np.ndarray, "_ 2"]],
         texts: Sequence[Sequence[tuple[str, ...]]],
         words: tuple[str, ...],
+        timelines: Sequence[Float[np.ndarray, "_ 22"]] | None,
     ) -> "DescribedWindows":
         every = ids_of([text for each in texts for text in each], words)
         of_each = every.split([len(each) for each in texts])
         groups: dict[int, list[tuple]] = {}
-        for moved, stands, ids in zip(positions, contacts, of_each, strict=True):
+        beside = timelines or [np.zeros((len(moved), 0)) for moved in positions]
+        for moved, acts, stands, ids in zip(positions, beside, contacts, of_each, strict=True):
             n = len(moved) // GRID * GRID
-            features = torch.from_numpy(to_features(moved[:n])).float()
+            columns = np.concatenate([to_features(moved[:n]), acts[:n]], -1)
+            features = torch.from_numpy(columns).float()
             groups.setdefault(n, []).append((features, torch.from_numpy(stands[:n].copy()), ids))
         columns = {
             n: [torch.stack(x) for x in zip(*rows, strict=True)] for n, rows in groups.items()
@@ -90,7 +98,13 @@ class DescribedWindows:
         some = torch.cat([x[:: max(1, len(x) // 64)].flatten(0, 1) for x in motions.values()])
         mirrored_words = ids_of([tuple(map(exchanged_sides, words))], words)[0]
         exchanged = torch.tensor([PADDING, NOTHING, *mirrored_words.tolist()])
-        return cls(motions, planted, ids, exchanged, Scaler.fit(some), words)
+        return cls(motions, planted, ids, exchanged, with_even_timeline(Scaler.fit(some)), words)
+
+    def without_timeline(self) -> "DescribedWindows":
+        """The same clips as motions alone."""
+        motions = {n: x[..., :D].contiguous() for n, x in self.motions.items()}
+        scaler = Scaler(self.scaler.mean[:D], self.scaler.std[:D])
+        return replace(self, motions=motions, scaler=scaler)
 
     def __len__(self) -> int:
         return sum(map(len, self.motions.values()))
@@ -120,11 +134,19 @@ class DescribedWindows:
         n, turned = chosen.length, chosen.turned
         x, planted = self.motions[n][chosen.which], self.contacts[n][chosen.which]
         ids = self.captions[n][chosen.which, chosen.wording]
-        x = torch.where(turned[:, None, None], mirrored(x), x)
+        other = torch.cat([mirrored(x[..., :D]), timeline.mirrored(x[..., D:])], -1)
+        x = torch.where(turned[:, None, None], other, x)
         planted = planted.where(~turned[:, None, None], planted.flip(-1))
         ids = torch.where(turned[:, None], self.exchanged[ids], ids)
         ids = ids[:, : int((ids != PADDING).sum(1).max())]
         return self.scaler.transform(x), ids, planted
+
+
+def with_even_timeline(scaler: Scaler) -> Scaler:
+    """The scaler with one spread for all columns of the timeline: rare verbs count alike."""
+    std = scaler.std.clone()
+    std[D:] = timeline.SPREAD
+    return Scaler(scaler.mean, std)
 
 
 def exchanged_sides(text: str) -> str:

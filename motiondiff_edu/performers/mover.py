@@ -7,6 +7,7 @@ import copy
 import warnings
 from dataclasses import dataclass, field
 
+import numpy as np
 import torch
 from jaxtyping import Float
 from torch import Tensor, nn
@@ -17,7 +18,7 @@ from ..conditions.word_encoder import WordReader
 from ..ddpm import Denoiser, Generators, Schedule, draw
 from ..motion.checks import checked_count, checked_seconds, checked_steps
 from ..motion.motion import Motion
-from ..motion.moving_frame import to_positions
+from ..motion.moving_frame import D, to_features, to_positions
 from ..motion.root_frame import FPS
 from ..motion.scaler import Scaler
 from ..prediction import denoiser_of
@@ -146,4 +147,18 @@ class Mover(Performer):
         where = self.motion_scaler.mean.new_empty(len(ids), frames, self.config.D)
         x_S = draw(where, generator) if start is None else start.to(self.device)
         x0 = sampled(denoise, x_S, self.schedule, steps, eta, generator)
-        return to_positions(self.motion_scaler.inverse(x0))
+        return self.positions_of(x0)
+
+    def positions_of(self, x0: Float[Tensor, "*B T F"]) -> Float[Tensor, "*B T 21 3"]:
+        """Motions in metres, of the network's units; columns of a timeline are left out."""
+        return to_positions(self.motion_scaler.inverse(x0)[..., :D])
+
+    def units_of(self, positions: Float[np.ndarray, "T 21 3"]) -> Float[Tensor, "T F"]:
+        """A motion in the network's units. Its timeline, which nobody knows, is 0, the mean.
+
+        Raises ValueError for another skeleton.
+        """
+        features = torch.from_numpy(to_features(positions)).float().to(self.device)
+        mean, std = self.motion_scaler.mean, self.motion_scaler.std
+        units = (features - mean[:D]) / std[:D]
+        return torch.nn.functional.pad(units, (0, self.config.D - D))

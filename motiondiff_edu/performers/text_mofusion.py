@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from jaxtyping import Float, Int
 from torch import Tensor, nn
 
+from ..beyond import timeline
 from ..beyond.self_attention import DEPTH, SelfAttendingMoFusion
 from ..conditions import clip as clips
 from ..conditions.clip_encoder import ClipEncoder, ClipTokens
@@ -31,7 +32,7 @@ class TextMoFusionConfig(MoFusionConfig):
     It reads `words` of its own, or with `clip` what the CLIP of this name makes of a text.
     """
 
-    D: int = moving_frame.D
+    D: int = moving_frame.D + timeline.D
     C: int = 96
     music_layers: int = 0
     words: tuple[str, ...] = ()
@@ -53,12 +54,15 @@ class TextMoFusionConfig(MoFusionConfig):
 
 
 class TextMoFusion(nn.Module):
-    """eps_hat (or x0_hat) = net(x_s, s, text), for motions of any length."""
+    """eps_hat (or x0_hat) = net(x_s, s, text), for motions of any length.
 
-    def __init__(self, config: TextMoFusionConfig):
+    words  what makes tokens of a text, by `tokens_of(texts)`; default: that of the configuration
+    """
+
+    def __init__(self, config: TextMoFusionConfig, words: nn.Module | None = None):
         super().__init__()
         self.config = config
-        self.words = encoder_of(config)
+        self.words = words or encoder_of(config)
         self.unet = SelfAttendingMoFusion(config, depth=config.depth)
 
     def listen(self, texts: Texts) -> Music:

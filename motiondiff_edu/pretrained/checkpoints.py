@@ -13,7 +13,7 @@ from pathlib import Path
 from safetensors import safe_open
 from torch import Tensor, nn
 
-from ..baselines import transformer  # noqa: F401  registers the network of two shipped files
+from ..baselines import text, transformer  # noqa: F401  they register their networks
 from ..conditions.clip import Clip, ClipError
 from ..conditions.clip import load as load_clip
 from ..ddpm import make_schedule

@@ -3,7 +3,7 @@
 They see the captions and clips of the training split alone, as the movers do.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import torch
@@ -55,7 +55,7 @@ def train_judge(recipe: JudgeRecipe, run_file: Path, log=print) -> Judge:
 
     Raises ValueError when the run in `run_file` was begun with other settings.
     """
-    data = described(recipe.clips, recipe.data_seed)
+    data = shown_to_judges(recipe.clips, recipe.data_seed)
     windows = data.windows
     torch.manual_seed(recipe.seed)
     space = Space(D, FIRST + len(windows.words), recipe.config.width)
@@ -69,6 +69,12 @@ def train_judge(recipe: JudgeRecipe, run_file: Path, log=print) -> Judge:
         log=log,
     )
     return Judge(trained, windows.scaler, windows.words, card)
+
+
+def shown_to_judges(clips: int, seed: int) -> DescribedData:
+    """The data of the movers without the timelines: a judge sees motions alone."""
+    data = described(clips, seed)
+    return replace(data, windows=data.windows.without_timeline())
 
 
 def loss_of(recipe: JudgeRecipe, data: DescribedData) -> LossFn:

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 import torch
-from jaxtyping import Int
+from jaxtyping import Float, Int
 from torch import Tensor, nn
 
 from .._files import digest_of_tensors, digest_of_texts
@@ -22,6 +22,7 @@ from ..conditions.text import base_vocabulary, read
 from ..conditions.word_encoder import NOTHING, PADDING, ids_of
 from ..ddpm import Schedule, cosine_schedule
 from ..motion import moving_frame
+from ..motion.scaler import Scaler
 from ..motion.skeleton import TOES
 from ..performers.described_windows import GRID, DescribedWindows
 from ..performers.mover import Mover
@@ -61,10 +62,12 @@ def described(clips: int, seed: int) -> DescribedData:
     from data_synth.actions import clips as drawn
     from data_synth.actions.dataset import mirrored_sentence
     from data_synth.actions.neighbours import neighbour
+    from data_synth.actions.performance import acted_timeline
 
     positions = []
     contacts = []
     texts = []
+    timelines = []
     truths: Truths = {}
     others: dict[int, list[tuple[str, ...]]] = {}
     words = base_vocabulary(captions.vocabulary())
@@ -73,11 +76,12 @@ def described(clips: int, seed: int) -> DescribedData:
         positions.append(acted.positions)
         contacts.append(acted.contacts)
         texts.append(one.captions)
+        timelines.append(acted_timeline(acted))
         n, other = len(acted) // GRID * GRID, neighbour(acted.sentence, rng)
         truths.setdefault(n, []).append((acted.sentence, mirrored_sentence(acted.sentence)))
         wrong = read(caption(other, rng), words, {}).words if other else ()
         others.setdefault(n, []).append(wrong)
-    windows = DescribedWindows.of(positions, contacts, texts, words)
+    windows = DescribedWindows.of(positions, contacts, texts, words, timelines)
     return DescribedData(windows, truths, {n: ids_of(x, words) for n, x in others.items()})
 
 
@@ -85,12 +89,14 @@ def described(clips: int, seed: int) -> DescribedData:
 def training_texts(clips: int, seed: int) -> DescribedWindows:
     """The same data with whole captions, for a network that reads by CLIP."""
     from data_synth.actions import clips as drawn
+    from data_synth.actions.performance import acted_timeline
 
     made = list(drawn(clips, seed))
     return DescribedWindows.of_texts(
         [one.acted.positions for one in made],
         [one.acted.contacts for one in made],
         [one.captions for one in made],
+        [acted_timeline(one.acted) for one in made],
     )
 
 
@@ -103,6 +109,7 @@ def train_mover(
 ) -> Mover:
     """Train by a recipe, or continue the run in `run_file`; return a mover with averaged weights.
 
+    A network for motions alone (`config.D` = 66) is not shown the timelines of the windows.
     A recipe that names a CLIP takes it from `clip`, or looks for it on this machine by its name; it
     needs windows of whole texts (`DescribedWindows.of_texts`).
     Raises ValueError when the run in `run_file` was begun with other settings, or windows or `clip`
@@ -117,6 +124,8 @@ def train_mover(
         windows = (training_texts if clip else training_clips)(recipe.clips, recipe.data_seed)
     if any(" " in word for word in windows.words) and not clip:
         raise ValueError(f"{recipe.name} reads words, and these windows hold whole texts")
+    if recipe.config.D == moving_frame.D:
+        windows = windows.without_timeline()
     facts = {"clips": len(windows)}
     if clip:
         facts |= {"clip_sample": clip.sample()}
@@ -171,8 +180,8 @@ def loss_of(
     """
     scaler = windows.scaler
     moved = partial(toes_moved, windows)
-    columns = loss_terms.metre_weights(scaler.std, recipe.metres) if recipe.metres else None
-    loss = weighted_loss(recipe.loss_weights, schedule, scaler, moving_frame.moves, moved, columns)
+    columns = column_weights(scaler, recipe.metres) if recipe.metres else None
+    loss = weighted_loss(recipe.loss_weights, schedule, scaler, poses_move, moved, columns)
     of_batch = batch_loss(recipe.kinematic, loss, schedule, scaler, moving_frame.body_of)
 
     def loss_fn(model: nn.Module, generator: torch.Generator) -> Tensor:
@@ -195,13 +204,25 @@ def without_some(
     return torch.where(left_out[:, None], empty, ids)
 
 
+def column_weights(scaler: Scaler, metres: float) -> Float[Tensor, "D"]:
+    """Weights of the columns: of poses by their spread; a timeline's have the mean weight, 1."""
+    weights = torch.ones_like(scaler.std)
+    weights[: moving_frame.D] = loss_terms.metre_weights(scaler.std[: moving_frame.D], metres)
+    return weights
+
+
+def poses_move(features: Float[Tensor, "*B T F"]) -> Float[Tensor, "*B T2 21 3"]:
+    """How far each joint moves from frame to frame; a timeline moves nothing."""
+    return moving_frame.moves(features[..., : moving_frame.D])
+
+
 def toes_moved(windows: DescribedWindows) -> float:
     """The mean square change of a toe's coordinate from frame to frame, m^2, over many clips."""
     generator = torch.Generator().manual_seed(0)
     moved = []
     for _ in range(8):
         features = windows.scaler.inverse(windows.draw(4000, generator)[0])
-        moved.append(moving_frame.moves(features)[:, :, list(TOES)].square().mean())
+        moved.append(poses_move(features)[:, :, list(TOES)].square().mean())
     return float(torch.stack(moved).mean())
 
 

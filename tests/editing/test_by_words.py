@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 import torch
-from small_movers import mover_of
+from small_movers import mover_of, with_timeline
 
 from data_synth.actions import clips
 from motiondiff_edu.conditions.text import TextError
@@ -11,7 +11,6 @@ from motiondiff_edu.ddpm import at
 from motiondiff_edu.editing.by_words import at_the_start_of, columns, edit_by_words
 from motiondiff_edu.editing.masks import UPPER
 from motiondiff_edu.motion.moving_frame import D, to_features, to_positions
-from motiondiff_edu.motion.scaler import Scaler
 from motiondiff_edu.motion.skeleton import HIPS, joint_index
 from motiondiff_edu.performers.mover import Mover
 
@@ -23,7 +22,7 @@ def positions() -> np.ndarray:
 
 @pytest.fixture(scope="module")
 def mover(positions) -> Mover:
-    return mover_of(scaler=Scaler.fit(torch.from_numpy(to_features(positions)).float()))
+    return mover_of(scaler=with_timeline(to_features(positions)))
 
 
 def apart(a: np.ndarray, b: np.ndarray) -> float:
@@ -89,6 +88,7 @@ def test_with_the_pelvis_the_path_stays_and_a_kept_span_is_the_motion_itself(mov
     assert apart(made[:, :40], positions[None, :40]) < 1e-4
     assert np.abs(made[0, 50:] - made[1, 50:]).max() > 0.01
     assert columns(torch.from_numpy(known)).sum() == 40 * D
+    assert columns(torch.from_numpy(known), mover.config.D).sum() == 40 * D  # no timeline
 
 
 def test_what_cannot_be_edited_is_refused(mover, positions):

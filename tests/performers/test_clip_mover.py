@@ -60,7 +60,7 @@ def test_an_empty_or_a_long_sentence_is_refused(mover, text, told):
 
 
 def test_padding_is_not_seen_and_every_token_is(mover, tiny):
-    x, s = torch.randn(2, 40, 66), torch.tensor([20, 3])
+    x, s = torch.randn(2, 40, SMALL.D), torch.tensor([20, 3])
     texts = tiny.tokens(["kicks left", "a person walks forward"])
     padded = ~texts.mask
     assert padded.sum(1).tolist() == [2, 0]
@@ -84,7 +84,7 @@ def test_padding_is_not_seen_and_every_token_is(mover, tiny):
 
 def test_guidance_leads_away_from_the_empty_text(mover, tiny):
     texts, nothing = tiny.encoded([("walks forward",)]), tiny.tokens([""])
-    x, s = torch.randn(1, 40, 66), torch.full((1,), 20)
+    x, s = torch.randn(1, 40, SMALL.D), torch.full((1,), 20)
     with torch.no_grad():
         plain, free = mover.denoiser(texts)(x, s), mover.denoiser(nothing)(x, s)
         torch.testing.assert_close(mover.denoiser(texts, 2.5)(x, s), 2.5 * plain - 1.5 * free)

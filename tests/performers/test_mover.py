@@ -10,10 +10,13 @@ from small_movers import SMALL, WORDS, mover_of
 
 import motiondiff_edu as md
 from data_synth.actions import clips
+from data_synth.actions.performance import acted_timeline
+from motiondiff_edu.beyond import timeline
 from motiondiff_edu.conditions.text import TextError
 from motiondiff_edu.conditions.word_encoder import NOTHING, PADDING, WordEncoder, ids_of, present
 from motiondiff_edu.ddpm import cosine_schedule
 from motiondiff_edu.kinematic_loss import training_loss
+from motiondiff_edu.motion.moving_frame import D
 from motiondiff_edu.motion.scaler import Scaler
 from motiondiff_edu.performers.described_windows import DescribedWindows
 from motiondiff_edu.performers.mover import Mover
@@ -39,6 +42,7 @@ def windows() -> DescribedWindows:
         [one.acted.contacts for one in made],
         [one.captions for one in made],
         WORDS,
+        [acted_timeline(one.acted) for one in made],
     )
 
 
@@ -71,7 +75,7 @@ def test_a_sentence_makes_motions(mover):
 
 def test_guidance_of_one_is_the_conditional_network_and_more_leads_away_from_no_text(mover):
     ids, nothing = ids_of([("walk",)], WORDS), ids_of([()], WORDS)
-    x, s = torch.randn(1, 40, 66, generator=seeded()), torch.full((1,), 20)
+    x, s = torch.randn(1, 40, SMALL.D, generator=seeded()), torch.full((1,), 20)
     with torch.no_grad():
         plain, free = mover.denoiser(ids)(x, s), mover.denoiser(nothing)(x, s)
         torch.testing.assert_close(mover.denoiser(ids, 2.5)(x, s), 2.5 * plain - 1.5 * free)
@@ -135,7 +139,7 @@ def test_a_mirrored_motion_has_its_words_exchanged(windows):
         motions={n: windows.motions[n][:1]},
         contacts={n: windows.contacts[n][:1]},
         captions={n: windows.captions[n][:1, :1]},
-        scaler=Scaler.nothing(66),
+        scaler=Scaler.nothing(SMALL.D),
     )
     x, ids, planted = only.draw(40 * n, seeded(1))
     turned = (x - x[0]).abs().amax((1, 2)) > 1e-4
@@ -143,6 +147,7 @@ def test_a_mirrored_motion_has_its_words_exchanged(windows):
     one, other = x[~turned][0], x[turned][0]
     torch.testing.assert_close(one[:, 0], -other[:, 0])  # the pelvis, x
     torch.testing.assert_close(one[:, 1:3], other[:, 1:3])
+    torch.testing.assert_close(one[:, D:], timeline.mirrored(other[:, D:]))
     assert torch.equal(windows.exchanged[ids[~turned][0]], ids[turned][0])
     assert torch.equal(planted[~turned][0], planted[turned][0].flip(-1))
 

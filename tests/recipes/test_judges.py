@@ -18,16 +18,16 @@ from motiondiff_edu.recipes.judges import (
     SpaceConfig,
     loss_of,
     same,
+    shown_to_judges,
     train_judge,
 )
-from motiondiff_edu.recipes.train_mover import described
 
 SHORT = JudgeRecipe("tiny", SpaceConfig(8), steps=4, frames=700, clips=30, save_every=2)
 
 
 @pytest.fixture(scope="module")
 def data():
-    return described(SHORT.clips, SHORT.data_seed)
+    return shown_to_judges(SHORT.clips, SHORT.data_seed)
 
 
 def test_every_motion_has_its_truth_and_a_wrong_caption(data):

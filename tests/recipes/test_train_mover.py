@@ -6,13 +6,16 @@ import numpy as np
 import pytest
 import torch
 
+from motiondiff_edu.beyond import timeline
 from motiondiff_edu.conditions.word_encoder import NOTHING, PADDING
 from motiondiff_edu.ddpm import cosine_schedule, draw, q_sample
+from motiondiff_edu.motion.moving_frame import D
 from motiondiff_edu.performers.mover import Mover
 from motiondiff_edu.performers.text_mofusion import TextMoFusion, TextMoFusionConfig
 from motiondiff_edu.recipes.dancers import KINEMATIC, DanceLossWeights
 from motiondiff_edu.recipes.movers import MOVER, MOVER_PLAIN, MoverRecipe
 from motiondiff_edu.recipes.train_mover import (
+    column_weights,
     loss_of,
     toes_moved,
     train_mover,
@@ -95,6 +98,31 @@ def test_a_killed_training_continues_and_ends_like_one_in_one_go(windows, tmp_pa
         whole.model.state_dict().items(), resumed.model.state_dict().items(), strict=True
     ):
         assert np.allclose(a, b, atol=1e-6), name
+
+
+def test_a_network_for_motions_alone_is_not_shown_the_timelines(windows, tmp_path):
+    narrow = replace(SHORT, config=replace(TINY, D=D), steps=2)
+    trained = train_mover(narrow, tmp_path / "narrow.safetensors", windows, log=quiet)
+    assert trained.motion_scaler.mean.shape == (D,)
+    torch.testing.assert_close(trained.motion_scaler.std, windows.scaler.std[:D])
+    assert trained.act("walks", seconds=2, steps=2, progress=False).positions.shape == (40, 21, 3)
+    alone = windows.without_timeline()
+    x, wide = alone.draw(400, seeded()), windows.draw(400, seeded())
+    torch.testing.assert_close(x[0], wide[0][..., :D])
+    assert all(torch.equal(a, b) for a, b in zip(x[1:], wide[1:], strict=True))
+
+
+def test_columns_weigh_by_their_metres_and_a_timeline_by_the_mean(windows):
+    weights = column_weights(windows.scaler, 1.0)
+    torch.testing.assert_close(weights[:D].mean(), torch.tensor(1.0))
+    assert (weights[D:] == 1).all() and len(weights) == D + timeline.D
+    torch.testing.assert_close(
+        weights[0] / weights[1], windows.scaler.std[0] / windows.scaler.std[1]
+    )
+
+
+def seeded() -> torch.Generator:
+    return torch.Generator().manual_seed(4)
 
 
 def test_the_shipped_recipes_differ_in_the_kinematic_losses_alone():

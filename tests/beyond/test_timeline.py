@@ -1,0 +1,79 @@
+"""The timeline of a motion: its columns by hand, its mirror, and that of generated clips."""
+
+import numpy as np
+import pytest
+import torch
+
+from data_synth.actions import clips, mirror
+from data_synth.actions.acts import VERBS as ACTS
+from data_synth.actions.performance import acted_timeline
+from motiondiff_edu.beyond.timeline import (
+    ARMS,
+    COUNTED,
+    LEGS,
+    MIDDLE,
+    SIDE,
+    TO_COME,
+    VERBS,
+    D,
+    Timed,
+    mirrored,
+    timeline,
+)
+from motiondiff_edu.metrics import sentences
+
+
+def test_its_verbs_are_those_of_the_sentences():
+    assert set(VERBS) == set(ACTS) and len(VERBS) == len(set(VERBS))
+    assert {verb for verb in ACTS if ACTS[verb].kind == "arms"} == set(ARMS)
+    assert {verb for verb in ACTS if ACTS[verb].kind == "way"} == set(LEGS) - set(COUNTED)
+    assert sentences.COUNTED <= set(COUNTED)
+
+
+def test_two_acts_of_the_legs_and_one_of_the_arms_by_hand():
+    acts = [
+        Timed("kick", "left", 2, 0.1, 0.3),
+        Timed("bow", "", 1, 0.4, 0.5),
+        Timed("punch", "right", 3, 0.15, 0.3),
+    ]
+    made = timeline(acts[::-1], 12)
+    kick, bow, punch = (VERBS.index(verb) for verb in ("kick", "bow", "punch"))
+    assert np.flatnonzero(made[:, kick]).tolist() == [2, 3, 4, 5]
+    assert np.flatnonzero(made[:, bow]).tolist() == [8, 9]
+    assert np.flatnonzero(made[:, punch]).tolist() == [3, 4, 5]
+    assert made[:, SIDE].tolist() == [0, 0, 1, 1, 1, 1, 0, 0, 0, 0, 0, 0]
+    assert made[:, SIDE + 1].tolist() == [0, 0, 0, -1, -1, -1, 0, 0, 0, 0, 0, 0]
+    legs = [2, 2, 2, 2, 1, 1, 1, 1, 1, 1, 0, 0]  # two kicks; then the bow is the next
+    assert made[:, TO_COME].tolist() == legs
+    assert made[:, TO_COME + 1].tolist() == [3, 3, 3, 3, 2, 1] + [0] * 6
+    legs = [0, 0, 0, 1, 0, 1, 0, 0, 0, 1, 0, 0]
+    np.testing.assert_allclose(made[:, MIDDLE], legs, atol=1e-9)
+    np.testing.assert_allclose(made[:, MIDDLE + 1], 0, atol=1e-9)  # a frame long, they begin at 0
+    others = [k for k in range(D) if k not in (kick, bow, punch, *range(SIDE, D))]
+    assert not made[:, others].any()
+
+
+def test_a_walk_is_not_counted():
+    made = timeline([Timed("walk", "", 1, 0.0, 1.0)], 20)
+    assert (made[:, VERBS.index("walk")] == 1).all() and made.sum() == 20
+
+
+def test_a_verb_that_there_is_not_is_refused():
+    with pytest.raises(ValueError, match="no verb is called 'fly'; there are walk, run"):
+        timeline([Timed("fly", "", 1, 0.0, 1.0)], 20)
+
+
+@pytest.mark.parametrize("k", range(8))
+def test_the_mirrored_clip_has_the_mirrored_timeline(k):
+    (*_, one) = clips(k + 1, 5)
+    made = acted_timeline(one.acted)
+    turned = mirrored(torch.from_numpy(made)).numpy()
+    np.testing.assert_array_equal(acted_timeline(mirror(one).acted), turned)
+    assert made.shape == (len(one.acted), D)
+    counts = [a.count for p in one.acted.sentence for a in p.acts if a.verb in COUNTED]
+    assert made[:, TO_COME:MIDDLE].max() == max(counts, default=0)
+    assert made[-1, TO_COME:MIDDLE].max() <= 1  # all is done at the end
+
+
+def test_no_timeline_stays_none():
+    assert mirrored(torch.zeros(3, 4, 0)).shape == (3, 4, 0)
