@@ -4,14 +4,14 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-import torch
-from small_movers import mover_of
+from small_movers import mover_of, with_timeline
 
-from motiondiff_edu.motion.moving_frame import D, to_features
-from motiondiff_edu.motion.scaler import Scaler
+from motiondiff_edu.motion.moving_frame import to_features
 from motiondiff_edu.performers.mover import Mover
+from motiondiff_edu.performers.networks import network
+from motiondiff_edu.performers.text_mofusion import TextMoFusionConfig
 from motiondiff_edu.pretrained.judges import judges
-from tools.results.words import edits, parts, rows, scores, tables, trials
+from tools.results.words import budget, edits, parts, rows, scores, tables, trials
 
 
 @pytest.fixture(scope="module")
@@ -21,8 +21,7 @@ def some() -> trials.Trials:
 
 @pytest.fixture(scope="module")
 def mover(some) -> Mover:
-    scaler = Scaler.fit(torch.from_numpy(to_features(some.truth[0])).float())
-    return mover_of(scaler=scaler, card={"name": "tiny"})
+    return mover_of(scaler=with_timeline(to_features(some.truth[0])), card={"name": "tiny"})
 
 
 @pytest.fixture(scope="module")
@@ -188,4 +187,38 @@ def test_all_records_are_made_and_stand_in_the_page(monkeypatch, mover):
     page = tables.table_2(records)
     assert all(row in page for row in ("**the mover**", "noise", "held out", "Editing by words"))
     assert "MoFusion (Ours) | 8.82 | 2.52 | 0.492" in page
-    assert "not measured yet" in tables.table_2({}) and D == 66
+    assert "not measured yet" in tables.table_2({})
+
+
+def test_a_choice_is_trained_measured_and_shown(some, tmp_path, monkeypatch):
+    small = TextMoFusionConfig(widths=(16, 24), heads=2, C=20, S=20, word_layers=1)
+    monkeypatch.setattr(budget, "MOVER", replace(budget.MOVER, config=small))
+    few = first_of(some, 6)
+    panel = scores.Panel(judges()[:1], few)
+    monkeypatch.setattr(scores, "r_precision", lambda *x: (0.1, 0.2, 0.3))  # too few for pools
+    found = budget.budget_records("no-kinematic", budget.QUICK, panel, tmp_path, "python -m x")
+    records = {one["name"]: one for one in found}
+    one = records["words-budget.no-kinematic.action_accuracy"]
+    assert one["low"] <= one["value"] <= one["high"] and one["seeds"]["trainings"] == [0, 1]
+    assert len(set(one["seeds"]["weights"])) == 2
+    assert records["words-budget.no-kinematic.bone_rmse_cm"]["value"] > 1
+    page = tables.table_2(records)
+    assert "| no kinematic losses |" in page and "Not trained yet: `ours`" in page
+
+
+def test_the_choices_differ_from_the_recipe_as_they_say():
+    for name, (_, changes) in budget.VARIANTS.items():
+        recipe = budget.recipe_of(name, 2, budget.FULL)
+        assert recipe.seed == 2 and recipe.steps == budget.FULL.training["steps"]
+        same = replace(recipe, name="mover", steps=budget.MOVER.steps, seed=0)
+        assert (same == budget.MOVER) == (not changes)
+    bag = budget.recipe_of("bag", 0, budget.FULL).config
+    assert type(network(bag)).__name__ == "BagMoFusion" and bag.depth == budget.MOVER.config.depth
+    assert budget.recipe_of("no-timeline", 0, budget.FULL).config.D == 66
+
+
+def test_the_mean_over_trainings_has_the_widest_interval():
+    one, other = (scores.Measure("x", v, v - 0.1, v + 0.2, "share") for v in (0.4, 0.6))
+    (mean,) = budget.over_trainings([[one], [other]])
+    assert mean.value == pytest.approx(0.5)
+    assert (mean.low, mean.high) == (pytest.approx(0.3), pytest.approx(0.8))

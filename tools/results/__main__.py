@@ -7,8 +7,8 @@ walker-eps-lookahead, footsteps; dancer, dancer-plain, regression, unheard (musi
 training), attention, dance-time; mend (dropout and repairs), mend-both (both papers' repairs),
 inbetween, inbetween-departures (what each is worth), known-answer (methods of filling in, on tasks
 whose answer is a formula); words (motion from text: Table 2, captions that nobody trained for,
-editing). These parts train, for minutes a row: ladder (from the paper's walker to
-ours), budget, dance-budget and mend-map. One row of them is a part as well: budget.T_p-5,
+editing). These parts train, for minutes a row: ladder (from the paper's walker to ours),
+dance-budget, words-budget and mend-map. One row of them is a part as well: ladder.ours,
 dance-budget.v. Without --only, all parts are measured for which there are shipped weights. --full
 adds the parts that train; otherwise their records stay as they are. A training that was killed
 continues. --quick measures little, into build/quick, and is for trying the code. --render only
@@ -33,7 +33,7 @@ from .page.cards import add_metrics
 from .page.render import render
 from .repairs import both, dropout, mend, repair
 from .repairs.trials import names_of
-from .walks import budget, ladder
+from .walks import ladder
 from .walks.parts import (
     FULL,
     LINES,
@@ -44,6 +44,7 @@ from .walks.parts import (
     walker_records,
     weights_digest,
 )
+from .words import budget as word_budget
 from .words import parts as words
 
 DOCS, RUNS = Path("docs"), Path("build/runs")
@@ -62,9 +63,9 @@ MENDED = {  # parts that need these weights
 }
 TRAINED = {
     "ladder": ("pace", "rates", *ladder.CELLS),
-    "budget": tuple(budget.VARIANTS),
     "dance-budget": tuple(dance_budget.VARIANTS),
     "mend-map": tuple(dropout.RATES),
+    "words-budget": tuple(word_budget.VARIANTS),
 }
 ROUNDS = 7  # of dance-time
 
@@ -138,7 +139,7 @@ def parts_of(only: list[str], full: bool, lines: dict[str, Walks], weights: set[
         there = ", ".join([*lines, *DANCES, *MEASURED, *MENDED, *rows])
         sys.exit(
             f"no part is called {', '.join(unknown)}; there are: {there}; rows: "
-            "budget.T_p-5, dance-budget.v ..."
+            "ladder.ours, dance-budget.v ..."
         )
     return parts
 
@@ -170,8 +171,6 @@ def records_of(
     if group == "ladder":
         size, runs = (ladder.QUICK, folder / "runs") if quick else (ladder.FULL, RUNS / group)
         return ladder.measure(row, folder / group, runs, size, command)
-    if group == "budget":
-        return budget.budget_records(row, budget.QUICK if quick else budget.FULL, command)
     if group == "dance-budget":
         size, runs = (
             (dance_budget.QUICK, folder / "runs") if quick else (dance_budget.FULL, RUNS / group)
@@ -196,6 +195,11 @@ def records_of(
         return both.both_records(bench, stage.dancer("unconditional"), size, command)
     if part == "words":
         return words.word_records(words.Studio(words.size_of(quick), bench.weights), command)
+    if group == "words-budget":
+        size, runs = (
+            (word_budget.QUICK, folder / "runs") if quick else (word_budget.FULL, RUNS / group)
+        )
+        return word_budget.budget_records(row, size, words.panel_of(size.trials), runs, command)
     if part == "known-answer":
         return known_answer.known_answer_records(
             known_answer.QUICK if quick else known_answer.FULL, command

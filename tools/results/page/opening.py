@@ -81,14 +81,14 @@ def amount(bar: Bar, one: dict) -> str:
 
 
 def paper(records: dict[str, dict]) -> str:
-    """How many of MoFusion's claims agree with what was measured."""
+    """How many of the papers' claims agree with what was measured."""
     verdicts = [claim.verdict(records) for claim in CLAIMS]
     agrees, differs, undecided = (verdicts.count(said) for said in (AGREES, DIFFERS, OPEN))
     missing = verdicts.count(MISSING)
     more = f", and {missing} have not been measured" if missing else ""
-    place = anchor("The paper's claims, tested")
+    place = anchor("The papers' claims, tested")
     return (
-        f"**MoFusion's claims.** Of the {len(CLAIMS)} claims that we can judge at this scale, "
+        f"**The papers' claims.** Of the {len(CLAIMS)} claims that we can judge at this scale, "
         f"{agrees} agree with what we measured, {differs} do not, {undecided} remain "
         f"undecided{more}: [the list](#{place}).\n"
     )

@@ -13,7 +13,6 @@ from ..dances.tables import choices, table_1
 from ..inbetweens import known_tables
 from ..repairs import tables
 from ..walks import ladder_page
-from ..walks.budget import VARIANTS
 from ..walks.steps_table import PAPER_TABLE
 from ..words.tables import table_2
 from .bars import BARS, Bar
@@ -178,34 +177,6 @@ def footsteps(records: dict[str, dict], folder: Path) -> str:
     return text + table(head, rows) + picture
 
 
-def budget(records: dict[str, dict]) -> str:
-    """One row for each choice that was measured with the same budget."""
-    mine = {n: r for n, r in records.items() if n.startswith("budget.")}
-    if not mine:
-        return ""
-    kinds = list(dict.fromkeys(n.split(".")[2] for n in mine))
-    rows = [
-        [
-            words,
-            VARIANTS[base][0] if base else "-",
-            *(cell(mine.get(f"budget.{name}.{kind}")) for kind in kinds),
-        ]
-        for name, (words, base, *_) in VARIANTS.items()
-        if f"budget.{name}.{kinds[0]}" in mine
-    ]
-    seeds = next(iter(mine.values()))["seeds"]
-    text = (
-        "## What each choice is worth\n\nThese are small walkers. Each was trained for "
-        f"{seeds['cpu_seconds']:g} CPU-seconds on one thread, with half the shipped walkers' batch "
-        "and fewer clips. Each row differs in one choice from the row named beside it. MoDiff "
-        "(III-A) says that predicting more than one pose helps: see T_p. The walkers were sampled "
-        f"by DDPM with S = 100, under {seeds['clips']} unseen controls that were held, and kept "
-        "one pose of every window. With one training seed each, small differences mean nothing."
-        "\n\n"
-    )
-    return text + table(["the choice", "compare with", *(f"`{kind}`" for kind in kinds)], rows)
-
-
 def attention(records: dict[str, dict], folder: Path) -> str:
     """MoFusion's Fig. 4 in numbers, level by level, and the picture."""
     kinds = ("beat_mass", "beat_mass_over_shuffled", "beat_mass_over_shifted", "seconds_read")
@@ -241,12 +212,12 @@ def others(records: dict[str, dict]) -> str:
         "walker",
         "footsteps",
         "ladder.",
-        "budget.",
         "dance-budget.",
         "dance-time.",
         "attention.",
     )
-    shown += ("mend", "words.", "known-answer.", "inbetween.", "inbetween-departures.")
+    shown += ("mend", "words.", "words-budget.", "known-answer.", "inbetween.")
+    shown += ("inbetween-departures.",)
     rest = [one for name, one in sorted(records.items()) if not name.startswith(shown)]
     rows = [
         [f"`{r['name']}`", number(r["value"]), span(r), r["unit"], f"`{r['command']}`"]
@@ -263,7 +234,6 @@ def render(docs: Path, benchmarks: Path = Path("benchmarks/results")) -> None:
     parts = [HEAD, bars(records), walkers(records), footsteps(records, docs / "results")]
     parts += [
         ladder_page.section(records, docs / "results"),
-        budget(records),
         table_1(records),
         folded(choices(records), "What training and dancing cost in time"),
         attention(records, docs / "results"),

@@ -1,5 +1,6 @@
 """The measurements of the movers by `make results`: Table 2, its fools, held-out trials, edits."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
@@ -52,6 +53,11 @@ def size_of(quick: bool) -> WordSize:
     return WORD_QUICK if quick else WORD_FULL
 
 
+def panel_of(trials: int) -> Panel:
+    """The judges and so many trials."""
+    return Panel(judges(), unseen(trials))
+
+
 class Studio:
     """The trials, made once, the judges, and the movers by name."""
 
@@ -59,14 +65,14 @@ class Studio:
         self.size = size
         self.weights = weights or checkpoints.available()
 
-    @cached_property
-    def judges(self) -> list[Judge]:
-        return judges()
+    @property
+    def judges(self) -> Sequence[Judge]:
+        return self.panel.judges
 
     @cached_property
     def panel(self) -> Panel:
         """The judges and the trials of Table 2."""
-        return Panel(self.judges, unseen(self.size.trials))
+        return panel_of(self.size.trials)
 
     @property
     def trials(self) -> Trials:

@@ -154,17 +154,22 @@ def speed(positions: Positions) -> float:
 
 def pairs(panel: Panel, row: Sequence[Points]) -> list[Measure]:
     """How often a motion is nearer to its own caption than to one that differs in one thing."""
-    which = [pair.trial for pair in panel.pairs]
-    right = np.zeros(len(which))
-    for mine, texts in zip(row, panel.pair_texts, strict=True):
-        own, other = (np.linalg.norm(text - mine.motions[which], axis=-1) for text in texts)
-        right += (own < other) / len(row)
-    kinds = np.array([pair.kind for pair in panel.pairs])
+    right, kinds = nearer(panel, row), np.array([pair.kind for pair in panel.pairs])
     parts = {f".{kind}": right[kinds == kind] for kind in KINDS if (kinds == kind).any()}
     return [
         measure_of(f"minimal_pair{name}", "share", np.mean, x)
         for name, x in {"": right, **parts}.items()
     ]
+
+
+def nearer(panel: Panel, row: Sequence[Points]) -> Float[np.ndarray, "P"]:
+    """For each pair of captions the share of judges that put the motion nearer to its own."""
+    which = [pair.trial for pair in panel.pairs]
+    right = np.zeros(len(which))
+    for mine, texts in zip(row, panel.pair_texts, strict=True):
+        own, other = (np.linalg.norm(text - mine.motions[which], axis=-1) for text in texts)
+        right += (own < other) / len(row)
+    return right
 
 
 def nearest_training(own: Float[np.ndarray, "N"], data: Float[np.ndarray, "N"]) -> list[Measure]:

@@ -1,6 +1,7 @@
 """MoFusion's Table 2 beside ours, sentences never seen, editing: sections of docs/RESULTS.md."""
 
 from ..page.markdown import cell, number, table
+from .budget import VARIANTS
 
 # Diversity, MultiModality, R-Precision: MoFusion (Dabral et al., CVPR 2023), Table 2, HumanML3D
 PAPER_TABLE = {
@@ -39,6 +40,14 @@ TRIALS = {  # by the beginning of their measures
 }
 HELD = ("understood", *RECOGNISED, "minimal_pair", "r_precision_top3", "r_precision_top3_over_real")
 PAIRS = ("", ".side", ".count", ".order", ".speed")
+CHOSEN = (
+    *RECOGNISED,
+    "minimal_pair",
+    "minimal_pair.order",
+    "r_precision_top3_over_real",
+    "bone_rmse_cm",
+    "skating_mps",
+)
 EDITS = ("changes", "keeps_m", "keeps_over_resampled")
 TABLE_2 = """## MoFusion's Table 2
 
@@ -66,11 +75,12 @@ def table_2(records: dict[str, dict]) -> str:
     ]
     text = TABLE_2 + table(head, printed)
     if "words.action_accuracy" not in records:
-        return text + "\nOurs: not measured yet.\n"
+        return text + "\nOurs: not measured yet.\n" + choices(records)
     seeds = records["words.action_accuracy"]["seeds"]
     text += f"\nOurs: {seeds['trials']} unseen clips, {seeds['steps']} steps of DDIM.\n\n"
     text += _rows(records, RETRIEVAL) + OURS + _rows(records, RECOGNISED) + "\n"
-    return text + _rows(records, BODY) + never_seen(records) + edits(records)
+    text += _rows(records, BODY) + never_seen(records) + edits(records)
+    return text + choices(records)
 
 
 def _rows(records: dict[str, dict], kinds: tuple[str, ...]) -> str:
@@ -100,6 +110,26 @@ def never_seen(records: dict[str, dict]) -> str:
         + table(["captions", *(f"`{kind}`" for kind in HELD)], rows)
         + "\nTwo captions differ in one thing: how often is the motion nearer to its own? Chance "
         "is one half.\n\n" + table(["motion", "all", "side", "count", "order", "speed"], pairs)
+    )
+
+
+def choices(records: dict[str, dict]) -> str:
+    """What each choice of the recipe is worth, by trainings of equal length."""
+    there = [name for name in VARIANTS if f"words-budget.{name}.action_accuracy" in records]
+    if not there:
+        return ""
+    about = records[f"words-budget.{there[0]}.action_accuracy"]["seeds"]
+    rows = [
+        [VARIANTS[name][0], *(cell(records.get(f"words-budget.{name}.{k}"), False) for k in kinds)]
+        for name, kinds in ((name, CHOSEN) for name in there)
+    ]
+    waiting = [f"`{name}`" for name in VARIANTS if name not in there]
+    return (
+        f"\n### What each choice is worth\n\nEach row is trained {len(about['trainings'])} times "
+        f"for {about['trained_steps']} steps, and differs from the first row in one choice. The "
+        "intervals are over clips and trainings.\n\n"
+        + table(["recipe", *(f"`{kind}`" for kind in CHOSEN)], rows)
+        + (f"\nNot trained yet: {', '.join(waiting)}.\n" if waiting else "")
     )
 
 

@@ -1,0 +1,133 @@
+"""The value of each choice of a mover, and two baselines, by trainings of equal length.
+
+Each row differs from the recipe of the mover in one choice, and is trained with three seeds. All
+else is equal: data, steps, sampler, and the unseen captions. The steps are a tenth of the shipped
+mover's, so the numbers say what a choice is worth, and not how good a mover can be.
+Source: MoFusion 3; choices are ours
+"""
+
+from dataclasses import dataclass, field, replace
+from functools import partial
+from pathlib import Path
+
+import numpy as np
+
+from data_synth.actions.neighbours import KINDS
+from motiondiff_edu._files import digest_of_tensors
+from motiondiff_edu.baselines.text import BagConfig, RegressionConfig
+from motiondiff_edu.metrics.actions import actions
+from motiondiff_edu.metrics.sentences import rows_of
+from motiondiff_edu.motion import moving_frame
+from motiondiff_edu.performers.mover import Mover
+from motiondiff_edu.recipes.dancers import DanceLossWeights
+from motiondiff_edu.recipes.movers import MOVER, MoverRecipe
+from motiondiff_edu.recipes.train_mover import train_mover
+
+from ..repairs.trials import interval_over_seeds
+from ..walks.scores import Measure, root_mean, squared_bone_error
+from .rows import STEPS, performed
+from .scores import Panel, nearer, retrieved, sliding
+from .trials import UNSEEN, Positions
+
+
+def sizes(**changes) -> dict:
+    """The mover's sizes, changed."""
+    return {"config": replace(MOVER.config, **changes)}
+
+
+def network_of(config: type) -> dict:
+    """Another network with the mover's sizes."""
+    same = {name: getattr(MOVER.config, name) for name in MOVER.config.__dataclass_fields__}
+    return {"config": config(**same)}
+
+
+# name: (what differs, in words, changes of the recipe)
+VARIANTS: dict[str, tuple[str, dict]] = {
+    "ours": ("the mover's recipe", {}),
+    "no-timeline": ("no timeline beside the motion", sizes(D=moving_frame.D)),
+    "no-kinematic": ("no kinematic losses", {"kinematic": None}),
+    "shallow": ("no further layers in the middle", sizes(depth=0)),
+    "columns-alike": ("errors in standard deviations, not in metres", {"metres": 0.0}),
+    "plain-loss": ("errors of poses alone", {"loss_weights": DanceLossWeights()}),
+    "cosine": ("the cosine schedule as it is", {"snr": 1.0}),
+    "bag": ("a bag of words", network_of(BagConfig)),
+    "regression": ("regression: no noise, one motion for each text", network_of(RegressionConfig)),
+}
+SHARES = ("action", "side", "count", "order")
+
+
+@dataclass(frozen=True)
+class Budget:
+    """The length of each training, its seeds, and the number of unseen captions."""
+
+    seeds: tuple[int, ...] = (0, 1, 2)
+    trials: int = 256
+    training: dict = field(default_factory=lambda: {"steps": 1600})
+
+
+FULL = Budget()
+QUICK = Budget((0, 1), 40, {"steps": 3, "clips": 12, "frames": 300, "save_every": 2})
+
+
+def recipe_of(name: str, seed: int, budget: Budget) -> MoverRecipe:
+    """The training of one variant with one seed."""
+    settings = {"name": f"words-budget.{name}", "seed": seed}
+    return replace(MOVER, **settings, **budget.training, **VARIANTS[name][1])
+
+
+def trained(name: str, seed: int, budget: Budget, runs: Path) -> Mover:
+    """The mover of a variant.
+
+    A run that was killed continues; one that is finished is only read.
+    """
+    runs.mkdir(parents=True, exist_ok=True)
+    run = runs / f"{name}-{seed}.safetensors"
+    return train_mover(recipe_of(name, seed, budget), run, log=partial(print, flush=True))
+
+
+def budget_records(name: str, budget: Budget, panel: Panel, runs: Path, command: str) -> list[dict]:
+    """Train (or continue) a variant with each seed, and measure it; the intervals hold both."""
+    made, weights = [], []
+    for seed in budget.seeds:
+        mover = trained(name, seed, budget, runs)
+        weights.append(digest_of_tensors(mover.model.state_dict())[:16])
+        made.append(performed(mover)(panel.trials, seed))
+    about = {"data": UNSEEN, "trials": budget.trials, "trainings": list(budget.seeds)}
+    about |= {"trained_steps": recipe_of(name, 0, budget).steps, "steps": STEPS}
+    about |= {"weights": weights}
+    measures = measured(panel, made)
+    return [one.as_record(f"words-budget.{name}.", about, command) for one in measures]
+
+
+def measured(panel: Panel, made: list[list[Positions]]) -> list[Measure]:
+    """The measures of several trainings; made[seed][trial]."""
+    points = [panel.row(one) for one in made]
+    agreed = [rows_of(panel.trials.phrases, [actions(x) for x in one]) for one in made]
+    near = np.stack([nearer(panel, row) for row in points])
+    kinds = np.array([pair.kind for pair in panel.pairs])
+    rows = {f"{kind}_accuracy": np.stack([one[kind] for one in agreed]) for kind in SHARES}
+    rows |= {"minimal_pair": near}
+    rows |= {
+        f"minimal_pair.{kind}": near[:, kinds == kind] for kind in KINDS if (kinds == kind).any()
+    }
+    found = [
+        Measure(key, *interval_over_seeds(np.nanmean, row), "share") for key, row in rows.items()
+    ]
+    bones = np.array([[squared_bone_error(x[None])[0] for x in one] for one in made])
+    slides = np.array([[sliding(x) for x in one] for one in made])
+    found.append(Measure("bone_rmse_cm", *interval_over_seeds(root_mean, bones), "cm"))
+    found.append(Measure("skating_mps", *interval_over_seeds(np.nanmean, slides), "m/s"))
+    return found + over_trainings([retrieved(panel, row) for row in points])
+
+
+def over_trainings(each: list[list[Measure]]) -> list[Measure]:
+    """The mean of each measure, from the least to the largest interval's end."""
+    return [
+        replace(
+            same[0],
+            value=float(np.mean([one.value for one in same])),
+            low=min(one.low for one in same),
+            high=max(one.high for one in same),
+        )
+        for same in zip(*each, strict=True)
+    ]
