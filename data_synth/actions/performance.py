@@ -5,7 +5,6 @@ from dataclasses import dataclass, replace
 import numpy as np
 from jaxtyping import Bool, Float
 
-from motiondiff_edu.beyond.timeline import Timed, timeline
 from motiondiff_edu.motion.root_frame import FPS
 
 from ..dancing.curves import least_jerk
@@ -116,14 +115,6 @@ def _performed(sentence: Sentence, seconds: float, late: float, seed: int) -> tu
     spans.sort(key=lambda span: span.first)
     kept = tuple(replace(span, last=min(span.last, seconds)) for span in spans)
     return Acted(positions, made.contacts[:frames], kept, sentence, seed), over
-
-
-def acted_timeline(acted: Acted) -> Float[np.ndarray, "T 22"]:
-    """What is done when, in the columns of `motiondiff_edu.beyond.timeline`."""
-    acts = [
-        Timed(one.act.verb, one.act.side, one.act.count, one.first, one.last) for one in acted.spans
-    ]
-    return timeline(acts, len(acted))
 
 
 def stops(sentence: Sentence) -> float:

@@ -3,7 +3,7 @@
 The loss is MoFusion's with the departures of the recipe. A killed run continues from its last save.
 """
 
-from collections.abc import Callable, Hashable
+from collections.abc import Callable, Hashable, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache, partial
 from pathlib import Path
@@ -16,6 +16,7 @@ from torch import Tensor, nn
 from .._files import digest_of_tensors, digest_of_texts
 from ..beyond import loss_terms
 from ..beyond.schedules import shifted
+from ..beyond.timeline import Timed, timeline
 from ..conditions.clip import Clip, check
 from ..conditions.clip import load as load_clip
 from ..conditions.text import base_vocabulary, read
@@ -62,7 +63,6 @@ def described(clips: int, seed: int) -> DescribedData:
     from data_synth.actions import clips as drawn
     from data_synth.actions.dataset import mirrored_sentence
     from data_synth.actions.neighbours import neighbour
-    from data_synth.actions.performance import acted_timeline
 
     positions = []
     contacts = []
@@ -76,7 +76,7 @@ def described(clips: int, seed: int) -> DescribedData:
         positions.append(acted.positions)
         contacts.append(acted.contacts)
         texts.append(one.captions)
-        timelines.append(acted_timeline(acted))
+        timelines.append(timeline_of(acted.spans, len(acted)))
         n, other = len(acted) // GRID * GRID, neighbour(acted.sentence, rng)
         truths.setdefault(n, []).append((acted.sentence, mirrored_sentence(acted.sentence)))
         wrong = read(caption(other, rng), words, {}).words if other else ()
@@ -89,15 +89,20 @@ def described(clips: int, seed: int) -> DescribedData:
 def training_texts(clips: int, seed: int) -> DescribedWindows:
     """The same data with whole captions, for a network that reads by CLIP."""
     from data_synth.actions import clips as drawn
-    from data_synth.actions.performance import acted_timeline
 
     made = list(drawn(clips, seed))
     return DescribedWindows.of_texts(
         [one.acted.positions for one in made],
         [one.acted.contacts for one in made],
         [one.captions for one in made],
-        [acted_timeline(one.acted) for one in made],
+        [timeline_of(one.acted.spans, len(one.acted)) for one in made],
     )
+
+
+def timeline_of(spans: Sequence, frames: int) -> Float[np.ndarray, "{frames} 22"]:
+    """The timeline of a clip of `data_synth.actions`, from its spans."""
+    acts = [Timed(one.act.verb, one.act.side, one.act.count, one.first, one.last) for one in spans]
+    return timeline(acts, frames)
 
 
 def train_mover(

@@ -32,8 +32,8 @@ def test_the_bag_is_the_mean_of_its_words():
 
 
 def test_a_bag_cannot_tell_forth_from_back_and_a_sequence_can():
-    ids, x, s = ids_of([FORTH, BACK], WORDS), torch.randn(1, 40, SMALL.D), torch.tensor([20, 20])
-    x = x.expand(2, -1, -1)
+    ids, s = ids_of([FORTH, BACK], WORDS), torch.tensor([20, 20])
+    x = torch.randn(1, 40, SMALL.D).expand(2, -1, -1)
     with torch.no_grad():
         both = mover(BagConfig).denoiser(ids)(x, s)
         torch.testing.assert_close(both[0], both[1])

@@ -6,7 +6,6 @@ import torch
 
 from data_synth.actions import clips, mirror
 from data_synth.actions.acts import VERBS as ACTS
-from data_synth.actions.performance import acted_timeline
 from motiondiff_edu.beyond.timeline import (
     ARMS,
     COUNTED,
@@ -21,6 +20,7 @@ from motiondiff_edu.beyond.timeline import (
     timeline,
 )
 from motiondiff_edu.metrics import sentences
+from motiondiff_edu.recipes.train_mover import timeline_of
 
 
 def test_its_verbs_are_those_of_the_sentences():
@@ -66,9 +66,10 @@ def test_a_verb_that_there_is_not_is_refused():
 @pytest.mark.parametrize("k", range(8))
 def test_the_mirrored_clip_has_the_mirrored_timeline(k):
     (*_, one) = clips(k + 1, 5)
-    made = acted_timeline(one.acted)
+    made = timeline_of(one.acted.spans, len(one.acted))
     turned = mirrored(torch.from_numpy(made)).numpy()
-    np.testing.assert_array_equal(acted_timeline(mirror(one).acted), turned)
+    other = mirror(one).acted
+    np.testing.assert_array_equal(timeline_of(other.spans, len(other)), turned)
     assert made.shape == (len(one.acted), D)
     counts = [a.count for p in one.acted.sentence for a in p.acts if a.verb in COUNTED]
     assert made[:, TO_COME:MIDDLE].max() == max(counts, default=0)

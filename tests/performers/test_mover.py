@@ -10,7 +10,6 @@ from small_movers import SMALL, WORDS, mover_of
 
 import motiondiff_edu as md
 from data_synth.actions import clips
-from data_synth.actions.performance import acted_timeline
 from motiondiff_edu.beyond import timeline
 from motiondiff_edu.conditions.text import TextError
 from motiondiff_edu.conditions.word_encoder import NOTHING, PADDING, WordEncoder, ids_of, present
@@ -22,6 +21,7 @@ from motiondiff_edu.performers.described_windows import DescribedWindows
 from motiondiff_edu.performers.mover import Mover
 from motiondiff_edu.performers.text_mofusion import TextMoFusion
 from motiondiff_edu.pretrained import checkpoints
+from motiondiff_edu.recipes.train_mover import timeline_of
 from motiondiff_edu.training import TrainState, train_steps
 
 
@@ -42,7 +42,7 @@ def windows() -> DescribedWindows:
         [one.acted.contacts for one in made],
         [one.captions for one in made],
         WORDS,
-        [acted_timeline(one.acted) for one in made],
+        [timeline_of(one.acted.spans, len(one.acted)) for one in made],
     )
 
 

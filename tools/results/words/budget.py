@@ -29,24 +29,21 @@ from .rows import STEPS, performed
 from .scores import Panel, nearer, retrieved, sliding
 from .trials import UNSEEN, Positions
 
-
-def sizes(**changes) -> dict:
-    """The mover's sizes, changed."""
-    return {"config": replace(MOVER.config, **changes)}
+SIZES = MOVER.config
 
 
 def network_of(config: type) -> dict:
     """Another network with the mover's sizes."""
-    same = {name: getattr(MOVER.config, name) for name in MOVER.config.__dataclass_fields__}
+    same = {name: getattr(SIZES, name) for name in SIZES.__dataclass_fields__}
     return {"config": config(**same)}
 
 
 # name: (what differs, in words, changes of the recipe)
 VARIANTS: dict[str, tuple[str, dict]] = {
     "ours": ("the mover's recipe", {}),
-    "no-timeline": ("no timeline beside the motion", sizes(D=moving_frame.D)),
+    "no-timeline": ("no timeline beside the motion", {"config": replace(SIZES, D=moving_frame.D)}),
     "no-kinematic": ("no kinematic losses", {"kinematic": None}),
-    "shallow": ("no further layers in the middle", sizes(depth=0)),
+    "shallow": ("no further layers in the middle", {"config": replace(SIZES, depth=0)}),
     "columns-alike": ("errors in standard deviations, not in metres", {"metres": 0.0}),
     "plain-loss": ("errors of poses alone", {"loss_weights": DanceLossWeights()}),
     "cosine": ("the cosine schedule as it is", {"snr": 1.0}),
