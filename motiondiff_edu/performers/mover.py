@@ -127,7 +127,6 @@ class Mover(Performer):
         made = [Motion(x, FPS, source=source) for x in made.double().cpu().numpy()]
         return made if samples > 1 else made[0]
 
-    @torch.inference_mode()
     def act_ids(
         self,
         ids: Texts,
@@ -137,21 +136,48 @@ class Mover(Performer):
         steps: int | None = STEPS,
         eta: float = ETA,
         guidance: float = 1.0,
-        start: Float[Tensor, "B T D"] | None = None,
+        start: Float[Tensor, "B T F"] | None = None,
     ) -> Float[Tensor, "B T 21 3"]:
         """Motions in metres for texts as the network takes them (`reader.encoded`), one each.
 
         `start` is the noise to begin with (default: drawn); pass the same to compare two texts.
         """
+        how = {"generator": generator, "steps": steps, "eta": eta, "guidance": guidance}
+        return self.positions_of(self.act_units(ids, frames, start=start, **how))
+
+    @torch.inference_mode()
+    def act_units(
+        self,
+        ids: Texts,
+        frames: int,
+        *,
+        generator: Generators | None = None,
+        steps: int | None = STEPS,
+        eta: float = ETA,
+        guidance: float = 1.0,
+        start: Float[Tensor, "B T F"] | None = None,
+    ) -> Float[Tensor, "B T F"]:
+        """The same in the network's units, with all columns that it generates.
+
+        `positions_of` makes motions of them, and `timeline_of` shows what was planned.
+        """
         denoise = self.denoiser(ids, guidance)
         where = self.motion_scaler.mean.new_empty(len(ids), frames, self.config.D)
         x_S = draw(where, generator) if start is None else start.to(self.device)
-        x0 = sampled(denoise, x_S, self.schedule, steps, eta, generator)
-        return self.positions_of(x0)
+        return sampled(denoise, x_S, self.schedule, steps, eta, generator)
 
     def positions_of(self, x0: Float[Tensor, "*B T F"]) -> Float[Tensor, "*B T 21 3"]:
         """Motions in metres, of the network's units; columns of a timeline are left out."""
         return to_positions(self.motion_scaler.inverse(x0)[..., :D])
+
+    def timeline_of(self, x0: Float[Tensor, "*B T F"]) -> Float[Tensor, "*B T P"]:
+        """The timeline that was generated with a motion (`beyond/timeline.py`).
+
+        Raises ValueError for a network that has none.
+        """
+        if self.config.D == D:
+            raise ValueError("this mover generates motions alone, without a timeline")
+        return self.motion_scaler.inverse(x0)[..., D:]
 
     def units_of(self, positions: Float[np.ndarray, "T 21 3"]) -> Float[Tensor, "T F"]:
         """A motion in the network's units. Its timeline, which nobody knows, is 0, the mean.

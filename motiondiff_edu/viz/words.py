@@ -9,7 +9,10 @@ import numpy as np
 from jaxtyping import Float, Int
 from matplotlib.figure import Figure
 
-from .style import SMALL, figure
+from ..beyond.timeline import ARMS, LEGS, MIDDLE, TO_COME, VERBS
+from ..motion.planting import runs
+from ..motion.root_frame import FPS
+from .style import OKABE_ITO, SMALL, figure
 
 
 def words_over_time(
@@ -54,4 +57,28 @@ def asked_and_shown(
     axis.set_xticks(range(len(columns)), columns)
     axis.set_yticks(range(len(rows)), rows)
     axis.set(xlabel="recognised", ylabel="asked for")
+    return fig
+
+
+def timelines(plans: Mapping[str, Float[np.ndarray, "T 22"]], words: str) -> Figure:
+    """Timelines (`beyond/timeline.py`, 20 frames/s), one below another.
+
+    The lines are how many times are still to come; a hill is each time, with its verb below it.
+    """
+    fig, axes = figure(9.5, 0.8 + 2.0 * len(plans), words, len(plans), 1, share="x")
+    for axis, (name, plan) in zip(axes, plans.items(), strict=True):
+        at = np.arange(len(plan)) / FPS
+        for part, (whose, verbs) in enumerate((("legs", LEGS), ("arms", ARMS))):
+            colour = OKABE_ITO[part]
+            columns = plan[:, [VERBS.index(verb) for verb in verbs]]
+            axis.fill_between(at, plan[:, MIDDLE + part], color=colour, alpha=0.35, lw=0)
+            axis.plot(at, plan[:, TO_COME + part], color=colour, label=f"{whose}: to come")
+            for verb, column in zip(verbs, columns.T, strict=True):
+                for first, last in runs(column > 0.5):
+                    axis.text((first + last) / 2 / FPS, -0.25 - 0.75 * part, verb, color=colour,
+                              ha="center", va="top", fontsize=SMALL)  # fmt: skip
+        axis.set_title(name, loc="left", fontsize=SMALL)
+        axis.set(ylim=(-1.9, max(4.5, plan[:, TO_COME:MIDDLE].max() + 0.4)), yticks=range(5))
+    axes[0].legend(loc="upper right")
+    axes[-1].set_xlabel("time (s)")
     return fig

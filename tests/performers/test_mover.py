@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import torch
-from small_movers import SMALL, WORDS, mover_of
+from small_movers import SMALL, SPREAD, WORDS, mover_of
 
 import motiondiff_edu as md
 from data_synth.actions import clips
@@ -15,7 +15,7 @@ from motiondiff_edu.conditions.text import TextError
 from motiondiff_edu.conditions.word_encoder import NOTHING, PADDING, WordEncoder, ids_of, present
 from motiondiff_edu.ddpm import cosine_schedule
 from motiondiff_edu.kinematic_loss import training_loss
-from motiondiff_edu.motion.moving_frame import D
+from motiondiff_edu.motion.moving_frame import D, to_features
 from motiondiff_edu.motion.scaler import Scaler
 from motiondiff_edu.performers.described_windows import DescribedWindows
 from motiondiff_edu.performers.mover import Mover
@@ -71,6 +71,27 @@ def test_a_sentence_makes_motions(mover):
     assert np.abs(second.positions - alone.positions).max() > 0.01
     other = mover.act("kicks with the left foot", seconds=2.5, steps=3, progress=False)
     assert np.abs(other.positions - alone.positions).max() > 0.001
+
+
+def test_a_motion_comes_with_its_timeline(mover):
+    ids = ids_of([("walk",), ("kick",)], WORDS)
+    units = mover.act_units(ids, 40, steps=3, generator=seeded())
+    assert units.shape == (2, 40, SMALL.D)
+    made = mover.act_ids(ids, 40, steps=3, generator=seeded())
+    torch.testing.assert_close(mover.positions_of(units), made)
+    wanted = units[..., D:] * SPREAD.std[D:] + SPREAD.mean[D:]
+    torch.testing.assert_close(mover.timeline_of(units), wanted)
+    alone = mover_of(replace(SMALL, D=D), Scaler.nothing(D))
+    with pytest.raises(ValueError, match="motions alone, without a timeline"):
+        alone.timeline_of(torch.zeros(40, D))
+
+
+def test_a_motion_of_others_has_no_timeline(mover):
+    positions = next(iter(clips(1, 8))).acted.positions[:40]
+    units = mover.units_of(positions)
+    assert units.shape == (40, SMALL.D) and not units[:, D:].any()
+    back = mover.motion_scaler.inverse(units)[:, :D]
+    torch.testing.assert_close(back, torch.from_numpy(to_features(positions)).float())
 
 
 def test_guidance_of_one_is_the_conditional_network_and_more_leads_away_from_no_text(mover):

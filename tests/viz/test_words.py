@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from motiondiff_edu.beyond.timeline import TO_COME, Timed, timeline
 from motiondiff_edu.viz import words as viz
 from motiondiff_edu.viz.style import caption
 
@@ -26,3 +27,17 @@ def test_what_was_asked_stands_in_rows_with_its_numbers():
     assert written[0, 0] == "9" and written[2, 1] == "4" and len(written) == 6
     np.testing.assert_allclose(axis.images[0].get_array()[1], [0.25, 0.25, 0.5])
     assert [text.get_text() for text in axis.get_yticklabels()] == ["one", "two"]
+
+
+def test_a_timeline_shows_its_verbs_what_is_to_come_and_each_time():
+    plan = timeline([Timed("kick", "left", 2, 1.0, 3.0), Timed("clap", "", 3, 0.5, 2.0)], 80)
+    fig = viz.timelines({"both at once": plan, "again": plan}, "Two timelines.")
+    first, second = fig.axes
+    assert [text.get_text() for text in first.texts] == ["kick", "clap"]
+    kick, clap = (text.get_position() for text in first.texts)
+    assert kick[0] == 2.0 and clap[0] == 1.25 and clap[1] < kick[1]
+    legs, arms = first.lines
+    np.testing.assert_array_equal(legs.get_ydata(), plan[:, TO_COME])
+    np.testing.assert_array_equal(arms.get_ydata(), plan[:, TO_COME + 1])
+    assert legs.get_xdata()[-1] == 79 / 20 and len(first.collections) == 2
+    assert first.get_title("left") == "both at once" and not second.get_legend()
