@@ -1,10 +1,10 @@
-"""A timeline, generated with the motion: what the legs and the arms do, when, and how often still.
+"""A timeline, generated before the motion: what the legs and the arms do, when, how often still.
 
 "Kicks three times" is one number for a whole motion, and a network that sees noise frame by frame
-has to make it out of many frames far apart. With a timeline beside the motion each frame says what
-is going on and how many times are still to come, so counting becomes a matter of neighbours: every
-kick takes one away. The timeline is noised and denoised with the motion, as more columns of it.
-Nobody has to give it: it is made from the text, and the motion is made to go with it.
+has to make it out of many frames far apart. In a timeline each frame says what is going on and how
+many times are still to come, so counting becomes a matter of neighbours: every kick takes one away.
+A small network generates the timeline from the text, and the motion is generated for both
+(`performers/planned_mofusion.py`). Nobody has to give a timeline, but one can.
 
 Columns of a frame:
     0:16   one for each verb, 1 while it is performed
@@ -19,9 +19,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from jaxtyping import Float
+import torch
+from jaxtyping import Bool, Float
+from scipy.ndimage import median_filter
 from torch import Tensor
 
+from ..motion.planting import runs
 from ..motion.root_frame import FPS
 
 LEGS = ("walk", "run", "back", "aside", "turn", "stand", "squat", "jump", "kick", "sit", "bow")
@@ -31,6 +34,7 @@ SIDES = {"left": 1.0, "right": -1.0}
 VERBS = LEGS + ARMS
 SIDE, TO_COME, MIDDLE = (len(VERBS) + 2 * k for k in range(3))  # of the legs; the arms come next
 D = MIDDLE + 2  # 22
+SMOOTHED, SHORTEST = 5, 6  # frames
 SPREAD = 0.4  # the standard deviation that all columns are given, so that rare verbs weigh no more
 
 
@@ -69,8 +73,49 @@ def timeline(acts: Sequence[Timed], frames: int) -> Float[np.ndarray, "{frames} 
     return made
 
 
+def acts_of(made: Float[np.ndarray, "T 22"]) -> list[Timed]:
+    """The acts of a timeline, in the order of their beginnings; it need not be a clean one.
+
+    An act lasts while its verb's column is above one half, its side stays, and the times to come do
+    not rise. What lasts under SHORTEST frames is no act.
+    """
+    acts = []
+    smooth = median_filter(made, (SMOOTHED, 1), mode="nearest")
+    for column, verb in enumerate(VERBS):
+        part = int(verb in ARMS)
+        side = np.round(smooth[:, SIDE + part]).astype(int)
+        to_come = np.round(smooth[:, TO_COME + part]).astype(int)
+        if verb not in COUNTED:
+            to_come[:] = 1
+        breaks = (np.diff(side, prepend=side[:1]) != 0) | (np.diff(to_come, prepend=99) > 0)
+        for first, last in runs(smooth[:, column] > 0.5):
+            cuts = [first, *(first + 1 + np.flatnonzero(breaks[first + 1 : last])), last]
+            for begin, end in zip(cuts, cuts[1:], strict=False):
+                if end - begin >= SHORTEST:
+                    words = {1: "left", -1: "right"}
+                    whose = words.get(int(np.median(side[begin:end])), "")
+                    count = max(1, int(to_come[begin : begin + 3].max()))
+                    acts.append(Timed(verb, whose, count, begin / FPS, end / FPS))
+    return sorted(acts, key=lambda one: one.first)
+
+
+def tidied(made: Float[Tensor, "*B T 22"]) -> Float[Tensor, "*B T 22"]:
+    """Timelines as they would be written for their acts: whole numbers, sharp edges."""
+    rows = made.double().cpu().numpy().reshape(-1, *made.shape[-2:])
+    clean = np.stack([timeline(acts_of(row), len(row)) for row in rows])
+    return torch.from_numpy(clean).to(made).reshape(made.shape)
+
+
 def mirrored(columns: Float[Tensor, "*B T F"]) -> Float[Tensor, "*B T F"]:
     """The timeline of the mirrored motion: left and right exchanged. None (F = 0) stays none."""
     sign = columns.new_ones(D)
     sign[SIDE:TO_COME] = -1
     return columns * sign[: columns.shape[-1]]
+
+
+def of_the_legs() -> Bool[Tensor, "22"]:
+    """True for the columns of the legs; the others are those of the arms."""
+    legs = torch.zeros(D, dtype=torch.bool)
+    legs[: len(LEGS)] = True
+    legs[[SIDE, TO_COME, MIDDLE]] = True
+    return legs

@@ -50,9 +50,12 @@ def edit_by_words(
     generator = generator or torch.Generator().manual_seed(0)
     given, schedule = mover.units_of(positions).expand(samples, -1, -1), mover.schedule
     mask = np.zeros((len(positions), J), bool) if known is None else np.asarray(known)
-    held = columns(torch.from_numpy(mask), mover.config.D).to(given.device).expand(given.shape)
+    held = columns(torch.from_numpy(mask)).to(given.device).expand(given.shape)
     start = q_sample(given, ways[0], schedule, draw(given, generator))
-    denoise = mover.denoiser(texts)
+    plan = None
+    if mover.can_plan:
+        plan = mover.plans(texts, len(positions), steps=steps, eta=ETA, generator=generator)
+    denoise = mover.denoiser(texts, 1.0, plan)
     if held.any():
         denoise = blended(denoise, schedule, given, held, fade=FADE)
     loop = inpaint_steps(
@@ -74,14 +77,10 @@ def visited(S: int, steps: int, strength: float) -> list[int]:
     return [s for s in every if s <= round(strength * S)] or every[-1:]
 
 
-def columns(known: Bool[Tensor, "T 21"], F: int = D) -> Bool[Tensor, "T {F}"]:
-    """The network's columns of these joints; the root's velocity is known with the pelvis.
-
-    Nothing is known of columns behind the 66 of a motion.
-    """
+def columns(known: Bool[Tensor, "T 21"]) -> Bool[Tensor, "T 66"]:
+    """The network's columns of these joints; the root's velocity is known with the pelvis."""
     joints = known.repeat_interleave(3, dim=-1)
-    of_a_motion = torch.cat([joints, known[:, HIPS, None].expand(-1, D - 3 * J)], -1)
-    return torch.nn.functional.pad(of_a_motion, (0, F - D))
+    return torch.cat([joints, known[:, HIPS, None].expand(-1, D - 3 * J)], -1)
 
 
 def at_the_start_of(

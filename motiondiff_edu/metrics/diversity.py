@@ -42,7 +42,7 @@ def diversity(features: Float[np.ndarray, "*B N F"]) -> float | Float[np.ndarray
 
     Normalise by the data first: `frechet.normalise(features, data)`.
     Raises ValueError for fewer than two vectors.
-    Source: MoFusion 4.1, Table 1.  Notebook: 14
+    Source: MoFusion 4.1, Table 1, Table 2.  Notebook: 14
     """
     n = features.shape[-2]
     if n < 2:
@@ -57,6 +57,6 @@ def multimodality(features: Float[np.ndarray, "B K F"]) -> float:
     The result is the average over B pieces. The paper uses K = 50 and leaves the rest open; here
     all pairs count, and the features are normalised by the data before.
     Raises ValueError for fewer than two dances per piece.
-    Source: MoFusion 4.1, Table 1.   Notebook: 14
+    Source: MoFusion 4.1, Table 1, Table 2.   Notebook: 14
     """
     return float(np.mean(diversity(features)))

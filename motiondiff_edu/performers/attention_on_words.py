@@ -57,14 +57,16 @@ def attention_on_words(
     if not 1 <= s <= mover.schedule.S:
         raise ValueError(f"this mover's steps are 1 to {mover.schedule.S}, not {s}")
     words = read(text, mover.config.words).words
+    ids = ids_of([words], mover.config.words)
     x0 = mover.units_of(positions)[None]
     x_s = q_sample(x0, s, mover.schedule, draw(x0, generator))
+    plan = mover.plans(ids, x0.shape[1], generator=generator) if mover.can_plan else None
+    denoise = mover.denoiser(ids, plan=plan)
     with watch(mover.model) as seen:
-        context = mover.model.listen(ids_of([words], mover.config.words).to(mover.device))
-        mover.model(x_s, torch.tensor([s], device=mover.device), context)
+        denoise(x_s, torch.tensor([s], device=mover.device))
     levels = {
-        name.removeprefix("unet.").removesuffix(".attention"): maps[0][0].mean(0).cpu().numpy()
+        name.split("unet.")[-1].removesuffix(".attention"): maps[0][0].mean(0).cpu().numpy()
         for name, maps in seen.items()
-        if ".ask." in name
+        if ".ask." in name and maps  # a planner was not asked
     }
     return WordMaps(words, levels)

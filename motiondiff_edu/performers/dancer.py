@@ -1,6 +1,6 @@
 """A dancer: MoFusion's network, its schedule, and its scalers. It turns music into a dance.
 
-Source: MoFusion 3, 4.1.  Notebook: 00, 12
+Source: MoFusion 3, 4.1, Fig. 1.  Notebook: 00, 12
 """
 
 import copy

@@ -1,10 +1,11 @@
 """A mover: MoFusion from text with its units. It turns a sentence into motions.
 
-Source: MoFusion 3, 4.2.
+Source: MoFusion 3, 4.2, Fig. 1, Fig. 6.
 """
 
 import copy
 import warnings
+from collections.abc import Callable
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -13,6 +14,7 @@ from jaxtyping import Float
 from torch import Tensor, nn
 
 from ..beyond.classifier_free import guided_by_text
+from ..beyond.timeline import tidied
 from ..conditions.clip import Clip, check
 from ..conditions.word_encoder import WordReader
 from ..ddpm import Denoiser, Generators, Schedule, draw
@@ -23,6 +25,7 @@ from ..motion.root_frame import FPS
 from ..motion.scaler import Scaler
 from ..prediction import denoiser_of
 from .performer import Performer, generators, sampled
+from .planned_mofusion import PlannedMoFusion
 from .text_mofusion import Texts
 from .with_bar import with_bar
 
@@ -70,22 +73,69 @@ class Mover(Performer):
         """How this network reads: `read(text)`, and `encoded(...)` for what the network takes."""
         return self.clip or WordReader(self.config.words)
 
-    def denoiser(self, ids: Texts, guidance: float = 1.0, fast: bool = True) -> Denoiser:
-        """`denoise(x_s, s) -> eps_hat` for these texts (`reader.encoded`).
+    def denoiser(
+        self,
+        ids: Texts,
+        guidance: float = 1.0,
+        plan: Float[Tensor, "#B T 22"] | None = None,
+        fast: bool = True,
+    ) -> Denoiser:
+        """`denoise(x_s, s) -> eps_hat` of motions for these texts (`reader.encoded`).
 
         `guidance`: w of `beyond.classifier_free`; 1 is the conditional network.
+        `plan`: a timeline for each (`plans`), which a network that plans needs.
+        Raises ValueError for a network that plans without a plan, or a plan for another.
         """
+        if (plan is None) == self.can_plan:
+            what = "needs one: see `plans`" if plan is None else "takes none"
+            raise ValueError(f"plan: this mover {what}")
+        given = () if plan is None else (self.plan_scaler.transform(plan.to(self.device)),)
+
+        def network(context):
+            plans = (one.expand(len(ids), -1, -1) for one in given)
+            return lambda x_s, s, plans=tuple(plans): self._evaluated(x_s, s, context, *plans)
+
+        return self._guided(ids, guidance, self.model.listen, network)
+
+    def _guided(self, ids: Texts, guidance: float, listen: Callable, network: Callable) -> Denoiser:
+        """The denoiser of a network for these texts, away from no text if guidance is not 1."""
         texts = [ids] if guidance == 1 else [ids, self.reader.encoded([()] * len(ids))]
-        contexts = [self.model.listen(one.to(self.device)) for one in texts]
         conditional, *nothing = (
-            denoiser_of(
-                lambda x_s, s, context=context: self._evaluated(x_s, s, context),
-                self.schedule,
-                self.config.target,
-            )
-            for context in contexts
+            denoiser_of(network(listen(one.to(self.device))), self.schedule, self.config.target)
+            for one in texts
         )
         return guided_by_text(conditional, nothing[0], guidance) if nothing else conditional
+
+    @property
+    def can_plan(self) -> bool:
+        """Whether a timeline is generated before the motion (`performers/planned_mofusion.py`)."""
+        return isinstance(self.model, PlannedMoFusion)
+
+    @torch.inference_mode()
+    def plans(
+        self,
+        ids: Texts,
+        frames: int,
+        *,
+        generator: Generators | None = None,
+        steps: int | None = STEPS,
+        eta: float = ETA,
+        guidance: float = 1.0,
+        start: Float[Tensor, "B T 22"] | None = None,
+    ) -> Float[Tensor, "B T 22"]:
+        """Timelines for texts (`beyond/timeline.py`), tidied up; for a network that plans.
+
+        `start` is the noise to begin with (default: drawn).
+        """
+        planner = self.model.planner
+        denoise = self._guided(
+            ids, guidance, planner.listen,
+            lambda context: lambda x_s, s: planner(x_s, s, context),
+        )  # fmt: skip
+        where = self.motion_scaler.mean.new_empty(len(ids), frames, planner.config.D)
+        x_S = draw(where, generator) if start is None else start.to(self.device)
+        made = sampled(denoise, x_S, self.schedule, steps, eta, generator)
+        return tidied(self.plan_scaler.inverse(made))
 
     def act(
         self,
@@ -127,6 +177,7 @@ class Mover(Performer):
         made = [Motion(x, FPS, source=source) for x in made.double().cpu().numpy()]
         return made if samples > 1 else made[0]
 
+    @torch.inference_mode()
     def act_ids(
         self,
         ids: Texts,
@@ -136,55 +187,37 @@ class Mover(Performer):
         steps: int | None = STEPS,
         eta: float = ETA,
         guidance: float = 1.0,
-        start: Float[Tensor, "B T F"] | None = None,
+        start: Float[Tensor, "B T 66"] | None = None,
+        plan: Float[Tensor, "#B T 22"] | None = None,
     ) -> Float[Tensor, "B T 21 3"]:
         """Motions in metres for texts as the network takes them (`reader.encoded`), one each.
 
         `start` is the noise to begin with (default: drawn); pass the same to compare two texts.
+        `plan`: the timelines of the motions; by default a network that plans makes its own.
         """
-        how = {"generator": generator, "steps": steps, "eta": eta, "guidance": guidance}
-        return self.positions_of(self.act_units(ids, frames, start=start, **how))
-
-    @torch.inference_mode()
-    def act_units(
-        self,
-        ids: Texts,
-        frames: int,
-        *,
-        generator: Generators | None = None,
-        steps: int | None = STEPS,
-        eta: float = ETA,
-        guidance: float = 1.0,
-        start: Float[Tensor, "B T F"] | None = None,
-    ) -> Float[Tensor, "B T F"]:
-        """The same in the network's units, with all columns that it generates.
-
-        `positions_of` makes motions of them, and `timeline_of` shows what was planned.
-        """
-        denoise = self.denoiser(ids, guidance)
-        where = self.motion_scaler.mean.new_empty(len(ids), frames, self.config.D)
+        if plan is None and self.can_plan:
+            how = {"generator": generator, "steps": steps, "eta": eta, "guidance": guidance}
+            plan = self.plans(ids, frames, **how)
+        denoise = self.denoiser(ids, guidance, plan)
+        where = self.motion_scaler.mean.new_empty(len(ids), frames, D)
         x_S = draw(where, generator) if start is None else start.to(self.device)
-        return sampled(denoise, x_S, self.schedule, steps, eta, generator)
+        return self.positions_of(sampled(denoise, x_S, self.schedule, steps, eta, generator))
 
-    def positions_of(self, x0: Float[Tensor, "*B T F"]) -> Float[Tensor, "*B T 21 3"]:
-        """Motions in metres, of the network's units; columns of a timeline are left out."""
-        return to_positions(self.motion_scaler.inverse(x0)[..., :D])
+    @property
+    def pose_scaler(self) -> Scaler:
+        """The scaler of motions, without the columns of timelines."""
+        return Scaler(self.motion_scaler.mean[:D], self.motion_scaler.std[:D])
 
-    def timeline_of(self, x0: Float[Tensor, "*B T F"]) -> Float[Tensor, "*B T P"]:
-        """The timeline that was generated with a motion (`beyond/timeline.py`).
+    @property
+    def plan_scaler(self) -> Scaler:
+        """The scaler of timelines."""
+        return Scaler(self.motion_scaler.mean[D:], self.motion_scaler.std[D:])
 
-        Raises ValueError for a network that has none.
-        """
-        if self.config.D == D:
-            raise ValueError("this mover generates motions alone, without a timeline")
-        return self.motion_scaler.inverse(x0)[..., D:]
+    def positions_of(self, x0: Float[Tensor, "*B T 66"]) -> Float[Tensor, "*B T 21 3"]:
+        """Motions in metres, of the network's units."""
+        return to_positions(self.pose_scaler.inverse(x0))
 
-    def units_of(self, positions: Float[np.ndarray, "T 21 3"]) -> Float[Tensor, "T F"]:
-        """A motion in the network's units. Its timeline, which nobody knows, is 0, the mean.
-
-        Raises ValueError for another skeleton.
-        """
+    def units_of(self, positions: Float[np.ndarray, "T 21 3"]) -> Float[Tensor, "T 66"]:
+        """A motion in the network's units.  Raises ValueError for another skeleton."""
         features = torch.from_numpy(to_features(positions)).float().to(self.device)
-        mean, std = self.motion_scaler.mean, self.motion_scaler.std
-        units = (features - mean[:D]) / std[:D]
-        return torch.nn.functional.pad(units, (0, self.config.D - D))
+        return self.pose_scaler.transform(features)

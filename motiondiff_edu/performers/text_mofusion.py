@@ -11,7 +11,6 @@ from dataclasses import dataclass
 from jaxtyping import Float, Int
 from torch import Tensor, nn
 
-from ..beyond import timeline
 from ..beyond.self_attention import DEPTH, SelfAttendingMoFusion
 from ..conditions import clip as clips
 from ..conditions.clip_encoder import ClipEncoder, ClipTokens
@@ -32,7 +31,7 @@ class TextMoFusionConfig(MoFusionConfig):
     It reads `words` of its own, or with `clip` what the CLIP of this name makes of a text.
     """
 
-    D: int = moving_frame.D + timeline.D
+    D: int = moving_frame.D
     C: int = 96
     music_layers: int = 0
     words: tuple[str, ...] = ()

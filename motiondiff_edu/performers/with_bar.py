@@ -18,8 +18,8 @@ def with_bar(
     with bar(evaluations, what, shown) as step:
         twin = copy.copy(performer)
 
-        def denoiser(first, second, fast: bool = True):  # past and control, or mel and frames
-            denoise = performer.denoiser(first, second, fast)
+        def denoiser(*condition, fast: bool = True):  # past and control, mel and frames, texts
+            denoise = performer.denoiser(*condition, fast=fast)
 
             def stepping(x_s, s):
                 answer = denoise(x_s, s)

@@ -9,11 +9,10 @@ from torch import Tensor, nn
 from ..beyond import loss_terms
 from ..ddpm import Schedule, squared_error
 from ..kinematic_loss import Body, KinematicWeights, kinematic_parts, over_time, training_loss
-from ..mofusion import Music
 from ..motion.scaler import Scaler
 from .dancers import DanceLossWeights
 
-BatchLoss = Callable[[nn.Module, Tensor, Music | None, Tensor, torch.Generator], Tensor]
+BatchLoss = Callable[[nn.Module, Tensor, object, Tensor, torch.Generator], Tensor]
 
 
 def batch_loss(
@@ -33,7 +32,7 @@ def batch_loss(
     def of_batch(
         model: nn.Module,
         x0: Float[Tensor, "B T D"],
-        context: Music | None,
+        context: object,
         planted: Bool[Tensor, "B T 2"],
         generator: torch.Generator,
     ) -> Float[Tensor, ""]:

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 
 from ..conditions import clip
 from ..kinematic_loss import KinematicWeights
+from ..performers.planned_mofusion import PlannedConfig
 from ..performers.text_mofusion import TextMoFusionConfig
 from .dancers import KINEMATIC, OURS, DanceLossWeights
 
@@ -39,8 +40,8 @@ class MoverRecipe:
 
 MOVER_PLAIN = MoverRecipe(
     "mover-plain",
-    TextMoFusionConfig(),
-    steps=16_000,
+    PlannedConfig(),
+    steps=12_000,
     loss_weights=OURS,
     metres=1.0,
     snr=0.1,

@@ -22,12 +22,13 @@ from ..conditions.clip import load as load_clip
 from ..conditions.text import base_vocabulary, read
 from ..conditions.word_encoder import NOTHING, PADDING, ids_of
 from ..ddpm import Schedule, cosine_schedule
+from ..kinematic_loss import training_loss
 from ..motion import moving_frame
-from ..motion.scaler import Scaler
 from ..motion.skeleton import TOES
 from ..performers.described_windows import GRID, DescribedWindows
 from ..performers.mover import Mover
 from ..performers.networks import network
+from ..performers.planned_mofusion import Performing, PlannedMoFusion
 from ..performers.text_mofusion import Texts
 from ..training import LossFn
 from .mofusion_loss import batch_loss, weighted_loss
@@ -183,10 +184,10 @@ def loss_of(
 
     `texts_of` makes of the windows' ids what the network takes.
     """
-    scaler = windows.scaler
-    moved = partial(toes_moved, windows)
-    columns = column_weights(scaler, recipe.metres) if recipe.metres else None
-    loss = weighted_loss(recipe.loss_weights, schedule, scaler, poses_move, moved, columns)
+    alone = windows.without_timeline()
+    scaler, moved = alone.scaler, partial(toes_moved, alone)
+    columns = loss_terms.metre_weights(scaler.std, recipe.metres) if recipe.metres else None
+    loss = weighted_loss(recipe.loss_weights, schedule, scaler, moving_frame.moves, moved, columns)
     of_batch = batch_loss(recipe.kinematic, loss, schedule, scaler, moving_frame.body_of)
 
     def loss_fn(model: nn.Module, generator: torch.Generator) -> Tensor:
@@ -194,7 +195,12 @@ def loss_of(
         x0, ids, planted = windows.draw(recipe.frames, generator)
         ids = without_some(ids, recipe.no_text, generator)
         x0, texts, planted = (part.to(device) for part in (x0, texts_of(ids), planted))
-        return of_batch(model, x0, model.listen(texts), planted, generator)
+        x0, plan = x0[..., : moving_frame.D], x0[..., moving_frame.D :]
+        heard = model.listen(texts)
+        if not isinstance(model, PlannedMoFusion):
+            return of_batch(model, x0, heard, planted, generator)
+        planning = training_loss(model.planner, (plan, heard.plan), schedule, generator)
+        return planning + of_batch(Performing(model, plan), x0, heard, planted, generator)
 
     return loss_fn
 
@@ -209,25 +215,13 @@ def without_some(
     return torch.where(left_out[:, None], empty, ids)
 
 
-def column_weights(scaler: Scaler, metres: float) -> Float[Tensor, "D"]:
-    """Weights of the columns: of poses by their spread; a timeline's have the mean weight, 1."""
-    weights = torch.ones_like(scaler.std)
-    weights[: moving_frame.D] = loss_terms.metre_weights(scaler.std[: moving_frame.D], metres)
-    return weights
-
-
-def poses_move(features: Float[Tensor, "*B T F"]) -> Float[Tensor, "*B T2 21 3"]:
-    """How far each joint moves from frame to frame; a timeline moves nothing."""
-    return moving_frame.moves(features[..., : moving_frame.D])
-
-
 def toes_moved(windows: DescribedWindows) -> float:
     """The mean square change of a toe's coordinate from frame to frame, m^2, over many clips."""
     generator = torch.Generator().manual_seed(0)
     moved = []
     for _ in range(8):
         features = windows.scaler.inverse(windows.draw(4000, generator)[0])
-        moved.append(poses_move(features)[:, :, list(TOES)].square().mean())
+        moved.append(moving_frame.moves(features)[:, :, list(TOES)].square().mean())
     return float(torch.stack(moved).mean())
 
 

@@ -10,7 +10,6 @@ from small_movers import SMALL, WORDS, mover_of
 from motiondiff_edu.baselines.text import BagConfig, BagOfWords, RegressionConfig
 from motiondiff_edu.conditions.word_encoder import ids_of
 from motiondiff_edu.performers.mover import Mover
-from motiondiff_edu.performers.networks import network
 from motiondiff_edu.pretrained import checkpoints
 
 SAME = {name: getattr(SMALL, name) for name in SMALL.__dataclass_fields__}
@@ -18,7 +17,7 @@ FORTH, BACK = ("wave", "then", "kick"), ("kick", "then", "wave")
 
 
 def mover(config: type) -> Mover:
-    return mover_of(config(**SAME), build=network)
+    return mover_of(config(**SAME))
 
 
 def test_the_bag_is_the_mean_of_its_words():
@@ -56,4 +55,4 @@ def test_they_are_saved_and_loaded_as_movers_are(config, tmp_path):
     again = checkpoints.load(tmp_path / "one.safetensors")
     assert again.config == one.config == replace(one.config)
     made = [x.act("kicks", seconds=2, steps=2, progress=False).positions for x in (one, again)]
-    np.testing.assert_allclose(*made, atol=2e-3)  # of half precision
+    np.testing.assert_allclose(*made, atol=5e-3)  # of half precision

@@ -16,7 +16,10 @@ from motiondiff_edu.beyond.timeline import (
     VERBS,
     D,
     Timed,
+    acts_of,
     mirrored,
+    of_the_legs,
+    tidied,
     timeline,
 )
 from motiondiff_edu.metrics import sentences
@@ -78,3 +81,44 @@ def test_the_mirrored_clip_has_the_mirrored_timeline(k):
 
 def test_no_timeline_stays_none():
     assert mirrored(torch.zeros(3, 4, 0)).shape == (3, 4, 0)
+
+
+def test_each_column_is_that_of_the_legs_or_of_the_arms():
+    kick, clap = (timeline([Timed(v, "left", 2, 0.0, 1.0)], 20) for v in ("kick", "clap"))
+    legs = of_the_legs().numpy()
+    assert not kick[:, ~legs].any() and not clap[:, legs].any()
+    assert (kick.any(0) | clap.any(0)).sum() == 2 * 4
+
+
+@pytest.mark.parametrize("k", range(12))
+def test_the_acts_of_a_timeline_are_those_that_it_was_made_of(k):
+    (*_, one) = clips(k + 1, 9)
+    made = timeline_of(one.acted.spans, len(one.acted))
+    asked = [(s.act.verb, s.act.side.replace("both", ""), s.act.count) for s in one.acted.spans]
+    found = [(act.verb, act.side, act.count) for act in acts_of(made)]
+    assert sorted(found) == sorted(asked)
+    again = timeline(acts_of(made), len(made))
+    assert np.abs(again - made)[:, :MIDDLE].mean() < 0.02  # edges move by a frame at most
+    assert np.abs(again - made)[:, MIDDLE:].max() < 0.5
+    np.testing.assert_array_equal(timeline(acts_of(again), len(made)), again)
+
+
+def test_acts_of_one_verb_that_touch_are_told_apart():
+    acts = [Timed("kick", "left", 2, 0.5, 2.5), Timed("kick", "right", 3, 2.5, 5.5)]
+    assert acts_of(timeline(acts, 120)) == acts
+    acts = [Timed("clap", "", 2, 0.5, 2.0), Timed("clap", "", 2, 2.0, 3.5)]
+    assert acts_of(timeline(acts, 120)) == acts
+
+
+def test_a_blurred_timeline_is_tidied():
+    clean = timeline([Timed("kick", "right", 3, 1.0, 4.0)], 120)
+    rng = np.random.default_rng(0)
+    noisy = clean + 0.15 * rng.standard_normal(clean.shape)
+    noisy[40:42, VERBS.index("kick")] = 0  # a short pause is none
+    noisy[100:104, VERBS.index("clap")] = 1  # and a short act is none
+    (act,) = acts_of(noisy)
+    assert (act.verb, act.side, act.count) == ("kick", "right", 3)
+    assert abs(act.first - 1) < 0.11 and abs(act.last - 4) < 0.11
+    batch = torch.from_numpy(np.stack([noisy, clean])).float()
+    assert tidied(batch).shape == batch.shape
+    torch.testing.assert_close(tidied(batch)[1].double(), torch.from_numpy(clean))

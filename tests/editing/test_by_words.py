@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 import torch
-from small_movers import mover_of, with_timeline
+from small_movers import PLANNED, SMALL, mover_of, scaler_of
 
 from data_synth.actions import clips
 from motiondiff_edu.conditions.text import TextError
@@ -20,9 +20,9 @@ def positions() -> np.ndarray:
     return next(iter(clips(1, 8))).acted.positions[:64]
 
 
-@pytest.fixture(scope="module")
-def mover(positions) -> Mover:
-    return mover_of(scaler=with_timeline(to_features(positions)))
+@pytest.fixture(scope="module", params=[SMALL, PLANNED], ids=["alone", "planned"])
+def mover(positions, request) -> Mover:
+    return mover_of(request.param, scaler_of(to_features(positions)))
 
 
 def apart(a: np.ndarray, b: np.ndarray) -> float:
@@ -32,7 +32,7 @@ def apart(a: np.ndarray, b: np.ndarray) -> float:
 class Exact(Mover):
     """A mover whose motions are standard normal, whatever the text; its denoiser is exact."""
 
-    def denoiser(self, ids, guidance=1.0, fast=True):
+    def denoiser(self, ids, guidance=1.0, plan=None, fast=True):
         return lambda x_s, s: x_s * (1 - at(self.schedule.alpha_bar, s, x_s)).sqrt()
 
 
@@ -88,7 +88,6 @@ def test_with_the_pelvis_the_path_stays_and_a_kept_span_is_the_motion_itself(mov
     assert apart(made[:, :40], positions[None, :40]) < 1e-4
     assert np.abs(made[0, 50:] - made[1, 50:]).max() > 0.01
     assert columns(torch.from_numpy(known)).sum() == 40 * D
-    assert columns(torch.from_numpy(known), mover.config.D).sum() == 40 * D  # no timeline
 
 
 def test_what_cannot_be_edited_is_refused(mover, positions):

@@ -10,11 +10,10 @@ import torch
 from data_synth.actions import clips
 from motiondiff_edu.conditions.text import TextError
 from motiondiff_edu.motion.moving_frame import to_features
-from motiondiff_edu.motion.scaler import Scaler
 from motiondiff_edu.performers.attention_on_words import WordMaps, attention_on_words
 from motiondiff_edu.performers.mover import Mover
 
-SMALL = replace(small_movers.SMALL, depth=2)
+SMALL, PLANNED = (replace(one, depth=2) for one in (small_movers.SMALL, small_movers.PLANNED))
 
 
 @pytest.fixture(scope="module")
@@ -22,10 +21,9 @@ def positions() -> np.ndarray:
     return next(iter(clips(1, 8))).acted.positions[:64]
 
 
-@pytest.fixture(scope="module")
-def mover(positions) -> Mover:
-    scaler = Scaler.fit(torch.from_numpy(to_features(positions)).float())
-    return small_movers.mover_of(SMALL, scaler)
+@pytest.fixture(scope="module", params=[SMALL, PLANNED], ids=["alone", "planned"])
+def mover(positions, request) -> Mover:
+    return small_movers.mover_of(request.param, small_movers.scaler_of(to_features(positions)))
 
 
 def maps(mover, text, positions, s=20) -> WordMaps:

@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import torch
-from small_movers import SMALL, SPREAD, WORDS, mover_of
+from small_movers import PLANNED, SMALL, WORDS, mover_of
 
 import motiondiff_edu as md
 from data_synth.actions import clips
@@ -15,7 +15,7 @@ from motiondiff_edu.conditions.text import TextError
 from motiondiff_edu.conditions.word_encoder import NOTHING, PADDING, WordEncoder, ids_of, present
 from motiondiff_edu.ddpm import cosine_schedule
 from motiondiff_edu.kinematic_loss import training_loss
-from motiondiff_edu.motion.moving_frame import D, to_features
+from motiondiff_edu.motion.moving_frame import D, to_features, to_positions
 from motiondiff_edu.motion.scaler import Scaler
 from motiondiff_edu.performers.described_windows import DescribedWindows
 from motiondiff_edu.performers.mover import Mover
@@ -29,9 +29,14 @@ def seeded(seed: int = 0) -> torch.Generator:
     return torch.Generator().manual_seed(seed)
 
 
+@pytest.fixture(scope="module", params=[SMALL, PLANNED], ids=["alone", "planned"])
+def mover(request) -> Mover:
+    return mover_of(request.param, card={"name": "tiny"})
+
+
 @pytest.fixture(scope="module")
-def mover() -> Mover:
-    return mover_of(card={"name": "tiny"})
+def planning() -> Mover:
+    return mover_of(PLANNED)
 
 
 @pytest.fixture(scope="module")
@@ -73,33 +78,49 @@ def test_a_sentence_makes_motions(mover):
     assert np.abs(other.positions - alone.positions).max() > 0.001
 
 
-def test_a_motion_comes_with_its_timeline(mover):
+def test_a_plan_is_made_tidied_and_followed(planning):
     ids = ids_of([("walk",), ("kick",)], WORDS)
-    units = mover.act_units(ids, 40, steps=3, generator=seeded())
-    assert units.shape == (2, 40, SMALL.D)
-    made = mover.act_ids(ids, 40, steps=3, generator=seeded())
-    torch.testing.assert_close(mover.positions_of(units), made)
-    wanted = units[..., D:] * SPREAD.std[D:] + SPREAD.mean[D:]
-    torch.testing.assert_close(mover.timeline_of(units), wanted)
-    alone = mover_of(replace(SMALL, D=D), Scaler.nothing(D))
-    with pytest.raises(ValueError, match="motions alone, without a timeline"):
-        alone.timeline_of(torch.zeros(40, D))
+    plans = planning.plans(ids, 40, steps=3, generator=seeded())
+    assert plans.shape == (2, 40, timeline.D)
+    torch.testing.assert_close(timeline.tidied(plans), plans)
+    draws = seeded()
+    again = planning.plans(ids, 40, steps=3, generator=draws)
+    assert torch.equal(again, plans)
+    made = planning.act_ids(ids, 40, steps=3, plan=plans, generator=draws)
+    torch.testing.assert_close(planning.act_ids(ids, 40, steps=3, generator=seeded()), made)
+    acts = [timeline.Timed("bow", "", 2, 0.2, 1.6)]
+    other = torch.from_numpy(timeline.timeline(acts, 40)).float()[None]
+    moved = planning.act_ids(ids, 40, steps=3, plan=other, generator=seeded())
+    assert (moved - planning.act_ids(ids, 40, steps=3, plan=0 * other, generator=seeded())).any()
 
 
-def test_a_motion_of_others_has_no_timeline(mover):
+def test_a_plan_needs_a_network_that_takes_one(planning):
+    ids = ids_of([("walk",)], WORDS)
+    with pytest.raises(ValueError, match="plan: this mover needs one"):
+        planning.denoiser(ids)
+    with pytest.raises(ValueError, match="plan: this mover takes none"):
+        mover_of(SMALL).denoiser(ids, plan=torch.zeros(1, 40, timeline.D))
+    assert planning.can_plan and not mover_of(SMALL).can_plan
+
+
+def test_the_units_of_a_motion_are_those_of_the_network(mover):
     positions = next(iter(clips(1, 8))).acted.positions[:40]
     units = mover.units_of(positions)
-    assert units.shape == (40, SMALL.D) and not units[:, D:].any()
-    back = mover.motion_scaler.inverse(units)[:, :D]
+    assert units.shape == (40, D)
+    back = mover.pose_scaler.inverse(units)
     torch.testing.assert_close(back, torch.from_numpy(to_features(positions)).float())
+    start = torch.from_numpy(to_positions(back).numpy())
+    torch.testing.assert_close(mover.positions_of(units), start)
 
 
 def test_guidance_of_one_is_the_conditional_network_and_more_leads_away_from_no_text(mover):
     ids, nothing = ids_of([("walk",)], WORDS), ids_of([()], WORDS)
-    x, s = torch.randn(1, 40, SMALL.D, generator=seeded()), torch.full((1,), 20)
+    x, s = torch.randn(1, 40, D, generator=seeded()), torch.full((1,), 20)
+    plan = mover.plans(ids, 40, steps=2, generator=seeded()) if mover.can_plan else None
     with torch.no_grad():
-        plain, free = mover.denoiser(ids)(x, s), mover.denoiser(nothing)(x, s)
-        torch.testing.assert_close(mover.denoiser(ids, 2.5)(x, s), 2.5 * plain - 1.5 * free)
+        plain, free = (mover.denoiser(text, plan=plan)(x, s) for text in (ids, nothing))
+        guided = mover.denoiser(ids, 2.5, plan)(x, s)
+        torch.testing.assert_close(guided, 2.5 * plain - 1.5 * free)
     assert (plain - free).abs().max() > 1e-3
     assert mover.model.training is False
 
@@ -160,7 +181,7 @@ def test_a_mirrored_motion_has_its_words_exchanged(windows):
         motions={n: windows.motions[n][:1]},
         contacts={n: windows.contacts[n][:1]},
         captions={n: windows.captions[n][:1, :1]},
-        scaler=Scaler.nothing(SMALL.D),
+        scaler=Scaler.nothing(D + timeline.D),
     )
     x, ids, planted = only.draw(40 * n, seeded(1))
     turned = (x - x[0]).abs().amax((1, 2)) > 1e-4
@@ -176,10 +197,10 @@ def test_a_mirrored_motion_has_its_words_exchanged(windows):
 def test_a_mover_can_be_trained(windows):
     """A few steps on a few clips: the loss falls, and the words get gradients."""
     torch.manual_seed(0)
-    model, schedule = TextMoFusion(SMALL), cosine_schedule(30)
+    model, schedule, alone = TextMoFusion(SMALL), cosine_schedule(30), windows.without_timeline()
 
     def loss_fn(network, generator):
-        x, ids, _ = windows.draw(300, generator)
+        x, ids, _ = alone.draw(300, generator)
         return training_loss(network, (x, network.listen(ids)), schedule, generator)
 
     state = TrainState.start(model, 0, torch.optim.Adam(model.parameters(), 3e-3), 0.9)

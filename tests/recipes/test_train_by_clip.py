@@ -152,7 +152,9 @@ def test_the_recipe_of_the_paper_differs_in_how_it_reads_alone():
     config = replace(MOVER_CLIP.config, clip="")
     assert replace(MOVER_CLIP, name="mover", config=config) == MOVER
     assert MOVER_CLIP.config.clip == clips.NAME and MOVER_CLIP.config.clip_width == 512
-    assert network(MOVER_CLIP.config).words.mlp[0].in_features == 512
+    planned = network(MOVER_CLIP.config)
+    for part in (planned.planner, planned.performer):
+        assert part.words.mlp[0].in_features == 512
 
 
 def test_the_command_says_that_the_clip_is_missing(tmp_path, capsys, monkeypatch):

@@ -6,16 +6,15 @@ import numpy as np
 import pytest
 import torch
 
-from motiondiff_edu.beyond import timeline
 from motiondiff_edu.conditions.word_encoder import NOTHING, PADDING
 from motiondiff_edu.ddpm import cosine_schedule, draw, q_sample
 from motiondiff_edu.motion.moving_frame import D
 from motiondiff_edu.performers.mover import Mover
+from motiondiff_edu.performers.planned_mofusion import PlannedConfig, PlannedMoFusion
 from motiondiff_edu.performers.text_mofusion import TextMoFusion, TextMoFusionConfig
 from motiondiff_edu.recipes.dancers import KINEMATIC, DanceLossWeights
 from motiondiff_edu.recipes.movers import MOVER, MOVER_PLAIN, MoverRecipe
 from motiondiff_edu.recipes.train_mover import (
-    column_weights,
     loss_of,
     toes_moved,
     train_mover,
@@ -23,13 +22,19 @@ from motiondiff_edu.recipes.train_mover import (
     without_some,
 )
 
-TINY = TextMoFusionConfig(widths=(16, 24), heads=2, C=20, S=20, word_layers=1)
+SIZES = {"widths": (16, 24), "heads": 2, "C": 20, "S": 20, "word_layers": 1}
+TINY = TextMoFusionConfig(**SIZES)
 SHORT = MoverRecipe("tiny", TINY, steps=6, clips=10, frames=200, save_every=2)
 
 
 @pytest.fixture(scope="module")
-def windows():
+def planned():
     return training_clips(SHORT.clips, SHORT.data_seed)
+
+
+@pytest.fixture(scope="module")
+def windows(planned):
+    return planned.without_timeline()
 
 
 def quiet(line: str) -> None:
@@ -100,25 +105,39 @@ def test_a_killed_training_continues_and_ends_like_one_in_one_go(windows, tmp_pa
         assert np.allclose(a, b, atol=1e-6), name
 
 
-def test_a_network_for_motions_alone_is_not_shown_the_timelines(windows, tmp_path):
-    narrow = replace(SHORT, config=replace(TINY, D=D), steps=2)
-    trained = train_mover(narrow, tmp_path / "narrow.safetensors", windows, log=quiet)
+def test_a_network_that_plans_learns_both_and_each_has_its_own_loss(planned):
+    """By hand: the mean square of the timeline's x0_hat, and of the motion's with a clean plan."""
+    torch.manual_seed(3)
+    config = PlannedConfig(**SIZES, words=planned.words, plan_widths=(8, 16), plan_depth=0)
+    model, schedule = PlannedMoFusion(config).eval(), cosine_schedule(20)
+    recipe = replace(SHORT, config=config)
+    found = loss_of(recipe, planned, schedule)(model, seeded())
+    generator, wanted = seeded(), 0.0
+    x0, ids, _ = planned.draw(SHORT.frames, generator)
+    torch.rand(len(ids), generator=generator)
+    heard, motion, plan = model.listen(ids), x0[..., :D], x0[..., D:]
+    for clean, out in (
+        (plan, lambda x_s, s: model.planner(x_s, s, heard.plan)),
+        (motion, lambda x_s, s: model(x_s, s, heard, plan)),
+    ):
+        s = torch.randint(1, 21, (len(x0),), generator=generator)
+        x_s = q_sample(clean, s, schedule, draw(clean, generator))
+        wanted = wanted + (clean - out(x_s, s)).square().mean()
+    torch.testing.assert_close(found, wanted)
+    found.backward()
+    assert all(p.grad is not None for p in model.planner.words.parameters())
+    assert all(p.grad is not None for p in model.performer.words.parameters())
+
+
+def test_a_network_for_motions_alone_is_not_shown_the_timelines(planned, windows, tmp_path):
+    narrow = replace(SHORT, steps=2)
+    trained = train_mover(narrow, tmp_path / "narrow.safetensors", planned, log=quiet)
     assert trained.motion_scaler.mean.shape == (D,)
     torch.testing.assert_close(trained.motion_scaler.std, windows.scaler.std[:D])
     assert trained.act("walks", seconds=2, steps=2, progress=False).positions.shape == (40, 21, 3)
-    alone = windows.without_timeline()
-    x, wide = alone.draw(400, seeded()), windows.draw(400, seeded())
+    x, wide = windows.draw(400, seeded()), planned.draw(400, seeded())
     torch.testing.assert_close(x[0], wide[0][..., :D])
     assert all(torch.equal(a, b) for a, b in zip(x[1:], wide[1:], strict=True))
-
-
-def test_columns_weigh_by_their_metres_and_a_timeline_by_the_mean(windows):
-    weights = column_weights(windows.scaler, 1.0)
-    torch.testing.assert_close(weights[:D].mean(), torch.tensor(1.0))
-    assert (weights[D:] == 1).all() and len(weights) == D + timeline.D
-    torch.testing.assert_close(
-        weights[0] / weights[1], windows.scaler.std[0] / windows.scaler.std[1]
-    )
 
 
 def seeded() -> torch.Generator:

@@ -4,12 +4,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from small_movers import mover_of, with_timeline
+from small_movers import PLANNED, mover_of, scaler_of
 
 from motiondiff_edu.motion.moving_frame import to_features
 from motiondiff_edu.performers.mover import Mover
 from motiondiff_edu.performers.networks import network
-from motiondiff_edu.performers.text_mofusion import TextMoFusionConfig
 from motiondiff_edu.pretrained.judges import judges
 from tools.results.words import budget, edits, parts, rows, scores, tables, trials
 
@@ -21,7 +20,7 @@ def some() -> trials.Trials:
 
 @pytest.fixture(scope="module")
 def mover(some) -> Mover:
-    return mover_of(scaler=with_timeline(to_features(some.truth[0])), card={"name": "tiny"})
+    return mover_of(PLANNED, scaler_of(to_features(some.truth[0])), card={"name": "tiny"})
 
 
 @pytest.fixture(scope="module")
@@ -191,8 +190,7 @@ def test_all_records_are_made_and_stand_in_the_page(monkeypatch, mover):
 
 
 def test_a_choice_is_trained_measured_and_shown(some, tmp_path, monkeypatch):
-    small = TextMoFusionConfig(widths=(16, 24), heads=2, C=20, S=20, word_layers=1)
-    monkeypatch.setattr(budget, "MOVER", replace(budget.MOVER, config=small))
+    monkeypatch.setattr(budget, "MOVER", replace(budget.MOVER, config=replace(PLANNED, words=())))
     few = first_of(some, 6)
     panel = scores.Panel(judges()[:1], few)
     monkeypatch.setattr(scores, "r_precision", lambda *x: (0.1, 0.2, 0.3))  # too few for pools
@@ -214,7 +212,8 @@ def test_the_choices_differ_from_the_recipe_as_they_say():
         assert (same == budget.MOVER) == (not changes)
     bag = budget.recipe_of("bag", 0, budget.FULL).config
     assert type(network(bag)).__name__ == "BagMoFusion" and bag.depth == budget.MOVER.config.depth
-    assert budget.recipe_of("no-timeline", 0, budget.FULL).config.D == 66
+    alone = budget.recipe_of("no-timeline", 0, budget.FULL).config
+    assert alone.D == 66 and type(network(alone)).__name__ == "TextMoFusion"
 
 
 def test_the_mean_over_trainings_has_the_widest_interval():

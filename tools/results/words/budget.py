@@ -30,25 +30,26 @@ from .scores import Panel, nearer, retrieved, sliding
 from .trials import UNSEEN, Positions
 
 SIZES = MOVER.config
+ALONE = replace(SIZES.of_one(), D=moving_frame.D)
 
 
 def network_of(config: type) -> dict:
-    """Another network with the mover's sizes."""
-    same = {name: getattr(SIZES, name) for name in SIZES.__dataclass_fields__}
+    """Another network with the sizes of the mover without a timeline."""
+    same = {name: getattr(ALONE, name) for name in ALONE.__dataclass_fields__}
     return {"config": config(**same)}
 
 
 # name: (what differs, in words, changes of the recipe)
 VARIANTS: dict[str, tuple[str, dict]] = {
     "ours": ("the mover's recipe", {}),
-    "no-timeline": ("no timeline beside the motion", {"config": replace(SIZES, D=moving_frame.D)}),
+    "no-timeline": ("no timeline", {"config": ALONE}),
     "no-kinematic": ("no kinematic losses", {"kinematic": None}),
     "shallow": ("no further layers in the middle", {"config": replace(SIZES, depth=0)}),
     "columns-alike": ("errors in standard deviations, not in metres", {"metres": 0.0}),
     "plain-loss": ("errors of poses alone", {"loss_weights": DanceLossWeights()}),
     "cosine": ("the cosine schedule as it is", {"snr": 1.0}),
-    "bag": ("a bag of words", network_of(BagConfig)),
-    "regression": ("regression: no noise, one motion for each text", network_of(RegressionConfig)),
+    "bag": ("no timeline, a bag of words", network_of(BagConfig)),
+    "regression": ("no timeline, no noise: regression", network_of(RegressionConfig)),
 }
 SHARES = ("action", "side", "count", "order")
 

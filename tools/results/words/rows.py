@@ -11,6 +11,7 @@ from sklearn.feature_extraction.text import TfidfVectorizer
 from data_synth.actions import clips, mirror
 from data_synth.actions.dataset import WORDINGS_EACH, clip_of
 from motiondiff_edu.conditions.text import TextError
+from motiondiff_edu.motion import moving_frame
 from motiondiff_edu.motion.dance_frame import at_origin
 from motiondiff_edu.performers.mover import ETA, Mover
 from motiondiff_edu.recipes.movers import MOVER
@@ -75,7 +76,7 @@ def noise(mover: Mover) -> Make:
 
     def make(trials: Trials, seed: int) -> list[Positions]:
         draws = torch.Generator().manual_seed(seed)
-        units = [torch.randn(n, mover.config.D, generator=draws) for n in trials.frames]
+        units = [torch.randn(n, moving_frame.D, generator=draws) for n in trials.frames]
         return [mover.positions_of(x).double().numpy() for x in units]
 
     return make

@@ -1,0 +1,86 @@
+"""MoFusion from text in two steps: a timeline for the text, then a motion for text and timeline.
+
+The first network is small and generates the timeline (`beyond/timeline.py`). The second is
+`TextMoFusion`; it is given the finished timeline as further columns of its input, without noise.
+Source: MoFusion 3.3, for each of the two. The two steps are ours.
+"""
+
+from dataclasses import dataclass, fields, replace
+
+import torch
+from jaxtyping import Float, Int
+from torch import Tensor, nn
+
+from ..beyond import timeline
+from ..mofusion import Music
+from ..motion import moving_frame
+from .networks import register
+from .text_mofusion import TextMoFusion, TextMoFusionConfig, Texts
+
+
+@dataclass(frozen=True)
+class PlannedConfig(TextMoFusionConfig):
+    """The sizes of both networks. `D` counts the columns of motion and timeline together."""
+
+    D: int = moving_frame.D + timeline.D
+    plan_widths: tuple[int, ...] = (48, 48, 64)
+    plan_depth: int = 2
+
+    def of_one(self) -> TextMoFusionConfig:
+        """The configuration of the network for motions."""
+        names = [field.name for field in fields(TextMoFusionConfig)]
+        return TextMoFusionConfig(**{name: getattr(self, name) for name in names})
+
+    def of_the_plan(self) -> TextMoFusionConfig:
+        """The configuration of the network for timelines."""
+        sizes = {"widths": self.plan_widths, "depth": self.plan_depth}
+        return replace(self.of_one(), D=timeline.D, **sizes)
+
+
+@dataclass(frozen=True, eq=False)
+class Heard:
+    """A text as each of the two networks reads it."""
+
+    plan: Music
+    motion: Music
+
+
+class PlannedMoFusion(nn.Module):
+    """`planner(x_s, s, heard.plan)` denoises timelines; called, the whole denoises motions."""
+
+    def __init__(self, config: PlannedConfig):
+        super().__init__()
+        self.config = config
+        self.planner = TextMoFusion(config.of_the_plan())
+        self.performer = TextMoFusion(config.of_one())
+
+    def listen(self, texts: Texts) -> Heard:
+        """The contexts of texts."""
+        return Heard(self.planner.listen(texts), self.performer.listen(texts))
+
+    def forward(
+        self,
+        x_s: Float[Tensor, "B T 66"],
+        s: Int[Tensor, "B"],
+        heard: Heard,
+        plan: Float[Tensor, "B T 22"],
+    ) -> Float[Tensor, "B T 66"]:
+        """x0_hat of motions that go with a plan, which has no noise."""
+        both = torch.cat([x_s, plan], -1)
+        return self.performer(both, s, heard.motion)[..., : moving_frame.D]
+
+
+class Performing(nn.Module):
+    """The network for motions with its plan: it is called as any network of MoFusion is."""
+
+    def __init__(self, model: PlannedMoFusion, plan: Float[Tensor, "B T 22"]):
+        super().__init__()
+        self.model, self.plan, self.config = model, plan, model.config
+
+    def forward(
+        self, x_s: Float[Tensor, "B T 66"], s: Int[Tensor, "B"], heard: Heard
+    ) -> Float[Tensor, "B T 66"]:
+        return self.model(x_s, s, heard, self.plan)
+
+
+register("mover", PlannedMoFusion, PlannedConfig)
