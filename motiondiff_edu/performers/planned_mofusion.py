@@ -75,7 +75,8 @@ class Performing(nn.Module):
 
     def __init__(self, model: PlannedMoFusion, plan: Float[Tensor, "B T 22"]):
         super().__init__()
-        self.model, self.plan, self.config = model, plan, model.config
+        self.model, self.plan = model, plan
+        self.config = model.config
 
     def forward(
         self, x_s: Float[Tensor, "B T 66"], s: Int[Tensor, "B"], heard: Heard

@@ -197,7 +197,8 @@ def test_a_mirrored_motion_has_its_words_exchanged(windows):
 def test_a_mover_can_be_trained(windows):
     """A few steps on a few clips: the loss falls, and the words get gradients."""
     torch.manual_seed(0)
-    model, schedule, alone = TextMoFusion(SMALL), cosine_schedule(30), windows.without_timeline()
+    model, schedule = TextMoFusion(SMALL), cosine_schedule(30)
+    alone = windows.without_timeline()
 
     def loss_fn(network, generator):
         x, ids, _ = alone.draw(300, generator)

@@ -115,7 +115,8 @@ def test_a_network_that_plans_learns_both_and_each_has_its_own_loss(planned):
     generator, wanted = seeded(), 0.0
     x0, ids, _ = planned.draw(SHORT.frames, generator)
     torch.rand(len(ids), generator=generator)
-    heard, motion, plan = model.listen(ids), x0[..., :D], x0[..., D:]
+    heard = model.listen(ids)
+    motion, plan = x0[..., :D], x0[..., D:]
     for clean, out in (
         (plan, lambda x_s, s: model.planner(x_s, s, heard.plan)),
         (motion, lambda x_s, s: model(x_s, s, heard, plan)),
