@@ -3,7 +3,7 @@
 A bag of words keeps which words there are, and loses their order: "waves, then kicks" and "kicks,
 then waves" are the same bag. The regression is not shown any noise, so a text has one motion, and
 the squared error makes it the mean of all right ones.
-Both are trained, saved and used as a mover is.   Notebook: 16
+Both are trained, saved and used as a mover is.
 """
 
 from dataclasses import dataclass

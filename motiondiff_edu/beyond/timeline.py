@@ -12,7 +12,7 @@ Columns of a frame:
     18:20  the times still to come of what legs and arms do, or will do next, this time included
     20:22  how far this time is: from 0 up to 1 in its middle, and down again
 Gain: not measured yet; no mover is shipped.
-Ours; MoFusion generates the motion alone.   Notebook: 16
+Ours; MoFusion generates the motion alone.
 """
 
 from collections.abc import Sequence
