@@ -28,10 +28,10 @@ sys.path.insert(0, str(Path(__file__).parents[1]))  # tools, beside this folder
 
 from data_synth.walking import dataset, random_control, walk  # noqa: E402
 from data_synth.walking.styles import STYLES  # noqa: E402
-from motiondiff_edu.modiff import MoDiffConfig  # noqa: E402
 from motiondiff_edu.motion.augment import mirror  # noqa: E402
 from motiondiff_edu.motion.clip import Clip  # noqa: E402
 from motiondiff_edu.recipes.budget import BUDGET, train_for  # noqa: E402
+from motiondiff_edu.recipes.walkers import MEND_CONFIG  # noqa: E402
 from tools.results.walks.scores import score  # noqa: E402
 from tools.results.walks.trials import (  # noqa: E402
     FPS,
@@ -44,16 +44,7 @@ from tools.results.walks.trials import (  # noqa: E402
 
 COMMAND = "python -m benchmarks walker"
 CLIPS = 240
-SMALL = MoDiffConfig(  # small enough to learn much in minutes
-    width=64,
-    hidden=256,
-    motion_layers=1,
-    control_layers=1,
-    cross_layers=1,
-    decoder_layers=2,
-    target="x0",
-    skip=False,
-)
+SMALL = replace(MEND_CONFIG, hidden=256, cross_layers=1)  # small enough to learn in minutes
 NAMES = {
     "bone_rmse_cm",
     "adherence_excess_mps",

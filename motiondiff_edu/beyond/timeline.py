@@ -31,6 +31,7 @@ LEGS = ("walk", "run", "back", "aside", "turn", "stand", "squat", "jump", "kick"
 ARMS = ("wave", "raise", "punch", "clap", "point")
 COUNTED = ("squat", "jump", "kick", "sit", "bow", *ARMS)  # the rest goes on until the next act
 SIDES = {"left": 1.0, "right": -1.0}
+WORDS = {value: word for word, value in SIDES.items()}
 VERBS = LEGS + ARMS
 SIDE, TO_COME, MIDDLE = (len(VERBS) + 2 * k for k in range(3))  # of the legs; the arms come next
 D = MIDDLE + 2  # 22
@@ -92,8 +93,7 @@ def acts_of(made: Float[np.ndarray, "T 22"]) -> list[Timed]:
             cuts = [first, *(first + 1 + np.flatnonzero(breaks[first + 1 : last])), last]
             for begin, end in zip(cuts, cuts[1:], strict=False):
                 if end - begin >= SHORTEST:
-                    words = {1: "left", -1: "right"}
-                    whose = words.get(int(np.median(side[begin:end])), "")
+                    whose = WORDS.get(float(np.median(side[begin:end])), "")
                     count = max(1, int(to_come[begin : begin + 3].max()))
                     acts.append(Timed(verb, whose, count, begin / FPS, end / FPS))
     return sorted(acts, key=lambda one: one.first)

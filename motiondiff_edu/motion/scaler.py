@@ -44,6 +44,10 @@ class Scaler:
         """The scaler that leaves D columns unchanged."""
         return cls(torch.zeros(D), torch.ones(D))
 
+    def part(self, columns: slice) -> "Scaler":
+        """The scaler of some of the columns."""
+        return Scaler(self.mean[columns], self.std[columns])
+
     def to(self, device) -> "Scaler":
         """The same scaler on another device."""
         return Scaler(self.mean.to(device), self.std.to(device))

@@ -103,8 +103,7 @@ class DescribedWindows:
     def without_timeline(self) -> "DescribedWindows":
         """The same clips as motions alone."""
         motions = {n: x[..., :D].contiguous() for n, x in self.motions.items()}
-        scaler = Scaler(self.scaler.mean[:D], self.scaler.std[:D])
-        return replace(self, motions=motions, scaler=scaler)
+        return replace(self, motions=motions, scaler=self.scaler.part(slice(D)))
 
     def __len__(self) -> int:
         return sum(map(len, self.motions.values()))

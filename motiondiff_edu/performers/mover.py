@@ -132,8 +132,7 @@ class Mover(Performer):
             ids, guidance, planner.listen,
             lambda context: lambda x_s, s: planner(x_s, s, context),
         )  # fmt: skip
-        where = self.motion_scaler.mean.new_empty(len(ids), frames, planner.config.D)
-        x_S = draw(where, generator) if start is None else start.to(self.device)
+        x_S = self._noise((len(ids), frames, planner.config.D), generator, start)
         made = sampled(denoise, x_S, self.schedule, steps, eta, generator)
         return tidied(self.plan_scaler.inverse(made))
 
@@ -199,19 +198,26 @@ class Mover(Performer):
             how = {"generator": generator, "steps": steps, "eta": eta, "guidance": guidance}
             plan = self.plans(ids, frames, **how)
         denoise = self.denoiser(ids, guidance, plan)
-        where = self.motion_scaler.mean.new_empty(len(ids), frames, D)
-        x_S = draw(where, generator) if start is None else start.to(self.device)
+        x_S = self._noise((len(ids), frames, D), generator, start)
         return self.positions_of(sampled(denoise, x_S, self.schedule, steps, eta, generator))
+
+    def _noise(
+        self, shape: tuple[int, ...], generator: Generators | None, start: Tensor | None
+    ) -> Tensor:
+        """The noise to begin with: what is given, or drawn."""
+        if start is not None:
+            return start.to(self.device)
+        return draw(self.motion_scaler.mean.new_empty(shape), generator)
 
     @property
     def pose_scaler(self) -> Scaler:
         """The scaler of motions, without the columns of timelines."""
-        return Scaler(self.motion_scaler.mean[:D], self.motion_scaler.std[:D])
+        return self.motion_scaler.part(slice(D))
 
     @property
     def plan_scaler(self) -> Scaler:
         """The scaler of timelines."""
-        return Scaler(self.motion_scaler.mean[D:], self.motion_scaler.std[D:])
+        return self.motion_scaler.part(slice(D, None))
 
     def positions_of(self, x0: Float[Tensor, "*B T 66"]) -> Float[Tensor, "*B T 21 3"]:
         """Motions in metres, of the network's units."""

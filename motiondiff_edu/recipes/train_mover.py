@@ -184,8 +184,7 @@ def loss_of(
 
     `texts_of` makes of the windows' ids what the network takes.
     """
-    alone = windows.without_timeline()
-    scaler, moved = alone.scaler, partial(toes_moved, alone)
+    scaler, moved = windows.scaler.part(slice(moving_frame.D)), partial(toes_moved, windows)
     columns = loss_terms.metre_weights(scaler.std, recipe.metres) if recipe.metres else None
     loss = weighted_loss(recipe.loss_weights, schedule, scaler, moving_frame.moves, moved, columns)
     of_batch = batch_loss(recipe.kinematic, loss, schedule, scaler, moving_frame.body_of)
@@ -220,7 +219,7 @@ def toes_moved(windows: DescribedWindows) -> float:
     generator = torch.Generator().manual_seed(0)
     moved = []
     for _ in range(8):
-        features = windows.scaler.inverse(windows.draw(4000, generator)[0])
+        features = windows.scaler.inverse(windows.draw(4000, generator)[0])[..., : moving_frame.D]
         moved.append(moving_frame.moves(features)[:, :, list(TOES)].square().mean())
     return float(torch.stack(moved).mean())
 

@@ -12,12 +12,11 @@ from motiondiff_edu.conditions.word_encoder import ids_of
 from motiondiff_edu.performers.mover import Mover
 from motiondiff_edu.pretrained import checkpoints
 
-SAME = {name: getattr(SMALL, name) for name in SMALL.__dataclass_fields__}
 FORTH, BACK = ("wave", "then", "kick"), ("kick", "then", "wave")
 
 
 def mover(config: type) -> Mover:
-    return mover_of(config(**SAME))
+    return mover_of(config(**vars(SMALL)))
 
 
 def test_the_bag_is_the_mean_of_its_words():

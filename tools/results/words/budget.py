@@ -35,8 +35,7 @@ ALONE = replace(SIZES.of_one(), D=moving_frame.D)
 
 def network_of(config: type) -> dict:
     """Another network with the sizes of the mover without a timeline."""
-    same = {name: getattr(ALONE, name) for name in ALONE.__dataclass_fields__}
-    return {"config": config(**same)}
+    return {"config": config(**vars(ALONE))}
 
 
 # name: (what differs, in words, changes of the recipe)
