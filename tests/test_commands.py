@@ -385,12 +385,17 @@ def interrupted(words: list[str], folder: Path, seen: str) -> tuple[int, str]:
 
 @pytest.mark.skipif(sys.platform == "win32", reason="Windows has no SIGINT for another process")
 def test_ctrl_c_ends_with_a_word_and_leaves_no_half_file(folder):
-    """While it walks, and while it draws a film: both told by the progress bar."""
+    """While it walks, and while it draws a film: both told by the progress bar.
+
+    Both would take a fast machine far longer than it takes to press the keys.
+    """
+    control = np.tile([1.0, 0.0, 0.2], (1500, 1))
+    md.Motion.of_clip(walk(control, seed=2)).save("long.bvh")
     before = sorted(folder.iterdir())
     walking = ["walk", "my_walk.bvh", "--control", "90s 1.2", "--out", "more.bvh"]
     code, said = interrupted(walking, folder, "walking: ")
     assert "stopped" in said and "Traceback" not in said and code != 0
-    code, said = interrupted(["convert", "my_walk.bvh", "film.gif"], folder, "drawing: ")
+    code, said = interrupted(["convert", "long.bvh", "film.gif"], folder, "drawing: ")
     assert "stopped" in said and "Traceback" not in said and code != 0
     assert sorted(folder.iterdir()) == before
 
