@@ -1,16 +1,18 @@
 """Random sentences, and those that a training never sees.
 
 The form of a sentence (its verbs) and the length of the clip are drawn first, and the counts last.
-So a clip has room for the largest count, whatever its own is, and its length does not tell it.
+The clip has room for the largest counts that the form may have, so its length does not tell which
+they are. Of a form too long for LONGEST seconds, the largest counts are lowered until it fits.
 """
 
+from collections.abc import Callable
 from dataclasses import replace
 from functools import cache
 
 import numpy as np
 
 from .acts import FACTORS as SPEED
-from .acts import PHRASES, UNEVEN, VERBS, Act, Phrase, Sentence
+from .acts import MOST, PHRASES, UNEVEN, VERBS, Act, Phrase, Sentence
 from .performance import JOIN, stops
 from .way import least_seconds
 
@@ -35,11 +37,25 @@ def draw(rng: np.random.Generator, seconds: float | None = None) -> tuple[Senten
         form = tuple(_phrase(rng) for _ in range(n))
         if any(a == b or _same_legs(a, b) for a, b in zip(form, form[1:], strict=False)):
             continue
-        need = max(LEAST, room(form))
-        if need > (LONGEST if seconds is None else seconds):
+        fitting = fitted(form, LONGEST if seconds is None else seconds)
+        if not fitting:
             continue
+        if room(form) > LONGEST:
+            form = fitting[int(rng.integers(len(fitting)))]
+        else:
+            form = fitting[-1]
+        need = max(LEAST, room(form))
         length = float(rng.uniform(need, LONGEST)) if seconds is None else seconds
         return tuple(_counted(phrase, rng) for phrase in form), round(length, 1)
+
+
+def fitted(form: Sentence, seconds: float) -> list[Sentence]:
+    """The form with its largest counts lowered to 1, 2 ... MOST, as far as there is room."""
+    lowered = [
+        tuple(_with_counts(phrase, lambda count, most=most: min(count, most)) for phrase in form)
+        for most in range(1, MOST + 1)
+    ]
+    return [one for one in lowered if room(one) <= seconds]
 
 
 def _same_legs(a: Phrase, b: Phrase) -> bool:
@@ -92,12 +108,22 @@ def _act(verb: str, rng: np.random.Generator) -> Act:
 
 
 def _counted(phrase: Phrase, rng: np.random.Generator) -> Phrase:
-    """The phrase with random counts."""
+    """The phrase with random counts, up to its own.
 
-    def with_count(act: Act | None) -> Act | None:
-        return act and replace(act, count=int(rng.integers(1, act.count + 1)))
+    Twice is twice as likely as once, and so on, for in long sentences there is room for once alone.
+    """
+    return _with_counts(phrase, lambda most: int(rng.choice(_TIMES[most])))
 
-    return Phrase(with_count(phrase.legs), with_count(phrase.arms))
+
+_TIMES = {most: np.repeat(range(1, most + 1), range(1, most + 1)) for most in range(1, MOST + 1)}
+
+
+def _with_counts(phrase: Phrase, count: Callable[[int], int]) -> Phrase:
+    """The phrase with other counts, out of its own."""
+    legs, arms = (
+        act and replace(act, count=count(act.count)) for act in (phrase.legs, phrase.arms)
+    )
+    return Phrase(legs, arms)
 
 
 def pairs(sentence: Sentence) -> set[Pair]:

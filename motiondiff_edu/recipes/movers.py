@@ -41,7 +41,7 @@ class MoverRecipe:
 MOVER_PLAIN = MoverRecipe(
     "mover-plain",
     PlannedConfig(),
-    steps=12_000,
+    steps=10_000,
     loss_weights=OURS,
     metres=1.0,
     snr=0.1,

@@ -13,7 +13,7 @@ from data_synth.actions.captions import TIMES, WORDINGS, caption, exchanged, voc
 from data_synth.actions.dataset import SPLITS, worded
 from data_synth.actions.join import crossfade
 from data_synth.actions.performance import JOIN
-from data_synth.actions.sentences import all_pairs, draw, held_out, in_training, pairs
+from data_synth.actions.sentences import all_pairs, draw, fitted, held_out, in_training, pairs
 from data_synth.actions.write import main as write
 from motiondiff_edu.motion.bvh import read_bvh
 from motiondiff_edu.motion.skeleton import BONE_LENGTHS, BONES, MIRROR, joint_index
@@ -157,10 +157,26 @@ def test_the_count_cannot_be_read_from_the_length():
             rows += [(a.verb, a.count, seconds) for a in phrase.acts if VERBS[a.verb].most > 1]
     counts = np.array([row[1] for row in rows])
     lengths = np.array([row[2] for row in rows])
-    assert Counter(counts).most_common(1)[0][1] / len(counts) < 0.28
+    constant = Counter(counts).most_common(1)[0][1] / len(counts)
+    near = np.digitize(lengths, np.arange(2.5, 10, 0.5))
+    best = sum(Counter(counts[near == k]).most_common(1)[0][1] for k in set(near)) / len(counts)
+    assert constant < 0.46 and best < constant + 0.01
     assert abs(np.corrcoef(counts, lengths)[0, 1]) < 0.04
     means = [lengths[counts == count].mean() for count in (1, 2, 3, 4)]
-    assert max(means) - min(means) < 0.25
+    assert max(means) - min(means) < 0.5
+
+
+def test_two_acts_on_the_spot_come_in_a_row_in_clips_of_every_length():
+    rng = np.random.default_rng(3)
+    lengths = [
+        seconds
+        for sentence, seconds in (draw(rng) for _ in range(8000))
+        if [(p.legs.verb if p.legs else "") for p in sentence] == ["kick", "bow"]
+    ]
+    assert len(lengths) > 5 and min(lengths) < 7 < 9 < max(lengths)
+    form = (Phrase(Act("kick", "left", 4)), Phrase(Act("bow", count=4)))
+    counts = [[p.legs.count for p in one] for one in fitted(form, 10.0)]
+    assert counts == [[1, 1], [2, 2]] and fitted(form, 3.0) == []
 
 
 def test_captions_are_many_and_have_several_wordings():

@@ -1,7 +1,7 @@
 """The value of each choice of a mover, and two baselines, by trainings of equal length.
 
 Each row differs from the recipe of the mover in one choice, and is trained with three seeds. All
-else is equal: data, steps, sampler, and the unseen captions. The steps are a tenth of the shipped
+else is equal: data, steps, sampler, and the unseen captions. The steps are a sixth of the shipped
 mover's, so the numbers say what a choice is worth, and not how good a mover can be.
 Source: MoFusion 3; choices are ours
 """
