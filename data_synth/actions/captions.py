@@ -4,10 +4,14 @@
 
 Wordings differ in the verb, the place of the adverbs, the subject, and the order of the phrases.
 One wording of every verb is held out: it never occurs unless it is asked for.
+Each choice has a name and depends on it and a number alone. So two sentences that differ in one
+thing have captions that differ in this alone, if they are worded by the same number.
 """
 
 import re
+from collections.abc import Sequence
 from dataclasses import dataclass
+from zlib import crc32
 
 import numpy as np
 
@@ -18,16 +22,18 @@ from .acts import OTHER_SIDE, VERBS, Act, Phrase, Sentence
 class Wording:
     """A verb in the third person and as a gerund, with what follows it.
 
-    `{side}` and `{limb}` stand for the words of the act.
+    `{side}` and `{limb}` stand for the words of the act. `gerund_tail` is what follows the gerund,
+    where that is something else.
     """
 
     third: str
     gerund: str
     tail: str = ""
+    gerund_tail: str = ""
 
 
-def _w(third: str, gerund: str, tail: str = "") -> Wording:
-    return Wording(third, gerund, tail)
+def _w(third: str, gerund: str, tail: str = "", gerund_tail: str = "") -> Wording:
+    return Wording(third, gerund, tail, gerund_tail or tail)
 
 
 # verb and direction -> wordings; the last one is held out
@@ -110,11 +116,11 @@ WORDINGS: dict[tuple[str, str], tuple[Wording, ...]] = {
         _w("strikes", "striking", "out with the {side} foot"),
     ),
     ("sit", ""): (
-        _w("sits", "sitting", "down and gets up again"),
-        _w("sits", "sitting", "down and stands up"),
-        _w("takes", "taking", "a seat and gets up"),
-        _w("sits", "sitting", "on a chair and stands up"),
-        _w("settles", "settling", "on a chair and rises"),
+        _w("sits", "sitting", "down and gets up again", "down and getting up again"),
+        _w("sits", "sitting", "down and stands up", "down and standing up"),
+        _w("takes", "taking", "a seat and gets up", "a seat and getting up"),
+        _w("sits", "sitting", "on a chair and stands up", "on a chair and standing up"),
+        _w("settles", "settling", "on a chair and rises", "on a chair and rising"),
     ),
     ("bow", ""): (
         _w("bows", "bowing"),
@@ -169,75 +175,95 @@ WORDINGS: dict[tuple[str, str], tuple[Wording, ...]] = {
 SUBJECTS = ("a person", "someone", "a figure", "the person", "a man", "a woman", "")
 TIMES = {
     1: ("", "", "", "once", "one time"),
-    2: ("twice", "two times"),
+    2: ("twice", "two times", "2 times"),
     3: ("three times", "3 times"),
     4: ("four times", "4 times"),
 }
 ADVERBS = {
-    "slowly": ("slowly", "at a slow pace", "without hurry"),
+    "slowly": ("slowly", "at a slow pace", "at a gentle pace"),
     "quickly": ("quickly", "fast", "at a quick pace"),
 }
 ONE_WORD = ("slowly", "quickly")  # adverbs that may stand before the verb
 
 
+@dataclass(frozen=True)
+class Choices:
+    """Choices by name: each depends on its name and the number, whatever else is chosen."""
+
+    number: int
+
+    def share(self, name: str) -> float:
+        """A number from 0 up to 1."""
+        return np.random.default_rng([self.number, crc32(name.encode())]).random()
+
+    def one(self, name: str, options: Sequence[str]) -> str:
+        """One of the options."""
+        return options[int(self.share(name) * len(options))]
+
+
 def caption(sentence: Sentence, rng: np.random.Generator, held_out: bool = False) -> str:
-    """One wording of the sentence; with `held_out`, by verbs that no other caption uses."""
-    subject = str(rng.choice(SUBJECTS))
-    parts = [_phrase(phrase, rng, held_out) for phrase in sentence]
-    return f"{subject} {_in_order(parts, rng)}".strip()
+    """A random wording of the sentence; with `held_out`, by verbs that no other caption uses."""
+    return worded_by(sentence, int(rng.integers(2**31)), held_out)
 
 
-def act_words(act: Act, rng: np.random.Generator, held_out: bool) -> tuple[str, str]:
+def worded_by(sentence: Sentence, number: int, held_out: bool = False) -> str:
+    """The wording with this number."""
+    chosen = Choices(number)
+    parts = [_phrase(phrase, chosen, held_out) for phrase in sentence]
+    return f"{chosen.one('subject', SUBJECTS)} {_in_order(parts, chosen)}".strip()
+
+
+def act_words(act: Act, chosen: Choices, held_out: bool) -> tuple[str, str]:
     """An act in the third person, and as a gerund, with its adverbs."""
     choices = WORDINGS[act.verb, act.direction]
-    wording = choices[-1] if held_out else choices[int(rng.integers(len(choices) - 1))]
+    taken = int(chosen.share(act.verb) * (len(choices) - 1))
+    wording = choices[-1 if held_out else taken]
+    times = chosen.one(f"{act.verb} times", TIMES[act.count]) if VERBS[act.verb].most > 1 else ""
+    speed = chosen.one(f"{act.verb} speed", ADVERBS[act.speed]) if act.speed else ""
     limb = "both arms" if act.side == "both" else f"the {act.side} arm"
-    tail = wording.tail.format(side=act.side, limb=limb)
-    times = str(rng.choice(TIMES[act.count])) if VERBS[act.verb].most > 1 else ""
-    speed = str(rng.choice(ADVERBS[act.speed])) if act.speed else ""
     before = ""
-    if speed in ONE_WORD and rng.random() < 0.4:
+    if speed in ONE_WORD and chosen.share(f"{act.verb} before") < 0.4:
         before, speed = speed, ""
-    after = [tail, times, speed]
-    if times and speed and rng.random() < 0.5:
-        after = [tail, speed, times]
-    if times and tail.startswith("with ") and rng.random() < 0.4:
-        after = [times, tail, speed]
-    third, gerund = (
-        " ".join(word for word in (before, verb, *after) if word)
-        for verb in (wording.third, wording.gerund)
-    )
-    return third, gerund
+    place = chosen.share(f"{act.verb} place")
+    forms = []
+    for verb, tail in ((wording.third, wording.tail), (wording.gerund, wording.gerund_tail)):
+        tail = tail.format(side=act.side, limb=limb)
+        after = [tail, times, speed]
+        if times and speed and place < 0.5:
+            after = [tail, speed, times]
+        if times and tail.startswith("with ") and place > 0.6:
+            after = [times, tail, speed]
+        forms.append(" ".join(word for word in (before, verb, *after) if word))
+    return forms[0], forms[1]
 
 
-def _phrase(phrase: Phrase, rng: np.random.Generator, held_out: bool) -> tuple[str, str]:
+def _phrase(phrase: Phrase, chosen: Choices, held_out: bool) -> tuple[str, str]:
     """What happens at one time, in both forms."""
-    words = [act_words(act, rng, held_out) for act in phrase.acts]
+    words = [act_words(act, chosen, held_out) for act in phrase.acts]
     if len(words) == 1:
         return words[0]
-    first, second = words if rng.random() < 0.7 else words[::-1]
+    first, second = words if chosen.share("which first") < 0.7 else words[::-1]
     third = f"{first[0]} while {second[1]}"
-    if rng.random() < 0.3:
+    if chosen.share("at once") < 0.3:
         third = f"{first[0]} and at the same time {second[0]}"
     return third, f"{first[1]} while {second[1]}"
 
 
-def _in_order(parts: list[tuple[str, str]], rng: np.random.Generator) -> str:
+def _in_order(parts: list[tuple[str, str]], chosen: Choices) -> str:
     """Phrases in a row, in one of several orders of words."""
     if len(parts) == 1:
         return parts[0][0]
     thirds = [third for third, _ in parts]
     if len(parts) == 2:
-        form = int(rng.integers(4))
+        form = int(4 * chosen.share("order"))
         if form == 2:
             return f"{thirds[1]} after {parts[0][1]}"
         if form == 3:
             return f"first {thirds[0]}, then {thirds[1]}"
         return f"{thirds[0]}{(', then ', ' and then ')[form]}{thirds[1]}"
-    then = [str(rng.choice([", then ", " and then ", ", after that "])) for _ in parts[1:]]
     text = thirds[0]
-    for join, third in zip(then, thirds[1:], strict=True):
-        text += join + third
+    for k, third in enumerate(thirds[1:]):
+        text += chosen.one(f"join {k}", (", then ", " and then ", ", after that ")) + third
     return text
 
 
@@ -254,7 +280,8 @@ def vocabulary(held_out: bool = False) -> set[str]:
     )
     for choices in WORDINGS.values():
         for one in choices if held_out else choices[:-1]:
-            texts += [one.third, one.gerund, base(one.third), one.tail.format(side="", limb="")]
+            texts += [one.third, one.gerund, base(one.third)]
+            texts += [tail.format(side="", limb="") for tail in (one.tail, one.gerund_tail)]
     return {word for text in texts for word in words_of(text)}
 
 

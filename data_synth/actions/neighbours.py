@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from .acts import ONE_SIDE, OTHER_SIDE, VERBS, Act, Sentence
+from .sentences import in_training
 
 KINDS = ("side", "count", "order", "speed")
 OPPOSITE = {"slowly": "quickly", "quickly": "slowly"}
@@ -47,9 +48,12 @@ def _speed(act: Act, rng: np.random.Generator) -> Act | None:
 
 
 def neighbour(sentence: Sentence, rng: np.random.Generator) -> Sentence | None:
-    """A sentence that differs in one thing, of a random kind; None where there is none."""
+    """A sentence that differs in one thing, of a random kind; None where there is none.
+
+    It has no pair that is held out, which a judge would otherwise know from wrong captions alone.
+    """
     for kind in rng.permutation(KINDS):
         other = changed(sentence, str(kind), rng)
-        if other is not None and other != sentence:
+        if other is not None and other != sentence and in_training(other):
             return other
     return None

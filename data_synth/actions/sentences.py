@@ -12,7 +12,7 @@ from functools import cache
 import numpy as np
 
 from .acts import FACTORS as SPEED
-from .acts import MOST, PHRASES, UNEVEN, VERBS, Act, Phrase, Sentence
+from .acts import MOST, ONE_SIDE, PHRASES, UNEVEN, VERBS, Act, Phrase, Sentence
 from .performance import JOIN, stops
 from .way import least_seconds
 
@@ -26,6 +26,8 @@ WITH_ARMS = (*WAY, "squat", "sit")  # acts of the legs that leave the arms free
 KINDS = {"way": 0.2, "spot": 0.32, "arms": 0.18, "way and arms": 0.22, "spot and arms": 0.08}
 SEVERAL = (0.0, 0.45, 0.38, 0.17)  # shares of sentences with 0, 1, 2, 3 phrases
 HELD_OUT = 0.16  # share of the pairs that a training never sees
+
+SIDES = ("same side", "other side")  # of two acts
 
 Pair = tuple[str, str, str]  # how two words belong together, a verb, and the other word
 
@@ -127,19 +129,30 @@ def _with_counts(phrase: Phrase, count: Callable[[int], int]) -> Phrase:
 
 
 def pairs(sentence: Sentence) -> set[Pair]:
-    """The pairs of a verb with its side, speed or direction, and with another verb."""
+    """The pairs of a verb with its speed or direction, with another verb, and with its side.
+
+    All clips are also mirrored, so one side of a single act is never held out. A pair of sides is
+    one of two acts: on the same side, or on different sides.
+    """
     found: set[Pair] = set()
     for phrase in sentence:
         for act in phrase.acts:
             found |= {
                 (kind, act.verb, word)
-                for kind in ("side", "speed", "direction")
+                for kind in ("speed", "direction")
                 if (word := getattr(act, kind))
             }
         if len(phrase.acts) == 2:
-            found.add(("while", *(act.verb for act in phrase.acts)))
+            found |= _pairs_of("while", *phrase.acts)
     for a, b in zip(sentence, sentence[1:], strict=False):
-        found |= {("then", x.verb, y.verb) for x in a.acts for y in b.acts}
+        found = found.union(*(_pairs_of("then", x, y) for x in a.acts for y in b.acts))
+    return found
+
+
+def _pairs_of(kind: str, a: Act, b: Act) -> set[Pair]:
+    found = {(kind, a.verb, b.verb)}
+    if a.side in ONE_SIDE and b.side in ONE_SIDE:
+        found.add((SIDES[a.side != b.side], a.verb, b.verb))
     return found
 
 
@@ -147,11 +160,18 @@ def all_pairs() -> list[Pair]:
     """Every pair that a sentence can have."""
     found = []
     for name, verb in VERBS.items():
-        found += [("side", name, word) for word in verb.sides if word]
         found += [("speed", name, word) for word in verb.speeds if word]
         found += [("direction", name, word) for word in verb.directions if word]
     found += [("while", legs, arms) for legs in WITH_ARMS for arms in ARMS]
     found += [("then", a, b) for a in VERBS for b in VERBS if a != b or VERBS[a].kind == "arms"]
+    sided = [name for name, verb in VERBS.items() if "left" in verb.sides]
+    found += [
+        (kind, a, b)
+        for kind in SIDES
+        for a in sided
+        for b in sided
+        if a != b or VERBS[a].kind == "arms"
+    ]
     return found
 
 
@@ -159,18 +179,19 @@ def all_pairs() -> list[Pair]:
 def held_out() -> frozenset[Pair]:
     """The pairs that a training never sees: HELD_OUT of each kind, and every word stays in others.
 
-    A side is held out for one hand or foot only, so its other side teaches the verb.
+    Of two acts, one of the same side and different sides stays.
     """
     rng = np.random.default_rng(17)
     every, found = all_pairs(), set()
-    for kind in ("side", "speed", "direction", "while", "then"):
-        own = [pair for pair in every if pair[0] == kind]
+    for kinds in (("speed",), ("direction",), ("while",), ("then",), SIDES):
+        own = [pair for pair in every if pair[0] in kinds]
         wanted = int(np.ceil(HELD_OUT * len(own)))
         taken: list[Pair] = []
         for pair in (own[k] for k in rng.permutation(len(own))):
             if len(taken) == wanted:
                 break
-            if kind in ("side", "speed", "direction") and any(pair[1] == t[1] for t in taken):
+            same = 3 if kinds == SIDES else 2
+            if kinds[0] not in ("while", "then") and any(pair[1:same] == t[1:same] for t in taken):
                 continue
             taken.append(pair)
         found |= set(taken)
