@@ -3,7 +3,8 @@
 FID compares two sets by their means and covariances alone. A covariance of D features needs many
 more than D clips; the published table had 40 generated dances for 72 features. With few clips the
 distance is too large, even between two halves of the data. So print `fid_floor` beside it.
-Source: MoFusion 4.1 (FID), Table 1, Table 2.   Notebook: 14
+Source: MoFusion 4.1 (FID), Table 1; for motion from text Guo and others, 2022.
+Notebook: 14
 """
 
 import warnings

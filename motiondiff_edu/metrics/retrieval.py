@@ -32,14 +32,16 @@ def r_precision(
     """How often the own motion of a text is among the nearest 1, 2 and 3 of `pool` motions.
 
     `truths`: what each text says; a pool has no two equal ones, so that only one motion is right.
-    Texts that are left over at the end are not counted. Chance is 1, 2, 3 over `pool`.
+    Of motions that are equally near any may come first, so a network that always makes the same
+    motion gets chance: 1, 2, 3 over `pool`. Texts that are left over at the end are not counted.
     Raises ValueError where there are fewer than `pool` different truths.
     """
     hits, counted = np.zeros(TOP), 0
     for members in pools(truths, rng, pool):
         apart = np.linalg.norm(texts[members, None] - motions[None, members], axis=-1)
-        rank = (apart < np.diagonal(apart)[:, None]).sum(1)
-        hits += [(rank < k).sum() for k in range(1, TOP + 1)]
+        own = np.diagonal(apart)[:, None]
+        nearer, equal = (apart < own).sum(1), (apart == own).sum(1)  # the own one is equal, too
+        hits += [((k - nearer) / equal).clip(0, 1).sum() for k in range(1, TOP + 1)]
         counted += len(members)
     return hits / counted
 

@@ -5,14 +5,15 @@ A sentence is a list of phrases, each a list of what is asked for at one time.
 
 from collections import Counter
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 
 import numpy as np
 from jaxtyping import Float
 
-from .actions import Recognised
+from .actions import SIDES, Recognised
 
 COUNTED = frozenset(("squat", "jump", "kick", "bow", "raise", "punch", "clap"))
+DIRECTED = frozenset(("turn", "jump", "point"))  # around, forward, to the side, or none
 
 
 @dataclass(frozen=True)
@@ -32,16 +33,21 @@ Phrases = Sequence[Sequence[Asked]]
 class Agreement:
     """The shares of one motion that are right, from 0 to 1; NaN where nothing can be right.
 
-    action  acts found, over the acts that were asked for or the recognised ones, whichever are more
-    side    of the acts found that have a side: with this side
-    count   of the acts found that are counted: exactly so often
-    order   of the pairs of acts in different phrases, both found: in the order of the phrases
+    action     acts found, over the acts asked for or the recognised ones, whichever are more
+    side       of the acts found that have a side: with this side
+    count      of the acts found that are counted: exactly so often
+    order      of the pairs of acts in different phrases, both found: in the order of the phrases
+    direction  of the turns, jumps and pointing arms found: around or not, forward, to the side
     """
 
     action: float
     side: float
     count: float
     order: float
+    direction: float
+
+
+KINDS = tuple(one.name for one in fields(Agreement))
 
 
 def agreement(phrases: Phrases, found: Sequence[Recognised]) -> Agreement:
@@ -65,6 +71,7 @@ def agreement(phrases: Phrases, found: Sequence[Recognised]) -> Agreement:
         _share([one.side == act.side for _, act, one in matched if act.side]),
         _share([one.count == act.count for _, act, one in matched if act.verb in COUNTED]),
         _share([a < b for i, a in middles for j, b in middles if i < j]),
+        _share([one.direction == act.direction for _, act, one in matched if act.verb in DIRECTED]),
     )
 
 
@@ -83,23 +90,26 @@ def rows_of(
 ) -> dict[str, Float[np.ndarray, "N"]]:
     """The agreement of many motions, an array for each kind."""
     every = [agreement(phrases, one) for phrases, one in zip(sentences, found, strict=True)]
-    return {
-        kind: np.array([getattr(one, kind) for one in every])
-        for kind in ("action", "side", "count", "order")
-    }
+    return {kind: np.array([getattr(one, kind) for one in every]) for kind in KINDS}
 
 
 def confusion(
     sentences: Sequence[Phrases], found: Sequence[Sequence[Recognised]]
 ) -> dict[tuple[str, str], int]:
-    """How often an asked side was recognised as which, of acts with one side, by (asked, found)."""
+    """How often an asked side was recognised as which, of acts with one side, by (asked, found).
+
+    "both": the act is shown on the asked side and on the other one, which nobody asked for.
+    "none": the act is not shown.
+    """
     table: Counter[tuple[str, str]] = Counter()
     for phrases, recognised in zip(sentences, found, strict=True):
-        for act in (act for phrase in phrases for act in phrase if act.side in ("left", "right")):
-            same = [one for one in recognised if one.verb == act.verb and one.side]
-            sides = {one.side for one in same}
-            if same:
-                table[act.side, act.side if act.side in sides else same[0].side] += 1
+        acts = [act for phrase in phrases for act in phrase if act.side in SIDES]
+        for act in acts:
+            shown = {one.side for one in recognised if one.verb == act.verb and one.side}
+            others = {one.side for one in acts if one.verb == act.verb} - {act.side}
+            shown -= others - {act.side}
+            if "both" in shown or len(shown) > 1:
+                table[act.side, "both"] += 1
             else:
-                table[act.side, "none"] += 1
+                table[act.side, next(iter(shown), "none")] += 1
     return dict(table)

@@ -21,6 +21,15 @@ def test_random_motions_get_the_chance_level():
     np.testing.assert_allclose(found, np.arange(1, 4) / 32, atol=0.012)
 
 
+def test_a_network_that_always_makes_one_motion_gets_the_chance_level():
+    texts = np.random.default_rng(0).normal(size=(64, 4))
+    same = r_precision(texts, np.ones((64, 4)), list(range(64)), np.random.default_rng(1))
+    np.testing.assert_allclose(same, np.arange(1, 4) / 32)
+    twins = np.repeat(np.eye(32), 2, axis=0)[:32]  # each motion is made for two texts
+    found = r_precision(twins, twins, list(range(32)), np.random.default_rng(1))
+    np.testing.assert_allclose(found, [0.5, 1, 1])
+
+
 def test_ranks_by_hand():
     """Four texts on a line; the second motion lies beyond the third."""
     texts = np.array([[0.0], [1.0], [2.0], [3.0]])

@@ -1,5 +1,7 @@
 """How far a motion does what a sentence says: by hand, and on performed sentences."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -61,7 +63,8 @@ def test_performed_sentences_agree_and_shuffled_ones_do_not():
     made = [clip.acted for clip in clips(60, 95, "test")]
     sentences, found = [asked_of(one) for one in made], [actions(one.positions) for one in made]
     own = {kind: np.nanmean(row) for kind, row in rows_of(sentences, found).items()}
-    assert own["action"] > 0.97 and min(own["side"], own["count"], own["order"]) > 0.95
+    assert own["action"] > 0.97
+    assert min(own[kind] for kind in ("side", "count", "order", "direction")) > 0.95
     other = rows_of(sentences[7:] + sentences[:7], found)
     assert np.nanmean(other["action"]) < 0.25
 
@@ -75,3 +78,26 @@ def test_confusion_counts_sides():
         ("left", "none"): 1,
         ("right", "right"): 1,
     }
+
+
+def test_an_act_on_both_sides_is_no_right_side_unless_both_were_asked_for():
+    left, right = Asked("raise", "left"), Asked("raise", "right")
+    twice = [seen("raise", "left"), seen("raise", "right", at=3)]
+    assert confusion([[[left]]], [twice]) == {("left", "both"): 1}
+    assert confusion([[[left]]], [[seen("raise", "both")]]) == {("left", "both"): 1}
+    both = {("left", "left"): 1, ("right", "right"): 1}
+    assert confusion([[[left], [right]]], [twice]) == both
+    assert confusion([[[left], [right]]], [twice[:1]]) == {
+        ("left", "left"): 1,
+        ("right", "none"): 1,
+    }
+
+
+def test_directions_are_judged_where_a_verb_has_them():
+    around, ahead = Asked("turn", "left", direction="around"), Asked("point", "left", 1, "forward")
+    turned = Recognised("turn", "left", 1, "", 0.0, 1.0)
+    aside = Recognised("point", "left", 1, "aside", 2.0, 3.0)
+    assert agreement([[around], [ahead]], [turned, aside]).direction == 0
+    half = replace(turned, direction="around")
+    assert agreement([[around], [ahead]], [half, aside]).direction == 0.5
+    assert np.isnan(agreement([[WALK]], [seen("walk")]).direction)

@@ -1,5 +1,6 @@
 """Table 2: the trials, the rows, their measures, and the page."""
 
+import json
 from dataclasses import replace
 
 import numpy as np
@@ -7,10 +8,11 @@ import pytest
 from small_movers import PLANNED, mover_of, scaler_of
 
 from motiondiff_edu.motion.moving_frame import to_features
+from motiondiff_edu.motion.skeleton import MIRROR
 from motiondiff_edu.performers.mover import Mover
 from motiondiff_edu.performers.networks import network
 from motiondiff_edu.pretrained.judges import judges
-from tools.results.words import budget, edits, parts, rows, scores, tables, trials
+from tools.results.words import budget, edits, looking, parts, rows, scores, tables, trials
 
 
 @pytest.fixture(scope="module")
@@ -75,6 +77,60 @@ def test_bodies_by_hand(some):
     drifting = [one + 0.01 * np.arange(len(one))[:, None, None] * [1, 0, 0] for one in some.truth]
     slide = by_name(scores.bodies(some, drifting))["skating_mps"]
     assert slide == pytest.approx(0.2, abs=0.02)
+
+
+def test_eyes_and_rules_are_compared_by_hand():
+    """Ten clips: four walk, of which the rules miss one; nothing else is ever there."""
+    walk, left, right = (("walk", "", 1)), ("kick", "left", 2), ("kick", "right", 3)
+    eyes = [[walk]] * 4 + [[]] * 6
+    rules = [[walk]] * 3 + [[]] * 7
+    found = by_name(looking.kappas([[*one, left] for one in eyes], [[*one, left] for one in rules]))
+    cells = 10 * len(looking.VERBS)
+    same, by_chance = 1 - 1 / cells, (14 * 13 + (cells - 14) * (cells - 13)) / cells**2
+    assert found["looked_kappa"] == pytest.approx((same - by_chance) / (1 - by_chance))
+    sides = [[walk, left], [walk, right], [walk, left], [walk, right]] * 9
+    found = by_name(looking.kappas(sides, [[walk, one] for one in (left, right, right, left)] * 9))
+    assert found["looked_kappa"] == 1 and found["looked_side_kappa"] == 0
+    assert found["looked_count_kappa"] == 0
+    assert by_name(looking.share_the_same(eyes, rules)) == {"looked_all_the_same": 0.9}
+
+
+def test_clips_that_were_looked_at_are_numbered_without_a_gap():
+    assert looking.sorted_clips({"1": [], "0": [["walk", "", 1]]})[0] == (0, [["walk", "", 1]])
+    with pytest.raises(ValueError, match="without a gap"):
+        looking.sorted_clips({"0": [], "2": []})
+
+
+def test_only_motions_of_the_weights_that_were_looked_at_are_compared(mover, monkeypatch, tmp_path):
+    record = {"weights": "these", "clips": {str(k): [["walk", "", 1]] for k in range(6)}}
+    (tmp_path / "looked_at.json").write_text(json.dumps(record))
+    monkeypatch.setattr(looking, "LOOKED_AT", tmp_path / "looked_at.json")
+    monkeypatch.setattr(looking, "CLIPS", 6)
+    assert looking.looked_at_measures(mover, "others") == []
+    found = by_name(looking.looked_at_measures(mover, "these"))
+    rules = [looking.as_seen(looking.actions(one)) for one in looking.motions(mover)]
+    assert found["looked_all_the_same"] == np.mean([one == [("walk", "", 1)] for one in rules])
+    assert [len(one) for one in looking.motions(mover)] == trials.unseen(
+        6, seed=looking.SEED
+    ).frames
+
+
+def test_a_sheet_has_all_poses(some):
+    left, right = looking.sheet(some.truth[0], "clip").axes
+    assert len(left.collections) == -(-len(some.truth[0]) // looking.EVERY)
+    assert right.get_title().startswith("path")
+
+
+def test_sides_are_confused_in_a_mirror_and_nowhere_else(some):
+    twins = [one[:, MIRROR] * np.array([-1.0, 1.0, 1.0]) for one in some.truth]
+    data, wrong = (by_name(scores.sides(some, made)) for made in (some.truth, twins))
+    assert data["side_confused"] == 0 and data["asked_left_shown_left"] > 0.9
+    assert wrong["side_confused"] > 0.9 and wrong["asked_left_shown_right"] > 0.9
+    nothing = [np.repeat(one[:1], len(one), 0) for one in some.truth]
+    assert np.isnan(by_name(scores.sides(some, nothing))["side_confused"])
+    for found in (data, wrong):
+        shares = [found[f"asked_right_shown_{one}"] for one in scores.SHOWN]
+        assert sum(shares) == pytest.approx(1)
 
 
 def test_a_copy_is_no_distance_from_the_training(some):

@@ -94,6 +94,7 @@ BARS = (
     Bar("words.multimodality_over_data", at_least=0.6, at_most=1.3),
     Bar("words.speed_over_data", at_least=0.85, at_most=1.15),
     Bar("words.nearest_training_over_data", at_least=0.8),
+    Bar("words.looked_kappa", at_least=0.8),
     Bar("words.edit_changes", at_least=0.8),
     Bar("words.edit_keeps_over_resampled", at_most=0.5),
     Bar("bench.mover_seconds", at_most=8),

@@ -224,6 +224,14 @@ CLAIMS = (
         "attention.bottom_over_top_seconds",
         -1,
     ),
+    Claim(
+        "motions to text barely confuse left and right: at most in one of twenty acts",
+        "1",
+        "words.side_confused",
+        -1,
+        0.05,
+        beside=("words.side_accuracy",),
+    ),
 )
 
 

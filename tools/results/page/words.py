@@ -114,6 +114,7 @@ GOALS = {
     "words.nearest_training_over_data": (
         "the distance of the mover's motions to the nearest training motion, over that of the data"
     ),
+    "words.looked_kappa": "Cohen's kappa of the recogniser and of eyes, on the mover's motions",
     "words.edit_changes": "how often an edit by words shows what was asked for",
     "words.edit_keeps_over_resampled": (
         "how far legs and path move in an edit by words, over sampling the new sentence alone"

@@ -68,10 +68,10 @@ def with_other_arms(phrase: Phrase, rng: np.random.Generator) -> Sentence:
 
 
 def edit_measures(mover: Mover, trials: list[EditTrial]) -> list[Measure]:
-    """`edit_changes`, `edit_keeps_over_resampled`, and the same with the legs given by a mask."""
+    """`edit_changes` and `edit_keeps_over_resampled`: the legs kept by a mask, and without one."""
     measures = []
     plain = np.array([kept_error(t, edited(mover, t, k, 1.0)) for k, t in enumerate(trials)])
-    for prefix, masked in (("edit", False), ("edit_masked", True)):
+    for prefix, masked in (("edit", True), ("edit_free", False)):
         made = [edited(mover, t, k, STRENGTH, masked) for k, t in enumerate(trials)]
         there = np.array([shows(t, one) for t, one in zip(trials, made, strict=True)])
         kept = np.array([kept_error(t, one) for t, one in zip(trials, made, strict=True)])

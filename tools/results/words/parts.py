@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 from jaxtyping import Float
 
+from motiondiff_edu.editing.by_words import STEPS as EDIT_STEPS
 from motiondiff_edu.performers.mover import Mover
 from motiondiff_edu.pretrained import checkpoints
 from motiondiff_edu.pretrained.judges import Judge, judges
@@ -15,6 +16,7 @@ from motiondiff_edu.pretrained.judges import Judge, judges
 from ..walks.parts import weights_digest
 from ..walks.scores import Measure, measure_of
 from .edits import edit_measures, edit_trials
+from .looking import SEED, looked_at_measures
 from .rows import STEPS, Make, TrainingClips, noise, performed, shuffled, understood
 from .scores import (
     Panel,
@@ -24,11 +26,13 @@ from .scores import (
     pairs,
     recognised,
     retrieved,
+    sides,
     to_nearest,
 )
 from .trials import UNSEEN, Positions, Trials, unseen
 
 GUIDANCE = 2.5
+VARIETY = UNSEEN + 2  # the seed of the captions with several motions each
 HELD_OUT = {"heldout": {"split": "combinations"}, "wording": {"new_verbs": True}}
 
 
@@ -96,9 +100,23 @@ class Studio:
             *pairs(panel, row),
         ]
 
+    def of_new_sentences(self, made: list[Positions]) -> list[Measure]:
+        """What is recognised in the trials whose sentence no training clip has, mirrored or not."""
+        known = self.training.sentences
+        new = [k for k, one in enumerate(self.trials.sentences) if one not in known]
+        some = self.trials.chosen(new)
+        share = np.isin(np.arange(len(self.trials)), new)
+        return [
+            replace(one, name=f"new_{one.name}")
+            for one in (
+                *recognised(some, [made[k] for k in new]),
+                measure_of("sentences", "share", np.mean, share),
+            )
+        ]
+
     def varied(self, make: Make) -> list[Measure]:
         """The variety of motions to one caption."""
-        some = unseen(self.size.texts, seed=UNSEEN + 2)
+        some = unseen(self.size.texts, seed=VARIETY)
         made = [make(some, draw) for draw in range(self.size.each)]
         data = [some.second(draw) for draw in range(1, self.size.each + 1)]
         return multimodality(self.judges, made, data)
@@ -128,12 +146,14 @@ def fools(studio: Studio, mover: Mover) -> dict[str, list[Positions]]:
 def word_records(studio: Studio, command: str) -> list[dict]:
     """All measures of the shipped mover, and of the rows without a network."""
     mover, size = studio.mover("mover"), studio.size
-    seeds = {"data": UNSEEN, "trials": size.trials, "sampling": 0, "steps": STEPS}
+    seeds = {"data": UNSEEN, "edits": UNSEEN + 1, "variety": VARIETY, "looked_at": SEED}
+    seeds |= {"trials": size.trials, "sampling": 0, "steps": STEPS, "edit_steps": EDIT_STEPS}
     seeds |= {"weights": weights_digest(studio.weights["mover"]), "judges": len(studio.judges)}
     found = {"words.": []}
     make = performed(mover)
     made = make(studio.trials, 0)
     found["words."] += [*studio.scored(made), *studio.varied(make), *studio.copied(made)]
+    found["words."] += studio.of_new_sentences(made)
     for name, how in HELD_OUT.items():
         panel = Panel(studio.judges, unseen(size.held_out, **how))
         rows = studio.scored(make(panel.trials, 0), panel)
@@ -141,6 +161,8 @@ def word_records(studio: Studio, command: str) -> list[dict]:
         rows.append(measure_of("understood", "share", np.mean, told))
         found["words."] += [replace(one, name=f"{name}_{one.name}") for one in rows]
     found["words."] += edit_measures(mover, edit_trials(size.edits))
+    found["words."] += sides(studio.trials, made)
+    found["words."] += looked_at_measures(mover, seeds["weights"])
     guided = performed(mover, GUIDANCE)
     found["words.guided."] = [*studio.scored(guided(studio.trials, 0)), *studio.varied(guided)]
     without_network = fools(studio, mover)

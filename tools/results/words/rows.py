@@ -8,7 +8,7 @@ import numpy as np
 import torch
 from sklearn.feature_extraction.text import TfidfVectorizer
 
-from data_synth.actions import clips, mirror
+from data_synth.actions import Sentence, clips, mirror
 from data_synth.actions.dataset import WORDINGS_EACH, clip_of
 from motiondiff_edu.conditions.text import TextError
 from motiondiff_edu.motion import moving_frame
@@ -90,14 +90,19 @@ class TrainingClips:
     seed: int = MOVER.data_seed
 
     @cached_property
-    def _read(self) -> tuple[list[str], list[Positions]]:
-        """All captions, and a sketch of each motion: a frame in EVERY, from the origin."""
-        texts, sketches = [], []
+    def _read(self) -> tuple[list[str], list[Positions], set[Sentence]]:
+        """All captions, a sketch of each motion (a frame in EVERY, from the origin), sentences."""
+        texts, sketches, sentences = [], [], set()
         for one in clips(self.clips, self.seed):
             for twin in (one, mirror(one)):
                 texts += twin.captions
                 sketches.append(sketch(twin.acted.positions))
-        return texts, sketches
+                sentences.add(twin.acted.sentence)
+        return texts, sketches, sentences
+
+    @property
+    def sentences(self) -> set[Sentence]:
+        return self._read[2]
 
     @property
     def captions(self) -> list[str]:

@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from itertools import product
 
 import numpy as np
 from jaxtyping import Float
@@ -12,7 +13,7 @@ from motiondiff_edu.metrics import diversity, frechet
 from motiondiff_edu.metrics.actions import actions
 from motiondiff_edu.metrics.beats import mean_speed
 from motiondiff_edu.metrics.retrieval import TOP, mm_dist, r_precision
-from motiondiff_edu.metrics.sentences import rows_of
+from motiondiff_edu.metrics.sentences import confusion, rows_of
 from motiondiff_edu.metrics.skating import skating
 from motiondiff_edu.pretrained.judges import Judge
 
@@ -34,6 +35,30 @@ def recognised(trials: Trials, made: Sequence[Positions]) -> list[Measure]:
     """The recogniser's accuracies: each a mean over the clips where there is something to judge."""
     rows = rows_of(trials.phrases, [actions(positions) for positions in made])
     return [measure_of(f"{kind}_accuracy", "share", np.nanmean, x) for kind, x in rows.items()]
+
+
+def sides(trials: Trials, made: Sequence[Positions]) -> list[Measure]:
+    """The confusion of left and right: of acts asked for on one side, the shares of what is shown.
+
+    `side_confused`: of the acts that are shown, the share on the other side or on both.
+    """
+    tables = [
+        confusion([phrases], [actions(positions)])
+        for phrases, positions in zip(trials.phrases, made, strict=True)
+    ]
+    cells = {pair: np.array([one.get(pair, 0) for one in tables]) for pair in product(ONE, SHOWN)}
+    asked = {side: sum(cells[side, shown] for shown in SHOWN) for side in ONE}
+    shares = [
+        measure_of(f"asked_{side}_shown_{shown}", "share", ratio, count, asked[side])
+        for (side, shown), count in cells.items()
+    ]
+    right = cells["left", "left"] + cells["right", "right"]
+    seen = sum(asked[side] - cells[side, "none"] for side in ONE)
+    return [*shares, measure_of("side_confused", "share", ratio, seen - right, seen)]
+
+
+ONE = ("left", "right")  # sides of one arm or leg
+SHOWN = (*ONE, "both", "none")
 
 
 @dataclass(frozen=True, eq=False)
@@ -154,12 +179,28 @@ def speed(positions: Positions) -> float:
 
 def pairs(panel: Panel, row: Sequence[Points]) -> list[Measure]:
     """How often a motion is nearer to its own caption than to one that differs in one thing."""
-    right, kinds = nearer(panel, row), np.array([pair.kind for pair in panel.pairs])
-    parts = {f".{kind}": right[kinds == kind] for kind in KINDS if (kinds == kind).any()}
     return [
-        measure_of(f"minimal_pair{name}", "share", np.mean, x)
-        for name, x in {"": right, **parts}.items()
+        measure_of(f"minimal_pair{name}", "share", ratio, right, there)
+        for name, (right, there) in by_trial(panel, nearer(panel, row)).items()
     ]
+
+
+def by_trial(
+    panel: Panel, right: Float[np.ndarray, "P"]
+) -> dict[str, tuple[Float[np.ndarray, "N"], Float[np.ndarray, "N"]]]:
+    """For all pairs and for each kind: of each trial the sum over its pairs, and their number.
+
+    Pairs of one trial share its motion, so that intervals are over trials.
+    """
+    which = np.array([pair.trial for pair in panel.pairs])
+    kinds = np.array([pair.kind for pair in panel.pairs])
+    chosen = {"": np.full(len(kinds), True)} | {f".{kind}": kinds == kind for kind in KINDS}
+    n = len(panel.trials)
+    return {
+        name: (np.bincount(which[x], right[x], n), np.bincount(which[x], minlength=n).astype(float))
+        for name, x in chosen.items()
+        if x.any()
+    }
 
 
 def nearer(panel: Panel, row: Sequence[Points]) -> Float[np.ndarray, "P"]:

@@ -1,6 +1,7 @@
 """What a mover is tried on: unseen clips with captions, and captions that differ in one thing.
 
-Nothing here was seen in training; `clips` of `data_synth.actions` says what each split leaves out.
+No motion here was seen in training. A sentence may have been, in another clip: sentences are drawn
+alike for all splits. `clips` of `data_synth.actions` says what each split leaves out.
 """
 
 from collections.abc import Sequence
@@ -44,6 +45,11 @@ class Trials:
     def phrases(self) -> list[Phrases]:
         """The sentences as `metrics.sentences` takes them; standing is not asked for."""
         return [asked(sentence) for sentence in self.sentences]
+
+    def chosen(self, which: Sequence[int]) -> "Trials":
+        """Some of the trials."""
+        lists = (self.sentences, self.captions, self.plain, self.truth)
+        return Trials(*([one[k] for k in which] for one in lists), self.seed)
 
     def second(self, draw: int = 1) -> list[Positions]:
         """Other motions of the data for the same sentences, as long as the first."""
