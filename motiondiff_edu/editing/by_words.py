@@ -3,6 +3,8 @@
     x_s0 = noised x0,  then sampling from s0 with the new text
 The more noise, the more the text decides; the less, the more of the motion stays. A part of the
 body or a span of time can be kept besides, by masks as in in-betweening.
+A mover that plans makes a timeline of the new sentence first. What legs or arms do where they are
+kept is read off the motion (`metrics.actions`), and the rest of the timeline is generated to it.
 MoFusion says that its motions can be edited by text, but not how; this way is ours.
 Source: SDEdit (Meng and others, 2022); the masks of MoFusion 4.4.
 """
@@ -12,16 +14,21 @@ import torch
 from jaxtyping import Bool, Float
 from torch import Tensor
 
+from ..beyond import timeline
 from ..beyond.guidance import blended
 from ..ddpm import Generators, draw, final, q_sample, timesteps
 from ..inbetweening import inpaint_steps
+from ..metrics.actions import actions
 from ..motion.dance_frame import Place
 from ..motion.moving_frame import D
 from ..motion.root_frame import estimate_root
-from ..motion.skeleton import HIPS, J
+from ..motion.skeleton import HIPS, TOES, J, joint_index
 from ..performers.mover import ETA, STEPS, Mover
+from ..performers.text_mofusion import Texts
 
-STRENGTH = 0.85  # share of the diffusion steps that the motion is noised by
+STRENGTH = 0.3  # share of the diffusion steps that the motion is noised by
+FEET = (HIPS, *TOES)  # known where the legs are kept
+HANDS = (joint_index("LeftHand"), joint_index("RightHand"))
 FADE = 10  # frames within which a generated part joins a kept span of time
 
 
@@ -52,9 +59,7 @@ def edit_by_words(
     mask = np.zeros((len(positions), J), bool) if known is None else np.asarray(known)
     held = columns(torch.from_numpy(mask)).to(given.device).expand(given.shape)
     start = q_sample(given, ways[0], schedule, draw(given, generator))
-    plan = None
-    if mover.can_plan:
-        plan = mover.plans(texts, len(positions), steps=steps, eta=ETA, generator=generator)
+    plan = _plan(mover, positions, mask, texts, steps, generator) if mover.can_plan else None
     denoise = mover.denoiser(texts, 1.0, plan)
     if held.any():
         denoise = blended(denoise, schedule, given, held, fade=FADE)
@@ -64,6 +69,39 @@ def edit_by_words(
     with torch.inference_mode():
         made = mover.positions_of(final(loop).x_s).double().cpu().numpy()
     return at_the_start_of(positions, made)
+
+
+def _plan(
+    mover: Mover,
+    positions: Float[np.ndarray, "T 21 3"],
+    known: Bool[np.ndarray, "T 21"],
+    texts: Texts,
+    steps: int,
+    generator: Generators,
+) -> Float[Tensor, "samples T 22"]:
+    """Timelines for the texts that go with what is known of the motion."""
+    seen, held = torch.from_numpy(as_seen(positions)).float(), kept_columns(known)
+    given = mover.plan_scaler.transform(seen.to(mover.device)).expand(len(texts), -1, -1)
+    held = held.to(mover.device).expand_as(given)
+    loop = inpaint_steps(
+        mover.plan_denoiser(texts), draw(given, generator), mover.schedule, given, held,
+        steps=min(steps, mover.schedule.S), eta=ETA, generator=generator,
+    )  # fmt: skip
+    with torch.inference_mode():
+        return timeline.tidied(mover.plan_scaler.inverse(final(loop).x_s))
+
+
+def as_seen(positions: Float[np.ndarray, "T 21 3"]) -> Float[np.ndarray, "T 22"]:
+    """The timeline of the actions that are recognised in a motion."""
+    found = actions(positions)
+    acts = [timeline.Timed(one.verb, one.side, one.count, one.first, one.last) for one in found]
+    return timeline.timeline(acts, len(positions))
+
+
+def kept_columns(known: Bool[np.ndarray, "T 21"]) -> Bool[Tensor, "T 22"]:
+    """The columns of a timeline that what is known decides: those of both legs, or of both arms."""
+    legs, arms = (torch.from_numpy(known[:, list(part)].all(1)) for part in (FEET, HANDS))
+    return torch.where(timeline.of_the_legs(), legs[:, None], arms[:, None])
 
 
 def visited(S: int, steps: int, strength: float) -> list[int]:

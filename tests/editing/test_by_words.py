@@ -5,11 +5,19 @@ import pytest
 import torch
 from small_movers import PLANNED, SMALL, mover_of, scaler_of
 
-from data_synth.actions import clips
+from data_synth.actions import Act, Phrase, act_out, clips
+from motiondiff_edu.beyond import timeline
 from motiondiff_edu.conditions.text import TextError
 from motiondiff_edu.ddpm import at
-from motiondiff_edu.editing.by_words import at_the_start_of, columns, edit_by_words
-from motiondiff_edu.editing.masks import UPPER
+from motiondiff_edu.editing.by_words import (
+    _plan,
+    as_seen,
+    at_the_start_of,
+    columns,
+    edit_by_words,
+    kept_columns,
+)  # fmt: skip
+from motiondiff_edu.editing.masks import UPPER, body_part
 from motiondiff_edu.motion.moving_frame import D, to_features, to_positions
 from motiondiff_edu.motion.skeleton import HIPS, joint_index
 from motiondiff_edu.performers.mover import Mover
@@ -88,6 +96,26 @@ def test_with_the_pelvis_the_path_stays_and_a_kept_span_is_the_motion_itself(mov
     assert apart(made[:, :40], positions[None, :40]) < 1e-4
     assert np.abs(made[0, 50:] - made[1, 50:]).max() > 0.01
     assert columns(torch.from_numpy(known)).sum() == 40 * D
+
+
+def test_the_timeline_goes_with_what_is_kept(positions):
+    """Legs that walk are kept: the plan walks where they do, whatever the text says of the legs."""
+    walk = act_out((Phrase(Act("walk"), Act("wave", "left")),), 4.0, 3).positions[:80]
+    seen = as_seen(walk)
+    assert seen[:, timeline.VERBS.index("walk")].mean() > 0.8
+    assert seen[:, timeline.VERBS.index("wave")].any()
+    mover = mover_of(PLANNED, scaler_of(to_features(walk)))
+    texts = mover.reader.encoded([("squat",)])
+    legs = timeline.of_the_legs()
+    known = body_part(80, "lower body")
+    assert kept_columns(known)[:, legs].all() and not kept_columns(known)[:, ~legs].any()
+    assert kept_columns(~known)[:, ~legs].all() and not kept_columns(~known)[:, legs].any()
+    draws = [torch.Generator().manual_seed(k) for k in (0, 0)]
+    kept = _plan(mover, walk, known, texts, 4, draws[0])
+    assert kept[0, :, timeline.VERBS.index("walk")].mean() > 0.8
+    assert not kept[0, :, timeline.VERBS.index("squat")].any()
+    free = _plan(mover, walk, np.zeros_like(known), texts, 4, draws[1])
+    assert not torch.equal(kept, free)
 
 
 def test_what_cannot_be_edited_is_refused(mover, positions):
