@@ -4,6 +4,8 @@
 w = 1 is the conditional network, as in the paper. A larger w follows the text more closely, and the
 samples differ less; the result is no sample of the conditional any more. In training, some texts
 are left out, so that one network is both. It costs two evaluations at every step.
+A mover that plans guides the timeline first. Where the text of the motion is left out, its timeline
+stays, in training too, so for the motion a larger w stresses what the timeline does not say.
 Gain: not measured yet; no mover is shipped.
 Source: Ho and Salimans, 2022. Ours; MoFusion has no guidance.
 """

@@ -1,4 +1,4 @@
-"""What a network hears of CLIP: the tokens of a frozen transformer, through a trained MLP.
+"""What a network reads of CLIP: the tokens of a frozen transformer, through a trained MLP.
 
 `conditions/clip.py` makes the tokens. Only the MLP belongs to the network, and is saved with it.
 Source: MoFusion 3.3, "we project the token embeddings using an MLP"; its sizes are ours.

@@ -35,12 +35,14 @@ IRREGULAR = {
     "swung": "swing",
     "held": "hold",
     "brought": "bring",
+    "1": "one",
 }
+NUMBERS = frozenset("zero five six seven eight nine ten hundred".split())  # no count of training
 # words that say nothing about a movement
 PASSED_OVER = frozenset(
     "a an the is are was were be being been does do did has have had will would can could should"
     " it its he she they him her them his hers their theirs i me my we us our you your who that"
-    " this these those there here of in on at by from into onto very really just please now so"
+    " this these those there here of in on at by for from into onto very really just please now so"
     " some any own little bit quite he's she's someone somebody guy lady boy girl dancer actor"
     " character avatar stickman robot human individual".split()
 )
@@ -69,8 +71,8 @@ def synonyms() -> Mapping[str, str]:
 
 
 def words_of(text: str) -> list[str]:
-    """The words and numbers of a text, in lower case."""
-    return re.findall(r"[a-z]+(?:'[a-z]+)?|\d+", text.lower())
+    """The words and numbers of a text, in lower case; also words of other languages."""
+    return re.findall(r"[^\W\d_]+(?:'[a-z]+)?|\d+", text.lower())
 
 
 def lemma(word: str, known: Container[str]) -> str:
@@ -112,11 +114,9 @@ def read(text: str, vocabulary: Sequence[str], others: Mapping[str, str] | None 
     words.
     """
     given = words_of(text)
-    if not given:
+    if not re.search(r"[a-z\d]", text.lower()):
         what = "is empty" if not text.strip() else "has no English words"
         raise empty(what)
-    if len(given) > LONGEST:
-        raise TextError(f"the text has {len(given)} words; the network reads {LONGEST} at most")
     known, others = frozenset(vocabulary), synonyms() if others is None else others
     found: list[str] = []
     notes: list[str] = []
@@ -135,6 +135,8 @@ def read(text: str, vocabulary: Sequence[str], others: Mapping[str, str] | None 
             unknown.append(word)
     if unknown:
         raise TextError(_unknown(list(dict.fromkeys(unknown)), vocabulary))
+    if len(found) > LONGEST:
+        raise TextError(f"the text has {len(found)} words; the network reads {LONGEST} at most")
     if not found:
         raise TextError(
             f"{text.strip()!r} says nothing about a movement that the network knows; it knows "
@@ -155,7 +157,9 @@ def _unknown(words: list[str], vocabulary: Sequence[str]) -> str:
     """The message for words that are not known, with the nearest known ones."""
     told = []
     for word in words[:5]:
-        near = get_close_matches(word, vocabulary, n=3, cutoff=0.7)
+        near = get_close_matches(word, vocabulary, n=3, cutoff=0.75)
+        if word in NUMBERS or word.isdigit():
+            near = [known for known in ("once", "twice", "three", "four") if known in vocabulary]
         told.append(f"{word!r}" + (f" (did you mean {' or '.join(near)}?)" if near else ""))
     more = f" and {len(words) - 5} more" if len(words) > 5 else ""
     return (

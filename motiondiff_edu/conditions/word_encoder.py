@@ -1,4 +1,4 @@
-"""Words to tokens: an embedding for each word, and a small transformer that lets them see another.
+"""Words to tokens: an embedding for each word; a small transformer lets each see the others.
 
 So "left" in "kicks with the left foot" knows what is left, and "waves, then kicks" differs from
 "kicks, then waves", which a bag of words cannot tell apart.

@@ -38,6 +38,14 @@ def checked_steps(steps: int | None) -> int | None:
     return None if steps is None else checked_count(steps, "steps")
 
 
+def checked_guidance(guidance: float) -> float:
+    """A weight of guidance, 0 or more.  Raises ValueError for anything else."""
+    number = not isinstance(guidance, bool) and isinstance(guidance, Real)
+    if not number or not math.isfinite(guidance) or guidance < 0:
+        raise ValueError(f"guidance must be a number of 0 or more, not {guidance!r:.40}")
+    return float(guidance)
+
+
 def check_there(path: Path) -> None:
     """Raise FileNotFoundError if there is neither a file nor a folder of that name."""
     if not path.expanduser().is_file() and not path.expanduser().is_dir():

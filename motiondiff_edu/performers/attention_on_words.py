@@ -10,12 +10,12 @@ from dataclasses import dataclass
 import numpy as np
 import torch
 from jaxtyping import Float
+from torch import Tensor
 
-from ..conditions.text import read
-from ..conditions.word_encoder import ids_of
 from ..cross_modal_attention import watch
-from ..ddpm import draw, q_sample
+from ..ddpm import Denoiser, draw, q_sample
 from .mover import Mover
+from .text_mofusion import Texts
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,29 +44,58 @@ def attention_on_words(
     positions: Float[np.ndarray, "T 21 3"],
     s: int,
     *,
+    plan: Float[Tensor, "1 T 22"] | None = None,
     generator: torch.Generator | None = None,
 ) -> WordMaps:
     """Where each layer reads in the text while this motion, noised to step s, is denoised.
 
-    Heads are averaged.
-    Raises TextError for a text that cannot be read, ValueError for a step outside the schedule, or
-    a mover that reads by CLIP.
+    A mover that plans needs the `plan` of the motion (`Mover.plans`). Heads are averaged.
+    Raises TextError for a text that cannot be read, ValueError for a step outside the schedule, a
+    missing plan, or a mover that reads by CLIP.
     """
+    words, ids = _read(mover, text, s)
+    denoise = mover.denoiser(ids, plan=plan)
+    return WordMaps(words, _seen(mover, denoise, mover.units_of(positions)[None], s, generator))
+
+
+@torch.no_grad()
+def attention_of_the_plan(
+    mover: Mover,
+    text: str,
+    plan: Float[Tensor, "1 T 22"],
+    s: int,
+    *,
+    generator: torch.Generator | None = None,
+) -> WordMaps:
+    """The same for the network that plans, while this timeline, noised to step s, is denoised."""
+    words, ids = _read(mover, text, s)
+    x0 = mover.plan_scaler.transform(plan.to(mover.device))
+    return WordMaps(words, _seen(mover, mover.plan_denoiser(ids), x0, s, generator))
+
+
+def _read(mover: Mover, text: str, s: int) -> tuple[tuple[str, ...], Texts]:
+    """The words of a text, and what the network takes of them, for step s."""
     if mover.config.clip:
         raise ValueError("these maps are over words; this mover reads by CLIP")
     if not 1 <= s <= mover.schedule.S:
         raise ValueError(f"this mover's steps are 1 to {mover.schedule.S}, not {s}")
-    words = read(text, mover.config.words).words
-    ids = ids_of([words], mover.config.words)
-    x0 = mover.units_of(positions)[None]
+    words = mover.reader.read(text).words
+    return words, mover.reader.encoded([words])
+
+
+def _seen(
+    mover: Mover,
+    denoise: Denoiser,
+    x0: Float[Tensor, "1 T F"],
+    s: int,
+    generator: torch.Generator | None,
+) -> dict[str, Float[np.ndarray, "_ M"]]:
+    """The maps of all layers that were asked, while x0, noised to step s, is denoised."""
     x_s = q_sample(x0, s, mover.schedule, draw(x0, generator))
-    plan = mover.plans(ids, x0.shape[1], generator=generator) if mover.can_plan else None
-    denoise = mover.denoiser(ids, plan=plan)
     with watch(mover.model) as seen:
         denoise(x_s, torch.tensor([s], device=mover.device))
-    levels = {
+    return {
         name.split("unet.")[-1].removesuffix(".attention"): maps[0][0].mean(0).cpu().numpy()
         for name, maps in seen.items()
-        if ".ask." in name and maps  # a planner was not asked
+        if ".ask." in name and maps
     }
-    return WordMaps(words, levels)

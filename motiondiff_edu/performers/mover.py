@@ -13,18 +13,18 @@ import torch
 from jaxtyping import Float
 from torch import Tensor, nn
 
+from ..beyond import timeline
 from ..beyond.classifier_free import guided_by_text
-from ..beyond.timeline import tidied
 from ..conditions.clip import Clip, check
 from ..conditions.word_encoder import WordReader
 from ..ddpm import Denoiser, Generators, Schedule, draw
-from ..motion.checks import checked_count, checked_seconds, checked_steps
+from ..motion.checks import checked_count, checked_guidance, checked_seconds, checked_steps
 from ..motion.motion import Motion
 from ..motion.moving_frame import D, to_features, to_positions
 from ..motion.root_frame import FPS
 from ..motion.scaler import Scaler
 from ..prediction import denoiser_of
-from .performer import Performer, generators, sampled
+from .performer import Performer, evaluating, generators, sampled
 from .planned_mofusion import PlannedMoFusion
 from .text_mofusion import Texts
 from .with_bar import with_bar
@@ -77,19 +77,20 @@ class Mover(Performer):
         self,
         ids: Texts,
         guidance: float = 1.0,
-        plan: Float[Tensor, "#B T 22"] | None = None,
+        plan: Float[Tensor, "#B T 22"] | Float[np.ndarray, "#B T 22"] | None = None,
         fast: bool = True,
     ) -> Denoiser:
         """`denoise(x_s, s) -> eps_hat` of motions for these texts (`reader.encoded`).
 
         `guidance`: w of `beyond.classifier_free`; 1 is the conditional network.
         `plan`: a timeline for each (`plans`), which a network that plans needs.
-        Raises ValueError for a network that plans without a plan, or a plan for another.
+        Raises ValueError for a network that plans without a plan, or a plan for another, or of
+        another shape.
         """
         if (plan is None) == self.can_plan:
             what = "needs one: see `plans`" if plan is None else "takes none"
             raise ValueError(f"plan: this mover {what}")
-        given = () if plan is None else (self.plan_scaler.transform(plan.to(self.device)),)
+        given = () if plan is None else (self.plan_scaler.transform(self._plan(plan, len(ids))),)
 
         def network(context):
             plans = (one.expand(len(ids), -1, -1) for one in given)
@@ -97,12 +98,33 @@ class Mover(Performer):
 
         return self._guided(ids, guidance, self.model.listen, network)
 
+    def plan_denoiser(self, ids: Texts, guidance: float = 1.0, fast: bool = True) -> Denoiser:
+        """The same for timelines in the network's units, of a network that plans."""
+        planner = self.model.planner
+
+        def network(context):
+            return lambda x_s, s: planner(x_s, s, context)
+
+        return self._guided(ids, guidance, planner.listen, network)
+
+    def _plan(self, plan: Tensor | np.ndarray, texts: int) -> Float[Tensor, "#B T 22"]:
+        """A plan as the network takes it.  Raises ValueError for one of another shape."""
+        made = torch.as_tensor(plan, dtype=torch.float32, device=self.device)
+        if made.ndim != 3 or made.shape[0] not in (1, texts) or made.shape[2] != timeline.D:
+            raise ValueError(
+                f"plan: its shape must be (1 or {texts}, frames, {timeline.D}), not "
+                f"{tuple(made.shape)}"
+            )
+        return made
+
     def _guided(self, ids: Texts, guidance: float, listen: Callable, network: Callable) -> Denoiser:
         """The denoiser of a network for these texts, away from no text if guidance is not 1."""
+        guidance = checked_guidance(guidance)
         texts = [ids] if guidance == 1 else [ids, self.reader.encoded([()] * len(ids))]
+        with evaluating(self.model):
+            contexts = [listen(one.to(self.device)) for one in texts]
         conditional, *nothing = (
-            denoiser_of(network(listen(one.to(self.device))), self.schedule, self.config.target)
-            for one in texts
+            denoiser_of(network(context), self.schedule, self.config.target) for context in contexts
         )
         return guided_by_text(conditional, nothing[0], guidance) if nothing else conditional
 
@@ -127,14 +149,11 @@ class Mover(Performer):
 
         `start` is the noise to begin with (default: drawn).
         """
-        planner = self.model.planner
-        denoise = self._guided(
-            ids, guidance, planner.listen,
-            lambda context: lambda x_s, s: planner(x_s, s, context),
-        )  # fmt: skip
-        x_S = self._noise((len(ids), frames, planner.config.D), generator, start)
-        made = sampled(denoise, x_S, self.schedule, steps, eta, generator)
-        return tidied(self.plan_scaler.inverse(made))
+        denoise = self.plan_denoiser(ids, guidance)
+        x_S = self._noise((len(ids), frames, timeline.D), generator, start)
+        with evaluating(self.model):
+            made = sampled(denoise, x_S, self.schedule, steps, eta, generator)
+        return timeline.tidied(self.plan_scaler.inverse(made))
 
     def act(
         self,
@@ -163,13 +182,14 @@ class Mover(Performer):
         for note in found.notes:
             warnings.warn(note, stacklevel=2)
         count, steps = checked_count(samples, "samples"), checked_steps(steps)
+        guidance = checked_guidance(guidance)
         if not SHORTEST <= checked_seconds(seconds) <= LONGEST:
             raise ValueError(
                 f"seconds must be from {SHORTEST:g} to {LONGEST:g}, as in training, not {seconds:g}"
             )
         ids = self.reader.encoded([found.words] * count)
         draws, frames = generators(seed, count), round(seconds * FPS)
-        evaluations = min(steps or self.schedule.S, self.schedule.S)
+        evaluations = min(steps or self.schedule.S, self.schedule.S) * (1 + self.can_plan)
         with with_bar(self, evaluations, "moving", progress) as one:
             made = one.act_ids(ids, frames, generator=draws, steps=steps, guidance=guidance)
         source = f"{text.strip():.60}"
@@ -187,16 +207,19 @@ class Mover(Performer):
         eta: float = ETA,
         guidance: float = 1.0,
         start: Float[Tensor, "B T 66"] | None = None,
-        plan: Float[Tensor, "#B T 22"] | None = None,
+        plan: Float[Tensor, "#B T 22"] | Float[np.ndarray, "#B T 22"] | None = None,
     ) -> Float[Tensor, "B T 21 3"]:
         """Motions in metres for texts as the network takes them (`reader.encoded`), one each.
 
         `start` is the noise to begin with (default: drawn); pass the same to compare two texts.
         `plan`: the timelines of the motions; by default a network that plans makes its own.
+        Raises ValueError for a plan of another length or shape.
         """
         if plan is None and self.can_plan:
             how = {"generator": generator, "steps": steps, "eta": eta, "guidance": guidance}
             plan = self.plans(ids, frames, **how)
+        if plan is not None and (length := np.shape(plan)[-2]) != frames:
+            raise ValueError(f"plan: it has {length} frames, and the motion {frames}")
         denoise = self.denoiser(ids, guidance, plan)
         x_S = self._noise((len(ids), frames, D), generator, start)
         return self.positions_of(sampled(denoise, x_S, self.schedule, steps, eta, generator))

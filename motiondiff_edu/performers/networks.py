@@ -54,10 +54,12 @@ def register(
     build: Callable[..., nn.Module] | None = None,
     fast: Callable[[nn.Module], object] | None = None,
 ) -> None:
-    """Register a network for a "walker" or a "dancer"; files name it by its class.
+    """Register a network for a "walker", a "dancer" or a "mover"; files name it by its class.
 
     model   the class; a walker's network is called with (x_s, s, past, control), a dancer's with
-            (x_s, s, music) and has a method `listen(mel, times)`; both return the target
+            (x_s, s, music) and has a method `listen(mel, times)`, a mover's with (x_s, s, music)
+            and has a method `listen(texts)`; all return the target. A mover that plans is a
+            `PlannedMoFusion`
     config  a frozen dataclass with a default for every field, including `target`; the network keeps
             it as `.config`
     build   `build(config, *scalers)` makes a new network (default: `model(config)`); the scalers

@@ -1,5 +1,7 @@
 """What walkers, dancers and movers share: a network, its noise schedule, and the fast twin."""
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from functools import cached_property
 
 import numpy as np
@@ -42,6 +44,17 @@ def sampled(
         steps = min(steps, schedule.S)
         loop = ddim_steps(denoise, x_S, schedule, steps, eta, generator=generator)
     return final(loop).x_s
+
+
+@contextmanager
+def evaluating(model: nn.Module) -> Iterator[None]:
+    """The network without dropout; afterwards it is in training mode again, if it was."""
+    training = model.training
+    model.eval()
+    try:
+        yield
+    finally:
+        model.train(training)
 
 
 class Performer:
@@ -88,9 +101,5 @@ class Performer:
 
     def _evaluated(self, *inputs) -> Tensor:
         """The network's output in evaluation mode, without dropout; then it is as it was."""
-        training = self.model.training
-        self.model.eval()
-        try:
+        with evaluating(self.model):
             return self.model(*inputs)
-        finally:
-            self.model.train(training)

@@ -38,7 +38,7 @@ class PlannedConfig(TextMoFusionConfig):
 
 
 @dataclass(frozen=True, eq=False)
-class Heard:
+class Contexts:
     """A text as each of the two networks reads it."""
 
     plan: Music
@@ -46,7 +46,7 @@ class Heard:
 
 
 class PlannedMoFusion(nn.Module):
-    """`planner(x_s, s, heard.plan)` denoises timelines; called, the whole denoises motions."""
+    """`planner(x_s, s, contexts.plan)` denoises timelines; called, the whole denoises motions."""
 
     def __init__(self, config: PlannedConfig):
         super().__init__()
@@ -54,20 +54,20 @@ class PlannedMoFusion(nn.Module):
         self.planner = TextMoFusion(config.of_the_plan())
         self.performer = TextMoFusion(config.of_one())
 
-    def listen(self, texts: Texts) -> Heard:
+    def listen(self, texts: Texts) -> Contexts:
         """The contexts of texts."""
-        return Heard(self.planner.listen(texts), self.performer.listen(texts))
+        return Contexts(self.planner.listen(texts), self.performer.listen(texts))
 
     def forward(
         self,
         x_s: Float[Tensor, "B T 66"],
         s: Int[Tensor, "B"],
-        heard: Heard,
+        contexts: Contexts,
         plan: Float[Tensor, "B T 22"],
     ) -> Float[Tensor, "B T 66"]:
         """x0_hat of motions that go with a plan, which has no noise."""
         both = torch.cat([x_s, plan], -1)
-        return self.performer(both, s, heard.motion)[..., : moving_frame.D]
+        return self.performer(both, s, contexts.motion)[..., : moving_frame.D]
 
 
 class Performing(nn.Module):
@@ -79,9 +79,9 @@ class Performing(nn.Module):
         self.config = model.config
 
     def forward(
-        self, x_s: Float[Tensor, "B T 66"], s: Int[Tensor, "B"], heard: Heard
+        self, x_s: Float[Tensor, "B T 66"], s: Int[Tensor, "B"], contexts: Contexts
     ) -> Float[Tensor, "B T 66"]:
-        return self.model(x_s, s, heard, self.plan)
+        return self.model(x_s, s, contexts, self.plan)
 
 
 register("mover", PlannedMoFusion, PlannedConfig)

@@ -1,10 +1,11 @@
-"""Wrap a performer: each evaluation of its network advances a progress bar."""
+"""Wrap a performer: each evaluation of its networks advances a progress bar."""
 
 import copy
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import TypeVar
 
+from ..ddpm import Denoiser
 from ..motion.progress import bar
 
 Performer = TypeVar("Performer")  # what has a `denoiser` that its samplers ask for
@@ -14,19 +15,25 @@ Performer = TypeVar("Performer")  # what has a `denoiser` that its samplers ask 
 def with_bar(
     performer: Performer, evaluations: int, what: str, shown: bool = True
 ) -> Iterator[Performer]:
-    """The same performer, whose network moves a bar on by one each time it is evaluated."""
+    """The same performer, whose networks move a bar on by one each time they are evaluated."""
     with bar(evaluations, what, shown) as step:
         twin = copy.copy(performer)
 
-        def denoiser(*condition, fast: bool = True):  # past and control, mel and frames, texts
-            denoise = performer.denoiser(*condition, fast=fast)
+        def with_steps(make: Callable[..., Denoiser]) -> Callable[..., Denoiser]:
+            def denoiser(*condition, fast: bool = True):  # past and control, mel and frames, texts
+                denoise = make(*condition, fast=fast)
 
-            def stepping(x_s, s):
-                answer = denoise(x_s, s)
-                step()
-                return answer
+                def stepping(x_s, s):
+                    answer = denoise(x_s, s)
+                    step()
+                    return answer
 
-            return stepping
+                return stepping
 
-        vars(twin)["denoiser"] = denoiser  # the record is frozen; its twin lives as long as the bar
+            return denoiser
+
+        for name in ("denoiser", "plan_denoiser"):
+            if hasattr(performer, name):
+                # the record is frozen; its twin lives as long as the bar
+                vars(twin)[name] = with_steps(getattr(performer, name))
         yield twin

@@ -195,11 +195,11 @@ def loss_of(
         ids = without_some(ids, recipe.no_text, generator)
         x0, texts, planted = (part.to(device) for part in (x0, texts_of(ids), planted))
         x0, plan = x0[..., : moving_frame.D], x0[..., moving_frame.D :]
-        heard = model.listen(texts)
+        contexts = model.listen(texts)
         if not isinstance(model, PlannedMoFusion):
-            return of_batch(model, x0, heard, planted, generator)
-        planning = training_loss(model.planner, (plan, heard.plan), schedule, generator)
-        return planning + of_batch(Performing(model, plan), x0, heard, planted, generator)
+            return of_batch(model, x0, contexts, planted, generator)
+        planning = training_loss(model.planner, (plan, contexts.plan), schedule, generator)
+        return planning + of_batch(Performing(model, plan), x0, contexts, planted, generator)
 
     return loss_fn
 

@@ -29,7 +29,7 @@ class Prompt(ipywidgets.VBox):
         self.mover = mover
         self.motions = []
         self._answered = None
-        wide = ipywidgets.Layout(width="100%")
+        wide = ipywidgets.Layout(width="98%")
         self.text = ipywidgets.Text(
             text, description="sentence", continuous_update=False, layout=wide
         )

@@ -3,9 +3,14 @@
 import pytest
 import torch
 
-from motiondiff_edu.beyond.self_attention import SelfAttendingMoFusion
+from motiondiff_edu.beyond.self_attention import (
+    CURVES,
+    SLOWEST,
+    SelfAttendingMoFusion,
+    from_both_ends,
+)  # fmt: skip
 from motiondiff_edu.cross_modal_attention import angles_of
-from motiondiff_edu.mofusion import MoFusion, MoFusionConfig
+from motiondiff_edu.mofusion import MoFusion, MoFusionConfig, View
 
 CONFIG = MoFusionConfig(D=5, C=6, S=20, widths=(16, 24, 32), heads=2, music_layers=0)
 
@@ -64,3 +69,15 @@ def test_where_a_motion_begins_does_not_matter_to_attention_over_time():
 
     near, far = (block(h, None, None, (angles(t), angles(t))) for t in (0.0, 5.0))
     torch.testing.assert_close(near, far, atol=1e-5, rtol=1e-4)
+
+
+def test_seconds_are_counted_from_the_first_frame_and_to_the_last_one_of_each_motion():
+    """The slowest curve turns once in 50 s, so it is nearly the angle itself."""
+    times, mask = torch.arange(5.0), torch.ones(2, 5, 1)
+    mask[1, 3:] = 0
+    codes = from_both_ends(View(times=times, mask=mask, bias=None, angles={}))
+    sines = codes.unflatten(-1, (2, 2 * CURVES))[..., 0]  # (motion, frame, which end)
+    angle = 2 * torch.pi * SLOWEST
+    torch.testing.assert_close(sines[..., 0], (angle * times).sin().expand(2, -1))
+    left = torch.tensor([[4.0, 3, 2, 1, 0], [2, 1, 0, -1, -2]])
+    torch.testing.assert_close(sines[..., 1], (angle * left).sin())

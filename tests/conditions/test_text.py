@@ -86,6 +86,26 @@ def test_every_caption_is_read_whole_and_held_out_verbs_are_unknown():
     assert refused > 100 and len(words) < 140
 
 
+def test_counts_are_read_from_digits_and_other_counts_are_refused_with_those_there_are():
+    known = base_vocabulary(captions.vocabulary())
+    assert read("jumps 1 time", known).words == ("jump", "one", "time")
+    assert read("jumps 2 times", known).words[1] == "2"
+    for text in ("jumps five times", "jumps 7 times"):
+        with pytest.raises(TextError, match="did you mean once or twice or three or four"):
+            read(text, known)
+    with pytest.raises(TextError, match="'läuft', 'vorwärts'"):
+        read("läuft vorwärts", known)
+    with pytest.raises(TextError, match="'without'"):
+        read("walks without waving", known)
+
+
+def test_a_text_that_grows_by_being_read_is_not_too_long_for_the_network():
+    known = base_vocabulary(captions.vocabulary())
+    assert len(read("thrice " * 32, known).words) == LONGEST
+    with pytest.raises(TextError, match="has 66 words; the network reads 64"):
+        read("thrice " * 33, known)
+
+
 def test_synonyms_lead_from_unknown_words_to_known_ones():
     known = set(base_vocabulary(captions.vocabulary()))
     table = synonyms()

@@ -8,9 +8,14 @@ import small_movers
 import torch
 
 from data_synth.actions import clips
+from motiondiff_edu.beyond import timeline
 from motiondiff_edu.conditions.text import TextError
 from motiondiff_edu.motion.moving_frame import to_features
-from motiondiff_edu.performers.attention_on_words import WordMaps, attention_on_words
+from motiondiff_edu.performers.attention_on_words import (
+    WordMaps,
+    attention_of_the_plan,
+    attention_on_words,
+)  # fmt: skip
 from motiondiff_edu.performers.mover import Mover
 
 SMALL, PLANNED = (replace(one, depth=2) for one in (small_movers.SMALL, small_movers.PLANNED))
@@ -27,7 +32,9 @@ def mover(positions, request) -> Mover:
 
 
 def maps(mover, text, positions, s=20) -> WordMaps:
-    return attention_on_words(mover, text, positions, s, generator=torch.Generator().manual_seed(0))
+    plan = torch.zeros(1, len(positions), timeline.D) if mover.can_plan else None
+    draws = torch.Generator().manual_seed(0)
+    return attention_on_words(mover, text, positions, s, plan=plan, generator=draws)
 
 
 def test_each_layer_has_a_row_for_each_of_its_frames_that_sums_to_one(mover, positions):
@@ -53,6 +60,22 @@ def test_the_words_are_those_that_the_network_reads(mover, positions):
     assert walk.words[0] == "walk"
     other = maps(mover, "walks ahead", positions)
     np.testing.assert_array_equal(walk.by_frame(64), other.by_frame(64))
+
+
+def test_a_plan_has_maps_of_its_own_and_the_motion_needs_it(positions):
+    features = to_features(positions)
+    mover = small_movers.mover_of(PLANNED, small_movers.scaler_of(features))
+    text, draws = "kicks with the left foot", torch.Generator().manual_seed(0)
+    plan = torch.zeros(1, 64, timeline.D)
+    found = attention_of_the_plan(mover, text, plan, 20, generator=draws)
+    assert found.words[0] == "kick" and found.by_frame(64).shape == (64, len(found.words))
+    np.testing.assert_allclose(found.by_frame(64).sum(1), 1, atol=1e-5)
+    other = maps(mover, text, positions)
+    assert set(found.levels) != set(other.levels) or not np.allclose(
+        found.by_frame(64), other.by_frame(64)
+    )
+    with pytest.raises(ValueError, match="plan: this mover needs one"):
+        attention_on_words(mover, text, positions, 20)
 
 
 def test_what_has_no_map_is_refused(mover, positions):

@@ -1,6 +1,7 @@
 """A mover: sentences to motions, its files, and what it refuses."""
 
 import warnings
+from contextlib import contextmanager
 from dataclasses import replace
 
 import numpy as np
@@ -17,6 +18,7 @@ from motiondiff_edu.ddpm import cosine_schedule
 from motiondiff_edu.kinematic_loss import training_loss
 from motiondiff_edu.motion.moving_frame import D, to_features, to_positions
 from motiondiff_edu.motion.scaler import Scaler
+from motiondiff_edu.performers import with_bar
 from motiondiff_edu.performers.described_windows import DescribedWindows
 from motiondiff_edu.performers.mover import Mover
 from motiondiff_edu.performers.text_mofusion import TextMoFusion
@@ -101,6 +103,64 @@ def test_a_plan_needs_a_network_that_takes_one(planning):
     with pytest.raises(ValueError, match="plan: this mover takes none"):
         mover_of(SMALL).denoiser(ids, plan=torch.zeros(1, 40, timeline.D))
     assert planning.can_plan and not mover_of(SMALL).can_plan
+
+
+def test_a_plan_of_ones_own_is_an_array_of_the_right_shape(planning):
+    ids = ids_of([("walk",), ("kick",)], WORDS)
+    acts = [timeline.Timed("kick", "left", 2, 0.2, 1.6)]
+    own = timeline.timeline(acts, 40)[None]
+    made = planning.act_ids(ids, 40, steps=2, plan=own, generator=seeded())
+    again = planning.act_ids(
+        ids, 40, steps=2, plan=torch.from_numpy(own).float(), generator=seeded()
+    )
+    torch.testing.assert_close(made, again)
+    with pytest.raises(ValueError, match="plan: it has 40 frames, and the motion 44"):
+        planning.act_ids(ids, 44, steps=2, plan=own)
+    for wrong in (own[0], own[..., :5], np.repeat(own, 3, 0)):
+        with pytest.raises(ValueError, match=r"its shape must be \(1 or 2, frames, 22\)"):
+            planning._plan(wrong, len(ids))  # the tests' check of shapes comes first otherwise
+
+
+def test_plans_are_guided_too(planning):
+    ids = ids_of([("walk",)], WORDS)
+    x, s = torch.randn(1, 40, timeline.D, generator=seeded()), torch.tensor([5])
+    nothing = planning.reader.encoded([()])
+    own, free, guided = (
+        planning.plan_denoiser(text, w)(x, s) for text, w in ((ids, 1), (nothing, 1), (ids, 2.5))
+    )
+    torch.testing.assert_close(guided, free + 2.5 * (own - free), atol=1e-4, rtol=1e-3)
+    apart = planning.act_ids(ids, 40, steps=2, guidance=2.5, generator=seeded())
+    assert (apart - planning.act_ids(ids, 40, steps=2, generator=seeded())).abs().max() > 1e-3
+
+
+def test_a_mover_in_training_acts_without_dropout(mover):
+    mover = Mover(mover.model, mover.schedule, mover.motion_scaler)
+    before = mover.act("walks", seconds=2.0, steps=2, progress=False).positions
+    mover.model.train()
+    try:
+        after = mover.act("walks", seconds=2.0, steps=2, progress=False).positions
+        assert mover.model.training
+    finally:
+        mover.model.eval()
+    np.testing.assert_array_equal(before, after)
+
+
+@pytest.mark.parametrize("guidance", [float("nan"), -3.0, float("inf")])
+def test_guidance_is_a_number_of_0_or_more(mover, guidance):
+    with pytest.raises(ValueError, match="guidance must be a number of 0 or more"):
+        mover.act("walks", seconds=2.0, steps=2, guidance=guidance, progress=False)
+
+
+def test_the_bar_counts_the_plan_as_well(mover, monkeypatch):
+    told = []
+
+    @contextmanager
+    def counting(total, what, shown):
+        yield lambda: told.append(total)
+
+    monkeypatch.setattr(with_bar, "bar", counting)
+    mover.act("walks", seconds=2.0, steps=3)
+    assert told == [len(told)] * len(told) and len(told) == 3 * (1 + mover.can_plan)
 
 
 def test_the_units_of_a_motion_are_those_of_the_network(mover):
