@@ -81,7 +81,8 @@ def test_bodies_by_hand(some):
 
 def test_eyes_and_rules_are_compared_by_hand():
     """Ten clips: four walk, of which the rules miss one; nothing else is ever there."""
-    walk, left, right = (("walk", "", 1)), ("kick", "left", 2), ("kick", "right", 3)
+    walk = ("walk", "", 1)
+    left, right = ("kick", "left", 2), ("kick", "right", 3)
     eyes = [[walk]] * 4 + [[]] * 6
     rules = [[walk]] * 3 + [[]] * 7
     found = by_name(looking.kappas([[*one, left] for one in eyes], [[*one, left] for one in rules]))

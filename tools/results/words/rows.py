@@ -92,7 +92,8 @@ class TrainingClips:
     @cached_property
     def _read(self) -> tuple[list[str], list[Positions], set[Sentence]]:
         """All captions, a sketch of each motion (a frame in EVERY, from the origin), sentences."""
-        texts, sketches, sentences = [], [], set()
+        texts, sketches = [], []
+        sentences = set()
         for one in clips(self.clips, self.seed):
             for twin in (one, mirror(one)):
                 texts += twin.captions
