@@ -153,13 +153,18 @@ def empty(what: str) -> TextError:
     )
 
 
+def _nearest(word: str, vocabulary: Sequence[str]) -> list[str]:
+    """Known words that may be meant: of about the same letters; for a number the counts."""
+    if word in NUMBERS or word.isdigit():
+        return [known for known in ("once", "twice", "three", "four") if known in vocabulary]
+    return get_close_matches(word, vocabulary, n=3, cutoff=0.75)
+
+
 def _unknown(words: list[str], vocabulary: Sequence[str]) -> str:
     """The message for words that are not known, with the nearest known ones."""
     told = []
     for word in words[:5]:
-        near = get_close_matches(word, vocabulary, n=3, cutoff=0.75)
-        if word in NUMBERS or word.isdigit():
-            near = [known for known in ("once", "twice", "three", "four") if known in vocabulary]
+        near = _nearest(word, vocabulary)
         told.append(f"{word!r}" + (f" (did you mean {' or '.join(near)}?)" if near else ""))
     more = f" and {len(words) - 5} more" if len(words) > 5 else ""
     return (

@@ -18,17 +18,16 @@ from ..beyond import timeline
 from ..beyond.guidance import blended
 from ..ddpm import Generators, draw, final, q_sample, timesteps
 from ..inbetweening import inpaint_steps
-from ..metrics.actions import actions
+from ..metrics.actions import HANDS, actions
 from ..motion.dance_frame import Place
 from ..motion.moving_frame import D
 from ..motion.root_frame import estimate_root
-from ..motion.skeleton import HIPS, TOES, J, joint_index
+from ..motion.skeleton import HIPS, TOES, J
 from ..performers.mover import ETA, STEPS, Mover
 from ..performers.text_mofusion import Texts
 
 STRENGTH = 0.3  # share of the diffusion steps that the motion is noised by
 FEET = (HIPS, *TOES)  # known where the legs are kept
-HANDS = (joint_index("LeftHand"), joint_index("RightHand"))
 FADE = 10  # frames within which a generated part joins a kept span of time
 
 

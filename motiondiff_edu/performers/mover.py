@@ -103,7 +103,11 @@ class Mover(Performer):
         planner = self.model.planner
 
         def network(context):
-            return lambda x_s, s: planner(x_s, s, context)
+            def evaluated(x_s, s):
+                with evaluating(self.model):
+                    return planner(x_s, s, context)
+
+            return evaluated
 
         return self._guided(ids, guidance, planner.listen, network)
 
@@ -151,8 +155,7 @@ class Mover(Performer):
         """
         denoise = self.plan_denoiser(ids, guidance)
         x_S = self._noise((len(ids), frames, timeline.D), generator, start)
-        with evaluating(self.model):
-            made = sampled(denoise, x_S, self.schedule, steps, eta, generator)
+        made = sampled(denoise, x_S, self.schedule, steps, eta, generator)
         return timeline.tidied(self.plan_scaler.inverse(made))
 
     def act(

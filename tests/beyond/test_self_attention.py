@@ -8,7 +8,7 @@ from motiondiff_edu.beyond.self_attention import (
     SLOWEST,
     SelfAttendingMoFusion,
     from_both_ends,
-)  # fmt: skip
+)
 from motiondiff_edu.cross_modal_attention import angles_of
 from motiondiff_edu.mofusion import MoFusion, MoFusionConfig, View
 

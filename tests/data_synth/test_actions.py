@@ -19,7 +19,7 @@ from data_synth.actions.captions import (
     vocabulary,
     worded_by,
     words_of,
-)  # fmt: skip
+)
 from data_synth.actions.dataset import SPLITS, mirrored_sentence, worded
 from data_synth.actions.join import crossfade
 from data_synth.actions.neighbours import neighbour

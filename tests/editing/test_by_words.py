@@ -16,7 +16,7 @@ from motiondiff_edu.editing.by_words import (
     columns,
     edit_by_words,
     kept_columns,
-)  # fmt: skip
+)
 from motiondiff_edu.editing.masks import UPPER, body_part
 from motiondiff_edu.motion.moving_frame import D, to_features, to_positions
 from motiondiff_edu.motion.skeleton import HIPS, joint_index

@@ -15,7 +15,7 @@ from motiondiff_edu.performers.attention_on_words import (
     WordMaps,
     attention_of_the_plan,
     attention_on_words,
-)  # fmt: skip
+)
 from motiondiff_edu.performers.mover import Mover
 
 SMALL, PLANNED = (replace(one, depth=2) for one in (small_movers.SMALL, small_movers.PLANNED))

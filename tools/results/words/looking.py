@@ -21,10 +21,11 @@ from sklearn.metrics import cohen_kappa_score
 
 from motiondiff_edu._files import replacing
 from motiondiff_edu.beyond import timeline
-from motiondiff_edu.metrics.actions import Recognised, actions
+from motiondiff_edu.metrics.actions import UPLEGS, Recognised, actions
 from motiondiff_edu.metrics.sentences import COUNTED
 from motiondiff_edu.motion.dance_frame import heading
-from motiondiff_edu.motion.skeleton import HIPS, joint_index
+from motiondiff_edu.motion.root_frame import FPS
+from motiondiff_edu.motion.skeleton import HIPS
 from motiondiff_edu.performers.mover import Mover
 from motiondiff_edu.pretrained import checkpoints
 from motiondiff_edu.viz import body
@@ -38,7 +39,6 @@ LOOKED_AT = Path(__file__).with_name("looked_at.json")
 CLIPS = 200
 SEED = UNSEEN + 3
 A_ROW, EVERY = 20, 2  # poses in a row of a sheet; frames from one to the next
-LEFT_HIP, RIGHT_HIP = joint_index("LeftUpLeg"), joint_index("RightUpLeg")
 SIZE = (150, 230)  # of a pose, in points of the picture
 VERBS = tuple(verb for verb in timeline.VERBS if verb != "stand")
 
@@ -68,13 +68,14 @@ def sheet(positions: Positions, title: str) -> Figure:
             PolyCollection([one + corner for one, _ in shapes], facecolors=[c for _, c in shapes])
         )
         if k % A_ROW % 10 == 0:
-            left.text(*(corner + 12), f"{k * EVERY / 20:.0f} s", fontsize=7)
+            left.text(*(corner + 12), f"{k * EVERY / FPS:.0f} s", fontsize=7)
     left.set(xlim=(0, A_ROW * SIZE[0]), ylim=(rows * SIZE[1], 0), aspect="equal", title=title)
     path = positions[:, HIPS][:, [0, 2]]
     right.plot(*path.T, color=body.PATH_COLOUR)
     right.plot(*path[:1].T, "o", color=body.PATH_COLOUR)
-    facing = heading(positions[:, LEFT_HIP] - positions[:, RIGHT_HIP])[::20]
-    right.quiver(*path[::20].T, np.sin(facing), np.cos(facing), angles="xy", width=0.008)
+    left_hip, right_hip = (positions[:: int(FPS), joint] for joint in UPLEGS)
+    facing = heading(left_hip - right_hip)
+    right.quiver(*path[:: int(FPS)].T, np.sin(facing), np.cos(facing), angles="xy", width=0.008)
     middle = path.mean(0)
     half = max(1.0, np.abs(path - middle).max() + 0.2)
     right.set(xlim=(middle[0] + half, middle[0] - half), ylim=(middle[1] - half, middle[1] + half))

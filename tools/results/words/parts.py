@@ -103,16 +103,11 @@ class Studio:
     def of_new_sentences(self, made: list[Positions]) -> list[Measure]:
         """What is recognised in the trials whose sentence no training clip has, mirrored or not."""
         known = self.training.sentences
-        new = [k for k, one in enumerate(self.trials.sentences) if one not in known]
-        some = self.trials.chosen(new)
-        share = np.isin(np.arange(len(self.trials)), new)
-        return [
-            replace(one, name=f"new_{one.name}")
-            for one in (
-                *recognised(some, [made[k] for k in new]),
-                measure_of("sentences", "share", np.mean, share),
-            )
-        ]
+        new = np.array([one not in known for one in self.trials.sentences])
+        which = np.flatnonzero(new)
+        found = recognised(self.trials.chosen(which), [made[k] for k in which])
+        found.append(measure_of("sentences", "share", np.mean, new))
+        return [replace(one, name=f"new_{one.name}") for one in found]
 
     def varied(self, make: Make) -> list[Measure]:
         """The variety of motions to one caption."""

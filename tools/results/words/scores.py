@@ -10,7 +10,7 @@ from jaxtyping import Float
 
 from data_synth.actions.neighbours import KINDS
 from motiondiff_edu.metrics import diversity, frechet
-from motiondiff_edu.metrics.actions import actions
+from motiondiff_edu.metrics.actions import SIDES, actions
 from motiondiff_edu.metrics.beats import mean_speed
 from motiondiff_edu.metrics.retrieval import TOP, mm_dist, r_precision
 from motiondiff_edu.metrics.sentences import confusion, rows_of
@@ -28,6 +28,7 @@ from ..walks.scores import (
 from .rows import sketch
 from .trials import Pair, Positions, Trials, minimal_pairs
 
+SHOWN = (*SIDES, "both", "none")  # how an act with one side may be recognised
 REPLICATIONS = 20  # of the pools of R-Precision, as is usual
 
 
@@ -46,19 +47,15 @@ def sides(trials: Trials, made: Sequence[Positions]) -> list[Measure]:
         confusion([phrases], [actions(positions)])
         for phrases, positions in zip(trials.phrases, made, strict=True)
     ]
-    cells = {pair: np.array([one.get(pair, 0) for one in tables]) for pair in product(ONE, SHOWN)}
-    asked = {side: sum(cells[side, shown] for shown in SHOWN) for side in ONE}
+    cells = {pair: np.array([one.get(pair, 0) for one in tables]) for pair in product(SIDES, SHOWN)}
+    asked = {side: sum(cells[side, shown] for shown in SHOWN) for side in SIDES}
     shares = [
         measure_of(f"asked_{side}_shown_{shown}", "share", ratio, count, asked[side])
         for (side, shown), count in cells.items()
     ]
     right = cells["left", "left"] + cells["right", "right"]
-    seen = sum(asked[side] - cells[side, "none"] for side in ONE)
+    seen = sum(asked[side] - cells[side, "none"] for side in SIDES)
     return [*shares, measure_of("side_confused", "share", ratio, seen - right, seen)]
-
-
-ONE = ("left", "right")  # sides of one arm or leg
-SHOWN = (*ONE, "both", "none")
 
 
 @dataclass(frozen=True, eq=False)

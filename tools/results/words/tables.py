@@ -1,10 +1,11 @@
 """MoFusion's Table 2 beside ours, sentences never seen, editing: sections of docs/RESULTS.md."""
 
+from motiondiff_edu.metrics.actions import SIDES
 from motiondiff_edu.metrics.sentences import KINDS
 
 from ..page.markdown import cell, number, table
 from .budget import VARIANTS
-from .scores import ONE, SHOWN
+from .scores import SHOWN
 
 # Diversity, MultiModality, R-Precision: MoFusion (Dabral et al., CVPR 2023), Table 2, HumanML3D
 PAPER_TABLE = {
@@ -102,7 +103,7 @@ def left_and_right(records: dict[str, dict]) -> str:
     """The confusion of left and right."""
     rows = [
         [side, *(cell(records.get(f"words.asked_{side}_shown_{one}"), unit=False) for one in SHOWN)]
-        for side in ONE
+        for side in SIDES
     ]
     return (
         "\n### Left and right\n\nOf acts with one side that were asked of the mover, the shares by "
@@ -118,12 +119,11 @@ def looked_at(records: dict[str, dict]) -> str:
     kinds = ("kappa", "side_kappa", "count_kappa", "all_the_same")
     found = [cell(records[f"words.looked_{kind}"], unit=False) for kind in kinds]
     return (
-        "\n### Does the recogniser see what eyes see?\n\nMotions of the mover were drawn as "
-        "strips of "
-        "ten poses a second, without their captions. A vision model, not people, looked at each "
-        "and wrote down what it shows. Cohen's kappa is 1 where both always agree, and 0 where "
-        "they agree as often as by chance. For verbs it is over every clip and verb, for sides and "
-        "counts over the verbs that both found.\n\n"
+        "\n### Does the recogniser see what eyes see?\n\n"
+        "Motions of the mover were drawn as strips of ten poses a second, without their captions. "
+        "A vision model, not people, looked at each and wrote down what it shows. Cohen's kappa is "
+        "1 where both always agree, and 0 where they agree as often as by chance. For verbs it is "
+        "over every clip and verb, for sides and counts over the verbs that both found.\n\n"
         + table(["verbs", "sides", "counts", "clips that agree in everything"], [found])
     )
 
