@@ -23,6 +23,7 @@ class MoverRecipe:
     name: str
     config: TextMoFusionConfig
     steps: int
+    plan_steps: int = 0  # afterwards, of the network for timelines alone, which needs more of them
     kinematic: KinematicWeights | None = None
     loss_weights: DanceLossWeights = DanceLossWeights()
     metres: float = 0.0  # power of `beyond.loss_terms.metre_weights`; 0: all columns alike
@@ -42,6 +43,7 @@ MOVER_PLAIN = MoverRecipe(
     "mover-plain",
     PlannedConfig(),
     steps=10_000,
+    plan_steps=14_000,
     loss_weights=OURS,
     metres=1.0,
     snr=0.1,

@@ -3,6 +3,7 @@
 The loss is MoFusion's with the departures of the recipe. A killed run continues from its last save.
 """
 
+import copy
 from collections.abc import Callable, Hashable, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache, partial
@@ -34,6 +35,8 @@ from ..training import LossFn
 from .mofusion_loss import batch_loss, weighted_loss
 from .movers import MoverRecipe
 from .train_recipe import Provenance, train_recipe
+
+WARMUP = 300  # steps
 
 Truths = dict[int, list[tuple[Hashable, Hashable]]]
 
@@ -115,6 +118,8 @@ def train_mover(
 ) -> Mover:
     """Train by a recipe, or continue the run in `run_file`; return a mover with averaged weights.
 
+    With `plan_steps`, the network for timelines is then trained further (`train_planner`).
+
     A network for motions alone (`config.D` = 66) is not shown the timelines of the windows.
     A recipe that names a CLIP takes it from `clip`, or looks for it on this machine by its name; it
     needs windows of whole texts (`DescribedWindows.of_texts`).
@@ -145,16 +150,44 @@ def train_mover(
     if clip:
         about |= {"texts": digest_of_texts({"texts": "\n".join(windows.words)})[:16]}
         about |= {"clip": " ".join(f"{x:.1f}" for x in facts["clip_sample"])}
+    provenance = Provenance(about, facts, "data_synth.actions, synthetic")
+    texts_of = texts_by(clip, windows) if clip else texts_as_ids
+    loss_fn = loss_of(recipe, windows, schedule, texts_of)
     trained, card = train_recipe(
-        recipe,
-        run_file,
-        model,
-        loss_of(recipe, windows, schedule, texts_by(clip, windows) if clip else texts_as_ids),
-        Provenance(about, facts, "data_synth.actions, synthetic"),
-        warmup=300,
-        log=log,
+        recipe, run_file, model, loss_fn, provenance, warmup=WARMUP, log=log
     )
+    if recipe.plan_steps:
+        loss_fn = plan_loss_of(recipe, windows, schedule, texts_of)
+        card["planner"] = train_planner(recipe, run_file, trained, loss_fn, provenance, log)
     return Mover(trained, schedule, windows.scaler, card, clip)
+
+
+def train_planner(
+    recipe: MoverRecipe,
+    run_file: Path,
+    model: PlannedMoFusion,
+    loss_fn: LossFn,
+    provenance: Provenance,
+    log: Callable[[str], object],
+) -> dict:
+    """Train the network for timelines of a trained mover further, alone; return the run's card.
+
+    A timeline decides what is done and how often, and a step of this network takes a quarter of a
+    step of both. Its run lies beside `run_file`.
+    """
+    alone = replace(
+        recipe,
+        name=f"{recipe.name}-planner",
+        config=recipe.config.of_the_plan(),
+        steps=recipe.plan_steps,
+    )
+    begins = {"begins_with": digest_of_tensors(model.planner.state_dict())[:16]}
+    own = replace(provenance, about=provenance.about | begins)
+    file = run_file.with_name(f"{run_file.stem}-planner{run_file.suffix}")
+    planner = copy.deepcopy(model.planner).requires_grad_(True)
+    trained, card = train_recipe(alone, file, planner, loss_fn, own, warmup=WARMUP, log=log)
+    model.planner.load_state_dict(trained.state_dict())
+    return {name: card[name] for name in ("minutes", "sittings", "final_loss")} | begins
 
 
 def texts_as_ids(ids: Int[Tensor, "B M"]) -> Texts:
@@ -200,6 +233,24 @@ def loss_of(
             return of_batch(model, x0, contexts, planted, generator)
         planning = training_loss(model.planner, (plan, contexts.plan), schedule, generator)
         return planning + of_batch(Performing(model, plan), x0, contexts, planted, generator)
+
+    return loss_fn
+
+
+def plan_loss_of(
+    recipe: MoverRecipe,
+    windows: DescribedWindows,
+    schedule: Schedule,
+    texts_of: Callable[[Tensor], Texts] = texts_as_ids,
+) -> LossFn:
+    """The loss of the network for timelines alone: eq. 4 without kinematics."""
+
+    def loss_fn(planner: nn.Module, generator: torch.Generator) -> Tensor:
+        device = next(planner.parameters()).device
+        x0, ids, _ = windows.draw(recipe.frames, generator)
+        texts = texts_of(without_some(ids, recipe.no_text, generator)).to(device)
+        plan = x0[..., moving_frame.D :].to(device)
+        return training_loss(planner, (plan, planner.listen(texts)), schedule, generator)
 
     return loss_fn
 
