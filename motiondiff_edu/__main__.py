@@ -80,7 +80,10 @@ def _run(arguments: list[str] | None) -> int:
     verb = verbs[chosen.verb]
     chosen.options = further
     if chosen.options and not getattr(verb, "PASSES_OPTIONS_ON", ""):
-        chosen.parser.error(f"{chosen.verb} does not know {' '.join(chosen.options)}")
+        chosen.parser.error(
+            f"{chosen.verb} does not know {' '.join(chosen.options)}; a sentence or name of "
+            "several words is put into quotes"
+        )
     if chosen.verb in _commands.VERBS:
         return _commands.run(verb, chosen)
     try:

@@ -30,7 +30,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> None:
     mapping = _mapping(args.joints)
-    paths = outputs.output_paths(args.out, args.overwrite)
+    paths = outputs.output_paths(args.out, args.overwrite, source=args.file)
     outputs.write_all(outputs.read(args.file, mapping, args.file_fps), paths)
 
 

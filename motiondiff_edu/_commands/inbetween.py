@@ -21,7 +21,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> None:
-    paths = outputs.output_paths(args.out, args.overwrite, args.samples)
+    paths = outputs.output_paths(args.out, args.overwrite, args.samples, args.file)
     every = checked_count(args.every, "--every")
     motion = outputs.read(args.file)
     from .. import inbetween, keyframes

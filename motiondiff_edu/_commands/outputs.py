@@ -51,11 +51,13 @@ def add_seed(parser: argparse.ArgumentParser) -> None:
     )
 
 
-def output_paths(out: Path, overwrite: bool, samples: int = 1) -> list[Path]:
+def output_paths(
+    out: Path, overwrite: bool, samples: int = 1, source: Path | None = None
+) -> list[Path]:
     """The files to write: `out`, or made-1.bvh, made-2.bvh ... for several samples.
 
-    Raises ValueError for an unknown ending, a folder, a file that exists, and for a folder that
-    cannot be made or written to.
+    Raises ValueError for an unknown ending, a folder, a file that exists, for the file that is read
+    (`source`), also with --overwrite, and for a folder that cannot be made or written to.
     """
     checked_count(samples, "--samples")
     if out.suffix.lower() not in registry.writers.names():
@@ -69,6 +71,11 @@ def output_paths(out: Path, overwrite: bool, samples: int = 1) -> list[Path]:
     for path in paths:
         if path.is_dir():
             raise ValueError(f"{path} is a folder; give the name of a file in it")
+        if source is not None and path.exists() and source.expanduser().exists():
+            if path.samefile(source.expanduser()):
+                raise ValueError(
+                    f"{path} is the file that is read, and it would be lost: choose another name"
+                )
         if path.exists() and not overwrite:
             raise ValueError(f"{path} exists already: choose another name, or add --overwrite")
     return paths

@@ -37,7 +37,7 @@ def run(args: argparse.Namespace) -> None:
     frames = spans(args.frames)
     if args.frames and not args.missing:
         raise ValueError("--frames needs --missing, which names the joints")
-    paths = outputs.output_paths(args.out, args.overwrite, args.samples)
+    paths = outputs.output_paths(args.out, args.overwrite, args.samples, args.file)
     motion = outputs.read(args.file)
     from .. import reconstruct
 

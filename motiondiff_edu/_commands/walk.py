@@ -24,7 +24,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> None:
     segments = control_words.parse(args.control)
-    paths = outputs.output_paths(args.out, args.overwrite, args.samples)
+    paths = outputs.output_paths(args.out, args.overwrite, args.samples, args.file)
     motion = outputs.read(args.file)
     from .. import joystick, load
 

@@ -5,6 +5,7 @@
 
 A word is taken in its base form (`lemma`). Other words are read as known ones of about the same
 meaning, openly, or refused by name; none becomes numbers in silence.
+Notebook: 16
 """
 
 import json
@@ -16,6 +17,19 @@ from functools import cache
 from pathlib import Path
 
 LONGEST = 64  # words of a text
+EXAMPLES = (  # for messages
+    "walk", "run", "step", "turn", "squat", "jump", "kick", "sit", "bow", "wave", "raise", "punch",
+    "clap", "point",
+)  # fmt: skip
+# words that have no further forms: what looks like one is another word
+WITHOUT_FORMS = frozenset(
+    "a after again ahead and around at back backwards both down first four front half in left low "
+    "on once one out over right same sideways still that the then three to together twice two up "
+    "while with".split()
+)
+NOUNS = frozenset(  # these have a plural alone
+    "air arm body chair figure fist foot hand knee leg man person shoulder someone woman".split()
+)
 IRREGULAR = {
     "feet": "foot",
     "men": "man",
@@ -86,18 +100,23 @@ def lemma(word: str, known: Container[str]) -> str:
 
 
 def base_forms(word: str) -> Iterator[str]:
-    """What a word may be a form of, by the endings -s, -es, -ing, -ed, -d."""
+    """What a word may be a form of, by the endings -s, -es, -ing, -ed, -d, -ly.
+
+    Toes are no form of *to*, and armed is none of *arm*.
+    """
     if word in IRREGULAR:
         yield IRREGULAR[word]
     for ending in ("s", "es", "ing", "ed", "d", "ly"):
         stem = word.removesuffix(ending)
         if stem == word or len(stem) < 2:
             continue
-        yield stem
+        forms = [stem]
         if ending in ("ing", "ed"):
-            yield stem + "e"
+            forms.append(stem + "e")
             if stem[-1] == stem[-2:-1]:
-                yield stem[:-1]
+                forms.append(stem[:-1])
+        without = WITHOUT_FORMS if ending in ("s", "es") else WITHOUT_FORMS | NOUNS
+        yield from (form for form in forms if form not in without)
 
 
 def base_vocabulary(words: set[str]) -> tuple[str, ...]:
@@ -113,6 +132,8 @@ def read(text: str, vocabulary: Sequence[str], others: Mapping[str, str] | None 
     Raises TextError for a text without a known word, for unknown words, and for more than LONGEST
     words.
     """
+    if not isinstance(text, str):
+        raise TextError(f"the text must be a sentence in quotes, not {type(text).__name__}")
     given = words_of(text)
     if not re.search(r"[a-z\d]", text.lower()):
         what = "is empty" if not text.strip() else "has no English words"
@@ -162,12 +183,15 @@ def _nearest(word: str, vocabulary: Sequence[str]) -> list[str]:
 
 def _unknown(words: list[str], vocabulary: Sequence[str]) -> str:
     """The message for words that are not known, with the nearest known ones."""
-    told = []
+    told, nothing_near = [], True
     for word in words[:5]:
         near = _nearest(word, vocabulary)
         told.append(f"{word!r}" + (f" (did you mean {' or '.join(near)}?)" if near else ""))
+        nothing_near &= not near
     more = f" and {len(words) - 5} more" if len(words) > 5 else ""
+    verbs = ", ".join(verb for verb in EXAMPLES if verb in vocabulary)
+    known = f"; it knows {verbs} and others" if nothing_near and verbs else ""
     return (
         f"the network does not know {', '.join(told)}{more}. It was trained on a small vocabulary: "
-        f"say it in other words, or leave it out"
+        f"say it in other words, or leave it out{known}"
     )

@@ -4,6 +4,7 @@ So "left" in "kicks with the left foot" knows what is left, and "waves, then kic
 "kicks, then waves", which a bag of words cannot tell apart.
 Source: MoFusion 3.3, which has the tokens of CLIP here (`conditions/clip.py`); these are ours,
 trained with the motions.
+Notebook: 16
 """
 
 from collections.abc import Sequence

@@ -7,7 +7,10 @@ A mover that plans makes a timeline of the new sentence first. What legs or arms
 kept is read off the motion (`metrics.actions`), and the rest of the timeline is generated to it.
 MoFusion says that its motions can be edited by text, but not how; this way is ours.
 Source: SDEdit (Meng and others, 2022); the masks of MoFusion 4.4.
+Notebook: 17
 """
+
+from numbers import Real
 
 import numpy as np
 import torch
@@ -108,8 +111,9 @@ def visited(S: int, steps: int, strength: float) -> list[int]:
 
     Raises ValueError for a strength that is not above 0 and at most 1.
     """
-    if not 0 < strength <= 1:
-        raise ValueError(f"strength must be above 0 and at most 1, not {strength:g}")
+    number = not isinstance(strength, bool) and isinstance(strength, Real)
+    if not number or not 0 < strength <= 1:
+        raise ValueError(f"strength must be a number above 0 and at most 1, not {strength!r:.40}")
     every = timesteps(S, min(steps, S))
     return [s for s in every if s <= round(strength * S)] or every[-1:]
 

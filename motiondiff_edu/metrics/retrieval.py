@@ -7,6 +7,7 @@ Both know only what the network knows: use them beside the recogniser (`metrics/
 with the data's own value.
 Source: Guo and others, 2022 (HumanML3D), which MoFusion's Table 2 uses; this network is ours, and
 learns by contrast (Radford and others, 2021).
+Notebook: 17
 """
 
 from collections.abc import Hashable, Sequence
@@ -34,8 +35,9 @@ def r_precision(
     `truths`: what each text says; a pool has no two equal ones, so that only one motion is right.
     Of motions that are equally near any may come first, so a network that always makes the same
     motion gets chance: 1, 2, 3 over `pool`. Texts that are left over at the end are not counted.
-    Raises ValueError where there are fewer than `pool` different truths.
+    Raises ValueError where there are fewer than `pool` different truths, or a point is not finite.
     """
+    _check_finite(texts, motions)
     hits, counted = np.zeros(TOP), 0
     for members in pools(truths, rng, pool):
         apart = np.linalg.norm(texts[members, None] - motions[None, members], axis=-1)
@@ -72,8 +74,20 @@ def pools(truths: Sequence[Hashable], rng: np.random.Generator, pool: int) -> li
 
 
 def mm_dist(texts: Float[np.ndarray, "N E"], motions: Float[np.ndarray, "N E"]) -> float:
-    """The mean distance between a text and its motion, in the space of the network."""
+    """The mean distance between a text and its motion, in the space of the network.
+
+    Raises ValueError where a point is not finite.
+    """
+    _check_finite(texts, motions)
     return float(np.linalg.norm(texts - motions, axis=-1).mean())
+
+
+def _check_finite(texts: Float[np.ndarray, "N E"], motions: Float[np.ndarray, "N E"]) -> None:
+    """A NaN is neither nearer nor farther than anything, so it would pass for the nearest."""
+    for name, points in (("texts", texts), ("motions", motions)):
+        bad = np.flatnonzero(~np.isfinite(points).all(1))
+        if len(bad):
+            raise ValueError(f"{name}[{bad[0]}] is not finite: is the motion or network broken?")
 
 
 class Space(nn.Module):

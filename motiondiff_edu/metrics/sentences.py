@@ -1,6 +1,7 @@
 """How far a motion does what a sentence says, by the actions that are recognised in it.
 
 A sentence is a list of phrases, each a list of what is asked for at one time.
+Notebook: 17
 """
 
 from collections import Counter
@@ -38,6 +39,7 @@ class Agreement:
     count      of the acts found that are counted: exactly so often
     order      of the pairs of acts in different phrases, both found: in the order of the phrases
     direction  of the turns, jumps and pointing arms found: around or not, forward, to the side
+    whole      1 if all of that is right and nothing else is shown, otherwise 0
     """
 
     action: float
@@ -45,6 +47,7 @@ class Agreement:
     count: float
     order: float
     direction: float
+    whole: float
 
 
 KINDS = tuple(one.name for one in fields(Agreement))
@@ -55,6 +58,23 @@ def agreement(phrases: Phrases, found: Sequence[Recognised]) -> Agreement:
 
     Among recognised actions with the verb, that with the same side and count is taken first.
     """
+    matched, _ = _matched(phrases, found)
+    most = max(sum(len(phrase) for phrase in phrases), len(found))
+    middles = [(k, (one.first + one.last) / 2) for k, _, one in matched]
+    shares = (
+        len(matched) / most if most else np.nan,
+        _share([one.side == act.side for _, act, one in matched if act.side]),
+        _share([one.count == act.count for _, act, one in matched if act.verb in COUNTED]),
+        _share([a < b for i, a in middles for j, b in middles if i < j]),
+        _share([one.direction == act.direction for _, act, one in matched if act.verb in DIRECTED]),
+    )
+    return Agreement(*shares, float(all(share == 1 or np.isnan(share) for share in shares)))
+
+
+def _matched(
+    phrases: Phrases, found: Sequence[Recognised]
+) -> tuple[list[tuple[int, Asked, Recognised]], list[Recognised]]:
+    """The acts that are shown, as (phrase, asked, recognised), and what else is recognised."""
     acts = [(k, act) for k, phrase in enumerate(phrases) for act in phrase]
     left = list(found)
     matched = []
@@ -64,15 +84,7 @@ def agreement(phrases: Phrases, found: Sequence[Recognised]) -> Agreement:
             best = max(same, key=lambda one: (one.side == act.side, one.count == act.count))
             left.remove(best)
             matched.append((k, act, best))
-    most = max(len(acts), len(found))
-    middles = [(k, (one.first + one.last) / 2) for k, _, one in matched]
-    return Agreement(
-        len(matched) / most if most else np.nan,
-        _share([one.side == act.side for _, act, one in matched if act.side]),
-        _share([one.count == act.count for _, act, one in matched if act.verb in COUNTED]),
-        _share([a < b for i, a in middles for j, b in middles if i < j]),
-        _share([one.direction == act.direction for _, act, one in matched if act.verb in DIRECTED]),
-    )
+    return matched, left
 
 
 def _specific(act: Asked, found: Sequence[Recognised]) -> int:
@@ -103,13 +115,13 @@ def confusion(
     """
     table: Counter[tuple[str, str]] = Counter()
     for phrases, recognised in zip(sentences, found, strict=True):
-        acts = [act for phrase in phrases for act in phrase if act.side in SIDES]
-        for act in acts:
-            shown = {one.side for one in recognised if one.verb == act.verb and one.side}
-            others = {one.side for one in acts if one.verb == act.verb} - {act.side}
-            shown -= others - {act.side}
-            if "both" in shown or len(shown) > 1:
-                table[act.side, "both"] += 1
-            else:
-                table[act.side, next(iter(shown), "none")] += 1
+        matched, more = _matched(phrases, recognised)
+        asked = [act for phrase in phrases for act in phrase if act.side in SIDES]
+        for _, act, one in matched:
+            if act.side in SIDES:
+                asked.remove(act)
+                shown = {one.side, *(other.side for other in more if other.verb == act.verb)} - {""}
+                both = "both" in shown or len(shown) > 1
+                table[act.side, "both" if both else next(iter(shown), "none")] += 1
+        table.update((act.side, "none") for act in asked)
     return dict(table)

@@ -5,6 +5,7 @@ from numbers import Integral, Real
 from pathlib import Path
 
 LONGEST = 3600.0  # seconds: an hour
+GUIDANCE = 20  # the largest weight; figures break long before it
 
 
 def checked_seconds(seconds: float) -> float:
@@ -39,10 +40,10 @@ def checked_steps(steps: int | None) -> int | None:
 
 
 def checked_guidance(guidance: float) -> float:
-    """A weight of guidance, 0 or more.  Raises ValueError for anything else."""
+    """A weight of guidance, from 0 to GUIDANCE.  Raises ValueError for anything else."""
     number = not isinstance(guidance, bool) and isinstance(guidance, Real)
-    if not number or not math.isfinite(guidance) or guidance < 0:
-        raise ValueError(f"guidance must be a number of 0 or more, not {guidance!r:.40}")
+    if not number or not 0 <= guidance <= GUIDANCE:
+        raise ValueError(f"guidance must be a number from 0 to {GUIDANCE}, not {guidance!r:.40}")
     return float(guidance)
 
 

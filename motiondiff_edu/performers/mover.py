@@ -1,6 +1,7 @@
 """A mover: MoFusion from text with its units. It turns a sentence into motions.
 
 Source: MoFusion 3, 4.2, Fig. 1, Fig. 6.
+Notebook: 16, 17
 """
 
 import copy
@@ -24,6 +25,7 @@ from ..motion.moving_frame import D, to_features, to_positions
 from ..motion.root_frame import FPS
 from ..motion.scaler import Scaler
 from ..prediction import denoiser_of
+from .described_windows import GRID
 from .performer import Performer, evaluating, generators, sampled
 from .planned_mofusion import PlannedMoFusion
 from .text_mofusion import Texts
@@ -192,11 +194,12 @@ class Mover(Performer):
             )
         ids = self.reader.encoded([found.words] * count)
         draws, frames = generators(seed, count), round(seconds * FPS)
+        whole = -(-frames // GRID) * GRID  # as in training; what is too much is cut off
         evaluations = min(steps or self.schedule.S, self.schedule.S) * (1 + self.can_plan)
         with with_bar(self, evaluations, "moving", progress) as one:
-            made = one.act_ids(ids, frames, generator=draws, steps=steps, guidance=guidance)
+            made = one.act_ids(ids, whole, generator=draws, steps=steps, guidance=guidance)
         source = f"{text.strip():.60}"
-        made = [Motion(x, FPS, source=source) for x in made.double().cpu().numpy()]
+        made = [Motion(x[:frames], FPS, source=source) for x in made.double().cpu().numpy()]
         return made if samples > 1 else made[0]
 
     @torch.inference_mode()

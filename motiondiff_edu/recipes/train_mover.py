@@ -29,12 +29,12 @@ from ..motion.skeleton import TOES
 from ..performers.described_windows import GRID, DescribedWindows
 from ..performers.mover import Mover
 from ..performers.networks import network
-from ..performers.planned_mofusion import Performing, PlannedMoFusion
+from ..performers.planned_mofusion import Performing, PlannedConfig, PlannedMoFusion
 from ..performers.text_mofusion import Texts
 from ..training import LossFn
 from .mofusion_loss import batch_loss, weighted_loss
 from .movers import MoverRecipe
-from .train_recipe import Provenance, train_recipe
+from .train_recipe import Provenance, mean_loss, train_recipe
 
 WARMUP = 300  # steps
 
@@ -123,14 +123,17 @@ def train_mover(
     A network for motions alone (`config.D` = 66) is not shown the timelines of the windows.
     A recipe that names a CLIP takes it from `clip`, or looks for it on this machine by its name; it
     needs windows of whole texts (`DescribedWindows.of_texts`).
-    Raises ValueError when the run in `run_file` was begun with other settings, or windows or `clip`
-    do not fit the recipe; ClipError for a CLIP that is missing or has tokens of another width.
+    Raises ValueError when the run in `run_file` was begun with other settings, or windows, `clip`
+    or `plan_steps` do not fit the recipe; ClipError for a CLIP that is missing or has tokens of
+    another width.
     """
     if recipe.config.clip:
         clip = clip or load_clip(recipe.config.clip)
         check(clip, recipe.config.clip_width)
     elif clip is not None:
         raise ValueError(f"{recipe.name} reads words of its own: its configuration names no CLIP")
+    if recipe.plan_steps and not isinstance(recipe.config, PlannedConfig):
+        raise ValueError(f"{recipe.name} has plan_steps, and its network makes no timelines")
     if windows is None:
         windows = (training_texts if clip else training_clips)(recipe.clips, recipe.data_seed)
     if any(" " in word for word in windows.words) and not clip:
@@ -153,12 +156,15 @@ def train_mover(
     provenance = Provenance(about, facts, "data_synth.actions, synthetic")
     texts_of = texts_by(clip, windows) if clip else texts_as_ids
     loss_fn = loss_of(recipe, windows, schedule, texts_of)
-    trained, card = train_recipe(
-        recipe, run_file, model, loss_fn, provenance, warmup=WARMUP, log=log
-    )
+    both = replace(recipe, plan_steps=0)
+    trained, card = train_recipe(both, run_file, model, loss_fn, provenance, warmup=WARMUP, log=log)
     if recipe.plan_steps:
-        loss_fn = plan_loss_of(recipe, windows, schedule, texts_of)
-        card["planner"] = train_planner(recipe, run_file, trained, loss_fn, provenance, log)
+        plan_loss = plan_loss_of(recipe, windows, schedule, texts_of)
+        further = train_planner(recipe, run_file, trained, plan_loss, provenance, log)
+        card["recipe"]["plan_steps"] = recipe.plan_steps
+        card["planner"] = further
+        card["minutes"] = round(card["minutes"] + further["minutes"], 1)
+        card["final_loss"] = round(mean_loss(loss_fn, trained), 6)
     return Mover(trained, schedule, windows.scaler, card, clip)
 
 

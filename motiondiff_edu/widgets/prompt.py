@@ -2,6 +2,7 @@
 
 Type and press Enter, or press the button. What cannot be acted is said in words, and the motions
 before it stay.
+Source: MoFusion Fig. 6.  Notebook: 16
 """
 
 import html
@@ -29,6 +30,7 @@ class Prompt(ipywidgets.VBox):
         self.mover = mover
         self.motions = []
         self._answered = None
+        self._note = ""  # what was said of the answered sentence
         wide = ipywidgets.Layout(width="98%")
         self.text = ipywidgets.Text(
             text, description="sentence", continuous_update=False, layout=wide
@@ -54,6 +56,7 @@ class Prompt(ipywidgets.VBox):
     def act(self) -> None:
         """Answer the sentence in the box, unless it is answered already."""
         if self._asked() == self._answered:
+            self._say(self._note)
             return
         self.button.disabled = True
         self._say("moving ...")
@@ -61,6 +64,9 @@ class Prompt(ipywidgets.VBox):
             self._answer()
         except (TextError, ValueError) as error:
             self._say(str(error), "alert")
+        except BaseException:
+            self._say("stopped by an error; the motions are those of before", "alert")
+            raise
         else:
             self.player.show([one.positions for one in self.motions], labels=self._labels())
         finally:
@@ -77,7 +83,8 @@ class Prompt(ipywidgets.VBox):
                 text, seconds=seconds, samples=ANSWERS, seed=seed, progress=False
             )
         self._answered = asked
-        self._say("; ".join(dict.fromkeys(str(note.message) for note in notes)))
+        self._note = "; ".join(dict.fromkeys(str(note.message) for note in notes))
+        self._say(self._note)
 
     def _labels(self) -> list[str]:
         return [f"answer {k + 1}" for k in range(len(self.motions))]

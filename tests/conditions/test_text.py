@@ -44,6 +44,14 @@ def test_forms_of_a_word_are_the_word(form, base):
     assert lemma(form, set(WORDS)) == base
 
 
+@pytest.mark.parametrize("word", ["toes", "outing", "overly", "manly", "armed", "lefts", "rightly"])
+def test_a_word_that_only_looks_like_a_form_is_not_read_as_one(word):
+    known = ("arm", "left", "man", "out", "over", "right", "to", "walk")
+    assert lemma(word, frozenset(known)) == word
+    with pytest.raises(TextError, match=word):
+        read(f"walks {word}", known)
+
+
 def test_known_words_are_read_and_others_passed_over_or_replaced_in_the_open():
     found = read("She strolls, then kicks with... the left feet", [*WORDS, "then", "with"],
                  {"stroll": "walk"})  # fmt: skip
@@ -60,6 +68,7 @@ def test_known_words_are_read_and_others_passed_over_or_replaced_in_the_open():
         ("?!", "has no English words"),
         ("is it", "says nothing about a movement"),
         ("a cartwheel", "does not know 'cartwheel'. It was trained on a small vocabulary"),
+        ("a cartwheel", "it knows walk, run, kick, raise, clap and others"),
         ("wlak left", r"'wlak' \(did you mean walk\?\)"),
         ("er geht nach vorne und winkt", "does not know 'er', 'geht', .* and 1 more"),
         ("walk " * (LONGEST + 1), f"has {LONGEST + 1} words; the network reads {LONGEST}"),

@@ -120,7 +120,7 @@ def test_the_timeline_goes_with_what_is_kept(positions):
 
 def test_what_cannot_be_edited_is_refused(mover, positions):
     for strength in (0.0, 1.5, float("nan")):
-        with pytest.raises(ValueError, match="strength must be above 0 and at most 1"):
+        with pytest.raises(ValueError, match="strength must be a number above 0 and at most 1"):
             edit_by_words(mover, positions, "walks", strength=strength)
     with pytest.raises(TextError, match="does not know 'cartwheel'"):
         edit_by_words(mover, positions, "does a cartwheel")

@@ -30,6 +30,16 @@ def test_a_network_that_always_makes_one_motion_gets_the_chance_level():
     np.testing.assert_allclose(found, [0.5, 1, 1])
 
 
+@pytest.mark.parametrize("which", ["texts", "motions"])
+def test_a_broken_motion_is_no_near_one(which):
+    points = {"texts": np.eye(32), "motions": np.eye(32)}
+    points[which][3, 1] = np.nan
+    with pytest.raises(ValueError, match=rf"{which}\[3\] is not finite"):
+        r_precision(**points, truths=range(32), rng=np.random.default_rng(0))
+    with pytest.raises(ValueError, match="not finite"):
+        mm_dist(**points)
+
+
 def test_ranks_by_hand():
     """Four texts on a line; the second motion lies beyond the third."""
     texts = np.array([[0.0], [1.0], [2.0], [3.0]])

@@ -39,6 +39,26 @@ def test_agreement_by_hand(phrases, found, wanted):
     np.testing.assert_allclose((one.action, one.side, one.count, one.order), wanted)
 
 
+@pytest.mark.parametrize(
+    "phrases, found, whole",
+    [
+        ([[KICK], [WALK]], [seen("kick", "left", 2), seen("walk", at=4)], 1),
+        ([[KICK], [WALK]], [seen("kick", "left", 2, 4), seen("walk")], 0),  # order
+        ([[KICK]], [seen("kick", "right", 2)], 0),
+        ([[KICK]], [seen("kick", "left", 1)], 0),
+        ([[KICK]], [seen("kick", "left", 2), seen("jump")], 0),
+        ([[KICK]], [], 0),
+        ([[Asked("jump", direction="forward")]], [seen("jump")], 0),
+        ([], [], 1),  # nothing but standing is asked for
+        ([], [seen("jump")], 0),
+    ],
+)
+def test_a_motion_is_right_as_a_whole_if_nothing_is_wrong_missing_or_too_much(
+    phrases, found, whole
+):
+    assert agreement(phrases, found).whole == whole
+
+
 def test_two_acts_of_one_verb_are_matched_by_their_sides():
     """In whichever order they are asked for, and with one of them missing."""
     left, right = Asked("punch", "left", 3), Asked("punch", "right", 1)
@@ -67,6 +87,7 @@ def test_performed_sentences_agree_and_shuffled_ones_do_not():
     assert min(own[kind] for kind in ("side", "count", "order", "direction")) > 0.95
     other = rows_of(sentences[7:] + sentences[:7], found)
     assert np.nanmean(other["action"]) < 0.25
+    assert own["whole"] > 0.9 > 0.1 > other["whole"].mean()
 
 
 def test_confusion_counts_sides():
@@ -91,6 +112,13 @@ def test_an_act_on_both_sides_is_no_right_side_unless_both_were_asked_for():
         ("left", "left"): 1,
         ("right", "none"): 1,
     }
+
+
+def test_one_side_and_then_both_are_no_confusion():
+    left, both = Asked("raise", "left"), Asked("raise", "both")
+    found = [seen("raise", "left"), seen("raise", "both", at=3)]
+    assert confusion([[[left], [both]]], [found]) == {("left", "left"): 1}
+    assert confusion([[[left], [both]]], [found[1:]]) == {("left", "none"): 1}
 
 
 def test_directions_are_judged_where_a_verb_has_them():

@@ -80,6 +80,13 @@ def test_a_sentence_makes_motions(mover):
     assert np.abs(other.positions - alone.positions).max() > 0.001
 
 
+def test_a_length_between_those_of_the_training_is_cut_from_the_next_one(mover):
+    long = mover.act("walks", seconds=2.4, steps=2, progress=False).positions
+    short = mover.act("walks", seconds=2.05, steps=2, progress=False).positions
+    assert len(long) == 48 and len(short) == 41
+    np.testing.assert_array_equal(short, long[:41])
+
+
 def test_a_plan_is_made_tidied_and_followed(planning):
     ids = ids_of([("walk",), ("kick",)], WORDS)
     plans = planning.plans(ids, 40, steps=3, generator=seeded())
@@ -145,9 +152,9 @@ def test_a_mover_in_training_acts_without_dropout(mover):
     np.testing.assert_array_equal(before, after)
 
 
-@pytest.mark.parametrize("guidance", [float("nan"), -3.0, float("inf")])
-def test_guidance_is_a_number_of_0_or_more(mover, guidance):
-    with pytest.raises(ValueError, match="guidance must be a number of 0 or more"):
+@pytest.mark.parametrize("guidance", [float("nan"), -3.0, float("inf"), 21.0])
+def test_guidance_is_a_number_from_0_to_20(mover, guidance):
+    with pytest.raises(ValueError, match="guidance must be a number from 0 to 20"):
         mover.act("walks", seconds=2.0, steps=2, guidance=guidance, progress=False)
 
 

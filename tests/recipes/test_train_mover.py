@@ -1,5 +1,6 @@
 """A mover's training: eq. 4 with what the recipe names, resumed after a kill, with a card."""
 
+import copy
 from dataclasses import replace
 
 import numpy as np
@@ -16,11 +17,14 @@ from motiondiff_edu.recipes.dancers import KINEMATIC, DanceLossWeights
 from motiondiff_edu.recipes.movers import MOVER, MOVER_PLAIN, MoverRecipe
 from motiondiff_edu.recipes.train_mover import (
     loss_of,
+    plan_loss_of,
     toes_moved,
     train_mover,
+    train_planner,
     training_clips,
     without_some,
 )
+from motiondiff_edu.recipes.train_recipe import Provenance
 
 SIZES = {"widths": (16, 24), "heads": 2, "C": 20, "S": 20, "word_layers": 1}
 TINY = TextMoFusionConfig(**SIZES)
@@ -108,7 +112,7 @@ def test_a_killed_training_continues_and_ends_like_one_in_one_go(windows, tmp_pa
 def test_a_network_that_plans_learns_both_and_each_has_its_own_loss(planned):
     """By hand: the mean square of the timeline's x0_hat, and of the motion's with a clean plan."""
     torch.manual_seed(3)
-    config = PlannedConfig(**SIZES, words=planned.words, plan_widths=(8, 16), plan_depth=0)
+    config = tiny_plan(planned)
     model, schedule = PlannedMoFusion(config).eval(), cosine_schedule(20)
     recipe = replace(SHORT, config=config)
     found = loss_of(recipe, planned, schedule)(model, seeded())
@@ -128,6 +132,77 @@ def test_a_network_that_plans_learns_both_and_each_has_its_own_loss(planned):
     found.backward()
     assert all(p.grad is not None for p in model.planner.words.parameters())
     assert all(p.grad is not None for p in model.performer.words.parameters())
+
+
+def test_the_network_for_timelines_alone_has_its_own_part_of_the_loss(planned):
+    """By hand: the mean square of the timeline's x0_hat."""
+    torch.manual_seed(3)
+    planner, schedule = PlannedMoFusion(tiny_plan(planned)).planner.eval(), cosine_schedule(20)
+    found = plan_loss_of(replace(SHORT, no_text=0.5), planned, schedule)(planner, seeded())
+    generator = seeded()
+    x0, ids, _ = planned.draw(SHORT.frames, generator)
+    ids = without_some(ids, 0.5, generator)
+    plan = x0[..., D:]
+    s = torch.randint(1, 21, (len(x0),), generator=generator)
+    x_s = q_sample(plan, s, schedule, draw(plan, generator))
+    wanted = (plan - planner(x_s, s, planner.listen(ids))).square().mean()
+    torch.testing.assert_close(found, wanted)
+
+
+def test_the_network_for_timelines_is_trained_further_and_the_other_stays(planned, tmp_path):
+    recipe = replace(SHORT, config=tiny_plan(planned), steps=2)
+    run = tmp_path / "whole.safetensors"
+    both = train_mover(recipe, run, planned, log=quiet)
+    longer = replace(recipe, plan_steps=4)
+    whole = train_mover(longer, run, planned, log=quiet)
+    assert same(both.model.performer, whole.model.performer)
+    assert not same(both.model.planner, whole.model.planner)
+    assert whole.card["planner"]["sittings"][0]["from_step"] == 0 and "planner" not in both.card
+    assert [one["from_step"] for one in whole.card["sittings"]] == [0], "trained once"
+    assert whole.card["recipe"]["plan_steps"] == 4
+    assert whole.card["final_loss"] != both.card["final_loss"]
+
+    def until(line: str) -> None:
+        if line.startswith("tiny-planner 3/"):
+            raise KeyboardInterrupt
+
+    run = tmp_path / "killed.safetensors"
+    with pytest.raises(KeyboardInterrupt):
+        train_mover(longer, run, planned, log=until)
+    resumed = train_mover(longer, run, planned, log=quiet)
+    assert same(resumed.model, whole.model)
+    assert [one["from_step"] for one in resumed.card["planner"]["sittings"]] == [0, 2]
+
+
+def test_the_further_training_begins_with_the_trained_network(planned, tmp_path):
+    """With a rate of almost zero nothing changes; another first run is not mixed in."""
+    recipe = replace(SHORT, config=tiny_plan(planned), steps=2)
+    both = train_mover(recipe, tmp_path / "run.safetensors", planned, log=quiet)
+    provenance = Provenance({}, {}, "clips")
+    loss_fn = plan_loss_of(recipe, planned, both.schedule)
+    still = replace(recipe, plan_steps=2, lr=1e-9)
+    kept = copy.deepcopy(both.model)
+    train_planner(still, tmp_path / "one.safetensors", both.model, loss_fn, provenance, quiet)
+    assert same(both.model, kept)
+    with torch.no_grad():
+        both.model.planner.words.embed.weight.add_(1)
+    with pytest.raises(ValueError, match="begins_with"):
+        train_planner(still, tmp_path / "one.safetensors", both.model, loss_fn, provenance, quiet)
+
+
+def test_only_a_network_that_makes_timelines_is_trained_on_them_alone(planned, tmp_path):
+    with pytest.raises(ValueError, match="tiny has plan_steps, and its network makes no timelines"):
+        train_mover(replace(SHORT, plan_steps=1), tmp_path / "run", planned, log=quiet)
+    assert not (tmp_path / "run").exists()
+
+
+def tiny_plan(windows) -> PlannedConfig:
+    return PlannedConfig(**SIZES, words=windows.words, plan_widths=(8, 16), plan_depth=0)
+
+
+def same(a: torch.nn.Module, b: torch.nn.Module) -> bool:
+    pairs = zip(a.state_dict().values(), b.state_dict().values(), strict=True)
+    return all(torch.allclose(x, y, atol=1e-6) for x, y in pairs)
 
 
 def test_a_network_for_motions_alone_is_not_shown_the_timelines(planned, windows, tmp_path):

@@ -76,6 +76,28 @@ def test_what_cannot_be_acted_is_said_and_the_motions_stay(mover, text, told):
         Prompt(mover, "does a cartwheel")
 
 
+def test_back_at_the_answered_sentence_the_refusal_goes(mover):
+    box = Prompt(mover, "walks", seconds=2.0)
+    box.text.value = "does a cartwheel"
+    assert "cartwheel" in box.message.value
+    box.text.value = "walks"
+    assert "cartwheel" not in box.message.value and "alert" not in box.message.value
+
+
+def test_an_error_that_nobody_expected_does_not_leave_the_box_moving(mover, monkeypatch):
+    box = Prompt(mover, "walks", seconds=2.0)
+    before = box.motions
+
+    def broken(*args, **kwargs):
+        raise MemoryError
+
+    monkeypatch.setattr(Mover, "act", broken)
+    with pytest.raises(MemoryError):
+        box.seed.value = 3
+    assert "stopped by an error" in box.message.value and box.motions is before
+    assert not box.button.disabled
+
+
 def test_a_word_that_is_read_as_another_is_said_below_the_box(mover):
     box = Prompt(mover, "walks", seconds=2.0)
     box.text.value = "marches ahead"

@@ -2,8 +2,9 @@
 
 `python -m tools.results.words.looking FOLDER` draws motions of the shipped mover as sheets, without
 their captions. Whoever looks at each sheet writes what is performed, in order, into
-`looked_at.json`: {"clips": {"17": [["walk", "", 1], ["wave", "left", 2]], ...}}, with the weights
-that were looked at, and by whom. `looked_at_measures` compares. Sides and counts are as in
+`looked_at.json`: {"clips": {"17": [["walk", "", 1], ["raise", "left", 2]], ...}}, with the weights
+that were looked at, and by whom; "again" has some of the clips, looked at by somebody else.
+`looked_at_measures` compares. Sides and counts are as in
 `metrics.actions`: what is not counted has the count 1, and a side is "left", "right", "both" or "".
 Source: Cohen's kappa (1960), by scikit-learn
 """
@@ -11,6 +12,7 @@ Source: Cohen's kappa (1960), by scikit-learn
 import json
 import sys
 from collections.abc import Sequence
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
@@ -93,7 +95,7 @@ def looked_at_measures(mover: Mover, digest: str) -> list[Measure]:
     """Cohen's kappa of eyes and rules: of verbs, of sides, and of counts.
 
     Verbs: is it there, for every clip and verb. Sides and counts: of the verbs that both found, and
-    that have a side or are counted.
+    that have a side or are counted. `looked_twice_kappa`: of two that looked at the same clips.
     There is nothing to compare, and so no measure, if other weights were looked at.
     """
     record = json.loads(LOOKED_AT.read_text())
@@ -101,7 +103,12 @@ def looked_at_measures(mover: Mover, digest: str) -> list[Measure]:
         return []
     eyes = [[tuple(one) for one in seen] for _, seen in sorted_clips(record["clips"])]
     rules = [as_seen(actions(one)) for one in motions(mover)]
-    return [*kappas(eyes, rules), *share_the_same(eyes, rules)]
+    found = [*kappas(eyes, rules), *share_the_same(eyes, rules)]
+    if again := record.get("again"):
+        others = [[tuple(one) for one in seen] for seen in again.values()]
+        same = [eyes[int(number)] for number in again]
+        found.append(replace(kappas(same, others)[0], name="looked_twice_kappa"))
+    return found
 
 
 def sorted_clips(clips: dict[str, list]) -> list[tuple[int, list]]:

@@ -160,6 +160,7 @@ def word_records(studio: Studio, command: str) -> list[dict]:
     found["words."] += looked_at_measures(mover, seeds["weights"])
     guided = performed(mover, GUIDANCE)
     found["words.guided."] = [*studio.scored(guided(studio.trials, 0)), *studio.varied(guided)]
+    found["words.no-text."] = studio.scored(performed(mover, silent=True)(studio.trials, 0))
     without_network = fools(studio, mover)
     for name, motions in without_network.items():
         found[f"words.{name}."] = studio.scored(motions)
