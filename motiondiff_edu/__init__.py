@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from .editing.masks import keyframes_of as keyframes
     from .motion.files import read_motion
     from .motion.motion import Motion
-    from .pretrained.shipped import inbetween, load, reconstruct
+    from .pretrained.shipped import edit, inbetween, load, reconstruct
     from .widgets.motions import play
 
 # Public name -> (module, name in it). A module is imported at the first use of its name, so that
@@ -31,12 +31,14 @@ _FRONT_DOOR = {
     "load": (".pretrained.shipped", "load"),
     "joystick": (".conditions.control", "joystick"),
     "keyframes": (".editing.masks", "keyframes_of"),
+    "edit": (".pretrained.shipped", "edit"),
     "inbetween": (".pretrained.shipped", "inbetween"),
     "reconstruct": (".pretrained.shipped", "reconstruct"),
     "play": (".widgets.motions", "play"),
 }
 __all__ = [
     "Motion",
+    "edit",
     "inbetween",
     "joystick",
     "keyframes",

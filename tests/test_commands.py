@@ -21,8 +21,9 @@ from data_synth.music import compose
 from data_synth.walking import walk
 from motiondiff_edu import __main__ as command
 from motiondiff_edu import _commands
-from motiondiff_edu._commands import control_words, outputs
+from motiondiff_edu._commands import control_words, edit, outputs
 from motiondiff_edu.course import doctor
+from motiondiff_edu.editing.by_words import STRENGTH
 from motiondiff_edu.motion.motion import MotionError
 from motiondiff_edu.motion.skeleton import JOINTS
 
@@ -108,6 +109,64 @@ def test_missing_joints_are_separated_by_commas_or_spaces(folder):
         assert set(np.array(JOINTS)[moved]) == {"LeftHand", "LeftForeArm"}
 
 
+def test_a_sentence_is_acted_and_edited_from_the_command_line(folder, capsys):
+    words = ["act", "marches ahead, then squats", "--seconds", "3", "--samples", "2"]
+    assert run(*words, "--seed", "4", "--out", "act.npz") == 0
+    said = capsys.readouterr()
+    assert "act-2.npz: 3.0 s, 60 frames" in said.out and "'marches' is read as 'walk'" in said.err
+    one, two = (md.read_motion(f"act-{k}.npz").positions for k in (1, 2))
+    assert np.abs(one - two).max() > 0.05
+    words = ["edit", "my_walk.bvh", "walks while clapping", "--keep", "lower body"]
+    assert run(*words, "--out", "clap.npz") == 0
+    given, made = (md.read_motion(name).positions for name in ("my_walk.bvh", "clap.npz"))
+    apart = np.abs(given - made).max((0, 2))
+    legs = [JOINTS.index(name) for name in ("Hips", "LeftFoot", "RightToeBase")]
+    assert apart[legs].max() < 0.02 and apart[JOINTS.index("LeftHand")] > 0.05
+
+
+@pytest.mark.parametrize(
+    "words, wrong",
+    [
+        (["act", "does a cartwheel"], "act: .*'cartwheel'"),
+        (["act", ""], "act: "),
+        (["act", "walks", "--seconds", "12"], "act: seconds must be from 2 to 10"),
+        (["edit", "my_walk.bvh", "walks", "--keep", "tail"], "edit: .*tail"),
+        (["edit", "my_walk.bvh", "walks", "--strength", "2"], "edit: strength must be a number"),
+        (["act", "walks", "--guidance", "1000"], "act: guidance must be a number from 0 to 20"),
+        (["edit", "nothing.bvh", "walks"], "edit: .*nothing.bvh"),
+    ],
+)
+def test_what_cannot_be_acted_or_edited_is_said(words, wrong, folder, capsys):
+    assert run(*words, "--out", "x.npz") == 1
+    assert re.search(wrong, capsys.readouterr().err) and not (folder / "x.npz").exists()
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        ["edit", "my_walk.bvh", "walks"],
+        ["walk", "my_walk.bvh", "--control", "1s 1"],
+        ["inbetween", "my_walk.bvh", "--every", "10"],
+        ["reconstruct", "my_walk.bvh", "--missing", "LeftHand"],
+    ],
+)
+def test_the_file_that_is_read_is_never_replaced(words, folder, capsys):
+    before = (folder / "my_walk.bvh").read_bytes()
+    out = str(folder / "." / "my_walk.bvh")
+    assert run(*words, "--out", out, "--overwrite") == 1
+    assert "is the file that is read" in capsys.readouterr().err
+    assert (folder / "my_walk.bvh").read_bytes() == before
+
+
+def test_words_without_quotes_are_told_about(folder, capsys):
+    assert run("act", "walks", "forward", "--out", "x.npz") == 2
+    assert "does not know forward; a sentence or name of several words" in capsys.readouterr().err
+
+
+def test_the_help_of_edit_says_the_default():
+    assert f"(default: {STRENGTH:g})" in Path(edit.__file__).read_text(encoding="utf-8")
+
+
 def test_samples_go_to_numbered_files(folder, capsys):
     words = ["inbetween", "my_walk.bvh", "--every", "10", "--samples", "2", "--out", "made.npz"]
     assert run(*words) == 0
@@ -166,7 +225,7 @@ MISTAKES = {
     ),
     "an ending": (["convert", "my_walk.bvh", "x.docx"], "unknown ending .docx; use one of"),
     "no ending": (["convert", "my_walk.bvh", "x"], "the name has no ending; use one of .bvh"),
-    "there already": (["convert", "my_walk.bvh", "my_walk.bvh"], "exists already"),
+    "the input": (["convert", "my_walk.bvh", "my_walk.bvh"], "is the file that is read"),
     "a comma": (
         ["walk", "my_walk.bvh", "--control", "1s 1,2", "--out", "x.bvh"],
         "'1,2' is not a number; write a decimal point (character 4 of the control)",

@@ -1,4 +1,7 @@
-"""Actions: what a sentence says, performed by the course's figure, and captions of it."""
+"""Actions: what a sentence says, performed by the course's figure, and captions of it.
+
+Notebook: 16, 17
+"""
 
 from .acts import VERBS, Act, Phrase, Sentence
 from .captions import caption

@@ -10,7 +10,7 @@ import traceback
 import warnings
 from types import ModuleType
 
-VERBS = ("walk", "dance", "inbetween", "reconstruct", "info", "convert", "play")
+VERBS = ("walk", "dance", "act", "inbetween", "reconstruct", "edit", "info", "convert", "play")
 OURS = __name__.split(".")[0]
 STOPPED = 130  # the exit code of a command that Ctrl-C ended
 

@@ -27,6 +27,11 @@ class RegressionConfig(TextMoFusionConfig):
     """The sizes of `TextMoFusionConfig`."""
 
 
+def bag(tokens: Float[Tensor, "B M C"], there: Bool[Tensor, "B M"]) -> Float[Tensor, "B C"]:
+    """The mean of the tokens that are there: it knows the words, and not their order."""
+    return (tokens * there[..., None]).sum(1) / there.sum(1, keepdim=True)
+
+
 class BagOfWords(nn.Module):
     """Ids of words to one token, the mean of their embeddings."""
 
@@ -41,8 +46,7 @@ class BagOfWords(nn.Module):
     ) -> tuple[Float[Tensor, "B 1 C"], Bool[Tensor, "B 1"]]:
         """The one token of each text; its mask is always True."""
         there = present(ids)
-        mean = self.embed(ids).sum(1) / there.sum(1, keepdim=True)
-        return self.mix(mean)[:, None], there.any(1, keepdim=True)
+        return self.mix(bag(self.embed(ids), there))[:, None], there.any(1, keepdim=True)
 
 
 class BagMoFusion(TextMoFusion):

@@ -3,6 +3,7 @@
 An attention weight shows where values are read. It does not show what changes in the motion if the
 word changes: exchange the word and look.
 Source: MoFusion 3.3, for words instead of music.
+Notebook: 16
 """
 
 from dataclasses import dataclass

@@ -1,6 +1,7 @@
 """Judges of words: a space of texts and motions with its units, shipped for R-Precision and FID.
 
 Source: `metrics/retrieval.py`, which has the network and the measures.
+Notebook: 17
 """
 
 import json

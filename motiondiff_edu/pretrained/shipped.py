@@ -1,6 +1,6 @@
-"""The front door's functions that need weights: `load`, `inbetween` and `reconstruct`.
+"""The front door's functions that need weights: `load`, `inbetween`, `reconstruct` and `edit`.
 
-Notebook: 00, 15
+Notebook: 00, 15, 17
 """
 
 import warnings
@@ -12,8 +12,10 @@ import numpy as np
 from jaxtyping import Bool, Float
 
 from ..conditions.clip import Clip
+from ..editing import by_words
 from ..editing import inbetween as inbetweens
 from ..editing import reconstruct as reconstruction
+from ..editing.by_words import STRENGTH
 from ..editing.inbetween import OURS, Departures
 from ..editing.masks import checked_known
 from ..editing.plausible import plausible
@@ -22,7 +24,7 @@ from ..motion.motion import Motion, MotionError, MotionWarning, as_motion
 from ..motion.root_frame import FPS
 from ..motion.skeleton import HIPS, TOES
 from ..performers.dancer import Dancer
-from ..performers.mover import Mover
+from ..performers.mover import LONGEST, SHORTEST, Mover
 from ..performers.performer import generators
 from ..performers.walker import Walker
 from ..performers.with_bar import with_bar
@@ -32,7 +34,7 @@ STEPS = 50  # of DDIM, for in-betweens by default
 
 
 def load(name: str | Path, clip: Clip | str | Path | None = None) -> Walker | Dancer | Mover:
-    """A walker or dancer: shipped weights by name ("walker", "dancer" ...), or your own file.
+    """A performer: shipped weights by name ("walker", "dancer", "mover" ...), or your own file.
 
     `clip`: for your own mover that reads by CLIP, the folder of that CLIP (`checkpoints.load`).
     Raises CheckpointError for an unknown name, with a list of the names, or for a faulty file.
@@ -118,6 +120,58 @@ def reconstruct(
             for draw in draws
         ]
     made = [_made(motion, known, positions, "reconstructed") for positions in made]
+    return made if samples > 1 else made[0]
+
+
+def edit(
+    motion: Motion,
+    text: str,
+    known: Bool[np.ndarray, "T J"] | None = None,
+    *,
+    strength: float = STRENGTH,
+    samples: int = 1,
+    seed: int = 0,
+    progress: bool = True,
+) -> Motion | list[Motion]:
+    """Make a motion do what a sentence says, and keep what it can of it; with the shipped mover.
+
+    The motion is noised part of the way, and denoised under the sentence. `known` joints stay about
+    the root; where the pelvis is known, the path stays, too. `strength`: how much is made anew, up
+    to 1, with which only what is known is left. With `samples` above 1, the result is a list with
+    this many motions; the first is that of samples=1.
+    Raises MotionError if motion and mask do not fit, or the motion is shorter or longer than those
+    of the training, TextError for a text that cannot be read, and ValueError for numbers out of
+    range.
+    Source: SDEdit (Meng and others, 2022); MoFusion claims edits by text without a method.
+    """
+    everything = np.ones((len(as_motion(motion)), len(motion.skeleton)), bool)
+    _fitting(motion, motion.known & everything)
+    if not motion.known.all():
+        raise MotionError(
+            f"{motion.name}: joints are missing; fill them in first, with "
+            "md.reconstruct(motion, motion.known)"
+        )
+    if not SHORTEST <= motion.seconds <= LONGEST:
+        cut = ": take a part of it, in Python motion[:200]" if motion.seconds > LONGEST else ""
+        raise MotionError(
+            f"{motion.name} lasts {motion.seconds:.1f} s; edits by words take {SHORTEST:g} to "
+            f"{LONGEST:g} s{cut}"
+        )
+    mask = None if known is None else _fitting(motion, known)
+    if mask is not None and mask.all():
+        raise MotionError(f"{motion.name}: everything is known, so nothing can be edited")
+    count, mover = checked_count(samples, "samples"), _shipped("mover")
+    for note in mover.reader.read(text).notes:
+        warnings.warn(note, stacklevel=2)
+    visited = by_words.visited(mover.schedule.S, by_words.STEPS, strength)
+    evaluations = len(visited) + by_words.STEPS * mover.can_plan
+    with with_bar(mover, evaluations, "editing", progress) as one:
+        made = by_words.edit_by_words(
+            one, motion.positions, text, mask, strength=strength, samples=count,
+            generator=generators(seed, count),
+        )  # fmt: skip
+    nothing = np.zeros((len(motion), len(motion.skeleton)), bool)
+    made = [_made(motion, nothing, positions, f"edited: {text.strip():.40}") for positions in made]
     return made if samples > 1 else made[0]
 
 

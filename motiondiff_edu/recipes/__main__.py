@@ -17,7 +17,7 @@ from ..pretrained.checkpoints import save
 from ..pretrained.judges import save_judge
 from .dancers import DANCE_RECIPES, SHIPPED_DANCERS
 from .judges import JUDGES, train_judge
-from .movers import MOVER_RECIPES
+from .movers import MOVER, MOVER_RECIPES
 from .train_dancer import train_dancer
 from .train_mover import train_mover
 from .train_walker import train
@@ -25,6 +25,7 @@ from .walkers import PAIRS, RECIPES, SHIPPED
 
 ALL = RECIPES | DANCE_RECIPES | MOVER_RECIPES | JUDGES
 EIGHT_BITS = {
+    "mover",
     "regression",
     "unconditional",
     "walker-plain",
@@ -32,7 +33,7 @@ EIGHT_BITS = {
     *(recipe.name for recipe in PAIRS),
 }  # to keep the package small; the others are stored in 16 bits
 
-EVERY = [recipe.name for recipe in (*SHIPPED, *SHIPPED_DANCERS, *JUDGES.values())]
+EVERY = [recipe.name for recipe in (*SHIPPED, *SHIPPED_DANCERS, MOVER, *JUDGES.values())]
 
 
 def main() -> None:

@@ -1,6 +1,7 @@
 """Plots of words and motions: attention over a sentence, and what was asked beside what is shown.
 
 The functions take plain arrays and return a Figure with a caption.
+Notebook: 16
 """
 
 from collections.abc import Mapping, Sequence

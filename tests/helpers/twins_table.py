@@ -34,9 +34,16 @@ from motiondiff_edu import (
     rollout,
     training,
 )
-from motiondiff_edu.baselines import linear_dropout, ridge
+from motiondiff_edu.baselines import linear_dropout, ridge, text
 from motiondiff_edu.conditions import music
-from motiondiff_edu.metrics import adherence, beats, bone_lengths, footsteps, kinetic_features
+from motiondiff_edu.metrics import (
+    adherence,
+    beats,
+    bone_lengths,
+    footsteps,
+    kinetic_features,
+    retrieval,
+)
 from motiondiff_edu.modiff import MoDiff, MoDiffConfig
 from motiondiff_edu.mofusion import ResBlock
 from motiondiff_edu.motion import kinematics, root_frame, skeleton
@@ -571,3 +578,24 @@ def _inpainted(denoise, start, schedule, given, known, visited, generator) -> to
 
 
 TWINS["15"] = {"masked_loop": Twin(_inpainted, _a_plane_half_known)}
+
+
+def _two_texts() -> tuple:
+    """Tokens of texts with three and with five words."""
+    there = torch.arange(5) < torch.tensor([[3], [5]])
+    return _normal(2, 5, 4, seed=160), there
+
+
+TWINS["16"] = {"bag_loop": Twin(text.bag, _two_texts)}
+
+
+def _texts_and_motions() -> tuple:
+    texts = _normal(32, 3, seed=170).numpy()
+    return texts, texts + 0.5 * _normal(32, 3, seed=171).numpy(), 2
+
+
+def _of_one_pool(texts, motions, k) -> float:
+    return retrieval.r_precision(texts, motions, range(32), np.random.default_rng(0))[k - 1]
+
+
+TWINS["17"] = {"r_precision_loop": Twin(_of_one_pool, _texts_and_motions)}

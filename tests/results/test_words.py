@@ -96,8 +96,14 @@ def test_eyes_and_rules_are_compared_by_hand():
     assert by_name(looking.share_the_same(eyes, rules)) == {"looked_all_the_same": 0.9}
 
 
-def test_clips_that_were_looked_at_are_numbered_without_a_gap():
-    assert looking.sorted_clips({"1": [], "0": [["walk", "", 1]]})[0] == (0, [["walk", "", 1]])
+def test_what_was_looked_at_is_complete_and_in_the_recognisers_words():
+    record = json.loads(looking.LOOKED_AT.read_text())
+    clips = looking.sorted_clips(record["clips"])
+    assert len(clips) == looking.CLIPS
+    acts = [tuple(act) for _, seen in clips for act in seen]
+    assert {verb for verb, _, _ in acts} == set(looking.VERBS)
+    assert {side for _, side, _ in acts} == {"left", "right", "both", ""}
+    assert {count for _, _, count in acts} >= {1, 2, 3, 4}
     with pytest.raises(ValueError, match="without a gap"):
         looking.sorted_clips({"0": [], "2": []})
 
@@ -111,6 +117,10 @@ def test_only_motions_of_the_weights_that_were_looked_at_are_compared(mover, mon
     found = by_name(looking.looked_at_measures(mover, "these"))
     rules = [looking.as_seen(looking.actions(one)) for one in looking.motions(mover)]
     assert found["looked_all_the_same"] == np.mean([one == [("walk", "", 1)] for one in rules])
+    again = record | {"again": {"2": [["walk", "", 1]], "5": [["jump", "", 1]]}}
+    (tmp_path / "looked_at.json").write_text(json.dumps(again))
+    twice = by_name(looking.looked_at_measures(mover, "these"))["looked_twice_kappa"]
+    assert 0.4 < twice < 0.6  # of two acts each, one is the same
     assert [len(one) for one in looking.motions(mover)] == trials.unseen(
         6, seed=looking.SEED
     ).frames
@@ -234,7 +244,7 @@ def test_all_records_are_made_and_stand_in_the_page(monkeypatch, mover):
     monkeypatch.setattr(parts.Studio, "mover", lambda self, name: mover)
     monkeypatch.setattr(parts, "weights_digest", lambda path: "0")
     monkeypatch.setattr(rows, "STEPS", 2)
-    monkeypatch.setattr(parts, "performed", lambda m, w=1.0: rows.performed(m, w, 2))
+    monkeypatch.setattr(parts, "performed", lambda m, w=1.0, **how: rows.performed(m, w, 2, **how))
     records = {one["name"]: one for one in parts.word_records(studio, "python -m x")}
     wanted = {"words.heldout_action_accuracy", "words.wording_minimal_pair", "words.edit_changes"}
     wanted |= {"words.guided.mm_dist", "words.nearest.r_precision_top3", "words.data.fid"}
@@ -265,7 +275,8 @@ def test_the_choices_differ_from_the_recipe_as_they_say():
     for name, (_, changes) in budget.VARIANTS.items():
         recipe = budget.recipe_of(name, 2, budget.FULL)
         assert recipe.seed == 2 and recipe.steps == budget.FULL.training["steps"]
-        same = replace(recipe, name="mover", steps=budget.MOVER.steps, seed=0)
+        steps = {"steps": budget.MOVER.steps, "plan_steps": budget.MOVER.plan_steps}
+        same = replace(recipe, name="mover", seed=0, **steps)
         assert (same == budget.MOVER) == (not changes)
     bag = budget.recipe_of("bag", 0, budget.FULL).config
     assert type(network(bag)).__name__ == "BagMoFusion" and bag.depth == budget.MOVER.config.depth

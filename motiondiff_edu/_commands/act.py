@@ -1,0 +1,38 @@
+"""Generate a motion from a sentence. The figure begins at the origin, facing z. A word that is read
+as another one, or is not known, is said. The sentence is put into quotes."""
+
+import argparse
+
+from . import outputs
+
+HELP = "do what a sentence says"
+EXAMPLE = 'act "walks forward, then waves with the left hand" --seconds 6 --out act.bvh'
+
+
+def arguments(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("text", help="the sentence, in quotes")
+    parser.add_argument(
+        "--seconds",
+        type=float,
+        default=6.0,
+        metavar="S",
+        help="the length of the motion, from 2 to 10 s (default: 6)",
+    )
+    parser.add_argument(
+        "--guidance",
+        type=float,
+        default=1.0,
+        metavar="W",
+        help="above 1 the motion follows the sentence more closely, and differs less (default: 1)",
+    )
+    outputs.add_out(parser)
+    outputs.add_draws(parser, "motions")
+
+
+def run(args: argparse.Namespace) -> None:
+    paths = outputs.output_paths(args.out, args.overwrite, args.samples)
+    from .. import load
+
+    how = {"seconds": args.seconds, "guidance": args.guidance}
+    made = load("mover").act(args.text, samples=args.samples, seed=args.seed, **how)
+    outputs.write_all(made, paths)

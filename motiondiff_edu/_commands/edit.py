@@ -1,0 +1,43 @@
+"""Make a motion do what a sentence says, and keep what it can of it. --keep keeps a part of the
+body as it is: the legs and the path, for instance. The sentence is put into quotes."""
+
+import argparse
+from pathlib import Path
+
+from . import outputs
+
+HELP = "change a motion by a sentence"
+EXAMPLE = 'edit walk.bvh "walks forward while clapping" --keep "lower body" --out clap.bvh'
+
+
+def arguments(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("file", type=Path, help="a motion of 2 to 10 s: .bvh or .npz")
+    parser.add_argument("text", help="the sentence, in quotes")
+    parser.add_argument(
+        "--keep",
+        metavar="PART",
+        help='a part of the body that stays: "upper body", "lower body" or "trajectory"; the '
+        "pelvis and its path stay with it, so the sentence should change the arms alone",
+    )
+    parser.add_argument(
+        "--strength",
+        type=float,
+        metavar="X",
+        help="how much is made anew: above 0, up to 1, with which only what is kept is left "
+        "(default: 0.3)",
+    )
+    outputs.add_out(parser)
+    outputs.add_draws(parser, "motions")
+
+
+def run(args: argparse.Namespace) -> None:
+    paths = outputs.output_paths(args.out, args.overwrite, args.samples, args.file)
+    motion = outputs.read(args.file)
+    from .. import edit
+    from ..editing.masks import body_part
+
+    known = body_part(len(motion), args.keep.lower().replace("-", " ")) if args.keep else None
+    how = {"samples": args.samples, "seed": args.seed}
+    if args.strength is not None:
+        how["strength"] = args.strength
+    outputs.write_all(edit(motion, args.text, known, **how), paths)
