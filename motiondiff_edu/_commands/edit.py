@@ -22,6 +22,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--strength",
         type=float,
+        default=0.3,
         metavar="X",
         help="how much is made anew: above 0, up to 1, with which only what is kept is left "
         "(default: 0.3)",
@@ -37,7 +38,5 @@ def run(args: argparse.Namespace) -> None:
     from ..editing.masks import body_part
 
     known = body_part(len(motion), args.keep.lower().replace("-", " ")) if args.keep else None
-    how = {"samples": args.samples, "seed": args.seed}
-    if args.strength is not None:
-        how["strength"] = args.strength
+    how = {"strength": args.strength, "samples": args.samples, "seed": args.seed}
     outputs.write_all(edit(motion, args.text, known, **how), paths)

@@ -68,14 +68,14 @@ def output_paths(
     digits = len(str(samples))
     numbers = [""] if samples == 1 else [f"-{k:0{digits}d}" for k in range(1, samples + 1)]
     paths = [out.with_name(f"{out.stem}{number}{out.suffix}") for number in numbers]
+    given = (source or Path()).expanduser()  # the folder here, if no file is read
     for path in paths:
         if path.is_dir():
             raise ValueError(f"{path} is a folder; give the name of a file in it")
-        if source is not None and path.exists() and source.expanduser().exists():
-            if path.samefile(source.expanduser()):
-                raise ValueError(
-                    f"{path} is the file that is read, and it would be lost: choose another name"
-                )
+        if path.exists() and given.exists() and path.samefile(given):
+            raise ValueError(
+                f"{path} is the file that is read, and it would be lost: choose another name"
+            )
         if path.exists() and not overwrite:
             raise ValueError(f"{path} exists already: choose another name, or add --overwrite")
     return paths

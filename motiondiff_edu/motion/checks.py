@@ -8,9 +8,14 @@ LONGEST = 3600.0  # seconds: an hour
 GUIDANCE = 20  # the largest weight; figures break long before it
 
 
+def is_number(value: object) -> bool:
+    """Whether a value is a real number; True and False are none."""
+    return isinstance(value, Real) and not isinstance(value, bool)
+
+
 def checked_seconds(seconds: float) -> float:
     """Seconds above 0 and up to an hour.  Raises ValueError for anything else."""
-    if isinstance(seconds, bool) or not isinstance(seconds, Real) or not math.isfinite(seconds):
+    if not is_number(seconds) or not math.isfinite(seconds):
         raise ValueError(f"seconds must be a number above 0, not {seconds!r}")
     if not 0 < seconds <= LONGEST:
         raise ValueError(f"seconds must be above 0 and at most {LONGEST:g}, not {seconds:g}")
@@ -41,8 +46,7 @@ def checked_steps(steps: int | None) -> int | None:
 
 def checked_guidance(guidance: float) -> float:
     """A weight of guidance, from 0 to GUIDANCE.  Raises ValueError for anything else."""
-    number = not isinstance(guidance, bool) and isinstance(guidance, Real)
-    if not number or not 0 <= guidance <= GUIDANCE:
+    if not is_number(guidance) or not 0 <= guidance <= GUIDANCE:
         raise ValueError(f"guidance must be a number from 0 to {GUIDANCE}, not {guidance!r:.40}")
     return float(guidance)
 
@@ -56,7 +60,7 @@ def check_there(path: Path) -> None:
 
 def checked_rate(fps: float, name: str = "fps") -> float:
     """Frames a second, above 0 and up to 10,000.  Raises ValueError for anything else."""
-    if isinstance(fps, bool) or not isinstance(fps, Real) or not 0 < fps <= 10_000:
+    if not is_number(fps) or not 0 < fps <= 10_000:
         raise ValueError(
             f"{name} must be a number of frames a second above 0 and at most 10,000, not {fps!r}"
         )

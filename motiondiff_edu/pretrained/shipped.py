@@ -144,8 +144,7 @@ def edit(
     range.
     Source: SDEdit (Meng and others, 2022); MoFusion claims edits by text without a method.
     """
-    everything = np.ones((len(as_motion(motion)), len(motion.skeleton)), bool)
-    _fitting(motion, motion.known & everything)
+    _fitting(motion, as_motion(motion).known)
     if not motion.known.all():
         raise MotionError(
             f"{motion.name}: joints are missing; fill them in first, with "

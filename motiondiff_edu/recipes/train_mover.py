@@ -226,14 +226,11 @@ def loss_of(
     scaler, moved = windows.scaler.part(slice(moving_frame.D)), partial(toes_moved, windows)
     columns = loss_terms.metre_weights(scaler.std, recipe.metres) if recipe.metres else None
     loss = weighted_loss(recipe.loss_weights, schedule, scaler, moving_frame.moves, moved, columns)
+    batch = batches(recipe, windows, texts_of)
     of_batch = batch_loss(recipe.kinematic, loss, schedule, scaler, moving_frame.body_of)
 
     def loss_fn(model: nn.Module, generator: torch.Generator) -> Tensor:
-        device = next(model.parameters()).device
-        x0, ids, planted = windows.draw(recipe.frames, generator)
-        ids = without_some(ids, recipe.no_text, generator)
-        x0, texts, planted = (part.to(device) for part in (x0, texts_of(ids), planted))
-        x0, plan = x0[..., : moving_frame.D], x0[..., moving_frame.D :]
+        x0, plan, texts, planted = batch(next(model.parameters()).device, generator)
         contexts = model.listen(texts)
         if not isinstance(model, PlannedMoFusion):
             return of_batch(model, x0, contexts, planted, generator)
@@ -250,15 +247,29 @@ def plan_loss_of(
     texts_of: Callable[[Tensor], Texts] = texts_as_ids,
 ) -> LossFn:
     """The loss of the network for timelines alone: eq. 4 without kinematics."""
+    batch = batches(recipe, windows, texts_of)
 
     def loss_fn(planner: nn.Module, generator: torch.Generator) -> Tensor:
-        device = next(planner.parameters()).device
-        x0, ids, _ = windows.draw(recipe.frames, generator)
-        texts = texts_of(without_some(ids, recipe.no_text, generator)).to(device)
-        plan = x0[..., moving_frame.D :].to(device)
+        _, plan, texts, _ = batch(next(planner.parameters()).device, generator)
         return training_loss(planner, (plan, planner.listen(texts)), schedule, generator)
 
     return loss_fn
+
+
+def batches(
+    recipe: MoverRecipe, windows: DescribedWindows, texts_of: Callable[[Tensor], Texts]
+) -> Callable[[torch.device, torch.Generator], tuple[Tensor, Tensor, Texts, Tensor]]:
+    """What draws the batches of a recipe: motions, timelines, texts and planted toes."""
+
+    def batch(
+        device: torch.device, generator: torch.Generator
+    ) -> tuple[Tensor, Tensor, Texts, Tensor]:
+        x0, ids, planted = windows.draw(recipe.frames, generator)
+        ids = without_some(ids, recipe.no_text, generator)
+        x0, texts, planted = (part.to(device) for part in (x0, texts_of(ids), planted))
+        return x0[..., : moving_frame.D], x0[..., moving_frame.D :], texts, planted
+
+    return batch
 
 
 def without_some(

@@ -244,7 +244,7 @@ def test_all_records_are_made_and_stand_in_the_page(monkeypatch, mover):
     monkeypatch.setattr(parts.Studio, "mover", lambda self, name: mover)
     monkeypatch.setattr(parts, "weights_digest", lambda path: "0")
     monkeypatch.setattr(rows, "STEPS", 2)
-    monkeypatch.setattr(parts, "performed", lambda m, w=1.0, **how: rows.performed(m, w, 2, **how))
+    monkeypatch.setattr(parts, "performed", lambda m, w=1.0: rows.performed(m, w, 2))
     records = {one["name"]: one for one in parts.word_records(studio, "python -m x")}
     wanted = {"words.heldout_action_accuracy", "words.wording_minimal_pair", "words.edit_changes"}
     wanted |= {"words.guided.mm_dist", "words.nearest.r_precision_top3", "words.data.fid"}

@@ -160,7 +160,8 @@ def word_records(studio: Studio, command: str) -> list[dict]:
     found["words."] += looked_at_measures(mover, seeds["weights"])
     guided = performed(mover, GUIDANCE)
     found["words.guided."] = [*studio.scored(guided(studio.trials, 0)), *studio.varied(guided)]
-    found["words.no-text."] = studio.scored(performed(mover, silent=True)(studio.trials, 0))
+    silent = replace(studio.trials, captions=[""] * len(studio.trials))
+    found["words.no-text."] = studio.scored(make(silent, 0))
     without_network = fools(studio, mover)
     for name, motions in without_network.items():
         found[f"words.{name}."] = studio.scored(motions)

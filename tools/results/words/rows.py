@@ -25,16 +25,14 @@ BATCH_FRAMES = 6000  # of one batch, all motions together
 Make = Callable[[Trials, int], list[Positions]]  # of trials and a seed
 
 
-def performed(
-    mover: Mover, guidance: float = 1.0, steps: int = STEPS, silent: bool = False
-) -> Make:
+def performed(mover: Mover, guidance: float = 1.0, steps: int = STEPS) -> Make:
     """A row of a network: one motion for each caption, as long as the data's.
 
-    A caption that the network refuses counts as the empty text; with `silent` all do.
+    A caption that the network refuses counts as the empty text.
     """
 
     def make(trials: Trials, seed: int) -> list[Positions]:
-        words = [() if silent else understood(text, mover) for text in trials.captions]
+        words = [understood(text, mover) for text in trials.captions]
         made: list[Positions | None] = [None] * len(trials)
         draws = torch.Generator().manual_seed(seed)
         for frames, members in by_length(trials.frames):
