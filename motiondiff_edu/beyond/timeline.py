@@ -30,7 +30,7 @@ from ..motion.root_frame import FPS
 
 LEGS = ("walk", "run", "back", "aside", "turn", "stand", "squat", "jump", "kick", "sit", "bow")
 ARMS = ("wave", "raise", "punch", "clap", "point")
-COUNTED = ("squat", "jump", "kick", "sit", "bow", *ARMS)  # the rest goes on until the next act
+WITH_TIMES = ("squat", "jump", "kick", "sit", "bow", *ARMS)  # the rest goes on until the next act
 SIDES = {"left": 1.0, "right": -1.0}
 WORDS = {value: word for word, value in SIDES.items()}
 VERBS = LEGS + ARMS
@@ -65,7 +65,7 @@ def timeline(acts: Sequence[Timed], frames: int) -> Float[np.ndarray, "{frames} 
         during = (at >= one.first) & (at < one.last)
         made[during, VERBS.index(one.verb)] = 1.0
         made[during, SIDE + part] = SIDES.get(one.side, 0.0)
-        if one.verb in COUNTED:
+        if one.verb in WITH_TIMES:
             done = (at - one.first) / max(one.last - one.first, 1 / FPS)
             to_come = one.count * (1 - done.clip(0, 1))
             now = at >= before[part]
@@ -87,7 +87,7 @@ def acts_of(made: Float[np.ndarray, "T 22"]) -> list[Timed]:
         part = int(verb in ARMS)
         side = np.round(smooth[:, SIDE + part]).astype(int)
         to_come = np.round(smooth[:, TO_COME + part]).astype(int)
-        if verb not in COUNTED:
+        if verb not in WITH_TIMES:
             to_come[:] = 1
         breaks = (np.diff(side, prepend=side[:1]) != 0) | (np.diff(to_come, prepend=99) > 0)
         for first, last in runs(smooth[:, column] > 0.5):

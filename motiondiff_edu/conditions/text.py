@@ -16,7 +16,7 @@ from difflib import get_close_matches
 from functools import cache
 from pathlib import Path
 
-LONGEST = 64  # words of a text
+MOST_WORDS = 64  # words of a text
 EXAMPLES = (  # for messages
     "walk", "run", "step", "turn", "squat", "jump", "kick", "sit", "bow", "wave", "raise", "punch",
     "clap", "point",
@@ -129,8 +129,8 @@ def read(text: str, vocabulary: Sequence[str], others: Mapping[str, str] | None 
 
     Base forms are taken, and words without a meaning for movement are passed over. `others` (by
     default `synonyms()`) has words that are read as known ones; the notes say so.
-    Raises TextError for a text without a known word, for unknown words, and for more than LONGEST
-    words.
+    Raises TextError for a text without a known word, for unknown words, and for more words than
+    MOST_WORDS.
     """
     if not isinstance(text, str):
         raise TextError(f"the text must be a sentence in quotes, not {type(text).__name__}")
@@ -156,8 +156,8 @@ def read(text: str, vocabulary: Sequence[str], others: Mapping[str, str] | None 
             unknown.append(word)
     if unknown:
         raise TextError(_unknown(list(dict.fromkeys(unknown)), vocabulary))
-    if len(found) > LONGEST:
-        raise TextError(f"the text has {len(found)} words; the network reads {LONGEST} at most")
+    if len(found) > MOST_WORDS:
+        raise TextError(f"the text has {len(found)} words; the network reads {MOST_WORDS} at most")
     if not found:
         raise TextError(
             f"{text.strip()!r} says nothing about a movement that the network knows; it knows "

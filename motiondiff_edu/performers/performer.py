@@ -50,11 +50,13 @@ def sampled(
 def evaluating(model: nn.Module) -> Iterator[None]:
     """The network without dropout; afterwards it is in training mode again, if it was."""
     training = model.training
-    model.eval()
+    if training:  # not every time: a change visits every layer
+        model.eval()
     try:
         yield
     finally:
-        model.train(training)
+        if training:
+            model.train()
 
 
 class Performer:

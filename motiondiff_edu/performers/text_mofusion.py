@@ -14,7 +14,7 @@ from torch import Tensor, nn
 from ..beyond.self_attention import DEPTH, SelfAttendingMoFusion
 from ..conditions import clip as clips
 from ..conditions.clip_encoder import ClipEncoder, ClipTokens
-from ..conditions.text import LONGEST
+from ..conditions.text import MOST_WORDS
 from ..conditions.word_encoder import WordEncoder
 from ..mofusion import MoFusionConfig, Music
 from ..motion import moving_frame
@@ -37,7 +37,7 @@ class TextMoFusionConfig(MoFusionConfig):
     words: tuple[str, ...] = ()
     word_layers: int = 2
     depth: int = DEPTH  # layers in the middle (`beyond.self_attention`)
-    longest: int = LONGEST
+    longest: int = MOST_WORDS
     clip: str = ""
     clip_width: int = clips.WIDTH  # of a token of that CLIP
     target: str = "x0"

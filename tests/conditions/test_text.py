@@ -6,7 +6,7 @@ import pytest
 from data_synth.actions import captions, clips
 from data_synth.actions.dataset import worded
 from motiondiff_edu.conditions.text import (
-    LONGEST,
+    MOST_WORDS,
     TextError,
     base_vocabulary,
     lemma,
@@ -71,7 +71,7 @@ def test_known_words_are_read_and_others_passed_over_or_replaced_in_the_open():
         ("a cartwheel", "it knows walk, run, kick, raise, clap and others"),
         ("wlak left", r"'wlak' \(did you mean walk\?\)"),
         ("er geht nach vorne und winkt", "does not know 'er', 'geht', .* and 1 more"),
-        ("walk " * (LONGEST + 1), f"has {LONGEST + 1} words; the network reads {LONGEST}"),
+        ("walk " * (MOST_WORDS + 1), f"has {MOST_WORDS + 1} words; the network reads {MOST_WORDS}"),
     ],
 )
 def test_what_cannot_be_read_is_said(text, said):
@@ -110,7 +110,7 @@ def test_counts_are_read_from_digits_and_other_counts_are_refused_with_those_the
 
 def test_a_text_that_grows_by_being_read_is_not_too_long_for_the_network():
     known = base_vocabulary(captions.vocabulary())
-    assert len(read("thrice " * 32, known).words) == LONGEST
+    assert len(read("thrice " * 32, known).words) == MOST_WORDS
     with pytest.raises(TextError, match="has 66 words; the network reads 64"):
         read("thrice " * 33, known)
 

@@ -12,6 +12,7 @@ from motiondiff_edu.motion.skeleton import MIRROR
 from motiondiff_edu.performers.mover import Mover
 from motiondiff_edu.performers.networks import network
 from motiondiff_edu.pretrained.judges import judges
+from motiondiff_edu.recipes.movers import MOVER
 from tools.results.words import budget, edits, looking, parts, rows, scores, tables, trials
 
 
@@ -257,7 +258,7 @@ def test_all_records_are_made_and_stand_in_the_page(monkeypatch, mover):
 
 
 def test_a_choice_is_trained_measured_and_shown(some, tmp_path, monkeypatch):
-    monkeypatch.setattr(budget, "MOVER", replace(budget.MOVER, config=replace(PLANNED, words=())))
+    monkeypatch.setattr(budget, "SMALL", replace(budget.SMALL, config=replace(PLANNED, words=())))
     few = first_of(some, 6)
     panel = scores.Panel(judges()[:1], few)
     monkeypatch.setattr(scores, "r_precision", lambda *x: (0.1, 0.2, 0.3))  # too few for pools
@@ -274,12 +275,13 @@ def test_a_choice_is_trained_measured_and_shown(some, tmp_path, monkeypatch):
 def test_the_choices_differ_from_the_recipe_as_they_say():
     for name, (_, changes) in budget.VARIANTS.items():
         recipe = budget.recipe_of(name, 2, budget.FULL)
-        assert recipe.seed == 2 and recipe.steps == budget.FULL.training["steps"]
-        steps = {"steps": budget.MOVER.steps, "plan_steps": budget.MOVER.plan_steps}
-        same = replace(recipe, name="mover", seed=0, **steps)
-        assert (same == budget.MOVER) == (not changes)
+        assert recipe.seed == 2 and recipe.steps == budget.SMALL.steps
+        same = replace(recipe, name="mover", seed=0)
+        assert (same == budget.SMALL) == (not changes)
+    lengths = {"steps": MOVER.steps, "plan_steps": MOVER.plan_steps, "frames": MOVER.frames}
+    assert replace(budget.SMALL, config=MOVER.config, **lengths) == MOVER
     bag = budget.recipe_of("bag", 0, budget.FULL).config
-    assert type(network(bag)).__name__ == "BagMoFusion" and bag.depth == budget.MOVER.config.depth
+    assert type(network(bag)).__name__ == "BagMoFusion" and bag.depth == MOVER.config.depth
     alone = budget.recipe_of("no-timeline", 0, budget.FULL).config
     assert alone.D == 66 and type(network(alone)).__name__ == "TextMoFusion"
 

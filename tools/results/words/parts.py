@@ -40,7 +40,7 @@ HELD_OUT = {"heldout": {"split": "combinations"}, "wording": {"new_verbs": True}
 class WordSize:
     """The amount of measurement."""
 
-    trials: int = 640
+    trials: int = 512
     held_out: int = 320
     texts: int = 32  # for the variety of motions to one caption
     each: int = 10

@@ -1,14 +1,16 @@
 """The rows of Table 2: what is shown for each caption, by data, fools and networks."""
 
 from collections.abc import Callable, Sequence
+from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
+from multiprocessing import get_context
 
 import numpy as np
 import torch
 from sklearn.feature_extraction.text import TfidfVectorizer
 
-from data_synth.actions import Sentence, clips, mirror
+from data_synth.actions import Sentence, mirror
 from data_synth.actions.dataset import WORDINGS_EACH, clip_of
 from motiondiff_edu.conditions.text import TextError
 from motiondiff_edu.motion import moving_frame
@@ -94,11 +96,13 @@ class TrainingClips:
         """All captions, a sketch of each motion (a frame in EVERY, from the origin), sentences."""
         texts, sketches = [], []
         sentences = set()
-        for one in clips(self.clips, self.seed):
-            for twin in (one, mirror(one)):
-                texts += twin.captions
-                sketches.append(sketch(twin.acted.positions))
-                sentences.add(twin.acted.sentence)
+        with ProcessPoolExecutor(mp_context=get_context("spawn")) as processes:
+            numbers = range(self.clips)
+            for both in processes.map(partial(sketched, seed=self.seed), numbers, chunksize=100):
+                for captions, sentence, outline in both:
+                    texts += captions
+                    sketches.append(outline)
+                    sentences.add(sentence)
         return texts, sketches, sentences
 
     @property
@@ -128,6 +132,15 @@ class TrainingClips:
         """The motion number k, made again; odd ones are mirrored."""
         one = clip_of(k // 2, self.seed)
         return (mirror(one) if k % 2 else one).acted.positions
+
+
+def sketched(k: int, seed: int) -> list[tuple[tuple[str, ...], Sentence, Positions]]:
+    """Captions, sentence and sketch of the training clip number k and of its mirrored twin."""
+    one = clip_of(k, seed)
+    return [
+        (twin.captions, twin.acted.sentence, sketch(twin.acted.positions))
+        for twin in (one, mirror(one))
+    ]
 
 
 def sketch(positions: Positions) -> Positions:
