@@ -52,6 +52,8 @@ CHOSEN = (
     "minimal_pair",
     "minimal_pair.order",
     "r_precision_top3_over_real",
+    "mm_dist_over_real",
+    "fid",
     "bone_rmse_cm",
     "skating_mps",
 )
@@ -187,10 +189,11 @@ def choices(records: dict[str, dict]) -> str:
         ]
         text += (
             (
-                f"Each row is trained {len(about['trainings'])} times for {about['trained_steps']} "
-                "steps, and differs from the first row in one choice; compare the bag and the "
-                "regression with the row without a timeline. The intervals are over clips and "
-                "trainings, those of R-Precision over trainings, judges and pools.\n\n"
+                "The networks are half as wide as the mover's. Each row is trained "
+                f"{len(about['trainings'])} times for {about['trained_steps']} steps, and differs "
+                "from the first row in one choice; compare the bag and the regression with the row "
+                "without a timeline. The intervals are over clips and trainings, those of "
+                "R-Precision, MM-Dist and FID over trainings, judges and pools.\n\n"
             )
             + table(["recipe", *(f"`{kind}`" for kind in CHOSEN)], rows)
             + "\n"
