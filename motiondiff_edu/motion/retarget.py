@@ -14,7 +14,7 @@ from jaxtyping import Bool, Float
 from .bvh import Bvh, BvhError, read_bvh
 from .bvh.frames import REPLACE_FPS
 from .clip import Clip
-from .dialects import check_mapping, guess_mapping
+from .dialects import TIPS, check_mapping, guess_mapping
 from .directions import (
     UPLEGS,
     bone_directions,
@@ -41,9 +41,11 @@ from .normalise import (
 from .planting import find_contacts, flat_feet, plant
 from .resample import resample_present
 from .root_frame import estimate_root, to_root_frame
-from .skeleton import HEELS, HIPS, JOINTS, TOES
+from .skeleton import HEELS, HIPS, JOINTS, PARENTS, TOES
 
 SHORTEST = 0.5  # s; a shorter clip shows no gait and no heading
+NO_TIP = 0.001  # metres
+TIP_JOINTS = tuple(JOINTS.index(side + tip) for side in ("Left", "Right") for tip, _ in TIPS)
 SUNK = -0.05  # metres: no joint of a standing figure is so low
 
 
@@ -96,6 +98,7 @@ def normalised(
     rest = pick(bvh.rest_positions()[None], bvh, mapping)
     up = up_axis(points, rest[0])
     points, unit = to_metres(rotate_y_up(points, up), bvh.source)
+    points = without_null_tips(points)
     points, mirrored = unmirror(points)
     rest = rotate_y_up(rest, up)[0]
     if mirrored:
@@ -126,6 +129,19 @@ def normalised(
         notes=notes,
     )
     return level(points, plane), info | {"rest_lean": rest_lean(rest), "wild": wild}
+
+
+def without_null_tips(points: Float[np.ndarray, "T 21 3"]) -> Float[np.ndarray, "T 21 3"]:
+    """Toes and hand tips that lie on their ankle or wrist are missing (NaN): they show nothing.
+
+    Many files end a hand with End Site OFFSET 0 0 0.
+    """
+    points = points.copy()
+    for tip in TIP_JOINTS:
+        lengths = np.linalg.norm(points[:, tip] - points[:, PARENTS[tip]], axis=-1)
+        if np.median(lengths) < NO_TIP:
+            points[:, tip] = np.nan
+    return points
 
 
 def ground_points(points: Float[np.ndarray, "T 21 3"]) -> Float[np.ndarray, "T 2 3"]:

@@ -103,6 +103,14 @@ def refused(tmp_path: Path, text: str | bytes) -> BvhError:
         (lambda s: s.replace("1e1", "infinity"), 25, "Left Leg", "not finite"),
         (lambda s: s.replace("HIERARCHY", "HIERARCHIE"), 1, None, "starts with HIERARCHY"),
         (lambda s: s[: s.index("Frames")], 22, None, "expected 'Frames:'"),
+        (lambda s: s.replace("Frames: 3", "Frames: \u00b2"), 22, None, "number of frames"),
+        (lambda s: s.replace("Frames: 3", "Frames: " + "3" * 5000), 22, None, "number of frames"),
+        (lambda s: s.replace("LS 2 Y", "LS \u00b2 Y"), 18, "Chest", "CHANNELS says"),
+        (lambda s: s.replace("OFFSET 0 30 -1", "OFFSET 0 1e308 -1"), 17, "Chest", "1e308"),
+        (lambda s: s.replace("OFFSET 0 30 -1", "OFFSET 0 -1e7 -1"), 17, "Chest", "no angle"),
+        (lambda s: s.replace("1e1", "1e200"), 25, "Left Leg", "no angle"),
+        (lambda s: s.replace("1e1", "-1000001"), 25, "Left Leg", "no angle"),
+        (lambda s: s.replace("1e1", "1" * 5000), 25, "Left Leg", "not finite"),
     ],
 )
 def test_what_is_wrong_is_said(tmp_path, change, line, joint, words):
@@ -111,6 +119,21 @@ def test_what_is_wrong_is_said(tmp_path, change, line, joint, words):
     error = refused(tmp_path, text)
     assert (error.line, words in str(error)) == (line, True), str(error)
     assert joint is None or error.joint.startswith(joint)
+    assert len(str(error)) < 500
+
+
+def test_a_kilometre_away_is_read(tmp_path):
+    path = tmp_path / "far.bvh"
+    path.write_text(SMALL.replace("1e1", "-1000000"))
+    assert read_bvh(path).frames.min() == -1e6
+
+
+def test_enormous_files_are_refused_before_they_fill_the_memory(tmp_path):
+    lines = refused(tmp_path, SMALL.encode() + b"\n" * 40_000_000)
+    assert "40,000,0" in str(lines) and "lines" in str(lines)
+    assert "lines" in str(refused(tmp_path, SMALL.encode() + b"\r" * 40_000_000))
+    line = refused(tmp_path, SMALL.replace("Frames: 3", "Frames: 4").encode() + b"0 " * 20_000_000)
+    assert line.line == 27 and "its own line" in str(line)
 
 
 def test_nothing_can_move(tmp_path):

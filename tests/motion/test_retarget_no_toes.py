@@ -3,6 +3,8 @@
 They stand on their ankles, at any rate, with flat feet of ours.
 """
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from foreign_walk import foreign, sound, without
@@ -11,7 +13,7 @@ from motiondiff_edu.motion.bvh import read_bvh
 from motiondiff_edu.motion.dialects import guess_mapping
 from motiondiff_edu.motion.resample import resample, resample_present
 from motiondiff_edu.motion.retarget import retarget
-from motiondiff_edu.motion.skeleton import TOES
+from motiondiff_edu.motion.skeleton import BONE_LENGTHS, TOES
 
 LEGS_AND_FEET = {2, 3, 4, 6, 7, 8}  # what a foot of another size moves
 OTHERS = [j for j in range(21) if j not in LEGS_AND_FEET]
@@ -42,6 +44,26 @@ def test_a_walk_without_toes_is_the_walk_with_other_feet(tmp_path, fps, frames):
     assert clip.control[:, 0].mean() == pytest.approx(whole.control[:, 0].mean(), rel=0.02)
     assert np.abs(clip.control[:, 1:]).max() < 0.08
     assert np.abs(clip.poses - whole.poses)[:, OTHERS].max() < 0.05
+
+
+@pytest.mark.parametrize("offset", [0.0, 0.03])  # inches; 0.8 mm
+@pytest.mark.parametrize("tip", ["HandIndex1", "ToeBase"])
+def test_a_tip_on_its_own_joint_is_a_missing_one(tmp_path, tip, offset):
+    bvh = read_bvh(foreign(tmp_path / "walk.bvh"))
+    mapping = guess_mapping(bvh)
+    offsets = bvh.offsets.copy()
+    offsets[[bvh.names.index(mapping[side + tip]) for side in ("Left", "Right")]] = [0, -offset, 0]
+    clip = retarget(replace(bvh, offsets=offsets), mapping)
+    sound(clip)
+    if tip == "ToeBase":
+        lacking = retarget(without(bvh, TOE_NAMES))
+        np.testing.assert_allclose(clip.poses, lacking.poses, atol=1e-9)
+    for elbow, wrist, end in ((14, 15, 16), (18, 19, 20)) if tip == "HandIndex1" else ():
+        forearm, hand = (
+            np.diff(clip.poses[:, pair], axis=1)[:, 0] for pair in ((elbow, wrist), (wrist, end))
+        )
+        straight = (forearm * hand).sum(-1) / BONE_LENGTHS[wrist - 1] / BONE_LENGTHS[end - 1]
+        np.testing.assert_allclose(straight, 1, atol=1e-9)
 
 
 def test_a_real_walk_without_toes(real_data):

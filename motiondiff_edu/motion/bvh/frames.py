@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 from jaxtyping import Float
 
-from .tokens import BvhError, to_number
+from .tokens import FARTHEST, BvhError, to_count, to_number
 
 SLOWEST, FASTEST = 0.5, 0.001  # s per frame; a frame time outside this range is an error
 REPLACE_FPS = "pass file_fps= to md.read_motion, or --file-fps to motiondiff-edu convert"
@@ -24,13 +24,14 @@ def header(lines: list[str], motion: int, path: str | Path) -> tuple[int, int, s
     time_at = next_filled(lines, frames_at + 1)
     frames = after_keyword(lines, frames_at, "frames", path)
     time = after_keyword(lines, time_at, "frame time", path)
-    if not frames.isdigit():
+    declared = to_count(frames)
+    if declared is None:
         raise BvhError(
-            f"'{frames}' is not a number of frames; 'Frames:' takes a whole number.",
+            f"'{frames[:40]}' is not a number of frames; 'Frames:' takes a whole number.",
             path,
             frames_at + 1,
         )
-    return int(frames), frames_at + 1, time, time_at + 1, time_at + 1
+    return declared, frames_at + 1, time, time_at + 1, time_at + 1
 
 
 def next_filled(lines: list[str], start: int) -> int:
@@ -63,7 +64,7 @@ def frame_time(text: str, line: int, path: str | Path, file_fps: float | None) -
     value = to_number(text, path, line)
     if value <= 0:
         raise BvhError(
-            f"the frame time is {text} s; it must be positive. Correct it, or {REPLACE_FPS}.",
+            f"the frame time is {text[:40]} s; it must be positive. Correct it, or {REPLACE_FPS}.",
             path,
             line,
         )
@@ -74,7 +75,7 @@ def frame_time(text: str, line: int, path: str | Path, file_fps: float | None) -
             else " Write seconds per frame"
         )
         raise BvhError(
-            f"a frame time of {text} s is not plausible ({FASTEST} to {SLOWEST} s are accepted)."
+            f"a frame time of {text[:40]} s is not plausible; {FASTEST} to {SLOWEST} s are read."
             f"{hint}, or {REPLACE_FPS}, to replace the value of the file.",
             path,
             line,
@@ -149,7 +150,7 @@ def row_of(
     """The words of one line as numbers; each word is checked only if one of them is bad."""
     try:
         row = list(map(float, words))
-        if isfinite(sum(row)) and "_" not in "".join(words):
+        if max(map(abs, row)) <= FARTHEST and "_" not in "".join(words) and isfinite(sum(row)):
             return row
     except ValueError:
         pass

@@ -3,7 +3,7 @@
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from .tokens import BvhError, Statement, to_number
+from .tokens import BvhError, Statement, to_count, to_number
 
 CHANNELS = tuple(axis + kind for kind in ("position", "rotation") for axis in "XYZ")
 SPELLED = {channel.lower(): channel for channel in CHANNELS}
@@ -158,8 +158,10 @@ def channels(reader: Reader, statement: Statement) -> None:
         raise reader.error(
             f"unknown channel '{unknown[0]}'; known: {', '.join(CHANNELS)}.", statement.line, node
         )
-    if not count.isdigit() or int(count) != len(names):
-        problem = f"CHANNELS says '{count}' but {len(names)} names follow; make the number fit."
+    if to_count(count) != len(names):
+        problem = (
+            f"CHANNELS says '{count[:40]}' but {len(names)} names follow; make the number fit."
+        )
         raise reader.error(problem, statement.line, node)
     if len(set(map(str.lower, names))) < len(names):
         raise reader.error("a channel is listed twice.", statement.line, node)

@@ -10,6 +10,9 @@ from pathlib import Path
 import numpy as np
 
 LARGEST = 300_000_000  # bytes: an hour of a detailed skeleton at 120 frames/s is smaller
+MOST_LINES = 2_000_000  # an hour at 240 frames/s has 864,000
+LONGEST_LINE = 1_000_000  # characters: a frame of a thousand joints has some 100,000
+FARTHEST = 1e6  # the largest number: a kilometre in millimetres, or 2,777 turns in degrees
 SNIFF = 65_536
 BRACES = re.compile(r"([{}])")
 RUN_TOGETHER = re.compile(r"\d[-+]\d*\.?\d")
@@ -26,7 +29,7 @@ class BvhError(ValueError):
     ):
         place = [
             part
-            for part in (Path(path).name, line and f"line {line}", joint and f"joint {joint}")
+            for part in (Path(path).name, line and f"line {line}", joint and f"joint {joint[:60]}")
             if part
         ]
         super().__init__(f"{', '.join(place)}: {problem}" if place else problem)
@@ -54,7 +57,8 @@ class Statement:
 def read_lines(path: str | Path) -> list[str]:
     """The lines of a BVH file, with any kind of line ends.
 
-    Raises BvhError for a folder, an empty, binary, UTF-16, HTML or oversized file.
+    Raises BvhError for a folder, an empty, binary, UTF-16 or HTML file, and for one that is too
+    large, has too many lines or too long ones.
     """
     path = Path(path).expanduser()
     if path.is_dir():
@@ -67,7 +71,27 @@ def read_lines(path: str | Path) -> list[str]:
         start = file.read(SNIFF)
         refuse_foreign(start, path)
         raw = start + file.read()
-    return decode(raw).replace("\r\n", "\n").replace("\r", "\n").split("\n")
+    refuse_too_many(raw, path)
+    lines = decode(raw).replace("\r\n", "\n").replace("\r", "\n").split("\n")
+    longest = max(range(len(lines)), key=lambda index: len(lines[index]))
+    if len(lines[longest]) > LONGEST_LINE:
+        raise BvhError(
+            f"the line has {len(lines[longest]):,} characters; write each frame on its own line.",
+            path,
+            longest + 1,
+        )
+    return lines
+
+
+def refuse_too_many(raw: bytes, path: Path) -> None:
+    """Raise BvhError for more lines than MOST_LINES, before they are made."""
+    count = max(raw.count(b"\n"), raw.count(b"\r"))
+    if count > MOST_LINES:
+        raise BvhError(
+            f"the file has {count:,} lines, and {MOST_LINES:,} at most are read; cut it into "
+            "shorter takes, and remove blank lines.",
+            path,
+        )
 
 
 def refuse_foreign(start: bytes, path: Path) -> None:
@@ -124,7 +148,7 @@ def statements(lines: list[str], path: str | Path) -> tuple[list[Statement], int
 
 
 def to_number(text: str, path: str | Path, line: int, joint: str | None = None) -> float:
-    """One finite number.  Raises BvhError, which names the usual mistakes."""
+    """One number, finite and at most FARTHEST.  Raises BvhError, which names usual mistakes."""
     try:
         value = float(text) if "_" not in text else None
     except ValueError:
@@ -133,12 +157,25 @@ def to_number(text: str, path: str | Path, line: int, joint: str | None = None) 
         raise BvhError(why_no_number(text), path, line, joint)
     if not np.isfinite(value):
         raise BvhError(
-            f"the value '{text}' is not finite; repair the take where it was recorded.",
+            f"the value '{text[:40]}' is not finite; repair the take where it was recorded.",
+            path,
+            line,
+            joint,
+        )
+    if abs(value) > FARTHEST:
+        raise BvhError(
+            f"the value '{text[:40]}' is no angle in degrees and no place near a person (larger "
+            f"than {FARTHEST:,.0f}); repair the take where it was recorded.",
             path,
             line,
             joint,
         )
     return value
+
+
+def to_count(text: str) -> int | None:
+    """A whole number of at most nine digits, or None."""
+    return int(text) if text.isascii() and text.isdecimal() and len(text) <= 9 else None
 
 
 def why_no_number(text: str) -> str:
