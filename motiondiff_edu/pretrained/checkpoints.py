@@ -5,11 +5,13 @@ Notebook: 00, 07, 12
 """
 
 import json
+from collections.abc import Callable
 from dataclasses import MISSING, asdict, dataclass
 from difflib import get_close_matches
 from functools import partial
 from pathlib import Path
 
+import torch
 from safetensors import safe_open
 from torch import Tensor, nn
 
@@ -149,9 +151,11 @@ def _assembled(
     vectors = {f"{name}.{part}": size for name, size in sizes.items() for part in ("mean", "std")}
     check_sizes(tensors, vectors | {"schedule.beta": config.S})
     scalers = [scaler_of(tensors, name) for name in kind.scalers]
-    model = networks[metadata.get("network", kind.usual)].build(config, *scalers)
+    build = partial(networks[metadata.get("network", kind.usual)].build, config, *scalers)
+    weights = weights_of(tensors)
+    refuse_other_shapes(build, weights)
     schedule = make_schedule(tensors["schedule.beta"], metadata["schedule"])
-    trained = (with_weights(model, tensors), schedule, *scalers, card_of(metadata))
+    trained = (with_weights(build(), weights), schedule, *scalers, card_of(metadata))
     name = getattr(config, "clip", "")
     if not name and clip is None:
         return kind.performer(*trained)
@@ -165,9 +169,27 @@ def _assembled(
         ) from error
 
 
-def with_weights(model: nn.Module, tensors: dict[str, Tensor]) -> nn.Module:
-    """The network with the weights of a file, in evaluation mode and without gradients."""
-    model.load_state_dict(unpack({k[6:]: v for k, v in tensors.items() if k.startswith("model.")}))
+def weights_of(tensors: dict[str, Tensor]) -> dict[str, Tensor]:
+    """The weights of the network among the tensors of a file, in full precision."""
+    return unpack({k[6:]: v for k, v in tensors.items() if k.startswith("model.")})
+
+
+def refuse_other_shapes(build: Callable[[], nn.Module], weights: dict[str, Tensor]) -> None:
+    """Raise ValueError for weights of other shapes than the network's, before it takes memory."""
+    try:
+        with torch.device("meta"):  # tensors with a shape and without numbers
+            outline = build().state_dict()
+    except (RuntimeError, TypeError):  # somebody's network computes with its numbers
+        return
+    for name in sorted(outline.keys() | weights.keys()):
+        own, given = (tuple(x[name].shape) if name in x else None for x in (outline, weights))
+        if own != given:
+            raise ValueError(f"{name} has the shape {given}; the network has {own}")
+
+
+def with_weights(model: nn.Module, weights: dict[str, Tensor]) -> nn.Module:
+    """The network with these weights, in evaluation mode and without gradients."""
+    model.load_state_dict(weights)
     return model.eval().requires_grad_(False)
 
 

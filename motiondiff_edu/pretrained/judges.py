@@ -19,7 +19,7 @@ from ..conditions.word_encoder import FIRST, ids_of
 from ..metrics.retrieval import Space
 from ..motion.moving_frame import D, to_features
 from ..motion.scaler import Scaler
-from .checkpoints import FOLDER, card_of, scaler_of, with_weights
+from .checkpoints import FOLDER, card_of, scaler_of, weights_of, with_weights
 from .eight_bits import pack
 from .weights_file import check_sizes, read_weights, write_weights
 
@@ -78,4 +78,4 @@ def _assembled(tensors: dict[str, Tensor], metadata: dict[str, str]) -> Judge:
     check_sizes(tensors, {"motion.mean": D, "motion.std": D})
     space = Space(D, FIRST + len(words), config["width"])
     scaler = scaler_of(tensors, "motion")
-    return Judge(with_weights(space, tensors), scaler, words, card_of(metadata))
+    return Judge(with_weights(space, weights_of(tensors)), scaler, words, card_of(metadata))

@@ -23,6 +23,7 @@ Config = TypeVar("Config")
 Assemble = Callable[[dict[str, Tensor], dict[str, str]], object]
 # settings of earlier versions; with this value they had no effect and are ignored
 RETIRED = {"reach": 0.0}
+LARGEST = 10_000  # of a whole number among the settings: widths, steps, frames
 SETTINGS = ("format", "network", "config", "schedule")  # they decide how the tensors are used
 
 
@@ -87,6 +88,8 @@ def read_weights(path: str | Path, kinds: Mapping[str, Assemble]) -> object:
 def config_of(metadata: dict[str, str], kinds: Mapping[str, type[Config]], default: str) -> Config:
     """The configuration; every setting must be known and have the type of its default.
 
+    Whole numbers are at most LARGEST, so that a false one does not fill the memory.
+
     `kinds` has a configuration class for each name of a network's class.
     """
     name = metadata["file"]
@@ -115,9 +118,11 @@ def config_of(metadata: dict[str, str], kinds: Mapping[str, type[Config]], defau
         if usual is tuple and type(value) is list:  # of numbers, or of words
             inner = {type(v) for v in defaults[setting]} or {str}
             fits = all(type(v) in inner for v in value)
+        numbers = value if isinstance(value, list) else [value]
+        fits &= all(abs(v) <= LARGEST for v in numbers if type(v) is int)
         if not fits:
             raise CheckpointError(
-                f"{name}: its setting {setting} = {value!r} is not valid; download it again"
+                f"{name}: its setting {setting} = {value!r:.60} is not valid; download it again"
             )
     values = {k: tuple(v) if isinstance(v, list) else v for k, v in values.items()}
     try:

@@ -312,6 +312,9 @@ NONSENSE = [
     '{"width": "wide"}',
     '{"heads": 0}',
     '{"target": "foo"}',
+    '{"T_h": 1000000000}',
+    '{"width": 1000000000000000000000000000000}',
+    '{"hidden": 1000000}',
     None,
 ]
 
@@ -322,6 +325,31 @@ def test_a_configuration_that_makes_no_sense(saved: Path, config: str | None):
     rewrite(saved, lambda tensors: None, metadata | ({"config": config} if config else {}))
     with pytest.raises(CheckpointError, match="tiny.safetensors"):
         load_walker(saved)
+
+
+def test_a_larger_network_than_the_weights_is_not_built(saved: Path, monkeypatch):
+    monkeypatch.setattr(checkpoints, "with_weights", lambda *_: pytest.fail("it was built"))
+    with safe_open(saved, "pt") as file:
+        metadata = file.metadata()
+    config = json.loads(metadata["config"]) | {"width": 8192, "hidden": 9000}
+    rewrite(saved, lambda tensors: None, metadata | {"config": json.dumps(config)})
+    with pytest.raises(CheckpointError, match=r"disagree \(\S+ has the shape"):
+        load_walker(saved)
+
+
+def test_a_network_that_computes_with_its_numbers_comes_back(saved: Path, monkeypatch):
+    """Such a network cannot be outlined without its numbers."""
+    made = []
+
+    def build(config, *scalers):
+        model = MoDiff(config)
+        made.append(next(model.parameters()).sum().item())
+        return model
+
+    there = checkpoints.networks_of("walker")
+    changed = there | {"MoDiff": replace(there["MoDiff"], build=build)}
+    monkeypatch.setattr(checkpoints, "networks_of", lambda name: changed)
+    assert load_walker(saved).config.width == 16 and len(made) == 1
 
 
 def test_a_network_of_a_later_version_is_refused_by_name(saved: Path):
