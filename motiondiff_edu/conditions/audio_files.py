@@ -10,6 +10,7 @@ import re
 import warnings
 from contextlib import suppress
 from pathlib import Path
+from shlex import quote
 from tempfile import TemporaryDirectory
 
 import numpy as np
@@ -21,6 +22,8 @@ from torch import Tensor
 from .music import SAMPLE_RATE
 
 SHORTEST = 1.0  # seconds
+MOST = 3600.0  # seconds that are read; a damaged header may promise years
+PADDING = 0.1  # seconds at the end of an MP3 that its encoder added and the reader leaves out
 # a file whose largest sample is below this, 80 dB under full scale, counts as silent
 SILENT = 1e-4
 LOUDEST = 10.0  # samples reach 1, or a little more; larger values have another unit
@@ -142,11 +145,16 @@ def _decode(path: Path) -> tuple[Float[np.ndarray, "N channels"], int, str]:
 
     try:
         with soundfile.SoundFile(path) as file:
+            if file.frames > MOST * file.samplerate:
+                channels = _in_blocks(path)
+                complete = len(channels) >= MOST * file.samplerate
+                loss = "is longer than an hour" if complete else _lost(file, len(channels))
+                return channels, file.samplerate, loss
             try:
                 channels = file.read(dtype="float32", always_2d=True)
             except soundfile.LibsndfileError:
                 return (
-                    _before_the_damage(path),
+                    _in_blocks(path),
                     file.samplerate,
                     "is damaged: the rest cannot be read",
                 )
@@ -155,8 +163,8 @@ def _decode(path: Path) -> tuple[Float[np.ndarray, "N channels"], int, str]:
         raise AudioError(f"{path.name} {_other_kind(path, error)}") from None
 
 
-def _before_the_damage(path: Path) -> Float[np.ndarray, "N channels"]:
-    """The samples before the damage, read block by block.
+def _in_blocks(path: Path) -> Float[np.ndarray, "N channels"]:
+    """The samples before a damage, or of the first hour, read block by block.
 
     Complete files are not read this way, because seeking in an MP3 is not exact.
     """
@@ -164,9 +172,11 @@ def _before_the_damage(path: Path) -> Float[np.ndarray, "N channels"]:
 
     with soundfile.SoundFile(path) as file:
         blocks = [np.zeros((0, file.channels), np.float32)]
+        left = round(MOST * file.samplerate)
         with suppress(soundfile.LibsndfileError):
-            while len(block := file.read(BLOCK, dtype="float32", always_2d=True)):
+            while len(block := file.read(min(BLOCK, left), dtype="float32", always_2d=True)):
                 blocks.append(block)
+                left -= len(block)
     return np.concatenate(blocks)
 
 
@@ -182,7 +192,8 @@ def _lost(file, there: int) -> str:
         return (
             f"is damaged: {(promised - there) / file.samplerate:.2f} s are missing from its middle"
         )
-    if promised > there:
+    slack = PADDING * file.samplerate if file.format == "MP3" else 0
+    if promised > there + slack:
         return f"is cut off: its header promises {promised / file.samplerate:.2f} s"
     if "lacks an end-of-stream" in log:
         return "is cut off: its last page is missing"
@@ -208,7 +219,7 @@ def _other_kind(path: Path, error: Exception) -> str:
         if head[where : where + len(mark)] == mark:
             return (
                 f"is {kind}, which needs ffmpeg. Convert it first: "
-                f'ffmpeg -i "{path}" "{path.with_suffix(".wav")}"'
+                f"ffmpeg -i {quote(str(path))} {quote(str(path.with_suffix('.wav')))}"
             )
     if not head:
         return "is an empty file (0 bytes): copy or download it again"

@@ -14,6 +14,7 @@ import torch
 from bursts import clicks
 from scipy.signal import firwin, resample_poly
 
+from motiondiff_edu.conditions import audio_files
 from motiondiff_edu.conditions.audio_files import AudioError, read_audio, read_sound, resample
 from motiondiff_edu.conditions.music import log_mel
 
@@ -217,9 +218,9 @@ def with_nan(value: float) -> np.ndarray:
     "name, content, words",
     [
         (
-            "song.m4a",
+            "my $(song).m4a",
             b"\0\0\0\x20ftypM4A \0\0\0\0",
-            r'needs ffmpeg. Convert .*: ffmpeg -i ".*song.m4a" ".*song.wav"',
+            r"needs ffmpeg. Convert .*: ffmpeg -i '\S*my \$.song..m4a' '\S*my \$.song..wav'",
         ),
         ("clip.wav", b"\x1a\x45\xdf\xa3\x01\0\0\0", "Matroska file .*ffmpeg -i"),
         ("song.aac", b"\xff\xf1\x50\x80\0\0\0\0", "AAC stream, which needs ffmpeg"),
@@ -262,6 +263,34 @@ def test_a_stream_written_before_its_length_was_known_does_not_warn(tmp_path):
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         assert len(read_audio(path)) == len(chord(16000))
+
+
+def test_a_header_that_promises_years_does_not_fill_the_memory(tmp_path):
+    path = written(tmp_path, "years.flac", chord(22050), 22050)
+    content = bytearray(path.read_bytes())
+    content[21] |= 0x0F  # with the next four bytes the number of samples
+    content[22:26] = b"\xff" * 4
+    path.write_bytes(content)
+    with pytest.warns(UserWarning, match="years.flac is cut off: its header promises .* are used"):
+        assert len(read_audio(path)) == pytest.approx(2.3 * 16000, abs=3000)
+
+
+def test_of_a_sound_longer_than_an_hour_the_first_hour_is_read(tmp_path, monkeypatch):
+    monkeypatch.setattr(audio_files, "MOST", 1.5)
+    path = written(tmp_path, "long.flac", chord(22050), 22050)
+    with pytest.warns(UserWarning, match="long.flac is longer than an hour; the 1.50 s"):
+        audio = read_audio(path)
+    whole = chord(16000)[: len(audio)]
+    assert len(audio) == 24000 and np.abs(audio.numpy() - whole)[100:-100].max() < 0.01
+
+
+def test_what_an_encoder_added_is_not_missed(tmp_path):
+    path = written(tmp_path, "song.mp3", chord(22050, 4.0), 22050)
+    content = path.read_bytes()
+    path.write_bytes(content[: -len(content) // 100])
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        assert len(read_audio(path)) / 16000 == pytest.approx(4, abs=0.15)
 
 
 def test_a_wrong_name_does_not_matter(tmp_path):
