@@ -36,6 +36,7 @@ COCO = (
     "RightAnkle",
 )
 LARGEST = 300_000_000  # bytes
+FARTHEST = 1e6  # centimetres: ten kilometres
 FLOOR_PERCENTILE = 1.0
 
 
@@ -167,9 +168,8 @@ def _describe_npy(raw: bytes) -> str:
 
 def _array(content, key: str, name: str) -> Float[np.ndarray, "T 17 3"]:
     if not isinstance(content, dict) or key not in content:
-        holds = (
-            ", ".join(map(str, content)) if isinstance(content, dict) else type(content).__name__
-        )
+        holds = ", ".join(map(str, content)) if isinstance(content, dict) else ""
+        holds = f"{holds:.200}" or type(content).__name__
         hint = (
             " These are joint angles: take the file of that name in keypoints3d."
             if "smpl_poses" in holds
@@ -181,4 +181,6 @@ def _array(content, key: str, name: str) -> Float[np.ndarray, "T 17 3"]:
         raise AistError(f"{name}: {key} is not an array of numbers.")
     if found.ndim != 3 or found.shape[1:] != (len(COCO), 3) or len(found) == 0:
         raise AistError(f"{name}: {key} has shape {found.shape}; it should be (frames, 17, 3).")
+    if (np.abs(found) > FARTHEST).any():
+        raise AistError(f"{name}: {key} goes ten kilometres away; it should be in centimetres.")
     return found.astype(np.float64)

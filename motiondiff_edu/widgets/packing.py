@@ -8,6 +8,7 @@ which is enough for any body.
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from os import PathLike
 
 import numpy as np
 from jaxtyping import Bool, Float
@@ -16,6 +17,7 @@ from ..motion.skeleton import JOINTS
 
 UNITS_PER_METRE = 2048
 REACH = 32767 / UNITS_PER_METRE  # 15.9995 m
+FARTHEST = 10_000.0  # metres from the origin: there, float32 is half a millimetre
 
 
 @dataclass(frozen=True)
@@ -60,17 +62,26 @@ def check_positions(positions: Float[np.ndarray, "T J 3"], figure: int = 0) -> N
             f"{_where(far, figure)}: more than {REACH:.0f} m from joint 0. "
             "Positions must be in metres: are these cm?"
         )
+    away = (np.abs(positions) > FARTHEST).any(-1)
+    if away.any():
+        raise ValueError(
+            f"{_where(away, figure)}: more than {FARTHEST:,.0f} m from the origin. Positions must "
+            "be in metres; subtract the place where the motion begins"
+        )
 
 
 def as_figures(positions: object) -> list[Float[np.ndarray, "T J 3"]]:
     """One or several motions as float64 arrays.
 
     One motion (T, J, 3), a batch (N, T, J, 3) or a sequence of motions, arrays or tensors.
+    Raises ValueError for anything else; a file's name is to be read first.
     """
+    if isinstance(positions, str | PathLike):
+        raise ValueError(f"{str(positions)!r} is a file's name: md.play(md.read_motion(...))")
     if isinstance(positions, Sequence):
-        figures = [np.asarray(p, dtype=np.float64) for p in positions]
+        figures = [_numbers(p) for p in positions]
     else:
-        array = np.asarray(positions, dtype=np.float64)
+        array = _numbers(positions)
         figures = list(array) if array.ndim == 4 else [array]
     if not figures:
         raise ValueError("no figure given")
@@ -84,6 +95,18 @@ def as_figures(positions: object) -> list[Float[np.ndarray, "T J 3"]]:
             f"figures have different numbers of joints: {[figure.shape[1] for figure in figures]}"
         )
     return figures
+
+
+def _numbers(positions: object) -> np.ndarray:
+    """An array of real numbers, float64."""
+    try:
+        array = np.asarray(positions)
+        if np.iscomplexobj(array):
+            raise TypeError("they are complex")
+        return array.astype(np.float64)
+    except (TypeError, ValueError) as error:
+        what = type(positions).__name__
+        raise ValueError(f"positions must be numbers in metres, not {what} ({error})") from None
 
 
 def pack(figures: Sequence[Float[np.ndarray, "_ J 3"]]) -> Packed:

@@ -27,6 +27,7 @@ import traitlets
 from numpy.typing import ArrayLike
 
 from .._files import replacing
+from ..motion.checks import checked_rate, is_number
 from ..viz import body
 from . import lane, module, packing, poster, sound
 from .lane import Soundtrack
@@ -34,6 +35,7 @@ from .lane import Soundtrack
 __all__ = ["Look", "Player", "Soundtrack", "describe"]
 
 MODULE = module.joined()
+LOWEST, HIGHEST = 60, 4000  # pixels
 GIF_FPS = 50  # browsers slow a GIF down whose pictures stay for less than 20 ms
 _TRAITS = ("joints", "roots", "contacts", "sound", "strips")
 
@@ -66,7 +68,8 @@ class Look:
     `autoplay`: by default only without a sound; with one the browser must allow it.
     `follow`: the camera goes with the figure.
     `parents`: each joint's parent, where the skeleton is not the course's.
-    Raises ValueError for another layout.
+    Raises ValueError for another layout, a height that is no picture's, an offset that is not
+    finite, and parents that lead to no root.
     """
 
     layout: str = "side"
@@ -79,6 +82,28 @@ class Look:
     def __post_init__(self):
         if self.layout not in ("side", "together"):
             raise ValueError(f'layout is "side" or "together", not {self.layout!r}')
+        if not is_number(self.height) or not LOWEST <= self.height <= HIGHEST:
+            raise ValueError(f"height is {LOWEST} to {HIGHEST} pixels, not {self.height!r:.40}")
+        if len(self.offset) != 2 or not np.isfinite(self.offset).all():
+            raise ValueError(f"offset is (x, z) in metres, not {self.offset!r:.40}")
+        if self.parents is not None:
+            check_parents(self.parents)
+
+
+def check_parents(parents: Sequence[int]) -> None:
+    """Raise ValueError unless the parents of each joint lead to a root, whose own parent is -1."""
+    for joint, parent in enumerate(parents):
+        if parent != int(parent) or not -1 <= parent < len(parents):
+            raise ValueError(
+                f"parents[{joint}] = {parent!r:.40}: it must be another joint's number, or -1 for "
+                f"the root; there are {len(parents)} joints"
+            )
+    for joint in range(len(parents)):
+        above = joint
+        for _ in parents:
+            above = parents[above] if above >= 0 else above
+        if above >= 0:
+            raise ValueError(f"parents: joint {joint} leads to no root, but in a circle")
 
 
 USUAL = Look()
@@ -151,9 +176,7 @@ class Player(anywidget.AnyWidget):
         given |= {"labels": labels, "path": path, "audio": audio}
         given = {name: value for name, value in given.items() if value is not AS_BEFORE}
         options = self._options | given
-        options["fps"] = float(options["fps"])
-        if not 0 < options["fps"] < float("inf"):
-            raise ValueError(f"fps are frames a second, more than 0: got {options['fps']:g}")
+        options["fps"] = checked_rate(options["fps"])
         arrays = packing.as_figures(positions)
         packed = packing.pack(arrays)
         figures = _figures(arrays, options, self._look.parents)

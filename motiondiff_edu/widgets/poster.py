@@ -31,7 +31,11 @@ class Thin:
 
 @dataclass(frozen=True, eq=False)
 class Figure:
-    """One figure of a scene; `past` frames were given, `path` (metres, [x, z]) is on the floor."""
+    """One figure of a scene; `past` frames were given, `path` (metres, [x, z]) is on the floor.
+
+    Raises ValueError for more past than frames, a path of another shape or with gaps, and a label
+    that is no text.
+    """
 
     positions: Float[np.ndarray, "T J 3"]
     label: str = ""
@@ -40,6 +44,22 @@ class Figure:
     path: Float[np.ndarray, "n 2"] | None = None
     parts: tuple[body.Part, ...] = body.BODY
     thin: tuple[Thin, ...] = ()
+
+    def __post_init__(self):
+        if not isinstance(self.label, str):
+            raise ValueError(f"labels are texts, not {self.label!r:.40}")
+        if self.past is not None and not 0 <= self.past <= len(self.positions):
+            raise ValueError(
+                f"past = {self.past}: it is a number of frames, from 0 to the "
+                f"{len(self.positions)} of the motion"
+            )
+        if self.path is None:
+            return
+        if self.path.ndim != 2 or self.path.shape[1] != 2 or not np.isfinite(self.path).all():
+            raise ValueError(
+                f"path must be [x, z] in metres, of shape (n, 2) and finite; it has the shape "
+                f"{self.path.shape}, and {int((~np.isfinite(self.path)).sum())} values that are not"
+            )
 
     def __len__(self) -> int:
         return len(self.positions)

@@ -171,3 +171,13 @@ def test_other_files_are_told_apart(tmp_path, real_data):
         read_keypoints(real_data / "aist" / "motions" / "gBR_sBM_cAll_d06_mBR2_ch06.pkl")
     with pytest.raises(FileNotFoundError):
         read_keypoints(tmp_path / "none.pkl")
+
+
+def test_places_beyond_ten_kilometres_and_endless_names_are_refused(tmp_path):
+    far = made_up()
+    far[2, 3, 1] = -1e300
+    with pytest.raises(AistError, match="keypoints3d_optim goes ten kilometres away"):
+        read_keypoints(written(tmp_path, {"keypoints3d_optim": far}))
+    with pytest.raises(AistError, match="contains kkk") as caught:
+        read_keypoints(written(tmp_path, {"k" * 1_000_000: made_up()}))
+    assert len(str(caught.value)) < 400

@@ -65,6 +65,10 @@ def test_a_position_that_is_not_finite_is_named(motion, bad):
         (np.zeros((0, 21, 3)), "figure 0 has no frames"),
         ([], "no figure given"),
         ([np.zeros((5, 21, 3)), np.zeros((5, 4, 3))], r"different numbers of joints: \[21, 4\]"),
+        ("walk.bvh", "'walk.bvh' is a file's name: md.play"),
+        (np.zeros((5, 21, 3), complex), "positions must be numbers in metres.*complex"),
+        (["up", "down"], "positions must be numbers in metres, not str"),
+        (np.full((5, 21, 3), 1e30), r"joint 0 \(Hips\): more than 10,000 m from the origin"),
     ],
 )
 def test_wrong_shapes_are_explained(positions, message):
@@ -81,13 +85,34 @@ def test_wrong_extras_are_explained(motion):
         Player(motion[0], labels=["a", "b", "c"])
     with pytest.raises(ValueError, match="layout"):
         Player(motion[0], look=Look(layout="diagonal"))
-    for fps in (0, -20.0, float("nan")):
-        with pytest.raises(ValueError, match="fps are frames a second, more than 0: got"):
+    for fps in (0, -20.0, float("nan"), 1e9):
+        with pytest.raises(ValueError, match="fps must be a number of frames a second above 0"):
             Player(motion[0], fps=fps)
+    for past in (-3, 38):
+        with pytest.raises(ValueError, match=f"past = {past}: .* from 0 to the 37"):
+            Player(motion[0], past=past)
+    with pytest.raises(ValueError, match=r"path must be .x, z. in metres, of shape \(n, 2\)"):
+        Player(motion[0], path=np.full((4, 2), np.nan))
     with pytest.raises(TypeError, match="colour"):
         Player(motion[0]).show(motion[0], colour="red")
     with pytest.raises(TypeError, match="colour"):
         Player(motion[0], colour="red")
+
+
+@pytest.mark.parametrize(
+    "options, message",
+    [
+        ({"height": -5}, "height is 60 to 4000 pixels, not -5"),
+        ({"offset": (float("nan"), 0.0)}, "offset is .x, z. in metres"),
+        ({"parents": [-1, 50, *[0] * 19]}, r"parents\[1\] = 50: .* there are 21 joints"),
+        ({"parents": [-1, -2, *[0] * 19]}, r"parents\[1\] = -2"),
+        ({"parents": [-1, 2, 3, 1, *[0] * 17]}, "joint 1 leads to no root"),
+        ({"parents": [-1, 0, 2, *[0] * 18]}, "joint 2 leads to no root"),
+    ],
+)
+def test_a_look_that_cannot_be_drawn_is_explained(options, message):
+    with pytest.raises(ValueError, match=message):
+        Look(**options)
 
 
 def test_batches_tensors_and_lists_are_the_same_figures(motion):
