@@ -11,7 +11,7 @@ NEW_ENOUGH := import sys; sys.exit(sys.version_info < (3, 11))
 PYTHON ?= $(shell for p in python3 python3.13 python3.12 python3.11 python3.14; do \
 	$$p -c '$(NEW_ENOUGH)' >/dev/null 2>&1 && { echo $$p; break; }; done)
 
-.PHONY: help lab demo doctor test unit notebooks browser lint results bench pretrained student clean
+.PHONY: help lab demo doctor test unit notebooks browser fuzz lint results bench pretrained student clean
 .DEFAULT_GOAL := help
 
 help: ## this list
@@ -77,6 +77,9 @@ notebooks: $(VENV)/.test ## only the notebooks, and their student edition
 
 browser: $(VENV)/.test ## only the tests that need Chromium
 	$(BIN)/python -m pytest -q -m browser
+
+fuzz: $(VENV)/.test ## 2,000 damaged files and odd inputs for each reader (EXAMPLES=N: another number)
+	MOTIONDIFF_FUZZ=$(or $(EXAMPLES),2000) OMP_NUM_THREADS=1 $(BIN)/python -m pytest -q $(WORKERS) tests/fuzz
 
 lint: $(VENV)/.test ## ruff, the form of the notebooks, the student edition
 	$(BIN)/python -m ruff check .
