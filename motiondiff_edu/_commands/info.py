@@ -1,5 +1,5 @@
-"""Describe a motion file: its length, the distance and speed of the figure, and what was corrected
-while the file was read."""
+"""Describe a motion file: its length, the distance and speed of the figure, what was corrected
+while the file was read, and which of its joints were taken for which."""
 
 import argparse
 from pathlib import Path
@@ -27,7 +27,7 @@ def run(args: argparse.Namespace) -> None:
             outputs.say(f"  {error}")
             continue
         print(motion)
-        for line in lines_of(motion):
+        for line in [*lines_of(motion), *joints_of(path)]:
             print(f"  {line}")
     if faulty:
         raise ValueError(f"{faulty} of {len(args.file)} files cannot be read")
@@ -52,3 +52,15 @@ def lines_of(motion) -> list[str]:
     if motion.audio is not None:
         lines.append(f"sound at {motion.sample_rate} Hz")
     return lines
+
+
+def joints_of(path: Path) -> list[str]:
+    """Which joint of a BVH file was taken for which of the course, where the names differ."""
+    from motiondiff_edu.motion.bvh import read_bvh
+    from motiondiff_edu.motion.dialects import guess_mapping
+
+    if path.suffix.lower() != ".bvh":
+        return []
+    named = {ours: own for ours, own in guess_mapping(read_bvh(path)).items() if ours != own}
+    pairs = [f"{ours} is {own}" for ours, own in named.items()]
+    return [f"joints by other names: {', '.join(pairs)}"] if pairs else []

@@ -1,7 +1,17 @@
-"""Joint names in the dialects of BVH: which joint of a file is which joint of the course."""
+"""Joint names in the dialects of BVH: which joint of a file is which joint of the course.
+
+    CC_Base_L_Thigh   mixamorig:LeftUpLeg   Bip01 L Thigh   thigh.L   lfemur   J_Bip_L_UpperLeg
+are all the left thigh. Joints are guessed by their names, without what all names of a file share,
+and the guess must make a figure (`refuse_no_figure`). Twist bones and fingers are passed over.
+"""
 
 import re
-from collections.abc import Mapping
+from collections import Counter
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
+from itertools import pairwise
+
+import numpy as np
 
 from .bvh import Bvh
 from .bvh.tokens import BvhError
@@ -11,26 +21,31 @@ from .skeleton import JOINTS
 # name (LeftKnee, Knee_L). One word can mean two joints: LeftHip is a thigh or a corner of the
 # pelvis, LeftFoot an ankle or a toe. So the order matters.
 SIDED = {
-    "UpLeg": "upleg upperleg thigh hip femur",
+    "UpLeg": "upleg upperleg thigh thighbend femur hip",
     "Leg": "leg lowleg lowerleg shin knee calf tibia",
     "Foot": "ankle foot",
     "ToeBase": "toebase toe toes toe0 ball foot",
-    "Arm": "arm shldr uparm upperarm shoulder humerus",
-    "ForeArm": "forearm lowarm lowerarm elbow radius",
+    "Arm": "arm shldr shldrbend uparm uarm upperarm humerus shoulder",
+    "ForeArm": "forearm forearmbend lowarm lowerarm farm radius elbow",
     "Hand": "wrist hand",
     "HandIndex1": (
-        "handindex1 handmiddle1 mid1 middle1 index1 fingers finger1 "
+        "handindex1 handmiddle1 mid1 middle1 middleproximal index1 fingers finger1 "
         "finger handend handtip palm hand"
     ),
 }
 CENTRAL = {
-    "Hips": "hips hip pelvis root",
+    "Hips": "hips hip pelvis root spinebase",
     "Head": "head",
-    "Neck1": "neck1 neck neck01 lowerneck upperneck",
-    "Spine": "spine chest abdomen spine01 spine0 lowerback torso",
-    "Spine1": "spine1 chest2 chest upperchest spine02 spine2 spine3 thorax",
+    "Neck1": "neck1 neck neck01 lowerneck necklower necktwist01 upperneck",
+    "Spine": "spine chest abdomen ab abdomenlower spine01 spine0 lowerback torso l3 spinemid",
+    "Spine1": (
+        "spine1 chest2 chest upperchest chestupper spine02 spine2 spine3 thorax t8 spineshoulder"
+    ),
 }
 PREFIX = re.compile(r"^(bip\d+|mixamorig\d*|character\d*)")
+CENTRE = re.compile(r"^c[_.\- ]+(?=.)", re.IGNORECASE)  # the middle, as in J_Bip_C_Hips
+ENDS_A_WORD = "_.- :|"
+SHARED = 0.5  # of a file's names: what so many have in common is no part of a joint's name
 # The joints that a file must have; the others can be computed from these.
 NEEDED = ["Hips", "Head"]
 NEEDED += [
@@ -42,8 +57,25 @@ NEEDED += [
 
 def plain(name: str) -> str:
     """A name without prefix, blanks and punctuation: 'mixamorig:Left_Up Leg' is 'leftupleg'."""
-    bare = re.sub(r"[^a-z0-9]", "", name.split(":")[-1].lower())
+    bare = re.sub(r"[^a-z0-9]", "", CENTRE.sub("", name.split(":")[-1].lower()))
     return PREFIX.sub("", bare) or bare
+
+
+def without_shared(names: Sequence[str]) -> list[str]:
+    """The names without the beginning and the end that half of them share, as CC_Base_ or _jnt."""
+    start, end = (shared(words) for words in (names, [name[::-1] for name in names]))
+    bare = [name.removeprefix(start).removesuffix(end[::-1]) for name in names]
+    return [short or name for short, name in zip(bare, names, strict=True)]
+
+
+def shared(names: Iterable[str]) -> str:
+    """The longest beginning, up to the end of a word, that half of the names have; or ""."""
+    names = list(names)
+    starts = Counter(
+        name[: k + 1] for name in names for k, letter in enumerate(name) if letter in ENDS_A_WORD
+    )
+    often = [start for start, count in starts.items() if count >= max(2, SHARED * len(names))]
+    return max(often, key=len, default="")
 
 
 def spellings(joint: str) -> list[str]:
@@ -62,7 +94,8 @@ def guess_mapping(bvh: Bvh, given: Mapping[str, str] | None = None) -> dict[str,
     from others.
     Raises BvhError when a needed joint is missing; the message lists the file's joints.
     """
-    known = {plain(name): name for name in reversed(bvh.joints)}
+    bare = without_shared(bvh.joints)
+    known = {plain(word): name for word, name in reversed(list(zip(bare, bvh.joints, strict=True)))}
     mapping = dict(given or {})
     for joint in (joint for joint in JOINTS if joint not in mapping):
         taken = set(mapping.values())
@@ -77,7 +110,9 @@ def guess_mapping(bvh: Bvh, given: Mapping[str, str] | None = None) -> dict[str,
         ends = end_of(bvh, mapping[base]) if base in mapping else []
         if tip not in mapping and ends:
             mapping[tip] = ends[0]
+    mapping |= by_hierarchy(mapping, bvh)
     refuse_incomplete(mapping, bvh)
+    refuse_no_figure(mapping, bvh)
     return mapping
 
 
@@ -89,6 +124,44 @@ def end_of(bvh: Bvh, joint: str) -> list[str]:
     parent = bvh.names.index(joint)
     children = [n for n, own in enumerate(bvh.parents) if own == parent and bvh.is_end[n]]
     return [bvh.names[n] for n in children[:1]]
+
+
+def ancestors(bvh: Bvh, name: str) -> list[str]:
+    """The nodes that a node hangs on, from its parent to the root."""
+    found, node = [], int(bvh.parents[bvh.names.index(name)])
+    while node >= 0:
+        found.append(bvh.names[node])
+        node = int(bvh.parents[node])
+    return found
+
+
+def by_hierarchy(mapping: Mapping[str, str], bvh: Bvh) -> dict[str, str]:
+    """Hips or head that no name tells.
+
+    The hips are where both legs meet. The head is the last joint of what goes up between the arms,
+    as spine.006 of Blender's Rigify.
+    """
+    found = {}
+    if "Hips" not in mapping and {"LeftUpLeg", "RightUpLeg"} <= mapping.keys():
+        found["Hips"] = meeting(bvh, mapping["LeftUpLeg"], mapping["RightUpLeg"])
+    if "Head" not in mapping and {"LeftArm", "RightArm"} <= mapping.keys():
+        chest = meeting(bvh, mapping["LeftArm"], mapping["RightArm"])
+        arms = [mapping["LeftArm"], mapping["RightArm"]]
+        taken = {*arms, *(name for arm in arms for name in ancestors(bvh, arm)), *mapping.values()}
+        tops = {}
+        for name in bvh.joints:
+            above = ancestors(bvh, name)
+            if chest in above and not ({name, *above[: above.index(chest)]} & taken):
+                tops[name] = len(above)
+        if tops:
+            found["Head"] = max(tops, key=tops.get)
+    return {joint: name for joint, name in found.items() if name}
+
+
+def meeting(bvh: Bvh, first: str, second: str) -> str:
+    """The lowest node that both hang on; "" for none."""
+    above = ancestors(bvh, second)
+    return next((name for name in ancestors(bvh, first) if name in above), "")
 
 
 def check_mapping(mapping: Mapping[str, str], bvh: Bvh) -> dict[str, str]:
@@ -124,3 +197,43 @@ def refuse_incomplete(mapping: Mapping[str, str], bvh: Bvh) -> None:
             "...}), or motiondiff-edu convert with --joints.",
             bvh.source,
         )
+
+
+LIMBS = (("UpLeg", "Leg", "Foot"), ("Arm", "ForeArm", "Hand"))
+UNLIKE = 2.5  # times the length of another bone of both arms, or of both legs, at most
+
+
+def refuse_no_figure(mapping: Mapping[str, str], bvh: Bvh) -> None:
+    """Raise BvhError for joints that make no figure.
+
+    A foot hangs on a shin and that on a thigh; all four bones of both legs are about as long, and
+    so are those of both arms.
+    """
+    pose = dict(
+        zip(bvh.names, replace(bvh, frames=bvh.frames[:1]).world_positions()[0], strict=True)
+    )
+    for limb in LIMBS:
+        lengths = {}
+        for side in ("Left", "Right"):
+            for upper, lower in pairwise(side + part for part in limb):
+                above, below = mapping[upper], mapping[lower]
+                if above not in ancestors(bvh, below):
+                    raise _no_figure(
+                        f"{lower} ('{below}') does not hang on {upper} ('{above}')", bvh
+                    )
+                lengths[f"{upper} ('{above}') to {lower} ('{below}')"] = float(
+                    np.linalg.norm(pose[above] - pose[below])
+                )
+        longest, shortest = (choose(lengths, key=lengths.get) for choose in (max, min))
+        if lengths[longest] > UNLIKE * lengths[shortest]:
+            times = lengths[longest] / max(lengths[shortest], 1e-9)
+            raise _no_figure(f"{longest} is {times:.3g} times as long as {shortest}", bvh)
+
+
+def _no_figure(what: str, bvh: Bvh) -> BvhError:
+    return BvhError(
+        f"the joints make no figure: {what}. The file has: {', '.join(bvh.joints)}. Name them: "
+        "md.read_motion(path, mapping={'<joint of the course>': '<its joint>', ...}), or "
+        "motiondiff-edu convert with --joints.",
+        bvh.source,
+    )
