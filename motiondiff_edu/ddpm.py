@@ -14,6 +14,7 @@ import warnings
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
+from numbers import Integral
 from typing import SupportsIndex, TypeVar
 
 import torch
@@ -292,8 +293,8 @@ def falling(steps: int | Sequence[int], S: int) -> list[int]:
 
     Raises ValueError for steps that do not decrease, or are outside 1..S.
     """
-    if isinstance(steps, int):
-        return timesteps(S, steps)
+    if isinstance(steps, Integral):
+        return timesteps(S, int(steps))
     visited = list(steps)
     falls = visited == sorted(set(visited), reverse=True)
     if not visited or not falls or not 1 <= visited[-1] <= visited[0] <= S:

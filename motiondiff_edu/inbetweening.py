@@ -15,6 +15,7 @@ Source: MoFusion 4.4; resampling after RePaint (Lugmayr and others, 2022).  Note
 import math
 from collections.abc import Iterator, Sequence
 from itertools import pairwise
+from numbers import Integral
 
 import torch
 from jaxtyping import Bool, Float
@@ -56,13 +57,16 @@ def inpaint_steps(
     known, no such noise is drawn, and the same generator gives the same sample as `ddim_steps`.
     `steps` is their number, or a list of the steps to visit; where the list rises, noise is added
     (`resampled`).
-    Raises ValueError for steps outside 1..S.  Source: MoFusion 4.4; RePaint's resampling.
-    Notebook: 15
+    Raises ValueError for steps outside 1..S, and for one that follows itself.
+    Source: MoFusion 4.4; RePaint's resampling.  Notebook: 15
     """
     some, x = bool(known.any()), start
-    visited = timesteps(schedule.S, steps) if isinstance(steps, int) else list(steps)
+    number = isinstance(steps, Integral)
+    visited = timesteps(schedule.S, int(steps)) if number else list(steps)
     if not visited or not 1 <= min(visited) <= max(visited) <= schedule.S:
         raise ValueError(f"steps must be between 1 and {schedule.S}; these are {visited}")
+    if any(s == after for s, after in pairwise(visited)):
+        raise ValueError(f"steps must fall or rise, not stay; these are {visited}")
     if not some:  # no given entries, so resampling is not needed
         visited = sorted(set(visited), reverse=True)
     given = torch.where(known, given, torch.zeros_like(given))  # unknown entries can be NaN

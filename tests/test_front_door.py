@@ -111,6 +111,9 @@ def test_what_lies_between_keyframes_is_made(walked):
         np.testing.assert_array_equal(one.positions[known], walked.positions[known])
         assert np.isfinite(one.positions).all()
     assert isinstance(md.inbetween(walked[:7], md.keyframes(7, every=3), steps=3), md.Motion)
+    walker = md.load("walker")
+    every = [walker.walk(walked, np.ones((2, 3)), steps=n) for n in (walker.schedule.S, 10**6)]
+    np.testing.assert_array_equal(every[0].positions, every[1].positions)
 
 
 def straight_lines(motion: md.Motion, known: np.ndarray) -> np.ndarray:
@@ -417,6 +420,13 @@ TOLD = {
     'w.all_but("LeftArm,LeftHand")': "Pass several joints as a list",
     'w.all_but("LeftArms")': "Did you mean 'LeftArm'?",
     "md.joystick((3, 1.2, 0, 0))": "joystick takes a list of segments",
+    "md.joystick(None)": "joystick takes a list of segments",
+    "md.joystick([(1e9, 1, 0, 0)])": "the segments last 1e+09 s; 3600 s is the most",
+    'w.between("a", 1)': "times are numbers of seconds, not 'a' and 1",
+    "w.all_but('Head', 3.5, 9)": "frames are whole numbers, not 3.5 and 9",
+    "md.Motion(w.positions, audio='abc')": "audio must be numbers (N,)",
+    "md.Motion(w.positions, root='abc')": "root must be numbers (30, 3)",
+    "md.Motion(w.positions, sample_rate=2.7)": "sample_rate must be a whole number of hertz, not",
     "md.joystick([('3', 1.2, 0, 0)])": "turning), not ('3', 1.2, 0, 0)",
     "md.joystick([(3, 1.2, 0, 0)], fps=0)": "fps must be a number of frames a second above 0",
     "md.joystick([(-3, 1.2, 0, 0)])": "a segment lasts 0 seconds or more, not -3",

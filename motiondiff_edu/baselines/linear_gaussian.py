@@ -14,6 +14,7 @@ import torch
 from jaxtyping import Float
 from torch import Tensor
 
+from ..ddpm import Generators, draw
 from ..motion.scaler import Scaler
 from ..performers.windows import Windows
 from ..rollout import WindowSampler
@@ -53,8 +54,8 @@ class LinearGaussian:
         Notebook: 07
         """
 
-        def sample(past: Tensor, control: Tensor, generator: torch.Generator) -> Tensor:
-            noise = torch.randn(len(past), self.weight.shape[1], generator=generator)
+        def sample(past: Tensor, control: Tensor, generator: Generators) -> Tensor:
+            noise = draw(past.new_empty(len(past), self.weight.shape[1]), generator)
             return (self.mean(past, control) + noise_scale * noise @ self.noise_factor.T)[:, None]
 
         return sample

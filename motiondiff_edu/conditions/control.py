@@ -13,7 +13,7 @@ import numpy as np
 from jaxtyping import Float
 from scipy.ndimage import gaussian_filter1d
 
-from ..motion.checks import checked_rate
+from ..motion.checks import LONGEST, checked_rate
 from ..motion.root_frame import FPS, control_from_path
 
 SPACING = 0.01  # metres between the points that a path is resampled to
@@ -109,18 +109,21 @@ def joystick(
 
     old + (new - old) u^2 (3 - 2u), with u from 0 to 1.
     Raises ValueError for no segment, one that is not four finite numbers, negative seconds, less
-    than a frame in all, or a frame rate that is not positive.
+    than a frame or more than an hour in all, or a frame rate that is not positive.
     """
     fps = checked_rate(fps)
-    bad = next((segment for segment in segments if not _four_numbers(segment)), None)
-    if bad is not None or not segments:
+    there = isinstance(segments, (list, tuple, np.ndarray)) and len(segments) > 0
+    bad = [one for one in segments if not _four_numbers(one)][:1] if there else [segments]
+    if bad:
         raise ValueError(
             "joystick takes a list of segments, and a segment is four finite numbers, "
-            f"(seconds, forward, left, turning), not {'nothing' if bad is None else repr(bad)}"
+            f"(seconds, forward, left, turning), not {bad[0]!r:.80}"
         )
     backwards = next((segment for segment in segments if segment[0] < 0), None)
     if backwards is not None:
         raise ValueError(f"a segment lasts 0 seconds or more, not {backwards[0]:g}: {backwards}")
+    if (total := sum(segment[0] for segment in segments)) > LONGEST:
+        raise ValueError(f"the segments last {total:g} s; {LONGEST:g} s is the most")
     rows, value = [], np.array(segments[0][1:], dtype=np.float64)
     for seconds, *target in segments:
         goal = np.array(target, dtype=np.float64)

@@ -8,6 +8,7 @@ Source: MoDiff III-E; the overlapping windows are ours.
 """
 
 import math
+import warnings
 
 import numpy as np
 import torch
@@ -21,7 +22,7 @@ from ..beyond.foot_lock import steady_feet
 from ..beyond.guidance import blended_guess
 from ..motion.dance_frame import heading
 from ..motion.directions import ARMS, UPLEGS
-from ..motion.motion import MotionError
+from ..motion.motion import MotionError, MotionWarning
 from ..motion.planting import runs
 from ..motion.root_frame import smoothed_root, to_root_frame, to_world
 from ..motion.skeleton import BONE_LENGTHS, HIPS, JOINTS, TOES, J
@@ -29,6 +30,7 @@ from ..reconstruction import Rollout, Stop
 from ..rollout import AnyWalker
 
 ROUNDS, STEPS = 3, 10  # rounds there and back; steps of DDIM
+SLACK = 0.1  # of the range of control in training: less beyond it is not worth a warning
 BATCH = 64  # windows at once
 
 
@@ -44,6 +46,8 @@ def reconstruct(
 
     Unknown joints can be NaN; known joints come back unchanged, bit by bit. The control comes from
     the pelvis and from the direction of hips and shoulders, smoothed.
+    Where the figure is faster than in the walker's training, the control stays at that limit, and a
+    MotionWarning says where.
     Raises MotionError if a pelvis is missing, if no frame shows which way the figure faces, if
     nothing is missing, and for a motion shorter than a window.  Source: MoDiff III-E.
     """
@@ -56,7 +60,8 @@ def reconstruct(
     lengths = np.where(np.isnan(lengths), BONE_LENGTHS, lengths)
     mean = walker.pose_scaler.mean.to(given).expand_as(given)
     guess = blended_guess(mean[None], given[None], mask[None], FADE)[0]
-    steer = torch.from_numpy(np.concatenate([control, np.repeat(control[-1:], T_h, axis=0)]))
+    steer = within_training(walker, control, known)
+    steer = torch.from_numpy(np.concatenate([steer, np.repeat(steer[-1:], T_h, axis=0)]))
     rollout = Rollout(walker, generator, STEPS)
     for _ in range(rounds):
         found = _once(rollout, guess, mask, steer, firsts)
@@ -66,6 +71,30 @@ def reconstruct(
     made = to_world(guess.unflatten(-1, (J, 3)).numpy(), control, start)
     whole = np.where(known[..., None], positions, made)
     return whole if known[:, list(TOES)].all() else steady_feet(whole, known)
+
+
+def within_training(
+    walker: AnyWalker, control: Float[np.ndarray, "T 3"], known: Bool[np.ndarray, "T 21"]
+) -> Float[np.ndarray, "T 3"]:
+    """The control, limited to that of the walker's training; a MotionWarning where it goes beyond.
+
+    A walker without a card gets it as it is.
+    """
+    seen = getattr(walker, "card", {}).get("control_range")
+    if not seen:
+        return control
+    low, high = (np.array(seen[end]) for end in ("low", "high"))
+    limited = control.clip(low, high)
+    beyond = (np.abs(limited - control) > SLACK * (high - low)).any(1) & ~known.all(1)
+    if beyond.any():
+        warnings.warn(
+            f"in {beyond.sum()} of the frames with missing joints, the first is {beyond.argmax()}, "
+            "the figure moves or turns faster than the walker was trained on: there the result is "
+            "less certain",
+            MotionWarning,
+            stacklevel=3,
+        )
+    return limited
 
 
 def evaluations(walker: AnyWalker, known: Bool[np.ndarray, "T 21"], rounds: int = ROUNDS) -> int:

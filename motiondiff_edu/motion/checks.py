@@ -36,12 +36,13 @@ def checked_count(count: int, name: str) -> int:
     return int(count)
 
 
-def checked_steps(steps: int | None) -> int | None:
+def checked_steps(steps: int | None, S: int) -> int | None:
     """A number of diffusion steps: a whole number of at least 1, or None for all of them.
 
+    There are S at most; a larger number counts as S.
     Raises ValueError for anything else.
     """
-    return None if steps is None else checked_count(steps, "steps")
+    return None if steps is None else min(checked_count(steps, "steps"), S)
 
 
 def checked_guidance(guidance: float) -> float:

@@ -9,16 +9,17 @@ A `Clip` is the same motion for training: poses in the root frame with their con
 import warnings
 from dataclasses import dataclass, replace
 from itertools import pairwise
+from numbers import Integral
 from pathlib import Path
 
 import numpy as np
 from jaxtyping import Bool, Float
 
 from . import registry
-from .checks import checked_rate
+from .checks import checked_rate, is_number
 from .clip import Clip
 from .faults import WILD
-from .resample import resample
+from .resample import resample_present
 from .root_frame import FPS, control_from_path, estimate_root, root_path, to_root_frame
 from .skeleton import BONE_LENGTHS, BONES, COURSE, Skeleton
 
@@ -64,8 +65,8 @@ class Motion:
         values = {
             "fps": fps,
             "positions": _positions(self.positions, self.skeleton),
-            "source": str(self.source),
-            "sample_rate": int(self.sample_rate),
+            "source": "" if self.source is None else str(self.source),
+            "sample_rate": _whole(self.sample_rate),
         }
         T = len(values["positions"])
         values["root"] = _continuous(_per_frame(self.root, "root", (T, 3), np.float64))
@@ -135,6 +136,8 @@ class Motion:
         outside the motion.
         """
         end = len(self) if last is None else last
+        if not all(isinstance(frame, Integral) for frame in (first, end)):
+            raise TypeError(f"frames are whole numbers, not {first!r:.40} and {end!r:.40}")
         if not 0 <= first < end <= len(self):
             raise MotionError(
                 f"{self.name}: frames {first} to {end - 1} are not within its {len(self)} "
@@ -179,6 +182,8 @@ class Motion:
 
     def between(self, first: float, last: float) -> "Motion":
         """The part between two times in seconds.  Raises MotionError outside the motion."""
+        if not (is_number(first) and is_number(last)):
+            raise TypeError(f"times are numbers of seconds, not {first!r:.40} and {last!r:.40}")
         if not (0 <= first < last <= self.seconds + 1e-6):
             raise MotionError(
                 f"{self.name}: {first:g} to {last:g} s are not within its {self.seconds:.2f} s"
@@ -212,8 +217,12 @@ class Motion:
         for name in ("root", "contacts"):
             rows = [getattr(part, name) for part in parts]
             joined[name] = None if any(row is None for row in rows) else np.concatenate(rows)
-        sounds = [part.sound_in_step() for part in parts if part.sample_rate == self.sample_rate]
-        whole = len(sounds) == len(parts) and all(sound is not None for sound in sounds)
+        sounds = [part.sound_in_step() for part in parts]
+        whole = all(sound is not None for sound in sounds)
+        if whole and len({part.sample_rate for part in parts}) > 1:
+            words = "the sounds have different sample rates and are left out: resample them first"
+            warnings.warn(words, MotionWarning, stacklevel=2)
+            whole = False
         joined["audio"] = np.concatenate(sounds) if whole else None
         return replace(self, **joined)
 
@@ -227,17 +236,17 @@ class Motion:
     def resampled(self, fps: float) -> "Motion":
         """The same motion at another frame rate, by a cubic spline.
 
-        A low-pass comes first when frames are removed.
+        A low-pass comes first when frames are removed. A joint that is missing (NaN) at a time, or
+        in the frame before or after it, is missing there in the new motion as well.
 
-        Raises MotionError for a missing joint, or for fewer than two frames.
+        Raises MotionError for fewer than two frames.
         """
         fps = checked_rate(fps)
         if abs(fps - self.fps) < 1e-6:
             return self
-        if not self.known.all() or len(self) < 2:
-            self.check_finite()
+        if len(self) < 2:
             raise MotionError(f"{self.name}: a single frame cannot be resampled")
-        positions = resample(self.positions, self.fps, fps)
+        positions = resample_present(self.positions, self.fps, fps)
         then, now = np.arange(len(self)) / self.fps, np.arange(len(positions)) / fps
         changed = {"positions": positions, "fps": fps}
         if self.root is not None:
@@ -379,11 +388,21 @@ def _per_frame(values, name: str, shape: tuple[int, int], dtype: type) -> np.nda
     """A copy of an array.  Raises MotionError unless it has a finite row for each frame."""
     if values is None:
         return None
-    array = np.array(values, dtype)
+    try:
+        array = np.array(values, dtype)
+    except (TypeError, ValueError):
+        raise MotionError(f"{name} must be numbers {shape}, a row for each frame") from None
     if array.shape != shape or not np.isfinite(array).all():
         what = f"has shape {array.shape}" if array.shape != shape else "has NaN or infinite values"
         raise MotionError(f"{name} {what}; it must be {shape}, a row for each frame")
     return array
+
+
+def _whole(sample_rate: object) -> int:
+    """A sample rate as an int.  Raises MotionError for what is no whole number."""
+    if not is_number(sample_rate) or sample_rate != sample_rate // 1:
+        raise MotionError(f"sample_rate must be a whole number of hertz, not {sample_rate!r:.40}")
+    return int(sample_rate)
 
 
 def _continuous(root: np.ndarray | None) -> np.ndarray | None:
@@ -397,7 +416,10 @@ def _sound(audio, sample_rate: int) -> np.ndarray | None:
     """A copy in float32.  Raises MotionError unless it is finite mono sound."""
     if audio is None:
         return None
-    array = np.array(audio, np.float32)
+    try:
+        array = np.array(audio, np.float32)
+    except (TypeError, ValueError):
+        raise MotionError("audio must be numbers (N,), one channel of samples") from None
     if array.ndim != 1 or not len(array) or not np.isfinite(array).all() or sample_rate < 1:
         raise MotionError(
             f"audio must be one channel of finite samples (N,) and sample_rate at least 1 Hz, not "

@@ -12,6 +12,7 @@ from jaxtyping import Float
 
 from .bvh import Bvh
 from .bvh.tokens import BvhError
+from .directions import has_our_bones
 from .motion import MotionWarning
 from .skeleton import HEELS, JOINTS, TOES, joint_index
 
@@ -42,9 +43,14 @@ def to_metres(
 ) -> tuple[Float[np.ndarray, "T 21 3"], float]:
     """Scale so that thigh plus shank is 0.835 m; also return the metres per unit of the file.
 
+    Files with the course's bones are in centimetres or metres exactly: another scale would move
+    them about the origin.
     Raises BvhError for a figure without legs.
     Source: the height of the course's figure, 1.70 m.
     """
+    for unit in (0.01, 1.0):
+        if has_our_bones(unit * points):
+            return unit * points, unit
     length = leg_length(points)
     if not length > 1e-9:
         raise BvhError(

@@ -50,12 +50,31 @@ def resample(
 def resample_present(
     points: Float[np.ndarray, "T J 3"], fps: float | int, to: float | int
 ) -> Float[np.ndarray, "F J 3"]:
-    """`resample` for the joints that a file has; one that it lacks (NaN) stays NaN."""
-    present = np.isfinite(points).all((0, 2))
-    moved = resample(points[:, present], fps, to)
-    out = np.full((len(moved), *points.shape[1:]), np.nan)
-    out[:, present] = moved
-    return out
+    """`resample` for joints of which some are missing (NaN); what is missing stays so.
+
+    A gap is bridged by a straight line while the others are filtered. It reaches from the last new
+    frame before the first missing one to the first new frame after the last.
+    """
+    there = np.isfinite(points).all(-1)
+    bridged = np.zeros(points.shape)
+    frames = np.arange(len(points))
+    for joint in np.flatnonzero(there.any(0)):
+        known = there[:, joint]
+        for axis in range(3):
+            bridged[:, joint, axis] = np.interp(frames, frames[known], points[known, joint, axis])
+    moved = resample(bridged, fps, to)
+    at = np.arange(len(moved)) * fps / to
+    before, after = (np.clip(f(at).astype(int), 0, len(points) - 1) for f in (_floor, _ceil))
+    moved[~(there[before] & there[after])] = np.nan
+    return moved
+
+
+def _floor(at: Float[np.ndarray, "F"]) -> Float[np.ndarray, "F"]:
+    return np.floor(at + 1e-6)
+
+
+def _ceil(at: Float[np.ndarray, "F"]) -> Float[np.ndarray, "F"]:
+    return np.ceil(at - 1e-6)
 
 
 def low_pass(

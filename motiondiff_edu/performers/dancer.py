@@ -123,7 +123,7 @@ class Dancer(Performer):
         `samples` out of range. Warns where the sound is shorter than `seconds`.
         Source: MoFusion 3.  Notebook: 00, 12
         """
-        count, steps = checked_count(samples, "samples"), checked_steps(steps)
+        count, steps = checked_count(samples, "samples"), checked_steps(steps, self.schedule.S)
         longest = None if seconds is None else round(checked_seconds(seconds) * SAMPLE_RATE)
         audio = samples_of(sound)[:longest]
         name = Path(sound).stem if isinstance(sound, (str, Path)) else "the sound given"
@@ -135,7 +135,7 @@ class Dancer(Performer):
             warnings.warn(f"{name} lasts {lasts:.1f} s, and the dance ends with it", stacklevel=2)
         mel = log_mel(audio)
         draws = generators(seed, count, *fingerprint(mel))
-        evaluations = min(steps or self.schedule.S, self.schedule.S)
+        evaluations = steps or self.schedule.S
         with with_bar(self, evaluations, "dancing", progress) as one:
             songs = mel.expand(count, -1, -1)
             dances = one.dance_mel(songs, frames, generator=draws, steps=steps)

@@ -186,7 +186,7 @@ class Mover(Performer):
         found = self.reader.read(text)
         for note in found.notes:
             warnings.warn(note, stacklevel=2)
-        count, steps = checked_count(samples, "samples"), checked_steps(steps)
+        count, steps = checked_count(samples, "samples"), checked_steps(steps, self.schedule.S)
         guidance = checked_guidance(guidance)
         if not SHORTEST <= checked_seconds(seconds) <= LONGEST:
             raise ValueError(
@@ -195,7 +195,7 @@ class Mover(Performer):
         ids = self.reader.encoded([found.words] * count)
         draws, frames = generators(seed, count), round(seconds * FPS)
         whole = -(-frames // GRID) * GRID  # as in training; what is too much is cut off
-        evaluations = min(steps or self.schedule.S, self.schedule.S) * (1 + self.can_plan)
+        evaluations = (steps or self.schedule.S) * (1 + self.can_plan)
         with with_bar(self, evaluations, "moving", progress) as one:
             made = one.act_ids(ids, whole, generator=draws, steps=steps, guidance=guidance)
         source = f"{text.strip():.60}"

@@ -85,7 +85,7 @@ class Walker(Performer):
         """
         as_motion(motion).check_whole()
         count, T_h = checked_count(samples, "samples"), self.config.T_h
-        steps = checked_steps(steps)
+        steps = checked_steps(steps, self.schedule.S)
         length = None if seconds is None else round(checked_seconds(seconds) * FPS)
         ahead = as_long(control, length)
         given = motion.resampled(FPS).rooted()

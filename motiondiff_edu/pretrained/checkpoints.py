@@ -40,6 +40,18 @@ __all__ = [
 FOLDER = Path(__file__).parent
 
 
+def halved(weights: dict[str, Tensor]) -> dict[str, Tensor]:
+    """Weights as float16; whole numbers stay as they are.
+
+    Raises ValueError for weights beyond float16, of which the largest is 65,504.
+    """
+    made = {name: x.half() if x.is_floating_point() else x for name, x in weights.items()}
+    for name, x in weights.items():
+        if torch.isfinite(x).all() and not torch.isfinite(made[name]).all():
+            raise ValueError(f"{name} goes up to {x.abs().max():.3g}, beyond float16: pass bits=32")
+    return made
+
+
 @dataclass(frozen=True)
 class Kind:
     """A performer in files.
@@ -59,17 +71,18 @@ WALKER = Kind("walker", "motiondiff_edu walker 2", Walker, {"pose": "D", "contro
 DANCER = Kind("dancer", "motiondiff_edu dancer 1", Dancer, {"motion": "D", "mel": "C"}, "MoFusion")
 MOVER = Kind("mover", "motiondiff_edu mover 1", Mover, {"motion": "D"}, "TextMoFusion")
 KINDS = (WALKER, DANCER, MOVER)
-STORED = {8: pack, 16: lambda weights: {k: v.half() for k, v in weights.items()}, 32: dict}
+STORED = {8: pack, 16: halved, 32: dict}
 
 
 def save(figure: Walker | Dancer | Mover, path: str | Path, bits: int = 16) -> Path:
-    """Write a walker or dancer: weights, scalers, schedule.
+    """Write a walker, a dancer or a mover: weights, scalers, schedule.
 
     Weights are stored as float16; `bits=32` leaves them unchanged, `bits=8` uses `eight_bits`.
 
     NAME.json, the card, is written beside NAME.safetensors. Both get a temporary name first.
-    Raises ValueError for other numbers of bits or another ending, for what is no performer, and for
-    a network that is not registered (`performers.networks.register`).
+    Raises ValueError for other numbers of bits or another ending, for what is no performer, for
+    weights too large for float16, and for a network that is not registered
+    (`performers.networks.register`).
     """
     if bits not in STORED:
         raise ValueError(f"weights are written in 8, 16 or 32 bits, not {bits}")

@@ -67,7 +67,7 @@ def inbetween(
     Source: MoFusion 4.4.  Notebook: 15
     """
     known, count = _fitting(motion, known), checked_count(samples, "samples")
-    steps = checked_count(steps, "steps")
+    steps = min(checked_count(steps, "steps"), _shipped("unconditional").schedule.S)
     if known.all():
         raise MotionError(f"{motion.name}: every joint is known, so there is nothing to generate")
     if not known.any():
@@ -107,7 +107,8 @@ def reconstruct(
 
     Known joints stay exactly where they are. The pelvis must be known in every frame, because the
     control of the walk is derived from it. With `samples` above 1, the result is a list with this
-    many motions; the first is that of samples=1.
+    many motions; the first is that of samples=1. Where the figure is faster than in the walker's
+    training, a MotionWarning says so.
     Raises MotionError if the pelvis is missing in a frame, or if motion and mask do not fit, and
     ValueError for a number of samples under 1.  Source: MoDiff III-E.
     """

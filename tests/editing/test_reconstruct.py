@@ -1,5 +1,6 @@
 """Reconstruction of a motion of any length: its windows, how they are joined, and its path."""
 
+import warnings
 from types import SimpleNamespace
 
 import numpy as np
@@ -12,7 +13,7 @@ from motiondiff_edu.editing import reconstruct as module
 from motiondiff_edu.editing.reconstruct import _once, _windows, path_of, reconstruct
 from motiondiff_edu.metrics.bone_lengths import bone_lengths
 from motiondiff_edu.motion.directions import ARMS, UPLEGS
-from motiondiff_edu.motion.motion import Motion, MotionError
+from motiondiff_edu.motion.motion import Motion, MotionError, MotionWarning
 from motiondiff_edu.motion.root_frame import estimate_root
 from motiondiff_edu.motion.scaler import Scaler
 from motiondiff_edu.motion.skeleton import HIPS, joint_index
@@ -147,6 +148,29 @@ def test_what_is_reconstructed_has_the_bones_of_what_is_given(monkeypatch):
     assert not np.allclose(made[~known], one.positions[~known], atol=0.01)
     off = np.abs(bone_lengths(made) - np.median(bone_lengths(one.positions), axis=0))
     assert off.max() < 0.002
+
+
+def test_the_control_stays_within_the_training_and_a_warning_says_where():
+    card = {"control_range": {"low": [-1.0, -1.0, -2.0], "high": [3.0, 1.0, 2.0]}}
+    walker = SimpleNamespace(**vars(standing()), card=card)
+    control = np.tile([1.0, 0.0, 0.5], (30, 1))
+    control[12:15, 2] = [2.2, 9.0, -9.0]
+    known = np.ones((30, 21), bool)
+    known[10:20, 3] = False
+    with pytest.warns(MotionWarning, match="in 2 of the frames .* the first is 13, the figure"):
+        limited = module.within_training(walker, control, known)
+    np.testing.assert_array_equal(limited[12:15, 2], [2.0, 2.0, -2.0])
+    np.testing.assert_array_equal(
+        np.delete(limited, slice(12, 15), 0), np.delete(control, slice(12, 15), 0)
+    )
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        control[13:15, 2] = 2.3  # a little beyond the range
+        module.within_training(walker, control, known)
+        known[:] = True  # the figure is fast where nothing is missing
+        control[2, 2] = 50.0
+        assert module.within_training(walker, control, known)[2, 2] == 2.0
+        assert module.within_training(standing(), control, known) is control
 
 
 def test_what_shows_no_path_is_said():

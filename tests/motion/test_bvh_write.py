@@ -14,6 +14,7 @@ from synthetic_walk import walk
 from motiondiff_edu.motion.bvh import BvhError, read_bvh
 from motiondiff_edu.motion.bvh.fit import euler_zxy, fit, kabsch, least_turn
 from motiondiff_edu.motion.bvh.write import write_bvh
+from motiondiff_edu.motion.files import read_motion
 from motiondiff_edu.motion.kinematics import euler_to_matrix, rot_x, rot_z
 from motiondiff_edu.motion.retarget import load_clip
 from motiondiff_edu.motion.skeleton import BONE_LENGTHS, BONES, JOINTS
@@ -129,6 +130,19 @@ def test_our_own_file_loads_as_it_was(tmp_path, turning):
     assert np.abs(apart - given).max() < 1e-6  # the same poses, wherever the clip starts
     moved = np.linalg.norm(world[:, 0] - world[0, 0], axis=-1)
     assert np.abs(moved - np.linalg.norm(turning[:, 0] - turning[0, 0], axis=-1)).max() < 1e-6
+
+
+@pytest.mark.parametrize("away", [0.0, 30.0, -200.0])
+def test_a_generated_motion_stays_where_it_is_in_the_world(tmp_path, turning, away):
+    """Its bones are not exactly ours, and not quite constant."""
+    rng = np.random.default_rng(0)
+    uneven = turning + rng.normal(0, 0.002, turning.shape) + np.array([away, 0, -away])
+    uneven[:, 2:5] += 0.005 * (turning[:, 2:5] - turning[:, 1:2])  # legs of another length
+    report = write_bvh(tmp_path / "walk.bvh", uneven)
+    motion = read_motion(tmp_path / "walk.bvh")
+    apart = np.linalg.norm(motion.positions - uneven, axis=-1)
+    assert apart.mean() < 0.008 and np.linalg.norm(apart.mean(0)) < 0.05
+    assert np.abs(motion.positions[:, 0] - uneven[:, 0]).max() < 0.01, report
 
 
 def test_nothing_is_left_behind_when_the_motion_is_refused(tmp_path, turning):

@@ -13,7 +13,7 @@ from data_synth.walking import walk
 from data_synth.walking.write import main as write_walks
 from motiondiff_edu.motion.bvh import BvhError, read_bvh
 from motiondiff_edu.motion.files import read_motion
-from motiondiff_edu.motion.motion import Motion, MotionError
+from motiondiff_edu.motion.motion import Motion, MotionError, MotionWarning
 from motiondiff_edu.motion.registry import Registry
 from motiondiff_edu.motion.skeleton import JOINTS, Skeleton
 
@@ -107,6 +107,37 @@ def test_resampling_there_and_back():
     np.testing.assert_array_equal(fast.contacts[::3], motion.contacts)
     assert abs(fast.resampled(20).positions - motion.positions)[3:-3].max() < 0.02
     assert motion.resampled(20) is motion
+
+
+@pytest.mark.parametrize("fps", [30, 60, 120])
+def test_holes_stay_holes_at_another_rate(fps):
+    whole = walking().resampled(fps)
+    first, last = 10 * fps // 20, 20 * fps // 20
+    holes = whole.positions.copy()
+    holes[first:last, 7] = np.nan
+    holes[:, 16] = np.nan
+    motion = Motion(holes, fps).resampled(20)
+    missing = ~motion.known
+    assert missing[:, 16].all() and np.flatnonzero(missing[:, 7]).tolist() in (
+        list(range(10, 20)),
+        list(range(10, 21)),  # the first frame after the hole lies between two of the file
+    )
+    others = [joint for joint in range(21) if joint not in (7, 16)]
+    usual = whole.resampled(20).positions
+    np.testing.assert_array_equal(motion.positions[:, others], usual[:, others])
+    near = motion.known[:, 7]
+    assert np.abs(motion.positions[near, 7] - usual[near, 7]).max() < 0.03
+    np.testing.assert_allclose(motion.positions[2:8, 7], usual[2:8, 7], atol=2e-3)
+
+
+def test_sounds_of_different_rates_are_not_joined_in_silence():
+    motion = walking()
+    one, two = (
+        replace(motion, audio=np.ones(2 * rate), sample_rate=rate) for rate in (8000, 16000)
+    )
+    with pytest.warns(MotionWarning, match="different sample rates and are left out"):
+        assert one.then(two).audio is None
+    assert len(two.then(two).audio) == 2 * round(motion.seconds * 16000)
 
 
 def test_missing_joints_are_counted_and_named():

@@ -79,6 +79,34 @@ def test_round_trip_in_full_precision_is_exact(tmp_path: Path):
     assert not back.model.training and not any(p.requires_grad for p in back.model.parameters())
 
 
+@pytest.mark.parametrize("bits", [8, 16, 32])
+def test_whole_numbers_come_back_exactly(tmp_path: Path, monkeypatch, bits: int):
+    class Counting(MoDiff):
+        def __init__(self, config):
+            super().__init__(config)
+            self.register_buffer("order", torch.arange(100_000, 100_000 + 5000))
+
+    there = checkpoints.networks_of("walker")
+    kind = replace(there["MoDiff"], model=Counting, build=lambda config, *scalers: Counting(config))
+    monkeypatch.setattr(checkpoints, "networks_of", lambda name: there | {"Counting": kind})
+    monkeypatch.setattr(checkpoints, "kind_of", lambda model: kind)
+    walker = tiny_walker()
+    walker = replace(walker, model=Counting(walker.config).eval())
+    back = load_walker(save(walker, tmp_path / "counting.safetensors", bits=bits))
+    assert torch.equal(back.model.order, walker.model.order)
+
+
+def test_weights_beyond_float16_are_refused_before_they_become_infinite(tmp_path: Path):
+    walker = tiny_walker()
+    with torch.no_grad():
+        walker.model.past_in.weight[0, 0] = 1e5
+    with pytest.raises(ValueError, match="past_in.weight goes up to 1e.05, beyond float16: pass"):
+        save(walker, tmp_path / "large.safetensors")
+    assert not list(tmp_path.iterdir())
+    back = load_walker(save(walker, tmp_path / "large.safetensors", bits=32))
+    assert back.model.past_in.weight[0, 0] == 1e5
+
+
 def test_in_eight_bits_each_weight_is_off_by_half_a_step_of_its_row_at_most(tmp_path: Path):
     walker = tiny_walker()
     small, usual = (save(walker, tmp_path / f"{bits}.safetensors", bits=bits) for bits in (8, 16))
