@@ -7,8 +7,8 @@ Source: foot-skate cleanup for motion capture (Kovar and others, 2002), shortene
 """
 
 import numpy as np
+import scipy
 from jaxtyping import Bool, Float
-from scipy.ndimage import distance_transform_edt
 
 from ..motion.dance_frame import GROUND
 from ..motion.inverse_kinematics import bends_to, two_bones
@@ -86,7 +86,9 @@ def closeness(given: Bool[np.ndarray, " T"]) -> Float[np.ndarray, " T"]:
 
     It lets a corrected foot move smoothly to where it is given next.
     """
-    away = distance_transform_edt(~given) if given.any() else np.full(len(given), np.inf)
+    away = (
+        scipy.ndimage.distance_transform_edt(~given) if given.any() else np.full(len(given), np.inf)
+    )
     u = np.minimum(away / FADE, 1)
     return 1 - (3 * u**2 - 2 * u**3)
 

@@ -20,9 +20,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+import scipy
 import torch
 from jaxtyping import Bool, Float
-from scipy.ndimage import median_filter
 from torch import Tensor
 
 from ..motion.planting import runs
@@ -82,7 +82,7 @@ def acts_of(made: Float[np.ndarray, "T 22"]) -> list[Timed]:
     not rise. What lasts under SHORTEST frames is no act.
     """
     acts = []
-    smooth = median_filter(made, (SMOOTHED, 1), mode="nearest")
+    smooth = scipy.ndimage.median_filter(made, (SMOOTHED, 1), mode="nearest")
     for column, verb in enumerate(VERBS):
         part = int(verb in ARMS)
         side = np.round(smooth[:, SIDE + part]).astype(int)

@@ -10,8 +10,8 @@ from dataclasses import dataclass
 from numbers import Real
 
 import numpy as np
+import scipy
 from jaxtyping import Float
-from scipy.ndimage import gaussian_filter1d
 
 from ..motion.checks import LONGEST, checked_rate
 from ..motion.root_frame import FPS, control_from_path
@@ -229,7 +229,7 @@ def _smooth_fixed_ends(line: np.ndarray, sigma: float) -> np.ndarray:
     n = min(len(line) - 1, int(4 * sigma) + 1)
     wide = np.concatenate([2 * line[0] - line[n:0:-1], line, 2 * line[-1] - line[-2 : -n - 2 : -1]])
     return (
-        gaussian_filter1d(wide, sigma, axis=0, mode="nearest")[n : n + len(line)]
+        scipy.ndimage.gaussian_filter1d(wide, sigma, axis=0, mode="nearest")[n : n + len(line)]
         if sigma > 0
         else line
     )
@@ -253,7 +253,7 @@ def _speeds(
     Within `speed`, `limits` and SIDEWAYS, and zero at `halts`.
     """
     bend = np.concatenate([np.minimum(turn / np.maximum(step, 1e-9), 20.0), [0.0]])
-    bend = np.maximum(gaussian_filter1d(bend, 0.1 / SPACING, mode="nearest"), 1e-9)
+    bend = np.maximum(scipy.ndimage.gaussian_filter1d(bend, 0.1 / SPACING, mode="nearest"), 1e-9)
     v = np.minimum(speed, np.minimum(limits.max_yaw / bend, np.sqrt(SIDEWAYS / bend)))
     v[halts] = 0.0
     v[np.flatnonzero(turn > 0.5)] = 0.0  # half a radian within a centimetre: stop, turn on the spot
@@ -286,7 +286,9 @@ def _control_at(
     facing = np.interp(frames, clock, heading[knots])
     first = _turn_on_the_spot(facing[0], fps, max_yaw)
     root = np.concatenate([np.repeat(root[:1], len(first), 0), root])
-    facing = gaussian_filter1d(np.concatenate([first, facing]), 0.15 * fps, mode="nearest")
+    facing = scipy.ndimage.gaussian_filter1d(
+        np.concatenate([first, facing]), 0.15 * fps, mode="nearest"
+    )
     remaining = 1 - _smoothstep(
         np.clip(np.arange(len(facing)) / fps, 0, 1)
     )  # what is left of an angle goes in a second

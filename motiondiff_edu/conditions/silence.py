@@ -4,8 +4,8 @@ Notebook: 12
 """
 
 import numpy as np
+import scipy
 from jaxtyping import Bool, Float
-from scipy.signal import istft, stft
 
 from .music import SAMPLE_RATE
 
@@ -32,7 +32,7 @@ def silence_hit(
     if width <= 0:
         raise ValueError(f"width must be above 0 s, not {width:g}")
     shape = {"fs": SAMPLE_RATE, "nperseg": 512, "noverlap": 384}
-    _, centres, spectrum = stft(audio, **shape)
+    _, centres, spectrum = scipy.signal.stft(audio, **shape)
     away, loud = centres - time, np.abs(spectrum)
 
     def usual(span: Bool[np.ndarray, "F"]) -> Float[np.ndarray, "K"]:
@@ -45,9 +45,9 @@ def silence_hit(
     before = usual((-BESIDE <= away) & (away < -EDGE))[:, None]
     after = usual((width <= away) & (away < width + BESIDE))[:, None]
     most = np.exp(before + np.clip(away / width, 0, 1) * (after - before))
-    quiet = istft(spectrum * np.minimum(1.0, most / np.maximum(loud, TINY)), **shape)[1][
-        : len(audio)
-    ]
+    quiet = scipy.signal.istft(spectrum * np.minimum(1.0, most / np.maximum(loud, TINY)), **shape)[
+        1
+    ][: len(audio)]
     t = np.arange(len(audio)) / SAMPLE_RATE - time
     share = np.interp(t, [-EDGE, -EDGE / 2, width, width + EDGE], [0, 1, 1, 0])
     return (audio + share * (quiet - audio)).astype(audio.dtype)

@@ -9,9 +9,8 @@ Notebook: 17
 from dataclasses import dataclass, replace
 
 import numpy as np
+import scipy
 from jaxtyping import Bool, Float
-from scipy.ndimage import gaussian_filter1d, maximum_filter1d
-from scipy.signal import find_peaks, peak_widths
 
 from ..motion.dance_frame import heading
 from ..motion.planting import runs
@@ -90,7 +89,7 @@ def signals(positions: Float[np.ndarray, "T 21 3"], fps: float = FPS) -> Signals
     """The curves that the rules look at."""
 
     def smooth(x: np.ndarray, seconds: float) -> np.ndarray:
-        return gaussian_filter1d(x, seconds * fps, axis=0, mode="nearest")
+        return scipy.ndimage.gaussian_filter1d(x, seconds * fps, axis=0, mode="nearest")
 
     hips = positions[:, UPLEGS[0]] - positions[:, UPLEGS[1]]
     chest = positions[:, SHOULDERS[0]] - positions[:, SHOULDERS[1]]
@@ -151,7 +150,7 @@ UNEVEN = 1.5  # times as long as the shortest, a gap between two times ends a ru
 
 def on_the_spot(s: Signals) -> list[Recognised]:
     """Squats, jumps, kicks, sitting down, and bows."""
-    slow = maximum_filter1d(np.hypot(s.ahead, s.left), round(s.fps)) < 1.5  # m/s
+    slow = scipy.ndimage.maximum_filter1d(np.hypot(s.ahead, s.left), round(s.fps)) < 1.5  # m/s
     found = []
     low = peaks(-s.pelvis, -0.74, 0.12, s.fps, half=2.6)
     found += counted("squat", "", {t: x for t, x in low.items() if s.back[t] <= SITS}, s.fps)
@@ -180,8 +179,10 @@ def peaks(
     The frame of each, and where it begins and ends, in seconds, at most `half` away.
     """
     edge = np.concatenate([[curve.min()], curve, [curve.min()]])  # a maximum may be the last frame
-    at, _ = find_peaks(edge, height=least, prominence=rise, distance=max(1, round(0.25 * fps)))
-    begin, end = peak_widths(edge, at, rel_height=0.9)[2:]
+    at, _ = scipy.signal.find_peaks(
+        edge, height=least, prominence=rise, distance=max(1, round(0.25 * fps))
+    )
+    begin, end = scipy.signal.peak_widths(edge, at, rel_height=0.9)[2:]
     middle = at[:, None] - 1
     ends = np.stack([begin, end], -1) - 1
     times = np.clip(ends, middle - half * fps, middle + half * fps) / fps

@@ -10,10 +10,8 @@ Source: MoFusion eq. 10.   Notebook: 14
 import warnings
 
 import numpy as np
+import scipy
 from jaxtyping import Float
-from scipy.ndimage import gaussian_filter1d
-from scipy.signal import find_peaks
-from scipy.special import erf
 
 from ..motion.resample import DANCE_FPS, resample
 from ..motion.root_frame import FPS
@@ -49,7 +47,7 @@ def smooth_speed(
     smoothing: float | int = SMOOTHING,
 ) -> Float[np.ndarray, "*B T-1"]:
     """`mean_speed`, smoothed along time by a Gaussian of `smoothing` seconds."""
-    return gaussian_filter1d(mean_speed(positions, fps), smoothing * fps, axis=-1)
+    return scipy.ndimage.gaussian_filter1d(mean_speed(positions, fps), smoothing * fps, axis=-1)
 
 
 def kinematic_beats(
@@ -73,7 +71,7 @@ def kinematic_beats(
         raise ValueError(
             "positions contain NaN or infinity: fill or cut them before you look for beats"
         )
-    low = find_peaks(-speed, prominence=MIN_DEPTH)[0]
+    low = scipy.signal.find_peaks(-speed, prominence=MIN_DEPTH)[0]
     before = speed[low - 1]
     here = speed[low]
     after = speed[low + 1]
@@ -137,7 +135,9 @@ def chance_level(
     music = np.sort(np.asarray(music, np.float64))
     middle = (music[1:] + music[:-1]) / 2
     edges = np.clip(np.concatenate([[0.0], middle, [float(seconds)]]), 0.0, float(seconds))
-    after, before = (erf((edge - music) / (np.sqrt(2) * sigma)) for edge in (edges[1:], edges[:-1]))
+    after, before = (
+        scipy.special.erf((edge - music) / (np.sqrt(2) * sigma)) for edge in (edges[1:], edges[:-1])
+    )
     return float(sigma * np.sqrt(np.pi / 2) * (after - before).sum() / seconds)
 
 

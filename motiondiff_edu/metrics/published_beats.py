@@ -14,9 +14,8 @@ Notebook: 14
 """
 
 import numpy as np
+import scipy
 from jaxtyping import Float, Int, Real
-from scipy.ndimage import gaussian_filter1d
-from scipy.signal import argrelextrema
 
 from .beats import mean_speed
 
@@ -32,7 +31,7 @@ def aist_beats(positions: Float[np.ndarray, "T J 3"]) -> Int[np.ndarray, "K"]:
     speed = np.concatenate(
         [[0.0], mean_speed(positions, 1)]
     )  # a mean has its minima where the sum has them
-    return argrelextrema(speed, np.less, order=10)[0]
+    return scipy.signal.argrelextrema(speed, np.less, order=10)[0]
 
 
 def aist_score(
@@ -54,7 +53,9 @@ def bailando_beats(positions: Float[np.ndarray, "T J 3"]) -> Int[np.ndarray, "K"
     A beat is a minimum of the mean joint speed, smoothed by 5 frames. Entry t is the step from t to
     t+1.  Source: MoFusion 4.1.  Notebook: 14
     """
-    return argrelextrema(gaussian_filter1d(mean_speed(positions, 1), 5), np.less)[0]
+    return scipy.signal.argrelextrema(
+        scipy.ndimage.gaussian_filter1d(mean_speed(positions, 1), 5), np.less
+    )[0]
 
 
 def bailando_score(

@@ -5,8 +5,8 @@ because every dialect places its spine joints elsewhere.
 """
 
 import numpy as np
+import scipy
 from jaxtyping import Bool, Float
-from scipy.spatial.transform import Rotation
 
 from .kinematics import rot_x
 from .skeleton import BONE_LENGTHS, BONES, HEELS, OFFSETS, PARENTS, TOES, joint_index
@@ -54,7 +54,7 @@ def rotation_between(
     axis = np.cross(start, end)
     sine = np.linalg.norm(axis)
     angle = np.arctan2(sine, start @ end)
-    return Rotation.from_rotvec(axis / max(sine, 1e-12) * angle).as_matrix()
+    return scipy.spatial.transform.Rotation.from_rotvec(axis / max(sine, 1e-12) * angle).as_matrix()
 
 
 def complete(points: Float[np.ndarray, "T 21 3"]) -> Float[np.ndarray, "T 21 3"]:
@@ -183,7 +183,7 @@ def foot_direction(
     # a low percentile, because the figure can kneel on its toes in other frames
     flat = np.percentile(pitch[standing] if standing.sum() > 3 else pitch, 20)
     across = unit(np.cross(shank, foot))
-    return Rotation.from_rotvec(across * (FLAT_PITCH - flat)).apply(foot)
+    return scipy.spatial.transform.Rotation.from_rotvec(across * (FLAT_PITCH - flat)).apply(foot)
 
 
 def build(

@@ -6,8 +6,8 @@ Source: textbook rigid-body kinematics; MoDiff itself works on positions (IV-A).
 from itertools import pairwise
 
 import numpy as np
+import scipy
 from jaxtyping import Float, Int
-from scipy.spatial.transform import Rotation
 
 
 def rot_x(angle: Float[np.ndarray, "*N"] | float) -> Float[np.ndarray, "*N 3 3"]:
@@ -50,7 +50,9 @@ def euler_to_matrix(angles: Float[np.ndarray, "*N K"], order: str) -> Float[np.n
         raise ValueError(
             f"rotation order {order!r} does not fit {angles.shape[-1]} angles; use letters X, Y, Z"
         )
-    turns = Rotation.from_euler(order, angles.reshape(-1, len(order)))  # capitals: intrinsic
+    turns = scipy.spatial.transform.Rotation.from_euler(
+        order, angles.reshape(-1, len(order))
+    )  # capitals: intrinsic
     return turns.as_matrix().reshape(*angles.shape[:-1], 3, 3)
 
 

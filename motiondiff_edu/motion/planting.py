@@ -1,8 +1,8 @@
 """Feet that stay where they stand: contacts, pinned toes, and two-bone inverse kinematics."""
 
 import numpy as np
+import scipy
 from jaxtyping import Bool, Float, Int
-from scipy.ndimage import gaussian_filter1d, maximum_filter1d
 
 from .directions import unit
 from .normalise import speed
@@ -85,7 +85,7 @@ def plant(
     lifted = np.maximum(world[:, list(TOES), 1] + shift[..., 1], 0)
     shift[..., 1] = lifted - world[:, list(TOES), 1]
     ankles = world[:, list(HEELS)] + shift
-    body = gaussian_filter1d(shift.mean(1), 0.15 * fps, axis=0, mode="nearest")
+    body = scipy.ndimage.gaussian_filter1d(shift.mean(1), 0.15 * fps, axis=0, mode="nearest")
     moved = world + body[:, None]
     moved[..., 1] -= needed_drop(moved[:, [1, 5]], ankles, fps)[:, None]
     for side, heel in enumerate(HEELS):
@@ -110,8 +110,8 @@ def needed_drop(
     apart = ankles - hips
     flat = np.minimum((apart[..., [0, 2]] ** 2).sum(-1), (0.95 * REACH) ** 2)
     drop = np.maximum(-apart[..., 1] - np.sqrt(REACH**2 - flat), 0).max(1)
-    wide = maximum_filter1d(drop, 2 * round(0.15 * fps) + 1, mode="nearest")
-    return gaussian_filter1d(wide, 0.075 * fps, mode="nearest")
+    wide = scipy.ndimage.maximum_filter1d(drop, 2 * round(0.15 * fps) + 1, mode="nearest")
+    return scipy.ndimage.gaussian_filter1d(wide, 0.075 * fps, mode="nearest")
 
 
 def solve_leg(

@@ -5,9 +5,8 @@ frames/s of the published numbers before you compare with them.   Notebook: 14
 """
 
 import numpy as np
+import scipy
 from jaxtyping import Float
-from scipy.interpolate import CubicSpline
-from scipy.signal import butter, sosfiltfilt
 
 DANCE_FPS = 60.0  # of AIST++, and of every published score on it
 CUT = 0.4  # of the new rate: 8 Hz at 20 frames/s; 99 % of the velocity power is below
@@ -40,7 +39,9 @@ def resample(
     if to < fps:
         positions = low_pass(positions, fps, CUT * to)
     count = int(np.floor((len(positions) - 1) * to / fps + 1e-6)) + 1
-    new = CubicSpline(np.arange(len(positions)) / fps, positions)(np.arange(count) / to)
+    new = scipy.interpolate.CubicSpline(np.arange(len(positions)) / fps, positions)(
+        np.arange(count) / to
+    )
     new[0] = positions[0]
     if abs((count - 1) / to - (len(positions) - 1) / fps) < 1e-9:
         new[-1] = positions[-1]  # a spline passes through its knots only up to rounding
@@ -81,6 +82,6 @@ def low_pass(
     positions: Float[np.ndarray, "T *shape"], fps: float | int, cut: float
 ) -> Float[np.ndarray, "T *shape"]:
     """Movement faster than `cut` hertz is removed, without delay (Butterworth, both directions)."""
-    filters = butter(4, cut, fs=fps, output="sos")
+    filters = scipy.signal.butter(4, cut, fs=fps, output="sos")
     ends = min(15, len(positions) - 1)  # frames mirrored at both ends; 15 is scipy's own number
-    return sosfiltfilt(filters, positions, axis=0, padlen=ends)
+    return scipy.signal.sosfiltfilt(filters, positions, axis=0, padlen=ends)

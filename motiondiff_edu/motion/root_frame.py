@@ -9,8 +9,8 @@ Source: MoDiff IV-A (control in R^3).  Notebook: 01
 """
 
 import numpy as np
+import scipy
 from jaxtyping import Float
-from scipy.ndimage import gaussian_filter1d
 
 from .skeleton import HIPS, joint_index
 
@@ -146,6 +146,6 @@ def _smooth(x: np.ndarray, sigma: float) -> np.ndarray:
     """
     reach = int(4 * sigma) + 1
     width = [(reach, reach)] + [(0, 0)] * (x.ndim - 1)
-    return gaussian_filter1d(np.pad(x, width, "reflect", reflect_type="odd"), sigma, axis=0)[
-        reach : reach + len(x)
-    ]
+    return scipy.ndimage.gaussian_filter1d(
+        np.pad(x, width, "reflect", reflect_type="odd"), sigma, axis=0
+    )[reach : reach + len(x)]

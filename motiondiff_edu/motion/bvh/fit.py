@@ -7,8 +7,8 @@ a close motion with constant bones and reports how far the joints moved.
 from dataclasses import dataclass
 
 import numpy as np
+import scipy
 from jaxtyping import Float, Int
-from scipy.spatial.transform import Rotation
 
 from ..kinematics import forward_kinematics
 from ..skeleton import BONES, HIPS, JOINTS, OFFSETS, PARENTS, joint_index
@@ -181,7 +181,9 @@ def least_turn(
     axis = np.cross(start, end)
     sine = np.linalg.norm(axis, axis=-1, keepdims=True)
     angle = np.arctan2(sine[:, 0], (start * end).sum(-1))
-    return Rotation.from_rotvec(axis / np.maximum(sine, 1e-15) * angle[:, None]).as_matrix()
+    return scipy.spatial.transform.Rotation.from_rotvec(
+        axis / np.maximum(sine, 1e-15) * angle[:, None]
+    ).as_matrix()
 
 
 def euler_zxy(local: Float[np.ndarray, "T N 3 3"]) -> Float[np.ndarray, "T N 3"]:
@@ -191,7 +193,11 @@ def euler_zxy(local: Float[np.ndarray, "T N 3 3"]) -> Float[np.ndarray, "T N 3"]
     before is chosen.
     """
     frames, nodes = local.shape[:2]
-    angles = Rotation.from_matrix(local.reshape(-1, 3, 3)).as_euler("ZXY").reshape(frames, nodes, 3)
+    angles = (
+        scipy.spatial.transform.Rotation.from_matrix(local.reshape(-1, 3, 3))
+        .as_euler("ZXY")
+        .reshape(frames, nodes, 3)
+    )
     twin = angles * [1, -1, 1] + np.pi
     for t in range(1, frames):
         near, far = (wrap_to(other[t], angles[t - 1]) for other in (angles, twin))
