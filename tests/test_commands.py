@@ -252,7 +252,7 @@ MISTAKES = {
     ),
     "no span": (
         ["reconstruct", "my_walk.bvh", "--missing", "Head", "--frames", "9-3", "--out", "x.bvh"],
-        "'9-3' is not a span of frames such as 40-80",
+        "--frames 9-3: 9 comes after 3",
     ),
     "frames of nothing": (
         ["reconstruct", "my_walk.bvh", "--frames", "3-9", "--out", "x.bvh"],

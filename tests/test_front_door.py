@@ -112,7 +112,7 @@ def test_what_lies_between_keyframes_is_made(walked):
         assert np.isfinite(one.positions).all()
     assert isinstance(md.inbetween(walked[:7], md.keyframes(7, every=3), steps=3), md.Motion)
     walker = md.load("walker")
-    every = [walker.walk(walked, np.ones((2, 3)), steps=n) for n in (walker.schedule.S, 10**6)]
+    every = [walker.walk(walked, np.ones((2, 3)) * [1, 0, 0], steps=n) for n in (walker.schedule.S, 10**6)]
     np.testing.assert_array_equal(every[0].positions, every[1].positions)
 
 
@@ -420,6 +420,7 @@ TOLD = {
     'w.all_but("LeftArm,LeftHand")': "Pass several joints as a list",
     'w.all_but("LeftArms")': "Did you mean 'LeftArm'?",
     "md.joystick((3, 1.2, 0, 0))": "joystick takes a list of segments",
+    "md.inbetween(w, known, samples=10**6)": "samples must be at most 256, not 1000000",
     "md.joystick(None)": "joystick takes a list of segments",
     "md.joystick([(1e9, 1, 0, 0)])": "the segments last 1e+09 s; 3600 s is the most",
     'w.between("a", 1)': "times are numbers of seconds, not 'a' and 1",

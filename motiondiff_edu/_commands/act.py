@@ -1,5 +1,5 @@
-"""Generate a motion from a sentence. The figure begins at the origin, facing z. A word that is read
-as another one, or is not known, is said. The sentence is put into quotes."""
+"""Generate a motion from a sentence. The figure begins at the origin, facing z. Unknown words are
+reported, and so are words that are read as others. The sentence is put into quotes."""
 
 import argparse
 

@@ -1,5 +1,6 @@
-"""Make a motion do what a sentence says, and keep what it can of it. --keep keeps a part of the
-body as it is: the legs and the path, for instance. The sentence is put into quotes."""
+"""Change a motion by a sentence, which says what the whole figure does, the legs included: "walks
+forward while clapping". --keep keeps a part of the body as it is, such as the legs and the path.
+The sentence is put into quotes."""
 
 import argparse
 from pathlib import Path
@@ -7,11 +8,11 @@ from pathlib import Path
 from . import outputs
 
 HELP = "change a motion by a sentence"
-EXAMPLE = 'edit walk.bvh "walks forward while clapping" --keep "lower body" --out clap.bvh'
+EXAMPLE = 'edit my_walk.bvh "walks forward while clapping" --keep "lower body" --out clap.bvh'
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("file", type=Path, help="a motion of 2 to 10 s: .bvh or .npz")
+    parser.add_argument("file", type=Path, help="a motion of 2 to 10 s: .bvh, .npz or .npy")
     parser.add_argument("text", help="the sentence, in quotes")
     parser.add_argument(
         "--keep",
@@ -24,8 +25,8 @@ def arguments(parser: argparse.ArgumentParser) -> None:
         type=float,
         default=0.3,
         metavar="X",
-        help="how much is made anew: above 0, up to 1, with which only what is kept is left "
-        "(default: 0.3)",
+        help="how much noise the motion gets before it is denoised: above 0; with 1 nothing but "
+        "what is kept is left (default: 0.3)",
     )
     outputs.add_out(parser)
     outputs.add_draws(parser, "motions")

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from ..motion import registry
-from ..motion.checks import check_there, checked_count
+from ..motion.checks import check_there, checked_samples
 
 
 def endings() -> str:
@@ -59,7 +59,7 @@ def output_paths(
     Raises ValueError for an unknown ending, a folder, a file that exists, for the file that is read
     (`source`), also with --overwrite, and for a folder that cannot be made or written to.
     """
-    checked_count(samples, "--samples")
+    checked_samples(samples, "--samples")
     if out.suffix.lower() not in registry.writers.names():
         what = f"unknown ending {out.suffix}" if out.suffix else "the name has no ending"
         raise ValueError(f"{out}: {what}; use one of {endings()}")
@@ -107,8 +107,8 @@ def listed(made: object) -> list:
 def write_all(made: object, paths: Sequence[Path]) -> None:
     """Write each motion to its file, and print what was written."""
     for motion, path in zip(listed(made), paths, strict=True):
-        motion.save(path)
-        print(f"{path}: {motion.seconds:.1f} s, {len(motion)} frames")
+        motion.save(path, overwrite=True)  # `output_paths` has checked the names
+        print(f"{path}: {motion.seconds:.1f} s, {len(motion)} frame{'s' * (len(motion) > 1)}")
 
 
 def say(words: str) -> None:

@@ -10,13 +10,13 @@ from . import outputs
 
 HELP = "reconstruct missing joints"
 EXAMPLE = (
-    "reconstruct my_walk.bvh --missing RightArm,RightForeArm,RightHand --frames 40-80 "
+    "reconstruct my_walk.bvh --missing RightArm,RightForeArm,RightHand --frames 20-39 "
     "--out whole.bvh"
 )
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("file", type=Path, help="a motion: .bvh or .npz")
+    parser.add_argument("file", type=Path, help="a motion: .bvh, .npz or .npy")
     parser.add_argument(
         "--missing",
         metavar="JOINTS",
@@ -26,8 +26,8 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--frames",
         metavar="A-B",
-        help="where they are missing: frames A to B, both included; separate several spans by "
-        "commas (default: all frames)",
+        help="where they are missing: frames A to B, both included, or one frame; separate several "
+        "spans by commas (default: all frames)",
     )
     outputs.add_out(parser)
     outputs.add_draws(parser, "reconstructions")
@@ -43,7 +43,9 @@ def run(args: argparse.Namespace) -> None:
 
     known = motion.known
     for first, last in frames if args.missing else []:
-        joints = re.split(r"[,\s]+", " ".join(args.missing).strip(", "))
+        joints = [name for name in re.split(r"[,\s]+", " ".join(args.missing)) if name]
+        if not joints:
+            raise ValueError("--missing names no joint")
         known &= motion.all_but(joints, first, last)
     if known.all():
         raise ValueError(f"{args.file} lacks no joint: name some, such as --missing LeftHand")
@@ -57,8 +59,12 @@ def spans(words: str | None) -> list[tuple[int, int | None]]:
         return [(0, None)]
     found = []
     for piece in words.split(","):
-        match = re.fullmatch(r"\s*(\d+)\s*-\s*(\d+)\s*", piece, re.ASCII)
-        if not match or int(match[1]) > int(match[2]):
-            raise ValueError(f"--frames {words}: {piece!r} is not a span of frames such as 40-80")
-        found.append((int(match[1]), int(match[2]) + 1))
+        match = re.fullmatch(r"\s*(\d+)\s*(?:-\s*(\d+)\s*)?", piece, re.ASCII)
+        if not match:
+            what = f"{piece!r} is not a span of frames such as 20-39, nor a single frame"
+            raise ValueError(f"--frames {words}: {what}")
+        first, last = int(match[1]), int(match[2] or match[1])
+        if first > last:
+            raise ValueError(f"--frames {words}: {first} comes after {last}")
+        found.append((first, last + 1))
     return found

@@ -51,6 +51,12 @@ IRREGULAR = {
     "brought": "bring",
     "1": "one",
 }
+# words of captions that name no act: a text needs another one
+NO_ACTS = (
+    WITHOUT_FORMS
+    | NOUNS
+    | frozenset("2 3 4 air deeply fast gentle pace place quick round seat slow time".split())
+)
 NUMBERS = frozenset("zero five six seven eight nine ten hundred".split())  # no count of training
 # words that say nothing about a movement
 PASSED_OVER = frozenset(
@@ -129,8 +135,8 @@ def read(text: str, vocabulary: Sequence[str], others: Mapping[str, str] | None 
 
     Base forms are taken, and words without a meaning for movement are passed over. `others` (by
     default `synonyms()`) has words that are read as known ones; the notes say so.
-    Raises TextError for a text without a known word, for unknown words, and for more words than
-    MOST_WORDS.
+    Raises TextError for a text without a known word or without an act, for unknown words, and for
+    more words than MOST_WORDS.
     """
     if not isinstance(text, str):
         raise TextError(f"the text must be a sentence in quotes, not {type(text).__name__}")
@@ -163,6 +169,9 @@ def read(text: str, vocabulary: Sequence[str], others: Mapping[str, str] | None 
             f"{text.strip()!r} says nothing about a movement that the network knows; it knows "
             f"{', '.join(vocabulary[:12])} ..."
         )
+    if NO_ACTS.issuperset(found) and not NO_ACTS.issuperset(vocabulary):
+        known = f"; {_acts(vocabulary)}" if _acts(vocabulary) else ""
+        raise TextError(f"{text.strip()!r:.80} names no act: say what the figure does{known}")
     return Read(tuple(found), tuple(dict.fromkeys(notes)))
 
 
@@ -172,6 +181,12 @@ def empty(what: str) -> TextError:
         f'the text {what}: say what the figure does, such as "walks forward, then waves with the '
         f'left hand"'
     )
+
+
+def _acts(vocabulary: Sequence[str]) -> str:
+    """Some acts of a vocabulary, in words; "" if it has none of them."""
+    verbs = ", ".join(verb for verb in EXAMPLES if verb in vocabulary)
+    return f"it knows {verbs} and others" if verbs else ""
 
 
 def _nearest(word: str, vocabulary: Sequence[str]) -> list[str]:
@@ -189,8 +204,7 @@ def _unknown(words: list[str], vocabulary: Sequence[str]) -> str:
         told.append(f"{word!r}" + (f" (did you mean {' or '.join(near)}?)" if near else ""))
         nothing_near &= not near
     more = f" and {len(words) - 5} more" if len(words) > 5 else ""
-    verbs = ", ".join(verb for verb in EXAMPLES if verb in vocabulary)
-    known = f"; it knows {verbs} and others" if nothing_near and verbs else ""
+    known = f"; {_acts(vocabulary)}" if nothing_near and _acts(vocabulary) else ""
     return (
         f"the network does not know {', '.join(told)}{more}. It was trained on a small vocabulary: "
         f"say it in other words, or leave it out{known}"

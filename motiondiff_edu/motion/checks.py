@@ -5,6 +5,7 @@ from numbers import Integral, Real
 from pathlib import Path
 
 LONGEST = 3600.0  # seconds: an hour
+MOST_SAMPLES = 256  # made at once, in memory
 GUIDANCE = 20  # the largest weight; figures break long before it
 
 
@@ -34,6 +35,13 @@ def checked_count(count: int, name: str) -> int:
     if isinstance(count, bool) or not isinstance(count, Integral) or count < 1:
         raise ValueError(f"{name} must be a whole number of at least 1, not {count!r}")
     return int(count)
+
+
+def checked_samples(samples: int, name: str = "samples") -> int:
+    """A number of results, from 1 to MOST_SAMPLES.  Raises ValueError for anything else."""
+    if checked_count(samples, name) > MOST_SAMPLES:
+        raise ValueError(f"{name} must be at most {MOST_SAMPLES}, not {samples}: use more seeds")
+    return int(samples)
 
 
 def checked_steps(steps: int | None, S: int) -> int | None:

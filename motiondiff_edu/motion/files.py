@@ -16,7 +16,7 @@ from . import registry
 from .bvh.write import write_bvh
 from .checks import check_there
 from .clip import Clip
-from .motion import Motion, MotionError, MotionWarning, unlike_a_body
+from .motion import Motion, MotionError, MotionWarning, lies_down, unlike_a_body
 from .retarget import load_clip
 from .root_frame import FPS
 from .skeleton import COURSE, Skeleton
@@ -65,7 +65,9 @@ def read_motion(
         if ending != ".bvh":
             raise MotionError(f"{path.name} is no BVH file; `mapping` and `file_fps` are for BVH")
         read = partial(read, mapping=mapping, file_fps=file_fps)
-    return read(path)
+    motion = read(path)
+    registry.files_read.add(path.absolute().resolve())
+    return motion
 
 
 @registry.readers.register(".bvh")
@@ -126,7 +128,7 @@ def read_npz(path: Path) -> Motion:
             _note(path, f"the file has no `fps`; {FPS:g} frames/s are assumed")
         if "positions" in arrays:
             motion = _from_positions(arrays, source or path.stem)
-            words = unlike_a_body(motion)
+            words = unlike_a_body(motion) or lies_down(motion)
             if words:
                 _note(path, words)
             return motion

@@ -21,10 +21,11 @@ from .clip import Clip
 from .faults import WILD
 from .resample import resample_present
 from .root_frame import FPS, control_from_path, estimate_root, root_path, to_root_frame
-from .skeleton import BONE_LENGTHS, BONES, COURSE, Skeleton
+from .skeleton import BONE_LENGTHS, BONES, COURSE, TOES, Skeleton, joint_index
 
 FARTHEST = 1e6  # metres from the origin; a larger value is a fault of the file
 SAMPLE_RATE = 16_000
+HEAD = joint_index("Head")
 
 
 class MotionError(ValueError):
@@ -286,15 +287,24 @@ class Motion:
         if words:
             raise MotionError(f"{self.name}: {words}")
 
-    def save(self, path: str | Path) -> Path:
+    def save(self, path: str | Path, overwrite: bool = False) -> Path:
         """Write the motion to a file; the name's ending is .bvh, .npz, .mp4, .gif or .html.
 
-        An existing file is replaced.
+        An existing file is replaced, but for one that `read_motion` has read: a recording would be
+        lost. With `overwrite` it is replaced, too.
 
-        Raises MotionError for an unknown ending, with a list of the known ones.  Notebook: 00
+        Raises MotionError for an unknown ending, with a list of the known ones, and for a file that
+        was read.  Notebook: 00
         """
         path = Path(path).expanduser()
-        registry.writers.get(check_ending(path))(self, path)
+        write, place = registry.writers.get(check_ending(path)), path.absolute().resolve()
+        if place in registry.files_read and not overwrite:
+            raise MotionError(
+                f"{path} was read, and it would be lost: choose another name, or save it with "
+                "overwrite=True"
+            )
+        write(self, path)
+        registry.files_read.discard(place)
         return path
 
     def __repr__(self) -> str:
@@ -345,6 +355,26 @@ def unlike_a_body(motion: Motion) -> str:
         f"the bones are {size:.3g} times as long as the course's, but positions are in metres and "
         f"the figure is 1.70 m tall. Centimetres? Then pass 0.01 * positions"
     )
+
+
+def lies_down(motion: Motion) -> str:
+    """What is wrong with the axes of a figure on the course's skeleton, in words; "" if nothing.
+
+    From the feet to the head it must go up, along y, in most frames.
+    """
+    if motion.skeleton != COURSE:
+        return ""
+    upright = motion.positions[:, HEAD] - motion.positions[:, list(TOES)].mean(1)
+    upright = upright[np.isfinite(upright).all(1)]
+    if not len(upright):
+        return ""
+    along = np.median(upright, axis=0)
+    if along[1] > 0.5 or np.abs(along).max() < 1.0:
+        return ""
+    axis = int(np.abs(along).argmax())
+    turns = ("[..., [1, 0, 2]] * [-1, 1, 1]", "", "[..., [0, 2, 1]] * [1, 1, -1]")
+    how = f"try positions{turns[axis]}" if turns[axis] else "it stands on its head"
+    return f"the figure lies along {'xyz'[axis]}, but y points up: {how}"
 
 
 def check_ending(path: str | Path) -> str:

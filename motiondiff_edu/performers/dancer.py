@@ -20,7 +20,7 @@ from ..ddpm import Denoiser, Generators, Schedule, draw
 from ..fast.mofusion import FastMoFusion
 from ..fast.twins import watched
 from ..mofusion import MoFusion, MoFusionConfig
-from ..motion.checks import checked_count, checked_seconds, checked_steps
+from ..motion.checks import checked_samples, checked_seconds, checked_steps
 from ..motion.dance_frame import to_positions
 from ..motion.motion import Motion
 from ..motion.scaler import Scaler
@@ -123,7 +123,7 @@ class Dancer(Performer):
         `samples` out of range. Warns where the sound is shorter than `seconds`.
         Source: MoFusion 3.  Notebook: 00, 12
         """
-        count, steps = checked_count(samples, "samples"), checked_steps(steps, self.schedule.S)
+        count, steps = checked_samples(samples), checked_steps(steps, self.schedule.S)
         longest = None if seconds is None else round(checked_seconds(seconds) * SAMPLE_RATE)
         audio = samples_of(sound)[:longest]
         name = Path(sound).stem if isinstance(sound, (str, Path)) else "the sound given"

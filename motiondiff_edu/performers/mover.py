@@ -19,7 +19,7 @@ from ..beyond.classifier_free import guided_by_text
 from ..conditions.clip import Clip, check
 from ..conditions.word_encoder import WordReader
 from ..ddpm import Denoiser, Generators, Schedule, draw
-from ..motion.checks import checked_count, checked_guidance, checked_seconds, checked_steps
+from ..motion.checks import checked_guidance, checked_samples, checked_seconds, checked_steps
 from ..motion.motion import Motion
 from ..motion.moving_frame import D, to_features, to_positions
 from ..motion.root_frame import FPS
@@ -186,7 +186,7 @@ class Mover(Performer):
         found = self.reader.read(text)
         for note in found.notes:
             warnings.warn(note, stacklevel=2)
-        count, steps = checked_count(samples, "samples"), checked_steps(steps, self.schedule.S)
+        count, steps = checked_samples(samples), checked_steps(steps, self.schedule.S)
         guidance = checked_guidance(guidance)
         if not SHORTEST <= checked_seconds(seconds) <= LONGEST:
             raise ValueError(

@@ -21,7 +21,7 @@ from ..fast.modiff import FastMoDiff
 from ..fast.samplers import ddim_steps, ddpm_steps
 from ..fast.twins import watched
 from ..modiff import MoDiff, MoDiffConfig
-from ..motion.checks import checked_count, checked_seconds, checked_steps
+from ..motion.checks import checked_samples, checked_seconds, checked_steps
 from ..motion.motion import Motion, MotionError, as_motion
 from ..motion.root_frame import FPS, root_path, to_world
 from ..motion.scaler import Scaler
@@ -84,7 +84,7 @@ class Walker(Performer):
         Source: MoDiff Alg. 2.  Notebook: 00
         """
         as_motion(motion).check_whole()
-        count, T_h = checked_count(samples, "samples"), self.config.T_h
+        count, T_h = checked_samples(samples), self.config.T_h
         steps = checked_steps(steps, self.schedule.S)
         length = None if seconds is None else round(checked_seconds(seconds) * FPS)
         ahead = as_long(control, length)

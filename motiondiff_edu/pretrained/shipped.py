@@ -18,8 +18,8 @@ from ..editing import reconstruct as reconstruction
 from ..editing.by_words import STRENGTH
 from ..editing.inbetween import OURS, Departures
 from ..editing.masks import checked_known
-from ..editing.plausible import plausible
-from ..motion.checks import checked_count
+from ..editing.plausible import longest_glide, plausible
+from ..motion.checks import checked_count, checked_samples
 from ..motion.motion import Motion, MotionError, MotionWarning, as_motion
 from ..motion.root_frame import FPS
 from ..motion.skeleton import HIPS, TOES
@@ -66,7 +66,7 @@ def inbetween(
     Raises MotionError or ValueError if motion, mask or numbers do not fit.
     Source: MoFusion 4.4.  Notebook: 15
     """
-    known, count = _fitting(motion, known), checked_count(samples, "samples")
+    known, count = _fitting(motion, known), checked_samples(samples)
     steps = min(checked_count(steps, "steps"), _shipped("unconditional").schedule.S)
     if known.all():
         raise MotionError(f"{motion.name}: every joint is known, so there is nothing to generate")
@@ -112,7 +112,7 @@ def reconstruct(
     Raises MotionError if the pelvis is missing in a frame, or if motion and mask do not fit, and
     ValueError for a number of samples under 1.  Source: MoDiff III-E.
     """
-    known, count = _fitting(motion, known), checked_count(samples, "samples")
+    known, count = _fitting(motion, known), checked_samples(samples)
     walker, draws = _shipped("walker"), generators(seed, count)
     total = count * reconstruction.evaluations(walker, known)
     with with_bar(walker, total, "reconstructing", progress) as walker:
@@ -134,12 +134,14 @@ def edit(
     seed: int = 0,
     progress: bool = True,
 ) -> Motion | list[Motion]:
-    """Make a motion do what a sentence says, and keep what it can of it; with the shipped mover.
+    """Change a motion by a sentence, with the shipped mover.
 
-    The motion is noised part of the way, and denoised under the sentence. `known` joints stay about
-    the root; where the pelvis is known, the path stays, too. `strength`: how much is made anew, up
-    to 1, with which only what is known is left. With `samples` above 1, the result is a list with
-    this many motions; the first is that of samples=1.
+    The motion is noised part of the way, and denoised under the sentence, which says what the whole
+    figure does, the legs included. `known` joints keep their places about the root; where the
+    pelvis is known, the path stays, too. `strength`, from 0 to 1, is the share of the noise: the
+    more, the less of the motion stays; with 1 only the known joints do. With `samples` above 1, the
+    result is a list with this many motions; the first is that of samples=1. A MotionWarning says
+    where the feet slide, and did not before.
     Raises MotionError if motion and mask do not fit, or the motion is shorter or longer than those
     of the training, TextError for a text that cannot be read, and ValueError for numbers out of
     range.
@@ -160,7 +162,7 @@ def edit(
     mask = None if known is None else _fitting(motion, known)
     if mask is not None and mask.all():
         raise MotionError(f"{motion.name}: everything is known, so nothing can be edited")
-    count, mover = checked_count(samples, "samples"), _shipped("mover")
+    count, mover = checked_samples(samples), _shipped("mover")
     for note in mover.reader.read(text).notes:
         warnings.warn(note, stacklevel=2)
     visited = by_words.visited(mover.schedule.S, by_words.STEPS, strength)
@@ -171,6 +173,15 @@ def edit(
             generator=generators(seed, count),
         )  # fmt: skip
     nothing = np.zeros((len(motion), len(motion.skeleton)), bool)
+    first, last = longest_glide(made[0], nothing)
+    if last > first and not any(longest_glide(motion.positions, nothing)):
+        warnings.warn(
+            f"{motion.name}: both feet slide between frames {first} and {last}. The sentence must "
+            "say what the legs do as well, such as 'walks forward while waving', and that has to "
+            "go with what is kept",
+            MotionWarning,
+            stacklevel=2,
+        )
     made = [_made(motion, nothing, positions, f"edited: {text.strip():.40}") for positions in made]
     return made if samples > 1 else made[0]
 

@@ -236,6 +236,38 @@ def test_files_of_data_synth_are_read(tmp_path):
     assert dance.positions.shape[1:] == (21, 3) and dance.contacts is not None
 
 
+def test_a_recording_that_was_read_is_not_replaced_by_what_was_read_of_it(tmp_path, capsys):
+    path = tmp_path / "recording.bvh"
+    walking().save(path)  # what was not read is replaced
+    walking().save(path)
+    before = path.read_bytes()
+    motion = read_motion(path)
+    with pytest.raises(MotionError, match="recording.bvh was read, and it would be lost: choose"):
+        motion[:20].save(tmp_path / "." / "recording.bvh")
+    assert path.read_bytes() == before
+    motion[:20].save(path, overwrite=True)
+    motion[:10].save(path)  # now it is our own
+    assert len(read_motion(path)) == 10
+
+
+@pytest.mark.parametrize(
+    "turn, told",
+    [
+        (lambda x: np.stack([x[..., 0], -x[..., 2], x[..., 1]], -1), "lies along z, .*0, 2, 1"),
+        (lambda x: np.stack([x[..., 1], -x[..., 0], x[..., 2]], -1), "lies along x, .*1, 0, 2"),
+        (lambda x: x * [1, -1, -1], "lies along y, .*stands on its head"),
+    ],
+)
+def test_another_axis_that_points_up_is_told(tmp_path, turn, told):
+    positions = walking().positions
+    np.savez(tmp_path / "up.npz", positions=turn(positions), fps=20.0)
+    with pytest.warns(MotionWarning, match=told) as caught:
+        read_motion(tmp_path / "up.npz")
+    advice = str(caught[0].message).partition("try positions")[2]
+    if advice:  # it turns the figure upright, and does not mirror it
+        np.testing.assert_allclose(eval(f"x{advice}", {"x": turn(positions)}), positions)
+
+
 def test_an_unknown_ending_says_which_there_are(tmp_path):
     for name, told in (("m.xyz", "unknown ending .xyz"), ("m", "the name has no ending")):
         with pytest.raises(MotionError, match=told + "; use one of .bvh .npz .mp4 .gif .html"):
