@@ -157,9 +157,11 @@ class CrossModalAttention(nn.Module):
 
 class Block(nn.Module):
     """A pre-norm transformer block: self-attention, then cross-attention (with_context), then
-    feed-forward.
+    feed-forward with GELU.
 
-    Source: MoDiff III-F; MoFusion 3.3.  Notebook: 06
+    MoDiff uses "the standard Transformer encoder in PyTorch", which by default normalises last and
+    has ReLU.
+    Source: MoDiff III-F, IV-A; MoFusion 3.3.  Notebook: 06
     """
 
     def __init__(

@@ -112,7 +112,8 @@ def test_what_lies_between_keyframes_is_made(walked):
         assert np.isfinite(one.positions).all()
     assert isinstance(md.inbetween(walked[:7], md.keyframes(7, every=3), steps=3), md.Motion)
     walker = md.load("walker")
-    every = [walker.walk(walked, np.ones((2, 3)) * [1, 0, 0], steps=n) for n in (walker.schedule.S, 10**6)]
+    ahead, numbers = np.array([[1.0, 0.0, 0.0]]), (walker.schedule.S, 10**6)
+    every = [walker.walk(walked, ahead, steps=n) for n in numbers]
     np.testing.assert_array_equal(every[0].positions, every[1].positions)
 
 

@@ -14,6 +14,7 @@ from motiondiff_edu.__main__ import main
 from motiondiff_edu.conditions.control import constant_control
 from motiondiff_edu.motion.bvh import read_bvh
 from motiondiff_edu.motion.bvh.write import write_bvh
+from motiondiff_edu.motion.motion import Motion
 from motiondiff_edu.motion.retarget import load_clip
 from motiondiff_edu.pretrained.checkpoints import available
 
@@ -55,6 +56,9 @@ def test_three_lines_continue_a_recording(root, folder):
     assert len(made["more"]) == 3 * 20
     clip = load_clip(folder / "more.bvh")
     assert len(clip) == 3 * 20 and clip.control[20:40, 0].mean() == pytest.approx(1.2, abs=0.1)
+    assert {"act", "filled", "whole", "clapping"} <= made.keys()
+    assert all(isinstance(made[name], Motion) for name in ("act", "filled", "whole", "clapping"))
+    assert len(made["dance"]) == min(SUNG, 10) * 20
 
 
 def test_the_examples_of_the_guide_run_in_order(root, folder):

@@ -32,8 +32,9 @@ class LossWeights:
 class Recipe:
     """One training run of a walker.
 
-    The defaults of network input, schedule, optimizer and loss are the paper's, without its
-    diffusion dropout. The rate, the data and the held control are ours.
+    The defaults of optimizer and loss are the paper's, without its diffusion dropout. The paper
+    gives no schedule: the linear one is TimeGrad's. The rate, the data and the held control are
+    ours.
     `clips` clips of `seconds` each are made from the data seed; later they are mirrored, and some
     are reversed in time.
     """
@@ -110,9 +111,9 @@ WALKER_EPS = replace(
     config=MODIFF_SMALL,
     loss_weights=replace(OURS, high_noise=3.0),
 )
-# The paper's recipe as it stands, at our small size: eps without a skip, the linear schedule, Adam
-# at 5e-5, batch 64, the plain loss, diffusion dropout, control never held. Ours: the data, and the
-# warm-up and cosine of the rate.
+# The paper's recipe as it stands, at our small size: eps without a skip, Adam at 5e-5, batch 64, the
+# plain loss, diffusion dropout, control never held. Ours: the data, the warm-up and cosine of the
+# rate, and what the paper does not give: the linear schedule is TimeGrad's.
 WALKER_PRINTED = Recipe(
     "walker-printed",
     replace(MODIFF_SMALL, skip=False),

@@ -32,6 +32,9 @@ GOALS = {
         "the control error of walks of 80 s beyond that of the data"
     ),
     "bench.import_over_torch": "the time to import the library, over that to import torch",
+    "bench.front_door_over_torch": (
+        "the time until `md.read_motion` and `md.load` can be called, over that to import torch"
+    ),
     "dancer.bas_share": "the beat alignment of the dances beyond chance, over that of the data",
     "dancer.speed_over_data": "the speed of the dances, over that of the data",
     "dancer.beats_per_beat_over_data": "the number of stops for each beat, over that of the data",

@@ -2,8 +2,10 @@
 
 All cells share one small network size, the data, and the budget: as many steps as 600 CPU-seconds
 are worth on one thread, by a pace that was measured for all cells in turn. Each cell is trained
-with three seeds. `ours` is the shipped walker's recipe at this size; from it one choice is taken
-out at a time. `printed` is the recipe as MoDiff prints it; to it one choice is added at a time.
+with three seeds. `ours` is the recipe of the shipped walker's trunk at this size, before diffusion
+dropout is added at the end; from it one choice is taken out at a time. `printed` is the recipe as
+MoDiff prints it, with TimeGrad's schedule, for MoDiff gives none; to it one choice is added at a
+time.
 Source: MoDiff III-D, IV-A, Alg. 1.  Notebook: 07
 """
 

@@ -46,13 +46,16 @@ def section(records: dict[str, dict], folder: Path) -> str:
         "## From the paper's walker to ours\n\n"
         f"Small walkers of one size, {SEEDS} training seeds each. Every training has as many "
         f"steps as fit into {CPU_SECONDS} CPU-seconds on one thread. Each row takes one choice out "
-        "of our recipe, or adds one to the recipe that MoDiff prints. The interval is over "
+        "of our recipe (that of the shipped walker before diffusion dropout is added at the end), "
+        "or adds one to the recipe that MoDiff prints (with TimeGrad's schedule, for MoDiff gives "
+        "none). "
+        "The interval is over "
         "training seeds and walks. The sampler is DDPM with S = 100; the control is held, and one "
         "pose of every window is kept.\n\n"
         f"The printed recipe keeps the paper's rate, {PRINTED_RATE:g}, unless the row adds a tuned "
         "rate or Muon. The other rates were chosen for each of the two recipes and each optimiser: "
         f"the one of {', '.join(f'{rate:g}' for rate in RATES['muon'])} with the least loss on "
-        f"validation clips after {TRIAL:.0%} of the budget.\n\n"
+        f"validation clips after {TRIAL:.0%} of the budget.{at_the_edge(records)}\n\n"
     )
     head = ["recipe", "steps", "rate", *(WORDS[kind] for kind in MEASURES)]
     rows = []
@@ -71,6 +74,24 @@ def section(records: dict[str, dict], folder: Path) -> str:
             f"of the ladder, a dot for each training seed](results/{PICTURE})\n"
         )
     return text + gains(records)
+
+
+def at_the_edge(records: dict[str, dict]) -> str:
+    """Which rates are the least or the largest of those that were tried, in a sentence."""
+    found = {}
+    for name in measured(records):
+        cell, rate = CELLS[name], records[f"ladder.{name}.bone_rmse_cm"]["seeds"]["rate"]
+        tried = RATES[cell.recipe.optimizer]
+        if cell.tuned and rate in (min(tried), max(tried)):
+            found[f"{cell.recipe.optimizer.capitalize()} in the {root(name)} recipe ({rate:g})"] = (
+                None
+            )
+    if not found:
+        return ""
+    return (
+        f" For {' and '.join(found)} that is the first or the last of the three: a wider grid "
+        "could find a better one, so read a loss against such a row with care."
+    )
 
 
 def gains(records: dict[str, dict]) -> str:
