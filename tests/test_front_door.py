@@ -422,6 +422,8 @@ TOLD = {
     'w.all_but("LeftArms")': "Did you mean 'LeftArm'?",
     "md.joystick((3, 1.2, 0, 0))": "joystick takes a list of segments",
     "md.inbetween(w, known, samples=10**6)": "samples must be at most 256, not 1000000",
+    'md.reconstruct(w, ["LeftArm"])': "known is a table of True and False, not ['LeftArm']. motion",
+    'md.inbetween(w, "lower body")': "editing.masks.body_part(len(motion), 'lower body') keeps",
     "md.joystick(None)": "joystick takes a list of segments",
     "md.joystick([(1e9, 1, 0, 0)])": "the segments last 1e+09 s; 3600 s is the most",
     'w.between("a", 1)': "times are numbers of seconds, not 'a' and 1",

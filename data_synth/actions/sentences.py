@@ -105,7 +105,7 @@ def _phrase(rng: np.random.Generator) -> Phrase:
 
 
 def _act(verb: str, rng: np.random.Generator) -> Act:
-    """An act with its largest count; one speed of three is said."""
+    """An act with its largest count; some acts get a speed, slow or fast."""
     one = VERBS[verb]
     speeds = one.speeds if rng.random() < 0.45 else ("",)
     return Act(

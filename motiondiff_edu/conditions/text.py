@@ -1,4 +1,4 @@
-"""Text: the words of a sentence, as a network knows them. What it does not know is said.
+"""Text: the words of a sentence, as a network knows them, and messages about all others.
 
     "She strolls ahead, 3 times!"  ->  walk  ahead  3  times     "she" is passed over
                                         *strolls* is read as *walk*

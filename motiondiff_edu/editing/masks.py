@@ -85,6 +85,12 @@ def checked_known(motion: Motion, known) -> Bool[np.ndarray, "T J"]:
             f"of their own skeleton. Read the figure from a BVH file, which retargets it"
         )
     array = np.asarray(known)
+    if array.dtype.kind in "UO":
+        raise MotionError(
+            f"known is a table of True and False, not {known!r:.60}. motion.all_but(['LeftArm']) "
+            "leaves joints out, editing.masks.body_part(len(motion), 'lower body') keeps a part, "
+            "md.keyframes(motion) keeps frames"
+        )
     if array.shape != (len(motion), J) or array.dtype != bool:
         raise MotionError(
             f"known is {array.dtype} {array.shape}; it must be bool ({len(motion)}, {J}): a row "

@@ -65,7 +65,7 @@ def train(
         if recipe.begins_with:
             advice = f"the network of {recipe.begins_with}: pass it as `first`"
         raise ValueError(f"{recipe.name} begins with {advice}")
-    begun = prepared(recipe, clips or training_clips(recipe))
+    begun = prepared(recipe, training_clips(recipe) if clips is None else clips)
     windows = begun.windows
     begins = {}
     if first is not None:

@@ -111,9 +111,9 @@ WALKER_EPS = replace(
     config=MODIFF_SMALL,
     loss_weights=replace(OURS, high_noise=3.0),
 )
-# The paper's recipe as it stands, at our small size: eps without a skip, Adam at 5e-5, batch 64, the
-# plain loss, diffusion dropout, control never held. Ours: the data, the warm-up and cosine of the
-# rate, and what the paper does not give: the linear schedule is TimeGrad's.
+# The paper's recipe as it stands, at our small size: eps without a skip, Adam at 5e-5, batch 64,
+# the plain loss, diffusion dropout, control never held. Ours: the data, the warm-up and cosine of
+# the rate, and what the paper does not give: the linear schedule is TimeGrad's.
 WALKER_PRINTED = Recipe(
     "walker-printed",
     replace(MODIFF_SMALL, skip=False),

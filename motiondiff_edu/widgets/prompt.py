@@ -1,6 +1,6 @@
 """A prompt box: a sentence, how long, which seed; below it four motions that do what it says.
 
-Type and press Enter, or press the button. What cannot be acted is said in words, and the motions
+Type and press Enter, or press the button. A message says what cannot be acted, and the motions
 before it stay.
 Source: MoFusion Fig. 6.  Notebook: 16
 """

@@ -11,11 +11,11 @@ from motiondiff_edu.conditions.text import TextError
 from motiondiff_edu.ddpm import at
 from motiondiff_edu.editing.by_words import (
     _plan,
-    as_seen,
     at_the_start_of,
     columns,
     edit_by_words,
     kept_columns,
+    recognised_timeline,
 )
 from motiondiff_edu.editing.masks import UPPER, body_part
 from motiondiff_edu.motion.moving_frame import D, to_features, to_positions
@@ -101,7 +101,7 @@ def test_with_the_pelvis_the_path_stays_and_a_kept_span_is_the_motion_itself(mov
 def test_the_timeline_goes_with_what_is_kept(positions):
     """Legs that walk are kept: the plan walks where they do, whatever the text says of the legs."""
     walk = act_out((Phrase(Act("walk"), Act("wave", "left")),), 4.0, 3).positions[:80]
-    seen = as_seen(walk)
+    seen = recognised_timeline(walk)
     assert seen[:, timeline.VERBS.index("walk")].mean() > 0.8
     assert seen[:, timeline.VERBS.index("wave")].any()
     mover = mover_of(PLANNED, scaler_of(to_features(walk)))

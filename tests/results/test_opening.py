@@ -66,11 +66,13 @@ def test_rounding_hides_no_miss(value, shown):
 
 def test_what_is_met_by_its_value_alone_is_not_certain_and_what_is_absent_is_said(records):
     text = page.opening(records)
-    uncertain, absent = re.findall(r"\*\*What is not \w+(?: yet)?\.\*\* (.*)\n", text)
-    assert uncertain.endswith(
-        "the goal: the walker's bone or control error, whichever grows more, in the last 3 s, "
-        "over that in the first 3 s."
+    uncertain = text.split("**What is not certain.**")[1].split("**What is not")[0]
+    assert re.fullmatch(
+        r"The walker's bone or control error, whichever grows more, in the last 3 s, over that in "
+        r"the first 3 s, is [\d.]+ \[[\d.]+, [\d.]+\]; the goal is at most 1.2.\s*",
+        uncertain.split("\n* ", 1)[1],
     )
+    (absent,) = re.findall(r"\*\*What is not measured yet\.\*\* (.*)\n", text)
     assert absent == (
         "These measures are missing: "
         "the beat alignment of the dances beyond chance, over that of the data."

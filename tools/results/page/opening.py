@@ -26,7 +26,11 @@ def opening(records: dict[str, dict]) -> str:
     measured = {bar: one for bar in BARS if (one := _measured(bar, records))}
     met = {bar for bar, one in measured.items() if bar.met(one["value"])}
     missed = [missed_sentence(bar, one) for bar, one in measured.items() if bar not in met]
-    close = [subject(bar) for bar, one in measured.items() if bar in met and not _surely(bar, one)]
+    close = [
+        f"{_what(bar)} is {amount(bar, one)} {span(one)}; the goal is {bar.text}."
+        for bar, one in measured.items()
+        if bar in met and not _surely(bar, one)
+    ]
     absent = [subject(bar) for bar in BARS if bar not in measured]
     text = f"# Results\n\n**What holds.** {len(met)} of {len(BARS)} goals are met.\n\n"
     text += "".join(f"* {line}\n" for line in (group(g, measured, met) for g in GROUPS) if line)
@@ -34,9 +38,9 @@ def opening(records: dict[str, dict]) -> str:
     text += "\n**What was missed.**" + (_list(missed) if missed else none)
     if close:
         text += (
-            "\n**What is not certain.** These goals are met, but their 95 % intervals reach past "
+            "\n**What is not certain.** These goals are met, but their 95 % intervals reach past"
         )
-        text += f"the goal: {'; '.join(close)}.\n"
+        text += f" the goal:{_list(close)}"
     if absent:
         text += (
             f"\n**What is not measured yet.** These measures are missing: {'; '.join(absent)}.\n"

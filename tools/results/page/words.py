@@ -159,6 +159,7 @@ KINDS = {
     "r_precision_top3": "R-Precision, top 3",
     "r_precision_top3_over_real": "R-Precision (top 3) over the data's",
     "mm_dist": "distance of text and motion (MM-Dist)",
+    "mm_dist_over_real": "the same, over the data's",
     "diversity": "difference of motions (Diversity)",
     "multimodality": "difference of motions to one text (MultiModality)",
     "action_accuracy": "acts shown",
