@@ -69,7 +69,7 @@ MISTAKES = {
     ),
     "no data to scale": (lambda: Scaler.fit(torch.zeros(0, 3)), "there are no rows"),
     "one frame": (lambda: adherence(CLIP.poses[:1], CLIP.control[:1]), "needs two frames"),
-    "no segments": (lambda: joystick([]), "turning\\), not nothing"),
+    "no segments": (lambda: joystick([]), "turning\\), not \\[\\]"),
     "a short segment": (lambda: joystick([(1, 2)]), "four finite numbers"),
     "a segment of NaN": (lambda: joystick([(1, math.nan, 0, 0)]), "four finite numbers"),
     "an odd width": (lambda: MoDiffConfig(width=7, heads=7), "width = 7 must be even"),

@@ -8,7 +8,7 @@ from data_synth.actions import clips, mirror
 from data_synth.actions.acts import VERBS as ACTS
 from motiondiff_edu.beyond.timeline import (
     ARMS,
-    COUNTED,
+    WITH_TIMES,
     LEGS,
     MIDDLE,
     SHORTEST,
@@ -31,8 +31,8 @@ from motiondiff_edu.recipes.train_mover import timeline_of
 def test_its_verbs_are_those_of_the_sentences():
     assert set(VERBS) == set(ACTS) and len(VERBS) == len(set(VERBS))
     assert {verb for verb in ACTS if ACTS[verb].kind == "arms"} == set(ARMS)
-    assert {verb for verb in ACTS if ACTS[verb].kind == "way"} == set(LEGS) - set(COUNTED)
-    assert sentences.COUNTED <= set(COUNTED)
+    assert {verb for verb in ACTS if ACTS[verb].kind == "way"} == set(LEGS) - set(WITH_TIMES)
+    assert sentences.WITH_TIMES <= set(WITH_TIMES)
 
 
 def test_two_acts_of_the_legs_and_one_of_the_arms_by_hand():
@@ -76,7 +76,7 @@ def test_the_mirrored_clip_has_the_mirrored_timeline(k):
     other = mirror(one).acted
     np.testing.assert_array_equal(timeline_of(other.spans, len(other)), turned)
     assert made.shape == (len(one.acted), D)
-    counts = [a.count for p in one.acted.sentence for a in p.acts if a.verb in COUNTED]
+    counts = [a.count for p in one.acted.sentence for a in p.acts if a.verb in WITH_TIMES]
     assert made[:, TO_COME:MIDDLE].max() == max(counts, default=0)
     assert made[-1, TO_COME:MIDDLE].max() <= 1  # all is done at the end
 

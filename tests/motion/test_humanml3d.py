@@ -305,7 +305,7 @@ def test_read_motion_reads_vectors_and_joints(tmp_path, capsys):
         assert main(["info", str(tmp_path / name)]) in (0, None)
         said = capsys.readouterr().out
         assert f"{name[:-4]} ({what})" in said and "21 joints" in said
-        again = motion.save(tmp_path / "again.npz")
+        again = motion.save(tmp_path / f"{name}-again.npz")
         np.testing.assert_array_equal(md.read_motion(again).positions, motion.positions)
 
 
