@@ -8,13 +8,13 @@ from data_synth.actions import clips, mirror
 from data_synth.actions.acts import VERBS as ACTS
 from motiondiff_edu.beyond.timeline import (
     ARMS,
-    WITH_TIMES,
     LEGS,
     MIDDLE,
     SHORTEST,
     SIDE,
     TO_COME,
     VERBS,
+    WITH_TIMES,
     D,
     Timed,
     acts_of,
@@ -32,7 +32,7 @@ def test_its_verbs_are_those_of_the_sentences():
     assert set(VERBS) == set(ACTS) and len(VERBS) == len(set(VERBS))
     assert {verb for verb in ACTS if ACTS[verb].kind == "arms"} == set(ARMS)
     assert {verb for verb in ACTS if ACTS[verb].kind == "way"} == set(LEGS) - set(WITH_TIMES)
-    assert sentences.WITH_TIMES <= set(WITH_TIMES)
+    assert sentences.COUNTED <= set(WITH_TIMES)
 
 
 def test_two_acts_of_the_legs_and_one_of_the_arms_by_hand():
