@@ -45,9 +45,8 @@ def silence_hit(
     before = usual((-BESIDE <= away) & (away < -EDGE))[:, None]
     after = usual((width <= away) & (away < width + BESIDE))[:, None]
     most = np.exp(before + np.clip(away / width, 0, 1) * (after - before))
-    quiet = scipy.signal.istft(spectrum * np.minimum(1.0, most / np.maximum(loud, TINY)), **shape)[
-        1
-    ][: len(audio)]
+    softer = spectrum * np.minimum(1.0, most / np.maximum(loud, TINY))
+    quiet = scipy.signal.istft(softer, **shape)[1][: len(audio)]
     t = np.arange(len(audio)) / SAMPLE_RATE - time
     share = np.interp(t, [-EDGE, -EDGE / 2, width, width + EDGE], [0, 1, 1, 0])
     return (audio + share * (quiet - audio)).astype(audio.dtype)

@@ -55,7 +55,7 @@ IRREGULAR = {
 NO_ACTS = (
     WITHOUT_FORMS
     | NOUNS
-    | frozenset("2 3 4 air deeply fast gentle pace place quick round seat slow time".split())
+    | frozenset("2 3 4 deeply fast gentle pace place quick round seat slow time".split())
 )
 NUMBERS = frozenset("zero five six seven eight nine ten hundred".split())  # no count of training
 # words that say nothing about a movement
@@ -170,7 +170,7 @@ def read(text: str, vocabulary: Sequence[str], others: Mapping[str, str] | None 
             f"{', '.join(vocabulary[:12])} ..."
         )
     if NO_ACTS.issuperset(found) and not NO_ACTS.issuperset(vocabulary):
-        known = f"; {_acts(vocabulary)}" if _acts(vocabulary) else ""
+        known = _acts(vocabulary)
         raise TextError(f"{text.strip()!r:.80} names no act: say what the figure does{known}")
     return Read(tuple(found), tuple(dict.fromkeys(notes)))
 
@@ -184,9 +184,9 @@ def empty(what: str) -> TextError:
 
 
 def _acts(vocabulary: Sequence[str]) -> str:
-    """Some acts of a vocabulary, in words; "" if it has none of them."""
+    """Some acts of a vocabulary, as the end of a message; "" if it has none of them."""
     verbs = ", ".join(verb for verb in EXAMPLES if verb in vocabulary)
-    return f"it knows {verbs} and others" if verbs else ""
+    return f"; it knows {verbs} and others" if verbs else ""
 
 
 def _nearest(word: str, vocabulary: Sequence[str]) -> list[str]:
@@ -204,7 +204,7 @@ def _unknown(words: list[str], vocabulary: Sequence[str]) -> str:
         told.append(f"{word!r}" + (f" (did you mean {' or '.join(near)}?)" if near else ""))
         nothing_near &= not near
     more = f" and {len(words) - 5} more" if len(words) > 5 else ""
-    known = f"; {_acts(vocabulary)}" if nothing_near and _acts(vocabulary) else ""
+    known = _acts(vocabulary) if nothing_near else ""
     return (
         f"the network does not know {', '.join(told)}{more}. It was trained on a small vocabulary: "
         f"say it in other words, or leave it out{known}"

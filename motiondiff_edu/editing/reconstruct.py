@@ -27,10 +27,9 @@ from ..motion.planting import runs
 from ..motion.root_frame import smoothed_root, to_root_frame, to_world
 from ..motion.skeleton import BONE_LENGTHS, HIPS, JOINTS, TOES, J
 from ..reconstruction import Rollout, Stop
-from ..rollout import AnyWalker
+from ..rollout import SLACK, AnyWalker
 
 ROUNDS, STEPS = 3, 10  # rounds there and back; steps of DDIM
-SLACK = 0.1  # of the range of control in training: less beyond it is not worth a warning
 BATCH = 64  # windows at once
 
 

@@ -65,17 +65,9 @@ def resample_present(
             bridged[:, joint, axis] = np.interp(frames, frames[known], points[known, joint, axis])
     moved = resample(bridged, fps, to)
     at = np.arange(len(moved)) * fps / to
-    before, after = (np.clip(f(at).astype(int), 0, len(points) - 1) for f in (_floor, _ceil))
+    before, after = np.floor(at + 1e-6).astype(int), np.ceil(at - 1e-6).astype(int)
     moved[~(there[before] & there[after])] = np.nan
     return moved
-
-
-def _floor(at: Float[np.ndarray, "F"]) -> Float[np.ndarray, "F"]:
-    return np.floor(at + 1e-6)
-
-
-def _ceil(at: Float[np.ndarray, "F"]) -> Float[np.ndarray, "F"]:
-    return np.ceil(at - 1e-6)
 
 
 def low_pass(

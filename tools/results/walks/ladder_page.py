@@ -78,18 +78,19 @@ def section(records: dict[str, dict], folder: Path) -> str:
 
 def at_the_edge(records: dict[str, dict]) -> str:
     """Which rates are the least or the largest of those that were tried, in a sentence."""
-    found = {}
+    found = []
     for name in measured(records):
         cell, rate = CELLS[name], records[f"ladder.{name}.bone_rmse_cm"]["seeds"]["rate"]
         tried = RATES[cell.recipe.optimizer]
         if cell.tuned and rate in (min(tried), max(tried)):
-            found[f"{cell.recipe.optimizer.capitalize()} in the {root(name)} recipe ({rate:g})"] = (
-                None
+            found.append(
+                f"{cell.recipe.optimizer.capitalize()} in the {root(name)} recipe ({rate:g})"
             )
     if not found:
         return ""
+    which = " and ".join(dict.fromkeys(found))
     return (
-        f" For {' and '.join(found)} that is the first or the last of the three: a wider grid "
+        f" For {which} that is the first or the last of the three: a wider grid "
         "could find a better one, so read a loss against such a row with care."
     )
 
