@@ -64,7 +64,7 @@ class Clip:
         if not text.strip():
             raise empty("is empty")
         self.ids([text])
-        return Read((text.strip(),))
+        return Read(text.strip(), (text.strip(),))
 
     def encoded(self, texts: Sequence[tuple[str, ...]]) -> ClipTokens:
         """What a network takes of texts that were read; () is the empty text."""

@@ -76,6 +76,7 @@ class TextError(ValueError):
 class Read:
     """A text as a network gets it: its words, all known, and notes on how others were read."""
 
+    text: str
     words: tuple[str, ...]
     notes: tuple[str, ...] = ()
 
@@ -172,7 +173,7 @@ def read(text: str, vocabulary: Sequence[str], others: Mapping[str, str] | None 
     if NO_ACTS.issuperset(found) and not NO_ACTS.issuperset(vocabulary):
         known = _acts(vocabulary)
         raise TextError(f"{text.strip()!r:.80} names no act: say what the figure does{known}")
-    return Read(tuple(found), tuple(dict.fromkeys(notes)))
+    return Read(text.strip(), tuple(found), tuple(dict.fromkeys(notes)))
 
 
 def empty(what: str) -> TextError:

@@ -17,6 +17,7 @@ from torch import Tensor, nn
 from ..beyond import timeline
 from ..beyond.classifier_free import guided_by_text
 from ..conditions.clip import Clip, check
+from ..conditions.text import Read
 from ..conditions.word_encoder import WordReader
 from ..ddpm import Denoiser, Generators, Schedule, draw
 from ..motion.checks import checked_guidance, checked_samples, checked_seconds, checked_steps
@@ -162,7 +163,7 @@ class Mover(Performer):
 
     def act(
         self,
-        text: str,
+        text: str | Read,
         *,
         seconds: float = SECONDS,
         samples: int = 1,
@@ -173,7 +174,8 @@ class Mover(Performer):
     ) -> Motion | list[Motion]:
         """Do what a sentence says, such as "walks forward, then waves with the left hand".
 
-        The figure begins at the origin, facing z. A warning says which words were read as others.
+        The figure begins at the origin, facing z. A warning says which words were read as others;
+        there is none for a text that `reader.read` has read already (its `notes` say the same).
 
         seconds   of the motion, from 2 to 10; a long sentence needs the time that it takes
         samples   above 1: a list with this many motions; the first is that of samples=1
@@ -183,9 +185,12 @@ class Mover(Performer):
         Raises TextError for a text that cannot be read, ValueError for numbers out of range.
         Source: MoFusion 3.
         """
-        found = self.reader.read(text)
-        for note in found.notes:
-            warnings.warn(note, stacklevel=2)
+        if isinstance(text, Read):
+            found = text
+        else:
+            found = self.reader.read(text)
+            for note in found.notes:
+                warnings.warn(note, stacklevel=2)
         count, steps = checked_samples(samples), checked_steps(steps, self.schedule.S)
         guidance = checked_guidance(guidance)
         if not SHORTEST <= checked_seconds(seconds) <= LONGEST:
@@ -198,7 +203,7 @@ class Mover(Performer):
         evaluations = (steps or self.schedule.S) * (1 + self.can_plan)
         with with_bar(self, evaluations, "moving", progress) as one:
             made = one.act_ids(ids, whole, generator=draws, steps=steps, guidance=guidance)
-        source = f"{text.strip():.60}"
+        source = f"{found.text:.60}"
         made = [Motion(x[:frames], FPS, source=source) for x in made.double().cpu().numpy()]
         return made if samples > 1 else made[0]
 

@@ -24,6 +24,7 @@ from ..rollout import AnyWalker
 from ..viz import body
 from . import module, packing, poster
 from .player import PAGE, STACK
+from .turn import TURN
 
 MODULE = module.joined(module.BENCH)
 _BYTES = ("joints", "roots", "mended_joints", "mended_roots")
@@ -121,7 +122,8 @@ class Bench(anywidget.AnyWidget):
     @traitlets.observe("asked")
     def _answer(self, change):
         try:
-            self.repair()
+            with TURN:
+                self.repair()
         except (
             Exception
         ) as error:  # nobody sees what a callback raises, so it is shown in the widget

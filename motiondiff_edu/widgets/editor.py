@@ -24,6 +24,7 @@ from ..motion.bvh.write import write_bvh
 from ..motion.skeleton import JOINTS, J, joint_index
 from . import editor_page, packing
 from .editor_page import MODULE, MOST, complaint, listed
+from .turn import TURN
 
 
 @dataclass(frozen=True, eq=False)
@@ -202,6 +203,10 @@ class Editor(anywidget.AnyWidget):
     def _receive(self, _, content: dict, buffers) -> None:
         if content["do"] == "ping":  # the page only tests whether the kernel answers
             return
+        with TURN:
+            self._answer(content)
+
+    def _answer(self, content: dict) -> None:
         acts = {
             "toggle": lambda c: self._toggle(c["frame"]),
             "drag": lambda c: self._pull(c["frame"], JOINTS[c["joint"]], c["by"], c["grip"]),

@@ -3,6 +3,7 @@
 import ipywidgets
 
 from ..viz.style import as_html
+from .turn import TURN
 
 
 def explore(draw, **start) -> ipywidgets.VBox:
@@ -20,9 +21,10 @@ def explore(draw, **start) -> ipywidgets.VBox:
     reset = ipywidgets.Button(description="Reset", tooltip="reset all values")
 
     def refresh(_=None):
-        picture.value = as_html(
-            draw(**{name: control.value for name, control in controls.items()}), dpi=90
-        )
+        with TURN:  # pyplot has one current figure
+            picture.value = as_html(
+                draw(**{name: control.value for name, control in controls.items()}), dpi=90
+            )
 
     def back(_):
         for name, control in controls.items():

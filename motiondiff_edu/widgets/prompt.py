@@ -6,13 +6,13 @@ Source: MoFusion Fig. 6.  Notebook: 16
 """
 
 import html
-import warnings
 
 import ipywidgets
 
 from ..conditions.text import TextError
 from ..performers.mover import LONGEST, SECONDS, SHORTEST, Mover
 from .player import Player
+from .turn import TURN
 
 ANSWERS = 4
 SENTENCE = "walks forward, then waves with the left hand"
@@ -55,6 +55,10 @@ class Prompt(ipywidgets.VBox):
 
     def act(self) -> None:
         """Answer the sentence in the box, unless it is answered already."""
+        with TURN:
+            self._act()
+
+    def _act(self) -> None:
         if self._asked() == self._answered:
             self._say(self._note)
             return
@@ -77,13 +81,12 @@ class Prompt(ipywidgets.VBox):
 
     def _answer(self) -> None:
         text, seconds, seed = asked = self._asked()
-        with warnings.catch_warnings(record=True) as notes:
-            warnings.simplefilter("always")
-            self.motions = self.mover.act(
-                text, seconds=seconds, samples=ANSWERS, seed=seed, progress=False
-            )
+        found = self.mover.reader.read(text)
+        self.motions = self.mover.act(
+            found, seconds=seconds, samples=ANSWERS, seed=seed, progress=False
+        )
         self._answered = asked
-        self._note = "; ".join(dict.fromkeys(str(note.message) for note in notes))
+        self._note = "; ".join(found.notes)
         self._say(self._note)
 
     def _labels(self) -> list[str]:

@@ -100,7 +100,7 @@ def test_the_empty_text_has_its_two_marks(tiny, folder):
 
 
 def test_any_word_is_read_and_what_cannot_be_read_is_refused(tiny):
-    assert tiny.read(" does a cartwheel\n") == Read(("does a cartwheel",))
+    assert tiny.read(" does a cartwheel\n") == Read("does a cartwheel", ("does a cartwheel",))
     longest = " ".join(["kicks"] * (tiny_clip.LONGEST - 2))
     assert tiny.tokens([tiny.read(longest).words[0]]).mask.sum() == tiny_clip.LONGEST
     with pytest.raises(TextError, match="has 25 tokens, with the marks.*reads 24 at most"):
