@@ -257,6 +257,20 @@ def test_all_records_are_made_and_stand_in_the_page(monkeypatch, mover):
     assert "not measured yet" in tables.table_2({})
 
 
+def test_on_all_cores_the_numbers_are_the_same():
+    studio = parts.Studio(replace(parts.WORD_QUICK, edits=1, trials=40))
+    chosen = (parts.edited_by_words, data_alone)
+    in_turn, at_once = (run(chosen, studio) for run in (parts.in_turn, parts.on_all_cores))
+    for one, other in zip(in_turn, at_once, strict=True):
+        assert one.keys() == other.keys()
+        for prefix, measures in one.items():
+            assert measures and list(map(str, measures)) == list(map(str, other[prefix]))
+
+
+def data_alone(studio: parts.Studio) -> parts.Found:
+    return {"data": scores.recognised(studio.trials, studio.trials.truth)}
+
+
 def test_a_choice_is_trained_measured_and_shown(some, tmp_path, monkeypatch):
     monkeypatch.setattr(budget, "SMALL", replace(budget.SMALL, config=replace(PLANNED, words=())))
     few = first_of(some, 6)

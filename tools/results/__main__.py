@@ -194,7 +194,8 @@ def records_of(
         size = repair.QUICK if quick else repair.FULL
         return both.both_records(bench, stage.dancer("unconditional"), size, command)
     if part == "words":
-        return words.word_records(words.Studio(words.size_of(quick), bench.weights), command)
+        studio = words.Studio(words.size_of(quick), bench.weights)
+        return words.word_records(studio, command, words.on_all_cores)
     if group == "words-budget":
         size, runs = (
             (word_budget.QUICK, folder / "runs") if quick else (word_budget.FULL, RUNS / group)

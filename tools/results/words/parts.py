@@ -1,11 +1,14 @@
 """The measurements of the movers by `make results`: Table 2, its fools, held-out trials, edits."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass, replace
 from functools import cached_property
+from multiprocessing import get_context
 from pathlib import Path
 
 import numpy as np
+import torch
 from jaxtyping import Float
 
 from motiondiff_edu.editing.by_words import STEPS as EDIT_STEPS
@@ -138,36 +141,103 @@ def fools(studio: Studio, mover: Mover) -> dict[str, list[Positions]]:
     }
 
 
-def word_records(studio: Studio, command: str) -> list[dict]:
-    """All measures of the shipped mover, and of the rows without a network."""
-    mover, size = studio.mover("mover"), studio.size
-    seeds = {"data": UNSEEN, "edits": UNSEEN + 1, "variety": VARIETY, "looked_at": SEED}
-    seeds |= {"trials": size.trials, "sampling": 0, "steps": STEPS, "edit_steps": EDIT_STEPS}
-    seeds |= {"weights": weights_digest(studio.weights["mover"]), "judges": len(studio.judges)}
-    found = {"words.": []}
-    make = performed(mover)
-    made = make(studio.trials, 0)
-    found["words."] += [*studio.scored(made), *studio.varied(make), *studio.copied(made)]
-    found["words."] += studio.of_new_sentences(made)
-    for name, how in HELD_OUT.items():
-        panel = Panel(studio.judges, unseen(size.held_out, **how))
-        rows = studio.scored(make(panel.trials, 0), panel)
-        told = np.array([bool(understood(text, mover)) for text in panel.trials.captions])
-        rows.append(measure_of("understood", "share", np.mean, told))
-        found["words."] += [replace(one, name=f"{name}_{one.name}") for one in rows]
-    found["words."] += edit_measures(mover, edit_trials(size.edits))
-    found["words."] += sides(studio.trials, made)
-    found["words."] += looked_at_measures(mover, seeds["weights"])
-    guided = performed(mover, GUIDANCE)
-    found["words.guided."] = [*studio.scored(guided(studio.trials, 0)), *studio.varied(guided)]
-    silent = replace(studio.trials, captions=[""] * len(studio.trials))
-    found["words.no-text."] = studio.scored(make(silent, 0))
+Found = dict[str, list[Measure]]  # by the beginning of their names
+Part = Callable[[Studio], Found]
+
+
+def as_shipped(studio: Studio) -> Found:
+    """The shipped mover on the trials of Table 2, and the rows without a network."""
+    mover = studio.mover("mover")
+    made = performed(mover)(studio.trials, 0)
+    found = {"words.": [*studio.scored(made), *studio.copied(made)]}
+    found["words."] += [*studio.of_new_sentences(made), *sides(studio.trials, made)]
     without_network = fools(studio, mover)
     for name, motions in without_network.items():
         found[f"words.{name}."] = studio.scored(motions)
     found["words.nearest."] += studio.copied(without_network["nearest"])
+    return found
+
+
+def guided(studio: Studio) -> Found:
+    """The same trials with guidance."""
+    make = performed(studio.mover("mover"), GUIDANCE)
+    return {"words.guided.": studio.scored(make(studio.trials, 0))}
+
+
+def guided_variety(studio: Studio) -> Found:
+    """Several motions to one caption with guidance."""
+    return {"words.guided.": studio.varied(performed(studio.mover("mover"), GUIDANCE))}
+
+
+def variety(studio: Studio) -> Found:
+    """Several motions to one caption."""
+    return {"words.": studio.varied(performed(studio.mover("mover")))}
+
+
+def without_text(studio: Studio) -> Found:
+    """The trials without their captions."""
+    silent = replace(studio.trials, captions=[""] * len(studio.trials))
+    make = performed(studio.mover("mover"))
+    return {"words.no-text.": studio.scored(make(silent, 0))}
+
+
+def held_out(studio: Studio) -> Found:
+    """Combinations and verbs that no training caption has."""
+    mover, found = studio.mover("mover"), []
+    for name, how in HELD_OUT.items():
+        panel = Panel(studio.judges, unseen(studio.size.held_out, **how))
+        rows = studio.scored(performed(mover)(panel.trials, 0), panel)
+        told = np.array([bool(understood(text, mover)) for text in panel.trials.captions])
+        rows.append(measure_of("understood", "share", np.mean, told))
+        found += [replace(one, name=f"{name}_{one.name}") for one in rows]
+    return {"words.": found}
+
+
+def edited_by_words(studio: Studio) -> Found:
+    """Edits of motions of the data."""
+    return {"words.": edit_measures(studio.mover("mover"), edit_trials(studio.size.edits))}
+
+
+def looked_at(studio: Studio) -> Found:
+    """The recogniser beside eyes."""
+    digest = weights_digest(studio.weights["mover"])
+    return {"words.": looked_at_measures(studio.mover("mover"), digest)}
+
+
+PARTS = (  # the longest first
+    guided, as_shipped, guided_variety, held_out, without_text, edited_by_words, variety, looked_at,
+)  # fmt: skip
+
+
+def in_turn(parts: Sequence[Part], studio: Studio) -> list[Found]:
+    """The parts one after the other."""
+    return [part(studio) for part in parts]
+
+
+def on_all_cores(parts: Sequence[Part], studio: Studio) -> list[Found]:
+    """The parts at the same time, one thread each. The numbers are those of `in_turn`."""
+    with ProcessPoolExecutor(mp_context=get_context("spawn")) as processes:
+        return list(processes.map(_alone, parts, [studio] * len(parts)))
+
+
+def _alone(part: Part, studio: Studio) -> Found:
+    torch.set_num_threads(1)
+    return part(studio)
+
+
+def word_records(
+    studio: Studio,
+    command: str,
+    run: Callable[[Sequence[Part], Studio], list[Found]] = in_turn,
+) -> list[dict]:
+    """All measures of the shipped mover, and of the rows without a network."""
+    size = studio.size
+    seeds = {"data": UNSEEN, "edits": UNSEEN + 1, "variety": VARIETY, "looked_at": SEED}
+    seeds |= {"trials": size.trials, "sampling": 0, "steps": STEPS, "edit_steps": EDIT_STEPS}
+    seeds |= {"weights": weights_digest(studio.weights["mover"]), "judges": len(studio.judges)}
     return [
         measure.as_record(prefix, seeds, command)
+        for found in run(PARTS, studio)
         for prefix, measures in found.items()
         for measure in measures
         if np.isfinite(measure.value)
