@@ -11,7 +11,7 @@ EXAMPLE = "convert my_walk.bvh my_walk.mp4"
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("file", type=Path, help="a motion: .bvh, .npz or .npy")
+    parser.add_argument("file", type=Path, help="a motion: .bvh, .npz, .npy or .pkl")
     parser.add_argument("out", type=Path, help=f"the file to write: {outputs.endings()}")
     parser.add_argument(
         "--joints",

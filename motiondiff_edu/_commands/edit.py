@@ -12,7 +12,7 @@ EXAMPLE = 'edit my_walk.bvh "walks forward while clapping" --keep "lower body" -
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("file", type=Path, help="a motion of 2 to 10 s: .bvh, .npz or .npy")
+    parser.add_argument("file", type=Path, help="a motion of 2 to 10 s: .bvh, .npz, .npy or .pkl")
     parser.add_argument("text", help="the sentence, in quotes")
     parser.add_argument(
         "--keep",

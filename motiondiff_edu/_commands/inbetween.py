@@ -12,7 +12,7 @@ EXAMPLE = "inbetween my_walk.bvh --every 20 --samples 3 --out made.bvh"
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("file", type=Path, help="a motion: .bvh, .npz or .npy")
+    parser.add_argument("file", type=Path, help="a motion: .bvh, .npz, .npy or .pkl")
     parser.add_argument(
         "--every", type=int, default=20, metavar="N", help="a keyframe every N frames (default: 20)"
     )

@@ -11,7 +11,7 @@ EXAMPLE = "info my_walk.bvh"
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("file", type=Path, nargs="+", help="motions: .bvh, .npz or .npy")
+    parser.add_argument("file", type=Path, nargs="+", help="motions: .bvh, .npz, .npy or .pkl")
 
 
 def run(args: argparse.Namespace) -> None:

@@ -11,7 +11,7 @@ EXAMPLE = "play my_walk.bvh more.bvh"
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("file", type=Path, nargs="+", help="motions: .bvh, .npz or .npy")
+    parser.add_argument("file", type=Path, nargs="+", help="motions: .bvh, .npz, .npy or .pkl")
     parser.add_argument("--out", type=Path, metavar="PAGE.html", help="where to save the page")
     parser.add_argument("--no-open", action="store_true", help="do not open the browser")
     outputs.add_overwrite(parser)

@@ -16,7 +16,7 @@ EXAMPLE = (
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("file", type=Path, help="a motion: .bvh, .npz or .npy")
+    parser.add_argument("file", type=Path, help="a motion: .bvh, .npz, .npy or .pkl")
     parser.add_argument(
         "--missing",
         metavar="JOINTS",

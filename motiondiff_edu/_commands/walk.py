@@ -13,7 +13,7 @@ EXAMPLE = 'walk my_walk.bvh --control "3s 1.2; 4s 1.0 turn 0.6" --out more.bvh'
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("file", type=Path, help="the walk to continue: .bvh, .npz or .npy")
+    parser.add_argument("file", type=Path, help="the walk to continue: .bvh, .npz, .npy or .pkl")
     parser.add_argument(
         "--control", required=True, metavar="SEGMENTS", help='for example "3s 1.2; 4s 1.0 turn 0.6"'
     )

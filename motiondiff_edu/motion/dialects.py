@@ -24,7 +24,7 @@ SIDED = {
     "UpLeg": "upleg upperleg thigh thighbend femur hip",
     "Leg": "leg lowleg lowerleg shin knee calf tibia",
     "Foot": "ankle foot",
-    "ToeBase": "toebase toe toes toe0 ball foot",
+    "ToeBase": "toebase toe toes toe0 ball bigtoe footindex foot",
     "Arm": "arm shldr shldrbend uparm uarm upperarm humerus shoulder",
     "ForeArm": "forearm forearmbend lowarm lowerarm farm radius elbow",
     "Hand": "wrist hand",
@@ -34,7 +34,7 @@ SIDED = {
     ),
 }
 CENTRAL = {
-    "Hips": "hips hip pelvis root spinebase",
+    "Hips": "hips hip pelvis midhip root spinebase",
     "Head": "head",
     "Neck1": "neck1 neck neck01 lowerneck necklower necktwist01 upperneck",
     "Spine": "spine chest abdomen ab abdomenlower spine01 spine0 lowerback torso l3 spinemid",
@@ -94,16 +94,7 @@ def guess_mapping(bvh: Bvh, given: Mapping[str, str] | None = None) -> dict[str,
     from others.
     Raises BvhError when a needed joint is missing; the message lists the file's joints.
     """
-    bare = without_shared(bvh.joints)
-    known = {plain(word): name for word, name in reversed(list(zip(bare, bvh.joints, strict=True)))}
-    mapping = dict(given or {})
-    for joint in (joint for joint in JOINTS if joint not in mapping):
-        taken = set(mapping.values())
-        fits = [
-            known[word] for word in spellings(joint) if word in known and known[word] not in taken
-        ]
-        if fits:
-            mapping[joint] = fits[0]
+    mapping = by_names(bvh.joints, given)
     for tip, base in [
         (side + tip, side + base) for side in ("Left", "Right") for tip, base in TIPS
     ]:
@@ -113,6 +104,21 @@ def guess_mapping(bvh: Bvh, given: Mapping[str, str] | None = None) -> dict[str,
     mapping |= by_hierarchy(mapping, bvh)
     refuse_incomplete(mapping, bvh)
     refuse_no_figure(mapping, bvh)
+    return mapping
+
+
+def by_names(names: Sequence[str], given: Mapping[str, str] | None = None) -> dict[str, str]:
+    """{course joint: name}: the entries of `given`, and the rest by the names alone."""
+    bare = without_shared(names)
+    known = {plain(word): name for word, name in reversed(list(zip(bare, names, strict=True)))}
+    mapping = dict(given or {})
+    for joint in (joint for joint in JOINTS if joint not in mapping):
+        taken = set(mapping.values())
+        fits = [
+            known[word] for word in spellings(joint) if word in known and known[word] not in taken
+        ]
+        if fits:
+            mapping[joint] = fits[0]
     return mapping
 
 
@@ -224,10 +230,17 @@ def refuse_no_figure(mapping: Mapping[str, str], bvh: Bvh) -> None:
                 lengths[f"{upper} ('{above}') to {lower} ('{below}')"] = float(
                     np.linalg.norm(pose[above] - pose[below])
                 )
-        longest, shortest = (choose(lengths, key=lengths.get) for choose in (max, min))
-        if lengths[longest] > UNLIKE * lengths[shortest]:
-            times = lengths[longest] / max(lengths[shortest], 1e-9)
-            raise _no_figure(f"{longest} is {times:.3g} times as long as {shortest}", bvh)
+        if words := unlike(lengths):
+            raise _no_figure(words, bvh)
+
+
+def unlike(lengths: Mapping[str, float]) -> str:
+    """What is wrong with the lengths of the bones of both arms, or of both legs; "" if nothing."""
+    longest, shortest = (choose(lengths, key=lengths.get) for choose in (max, min))
+    if lengths[longest] <= UNLIKE * lengths[shortest]:
+        return ""
+    times = lengths[longest] / max(lengths[shortest], 1e-9)
+    return f"{longest} is {times:.3g} times as long as {shortest}"
 
 
 def _no_figure(what: str, bvh: Bvh) -> BvhError:

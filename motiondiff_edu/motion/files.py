@@ -1,4 +1,4 @@
-"""`read_motion(path)`, and the two file formats of this layer: BVH and npz.
+"""`read_motion(path)`, and the file formats of this layer: BVH, npz and AIST++'s keypoints.
 
 Notebook: 00
 """
@@ -13,13 +13,15 @@ import numpy as np
 
 from .._files import replacing
 from . import registry
+from .aist import COCO, read_keypoints
 from .bvh.write import write_bvh
 from .checks import check_there
 from .clip import Clip
+from .keypoints import motion_of_keypoints
 from .motion import Motion, MotionError, MotionWarning, lies_down, unlike_a_body
 from .retarget import load_clip
 from .root_frame import FPS
-from .skeleton import COURSE, Skeleton
+from .skeleton import COURSE, JOINTS, Skeleton
 
 FORMAT = "motiondiff_edu motion 1"
 LARGEST = 2_000_000_000  # bytes, unpacked: half a day of motion
@@ -28,7 +30,7 @@ ELSEWHERE = {
     (".fbx", ".c3d", ".glb", ".gltf", ".usd", ".blend"): "export it as BVH, for example in Blender",
     (".amc", ".asf", ".vrma"): "export it as BVH",
     (".wav", ".mp3", ".ogg", ".flac"): 'this is sound; md.load("dancer").dance(path) dances to it',
-    (".pkl", ".pickle"): "a pickle can run code and is not opened; save its arrays as npz",
+    (".pickle",): "a pickle can run code and is not opened; save its arrays as npz",
 }
 
 
@@ -38,10 +40,12 @@ def read_motion(
     mapping: Mapping[str, str] | None = None,
     file_fps: float | int | None = None,
 ) -> Motion:
-    """Read a motion from a file; the name's ending says whether it is BVH, npz or npy.
+    """Read a motion from a file; the name's ending says whether it is BVH, npz, npy or pkl.
 
-    Any humanoid BVH is retargeted to the course's skeleton and resampled to 20 frames/s. An npy is
-    a motion of HumanML3D (`motion/humanml3d.py`).
+    Any humanoid BVH is retargeted to the course's skeleton and resampled to 20 frames/s; so is an
+    npz with the `names` of its joints that this package did not write (`motion/keypoints.py`), and
+    a pkl, which has keypoints of AIST++ and is read without running its code. An npy is a motion of
+    HumanML3D (`motion/humanml3d.py`).
 
     mapping   for a BVH file: {joint of the course: joint of the file}, for names not recognised
     file_fps  for a BVH file: its frames a second, if the file states a wrong number
@@ -79,6 +83,13 @@ def read_bvh_motion(
     """Any humanoid BVH, retargeted; the figure keeps its place in the world.  Raises BvhError."""
     clip = load_clip(path, mapping, file_fps)
     return Motion.of_clip(clip, clip.info["start"])
+
+
+@registry.readers.register(".pkl")
+def read_aist(path: Path) -> Motion:
+    """A dance of AIST++, retargeted.  Raises AistError for another pickle; none is run."""
+    dance = read_keypoints(path)
+    return motion_of_keypoints(dance.positions, COCO, dance.fps, dance.source, up="+y")
 
 
 @registry.writers.register(".bvh")
@@ -142,18 +153,21 @@ def read_npz(path: Path) -> Motion:
     there = ", ".join(f"{name} {array.shape}" for name, array in arrays.items())
     raise MotionError(
         f"{path.name} contains {there or 'nothing'}; a motion has `positions` (frames, joints, 3) "
-        f"in metres and `fps`, and for another skeleton `names` and `parents` as well"
+        f"in metres and `fps`, and for another skeleton the `names` of its joints as well"
     )
 
 
 def _from_positions(arrays: dict[str, np.ndarray], source: str) -> Motion:
     skeleton = COURSE
-    if "names" in arrays and "parents" in arrays:
-        skeleton = Skeleton(tuple(arrays["names"].tolist()), tuple(arrays["parents"].tolist()))
+    fps = float(arrays.get("fps", FPS))
+    names = tuple(map(str, arrays["names"].tolist())) if "names" in arrays else JOINTS
+    if names != JOINTS and "format" not in arrays:
+        return motion_of_keypoints(arrays["positions"].astype(np.float64), names, fps, source)
+    if "parents" in arrays:
+        skeleton = Skeleton(names, tuple(arrays["parents"].tolist()))
     along = {name: arrays[name] for name in ("root", "contacts", "audio") if name in arrays}
     if "sample_rate" in arrays:
         along["sample_rate"] = int(arrays["sample_rate"])
-    fps = float(arrays.get("fps", FPS))
     return Motion(arrays["positions"], fps, skeleton, source=source, **along)
 
 

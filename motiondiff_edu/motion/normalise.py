@@ -63,13 +63,16 @@ def to_metres(
     return points * (LEG / length), LEG / length
 
 
-def up_axis(points: Float[np.ndarray, "T 21 3"], rest: Float[np.ndarray, "21 3"]) -> str:
+def up_axis(
+    points: Float[np.ndarray, "T 21 3"], rest: Float[np.ndarray, "21 3"] | None = None
+) -> str:
     """The axis along which the head is above the feet: "+y", "+z" and so on.
 
-    The motion decides if the figure is upright for most of the clip, else the rest pose does.
+    The motion decides if the figure is upright for most of the clip, else the rest pose does, if
+    there is one.
     """
     upright = np.median(body_axis(points), axis=0)
-    if np.abs(upright).max() < 0.8:
+    if np.abs(upright).max() < 0.8 and rest is not None:
         upright = body_axis(rest[None])[0]
     axis = int(np.abs(upright).argmax())
     return "+-"[int(upright[axis] < 0)] + "xyz"[axis]

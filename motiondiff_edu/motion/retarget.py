@@ -1,11 +1,12 @@
-"""Any humanoid BVH as a clip of the course: `load_clip("walk.bvh")`.
+"""Any human figure as a clip of the course: `load_clip("walk.bvh")`.
 
-The steps: find the joints, scale to metres by the leg length, rotate y up, drop a T-pose, resample
-to 20 frames/s, level the floor, put the bone directions on our bones, plant the feet, and compute
-the root frame and the control.
+A `Figure` has the joints of a file, by whatever way they were found. The steps: scale to metres by
+the leg length, rotate y up, drop a T-pose, resample to 20 frames/s, level the floor, put the bone
+directions on our bones, plant the feet, and compute the root frame and the control.
 """
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -49,6 +50,21 @@ TIP_JOINTS = tuple(JOINTS.index(side + tip) for side in ("Left", "Right") for ti
 SUNK = -0.05  # metres: no joint of a standing figure is so low
 
 
+@dataclass(frozen=True, eq=False)
+class Figure:
+    """The course's joints in a file's unit and axes; NaN for joints that the file lacks.
+
+    `rest`: the same joints as the file's skeleton stands, if it says so. `up`: the axis that points
+    up, such as "+z", if the file states it; else it is found from the figure.
+    """
+
+    points: Float[np.ndarray, "T 21 3"]
+    fps: float
+    rest: Float[np.ndarray, "21 3"] | None = None
+    source: str = ""
+    up: str = ""
+
+
 def load_clip(
     path: str | Path, mapping: Mapping[str, str] | None = None, file_fps: float | int | None = None
 ) -> Clip:
@@ -69,66 +85,81 @@ def retarget(bvh: Bvh, mapping: Mapping[str, str] | None = None, fps: float | in
     units, the corrections and the mapping.
     Raises BvhError when joints are missing or the motion is shorter than half a second.
     """
+    mapping = guess_mapping(bvh) if mapping is None else check_mapping(mapping, bvh)
+    points, rest = bvh.world_positions(), bvh.rest_positions()[None]
+    figure = Figure(
+        pick(points, bvh, mapping), bvh.fps, pick(rest, bvh, mapping)[0], source=bvh.source
+    )
+    return retarget_figure(figure, fps, {"mapping": dict(mapping)})
+
+
+def retarget_figure(figure: Figure, fps: float | int = 20.0, info: dict | None = None) -> Clip:
+    """A figure with the course's bones, as `retarget`; its `info` is added to `info`.
+
+    Raises BvhError for a motion that is shorter than half a second.
+    """
     fps = float(fps)
     if not 0 < fps < np.inf:
         raise BvhError(
-            f"fps must be a positive number of frames a second, not {fps:g}.", bvh.source
+            f"fps must be a positive number of frames a second, not {fps:g}.", figure.source
         )
-    mapping = guess_mapping(bvh) if mapping is None else check_mapping(mapping, bvh)
-    points, info = normalised(bvh, mapping, fps)
-    world, contacts = onto_our_bones(points, info["rest_lean"], fps)
-    warn_sunk(world, fps, bvh.source, info["notes"])
+    points, found = normalised(figure, fps)
+    world, contacts = onto_our_bones(points, found["rest_lean"], fps)
+    warn_sunk(world, fps, figure.source, found["notes"])
     root, heading = estimate_root(world, fps)
     poses, control = to_root_frame(world, root, heading, fps)
+    found |= {"start": (*root[0].tolist(), float(heading[0]))}
     return Clip(
         poses,
         control,
         fps=fps,
         contacts=contacts,
-        source=bvh.source,
-        info=info | {"mapping": dict(mapping), "start": (*root[0].tolist(), float(heading[0]))},
+        source=figure.source,
+        info=found | (info or {}),
     )
 
 
-def normalised(
-    bvh: Bvh, mapping: Mapping[str, str], fps: float
-) -> tuple[Float[np.ndarray, "T 21 3"], dict]:
+def normalised(figure: Figure, fps: float) -> tuple[Float[np.ndarray, "T 21 3"], dict]:
     """The figure in metres, y up, at `fps`, on a level floor; and a record of the corrections."""
-    points, notes = pick(bvh.world_positions(), bvh, mapping), []
-    rest = pick(bvh.rest_positions()[None], bvh, mapping)
-    up = up_axis(points, rest[0])
-    points, unit = to_metres(rotate_y_up(points, up), bvh.source)
+    points, rest, notes = figure.points, figure.rest, []
+    up = figure.up or up_axis(points, rest)
+    points, unit = to_metres(rotate_y_up(points, up), figure.source)
     points = without_null_tips(points)
     points, mirrored = unmirror(points)
-    rest = rotate_y_up(rest, up)[0]
+    lean = 0.0
+    if rest is not None:
+        rest = rotate_y_up(rest, up)
+        # a mirrored rest pose would have hips that face backwards
+        lean = rest_lean(rest * FLIP_X if mirrored else rest)
     if mirrored:
-        rest = rest * FLIP_X  # otherwise its hips would face backwards
         notes.append(
-            warn("left and right were exchanged in the file; the figure was mirrored", bvh.source)
+            warn(
+                "left and right were exchanged in the file; the figure was mirrored", figure.source
+            )
         )
     dropped = calibration_frames(points)
     if dropped:
         which = "frame 0 is" if dropped == 1 else f"frames 0 to {dropped - 1} are"
         notes.append(
-            warn(f"{which} a calibration pose, not part of the motion; dropped", bvh.source)
+            warn(f"{which} a calibration pose, not part of the motion; dropped", figure.source)
         )
     points = complete(points[dropped:])
-    refuse_short(len(points), bvh)
-    speeds = speed(points, bvh.fps)
-    warn_wild(speeds, bvh, dropped, notes)
-    points = resample_present(points, bvh.fps, fps)
-    wild = wild_joints(speeds, bvh.fps, len(points), fps)
+    refuse_short(len(points), figure)
+    speeds = speed(points, figure.fps)
+    warn_wild(speeds, figure, dropped, notes)
+    points = resample_present(points, figure.fps, fps)
+    wild = wild_joints(speeds, figure.fps, len(points), fps)
     ours = has_our_bones(points)
     plane = np.zeros(3) if ours else floor_plane(ground_points(points), fps)
     info = dict(
-        file_fps=bvh.fps,
+        file_fps=figure.fps,
         unit_m=unit,
         up=up,
         dropped_frames=dropped,
         floor_slope=tuple(plane[1:]),
         notes=notes,
     )
-    return level(points, plane), info | {"rest_lean": rest_lean(rest), "wild": wild}
+    return level(points, plane), info | {"rest_lean": lean, "wild": wild}
 
 
 def without_null_tips(points: Float[np.ndarray, "T 21 3"]) -> Float[np.ndarray, "T 21 3"]:
@@ -182,17 +213,19 @@ def warn_sunk(
         )
 
 
-def refuse_short(count: int, bvh: Bvh) -> None:
+def refuse_short(count: int, figure: Figure) -> None:
     """Raise BvhError for a clip that is too short to show a heading."""
-    if count / bvh.fps < SHORTEST:
+    if count / figure.fps < SHORTEST:
         problem = (
-            f"{count} frame{'s' * (count != 1)} at {bvh.fps:g} frames/s last "
-            f"{count / bvh.fps:.2f} s; at least {SHORTEST} s are needed."
+            f"{count} frame{'s' * (count != 1)} at {figure.fps:g} frames/s last "
+            f"{count / figure.fps:.2f} s; at least {SHORTEST} s are needed."
         )
-        raise BvhError(f"{problem} If the frame time is wrong, {REPLACE_FPS}.", bvh.source)
+        raise BvhError(f"{problem} If the frame time is wrong, {REPLACE_FPS}.", figure.source)
 
 
-def warn_wild(speeds: Float[np.ndarray, "T 21"], bvh: Bvh, dropped: int, notes: list[str]) -> None:
+def warn_wild(
+    speeds: Float[np.ndarray, "T 21"], figure: Figure, dropped: int, notes: list[str]
+) -> None:
     """Warn about joints that are faster than any actor's, which is a fault of the capture.
 
     `info["wild"]` says which joints are affected.
@@ -203,6 +236,6 @@ def warn_wild(speeds: Float[np.ndarray, "T 21"], bvh: Bvh, dropped: int, notes: 
         notes.append(
             warn(
                 f"a joint moves faster than {WILD:g} m/s within {where}: a fault of the capture?",
-                bvh.source,
+                figure.source,
             )
         )

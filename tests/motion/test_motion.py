@@ -11,6 +11,7 @@ from synthetic_walk import walk as figure
 from data_synth.dancing.write import main as write_dances
 from data_synth.walking import walk
 from data_synth.walking.write import main as write_walks
+from motiondiff_edu.motion.aist import AistError
 from motiondiff_edu.motion.bvh import BvhError, read_bvh
 from motiondiff_edu.motion.files import read_motion
 from motiondiff_edu.motion.motion import Motion, MotionError, MotionWarning
@@ -313,11 +314,12 @@ WRONG_FILES = {
     "smpl.npz": (lambda p: _npz(p, poses=np.zeros((2, 156)), control=np.zeros((2, 3))), "smpl.npz"),
     "walk.png": (
         lambda p: p.write_bytes(b"\x89PNG"),
-        "cannot be read as a motion; .bvh, .npy and .npz can",
+        "cannot be read as a motion; .bvh, .npy, .npz and .pkl can",
     ),
-    "song.ogg": (lambda p: p.write_bytes(b"OggS"), "npz can. This is sound"),
+    "song.ogg": (lambda p: p.write_bytes(b"OggS"), "pkl can. This is sound"),
     "walk.fbx": (lambda p: p.write_bytes(b"Kaydara"), "Export it as BVH"),
-    "walk.pkl": (lambda p: p.write_bytes(b"\x80"), "A pickle can run code"),
+    "walk.pickle": (lambda p: p.write_bytes(b"\x80"), "A pickle can run code"),
+    "walk.pkl": (lambda p: p.write_bytes(b"\x80"), "not a pickle, or a damaged one"),
     "empty.bvh": (lambda p: p.write_bytes(b""), "the file is empty"),
     "png.bvh": (lambda p: p.write_bytes(b"\x89PNG\0\0"), "binary file"),
 }
@@ -327,7 +329,7 @@ WRONG_FILES = {
 def test_a_file_that_is_no_motion_is_named_with_its_fault(name, tmp_path):
     make, told = WRONG_FILES[name]
     make(tmp_path / name)
-    with pytest.raises((MotionError, BvhError), match=told) as caught:
+    with pytest.raises((MotionError, BvhError, AistError), match=told) as caught:
         read_motion(tmp_path / name)
     assert name in str(caught.value)
 
