@@ -76,7 +76,7 @@ notebooks: $(VENV)/.test ## only the notebooks, and their student edition
 	OMP_NUM_THREADS=1 $(BIN)/python -m pytest -q $(WORKERS) --nbmake --nbmake-timeout=600 --durations=0 notebooks
 
 browser: $(VENV)/.test ## only the tests that need Chromium
-	$(BIN)/python -m pytest -q -m browser
+	OMP_NUM_THREADS=1 $(BIN)/python -m pytest -q $(WORKERS) --dist loadfile -m browser
 
 fuzz: $(VENV)/.test ## 2,000 damaged files and odd inputs for each reader (EXAMPLES=N: another number)
 	MOTIONDIFF_FUZZ=$(or $(EXAMPLES),2000) OMP_NUM_THREADS=1 $(BIN)/python -m pytest -q $(WORKERS) tests/fuzz

@@ -367,7 +367,7 @@ dancer = lambda: md.load("dancer")
 # code as it is typed: what it is answered
 TOLD = {
     'md.read_motion("nope.bvh")': "FileNotFoundError: there is no file nope.bvh in ",
-    'md.read_motion("walk.png")': "walk.png cannot be read as a motion; .bvh, .npy and .npz can",
+    'md.read_motion("walk.png")': "walk.png cannot be read as a motion; .bvh, .npy, .npz and .pkl",
     'md.read_motion("flat.npz")': "flat.npz: positions must be (frames, joints, 3) in metres",
     'md.load("waker")': "CheckpointError: no weights are called 'waker'; there are: ",
     'md.load("mine.safetensors")': "CheckpointError: ",

@@ -2,7 +2,6 @@
 
 They have no hierarchy and no skeleton at rest. Hips and head that are missing follow from the
 thighs, and from ears or nose; toes, hand tips and spine as for a BVH file (`directions.complete`).
-Notebook: 00
 """
 
 from collections.abc import Sequence

@@ -121,7 +121,8 @@ def retarget_figure(figure: Figure, fps: float | int = 20.0, info: dict | None =
 
 def normalised(figure: Figure, fps: float) -> tuple[Float[np.ndarray, "T 21 3"], dict]:
     """The figure in metres, y up, at `fps`, on a level floor; and a record of the corrections."""
-    points, rest, notes = figure.points, figure.rest, []
+    points, rest = figure.points, figure.rest
+    notes: list[str] = []
     up = figure.up or up_axis(points, rest)
     points, unit = to_metres(rotate_y_up(points, up), figure.source)
     points = without_null_tips(points)
