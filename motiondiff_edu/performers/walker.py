@@ -5,6 +5,7 @@ on tensors in the root frame.  Notebook: 00, 07
 """
 
 import copy
+import warnings
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -22,12 +23,13 @@ from ..fast.samplers import ddim_steps, ddpm_steps
 from ..fast.twins import watched
 from ..modiff import MoDiff, MoDiffConfig
 from ..motion.checks import checked_samples, checked_seconds, checked_steps
-from ..motion.motion import Motion, MotionError, as_motion
+from ..motion.motion import Motion, MotionError, MotionWarning, as_motion
 from ..motion.root_frame import FPS, root_path, to_world
 from ..motion.scaler import Scaler
 from ..motion.skeleton import J
 from ..prediction import denoiser_of
 from ..rollout import WindowSampler
+from .joined import in_words, joined, unlike_training
 from .networks import register
 from .performer import Performer, generators
 from .with_bar import with_bar
@@ -80,7 +82,8 @@ class Walker(Performer):
         samples  above 1: a list with this many continuations; the first is that of samples=1
         steps    of DDIM, or None for DDPM with all steps
         Raises MotionError for a motion that cannot be continued, ValueError for numbers out of
-        range. Warns where the control goes beyond the training data.
+        range. Warns where the control goes beyond the training data, and where the poses to
+        continue do: then the first half second is blended (`performers/joined.py`).
         Source: MoDiff Alg. 2.  Notebook: 00
         """
         as_motion(motion).check_whole()
@@ -104,13 +107,16 @@ class Walker(Performer):
         poses = new.double().cpu().numpy().reshape(count, -1, J, 3)
         place, heading = root_path(rows, tuple(given.root[-T_h]))
         path = np.column_stack([place, heading])
-        made = []
-        for one in poses:
-            whole = np.concatenate([clip.poses[-T_h:], one])
-            world = to_world(whole, rows, tuple(path[0]))
-            made.append(
-                Motion(world[T_h:], FPS, root=path[T_h:], source=f"{motion.name}, continued")
-            )
+
+        def in_world(frames):
+            return to_world(frames, rows, tuple(path[0]))
+
+        last, name = clip.poses[-T_h:], f"{motion.name}, continued"
+        both = [joined(given.positions, last, one, in_world) for one in poses]
+        words = in_words(max(jump for _, jump in both), unlike_training(self.pose_scaler, past[0]))
+        if words:
+            warnings.warn(f"{motion.name}: {words}", MotionWarning, stacklevel=2)
+        made = [Motion(world, FPS, root=path[T_h:], source=name) for world, _ in both]
         return made if samples > 1 else made[0]
 
     def denoiser(

@@ -5,7 +5,8 @@
 Parts: walker, walker-plain, walker-printed, walker-eps, walker-ddim10, walker-lookahead,
 walker-eps-lookahead, footsteps; dancer, dancer-plain, regression, unheard (music like none in
 training), attention, dance-time; mend (dropout and repairs), mend-both (both papers' repairs),
-inbetween, inbetween-departures (what each is worth), known-answer (methods of filling in, on tasks
+inbetween, inbetween-departures (what each is worth), recordings (what holds on recordings; only by
+its name, with MOTIONDIFF_REAL_DATA), known-answer (methods of filling in, on tasks
 whose answer is a formula); words (motion from text: Table 2, captions that nobody trained for,
 editing). These parts train, for minutes a row: ladder (from the paper's walker to ours),
 dance-budget, words-budget and mend-map. One row of them is a part as well: ladder.ours,
@@ -22,6 +23,7 @@ from pathlib import Path
 
 from benchmarks.records import show, write_records
 from motiondiff_edu._files import replacing
+from motiondiff_edu.pretrained import checkpoints
 from motiondiff_edu.viz.metrics import footstep_curves
 
 from .dances import budget as dance_budget
@@ -31,6 +33,7 @@ from .dances.timing import TIMED, time_records
 from .inbetweens import departures, inbetween, known_answer
 from .page.cards import add_metrics
 from .page.render import render
+from .recordings import continuations
 from .repairs import both, dropout, mend, repair
 from .repairs.trials import names_of
 from .walks import ladder
@@ -67,6 +70,7 @@ TRAINED = {
     "mend-map": tuple(dropout.RATES),
     "words-budget": tuple(word_budget.VARIANTS),
 }
+RECORDED = "recordings"  # the recordings are not part of the project
 ROUNDS = 7  # of dance-time
 
 
@@ -132,11 +136,12 @@ def parts_of(only: list[str], full: bool, lines: dict[str, Walks], weights: set[
         *DANCES,
         *MEASURED,
         *MENDED,
+        RECORDED,
         *(row for group in rows.values() for row in group),
     }
     unknown = sorted(set(parts) - known)
     if unknown:
-        there = ", ".join([*lines, *DANCES, *MEASURED, *MENDED, *rows])
+        there = ", ".join([*lines, *DANCES, *MEASURED, *MENDED, RECORDED, *rows])
         sys.exit(
             f"no part is called {', '.join(unknown)}; there are: {there}; rows: "
             "ladder.ours, dance-budget.v ..."
@@ -193,6 +198,12 @@ def records_of(
     if part == "mend-both":
         size = repair.QUICK if quick else repair.FULL
         return both.both_records(bench, stage.dancer("unconditional"), size, command)
+    if part == RECORDED:
+        size = continuations.QUICK if quick else continuations.FULL
+        path = bench.weights["walker"]
+        return continuations.recorded_records(
+            checkpoints.load_walker(path), weights_digest(path), size, command
+        )
     if part == "words":
         studio = words.Studio(words.size_of(quick), bench.weights)
         return words.word_records(studio, command, words.on_all_cores)

@@ -99,4 +99,10 @@ BARS = (
     Bar("words.edit_changes", at_least=0.8),
     Bar("words.edit_keeps_over_resampled", at_most=0.5),
     Bar("bench.mover_seconds", at_most=8),
+    Bar("real.seam_over_motion", at_most=1.3),
+    Bar("real.seam_p95_over_motion", at_most=1.5),
+    Bar("real.continuation_bone_cm", at_most=0.3),
+    Bar("real.continuation_skating_mps", at_most=0.05),
+    Bar("real.continuation_adherence_mps", at_most=0.03),
+    Bar("real.continuation_floor_cm", at_most=2),
 )

@@ -11,6 +11,7 @@ from motiondiff_edu.recipes.walkers import WALKER_PRINTED
 
 from ..dances.tables import choices, table_1
 from ..inbetweens import known_tables
+from ..recordings import page as recordings
 from ..repairs import tables
 from ..walks import ladder_page
 from ..walks.steps_table import PAPER_TABLE
@@ -217,7 +218,7 @@ def others(records: dict[str, dict]) -> str:
         "attention.",
     )
     shown += ("mend", "words.", "words-budget.", "known-answer.", "inbetween.")
-    shown += ("inbetween-departures.",)
+    shown += ("inbetween-departures.", "real.")
     rest = [one for name, one in sorted(records.items()) if not name.startswith(shown)]
     rows = [
         [f"`{r['name']}`", number(r["value"]), span(r), r["unit"], f"`{r['command']}`"]
@@ -242,7 +243,8 @@ def render(docs: Path, benchmarks: Path = Path("benchmarks/results")) -> None:
     parts += [tables.dropout(records, docs / "results"), tables.repairs(records, docs / "results")]
     known = folded(known_tables.known_answers(records), "The spread, and the shares of the parts")
     parts += [known_tables.both(records), known]
-    parts += [tables.inbetweens(records, docs / "results"), table_2(records), claims(records)]
+    parts += [tables.inbetweens(records, docs / "results"), table_2(records)]
+    parts += [recordings.section(records), claims(records)]
     parts = [opening(records), contents(parts), *parts]
     for name, text in (("RESULTS.md", "\n".join(filter(None, parts))), (ALL, others(records))):
         with replacing(docs / name) as aside:

@@ -123,6 +123,19 @@ GOALS = {
         "how far legs and path move in an edit by words, over sampling the new sentence alone"
     ),
     "bench.mover_seconds": "the seconds for four answers of 6 s to a sentence",
+    "real.seam_over_motion": (
+        "the fastest joint where a recording is continued, over the fastest around it (median)"
+    ),
+    "real.seam_p95_over_motion": (
+        "the fastest joint where a recording is continued, over the fastest around it "
+        "(95th percentile)"
+    ),
+    "real.continuation_bone_cm": "the bone error of continuations of recordings",
+    "real.continuation_skating_mps": "the sliding of planted feet in continuations of recordings",
+    "real.continuation_adherence_mps": "the control error of continuations of recordings",
+    "real.continuation_floor_cm": (
+        "the depth under the floor of continuations of recordings (95th percentile)"
+    ),
 }
 
 # For columns and rows: the last part of a key.

@@ -1,0 +1,64 @@
+"""Inertialisation: what is generated takes over the pose and the speed of the given motion.
+
+From an unusual past a network jumps to the poses that it knows: its first frame is far from the
+last given one. The difference of the two at the seam, in each bone's direction and in the place of
+the pelvis, is added to the generated frames and fades within half a second. Given frames stay as
+they are, and so do the lengths of bones. Feet that stand go on standing (`beyond/foot_lock.py`).
+Gain: docs/RESULTS.md, *On recordings* (`real.seam_over_motion` beside
+`real.unblended.seam_over_motion`); control and planted feet get worse in that half second.
+Source: Bollo, *Inertialization* (Game Developers Conference 2018), with vectors for quaternions
+"""
+
+import numpy as np
+from jaxtyping import Float
+
+from ..motion.skeleton import BONES, HIPS
+
+SECONDS = 0.5  # until the generated motion is on its own
+
+
+def fading(
+    offset: Float[np.ndarray, "*J 3"], speed: Float[np.ndarray, "*J 3"], n: int
+) -> Float[np.ndarray, "n *J 3"]:
+    """`offset` at frame 0, changing by `speed` a frame there; from frame n on it would be 0.
+
+    A polynomial of degree five in the time; at frame n its first three derivatives are 0, too.
+    """
+    u = (np.arange(n) / n).reshape(-1, *[1] * offset.ndim)
+    # (1 - u)^4 (offset + (4 offset + n speed) u): value and slope at 0, and four zeros at 1
+    return (1 - u) ** 4 * (offset + (4 * offset + n * speed) * u)
+
+
+def inertialized(
+    past: Float[np.ndarray, "T_h 21 3"], new: Float[np.ndarray, "T 21 3"], fps: float = 20.0
+) -> Float[np.ndarray, "T 21 3"]:
+    """`new` poses that go on from `past` without a jump (metres, both in the root frame)."""
+    n = min(len(new), round(SECONDS * fps))
+    if len(past) < 2 or n < 2:
+        return new
+    bones, lengths = _bones(new[:n])
+    given, _ = _bones(past[-2:])
+    hips = new[:n, HIPS] + _faded(past[-2:, HIPS], new[:n, HIPS], n)
+    bones = bones + _faded(given, bones, n)
+    bones = bones / np.maximum(np.linalg.norm(bones, axis=-1, keepdims=True), 1e-9)
+    joined = np.empty_like(new[:n])
+    joined[:, HIPS] = hips
+    for k, (parent, child) in enumerate(BONES):
+        joined[:, child] = joined[:, parent] + lengths[:, k, None] * bones[:, k]
+    return np.concatenate([joined, new[n:]])
+
+
+def _faded(given: np.ndarray, new: np.ndarray, n: int) -> np.ndarray:
+    """What to add to `new` (n frames), so that it goes on from two given frames."""
+    speed = given[1] - given[0]
+    return fading(given[1] + speed - new[0], speed - (new[1] - new[0]), n)
+
+
+def _bones(
+    poses: Float[np.ndarray, "T 21 3"],
+) -> tuple[Float[np.ndarray, "T 20 3"], Float[np.ndarray, "T 20"]]:
+    """Unit directions and lengths (metres) of the bones."""
+    parents, children = np.array(BONES).T
+    bones = poses[:, children] - poses[:, parents]
+    lengths = np.linalg.norm(bones, axis=-1)
+    return bones / np.maximum(lengths, 1e-9)[..., None], lengths

@@ -1,0 +1,115 @@
+"""Continuations of motions unlike the training: said, joined without a jump, given frames kept."""
+
+import warnings
+
+import numpy as np
+import pytest
+import torch
+
+import motiondiff_edu as md
+from data_synth.walking import walk
+from motiondiff_edu.beyond.foot_lock import FADE
+from motiondiff_edu.beyond.inertialize import SECONDS
+from motiondiff_edu.conditions.control import constant_control
+from motiondiff_edu.metrics.seams import seam_over_motion
+from motiondiff_edu.motion.inverse_kinematics import drag
+from motiondiff_edu.motion.motion import Motion, MotionWarning
+from motiondiff_edu.motion.scaler import Scaler
+from motiondiff_edu.motion.skeleton import JOINTS, joint_index
+from motiondiff_edu.performers.joined import JUMP, UNLIKE, in_words, joined, unlike_training
+
+AHEAD = np.tile([1.0, 0.0, 0.0], (50, 1))
+
+
+@pytest.fixture(scope="module")
+def walker():
+    return md.load("walker")
+
+
+@pytest.fixture
+def usual() -> Motion:
+    return Motion.of_clip(walk(constant_control(1.0, seconds=3.0), seed=5))
+
+
+@pytest.fixture
+def unusual(usual) -> Motion:
+    """The same walk with both hands above the head, which no walk of the training has."""
+    moved = usual.positions.copy()
+    for pose in moved:
+        for hand in ("LeftHand", "RightHand"):
+            above = pose[joint_index("Head")] + [0.0, 0.35, 0.0]
+            pose[:] = drag(pose, joint_index(hand), above)
+    return Motion(moved, usual.fps, root=usual.root, source="reaching")
+
+
+def ratio(given: Motion, more: Motion) -> float:
+    return seam_over_motion(np.concatenate([given.positions, more.positions]), len(given))
+
+
+def test_a_usual_walk_goes_on_as_the_network_says_and_nothing_is_said(walker, usual, monkeypatch):
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        more = walker.walk(usual, AHEAD, progress=False)
+    monkeypatch.setattr("motiondiff_edu.performers.joined.JUMP", np.inf)
+    plain = walker.walk(usual, AHEAD, progress=False)
+    np.testing.assert_array_equal(more.positions, plain.positions)
+    assert ratio(usual, more) < JUMP
+
+
+def test_an_unusual_past_is_named_and_joined_without_a_jump(walker, unusual, monkeypatch):
+    with pytest.warns(MotionWarning, match=r"reaching: the poses to continue are unlike .*Hand"):
+        more = walker.walk(unusual, AHEAD, progress=False)
+    monkeypatch.setattr("motiondiff_edu.performers.joined.JUMP", np.inf)
+    with pytest.warns(MotionWarning, match="standard deviations away"):
+        plain = walker.walk(unusual, AHEAD, progress=False)
+    assert ratio(unusual, plain) > 1.5 and ratio(unusual, more) < JUMP
+    n = round(SECONDS * 20) + FADE
+    np.testing.assert_array_equal(more.positions[n:], plain.positions[n:])
+    assert np.abs(more.positions[:5] - plain.positions[:5]).max() > 0.1
+    assert more.positions[..., 1].min() > -0.02
+
+
+def test_each_sample_is_joined_for_itself(walker, unusual):
+    with pytest.warns(MotionWarning):
+        both = walker.walk(unusual, AHEAD, samples=2, progress=False)
+        one = walker.walk(unusual, AHEAD, progress=False)
+    assert all(ratio(unusual, more) < JUMP for more in both)
+    np.testing.assert_allclose(both[0].positions, one.positions, atol=1e-4)
+
+
+@pytest.mark.parametrize("frames", [1, 2, 3])
+def test_short_continuations_are_left_alone_or_joined(walker, unusual, frames):
+    with pytest.warns(MotionWarning):
+        more = walker.walk(unusual, AHEAD[:frames], progress=False)
+    assert len(more) == frames and np.isfinite(more.positions).all()
+
+
+def test_joints_that_are_far_from_the_training_come_farthest_first():
+    past = torch.zeros(10, 63)
+    past[3, 3 * 4] = 3**0.5 * (UNLIKE + 1)
+    past[7, 3 * 2 + 1] = 3**0.5 * (UNLIKE + 2)
+    past[8, 3 * 1] = 3**0.5 * (UNLIKE - 0.1)
+    found = unlike_training(Scaler.nothing(63), past)
+    assert list(found) == [JOINTS[2], JOINTS[4]]
+    assert found[JOINTS[2]] == pytest.approx(UNLIKE + 2, rel=1e-5)
+
+
+def test_what_is_said():
+    assert in_words(JUMP, {}) == ""
+    assert "blended" not in in_words(0.9, {"Head": 6.0}) and "Head 6.0" in in_words(
+        0.9, {"Head": 6}
+    )
+    assert "blended" in in_words(1.2, {}) and "standard" not in in_words(1.2, {})
+    four = {name: 9.0 for name in JOINTS[:4]}
+    assert JOINTS[3] not in in_words(2.0, four)
+
+
+def test_a_jump_is_measured_before_it_is_joined():
+    given = np.zeros((20, 21, 3))
+    given[:, :, 0] = 0.01 * np.arange(20)[:, None]
+    given += np.random.default_rng(0).normal(size=(21, 3))
+    new = given[-1] + 0.01 * np.arange(1, 31)[:, None, None] * [1.0, 0.0, 0.0]
+    world, jump = joined(given, given[-10:], new, lambda frames: frames)
+    assert jump == pytest.approx(1.0) and np.array_equal(world, new)
+    _, jump = joined(given, given[-10:], new + [0.0, 0.0, 0.05], lambda frames: frames)
+    assert jump == pytest.approx(np.hypot(0.01, 0.05) / 0.01)

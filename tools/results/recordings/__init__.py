@@ -1,0 +1,1 @@
+"""What holds on recordings of people, whom no training has seen."""

@@ -1,0 +1,169 @@
+"""Continuations of recordings by the shipped walker: do they jump at the seam, and what follows?
+
+Windows of six seconds from files of several collections: two seconds are given, and the walker goes
+on for four as fast as the person went in the last second. Once as `Walker.walk` does it, once
+without its blending.
+"""
+
+import os
+import sys
+import warnings
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import torch
+from jaxtyping import Float
+
+import motiondiff_edu as md
+from motiondiff_edu import rollout
+from motiondiff_edu.conditions.control import splice
+from motiondiff_edu.metrics.adherence import adherence
+from motiondiff_edu.metrics.seams import seam_over_motion
+from motiondiff_edu.metrics.skating import skating
+from motiondiff_edu.motion.motion import Motion
+from motiondiff_edu.motion.root_frame import (
+    FPS,
+    control_from_path,
+    root_path,
+    to_root_frame,
+    to_world,
+)
+from motiondiff_edu.motion.skeleton import J
+from motiondiff_edu.performers.joined import JUMP, joined
+from motiondiff_edu.performers.performer import generators
+from motiondiff_edu.performers.walker import STEPS, Walker
+
+from ..walks.scores import Measure, measure_of, root_mean, squared_bone_error
+
+FOLDERS = ("bvh", "cmu30")  # of MOTIONDIFF_REAL_DATA
+GIVEN, AHEAD = 2.0, 4.0  # seconds
+EACH = 3  # windows of a file, at most
+EARLY = 1.0  # seconds after the seam
+
+
+@dataclass(frozen=True)
+class RecordedSize:
+    """The amount of measurement."""
+
+    files: int | None = None
+    each: int = EACH
+
+
+FULL, QUICK = RecordedSize(), RecordedSize(files=3, each=1)
+
+
+@dataclass(frozen=True, eq=False)
+class Window:
+    """Given frames of a recording, and the control of the frames to come."""
+
+    source: str
+    given: Motion
+    control: Float[np.ndarray, "n 3"]
+
+
+def windows(size: RecordedSize, range_of_control: dict) -> Iterator[Window]:
+    """The windows of all files that are read, evenly spaced; the control stays in the range.
+
+    Exits where MOTIONDIFF_REAL_DATA does not name a folder with recordings.
+    """
+    folder = Path(os.environ.get("MOTIONDIFF_REAL_DATA", ""))
+    files = [path for one in FOLDERS for path in sorted((folder / one).glob("*.bvh"))]
+    if not files:
+        sys.exit("MOTIONDIFF_REAL_DATA must name a folder with recordings in bvh/ and cmu30/")
+    given, n = round(GIVEN * FPS), round((GIVEN + AHEAD) * FPS)
+    for path in files[: size.files]:
+        try:
+            motion = md.read_motion(path)
+        except ValueError:  # damaged on purpose, or no human
+            continue
+        count = min(size.each, len(motion) // n)
+        for first in np.linspace(0, len(motion) - n, count).astype(int):
+            past = motion[int(first) : int(first) + given]
+            speed = past.control[-round(FPS) :].mean(0)
+            speed = speed.clip(range_of_control["low"], range_of_control["high"])
+            yield Window(path.name, past, np.tile(speed, (n - given, 1)))
+
+
+@dataclass(frozen=True, eq=False)
+class Continued:
+    """New frames in the world; `paths` and rows of control as they were asked for."""
+
+    world: Float[np.ndarray, "n 21 3"]
+    path: Float[np.ndarray, "n 3"]
+
+
+def continued(walker: Walker, window: Window) -> tuple[Continued, Continued]:
+    """As `Walker.walk` has it, and the same sample without the blending."""
+    given, T_h = window.given.rooted(), walker.config.T_h
+    clip = given.to_clip()
+    rows = splice(clip.control, window.control, T_h)
+    past = torch.from_numpy(clip.features()[-T_h:])[None]
+    steer = torch.from_numpy(rows).float()[None]
+    new = rollout.generate(walker, past, steer, generator=generators(0, 1), steps=STEPS)
+    poses = new[0].double().numpy().reshape(-1, J, 3)
+    place, heading = root_path(rows, tuple(given.root[-T_h]))
+    path = np.column_stack([place, heading])
+
+    def in_world(frames):
+        return to_world(frames, rows, tuple(path[0]))
+
+    last = clip.poses[-T_h:]
+    blended, _ = joined(given.positions, last, poses, in_world)
+    plain = in_world(np.concatenate([last, poses]))[T_h:]
+    return Continued(blended, path[T_h:]), Continued(plain, path[T_h:])
+
+
+def row_of(window: Window, made: Continued) -> dict[str, float]:
+    """What is measured of one continuation."""
+    whole = np.concatenate([window.given.positions, made.world])
+    seam, early = len(window.given), round(EARLY * FPS)
+    poses, _ = to_root_frame(made.world, made.path[:, :2], made.path[:, 2], FPS)
+    asked = control_from_path(made.path[:, :2], made.path[:, 2], FPS)
+    return {
+        "seam": seam_over_motion(whole, seam),
+        "bone": squared_bone_error(poses[None])[0],
+        "skating": skating(poses, asked),
+        "early": skating(poses[:early], asked[:early]),
+        "adherence": float(adherence(poses[None], asked[None])[0]),
+        "depth": 100 * max(0.0, -made.world[..., 1].min()),
+    }
+
+
+def measures_of(rows: dict[str, np.ndarray]) -> list[Measure]:
+    """The measures of all windows."""
+
+    def high(values):
+        return np.percentile(values, 95)
+
+    return [
+        measure_of("seam_over_motion", "ratio", np.median, rows["seam"]),
+        measure_of("seam_p95_over_motion", "ratio", high, rows["seam"]),
+        measure_of("continuation_bone_cm", "cm", root_mean, rows["bone"]),
+        measure_of("continuation_skating_mps", "m/s", np.nanmean, rows["skating"]),
+        measure_of("continuation_early_skating_mps", "m/s", np.nanmean, rows["early"]),
+        measure_of("continuation_adherence_mps", "m/s", np.nanmean, rows["adherence"]),
+        measure_of("continuation_floor_cm", "cm", high, rows["depth"]),
+    ]
+
+
+def recorded_records(walker: Walker, weights: str, size: RecordedSize, command: str) -> list[dict]:
+    """The measures of continuations, blended (`real.`) and not (`real.unblended.`)."""
+    found: dict[str, list] = {"real.": [], "real.unblended.": []}
+    sources = []
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # notes on the files
+        for window in windows(size, walker.card["control_range"]):
+            sources.append(window.source)
+            for rows, made in zip(found.values(), continued(walker, window), strict=True):
+                rows.append(row_of(window, made))
+    seeds = {"windows": len(sources), "files": len(set(sources)), "sampling": 0, "steps": STEPS}
+    seeds |= {"weights": weights}
+    records = []
+    for prefix, rows in found.items():
+        columns = {name: np.array([row[name] for row in rows]) for name in rows[0]}
+        records += [m.as_record(prefix, seeds, command) for m in measures_of(columns)]
+    jumped = np.array([row["seam"] > JUMP for row in found["real.unblended."]])
+    share = measure_of("blended_share", "share", np.mean, jumped)
+    return [*records, share.as_record("real.", seeds, command)]
