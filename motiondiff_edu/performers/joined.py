@@ -76,5 +76,5 @@ def in_words(jump: float, unlike: dict[str, float]) -> str:
         most = [f"{name} {far:.1f}" for name, far in list(unlike.items())[:NAMED]]
         words += f" (standard deviations away: {', '.join(most)})"
     if jump > JUMP:
-        words += f". The first {SECONDS:g} s are blended, for the figure jumped"
+        words += f". The first {SECONDS:g} s are blended, because the figure would jump"
     return words

@@ -87,6 +87,7 @@ class Mover(Performer):
 
         `guidance`: w of `beyond.classifier_free`; 1 is the conditional network.
         `plan`: a timeline for each (`plans`), which a network that plans needs.
+        `fast` is there as for walkers and dancers; movers have no fast twin.
         Raises ValueError for a network that plans without a plan, or a plan for another, or of
         another shape.
         """
