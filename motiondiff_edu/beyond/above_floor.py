@@ -10,7 +10,7 @@ Source: two bones and a distance form a triangle (`motion/inverse_kinematics.py`
 import numpy as np
 from jaxtyping import Bool, Float
 
-from ..motion.inverse_kinematics import bends_to, two_bones
+from ..motion.inverse_kinematics import drag
 from ..motion.skeleton import HEELS, TOES
 
 
@@ -22,12 +22,8 @@ def feet_above_floor(
     """Lift ankles and toes that are under `floor` (metres, world, y up); feet keep their slope."""
     moved = np.array(positions, np.float64)
     for toe, heel in zip(TOES, HEELS, strict=True):
-        leg = [heel - 2, heel - 1, heel]
         free = ~known[:, [heel - 1, heel, toe]].any(1)
         depth = floor - moved[:, [heel, toe], 1].min(1)
         for t in np.flatnonzero(free & (depth > 0)):
-            foot = moved[t, toe] - moved[t, heel]
-            target = moved[t, heel] + [0.0, depth[t], 0.0]
-            moved[t, leg] = two_bones(moved[t, leg], target, bends_to(moved[t], leg[0]))
-            moved[t, toe] = moved[t, heel] + foot
+            moved[t] = drag(moved[t], heel, moved[t, heel] + [0.0, depth[t], 0.0])
     return moved

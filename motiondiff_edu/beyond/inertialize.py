@@ -12,7 +12,8 @@ Source: Bollo, *Inertialization* (Game Developers Conference 2018), with vectors
 import numpy as np
 from jaxtyping import Float
 
-from ..motion.skeleton import BONES, HIPS
+from ..motion.directions import build, plain_directions, unit
+from ..motion.skeleton import HIPS, PARENTS
 
 SECONDS = 0.5  # until the generated motion is on its own
 
@@ -36,29 +37,14 @@ def inertialized(
     n = min(len(new), round(SECONDS * fps))
     if len(past) < 2 or n < 2:
         return new
-    bones, lengths = _bones(new[:n])
-    given, _ = _bones(past[-2:])
+    bones, parents = plain_directions(new[:n]), PARENTS[1:]
+    lengths = np.linalg.norm(new[:n, 1:] - new[:n, parents], axis=-1).T
     hips = new[:n, HIPS] + _faded(past[-2:, HIPS], new[:n, HIPS], n)
-    bones = bones + _faded(given, bones, n)
-    bones = bones / np.maximum(np.linalg.norm(bones, axis=-1, keepdims=True), 1e-9)
-    joined = np.empty_like(new[:n])
-    joined[:, HIPS] = hips
-    for k, (parent, child) in enumerate(BONES):
-        joined[:, child] = joined[:, parent] + lengths[:, k, None] * bones[:, k]
-    return np.concatenate([joined, new[n:]])
+    bones = unit(bones + _faded(plain_directions(past[-2:]), bones, n))
+    return np.concatenate([build(hips, bones, lengths), new[n:]])
 
 
 def _faded(given: np.ndarray, new: np.ndarray, n: int) -> np.ndarray:
     """What to add to `new` (n frames), so that it goes on from two given frames."""
     speed = given[1] - given[0]
     return fading(given[1] + speed - new[0], speed - (new[1] - new[0]), n)
-
-
-def _bones(
-    poses: Float[np.ndarray, "T 21 3"],
-) -> tuple[Float[np.ndarray, "T 20 3"], Float[np.ndarray, "T 20"]]:
-    """Unit directions and lengths (metres) of the bones."""
-    parents, children = np.array(BONES).T
-    bones = poses[:, children] - poses[:, parents]
-    lengths = np.linalg.norm(bones, axis=-1)
-    return bones / np.maximum(lengths, 1e-9)[..., None], lengths

@@ -74,7 +74,10 @@ class TextError(ValueError):
 
 @dataclass(frozen=True)
 class Read:
-    """A text as a network gets it: its words, all known, and notes on how others were read."""
+    """A text as a network gets it: its words, all known, and notes on how others were read.
+
+    `text` is what was read, for the source of a motion.
+    """
 
     text: str
     words: tuple[str, ...]

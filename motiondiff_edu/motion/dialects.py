@@ -68,6 +68,12 @@ def without_shared(names: Sequence[str]) -> list[str]:
     return [short or name for short, name in zip(bare, names, strict=True)]
 
 
+def by_plain(names: Sequence[str]) -> dict[str, str]:
+    """{plain name without what is shared: name}; of two alike the first one counts."""
+    bare = without_shared(names)
+    return {plain(word): name for word, name in reversed(list(zip(bare, names, strict=True)))}
+
+
 def shared(names: Iterable[str]) -> str:
     """The longest beginning, up to the end of a word, that half of the names have; or ""."""
     names = list(names)
@@ -109,8 +115,7 @@ def guess_mapping(bvh: Bvh, given: Mapping[str, str] | None = None) -> dict[str,
 
 def by_names(names: Sequence[str], given: Mapping[str, str] | None = None) -> dict[str, str]:
     """{course joint: name}: the entries of `given`, and the rest by the names alone."""
-    bare = without_shared(names)
-    known = {plain(word): name for word, name in reversed(list(zip(bare, names, strict=True)))}
+    known = by_plain(names)
     mapping = dict(given or {})
     for joint in (joint for joint in JOINTS if joint not in mapping):
         taken = set(mapping.values())
@@ -205,7 +210,11 @@ def refuse_incomplete(mapping: Mapping[str, str], bvh: Bvh) -> None:
         )
 
 
-LIMBS = (("UpLeg", "Leg", "Foot"), ("Arm", "ForeArm", "Hand"))
+Bones = Sequence[tuple[str, str]]  # of joints of the course
+LIMBS: tuple[Bones, Bones] = tuple(  # both legs, both arms
+    [bone for side in ("Left", "Right") for bone in pairwise(side + part for part in limb)]
+    for limb in (("UpLeg", "Leg", "Foot"), ("Arm", "ForeArm", "Hand"))
+)
 UNLIKE = 2.5  # times the length of another bone of both arms, or of both legs, at most
 
 
@@ -218,24 +227,23 @@ def refuse_no_figure(mapping: Mapping[str, str], bvh: Bvh) -> None:
     pose = dict(
         zip(bvh.names, replace(bvh, frames=bvh.frames[:1]).world_positions()[0], strict=True)
     )
-    for limb in LIMBS:
-        lengths = {}
-        for side in ("Left", "Right"):
-            for upper, lower in pairwise(side + part for part in limb):
-                above, below = mapping[upper], mapping[lower]
-                if above not in ancestors(bvh, below):
-                    raise _no_figure(
-                        f"{lower} ('{below}') does not hang on {upper} ('{above}')", bvh
-                    )
-                lengths[f"{upper} ('{above}') to {lower} ('{below}')"] = float(
-                    np.linalg.norm(pose[above] - pose[below])
-                )
-        if words := unlike(lengths):
+    for bones in LIMBS:
+        lengths = []
+        for upper, lower in bones:
+            above, below = mapping[upper], mapping[lower]
+            if above not in ancestors(bvh, below):
+                raise _no_figure(f"{lower} ('{below}') does not hang on {upper} ('{above}')", bvh)
+            lengths.append(float(np.linalg.norm(pose[above] - pose[below])))
+        if words := unlike(bones, lengths, mapping):
             raise _no_figure(words, bvh)
 
 
-def unlike(lengths: Mapping[str, float]) -> str:
+def unlike(bones: Bones, lengths: Sequence[float], mapping: Mapping[str, str]) -> str:
     """What is wrong with the lengths of the bones of both arms, or of both legs; "" if nothing."""
+    named = [
+        f"{upper} ('{mapping[upper]}') to {lower} ('{mapping[lower]}')" for upper, lower in bones
+    ]
+    lengths = dict(zip(named, lengths, strict=True))
     longest, shortest = (choose(lengths, key=lengths.get) for choose in (max, min))
     if lengths[longest] <= UNLIKE * lengths[shortest]:
         return ""

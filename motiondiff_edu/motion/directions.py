@@ -187,11 +187,13 @@ def foot_direction(
 
 
 def build(
-    hips: Float[np.ndarray, "T 3"], directions: Float[np.ndarray, "T 21 3"]
+    hips: Float[np.ndarray, "T 3"],
+    directions: Float[np.ndarray, "T 21 3"],
+    lengths: Float[np.ndarray, "20 *T"] = BONE_LENGTHS,
 ) -> Float[np.ndarray, "T 21 3"]:
-    """Positions of our figure from the place of its hips and its bone directions."""
+    """Positions of a figure from the place of its hips, its bone directions and their lengths."""
     world = np.empty_like(directions)
     world[:, HIPS] = hips
-    for (parent, child), length in zip(BONES, BONE_LENGTHS, strict=True):
-        world[:, child] = world[:, parent] + length * directions[:, child]
+    for (parent, child), length in zip(BONES, lengths, strict=True):
+        world[:, child] = world[:, parent] + length[..., None] * directions[:, child]
     return world

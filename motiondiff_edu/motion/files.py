@@ -49,8 +49,8 @@ def read_motion(
 
     mapping   for a BVH file: {joint of the course: joint of the file}, for names not recognised
     file_fps  for a BVH file: its frames a second, if the file states a wrong number
-    Raises FileNotFoundError for a missing file. Raises MotionError or BvhError (both are
-    ValueErrors) for a faulty one, with the file, the fault and what to do.  Notebook: 00
+    Raises FileNotFoundError for a missing file. Raises MotionError, BvhError or AistError
+    (all are ValueErrors) for a faulty one, with the file, the fault and what to do.  Notebook: 00
     """
     path = Path(path).expanduser()
     if path.is_dir():

@@ -5,12 +5,11 @@ thighs, and from ears or nose; toes, hand tips and spine as for a BVH file (`dir
 """
 
 from collections.abc import Sequence
-from itertools import pairwise
 
 import numpy as np
 from jaxtyping import Float
 
-from .dialects import LIMBS, NEEDED, by_names, plain, unlike, without_shared
+from .dialects import LIMBS, NEEDED, by_names, by_plain, unlike
 from .motion import Motion, MotionError
 from .retarget import Figure, retarget_figure
 from .skeleton import JOINTS, joint_index
@@ -63,7 +62,7 @@ def sources_of(names: Sequence[str], source: str = "") -> dict[str, tuple[str, .
     if twice is not None:
         raise MotionError(f"{source}: {twice!r} stands twice in `names`; each joint needs its own")
     found = {joint: (name,) for joint, name in by_names(names).items()}
-    bare = {plain(word): name for word, name in zip(without_shared(names), names, strict=True)}
+    bare = by_plain(names)
     for joint in MIDDLES.keys() - found.keys():
         groups = (group for group in MIDDLES[joint] if bare.keys() >= set(group))
         for group in list(groups)[:1]:
@@ -89,12 +88,10 @@ def _refuse_gaps(figure: np.ndarray, sources: dict[str, tuple[str, ...]], source
 
 
 def _refuse_no_figure(figure: np.ndarray, sources: dict, source: str) -> None:
-    for limb in LIMBS:
-        lengths = {}
-        for side in ("Left", "Right"):
-            for upper, lower in pairwise(side + part for part in limb):
-                apart = figure[:, joint_index(upper)] - figure[:, joint_index(lower)]
-                name = f"{upper} ('{sources[upper][0]}') to {lower} ('{sources[lower][0]}')"
-                lengths[name] = float(np.median(np.linalg.norm(apart, axis=-1)))
-        if words := unlike(lengths):
+    names = {joint: of[0] for joint, of in sources.items()}
+    for bones in LIMBS:
+        ends = np.array([[joint_index(joint) for joint in bone] for bone in bones])
+        apart = figure[:, ends[:, 0]] - figure[:, ends[:, 1]]
+        lengths = np.median(np.linalg.norm(apart, axis=-1), axis=0).tolist()
+        if words := unlike(bones, lengths, names):
             raise MotionError(f"{source}: the joints make no figure: {words}. Check `names`")
