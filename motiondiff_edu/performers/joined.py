@@ -6,7 +6,7 @@ pose and speed of the given motion, and a warning says so. Continuations that do
 they are.
 """
 
-from collections.abc import Callable
+from dataclasses import dataclass
 
 import numpy as np
 from jaxtyping import Float
@@ -15,8 +15,10 @@ from torch import Tensor
 from ..beyond.above_floor import feet_above_floor
 from ..beyond.foot_lock import FADE, steady_feet
 from ..beyond.inertialize import SECONDS, inertialized
+from ..conditions.control import splice
 from ..metrics.seams import AROUND, seam_over_motion
-from ..motion.root_frame import FPS
+from ..motion.motion import Motion, MotionError
+from ..motion.root_frame import FPS, root_path, to_world
 from ..motion.scaler import Scaler
 from ..motion.skeleton import JOINTS, J
 
@@ -27,23 +29,51 @@ UNLIKE = 5.0
 NAMED = 3  # joints in a message
 
 
-def joined(
-    given: Float[np.ndarray, "N 21 3"],
-    past: Float[np.ndarray, "T_h 21 3"],
-    new: Float[np.ndarray, "T 21 3"],
-    in_world: Callable[[np.ndarray], np.ndarray],
-) -> tuple[Float[np.ndarray, "T 21 3"], float]:
-    """The new frames in the world, and how much faster the seam was than what is around it.
+@dataclass(frozen=True, eq=False)
+class Start:
+    """Where a continuation begins, and the way that it takes.
 
-    given     the motion that is continued, in the world (metres)
-    past      its last frames in the root frame; `new` frames follow them
-    in_world  places past and new frames, all in the root frame, in the world
+    given    the motion that is continued, in the world (metres)
+    past     its last frames in the root frame
+    control  of these frames and of those to come
+    path     of the root on the ground under this control
     """
-    before = given[-round(AROUND * FPS) - 1 :]
-    k, T_h = len(before), len(past)
+
+    given: Float[np.ndarray, "N 21 3"]
+    past: Float[np.ndarray, "T_h 21 3"]
+    control: Float[np.ndarray, "T 3"]
+    path: Float[np.ndarray, "T 3"]
+
+    @classmethod
+    def of(cls, motion: Motion, control: Float[np.ndarray, "n 3"], T_h: int) -> "Start":
+        """From the last T_h frames of a motion at 20 frames/s on.  Raises MotionError for fewer."""
+        given = motion.rooted()
+        clip = given.to_clip()
+        if len(clip) < T_h:
+            raise MotionError(
+                f"{motion.name} has {len(clip)} frames; the walker needs at least {T_h} "
+                f"({T_h / FPS:g} s) to continue it"
+            )
+        rows = splice(clip.control, control, T_h)
+        place, heading = root_path(rows, tuple(given.root[-T_h]))
+        path = np.column_stack([place, heading])
+        return cls(given.positions, clip.poses[-T_h:], rows, path)
+
+    def in_world(self, new: Float[np.ndarray, "n 21 3"]) -> Float[np.ndarray, "n 21 3"]:
+        """New frames of the root frame, placed in the world."""
+        whole = to_world(np.concatenate([self.past, new]), self.control, tuple(self.path[0]))
+        return whole[len(self.past) :]
+
+
+def joined(
+    start: Start, new: Float[np.ndarray, "T 21 3"]
+) -> tuple[Float[np.ndarray, "T 21 3"], float]:
+    """New frames in the world, and how much faster the seam was than what is around it."""
+    before = start.given[-round(AROUND * FPS) - 1 :]
+    k = len(before)
 
     def placed(frames: np.ndarray) -> np.ndarray:
-        return np.concatenate([before, in_world(np.concatenate([past, frames]))[T_h:]])
+        return np.concatenate([before, start.in_world(frames)])
 
     whole = placed(new)
     jump = seam_over_motion(whole, k) if 2 <= k < len(whole) - 1 else 0.0
@@ -52,7 +82,7 @@ def joined(
     known = np.zeros((len(whole), J), bool)
     known[:k] = True
     known[k + round(SECONDS * FPS) + FADE :] = True
-    whole = steady_feet(placed(inertialized(past, new, FPS)), known)
+    whole = steady_feet(placed(inertialized(start.past, new, FPS)), known)
     return feet_above_floor(whole, known)[k:], jump
 
 

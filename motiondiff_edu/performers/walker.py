@@ -15,7 +15,7 @@ from torch import Tensor, nn
 
 from .. import rollout
 from ..beyond.footholds import FootholdConfig, FootholdMoDiff
-from ..conditions.control import as_long, splice
+from ..conditions.control import as_long
 from ..ddpm import Denoiser, Generators, Schedule, draw, final
 from ..fast.footholds import FastFoothold
 from ..fast.modiff import FastMoDiff
@@ -23,13 +23,13 @@ from ..fast.samplers import ddim_steps, ddpm_steps
 from ..fast.twins import watched
 from ..modiff import MoDiff, MoDiffConfig
 from ..motion.checks import checked_samples, checked_seconds, checked_steps
-from ..motion.motion import Motion, MotionError, MotionWarning, as_motion
-from ..motion.root_frame import FPS, root_path, to_world
+from ..motion.motion import Motion, MotionWarning, as_motion
+from ..motion.root_frame import FPS
 from ..motion.scaler import Scaler
 from ..motion.skeleton import J
 from ..prediction import denoiser_of
 from ..rollout import WindowSampler
-from .joined import in_words, joined, unlike_training
+from .joined import Start, in_words, joined, unlike_training
 from .networks import register
 from .performer import Performer, generators
 from .with_bar import with_bar
@@ -91,32 +91,19 @@ class Walker(Performer):
         steps = checked_steps(steps, self.schedule.S)
         length = None if seconds is None else round(checked_seconds(seconds) * FPS)
         ahead = as_long(control, length)
-        given = motion.resampled(FPS).rooted()
-        clip = given.to_clip()
-        if len(clip) < T_h:
-            raise MotionError(
-                f"{motion.name} has {len(clip)} frames; the walker needs at least {T_h} "
-                f"({T_h / FPS:g} s) to continue it"
-            )
-        rows = splice(clip.control, ahead, T_h)
-        past = torch.from_numpy(clip.features()[-T_h:]).expand(count, -1, -1)
-        steer = torch.from_numpy(rows).float().expand(count, -1, -1)
+        start = Start.of(motion.resampled(FPS), ahead, T_h)
+        past = torch.from_numpy(start.past).float().flatten(1)
+        steer = torch.from_numpy(start.control).float()
         evaluations, draws = len(ahead) * (steps or self.schedule.S), generators(seed, count)
         with with_bar(self, evaluations, "walking", progress) as walker:
-            new = rollout.generate(walker, past, steer, generator=draws, steps=steps)
-        poses = new.double().cpu().numpy().reshape(count, -1, J, 3)
-        place, heading = root_path(rows, tuple(given.root[-T_h]))
-        path = np.column_stack([place, heading])
-
-        def in_world(frames):
-            return to_world(frames, rows, tuple(path[0]))
-
-        last, name = clip.poses[-T_h:], f"{motion.name}, continued"
-        both = [joined(given.positions, last, one, in_world) for one in poses]
-        words = in_words(max(jump for _, jump in both), unlike_training(self.pose_scaler, past[0]))
+            each = (x.expand(count, -1, -1) for x in (past, steer))
+            new = rollout.generate(walker, *each, generator=draws, steps=steps)
+        both = [joined(start, one) for one in new.double().cpu().numpy().reshape(count, -1, J, 3)]
+        words = in_words(max(jump for _, jump in both), unlike_training(self.pose_scaler, past))
         if words:
             warnings.warn(f"{motion.name}: {words}", MotionWarning, stacklevel=2)
-        made = [Motion(world, FPS, root=path[T_h:], source=name) for world, _ in both]
+        path, name = start.path[T_h:], f"{motion.name}, continued"
+        made = [Motion(world, FPS, root=path, source=name) for world, _ in both]
         return made if samples > 1 else made[0]
 
     def denoiser(

@@ -16,7 +16,7 @@ from motiondiff_edu.motion.inverse_kinematics import drag
 from motiondiff_edu.motion.motion import Motion, MotionWarning
 from motiondiff_edu.motion.scaler import Scaler
 from motiondiff_edu.motion.skeleton import JOINTS, joint_index
-from motiondiff_edu.performers.joined import JUMP, UNLIKE, in_words, joined, unlike_training
+from motiondiff_edu.performers.joined import JUMP, UNLIKE, Start, in_words, joined, unlike_training
 
 AHEAD = np.tile([1.0, 0.0, 0.0], (50, 1))
 
@@ -109,7 +109,9 @@ def test_a_jump_is_measured_before_it_is_joined():
     given[:, :, 0] = 0.01 * np.arange(20)[:, None]
     given += np.random.default_rng(0).normal(size=(21, 3))
     new = given[-1] + 0.01 * np.arange(1, 31)[:, None, None] * [1.0, 0.0, 0.0]
-    world, jump = joined(given, given[-10:], new, lambda frames: frames)
+    still = np.zeros((40, 3))
+    start = Start(given, given[-10:], still, still)
+    world, jump = joined(start, new)
     assert jump == pytest.approx(1.0) and np.array_equal(world, new)
-    _, jump = joined(given, given[-10:], new + [0.0, 0.0, 0.05], lambda frames: frames)
+    _, jump = joined(start, new + [0.0, 0.0, 0.05])
     assert jump == pytest.approx(np.hypot(0.01, 0.05) / 0.01)

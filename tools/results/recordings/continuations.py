@@ -13,12 +13,10 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-import torch
 from jaxtyping import Float
 
 import motiondiff_edu as md
 from motiondiff_edu import rollout
-from motiondiff_edu.conditions.control import splice
 from motiondiff_edu.metrics.adherence import adherence
 from motiondiff_edu.metrics.seams import seam_over_motion
 from motiondiff_edu.metrics.skating import skating
@@ -26,12 +24,10 @@ from motiondiff_edu.motion.motion import Motion
 from motiondiff_edu.motion.root_frame import (
     FPS,
     control_from_path,
-    root_path,
     to_root_frame,
-    to_world,
 )
 from motiondiff_edu.motion.skeleton import J
-from motiondiff_edu.performers.joined import JUMP, joined
+from motiondiff_edu.performers.joined import JUMP, Start, joined
 from motiondiff_edu.performers.performer import generators
 from motiondiff_edu.performers.walker import STEPS, Walker
 
@@ -88,7 +84,7 @@ def windows(size: RecordedSize, range_of_control: dict) -> Iterator[Window]:
 
 @dataclass(frozen=True, eq=False)
 class Continued:
-    """New frames in the world; `paths` and rows of control as they were asked for."""
+    """New frames in the world, and the path of the root that was asked for."""
 
     world: Float[np.ndarray, "n 21 3"]
     path: Float[np.ndarray, "n 3"]
@@ -96,23 +92,13 @@ class Continued:
 
 def continued(walker: Walker, window: Window) -> tuple[Continued, Continued]:
     """As `Walker.walk` has it, and the same sample without the blending."""
-    given, T_h = window.given.rooted(), walker.config.T_h
-    clip = given.to_clip()
-    rows = splice(clip.control, window.control, T_h)
-    past = torch.from_numpy(clip.features()[-T_h:])[None]
-    steer = torch.from_numpy(rows).float()[None]
-    new = rollout.generate(walker, past, steer, generator=generators(0, 1), steps=STEPS)
-    poses = new[0].double().numpy().reshape(-1, J, 3)
-    place, heading = root_path(rows, tuple(given.root[-T_h]))
-    path = np.column_stack([place, heading])
-
-    def in_world(frames):
-        return to_world(frames, rows, tuple(path[0]))
-
-    last = clip.poses[-T_h:]
-    blended, _ = joined(given.positions, last, poses, in_world)
-    plain = in_world(np.concatenate([last, poses]))[T_h:]
-    return Continued(blended, path[T_h:]), Continued(plain, path[T_h:])
+    T_h = walker.config.T_h
+    start = Start.of(window.given, window.control, T_h)
+    past, steer = start.past.reshape(T_h, -1), start.control
+    new = rollout.generate(walker, past[None], steer[None], generator=generators(0, 1), steps=STEPS)
+    poses, path = new[0].double().numpy().reshape(-1, J, 3), start.path[T_h:]
+    blended, _ = joined(start, poses)
+    return Continued(blended, path), Continued(start.in_world(poses), path)
 
 
 def row_of(window: Window, made: Continued) -> dict[str, float]:

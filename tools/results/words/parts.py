@@ -234,6 +234,7 @@ def word_records(
     size = studio.size
     seeds = {"data": UNSEEN, "edits": UNSEEN + 1, "variety": VARIETY, "looked_at": SEED}
     seeds |= {"trials": size.trials, "sampling": 0, "steps": STEPS, "edit_steps": EDIT_STEPS}
+    # here the trials are made, once: every process gets them with the studio
     seeds |= {"weights": weights_digest(studio.weights["mover"]), "judges": len(studio.judges)}
     return [
         measure.as_record(prefix, seeds, command)
