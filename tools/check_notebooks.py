@@ -176,6 +176,41 @@ def exercises(notebook: dict, name: str) -> Iterator[str]:
             yield str(error)
 
 
+def independence(notebook: dict) -> Iterator[str]:
+    """No cell uses what an exercise defines: in the student edition that is a stub.
+
+    With this rule both editions are the same but for the exercises' own cells.
+    """
+    bound = {id(cell): defined(cell) for cell in code(notebook, "solution")}
+    for cell in code(notebook):
+        others = set().union(*(names for key, names in bound.items() if key != id(cell)))
+        used = {
+            node.id
+            for node in ast.walk(parsed(cell))
+            if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Load)
+        }
+        yield from (
+            f"cell {cell.get('id')} uses {name} of an exercise, which may not be done yet"
+            for name in sorted(used & others - bound.get(id(cell), set()))
+        )
+
+
+def defined(cell: dict) -> set[str]:
+    """The functions and variables that the top level of a cell gives a value."""
+    names = set()
+    for statement in parsed(cell).body:
+        if isinstance(statement, ast.FunctionDef | ast.ClassDef):
+            names.add(statement.name)
+        names |= {
+            node.id
+            for target in getattr(statement, "targets", [getattr(statement, "target", None)])
+            if target is not None
+            for node in ast.walk(target)
+            if isinstance(node, ast.Name)
+        }
+    return names
+
+
 def before(cells: list[dict], index: int) -> str:
     """The markdown between a cell and the code cell before it."""
     text = []
@@ -210,7 +245,8 @@ def portable(notebook: dict) -> Iterator[str]:
 def faults(path: Path) -> list[str]:
     """All faults in the form of one notebook."""
     notebook = notebook_cells.read(path)
-    plain = [rule(notebook) for rule in (length, width, storage, opening, closing, portable)]
+    rules = (length, width, storage, opening, closing, independence, portable)
+    plain = [rule(notebook) for rule in rules]
     return [
         fault
         for rule in [*plain, exercises(notebook, path.name), lesson(notebook, path.name)]

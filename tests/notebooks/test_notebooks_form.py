@@ -152,6 +152,19 @@ def spoil_markers(nb):
     first(nb, "solution")["source"] = SOLUTION.replace("    # end solution\n", "")
 
 
+def spoil_by_using_an_exercise(nb):
+    nb["cells"][4]["source"] = "def again(x):\n    return f(x) + 1"
+
+
+def spoil_by_using_an_answer(nb):
+    first(nb, "solution")["source"] += "\nanswer, _ = f((1, 2))"
+    nb["cells"][4]["source"] = "x = [answer for _ in range(3)]"
+
+
+def spoil_by_using_the_exercise_before(nb):
+    nb["cells"][-2]["source"] = SOLUTION.replace("f(x)", "g(x)").replace("x\n", "f(x)\n")
+
+
 def spoil_pip(nb):
     nb["cells"][4]["source"] = "%pip install torch"
 
@@ -186,6 +199,9 @@ def spoil_image(nb):
         (spoil_hint, "fold a hint"),
         (spoil_check, "must call its check"),
         (spoil_markers, "needs `# solution`"),
+        (spoil_by_using_an_exercise, "cell c4 uses f of an exercise"),
+        (spoil_by_using_an_answer, "cell c4 uses answer of an exercise"),
+        (spoil_by_using_the_exercise_before, "cell c24 uses f of an exercise"),
         (spoil_pip, "pip in a code cell"),
         (spoil_path, "an absolute path"),
         (spoil_image, "without alt text"),
