@@ -11,7 +11,7 @@ import scipy
 from jaxtyping import Bool, Float
 
 from ..motion.dance_frame import GROUND
-from ..motion.inverse_kinematics import bends_to, two_bones
+from ..motion.inverse_kinematics import drag
 from ..motion.planting import runs
 from ..motion.skeleton import HEELS, TOES
 
@@ -38,19 +38,11 @@ def steady_feet(
 
 
 def _steady_leg(moved, known, toe: int, heel: int, fps: float) -> None:
-    """Correct one leg in place; its hip, knee, ankle and toe have consecutive indices.
-
-    The foot keeps its direction.
-    """
-    leg = [heel - 2, heel - 1, heel]
-    free = ~known[:, [*leg[1:], toe]].any(1)
+    """Correct one leg in place; the foot keeps its direction."""
+    free = ~known[:, [heel - 1, heel, toe]].any(1)
     shift = to_stands(moved[:, toe], ~free, fps)
     for t in np.flatnonzero(free & shift.any(1)):
-        foot = moved[t, toe] - moved[t, heel]
-        moved[t, leg] = two_bones(
-            moved[t, leg], moved[t, heel] + shift[t], bends_to(moved[t], leg[0])
-        )
-        moved[t, toe] = moved[t, heel] + foot
+        moved[t] = drag(moved[t], heel, moved[t, heel] + shift[t])
 
 
 def to_stands(
