@@ -46,7 +46,8 @@ def npss(made: Float[np.ndarray, "N T D"], truth: Float[np.ndarray, "N T D"]) ->
     """Normalised power spectrum similarity (NPSS) of two sets of motions; 0 means equal spectra.
 
     For each motion and column, the two power spectra are scaled to sum 1 and compared by the earth
-    mover's distance (in frequency bins). The mean is weighted by the power of the truth.
+    mover's distance (in frequency bins). The spectra have both halves, as in the authors' code, so
+    the mean position counts once and every wave twice. The mean is weighted by the truth's power.
     Notebook: 15
     """
     moved, weight = npss_parts(made, truth)
@@ -60,7 +61,7 @@ def npss_parts(
 
     `npss` is the ratio of the two, summed over motions.
     """
-    power = [np.abs(np.fft.rfft(x, axis=1)) ** 2 for x in (made, truth)]
+    power = [np.abs(np.fft.fft(x, axis=1)) ** 2 for x in (made, truth)]
     cumulated = [np.cumsum(p / np.maximum(p.sum(1, keepdims=True), 1e-12), axis=1) for p in power]
     moved = np.abs(cumulated[0] - cumulated[1]).sum(1)
     weight = power[1].sum(1)
