@@ -146,8 +146,8 @@ class CrossAttentionBlock(nn.Module):
 class MusicEncoder(nn.Module):
     """Mel frames to context: a linear layer, then (ours) convolutions.
 
-    Each convolution sees further, up to a second or two. Then only every second frame is kept, 15.6
-    per second.
+    First every second frame is kept, 15.6 per second; then each convolution sees twice as far as
+    the one before, up to a second or so to either side.
     Source: MoFusion 3.3 (the linear layer).
     """
 

@@ -88,8 +88,8 @@ def rollout_steps(
     """Yield `frames` new poses, one by one; each predicted window gives its first `keep` poses.
 
     control  (B, T, C), where row 0 belongs to past[:, 0] and the last row repeats; or a callable
-             t -> (B, C), called once for each row when it is needed, so that it can change on the
-             fly
+             t -> (B, C), called when a row is needed, so that it can change on the fly: with `hold`
+             once for each row, else again for each window that looks ahead to it
     hold     True: the network sees the control up to the next step, held over the future;
              False (look-ahead): it sees the future control as far as it is known
     Raises ValueError unless 1 <= keep <= T_p.  Source: MoDiff III-C, Alg. 2.  Notebook: 07
@@ -126,7 +126,7 @@ def generate(
     the control belong to the past. steps=None is DDPM with all S steps, a number is
     DDIM with that many.
     Raises ValueError if past and control do not fit the walker or contain NaN, and for a control
-    beyond twice the range of the training data. Warns where it goes beyond this range.
+    beyond twice the range of the training data. Warns where it leaves that range by over a tenth.
     Source: MoDiff Alg. 2, Fig. 5.  Notebook: 07, 08
     """
     past, control = torch.as_tensor(past), torch.as_tensor(control)
@@ -174,13 +174,14 @@ def generate(
 def _check_range(control: Float[Tensor, "B T C"], T_h: int, seen: dict | None) -> None:
     """Warn about speeds beyond the control of the training clips by over a tenth of its range.
 
-    Raises ValueError beyond twice the range. The first T_h rows belong to the past and are not
-    checked.
+    Raises ValueError beyond twice the range. Row T_h - 1 leads to the first new frame; the rows
+    before it belong to the past, and the last one leads beyond the end.
     """
     if not seen:
         return
     low, high = (torch.tensor(seen[end], device=control.device) for end in ("low", "high"))
-    far, ahead = (low - control[:, T_h:]).maximum(control[:, T_h:] - high), control[:, T_h:]
+    ahead = control[:, T_h - 1 : -1]
+    far = (low - ahead).maximum(ahead - high)
 
     def asked(share: float) -> str:
         """The columns that leave the range by more than a share of it, in words."""

@@ -269,6 +269,31 @@ def test_the_first_of_several_samples_is_the_sample_alone(make, walked):
     assert np.abs(second.positions - alone.positions).max() > 1e-2
 
 
+def test_a_figure_that_lies_is_told_of_before_it_is_continued(walked):
+    lying = md.Motion(walked.positions[..., [0, 2, 1]] * [1, -1, 1])
+    with pytest.warns(MotionWarning, match=r"lies along z, but y points up: try positions"):
+        md.load("walker").walk(lying, CONTROL[:2], progress=False)
+
+
+def test_a_performer_is_shown_in_one_line():
+    for name, begins in (("walker", "Walker 'walker': FootholdMoDiff of 1,4"), ("mover", "Mover")):
+        assert repr(md.load(name)).startswith(begins) and len(repr(md.load(name))) < 150
+
+
+@pytest.mark.parametrize("sliding", [0, 1, 2])
+def test_an_edit_that_slides_is_told_of_in_whichever_sample(walked, monkeypatch, sliding):
+    still = np.repeat(walked.positions[:1], len(walked), 0)
+    gliding = still + np.linspace(0, 4, len(still))[:, None, None] * [1.0, 0.0, 0.0]
+    made = np.stack([gliding if k >= 2 - sliding else still for k in range(2)])
+    monkeypatch.setattr(shipped.by_words, "edit_by_words", lambda *_, **__: made)
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        md.edit(walked, "walks forward", samples=2, progress=False)
+    told = [str(one.message) for one in caught if "both feet slide" in str(one.message)]
+    assert len(told) == bool(sliding)
+    assert all(f"({sliding} of 2 samples)" in words for words in told)
+
+
 def test_what_is_known_of_nothing_is_noted(walked):
     nothing = np.zeros_like(walked.known)
     with pytest.warns(MotionWarning, match="no joint is known, so the result has nothing to do"):
@@ -434,6 +459,11 @@ TOLD = {
     "md.joystick([('3', 1.2, 0, 0)])": "turning), not ('3', 1.2, 0, 0)",
     "md.joystick([(3, 1.2, 0, 0)], fps=0)": "fps must be a number of frames a second above 0",
     "md.joystick([(-3, 1.2, 0, 0)])": "a segment lasts 0 seconds or more, not -3",
+    "md.joystick([(3, 1.2, 0, 0)], ramp=-1)": "ramp must be a number of seconds, 0 or more, not -1",
+    "md.joystick([(3, 1.2, 0, 0)], ramp='a')": "ramp must be a number of seconds, 0 or more, not",
+    "md.read_motion(None)": "a file is named by a text or a Path, not by None",
+    "w.save(None)": "a file is named by a text or a Path, not by None",
+    "md.load('walker', clip='x')": "the shipped 'walker' does not read by CLIP",
     "md.play()": "TypeError: play needs at least one motion",
     'md.play("walk.bvh")': "TypeError: this takes a Motion, not str",
     "md.play(nan, open_page=False)": "Head in frame 5 has no position",

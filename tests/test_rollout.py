@@ -177,11 +177,23 @@ def trained_between(low: float, high: float) -> SimpleNamespace:
 def test_a_control_is_named_when_it_is_a_tenth_of_the_range_beyond_the_training(value, named):
     """From 1 to 3 the range is 2, and a tenth of it 0.2."""
     walker = trained_between(1.0, 3.0)
-    control = torch.full((T_H + 2, C), 2.0)
+    control = torch.full((T_H + 3, C), 2.0)
     control[T_H + 1] = value
     with warnings.catch_warnings(record=True) as told:
         warnings.simplefilter("always")
         generate(walker, torch.zeros(T_H, D), control)
     assert len(told) == named
     if named:
-        assert f"a column 0 of {value} in frame 1 of the future" in str(told[0].message)
+        assert f"a column 0 of {value} in frame 2 of the future" in str(told[0].message)
+
+
+@pytest.mark.parametrize("row", [0, T_H - 2, T_H - 1, T_H, T_H + 1, T_H + 2])
+def test_only_rows_that_lead_to_new_frames_are_checked(row):
+    """Row T_h - 1 leads from the last given pose to the first new one; the last row leads on."""
+    walker, control = trained_between(1.0, 3.0), torch.full((T_H + 3, C), 2.0)
+    control[row] = 50.0
+    if T_H - 1 <= row < T_H + 2:
+        with pytest.raises(ValueError, match=f"50 in frame {row - T_H + 1} of the future"):
+            generate(walker, torch.zeros(T_H, D), control)
+    else:
+        assert len(generate(walker, torch.zeros(T_H, D), control)) == 3

@@ -3,9 +3,11 @@
 From an unusual past a network jumps to the poses that it knows: its first frame is far from the
 last given one. The difference of the two at the seam, in each bone's direction and in the place of
 the pelvis, is added to the generated frames and fades within half a second. Given frames stay as
-they are, and so do the lengths of bones. Feet that stand go on standing (`beyond/foot_lock.py`).
+they are, and so do the lengths of bones. The caller locks the feet afterwards
+(`performers/joined.py`).
 Gain: docs/RESULTS.md, *On recordings* (`real.seam_over_motion` beside
-`real.unblended.seam_over_motion`); control and planted feet get worse in that half second.
+`real.unblended.seam_over_motion`). It costs: in that half second feet slide more, and the control
+is kept less well.
 Source: Bollo, *Inertialization* (Game Developers Conference 2018), with vectors for quaternions
 """
 

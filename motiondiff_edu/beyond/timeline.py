@@ -1,4 +1,4 @@
-"""A timeline, generated before the motion: what the legs and the arms do, when, how often still.
+"""A timeline, generated before the motion: what the legs and arms do, when, how often yet to come.
 
 "Kicks three times" is one number for a whole motion, and a network that sees noise frame by frame
 has to make it out of many frames far apart. In a timeline each frame says what is going on and how

@@ -5,6 +5,7 @@ root[t] to root[t+1].
 Notebook: 00, 07
 """
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from numbers import Real
@@ -13,7 +14,7 @@ import numpy as np
 import scipy
 from jaxtyping import Float
 
-from ..motion.checks import LONGEST, checked_rate
+from ..motion.checks import LONGEST, checked_rate, is_number
 from ..motion.root_frame import FPS, control_from_path
 
 SPACING = 0.01  # metres between the points that a path is resampled to
@@ -109,9 +110,12 @@ def joystick(
 
     old + (new - old) u^2 (3 - 2u), with u from 0 to 1.
     Raises ValueError for no segment, one that is not four finite numbers, negative seconds, less
-    than a frame or more than an hour in all, or a frame rate that is not positive.
+    than a frame or more than an hour in all, a frame rate that is not positive, or a ramp that is
+    not 0 or more.
     """
     fps = checked_rate(fps)
+    if not is_number(ramp) or not 0 <= ramp < math.inf:
+        raise ValueError(f"ramp must be a number of seconds, 0 or more, not {ramp!r:.40}")
     there = isinstance(segments, (list, tuple, np.ndarray)) and len(segments) > 0
     bad = [one for one in segments if not _four_numbers(one)][:1] if there else [segments]
     if bad:

@@ -17,6 +17,7 @@ from functools import cache
 from pathlib import Path
 
 MOST_WORDS = 64  # words of a text
+MOST_PHRASES = 3  # joined by "then", in the texts of the training
 EXAMPLES = (  # for messages
     "walk", "run", "step", "turn", "squat", "jump", "kick", "sit", "bow", "wave", "raise", "punch",
     "clap", "point",
@@ -166,6 +167,11 @@ def read(text: str, vocabulary: Sequence[str], others: Mapping[str, str] | None 
             unknown.append(word)
     if unknown:
         raise TextError(_unknown(list(dict.fromkeys(unknown)), vocabulary))
+    if (phrases := 1 + found.count("then")) > MOST_PHRASES:
+        notes.append(
+            f"the text has {phrases} phrases with 'then'; the network learnt up to {MOST_PHRASES}, "
+            "and may leave acts out"
+        )
     if len(found) > MOST_WORDS:
         raise TextError(f"the text has {len(found)} words; the network reads {MOST_WORDS} at most")
     if not found:
@@ -197,7 +203,9 @@ def _nearest(word: str, vocabulary: Sequence[str]) -> list[str]:
     """Known words that may be meant: of about the same letters; for a number the counts."""
     if word in NUMBERS or word.isdigit():
         return [known for known in ("once", "twice", "three", "four") if known in vocabulary]
-    return get_close_matches(word, vocabulary, n=3, cutoff=0.75)
+    bare = (word.removesuffix(ending) for ending in ("", "s", "ing", "ed"))
+    found = (near for form in bare for near in get_close_matches(form, vocabulary, 3, 0.75))
+    return list(dict.fromkeys(found))[:3]
 
 
 def _unknown(words: list[str], vocabulary: Sequence[str]) -> str:

@@ -51,6 +51,7 @@ def edit_by_words(
     strength  above 0, up to 1; with 1 nothing but the known part is left of the motion
     steps     of DDIM for the whole way; a smaller strength takes fewer
     Without a `generator` the seed is 0. The first frame stays where it was, facing the same way.
+    While the pelvis is known from the first frame on, known joints come back bit by bit.
     Raises TextError for a text that cannot be read, ValueError for a strength out of range.
     """
     ways = visited(mover.schedule.S, steps, strength)
@@ -69,7 +70,9 @@ def edit_by_words(
     )
     with torch.inference_mode():
         made = mover.positions_of(final(loop).x_s).double().cpu().numpy()
-    return at_the_start_of(positions, made)
+    on_its_path = np.logical_and.accumulate(mask[:, HIPS])[:, None]
+    same = (mask & on_its_path)[..., None]
+    return np.where(same, positions, at_the_start_of(positions, made))
 
 
 def _plan(

@@ -18,7 +18,14 @@ from .bvh.write import write_bvh
 from .checks import check_there
 from .clip import Clip
 from .keypoints import motion_of_keypoints
-from .motion import Motion, MotionError, MotionWarning, lies_down, unlike_a_body
+from .motion import (
+    Motion,
+    MotionError,
+    MotionWarning,
+    checked_path,
+    lies_down,
+    unlike_a_body,
+)
 from .retarget import load_clip
 from .root_frame import FPS
 from .skeleton import COURSE, JOINTS, Skeleton
@@ -50,11 +57,10 @@ def read_motion(
     mapping   for a BVH file: {joint of the course: joint of the file}, for names not recognised
     file_fps  for a BVH file: its frames a second, if the file states a wrong number
     Raises FileNotFoundError for a missing file. Raises MotionError, BvhError or AistError
-    (all are ValueErrors) for a faulty one, with the file, the fault and what to do.  Notebook: 00
+    (all are ValueErrors) for a faulty one, with the file, the fault and what to do, and TypeError
+    for what is no path.  Notebook: 00
     """
-    path = Path(path).expanduser()
-    if path.is_dir():
-        raise MotionError(f"{path} is a folder; give the name of a file in it")
+    path = checked_path(path)
     check_there(path)
     ending = path.suffix.lower()
     read = registry.readers.get(ending)

@@ -282,10 +282,15 @@ class Motion:
         self.check_size()
 
     def check_size(self) -> None:
-        """Raise MotionError if the figure is not about as large as the course's, in metres."""
+        """Raise MotionError if the figure is not about as large as the course's, in metres.
+
+        A MotionWarning says where it lies down in most frames: its axes may be others.
+        """
         words = unlike_a_body(self)
         if words:
             raise MotionError(f"{self.name}: {words}")
+        if words := lies_down(self):
+            warnings.warn(f"{self.name}: {words}", MotionWarning, stacklevel=3)
 
     def save(self, path: str | Path, overwrite: bool = False) -> Path:
         """Write the motion to a file; the name's ending is .bvh, .npz, .mp4, .gif or .html.
@@ -293,10 +298,10 @@ class Motion:
         An existing file is replaced, but for one that `read_motion` has read: a recording would be
         lost. With `overwrite` it is replaced, too.
 
-        Raises MotionError for an unknown ending, with a list of the known ones, and for a file that
-        was read.  Notebook: 00
+        Raises MotionError for an unknown ending, with a list of the known ones, for a folder, and
+        for a file that was read; TypeError for what is no path.  Notebook: 00
         """
-        path = Path(path).expanduser()
+        path = checked_path(path)
         write, place = registry.writers.get(check_ending(path)), path.absolute().resolve()
         if place in registry.files_read and not overwrite:
             raise MotionError(
@@ -375,6 +380,19 @@ def lies_down(motion: Motion) -> str:
     turns = ("[..., [1, 0, 2]] * [-1, 1, 1]", "", "[..., [0, 2, 1]] * [1, 1, -1]")
     how = f"try positions{turns[axis]}" if turns[axis] else "it stands on its head"
     return f"the figure lies along {'xyz'[axis]}, but y points up: {how}"
+
+
+def checked_path(path: str | Path) -> Path:
+    """The path, with the home folder in place of ~.
+
+    Raises TypeError for what is no path, MotionError for a folder.
+    """
+    if not isinstance(path, str | Path):
+        raise TypeError(f"a file is named by a text or a Path, not by {path!r:.60}")
+    path = Path(path).expanduser()
+    if path.is_dir():
+        raise MotionError(f"{path} is a folder; give the name of a file in it")
+    return path
 
 
 def check_ending(path: str | Path) -> str:

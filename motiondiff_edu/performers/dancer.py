@@ -39,7 +39,7 @@ FARTHEST = 5.0
 register("dancer", MoFusion, MoFusionConfig, fast=FastMoFusion)
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Dancer(Performer):
     """A network, and the scalers that convert metres and log-Mel to its units and back."""
 

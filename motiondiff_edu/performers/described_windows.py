@@ -65,7 +65,8 @@ class DescribedWindows:
         captions: Sequence[Sequence[str]],
         timelines: Sequence[Float[np.ndarray, "_ 22"]] | None = None,
     ) -> "DescribedWindows":
-        """The same for CLIP, with captions in any words; `words` are the captions, both ways round.
+        """The same for CLIP, with captions in any words; `words` are the captions,
+        and those with left and right exchanged.
 
         Raises ValueError for lists of different lengths.
         """

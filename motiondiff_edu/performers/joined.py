@@ -89,7 +89,7 @@ def joined(
 def unlike_training(scaler: Scaler, past: Float[Tensor, "T_h D"]) -> dict[str, float]:
     """Joints that are far from the training's poses, in its standard deviations, farthest first.
 
-    Of each joint the frame that is furthest away.
+    A joint counts by the frame in which it is farthest away.
     """
     away = scaler.transform(past.to(scaler.mean)).reshape(len(past), J, 3)
     far = away.square().mean(-1).sqrt().amax(0).tolist()

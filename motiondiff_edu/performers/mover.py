@@ -37,7 +37,7 @@ SECONDS = 6.0
 SHORTEST, LONGEST = 2.0, 10.0  # seconds, as in training
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Mover(Performer):
     """A network, and the scaler that converts its units to metres.
 

@@ -74,6 +74,15 @@ class Performer:
                 f"the schedule has {self.schedule.S} steps, the network {self.model.config.S}"
             )
 
+    def __repr__(self) -> str:
+        """One line: what it is called, its network, and how large that is."""
+        name = getattr(self, "card", {}).get("name", "not named")
+        numbers = sum(weights.numel() for weights in self.model.parameters())
+        return (
+            f"{type(self).__name__} {name!r}: {type(self.model).__name__} of {numbers:,} weights, "
+            f"predicts {self.config.target}, {self.schedule.S} diffusion steps"
+        )
+
     def __getattr__(self, name: str):
         """Called for missing attributes: `walker.dance` raises an error that names the dancer."""
         verb = {"walk": "walker", "dance": "dancer", "act": "mover"}.get(name)

@@ -40,7 +40,7 @@ register("walker", MoDiff, MoDiffConfig, fast=FastMoDiff)
 register("walker", FootholdMoDiff, FootholdConfig, build=FootholdMoDiff, fast=FastFoothold)
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Walker(Performer):
     """A network, and the scalers that convert metres and m/s to its units and back."""
 

@@ -29,6 +29,7 @@ from ..performers.performer import generators
 from ..performers.walker import Walker
 from ..performers.with_bar import with_bar
 from . import checkpoints
+from .checkpoints import CheckpointError
 
 STEPS = 50  # of DDIM, for in-betweens by default
 
@@ -37,12 +38,16 @@ def load(name: str | Path, clip: Clip | str | Path | None = None) -> Walker | Da
     """A performer: shipped weights by name ("walker", "dancer", "mover" ...), or your own file.
 
     `clip`: for your own mover that reads by CLIP, the folder of that CLIP (`checkpoints.load`).
-    Raises CheckpointError for an unknown name, with a list of the names, or for a faulty file.
+    Raises CheckpointError for an unknown name, with a list of the names, for a faulty file, and for
+    `clip` with shipped weights, none of which reads by CLIP.
     Notebook: 00
     """
     if str(name).endswith(".safetensors"):
         return checkpoints.load(Path(name).expanduser(), clip)
-    return checkpoints.pretrained(str(name))
+    performer = checkpoints.pretrained(str(name))
+    if clip is not None:
+        raise CheckpointError(f"the shipped {name!r} does not read by CLIP: leave `clip` out")
+    return performer
 
 
 def inbetween(
@@ -137,9 +142,10 @@ def edit(
     """Change a motion by a sentence, with the shipped mover.
 
     The motion is noised part of the way, and denoised under the sentence, which says what the whole
-    figure does, the legs included. `known` joints keep their places about the root; where the
-    pelvis is known, the path stays, too. `strength`, from 0 to 1, is the share of the noise: the
-    more, the less of the motion stays; with 1 only the known joints do. With `samples` above 1, the
+    figure does, the legs included. `known` joints keep their places about the root; while the
+    pelvis is known from the first frame on, the path stays, too, and they are exactly where they
+    were. `strength`, above 0 and up to 1, is the share of the noise: the more, the less of the
+    motion stays; with 1 only the known joints do. With `samples` above 1, the
     result is a list with this many motions; the first is that of samples=1. A MotionWarning says
     where the feet slide, and did not before.
     Raises MotionError if motion and mask do not fit, or the motion is shorter or longer than those
@@ -173,12 +179,14 @@ def edit(
             generator=generators(seed, count),
         )  # fmt: skip
     nothing = np.zeros((len(motion), len(motion.skeleton)), bool)
-    first, last = longest_glide(made[0], nothing)
-    if last > first and not any(longest_glide(motion.positions, nothing)):
+    glides = [glide for one in made if any(glide := longest_glide(one, nothing))]
+    if glides and not any(longest_glide(motion.positions, nothing)):
+        which = f" ({len(glides)} of {count} samples)" if count > 1 else ""
+        first, last = glides[0]
         warnings.warn(
-            f"{motion.name}: both feet slide between frames {first} and {last}. The sentence must "
-            "say what the legs do as well, such as 'walks forward while waving', and that has to "
-            "go with what is kept",
+            f"{motion.name}{which}: both feet slide between frames {first} and {last}. The "
+            "sentence must say what the legs do as well, such as 'walks forward while waving', and "
+            "that has to go with what is kept",
             MotionWarning,
             stacklevel=2,
         )

@@ -1,6 +1,6 @@
 """How the shipped walkers are made: data, sizes, steps.
 
-One record each; nothing is tuned by hand afterwards.
+One record each. The numbers of `footholds` were chosen on walks; nothing else is tuned by hand.
 
 Source: MoDiff IV-A gives Adam, batch 64, 5e-5 and 1000 epochs on a GPU: WALKER_PAPER. The others
 are ours, for one core and about an hour each. WALKER_TRUNK and `walker-eps` had four fifths of

@@ -71,6 +71,7 @@ def test_known_words_are_read_and_others_passed_over_or_replaced_in_the_open():
         ("a cartwheel", "it knows walk, run, kick, raise, clap and others"),
         ("left", "'left' names no act: say what the figure does; it knows walk"),
         ("wlak left", r"'wlak' \(did you mean walk\?\)"),
+        ("wakls left", r"'wakls' \(did you mean walk\?\)"),
         ("er geht nach vorne und winkt", "does not know 'er', 'geht', .* and 1 more"),
         ("walk " * (MOST_WORDS + 1), f"has {MOST_WORDS + 1} words; the network reads {MOST_WORDS}"),
     ],

@@ -340,6 +340,9 @@ def test_no_file_and_a_folder(tmp_path, monkeypatch):
         FileNotFoundError, match="there is no file nope.bvh in .*check the spelling"
     ):
         read_motion("nope.bvh")
+    (tmp_path / "folder.bvh").mkdir()
+    with pytest.raises(MotionError, match="folder.bvh is a folder; give the name of a file in it"):
+        walking().save(tmp_path / "folder.bvh")
     with pytest.raises(MotionError, match="is a folder"):
         read_motion(tmp_path)
 
