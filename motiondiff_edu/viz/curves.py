@@ -59,12 +59,15 @@ def control_curves(
     controls: Mapping[str, Float[np.ndarray, "_ 3"]], fps: float | int = 20.0, past: int = 0
 ) -> Figure:
     """Forward, left and yaw over time, one row each; the given past is shaded."""
-    fig, axes = figure(9, 5.4, f"Control over time: {', '.join(controls)}.", 3, 1, share="x")
+    which = f": {', '.join(controls)}" if len(controls) > 1 else ""
+    words = f"Control over time{which}; forward, left and yaw."
+    fig, axes = figure(9, 5.4, words, 3, 1, share="x")
     for k, (axis, name) in enumerate(
         zip(axes, ("forward (m/s)", "left (m/s)", "yaw (rad/s)"), strict=True)
     ):
         _lines(axis, {n: (np.arange(len(c)) / fps, c[:, k]) for n, c in controls.items()})
         axis.set_ylabel(name)
+        axis.margins(y=0.1)
         low, high = axis.get_ylim()
         axis.set_ylim(min(low, -0.3), max(high, 0.3))
         if past:

@@ -116,6 +116,7 @@ def paths_from_above(
             width=0.005,
             zorder=3,
         )
+    axes.margins(0.1)
     axes.invert_xaxis()  # seen from above and along z, the figure's left is on the left
     axes.set(aspect="equal", xlabel="x: left (m)", ylabel="z: forward (m)")
     if len(paths) > 1:

@@ -60,7 +60,8 @@ def side_by_side(
     )
     frames = np.linspace(0, max(map(len, motions)) - 1, n).round().astype(int)
     words = (
-        f"{n} poses of {', '.join(names)} at the same times, left limbs blue, right limbs orange."
+        f"Rows: {', '.join(names)}. {n} poses of each at the same times, left limbs blue, right "
+        "limbs orange."
     )
     fig, axes = figure(1.4 * n, 2.2 * len(motions) + 0.8, words, len(motions), n)
     for i, axis in enumerate(axes):

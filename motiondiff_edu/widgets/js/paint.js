@@ -232,6 +232,18 @@ export function paintText(ctx, theme, text, x, y, align, size, weight = 600) {
   ctx.fillText(text, x, y);
 }
 
+// The text in lines that fit into `room` pixels; a single long word may stand out.
+function wrapped(ctx, text, size, room) {
+  ctx.font = `600 ${size}px system-ui, sans-serif`;
+  const lines = [];
+  for (const word of text.split(" ")) {
+    const longer = lines.length ? `${lines.at(-1)} ${word}` : word;
+    if (lines.length && ctx.measureText(longer).width <= room) lines[lines.length - 1] = longer;
+    else lines.push(word);
+  }
+  return lines;
+}
+
 export const tense = (figure, t) =>
   figure.past == null ? "" : t < figure.past ? "past (given)" : "future (generated)";
 
@@ -276,16 +288,17 @@ export function paintPanel(ctx, scene, figures, frame, view, theme, width, heigh
     figures.length === 1 ? f.label : "",
     small ? tense(f, frame).split(" ")[0] : tense(f, frame),
   ].filter(Boolean);
-  (small ? titles : [titles.join(" \u00b7 ")]).forEach((line, i) =>
-    paintText(ctx, theme, line, 12, 24 + 19 * i, "left", size),
+  const lines = (small ? titles : [titles.join(" \u00b7 ")]).flatMap((title) =>
+    wrapped(ctx, title, size, width - 24),
   );
+  lines.forEach((line, i) => paintText(ctx, theme, line, 12, 24 + 19 * i, "left", size));
   if (frame >= f.frames && figures.length === 1)
     paintText(
       ctx,
       theme,
       `ended after ${(f.frames / scene.fps).toFixed(1)} s`,
       12,
-      64,
+      Math.max(64, 26 + 19 * lines.length),
       "left",
       14,
       400,
