@@ -90,12 +90,12 @@ def linear_schedule(S: int = 100, beta_1: float = 1e-4, beta_S: float = 0.1) -> 
     )
 
 
-def scaled_linear_schedule(S: int = 100) -> Schedule:
-    """DDPM's 1e-4 to 0.02 over 1000 steps, scaled by 1000 / S for fewer steps.
+def rescaled_ddpm_schedule(S: int = 100) -> Schedule:
+    """DDPM's 1e-4 to 0.02 over 1000 steps, times 1000 / S for fewer steps.
 
-    Notebook: 02.
+    Raises ValueError for 20 steps or fewer, for a beta would be 1 or more.  Notebook: 02.
     """
-    return make_schedule(torch.linspace(0.1 / S, 20 / S, S, dtype=torch.float64), "scaled linear")
+    return make_schedule(torch.linspace(0.1 / S, 20 / S, S, dtype=torch.float64), "rescaled DDPM")
 
 
 def cosine_schedule(S: int = 1000, cap: float = 0.999) -> Schedule:

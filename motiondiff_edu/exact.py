@@ -129,16 +129,27 @@ def conditional(given: Mixture, values: Float[Tensor, "D"], known: Bool[Tensor, 
     """
     if not known.any() or known.all():
         raise ValueError("at least one entry must be known, and at least one unknown")
-    covariances = torch.einsum("kia,ka,kja->kij", given.axes, given.variances, given.axes)
-    inside, across = covariances[:, known][:, :, known], covariances[:, ~known][:, :, known]
-    gain = torch.linalg.solve(inside, across.mT).mT
-    seen = mixture(given.weights, given.means[:, known], inside)
+    seen, gain, left = conditional_parts(given, known)
     value = values.double()[known]
     off = along_axes(seen, (value - seen.means)[None])
     shares = part_log_densities(seen.weights, off, seen.variances)[0].softmax(0)
     means = given.means[:, ~known] + torch.einsum("kui,ki->ku", gain, value - seen.means)
+    return mixture(shares.clamp(min=1e-300), means, left)
+
+
+def conditional_parts(
+    given: Mixture, known: Bool[Tensor, "D"]
+) -> tuple[Mixture, Float[Tensor, "K U V"], Float[Tensor, "K U U"]]:
+    """What a conditional needs, whatever the values are (U entries are unknown, V known).
+
+    The mixture of the known entries; the gain G of each part; and the covariance of its unknown
+    entries once the known ones are given.
+    """
+    covariances = torch.einsum("kia,ka,kja->kij", given.axes, given.variances, given.axes)
+    inside, across = covariances[:, known][:, :, known], covariances[:, ~known][:, :, known]
+    gain = torch.linalg.solve(inside, across.mT).mT
     left = covariances[:, ~known][:, :, ~known] - gain @ across.mT
-    return mixture(shares.clamp(min=1e-300), means, (left + left.mT) / 2)
+    return mixture(given.weights, given.means[:, known], inside), gain, (left + left.mT) / 2
 
 
 def dataset_mean(

@@ -25,8 +25,8 @@ from motiondiff_edu.ddpm import (
     q_posterior,
     q_sample,
     q_step,
+    rescaled_ddpm_schedule,
     sample_steps,
-    scaled_linear_schedule,
     schedule_card,
     simple_loss,
 )
@@ -132,7 +132,7 @@ def test_posterior_variances_equal_published_values(reference):
     np.testing.assert_allclose(variance, [0, 0.00979, 0.02], atol=5e-6)
 
 
-@pytest.mark.parametrize("make", [linear_schedule, scaled_linear_schedule, cosine_schedule])
+@pytest.mark.parametrize("make", [linear_schedule, rescaled_ddpm_schedule, cosine_schedule])
 @pytest.mark.parametrize("S", [21, 50, 400])
 def test_schedule_contract(make, S):
     with warnings.catch_warnings():
@@ -152,7 +152,7 @@ def test_impossible_schedules_are_refused(beta):
 
 def test_too_few_steps_are_refused_with_the_remedy():
     with pytest.raises(ValueError, match="more steps"):
-        scaled_linear_schedule(10)
+        rescaled_ddpm_schedule(10)
 
 
 @pytest.mark.parametrize(
@@ -160,7 +160,7 @@ def test_too_few_steps_are_refused_with_the_remedy():
     [
         (linear_schedule, "7.5 %"),
         (lambda: cosine_schedule(100), "0.049 %"),
-        (scaled_linear_schedule, "0.45 %"),
+        (rescaled_ddpm_schedule, "0.45 %"),
     ],
 )
 def test_schedule_card_tells_the_signal_left(make, percent):
@@ -363,7 +363,7 @@ def schedule_table() -> list[tuple[str, str]]:
 def test_the_table_in_the_docs_is_what_the_schedules_leave(call, left):
     made = {
         "linear": linear_schedule,
-        "scaled_linear": scaled_linear_schedule,
+        "rescaled_ddpm": rescaled_ddpm_schedule,
         "cosine": cosine_schedule,
     }
     name, arguments = call[:-1].split("_schedule(")

@@ -20,7 +20,7 @@ from torch import Tensor
 
 from ..beyond.guidance import blended, guided
 from ..ddpm import Denoiser, Schedule, final, timesteps
-from ..exact import Mixture, conditional, mixture, sample_mixture
+from ..exact import Mixture, conditional, conditional_parts, sample_mixture
 from ..inbetweening import inpaint_steps, resampled
 from .mixture_fit import responsibilities
 
@@ -105,13 +105,9 @@ class ConditionalSampler:
     """Draws from p(other entries | known entries) of a mixture, for many known values at once."""
 
     def __init__(self, given: Mixture, known: Bool[Tensor, "D"]):
-        covariances = torch.einsum("kia,ka,kja->kij", given.axes, given.variances, given.axes)
-        inside, across = covariances[:, known][:, :, known], covariances[:, ~known][:, :, known]
         self.given, self.known = given, known
-        self.seen = mixture(given.weights, given.means[:, known], inside)
-        self.gain = torch.linalg.solve(inside, across.mT).mT
-        left = covariances[:, ~known][:, :, ~known] - self.gain @ across.mT
-        variances, axes = torch.linalg.eigh((left + left.mT) / 2)
+        self.seen, self.gain, left = conditional_parts(given, known)
+        variances, axes = torch.linalg.eigh(left)
         self.root = axes * variances.clamp(min=0).sqrt()[:, None]
 
     def draw(self, x: Float[Tensor, "N D"], generator: torch.Generator) -> Float[Tensor, "N D"]:

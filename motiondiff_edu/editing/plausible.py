@@ -29,15 +29,16 @@ STILL = "Without guidance it is no better: give more keyframes, or draw straight
 DRAWS = 4  # of a sample whose feet glide, before the best of them is given back with a warning
 
 
-def plausible(
+def until_plausible(
     made: Float[np.ndarray, "T 21 3"],
     given: Float[np.ndarray, "T 21 3"],
     known: Bool[np.ndarray, "T 21"],
     again: Callable[[Departures], Float[np.ndarray, "T 21 3"]],
 ) -> tuple[Float[np.ndarray, "T 21 3"], str]:
-    """A generated motion, or another where it is not plausible, and what there is to say about it.
+    """A generated motion, drawn again where it is not plausible, and what there is to say about it.
 
-    `again(departures)` generates another one.
+    `again(departures)` draws another one: once without guidance where it moves too fast, up to
+    DRAWS - 1 times where its feet glide.
     """
     words = wilder_than_given(made, given, known)
     if words:

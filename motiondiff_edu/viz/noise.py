@@ -164,17 +164,23 @@ def histograms(
 ) -> Figure:
     """A histogram for each named set of samples, each under the same exact density.
 
-    The y axis ends at `top` times the peak of the density.
+    The y axis ends at `top` times the peak of the density. Values off the grid count, and are not
+    drawn.
     """
     fig, axes = panels(len(samples), width=4.2 * max(len(samples), 2), height=3.4, share="y")
     for i, (axis, (name, values)) in enumerate(zip(axes, samples.items(), strict=True)):
-        ends = float(grid[0]), float(grid[-1])
-        inside = np.clip(np.asarray(values).ravel(), *ends)
-        axis.hist(inside, bins=80, range=ends, density=True, color=COLOURS[i % 6], alpha=0.45)
+        _histogram(axis, values, grid, 80, COLOURS[i % 6])
         axis.plot(grid, density, color=INK, lw=1.8)
         axis.set_title(name)
         axis.set_ylim(0, top * float(max(density)))
     return finish(fig, caption, (label, "density"))
+
+
+def _histogram(axis, values: ArrayLike, grid: ArrayLike, bins: int, color: str) -> None:
+    """Draw the density of values over the grid; those off the grid count, and are not drawn."""
+    values, ends = np.asarray(values).ravel(), (float(grid[0]), float(grid[-1]))
+    share = np.full(len(values), bins / (len(values) * (ends[1] - ends[0])))
+    axis.hist(values, bins=bins, range=ends, weights=share, color=color, alpha=0.5)
 
 
 def paths(
@@ -216,12 +222,11 @@ def one_moment(
 ) -> Figure:
     """All samples at one step: the values of x_s, and the denoiser's guesses of x0."""
     fig, (left, right) = panels(2, width=10, height=3.4, share="y")
-    shown = {"bins": 90, "range": (float(grid[0]), float(grid[-1])), "density": True, "alpha": 0.5}
     for axis, data, colour, name in (
         (left, values, BLUE, f"x_s at s = {s}"),
         (right, guesses, ORANGE, "x0_hat there"),
     ):
-        axis.hist(np.clip(np.asarray(data), float(grid[0]), float(grid[-1])), color=colour, **shown)
+        _histogram(axis, data, grid, 90, colour)
         axis.plot(grid, density, color=INK, lw=1.6)
         axis.set_title(name)
         axis.set_ylim(0, 2.4)

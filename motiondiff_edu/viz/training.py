@@ -67,11 +67,16 @@ def loss_above_floor(
 def clouds(
     panels: Mapping[str, Float[np.ndarray, "_ 2"]], words: str, reach: float = 2.6
 ) -> Figure:
-    """Sets of points in the plane, one panel each, all with the same axes."""
+    """Sets of points in the plane, one panel each, all with the same axes from -reach to reach.
+
+    Points outside are not drawn; the caption `words` is followed by their number.
+    """
+    outside = sum(int((np.abs(points) > reach).any(-1).sum()) for points in panels.values())
+    words += f" Outside of the frame: {outside}." if outside else ""
     fig, axes = figure(3.1 * len(panels), 3.7, words, 1, len(panels), share="xy")
     for k, (axis, (name, points)) in enumerate(zip(axes, panels.items(), strict=True)):
         axis.plot(
-            *np.clip(points, -reach, reach).T,
+            *np.asarray(points).T,
             ".",
             ms=2.5,
             alpha=0.5,

@@ -6,7 +6,12 @@ from gaits import rest_pose
 
 from motiondiff_edu.editing.inbetween import OURS
 from motiondiff_edu.editing.masks import keyframes
-from motiondiff_edu.editing.plausible import DRAWS, longest_glide, plausible, wilder_than_given
+from motiondiff_edu.editing.plausible import (
+    DRAWS,
+    longest_glide,
+    until_plausible,
+    wilder_than_given,
+)
 from motiondiff_edu.motion.skeleton import JOINTS, TOES
 
 
@@ -77,7 +82,7 @@ def test_a_glide_is_drawn_again_until_a_figure_steps():
         drawn.append(how)
         return stands if len(drawn) == 2 else glides
 
-    made, note = plausible(glides, glides, KNOWN, again)
+    made, note = until_plausible(glides, glides, KNOWN, again)
     assert made is stands and note == "" and drawn == [OURS, OURS]
 
 
@@ -86,12 +91,12 @@ def test_where_every_draw_glides_the_shortest_is_given_back_and_it_is_said():
     shorter[30:, TOES[0], 1] += 0.2
     draws = [glides, shorter, glides]
     left = list(draws)
-    made, note = plausible(glides, glides, KNOWN, lambda how: left.pop(0))
+    made, note = until_plausible(glides, glides, KNOWN, lambda how: left.pop(0))
     assert not left and len(draws) == DRAWS - 1
     assert made is shorter and "both feet slide between frames 0 and 29" in note
 
 
 def test_a_plausible_motion_is_given_back_as_it_is():
     given = standing()
-    made, note = plausible(given, given, KNOWN, lambda how: pytest.fail("drawn again"))
+    made, note = until_plausible(given, given, KNOWN, lambda how: pytest.fail("drawn again"))
     assert made is given and note == ""
