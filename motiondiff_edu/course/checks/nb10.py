@@ -188,8 +188,8 @@ def there_and_back(mine):
         },
     )
     return (
-        "One number of sample 1 is still its mean: "
-        "this walker has learnt nothing about bodies that could improve it."
+        "One number of sample 1 is still its mean: the toy walker of this check knows nothing of "
+        "bodies, and has nothing better for it."
     )
 
 

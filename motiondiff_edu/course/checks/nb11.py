@@ -58,7 +58,7 @@ def mel_index(mine):
     late = index * 512 / 16_000 - motion / 20
     if (np.abs(late) <= 0.016 + 1e-6).all():
         return (
-            f"At {motion[-1] / 20:.1f} s, motion is at frame {T - 1}, "
+            f"At {motion[-1] / 20:.2f} s, motion is at frame {T - 1}, "
             f"sound at frame {int(index[-1])}."
         )
     for hint, wrong in {

@@ -92,4 +92,4 @@ def mirrored(mine):
         "one side has become the other, and then there are two alike: exchange both at once",
     )
     expect(told == swapped, f"the words should be {' '.join(swapped)!r}, not {' '.join(told)!r}")
-    return "Half of the training's clips are made in this way, for nothing."
+    return "Half of the training's clips are made in this way, at no extra cost."
