@@ -8,6 +8,8 @@ others, 2019; the measure of the seam is ours.
 Notebook: 15
 """
 
+from itertools import combinations
+
 import numpy as np
 from jaxtyping import Bool, Float, Int
 
@@ -34,6 +36,25 @@ def unknown_error(
     Raises ValueError when everything was given.  Notebook: 15
     """
     return _distance(made, truth, ~known, "every joint is known")
+
+
+def energy_score(
+    samples: Float[np.ndarray, "S N T J 3"], truth: Motions, known: Bool[np.ndarray, "T J"]
+) -> Float[np.ndarray, "N"]:
+    """How far samples are from the truth, minus half of how far they are from each other; metres.
+
+    It is lowest on average for samples of the true distribution: neither their mean alone nor a
+    wide guess does as well. For a single answer it is `unknown_error`.
+    Raises ValueError when everything was given, or for no sample.
+    Source: the energy score (Gneiting and Raftery, 2007), with the mean distance of a joint.
+    """
+    if not len(samples):
+        raise ValueError("there is no sample to score")
+    error = np.mean([unknown_error(one, truth, known) for one in samples], 0)
+    if len(samples) == 1:
+        return error
+    pairs = combinations(samples, 2)
+    return error - 0.5 * np.mean([unknown_error(a, b, known) for a, b in pairs], 0)
 
 
 def _distance(made, truth, counted, problem: str):

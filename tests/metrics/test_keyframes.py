@@ -10,7 +10,14 @@ from data_synth.walking import random_control, walk
 from motiondiff_edu.baselines.interpolation import linear, spherical
 from motiondiff_edu.editing.masks import gap, keyframes
 from motiondiff_edu.metrics.bone_lengths import bone_rmse
-from motiondiff_edu.metrics.keyframes import keyframe_error, npss, seam_jump, seams, unknown_error
+from motiondiff_edu.metrics.keyframes import (
+    energy_score,
+    keyframe_error,
+    npss,
+    seam_jump,
+    seams,
+    unknown_error,
+)
 from motiondiff_edu.motion.root_frame import to_world
 
 
@@ -31,6 +38,28 @@ def test_errors_count_what_is_given_and_what_is_not(walks):
         keyframe_error(made, walks, np.zeros((60, 21), bool))
     with pytest.raises(ValueError, match="every joint is known"):
         unknown_error(made, walks, np.ones((60, 21), bool))
+
+
+def test_the_energy_score_is_lowest_for_samples_of_the_truths_distribution():
+    """One number: samples of N(0, 1) score lower than their mean, narrow or wide guesses."""
+    rng = np.random.default_rng(0)
+    truth = np.zeros((400, 1, 1, 3))
+    truth[..., 0] = rng.normal(size=(400, 1, 1))
+    known = np.zeros((1, 1), bool)
+
+    def score(width: float) -> float:
+        samples = np.zeros((30, 400, 1, 1, 3))
+        samples[..., 0] = width * rng.normal(size=(30, 400, 1, 1))
+        return energy_score(samples, truth, known).mean()
+
+    assert score(1.0) < min(score(0.0), score(0.5), score(2.0))
+    # E|X| - E|X - X'| / 2 of normal numbers, in closed form
+    assert score(0.0) == pytest.approx(np.sqrt(2 / np.pi), abs=0.05)
+    assert score(1.0) == pytest.approx(1 / np.sqrt(np.pi), abs=0.05)
+    one = np.ones((1, 400, 1, 1, 3))
+    np.testing.assert_allclose(energy_score(one, truth, known), unknown_error(one[0], truth, known))
+    with pytest.raises(ValueError, match="no sample"):
+        energy_score(one[:0], truth, known)
 
 
 def test_npss_of_two_sines_is_the_distance_of_their_bins():

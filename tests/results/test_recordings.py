@@ -1,4 +1,4 @@
-"""Continuations of recordings: the windows, the same motion as `walk`, the records and the page."""
+"""Recordings: windows, continuations and in-betweens, their records and the page."""
 
 import warnings
 
@@ -7,9 +7,12 @@ import pytest
 
 import motiondiff_edu as md
 from data_synth.walking import walk
+from motiondiff_edu.baselines.interpolation import linear
 from motiondiff_edu.conditions.control import constant_control
+from motiondiff_edu.editing.masks import keyframes
 from motiondiff_edu.motion.bvh.write import write_bvh
-from tools.results.recordings import continuations, page
+from tools.results.recordings import continuations, inbetweens, page
+from tools.results.recordings.windows import FULL, QUICK, RecordedSize, recorded
 
 RANGE = {"low": [-0.5, -0.5, -1.0], "high": [0.9, 0.5, 1.0]}
 
@@ -32,15 +35,15 @@ def folder(tmp_path, monkeypatch):
 
 
 def test_windows_are_of_six_seconds_and_their_control_is_within_the_range(folder):
-    found = list(continuations.windows(continuations.FULL, RANGE))
+    found = list(continuations.windows(FULL, RANGE))
     assert [one.source for one in found] == ["walk0.bvh", "walk0.bvh", "walk1.bvh"]
     assert all(len(one.given) == 40 and one.control.shape == (80, 3) for one in found)
     assert all(one.control[0, 0] == pytest.approx(0.9) for one in found)
-    assert len(list(continuations.windows(continuations.RecordedSize(each=1), RANGE))) == 2
+    assert len(list(continuations.windows(RecordedSize(each=1), RANGE))) == 2
 
 
 def test_a_window_is_continued_as_walk_continues_it(walker, folder):
-    window = next(continuations.windows(continuations.FULL, walker.card["control_range"]))
+    window = next(continuations.windows(FULL, walker.card["control_range"]))
     blended, plain = continuations.continued(walker, window)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
@@ -53,7 +56,7 @@ def test_a_window_is_continued_as_walk_continues_it(walker, folder):
 
 
 def test_records_are_made_and_stand_in_the_page(walker, folder):
-    made = continuations.recorded_records(walker, "0", continuations.QUICK, "python -m x")
+    made = continuations.recorded_records(walker, "0", QUICK, "python -m x")
     records = {one["name"]: one for one in made}
     assert records["real.blended_share"]["seeds"]["windows"] == 2
     assert 0 < records["real.seam_over_motion"]["value"] < 1.1
@@ -61,10 +64,62 @@ def test_records_are_made_and_stand_in_the_page(walker, folder):
     assert "2 windows of 2 recordings" in text and all(
         words in text for words in page.ROWS.values()
     )
-    assert "Not measured yet" in page.section({})
+    empty = page.section({})
+    assert empty.startswith("## On recordings") and empty.count("not measured yet") == 2
+
+
+@pytest.fixture(scope="module")
+def filled():
+    """A walk of six seconds with a keyframe a second: the truth once, and once beside it."""
+    truth = walk(constant_control(1.1, seconds=6.0), seed=5).world()
+    known = keyframes(len(truth), 20)
+    lines = linear(truth, known)
+    samples = np.stack([truth, lines])
+    again = np.array([False, True])
+    return truth, known, inbetweens.Filled(samples, samples[::-1], again, lines, lines)
+
+
+def test_a_row_compares_with_the_better_interpolation(filled):
+    truth, known, one = filled
+    row = inbetweens.row_of(one, truth, known)
+    assert row["raw_one"] == 0 and row["one"] == pytest.approx(1)
+    assert row["mean"] == row["raw_mean"] == pytest.approx(0.5)
+    # half as far from the truth as the lines on average, and that far from each other
+    assert row["energy"] == pytest.approx(0.5 - 0.5, abs=1e-9)
+    assert row["again"] == 0.5 and row["raw_fastest"] == pytest.approx(1)
+    assert row["raw_skating"] == pytest.approx(1) or row["raw_skating"] < 1
+    assert row["skating"] > 3, "feet of straight lines slide"
+
+
+def test_intervals_are_over_files():
+    values = np.array([1.0, 1.0, 1.0, 5.0])
+    alone = inbetweens.by_source("x", np.mean, values, np.array(["a", "a", "a", "b"]))
+    each = inbetweens.by_source("x", np.mean, values, np.array(list("abcd")))
+    assert alone.value == each.value == 2 and alone.low == 1 and alone.high == 5
+    assert each.high < 5
+    assert np.isnan(inbetweens.by_source("x", np.mean, values[:0], np.array([])).value)
+
+
+def test_in_betweens_of_windows_are_measured_and_stand_in_the_page(folder, monkeypatch):
+    monkeypatch.setattr(inbetweens, "STEPS", 2)
+    dancer = md.load("unconditional")
+    made = inbetweens.inbetween_records(dancer, "0", QUICK, "python -m x")
+    records = {one["name"]: one for one in made}
+    assert records["real.inbetween_over_interpolation"]["value"] > 0
+    assert records["real.gap40.inbetween_one_over_interpolation"]["seeds"]["windows"] == 2
+    assert records["real.inbetween_walks_over_interpolation"]["value"] is None  # by their names
+    text = page.section(records)
+    assert "In-betweens of 2 windows of 2 recordings" in text
+    assert all(words in text for words in page.FILLED.values())
+
+
+def test_windows_of_a_file_are_cut_at_even_distances(folder):
+    found = list(recorded(FULL))
+    assert [name for name, _ in found] == ["walk0.bvh", "walk0.bvh", "walk1.bvh"]
+    assert all(len(motion) == 120 for _, motion in found)
 
 
 def test_without_recordings_it_says_what_to_set(monkeypatch, tmp_path):
     monkeypatch.setenv("MOTIONDIFF_REAL_DATA", str(tmp_path))
     with pytest.raises(SystemExit, match="MOTIONDIFF_REAL_DATA must name a folder"):
-        list(continuations.windows(continuations.FULL, RANGE))
+        list(continuations.windows(FULL, RANGE))

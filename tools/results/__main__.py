@@ -5,10 +5,10 @@
 Parts: walker, walker-plain, walker-printed, walker-eps, walker-ddim10, walker-lookahead,
 walker-eps-lookahead, footsteps; dancer, dancer-plain, regression, unheard (music like none in
 training), attention, dance-time; mend (dropout and repairs), mend-both (both papers' repairs),
-inbetween, inbetween-departures (what each is worth), recordings (what holds on recordings; only by
-its name, with MOTIONDIFF_REAL_DATA), known-answer (methods of filling in, on tasks
-whose answer is a formula); words (motion from text: Table 2, captions that nobody trained for,
-editing). These parts train, for minutes a row: ladder (from the paper's walker to ours),
+inbetween, inbetween-departures (what each is worth), recordings and recordings-inbetweens (what
+holds on recordings; only by name, with MOTIONDIFF_REAL_DATA), known-answer (methods of filling in,
+on tasks whose answer is a formula); words (motion from text: Table 2, captions that nobody trained
+for, editing). These parts train, for minutes a row: ladder (from the paper's walker to ours),
 dance-budget, words-budget and mend-map. One row of them is a part as well: ladder.ours,
 dance-budget.v. Without --only, all parts are measured for which there are shipped weights. --full
 adds the parts that train; otherwise their records stay as they are. A training that was killed
@@ -34,6 +34,8 @@ from .inbetweens import departures, inbetween, known_answer
 from .page.cards import add_metrics
 from .page.render import render
 from .recordings import continuations
+from .recordings import inbetweens as recorded_inbetweens
+from .recordings import windows as recorded
 from .repairs import both, dropout, mend, repair
 from .repairs.trials import names_of
 from .walks import ladder
@@ -57,11 +59,12 @@ MEASURED = (
     "dance-time",
     "known-answer",
 )  # parts that need shipped weights, or none
+FILLS_IN = "unconditional"  # the weights of in-betweens
 MENDED = {  # parts that need these weights
     "mend": {"walker", "walker-plain", *names_of("plain"), *names_of("dropout")},
-    "mend-both": {both.WALKER, "unconditional"},
-    "inbetween": {"unconditional"},
-    "inbetween-departures": {"unconditional"},
+    "mend-both": {both.WALKER, FILLS_IN},
+    "inbetween": {FILLS_IN},
+    "inbetween-departures": {FILLS_IN},
     "words": {"mover"},
 }
 TRAINED = {
@@ -70,7 +73,8 @@ TRAINED = {
     "mend-map": tuple(dropout.RATES),
     "words-budget": tuple(word_budget.VARIANTS),
 }
-RECORDED = "recordings"  # the recordings are not part of the project
+# the recordings are not part of the project
+RECORDED = ("recordings", "recordings-inbetweens")
 ROUNDS = 7  # of dance-time
 
 
@@ -136,12 +140,12 @@ def parts_of(only: list[str], full: bool, lines: dict[str, Walks], weights: set[
         *DANCES,
         *MEASURED,
         *MENDED,
-        RECORDED,
+        *RECORDED,
         *(row for group in rows.values() for row in group),
     }
     unknown = sorted(set(parts) - known)
     if unknown:
-        there = ", ".join([*lines, *DANCES, *MEASURED, *MENDED, RECORDED, *rows])
+        there = ", ".join([*lines, *DANCES, *MEASURED, *MENDED, *RECORDED, *rows])
         sys.exit(
             f"no part is called {', '.join(unknown)}; there are: {there}; rows: "
             "ladder.ours, dance-budget.v ..."
@@ -189,20 +193,29 @@ def records_of(
     if part == "mend":
         return mend.records(bench, repair.QUICK if quick else repair.FULL, command)
     if part.startswith("inbetween"):
-        dancer = stage.dancer("unconditional")
-        digest = weights_digest(stage.weights["unconditional"])
+        dancer = stage.dancer(FILLS_IN)
+        digest = weights_digest(stage.weights[FILLS_IN])
         size = inbetween.QUICK if quick else inbetween.FULL
         if part == "inbetween":
             return inbetween.inbetween_records(dancer, digest, size, command)
         return departures.departure_records(dancer, digest, size, command)
     if part == "mend-both":
         size = repair.QUICK if quick else repair.FULL
-        return both.both_records(bench, stage.dancer("unconditional"), size, command)
-    if part == RECORDED:
-        size = continuations.QUICK if quick else continuations.FULL
+        return both.both_records(bench, stage.dancer(FILLS_IN), size, command)
+    if part == "recordings":
         path = bench.weights["walker"]
         return continuations.recorded_records(
-            checkpoints.load_walker(path), weights_digest(path), size, command
+            checkpoints.load_walker(path),
+            weights_digest(path),
+            recorded.QUICK if quick else recorded.FULL,
+            command,
+        )
+    if part == "recordings-inbetweens":
+        return recorded_inbetweens.inbetween_records(
+            stage.dancer(FILLS_IN),
+            weights_digest(stage.weights[FILLS_IN]),
+            recorded.QUICK if quick else recorded.FULL,
+            command,
         )
     if part == "words":
         studio = words.Studio(words.size_of(quick), bench.weights)

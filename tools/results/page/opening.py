@@ -16,7 +16,11 @@ GROUPS = {
     "Diffusion dropout and reconstruction": (("mend.",), "mend.frames_rmse_over_interpolation"),
     "Words": (("words.",), "words.action_accuracy"),
     "In-betweens": (("inbetween.",), "inbetween.gap30_error_over_interpolation"),
-    "Continuations of recordings": (("real.",), "real.seam_p95_over_motion"),
+    "Continuations of recordings": (
+        ("real.seam", "real.continuation"),
+        "real.seam_p95_over_motion",
+    ),
+    "In-betweens of recordings": (("real.inbetween",), "real.inbetween_over_interpolation"),
     "Speed, and sound in the player": (("bench.", "player."), "bench.sampler_over_diffusers"),
 }
 UNITS = ("cm", "m/s", "ms", "s", "m")  # the others are ratios, which have no unit

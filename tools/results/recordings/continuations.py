@@ -5,17 +5,13 @@ on for four as fast as the person went in the last second. Once as `Walker.walk`
 without its blending.
 """
 
-import os
-import sys
 import warnings
 from collections.abc import Iterator
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
 from jaxtyping import Float
 
-import motiondiff_edu as md
 from motiondiff_edu import rollout
 from motiondiff_edu.metrics.adherence import adherence
 from motiondiff_edu.metrics.seams import seam_over_motion
@@ -32,22 +28,10 @@ from motiondiff_edu.performers.performer import generators
 from motiondiff_edu.performers.walker import STEPS, Walker
 
 from ..walks.scores import Measure, measure_of, root_mean, squared_bone_error
+from .windows import SECONDS, RecordedSize, recorded
 
-FOLDERS = ("bvh", "cmu30")  # of MOTIONDIFF_REAL_DATA
-GIVEN, AHEAD = 2.0, 4.0  # seconds
-EACH = 3  # windows of a file, at most
+GIVEN = 2.0  # seconds of a window
 EARLY = 1.0  # seconds after the seam
-
-
-@dataclass(frozen=True)
-class RecordedSize:
-    """The amount of measurement."""
-
-    files: int | None = None
-    each: int = EACH
-
-
-FULL, QUICK = RecordedSize(), RecordedSize(files=3, each=1)
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,26 +44,13 @@ class Window:
 
 
 def windows(size: RecordedSize, range_of_control: dict) -> Iterator[Window]:
-    """The windows of all files that are read, evenly spaced; the control stays in the range.
-
-    Exits where MOTIONDIFF_REAL_DATA does not name a folder with recordings.
-    """
-    folder = Path(os.environ.get("MOTIONDIFF_REAL_DATA", ""))
-    files = [path for one in FOLDERS for path in sorted((folder / one).glob("*.bvh"))]
-    if not files:
-        sys.exit("MOTIONDIFF_REAL_DATA must name a folder with recordings in bvh/ and cmu30/")
-    given, n = round(GIVEN * FPS), round((GIVEN + AHEAD) * FPS)
-    for path in files[: size.files]:
-        try:
-            motion = md.read_motion(path)
-        except ValueError:  # damaged on purpose, or no human
-            continue
-        count = min(size.each, len(motion) // n)
-        for first in np.linspace(0, len(motion) - n, count).astype(int):
-            past = motion[int(first) : int(first) + given]
-            speed = past.control[-round(FPS) :].mean(0)
-            speed = speed.clip(range_of_control["low"], range_of_control["high"])
-            yield Window(path.name, past, np.tile(speed, (n - given, 1)))
+    """The beginnings of all windows; the control stays in the range."""
+    given, ahead = round(GIVEN * FPS), round((SECONDS - GIVEN) * FPS)
+    for source, motion in recorded(size):
+        past = motion[:given]
+        speed = past.control[-round(FPS) :].mean(0)
+        speed = speed.clip(range_of_control["low"], range_of_control["high"])
+        yield Window(source, past, np.tile(speed, (ahead, 1)))
 
 
 @dataclass(frozen=True, eq=False)

@@ -14,12 +14,58 @@ ROWS = {
 }
 
 
+FILLED = {
+    "over_interpolation": "error of the mean of ten, over interpolation's (median)",
+    "walks_over_interpolation": "the same, walks alone",
+    "others_over_interpolation": "the same, all other motions",
+    "one_over_interpolation": "error of one sample, over interpolation's (median)",
+    "one_p90_over_interpolation": "the same (90th percentile)",
+    "energy_over_interpolation": "energy score of ten, over interpolation's (median)",
+    "others_energy_over_interpolation": "the same, all but walks",
+    "skating_over_source": "sliding of planted feet, over the recording's (median)",
+    "skating_p90_over_source": "the same (90th percentile)",
+    "fastest_over_source": "fastest joint, over the recording's (90th percentile)",
+    "floor_cm": "depth of the lowest joint under the recording's, cm (90th percentile)",
+}
+SECONDS = {  # between keyframes: beginnings of the names
+    "0.25 s": "real.gap5.inbetween_",
+    "0.5 s": "real.gap10.inbetween_",
+    "1 s": "real.inbetween_",
+    "1 s, before second tries": "real.inbetween_raw_",
+    "2 s": "real.gap40.inbetween_",
+}
+
+
 def section(records: dict[str, dict]) -> str:
+    """Continuations and in-betweens of recordings."""
+    return f"## On recordings\n\n{continued(records)}\n\n{filled_in(records)}"
+
+
+def filled_in(records: dict[str, dict]) -> str:
+    """In-betweens of recordings, at several distances of keyframes."""
+    share = records.get("real.inbetween_fallback_share")
+    if share is None:
+        return "In-betweens of recordings are not measured yet.\n"
+    seeds = share["seeds"]
+    text = (
+        f"In-betweens of {seeds['windows']} windows of {seeds['files']} recordings, "
+        f"{seeds['walks']} of them walks and runs, from keyframes at equal distances. Interpolation"
+        " is the better one of straight lines and arcs. "
+        f"{number(100 * share['value'])} % of the samples are noticed as failures and drawn again. "
+        "The intervals are over files.\n\n"
+    )
+    rows = [
+        [words, *(cell(records.get(start + name), unit=False) for start in SECONDS.values())]
+        for name, words in FILLED.items()
+    ]
+    return text + table(["a keyframe every", *SECONDS], rows)
+
+
+def continued(records: dict[str, dict]) -> str:
     """Continuations of recordings, as shipped and without blending."""
-    title = "## On recordings\n\n"
     share = records.get("real.blended_share")
     if share is None:
-        return title + "Not measured yet.\n"
+        return "Continuations of recordings are not measured yet.\n"
     seeds = share["seeds"]
     text = (
         f"The walker continues {seeds['windows']} windows of {seeds['files']} recordings for four "
@@ -33,4 +79,4 @@ def section(records: dict[str, dict]) -> str:
         [words, *(cell(records.get(start + name), unit=False) for start in STARTS)]
         for name, words in ROWS.items()
     ]
-    return title + text + table(["", "as shipped", "without blending"], rows)
+    return text + table(["", "as shipped", "without blending"], rows)

@@ -1,0 +1,160 @@
+"""In-betweens of recordings: a keyframe a second, and closer and wider ones.
+
+Each window is filled in `samples` times: as `editing.inbetween` does it, and as `md.inbetween` does
+it, which notices failures and tries again. They are compared with the better of straight lines and
+arcs. Intervals are over files.
+"""
+
+import warnings
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Bool, Float
+
+from motiondiff_edu.baselines.interpolation import linear, spherical
+from motiondiff_edu.editing.inbetween import OURS, inbetween
+from motiondiff_edu.editing.masks import keyframes
+from motiondiff_edu.editing.plausible import until_plausible
+from motiondiff_edu.metrics.keyframes import energy_score, unknown_error
+from motiondiff_edu.metrics.skating import skating
+from motiondiff_edu.motion.motion import Motion
+from motiondiff_edu.motion.root_frame import FPS
+from motiondiff_edu.performers.dancer import STEPS, Dancer
+from motiondiff_edu.performers.performer import generators
+
+from ..walks.scores import SKATING_FLOOR, Measure, measure_of
+from .windows import RecordedSize, recorded
+
+SECOND = 20  # frames
+OTHERS = (5, 10, 40)  # frames between keyframes, beside one a second
+# of the collection's files: people who walk, run and turn, and do nothing else
+WALKS = (
+    "cmu_02_01", "cmu_002_02", "cmu_003_01", "cmu_003_02", "cmu_12_01", "cmu_max_131_01",
+    "pymo_AV_8Walk",
+)  # fmt: skip
+
+
+@dataclass(frozen=True, eq=False)
+class Filled:
+    """The answers for one window: samples before and after the second tries, and interpolations."""
+
+    raw: Float[np.ndarray, "S T J 3"]
+    made: Float[np.ndarray, "S T J 3"]
+    again: Bool[np.ndarray, "S"]
+    lines: Float[np.ndarray, "T J 3"]
+    arcs: Float[np.ndarray, "T J 3"]
+
+
+def filled(dancer: Dancer, motion: Motion, known: Bool[np.ndarray, "T J"], samples: int) -> Filled:
+    """A window, filled in as `md.inbetween` does it."""
+    truth, draws = motion.positions, generators(0, samples)
+
+    def generate(some, departures):
+        how = {"steps": STEPS, "departures": departures}
+        return inbetween(dancer, truth, known, samples=len(some), generator=some, **how)
+
+    raw, made, again = generate(draws, OURS), [], []
+    for draw, first in zip(draws, raw, strict=True):
+        one, note = until_plausible(
+            first, truth, known, lambda how, draw=draw: generate([draw], how)[0]
+        )
+        made.append(one)
+        again.append(bool(note))
+    lines, arcs = linear(truth, known), spherical(truth, known)
+    return Filled(raw, np.stack(made), np.array(again), lines, arcs)
+
+
+def row_of(one: Filled, truth: Float[np.ndarray, "T J 3"], known: Bool[np.ndarray, "T J"]) -> dict:
+    """What is measured of one window; errors and scores over those of the better interpolation."""
+
+    def error(made: Float[np.ndarray, "T J 3"]) -> float:
+        return float(unknown_error(made[None], truth[None], known)[0])
+
+    def fastest(positions: Float[np.ndarray, "T J 3"]) -> float:
+        return float(FPS * np.linalg.norm(np.diff(positions, axis=0), axis=-1).max())
+
+    def sliding(positions: Float[np.ndarray, "T J 3"]) -> float:
+        still = np.zeros((1, len(positions), 3))
+        return float(skating(positions[None], still)[0])
+
+    rival = min(error(one.lines), error(one.arcs))
+    row = {"again": one.again.mean()}
+    for start, samples in (("", one.made), ("raw_", one.raw)):
+        score = energy_score(samples[:, None], truth[None], known)[0]
+        row |= {
+            f"{start}mean": error(samples.mean(0)) / rival,
+            f"{start}one": error(samples[0]) / rival,
+            f"{start}energy": float(score) / rival,
+            f"{start}skating": sliding(samples[0]) / max(sliding(truth), SKATING_FLOOR),
+            f"{start}fastest": fastest(samples[0]) / fastest(truth),
+            f"{start}depth": 100 * max(0.0, truth[..., 1].min() - samples[0][..., 1].min()),
+        }
+    return row
+
+
+def measures_of(
+    rows: list[dict[str, float]], walks: Bool[np.ndarray, "N"], sources: list[str]
+) -> list[Measure]:
+    """The measures of all windows."""
+    columns = {name: np.array([row[name] for row in rows]) for name in rows[0]}
+
+    def one(name: str, column: str, value: Callable, some: Bool[np.ndarray, "N"]) -> Measure:
+        return by_source(name, value, columns[column][some], np.array(sources)[some])
+
+    every = np.ones(len(rows), bool)
+    found = []
+    for start, column in (("inbetween_", ""), ("inbetween_raw_", "raw_")):
+        found += [
+            one(f"{start}over_interpolation", f"{column}mean", np.median, every),
+            one(f"{start}walks_over_interpolation", f"{column}mean", np.median, walks),
+            one(f"{start}others_over_interpolation", f"{column}mean", np.median, ~walks),
+            one(f"{start}one_over_interpolation", f"{column}one", np.median, every),
+            one(f"{start}one_p90_over_interpolation", f"{column}one", high, every),
+            one(f"{start}energy_over_interpolation", f"{column}energy", np.median, every),
+            one(f"{start}others_energy_over_interpolation", f"{column}energy", np.median, ~walks),
+            one(f"{start}skating_over_source", f"{column}skating", np.nanmedian, every),
+            one(f"{start}skating_p90_over_source", f"{column}skating", high, every),
+            one(f"{start}fastest_over_source", f"{column}fastest", high, every),
+            one(f"{start}floor_cm", f"{column}depth", high, every),
+        ]
+    return [*found, one("inbetween_fallback_share", "again", np.mean, every)]
+
+
+def high(values: Float[np.ndarray, "N"]) -> float:
+    """The 90th percentile of the numbers among them."""
+    return float(np.nanpercentile(values, 90)) if np.isfinite(values).any() else np.nan
+
+
+def by_source(
+    name: str, value: Callable, values: Float[np.ndarray, "N"], sources: np.ndarray
+) -> Measure:
+    """A measure whose interval is over files: all windows of a file are drawn together."""
+    unit = "cm" if name.endswith("_cm") else "share" if name.endswith("_share") else "ratio"
+    files = [values[sources == file] for file in sorted(set(sources))]
+    rows = np.empty(len(files), dtype=object)
+    rows[:] = files
+    if not len(rows):
+        return Measure(name, np.nan, np.nan, np.nan, unit)
+    return measure_of(name, unit, lambda drawn: value(np.concatenate(list(drawn))), rows)
+
+
+def inbetween_records(dancer: Dancer, weights: str, size: RecordedSize, command: str) -> list[dict]:
+    """The measures of in-betweens (`real.inbetween_*`), at other distances `real.gapN.`."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # notes on the files
+        windows = [(source, motion) for source, motion in recorded(size)]
+    sources = [source for source, _ in windows]
+    walks = np.array([source.startswith(WALKS) for source in sources])
+    seeds = {"windows": len(windows), "files": len(set(sources)), "sampling": 0, "steps": STEPS}
+    seeds |= {"samples": size.samples, "weights": weights, "walks": int(walks.sum())}
+    records = []
+    for every in (SECOND, *OTHERS):
+        rows = []
+        for _, motion in windows:
+            known = keyframes(len(motion), every)
+            one = filled(dancer, motion, known, size.samples)
+            rows.append(row_of(one, motion.positions, known))
+        prefix = "real." if every == SECOND else f"real.gap{every}."
+        records += [m.as_record(prefix, seeds, command) for m in measures_of(rows, walks, sources)]
+    return records
