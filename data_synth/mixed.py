@@ -1,4 +1,4 @@
-"""Motion without music: walks and dances in equal halves, for a network that learns both.
+"""Motion without music: walks, dances and performed sentences, for a network that learns them all.
 
 The dances follow silent scores (`score.beat_song`). The genres take turns, with their own tempi.
 """
@@ -8,6 +8,7 @@ from collections.abc import Iterator
 import numpy as np
 from jaxtyping import Bool, Float
 
+from .actions import clips
 from .dancing import dance
 from .music.score import beat_song
 from .music.song import GENRES
@@ -25,6 +26,16 @@ def motions(n: int, seed: int, seconds: float = 20.0) -> Iterator[Motion]:
     for k in range(n):
         rng = np.random.default_rng([seed, 6, k])
         yield _danced(seconds, rng, k // 2) if k % 2 else _walked(seconds, rng)
+
+
+def sentences(n: int, seed: int, seconds: float = 10.0) -> Iterator[Motion]:
+    """n performed sentences of the training split (`actions.clips`): people jump, squat, sit, kick.
+
+    Positions in the world (metres, 20 frames/s), and which feet stand.
+    Raises ValueError as `actions.clips` does.
+    """
+    for one in clips(n, seed, "train", seconds=seconds):
+        yield one.acted.positions, one.acted.contacts
 
 
 def _walked(seconds: float, rng: np.random.Generator) -> Motion:
