@@ -22,7 +22,7 @@ from ..prediction import eps_from_x0, x0_from_eps
 
 X = Float[Tensor, "B *shape"]
 Mask = Bool[Tensor, "B *shape"]
-Fade = int | Float[Tensor, "D"]  # frames
+Fade = float | Float[Tensor, "D"]  # frames
 
 
 def guided(

@@ -34,26 +34,33 @@ class Departures:
     `blend`: x0_hat is corrected at each step so that it goes through the given entries. Before the
     first and after the last of them the correction fades within so many frames; None: no blending
     (`beyond.guidance.blended`).
-    `guidance`: > 0 applies `beyond.guidance.guided` first; it doubles the cost. A larger value
-    follows sparse keyframes better, but the motion jumps more at the ends of a gap.
+    `shown`: a network that can see what is given sees it (`beyond.around_lines`).
+    `guidance`: > 0 applies `beyond.guidance.guided` first where the network does not see it; it
+    doubles the cost. A larger value follows sparse keyframes better, but the motion jumps more at
+    the ends of a gap.
     `bones`: generated bones get the lengths of the given ones (`beyond.constant_bones`).
     `feet`: planted feet do not slide (`beyond.foot_lock`).
     `resample`: how often each step is made (`inbetweening.resampled`).
     """
 
     blend: int | None = 10
+    shown: bool = True
     guidance: float = 0.5
     bones: bool = True
     feet: bool = True
     resample: int = 1
 
 
-OURS, PAPER = Departures(), Departures(blend=None, guidance=0.0, bones=False, feet=False)
+OURS = Departures()
+PAPER = Departures(blend=None, shown=False, guidance=0.0, bones=False, feet=False)
 
 
 @runtime_checkable
 class AnyDancer(Protocol):
-    """What `inbetween` needs of a dancer: schedule, units, and a denoiser for the music."""
+    """What `inbetween` needs of a dancer: schedule, units, and a denoiser for the music.
+
+    If it has `can_be_shown`, its `shown_denoiser` is used.
+    """
 
     schedule: Schedule
     motion_scaler: Scaler
@@ -94,10 +101,13 @@ def inbetween(
     music = None if mel is None else mel[None].expand(samples, -1, -1)
     held, schedule = (given.expand(shape), columns.to(device).expand(shape)), dancer.schedule
     start = draw(held[0], generator)
-    steer = bool(departures.guidance) and bool(known.any())
-    denoise = dancer.denoiser(music, len(given), fast=not steer)
-    if steer:
-        denoise = guided(denoise, schedule, *held, departures.guidance)
+    if departures.shown and getattr(dancer, "can_be_shown", False):
+        denoise = dancer.shown_denoiser(*held)
+    else:
+        steer = bool(departures.guidance) and bool(known.any())
+        denoise = dancer.denoiser(music, len(given), fast=not steer)
+        if steer:
+            denoise = guided(denoise, schedule, *held, departures.guidance)
     if departures.blend is not None:
         denoise = blended(denoise, schedule, *held, fading(departures.blend).to(device))
     visited = resampled(timesteps(schedule.S, steps), departures.resample)

@@ -10,9 +10,10 @@ from pathlib import Path
 
 import numpy as np
 import torch
-from jaxtyping import Float
+from jaxtyping import Bool, Float
 from torch import Tensor, nn
 
+from ..beyond.around_lines import Shown, around_lines
 from ..beyond.guidance import with_guess
 from ..conditions.audio_files import samples_of
 from ..conditions.music import FRAMES_PER_SECOND, SAMPLE_RATE, fingerprint, frame_times, log_mel
@@ -26,6 +27,7 @@ from ..motion.motion import Motion
 from ..motion.scaler import Scaler
 from ..prediction import denoiser_of
 from .dance_windows import FPS, mel_frames
+from .keyframe_mofusion import KeyframeMoFusion
 from .networks import register
 from .performer import Performer, generators, sampled
 from .with_bar import with_bar
@@ -93,6 +95,25 @@ class Dancer(Performer):
             return self._as_eps(lambda x_s, s: twin.denoise(x_s, s, song))
         music = self.model.listen(*self.mel_input(mel, frames))
         return self._as_eps(lambda x_s, s: self._evaluated(x_s, s, music))
+
+    @property
+    def can_be_shown(self) -> bool:
+        """Whether the network was made to see what is given of a motion (`shown_denoiser`)."""
+        return isinstance(self.model, KeyframeMoFusion)
+
+    def shown_denoiser(
+        self, given: Float[Tensor, "B T D"], known: Bool[Tensor, "B T D"]
+    ) -> Denoiser:
+        """`denoise(x_s, s) -> eps_hat` of a network that sees the given entries, and lines through
+        them.  Raises ValueError for a network that does not.
+        """
+        if not self.can_be_shown:
+            raise ValueError(
+                f"{type(self.model).__name__} is not made to see what is given: use `denoiser`"
+            )
+        shown = Shown.of(given, known)
+        remainder = self._as_eps(lambda r_s, s: self._evaluated(r_s, s, shown))
+        return around_lines(remainder, self.schedule, shown.lines)
 
     def _as_eps(self, network) -> Denoiser:
         denoise = denoiser_of(network, self.schedule, self.config.target)

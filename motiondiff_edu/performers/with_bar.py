@@ -19,21 +19,23 @@ def with_bar(
     with bar(evaluations, what, shown) as step:
         twin = copy.copy(performer)
 
+        def stepping(denoise: Denoiser) -> Denoiser:
+            def stepped(x_s, s):
+                answer = denoise(x_s, s)
+                step()
+                return answer
+
+            return stepped
+
         def with_steps(make: Callable[..., Denoiser]) -> Callable[..., Denoiser]:
-            def denoiser(*condition, fast: bool = True):  # past and control, mel and frames, texts
-                denoise = make(*condition, fast=fast)
-
-                def stepping(x_s, s):
-                    answer = denoise(x_s, s)
-                    step()
-                    return answer
-
-                return stepping
-
-            return denoiser
+            # past and control, mel and frames, texts
+            return lambda *condition, fast=True: stepping(make(*condition, fast=fast))
 
         for name in ("denoiser", "plan_denoiser"):
             if hasattr(performer, name):
                 # the record is frozen; its twin lives as long as the bar
                 vars(twin)[name] = with_steps(getattr(performer, name))
+        if hasattr(performer, "shown_denoiser"):
+            make_shown = performer.shown_denoiser
+            vars(twin)["shown_denoiser"] = lambda *given: stepping(make_shown(*given))
         yield twin

@@ -10,6 +10,7 @@ from ..baselines.regression import REGRESSION
 from ..baselines.transformer import TransformerConfig
 from ..kinematic_loss import KinematicWeights
 from ..mofusion import MOFUSION_FULL, MOFUSION_SMALL, MoFusionConfig
+from ..performers.keyframe_mofusion import KeyframeConfig
 
 KINEMATIC = KinematicWeights(
     skeleton=400.0, asymmetry=5.0, motion=0.0, slide=0.3, over_time="alpha_bar"
@@ -59,6 +60,16 @@ class DanceRecipe:
     save_every: int = 250  # steps
 
 
+@dataclass(frozen=True)
+class KeyframeRecipe(DanceRecipe):
+    """A training run of a network that sees what is given of a motion (`KeyframeMoFusion`)."""
+
+    acts: int = 0  # so many performed sentences beside the walks and dances
+    levels: float = 0.0  # share of all motions that are performed lower and leaning
+    path_scale: float = 0.3  # m: the unit of the pelvis' path (`train_dancer.with_path_scale`)
+    sizes: float = 0.0  # bodies are so much larger or smaller, at most (share)
+
+
 X0 = replace(MOFUSION_SMALL, target="x0", skip=False)
 OURS = DanceLossWeights(changes=5.0, toes=0.2)
 DANCER_PLAIN = DanceRecipe(
@@ -73,5 +84,19 @@ UNCONDITIONAL = replace(
     DANCER, name="unconditional", config=replace(X0, C=0), steps=6000, songs=0, motions=3000
 )
 
+INBETWEENS = KeyframeRecipe(
+    "inbetweens",
+    KeyframeConfig(),
+    steps=8000,
+    kinematic=KINEMATIC,
+    loss_weights=OURS,
+    snr=0.1,
+    songs=0,
+    motions=3000,
+    acts=1500,
+    levels=0.3,
+    sizes=0.1,
+)
+
 SHIPPED_DANCERS = (DANCER, DANCER_PLAIN, REGRESSED, UNCONDITIONAL)
-DANCE_RECIPES = {recipe.name: recipe for recipe in (*SHIPPED_DANCERS, DANCER_FULL)}
+DANCE_RECIPES = {recipe.name: recipe for recipe in (*SHIPPED_DANCERS, INBETWEENS, DANCER_FULL)}

@@ -3,9 +3,11 @@
 The loss is MoFusion's with the departures of the recipe. A killed run continues from its last save.
 """
 
+from dataclasses import replace
 from functools import lru_cache, partial
 from pathlib import Path
 
+import numpy as np
 import torch
 from torch import Tensor, nn
 
@@ -16,11 +18,14 @@ from ..beyond.schedules import shifted
 from ..conditions.music import log_mel
 from ..ddpm import Schedule, cosine_schedule
 from ..motion import dance_frame
+from ..motion.scaler import Scaler
+from ..motion.skeleton import HIPS
 from ..performers.dance_windows import DanceWindows, toes_moved
 from ..performers.dancer import Dancer
 from ..performers.networks import network
 from ..training import LossFn
-from .dancers import DanceRecipe
+from .dancers import DanceRecipe, KeyframeRecipe
+from .keyframe_loss import keyframe_loss_of
 from .mofusion_loss import batch_loss, weighted_loss
 from .train_recipe import Provenance, train_recipe
 
@@ -30,8 +35,12 @@ def training_windows(recipe: DanceRecipe) -> DanceWindows:
 
     The last data set is kept, because it takes minutes to generate.
     """
+    length = (recipe.data_seed, recipe.seconds, recipe.frames)
+    if isinstance(recipe, KeyframeRecipe):
+        windows = _motion_windows(recipe.motions, recipe.acts, recipe.levels, *length)
+        return with_path_scale(windows, recipe.path_scale)
     if recipe.motions:
-        return _motion_windows(recipe.motions, recipe.data_seed, recipe.seconds, recipe.frames)
+        return _motion_windows(recipe.motions, 0, 0.0, *length)
     return _song_windows(
         recipe.songs, recipe.data_seed, recipe.seconds, recipe.dances, recipe.frames
     )
@@ -55,11 +64,31 @@ def _song_windows(songs: int, seed: int, seconds: float, each: int, frames: int)
 
 
 @lru_cache(maxsize=1)
-def _motion_windows(count: int, seed: int, seconds: float, frames: int) -> DanceWindows:
-    from data_synth.mixed import motions
+def _motion_windows(
+    count: int, acts: int, levels: float, seed: int, seconds: float, frames: int
+) -> DanceWindows:
+    from data_synth.levels import at_levels
+    from data_synth.mixed import motions, sentences
 
-    positions, contacts = zip(*motions(count, seed, seconds), strict=True)
+    made = [*motions(count, seed, seconds), *sentences(acts, seed)]
+    positions, contacts = map(list, zip(*made, strict=True))
+    for k in range(len(positions)):
+        rng = np.random.default_rng([seed, 8, k])
+        if rng.uniform() < levels:
+            positions[k] = at_levels(positions[k], rng)
     return DanceWindows.of(positions, contacts, None, frames)
+
+
+def with_path_scale(windows: DanceWindows, metres: float) -> DanceWindows:
+    """The same windows, in which a change of the pelvis' path by `metres` counts as 1.
+
+    A path goes on for metres, so in standard deviations the centimetres between two keyframes are
+    next to nothing.
+    """
+    scaler = windows.motion_scaler
+    std = scaler.std.clone()
+    std[[3 * HIPS, 3 * HIPS + 2]] = metres
+    return replace(windows, motion_scaler=Scaler(scaler.mean, std))
 
 
 def train_dancer(
@@ -96,6 +125,8 @@ def loss_of(recipe: DanceRecipe, windows: DanceWindows, schedule: Schedule) -> L
     """The loss of a recipe: MoFusion's, or a regression's if the network is deterministic."""
     if getattr(recipe.config, "deterministic", False):
         return regression_loss_of(recipe, windows)
+    if isinstance(recipe, KeyframeRecipe):
+        return keyframe_loss_of(recipe, windows, schedule)
     scaler = windows.motion_scaler
     moved = partial(toes_moved, windows)
     loss = weighted_loss(recipe.loss_weights, schedule, scaler, dance_frame.moves, moved)

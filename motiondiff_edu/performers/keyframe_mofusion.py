@@ -1,0 +1,49 @@
+"""MoFusion's U-Net for in-betweens: beside x_s it sees the lines and the mask of what is given.
+
+Called without them, it denoises whole motions.
+Source: MoFusion 3.3, Fig. 3; the further inputs after CondMDI (Cohan and others, 2024).
+"""
+
+from dataclasses import dataclass, fields
+
+import torch
+from jaxtyping import Float, Int
+from torch import Tensor, nn
+
+from ..beyond.around_lines import Shown
+from ..mofusion import MoFusion, MoFusionConfig
+from .networks import register
+
+
+@dataclass(frozen=True)
+class KeyframeConfig(MoFusionConfig):
+    """The sizes of the network; `D` counts the columns of a motion, without the further inputs."""
+
+    C: int = 0
+    target: str = "x0"
+    skip: bool = False
+
+    def inner(self) -> MoFusionConfig:
+        """The configuration of the U-Net, whose input is x_s, lines and mask."""
+        sizes = {field.name: getattr(self, field.name) for field in fields(MoFusionConfig)}
+        return MoFusionConfig(**sizes | {"D": 3 * self.D})
+
+
+class KeyframeMoFusion(nn.Module):
+    """net(r_s, s, shown): the target of the remainder over the lines (`beyond.around_lines`)."""
+
+    def __init__(self, config: KeyframeConfig):
+        super().__init__()
+        self.config = config
+        self.unet = MoFusion(config.inner())
+
+    def forward(
+        self, r_s: Float[Tensor, "B T D"], s: Int[Tensor, "B"], shown: Shown | None = None
+    ) -> Float[Tensor, "B T D"]:
+        """Without `shown`, nothing is given, and r_s is the whole motion with its noise."""
+        nothing = torch.zeros_like(r_s)
+        lines, known = (nothing, nothing) if shown is None else (shown.lines, shown.known.to(r_s))
+        return self.unet(torch.cat([r_s, lines, known], -1), s)[..., : self.config.D]
+
+
+register("dancer", KeyframeMoFusion, KeyframeConfig)

@@ -1,0 +1,65 @@
+"""The loss of a network that sees what is given of a motion: eq. 4 of the remainder over the lines.
+
+Every motion of a batch gets a mask of its own (`drawn_masks`). Kinematic losses are those of the
+whole motion, lines and remainder together.
+"""
+
+from dataclasses import replace
+
+import torch
+from jaxtyping import Bool, Float
+from torch import Tensor, nn
+
+from ..beyond.around_lines import Shown
+from ..ddpm import Schedule
+from ..editing.inbetween import seen_from
+from ..kinematic_loss import Body
+from ..motion import dance_frame
+from ..motion.scaler import Scaler
+from ..performers.dance_windows import DanceWindows, toes_moved
+from ..training import LossFn
+from .dancers import KeyframeRecipe
+from .drawn_masks import chance, drawn_masks
+from .mofusion_loss import batch_loss, weighted_loss
+
+
+def keyframe_loss_of(recipe: KeyframeRecipe, windows: DanceWindows, schedule: Schedule) -> LossFn:
+    """The loss of a recipe whose network is `KeyframeMoFusion`."""
+    scaler = windows.motion_scaler
+    data_loss = weighted_loss(
+        recipe.loss_weights, schedule, scaler, dance_frame.moves, lambda: toes_moved(windows)
+    )
+
+    def loss_fn(model: nn.Module, generator: torch.Generator) -> Tensor:
+        device = next(model.parameters()).device
+        motion, _, planted = windows.draw(recipe.batch, generator)
+        known = drawn_masks(len(motion), windows.n, generator)
+        sizes = 1 + recipe.sizes * (2 * chance(generator, len(motion)) - 1)
+        motion = as_seen(motion, known, sizes, scaler).to(device)
+        shown = Shown.of(motion, known.repeat_interleave(3, dim=-1).to(device))
+        of_batch = batch_loss(
+            recipe.kinematic, data_loss, schedule, scaler, lambda s: body_around(shown.lines, s)
+        )
+        return of_batch(model, motion - shown.lines, shown, planted.to(device), generator)
+
+    return loss_fn
+
+
+def as_seen(
+    motion: Float[Tensor, "B T 63"],
+    known: Bool[Tensor, "B T 21"],
+    sizes: Float[Tensor, "B"],
+    scaler: Scaler,
+) -> Float[Tensor, "B T 63"]:
+    """Standardised motions as `inbetween` shows them, from their first given pose; and resized."""
+    positions = dance_frame.to_positions(scaler.inverse(motion)).double().numpy()
+    masks = known.numpy()
+    for one, mask, size in zip(positions, masks, sizes.tolist(), strict=True):
+        one[:] = size * seen_from(one, mask).enter(one)
+    return scaler.transform(torch.from_numpy(dance_frame.placed_features(positions)).float())
+
+
+def body_around(lines: Float[Tensor, "B T 63"], scaler: Scaler) -> Body:
+    """The figure of remainders: their joints in metres are those of lines and remainder."""
+    body = dance_frame.body_of(scaler)
+    return replace(body, to_positions=lambda r: body.to_positions(r + lines))

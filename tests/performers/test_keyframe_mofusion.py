@@ -1,0 +1,110 @@
+"""The network that sees what is given: its inputs, its file, and its denoiser in a dancer."""
+
+import numpy as np
+import pytest
+import torch
+
+from motiondiff_edu.beyond.around_lines import Shown
+from motiondiff_edu.ddpm import cosine_schedule
+from motiondiff_edu.editing.inbetween import PAPER, inbetween
+from motiondiff_edu.editing.masks import keyframes
+from motiondiff_edu.motion.scaler import Scaler
+from motiondiff_edu.performers.dancer import Dancer
+from motiondiff_edu.performers.keyframe_mofusion import KeyframeConfig, KeyframeMoFusion
+from motiondiff_edu.performers.with_bar import with_bar
+from motiondiff_edu.prediction import x0_from_eps
+from motiondiff_edu.pretrained import checkpoints
+
+SMALL = KeyframeConfig(S=30, widths=(16, 24), heads=2)
+T = 24
+
+
+def seeded(seed: int = 0) -> torch.Generator:
+    return torch.Generator().manual_seed(seed)
+
+
+@pytest.fixture
+def dancer() -> Dancer:
+    torch.manual_seed(0)
+    model = KeyframeMoFusion(SMALL).eval().requires_grad_(False)
+    for weight in model.parameters():
+        weight.add_(0.1 * torch.randn(weight.shape))
+    scalers = Scaler(torch.zeros(63), torch.full((63,), 0.2)), Scaler.nothing(0)
+    return Dancer(model, cosine_schedule(30), *scalers)
+
+
+def shown_first(x: torch.Tensor) -> Shown:
+    known = torch.zeros(x.shape, dtype=torch.bool)
+    known[:, 0] = True
+    return Shown.of(x, known)
+
+
+def test_lines_and_mask_are_seen_and_nothing_given_is_the_same_as_none(dancer):
+    x, s = torch.randn(2, T, 63, generator=seeded()), torch.tensor([3, 20])
+    plain = dancer.model(x, s)
+    nothing = Shown.of(x, torch.zeros(x.shape, dtype=torch.bool))
+    assert plain.shape == x.shape and torch.equal(plain, dancer.model(x, s, nothing))
+    shown = shown_first(x)
+    assert not torch.allclose(plain, dancer.model(x, s, shown))
+    other = Shown(shown.lines, ~shown.known)
+    assert not torch.allclose(dancer.model(x, s, shown), dancer.model(x, s, other))
+
+
+def test_the_denoiser_adds_the_lines_to_the_networks_guess(dancer):
+    x, s = torch.randn(1, T, 63, generator=seeded()), torch.tensor([12])
+    known = torch.zeros(x.shape, dtype=torch.bool)
+    known[:, ::8] = True
+    eps_hat = dancer.shown_denoiser(x, known)(x, s)
+    x0_hat = x0_from_eps(x, s, eps_hat, dancer.schedule)
+    shown = Shown.of(x, known)
+    signal = float(dancer.schedule.alpha_bar[12]) ** 0.5
+    wanted = shown.lines + dancer.model(x - signal * shown.lines, s, shown)
+    torch.testing.assert_close(x0_hat, wanted, atol=1e-4, rtol=1e-4)
+
+
+def test_a_network_that_sees_nothing_is_named():
+    dancer = checkpoints.pretrained("unconditional")
+    x = torch.zeros(1, T, 63)
+    assert not dancer.can_be_shown
+    with pytest.raises(ValueError, match="MoFusion is not made to see what is given"):
+        dancer.shown_denoiser(x, x > 0)
+
+
+def test_its_file_brings_it_back(dancer, tmp_path):
+    path = checkpoints.save(dancer, tmp_path / "mine.safetensors", bits=32)
+    again = checkpoints.load(path)
+    assert isinstance(again.model, KeyframeMoFusion) and again.config == SMALL
+    x, s = torch.randn(1, T, 63, generator=seeded()), torch.tensor([7])
+    assert torch.equal(again.model(x, s, shown_first(x)), dancer.model(x, s, shown_first(x)))
+
+
+def test_in_betweens_use_it_and_the_papers_masking_does_not(dancer):
+    truth = np.random.default_rng(0).normal(size=(T, 21, 3)).cumsum(0) * 0.05
+    known = keyframes(T, 8)
+    seen = []
+    model_forward = dancer.model.forward
+    dancer.model.forward = lambda x, s, shown=None: seen.append(shown) or model_forward(x, s, shown)
+    inbetween(dancer, truth, known, steps=4)
+    assert len(seen) == 4 and all(one is not None for one in seen)
+    seen.clear()
+    inbetween(dancer, truth, known, steps=4, departures=PAPER)
+    assert seen == [None] * 4
+
+
+def test_the_bar_counts_its_evaluations(dancer, monkeypatch):
+    steps = []
+    monkeypatch.setattr("motiondiff_edu.performers.with_bar.bar", lambda *_: _Counting(steps))
+    with with_bar(dancer, 5, "filling in") as one:
+        inbetween(one, np.zeros((T, 21, 3)), keyframes(T, 8), steps=5)
+    assert len(steps) == 5
+
+
+class _Counting:
+    def __init__(self, steps):
+        self.steps = steps
+
+    def __enter__(self):
+        return lambda: self.steps.append(1)
+
+    def __exit__(self, *_):
+        return None

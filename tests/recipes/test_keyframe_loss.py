@@ -1,0 +1,148 @@
+"""The masks of the training, what the network is shown, and its loss by hand."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import torch
+
+from data_synth.mixed import motions, sentences
+from motiondiff_edu.beyond.around_lines import lines_through
+from motiondiff_edu.ddpm import q_sample
+from motiondiff_edu.editing.inbetween import inbetween
+from motiondiff_edu.editing.masks import keyframes
+from motiondiff_edu.motion import dance_frame
+from motiondiff_edu.motion.skeleton import HIPS, J
+from motiondiff_edu.performers.dance_windows import DanceWindows
+from motiondiff_edu.performers.keyframe_mofusion import KeyframeConfig, KeyframeMoFusion
+from motiondiff_edu.recipes.dancers import INBETWEENS
+from motiondiff_edu.recipes.drawn_masks import SHARES, drawn_mask, drawn_masks
+from motiondiff_edu.recipes.keyframe_loss import as_seen, body_around
+from motiondiff_edu.recipes.train_dancer import loss_of, schedule_of, train_dancer, with_path_scale
+
+T = 32
+SMALL = KeyframeConfig(S=60, widths=(16, 24), heads=2)
+RECIPE = replace(INBETWEENS, config=SMALL, steps=3, batch=4, frames=T, save_every=2)
+
+
+def seeded(seed: int = 0) -> torch.Generator:
+    return torch.Generator().manual_seed(seed)
+
+
+@pytest.fixture(scope="module")
+def windows() -> DanceWindows:
+    positions, contacts = zip(*motions(2, 3, 4.0), *sentences(1, 3, 4.0), strict=True)
+    return DanceWindows.of(positions, contacts, None, T)
+
+
+def test_masks_are_of_all_kinds_and_never_give_a_joint_without_the_pelvis():
+    known = drawn_masks(400, 100, seeded())
+    assert known.shape == (400, 100, J)
+    assert not (known.any(-1) & ~known[..., HIPS]).any()
+    share = known.float().mean((1, 2))
+    assert (share == 0).float().mean() == pytest.approx(SHARES["nothing"], abs=0.05)
+    assert not (share == 1).any(), "something must be left to generate"
+    frames = known.all(-1)
+    alone = frames[:, 1:-1] & ~frames[:, 2:] & ~frames[:, :-2]
+    assert (alone.any(1)).float().mean() > 0.35, "single keyframes are the usual case"
+    assert torch.equal(known, drawn_masks(400, 100, seeded()))
+    assert not torch.equal(known, drawn_masks(400, 100, seeded(1)))
+
+
+@pytest.mark.parametrize("kind", SHARES)
+def test_a_mask_of_each_kind_has_its_form(kind):
+    for k in range(40):
+        known, generator = drawn_mask(kind, 50, seeded(k)), seeded(k)
+        whole, some = known.all(-1), known.any(-1)
+        assert torch.equal(known, drawn_mask(kind, 50, generator))
+        if kind == "nothing":
+            assert not some.any()
+        if kind == "keyframes":
+            assert torch.equal(whole, some) and some.any() and not some.all()
+        if kind == "gap":
+            missing = (~whole).nonzero()[:, 0]
+            assert len(missing) and int(missing[-1] - missing[0]) == len(missing) - 1
+        if kind == "seed":
+            first = int(some.sum())
+            assert 1 <= first <= 25 and some[:first].all() and torch.equal(whole, some)
+        if kind == "part":
+            assert some.all() and not whole.all()
+
+
+def test_too_short_a_motion_is_refused():
+    with pytest.raises(ValueError, match="4 frames or more, not 3"):
+        drawn_masks(2, 3, seeded())
+
+
+def test_motions_are_seen_from_their_first_given_pose_and_resized(windows):
+    motion, _, _ = windows.draw(2, seeded())
+    known = torch.zeros(2, T, J, dtype=torch.bool)
+    known[0, 9], known[1, 0] = True, True
+    scaler = windows.motion_scaler
+    seen = as_seen(motion, known, torch.tensor([1.0, 1.2]), scaler)
+    pose = dance_frame.to_positions(scaler.inverse(seen))[0, 9].numpy()
+    assert np.abs(pose[HIPS, [0, 2]]).max() < 1e-5
+    assert abs(float(dance_frame.facing(pose[None])[0])) < 1e-5
+    before, after = (dance_frame.to_positions(scaler.inverse(x))[1] for x in (motion, seen))
+    torch.testing.assert_close(after, 1.2 * before, atol=1e-4, rtol=0)
+
+
+def test_the_loss_of_a_batch_is_eq_4_of_what_remains_without_the_lines(windows):
+    recipe = replace(RECIPE, kinematic=None, loss_weights=type(RECIPE.loss_weights)(), sizes=0.0)
+    schedule = schedule_of(recipe)
+    torch.manual_seed(0)
+    model, asked = KeyframeMoFusion(SMALL), []
+    forward = model.forward
+
+    def watched(r_s, s, shown=None):
+        asked.append((r_s, s, shown, forward(r_s, s, shown)))
+        return asked[-1][-1]
+
+    model.forward = watched
+    loss = loss_of(recipe, windows, schedule)(model, seeded(5))
+    ((r_s, s, shown, r0_hat),) = asked
+    generator = seeded(5)
+    motion, _, _ = windows.draw(4, generator)
+    known = drawn_masks(4, T, generator)
+    torch.rand(4, generator=generator)
+    seen = as_seen(motion, known, torch.ones(4), windows.motion_scaler)
+    columns = known.repeat_interleave(3, -1)
+    r0 = seen - lines_through(seen, columns)
+    assert torch.equal(shown.known, columns) and r0[columns].abs().max() < 1e-6
+    steps = torch.randint(1, schedule.S + 1, (4,), generator=generator)
+    eps = torch.randn(r0.shape, generator=generator)
+    assert torch.equal(s, steps)
+    torch.testing.assert_close(r_s, q_sample(r0, steps, schedule, eps))
+    torch.testing.assert_close(loss, (r0 - r0_hat).square().mean())
+
+
+def test_bones_are_those_of_lines_and_remainder_together(windows):
+    motion, _, _ = windows.draw(2, seeded())
+    lines = torch.randn(motion.shape, generator=seeded())
+    body = body_around(lines, windows.motion_scaler)
+    wanted = dance_frame.body_of(windows.motion_scaler).to_positions(motion)
+    torch.testing.assert_close(body.to_positions(motion - lines), wanted, atol=1e-4, rtol=1e-4)
+
+
+def test_a_path_is_measured_in_metres_of_the_recipe_and_motions_stay_the_same(windows):
+    scaled = with_path_scale(windows, 0.3)
+    assert scaled.motion_scaler.std[[0, 2]].tolist() == pytest.approx([0.3, 0.3])
+    other = [column for column in range(63) if column not in (0, 2)]
+    assert torch.equal(scaled.motion_scaler.std[other], windows.motion_scaler.std[other])
+    some = torch.tensor([0, 3])
+    same = [one.motion_scaler.inverse(one.take(some)[0]) for one in (windows, scaled)]
+    torch.testing.assert_close(*same, atol=1e-5, rtol=0)
+
+
+def test_a_network_is_trained_and_fills_in(windows, tmp_path):
+    dancer = train_dancer(RECIPE, tmp_path / "run.safetensors", windows, log=lambda _: None)
+    assert dancer.can_be_shown and dancer.card["recipe"]["sizes"] == 0.1
+    truth = (
+        dance_frame.to_positions(windows.motion_scaler.inverse(windows.draw(1, seeded())[0]))[0]
+        .double()
+        .numpy()
+    )
+    known = keyframes(T, 10)
+    made = inbetween(dancer, truth, known, samples=2, steps=3, generator=seeded())
+    assert np.array_equal(made[:, known], np.broadcast_to(truth[known], made[:, known].shape))
+    assert np.isfinite(made).all() and np.abs(made[0] - made[1]).max() > 1e-3
