@@ -45,7 +45,7 @@ def test_arrays_are_taken_as_they_are_and_the_same_walk_comes_back():
     assert new.shape == (4, 63) and torch.equal(new, same)
 
 
-def test_a_control_beyond_the_training_is_named_by_the_row_of_the_future():
+def test_a_control_beyond_the_training_is_named_by_the_frame_that_it_leads_to():
     """Rows of the past are the recording's own, and nobody can change them."""
     clip = walk(np.tile([1.0, 0.0, 0.2], (14, 1)), seed=5)
     control = clip.control.copy()
@@ -54,5 +54,5 @@ def test_a_control_beyond_the_training_is_named_by_the_row_of_the_future():
         warnings.simplefilter("error")
         generate(pretrained("walker"), clip.features()[:10], control, steps=1)
     control[12] = 40.0
-    with pytest.raises(ValueError, match="a forward speed of 40 in frame 2 of the future"):
+    with pytest.raises(ValueError, match="a forward speed of 40 in frame 3 of the future"):
         generate(pretrained("walker"), clip.features()[:10], control, steps=1)

@@ -19,7 +19,8 @@ def seeded(seed: int = 0) -> torch.Generator:
 
 def test_lines_go_from_each_given_entry_to_the_next_and_stay_outside():
     given = torch.full((1, 7, 3), float("nan"))
-    given[0, 1, 0], given[0, 5, 0], given[0, 3, 1] = 2.0, 4.0, -1.0
+    given[0, 1, 0], given[0, 5, 0] = 2.0, 4.0
+    given[0, 3, 1] = -1.0
     lines = lines_through(given, ~given.isnan())[0]
     torch.testing.assert_close(lines[:, 0], torch.tensor([2, 2, 2.5, 3, 3.5, 4, 4]))
     torch.testing.assert_close(lines[:, 1], torch.full((7,), -1.0))

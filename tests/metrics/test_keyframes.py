@@ -68,7 +68,8 @@ def test_npss_of_two_sines_is_the_distance_of_their_bins():
     assert npss(wave(5), wave(5)) == pytest.approx(0, abs=1e-9)
     assert npss(wave(8), wave(5)) == pytest.approx(3) and npss(wave(5), wave(9)) == pytest.approx(4)
     # bins k and T - k both move; with a mean, its bin 0 exchanges weight with them
-    a, b, k = 0.5, 1.0, 5
+    a, b = 0.5, 1.0
+    k = 5
     weight = lambda size: (size**2 / 4) / (1 + size**2 / 2)  # noqa: E731
     side = weight(b) - weight(a)  # of either bin; bin 0 has lost twice as much
     moved = k * 2 * side + (60 - 2 * k) * side

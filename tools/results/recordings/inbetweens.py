@@ -54,7 +54,8 @@ def filled(dancer: Dancer, motion: Motion, known: Bool[np.ndarray, "T J"], sampl
         how = {"steps": STEPS, "departures": departures}
         return inbetween(dancer, truth, known, samples=len(some), generator=some, **how)
 
-    raw, made, again = generate(draws, OURS), [], []
+    raw = generate(draws, OURS)
+    made, again = [], []
     for draw, first in zip(draws, raw, strict=True):
         one, note = until_plausible(
             first, truth, known, lambda how, draw=draw: generate([draw], how)[0]
