@@ -158,10 +158,10 @@ def test_a_control_beyond_the_training_data_is_named():
     ):
         generate(walker, past, control)
     control[5, 2] = -3.9
-    with pytest.warns(UserWarning, match="a turning rate of -3.9 in frame 1"):
+    with pytest.warns(UserWarning, match="a turning rate of -3.9 in frame 2"):
         generate(walker, past, control)
     control[5, 2] = -2.5  # a tenth of the range, from -2 to 2, is 0.4
-    with pytest.warns(UserWarning, match="a turning rate of -2.5 in frame 1"):
+    with pytest.warns(UserWarning, match="a turning rate of -2.5 in frame 2"):
         generate(walker, past, control)
     control[5, 2] = -2.3
     with warnings.catch_warnings():
