@@ -2,7 +2,7 @@
 
 from ..page.markdown import cell, number, table
 
-STARTS = ("real.", "real.unblended.")
+STARTS = {"as shipped": "real.", "without blending": "real.unblended."}  # beginnings of the names
 ROWS = {
     "seam_over_motion": "the fastest joint at the seam, over the fastest within a second (median)",
     "seam_p95_over_motion": "the same (95th percentile)",
@@ -54,11 +54,7 @@ def filled_in(records: dict[str, dict]) -> str:
         f"{number(100 * share['value'])} % of the samples are noticed as failures and drawn again. "
         "The intervals are over files.\n\n"
     )
-    rows = [
-        [words, *(cell(records.get(start + name), unit=False) for start in SECONDS.values())]
-        for name, words in FILLED.items()
-    ]
-    return text + table(["a keyframe every", *SECONDS], rows)
+    return text + measures(records, FILLED, "a keyframe every", SECONDS)
 
 
 def continued(records: dict[str, dict]) -> str:
@@ -75,8 +71,15 @@ def continued(records: dict[str, dict]) -> str:
         "pose and speed of the recording (`beyond/inertialize.py`), and a warning says so. A leg "
         "that must get from a kneeling pose to a walk slides on the way.\n\n"
     )
-    rows = [
-        [words, *(cell(records.get(start + name), unit=False) for start in STARTS)]
-        for name, words in ROWS.items()
+    return text + measures(records, ROWS, "", STARTS)
+
+
+def measures(
+    records: dict[str, dict], rows: dict[str, str], corner: str, columns: dict[str, str]
+) -> str:
+    """A table of records: rows are {end of the name: words}, columns {words: beginning}."""
+    cells = [
+        [words, *(cell(records.get(start + name), unit=False) for start in columns.values())]
+        for name, words in rows.items()
     ]
-    return text + table(["", "as shipped", "without blending"], rows)
+    return table([corner, *columns], cells)
