@@ -5,10 +5,11 @@ badly: the figure jumps by metres between keyframes that are close together. And
 steps: then the figure glides, standing, from keyframe to keyframe.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 import numpy as np
+import torch
 from jaxtyping import Bool, Float
 
 from ..motion.faults import WILD
@@ -59,6 +60,23 @@ def until_plausible(
         f"both feet slide between frames {first} and {last}, and {DRAWS - 1} more draws were no "
         f"better. Give a keyframe there, or try another seed"
     )
+
+
+def each_until_plausible(
+    samples: Float[np.ndarray, "S T 21 3"],
+    draws: Sequence[torch.Generator],
+    given: Float[np.ndarray, "T 21 3"],
+    known: Bool[np.ndarray, "T 21"],
+    generate: Callable[[list, Departures], Float[np.ndarray, "N T 21 3"]],
+) -> list[tuple[Float[np.ndarray, "T 21 3"], str]]:
+    """`until_plausible` of every sample; each is drawn again by its own generator.
+
+    `generate(draws, departures)` draws a motion for each of the generators.
+    """
+    return [
+        until_plausible(first, given, known, lambda how, draw=draw: generate([draw], how)[0])
+        for draw, first in zip(draws, samples, strict=True)
+    ]
 
 
 def wilder_than_given(

@@ -18,7 +18,7 @@ from ..editing import reconstruct as reconstruction
 from ..editing.by_words import STRENGTH
 from ..editing.inbetween import OURS, Departures
 from ..editing.masks import checked_known
-from ..editing.plausible import longest_glide, until_plausible
+from ..editing.plausible import each_until_plausible, longest_glide
 from ..motion.checks import checked_count, checked_samples
 from ..motion.motion import Motion, MotionError, MotionWarning, as_motion
 from ..motion.root_frame import FPS
@@ -88,10 +88,8 @@ def inbetween(
 
     draws = generators(seed, count)
     made, notes = [], []
-    for draw, first in zip(draws, generate(draws, OURS), strict=True):
-        positions, note = until_plausible(
-            first, motion.positions, known, lambda how, draw=draw: generate([draw], how)[0]
-        )
+    first = generate(draws, OURS)
+    for positions, note in each_until_plausible(first, draws, motion.positions, known, generate):
         made.append(_made(motion, known, positions, "in-betweens"))
         notes += [note] if note else []
     if notes:

@@ -15,7 +15,7 @@ from jaxtyping import Bool, Float
 from motiondiff_edu.baselines.interpolation import linear, spherical
 from motiondiff_edu.editing.inbetween import OURS, inbetween
 from motiondiff_edu.editing.masks import keyframes
-from motiondiff_edu.editing.plausible import until_plausible
+from motiondiff_edu.editing.plausible import each_until_plausible
 from motiondiff_edu.metrics.keyframes import energy_score, unknown_error
 from motiondiff_edu.metrics.skating import skating
 from motiondiff_edu.motion.motion import Motion
@@ -55,13 +55,8 @@ def filled(dancer: Dancer, motion: Motion, known: Bool[np.ndarray, "T J"], sampl
         return inbetween(dancer, truth, known, samples=len(some), generator=some, **how)
 
     raw = generate(draws, OURS)
-    made, again = [], []
-    for draw, first in zip(draws, raw, strict=True):
-        one, note = until_plausible(
-            first, truth, known, lambda how, draw=draw: generate([draw], how)[0]
-        )
-        made.append(one)
-        again.append(bool(note))
+    made, notes = zip(*each_until_plausible(raw, draws, truth, known, generate), strict=True)
+    again = [bool(note) for note in notes]
     lines, arcs = linear(truth, known), spherical(truth, known)
     return Filled(raw, np.stack(made), np.array(again), lines, arcs)
 
