@@ -100,9 +100,6 @@ CELLS = {
     "ours-adam": left_out("Adam instead of Muon", optimizer="adam"),
     "ours-linear": left_out("linear schedule, 1e-4 to 0.1", schedule="linear"),
     "ours-plain-loss": left_out("the plain loss", loss_weights=LossWeights()),
-    "ours-no-metres": left_out("loss not in metres", loss_weights=replace(OURS, metres=0.0)),
-    "ours-no-near": left_out("all ten frames alike", loss_weights=replace(OURS, near=0.0)),
-    "ours-no-bones": left_out("no bone term", loss_weights=replace(OURS, bones=0.0)),
     "ours-clean-past": left_out("the past as it is", past_noise=0.0),
     "ours-dropout": left_out(
         "diffusion dropout instead of past noise", past_noise=0.0, dropout=P_D
