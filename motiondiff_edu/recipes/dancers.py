@@ -65,7 +65,9 @@ class KeyframeRecipe(DanceRecipe):
     """A training run of a network that sees what is given of a motion (`KeyframeMoFusion`)."""
 
     acts: int = 0  # so many performed sentences beside the walks and dances
-    levels: float = 0.0  # share of all motions that are performed lower and leaning
+    recordings: int = 0  # so many versions of each training recording, each at another pace
+    levels: float = 0.0  # share of the synthetic motions that are performed lower and leaning
+    paces: float = 0.0  # share of the synthetic motions whose pace changes, with pauses
     path_scale: float = 0.3  # m: the unit of the pelvis' path (`train_dancer.with_path_scale`)
     sizes: float = 0.0  # bodies are so much larger or smaller, at most (share)
 

@@ -27,6 +27,7 @@ from ..training import LossFn
 from .dancers import DanceRecipe, KeyframeRecipe
 from .keyframe_loss import keyframe_loss_of
 from .mofusion_loss import batch_loss, weighted_loss
+from .recordings import training_recordings
 from .train_recipe import Provenance, train_recipe
 
 
@@ -37,10 +38,9 @@ def training_windows(recipe: DanceRecipe) -> DanceWindows:
     """
     length = (recipe.data_seed, recipe.seconds, recipe.frames)
     if isinstance(recipe, KeyframeRecipe):
-        windows = _motion_windows(recipe.motions, recipe.acts, recipe.levels, *length)
-        return with_path_scale(windows, recipe.path_scale)
+        return with_path_scale(_keyframe_windows(recipe), recipe.path_scale)
     if recipe.motions:
-        return _motion_windows(recipe.motions, 0, 0.0, *length)
+        return _motion_windows(recipe.motions, *length)
     return _song_windows(
         recipe.songs, recipe.data_seed, recipe.seconds, recipe.dances, recipe.frames
     )
@@ -64,19 +64,35 @@ def _song_windows(songs: int, seed: int, seconds: float, each: int, frames: int)
 
 
 @lru_cache(maxsize=1)
-def _motion_windows(
-    count: int, acts: int, levels: float, seed: int, seconds: float, frames: int
-) -> DanceWindows:
+def _motion_windows(count: int, seed: int, seconds: float, frames: int) -> DanceWindows:
+    from data_synth.mixed import motions
+
+    positions, contacts = zip(*motions(count, seed, seconds), strict=True)
+    return DanceWindows.of(positions, contacts, None, frames)
+
+
+@lru_cache(maxsize=1)
+def _keyframe_windows(recipe: KeyframeRecipe) -> DanceWindows:
     from data_synth.levels import at_levels
     from data_synth.mixed import motions, sentences
+    from data_synth.warps import warped
 
-    made = [*motions(count, seed, seconds), *sentences(acts, seed)]
-    positions, contacts = map(list, zip(*made, strict=True))
-    for k in range(len(positions)):
+    seed = recipe.data_seed
+    made = [*motions(recipe.motions, seed, recipe.seconds), *sentences(recipe.acts, seed)]
+    for k, (positions, contacts) in enumerate(made):
         rng = np.random.default_rng([seed, 8, k])
-        if rng.uniform() < levels:
-            positions[k] = at_levels(positions[k], rng)
-    return DanceWindows.of(positions, contacts, None, frames)
+        if rng.uniform() < recipe.levels:
+            positions = at_levels(positions, rng)
+        if rng.uniform() < recipe.paces:
+            positions, contacts = warped(positions, contacts, rng)
+        made[k] = positions.astype(np.float32), contacts
+    for k, (positions, contacts) in enumerate(training_recordings() if recipe.recordings else ()):
+        for version in range(recipe.recordings):
+            rng = np.random.default_rng([seed, 9, k, version])
+            positions_then, contacts_then = warped(positions, contacts, rng)
+            made.append((positions_then.astype(np.float32), contacts_then))
+    positions, contacts = zip(*made, strict=True)
+    return DanceWindows.of(positions, contacts, None, recipe.frames)
 
 
 def with_path_scale(windows: DanceWindows, metres: float) -> DanceWindows:

@@ -1,5 +1,6 @@
 """Recordings: windows, continuations and in-betweens, their records and the page."""
 
+import shutil
 import warnings
 
 import numpy as np
@@ -12,7 +13,14 @@ from motiondiff_edu.conditions.control import constant_control
 from motiondiff_edu.editing.masks import keyframes
 from motiondiff_edu.motion.bvh.write import write_bvh
 from tools.results.recordings import continuations, inbetweens, page
-from tools.results.recordings.windows import FULL, QUICK, RecordedSize, recorded
+from tools.results.recordings.windows import (
+    FULL,
+    QUICK,
+    RecordedSize,
+    held_out,
+    recorded,
+    trials,
+)
 
 RANGE = {"low": [-0.5, -0.5, -1.0], "high": [0.9, 0.5, 1.0]}
 
@@ -36,7 +44,7 @@ def folder(tmp_path, monkeypatch):
 
 def test_windows_are_of_six_seconds_and_their_control_is_within_the_range(folder):
     found = list(continuations.windows(FULL, RANGE))
-    assert [one.source for one in found] == ["walk0.bvh", "walk0.bvh", "walk1.bvh"]
+    assert [one.source for one in found] == [*["walk0.bvh"] * 3, "walk1.bvh"]
     assert all(len(one.given) == 40 and one.control.shape == (80, 3) for one in found)
     assert all(one.control[0, 0] == pytest.approx(0.9) for one in found)
     assert len(list(continuations.windows(RecordedSize(each=1), RANGE))) == 2
@@ -114,9 +122,26 @@ def test_in_betweens_of_windows_are_measured_and_stand_in_the_page(folder, monke
 
 
 def test_windows_of_a_file_are_cut_at_even_distances(folder):
-    found = list(recorded(FULL))
-    assert [name for name, _ in found] == ["walk0.bvh", "walk0.bvh", "walk1.bvh"]
-    assert all(len(motion) == 120 for _, motion in found)
+    found = list(recorded(held_out(), FULL))
+    assert [name for name, _ in found] == [*["walk0.bvh"] * 3, "walk1.bvh", "walk2.bvh"]
+    assert [len(motion) for _, motion in found] == [120, 120, 120, 120, 60]
+    starts = [motion.positions[0] for _, motion in found[:3]]
+    whole = md.read_motion(folder / "bvh" / "walk0.bvh").positions
+    assert all(np.array_equal(one, whole[80 * k]) for k, one in enumerate(starts))
+
+
+def test_a_trial_counts_once_and_trained_persons_are_left_out(folder):
+    for name in ("cmu_05_06_dance", "cmu_max_131_01", "cmu_acrnn_salsa_10"):
+        shutil.copy(folder / "bvh" / "walk0.bvh", folder / "bvh" / f"{name}.bvh")
+    (folder / "cmu30").mkdir()
+    for name in ("cmu_005_06", "cmu_005_07", "acrnn_salsa_01"):
+        shutil.copy(folder / "bvh" / "walk0.bvh", folder / "cmu30" / f"{name}.bvh")
+    names = {path.stem for path in trials()} - {"walk0", "walk1", "walk2", "broken"}
+    assert names == {
+        "cmu_05_06_dance", "cmu_max_131_01", "cmu_acrnn_salsa_10", "cmu_005_07", "acrnn_salsa_01",
+    }  # fmt: skip
+    kept = {path.stem for path in held_out()} & names
+    assert kept == {"cmu_05_06_dance", "cmu_max_131_01", "cmu_005_07"}
 
 
 def test_without_recordings_it_says_what_to_set(monkeypatch, tmp_path):

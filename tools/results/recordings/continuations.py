@@ -28,7 +28,7 @@ from motiondiff_edu.performers.performer import generators
 from motiondiff_edu.performers.walker import STEPS, Walker
 
 from ..walks.scores import Measure, measure_of, root_mean, squared_bone_error
-from .windows import SECONDS, RecordedSize, recorded
+from .windows import SECONDS, RecordedSize, recorded, trials
 
 GIVEN = 2.0  # seconds of a window
 EARLY = 1.0  # seconds after the seam
@@ -46,7 +46,7 @@ class Window:
 def windows(size: RecordedSize, range_of_control: dict) -> Iterator[Window]:
     """The beginnings of all windows; the control stays in the range."""
     given, ahead = round(GIVEN * FPS), round((SECONDS - GIVEN) * FPS)
-    for source, motion in recorded(size):
+    for source, motion in recorded(trials(), size, SECONDS):
         past = motion[:given]
         speed = past.control[-round(FPS) :].mean(0)
         speed = speed.clip(range_of_control["low"], range_of_control["high"])

@@ -24,14 +24,14 @@ from motiondiff_edu.performers.dancer import STEPS, Dancer
 from motiondiff_edu.performers.performer import generators
 
 from ..walks.scores import SKATING_FLOOR, Measure, measure_of
-from .windows import RecordedSize, recorded
+from .windows import RecordedSize, held_out, recorded
 
 SECOND = 20  # frames
 OTHERS = (5, 10, 40)  # frames between keyframes, beside one a second
 # of the collection's files: people who walk, run and turn, and do nothing else
 WALKS = (
-    "cmu_02_01", "cmu_002_02", "cmu_003_01", "cmu_003_02", "cmu_12_01", "cmu_max_131_01",
-    "pymo_AV_8Walk",
+    "bvhpython_test_freebvh", "bvhtoolbox_walk01", "cmu_02_01", "cmu_002_02", "cmu_003_01",
+    "cmu_003_02", "cmu_005_01", "cmu_12_01", "pymo_AV_8Walk",
 )  # fmt: skip
 
 
@@ -139,7 +139,7 @@ def inbetween_records(dancer: Dancer, weights: str, size: RecordedSize, command:
     """The measures of in-betweens (`real.inbetween_*`), at other distances `real.gapN.`."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # notes on the files
-        windows = [(source, motion) for source, motion in recorded(size)]
+        windows = [(source, motion) for source, motion in recorded(held_out(), size)]
     sources = [source for source, _ in windows]
     walks = np.array([source.startswith(WALKS) for source in sources])
     seeds = {"windows": len(windows), "files": len(set(sources)), "sampling": 0, "steps": STEPS}

@@ -1,6 +1,6 @@
-"""Windows of recordings, of people whom no training has seen."""
+"""Windows of recordings, of people whom the network that is judged has not seen."""
 
-import os
+import re
 import sys
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -11,10 +11,12 @@ import numpy as np
 import motiondiff_edu as md
 from motiondiff_edu.motion.motion import Motion
 from motiondiff_edu.motion.root_frame import FPS
+from motiondiff_edu.recipes.recordings import is_training, recording_files
 
-FOLDERS = ("bvh", "cmu30")  # of MOTIONDIFF_REAL_DATA
 SECONDS = 6.0
-EACH = 3  # windows of a file, at most
+SHORTEST = 2.0  # seconds: shorter recordings are left out
+EACH = 5  # windows of a file, at most; they overlap by half at most
+TRIAL = re.compile(r"cmu_0*(\d+)_0*(\d+)")  # subject and trial of the CMU collection
 
 
 @dataclass(frozen=True)
@@ -29,22 +31,44 @@ class RecordedSize:
 FULL, QUICK = RecordedSize(), RecordedSize(files=3, each=1, samples=2)
 
 
-def recorded(size: RecordedSize) -> Iterator[tuple[str, Motion]]:
+def trials() -> list[Path]:
+    """All recordings, each trial of the CMU collection once.
+
+    Exits where MOTIONDIFF_REAL_DATA does not name a folder with recordings.
+    """
+    found = {}
+    try:
+        files = recording_files()
+    except ValueError as error:
+        sys.exit(str(error))
+    for path in files:
+        trial = TRIAL.match(path.name)
+        found.setdefault(trial.groups() if trial else path.name, path)
+    return list(found.values())
+
+
+def held_out() -> list[Path]:
+    """The recordings of people whom no training has seen."""
+    return [path for path in trials() if not is_training(path.name)]
+
+
+def recorded(
+    files: list[Path], size: RecordedSize, shortest: float = SHORTEST
+) -> Iterator[tuple[str, Motion]]:
     """The file's name, and six seconds of it: the windows of all files that are read.
 
-    Windows of a file are evenly spaced. Exits where MOTIONDIFF_REAL_DATA does not name a folder
-    with recordings.
+    Windows of a file are evenly spaced. A recording of less than six but `shortest` seconds is one
+    window.
     """
-    folder = Path(os.environ.get("MOTIONDIFF_REAL_DATA", ""))
-    files = [path for one in FOLDERS for path in sorted((folder / one).glob("*.bvh"))]
-    if not files:
-        sys.exit("MOTIONDIFF_REAL_DATA must name a folder with recordings in bvh/ and cmu30/")
     n = round(SECONDS * FPS)
     for path in files[: size.files]:
         try:
             motion = md.read_motion(path)
         except ValueError:  # damaged on purpose, or no human
             continue
-        count = min(size.each, len(motion) // n)
-        for first in np.linspace(0, len(motion) - n, count).astype(int):
-            yield path.name, motion[int(first) : int(first) + n]
+        if len(motion) < shortest * FPS:
+            continue
+        length = min(n, len(motion))
+        count = min(size.each, 1 + (len(motion) - length) // (length // 2))
+        for first in np.linspace(0, len(motion) - length, count).astype(int):
+            yield path.name, motion[int(first) : int(first) + length]

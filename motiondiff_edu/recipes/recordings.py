@@ -1,0 +1,67 @@
+"""Recordings that networks are trained on, and the split by person.
+
+The training files are those of one collection, whose dancers and fighters are not named: all of it
+is on this side, also the one trial that stands in another folder. Everybody else is kept for
+judging (`tools/results/recordings`).
+Data: the CMU Graphics Lab Motion Capture Database, mocap.cs.cmu.edu, created with funding from NSF
+EIA-0196217.
+"""
+
+import os
+import warnings
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+from jaxtyping import Bool, Float
+
+from ..motion.files import read_motion
+from ..motion.planting import find_contacts
+from ..motion.root_frame import FPS
+from ..motion.skeleton import TOES
+
+VARIABLE = "MOTIONDIFF_REAL_DATA"  # names the folder with the recordings
+FOLDERS = ("bvh", "cmu30")
+TRAINED = ("acrnn_", "cmu_acrnn_")  # how the training files' names begin
+CREDIT = (
+    "The data used in this project was obtained from mocap.cs.cmu.edu. The database was created "
+    "with funding from NSF EIA-0196217."
+)
+
+Recorded = tuple[Float[np.ndarray, "T 21 3"], Bool[np.ndarray, "T 2"]]
+
+
+def recording_files() -> list[Path]:
+    """All BVH files of the folders.
+
+    Raises ValueError where MOTIONDIFF_REAL_DATA does not name a folder with recordings.
+    """
+    folder = Path(os.environ.get(VARIABLE, ""))
+    files = [path for one in FOLDERS for path in sorted((folder / one).glob("*.bvh"))]
+    if not files:
+        raise ValueError(
+            f"{VARIABLE} must name a folder with recordings in {' and '.join(FOLDERS)}"
+        )
+    return files
+
+
+def training_recordings() -> list[Recorded]:
+    """Positions (metres, world, 20 frames/s) and contacts of the recordings of training persons."""
+    found = []
+    for path in training_files(recording_files()):
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # notes on the file
+            positions = read_motion(path).positions
+        found.append((positions, find_contacts(positions[:, list(TOES)], FPS)))
+    return found
+
+
+def training_files(files: Sequence[Path]) -> list[Path]:
+    """Each recording once: a trial that is there in two folders counts as the same one."""
+    some = {path.stem.removeprefix("cmu_"): path for path in files if is_training(path.name)}
+    return [some[name] for name in sorted(some)]
+
+
+def is_training(name: str) -> bool:
+    """Whether a file of this name is of the persons that networks are trained on."""
+    return name.startswith(TRAINED)

@@ -1,0 +1,53 @@
+"""Motion at another pace: the same path through space, slower, faster, and with pauses."""
+
+import numpy as np
+import pytest
+
+from data_synth.mixed import motions
+from data_synth.warps import FASTEST, PAUSE, SLOWEST, drawn_pace, times_of, warped
+from motiondiff_edu.metrics.bone_lengths import bone_lengths
+
+FPS = 20.0
+
+
+def drawn(seed: int = 0) -> np.random.Generator:
+    return np.random.default_rng(seed)
+
+
+@pytest.fixture(scope="module")
+def walk():
+    return next(iter(motions(1, 5, 8.0)))
+
+
+def test_times_rise_from_the_first_frame_and_stay_within_the_motion():
+    for seed in range(20):
+        at = times_of(100, drawn(seed), FPS)
+        steps = np.diff(at)
+        assert at[0] == 0 and 0.9 * 99 < at[-1] <= 99 or len(at) == 300
+        assert (steps >= PAUSE - 1e-9).all() and (steps <= FASTEST + 1e-9).all()
+        assert np.array_equal(at, times_of(100, drawn(seed), FPS))
+
+
+def test_paces_are_slow_and_fast_alike_and_some_are_pauses():
+    paces = np.array([drawn_pace(drawn(seed)) for seed in range(1000)])
+    moving = paces[paces > PAUSE]
+    assert 1 - len(moving) / len(paces) == pytest.approx(0.2, abs=0.05)
+    assert SLOWEST <= moving.min() < 0.55 and 1.3 < moving.max() <= FASTEST
+    assert np.median(moving) == pytest.approx(np.sqrt(SLOWEST * FASTEST), abs=0.05)
+
+
+def test_the_motion_is_the_same_at_another_time(walk):
+    positions, contacts = walk
+    moved, stands = warped(positions, contacts, drawn(3), FPS)
+    at = times_of(len(positions), drawn(3), FPS)
+    assert moved.shape == (len(at), 21, 3) and stands.shape == (len(at), 2)
+    whole = np.floor(at).astype(int)[:-1]
+    low = np.minimum(positions[whole], positions[whole + 1]) - 0.05
+    high = np.maximum(positions[whole], positions[whole + 1]) + 0.05
+    assert ((low < moved[:-1]) & (moved[:-1] < high)).all()
+    assert np.array_equal(stands, contacts[np.round(at).astype(int)])
+    assert np.abs(bone_lengths(moved) - bone_lengths(positions[:1])).max() < 0.01
+    assert (
+        np.abs(np.diff(moved, n=2, axis=0)).max()
+        < 2 * np.abs(np.diff(positions, n=2, axis=0)).max()
+    ), "the pace changes smoothly"
