@@ -1,38 +1,49 @@
 """In-betweens around straight lines: the network is shown what is given, and generates the rest.
 
-    remainder = x0 - lines,   r_s = x_s - sqrt(alpha_bar_s) lines
-    x0_hat = lines + net(r_s, s, lines, known)
-Lines go straight from each given entry to the next. A network that was trained with masks denoises
-what remains of a motion without them. On poses unlike its training it adds little, and the result
+    remainder = (x0 - lines) / scale      x0_hat = lines + scale * net(remainder_s, s, shown)
+Lines go straight from each given entry to the next. `scale` is how far a motion usually is from
+them there: nothing at a given entry, a standard deviation far from all. So the noise is as large
+as what is to be generated, near a keyframe and far from one; and the result goes through the given
+entries without a jump. On poses unlike its training such a network adds little, and the result
 stays near the lines; a network that must generate the poses themselves jumps there. If nothing is
-given, the lines are 0, and so the same network samples whole motions.
+given, the lines are 0 and the scale is 1: the same network samples whole motions.
 Gain: not measured yet; it will be `real.inbetween_over_interpolation.*` in docs/RESULTS.md. No
 shipped network sees the lines.
-Source: masks in training after CondMDI (Cohan and others, 2024); the lines are ours.
+Source: masks in training after CondMDI (Cohan and others, 2024); lines and scale are ours.
 """
 
 import math
 from dataclasses import dataclass
 
 import torch
-from jaxtyping import Bool, Float, Int
+from jaxtyping import Bool, Float
 from torch import Tensor
 
-from ..ddpm import Denoiser, Schedule, at
 from .guidance import blended_guess
+
+HALF = 3.0  # frames at 20 frames/s; with it, scales are those of walks, dances and recordings
 
 
 @dataclass(frozen=True, eq=False)
 class Shown:
-    """What the network is shown beside x_s and s: the lines, and which entries are given."""
+    """What the network is shown beside x_s and s: lines, scale, and which entries are given."""
 
     lines: Float[Tensor, "B T D"]
+    scale: Float[Tensor, "B T D"]
     known: Bool[Tensor, "B T D"]
 
     @classmethod
     def of(cls, given: Float[Tensor, "B T D"], known: Bool[Tensor, "B T D"]) -> "Shown":
         """The lines through the given entries; unknown entries of `given` can be anything."""
-        return cls(lines_through(given, known), known)
+        return cls(lines_through(given, known), scale_around(known), known)
+
+    def remainder(self, x0: Float[Tensor, "B T D"]) -> Float[Tensor, "B T D"]:
+        """What the network generates for a motion; 0 where the motion is given."""
+        return ((x0 - self.lines) / self.scale).where(~self.known, 0.0)
+
+    def whole(self, remainder: Float[Tensor, "B T D"]) -> Float[Tensor, "B T D"]:
+        """The motion with this remainder; given entries come back up to rounding."""
+        return self.lines + self.scale * remainder
 
 
 def lines_through(
@@ -47,13 +58,18 @@ def lines_through(
     return blended_guess(torch.zeros_like(given), given, known, fade=math.inf)
 
 
-def around_lines(denoise: Denoiser, schedule: Schedule, lines: Float[Tensor, "B T D"]) -> Denoiser:
-    """The denoiser of motions that belongs to a denoiser of their remainders.
+def scale_around(known: Bool[Tensor, "B T D"]) -> Float[Tensor, "B T D"]:
+    """How far from the lines a motion usually is, in standard deviations.
 
-    Both have the same noise, so eps_hat is that of the remainder.
+    1 / (1 + HALF (1 / before + 1 / after)), with the frames since the last and until the next
+    given entry of the column; infinitely many where there is none.
     """
+    after = frames_since(known.flip(1)).flip(1)
+    return 1 / (1 + HALF * (1 / frames_since(known) + 1 / after))
 
-    def around(x_s: Float[Tensor, "B T D"], s: Int[Tensor, "B"]) -> Float[Tensor, "B T D"]:
-        return denoise(x_s - at(schedule.alpha_bar.sqrt(), s, x_s) * lines, s)
 
-    return around
+def frames_since(known: Bool[Tensor, "B T D"]) -> Float[Tensor, "B T D"]:
+    """How many frames ago the last given entry of a column was; infinity if there was none."""
+    frames = torch.arange(known.shape[1], device=known.device, dtype=torch.float)[:, None]
+    last = torch.where(known, frames, -math.inf).cummax(1).values
+    return frames - last

@@ -38,8 +38,11 @@ def total(*losses: Loss) -> Loss:
 
 
 # ---- weights -------------------------------------------------------------------------------------
-def weighted(loss: Loss, weights: Float[Tensor, "D"] | Float[Tensor, "T 1"]) -> Loss:
-    """A loss whose squares have weights, by column (`metre_weights`) or frame (`near_weights`).
+def weighted(
+    loss: Loss, weights: Float[Tensor, "D"] | Float[Tensor, "T 1"] | Float[Tensor, "B T D"]
+) -> Loss:
+    """A loss whose squares have weights, by column (`metre_weights`), frame (`near_weights`) or
+    entry.
 
     Notebook: 07
     """

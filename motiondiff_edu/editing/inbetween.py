@@ -12,6 +12,8 @@ import torch
 from jaxtyping import Bool, Float
 from torch import Tensor
 
+from ..beyond.above_floor import feet_above_floor
+from ..beyond.around_lines import Shown
 from ..beyond.constant_bones import given_lengths, steady_bones
 from ..beyond.foot_lock import steady_feet
 from ..beyond.guidance import blended, guided
@@ -34,12 +36,14 @@ class Departures:
     `blend`: x0_hat is corrected at each step so that it goes through the given entries. Before the
     first and after the last of them the correction fades within so many frames; None: no blending
     (`beyond.guidance.blended`).
-    `shown`: a network that can see what is given sees it (`beyond.around_lines`).
+    `shown`: a network that can see what is given sees it, and generates the remainder around lines
+    (`beyond.around_lines`); it needs no guidance and no blending.
     `guidance`: > 0 applies `beyond.guidance.guided` first where the network does not see it; it
     doubles the cost. A larger value follows sparse keyframes better, but the motion jumps more at
     the ends of a gap.
     `bones`: generated bones get the lengths of the given ones (`beyond.constant_bones`).
-    `feet`: planted feet do not slide (`beyond.foot_lock`).
+    `feet`: planted feet do not slide (`beyond.foot_lock`), nor sink under the floor or the lowest
+    given joint (`beyond.above_floor`).
     `resample`: how often each step is made (`inbetweening.resampled`).
     """
 
@@ -100,24 +104,45 @@ def inbetween(
     shape = (samples, *given.shape)
     music = None if mel is None else mel[None].expand(samples, -1, -1)
     held, schedule = (given.expand(shape), columns.to(device).expand(shape)), dancer.schedule
-    start = draw(held[0], generator)
+    start, shown = draw(held[0], generator), None
     if departures.shown and getattr(dancer, "can_be_shown", False):
-        denoise = dancer.shown_denoiser(*held)
+        shown = Shown.of(*held)
+        denoise = dancer.shown_denoiser(shown)
+        held = torch.zeros(shape, device=device), held[1]
     else:
-        steer = bool(departures.guidance) and bool(known.any())
-        denoise = dancer.denoiser(music, len(given), fast=not steer)
-        if steer:
-            denoise = guided(denoise, schedule, *held, departures.guidance)
-    if departures.blend is not None:
-        denoise = blended(denoise, schedule, *held, fading(departures.blend).to(device))
+        denoise = steered(dancer, music, held, departures)
     visited = resampled(timesteps(schedule.S, steps), departures.resample)
     loop = inpaint_steps(denoise, start, schedule, *held, steps=visited, generator=generator)
-    poses = to_positions(dancer.motion_scaler.inverse(final(loop).x_s))
+    x0 = final(loop).x_s if shown is None else shown.whole(final(loop).x_s)
+    poses = to_positions(dancer.motion_scaler.inverse(x0))
     made = place.leave(poses.double().cpu().numpy())
     whole = np.where(known[..., None], positions, made)
     if departures.bones:
         whole = steady_bones(whole, known, given_lengths(positions, known))
-    return steady_feet(whole, known) if departures.feet and known.any() else whole
+    if not (departures.feet and known.any()):
+        return whole
+    lowest = min(0.0, positions[known][:, 1].min())
+    return np.stack([feet_above_floor(one, known, lowest) for one in steady_feet(whole, known)])
+
+
+def steered(
+    dancer: AnyDancer,
+    mel: Float[Tensor, "B M C"] | None,
+    held: tuple[Float[Tensor, "B T 63"], Bool[Tensor, "B T 63"]],
+    departures: Departures,
+) -> Denoiser:
+    """The denoiser of a network that sees nothing of what is given: guided and blended.
+
+    `held`: the given entries, and which they are.
+    """
+    guidance = departures.guidance if held[1].any() else 0.0
+    denoise = dancer.denoiser(mel, held[0].shape[1], fast=not guidance)
+    if guidance:
+        denoise = guided(denoise, dancer.schedule, *held, guidance)
+    if departures.blend is not None:
+        fade = fading(departures.blend).to(held[0].device)
+        denoise = blended(denoise, dancer.schedule, *held, fade)
+    return denoise
 
 
 def maker(dancer: AnyDancer, *, steps: int = 50) -> Make:

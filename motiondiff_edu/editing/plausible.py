@@ -1,12 +1,12 @@
 """Is a generated motion plausible beside what was given?
 
-The network of the in-betweens has seen synthetic walks and dances. On other motions it can fail
-badly: the figure jumps by metres between keyframes that are close together. And a walk can lose its
-steps: then the figure glides, standing, from keyframe to keyframe.
+On motions unlike its training a network can fail badly: the figure jumps by metres between
+keyframes that are close together, or sinks into the floor. And a walk can lose its steps: then the
+figure glides, standing, from keyframe to keyframe.
 """
 
 from collections.abc import Callable, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 import torch
@@ -25,9 +25,35 @@ LOW = 0.08  # m above the 5th percentile of the toes' heights
 SLIDES = 0.6  # m/s
 GLIDE = 0.4  # s
 
-AGAIN = "So it was generated again without guidance, with blending only. Check the result"
-STILL = "Without guidance it is no better: give more keyframes, or draw straight lines between them"
-DRAWS = 4  # of a sample whose feet glide, before the best of them is given back with a warning
+SINKS = 0.4  # m in a second: of 744 gaps of a second in recordings, none sinks farther in between
+
+AGAIN = "So it was generated again. Check the result"
+STILL = "Other draws are no better: give more keyframes, or draw straight lines between them"
+DRAWS = 4  # of a sample that is not plausible, before the best of them is given back with a warning
+
+
+@dataclass(frozen=True, order=True)
+class Fault:
+    """What is wrong with a generated motion. The worse of two is the greater one.
+
+    Too fast or too low is worse than any glide; `words` do not count.
+    """
+
+    wild: bool
+    glide: int  # frames that both feet slide
+    words: str = field(compare=False)
+
+
+def fault_of(
+    made: Float[np.ndarray, "T 21 3"],
+    given: Float[np.ndarray, "T 21 3"],
+    known: Bool[np.ndarray, "T 21"],
+) -> Fault:
+    """The worst fault of a generated motion; without one, its words are empty."""
+    first, last = longest_glide(made, known)
+    words = wilder_than_given(made, given, known) or lower_than_given(made, given, known)
+    glides = f"both feet slide between frames {first} and {last}" if last > first else ""
+    return Fault(bool(words), last - first, words or glides)
 
 
 def until_plausible(
@@ -38,28 +64,26 @@ def until_plausible(
 ) -> tuple[Float[np.ndarray, "T 21 3"], str]:
     """A generated motion, drawn again where it is not plausible, and what there is to say about it.
 
-    `again(departures)` draws another one: once without guidance where it moves too fast, up to
-    DRAWS - 1 times where its feet glide.
+    `again(departures)` draws another one, up to DRAWS - 1 times: without guidance where it moves
+    too fast or too low, and as before where its feet glide. The best draw is given back. Nothing is
+    said of a glide that another draw mended.
     """
-    words = wilder_than_given(made, given, known)
-    if words:
-        made = again(replace(OURS, guidance=0.0))
-        still = wilder_than_given(made, given, known)
-        return made, f"{still or words}. {STILL if still else AGAIN}"
-    best, (first, last) = made, longest_glide(made, known)
+    fault = first = fault_of(made, given, known)
     for _ in range(DRAWS - 1):
-        if first == last:
+        if not fault.words:
             break
-        other = again(OURS)
-        begins, ends = longest_glide(other, known)
-        if ends - begins < last - first:
-            best, (first, last) = other, (begins, ends)
-    if first == last:
-        return best, ""
-    return best, (
-        f"both feet slide between frames {first} and {last}, and {DRAWS - 1} more draws were no "
-        f"better. Give a keyframe there, or try another seed"
-    )
+        other = again(replace(OURS, guidance=0.0) if fault.wild else OURS)
+        found = fault_of(other, given, known)
+        if found < fault:
+            made, fault = other, found
+    if fault.wild:
+        return made, f"{fault.words}. {STILL}"
+    if fault.words:
+        return made, (
+            f"{fault.words}, and {DRAWS - 1} more draws were no better. Give a keyframe there, or "
+            f"try another seed"
+        )
+    return made, f"{first.words}. {AGAIN}" if first.wild else ""
 
 
 def each_until_plausible(
@@ -116,6 +140,24 @@ def wilder_than_given(
             f"a generated joint moves at {joints.max():.0f} m/s near frame {frame}, faster than any"
             f" actor's"
         )
+    return ""
+
+
+def lower_than_given(
+    made: Float[np.ndarray, "T J 3"],
+    given: Float[np.ndarray, "T J 3"],
+    known: Bool[np.ndarray, "T J"],
+) -> str:
+    """Where a generated pelvis sinks far below the given ones before and after, in words; or ""."""
+    there, height = np.flatnonzero(known[:, HIPS]), made[:, HIPS, 1]
+    for first, last in zip(there[:-1], there[1:], strict=True):
+        ends = min(given[first, HIPS, 1], given[last, HIPS, 1])
+        lowest = height[first : last + 1].min()
+        if ends - lowest > SINKS * max(1.0, (last - first) / FPS):
+            return (
+                f"the generated pelvis sinks to {lowest:.2f} m between frames {first} and {last}, "
+                f"where it is given at {ends:.2f} m and higher"
+            )
     return ""
 
 

@@ -10,10 +10,10 @@ from pathlib import Path
 
 import numpy as np
 import torch
-from jaxtyping import Bool, Float
+from jaxtyping import Float
 from torch import Tensor, nn
 
-from ..beyond.around_lines import Shown, around_lines
+from ..beyond.around_lines import Shown
 from ..beyond.guidance import with_guess
 from ..conditions.audio_files import samples_of
 from ..conditions.music import FRAMES_PER_SECOND, SAMPLE_RATE, fingerprint, frame_times, log_mel
@@ -101,19 +101,16 @@ class Dancer(Performer):
         """Whether the network was made to see what is given of a motion (`shown_denoiser`)."""
         return isinstance(self.model, KeyframeMoFusion)
 
-    def shown_denoiser(
-        self, given: Float[Tensor, "B T D"], known: Bool[Tensor, "B T D"]
-    ) -> Denoiser:
-        """`denoise(x_s, s) -> eps_hat` of a network that sees the given entries, and lines through
-        them.  Raises ValueError for a network that does not.
+    def shown_denoiser(self, shown: Shown) -> Denoiser:
+        """`denoise(r_s, s) -> eps_hat` for remainders, of a network that is shown what is given.
+
+        Raises ValueError for a network that was not made for it.
         """
         if not self.can_be_shown:
             raise ValueError(
                 f"{type(self.model).__name__} is not made to see what is given: use `denoiser`"
             )
-        shown = Shown.of(given, known)
-        remainder = self._as_eps(lambda r_s, s: self._evaluated(r_s, s, shown))
-        return around_lines(remainder, self.schedule, shown.lines)
+        return self._as_eps(lambda r_s, s: self._evaluated(r_s, s, shown))
 
     def _as_eps(self, network) -> Denoiser:
         denoise = denoiser_of(network, self.schedule, self.config.target)

@@ -1,4 +1,4 @@
-"""MoFusion's U-Net for in-betweens: beside x_s it sees the lines and the mask of what is given.
+"""MoFusion's U-Net for in-betweens: it sees lines, scale and mask of what is given, too.
 
 Called without them, it denoises whole motions.
 Source: MoFusion 3.3, Fig. 3; the further inputs after CondMDI (Cohan and others, 2024).
@@ -24,13 +24,13 @@ class KeyframeConfig(MoFusionConfig):
     skip: bool = False
 
     def inner(self) -> MoFusionConfig:
-        """The configuration of the U-Net, whose input is x_s, lines and mask."""
+        """The configuration of the U-Net, whose input is x_s, lines, scale and mask."""
         sizes = {field.name: getattr(self, field.name) for field in fields(MoFusionConfig)}
-        return MoFusionConfig(**sizes | {"D": 3 * self.D})
+        return MoFusionConfig(**sizes | {"D": 4 * self.D})
 
 
 class KeyframeMoFusion(nn.Module):
-    """net(r_s, s, shown): the target of the remainder over the lines (`beyond.around_lines`)."""
+    """net(r_s, s, shown): the target of the remainder around the lines (`beyond.around_lines`)."""
 
     def __init__(self, config: KeyframeConfig):
         super().__init__()
@@ -41,9 +41,10 @@ class KeyframeMoFusion(nn.Module):
         self, r_s: Float[Tensor, "B T D"], s: Int[Tensor, "B"], shown: Shown | None = None
     ) -> Float[Tensor, "B T D"]:
         """Without `shown`, nothing is given, and r_s is the whole motion with its noise."""
-        nothing = torch.zeros_like(r_s)
-        lines, known = (nothing, nothing) if shown is None else (shown.lines, shown.known.to(r_s))
-        return self.unet(torch.cat([r_s, lines, known], -1), s)[..., : self.config.D]
+        if shown is None:
+            shown = Shown.of(r_s, torch.zeros_like(r_s, dtype=torch.bool))
+        inputs = [r_s, shown.lines, shown.scale, shown.known.to(r_s)]
+        return self.unet(torch.cat(inputs, -1), s)[..., : self.config.D]
 
 
 register("dancer", KeyframeMoFusion, KeyframeConfig)

@@ -37,5 +37,5 @@ def with_bar(
                 vars(twin)[name] = with_steps(getattr(performer, name))
         if hasattr(performer, "shown_denoiser"):
             make_shown = performer.shown_denoiser
-            vars(twin)["shown_denoiser"] = lambda *given: stepping(make_shown(*given))
+            vars(twin)["shown_denoiser"] = lambda shown: stepping(make_shown(shown))
         yield twin

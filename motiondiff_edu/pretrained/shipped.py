@@ -63,11 +63,10 @@ def inbetween(
 
     Known joints stay exactly where they are. In a frame with a known joint, the pelvis must be
     known too. With `samples` above 1, the result is a list with this many motions.
-    On a motion unlike those of the training, guidance can fail, and the figure jumps. If a result
-    moves much faster than the given frames require, it is generated again with blending only
-    (notebook 15), and a MotionWarning says so. A result whose feet glide is drawn again, up to
-    three times; a MotionWarning says if it did not help. The samples of a smaller number are the
-    first ones of a larger number.
+    On a motion unlike those of the training a network can fail, and the figure jumps or sinks. If a
+    result moves much faster or lower than the given frames require, or its feet glide, it is drawn
+    again, up to three times (`editing.plausible`). A MotionWarning says so, except of a glide that
+    another draw mended. The samples of a smaller number are the first ones of a larger number.
     Raises MotionError or ValueError if motion, mask or numbers do not fit.
     Source: MoFusion 4.4.  Notebook: 15
     """

@@ -1,7 +1,8 @@
-"""The loss of a network that sees what is given of a motion: eq. 4 of the remainder over the lines.
+"""The loss of a network that sees what is given of a motion: eq. 4 of the remainder.
 
 Every motion of a batch gets a mask of its own (`drawn_masks`). Kinematic losses are those of the
-whole motion, lines and remainder together.
+whole motion, lines and remainder together. Errors are weighted as those of the whole motion, so
+that the middle of a gap counts more than its ends; and motions count alike, whatever is given.
 """
 
 from dataclasses import replace
@@ -11,6 +12,7 @@ from jaxtyping import Bool, Float
 from torch import Tensor, nn
 
 from ..beyond.around_lines import Shown
+from ..beyond.loss_terms import weighted
 from ..ddpm import Schedule
 from ..editing.inbetween import seen_from
 from ..kinematic_loss import Body
@@ -37,10 +39,12 @@ def keyframe_loss_of(recipe: KeyframeRecipe, windows: DanceWindows, schedule: Sc
         sizes = 1 + recipe.sizes * (2 * chance(generator, len(motion)) - 1)
         motion = as_seen(motion, known, sizes, scaler).to(device)
         shown = Shown.of(motion, known.repeat_interleave(3, dim=-1).to(device))
+        squares = shown.scale.square()
+        loss = weighted(data_loss, squares / squares.mean((1, 2), keepdim=True))
         of_batch = batch_loss(
-            recipe.kinematic, data_loss, schedule, scaler, lambda s: body_around(shown.lines, s)
+            recipe.kinematic, loss, schedule, scaler, lambda s: body_around(shown, s)
         )
-        return of_batch(model, motion - shown.lines, shown, planted.to(device), generator)
+        return of_batch(model, shown.remainder(motion), shown, planted.to(device), generator)
 
     return loss_fn
 
@@ -59,7 +63,7 @@ def as_seen(
     return scaler.transform(torch.from_numpy(dance_frame.placed_features(positions)).float())
 
 
-def body_around(lines: Float[Tensor, "B T 63"], scaler: Scaler) -> Body:
+def body_around(shown: Shown, scaler: Scaler) -> Body:
     """The figure of remainders: their joints in metres are those of lines and remainder."""
     body = dance_frame.body_of(scaler)
-    return replace(body, to_positions=lambda r: body.to_positions(r + lines))
+    return replace(body, to_positions=lambda r: body.to_positions(shown.whole(r)))

@@ -1,14 +1,17 @@
-"""Around lines: the lines by hand, the same samples as of the remainder, and the exact answer."""
+"""Around lines: lines and scale by hand and by data, and the exact answer for what remains."""
 
+import numpy as np
 import pytest
 import torch
 from two_numbers import correlated
 
-from motiondiff_edu.beyond.around_lines import Shown, around_lines, lines_through
-from motiondiff_edu.ddpm import cosine_schedule, ddim_steps, final, q_sample
+from data_synth.mixed import motions
+from motiondiff_edu.beyond.around_lines import HALF, Shown, lines_through
+from motiondiff_edu.ddpm import cosine_schedule, final
 from motiondiff_edu.exact import conditional, exact_denoiser, mixture
 from motiondiff_edu.inbetweening import inpaint_steps
-from motiondiff_edu.prediction import x0_from_eps
+from motiondiff_edu.motion.dance_frame import placed_features
+from motiondiff_edu.motion.scaler import Scaler
 
 SCHEDULE = cosine_schedule(100)
 
@@ -27,31 +30,42 @@ def test_lines_go_from_each_given_entry_to_the_next_and_stay_outside():
     assert torch.equal(lines[:, 2], torch.zeros(7))
 
 
-def test_the_remainder_is_zero_where_something_is_given():
+def test_the_scale_is_nothing_where_a_motion_is_given_and_grows_with_the_distance():
+    known = torch.zeros(1, 7, 3, dtype=torch.bool)
+    known[0, [1, 5], 0], known[0, 6, 1] = True, True
+    scale = Shown.of(torch.zeros(1, 7, 3), known).scale[0]
+    between = [1 / (1 + HALF * (1 / k + 1 / (4 - k))) for k in (1, 2, 3)]
+    outside = 1 / (1 + HALF)
+    wanted = torch.tensor([outside, 0, *between, 0, outside])
+    torch.testing.assert_close(scale[:, 0], wanted)
+    assert scale[5, 1] == pytest.approx(outside) and scale[0, 1] == pytest.approx(6 / (6 + HALF))
+    assert torch.equal(scale[:, 2], torch.ones(7))
+
+
+def test_scales_are_those_of_motions():
+    """As far as motions are from the lines: within a factor of two, at every distance."""
+    motion = torch.from_numpy(
+        np.stack([placed_features(positions[:101]) for positions, _ in motions(12, 5, 5.1)])
+    ).float()
+    x0 = Scaler.fit(motion).transform(motion)
+    x0 = x0[..., [column for column in range(63) if column not in (0, 2)]]  # without the path
+    for every in (5, 10, 20, 50):
+        known = torch.zeros(x0.shape, dtype=torch.bool)
+        known[:, ::every] = True
+        shown = Shown.of(x0, known)
+        middle = slice(every // 2, None, every)
+        size = float(shown.remainder(x0)[:, middle].square().mean().sqrt())
+        assert 0.5 < size < 2, every
+
+
+def test_lines_and_remainder_are_the_motion():
     x0, known = torch.randn(4, 20, 6, generator=seeded()), torch.rand(4, 20, 6) < 0.3
-    shown = Shown.of(x0, known)
-    assert ((x0 - shown.lines)[known]).abs().max() < 1e-6
+    shown = Shown.of(torch.where(known, x0, torch.nan), known)
+    remainder = shown.remainder(x0)
+    assert (remainder[known] == 0).all()
+    torch.testing.assert_close(shown.whole(remainder), x0)
     nothing = Shown.of(x0, torch.zeros_like(known))
-    assert torch.equal(nothing.lines, torch.zeros_like(x0))
-
-
-@pytest.mark.parametrize("s", [1, 40, 100])
-def test_guess_and_noise_are_those_of_the_remainder(s):
-    x0, lines, eps = torch.randn(3, 2, 5, 4, generator=seeded()).unbind()
-    steps = torch.full((2,), s)
-    asked = []
-
-    def perfect(r_s, steps):  # it is asked about the remainder's own noised version
-        asked.append(r_s)
-        return eps
-
-    x_s = q_sample(x0, s, SCHEDULE, eps)
-    eps_hat = around_lines(perfect, SCHEDULE, lines)(x_s, steps)
-    torch.testing.assert_close(asked[0], q_sample(x0 - lines, s, SCHEDULE, eps))
-    if s < 100:
-        torch.testing.assert_close(
-            x0_from_eps(x_s, steps, eps_hat, SCHEDULE), x0, atol=1e-4, rtol=0
-        )
+    assert torch.equal(nothing.remainder(x0), x0) and torch.equal(nothing.whole(x0), x0)
 
 
 def test_an_exact_remainder_gives_exact_samples_of_the_rest():
@@ -62,8 +76,11 @@ def test_an_exact_remainder_gives_exact_samples_of_the_rest():
     assert (mean, variance) == pytest.approx((-0.2 + 0.9 * 0.5, 1 - 0.9**2))
     known = torch.tensor([True, False]).view(1, 2, 1).expand(n, 2, 1)
     given = torch.tensor([first, 0.0]).view(1, 2, 1).expand(n, 2, 1)
-    lines = lines_through(given, known)
-    moved = mixture(rest.weights, rest.means - first, rest.variances[..., None])
+    shown = Shown.of(given, known)
+    scale = float(shown.scale[0, 1])
+    moved = mixture(
+        rest.weights, (rest.means - first) / scale, rest.variances[..., None] / scale**2
+    )
     exact = exact_denoiser(moved, SCHEDULE)
 
     def remainder(r_s, s):
@@ -73,12 +90,10 @@ def test_an_exact_remainder_gives_exact_samples_of_the_rest():
         eps_hat[:, 0] = r_s[:, 0] / (1 - alpha_bar).sqrt()  # it is 0 at the given frame
         return eps_hat
 
-    denoise = around_lines(remainder, SCHEDULE, lines)
     start = torch.randn(n, 2, 1, generator=seeded())
-    loop = inpaint_steps(denoise, start, SCHEDULE, given, known, steps=100, generator=seeded(1))
-    made = final(loop).x_s
+    nothing = torch.zeros(n, 2, 1)
+    how = {"steps": 100, "generator": seeded(1)}
+    made = shown.whole(final(inpaint_steps(remainder, start, SCHEDULE, nothing, known, **how)).x_s)
     assert torch.equal(made[:, 0], given[:, 0])
     assert float(made[:, 1].mean()) == pytest.approx(mean, abs=0.03)
     assert float(made[:, 1].var()) == pytest.approx(variance, rel=0.1)
-    whole = final(ddim_steps(denoise, start, SCHEDULE, 100, 1.0, generator=seeded(1))).x_s
-    assert float((whole[:, 0] - first).abs().max()) < 1e-3  # it comes to the given by itself

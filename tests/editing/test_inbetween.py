@@ -1,6 +1,7 @@
 """In-betweens in metres: given entries come back bit by bit, wherever the motion stands."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import jaxtyping
 import numpy as np
@@ -21,10 +22,17 @@ from motiondiff_edu.editing.masks import (
 from motiondiff_edu.metrics.bone_lengths import bone_lengths
 from motiondiff_edu.metrics.keyframes import seam_jump
 from motiondiff_edu.mofusion import MoFusion
-from motiondiff_edu.motion.dance_frame import Place, facing, to_features, to_positions
+from motiondiff_edu.motion.dance_frame import (
+    Place,
+    facing,
+    placed_features,
+    to_features,
+    to_positions,
+)
 from motiondiff_edu.motion.root_frame import to_world
-from motiondiff_edu.performers.dancer import FARTHEST
-from motiondiff_edu.prediction import x0_from_eps
+from motiondiff_edu.motion.skeleton import HEELS, TOES
+from motiondiff_edu.performers.dancer import FARTHEST, Dancer
+from motiondiff_edu.prediction import eps_from_x0, x0_from_eps
 from motiondiff_edu.pretrained import checkpoints
 
 
@@ -66,6 +74,34 @@ def test_known_entries_come_back_bit_by_bit_and_the_rest_is_made(known, C):
     assert not np.allclose(made[0][~known], made[1][~known])
     again = inbetween(dancer(C), holes, known, mel, generator=seeded(1), **options)
     assert np.array_equal(made, again)
+
+
+def sinking(one: Dancer, truth: np.ndarray, metres: float) -> SimpleNamespace:
+    """A dancer that always generates the truth, so much lower."""
+    at_home = seen_from(truth, keyframes(len(truth), 13)).enter(truth) - [0.0, metres, 0.0]
+    lower = one.motion_scaler.transform(torch.from_numpy(placed_features(at_home)).float())
+    denoise = lambda x_s, s: eps_from_x0(x_s, s, lower.expand_as(x_s), one.schedule)  # noqa: E731
+    return SimpleNamespace(
+        schedule=one.schedule,
+        motion_scaler=one.motion_scaler,
+        denoiser=lambda mel, frames, fast=True: denoise,
+    )
+
+
+@pytest.mark.parametrize("lowest", [0.0, -0.03])
+def test_feet_stay_above_the_floor_or_the_lowest_given_joint(lowest):
+    truth = clip()
+    truth[..., 1] += lowest - truth[..., 1].min()
+    known = keyframes(40, 13)
+    at = truth[known][:, 1].min()
+    how = replace(OURS, guidance=0.0, blend=None)
+    args = {"steps": 5, "generator": seeded()}
+    made = inbetween(sinking(dancer(), truth, 0.1), truth, known, departures=how, **args)[0]
+    feet = made[:, [*HEELS, *TOES], 1][~known.all(-1)]
+    assert feet.min() == pytest.approx(min(0.0, at), abs=1e-6)
+    plain = replace(how, feet=False)
+    sunk = inbetween(sinking(dancer(), truth, 0.1), truth, known, departures=plain, **args)[0]
+    assert sunk[..., 1].min() < -0.05
 
 
 def test_all_known_is_the_input_and_nothing_known_is_a_plain_sample():

@@ -7,8 +7,12 @@ from gaits import rest_pose
 from motiondiff_edu.editing.inbetween import OURS
 from motiondiff_edu.editing.masks import keyframes
 from motiondiff_edu.editing.plausible import (
+    AGAIN,
     DRAWS,
+    SINKS,
+    STILL,
     longest_glide,
+    lower_than_given,
     until_plausible,
     wilder_than_given,
 )
@@ -94,6 +98,50 @@ def test_where_every_draw_glides_the_shortest_is_given_back_and_it_is_said():
     made, note = until_plausible(glides, glides, KNOWN, lambda how: left.pop(0))
     assert not left and len(draws) == DRAWS - 1
     assert made is shorter and "both feet slide between frames 0 and 29" in note
+
+
+def test_a_figure_that_sinks_is_told_and_one_that_squats_is_not():
+    given, made = standing(), standing()
+    made[25:30, :, 1] -= SINKS + 0.05
+    assert "sinks to" in lower_than_given(made, given, KNOWN)
+    assert "between frames 20 and 40, where it is given at" in lower_than_given(made, given, KNOWN)
+    wide = keyframes(41, 40)  # there is time to go lower
+    assert lower_than_given(made, given, wide) == ""
+    made[25:30, :, 1] += 0.1
+    assert lower_than_given(made, given, KNOWN) == ""
+
+
+def jumping(metres: float) -> np.ndarray:
+    """Standing, and there and back by so much in a frame."""
+    made = standing()
+    made[25:30, :, 0] += metres
+    return made
+
+
+def test_a_wild_motion_is_drawn_again_without_guidance_and_it_is_said():
+    drawn, stands = [], standing()
+
+    def again(how):
+        drawn.append(how)
+        return stands
+
+    made, note = until_plausible(jumping(1.5), standing(), KNOWN, again)
+    assert made is stands and [how.guidance for how in drawn] == [0.0]
+    assert "30.0 m/s" in note and note.endswith(AGAIN)
+
+
+def test_where_every_draw_is_wild_the_first_is_given_back_and_it_is_said():
+    first, draws = jumping(1.5), [jumping(1.5), jumping(2.0), jumping(1.0)]
+    left = list(draws)
+    made, note = until_plausible(first, standing(), KNOWN, lambda how: left.pop(0))
+    assert made is first and not left and note.endswith(STILL)
+
+
+def test_a_glide_is_better_than_a_jump():
+    glides, left = standing(speed=1.0), [standing(speed=1.0), jumping(1.5), jumping(1.5)]
+    made, note = until_plausible(jumping(9.0), glides, KNOWN, lambda how: left.pop(0))
+    assert not left and "both feet slide between frames 0 and 40" in note
+    assert np.array_equal(made, glides)
 
 
 def test_a_plausible_motion_is_given_back_as_it_is():

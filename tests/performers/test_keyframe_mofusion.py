@@ -1,5 +1,7 @@
 """The network that sees what is given: its inputs, its file, and its denoiser in a dancer."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import torch
@@ -39,27 +41,24 @@ def shown_first(x: torch.Tensor) -> Shown:
     return Shown.of(x, known)
 
 
-def test_lines_and_mask_are_seen_and_nothing_given_is_the_same_as_none(dancer):
+def test_lines_scale_and_mask_are_seen_and_nothing_given_is_the_same_as_none(dancer):
     x, s = torch.randn(2, T, 63, generator=seeded()), torch.tensor([3, 20])
     plain = dancer.model(x, s)
     nothing = Shown.of(x, torch.zeros(x.shape, dtype=torch.bool))
     assert plain.shape == x.shape and torch.equal(plain, dancer.model(x, s, nothing))
     shown = shown_first(x)
     assert not torch.allclose(plain, dancer.model(x, s, shown))
-    other = Shown(shown.lines, ~shown.known)
-    assert not torch.allclose(dancer.model(x, s, shown), dancer.model(x, s, other))
+    for field in ("lines", "scale", "known"):
+        other = replace(shown, **{field: getattr(shown, field).flip(1)})
+        assert not torch.allclose(dancer.model(x, s, shown), dancer.model(x, s, other)), field
 
 
-def test_the_denoiser_adds_the_lines_to_the_networks_guess(dancer):
+def test_the_denoiser_is_that_of_the_remainder(dancer):
     x, s = torch.randn(1, T, 63, generator=seeded()), torch.tensor([12])
-    known = torch.zeros(x.shape, dtype=torch.bool)
-    known[:, ::8] = True
-    eps_hat = dancer.shown_denoiser(x, known)(x, s)
-    x0_hat = x0_from_eps(x, s, eps_hat, dancer.schedule)
-    shown = Shown.of(x, known)
-    signal = float(dancer.schedule.alpha_bar[12]) ** 0.5
-    wanted = shown.lines + dancer.model(x - signal * shown.lines, s, shown)
-    torch.testing.assert_close(x0_hat, wanted, atol=1e-4, rtol=1e-4)
+    shown = shown_first(x)
+    eps_hat = dancer.shown_denoiser(shown)(x, s)
+    r0_hat = x0_from_eps(x, s, eps_hat, dancer.schedule)
+    torch.testing.assert_close(r0_hat, dancer.model(x, s, shown), atol=1e-4, rtol=1e-4)
 
 
 def test_a_network_that_sees_nothing_is_named():
@@ -67,7 +66,7 @@ def test_a_network_that_sees_nothing_is_named():
     x = torch.zeros(1, T, 63)
     assert not dancer.can_be_shown
     with pytest.raises(ValueError, match="MoFusion is not made to see what is given"):
-        dancer.shown_denoiser(x, x > 0)
+        dancer.shown_denoiser(shown_first(x))
 
 
 def test_its_file_brings_it_back(dancer, tmp_path):

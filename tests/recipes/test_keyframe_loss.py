@@ -7,7 +7,7 @@ import pytest
 import torch
 
 from data_synth.mixed import motions, sentences
-from motiondiff_edu.beyond.around_lines import lines_through
+from motiondiff_edu.beyond.around_lines import Shown
 from motiondiff_edu.ddpm import q_sample
 from motiondiff_edu.editing.inbetween import inbetween
 from motiondiff_edu.editing.masks import keyframes
@@ -107,21 +107,24 @@ def test_the_loss_of_a_batch_is_eq_4_of_what_remains_without_the_lines(windows):
     torch.rand(4, generator=generator)
     seen = as_seen(motion, known, torch.ones(4), windows.motion_scaler)
     columns = known.repeat_interleave(3, -1)
-    r0 = seen - lines_through(seen, columns)
-    assert torch.equal(shown.known, columns) and r0[columns].abs().max() < 1e-6
+    wanted = Shown.of(seen, columns)
+    r0 = wanted.remainder(seen)
+    assert all(torch.equal(getattr(shown, k), getattr(wanted, k)) for k in ("lines", "known"))
     steps = torch.randint(1, schedule.S + 1, (4,), generator=generator)
     eps = torch.randn(r0.shape, generator=generator)
     assert torch.equal(s, steps)
     torch.testing.assert_close(r_s, q_sample(r0, steps, schedule, eps))
-    torch.testing.assert_close(loss, (r0 - r0_hat).square().mean())
+    errors = ((shown.whole(r0_hat) - seen).where(~columns, 0.0)).square().mean((1, 2))
+    torch.testing.assert_close(loss, (errors / shown.scale.square().mean((1, 2))).mean())
 
 
 def test_bones_are_those_of_lines_and_remainder_together(windows):
     motion, _, _ = windows.draw(2, seeded())
-    lines = torch.randn(motion.shape, generator=seeded())
-    body = body_around(lines, windows.motion_scaler)
+    shown = Shown.of(motion, torch.rand(motion.shape, generator=seeded()) < 0.2)
+    body = body_around(shown, windows.motion_scaler)
     wanted = dance_frame.body_of(windows.motion_scaler).to_positions(motion)
-    torch.testing.assert_close(body.to_positions(motion - lines), wanted, atol=1e-4, rtol=1e-4)
+    made = body.to_positions(shown.remainder(motion))
+    torch.testing.assert_close(made, wanted, atol=1e-4, rtol=1e-4)
 
 
 def test_a_path_is_measured_in_metres_of_the_recipe_and_motions_stay_the_same(windows):
