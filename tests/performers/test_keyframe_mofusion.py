@@ -48,8 +48,9 @@ def test_lines_scale_and_mask_are_seen_and_nothing_given_is_the_same_as_none(dan
     assert plain.shape == x.shape and torch.equal(plain, dancer.model(x, s, nothing))
     shown = shown_first(x)
     assert not torch.allclose(plain, dancer.model(x, s, shown))
-    for field in ("lines", "scale", "known"):
-        other = replace(shown, **{field: getattr(shown, field).flip(1)})
+    changed = {"lines": shown.lines + 1, "scale": shown.scale / 2, "known": ~shown.known}
+    for field, value in changed.items():
+        other = replace(shown, **{field: value})
         assert not torch.allclose(dancer.model(x, s, shown), dancer.model(x, s, other)), field
 
 
