@@ -8,7 +8,7 @@ import numpy as np
 import scipy
 from jaxtyping import Bool, Float
 
-SLOWEST, FASTEST = 0.5, 1.4  # times the pace of the motion
+SLOWEST, FASTEST = 0.2, 1.4  # times the pace of the motion
 CHANGES = (0.4, 2.5)  # seconds from one drawn pace to the next
 PAUSE, PAUSES = 0.03, 0.2  # times the pace in a pause, and the share of drawn paces that are one
 
@@ -21,27 +21,33 @@ def warped(
 ) -> tuple[Float[np.ndarray, "F 21 3"], Bool[np.ndarray, "F 2"]]:
     """The motion (metres, world) and its contacts, in a pace that is drawn.
 
-    It is as long as the pace makes it, at most three times as long as it was.
+    Some motions are slow in parts, others not. The motion is as long as its pace makes it, at most
+    three times as long as it was.
     """
-    at = times_of(len(positions), rng, fps)
+    at = times_of(len(positions), drawn(SLOWEST, 1.0, rng), rng, fps)
     spline = scipy.interpolate.CubicSpline(np.arange(len(positions)), positions)
     return spline(at), contacts[np.round(at).astype(int)]
 
 
-def times_of(T: int, rng: np.random.Generator, fps: float) -> Float[np.ndarray, "F"]:
+def times_of(
+    T: int, slowest: float, rng: np.random.Generator, fps: float
+) -> Float[np.ndarray, "F"]:
     """The frame of the motion, a fraction, that each new frame shows: 0 at first, rising."""
-    knots, paces = [0.0], [drawn_pace(rng)]
+    knots, paces = [0.0], [drawn_pace(slowest, rng)]
     longest = 3 * T
     while knots[-1] < longest:
         knots.append(knots[-1] + fps * rng.uniform(*CHANGES))
-        paces.append(drawn_pace(rng))
+        paces.append(drawn_pace(slowest, rng))
     pace = scipy.interpolate.PchipInterpolator(knots, paces)(np.arange(longest - 1) + 0.5)
     at = np.concatenate([[0.0], np.cumsum(pace)])
     return at[at <= T - 1]
 
 
-def drawn_pace(rng: np.random.Generator) -> float:
-    """Slow paces are as frequent as fast ones: uniform in the logarithm."""
-    if rng.uniform() < PAUSES:
-        return PAUSE
-    return float(np.exp(rng.uniform(np.log(SLOWEST), np.log(FASTEST))))
+def drawn_pace(slowest: float, rng: np.random.Generator) -> float:
+    """A pause, or a pace from the slowest to the fastest one."""
+    return PAUSE if rng.uniform() < PAUSES else drawn(slowest, FASTEST, rng)
+
+
+def drawn(low: float, high: float, rng: np.random.Generator) -> float:
+    """Small numbers are as frequent as large ones: uniform in the logarithm."""
+    return float(np.exp(rng.uniform(np.log(low), np.log(high))))

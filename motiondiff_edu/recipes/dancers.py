@@ -68,6 +68,7 @@ class KeyframeRecipe(DanceRecipe):
     recordings: int = 0  # so many versions of each training recording, each at another pace
     levels: float = 0.0  # share of the synthetic motions that are performed lower and leaning
     paces: float = 0.0  # share of the synthetic motions whose pace changes, with pauses
+    variations: float = 0.0  # shares of all motions with limbs turned, and with another upper body
     path_scale: float = 0.3  # m: the unit of the pelvis' path (`train_dancer.with_path_scale`)
     sizes: float = 0.0  # bodies are so much larger or smaller, at most (share)
 

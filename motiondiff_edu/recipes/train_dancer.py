@@ -3,6 +3,7 @@
 The loss is MoFusion's with the departures of the recipe. A killed run continues from its last save.
 """
 
+from collections.abc import Iterator
 from dataclasses import replace
 from functools import lru_cache, partial
 from pathlib import Path
@@ -27,7 +28,7 @@ from ..training import LossFn
 from .dancers import DanceRecipe, KeyframeRecipe
 from .keyframe_loss import keyframe_loss_of
 from .mofusion_loss import batch_loss, weighted_loss
-from .recordings import training_recordings
+from .recordings import Recorded, training_recordings
 from .train_recipe import Provenance, train_recipe
 
 
@@ -73,26 +74,38 @@ def _motion_windows(count: int, seed: int, seconds: float, frames: int) -> Dance
 
 @lru_cache(maxsize=1)
 def _keyframe_windows(recipe: KeyframeRecipe) -> DanceWindows:
-    from data_synth.levels import at_levels
-    from data_synth.mixed import motions, sentences
-    from data_synth.warps import warped
+    positions, contacts = zip(*varied(recipe), strict=True)
+    return DanceWindows.of(positions, contacts, None, recipe.frames)
+
+
+def varied(recipe: KeyframeRecipe) -> Iterator[Recorded]:
+    """Walks, dances, performed sentences and recordings, each in a variation that is drawn.
+
+    Levels, upper body, limbs, pace: in this order, so that feet stand where they stood and a pace
+    is that of the whole figure.
+    """
+    from data_synth import levels, mixed, variations, warps
 
     seed = recipe.data_seed
-    made = [*motions(recipe.motions, seed, recipe.seconds), *sentences(recipe.acts, seed)]
-    for k, (positions, contacts) in enumerate(made):
+    made = [
+        *mixed.motions(recipe.motions, seed, recipe.seconds),
+        *mixed.sentences(recipe.acts, seed),
+    ]
+    recorded = training_recordings() if recipe.recordings else []
+    every = [*made, *recorded * recipe.recordings]
+    for k, (positions, contacts) in enumerate(every):
         rng = np.random.default_rng([seed, 8, k])
-        if rng.uniform() < recipe.levels:
-            positions = at_levels(positions, rng)
-        if rng.uniform() < recipe.paces:
-            positions, contacts = warped(positions, contacts, rng)
-        made[k] = positions.astype(np.float32), contacts
-    for k, (positions, contacts) in enumerate(training_recordings() if recipe.recordings else ()):
-        for version in range(recipe.recordings):
-            rng = np.random.default_rng([seed, 9, k, version])
-            positions_then, contacts_then = warped(positions, contacts, rng)
-            made.append((positions_then.astype(np.float32), contacts_then))
-    positions, contacts = zip(*made, strict=True)
-    return DanceWindows.of(positions, contacts, None, recipe.frames)
+        if k < len(made) and rng.uniform() < recipe.levels:
+            positions = levels.at_levels(positions, rng)
+        if rng.uniform() < recipe.variations:
+            upper, _ = every[rng.integers(len(every))]
+            positions = variations.with_upper_body_of(positions, upper)
+        if rng.uniform() < recipe.variations:
+            positions = variations.limbs_turned(positions, rng)
+        contacts = contacts[: len(positions)]
+        if k >= len(made) or rng.uniform() < recipe.paces:
+            positions, contacts = warps.warped(positions, contacts, rng)
+        yield positions.astype(np.float32), contacts
 
 
 def with_path_scale(windows: DanceWindows, metres: float) -> DanceWindows:
