@@ -12,6 +12,7 @@ from jaxtyping import Bool, Float
 
 from ..motion.inverse_kinematics import drag
 from ..motion.skeleton import HEELS, TOES
+from .foot_lock import free_legs
 
 
 def feet_above_floor(
@@ -22,8 +23,7 @@ def feet_above_floor(
     """Lift ankles and toes that are under `floor` (metres, world, y up); feet keep their slope."""
     moved = np.array(positions, np.float64)
     for toe, heel in zip(TOES, HEELS, strict=True):
-        free = ~known[:, [heel - 1, heel, toe]].any(1)
         depth = floor - moved[:, [heel, toe], 1].min(1)
-        for t in np.flatnonzero(free & (depth > 0)):
+        for t in np.flatnonzero(free_legs(known, heel, toe) & (depth > 0)):
             moved[t] = drag(moved[t], heel, moved[t, heel] + [0.0, depth[t], 0.0])
     return moved

@@ -13,11 +13,12 @@ from jaxtyping import Bool, Float
 from ..motion.dance_frame import GROUND
 from ..motion.inverse_kinematics import drag
 from ..motion.planting import runs
-from ..motion.skeleton import HEELS, TOES
+from ..motion.skeleton import HEELS, HIPS, TOES
 
 FADE = 6  # frames
-# m above the floor, and m/s: a toe under both counts as standing, even if it slides
-LOW, SLOW = 0.05, 1.0
+# m above the floor, and m/s: a toe under both counts as standing, even if it slides; where the
+# pelvis is faster, a standing toe is one that is slower than the pelvis
+LOW, SLOW, SMOOTH = 0.05, 1.0, 5  # SMOOTH: frames that the speed of the pelvis is a mean of
 FLOOR = 5  # percentile of a toe's height
 
 
@@ -39,20 +40,37 @@ def steady_feet(
 
 def _steady_leg(moved, known, toe: int, heel: int, fps: float) -> None:
     """Correct one leg in place; the foot keeps its direction."""
-    free = ~known[:, [heel - 1, heel, toe]].any(1)
-    shift = to_stands(moved[:, toe], ~free, fps)
+    free = free_legs(known, heel, toe)
+    shift = to_stands(moved[:, toe], ~free, fps, slow_for(moved, fps))
     for t in np.flatnonzero(free & shift.any(1)):
         moved[t] = drag(moved[t], heel, moved[t, heel] + shift[t])
 
 
+def free_legs(known: Bool[np.ndarray, "T 21"], heel: int, toe: int) -> Bool[np.ndarray, " T"]:
+    """Frames in which knee, ankle and toe may be moved, since none of them is known."""
+    return ~known[:, [heel - 1, heel, toe]].any(1)
+
+
+def slow_for(positions: Float[np.ndarray, "T 21 3"], fps: float) -> Float[np.ndarray, " T"]:
+    """The speed (m/s) under which a toe counts as standing: SLOW, or that of the pelvis."""
+    if len(positions) < 2:
+        return np.full(len(positions), SLOW)
+    pelvis = np.linalg.norm(np.diff(positions[:, HIPS] * GROUND, axis=0), axis=-1) * fps
+    smooth = scipy.ndimage.uniform_filter1d(pelvis, SMOOTH, mode="nearest")
+    return np.maximum(SLOW, np.append(smooth, smooth[-1]))
+
+
 def to_stands(
-    toe: Float[np.ndarray, "T 3"], given: Bool[np.ndarray, " T"], fps: float
+    toe: Float[np.ndarray, "T 3"],
+    given: Bool[np.ndarray, " T"],
+    fps: float,
+    slow: float | Float[np.ndarray, " T"] = SLOW,
 ) -> Float[np.ndarray, "T 3"]:
     """The shift that stops a toe from sliding while it stands; zero where the toe is given."""
     shift = np.zeros_like(toe)
     anchored = given.copy()
     frames = np.arange(len(toe))
-    for first, last in runs(stands(toe, fps)):
+    for first, last in runs(stands(toe, fps, slow)):
         inside = np.flatnonzero(given[first:last]) + first
         if len(inside):  # at the given places; linear between them if they differ
             pin = np.stack(
@@ -64,13 +82,20 @@ def to_stands(
         # only the horizontal movement is stopped; the foot still rolls up and down
         shift[first:last] = pull[:, None] * (pin - toe[first:last]) * GROUND
         anchored[first:last] = True
-    at = np.flatnonzero(anchored)
-    if len(at):
-        before = at[np.clip(np.searchsorted(at, frames, "right") - 1, 0, None)]
-        after = at[np.clip(np.searchsorted(at, frames, "left"), None, len(at) - 1)]
-        u = np.clip((frames - before) / np.maximum(after - before, 1), 0, 1)[:, None]
-        shift = shift[before] + (shift[after] - shift[before]) * (3 * u**2 - 2 * u**3)
-    return shift
+    return between_anchors(shift, anchored)
+
+
+def between_anchors(
+    shift: Float[np.ndarray, "T D"], anchored: Bool[np.ndarray, " T"]
+) -> Float[np.ndarray, "T D"]:
+    """The shift of the anchored frames, and smoothly from each to the next between them."""
+    at, frames = np.flatnonzero(anchored), np.arange(len(shift))
+    if not len(at):
+        return shift
+    before = at[np.clip(np.searchsorted(at, frames, "right") - 1, 0, None)]
+    after = at[np.clip(np.searchsorted(at, frames, "left"), None, len(at) - 1)]
+    u = np.clip((frames - before) / np.maximum(after - before, 1), 0, 1)[:, None]
+    return shift[before] + (shift[after] - shift[before]) * (3 * u**2 - 2 * u**3)
 
 
 def closeness(given: Bool[np.ndarray, " T"]) -> Float[np.ndarray, " T"]:
@@ -85,12 +110,14 @@ def closeness(given: Bool[np.ndarray, " T"]) -> Float[np.ndarray, " T"]:
     return 1 - (3 * u**2 - 2 * u**3)
 
 
-def stands(toe: Float[np.ndarray, "T 3"], fps: float) -> Bool[np.ndarray, " T"]:
+def stands(
+    toe: Float[np.ndarray, "T 3"], fps: float, slow: float | Float[np.ndarray, " T"] = SLOW
+) -> Bool[np.ndarray, " T"]:
     """Frames in which a toe is low, and slow over the ground to the next or from the last frame.
 
     Runs have at least two frames.
     """
     ground = np.linalg.norm(np.diff(toe[:, [0, 2]], axis=0), axis=-1) * fps
-    slow = np.minimum(np.append(ground, np.inf), np.append(np.inf, ground)) < SLOW
-    found = slow & (toe[:, 1] < np.percentile(toe[:, 1], FLOOR) + LOW)
+    still = np.minimum(np.append(ground, np.inf), np.append(np.inf, ground)) < slow
+    found = still & (toe[:, 1] < np.percentile(toe[:, 1], FLOOR) + LOW)
     return found & (np.append(found[1:], False) | np.append(False, found[:-1]))

@@ -17,6 +17,7 @@ from ..beyond.around_lines import Shown
 from ..beyond.constant_bones import given_lengths, steady_bones
 from ..beyond.foot_lock import steady_feet
 from ..beyond.guidance import blended, guided
+from ..beyond.step_clearance import clear_steps
 from ..ddpm import Denoiser, Generators, Schedule, draw, final, timesteps
 from ..inbetweening import inpaint_steps, resampled
 from ..motion.dance_frame import GROUND, Place, heading, placed_features, to_positions
@@ -43,7 +44,7 @@ class Departures:
     the ends of a gap.
     `bones`: generated bones get the lengths of the given ones (`beyond.constant_bones`).
     `feet`: planted feet do not slide (`beyond.foot_lock`), nor sink under the floor or the lowest
-    given joint (`beyond.above_floor`).
+    given joint (`beyond.above_floor`), and swinging feet are lifted (`beyond.step_clearance`).
     `resample`: how often each step is made (`inbetweening.resampled`).
     """
 
@@ -122,7 +123,8 @@ def inbetween(
     if not (departures.feet and known.any()):
         return whole
     lowest = min(0.0, positions[known][:, 1].min())
-    return np.stack([feet_above_floor(one, known, lowest) for one in steady_feet(whole, known)])
+    held = [clear_steps(one, known, lowest) for one in steady_feet(whole, known)]
+    return np.stack([feet_above_floor(one, known, lowest) for one in held])
 
 
 def steered(

@@ -42,7 +42,12 @@ register("walker", FootholdMoDiff, FootholdConfig, build=FootholdMoDiff, fast=Fa
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Walker(Performer):
-    """A network, and the scalers that convert metres and m/s to its units and back."""
+    """A trained MoDiff: it continues a past under a velocity control (`walk`), frame by frame.
+
+    A network, the schedule of its diffusion, and the scalers that convert poses (metres, root
+    frame) and control (m/s, m/s, rad/s) to its units and back. `card` says how it was trained.
+    Source: MoDiff III.  Notebook: 07
+    """
 
     model: nn.Module
     schedule: Schedule

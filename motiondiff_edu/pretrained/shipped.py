@@ -44,10 +44,9 @@ def load(name: str | Path, clip: Clip | str | Path | None = None) -> Walker | Da
     """
     if str(name).endswith(".safetensors"):
         return checkpoints.load(Path(name).expanduser(), clip)
-    performer = checkpoints.pretrained(str(name))
-    if clip is not None:
+    if clip is not None and name in checkpoints.available():
         raise CheckpointError(f"the shipped {name!r} does not read by CLIP: leave `clip` out")
-    return performer
+    return checkpoints.pretrained(str(name))
 
 
 def inbetween(
