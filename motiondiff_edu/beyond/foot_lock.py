@@ -18,7 +18,8 @@ from ..motion.skeleton import HEELS, HIPS, TOES
 FADE = 6  # frames
 # m above the floor, and m/s: a toe under both counts as standing, even if it slides; where the
 # pelvis is faster, a standing toe is one that is slower than the pelvis
-LOW, SLOW, SMOOTH = 0.05, 1.0, 5  # SMOOTH: frames that the speed of the pelvis is a mean of
+LOW, SLOW = 0.05, 1.0
+SMOOTH = 5  # frames that the speed of the pelvis is a mean of
 FLOOR = 5  # percentile of a toe's height
 
 

@@ -3,7 +3,7 @@
 A network's toes are wrong by centimetres in height. A planted toe hovers, a swinging one passes at
 the height of the floor, and the eye takes the lower one for the one that carries the figure: it
 slides. Bones keep their lengths, and given joints stay where they are.
-Gain: not measured yet; it will be `real.inbetween_skating_over_source` in docs/RESULTS.md.
+Gain: docs/RESULTS.md, *In-betweens* (`inbetween-departures.no-clearance.*`).
 Source: ours; people lift a toe by some centimetres as soon as it leaves the floor.
 """
 

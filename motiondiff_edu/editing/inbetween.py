@@ -43,8 +43,9 @@ class Departures:
     doubles the cost. A larger value follows sparse keyframes better, but the motion jumps more at
     the ends of a gap.
     `bones`: generated bones get the lengths of the given ones (`beyond.constant_bones`).
-    `feet`: planted feet do not slide (`beyond.foot_lock`), nor sink under the floor or the lowest
-    given joint (`beyond.above_floor`), and swinging feet are lifted (`beyond.step_clearance`).
+    `feet`: planted feet do not slide (`beyond.foot_lock`).
+    `clearance`: planted feet lie on the floor, or at the height of the lowest given joint, if that
+    is lower; others are higher (`beyond.step_clearance`, `beyond.above_floor`).
     `resample`: how often each step is made (`inbetweening.resampled`).
     """
 
@@ -53,11 +54,12 @@ class Departures:
     guidance: float = 0.5
     bones: bool = True
     feet: bool = True
+    clearance: bool = True
     resample: int = 1
 
 
 OURS = Departures()
-PAPER = Departures(blend=None, shown=False, guidance=0.0, bones=False, feet=False)
+PAPER = Departures(blend=None, shown=False, guidance=0.0, bones=False, feet=False, clearance=False)
 
 
 @runtime_checkable
@@ -120,11 +122,20 @@ def inbetween(
     whole = np.where(known[..., None], positions, made)
     if departures.bones:
         whole = steady_bones(whole, known, given_lengths(positions, known))
-    if not (departures.feet and known.any()):
-        return whole
-    lowest = min(0.0, positions[known][:, 1].min())
-    held = [clear_steps(one, known, lowest) for one in steady_feet(whole, known)]
-    return np.stack([feet_above_floor(one, known, lowest) for one in held])
+    if departures.feet and known.any():
+        whole = steady_feet(whole, known)
+    return cleared(whole, positions, known) if departures.clearance and known.any() else whole
+
+
+def cleared(
+    made: Float[np.ndarray, "samples T 21 3"],
+    given: Float[np.ndarray, "T 21 3"],
+    known: Bool[np.ndarray, "T 21"],
+) -> Float[np.ndarray, "samples T 21 3"]:
+    """Feet on the floor and over it; the floor is y = 0, or the lowest given joint."""
+    floor = min(0.0, given[known][:, 1].min())
+    steps = [clear_steps(one, known, floor) for one in made]
+    return np.stack([feet_above_floor(one, known, floor) for one in steps])
 
 
 def steered(

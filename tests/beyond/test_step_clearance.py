@@ -1,4 +1,4 @@
-"""Step clearance: planted toes lie on the floor, swinging toes are over it; bones and given stay."""
+"""Step clearance: planted toes lie on the floor, swinging toes over it; bones and given stay."""
 
 import numpy as np
 import pytest

@@ -29,6 +29,7 @@ ROWS = {
     "no-blending": ("no blending", replace(OURS, blend=None)),
     "no-bones": ("bones may change their length", replace(OURS, bones=False)),
     "no-feet": ("feet may slide", replace(OURS, feet=False)),
+    "no-clearance": ("feet at any height", replace(OURS, clearance=False)),
     "paper": ("none of them: masked sampling", PAPER),
 }
 
