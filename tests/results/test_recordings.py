@@ -13,6 +13,7 @@ from motiondiff_edu.conditions.control import constant_control
 from motiondiff_edu.editing.masks import keyframes
 from motiondiff_edu.motion.bvh.write import write_bvh
 from tools.results.recordings import continuations, inbetweens, page
+from tools.results.recordings.by_source import by_source
 from tools.results.recordings.windows import (
     FULL,
     QUICK,
@@ -101,11 +102,11 @@ def test_a_row_compares_with_the_better_interpolation(filled):
 
 def test_intervals_are_over_files():
     values = np.array([1.0, 1.0, 1.0, 5.0])
-    alone = inbetweens.by_source("x", np.mean, values, np.array(["a", "a", "a", "b"]))
-    each = inbetweens.by_source("x", np.mean, values, np.array(list("abcd")))
+    alone = by_source("x", "ratio", np.mean, values, np.array(["a", "a", "a", "b"]))
+    each = by_source("x", "ratio", np.mean, values, np.array(list("abcd")))
     assert alone.value == each.value == 2 and alone.low == 1 and alone.high == 5
     assert each.high < 5
-    assert np.isnan(inbetweens.by_source("x", np.mean, values[:0], np.array([])).value)
+    assert np.isnan(by_source("x", "ratio", np.mean, values[:0], np.array([])).value)
 
 
 def test_in_betweens_of_windows_are_measured_and_stand_in_the_page(folder, monkeypatch):

@@ -33,7 +33,7 @@ from .dances.timing import TIMED, time_records
 from .inbetweens import departures, inbetween, known_answer
 from .page.cards import add_metrics
 from .page.render import render
-from .recordings import continuations
+from .recordings import continuations, persons
 from .recordings import inbetweens as recorded_inbetweens
 from .recordings import windows as recorded
 from .repairs import both, dropout, mend, repair
@@ -204,12 +204,9 @@ def records_of(
         return both.both_records(bench, stage.dancer(FILLS_IN), size, command)
     if part == "recordings":
         path = bench.weights["walker"]
-        return continuations.recorded_records(
-            checkpoints.load_walker(path),
-            weights_digest(path),
-            recorded.QUICK if quick else recorded.FULL,
-            command,
-        )
+        size = recorded.QUICK if quick else recorded.FULL
+        measured = checkpoints.load_walker(path), weights_digest(path), size, command
+        return [*continuations.recorded_records(*measured), *persons.person_records(*measured)]
     if part == "recordings-inbetweens":
         return recorded_inbetweens.inbetween_records(
             stage.dancer(FILLS_IN),

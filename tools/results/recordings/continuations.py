@@ -28,6 +28,7 @@ from motiondiff_edu.performers.performer import generators
 from motiondiff_edu.performers.walker import STEPS, Walker
 
 from ..walks.scores import Measure, measure_of, root_mean, squared_bone_error
+from .by_source import by_source
 from .windows import SECONDS, RecordedSize, recorded, trials
 
 GIVEN = 2.0  # seconds of a window
@@ -88,20 +89,24 @@ def row_of(window: Window, made: Continued) -> dict[str, float]:
     }
 
 
-def measures_of(rows: dict[str, np.ndarray]) -> list[Measure]:
-    """The measures of all windows."""
+def measures_of(rows: dict[str, np.ndarray], sources: list[str]) -> list[Measure]:
+    """The measures of all windows; intervals are over files."""
 
     def high(values):
         return np.percentile(values, 95)
 
+    found = {
+        "seam_over_motion": ("ratio", np.median, "seam"),
+        "seam_p95_over_motion": ("ratio", high, "seam"),
+        "continuation_bone_cm": ("cm", root_mean, "bone"),
+        "continuation_skating_mps": ("m/s", np.nanmean, "skating"),
+        "continuation_early_skating_mps": ("m/s", np.nanmean, "early"),
+        "continuation_adherence_mps": ("m/s", np.nanmean, "adherence"),
+        "continuation_floor_cm": ("cm", high, "depth"),
+    }
     return [
-        measure_of("seam_over_motion", "ratio", np.median, rows["seam"]),
-        measure_of("seam_p95_over_motion", "ratio", high, rows["seam"]),
-        measure_of("continuation_bone_cm", "cm", root_mean, rows["bone"]),
-        measure_of("continuation_skating_mps", "m/s", np.nanmean, rows["skating"]),
-        measure_of("continuation_early_skating_mps", "m/s", np.nanmean, rows["early"]),
-        measure_of("continuation_adherence_mps", "m/s", np.nanmean, rows["adherence"]),
-        measure_of("continuation_floor_cm", "cm", high, rows["depth"]),
+        by_source(name, unit, value, rows[column], np.array(sources))
+        for name, (unit, value, column) in found.items()
     ]
 
 
@@ -120,7 +125,7 @@ def recorded_records(walker: Walker, weights: str, size: RecordedSize, command: 
     records = []
     for prefix, rows in found.items():
         columns = {name: np.array([row[name] for row in rows]) for name in rows[0]}
-        records += [m.as_record(prefix, seeds, command) for m in measures_of(columns)]
+        records += [m.as_record(prefix, seeds, command) for m in measures_of(columns, sources)]
     jumped = np.array([row["seam"] > JUMP for row in found["real.unblended."]])
     share = measure_of("blended_share", "share", np.mean, jumped)
     return [*records, share.as_record("real.", seeds, command)]

@@ -23,7 +23,8 @@ from motiondiff_edu.motion.root_frame import FPS
 from motiondiff_edu.performers.dancer import STEPS, Dancer
 from motiondiff_edu.performers.performer import generators
 
-from ..walks.scores import SKATING_FLOOR, Measure, measure_of
+from ..walks.scores import SKATING_FLOOR, Measure
+from .by_source import by_source
 from .windows import RecordedSize, held_out, recorded
 
 SECOND = 20  # frames
@@ -96,7 +97,8 @@ def measures_of(
     columns = {name: np.array([row[name] for row in rows]) for name in rows[0]}
 
     def one(name: str, column: str, value: Callable, some: Bool[np.ndarray, "N"]) -> Measure:
-        return by_source(name, value, columns[column][some], np.array(sources)[some])
+        unit = "cm" if name.endswith("_cm") else "share" if name.endswith("_share") else "ratio"
+        return by_source(name, unit, value, columns[column][some], np.array(sources)[some])
 
     every = np.ones(len(rows), bool)
     found = []
@@ -120,19 +122,6 @@ def measures_of(
 def high(values: Float[np.ndarray, "N"]) -> float:
     """The 90th percentile of the numbers among them."""
     return float(np.nanpercentile(values, 90)) if np.isfinite(values).any() else np.nan
-
-
-def by_source(
-    name: str, value: Callable, values: Float[np.ndarray, "N"], sources: np.ndarray
-) -> Measure:
-    """A measure whose interval is over files: all windows of a file are drawn together."""
-    unit = "cm" if name.endswith("_cm") else "share" if name.endswith("_share") else "ratio"
-    files = [values[sources == file] for file in sorted(set(sources))]
-    rows = np.empty(len(files), dtype=object)
-    rows[:] = files
-    if not len(rows):
-        return Measure(name, np.nan, np.nan, np.nan, unit)
-    return measure_of(name, unit, lambda drawn: value(np.concatenate(list(drawn))), rows)
 
 
 def inbetween_records(dancer: Dancer, weights: str, size: RecordedSize, command: str) -> list[dict]:

@@ -12,8 +12,12 @@ ROWS = {
     "continuation_adherence_mps": "error of the control, m/s",
     "continuation_floor_cm": "depth of the lowest joint under the floor, cm (95th percentile)",
 }
-
-
+PERSONS = {
+    "style_kept": "continuations whose style is nearer to their own past than to another's; chance"
+    " is a half",
+    "continuation_diversity_over_synthetic": "spread of five continuations, over that of synthetic"
+    " walks",
+}
 FILLED = {
     "over_interpolation": "error of the mean of ten, over interpolation's (median)",
     "walks_over_interpolation": "the same, walks alone",
@@ -71,7 +75,13 @@ def continued(records: dict[str, dict]) -> str:
         "pose and speed of the recording (`beyond/inertialize.py`), and a warning says so. A leg "
         "that must get from a kneeling pose to a walk slides on the way.\n\n"
     )
-    return text + measures(records, ROWS, "", STARTS)
+    persons = (
+        "\nStyle is trunk lean, step width, arm swing and cadence: of the past, and of the last two "
+        "seconds when all pasts are continued at the same speed (`metrics/gait_style.py`). One "
+        "window of each file.\n\n"
+    )
+    text += measures(records, ROWS, "", STARTS)
+    return text + persons + measures(records, PERSONS, "", {"as shipped": "real."})
 
 
 def measures(

@@ -1,0 +1,60 @@
+"""How does a person walk? Four numbers of style: trunk lean, step width, arm swing, cadence.
+
+They are compared between a past and its continuation, so each is in units of its spread over
+several pasts.
+Source: what differs most between recorded walkers at the same speed; the four numbers are ours.
+"""
+
+import numpy as np
+from jaxtyping import Float
+
+from ..motion.dance_frame import facing
+from ..motion.root_frame import FPS, forward_left
+from ..motion.skeleton import HEELS, HIPS, joint_index
+
+NECK, HANDS = joint_index("Neck1"), (joint_index("LeftHand"), joint_index("RightHand"))
+NAMES = ("trunk lean, radians", "step width, m", "arm swing, m", "steps a second")
+
+
+def gait_style(
+    positions: Float[np.ndarray, "T 21 3"], fps: float | int = FPS
+) -> Float[np.ndarray, "4"]:
+    """The four numbers of a motion (metres, world); NAMES says which.
+
+    Lean is positive forwards. Width is the mean distance of the ankles across the way that the
+    figure faces. Swing is the standard deviation of how far the left hand is ahead of the right
+    one. A step is where one ankle overtakes the other.
+    Raises ValueError for fewer than two frames.
+    """
+    if len(positions) < 2:
+        raise ValueError(f"a style needs two frames or more, not {len(positions)}")
+    ahead, aside = forward_left(facing(positions))
+
+    def along(way: Float[np.ndarray, "T 2"], start: int, end: int) -> Float[np.ndarray, "T"]:
+        return ((positions[:, end] - positions[:, start])[:, [0, 2]] * way).sum(-1)
+
+    upright = positions[:, NECK, 1] - positions[:, HIPS, 1]
+    lean = np.arctan2(along(ahead, HIPS, NECK), upright).mean()
+    width = np.abs(along(aside, *HEELS)).mean()
+    swing = along(ahead, *HANDS).std()
+    strides = along(ahead, *HEELS)
+    steps = (np.diff(np.sign(strides - strides.mean())) != 0).sum()
+    return np.array([lean, width, swing, steps * fps / (len(positions) - 1)])
+
+
+def style_kept(
+    pasts: Float[np.ndarray, "N 4"], made: Float[np.ndarray, "N 4"]
+) -> Float[np.ndarray, "N"]:
+    """For each continuation the share of other pasts whose style is farther away than its own's.
+
+    A half is chance, if all were continued under the same control. Equally far counts half.
+    Raises ValueError for fewer than two pasts.
+    """
+    if len(pasts) < 2:
+        raise ValueError("styles are compared between two pasts or more")
+    scale = np.maximum(pasts.std(0), 1e-9)
+    away = np.linalg.norm((made[:, None] - pasts[None]) / scale, axis=-1)  # (made, past)
+    own = np.diag(away)[:, None]
+    nearer = (away > own) + 0.5 * (away == own)
+    others = ~np.eye(len(pasts), dtype=bool)
+    return np.where(others, nearer, 0.0).sum(1) / (len(pasts) - 1)
