@@ -2,6 +2,7 @@
 
 import shutil
 import warnings
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -12,7 +13,8 @@ from motiondiff_edu.baselines.interpolation import linear
 from motiondiff_edu.conditions.control import constant_control
 from motiondiff_edu.editing.masks import keyframes
 from motiondiff_edu.motion.bvh.write import write_bvh
-from tools.results.recordings import continuations, inbetweens, page
+from motiondiff_edu.recipes.dancers import INBETWEENS
+from tools.results.recordings import continuations, inbetweens, page, persons, trainings
 from tools.results.recordings.by_source import by_source
 from tools.results.recordings.windows import (
     FULL,
@@ -64,17 +66,21 @@ def test_a_window_is_continued_as_walk_continues_it(walker, folder):
     assert row["depth"] == pytest.approx(100 * max(0.0, -wanted.positions[..., 1].min()), abs=0.01)
 
 
-def test_records_are_made_and_stand_in_the_page(walker, folder):
-    made = continuations.recorded_records(walker, "0", QUICK, "python -m x")
+def test_records_are_made_and_stand_in_the_page(walker, folder, monkeypatch):
+    monkeypatch.setattr(persons, "DRAWS", 2)
+    monkeypatch.setattr(persons, "STEPS", 2)
+    measured = walker, "0", QUICK, "python -m x"
+    made = [*continuations.recorded_records(*measured), *persons.person_records(*measured)]
     records = {one["name"]: one for one in made}
     assert records["real.blended_share"]["seeds"]["windows"] == 2
     assert 0 < records["real.seam_over_motion"]["value"] < 1.1
+    assert 0 <= records["real.style_kept"]["value"] <= 1
+    assert records["real.continuation_diversity_over_synthetic"]["value"] > 0.1
     text = page.section(records)
-    assert "2 windows of 2 recordings" in text and all(
-        words in text for words in page.ROWS.values()
-    )
+    assert "2 windows of 2 recordings" in text
+    assert all(words in text for words in (page.ROWS | page.PERSONS).values())
     empty = page.section({})
-    assert empty.startswith("## On recordings") and empty.count("not measured yet") == 2
+    assert empty.startswith("## On recordings") and empty.count("not measured yet") == 3
 
 
 @pytest.fixture(scope="module")
@@ -149,3 +155,39 @@ def test_without_recordings_it_says_what_to_set(monkeypatch, tmp_path):
     monkeypatch.setenv("MOTIONDIFF_REAL_DATA", str(tmp_path))
     with pytest.raises(SystemExit, match="MOTIONDIFF_REAL_DATA must name a folder"):
         list(continuations.windows(FULL, RANGE))
+
+
+def test_a_variant_is_trained_measured_and_stands_in_the_page(folder, tmp_path, monkeypatch):
+    monkeypatch.setattr(inbetweens, "STEPS", 2)
+    (folder / "cmu30").mkdir()
+    shutil.copy(folder / "bvh" / "walk0.bvh", folder / "cmu30" / "acrnn_x.bvh")
+    sizes = replace(INBETWEENS.config, S=20, widths=(16, 24), heads=2)
+    budget = replace(
+        trainings.QUICK, training=trainings.QUICK.training | {"config": sizes, "batch": 2}
+    )
+    made = []
+    for name in ("ours", "no-recordings"):
+        made += trainings.budget_records(name, budget, tmp_path / "runs", "python -m x")
+    records = {one["name"]: one for one in made}
+    ours = records["inbetween-budget.ours.inbetween_over_interpolation"]
+    assert ours["seeds"]["trainings"] == [0, 1] and len(set(ours["seeds"]["weights"])) == 2
+    assert ours["low"] <= ours["value"] <= ours["high"]
+    text = page.section(records)
+    assert "no recordings in training" in text and "other limbs" not in text
+    again = trainings.budget_records("ours", budget, tmp_path / "runs", "python -m x")
+    assert again == made[: len(again)], "a finished run is only read"
+
+
+def test_variants_differ_from_the_recipe_in_what_they_say():
+    ours = trainings.recipe_of("ours", 1, trainings.FULL)
+    assert (ours.seed, ours.steps) == (1, 3000)
+    changed = {
+        name: {
+            key
+            for key, value in vars(trainings.recipe_of(name, 1, trainings.FULL)).items()
+            if value != getattr(ours, key)
+        }
+        for name in trainings.VARIANTS
+    }
+    assert changed["no-recordings"] <= {"name", "recordings"}
+    assert changed["no-variations"] <= {"name", "variations", "levels", "paces"}

@@ -33,7 +33,7 @@ from .dances.timing import TIMED, time_records
 from .inbetweens import departures, inbetween, known_answer
 from .page.cards import add_metrics
 from .page.render import render
-from .recordings import continuations, persons
+from .recordings import continuations, persons, trainings
 from .recordings import inbetweens as recorded_inbetweens
 from .recordings import windows as recorded
 from .repairs import both, dropout, mend, repair
@@ -72,6 +72,7 @@ TRAINED = {
     "dance-budget": tuple(dance_budget.VARIANTS),
     "mend-map": tuple(dropout.RATES),
     "words-budget": tuple(word_budget.VARIANTS),
+    "inbetween-budget": tuple(trainings.VARIANTS),
 }
 # the recordings are not part of the project
 RECORDED = ("recordings", "recordings-inbetweens")
@@ -217,6 +218,10 @@ def records_of(
     if part == "words":
         studio = words.Studio(words.size_of(quick), bench.weights)
         return words.word_records(studio, command, words.on_all_cores)
+    if group == "inbetween-budget":
+        budget = trainings.QUICK if quick else trainings.FULL
+        runs = folder / "runs" if quick else RUNS / group
+        return trainings.budget_records(row, budget, runs, command)
     if group == "words-budget":
         size, runs = (
             (word_budget.QUICK, folder / "runs") if quick else (word_budget.FULL, RUNS / group)

@@ -17,7 +17,7 @@ GROUPS = {
     "Words": (("words.",), "words.action_accuracy"),
     "In-betweens": (("inbetween.",), "inbetween.gap30_error_over_interpolation"),
     "Continuations of recordings": (
-        ("real.seam", "real.continuation"),
+        ("real.seam", "real.continuation", "real.style"),
         "real.seam_p95_over_motion",
     ),
     "Speed, and sound in the player": (("bench.", "player."), "bench.sampler_over_diffusers"),

@@ -136,6 +136,12 @@ GOALS = {
     "real.continuation_floor_cm": (
         "the depth under the floor of continuations of recordings (95th percentile)"
     ),
+    "real.continuation_diversity_over_synthetic": (
+        "the spread of continuations of recordings, over that of synthetic walks"
+    ),
+    "real.style_kept": (
+        "the share of continuations whose style is nearer to their own past than to another's"
+    ),
 }
 
 # For columns and rows: the last part of a key.

@@ -126,20 +126,35 @@ def high(values: Float[np.ndarray, "N"]) -> float:
 
 def inbetween_records(dancer: Dancer, weights: str, size: RecordedSize, command: str) -> list[dict]:
     """The measures of in-betweens (`real.inbetween_*`), at other distances `real.gapN.`."""
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # notes on the files
-        windows = [(source, motion) for source, motion in recorded(held_out(), size)]
+    windows, walks = windows_and_walks(size)
     sources = [source for source, _ in windows]
-    walks = np.array([source.startswith(WALKS) for source in sources])
     seeds = {"windows": len(windows), "files": len(set(sources)), "sampling": 0, "steps": STEPS}
     seeds |= {"samples": size.samples, "weights": weights, "walks": int(walks.sum())}
     records = []
     for every in (SECOND, *OTHERS):
-        rows = []
-        for _, motion in windows:
-            known = keyframes(len(motion), every)
-            one = filled(dancer, motion, known, size.samples)
-            rows.append(row_of(one, motion.positions, known))
+        found = measures_of(rows_of(dancer, windows, every, size.samples), walks, sources)
         prefix = "real." if every == SECOND else f"real.gap{every}."
-        records += [m.as_record(prefix, seeds, command) for m in measures_of(rows, walks, sources)]
+        records += [one.as_record(prefix, seeds, command) for one in found]
     return records
+
+
+def windows_and_walks(
+    size: RecordedSize,
+) -> tuple[list[tuple[str, Motion]], Bool[np.ndarray, "N"]]:
+    """All windows of people whom no training has seen, by file, and which are walks."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # notes on the files
+        windows = list(recorded(held_out(), size))
+    return windows, np.array([source.startswith(WALKS) for source, _ in windows])
+
+
+def rows_of(
+    dancer: Dancer, windows: list[tuple[str, Motion]], every: int, samples: int
+) -> list[dict[str, float]]:
+    """What is measured of each window, with keyframes every so many frames."""
+    rows = []
+    for _, motion in windows:
+        known = keyframes(len(motion), every)
+        one = filled(dancer, motion, known, samples)
+        rows.append(row_of(one, motion.positions, known))
+    return rows

@@ -1,6 +1,7 @@
 """The section "On recordings" of docs/RESULTS.md."""
 
 from ..page.markdown import cell, number, table
+from .trainings import VARIANTS
 
 STARTS = {"as shipped": "real.", "without blending": "real.unblended."}  # beginnings of the names
 ROWS = {
@@ -42,7 +43,8 @@ SECONDS = {  # between keyframes: beginnings of the names
 
 def section(records: dict[str, dict]) -> str:
     """Continuations and in-betweens of recordings."""
-    return f"## On recordings\n\n{continued(records)}\n\n{filled_in(records)}"
+    parts = continued(records), filled_in(records), trainings_table(records)
+    return "## On recordings\n\n" + "\n\n".join(parts)
 
 
 def filled_in(records: dict[str, dict]) -> str:
@@ -61,6 +63,25 @@ def filled_in(records: dict[str, dict]) -> str:
     return text + measures(records, FILLED, "a keyframe every", SECONDS)
 
 
+def trainings_table(records: dict[str, dict]) -> str:
+    """What recordings and variations in training are worth: trainings of equal length."""
+    made = {
+        words: f"inbetween-budget.{name}.inbetween_"
+        for name, (words, _) in VARIANTS.items()
+        if f"inbetween-budget.{name}.inbetween_over_interpolation" in records
+    }
+    if not made:
+        return "Trainings with and without recordings are not measured yet.\n"
+    first = next(iter(made.values()))
+    seeds = records[f"{first}over_interpolation"]["seeds"]
+    text = (
+        f"With recordings in training and without: {len(seeds['trainings'])} trainings of "
+        f"{seeds['trained_steps']} steps each, a keyframe a second. The intervals hold those of "
+        "all trainings.\n\n"
+    )
+    return text + measures(records, FILLED, "", made)
+
+
 def continued(records: dict[str, dict]) -> str:
     """Continuations of recordings, as shipped and without blending."""
     share = records.get("real.blended_share")
@@ -76,8 +97,8 @@ def continued(records: dict[str, dict]) -> str:
         "that must get from a kneeling pose to a walk slides on the way.\n\n"
     )
     persons = (
-        "\nStyle is trunk lean, step width, arm swing and cadence: of the past, and of the last two "
-        "seconds when all pasts are continued at the same speed (`metrics/gait_style.py`). One "
+        "\nStyle is trunk lean, step width, arm swing and cadence (`metrics/gait_style.py`): of "
+        "the past, and of the last two seconds when all pasts are continued at the same speed. One "
         "window of each file.\n\n"
     )
     text += measures(records, ROWS, "", STARTS)

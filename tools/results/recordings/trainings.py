@@ -1,0 +1,86 @@
+"""What recordings, variations and lines are worth for in-betweens: trainings of equal length.
+
+Each row differs from the recipe `inbetweens` in one choice and is trained with three seeds, a third
+as long as the shipped network. All are judged on recordings of people whom none has seen, with a
+keyframe a second.
+"""
+
+from dataclasses import dataclass, field, replace
+from functools import partial
+from pathlib import Path
+
+from motiondiff_edu._files import digest_of_tensors
+from motiondiff_edu.performers.dancer import STEPS, Dancer
+from motiondiff_edu.recipes.dancers import INBETWEENS, KeyframeRecipe
+from motiondiff_edu.recipes.train_dancer import train_dancer
+
+from ..walks.scores import Measure
+from ..words.budget import over_trainings
+from .inbetweens import SECOND, measures_of, rows_of, windows_and_walks
+from .windows import RecordedSize
+
+# name: (what differs, in words, changes of the recipe)
+VARIANTS: dict[str, tuple[str, dict]] = {
+    "ours": ("the recipe", {}),
+    "no-recordings": ("no recordings in training", {"recordings": 0}),
+    "no-variations": (
+        "no other limbs, levels and paces",
+        {"variations": 0.0, "levels": 0.0, "paces": 0.0},
+    ),
+}
+
+
+@dataclass(frozen=True)
+class Budget:
+    """The seeds of the trainings, the amount of measurement, and changes of all recipes."""
+
+    seeds: tuple[int, ...] = (0, 1, 2)
+    size: RecordedSize = RecordedSize(each=2, samples=5)
+    training: dict = field(default_factory=lambda: {"steps": 3000})
+
+
+FULL = Budget()
+QUICK = Budget(
+    (0, 1),
+    RecordedSize(files=3, each=1, samples=2),
+    {"steps": 3, "motions": 2, "acts": 1, "recordings": 1, "seconds": 6.0, "save_every": 2},
+)
+
+
+def recipe_of(name: str, seed: int, budget: Budget) -> KeyframeRecipe:
+    """The training of one variant with one seed."""
+    settings = {"name": f"inbetween-budget.{name}", "seed": seed}
+    return replace(INBETWEENS, **settings, **budget.training | VARIANTS[name][1])
+
+
+def trained(name: str, seed: int, budget: Budget, runs: Path) -> Dancer:
+    """The network of a variant.
+
+    A run that was killed continues; one that is finished is only read.
+    """
+    runs.mkdir(parents=True, exist_ok=True)
+    run = runs / f"{name}-{seed}.safetensors"
+    return train_dancer(recipe_of(name, seed, budget), run, log=partial(print, flush=True))
+
+
+def budget_records(name: str, budget: Budget, runs: Path, command: str) -> list[dict]:
+    """Train (or continue) a variant with each seed, and measure it.
+
+    The values are means over trainings; the intervals hold those of all trainings.
+    """
+    found, weights = [], []
+    for seed in budget.seeds:
+        dancer = trained(name, seed, budget, runs)
+        weights.append(digest_of_tensors(dancer.model.state_dict())[:16])
+        found.append(measured(dancer, budget.size))
+    about = {"trainings": list(budget.seeds), "trained_steps": recipe_of(name, 0, budget).steps}
+    about |= {"samples": budget.size.samples, "steps": STEPS, "weights": weights}
+    measures = over_trainings(found)
+    return [one.as_record(f"inbetween-budget.{name}.", about, command) for one in measures]
+
+
+def measured(dancer: Dancer, size: RecordedSize) -> list[Measure]:
+    """The measures of one training."""
+    windows, walks = windows_and_walks(size)
+    rows = rows_of(dancer, windows, SECOND, size.samples)
+    return measures_of(rows, walks, [source for source, _ in windows])
