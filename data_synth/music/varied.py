@@ -19,7 +19,7 @@ from .composer import LONGEST, SHORTEST, SONGS_A_SEED
 from .feels import Feel, draw_feel, without_some
 from .form import LEAD, Form, draw_form, energies
 from .grooves import Hit, write_drums
-from .harmony import Note, draw_chords, write_bass, write_chords, write_melody
+from .harmony import Chord, Note, draw_chords, write_bass, write_chords, write_melody
 from .mixing import LEVELS, Played, drum_bus, duck, play, voice_bus
 from .pauses import (
     draw_pauses,
@@ -69,6 +69,8 @@ class Variety:
 
 
 VARIED = Variety()
+QUIETER = {"drums": 12.0, "bass": 10.0}  # dB below LEVELS, at most
+PULSE, ATTEMPTS = 0.7, 6  # parts with a lower pulse are drawn again, at most so often
 SHORT = 0.25  # seconds: a shorter span without a beat is no silence
 
 
@@ -186,15 +188,31 @@ def _notes(
 
     Also returns which notes are louder.
     """
-    progression, bass, chording, tune = (str(g) for g in rng.choice(list(GENRES), 4))
-    chords = draw_chords(form, progression, rng)
-    notes = write_bass(form, chords, bass, rng) + write_chords(form, chords, chording, rng)
-    notes += write_melody(form, chords, tune, rng)
-    notes = outside_silence(form, notes)
+    for own in rng.spawn(ATTEMPTS):
+        chords, notes = _parts(form, own)
+        if pulse(form, hits, notes) >= PULSE:
+            break
     more_hits, more_notes = pick_ups(form, chords, bool(hits), rng)
     emphasis = str(rng.choice(list(EMPHASES), p=[0.2, 0.4, 0.2, 0.2]))
     notes = accented([*notes, *more_notes], form.metre, emphasis, float(rng.uniform(0.1, 0.45)))
     return emphasis, sorted([*hits, *more_hits], key=lambda hit: hit.position), notes
+
+
+def _parts(form: Form, rng: np.random.Generator) -> tuple[list[Chord], list[Note]]:
+    """The chords of every bar, and the notes of bass, chords and tune."""
+    progression, bass, chording, tune = (str(g) for g in rng.choice(list(GENRES), 4))
+    chords = draw_chords(form, progression, rng)
+    notes = write_bass(form, chords, bass, rng) + write_chords(form, chords, chording, rng)
+    notes += write_melody(form, chords, tune, rng)
+    return chords, outside_silence(form, notes)
+
+
+def pulse(form: Form, hits: list[Hit], notes: list[Note]) -> float:
+    """The share of the beats, outside breaks and silences, in which a stroke or a note begins."""
+    plays = np.repeat([bar.section not in ("break", "silence") for bar in form.bars], form.metre)
+    onsets = np.floor([x.position + 1e-6 for x in (*hits, *notes)]).astype(int)
+    begins = np.isin(np.arange(len(plays)), onsets)
+    return float(begins[plays].mean())
 
 
 EMPHASES = {  # which notes are louder, by their place in the bar (beats)
@@ -234,7 +252,7 @@ def mixed(
     gain = duck(played, length, rng.uniform(0.3, 0.7) if ducked else 0.0, rng.uniform(0.06, 0.16))
     y = np.zeros(length)
     for part, together in buses.items():
-        quiet = rng.uniform(0, 12) if part == "drums" else 0.0
+        quiet = rng.uniform(0, QUIETER.get(part, 0.0))
         for bus in together:
             level = np.sqrt(np.mean(bus**2))
             decibel = LEVELS[part] + rng.normal(0, 3.0) - quiet

@@ -31,7 +31,7 @@ from data_synth.music.tempi import (
     slowed,
     wander,
 )
-from data_synth.music.varied import Variety, accented, varied_song, varied_songs
+from data_synth.music.varied import Variety, accented, pulse, varied_song, varied_songs
 from data_synth.music.voices import VOICES, Voice, note
 
 SECONDS = 12.0
@@ -305,6 +305,14 @@ def test_accents_by_hand():
     }
     assert accented(notes, 4, "bars", 0.2)[0].velocity == pytest.approx(0.6)
     assert accented([], 4, "bars", 0.2) == []
+
+
+def test_the_pulse_by_hand(form):
+    resting = silenced(form, {0, 1, 2, 3})  # beats 16 to 23 have music
+    hits = [Hit("kick", 16.0, 0.5), Hit("kick", 16.5, 0.5), Hit("kick", 3.0, 0.5)]
+    notes = [Note("bass", 19.75, 0.5, 40, 0.5)]
+    assert pulse(resting, hits, notes) == pytest.approx(2 / 8)
+    assert pulse(resting, [], []) == 0.0
 
 
 # ---- bands
