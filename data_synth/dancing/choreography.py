@@ -40,6 +40,7 @@ def slots(song: Song, rng: np.random.Generator) -> list[tuple[int, int]]:
     """
     calm, silent = song.energy < CALM, song.energy == SILENT
     edges = np.flatnonzero(np.diff(song.phrase) | np.diff(calm) | np.diff(silent)) + 1
+    waits = set((np.flatnonzero(np.diff(silent)) + 1).tolist())  # a silence is a piece of its own
     cuts = []
     for first, last in zip([0, *edges], [*edges, len(song.beats)], strict=True):
         at = int(first)
@@ -54,7 +55,8 @@ def slots(song: Song, rng: np.random.Generator) -> list[tuple[int, int]]:
             length = min(bars * song.metre + pick_up, int(last) - at)
             if int(last) - at - length < 4:
                 length = int(last) - at
-            if cuts and min(length, cuts[-1][1]) < 3:  # a pick-up, or the rest of the last bar
+            short = cuts and min(length, cuts[-1][1]) < 3  # a pick-up, or the rest of the last bar
+            if short and at not in waits:
                 cuts[-1] = (cuts[-1][0], cuts[-1][1] + length)
             else:
                 cuts.append((at, length))
