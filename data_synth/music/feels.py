@@ -118,9 +118,10 @@ FEELS = {
         "hat": ("o... o... o... o... o...", "..o. ..o. ..o. ..o. ..o."),
         "shaker": ("g.o. g.o. g.o. g.o. g.o.",),
     }), (0.5, 0.6)),
+    # its kick stays on the beat: otherwise nobody could say which is the beat
     "off-beats": Feel(_groove({
         "kick": ("X... .... X... .... ....", "X... x... X... x... x...",
-                 "..x. .... ..x. .... ...."),
+                 "X... .... X..x .... ...."),
         "snare": ("..x. ..x. ..x. ..x. ..x.", ".... ..X. .... ..X. ....",
                   "..X. .... ..X. .... ..X."),
         "hat": ("..X. ..X. ..X. ..X. ..X.", "..x. ..x. ..x. ..x. ..x."),
