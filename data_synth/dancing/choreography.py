@@ -12,6 +12,7 @@ from ..walking.footsteps import TOE_AHEAD
 from .moves import MANNERS, Manner
 from .script import REST, Script
 from .sheet import Counts, Sheet
+from .waiting import SILENT, wait
 
 CALM = 0.25  # energy below this is a break
 ROOM = 1.6  # metres from the start, beyond which the dancer comes back
@@ -37,7 +38,9 @@ def slots(song: Song, rng: np.random.Generator) -> list[tuple[int, int]]:
 
     Phrases and breaks are cut into whole bars, 4 to 8 beats where the metre allows it.
     """
-    edges = np.flatnonzero(np.diff(song.phrase) | np.diff(song.energy < CALM)) + 1
+    calm, silent = song.energy < CALM, song.energy == SILENT
+    edges = np.flatnonzero(np.diff(song.phrase) | np.diff(calm) | np.diff(silent)) + 1
+    waits = set((np.flatnonzero(np.diff(silent)) + 1).tolist())  # a silence is a piece of its own
     cuts = []
     for first, last in zip([0, *edges], [*edges, len(song.beats)], strict=True):
         at = int(first)
@@ -52,7 +55,8 @@ def slots(song: Song, rng: np.random.Generator) -> list[tuple[int, int]]:
             length = min(bars * song.metre + pick_up, int(last) - at)
             if int(last) - at - length < 4:
                 length = int(last) - at
-            if cuts and min(length, cuts[-1][1]) < 3:  # a pick-up, or the rest of the last bar
+            short = cuts and min(length, cuts[-1][1]) < 3  # a pick-up, or the rest of the last bar
+            if short and at not in waits:
                 cuts[-1] = (cuts[-1][0], cuts[-1][1] + length)
             else:
                 cuts.append((at, length))
@@ -109,18 +113,20 @@ def choreograph(
         )
         _gather(sheet, script)
         sheet.drift = _drift(script, count, rng)
-        next(f for f in (*manner.moves, *manner.calm) if f.__name__ == move.name)(sheet)
+        next(f for f in (*manner.moves, *manner.calm, wait) if f.__name__ == move.name)(sheet)
         sheet.close()
     _end(script, rest, len(song.beats))
     return script, moves
 
 
 def _draw(song, manner: Manner, start, length, moves, taste, rng) -> Move:
-    """The next move: the last one mirrored, or a new one.
+    """The next move: the last one mirrored, or a new one; in silence the dancer waits.
 
     It is small in breaks, and large where energy is high.
     """
     energy = float(song.energy[start : start + length].mean())
+    if energy == SILENT:
+        return Move(start, length, wait.__name__, False, 1.0, 1.0)
     calm = energy < CALM
     tempo = np.clip((60.0 / song.tempo / 0.5) ** 0.55, 0.78, 1.25)
     size = float(np.clip((0.84 + 0.50 * energy) * tempo * rng.normal(1, 0.08), 0.5, 1.4))

@@ -7,7 +7,7 @@ A dance has phrases of moves from the genre's vocabulary, on the beat, with feet
 A dance depends on the song's score and a seed: two seeds give two dances to one song.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -25,6 +25,7 @@ from .curves import curve, felt_beats, springy, within_reach
 from .moves import MANNERS, Manner
 from .script import ARM, LENGTHS, REST, STANCE, Script
 from .steps import Track, track
+from .waiting import counted_on
 
 DANCES_A_SEED = 100_000
 DAMPING, ARMS_LEAD = (
@@ -60,7 +61,8 @@ class Dance:
 def dance(song: Song, seed: int, only: str | None = None) -> Dance:
     """A dance to the song's score, 20 frames/s, from (0, 0) facing z.
 
-    With `only` it consists of that one move.
+    With `only` it consists of that one move. In a silence of the song the dancer waits, and counts
+    on: those beats are numbered, too.
 
     Raises ValueError when the song has fewer than two beats, its genre has no such moves, or the
     seed is negative.
@@ -74,6 +76,7 @@ def dance(song: Song, seed: int, only: str | None = None) -> Dance:
         )
     if seed < 0:
         raise ValueError(f"a seed is a whole number from 0 on, got {seed}")
+    song = counted_on(song)
     script, moves = choreograph(song, np.random.default_rng([seed, song.seed, 31]), only)
     positions, contacts = perform(script, song, seed)
     names = [(m.start, m.name, m.mirrored) for m in moves]
@@ -95,8 +98,11 @@ def dances(
         raise ValueError(
             f"one dance to a song or more, {DANCES_A_SEED} in all; got {n} songs with {each} each"
         )
-    made = songs(n, seed, seconds, genre=genre)
-    first = seed * DANCES_A_SEED
+    return dances_to(songs(n, seed, seconds, genre=genre), seed * DANCES_A_SEED, each)
+
+
+def dances_to(made: Iterable[Song], first: int, each: int = 1) -> Iterator[tuple[Song, Dance]]:
+    """Dances to given songs, `each` to every one; their seeds count from `first`."""
     return (
         (song, dance(song, first + each * k + j))
         for k, song in enumerate(made)
@@ -195,4 +201,4 @@ def _foot(script: Script, foot: int, start: Toe, t, seconds, number, channels, r
     return track(steps, start, flat, t, heel)
 
 
-__all__ = ["Dance", "GENRES", "dance", "dances", "perform", "performed"]
+__all__ = ["Dance", "GENRES", "dance", "dances", "dances_to", "perform", "performed"]

@@ -11,7 +11,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from .form import GROUPS, draw_form, energies
-from .grooves import write_drums
+from .grooves import groove_of, write_drums
 from .harmony import draw_chords, write_bass, write_chords, write_melody
 from .mixing import Played, mix, play
 from .song import DRUMS, GENRES, SAMPLE_RATE, TIMBRES, TRAINING_TIMBRES, Song
@@ -73,7 +73,7 @@ def compose(
     forming, drums, harmony, bass, keys, tune, player, studio, strength = rng.spawn(9)
     form = draw_form(forming, seconds, tempo, metre, _swing(genre, rng))
     chords = draw_chords(form, genre, harmony)
-    played = play(form, write_drums(form, genre, drums), player)
+    played = play(form, write_drums(form, groove_of(genre), drums), player)
     notes = write_bass(form, chords, genre, bass) + write_chords(form, chords, genre, keys)
     notes += write_melody(form, chords, genre, tune)
     audio = mix(form, played, notes, genre, timbre, seconds, studio)

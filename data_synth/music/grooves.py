@@ -112,7 +112,28 @@ OWN = {  # genres with another probability
     "latin": {"rim": 0.8, "shaker": 0.8, "hat": 0.4, "snare": 0.6, "clap": 0.6, "tom": 0.4},
     "waltz": {"hat": 1.0},
 }
+ONE_BACKBEAT = ("hiphop", "pop", "waltz")  # their claps fall on the snare's strokes
 FILLS = ("xxxx", "x.xx", "xx.x", "..xx", "x.x.", ".xxx")
+
+
+@dataclass(frozen=True)
+class Groove:
+    """What drummers play in a kind of music.
+
+    patterns      of each drum; a part draws one of them
+    plays         the probability that a part has the drum
+    one_backbeat  claps fall on the snare's strokes
+    """
+
+    patterns: dict[str, tuple[str, ...]]
+    plays: dict[str, float]
+    one_backbeat: bool = False
+
+
+def groove_of(genre: str) -> Groove:
+    """The groove of a genre."""
+    usual = {drum: share for drum, (share, _) in PLAYS.items()}
+    return Groove(GROOVES[genre], usual | OWN[genre], genre in ONE_BACKBEAT)
 
 
 @dataclass(frozen=True)
@@ -145,11 +166,11 @@ def marks(bar: list[str]) -> list[tuple[float, str]]:
 
 
 def draw_part(
-    genre: str, groups: tuple[int, ...], rng: np.random.Generator
+    groove: Groove, groups: tuple[int, ...], rng: np.random.Generator
 ) -> dict[str, tuple[list, list]]:
     """The marks of each drum's bar, and of the varied bar at a phrase's end."""
     part = {}
-    for drum, patterns in GROOVES[genre].items():
+    for drum, patterns in groove.patterns.items():
         first, answer = rng.choice(len(patterns)), rng.random(2)
         bar = marks(cells(patterns[first], groups))
         other = (
@@ -168,10 +189,10 @@ def draw_part(
                     "g" if drum == "snare" else "x",
                 )
             )
-        if rng.random() < OWN[genre].get(drum, PLAYS[drum][0]):
+        if rng.random() < groove.plays[drum]:
             part[drum] = (bar, other)
     if (
-        "clap" in part and "snare" in part and genre in ("hiphop", "pop", "waltz")
+        "clap" in part and "snare" in part and groove.one_backbeat
     ):  # all of them have the backbeat at the same place
         part["clap"] = tuple(
             [(at, "x") for at, mark in bar if mark in "Xx"] for bar in part["snare"]
@@ -202,9 +223,9 @@ def fill(bar: Bar, metre: int, rng: np.random.Generator) -> list[Hit]:
     return hits
 
 
-def write_drums(form: Form, genre: str, rng: np.random.Generator) -> list[Hit]:
+def write_drums(form: Form, groove: Groove, rng: np.random.Generator) -> list[Hit]:
     """All strokes of the song, without the player's unevenness; breaks are almost empty."""
-    parts = {name: draw_part(genre, form.groups, rng) for name in ("verse", "chorus")}
+    parts = {name: draw_part(groove, form.groups, rng) for name in ("verse", "chorus")}
     kept = ("kick", "snare") if rng.random() < 0.6 else ()
     # the chorus has all drums of the verse and more; often kick and snare play the same as there
     parts["chorus"] |= {

@@ -181,14 +181,14 @@ def _envelope(t: np.ndarray, decay: float, attack: float, bursts: int = 1) -> np
     return env
 
 
-def own_kit(timbre: str, rng: np.random.Generator) -> dict[str, Strike]:
+def own_kit(kit: dict[str, Strike], rng: np.random.Generator) -> dict[str, Strike]:
     """One player's kit: tuned, damped and balanced a little differently each time."""
-    kit = {}
-    for name, strike in KITS[timbre].items():
+    own = {}
+    for name, strike in kit.items():
         pitch, ring, loud = np.exp(rng.normal(0, (0.09, 0.2, 0.25)))
         if name in ("hat", "open hat", "shaker"):
             loud *= np.exp(rng.normal(-0.15, 0.35))
-        kit[name] = replace(
+        own[name] = replace(
             strike,
             level=strike.level * loud,
             start=strike.start * pitch,
@@ -196,7 +196,7 @@ def own_kit(timbre: str, rng: np.random.Generator) -> dict[str, Strike]:
             decay=strike.decay * ring,
             fade=strike.fade * ring,
         )
-    return kit
+    return own
 
 
 def sound(strike: Strike, rng: np.random.Generator, pitch: float = 1.0) -> Float[np.ndarray, "n"]:

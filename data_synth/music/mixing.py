@@ -13,9 +13,9 @@ from scipy.signal import butter, fftconvolve, lfilter, sosfilt
 from .form import LEAD, Form
 from .grooves import Hit
 from .harmony import Note
-from .kits import TOM_PITCH, own_kit, softer, sound
+from .kits import KITS, TOM_PITCH, Strike, own_kit, softer, sound
 from .song import DRUMS, SAMPLE_RATE
-from .voices import VOICES, note
+from .voices import VOICES, Voice, note
 
 SOFTNESSES = 6  # strengths at which a drum is rendered; in between only its loudness differs
 LEVELS = {
@@ -60,10 +60,9 @@ def _add(out: np.ndarray, second: float, y: np.ndarray, gain: float) -> None:
 
 
 def drum_bus(
-    played: Played, timbre: str, length: int, rng: np.random.Generator
+    played: Played, kit: dict[str, Strike], length: int, rng: np.random.Generator
 ) -> Float[np.ndarray, "N"]:
     """All strokes; each drum has three sounds, so that no two in a row are the same."""
-    kit = own_kit(timbre, rng)
     ready = {}
     out = np.zeros(length)
     sources = dict(
@@ -84,11 +83,9 @@ def drum_bus(
 
 
 def voice_bus(
-    form: Form, notes: Sequence[Note], kind: str, timbre: str, length: int, rng: np.random.Generator
+    form: Form, notes: Sequence[Note], voice: Voice, length: int, rng: np.random.Generator
 ) -> Float[np.ndarray, "N"]:
     """All notes of one voice."""
-    choices = VOICES[timbre][kind]
-    voice = choices[int(rng.integers(len(choices)))]
     ready = {}
     out = np.zeros(length)
     if not notes:
@@ -101,7 +98,7 @@ def voice_bus(
             key = (n.pitch, round((last - first) * 50))
             if key not in ready:
                 ready[key] = note(voice, n.pitch, max(key[1], 1) / 50)
-            _add(out, first + late, ready[key], n.velocity)
+            _add(out, first + late - voice.early, ready[key], n.velocity)
     return out
 
 
@@ -156,11 +153,11 @@ def mix(
     strokes, voices, space, noise = rng.spawn(4)
     length = round((LEAD + seconds) * SAMPLE_RATE)
     n = round(seconds * SAMPLE_RATE)
-    buses = {"drums": drum_bus(played, timbre, length, strokes)}
-    for kind in ("bass", "chords", "lead"):
-        buses[kind] = voice_bus(
-            form, [x for x in notes if x.voice == kind], kind, timbre, length, voices
-        )
+    buses = {"drums": drum_bus(played, own_kit(KITS[timbre], strokes), length, strokes)}
+    for kind, choices in VOICES[timbre].items():
+        voice = choices[int(voices.integers(len(choices)))]
+        own = [x for x in notes if x.voice == kind]
+        buses[kind] = voice_bus(form, own, voice, length, voices)
     balance = dict(zip(buses, rng.normal(0, (2.0, 2.0, 3.0, 3.0)), strict=True))
     ducked = rng.random() < (0.8 if genre == "house" else 0.2)
     gain = duck(played, length, rng.uniform(0.3, 0.75) if ducked else 0.0, rng.uniform(0.06, 0.16))

@@ -18,7 +18,9 @@ TABLE = 2048  # samples of one cycle
 class Voice:
     """A wave's partials, and its beginning and end; times are in seconds.
 
-    `decay` is to 1/e; `sustain` the share that stays.
+    `decay` is to 1/e; `sustain` the share that stays. `bloom` is how much later the partials from
+    the third on come, as in brass. `early` is how far ahead of the beat a player begins, because
+    the sound rises slowly.
     """
 
     roll: float  # partial k has amplitude k ** -roll
@@ -31,6 +33,9 @@ class Voice:
     detune: float = 0.0  # cents between two strings
     vibrato: float = 0.0  # cents
     partials: tuple[float, ...] = ()  # amplitudes one by one, instead of roll and odd
+    bloom: float = 0.0
+    breath: float = 0.0  # noise of breath or bow, as a share of the tone
+    early: float = 0.0
 
 
 ORGAN = (1, 0.8, 0.5, 0.6, 0, 0.25, 0, 0.3)
@@ -76,7 +81,7 @@ VOICES = {
 }
 
 
-@lru_cache(maxsize=4096)
+@lru_cache(maxsize=1024)
 def _cycle(voice: Voice, highest: int) -> tuple[np.ndarray, np.ndarray]:
     """One cycle with partials up to `highest` only, so that there is no aliasing.
 
@@ -107,11 +112,15 @@ def note(voice: Voice, pitch: int, seconds: float) -> Float[np.ndarray, "n"]:
         depth = hertz * voice.vibrato * np.log(2) / 1200 * np.clip((t - 0.15) / 0.3, 0, 1)
         cycles = cycles + depth * np.sin(2 * np.pi * 5.3 * t) / (2 * np.pi * 5.3)
     glow = np.exp(-t / voice.bright)
+    if voice.bloom:
+        glow *= 1 - np.exp(-t / voice.bloom)
     ratios = (1.0,) if not voice.detune else 2.0 ** (np.array([-0.5, 0.5]) * voice.detune / 1200)
     y = np.zeros_like(t)
     for ratio in ratios:
         at = (ratio * TABLE * cycles).astype(np.int64) & (TABLE - 1)
         y += dark[at] + glow * bright[at]
+    if voice.breath:
+        y += voice.breath * len(ratios) * np.random.default_rng(pitch).standard_normal(len(t))
     shape = voice.sustain + (1 - voice.sustain) * np.exp(-t / voice.decay)
     shape = (
         shape
