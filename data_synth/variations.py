@@ -40,15 +40,16 @@ def limbs_turned(
 
 def with_upper_body_of(
     legs: Float[np.ndarray, "T 21 3"], upper: Float[np.ndarray, "U 21 3"]
-) -> Float[np.ndarray, "F 21 3"]:
-    """Pelvis and legs of one motion, trunk, arms and head of another; as long as the shorter one.
+) -> Float[np.ndarray, "T 21 3"]:
+    """Pelvis and legs of one motion, trunk, arms and head of another.
 
-    Both face the way that the legs go.
+    Both face the way that the legs go. A shorter upper body goes there and back.
     """
-    length = min(len(legs), len(upper))
-    place = place_of(legs[:length])
-    moved = place.enter(legs[:length, None])[:, 0]
-    other = place_of(upper[:length]).enter(upper[:length, None])[:, 0]
+    more = max(0, len(legs) - len(upper))
+    upper = np.pad(upper, ((0, more), (0, 0), (0, 0)), mode="reflect")[: len(legs)]
+    place = place_of(legs)
+    moved = place.enter(legs[:, None])[:, 0]
+    other = place_of(upper).enter(upper[:, None])[:, 0]
     moved[:, UPPER] = moved[:, HIPS, None] + other[:, UPPER] - other[:, HIPS, None]
     return place.leave(moved[:, None])[:, 0]
 

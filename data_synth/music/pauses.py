@@ -13,7 +13,7 @@ from .form import Bar, Form
 from .grooves import Hit
 from .harmony import Chord, Note
 
-LONGEST = 4.5  # seconds of silence, but for a pause of one slow bar
+LONGEST = 4.5  # seconds of silence before it is stretched, but for a pause of one slow bar
 PICK_UP = 0.4  # probability that a pick-up leads out of a silence
 
 
@@ -49,7 +49,7 @@ def draw_pauses(form: Form, seconds: float, chance: float, rng: np.random.Genera
 
 
 def stretched(form: Form, factor: float) -> np.ndarray:
-    """Lengths of all beats: `factor` in silent bars, 1 elsewhere and on a pick-up's beat.
+    """Lengths of all beats: `factor` in silent bars, 1 elsewhere and on the last beat of each.
 
     So a pause lasts any time, not only whole bars.
     """

@@ -1,7 +1,8 @@
 """Tempi of varied songs, and how they change within a song.
 
 Tempi from 60 to 180 beats a minute are used for training. Two ranges are kept out, so that a
-network can be judged at tempi that it never heard.
+network can be judged at tempi that it never heard, but for the bars of a ritardando that passes
+through them.
 """
 
 import numpy as np

@@ -2,11 +2,13 @@
 
     remainder = (x0 - lines) / scale      x0_hat = lines + scale * net(remainder_s, s, shown)
 Lines go straight from each given entry to the next. `scale` is how far a motion usually is from
-them there: nothing at a given entry, a standard deviation far from all. So the noise is as large
-as what is to be generated, near a keyframe and far from one; and the result goes through the given
-entries without a jump. On poses unlike its training such a network adds little, and the result
-stays near the lines; a network that must generate the poses themselves jumps there. If nothing is
-given, the lines are 0 and the scale is 1: the same network samples whole motions.
+them there: nothing at a given entry, a standard deviation far from all. So the noise is about as
+large as what is to be generated, near a keyframe and far from one; and the result goes through the
+given entries without a jump. (The pelvis' path has no such bound: seconds after the last given
+frame it is many units away from its line.) On poses unlike its training such a network adds
+little, and the result stays near the lines; a network that must generate the poses themselves
+jumps there. If nothing is given, the lines are 0 and the scale is 1: the same network samples whole
+motions.
 Gain: not measured yet; it will be `real.inbetween_over_interpolation.*` in docs/RESULTS.md. No
 shipped network sees the lines.
 Source: masks in training after CondMDI (Cohan and others, 2024); lines and scale are ours.

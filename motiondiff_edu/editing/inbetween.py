@@ -44,8 +44,9 @@ class Departures:
     the ends of a gap.
     `bones`: generated bones get the lengths of the given ones (`beyond.constant_bones`).
     `feet`: planted feet do not slide (`beyond.foot_lock`).
-    `clearance`: planted feet lie on the floor, or at the height of the lowest given joint, if that
-    is lower; others are higher (`beyond.step_clearance`, `beyond.above_floor`).
+    `clearance`: planted feet lie on the floor, y = 0, and swinging ones are higher
+    (`beyond.step_clearance`); none is lower than the floor and all given joints
+    (`beyond.above_floor`).
     `resample`: how often each step is made (`inbetweening.resampled`).
     """
 
@@ -132,10 +133,10 @@ def cleared(
     given: Float[np.ndarray, "T 21 3"],
     known: Bool[np.ndarray, "T 21"],
 ) -> Float[np.ndarray, "samples T 21 3"]:
-    """Feet on the floor and over it; the floor is y = 0, or the lowest given joint."""
-    floor = min(0.0, given[known][:, 1].min())
-    steps = [clear_steps(one, known, floor) for one in made]
-    return np.stack([feet_above_floor(one, known, floor) for one in steps])
+    """Feet on the floor, y = 0, and over it; a given joint under it lowers the limit alone."""
+    lowest = min(0.0, given[known][:, 1].min())
+    steps = [clear_steps(one, known) for one in made]
+    return np.stack([feet_above_floor(one, known, lowest) for one in steps])
 
 
 def steered(

@@ -5,7 +5,7 @@ keyframes that are close together, or sinks into the floor. And a walk can lose 
 figure glides, standing, from keyframe to keyframe.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -80,14 +80,14 @@ def until_plausible(
         return made, f"{fault.words}. {STILL}"
     if fault.words:
         return made, (
-            f"{fault.words}, and {DRAWS - 1} more draws were no better. Give a keyframe there, or "
+            f"{fault.words}, and no other of {DRAWS} draws was better. Give a keyframe there, or "
             f"try another seed"
         )
     return made, f"{first.words}. {AGAIN}" if first.wild else ""
 
 
 def each_until_plausible(
-    samples: Float[np.ndarray, "S T 21 3"],
+    samples: Iterable[Float[np.ndarray, "T 21 3"]],
     draws: Sequence[torch.Generator],
     given: Float[np.ndarray, "T 21 3"],
     known: Bool[np.ndarray, "T 21"],

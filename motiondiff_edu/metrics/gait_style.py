@@ -5,6 +5,8 @@ several pasts.
 Source: what differs most between recorded walkers at the same speed; the four numbers are ours.
 """
 
+from collections.abc import Sequence
+
 import numpy as np
 from jaxtyping import Float
 
@@ -13,6 +15,7 @@ from ..motion.root_frame import FPS, forward_left
 from ..motion.skeleton import HEELS, HIPS, joint_index
 
 NECK, HANDS = joint_index("Neck1"), (joint_index("LeftHand"), joint_index("RightHand"))
+MOVED = 0.03  # m
 NAMES = ("trunk lean, radians", "step width, m", "arm swing, m", "steps a second")
 
 
@@ -23,7 +26,8 @@ def gait_style(
 
     Lean is positive forwards. Width is the mean distance of the ankles across the way that the
     figure faces. Swing is the standard deviation of how far the left hand is ahead of the right
-    one. A step is where one ankle overtakes the other.
+    one. A step is where the distance of the ankles along the way goes from MOVED over its mean to
+    MOVED under it, or back; a figure that stands takes none.
     Raises ValueError for fewer than two frames.
     """
     if len(positions) < 2:
@@ -38,23 +42,28 @@ def gait_style(
     width = np.abs(along(aside, *HEELS)).mean()
     swing = along(ahead, *HANDS).std()
     strides = along(ahead, *HEELS)
-    steps = (np.diff(np.sign(strides - strides.mean())) != 0).sum()
+    away = strides - strides.mean()
+    sides = np.sign(away[np.abs(away) > MOVED])
+    steps = (np.diff(sides) != 0).sum()
     return np.array([lean, width, swing, steps * fps / (len(positions) - 1)])
 
 
 def style_kept(
-    pasts: Float[np.ndarray, "N 4"], made: Float[np.ndarray, "N 4"]
+    pasts: Float[np.ndarray, "N 4"],
+    made: Float[np.ndarray, "N 4"],
+    persons: Sequence[str],
 ) -> Float[np.ndarray, "N"]:
-    """For each continuation the share of other pasts whose style is farther away than its own's.
+    """For each continuation the share of other persons' pasts that are farther away than its own.
 
     A half is chance, if all were continued under the same control. Equally far counts half.
-    Raises ValueError for fewer than two pasts.
+    Raises ValueError for fewer than two persons.
     """
-    if len(pasts) < 2:
-        raise ValueError("styles are compared between two pasts or more")
+    names = np.array(list(persons))
+    if len(set(persons)) < 2:
+        raise ValueError("styles are compared between two persons or more")
     scale = np.maximum(pasts.std(0), 1e-9)
     away = np.linalg.norm((made[:, None] - pasts[None]) / scale, axis=-1)  # (made, past)
     own = np.diag(away)[:, None]
     nearer = (away > own) + 0.5 * (away == own)
-    others = ~np.eye(len(pasts), dtype=bool)
-    return np.where(others, nearer, 0.0).sum(1) / (len(pasts) - 1)
+    others = names[:, None] != names
+    return np.where(others, nearer, 0.0).sum(1) / others.sum(1)

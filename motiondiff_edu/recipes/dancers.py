@@ -65,7 +65,7 @@ class KeyframeRecipe(DanceRecipe):
     """A training run of a network that sees what is given of a motion (`KeyframeMoFusion`)."""
 
     acts: int = 0  # so many performed sentences beside the walks and dances
-    recordings: int = 0  # so many versions of each training recording, each at another pace
+    recordings: int = 0  # so many versions of each training recording; all but one at other paces
     levels: float = 0.0  # share of the synthetic motions that are performed lower and leaning
     paces: float = 0.0  # share of the synthetic motions whose pace changes, with pauses
     variations: float = 0.0  # shares of all motions with limbs turned, and with another upper body
@@ -90,14 +90,17 @@ UNCONDITIONAL = replace(
 INBETWEENS = KeyframeRecipe(
     "inbetweens",
     KeyframeConfig(),
-    steps=8000,
+    steps=9000,
     kinematic=KINEMATIC,
     loss_weights=OURS,
-    snr=0.1,
+    snr=0.3,
     songs=0,
-    motions=3000,
-    acts=1500,
+    motions=1500,
+    acts=1000,
+    recordings=40,
     levels=0.3,
+    paces=0.5,
+    variations=0.3,
     sizes=0.1,
 )
 

@@ -1,13 +1,15 @@
 """Recordings that networks are trained on, and the split by person.
 
 The training files are those of one collection, whose dancers and fighters are not named: all of it
-is on this side, also the one trial that stands in another folder. Everybody else is kept for
-judging (`tools/results/recordings`).
+is on this side, also the one trial that stands in another folder, and so would be the subjects of
+CMU's list who dance salsa and Indian dances or do martial arts. Everybody else is kept for judging
+(`tools/results/recordings`).
 Data: the CMU Graphics Lab Motion Capture Database, mocap.cs.cmu.edu, created with funding from NSF
 EIA-0196217.
 """
 
 import os
+import re
 import warnings
 from collections.abc import Sequence
 from pathlib import Path
@@ -23,6 +25,9 @@ from ..motion.skeleton import TOES
 VARIABLE = "MOTIONDIFF_REAL_DATA"  # names the folder with the recordings
 FOLDERS = ("bvh", "cmu30")
 TRAINED = ("acrnn_", "cmu_acrnn_")  # how the training files' names begin
+# of CMU's list: who may be in that collection
+SUBJECTS = {60, 61, 93, 94, 135}
+SUBJECT = re.compile(r"cmu_(?:max_)?0*(\d+)_")
 CREDIT = (
     "The data used in this project was obtained from mocap.cs.cmu.edu. The database was created "
     "with funding from NSF EIA-0196217."
@@ -64,4 +69,5 @@ def training_files(files: Sequence[Path]) -> list[Path]:
 
 def is_training(name: str) -> bool:
     """Whether a file of this name is of the persons that networks are trained on."""
-    return name.startswith(TRAINED)
+    subject = SUBJECT.match(name)
+    return name.startswith(TRAINED) or bool(subject and int(subject[1]) in SUBJECTS)

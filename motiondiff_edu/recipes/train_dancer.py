@@ -28,7 +28,7 @@ from ..training import LossFn
 from .dancers import DanceRecipe, KeyframeRecipe
 from .keyframe_loss import keyframe_loss_of
 from .mofusion_loss import batch_loss, weighted_loss
-from .recordings import Recorded, training_recordings
+from .recordings import CREDIT, Recorded, training_recordings
 from .train_recipe import Provenance, train_recipe
 
 
@@ -39,7 +39,7 @@ def training_windows(recipe: DanceRecipe) -> DanceWindows:
     """
     length = (recipe.data_seed, recipe.seconds, recipe.frames)
     if isinstance(recipe, KeyframeRecipe):
-        return with_path_scale(_keyframe_windows(recipe), recipe.path_scale)
+        return with_path_scale(_keyframe_windows(data_of(recipe)), recipe.path_scale)
     if recipe.motions:
         return _motion_windows(recipe.motions, *length)
     return _song_windows(
@@ -72,6 +72,15 @@ def _motion_windows(count: int, seed: int, seconds: float, frames: int) -> Dance
     return DanceWindows.of(positions, contacts, None, frames)
 
 
+def data_of(recipe: KeyframeRecipe) -> KeyframeRecipe:
+    """The recipe without all that does not change its data, so that trainings share them."""
+    plain = KeyframeRecipe("", recipe.config, 0)
+    same = {name: getattr(plain, name) for name in ("name", "steps", "kinematic", "loss_weights")}
+    same |= {name: getattr(plain, name) for name in ("snr", "lr", "optimizer", "batch", "decay")}
+    same |= {name: getattr(plain, name) for name in ("seed", "save_every", "path_scale", "sizes")}
+    return replace(recipe, **same)
+
+
 @lru_cache(maxsize=1)
 def _keyframe_windows(recipe: KeyframeRecipe) -> DanceWindows:
     positions, contacts = zip(*varied(recipe), strict=True)
@@ -82,7 +91,7 @@ def varied(recipe: KeyframeRecipe) -> Iterator[Recorded]:
     """Walks, dances, performed sentences and recordings, each in a variation that is drawn.
 
     Levels, upper body, limbs, pace: in this order, so that feet stand where they stood and a pace
-    is that of the whole figure.
+    is that of the whole figure. The first version of a recording keeps its pace.
     """
     from data_synth import levels, mixed, variations, warps
 
@@ -102,8 +111,8 @@ def varied(recipe: KeyframeRecipe) -> Iterator[Recorded]:
             positions = variations.with_upper_body_of(positions, upper)
         if rng.uniform() < recipe.variations:
             positions = variations.limbs_turned(positions, rng)
-        contacts = contacts[: len(positions)]
-        if k >= len(made) or rng.uniform() < recipe.paces:
+        share = recipe.paces if k < len(made) else float(k >= len(made) + len(recorded))
+        if rng.uniform() < share:
             positions, contacts = warps.warped(positions, contacts, rng)
         yield positions.astype(np.float32), contacts
 
@@ -133,12 +142,15 @@ def train_dancer(
     model = network(config)
     about = {"network": type(model).__name__, "data": digest(windows)}
     made_of = "mixed" if recipe.motions else "music and data_synth.dancing"
+    source = f"data_synth.{made_of}, synthetic"
+    if getattr(recipe, "recordings", 0):
+        source = f"data_synth.{made_of} and recordings. {CREDIT}"
     trained, card = train_recipe(
         recipe,
         run_file,
         model,
         loss_of(recipe, windows, schedule),
-        Provenance(about, {"windows": len(windows)}, f"data_synth.{made_of}, synthetic"),
+        Provenance(about, {"windows": len(windows)}, source),
         warmup=300,
         log=log,
     )

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from data_synth.walking import walk
-from motiondiff_edu.beyond.foot_lock import stands, steady_feet, to_stands
+from motiondiff_edu.beyond.foot_lock import SLOW, slow_for, stands, steady_feet, to_stands
 from motiondiff_edu.editing.masks import body_part, gap, keyframes
 from motiondiff_edu.metrics.bone_lengths import bone_lengths
 from motiondiff_edu.motion.skeleton import HEELS, TOES
@@ -115,3 +115,16 @@ def test_a_stand_s_correction_rises_smoothly_beside_a_frame_that_is_given_after_
 def test_nothing_stands_nothing_moves():
     flying = np.tile([0.0, 1.0, 0.0], (10, 1)) + np.arange(10)[:, None] * [0.0, 0.0, 0.3]
     assert (to_stands(flying, np.zeros(10, bool), 20.0) == 0).all()
+
+
+def test_a_standing_foot_is_slower_than_a_fast_pelvis():
+    walked = np.zeros((30, 21, 3))
+    walked[:, 0, 2] = 3.0 / 20 * np.arange(30)
+    limit = slow_for(walked, 20.0)
+    np.testing.assert_allclose(limit, 3.0)
+    assert (slow_for(walked / 10, 20.0) == SLOW).all() and slow_for(walked[:1], 20.0) == [SLOW]
+    for speed, standing in ((2.0, True), (4.0, False)):
+        toe = np.zeros((30, 3))
+        toe[:, 2] = speed / 20 * np.arange(30)
+        assert stands(toe, 20.0, limit).all() == standing
+        assert not stands(toe, 20.0).any()

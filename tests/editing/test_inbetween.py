@@ -104,6 +104,23 @@ def test_feet_stay_above_the_floor_or_the_lowest_given_joint(lowest):
     assert sunk[..., 1].min() < -0.05
 
 
+def test_one_given_joint_under_the_floor_does_not_lower_the_steps():
+    truth = walk(random_control(3.0, np.random.default_rng(0), "turn"), 0).world()[:40]
+    known = keyframes(40, 13)
+    how = replace(OURS, guidance=0.0, blend=None)
+    lower = np.array(truth)
+    lower[13, TOES[0], 1] = -0.05
+    args = {"steps": 5, "departures": how}
+    feet = [
+        inbetween(sinking(dancer(), one, 0.0), one, known, generator=seeded(), **args)[0][
+            :, list(TOES), 1
+        ]
+        for one in (truth, lower)
+    ]
+    away = np.arange(40) > 20
+    assert np.median(np.abs(feet[1] - feet[0])[away]) < 0.005
+
+
 def test_all_known_is_the_input_and_nothing_known_is_a_plain_sample():
     truth, one = clip(), dancer()
     everything = np.ones((40, 21), bool)

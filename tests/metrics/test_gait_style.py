@@ -44,10 +44,24 @@ def test_a_faster_walk_takes_more_steps():
 def test_a_motion_is_nearest_to_its_own_style_and_chance_is_a_half():
     rng = np.random.default_rng(0)
     pasts = rng.normal(size=(40, 4)) * [0.1, 0.02, 0.1, 0.3]
-    assert (style_kept(pasts, pasts) == 1).all()
-    assert style_kept(pasts, np.roll(pasts, 1, 0)).mean() == pytest.approx(0.5, abs=0.06)
-    assert (style_kept(pasts, np.tile(pasts.mean(0), (40, 1)))).mean() == pytest.approx(0.5)
-    assert (style_kept(np.zeros((3, 4)), np.zeros((3, 4))) == 0.5).all()
+    each = [str(k) for k in range(40)]
+    assert (style_kept(pasts, pasts, each) == 1).all()
+    assert style_kept(pasts, np.roll(pasts, 1, 0), each).mean() == pytest.approx(0.5, abs=0.06)
+    same = np.tile(pasts.mean(0), (40, 1))
+    assert style_kept(pasts, same, each).mean() == pytest.approx(0.5)
+    assert (style_kept(np.zeros((3, 4)), np.zeros((3, 4)), "abc") == 0.5).all()
+
+
+def test_another_past_of_the_same_person_does_not_count():
+    pasts = np.array([[0.0, 0, 0, 0], [0.1, 0, 0, 0], [1.0, 0, 0, 0], [3.0, 0, 0, 0]])
+    made = np.array([[0.1, 0, 0, 0], [0.0, 0, 0, 0], [0.0, 0, 0, 0], [3.0, 0, 0, 0]])
+    assert style_kept(pasts, made, "aabb").tolist() == [1, 1, 0, 1]
+    assert style_kept(pasts, made, "abcd")[0] == pytest.approx(2 / 3)
+
+
+def test_who_stands_takes_no_steps():
+    trembling = standing() + 0.001 * np.random.default_rng(0).normal(size=(41, 21, 3))
+    assert gait_style(trembling)[3] == 0
 
 
 def test_other_arms_are_another_style():
@@ -58,7 +72,7 @@ def test_other_arms_are_another_style():
 
 @pytest.mark.parametrize(
     "wrong",
-    [lambda: gait_style(standing(1)), lambda: style_kept(np.zeros((1, 4)), np.zeros((1, 4)))],
+    [lambda: gait_style(standing(1)), lambda: style_kept(np.zeros((2, 4)), np.zeros((2, 4)), "aa")],
 )
 def test_too_little_is_refused(wrong):
     with pytest.raises(ValueError, match="two"):

@@ -16,9 +16,10 @@ from motiondiff_edu.recipes.recordings import (
     training_files,
     training_recordings,
 )
-from motiondiff_edu.recipes.train_dancer import training_windows
+from motiondiff_edu.recipes.train_dancer import training_windows, varied
 
-RECIPE = replace(INBETWEENS, motions=2, acts=1, seconds=6.0)
+PLAIN = {"recordings": 0, "levels": 0.0, "paces": 0.0, "variations": 0.0}
+RECIPE = replace(INBETWEENS, motions=2, acts=1, seconds=6.0, **PLAIN)
 
 
 @pytest.fixture
@@ -41,15 +42,25 @@ def test_a_trial_in_two_folders_is_taken_once_and_others_are_left(folder):
     assert len(positions) == len(contacts) == 160 and 0.3 < contacts.mean() < 0.9
 
 
-def test_recordings_are_in_the_windows_as_often_as_the_recipe_says(folder):
-    alone = training_windows(RECIPE)
-    beside = training_windows(replace(RECIPE, recordings=3))
-    frames = len(alone.dances)
-    assert np.array_equal(alone.dances, beside.dances[:frames])
-    more = len(beside.dances) - frames
-    assert 3 * 100 < more < 3 * 480, "three versions of eight seconds, each at its own pace"
-    again = training_windows(replace(RECIPE, recordings=3, steps=7))
-    assert np.array_equal(again.dances, beside.dances)
+def test_recordings_are_in_the_data_as_often_as_the_recipe_says(folder):
+    alone, beside = (list(varied(replace(RECIPE, recordings=n))) for n in (0, 3))
+    assert len(alone) == 3 and len(beside) == 6
+    for one, other in zip(alone, beside, strict=False):
+        assert np.array_equal(one[0], other[0])
+    ((recorded, _),) = training_recordings()
+    versions = [positions for positions, _ in beside[3:]]
+    np.testing.assert_allclose(versions[0], recorded, atol=1e-6)
+    assert len({len(one) for one in versions}) == 3, "two are at paces of their own"
+
+
+def test_all_variations_together_and_data_that_trainings_share(folder):
+    mixed = replace(RECIPE, recordings=2, levels=0.5, paces=0.5, variations=0.9)
+    windows = training_windows(mixed)
+    again = training_windows(replace(mixed, seed=1, steps=7, name="other", lr=1.0))
+    assert again.dances is windows.dances, "they are not made again"
+    assert training_windows(replace(mixed, data_seed=2)).dances is not windows.dances
+    for positions, contacts in varied(mixed):
+        assert len(positions) == len(contacts) and np.isfinite(positions).all()
 
 
 def test_without_recordings_it_is_said_how_to_give_them(monkeypatch, tmp_path):
@@ -57,6 +68,14 @@ def test_without_recordings_it_is_said_how_to_give_them(monkeypatch, tmp_path):
     with pytest.raises(ValueError, match="MOTIONDIFF_REAL_DATA must name a folder"):
         training_windows(replace(RECIPE, recordings=1))
     assert training_files([Path("cmu_05_06.bvh")]) == []
+
+
+@pytest.mark.parametrize("name", ["acrnn_salsa_01", "cmu_acrnn_x", "cmu_60_08", "cmu_094_02"])
+def test_who_may_be_in_the_training_collection_is_on_its_side(name):
+    assert is_training(f"{name}.bvh")
+    assert not any(
+        map(is_training, ("cmu_05_06_dance.bvh", "cmu_max_131_01.bvh", "cmu_006_01.bvh"))
+    )
 
 
 def test_no_person_is_on_both_sides(real_data):

@@ -106,6 +106,16 @@ def test_a_row_compares_with_the_better_interpolation(filled):
     assert row["skating"] > 3, "feet of straight lines slide"
 
 
+def test_a_glide_that_another_draw_mends_counts_as_drawn_again(monkeypatch):
+    walked = walk(constant_control(1.1, seconds=6.0), seed=5)
+    truth, known = walked.world(), keyframes(120, 20)
+    glide = np.tile(truth[:1], (120, 1, 1)) + (truth[:, :1] - truth[:1, :1]) * [1, 0, 1]
+    draws = iter([np.stack([truth, glide]), truth[None]])
+    monkeypatch.setattr(inbetweens, "inbetween", lambda *_, **__: next(draws))
+    one = inbetweens.filled(None, md.Motion(truth, 20.0), known, 2)
+    assert one.again.tolist() == [False, True] and np.array_equal(one.made[1], truth)
+
+
 def test_intervals_are_over_files():
     values = np.array([1.0, 1.0, 1.0, 5.0])
     alone = by_source("x", "ratio", np.mean, values, np.array(["a", "a", "a", "b"]))
@@ -189,5 +199,12 @@ def test_variants_differ_from_the_recipe_in_what_they_say():
         }
         for name in trainings.VARIANTS
     }
-    assert changed["no-recordings"] <= {"name", "recordings"}
-    assert changed["no-variations"] <= {"name", "variations", "levels", "paces"}
+    assert changed["no-recordings"] == {"name", "recordings"}
+    assert changed["no-variations"] == {"name", "variations", "levels", "paces"}
+
+
+def test_whose_a_recording_is():
+    whose = persons.person_of
+    assert whose("cmu_05_06_dance.bvh") == whose("cmu_005_12.bvh") == "5"
+    assert whose("acrnn_salsa_01.bvh") == whose("cmu_acrnn_salsa_10.bvh") == whose("acrnn_x.bvh")
+    assert whose("walk0.bvh") != whose("walk1.bvh")

@@ -105,6 +105,6 @@ BARS = (
     Bar("real.continuation_skating_mps", at_most=0.05),
     Bar("real.continuation_adherence_mps", at_most=0.03),
     Bar("real.continuation_floor_cm", at_most=2),
-    Bar("real.continuation_diversity_over_synthetic", at_least=0.7),
+    Bar("real.continuation_diversity_over_synthetic", at_least=0.7, at_most=1.5),
     Bar("real.style_kept", at_least=0.7),
 )

@@ -55,11 +55,13 @@ def filled(dancer: Dancer, motion: Motion, known: Bool[np.ndarray, "T J"], sampl
         how = {"steps": STEPS, "departures": departures}
         return inbetween(dancer, truth, known, samples=len(some), generator=some, **how)
 
-    raw = generate(draws, OURS)
+    raw = list(generate(draws, OURS))
     made, notes = zip(*each_until_plausible(raw, draws, truth, known, generate), strict=True)
-    again = [bool(note) for note in notes]
+    again = [
+        bool(note) or one is not first for one, note, first in zip(made, notes, raw, strict=True)
+    ]
     lines, arcs = linear(truth, known), spherical(truth, known)
-    return Filled(raw, np.stack(made), np.array(again), lines, arcs)
+    return Filled(np.stack(raw), np.stack(made), np.array(again), lines, arcs)
 
 
 def row_of(one: Filled, truth: Float[np.ndarray, "T J 3"], known: Bool[np.ndarray, "T J"]) -> dict:

@@ -23,9 +23,11 @@ from motiondiff_edu.motion.skeleton import J
 from motiondiff_edu.performers.joined import Start
 from motiondiff_edu.performers.performer import generators
 from motiondiff_edu.performers.walker import STEPS, Walker
+from motiondiff_edu.recipes.recordings import SUBJECT, TRAINED, is_training
 
 from ..walks.scores import Measure, measure_of, ratio
 from ..walks.trials import UNSEEN
+from .by_source import by_source
 from .continuations import GIVEN, Window, windows
 from .windows import SECONDS, RecordedSize
 
@@ -47,7 +49,7 @@ def continuations(
 
 
 def measures_of_persons(walker: Walker, found: Sequence[Window]) -> list[Measure]:
-    """`style_kept` and `continuation_diversity_over_synthetic`; the intervals are over files."""
+    """`style_kept`, with an interval over persons, and `continuation_diversity_over_synthetic`."""
     T_h, ahead = walker.config.T_h, SECONDS - GIVEN
     same = [Start.of(one.given, constant_control(SPEED, seconds=ahead), T_h) for one in found]
     late = round(LATE * FPS)
@@ -56,7 +58,8 @@ def measures_of_persons(walker: Walker, found: Sequence[Window]) -> list[Measure
         for start, new in zip(same, continuations(walker, same, 1), strict=True)
     ]
     pasts = [gait_style(one.given.positions) for one in found]
-    kept = style_kept(np.stack(pasts), np.stack(made))
+    persons = [person_of(one.source) for one in found]
+    kept = style_kept(np.stack(pasts), np.stack(made), persons)
     own = [Start.of(one.given, one.control, T_h) for one in found]
     walks = [
         Motion.of_clip(drawn_walk(SECONDS, np.random.default_rng([UNSEEN, k])))
@@ -66,9 +69,19 @@ def measures_of_persons(walker: Walker, found: Sequence[Window]) -> list[Measure
     synthetic = [Start.of(one[:given], one.control[given:], T_h) for one in walks]
     spreads = [spread(continuations(walker, starts, DRAWS)) for starts in (own, synthetic)]
     return [
-        measure_of("style_kept", "share", np.mean, kept),
+        by_source("style_kept", "share", np.mean, kept, np.array(persons)),
         measure_of("continuation_diversity_over_synthetic", "ratio", ratio, *spreads),
     ]
+
+
+def person_of(source: str) -> str:
+    """Whose recording it is: a subject of the CMU collection, the unnamed persons of the training
+    collection, who count as one, or else the file's own.
+    """
+    subject = SUBJECT.match(source)
+    if subject:
+        return subject[1]
+    return TRAINED[0] if is_training(source) else source
 
 
 def person_records(walker: Walker, weights: str, size: RecordedSize, command: str) -> list[dict]:

@@ -1,7 +1,7 @@
-"""What recordings, variations and lines are worth for in-betweens: trainings of equal length.
+"""What recordings and variations in training are worth for in-betweens: trainings of equal length.
 
 Each row differs from the recipe `inbetweens` in one choice and is trained with three seeds, a third
-as long as the shipped network. All are judged on recordings of people whom none has seen, with a
+as long as the recipe says. All are judged on recordings of people whom none has seen, with a
 keyframe a second.
 """
 
@@ -24,7 +24,7 @@ VARIANTS: dict[str, tuple[str, dict]] = {
     "ours": ("the recipe", {}),
     "no-recordings": ("no recordings in training", {"recordings": 0}),
     "no-variations": (
-        "no other limbs, levels and paces",
+        "no other limbs and levels; other paces for recordings alone",
         {"variations": 0.0, "levels": 0.0, "paces": 0.0},
     ),
 }
@@ -35,7 +35,7 @@ class Budget:
     """The seeds of the trainings, the amount of measurement, and changes of all recipes."""
 
     seeds: tuple[int, ...] = (0, 1, 2)
-    size: RecordedSize = RecordedSize(each=2, samples=5)
+    size: RecordedSize = RecordedSize(each=2)  # with the samples of the tables
     training: dict = field(default_factory=lambda: {"steps": 3000})
 
 

@@ -57,8 +57,8 @@ def recorded(
 ) -> Iterator[tuple[str, Motion]]:
     """The file's name, and six seconds of it: the windows of all files that are read.
 
-    Windows of a file are evenly spaced. A recording of less than six but `shortest` seconds is one
-    window.
+    Windows of a file are evenly spaced; a single one is in its middle. A recording of less than
+    six but `shortest` seconds is one window.
     """
     n = round(SECONDS * FPS)
     for path in files[: size.files]:
@@ -70,5 +70,6 @@ def recorded(
             continue
         length = min(n, len(motion))
         count = min(size.each, 1 + (len(motion) - length) // (length // 2))
-        for first in np.linspace(0, len(motion) - length, count).astype(int):
+        last = len(motion) - length
+        for first in np.linspace(0, last, count).astype(int) if count > 1 else [last // 2]:
             yield path.name, motion[int(first) : int(first) + length]
