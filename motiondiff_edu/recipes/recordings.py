@@ -27,7 +27,7 @@ FOLDERS = ("bvh", "cmu30")
 TRAINED = ("acrnn_", "cmu_acrnn_")  # how the training files' names begin
 # of CMU's list: who may be in that collection
 SUBJECTS = {60, 61, 93, 94, 135}
-SUBJECT = re.compile(r"cmu_(?:max_)?0*(\d+)_")
+TRIAL = re.compile(r"cmu_(?:max_)?0*(\d+)_0*(\d+)")  # subject and trial of CMU's list
 CREDIT = (
     "The data used in this project was obtained from mocap.cs.cmu.edu. The database was created "
     "with funding from NSF EIA-0196217."
@@ -69,5 +69,5 @@ def training_files(files: Sequence[Path]) -> list[Path]:
 
 def is_training(name: str) -> bool:
     """Whether a file of this name is of the persons that networks are trained on."""
-    subject = SUBJECT.match(name)
-    return name.startswith(TRAINED) or bool(subject and int(subject[1]) in SUBJECTS)
+    trial = TRIAL.match(name)
+    return name.startswith(TRAINED) or bool(trial and int(trial[1]) in SUBJECTS)

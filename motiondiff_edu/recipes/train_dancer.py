@@ -37,11 +37,10 @@ def training_windows(recipe: DanceRecipe) -> DanceWindows:
 
     The last data set is kept, because it takes minutes to generate.
     """
-    length = (recipe.data_seed, recipe.seconds, recipe.frames)
     if isinstance(recipe, KeyframeRecipe):
         return with_path_scale(_keyframe_windows(data_of(recipe)), recipe.path_scale)
     if recipe.motions:
-        return _motion_windows(recipe.motions, *length)
+        return _motion_windows(recipe.motions, recipe.data_seed, recipe.seconds, recipe.frames)
     return _song_windows(
         recipe.songs, recipe.data_seed, recipe.seconds, recipe.dances, recipe.frames
     )
@@ -72,13 +71,16 @@ def _motion_windows(count: int, seed: int, seconds: float, frames: int) -> Dance
     return DanceWindows.of(positions, contacts, None, frames)
 
 
+NOT_DATA = (
+    "name", "steps", "kinematic", "loss_weights", "snr", "lr", "optimizer", "batch", "decay",
+    "seed", "save_every", "path_scale", "sizes",
+)  # fmt: skip
+
+
 def data_of(recipe: KeyframeRecipe) -> KeyframeRecipe:
     """The recipe without all that does not change its data, so that trainings share them."""
-    plain = KeyframeRecipe("", recipe.config, 0)
-    same = {name: getattr(plain, name) for name in ("name", "steps", "kinematic", "loss_weights")}
-    same |= {name: getattr(plain, name) for name in ("snr", "lr", "optimizer", "batch", "decay")}
-    same |= {name: getattr(plain, name) for name in ("seed", "save_every", "path_scale", "sizes")}
-    return replace(recipe, **same)
+    plain = KeyframeRecipe("", recipe.config, steps=0)
+    return replace(recipe, **{name: getattr(plain, name) for name in NOT_DATA})
 
 
 @lru_cache(maxsize=1)

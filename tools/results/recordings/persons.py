@@ -23,7 +23,7 @@ from motiondiff_edu.motion.skeleton import J
 from motiondiff_edu.performers.joined import Start
 from motiondiff_edu.performers.performer import generators
 from motiondiff_edu.performers.walker import STEPS, Walker
-from motiondiff_edu.recipes.recordings import SUBJECT, TRAINED, is_training
+from motiondiff_edu.recipes.recordings import TRAINED, TRIAL, is_training
 
 from ..walks.scores import Measure, measure_of, ratio
 from ..walks.trials import UNSEEN
@@ -78,9 +78,9 @@ def person_of(source: str) -> str:
     """Whose recording it is: a subject of the CMU collection, the unnamed persons of the training
     collection, who count as one, or else the file's own.
     """
-    subject = SUBJECT.match(source)
-    if subject:
-        return subject[1]
+    trial = TRIAL.match(source)
+    if trial:
+        return trial[1]
     return TRAINED[0] if is_training(source) else source
 
 

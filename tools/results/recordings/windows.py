@@ -1,6 +1,5 @@
 """Windows of recordings, of people whom the network that is judged has not seen."""
 
-import re
 import sys
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -11,12 +10,11 @@ import numpy as np
 import motiondiff_edu as md
 from motiondiff_edu.motion.motion import Motion
 from motiondiff_edu.motion.root_frame import FPS
-from motiondiff_edu.recipes.recordings import is_training, recording_files
+from motiondiff_edu.recipes.recordings import TRIAL, is_training, recording_files
 
 SECONDS = 6.0
 SHORTEST = 2.0  # seconds: shorter recordings are left out
 EACH = 5  # windows of a file, at most; they overlap by half at most
-TRIAL = re.compile(r"cmu_0*(\d+)_0*(\d+)")  # subject and trial of the CMU collection
 
 
 @dataclass(frozen=True)
