@@ -8,7 +8,7 @@ import numpy as np
 import scipy
 from jaxtyping import Bool, Float
 
-SLOWEST, FASTEST = 0.2, 1.4  # times the pace of the motion
+SLOWEST, FASTEST = 0.3, 2.2  # times the pace of the motion
 CHANGES = (0.4, 2.5)  # seconds from one drawn pace to the next
 PAUSE, PAUSES = 0.03, 0.2  # times the pace in a pause, and the share of drawn paces that are one
 

@@ -87,6 +87,14 @@ def high_noise_weights(schedule: Schedule, largest: float) -> Table:
     return 1 + noise_over_signal.clamp_max(largest)
 
 
+def as_x0_errors(schedule: Schedule) -> Table:
+    """Weights of steps for a network that predicts v: 1 - alpha_bar.
+
+    x0_hat - x0 is sqrt(1 - alpha_bar) times the error of v, so errors count as those of x0.
+    """
+    return 1 - schedule.alpha_bar
+
+
 # ---- terms ---------------------------------------------------------------------------------------
 def bones(weight: float, std: Float[Tensor, "D"]) -> Loss:
     """weight * mean of `bone_errors` / mean variance of a column; for x0 in the root frame.

@@ -20,7 +20,7 @@ class KeyframeConfig(MoFusionConfig):
     """The sizes of the network; `D` counts the columns of a motion, without the further inputs."""
 
     C: int = 0
-    target: str = "x0"
+    target: str = "v"
     skip: bool = False
 
     def inner(self) -> MoFusionConfig:

@@ -68,9 +68,12 @@ class KeyframeRecipe(DanceRecipe):
     recordings: int = 0  # so many versions of each training recording; all but one at other paces
     levels: float = 0.0  # share of the synthetic motions that are performed lower and leaning
     paces: float = 0.0  # share of the synthetic motions whose pace changes, with pauses
-    variations: float = 0.0  # shares of all motions with limbs turned, and with another upper body
+    variations: float = (
+        0.0  # shares of all motions with limbs turned, pelvis, or upper body changed
+    )
     path_scale: float = 0.3  # m: the unit of the pelvis' path (`train_dancer.with_path_scale`)
     sizes: float = 0.0  # bodies are so much larger or smaller, at most (share)
+    stages: float = 0.0  # share of all motions that are higher than the floor, by up to a metre
 
 
 X0 = replace(MOFUSION_SMALL, target="x0", skip=False)
@@ -90,7 +93,7 @@ UNCONDITIONAL = replace(
 INBETWEENS = KeyframeRecipe(
     "inbetweens",
     KeyframeConfig(),
-    steps=9000,
+    steps=8000,
     kinematic=KINEMATIC,
     loss_weights=OURS,
     snr=0.3,
@@ -100,9 +103,10 @@ INBETWEENS = KeyframeRecipe(
     recordings=40,
     levels=0.3,
     paces=0.5,
-    variations=0.3,
+    variations=0.6,
     sizes=0.1,
+    stages=0.2,
 )
 
-SHIPPED_DANCERS = (DANCER, DANCER_PLAIN, REGRESSED, UNCONDITIONAL)
-DANCE_RECIPES = {recipe.name: recipe for recipe in (*SHIPPED_DANCERS, INBETWEENS, DANCER_FULL)}
+SHIPPED_DANCERS = (DANCER, DANCER_PLAIN, REGRESSED, UNCONDITIONAL, INBETWEENS)
+DANCE_RECIPES = {recipe.name: recipe for recipe in (*SHIPPED_DANCERS, DANCER_FULL)}

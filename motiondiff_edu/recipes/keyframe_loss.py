@@ -2,7 +2,8 @@
 
 Every motion of a batch gets a mask of its own (`drawn_masks`). Kinematic losses are those of the
 whole motion, lines and remainder together. Errors are weighted as those of the whole motion, so
-that the middle of a gap counts more than its ends; and motions count alike, whatever is given.
+that the middle of a gap counts more than its ends; and motions count alike, whatever is given. At
+every step they count as errors of x0, also where the network predicts v.
 """
 
 from dataclasses import replace
@@ -12,7 +13,7 @@ from jaxtyping import Bool, Float
 from torch import Tensor, nn
 
 from ..beyond.around_lines import Shown
-from ..beyond.loss_terms import weighted
+from ..beyond.loss_terms import as_x0_errors, weighted, weighted_by_step
 from ..ddpm import Schedule
 from ..editing.inbetween import seen_from
 from ..kinematic_loss import Body
@@ -31,13 +32,17 @@ def keyframe_loss_of(recipe: KeyframeRecipe, windows: DanceWindows, schedule: Sc
     data_loss = weighted_loss(
         recipe.loss_weights, schedule, scaler, dance_frame.moves, lambda: toes_moved(windows)
     )
+    if recipe.config.target == "v":
+        data_loss = weighted_by_step(data_loss, as_x0_errors(schedule))
 
     def loss_fn(model: nn.Module, generator: torch.Generator) -> Tensor:
         device = next(model.parameters()).device
         motion, _, planted = windows.draw(recipe.batch, generator)
         known = drawn_masks(len(motion), windows.n, generator)
         sizes = 1 + recipe.sizes * (2 * chance(generator, len(motion)) - 1)
-        motion = as_seen(motion, known, sizes, scaler).to(device)
+        high = (chance(generator, len(motion)) < recipe.stages) & known.flatten(1).any(1)
+        heights = high * chance(generator, len(motion))
+        motion = as_seen(motion, known, sizes, heights, scaler).to(device)
         shown = Shown.of(motion, known.repeat_interleave(3, dim=-1).to(device))
         squares = shown.scale.square()
         loss = weighted(data_loss, squares / squares.mean((1, 2), keepdim=True))
@@ -53,13 +58,18 @@ def as_seen(
     motion: Float[Tensor, "B T 63"],
     known: Bool[Tensor, "B T 21"],
     sizes: Float[Tensor, "B"],
+    heights: Float[Tensor, "B"],
     scaler: Scaler,
 ) -> Float[Tensor, "B T 63"]:
-    """Standardised motions as `inbetween` shows them, from their first given pose; and resized."""
+    """Standardised motions as `inbetween` shows them, from their first given pose.
+
+    They are resized, and stand on stages of these heights (m).
+    """
     positions = dance_frame.to_positions(scaler.inverse(motion)).double().numpy()
     masks = known.numpy()
-    for one, mask, size in zip(positions, masks, sizes.tolist(), strict=True):
-        one[:] = size * seen_from(one, mask).enter(one)
+    drawn = zip(positions, masks, sizes.tolist(), heights.tolist(), strict=True)
+    for one, mask, size, height in drawn:
+        one[:] = size * seen_from(one, mask).enter(one) + [0.0, height, 0.0]
     return scaler.transform(torch.from_numpy(dance_frame.placed_features(positions)).float())
 
 

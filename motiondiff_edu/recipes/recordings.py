@@ -33,18 +33,23 @@ CREDIT = (
     "with funding from NSF EIA-0196217."
 )
 
+
+class RecordingsError(ValueError):
+    """There are no recordings to train on; the message says where they are looked for."""
+
+
 Recorded = tuple[Float[np.ndarray, "T 21 3"], Bool[np.ndarray, "T 2"]]
 
 
 def recording_files() -> list[Path]:
     """All BVH files of the folders.
 
-    Raises ValueError where MOTIONDIFF_REAL_DATA does not name a folder with recordings.
+    Raises RecordingsError where MOTIONDIFF_REAL_DATA does not name a folder with recordings.
     """
     folder = Path(os.environ.get(VARIABLE, ""))
     files = [path for one in FOLDERS for path in sorted((folder / one).glob("*.bvh"))]
     if not files:
-        raise ValueError(
+        raise RecordingsError(
             f"{VARIABLE} must name a folder with recordings in {' and '.join(FOLDERS)}"
         )
     return files

@@ -73,7 +73,7 @@ def _motion_windows(count: int, seed: int, seconds: float, frames: int) -> Dance
 
 NOT_DATA = (
     "name", "steps", "kinematic", "loss_weights", "snr", "lr", "optimizer", "batch", "decay",
-    "seed", "save_every", "path_scale", "sizes",
+    "seed", "save_every", "path_scale", "sizes", "stages",
 )  # fmt: skip
 
 
@@ -92,8 +92,8 @@ def _keyframe_windows(recipe: KeyframeRecipe) -> DanceWindows:
 def varied(recipe: KeyframeRecipe) -> Iterator[Recorded]:
     """Walks, dances, performed sentences and recordings, each in a variation that is drawn.
 
-    Levels, upper body, limbs, pace: in this order, so that feet stand where they stood and a pace
-    is that of the whole figure. The first version of a recording keeps its pace.
+    Levels, upper body, pelvis, limbs, pace: in this order, so that feet stand where they stood and
+    a pace is that of the whole figure. The first version of a recording keeps its pace.
     """
     from data_synth import levels, mixed, variations, warps
 
@@ -111,6 +111,8 @@ def varied(recipe: KeyframeRecipe) -> Iterator[Recorded]:
         if rng.uniform() < recipe.variations:
             upper, _ = every[rng.integers(len(every))]
             positions = variations.with_upper_body_of(positions, upper)
+        if rng.uniform() < recipe.variations:
+            positions = variations.pelvis_moved(positions, rng)
         if rng.uniform() < recipe.variations:
             positions = variations.limbs_turned(positions, rng)
         share = recipe.paces if k < len(made) else float(k >= len(made) + len(recorded))
