@@ -58,7 +58,7 @@ def inbetween(
     steps: int = STEPS,
     progress: bool = True,
 ) -> Motion | list[Motion]:
-    """Generate the joints that are not `known`, with the shipped unconditional network.
+    """Generate the joints that are not `known`, with a shipped network that sees the others.
 
     Known joints stay exactly where they are. In a frame with a known joint, the pelvis must be
     known too. With `samples` above 1, the result is a list with this many motions.
@@ -70,7 +70,7 @@ def inbetween(
     Source: MoFusion 4.4.  Notebook: 15
     """
     known, count = _fitting(motion, known), checked_samples(samples)
-    steps = min(checked_count(steps, "steps"), _shipped("unconditional").schedule.S)
+    steps = min(checked_count(steps, "steps"), _shipped("inbetweens").schedule.S)
     if known.all():
         raise MotionError(f"{motion.name}: every joint is known, so there is nothing to generate")
     if not known.any():
@@ -78,7 +78,7 @@ def inbetween(
         warnings.warn(f"{motion.name}: {words}", MotionWarning, stacklevel=2)
 
     def generate(draws: list, departures: Departures) -> Float[np.ndarray, "samples T 21 3"]:
-        with with_bar(_shipped("unconditional"), steps, "filling in", progress) as dancer:
+        with with_bar(_shipped("inbetweens"), steps, "filling in", progress) as dancer:
             return inbetweens.inbetween(
                 dancer, motion.positions, known, samples=len(draws), steps=steps, generator=draws,
                 departures=departures,

@@ -18,6 +18,7 @@ from ..pretrained.judges import save_judge
 from .dancers import DANCE_RECIPES, SHIPPED_DANCERS
 from .judges import JUDGES, train_judge
 from .movers import MOVER, MOVER_RECIPES
+from .recordings import RecordingsError, recording_files
 from .train_dancer import train_dancer
 from .train_mover import train_mover
 from .train_walker import train
@@ -25,6 +26,7 @@ from .walkers import PAIRS, RECIPES, SHIPPED
 
 ALL = RECIPES | DANCE_RECIPES | MOVER_RECIPES | JUDGES
 EIGHT_BITS = {
+    "inbetweens",
     "mover",
     "regression",
     "unconditional",
@@ -69,13 +71,26 @@ def main() -> None:
         )
     torch.set_num_threads(arguments.threads)
     arguments.runs.mkdir(parents=True, exist_ok=True)
-    for name in arguments.names or EVERY:
+    for name in arguments.names or buildable(EVERY):
         file = f"{name}.safetensors"
         try:
             made = build(name, arguments.runs / file, arguments.out / file, arguments.clip)
-        except (clips.ClipError, clips.NoTransformers) as error:
+        except (clips.ClipError, clips.NoTransformers, RecordingsError) as error:
             parser.exit(1, f"{name}: {error}\n")
         print("wrote", made)
+
+
+def buildable(names: list[str]) -> list[str]:
+    """The recipes that can be trained here; says which ones need recordings that are not there."""
+    missing = ""
+    try:
+        recording_files()
+    except RecordingsError as error:
+        missing = str(error)
+    need = [name for name in names if getattr(ALL[name], "recordings", 0)] if missing else []
+    for name in need:
+        say(f"{name} is left out, since it is trained on recordings as well: {missing}")
+    return [name for name in names if name not in need]
 
 
 def build(name: str, run: Path, out: Path, clip: str | None = None) -> Path:

@@ -5,6 +5,7 @@ import pytest
 import torch
 
 from motiondiff_edu.beyond.loss_terms import (
+    as_x0_errors,
     bone_errors,
     bones,
     changes,
@@ -16,9 +17,10 @@ from motiondiff_edu.beyond.loss_terms import (
     weighted,
     weighted_by_step,
 )
-from motiondiff_edu.ddpm import linear_schedule, squared_error
+from motiondiff_edu.ddpm import linear_schedule, q_sample, squared_error
 from motiondiff_edu.motion import dance_frame
 from motiondiff_edu.motion.skeleton import HIPS, TOES, joint_index
+from motiondiff_edu.prediction import v_from_x0_eps, x0_from_v
 
 S1 = torch.tensor([1])
 
@@ -72,6 +74,16 @@ def test_steps_are_weighted_by_their_noise():
     wanted = [1, 1 + 0.2 / 0.8, 1 + 0.48 / 0.52, 1 + 0.74 / 0.26, 1 + 3, 1 + 3, 1 + 3]
     found = high_noise_weights(linear_schedule(6, 0.2, 0.95), 3.0)
     assert found.tolist() == pytest.approx(wanted)
+
+
+def test_errors_of_v_count_as_those_of_x0():
+    schedule, rng = linear_schedule(6, 0.2, 0.95), torch.Generator().manual_seed(0)
+    x0, eps, wrong = (torch.randn(3, 4, 5, generator=rng) for _ in range(3))
+    s = torch.tensor([1, 3, 6])
+    x_s, v = q_sample(x0, s, schedule, eps), v_from_x0_eps(x0, s, eps, schedule)
+    loss = weighted_by_step(squared_error, as_x0_errors(schedule))(wrong, s)
+    off = x0_from_v(x_s, s, v - wrong, schedule) - x0
+    torch.testing.assert_close(loss, off.square().mean())
 
 
 def test_bone_errors_by_hand():

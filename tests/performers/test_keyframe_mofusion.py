@@ -14,7 +14,7 @@ from motiondiff_edu.motion.scaler import Scaler
 from motiondiff_edu.performers.dancer import Dancer
 from motiondiff_edu.performers.keyframe_mofusion import KeyframeConfig, KeyframeMoFusion
 from motiondiff_edu.performers.with_bar import with_bar
-from motiondiff_edu.prediction import x0_from_eps
+from motiondiff_edu.prediction import x0_from_eps, x0_from_v
 from motiondiff_edu.pretrained import checkpoints
 
 SMALL = KeyframeConfig(S=30, widths=(16, 24), heads=2)
@@ -58,8 +58,13 @@ def test_the_denoiser_is_that_of_the_remainder(dancer):
     x, s = torch.randn(1, T, 63, generator=seeded()), torch.tensor([12])
     shown = shown_first(x)
     eps_hat = dancer.shown_denoiser(shown)(x, s)
-    r0_hat = x0_from_eps(x, s, eps_hat, dancer.schedule)
-    torch.testing.assert_close(r0_hat, dancer.model(x, s, shown), atol=1e-4, rtol=1e-4)
+    v_hat = dancer.model(x, s, shown)
+    torch.testing.assert_close(
+        x0_from_eps(x, s, eps_hat, dancer.schedule),
+        x0_from_v(x, s, v_hat, dancer.schedule),
+        atol=1e-4,
+        rtol=1e-4,
+    )
 
 
 def test_a_network_that_sees_nothing_is_named():

@@ -15,6 +15,8 @@ from motiondiff_edu.motion import dance_frame
 from motiondiff_edu.motion.skeleton import HIPS, J
 from motiondiff_edu.performers.dance_windows import DanceWindows
 from motiondiff_edu.performers.keyframe_mofusion import KeyframeConfig, KeyframeMoFusion
+from motiondiff_edu.prediction import to_x0
+from motiondiff_edu.recipes import keyframe_loss
 from motiondiff_edu.recipes.dancers import INBETWEENS
 from motiondiff_edu.recipes.drawn_masks import SHARES, drawn_mask, drawn_masks
 from motiondiff_edu.recipes.keyframe_loss import as_seen, body_around
@@ -79,19 +81,24 @@ def test_motions_are_seen_from_their_first_given_pose_and_resized(windows):
     known = torch.zeros(2, T, J, dtype=torch.bool)
     known[0, 9], known[1, 0] = True, True
     scaler = windows.motion_scaler
-    seen = as_seen(motion, known, torch.tensor([1.0, 1.2]), scaler)
+    seen = as_seen(motion, known, torch.tensor([1.0, 1.2]), torch.tensor([0.0, 0.5]), scaler)
     pose = dance_frame.to_positions(scaler.inverse(seen))[0, 9].numpy()
     assert np.abs(pose[HIPS, [0, 2]]).max() < 1e-5
     assert abs(float(dance_frame.facing(pose[None])[0])) < 1e-5
     before, after = (dance_frame.to_positions(scaler.inverse(x))[1] for x in (motion, seen))
-    torch.testing.assert_close(after, 1.2 * before, atol=1e-4, rtol=0)
+    higher = torch.tensor([0.0, 0.5, 0.0])
+    torch.testing.assert_close(after, 1.2 * before + higher, atol=1e-4, rtol=0)
 
 
-def test_the_loss_of_a_batch_is_eq_4_of_what_remains_without_the_lines(windows):
-    recipe = replace(RECIPE, kinematic=None, loss_weights=type(RECIPE.loss_weights)(), sizes=0.0)
+@pytest.mark.parametrize("target", ["x0", "v"])
+def test_the_loss_of_a_batch_is_eq_4_of_what_remains_without_the_lines(windows, target):
+    """Errors are those of x0, whatever the network predicts."""
+    config = replace(SMALL, target=target)
+    recipe = replace(RECIPE, config=config, kinematic=None, sizes=0.0, stages=0.0)
+    recipe = replace(recipe, loss_weights=type(RECIPE.loss_weights)())
     schedule = schedule_of(recipe)
     torch.manual_seed(0)
-    model, asked = KeyframeMoFusion(SMALL), []
+    model, asked = KeyframeMoFusion(config), []
     forward = model.forward
 
     def watched(r_s, s, shown=None):
@@ -100,12 +107,13 @@ def test_the_loss_of_a_batch_is_eq_4_of_what_remains_without_the_lines(windows):
 
     model.forward = watched
     loss = loss_of(recipe, windows, schedule)(model, seeded(5))
-    ((r_s, s, shown, r0_hat),) = asked
+    ((r_s, s, shown, output),) = asked
+    r0_hat = to_x0(output, r_s, s, schedule, target)
     generator = seeded(5)
     motion, _, _ = windows.draw(4, generator)
     known = drawn_masks(4, T, generator)
-    torch.rand(4, generator=generator)
-    seen = as_seen(motion, known, torch.ones(4), windows.motion_scaler)
+    torch.rand(12, generator=generator)  # sizes, who stands on a stage, and how high
+    seen = as_seen(motion, known, torch.ones(4), torch.zeros(4), windows.motion_scaler)
     columns = known.repeat_interleave(3, -1)
     wanted = Shown.of(seen, columns)
     r0 = wanted.remainder(seen)
@@ -116,6 +124,23 @@ def test_the_loss_of_a_batch_is_eq_4_of_what_remains_without_the_lines(windows):
     torch.testing.assert_close(r_s, q_sample(r0, steps, schedule, eps))
     errors = ((shown.whole(r0_hat) - seen).where(~columns, 0.0)).square().mean((1, 2))
     torch.testing.assert_close(loss, (errors / shown.scale.square().mean((1, 2))).mean())
+
+
+def test_some_motions_stand_on_stages_but_none_of_which_nothing_is_given(windows, monkeypatch):
+    asked = []
+
+    def watched(motion, known, sizes, heights, scaler):
+        asked.append((known, heights))
+        return as_seen(motion, known, sizes, heights, scaler)
+
+    monkeypatch.setattr(keyframe_loss, "as_seen", watched)
+    recipe = replace(RECIPE, batch=300, stages=0.5)
+    loss_of(recipe, windows, schedule_of(recipe))(KeyframeMoFusion(SMALL), seeded(1))
+    ((known, heights),) = asked
+    given = known.flatten(1).any(1)
+    assert (heights[~given] == 0).all() and not given.all()
+    assert (heights[given] > 0).float().mean() == pytest.approx(0.5, abs=0.1)
+    assert 0.9 < heights.max() <= 1
 
 
 def test_bones_are_those_of_lines_and_remainder_together(windows):

@@ -9,6 +9,7 @@ import pytest
 from data_synth.walking import walk
 from motiondiff_edu.conditions.control import constant_control
 from motiondiff_edu.motion.bvh.write import write_bvh
+from motiondiff_edu.recipes import __main__ as command
 from motiondiff_edu.recipes.dancers import INBETWEENS
 from motiondiff_edu.recipes.recordings import (
     is_training,
@@ -86,3 +87,13 @@ def test_no_person_is_on_both_sides(real_data):
     subjects = ("cmu_0", "cmu_1", "cmu_max", "bvh", "pybvh", "pymo", "animdraw", "fairmotion")
     assert all(name.startswith(subjects) for name in kept)
     assert all("acrnn_" in path.name for path in trained)
+
+
+def test_without_recordings_all_other_networks_can_be_trained(monkeypatch, capsys):
+    monkeypatch.delenv("MOTIONDIFF_REAL_DATA", raising=False)
+    names = ["dancer", "inbetweens", "walker"]
+    assert command.buildable(names) == ["dancer", "walker"]
+    told = capsys.readouterr().out
+    assert told.startswith("inbetweens is left out") and "MOTIONDIFF_REAL_DATA must name" in told
+    monkeypatch.setattr(command, "recording_files", lambda: ["one.bvh"])
+    assert command.buildable(names) == names and not capsys.readouterr().out

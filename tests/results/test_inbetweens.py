@@ -104,7 +104,7 @@ def test_spectra_are_the_means_of_the_samples_and_their_ratio(truth):
 def test_the_worst_gap_stands_under_the_bar(monkeypatch):
     """Each gap's samples are off by its length in millimetres, but given frames are held."""
     monkeypatch.setattr(
-        inbetween, "filled", lambda dancer, truth, length, size: shifted(truth, length)
+        inbetween, "filled", lambda shown, masked, truth, length, size: shifted(truth, length)
     )
 
     def shifted(truth, length):
@@ -116,7 +116,9 @@ def test_the_worst_gap_stands_under_the_bar(monkeypatch):
 
     records = {
         one["name"]: one
-        for one in inbetween_records(None, "digest", InbetweenSize(motions=2), "a command")
+        for one in inbetween_records(
+            (None, "digest"), (None, "other"), InbetweenSize(motions=2), "a command"
+        )
     }
     for length in GAPS:
         assert records[f"inbetween.gap{length}.error_over_interpolation"]["value"] == pytest.approx(
@@ -138,50 +140,65 @@ def test_every_way_is_asked_for_what_it_is_for(monkeypatch, truth):
     def made(dancer, positions, known, samples=1, **options):
         asked.append(
             SimpleNamespace(
-                known=known, holes=np.isnan(positions), samples=samples, options=options
+                dancer=dancer,
+                known=known,
+                holes=np.isnan(positions),
+                samples=samples,
+                options=options,
             )
         )
         return np.zeros((samples, 100, 21, 3))
 
     monkeypatch.setattr(inbetween, "inbetween", made)
-    found = inbetween.filled(None, truth, GAP, InbetweenSize(samples=3, steps=7))
+    found = inbetween.filled("shown", "masked", truth, GAP, InbetweenSize(samples=3, steps=7))
     usual, paper, free = (asked[4 * k : 4 * k + 4] for k in range(3))
     assert found.made.shape[:2] == (3, 4) and len(asked) == 12
     assert all(np.array_equal(one.holes.all(-1), ~middle(GAP)) for one in (*usual, *paper))
     assert all(set(one.options) == {"steps", "generator"} and one.samples == 3 for one in usual)
+    assert {one.dancer for one in usual} == {"shown"}
+    assert {one.dancer for one in (*paper, *free)} == {"masked"}
     assert all(one.options["departures"] == inbetween.PAPER for one in paper)
     assert not any(one.known.any() for one in free)
 
 
 def test_departures_are_measured_on_the_same_noise_one_left_out_at_a_time(monkeypatch):
-    """The network is replaced by one that stretches the gap where bones may change, and errs."""
+    """The networks are replaced by one that stretches the gap where bones may change, and errs.
+
+    The one that is not shown what is given errs more, and most without guidance.
+    """
     asked = []
 
     def made(dancer, positions, known, *, samples, steps, departures, generator):
-        asked.append((departures, torch.rand(1, generator=generator).item()))
+        asked.append((dancer, departures, torch.rand(1, generator=generator).item()))
         whole = np.array(left.pop(0))
         hole = ~known.any(1)
         whole[hole] *= 1.0 if departures.bones else 1.1
-        whole[hole] += [0.0, 0.0, 0.01 if departures.guidance else 0.03]
+        whole[hole] += [0.0, 0.0, 0.01 if dancer == "inbetweens" else 0.02]
+        whole[hole] += [0.0, 0.0, 0.0 if departures.guidance else 0.03]
         return np.stack([whole] * samples)
 
     size = InbetweenSize(motions=2, samples=2)
     truth = inbetween.trials(2)
     left = [one for _ in departures.ROWS for one in truth]
+    networks = {name: (name, "digest") for name in ("inbetweens", "unconditional")}
     monkeypatch.setattr(departures, "inbetween", made)
     found = {
         one["name"].removeprefix("inbetween-departures."): one["value"]
-        for one in departures.departure_records(None, "digest", size, "a command")
+        for one in departures.departure_records(networks, size, "a command")
     }
     assert len(asked) == 2 * len(departures.ROWS)
-    for k, (_, how) in enumerate(departures.ROWS.values()):
-        assert asked[2 * k][0] == asked[2 * k + 1][0] == how
-        assert [noise for _, noise in asked[2 * k : 2 * k + 2]] == [noise for _, noise in asked[:2]]
+    for k, row in enumerate(departures.ROWS.values()):
+        one, other = asked[2 * k : 2 * k + 2]
+        assert one[:2] == other[:2] == (row.network, row.departures)
+        assert [one[2], other[2]] == [noise for _, _, noise in asked[:2]]
     assert found["ours.error_one_cm"] == pytest.approx(1.0)
-    assert found["no-guidance.error_one_cm"] == pytest.approx(3.0)
-    assert found["no-guidance.error_one_minus_ours_cm"] == pytest.approx(2.0)
+    assert found["not-shown.error_one_cm"] == pytest.approx(2.0)
+    assert found["not-shown.error_one_minus_base_cm"] == pytest.approx(1.0)
+    assert found["no-guidance.error_one_cm"] == pytest.approx(5.0)
+    assert found["no-guidance.error_one_minus_base_cm"] == pytest.approx(3.0)
     lengths = 100 * bone_lengths(truth[:, ~middle(departures.GAP).any(1)])
     tenth = 0.1 * np.sqrt((lengths**2).mean())
     assert found["no-bones.bone_rmse_cm"] == pytest.approx(tenth, rel=0.01)
     assert found["ours.bone_rmse_cm"] < 0.01 < found["paper.bone_rmse_cm"]
-    assert len({how for _, how in departures.ROWS.values()}) == len(departures.ROWS)
+    rows = departures.ROWS.values()
+    assert len({(row.network, row.departures) for row in rows}) == len(rows)

@@ -60,12 +60,12 @@ MEASURED = (
     "dance-time",
     "known-answer",
 )  # parts that need shipped weights, or none
-FILLS_IN = "unconditional"  # the weights of in-betweens
+FILLS_IN, MASKED = departures.SHOWN, departures.NOT_SHOWN  # the weights of in-betweens
 MENDED = {  # parts that need these weights
     "mend": {"walker", "walker-plain", *names_of("plain"), *names_of("dropout")},
-    "mend-both": {both.WALKER, FILLS_IN},
-    "inbetween": {FILLS_IN},
-    "inbetween-departures": {FILLS_IN},
+    "mend-both": {both.WALKER, MASKED},
+    "inbetween": {FILLS_IN, MASKED},
+    "inbetween-departures": {FILLS_IN, MASKED},
     "words": {"mover"},
 }
 TRAINED = {
@@ -189,15 +189,17 @@ def records_of(
     if part == "mend":
         return mend.records(bench, repair.QUICK if quick else repair.FULL, command)
     if part.startswith("inbetween"):
-        dancer = stage.dancer(FILLS_IN)
-        digest = weights_digest(stage.weights[FILLS_IN])
+        networks = {
+            name: (stage.dancer(name), weights_digest(stage.weights[name]))
+            for name in (FILLS_IN, MASKED)
+        }
         size = inbetween.QUICK if quick else inbetween.FULL
         if part == "inbetween":
-            return inbetween.inbetween_records(dancer, digest, size, command)
-        return departures.departure_records(dancer, digest, size, command)
+            return inbetween.inbetween_records(*networks.values(), size, command)
+        return departures.departure_records(networks, size, command)
     if part == "mend-both":
         size = repair.QUICK if quick else repair.FULL
-        return both.both_records(bench, stage.dancer(FILLS_IN), size, command)
+        return both.both_records(bench, stage.dancer(MASKED), size, command)
     if part == "recordings":
         path = bench.weights["walker"]
         size = recorded.QUICK if quick else recorded.FULL

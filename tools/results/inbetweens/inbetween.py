@@ -2,8 +2,8 @@
 
 They are compared with interpolation and with sampling without a mask.
 
-The network's are guided and blended at every step (`editing.inbetween.inbetween`). The paper's
-masked sampling is measured as well.
+The network of `md.inbetween` is shown what is given (`editing.inbetween.inbetween`). The paper's
+masked sampling, of the network that knows nothing of it, is measured as well.
 Source: MoFusion 4.4; what is measured, `metrics.keyframes`.  Notebook: 15
 """
 
@@ -75,17 +75,24 @@ class Filled:
 
 
 def filled(
-    dancer: Dancer, truth: Float[np.ndarray, "N T J 3"], length: int, size: InbetweenSize
+    shown: Dancer,
+    masked: Dancer,
+    truth: Float[np.ndarray, "N T J 3"],
+    length: int,
+    size: InbetweenSize,
 ) -> Filled:
-    """The gap of every motion, filled by all methods."""
+    """The gap of every motion, filled by all methods.
+
+    `shown`: the network that is shown what is given; `masked`: the one of masked sampling.
+    """
     known, draw = middle(length), torch.Generator().manual_seed(length)
     options = {"steps": size.steps, "generator": draw}
     holes = np.where(known[..., None], truth, np.nan)
-    made = [inbetween(dancer, one, known, samples=size.samples, **options) for one in holes]
-    masked = [inbetween(dancer, one, known, departures=PAPER, **options)[0] for one in holes]
-    free = [inbetween(dancer, one, np.zeros_like(known), **options)[0] for one in truth]
+    made = [inbetween(shown, one, known, samples=size.samples, **options) for one in holes]
+    paper = [inbetween(masked, one, known, departures=PAPER, **options)[0] for one in holes]
+    free = [inbetween(masked, one, np.zeros_like(known), **options)[0] for one in truth]
     flat = [[fill(one, known) for one in truth] for fill in (linear, spherical)]
-    return Filled(known, truth, np.stack(made, 1), *map(np.stack, (masked, free, *flat)))
+    return Filled(known, truth, np.stack(made, 1), *map(np.stack, (paper, free, *flat)))
 
 
 def measures_of(one: Filled) -> list[Measure]:
@@ -178,16 +185,21 @@ def ratio_of_sums(above: np.ndarray, below: np.ndarray) -> float:
 
 
 def inbetween_records(
-    dancer: Dancer, weights: str, size: InbetweenSize, command: str
+    shown: tuple[Dancer, str], masked: tuple[Dancer, str], size: InbetweenSize, command: str
 ) -> list[dict]:
-    """The records of all gaps; the worst spectrum and seam also have their own names."""
-    truth = trials(size.motions)
+    """The records of all gaps; the worst spectrum and seam also have their own names.
+
+    Each network with the digest of its weights.
+    """
+    truth, (dancer, weights), (paper, paper_weights) = trials(size.motions), shown, masked
     seeds = {"data": UNSEEN, "motions": size.motions, "samples": size.samples, "weights": weights}
+    seeds |= {"masked": paper_weights}
     seeds |= {"steps": size.steps}
     records, every = [], {}
     for length in GAPS:
         every[length] = {
-            measure.name: measure for measure in measures_of(filled(dancer, truth, length, size))
+            measure.name: measure
+            for measure in measures_of(filled(dancer, paper, truth, length, size))
         }
         records += [
             f.as_record(f"inbetween.gap{length}.", seeds, command) for f in every[length].values()

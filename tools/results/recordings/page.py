@@ -20,12 +20,12 @@ PERSONS = {
     " walks",
 }
 FILLED = {
-    "over_interpolation": "error of the mean of ten, over interpolation's (median)",
+    "over_interpolation": "error of the samples' mean, over interpolation's (median)",
     "walks_over_interpolation": "the same, walks alone",
     "others_over_interpolation": "the same, all other motions",
     "one_over_interpolation": "error of one sample, over interpolation's (median)",
     "one_p90_over_interpolation": "the same (90th percentile)",
-    "energy_over_interpolation": "energy score of ten, over interpolation's (median)",
+    "energy_over_interpolation": "energy score of the samples, over interpolation's (median)",
     "others_energy_over_interpolation": "the same, all but walks",
     "skating_over_source": "sliding of planted feet, over the recording's (median)",
     "skating_p90_over_source": "the same (90th percentile)",
@@ -55,7 +55,8 @@ def filled_in(records: dict[str, dict]) -> str:
     seeds = share["seeds"]
     text = (
         f"In-betweens of {seeds['windows']} windows of {seeds['files']} recordings, "
-        f"{seeds['walks']} of them walks and runs, from keyframes at equal distances. Interpolation"
+        f"{seeds['walks']} of them walks and runs, from keyframes at equal distances; "
+        f"{seeds['samples']} samples of each. Interpolation"
         " is the better one of straight lines and arcs. "
         f"{number(100 * share['value'])} % of the samples are noticed as failures and drawn again. "
         "The intervals are over files.\n\n"
@@ -76,8 +77,8 @@ def trainings_table(records: dict[str, dict]) -> str:
     seeds = records[f"{first}over_interpolation"]["seeds"]
     text = (
         f"With recordings in training and without: {len(seeds['trainings'])} trainings of "
-        f"{seeds['trained_steps']} steps each, a keyframe a second. The intervals hold those of "
-        "all trainings.\n\n"
+        f"{seeds['trained_steps']} steps each, a keyframe a second, {seeds['samples']} samples. "
+        "The intervals hold those of all trainings.\n\n"
     )
     return text + measures(records, FILLED, "", made)
 

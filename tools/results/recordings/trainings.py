@@ -1,7 +1,7 @@
 """What recordings and variations in training are worth for in-betweens: trainings of equal length.
 
-Each row differs from the recipe `inbetweens` in one choice and is trained with three seeds, a third
-as long as the recipe says. All are judged on recordings of people whom none has seen, with a
+Each row differs from the recipe `inbetweens` in one choice and is trained with three seeds, for a
+fifth of the steps or fewer. All are judged on recordings of people whom none has seen, with a
 keyframe a second.
 """
 
@@ -24,19 +24,22 @@ VARIANTS: dict[str, tuple[str, dict]] = {
     "ours": ("the recipe", {}),
     "no-recordings": ("no recordings in training", {"recordings": 0}),
     "no-variations": (
-        "no other limbs and levels; other paces for recordings alone",
-        {"variations": 0.0, "levels": 0.0, "paces": 0.0},
+        "no other limbs and levels, no stages; other paces for recordings alone",
+        {"variations": 0.0, "levels": 0.0, "paces": 0.0, "stages": 0.0},
     ),
 }
 
 
 @dataclass(frozen=True)
 class Budget:
-    """The seeds of the trainings, the amount of measurement, and changes of all recipes."""
+    """The seeds of the trainings, the amount of measurement, and changes of all recipes.
+
+    The samples are half as many as in the tables, since there are several trainings.
+    """
 
     seeds: tuple[int, ...] = (0, 1, 2)
-    size: RecordedSize = RecordedSize(each=2)  # with the samples of the tables
-    training: dict = field(default_factory=lambda: {"steps": 3000})
+    size: RecordedSize = RecordedSize(each=2, samples=5)
+    training: dict = field(default_factory=lambda: {"steps": 1500})
 
 
 FULL = Budget()

@@ -141,12 +141,13 @@ def inbetweens(records: dict[str, dict], folder: Path) -> str:
         for g in GAPS
     ]
     text = (
-        "## In-betweens (MoFusion 4.4)\n\nThe unconditional network fills a gap in the middle of "
+        "## In-betweens (MoFusion 4.4)\n\nA network fills a gap in the middle of "
         f"{seeds['motions']} unseen motions of 100 frames, half of them walks and half dances. "
-        f"There are {seeds['samples']} samples of each, with {seeds['steps']} DDIM steps. Our way "
-        "(`editing.inbetween.inbetween`) uses guidance, blends each guess into the given frames, "
-        "and at the end keeps the bones' lengths and locks the feet. Columns that say *masked* "
-        "show one sample as in the paper, without these. The mean of several samples has a smaller "
+        f"There are {seeds['samples']} samples of each, with {seeds['steps']} DDIM steps. Ours "
+        "(`inbetweens`) is shown what is given and generates the remainder around straight lines; "
+        "at the end bones keep their lengths, and feet are locked. Columns that say *masked* "
+        "show one sample as in the paper, of the network `unconditional` that knows nothing of "
+        "what is given. The mean of several samples has a smaller "
         "error than a sample, but it moves less. Therefore the spectral error (NPSS), the jump at "
         "the seam and the sliding of planted toes are of single samples. Given frames stay exactly "
         "as they are: the error there is "
@@ -163,11 +164,11 @@ def inbetweens(records: dict[str, dict], folder: Path) -> str:
 
 DEPARTURES = {
     "error_one_cm": "error of a sample",
-    "error_one_minus_ours_cm": "minus that of all",
+    "error_one_minus_base_cm": "minus that of its base",
     "seam_jump_over_data": "jump at the seam over the data's",
     "bone_rmse_cm": "bone error",
     "skating_mps": "sliding of planted feet",
-    "skating_minus_ours_mps": "minus that of all",
+    "skating_minus_base_mps": "minus that of its base",
 }
 
 
@@ -177,13 +178,18 @@ def in_between_departures(records: dict[str, dict]) -> str:
     if first is None:
         return ""
     rows = [
-        [words, *(cell(records.get(f"inbetween-departures.{name}.{kind}")) for kind in DEPARTURES)]
-        for name, (words, _) in ROWS.items()
+        [
+            row.words,
+            *(cell(records.get(f"inbetween-departures.{name}.{kind}")) for kind in DEPARTURES),
+        ]
+        for name, row in ROWS.items()
     ]
     text = (
         "\n### What each departure is worth\n\nThe same gaps of "
         f"{first['seeds']['gap']} frames, motions and noise in every row; one departure is left "
-        "out at a time. Bone errors are those of the generated frames against the given ones.\n\n"
+        "out at a time. The base of a row is the first row; for *the same*, it is the row of the "
+        "network that is not shown what is given, which is guided and blended instead. Bone errors "
+        "are those of the generated frames against the given ones.\n\n"
     )
     return text + table(["", *DEPARTURES.values()], rows)
 
