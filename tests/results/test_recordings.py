@@ -14,6 +14,7 @@ from motiondiff_edu.conditions.control import constant_control
 from motiondiff_edu.editing.masks import keyframes
 from motiondiff_edu.motion.bvh.write import write_bvh
 from motiondiff_edu.recipes.dancers import INBETWEENS
+from tools.results import __main__ as results
 from tools.results.recordings import continuations, inbetweens, page, persons, trainings
 from tools.results.recordings.by_source import by_source
 from tools.results.recordings.windows import (
@@ -138,6 +139,12 @@ def test_in_betweens_of_windows_are_measured_and_stand_in_the_page(folder, monke
     assert all(words in text for words in page.FILLED.values())
 
 
+def test_on_all_cores_the_numbers_are_the_same(folder):
+    dancer, windows = md.load("unconditional"), inbetweens.windows_and_walks(QUICK)[0]
+    tasks = [(dancer, motion, 10, 1) for _, motion in windows]
+    assert inbetweens.on_all_cores(tasks) == inbetweens.in_turn(tasks)
+
+
 def test_windows_of_a_file_are_cut_at_even_distances(folder):
     found = list(recorded(held_out(), FULL))
     assert [name for name, _ in found] == [*["walk0.bvh"] * 3, "walk1.bvh", "walk2.bvh"]
@@ -188,9 +195,21 @@ def test_a_variant_is_trained_measured_and_stands_in_the_page(folder, tmp_path, 
     assert again == made[: len(again)], "a finished run is only read"
 
 
+def test_a_row_of_the_budget_is_trained_and_no_other_part(monkeypatch, tmp_path):
+    """The names of other parts begin alike."""
+    asked = []
+    monkeypatch.setattr(
+        trainings,
+        "budget_records",
+        lambda name, budget, runs, command: asked.append((name, budget)),
+    )
+    results.records_of("inbetween-budget.ours", True, None, None, None, tmp_path, "python -m x")
+    assert asked == [("ours", trainings.QUICK)]
+
+
 def test_variants_differ_from_the_recipe_in_what_they_say():
     ours = trainings.recipe_of("ours", 1, trainings.FULL)
-    assert (ours.seed, ours.steps) == (1, 3000)
+    assert (ours.seed, ours.steps) == (1, 1500)
     changed = {
         name: {
             key
@@ -200,7 +219,9 @@ def test_variants_differ_from_the_recipe_in_what_they_say():
         for name in trainings.VARIANTS
     }
     assert changed["no-recordings"] == {"name", "recordings"}
-    assert changed["no-variations"] == {"name", "variations", "levels", "paces"}
+    assert changed["no-variations"] == {
+        "name", "variations", "levels", "paces", "stages",
+    }  # fmt: skip
 
 
 def test_whose_a_recording_is():

@@ -188,7 +188,7 @@ def records_of(
         return dropout.map_records(row, size, bench.trials, runs, command)
     if part == "mend":
         return mend.records(bench, repair.QUICK if quick else repair.FULL, command)
-    if part.startswith("inbetween"):
+    if part in ("inbetween", "inbetween-departures"):
         networks = {
             name: (stage.dancer(name), weights_digest(stage.weights[name]))
             for name in (FILLS_IN, MASKED)
@@ -211,6 +211,7 @@ def records_of(
             weights_digest(stage.weights[FILLS_IN]),
             recorded.QUICK if quick else recorded.FULL,
             command,
+            recorded_inbetweens.on_all_cores,
         )
     if part == "words":
         studio = words.Studio(words.size_of(quick), bench.weights)

@@ -20,6 +20,7 @@ GROUPS = {
         ("real.seam", "real.continuation", "real.style"),
         "real.seam_p95_over_motion",
     ),
+    "In-betweens of recordings": (("real.inbetween",), "real.inbetween_over_interpolation"),
     "Speed, and sound in the player": (("bench.", "player."), "bench.sampler_over_diffusers"),
 }
 UNITS = ("cm", "m/s", "ms", "s", "m")  # the others are ratios, which have no unit

@@ -133,6 +133,36 @@ GOALS = {
     "real.continuation_bone_cm": "the bone error of continuations of recordings",
     "real.continuation_skating_mps": "the sliding of planted feet in continuations of recordings",
     "real.continuation_adherence_mps": "the control error of continuations of recordings",
+    "real.inbetween_over_interpolation": (
+        "the error of in-betweens of recordings, over that of the better interpolation (the mean "
+        "of ten, median)"
+    ),
+    "real.inbetween_walks_over_interpolation": "the same of walks",
+    "real.inbetween_others_over_interpolation": "the same of all other motions",
+    "real.inbetween_one_over_interpolation": (
+        "the error of one in-between of a recording, over that of the better interpolation (median)"
+    ),
+    "real.inbetween_one_p90_over_interpolation": (
+        "the error of one in-between of a recording, over that of the better interpolation (90th "
+        "percentile)"
+    ),
+    "real.inbetween_energy_over_interpolation": (
+        "the energy score of ten in-betweens of a recording, over that of the better interpolation"
+    ),
+    "real.inbetween_others_energy_over_interpolation": (
+        "the energy score of in-betweens of recordings that are no walks, over interpolation's"
+    ),
+    "real.inbetween_skating_over_source": (
+        "the sliding of planted feet in in-betweens of recordings, over the recording's (median)"
+    ),
+    "real.inbetween_skating_p90_over_source": (
+        "the sliding of planted feet in in-betweens of recordings, over the recording's (90th "
+        "percentile)"
+    ),
+    "real.inbetween_fastest_over_source": (
+        "the fastest joint of in-betweens of recordings, over the recording's (90th percentile)"
+    ),
+    "real.inbetween_fallback_share": "the share of in-betweens of recordings that are drawn again",
     "real.continuation_floor_cm": (
         "the depth under the floor of continuations of recordings (95th percentile)"
     ),

@@ -6,10 +6,13 @@ arcs. Intervals are over files.
 """
 
 import warnings
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
+from multiprocessing import get_context
 
 import numpy as np
+import torch
 from jaxtyping import Bool, Float
 
 from motiondiff_edu.baselines.interpolation import linear, spherical
@@ -34,6 +37,9 @@ WALKS = (
     "bvhpython_test_freebvh", "bvhtoolbox_walk01", "cmu_02_01", "cmu_002_02", "cmu_003_01",
     "cmu_003_02", "cmu_005_01", "cmu_12_01", "pymo_AV_8Walk",
 )  # fmt: skip
+
+Task = tuple[Dancer, Motion, int, int]  # who, what, frames between keyframes, samples
+Run = Callable[[Sequence[Task]], list[dict[str, float]]]
 
 
 @dataclass(frozen=True, eq=False)
@@ -126,16 +132,42 @@ def high(values: Float[np.ndarray, "N"]) -> float:
     return float(np.nanpercentile(values, 90)) if np.isfinite(values).any() else np.nan
 
 
-def inbetween_records(dancer: Dancer, weights: str, size: RecordedSize, command: str) -> list[dict]:
+def measured_alone(task: Task) -> dict[str, float]:
+    """What is measured of one window."""
+    dancer, motion, every, samples = task
+    known = keyframes(len(motion), every)
+    return row_of(filled(dancer, motion, known, samples), motion.positions, known)
+
+
+def in_turn(tasks: Sequence[Task]) -> list[dict[str, float]]:
+    return [measured_alone(task) for task in tasks]
+
+
+def on_all_cores(tasks: Sequence[Task]) -> list[dict[str, float]]:
+    """The tasks at the same time, one thread each. The numbers are those of `in_turn`."""
+    start = {"mp_context": get_context("spawn"), "initializer": torch.set_num_threads}
+    with ProcessPoolExecutor(**start, initargs=(1,)) as processes:
+        return list(processes.map(measured_alone, tasks))
+
+
+def inbetween_records(
+    dancer: Dancer, weights: str, size: RecordedSize, command: str, run: Run = in_turn
+) -> list[dict]:
     """The measures of in-betweens (`real.inbetween_*`), at other distances `real.gapN.`."""
     windows, walks = windows_and_walks(size)
     sources = [source for source, _ in windows]
     seeds = {"windows": len(windows), "files": len(set(sources)), "sampling": 0, "steps": STEPS}
     seeds |= {"samples": size.samples, "weights": weights, "walks": int(walks.sum())}
-    records = []
+    tasks = [
+        (dancer, motion, every, size.samples)
+        for every in (SECOND, *OTHERS)
+        for _, motion in windows
+    ]
+    rows, records = run(tasks), []
     for every in (SECOND, *OTHERS):
-        found = measures_of(rows_of(dancer, windows, every, size.samples), walks, sources)
+        here, rows = rows[: len(windows)], rows[len(windows) :]
         prefix = "real." if every == SECOND else f"real.gap{every}."
+        found = measures_of(here, walks, sources)
         records += [one.as_record(prefix, seeds, command) for one in found]
     return records
 
@@ -154,9 +186,4 @@ def rows_of(
     dancer: Dancer, windows: list[tuple[str, Motion]], every: int, samples: int
 ) -> list[dict[str, float]]:
     """What is measured of each window, with keyframes every so many frames."""
-    rows = []
-    for _, motion in windows:
-        known = keyframes(len(motion), every)
-        one = filled(dancer, motion, known, samples)
-        rows.append(row_of(one, motion.positions, known))
-    return rows
+    return in_turn([(dancer, motion, every, samples) for _, motion in windows])
