@@ -47,6 +47,7 @@ class Departures:
     `clearance`: planted feet lie on the floor, y = 0, and swinging ones are higher
     (`beyond.step_clearance`); none is lower than the floor and all given joints
     (`beyond.above_floor`).
+    `remainder`: times what such a network adds to the lines; below 1 the result is nearer to them.
     `resample`: how often each step is made (`inbetweening.resampled`).
     """
 
@@ -56,6 +57,7 @@ class Departures:
     bones: bool = True
     feet: bool = True
     clearance: bool = True
+    remainder: float = 1.0
     resample: int = 1
 
 
@@ -117,7 +119,7 @@ def inbetween(
         denoise = steered(dancer, music, held, departures)
     visited = resampled(timesteps(schedule.S, steps), departures.resample)
     loop = inpaint_steps(denoise, start, schedule, *held, steps=visited, generator=generator)
-    x0 = final(loop).x_s if shown is None else shown.whole(final(loop).x_s)
+    x0 = final(loop).x_s if shown is None else shown.whole(departures.remainder * final(loop).x_s)
     poses = to_positions(dancer.motion_scaler.inverse(x0))
     made = place.leave(poses.double().cpu().numpy())
     whole = np.where(known[..., None], positions, made)

@@ -7,6 +7,7 @@ figure glides, standing, from keyframe to keyframe.
 
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field, replace
+from itertools import pairwise
 
 import numpy as np
 import torch
@@ -27,9 +28,13 @@ GLIDE = 0.4  # s
 
 SINKS = 0.4  # m in a second: of 744 gaps of a second in recordings, none sinks farther in between
 
-AGAIN = "So it was generated again. Check the result"
+AGAIN = "So it was generated again there. Check the result"
+CALMED = "So it was generated again there, nearer to straight lines. Check the result"
 STILL = "Other draws are no better: give more keyframes, or draw straight lines between them"
-DRAWS = 4  # of a sample that is not plausible, before the best of them is given back with a warning
+DRAWS = (
+    4  # of a sample that is not plausible, before its remainder around the lines is made smaller
+)
+CALMER = (0.5, 0.25, 0.0)  # times the remainder
 
 
 @dataclass(frozen=True, order=True)
@@ -64,18 +69,26 @@ def until_plausible(
 ) -> tuple[Float[np.ndarray, "T 21 3"], str]:
     """A generated motion, drawn again where it is not plausible, and what there is to say about it.
 
-    `again(departures)` draws another one, up to DRAWS - 1 times: without guidance where it moves
-    too fast or too low, and as before where its feet glide. The best draw is given back. Nothing is
-    said of a glide that another draw mended.
+    `again(departures)` draws another one, up to DRAWS - 1 times: without guidance if something
+    moves too fast or too low, and as before if feet glide. What is still too fast or too low is
+    drawn with smaller and smaller remainders around straight lines (`Departures.remainder`).
+    Between two frames that are given whole, the best draw is taken. Nothing is said of a glide that
+    another draw mended.
     """
-    fault = first = fault_of(made, given, known)
+    first = fault = fault_of(made, given, known)
     for _ in range(DRAWS - 1):
         if not fault.words:
+            return made, f"{first.words}. {AGAIN}" if first.wild else ""
+        how = replace(OURS, guidance=0.0) if fault.wild else OURS
+        made = better_parts(made, again(how), given, known)
+        fault = fault_of(made, given, known)
+    end = AGAIN
+    for remainder in CALMER:
+        if not fault.wild:
             break
-        other = again(replace(OURS, guidance=0.0) if fault.wild else OURS)
-        found = fault_of(other, given, known)
-        if found < fault:
-            made, fault = other, found
+        calm = again(replace(OURS, guidance=0.0, remainder=remainder))
+        made, end = better_parts(made, calm, given, known), CALMED
+        fault = fault_of(made, given, known)
     if fault.wild:
         return made, f"{fault.words}. {STILL}"
     if fault.words:
@@ -83,7 +96,35 @@ def until_plausible(
             f"{fault.words}, and no other of {DRAWS} draws was better. Give a keyframe there, or "
             f"try another seed"
         )
-    return made, f"{first.words}. {AGAIN}" if first.wild else ""
+    return made, f"{first.words}. {end}" if first.wild else ""
+
+
+def better_parts(
+    made: Float[np.ndarray, "T 21 3"],
+    other: Float[np.ndarray, "T 21 3"],
+    given: Float[np.ndarray, "T 21 3"],
+    known: Bool[np.ndarray, "T 21"],
+) -> Float[np.ndarray, "T 21 3"]:
+    """The motion, and the other one in the parts where it has a smaller fault.
+
+    A part lies between two frames that are given whole, where both motions agree. If no part has a
+    fault by itself, the motion is one part.
+    """
+    parts = [
+        part for part in parts_of(known) if fault_of(made[part], given[part], known[part]).words
+    ]
+    best = made.copy()
+    for part in parts or [slice(None)]:
+        faults = [fault_of(one[part], given[part], known[part]) for one in (made, other)]
+        if faults[1] < faults[0]:
+            best[part] = other[part]
+    return best
+
+
+def parts_of(known: Bool[np.ndarray, "T 21"]) -> list[slice]:
+    """The parts between frames that are given whole, both of them included."""
+    cuts = sorted({0, *np.flatnonzero(known.all(1)).tolist(), len(known) - 1})
+    return [slice(a, b + 1) for a, b in pairwise(cuts) if b - a > 1]
 
 
 def each_until_plausible(

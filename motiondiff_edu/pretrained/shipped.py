@@ -64,8 +64,9 @@ def inbetween(
     known too. With `samples` above 1, the result is a list with this many motions.
     On a motion unlike those of the training a network can fail, and the figure jumps or sinks. If a
     result moves much faster or lower than the given frames require, or its feet glide, it is drawn
-    again, up to three times (`editing.plausible`). A MotionWarning says so, except of a glide that
-    another draw mended. The samples of a smaller number are the first ones of a larger number.
+    again there, and at last nearer to straight lines (`editing.plausible`). A MotionWarning says
+    so, except of a glide that another draw mended. The samples of a smaller number are the first
+    ones of a larger number.
     Raises MotionError or ValueError if motion, mask or numbers do not fit.
     Source: MoFusion 4.4.  Notebook: 15
     """

@@ -8,11 +8,14 @@ from motiondiff_edu.editing.inbetween import OURS
 from motiondiff_edu.editing.masks import keyframes
 from motiondiff_edu.editing.plausible import (
     AGAIN,
+    CALMED,
+    CALMER,
     DRAWS,
     SINKS,
     STILL,
     longest_glide,
     lower_than_given,
+    parts_of,
     until_plausible,
     wilder_than_given,
 )
@@ -87,7 +90,7 @@ def test_a_glide_is_drawn_again_until_a_figure_steps():
         return stands if len(drawn) == 2 else glides
 
     made, note = until_plausible(glides, glides, KNOWN, again)
-    assert made is stands and note == "" and drawn == [OURS, OURS]
+    assert np.array_equal(made, stands) and note == "" and drawn == [OURS, OURS]
 
 
 def test_where_every_draw_glides_the_shortest_is_given_back_and_it_is_said():
@@ -97,7 +100,8 @@ def test_where_every_draw_glides_the_shortest_is_given_back_and_it_is_said():
     left = list(draws)
     made, note = until_plausible(glides, glides, KNOWN, lambda how: left.pop(0))
     assert not left and len(draws) == DRAWS - 1
-    assert made is shorter and "both feet slide between frames 0 and 29" in note
+    assert np.array_equal(made, shorter)
+    assert "both feet slide between frames 0 and 29" in note
 
 
 def test_a_figure_that_sinks_is_told_and_one_that_squats_is_not():
@@ -126,20 +130,63 @@ def test_a_wild_motion_is_drawn_again_without_guidance_and_it_is_said():
         return stands
 
     made, note = until_plausible(jumping(1.5), standing(), KNOWN, again)
-    assert made is stands and [how.guidance for how in drawn] == [0.0]
+    assert np.array_equal(made, stands) and [how.guidance for how in drawn] == [0.0]
     assert "30.0 m/s" in note and note.endswith(AGAIN)
 
 
 def test_where_every_draw_is_wild_the_first_is_given_back_and_it_is_said():
-    first, draws = jumping(1.5), [jumping(1.5), jumping(2.0), jumping(1.0)]
-    left = list(draws)
-    made, note = until_plausible(first, standing(), KNOWN, lambda how: left.pop(0))
-    assert made is first and not left and note.endswith(STILL)
+    first, drawn = jumping(1.5), []
+
+    def again(how):
+        drawn.append(how)
+        return jumping(2.0)
+
+    made, note = until_plausible(first, standing(), KNOWN, again)
+    assert np.array_equal(made, first) and note.endswith(STILL)
+    assert [how.remainder for how in drawn] == [1.0] * (DRAWS - 1) + list(CALMER)
+
+
+def test_what_stays_wild_is_drawn_nearer_to_straight_lines():
+    made, note = until_plausible(
+        jumping(1.5), standing(), KNOWN, lambda how: jumping(1.5 * how.remainder)
+    )
+    assert np.array_equal(made, jumping(0.0)) and "30.0 m/s" in note and note.endswith(CALMED)
+
+
+def test_only_the_part_with_the_fault_is_drawn_again():
+    """A hand waves in both parts; the other draw waves otherwise, and stays where it should."""
+    first, other, hand = jumping(1.5), standing(), JOINTS.index("LeftHand")
+    first[5:15, hand, 1] += 0.1
+    other[5:15, hand, 1] += 0.2
+    other[25:35, hand, 1] += 0.2
+    made, note = until_plausible(first, standing(), KNOWN, lambda how: other)
+    assert np.array_equal(made[:21], first[:21]) and np.array_equal(made[20:], other[20:])
+    assert note.endswith(AGAIN)
+
+
+def test_parts_lie_between_frames_that_are_given_whole():
+    known = np.zeros((10, len(JOINTS)), bool)
+    known[[2, 6, 7]] = True
+    known[4, :5] = True  # some joints are no end of a part
+    assert parts_of(known) == [slice(0, 3), slice(2, 7), slice(7, 10)]
+    assert parts_of(np.zeros_like(known)) == [slice(0, 10)]
+
+
+def test_a_fault_over_several_parts_is_mended_as_a_whole():
+    """Feet slide for half a second, with a keyframe in the middle of it: no part is that long."""
+    glides, known = standing(), keyframes(41, 20)
+    glides[15:26, :, 2] += 0.04 * np.arange(11)[:, None]
+    glides[26:, :, 2] += 0.4
+    assert longest_glide(glides, known) == (15, 25)
+    made, note = until_plausible(glides, standing(), known, lambda how: standing())
+    assert np.array_equal(made, standing()) and note == ""
 
 
 def test_a_glide_is_better_than_a_jump():
-    glides, left = standing(speed=1.0), [standing(speed=1.0), jumping(1.5), jumping(1.5)]
-    made, note = until_plausible(jumping(9.0), glides, KNOWN, lambda how: left.pop(0))
+    glides, jumps = standing(speed=1.0), standing(speed=1.0)
+    jumps[25:30, :, 0] += 9.0
+    left = [glides, jumps, jumps]
+    made, note = until_plausible(jumps, glides, KNOWN, lambda how: left.pop(0))
     assert not left and "both feet slide between frames 0 and 40" in note
     assert np.array_equal(made, glides)
 

@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 import torch
 
+from motiondiff_edu.baselines.interpolation import linear
 from motiondiff_edu.beyond.around_lines import Shown
 from motiondiff_edu.ddpm import cosine_schedule
-from motiondiff_edu.editing.inbetween import PAPER, inbetween
+from motiondiff_edu.editing.inbetween import PAPER, Departures, inbetween
 from motiondiff_edu.editing.masks import keyframes
 from motiondiff_edu.motion.scaler import Scaler
 from motiondiff_edu.performers.dancer import Dancer
@@ -94,6 +95,22 @@ def test_in_betweens_use_it_and_the_papers_masking_does_not(dancer):
     seen.clear()
     inbetween(dancer, truth, known, steps=4, departures=PAPER)
     assert seen == [None] * 4
+
+
+def test_a_smaller_remainder_is_nearer_to_straight_lines(dancer):
+    truth = np.random.default_rng(0).normal(size=(T, 21, 3)).cumsum(0) * 0.05
+    known, bare = keyframes(T, 8), Departures(bones=False, feet=False, clearance=False)
+    whole, half, none = (
+        inbetween(
+            dancer, truth, known, steps=4, departures=replace(bare, remainder=share),
+            generator=seeded(),
+        )[0]
+        for share in (1.0, 0.5, 0.0)
+    )  # fmt: skip
+    lines = linear(truth, known)
+    np.testing.assert_allclose(none, lines, atol=1e-5)
+    np.testing.assert_allclose(half, (whole + lines) / 2, atol=1e-5)
+    assert np.abs(whole - lines).max() > 0.1
 
 
 def test_the_bar_counts_its_evaluations(dancer, monkeypatch):

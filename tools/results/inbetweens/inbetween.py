@@ -191,7 +191,8 @@ def inbetween_records(
 
     Each network with the digest of its weights.
     """
-    truth, (dancer, weights), (paper, paper_weights) = trials(size.motions), shown, masked
+    truth = trials(size.motions)
+    (dancer, weights), (paper, paper_weights) = shown, masked
     seeds = {"data": UNSEEN, "motions": size.motions, "samples": size.samples, "weights": weights}
     seeds |= {"masked": paper_weights}
     seeds |= {"steps": size.steps}
