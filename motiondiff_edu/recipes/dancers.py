@@ -68,9 +68,7 @@ class KeyframeRecipe(DanceRecipe):
     recordings: int = 0  # so many versions of each training recording; all but one at other paces
     levels: float = 0.0  # share of the synthetic motions that are performed lower and leaning
     paces: float = 0.0  # share of the synthetic motions whose pace changes, with pauses
-    variations: float = (
-        0.0  # shares of all motions with limbs turned, pelvis, or upper body changed
-    )
+    variations: float = 0.0  # share with limbs turned; with pelvis moved; with another upper body
     path_scale: float = 0.3  # m: the unit of the pelvis' path (`train_dancer.with_path_scale`)
     sizes: float = 0.0  # bodies are so much larger or smaller, at most (share)
     stages: float = 0.0  # share of all motions that are higher than the floor, by up to a metre

@@ -12,10 +12,19 @@ from data_synth.walking import walk
 from motiondiff_edu.baselines.interpolation import linear
 from motiondiff_edu.conditions.control import constant_control
 from motiondiff_edu.editing.masks import keyframes
+from motiondiff_edu.metrics.keyframes import unknown_error
 from motiondiff_edu.motion.bvh.write import write_bvh
 from motiondiff_edu.recipes.dancers import INBETWEENS
 from tools.results import __main__ as results
-from tools.results.recordings import continuations, inbetweens, page, persons, trainings
+from tools.results.recordings import (
+    continuations,
+    inbetweens,
+    page,
+    persons,
+    reconstructions,
+    trainings,
+)
+from tools.results.recordings.beside import MISSING, with_recordings
 from tools.results.recordings.by_source import by_source
 from tools.results.recordings.windows import (
     FULL,
@@ -229,3 +238,46 @@ def test_whose_a_recording_is():
     assert whose("cmu_05_06_dance.bvh") == whose("cmu_005_12.bvh") == "5"
     assert whose("acrnn_salsa_01.bvh") == whose("cmu_acrnn_salsa_10.bvh") == whose("acrnn_x.bvh")
     assert whose("walk0.bvh") != whose("walk1.bvh")
+
+
+def test_each_block_says_what_is_measured_on_recordings():
+    name = "real.inbetween_over_interpolation"
+    records = {name: {"name": name, "value": 0.9, "low": 0.8, "high": 1.0, "unit": "ratio"}}
+    told = with_recordings("A table.\n", "inbetween", records)
+    assert told.startswith("A table.\n\n**On recordings**: error of the samples' mean")
+    assert "0.9 [0.8, 1]" in told and "walks alone" not in told, "what is not measured is left out"
+    for block in MISSING:
+        assert MISSING[block] in with_recordings("A table.\n", block, {})
+    assert with_recordings("", "walker", records) == "", "a block that is not there says nothing"
+
+
+def test_limbs_of_recordings_are_reconstructed_and_compared_with_lines(folder, monkeypatch):
+    """The network is replaced by one that is off by a centimetre where the limb is missing."""
+
+    def off(walker, positions, known, *, generator):
+        return positions + 0.01 * ~known[..., None] * [0.0, 1.0, 0.0]
+
+    monkeypatch.setattr(reconstructions, "reconstruct", off)
+    monkeypatch.setattr(reconstructions, "WALKS", ("walk0",))
+    size, pieces = replace(QUICK, files=None), list(reconstructions.pieces(QUICK))
+    assert all(len(truth) == 60 for _, truth in pieces)
+    known = reconstructions.limb_missing(reconstructions.ARM)
+    assert (~known).any(1).nonzero()[0].tolist() == list(range(20, 40)) and (~known).sum() == 80
+    made = reconstructions.reconstruction_records(None, "0", size, "python -m x")
+    found = {one["name"]: one["value"] for one in made}
+    for limb, joints in reconstructions.LIMBS.items():
+        lost = reconstructions.limb_missing(joints)
+        over = {
+            source: 0.01 / unknown_error(linear(x, lost)[None], x[None], lost)[0]
+            for source, x in reconstructions.pieces(size)
+        }
+        walk = over.pop("walk0.bvh")
+        assert found[f"real.reconstruction_{limb}_walks_over_lines"] == pytest.approx(
+            walk, rel=1e-4
+        )
+        others = np.median(list(over.values()))
+        assert found[f"real.reconstruction_{limb}_others_over_lines"] == pytest.approx(
+            others, rel=1e-4
+        )
+    text = page.section({one["name"]: one for one in made})
+    assert "an arm, in all other motions" in text

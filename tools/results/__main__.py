@@ -10,11 +10,11 @@ whose answer is a formula); words (motion from text: Table 2, captions that nobo
 editing). These parts train, for minutes a row: ladder (from the paper's walker to ours),
 dance-budget, words-budget, inbetween-budget and mend-map. One row of them is a part as well:
 ladder.ours, dance-budget.v. Parts that need recordings (recordings, recordings-inbetweens,
-inbetween-budget) are measured by name alone, with MOTIONDIFF_REAL_DATA. Without --only, all parts
-are measured for which there are shipped weights. --full adds the parts that train; otherwise their
-records stay as they are. A training that was killed continues. --quick measures little, into
-build/quick, and is for trying the code. --render only writes docs/RESULTS.md from the existing
-records.
+recordings-reconstructions, inbetween-budget) are measured by name alone, with MOTIONDIFF_REAL_DATA.
+Without --only, all parts are measured for which there are shipped weights. --full adds the parts
+that train; otherwise their records stay as they are. A training that was killed continues. --quick
+measures little, into build/quick, and is for trying the code. --render only writes docs/RESULTS.md
+from the existing records.
 """
 
 import argparse
@@ -34,7 +34,7 @@ from .dances.timing import TIMED, time_records
 from .inbetweens import departures, inbetween, known_answer
 from .page.cards import add_metrics
 from .page.render import render
-from .recordings import continuations, persons, trainings
+from .recordings import continuations, persons, reconstructions, trainings
 from .recordings import inbetweens as recorded_inbetweens
 from .recordings import windows as recorded
 from .repairs import both, dropout, mend, repair
@@ -76,7 +76,9 @@ TRAINED = {
     "inbetween-budget": tuple(trainings.VARIANTS),
 }
 # the recordings are not part of the project
-RECORDED = ("recordings", "recordings-inbetweens", "inbetween-budget")
+RECORDED = (
+    "recordings", "recordings-inbetweens", "recordings-reconstructions", "inbetween-budget",
+)  # fmt: skip
 ROUNDS = 7  # of dance-time
 
 
@@ -200,10 +202,12 @@ def records_of(
     if part == "mend-both":
         size = repair.QUICK if quick else repair.FULL
         return both.both_records(bench, stage.dancer(MASKED), size, command)
-    if part == "recordings":
+    if part in ("recordings", "recordings-reconstructions"):
         path = bench.weights["walker"]
         size = recorded.QUICK if quick else recorded.FULL
         measured = checkpoints.load_walker(path), weights_digest(path), size, command
+        if part == "recordings-reconstructions":
+            return reconstructions.reconstruction_records(*measured)
         return [*continuations.recorded_records(*measured), *persons.person_records(*measured)]
     if part == "recordings-inbetweens":
         return recorded_inbetweens.inbetween_records(

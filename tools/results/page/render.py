@@ -12,6 +12,7 @@ from motiondiff_edu.recipes.walkers import WALKER_PRINTED
 from ..dances.tables import choices, table_1
 from ..inbetweens import known_tables
 from ..recordings import page as recordings
+from ..recordings.beside import with_recordings
 from ..repairs import tables
 from ..walks import ladder_page
 from ..walks.steps_table import PAPER_TABLE
@@ -27,8 +28,9 @@ HEAD = """## How to read this page
 `make results` and `make bench` write this page from the records in `docs/results` and
 `benchmarks/results`. Do not edit it.
 
-The course's data are synthetic, and neither paper has published its code or its prepared data.
-Our numbers stand beside the papers' for orientation: they do not reproduce them.
+The course's data are synthetic (the network of in-betweens has also seen eight minutes of
+recordings), and neither paper has published its code or its prepared data. Our numbers stand
+beside the papers' for orientation: they do not reproduce them.
 
 **[low, high]** is a 95 % bootstrap interval. It is taken over clips, for diversity over pasts, and
 for times over repetitions. Unless a section says otherwise it belongs to one training run: another
@@ -232,18 +234,22 @@ def render(docs: Path, benchmarks: Path = Path("benchmarks/results")) -> None:
     """Write RESULTS.md and RESULTS_ALL.md beside the records, each to a temporary name first."""
     records = read_records(docs / "results", benchmarks)
     ladder_page.draw(records, docs / "results")
-    parts = [HEAD, bars(records), walkers(records), footsteps(records, docs / "results")]
+    parts = [HEAD, bars(records), with_recordings(walkers(records), "walker", records)]
+    parts += [footsteps(records, docs / "results")]
     parts += [
         ladder_page.section(records, docs / "results"),
-        table_1(records),
+        with_recordings(table_1(records), "dancer", records),
         folded(choices(records), "What training and dancing cost in time"),
         attention(records, docs / "results"),
     ]
     tables.draw(records, docs / "results")
-    parts += [tables.dropout(records, docs / "results"), tables.repairs(records, docs / "results")]
+    parts += [tables.dropout(records, docs / "results")]
+    parts += [with_recordings(tables.repairs(records, docs / "results"), "mend", records)]
     known = folded(known_tables.known_answers(records), "The spread, and the shares of the parts")
     parts += [known_tables.both(records), known]
-    parts += [tables.inbetweens(records, docs / "results"), table_2(records)]
+    filled = tables.inbetweens(records, docs / "results")
+    parts += [with_recordings(filled, "inbetween", records)]
+    parts += [with_recordings(table_2(records), "words", records)]
     parts += [recordings.section(records), claims(records)]
     parts = [opening(records), contents(parts), *parts]
     for name, text in (("RESULTS.md", "\n".join(filter(None, parts))), (ALL, others(records))):
