@@ -19,7 +19,7 @@ from motiondiff_edu.motion.retarget import load_clip
 from motiondiff_edu.pretrained.checkpoints import available
 
 WALKED, SUNG = 2.0, 2.0  # seconds of the stand-ins
-SHIPPED = {"walker", "dancer", "unconditional"}
+SHIPPED = {"walker", "dancer", "inbetweens"}
 pytestmark = pytest.mark.skipif(
     not SHIPPED <= set(available()), reason="not all weights are shipped: run make pretrained"
 )

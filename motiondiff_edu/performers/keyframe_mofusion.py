@@ -1,6 +1,7 @@
 """MoFusion's U-Net for in-betweens: it sees lines, scale and mask of what is given, too.
 
-Called without them, it denoises whole motions.
+Called without them, it denoises whole motions. It predicts v: at low noise x0_hat is x_s with
+little changed, and details that a small network would smooth away stay.
 Source: MoFusion 3.3, Fig. 3; the further inputs after CondMDI (Cohan and others, 2024).
 """
 
