@@ -137,8 +137,12 @@ GOALS = {
         "the error of in-betweens of recordings, over that of the better interpolation (the mean "
         "of ten, median)"
     ),
-    "real.inbetween_walks_over_interpolation": "the same of walks",
-    "real.inbetween_others_over_interpolation": "the same of all other motions",
+    "real.inbetween_walks_over_interpolation": (
+        "the error of in-betweens of recorded walks, over that of the better interpolation"
+    ),
+    "real.inbetween_others_over_interpolation": (
+        "the error of in-betweens of recordings that are no walks, over interpolation's"
+    ),
     "real.inbetween_one_over_interpolation": (
         "the error of one in-between of a recording, over that of the better interpolation (median)"
     ),
