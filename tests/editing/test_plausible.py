@@ -155,7 +155,8 @@ def test_what_stays_wild_is_drawn_nearer_to_straight_lines():
 
 def test_only_the_part_with_the_fault_is_drawn_again():
     """A hand waves in both parts; the other draw waves otherwise, and stays where it should."""
-    first, other, hand = jumping(1.5), standing(), JOINTS.index("LeftHand")
+    first, other = jumping(1.5), standing()
+    hand = JOINTS.index("LeftHand")
     first[5:15, hand, 1] += 0.1
     other[5:15, hand, 1] += 0.2
     other[25:35, hand, 1] += 0.2

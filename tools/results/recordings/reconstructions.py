@@ -26,7 +26,8 @@ from .inbetweens import WALKS
 from .windows import RecordedSize, recorded, trials
 
 LIMBS = {"arm": ARM, "leg": LEG}
-SECONDS, FIRST, LAST = 3, 1, 2  # of a window; the limb is missing from second FIRST to LAST
+SECONDS = 3  # of a window
+FIRST, LAST = 1, 2  # the limb is missing between these seconds
 
 
 def limb_missing(limb: tuple[str, ...]) -> Bool[np.ndarray, "T 21"]:
