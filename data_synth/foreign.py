@@ -11,6 +11,7 @@ import numpy as np
 import scipy
 from jaxtyping import Float
 
+from motiondiff_edu._files import replacing
 from motiondiff_edu.motion.bvh.fit import Fit, fit
 from motiondiff_edu.motion.bvh.write import text
 
@@ -48,8 +49,8 @@ def write_foreign(
     root, offsets = UNIT * fitted.root, UNIT * fitted.offsets
     whole = replace(fitted, names=names, root=root, offsets=offsets, angles=fitted.angles + shake)
     path = Path(path)
-    path.parent.mkdir(parents=True, exist_ok=True)
-    path.write_text(text(whole, FPS), encoding="ascii", newline="\n")
+    with replacing(path) as aside:
+        aside.write_text(text(whole, FPS), encoding="ascii", newline="\n")
     return path
 
 

@@ -10,8 +10,8 @@ import scipy
 from jaxtyping import Float
 
 from motiondiff_edu.motion.directions import UPLEGS, unit
-from motiondiff_edu.motion.planting import pelvis_ahead, solve_leg
-from motiondiff_edu.motion.skeleton import HEELS, HIPS, TOES, J
+from motiondiff_edu.motion.planting import on_feet, pelvis_ahead
+from motiondiff_edu.motion.skeleton import HEELS, HIPS, J
 
 LOWEST = 0.5  # m that the pelvis goes down, at most
 LEAN = (-0.35, 1.2)  # radians, forward is positive
@@ -30,15 +30,7 @@ def at_levels(
     lean = rng.uniform(*LEAN) * wave(len(positions), rng, fps)
     moved = leaning(positions, lean)
     moved[..., 1] -= drop[:, None]
-    for heel, toe in zip(HEELS, TOES, strict=True):
-        foot = positions[:, toe] - positions[:, heel]
-        ahead = unit(unit(foot) + pelvis_ahead(positions))
-        knee = positions[:, heel - 1] - [0.0, 1.0, 0.0] * drop[:, None]
-        moved[:, heel - 1], moved[:, heel] = solve_leg(
-            moved[:, heel - 2], positions[:, heel], knee, ahead
-        )
-        moved[:, toe] = moved[:, heel] + foot
-    return moved
+    return on_feet(moved, positions[:, list(HEELS)], positions, pelvis_ahead(positions))
 
 
 def leaning(

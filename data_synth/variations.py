@@ -12,8 +12,8 @@ from jaxtyping import Float
 
 from motiondiff_edu.motion.dance_frame import GROUND, Place, facing
 from motiondiff_edu.motion.directions import UPLEGS, unit
-from motiondiff_edu.motion.planting import needed_drop, pelvis_ahead, solve_leg
-from motiondiff_edu.motion.skeleton import HEELS, HIPS, PARENTS, TOES, J, joint_index
+from motiondiff_edu.motion.planting import needed_drop, on_feet, pelvis_ahead
+from motiondiff_edu.motion.skeleton import HEELS, HIPS, PARENTS, J, joint_index
 
 from .levels import LEGS, wave
 from .warps import drawn
@@ -59,13 +59,7 @@ def pelvis_moved(
         moved[:, joint] = pelvis + turn.apply(home[:, joint] - pelvis)
     moved += rng.uniform(0, SWAY) * drawn_swings(len(moved), rng, fps)[:, None]
     moved[..., 1] -= needed_drop(moved[:, list(UPLEGS)], home[:, list(HEELS)], fps)[:, None]
-    for heel, toe in zip(HEELS, TOES, strict=True):
-        foot = home[:, toe] - home[:, heel]
-        ahead = unit(unit(foot) + pelvis_ahead(moved))
-        moved[:, heel - 1], moved[:, heel] = solve_leg(
-            moved[:, heel - 2], home[:, heel], moved[:, heel - 1], ahead
-        )
-        moved[:, toe] = moved[:, heel] + foot
+    moved = on_feet(moved, home[:, list(HEELS)], home, pelvis_ahead(moved))
     return place.leave(moved[:, None])[:, 0]
 
 

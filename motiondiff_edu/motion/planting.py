@@ -88,10 +88,24 @@ def plant(
     body = scipy.ndimage.gaussian_filter1d(shift.mean(1), 0.15 * fps, axis=0, mode="nearest")
     moved = world + body[:, None]
     moved[..., 1] -= needed_drop(moved[:, [1, 5]], ankles, fps)[:, None]
+    return on_feet(moved, ankles, world, pelvis_ahead(world))
+
+
+def on_feet(
+    moved: Float[np.ndarray, "T 21 3"],
+    ankles: Float[np.ndarray, "T 2 3"],
+    world: Float[np.ndarray, "T 21 3"],
+    ahead: Float[np.ndarray, "T 3"],
+) -> Float[np.ndarray, "T 21 3"]:
+    """The moved body with its legs bent so that the ankles are there; feet are those of `world`.
+
+    Knees bend towards the mean of where the foot points and of `ahead`, a unit vector.
+    """
+    moved = moved.copy()
     for side, heel in enumerate(HEELS):
         foot = world[:, TOES[side]] - world[:, heel]
-        ahead = unit(unit(foot) + pelvis_ahead(world))
-        knee, ankle = solve_leg(moved[:, heel - 2], ankles[:, side], moved[:, heel - 1], ahead)
+        front = unit(unit(foot) + ahead)
+        knee, ankle = solve_leg(moved[:, heel - 2], ankles[:, side], moved[:, heel - 1], front)
         moved[:, heel - 1] = knee
         moved[:, heel] = ankle
         moved[:, heel + 1] = ankle + foot
