@@ -20,6 +20,7 @@ OPEN = {
     "widgets/explore.py explore": "the keywords are the parameters of the function that is drawn",
     "results/walks/ladder.py left_out": "the keywords are fields of a Recipe, as in `replace`",
     "results/walks/ladder.py added": "as `left_out`",
+    "tools/mutants.py _with": "the keywords are fields of a node, as in `replace`",
 }
 
 

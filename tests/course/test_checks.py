@@ -1,19 +1,31 @@
-"""Every check on three kinds of answer.
+"""Every check on all kinds of answer.
 
-The notebook's solution, its stub, and the wrong answers of the zoo.
+The notebook's solution and its mutants, the stub, unusual right answers, and the wrong answers of
+the zoo.
 """
 
 import ast
 import functools
 
 import build_student
+import mutants
 import notebook_cells
 import pytest
+from right_answers import RIGHT
 
 from motiondiff_edu.course import checks
 from motiondiff_edu.course.checks import zoo
+from motiondiff_edu.course.checks._compare import other_inputs
 
-CHECKS, WRONG = checks.load_all(), zoo.load_all()
+CHECKS = checks.load_all()
+MISTAKES, OTHERS = zoo.load_all()
+NAMED = [
+    pytest.param(name, hint, answer, id=f"{name}: {hint[:60]} {i}")
+    for name in MISTAKES
+    for hint, wrong in MISTAKES[name].items()
+    for i, answer in enumerate(zoo.several(wrong))
+]
+SOME_MUTANTS = 30  # of each solution; `python tools/mutants.py` takes all
 
 
 def called(source: str) -> list[str]:
@@ -57,15 +69,46 @@ def test_the_stub_is_not_attempted(path, cell, name, capsys):
     assert f"{name}: not attempted yet." in capsys.readouterr().out
 
 
+@pytest.mark.parametrize("name, hint, answer", NAMED)
+def test_a_mistake_gets_its_own_hint_whatever_the_inputs(name, hint, answer):
+    for seed in range(3):
+        with other_inputs(seed), pytest.raises(checks.CheckFailed) as caught:
+            CHECKS[name](answer)
+        assert str(caught.value).endswith(f": {hint}")
+
+
 @pytest.mark.parametrize(
-    "name, what", [pytest.param(n, w, id=f"{n}: {w}") for n in WRONG for w in WRONG[n]]
+    "name, what", [pytest.param(n, w, id=f"{n}: {w}") for n in OTHERS for w in OTHERS[n]]
 )
-def test_the_wrong_answer_is_refused(name, what):
+def test_other_wrong_answers_are_refused(name, what):
     with pytest.raises(checks.CheckFailed) as caught:
-        CHECKS[name](WRONG[name][what])
+        CHECKS[name](OTHERS[name][what])
     assert caught.value.__cause__ is None, (
-        f"the wrong answer crashes instead of being diagnosed: {caught.value}"
+        f"the wrong answer crashes instead of being refused: {caught.value}"
     )
+
+
+@pytest.mark.parametrize(
+    "name, answer",
+    [pytest.param(n, a, id=f"{n} {i}") for n in RIGHT for i, a in enumerate(RIGHT[n])],
+)
+def test_unusual_right_answers_are_taken(name, answer, capsys):
+    for seed in range(2):
+        with other_inputs(seed):
+            CHECKS[name](answer)
+        assert f"{name}: right." in capsys.readouterr().out
+
+
+def test_each_check_has_three_unusual_right_answers():
+    assert {name: len(RIGHT.get(name, ())) for name in CHECKS if len(RIGHT.get(name, ())) < 3} == {}
+
+
+@pytest.mark.parametrize("path", notebook_cells.sources(), ids=lambda path: path.stem[:2])
+def test_no_mutant_of_a_solution_passes(path):
+    for exercise in mutants.exercises(path):
+        judged = exercise.judged(SOME_MUTANTS, seeds=(1, 2))
+        assert judged.passing == [], f"checks.{exercise.check} lets them pass"
+        assert judged.wrong >= 15, f"too few mutants of {exercise.check} give other results"
 
 
 @pytest.mark.parametrize("name", CHECKS)
@@ -83,6 +126,8 @@ def test_an_answer_that_raises_says_what_it_was_given():
         checks.CheckFailed, match=r"IndexError: list index out of range \(it was given \[\], 2\)"
     ):
         CHECKS["merge_steps"](needs_a_first)
+    with pytest.raises(checks.CheckFailed, match="IndexError: list index out of range$"):
+        CHECKS["right_turn"](lambda: [][0])
     with pytest.raises(checks.CheckFailed, match=r"it was given an array \(7, 3\), 4"):
         CHECKS["hold_control"](lambda control, T_h: control[99])
 
@@ -92,8 +137,9 @@ def test_each_check_has_an_exercise_and_two_wrong_answers(name):
     assert name in {param.values[2] for param in EXERCISES}, (
         f"no cell tagged `solution` calls checks.{name}"
     )
-    assert len(WRONG.get(name, {})) >= 2, f"checks.{name} needs two wrong answers in checks/zoo"
+    count = len(MISTAKES.get(name, {})) + len(OTHERS.get(name, {}))
+    assert count >= 5, f"checks.{name} needs five wrong answers in checks/zoo"
 
 
 def test_the_zoo_names_only_checks_there_are():
-    assert set(WRONG) <= set(CHECKS)
+    assert set(MISTAKES) | set(OTHERS) <= set(CHECKS)

@@ -9,9 +9,9 @@ right. _report.py says how to write one. There is one file for each notebook: nb
 import importlib
 import pkgutil
 
-from ._report import REGISTRY, Check, CheckFailed, check, expect, expect_close
+from ._report import REGISTRY, Check, CheckFailed, check, expect
 
-__all__ = ["REGISTRY", "Check", "CheckFailed", "check", "expect", "expect_close", "load_all"]
+__all__ = ["REGISTRY", "Check", "CheckFailed", "check", "expect", "load_all"]
 
 
 def load_all() -> dict[str, Check]:

@@ -2,33 +2,39 @@
 
 To write one, put a plain function of `mine` (the reader's answer) into checks/nbXX.py:
 
-    from ._report import check, expect, expect_close
+    from ._compare import compare
+    from ._report import check
+    from .zoo.nbXX import MISTAKES
+
+    def _batches(rng):
+        yield torch.tensor([[2.0, -1.0]]), 0.36, torch.tensor([[0.5, 3.0]])
+        yield tensors(rng, 2, 5), float(rng.random()), tensors(rng, 2, 5)
 
     @check
     def q_sample(mine):
-        x0, noise = torch.tensor([[2.0, -1.0]]), torch.tensor([[0.5, 3.0]])
-        expect_close(mine(x0, 0.36, noise), [[1.6, 1.8]], "x_s for alpha_bar = 0.36",
-                     mistakes={"take the square root of alpha_bar, too": 0.36 * x0 + 0.8 * noise})
+        compare(mine, noised, _batches, "x_s", MISTAKES["q_sample"])
         return "at alpha_bar = 0.36 six tenths of the signal are left."
 
-* The expected value does not come from the solution: work it out by hand, or take a closed form,
+* The expected value (`noised`) does not come from the solution: take plain loops, a closed form,
 torch, or published numbers.
-* `mistakes` maps a hint to the value that this mistake gives. The hint names the operation, not the
-line of code.
+* `MISTAKES`, in checks/zoo/nbXX.py, maps a hint to the wrong answer of which it is true. The hint
+names the operation, not the line of code.
 * The returned sentence is printed when the answer is right. It says something worth knowing.
-* Sizes are pairwise different (B=2, T=5, J=3), so that swapped axes are found. Numbers are fixed,
-or come from the check's own generator. A check takes less than 1 s.
-* Wrong answers go to checks/zoo/nbXX.py. A test runs each check on the solution, the stub and the
-wrong answers.
+* The first inputs have round numbers, for the reader; then limits (silence, NaN, large scores);
+then what the generator gives. Sizes are pairwise different (B=2, T=5, J=3), so that swapped axes
+are found. A check takes less than 1 s.
+* An answer that changes its input, returns nothing, or differs from call to call is refused here,
+once for all checks.
 
 A stub raises NotImplementedError. The check reports it and does not raise it, so that Run All does
 not stop at empty stubs.
 """
 
 import functools
+import inspect
 import reprlib
 import traceback
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from textwrap import fill
 from typing import Any
 
@@ -78,6 +84,10 @@ def check(function: Callable[[Any], str | None]) -> Check:
 
     @functools.wraps(function)
     def run(mine: Any) -> None:
+        if not callable(mine):
+            raise CheckFailed(
+                f"{name}: hand over the function itself, without (): checks.{name}(my_function)"
+            )
         try:
             content = function(_answering(mine))
         except CheckFailed as error:
@@ -98,17 +108,23 @@ def check(function: Callable[[Any], str | None]) -> Check:
 
 
 def _answering(mine: Any) -> Any:
-    """`mine`, wrapped so that an answer of None fails with the likely reason."""
-    if not callable(mine):
-        return mine
+    """`mine`, wrapped: an answer of None fails with the likely reason, and so do changed inputs."""
 
     @functools.wraps(mine)
     def answer(*args, **kwargs):
+        given = [*args, *kwargs.values()]
+        kept = [_copied(value) for value in given]
         try:
             got = mine(*args, **kwargs)
         except Exception as error:
-            error.add_note("it was given " + ", ".join(map(_shown, [*args, *kwargs.values()])))
+            if given:
+                error.add_note("it was given " + ", ".join(map(_shown, given)))
             raise
+        changed = [i for i, pair in enumerate(zip(given, kept, strict=True)) if not _equal(*pair)]
+        expect(
+            not changed,
+            f"your answer changes {_named(mine, changed)}, which it was given; work on a copy",
+        )
         expect(got is not None, "your answer returns nothing; is a `return` missing?")
         return got
 
@@ -122,49 +138,52 @@ def _shown(value: Any) -> str:
     return reprlib.repr(value)
 
 
+def _copied(value: Any) -> Any:
+    """A copy of arrays, and of lists of them; anything else as it is."""
+    if isinstance(value, torch.Tensor):
+        return value.detach().clone()
+    if isinstance(value, np.ndarray):
+        return value.copy()
+    if isinstance(value, list | tuple):
+        return type(value)(_copied(one) for one in value)
+    return value
+
+
+def _equal(now: Any, before: Any) -> bool:
+    """Whether an argument still is what it was; NaN is equal to NaN."""
+    if isinstance(before, torch.Tensor):
+        before, now = before.numpy(), now.detach().numpy()
+    if isinstance(before, np.ndarray):
+        inexact = np.issubdtype(before.dtype, np.inexact)
+        return now.shape == before.shape and np.array_equal(now, before, equal_nan=inexact)
+    if isinstance(before, list | tuple):
+        return len(now) == len(before) and all(map(_equal, now, before))
+    return True
+
+
+def _named(mine: Callable, changed: list[int]) -> str:
+    """The names of the changed arguments, as the reader wrote them."""
+    try:
+        names = list(inspect.signature(mine).parameters)
+        return " and ".join(f"`{names[i]}`" for i in changed)
+    except (ValueError, TypeError, IndexError):
+        return "its input"
+
+
 def expect(condition: Any, message: str) -> None:
     """Fail with `message` unless the condition holds."""
     if not bool(condition):
         raise CheckFailed(message)
 
 
-def expect_close(
-    got: Any,
-    wanted: Any,
-    what: str,
-    mistakes: Mapping[str, Any] | None = None,
-    rtol: float = 1e-4,
-    atol: float = 1e-5,
-) -> None:
-    """Fail unless `got` equals `wanted`.
-
-    The message names the mistake that gives the same value, or else the entry with the largest
-    error. Numbers, lists, arrays and tensors are accepted.
-    """
-    expect(got is not None, f"{what}: your answer returns nothing; is a `return` missing?")
-    mine, right = as_array(got), as_array(wanted)
-    close = functools.partial(np.allclose, rtol=rtol, atol=atol)
-    if mine.shape == right.shape and close(mine, right):
-        return
-    for hint, value in (mistakes or {}).items():
-        wrong = as_array(value)
-        if wrong.shape == mine.shape and close(mine, wrong):
-            raise CheckFailed(f"{what}: {hint}")
-    expect(
-        mine.shape == right.shape, f"{what} has shape {mine.shape}, and should have {right.shape}"
-    )
-    expect(np.isfinite(mine).all(), f"{what} contains NaN or infinity")
-    difference = np.abs(mine - right)
-    where = np.unravel_index(difference.argmax(), difference.shape)
-    place = f" at {tuple(int(i) for i in where)}" if where else ""
-    raise CheckFailed(f"{what} is {mine[where]:.6g}{place}, and should be {right[where]:.6g}")
-
-
 def as_array(value: Any) -> np.ndarray:
     """A number, list, array or tensor as float64 array. Raises CheckFailed for anything else."""
+    kind = type(value).__name__
     if isinstance(value, torch.Tensor):
         value = value.detach().cpu().numpy()
     try:
-        return np.asarray(value, dtype=np.float64)
+        value = np.asarray(value)
+        expect(value.dtype.kind != "c", "your answer is complex: the root of a negative number?")
+        return value.astype(np.float64)
     except (TypeError, ValueError):
-        raise CheckFailed(f"expected numbers, got {type(value).__name__}") from None
+        raise CheckFailed(f"expected numbers, got {kind}") from None

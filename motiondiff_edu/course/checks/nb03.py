@@ -1,160 +1,104 @@
 """Checks of notebook 03: taking noise away."""
 
-import math
-
+import numpy as np
 import torch
+from torch.distributions import Normal
 
-from ._report import check, expect_close
+from ._compare import compare
+from ._report import check
+from .nb02 import schedule, tensors
+from .zoo.nb03 import MISTAKES
 
 
-@check
-def best_guess(mine):
-    """The expected values come from Bayes' rule, sample by sample, in plain Python."""
+def _noisy_samples(rng: np.random.Generator):
+    """A few by hand; others; one far from all candidates, with little noise."""
     x_s = torch.tensor([[0.3, -0.2, 0.5], [-0.8, 0.1, 0.9]], dtype=torch.float64)
     data = torch.tensor(
         [[-1, 0, 0.4], [1, 0.5, -1], [0.2, -0.6, 1], [0, 1, 1.2]], dtype=torch.float64
     )
-    alpha_bar = torch.tensor([0.36, 0.81], dtype=torch.float64)
+    yield x_s, torch.tensor([0.36, 0.81], dtype=torch.float64), data
+    yield tensors(rng, 3, 5), torch.tensor([0.9, 0.3, 0.6]).double(), tensors(rng, 7, 5)
+    yield 40 + tensors(rng, 2, 3), torch.tensor([0.999, 0.99]).double(), data
 
-    def answer(
-        scale=lambda a: math.sqrt(a), spread=lambda a: 2 * (1 - a), order=(0, 1), over_data=True
-    ):
-        table = []
-        for x, i in zip(x_s, order, strict=True):
-            a = float(alpha_bar[i])
-            w = [
-                math.exp(
-                    -sum((float(p) - scale(a) * float(q)) ** 2 for p, q in zip(x, d, strict=True))
-                    / spread(a)
-                )
-                for d in data
-            ]
-            table.append(w)
-        weight = torch.tensor(table, dtype=torch.float64)
-        return weight / weight.sum(int(over_data), keepdim=True) @ data
 
-    expect_close(
-        mine(x_s, alpha_bar, data),
-        answer(),
-        "E[x0 | x_s]",
-        mistakes={
-            "the candidates must be shrunk by sqrt(alpha_bar) before they are compared": answer(
-                scale=lambda a: 1.0
-            ),
-            "alpha_bar scales variances; the candidates are scaled by its square root": answer(
-                scale=lambda a: a
-            ),
-            "a Gaussian's exponent is divided by TWICE the variance": answer(
-                spread=lambda a: 1 - a
-            ),
-            "the noise in x_s has variance 1 - alpha_bar; that is missing in the exponent": answer(
-                spread=lambda a: 2.0
-            ),
-            "the exponent is divided by a standard deviation, not by the variance": answer(
-                spread=lambda a: 2 * math.sqrt(1 - a)
-            ),
-            "the weights add up to 1 over the samples; over the candidates they should": answer(
-                over_data=False
-            ),
-            "both samples use the alpha_bar of the first": answer(order=(0, 0)),
-            "that is the plain mean of the data: the candidates have no weights": data.mean(
-                0
-            ).expand(2, 3),
-        },
-    )
-    return "The best guess is no row of the data: it is a mean, and a mean need not be a sample."
+def by_bayes(x_s, alpha_bar, data) -> torch.Tensor:
+    """Candidate by candidate: how likely is x_s, if this one was noised?"""
+    guesses = []
+    for x, a in zip(x_s, alpha_bar, strict=True):
+        log = torch.stack(
+            [Normal(a.sqrt() * row, (1 - a).sqrt()).log_prob(x).sum() for row in data]
+        )
+        share = (log - log.logsumexp(0)).exp()
+        guesses.append(sum(w * row for w, row in zip(share, data, strict=True)))
+    return torch.stack(guesses)
 
 
 @check
-def step_back(mine):
-    """Check mine(x_s, s, eps_hat, beta, alpha_bar, z).
+def best_guess(mine):
+    """mine(x_s, alpha_bar, data) against Bayes' rule with torch's Gaussian."""
+    compare(mine, by_bayes, _noisy_samples, "E[x0 | x_s]", MISTAKES["best_guess"])
+    return "The best guess is no row of the data: it is a mean, and a mean need not be a sample."
 
-    At s = 2 the square roots of the tables are round numbers.
-    """
+
+def _noisy_steps(rng: np.random.Generator):
+    """At s = 2 the square roots of the first table are round; s = 1 is the last step."""
     beta = torch.tensor([0.0, 0.4375, 0.36])
     alpha_bar = torch.tensor([1.0, 0.5625, 0.36])
     x = torch.tensor([[1.0, -2.0, 0.5]])
     eps = torch.tensor([[0.4, 1.0, -1.0]])
     z = torch.tensor([[10.0, -10.0, 5.0]])
-    mean = (x - 0.36 / 0.8 * eps) / 0.8
-    expect_close(
-        mine(x, 2, eps, beta, alpha_bar, z),
-        mean + 0.6 * z,
-        "x_1",
-        mistakes={
-            "the noise is multiplied by the variance; take the standard deviation": mean + 0.36 * z,
-            "no noise was added; only the last step, s = 1, adds none": mean,
-            "the re-scaling by 1 / sqrt(alpha_s) is missing": x - 0.36 / 0.8 * eps + 0.6 * z,
-            "all the noise was removed; one step removes beta_s / sqrt(1 - alpha_bar_s) of it": (
-                x - 0.8 * eps
-            )
-            / 0.8
-            + 0.6 * z,
-            "divide by the root of 1 - alpha_bar_s, not by 1 - alpha_bar_s": (x - 0.36 / 0.64 * eps)
-            / 0.8
-            + 0.6 * z,
-            "this divides by the root of alpha_bar_s; take that of alpha_s": (x - 0.36 / 0.8 * eps)
-            / 0.6
-            + 0.6 * z,
-            "the predicted noise was added; subtract it": (x + 0.36 / 0.8 * eps) / 0.8 + 0.6 * z,
-        },
+    yield x, 2, eps, beta, alpha_bar, z
+    yield x, 1, eps, beta, alpha_bar, z
+    table = schedule(rng, 5)
+    betas = torch.cat([torch.zeros(1), 1 - table[1:] / table[:-1]])
+    for s in (4, 2, 1):
+        shape = (2, 5, 3)
+        yield tensors(rng, *shape), s, tensors(rng, *shape), betas, table, tensors(rng, *shape)
+
+
+def stepped(x_s, s: int, eps_hat, beta, alpha_bar, z) -> torch.Tensor:
+    """Through x0_hat and the posterior's mean (DDPM, equation 7), then noise."""
+    a, b = alpha_bar[s] ** 0.5, (1 - alpha_bar[s]) ** 0.5
+    before = alpha_bar[s - 1]
+    x0_hat = (x_s - b * eps_hat) / a
+    mean = (before**0.5 * beta[s] * x0_hat + (1 - beta[s]) ** 0.5 * (1 - before) * x_s) / (
+        1 - alpha_bar[s]
     )
-    last = (x - 0.4375**0.5 * eps) / 0.75
-    expect_close(
-        mine(x, 1, eps, beta, alpha_bar, z),
-        last,
-        "x_0",
-        mistakes={"the last step adds no noise; otherwise samples tremble": last + 0.4375**0.5 * z},
-    )
+    return mean if s == 1 else torch.addcmul(mean, beta[s].sqrt(), z)
+
+
+@check
+def step_back(mine):
+    """mine(x_s, s, eps_hat, beta, alpha_bar, z)."""
+    compare(mine, stepped, _noisy_steps, "x_{s-1}", MISTAKES["step_back"])
     return "At s = 1 the step lands on x0_hat itself."
+
+
+def _leaps(rng: np.random.Generator):
+    """Round roots without and with fresh noise; to the very end; others."""
+    x = torch.tensor([[1.0, -2.0, 0.5]])
+    eps = torch.tensor([[0.4, 1.0, -1.0]])
+    z = torch.tensor([[2.0, -1.0, 3.0]])
+    yield x, eps, 0.36, 0.64, 0.0, z
+    yield x, eps, 0.36, 0.64, 0.5, z
+    yield x, eps, 0.36, 1.0, 0.0, z
+    for eta in (0.3, 1.0):
+        now = float(rng.uniform(0.1, 0.4))
+        then = float(rng.uniform(0.5, 0.8))
+        yield tensors(rng, 2, 3), tensors(rng, 2, 3), now, then, eta, tensors(rng, 2, 3)
+
+
+def leapt(x, eps_hat, now: float, then: float, eta: float, z) -> torch.Tensor:
+    """Equation 12 of DDIM (Song and others, 2021), in numpy, with angles for the shares."""
+    here, there = np.arccos(now**0.5), np.arccos(min(1.0, then**0.5))
+    sigma = eta * np.sin(there) / np.sin(here) * max(0.0, 1 - now / then) ** 0.5
+    x0_hat = (x.numpy() - np.sin(here) * eps_hat.numpy()) / np.cos(here)
+    kept = max(0.0, np.sin(there) ** 2 - sigma**2) ** 0.5
+    return torch.from_numpy(np.cos(there) * x0_hat + kept * eps_hat.numpy() + sigma * z.numpy())
 
 
 @check
 def leap(mine):
-    """Check mine(x_s, eps_hat, alpha_bar_s, alpha_bar_r, eta, z).
-
-    The check takes one DDIM step whose square roots are round numbers.
-    """
-    now = 0.36
-    then = 0.64
-    eta = 0.5
-    x = torch.tensor([[1.0, -2.0, 0.5]])
-    eps = torch.tensor([[0.4, 1.0, -1.0]])
-    z = torch.tensor([[2.0, -1.0, 3.0]])
-    x0 = (x - 0.8 * eps) / 0.6
-    sure = 0.8 * x0 + 0.6 * eps
-    expect_close(
-        mine(x, eps, now, then, 0.0, z),
-        sure,
-        "x_r for eta = 0",
-        mistakes={
-            "x0_hat is x - sqrt(1 - alpha_bar) eps_hat, divided by sqrt(alpha_bar)": 0.8
-            * (x - 0.8 * eps)
-            + 0.6 * eps,
-            "the predicted noise keeps the size it had at s; at r it is smaller": 0.8 * x0
-            + 0.8 * eps,
-            "the predicted noise is missing; at r there is still some": 0.8 * x0,
-            "square roots are missing: alpha_bar is a variance": 0.64 * (x - 0.64 * eps) / 0.36
-            + 0.36 * eps,
-        },
-    )
-    variance = 0.25 * 0.36 / 0.64 * (1 - 0.36 / 0.64)
-    expect_close(
-        mine(x, eps, now, then, eta, z),
-        0.8 * x0 + (0.36 - variance) ** 0.5 * eps + variance**0.5 * z,
-        "x_r for eta = 0.5",
-        mistakes={
-            "fresh noise adds variance: the predicted noise must have less of it": sure
-            + variance**0.5 * z,
-            "the fresh noise is multiplied by its variance; take the standard deviation": 0.8 * x0
-            + (0.36 - variance) ** 0.5 * eps
-            + variance * z,
-            "eta is squared in the variance": 0.8 * x0
-            + (0.36 - 2 * variance) ** 0.5 * eps
-            + (2 * variance) ** 0.5 * z,
-            "no fresh noise was added": 0.8 * x0 + (0.36 - variance) ** 0.5 * eps,
-        },
-    )
-    everything = mine(x, eps, now, 1.0, 0.0, z)
-    expect_close(everything, x0, "a leap to the end (alpha_bar = 1)")
+    """mine(x_s, eps_hat, alpha_bar_s, alpha_bar_r, eta, z): one DDIM step."""
+    compare(mine, leapt, _leaps, "x_r", MISTAKES["leap"])
     return "A leap to the very end gives x0_hat: one-step DDIM shows an average."

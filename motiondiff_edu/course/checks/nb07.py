@@ -3,108 +3,87 @@
 The control held over the future, and the rollout that repeats Algorithm 2.
 """
 
+import numpy as np
 import torch
 
-from ._report import check, expect, expect_close
+from ._compare import compare
+from ._report import check, expect
+from .nb02 import tensors
+from .zoo.nb07 import MISTAKES
+
+
+def _controls(rng: np.random.Generator):
+    """7 rows of which 4 are past; others."""
+    yield torch.arange(21.0).reshape(7, 3), 4
+    yield tensors(rng, 9, 3), 3
+    yield tensors(rng, 6, 3), 5
+
+
+def held(control, T_h: int) -> torch.Tensor:
+    """Row by row."""
+    return torch.stack([control[min(t, T_h - 1)] for t in range(len(control))])
 
 
 @check
 def hold_control(mine):
     """mine(control, T_h): the row that leads out of the last past frame, repeated to the end."""
-    control = torch.arange(21.0).reshape(7, 3)
-    before = control.clone()
-    got = mine(control, 4)
-    expect(
-        torch.equal(control, before), "the data themselves were changed; hold the control in a copy"
-    )
-    wanted = torch.cat([before[:4], before[3:4].expand(3, 3)])
-    mistakes = {
-        "one row too late: row T_h is a step that is not known yet": _held(before, 4, 4),
-        (
-            "one row too early: the step into the first predicted frame is known, it is row T_h - 1"
-        ): _held(before, 4, 2),
-        "row T_h is a future row, too": torch.cat([before[:5], before[3:4].expand(2, 3)]),
-        "the control is unchanged: hold one row over the future": before,
-        "the future is not zero, it repeats the last known step": torch.cat(
-            [before[:4], torch.zeros(3, 3)]
-        ),
-        "the past must stay as it was; only the future is unknown": before[3:4].expand(7, 3),
-    }
-    expect_close(got, wanted, "control of 7 frames, held after a past of 4", mistakes)
+    compare(mine, held, _controls, "the held control", MISTAKES["hold_control"])
     return "The walker knows one step ahead: the step that it is about to take."
 
 
-def _held(control, T_h: int, row: int):
-    return torch.cat([control[:T_h], control[row : row + 1].expand(len(control) - T_h, 3)])
+class _Sampler:
+    """A toy walker of Algorithm 2: each new pose depends on all that it is shown.
 
+    It refuses a past or a control of another length, and a call too many.
+    """
 
-class _Recorder:
-    """A sampler that adds its control to the last pose, and records its inputs."""
-
-    def __init__(self, T_p: int):
-        self.T_p, self.calls = T_p, []
+    def __init__(self, rng: np.random.Generator, shape: tuple[int, ...], frames: int):
+        self.B, self.T_h, self.T_p, self.D, self.C = shape
+        self.of_past = tensors(rng, self.T_p, self.T_h) / self.T_h
+        self.of_control = tensors(rng, self.T_p, self.T_h + self.T_p)
+        self.mix = tensors(rng, self.C, self.D)
+        self.left = frames
 
     def __call__(self, past, control):
-        self.calls.append((past.clone(), control.clone()))
-        future = past[:, -1:, :1] + torch.cumsum(control[:, -self.T_p :, :1], dim=1)
-        return future.expand(-1, -1, past.shape[2])
+        seen, wanted = tuple(past.shape), (self.B, self.T_h, self.D)
+        expect(
+            seen == wanted,
+            f"the sampler got a past {seen}; it needs the last T_h poses, {wanted}",
+        )
+        seen, wanted = tuple(control.shape), (self.B, self.T_h + self.T_p, self.C)
+        expect(
+            seen == wanted,
+            f"the sampler got a control {seen}; it needs T_h rows beside the past and T_p for the "
+            f"new poses, {wanted}",
+        )
+        self.left -= 1
+        expect(
+            self.left >= 0,
+            "the sampler is called more often than there are frames; each call gives one of them",
+        )
+        return torch.tanh(self.of_past @ past + self.of_control @ control @ self.mix)
+
+
+def _rollouts(rng: np.random.Generator):
+    """Two walkers of other sizes; the control has a row for each past and each new frame."""
+    for B, T_h, T_p, D, C, frames in ((2, 4, 3, 6, 2, 5), (3, 5, 2, 4, 3, 7)):
+        sample = _Sampler(rng, (B, T_h, T_p, D, C), frames)
+        yield sample, tensors(rng, B, T_h, D), tensors(rng, B, T_h + frames, C), frames, T_p
+
+
+def rolled(sample, past, control, frames: int, T_p: int) -> torch.Tensor:
+    """All poses in one list; each window looks at its last T_h."""
+    poses, T_h = list(past.unbind(1)), past.shape[1]
+    rows = list(control.unbind(1))
+    for t in range(frames):
+        shown = torch.stack(poses[-T_h:], 1)
+        steps = torch.stack([*rows[t : t + T_h], *[rows[t + T_h - 1]] * T_p], 1)
+        poses.append(sample(shown, steps)[:, 0])
+    return torch.stack(poses[T_h:], 1)
 
 
 @check
 def rollout_by_hand(mine):
-    """Check mine(sample, past, control, frames, T_p).
-
-    The sampler records its inputs.
-    """
-    B = 2
-    T_h = 4
-    T_p = 3
-    D = 6
-    C = 1
-    frames = 5
-    past = (
-        torch.arange(T_h).float()[None, :, None].expand(B, T_h, D)
-        * torch.tensor([1.0, -1.0])[:, None, None]
-    )
-    control = (10.0 ** torch.arange(T_h + frames))[None, :, None].expand(B, -1, C).contiguous()
-    sample = _Recorder(T_p)
-    got = mine(sample, past.clone(), control.clone(), frames, T_p)
-    expect(sample.calls, "the sampler was never called")
-    _first_call(*sample.calls[0], past, control, T_h, T_p)
-    often = (
-        f"the sampler was called {len(sample.calls)} times for {frames} frames; "
-        "keep only the first pose of each window"
-    )
-    expect(len(sample.calls) == frames, often)
-    shown = sample.calls[1][0]
-    expect(
-        not torch.equal(shown, past),
-        "the second window still has the first past: append the pose that was kept",
-    )
-    expect(
-        shown.shape == past.shape,
-        f"the second past has {shown.shape[1]} poses, not {T_h}; drop the oldest",
-    )
-    new = past[:, -1] + control[:, T_h - 1]
-    expect_close(shown, torch.cat([past[:, 1:], new[:, None]], 1), "the past of the second window")
-    steps = torch.cumsum(control[:, T_h - 1 : T_h - 1 + frames], dim=1)
-    expect_close(got, past[:, -1:] + steps.expand(-1, -1, D), "the poses of the rollout", rtol=1e-3)
+    """Check mine(sample, past, control, frames, T_p)."""
+    compare(mine, rolled, _rollouts, "the poses of the rollout", MISTAKES["rollout_by_hand"])
     return "After ten frames the network sees only its own poses, so its errors can add up."
-
-
-def _first_call(past_seen, control_seen, past, control, T_h: int, T_p: int):
-    expect_close(past_seen, past, "the past of the first window")
-    rows = [control[:, :T_h], control[:, T_h - 1 : T_h].expand(-1, T_p, -1)]
-    mistakes = {
-        "this is look-ahead: the future control is not known yet; hold the last row": control[
-            :, : T_h + T_p
-        ],
-        (
-            "the row that is held is one too late: which step leads into the first new frame?"
-        ): torch.cat([rows[0], control[:, T_h : T_h + 1].expand(-1, T_p, -1)], dim=1),
-        "the rows beside the past are one frame too late": torch.cat(
-            [control[:, 1 : T_h + 1], control[:, T_h : T_h + 1].expand(-1, T_p, -1)], dim=1
-        ),
-        "the unknown future is not zero": torch.cat([rows[0], torch.zeros_like(rows[1])], dim=1),
-    }
-    expect_close(control_seen, torch.cat(rows, dim=1), "the control of the first window", mistakes)

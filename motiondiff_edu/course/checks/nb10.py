@@ -3,244 +3,134 @@
 import numpy as np
 import torch
 
-from ._report import check, expect, expect_close
+from ._compare import compare
+from ._report import check, expect
+from .nb02 import tensors
+from .zoo.nb10 import MISTAKES
 
 T_H = 3
 
 
-def walk_on(past: torch.Tensor, control: torch.Tensor) -> torch.Tensor:
-    """A walker whose pose is two numbers, (B, 3, 2).
+class Walker:
+    """A toy `walk_on` whose pose is two numbers, (B, 3, 2).
 
-    Column 0 of the control changes the first number, column 2 the second.
-    """
-    steps = control[:, T_H - 1 : 2 * T_H - 1][..., [0, 2]]
-    return past[:, -1:] + steps.cumsum(1)
-
-
-class Watched:
-    """A `walk_on` that counts its calls.
-
-    It refuses a past or a control that is too short.
+    Column 0 of the control changes the first number, column 2 the second; a little of all past
+    poses is in each new one. It refuses a past or a control that is too short, and a third call.
     """
 
-    def __init__(self):
+    def __init__(self, of_past: torch.Tensor):
+        self.of_past = of_past
         self.calls = 0
 
     def __call__(self, past: torch.Tensor, control: torch.Tensor) -> torch.Tensor:
         self.calls += 1
-        rows = control.shape[1]
-        call = f"call {self.calls} of walk_on got"
+        call = f"call {self.calls} of walk_on"
+        B, rows = len(past), control.shape[1]
         expect(
-            past.shape == (2, T_H, 2),
-            (f"{call} a past {tuple(past.shape)}; it needs all T_h = {T_H} frames, (2, {T_H}, 2)"),
+            past.shape[1:] == (T_H, 2),
+            f"{call} got a past {tuple(past.shape)}; it needs all T_h = {T_H} frames, "
+            f"({B}, {T_H}, 2)",
         )
         expect(
-            control.shape == (2, 2 * T_H, 3),
-            (
-                f"{call} {rows} rows of control; it needs all {2 * T_H}: "
-                f"{T_H} for the past, {T_H} for the new frames"
-            ),
+            rows == 2 * T_H,
+            f"{call} got {rows} rows of control; it needs all {2 * T_H}: {T_H} for the past, "
+            f"{T_H} for the new frames",
         )
-        return walk_on(past, control)
+        expect(self.calls < 3, f"{call}: one round takes two calls, there and back")
+        steps = control[:, T_H - 1 : 2 * T_H - 1][..., [0, 2]]
+        return past[:, -1:] + steps.cumsum(1) + self.of_past @ past
 
 
-def back_in_time(control: torch.Tensor) -> torch.Tensor:
-    """-control[T - 2 - t], the last row repeated."""
-    reversed_ = -control[:, :-1].flip(1)
-    return torch.cat([reversed_, reversed_[:, -1:]], dim=1)
+def turned_round(control: torch.Tensor) -> torch.Tensor:
+    """Row t leads from frame T - 1 - t back to T - 2 - t; the last one repeats."""
+    T = control.shape[1]
+    return torch.stack([-control[:, max(T - 2 - t, 0)] for t in range(T)], 1)
 
 
-def one_round(past, known, start, control, reverse=back_in_time, flip_ahead=True, flip_back=True):
-    """One round from the filled past: what the walker gives for each of the past frames."""
-    filled = torch.where(known, past, start)
-    ahead = walk_on(filled, control)
-    back = walk_on(ahead.flip(1) if flip_ahead else ahead, reverse(control))
-    return back.flip(1) if flip_back else back
+def _controls(rng: np.random.Generator):
+    """Two walks by hand; others."""
+    one = torch.tensor([[1.0, 0.5, 4], [2, 0.25, 8], [3, 0.125, 16], [7, 0.75, 32]])
+    yield (torch.stack([one, -10 * one]),)
+    yield (tensors(rng, 3, 6, 3),)
 
 
-def material():
-    """Past with NaN in its holes, mask, mean pose, control, and the result of one round.
+@check
+def time_reversal(mine):
+    """mine(control (B, T, 3)): the control of the same walk played backwards."""
+    what = "the control of walks, played backwards"
+    compare(mine, turned_round, _controls, what, MISTAKES["time_reversal"])
+    return "Backwards in time, all three velocities change their sign, and all rows move by one."
 
-    All are worked out by hand. The last frame of sample 0 is known: the way there ends at
-    (12, 14.25), and the way back goes through the true places. In the last frame of sample 1 only
-    the first number is known: the other starts at its mean 9 and comes back to 9.
-    """
+
+def _pasts(rng: np.random.Generator):
+    """Round numbers with a walker that only adds the control; then others with holes anywhere."""
     nan = float("nan")
     past = torch.tensor(
         [[[1.0, nan], [nan, nan], [4.0, 5.0]], [[2.0, 7.0], [nan, 6.0], [5.0, nan]]]
     )
     control = torch.tensor(
         [[1.0, 0.4, 2], [2, 0.3, 0.5], [4, 0.2, 1], [3, 0.1, 0.25], [1, 0.6, 8], [16, 0.5, 32]]
-    )
-    wanted = torch.tensor([[[1.0, 2.5], [2, 4.5], [4, 5]], [[2.0, 7.0], [3, 6.0], [5, 9]]])
-    return past, ~torch.isnan(past), torch.tensor([8.0, 9.0]), control.expand(2, -1, -1), wanted
+    ).expand(2, -1, -1)
+    yield Walker(torch.zeros(T_H, T_H)), past, ~past.isnan(), torch.tensor([8.0, 9.0]), control
+    for _ in range(2):
+        past = tensors(rng, 3, T_H, 2)
+        known = torch.from_numpy(rng.random((3, T_H, 2)) < 0.5)
+        past[~known] = nan
+        walker = Walker(0.2 * tensors(rng, T_H, T_H))
+        yield walker, past, known, tensors(rng, 2), tensors(rng, 3, 2 * T_H, 3)
 
 
-@check
-def time_reversal(mine):
-    """mine(control (B, T, 3)): the control of the same walk played backwards."""
-    control = (
-        torch.tensor([[1.0, 0.5, 4], [2, 0.25, 8], [3, 0.125, 16], [7, 0.75, 32]])
-        .expand(2, -1, -1)
-        .clone()
-    )
-    control[1] *= -10
-    kept = control.clone()
-    wanted = torch.tensor([[-3.0, -0.125, -16], [-2, -0.25, -8], [-1, -0.5, -4], [-1, -0.5, -4]])
-    wanted = torch.stack([wanted, -10 * wanted])
-    flipped = control.flip(1)
-    last = torch.cat([wanted[:, :3], -control[:, :1] * 0], dim=1)
-    expect_close(
-        mine(control),
-        wanted,
-        "the control of two walks, played backwards",
-        mistakes={
-            "only the order is reversed; a walk backwards has a negative speed": flipped,
-            (
-                "the signs are right; but control[t] leads from frame t to t + 1, "
-                "so the rows move by one"
-            ): -flipped,
-            "order and shift are right, the signs are not": -wanted,
-            "turning has a sign, too: a left turn is a right turn on the way back": wanted
-            * torch.tensor([1, 1, -1.0]),
-            "speed to the left has a sign, too": wanted * torch.tensor([1, -1.0, 1]),
-            "the last row repeats the one before, it is not zero": last,
-            "the signs are right, but the rows are in the old order": -control,
-            "nothing has changed": kept,
-            "the sample axis was reversed; time is axis 1": wanted.flip(0),
-        },
-    )
-    expect(
-        torch.equal(control, kept),
-        "your function changes the control it was given; build a new one",
-    )
-    return "Backwards in time, all three velocities change their sign, and all rows move by one."
+def one_round(walk_on, past, known, mean, control) -> torch.Tensor:
+    """Frame by frame: fill, walk on, turn round, walk back, turn round, keep what was given."""
+    filled = past.clone()
+    for place in (~known).nonzero().tolist():
+        filled[tuple(place)] = mean[place[-1]]
+    ahead = torch.stack(walk_on(filled, control).unbind(1)[::-1], 1)
+    back = torch.stack(walk_on(ahead, turned_round(control)).unbind(1)[::-1], 1)
+    result = past.clone()
+    for place in (~known).nonzero().tolist():
+        result[tuple(place)] = back[tuple(place)]
+    return result
 
 
 @check
 def there_and_back(mine):
     """mine(walk_on, past, known, mean, control): one round; past has NaN in its holes."""
-    past, known, mean, control, wanted = material()
-    given = past.clone()
-    watched = Watched()
-    answer = mine(watched, past, known, mean, control)
-    expect(
-        np.shape(answer) == (2, 3, 2),
-        f"the past has shape (2, 3, 2), your answer {np.shape(answer)}",
-    )
-    expect(
-        torch.equal(past.nan_to_num(-1), given.nan_to_num(-1)),
-        "your function changes the past it was given",
-    )
-    answer = torch.as_tensor(answer)
-    expect(
-        not torch.isnan(answer[~known]).any(),
-        "there is NaN in the holes. Either the walker got NaN, or the holes were not filled from "
-        "the way back (known * past is NaN, too: use torch.where)",
-    )
-    expect(
-        watched.calls == 2,
-        (
-            f"calls of walk_on: {watched.calls}; one round takes two: "
-            "there, and back from the result"
-        ),
-    )
-
-    def variant(reverse=back_in_time, flip_ahead=True, flip_back=True):
-        how = (reverse, flip_ahead, flip_back)
-        return torch.where(known, past, one_round(past, known, mean, control, *how))
-
-    right = one_round(past, known, mean, control)
-    zero = torch.where(known, past, one_round(past, known, torch.zeros(2), control))
-    expect_close(
-        answer,
-        wanted,
-        "the past after one round",
-        mistakes={
-            "the control is reversed in order only; its signs must change": variant(
-                reverse=lambda c: c.flip(1)
-            ),
-            "the control is negated, but not shifted by its one frame": variant(
-                reverse=lambda c: -c.flip(1)
-            ),
-            "the control of the way back is that of the way there": variant(reverse=lambda c: c),
-            "turning (column 2) keeps its sign on your way back": variant(
-                reverse=lambda c: back_in_time(c) * torch.tensor([1, 1, -1.0])
-            ),
-            "the new frames are not reversed before they go into the walker again": variant(
-                flip_ahead=False
-            ),
-            "the result of the way back is reversed in time; reverse it before you fill": variant(
-                flip_back=False
-            ),
-            "time was never reversed: walking on twice leads farther ahead": variant(
-                flip_ahead=False, flip_back=False
-            ),
-            (
-                "neither time nor the control was reversed: walking on twice leads farther ahead"
-            ): variant(reverse=lambda c: c, flip_ahead=False, flip_back=False),
-            "the mask is inverted: known is True where something was given": torch.where(
-                known, right, torch.where(known, past, mean)
-            ),
-            "the given entries are overwritten by the walker's": right,
-            "holes start at 0 metres, which is on the floor; start them at the mean pose": zero,
-            "the holes still have their starting values": torch.where(known, past, mean),
-        },
-    )
+    compare(mine, one_round, _pasts, "the past after one round", MISTAKES["there_and_back"])
     return (
-        "One number of sample 1 is still its mean: the toy walker of this check knows nothing of "
-        "bodies, and has nothing better for it."
+        "In the first case one number is still its mean: the toy walker of this check knows "
+        "nothing of bodies, and has nothing better for it."
     )
+
+
+def _changes(rng: np.random.Generator):
+    """Holes that move by 3, 4 and 0, and by 1 and 7; a sample without holes; others."""
+    before = torch.zeros(2, 4, 3)
+    known = torch.ones(2, 4, 3, dtype=torch.bool)
+    known[0, 1] = False
+    known[1, 2:, 0] = False
+    after = before + 100.0
+    after[0, 1] = torch.tensor([3.0, 4.0, 0.0])
+    after[1, 2:, 0] = torch.tensor([1.0, 7.0])
+    yield before, after, known
+    known = torch.from_numpy(rng.random((3, 5, 2)) < 0.6)
+    known[1] = True
+    known[2] = True
+    known[2, 3, 1] = False  # a single hole
+    yield tensors(rng, 3, 5, 2), tensors(rng, 3, 5, 2), known
+
+
+def hole_by_hole(before, after, known) -> list[float]:
+    """Hole by hole, in plain Python."""
+    changes = []
+    for b, a, k in zip(before, after, known, strict=True):
+        squares = [float((a[tuple(p)] - b[tuple(p)]) ** 2) for p in (~k).nonzero().tolist()]
+        changes.append((sum(squares) / len(squares)) ** 0.5 if squares else 0.0)
+    return changes
 
 
 @check
 def moved_by(mine):
     """mine(before, after, known): how far the holes moved, RMS, one number for each sample."""
-    before = torch.zeros(2, 4, 3)
-    known = torch.ones(2, 4, 3, dtype=torch.bool)
-    known[0, 1] = False  # three holes that move by 3, 4 and 0; in sample 1 two that move by 1 and 7
-    known[1, 2:, 0] = False
-    after = before + 100.0
-    after[0, 1] = torch.tensor([3.0, 4.0, 0.0])
-    after[1, 2:, 0] = torch.tensor([1.0, 7.0])
-    moved = (after - before).square()
-    missing = ~known
-    wanted = [(25 / 3) ** 0.5, 5.0]
-    given = {"before": before, "after": after, "known": known}
-    kept = {name: x.clone() for name, x in given.items()}
-    answer = mine(before, after, known)
-    expect_close(
-        answer,
-        wanted,
-        "the change of two samples",
-        mistakes={
-            "that is the mean of squares; take its root": [25 / 3, 25.0],
-            "known entries are counted, too; measure only the holes": moved.flatten(1)
-            .mean(1)
-            .sqrt(),
-            "the known entries were measured instead of the holes": (moved * known)
-            .flatten(1)
-            .sum(1)
-            .sqrt()
-            / known.flatten(1).sum(1).sqrt(),
-            "this is divided by the number of all entries; divide by the number of holes": (
-                (moved * missing).flatten(1).mean(1)
-            ).sqrt(),
-            "this is one number for both samples; return one for each": (
-                moved[missing].mean()
-            ).sqrt(),
-            "that is the mean distance; the rule takes the root of the mean square": [7 / 3, 4.0],
-            "that is the root of the sum; divide by the number of holes first": [5.0, 50.0**0.5],
-        },
-    )
-    for name, x in given.items():
-        expect(
-            torch.equal(x, kept[name]),
-            f"your function changes the `{name}` it was given; build a new tensor",
-        )
-    whole = mine(before, after, torch.ones_like(known))
-    expect(
-        torch.equal(torch.as_tensor(whole), torch.zeros(2)),
-        "where nothing is missing the change is 0; yours is not (0 / 0?)",
-    )
+    compare(mine, hole_by_hole, _changes, "the change of each sample", MISTAKES["moved_by"])
     return "Each sample has its own change, but the loop runs until all of them are small."

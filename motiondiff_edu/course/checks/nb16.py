@@ -3,93 +3,107 @@
 import numpy as np
 import torch
 
-from ...motion.skeleton import MIRROR
-from ._report import check, expect, expect_close
+from ._compare import compare
+from ._report import check, expect
+from .nb01 import in_the_mirror
+from .nb02 import tensors
+from .zoo import several
+from .zoo.nb16 import MISTAKES
+
+
+def _texts(rng: np.random.Generator):
+    """Texts of two and of four words; others; words turned round."""
+    tokens = torch.arange(2 * 4 * 3).float().reshape(2, 4, 3) ** 1.5
+    mask = torch.tensor([[True, True, False, False], [True, True, True, True]])
+    yield tokens, mask
+    yield torch.flip(tokens[1:], dims=[1]), mask[1:]
+    mask = torch.arange(5)[None] < torch.tensor([1, 3, 5])[:, None]
+    yield tensors(rng, 3, 5, 4), mask
+
+
+def text_by_text(tokens, mask) -> torch.Tensor:
+    """Only the words that are there, one text after the other."""
+    return torch.stack([text[there].mean(0) for text, there in zip(tokens, mask, strict=True)])
 
 
 @check
 def bag(mine):
     """mine(tokens, mask): the mean of the tokens that are there, (B, C)."""
-    tokens = torch.arange(2 * 4 * 3).float().reshape(2, 4, 3) ** 1.5
-    mask = torch.tensor([[True, True, False, False], [True, True, True, True]])
-    right = torch.stack([tokens[0, :2].mean(0), tokens[1].mean(0)])
-    inverted = torch.stack([tokens[0, 2:].mean(0), tokens[1].mean(0) * 0])
-    kept = tokens * mask[..., None]
-    expect_close(
-        mine(tokens.clone(), mask.clone()),
-        right,
-        "the bags of two texts, of two and of four words",
-        mistakes={
-            "padding is in the mean; leave out what the mask does not have": tokens.mean(1),
-            "divide by the number of words that are there, not by the longest text": kept.mean(1),
-            "take the mean of the words, not their sum": kept.sum(1),
-            "this is the first word alone": tokens[:, 0],
-            "the mask is inverted: True is a word": inverted,
-        },
-    )
-    turned = torch.flip(tokens[1:], dims=[1])
-    expect_close(
-        mine(turned, mask[1:]), right[1:], "the bag of the second text with its words turned round"
-    )
+    compare(mine, text_by_text, _texts, "the bag of each text", MISTAKES["bag"])
     return "The order of the words is lost, so no network can get it back from a bag."
+
+
+def _guesses(rng: np.random.Generator):
+    """w above and below 1; 1 is the conditional, 0 the guess without a text."""
+    for w in (2.5, 0.4, 1.0, 0.0):
+        yield tensors(rng, 2, 3), tensors(rng, 2, 3), w
+
+
+def weighted(with_text, without, w: float) -> torch.Tensor:
+    """Two weights that sum to one."""
+    return torch.lerp(without, with_text, w)
 
 
 @check
 def guided(mine):
     """mine(with_text, without, w): eps_hat of classifier-free guidance."""
-    a, b = torch.tensor([[1.0, -2.0, 0.5]]), torch.tensor([[0.5, 1.0, 0.25]])
-    for w in (2.5, 0.4):
-        expect_close(
-            mine(a, b, w),
-            b + w * (a - b),
-            f"eps_hat for w = {w}",
-            mistakes={
-                "text and no text are swapped": a + w * (b - a),
-                "that adds w times the difference to the guess *with* text; w = 1 must give it as "
-                "it is": a + w * (a - b),
-                "the weights must sum to one: 1 - w belongs to the guess without text": w * a + b,
-                "this scales the guess alone; where is the one without text?": w * a,
-                "the sign of the second weight: 1 - w, which is negative above 1": w * a
-                - (1 - w) * b,
-                "this is the mean of both": (a + b) / 2,
-            },
-        )
-    expect_close(mine(a, b, 1.0), a, "eps_hat for w = 1, the conditional")
-    expect_close(mine(a, b, 0.0), b, "eps_hat for w = 0, without the text")
+    compare(mine, weighted, _guesses, "eps_hat", MISTAKES["guided"])
     return "Above 1 it goes beyond the text, away from what the network makes without one."
+
+
+SENTENCES = (
+    ("kick", "left", "foot", "then", "wave", "right", "hand"),
+    ("right", "right", "left"),
+    ("jump", "then", "turn"),
+)
 
 
 @check
 def mirrored(mine):
     """mine(positions, words): the motion in a mirror, and the words that describe it."""
-    positions = np.random.default_rng(0).normal(size=(5, 21, 3))
-    words = ("kick", "left", "foot", "then", "wave", "right", "hand")
-    swapped = ("kick", "right", "foot", "then", "wave", "left", "hand")
-    flip = np.array([-1.0, 1.0, 1.0])
-    got = mine(positions.copy(), words)
-    expect(
-        isinstance(got, tuple) and len(got) == 2, "return two things: the positions and the words"
-    )
-    expect_close(
-        got[0],
-        positions[:, MIRROR] * flip,
+    answers = {}
+
+    def motion(positions):
+        answers[len(positions)] = mine(positions, SENTENCES[len(positions) - 3])
+        got = answers[len(positions)]
+        pair = isinstance(got, tuple | list) and len(got) == 2
+        expect(pair, "return two things: the positions and the words")
+        return got[0]
+
+    def motions(rng: np.random.Generator):
+        for T in (3, 4, 5):
+            yield (rng.normal(size=(T, 21, 3)),)
+
+    def seen(answer):
+        """The positions of an answer in `MISTAKES`."""
+        return lambda positions: answer(positions, SENTENCES[len(positions) - 3])[0]
+
+    mistakes = MISTAKES["mirrored"].items()
+    of_motion = {hint: tuple(map(seen, several(wrong))) for hint, wrong in mistakes}
+    compare(
+        motion,
+        lambda positions: in_the_mirror(positions, np.zeros((1, 3)))[0],
+        motions,
         "the mirrored positions",
-        mistakes={
-            "x is negated, but the left arm is still called the left arm: exchange the joints": (
-                positions * flip
-            ),
-            "the joints are exchanged, but nothing is reflected: negate x": positions[:, MIRROR],
-            "negate x, which points to the side, not z": positions[:, MIRROR]
-            * np.array([1.0, 1.0, -1.0]),
-            "the positions are as they were": positions,
-        },
+        of_motion,
     )
-    told = tuple(got[1])
-    expect(told != words, "the words are as they were, and now they are wrong: exchange the sides")
-    expect(
-        told != tuple("right" if w == "left" else w for w in words)
-        and told != tuple("left" if w == "right" else w for w in words),
-        "one side has become the other, and then there are two alike: exchange both at once",
-    )
-    expect(told == swapped, f"the words should be {' '.join(swapped)!r}, not {' '.join(told)!r}")
+    _expect_words({T: tuple(got[1]) for T, got in answers.items()})
     return "Half of the training's clips are made in this way, at no extra cost."
+
+
+def _expect_words(told: dict[int, tuple]) -> None:
+    """Whether each sentence has its sides exchanged; `told` is by the number of frames."""
+    other = {"left": "right", "right": "left"}
+    right = {T: tuple(other.get(word, word) for word in SENTENCES[T - 3]) for T in told}
+    if told == right:
+        return
+    positions = np.zeros((1, 21, 3))
+    for hint, wrong in MISTAKES["mirrored"].items():
+        for one in several(wrong):
+            same = {T: tuple(one(positions, SENTENCES[T - 3])[1]) for T in told}
+            expect(same != told, f"the words: {hint}")
+    T = next(T for T in told if told[T] != right[T])
+    expect(
+        False,
+        f"the words should be {' '.join(right[T])!r}, not {' '.join(map(str, told[T]))!r}",
+    )

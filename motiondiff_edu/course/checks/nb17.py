@@ -5,12 +5,14 @@ import math
 import numpy as np
 import torch
 
-from ._report import check, expect_close
+from ._compare import compare
+from ._report import check
+from .nb02 import tensors
+from .zoo.nb17 import MISTAKES
 
 
-@check
-def r_precision(mine):
-    """mine(distances, k): the share of texts (rows) whose own motion is among the k nearest."""
+def _tables(rng: np.random.Generator):
+    """Ranks 0, 1, 2, 1 and 4; motions that are all the same; others, with ties."""
     distances = np.array(
         [
             [0.2, 0.9, 0.8, 0.7, 0.6],
@@ -20,78 +22,65 @@ def r_precision(mine):
             [0.1, 0.2, 0.3, 0.4, 0.9],
         ]
     )
-    ranks = np.array([0, 1, 2, 1, 4])
-    by_motion = (distances < np.diagonal(distances)[None]).sum(0)
     for k in (1, 2, 3):
-        expect_close(
-            mine(distances.copy(), k),
-            (ranks < k).mean(),
-            f"R-Precision (top {k}) of five texts",
-            mistakes={
-                "a rank of 0 is the nearest: the own motion must be among the first k": (
-                    ranks <= k
-                ).mean(),
-                "this is exactly the k-th nearest; nearer ones count, too": (ranks == k - 1).mean(),
-                "take the share, not the number": (ranks < k).sum(),
-                "rows are texts: choose a motion for each text, not a text for each motion": (
-                    by_motion < k
-                ).mean(),
-                "the nearest has the *smallest* distance": (4 - ranks < k).mean(),
-            },
-        )
-    expect_close(
-        mine(np.ones((4, 4)), 1),
-        0.25,
-        "R-Precision (top 1) where all four motions are the same",
-        mistakes={
-            "a network that always makes the same motion must not win: of motions that are equally "
-            "near, each has an equal share": 1.0,
-            "the own motion is as near as the others, so it is the nearest in a quarter of the "
-            "cases": 0.0,
-        },
-    )
+        yield distances, k
+    yield np.ones((4, 4)), 1
+    for k in (1, 2, 4):
+        yield rng.integers(0, 5, size=(7, 7)) / 4.0, k
+
+
+def by_shuffling(distances: np.ndarray, k: int) -> float:
+    """Text by text: sorted, with equal motions in all orders alike."""
+    shares = []
+    for i, row in enumerate(distances.tolist()):
+        places = [place for place, one in enumerate(sorted(row)) if one == row[i]]
+        shares.append(sum(place < k for place in places) / len(places))
+    return sum(shares) / len(shares)
+
+
+@check
+def r_precision(mine):
+    """mine(distances, k): the share of texts (rows) whose own motion is among the k nearest."""
+    compare(mine, by_shuffling, _tables, "R-Precision", MISTAKES["r_precision"])
     return "Among 32 motions, chance gives k/32: print it beside the score."
+
+
+def _motions(rng: np.random.Generator):
+    """A share of 36 %, of 1 %, and any."""
+    for alpha_bar in (0.36, 0.01, float(rng.uniform(0.2, 0.9))):
+        yield tensors(rng, 2, 3), alpha_bar, tensors(rng, 2, 3)
+
+
+def noised(x0, alpha_bar: float, noise) -> torch.Tensor:
+    """Signal and noise as the sides of a right-angled triangle."""
+    angle = math.acos(math.sqrt(alpha_bar))
+    return math.cos(angle) * x0 + math.sin(angle) * noise
 
 
 @check
 def edit_start(mine):
     """mine(x0, alpha_bar, noise): where an edit begins."""
-    x0, noise = torch.tensor([[2.0, -1.0, 0.5]]), torch.tensor([[0.5, 3.0, -1.0]])
-    for alpha_bar in (0.36, 0.01):
-        a, b = math.sqrt(alpha_bar), math.sqrt(1 - alpha_bar)
-        expect_close(
-            mine(x0, alpha_bar, noise),
-            a * x0 + b * noise,
-            f"x_s for alpha_bar = {alpha_bar}",
-            mistakes={
-                "that is noise alone: nothing of the motion is left": noise,
-                "that is noise alone, scaled: where is the motion?": b * noise,
-                "the motion keeps its size, but it must shrink as in training": x0 + b * noise,
-                "take the roots of alpha_bar and of 1 - alpha_bar": alpha_bar * x0
-                + (1 - alpha_bar) * noise,
-                "signal and noise are swapped": b * x0 + a * noise,
-            },
-        )
+    compare(mine, noised, _motions, "x_s", MISTAKES["edit_start"])
     return "It is q_sample: an edit begins where a training example of step s is."
+
+
+def _guesses(rng: np.random.Generator):
+    """Round numbers, then others."""
+    lower = torch.tensor([True, False, False, True])
+    yield torch.full((2, 3, 4), 1.0), torch.full((2, 3, 4), 5.0), lower
+    lower = torch.from_numpy(rng.permutation([True, True, False, False, False]))
+    yield tensors(rng, 2, 3, 5), tensors(rng, 2, 3, 5), lower
+
+
+def column_by_column(eps_lower, eps_upper, lower) -> torch.Tensor:
+    """Each column from its own text."""
+    columns = [(eps_lower if low else eps_upper)[..., i] for i, low in enumerate(lower.tolist())]
+    return torch.stack(columns, -1)
 
 
 @check
 def composed(mine):
     """mine(eps_lower, eps_upper, lower): one eps_hat of two texts, by columns."""
-    low, up = torch.full((2, 3, 4), 1.0), torch.full((2, 3, 4), 5.0)
-    lower = torch.tensor([True, False, False, True])
-    expect_close(
-        mine(low, up, lower),
-        torch.tensor([1.0, 5.0, 5.0, 1.0]).expand(2, 3, 4),
-        "eps_hat of two texts",
-        mistakes={
-            "the mask is inverted: True is the lower body": torch.tensor(
-                [5.0, 1.0, 1.0, 5.0]
-            ).expand(2, 3, 4),
-            "this is the mean of both texts in every column": torch.full((2, 3, 4), 3.0),
-            "this is their sum": torch.full((2, 3, 4), 6.0),
-            "the other part is zero; it belongs to the other text": low * lower,
-            "only the text of the lower body is left": low,
-        },
-    )
+    what = "eps_hat of two texts"
+    compare(mine, column_by_column, _guesses, what, MISTAKES["composed"])
     return "Both texts see the whole x_s, so that each part knows of the other."

@@ -3,98 +3,69 @@
 import torch
 
 
-def _guess(x_s, alpha_bar, data, shrink=0.5, spread=None):
+def _guess(x_s, alpha_bar, data, shrink=0.5, spread=lambda a: 2 * (1 - a), axis=1):
     a = alpha_bar[:, None, None]
     distance = (x_s[:, None] - a**shrink * data).square().sum(-1)
-    spread = 2 * (1 - alpha_bar[:, None]) if spread is None else spread
-    return torch.softmax(-distance / spread, dim=1) @ data
+    return torch.softmax(-distance / spread(alpha_bar[:, None]), dim=axis) @ data
 
 
-def not_shrunk(x_s, alpha_bar, data):
-    """Compares x_s with the clean data, although what lies in x_s has shrunk."""
-    return _guess(x_s, alpha_bar, data, shrink=0)
-
-
-def root_dropped(x_s, alpha_bar, data):
-    """Shrinks the data by alpha_bar instead of its square root.
-
-    It therefore measures from the wrong places.
-    """
-    return _guess(x_s, alpha_bar, data, shrink=1)
-
-
-def factor_two_dropped(x_s, alpha_bar, data):
-    """The exponent is twice as large as a Gaussian's, and the guess too sure of itself."""
-    return _guess(x_s, alpha_bar, data, spread=1 - alpha_bar[:, None])
-
-
-def noise_ignored(x_s, alpha_bar, data):
-    """Doubts at every step as under pure noise: too much where little noise is left."""
-    return _guess(x_s, alpha_bar, data, spread=2.0)
-
-
-def wrong_axis(x_s, alpha_bar, data):
-    """The shares of one example depend on who else is in the batch."""
-    distance = (x_s[:, None] - alpha_bar[:, None, None] ** 0.5 * data).square().sum(-1)
-    return torch.softmax(-distance / (2 * (1 - alpha_bar[:, None])), dim=0) @ data
+def _wrong(shrink=0.5, spread=lambda a: 2 * (1 - a), axis=1):
+    return lambda x_s, alpha_bar, data: _guess(x_s, alpha_bar, data, shrink, spread, axis)
 
 
 def nearest_only(x_s, alpha_bar, data):
-    """Jumps from sample to sample instead of weighing them.
-
-    Even under much noise it is sure of one.
-    """
+    """Jumps from sample to sample: even under much noise it is sure of one."""
     return data[(x_s[:, None] - alpha_bar[:, None, None] ** 0.5 * data).square().sum(-1).argmin(1)]
 
 
-def plain_mean(x_s, alpha_bar, data):
-    """The best guess when x_s is not looked at."""
-    return data.mean(0).expand(x_s.shape)
+def naive_softmax(x_s, alpha_bar, data):
+    """Far from all candidates, every exp is 0: 0 / 0."""
+    a = alpha_bar[:, None, None]
+    distance = (x_s[:, None] - a**0.5 * data).square().sum(-1)
+    weight = torch.exp(-distance / (2 * (1 - alpha_bar[:, None])))
+    return weight / weight.sum(1, keepdim=True) @ data
 
 
-def _step(x_s, s, eps_hat, beta, alpha_bar, z, scale=None, shake=None):
-    take = beta[s] / (1 - alpha_bar[s]) ** 0.5
-    mean = (x_s - take * eps_hat) / ((1 - beta[s]) ** 0.5 if scale is None else scale)
-    return mean + (beta[s] ** 0.5 * z if shake is None else shake * z)
+def mean_distance(x_s, alpha_bar, data):
+    """Divides the distance by D: the noise seems to be larger than it is."""
+    a = alpha_bar[:, None, None]
+    distance = (x_s[:, None] - a**0.5 * data).square().mean(-1)
+    return torch.softmax(-distance / (2 * (1 - alpha_bar[:, None])), dim=1) @ data
 
 
-def noise_at_the_last_step(x_s, s, eps_hat, beta, alpha_bar, z):
-    """The sample is shaken once more after it was finished, which is seen as trembling."""
-    return _step(x_s, s, eps_hat, beta, alpha_bar, z)
+def distance_not_squared(x_s, alpha_bar, data):
+    """A Gaussian's exponent has the square of the distance."""
+    distance = (x_s[:, None] - alpha_bar[:, None, None] ** 0.5 * data).square().sum(-1).sqrt()
+    return torch.softmax(-distance / (2 * (1 - alpha_bar[:, None])), dim=1) @ data
 
 
-def never_shaken(x_s, s, eps_hat, beta, alpha_bar, z):
-    """Without fresh noise the samples come out too alike."""
-    return _step(x_s, s, eps_hat, beta, alpha_bar, z, shake=0.0)
+def scaled_up(x_s, alpha_bar, data):
+    """Undoes the scaling of x_s, but leaves its noise as it was."""
+    grown = x_s / alpha_bar[:, None] ** 0.5
+    distance = (grown[:, None] - data).square().sum(-1)
+    return torch.softmax(-distance / (2 * (1 - alpha_bar[:, None])), dim=1) @ data
 
 
-def variance_for_deviation(x_s, s, eps_hat, beta, alpha_bar, z):
-    """Shakes by beta, far less than its square root."""
-    return _step(x_s, s, eps_hat, beta, alpha_bar, z, shake=0.0 if s == 1 else beta[s])
+def _misstep(
+    take=lambda b, a: b / (1 - a) ** 0.5,
+    scale=lambda b, a: (1 - b) ** 0.5,
+    shake=lambda s, beta, alpha_bar: beta[s] ** 0.5,
+    last=0.0,
+):
+    """The right step, but for what is given; `last` is the share of noise at s = 1."""
+
+    def answer(x_s, s, eps_hat, beta, alpha_bar, z):
+        mean = (x_s - take(beta[s], alpha_bar[s]) * eps_hat) / scale(beta[s], alpha_bar[s])
+        return mean + (last if s == 1 else 1.0) * shake(s, beta, alpha_bar) * z
+
+    return answer
 
 
-def not_rescaled(x_s, s, eps_hat, beta, alpha_bar, z):
-    """Takes the noise away but does not undo the shrinking of each step.
-
-    The samples come out too small.
-    """
-    return _step(x_s, s, eps_hat, beta, alpha_bar, z, scale=1.0, shake=0.0 if s == 1 else None)
-
-
-def all_noise_taken(x_s, s, eps_hat, beta, alpha_bar, z):
-    """Takes all noise at once where one step's share of it was asked for."""
-    mean = (x_s - (1 - alpha_bar[s]) ** 0.5 * eps_hat) / (1 - beta[s]) ** 0.5
-    return mean if s == 1 else mean + beta[s] ** 0.5 * z
-
-
-def noise_added_instead(x_s, s, eps_hat, beta, alpha_bar, z):
-    """Walks away from the data, further with each step."""
-    return _step(x_s, s, -eps_hat, beta, alpha_bar, z, shake=0.0 if s == 1 else None)
-
-
-def _leap(x, eps_hat, now, then, variance, z, kept=None):
+def _leap(x, eps_hat, now, then, variance, z, kept=None, guess=None):
+    """The right leap, but for what is given."""
     x0_hat = (x - (1 - now) ** 0.5 * eps_hat) / now**0.5
-    kept = (1 - then - variance) ** 0.5 if kept is None else kept
+    x0_hat = x0_hat if guess is None else guess(x, eps_hat, now)
+    kept = (1 - then - variance) ** 0.5 if kept is None else kept(now, then, variance)
     return then**0.5 * x0_hat + kept * eps_hat + variance**0.5 * z
 
 
@@ -102,56 +73,161 @@ def _variance(now, then, eta):
     return eta**2 * (1 - then) / (1 - now) * (1 - now / then)
 
 
-def noise_kept_at_its_old_size(x, eps_hat, now, then, eta, z):
-    """Lands at the new step's signal under the old step's noise."""
-    return _leap(x, eps_hat, now, then, _variance(now, then, eta), z, kept=(1 - now) ** 0.5)
+def _misleap(variance=_variance, kept=None, guess=None):
+    return lambda x, eps_hat, now, then, eta, z: _leap(
+        x, eps_hat, now, then, variance(now, then, eta), z, kept, guess
+    )
 
 
-def too_much_variance(x, eps_hat, now, then, eta, z):
-    """Adds fresh noise without taking as much of the old away."""
-    return _leap(x, eps_hat, now, then, _variance(now, then, eta), z, kept=(1 - then) ** 0.5)
-
-
-def eta_not_squared(x, eps_hat, now, then, eta, z):
-    """Right at eta = 0 and eta = 1, where a square does not show, and wrong in between."""
-    return _leap(x, eps_hat, now, then, _variance(now, then, eta**0.5), z)
-
-
-def x0_not_rescaled(x, eps_hat, now, then, eta, z):
-    """Takes what is left of x0 for x0 itself, so that each leap shrinks the sample."""
+def variance_for_deviation(x, eps_hat, now, then, eta, z):
+    """Multiplies the fresh noise by its variance."""
     variance = _variance(now, then, eta)
-    x0_hat = x - (1 - now) ** 0.5 * eps_hat
-    return then**0.5 * x0_hat + (1 - then - variance) ** 0.5 * eps_hat + variance**0.5 * z
+    return _leap(x, eps_hat, now, then, variance, variance**0.5 * z)
 
 
-def eta_ignored(x, eps_hat, now, then, eta, z):
-    """Always deterministic, whatever eta says."""
-    return _leap(x, eps_hat, now, then, 0.0, z)
+def no_fresh_noise(x, eps_hat, now, then, eta, z):
+    """Takes noise away and puts none in its place."""
+    return _leap(x, eps_hat, now, then, _variance(now, then, eta), 0 * z)
 
 
-ZOO = {
+def roots_dropped(x, eps_hat, now, then, eta, z):
+    """Takes variances for amplitudes."""
+    variance = _variance(now, then, eta)
+    x0_hat = (x - (1 - now) * eps_hat) / now
+    return then * x0_hat + (1 - then - variance) * eps_hat + variance**0.5 * z
+
+
+MISTAKES = {
     "best_guess": {
-        "data not shrunk": not_shrunk,
-        "square root dropped": root_dropped,
-        "factor two dropped": factor_two_dropped,
-        "size of the noise ignored": noise_ignored,
-        "shares summed over the batch": wrong_axis,
-        "nearest sample instead of a mean": nearest_only,
-        "plain mean of the data": plain_mean,
+        "the candidates must be shrunk by sqrt(alpha_bar) before they are compared": _wrong(
+            shrink=0
+        ),
+        "alpha_bar scales variances; the candidates are scaled by its square root": _wrong(
+            shrink=1
+        ),
+        "a Gaussian's exponent is divided by TWICE the variance": _wrong(spread=lambda a: 1 - a),
+        "the noise in x_s has variance 1 - alpha_bar; that is missing in the exponent": (
+            _wrong(spread=lambda a: 2.0),
+            _wrong(spread=lambda a: 1.0),
+        ),
+        "the exponent is divided by a standard deviation, not by the variance": _wrong(
+            spread=lambda a: 2 * (1 - a) ** 0.5
+        ),
+        "the variance of the noise is 1 - alpha_bar, without a square": _wrong(
+            spread=lambda a: 2 * (1 - a) ** 2
+        ),
+        "1 - alpha_bar is the noise's share; alpha_bar is the signal's": _wrong(
+            spread=lambda a: 2 * a
+        ),
+        "the weights add up to 1 over the samples; over the candidates they should": _wrong(axis=0),
+        "each sample has its own alpha_bar; this uses the first one's for all": (
+            lambda x_s, alpha_bar, data: _guess(x_s, alpha_bar[:1].expand(len(x_s)), data)
+        ),
+        "that is the plain mean of the data: the candidates have no weights": (
+            lambda x_s, alpha_bar, data: data.mean(0).expand(x_s.shape)
+        ),
+        "that is the nearest candidate; the best guess is a mean of all, with weights": (
+            nearest_only
+        ),
+        "far from all candidates every exp is 0, and 0 / 0 is NaN: subtract the largest exponent "
+        "first, or use torch.softmax": naive_softmax,
+        "the squared distance is a sum over D, not a mean": mean_distance,
+        "the distance in the exponent is squared": distance_not_squared,
+        "dividing x_s by sqrt(alpha_bar) makes its noise larger, too: the variance is "
+        "(1 - alpha_bar) / alpha_bar": scaled_up,
     },
     "step_back": {
-        "noise at the last step": noise_at_the_last_step,
-        "no noise at all": never_shaken,
-        "variance for standard deviation": variance_for_deviation,
-        "not re-scaled": not_rescaled,
-        "all of the noise taken at once": all_noise_taken,
-        "noise added instead of taken": noise_added_instead,
+        "the noise is multiplied by the variance; take the standard deviation": _misstep(
+            shake=lambda s, beta, alpha_bar: beta[s]
+        ),
+        "no noise was added; only the last step, s = 1, adds none": _misstep(
+            shake=lambda s, beta, alpha_bar: 0.0
+        ),
+        "the re-scaling by 1 / sqrt(alpha_s) is missing": _misstep(scale=lambda b, a: 1.0),
+        "re-scale by the root of alpha_s = 1 - beta_s; the root is missing": _misstep(
+            scale=lambda b, a: 1 - b
+        ),
+        "this divides by the root of alpha_bar_s; take that of alpha_s": _misstep(
+            scale=lambda b, a: a**0.5
+        ),
+        "all the noise was removed; one step removes beta_s / sqrt(1 - alpha_bar_s) of it": (
+            _misstep(take=lambda b, a: (1 - a) ** 0.5),
+            _misstep(take=lambda b, a: 1.0),
+        ),
+        "divide by the root of 1 - alpha_bar_s, not by 1 - alpha_bar_s": _misstep(
+            take=lambda b, a: b / (1 - a)
+        ),
+        "beta_s, not its root, is divided by the root of 1 - alpha_bar_s": _misstep(
+            take=lambda b, a: (b / (1 - a)) ** 0.5
+        ),
+        "divide by the root of 1 - alpha_bar_s, not by that of alpha_bar_s": _misstep(
+            take=lambda b, a: b / a**0.5
+        ),
+        "the predicted noise was added; subtract it": _misstep(
+            take=lambda b, a: -b / (1 - a) ** 0.5
+        ),
+        "the last step adds no noise; otherwise samples tremble": _misstep(last=1.0),
+        "this adds the noise of the posterior; equation 11 takes the variance beta_s": _misstep(
+            shake=lambda s, beta, alpha_bar: (
+                ((1 - alpha_bar[s - 1]) / (1 - alpha_bar[s]) * beta[s]) ** 0.5
+            ),
+            last=1.0,
+        ),
+        "the fresh noise is added after the re-scaling": _misstep(
+            shake=lambda s, beta, alpha_bar: (beta[s] / (1 - beta[s])) ** 0.5
+        ),
+        "the fresh noise is added, not subtracted": _misstep(
+            shake=lambda s, beta, alpha_bar: -(beta[s] ** 0.5)
+        ),
     },
     "leap": {
-        "noise kept at its old size": noise_kept_at_its_old_size,
-        "fresh noise on top of the old": too_much_variance,
-        "eta not squared": eta_not_squared,
-        "x0_hat not re-scaled": x0_not_rescaled,
-        "eta ignored": eta_ignored,
+        "x0_hat is x - sqrt(1 - alpha_bar) eps_hat, divided by sqrt(alpha_bar)": _misleap(
+            guess=lambda x, eps_hat, now: x - (1 - now) ** 0.5 * eps_hat
+        ),
+        "x0_hat is divided by the root of alpha_bar; the root is missing": _misleap(
+            guess=lambda x, eps_hat, now: (x - (1 - now) ** 0.5 * eps_hat) / now
+        ),
+        "the predicted noise is subtracted in x0_hat": _misleap(
+            guess=lambda x, eps_hat, now: (x + (1 - now) ** 0.5 * eps_hat) / now**0.5
+        ),
+        "the predicted noise keeps the size it had at s; at r it is smaller": _misleap(
+            kept=lambda now, then, variance: (1 - now) ** 0.5
+        ),
+        "the predicted noise is missing; at r there is still some": _misleap(
+            kept=lambda now, then, variance: 0.0
+        ),
+        "square roots are missing: alpha_bar is a variance": roots_dropped,
+        "fresh noise adds variance: the predicted noise must have less of it": _misleap(
+            kept=lambda now, then, variance: (1 - then) ** 0.5
+        ),
+        "variances subtract, standard deviations do not: the root of 1 - then - sigma^2": (
+            _misleap(kept=lambda now, then, variance: (1 - then) ** 0.5 - variance**0.5)
+        ),
+        "the fresh noise is multiplied by its variance; take the standard deviation": (
+            variance_for_deviation
+        ),
+        "eta is squared in the variance": _misleap(
+            lambda now, then, eta: _variance(now, then, eta**0.5)
+        ),
+        "no fresh noise was added": no_fresh_noise,
+        "eta is not used": _misleap(lambda now, then, eta: 0.0),
+        "eta is not used; as written this is always eta = 1": _misleap(
+            lambda now, then, eta: _variance(now, then, 1.0)
+        ),
+    },
+}
+OTHERS = {
+    "leap": {
+        "sigma not squared": _misleap(
+            kept=lambda now, then, variance: (1 - then - variance**0.5) ** 0.5
+        ),
+        "the first ratio the wrong way round": _misleap(
+            lambda now, then, eta: (
+                eta**2 * (1 - now) / (1 - then) * (1 - now / then) if then < 1 else 0.0
+            )
+        ),
+        "now and then exchanged": lambda x, eps_hat, now, then, eta, z: _leap(
+            x, eps_hat, then, now, _variance(then, now, eta) if then < 1 else 0.0, z
+        ),
     },
 }

@@ -5,24 +5,21 @@ from dataclasses import dataclass
 import torch
 
 
-def one_row_late(control, T_h):
-    """Holds the first row of the future: the walker knows a frame it cannot know yet."""
-    held = control.clone()
-    held[T_h:] = control[T_h]
-    return held
+def _held(row, first=lambda T_h: T_h):
+    """Holds another row, or begins at another one."""
+
+    def answer(control, T_h):
+        held = control.clone()
+        held[first(T_h) :] = control[row(T_h)]
+        return held
+
+    return answer
 
 
 def in_place(control, T_h):
     """Right numbers, but the caller's control loses its future."""
-    control[T_h:] = control[T_h - 1]
+    control[T_h:] = control[T_h - 1].clone()
     return control
-
-
-def one_row_kept_too_many(control, T_h):
-    """One row of the future is left as it was: a glimpse of a single frame."""
-    held = control.clone()
-    held[T_h + 1 :] = control[T_h - 1]
-    return held
 
 
 def zeroed(control, T_h):
@@ -44,49 +41,54 @@ class _Fault:
     shift: int = 0  # frames that the control is late
     keep: int = 1  # poses kept of a window
     hold: bool = True  # the control over the future
+    held: int = -1  # which row beside the past is held
     feed: bool = True  # the new pose back into the past
-    drop: bool = True  # the oldest pose of the past
+    move: bool = True  # the control with time
+    zero: bool = False  # the future's control is zero
 
 
 def _roll(sample, past, control, frames, T_p, fault):
     T_h, new = past.shape[1], []
     while sum(w.shape[1] for w in new) < frames:
-        t = sum(w.shape[1] for w in new) + fault.shift
+        t = sum(w.shape[1] for w in new) * fault.move + fault.shift
         rows = control[:, t : t + T_h]
         ahead = control[:, t + T_h : t + T_h + T_p]
-        ahead = rows[:, -1:].repeat(1, T_p, 1) if fault.hold else ahead
-        window = sample(past, torch.cat([rows, ahead], dim=1))[:, : fault.keep]
+        ahead = rows[:, [fault.held]].repeat(1, T_p, 1) if fault.hold else ahead
+        window = sample(past, torch.cat([rows, ahead * (not fault.zero)], dim=1))[:, : fault.keep]
         new.append(window)
         if fault.feed:
-            past = torch.cat([past[:, fault.keep if fault.drop else 0 :], window], dim=1)
+            past = torch.cat([past[:, fault.keep :], window], dim=1)
     return torch.cat(new, dim=1)[:, :frames]
+
+
+def _longer(control, by):
+    return torch.cat([control, control[:, -1:].repeat(1, by, 1)], 1)
 
 
 def look_ahead(sample, past, control, frames, T_p):
     """Gives the control that is to come where the last known row should be held."""
-    longer = torch.cat([control, control[:, -1:].repeat(1, T_p, 1)], 1)
-    return _roll(sample, past, longer, frames, T_p, _Fault(hold=False))
+    return _roll(sample, past, _longer(control, T_p), frames, T_p, _Fault(hold=False))
 
 
-def control_one_late(sample, past, control, frames, T_p):
-    """Control and poses are a frame apart: the figure obeys too early."""
-    longer = torch.cat([control, control[:, -1:]], 1)
-    return _roll(sample, past, longer, frames, T_p, _Fault(shift=1))
+def _wrong(fault):
+    return lambda sample, past, control, frames, T_p: _roll(
+        sample, past, _longer(control, 1), frames, T_p, fault
+    )
 
 
 def keeps_the_whole_window(sample, past, control, frames, T_p):
     """Takes all poses of a window and so hears of the control once in T_p frames only."""
-    return _roll(sample, past, control, frames, T_p, _Fault(keep=T_p))
-
-
-def never_feeds_back(sample, past, control, frames, T_p):
-    """Every window starts from the same past: the figure never gets going."""
-    return _roll(sample, past, control, frames, T_p, _Fault(feed=False))
+    return _roll(sample, past, _longer(control, T_p), frames, T_p, _Fault(keep=T_p))
 
 
 def keeps_the_oldest(sample, past, control, frames, T_p):
     """The past grows by a pose each time, and is no longer what the network was trained on."""
-    return _roll(sample, past, control, frames, T_p, _Fault(drop=False))
+    T_h, new = past.shape[1], []
+    for t in range(frames):
+        rows = control[:, t : t + T_h]
+        window = sample(past, torch.cat([rows, rows[:, -1:].repeat(1, T_p, 1)], 1))
+        new, past = [*new, window[:, 0]], torch.cat([past, window[:, :1]], 1)
+    return torch.stack(new, 1)
 
 
 def feeds_the_last_of_the_window(sample, past, control, frames, T_p):
@@ -100,20 +102,66 @@ def feeds_the_last_of_the_window(sample, past, control, frames, T_p):
     return torch.stack(new, dim=1)
 
 
-ZOO = {
+def held_row_late(sample, past, control, frames, T_p):
+    """The rows beside the past are right, the row that is held comes one too late."""
+    T_h = past.shape[1]
+    new = []
+    control = _longer(control, 1)
+    for t in range(frames):
+        rows = control[:, t : t + T_h]
+        ahead = control[:, t + T_h : t + T_h + 1].repeat(1, T_p, 1)
+        window = sample(past, torch.cat([rows, ahead], dim=1))
+        new, past = [*new, window[:, 0]], torch.cat([past[:, 1:], window[:, :1]], 1)
+    return torch.stack(new, dim=1)
+
+
+def past_in_place(sample, past, control, frames, T_p):
+    """Right poses, but the past that was given is overwritten."""
+    T_h, new = past.shape[1], []
+    for t in range(frames):
+        rows = control[:, t : t + T_h]
+        window = sample(past, torch.cat([rows, rows[:, -1:].repeat(1, T_p, 1)], 1))
+        new.append(window[:, 0])
+        past[:] = torch.cat([past[:, 1:], window[:, :1]], 1)
+    return torch.stack(new, 1)
+
+
+MISTAKES = {
     "hold_control": {
-        "one row late": one_row_late,
-        "changed in place": in_place,
-        "one row kept too many": one_row_kept_too_many,
-        "zero instead of held": zeroed,
-        "the past held, too": everything_held,
+        "one row too late: row T_h is a step that is not known yet": _held(lambda T_h: T_h),
+        "one row too early: the step into the first predicted frame is known, it is row T_h - 1": (
+            _held(lambda T_h: T_h - 2)
+        ),
+        "row T_h is a future row, too": _held(lambda T_h: T_h - 1, lambda T_h: T_h + 1),
+        "the control is unchanged: hold one row over the future": lambda control, T_h: (
+            control.clone()
+        ),
+        "the future is not zero, it repeats the last known step": zeroed,
+        "the past must stay as it was; only the future is unknown": everything_held,
+        "the last row of the whole control is held; the walker does not know it yet": _held(
+            lambda T_h: -1
+        ),
+        "the first row is held; hold the last one that is known": _held(lambda T_h: 0),
     },
     "rollout_by_hand": {
-        "look-ahead": look_ahead,
-        "control one row late": control_one_late,
-        "the whole window kept": keeps_the_whole_window,
-        "its own poses never fed back": never_feeds_back,
-        "the oldest pose kept": keeps_the_oldest,
-        "the last pose of the window": feeds_the_last_of_the_window,
+        "this is look-ahead: the future control is not known yet; hold the last row": look_ahead,
+        "the row that is held is one too late: which step leads into the first new frame?": (
+            held_row_late
+        ),
+        "the row that is held is one too early": _wrong(_Fault(held=-2)),
+        "the rows beside the past are one frame too late": _wrong(_Fault(shift=1)),
+        "the unknown future is not zero": _wrong(_Fault(zero=True)),
+        "keep only the first pose of each window": keeps_the_whole_window,
+        "every window has the first past: append the pose that was kept": _wrong(
+            _Fault(feed=False)
+        ),
+        "the pose that is kept is the last of the window; keep the first": (
+            feeds_the_last_of_the_window
+        ),
+        "the control never moves on: window t begins at row t": _wrong(_Fault(move=False)),
     },
+}
+OTHERS = {
+    "hold_control": {"changed in place": in_place},
+    "rollout_by_hand": {"the oldest pose kept": keeps_the_oldest, "past in place": past_in_place},
 }

@@ -35,6 +35,18 @@ def last_zero(control):
     return torch.cat([back, torch.zeros_like(back[:, :1])], dim=1)
 
 
+def first_dropped(control):
+    """Drops the first row, which leads out of frame 0, and keeps the last, which leads nowhere."""
+    back = -control[:, 1:].flip(1)
+    return torch.cat([back, back[:, -1:]], dim=1)
+
+
+def first_repeated(control):
+    """Repeats the first row of the result where the last belongs."""
+    back = -control[:, :-1].flip(1)
+    return torch.cat([back[:, :1], back], dim=1)
+
+
 def in_place(control):
     """The numbers are right, but the given control is changed."""
     control.copy_(-no_sign(control))
@@ -53,8 +65,9 @@ def _round(walk_on, past, known, mean, control, reverse=_reversed, flip_ahead=Tr
 
 
 def _filled(reverse=_reversed, flip_ahead=True, flip_back=True):
+    how = (reverse, flip_ahead, flip_back)
+
     def answer(walk_on, past, known, mean, control):
-        how = (reverse, flip_ahead, flip_back)
         return torch.where(known, past, _round(walk_on, past, known, mean, control, *how))
 
     return answer
@@ -67,11 +80,6 @@ def mask_inverted(walk_on, past, known, mean, control):
     )
 
 
-def overwritten(walk_on, past, known, mean, control):
-    """The past is smooth, but it is no longer the given one."""
-    return _round(walk_on, past, known, mean, control)
-
-
 def raw_zero(walk_on, past, known, mean, control):
     """The missing hand starts on the floor, and the walker uses it like a given one."""
     return torch.where(known, past, _round(walk_on, past, known, torch.zeros_like(mean), control))
@@ -79,7 +87,7 @@ def raw_zero(walk_on, past, known, mean, control):
 
 def nan_to_the_walker(walk_on, past, known, mean, control):
     """Fills the holes only afterwards: the walker has computed with NaN."""
-    return _round(walk_on, past, known, past, control)
+    return torch.where(known, past, _round(walk_on, past, known, past, control))
 
 
 def start_returned(walk_on, past, known, mean, control):
@@ -113,97 +121,139 @@ def there_only(walk_on, past, known, mean, control):
     return torch.where(known, past, walk_on(torch.where(known, past, mean), control))
 
 
-def _moved(before, after, known):
-    return (after - before).square() * ~known, (~known).flatten(1).sum(1).clamp(min=1)
+def by_product(walk_on, past, known, mean, control):
+    """Multiplies by the mask: 0 times NaN is NaN."""
+    back = _round(walk_on, past, known, mean, control)
+    return known * past + ~known * back
 
 
-def no_root(before, after, known):
-    """Gives square metres: a centimetre becomes 0.0001."""
-    moved, holes = _moved(before, after, known)
-    return moved.flatten(1).sum(1) / holes
+def past_in_place(walk_on, past, known, mean, control):
+    """The right past, written over the given one."""
+    past[:] = torch.where(known, past, _round(walk_on, past, known, mean, control))
+    return past
 
 
-def all_entries(before, after, known):
-    """Given entries count as well."""
-    return (after - before).square().flatten(1).mean(1).sqrt()
+def _change(before, after, known):
+    return (after - before).square() * ~known
 
 
-def divided_by_all(before, after, known):
-    """A small hole seems to stop changing long before it does."""
-    return _moved(before, after, known)[0].flatten(1).mean(1).sqrt()
+def _holes(known):
+    return (~known).flatten(1).sum(1).clamp(min=1)
 
 
-def one_for_all(before, after, known):
-    """Gives one number for the whole batch, which hides one sample that still moves."""
-    return (after - before)[~known].square().mean().sqrt()
+def _known_only(before, after, known):
+    moved = (after - before).square() * known
+    return (moved.flatten(1).sum(1) / known.flatten(1).sum(1).clamp(min=1)).sqrt()
 
 
 def mean_distance(before, after, known):
     """Gives the mean distance, not the root of the mean square."""
-    holes = ~known
-    return ((after - before).abs() * holes).flatten(1).sum(1) / holes.flatten(1).sum(1).clamp(min=1)
+    return ((after - before).abs() * ~known).flatten(1).sum(1) / _holes(known)
 
 
 def before_in_place(before, after, known):
     """The numbers are right, but the old values of the holes are lost."""
     before -= after
-    moved = before.square() * ~known
-    return (moved.flatten(1).sum(1) / (~known).flatten(1).sum(1).clamp(min=1)).sqrt()
+    return ((before.square() * ~known).flatten(1).sum(1) / _holes(known)).sqrt()
 
 
 def after_in_place(before, after, known):
     """The numbers are right, but the new values are changed."""
     after[known] = before[known]
-    return (
-        ((after - before).square()).flatten(1).sum(1) / (~known).flatten(1).sum(1).clamp(min=1)
-    ).sqrt()
+    return ((after - before).square().flatten(1).sum(1) / _holes(known)).sqrt()
 
 
 def nothing_by_nothing(before, after, known):
     """Divides 0 by 0 when nothing is missing: NaN is below no tolerance, and the loop runs on."""
-    holes = ~known
-    return (((after - before).square() * holes).flatten(1).sum(1) / holes.flatten(1).sum(1)).sqrt()
+    return (_change(before, after, known).flatten(1).sum(1) / (~known).flatten(1).sum(1)).sqrt()
 
 
-ZOO = {
+MISTAKES = {
     "time_reversal": {
-        "order only": order_only,
-        "negated, not shifted": not_shifted,
-        "shifted, not negated": no_sign,
-        "yaw keeps its sign": yaw_kept,
-        "left keeps its sign": left_kept,
-        "last row zero": last_zero,
-        "changes its input": in_place,
+        "only the order is reversed; a walk backwards has a negative speed": order_only,
+        "the signs are right; but control[t] leads from t to t + 1, so the rows move by one": (
+            not_shifted
+        ),
+        "order and shift are right, the signs are not": no_sign,
+        "turning has a sign, too: a left turn is a right turn on the way back": yaw_kept,
+        "speed to the left has a sign, too": left_kept,
+        "speed ahead has a sign, too": lambda control: (
+            -no_sign(control) * torch.tensor([-1, 1, 1.0])
+        ),
+        "the last row repeats the one before, it is not zero": last_zero,
+        "the signs are right, but the rows are in the old order": lambda control: -control,
+        "nothing has changed": lambda control: control.clone(),
+        "the sample axis was reversed; time is axis 1": lambda control: _reversed(control).flip(0),
+        "the columns were reversed; time is axis 1": lambda control: -control.flip(2),
+        "the wrong end was dropped: the last row leads nowhere, the first one out of frame 0": (
+            first_dropped
+        ),
+        "the wrong end was repeated: the last row of the result stands twice": first_repeated,
     },
     "there_and_back": {
-        "control not negated": _filled(reverse=order_only),
-        "negated, not shifted": _filled(reverse=not_shifted),
-        "motion reversed, control not": _filled(reverse=lambda control: control),
-        "yaw not negated": _filled(reverse=yaw_kept),
-        "new frames not reversed": _filled(flip_ahead=False),
-        "way back not turned round": _filled(flip_back=False),
-        "mask inverted": mask_inverted,
-        "known entries overwritten": overwritten,
-        "holes start at raw zero": raw_zero,
-        "NaN given to the walker": nan_to_the_walker,
-        "start returned": start_returned,
+        "the control is reversed in order only; its signs must change": _filled(reverse=order_only),
+        "the control is negated, but not shifted by its one frame": _filled(reverse=not_shifted),
+        "the control is reversed and shifted; its signs must change, too": _filled(reverse=no_sign),
+        "the control of the way back is that of the way there": _filled(
+            reverse=lambda control: control
+        ),
+        "turning (column 2) keeps its sign on your way back": _filled(reverse=yaw_kept),
+        "the new frames are not reversed before they go into the walker again": _filled(
+            flip_ahead=False
+        ),
+        "the result of the way back is reversed in time; reverse it before you fill": _filled(
+            flip_back=False
+        ),
+        "time was never reversed: walking on twice leads farther ahead": _filled(
+            flip_ahead=False, flip_back=False
+        ),
+        "neither time nor the control was reversed: walking on twice leads farther ahead": _filled(
+            reverse=lambda control: control, flip_ahead=False, flip_back=False
+        ),
+        "the mask is inverted: known is True where something was given": mask_inverted,
+        "the given entries are overwritten by the walker's": _round,
+        "holes start at 0 metres, which is on the floor; start them at the mean pose": raw_zero,
+        "the holes still have their starting values": start_returned,
+        "this fills the past with the way there; the way back is missing": there_only,
+        "there is NaN in the holes: the walker got NaN, or 0 times NaN was added; fill the holes "
+        "first, and choose with torch.where": (nan_to_the_walker, by_product),
+    },
+    "moved_by": {
+        "that is the mean of squares; take its root": lambda before, after, known: (
+            _change(before, after, known).flatten(1).sum(1) / _holes(known)
+        ),
+        "known entries are counted, too; measure only the holes": lambda before, after, known: (
+            (after - before).square().flatten(1).mean(1).sqrt()
+        ),
+        "the known entries were measured instead of the holes": _known_only,
+        "this is divided by the number of all entries; divide by the number of holes": (
+            lambda before, after, known: _change(before, after, known).flatten(1).mean(1).sqrt()
+        ),
+        "this is one number for all samples; return one for each": lambda before, after, known: (
+            (after - before)[~known].square().mean().sqrt()
+        ),
+        "that is the mean distance; the rule takes the root of the mean square": mean_distance,
+        "that is the root of the sum; divide by the number of holes first": (
+            lambda before, after, known: _change(before, after, known).flatten(1).sum(1).sqrt()
+        ),
+        "the root is of the mean; this divides after the root": lambda before, after, known: (
+            _change(before, after, known).flatten(1).sum(1).sqrt() / _holes(known)
+        ),
+        "where nothing is missing the change is 0; yours is 0 / 0": nothing_by_nothing,
+        "this is the largest change; take the root of the mean square": (
+            lambda before, after, known: (
+                _change(before, after, known).flatten(1).max(1).values.sqrt()
+            )
+        ),
+    },
+}
+OTHERS = {
+    "time_reversal": {"changes its input": in_place},
+    "there_and_back": {
         "two rounds": two_rounds,
         "control of the past only": short_control,
         "back from one pose": last_pose_only,
-        "way there only": there_only,
-        "time never turned": _filled(flip_ahead=False, flip_back=False),
-        "neither time nor control turned": _filled(
-            reverse=lambda control: control, flip_ahead=False, flip_back=False
-        ),
+        "past in place": past_in_place,
     },
-    "moved_by": {
-        "no root": no_root,
-        "all entries count": all_entries,
-        "divided by all entries": divided_by_all,
-        "one number for all samples": one_for_all,
-        "mean distance": mean_distance,
-        "changes before": before_in_place,
-        "changes after": after_in_place,
-        "nothing by nothing": nothing_by_nothing,
-    },
+    "moved_by": {"changes before": before_in_place, "changes after": after_in_place},
 }

@@ -1,48 +1,31 @@
 """Wrong answers to the exercises of notebook 13."""
 
+from itertools import pairwise
+
 import torch
 
 
+def _shape(values):
+    return torch.as_tensor(values).reshape(-1, 1, 1)
+
+
 def _guess(x_s, eps_hat, first, second):
-    first, second = (torch.as_tensor(x).reshape(-1, 1, 1) for x in (first, second))
+    first, second = _shape(first), _shape(second)
     return x_s / first**0.5 - (1 / second - 1) ** 0.5 * eps_hat
 
 
-def index_left_out(x_s, s, eps_hat, alpha_bar):
-    """As printed in the paper: one alpha_bar has its index and the other has none."""
-    return _guess(x_s, eps_hat, alpha_bar[s], alpha_bar[-1])
+def _from(row):
+    """The shares of another row of the table for both terms."""
+    return lambda x_s, s, eps_hat, alpha_bar: _guess(
+        x_s, eps_hat, alpha_bar[row(s)], alpha_bar[row(s)]
+    )
 
 
-def last_step_for_all(x_s, s, eps_hat, alpha_bar):
-    """Treats every sample as pure noise: the guess for a clean one becomes enormous."""
-    return _guess(x_s, eps_hat, alpha_bar[-1], alpha_bar[-1])
-
-
-def one_step_earlier(x_s, s, eps_hat, alpha_bar):
-    """Reads the table as if it began at s = 1."""
-    return _guess(x_s, eps_hat, alpha_bar[s - 1], alpha_bar[s - 1])
-
-
-def first_step_for_all(x_s, s, eps_hat, alpha_bar):
-    """Reads the table for the first sample only; a batch of one does not show it."""
-    return _guess(x_s, eps_hat, alpha_bar[s[0]], alpha_bar[s[0]])
-
-
-def no_roots(x_s, s, eps_hat, alpha_bar):
-    """Uses the shares of the variance as amplitudes."""
-    share = alpha_bar[s][:, None, None]
-    return x_s / share - (1 / share - 1) * eps_hat
-
-
-def second_root_forgotten(x_s, s, eps_hat, alpha_bar):
-    """Takes one root of two: too little noise is removed at small s, too much at large s."""
-    share = alpha_bar[s][:, None, None]
-    return x_s / share**0.5 - (1 / share - 1) * eps_hat
-
-
-def noise_added_again(x_s, s, eps_hat, alpha_bar):
-    """The sign is wrong: the noise is doubled instead of removed."""
-    return _guess(x_s, -eps_hat, alpha_bar[s], alpha_bar[s])
+def _mixed(form):
+    """Another form of the right shares: form(x_s, eps_hat, a, b) with a, b the two roots."""
+    return lambda x_s, s, eps_hat, alpha_bar: form(
+        x_s, eps_hat, _shape(alpha_bar[s]) ** 0.5, _shape(1 - alpha_bar[s]) ** 0.5
+    )
 
 
 def mean_over_bones(lengths):
@@ -50,9 +33,9 @@ def mean_over_bones(lengths):
     return ((lengths - lengths.mean(1, keepdim=True)) ** 2).sum(1).div(lengths.shape[1] - 1).mean()
 
 
-def divided_by_n(lengths):
-    """Squares around their own mean are too small; N - 1 corrects that."""
-    return ((lengths - lengths.mean(0)) ** 2).mean()
+def _around(lengths, mean, root=False):
+    off = ((lengths - mean) ** 2).sum(0) / (len(lengths) - 1)
+    return (off**0.5 if root else off).mean()
 
 
 def _joints(x0_hat, mean, std, add_pelvis=True):
@@ -60,92 +43,185 @@ def _joints(x0_hat, mean, std, add_pelvis=True):
     return torch.cat([joints[:, :1], joints[:, 1:] + joints[:, :1]], 1) if add_pelvis else joints
 
 
-def _apart(joints, bones, pairs):
-    lengths = torch.stack(
+def _lengths(joints, bones):
+    return torch.stack(
         [(joints[:, child] - joints[:, parent]).norm(dim=-1) for parent, child in bones], 1
     )
+
+
+def _apart(joints, bones, pairs):
+    lengths = _lengths(joints, bones)
     left, right = zip(*pairs, strict=True)
     return lengths[:, list(left)] - lengths[:, list(right)]
 
 
-def standardised_units(x0_hat, mean, std, bones, pairs):
-    """Measures in standardised units, in which every coordinate has its own scale."""
-    return _apart(_joints(x0_hat, 0.0, 1.0), bones, pairs).abs().mean()
+def _asymmetry(joints=_joints, reduce=lambda gap: gap.abs().mean(), pairs=lambda pairs: pairs):
+    """The right loss, but for how joints are made, differences are reduced, or bones paired."""
+
+    def answer(x0_hat, mean, std, bones, of):
+        return reduce(_apart(joints(x0_hat, mean, std), bones, pairs(of)))
+
+    return answer
 
 
-def mean_not_added(x0_hat, mean, std, bones, pairs):
-    """Multiplies by the standard deviation but forgets the mean: the joints lie in a heap."""
-    return _apart(_joints(x0_hat, 0.0, std), bones, pairs).abs().mean()
+def _pelvis_lost(x0_hat, mean, std):
+    joints = _joints(x0_hat, mean, std)
+    return torch.cat([0 * joints[:, :1], joints[:, 1:]], 1)
 
 
-def root_dropped(x0_hat, mean, std, bones, pairs):
-    """The joints stay relative to the pelvis, so bones at the pelvis have a wrong start."""
-    return _apart(_joints(x0_hat, mean, std, add_pelvis=False), bones, pairs).abs().mean()
+def _pelvis_doubled(x0_hat, mean, std):
+    joints = _joints(x0_hat, mean, std, add_pelvis=False)
+    return joints + joints[:, :1]
 
 
-def left_with_left(x0_hat, mean, std, bones, pairs):
-    """Compares each left bone with the next left one, a thigh with an upper arm."""
-    left = [i for i, _ in pairs]
-    return (
-        _apart(
-            _joints(x0_hat, mean, std), bones, tuple(zip(left, left[1:] + left[:1], strict=True))
-        )
-        .abs()
-        .mean()
-    )
+def by_all_bones(x0_hat, mean, std, bones, pairs):
+    """Divides by the number of all bones, also of those that have no partner."""
+    gap = _apart(_joints(x0_hat, mean, std), bones, pairs).abs()
+    return gap.sum() / (len(gap) * len(bones))
 
 
-def sign_kept(x0_hat, mean, std, bones, pairs):
-    """Left too long and right too long cancel, and a crooked body can score zero."""
-    return _apart(_joints(x0_hat, mean, std), bones, pairs).mean()
+def in_place(x0_hat, mean, std, bones, pairs):
+    """The right number, but the network's output is in metres afterwards."""
+    x0_hat *= std
+    x0_hat += mean
+    return _asymmetry()(x0_hat, 0.0, 1.0, bones, pairs)
 
 
-def squared(x0_hat, mean, std, bones, pairs):
-    """Squares the differences, so that small asymmetries vanish."""
-    return _apart(_joints(x0_hat, mean, std), bones, pairs).square().mean()
-
-
-ZOO = {
+MISTAKES = {
     "x0_hat": {
-        "index left out": index_left_out,
-        "last step for all": last_step_for_all,
-        "one step earlier": one_step_earlier,
-        "first sample's step for all": first_step_for_all,
-        "no roots": no_roots,
-        "second root forgotten": second_root_forgotten,
-        "noise added again": noise_added_again,
-        "first root forgotten": lambda x_s, s, eps_hat, alpha_bar: _guess(
-            x_s, eps_hat, alpha_bar[s] ** 2, alpha_bar[s]
+        "the second alpha_bar needs its index as well; this takes the last of the table": (
+            lambda x_s, s, eps_hat, alpha_bar: _guess(x_s, eps_hat, alpha_bar[s], alpha_bar[-1])
+        ),
+        "this uses the last alpha_bar everywhere; look up the one of each sample's step": _from(
+            lambda s: [-1]
+        ),
+        "this takes the alpha_bar of one step earlier; the table begins at s = 0": _from(
+            lambda s: s - 1
+        ),
+        "every sample has its own step; this uses the first one's for all": _from(lambda s: s[:1]),
+        "the square roots are missing": _mixed(lambda x, e, a, b: x / a**2 - (b / a) ** 2 * e),
+        "the first root is missing": _mixed(lambda x, e, a, b: x / a**2 - b / a * e),
+        "divide both x_s and the noise by the root of alpha_bar, not x_s alone": _mixed(
+            lambda x, e, a, b: x / a - b * e
+        ),
+        "divide both x_s and the noise by the root of alpha_bar, not the noise alone": _mixed(
+            lambda x, e, a, b: x - b / a * e
+        ),
+        "the root of 1 / alpha_bar - 1 is missing": _mixed(
+            lambda x, e, a, b: x / a - (b / a) ** 2 * e
+        ),
+        "the noise was added, so it is subtracted": _mixed(lambda x, e, a, b: x / a + b / a * e),
+        "undo the mixing completely: the signal was scaled down, too": _mixed(
+            lambda x, e, a, b: x - b * e
+        ),
+        "signal and noise are swapped: a is the root of alpha_bar, b that of 1 - alpha_bar": _mixed(
+            lambda x, e, a, b: (x - a * e) / b
+        ),
+        "this adds noise again; x_s is divided by a, not multiplied": _mixed(
+            lambda x, e, a, b: a * x + b * e
         ),
     },
     "skeleton_loss": {
-        "variance over bones": mean_over_bones,
-        "N instead of N - 1": divided_by_n,
-        "standard deviation": lambda lengths: lengths.std(0).mean(),
-        "sum over bones": lambda lengths: lengths.var(0).sum(),
-        "all lengths together": lambda lengths: lengths.var(),
-        "one for each bone": lambda lengths: lengths.var(0),
-        "squared lengths": lambda lengths: (lengths**2).var(0).mean(),
-        "one mean for all bones": lambda lengths: (
-            ((lengths - lengths.mean()) ** 2).sum(0) / (len(lengths) - 1)
+        "this is the variance over the bones of a frame; bones may differ, but not over time": (
+            mean_over_bones
+        ),
+        "divide by the number of frames minus one": lambda lengths: lengths.var(
+            0, correction=0
         ).mean(),
-        "the first frame for the mean": lambda lengths: (
-            ((lengths - lengths[0]) ** 2).sum(0) / (len(lengths) - 1)
+        "this is the standard deviation; equation 6 has no root": lambda lengths: lengths.std(
+            0
         ).mean(),
-        "frame to frame": lambda lengths: (lengths[1:] - lengths[:-1]).square().mean(),
+        "average over the bones, do not add them up": lambda lengths: lengths.var(0).sum(),
+        "this is the variance of all lengths together; each bone has a mean of its own": (
+            lambda lengths: lengths.var()
+        ),
+        "there is one mean for all bones here: each bone has a mean of its own": lambda lengths: (
+            _around(lengths, lengths.mean())
+        ),
+        "the mean over the bones is missing: this is one number for each bone": lambda lengths: (
+            lengths.var(0)
+        ),
+        "these are squared lengths; take the length itself": lambda lengths: (
+            (lengths**2).var(0).mean()
+        ),
+        "this compares with the first frame; compare with the mean": lambda lengths: _around(
+            lengths, lengths[0]
+        ),
+        "the deviations are not squared": (
+            lambda lengths: (lengths - lengths.mean(0)).abs().sum(0).mean() / (len(lengths) - 1),
+            lambda lengths: (lengths - lengths.mean(0)).abs().mean(),
+        ),
+        "this compares each frame with the next; compare with the mean": lambda lengths: (
+            lengths.diff(dim=0).square().mean()
+        ),
+        "divide by the number of frames minus one, not of bones": lambda lengths: (
+            ((lengths - lengths.mean(0)) ** 2).sum(0) / (lengths.shape[1] - 1)
+        ).mean(),
+        "this is the sum over the frames; divide by their number minus one": lambda lengths: (
+            ((lengths - lengths.mean(0)) ** 2).sum(0).mean()
+        ),
     },
     "asymmetry_from_features": {
-        "standardised units": standardised_units,
-        "mean not added": mean_not_added,
-        "root dropped": root_dropped,
-        "left with left": left_with_left,
-        "sign kept": sign_kept,
-        "std forgotten": lambda x0_hat, mean, std, bones, pairs: (
-            _apart(_joints(x0_hat, mean, torch.ones_like(std)), bones, pairs).abs().mean()
+        "these lengths are in standardised units; go back to metres first": _asymmetry(
+            lambda x, mean, std: _joints(x, 0.0, 1.0)
         ),
-        "summed over pairs": lambda x0_hat, mean, std, bones, pairs: (
-            _apart(_joints(x0_hat, mean, std), bones, pairs).abs().sum(1).mean()
+        "these are standardised units without the pelvis: first metres, then the pelvis": (
+            _asymmetry(lambda x, mean, std: _joints(x, 0.0, 1.0, add_pelvis=False))
         ),
-        "squared": squared,
+        "only half-way back to metres: the mean is missing": _asymmetry(
+            lambda x, mean, std: _joints(x, 0.0, std)
+        ),
+        "only half-way back to metres: the std is missing": _asymmetry(
+            lambda x, mean, std: _joints(x, mean, 1.0)
+        ),
+        "back to metres is times std, then plus mean: the order is exchanged": _asymmetry(
+            lambda x, mean, std: _joints((x + mean) * std, 0.0, 1.0)
+        ),
+        "back to metres is times std plus mean; this standardises once more": _asymmetry(
+            lambda x, mean, std: _joints((x - mean) / std, 0.0, 1.0)
+        ),
+        "the pelvis is not added to the other joints, or is added to itself as well: bones at the "
+        "pelvis come out wrong": (
+            _asymmetry(lambda x, mean, std: _joints(x, mean, std, add_pelvis=False)),
+            _asymmetry(_pelvis_doubled),
+        ),
+        "the mean is missing, and the pelvis is not added": _asymmetry(
+            lambda x, mean, std: _joints(x, 0.0, std, add_pelvis=False)
+        ),
+        "the pelvis is left at the origin while the others are moved": _asymmetry(_pelvis_lost),
+        "this compares left bones with left ones": _asymmetry(
+            pairs=lambda pairs: tuple((one[0], two[0]) for one, two in pairwise([*pairs, pairs[0]]))
+        ),
+        "left and right are paired the wrong way: follow `pairs`": (
+            _asymmetry(pairs=lambda pairs: tuple((2 * i, 2 * i + 1) for i in range(len(pairs)))),
+            _asymmetry(
+                pairs=lambda pairs: tuple(
+                    (one[0], two[1]) for one, two in zip(pairs, pairs[::-1], strict=True)
+                )
+            ),
+        ),
+        "the signs must not cancel: take the absolute value of each difference": _asymmetry(
+            reduce=lambda gap: gap.mean()
+        ),
+        "the signs must not cancel: take absolute values before the mean": (
+            _asymmetry(reduce=lambda gap: gap.mean().abs()),
+            _asymmetry(reduce=lambda gap: gap.mean(0).abs().mean()),
+            _asymmetry(reduce=lambda gap: gap.mean(1).abs().mean()),
+        ),
+        "L_a is in metres: the difference itself, not its square": (
+            _asymmetry(reduce=lambda gap: gap.square().mean()),
+            _asymmetry(reduce=lambda gap: gap.square().mean().sqrt()),
+        ),
+        "take the mean over pairs and frames, not the sum": _asymmetry(
+            reduce=lambda gap: gap.abs().sum()
+        ),
+        "take the mean over the pairs as well, not the sum": _asymmetry(
+            reduce=lambda gap: gap.abs().sum(1).mean()
+        ),
+        "take the mean over the frames as well, not the sum": _asymmetry(
+            reduce=lambda gap: gap.abs().sum(0).mean()
+        ),
+        "divide by the number of pairs, not of all bones": by_all_bones,
     },
 }
+OTHERS = {"asymmetry_from_features": {"in place": in_place}}

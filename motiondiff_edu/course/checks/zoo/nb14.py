@@ -7,54 +7,28 @@ def _table(stops, songs, score):
     return np.array([[score(s, song) for song in songs] for s in stops])
 
 
-def _own_left_out(table):
-    return table[~np.eye(len(table), dtype=bool)].mean()
+def _others(table):
+    return table[~np.eye(len(table), dtype=bool)]
 
 
-def own_song(stops, songs, score):
-    """This is the score itself, with which the shuffled one should be compared."""
-    return np.mean([score(s, song) for s, song in zip(stops, songs, strict=True)])
+def _of(reduce):
+    """Another summary of the table of all pairs."""
+    return lambda stops, songs, score: reduce(_table(stops, songs, score))
 
 
-def own_song_too(stops, songs, score):
-    """The dance's own song is among the others and raises their mean."""
-    return _table(stops, songs, score).mean()
+def all_songs_at_once(stops, songs, score):
+    """Lays the other songs over one another: there is always a beat near."""
+    n = len(stops)
+    together = [np.sort(np.concatenate([songs[j] for j in range(n) if j != i])) for i in range(n)]
+    return np.mean([score(stops[i], together[i]) for i in range(n)])
 
 
-def next_song_only(stops, songs, score):
-    """Takes one other song for each dance instead of all."""
-    return np.mean([score(s, song) for s, song in zip(stops, songs[1:] + songs[:1], strict=True)])
+def _second(path):
+    return path[2:] - 2 * path[1:-1] + path[:-2]
 
 
-def each_pair_once(stops, songs, score):
-    """Half of the pairs are missing: dance a to song b is not dance b to song a."""
-    return _table(stops, songs, score)[np.triu_indices(len(stops), 1)].mean()
-
-
-def half_of_the_pairs(stops, songs, score):
-    """Takes the other half: each dance with the songs before its own."""
-    return _table(stops, songs, score)[np.tril_indices(len(stops), -1)].mean()
-
-
-def the_song_before(stops, songs, score):
-    """Takes one other song for each dance, the one before."""
-    return np.mean([score(s, songs[i - 1]) for i, s in enumerate(stops)])
-
-
-def divided_by_dances(stops, songs, score):
-    """Divides the sum over pairs by the number of dances."""
-    table = _table(stops, songs, score)
-    return table[~np.eye(len(table), dtype=bool)].sum() / len(table)
-
-
-def own_song_as_nothing(stops, songs, score):
-    """Own songs count as zeros, which lowers the mean most when there are few dances."""
-    return (_table(stops, songs, score) * (1 - np.eye(len(stops)))).mean()
-
-
-def exchanged(stops, songs, score):
-    """Measures from the beats to the stops, which is the other form of the score."""
-    return _own_left_out(_table(songs, stops, score))
+def _sizes(path):
+    return np.linalg.norm(_second(path), axis=1)
 
 
 def published_bracket(path, fps):
@@ -65,69 +39,110 @@ def published_bracket(path, fps):
     return np.linalg.norm((after - before) / dt, axis=1).mean()
 
 
-def _second(path):
-    return path[2:] - 2 * path[1:-1] + path[:-2]
-
-
-def one_frame_time(path, fps):
-    """Divides by the frame time once; an acceleration needs it twice."""
-    return np.linalg.norm(_second(path), axis=1).mean() * fps
-
-
-def no_frame_time(path, fps):
-    """Gives metres per frame, per frame.
-
-    The same dance has a ninth of the expenditure at 60 frames a second as at 20.
-    """
-    return np.linalg.norm(_second(path), axis=1).mean()
-
-
-def squared(path, fps):
-    """In a mean of squares one jerk counts more than a whole lively dance."""
-    return ((_second(path) * fps**2) ** 2).sum(1).mean()
-
-
-def cancelled(path, fps):
-    """Averages the vectors before it takes their length: opposite ones cancel."""
-    return np.linalg.norm(_second(path).mean(0)) * fps**2
-
-
 def change_of_speed(path, fps):
     """Moving in a circle at a steady speed is accelerated, too, but costs nothing here."""
     speed = np.linalg.norm(np.diff(path, axis=0), axis=1) * fps
     return np.abs(np.diff(speed)).mean() * fps
 
 
-def always_60(path, fps):
-    """Right at 60 frames a second only."""
-    return np.linalg.norm(_second(path), axis=1).mean() * 60**2
+def in_place(path, fps):
+    """The right number, but the path begins at 0 afterwards."""
+    path -= path[0].copy()
+    return _sizes(path).mean() * fps**2
 
 
-ZOO = {
+MISTAKES = {
     "shuffled_score": {
-        "own song": own_song,
-        "own song among the others": own_song_too,
-        "next song only": next_song_only,
-        "each pair once": each_pair_once,
-        "each pair once, the other half": half_of_the_pairs,
-        "the song before only": the_song_before,
-        "divided by the number of dances": divided_by_dances,
-        "own song counted as nothing": own_song_as_nothing,
-        "stops and beats exchanged": exchanged,
+        "this is each dance with its *own* song": _of(lambda table: np.diag(table).mean()),
+        "a dance's own song is among the others; leave it out": _of(lambda table: table.mean()),
+        "each dance is scored with one other song only; score it with all": (
+            _of(lambda table: np.mean([table[i, (i + 1) % len(table)] for i in range(len(table))])),
+            _of(lambda table: np.mean([table[i, i - 1] for i in range(len(table))])),
+        ),
+        "dance 1 with song 2 is not dance 2 with song 1: both count": (
+            _of(lambda table: table[np.triu_indices(len(table), 1)].mean()),
+            _of(lambda table: table[np.tril_indices(len(table), -1)].mean()),
+        ),
+        "this is divided by the number of dances; how many pairs are there?": _of(
+            lambda table: _others(table).sum() / len(table)
+        ),
+        "the own song counts as 0 here; do not count it as a pair": _of(
+            lambda table: _others(table).sum() / table.size
+        ),
+        "stops and beats are swapped: score(stops, song)": (
+            lambda stops, songs, score: _others(_table(songs, stops, score)).mean(),
+            lambda stops, songs, score: _others(
+                _table(stops, songs, lambda a, b: score(b, a))
+            ).mean(),
+        ),
+        "take the mean over all pairs, not their sum": _of(lambda table: _others(table).sum()),
+        "this is the best of the other songs; take the mean of all": (
+            _of(lambda table: np.where(np.eye(len(table)), -np.inf, table).max(1).mean()),
+            _of(lambda table: np.where(np.eye(len(table)), -np.inf, table).max(0).mean()),
+            _of(lambda table: _others(table).max()),
+        ),
+        "take the mean over all pairs, not the median": _of(
+            lambda table: np.median(_others(table))
+        ),
+        "the other songs lie over one another here; score each by itself": all_songs_at_once,
+        "this is one number for each dance; take the mean of all": _of(
+            lambda table: np.array([np.delete(row, i).mean() for i, row in enumerate(table)])
+        ),
     },
     "expenditure": {
-        "the published bracket": published_bracket,
-        "frame time once": one_frame_time,
-        "no frame time": no_frame_time,
-        "divided by fps": lambda path, fps: np.linalg.norm(_second(path), axis=1).mean() / fps**2,
-        "mean of the coordinates": lambda path, fps: np.abs(_second(path)).mean() * fps**2,
-        "sum over frames": lambda path, fps: np.linalg.norm(_second(path), axis=1).sum() * fps**2,
-        "gradient": lambda path, fps: (
-            np.linalg.norm(np.gradient(np.gradient(path, axis=0), axis=0), axis=1).mean() * fps**2
+        "that is the published fault: the bracket closes after the earlier position": (
+            published_bracket
         ),
-        "squared": squared,
-        "to and fro cancel": cancelled,
-        "change of the speed": change_of_speed,
-        "always 60 frames a second": always_60,
+        "divide by the frame time twice, once for each difference": lambda path, fps: (
+            _sizes(path).mean() * fps
+        ),
+        "the frame time is missing: these are metres per frame, per frame": lambda path, fps: (
+            _sizes(path).mean()
+        ),
+        "divide by the frame time, 1 / fps: that means multiply by fps": lambda path, fps: (
+            _sizes(path).mean() / fps**2
+        ),
+        "take the length of the vector, not the mean size of its coordinates": lambda path, fps: (
+            np.abs(_second(path)).mean() * fps**2
+        ),
+        "take the length of the vector, not the sum of its coordinates' sizes": lambda path, fps: (
+            np.abs(_second(path)).sum(1).mean() * fps**2
+        ),
+        "take the mean over the frames, not the sum": lambda path, fps: _sizes(path).sum() * fps**2,
+        "T frames have T - 2 accelerations; this divides by T": lambda path, fps: (
+            _sizes(path).sum() * fps**2 / len(path)
+        ),
+        "take the mean of the lengths, not the root of the mean square": lambda path, fps: (
+            np.sqrt((_sizes(path) ** 2).mean()) * fps**2
+        ),
+        "take the mean over the frames, not the median": lambda path, fps: (
+            np.median(_sizes(path)) * fps**2
+        ),
+        "np.gradient spans two frames; take each frame's difference to the next": (
+            lambda path, fps: (
+                np.linalg.norm(np.gradient(np.gradient(path, axis=0), axis=0), axis=1).mean()
+                * fps**2
+            )
+        ),
+        "you used 20 or 60 for fps; it is an argument": (
+            lambda path, fps: _sizes(path).mean() * 60**2,
+            lambda path, fps: _sizes(path).mean() * 20**2,
+        ),
+        "the lengths are squared; this feature does not square them": lambda path, fps: (
+            ((_second(path) * fps**2) ** 2).sum(1).mean()
+        ),
+        "take the length in each frame, then the mean: opposite directions must not cancel": (
+            lambda path, fps: np.linalg.norm(_second(path).mean(0)) * fps**2
+        ),
+        "that is the speed; the acceleration is the change of the velocity": lambda path, fps: (
+            np.linalg.norm(np.diff(path, axis=0), axis=1).mean() * fps
+        ),
+        "the change of the *speed* misses turning; take the change of the velocity, a vector": (
+            change_of_speed
+        ),
+        "these are accelerations of each frame; take their mean": lambda path, fps: (
+            _sizes(path) * fps**2
+        ),
     },
 }
+OTHERS = {"expenditure": {"in place": in_place}}

@@ -3,85 +3,102 @@
 import torch
 
 
-def one_too_many(distances, k):
-    """Counts the own motion when it is the (k + 1)-th."""
-    rank = (distances < distances.diagonal()[:, None]).sum(1)
-    return (rank <= k).mean()
+def _ranks(distances, own):
+    return (distances < own).sum(1), (distances == own).sum(1)
 
 
-def exactly(distances, k):
-    """Counts only the k-th place."""
-    rank = (distances < distances.diagonal()[:, None]).sum(1)
-    return (rank == k - 1).mean()
+def _rows(distances):
+    return _ranks(distances, distances.diagonal()[:, None])
+
+
+def _share(nearer, equal, k):
+    return ((k - nearer) / equal).clip(0, 1).mean()
 
 
 def by_motion(distances, k):
     """Chooses a text for each motion."""
-    rank = (distances < distances.diagonal()[None]).sum(0)
-    return (rank < k).mean()
+    return _share(*_rows(distances.T), k)
 
 
-def ties_win(distances, k):
-    """A network that always makes the same motion gets a perfect score."""
-    rank = (distances < distances.diagonal()[:, None]).sum(1)
-    return (rank < k).mean()
+def own_as_a_row(distances, k):
+    """Compares each text with another text's own motion."""
+    own = distances.diagonal()[None]
+    return _share((distances < own).sum(1), (distances == own).sum(1).clip(1), k)
 
 
-def ties_lose(distances, k):
-    """Motions that are as near as the own one count as nearer."""
-    rank = (distances <= distances.diagonal()[:, None]).sum(1) - 1
-    return (rank < k).mean()
+def _noised(form):
+    return lambda x0, alpha_bar, noise: form(x0, noise, alpha_bar**0.5, (1 - alpha_bar) ** 0.5)
 
 
-def farthest(distances, k):
-    """Takes the k farthest motions."""
-    rank = (distances > distances.diagonal()[:, None]).sum(1)
-    return (rank < k).mean()
-
-
-def noise_alone(x0, alpha_bar, noise):
-    """Plain sampling: nothing of the motion is left."""
-    return noise
-
-
-def without_roots(x0, alpha_bar, noise):
-    """The figure has too little noise, and the network takes it for a cleaner one."""
-    return alpha_bar * x0 + (1 - alpha_bar) * noise
-
-
-def not_shrunk(x0, alpha_bar, noise):
-    """The motion is too large for its step."""
-    return x0 + (1 - alpha_bar) ** 0.5 * noise
-
-
-def inverted(eps_lower, eps_upper, lower):
-    """The legs do what the arms were asked for."""
-    return torch.where(lower, eps_upper, eps_lower)
-
-
-def mean_of_both(eps_lower, eps_upper, lower):
-    """Every joint does half of both."""
-    return (eps_lower + eps_upper) / 2
-
-
-def summed(eps_lower, eps_upper, lower):
-    """Takes away twice the noise."""
-    return eps_lower + eps_upper
-
-
-ZOO = {
+MISTAKES = {
     "r_precision": {
-        "one too many": one_too_many,
-        "exactly the k-th": exactly,
-        "texts for motions": by_motion,
-        "the farthest": farthest,
-        "ties win": ties_win,
-        "ties lose": ties_lose,
+        "a rank of 0 is the nearest: the own motion must be among the first k": (
+            lambda distances, k: _share(*_rows(distances), k + 1)
+        ),
+        "this is exactly the k-th nearest; nearer ones count, too": lambda distances, k: (
+            _rows(distances)[0] == k - 1
+        ).mean(),
+        "take the share, not the number": lambda distances, k: (
+            _share(*_rows(distances), k) * len(distances)
+        ),
+        "rows are texts: choose a motion for each text, not a text for each motion": by_motion,
+        "the own motion's distance belongs to its row, its text": own_as_a_row,
+        "the nearest has the *smallest* distance": lambda distances, k: _share(
+            *_rows(-distances), k
+        ),
+        "a network that always makes the same motion must not win: of motions that are equally "
+        "near, each has an equal share": lambda distances, k: (_rows(distances)[0] < k).mean(),
+        "the own motion is as near as the others, so it is the nearest in a quarter of the cases": (
+            lambda distances, k: (sum(_rows(distances)) - 1 < k).mean()
+        ),
+        "the places that are left are shared: at most one for the own motion": (
+            lambda distances, k: (k / (sum(_rows(distances)))).clip(0, 1).mean()
+        ),
+        "k is not used: this is the nearest alone": lambda distances, k: _share(
+            *_rows(distances), 1
+        ),
+        "this is the mean rank; which share of the texts has one below k?": lambda distances, k: (
+            _rows(distances)[0].mean()
+        ),
     },
     "edit_start": {
-        "noise alone": noise_alone,
-        "without roots": without_roots,
-        "not shrunk": not_shrunk,
+        "that is noise alone: nothing of the motion is left": lambda x0, alpha_bar, noise: (
+            noise.clone()
+        ),
+        "that is noise alone, scaled: where is the motion?": _noised(lambda x, e, a, b: b * e),
+        "that is the motion alone, scaled: where is the noise?": _noised(lambda x, e, a, b: a * x),
+        "the motion keeps its size, but it must shrink as in training": _noised(
+            lambda x, e, a, b: x + b * e
+        ),
+        "the noise is scaled by the root of 1 - alpha_bar": _noised(lambda x, e, a, b: a * x + e),
+        "take the roots of alpha_bar and of 1 - alpha_bar": _noised(
+            lambda x, e, a, b: a**2 * x + b**2 * e
+        ),
+        "the root of alpha_bar is missing": _noised(lambda x, e, a, b: a**2 * x + b * e),
+        "the root of 1 - alpha_bar is missing": _noised(lambda x, e, a, b: a * x + b**2 * e),
+        "signal and noise are swapped": _noised(lambda x, e, a, b: b * x + a * e),
+        "the noise is added, not subtracted": _noised(lambda x, e, a, b: a * x - b * e),
     },
-    "composed": {"inverted": inverted, "mean": mean_of_both, "sum": summed},
+    "composed": {
+        "the mask is inverted: True is the lower body": lambda low, up, lower: torch.where(
+            lower, up, low
+        ),
+        "this is the mean of both texts in every column": lambda low, up, lower: (low + up) / 2,
+        "this is their sum": lambda low, up, lower: low + up,
+        "the other part is zero; it belongs to the other text": (
+            lambda low, up, lower: low * lower,
+            lambda low, up, lower: up * ~lower,
+        ),
+        "only the text of the lower body is left": lambda low, up, lower: low.clone(),
+        "only the text of the upper body is left": lambda low, up, lower: up.clone(),
+    },
 }
+
+
+def lower_in_place(eps_lower, eps_upper, lower):
+    """Right, but the guess for the lower body is overwritten."""
+    eps_lower[..., ~lower] = eps_upper[..., ~lower]
+    return eps_lower
+
+
+OTHERS = {"composed": {"in place": lower_in_place}}
