@@ -11,7 +11,7 @@ NEW_ENOUGH := import sys; sys.exit(sys.version_info < (3, 11))
 PYTHON ?= $(shell for p in python3 python3.13 python3.12 python3.11 python3.14; do \
 	$$p -c '$(NEW_ENOUGH)' >/dev/null 2>&1 && { echo $$p; break; }; done)
 
-.PHONY: help lab demo doctor test unit notebooks browser fuzz lint results bench pretrained student clean
+.PHONY: help lab demo doctor test unit notebooks pages browser fuzz lint results bench pretrained student clean
 .DEFAULT_GOAL := help
 
 help: ## this list
@@ -63,7 +63,7 @@ demo: $(VENV)/.lab ## open one notebook ready to show: make demo NB=07
 doctor: $(VENV)/.lab ## one page: what works here, and what to do about the rest
 	@$(BIN)/python -m motiondiff_edu doctor
 
-test: lint unit notebooks browser ## set up .venv and run everything: lint, unit tests, notebooks, browser
+test: lint unit pages browser ## set up .venv and run everything: lint, unit tests, notebooks, browser
 
 # A worker that dies ends the run as a failure. By default pytest-xdist starts another one, and may then wait for ever.
 WORKERS := -n auto --max-worker-restart=0
@@ -73,9 +73,16 @@ unit: $(VENV)/.test ## only the unit tests
 
 # The notebooks run in parallel with one thread each. With torch's own threads, two in parallel take four times as long as in turn.
 # The student edition is the same but for the exercises, which the unit tests run (docs/CONTRIBUTING.md), so it is not run again here.
-NOTEBOOKS ?= $(wildcard notebooks/*.ipynb)
+# Copies are run, whose outputs are kept for the pages.
+NOTEBOOKS ?= notebooks
+EXECUTED := build/executed
 notebooks: $(VENV)/.test ## only the notebooks (NOTEBOOKS=notebooks/student: the student edition)
-	OMP_NUM_THREADS=1 $(BIN)/python -m pytest -q $(WORKERS) --nbmake --nbmake-timeout=600 --durations=0 $(NOTEBOOKS)
+	rm -rf $(EXECUTED) && mkdir -p $(EXECUTED) && cp $(if $(filter %.ipynb,$(NOTEBOOKS)),$(NOTEBOOKS),$(NOTEBOOKS)/[0-9]*.ipynb) $(EXECUTED)
+	MOTIONDIFF_PAGES=1 OMP_NUM_THREADS=1 $(BIN)/python -m pytest -q $(WORKERS) --nbmake --nbmake-timeout=600 --overwrite \
+		--durations=0 $(EXECUTED)/*.ipynb
+
+pages: notebooks ## run the notebooks and write them as web pages that need no network: build/pages/index.html
+	$(BIN)/python -m tools.pages $(EXECUTED) build/pages
 
 browser: $(VENV)/.test ## only the tests that need Chromium
 	OMP_NUM_THREADS=1 $(BIN)/python -m pytest -q $(WORKERS) --dist loadfile -m browser

@@ -3,10 +3,22 @@
 import ipywidgets
 
 from ..viz.style import as_html
+from . import states
 from .turn import TURN
 
 
-def explore(draw, **start) -> ipywidgets.VBox:
+class Explored(ipywidgets.VBox):
+    """A figure with its controls. Where pages are made, it also has a few states as HTML."""
+
+    still = ""
+
+    def _repr_mimebundle_(self, **kwargs):
+        live = super()._repr_mimebundle_(**kwargs)
+        bundle, metadata = live if isinstance(live, tuple) else (live or {}, {})
+        return {**bundle, **({"text/html": self.still} if self.still else {})}, metadata
+
+
+def explore(draw, **start) -> Explored:
     """Show draw(**values) with a control for each argument, and a button that resets them all.
 
         explore(draw, s=(1, 100, 50), name=["linear", "cosine"], noise=True)
@@ -34,7 +46,22 @@ def explore(draw, **start) -> ipywidgets.VBox:
         control.observe(refresh, names="value")
     reset.on_click(back)
     refresh()
-    return ipywidgets.VBox([ipywidgets.HBox([*controls.values(), reset]), picture])
+    box = Explored([ipywidgets.HBox([*controls.values(), reset]), picture])
+    if states.wanted():
+        values = {name: _values(control) for name, control in controls.items()}
+        box.still = states.as_page(lambda at: as_html(draw(**at), dpi=80), values, first)
+    return box
+
+
+def _values(control: ipywidgets.Widget) -> list:
+    """The values that a control can have; of a slider nine, and the one it has."""
+    if isinstance(control, ipywidgets.Checkbox):
+        return [False, True]
+    if isinstance(control, ipywidgets.Dropdown):
+        return list(control.options)
+    whole = isinstance(control, ipywidgets.IntSlider)
+    steps = [control.min + (control.max - control.min) * i / 8 for i in range(9)]
+    return sorted({control.value, *(round(x) if whole else round(x, 3) for x in steps)})
 
 
 def _control(name: str, value) -> ipywidgets.Widget:
