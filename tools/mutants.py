@@ -308,6 +308,7 @@ class Exercise:
             with other_inputs(seed):
                 told = self.told(recording)
                 assert told is None, f"the solution is refused: {told} (seed {seed})"
+        assert given, f"checks.{self.check} never asks for an answer"
         return given
 
     def judged(self, most: int | None = None, seeds: Sequence[int] = range(1, 13)) -> "Judged":

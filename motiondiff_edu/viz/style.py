@@ -12,6 +12,7 @@ from collections.abc import Sequence
 import matplotlib
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.text import Text
 
 OKABE_ITO = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000", "#F0E442")
 MARKERS = ("o", "s", "^", "D", "v", "P", "X", "*")
@@ -44,17 +45,28 @@ class CaptionedFigure(Figure):
     The caption is its alternative text as well.
     """
 
-    def _repr_mimebundle_(self, include=None, exclude=None) -> dict:
+    def _repr_mimebundle_(self, include=None, exclude=None) -> tuple[dict, dict]:
         png = base64.b64encode(self.as_png()).decode()
-        return {
+        bundle = {
             "text/html": _html(caption(self), png),
             "image/png": png,
             "text/plain": caption(self),
         }
+        return bundle, {"texts": texts(self)} if making_pages() else {}
 
     def as_png(self) -> bytes:
         """The plot as PNG bytes."""
         return _png(self, DPI)
+
+
+def making_pages() -> bool:
+    """Whether this run is for web pages (`make pages` sets MOTIONDIFF_PAGES)."""
+    return os.environ.get("MOTIONDIFF_PAGES", "") not in ("", "0")
+
+
+def texts(fig: Figure) -> str:
+    """All that is written in a plot; its numbers back what a notebook says of it."""
+    return " ".join(text.get_text() for text in fig.findobj(Text) if text.get_text())
 
 
 def as_html(fig: Figure, dpi: int = DPI) -> str:

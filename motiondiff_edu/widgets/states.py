@@ -5,7 +5,6 @@ They are drawn only when pages are made (`make pages` sets MOTIONDIFF_PAGES): ea
 
 import html
 import itertools
-import os
 import uuid
 from collections.abc import Callable, Mapping, Sequence
 
@@ -28,11 +27,6 @@ STATES = """<div class="states" id="{name}">
 }})();
 </script>
 </div>"""
-
-
-def wanted() -> bool:
-    """Whether this run makes pages."""
-    return os.environ.get("MOTIONDIFF_PAGES", "") not in ("", "0")
 
 
 def few(choices: Mapping[str, Sequence], start: Mapping) -> dict[str, list]:

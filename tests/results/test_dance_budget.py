@@ -194,7 +194,15 @@ def test_what_trains_is_run_when_asked_for_only():
     weights = {"dancer"}
     lines = {"walker": Walks("walker", "walker")}
     plain = command.parts_of([], False, lines, weights)  # there are no weights of that walker
-    assert plain == ["dancer", "unheard", "footsteps", "attention", "dance-time", "known-answer"]
+    assert plain == [
+        "dancer",
+        "unheard",
+        "footsteps",
+        "attention",
+        "dance-time",
+        "known-answer",
+        "course",
+    ]
     full = command.parts_of([], True, {}, weights)
     assert full[: len(plain)] == plain and {"dance-budget.v", "ladder.ours"} <= set(full)
     assert command.parts_of(["dance-budget"], False, {}, weights) == [

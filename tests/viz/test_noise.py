@@ -29,7 +29,7 @@ def figures():
 
 def test_every_figure_shows_itself_once_with_its_words_below():
     for figure in figures():
-        shown = figure._repr_mimebundle_()["text/html"]
+        shown = figure._repr_mimebundle_()[0]["text/html"]
         words = figure.get_label()
         assert words and f">{words}</figcaption>" in shown and f'alt="{words}"' in shown
     assert not plt.get_fignums()

@@ -7,10 +7,11 @@ walker-eps-lookahead, footsteps; dancer, dancer-plain, regression, unheard (musi
 training), attention, dance-time; mend (dropout and repairs), mend-both (both papers' repairs),
 inbetween, inbetween-departures (what each is worth), known-answer (methods of filling in, on tasks
 whose answer is a formula); words (motion from text: Table 2, captions that nobody trained for,
-editing). These parts train, for minutes a row: ladder (from the paper's walker to ours),
-dance-budget, words-budget, inbetween-budget and mend-map. One row of them is a part as well:
-ladder.ours, dance-budget.v. Parts that need recordings (recordings, recordings-inbetweens,
-recordings-reconstructions, inbetween-budget) are measured by name alone, with MOTIONDIFF_REAL_DATA.
+editing); course (the checks of the exercises). These parts train, for minutes a row: ladder (from
+the paper's walker to ours), dance-budget, words-budget, inbetween-budget and mend-map. One row of
+them is a part as well: ladder.ours, dance-budget.v. Parts that need recordings (recordings,
+recordings-inbetweens, recordings-reconstructions, inbetween-budget) are measured by name alone,
+with MOTIONDIFF_REAL_DATA.
 Without --only, all parts are measured for which there are shipped weights. --full adds the parts
 that train; otherwise their records stay as they are. A training that was killed continues. --quick
 measures little, into build/quick, and is for trying the code. --render only writes docs/RESULTS.md
@@ -27,6 +28,7 @@ from motiondiff_edu._files import replacing
 from motiondiff_edu.pretrained import checkpoints
 from motiondiff_edu.viz.metrics import footstep_curves
 
+from .course.exercises import course_records
 from .dances import budget as dance_budget
 from .dances.attention import attention_picture, attention_records
 from .dances.parts import DANCE_FULL, DANCE_QUICK, DANCES, Stage, dance_records
@@ -59,6 +61,7 @@ MEASURED = (
     "attention",
     "dance-time",
     "known-answer",
+    "course",
 )  # parts that need shipped weights, or none
 FILLS_IN, MASKED = departures.SHOWN, departures.NOT_SHOWN  # the weights of in-betweens
 MENDED = {  # parts that need these weights
@@ -233,6 +236,8 @@ def records_of(
         return known_answer.known_answer_records(
             known_answer.QUICK if quick else known_answer.FULL, command
         )
+    if part == "course":
+        return course_records(command, 3 if quick else None)
     if part == "dance-time":
         size, rounds = (dance_budget.QUICK, 2) if quick else (dance_budget.FULL, ROUNDS)
         return time_records(TIMED, size, rounds, command)

@@ -118,4 +118,8 @@ BARS = (
     Bar("real.inbetween_skating_p90_over_source", at_most=2.5),
     Bar("real.inbetween_fastest_over_source", at_most=1.5),
     Bar("real.inbetween_fallback_share", at_most=0.1),
+    Bar("course.mutants_passing", at_most=0),
+    Bar("course.zoo_caught", at_least=1),
+    Bar("course.wrong_diagnosis", at_most=0.02),
+    Bar("course.right_answers_rejected", at_most=0),
 )

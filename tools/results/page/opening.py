@@ -21,6 +21,7 @@ GROUPS = {
         "real.seam_p95_over_motion",
     ),
     "In-betweens of recordings": (("real.inbetween",), "real.inbetween_over_interpolation"),
+    "The checks of the exercises": (("course.",), "course.mutants_passing"),
     "Speed, and sound in the player": (("bench.", "player."), "bench.sampler_over_diffusers"),
 }
 UNITS = ("cm", "m/s", "ms", "s", "m")  # the others are ratios, which have no unit

@@ -176,6 +176,14 @@ GOALS = {
     "real.style_kept": (
         "the share of continuations whose style is nearer to their own past than to another's"
     ),
+    "course.mutants_passing": (
+        "the number of mechanically changed solutions that a check lets pass"
+    ),
+    "course.zoo_caught": "the share of the bug zoo's wrong answers that the checks refuse",
+    "course.wrong_diagnosis": (
+        "the share of hints that name another mistake than the one that was made"
+    ),
+    "course.right_answers_rejected": "the number of unusual right answers that a check refuses",
 }
 
 # For columns and rows: the last part of a key.

@@ -1,0 +1,130 @@
+"""Figures in "What happened" cells that no cell before them has printed.
+
+    python tools/backed_numbers.py build/executed
+
+An answer may name decimals, and numbers with a unit, only if the cells before it print them: in
+their output, in a caption, in a figure's texts, or in the code as a setting. So a changed seed or
+network cannot leave a wrong number behind. `make notebooks` fails when one is found.
+"""
+
+import argparse
+import ast
+import html
+import json
+import re
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+
+UNITS = r"%|cm|mm|km|m/s|m|ms|s|nats?|Hz|kHz|BPM|°|degrees?|seconds?|minutes?|times|million|GB|MB"
+NUMBER = r"(?<![\w.$^_{\\/])[-−]?(?:\d{1,3}(?:,\d{3})+|\d*\.?\d+)"
+CLAIM = re.compile(rf"({NUMBER})(?:[ -]?({UNITS})(?![\w/]))?")
+ABOUT = re.compile(
+    r"(?:about|almost|nearly|around|some|roughly|over|under|more than|less than)\s+$"
+)
+ANSWER = re.compile(r"<summary>What happened</summary>(.*?)</details>", re.DOTALL)
+ASIDE = re.compile(
+    r"`[^`]*`|\$\$.*?\$\$|\$[^$]*\$|\]\([^)]*\)|<!--.*?-->|\b[Nn]otebooks? \d\d", re.DOTALL
+)
+SCALES = (1.0, 100.0, 0.01, 1000.0, 0.001)  # per cent of a share; cm and mm of metres
+
+
+@dataclass(frozen=True)
+class Claim:
+    """A number as the text writes it."""
+
+    text: str
+    unit: str
+    about: bool
+
+    @property
+    def value(self) -> float:
+        return float(self.text.replace(",", "").replace("−", "-"))
+
+    @property
+    def step(self) -> float:
+        """One in its last digit."""
+        digits = self.text.partition(".")[2]
+        return 10.0 ** -len(digits)
+
+    def backed(self, printed: set[float]) -> bool:
+        """Whether a printed number rounds to it, in this unit or in another one."""
+        room = max(0.5001 * self.step, 0.2 * abs(self.value) if self.about else 0.0)
+        return any(
+            abs(abs(scale * one) - abs(self.value)) <= room for one in printed for scale in SCALES
+        )
+
+
+def claims(answer: str) -> list[Claim]:
+    """The decimals, and the numbers with a unit, of an answer; not those in code or formulas."""
+    text = ASIDE.sub(" ", answer)
+    found = []
+    for match in CLAIM.finditer(text):
+        number, unit = match[1], match[2] or ""
+        if "." in number or unit:
+            found.append(Claim(number, unit, bool(ABOUT.search(text[: match.start()]))))
+    return found
+
+
+def numbers(text: str) -> set[float]:
+    """All numbers of a printed text."""
+    form = r"[-−]?(?:\d{1,3}(?:,\d{3})+(?:\.\d+)?|\d+\.?\d*|\.\d+)(?:e[-+]?\d+)?"
+    found = re.findall(form, text)
+    return {float(one.replace(",", "").replace("−", "-")) for one in found}
+
+
+def settings(code: str) -> set[float]:
+    """The numbers that code is written with."""
+    return {
+        float(node.value)
+        for node in ast.walk(ast.parse(re.sub(r"^[%!].*$", "", code, flags=re.M)))
+        if isinstance(node, ast.Constant) and type(node.value) in (int, float)
+    }
+
+
+def printed(output: dict) -> str:
+    """What an output says: printed text, captions, alternative texts, a figure's own texts."""
+    if output["output_type"] == "stream":
+        return "".join(output["text"])
+    data = {
+        mime: "".join(text) for mime, text in output.get("data", {}).items() if "json" not in mime
+    }
+    page = data.get("text/html", "")
+    told = re.findall(r"<figcaption[^>]*>(.*?)</figcaption>", page, re.DOTALL)
+    told += re.findall(r'<img alt="([^"]*)"', page)
+    drawn = output.get("metadata", {}).get("texts", "")
+    return html.unescape(" ".join([data.get("text/plain", ""), *told, drawn]))
+
+
+def unbacked(notebook: dict) -> list[str]:
+    """The claims of a notebook that nothing before them backs, each with the place."""
+    seen: set[float] = set()
+    found = []
+    for index, cell in enumerate(notebook["cells"]):
+        source = "".join(cell["source"])
+        if cell["cell_type"] == "code":
+            seen |= settings(source)
+            for output in cell.get("outputs", []):
+                seen |= numbers(printed(output))
+        for answer in ANSWER.findall(source) if cell["cell_type"] == "markdown" else ():
+            found += [
+                f"cell {index}: {claim.text} {claim.unit}".rstrip()
+                for claim in claims(answer)
+                if not claim.backed(seen)
+            ]
+    return found
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("executed", type=Path)
+    found = []
+    for path in sorted(parser.parse_args().executed.glob("*.ipynb")):
+        notebook = json.loads(path.read_text("utf-8"))
+        found += [f"{path.name}, {one}" for one in unbacked(notebook)]
+    print("\n".join(found) or "every figure in the answers was printed before it")
+    sys.exit(bool(found))
+
+
+if __name__ == "__main__":
+    main()
