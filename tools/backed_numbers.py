@@ -4,7 +4,12 @@
 
 An answer may name decimals, and numbers with a unit, only if the cells before it print them: in
 their output, in a caption, in a figure's texts, or in the code as a setting. So a changed seed or
-network cannot leave a wrong number behind. Lists those that are not, and exits with 1 if there are
+network cannot leave a wrong number behind. What follows from such numbers, or stands in the table
+of results, says so in a comment that is not shown:
+
+    <!-- 15 % = 100 * (1 - 0.85) -->      <!-- in RESULTS.md: 0.5 1.5 -->
+
+Lists those that are not, and exits with 1 if there are
 any. It needs outputs: `make notebooks` leaves executed copies in build/executed.
 """
 
@@ -27,6 +32,10 @@ ANSWER = re.compile(r"<summary>What happened</summary>(.*?)</details>", re.DOTAL
 ASIDE = re.compile(
     r"`[^`]*`|\$\$.*?\$\$|\$[^$]*\$|\]\([^)]*\)|<!--.*?-->|\b[Nn]otebooks? \d\d", re.DOTALL
 )
+DERIVED = re.compile(rf"<!-- ({NUMBER})(?: ?(?:{UNITS}))? = ([^>]+?) -->")
+LISTED = re.compile(r"<!-- in RESULTS\.md: ([\d. ]+) -->")
+TRIVIAL = {1.0, 2.0, 10.0, 100.0, 1000.0}  # need no backing in a formula
+RESULTS = Path(__file__).parent.parent / "docs" / "RESULTS.md"
 SCALES = (1.0, 100.0, 0.01, 1000.0, 0.001)  # per cent of a share; cm and mm of metres
 
 
@@ -58,6 +67,29 @@ class Claim:
         return abs(self.value) in {abs(one) for one in settings} or any(
             abs(abs(one) - abs(self.value)) <= room for one in scaled
         )
+
+
+def derived(answer: str, there: set[float]) -> set[float]:
+    """The numbers that comments of an answer compute from numbers that are there."""
+    found = set()
+    for text, formula in DERIVED.findall(answer):
+        tree = ast.parse(formula.strip(), mode="eval")
+        parts = [node for node in ast.walk(tree) if isinstance(node, ast.Constant)]
+        allowed = (ast.Expression, ast.BinOp, ast.UnaryOp, ast.operator, ast.unaryop, ast.Constant)
+        if not all(isinstance(node, allowed) for node in ast.walk(tree)):
+            raise ValueError(f"only numbers and + - * / ** can be in a comment: {formula}")
+        used = {float(node.value) for node in parts}
+        claim = Claim(text, "", False)
+        value = float(eval(compile(tree, "comment", "eval")))
+        if used <= there | TRIVIAL and claim.backed({value}, set()):
+            found.add(claim.value)
+    return found
+
+
+def in_results(answer: str, results: str) -> set[float]:
+    """The numbers that comments of an answer take from the table of results, if they are there."""
+    listed = {float(one) for text in LISTED.findall(answer) for one in text.split()}
+    return listed & numbers(results)
 
 
 def claims(answer: str) -> list[Claim]:
@@ -101,22 +133,28 @@ def printed(output: dict) -> str:
     return html.unescape(" ".join([data.get("text/plain", ""), *told, drawn]))
 
 
-def unbacked(notebook: dict) -> list[str]:
-    """The claims of a notebook that nothing before them backs, each with the place."""
+def unbacked(notebook: dict, results: str = "") -> list[str]:
+    """The claims of a notebook that nothing before them backs, each with the place.
+
+    `results`: the text of docs/RESULTS.md.
+    """
     seen: set[float] = set()
     written: set[float] = set()
+    typed: set[float] = set()  # all numbers in code, also within strings
     found = []
     for index, cell in enumerate(notebook["cells"]):
         source = "".join(cell["source"])
         if cell["cell_type"] == "code":
             written |= settings(source)
+            typed |= numbers(source)
             for output in cell.get("outputs", []):
                 seen |= numbers(printed(output))
         for answer in ANSWER.findall(source) if cell["cell_type"] == "markdown" else ():
+            more = derived(answer, seen | typed) | in_results(answer, results)
             found += [
                 f"cell {index}: {claim.text} {claim.unit}".rstrip()
                 for claim in claims(answer)
-                if not claim.backed(seen, written)
+                if not claim.backed(seen, written | more)
             ]
     return found
 
@@ -124,10 +162,10 @@ def unbacked(notebook: dict) -> list[str]:
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("executed", type=Path)
-    found = []
+    found, results = [], RESULTS.read_text("utf-8")
     for path in sorted(parser.parse_args().executed.glob("*.ipynb")):
         notebook = json.loads(path.read_text("utf-8"))
-        found += [f"{path.name}, {one}" for one in unbacked(notebook)]
+        found += [f"{path.name}, {one}" for one in unbacked(notebook, results)]
     print("\n".join(found) or "every figure in the answers was printed before it")
     sys.exit(bool(found))
 

@@ -64,7 +64,8 @@ def length(notebook: dict) -> Iterator[str]:
     count = len(notebook["cells"])
     if not CELLS[0] <= count <= CELLS[1]:
         yield f"{count} cells; one sitting has {CELLS[0]} to {CELLS[1]}"
-    words = sum(len(re.findall(r"[^\W_][\w'-]*", cell["source"])) for cell in markdown(notebook))
+    texts = [re.sub(r"<!--.*?-->", "", cell["source"]) for cell in markdown(notebook)]
+    words = sum(len(re.findall(r"[^\W_][\w'-]*", text)) for text in texts)
     if words >= WORDS:
         yield f"{words} words; keep under {WORDS}"
     cells = [cell for cell in code(notebook) if "imports" not in tags(cell)]

@@ -79,6 +79,25 @@ def test_captions_pictures_and_what_is_drawn_count_and_their_data_do_not():
     assert numbers(printed(output)) == {0.11, 0.22, 0.33, 0.44}
 
 
+def test_what_follows_from_printed_numbers_is_backed():
+    told = "The stride is 15 % short.<!-- 15 % = 100 * (1 - 0.85) -->"
+    assert unbacked({"cells": [code("f('0.85')"), answer(told)]}) == []
+    assert unbacked({"cells": [code("f(0.8)"), answer(told)]}) == ["cell 1: 15 %"]
+    wrong = "The stride is 16 % short.<!-- 16 % = 100 * (1 - 0.85) -->"
+    assert unbacked({"cells": [code("f(0.85)"), answer(wrong)]}) == ["cell 1: 16 %"]
+
+
+def test_a_comment_computes_and_does_nothing_else():
+    told = answer("It is 0.5.<!-- 0.5 = print(0.5) -->")
+    with pytest.raises(ValueError, match="only numbers and"):
+        unbacked({"cells": [code("f(0.5)"), told]})
+
+
+def test_what_stands_in_the_results_is_backed():
+    told = {"cells": [answer("with a goal of 0.5 to 1.5<!-- in RESULTS.md: 0.5 1.5 -->")]}
+    assert unbacked(told, "| 0.5 to 1.5 |") == [] and unbacked(told, "0.5") == ["cell 0: 1.5"]
+
+
 def test_text_outside_of_answers_is_not_read():
     assert unbacked({"cells": [{"cell_type": "markdown", "source": "it is 0.7"}]}) == []
 
