@@ -25,6 +25,7 @@ VERBS = {name: f"_commands.{name}" for name in _commands.VERBS} | {
     "lab": "course.lab",
     "demo": "course.demo",
     "doctor": "course.doctor",
+    "collect": "course.collect",
 }
 
 

@@ -175,7 +175,12 @@ def test_a_package_of_one_layer_stays_there(package, places):
 
 # imported inside functions, and the extra that has it
 OPTIONAL = {"transformers": "clip", "huggingface_hub": "clip"}
-RENAMED = {"pillow": "PIL", "scikit-learn": "sklearn", "ipython": "IPython"}
+RENAMED = {
+    "pillow": "PIL",
+    "scikit-learn": "sklearn",
+    "ipython": "IPython",
+    "fonttools": "fontTools",
+}
 
 
 def declared(lines: list[str]) -> set[str]:

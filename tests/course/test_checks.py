@@ -25,7 +25,7 @@ NAMED = [
     for hint, wrong in MISTAKES[name].items()
     for i, answer in enumerate(zoo.several(wrong))
 ]
-SOME_MUTANTS = 30  # of each solution; `python tools/mutants.py` takes all
+SOME_MUTANTS = 20  # of each solution; `python tools/mutants.py` takes all
 
 
 def called(source: str) -> list[str]:
@@ -71,7 +71,7 @@ def test_the_stub_is_not_attempted(path, cell, name, capsys):
 
 @pytest.mark.parametrize("name, hint, answer", NAMED)
 def test_a_mistake_gets_its_own_hint_whatever_the_inputs(name, hint, answer):
-    for seed in range(3):
+    for seed in (0, 7):
         with other_inputs(seed), pytest.raises(checks.CheckFailed) as caught:
             CHECKS[name](answer)
         assert str(caught.value).endswith(f": {hint}")

@@ -1,0 +1,173 @@
+"""`motiondiff-edu collect FOLDER`: run the exercises of many students' copies, into a table."""
+
+import argparse
+import csv
+import io
+import json
+import os
+import subprocess
+import sys
+import tempfile
+from collections import Counter
+from pathlib import Path
+
+from .._files import replacing
+from . import answers
+from .places import notebook_folder
+
+HELP = "run the exercises of many students' copies, and show which mistakes a class makes"
+EXAMPLE = "collect handed_in --out class.csv"
+ABSENT = "no copy"
+SIGNS = {"right": "+", "not attempted": ".", ABSENT: " "}  # all others: x
+
+
+class CollectError(ValueError):
+    """There is nothing to collect."""
+
+
+def arguments(parser: argparse.ArgumentParser) -> None:
+    parser.description = (
+        "Run the exercises of many students' copies. FOLDER has a folder for each student, with "
+        "copies of the notebooks in it (deeper folders are looked into, too). Every answer runs "
+        "in a process of its own with limits of time and memory. That keeps answers apart; it is "
+        "no protection against malice: do not run code of people whom you do not trust."
+    )
+    parser.add_argument("folder", type=Path, metavar="FOLDER")
+    parser.add_argument("--out", type=Path, metavar="FILE.csv", help="also write all results here")
+    parser.add_argument(
+        "--only", nargs="+", default=[], metavar="NB", help="only these notebooks, 02 for instance"
+    )
+    parser.add_argument("--seconds", type=int, default=20, help="for each answer (default: 20)")
+    parser.add_argument(
+        "--gigabytes", type=float, default=2.0, help="of memory for each answer (default: 2)"
+    )
+
+
+def run(chosen: argparse.Namespace) -> int:
+    """Try all answers, print the table and the commonest mistakes, write the CSV file."""
+    if not hasattr(os, "fork"):
+        raise CollectError("collect needs a system with fork: Linux, macOS, or WSL on Windows")
+    copies = copies_of(chosen.folder, chosen.only)
+    rows = []
+    for number in sorted({number for _, number in copies}):
+        theirs = {who: path for (who, nb), path in copies.items() if nb == number}
+        print(f"notebook {number}: {len(theirs)} copies ...", file=sys.stderr, flush=True)
+        rows += results_of(number, theirs, chosen.seconds, chosen.gigabytes)
+    print(table(rows))
+    print(mistakes(rows))
+    if chosen.out:
+        with replacing(chosen.out) as part:
+            part.write_text(as_csv(rows), encoding="utf-8")
+        print(f"written: {chosen.out}")
+    return 0
+
+
+def copies_of(folder: Path, only: list[str]) -> dict[tuple[str, str], Path]:
+    """{(student, notebook's number): the copy that was changed last}. Raises CollectError."""
+    if not folder.is_dir():
+        raise CollectError(f"{folder} is no folder; it should have a folder for each student")
+    wanted = {number.zfill(2) for number in only}
+    found: dict[tuple[str, str], Path] = {}
+    for path in sorted(folder.glob("*/**/[0-9][0-9]_*.ipynb")):
+        if ".ipynb_checkpoints" in path.parts or (wanted and path.name[:2] not in wanted):
+            continue
+        key = (path.relative_to(folder).parts[0], path.name[:2])
+        if key not in found or path.stat().st_mtime > found[key].stat().st_mtime:
+            found[key] = path
+    if not found:
+        raise CollectError(
+            f"{folder} has no copies of the notebooks; expected for instance "
+            f"{folder / 'a_student' / '02_noise.ipynb'}"
+        )
+    return found
+
+
+def results_of(number: str, copies: dict[str, Path], seconds: int, gigabytes: float) -> list[dict]:
+    """A row {"student", "notebook", "exercise", "result", "message"} for each exercise of each."""
+    own = next(iter(sorted((notebook_folder() / "student").glob(f"{number}_*.ipynb"))), None)
+    if own is None:
+        raise CollectError(f"the course has no notebook {number}")
+    names, rows, todo = answers.exercises(own), [], []
+    for who, path in copies.items():
+        try:
+            given = answers.answers(path)
+        except answers.CopyError as error:
+            rows += [_row(who, number, name, "unreadable", str(error)) for name in names]
+            continue
+        for name in names:
+            rows.append(_row(who, number, name, "not attempted", "its cell is gone"))
+            if name in given:
+                todo.append((rows[-1], {"check": name, "source": given[name]}))
+    if todo:
+        found = tried(own, [answer for _, answer in todo], seconds, gigabytes)
+        for (row, _), (result, message) in zip(todo, found, strict=True):
+            row |= {"result": result, "message": message}
+    return rows
+
+
+def _row(who: str, number: str, name: str, result: str, message: str) -> dict:
+    return {
+        "student": who, "notebook": number, "exercise": name, "result": result, "message": message,
+    }  # fmt: skip
+
+
+def tried(notebook: Path, todo: list[dict], seconds: int, gigabytes: float) -> list[list[str]]:
+    """(result, message) of each answer, from `trial` in another process and an empty folder."""
+    given = {"answers": todo, "seconds": seconds, "gigabytes": gigabytes}
+    with tempfile.TemporaryDirectory(prefix="motiondiff_collect_") as folder:
+        done = subprocess.run(
+            [sys.executable, "-m", "motiondiff_edu.course.trial", str(notebook.resolve())],
+            input=json.dumps(given),
+            capture_output=True,
+            text=True,
+            cwd=folder,
+            env=os.environ | {"OMP_NUM_THREADS": "1", "MPLBACKEND": "Agg"},
+        )
+    if done.returncode:
+        last = (done.stderr.strip().splitlines() or ["it ended without a word"])[-1]
+        raise CollectError(f"{notebook.name} cannot be prepared: {last}")
+    return json.loads(done.stdout)
+
+
+def table(rows: list[dict]) -> str:
+    """A line for each student, a sign for each exercise: + right, x wrong, . not attempted."""
+    columns = list(dict.fromkeys((row["notebook"], row["exercise"]) for row in rows))
+    students = sorted({row["student"] for row in rows})
+    result = {(row["student"], row["notebook"], row["exercise"]): row["result"] for row in rows}
+    width = max(map(len, students))
+    numbers = list(dict.fromkeys(number for number, _ in columns))
+    head = " ".join(
+        f"{number:<{max(2, sum(one == number for one, _ in columns))}}" for number in numbers
+    )
+    lines = [f"{'':{width}}  {head}"]
+    for who in students:
+        groups, right = [], 0
+        for number in numbers:
+            results = [result.get((who, n, name), ABSENT) for n, name in columns if n == number]
+            right += results.count("right")
+            groups.append(f"{''.join(SIGNS.get(one, 'x') for one in results):<2}")
+        lines.append(f"{who:{width}}  {' '.join(groups)}  {right} of {len(columns)}")
+    return "\n".join(["", *lines, "", "+ right   x wrong or failed   . not attempted", ""])
+
+
+def mistakes(rows: list[dict], most: int = 12) -> str:
+    """The commonest messages of the class."""
+    counts = Counter(
+        (row["notebook"], row["exercise"], row["message"])
+        for row in rows
+        if row["result"] not in ("right", "not attempted", ABSENT)
+    )
+    lines = [
+        f"{count:3d} x  {number} {name}: {message}"
+        for (number, name, message), count in counts.most_common(most)
+    ]
+    return "\n".join(["The commonest mistakes:", *(lines or ["none"]), ""])
+
+
+def as_csv(rows: list[dict]) -> str:
+    text = io.StringIO()
+    fields = ("student", "notebook", "exercise", "result", "message")
+    writer = csv.DictWriter(text, fields, lineterminator="\n")
+    writer.writeheader()
+    writer.writerows(rows)
+    return text.getvalue()
