@@ -80,6 +80,7 @@ notebooks: $(VENV)/.test ## only the notebooks (NOTEBOOKS=notebooks/student: the
 	rm -rf $(EXECUTED) && mkdir -p $(EXECUTED) && cp $(if $(filter %.ipynb,$(NOTEBOOKS)),$(NOTEBOOKS),$(NOTEBOOKS)/[0-9]*.ipynb) $(EXECUTED)
 	MOTIONDIFF_PAGES=1 OMP_NUM_THREADS=1 $(BIN)/python -m pytest -q $(WORKERS) --nbmake --nbmake-timeout=600 --overwrite \
 		--durations=0 $(EXECUTED)/*.ipynb
+	$(BIN)/python tools/backed_numbers.py $(EXECUTED)
 
 pages: notebooks ## run the notebooks and write them as web pages that need no network: build/pages/index.html
 	$(BIN)/python -m tools.pages $(EXECUTED) build/pages

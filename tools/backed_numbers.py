@@ -88,8 +88,8 @@ def derived(answer: str, there: set[float]) -> set[float]:
 
 def in_results(answer: str, results: str) -> set[float]:
     """The numbers that comments of an answer take from the table of results, if they are there."""
-    listed = {float(one) for text in LISTED.findall(answer) for one in text.split()}
-    return listed & numbers(results)
+    listed = [Claim(one, "", False) for text in LISTED.findall(answer) for one in text.split()]
+    return {claim.value for claim in listed if claim.backed(numbers(results), set())}
 
 
 def claims(answer: str) -> list[Claim]:
@@ -150,7 +150,7 @@ def unbacked(notebook: dict, results: str = "") -> list[str]:
             for output in cell.get("outputs", []):
                 seen |= numbers(printed(output))
         for answer in ANSWER.findall(source) if cell["cell_type"] == "markdown" else ():
-            more = derived(answer, seen | typed) | in_results(answer, results)
+            more = derived(answer, seen | written | typed) | in_results(answer, results)
             found += [
                 f"cell {index}: {claim.text} {claim.unit}".rstrip()
                 for claim in claims(answer)
