@@ -63,7 +63,7 @@ demo: $(VENV)/.lab ## open one notebook ready to show: make demo NB=07
 doctor: $(VENV)/.lab ## one page: what works here, and what to do about the rest
 	@$(BIN)/python -m motiondiff_edu doctor
 
-test: lint unit pages browser ## set up .venv and run everything: lint, unit tests, notebooks, browser
+test: lint unit notebooks browser ## set up .venv and run everything: lint, unit tests, notebooks, browser
 
 # A worker that dies ends the run as a failure. By default pytest-xdist starts another one, and may then wait for ever.
 WORKERS := -n auto --max-worker-restart=0
@@ -73,15 +73,16 @@ unit: $(VENV)/.test ## only the unit tests
 
 # The notebooks run in parallel with one thread each. With torch's own threads, two in parallel take four times as long as in turn.
 # The student edition is the same but for the exercises, which the unit tests run (docs/CONTRIBUTING.md), so it is not run again here.
-# Copies are run, whose outputs are kept for the pages.
+# Copies are run, whose outputs are kept for the pages; for them, figures with sliders are drawn in several states.
 NOTEBOOKS ?= notebooks
 EXECUTED := build/executed
 notebooks: $(VENV)/.test ## only the notebooks (NOTEBOOKS=notebooks/student: the student edition)
 	rm -rf $(EXECUTED) && mkdir -p $(EXECUTED) && cp $(if $(filter %.ipynb,$(NOTEBOOKS)),$(NOTEBOOKS),$(NOTEBOOKS)/[0-9]*.ipynb) $(EXECUTED)
-	MOTIONDIFF_PAGES=1 OMP_NUM_THREADS=1 $(BIN)/python -m pytest -q $(WORKERS) --nbmake --nbmake-timeout=600 --overwrite \
+	MOTIONDIFF_PAGES=$(PAGES) OMP_NUM_THREADS=1 $(BIN)/python -m pytest -q $(WORKERS) --nbmake --nbmake-timeout=600 --overwrite \
 		--durations=0 $(EXECUTED)/*.ipynb
 	$(BIN)/python tools/backed_numbers.py $(EXECUTED)
 
+pages: PAGES := 1
 pages: notebooks ## run the notebooks and write them as web pages that need no network: build/pages/index.html
 	$(BIN)/python -m tools.pages $(EXECUTED) build/pages
 

@@ -87,7 +87,9 @@ def results_of(number: str, copies: dict[str, Path], seconds: int, gigabytes: fl
     own = next(iter(sorted((notebook_folder() / "student").glob(f"{number}_*.ipynb"))), None)
     if own is None:
         raise CollectError(f"the course has no notebook {number}")
-    names, rows, todo = answers.exercises(own), [], []
+    names = answers.exercises(own)
+    rows = []
+    todo = []
     for who, path in copies.items():
         try:
             given = answers.answers(path)

@@ -20,8 +20,12 @@ from pathlib import Path
 
 from . import answers
 
-RIGHT, OPEN, WRONG = "right", "not attempted", "wrong"
-FAILED, SLOW, DIED = "failed", "too slow", "died"
+RIGHT = "right"
+OPEN = "not attempted"
+WRONG = "wrong"
+FAILED = "failed"
+SLOW = "too slow"
+DIED = "died"
 
 
 def tried(source: str, check: str, namespace: dict) -> tuple[str, str]:

@@ -52,7 +52,7 @@ class CaptionedFigure(Figure):
             "image/png": png,
             "text/plain": caption(self),
         }
-        return bundle, {"texts": texts(self)} if making_pages() else {}
+        return bundle, {"texts": texts(self)}
 
     def as_png(self) -> bytes:
         """The plot as PNG bytes."""

@@ -150,8 +150,7 @@ def test_control_and_intervals_name_their_numbers():
     assert [label.get_text() for label in fig.axes[0].get_yticklabels()] == ["walker", "data"]
 
 
-def test_for_pages_a_figure_says_what_is_written_in_it(monkeypatch):
-    monkeypatch.setenv("MOTIONDIFF_PAGES", "1")
+def test_a_figure_says_what_is_written_in_it():
     fig = curves.intervals([("walker", 0.2, 0.1, 0.4), ("data", 0.05, 0.04, 0.06)], "cm")
     texts = fig._repr_mimebundle_()[1]["texts"]
     assert "walker" in texts and "cm" in texts
@@ -162,7 +161,7 @@ def test_a_figure_shows_itself_with_its_caption_as_alternative_text():
         skeleton.top_view(paths={"a": np.array([[0.0, 0.0], [0.5, 2.0]])}), 'a < b & "c"'
     )
     bundle, more = fig._repr_mimebundle_()
-    assert more == {}
+    assert "texts" in more
     assert (
         'alt="a &lt; b &amp; &quot;c&quot;"' in bundle["text/html"]
         and "<figcaption" in bundle["text/html"]
