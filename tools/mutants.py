@@ -29,6 +29,7 @@ sys.path.insert(0, str(Path(__file__).parent))
 import notebook_cells  # noqa: E402
 
 from motiondiff_edu.course import checks  # noqa: E402
+from motiondiff_edu.course.answers import checks_called  # noqa: E402
 from motiondiff_edu.course.checks._compare import other_inputs  # noqa: E402
 
 SWAPPED = {
@@ -81,10 +82,7 @@ def mutants(source: str) -> Iterator[tuple[str, str]]:
             target = [
                 one for one in ast.walk(_function(copied)) if not isinstance(one, ast.arguments)
             ][index]
-            changed = change(copy.deepcopy(target))
-            if changed is None:
-                continue
-            new = _Replace(target, changed).visit(copied)
+            new = _Replace(target, change(copy.deepcopy(target))).visit(copied)
             text = ast.unparse(ast.fix_missing_locations(new))
             if text != ast.unparse(tree):
                 yield f"{_place(node)}: {words}", text
@@ -266,15 +264,7 @@ class Exercise:
     def __init__(self, source: str, namespace: dict):
         tree = ast.parse(source)
         self.function = _function(tree).name
-        self.parameters = [one.arg for one in _function(tree).args.args]
-        self.check = next(
-            node.func.attr
-            for node in ast.walk(tree)
-            if isinstance(node, ast.Call)
-            and isinstance(node.func, ast.Attribute)
-            and isinstance(node.func.value, ast.Name)
-            and node.func.value.id == "checks"
-        )
+        self.check = next(checks_called(source))
         body = [node for node in tree.body if isinstance(node, ast.FunctionDef)]
         self.source = ast.unparse(ast.Module(body, []))
         self.namespace = namespace

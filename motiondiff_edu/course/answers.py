@@ -5,6 +5,15 @@ import json
 from collections.abc import Iterator
 from pathlib import Path
 
+# what becomes of an answer (`trial`, `collect`)
+RIGHT = "right"
+OPEN = "not attempted"
+WRONG = "wrong"
+FAILED = "failed"
+SLOW = "too slow"
+DIED = "died"
+UNREADABLE = "unreadable"
+
 
 class CopyError(ValueError):
     """A file that is no readable notebook."""

@@ -13,12 +13,13 @@ from pathlib import Path
 
 from .._files import replacing
 from . import answers
+from .answers import OPEN, RIGHT, UNREADABLE
 from .places import notebook_folder
 
 HELP = "run the exercises of many students' copies, and show which mistakes a class makes"
 EXAMPLE = "collect handed_in --out class.csv"
 ABSENT = "no copy"
-SIGNS = {"right": "+", "not attempted": ".", ABSENT: " "}  # all others: x
+SIGNS = {RIGHT: "+", OPEN: ".", ABSENT: " "}  # all others: x
 
 
 class CollectError(ValueError):
@@ -94,10 +95,10 @@ def results_of(number: str, copies: dict[str, Path], seconds: int, gigabytes: fl
         try:
             given = answers.answers(path)
         except answers.CopyError as error:
-            rows += [_row(who, number, name, "unreadable", str(error)) for name in names]
+            rows += [_row(who, number, name, UNREADABLE, str(error)) for name in names]
             continue
         for name in names:
-            rows.append(_row(who, number, name, "not attempted", "its cell is gone"))
+            rows.append(_row(who, number, name, OPEN, "its cell is gone"))
             if name in given:
                 todo.append((rows[-1], {"check": name, "source": given[name]}))
     if todo:
@@ -146,7 +147,7 @@ def table(rows: list[dict]) -> str:
         groups, right = [], 0
         for number in numbers:
             results = [result.get((who, n, name), ABSENT) for n, name in columns if n == number]
-            right += results.count("right")
+            right += results.count(RIGHT)
             groups.append(f"{''.join(SIGNS.get(one, 'x') for one in results):<2}")
         lines.append(f"{who:{width}}  {' '.join(groups)}  {right} of {len(columns)}")
     return "\n".join(["", *lines, "", "+ right   x wrong or failed   . not attempted", ""])
@@ -157,7 +158,7 @@ def mistakes(rows: list[dict], most: int = 12) -> str:
     counts = Counter(
         (row["notebook"], row["exercise"], row["message"])
         for row in rows
-        if row["result"] not in ("right", "not attempted", ABSENT)
+        if row["result"] not in (RIGHT, OPEN)
     )
     lines = [
         f"{count:3d} x  {number} {name}: {message}"

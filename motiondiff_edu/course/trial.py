@@ -19,18 +19,12 @@ import warnings
 from pathlib import Path
 
 from . import answers
-
-RIGHT = "right"
-OPEN = "not attempted"
-WRONG = "wrong"
-FAILED = "failed"
-SLOW = "too slow"
-DIED = "died"
+from .answers import DIED, FAILED, OPEN, RIGHT, SLOW, WRONG
 
 
 def tried(source: str, check: str, namespace: dict) -> tuple[str, str]:
     """Run an exercise cell; (status, message)."""
-    from .checks import CheckFailed
+    from .checks._report import STUBS, CheckFailed
 
     said = io.StringIO()
     try:
@@ -40,7 +34,7 @@ def tried(source: str, check: str, namespace: dict) -> tuple[str, str]:
     except CheckFailed as error:
         return WRONG, str(error).removeprefix(f"{check}: ")
     except NotImplementedError as error:
-        return (OPEN, "") if str(error) in ("", "your turn") else (FAILED, _named(error))
+        return (OPEN, "") if str(error) in STUBS else (FAILED, _named(error))
     except MemoryError:
         return DIED, "it needed more memory than is allowed"
     except BaseException as error:  # also SystemExit: it is the answer's

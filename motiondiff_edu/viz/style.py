@@ -59,11 +59,6 @@ class CaptionedFigure(Figure):
         return _png(self, DPI)
 
 
-def making_pages() -> bool:
-    """Whether this run is for web pages (`make pages` sets MOTIONDIFF_PAGES)."""
-    return os.environ.get("MOTIONDIFF_PAGES", "") not in ("", "0")
-
-
 def texts(fig: Figure) -> str:
     """All that is written in a plot; its numbers back what a notebook says of it."""
     return " ".join(text.get_text() for text in fig.findobj(Text) if text.get_text())

@@ -2,7 +2,7 @@
 
 import ipywidgets
 
-from ..viz.style import as_html, making_pages
+from ..viz.style import as_html
 from . import states
 from .turn import TURN
 
@@ -47,7 +47,7 @@ def explore(draw, **start) -> Explored:
     reset.on_click(back)
     refresh()
     box = Explored([ipywidgets.HBox([*controls.values(), reset]), picture])
-    if making_pages():
+    if states.making_pages():
         values = {name: _values(control) for name, control in controls.items()}
         box.still = states.as_page(lambda at: as_html(draw(**at), dpi=80), values, first)
     return box

@@ -5,6 +5,7 @@ They are drawn only when pages are made (`make pages` sets MOTIONDIFF_PAGES): ea
 
 import html
 import itertools
+import os
 import uuid
 from collections.abc import Callable, Mapping, Sequence
 
@@ -27,6 +28,11 @@ STATES = """<div class="states" id="{name}">
 }})();
 </script>
 </div>"""
+
+
+def making_pages() -> bool:
+    """Whether this run is for web pages (`make pages` sets MOTIONDIFF_PAGES)."""
+    return os.environ.get("MOTIONDIFF_PAGES", "") not in ("", "0")
 
 
 def few(choices: Mapping[str, Sequence], start: Mapping) -> dict[str, list]:

@@ -4,7 +4,6 @@ The notebook's solution and its mutants, the stub, unusual right answers, and th
 the zoo.
 """
 
-import ast
 import functools
 
 import build_student
@@ -14,6 +13,7 @@ import pytest
 from right_answers import RIGHT
 
 from motiondiff_edu.course import checks
+from motiondiff_edu.course.answers import checks_called
 from motiondiff_edu.course.checks import zoo
 from motiondiff_edu.course.checks._compare import other_inputs
 
@@ -28,18 +28,11 @@ NAMED = [
 SOME_MUTANTS = 16  # of each solution; `python tools/mutants.py` takes all
 
 
-def called(source: str) -> list[str]:
-    """The checks that a cell calls: checks.<name>(...)."""
-    calls = [node.func for node in ast.walk(ast.parse(source)) if isinstance(node, ast.Call)]
-    calls = [f for f in calls if isinstance(f, ast.Attribute) and isinstance(f.value, ast.Name)]
-    return [f.attr for f in calls if f.value.id == "checks"]
-
-
 EXERCISES = [
     pytest.param(path, cell, name, id=f"{path.stem[:2]}-{name}")
     for path in notebook_cells.sources()
     for cell in notebook_cells.code(notebook_cells.read(path), "solution")
-    for name in called(cell["source"]) or ["no check called"]
+    for name in list(checks_called(cell["source"])) or ["no check called"]
 ]
 
 

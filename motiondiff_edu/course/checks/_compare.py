@@ -106,12 +106,9 @@ def _parts(got, names: tuple[str, ...]) -> list[np.ndarray]:
 
 
 def _array(value, name: str) -> np.ndarray:
-    loose = isinstance(value, tuple | list) and any(
-        isinstance(one, torch.Tensor) and one.ndim for one in value
-    )
-    expect(not loose, f"{name} is a list of {_count(value)} tensors; torch.stack makes one of them")
+    if isinstance(value, tuple | list):
+        loose = any(isinstance(one, torch.Tensor) and one.ndim for one in value)
+        expect(
+            not loose, f"{name} is a list of {len(value)} tensors; torch.stack makes one of them"
+        )
     return as_array(value)
-
-
-def _count(value) -> int:
-    return len(value) if isinstance(value, tuple | list) else 1

@@ -14,10 +14,9 @@ Arrays = list[np.ndarray]
 def told(name: str, answers: Arrays, wanted: Arrays, rtol: float, atol: float) -> str:
     """One sentence: an observation, or the entry with the largest error of the first wrong case."""
     close = lambda one, other: np.allclose(one, other, rtol, atol)  # noqa: E731
-    for seen in OBSERVATIONS:
-        found = seen(answers, wanted, close)
-        if found:
-            return f"{name}: {found}"
+    found = _of_numbers(answers, wanted, close) or order(answers, wanted, close)
+    if found:
+        return f"{name}: {found}"
     pairs = zip(answers, wanted, strict=True)
     mine, right = next(p for p in pairs if p[0].shape != p[1].shape or not close(*p))
     if mine.shape != right.shape:
@@ -62,20 +61,20 @@ def _be(count: int) -> str:
     return "is" if count == 1 else "are"
 
 
-def _equal_shapes(answers: Arrays, wanted: Arrays) -> bool:
-    return all(
-        one.shape == two.shape and np.isfinite(one).all()
-        for one, two in zip(answers, wanted, strict=True)
-    )
-
-
-def factor(answers: Arrays, wanted: Arrays, close: Callable) -> str:
-    """The same multiple of the right value everywhere."""
-    if not _equal_shapes(answers, wanted):
+def _of_numbers(answers: Arrays, wanted: Arrays, close: Callable) -> str:
+    """What holds of all numbers of all inputs, if the shapes are right and there are several."""
+    pairs = list(zip(answers, wanted, strict=True))
+    if not all(one.shape == two.shape and np.isfinite(one).all() for one, two in pairs):
         return ""
-    mine, right = _flat(answers), _flat(wanted)
+    mine, right = (np.concatenate([one.ravel() for one in side]) for side in (answers, wanted))
     if len(mine) < 2:
         return ""
+    found = (seen(mine, right, close) for seen in (factor, offset, power))
+    return next(filter(None, found), "")
+
+
+def factor(mine: np.ndarray, right: np.ndarray, close: Callable) -> str:
+    """The same multiple of the right value everywhere."""
     place = np.abs(right).argmax()
     if abs(right[place]) < 1e-9:
         return ""
@@ -89,26 +88,16 @@ def factor(answers: Arrays, wanted: Arrays, close: Callable) -> str:
     return f"everywhere it is {ratio:.4g} times what it should be"
 
 
-def offset(answers: Arrays, wanted: Arrays, close: Callable) -> str:
+def offset(mine: np.ndarray, right: np.ndarray, close: Callable) -> str:
     """The same difference everywhere."""
-    if not _equal_shapes(answers, wanted):
-        return ""
-    mine, right = _flat(answers), _flat(wanted)
-    if len(mine) < 2:
-        return ""
     by = (mine - right)[0]
     if not close(mine, right + by) or close(mine, right):
         return ""
     return f"everywhere it is too {'large' if by > 0 else 'small'} by {abs(by):.4g}"
 
 
-def power(answers: Arrays, wanted: Arrays, close: Callable) -> str:
+def power(mine: np.ndarray, right: np.ndarray, close: Callable) -> str:
     """Square, root, inverse, or another sign in places."""
-    if not _equal_shapes(answers, wanted):
-        return ""
-    mine, right = _flat(answers), _flat(wanted)
-    if len(mine) < 2:
-        return ""
     with np.errstate(all="ignore"):
         forms = {
             "it is the square of what it should be": right**2,
@@ -163,10 +152,3 @@ def _moved(answers: Arrays, wanted: Arrays, axis: int, by: int, close: Callable)
         if not close(mine.take(at, axis), right.take(of, axis)):
             return False
     return True
-
-
-def _flat(arrays: Arrays) -> np.ndarray:
-    return np.concatenate([one.ravel() for one in arrays])
-
-
-OBSERVATIONS = (factor, offset, power, order)

@@ -4,18 +4,9 @@ import numpy as np
 import torch
 
 from ._compare import compare
+from ._drawn import schedule, tensors
 from ._report import check
 from .zoo.nb02 import MISTAKES
-
-
-def tensors(rng: np.random.Generator, *shape: int) -> torch.Tensor:
-    """Normal numbers, as float64."""
-    return torch.from_numpy(rng.normal(size=shape))
-
-
-def schedule(rng: np.random.Generator, S: int) -> torch.Tensor:
-    """S + 1 falling shares of the signal, the first of them 1."""
-    return torch.from_numpy(np.cumprod([1.0, *rng.uniform(0.5, 0.9, size=S)]))
 
 
 def _batches(rng: np.random.Generator):

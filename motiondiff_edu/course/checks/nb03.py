@@ -5,8 +5,8 @@ import torch
 from torch.distributions import Normal
 
 from ._compare import compare
+from ._drawn import betas_of, schedule, tensors
 from ._report import check
-from .nb02 import schedule, tensors
 from .zoo.nb03 import MISTAKES
 
 
@@ -50,7 +50,7 @@ def _noisy_steps(rng: np.random.Generator):
     yield x, 2, eps, beta, alpha_bar, z
     yield x, 1, eps, beta, alpha_bar, z
     table = schedule(rng, 5)
-    betas = torch.cat([torch.zeros(1), 1 - table[1:] / table[:-1]])
+    betas = betas_of(table)
     for s in (4, 2, 1):
         shape = (2, 5, 3)
         yield tensors(rng, *shape), s, tensors(rng, *shape), betas, table, tensors(rng, *shape)

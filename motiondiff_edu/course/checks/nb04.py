@@ -5,8 +5,8 @@ import torch
 from torch.distributions import Normal, kl_divergence
 
 from ._compare import compare
+from ._drawn import betas_of, schedule, tensors
 from ._report import check
-from .nb02 import schedule, tensors
 from .zoo.nb04 import MISTAKES
 
 
@@ -35,7 +35,7 @@ def _tables(rng: np.random.Generator):
     beta = torch.tensor([0.0, 0.1, 0.2, 0.4, 0.5], dtype=torch.float64)
     yield beta, torch.tensor([1.0, 0.9, 0.72, 0.432, 0.216], dtype=torch.float64)
     table = schedule(rng, 7)
-    yield torch.cat([torch.zeros(1), 1 - table[1:] / table[:-1]]), table
+    yield betas_of(table), table
 
 
 def moved_means(beta, alpha_bar) -> torch.Tensor:

@@ -7,8 +7,8 @@ import torch
 from torch.nn import functional as F
 
 from ._compare import compare
+from ._drawn import tensors
 from ._report import check
-from .nb02 import tensors
 from .zoo.nb06 import MISTAKES
 
 

@@ -7,8 +7,8 @@ import numpy as np
 import torch
 
 from ._compare import compare
+from ._drawn import tensors
 from ._report import check, expect
-from .nb02 import tensors
 from .zoo.nb07 import MISTAKES
 
 

@@ -6,8 +6,8 @@ import numpy as np
 import torch
 
 from ._compare import compare
+from ._drawn import tensors
 from ._report import as_array, check, expect
-from .nb02 import tensors
 from .zoo import several
 from .zoo.nb11 import MISTAKES
 

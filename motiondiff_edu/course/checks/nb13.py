@@ -9,8 +9,8 @@ import numpy as np
 import torch
 
 from ._compare import compare
+from ._drawn import schedule, tensors
 from ._report import check
-from .nb02 import schedule, tensors
 from .zoo.nb13 import MISTAKES
 
 

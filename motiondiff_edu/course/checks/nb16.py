@@ -4,9 +4,9 @@ import numpy as np
 import torch
 
 from ._compare import compare
+from ._drawn import tensors
 from ._report import check, expect
 from .nb01 import in_the_mirror
-from .nb02 import tensors
 from .zoo import several
 from .zoo.nb16 import MISTAKES
 

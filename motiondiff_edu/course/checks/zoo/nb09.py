@@ -110,23 +110,6 @@ def lists_of_samples(past, future, s, alpha_bar, rate, u, noise):
     return tuple(list(part) for part in both)
 
 
-def _products(keep=None, share=None, floor=None, floor_of=None):
-    """The right products, but for factors given as functions of (rate, alpha_bar)."""
-
-    def answer(xx, past, rate, alpha_bar):
-        out = xx.clone()
-        eye = torch.eye(past) if floor_of is None else floor_of(past)
-        kept = 1 - rate + rate * alpha_bar.sqrt().mean() if keep is None else keep(rate, alpha_bar)
-        both = 1 - rate + rate * alpha_bar.mean() if share is None else share(rate, alpha_bar)
-        more = rate * (1 - alpha_bar).mean() if floor is None else floor(rate, alpha_bar)
-        out[:past, :past] = both * xx[:past, :past] + more * eye
-        out[:past, past:] = kept * xx[:past, past:]
-        out[past:, :past] = kept * xx[past:, :past]
-        return out
-
-    return answer
-
-
 def _keep(rate, alpha_bar):
     return 1 - rate + rate * alpha_bar.sqrt().mean()
 
@@ -135,11 +118,30 @@ def _share(rate, alpha_bar):
     return 1 - rate + rate * alpha_bar.mean()
 
 
+def _floor(rate, alpha_bar):
+    return rate * (1 - alpha_bar).mean()
+
+
+def _products(keep=_keep, share=_share, floor=_floor, floor_of=torch.eye):
+    """The right products, but for factors given as functions of (rate, alpha_bar)."""
+
+    def answer(xx, past, rate, alpha_bar):
+        out = xx.clone()
+        kept = keep(rate, alpha_bar)
+        more = floor(rate, alpha_bar) * floor_of(past)
+        out[:past, :past] = share(rate, alpha_bar) * xx[:past, :past] + more
+        out[:past, past:] = kept * xx[:past, past:]
+        out[past:, :past] = kept * xx[past:, :past]
+        return out
+
+    return answer
+
+
 def _everywhere(xx, past, rate, alpha_bar):
     """Noise on the whole diagonal, also on the control's."""
     out = _products()(xx, past, rate, alpha_bar)
     rest = torch.zeros(len(xx))
-    rest[past:] = rate * (1 - alpha_bar).mean()
+    rest[past:] = _floor(rate, alpha_bar)
     return out + torch.diag(rest)
 
 
@@ -147,7 +149,7 @@ def control_dropped_too(xx, past, rate, alpha_bar):
     """Drops the control with the past."""
     out = _share(rate, alpha_bar) * xx
     rest = torch.zeros(len(xx))
-    rest[:past] = rate * (1 - alpha_bar).mean()
+    rest[:past] = _floor(rate, alpha_bar)
     return out + torch.diag(rest)
 
 
