@@ -16,7 +16,10 @@ import build_student
 import notebook_cells
 from notebook_cells import code, markdown, tags
 
-CELLS, WORDS = (25, 45), 1800
+CELLS, WORDS = (25, 45), 1800  # of the short path
+EXTRA_CELLS, EXTRA_WORDS = 12, 500
+IDEAS = 3
+BEFORE = (1, 3, 7)  # each notebook opens with questions from those so many numbers before
 LINES = 8  # logical lines: a statement over several rows counts once
 LONG_SHARE = 0.10
 LINES_AT_MOST = 16
@@ -28,7 +31,7 @@ OPENING = {  # texts that the cells before the imports must have
     "what you will be able to do": r"you (will|can).{0,20} be able to|be able to",
     "what it needs": r"\bneeds?\b",
     "the paper's section": r"\b(MoDiff|MoFusion|paper)\b",
-    "its minutes": r"\bminutes\b",
+    "its minutes": r"\*\*Minutes:\*\* \d+ in class\b.*; not yet timed on students\.",
     "the symbols": r"\bsymbols?\b",
 }
 CLOSING = {
@@ -59,15 +62,20 @@ def rows(cell: dict) -> int:
 def length(notebook: dict) -> Iterator[str]:
     """25-45 cells, most code cells of at most 8 logical lines, under 1,800 words.
 
-    The cell of imports is not counted.
+    What is extra has limits of its own. The lines of the cell of imports are not counted.
     """
-    count = len(notebook["cells"])
+    extra = [cell for cell in notebook["cells"] if "extra" in tags(cell)]
+    count = len(notebook["cells"]) - len(extra)
     if not CELLS[0] <= count <= CELLS[1]:
         yield f"{count} cells; one sitting has {CELLS[0]} to {CELLS[1]}"
-    texts = [re.sub(r"<!--.*?-->", "", cell["source"]) for cell in markdown(notebook)]
-    words = sum(len(re.findall(r"[^\W_][\w'-]*", text)) for text in texts)
+    if len(extra) > EXTRA_CELLS:
+        yield f"{len(extra)} extra cells; {EXTRA_CELLS} at most"
+    words = words_of(notebook, extra=False)
     if words >= WORDS:
         yield f"{words} words; keep under {WORDS}"
+    words = words_of(notebook, extra=True)
+    if words > EXTRA_WORDS:
+        yield f"{words} words in extra cells; {EXTRA_WORDS} at most"
     cells = [cell for cell in code(notebook) if "imports" not in tags(cell)]
     sizes = [lines(cell) for cell in cells]
     long = sum(size > LINES for size in sizes)
@@ -78,6 +86,48 @@ def length(notebook: dict) -> Iterator[str]:
     tall = max(map(rows, cells), default=0)
     if tall > ROWS_AT_MOST:
         yield f"a code cell of {tall} rows, which no screen shows at once; {ROWS_AT_MOST} at most"
+
+
+def words_of(notebook: dict, extra: bool) -> int:
+    """The words of the text of the extra cells, or of the others; comments are not counted."""
+    cells = [cell for cell in markdown(notebook) if ("extra" in tags(cell)) == extra]
+    texts = [re.sub(r"<!--.*?-->", "", cell["source"]) for cell in cells]
+    return sum(len(re.findall(r"[^\W_][\w'-]*", text)) for text in texts)
+
+
+def ideas(notebook: dict) -> list[str]:
+    """The new ideas that a notebook's opening names."""
+    found = re.search(r"(?m)^\*\*New here:\*\* (.+)\.$", notebook["cells"][0]["source"])
+    return found[1].split("; ") if found else []
+
+
+def start(notebook: dict, name: str) -> Iterator[str]:
+    """At most three new ideas; questions from the last notebook, the third and seventh before."""
+    found = ideas(notebook)
+    if not 1 <= len(found) <= IDEAS:
+        yield f"{len(found)} new ideas (**New here:** one; two; three.); one to {IDEAS}"
+    text = notebook["cells"][0]["source"]
+    wanted = [f"{int(name[:2]) - back:02d}" for back in BEFORE if int(name[:2]) >= back]
+    asked = re.findall(r"(?m)^\d\. \((\d\d)\) .+\?$|^\d\. \((\d\d)\) Name .+\.$", text)
+    if [a or b for a, b in asked] != wanted:
+        yield f"the opening asks questions from {asked or 'nowhere'}; it should from {wanted}"
+    folded = re.search(r"(?s)<details><summary>Answers</summary>(.+)</details>", text)
+    answers = len(re.findall(r"(?m)^\d\. ", folded[1])) if folded else 0
+    if answers != len(wanted):
+        yield f"{answers} folded answers to {len(wanted)} questions of the opening"
+
+
+def extras(notebook: dict) -> Iterator[str]:
+    """Extra cells come in runs, whose first cell says so; no other cell says it."""
+    before = False
+    for cell in notebook["cells"][1:]:
+        said = "(extra" in cell["source"].split("\n", 1)[0]
+        begins = "extra" in tags(cell) and not before
+        if begins and not (said and cell["cell_type"] == "markdown"):
+            yield f"cell {cell.get('id')} begins what is extra, and does not say (extra)"
+        if said and "extra" not in tags(cell):
+            yield f"cell {cell.get('id')} says (extra), and is not tagged so"
+        before = "extra" in tags(cell)
 
 
 def width(notebook: dict) -> Iterator[str]:
@@ -246,11 +296,11 @@ def portable(notebook: dict) -> Iterator[str]:
 def faults(path: Path) -> list[str]:
     """All faults in the form of one notebook."""
     notebook = notebook_cells.read(path)
-    rules = (length, width, storage, opening, closing, independence, portable)
+    rules = (length, width, storage, opening, extras, closing, independence, portable)
     plain = [rule(notebook) for rule in rules]
     return [
         fault
-        for rule in [*plain, exercises(notebook, path.name), lesson(notebook, path.name)]
+        for rule in [*plain, *(rule(notebook, path.name) for rule in (start, exercises, lesson))]
         for fault in rule
     ]
 

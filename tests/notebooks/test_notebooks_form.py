@@ -11,9 +11,19 @@ import notebook_cells
 import pytest
 
 OPENING = """# 02 Noise
-After this notebook you will be able to add noise. **Needs** 01. **Paper** MoDiff III-B. \
-**Minutes** 20.
-**Symbols** x0, x_s, s."""
+You will be able to add noise.
+
+**New here:** noise; schedules.
+
+**Needs** 01. **Paper** MoDiff III-B. **Minutes:** 50 in class; not yet timed on students.
+**Symbols** x0, x_s, s.
+
+1. (01) What are bones?
+
+<details><summary>Answers</summary>
+
+1. Constant.
+</details>"""
 IMPORTS = """from motiondiff_edu import checks, runtime
 run = runtime.start(notebook="02", seed=0)"""
 EXERCISE = """**Exercise** (difficulty 1 of 3, 5 minutes)
@@ -66,6 +76,15 @@ def test_a_wrapped_statement_counts_once_and_imports_not_at_all(good, tmp_path):
     for one in good["cells"][4:12:2]:
         one["source"] = wrapped
     first(good, "imports")["source"] += "\nx = 1" * 20
+    assert faults(good, tmp_path) == []
+
+
+def test_what_is_extra_counts_apart(good, tmp_path):
+    good["cells"][5]["source"] = "*(extra)* Some words." + " word" * 480
+    extra(good, 5, 6)
+    good["cells"][7]["source"] = "**Predict** more?" + " word" * 1600
+    good["cells"] += [dict(good["cells"][4], id=f"more-{k}") for k in range(20)]
+    good["cells"].append(good["cells"].pop(-21))
     assert faults(good, tmp_path) == []
 
 
@@ -123,7 +142,52 @@ def spoil_import(nb):
 
 
 def spoil_minutes(nb):
-    nb["cells"][0]["source"] = OPENING.replace("**Minutes** 20", "")
+    nb["cells"][0]["source"] = OPENING.replace("; not yet timed on students", "")
+
+
+def spoil_ideas(nb):
+    nb["cells"][0]["source"] = OPENING.replace("noise; schedules", "a; b; c; d")
+
+
+def spoil_no_ideas(nb):
+    nb["cells"][0]["source"] = OPENING.replace("**New here:** noise; schedules.", "")
+
+
+def spoil_asked(nb):
+    nb["cells"][0]["source"] = OPENING.replace("(01)", "(00)")
+
+
+def spoil_answers(nb):
+    nb["cells"][0]["source"] = OPENING.replace("1. Constant.", "")
+
+
+def extra(nb, *indices):
+    for index in indices:
+        nb["cells"][index]["metadata"]["tags"].append("extra")
+
+
+def spoil_extra_unsaid(nb):
+    extra(nb, 5, 6)
+
+
+def spoil_extra_code_first(nb):
+    extra(nb, 6)
+    nb["cells"][6]["source"] = "x = 1  # (extra)"
+
+
+def spoil_extra_untagged(nb):
+    nb["cells"][5]["source"] = "*(extra)* Some words."
+
+
+def spoil_extra_words(nb):
+    extra(nb, 5)
+    nb["cells"][5]["source"] = "*(extra)*" + " word" * 500
+
+
+def spoil_extra_cells(nb):
+    for index in range(3, 16):
+        extra(nb, index)
+    nb["cells"][3]["source"] = "*(extra)* Some words."
 
 
 def spoil_closing(nb):
@@ -193,6 +257,15 @@ def spoil_image(nb):
         (spoil_start, "runtime.start"),
         (spoil_import, "all imports belong"),
         (spoil_minutes, "does not say its minutes"),
+        (spoil_ideas, "4 new ideas"),
+        (spoil_no_ideas, "0 new ideas"),
+        (spoil_asked, "it should from ['01']"),
+        (spoil_answers, "0 folded answers to 1 questions"),
+        (spoil_extra_unsaid, "cell c5 begins what is extra"),
+        (spoil_extra_code_first, "cell c6 begins what is extra"),
+        (spoil_extra_untagged, "cell c5 says (extra)"),
+        (spoil_extra_words, "501 words in extra cells"),
+        (spoil_extra_cells, "13 extra cells"),
         (spoil_closing, "does not say three things"),
         (spoil_exercises, "1 cells tagged `solution`"),
         (spoil_difficulty, "minutes and difficulty"),
