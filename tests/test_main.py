@@ -175,7 +175,7 @@ def test_the_version_is_the_packages(capsys):
 
 
 def test_options_go_on_to_jupyterlab_but_not_from_doctor(checkout, calls, capsys):
-    assert command.main(["demo", "7", "--port", "8899"]) == 0
+    assert command.main(["demo", "7", "--unrun", "--port", "8899"]) == 0
     assert calls[0][0][-2:] == ["--port", "8899"]
     with pytest.raises(SystemExit):
         command.main(["doctor", "--port"])
@@ -218,9 +218,10 @@ def test_lab_from_a_wheel_opens_a_copy_and_keeps_what_is_there(
 
 @pytest.mark.parametrize("number", ["07", "7"])
 def test_demo_shows_a_copy_with_large_type_and_the_shipped_weights(checkout, calls, number):
-    assert command.main(["demo", number]) == 0
+    assert command.main(["demo", number, "--unrun"]) == 0
     arguments, environment, files = calls[0]
-    assert "--LabApp.default_url=/lab/tree/notebooks/07_modiff.ipynb" in arguments
+    # without tabs and side bar
+    assert "--LabApp.default_url=/doc/tree/notebooks/07_modiff.ipynb" in arguments
     assert {"notebooks/07_modiff.ipynb", "docs/walk.gif"} <= set(files)
     assert not any("student" in name for name in files)
     assert environment["MOTIONDIFF_DEMO"] == "1"
@@ -242,7 +243,7 @@ def test_figures_of_a_demo_are_half_as_large_again(tmp_path):
     sizes = []
     for demo_or_not in ({}, demo.demo_environment(tmp_path)):
         run = [sys.executable, "-c", code]
-        env = {k: v for k, v in os.environ.items() if k != "MOTIONDIFF_DEMO"} | demo_or_not
+        env = {k: v for k, v in os.environ.items() if k != "MOTIONDIFF_LARGE"} | demo_or_not
         sizes.append(subprocess.run(run, capture_output=True, text=True, env=env).stdout.strip())
     assert sizes == ["(400, 300)", "(600, 450)"]
 

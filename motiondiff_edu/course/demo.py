@@ -1,4 +1,4 @@
-"""`motiondiff-edu demo NB`: one notebook ready to show, with shipped weights and large type."""
+"""`motiondiff-edu demo NB`: one notebook ready to show, already run, in large type."""
 
 import argparse
 import json
@@ -6,6 +6,7 @@ import shutil
 import tempfile
 from pathlib import Path
 
+from . import prepared
 from .jupyter import open_lab
 from .places import find, notebook_folder
 
@@ -15,10 +16,17 @@ PASSES_OPTIONS_ON = "JupyterLab"
 
 # JupyterLab's large type for a projector; `viz.style` enlarges the plots
 LARGE_SIZES = {"code-font-size": "19px", "content-font-size1": "21px", "ui-font-size1": "17px"}
+SETTINGS = {
+    "apputils-extension/themes": {"overrides": LARGE_SIZES},
+    "notebook-extension/tracker": {"codeCellConfig": {"lineNumbers": False, "lineWrap": True}},
+}
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("number", metavar="NB", help="the notebook's number, 07 for instance")
+    parser.add_argument(
+        "--unrun", action="store_true", help="open it at once, before any cell was run"
+    )
 
 
 def run(chosen: argparse.Namespace) -> int:
@@ -29,8 +37,23 @@ def run(chosen: argparse.Namespace) -> int:
     with temporary as folder:
         home = Path(folder).resolve()
         notebook = find(place_for_demo(notebooks, home), chosen.number)
+        environment = demo_environment(home)
+        if not chosen.unrun:
+            prepare(notebook, Path(environment["JUPYTER_DATA_DIR"]))
         print("This is a copy to show. Your changes to it will not be kept.")
-        return open_lab(home, notebook, chosen.options, demo_environment(home))
+        return open_lab(home, notebook, chosen.options, environment, alone=True)
+
+
+def prepare(notebook: Path, jupyter_data: Path) -> None:
+    """Put the outputs of a run into the copy. A notebook that fails is opened as it is."""
+    if not prepared.kept(notebook).is_file():
+        print("It is run once, now; later demos of it open at once.", flush=True)
+    try:
+        run = prepared.prepared(notebook, notebook.parent)
+    except prepared.PreparationError as error:
+        print(f"{error}. It opens without outputs.")
+        return
+    prepared.write_trusted(run, notebook, jupyter_data)
 
 
 def place_for_demo(notebooks: Path, home: Path) -> Path:
@@ -46,12 +69,15 @@ def place_for_demo(notebooks: Path, home: Path) -> Path:
 
 def demo_environment(home: Path) -> dict[str, str]:
     """Settings for a notebook to show. They also keep the demo's tabs out of later sessions."""
-    folder = home / "settings" / "@jupyterlab" / "apputils-extension"
-    folder.mkdir(parents=True)
-    large_type = json.dumps({"overrides": LARGE_SIZES})
-    (folder / "themes.jupyterlab-settings").write_text(large_type, encoding="utf-8")
+    settings = home / "settings" / "@jupyterlab"
+    for name, value in SETTINGS.items():
+        file = settings / f"{name}.jupyterlab-settings"
+        file.parent.mkdir(parents=True, exist_ok=True)
+        file.write_text(json.dumps(value), encoding="utf-8")
     return {
         "MOTIONDIFF_DEMO": "1",
+        "MOTIONDIFF_LARGE": "1",
         "JUPYTERLAB_SETTINGS_DIR": str(home / "settings"),
         "JUPYTERLAB_WORKSPACES_DIR": str(home / "workspaces"),
+        "JUPYTER_DATA_DIR": str(home / "jupyter"),
     }

@@ -10,9 +10,18 @@ from pathlib import Path
 CONFIG = Path(__file__).parent / "jupyter_config"
 
 
-def open_lab(root: Path, notebook: Path, options: list[str], environment: dict[str, str]) -> int:
-    """Start JupyterLab in `root` with `notebook` open; returns its exit status."""
-    address = "/lab/tree/" + notebook.relative_to(root).as_posix()
+def open_lab(
+    root: Path,
+    notebook: Path,
+    options: list[str],
+    environment: dict[str, str],
+    alone: bool = False,
+) -> int:
+    """Start JupyterLab in `root` with `notebook` open; returns its exit status.
+
+    `alone`: the notebook fills the window, without tabs and side bar.
+    """
+    address = f"/{'doc' if alone else 'lab'}/tree/" + notebook.relative_to(root).as_posix()
     command = [sys.executable, "-m", "jupyterlab"]
     command += [f"--ServerApp.root_dir={root}", f"--LabApp.default_url={address}"]
     if hasattr(os, "geteuid") and os.geteuid() == 0:

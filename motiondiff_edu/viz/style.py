@@ -21,7 +21,7 @@ LARGE = 16
 MEDIUM = 14
 SMALL = 12
 # pixels an inch; more for a notebook that is shown to a room (`motiondiff-edu demo`)
-DPI = 150 if os.environ.get("MOTIONDIFF_DEMO", "0") not in ("", "0") else 100
+DPI = 150 if os.environ.get("MOTIONDIFF_LARGE", "0") not in ("", "0") else 100
 
 _RC = {
     "font.size": MEDIUM,

@@ -28,7 +28,7 @@ def watched(
     past: int | None = None,
     clock: Callable[[], float] = time.monotonic,
 ) -> Iterator[TrainStep]:
-    """Yield the reports; show a figure and the loss at the start, every few seconds, and at the end.
+    """Yield the reports; show a figure and the loss: at first, every few seconds, and at the end.
 
     `steps`: the number of the last one.
     `moving()`: what the network in training moves, as `Player` takes it. Training waits for it.

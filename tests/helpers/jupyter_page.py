@@ -87,7 +87,7 @@ def lab(chromium, root, tmp_path, request):
             command, stdout=log, stderr=log, env=os.environ | settings, cwd=tmp_path
         )
     try:
-        _wait_until_answering(
+        wait_until_answering(
             f"http://127.0.0.1:{port}/api/status?token={token}", server, tmp_path / "lab.log"
         )
         yield f"http://127.0.0.1:{port}/lab/tree/walk.ipynb?token={token}"
@@ -96,7 +96,7 @@ def lab(chromium, root, tmp_path, request):
         server.wait(20)
 
 
-def _wait_until_answering(address: str, server, log, attempts: int = 240) -> None:
+def wait_until_answering(address: str, server, log, attempts: int = 240) -> None:
     for _ in range(attempts):
         if server.poll() is not None:
             break
