@@ -20,13 +20,14 @@ class CopyError(ValueError):
 
 
 def cells(path: Path) -> list[dict]:
-    """The code cells of a notebook, each as {"source", "tags"}. Raises CopyError."""
+    """The code cells of a notebook, each as {"source", "tags", "outputs"}. Raises CopyError."""
     try:
         notebook = json.loads(path.read_text(encoding="utf-8"))
         return [
             {
                 "source": "".join(cell["source"]),
                 "tags": cell.get("metadata", {}).get("tags", []),
+                "outputs": cell.get("outputs", []),
             }
             for cell in notebook["cells"]
             if cell["cell_type"] == "code"
@@ -68,6 +69,19 @@ def answers(path: Path) -> dict[str, str]:
         if not names and "checks." in cell["source"]:
             names = [cell["source"].rpartition("checks.")[2].partition("(")[0].strip()]
         found |= dict.fromkeys(names, cell["source"])
+    return found
+
+
+def outputs(path: Path) -> dict[str, str]:
+    """{check: what the last cell that calls it printed or raised}. Raises CopyError."""
+    found = {}
+    for cell in cells(path):
+        told = [
+            "".join(one.get("text", [])) + one.get("evalue", "")
+            for one in cell["outputs"]
+            if one.get("output_type") in ("stream", "error")
+        ]
+        found |= dict.fromkeys(checks_called(cell["source"]), "\n".join(told))
     return found
 
 

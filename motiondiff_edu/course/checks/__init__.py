@@ -3,15 +3,17 @@
 A reader calls `checks.q_sample(my_q_sample)` in the cell of the function.
 
 The check says that nothing was attempted, names the likely mistake, or says that the answer is
-right. _report.py says how to write one. There is one file for each notebook: nb02.py and so on.
+right. `checks.progress()` lists what is done. There is one file of checks for each notebook, nb02.py
+and so on; _report.py says how to write one.
 """
 
 import importlib
 import pkgutil
 
+from ._progress import progress
 from ._report import REGISTRY, Check, CheckFailed, check, expect
 
-__all__ = ["REGISTRY", "Check", "CheckFailed", "check", "expect", "load_all"]
+__all__ = ["REGISTRY", "Check", "CheckFailed", "check", "expect", "load_all", "progress"]
 
 
 def load_all() -> dict[str, Check]:

@@ -43,6 +43,7 @@ import torch
 
 Check = Callable[[Any], None]
 REGISTRY: dict[str, Check] = {}
+FOUND: dict[str, bool] = {}  # of this session: whether the last answer to a check was right
 NOT_ATTEMPTED = "not attempted yet"
 WIDTH = 92  # characters that a page shows in one line
 STUBS = ("your turn", "")  # messages of an exercise left as it is; torch raises with others
@@ -88,12 +89,14 @@ def check(function: Callable[[Any], str | None]) -> Check:
             raise CheckFailed(
                 f"{name}: hand over the function itself, without (): checks.{name}(my_function)"
             )
+        FOUND[name] = False
         try:
             content = function(_answering(mine))
         except CheckFailed as error:
             raise CheckFailed(f"{name}: {error}") from None
         except Exception as error:
             if type(error) is NotImplementedError and str(error) in STUBS:
+                del FOUND[name]
                 print(f"{name}: {NOT_ATTEMPTED}.")
                 return
             notes = "".join(f" ({note})" for note in getattr(error, "__notes__", []))
@@ -101,6 +104,7 @@ def check(function: Callable[[Any], str | None]) -> Check:
                 f"{name}: your answer raised {type(error).__name__}: {error}{notes}"
             ) from error
         else:
+            FOUND[name] = True
             print(fill(f"{name}: right. {content or ''}", WIDTH, subsequent_indent="  "))
 
     REGISTRY[name] = run

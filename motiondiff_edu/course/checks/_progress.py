@@ -1,0 +1,42 @@
+"""`checks.progress()`: which exercises are done, in this session and in the copies beside it."""
+
+from pathlib import Path
+
+from ..answers import CopyError, exercises, outputs
+from ..places import notebook_folder
+from ._report import FOUND, NOT_ATTEMPTED
+
+SIGNS = {True: "+", False: "x", None: "."}  # right, not right yet, not attempted
+
+
+def progress(folder: str | Path = ".") -> None:
+    """Print a line for each notebook: how many exercises are right, and which are not.
+
+    It knows the checks of this session, and those of the notebooks that are saved in `folder`.
+    """
+    lines, right, every = [], 0, 0
+    for original in sorted((notebook_folder() / "student").glob("[0-9][0-9]_*.ipynb")):
+        names = exercises(original)
+        known = saved(Path(folder) / original.name) | {n: FOUND[n] for n in names if n in FOUND}
+        done = [name for name in names if known.get(name)]
+        rest = [f"{SIGNS[known.get(name)]} {name}" for name in names if name not in done]
+        right, every = right + len(done), every + len(names)
+        lines.append(
+            f"{original.stem[:2]}  {len(done)} of {len(names)}  {', '.join(rest)}".rstrip()
+        )
+    print("\n".join(lines))
+    print(f"{right} of {every} exercises are right (x: not yet, a dot: not attempted)")
+
+
+def saved(path: Path) -> dict[str, bool | None]:
+    """{check: right, not right, or None for not attempted}, by the outputs saved in a copy."""
+    found: dict[str, bool | None] = {}
+    try:
+        for name, told in outputs(path).items():
+            if f"{name}: right." in told:
+                found[name] = True
+            elif f"{name}: {NOT_ATTEMPTED}" not in told and told:
+                found[name] = False
+    except CopyError:
+        return {}
+    return found
