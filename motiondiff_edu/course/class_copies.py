@@ -45,7 +45,8 @@ def run(chosen: argparse.Namespace) -> int:
         with replacing(path) as part:
             part.write_bytes(content)
     kind = "with" if chosen.solutions else "without"
-    print(f"{len(written)} notebooks {kind} solutions, and the pages they link to, in {folder}")
+    count = f"{len(written)} notebook{'s' * (len(written) > 1)}"
+    print(f"{count} {kind} solutions, and the pages they link to, in {folder}")
     return 0
 
 

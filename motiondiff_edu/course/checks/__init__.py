@@ -3,8 +3,8 @@
 A reader calls `checks.q_sample(my_q_sample)` in the cell of the function.
 
 The check says that nothing was attempted, names the likely mistake, or says that the answer is
-right. `checks.progress()` lists what is done. There is one file of checks for each notebook, nb02.py
-and so on; _report.py says how to write one.
+right. `checks.progress()` lists what is done. There is one file of checks for each notebook:
+nb02.py and so on. _report.py says how to write one.
 """
 
 import importlib
