@@ -89,9 +89,9 @@ def length(notebook: dict) -> Iterator[str]:
 
 
 def words_of(notebook: dict, extra: bool) -> int:
-    """The words of the text of the extra cells, or of the others; comments are not counted."""
+    """The words of the extra cells, or of the others; targets of links do not count."""
     cells = [cell for cell in markdown(notebook) if ("extra" in tags(cell)) == extra]
-    texts = [re.sub(r"<!--.*?-->", "", cell["source"]) for cell in cells]
+    texts = [re.sub(r"<!--.*?-->|(?<=\])\([^)\s]+\)", "", cell["source"]) for cell in cells]
     return sum(len(re.findall(r"[^\W_][\w'-]*", text)) for text in texts)
 
 

@@ -17,7 +17,10 @@ from motiondiff_edu._files import replacing
 from . import cells, font, index
 
 STYLE = Path(__file__).with_name("style.css")
-DOCS = ("RESULTS", "RESULTS_ALL", "EQUATIONS", "NOTATION", "USING", "INSTALL", "BLENDER")
+DOCS = (
+    "RESULTS", "RESULTS_ALL", "EQUATIONS", "NOTATION", "GLOSSARY", "QUESTIONS", "CAPSTONE",
+    "TEACHING", "PILOT", "USING", "INSTALL", "BLENDER",
+)  # fmt: skip
 
 PAGE = """<!doctype html>
 <html lang="en">
