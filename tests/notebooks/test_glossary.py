@@ -51,9 +51,9 @@ def test_each_word_is_linked_once_in_the_notebook_that_explains_it(entries, text
 def test_before_its_link_a_notebook_does_not_use_the_word(entries, texts):
     for word, number in entries.items():
         before = texts[number].split(f"](../docs/GLOSSARY.md#{anchor(word)})", 1)[0]
-        # headings, formulas, code, and the lines of the opening that only list
+        # without headings, tables, formulas, code, and lines of the opening that only list
         plain = re.sub(
-            r"(?m)^#[^\n]*$|^\*\*New here:[^\n]*$|^\*\*It needs[^\n]*$|^\d\. \(\d\d\)[^\n]*$"
+            r"(?m)^[#|][^\n]*$|^\*\*New here:[^\n]*$|^\*\*It needs[^\n]*$|^\d\. \(\d\d\)[^\n]*$"
             r"|`[^`\n]+`|\$[^$\n]+\$|\[[^\]]*$",
             "",
             before,
