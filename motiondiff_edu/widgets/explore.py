@@ -4,6 +4,7 @@ import ipywidgets
 
 from ..viz.style import as_html
 from . import states
+from .controls import steering
 from .turn import TURN
 
 
@@ -27,29 +28,17 @@ def explore(draw, **start) -> Explored:
     `draw` are raised.
     Raises ValueError for an argument of another kind.
     """
-    controls = {name: _control(name, value) for name, value in start.items()}
-    first = {name: control.value for name, control in controls.items()}
     picture = ipywidgets.HTML()
-    reset = ipywidgets.Button(description="Reset", tooltip="reset all values")
 
-    def refresh(_=None):
+    def refresh(**values):
         with TURN:  # pyplot has one current figure
-            picture.value = as_html(
-                draw(**{name: control.value for name, control in controls.items()}), dpi=90
-            )
+            picture.value = as_html(draw(**values), dpi=90)
 
-    def back(_):
-        for name, control in controls.items():
-            control.value = first[name]
-
-    for control in controls.values():
-        control.observe(refresh, names="value")
-    reset.on_click(back)
-    refresh()
-    box = Explored([ipywidgets.HBox([*controls.values(), reset]), picture])
+    controls = steering(refresh, **start)
+    box = Explored([controls, picture])
     if states.making_pages():
-        values = {name: _values(control) for name, control in controls.items()}
-        box.still = states.as_page(lambda at: as_html(draw(**at), dpi=80), values, first)
+        values = {name: _values(control) for name, control in controls.controls.items()}
+        box.still = states.as_page(lambda at: as_html(draw(**at), dpi=80), values, controls.first)
     return box
 
 
@@ -62,18 +51,3 @@ def _values(control: ipywidgets.Widget) -> list:
     whole = isinstance(control, ipywidgets.IntSlider)
     steps = [control.min + (control.max - control.min) * i / 8 for i in range(9)]
     return sorted({control.value, *(round(x) if whole else round(x, 3) for x in steps)})
-
-
-def _control(name: str, value) -> ipywidgets.Widget:
-    if isinstance(value, bool):
-        return ipywidgets.Checkbox(value=value, description=name)
-    if isinstance(value, list):
-        return ipywidgets.Dropdown(options=value, value=value[0], description=name)
-    if not (isinstance(value, tuple) and len(value) == 3):
-        raise ValueError(
-            f"{name} takes (low, high, start), a list of choices, or True or False; not {value!r}"
-        )
-    low, high, begin = value
-    kind = ipywidgets.IntSlider if isinstance(begin, int) else ipywidgets.FloatSlider
-    extra = {} if isinstance(begin, int) else {"step": (high - low) / 50}
-    return kind(value=begin, min=low, max=high, description=name, continuous_update=False, **extra)

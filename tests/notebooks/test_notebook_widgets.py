@@ -44,24 +44,24 @@ def test_the_walk_button_of_notebook_00(run_all):
     names = run_all("00")
     frames = names["player"].scene["figures"][0]["frames"]
     names["pad"].preset, names["dice"].value = "circle", 3
-    names["button"].click()
+    names["go"].button.click()
     after = names["player"].scene["figures"][0]["frames"]
     assert (
         after != frames and after == len(names["pad"].control()) + 20
     )  # half a second before, half a second to rest
-    assert names["said"].value == f"{names['pad'].seconds:.1f} seconds walked"
+    assert names["go"].said.value == f"{names['pad'].seconds:.1f} seconds walked"
     names["pad"].points = torch.zeros(0, 2).numpy()
-    names["button"].click()
-    assert names["said"].value == "Draw a path first, or choose one."
+    names["go"].button.click()
+    assert names["go"].said.value == "Draw a path first, or choose one."
 
 
 def test_the_sliders_of_notebook_07(run_all):
     names = run_all("07")
-    forward, left, yaw = names["sliders"]
-    before = names["player"].scene["figures"][0]["frames"], names["player"].roots
-    forward.value, yaw.value = 2.0, -1.0
-    names["steering"].update()
+    controls = names["controls"].controls
+    before = names["player"].roots
+    controls["forward"].value, controls["yaw"].value = 2.0, -1.0
     assert names["player"].scene["figures"][0]["frames"] == 90
-    assert names["player"].roots != before[1]
-    names["reset"].click()
-    assert [s.value for s in (forward, left, yaw)] == [1.0, 0.0, 0.8]
+    assert names["player"].roots != before
+    names["controls"].children[-1].click()
+    assert names["controls"].values() == {"forward": 1.0, "left": 0.0, "yaw": 0.8}
+    assert names["player"].roots == before

@@ -1,0 +1,80 @@
+"""A button that says what it does, and widgets side by side."""
+
+import ipywidgets
+import pytest
+from synthetic_walk import walk
+
+from motiondiff_edu.widgets.action import Action
+from motiondiff_edu.widgets.beside import Beside
+from motiondiff_edu.widgets.controls import Controls, steering
+from motiondiff_edu.widgets.path import PathPad
+from motiondiff_edu.widgets.player import Player
+
+
+def test_while_it_acts_it_says_so_and_cannot_be_pressed():
+    seen = []
+
+    def act():
+        seen.append((action.button.disabled, action.said.value))
+        return "done"
+
+    action = Action("Go", act, "going ...")
+    action.button.click()
+    assert seen == [(True, "going ...")]
+    assert not action.button.disabled and action.said.value == "done"
+
+
+def test_an_error_is_said_and_raised_and_the_button_is_free_again():
+    action = Action("Go", lambda: 1 / 0, "going ...")
+    with pytest.raises(ZeroDivisionError):
+        action.press()
+    assert action.said.value == "ZeroDivisionError: division by zero"
+    assert not action.button.disabled
+
+
+def test_what_is_beside_stands_between_the_button_and_the_words():
+    dice = ipywidgets.IntText(3)
+    action = Action("Go", str, "going ...", beside=(dice,))
+    assert action.children == (action.button, dice, action.said)
+
+
+def test_a_reset_calls_once_for_all_controls():
+    seen = []
+    controls = steering(lambda **values: seen.append(values), a=(0, 9, 4), b=[1, 2], c=True)
+    for name, value in {"a": 7, "b": 2, "c": False}.items():
+        controls.controls[name].value = value
+    assert seen[0] == {"a": 4, "b": 1, "c": True} and len(seen) == 4
+    controls.children[-1].click()
+    assert seen[4:] == [seen[0]]
+
+
+def test_after_an_error_a_reset_still_works():
+    def act(a):
+        if a == 9:
+            raise RuntimeError("too large")
+
+    controls = Controls(act, {"a": (0, 9, 4)})
+    with pytest.raises(RuntimeError):
+        controls.controls["a"].value = 9
+    controls.children[-1].click()
+    assert controls.values() == {"a": 4}
+
+
+def test_sliders_are_wide_enough_to_be_set():
+    controls = Controls(print, {"a": (0, 9, 4), "b": (0.0, 1.0, 0.5)})
+    assert all(c.layout.min_width == "290px" for c in controls.controls.values())
+
+
+def test_side_by_side_shows_what_needs_no_kernel():
+    player = Player(walk(frames=5)[0])
+    box = Beside(ipywidgets.VBox([PathPad(height=300), ipywidgets.Button()]), player)
+    shown = box._repr_mimebundle_()
+    bundle = shown[0] if isinstance(shown, tuple) else shown
+    assert bundle["text/html"].count('title="motion player"') == 1
+    assert bundle["text/html"].count("<img alt=") == 2  # the pad's, and the player's poster
+
+
+def test_side_by_side_of_controls_alone_has_no_still_picture():
+    shown = Beside(ipywidgets.Button())._repr_mimebundle_()
+    bundle = shown[0] if isinstance(shown, tuple) else shown
+    assert "text/html" not in bundle
