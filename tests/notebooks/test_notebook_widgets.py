@@ -6,6 +6,8 @@ A button's error reaches nobody: the kernel swallows it. So the cells are run he
 that stands still, and the widgets are used afterwards.
 """
 
+import ast
+
 import notebook_cells
 import pytest
 import torch
@@ -26,22 +28,65 @@ def standing_still(walker, past, control, **options) -> torch.Tensor:
     return past[..., -1:, :].repeat_interleave(frames, dim=-2)
 
 
+def needed(cells: list[dict], last: str) -> list[dict]:
+    """The cells up to the one that binds `last`, without those whose values nobody asks for."""
+    kept, asked = [], {last}
+    for cell in reversed(cells):
+        read, bound, changed = names_of(cell["source"])
+        if (bound | changed) & asked:
+            kept.insert(0, cell)
+            asked = (asked - bound) | read
+    return kept
+
+
+def names_of(source: str) -> tuple[set[str], set[str], set[str]]:
+    """Names that a cell reads from cells before, names that it binds, and those it changes."""
+    read, bound, changed = set(), set(), set()
+    for statement in ast.parse(source).body:
+        nodes = list(ast.walk(statement))
+        loaded = {n.id for n in nodes if isinstance(n, ast.Name) and isinstance(n.ctx, ast.Load)}
+        read |= loaded - bound
+        stored = {n.id for n in nodes if isinstance(n, ast.Name) and isinstance(n.ctx, ast.Store)}
+        stored |= {n.name for n in nodes if isinstance(n, ast.FunctionDef | ast.ClassDef)}
+        imported = [n for n in nodes if isinstance(n, ast.alias)]
+        bound |= stored | {(n.asname or n.name).split(".")[0] for n in imported}
+        changed |= {
+            n.value.id
+            for n in nodes
+            if isinstance(n, ast.Subscript | ast.Attribute)
+            and isinstance(n.value, ast.Name)
+            and isinstance(n.ctx, ast.Store)
+        }
+    return read, bound, changed - bound
+
+
 @pytest.fixture
-def run_all(monkeypatch, tmp_path):
+def run_for(monkeypatch, tmp_path):
+    """Run the cells of a notebook that a name needs; all names afterwards."""
     monkeypatch.chdir(tmp_path)  # notebook 00 writes its walks beside itself
     monkeypatch.setenv("MOTIONDIFF_DEMO", "1")
     monkeypatch.setattr(rollout, "generate", standing_still)
 
-    def run(number: str) -> dict:
+    def run(number: str, name: str) -> dict:
         path = next(path for path in notebook_cells.sources() if path.name.startswith(number))
-        space = {"display": lambda *shown: None}
-        return notebook_cells.run(notebook_cells.code(notebook_cells.read(path)), space, path.stem)
+        cells = needed(notebook_cells.code(notebook_cells.read(path)), name)
+        return notebook_cells.run(cells, {"display": lambda *shown: None}, path.stem)
 
     return run
 
 
-def test_the_walk_button_of_notebook_00(run_all):
-    names = run_all("00")
+def test_only_cells_that_are_needed_are_run():
+    sources = ["import a as b", "c = b(1)", "d = 2", "e = {}", "e[1] = c", "def f():\n    return e"]
+    cells = [{"source": source} for source in sources]
+    kept = [cell["source"] for cell in needed(cells, "f")]
+    assert kept == [source for source in sources if source != "d = 2"]
+    assert needed(cells, "d") == [cells[2]]
+    again = [{"source": source} for source in ("x = 1", "y = x", "x = 3", "x = x + 1", "z = x")]
+    assert needed(again, "z") == again[2:]
+
+
+def test_the_walk_button_of_notebook_00(run_for):
+    names = run_for("00", "go")
     frames = names["player"].scene["figures"][0]["frames"]
     names["pad"].preset, names["dice"].value = "circle", 3
     names["go"].button.click()
@@ -55,8 +100,8 @@ def test_the_walk_button_of_notebook_00(run_all):
     assert names["go"].said.value == "Draw a path first, or choose one."
 
 
-def test_the_sliders_of_notebook_07(run_all):
-    names = run_all("07")
+def test_the_sliders_of_notebook_07(run_for):
+    names = run_for("07", "controls")
     controls = names["controls"].controls
     before = names["player"].roots
     controls["forward"].value, controls["yaw"].value = 2.0, -1.0
