@@ -9,9 +9,10 @@ inbetween, inbetween-departures (what each is worth), known-answer (methods of f
 whose answer is a formula); words (motion from text: Table 2, captions that nobody trained for,
 editing); course (the checks of the exercises). These parts train, for minutes a row: ladder (from
 the paper's walker to ours), dance-budget, words-budget, inbetween-budget and mend-map. One row of
-them is a part as well: ladder.ours, dance-budget.v. Parts that need recordings (recordings,
-recordings-inbetweens, recordings-reconstructions, inbetween-budget) are measured by name alone,
-with MOTIONDIFF_REAL_DATA.
+them is a part as well: ladder.ours, dance-budget.v. By name alone are measured: what needs
+recordings, with MOTIONDIFF_REAL_DATA (recordings, recordings-inbetweens,
+recordings-reconstructions, inbetween-budget), and course-shown (pages and demos, after `make
+pages`).
 Without --only, all parts are measured for which there are shipped weights. --full adds the parts
 that train; otherwise their records stay as they are. A training that was killed continues. --quick
 measures little, into build/quick, and is for trying the code. --render only writes docs/RESULTS.md
@@ -29,6 +30,7 @@ from motiondiff_edu.pretrained import checkpoints
 from motiondiff_edu.viz.metrics import footstep_curves
 
 from .course.exercises import course_records
+from .course.shown import shown_records
 from .dances import budget as dance_budget
 from .dances.attention import attention_picture, attention_records
 from .dances.parts import DANCE_FULL, DANCE_QUICK, DANCES, Stage, dance_records
@@ -78,9 +80,10 @@ TRAINED = {
     "words-budget": tuple(word_budget.VARIANTS),
     "inbetween-budget": tuple(trainings.VARIANTS),
 }
-# the recordings are not part of the project
-RECORDED = (
+# by name alone: recordings are not part of the project, pages are made before
+BY_NAME = (
     "recordings", "recordings-inbetweens", "recordings-reconstructions", "inbetween-budget",
+    "course-shown",
 )  # fmt: skip
 ROUNDS = 7  # of dance-time
 
@@ -140,10 +143,10 @@ def parts_of(only: list[str], full: bool, lines: dict[str, Walks], weights: set[
     there += [part for part in MEASURED if part != "attention" or "dancer" in weights]
     there += [part for part, names in MENDED.items() if names <= weights]
     rows = {part: [f"{part}.{name}" for name in names] for part, names in TRAINED.items()}
-    trained = [part for part in rows if part not in RECORDED] if full else []
+    trained = [part for part in rows if part not in BY_NAME] if full else []
     wanted = only or [*there, *trained]
     parts = [row for part in wanted for row in rows.get(part, [part])]
-    names = [*lines, *DANCES, *MEASURED, *MENDED, *RECORDED]
+    names = [*lines, *DANCES, *MEASURED, *MENDED, *BY_NAME]
     unknown = sorted(set(parts) - {*names, *(row for group in rows.values() for row in group)})
     if unknown:
         there = ", ".join(dict.fromkeys([*names, *rows]))
@@ -236,6 +239,8 @@ def records_of(
         return known_answer.known_answer_records(
             known_answer.QUICK if quick else known_answer.FULL, command
         )
+    if part == "course-shown":
+        return shown_records(command)
     if part == "course":
         return course_records(command, 3 if quick else None)
     if part == "dance-time":

@@ -122,4 +122,10 @@ BARS = (
     Bar("course.zoo_caught", at_least=1),
     Bar("course.wrong_diagnosis", at_most=0.02),
     Bar("course.right_answers_rejected", at_most=0),
+    Bar("course.words_max", at_most=1800),
+    Bar("course.ideas_max", at_most=3),
+    Bar("course.prose_numbers_unbacked", at_most=0),
+    Bar("course.pages_raw_formulas", at_most=0),
+    Bar("course.pages_raw_widgets", at_most=0),
+    Bar("course.demo_first_motion_s", at_most=10),
 )

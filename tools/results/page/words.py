@@ -184,6 +184,16 @@ GOALS = {
         "the share of hints that name another mistake than the one that was made"
     ),
     "course.right_answers_rejected": "the number of unusual right answers that a check refuses",
+    "course.words_max": "the most words in the text of a notebook, without what is extra",
+    "course.ideas_max": "the most new ideas that a notebook names",
+    "course.prose_numbers_unbacked": (
+        "the number of figures in answers that no cell before them has printed"
+    ),
+    "course.pages_raw_formulas": "the number of formulas on the pages that are seen as TeX",
+    "course.pages_raw_widgets": "the number of widgets on the pages that are seen as Python text",
+    "course.demo_first_motion_s": (
+        "the time from opening a demo's page to its first moving figure (slowest of four)"
+    ),
 }
 
 # For columns and rows: the last part of a key.
