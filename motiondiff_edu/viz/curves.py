@@ -1,6 +1,6 @@
 """Plots for several notebooks: losses, control over time, values with intervals.
 
-Every line has its own colour and its own dashes.  Notebook: 05, 07
+Every line has its own colour and its own dashes.  Notebook: 05
 """
 
 from collections.abc import Mapping, Sequence

@@ -3,7 +3,7 @@
     for report in watched(training.train_steps(...), steps, moving):
         losses.append(report.loss)
 
-Notebook: 07
+Notebook: 05, 07
 """
 
 import time
