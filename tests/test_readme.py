@@ -10,7 +10,7 @@ from PIL import Image
 
 from data_synth.music import compose
 from data_synth.walking import walk
-from motiondiff_edu.__main__ import main
+from motiondiff_edu.__main__ import VERBS, main
 from motiondiff_edu.conditions.control import constant_control
 from motiondiff_edu.motion.bvh import read_bvh
 from motiondiff_edu.motion.bvh.write import write_bvh
@@ -18,6 +18,19 @@ from motiondiff_edu.motion.motion import Motion
 from motiondiff_edu.motion.retarget import load_clip
 from motiondiff_edu.pretrained.checkpoints import available
 
+PAGES = ["README.md"] + [
+    f"docs/{name}.md"
+    for name in (
+        "INSTALL",
+        "USING",
+        "BLENDER",
+        "TEACHING",
+        "QUESTIONS",
+        "CAPSTONE",
+        "PILOT",
+        "GLOSSARY",
+    )  # fmt: skip
+]
 WALKED, SUNG = 2.0, 2.0  # seconds of the stand-ins
 SHIPPED = {"walker", "dancer", "inbetweens"}
 pytestmark = pytest.mark.skipif(
@@ -102,11 +115,20 @@ def test_the_block_to_paste_comes_first_and_the_links_lead_somewhere(root):
     text = (root / "README.md").read_text(encoding="utf-8")
     before = re.sub(r"!\[.*?\]\(.*?\)", "", text.split("make lab\n")[0], flags=re.S)
     assert len(before.split()) < 60
-    for page in ("README.md", "docs/INSTALL.md", "docs/USING.md", "docs/BLENDER.md"):
+    for page in PAGES:
         links = re.findall(r"\]\(([^)#]+)", (root / page).read_text(encoding="utf-8"))
         local = [link for link in links if not link.startswith("http")]
         assert local or page == "docs/BLENDER.md"
         assert [link for link in local if not ((root / page).parent / link).exists()] == []
+
+
+@pytest.mark.parametrize("page", PAGES)
+def test_the_commands_of_a_page_exist(root, page):
+    text = (root / page).read_text(encoding="utf-8")
+    verbs = set(re.findall(r"(?:motiondiff-edu|python -m motiondiff_edu) ([a-z]+)", text))
+    assert verbs <= set(VERBS)
+    targets = set(re.findall(r"(?:^|`)make ([a-z]+)", text, re.M))
+    assert targets <= set(re.findall(r"^([a-z]+):", (root / "Makefile").read_text("utf-8"), re.M))
 
 
 def test_the_table_names_the_notebooks_there_are(root):
