@@ -271,6 +271,19 @@ def before(cells: list[dict], index: int) -> str:
     return "\n".join(reversed(text))
 
 
+def room(notebook: dict) -> Iterator[str]:
+    """Three questions for the room or more, and seeds."""
+    text = "\n".join(cell["source"] for cell in markdown(notebook))
+    found = re.search(
+        r"(?s)\*\*Questions for the room[.:]\*\*(.+?)(?:\*\*Seeds[.:]\*\*|\n\n\*\*)", text
+    )
+    asked = found[1].count("?") if found else 0
+    if asked < 3:
+        yield f"{asked} questions for the room; three or more"
+    if not re.search(r"\*\*Seeds[.:]\*\*", text):
+        yield "it names no **Seeds** that show well, or fail instructively"
+
+
 def lesson(notebook: dict, name: str) -> Iterator[str]:
     """Two to four predictions, step-by-step cells, pictures that say what they show."""
     text = "\n".join(cell["source"] for cell in markdown(notebook))
@@ -296,7 +309,7 @@ def portable(notebook: dict) -> Iterator[str]:
 def faults(path: Path) -> list[str]:
     """All faults in the form of one notebook."""
     notebook = notebook_cells.read(path)
-    rules = (length, width, storage, opening, extras, closing, independence, portable)
+    rules = (length, width, storage, opening, extras, closing, room, independence, portable)
     plain = [rule(notebook) for rule in rules]
     return [
         fault

@@ -24,6 +24,7 @@ You will be able to add noise.
 
 1. Constant.
 </details>"""
+CLOSING = "Three things to keep. **Questions for the room:** a? b? c? **Seeds:** 0. Next: 03."
 IMPORTS = """from motiondiff_edu import checks, runtime
 run = runtime.start(notebook="02", seed=0)"""
 EXERCISE = """**Exercise** (difficulty 1 of 3, 5 minutes)
@@ -54,7 +55,7 @@ def good():
             for _ in range(2)
             for part in (cell(EXERCISE, kind="markdown"), cell(SOLUTION, "solution"))
         ],
-        cell("Three things to keep. Next: 03.", kind="markdown"),
+        cell(CLOSING, kind="markdown"),
     ]
     for number, each in enumerate(cells):
         each["id"] = f"c{number}"
@@ -194,6 +195,14 @@ def spoil_closing(nb):
     nb["cells"][-1]["source"] = "The end."
 
 
+def spoil_room(nb):
+    nb["cells"][-1]["source"] = CLOSING.replace("c?", "c.")
+
+
+def spoil_seeds(nb):
+    nb["cells"][-1]["source"] = CLOSING.replace("**Seeds:** 0.", "\n\n**More**")
+
+
 def spoil_exercises(nb):
     first(nb, "solution")["metadata"]["tags"] = []
 
@@ -267,6 +276,8 @@ def spoil_image(nb):
         (spoil_extra_words, "501 words in extra cells"),
         (spoil_extra_cells, "13 extra cells"),
         (spoil_closing, "does not say three things"),
+        (spoil_room, "2 questions for the room"),
+        (spoil_seeds, "no **Seeds**"),
         (spoil_exercises, "1 cells tagged `solution`"),
         (spoil_difficulty, "minutes and difficulty"),
         (spoil_hint, "fold a hint"),
