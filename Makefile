@@ -69,7 +69,7 @@ test: lint unit notebooks browser ## set up .venv and run everything: lint, unit
 WORKERS := -n auto --max-worker-restart=0
 
 unit: $(VENV)/.test ## only the unit tests
-	OMP_NUM_THREADS=1 $(BIN)/python -m pytest -q $(WORKERS) --dist loadfile -m "not browser"
+	OMP_NUM_THREADS=1 $(BIN)/python -m pytest -q $(WORKERS) --dist loadfile --durations=40 -m "not browser"
 
 # The notebooks run in parallel with one thread each. With torch's own threads, two in parallel take four times as long as in turn.
 # The student edition is the same but for the exercises, which the unit tests run (docs/CONTRIBUTING.md), so it is not run again here.
