@@ -18,6 +18,8 @@ OPEN = {
     "_repr_mimebundle_": "Jupyter calls it with keywords of its own",
     "course/checks/_report.py answer": "it wraps a student's function, whatever that takes",
     "widgets/explore.py explore": "the keywords are the parameters of the function that is drawn",
+    "widgets/explore.py refresh": "as `explore`",
+    "widgets/controls.py steering": "the keywords are those of the function that is steered",
     "results/walks/ladder.py left_out": "the keywords are fields of a Recipe, as in `replace`",
     "results/walks/ladder.py added": "as `left_out`",
     "tools/mutants.py _with": "the keywords are fields of a node, as in `replace`",

@@ -90,7 +90,7 @@ def executed(
     )
     environment = os.environ | ENVIRONMENT
     with tqdm(total=len(cells), desc=f"preparing {name}", unit="cell") as bar:
-        client.on_cell_executed = lambda **_: bar.update()
+        client.on_cell_executed = lambda cell, cell_index, execute_reply: bar.update()
         try:
             return client.execute(env=environment)
         except CellExecutionError as error:

@@ -7,6 +7,7 @@ that stands still, and the widgets are used afterwards.
 """
 
 import ast
+from dataclasses import dataclass
 
 import notebook_cells
 import pytest
@@ -32,16 +33,27 @@ def needed(cells: list[dict], last: str) -> list[dict]:
     """The cells up to the one that binds `last`, without those whose values nobody asks for."""
     kept, asked = [], {last}
     for cell in reversed(cells):
-        read, bound, changed = names_of(cell["source"])
-        if (bound | changed) & asked:
+        names = names_of(cell["source"])
+        if (names.bound | names.changed) & asked:
             kept.insert(0, cell)
-            asked = (asked - bound) | read
+            asked = (asked - names.bound) | names.read
     return kept
 
 
-def names_of(source: str) -> tuple[set[str], set[str], set[str]]:
-    """Names that a cell reads from cells before, names that it binds, and those it changes."""
-    read, bound, changed = set(), set(), set()
+@dataclass(frozen=True)
+class Names:
+    """Names that a cell reads from cells before, that it binds, and whose values it changes."""
+
+    read: set[str]
+    bound: set[str]
+    changed: set[str]
+
+
+def names_of(source: str) -> Names:
+    """The names of a cell."""
+    read: set[str] = set()
+    bound: set[str] = set()
+    changed: set[str] = set()
     for statement in ast.parse(source).body:
         nodes = list(ast.walk(statement))
         loaded = {n.id for n in nodes if isinstance(n, ast.Name) and isinstance(n.ctx, ast.Load)}
@@ -57,7 +69,7 @@ def names_of(source: str) -> tuple[set[str], set[str], set[str]]:
             and isinstance(n.value, ast.Name)
             and isinstance(n.ctx, ast.Store)
         }
-    return read, bound, changed - bound
+    return Names(read, bound, changed - bound)
 
 
 @pytest.fixture

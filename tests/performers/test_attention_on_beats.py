@@ -169,7 +169,7 @@ def test_notebook_12_dances_to_an_upload_and_says_what_is_wrong_with_it(monkeypa
     buffer = io.BytesIO()
     soundfile.write(buffer, clicks(3.0, (0.5, 1.0)), 16_000, format="WAV")
     upload(buffer.getvalue())
-    assert names["said"].value == "now it dances to your song"
+    assert names["said"].value == "now it dances to a"
     assert names["player"].scene["figures"][0]["frames"] == 60 and whole > 2
     assert names["player"].music["beats"] == [0.5, 1.0]
     upload(b"these are words, and no music at all")

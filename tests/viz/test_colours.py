@@ -16,7 +16,9 @@ CLEAR = 15  # a distance that nobody has to look for; 2.3 is just noticed
 
 
 def test_the_measures_of_colour_are_the_published_ones():
-    red, white, grey = np.eye(3)[0], np.ones(3), np.full(3, 119 / 255)
+    red = np.eye(3)[0]
+    white = np.ones(3)
+    grey = np.full(3, 119 / 255)
     np.testing.assert_allclose(lab(red), [53.24, 80.09, 67.20], atol=0.02)
     np.testing.assert_allclose(lab(white), [100, 0, 0], atol=0.02)
     assert contrast(white, np.zeros(3)) == pytest.approx(21)

@@ -14,7 +14,9 @@ def progress(folder: str | Path = ".") -> None:
 
     It knows the checks of this session, and those of the notebooks that are saved in `folder`.
     """
-    lines, right, every = [], 0, 0
+    lines = []
+    right = 0
+    every = 0
     for original in sorted((notebook_folder() / "student").glob("[0-9][0-9]_*.ipynb")):
         names = exercises(original)
         known = saved(Path(folder) / original.name) | {n: FOUND[n] for n in names if n in FOUND}
