@@ -159,13 +159,20 @@ def unbacked(notebook: dict, results: str = "") -> list[str]:
     return found
 
 
+def unbacked_in(executed: Path) -> list[str]:
+    """The figures that are not backed in all executed notebooks of a folder, each with its file."""
+    results = RESULTS.read_text("utf-8")
+    found = []
+    for path in sorted(executed.glob("*.ipynb")):
+        notebook = json.loads(path.read_text("utf-8"))
+        found += [f"{path.name}, {one}" for one in unbacked(notebook, results)]
+    return found
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("executed", type=Path)
-    found, results = [], RESULTS.read_text("utf-8")
-    for path in sorted(parser.parse_args().executed.glob("*.ipynb")):
-        notebook = json.loads(path.read_text("utf-8"))
-        found += [f"{path.name}, {one}" for one in unbacked(notebook, results)]
+    found = unbacked_in(parser.parse_args().executed)
     print("\n".join(found) or "every figure in the answers was printed before it")
     sys.exit(bool(found))
 

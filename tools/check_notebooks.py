@@ -108,8 +108,8 @@ def start(notebook: dict, name: str) -> Iterator[str]:
         yield f"{len(found)} new ideas (**New here:** one; two; three.); one to {IDEAS}"
     text = notebook["cells"][0]["source"]
     wanted = [f"{int(name[:2]) - back:02d}" for back in BEFORE if int(name[:2]) >= back]
-    asked = re.findall(r"(?m)^\d\. \((\d\d)\) .+\?$|^\d\. \((\d\d)\) Name .+\.$", text)
-    if [a or b for a, b in asked] != wanted:
+    asked = re.findall(r"(?m)^\d\. \((\d\d)\) (?:.+\?|Name .+\.)$", text)
+    if asked != wanted:
         yield f"the opening asks questions from {asked or 'nowhere'}; it should from {wanted}"
     folded = re.search(r"(?s)<details><summary>Answers</summary>(.+)</details>", text)
     answers = len(re.findall(r"(?m)^\d\. ", folded[1])) if folded else 0

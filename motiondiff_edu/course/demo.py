@@ -46,8 +46,6 @@ def run(chosen: argparse.Namespace) -> int:
 
 def prepare(notebook: Path, jupyter_data: Path) -> None:
     """Put the outputs of a run into the copy. A notebook that fails is opened as it is."""
-    if not prepared.kept(notebook).is_file():
-        print("It is run once, now; later demos of it open at once.", flush=True)
     try:
         run = prepared.prepared(notebook, notebook.parent)
     except prepared.PreparationError as error:

@@ -39,10 +39,10 @@ def shipped(notebooks: Path) -> dict[str, bytes]:
         name = path.relative_to(docs)
         hidden = any(part.startswith(".") for part in name.parts)
         if path.suffix in PAGES and not hidden:
-            # notebooks lie beside the pages' folder here, and not in a folder of their own
-            found[f"docs/{name.as_posix()}"] = path.read_bytes().replace(
-                b"](../notebooks/", b"](../"
-            )
+            content = path.read_bytes()
+            if path.suffix == ".md":  # notebooks lie just above the pages here
+                content = content.replace(b"](../notebooks/", b"](../")
+            found[f"docs/{name.as_posix()}"] = content
     return found
 
 

@@ -6,7 +6,6 @@ needs a kernel says so until the notebook is run again.
 
 import copy
 import hashlib
-import json
 import os
 from pathlib import Path
 
@@ -40,6 +39,7 @@ def prepared(path: Path, folder: Path) -> nbformat.NotebookNode:
     file = kept(path)
     if file.is_file():
         return nbformat.read(file, as_version=4)
+    print("It is run once, now; later demos of it open at once.", flush=True)
     notebook = executed(nbformat.read(path, as_version=4), folder, path.stem)
     for cell in notebook.cells:
         still(cell)
@@ -104,9 +104,8 @@ def still(cell: nbformat.NotebookNode) -> None:
         cell.metadata["jupyter"] = {"source_hidden": True}
     for output in cell.get("outputs", []):
         data = output.get("data", {})
-        if data.pop(WIDGET, None) and "text/html" not in data:
-            drawn = "image/png" in data
-            data |= {} if drawn else {"text/html": KERNEL_NOTE}
+        if data.pop(WIDGET, None) and not {"text/html", "image/png"} & data.keys():
+            data["text/html"] = KERNEL_NOTE
 
 
 def first_figure_first(notebook: nbformat.NotebookNode) -> None:
@@ -128,6 +127,6 @@ def first_figure_first(notebook: nbformat.NotebookNode) -> None:
 def write_trusted(notebook: nbformat.NotebookNode, path: Path, jupyter_data: Path) -> None:
     """Write a notebook, and sign it in this folder of Jupyter's data: else no script of it runs."""
     jupyter_data.mkdir(parents=True, exist_ok=True)
-    notebook = nbformat.from_dict(json.loads(nbformat.writes(notebook)))
     nbformat.write(notebook, path)
-    NotebookNotary(data_dir=str(jupyter_data)).sign(notebook)
+    as_read = nbformat.read(path, as_version=4)
+    NotebookNotary(data_dir=str(jupyter_data)).sign(as_read)

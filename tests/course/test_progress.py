@@ -1,4 +1,4 @@
-"""`checks.progress()` counts what is right, in this session and in saved copies."""
+"""`checks.progress()` counts what is right, in this kernel and in saved copies."""
 
 import json
 from contextlib import nullcontext
@@ -69,7 +69,7 @@ def test_saved_copies_count(course, capsys):
     assert told(course, capsys)[:2] == ["02  1 of 2  x mean", "03  0 of 1  . leap"]
 
 
-def test_this_session_counts_more_than_what_was_saved(course, capsys):
+def test_this_kernel_counts_more_than_what_was_saved(course, capsys):
     write(course / "03_back.ipynb", cell("checks.leap(f)", printed("leap: right.\n")))
     _report.FOUND["leap"] = False
     assert told(course, capsys)[1] == "03  0 of 1  x leap"

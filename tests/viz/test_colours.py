@@ -4,6 +4,7 @@ from itertools import combinations
 
 import numpy as np
 import pytest
+from matplotlib.colors import to_rgb
 from PIL import Image
 from seeing import BLIND, apart, as_seen, contrast, lab
 from synthetic_walk import walk
@@ -32,7 +33,7 @@ def test_the_measures_of_colour_are_the_published_ones():
 
 def pixels_like(picture: Image.Image, colour: str) -> np.ndarray:
     """The median colour of the pixels that are nearest to a named colour."""
-    wanted = np.array([int(colour[i : i + 2], 16) for i in (1, 3, 5)]) / 255
+    wanted = np.array(to_rgb(colour))
     rgb = np.asarray(picture.convert("RGB")).reshape(-1, 3) / 255
     near = np.linalg.norm(rgb - wanted, axis=1) < 0.12
     assert near.sum() > 100, f"{colour} is not in the picture"
@@ -52,20 +53,17 @@ def test_curves_differ_in_colour_or_in_dashes(kind):
     fig = curves.loss_curves(lines)
     drawn = fig.axes[0].lines
     for (a, one), (b, other) in combinations(enumerate(drawn), 2):
-        rgb = [np.array([int(c[i : i + 2], 16) for i in (1, 3, 5)]) / 255 for c in
-               (one.get_color(), other.get_color())]  # fmt: skip
-        seen = apart(*(as_seen(c, kind) for c in rgb))
+        colours = one.get_color(), other.get_color()
+        seen = apart(*(as_seen(np.array(to_rgb(c)), kind) for c in colours))
         assert seen > CLEAR or DASHES[a] != DASHES[b], (a, b, seen)
 
 
 @pytest.mark.parametrize("kind", BLIND)
 def test_the_first_three_colours_need_no_dashes(kind):
-    rgb = [np.array([int(c[i : i + 2], 16) for i in (1, 3, 5)]) / 255 for c in OKABE_ITO[:3]]
-    for one, other in combinations(rgb, 2):
+    for one, other in combinations([np.array(to_rgb(c)) for c in OKABE_ITO[:3]], 2):
         assert apart(as_seen(one, kind), as_seen(other, kind)) > CLEAR
 
 
 def test_lines_are_seen_on_white():
     for colour in OKABE_ITO[:4]:
-        rgb = np.array([int(colour[i : i + 2], 16) for i in (1, 3, 5)]) / 255
-        assert contrast(rgb, np.ones(3)) >= 3, colour
+        assert contrast(np.array(to_rgb(colour)), np.ones(3)) >= 3, colour

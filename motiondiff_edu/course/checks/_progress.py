@@ -1,4 +1,4 @@
-"""`checks.progress()`: which exercises are done, in this session and in the copies beside it."""
+"""`checks.progress()`: which exercises are done, in this kernel and in the copies beside it."""
 
 from pathlib import Path
 
@@ -12,7 +12,7 @@ SIGNS = {True: "+", False: "x", None: "."}  # right, not right yet, not attempte
 def progress(folder: str | Path = ".") -> None:
     """Print a line for each notebook: how many exercises are right, and which are not.
 
-    It knows the checks of this session, and those of the notebooks that are saved in `folder`.
+    It knows the checks of this kernel, and those of the notebooks that are saved in `folder`.
     """
     lines = []
     right = 0

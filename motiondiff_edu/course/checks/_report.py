@@ -43,7 +43,7 @@ import torch
 
 Check = Callable[[Any], None]
 REGISTRY: dict[str, Check] = {}
-FOUND: dict[str, bool] = {}  # of this session: whether the last answer to a check was right
+FOUND: dict[str, bool] = {}  # of this kernel: whether the last answer to a check was right
 NOT_ATTEMPTED = "not attempted yet"
 WIDTH = 92  # characters that a page shows in one line
 STUBS = ("your turn", "")  # messages of an exercise left as it is; torch raises with others

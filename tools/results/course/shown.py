@@ -5,7 +5,6 @@ depends on the machine: it is that of the page, from its address to the first mo
 one demo has prepared the notebook.
 """
 
-import json
 import os
 import shutil
 import socket
@@ -40,12 +39,7 @@ def form() -> dict[str, float]:
 
 def unbacked(executed: Path) -> int:
     """Figures in answers that no cell before them has printed."""
-    results = backed_numbers.RESULTS.read_text("utf-8")
-    found = [
-        claim
-        for path in sorted(executed.glob("*.ipynb"))
-        for claim in backed_numbers.unbacked(json.loads(path.read_text("utf-8")), results)
-    ]
+    found = backed_numbers.unbacked_in(executed)
     print("\n".join(found))
     return len(found)
 
@@ -84,6 +78,10 @@ def demo(number: str) -> Iterator[str]:
                 break
             except (urllib.error.URLError, OSError):
                 time.sleep(0.2)
+        if server.poll() is not None:
+            sys.exit(
+                f"the demo of notebook {number} did not start: try `motiondiff-edu demo {number}`"
+            )
         yield f"{host}/doc/tree/notebooks/{name}?token=demo"
     finally:
         server.terminate()
