@@ -23,7 +23,8 @@ from ..motion.skeleton import JOINTS, PARENTS, J
 from ..rollout import AnyWalker
 from ..viz import body
 from . import module, packing, poster
-from .player import PAGE, STACK
+from .player import PAGE
+from .still import page_on_picture, with_still
 from .turn import TURN
 
 MODULE = module.joined(module.BENCH)
@@ -199,20 +200,8 @@ class Bench(anywidget.AnyWidget):
         return poster.filmstrip(figures, self.scene["fps"], between=(first, end - 1))
 
     def _repr_mimebundle_(self, **kwargs):
-        live = super()._repr_mimebundle_(**kwargs)
-        bundle, metadata = live if isinstance(live, tuple) else (live or {}, {})
-        png = base64.b64encode(poster.as_png(self.poster())).decode()
-        stack = STACK.format(
-            width=1200,
-            height=self.scene["height"] + 330,
-            alt=html.escape(self.description, quote=True),
-            png=png,
-            title="repair bench",
-            page=html.escape(self.page(), quote=True),
+        height = self.scene["height"] + 330
+        still = page_on_picture(
+            self.page(), self.poster(), self.description, "repair bench", height
         )
-        return {
-            **bundle,
-            "text/html": stack,
-            "image/png": png,
-            "text/plain": self.description,
-        }, metadata
+        return with_still(super()._repr_mimebundle_(**kwargs), still)

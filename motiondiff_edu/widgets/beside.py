@@ -2,6 +2,8 @@
 
 import ipywidgets
 
+from .still import split, with_still
+
 NARROWEST = "1 1 440px"  # equal shares of the row, from so many pixels on
 
 
@@ -16,18 +18,16 @@ class Beside(ipywidgets.HBox):
             widget.layout.flex = NARROWEST
 
     def _repr_mimebundle_(self, **kwargs):
-        live = super()._repr_mimebundle_(**kwargs)
-        bundle, metadata = live if isinstance(live, tuple) else (live or {}, {})
         parts = "".join(f"<div>{part}</div>" for part in stills(self))
-        return {**bundle, **({"text/html": parts} if parts else {})}, metadata
+        still = {"text/html": parts} if parts else {}
+        return with_still(super()._repr_mimebundle_(**kwargs), still)
 
 
 def stills(box: ipywidgets.Box) -> list[str]:
     """The HTML of all widgets in a box, and in the boxes in it, that have any."""
     found = []
     for child in box.children:
-        made = child._repr_mimebundle_()
-        bundle = made[0] if isinstance(made, tuple) else made or {}
+        bundle, _ = split(child._repr_mimebundle_())
         if "text/html" in bundle:
             found.append(bundle["text/html"])
         elif isinstance(child, ipywidgets.Box):

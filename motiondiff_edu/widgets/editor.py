@@ -24,6 +24,7 @@ from ..motion.bvh.write import write_bvh
 from ..motion.skeleton import JOINTS, J, joint_index
 from . import editor_page, packing
 from .editor_page import MODULE, MOST, complaint, listed
+from .still import page_on_picture, with_still
 from .turn import TURN
 
 
@@ -331,6 +332,6 @@ class Editor(anywidget.AnyWidget):
         )
 
     def _repr_mimebundle_(self, **kwargs):
-        live = super()._repr_mimebundle_(**kwargs)
-        live, metadata = live if isinstance(live, tuple) else (live or {}, {})
-        return editor_page.bundle(self, live), metadata
+        page, height = editor_page.html_page(self), self.scene["height"] + 330
+        still = page_on_picture(page, self.poster(), self.description, "motion editor", height)
+        return with_still(super()._repr_mimebundle_(**kwargs), still)

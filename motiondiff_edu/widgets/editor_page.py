@@ -18,7 +18,7 @@ from ..editing.masks import body_part
 from ..motion.skeleton import J, joint_index
 from ..viz import body
 from . import module, poster
-from .player import PAGE, STACK
+from .player import PAGE
 
 MODULE = module.joined(module.EDITOR)
 MOST = 6  # in-betweens at once: more ghosts are hard to distinguish
@@ -144,14 +144,3 @@ def strip(edit: Edit, sample: np.ndarray | None, fps: float, n: int = 6):
     figures = [poster.Figure(edit.positions, "with the pinned poses" if edit.pins else "")]
     figures += [] if sample is None else [poster.Figure(sample, "in-between")]
     return poster.filmstrip(figures, fps, n)
-
-
-def bundle(editor, live: dict) -> dict:
-    """The live widget, with a page and a picture for places where the widget does not run."""
-    png = base64.b64encode(poster.as_png(editor.poster())).decode()
-    stack = STACK.format(
-        width=1200, height=editor.scene["height"] + 330,
-        alt=html.escape(editor.description, quote=True), png=png,
-        title="motion editor", page=html.escape(html_page(editor), quote=True),
-    )  # fmt: skip
-    return {**live, "text/html": stack, "image/png": png, "text/plain": editor.description}

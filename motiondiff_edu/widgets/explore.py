@@ -5,6 +5,7 @@ import ipywidgets
 from ..viz.style import as_html
 from . import states
 from .controls import steering
+from .still import with_still
 from .turn import TURN
 
 
@@ -14,9 +15,8 @@ class Explored(ipywidgets.VBox):
     still = ""
 
     def _repr_mimebundle_(self, **kwargs):
-        live = super()._repr_mimebundle_(**kwargs)
-        bundle, metadata = live if isinstance(live, tuple) else (live or {}, {})
-        return {**bundle, **({"text/html": self.still} if self.still else {})}, metadata
+        still = {"text/html": self.still} if self.still else {}
+        return with_still(super()._repr_mimebundle_(**kwargs), still)
 
 
 def explore(draw, **start) -> Explored:

@@ -17,6 +17,7 @@ from numpy.typing import ArrayLike
 
 from ..conditions import control as walks
 from ..viz.skeleton import top_view
+from .still import with_still
 
 
 class PathPad(anywidget.AnyWidget):
@@ -123,18 +124,13 @@ class PathPad(anywidget.AnyWidget):
         )
 
     def _repr_mimebundle_(self, **kwargs):
-        live = super()._repr_mimebundle_(**kwargs)
-        bundle, metadata = live if isinstance(live, tuple) else (live or {}, {})
         buffer = io.BytesIO()
         top_view(paths={"path": self.points}).savefig(buffer, format="png", dpi=70)
         png = base64.b64encode(buffer.getvalue()).decode()
-        still = (
-            f'<img alt="{html.escape(self.description, quote=True)}" '
-            f'src="data:image/png;base64,{png}">'
-        )
-        return {
-            **bundle,
-            "text/html": still,
+        alt = html.escape(self.description, quote=True)
+        still = {
+            "text/html": f'<img alt="{alt}" src="data:image/png;base64,{png}">',
             "image/png": png,
             "text/plain": self.description,
-        }, metadata
+        }
+        return with_still(super()._repr_mimebundle_(**kwargs), still)

@@ -31,6 +31,7 @@ from ..motion.checks import checked_rate, is_number
 from ..viz import body
 from . import lane, module, packing, poster, sound
 from .lane import Soundtrack
+from .still import page_on_picture, with_still
 
 __all__ = ["Look", "Player", "Soundtrack", "describe"]
 
@@ -52,11 +53,6 @@ PAGE = """<!doctype html><html lang="en"><head><meta charset="utf-8"><title>{tit
 document.body.style.background = "#fff";
 mount(staticModel({record}), document.body, {{ fill: true }});
 </script></body></html>"""
-
-STACK = """<div style="position:relative;width:100%;max-width:{width}px;min-height:{height}px">
-<img alt="{alt}" src="data:image/png;base64,{png}" style="width:100%">
-<iframe title="{title}" sandbox="allow-scripts" loading="lazy" srcdoc="{page}"
- style="position:absolute;inset:0;width:100%;height:100%;border:0"></iframe></div>"""
 
 
 @dataclass(frozen=True)
@@ -229,20 +225,11 @@ class Player(anywidget.AnyWidget):
         return strip if self._music is None else self._music.under(strip)
 
     def _repr_mimebundle_(self, **kwargs):
-        live = super()._repr_mimebundle_(**kwargs)
-        bundle, metadata = live if isinstance(live, tuple) else (live or {}, {})
-        png = base64.b64encode(poster.as_png(self.poster())).decode()
         height = self.scene["height"] + 90 + (self._music.height if self._music else 0)
-        stack = STACK.format(
-            width=1200, height=height, alt=html.escape(self.description, quote=True), png=png,
-            title="motion player", page=html.escape(self.page(), quote=True),
-        )  # fmt: skip
-        return {
-            **bundle,
-            "text/html": stack,
-            "image/png": png,
-            "text/plain": self.description,
-        }, metadata
+        still = page_on_picture(
+            self.page(), self.poster(), self.description, "motion player", height
+        )
+        return with_still(super()._repr_mimebundle_(**kwargs), still)
 
     def save_html(self, path: str | os.PathLike) -> Path:
         """Write the figure as one HTML file that plays anywhere, offline."""
