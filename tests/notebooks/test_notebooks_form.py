@@ -238,6 +238,17 @@ def spoil_by_using_the_exercise_before(nb):
     nb["cells"][-2]["source"] = SOLUTION.replace("f(x)", "g(x)").replace("x\n", "f(x)\n")
 
 
+def spoil_by_using_an_extra(nb):
+    nb["cells"][4]["source"], nb["cells"][4]["metadata"]["tags"] = "z = 1", ["extra"]
+    nb["cells"][6]["source"] = "def g(y):\n    return [z + y for y in range(3)]"
+
+
+def spoil_by_using_the_later_of_two(nb):
+    nb["cells"][4]["source"] = nb["cells"][6]["source"] = "z = 1"
+    nb["cells"][6]["metadata"]["tags"] = ["extra"]
+    nb["cells"][8]["source"] = "print(z)"
+
+
 def spoil_pip(nb):
     nb["cells"][4]["source"] = "%pip install torch"
 
@@ -286,6 +297,8 @@ def spoil_image(nb):
         (spoil_by_using_an_exercise, "cell c4 uses f of an exercise"),
         (spoil_by_using_an_answer, "cell c4 uses answer of an exercise"),
         (spoil_by_using_the_exercise_before, "cell c24 uses f of an exercise"),
+        (spoil_by_using_an_extra, "cell c6 uses z of an extra cell"),
+        (spoil_by_using_the_later_of_two, "cell c8 uses z of an extra cell"),
         (spoil_pip, "pip in a code cell"),
         (spoil_path, "an absolute path"),
         (spoil_image, "without alt text"),
@@ -295,6 +308,16 @@ def test_each_fault_is_found(good, tmp_path, spoil, words):
     notebook = copy.deepcopy(good)
     spoil(notebook)
     assert any(words in fault for fault in faults(notebook, tmp_path)), faults(notebook, tmp_path)
+
+
+def test_local_names_and_those_defined_again_are_not_of_an_extra_cell(good, tmp_path):
+    good["cells"][3]["source"] = "More (extra)"
+    good["cells"][3]["metadata"]["tags"] = good["cells"][4]["metadata"]["tags"] = ["extra"]
+    good["cells"][4]["source"] = "z = k = 1"
+    good["cells"][6]["source"] = "def g(z):\n    return [z * k for k in range(3)]"
+    good["cells"][8]["source"] = "z = 2\nprint(z)"
+    good["cells"][10]["source"] = "print(z)"
+    assert not [fault for fault in faults(good, tmp_path) if "extra cell" in fault]
 
 
 @pytest.mark.parametrize("path", notebook_cells.sources(), ids=lambda path: path.stem)
