@@ -15,6 +15,12 @@ Ranges = tuple[tuple[float, float], ...]
 TEMPI: Ranges = ((60.0, 66.0), (74.0, 146.0), (154.0, 180.0))  # BPM
 HELD_OUT_TEMPI: Ranges = ((66.0, 74.0), (146.0, 154.0))
 WANDER = 0.05  # share of the beat's length by which it changes slowly, at most
+# a tempo from which no song that wanders by so much gets into the tempi that are kept out
+FAR_FROM_HELD_OUT: Ranges = (
+    (60.0, 66.0 * (1 - WANDER)),
+    (74.0 * (1 + WANDER), 146.0 * (1 - WANDER)),
+    (154.0 * (1 + WANDER), 180.0),
+)
 SLOWER = (1.08, 1.35)  # length of the last beat of a ritardando, as a multiple of the usual
 RITARDANDO = (3, 9)  # beats, the second excluded
 

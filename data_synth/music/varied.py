@@ -51,7 +51,7 @@ class Variety:
     tempi       ranges of the tempo in BPM (tempi.py)
     waltz       a song has three beats in a bar
     drumless    it has no drums
-    own_groove  it has the groove of its genre, not another feel
+    own_groove  it has the groove of its genre, not another feel, and all parts in its manner
     silent_drum each of its drums is left out
     pauses      it begins with silence; it pauses; it ends with silence (each)
     unsteady    its tempo wanders by up to 5 %
@@ -61,7 +61,7 @@ class Variety:
     tempi: Ranges = TEMPI
     waltz: float = 0.15
     drumless: float = 0.2
-    own_groove: float = 0.3
+    own_groove: float = 0.6
     silent_drum: float = 0.15
     pauses: float = 0.2
     unsteady: float = 0.65
@@ -94,8 +94,8 @@ def varied_song(seed: int, seconds: float = 20.0, variety: Variety = VARIED) -> 
     name, feel = draw_feel(genre, tempo, variety.own_groove, rng)
     form = _form(feel, genre, tempo, seconds, variety, timing)
     hits = _drums(form, feel, variety, drumming)
+    emphasis, hits, notes = _notes(form, hits, music, genre if name == genre else None)
     name = name if hits else "no drums"
-    emphasis, hits, notes = _notes(form, hits, music)
     played = play(form, hits, player)
     band = draw_band(studio)
     audio = mixed(form, played, notes, band, seconds, studio)
@@ -182,14 +182,14 @@ def _drums(form: Form, feel: Feel, variety: Variety, rng: np.random.Generator) -
 
 
 def _notes(
-    form: Form, hits: list[Hit], rng: np.random.Generator
+    form: Form, hits: list[Hit], rng: np.random.Generator, genre: str | None
 ) -> tuple[str, list[Hit], list[Note]]:
-    """The pitched parts, each in the manner of a genre of its own, and pick-ups.
+    """The pitched parts, in the manner of a genre or (None) each of one of its own, and pick-ups.
 
     Also returns which notes are louder.
     """
     for own in rng.spawn(ATTEMPTS):
-        chords, notes = _parts(form, own)
+        chords, notes = _parts(form, own, genre)
         if pulse(form, hits, notes) >= PULSE:
             break
     more_hits, more_notes = pick_ups(form, chords, bool(hits), rng)
@@ -198,9 +198,12 @@ def _notes(
     return emphasis, sorted([*hits, *more_hits], key=lambda hit: hit.position), notes
 
 
-def _parts(form: Form, rng: np.random.Generator) -> tuple[list[Chord], list[Note]]:
+def _parts(
+    form: Form, rng: np.random.Generator, genre: str | None
+) -> tuple[list[Chord], list[Note]]:
     """The chords of every bar, and the notes of bass, chords and tune."""
-    progression, bass, chording, tune = (str(g) for g in rng.choice(list(GENRES), 4))
+    drawn = (str(g) for g in rng.choice(list(GENRES), 4))
+    progression, bass, chording, tune = [genre] * 4 if genre else drawn
     chords = draw_chords(form, progression, rng)
     notes = write_bass(form, chords, bass, rng) + write_chords(form, chords, chording, rng)
     notes += write_melody(form, chords, tune, rng)

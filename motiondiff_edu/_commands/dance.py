@@ -5,7 +5,7 @@ cannot."""
 import argparse
 from pathlib import Path
 
-from ..motion.checks import check_there, checked_seconds
+from ..motion.checks import check_there, checked_guidance, checked_seconds
 from . import outputs
 
 HELP = "dance to a song"
@@ -20,6 +20,13 @@ def arguments(parser: argparse.ArgumentParser) -> None:
         metavar="S",
         help="dance to the first S seconds (default: the whole song)",
     )
+    parser.add_argument(
+        "--guidance",
+        type=float,
+        metavar="W",
+        help="above 1 the dance follows the music more closely; 1 is the network as the paper has "
+        "it, at half of the cost (default: 2)",
+    )
     outputs.add_out(parser)
     outputs.add_draws(parser, "dances")
 
@@ -28,10 +35,12 @@ def run(args: argparse.Namespace) -> None:
     paths = outputs.output_paths(args.out, args.overwrite, args.samples)
     if args.seconds is not None:
         checked_seconds(args.seconds)
+    if args.guidance is not None:
+        checked_guidance(args.guidance)
     check_there(args.song)
     outputs.say(f"dancing to {args.song}")
     from .. import load
 
-    draws = {"samples": args.samples, "seed": args.seed}
+    draws = {"samples": args.samples, "seed": args.seed, "guidance": args.guidance}
     made = load("dancer").dance(args.song, seconds=args.seconds, **draws)
     outputs.write_all(made, paths)

@@ -1,9 +1,9 @@
-"""Classifier-free guidance: away from what the network makes without a text, towards its text.
+"""Classifier-free guidance: away from what the network makes without a condition, towards its own.
 
-    eps_hat = (1 - w) eps_hat(x_s, s, nothing) + w eps_hat(x_s, s, text)
-w = 1 is the conditional network, as in the paper. A larger w follows the text more closely, and the
-samples differ less; the result is no sample of the conditional any more. In training, some texts
-are left out, so that one network is both. It costs two evaluations at every step.
+    eps_hat = (1 - w) eps_hat(x_s, s, nothing) + w eps_hat(x_s, s, condition)
+w = 1 is the conditional network, as in the papers. A larger w follows a text or a song more
+closely; the result is no sample of the conditional any more. In training, some conditions are left
+out, so that one network is both. It costs two evaluations at every step.
 A mover that plans guides the timeline first. Where the text of the motion is left out, its timeline
 stays, in training too, so for the motion a larger w stresses what the timeline does not say.
 Gain: docs/RESULTS.md, *MoFusion's Table 2* (`words.guided.*`).
@@ -11,10 +11,27 @@ Source: Ho and Salimans, 2022. Ours; MoFusion has no guidance.
 Notebook: 16
 """
 
+from dataclasses import replace
+
+import torch
+from jaxtyping import Bool
+from torch import Tensor
+
 from ..ddpm import Denoiser
+from ..mofusion import Music
 
 
-def guided_by_text(conditional: Denoiser, unconditional: Denoiser, w: float) -> Denoiser:
+def without(music: Music, left_out: Bool[Tensor, "B"] | None = None) -> Music:
+    """The context of no music: tokens of 0, for all samples or for those that are left out.
+
+    With them, attention says the same at each moment, whatever is played.
+    """
+    if left_out is None:
+        return replace(music, tokens=torch.zeros_like(music.tokens))
+    return replace(music, tokens=music.tokens.where(~left_out[:, None, None], 0.0))
+
+
+def guided_by_condition(conditional: Denoiser, unconditional: Denoiser, w: float) -> Denoiser:
     """A denoiser between the two for w from 0 to 1, and beyond the conditional one above 1."""
     if w == 1:
         return conditional

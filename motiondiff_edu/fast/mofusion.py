@@ -14,7 +14,7 @@ from torch.nn import functional as F
 
 from ..cross_modal_attention import rotary
 from ..modiff import step_embedding
-from ..mofusion import CrossAttentionBlock, FrameConv, MoFusion, ResBlock, View
+from ..mofusion import CrossAttentionBlock, FrameConv, MoFusion, Music, ResBlock, View
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,9 +62,13 @@ class FastMoFusion:
         self, mel: Float[Tensor, "B M C"], times: Float[Tensor, "M"], frames: int
     ) -> SongContext:
         """The keys and values of a song, rotated by their times, for a dance of `frames` frames."""
-        music = self.model.listen(mel, times)
+        return self.context(self.model.listen(mel, times), frames)
+
+    @torch.inference_mode()
+    def context(self, music: Music, frames: int) -> SongContext:
+        """The same of music that the network has listened to already (`MoFusion.listen`)."""
         padded = frames + -frames % 2**self.levels
-        lengths = torch.full((1,), frames, device=mel.device)
+        lengths = torch.full((1,), frames, device=music.tokens.device)
         views = [
             View.of(padded, lengths, level, music, self.config) for level in range(self.levels + 1)
         ]

@@ -14,14 +14,15 @@ from jaxtyping import Float
 from torch import Tensor, nn
 
 from ..beyond.around_lines import Shown
+from ..beyond.classifier_free import guided_by_condition, without
 from ..beyond.guidance import with_guess
 from ..conditions.audio_files import samples_of
 from ..conditions.music import FRAMES_PER_SECOND, SAMPLE_RATE, fingerprint, frame_times, log_mel
 from ..ddpm import Denoiser, Generators, Schedule, draw
 from ..fast.mofusion import FastMoFusion
 from ..fast.twins import watched
-from ..mofusion import MoFusion, MoFusionConfig
-from ..motion.checks import checked_samples, checked_seconds, checked_steps
+from ..mofusion import MoFusion, MoFusionConfig, Music
+from ..motion.checks import checked_guidance, checked_samples, checked_seconds, checked_steps
 from ..motion.dance_frame import to_positions
 from ..motion.motion import Motion
 from ..motion.scaler import Scaler
@@ -33,6 +34,7 @@ from .performer import Performer, generators, sampled
 from .with_bar import with_bar
 
 STEPS, ETA = 50, 0.5  # defaults of DDIM
+USUAL_GUIDANCE = 2.0  # chosen on songs of which no figure of docs/RESULTS.md is made
 # standard deviations from the mean pose, to which the x0_hat of an eps network is clamped, as in
 # DDPM's code
 FARTHEST = 5.0
@@ -71,30 +73,58 @@ class Dancer(Performer):
         return mel, frame_times(mel.shape[1]).float().to(self.device)
 
     def denoiser(
-        self, mel: Float[Tensor, "B M C"] | None, frames: int, fast: bool = True
+        self,
+        mel: Float[Tensor, "B M C"] | None,
+        frames: int,
+        guidance: float = 1.0,
+        fast: bool = True,
     ) -> Denoiser:
         """`denoise(x_s, s) -> eps_hat` for this music (None for a network without music).
 
         It works in the network's units. The x0_hat of an eps network is clamped to FARTHEST.
 
+        `guidance`: w of `beyond.classifier_free`; 1 is the conditional network.
         `fast=True` uses the fast twin if there is one, unless `watch` collects the attention;
         the twin cannot be differentiated.
-        Raises ValueError for a network with music but no `mel`, or the reverse.
+        Raises ValueError for a network with music but no `mel`, or the reverse, and for guidance of
+        a network that was not made for it.
         """
+        guidance = checked_guidance(guidance)
         if (mel is None) != (self.config.C == 0):
             raise ValueError(
                 'this network takes no music: use md.inbetween, or md.load("dancer") to dance'
                 if mel is not None
                 else "this network dances to music; pass its log-Mel as mel"
             )
+        if guidance != 1 and not self.can_be_guided:
+            raise ValueError(
+                f"guidance = {guidance:g}: this network always had its music in training, so leave "
+                "guidance out"
+            )
         if mel is None:
             return self._as_eps(self._evaluated)
         twin = self.fast if fast and not watched(self.model) else None
-        if twin is not None:
-            song = twin.listen(*self.mel_input(mel, frames), frames)
-            return self._as_eps(lambda x_s, s: twin.denoise(x_s, s, song))
         music = self.model.listen(*self.mel_input(mel, frames))
-        return self._as_eps(lambda x_s, s: self._evaluated(x_s, s, music))
+
+        def network(music: Music):
+            if twin is None:
+                return self._as_eps(lambda x_s, s: self._evaluated(x_s, s, music))
+            song = twin.context(music, frames)
+            return self._as_eps(lambda x_s, s: twin.denoise(x_s, s, song))
+
+        if guidance == 1:
+            return network(music)
+        return guided_by_condition(network(music), network(without(music)), guidance)
+
+    @property
+    def can_be_guided(self) -> bool:
+        """Whether music was left out in training at times, so that `guidance` has a meaning."""
+        return bool(self.card.get("recipe", {}).get("no_music", 0))
+
+    @property
+    def usual_guidance(self) -> float:
+        """The guidance that dances have where none is asked for."""
+        return USUAL_GUIDANCE if self.can_be_guided else 1.0
 
     @property
     def can_be_shown(self) -> bool:
@@ -126,6 +156,7 @@ class Dancer(Performer):
         samples: int = 1,
         seed: int = 0,
         steps: int | None = STEPS,
+        guidance: float | None = None,
         progress: bool = True,
     ) -> Motion | list[Motion]:
         """Dance to a sound file, or to mono sound at 16 kHz (N,) from -1 to 1.
@@ -137,11 +168,14 @@ class Dancer(Performer):
         seed     chooses the dance together with the sound: other music gets other moves. To dance
                  with the same noise to two songs, pass `start` to `dance_mel`
         steps    of DDIM, or None for DDPM with all steps
+        guidance above 1 the dance follows the music more closely, at twice the cost of 1
+                 (`beyond.classifier_free`); None: what is usual for this dancer
         Raises AudioError for unusable sound (`conditions.audio_files`), ValueError for `seconds` or
         `samples` out of range. Warns where the sound is shorter than `seconds`.
         Source: MoFusion 3.  Notebook: 00, 12
         """
         count, steps = checked_samples(samples), checked_steps(steps, self.schedule.S)
+        guidance = self.usual_guidance if guidance is None else checked_guidance(guidance)
         longest = None if seconds is None else round(checked_seconds(seconds) * SAMPLE_RATE)
         audio = samples_of(sound)[:longest]
         name = Path(sound).stem if isinstance(sound, (str, Path)) else "the sound given"
@@ -153,10 +187,11 @@ class Dancer(Performer):
             warnings.warn(f"{name} lasts {lasts:.1f} s, and the dance ends with it", stacklevel=2)
         mel = log_mel(audio)
         draws = generators(seed, count, *fingerprint(mel))
-        evaluations = steps or self.schedule.S
+        evaluations = (steps or self.schedule.S) * (1 if guidance == 1 else 2)
         with with_bar(self, evaluations, "dancing", progress) as one:
             songs = mel.expand(count, -1, -1)
-            dances = one.dance_mel(songs, frames, generator=draws, steps=steps)
+            how = {"generator": draws, "steps": steps, "guidance": guidance}
+            dances = one.dance_mel(songs, frames, **how)
         dances = dances.double().cpu().numpy()
         made = [
             Motion(
@@ -179,6 +214,7 @@ class Dancer(Performer):
         generator: Generators | None = None,
         steps: int | None = STEPS,
         eta: float = ETA,
+        guidance: float | None = None,
         start: Float[Tensor, "B T D"] | None = None,
     ) -> Float[Tensor, "B T 21 3"]:
         """Dance to log-Mel spectrograms (`conditions.music.log_mel`), one dance each.
@@ -187,8 +223,9 @@ class Dancer(Performer):
 
         frames  the length of the dance (default: that of the music)
         steps   of DDIM with `eta`, at most S; None for DDPM with all steps
+        guidance as in `dance`
         start   the noise to begin with (default: drawn); pass the same noise to compare two songs
-        Raises ValueError for more frames than the music has.  Notebook: 12
+        Raises ValueError for more frames than the music has, and as `denoiser`.  Notebook: 12
         """
         longest = int((mel.shape[1] - 1) / FRAMES_PER_SECOND * FPS) + 1
         frames = longest if frames is None else frames
@@ -198,7 +235,8 @@ class Dancer(Performer):
             )
         if getattr(self.config, "deterministic", False):
             return self._regress(mel, frames)
-        denoise = self.denoiser(mel, frames)
+        guidance = self.usual_guidance if guidance is None else guidance
+        denoise = self.denoiser(mel, frames, guidance)
         where = self.motion_scaler.mean.new_empty(len(mel), frames, self.config.D)
         x_S = draw(where, generator) if start is None else start.to(self.device)
         x0 = sampled(denoise, x_S, self.schedule, steps, eta, generator)

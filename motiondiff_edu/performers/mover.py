@@ -15,7 +15,7 @@ from jaxtyping import Float
 from torch import Tensor, nn
 
 from ..beyond import timeline
-from ..beyond.classifier_free import guided_by_text
+from ..beyond.classifier_free import guided_by_condition
 from ..conditions.clip import Clip, check
 from ..conditions.text import Read
 from ..conditions.word_encoder import WordReader
@@ -134,7 +134,7 @@ class Mover(Performer):
         conditional, *nothing = (
             denoiser_of(network(context), self.schedule, self.config.target) for context in contexts
         )
-        return guided_by_text(conditional, nothing[0], guidance) if nothing else conditional
+        return guided_by_condition(conditional, nothing[0], guidance) if nothing else conditional
 
     @property
     def can_plan(self) -> bool:

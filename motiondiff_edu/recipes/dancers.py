@@ -6,11 +6,12 @@ Notebook: 13
 
 from dataclasses import dataclass, replace
 
-from ..baselines.regression import REGRESSION
 from ..baselines.transformer import TransformerConfig
 from ..kinematic_loss import KinematicWeights
 from ..mofusion import MOFUSION_FULL, MOFUSION_SMALL, MoFusionConfig
+from ..performers.hearing_mofusion import HearingConfig, HearingTransformerConfig
 from ..performers.keyframe_mofusion import KeyframeConfig
+from .ear import EAR, EarRecipe
 
 KINEMATIC = KinematicWeights(
     skeleton=400.0, asymmetry=5.0, motion=0.0, slide=0.3, over_time="alpha_bar"
@@ -74,18 +75,54 @@ class KeyframeRecipe(DanceRecipe):
     stages: float = 0.0  # share of all motions that are higher than the floor, by up to a metre
 
 
+@dataclass(frozen=True)
+class SongRecipe(DanceRecipe):
+    """A training run on songs like real ones, with an ear that is trained first.
+
+    Raises ValueError for a regression that is to dance without music, too (it has one dance only),
+    and for an ear of other sizes than the network's.
+    """
+
+    no_music: float = 0.0  # share of the music left out: `beyond.classifier_free`
+    ear: EarRecipe = EAR
+
+    def __post_init__(self):
+        if self.no_music and getattr(self.config, "deterministic", False):
+            raise ValueError("no_music: a regression cannot be guided, so it always has its music")
+        if self.ear.config != self.config.ear:
+            raise ValueError(
+                f"ear: the network is made for {self.config.ear}, not {self.ear.config}"
+            )
+
+
 X0 = replace(MOFUSION_SMALL, target="x0", skip=False)
+HEARING = HearingConfig(target="x0", skip=False)
 OURS = DanceLossWeights(changes=5.0, toes=0.2)
-DANCER_PLAIN = DanceRecipe(
-    "dancer-plain", X0, steps=10_000, loss_weights=OURS, gain_noise=0.3, snr=0.1
+DANCER_PLAIN = SongRecipe(
+    "dancer-plain", HEARING, steps=10_000, loss_weights=OURS, gain_noise=0.3, snr=0.1, no_music=0.15
 )
 DANCER = replace(DANCER_PLAIN, name="dancer", kinematic=KINEMATIC)
-REGRESSED = DanceRecipe("regression", REGRESSION, steps=3000, gain_noise=0.3, snr=0.1)
-FULL = replace(MOFUSION_FULL, target="x0", skip=False)  # never trained: it needs a GPU
+REGRESSED = SongRecipe(
+    "regression",
+    HearingTransformerConfig(deterministic=True),
+    steps=3000,
+    gain_noise=0.3,
+    snr=0.1,
+)
+# never trained: it needs a GPU
+FULL = replace(HEARING, widths=MOFUSION_FULL.widths, heads=MOFUSION_FULL.heads)
 DANCER_FULL = replace(DANCER, name="dancer-full", config=FULL, steps=200_000, batch=64)
 
-UNCONDITIONAL = replace(
-    DANCER, name="unconditional", config=replace(X0, C=0), steps=6000, songs=0, motions=3000
+UNCONDITIONAL = DanceRecipe(
+    "unconditional",
+    replace(X0, C=0),
+    steps=6000,
+    kinematic=KINEMATIC,
+    loss_weights=OURS,
+    gain_noise=0.3,
+    snr=0.1,
+    songs=0,
+    motions=3000,
 )
 
 INBETWEENS = KeyframeRecipe(

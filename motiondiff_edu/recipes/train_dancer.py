@@ -3,7 +3,7 @@
 The loss is MoFusion's with the departures of the recipe. A killed run continues from its last save.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import replace
 from functools import lru_cache, partial
 from pathlib import Path
@@ -14,6 +14,7 @@ from torch import Tensor, nn
 
 from .._files import digest_of_tensors
 from ..baselines.regression import regression_loss
+from ..beyond.classifier_free import without
 from ..beyond.gain_noise import gain_noise
 from ..beyond.schedules import shifted
 from ..conditions.music import log_mel
@@ -23,12 +24,15 @@ from ..motion.scaler import Scaler
 from ..motion.skeleton import HIPS
 from ..performers.dance_windows import DanceWindows, toes_moved
 from ..performers.dancer import Dancer
+from ..performers.ear import Ear
 from ..performers.networks import network
 from ..training import LossFn
-from .dancers import DanceRecipe, KeyframeRecipe
+from .dancers import DanceRecipe, KeyframeRecipe, SongRecipe
+from .ear import train_ear
 from .keyframe_loss import keyframe_loss_of
 from .mofusion_loss import batch_loss, weighted_loss
 from .recordings import CREDIT, Recorded, training_recordings
+from .songs import training_songs
 from .train_recipe import Provenance, train_recipe
 
 
@@ -39,6 +43,10 @@ def training_windows(recipe: DanceRecipe) -> DanceWindows:
     """
     if isinstance(recipe, KeyframeRecipe):
         return with_path_scale(_keyframe_windows(data_of(recipe)), recipe.path_scale)
+    if isinstance(recipe, SongRecipe):
+        return _recorded_song_windows(
+            recipe.songs, recipe.data_seed, recipe.seconds, recipe.dances, recipe.frames
+        )
     if recipe.motions:
         return _motion_windows(recipe.motions, recipe.data_seed, recipe.seconds, recipe.frames)
     return _song_windows(
@@ -50,15 +58,30 @@ def training_windows(recipe: DanceRecipe) -> DanceWindows:
 def _song_windows(songs: int, seed: int, seconds: float, each: int, frames: int) -> DanceWindows:
     from data_synth.dancing import dances  # here, because data_synth imports this package
 
+    return windows_of(dances(songs, seed, seconds, each=each), frames)
+
+
+@lru_cache(maxsize=1)
+def _recorded_song_windows(
+    songs: int, seed: int, seconds: float, each: int, frames: int
+) -> DanceWindows:
+    from data_synth.dancing.performance import DANCES_A_SEED, dances_to
+
+    made = training_songs(songs, seed, seconds)
+    return windows_of(dances_to(made, seed * DANCES_A_SEED, each), frames)
+
+
+def windows_of(danced: Iterable, frames: int) -> DanceWindows:
+    """Windows of pairs of a song and a dance; dances to one song follow one another."""
     positions = []
     contacts = []
     mels = []
     last_song = None
-    for song, danced in dances(songs, seed, seconds, each=each):
+    for song, one in danced:
         if song is not last_song:
             last_song, mel = song, log_mel(torch.from_numpy(song.audio).float())
-        positions.append(danced.positions)
-        contacts.append(danced.contacts)
+        positions.append(one.positions)
+        contacts.append(one.contacts)
         mels.append(mel)
     return DanceWindows.of(positions, contacts, mels, frames)
 
@@ -145,7 +168,10 @@ def train_dancer(
     torch.manual_seed(recipe.seed)
     model = network(config)
     about = {"network": type(model).__name__, "data": digest(windows)}
-    made_of = "mixed" if recipe.motions else "music and data_synth.dancing"
+    if isinstance(recipe, SongRecipe):
+        model.ear.load_state_dict(ear_of(recipe, run_file, log).state_dict())
+        about["ear"] = digest_of_tensors(model.ear.state_dict())[:16]
+    made_of = "mixed" if recipe.motions else "music.varied and data_synth.dancing"
     source = f"data_synth.{made_of}, synthetic"
     if getattr(recipe, "recordings", 0):
         source = f"data_synth.{made_of} and recordings. {CREDIT}"
@@ -159,6 +185,15 @@ def train_dancer(
         log=log,
     )
     return Dancer(trained, schedule, windows.motion_scaler, windows.mel_scaler, card)
+
+
+def ear_of(recipe: SongRecipe, run_file: Path, log=print) -> Ear:
+    """The recipe's ear, trained first if that was not done; its run lies beside `run_file`.
+
+    Dancers with the same ear and folder share it.
+    """
+    made_of = digest_of_tensors({"recipe": torch.tensor(list(repr(recipe.ear).encode()))})
+    return train_ear(recipe.ear, run_file.with_name(f"ear-{made_of[:8]}.run.safetensors"), log=log)
 
 
 def schedule_of(recipe: DanceRecipe) -> Schedule:
@@ -181,6 +216,9 @@ def loss_of(recipe: DanceRecipe, windows: DanceWindows, schedule: Schedule) -> L
         device = next(model.parameters()).device
         x0, mel, planted = (part.to(device) for part in drawn(recipe, windows, generator))
         music = model.listen(mel, windows.mel_times.to(device)) if model.config.C else None
+        if share := getattr(recipe, "no_music", 0):
+            left_out = torch.rand(len(mel), generator=generator) < share
+            music = without(music, left_out.to(device))
         return of_batch(model, x0, music, planted, generator)
 
     return loss_fn

@@ -3,7 +3,7 @@
 import pytest
 import torch
 
-from motiondiff_edu.beyond.classifier_free import guided_by_text
+from motiondiff_edu.beyond.classifier_free import guided_by_condition
 from motiondiff_edu.ddpm import cosine_schedule, ddim_steps, final
 from motiondiff_edu.exact import exact_denoiser, mixture
 
@@ -19,18 +19,18 @@ def denoisers():
 
 def test_one_is_the_conditional_itself_and_nought_the_unconditional():
     conditional, unconditional = denoisers()
-    assert guided_by_text(conditional, unconditional, 1) is conditional
+    assert guided_by_condition(conditional, unconditional, 1) is conditional
     x, s = torch.linspace(-2, 2, 9)[:, None], torch.full((9,), 30)
     torch.testing.assert_close(
-        guided_by_text(conditional, unconditional, 0)(x, s), unconditional(x, s)
+        guided_by_condition(conditional, unconditional, 0)(x, s), unconditional(x, s)
     )
     wanted = 3 * conditional(x, s) - 2 * unconditional(x, s)
-    torch.testing.assert_close(guided_by_text(conditional, unconditional, 3)(x, s), wanted)
+    torch.testing.assert_close(guided_by_condition(conditional, unconditional, 3)(x, s), wanted)
 
 
 def sampled(w: float) -> torch.Tensor:
     start = torch.randn(4000, 1, generator=torch.Generator().manual_seed(1))
-    loop = ddim_steps(guided_by_text(*denoisers(), w), start, SCHEDULE, steps=100)
+    loop = ddim_steps(guided_by_condition(*denoisers(), w), start, SCHEDULE, steps=100)
     return final(loop).x_s
 
 

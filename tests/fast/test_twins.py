@@ -40,7 +40,7 @@ def ask(who, fast: bool) -> torch.Tensor:
         past, control = (torch.randn(B, n, d, generator=draw) for n, d in ((T_H, 63), (7, 3)))
         denoise, frames = who.denoiser(past, control, fast), T_P
     else:
-        denoise = who.denoiser(torch.randn(B, 40, 5, generator=draw), 20, fast)
+        denoise = who.denoiser(torch.randn(B, 40, 5, generator=draw), 20, fast=fast)
         frames = 20
     x_s, s = torch.randn(B, frames, 63, generator=draw), torch.tensor([3, 5])
     with torch.no_grad():

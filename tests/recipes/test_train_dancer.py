@@ -11,17 +11,24 @@ import torch
 
 from motiondiff_edu.beyond.schedules import shifted
 from motiondiff_edu.ddpm import cosine_schedule
+from motiondiff_edu.performers.ear import EarConfig
 from motiondiff_edu.performers.networks import network
 from motiondiff_edu.pretrained.checkpoints import load_dancer
 from motiondiff_edu.recipes import __main__ as command
 from motiondiff_edu.recipes.dancers import DANCE_RECIPES, DANCER, DANCER_PLAIN, REGRESSED
+from motiondiff_edu.recipes.ear import EarRecipe, train_ear
 from motiondiff_edu.recipes.train_dancer import loss_of, schedule_of, train_dancer, training_windows
 
 SIZES = {"steps": 6, "songs": 2, "seconds": 8.0, "batch": 3, "save_every": 2, "frames": 40}
+SMALL_EAR = {"ear_width": 16, "ear_blocks": 1}
+EARS = EarRecipe(
+    config=EarConfig(width=16, blocks=1), steps=4, frames=(40, 60), batch=2, songs=2, seconds=8.0
+)
 TINY = replace(
     DANCER,
     name="tiny",
-    config=replace(DANCER.config, widths=(16, 24), music_layers=1, S=20),
+    config=replace(DANCER.config, widths=(16, 24), music_layers=1, S=20, **SMALL_EAR),
+    ear=EARS,
     **SIZES,
 )
 
@@ -84,7 +91,7 @@ def test_what_a_recipe_says_reaches_the_training(windows, tmp_path: Path):
             model, torch.Generator().manual_seed(0)
         ).item()
 
-    plain = {"kinematic": None, "gain_noise": 0.0, "snr": 1.0, "batch": 2}
+    plain = {"kinematic": None, "gain_noise": 0.0, "snr": 1.0, "batch": 2, "no_music": 0.9}
     for name, value in plain.items():
         assert loss(**{name: value}) != loss(), name
     for name, value in {"high_noise": 2.0, "changes": 0.0, "toes": 0.0}.items():
@@ -92,10 +99,34 @@ def test_what_a_recipe_says_reaches_the_training(windows, tmp_path: Path):
         assert loss(loss_weights=weights) != loss(), name
 
 
+def test_the_ear_is_that_of_its_own_training(windows, tmp_path: Path):
+    said = []
+    trained = train_dancer(TINY, tmp_path / "one.safetensors", windows, log=said.append)
+    (run,) = tmp_path.glob("ear-*.run.safetensors")
+    ear = train_ear(TINY.ear, run, log=lambda line: None)  # trained already: only read
+    for a, b in zip(trained.model.ear.parameters(), ear.parameters(), strict=True):
+        torch.testing.assert_close(a, b, rtol=0, atol=1e-6)  # an average of equal weights
+    train_dancer(replace(TINY, name="two"), tmp_path / "two.safetensors", windows, log=said.append)
+    assert len(list(tmp_path.glob("ear-*"))) == 1
+    train_dancer(
+        replace(TINY, ear=replace(TINY.ear, seed=1)),
+        tmp_path / "three.safetensors", windows, log=said.append,
+    )  # fmt: skip
+    assert len(list(tmp_path.glob("ear-*"))) == 2
+
+
+def test_recipes_that_cannot_be_trained_are_refused():
+    with pytest.raises(ValueError, match="regression cannot be guided"):
+        replace(REGRESSED, no_music=0.1)
+    with pytest.raises(ValueError, match="the network is made for"):
+        replace(TINY, ear=replace(EARS, config=EarConfig()))
+
+
 def test_the_command_trains_a_recipe_into_a_file(monkeypatch, tmp_path: Path, capsys):
     small = replace(
         REGRESSED,
-        config=replace(REGRESSED.config, width=16, heads=2, layers=1, music_layers=1),
+        config=replace(REGRESSED.config, width=16, heads=2, layers=1, music_layers=1, **SMALL_EAR),
+        ear=EARS,
         **SIZES,
     )
     monkeypatch.setitem(command.DANCE_RECIPES, "regression", small)

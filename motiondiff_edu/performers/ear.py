@@ -1,0 +1,129 @@
+"""An ear: from a song's Mel frames to tokens that know the beat, the bar and the genre.
+
+    Mel -> MusicEncoder -> [attention between tokens] x blocks -> tokens -> what they say
+
+The encoder sees a second to either side. Attention between tokens lets the whole piece agree on one
+tempo and one count. Its training is `recipes/ear.py`; dancers then keep it as it is.
+Ours; see `beyond.hearing`.  Notebook: 12
+"""
+
+from dataclasses import asdict, dataclass
+
+import torch
+from jaxtyping import Bool, Float
+from torch import Tensor, nn
+
+from ..cross_modal_attention import angles_of
+from ..mofusion import CrossAttentionBlock, MusicEncoder
+
+GENRES = ("house", "hiphop", "pop", "latin", "waltz")  # in the order of `Said.genre`
+LONGEST = 512  # tokens (33 s) that all see each other; a longer piece is heard in parts
+BESIDE = 128  # tokens (8 s) to either side that a part of LONGEST / 2 tokens sees, too
+
+
+@dataclass(frozen=True)
+class EarConfig:
+    """Sizes of an ear; `slowest` and `fastest` are those of its position code, in Hz."""
+
+    C: int = 80
+    width: int = 96
+    heads: int = 4
+    music_layers: int = 4
+    blocks: int = 4
+    slowest: float = 0.05
+    fastest: float = 8.0
+    target: str = "beats"
+
+    def __post_init__(self):
+        """Raise ValueError for impossible sizes."""
+        if min(self.C, self.heads, self.blocks) < 1 or self.music_layers < 0:
+            raise ValueError("C, heads and blocks of an ear must be at least 1")
+        if self.width < 1 or self.width % (2 * self.heads):
+            raise ValueError(
+                f"the width must be a multiple of 2 x {self.heads} heads, not {self.width}"
+            )
+
+    def as_dict(self) -> dict:
+        return asdict(self)
+
+
+@dataclass(frozen=True, eq=False)
+class Said:
+    """What an ear says of each token: cosine and sine of places, and logits."""
+
+    beat: Float[Tensor, "B M 2"]
+    bar: Float[Tensor, "B M 2"]
+    sounds: Float[Tensor, "B M"]  # whether there is a beat
+    genre: Float[Tensor, "B M G"]
+
+
+class Ear(nn.Module):
+    """Tokens of a piece of music, 15.6 a second, and what they say."""
+
+    def __init__(self, config: EarConfig = EarConfig()):
+        super().__init__()
+        self.config = config
+        width = config.width
+        self.music = MusicEncoder(config.C, width, config.music_layers)
+        self.blocks = nn.ModuleList(
+            CrossAttentionBlock(width, config.heads, width) for _ in range(config.blocks)
+        )
+        self.norm = nn.LayerNorm(width)
+        self.say = nn.Linear(width, 2 + 2 + 1 + len(GENRES))
+
+    @property
+    def stride(self) -> int:
+        """How many Mel frames a token stands for."""
+        return 2 if self.config.music_layers else 1
+
+    def forward(
+        self,
+        mel: Float[Tensor, "B M C"],
+        times: Float[Tensor, "M"],
+        mask: Bool[Tensor, "B M"] | None = None,
+    ) -> Float[Tensor, "B M2 W"]:
+        """Tokens of standardised Mel frames at these times (seconds).
+
+        mask  True where there is music, for pieces of several lengths in one batch
+        """
+        present = mel.new_ones(1, mel.shape[1], 1) if mask is None else mask[..., None].to(mel)
+        tokens = self.music(mel, present)
+        seen = None if mask is None else mask[:, :: self.stride]
+        config = self.config
+        angles = angles_of(
+            times[:: self.stride], config.width // config.heads, config.slowest, config.fastest
+        )
+        for block in self.blocks:
+            tokens = in_parts(block, tokens, angles, seen)
+        return self.norm(tokens)
+
+    def says(self, tokens: Float[Tensor, "B M W"]) -> Said:
+        """What tokens of `forward` say."""
+        beat, bar, sounds, genre = self.say(tokens).split([2, 2, 1, len(GENRES)], -1)
+        return Said(beat, bar, sounds[..., 0], genre)
+
+
+def in_parts(
+    block: CrossAttentionBlock,
+    tokens: Float[Tensor, "B M W"],
+    angles: Float[Tensor, "M w"],
+    seen: Bool[Tensor, "B M"] | None,
+) -> Float[Tensor, "B M W"]:
+    """A block of attention between tokens; in a long piece each part sees its neighbours alone.
+
+    So memory grows with the length of the piece, and not with its square.
+    """
+    M = tokens.shape[1]
+    size = M if M <= LONGEST else LONGEST // 2
+    beside = 0 if size == M else BESIDE
+    made = []
+    for first in range(0, M, size):
+        own = slice(first, first + size)
+        around = slice(max(0, first - beside), first + size + beside)
+        bias = None
+        if seen is not None and not bool(seen.all()):
+            count = tokens[:, own].shape[1]
+            bias = torch.where(seen[:, None, None, around], 0.0, -1e4).expand(-1, -1, count, -1)
+        context = block.norm(tokens[:, around])
+        made.append(block(tokens[:, own], context, bias, (angles[own], angles[around])))
+    return torch.cat(made, 1)

@@ -1,0 +1,87 @@
+"""Networks that hear with an ear: MoFusion, and the transformer of the regression.
+
+Their music is that of their own encoder, plus a linear layer of the ear's tokens. The ear does not
+change while they learn to dance.
+Ours; see `beyond.hearing`.  Notebook: 12
+"""
+
+from dataclasses import dataclass, replace
+
+import torch
+from jaxtyping import Bool, Float
+from torch import Tensor, nn
+
+from ..baselines.transformer import DanceTransformer, TransformerConfig
+from ..fast.mofusion import FastMoFusion
+from ..mofusion import MoFusion, MoFusionConfig, Music
+from .ear import Ear, EarConfig
+from .networks import register
+
+
+class EarSizes:
+    """The ear that belongs to a network's configuration."""
+
+    C: int
+    ear_width: int
+    ear_blocks: int
+
+    @property
+    def ear(self) -> EarConfig:
+        return EarConfig(C=self.C, width=self.ear_width, blocks=self.ear_blocks)
+
+
+@dataclass(frozen=True)
+class HearingConfig(EarSizes, MoFusionConfig):
+    """MoFusion's sizes, and those of its ear."""
+
+    ear_width: int = 96
+    ear_blocks: int = 4
+
+
+@dataclass(frozen=True)
+class HearingTransformerConfig(EarSizes, TransformerConfig):
+    """The transformer's sizes, and those of its ear."""
+
+    ear_width: int = 96
+    ear_blocks: int = 4
+
+
+class WithEar:
+    """What both networks add to `listen`."""
+
+    def with_ear(self, config: EarConfig, width: int) -> None:
+        """Make a new ear, whose tokens change nothing yet."""
+        self.ear = Ear(config).requires_grad_(False)
+        self.heard = nn.Linear(config.width, width)
+
+    def listen(
+        self,
+        mel: Float[Tensor, "B M C"],
+        times: Float[Tensor, "M"],
+        mask: Bool[Tensor, "B M"] | None = None,
+    ) -> Music:
+        """The context of a piece of music, as in MoFusion.listen."""
+        music = super().listen(mel, times, mask)
+        with torch.no_grad():
+            tokens = self.ear(mel, times, mask)
+        return replace(music, tokens=music.tokens + self.heard(tokens))
+
+
+class HearingMoFusion(WithEar, MoFusion):
+    """MoFusion with an ear."""
+
+    def __init__(self, config: HearingConfig):
+        super().__init__(config)
+        self.with_ear(config.ear, self.music.project.out_features)
+
+
+class HearingTransformer(WithEar, DanceTransformer):
+    """The transformer of `baselines.transformer` with an ear."""
+
+    def __init__(self, config: HearingTransformerConfig):
+        super().__init__(config)
+        self.with_ear(config.ear, config.width)
+
+
+register("dancer", HearingMoFusion, HearingConfig, fast=FastMoFusion)
+register("dancer", HearingTransformer, HearingTransformerConfig)
