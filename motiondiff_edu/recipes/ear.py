@@ -29,7 +29,7 @@ class EarRecipe:
     name: str = "ear"
     config: EarConfig = EarConfig()
     steps: int = 10_000
-    frames: tuple[int, ...] = (160, 320)  # Mel frames of a piece; one of these for each batch
+    frames: tuple[int, ...] = (128, 160, 224)  # Mel frames of a piece; one of these for each batch
     gain_noise: float = 0.3  # `beyond.gain_noise`
     lr: float = 2e-3
     optimizer: str = "muon"

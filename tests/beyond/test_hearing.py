@@ -48,7 +48,7 @@ def test_a_real_score_is_on_its_downbeats_and_never_goes_back():
 def test_circles():
     count = torch.tensor([[[0.0, 0.25], [3.5, 1.5], [math.nan, math.nan]]])
     wanted = torch.tensor([[[1.0, 0, 0, 1], [-1, 0, -1, 0], [0, 0, 0, 0]]])
-    torch.testing.assert_close(on_circles(count), wanted, atol=1e-6, rtol=0)
+    torch.testing.assert_close(on_circles(count), wanted, atol=1e-5, rtol=0)
 
 
 def test_no_song_is_heard_at_tempi_that_are_kept_out():
@@ -57,9 +57,10 @@ def test_no_song_is_heard_at_tempi_that_are_kept_out():
     assert (faster <= 1.33).all() and (faster >= 1 / 1.33).all()
     changed = faster != 1
     assert changed.float().mean() > 0.8 and (faster[changed] > 1.2).float().mean() > 0.1
-    heard = (faster * tempi)[changed, None] * torch.tensor([1 - WANDER, 1 + WANDER])
+    # beats get longer and shorter by so much
+    heard = (faster * tempi)[changed, None] / torch.tensor([1 + WANDER, 1 - WANDER])
     for low, high in HELD_OUT_TEMPI:
-        assert not ((low < heard[:, 1]) & (heard[:, 0] < high)).any()
+        assert not ((low + 1e-3 < heard[:, 1]) & (heard[:, 0] < high - 1e-3)).any()
 
 
 def test_rows_between():
