@@ -25,7 +25,7 @@ from torch.nn.functional import conv1d
 
 from .around_lines import Shown, frames_since
 
-SPAN = 20  # frames, a second; half of it explains less of a walk, whose legs go to and fro
+SPAN = 20  # frames, a second; with 10, sizes of motions differ a little more
 BLUR = 10.0  # frames, standard deviation of the average; with 20, sizes of single gaps differ more
 USUAL = 0.001  # weight of activity 1 beside what is given; a figure like stone has about 0.03
 USED_AT_MOST = 1.0  # in use: lively people of recordings would be moved too far
@@ -49,12 +49,12 @@ def activity(lines: Float[Tensor, "B T D"], known: Bool[Tensor, "B T D"]) -> Flo
     """
     ahead, behind = around(lines.shape[1], lines.device)
 
-    def in_a_second(sums: Float[Tensor, "B T D"]) -> Float[Tensor, "B T D"]:
+    def in_a_second(sums: Float[Tensor, "B T *D"]) -> Float[Tensor, "B T *D"]:
         return sums[:, ahead] - sums[:, behind]
 
     way = torch.maximum(in_a_second(lines).square(), in_a_second(walked(lines, known)))
     share = in_a_second(steps_between_given(known)) / SPAN
-    lively = (blurred(way.mean(-1)) + USUAL) / (blurred(share.mean(-1)) + USUAL)
+    lively = (blurred(way.mean(-1)) + USUAL) / (blurred(share) + USUAL)
     return lively.sqrt()[..., None]
 
 
@@ -76,11 +76,14 @@ def around(T: int, device: torch.device) -> tuple[Tensor, Tensor]:
     return (frames + SPAN // 2).clamp(max=T - 1), (frames - SPAN // 2).clamp(min=0)
 
 
-def steps_between_given(known: Bool[Tensor, "B T D"]) -> Float[Tensor, "B T D"]:
-    """How many steps up to each frame are between the first and the last given entry."""
+def steps_between_given(known: Bool[Tensor, "B T D"]) -> Float[Tensor, "B T"]:
+    """How many steps up to each frame are between the first and the last given entry of a column.
+
+    The mean over columns.
+    """
     since, until = known.cummax(1).values, known.flip(1).cummax(1).values.flip(1)
-    between = (since & until).float().cumsum(1)
-    return (between - 1).clamp(min=0)
+    between = (since[:, :-1] & until[:, 1:]).float().mean(-1)
+    return torch.cat([torch.zeros_like(between[:, :1]), between.cumsum(1)], 1)
 
 
 def blurred(values: Float[Tensor, "B T"]) -> Float[Tensor, "B T"]:
