@@ -129,10 +129,6 @@ def test_with_activity_calm_motions_get_a_smaller_scale_and_lively_ones_no_large
     )
 
 
-def test_the_shipped_network_or_one_of_a_file_without_the_field_has_none():
-    assert KeyframeConfig().activity is False
-
-
 def test_the_bar_counts_its_evaluations(dancer, monkeypatch):
     steps = []
     monkeypatch.setattr("motiondiff_edu.performers.with_bar.bar", lambda *_: _Counting(steps))
