@@ -13,7 +13,6 @@ from jaxtyping import Bool, Float
 from torch import Tensor
 
 from ..beyond.above_floor import feet_above_floor
-from ..beyond.around_lines import Shown
 from ..beyond.constant_bones import given_lengths, steady_bones
 from ..beyond.foot_lock import steady_feet
 from ..beyond.guidance import blended, guided
@@ -69,7 +68,7 @@ PAPER = Departures(blend=None, shown=False, guidance=0.0, bones=False, feet=Fals
 class AnyDancer(Protocol):
     """What `inbetween` needs of a dancer: schedule, units, and a denoiser for the music.
 
-    If it has `can_be_shown`, its `shown_denoiser` is used.
+    If it has `can_be_shown`, its `shown` and `shown_denoiser` are used.
     """
 
     schedule: Schedule
@@ -112,7 +111,7 @@ def inbetween(
     held, schedule = (given.expand(shape), columns.to(device).expand(shape)), dancer.schedule
     start, shown = draw(held[0], generator), None
     if departures.shown and getattr(dancer, "can_be_shown", False):
-        shown = Shown.of(*held)
+        shown = dancer.shown(*held)
         denoise = dancer.shown_denoiser(shown)
         held = torch.zeros(shape, device=device), held[1]
     else:

@@ -10,9 +10,10 @@ from pathlib import Path
 
 import numpy as np
 import torch
-from jaxtyping import Float
+from jaxtyping import Bool, Float
 from torch import Tensor, nn
 
+from ..beyond.activity import USED_AT_MOST
 from ..beyond.around_lines import Shown
 from ..beyond.classifier_free import guided_by_condition, without
 from ..beyond.guidance import with_guess
@@ -131,16 +132,27 @@ class Dancer(Performer):
         """Whether the network was made to see what is given of a motion (`shown_denoiser`)."""
         return isinstance(self.model, KeyframeMoFusion)
 
+    def shown(self, given: Float[Tensor, "B T D"], known: Bool[Tensor, "B T D"]) -> Shown:
+        """What such a network is shown of a standardised motion (`beyond.around_lines`).
+
+        Its `beyond.activity` is limited. Raises ValueError for a network that was not made for it.
+        """
+        self._must_see()
+        return self.model.shown(given, known, USED_AT_MOST)
+
     def shown_denoiser(self, shown: Shown) -> Denoiser:
         """`denoise(r_s, s) -> eps_hat` for remainders, of a network that is shown what is given.
 
         Raises ValueError for a network that was not made for it.
         """
+        self._must_see()
+        return self._as_eps(lambda r_s, s: self._evaluated(r_s, s, shown))
+
+    def _must_see(self) -> None:
         if not self.can_be_shown:
             raise ValueError(
                 f"{type(self.model).__name__} is not made to see what is given: use `denoiser`"
             )
-        return self._as_eps(lambda r_s, s: self._evaluated(r_s, s, shown))
 
     def _as_eps(self, network) -> Denoiser:
         denoise = denoiser_of(network, self.schedule, self.config.target)

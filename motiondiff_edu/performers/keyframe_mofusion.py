@@ -5,12 +5,14 @@ little changed, and details that a small network would smooth away stay.
 Source: MoFusion 3.3, Fig. 3; the further inputs after CondMDI (Cohan and others, 2024).
 """
 
+import math
 from dataclasses import dataclass, fields
 
 import torch
-from jaxtyping import Float, Int
+from jaxtyping import Bool, Float, Int
 from torch import Tensor, nn
 
+from ..beyond.activity import with_activity
 from ..beyond.around_lines import Shown
 from ..mofusion import MoFusion, MoFusionConfig
 from .networks import register
@@ -18,11 +20,16 @@ from .networks import register
 
 @dataclass(frozen=True)
 class KeyframeConfig(MoFusionConfig):
-    """The sizes of the network; `D` counts the columns of a motion, without the further inputs."""
+    """The sizes of the network; `D` counts the columns of a motion, without the further inputs.
+
+    `activity`: remainders are in units that grow with how much the figure moves
+    (`beyond.activity`).
+    """
 
     C: int = 0
     target: str = "v"
     skip: bool = False
+    activity: bool = False
 
     def inner(self) -> MoFusionConfig:
         """The configuration of the U-Net, whose input is x_s, lines, scale and mask."""
@@ -38,12 +45,22 @@ class KeyframeMoFusion(nn.Module):
         self.config = config
         self.unet = MoFusion(config.inner())
 
+    def shown(
+        self,
+        given: Float[Tensor, "B T D"],
+        known: Bool[Tensor, "B T D"],
+        activity_at_most: float = math.inf,
+    ) -> Shown:
+        """What this network is shown of a motion; unknown entries of `given` can be anything."""
+        plain = Shown.of(given, known)
+        return with_activity(plain, activity_at_most) if self.config.activity else plain
+
     def forward(
         self, r_s: Float[Tensor, "B T D"], s: Int[Tensor, "B"], shown: Shown | None = None
     ) -> Float[Tensor, "B T D"]:
         """Without `shown`, nothing is given, and r_s is the whole motion with its noise."""
         if shown is None:
-            shown = Shown.of(r_s, torch.zeros_like(r_s, dtype=torch.bool))
+            shown = self.shown(r_s, torch.zeros_like(r_s, dtype=torch.bool))
         inputs = [r_s, shown.lines, shown.scale, shown.known.to(r_s)]
         return self.unet(torch.cat(inputs, -1), s)[..., : self.config.D]
 

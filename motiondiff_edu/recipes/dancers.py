@@ -72,6 +72,7 @@ class KeyframeRecipe(DanceRecipe):
     variations: float = 0.0  # share with limbs turned; with pelvis moved; with another upper body
     path_scale: float = 0.3  # m: the unit of the pelvis' path (`train_dancer.with_path_scale`)
     sizes: float = 0.0  # bodies are so much larger or smaller, at most (share)
+    unvaried: float = 0.0  # share of the motions that stay as they were made
     stages: float = 0.0  # share of all motions that are higher than the floor, by up to a metre
 
 
@@ -127,7 +128,7 @@ UNCONDITIONAL = DanceRecipe(
 
 INBETWEENS = KeyframeRecipe(
     "inbetweens",
-    KeyframeConfig(),
+    KeyframeConfig(activity=True),
     steps=8000,
     kinematic=KINEMATIC,
     loss_weights=OURS,
@@ -139,6 +140,7 @@ INBETWEENS = KeyframeRecipe(
     levels=0.3,
     paces=0.5,
     variations=0.6,
+    unvaried=0.5,
     sizes=0.1,
     stages=0.2,
 )

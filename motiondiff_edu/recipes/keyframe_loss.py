@@ -43,7 +43,7 @@ def keyframe_loss_of(recipe: KeyframeRecipe, windows: DanceWindows, schedule: Sc
         high = (chance(generator, len(motion)) < recipe.stages) & known.flatten(1).any(1)
         heights = high * chance(generator, len(motion))
         motion = as_seen(motion, known, sizes, heights, scaler).to(device)
-        shown = Shown.of(motion, known.repeat_interleave(3, dim=-1).to(device))
+        shown = model.shown(motion, known.repeat_interleave(3, dim=-1).to(device))
         squares = shown.scale.square()
         loss = weighted(data_loss, squares / squares.mean((1, 2), keepdim=True))
         of_batch = batch_loss(

@@ -116,7 +116,8 @@ def varied(recipe: KeyframeRecipe) -> Iterator[Recorded]:
     """Walks, dances, performed sentences and recordings, each in a variation that is drawn.
 
     Levels, upper body, pelvis, limbs, pace: in this order, so that feet stand where they stood and
-    a pace is that of the whole figure. The first version of a recording keeps its pace.
+    a pace is that of the whole figure. The first version of a recording keeps its pace. The share
+    `unvaried` of all stays as it was made.
     """
     from data_synth import levels, mixed, variations, warps
 
@@ -128,6 +129,9 @@ def varied(recipe: KeyframeRecipe) -> Iterator[Recorded]:
     recorded = training_recordings() if recipe.recordings else []
     every = [*made, *recorded * recipe.recordings]
     for k, (positions, contacts) in enumerate(every):
+        if np.random.default_rng([seed, 9, k]).uniform() < recipe.unvaried:
+            yield positions.astype(np.float32), contacts
+            continue
         rng = np.random.default_rng([seed, 8, k])
         if k < len(made) and rng.uniform() < recipe.levels:
             positions = levels.at_levels(positions, rng)

@@ -19,7 +19,7 @@ from motiondiff_edu.recipes.recordings import (
 )
 from motiondiff_edu.recipes.train_dancer import training_windows, varied
 
-PLAIN = {"recordings": 0, "levels": 0.0, "paces": 0.0, "variations": 0.0}
+PLAIN = {"recordings": 0, "levels": 0.0, "paces": 0.0, "variations": 0.0, "unvaried": 0.0}
 RECIPE = replace(INBETWEENS, motions=2, acts=1, seconds=6.0, **PLAIN)
 
 
@@ -62,6 +62,23 @@ def test_all_variations_together_and_data_that_trainings_share(folder):
     assert training_windows(replace(mixed, data_seed=2)).dances is not windows.dances
     for positions, contacts in varied(mixed):
         assert len(positions) == len(contacts) and np.isfinite(positions).all()
+
+
+def test_some_motions_stay_as_they_were_made(folder):
+    made = dict(levels=0.9, paces=0.9, variations=0.9, recordings=3)
+    plain = list(varied(replace(RECIPE, unvaried=1.0, recordings=3)))
+    every, some, none = (
+        list(varied(replace(RECIPE, motions=12, unvaried=share, **made)))
+        for share in (1.0, 0.5, 0.0)
+    )
+    same = [
+        len(one) == len(made) and np.array_equal(one, made)
+        for (one, _), (made, _) in zip(some, every, strict=True)
+    ]
+    assert 3 < sum(same) < 13, "about half of 16"
+    kept = [k for k, one in enumerate(same) if not one]
+    assert all(np.array_equal(some[k][0], none[k][0]) for k in kept), "others vary as before"
+    assert all(np.array_equal(one, plain[-1][0]) for one, _ in plain[-3:])
 
 
 def test_without_recordings_it_is_said_how_to_give_them(monkeypatch, tmp_path):

@@ -23,6 +23,10 @@ from .windows import RecordedSize
 VARIANTS: dict[str, tuple[str, dict]] = {
     "ours": ("the recipe", {}),
     "no-recordings": ("no recordings in training", {"recordings": 0}),
+    "no-activity": (
+        "scales do not know how much the figure moves (`beyond/activity.py`)",
+        {"config": replace(INBETWEENS.config, activity=False)},
+    ),
     "no-variations": (
         "no other limbs and levels, no stages; other paces for recordings alone",
         {"variations": 0.0, "levels": 0.0, "paces": 0.0, "stages": 0.0},
