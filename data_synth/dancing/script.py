@@ -79,6 +79,8 @@ class Script:
     )  # x, z, yaw
     landed: list = field(default_factory=lambda: [-9.0, -9.0])
     heading_at: float = -9.0
+    floor: list[tuple[float, float]] = field(default_factory=lambda: [(-2.0, 0.0)])
+    turned: float = 0.0  # radians by which the ways of the moves so far turned; see stage.py
 
     def enter(self, keys: dict[str, list[tuple[float, float]]]) -> None:
         """Add the keys of a move; later keys of older moves are removed."""

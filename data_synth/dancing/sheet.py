@@ -12,9 +12,11 @@ import numpy as np
 
 from ..walking.footsteps import TOE_AHEAD
 from .script import ARM, LENGTHS, STANCE, TURNS_SIGN, Script, Step
+from .stage import Way
 
 UNSCALED = ("weight", "look")
 ARRIVED = 0.62  # share of the weight that a foot has at the count it lands on
+TOES_AHEAD = 0.4  # counts: a foot lands as the body will face by then, so that it need not twist
 NEAREST, WIDEST = 0.13, 0.62  # metres between the toes when a step lands
 
 
@@ -69,10 +71,7 @@ class Sheet:
         self.rest = rest
         self.rng = rng
         self.keys: dict[str, list[tuple[float, float]]] = {}
-        self.drift = (
-            0.0,
-            0.0,
-        )  # metres to the dancer's left and ahead that each count travels besides
+        self.way = Way()  # over the stage, while the move goes on
 
     def key(self, name: str, *pairs: tuple[float, float]) -> None:
         """Key values of a channel: (count, value) ..."""
@@ -84,6 +83,7 @@ class Sheet:
         for count, value in pairs:
             uneven = 1.0 if name == "weight" else 1 + 0.09 * self.rng.standard_normal()
             entry = rest + scale * uneven * (turned * value - rest)
+            entry += self.way.sunk(count) if name == "drop" else 0.0
             self.keys.setdefault(name, []).append((self.start + count * self.rate, entry))
 
     def arms(self, count: float, left, right=None) -> None:
@@ -192,9 +192,10 @@ class Sheet:
         if flight.scaled:
             x = side * STANCE + self.stride * (x - side * STANCE)
             z = self.stride * z
-            x = x + self.sign * self.drift[0] * count
-            z = z + self.drift[1] * count
         px, pz, yaw = self.place(x, z, side * 7.0 if turn is None else turn)
+        if flight.scaled:
+            px, pz = self.way.moved(px, pz, count)
+        yaw += self.way.turned(count + TOES_AHEAD)
         land = self.start + (count - 0.04) * self.rate
         lift = max(land - max(flight.swing * self.rate, 0.3), self.script.landed[real] + 0.25)
         if land - lift < 0.26:
@@ -235,7 +236,8 @@ class Sheet:
         lift = max(at - half, self.script.landed[real] + 0.25)
         if at - lift < 0.2:
             return
-        s, c = sin(self.script.home[2]), cos(self.script.home[2])
+        facing = self.script.home[2] + self.way.turned(count)
+        s, c = sin(facing), cos(facing)
         x = self.sign * x
         out = self.size * (x * c + z * s), self.size * (z * c - x * s)
         self.script.steps[real].append(
@@ -270,7 +272,7 @@ class Sheet:
         if land - lift < 0.15:
             return
         x, z, _ = self.script.toes[real]
-        yaw = self.script.home[2] + self.sign * radians(turn)
+        yaw = self.script.home[2] + self.way.turned(count) + self.sign * radians(turn)
         self.script.steps[real].append(Step(lift, land, x, z, yaw, 0.0, pivot=True))
         self.script.toes[real], self.script.landed[real] = (x, z, yaw), land
 
@@ -295,7 +297,9 @@ class Sheet:
         px, pz, after = self.place(self.stride * x, self.stride * z, turn)
         if turn:
             keys = self.keys.setdefault("heading", [])
-            keys += [(max(began, self.script.heading_at + 0.07), heading), (end, after)]
+            base = self.script.turned  # the turn of the stage's plan is a curve of its own
+            began = max(began, self.script.heading_at + 0.07)
+            keys += [(began, heading - base), (end, after - base)]
             self.script.heading_at = end
         self.script.home = (px, pz, after)
 
@@ -315,3 +319,17 @@ class Sheet:
                     (max(last, first + 0.5), rest + wander[1]),
                 ]
         self.script.enter(self.keys)
+        self._follow_the_way()
+
+    def _follow_the_way(self) -> None:
+        """Home, and the floor of the moves that follow, are where the way of this one leads."""
+        script = self.script
+        x, z, heading = script.home
+        script.floor += [
+            (self.start + count * self.rate, script.turned + turn)
+            for count, turn in zip(self.way.counts, self.way.turn, strict=True)
+            if self.start + count * self.rate > script.floor[-1][0] + 1e-6
+        ]
+        total = self.way.turned(self.n)
+        script.home = (*self.way.moved(x, z, self.n), heading + total)
+        script.turned += total
