@@ -115,7 +115,7 @@ class Sheet:
         turn: float | None = None,
         height: float = 0.06,
         weight: bool = True,
-        swing: float = 0.74,
+        swing: float = 0.84,
     ) -> None:
         """Put a foot (0 left, 1 right) down at a count, its ankle at (x left, z ahead) of home.
 
