@@ -8,7 +8,7 @@ from jaxtyping import Float
 
 AHEAD = 0.35  # seconds by which the eyes are ahead of the pelvis
 FARTHEST = 50.0  # degrees that the head turns against the chest, comfortable for a neck
-CHEST = 0.4  # share of the head's turn that the chest takes over
+CHEST = 0.3  # share of the head's turn that the chest takes over
 
 
 def ahead_of_the_turn(

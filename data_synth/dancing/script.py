@@ -78,6 +78,7 @@ class Script:
         default_factory=lambda: [(STANCE, TOE_AHEAD, 0.12), (-STANCE, TOE_AHEAD, -0.12)]
     )  # x, z, yaw
     landed: list = field(default_factory=lambda: [-9.0, -9.0])
+    down: list = field(default_factory=lambda: [-9.0, -9.0])  # as landed, without pivots
     heading_at: float = -9.0
     floor: list[tuple[float, float]] = field(default_factory=lambda: [(-2.0, 0.0)])
     turned: float = 0.0  # radians by which the ways of the moves so far turned; see stage.py

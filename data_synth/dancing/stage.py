@@ -5,7 +5,7 @@ dancer uses the whole floor, and never wanders off it.
 """
 
 from dataclasses import dataclass, field
-from math import cos, hypot, pi, sin
+from math import hypot, pi, sin
 
 import numpy as np
 from jaxtyping import Float
@@ -34,11 +34,10 @@ class Stage:
 class Way:
     """The way of one move: over the stage and round, by count.
 
-    `travel` metres in the world and `turn` radians at the knots `counts`, about `centre`; `low` is
-    how far the body sinks half-way, in metres.
+    `travel` metres in the world, and `turn` radians at the knots `counts`; `low` is how far the
+    body sinks half-way, in metres.
     """
 
-    centre: tuple[float, float] = (0.0, 0.0)
     travel: tuple[float, float] = (0.0, 0.0)
     counts: tuple[float, ...] = (0.0, 1.0)
     turn: tuple[float, ...] = (0.0, 0.0)
@@ -52,15 +51,10 @@ class Way:
         """Radians to the left by a count; as at the end after it."""
         return float(self.round(min(max(count, 0.0), self.counts[-1])))
 
-    def moved(self, x: float, z: float, count: float) -> tuple[float, float]:
-        """Where a place on the floor of the move's beginning is at a count."""
+    def travelled(self, count: float) -> tuple[float, float]:
+        """Metres, along x and z of the world, by a count."""
         share = count / self.counts[-1]
-        s, c = sin(self.turned(count)), cos(self.turned(count))
-        dx, dz = x - self.centre[0], z - self.centre[1]
-        return (
-            self.centre[0] + self.travel[0] * share + dx * c + dz * s,
-            self.centre[1] + self.travel[1] * share - dx * s + dz * c,
-        )
+        return self.travel[0] * share, self.travel[1] * share
 
     def sunk(self, count: float) -> float:
         """Metres that the body is lower at a count: nothing at both ends, `low` in the middle."""
@@ -95,7 +89,6 @@ def way(
         turn += [turn[-1], turn[-1] + a_bar * (last - first) / metre]
         knots += [first + rest, last - rest]
     return Way(
-        (float(here[0]), float(here[1])),
         (float(far * gap[0]), float(far * gap[1])),
         (*knots, float(counts)),
         tuple(float(t) for t in (*turn, turn[-1])),

@@ -102,7 +102,7 @@ MANNERS: dict[str, Manner] = {
         0.045,
         {"drop": 0.02, "lean": 0.0, **_ROUND},
         roll=_SLOW,
-        stage=Stage(0.12, (45.0, 60.0, 90.0), 0.0, stays=0.75),
+        stage=Stage(0.06, (30.0, 45.0, 60.0), 0.0, stays=0.75),
         spots=True,
     ),
 }

@@ -218,7 +218,7 @@ def turn_out(p: Sheet) -> None:
         p.arms(k, BACK, GUARD)
         if k + 3 < p.n:
             half_round(p, k + 1)
-            p.arms(k + 1, (30, 60, 0, 60), (30, 60, 0, 60))
+            p.arms(k + 1, (30, 40, 10, 84), (30, 40, 10, 84))
             p.arms(k + 2, (40, 10, 44, 90), (40, 10, 44, 90))
             p.step(R, k + 3, -0.22, 0.06, turn=-20, height=0.12)
             p.arms(k + 3, GUARD, (80, 10, 6, 24))

@@ -239,8 +239,8 @@ def walk_through(p: Sheet) -> None:
             half_round(p, k + 1)
             p.step(R, k + 3, -0.10, 0.06, height=0.05)
             p.arms(k, (46, 24, 24, 80), (-10, 40, 20, 60))
-            p.arms(k + 1, (60, 40, 10, 50), (120, 34, 0, 40))
-            p.arms(k + 2, (20, 80, 0, 24), (150, 14, 0, 40))
+            p.arms(k + 1, (50, 14, 36, 90), (60, 12, 40, 84))
+            p.arms(k + 2, HIP, (110, 20, 10, 60))
             p.arms(k + 3, HIP, (30, 84, -6, 22))
         for j, s in enumerate((1, -1, 1, -1)):
             p.key("hip_roll", (k + j, 11 * s))
@@ -253,7 +253,7 @@ def travelling_turn(p: Sheet) -> None:
     """Once round on three steps to the side, one arm high; then a side step with the hips."""
     for k in range(0, p.n, 4):
         if k % 8 == 0 and k + 3 < p.n:
-            three_step(p, k, (60, 12, 40, 84), (26, 74, 0, 30))
+            three_step(p, k, (60, 12, 40, 92), (26, 56, 0, 44))
             p.key("hip_roll", (k, 8), (k + 1, -7), (k + 2, 8), (k + 3, -6))
             p.key("drop", (k, 0.07), (k + 1, 0.02), (k + 2, 0.03), (k + 3, 0.07))
             continue
