@@ -18,6 +18,7 @@ UNSCALED = ("weight", "look")
 ARRIVED = 0.74  # share of the weight that a foot has at the count it lands on
 TOES_AHEAD = 0.4  # counts: a foot lands as the body will face by then, so that it need not twist
 SHIFT = 0.12  # counts between the landing of one foot and the lift of the next
+TOUCHED = -0.5  # share of the weight on a foot that only touches: it stays over the other one
 NEAREST, WIDEST = 0.13, 0.62  # metres between the toes when a step lands
 
 
@@ -136,9 +137,29 @@ class Sheet:
         lift = self._put(foot, count, x, z, turn, flight)
         if lift is None:
             return
+        real = self.foot(foot)
+        if self.script.bore[0] == real:
+            self._free()
         self.key("weight", ((lift - self.start) / self.rate, -0.93 * side))
         if weight:  # the rest of it follows before the other foot lifts
             self.key("weight", (count + 0.06 / self.rate, ARRIVED * side))
+            self.script.bore = (real, self.keys["weight"][-1][0])
+
+    def _free(self) -> None:
+        """The foot that bears is to step again.
+
+        So the other foot takes the weight if it landed since; if it did not, the last step was a
+        touch, without the weight.
+        """
+        real, at = self.script.bore
+        landed = self.script.down[1 - real]
+        if landed > at:
+            keys = self.keys.setdefault("weight", [])
+            keys.append((landed + 0.1, -ARRIVED if real == 0 else ARRIVED))
+            return
+        touch = TOUCHED if real == 0 else -TOUCHED
+        for keys in (self.keys.get("weight", []), self.script.keys["weight"]):
+            keys[:] = [(beat, touch if beat == at else value) for beat, value in keys]
 
     def jump(
         self,
