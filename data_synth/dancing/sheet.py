@@ -19,7 +19,7 @@ ARRIVED = 0.74  # share of the weight that a foot has at the count it lands on
 TOES_AHEAD = 0.4  # counts: a foot lands as the body will face by then, so that it need not twist
 SHIFT = 0.12  # counts between the landing of one foot and the lift of the next
 TOUCHED = -0.5  # share of the weight on a foot that only touches: it stays over the other one
-NEAREST, WIDEST = 0.13, 0.62  # metres between the toes when a step lands
+NEAREST, WIDEST = 0.13, 0.56  # metres between the toes when a step lands
 
 
 @dataclass(frozen=True)
