@@ -196,7 +196,9 @@ def _person(name: str) -> tuple[float, float]:
     return (0.003, 0.008) if name in LENGTHS else (0.9, 3.0)
 
 
-def _foot(script: Script, foot: int, start: Toe, t, seconds, number, channels, roll: Roll, rng) -> Track:
+def _foot(
+    script: Script, foot: int, start: Toe, t, seconds, number, channels, roll: Roll, rng
+) -> Track:
     """One foot's steps at the dancer's own times, each with an error of some milliseconds."""
     steps = script.steps[foot]
     times = np.interp([(s.lift, s.land) for s in steps], number, seconds).reshape(-1, 2)

@@ -54,7 +54,7 @@ MANNERS: dict[str, Manner] = {
         0.012,
         {"drop": 0.04, "lean": 7.0, **_BENT},
         roll=_LIGHT,
-        stage=Stage(0.13, (45.0, 90.0, 90.0, 135.0), 0.10),
+        stage=Stage(0.13, (45.0, 90.0, 90.0, 135.0), 0.06),
         spots=True,
     ),
     "hiphop": Manner(
@@ -66,7 +66,7 @@ MANNERS: dict[str, Manner] = {
         0.012,
         {"drop": 0.05, "lean": 7.0},
         roll=_LIGHT,
-        stage=Stage(0.15, (45.0, 90.0, 90.0, 135.0), 0.12),
+        stage=Stage(0.15, (45.0, 90.0, 90.0, 135.0), 0.07),
         spots=True,
     ),
     "pop": Manner(
@@ -78,7 +78,7 @@ MANNERS: dict[str, Manner] = {
         0.03,
         {"drop": 0.025, "lean": 2.0},
         roll=_LIGHT,
-        stage=Stage(0.14, (0.0, 45.0, 90.0, 90.0), 0.08),
+        stage=Stage(0.14, (0.0, 45.0, 90.0, 90.0), 0.05),
         spots=True,
     ),
     "latin": Manner(

@@ -234,7 +234,7 @@ def get_low(p: Sheet) -> None:
         lead, trail = (L, R) if s > 0 else (R, L)
         x = (0.30, -0.24, 0.22, -0.12)[phase] * s
         p.step((lead, trail)[phase % 2], k, x, (0.04, 0.0, -0.06, 0.0)[phase], turn=22 * np.sign(x))
-        p.key("drop", (k, (0.16, 0.30, 0.26, 0.02)[phase]))
+        p.key("drop", (k, (0.15, 0.23, 0.20, 0.02)[phase]))
         p.key("lean", (k, (20, 36, 28, -5)[phase]))
         p.key("nod", (k, (6, -14, -10, -6)[phase]))
         p.key("twist", (k, (14, -10, 18, -8)[phase] * s))

@@ -220,7 +220,7 @@ def loft(p: Sheet) -> None:
             p.step(lead, k, 0.26 * s, -0.16, turn=-10 * s)
         else:
             p.step(trail, k, -0.06 * s, 0.02, height=0.12)
-        p.key("drop", (k, (0.20, 0.26, 0.14, 0.02)[phase]))
+        p.key("drop", (k, (0.17, 0.20, 0.12, 0.02)[phase]))
         p.key("lean", (k, (26, 34, 18, -2)[phase]))
         p.key("side", (k, (-12, -4, 12, 4)[phase] * s))
         p.key("twist", (k, (20, -10, -24, 6)[phase] * s))
