@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from data_synth.dancing import dance
 from data_synth.dancing.acceptance import (
     FLOOR,
     OUTSIDE,
@@ -30,7 +31,6 @@ from data_synth.dancing.statistics import (
     travel,
     turn_8s,
 )
-from data_synth.dancing import dance
 from data_synth.music.score import beat_song
 from data_synth.music.song import GENRES
 from data_synth.walking.acceptance import table

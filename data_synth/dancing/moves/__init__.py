@@ -40,8 +40,10 @@ _ROUND = {
     for name, value in (("elbow", 40.0), ("swing", 22.0), ("out", 34.0))
 }
 
-# quick feet of club dances are on their balls; in a waltz the foot rolls slowly
+# quick feet of clubs are on their balls; in hip-hop and latin
+# dances they press into the floor, in a waltz they roll slowly (seconds and degrees were set by looking at pictures)
 _LIGHT = Roll(early=0.24, off=22.0, land=20.0, settle=0.20, pivot=16.0)
+_PRESSED = Roll(early=0.24, off=27.0, land=25.0, settle=0.20, pivot=16.0)
 _SLOW = Roll(early=0.34, off=24.0, land=20.0, settle=0.28, pivot=16.0)
 
 MANNERS: dict[str, Manner] = {
@@ -54,7 +56,7 @@ MANNERS: dict[str, Manner] = {
         0.012,
         {"drop": 0.04, "lean": 7.0, **_BENT},
         roll=_LIGHT,
-        stage=Stage(0.13, (45.0, 90.0, 90.0, 135.0), 0.06),
+        stage=Stage(0.15, (45.0, 90.0, 90.0, 135.0), 0.06),
         spots=True,
     ),
     "hiphop": Manner(
@@ -65,8 +67,8 @@ MANNERS: dict[str, Manner] = {
         4.5,
         0.012,
         {"drop": 0.05, "lean": 7.0},
-        roll=_LIGHT,
-        stage=Stage(0.15, (45.0, 90.0, 90.0, 135.0), 0.07),
+        roll=_PRESSED,
+        stage=Stage(0.18, (45.0, 90.0, 90.0, 135.0), 0.07),
         spots=True,
     ),
     "pop": Manner(
@@ -89,8 +91,8 @@ MANNERS: dict[str, Manner] = {
         4.0,
         0.03,
         {"drop": 0.03, "lean": 2.0, **_BENT},
-        roll=_LIGHT,
-        stage=Stage(0.13, (45.0, 90.0, 90.0, 135.0), 0.05),
+        roll=_PRESSED,
+        stage=Stage(0.15, (45.0, 90.0, 90.0, 135.0), 0.05),
         spots=True,
     ),
     "waltz": Manner(
