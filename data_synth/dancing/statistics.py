@@ -59,7 +59,7 @@ def looks_planted(world: Float[np.ndarray, "T 21 3"], fps: float) -> Bool[np.nda
 def standing_feet(world: Float[np.ndarray, "T 21 3"], fps: float = 20.0) -> float:
     """Share of time, meaned over both feet, in which a Foot joint is slower than STANDS.
 
-    Two AIST++ break dances have 0.05 and 0.1; a figure that stands has 1.
+    Two dances of CMU have 0.33 and 0.31; a figure that stands has 1.
     """
     foot = world[:, list(HEELS)]
     speed = np.linalg.norm(foot[2:] - foot[:-2], axis=-1) * fps / 2
@@ -78,8 +78,8 @@ def facing(world: Float[np.ndarray, "T 21 3"], fps: float) -> Float[np.ndarray, 
 def turn_8s(world: Float[np.ndarray, "T 21 3"], fps: float = 20.0) -> float:
     """Degrees between the leftmost and the rightmost facing within WINDOW seconds.
 
-    The mean over all windows; a motion that is shorter is one window. Two AIST++ dances have 143
-    and 1345.
+    The mean over all windows; a motion that is shorter is one window. Two dances of CMU have
+    1443 and 259.
     """
     heading = np.degrees(facing(world, fps))
     frames = min(round(WINDOW * fps), len(heading))
@@ -88,7 +88,10 @@ def turn_8s(world: Float[np.ndarray, "T 21 3"], fps: float = 20.0) -> float:
 
 
 def travel(world: Float[np.ndarray, "T 21 3"], fps: float = 20.0) -> float:
-    """Mean speed over the floor, in m/s, of the hips' path smoothed by STEADY seconds."""
+    """Mean speed over the floor, in m/s, of the hips' path smoothed by STEADY seconds.
+
+    Two dances of CMU have 0.46 and 0.53.
+    """
     path = gaussian_filter1d(world[:, 0, [0, 2]], STEADY * fps, axis=0, mode="nearest")
     return float(np.linalg.norm(np.diff(path, axis=0), axis=-1).mean() * fps)
 

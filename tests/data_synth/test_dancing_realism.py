@@ -200,6 +200,7 @@ def test_the_ruler_finds_real_dances_inside(real_data):
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
             row = statistics(load_clip(real_data / "bvh" / f"{name}.bvh").world()[cut:])
+        assert row["standing_feet"] < 0.4 and row["turn_8s"] > 120 and row["travel"] > 0.28, name
         for key, (low, high) in UPRIGHT.items():
             assert low - 0.1 * (high - low) <= row[key] <= high + 0.1 * (high - low), (
                 name,
