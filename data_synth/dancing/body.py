@@ -21,6 +21,7 @@ from .steps import Track
 STAND = 0.957  # height of the Hips joint over flat feet before `drop`
 # metres that the hips move away per unit of sine of the trunk's lean, so that the weight stays
 UPPER_SHARE = 0.17
+KNEE_TURNS = np.radians(50)  # of a knee against the pelvis, at most: about what a hip joint allows
 
 
 def dancer(
@@ -48,7 +49,8 @@ def dancer(
         joints[:, first] = hips + pelvis @ OFFSETS[first]
         joints[:, first + 2] = feet.ankle[:, side]
         joints[:, first + 3] = feet.toe[:, side]
-        facing = yaw + 0.5 * (feet.yaw[:, side] - yaw) + knee_out
+        turned = 0.5 * (feet.yaw[:, side] - yaw) + knee_out
+        facing = yaw + np.clip(turned, -KNEE_TURNS, KNEE_TURNS)
         joints[:, first + 1] = legs.bend_knee(
             joints[:, first],
             feet.ankle[:, side],

@@ -12,10 +12,10 @@ from ..walking.footsteps import TOE_AHEAD
 from .moves import MANNERS, Manner
 from .script import REST, Script
 from .sheet import Counts, Sheet
+from .stage import Way, way
 from .waiting import SILENT, wait
 
 CALM = 0.25  # energy below this is a break
-ROOM = 1.6  # metres from the start, beyond which the dancer comes back
 
 
 @dataclass(frozen=True)
@@ -97,6 +97,7 @@ def choreograph(
         script.keys[name].append((-2.0, value))
     script.keys["heading"].append((-2.0, 0.0))
     stride = float(rng.normal(1.0, 0.09))
+    before = Way()
     taste = rng.dirichlet(np.full(len(manner.moves), 2.5))
     for start, length in slots(song, rng):
         move = _draw(song, manner, start, length, moves, taste, rng)
@@ -112,7 +113,10 @@ def choreograph(
             rng,
         )
         _gather(sheet, script)
-        sheet.drift = _drift(script, count, rng)
+        if move.name != wait.__name__:
+            before = sheet.way = way(
+                manner.stage, script.home[:2], count, song.metre, before.turn[-1], move.size, rng
+            )
         next(f for f in (*manner.moves, *manner.calm, wait) if f.__name__ == move.name)(sheet)
         sheet.close()
     _end(script, rest, len(song.beats))
@@ -144,19 +148,6 @@ def _draw(song, manner: Manner, start, length, moves, taste, rng) -> Move:
             share[i] = 0.0
     name = pool[int(rng.choice(len(pool), p=share / share.sum()))].__name__
     return Move(start, length, name, bool(rng.random() < 0.5), rate, size)
-
-
-def _drift(script: Script, count: int, rng: np.random.Generator) -> tuple[float, float]:
-    """The travel during a move (metres per count, left and ahead).
-
-    It is random, but leads back when the dancer is far from the start.
-    """
-    x, z, heading = script.home
-    pull = min(np.hypot(x, z) / ROOM, 1.0)
-    dx, dz = rng.normal(0.0, 0.05, 2) * (1 - pull) - 0.6 * pull * np.array([x, z]) / max(count, 4)
-    s, c = np.sin(heading), np.cos(heading)
-    left, ahead = np.clip((dx * c - dz * s, dx * s + dz * c), -0.11, 0.11)
-    return float(left), float(ahead)
 
 
 def _gather(sheet: Sheet, script: Script) -> None:

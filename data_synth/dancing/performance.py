@@ -22,9 +22,10 @@ from ..walking.footsteps import TOE_AHEAD
 from .body import dancer
 from .choreography import choreograph
 from .curves import curve, felt_beats, springy, within_reach
+from .gaze import ahead_of_the_turn
 from .moves import MANNERS, Manner
 from .script import ARM, LENGTHS, REST, STANCE, Script
-from .steps import Track, track
+from .steps import Roll, Track, track
 from .waiting import counted_on
 
 DANCES_A_SEED = 100_000
@@ -146,8 +147,13 @@ def performed(
     early = np.interp(t + ARMS_LEAD * delay, seconds, number)
     channels = _channels(script, b, early, (seconds, number), manner, seed, rng)
     heading = curve(b, script.keys["heading"], hold=0.0, flow=0.8)
+    heading = heading + curve(b, script.floor, hold=0.0, flow=1.0)
+    if manner.spots:
+        head, chest = ahead_of_the_turn(heading, FPS)
+        channels["look"], channels["twist"] = channels["look"] + head, channels["twist"] + chest
     tracks = tuple(
-        _foot(script, foot, start[foot], t, seconds, number, channels, rng) for foot in (0, 1)
+        _foot(script, foot, start[foot], t, seconds, number, channels, manner.roll, rng)
+        for foot in (0, 1)
     )
     positions = dancer(channels, tracks, heading, manner.level)
     return positions, np.stack([k.planted for k in tracks], -1)
@@ -190,7 +196,9 @@ def _person(name: str) -> tuple[float, float]:
     return (0.003, 0.008) if name in LENGTHS else (0.9, 3.0)
 
 
-def _foot(script: Script, foot: int, start: Toe, t, seconds, number, channels, rng) -> Track:
+def _foot(
+    script: Script, foot: int, start: Toe, t, seconds, number, channels, roll: Roll, rng
+) -> Track:
     """One foot's steps at the dancer's own times, each with an error of some milliseconds."""
     steps = script.steps[foot]
     times = np.interp([(s.lift, s.land) for s in steps], number, seconds).reshape(-1, 2)
@@ -198,7 +206,7 @@ def _foot(script: Script, foot: int, start: Toe, t, seconds, number, channels, r
     flat = np.maximum.accumulate(times.ravel()).reshape(-1, 2)
     flat[:, 1] = np.maximum(flat[:, 1], flat[:, 0] + 0.06)
     heel = np.maximum(channels[f"{'lr'[foot]}_heel"], 0.0)
-    return track(steps, start, flat, t, heel)
+    return track(steps, start, flat, t, heel, roll)
 
 
 __all__ = ["Dance", "GENRES", "dance", "dances", "dances_to", "perform", "performed"]

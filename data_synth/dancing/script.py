@@ -78,7 +78,11 @@ class Script:
         default_factory=lambda: [(STANCE, TOE_AHEAD, 0.12), (-STANCE, TOE_AHEAD, -0.12)]
     )  # x, z, yaw
     landed: list = field(default_factory=lambda: [-9.0, -9.0])
+    down: list = field(default_factory=lambda: [-9.0, -9.0])  # as landed, without pivots
+    bore: tuple[int, float] = (-1, -9.0)  # the foot that took the weight last, and when (beat)
     heading_at: float = -9.0
+    floor: list[tuple[float, float]] = field(default_factory=lambda: [(-2.0, 0.0)])
+    turned: float = 0.0  # radians by which the ways of the moves so far turned; see stage.py
 
     def enter(self, keys: dict[str, list[tuple[float, float]]]) -> None:
         """Add the keys of a move; later keys of older moves are removed."""

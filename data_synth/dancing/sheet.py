@@ -12,10 +12,14 @@ import numpy as np
 
 from ..walking.footsteps import TOE_AHEAD
 from .script import ARM, LENGTHS, STANCE, TURNS_SIGN, Script, Step
+from .stage import Way
 
 UNSCALED = ("weight", "look")
-ARRIVED = 0.62  # share of the weight that a foot has at the count it lands on
-NEAREST, WIDEST = 0.13, 0.62  # metres between the toes when a step lands
+ARRIVED = 0.74  # share of the weight that a foot has at the count it lands on
+TOES_AHEAD = 0.4  # counts: a foot lands as the body will face by then, so that it need not twist
+SHIFT = 0.12  # counts between the landing of one foot and the lift of the next
+TOUCHED = -0.5  # share of the weight on a foot that only touches: it stays over the other one
+NEAREST, WIDEST = 0.13, 0.56  # metres between the toes when a step lands
 
 
 @dataclass(frozen=True)
@@ -32,13 +36,15 @@ class Counts:
 class Flight:
     """How a foot goes through the air: metres up, counts on the way, degrees the toe points down.
 
-    `scaled`: a long stride of the dancer's carries it farther.
+    `scaled`: a long stride of the dancer's carries it farther. `after`: it waits until the other
+    foot has landed.
     """
 
     height: float
     swing: float
     kick: float = 0.0
     scaled: bool = True
+    after: bool = False
 
 
 class Sheet:
@@ -69,10 +75,7 @@ class Sheet:
         self.rest = rest
         self.rng = rng
         self.keys: dict[str, list[tuple[float, float]]] = {}
-        self.drift = (
-            0.0,
-            0.0,
-        )  # metres to the dancer's left and ahead that each count travels besides
+        self.way = Way()  # over the stage, while the move goes on
 
     def key(self, name: str, *pairs: tuple[float, float]) -> None:
         """Key values of a channel: (count, value) ..."""
@@ -84,6 +87,7 @@ class Sheet:
         for count, value in pairs:
             uneven = 1.0 if name == "weight" else 1 + 0.09 * self.rng.standard_normal()
             entry = rest + scale * uneven * (turned * value - rest)
+            entry += self.way.sunk(count) if name == "drop" else 0.0
             self.keys.setdefault(name, []).append((self.start + count * self.rate, entry))
 
     def arms(self, count: float, left, right=None) -> None:
@@ -96,12 +100,18 @@ class Sheet:
             for name, value in zip(ARM, pose, strict=True):
                 self.key(f"{side}_{name}", (count, value))
 
-    def place(self, x: float, z: float, yaw: float) -> tuple[float, float, float]:
-        """From the move's own floor (left, ahead, degrees to the left) to the world's.
+    def home(self, count: float) -> tuple[float, float, float]:
+        """Where the move's own floor is at a count, on its way over the stage: x, z, heading."""
+        x, z, heading = self.script.home
+        dx, dz = self.way.travelled(count)
+        return x + dx, z + dz, heading + self.way.turned(count)
+
+    def place(self, x: float, z: float, yaw: float, count: float) -> tuple[float, float, float]:
+        """From the move's own floor (left, ahead, degrees to the left) at a count to the world's.
 
         x, z, yaw.
         """
-        hx, hz, heading = self.script.home
+        hx, hz, heading = self.home(count)
         x = self.sign * x
         s, c = sin(heading), cos(heading)
         return hx + x * c + z * s, hz - x * s + z * c, heading + self.sign * radians(yaw)
@@ -115,7 +125,7 @@ class Sheet:
         turn: float | None = None,
         height: float = 0.06,
         weight: bool = True,
-        swing: float = 0.74,
+        swing: float = 0.80,
     ) -> None:
         """Put a foot (0 left, 1 right) down at a count, its ankle at (x left, z ahead) of home.
 
@@ -123,12 +133,33 @@ class Sheet:
         `weight` is False.
         """
         side = 1 if foot == 0 else -1
-        lift = self._put(foot, count, x, z, turn, Flight(height, swing))
+        flight = Flight(height, swing, after=weight)
+        lift = self._put(foot, count, x, z, turn, flight)
         if lift is None:
             return
+        real = self.foot(foot)
+        if self.script.bore[0] == real:
+            self._free()
         self.key("weight", ((lift - self.start) / self.rate, -0.93 * side))
         if weight:  # the rest of it follows before the other foot lifts
             self.key("weight", (count + 0.06 / self.rate, ARRIVED * side))
+            self.script.bore = (real, self.keys["weight"][-1][0])
+
+    def _free(self) -> None:
+        """The foot that bears is to step again.
+
+        So the other foot takes the weight if it landed since; if it did not, the last step was a
+        touch, without the weight.
+        """
+        real, at = self.script.bore
+        landed = self.script.down[1 - real]
+        if landed > at:
+            keys = self.keys.setdefault("weight", [])
+            keys.append((landed + 0.1, -ARRIVED if real == 0 else ARRIVED))
+            return
+        touch = TOUCHED if real == 0 else -TOUCHED
+        for keys in (self.keys.get("weight", []), self.script.keys["weight"]):
+            keys[:] = [(beat, touch if beat == at else value) for beat, value in keys]
 
     def jump(
         self,
@@ -164,7 +195,7 @@ class Sheet:
         swing: float = 0.42,
     ) -> None:
         """The standing foot leaves the floor where it is and comes down again at a count."""
-        x, z = self.at(self.foot(foot))
+        x, z = self.at(self.foot(foot), count)
         flight = Flight(height, swing, 20.0, scaled=False)
         if self._put(foot, count, x, z, turn, flight) is not None:
             self.key("drop", (count - 0.5 * swing, 0.015 - 0.6 * height))
@@ -174,10 +205,10 @@ class Sheet:
                 (count, 0.93 if foot == 0 else -0.93),
             )
 
-    def at(self, real: int) -> tuple[float, float]:
-        """Where a foot of the dancer's has its ankle, on the move's own floor."""
+    def at(self, real: int, count: float = 0.0) -> tuple[float, float]:
+        """Where a foot of the dancer's has its ankle, on the move's own floor at a count."""
         x, z, yaw = self.script.toes[real]
-        hx, hz, heading = self.script.home
+        hx, hz, heading = self.home(count)
         dx = x - TOE_AHEAD * sin(yaw) - hx
         dz = z - TOE_AHEAD * cos(yaw) - hz
         s, c = sin(heading), cos(heading)
@@ -192,11 +223,12 @@ class Sheet:
         if flight.scaled:
             x = side * STANCE + self.stride * (x - side * STANCE)
             z = self.stride * z
-            x = x + self.sign * self.drift[0] * count
-            z = z + self.drift[1] * count
-        px, pz, yaw = self.place(x, z, side * 7.0 if turn is None else turn)
+        px, pz, yaw = self.place(x, z, side * 7.0 if turn is None else turn, count)
+        yaw += self.way.turned(count + TOES_AHEAD) - self.way.turned(count)
         land = self.start + (count - 0.04) * self.rate
         lift = max(land - max(flight.swing * self.rate, 0.3), self.script.landed[real] + 0.25)
+        if flight.after:
+            lift = max(lift, self.script.down[1 - real] + SHIFT * self.rate)
         if land - lift < 0.26:
             return None
         toe = self._spread(real, px + TOE_AHEAD * sin(yaw), pz + TOE_AHEAD * cos(yaw)) + (yaw,)
@@ -204,6 +236,7 @@ class Sheet:
         height = flight.height * (0.6 + 0.4 * self.size)
         self.script.steps[real].append(Step(lift, land, *toe, height, out, flight.kick))
         self.script.toes[real], self.script.landed[real] = toe, land
+        self.script.down[real] = land
         return lift
 
     def _spread(self, foot: int, x: float, z: float) -> tuple[float, float]:
@@ -235,7 +268,8 @@ class Sheet:
         lift = max(at - half, self.script.landed[real] + 0.25)
         if at - lift < 0.2:
             return
-        s, c = sin(self.script.home[2]), cos(self.script.home[2])
+        facing = self.home(count)[2]
+        s, c = sin(facing), cos(facing)
         x = self.sign * x
         out = self.size * (x * c + z * s), self.size * (z * c - x * s)
         self.script.steps[real].append(
@@ -270,7 +304,7 @@ class Sheet:
         if land - lift < 0.15:
             return
         x, z, _ = self.script.toes[real]
-        yaw = self.script.home[2] + self.sign * radians(turn)
+        yaw = self.home(count)[2] + self.sign * radians(turn)
         self.script.steps[real].append(Step(lift, land, x, z, yaw, 0.0, pivot=True))
         self.script.toes[real], self.script.landed[real] = (x, z, yaw), land
 
@@ -289,15 +323,19 @@ class Sheet:
 
         What follows is seen from there.
         """
-        hx, hz, heading = self.script.home
+        heading = self.script.home[2]
         end = self.start + count * self.rate
         began = self.start + (count - during) * self.rate
-        px, pz, after = self.place(self.stride * x, self.stride * z, turn)
+        px, pz, _ = self.place(self.stride * x, self.stride * z, 0.0, count)
+        dx, dz = self.way.travelled(count)
+        after = heading + self.sign * radians(turn)
         if turn:
             keys = self.keys.setdefault("heading", [])
-            keys += [(max(began, self.script.heading_at + 0.07), heading), (end, after)]
+            base = self.script.turned  # the turn of the stage's plan is a curve of its own
+            began = max(began, self.script.heading_at + 0.07)
+            keys += [(began, heading - base), (end, after - base)]
             self.script.heading_at = end
-        self.script.home = (px, pz, after)
+        self.script.home = (px - dx, pz - dz, after)
 
     def close(self) -> None:
         """Enter the move; a channel that it did not use goes back to rest."""
@@ -315,3 +353,15 @@ class Sheet:
                     (max(last, first + 0.5), rest + wander[1]),
                 ]
         self.script.enter(self.keys)
+        self._follow_the_way()
+
+    def _follow_the_way(self) -> None:
+        """Home, and the floor of the moves that follow, are where the way of this one leads."""
+        script = self.script
+        script.floor += [
+            (self.start + count * self.rate, script.turned + turn)
+            for count, turn in zip(self.way.counts, self.way.turn, strict=True)
+            if self.start + count * self.rate > script.floor[-1][0] + 1e-6
+        ]
+        script.home = self.home(self.n)
+        script.turned += self.way.turned(self.n)

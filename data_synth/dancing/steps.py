@@ -16,6 +16,21 @@ from .script import Step
 
 
 @dataclass(frozen=True)
+class Roll:
+    """How a foot rolls over its ball, before it leaves the floor and after it lands.
+
+    The heel begins to rise `early` seconds before the foot lifts, and is `off` degrees up then; it
+    lands `land` degrees up and is down `settle` seconds later. `pivot`: degrees up in a pivot.
+    """
+
+    early: float = 0.12
+    off: float = 0.0
+    land: float = 7.0
+    settle: float = 0.1
+    pivot: float = 7.0
+
+
+@dataclass(frozen=True)
 class Track:
     """One foot over time.
 
@@ -43,12 +58,13 @@ def track(
     times: Float[np.ndarray, "S 2"],
     t: Float[np.ndarray, "T"],
     heel: Float[np.ndarray, "T"],
+    roll: Roll = Roll(),
 ) -> Track:
     """A foot that stands at `start` (toe x, toe z, yaw) and takes `steps`.
 
     They last from times[:, 0] to times[:, 1] (seconds).
 
-    `heel` (degrees) is how far a move raises it while it stands.
+    `heel` (degrees) is how far a move raises it while it stands; `roll` how it leaves and lands.
     """
     x = np.full(len(t), start[0])
     y = np.zeros(len(t))
@@ -65,7 +81,7 @@ def track(
             path[last:] = goal
         far = np.hypot(step.x - start[0], step.z - start[1])
         start = (step.x, step.z, step.yaw)
-        pitch += _pitch(step, far, lift, land)
+        pitch += _pitch(step, far, lift, land, roll)
         if not step.pivot:
             planted[first:last] = False
             y[first:last] = step.height * 64 * (u * (1 - u)) ** 3
@@ -76,22 +92,25 @@ def track(
     return Track(toe, yaw, np.radians(degrees), planted, ground)
 
 
-def _pitch(step: Step, far: float, lift: float, land: float) -> list[tuple[float, float]]:
+def _pitch(
+    step: Step, far: float, lift: float, land: float, roll: Roll
+) -> list[tuple[float, float]]:
     """Degrees, heel up, at moments around one step.
 
     The heel leaves first, and the ball of the foot lands first.
     """
     if step.pivot:
-        return [(lift, 0.0), ((lift + land) / 2, 7.0), (land, 0.0)]
+        return [(lift, 0.0), ((lift + land) / 2, roll.pivot), (land, 0.0)]
     took = land - lift
     off = min(10 + 50 * far + 60 * step.height, 38)
     middle = step.kick if step.kick else 10 + 40 * step.height
     return [
-        (lift - 0.12, 0.0),
-        (lift + 0.12 * took, off),
+        (lift - roll.early, 0.0),
+        *([(lift, roll.off)] if roll.off else []),
+        (lift + 0.12 * took, max(off, roll.off)),
         (lift + 0.5 * took, middle),
-        (land, 7.0),
-        (land + 0.1, 0.0),
+        (land, roll.land),
+        (land + roll.settle, 0.0),
     ]
 
 

@@ -198,7 +198,7 @@ def test_every_genre_has_six_moves_and_uses_them():
         assert len(names) >= 6
         danced = {
             name
-            for k in range(5)
+            for k in range(8)
             for _, name, _ in dance(beat_song(22.0, TEMPI[genre], genre=genre), k).moves
         }
         assert len(names & danced) >= len(names) - 1

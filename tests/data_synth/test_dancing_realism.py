@@ -10,14 +10,29 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from data_synth.dancing.acceptance import OUTSIDE, OWN, UPRIGHT, acceptance, limits, means_outside
+from data_synth.dancing import dance
+from data_synth.dancing.acceptance import (
+    FLOOR,
+    OUTSIDE,
+    OWN,
+    UPRIGHT,
+    acceptance,
+    limits,
+    means_outside,
+)
 from data_synth.dancing.statistics import (
+    facing,
     joint_speed,
     kinematic_beats,
     repeats,
     root_frame,
+    standing_feet,
     statistics,
+    travel,
+    turn_8s,
 )
+from data_synth.music.score import beat_song
+from data_synth.music.song import GENRES
 from data_synth.walking.acceptance import table
 from motiondiff_edu.motion.kinematics import rot_y
 from motiondiff_edu.motion.retarget import load_clip
@@ -61,6 +76,23 @@ def test_dances_meet_their_own_song_and_no_other(found):
         assert np.mean(own) > 0.55, genre
 
 
+def test_dances_that_stay_on_the_spot_fail(found):
+    """Every genre steps, turns and travels; the same dances fixed to one spot would be outside."""
+    for genre in sorted({d.genre for d in found[0]}):
+        rows = [r for d, r in zip(*found, strict=True) if d.genre == genre]
+        for name, (low, high) in FLOOR.items():
+            assert low <= np.mean([r[name] for r in rows]) <= high, (genre, name)
+    tame = [row | {"standing_feet": 0.52, "turn_8s": 53.0, "travel": 0.24} for row in found[1]]
+    assert set(FLOOR) <= means_outside(found[0], tame)
+
+
+def test_a_dance_of_minutes_stays_on_its_stage():
+    for k, (genre, (slowest, fastest, metre)) in enumerate(GENRES.items()):
+        song = beat_song(120.0, (slowest + fastest) / 2, metre, genre, k)
+        far = np.linalg.norm(dance(song, k).positions[:, 0, [0, 2]], axis=-1)
+        assert far.max() < 5.0, genre  # metres
+
+
 def test_no_dance_is_a_loop(found):
     assert max(row["repeats"] for row in found[1]) < 0.9
 
@@ -84,7 +116,7 @@ def test_no_dance_exceeds_the_limits_of_the_card(found):
 
 def test_the_card_has_these_dances_figures(found):
     """Twenty dances here, thirty in the card."""
-    for name, mean, *_ in table(found[1], UPRIGHT | OWN):
+    for name, mean, *_ in table(found[1], UPRIGHT | FLOOR | OWN):
         assert card(name)[0] == pytest.approx(mean, rel=0.2), name
 
 
@@ -114,6 +146,40 @@ def test_speed_by_hand():
     assert joint_speed(world, 20.0) == pytest.approx(np.array([2.0, 1.0, 0.0]) / 21)
 
 
+def standing(seconds: float = 12.0) -> np.ndarray:
+    """A figure that does not move: its left is +x, so it faces z."""
+    pose = np.zeros((21, 3))
+    pose[[1, 13], 0], pose[[5, 17], 0] = 1.0, -1.0
+    return np.repeat(pose[None], round(20 * seconds), 0)
+
+
+def test_standing_feet_by_hand():
+    still = standing()
+    assert standing_feet(still) == 1.0
+    sliding, half = still.copy(), still.copy()
+    sliding[:, 3, 2] = 0.2 * np.arange(len(still)) / 20  # one foot at 0.2 m/s
+    half[120:, [3, 7], 1] = 0.16 * np.arange(120)[:, None] / 20  # both, in the second half
+    assert standing_feet(sliding) == 0.5 and standing_feet(half) == pytest.approx(0.5, abs=0.01)
+
+
+def test_turns_by_hand():
+    still = standing()
+    assert turn_8s(still) == 0.0
+    angle = np.radians(30.0) * np.arange(len(still)) / 20  # 30 degrees a second, to the left
+    turning = np.stack([p @ rot_y(a).T for p, a in zip(still, angle, strict=True)])
+    assert turn_8s(turning) == pytest.approx(30.0 * (8 - 1 / 20), rel=0.01)
+    assert turn_8s(turning[:60]) == pytest.approx(30.0 * 59 / 20, rel=0.05)  # shorter than a window
+    assert facing(turning, 20.0)[100] == pytest.approx(angle[100], abs=1e-3)
+
+
+def test_travel_by_hand():
+    t = np.arange(400) / 20
+    walking, rising = standing(20.0), standing(20.0)
+    walking[:, :, 2] += 0.5 * t[:, None]
+    rising[:, :, 1] += 0.5 * t[:, None]  # up is no way over the floor
+    assert travel(walking) == pytest.approx(0.5, rel=0.02) and travel(rising) == 0.0
+
+
 def test_a_loop_repeats_and_turning_does_not_hide_it():
     rng = np.random.default_rng(1)
     phrase = np.cumsum(rng.normal(size=(20, 21, 3)), 0) * 0.01
@@ -134,6 +200,7 @@ def test_the_ruler_finds_real_dances_inside(real_data):
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
             row = statistics(load_clip(real_data / "bvh" / f"{name}.bvh").world()[cut:])
+        assert row["standing_feet"] < 0.4 and row["turn_8s"] > 120 and row["travel"] > 0.28, name
         for key, (low, high) in UPRIGHT.items():
             assert low - 0.1 * (high - low) <= row[key] <= high + 0.1 * (high - low), (
                 name,

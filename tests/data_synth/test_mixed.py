@@ -29,7 +29,7 @@ def test_walks_and_dances_take_turns():
     made = list(motions(6, 3, 8.0))
     assert all(p.shape == (160, 21, 3) and c.shape == (160, 2) and c.dtype == bool for p, c in made)
     way = [np.linalg.norm(np.diff(p[::20, 0, [0, 2]], axis=0), axis=-1).sum() for p, _ in made]
-    assert min(way[0::2]) > max(way[1::2])  # who walks gets somewhere
+    assert np.median(way[0::2]) > 2 * max(way[1::2])  # who walks gets farther than who dances
     assert all(bone_rmse(p) < 1e-6 for p, _ in made)
     again, other = list(motions(6, 3, 8.0)), list(motions(6, 4, 8.0))
     assert all(

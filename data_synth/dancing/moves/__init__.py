@@ -3,6 +3,8 @@
 from dataclasses import dataclass
 
 from ...walking.legs import LEVEL
+from ..stage import Stage
+from ..steps import Roll
 from . import hiphop, house, latin, pop, waltz
 
 
@@ -22,6 +24,9 @@ class Manner:
     rest: dict[str, float]
     variety: float = 1.0  # factor on the differences of posture between persons
     level: float = LEVEL  # metres: a foot farther beside its hip pulls the pelvis along
+    roll: Roll = Roll()
+    stage: Stage = Stage(0.0, (0.0,), 0.0)  # on the spot, facing one way
+    spots: bool = False  # the head turns before the body
 
 
 _BENT = {
@@ -35,18 +40,71 @@ _ROUND = {
     for name, value in (("elbow", 40.0), ("swing", 22.0), ("out", 34.0))
 }
 
+# quick feet of clubs are on their balls; in hip-hop and latin dances they press into the floor, in
+# a waltz they roll slowly (seconds and degrees were set by looking at pictures)
+_LIGHT = Roll(early=0.24, off=22.0, land=20.0, settle=0.20, pivot=16.0)
+_PRESSED = Roll(early=0.24, off=27.0, land=25.0, settle=0.20, pivot=16.0)
+_SLOW = Roll(early=0.34, off=24.0, land=20.0, settle=0.28, pivot=16.0)
+
 MANNERS: dict[str, Manner] = {
     "house": Manner(
-        house.MOVES, house.CALM, 0.10, 0.15, 4.0, 0.012, {"drop": 0.04, "lean": 7.0, **_BENT}
+        house.MOVES,
+        house.CALM,
+        0.10,
+        0.15,
+        4.0,
+        0.012,
+        {"drop": 0.04, "lean": 7.0, **_BENT},
+        roll=_LIGHT,
+        stage=Stage(0.15, (45.0, 90.0, 90.0, 135.0), 0.06),
+        spots=True,
     ),
     "hiphop": Manner(
-        hiphop.MOVES, hiphop.CALM, 0.14, 0.10, 4.5, 0.012, {"drop": 0.05, "lean": 7.0}
+        hiphop.MOVES,
+        hiphop.CALM,
+        0.14,
+        0.10,
+        4.5,
+        0.012,
+        {"drop": 0.05, "lean": 7.0},
+        roll=_PRESSED,
+        stage=Stage(0.18, (45.0, 90.0, 90.0, 135.0), 0.07),
+        spots=True,
     ),
-    "pop": Manner(pop.MOVES, pop.CALM, 0.18, 0.08, 5.0, 0.03, {"drop": 0.025, "lean": 2.0}),
+    "pop": Manner(
+        pop.MOVES,
+        pop.CALM,
+        0.18,
+        0.08,
+        5.0,
+        0.03,
+        {"drop": 0.025, "lean": 2.0},
+        roll=_LIGHT,
+        stage=Stage(0.14, (0.0, 45.0, 90.0, 90.0), 0.05),
+        spots=True,
+    ),
     "latin": Manner(
-        latin.MOVES, latin.CALM, 0.06, 0.30, 4.0, 0.03, {"drop": 0.03, "lean": 2.0, **_BENT}
+        latin.MOVES,
+        latin.CALM,
+        0.06,
+        0.30,
+        4.0,
+        0.03,
+        {"drop": 0.03, "lean": 2.0, **_BENT},
+        roll=_PRESSED,
+        stage=Stage(0.15, (45.0, 90.0, 90.0, 135.0), 0.05),
+        spots=True,
     ),
     "waltz": Manner(
-        waltz.MOVES, waltz.CALM, 0.10, 0.18, 3.2, 0.045, {"drop": 0.02, "lean": 0.0, **_ROUND}
+        waltz.MOVES,
+        waltz.CALM,
+        0.10,
+        0.18,
+        3.2,
+        0.045,
+        {"drop": 0.02, "lean": 0.0, **_ROUND},
+        roll=_SLOW,
+        stage=Stage(0.06, (30.0, 45.0, 60.0), 0.0, stays=0.75),
+        spots=True,
     ),
 }

@@ -40,6 +40,29 @@ def bounce(
         count += each
 
 
+def tread(
+    p: Sheet, wide: float = 0.17, ahead: float = 0.04, height: float = 0.07, each: float = 1.0
+) -> None:
+    """A step in place on every count: the left foot on even ones, a little ahead and back in turn.
+
+    Moves of the trunk and the arms stand on it; so a dancer's feet are seldom at rest.
+    """
+    for k in range(int(p.n / each)):
+        s = 1 if k % 2 == 0 else -1
+        z = ahead if k % 4 < 2 else -ahead
+        p.step(0 if s > 0 else 1, k * each, wide * s, z, turn=14 * s, height=height)
+
+
+def slide(p: Sheet, wide: float = 0.32) -> None:
+    """Side, together, side, together: four counts to the right and four to the left."""
+    for k in range(p.n):
+        way = -1 if k % 8 < 4 else 1
+        lead, trail = (0, 1) if way > 0 else (1, 0)
+        foot = lead if k % 2 == 0 else trail
+        x = (0.12, -0.1, wide, wide - 0.22)[k % 4] * way
+        p.step(foot, k, x, 0.0 if k % 2 == 0 else 0.05, turn=16 * way if foot == lead else None)
+
+
 def hips(p: Sheet, size: float = 7.0, sway: float = 0.03) -> None:
     """The hip goes to the standing side on every count: left on even ones; the chest answers."""
     for k in range(p.n):
@@ -134,6 +157,30 @@ def soft(p: Sheet) -> None:
     for k in range(p.n):
         opened = k % 4 in (1, 2)
         p.arms(k, (30, 66, -6, 30, -6) if opened else (44, 14, 36, 76, 14))
+
+
+def windmill(p: Sheet) -> None:
+    """Long arms go round at the sides, one after the other: up ahead and down behind."""
+    circle = ((-34, 24, 10, 22), (14, 78, -8, 18), (150, 22, 0, 24), (82, 10, 14, 30))
+    for k in range(p.n):
+        p.arms(k, circle[k % 4], circle[(k + 2) % 4])
+
+
+def reach(p: Sheet) -> None:
+    """One hand reaches far to a side and the eyes go with it; the other is drawn to the ribs."""
+    for k in range(p.n):
+        s = 1 if k % 4 < 2 else -1
+        far, near = (34, 96, -10, 12, -8), (-14, 30, 30, 112)
+        gathered = (40, 30, 24, 92)
+        pair = (far, near) if k % 2 == 0 else (gathered, gathered)
+        p.arms(k, *(pair if s > 0 else pair[::-1]))
+        p.key("look", (k, 22 * s if k % 2 == 0 else 0))
+
+
+def brush(p: Sheet) -> None:
+    """Both hands cross low before the body, and open high behind it."""
+    for k in range(p.n):
+        p.arms(k, (34, 2, 50, 34) if k % 2 == 0 else (-24, 62, -14, 40, -6, 6))
 
 
 def pick(p: Sheet, *choices: Callable[[Sheet], None]) -> None:

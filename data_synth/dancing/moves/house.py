@@ -1,7 +1,21 @@
 """House: the jack through the chest, quick light feet, loose knees."""
 
 from ..sheet import Sheet
-from .grooves import bounce, clap, counter, overhead, pick, pump, punch, swing
+from .grooves import (
+    bounce,
+    brush,
+    clap,
+    counter,
+    overhead,
+    pick,
+    pump,
+    punch,
+    reach,
+    swing,
+    tread,
+    windmill,
+)
+from .turns import three_step
 
 L, R = 0, 1
 
@@ -11,20 +25,18 @@ def jack(p: Sheet) -> None:
 
     Heels pump in turn.
     """
-    p.step(L, 0, 0.17, 0.0)
-    p.both(0.7)
+    tread(p, 0.17, 0.05, 0.07)
     for k in range(p.n):
-        p.key("drop", (k, 0.075), (k + 0.5, 0.012))
+        p.key("drop", (k, 0.085), (k + 0.5, 0.012))
         p.key("lean", (k, 19), (k + 0.5, -7))
         p.key("hip_tilt", (k, -7), (k + 0.5, 8))
         p.key("chest", (k, -9), (k + 0.5, 12))
         p.key("nod", (k, 12), (k + 0.5, -8))
         p.key("l_heel" if k % 2 else "r_heel", (k, 26))
         p.key("r_heel" if k % 2 else "l_heel", (k, 2))
-        p.key("sway", (k, -0.03 if k % 2 else 0.03))
-        if k >= 1:
-            p.key("weight", (k, -0.35 if k % 2 else 0.35))
-    pick(p, pump, punch, overhead)
+        p.key("side", (k, 6 if k % 2 else -6))
+        p.key("twist", (k, 12 if k % 2 else -12))
+    pick(p, pump, punch, overhead, windmill)
 
 
 def shuffle(p: Sheet) -> None:
@@ -51,7 +63,7 @@ def shuffle(p: Sheet) -> None:
         p.key("twist", (k, -18 if out else 16))
         p.go(k + 0.6, x=0.11)
     bounce(p, 0.08, 0.01, heels=14)
-    pick(p, swing, pump)
+    pick(p, swing, pump, brush)
 
 
 def side_step(p: Sheet) -> None:
@@ -70,7 +82,7 @@ def side_step(p: Sheet) -> None:
         p.key("lean", (k, 14 if k % 2 == 0 else 5))
     bounce(p, 0.095, 0.01, heels=12)
     counter(p, 14)
-    pick(p, swing, clap, overhead)
+    pick(p, swing, clap, reach, windmill)
 
 
 def loose_legs(p: Sheet) -> None:
@@ -109,7 +121,7 @@ def cross_step(p: Sheet) -> None:
         p.key("twist", (k, (6, 22, -8, 0)[phase] * way))
         p.key("lean", (k, (8, 12, 6, 4)[phase]))
     bounce(p, 0.09, 0.0, heels=16)
-    pick(p, swing, overhead, clap)
+    pick(p, swing, overhead, reach, brush)
 
 
 def stomp(p: Sheet) -> None:
@@ -118,7 +130,7 @@ def stomp(p: Sheet) -> None:
         foot = L if k % 2 == 0 else R
         s = 1 if foot == L else -1
         p.step(
-            foot, k, 0.15 * s, 0.05 if k % 4 < 2 else -0.04, turn=14 * s, height=0.24, swing=0.66
+            foot, k, 0.15 * s, 0.05 if k % 4 < 2 else -0.04, turn=14 * s, height=0.24, swing=0.88
         )
         p.key("lean", (k, 16), (k + 0.5, 2))
         p.key("drop", (k, 0.10), (k + 0.5, 0.01))
@@ -166,19 +178,68 @@ def farmer(p: Sheet) -> None:
 
 
 def sway_low(p: Sheet) -> None:
-    """For breaks: feet stay, the weight goes from side to side.
-
-    Head and shoulders keep the count.
-    """
-    p.step(L, 0, 0.16, 0.0)
-    for k in range(1, p.n):
-        s = 1 if k % 2 else -1
-        p.key("weight", (k, 0.55 * s))
-        p.key("side", (k, -5 * s))
-        p.key("twist", (k, 9 * s))
+    """For breaks: small steps from side to side; head and shoulders keep the count."""
+    tread(p, 0.18, 0.02, 0.04)
+    for k in range(p.n):
+        s = 1 if k % 2 == 0 else -1
+        p.key("side", (k, -7 * s))
+        p.key("twist", (k, 11 * s))
     bounce(p, 0.07, 0.01, heels=10)
     pick(p, swing, overhead)
 
 
-MOVES = (jack, shuffle, side_step, loose_legs, cross_step, stomp, skip, farmer)
+def turn_step(p: Sheet) -> None:
+    """Once round on three light steps to one side; then jacking steps, and once round again."""
+    k = 0
+    while k < p.n:
+        if k % 8 == 0 and k + 3 < p.n:
+            three_step(p, k, (40, 12, 40, 88), (26, 50, 0, 50))
+            p.key("drop", (k, 0.10), (k + 1, 0.03), (k + 2, 0.03), (k + 3, 0.10))
+            p.key("lean", (k, 12), (k + 1, 3), (k + 2, 3), (k + 3, 14))
+            k += 4
+            continue
+        foot, s = (L, 1) if k % 2 == 0 else (R, -1)
+        p.step(foot, k, 0.18 * s, 0.06 if k % 4 < 2 else -0.06, height=0.09)
+        p.key("drop", (k, 0.09), (k + 0.5, 0.01))
+        p.key("lean", (k, 18), (k + 0.5, -4))
+        p.key("twist", (k, 16 * s))
+        p.arms(k, (10, 40, 10, 80) if s > 0 else (48, 20, 24, 96))
+        k += 1
+
+
+def loft(p: Sheet) -> None:
+    """Down into a low lunge with a hand to the floor, under and up on the other side."""
+    for k in range(p.n):
+        phase, s = k % 4, 1 if k % 8 < 4 else -1
+        lead, trail = (L, R) if s > 0 else (R, L)
+        if phase == 0:
+            p.step(lead, k, 0.34 * s, 0.12, turn=30 * s)
+        elif phase == 1:
+            p.step(trail, k, 0.06 * s, 0.02, height=0.04)
+        elif phase == 2:
+            p.step(lead, k, 0.26 * s, -0.16, turn=-10 * s)
+        else:
+            p.step(trail, k, -0.06 * s, 0.02, height=0.12)
+        p.key("drop", (k, (0.17, 0.20, 0.12, 0.02)[phase]))
+        p.key("lean", (k, (26, 34, 18, -2)[phase]))
+        p.key("side", (k, (-12, -4, 12, 4)[phase] * s))
+        p.key("twist", (k, (20, -10, -24, 6)[phase] * s))
+        p.key("look", (k, (20, 0, -24, 0)[phase] * s))
+        low, wide, high = (38, 18, 10, 14), (10, 84, 0, 26), (120, 30, 0, 30)
+        pair = ((low, wide), (low, low), (wide, low), (high, wide))[phase]
+        p.arms(k, *(pair if s > 0 else pair[::-1]))
+
+
+MOVES = (
+    jack,
+    shuffle,
+    side_step,
+    loose_legs,
+    cross_step,
+    stomp,
+    skip,
+    farmer,
+    turn_step,
+    loft,
+)
 CALM = (sway_low, jack)

@@ -4,7 +4,8 @@ The arms are held and lead.
 """
 
 from ..sheet import Sheet
-from .grooves import HIGH_V, HIP, bounce, conduct, lift, onhips, pick, soft, sweep
+from .grooves import HIGH_V, HIP, bounce, conduct, lift, onhips, pick, reach, soft, sweep, tread
+from .turns import half_round, three_step
 
 L, R = 0, 1
 
@@ -33,7 +34,7 @@ def frame(p: Sheet) -> None:
 
 def arms(p: Sheet) -> None:
     """One of the arm patterns that go with steps."""
-    pick(p, frame, frame, soft, conduct, sweep, lift)
+    pick(p, frame, frame, soft, conduct, sweep, lift, reach)
 
 
 def basic(p: Sheet) -> None:
@@ -126,20 +127,17 @@ def suzie_q(p: Sheet) -> None:
 
 
 def figure_eight(p: Sheet) -> None:
-    """Feet stay: the hips draw a lying eight, one loop a side, over two counts each."""
-    p.step(L, 0, 0.13, 0.02)
+    """Small steps under the hips, which draw a lying eight, one loop a side, over two counts."""
+    tread(p, 0.12, 0.05, 0.04)
     for k in range(p.n):
         s = 1 if (k // 2) % 2 == 0 else -1
         first = k % 2 == 0
-        p.key("weight", (k + 0.55, 0.75 * s))
         p.key("sway", (k, (0.05 if first else 0.075) * s))
         p.key("surge", (k, 0.07 if first else -0.06))
         p.key("hip_roll", (k, (6 if first else 14) * s))
         p.key("hip_yaw", (k, (-20 if first else 16) * s))
         p.key("twist", (k, (17 if first else -13) * s))
         p.key("side", (k, (-4 if first else -8) * s))
-        p.key("l_heel", (k, 22 if s < 0 else 0))
-        p.key("r_heel", (k, 22 if s > 0 else 0))
         p.key("l_knee", (k, -8 if s < 0 else 4))
         p.key("r_knee", (k, -8 if s > 0 else 4))
         p.key("drop", (k, 0.09 if first else 0.03))
@@ -152,12 +150,13 @@ def cucaracha(p: Sheet) -> None:
         half, s = k % 4, 1 if k % 8 < 4 else -1
         foot = L if s > 0 else R
         if half == 0:
-            p.step(foot, k, 0.32 * s, 0.02, turn=12 * s, height=0.03, weight=False)
-            p.key("weight", (k + 0.25, 0.55 * s))
+            p.step(foot, k, 0.32 * s, 0.02, turn=12 * s, height=0.05)
         elif half == 1:
-            p.key("weight", (k, -0.93 * s))
+            p.step(L + R - foot, k, -0.12 * s, 0.04, height=0.05)
         elif half == 2:
-            p.step(foot, k, 0.09 * s, 0.0, height=0.03)
+            p.step(foot, k, 0.09 * s, 0.0, height=0.05)
+        else:
+            p.step(L + R - foot, k, -0.14 * s, 0.05, height=0.06, weight=False)
         p.key("hip_roll", (k, (13, -10, 9, 11)[half] * s))
         p.key("sway", (k, (0.05, -0.03, 0.03, 0.04)[half] * s))
         p.key("hip_yaw", (k, (-16, 10, -10, 6)[half] * s))
@@ -206,13 +205,11 @@ def turn(p: Sheet) -> None:
 
 def shimmy(p: Sheet) -> None:
     """For breaks: the shoulders quiver in halves of the count over slow hips."""
-    p.step(L, 0, 0.13, 0.05)
+    tread(p, 0.13, 0.04, 0.05)
     for k in range(p.n):
-        s = 1 if (k // 2) % 2 == 0 else -1
+        s = 1 if k % 2 == 0 else -1
         p.key("twist", (k, 12), (k + 0.5, -10))
-        p.key("weight", (k + 0.5, 0.5 * s))
-        p.key("hip_roll", (k, 6 * s))
-        p.key("sway", (k, 0.03 * s))
+        p.key("hip_roll", (k, 7 * s))
         p.key("lean", (k, 6 if k % 4 < 2 else -3))
         p.key("drop", (k, 0.065), (k + 0.5, 0.03))
         p.arms(k, (14, 50, 6, 50, 0, 5), (14, 50, 6, 50, 0, -4))
@@ -221,8 +218,9 @@ def shimmy(p: Sheet) -> None:
 
 def hold_out(p: Sheet) -> None:
     """For breaks: a line, one arm high, the hip alone on the count."""
-    p.step(L, 0, 0.24, 0.05, turn=20)
-    p.key("weight", (1, -0.7), (p.n - 1, -0.7))
+    for k in range(0, p.n, 2):
+        p.step(L, k, 0.24, 0.05, turn=20, height=0.06)
+        p.step(R, k + 1, -0.08, -0.02 if k % 4 == 0 else 0.05, height=0.05)
     for k in range(p.n):
         s = 1 if k % 2 else -1
         p.key("hip_roll", (k, -4 + 10 * s))
@@ -232,5 +230,52 @@ def hold_out(p: Sheet) -> None:
         p.arms(k, (HIGH_V[0], HIGH_V[1] - 8 * s, *HIGH_V[2:]), (HIP[0] + 5 * s, *HIP[1:]))
 
 
-MOVES = (basic, side_basic, cumbia, suzie_q, figure_eight, cucaracha, turn)
+def walk_through(p: Sheet) -> None:
+    """Ahead on three walking steps with half a turn, and a hip; then the same way back."""
+    for k in range(0, p.n, 4):
+        p.step(L, k, 0.07, 0.32, turn=10, height=0.05)
+        p.go(k + 0.5, z=0.30)
+        if k + 3 < p.n:
+            half_round(p, k + 1)
+            p.step(R, k + 3, -0.10, 0.06, height=0.05)
+            p.arms(k, (46, 24, 24, 80), (-10, 40, 20, 60))
+            p.arms(k + 1, (50, 14, 36, 90), (60, 12, 40, 84))
+            p.arms(k + 2, HIP, (110, 20, 10, 60))
+            p.arms(k + 3, HIP, (30, 84, -6, 22))
+        for j, s in enumerate((1, -1, 1, -1)):
+            p.key("hip_roll", (k + j, 11 * s))
+            p.key("twist", (k + j, 14 * s))
+            p.key("side", (k + j, -7 * s))
+    bounce(p, 0.07, 0.01, heels=9)
+
+
+def travelling_turn(p: Sheet) -> None:
+    """Once round on three steps to the side, one arm high; then a side step with the hips."""
+    for k in range(0, p.n, 4):
+        if k % 8 == 0 and k + 3 < p.n:
+            three_step(p, k, (60, 12, 40, 92), (26, 56, 0, 44))
+            p.key("hip_roll", (k, 8), (k + 1, -7), (k + 2, 8), (k + 3, -6))
+            p.key("drop", (k, 0.07), (k + 1, 0.02), (k + 2, 0.03), (k + 3, 0.07))
+            continue
+        for j in range(min(4, p.n - k)):
+            foot, s = (L, 1) if j % 2 == 0 else (R, -1)
+            p.step(foot, k + j, (-0.04, -0.30, -0.10, -0.26)[j], 0.04 * s, height=0.06)
+            p.key("hip_roll", (k + j, 12 * s))
+            p.key("side", (k + j, -8 * s))
+            p.key("twist", (k + j, 15 * s))
+            p.key("drop", (k + j, 0.07), (k + j + 0.5, 0.01))
+            p.arms(k + j, *((HIP, (60, 70, 0, 30)) if j % 2 else ((130, 40, 0, 30), HIP)))
+
+
+MOVES = (
+    basic,
+    side_basic,
+    cumbia,
+    suzie_q,
+    figure_eight,
+    cucaracha,
+    turn,
+    walk_through,
+    travelling_turn,
+)
 CALM = (figure_eight, shimmy, hold_out)

@@ -20,10 +20,15 @@ from .grooves import (  # fmt: skip
     overhead,
     pick,
     punch,
+    reach,
     roll,
+    slide,
     sweep,
     swing,
+    tread,
+    windmill,
 )
+from .turns import half_round
 
 L, R = 0, 1
 
@@ -46,7 +51,7 @@ def grapevine(p: Sheet) -> None:
         p.key("hip_yaw", (k, (4, 18, -4, 0)[phase] * way))
         p.key("twist", (k, (-4, -20, 6, 12)[phase] * way))
     bounce(p, 0.08, 0.005, heels=14)
-    pick(p, swing, clap, lift, sweep)
+    pick(p, swing, clap, lift, sweep, reach)
 
 
 def box_step(p: Sheet) -> None:
@@ -65,7 +70,7 @@ def box_step(p: Sheet) -> None:
         p.key("twist", (k, (-16, 8, 14, -8)[phase]))
         p.key("lean", (k, (9, -2, 6, 2)[phase]))
     bounce(p, 0.08, 0.01, heels=12)
-    pick(p, swing, roll, punch, conduct)
+    pick(p, swing, roll, punch, conduct, windmill)
 
 
 POSES = (  # left arm, right arm, weight, side, twist, lean, drop, look
@@ -84,8 +89,10 @@ POSES = (  # left arm, right arm, weight, side, twist, lean, drop, look
 
 
 def pose_hits(p: Sheet) -> None:
-    """A pose on every other count or on two in a row, hit and held, one of a dozen."""
-    p.step(L, 0, 0.24, 0.0, turn=14)
+    """A pose on every other count or on two in a row, hit and held, one of a dozen.
+
+    The foot of the side that it goes to steps into it.
+    """
     beats, k = [], 0
     while k < p.n:
         beats.append(k)
@@ -94,7 +101,12 @@ def pose_hits(p: Sheet) -> None:
     for k, which in zip(beats, chosen, strict=True):
         left, right, weight, side, twist, lean, drop, look = POSES[which]
         p.arms(k, left, right)
-        p.key("weight", (max(k, 0.5), weight))
+        foot = L if weight > 0 or (weight == 0 and k % 2 == 0) else R
+        s = 1 if foot == L else -1
+        p.step(foot, k, 0.26 * s, 0.06, turn=18 * s, height=0.10, weight=weight != 0)
+        p.step(1 - foot, k + 0.55, -0.14 * s, -0.04, height=0.05, weight=False, swing=0.5)
+        if weight == 0:
+            p.both(k + 0.3)
         for name, value in (
             ("side", side),
             ("twist", twist),
@@ -104,14 +116,11 @@ def pose_hits(p: Sheet) -> None:
         ):
             p.key(name, (k, value))
         p.key("hip_roll", (k, 6 * weight))
-        p.key("l_heel", (k, 26 if weight < -0.5 else 0))
-        p.key("r_heel", (k, 26 if weight > 0.5 else 0))
 
 
 def body_roll(p: Sheet) -> None:
     """A wave down the spine over two counts: head and chest forward first, then the hips."""
-    p.step(L, 0, 0.16, 0.04)
-    p.both(0.8)
+    slide(p, 0.30)
     for k in range(0, p.n, 2):
         p.key("nod", (k, -12), (k + 1, 14))
         p.key("chest", (k, 20), (k + 1, -14))
@@ -120,7 +129,6 @@ def body_roll(p: Sheet) -> None:
         p.key("hip_tilt", (k, 10), (k + 1, -10))
         p.key("drop", (k, 0.03), (k + 1, 0.11))
         p.key("twist", (k, 10 if k % 4 == 0 else -10), (k + 1, 0))
-        p.key("sway", (k, 0.03 if k % 4 == 0 else -0.03))
         p.arms(k, (52, 30, 10, 44, -10), (52, 30, 10, 44, -10))
         p.arms(k + 1, (-16, 26, 20, 52, 20), (6, 34, 30, 74, 20))
     for k in range(p.n):
@@ -161,18 +169,15 @@ def spin(p: Sheet) -> None:
 
 def arm_sweeps(p: Sheet) -> None:
     """Long arms from side to side and overhead, the weight and the chest going with them."""
-    p.step(L, 0, 0.25, 0.0, turn=12)
+    slide(p, 0.36)
     path = ((ASIDE, CROSSED), (UP, UP), (CROSSED, ASIDE), (DOWN, DOWN))
     for k in range(p.n):
         s = (1, 0, -1, 0)[k % 4]
         p.arms(k, *path[k % 4])
-        p.key("weight", (max(k, 0.5), 0.85 * s if s else 0.0))
         p.key("side", (k, -9 * s))
         p.key("twist", (k, 20 * s))
         p.key("look", (k, 24 * s))
         p.key("hip_roll", (k, 6 * s))
-        p.key("l_heel", (k, 24 if s < 0 else 0))
-        p.key("r_heel", (k, 24 if s > 0 else 0))
         p.key("drop", (k, (0.09, 0.01, 0.09, 0.12)[k % 4]))
         p.key("lean", (k, (4, -5, 4, 17)[k % 4]))
 
@@ -231,15 +236,47 @@ def jumping(p: Sheet) -> None:
 
 def side_sway(p: Sheet) -> None:
     """For breaks: swaying from foot to foot, arms soft."""
-    p.step(L, 0, 0.18, 0.0)
-    for k in range(1, p.n):
-        s = 1 if k % 2 else -1
-        p.key("weight", (k, -0.75 * s))
-        p.key("hip_roll", (k, -6 * s))
-        p.key("side", (k, 6 * s))
+    tread(p, 0.20, 0.03, 0.05)
+    for k in range(p.n):
+        s = 1 if k % 2 == 0 else -1
+        p.key("hip_roll", (k, 6 * s))
+        p.key("side", (k, -7 * s))
+        p.key("look", (k, 10 * s))
     bounce(p, 0.065, 0.012, heels=10)
     pick(p, onhips, conduct, overhead)
 
 
-MOVES = (grapevine, box_step, pose_hits, body_roll, spin, arm_sweeps, v_step, kick_front, jumping)
+def strut(p: Sheet) -> None:
+    """Three steps ahead as on a catwalk, half round on both feet, and ahead again."""
+    for k in range(0, p.n, 4):
+        p.step(L, k, 0.06, 0.38, turn=4, height=0.07)
+        p.go(k + 0.5, z=0.38)
+        p.arms(k, BACK_LONG, AHEAD_LONG)
+        if k + 3 < p.n:
+            half_round(p, k + 1)
+            p.arms(k + 1, AHEAD_LONG, BACK_LONG)
+            p.arms(k + 2, ASIDE, HIP)
+            p.step(R, k + 3, -0.06, 0.36, turn=-4, height=0.07)
+            p.go(k + 3.5, z=0.36)
+            p.arms(k + 3, AHEAD_LONG, BACK_LONG)
+        for j, s in enumerate((1, -1, 1, -1)):
+            p.key("hip_roll", (k + j, 8 * s))
+            p.key("twist", (k + j, -12 * s))
+            p.key("lean", (k + j, -3 if j == 2 else 4))
+    bounce(p, 0.055, 0.0, heels=8)
+
+
+AHEAD_LONG, BACK_LONG = (40, 14, 16, 34), (-32, 20, 8, 24)
+MOVES = (
+    grapevine,
+    box_step,
+    pose_hits,
+    body_roll,
+    spin,
+    arm_sweeps,
+    v_step,
+    kick_front,
+    jumping,
+    strut,
+)
 CALM = (side_sway, body_roll, pose_hits)

@@ -97,14 +97,14 @@ def box(p: Sheet, turn: float = 0.0) -> None:
     """Ahead, side, close; back, side, close."""
     for k, m, s in bars(p):
         lead, other = (L, R) if s > 0 else (R, L)
-        p.step(lead, k, 0.09 * s, 0.42 * s, height=0.04, swing=0.7)
+        p.step(lead, k, 0.09 * s, 0.42 * s, height=0.04, swing=0.86)
         if m > 1:
             p.go(k + 1, z=0.40 * s, turn=turn, during=1.0)
-            p.step(other, k + 1, -0.34 * s, 0.02, height=0.04, swing=0.7)
+            p.step(other, k + 1, -0.34 * s, 0.02, height=0.04, swing=0.86)
         for j in range(2, m):
             foot = (lead, other)[j % 2]
             x = -0.34 * s + (0.18 * s if foot == lead else 0.0)
-            p.step(foot, k + j, x, 0.02, height=0.04, swing=0.65)
+            p.step(foot, k + j, x, 0.02, height=0.04, swing=0.86)
         p.go(k + m, x=-0.25 * s)
     rise(p)
     sway(p)
@@ -120,8 +120,10 @@ def balance(p: Sheet) -> None:
     """One step, drawn out; the other foot is drawn up to it and waits on its toe: hesitation."""
     for k, m, s in bars(p):
         lead, other = (L, R) if s > 0 else (R, L)
-        p.step(lead, k, 0.34 * s, 0.08, height=0.05, swing=0.7)
-        p.step(other, k + max(m - 2, 1), 0.20 * s, 0.03, weight=False, height=0.03, swing=0.8)
+        p.step(lead, k, 0.34 * s, 0.08, height=0.05, swing=0.86)
+        p.step(other, k + max(m - 2, 1), 0.16 * s, 0.03, height=0.05, swing=0.86)
+        if m > 2:
+            p.step(lead, k + m - 1, 0.34 * s, 0.02, height=0.05, swing=0.86)
         p.key("hip_roll", (k, 4 * s), (k + m - 1, -2 * s))
         p.key("sway", (k, 0.02 * s), (k + m - 1, 0.05 * s))
     rise(p, 1.1)
@@ -133,9 +135,9 @@ def twinkle(p: Sheet) -> None:
     """Across in front, side, close; and across the other way: a zigzag ahead."""
     for k, m, s in bars(p):
         lead, other = (L, R) if s > 0 else (R, L)
-        p.step(lead, k, -0.16 * s, 0.28, turn=-24 * s, height=0.05, swing=0.72)
+        p.step(lead, k, -0.16 * s, 0.28, turn=-24 * s, height=0.05, swing=0.86)
         if m > 1:
-            p.step(other, k + 1, -0.32 * s, 0.30, turn=4 * s, height=0.04, swing=0.7)
+            p.step(other, k + 1, -0.32 * s, 0.30, turn=4 * s, height=0.04, swing=0.86)
         for j in range(2, m):
             foot = (lead, other)[j % 2]
             p.step(
@@ -176,8 +178,10 @@ def sway_arms(p: Sheet) -> None:
     """Side to side with long arms: a bar to the left, a bar to the right."""
     for k, m, s in bars(p):
         lead, other = (L, R) if s > 0 else (R, L)
-        p.step(lead, k, 0.34 * s, 0.0, turn=20 * s, height=0.04, swing=0.7)
-        p.step(other, k + 1, 0.02 * s, 0.0, weight=False, height=0.03)
+        p.step(lead, k, 0.34 * s, 0.0, turn=20 * s, height=0.04, swing=0.86)
+        p.step(other, k + 1, 0.06 * s, -0.08, height=0.05)
+        if m > 2:
+            p.step(lead, k + 2, 0.20 * s, 0.04, turn=10 * s, height=0.05)
         for j, (side, twist) in enumerate(((4, 8), (-10, 20), (-6, 14))):
             if j < m:
                 p.key("side", (k + j, side * s))
@@ -203,13 +207,13 @@ def spin_turn(p: Sheet) -> None:
     """Three steps and once round to the left in a bar; balance in the next."""
     for i, (k, m, _) in enumerate(bars(p)):
         if i % 2 == 0 and m >= 3:
-            p.step(L, k, 0.10, 0.32, turn=20, height=0.04, swing=0.7)
+            p.step(L, k, 0.10, 0.32, turn=20, height=0.04, swing=0.86)
             p.go(k + 1, z=0.30, turn=150, during=1.1)
             p.pivot(L, k + 1, 10, during=0.75)
             p.step(R, k + 1, -0.12, 0.06, height=0.04, swing=0.75)
             p.go(k + 2, turn=150, during=0.95)
             p.pivot(R, k + 2, -5, during=0.75)
-            p.step(L, k + 2, 0.10, 0.0, height=0.04, swing=0.72)
+            p.step(L, k + 2, 0.10, 0.0, height=0.04, swing=0.86)
             p.go(k + 3, turn=60, during=0.9)
             p.arms(k, (50, 60, 0, 36), (34, 52, 0, 40))
             p.arms(k + 1, (66, 16, 44, 62), (66, 16, 44, 62))
@@ -217,8 +221,8 @@ def spin_turn(p: Sheet) -> None:
             p.key("twist", (k, -16), (k + 1, 14), (k + 2, 4))
             p.key("side", (k, 2), (k + 1, -7), (k + 2, 0))
         else:
-            p.step(R, k, -0.34, 0.04, height=0.04, swing=0.7)
-            p.step(L, k + max(m - 2, 1), -0.16, 0.02, weight=False, height=0.03, swing=0.8)
+            p.step(R, k, -0.34, 0.04, height=0.04, swing=0.86)
+            p.step(L, k + max(m - 2, 1), -0.16, 0.02, weight=False, height=0.03, swing=0.86)
             p.go(k + m, x=-0.2)
             p.key("side", (k, -3), (k + 1, 8))
             p.key("twist", (k, -10), (k + m - 1, -16))
@@ -231,10 +235,10 @@ def whisk(p: Sheet) -> None:
     """Ahead, side, and hooked behind on the toe; then away again the other way."""
     for k, m, s in bars(p):
         lead, other = (L, R) if s > 0 else (R, L)
-        p.step(lead, k, 0.10 * s, 0.24, height=0.04, swing=0.7)
-        p.step(other, k + 1, -0.28 * s, 0.22, height=0.04, swing=0.7)
+        p.step(lead, k, 0.10 * s, 0.24, height=0.04, swing=0.86)
+        p.step(other, k + 1, -0.28 * s, 0.22, height=0.04, swing=0.86)
         if m > 2:
-            p.step(lead, k + m - 1, -0.30 * s, 0.05, turn=-14 * s, height=0.05, swing=0.7)
+            p.step(lead, k + m - 1, -0.30 * s, 0.05, turn=-14 * s, height=0.05, swing=0.86)
         p.go(k + m, x=-0.2 * s, z=0.02)
         p.key("hip_yaw", (k, -6 * s), (k + m - 1, 16 * s))
     rise(p)
@@ -243,10 +247,11 @@ def whisk(p: Sheet) -> None:
 
 
 def breathe(p: Sheet) -> None:
-    """For breaks: standing, rising and sinking with the bar, one arm opening."""
-    p.step(L, 0, 0.17, 0.03)
+    """For breaks: a step and a touch, rising and sinking with the bar, one arm opening."""
     for k, m, s in bars(p):
-        p.key("weight", (k if k else 0.8, 0.2 * s), (k + m - 1, 0.8 * s))
+        lead, other = (L, R) if s > 0 else (R, L)
+        p.step(lead, k, 0.24 * s, 0.06, turn=16 * s, height=0.04)
+        p.step(other, k + max(m - 2, 1), 0.04 * s, 0.04, height=0.04, weight=False)
         p.key("drop", (k, 0.085), (k + 1, 0.02), (k + m - 1, 0.012))
         p.key("side", (k, 0), (k + m - 1, -6 * s))
         p.key("twist", (k, 0), (k + m - 1, 12 * s))
@@ -255,5 +260,36 @@ def breathe(p: Sheet) -> None:
         p.arms(k + m - 1, *((OPEN, SOFT) if s > 0 else (SOFT, OPEN)))
 
 
-MOVES = (box, turning_box, balance, twinkle, progressive, sway_arms, spin_turn, whisk)
+def natural_turn(p: Sheet) -> None:
+    """Round the floor: half round to the left in each bar, ahead in one and back in the next."""
+    for k, m, s in bars(p):
+        lead, other = (L, R) if s > 0 else (R, L)
+        p.step(lead, k, 0.09 * s, 0.36 * s, turn=24, height=0.05, swing=0.86)
+        if m > 1:
+            p.go(k + 1, z=0.34 * s, turn=100, during=1.0)
+            p.pivot(lead, k + 1, 10, during=0.7)
+            p.step(other, k + 1, -0.26 * s, 0.04, height=0.05, swing=0.86)
+        if m > 2:
+            p.go(k + 2, x=-0.12 * s, turn=80, during=0.95)
+            p.pivot(other, k + 2, 5 if other == L else -5, during=0.6)
+        for j in range(2, m):
+            foot = (lead, other)[j % 2]
+            p.step(foot, k + j, 0.10 if foot == L else -0.10, 0.02, height=0.05, swing=0.8)
+    rise(p)
+    sway(p, 8)
+    pick_arms = (couple, open_arms)
+    pick_arms[int(p.rng.integers(2))](p)
+
+
+MOVES = (
+    box,
+    turning_box,
+    balance,
+    twinkle,
+    progressive,
+    sway_arms,
+    spin_turn,
+    whisk,
+    natural_turn,
+)
 CALM = (breathe, balance)
