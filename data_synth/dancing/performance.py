@@ -24,7 +24,7 @@ from .choreography import choreograph
 from .curves import curve, felt_beats, springy, within_reach
 from .gaze import ahead_of_the_turn
 from .moves import MANNERS, Manner
-from .script import ARM, LENGTHS, REST, STANCE, Script
+from .script import ARM, LENGTHS, REST, STANCE, Script, Step
 from .steps import Roll, Track, track
 from .waiting import counted_on
 
@@ -152,8 +152,8 @@ def performed(
         head, chest = ahead_of_the_turn(heading, FPS)
         channels["look"], channels["twist"] = channels["look"] + head, channels["twist"] + chest
     tracks = tuple(
-        _foot(script, foot, start[foot], t, seconds, number, channels, manner.roll, rng)
-        for foot in (0, 1)
+        _foot(script.steps[foot], start[foot], t, felt, channels[heel], manner.roll, rng)
+        for foot, heel in enumerate(("l_heel", "r_heel"))
     )
     positions = dancer(channels, tracks, heading, manner.level)
     return positions, np.stack([k.planted for k in tracks], -1)
@@ -196,17 +196,14 @@ def _person(name: str) -> tuple[float, float]:
     return (0.003, 0.008) if name in LENGTHS else (0.9, 3.0)
 
 
-def _foot(
-    script: Script, foot: int, start: Toe, t, seconds, number, channels, roll: Roll, rng
-) -> Track:
+def _foot(steps: list[Step], start: Toe, t, felt, heel, roll: Roll, rng) -> Track:
     """One foot's steps at the dancer's own times, each with an error of some milliseconds."""
-    steps = script.steps[foot]
+    seconds, number = felt
     times = np.interp([(s.lift, s.land) for s in steps], number, seconds).reshape(-1, 2)
     times = times + 0.006 * rng.standard_normal(times.shape)
     flat = np.maximum.accumulate(times.ravel()).reshape(-1, 2)
     flat[:, 1] = np.maximum(flat[:, 1], flat[:, 0] + 0.06)
-    heel = np.maximum(channels[f"{'lr'[foot]}_heel"], 0.0)
-    return track(steps, start, flat, t, heel, roll)
+    return track(steps, start, flat, t, np.maximum(heel, 0.0), roll)
 
 
 __all__ = ["Dance", "GENRES", "dance", "dances", "dances_to", "perform", "performed"]

@@ -239,7 +239,8 @@ def get_low(p: Sheet) -> None:
         p.key("nod", (k, (6, -14, -10, -6)[phase]))
         p.key("twist", (k, (14, -10, 18, -8)[phase] * s))
         p.key("side", (k, (-8, 6, -8, 4)[phase] * s))
-        down, out, up = (44, 16, 6, 16), (16, 70, 10, 70), (146, 26, 0, 30)
+        down, out = (44, 16, 6, 16), (16, 70, 10, 70)
+        up = (146, 26, 0, 30)
         pair = ((out, down), (down, down), (down, out), (up, out))[phase]
         p.arms(k, *(pair if s > 0 else pair[::-1]))
 

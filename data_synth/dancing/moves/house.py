@@ -225,7 +225,8 @@ def loft(p: Sheet) -> None:
         p.key("side", (k, (-12, -4, 12, 4)[phase] * s))
         p.key("twist", (k, (20, -10, -24, 6)[phase] * s))
         p.key("look", (k, (20, 0, -24, 0)[phase] * s))
-        low, wide, high = (38, 18, 10, 14), (10, 84, 0, 26), (120, 30, 0, 30)
+        low, wide = (38, 18, 10, 14), (10, 84, 0, 26)
+        high = (120, 30, 0, 30)
         pair = ((low, wide), (low, low), (wide, low), (high, wide))[phase]
         p.arms(k, *(pair if s > 0 else pair[::-1]))
 
