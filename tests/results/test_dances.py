@@ -17,12 +17,12 @@ from tools.results.dances.scores import (
     share,
     variety_measures,
 )
-from tools.results.dances.trials import FPS, unseen_songs
+from tools.results.dances.songs import FPS, judged_songs
 
 
 @pytest.fixture(scope="module")
 def songs():
-    return unseen_songs(5, draws=3, frames=100)
+    return judged_songs(5, draws=3, frames=100)
 
 
 def named(measures) -> dict[str, float]:
@@ -94,5 +94,5 @@ def test_variety(songs):
 
 def test_a_loop_repeats_and_a_dance_less(songs):
     loop = np.tile(songs.truth[:1, 0, :40], (1, 5, 1, 1))
-    long = unseen_songs(2, frames=200).truth[:, 0]
+    long = judged_songs(2, frames=200).truth[:, 0]
     assert repeat_measure(loop).value > 0.99 > repeat_measure(long).value
