@@ -75,8 +75,14 @@ def test_a_long_recording_is_danced_to_in_parts_with_their_own_beats():
 
 
 @pytest.fixture
-def folder(tmp_path):
-    """A song with its beats in a file, a copy of it, a song without, and a bird."""
+def folder(tmp_path, monkeypatch):
+    """A song with its beats in a file, a copy of it, a song without, and a bird.
+
+    The tracker, which is slow to compile, finds a beat every half second.
+    """
+    monkeypatch.setattr(
+        real_music, "beats_of", lambda audio: np.arange(0, len(audio) / 16_000, 0.5)
+    )
     (tmp_path / "audio").mkdir()
     (tmp_path / "audio_beats_machine").mkdir()
     clicks = np.zeros(8 * 16_000)
@@ -95,7 +101,7 @@ def test_each_recording_of_music_is_read_once_with_the_beats_that_there_are(fold
         False,
     )
     np.testing.assert_allclose(one.beats, [0.5, 1.0, 1.5, 2.0, 2.5])
-    assert np.median(np.diff(two.beats)) == pytest.approx(0.5, abs=0.03)
+    np.testing.assert_allclose(two.beats, np.arange(0, 8, 0.5))
 
 
 class Deaf:
