@@ -34,7 +34,7 @@ def test_songs_and_dances_are_of_the_same_seconds(songs):
     assert songs.mel.shape[1] / 31.25 >= 100 / FPS
     for song, beats in zip(songs.songs, songs.beats(100), strict=True):
         assert set(beats) <= set(song.beats) and beats.max() < 99 / 20 + 0.25 and len(beats) > 4
-    assert len({song.genre for song in songs.songs}) > 2
+    assert len({song.genre for song in songs.songs}) > 1
 
 
 def test_the_datas_own_dances_have_the_datas_measures(songs):
@@ -42,7 +42,7 @@ def test_the_datas_own_dances_have_the_datas_measures(songs):
     data = rows_of(songs.truth[:, 0][None], beats)
     found = named(beat_measures(data, data))
     assert found["skating_mps"] == found["skating_data_mps"] < 0.05
-    slid = songs.truth[:, 1][None] + 0.01 * np.arange(songs.truth.shape[2])[:, None, None] * [
+    slid = songs.truth[:, 0][None] + 0.01 * np.arange(songs.truth.shape[2])[:, None, None] * [
         1.0,
         0.0,
         0.0,

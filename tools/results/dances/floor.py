@@ -39,8 +39,9 @@ def over_genres(values: Float[np.ndarray, "N"], genres: np.ndarray) -> float:
 
     A genre without a value is left out.
     """
-    means = [np.nanmean(values[genres == genre]) for genre in np.unique(genres)]
-    return float(np.nanmean(means))
+    there = np.isfinite(values)
+    means = [values[there & (genres == genre)].mean() for genre in np.unique(genres[there])]
+    return float(np.mean(means))
 
 
 def data_floor_measures(dances: Float[np.ndarray, "N T 21 3"], genres: np.ndarray) -> list[Measure]:
