@@ -94,12 +94,12 @@ def stage():
 
 def test_maps_of_a_dancer_become_a_row_for_each_song(stage):
     one = dancer(S=60)
-    rows = rows_of(one, stage.songs, frames=40)
+    rows = rows_of(one, stage.songs)  # a song that begins with silence has no beat in 2 s
     assert list(rows) == ["all", "down-20", "down-10", "bottom", "up-10", "up-20"]
     for kinds in rows.values():
         assert all(values.shape == (3,) and np.isfinite(values).all() for values in kinds.values())
-        assert ((kinds["own"] > 0) & (kinds["own"] < 1)).all() and (kinds["read"] <= 2.1).all()
-    again = rows_of(one, stage.songs, frames=40)
+        assert ((kinds["own"] > 0) & (kinds["own"] < 1)).all() and (kinds["read"] <= 5.1).all()
+    again = rows_of(one, stage.songs)
     assert all(
         np.array_equal(again[level][kind], rows[level][kind])
         for level in rows

@@ -198,10 +198,12 @@ def test_what_trains_is_run_when_asked_for_only():
         "dancer",
         "unheard",
         "footsteps",
+        "dance-data",
         "attention",
         "dance-time",
         "known-answer",
         "course",
+        "guided",
     ]
     full = command.parts_of([], True, {}, weights)
     assert full[: len(plain)] == plain and {"dance-budget.v", "ladder.ours"} <= set(full)

@@ -17,12 +17,12 @@ from tools.results.dances.scores import (
     share,
     variety_measures,
 )
-from tools.results.dances.trials import FPS, unseen_songs
+from tools.results.dances.songs import FPS, judged_songs
 
 
 @pytest.fixture(scope="module")
 def songs():
-    return unseen_songs(5, draws=3, frames=100)
+    return judged_songs(5, draws=3, frames=100)
 
 
 def named(measures) -> dict[str, float]:
@@ -34,7 +34,7 @@ def test_songs_and_dances_are_of_the_same_seconds(songs):
     assert songs.mel.shape[1] / 31.25 >= 100 / FPS
     for song, beats in zip(songs.songs, songs.beats(100), strict=True):
         assert set(beats) <= set(song.beats) and beats.max() < 99 / 20 + 0.25 and len(beats) > 4
-    assert len({song.genre for song in songs.songs}) > 2
+    assert len({song.genre for song in songs.songs}) > 1
 
 
 def test_the_datas_own_dances_have_the_datas_measures(songs):
@@ -42,7 +42,7 @@ def test_the_datas_own_dances_have_the_datas_measures(songs):
     data = rows_of(songs.truth[:, 0][None], beats)
     found = named(beat_measures(data, data))
     assert found["skating_mps"] == found["skating_data_mps"] < 0.05
-    slid = songs.truth[:, 1][None] + 0.01 * np.arange(songs.truth.shape[2])[:, None, None] * [
+    slid = songs.truth[:, 0][None] + 0.01 * np.arange(songs.truth.shape[2])[:, None, None] * [
         1.0,
         0.0,
         0.0,
@@ -94,5 +94,5 @@ def test_variety(songs):
 
 def test_a_loop_repeats_and_a_dance_less(songs):
     loop = np.tile(songs.truth[:1, 0, :40], (1, 5, 1, 1))
-    long = unseen_songs(2, frames=200).truth[:, 0]
+    long = judged_songs(2, frames=200).truth[:, 0]
     assert repeat_measure(loop).value > 0.99 > repeat_measure(long).value

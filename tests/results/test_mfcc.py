@@ -15,7 +15,7 @@ from motiondiff_edu.conditions.music import log_mel
 from motiondiff_edu.recipes.dancers import DANCER
 from motiondiff_edu.recipes.train_dancer import training_windows
 from tools.results.dances.mfcc import marks, mfcc_and_beats, with_music_features
-from tools.results.dances.trials import mel_of
+from tools.results.dances.songs import mel_of
 
 
 def test_marks_keep_the_time_of_each_beat():

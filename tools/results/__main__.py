@@ -4,15 +4,15 @@
 
 Parts: walker, walker-plain, walker-printed, walker-eps, walker-ddim10, walker-lookahead,
 walker-eps-lookahead, footsteps; dancer, dancer-plain, regression, unheard (music like none in
-training), attention, dance-time; mend (dropout and repairs), mend-both (both papers' repairs),
-inbetween, inbetween-departures (what each is worth), known-answer (methods of filling in, on tasks
-whose answer is a formula); words (motion from text: Table 2, captions that nobody trained for,
-editing); course (the checks of the exercises). These parts train, for minutes a row: ladder (from
-the paper's walker to ours), dance-budget, words-budget, inbetween-budget and mend-map. One row of
-them is a part as well: ladder.ours, dance-budget.v. By name alone are measured: what needs
-recordings, with MOTIONDIFF_REAL_DATA (recordings, recordings-inbetweens,
-recordings-reconstructions, inbetween-budget), and course-shown (pages and demos, after `make
-pages`).
+training), guided (weights of guidance), dance-data (the data's own dances), attention, dance-time;
+mend (dropout and repairs), mend-both (both papers' repairs), inbetween, inbetween-departures (what
+each is worth), known-answer (methods of filling in, on tasks whose answer is a formula); words
+(motion from text: Table 2, captions that nobody trained for, editing); course (the checks of the
+exercises). These parts train, for minutes a row: ladder (from the paper's walker to ours),
+dance-budget, words-budget, inbetween-budget and mend-map. One row of them is a part as well:
+ladder.ours, dance-budget.v. By name alone are measured: what needs recordings, with
+MOTIONDIFF_REAL_DATA (recordings, recordings-inbetweens, recordings-reconstructions, real-music,
+inbetween-budget), and course-shown (pages and demos, after `make pages`).
 Without --only, all parts are measured for which there are shipped weights. --full adds the parts
 that train; otherwise their records stay as they are. A training that was killed continues. --quick
 measures little, into build/quick, and is for trying the code. --render only writes docs/RESULTS.md
@@ -32,8 +32,17 @@ from motiondiff_edu.viz.metrics import footstep_curves
 from .course.exercises import course_records
 from .course.shown import shown_records
 from .dances import budget as dance_budget
+from .dances import real_music
 from .dances.attention import attention_picture, attention_records
-from .dances.parts import DANCE_FULL, DANCE_QUICK, DANCES, Stage, dance_records
+from .dances.guided import guided_records
+from .dances.parts import (
+    DANCE_FULL,
+    DANCE_QUICK,
+    DANCES,
+    Stage,
+    dance_records,
+    data_records,
+)
 from .dances.timing import TIMED, time_records
 from .inbetweens import departures, inbetween, known_answer
 from .page.cards import add_metrics
@@ -60,6 +69,7 @@ from .words import parts as words
 DOCS, RUNS = Path("docs"), Path("build/runs")
 MEASURED = (
     "footsteps",
+    "dance-data",
     "attention",
     "dance-time",
     "known-answer",
@@ -72,6 +82,7 @@ MENDED = {  # parts that need these weights
     "inbetween": {FILLS_IN, MASKED},
     "inbetween-departures": {FILLS_IN, MASKED},
     "words": {"mover"},
+    "guided": {"dancer"},
 }
 TRAINED = {
     "ladder": ("pace", "rates", *ladder.CELLS),
@@ -83,7 +94,7 @@ TRAINED = {
 # by name alone: recordings are not part of the project, pages are made before
 BY_NAME = (
     "recordings", "recordings-inbetweens", "recordings-reconstructions", "inbetween-budget",
-    "course-shown",
+    "real-music", "course-shown",
 )  # fmt: skip
 ROUNDS = 7  # of dance-time
 
@@ -223,6 +234,17 @@ def records_of(
             command,
             recorded_inbetweens.on_all_cores,
         )
+    if part == "real-music":
+        return real_music.music_records(
+            stage.dancer("dancer"),
+            weights_digest(stage.weights["dancer"]),
+            real_music.QUICK if quick else real_music.FULL,
+            command,
+        )
+    if part == "guided":
+        return guided_records(stage, command)
+    if part == "dance-data":
+        return data_records(stage, command)
     if part == "words":
         studio = words.Studio(words.size_of(quick), bench.weights)
         return words.word_records(studio, command, words.on_all_cores)

@@ -24,8 +24,9 @@ from motiondiff_edu.viz.listening import levels_over_sound
 
 from ..walks.parts import weights_digest
 from ..walks.scores import Measure, measure_of, ratio
-from .parts import TRAINED, Stage
-from .trials import FPS, UNSEEN, Songs, dances_of
+from .parts import Stage
+from .songs import FPS, TRAINED, UNSEEN, Songs
+from .trials import dances_of
 
 NOISE = (0.25, 0.5, 0.75)  # diffusion steps over which the maps are averaged
 SHIFTS = 100

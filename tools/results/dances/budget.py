@@ -32,7 +32,7 @@ from ..walks.scores import Measure
 from .mfcc import CHANNELS, mfcc_and_beats, with_music_features
 from .parts import Danced, DanceSize, Stage, danced
 from .scores import bone_gain, share_minus
-from .trials import UNSEEN, mel_of
+from .songs import UNSEEN, mel_of
 
 LIKE = (
     "target x0, shifted schedule, no kinematic losses, changes weighted 5, feet 0.2, "

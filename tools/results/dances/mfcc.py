@@ -24,7 +24,7 @@ from motiondiff_edu.conditions.music import (
 from motiondiff_edu.motion.scaler import Scaler
 from motiondiff_edu.performers.dance_windows import DanceWindows
 
-from .trials import Hear
+from .songs import Hear
 
 COEFFICIENTS = 20  # as in AI Choreographer
 CHANNELS = COEFFICIENTS + 2

@@ -1,6 +1,7 @@
 """The measurements of the dancers by `make results`.
 
-There is one part for each of the shipped weights, and one for music unlike that of training.
+There is one part for each of the shipped weights, one for music unlike that of training, and one
+for the data's own dances.
 """
 
 from dataclasses import dataclass, replace
@@ -9,11 +10,16 @@ from pathlib import Path
 
 import numpy as np
 
+from data_synth.music import songs
+from data_synth.music.recorded import recorded_song
+from data_synth.music.tempi import HELD_OUT_TEMPI
 from motiondiff_edu.performers.dancer import STEPS, Dancer
 from motiondiff_edu.pretrained import checkpoints
 
 from ..walks.parts import weights_digest
 from ..walks.scores import Measure
+from .floor import data_floor_measures, floor_measures, floor_rows
+from .genres import SEED, GenreJudge, features_by_window, genre_measures, judge_of
 from .scores import (
     beat_measures,
     bone_gain,
@@ -23,10 +29,22 @@ from .scores import (
     repeat_measure,
     rows_of,
     variety_measures,
+    worst_share,
 )
-from .trials import UNSEEN, Hear, Songs, dances_of, mel_of, unseen_songs
+from .songs import (
+    JUDGED,
+    SECONDS,
+    TRAINED,
+    UNSEEN,
+    Hear,
+    Songs,
+    danced_by_the_data,
+    judged_songs,
+    mel_of,
+    songs_like_real,
+)
+from .trials import dances_of
 
-TRAINED = 100  # frames, as trained
 LONG = (200, 400)
 DANCES = {
     "dancer": "dancer",
@@ -34,11 +52,11 @@ DANCES = {
     "regression": "regression",
     "unheard": "dancer",
 }  # weights
-UNHEARD = {  # properties that no training song has, one at a time
+UNHEARD = {  # properties that no varied song has, one at a time: the composer's own songs have them
     "metre5": {"metre": 5},
-    "tempo70": {"tempo": 70.0},
     "mallets": {"timbre": "mallets"},
 }
+KEPT_OUT = {f"tempo{low:g}-{high:g}": ((low, high),) for low, high in HELD_OUT_TEMPI}
 
 
 @dataclass(frozen=True)
@@ -49,10 +67,11 @@ class DanceSize:
     seeds: int = 3
     pieces: int = 20  # of music, for the variety of dances to one piece
     each: int = 10
+    taught: int = 200  # songs from which the judge of genres learns
 
 
 DANCE_FULL = DanceSize()
-DANCE_QUICK = DanceSize(songs=6, seeds=1, pieces=3, each=3)
+DANCE_QUICK = DanceSize(songs=6, seeds=1, pieces=3, each=3, taught=30)
 
 
 class Stage:
@@ -67,11 +86,11 @@ class Stage:
 
     @cached_property
     def songs(self) -> Songs:
-        return unseen_songs(self.size.songs, hear=self.hear)
+        return judged_songs(self.size.songs, hear=self.hear)
 
     @cached_property
     def pieces(self) -> Songs:
-        return unseen_songs(
+        return judged_songs(
             self.size.pieces, self.size.each, TRAINED, seed=UNSEEN + 1, hear=self.hear
         )
 
@@ -82,6 +101,12 @@ class Stage:
         All features are normalised by these.
         """
         return features_of(self.songs.truth[:, :, :TRAINED])[:, 0]
+
+    @cached_property
+    def judge(self) -> GenreJudge:
+        """The classifier of genres; it has learnt from songs of the training split."""
+        taught = songs_like_real(self.size.taught, SEED)
+        return judge_of(danced_by_the_data(taught, 1, self.songs.truth.shape[2], SEED))
 
     def dancer(self, name: str) -> Dancer:
         return checkpoints.load_dancer(self.weights[name])
@@ -137,7 +162,14 @@ def long_measures(stage: Stage, dancer: Dancer, found: Danced) -> list[Measure]:
         measures.append(
             longer(f"long{frames}_over_100", [row[name] for row in rows for name in names], short)
         )
-    return measures + repeats(stage, made[0])
+    return measures + repeats(stage, made[0]) + floor_and_genre(stage, made[0])
+
+
+def floor_and_genre(stage: Stage, made: np.ndarray) -> list[Measure]:
+    """How the longest dances use the floor, and whether their genre can be seen."""
+    truth, genres = stage.songs.truth[:, 0], stage.songs.genres
+    seen = [stage.judge.right(features_by_window(x), genres) for x in (made, truth)]
+    return floor_measures(floor_rows(made), floor_rows(truth)) + genre_measures(*seen, genres)
 
 
 def repeats(stage: Stage, made: np.ndarray) -> list[Measure]:
@@ -156,27 +188,59 @@ def variety(stage: Stage, dancer: Dancer) -> list[Measure]:
 
 
 def unheard_measures(stage: Stage) -> list[Measure]:
-    """Alignment with music of a metre, a tempo and a timbre that no training song has."""
-    measures, dancer = [], stage.dancer("dancer")
-    for name, changes in UNHEARD.items():
-        songs = unseen_songs(stage.size.songs, frames=TRAINED, seed=UNSEEN + 2, **changes)
-        beats = songs.beats(TRAINED)
-        made = dances_of(dancer, songs.mel, TRAINED, seed=0)
-        found = beat_measures(rows_of(made[None], beats), rows_of(songs.truth[:, 0][None], beats))
-        measures += [Measure(f"{name}.{f.name}", f.value, f.low, f.high, f.unit) for f in found]
-    return measures
+    """Alignment with music of a metre, a timbre and tempi that no training song has."""
+    n, dancer = stage.size.songs, stage.dancer("dancer")
+    measures, shares = [], []
+    for k, (name, changes) in enumerate(UNHEARD.items()):
+        seed = UNSEEN + 2 + k
+        made = [recorded_song(song, seed) for song in songs(n, seed, SECONDS, **changes)]
+        measures += _named(name, _heard(dancer, danced_by_the_data(made, 1, TRAINED, seed))[0])
+    for k, (name, tempi) in enumerate(KEPT_OUT.items()):
+        seed = UNSEEN + 2 + len(UNHEARD) + k
+        heard = judged_songs(n, 1, TRAINED, seed, variety=replace(JUDGED, tempi=tempi))
+        found, rows = _heard(dancer, heard)
+        measures += _named(name, found)
+        shares.append(rows)
+    return [*measures, worst_share("unheard_tempo_worst_share", shares)]
+
+
+def _heard(dancer: Dancer, heard: Songs) -> tuple[list[Measure], list[np.ndarray]]:
+    """The measures of beats, and the rows of `share` behind them."""
+    beats = heard.beats(TRAINED)
+    made = dances_of(dancer, heard.mel, TRAINED, seed=0)
+    own, data = rows_of(made[None], beats), rows_of(heard.truth[:, 0][None], beats)
+    return beat_measures(own, data), [
+        rows[name] for rows in (own, data) for name in ("bas", "bas_shuffled")
+    ]
+
+
+def _named(name: str, found: list[Measure]) -> list[Measure]:
+    return [replace(one, name=f"unheard.{name}.{one.name}") for one in found]
+
+
+def data_records(stage: Stage, command: str) -> list[dict]:
+    """The records of the data's own dances to the songs: how they use the floor."""
+    seeds = {"data": UNSEEN, "songs": stage.size.songs}
+    found = data_floor_measures(stage.songs.truth[:, 0], stage.songs.genres)
+    return [measure.as_record("dance_data.", seeds, command) for measure in found]
 
 
 def dance_records(stage: Stage, part: str, command: str) -> list[dict]:
     """The records of a part: "dancer", "dancer-plain", "regression", or "unheard"."""
     unheard = part == "unheard"
     measures = unheard_measures(stage) if unheard else dancer_measures(stage, part)
+    return as_records(stage, DANCES[part], measures, "dancer." if unheard else f"{part}.", command)
+
+
+def as_records(
+    stage: Stage, name: str, measures: list[Measure], prefix: str, command: str
+) -> list[dict]:
+    """The measures of the weights of this name as records."""
     seeds = {
         "data": UNSEEN,
         "songs": stage.size.songs,
         "sampling": list(range(stage.size.seeds)),
         "steps": STEPS,
     }
-    seeds["weights"] = weights_digest(stage.weights[DANCES[part]])
-    prefix = "dancer.unheard." if unheard else f"{part}."
+    seeds["weights"] = weights_digest(stage.weights[name])
     return [measure.as_record(prefix, seeds, command) for measure in measures]

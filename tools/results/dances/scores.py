@@ -97,6 +97,16 @@ def share(own, own_shuffled, data, data_shuffled) -> float:
     )
 
 
+def worst_share(name: str, groups: list[list[np.ndarray]]) -> Measure:
+    """The smallest `share` of several groups of as many songs; rows as `share` takes them."""
+    size = len(groups[0])
+
+    def smallest(*rows: np.ndarray) -> float:
+        return min(share(*rows[k : k + size]) for k in range(0, len(rows), size))
+
+    return measure_of(name, "ratio", smallest, *(rows for group in groups for rows in group))
+
+
 def longer(name: str, long: list[np.ndarray], short: list[np.ndarray]) -> Measure:
     """`share` of long dances over that of short ones; rows as `share` takes them."""
     return measure_of(

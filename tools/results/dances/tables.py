@@ -7,6 +7,7 @@ from motiondiff_edu.performers.dancer import ETA, STEPS
 
 from ..page.markdown import cell, number, table
 from .budget import FULL, VARIANTS
+from .guided import WEIGHTS
 from .timing import BASE, TIMED
 
 # BAS, FID, Div, MModality: MoFusion (Dabral et al., CVPR 2023), Table 1, AIST++
@@ -31,6 +32,7 @@ SHIPPED_ROWS = {
     "regression": "regression, shipped",
     "dancer-plain": "MoFusion, no kinematic losses, shipped",
     "dancer": "MoFusion, weighted by alpha_bar, shipped",
+    "dancer.guided.1": "the same without guidance",
 }
 STORED, ANEW = "`make results FULL=1`; stored", "`make results`"
 SHOWN = (
@@ -89,7 +91,7 @@ def table_1(records: dict[str, dict]) -> str:
         "same steps",
     )
     rows += _block(records, SHIPPED_ROWS, "shipped weights")
-    return TABLE_1 + table([*head, "made by"], rows)
+    return TABLE_1 + table([*head, "made by"], rows) + guidance(records) + floor(records)
 
 
 def _block(records: dict[str, dict], names: dict[str, str], what: str) -> list[list[str]]:
@@ -118,6 +120,41 @@ def _of_data(records: dict[str, dict], names: list[str], kind: str) -> str:
     return (
         "1" if kind == "bas_share" else cell(next((one for one in found if one), None), unit=False)
     )
+
+
+def guidance(records: dict[str, dict]) -> str:
+    """What the weight of guidance gains and costs; nothing where it was not measured."""
+    rows = [
+        [number(w), *(cell(records.get(f"dancer.guided.{w}.{kind}"), unit=False) for kind in SHOWN)]
+        for w in WEIGHTS
+        if f"dancer.guided.{w}.bas_share" in records
+    ]
+    if not rows:
+        return ""
+    text = (
+        "\nThe shipped dancer at several weights of guidance; 1 is none. A larger weight follows "
+        "the music more closely, and dances to one song differ less.\n\n"
+    )
+    return text + table(["weight", *(f"`{kind}`" for kind in SHOWN)], rows)
+
+
+def floor(records: dict[str, dict]) -> str:
+    """How the data's dances use the floor, genre by genre; nothing where it was not measured."""
+    kinds = ("standing_feet", "turn_8s_deg", "travel_mps")
+    genres = [n.split(".")[1] for n in records if n.startswith("dance_data.") and n.count(".") > 1]
+    places = {"mean over genres": "", **{genre: f"{genre}." for genre in dict.fromkeys(genres)}}
+    if "dance_data.standing_feet" not in records:
+        return ""
+    rows = [
+        [who, *(cell(records.get(f"dance_data.{place}{kind}"), unit=False) for kind in kinds)]
+        for who, place in places.items()
+    ]
+    text = (
+        "\nHow the data's own dances use the floor. A foot stands while its ankle is slower than "
+        "0.3 m/s and low. The angle turned is that between the outermost directions which the "
+        "figure faces within 8 s.\n\n"
+    )
+    return text + table(["the data's dances", *(f"`{kind}`" for kind in kinds)], rows)
 
 
 def choices(records: dict[str, dict]) -> str:

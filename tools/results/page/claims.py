@@ -119,9 +119,9 @@ CLAIMS = (
         **KNOWN,
     ),
     Claim(
-        "the dancer dances to a tempo that was not in training",
+        "the dancer dances to tempi that were not in training (the worse of two ranges)",
         "1",
-        "dancer.unheard.tempo70.bas_share",
+        "dancer.unheard_tempo_worst_share",
         1,
         **KNOWN,
     ),

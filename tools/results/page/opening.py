@@ -13,6 +13,7 @@ from .words import GOALS
 GROUPS = {
     "The walker": (("walker.",), "walker.bone_rmse_cm"),
     "The dancer": (("dancer.", "regression."), "dancer.bas_share"),
+    "The data's dances": (("dance_data.",), "dance_data.standing_feet"),
     "Diffusion dropout and reconstruction": (("mend.",), "mend.frames_rmse_over_interpolation"),
     "Words": (("words.",), "words.action_accuracy"),
     "In-betweens": (("inbetween.",), "inbetween.gap30_error_over_interpolation"),

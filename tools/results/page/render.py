@@ -219,6 +219,7 @@ def others(records: dict[str, dict]) -> str:
         "dance-time.",
         "attention.",
     )
+    shown += ("dancer.guided.", "dance_data.")
     shown += ("mend", "words.", "words-budget.", "known-answer.", "inbetween.")
     shown += ("inbetween-departures.", "real.")
     rest = [one for name, one in sorted(records.items()) if not name.startswith(shown)]

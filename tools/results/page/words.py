@@ -44,6 +44,24 @@ GOALS = {
     "regression.multimodality": "the variety of the regression's dances to one song",
     "dancer.long200_over_100": "the beat alignment of dances of 10 s, over that of 5 s",
     "dancer.long400_over_100": "the beat alignment of dances of 20 s, over that of 5 s",
+    "dancer.turning_over_data": "the angle that the dances turn within 8 s, over that of the data",
+    "dancer.travel_over_data": "the speed at which the dances travel, over that of the data",
+    "dancer.standing_feet_over_data": (
+        "the share of frames in which a dancing foot stands, over that of the data"
+    ),
+    "dancer.genre_accuracy_over_data": (
+        "how often a classifier recognises the genre of a dance, over that of the data's dances"
+    ),
+    "dancer.unheard_tempo_worst_share": (
+        "the beat alignment at tempi kept out of training beyond chance, over that of the data "
+        "(the worse of two ranges)"
+    ),
+    "dance_data.standing_feet": (
+        "the share of frames in which a foot of the data's dances stands (mean over genres)"
+    ),
+    "dance_data.turn_8s_deg": (
+        "the degrees that the data's dances turn within 8 s (mean over genres)"
+    ),
     "player.audio_offset_ms": "the player's offset between sound and picture (95th percentile)",
     "bench.unet_sampling_n64_x": "the U-Net's speed of sampling 64 frames, over lucidrains' Unet1D",
     "bench.unet_sampling_n200_x": (
@@ -225,6 +243,10 @@ KINDS = {
     "beats_per_beat_over_data": "stops for each beat, over the data's",
     "multimodality_over_data": "variety for one song, over the data's",
     "fid": "Fréchet distance (FID)",
+    "speed_mps": "speed",
+    "standing_feet": "share of frames in which a foot stands",
+    "turn_8s_deg": "degrees turned within 8 s",
+    "travel_mps": "speed of travel",
     "r_precision_top1": "R-Precision, top 1",
     "r_precision_top2": "R-Precision, top 2",
     "r_precision_top3": "R-Precision, top 3",

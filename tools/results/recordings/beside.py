@@ -13,6 +13,11 @@ MEASURED = {
         "error of the control": "real.continuation_adherence_mps",
         "the fastest joint at the seam over the fastest around it": "real.seam_over_motion",
     },
+    "dancer": {
+        "beat alignment beyond that of the same dances shifted in time, over a few songs": (
+            "real.music_gain"
+        ),
+    },
     "mend": {
         "error of an arm that is missing for a second, over straight lines', in walks": (
             "real.reconstruction_arm_walks_over_lines"

@@ -38,6 +38,11 @@ RECONSTRUCTED = {
     "leg_walks_over_lines": "a leg, in walks and runs",
     "leg_others_over_lines": "a leg, in all other motions",
 }
+MUSIC = {
+    "music_gain": "gain in beat alignment",
+    "music_alignment": "beat alignment",
+    "music_alignment_shifted": "the same, shifted in time",
+}
 SECONDS = {  # between keyframes: beginnings of the names
     "0.25 s": "real.gap5.inbetween_",
     "0.5 s": "real.gap10.inbetween_",
@@ -48,8 +53,9 @@ SECONDS = {  # between keyframes: beginnings of the names
 
 
 def section(records: dict[str, dict]) -> str:
-    """Continuations, reconstructions and in-betweens of recordings."""
-    parts = continued(records), reconstructed(records), filled_in(records), trainings_table(records)
+    """Continuations, reconstructions and in-betweens of recordings, and dances to music."""
+    parts = [continued(records), reconstructed(records), filled_in(records)]
+    parts += [trainings_table(records), danced(records)]
     return "## On recordings\n\n" + "\n\n".join(parts)
 
 
@@ -82,6 +88,28 @@ def filled_in(records: dict[str, dict]) -> str:
         "The intervals are over files.\n\n"
     )
     return text + measures(records, FILLED, "a keyframe every", SECONDS)
+
+
+def danced(records: dict[str, dict]) -> str:
+    """Dances to recordings of music, and how few songs these are."""
+    gain = records.get("real.music_gain")
+    if gain is None:
+        return "Dances to recorded music are not measured yet.\n"
+    seeds = gain["seeds"]
+    text = (
+        f"The dancer dances to {seeds['songs']} recordings of music, which are few: the interval "
+        "is over songs, and another song can change the mean by much. The beats of "
+        f"{seeds['annotated']} of them are read from a file, the others found by a tracker. The "
+        "gain is the alignment of a dance's stops with the beats, minus that of the same dance "
+        "moved in time within the song: 0 for a dancer that does not hear. The gain of one song "
+        "has its interval over dances.\n\n"
+    )
+    rows = MUSIC | {
+        name.removeprefix("real."): f"gain, {name.removeprefix('real.music_gain.')}"
+        for name in records
+        if name.startswith("real.music_gain.")
+    }
+    return text + measures(records, rows, "", {"as shipped": "real."})
 
 
 def trainings_table(records: dict[str, dict]) -> str:
