@@ -13,13 +13,11 @@ from scipy.interpolate import CubicSpline
 from scipy.ndimage import gaussian_filter1d
 from scipy.signal import argrelmin, welch
 
+from motiondiff_edu.metrics.dance_floor import standing_feet, travel, turning
 from motiondiff_edu.metrics.repetition import autocorrelation
 from motiondiff_edu.motion.skeleton import HEELS, joint_index
 
 SMOOTHING = 0.083  # seconds, of the mean joint speed before its minima are taken
-STANDS = 0.15  # m/s: a Foot joint that is slower stands; a foot that rolls or turns is faster
-WINDOW = 8.0  # seconds, within which a turn is measured: four bars at 120 beats a minute
-STEADY = 0.25  # seconds, of the hips' path before its speed is taken: a walk, not a sway
 FINE = 3  # the speed is resampled this many times finer before its minima are timed
 
 
@@ -56,16 +54,6 @@ def looks_planted(world: Float[np.ndarray, "T 21 3"], fps: float) -> Bool[np.nda
     return (speed < 0.3) & (foot[1:-1, :, 1] < np.percentile(foot[..., 1], 10, axis=0) + 0.06)
 
 
-def standing_feet(world: Float[np.ndarray, "T 21 3"], fps: float = 20.0) -> float:
-    """Share of time, meaned over both feet, in which a Foot joint is slower than STANDS.
-
-    Two dances of CMU have 0.33 and 0.31; a figure that stands has 1.
-    """
-    foot = world[:, list(HEELS)]
-    speed = np.linalg.norm(foot[2:] - foot[:-2], axis=-1) * fps / 2
-    return float((speed < STANDS).mean())
-
-
 def facing(world: Float[np.ndarray, "T 21 3"], fps: float) -> Float[np.ndarray, "T"]:
     """Direction (radians to the left of z, without jumps) that hips and shoulders face.
 
@@ -73,27 +61,6 @@ def facing(world: Float[np.ndarray, "T 21 3"], fps: float) -> Float[np.ndarray, 
     """
     left = _across(world, fps)
     return np.unwrap(np.arctan2(-left[:, 1], left[:, 0]))
-
-
-def turn_8s(world: Float[np.ndarray, "T 21 3"], fps: float = 20.0) -> float:
-    """Degrees between the leftmost and the rightmost facing within WINDOW seconds.
-
-    The mean over all windows; a motion that is shorter is one window. Two dances of CMU have
-    1443 and 259.
-    """
-    heading = np.degrees(facing(world, fps))
-    frames = min(round(WINDOW * fps), len(heading))
-    windows = np.lib.stride_tricks.sliding_window_view(heading, frames)
-    return float(np.ptp(windows, axis=-1).mean())
-
-
-def travel(world: Float[np.ndarray, "T 21 3"], fps: float = 20.0) -> float:
-    """Mean speed over the floor, in m/s, of the hips' path smoothed by STEADY seconds.
-
-    Two dances of CMU have 0.46 and 0.53.
-    """
-    path = gaussian_filter1d(world[:, 0, [0, 2]], STEADY * fps, axis=0, mode="nearest")
-    return float(np.linalg.norm(np.diff(path, axis=0), axis=-1).mean() * fps)
 
 
 def _across(world: Float[np.ndarray, "T 21 3"], fps: float) -> Float[np.ndarray, "T 2"]:
@@ -150,6 +117,6 @@ def statistics(world: Float[np.ndarray, "T 21 3"], fps: float = 20.0) -> dict[st
         "jerk": float(np.linalg.norm(np.diff(world, 3, axis=0), axis=-1).mean() * fps**3),
         "power4": float(power[f <= 4].sum() / power.sum()),
         "standing_feet": standing_feet(world, fps),
-        "turn_8s": turn_8s(world, fps),
+        "turn_8s": turning(world, fps),
         "travel": travel(world, fps),
     }
