@@ -78,22 +78,22 @@ class KeyframeRecipe(DanceRecipe):
 
 @dataclass(frozen=True)
 class SongRecipe(DanceRecipe):
-    """A training run on songs like real ones, with an ear that is trained first.
+    """A training run on songs like real ones, usually with an ear that is trained first.
 
     Raises ValueError for a regression that is to dance without music, too (it has one dance only),
-    and for an ear of other sizes than the network's.
+    and for an ear that does not fit the network.
     """
 
     no_music: float = 0.0  # share of the music left out: `beyond.classifier_free`
-    ear: EarRecipe = EAR
+    ear: EarRecipe | None = EAR
 
     def __post_init__(self):
         if self.no_music and getattr(self.config, "deterministic", False):
             raise ValueError("no_music: a regression cannot be guided, so it always has its music")
-        if self.ear.config != self.config.ear:
-            raise ValueError(
-                f"ear: the network is made for {self.config.ear}, not {self.ear.config}"
-            )
+        own = getattr(self.config, "ear", None)
+        given = self.ear.config if self.ear else None
+        if own != given:
+            raise ValueError(f"ear: the network is made for {own}, not for {given}")
 
 
 X0 = replace(MOFUSION_SMALL, target="x0", skip=False)

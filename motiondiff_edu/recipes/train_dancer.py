@@ -172,7 +172,7 @@ def train_dancer(
     torch.manual_seed(recipe.seed)
     model = network(config)
     about = {"network": type(model).__name__, "data": digest(windows)}
-    if isinstance(recipe, SongRecipe):
+    if getattr(recipe, "ear", None):
         model.ear.load_state_dict(ear_of(recipe, run_file, log).state_dict())
         about["ear"] = digest_of_tensors(model.ear.state_dict())[:16]
     made_of = "mixed" if recipe.motions else "music.varied and data_synth.dancing"

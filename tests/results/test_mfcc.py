@@ -10,12 +10,15 @@ import pytest
 import torch
 from scipy.fft import dct
 
-from data_synth.music import compose, songs
+from data_synth.music import compose
 from motiondiff_edu.conditions.music import log_mel
 from motiondiff_edu.recipes.dancers import DANCER
+from motiondiff_edu.recipes.songs import training_songs
 from motiondiff_edu.recipes.train_dancer import training_windows
 from tools.results.dances.mfcc import marks, mfcc_and_beats, with_music_features
 from tools.results.dances.songs import mel_of
+
+DATA = (1, 8.0)  # seed and seconds
 
 
 def test_marks_keep_the_time_of_each_beat():
@@ -51,19 +54,20 @@ def test_coefficients_are_the_cosine_transform_of_the_log_mel():
 
 
 def test_the_same_windows_with_other_ears():
-    recipe = replace(DANCER, songs=2, seconds=8.0, frames=40)
+    seed, seconds = DATA
+    recipe = replace(DANCER, songs=2, data_seed=seed, seconds=seconds, frames=40)
     windows = training_windows(recipe)
-    other = with_music_features(windows, mfcc_and_beats, 2, recipe.data_seed, recipe.seconds)
+    other = with_music_features(windows, mfcc_and_beats, training_songs(2, *DATA))
     assert torch.equal(other.dances, windows.dances) and torch.equal(
         other.song_starts, windows.song_starts
     )
     assert other.mel.shape == (len(windows.mel), 22)
-    back = with_music_features(other, mel_of, 2, recipe.data_seed, recipe.seconds)
+    back = with_music_features(other, mel_of, training_songs(2, *DATA))
     torch.testing.assert_close(back.mel, windows.mel)
-    second = list(songs(2, recipe.data_seed, recipe.seconds))[1]
+    second = list(training_songs(2, *DATA))[1]
     frames = len(mfcc_and_beats(second))
     torch.testing.assert_close(
         other.mel_scaler.inverse(other.mel[-frames:]), mfcc_and_beats(second), atol=1e-3, rtol=0
     )
     with pytest.raises(ValueError, match="251 frames of features do not fit windows of 502"):
-        with_music_features(windows, mfcc_and_beats, 1, recipe.data_seed, recipe.seconds)
+        with_music_features(windows, mfcc_and_beats, training_songs(1, *DATA))

@@ -4,7 +4,8 @@
 
 Parts: walker, walker-plain, walker-printed, walker-eps, walker-ddim10, walker-lookahead,
 walker-eps-lookahead, footsteps; dancer, dancer-plain, regression, unheard (music like none in
-training), guided (weights of guidance), dance-data (the data's own dances), attention, dance-time;
+training), guided (weights of guidance), ear (what the dancer hears, beside a beat tracker),
+dance-data (the data's own dances), attention, dance-time;
 mend (dropout and repairs), mend-both (both papers' repairs), inbetween, inbetween-departures (what
 each is worth), known-answer (methods of filling in, on tasks whose answer is a formula); words
 (motion from text: Table 2, captions that nobody trained for, editing); course (the checks of the
@@ -35,6 +36,7 @@ from .dances import budget as dance_budget
 from .dances import real_music
 from .dances.attention import attention_picture, attention_records
 from .dances.guided import guided_records
+from .dances.hearing import hearing_records
 from .dances.parts import (
     DANCE_FULL,
     DANCE_QUICK,
@@ -83,6 +85,7 @@ MENDED = {  # parts that need these weights
     "inbetween-departures": {FILLS_IN, MASKED},
     "words": {"mover"},
     "guided": {"dancer"},
+    "ear": {"dancer"},
 }
 TRAINED = {
     "ladder": ("pace", "rates", *ladder.CELLS),
@@ -243,6 +246,8 @@ def records_of(
         )
     if part == "guided":
         return guided_records(stage, command)
+    if part == "ear":
+        return hearing_records(stage, command)
     if part == "dance-data":
         return data_records(stage, command)
     if part == "words":

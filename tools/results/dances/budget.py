@@ -21,11 +21,14 @@ from motiondiff_edu.performers.dance_windows import DanceWindows
 from motiondiff_edu.performers.dancer import ETA, STEPS, Dancer
 from motiondiff_edu.recipes.dancers import (
     DANCER_PLAIN,
+    HEARING,
     KINEMATIC,
     X0,
     DanceLossWeights,
-    DanceRecipe,
+    SongRecipe,
 )
+from motiondiff_edu.recipes.ear import EAR
+from motiondiff_edu.recipes.songs import training_songs
 from motiondiff_edu.recipes.train_dancer import train_dancer, training_windows
 
 from ..walks.scores import Measure
@@ -36,7 +39,7 @@ from .songs import UNSEEN, mel_of
 
 LIKE = (
     "target x0, shifted schedule, no kinematic losses, changes weighted 5, feet 0.2, "
-    "convolutions over the Mel"
+    "convolutions over the Mel, no ear, always with music"
 )
 KIN = {
     name: {"kinematic": replace(KINEMATIC, over_time=name)}
@@ -78,6 +81,7 @@ VARIANTS = {
     "slide": ("a foot loss of 2", "alpha_bar", X0, {"kinematic": replace(KINEMATIC, slide=2.0)}),
     "cosine": ("the cosine schedule as it is", "x0", X0, {"snr": 1.0}),
     "gain-noise": ("music as from different loudspeakers", "x0", X0, {"gain_noise": 0.3}),
+    "ear": ("an ear that was taught first", "x0", HEARING, {"ear": EAR}),
     "linear-music": ("one linear layer for the music", "x0", replace(X0, music_layers=0), {}),
     "transformer": ("a plain transformer of equal size", "x0", PLAIN, {}),
     "mfcc": ("MFCC and the true beats instead of Mel", "x0", replace(X0, C=CHANNELS), {}),
@@ -109,13 +113,14 @@ FULL = Budget()
 QUICK = Budget(steps=3, songs=2, seconds=8.0, batch=3, save_every=2, measured=DanceSize(3, 1, 2, 2))
 
 
-def recipe_of(name: str, budget: Budget) -> DanceRecipe:
+def recipe_of(name: str, budget: Budget) -> SongRecipe:
     """The training of one variant, as `recipes.train_dancer` understands it."""
     _, _, config, settings = VARIANTS[name]
     sizes = {
         key: getattr(budget, key) for key in ("steps", "songs", "seconds", "batch", "save_every")
     }
-    settings = sizes | {"config": config, "gain_noise": 0.0} | settings
+    plain = {"config": config, "gain_noise": 0.0, "no_music": 0.0, "ear": None}
+    settings = sizes | plain | settings
     return replace(DANCER_PLAIN, name=f"dance-budget.{name}", **settings)
 
 
@@ -126,7 +131,9 @@ def material(name: str, budget: Budget) -> DanceWindows:
     if not name:
         return training_windows(recipe)
     return with_music_features(
-        material("", budget), MUSIC_FEATURES[name], recipe.songs, recipe.data_seed, recipe.seconds
+        material("", budget),
+        MUSIC_FEATURES[name],
+        training_songs(recipe.songs, recipe.data_seed, recipe.seconds),
     )
 
 

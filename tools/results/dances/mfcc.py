@@ -4,13 +4,13 @@ Here the beats are the song's true ones, which are better than any tracker's.  S
 names the alternative
 """
 
+from collections.abc import Iterable
 from dataclasses import replace
 
 import numpy as np
 import torch
 from jaxtyping import Float
 
-from data_synth.music import songs
 from data_synth.music.song import Song
 from motiondiff_edu.conditions.music import (
     BANDS,
@@ -55,16 +55,14 @@ def marks(times: Float[np.ndarray, "K"], frames: int) -> Float[np.ndarray, "{fra
     return row[:frames]
 
 
-def with_music_features(
-    windows: DanceWindows, hear: Hear, count: int, seed: int, seconds: float
-) -> DanceWindows:
+def with_music_features(windows: DanceWindows, hear: Hear, songs: Iterable[Song]) -> DanceWindows:
     """The same windows of the same dances, with other features of their music.
 
-    The music is that of `songs(count, seed, seconds)`.
+    `songs` are those of the windows, in their order.
 
     Raises ValueError unless there are as many frames as in the Mel spectrograms.
     """
-    features = torch.cat([hear(song) for song in songs(count, seed, seconds)])
+    features = torch.cat([hear(song) for song in songs])
     if len(features) != len(windows.mel):
         raise ValueError(
             f"{len(features)} frames of features do not fit windows of {len(windows.mel)}"

@@ -151,10 +151,28 @@ def floor(records: dict[str, dict]) -> str:
     ]
     text = (
         "\nHow the data's own dances use the floor. A foot stands while its ankle is slower than "
-        "0.3 m/s and low. The angle turned is that between the outermost directions which the "
+        "0.15 m/s. The angle turned is that between the outermost directions which the "
         "figure faces within 8 s.\n\n"
     )
     return text + table(["the data's dances", *(f"`{kind}`" for kind in kinds)], rows)
+
+
+def hearing(records: dict[str, dict]) -> str:
+    """What the dancer's ear hears, beside a beat tracker."""
+    kinds = ("beats_f", "tracker_f", "beats_f_over_tracker", "downbeats_f", "genre_accuracy")
+    text = (
+        "## What the dancer hears\n\nThe ear of the shipped dancer was taught beat, bar and genre "
+        "by songs alone, before it danced (`beyond/hearing.py`). F-measures of beats within 0.07 s, "
+        "of songs that it never heard; `tracker_f` is that of librosa's tracker, which also says "
+        "half or double the tempo.\n\n"
+    )
+    if "ear.beats_f" not in records:
+        return text + "Not measured yet.\n"
+    rows = [
+        [who, *(cell(records.get(f"ear.{place}{kind}"), unit=False) for kind in kinds)]
+        for who, place in (("tempi of training", ""), ("66-74 and 146-154 BPM", "kept_out."))
+    ]
+    return text + table(["songs", *(f"`{kind}`" for kind in kinds)], rows)
 
 
 def choices(records: dict[str, dict]) -> str:

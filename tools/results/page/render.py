@@ -9,7 +9,7 @@ from pathlib import Path
 from motiondiff_edu._files import replacing
 from motiondiff_edu.recipes.walkers import WALKER_PRINTED
 
-from ..dances.tables import choices, table_1
+from ..dances.tables import choices, hearing, table_1
 from ..inbetweens import known_tables
 from ..recordings import page as recordings
 from ..recordings.beside import with_recordings
@@ -219,7 +219,7 @@ def others(records: dict[str, dict]) -> str:
         "dance-time.",
         "attention.",
     )
-    shown += ("dancer.guided.", "dance_data.")
+    shown += ("dancer.guided.", "dance_data.", "ear.")
     shown += ("mend", "words.", "words-budget.", "known-answer.", "inbetween.")
     shown += ("inbetween-departures.", "real.")
     rest = [one for name, one in sorted(records.items()) if not name.startswith(shown)]
@@ -241,6 +241,7 @@ def render(docs: Path, benchmarks: Path = Path("benchmarks/results")) -> None:
         ladder_page.section(records, docs / "results"),
         with_recordings(table_1(records), "dancer", records),
         folded(choices(records), "What training and dancing cost in time"),
+        hearing(records),
         attention(records, docs / "results"),
     ]
     tables.draw(records, docs / "results")
