@@ -162,9 +162,9 @@ def hearing(records: dict[str, dict]) -> str:
     kinds = ("beats_f", "tracker_f", "beats_f_over_tracker", "downbeats_f", "genre_accuracy")
     text = (
         "## What the dancer hears\n\nThe ear of the shipped dancer was taught beat, bar and genre "
-        "by songs alone, before it danced (`beyond/hearing.py`). F-measures of beats within 0.07 s, "
-        "of songs that it never heard; `tracker_f` is that of librosa's tracker, which also says "
-        "half or double the tempo.\n\n"
+        "by songs alone, before it danced (`beyond/hearing.py`). F-measures of beats within 0.07 "
+        "s, of songs that it never heard; `tracker_f` is that of librosa's tracker, which also "
+        "says half or double the tempo.\n\n"
     )
     if "ear.beats_f" not in records:
         return text + "Not measured yet.\n"
