@@ -1,4 +1,4 @@
-"""Networks that hear with an ear: MoFusion, and the transformer of the regression.
+"""MoFusion with an ear, and what any network with an ear has (`baselines/hearing_transformer.py`).
 
 Their music is that of their own encoder, plus a linear layer of the ear's tokens. The ear does not
 change while they learn to dance.
@@ -11,7 +11,6 @@ import torch
 from jaxtyping import Bool, Float
 from torch import Tensor, nn
 
-from ..baselines.transformer import DanceTransformer, TransformerConfig
 from ..fast.mofusion import FastMoFusion
 from ..mofusion import MoFusion, MoFusionConfig, Music
 from .ear import Ear, EarConfig
@@ -33,14 +32,6 @@ class EarSizes:
 @dataclass(frozen=True)
 class HearingConfig(EarSizes, MoFusionConfig):
     """MoFusion's sizes, and those of its ear."""
-
-    ear_width: int = 96
-    ear_blocks: int = 4
-
-
-@dataclass(frozen=True)
-class HearingTransformerConfig(EarSizes, TransformerConfig):
-    """The transformer's sizes, and those of its ear."""
 
     ear_width: int = 96
     ear_blocks: int = 4
@@ -75,13 +66,4 @@ class HearingMoFusion(WithEar, MoFusion):
         self.with_ear(config.ear, self.music.project.out_features)
 
 
-class HearingTransformer(WithEar, DanceTransformer):
-    """The transformer of `baselines.transformer` with an ear."""
-
-    def __init__(self, config: HearingTransformerConfig):
-        super().__init__(config)
-        self.with_ear(config.ear, config.width)
-
-
 register("dancer", HearingMoFusion, HearingConfig, fast=FastMoFusion)
-register("dancer", HearingTransformer, HearingTransformerConfig)

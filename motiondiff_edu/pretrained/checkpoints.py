@@ -15,11 +15,16 @@ import torch
 from safetensors import safe_open
 from torch import Tensor, nn
 
-from ..baselines import text, transformer  # noqa: F401  they register their networks
+from ..baselines import (  # noqa: F401  they register their networks
+    hearing_transformer,
+    text,
+    transformer,
+)
 from ..conditions.clip import Clip, ClipError
 from ..conditions.clip import load as load_clip
 from ..ddpm import make_schedule
 from ..motion.scaler import Scaler
+from ..performers import hearing_mofusion  # noqa: F401
 from ..performers.dancer import Dancer
 from ..performers.mover import Mover
 from ..performers.networks import kind_of, networks_of

@@ -6,10 +6,11 @@ Notebook: 13
 
 from dataclasses import dataclass, replace
 
+from ..baselines.hearing_transformer import HearingTransformerConfig
 from ..baselines.transformer import TransformerConfig
 from ..kinematic_loss import KinematicWeights
 from ..mofusion import MOFUSION_FULL, MOFUSION_SMALL, MoFusionConfig
-from ..performers.hearing_mofusion import HearingConfig, HearingTransformerConfig
+from ..performers.hearing_mofusion import HearingConfig
 from ..performers.keyframe_mofusion import KeyframeConfig
 from .ear import EAR, EarRecipe
 

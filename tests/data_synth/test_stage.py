@@ -12,10 +12,13 @@ from data_synth.dancing.stage import ROOM, Stage, Way, way
 def test_a_way_leads_over_the_stage_and_stays_there():
     rng = np.random.default_rng(0)
     stage = Stage(0.15, (45.0, 90.0), 0.1)
-    here, before, reached = np.zeros(2), 0.0, []
+    here = (0.0, 0.0)
+    before, reached = 0.0, []
     for _ in range(300):
         one = way(stage, here, 8, 4, before, 1.0, rng)
-        here, before = here + one.travelled(8), one.turn[-1]
+        x, z = one.travelled(8)
+        here = (here[0] + x, here[1] + z)
+        before = one.turn[-1]
         reached.append(here)
         assert np.hypot(*one.travel) <= 8 * 0.15 + 1e-9 and 0 <= one.low <= 0.1
         assert abs(np.degrees(one.turned(8))) in (pytest.approx(90.0), pytest.approx(180.0))

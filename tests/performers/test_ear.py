@@ -4,17 +4,16 @@ import pytest
 import torch
 
 from data_synth.music.song import GENRES as SONG_GENRES
+from motiondiff_edu.baselines.hearing_transformer import (
+    HearingTransformer,
+    HearingTransformerConfig,
+)
 from motiondiff_edu.cross_modal_attention import angles_of
 from motiondiff_edu.ddpm import cosine_schedule
 from motiondiff_edu.motion.scaler import Scaler
 from motiondiff_edu.performers.dancer import Dancer
 from motiondiff_edu.performers.ear import GENRES, LONGEST, Ear, EarConfig, in_parts
-from motiondiff_edu.performers.hearing_mofusion import (
-    HearingConfig,
-    HearingMoFusion,
-    HearingTransformer,
-    HearingTransformerConfig,
-)
+from motiondiff_edu.performers.hearing_mofusion import HearingConfig, HearingMoFusion
 from motiondiff_edu.pretrained.checkpoints import load_dancer, save
 
 SMALL = EarConfig(C=5, width=16, heads=2, blocks=2, music_layers=1)
