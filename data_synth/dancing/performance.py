@@ -22,9 +22,10 @@ from ..walking.footsteps import TOE_AHEAD
 from .body import dancer
 from .choreography import choreograph
 from .curves import curve, felt_beats, springy, within_reach
+from .follow import facing
 from .gaze import ahead_of_the_turn
 from .moves import MANNERS, Manner
-from .script import ARM, LENGTHS, REST, STANCE, Script, Step
+from .script import ARM, LENGTHS, REST, STANCE, Script, Step, Toe
 from .steps import Roll, Track, track
 from .waiting import counted_on
 
@@ -35,7 +36,6 @@ DAMPING, ARMS_LEAD = (
 )  # of the arms' spring; the share of its delay by which the arms start earlier
 ARMS = [f"{side}_{name}" for side in "lr" for name in ARM]
 FASTEST = 250.0  # degrees a second, on average between two keys, that an arm's angle may change
-Toe = tuple[float, float, float]  # x, z (metres) and direction (radians) of a planted toe
 START: tuple[Toe, Toe] = ((STANCE, TOE_AHEAD, 0.12), (-STANCE, TOE_AHEAD, -0.12))
 
 
@@ -146,8 +146,7 @@ def performed(
     )  # the arms' spring is late by this, so they start that much earlier
     early = np.interp(t + ARMS_LEAD * delay, seconds, number)
     channels = _channels(script, b, early, (seconds, number), manner, seed, rng)
-    heading = curve(b, script.keys["heading"], hold=0.0, flow=0.8)
-    heading = heading + curve(b, script.floor, hold=0.0, flow=1.0)
+    heading = facing(script, b)
     if manner.spots:
         head, chest = ahead_of_the_turn(heading, FPS)
         channels["look"], channels["twist"] = channels["look"] + head, channels["twist"] + chest

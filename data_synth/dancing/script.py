@@ -47,6 +47,9 @@ LENGTHS = ("weight", "sway", "surge", "drop")  # channels that are no angles
 STANCE = 0.10  # of an ankle from the middle, standing
 
 
+Toe = tuple[float, float, float]  # x, z (metres) and direction (radians) of a planted toe
+
+
 @dataclass(frozen=True)
 class Step:
     """One foot from `lift` to `land` (beats), to a toe place (x, z) and direction.

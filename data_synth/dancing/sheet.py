@@ -5,7 +5,7 @@ whole dance. It sees to the weight: before a foot lifts, the other one bears. An
 lengths in metres.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import cos, hypot, radians, sin
 
 import numpy as np
@@ -19,6 +19,8 @@ ARRIVED = 0.74  # share of the weight that a foot has at the count it lands on
 TOES_AHEAD = 0.4  # counts: a foot lands as the body will face by then, so that it need not twist
 SHIFT = 0.12  # counts between the landing of one foot and the lift of the next
 TOUCHED = -0.5  # share of the weight on a foot that only touches: it stays over the other one
+FLIGHT = 0.26  # beats that a step lasts, at least
+LATELY = 0.55  # beats: so long ago a foot landed that has no time for another step
 NEAREST, WIDEST = 0.13, 0.56  # metres between the toes when a step lands
 
 
@@ -37,7 +39,7 @@ class Flight:
     """How a foot goes through the air: metres up, counts on the way, degrees the toe points down.
 
     `scaled`: a long stride of the dancer's carries it farther. `after`: it waits until the other
-    foot has landed.
+    foot has landed. `instead`: where there is no time for it, the flight before goes there.
     """
 
     height: float
@@ -45,6 +47,7 @@ class Flight:
     kick: float = 0.0
     scaled: bool = True
     after: bool = False
+    instead: bool = False
 
 
 class Sheet:
@@ -133,7 +136,7 @@ class Sheet:
         `weight` is False.
         """
         side = 1 if foot == 0 else -1
-        flight = Flight(height, swing, after=weight)
+        flight = Flight(height, swing, after=weight, instead=True)
         lift = self._put(foot, count, x, z, turn, flight)
         if lift is None:
             return
@@ -229,15 +232,27 @@ class Sheet:
         lift = max(land - max(flight.swing * self.rate, 0.3), self.script.landed[real] + 0.25)
         if flight.after:
             lift = max(lift, self.script.down[1 - real] + SHIFT * self.rate)
-        if land - lift < 0.26:
-            return None
         toe = self._spread(real, px + TOE_AHEAD * sin(yaw), pz + TOE_AHEAD * cos(yaw)) + (yaw,)
+        if land - lift < FLIGHT:
+            return self._instead(real, toe, land) if flight.instead else None
         out = self._round_the_other(real, toe)
         height = flight.height * (0.6 + 0.4 * self.size)
         self.script.steps[real].append(Step(lift, land, *toe, height, out, flight.kick))
         self.script.toes[real], self.script.landed[real] = toe, land
         self.script.down[real] = land
         return lift
+
+    def _instead(self, foot: int, toe, land: float) -> float | None:
+        """There is no time for a step, so the last one of this foot, if it was just now, goes there.
+
+        The beat at which that one lifted; None if there was none, and the foot stays.
+        """
+        steps = self.script.steps[foot]
+        if not steps or steps[-1].pivot or land - steps[-1].land > LATELY:
+            return None
+        steps[-1] = replace(steps[-1], x=toe[0], z=toe[1], yaw=toe[2])
+        self.script.toes[foot] = toe
+        return steps[-1].lift
 
     def _spread(self, foot: int, x: float, z: float) -> tuple[float, float]:
         """A toe place brought to where the legs reach: NEAREST to WIDEST from the other toe."""
@@ -307,6 +322,11 @@ class Sheet:
         yaw = self.home(count)[2] + self.sign * radians(turn)
         self.script.steps[real].append(Step(lift, land, x, z, yaw, 0.0, pivot=True))
         self.script.toes[real], self.script.landed[real] = (x, z, yaw), land
+
+    def inward(self) -> int:
+        """1 if the middle of the stage lies ahead of home, -1 if it lies behind."""
+        x, z, heading = self.script.home
+        return 1 if x * sin(heading) + z * cos(heading) <= 0 else -1
 
     def foot(self, foot: int) -> int:
         """Which foot of the dancer's a move's left (0) or right (1) one is."""

@@ -53,7 +53,7 @@ class Way:
 
     def travelled(self, count: float) -> tuple[float, float]:
         """Metres, along x and z of the world, by a count."""
-        share = count / self.counts[-1]
+        share = min(max(count / self.counts[-1], 0.0), 1.0)
         return self.travel[0] * share, self.travel[1] * share
 
     def sunk(self, count: float) -> float:
@@ -78,7 +78,8 @@ def way(
     places = _places(rng)
     goal = places[int(np.argmax(np.hypot(*(places - here).T)))]
     gap = goal - here
-    far = min(stage.pace * size * counts / max(hypot(*gap), 1e-6), 1.0)
+    outside = max(hypot(*here) - ROOM, 0.0)  # the moves themselves can lead there
+    far = min((stage.pace * size * counts + outside) / max(hypot(*gap), 1e-6), 1.0)
     side = float(np.sign(before) or rng.choice([-1.0, 1.0]))
     side *= 1.0 if rng.random() < stage.stays else -1.0
     a_bar = side * np.radians(rng.choice(stage.turns)) * min(size, 1.0)

@@ -21,6 +21,8 @@ class Roll:
 
     The heel begins to rise `early` seconds before the foot lifts, and is `off` degrees up then; it
     lands `land` degrees up and is down `settle` seconds later. `pivot`: degrees up in a pivot.
+    `steepest`: whatever the move asks for, it stays below so many; with 54 the ankle is above the
+    ball.
     """
 
     early: float = 0.12
@@ -28,6 +30,7 @@ class Roll:
     land: float = 7.0
     settle: float = 0.1
     pivot: float = 7.0
+    steepest: float = np.inf
 
 
 @dataclass(frozen=True)
@@ -89,7 +92,16 @@ def track(
     ground = np.stack([x - TOE_AHEAD * np.sin(yaw), z - TOE_AHEAD * np.cos(yaw)], -1)
     toe = np.stack([x + detour[:, 0], y, z + detour[:, 1]], -1)
     degrees = _rolled(pitch, t) + np.where(planted, 1.0, 0.6) * heel
-    return Track(toe, yaw, np.radians(degrees), planted, ground)
+    return Track(toe, yaw, np.radians(_softly_below(degrees, roll.steepest)), planted, ground)
+
+
+def _softly_below(degrees: Float[np.ndarray, "T"], most: float) -> Float[np.ndarray, "T"]:
+    """The pitches, which grow less and less over the last quarter below `most`."""
+    if not np.isfinite(most):
+        return degrees
+    room = most / 4
+    over = np.maximum(degrees - (most - room), 0.0)
+    return np.minimum(degrees, most - room) + room * np.tanh(over / room)
 
 
 def _pitch(

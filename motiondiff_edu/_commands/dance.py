@@ -24,8 +24,8 @@ def arguments(parser: argparse.ArgumentParser) -> None:
         "--guidance",
         type=float,
         metavar="W",
-        help="above 1 the dance follows the music more closely; 1 is the network as the paper has "
-        "it, at half of the cost (default: 2)",
+        help="above 1 the dance follows the music more closely; 1 is no guidance, as in the paper, "
+        "at half of the cost (default: 2)",
     )
     outputs.add_out(parser)
     outputs.add_draws(parser, "dances")

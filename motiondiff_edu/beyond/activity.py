@@ -1,4 +1,4 @@
-"""Activity: who moves more between keyframes is also farther from straight lines between them.
+"""Activity: people who move more between keyframes are also farther from the lines between them.
 
     scale of a remainder = scale by the distance to what is given * activity
 A person who stands is a centimetre from the lines, one who dances is several times as far as usual.
@@ -27,7 +27,7 @@ from .around_lines import Shown, frames_since
 
 SPAN = 20  # frames, a second; with 10, sizes of motions differ a little more
 BLUR = 10.0  # frames, standard deviation of the average; with 20, sizes of single gaps differ more
-USUAL = 0.001  # weight of activity 1 beside what is given; a figure like stone has about 0.03
+USUAL = 0.001  # weight of activity 1 beside what is given; a motionless figure has about 0.03
 USED_AT_MOST = 1.0  # in use: lively people of recordings would be moved too far
 
 
@@ -47,7 +47,7 @@ def activity(lines: Float[Tensor, "B T D"], known: Bool[Tensor, "B T D"]) -> Flo
     or after the last given entry of a column is no evidence. Both means are over frames (`blurred`)
     and columns. 1 if nothing is given, or one frame alone.
     """
-    ahead, behind = around(lines.shape[1], lines.device)
+    ahead, behind = half_second_around(lines.shape[1], lines.device)
 
     def in_a_second(sums: Float[Tensor, "B T *D"]) -> Float[Tensor, "B T *D"]:
         return sums[:, ahead] - sums[:, behind]
@@ -70,7 +70,7 @@ def walked(lines: Float[Tensor, "B T D"], known: Bool[Tensor, "B T D"]) -> Float
     return torch.cat([torch.zeros_like(lines[:, :1]), steps.cumsum(1)], 1)
 
 
-def around(T: int, device: torch.device) -> tuple[Tensor, Tensor]:
+def half_second_around(T: int, device: torch.device) -> tuple[Tensor, Tensor]:
     """For each of T frames, the frame half a second later and earlier, within the motion."""
     frames = torch.arange(T, device=device)
     return (frames + SPAN // 2).clamp(max=T - 1), (frames - SPAN // 2).clamp(min=0)

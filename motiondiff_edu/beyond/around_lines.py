@@ -7,7 +7,7 @@ large as what is to be generated, near a keyframe and far from one; and the resu
 given entries without a jump. (The pelvis' path has no such bound: seconds after the last given
 frame it is many units away from its line.) A result that fails can be drawn nearer to the lines. If
 nothing is given, the lines are 0 and the scale is 1: the same network samples whole motions.
-`activity` can make the scale smaller for who hardly moves, and larger for who moves much.
+`activity` can make the scale smaller for people who hardly move, and larger for lively ones.
 Gain: docs/RESULTS.md: on recordings, `real.inbetween_over_interpolation`. On synthetic walks and
 dances a network that is guided instead is still nearer (`inbetween-departures.not-shown.*`).
 Source: masks in training after CondMDI (Cohan and others, 2024); lines and scale are ours.

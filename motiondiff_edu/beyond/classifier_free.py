@@ -6,9 +6,9 @@ closely; the result is no sample of the conditional any more. In training, some 
 out, so that one network is both. It costs two evaluations at every step.
 A mover that plans guides the timeline first. Where the text of the motion is left out, its timeline
 stays, in training too, so for the motion a larger w stresses what the timeline does not say.
-Gain: docs/RESULTS.md, *MoFusion's Table 2* (`words.guided.*`).
+Gain: docs/RESULTS.md, `dancer.guided.*` for music, `words.guided.*` for texts.
 Source: Ho and Salimans, 2022. Ours; MoFusion has no guidance.
-Notebook: 16
+Notebook: 12, 16
 """
 
 from dataclasses import replace

@@ -1,4 +1,4 @@
-"""Hearing: what a song's score says of its sound, and the same song heard otherwise.
+"""Hearing: what a song's score says of its sound, and how a song's Mel frames are augmented.
 
 A dancer learns to hear through its dances alone, and there the beat is a small part of the error.
 So an ear is taught first, from songs without dances: where in the beat and in the bar each moment
@@ -25,7 +25,7 @@ PAUSE = 1.75  # beats: in a longer gap between two beats there is none to be hea
 Ranges = tuple[tuple[float, float], ...]
 
 
-def counts(
+def beat_counts(
     times: Float[np.ndarray, "M"],
     beats: Float[np.ndarray, "K"],
     bar_position: Int[np.ndarray, "K"],
@@ -45,7 +45,7 @@ def counts(
     k = k.clip(0, len(lengths) - 1)
     inside &= lengths[k] < PAUSE * np.median(lengths)
     place = (times - beats[k]) / lengths[k]
-    steps = np.maximum((np.diff(bar_position) - 1) % metre + 1, 1)  # in a pause, to the next place
+    steps = (np.diff(bar_position) - 1) % metre + 1  # in a pause, to the next place
     number = bar_position[0] + np.concatenate([[0], np.cumsum(steps)])
     made[inside] = np.stack([k + place, (number[k] + place) / metre], -1)[inside]
     return made
@@ -58,15 +58,18 @@ def on_circles(count: Float[Tensor, "*B M 2"]) -> Float[Tensor, "*B M 4"]:
     return parts.where(~count.isnan().any(-1, keepdim=True), 0.0)
 
 
-def speeds(
-    tempi: Float[Tensor, "B"], ranges: Ranges, most: float, generator: torch.Generator
+def tempo_factors(
+    tempi: Float[Tensor, "B"],
+    ranges: Ranges,
+    limits: tuple[float, float],
+    generator: torch.Generator,
 ) -> Float[Tensor, "B"]:
-    """How many times faster to hear songs of these tempi (BPM), so that they stay in the ranges.
+    """How many times faster to play songs of these tempi (BPM), so that they stay in the ranges.
 
-    Equal ratios between 1/most and `most` are equally likely; 1 where a few draws find none.
+    Equal ratios within the limits are equally likely; 1 where a few draws find none.
     """
-    draws = 2 * torch.rand(8, len(tempi), generator=generator) - 1
-    factors = most**draws
+    least, most = map(math.log, limits)
+    factors = (least + (most - least) * torch.rand(8, len(tempi), generator=generator)).exp()
     heard = factors * tempi
     fits = torch.stack([(low <= heard) & (heard <= high) for low, high in ranges]).any(0)
     first = fits.int().argmax(0)
@@ -75,7 +78,7 @@ def speeds(
 
 
 @dataclass(frozen=True)
-class Otherwise:
+class MelAugmentation:
     """How much a song is changed before it is heard. Shares are those of the pieces changed.
 
     faster   largest factor of the speed, and the share
@@ -93,8 +96,8 @@ class Otherwise:
 SILENT = -2.0  # standard deviations: a band without sound
 
 
-def heard_otherwise(
-    mel: Float[Tensor, "B M C"], how: Otherwise, generator: torch.Generator
+def augmented(
+    mel: Float[Tensor, "B M C"], how: MelAugmentation, generator: torch.Generator
 ) -> Float[Tensor, "B M C"]:
     """Standardised Mel frames higher or lower, with noise, and without some bands."""
     B, _, C = mel.shape

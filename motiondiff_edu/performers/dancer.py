@@ -35,7 +35,7 @@ from .performer import Performer, generators, sampled
 from .with_bar import with_bar
 
 STEPS, ETA = 50, 0.5  # defaults of DDIM
-USUAL_GUIDANCE = 2.0  # chosen on songs of which no figure of docs/RESULTS.md is made
+USUAL_GUIDANCE = 2.0  # chosen on other songs than those of docs/RESULTS.md
 # standard deviations from the mean pose, to which the x0_hat of an eps network is clamped, as in
 # DDPM's code
 FARTHEST = 5.0
@@ -90,17 +90,12 @@ class Dancer(Performer):
         Raises ValueError for a network with music but no `mel`, or the reverse, and for guidance of
         a network that was not made for it.
         """
-        guidance = checked_guidance(guidance)
+        guidance = self._guidance(guidance)
         if (mel is None) != (self.config.C == 0):
             raise ValueError(
                 'this network takes no music: use md.inbetween, or md.load("dancer") to dance'
                 if mel is not None
                 else "this network dances to music; pass its log-Mel as mel"
-            )
-        if guidance != 1 and not self.can_be_guided:
-            raise ValueError(
-                f"guidance = {guidance:g}: this network always had its music in training, so leave "
-                "guidance out"
             )
         if mel is None:
             return self._as_eps(self._evaluated)
@@ -109,23 +104,40 @@ class Dancer(Performer):
 
         def network(music: Music):
             if twin is None:
-                return self._as_eps(lambda x_s, s: self._evaluated(x_s, s, music))
+                return lambda x_s, s: self._evaluated(x_s, s, music)
             song = twin.context(music, frames)
-            return self._as_eps(lambda x_s, s: twin.denoise(x_s, s, song))
+            return lambda x_s, s: twin.denoise(x_s, s, song)
 
         if guidance == 1:
-            return network(music)
-        return guided_by_condition(network(music), network(without(music)), guidance)
+            return self._as_eps(network(music))
+        both = (self._unclamped(network(one)) for one in (music, without(music)))
+        return self._clamped(guided_by_condition(*both, guidance))
 
     @property
     def can_be_guided(self) -> bool:
         """Whether music was left out in training at times, so that `guidance` has a meaning."""
-        return bool(self.card.get("recipe", {}).get("no_music", 0))
+        recipe = self.card.get("recipe")
+        return isinstance(recipe, dict) and bool(recipe.get("no_music", 0))
 
     @property
     def usual_guidance(self) -> float:
         """The guidance that dances have where none is asked for."""
         return USUAL_GUIDANCE if self.can_be_guided else 1.0
+
+    def _guidance(self, asked: float | None) -> float:
+        """The guidance that was asked for, or the usual one.
+
+        Raises ValueError for guidance of a network that was not made for it.
+        """
+        if asked is None:
+            return self.usual_guidance
+        guidance = checked_guidance(asked)
+        if guidance != 1 and not self.can_be_guided:
+            raise ValueError(
+                f"guidance = {guidance:g}: this network always had its music in training, so leave "
+                "guidance out"
+            )
+        return guidance
 
     @property
     def can_be_shown(self) -> bool:
@@ -155,7 +167,12 @@ class Dancer(Performer):
             )
 
     def _as_eps(self, network) -> Denoiser:
-        denoise = denoiser_of(network, self.schedule, self.config.target)
+        return self._clamped(self._unclamped(network))
+
+    def _unclamped(self, network) -> Denoiser:
+        return denoiser_of(network, self.schedule, self.config.target)
+
+    def _clamped(self, denoise: Denoiser) -> Denoiser:
         if self.config.target != "eps":
             return denoise
         return with_guess(denoise, self.schedule, lambda x0: x0.clamp(-FARTHEST, FARTHEST))
@@ -187,7 +204,7 @@ class Dancer(Performer):
         Source: MoFusion 3.  Notebook: 00, 12
         """
         count, steps = checked_samples(samples), checked_steps(steps, self.schedule.S)
-        guidance = self.usual_guidance if guidance is None else checked_guidance(guidance)
+        guidance = self._guidance(guidance)
         longest = None if seconds is None else round(checked_seconds(seconds) * SAMPLE_RATE)
         audio = samples_of(sound)[:longest]
         name = Path(sound).stem if isinstance(sound, (str, Path)) else "the sound given"
@@ -245,9 +262,9 @@ class Dancer(Performer):
             raise ValueError(
                 f"the music lasts {longest} frames of motion ({longest / FPS:.1f} s), not {frames}"
             )
+        guidance = self._guidance(guidance)
         if getattr(self.config, "deterministic", False):
             return self._regress(mel, frames)
-        guidance = self.usual_guidance if guidance is None else guidance
         denoise = self.denoiser(mel, frames, guidance)
         where = self.motion_scaler.mean.new_empty(len(mel), frames, self.config.D)
         x_S = draw(where, generator) if start is None else start.to(self.device)

@@ -7,6 +7,7 @@ tempo and one count. Its training is `recipes/ear.py`; dancers then keep it as i
 Ours; see `beyond.hearing`.  Notebook: 12
 """
 
+import copy
 from dataclasses import asdict, dataclass
 
 import torch
@@ -15,10 +16,13 @@ from torch import Tensor, nn
 
 from ..cross_modal_attention import angles_of
 from ..mofusion import CrossAttentionBlock, MusicEncoder
+from ..motion.scaler import Scaler
 
-GENRES = ("house", "hiphop", "pop", "latin", "waltz")  # in the order of `Said.genre`
-LONGEST = 512  # tokens (33 s) that all see each other; a longer piece is heard in parts
-BESIDE = 128  # tokens (8 s) to either side that a part of LONGEST / 2 tokens sees, too
+GENRES = ("house", "hiphop", "pop", "latin", "waltz")  # in the order of `EarOutput.genre`
+# tokens (7 s) that all see each other, as many as the longest piece of training (`recipes/ear.py`)
+# has: a longer piece is heard in parts, since over more tokens than that an ear loses the bar
+LONGEST = 112
+BESIDE = LONGEST // 4  # tokens to either side that a part of LONGEST / 2 tokens sees, too
 
 
 @dataclass(frozen=True)
@@ -32,7 +36,7 @@ class EarConfig:
     blocks: int = 4
     slowest: float = 0.05
     fastest: float = 8.0
-    target: str = "beats"
+    target: str = "beats"  # every card names what its network predicts
 
     def __post_init__(self):
         """Raise ValueError for impossible sizes."""
@@ -48,7 +52,7 @@ class EarConfig:
 
 
 @dataclass(frozen=True, eq=False)
-class Said:
+class EarOutput:
     """What an ear says of each token: cosine and sine of places, and logits."""
 
     beat: Float[Tensor, "B M 2"]
@@ -69,7 +73,7 @@ class Ear(nn.Module):
             CrossAttentionBlock(width, config.heads, width) for _ in range(config.blocks)
         )
         self.norm = nn.LayerNorm(width)
-        self.say = nn.Linear(width, 2 + 2 + 1 + len(GENRES))
+        self.heads = nn.Linear(width, 2 + 2 + 1 + len(GENRES))
 
     @property
     def stride(self) -> int:
@@ -97,10 +101,10 @@ class Ear(nn.Module):
             tokens = in_parts(block, tokens, angles, seen)
         return self.norm(tokens)
 
-    def says(self, tokens: Float[Tensor, "B M W"]) -> Said:
+    def read(self, tokens: Float[Tensor, "B M W"]) -> EarOutput:
         """What tokens of `forward` say."""
-        beat, bar, sounds, genre = self.say(tokens).split([2, 2, 1, len(GENRES)], -1)
-        return Said(beat, bar, sounds[..., 0], genre)
+        beat, bar, sounds, genre = self.heads(tokens).split([2, 2, 1, len(GENRES)], -1)
+        return EarOutput(beat, bar, sounds[..., 0], genre)
 
 
 def in_parts(
@@ -111,7 +115,8 @@ def in_parts(
 ) -> Float[Tensor, "B M W"]:
     """A block of attention between tokens; in a long piece each part sees its neighbours alone.
 
-    So memory grows with the length of the piece, and not with its square.
+    So it is as near to all that it hears as in training, and memory grows with the length of the
+    piece, not with its square.
     """
     M = tokens.shape[1]
     size = M if M <= LONGEST else LONGEST // 2
@@ -127,3 +132,16 @@ def in_parts(
         context = block.norm(tokens[:, around])
         made.append(block(tokens[:, own], context, bias, (angles[own], angles[around])))
     return torch.cat(made, 1)
+
+
+def rescaled(ear: Ear, own: Scaler, other: Scaler) -> Ear:
+    """An ear made for Mel frames standardised by `own` as one for frames standardised by `other`.
+
+    Both hear the same: its first layer is linear, and so is the change of units.
+    """
+    other_ear = copy.deepcopy(ear)
+    first = other_ear.music.project
+    with torch.no_grad():
+        first.bias += first.weight @ ((other.mean - own.mean) / own.std)
+        first.weight *= other.std / own.std
+    return other_ear

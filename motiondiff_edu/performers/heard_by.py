@@ -12,7 +12,7 @@ from torch import Tensor
 
 from ..conditions.music import frame_times
 from .dancer import Dancer
-from .ear import GENRES, Said
+from .ear import GENRES, EarOutput
 
 NEAREST = 0.2  # seconds between two beats, at least; 180 BPM have .33
 
@@ -52,10 +52,10 @@ def heard_by(dancer: Dancer, mel: Float[Tensor, "M 80"]) -> Heard:
         raise ValueError(f'{dancer!r} has no ear: md.load("dancer") has one')
     times = frame_times(len(mel)).float().to(dancer.device)
     tokens = ear(dancer.mel_scaler.transform(mel.to(dancer.device))[None], times)
-    return as_heard(ear.says(tokens), times[:: ear.stride])
+    return as_heard(ear.read(tokens), times[:: ear.stride])
 
 
-def as_heard(said: Said, times: Float[Tensor, "M"]) -> Heard:
+def as_heard(said: EarOutput, times: Float[Tensor, "M"]) -> Heard:
     """Places and probabilities of what an ear says of the only piece of a batch."""
     genre = said.genre[0].mean(0).softmax(-1).tolist()
     return Heard(

@@ -2,7 +2,7 @@
 
 Their music is that of their own encoder, plus a linear layer of the ear's tokens. The ear does not
 change while they learn to dance.
-Ours; see `beyond.hearing`.  Notebook: 12
+Ours; see `beyond.hearing`.
 """
 
 from dataclasses import dataclass, replace
@@ -41,9 +41,9 @@ class WithEar:
     """What both networks add to `listen`."""
 
     def with_ear(self, config: EarConfig, width: int) -> None:
-        """Make a new ear, whose tokens change nothing yet."""
+        """Make an ear that is not trained, and the layer through which its tokens are heard."""
         self.ear = Ear(config).requires_grad_(False)
-        self.heard = nn.Linear(config.width, width)
+        self.from_ear = nn.Linear(config.width, width)
 
     def listen(
         self,
@@ -55,7 +55,7 @@ class WithEar:
         music = super().listen(mel, times, mask)
         with torch.no_grad():
             tokens = self.ear(mel, times, mask)
-        return replace(music, tokens=music.tokens + self.heard(tokens))
+        return replace(music, tokens=music.tokens + self.from_ear(tokens))
 
 
 class HearingMoFusion(WithEar, MoFusion):

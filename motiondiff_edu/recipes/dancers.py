@@ -67,13 +67,16 @@ class KeyframeRecipe(DanceRecipe):
     """A training run of a network that sees what is given of a motion (`KeyframeMoFusion`)."""
 
     acts: int = 0  # so many performed sentences beside the walks and dances
-    recordings: int = 0  # so many versions of each training recording; all but one at other paces
+    recordings: int = 0  # so many versions of each training recording
+    unvaried: float = 0.0  # share of the motions that stay as they were made
+    # of the others:
     levels: float = 0.0  # share of the synthetic motions that are performed lower and leaning
-    paces: float = 0.0  # share of the synthetic motions whose pace changes, with pauses
+    paces: float = 0.0  # share of the synthetic motions whose pace changes, with pauses; that of
+    # every recording changes, but for its first version's
     variations: float = 0.0  # share with limbs turned; with pelvis moved; with another upper body
     path_scale: float = 0.3  # m: the unit of the pelvis' path (`train_dancer.with_path_scale`)
+    # of all, whenever they are drawn:
     sizes: float = 0.0  # bodies are so much larger or smaller, at most (share)
-    unvaried: float = 0.0  # share of the motions that stay as they were made
     stages: float = 0.0  # share of all motions that are higher than the floor, by up to a metre
 
 
@@ -94,7 +97,8 @@ class SongRecipe(DanceRecipe):
         own = getattr(self.config, "ear", None)
         given = self.ear.config if self.ear else None
         if own != given:
-            raise ValueError(f"ear: the network is made for {own}, not for {given}")
+            wanted = f"an ear with {own}" if own else "no ear: pass ear=None"
+            raise ValueError(f"{self.name}: its network has {wanted}; the ear given has {given}")
 
 
 X0 = replace(MOFUSION_SMALL, target="x0", skip=False)

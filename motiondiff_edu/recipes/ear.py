@@ -1,10 +1,9 @@
-"""The recipe of an ear: songs alone, heard otherwise each time.
+"""The recipe of an ear: songs alone, augmented in another way each time.
 
-Notebook: 12
+Ours; see `beyond.hearing`.
 """
 
 from dataclasses import dataclass
-from functools import cache
 from pathlib import Path
 
 import torch
@@ -12,13 +11,14 @@ from jaxtyping import Float
 from torch import Tensor, nn
 from torch.nn import functional as F
 
-from .._files import digest_of_tensors
+from .._files import digest_of_tensors, digest_of_texts
 from ..beyond.gain_noise import gain_noise
-from ..beyond.hearing import Otherwise, between, heard_otherwise, on_circles, speeds
+from ..beyond.hearing import MelAugmentation, augmented, between, on_circles, tempo_factors
 from ..conditions.music import frame_times
-from ..performers.ear import Ear, EarConfig, Said
+from ..motion.scaler import Scaler
+from ..performers.ear import Ear, EarConfig, EarOutput, rescaled
 from ..training import LossFn
-from .songs import HeardSongs, training_songs
+from .songs import HeardSongs, songs_as_mel
 from .train_recipe import Provenance, train_recipe
 
 
@@ -46,42 +46,35 @@ EAR = EarRecipe()
 WEIGHTS = {"beat": 1.0, "bar": 0.5, "sounds": 0.2, "genre": 0.2}  # of the parts of the loss
 
 
-@cache
-def songs_of(songs: int, seed: int, seconds: float) -> HeardSongs:
-    """The songs of a recipe, generated from its seed; they are kept, since it takes minutes."""
-    return HeardSongs.of(training_songs(songs, seed, seconds))
-
-
-def piece(
+def drawn_batch(
     recipe: EarRecipe, songs: HeardSongs, generator: torch.Generator
 ) -> tuple[Float[Tensor, "B M C"], Float[Tensor, "B M 2"], Tensor]:
-    """A random batch: Mel frames heard otherwise, their counts, and the genres."""
+    """A random batch: augmented Mel frames, their counts, and the genres."""
     from data_synth.music.tempi import FAR_FROM_HELD_OUT
 
-    how = Otherwise()
+    how = MelAugmentation()
     lengths = recipe.frames
     M = lengths[int(torch.randint(len(lengths), (1,), generator=generator))]
     chosen = torch.randint(len(songs), (recipe.batch,), generator=generator)
     most, share = how.faster
-    speed = speeds(songs.tempi[chosen], FAR_FROM_HELD_OUT, most, generator)
+    last = songs.mel.shape[1] - 1
+    limits = 1 / most, min(most, last / (M - 1))  # played faster than that, the song is too short
+    speed = tempo_factors(songs.tempi[chosen], FAR_FROM_HELD_OUT, limits, generator)
     own = torch.rand(len(chosen), generator=generator) >= share
-    longest = (songs.mel.shape[1] - 1) / (M - 1)  # faster than that, the song would end before
-    speed = speed.where(~own, 1.0).clamp(max=longest)
-    first = torch.rand(len(chosen), generator=generator) * (
-        songs.mel.shape[1] - 1 - speed * (M - 1)
-    )
+    speed = speed.where(~own, 1.0)
+    first = torch.rand(len(chosen), generator=generator) * (last - speed * (M - 1))
     at = first[:, None] + speed[:, None] * torch.arange(M)
-    mel = heard_otherwise(between(songs.mel[chosen], at), how, generator)
+    mel = augmented(between(songs.mel[chosen], at), how, generator)
     mel = gain_noise(mel, recipe.gain_noise, generator)
     return mel, between(songs.counts[chosen], at), songs.genres[chosen]
 
 
 def hearing_loss(
-    said: Said, counts: Float[Tensor, "B M 2"], genres: Tensor
+    said: EarOutput, counts: Float[Tensor, "B M 2"], genres: Tensor
 ) -> dict[str, Float[Tensor, ""]]:
     """The parts of the loss: squared errors of places, cross-entropies of beat or none, and genre.
 
-    counts  beats and bars at the tokens (`beyond.hearing.counts`); NaN where there is no beat
+    counts  beats and bars at the tokens (`beyond.hearing.beat_counts`); NaN where there is no beat
     """
     known = ~counts.isnan().any(-1)
     right = on_circles(counts)
@@ -104,26 +97,57 @@ def loss_of_ear(recipe: EarRecipe, songs: HeardSongs) -> LossFn:
 
     def loss_fn(model: nn.Module, generator: torch.Generator) -> Tensor:
         device = next(model.parameters()).device
-        mel, counts, genres = (x.to(device) for x in piece(recipe, songs, generator))
+        mel, counts, genres = (x.to(device) for x in drawn_batch(recipe, songs, generator))
         times = frame_times(mel.shape[1]).float().to(device)
-        said = model.says(model(mel, times))
+        said = model.read(model(mel, times))
         parts = hearing_loss(said, counts[:, :: model.stride], genres)
         return sum(WEIGHTS[name] * part for name, part in parts.items())
 
     return loss_fn
 
 
-def train_ear(recipe: EarRecipe, run_file: Path, songs: HeardSongs | None = None, log=print) -> Ear:
-    """Train by a recipe, or continue the run in `run_file`; return the averaged ear.
+@dataclass(frozen=True, eq=False)
+class TrainedEar:
+    """An ear with averaged weights, the scaler of its Mel frames, and what its training took."""
 
-    Raises ValueError when the run in `run_file` was begun with other settings.
+    ear: Ear
+    scaler: Scaler
+    card: dict
+
+    def hearing(self, scaler: Scaler) -> Ear:
+        """The ear for Mel frames that are standardised by another scaler."""
+        return rescaled(self.ear, self.scaler, scaler)
+
+
+def ear_of(recipe: EarRecipe, folder: Path, log=print) -> TrainedEar:
+    """The ear of a recipe, trained first if that was not done.
+
+    Its run lies in the folder, where all dancers with this ear find it.
+    """
+    made_of = digest_of_texts({"recipe": repr(recipe)})[:8]
+    return train_ear(recipe, folder / f"ear-{made_of}.run.safetensors", log=log)
+
+
+def train_ear(
+    recipe: EarRecipe, run_file: Path, songs: HeardSongs | None = None, log=print
+) -> TrainedEar:
+    """Train by a recipe, or continue the run in `run_file`.
+
+    Raises ValueError for songs that are shorter than a piece, and when the run in `run_file` was
+    begun with other settings.
     """
     if songs is None:
-        songs = songs_of(recipe.songs, recipe.data_seed, recipe.seconds)
+        songs = HeardSongs.of(songs_as_mel(recipe.songs, recipe.data_seed, recipe.seconds))
+    if songs.mel.shape[1] < max(recipe.frames):
+        raise ValueError(
+            f"ear: songs of {recipe.seconds:g} s have {songs.mel.shape[1]} Mel frames; pieces of "
+            f"{max(recipe.frames)} need more"
+        )
     torch.manual_seed(recipe.seed)
-    some = {"mel": songs.mel[::100], "counts": songs.counts[::100].nan_to_num()}
-    about = {"network": "Ear", "data": digest_of_tensors(some)[:16]}
-    trained, _ = train_recipe(
+    facts = {"mel": songs.mel.mean(1), "counts": songs.counts[:, ::16].nan_to_num()}
+    facts |= {"tempi": songs.tempi, "genres": songs.genres}
+    about = {"network": "Ear", "data": digest_of_tensors(facts)[:16]}
+    trained, card = train_recipe(
         recipe,
         run_file,
         Ear(recipe.config),
@@ -132,4 +156,5 @@ def train_ear(recipe: EarRecipe, run_file: Path, songs: HeardSongs | None = None
         warmup=300,
         log=log,
     )
-    return trained
+    kept = ("parameters", "songs", "minutes", "sittings", "final_loss")
+    return TrainedEar(trained, songs.scaler, {name: card[name] for name in kept})

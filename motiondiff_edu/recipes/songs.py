@@ -1,17 +1,20 @@
 """The songs that dancers are trained on, and what their scores say of each Mel frame."""
 
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from functools import lru_cache
 
 import numpy as np
 import torch
 from jaxtyping import Float, Int
 from torch import Tensor
 
-from ..beyond.hearing import counts
+from ..beyond.hearing import beat_counts
 from ..conditions.music import frame_times, log_mel
 from ..motion.scaler import Scaler
 from ..performers.ear import GENRES
+
+MelSong = tuple  # (a `data_synth.music` song without its sound, log-Mel (M, C))
 
 
 def training_songs(n: int, seed: int, seconds: float) -> Iterator:
@@ -22,42 +25,47 @@ def training_songs(n: int, seed: int, seconds: float) -> Iterator:
     return (recorded_song(song, 0) for song in varied_songs(n, seed, seconds))
 
 
+@lru_cache(maxsize=1)
+def songs_as_mel(n: int, seed: int, seconds: float) -> list[MelSong]:
+    """The same songs as log-Mel; the last ones are kept, because they take minutes.
+
+    An ear and the dancers that have it learn from the same ones.
+    """
+    return [without_sound(song) for song in training_songs(n, seed, seconds)]
+
+
+def without_sound(song) -> MelSong:
+    """The score of a song, which keeps its length, and its log-Mel."""
+    silence = np.broadcast_to(np.zeros(1, np.float32), song.audio.shape)  # it takes no memory
+    return replace(song, audio=silence), log_mel(torch.from_numpy(song.audio).float())
+
+
 @dataclass(frozen=True, eq=False)
 class HeardSongs:
     """Songs of one length for an ear: standardised Mel frames, and what their scores say."""
 
     mel: Float[Tensor, "N M C"]
-    counts: Float[Tensor, "N M 2"]  # `beyond.hearing.counts`
+    counts: Float[Tensor, "N M 2"]  # `beyond.hearing.beat_counts`
     tempi: Float[Tensor, "N"]  # BPM
     genres: Int[Tensor, "N"]  # in the order of `performers.ear.GENRES`
     scaler: Scaler  # of the Mel frames
 
     @classmethod
-    def of(cls, songs: Iterator) -> "HeardSongs":
-        """The songs with their own scaler, which is that of dances to them."""
-        mels = []
-        told = []
-        facts = []
-        for song in songs:
-            mels.append(log_mel(torch.from_numpy(song.audio).float()))
-            times = frame_times(len(mels[-1])).numpy()
-            told.append(counts(times, song.beats, song.bar_position, song.metre))
-            facts.append((song.tempo, GENRES.index(song.genre)))
-        return cls.told(mels, told, facts)
-
-    @classmethod
-    def told(
-        cls,
-        mels: list[Float[Tensor, "M C"]],
-        told: list[Float[np.ndarray, "M 2"]],
-        facts: list[tuple[float, int]],
-    ) -> "HeardSongs":
-        """The songs of these Mel frames, counts, tempi and genres."""
-        mel = torch.stack(mels)
+    def of(cls, songs: Sequence[MelSong]) -> "HeardSongs":
+        """The songs of `songs_as_mel`, with their own scaler."""
+        mel = torch.stack([one for _, one in songs])
+        times = frame_times(mel.shape[1]).numpy()
+        counts = [
+            beat_counts(times, song.beats, song.bar_position, song.metre) for song, _ in songs
+        ]
         scaler = Scaler.fit(mel)
-        tempi, genres = zip(*facts, strict=True)
-        every = torch.from_numpy(np.stack(told)).float()
-        return cls(scaler.transform(mel), every, torch.tensor(tempi), torch.tensor(genres), scaler)
+        return cls(
+            scaler.transform(mel),
+            torch.from_numpy(np.stack(counts)).float(),
+            torch.tensor([song.tempo for song, _ in songs]),
+            torch.tensor([GENRES.index(song.genre) for song, _ in songs]),
+            scaler,
+        )
 
     def __len__(self) -> int:
         return len(self.mel)

@@ -3,7 +3,7 @@
 The loss is MoFusion's with the departures of the recipe. A killed run continues from its last save.
 """
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from dataclasses import replace
 from functools import lru_cache, partial
 from pathlib import Path
@@ -17,22 +17,21 @@ from ..baselines.regression import regression_loss
 from ..beyond.classifier_free import without
 from ..beyond.gain_noise import gain_noise
 from ..beyond.schedules import shifted
-from ..conditions.music import log_mel
 from ..ddpm import Schedule, cosine_schedule
 from ..motion import dance_frame
 from ..motion.scaler import Scaler
 from ..motion.skeleton import HIPS
 from ..performers.dance_windows import DanceWindows, toes_moved
 from ..performers.dancer import Dancer
-from ..performers.ear import Ear
+from ..performers.keyframe_mofusion import KeyframeConfig
 from ..performers.networks import network
 from ..training import LossFn
 from .dancers import DanceRecipe, KeyframeRecipe, SongRecipe
-from .ear import train_ear
+from .ear import ear_of
 from .keyframe_loss import keyframe_loss_of
 from .mofusion_loss import batch_loss, weighted_loss
 from .recordings import CREDIT, Recorded, training_recordings
-from .songs import training_songs
+from .songs import songs_as_mel
 from .train_recipe import Provenance, train_recipe
 
 
@@ -40,50 +39,30 @@ def training_windows(recipe: DanceRecipe) -> DanceWindows:
     """The recipe's data, generated from its seed: songs, dances, and Mel spectrograms.
 
     The last data set is kept, because it takes minutes to generate.
+    Raises ValueError for a recipe that has neither songs nor motions.
     """
     if isinstance(recipe, KeyframeRecipe):
         return with_path_scale(_keyframe_windows(data_of(recipe)), recipe.path_scale)
+    seeds = recipe.data_seed, recipe.seconds
     if isinstance(recipe, SongRecipe):
-        return _recorded_song_windows(
-            recipe.songs, recipe.data_seed, recipe.seconds, recipe.dances, recipe.frames
-        )
-    if recipe.motions:
-        return _motion_windows(recipe.motions, recipe.data_seed, recipe.seconds, recipe.frames)
-    return _song_windows(
-        recipe.songs, recipe.data_seed, recipe.seconds, recipe.dances, recipe.frames
-    )
+        return _song_windows(recipe.songs, *seeds, recipe.dances, recipe.frames)
+    if not recipe.motions:
+        raise ValueError(f"{recipe.name}: give motions, or make it a SongRecipe with songs")
+    return _motion_windows(recipe.motions, *seeds, recipe.frames)
 
 
 @lru_cache(maxsize=1)
 def _song_windows(songs: int, seed: int, seconds: float, each: int, frames: int) -> DanceWindows:
-    from data_synth.dancing import dances  # here, because data_synth imports this package
-
-    return windows_of(dances(songs, seed, seconds, each=each), frames)
-
-
-@lru_cache(maxsize=1)
-def _recorded_song_windows(
-    songs: int, seed: int, seconds: float, each: int, frames: int
-) -> DanceWindows:
     from data_synth.dancing.performance import DANCES_A_SEED, dances_to
 
-    made = training_songs(songs, seed, seconds)
-    return windows_of(dances_to(made, seed * DANCES_A_SEED, each), frames)
-
-
-def windows_of(danced: Iterable, frames: int) -> DanceWindows:
-    """Windows of pairs of a song and a dance; dances to one song follow one another."""
-    positions = []
-    contacts = []
-    mels = []
-    last_song = None
-    for song, one in danced:
-        if song is not last_song:
-            last_song, mel = song, log_mel(torch.from_numpy(song.audio).float())
-        positions.append(one.positions)
-        contacts.append(one.contacts)
-        mels.append(mel)
-    return DanceWindows.of(positions, contacts, mels, frames)
+    made = songs_as_mel(songs, seed, seconds)
+    danced = [one for _, one in dances_to([song for song, _ in made], seed * DANCES_A_SEED, each)]
+    return DanceWindows.of(
+        [one.positions for one in danced],
+        [one.contacts for one in danced],
+        [mel for _, mel in made for _ in range(each)],
+        frames,
+    )
 
 
 @lru_cache(maxsize=1)
@@ -95,14 +74,14 @@ def _motion_windows(count: int, seed: int, seconds: float, frames: int) -> Dance
 
 
 NOT_DATA = (
-    "name", "steps", "kinematic", "loss_weights", "snr", "lr", "optimizer", "batch", "decay",
-    "seed", "save_every", "path_scale", "sizes", "stages",
+    "name", "config", "steps", "kinematic", "loss_weights", "snr", "lr", "optimizer", "batch",
+    "decay", "seed", "save_every", "path_scale", "sizes", "stages",
 )  # fmt: skip
 
 
 def data_of(recipe: KeyframeRecipe) -> KeyframeRecipe:
     """The recipe without all that does not change its data, so that trainings share them."""
-    plain = KeyframeRecipe("", recipe.config, steps=0)
+    plain = KeyframeRecipe("", KeyframeConfig(), steps=0)
     return replace(recipe, **{name: getattr(plain, name) for name in NOT_DATA})
 
 
@@ -172,9 +151,12 @@ def train_dancer(
     torch.manual_seed(recipe.seed)
     model = network(config)
     about = {"network": type(model).__name__, "data": digest(windows)}
+    facts = {"windows": len(windows)}
     if getattr(recipe, "ear", None):
-        model.ear.load_state_dict(ear_of(recipe, run_file, log).state_dict())
-        about["ear"] = digest_of_tensors(model.ear.state_dict())[:16]
+        trained_ear = ear_of(recipe.ear, run_file.parent, log)
+        model.ear.load_state_dict(trained_ear.hearing(windows.mel_scaler).state_dict())
+        about["ear"] = digest_of_tensors(trained_ear.ear.state_dict())[:16]
+        facts["ear"] = trained_ear.card
     made_of = "mixed" if recipe.motions else "music.varied and data_synth.dancing"
     source = f"data_synth.{made_of}, synthetic"
     if getattr(recipe, "recordings", 0):
@@ -184,20 +166,11 @@ def train_dancer(
         run_file,
         model,
         loss_of(recipe, windows, schedule),
-        Provenance(about, {"windows": len(windows)}, source),
+        Provenance(about, facts, source),
         warmup=300,
         log=log,
     )
     return Dancer(trained, schedule, windows.motion_scaler, windows.mel_scaler, card)
-
-
-def ear_of(recipe: SongRecipe, run_file: Path, log=print) -> Ear:
-    """The recipe's ear, trained first if that was not done; its run lies beside `run_file`.
-
-    Dancers with the same ear and folder share it.
-    """
-    made_of = digest_of_tensors({"recipe": torch.tensor(list(repr(recipe.ear).encode()))})
-    return train_ear(recipe.ear, run_file.with_name(f"ear-{made_of[:8]}.run.safetensors"), log=log)
 
 
 def schedule_of(recipe: DanceRecipe) -> Schedule:

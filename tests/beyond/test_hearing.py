@@ -10,12 +10,12 @@ from data_synth.music.tempi import FAR_FROM_HELD_OUT, HELD_OUT_TEMPI, WANDER
 from data_synth.music.varied import varied_song
 from motiondiff_edu.beyond.hearing import (
     SILENT,
-    Otherwise,
+    MelAugmentation,
+    augmented,
+    beat_counts,
     between,
-    counts,
-    heard_otherwise,
     on_circles,
-    speeds,
+    tempo_factors,
 )
 
 
@@ -26,17 +26,17 @@ def draws(seed: int = 0) -> torch.Generator:
 def test_counts_by_hand():
     beats = np.array([1.0, 1.5, 2.0, 4.0, 4.5])
     times = np.array([0.5, 1.0, 1.25, 1.9, 3.0, 4.25, 4.5])
-    made = counts(times, beats, np.array([2, 0, 1, 2, 0]), 3)
+    made = beat_counts(times, beats, np.array([2, 0, 1, 2, 0]), 3)
     wanted = [[0, 2 / 3], [0.5, 2.5 / 3], [1.8, 3.8 / 3]]
     np.testing.assert_allclose(made[1:4], wanted)
     assert np.isnan(made[[0, 4, 6]]).all()  # before the first, in the pause, after the last
     assert made[5, 0] % 1 == 0.5 and made[5, 1] % 1 == pytest.approx(2.5 / 3)
-    assert np.isnan(counts(np.arange(3.0), beats[:1], np.array([0]), 4)).all()
+    assert np.isnan(beat_counts(np.arange(3.0), beats[:1], np.array([0]), 4)).all()
 
 
 def test_a_real_score_is_on_its_downbeats_and_never_goes_back():
     song = varied_song(12, 30.0)
-    at = counts(song.beats[:-1] + 1e-6, song.beats, song.bar_position, song.metre)
+    at = beat_counts(song.beats[:-1] + 1e-6, song.beats, song.bar_position, song.metre)
     known = ~np.isnan(at[:, 0])
     assert known.mean() > 0.9
     np.testing.assert_allclose(
@@ -53,7 +53,7 @@ def test_circles():
 
 def test_no_song_is_heard_at_tempi_that_are_kept_out():
     tempi = torch.linspace(60, 180, 4000)
-    faster = speeds(tempi, FAR_FROM_HELD_OUT, 1.33, draws())
+    faster = tempo_factors(tempi, FAR_FROM_HELD_OUT, 1.33, draws())
     assert (faster <= 1.33).all() and (faster >= 1 / 1.33).all()
     changed = faster != 1
     assert changed.float().mean() > 0.8 and (faster[changed] > 1.2).float().mean() > 0.1
@@ -71,13 +71,13 @@ def test_rows_between():
 
 def test_a_song_is_heard_higher_in_noise_and_without_bands():
     mel = torch.arange(80.0).expand(64, 10, 80)
-    still = Otherwise((1.0, 0.0), 0.0, (0.0, 0.0), (0, 0.0))
-    torch.testing.assert_close(heard_otherwise(mel, still, draws()), mel)
-    higher = heard_otherwise(mel, Otherwise((1.0, 0.0), 4.0, (0.0, 0.0), (0, 0.0)), draws()) - mel
+    still = MelAugmentation((1.0, 0.0), 0.0, (0.0, 0.0), (0, 0.0))
+    torch.testing.assert_close(augmented(mel, still, draws()), mel)
+    higher = augmented(mel, MelAugmentation((1.0, 0.0), 4.0, (0.0, 0.0), (0, 0.0)), draws()) - mel
     assert higher.abs().max() <= 4 and higher[:, 0, 40].std() > 1.5
-    noisy = heard_otherwise(mel, Otherwise((1.0, 0.0), 0.0, (0.5, 1.0), (0, 0.0)), draws()) - mel
+    noisy = augmented(mel, MelAugmentation((1.0, 0.0), 0.0, (0.5, 1.0), (0, 0.0)), draws()) - mel
     assert 0.15 < noisy.std() < 0.4 and noisy.std((1, 2)).max() < 0.6
-    deaf = heard_otherwise(mel, Otherwise((1.0, 0.0), 0.0, (0.0, 0.0), (40, 1.0)), draws())
+    deaf = augmented(mel, MelAugmentation((1.0, 0.0), 0.0, (0.0, 0.0), (40, 1.0)), draws())
     hidden = (deaf == SILENT).all(1)
     assert hidden.sum(1).max() <= 41 and 10 < hidden.float().sum(1).mean() < 30
     assert (deaf == SILENT).sum() == 10 * hidden.sum()  # always for the whole piece

@@ -7,9 +7,11 @@ import pytest
 import torch
 from small_dancers import dancer_to_mel
 
+from motiondiff_edu.baselines.transformer import DanceTransformer, TransformerConfig
 from motiondiff_edu.beyond.classifier_free import without
 from motiondiff_edu.mofusion import Music
-from motiondiff_edu.performers.dancer import USUAL_GUIDANCE
+from motiondiff_edu.performers.dancer import FARTHEST, USUAL_GUIDANCE, Dancer
+from motiondiff_edu.prediction import x0_from_eps
 
 GUIDED = replace(dancer_to_mel(), card={"recipe": {"no_music": 0.15}})
 MEL = torch.randn(2, 70, 80, generator=torch.Generator().manual_seed(1)) - 6
@@ -49,7 +51,25 @@ def test_dances_have_the_usual_guidance():
     assert np.abs(usual.positions - one.positions).max() > 1e-4
 
 
+def test_the_guess_of_an_eps_network_is_clamped_once_after_guidance():
+    eps, s = replace(dancer_to_mel(target="eps"), card=GUIDED.card), torch.tensor([12, 12])
+    for w in (1, 4):
+        guess = x0_from_eps(X, s, eps.denoiser(MEL, 40, w)(X, s), eps.schedule)
+        assert guess.abs().max() == pytest.approx(FARTHEST, rel=1e-3)
+
+
+def regression() -> Dancer:
+    config = TransformerConfig(S=12, width=16, heads=2, layers=1, deterministic=True)
+    return replace(GUIDED, model=DanceTransformer(config).eval(), card={})
+
+
 def test_what_cannot_be_guided_says_so():
+    with pytest.raises(ValueError, match="always had its music"):
+        regression().dance_mel(MEL, 20, guidance=2)
+    with pytest.raises(ValueError, match="guidance must be a number"):
+        regression().dance_mel(MEL, 20, guidance=-5)
+    for card in ({}, {"recipe": "mine"}, {"recipe": {}}):
+        assert not replace(GUIDED, card=card).can_be_guided
     with pytest.raises(ValueError, match="always had its music"):
         dancer_to_mel().dance_mel(MEL, 20, steps=2, guidance=2)
     with pytest.raises(ValueError, match="guidance must be a number"):

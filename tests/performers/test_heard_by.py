@@ -32,6 +32,13 @@ def test_a_place_that_trembles_passes_once():
     np.testing.assert_allclose(found, 0.5 * np.round(found / 0.5), atol=0.08)
 
 
+def test_a_place_that_trembles_across_a_beat_passes_it_once():
+    count = np.linspace(0.8, 1.2, 41) + 0.03 * (-1.0) ** np.arange(41)
+    times = 0.01 * np.arange(41)
+    across = (np.diff(np.floor(count)) > 0).sum()
+    assert across > 2 and len(passes(times, count % 1, np.ones(41, bool))) == 1
+
+
 def test_no_beat_in_a_silence_and_all_after_it():
     known = (TIMES < 6) | (TIMES > 9)
     found = passes(TIMES, (TIMES / 0.5) % 1, known)

@@ -9,14 +9,22 @@ from pathlib import Path
 import pytest
 import torch
 
+from motiondiff_edu.beyond.classifier_free import without
 from motiondiff_edu.beyond.schedules import shifted
 from motiondiff_edu.ddpm import cosine_schedule
 from motiondiff_edu.performers.ear import EarConfig
 from motiondiff_edu.performers.networks import network
 from motiondiff_edu.pretrained.checkpoints import load_dancer
 from motiondiff_edu.recipes import __main__ as command
-from motiondiff_edu.recipes.dancers import DANCE_RECIPES, DANCER, DANCER_PLAIN, REGRESSED
-from motiondiff_edu.recipes.ear import EarRecipe, train_ear
+from motiondiff_edu.recipes.dancers import (
+    DANCE_RECIPES,
+    DANCER,
+    DANCER_PLAIN,
+    REGRESSED,
+    X0,
+    DanceRecipe,
+)
+from motiondiff_edu.recipes.ear import EarRecipe, ear_of
 from motiondiff_edu.recipes.train_dancer import loss_of, schedule_of, train_dancer, training_windows
 
 SIZES = {"steps": 6, "songs": 2, "seconds": 8.0, "batch": 3, "save_every": 2, "frames": 40}
@@ -77,7 +85,7 @@ def test_a_killed_training_continues_bit_for_bit(windows, tmp_path: Path):
         )
 
 
-def test_what_a_recipe_says_reaches_the_training(windows, tmp_path: Path):
+def test_what_a_recipe_says_reaches_the_training(windows, monkeypatch, tmp_path: Path):
     trained = train_dancer(TINY, tmp_path / "one.safetensors", windows, log=lambda line: None)
     usual = cosine_schedule(20)
     assert torch.equal(trained.schedule.alpha_bar, shifted(usual, 0.1).alpha_bar)
@@ -94,6 +102,10 @@ def test_what_a_recipe_says_reaches_the_training(windows, tmp_path: Path):
     plain = {"kinematic": None, "gain_noise": 0.0, "snr": 1.0, "batch": 2, "no_music": 0.9}
     for name, value in plain.items():
         assert loss(**{name: value}) != loss(), name
+    monkeypatch.setattr(model, "listen", lambda *music, own=model.listen: without(own(*music)))
+    silent = loss(no_music=0.0)
+    monkeypatch.undo()
+    assert loss(no_music=1.0) == pytest.approx(silent) != pytest.approx(loss(no_music=0.0))
     for name, value in {"high_noise": 2.0, "changes": 0.0, "toes": 0.0}.items():
         weights = replace(TINY.loss_weights, **{name: value})
         assert loss(loss_weights=weights) != loss(), name
@@ -102,8 +114,10 @@ def test_what_a_recipe_says_reaches_the_training(windows, tmp_path: Path):
 def test_the_ear_is_that_of_its_own_training(windows, tmp_path: Path):
     said = []
     trained = train_dancer(TINY, tmp_path / "one.safetensors", windows, log=said.append)
-    (run,) = tmp_path.glob("ear-*.run.safetensors")
-    ear = train_ear(TINY.ear, run, log=lambda line: None)  # trained already: only read
+    assert len(list(tmp_path.glob("ear-*.run.safetensors"))) == 1
+    own = ear_of(TINY.ear, tmp_path, log=lambda line: None)  # trained already: only read
+    assert trained.card["ear"] == own.card and own.card["songs"] == TINY.ear.songs
+    ear = own.hearing(windows.mel_scaler)
     for a, b in zip(trained.model.ear.parameters(), ear.parameters(), strict=True):
         torch.testing.assert_close(a, b, rtol=0, atol=1e-6)  # an average of equal weights
     train_dancer(replace(TINY, name="two"), tmp_path / "two.safetensors", windows, log=said.append)
@@ -118,8 +132,12 @@ def test_the_ear_is_that_of_its_own_training(windows, tmp_path: Path):
 def test_recipes_that_cannot_be_trained_are_refused():
     with pytest.raises(ValueError, match="regression cannot be guided"):
         replace(REGRESSED, no_music=0.1)
-    with pytest.raises(ValueError, match="the network is made for"):
+    with pytest.raises(ValueError, match="its network has an ear with"):
         replace(TINY, ear=replace(EARS, config=EarConfig()))
+    with pytest.raises(ValueError, match="pass ear=None"):
+        replace(TINY, config=X0)
+    with pytest.raises(ValueError, match="or make it a SongRecipe"):
+        training_windows(DanceRecipe("mine", X0, steps=1))
 
 
 def test_the_command_trains_a_recipe_into_a_file(monkeypatch, tmp_path: Path, capsys):

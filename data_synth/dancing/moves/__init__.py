@@ -42,9 +42,9 @@ _ROUND = {
 
 # quick feet of clubs are on their balls; in hip-hop and latin dances they press into the floor, in
 # a waltz they roll slowly (seconds and degrees were set by looking at pictures)
-_LIGHT = Roll(early=0.24, off=22.0, land=20.0, settle=0.20, pivot=16.0)
-_PRESSED = Roll(early=0.24, off=27.0, land=25.0, settle=0.20, pivot=16.0)
-_SLOW = Roll(early=0.34, off=24.0, land=20.0, settle=0.28, pivot=16.0)
+_LIGHT = Roll(early=0.24, off=22.0, land=20.0, settle=0.20, pivot=16.0, steepest=50.0)
+_PRESSED = Roll(early=0.24, off=27.0, land=25.0, settle=0.20, pivot=16.0, steepest=50.0)
+_SLOW = Roll(early=0.34, off=24.0, land=20.0, settle=0.28, pivot=16.0, steepest=50.0)
 
 MANNERS: dict[str, Manner] = {
     "house": Manner(

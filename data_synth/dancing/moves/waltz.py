@@ -156,10 +156,10 @@ def twinkle(p: Sheet) -> None:
 
 
 def progressive(p: Sheet) -> None:
-    """Three long steps ahead a bar, then back again, passing feet."""
-    foot = L
+    """Three long steps ahead a bar, then back again, passing feet; first to where there is room."""
+    foot, inward = L, p.inward()
     for i, (k, m, _) in enumerate(bars(p)):
-        way = 1 if i % 4 < 2 else -1
+        way = inward if i % 4 < 2 else -inward
         for j in range(m):
             s = 1 if foot == L else -1
             p.step(
