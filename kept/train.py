@@ -3,65 +3,90 @@
     python kept/songs.py; python kept/train.py data; python kept/train.py dancer
 
 The same data as `python -m motiondiff_edu.recipes dancer` makes on one core. The ear is that of
-kept/ear.safetensors where its own run is not there. MADE names the folder of all files.
+kept/ear.safetensors. MADE names the folder of all files.
 """
-import pickle, sys, os, time, shutil
-from dataclasses import replace
-from pathlib import Path
-from concurrent.futures import ProcessPoolExecutor
-import numpy as np, torch
-torch.set_num_threads(int(os.environ.get("OMP_NUM_THREADS","1")))
-from motiondiff_edu.conditions.music import frame_times
-from motiondiff_edu.beyond.hearing import counts
-from motiondiff_edu.performers.ear import GENRES
-from motiondiff_edu.recipes.songs import HeardSongs
-from motiondiff_edu.recipes import ear as E, train_dancer as T, __main__ as M
-from motiondiff_edu.recipes.dancers import DANCE_RECIPES
-from motiondiff_edu.performers.dance_windows import DanceWindows
-from motiondiff_edu.pretrained.checkpoints import save
-from data_synth.dancing.performance import dance, DANCES_A_SEED
-MADE = Path(os.environ.get("MADE", "build/made"))
 
-def kept_ear(recipe, run_file, log=print):
+import json
+import os
+import pickle
+import sys
+import time
+from concurrent.futures import ProcessPoolExecutor
+from dataclasses import asdict, replace
+from pathlib import Path
+
+import numpy as np
+import torch
+from safetensors import safe_open
+
+torch.set_num_threads(int(os.environ.get("OMP_NUM_THREADS", "1")))
+from data_synth.dancing.performance import DANCES_A_SEED, dance
+from motiondiff_edu.performers.dance_windows import DanceWindows
+from motiondiff_edu.performers.ear import Ear
+from motiondiff_edu.pretrained.checkpoints import save
+from motiondiff_edu.recipes import train_dancer as T
+from motiondiff_edu.recipes.dancers import DANCE_RECIPES
+from motiondiff_edu.recipes.ear import TrainedEar, loss_of_ear
+from motiondiff_edu.recipes.songs import HeardSongs
+from motiondiff_edu.recipes.train_recipe import mean_loss
+
+MADE = Path(os.environ.get("MADE", "build/made"))
+EAR_MINUTES = 89.4  # of its run
+
+
+def kept_ear(recipe, folder, log=print):
     """The ear whose weights were kept, if it was made by this recipe."""
-    from dataclasses import asdict
-    import json
-    from safetensors import safe_open
     with safe_open(Path(__file__).with_name("ear.safetensors"), "pt") as f:
         about = json.loads(f.metadata()["about"])
-        weights = {k: f.get_tensor(k).float() for k in f.keys()}
-    wanted = json.loads(json.dumps(asdict(recipe.ear)))
+        weights = {k.replace("say.", "heads."): f.get_tensor(k).float() for k in f.keys()}
+    wanted = json.loads(json.dumps(asdict(recipe)))
     assert {k: about[k] for k in wanted} == wanted, "another recipe"
-    ear = E.Ear(recipe.ear.config)
+    ear = Ear(recipe.config)
     ear.load_state_dict(weights)
-    return ear
+    heard = HeardSongs.of(songs())
+    loss = round(mean_loss(loss_of_ear(recipe, heard), ear), 6)
+    size = sum(p.numel() for p in ear.parameters())
+    card = {"parameters": size, "songs": len(heard), "minutes": EAR_MINUTES, "final_loss": loss}
+    print(card, flush=True)
+    return TrainedEar(ear, heard.scaler, card)
 
-def load(): return pickle.load(open(MADE / "songs.pkl","rb"))
+
+def songs():
+    with open(MADE / "songs.pkl", "rb") as file:
+        return [(song, torch.from_numpy(mel)) for song, mel in pickle.load(file)]
+
+
 def danced(args):
     k, song = args
-    return [(d.positions.astype(np.float32), d.contacts) for d in (dance(song, DANCES_A_SEED+2*k+j) for j in range(2))]
-def heard(made):
-    mels=[torch.from_numpy(m) for _,m in made]
-    told=[counts(frame_times(len(m)).numpy(), s.beats, s.bar_position, s.metre) for (s,_),m in zip(made,mels)]
-    return HeardSongs.told(mels,told,[(s.tempo, GENRES.index(s.genre)) for s,_ in made])
-if __name__=="__main__":
-    name=sys.argv[1]; made=load(); t=time.time()
-    cache=MADE / "dances.pkl"
+    first = DANCES_A_SEED + 2 * k
+    two = (dance(song, first + j) for j in range(2))
+    return [(d.positions.astype(np.float32), d.contacts) for d in two]
+
+
+if __name__ == "__main__":
+    name, t = sys.argv[1], time.time()
+    made = songs()
+    cache = MADE / "dances.pkl"
     if not cache.exists():
-        slim=[(k, s) for k,(s,_) in enumerate(made)]
-        with ProcessPoolExecutor(2) as pool: out=list(pool.map(danced, slim, chunksize=20))
-        pickle.dump(out, open(cache,"wb")); print("dances", time.time()-t, flush=True)
-    if name=="data": sys.exit()
-    out=pickle.load(open(cache,"rb"))
-    pos=[];con=[];mels=[]
-    for (s,m),two in zip(made,out):
-        m=torch.from_numpy(m)
-        for p,c in two: pos.append(p);con.append(c);mels.append(m)
-    songs=heard(made); E.songs_of=lambda *a: songs
-    if not list(MADE.glob("ear-*.run.safetensors")): T.ear_of=kept_ear
-    windows=DanceWindows.of(pos,con,mels,100); print(len(windows), flush=True)
-    del made,out,pos
-    recipe=DANCE_RECIPES[name]
-    if len(sys.argv)>2: recipe=replace(recipe, steps=int(sys.argv[2]))
-    dancer=T.train_dancer(recipe, MADE / f"{name}.run.safetensors", windows, log=lambda s: print(s,flush=True))
-    save(dancer, MADE / f"{name}.safetensors", bits=16); print("done")
+        with ProcessPoolExecutor(2) as pool:
+            slim = [(k, song) for k, (song, _) in enumerate(made)]
+            out = list(pool.map(danced, slim, chunksize=20))
+        with open(cache, "wb") as file:
+            pickle.dump(out, file)
+        print("dances", time.time() - t, flush=True)
+    if name == "data":
+        sys.exit()
+    with open(cache, "rb") as file:
+        out = pickle.load(file)
+    flat = [(p, c, mel) for (_, mel), two in zip(made, out, strict=True) for p, c in two]
+    windows = DanceWindows.of(*map(list, zip(*flat, strict=True)), 100)
+    del made, out, flat
+    print(len(windows), flush=True)
+    T.ear_of = kept_ear
+    recipe = DANCE_RECIPES[name]
+    if len(sys.argv) > 2:
+        recipe = replace(recipe, steps=int(sys.argv[2]))
+    run = MADE / f"{name}.run.safetensors"
+    dancer = T.train_dancer(recipe, run, windows, log=lambda s: print(s, flush=True))
+    save(dancer, MADE / f"{name}.safetensors", bits=16)
+    print("done")

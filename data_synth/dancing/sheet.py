@@ -243,7 +243,7 @@ class Sheet:
         return lift
 
     def _instead(self, foot: int, toe, land: float) -> float | None:
-        """There is no time for a step, so the last one of this foot, if it was just now, goes there.
+        """There is no time for a step, so the last one of this foot goes there, if it was just now.
 
         The beat at which that one lifted; None if there was none, and the foot stays.
         """

@@ -156,5 +156,5 @@ def train_ear(
         warmup=300,
         log=log,
     )
-    kept = ("parameters", "songs", "minutes", "sittings", "final_loss")
+    kept = ("parameters", "songs", "minutes", "final_loss")
     return TrainedEar(trained, songs.scaler, {name: card[name] for name in kept})
