@@ -105,7 +105,7 @@ X0 = replace(MOFUSION_SMALL, target="x0", skip=False)
 HEARING = HearingConfig(target="x0", skip=False)
 OURS = DanceLossWeights(changes=5.0, toes=0.2)
 DANCER_PLAIN = SongRecipe(
-    "dancer-plain", HEARING, steps=10_000, loss_weights=OURS, gain_noise=0.3, snr=0.1, no_music=0.15
+    "dancer-plain", HEARING, steps=8_000, loss_weights=OURS, gain_noise=0.3, snr=0.1, no_music=0.15
 )
 DANCER = replace(DANCER_PLAIN, name="dancer", kinematic=KINEMATIC)
 REGRESSED = SongRecipe(
