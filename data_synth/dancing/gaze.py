@@ -7,7 +7,7 @@ import numpy as np
 from jaxtyping import Float
 
 AHEAD = 0.35  # seconds by which the eyes are ahead of the pelvis
-FARTHEST = 50.0  # degrees that the head turns against the chest, comfortable for a neck
+FARTHEST = 50.0  # degrees that head and chest together turn ahead of the pelvis, at most
 CHEST = 0.3  # share of the head's turn that the chest takes over
 
 

@@ -147,9 +147,8 @@ def performed(
     early = np.interp(t + ARMS_LEAD * delay, seconds, number)
     channels = _channels(script, b, early, (seconds, number), manner, seed, rng)
     heading = facing(script, b)
-    if manner.spots:
-        head, chest = ahead_of_the_turn(heading, FPS)
-        channels["look"], channels["twist"] = channels["look"] + head, channels["twist"] + chest
+    head, chest = ahead_of_the_turn(heading, FPS)
+    channels["look"], channels["twist"] = channels["look"] + head, channels["twist"] + chest
     tracks = tuple(
         _foot(script.steps[foot], start[foot], t, felt, channels[heel], manner.roll, rng)
         for foot, heel in enumerate(("l_heel", "r_heel"))

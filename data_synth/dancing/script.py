@@ -81,7 +81,9 @@ class Script:
         default_factory=lambda: [(STANCE, TOE_AHEAD, 0.12), (-STANCE, TOE_AHEAD, -0.12)]
     )  # x, z, yaw
     landed: list = field(default_factory=lambda: [-9.0, -9.0])
-    down: list = field(default_factory=lambda: [-9.0, -9.0])  # as landed, without pivots
+    down: list = field(
+        default_factory=lambda: [-9.0, -9.0]
+    )  # as landed, of steps alone: no pivots, no kicks
     bore: tuple[int, float] = (-1, -9.0)  # the foot that took the weight last, and when (beat)
     heading_at: float = -9.0
     floor: list[tuple[float, float]] = field(default_factory=lambda: [(-2.0, 0.0)])

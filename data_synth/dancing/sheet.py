@@ -15,10 +15,10 @@ from .script import ARM, LENGTHS, STANCE, TURNS_SIGN, Script, Step
 from .stage import Way
 
 UNSCALED = ("weight", "look")
-ARRIVED = 0.74  # share of the weight that a foot has at the count it lands on
+ARRIVED = 0.74  # the weight (0 both feet, 1 one alone) on a foot at the count it lands on
 TOES_AHEAD = 0.4  # counts: a foot lands as the body will face by then, so that it need not twist
 SHIFT = 0.12  # counts between the landing of one foot and the lift of the next
-TOUCHED = -0.5  # share of the weight on a foot that only touches: it stays over the other one
+TOUCHED = -0.5  # the weight after a foot only touched: it is over the other one
 FLIGHT = 0.26  # beats that a step lasts, at least
 LATELY = 0.55  # beats: so long ago a foot landed that has no time for another step
 NEAREST, WIDEST = 0.13, 0.56  # metres between the toes when a step lands

@@ -1,7 +1,8 @@
 """The plan of the stage: where a move travels, to which side it turns, and how low it goes.
 
-Every phrase has a way: it goes towards a place on the stage and turns to another wall there. So the
-dancer uses the whole floor, and never wanders off it.
+Every move has a way: it goes towards a place on the stage and turns to another wall there. So the
+dancer uses the whole floor. The steps of a move can lead farther, those of a waltz up to 3 m from
+the start; the next way leads back.
 """
 
 from dataclasses import dataclass, field
@@ -12,16 +13,18 @@ from jaxtyping import Float
 from scipy.interpolate import PchipInterpolator
 
 ROOM = 1.5  # metres from the start: the radius of the stage
-TRIES = 3  # places that are thought of; the farthest is chosen, so that there is a way to go
-REST_SHARE = 0.25  # of a bar, before and after a turn: the dancer faces a wall for a moment
+TRIES = 3  # places that are drawn; the farthest is chosen, so that there is a way to go
+REST_SHARE = 0.25  # of a bar, half of it before a turn and half after: the dancer faces a wall
 
 
 @dataclass(frozen=True)
-class Stage:
+class StagePlan:
     """How a genre uses the stage.
 
-    `pace` metres a count, `turns` degrees a bar of which one is drawn, `low` metres, `stays` the
-    probability of another turn to the same side.
+    pace   metres a count, at most
+    turns  degrees a bar, of which one is drawn for each move
+    low    metres that the body sinks half-way through a move, at most
+    stays  probability that a move turns to the same side as the last one
     """
 
     pace: float
@@ -52,7 +55,7 @@ class Way:
         return float(self.round(min(max(count, 0.0), self.counts[-1])))
 
     def travelled(self, count: float) -> tuple[float, float]:
-        """Metres, along x and z of the world, by a count."""
+        """Metres, along x and z of the world, by a count; as at the end after it."""
         share = min(max(count / self.counts[-1], 0.0), 1.0)
         return self.travel[0] * share, self.travel[1] * share
 
@@ -62,7 +65,7 @@ class Way:
 
 
 def way(
-    stage: Stage,
+    plan: StagePlan,
     here: tuple[float, float],
     counts: int,
     metre: int,
@@ -79,10 +82,10 @@ def way(
     goal = places[int(np.argmax(np.hypot(*(places - here).T)))]
     gap = goal - here
     outside = max(hypot(*here) - ROOM, 0.0)  # the moves themselves can lead there
-    far = min((stage.pace * size * counts + outside) / max(hypot(*gap), 1e-6), 1.0)
+    far = min((plan.pace * size * counts + outside) / max(hypot(*gap), 1e-6), 1.0)
     side = float(np.sign(before) or rng.choice([-1.0, 1.0]))
-    side *= 1.0 if rng.random() < stage.stays else -1.0
-    a_bar = side * np.radians(rng.choice(stage.turns)) * min(size, 1.0)
+    side *= 1.0 if rng.random() < plan.stays else -1.0
+    a_bar = side * np.radians(rng.choice(plan.turns)) * min(size, 1.0)
     knots, turn = [0.0], [0.0]
     for first in range(0, counts, metre):
         last = min(first + metre, counts)
@@ -93,7 +96,7 @@ def way(
         (float(far * gap[0]), float(far * gap[1])),
         (*knots, float(counts)),
         tuple(float(t) for t in (*turn, turn[-1])),
-        stage.low * float(rng.random() ** 2),
+        plan.low * float(rng.random() ** 2),
     )
 
 

@@ -54,15 +54,6 @@ def looks_planted(world: Float[np.ndarray, "T 21 3"], fps: float) -> Bool[np.nda
     return (speed < 0.3) & (foot[1:-1, :, 1] < np.percentile(foot[..., 1], 10, axis=0) + 0.06)
 
 
-def facing(world: Float[np.ndarray, "T 21 3"], fps: float) -> Float[np.ndarray, "T"]:
-    """Direction (radians to the left of z, without jumps) that hips and shoulders face.
-
-    The line across them is smoothed by 0.1 s.
-    """
-    left = _across(world, fps)
-    return np.unwrap(np.arctan2(-left[:, 1], left[:, 0]))
-
-
 def _across(world: Float[np.ndarray, "T 21 3"], fps: float) -> Float[np.ndarray, "T 2"]:
     """The horizontal line (x, z) across hips and shoulders, to the left, of length 1."""
     across = sum(

@@ -89,5 +89,6 @@ def test_what_is_too_short_or_broken_is_said():
         travel(still(1))
     broken = still()
     broken[3] = np.nan
-    with pytest.raises(ValueError, match="NaN"):
-        turning(broken)
+    for measure in (turning, travel, standing_feet):
+        with pytest.raises(ValueError, match="NaN"):
+            measure(broken)

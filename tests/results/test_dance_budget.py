@@ -32,7 +32,11 @@ def tiny(monkeypatch):
     transformer = TransformerConfig(width=16, heads=2, layers=1, music_layers=1, S=60)
     for name, (words, base, config, settings) in list(VARIANTS.items()):
         changes = {"target": config.target, "C": config.C}
-        if isinstance(config, TransformerConfig):
+        if isinstance(config, HearingConfig):
+            small = HearingConfig(
+                **TINY.as_dict() | changes, ear_width=EAR.config.width, ear_blocks=EAR.config.blocks
+            )
+        elif isinstance(config, TransformerConfig):
             small = replace(transformer, deterministic=config.deterministic, **changes)
         else:
             small = replace(
@@ -66,7 +70,12 @@ def test_each_variant_differs_from_its_base_in_what_its_words_say():
         } == wanted
     kinds = [recipe_of(name, FULL).kinematic.over_time for name in ("constant", "alpha_bar", "snr")]
     assert kinds == ["constant", "alpha_bar", "snr"]
-    assert set(differing) | {"x0", "transformer"} == set(VARIANTS)
+    assert set(differing) | {"x0", "transformer", "ear"} == set(VARIANTS)
+    ear = recipe_of("ear", FULL)
+    assert replace(ear, name="dance-budget.x0", config=recipe_of("x0", FULL).config, ear=None) == (
+        recipe_of("x0", FULL)
+    )
+    assert (ear.ear.songs, ear.ear.seconds) == (ear.songs, ear.seconds)
     rivals = {rival for found in budget.RIVALS.values() for rival in found}
     assert rivals | {base for _, base, *_ in VARIANTS.values()} - {""} <= set(VARIANTS)
 
@@ -138,7 +147,7 @@ def test_rows_of_another_budget_or_sampler_are_not_set_beside_it(tiny, tmp_path,
     assert budget.gains("alpha_bar", found, tmp_path, SMALL) == []
 
 
-@pytest.mark.parametrize("name", ["eps-weighted", "mfcc", "regression"])
+@pytest.mark.parametrize("name", ["eps-weighted", "mfcc", "regression", "ear"])
 def test_what_is_not_the_usual_network_is_trained_and_measured(tiny, tmp_path, name):
     found = {one["name"].removeprefix(f"dance-budget.{name}."): one["value"]
              for one in budget_records(name, SMALL, tmp_path, "c")}  # fmt: skip
@@ -204,6 +213,7 @@ def test_what_trains_is_run_when_asked_for_only():
         "known-answer",
         "course",
         "guided",
+        "ear",
     ]
     full = command.parts_of([], True, {}, weights)
     assert full[: len(plain)] == plain and {"dance-budget.v", "ladder.ours"} <= set(full)

@@ -61,7 +61,7 @@ def test_no_training_has_their_seeds(songs):
 
 @pytest.mark.parametrize("k", [0, 1])
 def test_kept_out_tempi_are_those_and_one_range_each(k):
-    tempi = list(parts.KEPT_OUT.values())[k]
+    tempi = list(parts.TEMPI_KEPT_OUT.values())[k]
     low, high = HELD_OUT_TEMPI[k]
     found = songs_like_real(3, UNSEEN + 4, replace(JUDGED, tempi=tempi))
     assert all(low <= song.tempo <= high for song in found)

@@ -76,7 +76,7 @@ def test_a_long_recording_is_danced_to_in_parts_with_their_own_beats():
 
 @pytest.fixture
 def folder(tmp_path, monkeypatch):
-    """A song with its beats in a file, a copy of it, a song without, and a bird.
+    """A song with its beats in a file, a copy of it, a song without, a bird, and a text.
 
     The tracker, which is slow to compile, finds a beat every half second.
     """
@@ -87,7 +87,8 @@ def folder(tmp_path, monkeypatch):
     (tmp_path / "audio_beats_machine").mkdir()
     clicks = np.zeros(8 * 16_000)
     clicks[::8_000] = 0.9
-    for name in ("one", "one_again", "two", "robin"):
+    (tmp_path / "audio" / "README.md").write_text("songs")
+    for name in ("one", "one_44k_stereo", "one_two", "robin"):
         soundfile.write(tmp_path / "audio" / f"{name}.wav", clicks, 16_000)
     text = "# by a program\n0.5\n1.0\n1.5\n2.0\n2.5\n"
     (tmp_path / "audio_beats_machine" / "one.tracker.beats").write_text(text)
@@ -96,10 +97,7 @@ def folder(tmp_path, monkeypatch):
 
 def test_each_recording_of_music_is_read_once_with_the_beats_that_there_are(folder):
     one, two = recordings_of_music(folder)
-    assert (one.name, one.annotated) == ("one", True) and (two.name, two.annotated) == (
-        "two",
-        False,
-    )
+    assert (one.name, one.from_file, two.name, two.from_file) == ("one", True, "one_two", False)
     np.testing.assert_allclose(one.beats, [0.5, 1.0, 1.5, 2.0, 2.5])
     np.testing.assert_allclose(two.beats, np.arange(0, 8, 0.5))
 
@@ -118,9 +116,9 @@ def test_the_records_say_how_few_songs_they_count(folder, monkeypatch):
     records = {one["name"]: one for one in music_records(Deaf(), "w", MusicSize(1, 3), "c")}
     assert set(records) == {
         f"real.music_{k}" for k in ("gain", "alignment", "alignment_shifted")
-    } | {"real.music_gain.one", "real.music_gain.two"}
+    } | {"real.music_gain.one", "real.music_gain.one_two"}
     assert records["real.music_gain"]["seeds"]["songs"] == 2
-    assert records["real.music_gain"]["seeds"]["annotated"] == 1
+    assert records["real.music_gain"]["seeds"]["from_file"] == 1
 
 
 @pytest.mark.parametrize("place", ["", "empty"])

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 from ...walking.legs import LEVEL
-from ..stage import Stage
+from ..stage import StagePlan
 from ..steps import Roll
 from . import hiphop, house, latin, pop, waltz
 
@@ -25,8 +25,7 @@ class Manner:
     variety: float = 1.0  # factor on the differences of posture between persons
     level: float = LEVEL  # metres: a foot farther beside its hip pulls the pelvis along
     roll: Roll = Roll()
-    stage: Stage = Stage(0.0, (0.0,), 0.0)  # on the spot, facing one way
-    spots: bool = False  # the head turns before the body
+    stage: StagePlan = StagePlan(0.0, (0.0,), 0.0)  # on the spot, facing one way
 
 
 _BENT = {
@@ -56,8 +55,7 @@ MANNERS: dict[str, Manner] = {
         0.012,
         {"drop": 0.04, "lean": 7.0, **_BENT},
         roll=_LIGHT,
-        stage=Stage(0.15, (45.0, 90.0, 90.0, 135.0), 0.06),
-        spots=True,
+        stage=StagePlan(0.15, (45.0, 90.0, 90.0, 135.0), 0.06),
     ),
     "hiphop": Manner(
         hiphop.MOVES,
@@ -68,8 +66,7 @@ MANNERS: dict[str, Manner] = {
         0.012,
         {"drop": 0.05, "lean": 7.0},
         roll=_PRESSED,
-        stage=Stage(0.18, (45.0, 90.0, 90.0, 135.0), 0.07),
-        spots=True,
+        stage=StagePlan(0.18, (45.0, 90.0, 90.0, 135.0), 0.07),
     ),
     "pop": Manner(
         pop.MOVES,
@@ -80,8 +77,7 @@ MANNERS: dict[str, Manner] = {
         0.03,
         {"drop": 0.025, "lean": 2.0},
         roll=_LIGHT,
-        stage=Stage(0.14, (0.0, 45.0, 90.0, 90.0), 0.05),
-        spots=True,
+        stage=StagePlan(0.14, (0.0, 45.0, 90.0, 90.0), 0.05),
     ),
     "latin": Manner(
         latin.MOVES,
@@ -92,8 +88,7 @@ MANNERS: dict[str, Manner] = {
         0.03,
         {"drop": 0.03, "lean": 2.0, **_BENT},
         roll=_PRESSED,
-        stage=Stage(0.15, (45.0, 90.0, 90.0, 135.0), 0.05),
-        spots=True,
+        stage=StagePlan(0.15, (45.0, 90.0, 90.0, 135.0), 0.05),
     ),
     "waltz": Manner(
         waltz.MOVES,
@@ -104,7 +99,6 @@ MANNERS: dict[str, Manner] = {
         0.045,
         {"drop": 0.02, "lean": 0.0, **_ROUND},
         roll=_SLOW,
-        stage=Stage(0.06, (30.0, 45.0, 60.0), 0.0, stays=0.75),
-        spots=True,
+        stage=StagePlan(0.06, (30.0, 45.0, 60.0), 0.0, stays=0.75),
     ),
 }

@@ -81,7 +81,7 @@ VARIANTS = {
     "slide": ("a foot loss of 2", "alpha_bar", X0, {"kinematic": replace(KINEMATIC, slide=2.0)}),
     "cosine": ("the cosine schedule as it is", "x0", X0, {"snr": 1.0}),
     "gain-noise": ("music as from different loudspeakers", "x0", X0, {"gain_noise": 0.3}),
-    "ear": ("an ear that was taught first", "x0", HEARING, {"ear": EAR}),
+    "ear": ("an ear that was trained first, on the same songs", "x0", HEARING, {"ear": EAR}),
     "linear-music": ("one linear layer for the music", "x0", replace(X0, music_layers=0), {}),
     "transformer": ("a plain transformer of equal size", "x0", PLAIN, {}),
     "mfcc": ("MFCC and the true beats instead of Mel", "x0", replace(X0, C=CHANNELS), {}),
@@ -106,11 +106,12 @@ class Budget:
     seconds: float = 20.0
     batch: int = 16
     save_every: int = 50
+    ear_steps: int = 2400  # of an ear, which is trained first
     measured: DanceSize = DanceSize(songs=30, seeds=2, pieces=10, each=8)
 
 
 FULL = Budget()
-QUICK = Budget(steps=3, songs=2, seconds=8.0, batch=3, save_every=2, measured=DanceSize(3, 1, 2, 2))
+QUICK = Budget(3, 2, 8.0, batch=3, save_every=2, ear_steps=2, measured=DanceSize(3, 1, 2, 2))
 
 
 def recipe_of(name: str, budget: Budget) -> SongRecipe:
@@ -121,6 +122,9 @@ def recipe_of(name: str, budget: Budget) -> SongRecipe:
     }
     plain = {"config": config, "gain_noise": 0.0, "no_music": 0.0, "ear": None}
     settings = sizes | plain | settings
+    if settings["ear"]:
+        alike = {key: sizes[key] for key in ("songs", "seconds", "save_every")}
+        settings["ear"] = replace(EAR, steps=budget.ear_steps, **alike)
     return replace(DANCER_PLAIN, name=f"dance-budget.{name}", **settings)
 
 
@@ -210,5 +214,7 @@ def budget_records(name: str, budget: Budget, runs: Path, command: str) -> list[
     }
     seeds |= {"training": recipe.seed, "trained_steps": recipe.steps, "trained_songs": recipe.songs}
     seeds |= {"batch": recipe.batch, "weights": digest_of_tensors(dancer.model.state_dict())[:16]}
+    if recipe.ear:
+        seeds["ear_steps"] = recipe.ear.steps
     measures = [*found.measures, *gains(name, found, runs, budget)]
     return [measure.as_record(f"dance-budget.{name}.", seeds, command) for measure in measures]

@@ -1,4 +1,4 @@
-"""Can one see from a dance which genre it is? A plain classifier is asked.
+"""Can one see from a dance which genre it is? A plain classifier says.
 
 It learns from the data's dances to songs of the training split, and is asked about unseen songs:
 about the data's dances to them, and about a dancer's. Shares are means over genres, so that
@@ -8,17 +8,20 @@ Features leave out accelerations: they would tell a network's dance from the dat
 from another.
 """
 
+from collections.abc import Sequence
+
 import numpy as np
 from jaxtyping import Float
 from sklearn.discriminant_analysis import LinearDiscriminantAnalysis
 
+from data_synth.music.song import Song
 from motiondiff_edu.metrics.dance_floor import standing_feet, travel
 from motiondiff_edu.motion.root_frame import body_heading, to_root_frame
 from motiondiff_edu.motion.skeleton import HIPS
 
 from ..walks.scores import FPS, Measure, measure_of
 from .floor import over_genres
-from .songs import TRAINED, Songs
+from .songs import TRAINED
 
 SEED = 1  # of the songs on which dancers are trained
 SLOW = 0.01  # m/s: added to speeds before their logarithm is taken
@@ -76,9 +79,9 @@ class GenreJudge:
         return (said.reshape(n, count) == genres[:, None]).mean(1)
 
 
-def judge_of(songs: Songs) -> GenreJudge:
+def judge_of(dances: Float[np.ndarray, "N T 21 3"], songs: Sequence[Song]) -> GenreJudge:
     """A judge that has learnt from the data's dances to these songs."""
-    return GenreJudge(features_by_window(songs.truth[:, 0]), songs.genres)
+    return GenreJudge(features_by_window(dances), np.array([song.genre for song in songs]))
 
 
 def genre_measures(

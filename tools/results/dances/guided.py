@@ -1,7 +1,6 @@
 """The shipped dancer at several weights of guidance: what is gained in beats, and what it costs.
 
-At weight 1 it dances without guidance. A larger weight follows the music more closely, and its
-dances differ less.
+At weight 1 it dances without guidance.
 """
 
 from dataclasses import dataclass, replace

@@ -18,11 +18,11 @@ from motiondiff_edu.performers.dancer import Dancer
 from motiondiff_edu.performers.heard_by import Heard, heard_by
 
 from ..walks.parts import weights_digest
-from ..walks.scores import Measure, measure_of
+from ..walks.scores import Measure, measure_of, ratio
 from .parts import Stage
 from .songs import JUDGED, UNSEEN, mel_of, songs_like_real
 
-KEPT_OUT = replace(JUDGED, tempi=HELD_OUT_TEMPI)
+AT_KEPT_OUT_TEMPI = replace(JUDGED, tempi=HELD_OUT_TEMPI)
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,20 +57,16 @@ def hearing_measures(found: Hearing) -> list[Measure]:
     return [
         measure_of("beats_f", "", np.mean, found.beats),
         measure_of("tracker_f", "", np.mean, found.tracker),
-        measure_of("beats_f_over_tracker", "", _ratio, found.beats, found.tracker),
+        measure_of("beats_f_over_tracker", "", ratio, found.beats, found.tracker),
         measure_of("downbeats_f", "", np.mean, found.downbeats),
         measure_of("genre_accuracy", "share", np.mean, found.genre),
     ]
 
 
-def _ratio(own: np.ndarray, other: np.ndarray) -> float:
-    return own.mean() / max(other.mean(), 1e-9)
-
-
 def hearing_records(stage: Stage, command: str) -> list[dict]:
     """The records `ear.*`, and `ear.kept_out.*` at tempi that are kept out of training."""
     dancer = stage.dancer("dancer")
-    kept_out = songs_like_real(stage.size.songs, UNSEEN + 6, KEPT_OUT)
+    kept_out = songs_like_real(stage.size.songs, UNSEEN + 6, AT_KEPT_OUT_TEMPI)
     measures = hearing_measures(hearing_of(dancer, stage.songs.songs)) + [
         replace(one, name=f"kept_out.{one.name}")
         for one in hearing_measures(hearing_of(dancer, kept_out))

@@ -6,13 +6,15 @@ for the data's own dances.
 
 from dataclasses import dataclass, replace
 from functools import cached_property
+from itertools import islice
 from pathlib import Path
 
 import numpy as np
 
 from data_synth.music import songs
 from data_synth.music.recorded import recorded_song
-from data_synth.music.tempi import HELD_OUT_TEMPI
+from data_synth.music.tempi import HELD_OUT_TEMPI, held_out
+from data_synth.music.varied import varied_songs
 from motiondiff_edu.performers.dancer import STEPS, Dancer
 from motiondiff_edu.pretrained import checkpoints
 
@@ -39,9 +41,9 @@ from .songs import (
     Hear,
     Songs,
     danced_by_the_data,
+    dances_by_the_data,
     judged_songs,
     mel_of,
-    songs_like_real,
 )
 from .trials import dances_of
 
@@ -52,11 +54,13 @@ DANCES = {
     "regression": "regression",
     "unheard": "dancer",
 }  # weights
-UNHEARD = {  # properties that no varied song has, one at a time: the composer's own songs have them
+# properties that no song of training has. These songs are the composer's own, in one feel, and so
+# differ from those of training in more than their name says
+UNHEARD = {
     "metre5": {"metre": 5},
     "mallets": {"timbre": "mallets"},
 }
-KEPT_OUT = {f"tempo{low:g}-{high:g}": ((low, high),) for low, high in HELD_OUT_TEMPI}
+TEMPI_KEPT_OUT = {f"tempo{low:g}-{high:g}": ((low, high),) for low, high in HELD_OUT_TEMPI}
 
 
 @dataclass(frozen=True)
@@ -105,8 +109,9 @@ class Stage:
     @cached_property
     def judge(self) -> GenreJudge:
         """The classifier of genres; it has learnt from songs of the training split."""
-        taught = songs_like_real(self.size.taught, SEED)
-        return judge_of(danced_by_the_data(taught, 1, self.songs.truth.shape[2], SEED))
+        taught = list(varied_songs(self.size.taught, SEED, SECONDS, JUDGED))
+        dances = dances_by_the_data(taught, 1, self.songs.truth.shape[2], SEED)
+        return judge_of(dances[:, 0], taught)
 
     def dancer(self, name: str) -> Dancer:
         return checkpoints.load_dancer(self.weights[name])
@@ -193,9 +198,12 @@ def unheard_measures(stage: Stage) -> list[Measure]:
     measures, shares = [], []
     for k, (name, changes) in enumerate(UNHEARD.items()):
         seed = UNSEEN + 2 + k
-        made = [recorded_song(song, seed) for song in songs(n, seed, SECONDS, **changes)]
+        tempi_of_training = (
+            song for song in songs(2 * n, seed, SECONDS, **changes) if not held_out(song.tempo)
+        )
+        made = [recorded_song(song, seed) for song in islice(tempi_of_training, n)]
         measures += _named(name, _heard(dancer, danced_by_the_data(made, 1, TRAINED, seed))[0])
-    for k, (name, tempi) in enumerate(KEPT_OUT.items()):
+    for k, (name, tempi) in enumerate(TEMPI_KEPT_OUT.items()):
         seed = UNSEEN + 2 + len(UNHEARD) + k
         heard = judged_songs(n, 1, TRAINED, seed, variety=replace(JUDGED, tempi=tempi))
         found, rows = _heard(dancer, heard)

@@ -2,7 +2,8 @@
 
 A dance is on the beat when its stops fall on beats more often than those of the same dance, moved
 in time within the song. The gain is the difference of the two: 0 for a dancer that does not hear.
-Beats are read from a file beside the recordings where there is one, and else found by a tracker.
+Nobody has marked the beats of these recordings: they are found by a tracker, another one than
+ours where a file beside the recording has its beats.
 """
 
 import os
@@ -32,6 +33,8 @@ from .trials import dances_of
 
 MUSIC, BEATS = "audio", "audio_beats_machine"  # folders within the recordings
 NO_MUSIC = ("speech_libri1", "robin")  # a voice and a bird, in the same folder
+SOUNDS = (".wav", ".flac", ".ogg", ".mp3")
+COPY = "_44k_stereo"  # ends the name of a second copy of a recording
 PART = LONGEST / FPS  # seconds: longer recordings are danced to in parts, from their beginning
 
 
@@ -53,7 +56,7 @@ class Recording:
     name: str
     audio: Float[np.ndarray, "N"]
     beats: Float[np.ndarray, "K"]
-    annotated: bool  # whether the beats are read from a file
+    from_file: bool  # whether the beats are those of another tracker, read from a file
 
     def parts(self, most: int) -> list[tuple[np.ndarray, np.ndarray]]:
         """Sound and beats of spans of PART seconds, or of all of it if it is shorter.
@@ -72,14 +75,17 @@ class Recording:
 
 
 def recordings_of_music(folder: Path) -> list[Recording]:
-    """All recordings of music, each once: a second copy is named as the first and "_..."."""
+    """All recordings of music, each once."""
     paths = {
         path.stem: path
-        for path in sorted((folder / MUSIC).glob("*.*"))
-        if path.stem not in NO_MUSIC and not path.name.startswith(".")
+        for path in sorted((folder / MUSIC).iterdir())
+        if path.suffix.lower() in SOUNDS and path.stem not in NO_MUSIC
     }
-    copies = {name for name in paths for other in paths if name.startswith(f"{other}_")}
-    return [recording(path, folder) for name, path in paths.items() if name not in copies]
+    return [
+        recording(path, folder)
+        for name, path in paths.items()
+        if not (name.endswith(COPY) and name.removesuffix(COPY) in paths)
+    ]
 
 
 def recording(path: Path, folder: Path) -> Recording:
@@ -154,7 +160,7 @@ def music_records(dancer: Dancer, weights: str, size: MusicSize, command: str) -
         sys.exit(f"no recording has {FEWEST} beats in a part")
     seeds = {
         "songs": len(rows),
-        "annotated": sum(song.annotated for song in recordings if song.name in rows),
+        "from_file": sum(song.from_file for song in recordings if song.name in rows),
         "parts": size.parts,
         "samples": size.samples,
         "sampling": [0],

@@ -18,7 +18,7 @@ from data_synth.dancing.performance import DANCES_A_SEED
 from data_synth.music import SONGS_A_SEED
 from data_synth.music.recorded import recorded_song
 from data_synth.music.song import Song
-from data_synth.music.varied import Variety, varied_songs
+from data_synth.music.varied import VARIED, Variety, varied_songs
 from motiondiff_edu.conditions.music import log_mel
 
 from ..walks.scores import FPS
@@ -31,7 +31,7 @@ MARGIN = 0.25  # s: beats just outside of a clip are kept, a stop may be near th
 # in the first TRAINED frames: a song that is silent for longer has too few beats to be judged by,
 # and the slowest one, of 60 BPM, has five
 FEWEST = 4
-JUDGED = Variety(own_groove=0.6)  # genres are judged too, and can be heard in their grooves
+JUDGED = VARIED  # as those of training
 
 Hear = Callable[[Song], Float[torch.Tensor, "M C"]]  # what a network is given of a song
 
@@ -89,7 +89,14 @@ def danced_by_the_data(
     songs: Sequence[Song], draws: int, frames: int, seed: int, hear: Hear = mel_of
 ) -> Songs:
     """The songs with `draws` dances of the data to each, of so many frames."""
+    truth = dances_by_the_data(songs, draws, frames, seed)
+    return Songs(list(songs), torch.stack([hear(song) for song in songs]), truth)
+
+
+def dances_by_the_data(
+    songs: Sequence[Song], draws: int, frames: int, seed: int
+) -> Float[np.ndarray, "N K T 21 3"]:
+    """`draws` dances of the data to each of the songs, of so many frames."""
     danced = dances_to(songs, seed * DANCES_A_SEED, draws)
     positions = np.stack([dance.positions[:frames] for _, dance in danced])
-    truth = positions.reshape(len(songs), draws, *positions.shape[1:])
-    return Songs(list(songs), torch.stack([hear(song) for song in songs]), truth)
+    return positions.reshape(len(songs), draws, *positions.shape[1:])

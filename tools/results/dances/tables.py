@@ -3,10 +3,11 @@
 Sections of docs/RESULTS.md.
 """
 
-from motiondiff_edu.performers.dancer import ETA, STEPS
+from motiondiff_edu.performers.dancer import ETA
 
 from ..page.markdown import cell, number, table
 from .budget import FULL, VARIANTS
+from .floor import FLOOR
 from .guided import WEIGHTS
 from .timing import BASE, TIMED
 
@@ -132,15 +133,15 @@ def guidance(records: dict[str, dict]) -> str:
     if not rows:
         return ""
     text = (
-        "\nThe shipped dancer at several weights of guidance; 1 is none. A larger weight follows "
-        "the music more closely, and dances to one song differ less.\n\n"
+        "\nThe shipped dancer at several weights of guidance; 1 is none. Compare what is gained in "
+        "alignment with what is lost in the variety of dances to one song.\n\n"
     )
     return text + table(["weight", *(f"`{kind}`" for kind in SHOWN)], rows)
 
 
 def floor(records: dict[str, dict]) -> str:
     """How the data's dances use the floor, genre by genre; nothing where it was not measured."""
-    kinds = ("standing_feet", "turn_8s_deg", "travel_mps")
+    kinds = tuple(FLOOR)
     genres = [n.split(".")[1] for n in records if n.startswith("dance_data.") and n.count(".") > 1]
     places = {"mean over genres": "", **{genre: f"{genre}." for genre in dict.fromkeys(genres)}}
     if "dance_data.standing_feet" not in records:
@@ -203,7 +204,8 @@ def choices(records: dict[str, dict]) -> str:
     text = (
         "## What each choice of a dancer is worth\n\nAll dancers were trained on the same songs "
         f"with the same seed, for {FULL.steps} steps of {FULL.batch} windows. Each row differs in "
-        f"one choice from the row named beside it. All dance with {STEPS} DDIM steps (eta = "
+        f"one choice from the row named beside it; that with an ear has {FULL.ear_steps} steps of "
+        "the ear besides. All dance with {STEPS} DDIM steps (eta = "
         f"{ETA:g}). The share gained and the bone error saved are relative to that row, on the "
         "same songs. The trainings are short, with one seed each: read these as a ranking, not as "
         "what a choice is worth in the end. `make results FULL=1` trains them again; "

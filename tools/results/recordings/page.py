@@ -98,11 +98,11 @@ def danced(records: dict[str, dict]) -> str:
     seeds = gain["seeds"]
     text = (
         f"The dancer dances to {seeds['songs']} recordings of music, which are few: the interval "
-        "is over songs, and another song can change the mean by much. The beats of "
-        f"{seeds['annotated']} of them are read from a file, the others found by a tracker. The "
-        "gain is the alignment of a dance's stops with the beats, minus that of the same dance "
-        "moved in time within the song: 0 for a dancer that does not hear. The gain of one song "
-        "has its interval over dances.\n\n"
+        "is over songs, and another song can change the mean by much. Nobody has marked their "
+        f"beats: those of {seeds['from_file']} are another tracker's, the others are found by "
+        "librosa's. The gain is the alignment of a dance's stops with the beats, minus that of the "
+        "same dance moved in time within the song: 0 for a dancer that does not hear. The gain of "
+        "one song has its interval over dances.\n\n"
     )
     rows = MUSIC | {
         name.removeprefix("real."): f"gain, {name.removeprefix('real.music_gain.')}"
