@@ -31,9 +31,13 @@ USED_AT_MOST = 1.0  # in use: lively people of recordings would be moved too far
 
 
 def with_activity(shown: Shown, at_most: float = math.inf) -> Shown:
-    """The same lines, with a scale that is multiplied by the activity, `at_most` so much."""
-    lively = activity(shown.lines, shown.known).clamp(max=at_most)
-    return replace(shown, scale=shown.scale * lively)
+    """The same lines, with a scale that is multiplied by the activity.
+
+    With more activity than `at_most`, the network sees what it has seen in training, and its
+    remainders count less, as if the activity were `at_most`.
+    """
+    lively = activity(shown.lines, shown.known)
+    return replace(shown, scale=shown.scale * lively, less=(at_most / lively).clamp(max=1.0))
 
 
 def activity(lines: Float[Tensor, "B T D"], known: Bool[Tensor, "B T D"]) -> Float[Tensor, "B T 1"]:

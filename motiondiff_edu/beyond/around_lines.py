@@ -27,11 +27,15 @@ HALF = 3.0  # frames at 20 frames/s; with it, scales are those of walks, dances 
 
 @dataclass(frozen=True, eq=False)
 class Shown:
-    """What the network is shown beside x_s and s: lines, scale, and which entries are given."""
+    """What the network is shown beside x_s and s: lines, scale, and which entries are given.
+
+    `less` makes a remainder smaller than the scale that the network sees says (`activity`).
+    """
 
     lines: Float[Tensor, "B T D"]
     scale: Float[Tensor, "B T D"]
     known: Bool[Tensor, "B T D"]
+    less: Float[Tensor, "B T 1"] | float = 1.0
 
     @classmethod
     def of(cls, given: Float[Tensor, "B T D"], known: Bool[Tensor, "B T D"]) -> "Shown":
@@ -40,11 +44,11 @@ class Shown:
 
     def remainder(self, x0: Float[Tensor, "B T D"]) -> Float[Tensor, "B T D"]:
         """What the network generates for a motion; 0 where the motion is given."""
-        return ((x0 - self.lines) / self.scale).where(~self.known, 0.0)
+        return ((x0 - self.lines) / (self.less * self.scale)).where(~self.known, 0.0)
 
     def whole(self, remainder: Float[Tensor, "B T D"]) -> Float[Tensor, "B T D"]:
         """The motion with this remainder; given entries come back up to rounding."""
-        return self.lines + self.scale * remainder
+        return self.lines + self.less * self.scale * remainder
 
 
 def lines_through(
