@@ -89,8 +89,6 @@ def dances(
 ) -> Iterator[tuple[Song, Dance]]:
     """n songs as `music.songs` has them, with `each` dances to every one.
 
-    The dancers are trained on these.
-
     The dances to one song follow one another. Different seeds share no song, and no dancer's seed.
     Raises ValueError as `songs` and `dance` do, when `each` is below 1, and for more dances than a
     seed has.

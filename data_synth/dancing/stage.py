@@ -21,7 +21,7 @@ REST_SHARE = 0.25  # of a bar, half of it before a turn and half after: the danc
 class StagePlan:
     """How a genre uses the stage.
 
-    pace   metres a count, at most
+    pace   metres a count, for a move of size 1; from outside the stage the way is longer
     turns  degrees a bar, of which one is drawn for each move
     low    metres that the body sinks half-way through a move, at most
     stays  probability that a move turns to the same side as the last one

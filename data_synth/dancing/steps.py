@@ -21,7 +21,7 @@ class Roll:
 
     The heel begins to rise `early` seconds before the foot lifts, and is `off` degrees up then; it
     lands `land` degrees up and is down `settle` seconds later. `pivot`: degrees up in a pivot.
-    `steepest`: whatever the move asks for, it stays below so many; with 54 the ankle is above the
+    `steepest`: whatever the move asks for, it stays below so many; with 57 the ankle is above the
     ball.
     """
 

@@ -90,13 +90,13 @@ class Dancer(Performer):
         Raises ValueError for a network with music but no `mel`, or the reverse, and for guidance of
         a network that was not made for it.
         """
-        guidance = self._guidance(guidance)
         if (mel is None) != (self.config.C == 0):
             raise ValueError(
                 'this network takes no music: use md.inbetween, or md.load("dancer") to dance'
                 if mel is not None
                 else "this network dances to music; pass its log-Mel as mel"
             )
+        guidance = self._guidance(guidance)
         if mel is None:
             return self._as_eps(self._evaluated)
         twin = self.fast if fast and not watched(self.model) else None
@@ -134,8 +134,8 @@ class Dancer(Performer):
         guidance = checked_guidance(asked)
         if guidance != 1 and not self.can_be_guided:
             raise ValueError(
-                f"guidance = {guidance:g}: this network always had its music in training, so leave "
-                "guidance out"
+                f"guidance = {guidance:g}: in training this network was never without its music, "
+                "so leave guidance out"
             )
         return guidance
 

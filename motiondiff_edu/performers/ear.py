@@ -22,7 +22,7 @@ GENRES = ("house", "hiphop", "pop", "latin", "waltz")  # in the order of `EarOut
 # tokens (7 s) that all see each other, as many as the longest piece of training (`recipes/ear.py`)
 # has: a longer piece is heard in parts, since over more tokens than that an ear loses the bar
 LONGEST = 112
-BESIDE = LONGEST // 4  # tokens to either side that a part of LONGEST / 2 tokens sees, too
+BESIDE = LONGEST // 4  # tokens to either side of a part of LONGEST / 2 tokens
 
 
 @dataclass(frozen=True)
@@ -113,18 +113,18 @@ def in_parts(
     angles: Float[Tensor, "M w"],
     seen: Bool[Tensor, "B M"] | None,
 ) -> Float[Tensor, "B M W"]:
-    """A block of attention between tokens; in a long piece each part sees its neighbours alone.
+    """A block of attention between tokens; in a long piece each part sees LONGEST tokens around it.
 
-    So it is as near to all that it hears as in training, and memory grows with the length of the
-    piece, not with its square.
+    So it hears as much at a time as in training, and memory grows with the length of the piece, not
+    with its square. A short piece that is padded beyond LONGEST is heard in parts as well.
     """
     M = tokens.shape[1]
     size = M if M <= LONGEST else LONGEST // 2
-    beside = 0 if size == M else BESIDE
     made = []
     for first in range(0, M, size):
         own = slice(first, first + size)
-        around = slice(max(0, first - beside), first + size + beside)
+        start = max(0, min(first - BESIDE, M - LONGEST))
+        around = slice(start, start + LONGEST)
         bias = None
         if seen is not None and not bool(seen.all()):
             count = tokens[:, own].shape[1]

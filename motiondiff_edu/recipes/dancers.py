@@ -98,7 +98,10 @@ class SongRecipe(DanceRecipe):
         given = self.ear.config if self.ear else None
         if own != given:
             wanted = f"an ear with {own}" if own else "no ear: pass ear=None"
-            raise ValueError(f"{self.name}: its network has {wanted}; the ear given has {given}")
+            found = (
+                f"the ear given has {given}" if given else "none is given: pass ear=EarRecipe(...)"
+            )
+            raise ValueError(f"{self.name}: its network has {wanted}; {found}")
 
 
 X0 = replace(MOFUSION_SMALL, target="x0", skip=False)

@@ -3,6 +3,7 @@
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
+from typing import TYPE_CHECKING
 
 import numpy as np
 import torch
@@ -14,12 +15,15 @@ from ..conditions.music import frame_times, log_mel
 from ..motion.scaler import Scaler
 from ..performers.ear import GENRES
 
-MelSong = tuple  # (a `data_synth.music` song without its sound, log-Mel (M, C))
+if TYPE_CHECKING:  # data_synth imports this package
+    from data_synth.music.song import Song
+
+MelSong = tuple["Song", Tensor]  # a song without its sound, and its log-Mel (M, C)
 
 
-def training_songs(n: int, seed: int, seconds: float) -> Iterator:
+def training_songs(n: int, seed: int, seconds: float) -> "Iterator[Song]":
     """Songs like real ones, with the sound of recordings (`data_synth.music`)."""
-    from data_synth.music.recorded import recorded_song  # here: data_synth imports this package
+    from data_synth.music.recorded import recorded_song
     from data_synth.music.varied import varied_songs
 
     return (recorded_song(song, 0) for song in varied_songs(n, seed, seconds))
@@ -34,7 +38,7 @@ def songs_as_mel(n: int, seed: int, seconds: float) -> list[MelSong]:
     return [without_sound(song) for song in training_songs(n, seed, seconds)]
 
 
-def without_sound(song) -> MelSong:
+def without_sound(song: "Song") -> MelSong:
     """The score of a song, which keeps its length, and its log-Mel."""
     silence = np.broadcast_to(np.zeros(1, np.float32), song.audio.shape)  # it takes no memory
     return replace(song, audio=silence), log_mel(torch.from_numpy(song.audio).float())

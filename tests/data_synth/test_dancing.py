@@ -12,6 +12,7 @@ from data_synth.dancing import dance, dances
 from data_synth.dancing.choreography import choreograph, slots
 from data_synth.dancing.curves import curve, felt_beats, least_jerk, springy, within_reach
 from data_synth.dancing.moves import MANNERS
+from data_synth.dancing.performance import DANCES_A_SEED
 from data_synth.dancing.script import REST, TURNS_SIGN, Script
 from data_synth.dancing.sheet import Counts, Sheet
 from data_synth.music.score import beat_song
@@ -347,7 +348,7 @@ def test_the_command_writes_several_dances_to_a_song(tmp_path):
     from data_synth.dancing.write import main
 
     main(["--out", str(tmp_path), "--dances", "3", "--each", "2", "--seconds", "4", "--seed", "1"])
-    wanted = list(dances(2, 1, 4.0, each=2))[:3]  # as training has them
+    wanted = list(dances(2, 1, 4.0, each=2))[:3]
     assert len(list(tmp_path.glob("*.npz"))) == 3
     for k, (song, danced) in enumerate(wanted):
         with np.load(tmp_path / f"dance_{k:03d}.npz") as f:
@@ -357,9 +358,9 @@ def test_the_command_writes_several_dances_to_a_song(tmp_path):
 
 def test_the_cards_training_data_are_the_dancers(root):
     card = (root / "data_synth" / "README.md").read_text(encoding="utf-8")
-    said = (
-        f"`dances({DANCER.songs}, {DANCER.data_seed}, {DANCER.seconds:.1f}, each={DANCER.dances})`"
-    )
+    first = f"{DANCER.data_seed * DANCES_A_SEED:_}"
+    songs = f"training_songs({DANCER.songs}, {DANCER.data_seed}, {DANCER.seconds:.1f})"
+    said = f"`dances_to({songs}, {first}, {DANCER.dances})`"
     assert f"{DANCER.songs:,} songs of {DANCER.seconds:g} s" in card and said in card
 
 

@@ -8,6 +8,7 @@ from data_synth.dancing.gaze import CHEST, ahead_of_the_turn
 from data_synth.dancing.script import REST, Script, Step
 from data_synth.dancing.sheet import Counts, Sheet
 from data_synth.dancing.stage import StagePlan, Way, way
+from data_synth.dancing.steps import Roll, _softly_below, track
 
 
 def ways(plan: StagePlan, n: int = 1000, size: float = 1.0, here=(0.0, 0.0), before: float = 1.0):
@@ -104,6 +105,43 @@ def test_a_step_without_time_ends_the_flight_before():
     assert script.toes[0][0] == kick.x
     sheet.step(0, 3.0, 0.2, 0.0)
     assert len(script.steps[0]) == 2
+
+
+def test_a_step_without_time_does_not_move_what_is_long_over_or_a_pivot():
+    script = Script()
+    sheet = sheet_of(script)
+    sheet.step(0, 1.0, 0.2, 0.0)
+    sheet.step(1, 2.9, -0.2, 0.0)
+    before = list(script.steps[0])
+    sheet.step(0, 3.0, 0.3, 0.3)  # the right foot has just come down
+    assert script.steps[0] == before
+    sheet.pivot(0, 3.4, 30)
+    before = list(script.steps[0])
+    sheet.step(0, 3.6, 0.3, 0.3)
+    assert script.steps[0] == before and before[-1].pivot
+
+
+def test_which_way_the_middle_of_the_stage_lies():
+    script = Script()
+    for home, inward in (
+        ((0, 1, 0.1), -1),
+        ((0, -1, 0.1), 1),
+        ((1, 0, 1.5), -1),
+        ((1, 0, -1.5), 1),
+    ):
+        script.home = home
+        assert sheet_of(script).inward() == inward
+
+
+def test_a_heel_rises_less_and_less_below_the_steepest_pitch():
+    degrees = np.linspace(-20, 120, 300)
+    soft = _softly_below(degrees, 50.0)
+    assert soft[degrees < 37] == pytest.approx(degrees[degrees < 37])
+    assert soft.max() < 50 and soft[degrees > 90].min() > 49.5 and (np.diff(soft) > 0).all()
+    assert np.array_equal(_softly_below(degrees, np.inf), degrees)
+    t = np.arange(60) / 20
+    one = track([], (0.1, 0.1, 0.0), np.empty((0, 2)), t, np.full(60, 80.0), Roll(steepest=50.0))
+    assert np.degrees(one.pitch).max() < 50
 
 
 def test_a_hop_without_time_is_none():

@@ -1,5 +1,6 @@
 """An ear hears a piece alike whole and in parts, and networks with one add what it hears."""
 
+import numpy as np
 import pytest
 import torch
 
@@ -12,7 +13,7 @@ from motiondiff_edu.cross_modal_attention import angles_of
 from motiondiff_edu.ddpm import cosine_schedule
 from motiondiff_edu.motion.scaler import Scaler
 from motiondiff_edu.performers.dancer import Dancer
-from motiondiff_edu.performers.ear import BESIDE, GENRES, LONGEST, Ear, EarConfig, in_parts
+from motiondiff_edu.performers.ear import GENRES, LONGEST, Ear, EarConfig, in_parts
 from motiondiff_edu.performers.hearing_mofusion import HearingConfig, HearingMoFusion
 from motiondiff_edu.pretrained.checkpoints import load_dancer, save
 from motiondiff_edu.recipes.ear import EAR
@@ -93,7 +94,8 @@ def test_a_long_piece_is_heard_in_parts():
     made = in_parts(block, tokens, angles, seen)
     for first in range(0, M, part):
         own = slice(first, first + part)
-        near = slice(max(0, first - BESIDE), first + part + BESIDE)
+        start = int(np.clip(first - 28, 0, M - 112))  # 112 tokens, also at both ends
+        near = slice(start, start + 112)
         for k in range(2):
             heard = tokens[k : k + 1, near][:, seen[k, near]]
             at = angles[near][seen[k, near]]
@@ -113,7 +115,7 @@ def test_an_end_is_not_heard_at_the_beginning():
     late[:, -10:] += 3
     changed = (ear(late, times) - ear(mel, times))[0].abs().amax(-1)
     assert torch.isfinite(changed).all() and changed[-5:].min() > 1e-5
-    far = SMALL.blocks * (LONGEST // 2 + BESIDE) + 20  # how far back each block carries it, at most
+    far = SMALL.blocks * LONGEST + 20  # how far back each block carries it, at most
     assert changed[: 4 * LONGEST - far].max() == 0 and changed[-LONGEST:-60].max() > 0
 
 

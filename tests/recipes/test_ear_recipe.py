@@ -9,11 +9,17 @@ import torch
 
 from data_synth.music.varied import varied_song
 from motiondiff_edu.beyond import hearing
+from motiondiff_edu.conditions.music import log_mel
 from motiondiff_edu.motion.scaler import Scaler
 from motiondiff_edu.performers.ear import Ear, EarConfig, EarOutput, rescaled
 from motiondiff_edu.recipes import ear as recipes
 from motiondiff_edu.recipes.ear import EarRecipe, drawn_batch, hearing_loss, loss_of_ear, train_ear
-from motiondiff_edu.recipes.songs import HeardSongs, songs_as_mel, without_sound
+from motiondiff_edu.recipes.songs import (
+    HeardSongs,
+    songs_as_mel,
+    training_songs,
+    without_sound,
+)
 
 RECIPE = EarRecipe(
     config=EarConfig(C=3, width=16, blocks=1), frames=(21,), batch=40, gain_noise=0.0, steps=2
@@ -117,7 +123,10 @@ def test_heard_songs_are_their_scores():
 
 def test_songs_as_mel_are_the_training_songs_and_are_kept():
     made = songs_as_mel(2, 1, 8.0)
-    assert songs_as_mel(2, 1, 8.0) is made and made[0][1].shape == (251, 80)
+    assert songs_as_mel(2, 1, 8.0) is made and made[1][1].shape == (251, 80)
+    first, second = training_songs(2, 1, 8.0)
+    wanted = log_mel(torch.from_numpy(second.audio).float())
+    assert torch.equal(made[1][1], wanted) and made[1][0].seed == second.seed != first.seed
 
 
 def test_an_ear_hears_the_same_by_another_scaler():

@@ -9,8 +9,10 @@ from pathlib import Path
 import pytest
 import torch
 
+from data_synth.dancing.performance import DANCES_A_SEED, dances_to
 from motiondiff_edu.beyond.classifier_free import without
 from motiondiff_edu.beyond.schedules import shifted
+from motiondiff_edu.conditions.music import log_mel
 from motiondiff_edu.ddpm import cosine_schedule
 from motiondiff_edu.performers.ear import EarConfig
 from motiondiff_edu.performers.networks import network
@@ -25,12 +27,19 @@ from motiondiff_edu.recipes.dancers import (
     DanceRecipe,
 )
 from motiondiff_edu.recipes.ear import EarRecipe, ear_of
+from motiondiff_edu.recipes.songs import training_songs
 from motiondiff_edu.recipes.train_dancer import loss_of, schedule_of, train_dancer, training_windows
 
 SIZES = {"steps": 6, "songs": 2, "seconds": 8.0, "batch": 3, "save_every": 2, "frames": 40}
 SMALL_EAR = {"ear_width": 16, "ear_blocks": 1}
 EARS = EarRecipe(
-    config=EarConfig(width=16, blocks=1), steps=4, frames=(40, 60), batch=2, songs=2, seconds=8.0
+    config=EarConfig(width=16, blocks=1),
+    steps=4,
+    frames=(40, 60),
+    batch=2,
+    songs=2,
+    seconds=8.0,
+    data_seed=5,  # other songs than those danced to: they have another scaler
 )
 TINY = replace(
     DANCER,
@@ -62,6 +71,16 @@ def test_data_are_songs_and_dances_to_them(windows):
     )
     once = training_windows(replace(TINY, dances=1))
     assert len(windows) == 2 * len(once) and torch.equal(once.mel, windows.mel)
+
+
+def test_every_dance_has_its_own_song(windows):
+    songs = list(training_songs(2, TINY.data_seed, TINY.seconds))
+    _, last = list(dances_to(songs, TINY.data_seed * DANCES_A_SEED, TINY.dances))[-1]
+    mel = windows.mel_scaler.transform(log_mel(torch.from_numpy(songs[-1].audio).float()))
+    torch.testing.assert_close(windows.mel[-len(mel) :], mel)
+    danced = torch.from_numpy(last.positions).float()
+    torch.testing.assert_close(windows.dances[-len(danced) :], danced)
+    assert windows.song_starts[-1] >= len(windows.mel) - len(mel)
 
 
 def test_a_killed_training_continues_bit_for_bit(windows, tmp_path: Path):
@@ -118,6 +137,7 @@ def test_the_ear_is_that_of_its_own_training(windows, tmp_path: Path):
     own = ear_of(TINY.ear, tmp_path, log=lambda line: None)  # trained already: only read
     assert trained.card["ear"] == own.card and own.card["songs"] == TINY.ear.songs
     ear = own.hearing(windows.mel_scaler)
+    assert not torch.allclose(ear.music.project.bias, own.ear.music.project.bias)
     for a, b in zip(trained.model.ear.parameters(), ear.parameters(), strict=True):
         torch.testing.assert_close(a, b, rtol=0, atol=1e-6)  # an average of equal weights
     train_dancer(replace(TINY, name="two"), tmp_path / "two.safetensors", windows, log=said.append)
@@ -134,6 +154,8 @@ def test_recipes_that_cannot_be_trained_are_refused():
         replace(REGRESSED, no_music=0.1)
     with pytest.raises(ValueError, match="its network has an ear with"):
         replace(TINY, ear=replace(EARS, config=EarConfig()))
+    with pytest.raises(ValueError, match="pass ear=EarRecipe"):
+        replace(TINY, ear=None)
     with pytest.raises(ValueError, match="pass ear=None"):
         replace(TINY, config=X0)
     with pytest.raises(ValueError, match="or make it a SongRecipe"):

@@ -3,7 +3,7 @@
 Sections of docs/RESULTS.md.
 """
 
-from motiondiff_edu.performers.dancer import ETA
+from motiondiff_edu.performers.dancer import ETA, STEPS
 
 from ..page.markdown import cell, number, table
 from .budget import FULL, VARIANTS
@@ -205,7 +205,7 @@ def choices(records: dict[str, dict]) -> str:
         "## What each choice of a dancer is worth\n\nAll dancers were trained on the same songs "
         f"with the same seed, for {FULL.steps} steps of {FULL.batch} windows. Each row differs in "
         f"one choice from the row named beside it; that with an ear has {FULL.ear_steps} steps of "
-        "the ear besides. All dance with {STEPS} DDIM steps (eta = "
+        f"the ear besides. All dance with {STEPS} DDIM steps (eta = "
         f"{ETA:g}). The share gained and the bone error saved are relative to that row, on the "
         "same songs. The trainings are short, with one seed each: read these as a ranking, not as "
         "what a choice is worth in the end. `make results FULL=1` trains them again; "
