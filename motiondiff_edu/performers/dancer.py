@@ -34,8 +34,8 @@ from .networks import register
 from .performer import Performer, generators, sampled
 from .with_bar import with_bar
 
-STEPS, ETA = 50, 0.5  # defaults of DDIM
-USUAL_GUIDANCE = 2.0  # chosen on other songs than those of docs/RESULTS.md
+STEPS, ETA = 50, 1.0  # defaults of DDIM; with less fresh noise, dances to a song differ less
+USUAL_GUIDANCE = 3.0  # chosen on other songs than those of docs/RESULTS.md
 # standard deviations from the mean pose, to which the x0_hat of an eps network is clamped, as in
 # DDPM's code
 FARTHEST = 5.0
