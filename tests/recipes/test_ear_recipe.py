@@ -87,13 +87,16 @@ def test_the_loss_by_hand():
 def test_an_ear_is_asked_at_the_times_of_its_tokens(songs, monkeypatch):
     """An answer that is right at every second Mel frame has no loss for its places."""
     monkeypatch.setattr(recipes, "MelAugmentation", lambda: PLAIN)
-    monkeypatch.setattr(recipes, "WEIGHTS", {"beat": 1.0, "bar": 1.0})
+    monkeypatch.setattr(recipes, "WEIGHTS", {"beat": 1, "bar": 1, "sounds": 0, "genre": 0})
     _, counts, _ = drawn_batch(RECIPE, songs, seeded(3))
     right = hearing.on_circles(counts[:, ::2])
 
     class Knows(torch.nn.Module):
         stride = 2
-        weight = torch.nn.Parameter(torch.zeros(1))
+
+        def __init__(self):
+            super().__init__()
+            self.weight = torch.nn.Parameter(torch.zeros(1))
 
         def forward(self, mel, times):
             assert float(times[1]) == pytest.approx(512 / 16_000)

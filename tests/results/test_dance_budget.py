@@ -12,6 +12,8 @@ import torch
 
 from motiondiff_edu.baselines.transformer import DanceTransformer, TransformerConfig
 from motiondiff_edu.mofusion import MoFusion, MoFusionConfig
+from motiondiff_edu.performers.hearing_mofusion import HearingConfig
+from motiondiff_edu.recipes.ear import EAR
 from tools.results import __main__ as command
 from tools.results.dances import budget, tables, timing
 from tools.results.dances.budget import FULL, QUICK, VARIANTS, budget_records, recipe_of
