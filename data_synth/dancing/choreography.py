@@ -11,7 +11,7 @@ from ..music.song import Song
 from ..walking.footsteps import TOE_AHEAD
 from .follow import followed
 from .moves import MANNERS, Manner
-from .script import REST, Script
+from .script import REST, START, Script
 from .sheet import Counts, Sheet
 from .stage import Way, way
 from .waiting import SILENT, wait
@@ -97,7 +97,7 @@ def choreograph(
     for name, value in rest.items():
         script.keys[name].append((-2.0, value))
     script.keys["heading"].append((-2.0, 0.0))
-    stood, stride = tuple(script.toes), float(rng.normal(1.0, 0.09))
+    stride = float(rng.normal(1.0, 0.09))
     before = Way()
     taste = rng.dirichlet(np.full(len(manner.moves), 2.5))
     for start, length in slots(song, rng):
@@ -121,7 +121,7 @@ def choreograph(
         next(f for f in (*manner.moves, *manner.calm, wait) if f.__name__ == move.name)(sheet)
         sheet.close()
     _end(script, rest, len(song.beats))
-    script.steps = followed(script, stood, (-2.0, len(song.beats) + 1.5))
+    script.steps = followed(script, START, (-2.0, len(song.beats) + 1.5))
     return script, moves
 
 

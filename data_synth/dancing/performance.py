@@ -18,14 +18,13 @@ from motiondiff_edu.motion.root_frame import FPS
 from .. import noise
 from ..music import songs
 from ..music.song import GENRES, Song
-from ..walking.footsteps import TOE_AHEAD
 from .body import dancer
 from .choreography import choreograph
 from .curves import curve, felt_beats, springy, within_reach
 from .follow import facing
 from .gaze import ahead_of_the_turn
 from .moves import MANNERS, Manner
-from .script import ARM, LENGTHS, REST, STANCE, Script, Step, Toe
+from .script import ARM, LENGTHS, REST, START, Script, Step, Toe
 from .steps import Roll, Track, track
 from .waiting import counted_on
 
@@ -36,7 +35,6 @@ DAMPING, ARMS_LEAD = (
 )  # of the arms' spring; the share of its delay by which the arms start earlier
 ARMS = [f"{side}_{name}" for side in "lr" for name in ARM]
 FASTEST = 250.0  # degrees a second, on average between two keys, that an arm's angle may change
-START: tuple[Toe, Toe] = ((STANCE, TOE_AHEAD, 0.12), (-STANCE, TOE_AHEAD, -0.12))
 
 
 @dataclass(frozen=True, eq=False)

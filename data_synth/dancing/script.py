@@ -48,6 +48,7 @@ STANCE = 0.10  # of an ankle from the middle, standing
 
 
 Toe = tuple[float, float, float]  # x, z (metres) and direction (radians) of a planted toe
+START: tuple[Toe, Toe] = ((STANCE, TOE_AHEAD, 0.12), (-STANCE, TOE_AHEAD, -0.12))
 
 
 @dataclass(frozen=True)
@@ -77,9 +78,7 @@ class Script:
     )
     steps: tuple[list[Step], list[Step]] = field(default_factory=lambda: ([], []))
     home: tuple[float, float, float] = (0.0, 0.0, 0.0)  # x, z, heading (radians)
-    toes: list = field(
-        default_factory=lambda: [(STANCE, TOE_AHEAD, 0.12), (-STANCE, TOE_AHEAD, -0.12)]
-    )  # x, z, yaw
+    toes: list[Toe] = field(default_factory=lambda: list(START))
     landed: list = field(default_factory=lambda: [-9.0, -9.0])
     down: list = field(
         default_factory=lambda: [-9.0, -9.0]
