@@ -160,7 +160,7 @@ def test_nothing_imports_in_a_circle():
 @pytest.mark.parametrize(
     "package, places",
     [
-        ("librosa", ("motiondiff_edu.conditions.music",)),
+        ("librosa", ("motiondiff_edu.conditions.compiled",)),
         ("transformers", ("motiondiff_edu.conditions.clip",)),
         ("huggingface_hub", ("motiondiff_edu.conditions.clip",)),
         ("ipywidgets", ("motiondiff_edu.widgets.",)),

@@ -173,7 +173,7 @@ def beats_of(
     Source: Ellis 2007, by librosa.  Notebook: 11
     """
     # slow to import, and needed only for recordings: a composed song has its beats
-    import librosa
+    from .compiled import librosa
 
     framing = {"sr": SAMPLE_RATE, "hop_length": TRACKER_HOP}
     onsets = librosa.onset.onset_strength(y=np.asarray(audio), n_fft=N_FFT, **framing)

@@ -6,6 +6,7 @@ It also says what to do about the rest.
 import argparse
 import importlib
 import importlib.metadata
+import importlib.util
 import io
 import os
 import re
@@ -192,6 +193,25 @@ def sound() -> Finding:
     return Finding("sound", "a sound that was written is read back differently", INSTALL)
 
 
+def hearing() -> Finding:
+    """The beat tracker hears beats.
+
+    It runs in a process of its own, since what numba has compiled can make it die
+    (`conditions/compiled.py`).
+    """
+    code = "from motiondiff_edu.conditions.compiled import librosa; print(librosa.__version__)"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
+    if done.returncode == 0:
+        return Finding("hearing", f"librosa {done.stdout.strip()} tracks beats")
+    package = importlib.util.find_spec("librosa")
+    if not package:
+        return Finding("hearing", "librosa is not installed", INSTALL)
+    wrong = (done.stderr.strip().splitlines() or [f"the process died ({done.returncode})"])[-1]
+    files = os.path.join(os.path.dirname(package.origin), "**", "__pycache__", "*.nb?")
+    remedy = f"remove what numba has compiled, which is made anew at the next use: {files}"
+    return Finding("hearing", f"librosa's beat tracker fails: {wrong}", remedy)
+
+
 def weights() -> Finding:
     """The shipped weights can be read."""
     from ..pretrained.checkpoints import available, pretrained
@@ -225,7 +245,7 @@ def notebooks() -> Finding:
     return Finding("notebooks", f"{count} in {folder / 'student'}", "" if count else "make student")
 
 
-CHECKS = (python, versions, compute, kernel, canvas, sound, weights, writing, notebooks)
+CHECKS = (python, versions, compute, kernel, canvas, sound, hearing, weights, writing, notebooks)
 
 
 def guarded(check: Callable[[], Finding]) -> Finding:

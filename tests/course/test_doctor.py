@@ -5,6 +5,7 @@ import shutil
 import subprocess
 import sys
 import webbrowser
+from pathlib import Path
 
 import pytest
 
@@ -66,10 +67,23 @@ def test_the_pins_are_read_from_the_checkout():
     assert pins["torch"] == "2.13.0" and len(pins) > 30
 
 
-@pytest.mark.parametrize("check", [doctor.python, doctor.compute, doctor.sound, doctor.writing])
+@pytest.mark.parametrize(
+    "check", [doctor.python, doctor.compute, doctor.sound, doctor.hearing, doctor.writing]
+)
 def test_this_machine_is_sound(check):
     finding = check()
     assert not finding.remedy or finding.note, str(finding)
+
+
+def test_a_tracker_that_dies_is_said_with_the_files_to_remove(monkeypatch):
+    def dies(command, **_):
+        return subprocess.CompletedProcess(command, -11, stdout="", stderr="")
+
+    monkeypatch.setattr(doctor.subprocess, "run", dies)
+    finding = doctor.hearing()
+    assert "died (-11)" in finding.detail and not finding.note
+    folder, pattern = finding.remedy.split(": ")[1].split("**")
+    assert (Path(folder) / "beat.py").is_file() and pattern.endswith("*.nb?")
 
 
 def test_the_kernel_starts_and_finds_the_package():
