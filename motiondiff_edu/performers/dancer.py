@@ -216,8 +216,7 @@ class Dancer(Performer):
             warnings.warn(f"{name} lasts {lasts:.1f} s, and the dance ends with it", stacklevel=2)
         mel = log_mel(audio)
         draws = generators(seed, count, *fingerprint(mel))
-        evaluations = (steps or self.schedule.S) * (1 if guidance == 1 else 2)
-        with with_bar(self, evaluations, "dancing", progress) as one:
+        with with_bar(self, steps or self.schedule.S, "dancing", progress) as one:
             songs = mel.expand(count, -1, -1)
             how = {"generator": draws, "steps": steps, "guidance": guidance}
             dances = one.dance_mel(songs, frames, **how)

@@ -1,4 +1,4 @@
-"""Wrap a performer: each evaluation of its networks advances a progress bar."""
+"""Wrap a performer: each evaluation of its denoisers advances a progress bar."""
 
 import copy
 from collections.abc import Callable, Iterator
@@ -15,7 +15,10 @@ Performer = TypeVar("Performer")  # what has a `denoiser` that its samplers ask 
 def with_bar(
     performer: Performer, evaluations: int, what: str, shown: bool = True
 ) -> Iterator[Performer]:
-    """The same performer, whose networks move a bar on by one each time they are evaluated."""
+    """The same performer, whose denoisers move a bar on by one each time they are evaluated.
+
+    A guided denoiser evaluates its network twice, and counts once.
+    """
     with bar(evaluations, what, shown) as step:
         twin = copy.copy(performer)
 

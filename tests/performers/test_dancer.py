@@ -1,5 +1,6 @@
 """A dancer: lengths, seeds, samplers, the baselines that dance, and its file."""
 
+from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
 
@@ -16,6 +17,7 @@ from motiondiff_edu.ddpm import cosine_schedule
 from motiondiff_edu.mofusion import MoFusion, MoFusionConfig
 from motiondiff_edu.motion.dance_frame import to_positions
 from motiondiff_edu.motion.scaler import Scaler
+from motiondiff_edu.performers import with_bar
 from motiondiff_edu.performers.dancer import Dancer
 from motiondiff_edu.prediction import to_eps
 from motiondiff_edu.pretrained.checkpoints import (
@@ -226,6 +228,23 @@ def test_dancing_to_sound(tmp_path: Path):
     assert abs(read.audio - (sound - sound.mean()).numpy()).max() < 1e-3
     with pytest.raises(ValueError, match="spelling"):
         one.dance(tmp_path / "nothing.wav")
+
+
+@pytest.mark.parametrize("steps", [4, None])
+@pytest.mark.parametrize("guidance", [1, 3])
+def test_the_bar_is_full_at_the_end_with_guidance_as_well(guidance, steps, monkeypatch):
+    totals, moved = [], []
+
+    @contextmanager
+    def counting(total, what, shown):
+        totals.append(total)
+        yield lambda: moved.append(1)
+
+    monkeypatch.setattr(with_bar, "bar", counting)
+    one = dancer(replace(UNET, C=80))
+    one = replace(one, mel_scaler=Scaler.nothing(80), card={"recipe": {"no_music": 0.1}})
+    one.dance(0.3 * torch.randn(16_000, generator=seeded()), steps=steps, guidance=guidance)
+    assert totals == [len(moved)] == [steps or 12]
 
 
 @pytest.mark.parametrize(
