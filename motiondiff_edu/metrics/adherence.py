@@ -55,7 +55,7 @@ def adherence(
     The seconds do not overlap; a last one shorter than half a second is dropped. A second's mean
     leaves out flight, and the average leaves out seconds that are all flight. A clip without any
     planted toe gives NaN. Recorded motion is not at 0 either: print the data's own value beside it.
-    Raises ValueError for fewer than two frames, or a control without a row for each frame.
+    Raises ValueError for fewer than two frames, for NaN, or a control without a row for each frame.
     Notebook: 08
     """
     if poses.shape[:-2] != control.shape[:-1]:

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Float, Int
 
+from ..motion.checks import check_finite
 from ..motion.planting import runs
 from ..motion.root_frame import FPS
 from ..motion.skeleton import HEELS
@@ -55,6 +56,7 @@ def heel_speed(
 ) -> Float[np.ndarray, "*B T-1 2"]:
     """Horizontal speed over the ground of the left and the right heel joint, in cm/s.
 
+    Raises ValueError for NaN.
     Source: MoDiff IV-B.  Notebook: 08
     """
     return 100 * np.linalg.norm(ground_velocity(poses[..., HEELS, :], control, fps), axis=-1)
@@ -107,11 +109,13 @@ def footsteps(
     count, mean_s and std_s are the number, mean and population standard deviation of the step
     durations at v95.
     Without a step at any tolerance, count is 0 and the others are NaN. Raises ValueError for no
-    clips.
+    clips, and for NaN.
     Source: MoDiff IV-B, Tables I and II, Fig. 3.  Notebook: 08
     """
     if len(speeds) == 0:
         raise ValueError("footsteps needs at least one clip's heel speeds")
+    for number, speed in enumerate(speeds):
+        check_finite(speed, f"heel speeds of clip {number}")
     durations = [step_durations(speeds, float(v), rule, fps) for v in tolerances]
     counts = np.array([float(len(d)) for d in durations])
     if counts.max() == 0:

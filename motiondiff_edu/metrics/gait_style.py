@@ -10,6 +10,7 @@ from collections.abc import Sequence
 import numpy as np
 from jaxtyping import Float
 
+from ..motion.checks import check_finite
 from ..motion.dance_frame import facing
 from ..motion.root_frame import FPS, forward_left
 from ..motion.skeleton import HEELS, HIPS, joint_index
@@ -56,11 +57,13 @@ def style_kept(
     """For each continuation the share of other persons' pasts that are farther away than its own.
 
     A half is chance, if all were continued under the same control. Equally far counts half.
-    Raises ValueError for fewer than two persons.
+    Raises ValueError for fewer than two persons, and for NaN.
     """
     names = np.array(list(persons))
     if len(set(persons)) < 2:
         raise ValueError("styles are compared between two persons or more")
+    check_finite(pasts, "styles of the pasts")
+    check_finite(made, "styles of the continuations")
     scale = np.maximum(pasts.std(0), 1e-9)
     away = np.linalg.norm((made[:, None] - pasts[None]) / scale, axis=-1)  # (made, past)
     own = np.diag(away)[:, None]

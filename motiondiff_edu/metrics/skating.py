@@ -7,6 +7,7 @@ In metres and metres a second.  Notebook: 08
 import numpy as np
 from jaxtyping import Bool, Float, Int
 
+from ..motion.checks import check_finite
 from ..motion.root_frame import FPS
 from ..motion.skeleton import TOES
 
@@ -23,9 +24,12 @@ def ground_velocity(
     Step t is expressed in the heading halfway between t and t+1, where the root moves by (v_left,
     v_forward) / fps. With d = yaw / (2 fps):  velocity = fps * (R(+d) p[t+1] - R(-d) p[t]) +
     (v_left, v_forward).
+    Raises ValueError for NaN.
     """
     half_turn = np.asarray(control, np.float64)[..., :-1, None, 2] / (2 * fps)
     ground = np.asarray(points, np.float64)[..., [0, 2]]
+    check_finite(ground, "x and z of the points")
+    check_finite(control[..., :-1, :], "rows of control")
     moved = _turn(ground[..., 1:, :, :], half_turn) - _turn(ground[..., :-1, :, :], -half_turn)
     return moved * fps + control[..., :-1, None, 1::-1]
 
@@ -45,9 +49,10 @@ def planted_toe(
     """The lower toe in each step from t to t+1 (0 left, 1 right), and whether it is planted.
 
     It is planted if it is under `below` metres at both ends of the step. If both toes are equally
-    low, the left one is taken.  Notebook: 08
+    low, the left one is taken. Raises ValueError for NaN.  Notebook: 08
     """
     height = poses[..., TOES, 1]
+    check_finite(height, "heights of the toes")
     height = np.maximum(height[..., 1:, :], height[..., :-1, :])
     return height.argmin(-1), height.min(-1) < below
 
@@ -75,7 +80,7 @@ def skating(
 
     skating = mean_t |velocity over the ground of the planted toe|, over the steps with a planted
     toe. A clip where no toe is ever under `below` has NaN, not a flattering 0 (see
-    `planted_share`).
+    `planted_share`). Raises ValueError for NaN.
     Notebook: 08
     """
     return mean_where(np.linalg.norm(planted_velocity(poses, control, fps, below), axis=-1))
@@ -87,6 +92,7 @@ def planted_share(
     """The fraction of steps (frame to frame) with a planted toe.
 
     It is 1 in a walk, less in a run, and 0 for a figure that floats; NaN for a single frame.
+    Raises ValueError for NaN.
 
     Notebook: 08
     """

@@ -5,7 +5,7 @@ The true count, and what noise and sliding do to the paper's count.
 
 import numpy as np
 import pytest
-from gaits import FPS, STANCE, control_of, gait
+from gaits import FPS, STANCE, control_of, gait, rest_pose
 
 from motiondiff_edu.metrics.footsteps import (
     PAPER,
@@ -17,6 +17,7 @@ from motiondiff_edu.metrics.footsteps import (
     step_durations,
     steps_of_heel,
 )
+from motiondiff_edu.motion.skeleton import joint_index
 
 
 def set_of_gaits(noise=0.0, slide=0.0, seed=1):
@@ -109,3 +110,26 @@ def test_v95_is_where_95_of_100_are_found():
     speed = np.stack([lowest, np.full(100, 99.0)], 1).ravel()  # slow for one frame, fast for one
     found = footsteps([np.stack([speed, np.full(200, 99.0)], 1)])
     assert found.counts[:4].tolist() == [90, 94, 96, 100] and found.v95 == 3 and found.count == 96
+
+
+def test_it_is_the_heel_that_counts_and_not_the_toe():
+    """The left heel swings about a toe that stays: 1.8 m/s for five steps of 9 cm."""
+    poses = np.tile(rest_pose(), (21, 1, 1))
+    swung = np.clip(np.arange(21) - 8, 0, 5)
+    poses[:, joint_index("LeftFoot"), 2] += 0.09 * swung
+    poses[:, joint_index("LeftFoot"), 1] += 0.02 * swung
+    speed = heel_speed(poses, np.zeros((21, 3)))
+    np.testing.assert_allclose(speed[:, 0], 180 * (np.diff(swung) > 0), atol=1e-9)
+    assert (speed[:, 1] == 0).all() and footsteps([speed]).count == 2 + 1
+
+
+def test_a_gait_with_holes_is_refused_and_not_cut_into_more_steps():
+    control = control_of(4)
+    poses = gait(control)
+    speed = heel_speed(poses, control)
+    speed[::10] = np.nan
+    with pytest.raises(ValueError, match="heel speeds of clip 1 contain NaN or infinity"):
+        footsteps([heel_speed(poses, control), speed])
+    poses[::10] = np.nan
+    with pytest.raises(ValueError, match="x and z of the points contain NaN"):
+        heel_speed(poses, control)

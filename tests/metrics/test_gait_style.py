@@ -70,6 +70,15 @@ def test_other_arms_are_another_style():
     assert np.abs(gait_style(moved) - gait_style(positions))[:3].max() > 0.02
 
 
+@pytest.mark.parametrize("broken", ["pasts", "continuations"])
+def test_a_style_that_is_not_finite_is_refused(broken):
+    """One row of NaN would make the spread NaN, and give every continuation a share of 0."""
+    pasts, made = (np.random.default_rng(k).normal(size=(6, 4)) for k in (0, 1))
+    (pasts if broken == "pasts" else made)[3, 1] = np.nan
+    with pytest.raises(ValueError, match=f"styles of the {broken} .* first at index .3, 1"):
+        style_kept(pasts, made, "aabbcc")
+
+
 @pytest.mark.parametrize(
     "wrong",
     [lambda: gait_style(standing(1)), lambda: style_kept(np.zeros((2, 4)), np.zeros((2, 4)), "aa")],

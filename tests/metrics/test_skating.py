@@ -7,9 +7,10 @@ import numpy as np
 import pytest
 from gaits import FPS, control_of, gait, rest_pose
 
+from motiondiff_edu.metrics.adherence import adherence
 from motiondiff_edu.metrics.skating import ground_velocity, planted_share, planted_toe, skating
 from motiondiff_edu.motion.root_frame import forward_left, root_path, to_root_frame, to_world
-from motiondiff_edu.motion.skeleton import MIRROR
+from motiondiff_edu.motion.skeleton import MIRROR, TOES, joint_index
 
 CONTROLS = [
     control_of(6),
@@ -97,3 +98,36 @@ def test_the_lower_toe_is_the_one_that_is_judged():
     poses[:, 8, 1] = 0.01  # right toe under 3 cm, a little above the left one, and sliding
     poses[:, 8, 2] += np.arange(40) * 0.01
     assert (planted_toe(poses)[0] == 0).all() and skating(poses, control) < 1e-9
+
+
+def with_nan(array: np.ndarray, *where) -> np.ndarray:
+    array = array.copy()
+    array[where] = np.nan
+    return array
+
+
+@pytest.mark.parametrize("measure", [skating, adherence])
+def test_what_is_missing_is_refused_and_not_left_out(measure):
+    control = control_of(3)
+    poses = gait(control)
+    for broken in (with_nan(poses, slice(4, None, 10)), with_nan(poses, ..., TOES, 1)):
+        with pytest.raises(ValueError, match="heights of the toes contain NaN .*fill or cut"):
+            measure(broken, control)
+    with pytest.raises(ValueError, match=r"x and z .* \(1 values, the first at index \(7, 1, 0\)"):
+        measure(with_nan(poses, 7, TOES[1], 0), control)
+    with pytest.raises(ValueError, match="rows of control contain NaN"):
+        measure(poses, with_nan(control, 9, 2))
+
+
+def test_a_figure_of_nan_does_not_float():
+    poses = gait(control_of(3))
+    for broken in (with_nan(poses, 4), np.full_like(poses, np.nan)):
+        with pytest.raises(ValueError, match="heights of the toes contain NaN"):
+            planted_share(broken)
+
+
+def test_joints_that_are_not_measured_may_be_missing():
+    control = control_of(3)
+    poses = gait(control)
+    broken = with_nan(poses, slice(None), joint_index("LeftHand"))
+    assert skating(broken, control) == skating(poses, control)
