@@ -80,8 +80,9 @@ MODIFF_SMALL = MoDiffConfig(width=128, hidden=256, cross_layers=2)
 
 
 def step_embedding(s: Int[Tensor, "B"], width: int) -> Float[Tensor, "B E"]:
-    """Sines and cosines of the diffusion step, with wavelengths from 2 pi to 10000 * 2 pi steps.
+    """Sines and cosines of the diffusion step.
 
+    The wavelengths grow from 2 pi steps to 10000^(1 - 2 / width) * 2 pi steps, by equal ratios.
     Notebook: 05
     """
     frequencies = torch.exp(
@@ -176,14 +177,25 @@ class MoDiff(nn.Module):
     def decode(
         self, x_s: Float[Tensor, "B T_p D"], s: Int[Tensor, "B"], memory: Float[Tensor, "B M width"]
     ) -> Float[Tensor, "B T_p D"]:
-        """The network's prediction of its target (eps, x0 or v) from the noised future."""
+        """The network's prediction of its target (eps, x0 or v) from the noised future.
+
+        Raises ValueError if the future has the wrong number of frames.
+        """
         out = self.head(self.attend(self.embed(x_s, s), memory))
         return out if self.skip is None else out + self.skip[s][:, None, None] * x_s
 
     def embed(
         self, x_s: Float[Tensor, "B T_p D"], s: Int[Tensor, "B"]
     ) -> Float[Tensor, "B T_p width"]:
-        """The decoder's tokens: each noised pose with its diffusion step and its time."""
+        """The decoder's tokens: each noised pose with its diffusion step and its time.
+
+        Raises ValueError if the future has the wrong number of frames: a single one would be
+        repeated for all of them.
+        """
+        if x_s.shape[1] != self.config.T_p:
+            raise ValueError(
+                f"this network predicts {self.config.T_p} future poses, not {x_s.shape[1]}"
+            )
         step = self.step_in(step_embedding(s, self.config.width))  # (B, width)
         step = step[:, None].expand(-1, x_s.shape[1], -1)  # (B, T_p, width), equal for all poses
         x = self.future_in(torch.cat([x_s, step], dim=-1))

@@ -89,6 +89,18 @@ def test_wrong_numbers_of_frames_are_told(frames):
         MoDiff(TINY)(x_s, s, torch.zeros(B, frames[0], TINY.D), torch.zeros(B, frames[1], TINY.C))
 
 
+@pytest.mark.parametrize("frames", [1, 4, 6])
+def test_a_future_of_another_length_is_told(frames):
+    """One frame would be repeated, and give five."""
+    _, s, past, control = inputs(TINY)
+    model, future = MoDiff(TINY), torch.zeros(B, frames, TINY.D)
+    batch, schedule = (past, future, control), linear_schedule(TINY.S, 1e-3, 0.5)
+    with pytest.raises(ValueError, match=f"predicts 5 future poses, not {frames}"):
+        model(future, s, past, control)
+    with pytest.raises(ValueError, match=f"predicts 5 future poses, not {frames}"):
+        training_loss(model, batch, schedule, torch.Generator().manual_seed(0))
+
+
 @pytest.mark.parametrize("which", ["x_s", "s", "past", "control"])
 def test_every_input_is_heard(which):
     model = lively(TINY)
