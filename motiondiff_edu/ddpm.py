@@ -83,8 +83,13 @@ def linear_schedule(S: int = 100, beta_1: float = 1e-4, beta_S: float = 0.1) -> 
     """beta grows evenly from beta_1 to beta_S.
 
     MoDiff gives no schedule: these are TimeGrad's numbers.
+    Raises ValueError as `make_schedule`, and for a single step that would have two betas.
     Notebook: 02.
     """
+    if S == 1 and beta_1 != beta_S:
+        raise ValueError(
+            f"one step has one beta, not {beta_1:g} and {beta_S:g}: pass S of 2 or more"
+        )
     return make_schedule(
         torch.linspace(beta_1, beta_S, S, dtype=torch.float64), f"linear {beta_1:g} to {beta_S:g}"
     )
@@ -93,8 +98,14 @@ def linear_schedule(S: int = 100, beta_1: float = 1e-4, beta_S: float = 0.1) -> 
 def rescaled_ddpm_schedule(S: int = 100) -> Schedule:
     """DDPM's 1e-4 to 0.02 over 1000 steps, times 1000 / S for fewer steps.
 
-    Raises ValueError for 20 steps or fewer, for a beta would be 1 or more.  Notebook: 02.
+    Raises ValueError for 20 steps or fewer, for the last beta, 20 / S, would be 1 or more.
+    Notebook: 02.
     """
+    if S <= 20:
+        raise ValueError(
+            f"rescaled DDPM: {S} steps are too few, for every beta must lie between 0 and 1, and "
+            "the last is 20 / S; use more steps, 21 at least"
+        )
     return make_schedule(torch.linspace(0.1 / S, 20 / S, S, dtype=torch.float64), "rescaled DDPM")
 
 

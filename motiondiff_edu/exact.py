@@ -157,10 +157,11 @@ def dataset_mean(
 ) -> Float[Tensor, "B D"]:
     """E[x0 | x_s] when x0 is one of N known samples: their mean, weighted by p(x_n | x_s).
 
-    weights = softmax(-||x_s - a x_n||^2 / (2 (1 - a^2))), with a = sqrt(alpha_bar_s). Notebook: 03.
+    weights = softmax(-||x_s - a x_n||^2 / (2 (1 - a^2))), with a = sqrt(alpha_bar_s).
+    Raises IndexError for step 0, where x_s is x0.  Notebook: 03.
     """
     x, data = x_s.double(), data.to(x_s.device).double()
-    alpha_bar = at(schedule.alpha_bar, s, x)
+    alpha_bar = at(schedule.alpha_bar, s, x, first=1)
     closeness = alpha_bar.sqrt() * x @ data.T - alpha_bar * data.square().sum(1) / 2
     return (closeness / (1 - alpha_bar)).softmax(1) @ data
 
@@ -186,12 +187,13 @@ def dataset_denoiser(data: Float[Tensor, "N *shape"], schedule: Schedule) -> Den
 def _denoiser(mean_of_x0: Callable[[Tensor, Tensor], Tensor], schedule: Schedule) -> Denoiser:
     """eps_hat = (x_s - a E[x0 | x_s]) / sqrt(1 - a^2), computed in float64.
 
-    The result has the caller's shape and dtype.
+    The result has the caller's shape and dtype. It raises IndexError for step 0, where x_s has no
+    noise.
     """
 
     def denoise(x_s: Tensor, s: Tensor) -> Tensor:
         x = x_s.flatten(1).double()
-        alpha_bar = at(schedule.alpha_bar, s, x)
+        alpha_bar = at(schedule.alpha_bar, s, x, first=1)
         eps_hat = (x - alpha_bar.sqrt() * mean_of_x0(x, s)) / (1 - alpha_bar).sqrt()
         return eps_hat.reshape(x_s.shape).to(x_s.dtype)
 

@@ -14,8 +14,9 @@ from .ddpm import Schedule, Steps, at
 TARGETS = ("eps", "x0", "v")
 
 
-def _ab(x: Tensor, s: Steps, schedule: Schedule) -> tuple[Tensor, Tensor]:
-    return at(schedule.alpha_bar.sqrt(), s, x), at((1 - schedule.alpha_bar).sqrt(), s, x)
+def _ab(x: Tensor, s: Steps, schedule: Schedule, first: int = 0) -> tuple[Tensor, Tensor]:
+    """a and b of the step s.  Raises IndexError for a step below `first`, or above S."""
+    return at(schedule.alpha_bar.sqrt(), s, x, first), at((1 - schedule.alpha_bar).sqrt(), s, x)
 
 
 def x0_from_eps(
@@ -29,8 +30,11 @@ def x0_from_eps(
 def eps_from_x0(
     x_s: Float[Tensor, "B *shape"], s: Steps, x0: Float[Tensor, "B *shape"], schedule: Schedule
 ) -> Float[Tensor, "B *shape"]:
-    """eps = (x_s - a x0) / b. Source: MoFusion eq. 5, solved for eps. Notebook: 05"""
-    a, b = _ab(x_s, s, schedule)
+    """eps = (x_s - a x0) / b. Source: MoFusion eq. 5, solved for eps. Notebook: 05
+
+    Raises IndexError for step 0: clean data have no noise that could be found.
+    """
+    a, b = _ab(x_s, s, schedule, first=1)
     return (x_s - a * x0) / b
 
 
@@ -65,7 +69,10 @@ def to_eps(
     schedule: Schedule,
     target: str,
 ) -> Float[Tensor, "B *shape"]:
-    """Convert a network's output to eps_hat; `target` is what it was trained to predict."""
+    """Convert a network's output to eps_hat; `target` is what it was trained to predict.
+
+    Raises IndexError for step 0 if that is x0 (`eps_from_x0`), ValueError for an unknown target.
+    """
     _check(target)
     if target == "eps":
         return output

@@ -13,9 +13,10 @@ import numpy as np
 import pytest
 import torch
 
+from data_synth.mixtures import gaussian
 from data_synth.walking import walk
 from data_synth.walking.write import main as write_walks
-from motiondiff_edu import ddpm
+from motiondiff_edu import ddpm, exact, prediction
 from motiondiff_edu.conditions.control import joystick
 from motiondiff_edu.metrics.adherence import adherence
 from motiondiff_edu.modiff import MoDiff, MoDiffConfig
@@ -51,6 +52,28 @@ MISTAKES = {
         lambda: ddpm.q_posterior(X, X, 0, SCHEDULE),
         "steps must be 1 to 20",
     ),
+    "noise of clean data": (
+        lambda: prediction.eps_from_x0(X, 0, X, SCHEDULE),
+        "s = 0: steps must be 1 to 20",
+    ),
+    "noise of clean data in a batch": (
+        lambda: prediction.to_eps(X, X, torch.tensor([0, 1]), SCHEDULE, "x0"),
+        "s = 0: steps must be 1 to 20",
+    ),
+    "a mean of data around clean data": (
+        lambda: exact.dataset_mean(X, X, torch.tensor([4, 0]), SCHEDULE),
+        "s = 0: steps must be 1 to 20",
+    ),
+    "the exact noise of clean data": (
+        lambda: exact.exact_denoiser(gaussian(), SCHEDULE)(X[:, :1], torch.tensor([0, 7])),
+        "s = 0: steps must be 1 to 20",
+    ),
+    "one step with two betas": (
+        lambda: ddpm.linear_schedule(1),
+        "one step has one beta, not 0.0001 and 0.1",
+    ),
+    "one step of DDPM": (lambda: ddpm.rescaled_ddpm_schedule(1), "1 steps are too few"),
+    "twenty steps of DDPM": (lambda: ddpm.rescaled_ddpm_schedule(20), "20 steps are too few"),
     "the last step as a KL": (
         lambda: ddpm.step_kl(X, X, 1, X, SCHEDULE),
         "s = 1: steps must be 2 to 20",
