@@ -126,7 +126,8 @@ def generate(
     the control belong to the past. steps=None is DDPM with all S steps, a number is
     DDIM with that many.
     Raises ValueError if past and control do not fit the walker or contain NaN, and for a control
-    beyond twice the range of the training data. Warns where it leaves that range by over a tenth.
+    that leaves the range of the training data by over half its width. Warns where it leaves it by
+    over a tenth.
     Source: MoDiff Alg. 2, Fig. 5.  Notebook: 07, 08
     """
     past, control = torch.as_tensor(past), torch.as_tensor(control)
@@ -174,8 +175,8 @@ def generate(
 def _check_range(control: Float[Tensor, "B T C"], T_h: int, seen: dict | None) -> None:
     """Warn about speeds beyond the control of the training clips by over a tenth of its range.
 
-    Raises ValueError beyond twice the range. Row T_h - 1 leads to the first new frame; the rows
-    before it belong to the past, and the last one leads beyond the end.
+    Raises ValueError beyond the range by over half its width. Row T_h - 1 leads to the first new
+    frame; the rows before it belong to the past, and the last one leads beyond the end.
     """
     if not seen:
         return
@@ -197,8 +198,9 @@ def _check_range(control: Float[Tensor, "B T C"], T_h: int, seen: dict | None) -
 
     if words := asked(FAR):
         raise ValueError(
-            f"the control asks for over twice what this walker was trained on: {words}. Speeds are "
-            f"in m/s, turning is in rad/s; 90 degrees a second are {math.pi / 2:.2f} rad/s"
+            "the control leaves the range that this walker was trained on by over half its width: "
+            f"{words}. Speeds are in m/s, turning is in rad/s; 90 degrees a second are "
+            f"{math.pi / 2:.2f} rad/s"
         )
     if words := asked(SLACK):
         warnings.warn(

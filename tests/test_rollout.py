@@ -187,6 +187,21 @@ def test_a_control_is_named_when_it_is_a_tenth_of_the_range_beyond_the_training(
         assert f"a column 0 of {value} in frame 2 of the future" in str(told[0].message)
 
 
+@pytest.mark.parametrize(
+    ("value", "refused"), [(4.1, True), (3.9, False), (0.1, False), (-0.1, True)]
+)
+def test_a_control_is_refused_when_it_is_half_of_the_range_beyond_the_training(value, refused):
+    """From 1 to 3 the range is 2, and half of it 1: refused above 4 and below 0."""
+    walker, control = trained_between(1.0, 3.0), torch.full((T_H + 3, C), 2.0)
+    control[T_H + 1] = value
+    if refused:
+        with pytest.raises(ValueError, match=f"by over half its width: a column 0 of {value}"):
+            generate(walker, torch.zeros(T_H, D), control)
+    else:
+        with pytest.warns(UserWarning, match=f"it will not follow well: a column 0 of {value}"):
+            generate(walker, torch.zeros(T_H, D), control)
+
+
 @pytest.mark.parametrize("row", [0, T_H - 2, T_H - 1, T_H, T_H + 1, T_H + 2])
 def test_only_rows_that_lead_to_new_frames_are_checked(row):
     """Row T_h - 1 leads from the last given pose to the first new one; the last row leads on."""

@@ -177,7 +177,7 @@ def test_a_control_beyond_the_training_data_is_named():
     control[5, 2] = -4.5  # half of the range, from -2 to 2, is 2
     with pytest.raises(
         ValueError,
-        match=r"twice .* a turning rate of -4.5 in frame 2 of the future \(training: -2 to 2\)",
+        match=r"half its width: a turning rate of -4.5 in frame 2 .* \(training: -2 to 2\)",
     ):
         generate(walker, past, control)
     control[5, 2] = -3.9
