@@ -1,5 +1,7 @@
 """Beats where the place comes round, in trembling and after a silence; and who has no ear."""
 
+import math
+
 import numpy as np
 import pytest
 import torch
@@ -8,8 +10,8 @@ from small_dancers import dancer_to_mel
 from motiondiff_edu.ddpm import cosine_schedule
 from motiondiff_edu.motion.scaler import Scaler
 from motiondiff_edu.performers.dancer import Dancer
-from motiondiff_edu.performers.ear import GENRES
-from motiondiff_edu.performers.heard_by import heard_by, passes, place_of
+from motiondiff_edu.performers.ear import GENRES, EarOutput
+from motiondiff_edu.performers.heard_by import as_heard, heard_by, passes, place_of
 from motiondiff_edu.performers.hearing_mofusion import HearingConfig, HearingMoFusion
 
 TIMES = np.arange(300) * 0.064
@@ -50,6 +52,30 @@ def test_no_beat_in_a_silence_and_all_after_it():
 def test_places():
     circle = torch.tensor([[1.0, 0], [0, 2.0], [-1, 0], [0, -0.1]])
     np.testing.assert_allclose(place_of(circle), [0, 0.25, 0.5, 0.75], atol=1e-12)
+
+
+def on_circle(count: torch.Tensor) -> torch.Tensor:
+    angles = 2 * math.pi * count
+    return torch.stack([angles.cos(), angles.sin()], -1)[None]
+
+
+def test_what_an_ear_says_of_each_token_and_of_the_song():
+    """Beats at 0.25 s and every half a second, every third a downbeat; the last 2 s are silent."""
+    times = torch.arange(100, dtype=torch.float64) * 0.064
+    count = (times - 0.25) / 0.5
+    silent = times > 4.4
+    logits = torch.zeros(1, 100, len(GENRES), dtype=torch.float64)
+    logits[0, :25, 0] = 8.0  # a quarter of the song is sure of the first genre, the rest
+    logits[0, 25:, 1] = 2.0  # leans to the second one
+    said = EarOutput(
+        on_circle(count), on_circle(count / 3), torch.where(silent, -3.0, 3.0)[None], logits
+    )
+    heard = as_heard(said, times)
+    np.testing.assert_allclose(heard.beats, np.arange(0.25, 4.3, 0.5), atol=1e-9)
+    np.testing.assert_allclose(heard.downbeats, np.arange(0.25, 4.3, 1.5), atol=1e-9)
+    np.testing.assert_allclose(heard.sounds, 1 / (1 + np.exp(np.where(silent, 3, -3))), atol=1e-6)
+    mean = np.exp([2.0, 1.5, 0, 0, 0])  # logits are averaged first, so who is sure counts more
+    assert heard.genres == pytest.approx(dict(zip(GENRES, mean / mean.sum(), strict=True)))
 
 
 def test_a_dancer_says_what_it_hears():
