@@ -125,3 +125,9 @@ def test_steps_that_are_not_there(steps):
     start = torch.zeros(1, 2)
     with pytest.raises(ValueError, match="between 1 and 100"):
         next(inpaint_steps(lambda x, s: x, start, SCHEDULE, start, start > 0, steps=steps))
+
+
+def test_a_step_that_follows_itself_is_refused():
+    start = torch.zeros(1, 2)
+    with pytest.raises(ValueError, match=r"fall or rise, not stay; these are \[20, 20\]"):
+        next(inpaint_steps(lambda x, s: x, start, SCHEDULE, start, start > 0, steps=[20, 20]))

@@ -18,3 +18,4 @@ def test_music_with_gain_noise_differs_in_level_and_balance_alone():
     torch.testing.assert_close(change[:, 0], line, atol=1e-5, rtol=0)
     assert level.std().item() == pytest.approx(0.3, rel=0.15)
     assert tilt.std().item() == pytest.approx(0.3, rel=0.15)
+    assert abs(torch.corrcoef(torch.stack([level, tilt]))[0, 1]) < 0.2  # neither follows the other

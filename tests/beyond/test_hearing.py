@@ -77,6 +77,8 @@ def test_a_song_is_heard_higher_in_noise_and_without_bands():
     assert higher.abs().max() <= 4 and higher[:, 0, 40].std() > 1.5
     noisy = augmented(mel, MelAugmentation((1.0, 0.0), 0.0, (0.5, 1.0), (0, 0.0)), draws()) - mel
     assert 0.15 < noisy.std() < 0.4 and noisy.std((1, 2)).max() < 0.6
+    frames = noisy[:, :2].transpose(0, 1).flatten(1)
+    assert abs(torch.corrcoef(frames)[0, 1]) < 0.1  # it differs from frame to frame
     deaf = augmented(mel, MelAugmentation((1.0, 0.0), 0.0, (0.0, 0.0), (40, 1.0)), draws())
     hidden = (deaf == SILENT).all(1)
     assert hidden.sum(1).max() <= 41 and 10 < hidden.float().sum(1).mean() < 30

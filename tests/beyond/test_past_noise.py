@@ -35,3 +35,12 @@ def test_past_noise_has_fresh_errors_as_large_as_columns_change():
     assert (past_noise(past, 0.03, change, torch.Generator().manual_seed(0)) * 10).allclose(
         noise, atol=1e-6
     )
+
+
+def test_each_past_has_two_levels_of_its_own():
+    """How large the steady error is says nothing about the fresh ones."""
+    past, change = torch.zeros(4000, 6, 50), torch.ones(50)
+    noise = past_noise(past, 0.3, change, torch.Generator().manual_seed(0))
+    steady = past_noise(past, 0.3, torch.zeros(50), torch.Generator().manual_seed(0))
+    levels = torch.stack([steady[:, 0].std(1), (noise - steady).std((1, 2))]).log10()
+    assert abs(torch.corrcoef(levels)[0, 1]) < 0.1 and (levels.std(1) > 0.4).all()
