@@ -3,8 +3,9 @@
 It yields after every step, keeps an averaged copy, and can be killed and resumed.
 
 Nothing here knows what is trained: `loss_fn(model, generator)` draws its own batch and noise from
-the generator, which is why a resumed run continues bit for bit.  Source: MoDiff Alg. 1.   Notebook:
-05, 07
+the generator. A network with dropout draws from torch's global generator as well. A run saves the
+states of both, which is why it continues bit for bit when it is resumed (`recipes.runs`).
+Source: MoDiff Alg. 1.   Notebook: 05, 07
 """
 
 import copy
@@ -48,7 +49,9 @@ class TrainState:
     ) -> "TrainState":
         """A fresh run of this model; the default optimizer is Adam.
 
-        Every random number of the run comes from `seed`.
+        `seed` is that of `state.generator`. The dropout of a network (`MODIFF_PAPER` has some)
+        draws from torch's global generator instead: for the same run again, call
+        `torch.manual_seed` as well.
         """
         average = copy.deepcopy(model).requires_grad_(False).eval()
         optimizer = optimizer or torch.optim.Adam(model.parameters(), fused=True)

@@ -62,6 +62,7 @@ def save_run(
 def resume_run(state: TrainState, path: str | Path, about: dict | None = None) -> TrainState:
     """Load the saved run at `path` into `state`.
 
+    Torch's global generators become those of the run, too, for whatever else draws from them.
     Raises ValueError if the file is damaged or not a saved run, if another optimizer made it, or if
     its `about` differs: the continued run would then mix two settings. For another model,
     load_state_dict raises RuntimeError with the differences.
