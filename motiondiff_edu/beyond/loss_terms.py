@@ -1,9 +1,12 @@
 """Other losses than the papers' mean square: named terms and weights.
 
 A *loss* takes the error of the network's target (B, T, D) and the steps s (B,), and returns one
-number; the papers use `ddpm.squared_error`. `total` adds losses. All of them are sums of squares,
-so the error times sqrt(w) has a square with the weight w. In this way `weighted` and
-`weighted_by_step` can wrap any loss:
+number; the papers use `ddpm.squared_error`. `total` adds losses. All of them are sums of squares
+of the error or of its differences, and the error times sqrt(w) has a square with the weight w. So
+`weighted_by_step` can wrap any loss. `weighted` has a limit: a difference must be of two errors of
+one weight. Weights of frames suit the squared error and `bones`, those of columns the squared error
+and `changes`. Otherwise an error that both ends share counts as well, which is right only where the
+weights convert units (`recipes.keyframe_loss`).
 
     in_metres = weighted(squared_error, metre_weights(std))
     loss = weighted(total(in_metres, bones(2, std)), near_weights(change))
@@ -44,6 +47,7 @@ def weighted(
     """A loss whose squares have weights, by column (`metre_weights`), frame (`near_weights`) or
     entry.
 
+    Losses of differences (`bones`, `changes`, `toe_changes`) do not suit all of them: see above.
     Notebook: 07
     """
     roots = weights.sqrt()

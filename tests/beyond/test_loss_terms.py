@@ -106,6 +106,17 @@ def test_bones_are_in_metres_over_the_mean_variance():
     assert bones(5.0, std)(torch.ones(1, 3, 63) / std, S1).item() == pytest.approx(0, abs=1e-9)
 
 
+def test_weights_that_suit_a_difference_leave_out_what_both_ends_share():
+    """Frames for bones, columns for changes; the other way round, what is shared counts."""
+    std = torch.linspace(0.1, 0.9, 63)
+    frames, columns = torch.tensor([[1.0], [4.0], [9.0]]), metre_weights(std)
+    shift, steady = torch.ones(1, 3, 63) / std, torch.rand(1, 1, 63).expand(1, 3, 63)
+    assert weighted(bones(1.0, std), frames)(shift, S1).item() == pytest.approx(0, abs=1e-9)
+    assert weighted(changes(1.0), columns)(steady, S1).item() == pytest.approx(0, abs=1e-9)
+    assert weighted(bones(1.0, std), columns)(shift, S1) > 0.01
+    assert weighted(changes(1.0), frames)(steady, S1) > 0.01
+
+
 def test_changes_from_frame_to_frame():
     error = torch.zeros(1, 4, 2)
     error[0, :, 0] = torch.tensor([1.0, 2.0, 4.0, 4.0])
