@@ -12,7 +12,7 @@ def seam_over_motion(
     """The speed of the fastest joint at the seam over the fastest within a second around it.
 
     `seam` is the first generated frame (world, metres). 1 or less: no joint is faster there than
-    elsewhere. Raises ValueError for a seam without a frame before it and two after it.
+    elsewhere. Raises ValueError for a seam without two frames before it and one after it.
     """
     if not 2 <= seam < len(positions) - 1:
         raise ValueError(f"the seam must be from 2 to {len(positions) - 2}, not {seam}")

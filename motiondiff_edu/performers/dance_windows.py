@@ -2,7 +2,7 @@
 
 Motion has 20 frames a second, the Mel spectrogram 31.25. Both have a frame at the same moment only
 every 0.8 s. Windows start there, so that the Mel frames have the same times in every window.
-Source: MoFusion 4.1 (100 frames and more at a time; lengths are ours).
+Source: MoFusion 4.1; lengths are ours, for the paper gives only those of its dances, 7.4 to 48 s.
 """
 
 from collections.abc import Sequence

@@ -196,7 +196,7 @@ class Dancer(Performer):
         samples  above 1: a list with this many dances; the first is that of samples=1
         seed     chooses the dance together with the sound: other music gets other moves. To dance
                  with the same noise to two songs, pass `start` to `dance_mel`
-        steps    of DDIM, or None for DDPM with all steps
+        steps    of DDIM, or None for DDPM with all steps, and noise of the posterior's variance
         guidance above 1 the dance follows the music more closely, at twice the cost of 1
                  (`beyond.classifier_free`); None: what is usual for this dancer
         Raises AudioError for unusable sound (`conditions.audio_files`), ValueError for `seconds` or
@@ -250,7 +250,8 @@ class Dancer(Performer):
         Dances are in metres, at 20 frames a second.
 
         frames  the length of the dance (default: that of the music)
-        steps   of DDIM with `eta`, at most S; None for DDPM with all steps
+        steps   of DDIM with `eta`, at most S; None for DDPM with all steps, and noise of the
+                posterior's variance
         guidance as in `dance`
         start   the noise to begin with (default: drawn); pass the same noise to compare two songs
         Raises ValueError for more frames than the music has, and as `denoiser`.  Notebook: 12

@@ -180,7 +180,7 @@ class Mover(Performer):
 
         seconds   of the motion, from 2 to 10; a long sentence needs the time that it takes
         samples   above 1: a list with this many motions; the first is that of samples=1
-        steps     of DDIM, or None for DDPM with all steps
+        steps     of DDIM, or None for DDPM with all steps, and noise of the posterior's variance
         guidance  above 1 it follows the text more closely, at twice the cost
                   (`beyond.classifier_free`)
         Raises TextError for a text that cannot be read, ValueError for numbers out of range.
@@ -225,6 +225,7 @@ class Mover(Performer):
 
         `start` is the noise to begin with (default: drawn); pass the same to compare two texts.
         `plan`: the timelines of the motions; by default a network that plans makes its own.
+        `steps` as in `act`.
         Raises ValueError for a plan of another length or shape.
         """
         if plan is None and self.can_plan:

@@ -37,7 +37,10 @@ def sampled(
     eta: float,
     generator: Generators | None,
 ) -> Float[Tensor, "B T D"]:
-    """A whole motion from noise: DDIM with at most S steps, or for None DDPM with all of them."""
+    """A whole motion from noise: DDIM with at most S steps, or for None DDPM with all of them.
+
+    DDPM draws noise of the posterior's variance here; `Walker` and `ddpm.sample_steps` take beta_s.
+    """
     if steps is None:
         loop = ddpm_steps(denoise, x_S, schedule, variance="posterior", generator=generator)
     else:

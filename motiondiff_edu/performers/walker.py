@@ -85,7 +85,7 @@ class Walker(Performer):
         control  forward m/s, left m/s, turning rad/s; 20 rows a second
         seconds  cut the control to this length, or hold its last row (default: keep its length)
         samples  above 1: a list with this many continuations; the first is that of samples=1
-        steps    of DDIM, or None for DDPM with all steps
+        steps    of DDIM, or None for DDPM with all steps, and noise of variance beta_s
         Raises MotionError for a motion that cannot be continued, ValueError for numbers out of
         range. Warns where the control goes beyond the training data, and where the poses to
         continue do: then the first half second is blended (`performers/joined.py`).

@@ -1,8 +1,6 @@
 """Training windows of MoDiff: ten past poses, ten future poses, the control of all twenty frames.
 
-Half of the windows hold the control of the next step over the whole future, because interactive use
-does not know the future control.
-Source: MoDiff III-A; the held half is ours.   Notebook: 07
+Source: MoDiff III-A.   Notebook: 07
 """
 
 from collections.abc import Sequence

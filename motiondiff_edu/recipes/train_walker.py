@@ -116,7 +116,11 @@ def prepared(recipe: Recipe, clips: list[Clip]) -> Prepared:
 def loss_of(
     recipe: Recipe, windows: Windows, schedule: Schedule, dropout: Dropout | None = None
 ) -> LossFn:
-    """The recipe's loss: its data, `modiff.training_loss`, and the departures that it names."""
+    """The recipe's loss: its data, `modiff.training_loss`, and the departures that it names.
+
+    A share of the windows, `recipe.held_control`, holds the control of the next step over the whole
+    future: interactive use does not know the future control.
+    """
     loss, change = weighted_loss(recipe.loss_weights, windows, schedule), typical_change(windows)
     footholds = isinstance(recipe.config, FootholdConfig)
 
