@@ -148,19 +148,21 @@ export function mount(model, el) {
     if (event.target === canvas && act) { event.preventDefault(); act(); }
   });
   listen(canvas, "pointerdown", (e) => {
+    if (e.button || !e.isPrimary) return; // a right click, or a second finger
     const p = toMetres(e);
     points = points.length && apart(p, points.at(-1)) < 14 / frame.scale ? [...points] : [[0, 0], p];
     drawing = true; canvas.setPointerCapture(e.pointerId); canvas.focus({ preventScroll: true }); draw();
   });
   listen(canvas, "pointermove", (e) => {
-    if (!drawing) return;
+    if (!drawing || !e.isPrimary) return;
     for (const event of e.getCoalescedEvents?.() || [e]) {
       const p = toMetres(event);
       if (apart(p, points.at(-1)) > 0.06) points.push(p);
     }
     draw();
   });
-  for (const name of ["pointerup", "pointercancel"]) listen(canvas, name, () => { if (drawing) { drawing = false; drawn(); } });
+  listen(canvas, "pointerup", (e) => { if (drawing && e.isPrimary) { drawing = false; drawn(); } });
+  listen(canvas, "pointercancel", (e) => { if (drawing && e.isPrimary) { drawing = false; onLine(); } });
   listen(presets, "change", () => send({ preset: presets.value }));
   listen(speed, "input", draw);
   listen(speed, "change", () => send({ speed: Number(speed.value) }));

@@ -252,7 +252,7 @@ class Table:
         state = {name: getattr(self.widget, name) for name in ("message", "repaired", "answered")}
         self.page.evaluate(SEND, [state, binary])
 
-    def click_joint(self, name: str) -> None:
+    def click_joint(self, name: str, button: str = "left") -> None:
         """Where the camera of the still pictures sees the joint, from as far away as the
         bench's."""
         box, frame = self.figure.bounding_box(), int(self.data("frame"))
@@ -260,12 +260,15 @@ class Table:
         camera = poster.camera_at(walked, frame, body.Camera(distance=4.2))
         spots, _ = body.project(walked[frame], camera, (box["width"], box["height"]))
         x, y = spots[JOINTS.index(name)]
-        self.page.mouse.click(box["x"] + x, box["y"] + y)
+        self.page.mouse.click(box["x"] + x, box["y"] + y, button=button)
 
-    def click_frame(self, frame: int) -> None:
+    def place_of(self, frame: int) -> tuple[float, float]:
         box, gutter = self.map.bounding_box(), 66
         x = box["x"] + gutter + (frame + 0.5) * (box["width"] - gutter) / len(CLIP)
-        self.page.mouse.click(x, box["y"] + 60)
+        return x, box["y"] + 60
+
+    def click_frame(self, frame: int, button: str = "left") -> None:
+        self.page.mouse.click(*self.place_of(frame), button=button)
 
 
 @pytest.fixture
@@ -314,6 +317,25 @@ def test_a_clicked_hand_is_mended_as_the_library_mends_it(table):
     as_mean = ink(table.figure)
     table.page.get_by_label("Which repair is the body").select_option("2")
     assert table.data("state") == "repair 2 of 3" and ink(table.figure) != as_mean
+
+
+def test_a_right_click_a_drag_and_a_scrolling_finger_remove_nothing(table):
+    page = table.page
+    for button in ("right", "middle"):
+        table.click_joint("RightHand", button)
+        table.click_frame(11, button)
+    x, y = table.place_of(11)
+    page.mouse.move(x, y)
+    page.mouse.down()
+    page.mouse.move(x, y + 30, steps=3)
+    page.mouse.up()
+    page.mouse.move(x, y)
+    page.mouse.down()
+    table.map.dispatch_event("pointercancel", {"isPrimary": True})  # the finger scrolls the page
+    page.mouse.up()
+    assert page.evaluate("saved.length") == 0 and table.data("missing") == "0"
+    table.click_frame(11)
+    assert len(table.saved("missing")) == J
 
 
 def test_a_change_after_the_repair_shows_the_holes_again(table):

@@ -385,6 +385,25 @@ def test_a_hand_is_dragged_with_the_mouse_and_the_bones_keep_their_lengths(page,
     assert np.array_equal(editor.positions, motion) and editor.state["pins"] == [2]
 
 
+def test_a_drag_with_another_button_or_one_that_is_taken_away_moves_no_joint(page, editor, motion):
+    page.locator(FIGURE).focus()
+    press(page, ".", ".", "Enter")
+    x, y = handle(page, editor, 2, HAND)
+    for button in ("right", "left"):
+        page.mouse.move(x, y)
+        page.mouse.down(button=button)
+        page.mouse.move(x + 10, y - 40, steps=5)
+        if button == "left":
+            page.wait_for_function("asked.length > 1")
+            page.locator(FIGURE).dispatch_event("pointercancel", {"isPrimary": True})
+        page.mouse.up(button=button)
+        settled(page)
+        assert page.evaluate("asked.length === 1") == (button == "right")
+    page.wait_for_function("asked.at(-1).by?.every((v) => v === 0)")
+    settled(page)
+    np.testing.assert_allclose(editor.positions, motion, atol=1e-9)
+
+
 def test_dragging_elsewhere_turns_the_view_and_moves_nothing(page, editor, motion):
     page.locator(FIGURE).focus()
     press(page, "Enter")

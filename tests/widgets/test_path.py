@@ -99,6 +99,41 @@ def test_drawing_with_the_mouse_starts_at_the_origin(page):
     assert ink(canvas) != first
 
 
+def test_only_the_first_button_and_the_first_finger_draw(page):
+    canvas = page.locator("canvas")
+    first, box = ink(canvas), canvas.bounding_box()
+    x, y = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
+    for button in ("right", "middle"):
+        page.mouse.move(x, y)
+        page.mouse.down(button=button)
+        page.mouse.move(x - 60, y - 80, steps=3)
+        page.mouse.up(button=button)
+    finger = {"isPrimary": False, "clientX": box["x"] + 9, "clientY": box["y"] + 9}
+    canvas.dispatch_event("pointerdown", finger)
+    assert page.evaluate("saved.length") == 0 and ink(canvas) == first
+    page.mouse.move(x, y)
+    page.mouse.down()
+    page.mouse.move(x - 20, y - 20)
+    canvas.dispatch_event("pointermove", finger)
+    canvas.dispatch_event("pointerup", finger)
+    assert page.evaluate("saved.length") == 0, "the pen is still down"
+    page.mouse.move(x - 40, y - 40)
+    page.mouse.up()
+    assert len(page.evaluate("saved.at(-1).line")) == 4, "the start, and where the pen was"
+
+
+def test_a_stroke_that_the_browser_takes_away_leaves_the_path_as_it_was(page):
+    canvas = page.locator("canvas")
+    first, box = ink(canvas), canvas.bounding_box()
+    page.mouse.move(box["x"] + 200, box["y"] + 200)
+    page.mouse.down()
+    page.mouse.move(box["x"] + 150, box["y"] + 150, steps=3)
+    assert ink(canvas) != first
+    canvas.dispatch_event("pointercancel", {"isPrimary": True})
+    page.mouse.up()
+    assert page.evaluate("saved.length") == 0 and ink(canvas) == first
+
+
 def test_drawing_on_from_the_end_continues_the_path(page):
     canvas = page.locator("canvas")
     canvas.focus()

@@ -2,7 +2,7 @@
 // it, and the kernel's repair: the mean as a body, each repair as thin limbs, the truth as an
 // outline. `model` needs get, set, save_changes, on, off.
 
-import { CSS, GREEN, clamp, element, mix, readTheme, rgba } from "./dom.js";
+import { CSS, GREEN, clamp, element, listener, mix, readTheme, rgba } from "./dom.js";
 import { unpack } from "./figures.js";
 import { camera, paintBody, paintFloor, paintText, smoothRoot } from "./paint.js";
 import {
@@ -22,6 +22,7 @@ const STYLE = `
 .mde-bench canvas.mde-figure { cursor: pointer; }
 .mde-bench output.mde-said { min-height: 2.7em; flex: 1 1 100%; }
 .mde-bench button:disabled { opacity: .5; cursor: default; }`;
+const STILL = 5; // pixels within which a press is a click, and no drag
 const HOME = { yaw: 0.6, pitch: 0.2, zoom: 1 };
 const NOTHING = new DataView(new ArrayBuffer(0));
 
@@ -98,8 +99,7 @@ export function mount(model, el, { fill = false } = {}) {
   el.append(root);
   const calm = matchMedia("(prefers-reduced-motion: reduce)").matches;
   const stop = new AbortController();
-  const listen = (node, name, f, options = {}) =>
-    node.addEventListener(name, f, { signal: stop.signal, ...options });
+  const listen = listener(stop);
   const figures = (joints, roots, list) =>
     unpack({
       get: (name) =>
@@ -384,7 +384,7 @@ export function mount(model, el, { fill = false } = {}) {
     canvas.focus({ preventScroll: true });
   });
   listen(canvas, "pointermove", (e) => {
-    if (!grip || (!turned && Math.hypot(e.clientX - grip[0], e.clientY - grip[1]) < 5)) return;
+    if (!grip || (!turned && Math.hypot(e.clientX - grip[0], e.clientY - grip[1]) < STILL)) return;
     turned = true;
     view.yaw += (e.clientX - grip[0]) * 0.008;
     view.pitch = clamp(view.pitch + (e.clientY - grip[1]) * 0.006, 0.02, 1.5);
@@ -406,7 +406,17 @@ export function mount(model, el, { fill = false } = {}) {
   listen(canvas, "pointercancel", () => {
     grip = null;
   });
+  let press = null; // on the map, where a finger may also scroll the page
   listen(map, "pointerdown", (e) => {
+    press = [e.clientX, e.clientY];
+  });
+  listen(map, "pointercancel", () => {
+    press = null;
+  });
+  listen(map, "pointerup", (e) => {
+    const click = press && Math.hypot(e.clientX - press[0], e.clientY - press[1]) < STILL;
+    press = null;
+    if (!click) return;
     const box = map.getBoundingClientRect();
     const t = Math.floor((e.clientX - box.left - GUTTER) / ((box.width - GUTTER) / frames));
     if (t >= 0 && t < frames) strikeFrame(t);

@@ -48,6 +48,15 @@ export function element(tag, attributes = {}, ...children) {
   return node;
 }
 
+// Adds listeners until `stop` aborts. Of pointers it hears the mouse, the pen or the first finger, and
+// of presses those of the first button: a right click belongs to the browser's menu.
+export function listener(stop) {
+  const meant = (e) =>
+    !e.type.startsWith("pointer") || (e.isPrimary && !(e.type === "pointerdown" && e.button));
+  return (node, name, f, options = {}) =>
+    node.addEventListener(name, (e) => meant(e) && f(e), { signal: stop.signal, ...options });
+}
+
 export function readTheme(root) {
   const style = getComputedStyle(root);
   const bg = parse(style.backgroundColor);

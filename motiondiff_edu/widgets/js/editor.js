@@ -3,7 +3,7 @@
 // far a joint was dragged. `model` needs get, set, save_changes, on, off; without send there is no
 // kernel, and a message says what needs one.
 
-import { CSS, clamp, element, parse, readTheme, rgba } from "./dom.js";
+import { CSS, clamp, element, listener, parse, readTheme, rgba } from "./dom.js";
 import { bytes, unpack } from "./figures.js";
 import { smoothRoot } from "./paint.js";
 import { silentClock } from "./clock.js";
@@ -46,8 +46,7 @@ export function mount(model, el, { fill = false } = {}) {
   const live = typeof model.send === "function";
   const last = scene.frames - 1;
   const stop = new AbortController();
-  const listen = (node, name, f, options = {}) =>
-    node.addEventListener(name, f, { signal: stop.signal, ...options });
+  const listen = listener(stop);
   const button = (text, title, extra = {}) =>
     element("button", { type: "button", title, ...extra }, text);
   const choice = (label, options) =>
@@ -632,15 +631,20 @@ export function mount(model, el, { fill = false } = {}) {
     pull.moved = true;
     pullBy(dragged(look, pull.held.from, dx, dy), pull.held, "Dragging a joint");
   });
-  for (const name of ["pointerup", "pointercancel"])
-    listen(canvas, name, () => {
-      if (pull && !pull.turn) {
-        held_spot = null;
-        if (!way.dragging()) target = null;
-      }
-      pull = null;
-      draw();
-    });
+  function letGo() {
+    if (pull && !pull.turn) {
+      held_spot = null;
+      if (!way.dragging()) target = null;
+    }
+    pull = null;
+    draw();
+  }
+  listen(canvas, "pointerup", letGo);
+  listen(canvas, "pointercancel", () => {
+    // the browser took the pointer away: the joint goes back to where it was gripped
+    if (pull && pull.moved) pullBy([0, 0, 0], pull.held, "Dragging a joint");
+    letGo();
+  });
   listen(canvas, "pointerleave", () => {
     if (hover != null) {
       hover = null;

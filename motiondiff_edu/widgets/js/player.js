@@ -2,7 +2,7 @@
 // dependencies; runs in JupyterLab (anywidget), in exported HTML (an iframe with this same text)
 // and in a bare page. `model` needs get, set, save_changes, on, off.
 
-import { CSS, clamp, element, mix, readTheme, rgba } from "./dom.js";
+import { CSS, clamp, element, listener, mix, readTheme, rgba } from "./dom.js";
 import { unpack } from "./figures.js";
 import { paintPanel, tense } from "./paint.js";
 import { feed, silentClock, soundClock } from "./clock.js";
@@ -67,8 +67,7 @@ export function mount(model, el, { fill = false } = {}) {
   const view = { ...HOME, follow: true };
   const calm = matchMedia("(prefers-reduced-motion: reduce)").matches;
   const stop = new AbortController();
-  const listen = (node, name, f, options = {}) =>
-    node.addEventListener(name, f, { signal: stop.signal, ...options });
+  const listen = listener(stop);
   const lane = musicLane(
     listen,
     (seconds) => go(seconds * scene.fps),
