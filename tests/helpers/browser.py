@@ -104,18 +104,24 @@ FAKE_MODEL = """
 const decode = (s) => new DataView(Uint8Array.from(atob(s), (c) => c.charCodeAt(0)).buffer);
 const state = RECORD, listeners = {};
 for (const name of BINARY) state[name] = decode(state[name]);
-window.saved = []; window.leaked = 0;
+window.saved = []; window.leaked = 0; window.lost = false;
 document.addEventListener("keydown", () => { window.leaked++; });
 const fire = (name) => (listeners["change:" + name] || []).forEach((f) => f());
 window.model = {
   get: (name) => state[name],
   set: (name, value) => { if (state[name] !== value) { state[name] = value; fire(name); } },
   save_changes: () => { window.saved.push({ ...state }); },
+  send: () => { if (window.lost) throw new Error("Cannot send"); }, // as JupyterLab does
   on: (name, f) => { (listeners[name] ||= []).push(f); },
   off: (name, f) => { listeners[name] = (listeners[name] || []).filter((g) => g !== f); },
 };
+window.answer = (content) => { (listeners["msg:custom"] || []).forEach((f) => f(content)); };
 window.listening = () => Object.values(listeners).flat().length;
 window.cleanup = widget.render({ model: window.model, el: document.getElementById("here") });
+window.another = () => { // a second view; as in anywidget, it gets a model object of its own
+  const el = document.body.appendChild(document.createElement("div"));
+  return widget.render({ model: { ...window.model }, el });
+};
 """
 
 

@@ -188,6 +188,42 @@ def test_without_a_click_it_waits_and_says_so(browser, tmp_path):
         assert page.get_by_text("browsers start sound").count() == 0
 
 
+VIEWS = """() => [...document.querySelectorAll(".mde-player")].map((root) => ({
+  frame: Number(root.dataset.frame), playing: root.dataset.playing,
+  heard: !root.querySelector("audio").paused }))"""
+
+
+def test_of_two_views_of_one_player_one_sounds_and_the_other_follows(browser, player, tmp_path):
+    with open_page(browser) as page:
+        page.goto(player_page(tmp_path, player))
+        page.evaluate("""() => { another(); window.changes = 0;
+            model.on("change:playing", () => { changes++; }); }""")
+        play = page.get_by_role("button", name="Play")
+        stop = page.get_by_role("button", name="Pause")
+        for pressed, other in ((0, 1), (1, 0)):  # what sounds is the view that was pressed
+            page.evaluate("changes = 0")
+            play.nth(pressed).click()
+            page.wait_for_function(f"({VIEWS})().every((view) => view.frame > 12)")
+            views = page.evaluate(VIEWS)
+            assert [view["playing"] for view in views] == ["true", "true"]
+            assert views[pressed]["heard"] and not views[other]["heard"]
+            assert abs(views[0]["frame"] - views[1]["frame"]) <= 8
+            assert page.evaluate("changes") == 1
+            stop.nth(other).click()
+            views = page.evaluate(VIEWS)
+            assert [view["playing"] for view in views] == ["false", "false"]
+            assert views[0]["frame"] == views[1]["frame"] and page.evaluate("changes") == 2
+            page.wait_for_function(f"!({VIEWS})().some((view) => view.heard)")
+            page.locator("canvas").first.focus()
+            page.keyboard.press("Home")
+        play.nth(0).click()
+        page.evaluate(
+            "document.dispatchEvent(new CustomEvent('mde-sound', { detail: { scene: {} } }))"
+        )  # another player
+        assert [view["playing"] for view in page.evaluate(VIEWS)] == ["false", "false"]
+        assert page.problems == []
+
+
 def test_a_sound_is_not_started_unasked(browser, player, tmp_path):
     with open_page(browser, reduced_motion="no-preference") as page:
         page.goto(player_page(tmp_path, player))

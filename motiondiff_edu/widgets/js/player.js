@@ -88,6 +88,7 @@ export function mount(model, el, { fill = false } = {}) {
   let told = 0;
   let loaded = null;
   let sounding = false;
+  let led = false; // another view of this player sounds, and this one follows it
   let unload = () => {};
 
   function load() {
@@ -121,7 +122,7 @@ export function mount(model, el, { fill = false } = {}) {
     loaded = present ? bytes : null;
     note.textContent = "";
     if (present) {
-      clock = soundClock(sound);
+      clock = led ? silence() : soundClock(sound);
       sounding = true;
       unload = feed(sound, bytes, music.mime, () => {
         useSilentClock();
@@ -131,9 +132,20 @@ export function mount(model, el, { fill = false } = {}) {
     } else useSilentClock();
     clock.rate(Number(speeds.value));
   }
+  const silence = () => silentClock((last + 1) / scene.fps, () => visible);
+  const heard = () => sounding && !led;
+  function setLed(on) {
+    if (!sounding || on === led) return;
+    clock.stop();
+    led = on;
+    clock = led ? silence() : soundClock(sound);
+    clock.seek(frame / scene.fps);
+    clock.rate(Number(speeds.value));
+    if (playing) clock.start();
+  }
   function useSilentClock() {
     sounding = false;
-    clock = silentClock((last + 1) / scene.fps, () => visible);
+    clock = silence();
     clock.seek(frame / scene.fps);
     clock.rate(Number(speeds.value));
     if (playing) clock.start();
@@ -191,7 +203,7 @@ export function mount(model, el, { fill = false } = {}) {
   function tell(force) {
     // messages to the kernel: at most five a second, and at once for a final value
     if (sent === frame && model.get("playing") === playing) return;
-    if (!force && performance.now() - told < 200) return;
+    if (!force && (led || performance.now() - told < 200)) return;
     told = performance.now();
     sent = frame;
     model.set("frame", frame);
@@ -220,6 +232,7 @@ export function mount(model, el, { fill = false } = {}) {
     } else if (clock) {
       clock.stop();
       settle();
+      setLed(false);
     }
     play.textContent = on ? "\u275a\u275a Pause" : "\u25b6 Play";
     play.setAttribute("aria-label", on ? "Pause" : "Play");
@@ -232,9 +245,12 @@ export function mount(model, el, { fill = false } = {}) {
     if (away < 0 || away >= 1) clock.seek(frame / scene.fps);
   }
   function run() {
-    if (sounding) {
+    if (heard()) {
+      // another player stops; another view of this one follows: its model is an object of its own,
+      // but the scene in it is the same
+      const detail = { root, scene: model.get("scene") };
       note.textContent = "";
-      document.dispatchEvent(new CustomEvent("mde-sound", { detail: root }));
+      document.dispatchEvent(new CustomEvent("mde-sound", { detail }));
     }
     Promise.resolve(clock.start()).catch((error) => {
       // a refusal; an interruption and a bad file are told elsewhere
@@ -253,7 +269,7 @@ export function mount(model, el, { fill = false } = {}) {
     const ahead = Math.min((pace / 2000) * Number(speeds.value), 0.5 / scene.fps);
     const was = at;
     at = clock.now();
-    const next = clamp(Math.floor((at + (sounding ? ahead : 0)) * scene.fps + 1e-3), 0, last);
+    const next = clamp(Math.floor((at + (heard() ? ahead : 0)) * scene.fps + 1e-3), 0, last);
     // a smaller `ahead` alone takes nothing back
     if (at < was ? next !== frame : next > frame) show(next, false);
     ticking = requestAnimationFrame(tick);
@@ -324,16 +340,18 @@ export function mount(model, el, { fill = false } = {}) {
   listen(speeds, "change", () => setSpeed(speeds.value));
   listen(mute, "click", () => setMuted(!sound.muted));
   listen(sound, "pause", () => {
-    if (sounding && playing && sound.paused && !sound.error) setPlaying(false);
+    if (heard() && playing && sound.paused && !sound.error) setPlaying(false);
   }); // by a media key
   listen(sound, "play", () => {
     if (!playing) setPlaying(true);
   });
   listen(sound, "canplay", () => {
-    if (sounding && playing && sound.paused) run();
+    if (heard() && playing && sound.paused) run();
   });
-  listen(document, "mde-sound", (event) => {
-    if (event.detail !== root && sounding && playing) setPlaying(false);
+  listen(document, "mde-sound", ({ detail }) => {
+    if (detail.root === root) return;
+    if (detail.scene === model.get("scene")) setLed(true);
+    else if (heard() && playing) setPlaying(false);
   });
   listen(reset, "click", home);
   listen(follow, "change", () => setFollow(follow.checked));
