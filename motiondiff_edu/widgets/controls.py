@@ -4,6 +4,8 @@ from collections.abc import Callable
 
 import ipywidgets
 
+from .turn import TURN
+
 WIDTH = "290px"  # of a slider; with less, its track is too short to be set
 
 
@@ -11,7 +13,8 @@ class Controls(ipywidgets.HBox):
     """A control for each argument of `act`, which is called with all values at each change.
 
     (low, high, start) gives a slider, a list gives choices, True or False gives a tick box. A row
-    that is too narrow goes on in the next one.
+    that is too narrow goes on in the next one. Changes that come while `act` is at work are one:
+    it is called once more, with the values of then.
     Raises ValueError for an argument of another kind.
     """
 
@@ -20,6 +23,7 @@ class Controls(ipywidgets.HBox):
         self.controls = {name: _control(name, value) for name, value in start.items()}
         self.first = self.values()
         self.quiet = False
+        self._changes = 0
         reset = ipywidgets.Button(description="Reset", tooltip="reset all values")
         reset.on_click(self._back)
         for control in self.controls.values():
@@ -32,8 +36,13 @@ class Controls(ipywidgets.HBox):
         return {name: control.value for name, control in self.controls.items()}
 
     def _changed(self, _=None) -> None:
-        if not self.quiet:
-            self.act(**self.values())
+        if self.quiet:
+            return
+        self._changes += 1
+        number = self._changes
+        with TURN:
+            if number == self._changes:  # else a later change waits, and acts for this one too
+                self.act(**self.values())
 
     def _back(self, _) -> None:
         self.quiet = True  # one call for all, not one for each
@@ -52,7 +61,8 @@ def steering(act: Callable[..., object], **start) -> Controls:
     Raises ValueError as `Controls` does.  Notebook: 01, 07
     """
     controls = Controls(act, start)
-    act(**controls.values())
+    with TURN:
+        act(**controls.values())
     return controls
 
 

@@ -4,7 +4,8 @@ import ipywidgets
 import pytest
 from synthetic_walk import walk
 
-from motiondiff_edu.widgets.action import Action
+from motiondiff_edu.widgets import action as action_module
+from motiondiff_edu.widgets.action import UNSEEN, Action
 from motiondiff_edu.widgets.beside import Beside
 from motiondiff_edu.widgets.controls import Controls, steering
 from motiondiff_edu.widgets.path import PathPad
@@ -30,6 +31,36 @@ def test_an_error_is_said_and_raised_and_the_button_is_free_again():
         action.press()
     assert action.said.value == "ZeroDivisionError: division by zero"
     assert not action.button.disabled
+
+
+def test_an_interrupt_is_said_too():
+    def act():
+        raise KeyboardInterrupt
+
+    action = Action("Go", act, "going ...")
+    with pytest.raises(KeyboardInterrupt):
+        action.button.click()
+    assert action.said.value == "stopped" and not action.button.disabled
+
+
+def test_clicks_that_waited_for_the_answer_are_not_acted_on(monkeypatch):
+    now, calls = [100.0], []
+    monkeypatch.setattr(action_module.time, "monotonic", lambda: now[0])
+
+    def act():
+        calls.append(now[0])
+        now[0] += 5.0
+        return "done"
+
+    action = Action("Go", act, "going ...")
+    for _ in range(5):  # the kernel was busy: they come at once, one after the other
+        action.button.click()
+    assert calls == [100.0]
+    now[0] += UNSEEN
+    action.button.click()
+    assert len(calls) == 2
+    action.press()  # in a cell: it is meant each time
+    assert len(calls) == 3
 
 
 def test_what_is_beside_stands_between_the_button_and_the_words():

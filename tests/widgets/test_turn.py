@@ -1,6 +1,7 @@
 """Two messages of a page, answered by two threads of the kernel: the second waits."""
 
 import threading
+import time
 import warnings
 from dataclasses import replace
 
@@ -13,7 +14,9 @@ from synthetic_walk import walk
 from motiondiff_edu.motion.scaler import Scaler
 from motiondiff_edu.performers.mover import Mover
 from motiondiff_edu.viz.noise import lines
+from motiondiff_edu.widgets.action import Action
 from motiondiff_edu.widgets.bench import Bench
+from motiondiff_edu.widgets.controls import Controls, steering
 from motiondiff_edu.widgets.editor import Editor
 from motiondiff_edu.widgets.explore import explore
 from motiondiff_edu.widgets.prompt import Prompt
@@ -86,6 +89,39 @@ def test_a_figure_is_drawn_when_the_one_before_is_done():
     s, t, _ = box.children[0].children
     both(work, lambda: setattr(s, "value", 7), lambda: setattr(t, "value", 2))
     assert work.calls == 2
+
+
+def test_of_sliders_that_are_moved_while_one_is_answered_the_last_values_are_made():
+    made = []
+    work = Work(lambda speed: made.append(speed))
+    controls = Controls(work, {"speed": (0, 9, 4)})
+    slider = controls.controls["speed"]
+    more = []
+
+    def twice():
+        for value in (2, 3):  # both wait
+            more.append(threading.Thread(target=setattr, args=(slider, "value", value)))
+            more[-1].start()
+            while slider.value != value or controls._changes < value:
+                time.sleep(0.001)
+
+    both(work, lambda: setattr(slider, "value", 7), twice)
+    for thread in more:
+        thread.join(60)
+    assert made == [7, 3] and slider.value == 3
+
+
+def test_the_first_call_of_sliders_waits_for_its_turn():
+    work = Work(lambda **values: None)
+    both(work, lambda: steering(work, a=(0, 9, 4)), lambda: steering(work, a=(0, 9, 5)))
+    assert work.calls == 2
+
+
+def test_two_buttons_act_one_after_the_other():
+    work = Work(lambda: "done")
+    actions = [Action("Go", work, "going ...") for _ in range(2)]
+    both(work, actions[0].button.click, actions[1].button.click)
+    assert work.calls == 2 and [one.said.value for one in actions] == ["done", "done"]
 
 
 def test_a_press_while_the_editor_generates_is_added_to_its_result():
