@@ -31,6 +31,7 @@ MODULE = module.joined(module.BENCH)
 _BYTES = ("joints", "roots", "mended_joints", "mended_roots")
 HEIGHT = 400  # pixels
 GHOST = "#009E73"  # as in js/bench_paint.js
+HEARD = "Repairing: there and back, several times ..."  # the page waits for a word at once
 _STATE = ("scene", "first", "missing", "repaired", "message")
 
 
@@ -122,9 +123,12 @@ class Bench(anywidget.AnyWidget):
 
     @traitlets.observe("asked")
     def _answer(self, change):
+        self.message = HEARD
         try:
             with TURN:
                 self.repair()
+        except KeyboardInterrupt:
+            self.message = "Not repaired: stopped."
         except (
             Exception
         ) as error:  # nobody sees what a callback raises, so it is shown in the widget

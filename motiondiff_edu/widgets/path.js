@@ -16,6 +16,9 @@ const CSS = `
   border: 1px solid var(--line); border-radius: 6px; padding: 3px 10px; min-height: 30px; cursor: pointer; }
 .mde-pad-row select option { color: #1f2933; background: #fff; }
 .mde-pad-row output { font-variant-numeric: tabular-nums; }`;
+const SILENCE = 5000; // milliseconds
+const DEAF = "The notebook's kernel does not answer: it is busy with another cell, or not running. Until it does, nothing " +
+  "walks along what is drawn here, and ready-made paths do not come.";
 const GREEN = "#009E73", STEP = 0.5;
 
 function element(tag, attributes = {}, ...children) {
@@ -44,7 +47,7 @@ export function mount(model, el) {
   const first = { line: model.get("line"), speed: model.get("speed"), preset: model.get("preset"), stops: model.get("stops") };
   const stop = new AbortController();
   const listen = (node, name, f) => node.addEventListener(name, f, { signal: stop.signal });
-  let points = model.get("line"), drawing = false, frame = null, pen = null;
+  let points = model.get("line"), drawing = false, frame = null, pen = null, deaf = false, silence = 0;
 
   function window_() { // metres shown: always the start with some room, and the whole path
     const xs = [-3.5, 3.5, ...points.map((p) => p[0])], zs = [-1.5, 6.5, ...points.map((p) => p[1])];
@@ -124,13 +127,21 @@ export function mount(model, el) {
     pen.fillText("start, facing up", toPixel([0, 0])[0] + 18, toPixel([0, 0])[1] + 14);
     const metres = lengthOf(points), pace = Number(speed.value);
     told.textContent = `${pace.toFixed(1)} m/s`;
-    words.textContent = points.length < 2 ? "No path yet: draw one, or choose one." :
+    words.textContent = deaf ? DEAF : points.length < 2 ? "No path yet: draw one, or choose one." :
       `${metres.toFixed(1)} m` + (!drawing && model.get("seconds") ? `, ${model.get("seconds").toFixed(1)} s from rest to rest` : "");
     canvas.setAttribute("aria-label", `Floor seen from above. ${words.textContent}`);
     root.dataset.points = String(points.length);
   }
 
-  function send(changes) { for (const [name, value] of Object.entries(changes)) model.set(name, value); model.save_changes(); }
+  function send(changes) {
+    for (const [name, value] of Object.entries(changes)) model.set(name, value);
+    model.save_changes(); // without a word where the kernel was restarted
+    clearTimeout(silence);
+    silence = setTimeout(() => hear(false), SILENCE);
+    try { model.send({ do: "ping" }); } catch { hear(false); } // it throws then
+  }
+  function hear(there) { clearTimeout(silence); deaf = !there; draw(); }
+  const onMessage = () => hear(true);
   function drawn() { presets.value = ""; send({ preset: "", stops: [], line: points.map(rounded) }); draw(); }
   function restore() {
     speed.value = String(first.speed); presets.value = first.preset; points = first.line;
@@ -171,7 +182,7 @@ export function mount(model, el) {
   const onLine = () => { if (!drawing) { points = model.get("line"); draw(); } };
   const onPreset = () => { presets.value = model.get("preset"); };
   const onSpeed = () => { speed.value = String(model.get("speed")); draw(); };
-  const changes = { "change:line": onLine, "change:stops": onLine, "change:preset": onPreset, "change:speed": onSpeed, "change:seconds": draw };
+  const changes = { "change:line": onLine, "change:stops": onLine, "change:preset": onPreset, "change:speed": onSpeed, "change:seconds": draw, "msg:custom": onMessage };
   for (const [name, f] of Object.entries(changes)) model.on(name, f);
   const sizes = new ResizeObserver(draw), themes = new MutationObserver(draw);
   canvas.style.height = `${model.get("height")}px`;
@@ -179,7 +190,7 @@ export function mount(model, el) {
   sizes.observe(canvas); themes.observe(document.body, { attributes: true });
   draw();
   return () => {
-    stop.abort(); sizes.disconnect(); themes.disconnect();
+    stop.abort(); clearTimeout(silence); sizes.disconnect(); themes.disconnect();
     for (const [name, f] of Object.entries(changes)) model.off(name, f);
     root.remove();
   };

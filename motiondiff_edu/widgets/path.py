@@ -49,10 +49,15 @@ class PathPad(anywidget.AnyWidget):
         height: int = 460,
     ):
         super().__init__(speed=float(speed), height=int(height))
+        self.on_msg(self._receive)
         if points is None:
             self.preset = preset
         else:
             self.points = points
+
+    def _receive(self, _, content: dict, buffers) -> None:
+        if content["do"] == "ping":
+            self.send({"do": "heard"})  # else the page says that nobody answers
 
     @property
     def points(self) -> Float[np.ndarray, "n 2"]:

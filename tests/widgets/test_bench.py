@@ -6,6 +6,8 @@ The walker of these tests goes on as the last pose was, but for noise: what it m
 
 import base64
 import io
+import threading
+import time
 
 import numpy as np
 import pytest
@@ -22,7 +24,8 @@ from motiondiff_edu.motion.scaler import Scaler
 from motiondiff_edu.motion.skeleton import JOINTS, J
 from motiondiff_edu.viz import body
 from motiondiff_edu.widgets import packing, poster
-from motiondiff_edu.widgets.bench import _BYTES, GHOST, MODULE, Bench
+from motiondiff_edu.widgets.bench import _BYTES, GHOST, HEARD, MODULE, Bench
+from motiondiff_edu.widgets.turn import TURN
 
 T_H = 8
 CLIP = walk(np.tile([1.2, 0.0, 0.6], (31, 1)), seed=6)
@@ -121,6 +124,30 @@ def test_asking_answers_and_says_what_cannot_be_done():
         and widget.repaired["edition"] == 1
         and widget.answered == 3
     )
+
+
+def test_it_says_that_it_heard_and_repairs_what_is_missing_when_its_turn_has_come():
+    widget = bench()
+    with TURN:
+        thread = threading.Thread(target=setattr, args=(widget, "asked", 1))
+        thread.start()
+        while not widget.message:
+            time.sleep(0.001)
+        assert widget.message == HEARD and widget.answered == 0
+        widget.first = 3
+        widget.missing = HAND
+    thread.join(60)
+    assert widget.repaired["first"] == 3 and widget.repaired["missing"] == HAND
+
+
+def test_an_interrupted_repair_says_so(monkeypatch):
+    def stop(*_):
+        raise KeyboardInterrupt
+
+    widget = bench()
+    monkeypatch.setattr(Bench, "repair", stop)
+    widget.asked = 1
+    assert widget.message == "Not repaired: stopped." and widget.answered == 1
 
 
 def test_a_walkers_failure_is_told_too(monkeypatch):
@@ -317,6 +344,40 @@ def test_a_clicked_hand_is_mended_as_the_library_mends_it(table):
     as_mean = ink(table.figure)
     table.page.get_by_label("Which repair is the body").select_option("2")
     assert table.data("state") == "repair 2 of 3" and ink(table.figure) != as_mean
+
+
+def ask(table) -> None:
+    table.click_joint("RightHand")
+    table.page.get_by_role("button", name="Repair").click()
+
+
+def free(table) -> bool:
+    return table.page.get_by_role("button", name="Repair").is_enabled()
+
+
+def test_a_kernel_that_never_hears_of_a_repair_is_told(table):
+    table.page.clock.install()
+    ask(table)
+    table.page.clock.run_for(4_000)
+    assert not free(table)
+    table.page.clock.run_for(2_000)
+    assert "kernel does not answer" in table.note() and free(table)
+    table.answer()  # it was busy
+    assert "the mean of 3 repairs" in table.note() and free(table)
+
+
+def test_a_kernel_that_goes_during_a_repair_or_before_it_is_told(table):
+    table.page.clock.install()
+    ask(table)
+    table.page.evaluate("model.set('message', 'Round 1 of 2')")
+    table.page.clock.run_for(60_000)
+    assert not free(table) and table.note() == "Round 1 of 2", "a repair may take its time"
+    table.page.evaluate("lost = true")
+    table.page.clock.run_for(6_000)
+    assert "kernel is gone" in table.note() and free(table)
+    table.page.evaluate("document.querySelector('output.mde-said').textContent = ''")
+    table.page.get_by_role("button", name="Repair").click()
+    assert "kernel is gone" in table.note() and free(table)
 
 
 def test_a_right_click_a_drag_and_a_scrolling_finger_remove_nothing(table):

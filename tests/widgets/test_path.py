@@ -173,6 +173,35 @@ def test_keyboard_draws_undoes_clears_and_resets_without_leaking(page):
     assert page.evaluate("leaked") == 0
 
 
+NOBODY = "kernel does not answer"
+
+
+def test_a_kernel_that_is_gone_or_silent_is_told_until_it_answers(page):
+    words = page.locator(".mde-pad").inner_text
+    page.clock.install()
+    page.get_by_label("Ready-made path").select_option("circle")
+    page.clock.run_for(4_000)
+    assert NOBODY not in words(), "it may take its time"
+    page.clock.run_for(2_000)
+    assert NOBODY in words()
+    page.evaluate("answer({ do: 'heard' })")
+    assert NOBODY not in words()
+    page.get_by_label("Ready-made path").select_option("straight")
+    page.evaluate("answer({ do: 'heard' })")
+    page.clock.run_for(60_000)
+    assert NOBODY not in words()
+    page.evaluate("lost = true")
+    page.get_by_role("button", name="Clear").click()
+    assert NOBODY in words(), "at once: nothing can be sent"
+
+
+def test_python_answers_the_pads_question_whether_it_is_there(monkeypatch):
+    pad, said = PathPad(), []
+    monkeypatch.setattr(pad, "send", said.append)
+    pad._handle_custom_msg({"do": "ping"}, [])
+    assert said == [{"do": "heard"}]
+
+
 def test_presets_and_speed_are_told_and_python_can_draw(page):
     page.get_by_label("Ready-made path").select_option("circle")
     assert page.evaluate("saved.at(-1).preset") == "circle"

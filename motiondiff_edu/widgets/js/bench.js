@@ -24,6 +24,11 @@ const STYLE = `
 .mde-bench button:disabled { opacity: .5; cursor: default; }`;
 const STILL = 5; // pixels within which a press is a click, and no drag
 const HOME = { yaw: 0.6, pitch: 0.2, zoom: 1 };
+const SILENCE = 5000; // milliseconds
+const MUTE = "The notebook's kernel does not answer: it is busy with another cell, or not running.";
+const GONE =
+  "The notebook's kernel is gone, so nothing can be repaired. Restart it, and run the notebook's " +
+  "cells again.";
 const NOTHING = new DataView(new ArrayBuffer(0));
 
 export function mount(model, el, { fill = false } = {}) {
@@ -118,11 +123,14 @@ export function mount(model, el, { fill = false } = {}) {
   let playing = false;
   let ticking = 0;
   let visible = true;
+  let dropped = 0; // the request that the page no longer waits for
+  let heard = true; // Python says at once that it has the request; the repair may take its time
+  let silence = 0;
 
   const within = (t) => t >= first && t < first + T_h;
   const number = (t, j) => (t - first) * J + j;
   const lost = (t, j) => within(t) && gone.has(number(t, j));
-  const busy = () => model.get("asked") > model.get("answered");
+  const busy = () => model.get("asked") > Math.max(model.get("answered"), dropped);
   function current() {
     // the repairs, unless a joint was removed or restored or the window moved since
     const told = model.get("repaired");
@@ -260,10 +268,35 @@ export function mount(model, el, { fill = false } = {}) {
       return;
     }
     if (busy()) return;
+    if (!reach()) return giveUp(GONE);
     model.set("asked", model.get("asked") + 1);
     model.save_changes();
     if (busy()) note.textContent = "Repairing: there and back, several times ...";
     draw();
+  }
+
+  function reach() {
+    // `send` throws once the kernel was shut down or restarted; a trait that is set then is lost
+    try {
+      model.send({ do: "ping" });
+    } catch {
+      return false;
+    }
+    return true;
+  }
+  function giveUp(words) {
+    dropped = model.get("asked");
+    note.textContent = words;
+    draw();
+  }
+  function waitOn() {
+    clearTimeout(silence);
+    silence = setTimeout(() => {
+      if (!busy()) return;
+      if (!reach()) giveUp(GONE);
+      else if (!heard) giveUp(MUTE);
+      else waitOn();
+    }, SILENCE);
   }
 
   function go(t) {
@@ -440,7 +473,13 @@ export function mount(model, el, { fill = false } = {}) {
   });
   const changes = {
     "change:repaired": load,
+    "change:asked": () => {
+      heard = false;
+      waitOn();
+      draw();
+    },
     "change:message": () => {
+      heard = true;
       note.textContent = model.get("message");
     },
     "change:first": () => {
@@ -472,11 +511,13 @@ export function mount(model, el, { fill = false } = {}) {
   themes.observe(document.body, { attributes: true });
   load();
   home();
+  if (busy()) waitOn();
   note.textContent = current().length
     ? model.get("message")
     : "Click a joint or a frame to remove it, then press Repair.";
   return () => {
     stop.abort();
+    clearTimeout(silence);
     cancelAnimationFrame(ticking);
     [sizes, sights, themes].forEach((o) => o.disconnect());
     for (const [name, f] of Object.entries(changes)) model.off(name, f);
