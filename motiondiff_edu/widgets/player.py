@@ -45,7 +45,8 @@ PerFigure = Value | Sequence[Value | None] | None  # one value for all figures, 
 Figures = ArrayLike | Sequence[ArrayLike]  # (T, J, 3), (N, T, J, 3), or a list of (T, J, 3)
 Audio = ArrayLike | bytes | bytearray | memoryview | Soundtrack | None
 
-PAGE = """<!doctype html><html lang="en"><head><meta charset="utf-8"><title>{title}</title>
+PAGE = """<!doctype html><html lang="en"><head><meta charset="utf-8">\
+<meta name="viewport" content="width=device-width, initial-scale=1"><title>{title}</title>
 <style>html,body{{margin:0;height:100%}}@media print{{html,body{{height:auto}}}}</style></head>\
 <body>
 <script type="module">
@@ -199,12 +200,25 @@ class Player(anywidget.AnyWidget):
 
     @traitlets.validate("frame")
     def _frame_exists(self, proposal):
-        last = max((f["frames"] for f in self.scene.get("figures", [])), default=1) - 1
+        last = self._last()
         if self.scene and not 0 <= proposal["value"] <= last:
             raise traitlets.TraitError(
                 f"frame {proposal['value']} does not exist; frames are 0 to {last}"
             )
         return proposal["value"]
+
+    def set_state(self, sync_data: dict) -> None:
+        """Take what the page says; its frame may be one of a longer motion that was shown before.
+
+        The page says it while a shorter motion is on its way there.
+        """
+        if "frame" in sync_data:
+            frame = min(max(sync_data["frame"], 0), self._last())
+            sync_data = sync_data | {"frame": frame}
+        super().set_state(sync_data)
+
+    def _last(self) -> int:
+        return max((f["frames"] for f in self.scene.get("figures", [])), default=1) - 1
 
     def page(self) -> str:
         """A whole HTML page with the module and the motion in it.

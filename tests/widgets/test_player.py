@@ -27,6 +27,22 @@ def test_unpacked_positions_are_within_a_quarter_millimetre(motion):
         assert np.abs(given - got).max() < 0.5 / 2048 + 1e-5
 
 
+def test_a_late_word_of_the_page_about_a_longer_motion_is_no_error(motion):
+    player = Player(motion[0])
+    player.show(motion[0][:20])
+    player.set_state({"frame": 30, "playing": True})
+    assert (player.frame, player.playing) == (19, True)
+    player.set_state({"frame": -1})
+    assert player.frame == 0
+    with pytest.raises(traitlets.TraitError, match="frame 30 does not exist"):
+        player.frame = 30  # in Python it is a mistake
+
+
+def test_pages_are_laid_out_in_a_phones_width(motion):
+    page = Player(motion[0]).page()
+    assert '<meta name="viewport" content="width=device-width, initial-scale=1">' in page
+
+
 def test_a_walk_of_80_seconds_at_3_metres_a_second_fits():
     positions, _ = walk(frames=1600, speed=3.0)
     assert (
