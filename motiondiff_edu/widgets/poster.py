@@ -73,7 +73,7 @@ def camera_at(
     positions: Float[np.ndarray, "T J 3"], t: int, camera: body.Camera, fps: float = FPS
 ) -> body.Camera:
     """The camera that follows the root, averaged over a second around frame t for a calm view."""
-    half = round(fps / 2)
+    half = int(fps // 2)
     around = positions[np.clip(np.arange(t - half, t + half + 1), 0, len(positions) - 1), 0]
     return camera.at(*around[:, [0, 2]].mean(0))
 

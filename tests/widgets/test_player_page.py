@@ -1,10 +1,15 @@
 """The player's ES module in a browser: with a fake model in a bare page, and exported, offline,
 without a kernel."""
 
+import re
+
+import numpy as np
 import pytest
 from browser import ANOTHER_FRAME, coloured, drawn, ink, open_page, player_page, shown
 from synthetic_walk import walk
 
+from motiondiff_edu.viz.body import Camera
+from motiondiff_edu.widgets import module, poster
 from motiondiff_edu.widgets.player import Look, Player
 
 STILL = Look(autoplay=False)
@@ -80,6 +85,22 @@ def test_zoom_orbit_follow_and_reset_change_the_view_and_reset_brings_it_back(
         assert ink(canvas) not in seen
         page.get_by_role("button", name="Reset").click()
         assert ink(canvas) == first and shown(page) == 0
+
+
+SMOOTH = """([roots, t, fps]) =>
+  smoothRoot({ root: (i) => roots[Math.min(Math.max(i, 0), roots.length - 1)] }, t, fps)"""
+
+
+@pytest.mark.parametrize("fps", [10, 20, 25, 60])
+def test_page_and_film_follow_the_figure_with_the_same_calm(browser, fps):
+    roots = np.random.default_rng(0).normal(size=(90, 1, 3))
+    source = re.sub("^export ", "", module.joined(("dom", "figures", "paint")), flags=re.M)
+    with open_page(browser) as page:
+        page.add_script_tag(content=source)
+        for t in (3, 40, 88):
+            seen = page.evaluate(SMOOTH, [roots[:, 0].tolist(), t, fps])
+            camera = poster.camera_at(roots, t, Camera(), fps)
+            assert seen == pytest.approx([camera.x, camera.z])
 
 
 def test_wheel_scrolls_the_page_until_the_figure_was_clicked(browser, player, tmp_path):

@@ -144,7 +144,7 @@ export function mount(model, el, { fill = false } = {}) {
 
   function drawFigure(theme) {
     const [ctx, w, h] = ready(canvas);
-    const target = smoothRoot(walk, frame);
+    const target = smoothRoot(walk, frame, fps);
     const look = camera(view, [target[0], 0.86, target[1]], 4.2 / view.zoom, w, h);
     ctx.fillStyle = rgba(mix(theme.bg, theme.fg, 0.05));
     ctx.fillRect(0, 0, w, h);

@@ -285,7 +285,7 @@ export function mount(model, el, { fill = false } = {}) {
       : samples.map((f, k) => ({ name: `in-between ${k + 1}`, pose: f.pose(frame) }));
     const ghosts = others.filter((_, k) => k !== chosen);
     if (before.checked) ghosts.push({ name: "motion before", pose: motion.pose(frame) });
-    const spot = held_spot || (view.follow ? smoothRoot(figure, frame) : motion.middle);
+    const spot = held_spot || (view.follow ? smoothRoot(figure, frame, scene.fps) : motion.middle);
     look = paintStage(
       ctx,
       {
@@ -603,7 +603,7 @@ export function mount(model, el, { fill = false } = {}) {
       pull = { turn: [e.clientX, e.clientY] };
       return;
     }
-    held_spot = view.follow ? smoothRoot(figure, frame) : motion.middle;
+    held_spot = view.follow ? smoothRoot(figure, frame, scene.fps) : motion.middle;
     const held = take(j);
     select(j);
     pull = { held, at: place(e), moved: false };

@@ -57,14 +57,16 @@ export function camera(view, target, distance, width, height) {
   return Object.assign(look, { right, up, ahead });
 }
 
-export function smoothRoot(figure, t) {
-  // the root on the floor, averaged over a second: the camera does not bob
+export function smoothRoot(figure, t, fps) {
+  // the root on the floor, averaged over a second: the camera does not bob (as in poster.py)
+  const half = Math.floor(fps / 2);
+  const count = 2 * half + 1;
   let x = 0;
   let z = 0;
-  for (let i = -10; i <= 10; i++) {
+  for (let i = -half; i <= half; i++) {
     const r = figure.root(t + i);
-    x += r[0] / 21;
-    z += r[2] / 21;
+    x += r[0] / count;
+    z += r[2] / count;
   }
   return [x, z];
 }
@@ -252,7 +254,7 @@ export function paintPanel(ctx, scene, figures, frame, view, theme, width, heigh
     [0, 1].map((k) => (i - (figures.length - 1) / 2) * scene.offset[k]),
   );
   const spots = figures.map((f, i) =>
-    (view.follow ? smoothRoot(f, frame) : f.middle).map((v, k) => v + offsets[i][k]),
+    (view.follow ? smoothRoot(f, frame, scene.fps) : f.middle).map((v, k) => v + offsets[i][k]),
   );
   const target = [0, 1].map((k) => spots.reduce((s, p) => s + p[k], 0) / spots.length);
   const spread = Math.max(
