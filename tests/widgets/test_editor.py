@@ -381,6 +381,8 @@ def test_a_hand_is_dragged_with_the_mouse_and_the_bones_keep_their_lengths(page,
         lengths = [np.linalg.norm(p[2, child] - p[2, parent]) for p in (motion, editor.positions)]
         assert lengths[1] == pytest.approx(lengths[0])
     assert "LeftHand in frame 2 moved by" in words(page) and editor.state["undo"] == 2
+    press(page, "Control+Shift+Z")  # elsewhere it does again what was undone
+    assert editor.state["undo"] == 2
     press(page, "Control+z")
     assert np.array_equal(editor.positions, motion) and editor.state["pins"] == [2]
 

@@ -573,7 +573,8 @@ export function mount(model, el, { fill = false } = {}) {
   listen(root, "keydown", (event) => {
     const keys = event.target === canvas ? onStage : event.target === rail.canvas ? onRail : null;
     const name = event.key.length === 1 ? event.key.toLowerCase() : event.key;
-    const undoes = (event.ctrlKey || event.metaKey) && name === "z" && keys;
+    // not with Shift, which means "do again" elsewhere
+    const undoes = (event.ctrlKey || event.metaKey) && name === "z" && !event.shiftKey && keys;
     if ((event.ctrlKey || event.metaKey || event.altKey) && !undoes) return;
     event.stopPropagation(); // otherwise JupyterLab handles the key
     if (event.target === file && name === "Enter") {
