@@ -12,7 +12,6 @@ import html
 import json
 from collections.abc import Mapping
 
-import anywidget
 import numpy as np
 import traitlets
 from jaxtyping import Bool
@@ -24,6 +23,7 @@ from ..rollout import AnyWalker
 from ..viz import body
 from . import module, packing, poster
 from .player import PAGE
+from .start import Starting
 from .still import page_on_picture, with_still
 from .turn import TURN
 
@@ -32,10 +32,10 @@ _BYTES = ("joints", "roots", "mended_joints", "mended_roots")
 HEIGHT = 400  # pixels
 GHOST = "#009E73"  # as in js/bench_paint.js
 HEARD = "Repairing: there and back, several times ..."  # the page waits for a word at once
-_STATE = ("scene", "first", "missing", "repaired", "message")
+_STATE = ("scene", "start", "first", "missing", "repaired", "message")
 
 
-class Bench(anywidget.AnyWidget):
+class Bench(Starting):
     """A walk: joints and frames of a window of T_h frames can be removed; `walker` repairs them.
 
     The walk is a Clip in the root frame.
@@ -47,6 +47,7 @@ class Bench(anywidget.AnyWidget):
     """
 
     _esm = MODULE
+    KEPT = ("first", "missing")
     scene = traitlets.Dict().tag(sync=True)
     joints = traitlets.Bytes().tag(sync=True)
     roots = traitlets.Bytes().tag(sync=True)

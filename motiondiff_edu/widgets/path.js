@@ -38,13 +38,13 @@ export function mount(model, el) {
   const presets = element("select", { "aria-label": "Ready-made path" }, element("option", { value: "" }, "drawn by hand"),
     ...model.get("presets").map((name) => element("option", { value: name }, name)));
   const speed = element("input", { type: "range", min: "0.3", max: "3", step: "0.1", "aria-label": "Speed in metres a second" });
-  const told = element("output", {}), words = element("output", { "aria-live": "polite" });
+  const told = element("output", { "aria-live": "off" }), words = element("output", { "aria-live": "polite" });
+  const length = element("output", { "aria-live": "off" }); // while one draws; the words come at rest
   const clear = element("button", { type: "button" }, "Clear"), reset = element("button", { type: "button" }, "Reset");
   const root = element("div", { class: "mde-pad", "data-lm-suppress-shortcuts": "true" }, element("style", {}, CSS), canvas,
     element("div", { class: "mde-pad-row" }, presets, element("label", {}, "speed", speed, told), clear, reset),
-    element("div", { class: "mde-pad-row" }, words));
+    element("div", { class: "mde-pad-row" }, length, words));
   el.append(root);
-  const first = { line: model.get("line"), speed: model.get("speed"), preset: model.get("preset"), stops: model.get("stops") };
   const stop = new AbortController();
   const listen = (node, name, f) => node.addEventListener(name, f, { signal: stop.signal });
   let points = model.get("line"), drawing = false, frame = null, pen = null, deaf = false, silence = 0;
@@ -127,9 +127,11 @@ export function mount(model, el) {
     pen.fillText("start, facing up", toPixel([0, 0])[0] + 18, toPixel([0, 0])[1] + 14);
     const metres = lengthOf(points), pace = Number(speed.value);
     told.textContent = `${pace.toFixed(1)} m/s`;
-    words.textContent = deaf ? DEAF : points.length < 2 ? "No path yet: draw one, or choose one." :
-      `${metres.toFixed(1)} m` + (!drawing && model.get("seconds") ? `, ${model.get("seconds").toFixed(1)} s from rest to rest` : "");
-    canvas.setAttribute("aria-label", `Floor seen from above. ${words.textContent}`);
+    const text = deaf ? DEAF : points.length < 2 ? "No path yet: draw one, or choose one." :
+      `${metres.toFixed(1)} m` + (model.get("seconds") ? `, ${model.get("seconds").toFixed(1)} s from rest to rest` : "");
+    length.textContent = drawing ? `${metres.toFixed(1)} m` : "";
+    if (words.textContent !== text || drawing) words.textContent = drawing ? "" : text;
+    canvas.setAttribute("aria-label", `Floor seen from above. ${length.textContent || text}`);
     root.dataset.points = String(points.length);
   }
 
@@ -142,8 +144,9 @@ export function mount(model, el) {
   }
   function hear(there) { clearTimeout(silence); deaf = !there; draw(); }
   const onMessage = () => hear(true);
-  function drawn() { presets.value = ""; send({ preset: "", stops: [], line: points.map(rounded) }); draw(); }
+  function drawn() { presets.value = ""; send({ line: points.map(rounded), stops: [], preset: "" }); draw(); }
   function restore() {
+    const first = { line: [], stops: [], preset: "", speed: 1.2, ...model.get("start") };
     speed.value = String(first.speed); presets.value = first.preset; points = first.line;
     send(first); draw();
   }
@@ -188,6 +191,10 @@ export function mount(model, el) {
   canvas.style.height = `${model.get("height")}px`;
   speed.value = String(model.get("speed")); onPreset();
   sizes.observe(canvas); themes.observe(document.body, { attributes: true });
+  const finer = () => { draw(); watch(); }; // another screen may have finer pixels
+  const watch = () => matchMedia(`(resolution: ${devicePixelRatio}dppx)`)
+    .addEventListener("change", finer, { once: true, signal: stop.signal });
+  watch();
   draw();
   return () => {
     stop.abort(); clearTimeout(silence); sizes.disconnect(); themes.disconnect();

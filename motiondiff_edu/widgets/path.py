@@ -9,7 +9,6 @@ import io
 from collections.abc import Callable
 from pathlib import Path
 
-import anywidget
 import numpy as np
 import traitlets
 from jaxtyping import Float
@@ -17,10 +16,11 @@ from numpy.typing import ArrayLike
 
 from ..conditions import control as walks
 from ..viz.skeleton import top_view
+from .start import Starting
 from .still import with_still
 
 
-class PathPad(anywidget.AnyWidget):
+class PathPad(Starting):
     """A floor seen from above, in metres; the figure starts at the origin, facing up (z).
 
     Its left (x) is to the left.
@@ -33,6 +33,7 @@ class PathPad(anywidget.AnyWidget):
     """
 
     _esm = Path(__file__).with_suffix(".js")
+    KEPT = ("line", "stops", "speed", "preset")
     line = traitlets.List().tag(sync=True)
     stops = traitlets.List(traitlets.Float()).tag(sync=True)
     speed = traitlets.Float(1.2, min=0.3, max=3.0).tag(sync=True)

@@ -100,6 +100,24 @@ def drawn(canvas) -> None:
     until(canvas, f"(c) => Math.min(...Object.values(({COLOURED})(c))) > 200")
 
 
+# from now on `spoken` collects the words that a screen reader announces unasked
+SPOKEN = """() => {
+  const live = (node) => {
+    for (let e = node; e; e = e.parentElement) {
+      const told = e.getAttribute?.("aria-live");
+      if (told) return told !== "off";
+      if (e.tagName === "OUTPUT" || ["status", "alert", "log"].includes(e.getAttribute?.("role")))
+        return true;
+    }
+    return false;
+  };
+  window.spoken = [];
+  new MutationObserver((changes) => {
+    for (const { target, addedNodes } of changes)
+      if (addedNodes.length && live(target)) spoken.push(target.textContent);
+  }).observe(document.body, { subtree: true, childList: true });
+}"""
+
 FAKE_MODEL = """
 const decode = (s) => new DataView(Uint8Array.from(atob(s), (c) => c.charCodeAt(0)).buffer);
 const state = RECORD, listeners = {};

@@ -243,7 +243,7 @@ def test_thin_limbs_are_those_with_a_missing_end():
         assert (pictures[0] != pictures[1]).any() == differs
 
 
-STATE = ("scene", "first", "missing", "repaired", "message", "asked", "answered")
+STATE = ("scene", "start", "first", "missing", "repaired", "message", "asked", "answered")
 SEND = """([state, binary]) => {
   const data = (s) => new DataView(Uint8Array.from(atob(s), (c) => c.charCodeAt(0)).buffer);
   for (const [name, value] of Object.entries(binary)) model.set(name, data(value));
@@ -326,6 +326,9 @@ def test_a_clicked_hand_is_mended_as_the_library_mends_it(table):
     assert (
         table.saved("asked") == 1 and table.page.get_by_role("button", name="Repair").is_disabled()
     )
+    table.page.keyboard.press("Enter")  # the focus stays; pressed again, it does nothing
+    assert table.saved("asked") == 1
+    assert table.page.evaluate("document.activeElement.textContent") == "Repair"
     table.answer()
     assert table.widget.mended_joints != before
     np.testing.assert_allclose(
@@ -344,6 +347,22 @@ def test_a_clicked_hand_is_mended_as_the_library_mends_it(table):
     as_mean = ink(table.figure)
     table.page.get_by_label("Which repair is the body").select_option("2")
     assert table.data("state") == "repair 2 of 3" and ink(table.figure) != as_mean
+
+
+def test_reset_goes_back_to_what_python_gave_in_a_view_that_was_made_later_too(table):
+    table.click_joint("RightHand")
+    table.page.evaluate("() => { cleanup(); another(); }")
+    assert table.data("missing") == str(T_H)
+    table.page.get_by_role("button", name="Reset").click()
+    assert table.saved("first") == 9 and table.saved("missing") == []
+
+
+def test_what_the_page_removes_is_not_where_reset_leads():
+    widget = bench()
+    widget.set_state({"first": 3, "missing": HAND})
+    assert widget.missing == HAND and widget.start == {"first": 9}
+    widget.missing = HAND[1:]
+    assert widget.start == {"first": 9, "missing": HAND[1:]}
 
 
 def ask(table) -> None:

@@ -5,7 +5,7 @@ The answers are held until a test lets them go, so that no test depends on how f
 
 import numpy as np
 import pytest
-from browser import open_page
+from browser import SPOKEN, open_page
 from editor_page import guess, open_editor, received, settled
 from synthetic_walk import walk
 
@@ -218,8 +218,10 @@ def test_a_kernel_that_dies_while_it_generates_is_missed(browser, tmp_path, edit
         page.evaluate("window.kernel = () => {}")
         page.get_by_role("button", name="Generate").click()
         page.evaluate("take({ busy: true })")
+        page.evaluate(SPOKEN)
         page.clock.run_for(60_000)
         assert "Making 3 in-betweens" in said(page), "it may take its time"
+        assert 5 <= page.evaluate("spoken.length") <= 7, "told every ten seconds"
         page.evaluate(LOST)
         page.clock.run_for(6_000)
         assert "kernel is gone" in said(page)

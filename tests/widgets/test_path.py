@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 import traitlets
-from browser import bare_page, ink, open_page
+from browser import SPOKEN, bare_page, ink, open_page
 
 from motiondiff_edu.conditions.control import PRESETS, path_to_control, preset
 from motiondiff_edu.motion.root_frame import root_path
@@ -72,7 +72,7 @@ def page(browser, root, tmp_path):
     pad = PathPad(preset="straight")
     record = {
         name: getattr(pad, name)
-        for name in ("line", "stops", "speed", "preset", "presets", "height", "seconds")
+        for name in ("start", "line", "stops", "speed", "preset", "presets", "height", "seconds")
     }
     with open_page(browser, viewport={"width": 700, "height": 620}) as page:
         page.goto(bare_page(tmp_path, root / "motiondiff_edu/widgets/path.js", record, []))
@@ -85,12 +85,18 @@ def test_drawing_with_the_mouse_starts_at_the_origin(page):
     first, box = ink(canvas), canvas.bounding_box()
     x, y = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
     page.mouse.move(x, y)
+    page.evaluate(SPOKEN)
     page.mouse.down()
     for step in range(1, 9):
         page.mouse.move(x - 10 * step, y - 12 * step)
+    page.wait_for_function(
+        "document.querySelector('.mde-pad canvas').getAttribute('aria-label').endsWith(' m')"
+    )
+    assert page.evaluate("spoken") == [], "the length is told at rest"
     assert page.evaluate("saved.length") == 0, "Python is told when the pen is lifted"
     page.mouse.up()
     line = np.array(page.evaluate("saved.at(-1).line"))
+    assert page.evaluate("spoken.length") == 1
     assert page.evaluate("saved.at(-1).preset") == "" and len(line) >= 8
     assert np.array_equal(line[0], [0, 0])
     assert (np.diff(line[1:, 0]) > 0).all() and (np.diff(line[1:, 1]) > 0).all(), (
@@ -171,6 +177,27 @@ def test_keyboard_draws_undoes_clears_and_resets_without_leaking(page):
         [[0, 0], [0, 8]],
     ]
     assert page.evaluate("leaked") == 0
+
+
+def test_reset_goes_back_to_what_python_gave_in_a_view_that_was_made_later_too(page):
+    page.locator("canvas").focus()
+    for key in ("c", "ArrowUp", "ArrowUp"):
+        page.keyboard.press(key)
+    page.evaluate("() => { cleanup(); another(); }")
+    page.get_by_role("button", name="Reset").click()
+    assert page.evaluate("[saved.at(-1).preset, saved.at(-1).line]") == [
+        "straight",
+        [[0, 0], [0, 8]],
+    ]
+
+
+def test_what_the_page_draws_is_not_where_reset_leads():
+    pad = PathPad(preset="straight")
+    pad.set_state({"preset": "circle", "speed": 2.0})
+    assert len(pad.line) == 81 and len(pad.start["line"]) == 2
+    assert pad.start["preset"] == "straight" and pad.start.get("speed", 1.2) == 1.2
+    pad.points = [[0, 0], [1, 2]]
+    assert (pad.start["preset"], pad.start["line"]) == ("", [[0, 0], [1, 2]])
 
 
 NOBODY = "kernel does not answer"

@@ -221,6 +221,10 @@ def test_of_two_views_of_one_player_one_sounds_and_the_other_follows(browser, pl
             "document.dispatchEvent(new CustomEvent('mde-sound', { detail: { scene: {} } }))"
         )  # another player
         assert [view["playing"] for view in page.evaluate(VIEWS)] == ["false", "false"]
+        play.nth(0).click()
+        page.wait_for_function(f"({VIEWS})()[0].heard")
+        page.evaluate("cleanup()")  # who followed it sounds now
+        page.wait_for_function(f"({VIEWS})()[0].heard && ({VIEWS})()[0].playing === 'true'")
         assert page.problems == []
 
 

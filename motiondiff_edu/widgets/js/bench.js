@@ -2,7 +2,7 @@
 // it, and the kernel's repair: the mean as a body, each repair as thin limbs, the truth as an
 // outline. `model` needs get, set, save_changes, on, off.
 
-import { CSS, GREEN, clamp, element, listener, mix, readTheme, rgba } from "./dom.js";
+import { CSS, GREEN, clamp, element, listener, mix, readTheme, redrawn, rgba } from "./dom.js";
 import { unpack } from "./figures.js";
 import { camera, paintBody, paintFloor, paintText, smoothRoot } from "./paint.js";
 import {
@@ -21,7 +21,7 @@ import { silentClock } from "./clock.js";
 const STYLE = `
 .mde-bench canvas.mde-figure { cursor: pointer; }
 .mde-bench output.mde-said { min-height: 2.7em; flex: 1 1 100%; }
-.mde-bench button:disabled { opacity: .5; cursor: default; }`;
+.mde-bench button[aria-disabled=true] { opacity: .5; cursor: default; }`;
 const STILL = 5; // pixels within which a press is a click, and no drag
 const HOME = { yaw: 0.6, pitch: 0.2, zoom: 1 };
 const SILENCE = 5000; // milliseconds
@@ -111,11 +111,10 @@ export function mount(model, el, { fill = false } = {}) {
         ({ scene: { joints: J, figures: list }, joints, roots, contacts: NOTHING })[name],
     });
   const walk = figures(model.get("joints"), model.get("roots"), [{ frames }])[0];
-  const began = { first: model.get("first"), missing: model.get("missing") };
   const view = { ...HOME };
   const clock = silentClock(frames / fps, () => visible);
-  let first = began.first;
-  let gone = new Set(began.missing);
+  let first = model.get("first");
+  let gone = new Set(model.get("missing"));
   let mended = [];
   let frame = 0;
   let joint = names.indexOf("RightHand");
@@ -205,7 +204,7 @@ export function mount(model, el, { fill = false } = {}) {
       `Frames 0 to ${frames - 1}, the window is ${first} to ${first + T_h - 1}. Frame ${frame} ` +
         `is chosen.`,
     );
-    repair.disabled = busy();
+    repair.setAttribute("aria-disabled", String(busy())); // `disabled` would drop the focus
     from.value = String(first);
     Object.assign(root.dataset, {
       frame,
@@ -346,7 +345,7 @@ export function mount(model, el, { fill = false } = {}) {
     body.value = Number(kept) < count ? kept || "0" : "0";
     draw();
   }
-  function home() {
+  function rest() {
     Object.assign(view, HOME);
     speeds.value = "0.5";
     clock.rate(0.5);
@@ -354,9 +353,13 @@ export function mount(model, el, { fill = false } = {}) {
     truth.checked = true;
     body.value = "0";
     joint = names.indexOf("RightHand");
-    ({ first } = began);
-    gone = new Set(began.missing);
     go(first + Math.floor(T_h / 2));
+  }
+  function home() {
+    const start = { first: 0, missing: [], ...model.get("start") };
+    first = start.first;
+    gone = new Set(start.missing);
+    rest();
   }
   const keys = {
     ArrowLeft: () => go(frame - 1),
@@ -499,18 +502,15 @@ export function mount(model, el, { fill = false } = {}) {
     },
   };
   for (const [name, f] of Object.entries(changes)) model.on(name, f);
-  const sizes = new ResizeObserver(draw);
   const sights = new IntersectionObserver(([seen]) => {
     visible = seen.isIntersecting;
   });
-  const themes = new MutationObserver(draw);
   if (!fill) canvas.style.height = `${scene.height}px`;
   map.style.height = `${MAP_HEIGHT}px`;
-  sizes.observe(canvas);
+  redrawn(stop, canvas, draw);
   sights.observe(canvas);
-  themes.observe(document.body, { attributes: true });
   load();
-  home();
+  rest();
   if (busy()) waitOn();
   note.textContent = current().length
     ? model.get("message")
@@ -519,7 +519,7 @@ export function mount(model, el, { fill = false } = {}) {
     stop.abort();
     clearTimeout(silence);
     cancelAnimationFrame(ticking);
-    [sizes, sights, themes].forEach((o) => o.disconnect());
+    sights.disconnect();
     for (const [name, f] of Object.entries(changes)) model.off(name, f);
     root.remove();
   };

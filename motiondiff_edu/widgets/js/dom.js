@@ -48,13 +48,31 @@ export function element(tag, attributes = {}, ...children) {
   return node;
 }
 
-// Adds listeners until `stop` aborts. Of pointers it hears the mouse, the pen or the first finger, and
-// of presses those of the first button: a right click belongs to the browser's menu.
+// Adds listeners until `stop` aborts. Of pointers it hears the mouse, the pen or the first finger,
+// and of presses those of the first button: a right click belongs to the browser's menu.
 export function listener(stop) {
   const meant = (e) =>
     !e.type.startsWith("pointer") || (e.isPrimary && !(e.type === "pointerdown" && e.button));
   return (node, name, f, options = {}) =>
     node.addEventListener(name, (e) => meant(e) && f(e), { signal: stop.signal, ...options });
+}
+
+// Draws again when the canvas gets another size, JupyterLab another theme, or the window another
+// screen (its pixels may be finer).
+export function redrawn(stop, canvas, draw) {
+  const sizes = new ResizeObserver(draw);
+  const themes = new MutationObserver(draw);
+  sizes.observe(canvas);
+  themes.observe(document.body, { attributes: true });
+  const until = { once: true, signal: stop.signal };
+  const watch = () =>
+    matchMedia(`(resolution: ${devicePixelRatio}dppx)`).addEventListener("change", finer, until);
+  const finer = () => {
+    draw();
+    watch();
+  };
+  watch();
+  stop.signal.addEventListener("abort", () => [sizes, themes].forEach((o) => o.disconnect()));
 }
 
 export function readTheme(root) {

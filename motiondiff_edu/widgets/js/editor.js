@@ -3,7 +3,7 @@
 // far a joint was dragged. `model` needs get, set, save_changes, on, off; without send there is no
 // kernel, and a message says what needs one.
 
-import { CSS, clamp, element, listener, parse, readTheme, rgba } from "./dom.js";
+import { CSS, clamp, element, listener, parse, readTheme, redrawn, rgba } from "./dom.js";
 import { bytes, unpack } from "./figures.js";
 import { smoothRoot } from "./paint.js";
 import { silentClock } from "./clock.js";
@@ -68,7 +68,7 @@ export function mount(model, el, { fill = false } = {}) {
   });
   const play = button("\u25b6 Play", "Space", { class: "mde-play", "aria-label": "Play" });
   const pin = button("", "Enter", { class: "mde-pin", "aria-pressed": "false" });
-  const shown = element("output", { class: "mde-count" });
+  const shown = element("output", { class: "mde-count", "aria-live": "off" });
   const joints = choice("Joint to move", [
     ["", "no joint chosen"],
     ...scene.names.map((name, j) => [j, name]),
@@ -102,7 +102,8 @@ export function mount(model, el, { fill = false } = {}) {
       "poses",
   );
   const held = element("div", { class: "mde-held" });
-  const said = element("div", { class: "mde-say", role: "status" });
+  const said = element("span", { class: "mde-say", role: "status" });
+  const going = element("span", { "aria-hidden": "true" }); // a dot for each second
   const measured = element("div", { class: "mde-measured" });
   const dots = { L: element("i"), R: element("i") };
   const key = (side, word) => element("span", { class: "mde-key" }, dots[side], word);
@@ -158,7 +159,7 @@ export function mount(model, el, { fill = false } = {}) {
       element("label", {}, before, "motion before"),
     ),
     row(undo, reset, element("label", { class: "mde-push" }, "file", file), save),
-    element("div", { class: "mde-told" }, held, said, measured),
+    element("div", { class: "mde-told" }, held, element("div", {}, said, going), measured),
   );
   el.append(root);
 
@@ -330,7 +331,8 @@ export function mount(model, el, { fill = false } = {}) {
     measured.textContent = samples.length
       ? `In-between ${chosen + 1}${age()}: ${state.measured[chosen]}.`
       : "";
-    which.textContent = samples.length ? `${chosen + 1} of ${samples.length}` : "none yet";
+    const number = samples.length ? `${chosen + 1} of ${samples.length}` : "none yet";
+    if (which.textContent !== number) which.textContent = number; // it is read out when written
     const busy = generating();
     root.setAttribute("aria-busy", String(busy));
     generate.setAttribute("aria-disabled", String(busy));
@@ -344,6 +346,7 @@ export function mount(model, el, { fill = false } = {}) {
   }
   const say = (text) => {
     said.textContent = text;
+    going.textContent = "";
   };
 
   // ---- messages to Python
@@ -401,12 +404,13 @@ export function mount(model, el, { fill = false } = {}) {
     }
   }
   function count_up() {
-    // so that one sees that something goes on
+    // so that one sees that something goes on, and hears it every ten seconds
     if (!pressed || stop.signal.aborted) return;
-    say(
-      `Making ${count.value} in-between${count.value === "1" ? "" : "s"} \u2026 ` +
-        `${((performance.now() - begun) / 1000).toFixed(0)} s`,
-    );
+    const seconds = Math.floor((performance.now() - begun) / 1000);
+    const so_far = seconds < 10 ? "" : `, for ${seconds - (seconds % 10)} s now`;
+    const text = `Making ${count.value} in-between${count.value === "1" ? "" : "s"}${so_far} `;
+    if (said.textContent !== text) say(text);
+    going.textContent = ".".repeat(1 + (seconds % 10));
     setTimeout(count_up, 500);
   }
   function choose(by) {
@@ -736,11 +740,9 @@ export function mount(model, el, { fill = false } = {}) {
     "change:file": onControls,
   };
   for (const [name, f] of Object.entries(changes)) model.on(name, f);
-  const sizes = new ResizeObserver(draw);
   const sights = new IntersectionObserver(([seen]) => {
     visible = seen.isIntersecting;
   });
-  const themes = new MutationObserver(draw);
   // as much as leaves the controls in sight
   if (!fill) canvas.style.height = `clamp(${scene.height}px, 46vh, 620px)`;
   [motion] = read("", [scene.frames]);
@@ -756,14 +758,13 @@ export function mount(model, el, { fill = false } = {}) {
   onControls();
   say(state.message);
   draw();
-  sizes.observe(canvas);
+  redrawn(stop, canvas, draw);
   sights.observe(canvas);
-  themes.observe(document.body, { attributes: true });
   return () => {
     stop.abort();
     way.close();
     cancelAnimationFrame(ticking);
-    [sizes, sights, themes].forEach((o) => o.disconnect());
+    sights.disconnect();
     for (const [name, f] of Object.entries(changes)) model.off(name, f);
     root.remove();
   };

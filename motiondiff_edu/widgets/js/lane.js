@@ -53,7 +53,7 @@ export function musicLane(listen, seek, redraw) {
   const levels = element("select", { "aria-label": "Level of the attention" });
   const swatch = element("i", { class: "mde-ramp" });
   const words = element("span");
-  const said = element("output", { class: "mde-said" });
+  const said = element("output", { class: "mde-said", "aria-live": "off" });
   const key = element("label", { class: "mde-key" }, swatch, words, levels);
   const row = element("div", { class: "mde-row" }, key, said);
   const node = element("div", { hidden: true }, canvas, row);

@@ -2,7 +2,7 @@
 // dependencies; runs in JupyterLab (anywidget), in exported HTML (an iframe with this same text)
 // and in a bare page. `model` needs get, set, save_changes, on, off.
 
-import { CSS, clamp, element, listener, mix, readTheme, rgba } from "./dom.js";
+import { CSS, clamp, element, listener, mix, readTheme, redrawn, rgba } from "./dom.js";
 import { unpack } from "./figures.js";
 import { paintPanel, tense } from "./paint.js";
 import { feed, silentClock, soundClock } from "./clock.js";
@@ -25,7 +25,7 @@ export function mount(model, el, { fill = false } = {}) {
   });
   const play = element("button", { type: "button", class: "mde-play", "aria-label": "Play" });
   const scrub = element("input", { type: "range", min: "0", step: "1", "aria-label": "Frame" });
-  const shown = element("output", {});
+  const shown = element("output", { "aria-live": "off" }); // it changes with every frame
   const speeds = element(
     "select",
     { "aria-label": "Speed" },
@@ -141,7 +141,7 @@ export function mount(model, el, { fill = false } = {}) {
     clock = led ? silence() : soundClock(sound);
     clock.seek(frame / scene.fps);
     clock.rate(Number(speeds.value));
-    if (playing) clock.start();
+    if (playing) run();
   }
   function useSilentClock() {
     sounding = false;
@@ -353,6 +353,9 @@ export function mount(model, el, { fill = false } = {}) {
     if (detail.scene === model.get("scene")) setLed(true);
     else if (heard() && playing) setPlaying(false);
   });
+  listen(document, "mde-silence", ({ detail }) => {
+    if (detail.scene === model.get("scene")) setLed(false); // the view that sounded was closed
+  });
   listen(reset, "click", home);
   listen(follow, "change", () => setFollow(follow.checked));
   let grip = null;
@@ -405,14 +408,11 @@ export function mount(model, el, { fill = false } = {}) {
   model.on("change:frame", onFrame);
   model.on("change:playing", onPlaying);
   model.on("change:scene", onScene);
-  const sizes = new ResizeObserver(draw);
   const sights = new IntersectionObserver(([seen]) => {
     visible = seen.isIntersecting;
   });
-  const themes = new MutationObserver(draw);
-  sizes.observe(canvas);
+  redrawn(stop, canvas, draw);
   sights.observe(canvas);
-  themes.observe(document.body, { attributes: true });
 
   speeds.value = "1";
   load();
@@ -421,9 +421,13 @@ export function mount(model, el, { fill = false } = {}) {
   setPlaying(model.get("playing") || (scene.autoplay && !calm));
   return () => {
     stop.abort();
+    if (heard() && playing)
+      document.dispatchEvent(
+        new CustomEvent("mde-silence", { detail: { scene: model.get("scene") } }),
+      );
     unload();
     cancelAnimationFrame(ticking);
-    [sizes, sights, themes].forEach((o) => o.disconnect());
+    sights.disconnect();
     model.off("change:frame", onFrame);
     model.off("change:playing", onPlaying);
     model.off("change:scene", onScene);
