@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 
 from .._files import replacing
-from . import registry
+from . import recordings, registry
 from .aist import COCO, read_keypoints
 from .bvh.write import write_bvh
 from .checks import check_there
@@ -76,7 +76,7 @@ def read_motion(
             raise MotionError(f"{path.name} is no BVH file; `mapping` and `file_fps` are for BVH")
         read = partial(read, mapping=mapping, file_fps=file_fps)
     motion = read(path)
-    registry.files_read.add(path.absolute().resolve())
+    recordings.note_read(path)
     return motion
 
 

@@ -15,7 +15,7 @@ from pathlib import Path
 import numpy as np
 from jaxtyping import Bool, Float
 
-from . import registry
+from . import recordings, registry
 from .checks import checked_rate, is_number
 from .clip import Clip
 from .faults import WILD
@@ -295,21 +295,18 @@ class Motion:
     def save(self, path: str | Path, overwrite: bool = False) -> Path:
         """Write the motion to a file; the name's ending is .bvh, .npz, .mp4, .gif or .html.
 
-        An existing file is replaced, but for one that `read_motion` has read: a recording would be
-        lost. With `overwrite` it is replaced, too.
+        An existing file is replaced, but for a recording that `read_motion` has read, which would
+        be lost. With `overwrite` it is replaced, too.
 
         Raises MotionError for an unknown ending, with a list of the known ones, for a folder, and
-        for a file that was read; TypeError for what is no path.  Notebook: 00
+        for a recording; TypeError for what is no path.  Notebook: 00
         """
         path = checked_path(path)
-        write, place = registry.writers.get(check_ending(path)), path.absolute().resolve()
-        if place in registry.files_read and not overwrite:
-            raise MotionError(
-                f"{path} was read, and it would be lost: choose another name, or save it with "
-                "overwrite=True"
-            )
+        write = registry.writers.get(check_ending(path))
+        if not overwrite:
+            check_no_recording(path)
         write(self, path)
-        registry.files_read.discard(place)
+        recordings.note_written(path)
         return path
 
     def __repr__(self) -> str:
@@ -393,6 +390,15 @@ def checked_path(path: str | Path) -> Path:
     if path.is_dir():
         raise MotionError(f"{path} is a folder; give the name of a file in it")
     return path
+
+
+def check_no_recording(path: Path) -> None:
+    """Raise MotionError for a file that was read, and that this process did not write."""
+    if recordings.is_recording(path):
+        raise MotionError(
+            f"{path} was read, and it would be lost: choose another name, or save it with "
+            "overwrite=True"
+        )
 
 
 def check_ending(path: str | Path) -> str:

@@ -7,7 +7,6 @@ imported at the first use of the ending. So motion/ does not depend on the layer
 
 import importlib
 from collections.abc import Callable
-from pathlib import Path
 
 
 class Registry:
@@ -41,7 +40,6 @@ class Registry:
         return self._functions.get(name)
 
 
-files_read: set[Path] = set()  # by `read_motion`: `Motion.save` does not replace them
 readers = Registry()  # ".bvh" -> read(path) -> Motion
 writers = Registry()  # ".bvh" -> write(motion, path)
 shows = Registry()  # "player" -> show(motion) -> the MIME bundle of a notebook's output

@@ -19,8 +19,10 @@ from jaxtyping import Bool, Float
 from numpy.typing import ArrayLike
 
 from ..editing.edit import Edit, Made, Make, drag_in_words, make_between
+from ..motion import recordings
 from ..motion.bvh.fit import FitReport
 from ..motion.bvh.write import write_bvh
+from ..motion.motion import check_no_recording
 from ..motion.skeleton import JOINTS, J, joint_index
 from . import editor_page, packing
 from .editor_page import MODULE, MOST, complaint, listed
@@ -193,13 +195,19 @@ class Editor(anywidget.AnyWidget):
         """Return to the original motion, without pins; undo() brings the edit back."""
         return self._go(_Step(Edit(self.edit.motion)), "The edit is reset; Undo brings it back.")
 
-    def save(self, path: str | Path) -> FitReport:
+    def save(self, path: str | Path, overwrite: bool = False) -> FitReport:
         """Write the chosen in-between as BVH, or the motion with its pins if there is none yet.
 
         The file is written completely or not at all. Returns how far the constant-bone fit moved
-        the joints. Raises the errors of `write_bvh`.
+        the joints. Raises the errors of `write_bvh`, and MotionError for a recording that
+        `read_motion` has read, unless `overwrite`.
         """
-        return write_bvh(Path(path), self._shown(), self._fps)
+        path = Path(path)
+        if not overwrite:
+            check_no_recording(path)
+        report = write_bvh(path, self._shown(), self._fps)
+        recordings.note_written(path)
+        return report
 
     def _receive(self, _, content: dict, buffers) -> None:
         if content["do"] == "ping":  # the page only tests whether the kernel answers

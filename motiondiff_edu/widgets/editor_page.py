@@ -9,12 +9,14 @@ import html
 import io
 import json
 import re
+from itertools import count
 from pathlib import Path
 
 import numpy as np
 
 from ..editing.edit import KEPT, Edit, Made
 from ..editing.masks import body_part
+from ..motion import recordings
 from ..motion.skeleton import J, joint_index
 from ..viz import body
 from . import module, poster
@@ -115,9 +117,23 @@ def file_of(name: str) -> str:
     return stem + ending
 
 
+def free_name(path: Path) -> Path:
+    """The first of walk-2.bvh, walk-3.bvh ... that no file has."""
+    names = (path.with_stem(f"{path.stem}-{number}") for number in count(2))
+    return next(name for name in names if not name.exists())
+
+
 def save_as(editor, name: str) -> str:
-    """Save to the notebook's folder under a name typed on the page; return a message."""
+    """Save to the notebook's folder under a name typed on the page; return a message.
+
+    Raises ValueError for what is no name, and for that of a recording, with a name that is free.
+    """
     path = Path(file_of(name))
+    if recordings.is_recording(path):
+        raise ValueError(
+            f"not saved: {path} was read, and it would be lost. Type another name, for instance "
+            f"{free_name(path)}"
+        )
     there = path.exists()
     with contextlib.redirect_stdout(io.StringIO()):  # the page shows what `save` prints
         report = str(editor.save(path)).split(": ", 1)[1]

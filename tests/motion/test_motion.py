@@ -1,6 +1,7 @@
 """A Motion: what it takes and refuses, cutting and joining, its training view, and its files."""
 
 import json
+import os
 import zipfile
 from dataclasses import replace
 
@@ -13,6 +14,7 @@ from data_synth.walking import walk
 from data_synth.walking.write import main as write_walks
 from motiondiff_edu.motion.aist import AistError
 from motiondiff_edu.motion.bvh import BvhError, read_bvh
+from motiondiff_edu.motion.bvh.write import write_bvh
 from motiondiff_edu.motion.files import read_motion
 from motiondiff_edu.motion.motion import Motion, MotionError, MotionWarning
 from motiondiff_edu.motion.registry import Registry
@@ -241,6 +243,7 @@ def test_a_recording_that_was_read_is_not_replaced_by_what_was_read_of_it(tmp_pa
     path = tmp_path / "recording.bvh"
     walking().save(path)  # what was not read is replaced
     walking().save(path)
+    write_bvh(path, walking(30).positions)  # a recording, as by another program
     before = path.read_bytes()
     motion = read_motion(path)
     with pytest.raises(MotionError, match="recording.bvh was read, and it would be lost: choose"):
@@ -249,6 +252,21 @@ def test_a_recording_that_was_read_is_not_replaced_by_what_was_read_of_it(tmp_pa
     motion[:20].save(path, overwrite=True)
     motion[:10].save(path)  # now it is our own
     assert len(read_motion(path)) == 10
+
+
+def test_what_was_written_here_can_be_read_and_written_again(tmp_path):
+    path = tmp_path / "made.bvh"
+    for _ in range(2):  # as when all cells of a notebook are run a second time
+        walking().save(path)
+        assert len(read_motion(path)) == len(walking())
+    other = tmp_path / "other.bvh"
+    write_bvh(other, walking(30).positions)
+    os.replace(other, path)  # somebody else's, under the same name
+    again = read_motion(path)
+    with pytest.raises(MotionError, match="made.bvh was read"):
+        again.save(path)
+    again.save(path, overwrite=True)
+    read_motion(path).save(path)
 
 
 @pytest.mark.parametrize(

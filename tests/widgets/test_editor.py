@@ -11,6 +11,9 @@ from editor_page import guess, open_editor, settled
 from synthetic_walk import walk
 
 from motiondiff_edu.motion.bvh import read_bvh
+from motiondiff_edu.motion.bvh.write import write_bvh
+from motiondiff_edu.motion.files import read_motion
+from motiondiff_edu.motion.motion import MotionError
 from motiondiff_edu.motion.skeleton import BONES, JOINTS, joint_index
 from motiondiff_edu.viz.body import Camera, project
 from motiondiff_edu.widgets import packing
@@ -152,6 +155,27 @@ def test_a_retouched_pose_is_saved_before_anything_is_generated(motion, tmp_path
     np.testing.assert_allclose(hand, editor.positions[:, HAND], atol=0.02)  # bones are evened out
     assert hand[4, 1] > motion[4, HAND, 1] + 0.17
     assert ", which replaced an older file: " in receive(editor, do="save", name="retouched.bvh")
+
+
+def test_a_recording_that_was_read_is_not_replaced(motion, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    write_bvh("my walk.bvh", motion)
+    before = (tmp_path / "my walk.bvh").read_bytes()
+    editor = Editor(read_motion("my walk.bvh").positions, guess)
+    said = receive(editor, do="save", name="my walk", chosen=0)
+    assert said == (
+        "Not saved: my walk.bvh was read, and it would be lost. Type another name, for instance "
+        "my walk-2.bvh."
+    )
+    with pytest.raises(MotionError, match="my walk.bvh was read"):
+        editor.save("my walk.bvh")
+    assert (tmp_path / "my walk.bvh").read_bytes() == before
+    assert receive(editor, do="save", name="my walk-2").startswith("Saved")
+    read_motion("my walk-2.bvh")  # what the editor wrote, it may write again
+    assert receive(editor, do="save", name="my walk-2").startswith("Saved")
+    assert "for instance my walk-3.bvh." in receive(editor, do="save", name="my walk")
+    editor.save("my walk.bvh", overwrite=True)
+    editor.save("my walk.bvh")  # now it is our own
 
 
 @pytest.mark.parametrize(
