@@ -15,7 +15,7 @@ import motiondiff_edu as md
 from data_synth.music import compose
 from data_synth.walking import walk
 from motiondiff_edu.motion.motion import MotionWarning
-from motiondiff_edu.motion.skeleton import HIPS, TOES, joint_index
+from motiondiff_edu.motion.skeleton import HIPS, TOES, Skeleton, joint_index
 from motiondiff_edu.pretrained import shipped
 from motiondiff_edu.widgets import motions as shown
 from motiondiff_edu.widgets.player import Player
@@ -214,6 +214,20 @@ def test_play_shows_several_side_by_side(walked, tmp_path, capsys):
     figures = player.scene["figures"]
     assert [figure["frames"] for figure in figures] == [100, 40, 100]
     assert [figure["label"] for figure in figures] == ["a", "b", "c"]
+
+
+def test_contacts_are_not_drawn_at_the_joints_of_another_skeleton(walked):
+    contacts = np.ones((len(walked), 2), bool)
+    (ours,) = shown.player_of([replace(walked, contacts=contacts)]).scene["figures"]
+    few = md.Motion(
+        walked.positions[:, :5],
+        skeleton=Skeleton(tuple("abcde"), (-1, 0, 1, 2, 3)),
+        contacts=contacts,
+    )
+    (other,) = shown.player_of([few]).scene["figures"]
+    assert ours["contacts"] and not other["contacts"]
+    bundle, _ = few._repr_mimebundle_()
+    assert "image/png" in bundle
 
 
 def test_a_performer_says_which_other_one_can():

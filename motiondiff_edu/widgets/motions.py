@@ -22,6 +22,7 @@ from .player import Look, Player, Soundtrack
 def player_of(motions: Sequence[Motion], labels: Sequence[str] | None = None) -> Player:
     """Several motions side by side, at the frame rate of the first, with the first sound.
 
+    Contacts are shown on the course's skeleton alone, whose heels and toes they belong to.
     Raises MotionError for a missing joint, different skeletons, or a wrong number of labels.
     """
     first = motions[0]
@@ -39,14 +40,14 @@ def player_of(motions: Sequence[Motion], labels: Sequence[str] | None = None) ->
     sound = None
     if sounding.audio is not None:
         sound = Soundtrack(_as_long(sounding, longest), sample_rate=sounding.sample_rate)
-    parents = None if first.skeleton == COURSE else first.skeleton.parents
+    ours = first.skeleton == COURSE
     return Player(
         [motion.positions for motion in shown],
         fps=first.fps,
-        contacts=[motion.contacts for motion in shown],
+        contacts=[motion.contacts if ours else None for motion in shown],
         labels=_distinct_labels(shown) if labels is None else list(labels),
         audio=sound,
-        look=Look(parents=parents),
+        look=Look(parents=None if ours else list(first.skeleton.parents)),
     )
 
 
