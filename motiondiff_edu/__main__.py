@@ -14,6 +14,7 @@ its traceback (`_commands.expected`).
 
 import argparse
 import importlib
+import io
 import os
 import sys
 from contextlib import suppress
@@ -58,6 +59,9 @@ def parser_of(verbs: dict) -> argparse.ArgumentParser:
 
 def main(arguments: list[str] | None = None) -> int:
     """Run one verb; returns the exit status, also where Ctrl-C or a closed pipe ends it."""
+    if isinstance(sys.stdout, io.TextIOWrapper) and sys.stdout.errors == "strict":
+        # the name of a file that is no UTF-8 is printed with the bytes that it has
+        sys.stdout.reconfigure(errors="surrogateescape")
     try:
         return _run(arguments)
     except KeyboardInterrupt:

@@ -318,6 +318,28 @@ def test_a_folder_that_cannot_be_written_is_told_before_the_work(folder, capsys,
     assert "my_walk.bvh is a file, not a folder" in said and "reading" not in said
 
 
+def test_a_drive_that_does_not_exist_is_told(folder, capsys, monkeypatch):
+    monkeypatch.setattr(outputs.Path, "exists", lambda path: path == Path("my_walk.bvh"))
+    assert run(*WALK[:-1], "elsewhere/more.bvh") == 1
+    assert f"there is no {folder.anchor}; choose another place" in capsys.readouterr().err
+
+
+def test_the_name_of_a_file_need_not_be_utf_8(folder):
+    name, page = b"M\xfcller.bvh", b"M\xfcller.html"  # from an archive of an older system
+    try:
+        os.rename("my_walk.bvh", name)
+    except OSError:
+        pytest.skip("this system takes no such name")
+    words = [sys.executable, "-m", "motiondiff_edu", "convert", name, page]
+    strict = os.environ | {"PYTHONPATH": os.pathsep.join(sys.path)}
+    strict |= {"PYTHONIOENCODING": "utf-8:strict"}
+    done = subprocess.run(words, env=strict, capture_output=True)
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.startswith(b"M\xfcller.html: 2.5 s")
+    with open(page, encoding="utf-8") as file:
+        assert "M?ller" in file.read()
+
+
 def test_ctrl_c_and_a_closed_pipe_end_any_verb_quietly(monkeypatch, capsys):
     for error, status in ((KeyboardInterrupt(), 130), (BrokenPipeError(), 1)):
 

@@ -83,7 +83,10 @@ def output_paths(
 
 def _check_folder(out: Path) -> None:
     """Raise ValueError unless the file's folder is there, or can be made, and can be written to."""
-    there = next(folder for folder in out.absolute().parents if folder.exists())
+    above = out.absolute().parents
+    there = next((folder for folder in above if folder.exists()), None)
+    if there is None:  # a drive of Windows that is not there
+        raise ValueError(f"{out}: there is no {above[-1]}; choose another place")
     if not there.is_dir():
         raise ValueError(f"{out}: {there} is a file, not a folder; choose another place")
     if not os.access(there, os.W_OK | os.X_OK):

@@ -66,7 +66,7 @@ class Motion:
         values = {
             "fps": fps,
             "positions": _positions(self.positions, self.skeleton),
-            "source": "" if self.source is None else str(self.source),
+            "source": "" if self.source is None else _writable(str(self.source)),
             "sample_rate": _whole(self.sample_rate),
         }
         T = len(values["positions"])
@@ -450,6 +450,11 @@ def _per_frame(values, name: str, shape: tuple[int, int], dtype: type) -> np.nda
         what = f"has shape {array.shape}" if array.shape != shape else "has NaN or infinite values"
         raise MotionError(f"{name} {what}; it must be {shape}, a row for each frame")
     return array
+
+
+def _writable(text: str) -> str:
+    """The text with ? for what UTF-8 cannot write: a byte of a file's name that is not UTF-8."""
+    return text.encode("utf-8", "replace").decode("utf-8")
 
 
 def _whole(sample_rate: object) -> int:
