@@ -57,6 +57,17 @@ def parser_of(verbs: dict) -> argparse.ArgumentParser:
     return parser
 
 
+def imported() -> tuple[dict, dict]:
+    """The modules of the verbs, and the errors of those that cannot be imported."""
+    verbs, broken = {}, {}
+    for name, module in VERBS.items():
+        try:
+            verbs[name] = importlib.import_module(f"motiondiff_edu.{module}")
+        except ImportError as error:
+            broken[name] = error
+    return verbs, broken
+
+
 def main(arguments: list[str] | None = None) -> int:
     """Run one verb; returns the exit status, also where Ctrl-C or a closed pipe ends it."""
     if isinstance(sys.stdout, io.TextIOWrapper) and sys.stdout.errors == "strict":
@@ -75,9 +86,11 @@ def main(arguments: list[str] | None = None) -> int:
 
 
 def _run(arguments: list[str] | None) -> int:
-    verbs = {
-        name: importlib.import_module(f"motiondiff_edu.{module}") for name, module in VERBS.items()
-    }
+    verbs, broken = imported()
+    asked = (sys.argv[1:] if arguments is None else arguments)[:1]
+    for error in (broken[name] for name in asked if name in broken):
+        print(_commands.message(error), file=sys.stderr)
+        return 1
     parser = parser_of(verbs)
     chosen, further = parser.parse_known_args(arguments)
     if chosen.verb is None:

@@ -6,7 +6,6 @@ import shutil
 import tempfile
 from pathlib import Path
 
-from . import prepared
 from .jupyter import open_lab
 from .places import find, notebook_folder
 
@@ -46,6 +45,8 @@ def run(chosen: argparse.Namespace) -> int:
 
 def prepare(notebook: Path, jupyter_data: Path) -> None:
     """Put the outputs of a run into the copy. A notebook that fails is opened as it is."""
+    from . import prepared  # its packages may be missing, and the other verbs do without them
+
     try:
         run = prepared.prepared(notebook, notebook.parent)
     except prepared.PreparationError as error:

@@ -9,6 +9,7 @@ from pathlib import Path
 
 import pytest
 
+from motiondiff_edu import __main__ as command
 from motiondiff_edu.course import doctor
 from motiondiff_edu.course.doctor import Finding
 
@@ -125,6 +126,26 @@ def test_doctor_still_speaks_where_torch_cannot_be_imported():
     assert answer.returncode == 1 and answer.stdout.startswith("ok    python")
     assert compute.startswith("FAIL  compute") and "-> python -m pip install" in compute
     assert "ok    notebooks" in compute and "Failures: 1" in compute
+
+
+@pytest.mark.parametrize("package", ["nbclient", "nbformat", "platformdirs", "tqdm"])
+def test_doctor_and_lab_need_no_package_of_the_demo(package):
+    code = (
+        f"import sys; sys.modules[{package!r}] = None; sys.argv = ['motiondiff_edu', 'doctor']; "
+        "from motiondiff_edu import __main__ as command; from motiondiff_edu.course import doctor; "
+        "doctor.main.__defaults__ = ((doctor.python,),); verbs, broken = command.imported(); "
+        "print(sorted(verbs) == sorted(command.VERBS), broken); sys.exit(command.main())"
+    )
+    answer = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
+    assert answer.returncode == 0 and answer.stdout.startswith("True {}\nok    python")
+
+
+def test_a_verb_that_cannot_be_imported_is_said_and_leaves_the_others(monkeypatch, capsys):
+    monkeypatch.setitem(sys.modules, "motiondiff_edu.course.demo", None)
+    assert command.main(["demo", "07"]) == 1
+    assert "motiondiff_edu.course.demo" in capsys.readouterr().err
+    monkeypatch.setattr(doctor.main, "__defaults__", ((doctor.python,),))
+    assert command.main(["doctor"]) == 0
 
 
 def test_writing_is_tried_where_lab_puts_the_copies(monkeypatch, tmp_path):
