@@ -12,12 +12,13 @@ from pathlib import Path
 import nbformat
 import platformdirs
 from nbclient import NotebookClient
-from nbclient.exceptions import CellExecutionError
+from nbclient.exceptions import CellExecutionError, CellTimeoutError, DeadKernelError
 from nbformat.sign import NotebookNotary
 from tqdm import tqdm
 
 from .._files import replacing
 from .places import PACKAGE
+from .profiles import profile
 
 WIDGET = "application/vnd.jupyter.widget-view+json"
 FOLDED = {"imports", "setup", "solution", "twin"}  # tags of cells whose code a demo folds
@@ -28,13 +29,13 @@ KERNEL_NOTE = "<p><em>Controls that need a running kernel: Run, Run All Cells.</
 
 
 class PreparationError(RuntimeError):
-    """The notebook stopped with an error; the message has it."""
+    """The notebook did not run to its end; the message says why."""
 
 
 def prepared(path: Path, folder: Path) -> nbformat.NotebookNode:
     """The notebook of `path`, run in `folder`, with outputs that need no kernel.
 
-    Raises PreparationError for a notebook that stops with an error.
+    Raises PreparationError for a notebook that does not run to its end.
     """
     file = kept(path)
     if file.is_file():
@@ -67,10 +68,11 @@ def cache() -> Path:
 
 
 def digest(path: Path) -> str:
-    """A checksum of the notebook, and of all code and weights that it can use."""
-    found = hashlib.sha256(path.read_bytes())
+    """A checksum of the notebook, its profile, and all code and weights that it can use."""
+    found = hashlib.sha256(path.read_bytes() + profile().encode())
     data_synth = PACKAGE.parent / "data_synth"
-    for source in sorted([*PACKAGE.rglob("*.py"), *data_synth.rglob("*.py")]):
+    scripts = (PACKAGE / "widgets").rglob("*.js")  # their text is in the outputs
+    for source in sorted([*PACKAGE.rglob("*.py"), *scripts, *data_synth.rglob("*.py")]):
         found.update(source.read_bytes())
     for weights in sorted((PACKAGE / "pretrained").glob("*.json")):
         found.update(weights.read_bytes())
@@ -95,6 +97,10 @@ def executed(
             return client.execute(env=environment)
         except CellExecutionError as error:
             raise PreparationError(f"{name} stopped with {error.ename}: {error.evalue}") from error
+        except CellTimeoutError as error:
+            raise PreparationError(f"a cell of {name} took more than {SECONDS} s") from error
+        except DeadKernelError as error:
+            raise PreparationError(f"the kernel of {name} died") from error
 
 
 def still(cell: nbformat.NotebookNode) -> None:

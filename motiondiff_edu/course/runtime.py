@@ -1,7 +1,5 @@
 """The settings of a notebook's run: profile, seed, device and threads.
 
-Only this file reads MOTIONDIFF_PROFILE.
-
 A notebook's first code cell calls `run = runtime.start(notebook="03", seed=0)`; later ones use
 `run.fast`, `run.generator` and `run.pick(400, 20_000)`.
 """
@@ -9,32 +7,16 @@ A notebook's first code cell calls `run = runtime.start(notebook="03", seed=0)`;
 import os
 import random
 from dataclasses import dataclass
-from typing import Literal, TypeVar
+from typing import TypeVar
 
 import numpy as np
 import torch
 
-Profile = Literal["fast", "full"]
+from .profiles import Profile, ProfileError, profile
+
+__all__ = ["Profile", "ProfileError", "Run", "demo", "device", "profile", "start", "threads"]
+
 Choice = TypeVar("Choice")
-
-
-class ProfileError(ValueError):
-    """MOTIONDIFF_PROFILE is set to a word that is no profile."""
-
-
-def profile() -> Profile:
-    """The chosen profile: `fast` (the default) or `full`.
-
-    `full` means longer trainings, more clips, and a GPU where there is one.
-
-    Raises ProfileError when the environment variable MOTIONDIFF_PROFILE has another value.
-    """
-    word = os.environ.get("MOTIONDIFF_PROFILE", "fast").strip().lower() or "fast"
-    if word not in ("fast", "full"):
-        raise ProfileError(
-            f"MOTIONDIFF_PROFILE is {word!r}; set it to 'fast' or 'full', or leave it out for fast"
-        )
-    return word
 
 
 def demo() -> bool:

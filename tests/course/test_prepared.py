@@ -100,6 +100,21 @@ def test_changed_code_of_the_package_counts_as_another_notebook(place, monkeypat
     assert prepared.digest(place) != before
 
 
+def test_a_changed_player_and_another_profile_count_as_well(place, monkeypatch, tmp_path):
+    write(place, cell("x = 1"))
+    monkeypatch.delenv("MOTIONDIFF_PROFILE", raising=False)
+    monkeypatch.setattr(prepared, "PACKAGE", tmp_path / "package")
+    (tmp_path / "package" / "widgets" / "js").mkdir(parents=True)
+    found = [prepared.digest(place)]
+    (tmp_path / "package" / "widgets" / "js" / "player.js").write_text("export const speed = 1;")
+    found.append(prepared.digest(place))
+    monkeypatch.setenv("MOTIONDIFF_PROFILE", "full")
+    found.append(prepared.digest(place))
+    assert len(set(found)) == 3
+    monkeypatch.setenv("MOTIONDIFF_PROFILE", "fast")
+    assert prepared.digest(place) == found[1]
+
+
 def test_an_error_is_told_in_words_and_the_notebook_opens_as_it_is(place, capsys, tmp_path):
     write(place, cell("1 / 0"))
     before = place.read_bytes()
@@ -107,6 +122,24 @@ def test_an_error_is_told_in_words_and_the_notebook_opens_as_it_is(place, capsys
         prepared.prepared(place, place.parent)
     demo.prepare(place, tmp_path / "jupyter")
     assert "It opens without outputs" in capsys.readouterr().out and place.read_bytes() == before
+
+
+@pytest.mark.parametrize(
+    "source, told",
+    [
+        ("import os\nos._exit(9)", "the kernel of 07_shown died"),
+        ("import time\ntime.sleep(60)", "a cell of 07_shown took more than 5 s"),
+    ],
+)
+def test_a_kernel_that_dies_or_hangs_leaves_the_notebook_as_it_is(
+    source, told, place, capsys, tmp_path, monkeypatch
+):
+    monkeypatch.setattr(prepared, "SECONDS", 5)
+    write(place, cell(source))
+    before = place.read_bytes()
+    demo.prepare(place, tmp_path / "jupyter")
+    assert f"{told}. It opens without outputs." in capsys.readouterr().out
+    assert place.read_bytes() == before
 
 
 def test_where_nothing_can_be_kept_it_is_shown_all_the_same(place, monkeypatch, capsys):
