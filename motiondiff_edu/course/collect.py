@@ -118,18 +118,22 @@ def tried(notebook: Path, todo: list[dict], seconds: int, gigabytes: float) -> l
     """(result, message) of each answer, from `trial` in another process and an empty folder."""
     given = {"answers": todo, "seconds": seconds, "gigabytes": gigabytes}
     with tempfile.TemporaryDirectory(prefix="motiondiff_collect_") as folder:
+        empty, results = Path(folder) / "empty", Path(folder) / "results.json"
+        empty.mkdir()
+        command = [sys.executable, "-m", "motiondiff_edu.course.trial", str(notebook.resolve())]
         done = subprocess.run(
-            [sys.executable, "-m", "motiondiff_edu.course.trial", str(notebook.resolve())],
+            [*command, str(results)],
             input=json.dumps(given),
-            capture_output=True,
+            stdout=subprocess.DEVNULL,  # whatever runs there may write to it
+            stderr=subprocess.PIPE,
             text=True,
-            cwd=folder,
+            cwd=empty,
             env=os.environ | {"OMP_NUM_THREADS": "1", "MPLBACKEND": "Agg"},
         )
-    if done.returncode:
-        last = (done.stderr.strip().splitlines() or ["it ended without a word"])[-1]
-        raise CollectError(f"{notebook.name} cannot be prepared: {last}")
-    return json.loads(done.stdout)
+        if done.returncode:
+            last = (done.stderr.strip().splitlines() or ["it ended without a word"])[-1]
+            raise CollectError(f"{notebook.name} cannot be prepared: {last}")
+        return json.loads(results.read_text(encoding="utf-8"))
 
 
 def table(rows: list[dict]) -> str:

@@ -1,6 +1,6 @@
 """Run answers to the exercises of one notebook, each in a process of its own with limits.
 
-    python -m motiondiff_edu.course.trial NOTEBOOK < answers.json > results.json
+    python -m motiondiff_edu.course.trial NOTEBOOK results.json < answers.json
 
 The notebook's own cells prepare the names once; every answer then runs in a fork of that process,
 which may take so many seconds and so much more memory. This keeps one answer's mistakes away from
@@ -15,11 +15,14 @@ import re
 import resource
 import signal
 import sys
+import tempfile
 import warnings
 from pathlib import Path
 
 from . import answers
 from .answers import DIED, FAILED, OPEN, RIGHT, SLOW, WRONG
+
+LONGEST = 500  # characters of a message: a table shows its beginning
 
 
 def tried(source: str, check: str, namespace: dict) -> tuple[str, str]:
@@ -50,24 +53,39 @@ def _named(error: BaseException) -> str:
 
 def apart(source: str, check: str, namespace: dict, seconds: int, gigabytes: float):
     """`tried` in a fork with limits; (status, message)."""
-    reading, writing = os.pipe()
-    child = os.fork()
-    if child == 0:
-        os.close(reading)
-        _limit(seconds, gigabytes)
-        with contextlib.suppress(BaseException):
-            result = json.dumps(tried(source, check, namespace)).encode()
-            os.write(writing, result[:60_000])
-        os._exit(0)
-    os.close(writing)
-    with os.fdopen(reading, "rb") as pipe:
-        answer = pipe.read()
-    _, status = os.waitpid(child, 0)
+    # a file: a pipe would stay open in a process that the answer started and left behind
+    with tempfile.TemporaryFile() as result:
+        child = os.fork()
+        if child == 0:
+            _silence()
+            _limit(seconds, gigabytes)
+            here = os.getpid()
+            with contextlib.suppress(BaseException):
+                status, words = tried(source, check, namespace)
+                if os.getpid() == here:  # and no fork that the answer made
+                    os.write(result.fileno(), json.dumps([status, _short(words)]).encode())
+            os._exit(0)
+        _, status = os.waitpid(child, 0)
+        result.seek(0)
+        answer = result.read()
     if answer:
         return tuple(json.loads(answer))
     if os.WIFSIGNALED(status) and os.WTERMSIG(status) in (signal.SIGALRM, signal.SIGXCPU):
         return SLOW, f"stopped after {seconds} s"
     return DIED, "the process ended: out of memory, or the interpreter crashed"
+
+
+def _short(words: str) -> str:
+    """The beginning of a message, with ? for what UTF-8 cannot write."""
+    cut = words if len(words) <= LONGEST else words[:LONGEST] + " ..."
+    return cut.encode("utf-8", "replace").decode("utf-8")
+
+
+def _silence() -> None:
+    """What the answer's own processes, or C code, write to the terminal goes nowhere."""
+    nowhere = os.open(os.devnull, os.O_WRONLY)
+    os.dup2(nowhere, 1)
+    os.dup2(nowhere, 2)
 
 
 def _limit(seconds: int, gigabytes: float) -> None:
@@ -82,7 +100,7 @@ def _limit(seconds: int, gigabytes: float) -> None:
 
 
 def main() -> None:
-    """Answers from standard input, results to standard output, as JSON."""
+    """Answers from standard input, results to a file, as JSON."""
     given = json.load(sys.stdin)
     namespace: dict = {"__name__": "notebook"}
     with contextlib.redirect_stdout(io.StringIO()), warnings.catch_warnings():
@@ -91,7 +109,7 @@ def main() -> None:
             exec(compile(source, "preparation", "exec"), namespace)
     limits = given["seconds"], given["gigabytes"]
     results = [apart(one["source"], one["check"], namespace, *limits) for one in given["answers"]]
-    json.dump(results, sys.stdout)
+    Path(sys.argv[2]).write_text(json.dumps(results), encoding="utf-8")
 
 
 if __name__ == "__main__":

@@ -23,6 +23,11 @@ LOOP = RIGHT.replace("return 1", "while True:\n        pass\n    return 1")
 HOG = RIGHT.replace("return 1", "x = torch.ones(10**12)\n    return 1")
 CRASH = RIGHT.replace("return 1", "import os\n    os._exit(3)\n    return 1")
 LEAVE = RIGHT.replace("return 1", "raise SystemExit\n    return 1")
+LONG = RIGHT.replace("return 1", "raise ValueError('\\udcff' + 'x' * 70_000)\n    return 1")
+SHOUT = RIGHT.replace("return 1", "import os; os.system('echo done; echo dead >&2')\n    return 1")
+LINGER = RIGHT.replace(
+    "return 1", "import os, time\n    if not os.fork():\n        time.sleep(15)\n    return 1"
+)
 BROKEN = "def my_constant_beta(S, left:\n    return 1\nchecks.constant_beta(my_constant_beta)"
 
 
@@ -33,7 +38,7 @@ def handed_in(tmp_path_factory):
     own = notebook_cells.NOTEBOOKS / "student" / NAME
     changes = {
         "ada": RIGHT, "bo": WRONG, "cy": WRONG, "di": LOOP, "ed": HOG, "fu": CRASH, "gil": LEAVE,
-        "ha": BROKEN, "io": None,
+        "ha": BROKEN, "io": None, "mo": LONG, "nic": SHOUT, "oz": LINGER,
     }  # fmt: skip
     for who, source in changes.items():
         notebook = json.loads(own.read_text())
@@ -82,14 +87,18 @@ def test_each_answer_gets_its_result(collected):
     assert of(rows, "ha")[0] == "failed" and "SyntaxError" in of(rows, "ha")[1]
     assert of(rows, "io") == ("not attempted", "")
     assert of(rows, "jo")[0] == "unreadable" and NAME in of(rows, "jo")[1]
+    result, message = of(rows, "mo")
+    assert result == "wrong" and "ValueError" in message and "?xxx" in message
+    assert len(message) < 600
+    assert of(rows, "nic") == of(rows, "oz") == ("right", "")
     assert of(rows, "kit") == ("not attempted", "its cell is gone")
 
 
 def test_one_bad_answer_does_not_touch_the_others(collected):
     _, rows = collected
-    for who in ("ada", "di", "ed", "fu", "io"):
+    for who in ("ada", "di", "ed", "fu", "io", "mo", "nic"):
         assert of(rows, who, "q_sample") == ("not attempted", "")
-    assert len(rows) == 12 * 3
+    assert len(rows) == 15 * 3
 
 
 def test_the_table_and_the_commonest_mistakes(collected):
