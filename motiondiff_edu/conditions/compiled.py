@@ -2,9 +2,9 @@
 
 librosa compiles its beat tracker by numba when it is first used, and numba keeps the result in
 files. Two processes that write these at the same time leave halves that do not fit together, and
-whoever reads them from then on dies (numba issue 10128). Two notebooks that are run at once would do
-that, so a process waits here while another one compiles: `from ...conditions.compiled import
-librosa`.
+whoever reads them from then on dies (numba issue 10128). Two notebooks that are run at once would
+do that, so a process waits here while another one compiles:
+`from ...conditions.compiled import librosa`.
 Notebook: 11
 """
 

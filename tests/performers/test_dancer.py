@@ -18,7 +18,7 @@ from motiondiff_edu.mofusion import MoFusion, MoFusionConfig
 from motiondiff_edu.motion.dance_frame import to_positions
 from motiondiff_edu.motion.scaler import Scaler
 from motiondiff_edu.performers import with_bar
-from motiondiff_edu.performers.dancer import Dancer
+from motiondiff_edu.performers.dancer import ETA, Dancer
 from motiondiff_edu.prediction import to_eps
 from motiondiff_edu.pretrained.checkpoints import (
     CheckpointError,
@@ -105,7 +105,7 @@ def test_a_dance_is_the_sampler_on_the_plain_network_in_its_own_units(steps):
     if steps is None:
         loop = ddpm.sample_steps(denoise, x_S, one.schedule, generator=random, variance="posterior")
     else:
-        loop = ddpm.ddim_steps(denoise, x_S, one.schedule, steps, 0.5, generator=random)
+        loop = ddpm.ddim_steps(denoise, x_S, one.schedule, steps, ETA, generator=random)
     *_, last = loop
     wanted = to_positions(motion.mean + motion.std * last.x_s)
     torch.testing.assert_close(made, wanted, atol=2e-4, rtol=1e-3)

@@ -122,7 +122,8 @@ def test_with_activity_calm_motions_are_moved_less_and_lively_ones_no_more(dance
     plain, calm = dancer.model.shown(x, known), lively.shown(x / 100, known)
     assert torch.equal(plain.scale, Shown.of(x, known).scale) and (dancer.config.activity is False)
     assert (calm.scale < 0.2 * plain.scale)[~known].all()
-    free, limited, ones = model.shown(x, known), lively.shown(x, known), torch.ones_like(x)
+    free, limited = model.shown(x, known), lively.shown(x, known)
+    ones = torch.ones_like(x)
     assert torch.equal(limited.scale, free.scale) and (free.scale > plain.scale)[~known].all()
     torch.testing.assert_close(limited.whole(ones), plain.whole(ones))
     assert (free.whole(ones) > plain.whole(ones))[~known].all(), "training has no limit"
