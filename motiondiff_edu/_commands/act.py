@@ -10,6 +10,7 @@ EXAMPLE = 'act "walks forward, then waves with the left hand" --seconds 6 --out 
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments of `act`."""
     parser.add_argument("text", help="the sentence, in quotes")
     parser.add_argument(
         "--seconds",
@@ -30,6 +31,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> None:
+    """Make the motions, and write them."""
     paths = outputs.output_paths(args.out, args.overwrite, args.samples)
     from .. import load
 

@@ -11,6 +11,7 @@ EXAMPLE = "convert my_walk.bvh my_walk.mp4"
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments of `convert`."""
     parser.add_argument("file", type=Path, help="a motion: .bvh, .npz, .npy or .pkl")
     parser.add_argument("out", type=Path, help=f"the file to write: {outputs.endings()}")
     parser.add_argument(
@@ -29,6 +30,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> None:
+    """Write the motion in the other format."""
     mapping = _mapping(args.joints)
     paths = outputs.output_paths(args.out, args.overwrite, source=args.file)
     outputs.write_all(outputs.read(args.file, mapping, args.file_fps), paths)

@@ -13,6 +13,7 @@ EXAMPLE = "dance song.ogg --seconds 20 --out dance.bvh"
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments of `dance`."""
     parser.add_argument("song", type=Path, help="a sound file")
     parser.add_argument(
         "--seconds",
@@ -32,6 +33,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> None:
+    """Make the dances, and write them."""
     paths = outputs.output_paths(args.out, args.overwrite, args.samples)
     if args.seconds is not None:
         checked_seconds(args.seconds)

@@ -12,6 +12,7 @@ EXAMPLE = 'edit my_walk.bvh "walks forward while clapping" --keep "lower body" -
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments of `edit`."""
     parser.add_argument("file", type=Path, help="a motion of 2 to 10 s: .bvh, .npz, .npy or .pkl")
     parser.add_argument("text", help="the sentence, in quotes")
     parser.add_argument(
@@ -33,6 +34,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> None:
+    """Edit the motion, and write the results."""
     paths = outputs.output_paths(args.out, args.overwrite, args.samples, args.file)
     motion = outputs.read(args.file)
     from .. import edit

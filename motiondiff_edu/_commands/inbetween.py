@@ -12,6 +12,7 @@ EXAMPLE = "inbetween my_walk.bvh --every 20 --samples 3 --out made.bvh"
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments of `inbetween`."""
     parser.add_argument("file", type=Path, help="a motion: .bvh, .npz, .npy or .pkl")
     parser.add_argument(
         "--every", type=int, default=20, metavar="N", help="a keyframe every N frames (default: 20)"
@@ -21,6 +22,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> None:
+    """Fill in between the keyframes, and write the results."""
     paths = outputs.output_paths(args.out, args.overwrite, args.samples, args.file)
     every = checked_count(args.every, "--every")
     motion = outputs.read(args.file)

@@ -11,6 +11,7 @@ EXAMPLE = "info my_walk.bvh"
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments of `info`."""
     parser.add_argument("file", type=Path, nargs="+", help="motions: .bvh, .npz, .npy or .pkl")
 
 

@@ -11,6 +11,7 @@ EXAMPLE = "play my_walk.bvh more.bvh"
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments of `play`."""
     parser.add_argument("file", type=Path, nargs="+", help="motions: .bvh, .npz, .npy or .pkl")
     parser.add_argument("--out", type=Path, metavar="PAGE.html", help="where to save the page")
     parser.add_argument("--no-open", action="store_true", help="do not open the browser")
@@ -18,6 +19,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> None:
+    """Show the motion in a browser."""
     if args.out is not None:
         if args.out.suffix.lower() != ".html":
             raise ValueError(f"--out {args.out}: the page's name must end in .html")

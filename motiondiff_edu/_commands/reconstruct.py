@@ -16,6 +16,7 @@ EXAMPLE = (
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments of `reconstruct`."""
     parser.add_argument("file", type=Path, help="a motion: .bvh, .npz, .npy or .pkl")
     parser.add_argument(
         "--missing",
@@ -34,6 +35,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> None:
+    """Make the missing joints, and write the results."""
     frames = spans(args.frames)
     if args.frames and not args.missing:
         raise ValueError("--frames needs --missing, which names the joints")

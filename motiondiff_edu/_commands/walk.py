@@ -13,6 +13,7 @@ EXAMPLE = 'walk my_walk.bvh --control "3s 1.2; 4s 1.0 turn 0.6" --out more.bvh'
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments of `walk`."""
     parser.add_argument("file", type=Path, help="the walk to continue: .bvh, .npz, .npy or .pkl")
     parser.add_argument(
         "--control", required=True, metavar="SEGMENTS", help='for example "3s 1.2; 4s 1.0 turn 0.6"'
@@ -23,6 +24,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> None:
+    """Continue the walk, and write the results."""
     segments = control_words.parse(args.control)
     paths = outputs.output_paths(args.out, args.overwrite, args.samples, args.file)
     motion = outputs.read(args.file)

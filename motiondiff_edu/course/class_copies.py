@@ -13,6 +13,7 @@ EXAMPLE = "handout week_1 --only 00 01"
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments of `handout`."""
     parser.add_argument("folder", type=Path, metavar="FOLDER", help="a new or an empty folder")
     parser.add_argument("--solutions", action="store_true", help="keep the folded solutions")
     parser.add_argument(

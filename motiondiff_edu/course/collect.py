@@ -27,6 +27,7 @@ class CollectError(ValueError):
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments of `collect`."""
     parser.description = (
         "Run the exercises of many students' copies. FOLDER has a folder for each student, with "
         "copies of the notebooks in it (deeper folders are looked into, too). Every answer runs "
@@ -172,6 +173,7 @@ def mistakes(rows: list[dict], most: int = 12) -> str:
 
 
 def as_csv(rows: list[dict]) -> str:
+    """The results as a table, a row for each exercise of each student."""
     text = io.StringIO()
     fields = ("student", "notebook", "exercise", "result", "message")
     writer = csv.DictWriter(text, fields, lineterminator="\n")

@@ -22,6 +22,7 @@ SETTINGS = {
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments of `demo`."""
     parser.add_argument("number", metavar="NB", help="the notebook's number, 07 for instance")
     parser.add_argument(
         "--unrun", action="store_true", help="open it at once, before any cell was run"

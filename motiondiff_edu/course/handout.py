@@ -68,6 +68,7 @@ def read_record(mine: Path) -> dict[str, str]:
 
 
 def write_record(mine: Path, record: dict[str, str]) -> None:
+    """Write what was handed out: the digest of each notebook."""
     with replacing(mine / RECORD) as aside:
         aside.write_text(json.dumps(record, indent=1, sort_keys=True) + "\n", encoding="utf-8")
 
@@ -88,6 +89,7 @@ def written_in(mine: Path) -> Iterator[None]:
 
 
 def put(path: Path, content: bytes) -> None:
+    """Write a file whole, or not at all."""
     with replacing(path) as aside:
         aside.write_bytes(content)
 

@@ -13,6 +13,7 @@ PASSES_OPTIONS_ON = "JupyterLab"
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments of `lab`."""
     parser.add_argument(
         "--fresh",
         metavar="NB",

@@ -67,6 +67,7 @@ def drawn_keyframes(T: int, generator: torch.Generator) -> list[int]:
 
 
 def chance(generator: torch.Generator, *shape: int) -> Tensor:
+    """Numbers drawn evenly between 0 and 1."""
     return torch.rand(shape, generator=generator)
 
 

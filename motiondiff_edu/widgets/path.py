@@ -14,7 +14,7 @@ import traitlets
 from jaxtyping import Float
 from numpy.typing import ArrayLike
 
-from ..conditions import control as walks
+from ..conditions import drawn_path
 from ..viz.skeleton import top_view
 from .start import Starting
 from .still import with_still
@@ -39,7 +39,7 @@ class PathPad(Starting):
     speed = traitlets.Float(1.2, min=0.3, max=3.0).tag(sync=True)
     seconds = traitlets.Float(0.0).tag(sync=True)  # duration of the walk; 0 without a path
     preset = traitlets.Unicode("").tag(sync=True)
-    presets = traitlets.List(list(walks.PRESETS)).tag(sync=True)
+    presets = traitlets.List(list(drawn_path.PRESETS)).tag(sync=True)
     height = traitlets.Int(460).tag(sync=True)
 
     def __init__(
@@ -79,16 +79,17 @@ class PathPad(Starting):
 
     @traitlets.validate("preset")
     def _known_preset(self, proposal):
-        if proposal["value"] and proposal["value"] not in walks.PRESETS:
+        if proposal["value"] and proposal["value"] not in drawn_path.PRESETS:
             raise traitlets.TraitError(
-                f"no path is called {proposal['value']!r}; use one of {', '.join(walks.PRESETS)}"
+                f"no path is called {proposal['value']!r}; use one of "
+                f"{', '.join(drawn_path.PRESETS)}"
             )
         return proposal["value"]
 
     @traitlets.observe("preset")
     def _take_preset(self, change):
         if change["new"]:
-            points, stops = walks.preset(change["new"])
+            points, stops = drawn_path.preset(change["new"])
             with self.hold_trait_notifications():
                 self.stops, self.line = stops, points.round(4).tolist()
 
@@ -104,7 +105,7 @@ class PathPad(Starting):
 
         See `path_to_control`.
         """
-        return walks.path_to_control(self.points, self.speed, fps, self.stops)
+        return drawn_path.path_to_control(self.points, self.speed, fps, self.stops)
 
     def on_change(self, callback: Callable[["PathPad"], object]) -> None:
         """Call `callback(pad)` once after each change of path, stops, speed or several of them."""

@@ -5,7 +5,7 @@ import pytest
 import traitlets
 from browser import SPOKEN, bare_page, ink, open_page
 
-from motiondiff_edu.conditions.control import PRESETS, path_to_control, preset
+from motiondiff_edu.conditions.drawn_path import PRESETS, path_to_control, preset
 from motiondiff_edu.motion.root_frame import root_path
 from motiondiff_edu.widgets.path import PathPad
 
