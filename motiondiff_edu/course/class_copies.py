@@ -1,12 +1,12 @@
 """`motiondiff-edu handout FOLDER`: the notebooks for a class, without solutions."""
 
 import argparse
-import json
 from pathlib import Path
 
-from .._files import replacing
-from .handout import shipped
-from .places import FolderError, notebook_folder
+from .edition import chosen as chosen_edition
+from .edition import write_edition
+from .handout import hand_out, written_in
+from .places import FolderError, notebook_folder, program
 
 HELP = "write the notebooks for a class into a folder, without solutions"
 EXAMPLE = "handout week_1 --only 00 01"
@@ -26,35 +26,13 @@ def run(chosen: argparse.Namespace) -> int:
     folder = chosen.folder
     if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
         raise FolderError(f"{folder} is not empty: name a new folder, so that nothing is lost")
-    wanted = {number.zfill(2) for number in chosen.only}
-    files = shipped(notebook_folder())
-    there = {name[:2] for name in files if name.endswith(".ipynb")}
-    if not wanted <= there:
-        raise FolderError(
-            f"no notebook {', '.join(sorted(wanted - there))}; there are: "
-            f"{', '.join(sorted(there))}"
-        )
-    written = []
-    for name, content in files.items():
-        if name.endswith(".ipynb"):
-            if wanted and name[:2] not in wanted:
-                continue
-            content = content if chosen.solutions else without_solutions(content)
-            written.append(name)
-        path = folder / name
-        path.parent.mkdir(parents=True, exist_ok=True)
-        with replacing(path) as part:
-            part.write_bytes(content)
+    edition = chosen_edition(notebook_folder(), chosen.only, chosen.solutions)
+    with written_in(folder):
+        write_edition(folder, edition)
+    hand_out(notebook_folder(), folder)
+    count = len(list(folder.glob("*.ipynb")))
     kind = "with" if chosen.solutions else "without"
-    count = f"{len(written)} notebook{'s' * (len(written) > 1)}"
-    print(f"{count} {kind} solutions, and the pages they link to, in {folder}")
+    notebooks = f"{count} notebook{'s' * (count > 1)}"
+    print(f"{notebooks} {kind} solutions, and the pages they link to, in {folder}")
+    print(f"Students open them by: {program()} lab --folder {folder.name}")
     return 0
-
-
-def without_solutions(content: bytes) -> bytes:
-    """A notebook of the student edition without its cells of solutions; hints stay."""
-    notebook = json.loads(content)
-    notebook["cells"] = [
-        cell for cell in notebook["cells"] if not cell.get("id", "").endswith("-solution")
-    ]
-    return (json.dumps(notebook, indent=1, ensure_ascii=False, sort_keys=True) + "\n").encode()

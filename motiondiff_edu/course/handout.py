@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from .._files import replacing
+from .edition import edition_of
 from .places import FolderError, program
 
 RECORD = ".lab/handed_out.json"
@@ -98,12 +99,13 @@ def hand_out(notebooks: Path, mine: Path) -> Handout:
     """Bring the copies in `mine` up to date, and say which old ones were kept.
 
     A missing copy is made. An old copy that is unchanged is replaced, or removed when the course no
-    longer has it. A changed copy, or one of unknown origin, stays as it is.
-    Raises FolderError when the folder is not writable.
+    longer has it. A changed copy, or one of unknown origin, stays as it is. The folder of a class
+    (`edition.py`) gets its notebooks alone, and no solutions where it has none.
+    Raises FolderError when the folder is not writable, or the record of its class is damaged.
     """
     record = read_record(mine)
     renewed, kept = [], []
-    now = shipped(notebooks)
+    now = edition_of(mine).of(shipped(notebooks))
     with written_in(mine):
         for name, content in now.items():
             path, new = mine / name, digest(name, content)
@@ -130,7 +132,7 @@ def make_fresh(notebooks: Path, mine: Path, name: str) -> Path | None:
 
     Raises FolderError when the folder is not writable.
     """
-    content, path = shipped(notebooks)[name], mine / name
+    content, path = edition_of(mine).of(shipped(notebooks))[name], mine / name
     aside = None
     new = digest(name, content)
     with written_in(mine):

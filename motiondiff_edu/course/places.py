@@ -1,6 +1,7 @@
 """Where the notebooks are and where a student's copies go, in a checkout and from a wheel."""
 
 import os
+import shlex
 import sys
 from pathlib import Path
 
@@ -68,7 +69,9 @@ def command_for_lab() -> str:
     return "make lab" if by_make else f"{program()} lab"
 
 
-def command_for_fresh(number: str) -> str:
-    """The command for a fresh copy of one notebook, with make or without."""
+def command_for_fresh(number: str, folder: Path | None = None) -> str:
+    """The command for a fresh copy of one notebook, with make or without; `folder` as typed."""
+    if folder is not None:
+        return f"{program()} lab --fresh {number} --folder {shlex.quote(str(folder))}"
     by_make = in_checkout() and "MAKELEVEL" in os.environ
     return f"make lab FRESH={number}" if by_make else f"{program()} lab --fresh {number}"

@@ -1,12 +1,14 @@
 """`motiondiff-edu handout`: the notebooks of a class, and nothing overwritten."""
 
 import json
+import shutil
 
 import pytest
 
 from motiondiff_edu import __main__ as command
-from motiondiff_edu.course import places
+from motiondiff_edu.course import jupyter, places
 from motiondiff_edu.course.answers import exercises
+from motiondiff_edu.course.handout import digest
 
 
 def test_the_class_gets_exercises_and_hints_and_no_solution(tmp_path, capsys):
@@ -19,7 +21,8 @@ def test_the_class_gets_exercises_and_hints_and_no_solution(tmp_path, capsys):
         assert "<summary>Solution" not in text and "<summary>Hint" in text
         assert exercises(copy) == exercises(original)
     assert (tmp_path / "class" / "docs" / "NOTATION.md").is_file()
-    assert f"{len(copies)} notebooks without solutions" in capsys.readouterr().out
+    told = capsys.readouterr().out
+    assert f"{len(copies)} notebooks without solutions" in told and "lab --folder class" in told
 
 
 def test_some_notebooks_with_solutions(tmp_path):
@@ -47,5 +50,58 @@ def test_what_is_there_stays(tmp_path, capsys, there):
 
 def test_a_number_that_is_no_notebook_is_answered_with_those_that_are(tmp_path, capsys):
     assert command.main(["handout", str(tmp_path / "class"), "--only", "02", "77"]) == 1
-    assert "no notebook 77; there are: 00, 01" in capsys.readouterr().err
+    message = capsys.readouterr().err
+    assert "no notebook 77" in message and "there are: 00, 01" in message
     assert not (tmp_path / "class").exists()
+
+
+@pytest.fixture
+def opened(monkeypatch):
+    """Instead of starting JupyterLab: the notebooks that were opened."""
+    seen = []
+    monkeypatch.setattr(jupyter, "serve", lambda arguments, _: seen.append(arguments) or 0)
+    return seen
+
+
+def test_a_students_lab_leaves_the_folder_of_a_class_as_it_is(tmp_path, capsys, opened):
+    """It shows neither solutions nor notebooks that are for later, also in a fresh copy."""
+    assert command.main(["handout", str(tmp_path / "week"), "--only", "03", "02"]) == 0
+    mine = tmp_path / "at home"
+    shutil.copytree(tmp_path / "week", mine)
+    first = next(mine.glob("02*.ipynb"))
+    filled = json.loads(first.read_text())
+    filled["cells"][0]["source"] = "my answer"
+    first.write_text(json.dumps(filled))
+    before = {path: path.read_bytes() for path in mine.glob("*.ipynb")}
+    assert command.main(["lab", "--folder", str(mine)]) == 0
+    assert f"--LabApp.default_url=/lab/tree/{first.name}" in opened[0]
+    assert {path: path.read_bytes() for path in mine.glob("*.ipynb")} == before
+    capsys.readouterr()
+    assert command.main(["lab", "--folder", str(mine), "--fresh", "2"]) == 0
+    assert "<summary>Solution" not in first.read_text() and "my answer" not in first.read_text()
+    assert len(list(mine.glob("*.ipynb"))) == 3  # both of the class, and the one filled in
+    assert command.main(["lab", "07", "--folder", str(mine)]) == 1
+    assert "no notebook 07 in this class's copies; there are: 02, 03" in capsys.readouterr().err
+
+
+def test_a_new_edition_reaches_an_unchanged_copy_without_its_solutions(tmp_path, opened):
+    mine = tmp_path / "week"
+    assert command.main(["handout", str(mine), "--only", "02"]) == 0
+    path, record = next(mine.glob("02*.ipynb")), mine / ".lab" / "handed_out.json"
+    new = path.read_bytes()
+    old = json.loads(new) | {"cells": []}
+    path.write_text(json.dumps(old))
+    handed_out = json.loads(record.read_text()) | {path.name: digest(path.name, path.read_bytes())}
+    record.write_text(json.dumps(handed_out))
+    assert command.main(["lab", "--folder", str(mine)]) == 0 and path.read_bytes() == new
+
+
+@pytest.mark.parametrize("text", ["", "[]", "{}", '{"notebooks": [2], "solutions": false}'])
+def test_a_damaged_record_of_the_class_is_said_and_nothing_is_added(tmp_path, capsys, text, opened):
+    mine = tmp_path / "week"
+    assert command.main(["handout", str(mine), "--only", "02"]) == 0
+    (mine / ".lab" / "class.json").write_text(text)
+    assert command.main(["lab", "--folder", str(mine)]) == 1 and not opened
+    message = capsys.readouterr().err
+    assert "class.json" in message and "Ask for a new copy" in message
+    assert len(list(mine.glob("*.ipynb"))) == 1
