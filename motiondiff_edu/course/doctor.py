@@ -163,13 +163,21 @@ def canvas() -> Finding:
             "open the address that lab prints in a browser elsewhere",
             note=True,
         )
-    from ..widgets.motions import has_a_screen
+    from ..widgets.browsers import has_a_screen, shut_in
 
     if not has_a_screen():
         return Finding(
             "canvas",
             "there is no display here, so no browser can open a window",
             "open the address that lab prints in a browser elsewhere",
+            note=True,
+        )
+    if shut_in():
+        return Finding(
+            "canvas",
+            f"{shut_in()} is a snap, which cannot open files in /tmp or in hidden folders",
+            "keep the course in a folder whose path has no hidden part; pages of md.play go to "
+            "your home folder, and other users of this computer can read the address of your lab",
             note=True,
         )
     return Finding(

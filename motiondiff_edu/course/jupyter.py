@@ -6,6 +6,8 @@ import subprocess
 import sys
 from pathlib import Path
 
+from ..widgets.browsers import shut_in
+
 # defaults of the course: JupyterLab does not ask about news; a student's own settings come first
 CONFIG = Path(__file__).parent / "jupyter_config"
 PATIENCE = 15  # seconds: Jupyter gives its kernels 5 to end by themselves
@@ -28,6 +30,9 @@ def open_lab(
     if hasattr(os, "geteuid") and os.geteuid() == 0:
         # in a container the user is root, and JupyterLab refuses that by default
         command.append("--allow-root")
+    if shut_in() and not any("use_redirect_file" in option for option in options):
+        # Jupyter would hide the address with its token in a file that a snap cannot open
+        command.append("--ServerApp.use_redirect_file=False")
     theirs = os.environ.get("JUPYTER_CONFIG_PATH")
     config = os.pathsep.join([str(CONFIG)] + ([theirs] if theirs else []))
     print(f"opening {notebook.name} in {notebook.parent} (stop with Ctrl-C)", flush=True)

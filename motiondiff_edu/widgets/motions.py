@@ -16,6 +16,7 @@ from jaxtyping import Float
 from ..motion import registry
 from ..motion.motion import Motion, MotionError, as_motion
 from ..motion.skeleton import COURSE
+from .browsers import folder_for_pages, has_a_screen
 from .player import Look, Player, Soundtrack
 
 
@@ -76,7 +77,8 @@ def play(
 ) -> Path | None:
     """Show motions side by side: in a notebook as a player, elsewhere as a page in the browser.
 
-    path       where to write the page (default: a temporary file); it is printed and returned
+    path       where to write the page (default: a temporary file, or one in your home folder if
+               your browser cannot read those); it is printed and returned
     open_page  False writes the page without opening the browser
     Raises MotionError as `player_of` does, TypeError for anything but a Motion.
     """
@@ -98,7 +100,8 @@ def play(
         display(player)
         return None
     if path is None:
-        handle, name = tempfile.mkstemp(prefix="motiondiff_", suffix=".html")
+        folder = folder_for_pages()
+        handle, name = tempfile.mkstemp(prefix="motiondiff_", suffix=".html", dir=folder)
         os.close(handle)
         path = name
     page = player.save_html(Path(path).expanduser()).resolve()
@@ -112,13 +115,6 @@ def _in_a_notebook() -> bool:
     """Whether this process shows its outputs in a notebook."""
     shell = sys.modules["IPython"].get_ipython() if "IPython" in sys.modules else None
     return shell is not None and hasattr(shell, "kernel")
-
-
-def has_a_screen() -> bool:
-    """Whether a browser can open a window; a text browser would block the terminal."""
-    if os.environ.get("BROWSER") or sys.platform in ("win32", "darwin"):
-        return True
-    return bool(os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"))
 
 
 @registry.shows.register("player")
