@@ -34,7 +34,7 @@ from ..performers.text_mofusion import Texts
 from ..training import LossFn
 from .mofusion_loss import batch_loss, weighted_loss
 from .movers import MoverRecipe
-from .train_recipe import Provenance, mean_loss, train_recipe
+from .train_recipe import Provenance, final_loss, train_recipe
 
 WARMUP = 300  # steps
 
@@ -164,7 +164,7 @@ def train_mover(
         card["recipe"]["plan_steps"] = recipe.plan_steps
         card["planner"] = further
         card["minutes"] = round(card["minutes"] + further["minutes"], 1)
-        card["final_loss"] = round(mean_loss(loss_fn, trained), 6)
+        card["final_loss"] = final_loss(both, loss_fn, trained)
     return Mover(trained, schedule, windows.scaler, card, clip)
 
 

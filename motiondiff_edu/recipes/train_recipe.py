@@ -84,7 +84,7 @@ def train_recipe(
         "minutes": round(state.seconds / 60, 1),
         "sittings": sittings,
         "data": provenance.data,
-        "final_loss": round(mean_loss(loss_fn, state.average), 6),
+        "final_loss": final_loss(recipe, loss_fn, state.average),
     }  # `make results` adds what it measures
     return state.average.cpu().eval(), card
 
@@ -108,8 +108,13 @@ def run_to_end(
             log(f"{recipe.name} {report.step}/{recipe.steps}: loss {mean:.5f}, {minutes:.1f} min")
 
 
+def final_loss(recipe: AnyRecipe, loss_fn: LossFn, network: nn.Module) -> float:
+    """The mean loss over 50 batches, or over as many as a shorter training had."""
+    return round(mean_loss(loss_fn, network, min(50, recipe.steps)), 6)
+
+
 @torch.no_grad()
-def mean_loss(loss_fn: LossFn, network: nn.Module, batches: int = 50) -> float:
+def mean_loss(loss_fn: LossFn, network: nn.Module, batches: int) -> float:
     """The mean loss of a network over `batches`, which are drawn with seed 1."""
     generator = torch.Generator().manual_seed(1)
     return float(np.mean([loss_fn(network, generator).item() for _ in range(batches)]))
