@@ -5,7 +5,7 @@ import json
 import pytest
 
 from tools.results.dances import tables
-from tools.results.dances.budget import RIVALS, VARIANTS
+from tools.results.dances.budget import DANCES, RIVALS, VARIANTS
 from tools.results.page import claims
 from tools.results.page.claims import AGREES, CLAIMS, DIFFERS, MISSING, OPEN, Claim
 from tools.results.page.render import render
@@ -123,7 +123,7 @@ def test_the_page_marks_what_is_stored(tmp_path):
     page = (tmp_path / "RESULTS.md").read_text()
     (line,) = [line for line in page.splitlines() if line.startswith("| `v`: target v")]
     assert (
-        "| stored, 77 steps |" in line
+        "| stored, 77 steps, on the old dances |" in line
         and "-0.15 [-0.2, -0.1]" in line
         and line.count("0.4 [0.2, 0.6]") == len(tables.SHOWN)
     )
@@ -133,3 +133,18 @@ def test_the_page_marks_what_is_stored(tmp_path):
     (tmp_path / "results" / "attention.png").touch()
     render(tmp_path, tmp_path / "bench")
     assert "](results/attention.png)" in (tmp_path / "RESULTS.md").read_text()
+
+
+@pytest.mark.parametrize(("dances", "old"), [(1, True), (DANCES, False), (None, True)])
+def test_a_row_and_a_claim_of_earlier_dances_say_so(dances, old):
+    about = {"trained_steps": 77} | ({"dances": dances} if dances else {})
+    kinds = (*tables.SHOWN, "bas_share_minus_x0")
+    rows = [record(f"dance-budget.mfcc.{kind}", 0.02, 0.04, **about) for kind in kinds]
+    records = {one["name"]: one for one in rows}
+    page = tables.choices(records)
+    assert ("Rows *on the old dances*" in page) == old
+    assert ("| stored, 77 steps, on the old dances |" in page) == old
+    assert ("| stored, 77 steps |" in page) != old
+    told = claims.claims(records)
+    assert told.count("*(tested on the old dances)*") == 2 * old
+    assert f"**{AGREES}** (1)" in told

@@ -6,7 +6,7 @@ Sections of docs/RESULTS.md.
 from motiondiff_edu.performers.dancer import ETA, STEPS
 
 from ..page.markdown import cell, number, table
-from .budget import FULL, VARIANTS
+from .budget import FULL, VARIANTS, on_old_dances
 from .floor import FLOOR
 from .guided import WEIGHTS
 from .timing import BASE, TIMED
@@ -192,11 +192,10 @@ def choices(records: dict[str, dict]) -> str:
             f"dance-budget.{name}.{kind}"
             for kind in (*SHOWN, f"bas_share_minus_{base}", f"bone_gain_over_{base}")
         ]
-        said = (
-            f"stored, {records[mine[0]]['seeds']['trained_steps']} steps"
-            if mine[0] in records
-            else "not measured yet"
-        )
+        said = "not measured yet"
+        if mine[0] in records:
+            said = f"stored, {records[mine[0]]['seeds']['trained_steps']} steps"
+            said += ", on the old dances" * on_old_dances(records[mine[0]])
         beside = f"`{base}`" if base else "-"
         rows.append(
             [f"`{name}`: {words}", beside, *(cell(records.get(n), unit=False) for n in mine), said]
@@ -211,6 +210,12 @@ def choices(records: dict[str, dict]) -> str:
         "what a choice is worth in the end. `make results FULL=1` trains them again; "
         "`make results` keeps what is stored.\n\n"
     )
+    if any(on_old_dances(one) for one in records.values()):
+        text += (
+            "Rows *on the old dances* were trained and measured on earlier dances of `data_synth`, "
+            "which hardly travelled or turned, and on songs without rooms, noise and swing: "
+            "compare them with each other alone.\n\n"
+        )
     return text + table(head, rows) + _times(records)
 
 

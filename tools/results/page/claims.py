@@ -9,6 +9,7 @@ measure: then its interval counts as well.
 
 from dataclasses import dataclass
 
+from ..dances.budget import on_old_dances
 from .markdown import cell, number, table
 
 AGREES = "agrees"
@@ -239,17 +240,23 @@ def claims(records: dict[str, dict]) -> str:
     """The claims that agree and those that do not; then, folded, a line for each claim."""
     judged = [(claim, claim.verdict(records)) for claim in CLAIMS]
     rows = [
-        [one.words, one.where, f"**{said}**", _measured(one, records), one.rule]
+        [_said(one, records), one.where, f"**{said}**", _measured(one, records), one.rule]
         for one, said in judged
     ]
     judgements = table(["claim", "MoFusion", "verdict here", "measured", "limit"], rows)
     sums = [
         f"* **{said}** ({len(of)}): {'; '.join(of) or 'none'}"
         for said in (AGREES, DIFFERS, OPEN, MISSING)
-        for of in [[claim.words for claim, found in judged if found == said]]
+        for of in [[_said(claim, records) for claim, found in judged if found == said]]
     ]
     fold = f"<details><summary>Each claim with its measures</summary>\n\n{judgements}\n</details>\n"
     return TEXT + "\n".join(sums) + "\n\n" + fold
+
+
+def _said(claim: Claim, records: dict[str, dict]) -> str:
+    """The claim, and whether it was tested on earlier data."""
+    old = claim.measure in records and on_old_dances(records[claim.measure])
+    return claim.words + " *(tested on the old dances)*" * old
 
 
 def _measured(claim: Claim, records: dict[str, dict]) -> str:
