@@ -1,9 +1,10 @@
-"""A continuation that goes on from the motion that it continues, without a jump.
+"""A continuation that goes on from the motion that it continues, with its body and without a jump.
 
 A walker that gets a pose unlike its training begins with one that it knows: a joint may move by
 half a metre from the last given frame to the first new one. Then the first half second takes over
-pose and speed of the given motion, and a warning says so. Continuations that do not jump stay as
-they are.
+pose and speed of the given motion, and a warning says so. In every continuation bones keep the
+lengths of the given motion, and standing feet stay where they stand: a network's joints are free
+points, and its feet slide.
 """
 
 from dataclasses import dataclass
@@ -13,7 +14,8 @@ from jaxtyping import Float
 from torch import Tensor
 
 from ..beyond.above_floor import feet_above_floor
-from ..beyond.foot_lock import FADE, steady_feet
+from ..beyond.constant_bones import given_lengths, steady_bones
+from ..beyond.foot_lock import steady_feet
 from ..beyond.inertialize import SECONDS, inertialized
 from ..conditions.control import splice
 from ..metrics.seams import AROUND, seam_over_motion
@@ -77,13 +79,12 @@ def joined(
 
     whole = placed(new)
     jump = seam_over_motion(whole, k) if 2 <= k < len(whole) - 1 else 0.0
-    if jump <= JUMP:
-        return whole[k:], jump
+    if jump > JUMP:
+        whole = placed(inertialized(start.past, new, FPS))
     known = np.zeros((len(whole), J), bool)
     known[:k] = True
-    known[k + round(SECONDS * FPS) + FADE :] = True
-    whole = steady_feet(placed(inertialized(start.past, new, FPS)), known)
-    return feet_above_floor(whole, known)[k:], jump
+    whole = steady_bones(whole, known, given_lengths(whole, known))
+    return feet_above_floor(steady_feet(whole, known), known)[k:], jump
 
 
 def unlike_training(scaler: Scaler, past: Float[Tensor, "T_h D"]) -> dict[str, float]:

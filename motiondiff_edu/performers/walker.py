@@ -80,7 +80,8 @@ class Walker(Performer):
         """Continue a motion along a control.
 
         The result has only the new frames. It begins one frame after the given motion, in the same
-        world; `motion.then(more)` joins the two.
+        world; `motion.then(more)` joins the two. Its bones are as long as the given ones, and feet
+        that stand do not slide (`performers/joined.py`; `rollout.generate` has the network's own).
 
         control  forward m/s, left m/s, turning rad/s; 20 rows a second
         seconds  cut the control to this length, or hold its last row (default: keep its length)
@@ -88,7 +89,7 @@ class Walker(Performer):
         steps    of DDIM, or None for DDPM with all steps, and noise of variance beta_s
         Raises MotionError for a motion that cannot be continued, ValueError for numbers out of
         range. Warns where the control goes beyond the training data, and where the poses to
-        continue do: then the first half second is blended (`performers/joined.py`).
+        continue do: then the first half second is blended.
         Source: MoDiff Alg. 2.  Notebook: 00
         """
         as_motion(motion).check_whole()

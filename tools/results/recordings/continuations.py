@@ -2,7 +2,7 @@
 
 Windows of six seconds from files of several collections: two seconds are given, and the walker goes
 on for four as fast as the person went in the last second. Once as `Walker.walk` does it, once
-without its blending.
+as the network has it: without blending, steady bones and held feet.
 """
 
 import warnings
@@ -63,7 +63,7 @@ class Continued:
 
 
 def continued(walker: Walker, window: Window) -> tuple[Continued, Continued]:
-    """As `Walker.walk` has it, and the same sample without the blending."""
+    """As `Walker.walk` has it, and the same sample as the network has it."""
     T_h = walker.config.T_h
     start = Start.of(window.given, window.control, T_h)
     past, steer = start.past.reshape(T_h, -1), start.control
@@ -111,7 +111,7 @@ def measures_of(rows: dict[str, np.ndarray], sources: list[str]) -> list[Measure
 
 
 def recorded_records(walker: Walker, weights: str, size: RecordedSize, command: str) -> list[dict]:
-    """The measures of continuations, blended (`real.`) and not (`real.unblended.`)."""
+    """The measures of continuations, joined (`real.`) and not (`real.unblended.`)."""
     found: dict[str, list] = {"real.": [], "real.unblended.": []}
     sources = []
     with warnings.catch_warnings():

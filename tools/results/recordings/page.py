@@ -3,7 +3,7 @@
 from ..page.markdown import cell, number, table
 from .trainings import VARIANTS
 
-STARTS = {"as shipped": "real.", "without blending": "real.unblended."}  # beginnings of the names
+STARTS = {"as shipped": "real.", "as the network has it": "real.unblended."}  # beginnings of the names
 ROWS = {
     "seam_over_motion": "the fastest joint at the seam, over the fastest within a second (median)",
     "seam_p95_over_motion": "the same (95th percentile)",
@@ -132,7 +132,7 @@ def trainings_table(records: dict[str, dict]) -> str:
 
 
 def continued(records: dict[str, dict]) -> str:
-    """Continuations of recordings, as shipped and without blending."""
+    """Continuations of recordings, as shipped and as the network has them."""
     share = records.get("real.blended_share")
     if share is None:
         return "Continuations of recordings are not measured yet.\n"
@@ -142,8 +142,10 @@ def continued(records: dict[str, dict]) -> str:
         "seconds, at the speed of their last second: walks, dances, martial arts, climbing, "
         "washing. It was trained on synthetic walks alone. Where the first new frame jumps, which "
         f"is in {number(100 * share['value'])} % of the windows, the first half second takes over "
-        "pose and speed of the recording (`beyond/inertialize.py`), and a warning says so. A leg "
-        "that must get from a kneeling pose to a walk slides on the way.\n\n"
+        "pose and speed of the recording (`beyond/inertialize.py`), and a warning says so. In all of "
+        "them bones keep the recording's lengths (`beyond/constant_bones.py`), and feet that stand "
+        "are held (`beyond/foot_lock.py`). A leg that must get from a kneeling pose to a walk "
+        "still slides on the way.\n\n"
     )
     persons = (
         "\nStyle is trunk lean, step width, arm swing and cadence (`metrics/gait_style.py`): of "
