@@ -24,25 +24,30 @@ FLOOR = 5  # percentile of a toe's height
 
 
 def steady_feet(
-    positions: Float[np.ndarray, "*B T 21 3"], known: Bool[np.ndarray, "T 21"], fps: float = 20.0
+    positions: Float[np.ndarray, "*B T 21 3"],
+    known: Bool[np.ndarray, "T 21"],
+    fps: float = 20.0,
+    farthest: float = np.inf,
 ) -> Float[np.ndarray, "*B T 21 3"]:
     """Move legs that are not known (metres, world) so that feet do not slide; bones keep lengths.
 
     A stand is a run of frames in which a toe is low and slow. During a stand the toe stays at its
     median place, or where it is given. Between stands the correction is interpolated smoothly; it
     is zero where the foot is given. An ankle out of the leg's reach slides as little as possible.
+    A toe that slides farther than `farthest` metres from its place does not stand, but glides: it
+    is left alone, since a held foot would drag its leg out behind the body.
     """
     every = np.array(positions, np.float64).reshape(-1, *positions.shape[-3:])
     for moved in every:
         for toe, heel in zip(TOES, HEELS, strict=True):
-            _steady_leg(moved, known, toe, heel, fps)
+            _steady_leg(moved, known, toe, heel, fps, farthest)
     return np.where(known[..., None], positions, every.reshape(positions.shape))
 
 
-def _steady_leg(moved, known, toe: int, heel: int, fps: float) -> None:
+def _steady_leg(moved, known, toe: int, heel: int, fps: float, farthest: float) -> None:
     """Correct one leg in place; the foot keeps its direction."""
     free = free_legs(known, heel, toe)
-    shift = to_stands(moved[:, toe], ~free, fps, slow_for(moved, fps))
+    shift = to_stands(moved[:, toe], ~free, fps, slow_for(moved, fps), farthest)
     at = free & shift.any(1)
     moved[at] = ankles_dragged(moved[at], heel, moved[at, heel] + shift[at])
 
@@ -66,6 +71,7 @@ def to_stands(
     given: Bool[np.ndarray, " T"],
     fps: float,
     slow: float | Float[np.ndarray, " T"] = SLOW,
+    farthest: float = np.inf,
 ) -> Float[np.ndarray, "T 3"]:
     """The shift that stops a toe from sliding while it stands; zero where the toe is given."""
     shift = np.zeros_like(toe)
@@ -79,9 +85,12 @@ def to_stands(
             )
         else:
             pin = np.median(toe[first:last], axis=0)
-        pull = 1 - closeness(given & ((frames < first) | (frames >= last)))[first:last]
         # only the horizontal movement is stopped; the foot still rolls up and down
-        shift[first:last] = pull[:, None] * (pin - toe[first:last]) * GROUND
+        back = (pin - toe[first:last]) * GROUND
+        if np.linalg.norm(back, axis=-1).max() > farthest:
+            continue
+        pull = 1 - closeness(given & ((frames < first) | (frames >= last)))[first:last]
+        shift[first:last] = pull[:, None] * back
         anchored[first:last] = True
     return between_anchors(shift, anchored)
 

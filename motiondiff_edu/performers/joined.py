@@ -25,6 +25,7 @@ from ..motion.scaler import Scaler
 from ..motion.skeleton import JOINTS, J
 
 JUMP = 1.1  # times the fastest joint of the second before and after: faster is a jump at the seam
+GLIDE = 0.2  # m: a foot that goes farther than this from its place is not held there
 # standard deviations of the training, over the coordinates of a joint; no frame of 120 unseen
 # synthetic walks is as far (at most 4.64)
 UNLIKE = 5.0
@@ -84,7 +85,8 @@ def joined(
     known = np.zeros((len(whole), J), bool)
     known[:k] = True
     whole = steady_bones(whole, known, given_lengths(whole, known))
-    return feet_above_floor(steady_feet(whole, known), known)[k:], jump
+    whole = steady_feet(whole, known, FPS, farthest=GLIDE)
+    return feet_above_floor(whole, known)[k:], jump
 
 
 def unlike_training(scaler: Scaler, past: Float[Tensor, "T_h D"]) -> dict[str, float]:

@@ -128,3 +128,12 @@ def test_a_standing_foot_is_slower_than_a_fast_pelvis():
         toe[:, 2] = speed / 20 * np.arange(30)
         assert stands(toe, 20.0, limit).all() == standing
         assert not stands(toe, 20.0).any()
+
+
+@pytest.mark.parametrize(("length", "held"), [(0.3, True), (0.5, False)])
+def test_a_foot_that_glides_far_is_left_alone(length, held):
+    """From its median place, in the middle, it goes half of the length away."""
+    toe = np.zeros((20, 3))
+    toe[:, 0] = np.linspace(0, length, 20)
+    moved = toe + to_stands(toe, np.zeros(20, bool), 20.0, farthest=0.2)
+    assert np.allclose(moved[:, 0], length / 2) == held and np.array_equal(moved, toe) != held
