@@ -19,7 +19,7 @@ from motiondiff_edu.performers.dance_windows import DanceWindows
 from motiondiff_edu.performers.networks import network
 from motiondiff_edu.performers.windows import Windows
 from motiondiff_edu.recipes import train_dancer, train_walker
-from motiondiff_edu.recipes.dancers import DANCER, DANCER_PLAIN, DanceLossWeights
+from motiondiff_edu.recipes.dancers import DANCER, DANCER_PLAIN, X0, DanceLossWeights
 from motiondiff_edu.recipes.walkers import MEND_DROPOUT, WALKER_EPS, WALKER_TRUNK, Recipe
 
 T_H, T_P = 4, 3
@@ -97,21 +97,22 @@ def dances(music: bool = True) -> DanceWindows:
 
 
 SMALL = dict(C=5, S=50, widths=(16, 24), heads=2, music_layers=1)
+WITHOUT_EAR = {"config": replace(X0, **SMALL), "ear": None, "no_music": 0.0}
 EPS = replace(
     DANCER,
-    config=replace(DANCER.config, **SMALL, target="eps", skip=True),
+    **WITHOUT_EAR | {"config": replace(X0, **SMALL | {"target": "eps", "skip": True})},
     kinematic=KinematicWeights(40.0, 5.0, 0.7, 0.3, "snr"),
     loss_weights=DanceLossWeights(changes=5.0, high_noise=20.0),
     gain_noise=0.0,
 )
 DANCED_WITH = {
     "dancer": (
-        replace(DANCER, config=replace(DANCER.config, **SMALL)),
+        replace(DANCER, **WITHOUT_EAR),
         [18.793155670166016, 19.05510711669922, 15.613136291503906],
         0.8946988582611084,
     ),
     "dancer-plain": (
-        replace(DANCER_PLAIN, config=replace(DANCER.config, **SMALL)),
+        replace(DANCER_PLAIN, **WITHOUT_EAR),
         [17.623079299926758, 18.480873107910156, 14.08358097076416],
         0.8946988582611084,
     ),
@@ -121,7 +122,7 @@ DANCED_WITH = {
         0.5583015084266663,
     ),
     "unconditional": (
-        replace(DANCER, config=replace(DANCER.config, **SMALL | {"C": 0})),
+        replace(DANCER, **WITHOUT_EAR | {"config": replace(X0, **SMALL | {"C": 0})}),
         [12.835821151733398, 13.1132230758667, 10.85567855834961],
         0.8946988582611084,
     ),
