@@ -4,10 +4,13 @@
 w = 1 is the conditional network, as in the papers. A larger w follows a text or a song more
 closely; the result is no sample of the conditional any more. In training, some conditions are left
 out, so that one network is both. It costs two evaluations at every step.
+A dancer is guided only while the noise is strong (`where_noisy`): there the stops are put on the
+beat. Later, guidance would exaggerate what is fine, and feet would slide.
 A mover that plans guides the timeline first. Where the text of the motion is left out, its timeline
 stays, in training too, so for the motion a larger w stresses what the timeline does not say.
 Gain: docs/RESULTS.md, `dancer.guided.*` for music, `words.guided.*` for texts.
-Source: Ho and Salimans, 2022. Ours; MoFusion has no guidance.
+Source: Ho and Salimans, 2022; only at some steps: Kynkäänniemi and others, 2024. Ours; MoFusion has
+no guidance.
 Notebook: 12, 16
 """
 
@@ -17,7 +20,7 @@ import torch
 from jaxtyping import Bool
 from torch import Tensor
 
-from ..ddpm import Denoiser
+from ..ddpm import Denoiser, Schedule
 from ..mofusion import Music
 
 
@@ -36,3 +39,21 @@ def guided_by_condition(conditional: Denoiser, unconditional: Denoiser, w: float
     if w == 1:
         return conditional
     return lambda x_s, s: (1 - w) * unconditional(x_s, s) + w * conditional(x_s, s)
+
+
+def where_noisy(noisy: Denoiser, rest: Denoiser, schedule: Schedule, most: float) -> Denoiser:
+    """`noisy` while alpha_bar, the share of the signal, is at most `most`, and then `rest`.
+
+    Samples of a batch may be at different steps.
+    """
+
+    def denoise(x_s, s):
+        strong = (schedule.alpha_bar.to(s.device)[s] <= most).expand(len(x_s))
+        if strong.all():
+            return noisy(x_s, s)
+        if not strong.any():
+            return rest(x_s, s)
+        each = strong.view(-1, *[1] * (x_s.dim() - 1))
+        return torch.where(each, noisy(x_s, s), rest(x_s, s))
+
+    return denoise

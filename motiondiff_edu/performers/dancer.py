@@ -15,7 +15,7 @@ from torch import Tensor, nn
 
 from ..beyond.activity import USED_AT_MOST
 from ..beyond.around_lines import Shown
-from ..beyond.classifier_free import guided_by_condition, without
+from ..beyond.classifier_free import guided_by_condition, where_noisy, without
 from ..beyond.guidance import with_guess
 from ..conditions.audio_files import samples_of
 from ..conditions.music import FRAMES_PER_SECOND, SAMPLE_RATE, fingerprint, frame_times, log_mel
@@ -35,7 +35,9 @@ from .performer import Performer, generators, sampled
 from .with_bar import with_bar
 
 STEPS, ETA = 50, 1.0  # defaults of DDIM; with less fresh noise, dances to a song differ less
-USUAL_GUIDANCE = 3.0  # chosen on other songs than those of docs/RESULTS.md
+# chosen on other songs than those of docs/RESULTS.md
+USUAL_GUIDANCE = 3.0
+GUIDED_TO = 0.27  # alpha_bar: with less noise, there is no guidance beyond the conditional
 # standard deviations from the mean pose, to which the x0_hat of an eps network is clamped, as in
 # DDPM's code
 FARTHEST = 5.0
@@ -84,7 +86,8 @@ class Dancer(Performer):
 
         It works in the network's units. The x0_hat of an eps network is clamped to FARTHEST.
 
-        `guidance`: w of `beyond.classifier_free`; 1 is the conditional network.
+        `guidance`: w of `beyond.classifier_free`; 1 is the conditional network. Above 1 it acts
+        while the noise is strong.
         `fast=True` uses the fast twin if there is one, unless `watch` collects the attention;
         the twin cannot be differentiated.
         Raises ValueError for a network with music but no `mel`, or the reverse, and for guidance of
@@ -110,8 +113,11 @@ class Dancer(Performer):
 
         if guidance == 1:
             return self._as_eps(network(music))
-        both = (self._unclamped(network(one)) for one in (music, without(music)))
-        return self._clamped(guided_by_condition(*both, guidance))
+        to_music, to_nothing = (self._unclamped(network(one)) for one in (music, without(music)))
+        guided = guided_by_condition(to_music, to_nothing, guidance)
+        if guidance > 1:
+            guided = where_noisy(guided, to_music, self.schedule, GUIDED_TO)
+        return self._clamped(guided)
 
     @property
     def can_be_guided(self) -> bool:
@@ -197,7 +203,7 @@ class Dancer(Performer):
         seed     chooses the dance together with the sound: other music gets other moves. To dance
                  with the same noise to two songs, pass `start` to `dance_mel`
         steps    of DDIM, or None for DDPM with all steps, and noise of the posterior's variance
-        guidance above 1 the dance follows the music more closely, at twice the cost of 1
+        guidance above 1 the dance follows the music more closely, at up to twice the cost of 1
                  (`beyond.classifier_free`); None: what is usual for this dancer
         Raises AudioError for unusable sound (`conditions.audio_files`), ValueError for `seconds` or
         `samples` out of range. Warns where the sound is shorter than `seconds`.

@@ -3,7 +3,7 @@
 import pytest
 import torch
 
-from motiondiff_edu.beyond.classifier_free import guided_by_condition
+from motiondiff_edu.beyond.classifier_free import guided_by_condition, where_noisy
 from motiondiff_edu.ddpm import cosine_schedule, ddim_steps, final
 from motiondiff_edu.exact import exact_denoiser, mixture
 
@@ -43,3 +43,25 @@ def test_more_guidance_leads_away_from_the_other_hump_and_narrows_the_samples():
     assert means[0] < means[1] < means[2] and stds[0] > stds[1] > stds[2]
     wrong = [(one < 0).float().mean().item() for one in found.values()]  # nearer the other hump
     assert wrong[0] > 0.03 and wrong[1] < 0.5 * wrong[0]
+
+
+def test_each_sample_is_guided_while_its_noise_is_strong():
+    conditional, unconditional = denoisers()
+    guided = guided_by_condition(conditional, unconditional, 3)
+    x, s = torch.linspace(-2, 2, 100)[:, None], torch.arange(1, 101)
+    limit = float(SCHEDULE.alpha_bar[40])
+    mixed = where_noisy(guided, conditional, SCHEDULE, limit)
+    found = mixed(x, s)
+    torch.testing.assert_close(found[39:], guided(x[39:], s[39:]))  # from step 40 on
+    torch.testing.assert_close(found[:39], conditional(x[:39], s[:39]))
+    for step, alone in ((90, guided), (10, conditional)):  # one step for all, as samplers have it
+        torch.testing.assert_close(mixed(x, s * 0 + step), alone(x, s * 0 + step))
+
+
+def test_rest_costs_one_evaluation():
+    def refused(*_):
+        raise AssertionError("not needed here")
+
+    x, conditional = torch.zeros(3, 1), denoisers()[0]
+    where_noisy(refused, conditional, SCHEDULE, 0.5)(x, torch.full((3,), 1))
+    where_noisy(conditional, refused, SCHEDULE, 0.5)(x, torch.full((3,), 100))
