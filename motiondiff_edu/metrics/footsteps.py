@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Float, Int
 
-from ..motion.checks import check_finite
+from ..motion.finite import check_finite
 from ..motion.planting import runs
 from ..motion.root_frame import FPS
 from ..motion.skeleton import HEELS

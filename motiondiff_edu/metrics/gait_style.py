@@ -10,8 +10,8 @@ from collections.abc import Sequence
 import numpy as np
 from jaxtyping import Float
 
-from ..motion.checks import check_finite
 from ..motion.dance_frame import facing
+from ..motion.finite import check_finite
 from ..motion.root_frame import FPS, forward_left
 from ..motion.skeleton import HEELS, HIPS, joint_index
 

@@ -7,7 +7,7 @@ In metres and metres a second.  Notebook: 08
 import numpy as np
 from jaxtyping import Bool, Float, Int
 
-from ..motion.checks import check_finite
+from ..motion.finite import check_finite
 from ..motion.root_frame import FPS
 from ..motion.skeleton import TOES
 
