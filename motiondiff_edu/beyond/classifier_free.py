@@ -20,7 +20,7 @@ import torch
 from jaxtyping import Bool
 from torch import Tensor
 
-from ..ddpm import Denoiser, Schedule
+from ..ddpm import Denoiser, Schedule, at
 from ..mofusion import Music
 
 
@@ -48,12 +48,11 @@ def where_noisy(noisy: Denoiser, rest: Denoiser, schedule: Schedule, most: float
     """
 
     def denoise(x_s, s):
-        strong = (schedule.alpha_bar.to(s.device)[s] <= most).expand(len(x_s))
+        strong = at(schedule.alpha_bar, s, x_s) <= most
         if strong.all():
             return noisy(x_s, s)
         if not strong.any():
             return rest(x_s, s)
-        each = strong.view(-1, *[1] * (x_s.dim() - 1))
-        return torch.where(each, noisy(x_s, s), rest(x_s, s))
+        return torch.where(strong, noisy(x_s, s), rest(x_s, s))
 
     return denoise

@@ -3,8 +3,7 @@
 import argparse
 from pathlib import Path
 
-from .edition import chosen as chosen_edition
-from .edition import write_edition
+from .edition import class_edition, write_edition
 from .handout import hand_out, written_in
 from .places import FolderError, notebook_folder, program
 
@@ -26,7 +25,7 @@ def run(chosen: argparse.Namespace) -> int:
     folder = chosen.folder
     if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
         raise FolderError(f"{folder} is not empty: name a new folder, so that nothing is lost")
-    edition = chosen_edition(notebook_folder(), chosen.only, chosen.solutions)
+    edition = class_edition(notebook_folder(), chosen.only, chosen.solutions)
     with written_in(folder):
         write_edition(folder, edition)
     hand_out(notebook_folder(), folder)

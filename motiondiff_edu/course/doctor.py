@@ -172,10 +172,10 @@ def canvas() -> Finding:
             "open the address that lab prints in a browser elsewhere",
             note=True,
         )
-    if shut_in():
+    if snap := shut_in():
         return Finding(
             "canvas",
-            f"{shut_in()} is a snap, which cannot open files in /tmp or in hidden folders",
+            f"{snap} is a snap, which cannot open files in /tmp or in hidden folders",
             "keep the course in a folder whose path has no hidden part; pages of md.play go to "
             "your home folder, and other users of this computer can read the address of your lab",
             note=True,

@@ -44,7 +44,7 @@ class Edition:
         return kept
 
 
-def chosen(notebooks: Path, numbers: Iterable[str], solutions: bool) -> Edition:
+def class_edition(notebooks: Path, numbers: Iterable[str], solutions: bool) -> Edition:
     """The edition of a class. Raises NotebookError for a number that is no notebook."""
     found = {find(notebooks / "student", number).name[:2] for number in numbers}
     return Edition(tuple(sorted(found)), solutions)
