@@ -29,6 +29,7 @@ from ..motion.motion import Motion
 from ..motion.scaler import Scaler
 from ..prediction import denoiser_of
 from .dance_windows import FPS, mel_frames
+from .finished import finished
 from .keyframe_mofusion import KeyframeMoFusion
 from .networks import register
 from .performer import Performer, generators, sampled
@@ -36,7 +37,7 @@ from .with_bar import with_bar
 
 STEPS, ETA = 50, 1.0  # defaults of DDIM; with less fresh noise, dances to a song differ less
 # chosen on other songs than those of docs/RESULTS.md
-USUAL_GUIDANCE = 3.0
+USUAL_GUIDANCE = 4.0
 GUIDED_TO = 0.27  # alpha_bar: with less noise, there is no guidance beyond the conditional
 # standard deviations from the mean pose, to which the x0_hat of an eps network is clamped, as in
 # DDPM's code
@@ -196,7 +197,8 @@ class Dancer(Performer):
     ) -> Motion | list[Motion]:
         """Dance to a sound file, or to mono sound at 16 kHz (N,) from -1 to 1.
 
-        The returned motion contains the sound.
+        The returned motion contains the sound. Its bones keep their lengths and its standing feet
+        do not slide (`performers/finished.py`); the network's own dance is that of `dance_mel`.
 
         seconds  use so much of the sound from its start (default: all of it)
         samples  above 1: a list with this many dances; the first is that of samples=1
@@ -229,7 +231,7 @@ class Dancer(Performer):
         dances = dances.double().cpu().numpy()
         made = [
             Motion(
-                dance,
+                finished(dance, FPS),
                 FPS,
                 audio=audio.numpy(),
                 sample_rate=SAMPLE_RATE,
@@ -253,7 +255,7 @@ class Dancer(Performer):
     ) -> Float[Tensor, "B T 21 3"]:
         """Dance to log-Mel spectrograms (`conditions.music.log_mel`), one dance each.
 
-        Dances are in metres, at 20 frames a second.
+        Dances are in metres, at 20 frames a second, and as the network makes them: not `finished`.
 
         frames  the length of the dance (default: that of the music)
         steps   of DDIM with `eta`, at most S; None for DDPM with all steps, and noise of the

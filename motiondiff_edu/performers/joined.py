@@ -3,8 +3,7 @@
 A walker that gets a pose unlike its training begins with one that it knows: a joint may move by
 half a metre from the last given frame to the first new one. Then the first half second takes over
 pose and speed of the given motion, and a warning says so. In every continuation bones keep the
-lengths of the given motion, and standing feet stay where they stand: a network's joints are free
-points, and its feet slide.
+lengths of the given motion, and standing feet stay where they stand (`performers/finished.py`).
 """
 
 from dataclasses import dataclass
@@ -13,9 +12,6 @@ import numpy as np
 from jaxtyping import Float
 from torch import Tensor
 
-from ..beyond.above_floor import feet_above_floor
-from ..beyond.constant_bones import given_lengths, steady_bones
-from ..beyond.foot_lock import steady_feet
 from ..beyond.inertialize import SECONDS, inertialized
 from ..conditions.control import splice
 from ..metrics.seams import AROUND, seam_over_motion
@@ -23,9 +19,9 @@ from ..motion.motion import Motion, MotionError
 from ..motion.root_frame import FPS, root_path, to_world
 from ..motion.scaler import Scaler
 from ..motion.skeleton import JOINTS, J
+from .finished import finished
 
 JUMP = 1.1  # times the fastest joint of the second before and after: faster is a jump at the seam
-GLIDE = 0.2  # m: a foot that goes farther than this from its place is not held there
 # standard deviations of the training, over the coordinates of a joint; no frame of 120 unseen
 # synthetic walks is as far (at most 4.64)
 UNLIKE = 5.0
@@ -84,9 +80,7 @@ def joined(
         whole = placed(inertialized(start.past, new, FPS))
     known = np.zeros((len(whole), J), bool)
     known[:k] = True
-    whole = steady_bones(whole, known, given_lengths(whole, known))
-    whole = steady_feet(whole, known, FPS, farthest=GLIDE)
-    return feet_above_floor(whole, known)[k:], jump
+    return finished(whole, FPS, known)[k:], jump
 
 
 def unlike_training(scaler: Scaler, past: Float[Tensor, "T_h D"]) -> dict[str, float]:

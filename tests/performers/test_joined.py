@@ -55,10 +55,7 @@ def sliding(more: Motion) -> float:
 
 def as_the_network_says(monkeypatch) -> None:
     """Without what is done to bones and feet."""
-    for name in ("steady_bones", "steady_feet", "feet_above_floor"):
-        monkeypatch.setattr(
-            f"motiondiff_edu.performers.joined.{name}", lambda whole, *_, **__: whole
-        )
+    monkeypatch.setattr("motiondiff_edu.performers.joined.finished", lambda whole, *_: whole)
 
 
 def test_a_usual_walk_keeps_its_body_and_stands_and_nothing_is_said(walker, usual, monkeypatch):

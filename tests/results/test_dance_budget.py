@@ -132,9 +132,10 @@ def test_rows_of_another_budget_or_sampler_are_not_set_beside_it(tiny, tmp_path,
     rows = {"bas": np.full(4, 0.5), "bas_shuffled": np.full(4, 0.2)}
     squares = np.full(4, 2.0)
     data = {"bas": np.full(4, 0.8), "bas_shuffled": np.full(4, 0.2)}
-    worse = Danced([], {**rows, "bas": np.full(4, 0.35)}, data, 4 * squares)
+    made = np.empty((1, 4, 2, 21, 3))
+    worse = Danced([], made, {**rows, "bas": np.full(4, 0.35)}, data, 4 * squares)
     budget.keep("constant", worse, tmp_path, SMALL)
-    found = Danced([], rows, data, squares)
+    found = Danced([], made, rows, data, squares)
     measures = {
         measure.name: measure.value for measure in budget.gains("alpha_bar", found, tmp_path, SMALL)
     }

@@ -20,6 +20,7 @@ from motiondiff_edu.pretrained import checkpoints
 
 from ..walks.parts import weights_digest
 from ..walks.scores import Measure
+from .finishing import finishing_measures
 from .floor import data_floor_measures, floor_measures, floor_rows
 from .genres import SEED, GenreJudge, features_by_window, genre_measures, judge_of
 from .scores import (
@@ -130,6 +131,7 @@ class Danced:
     """One dancer's measures, and the rows (one for each song) behind them."""
 
     measures: list[Measure]
+    made: np.ndarray  # (seeds, songs, frames, 21, 3)
     own: dict[str, np.ndarray]
     data: dict[str, np.ndarray]
     squares: np.ndarray  # errors of bones, cm^2
@@ -141,7 +143,8 @@ def danced(stage: Stage, dancer: Dancer) -> Danced:
     own = rows_of(made, stage.songs.beats(TRAINED))
     data = stage.data_rows(TRAINED)
     bones, squares = bone_measure(made)
-    return Danced([*beat_measures(own, data), bones, *variety(stage, dancer)], own, data, squares)
+    measures = [*beat_measures(own, data), bones, *variety(stage, dancer)]
+    return Danced(measures, made, own, data, squares)
 
 
 def dancer_measures(stage: Stage, name: str) -> list[Measure]:
@@ -154,7 +157,8 @@ def dancer_measures(stage: Stage, name: str) -> list[Measure]:
     if "dancer-plain" in stage.weights:
         plain = dances(stage, stage.dancer("dancer-plain"), TRAINED, stage.size.seeds)
         gain = [bone_gain(found.squares, bone_measure(plain)[1])]
-    return found.measures + gain + long_measures(stage, dancer, found)
+    ended = finishing_measures(found.made, found.data, stage.songs.beats(TRAINED))
+    return found.measures + gain + ended + long_measures(stage, dancer, found)
 
 
 def long_measures(stage: Stage, dancer: Dancer, found: Danced) -> list[Measure]:

@@ -7,6 +7,8 @@ from motiondiff_edu.performers.dancer import ETA, STEPS
 
 from ..page.markdown import cell, number, table
 from .budget import FULL, VARIANTS, on_old_dances
+from .finishing import FINISHED, OWN
+from .finishing import KINDS as ENDED
 from .floor import FLOOR
 from .guided import WEIGHTS
 from .timing import BASE, TIMED
@@ -92,7 +94,8 @@ def table_1(records: dict[str, dict]) -> str:
         "same steps",
     )
     rows += _block(records, SHIPPED_ROWS, "shipped weights")
-    return TABLE_1 + table([*head, "made by"], rows) + guidance(records) + floor(records)
+    parts = guidance(records), finishing(records), floor(records)
+    return "".join([TABLE_1, table([*head, "made by"], rows), *parts])
 
 
 def _block(records: dict[str, dict], names: dict[str, str], what: str) -> list[list[str]]:
@@ -137,6 +140,23 @@ def guidance(records: dict[str, dict]) -> str:
         "alignment with what is lost in the variety of dances to one song.\n\n"
     )
     return text + table(["weight", *(f"`{kind}`" for kind in SHOWN)], rows)
+
+
+def finishing(records: dict[str, dict]) -> str:
+    """The network's own dances beside those of the verb; nothing where they were not measured."""
+    names = {OWN: "the network's own", FINISHED: "as `dance` returns it"}
+    if f"dancer.{OWN}bas_share" not in records:
+        return ""
+    rows = [
+        [words, *(cell(records.get(f"dancer.{who}{kind}"), unit=False) for kind in ENDED)]
+        for who, words in names.items()
+    ]
+    text = (
+        "\nThe measures of the dancer are of the network's own dances. `dance` keeps the bones of "
+        "a dance at their median lengths and holds standing feet (`performers/finished.py`). Bone "
+        "errors are around each dance's own mean lengths.\n\n"
+    )
+    return text + table(["the dance", *(f"`{kind}`" for kind in ENDED)], rows)
 
 
 def floor(records: dict[str, dict]) -> str:

@@ -3,7 +3,8 @@
 from ..page.markdown import cell, number, table
 from .trainings import VARIANTS
 
-STARTS = {"as shipped": "real.", "as the network has it": "real.unblended."}  # beginnings of the names
+# the beginnings of names
+STARTS = {"as shipped": "real.", "as the network has it": "real.unblended."}
 ROWS = {
     "seam_over_motion": "the fastest joint at the seam, over the fastest within a second (median)",
     "seam_p95_over_motion": "the same (95th percentile)",
@@ -142,10 +143,10 @@ def continued(records: dict[str, dict]) -> str:
         "seconds, at the speed of their last second: walks, dances, martial arts, climbing, "
         "washing. It was trained on synthetic walks alone. Where the first new frame jumps, which "
         f"is in {number(100 * share['value'])} % of the windows, the first half second takes over "
-        "pose and speed of the recording (`beyond/inertialize.py`), and a warning says so. In all of "
-        "them bones keep the recording's lengths (`beyond/constant_bones.py`), and feet that stand "
-        "are held (`beyond/foot_lock.py`). A leg that must get from a kneeling pose to a walk "
-        "still slides on the way.\n\n"
+        "pose and speed of the recording (`beyond/inertialize.py`), and a warning says so. In all "
+        "of them bones keep the recording's lengths, and feet that stand are held "
+        "(`performers/finished.py`). A leg that must get from a kneeling pose to a walk still "
+        "slides on the way.\n\n"
     )
     persons = (
         "\nStyle is trunk lean, step width, arm swing and cadence (`metrics/gait_style.py`): of "
