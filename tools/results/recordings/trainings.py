@@ -1,7 +1,7 @@
 """What recordings and variations in training are worth for in-betweens: trainings of equal length.
 
-Each row differs from the recipe `inbetweens` in one choice and is trained with three seeds, for a
-fifth of the steps or fewer. All are judged on recordings of people whom none has seen, with a
+Each row differs from the recipe `inbetweens` in one choice and is trained with three seeds, for a tenth
+of the steps. All are judged on recordings of people whom none has seen, with a
 keyframe a second.
 """
 
@@ -43,7 +43,7 @@ class Budget:
 
     seeds: tuple[int, ...] = (0, 1, 2)
     size: RecordedSize = RecordedSize(each=2, samples=5)
-    training: dict = field(default_factory=lambda: {"steps": 1500})
+    training: dict = field(default_factory=lambda: {"steps": 800})
 
 
 FULL = Budget()
