@@ -218,7 +218,7 @@ def test_a_row_of_the_budget_is_trained_and_no_other_part(monkeypatch, tmp_path)
 
 def test_variants_differ_from_the_recipe_in_what_they_say():
     ours = trainings.recipe_of("ours", 1, trainings.FULL)
-    assert (ours.seed, ours.steps) == (1, 1500)
+    assert (ours.seed, ours.steps) == (1, 800)
     changed = {
         name: {
             key

@@ -1,11 +1,10 @@
 """What recordings and variations in training are worth for in-betweens: trainings of equal length.
 
-Each row differs from the recipe `inbetweens` in one choice and is trained with three seeds, for a tenth
-of the steps. All are judged on recordings of people whom none has seen, with a
-keyframe a second.
+Each row differs from the recipe `inbetweens` in one choice and is trained with three seeds, for a
+tenth of the steps. All are judged on recordings of people whom none has seen, with a keyframe a
+second.
 """
 
-from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
 
