@@ -5,6 +5,7 @@ tenth of the steps. All are judged on recordings of people whom none has seen, w
 second.
 """
 
+from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
 
