@@ -112,7 +112,7 @@ BARS = (
     Bar("real.continuation_skating_mps", at_most=0.05),
     Bar("real.continuation_adherence_mps", at_most=0.03),
     Bar("real.continuation_floor_cm", at_most=2),
-    Bar("real.continuation_diversity_over_synthetic", at_least=0.7, at_most=1.5),
+    Bar("real.continuation_diversity_over_synthetic", at_least=0.7),
     Bar("real.style_kept", at_least=0.7),
     Bar("real.inbetween_over_interpolation", at_most=0.85),
     Bar("real.inbetween_walks_over_interpolation", at_most=0.65),
