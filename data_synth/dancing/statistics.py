@@ -13,7 +13,7 @@ from scipy.interpolate import CubicSpline
 from scipy.ndimage import gaussian_filter1d
 from scipy.signal import argrelmin, welch
 
-from motiondiff_edu.metrics.dance_floor import standing_feet, travel, turning
+from motiondiff_edu.metrics.dance_floor import TURN_SECONDS, standing_feet, travel, turning
 from motiondiff_edu.metrics.repetition import autocorrelation
 from motiondiff_edu.motion.skeleton import HEELS, joint_index
 
@@ -108,6 +108,6 @@ def statistics(world: Float[np.ndarray, "T 21 3"], fps: float = 20.0) -> dict[st
         "jerk": float(np.linalg.norm(np.diff(world, 3, axis=0), axis=-1).mean() * fps**3),
         "power4": float(power[f <= 4].sum() / power.sum()),
         "standing_feet": standing_feet(world, fps),
-        "turn_8s": turning(world, fps),
+        "turn_8s": turning(world, fps, min(TURN_SECONDS, (len(world) - 1) / fps)),
         "travel": travel(world, fps),
     }

@@ -3,7 +3,7 @@
 A network's joints are free points. Its bones stretch by centimetres, and its standing feet slide.
 `Dancer.dance` and continuations return finished motions; `Dancer.dance_mel` returns the network's
 own.
-Source: Kovar and others, 2002 (feet), Müller and others, 2007 (bones).  Notebook: 12
+Source: Kovar and others, 2002 (feet), Müller and others, 2007 (bones).
 """
 
 import numpy as np

@@ -1,7 +1,4 @@
-"""What the browsers of this machine can do: open a window, read a temporary file.
-
-Notebook: 00
-"""
+"""What the browsers of this machine can do: open a window, read a temporary file."""
 
 import os
 import sys

@@ -28,14 +28,16 @@ def load(monkeypatch):
         monkeypatch.setenv("NUMBA_CACHE_DIR", str(folder))
         monkeypatch.delitem(sys.modules, NAME, raising=False)
         loaded = importlib.import_module(NAME)
-        monkeypatch.delitem(sys.modules, NAME)
+        del sys.modules[NAME]  # not by monkeypatch, which would bring the fake back in the end
         assert loaded.librosa is fake
         return loaded
 
-    before = importlib.import_module("motiondiff_edu.conditions").__dict__.get("compiled")
+    package = importlib.import_module("motiondiff_edu.conditions")
+    before = package.__dict__.get("compiled")
     yield load
+    package.__dict__.pop("compiled", None)
     if before is not None:
-        importlib.import_module("motiondiff_edu.conditions").compiled = before
+        package.compiled = before
 
 
 def test_the_lock_is_held_while_the_tracker_compiles_and_not_afterwards(load, tmp_path):

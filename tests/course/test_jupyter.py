@@ -19,8 +19,9 @@ os.replace(sys.argv[1] + ".new", sys.argv[1])
 time.sleep(600)
 """
 COMMAND = """
-import sys
+import signal, sys
 from motiondiff_edu.course import jupyter
+signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell's background jobs ignore it
 jupyter.PATIENCE = float(sys.argv[1])
 sys.exit(jupyter.serve(sys.argv[2:], {}))
 """

@@ -155,7 +155,8 @@ def test_what_is_not_the_usual_network_is_trained_and_measured(tiny, tmp_path, n
     found = {one["name"].removeprefix(f"dance-budget.{name}."): one["value"]
              for one in budget_records(name, SMALL, tmp_path, "c")}  # fmt: skip
     assert found["fid"] > 0 and found["bone_rmse_cm"] > 0
-    assert (found["multimodality"] == 0) == (name == "regression")
+    # a batch's rows may differ by rounding
+    assert (found["multimodality"] < 1e-5) == (name == "regression")
     assert budget.stage("mfcc", SMALL).songs.mel.shape[2] == 22
     assert budget.stage("", SMALL).songs.mel.shape[2] == 80
 

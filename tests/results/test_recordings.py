@@ -70,8 +70,9 @@ def test_a_window_is_continued_as_walk_continues_it(walker, folder):
         warnings.simplefilter("ignore")
         wanted = walker.walk(window.given, window.control, progress=False)
     np.testing.assert_allclose(blended.world, wanted.positions, atol=1e-4)
-    np.testing.assert_allclose(plain.world, wanted.positions, atol=1e-4)  # it does not jump
-    row = continuations.row_of(window, plain)
+    # it does not jump, so that only bones and feet differ
+    assert 1e-4 < np.linalg.norm(plain.world - wanted.positions, axis=-1).mean() < 0.02
+    row = continuations.row_of(window, blended)
     assert row["seam"] < 1.1 and row["skating"] < 0.1 and row["adherence"] < 0.1
     assert row["depth"] == pytest.approx(100 * max(0.0, -wanted.positions[..., 1].min()), abs=0.01)
 
@@ -90,7 +91,7 @@ def test_records_are_made_and_stand_in_the_page(walker, folder, monkeypatch):
     assert "2 windows of 2 recordings" in text
     assert all(words in text for words in (page.ROWS | page.PERSONS).values())
     empty = page.section({})
-    assert empty.startswith("## On recordings") and empty.count("not measured yet") == 4
+    assert empty.startswith("## On recordings") and empty.count("not measured yet") == 5
 
 
 @pytest.fixture(scope="module")

@@ -55,7 +55,8 @@ def test_jupyter_opens_its_address_and_no_hidden_file(snap, command):
     assert not any("use_redirect_file" in word for word in command())
 
 
-def test_doctor_tells_of_the_snap(snap):
+def test_doctor_tells_of_the_snap(snap, monkeypatch):
+    monkeypatch.setattr("webbrowser.get", lambda *_: None)  # it looks for browsers only once
     finding = doctor.canvas()
     assert finding.note and "firefox is a snap" in finding.detail
     (snap / "snap" / "firefox").unlink()

@@ -102,7 +102,8 @@ def recording(path: Path, folder: Path) -> Recording:
 def found_recordings() -> list[Recording]:
     """The recordings in the folder that MOTIONDIFF_REAL_DATA names; exits where there are none."""
     folder = Path(os.environ.get(VARIABLE, ""))
-    recordings = recordings_of_music(folder) if os.environ.get(VARIABLE) else []
+    there = os.environ.get(VARIABLE) and (folder / MUSIC).is_dir()
+    recordings = recordings_of_music(folder) if there else []
     if not recordings:
         sys.exit(f"{VARIABLE} must name a folder with recordings of music in {MUSIC}")
     return recordings
