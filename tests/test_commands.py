@@ -26,6 +26,7 @@ from motiondiff_edu.course import doctor
 from motiondiff_edu.editing.by_words import STRENGTH
 from motiondiff_edu.motion.motion import MotionError
 from motiondiff_edu.motion.skeleton import JOINTS
+from motiondiff_edu.performers.dancer import USUAL_GUIDANCE
 
 ARM = "RightArm,RightForeArm,RightHand"
 
@@ -165,6 +166,11 @@ def test_words_without_quotes_are_told_about(folder, capsys):
 
 def test_the_help_of_edit_says_the_default():
     assert f"(default: {STRENGTH:g})" in Path(edit.__file__).read_text(encoding="utf-8")
+
+
+def test_the_help_of_dance_says_the_default(capsys):
+    assert run("dance", "--help") == 0
+    assert f"(default: {USUAL_GUIDANCE:g})" in capsys.readouterr().out
 
 
 def test_samples_go_to_numbered_files(folder, capsys):

@@ -26,7 +26,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
         type=float,
         metavar="W",
         help="above 1 the dance follows the music more closely; 1 is no guidance, as in the paper, "
-        "at half of the cost (default: 3)",
+        "and faster (default: 4)",
     )
     outputs.add_out(parser)
     outputs.add_draws(parser, "dances")

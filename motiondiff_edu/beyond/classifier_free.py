@@ -4,12 +4,14 @@
 w = 1 is the conditional network, as in the papers. A larger w follows a text or a song more
 closely; the result is no sample of the conditional any more. In training, some conditions are left
 out, so that one network is both. It costs two evaluations at every step.
-A dancer is guided only while the noise is strong (`where_noisy`): there the stops are put on the
-beat. Later, guidance would exaggerate what is fine, and feet would slide.
+A dancer is guided only in the middle (`while_between`), where the stops are put on the beat. At
+first, in almost pure noise, guidance would make dances to one song alike; at the end it would
+exaggerate what is fine, and feet would slide.
 A mover that plans guides the timeline first. Where the text of the motion is left out, its timeline
 stays, in training too, so for the motion a larger w stresses what the timeline does not say.
 Gain: docs/RESULTS.md, `dancer.guided.*` for music, `words.guided.*` for texts.
-Source: Ho and Salimans, 2022; only at some steps: Kynkäänniemi and others, 2024. Ours; MoFusion has
+Source: Ho and Salimans, 2022; in an interval of noise alone: Kynkäänniemi and others,
+2024. Ours; MoFusion has
 no guidance.
 Notebook: 12, 16
 """
@@ -41,18 +43,21 @@ def guided_by_condition(conditional: Denoiser, unconditional: Denoiser, w: float
     return lambda x_s, s: (1 - w) * unconditional(x_s, s) + w * conditional(x_s, s)
 
 
-def where_noisy(noisy: Denoiser, rest: Denoiser, schedule: Schedule, most: float) -> Denoiser:
-    """`noisy` while alpha_bar, the share of the signal, is at most `most`, and then `rest`.
+def while_between(
+    inside: Denoiser, outside: Denoiser, schedule: Schedule, least: float, most: float
+) -> Denoiser:
+    """`inside` while alpha_bar, the share of the signal, is from `least` to `most`.
 
     Samples of a batch may be at different steps.
     """
 
     def denoise(x_s, s):
-        strong = at(schedule.alpha_bar, s, x_s) <= most
-        if strong.all():
-            return noisy(x_s, s)
-        if not strong.any():
-            return rest(x_s, s)
-        return torch.where(strong, noisy(x_s, s), rest(x_s, s))
+        share = at(schedule.alpha_bar, s, x_s)
+        between = (least <= share) & (share <= most)
+        if between.all():
+            return inside(x_s, s)
+        if not between.any():
+            return outside(x_s, s)
+        return torch.where(between, inside(x_s, s), outside(x_s, s))
 
     return denoise

@@ -28,6 +28,7 @@ def steady_feet(
     known: Bool[np.ndarray, "T 21"],
     fps: float = 20.0,
     farthest: float = np.inf,
+    low: float = LOW,
 ) -> Float[np.ndarray, "*B T 21 3"]:
     """Move legs that are not known (metres, world) so that feet do not slide; bones keep lengths.
 
@@ -35,21 +36,18 @@ def steady_feet(
     median place, or where it is given. Between stands the correction is interpolated smoothly; it
     is zero where the foot is given. An ankle out of the leg's reach slides as little as possible.
     A toe that slides farther than `farthest` metres from its place does not stand, but glides: it
-    is left alone, since a held foot would drag its leg out behind the body.
+    is left alone, since a held foot would drag its leg out behind the body. A toe is low if it is
+    less than `low` metres over its floor; in steps that are lifted less, the foot would be held.
     """
     every = np.array(positions, np.float64).reshape(-1, *positions.shape[-3:])
     for moved in every:
         for toe, heel in zip(TOES, HEELS, strict=True):
-            _steady_leg(moved, known, toe, heel, fps, farthest)
+            free = free_legs(known, heel, toe)
+            still = stands(moved[:, toe], fps, slow_for(moved, fps), low)
+            shift = to_stands(moved[:, toe], ~free, still, farthest)
+            at = free & shift.any(1)
+            moved[at] = ankles_dragged(moved[at], heel, moved[at, heel] + shift[at])
     return np.where(known[..., None], positions, every.reshape(positions.shape))
-
-
-def _steady_leg(moved, known, toe: int, heel: int, fps: float, farthest: float) -> None:
-    """Correct one leg in place; the foot keeps its direction."""
-    free = free_legs(known, heel, toe)
-    shift = to_stands(moved[:, toe], ~free, fps, slow_for(moved, fps), farthest)
-    at = free & shift.any(1)
-    moved[at] = ankles_dragged(moved[at], heel, moved[at, heel] + shift[at])
 
 
 def free_legs(known: Bool[np.ndarray, "T 21"], heel: int, toe: int) -> Bool[np.ndarray, " T"]:
@@ -69,15 +67,14 @@ def slow_for(positions: Float[np.ndarray, "T 21 3"], fps: float) -> Float[np.nda
 def to_stands(
     toe: Float[np.ndarray, "T 3"],
     given: Bool[np.ndarray, " T"],
-    fps: float,
-    slow: float | Float[np.ndarray, " T"] = SLOW,
+    still: Bool[np.ndarray, " T"],
     farthest: float = np.inf,
 ) -> Float[np.ndarray, "T 3"]:
-    """The shift that stops a toe from sliding while it stands; zero where the toe is given."""
+    """The shift that stops a toe from sliding while it stands (`still`); zero where it is given."""
     shift = np.zeros_like(toe)
     anchored = given.copy()
     frames = np.arange(len(toe))
-    for first, last in runs(stands(toe, fps, slow)):
+    for first, last in runs(still):
         inside = np.flatnonzero(given[first:last]) + first
         if len(inside):  # at the given places; linear between them if they differ
             pin = np.stack(
@@ -121,7 +118,10 @@ def closeness(given: Bool[np.ndarray, " T"]) -> Float[np.ndarray, " T"]:
 
 
 def stands(
-    toe: Float[np.ndarray, "T 3"], fps: float, slow: float | Float[np.ndarray, " T"] = SLOW
+    toe: Float[np.ndarray, "T 3"],
+    fps: float,
+    slow: float | Float[np.ndarray, " T"] = SLOW,
+    low: float = LOW,
 ) -> Bool[np.ndarray, " T"]:
     """Frames in which a toe is low, and slow over the ground to the next or from the last frame.
 
@@ -129,5 +129,5 @@ def stands(
     """
     ground = np.linalg.norm(np.diff(toe[:, [0, 2]], axis=0), axis=-1) * fps
     still = np.minimum(np.append(ground, np.inf), np.append(np.inf, ground)) < slow
-    found = still & (toe[:, 1] < np.percentile(toe[:, 1], FLOOR) + LOW)
+    found = still & (toe[:, 1] < np.percentile(toe[:, 1], FLOOR) + low)
     return found & (np.append(found[1:], False) | np.append(False, found[:-1]))

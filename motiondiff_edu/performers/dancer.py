@@ -15,7 +15,7 @@ from torch import Tensor, nn
 
 from ..beyond.activity import USED_AT_MOST
 from ..beyond.around_lines import Shown
-from ..beyond.classifier_free import guided_by_condition, where_noisy, without
+from ..beyond.classifier_free import guided_by_condition, while_between, without
 from ..beyond.guidance import with_guess
 from ..conditions.audio_files import samples_of
 from ..conditions.music import FRAMES_PER_SECOND, SAMPLE_RATE, fingerprint, frame_times, log_mel
@@ -29,7 +29,7 @@ from ..motion.motion import Motion
 from ..motion.scaler import Scaler
 from ..prediction import denoiser_of
 from .dance_windows import FPS, mel_frames
-from .finished import finished
+from .finished import finished_dance
 from .keyframe_mofusion import KeyframeMoFusion
 from .networks import register
 from .performer import Performer, generators, sampled
@@ -38,7 +38,7 @@ from .with_bar import with_bar
 STEPS, ETA = 50, 1.0  # defaults of DDIM; with less fresh noise, dances to a song differ less
 # chosen on other songs than those of docs/RESULTS.md
 USUAL_GUIDANCE = 4.0
-GUIDED_TO = 0.27  # alpha_bar: with less noise, there is no guidance beyond the conditional
+GUIDED = 0.0025, 0.27  # alpha_bar: with more or less, dances follow the music without guidance
 # standard deviations from the mean pose, to which the x0_hat of an eps network is clamped, as in
 # DDPM's code
 FARTHEST = 5.0
@@ -67,6 +67,12 @@ class Dancer(Performer):
     def device(self) -> torch.device:
         return self.motion_scaler.mean.device
 
+    @property
+    def bones(self) -> Float[np.ndarray, "20"] | None:
+        """The lengths of the bones that it was taught, in metres; None if bodies differed."""
+        lengths = self.card.get("bones_cm")
+        return None if lengths is None else np.array(lengths) / 100
+
     def mel_input(
         self, mel: Float[Tensor, "B M C"], frames: int
     ) -> tuple[Float[Tensor, "B M2 C"], Float[Tensor, "M2"]]:
@@ -88,7 +94,7 @@ class Dancer(Performer):
         It works in the network's units. The x0_hat of an eps network is clamped to FARTHEST.
 
         `guidance`: w of `beyond.classifier_free`; 1 is the conditional network. Above 1 it acts
-        while the noise is strong.
+        between the strongest and the weakest noise (GUIDED).
         `fast=True` uses the fast twin if there is one, unless `watch` collects the attention;
         the twin cannot be differentiated.
         Raises ValueError for a network with music but no `mel`, or the reverse, and for guidance of
@@ -117,7 +123,7 @@ class Dancer(Performer):
         to_music, to_nothing = (self._unclamped(network(one)) for one in (music, without(music)))
         guided = guided_by_condition(to_music, to_nothing, guidance)
         if guidance > 1:
-            guided = where_noisy(guided, to_music, self.schedule, GUIDED_TO)
+            guided = while_between(guided, to_music, self.schedule, *GUIDED)
         return self._clamped(guided)
 
     @property
@@ -231,7 +237,7 @@ class Dancer(Performer):
         dances = dances.double().cpu().numpy()
         made = [
             Motion(
-                finished(dance, FPS),
+                finished_dance(dance, FPS, self.bones),
                 FPS,
                 audio=audio.numpy(),
                 sample_rate=SAMPLE_RATE,

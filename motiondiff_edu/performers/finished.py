@@ -11,24 +11,40 @@ from jaxtyping import Bool, Float
 
 from ..beyond.above_floor import feet_above_floor
 from ..beyond.constant_bones import given_lengths, steady_bones
-from ..beyond.foot_lock import steady_feet
+from ..beyond.foot_lock import LOW, steady_feet
 
 GLIDE = 0.2  # m: a foot that goes farther than this from its place is not held there
+# m above its floor: a dancer's toe is lifted by 3 to 6 cm in a small step, and must not be held
+DANCED_LOW = 0.02
 
 
-def finished(
+def finished_dance(
     positions: Float[np.ndarray, "T 21 3"],
     fps: float,
-    known: Bool[np.ndarray, "T 21"] | None = None,
+    lengths: Float[np.ndarray, "20"] | None = None,
 ) -> Float[np.ndarray, "T 21 3"]:
-    """A generated motion (metres, world) with bones of one length, and with feet that stand.
+    """A generated dance (metres) whose bones have these lengths, and whose feet stand.
 
-    Joints that are `known` stay where they are, and bones have the lengths that they have there.
-    Where nothing is known, each bone has its median length.
+    lengths  of the bones that the network was taught (default: the medians of this dance)
     """
     nothing = np.zeros(positions.shape[:2], bool)
-    known = nothing if known is None else known
-    lengths = given_lengths(positions, known if known.any() else ~nothing)
+    lengths = given_lengths(positions, ~nothing) if lengths is None else lengths
+    return _finished(positions, fps, nothing, lengths, DANCED_LOW, 0.0)
+
+
+def finished_continuation(
+    positions: Float[np.ndarray, "T 21 3"], fps: float, known: Bool[np.ndarray, "T 21"]
+) -> Float[np.ndarray, "T 21 3"]:
+    """Given and generated frames (metres, world): what is `known` stays, the rest follows it.
+
+    Bones get the lengths that they have where they are given, and no foot is lower than the given
+    joints, or than 0 if these are higher.
+    """
+    floor = min(0.0, positions[known][:, 1].min())
+    return _finished(positions, fps, known, given_lengths(positions, known), LOW, floor)
+
+
+def _finished(positions, fps, known, lengths, low: float, floor: float) -> np.ndarray:
     whole = steady_bones(positions, known, lengths)
-    whole = steady_feet(whole, known, fps, farthest=GLIDE)
-    return feet_above_floor(whole, known)
+    whole = steady_feet(whole, known, fps, farthest=GLIDE, low=low)
+    return feet_above_floor(whole, known, floor)

@@ -19,7 +19,7 @@ from ..motion.motion import Motion, MotionError
 from ..motion.root_frame import FPS, root_path, to_world
 from ..motion.scaler import Scaler
 from ..motion.skeleton import JOINTS, J
-from .finished import finished
+from .finished import finished_continuation
 
 JUMP = 1.1  # times the fastest joint of the second before and after: faster is a jump at the seam
 # standard deviations of the training, over the coordinates of a joint; no frame of 120 unseen
@@ -80,7 +80,7 @@ def joined(
         whole = placed(inertialized(start.past, new, FPS))
     known = np.zeros((len(whole), J), bool)
     known[:k] = True
-    return finished(whole, FPS, known)[k:], jump
+    return finished_continuation(whole, FPS, known)[k:], jump
 
 
 def unlike_training(scaler: Scaler, past: Float[Tensor, "T_h D"]) -> dict[str, float]:

@@ -18,6 +18,7 @@ from ..beyond.classifier_free import without
 from ..beyond.gain_noise import gain_noise
 from ..beyond.schedules import shifted
 from ..ddpm import Schedule, cosine_schedule
+from ..metrics.bone_lengths import bone_lengths
 from ..motion import dance_frame
 from ..motion.scaler import Scaler
 from ..motion.skeleton import HIPS
@@ -33,6 +34,8 @@ from .mofusion_loss import batch_loss, weighted_loss
 from .recordings import CREDIT, Recorded, training_recordings
 from .songs import songs_as_mel
 from .train_recipe import Provenance, train_recipe
+
+ONE_BODY = 0.1  # cm: bones that differ by less are the same
 
 
 def training_windows(recipe: DanceRecipe) -> DanceWindows:
@@ -151,7 +154,7 @@ def train_dancer(
     torch.manual_seed(recipe.seed)
     model = network(config)
     about = {"network": type(model).__name__, "data": digest(windows)}
-    facts = {"windows": len(windows)}
+    facts = {"windows": len(windows)} | bones_of(windows)
     if getattr(recipe, "ear", None):
         trained_ear = ear_of(recipe.ear, run_file.parent, log)
         model.ear.load_state_dict(trained_ear.hearing(windows.mel_scaler).state_dict())
@@ -171,6 +174,14 @@ def train_dancer(
         log=log,
     )
     return Dancer(trained, schedule, windows.motion_scaler, windows.mel_scaler, card)
+
+
+def bones_of(windows: DanceWindows) -> dict[str, list[float]]:
+    """The lengths of the bones in cm, for the card, if all dances have the same body."""
+    lengths = 100 * bone_lengths(windows.dances.numpy())
+    typical = np.median(lengths, axis=0)
+    same = np.abs(lengths - typical).max() < ONE_BODY
+    return {"bones_cm": typical.round(3).tolist()} if same else {}
 
 
 def schedule_of(recipe: DanceRecipe) -> Schedule:

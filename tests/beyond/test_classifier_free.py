@@ -3,7 +3,7 @@
 import pytest
 import torch
 
-from motiondiff_edu.beyond.classifier_free import guided_by_condition, where_noisy
+from motiondiff_edu.beyond.classifier_free import guided_by_condition, while_between
 from motiondiff_edu.ddpm import cosine_schedule, ddim_steps, final
 from motiondiff_edu.exact import exact_denoiser, mixture
 
@@ -45,23 +45,25 @@ def test_more_guidance_leads_away_from_the_other_hump_and_narrows_the_samples():
     assert wrong[0] > 0.03 and wrong[1] < 0.5 * wrong[0]
 
 
-def test_each_sample_is_guided_while_its_noise_is_strong():
+def test_each_sample_is_guided_between_two_amounts_of_noise():
     conditional, unconditional = denoisers()
     guided = guided_by_condition(conditional, unconditional, 3)
     x, s = torch.linspace(-2, 2, 100)[:, None], torch.arange(1, 101)
-    limit = float(SCHEDULE.alpha_bar[40])
-    mixed = where_noisy(guided, conditional, SCHEDULE, limit)
-    found = mixed(x, s)
-    torch.testing.assert_close(found[39:], guided(x[39:], s[39:]))  # from step 40 on
-    torch.testing.assert_close(found[:39], conditional(x[:39], s[:39]))
-    for step, alone in ((90, guided), (10, conditional)):  # one step for all, as samplers have it
+    most, least = SCHEDULE.alpha_bar[[40, 80]].tolist()
+    mixed = while_between(guided, conditional, SCHEDULE, least, most)
+    found, inside = mixed(x, s), (40 <= s) & (s <= 80)
+    torch.testing.assert_close(found[inside], guided(x, s)[inside])
+    torch.testing.assert_close(found[~inside], conditional(x, s)[~inside])
+    # one step for all, as samplers have it
+    for step, alone in ((90, conditional), (60, guided), (10, conditional)):
         torch.testing.assert_close(mixed(x, s * 0 + step), alone(x, s * 0 + step))
 
 
-def test_rest_costs_one_evaluation():
+def test_what_is_not_asked_for_is_not_evaluated():
     def refused(*_):
         raise AssertionError("not needed here")
 
     x, conditional = torch.zeros(3, 1), denoisers()[0]
-    where_noisy(refused, conditional, SCHEDULE, 0.5)(x, torch.full((3,), 1))
-    where_noisy(conditional, refused, SCHEDULE, 0.5)(x, torch.full((3,), 100))
+    while_between(refused, conditional, SCHEDULE, 0.1, 0.5)(x, torch.full((3,), 1))
+    while_between(refused, conditional, SCHEDULE, 0.1, 0.5)(x, torch.full((3,), 100))
+    while_between(conditional, refused, SCHEDULE, 0.1, 0.5)(x, torch.full((3,), 60))

@@ -83,7 +83,7 @@ def test_a_stand_is_where_the_toe_is_given_and_the_correction_fades_to_the_given
     assert standing[:10].all() and standing[20:].all() and not standing[11:19].any()
     given = np.zeros(30, bool)
     given[[2, 15]] = True
-    moved = toe + to_stands(toe, given, 20.0)
+    moved = toe + to_stands(toe, given, stands(toe, 20.0))
     np.testing.assert_allclose(
         moved[:10, 2], toe[2, 2], atol=1e-12
     )  # at the given place, not at the median
@@ -104,7 +104,7 @@ def test_a_stand_s_correction_rises_smoothly_beside_a_frame_that_is_given_after_
     given = np.zeros(20, bool)
     given[10] = True
     assert stands(toe, 20.0).tolist() == [True] * 10 + [False] * 10
-    shift = to_stands(toe, given, 20.0)[:, 2]
+    shift = to_stands(toe, given, stands(toe, 20.0))[:, 2]
     whole = 0.045 - toe[:10, 2]
     left = np.array([3 * (k / 6) ** 2 - 2 * (k / 6) ** 3 for k in range(1, 6)])
     np.testing.assert_allclose(shift[9:4:-1], left * whole[9:4:-1], atol=1e-12)
@@ -114,7 +114,7 @@ def test_a_stand_s_correction_rises_smoothly_beside_a_frame_that_is_given_after_
 
 def test_nothing_stands_nothing_moves():
     flying = np.tile([0.0, 1.0, 0.0], (10, 1)) + np.arange(10)[:, None] * [0.0, 0.0, 0.3]
-    assert (to_stands(flying, np.zeros(10, bool), 20.0) == 0).all()
+    assert (to_stands(flying, np.zeros(10, bool), stands(flying, 20.0)) == 0).all()
 
 
 def test_a_standing_foot_is_slower_than_a_fast_pelvis():
@@ -135,5 +135,5 @@ def test_a_foot_that_glides_far_is_left_alone(length, held):
     """From its median place, in the middle, it goes half of the length away."""
     toe = np.zeros((20, 3))
     toe[:, 0] = np.linspace(0, length, 20)
-    moved = toe + to_stands(toe, np.zeros(20, bool), 20.0, farthest=0.2)
+    moved = toe + to_stands(toe, np.zeros(20, bool), stands(toe, 20.0), farthest=0.2)
     assert np.allclose(moved[:, 0], length / 2) == held and np.array_equal(moved, toe) != held

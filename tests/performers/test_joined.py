@@ -17,7 +17,7 @@ from motiondiff_edu.motion.inverse_kinematics import drag
 from motiondiff_edu.motion.motion import Motion, MotionWarning
 from motiondiff_edu.motion.root_frame import control_from_path, to_root_frame
 from motiondiff_edu.motion.scaler import Scaler
-from motiondiff_edu.motion.skeleton import JOINTS, joint_index
+from motiondiff_edu.motion.skeleton import JOINTS, TOES, joint_index
 from motiondiff_edu.performers.joined import JUMP, UNLIKE, Start, in_words, joined, unlike_training
 
 AHEAD = np.tile([1.0, 0.0, 0.0], (50, 1))
@@ -55,7 +55,8 @@ def sliding(more: Motion) -> float:
 
 def as_the_network_says(monkeypatch) -> None:
     """Without what is done to bones and feet."""
-    monkeypatch.setattr("motiondiff_edu.performers.joined.finished", lambda whole, *_: whole)
+    plain = "motiondiff_edu.performers.joined.finished_continuation"
+    monkeypatch.setattr(plain, lambda whole, *_: whole)
 
 
 def test_a_usual_walk_keeps_its_body_and_stands_and_nothing_is_said(walker, usual, monkeypatch):
@@ -83,6 +84,16 @@ def test_an_unusual_past_is_named_and_joined_without_a_jump(walker, unusual, mon
     np.testing.assert_array_equal(more.positions[n:, hand], plain.positions[n:, hand])
     assert np.abs(more.positions[:5] - plain.positions[:5]).max() > 0.1
     assert more.positions[..., 1].min() > -0.02
+
+
+def test_a_motion_under_the_floor_goes_on_there(walker, usual):
+    """It is not lifted at the seam, which would be a jump of the feet."""
+    low = Motion(usual.positions - [0.0, 0.06, 0.0], usual.fps, root=usual.root, source="low")
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", MotionWarning)
+        more = walker.walk(low, AHEAD, progress=False)
+    assert more.positions[0, list(TOES), 1].min() < -0.02
+    assert ratio(low, more) < JUMP
 
 
 def test_each_sample_is_joined_for_itself(walker, unusual):

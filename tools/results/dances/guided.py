@@ -13,7 +13,7 @@ from motiondiff_edu.performers.dancer import Dancer
 from ..walks.scores import Measure
 from .parts import Stage, as_records, danced
 
-WEIGHTS = (1, 2, 4, 6)
+WEIGHTS = (1, 2, 4)
 
 
 @dataclass(frozen=True, eq=False)

@@ -157,7 +157,7 @@ def dancer_measures(stage: Stage, name: str) -> list[Measure]:
     if "dancer-plain" in stage.weights:
         plain = dances(stage, stage.dancer("dancer-plain"), TRAINED, stage.size.seeds)
         gain = [bone_gain(found.squares, bone_measure(plain)[1])]
-    ended = finishing_measures(found.made, found.data, stage.songs.beats(TRAINED))
+    ended = finishing_measures(found.made, dancer.bones, found.data, stage.songs.beats(TRAINED))
     return found.measures + gain + ended + long_measures(stage, dancer, found)
 
 

@@ -101,21 +101,25 @@ def table_1(records: dict[str, dict]) -> str:
 def _block(records: dict[str, dict], names: dict[str, str], what: str) -> list[list[str]]:
     """The data's row, read from whatever was measured with it, and a row for each name."""
     there = [name for name in names if f"{name}.bas" in records]
+    newest = [name for name in there if not on_old_dances(records[f"{name}.bas"])]
     made = STORED if what == "same steps" else ANEW
     unmeasured = ["-"] * len(COLUMNS)
     rows = []
     if there:
-        data = [_of_data(records, there, kind) for kind in COLUMNS]
-        rows.append([f"**data** ({what})", *data, "with the rows below"])
+        data = [_of_data(records, newest or there, kind) for kind in COLUMNS]
+        old = ", the old dances" * (not newest)
+        rows.append([f"**data** ({what}{old})", *data, "with the rows below"])
     for name, words in names.items():
         steps = records[f"{name}.bas"]["seeds"].get("trained_steps") if name in there else None
+        old = name in there and on_old_dances(records[f"{name}.bas"])
         cells = (
             [cell(records.get(f"{name}.{kind}"), unit=False) for kind in COLUMNS]
             if there
             else unmeasured
         )
         said = made if name in there else f"not measured yet ({made.removesuffix('; stored')})"
-        rows.append([f"**{words}**" + (f", {steps} steps" if steps else ""), *cells, said])
+        about = f", {steps} steps" * bool(steps) + ", on the old dances" * old
+        rows.append([f"**{words}**{about}", *cells, said])
     return rows
 
 
@@ -152,9 +156,9 @@ def finishing(records: dict[str, dict]) -> str:
         for who, words in names.items()
     ]
     text = (
-        "\nThe measures of the dancer are of the network's own dances. `dance` keeps the bones of "
-        "a dance at their median lengths and holds standing feet (`performers/finished.py`). Bone "
-        "errors are around each dance's own mean lengths.\n\n"
+        "\nThe measures of the dancer are of the network's own dances. `dance` gives the bones the "
+        "lengths that they have in the data, and holds standing feet "
+        "(`performers/finished.py`).\n\n"
     )
     return text + table(["the dance", *(f"`{kind}`" for kind in ENDED)], rows)
 
@@ -225,8 +229,8 @@ def choices(records: dict[str, dict]) -> str:
         f"with the same seed, for {FULL.steps} steps of {FULL.batch} windows. Each row differs in "
         f"one choice from the row named beside it; that with an ear has {FULL.ear_steps} steps of "
         f"the ear besides. All dance with {STEPS} DDIM steps (eta = "
-        f"{ETA:g}). The share gained and the bone error saved are relative to that row, on the "
-        "same songs. The trainings are short, with one seed each: read these as a ranking, not as "
+        f"{_etas(records)}). The share gained and the bone error saved are relative to that row, on "
+        "the same songs. The trainings are short, with one seed each: read these as a ranking, not as "
         "what a choice is worth in the end. `make results FULL=1` trains them again; "
         "`make results` keeps what is stored.\n\n"
     )
@@ -237,6 +241,16 @@ def choices(records: dict[str, dict]) -> str:
             "compare them with each other alone.\n\n"
         )
     return text + table(head, rows) + _times(records)
+
+
+def _etas(records: dict[str, dict]) -> str:
+    """The eta of the stored rows; that of today, where there are none."""
+    found = {
+        one["seeds"]["eta"]
+        for name, one in records.items()
+        if name.startswith("dance-budget.") and "eta" in one["seeds"]
+    }
+    return " or ".join(f"{eta:g}" for eta in sorted(found or {ETA}))
 
 
 def _times(records: dict[str, dict]) -> str:
