@@ -229,9 +229,9 @@ def choices(records: dict[str, dict]) -> str:
         f"with the same seed, for {FULL.steps} steps of {FULL.batch} windows. Each row differs in "
         f"one choice from the row named beside it; that with an ear has {FULL.ear_steps} steps of "
         f"the ear besides. All dance with {STEPS} DDIM steps (eta = "
-        f"{_etas(records)}). The share gained and the bone error saved are relative to that row, on "
-        "the same songs. The trainings are short, with one seed each: read these as a ranking, not as "
-        "what a choice is worth in the end. `make results FULL=1` trains them again; "
+        f"{_etas(records)}). The share gained and the bone error saved are relative to that row, "
+        "on the same songs. The trainings are short, with one seed each: read these as a ranking, "
+        "not as what a choice is worth in the end. `make results FULL=1` trains them again; "
         "`make results` keeps what is stored.\n\n"
     )
     if any(on_old_dances(one) for one in records.values()):
