@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 import torch
 
+from motiondiff_edu.motion.skeleton import BONE_LENGTHS
 from tools.results.dances import guided, parts, songs
 from tools.results.dances.parts import DanceSize, Stage
 
@@ -14,6 +15,8 @@ SIZE = DanceSize(songs=3, seeds=1, pieces=2, each=2, taught=15)
 
 class Perfect:
     """It knows the songs by their Mel frames; asked twice for one, it has another dance."""
+
+    bones = BONE_LENGTHS
 
     def __init__(self):
         self.known: list[songs.Songs] = []
@@ -71,6 +74,9 @@ def test_a_perfect_dancer(stage):
     ]  # fmt: skip
     for name in ratios:
         assert found[f"dancer.{name}"] == pytest.approx(1, abs=1e-3), name
+    # finishing a dance without faults changes next to nothing
+    assert found["dancer.finished.bas_share"] == pytest.approx(1, abs=0.05)
+    assert found["dancer.finished.bone_rmse_cm"] < 0.01
     assert found["dancer.repeat"] == pytest.approx(found["dancer.repeat_data"])
     data = values(parts.data_records(stage, "c"))
     truth = stage.songs.truth[:, 0]
