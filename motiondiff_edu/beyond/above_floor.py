@@ -10,9 +10,11 @@ Source: two bones and a distance form a triangle (`motion/inverse_kinematics.py`
 import numpy as np
 from jaxtyping import Bool, Float
 
-from ..motion.inverse_kinematics import drag
+from ..motion.inverse_kinematics import ankles_dragged
 from ..motion.skeleton import HEELS, TOES
 from .foot_lock import free_legs
+
+UP = np.array([0.0, 1.0, 0.0])
 
 
 def feet_above_floor(
@@ -24,6 +26,6 @@ def feet_above_floor(
     moved = np.array(positions, np.float64)
     for toe, heel in zip(TOES, HEELS, strict=True):
         depth = floor - moved[:, [heel, toe], 1].min(1)
-        for t in np.flatnonzero(free_legs(known, heel, toe) & (depth > 0)):
-            moved[t] = drag(moved[t], heel, moved[t, heel] + [0.0, depth[t], 0.0])
+        at = free_legs(known, heel, toe) & (depth > 0)
+        moved[at] = ankles_dragged(moved[at], heel, moved[at, heel] + depth[at, None] * UP)
     return moved

@@ -11,7 +11,7 @@ import scipy
 from jaxtyping import Bool, Float
 
 from ..motion.dance_frame import GROUND
-from ..motion.inverse_kinematics import drag
+from ..motion.inverse_kinematics import ankles_dragged
 from ..motion.planting import runs
 from ..motion.skeleton import HEELS, HIPS, TOES
 
@@ -43,8 +43,8 @@ def _steady_leg(moved, known, toe: int, heel: int, fps: float) -> None:
     """Correct one leg in place; the foot keeps its direction."""
     free = free_legs(known, heel, toe)
     shift = to_stands(moved[:, toe], ~free, fps, slow_for(moved, fps))
-    for t in np.flatnonzero(free & shift.any(1)):
-        moved[t] = drag(moved[t], heel, moved[t, heel] + shift[t])
+    at = free & shift.any(1)
+    moved[at] = ankles_dragged(moved[at], heel, moved[at, heel] + shift[at])
 
 
 def free_legs(known: Bool[np.ndarray, "T 21"], heel: int, toe: int) -> Bool[np.ndarray, " T"]:

@@ -11,13 +11,14 @@ Source: ours; people lift a toe by some centimetres as soon as it leaves the flo
 import numpy as np
 from jaxtyping import Bool, Float
 
-from ..motion.inverse_kinematics import drag
+from ..motion.inverse_kinematics import ankles_dragged
 from ..motion.planting import runs
 from ..motion.skeleton import HEELS, TOES
 from .foot_lock import between_anchors, closeness, free_legs, slow_for, stands
 
 NEAR = 0.03  # m: a standing toe so near to the floor is put on it
 CLEARANCE = 0.03  # m that a toe is lifted in the middle of a step, at least
+UP = np.array([0.0, 1.0, 0.0])
 SHARE = 0.1  # of the length of the step, if that is less
 
 
@@ -36,8 +37,8 @@ def clear_steps(
         free = free_legs(known, heel, toe)
         standing = stands(moved[:, toe], fps, slow_for(moved, fps))
         lift = height_over(moved[:, toe], standing, ~free, floor) - moved[:, toe, 1]
-        for t in np.flatnonzero(free & (np.abs(lift) > 1e-9)):
-            moved[t] = drag(moved[t], heel, moved[t, heel] + [0.0, lift[t], 0.0])
+        at = free & (np.abs(lift) > 1e-9)
+        moved[at] = ankles_dragged(moved[at], heel, moved[at, heel] + lift[at, None] * UP)
     return moved
 
 

@@ -53,7 +53,8 @@ def drag(pose: Pose, joint: int, target: Point) -> Pose:
             pose, chain, np.stack([pose[chain[0]], pose[chain[0]] + _bone(pose, chain, target)])
         )
     solve = two_bones if len(chain) == 3 else towed
-    return carried(pose, chain, solve(pose[chain], target, bends_to(pose, chain[0])))
+    bends = bends_to(pose[None], chain[0])[0]
+    return carried(pose, chain, solve(pose[chain], target, bends))
 
 
 def chain_to(joint: int) -> list[int]:
@@ -68,46 +69,77 @@ def chain_to(joint: int) -> list[int]:
     return chain[::-1]
 
 
-def bends_to(pose: Pose, root: int) -> Float[np.ndarray, "2 3"]:
-    """Two directions in which a straight limb can start to bend.
+def bends_to(poses: Float[np.ndarray, "T 21 3"], root: int) -> Float[np.ndarray, "T 2 3"]:
+    """Two directions in which a straight limb can start to bend, frame by frame.
 
     The second serves when the limb points along the first. Knees bend ahead or up, elbows back or
     down. `root` is the limb's first joint, a hip or a shoulder.
     """
     sense = 1.0 if root in UPLEGS else -1.0
-    return sense * np.stack([pelvis_ahead(pose[None])[0], [0.0, 1.0, 0.0]])
+    ahead = pelvis_ahead(poses)
+    return sense * np.stack([ahead, np.broadcast_to([0.0, 1.0, 0.0], ahead.shape)], 1)
 
 
 def two_bones(
     limb: Float[np.ndarray, "3 3"], target: Point, bends: Float[np.ndarray, "2 3"]
 ) -> Float[np.ndarray, "3 3"]:
-    """Root, middle and end of a limb, with the end at the target.
+    """`limbs_bent` for a single limb."""
+    return limbs_bent(limb[None], target[None], bends[None])[0]
+
+
+def limbs_bent(
+    limbs: Float[np.ndarray, "T 3 3"],
+    targets: Float[np.ndarray, "T 3"],
+    bends: Float[np.ndarray, "T 2 3"],
+) -> Float[np.ndarray, "T 3 3"]:
+    """Root, middle and end of a limb in each frame, with the end at the target.
 
     Two bones and a distance form a triangle (`planting.triangle`). The middle joint stays on its
     side, which turns with the line from root to end. A target out of reach is moved closer along
     the line from the root.
     """
-    root, middle, end = limb
-    a, b, far = (float(np.linalg.norm(v)) for v in (middle - root, end - middle, end - root))
-    longest = max(STRAIGHTEST * (a + b), min(far, a + b))
-    wanted = float(np.linalg.norm(target - root))
-    line = (target - root) / wanted if wanted > 1e-9 else unit(end - root)
-    d = float(np.clip(wanted, min(abs(a - b) + 0.01, far), longest))
+    root, middle, end = limbs.swapaxes(0, 1)
+    a, b, far = (np.linalg.norm(v, axis=-1) for v in (middle - root, end - middle, end - root))
+    longest = np.maximum(STRAIGHTEST * (a + b), np.minimum(far, a + b))
+    wanted = np.linalg.norm(targets - root, axis=-1)
+    before = unit(end - root)
+    line = np.where((wanted > 1e-9)[:, None], unit(targets - root), before)
+    d = np.clip(wanted, np.minimum(np.abs(a - b) + 0.01, far), longest)
     along, aside = triangle(a, b, d)
-    before = perpendicular((middle - root)[None], unit(end - root)[None])
-    was = float(np.linalg.norm(before))
-    side = (least_turn(unit(end - root)[None], line[None]) @ before[0])[0]
-    side = side + max(0.0, 1 - was / STIFF) * max(aside - was, 0.0) * _first_aside(bends, line)
-    return np.stack([root, root + along * line + aside * unit(side), root + d * line])
+    bent = perpendicular(middle - root, before)
+    was = np.linalg.norm(bent, axis=-1)
+    more = np.maximum(0.0, 1 - was / STIFF) * np.maximum(aside - was, 0.0)
+    side = np.einsum("tij,tj->ti", least_turn(before, line), bent)
+    side = unit(side + more[:, None] * _first_aside(bends, line))
+    knee = root + along[:, None] * line + aside[:, None] * side
+    return np.stack([root, knee, root + d[:, None] * line], 1)
 
 
-def _first_aside(directions: Float[np.ndarray, "2 3"], line: Point) -> Point:
+def _first_aside(
+    directions: Float[np.ndarray, "T 2 3"], line: Float[np.ndarray, "T 3"]
+) -> Float[np.ndarray, "T 3"]:
     """The part of the first direction at right angles to the line.
 
     The second direction serves where the first points along the line.
     """
-    first, second = (perpendicular(v[None], line[None])[0] for v in directions)
-    return unit(first) if np.linalg.norm(first) > 0.2 else unit(second)
+    first, second = (perpendicular(v, line) for v in directions.swapaxes(0, 1))
+    plain = np.linalg.norm(first, axis=-1, keepdims=True) > 0.2
+    return np.where(plain, unit(first), unit(second))
+
+
+def ankles_dragged(
+    poses: Float[np.ndarray, "T 21 3"], heel: int, targets: Float[np.ndarray, "T 3"]
+) -> Float[np.ndarray, "T 21 3"]:
+    """`drag` of an ankle in every frame: the knee bends, and the foot keeps its direction."""
+    if not len(poses):
+        return np.array(poses)
+    chain = chain_to(heel)
+    places = limbs_bent(poses[:, chain], targets, bends_to(poses, chain[0]))
+    moved = np.array(poses)
+    foot = [heel, *descendants(heel)]
+    moved[:, foot] += (places[:, 2] - poses[:, heel])[:, None]
+    moved[:, chain[1:]] = places[:, 1:]
+    return moved
 
 
 def towed(
@@ -198,8 +230,7 @@ def pelvis_moved(pose: Pose, shift: Point) -> Pose:
     """The body moved; each ankle and its foot stay, as far as the leg reaches."""
     moved = pose + shift
     for heel in HEELS:
-        leg = chain_to(heel)
-        moved = carried(moved, leg, two_bones(moved[leg], pose[heel], bends_to(moved, leg[0])))
+        moved = ankles_dragged(moved[None], heel, pose[None, heel])[0]
     return moved
 
 

@@ -8,6 +8,7 @@ import pytest
 
 from data_synth.walking import random_control, walk
 from motiondiff_edu.motion.inverse_kinematics import (
+    ankles_dragged,
     chain_to,
     descendants,
     drag,
@@ -195,3 +196,22 @@ def test_what_cannot_be_dragged(pose):
         drag(pose, 21, pose[0])
     with pytest.raises(ValueError, match="LeftHand cannot be dragged"):
         drag(pose, HAND, np.array([0.0, np.nan, 0]))
+
+
+@pytest.mark.parametrize("heel", HEELS)
+def test_ankles_of_many_frames_are_dragged_as_one_by_one(heel):
+    """Reachable, out of reach, where they are, into the hip, and on a straight leg."""
+    walked = walk(random_control(2.0, np.random.default_rng(3), "turn"), 4)
+    poses = to_world(walked.poses, walked.control)
+    poses[7] = rest()
+    rng = np.random.default_rng(1)
+    targets = poses[:, heel] + rng.normal(0, 0.15, (len(poses), 3))
+    targets[3] += [4.0, 0.0, 0.0]
+    targets[4], targets[5] = poses[4, heel], poses[5, heel - 2]
+    found = ankles_dragged(poses, heel, targets)
+    wanted = np.stack([drag(p, heel, t) for p, t in zip(poses, targets, strict=True)])
+    np.testing.assert_allclose(found, wanted, atol=1e-12)
+    assert np.abs(found - poses)[:, heel].max() > 0.2
+    others = [j for j in range(J) if j not in (heel - 1, heel, *descendants(heel))]
+    assert np.array_equal(found[:, others], poses[:, others])
+    assert not len(ankles_dragged(poses[:0], heel, targets[:0]))
