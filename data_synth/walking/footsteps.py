@@ -9,6 +9,7 @@ aim is fixed before it lands.
 
 from dataclasses import dataclass
 from math import cos, exp, hypot, sin
+from typing import no_type_check
 
 import numpy as np
 from jaxtyping import Bool, Float
@@ -35,6 +36,7 @@ class Steps:
     toe_up: Float[np.ndarray, "T 2"]  # how much the toe is raised at heel strike, 0..1
 
 
+@no_type_check  # a dozen calls a frame: checking their numbers would take most of the time
 class _Feet:
     """State of the loop: both feet and the clock."""
 

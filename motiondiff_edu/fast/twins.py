@@ -7,7 +7,7 @@ a new copy.
 
 from collections.abc import Callable
 
-from torch import Tensor, nn
+from torch import nn
 
 from ..cross_modal_attention import CrossModalAttention
 
@@ -32,14 +32,12 @@ class Twin:
 
 
 def stamp_of(model: nn.Module) -> tuple:
-    """The address of every weight and buffer, and how often it was changed in place."""
+    """The address of every weight and buffer, and how often it was changed in place.
+
+    torch keeps no count for tensors made in inference mode.
+    """
     tensors = [*model.parameters(), *model.buffers()]
-    return tuple((tensor.data_ptr(), _changes(tensor)) for tensor in tensors)
-
-
-def _changes(tensor: Tensor) -> int:
-    """The count of in-place changes; torch keeps none for tensors made in inference mode."""
-    return 0 if tensor.is_inference() else tensor._version
+    return tuple((one.data_ptr(), 0 if one.is_inference() else one._version) for one in tensors)
 
 
 def watched(model: nn.Module) -> bool:
