@@ -144,21 +144,19 @@ def project(
 
 def hull(points: Float[np.ndarray, "N 2"]) -> Float[np.ndarray, "K 2"]:
     """Convex hull, by Andrew's monotone chain."""
-
-    def chain(ordered: list) -> list:
-        kept: list = []
-        for p in ordered:
-            while len(kept) > 1 and _turn(kept[-2], kept[-1], p) <= 0:
-                kept.pop()
-            kept.append(p)
-        return kept[:-1]
-
     ordered = sorted(map(tuple, points.tolist()))
-    return np.array(chain(ordered) + chain(ordered[::-1]))
-
-
-def _turn(a: tuple, b: tuple, c: tuple) -> float:
-    return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
+    kept: list[tuple[float, float]] = []
+    for way in (ordered, ordered[::-1]):
+        first = len(kept)
+        for c in way:
+            while len(kept) > first + 1:
+                (a_x, a_y), (b_x, b_y) = kept[-2:]
+                if (b_x - a_x) * (c[1] - a_y) > (b_y - a_y) * (c[0] - a_x):
+                    break
+                kept.pop()
+            kept.append(c)
+        kept.pop()
+    return np.array(kept)
 
 
 def circle_centres(pose: Float[np.ndarray, "J 3"], part: Part) -> Float[np.ndarray, "N 3"]:
