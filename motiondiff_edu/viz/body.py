@@ -6,6 +6,7 @@ Notebook: 01
 """
 
 from dataclasses import asdict, dataclass, replace
+from functools import lru_cache
 
 import numpy as np
 from jaxtyping import Float
@@ -117,13 +118,21 @@ class Camera:
 
     def axes(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Unit vectors to the right, up and ahead."""
-        cos = np.cos(self.yaw)
-        sin = np.sin(self.yaw)
-        rise = np.sin(self.pitch)
-        flat = np.cos(self.pitch)
-        ahead = -np.array([-flat * cos, rise, flat * sin])
-        right = np.array([sin, 0.0, cos])
-        return right, np.cross(right, ahead), ahead
+        return _axes(self.yaw, self.pitch)
+
+
+@lru_cache(maxsize=16)  # a picture projects a hundred times with one camera
+def _axes(yaw: float, pitch: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    cos = np.cos(yaw)
+    sin = np.sin(yaw)
+    rise = np.sin(pitch)
+    flat = np.cos(pitch)
+    ahead = -np.array([-flat * cos, rise, flat * sin])
+    right = np.array([sin, 0.0, cos])
+    axes = right, np.cross(right, ahead), ahead
+    for one in axes:
+        one.setflags(write=False)
+    return axes
 
 
 def project(
