@@ -202,12 +202,12 @@ def test_two_acts_on_the_spot_come_in_a_row_in_clips_of_every_length():
 def test_captions_are_many_and_have_several_wordings():
     rng = np.random.default_rng(1)
     bare, texts = set(), set()
-    for _ in range(8_000):
+    for _ in range(12_500):
         sentence, _ = draw(rng)
         acts = [replace(act, speed="") for phrase in sentence for act in phrase.acts]
         bare.add(tuple(sorted(map(str, acts))))
         texts.add(caption(sentence, rng))
-    assert len(bare) >= 3000 and len(texts) > 6_000
+    assert len(bare) >= 3000 and len(texts) > 10_000
     assert len({words for text in texts for words in words_of(text)} - vocabulary()) == 0
     four = worded((Phrase(Act("squat", count=3)),), rng)
     assert len(set(four)) == 4 and all(any(t in text for t in TIMES[3]) for text in four)
