@@ -10,11 +10,10 @@ Source: two bones and a distance form a triangle (`motion/inverse_kinematics.py`
 import numpy as np
 from jaxtyping import Bool, Float
 
+from ..motion.directions import UP
 from ..motion.inverse_kinematics import ankles_dragged
 from ..motion.skeleton import HEELS, TOES
 from .foot_lock import free_legs
-
-UP = np.array([0.0, 1.0, 0.0])
 
 
 def feet_above_floor(

@@ -11,6 +11,7 @@ Source: ours; people lift a toe by some centimetres as soon as it leaves the flo
 import numpy as np
 from jaxtyping import Bool, Float
 
+from ..motion.directions import UP
 from ..motion.inverse_kinematics import ankles_dragged
 from ..motion.planting import runs
 from ..motion.skeleton import HEELS, TOES
@@ -18,7 +19,6 @@ from .foot_lock import between_anchors, closeness, free_legs, slow_for, stands
 
 NEAR = 0.03  # m: a standing toe so near to the floor is put on it
 CLEARANCE = 0.03  # m that a toe is lifted in the middle of a step, at least
-UP = np.array([0.0, 1.0, 0.0])
 SHARE = 0.1  # of the length of the step, if that is less
 
 

@@ -15,6 +15,7 @@ HIPS, SPINE, SPINE1, NECK, HEAD = (
     joint_index(name) for name in ("Hips", "Spine", "Spine1", "Neck1", "Head")
 )
 UPLEGS, ARMS = (1, 5), (13, 17)
+UP = np.array([0.0, 1.0, 0.0])
 # downward pitch of the course's foot, from ankle to toe, while it stands on the floor
 FLAT_PITCH = float(np.arctan2(-OFFSETS[4, 1], OFFSETS[4, 2]))
 
@@ -125,7 +126,7 @@ def rest_lean(rest: Float[np.ndarray, "21 3"]) -> float:
     """
     across = unit(rest[UPLEGS[0]] - rest[UPLEGS[1]])
     trunk = rest[list(ARMS)].mean(0) - rest[list(UPLEGS)].mean(0)
-    ahead = unit(np.cross(across, [0.0, 1.0, 0.0]))
+    ahead = unit(np.cross(across, UP))
     lean = float(np.arctan2(-trunk @ ahead, trunk[1]))
     return lean if abs(lean) < np.radians(25) else 0.0
 

@@ -16,7 +16,7 @@ import numpy as np
 from jaxtyping import Float
 
 from .bvh.fit import least_turn
-from .directions import ARMS, SPINE1, UPLEGS, unit
+from .directions import ARMS, SPINE1, UP, UPLEGS, unit
 from .planting import pelvis_ahead, perpendicular, triangle
 from .skeleton import HEELS, HIPS, JOINTS, PARENTS, J
 
@@ -39,12 +39,11 @@ def drag(pose: Pose, joint: int, target: Point) -> Pose:
     """
     if not 0 <= joint < J:
         raise IndexError(f"joint {joint} is not one of the skeleton's {J} (0 to {J - 1})")
-    if not np.isfinite(target).all():
-        raise ValueError(
-            f"{JOINTS[joint]} cannot be dragged to {target.tolist()}: the target is not finite"
-        )
+    check_finite(joint, target)
     if joint in PELVIS:
         return pelvis_moved(pose, target - pose[joint])
+    if joint in HEELS:
+        return ankles_dragged(pose[None], joint, target[None])[0]
     chain = chain_to(joint)
     if chain[0] == HIPS:
         return carried(pose, chain, fabrik(pose[chain], target))
@@ -55,6 +54,14 @@ def drag(pose: Pose, joint: int, target: Point) -> Pose:
     solve = two_bones if len(chain) == 3 else towed
     bends = bends_to(pose[None], chain[0])[0]
     return carried(pose, chain, solve(pose[chain], target, bends))
+
+
+def check_finite(joint: int, target: Float[np.ndarray, "*T 3"]) -> None:
+    """Raise ValueError for a target of this joint that is not finite; the first one is named."""
+    bad = target[~np.isfinite(target).all(-1)]
+    if bad.size:
+        first = bad.reshape(-1, 3)[0].tolist()
+        raise ValueError(f"{JOINTS[joint]} cannot be dragged to {first}: the target is not finite")
 
 
 def chain_to(joint: int) -> list[int]:
@@ -77,7 +84,7 @@ def bends_to(poses: Float[np.ndarray, "T 21 3"], root: int) -> Float[np.ndarray,
     """
     sense = 1.0 if root in UPLEGS else -1.0
     ahead = pelvis_ahead(poses)
-    return sense * np.stack([ahead, np.broadcast_to([0.0, 1.0, 0.0], ahead.shape)], 1)
+    return sense * np.stack([ahead, np.broadcast_to(UP, ahead.shape)], 1)
 
 
 def two_bones(
@@ -130,7 +137,11 @@ def _first_aside(
 def ankles_dragged(
     poses: Float[np.ndarray, "T 21 3"], heel: int, targets: Float[np.ndarray, "T 3"]
 ) -> Float[np.ndarray, "T 21 3"]:
-    """`drag` of an ankle in every frame: the knee bends, and the foot keeps its direction."""
+    """`drag` of an ankle in every frame: the knee bends, and the foot keeps its direction.
+
+    Raises ValueError for a target that is not finite.
+    """
+    check_finite(heel, targets)
     if not len(poses):
         return np.array(poses)
     chain = chain_to(heel)
@@ -188,15 +199,11 @@ def fabrik(
 
 
 def carried(pose: Pose, chain: list[int], places: Float[np.ndarray, "N 3"]) -> Pose:
-    """The pose with a chain at new places; the joints below turn with the bone that carries them.
-
-    A foot whose ankle is dragged keeps its direction, so that the sole keeps its angle.
-    """
+    """The pose with a chain at new places; joints below turn with the bone that carries them."""
     moved = np.array(pose)
     for k in range(1, len(chain)):
         joint, above = chain[k], chain[k - 1]
         turn = least_turn((pose[joint] - pose[above])[None], (places[k] - places[k - 1])[None])[0]
-        turn = np.eye(3) if joint in HEELS and k == len(chain) - 1 else turn
         below = [
             j
             for j in block(joint, above)

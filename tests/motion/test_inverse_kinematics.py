@@ -214,4 +214,11 @@ def test_ankles_of_many_frames_are_dragged_as_one_by_one(heel):
     assert np.abs(found - poses)[:, heel].max() > 0.2
     others = [j for j in range(J) if j not in (heel - 1, heel, *descendants(heel))]
     assert np.array_equal(found[:, others], poses[:, others])
+    toe = descendants(heel)[0]
+    foot, before = found[:, toe] - found[:, heel], poses[:, toe] - poses[:, heel]
+    np.testing.assert_allclose(foot, before, atol=1e-12)
+    np.testing.assert_allclose(*([bones(p) for p in some] for some in (found, poses)), atol=1e-9)
     assert not len(ankles_dragged(poses[:0], heel, targets[:0]))
+    targets[6, 1] = np.nan
+    with pytest.raises(ValueError, match=f"{JOINTS[heel]} cannot be dragged"):
+        ankles_dragged(poses, heel, targets)
