@@ -8,6 +8,7 @@ from pathlib import Path
 
 # defaults of the course: JupyterLab does not ask about news; a student's own settings come first
 CONFIG = Path(__file__).parent / "jupyter_config"
+PATIENCE = 15  # seconds: Jupyter gives its kernels 5 to end by themselves
 
 
 def open_lab(
@@ -34,14 +35,30 @@ def open_lab(
 
 
 def serve(command: list[str], environment: dict[str, str]) -> int:
-    """Run the server; returns its exit status. Ctrl-C and SIGTERM stop it and its kernels."""
-    server = subprocess.Popen(command, env=os.environ | environment)
-    before = signal.signal(signal.SIGTERM, lambda *_: server.terminate())
+    """Run the server; returns its exit status. Ctrl-C and SIGTERM stop it and its kernels.
+
+    A server that does not end within PATIENCE seconds, or a second Ctrl-C, is killed.
+    """
+    before = signal.signal(signal.SIGTERM, signal.default_int_handler)
+    server = None
     try:
+        server = subprocess.Popen(command, env=os.environ | environment)
         return server.wait()
     except KeyboardInterrupt:
-        server.terminate()
-        server.wait()
+        if server:
+            end(server)
         return 0
     finally:
         signal.signal(signal.SIGTERM, before)
+
+
+def end(server: subprocess.Popen) -> None:
+    """Ask the server to end, and kill it if it does not."""
+    try:
+        server.terminate()
+        server.wait(PATIENCE)
+    except subprocess.TimeoutExpired:
+        pass  # stopped while a kernel starts, Jupyter Server 2.21 waits for ever for a thread
+    finally:
+        server.kill()  # does nothing to a server that has ended
+        server.wait()

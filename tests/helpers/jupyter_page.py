@@ -92,8 +92,17 @@ def lab(chromium, root, tmp_path, request):
         )
         yield f"http://127.0.0.1:{port}/lab/tree/walk.ipynb?token={token}"
     finally:
-        server.terminate()
+        stop(server)
+
+
+def stop(server) -> None:
+    """End the server; one asked to stop while a kernel starts waits for ever, and is killed."""
+    server.terminate()
+    try:
         server.wait(20)
+    except subprocess.TimeoutExpired:
+        server.kill()
+        server.wait()
 
 
 def wait_until_answering(address: str, server, log, attempts: int = 240) -> None:
