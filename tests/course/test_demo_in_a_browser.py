@@ -50,7 +50,7 @@ def address(chromium, tmp_path: Path):
             yield f"http://127.0.0.1:{port}/doc/tree/notebooks/07_far.ipynb?token=test"
         finally:
             server.terminate()
-            server.wait(120)
+            server.wait(60)
 
 
 def test_a_demo_moves_without_a_click(address, browser):

@@ -12,6 +12,8 @@ import urllib.request
 
 import pytest
 
+from motiondiff_edu.course.jupyter import end
+
 ASK = """async (code) => {
   const panel = window.jupyterapp.shell.currentWidget, kernel = panel.sessionContext.session.kernel;
   let text = "";
@@ -92,17 +94,7 @@ def lab(chromium, root, tmp_path, request):
         )
         yield f"http://127.0.0.1:{port}/lab/tree/walk.ipynb?token={token}"
     finally:
-        stop(server)
-
-
-def stop(server) -> None:
-    """End the server; one asked to stop while a kernel starts waits for ever, and is killed."""
-    server.terminate()
-    try:
-        server.wait(20)
-    except subprocess.TimeoutExpired:
-        server.kill()
-        server.wait()
+        end(server)
 
 
 def wait_until_answering(address: str, server, log, attempts: int = 240) -> None:
