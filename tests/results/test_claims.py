@@ -90,7 +90,7 @@ def test_claims_ask_for_measures_that_are_measured():
 def test_table_1_has_the_papers_rows_the_datas_and_ours():
     kinds = ("bas_music", "fid", "diversity", "multimodality", "bas")
     mine = [
-        record(f"dance-budget.alpha_bar.{kind}", 0.1 * k, 0.3 * k, trained_steps=77)
+        record(f"dance-budget.alpha_bar.{kind}", 0.1 * k, 0.3 * k, trained_steps=77, dances=2)
         for k, kind in enumerate(kinds)
     ]
     mine += [
@@ -105,6 +105,12 @@ def test_table_1_has_the_papers_rows_the_datas_and_ours():
     assert "2.5 [2, 3]" in data and "6.5 [6, 7]" in data
     assert "weighted by alpha_bar**, 77 steps | 0 | 0.2 [0.1, 0.3]" in ours and "stored" in ours
     assert text.count("not measured yet") == 4 + 4 and text.count("**data**") == 1
+    old = record("dance-budget.x0.bas", 0.5, 0.5, trained_steps=66)
+    other = record("dance-budget.x0.bas_data", 9, 9)
+    both = tables.table_1(named(*mine, old, other))
+    assert "66 steps, on the old dances" in both and "2.5 [2, 3]" in both
+    alone = tables.table_1(named(old, other))
+    assert "**data** (same steps, the old dances)" in alone
 
 
 def test_the_page_marks_what_is_stored(tmp_path):
