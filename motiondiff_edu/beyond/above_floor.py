@@ -28,3 +28,8 @@ def feet_above_floor(
         at = free_legs(known, heel, toe) & (depth > 0)
         moved[at] = ankles_dragged(moved[at], heel, moved[at, heel] + depth[at, None] * UP)
     return moved
+
+
+def lowest_given(positions: Float[np.ndarray, "T 21 3"], known: Bool[np.ndarray, "T 21"]) -> float:
+    """The floor (metres): 0, or the lowest given joint if one is under it. Some joint is known."""
+    return min(0.0, positions[known][:, 1].min())

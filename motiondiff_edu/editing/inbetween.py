@@ -12,7 +12,7 @@ import torch
 from jaxtyping import Bool, Float
 from torch import Tensor
 
-from ..beyond.above_floor import feet_above_floor
+from ..beyond.above_floor import feet_above_floor, lowest_given
 from ..beyond.constant_bones import given_lengths, steady_bones
 from ..beyond.foot_lock import steady_feet
 from ..beyond.guidance import blended, guided
@@ -135,7 +135,7 @@ def cleared(
     known: Bool[np.ndarray, "T 21"],
 ) -> Float[np.ndarray, "samples T 21 3"]:
     """Feet on the floor, y = 0, and over it; a given joint under it lowers the limit alone."""
-    lowest = min(0.0, given[known][:, 1].min())
+    lowest = lowest_given(given, known)
     steps = [clear_steps(one, known) for one in made]
     return np.stack([feet_above_floor(one, known, lowest) for one in steps])
 

@@ -9,7 +9,7 @@ Source: Kovar and others, 2002 (feet), Müller and others, 2007 (bones).
 import numpy as np
 from jaxtyping import Bool, Float
 
-from ..beyond.above_floor import feet_above_floor
+from ..beyond.above_floor import feet_above_floor, lowest_given
 from ..beyond.constant_bones import given_lengths, steady_bones
 from ..beyond.foot_lock import LOW, steady_feet
 
@@ -40,8 +40,8 @@ def finished_continuation(
     Bones get the lengths that they have where they are given, and no foot is lower than the given
     joints, or than 0 if these are higher.
     """
-    floor = min(0.0, positions[known][:, 1].min())
-    return _finished(positions, fps, known, given_lengths(positions, known), LOW, floor)
+    lengths, floor = given_lengths(positions, known), lowest_given(positions, known)
+    return _finished(positions, fps, known, lengths, LOW, floor)
 
 
 def _finished(positions, fps, known, lengths, low: float, floor: float) -> np.ndarray:
