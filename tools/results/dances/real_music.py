@@ -75,10 +75,10 @@ class Recording:
 
 
 def recordings_of_music(folder: Path) -> list[Recording]:
-    """All recordings of music, each once."""
+    """All recordings of music, each once; none where there is no such folder."""
     paths = {
         path.stem: path
-        for path in sorted((folder / MUSIC).iterdir())
+        for path in sorted((folder / MUSIC).glob("*"))
         if path.suffix.lower() in SOUNDS and path.stem not in NO_MUSIC
     }
     return [
@@ -102,8 +102,7 @@ def recording(path: Path, folder: Path) -> Recording:
 def found_recordings() -> list[Recording]:
     """The recordings in the folder that MOTIONDIFF_REAL_DATA names; exits where there are none."""
     folder = Path(os.environ.get(VARIABLE, ""))
-    there = os.environ.get(VARIABLE) and (folder / MUSIC).is_dir()
-    recordings = recordings_of_music(folder) if there else []
+    recordings = recordings_of_music(folder) if os.environ.get(VARIABLE) else []
     if not recordings:
         sys.exit(f"{VARIABLE} must name a folder with recordings of music in {MUSIC}")
     return recordings
