@@ -1,4 +1,4 @@
-"""The network's own dances, and the same dances as `Dancer.dance` returns them."""
+"""The network's dances as `Dancer.dance` returns them."""
 
 from dataclasses import replace
 
@@ -11,7 +11,7 @@ from motiondiff_edu.performers.finished import finished_dance
 from ..walks.scores import Measure
 from .scores import Beats, beat_measures, bone_measure, rows_of
 
-OWN, FINISHED = "own.", "finished."
+FINISHED = "finished."
 KINDS = ("bas_share", "speed_over_data", "skating_mps", "bone_rmse_cm")
 
 
@@ -21,11 +21,10 @@ def finishing_measures(
     data: dict[str, Float[np.ndarray, "N"]],
     beats: Beats,
 ) -> list[Measure]:
-    """KINDS of both, named `own.KIND` and `finished.KIND`; R dances to each song."""
+    """The KINDS of finished dances, named `finished.KIND`; R dances to each song."""
     whole = np.stack([[finished_dance(one, FPS, bones) for one in song] for song in made])
     return [
-        replace(measure, name=f"{who}{measure.name}")
-        for who, dances in ((OWN, made), (FINISHED, whole))
-        for measure in (*beat_measures(rows_of(dances, beats), data), bone_measure(dances)[0])
+        replace(measure, name=f"{FINISHED}{measure.name}")
+        for measure in (*beat_measures(rows_of(whole, beats), data), bone_measure(whole)[0])
         if measure.name in KINDS
     ]

@@ -3,11 +3,13 @@
 Sections of docs/RESULTS.md.
 """
 
+from collections.abc import Sequence
+
 from motiondiff_edu.performers.dancer import ETA, STEPS
 
 from ..page.markdown import cell, number, table
 from .budget import FULL, VARIANTS, on_old_dances
-from .finishing import FINISHED, OWN
+from .finishing import FINISHED
 from .finishing import KINDS as ENDED
 from .floor import FLOOR
 from .guided import WEIGHTS
@@ -132,54 +134,46 @@ def _of_data(records: dict[str, dict], names: list[str], kind: str) -> str:
 
 def guidance(records: dict[str, dict]) -> str:
     """What the weight of guidance gains and costs; nothing where it was not measured."""
-    rows = [
-        [number(w), *(cell(records.get(f"dancer.guided.{w}.{kind}"), unit=False) for kind in SHOWN)]
+    weights = {
+        f"dancer.guided.{w}.": number(w)
         for w in WEIGHTS
         if f"dancer.guided.{w}.bas_share" in records
-    ]
-    if not rows:
+    }
+    if not weights:
         return ""
     text = (
         "\nThe shipped dancer at several weights of guidance; 1 is none. Compare what is gained in "
         "alignment with what is lost in the variety of dances to one song.\n\n"
     )
-    return text + table(["weight", *(f"`{kind}`" for kind in SHOWN)], rows)
+    return text + _kinds_table(records, "weight", weights, SHOWN)
 
 
 def finishing(records: dict[str, dict]) -> str:
     """The network's own dances beside those of the verb; nothing where they were not measured."""
-    names = {OWN: "the network's own", FINISHED: "as `dance` returns it"}
-    if f"dancer.{OWN}bas_share" not in records:
+    dances = {"dancer.": "the network's own", f"dancer.{FINISHED}": "as `dance` returns it"}
+    if f"dancer.{FINISHED}bas_share" not in records:
         return ""
-    rows = [
-        [words, *(cell(records.get(f"dancer.{who}{kind}"), unit=False) for kind in ENDED)]
-        for who, words in names.items()
-    ]
     text = (
         "\nThe measures of the dancer are of the network's own dances. `dance` gives the bones the "
         "lengths that they have in the data, and holds standing feet "
         "(`performers/finished.py`).\n\n"
     )
-    return text + table(["the dance", *(f"`{kind}`" for kind in ENDED)], rows)
+    return text + _kinds_table(records, "the dance", dances, ENDED)
 
 
 def floor(records: dict[str, dict]) -> str:
     """How the data's dances use the floor, genre by genre; nothing where it was not measured."""
-    kinds = tuple(FLOOR)
     genres = [n.split(".")[1] for n in records if n.startswith("dance_data.") and n.count(".") > 1]
-    places = {"mean over genres": "", **{genre: f"{genre}." for genre in dict.fromkeys(genres)}}
+    means = {"dance_data.": "mean over genres"}
+    means |= {f"dance_data.{genre}.": genre for genre in dict.fromkeys(genres)}
     if "dance_data.standing_feet" not in records:
         return ""
-    rows = [
-        [who, *(cell(records.get(f"dance_data.{place}{kind}"), unit=False) for kind in kinds)]
-        for who, place in places.items()
-    ]
     text = (
         "\nHow the data's own dances use the floor. A foot stands while its ankle is slower than "
         "0.15 m/s. The angle turned is that between the outermost directions which the "
         "figure faces within 8 s.\n\n"
     )
-    return text + table(["the data's dances", *(f"`{kind}`" for kind in kinds)], rows)
+    return text + _kinds_table(records, "the data's dances", means, tuple(FLOOR))
 
 
 def hearing(records: dict[str, dict]) -> str:
@@ -193,11 +187,8 @@ def hearing(records: dict[str, dict]) -> str:
     )
     if "ear.beats_f" not in records:
         return text + "Not measured yet.\n"
-    rows = [
-        [who, *(cell(records.get(f"ear.{place}{kind}"), unit=False) for kind in kinds)]
-        for who, place in (("tempi of training", ""), ("66-74 and 146-154 BPM", "kept_out."))
-    ]
-    return text + table(["songs", *(f"`{kind}`" for kind in kinds)], rows)
+    songs = {"ear.": "tempi of training", "ear.kept_out.": "66-74 and 146-154 BPM"}
+    return text + _kinds_table(records, "songs", songs, kinds)
 
 
 def choices(records: dict[str, dict]) -> str:
@@ -257,15 +248,12 @@ def _times(records: dict[str, dict]) -> str:
     kinds = ["parameters"] + [
         f"{what}{part}" for what in ("step", "pass", "dance") for part in ("_ms", f"_over_{BASE}")
     ]
-    rows = [
-        [
-            f"`{name}`: {VARIANTS[name][0]}",
-            *(cell(records.get(f"dance-time.{name}.{kind}"), unit=False) for kind in kinds),
-        ]
+    networks = {
+        f"dance-time.{name}.": f"`{name}`: {VARIANTS[name][0]}"
         for name in TIMED
         if f"dance-time.{name}.step_ms" in records
-    ]
-    if not rows:
+    }
+    if not networks:
         return ""
     about = records[f"dance-time.{BASE}.step_ms"]["seeds"]
     text = (
@@ -274,4 +262,15 @@ def _times(records: dict[str, dict]) -> str:
         f"{about['frames']} frames at once, {about['steps']} steps of DDIM). The U-Net samples by "
         "its fast twin, which encodes the music once. Ratios are of the same round.\n\n"
     )
-    return text + table(["network", *(f"`{kind}`" for kind in kinds)], rows)
+    return text + _kinds_table(records, "network", networks, kinds)
+
+
+def _kinds_table(
+    records: dict[str, dict], head: str, rows: dict[str, str], kinds: Sequence[str]
+) -> str:
+    """A row for each beginning of names of records, a column for each of their kinds."""
+    cells = [
+        [words, *(cell(records.get(f"{start}{kind}"), unit=False) for kind in kinds)]
+        for start, words in rows.items()
+    ]
+    return table([head, *(f"`{kind}`" for kind in kinds)], cells)
