@@ -4,8 +4,9 @@
 A person who stands is a centimetre from the lines, one who dances is several times as far as usual.
 Where only the distance counts (`around_lines`), one network has to generate both sizes, and moves
 calm people too much. `activity` is how far a motion goes in a second, as far as the given entries
-tell: pose and path of the pelvis alike, averaged over about a second around each frame and over all
-columns that are given. It has no jumps, and is 1 where nothing near is given.
+tell, averaged over about a second around each frame and over the columns that are given. It has no
+jumps, and is 1 where nothing near is given. The path of the pelvis has an activity of its own: who
+waves does not sway, and beside the rest of a lively pose, two columns of 63 would count for nothing.
 
 So the sizes of remainders differ less, over walks, dances and performed sentences with a keyframe
 a second (`tests/beyond/test_activity.py`). It does not know the ends of a motion: there, and with
@@ -23,6 +24,7 @@ from torch import Tensor
 from torch.nn.functional import conv1d
 
 from .around_lines import Shown, frames_since
+from .turning_frame import PATH
 
 SPAN = 20  # frames, a second; with 10, sizes of motions differ a little more
 BLUR = 10.0  # frames, standard deviation of the average; with 20, sizes of single gaps differ more
@@ -40,7 +42,17 @@ def with_activity(shown: Shown, at_most: float = math.inf) -> Shown:
     return replace(shown, scale=shown.scale * lively, less=(at_most / lively).clamp(max=1.0))
 
 
-def activity(lines: Float[Tensor, "B T D"], known: Bool[Tensor, "B T D"]) -> Float[Tensor, "B T 1"]:
+def activity(lines: Float[Tensor, "B T D"], known: Bool[Tensor, "B T D"]) -> Float[Tensor, "B T D"]:
+    """`activity_of` the path for its two columns, and of the pose for all others."""
+    path = torch.zeros(lines.shape[-1], dtype=torch.bool, device=lines.device)
+    path[PATH] = True
+    of_path, of_pose = (activity_of(lines[..., some], known[..., some]) for some in (path, ~path))
+    return torch.where(path, of_path, of_pose)
+
+
+def activity_of(
+    lines: Float[Tensor, "B T D"], known: Bool[Tensor, "B T D"]
+) -> Float[Tensor, "B T 1"]:
     """How much a figure moves around each frame, over how much motions usually do.
 
         activity^2 = (mean of way^2 + USUAL) / (mean share of the second + USUAL)

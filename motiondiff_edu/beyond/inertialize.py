@@ -2,8 +2,8 @@
 
 From an unusual past a network jumps to the poses that it knows: its first frame is far from the
 last given one. The difference of the two at the seam, in each bone's direction and in the place of
-the pelvis, is added to the generated frames and fades within half a second. Given frames stay as
-they are, and so do the lengths of bones. The caller locks the feet afterwards
+the pelvis, is added to the generated frames and fades within half a second, or within longer where
+a joint has far to go. Given frames stay as they are, and so do the lengths of bones. The caller locks the feet afterwards
 (`performers/joined.py`).
 Gain: docs/RESULTS.md, *On recordings* (`real.seam_over_motion` beside
 `real.unblended.seam_over_motion`). It costs: in that half second feet slide more, and the control
@@ -17,7 +17,8 @@ from jaxtyping import Float
 from ..motion.directions import build, plain_directions, unit
 from ..motion.skeleton import HIPS, PARENTS
 
-SECONDS = 0.5  # until the generated motion is on its own
+SECONDS, LONGEST = 0.5, 1.5  # until the generated motion is on its own
+PACE = 1.0  # m/s: so fast, on average, goes the joint that has farthest to go
 
 
 def fading(
@@ -36,7 +37,7 @@ def inertialized(
     past: Float[np.ndarray, "T_h 21 3"], new: Float[np.ndarray, "T 21 3"], fps: float = 20.0
 ) -> Float[np.ndarray, "T 21 3"]:
     """`new` poses that go on from `past` without a jump (metres, both in the root frame)."""
-    n = min(len(new), round(SECONDS * fps))
+    n = min(len(new), round(seconds_for(past, new) * fps))
     if len(past) < 2 or n < 2:
         return new
     bones, parents = plain_directions(new[:n]), PARENTS[1:]
@@ -44,6 +45,12 @@ def inertialized(
     hips = new[:n, HIPS] + _faded(past[-2:, HIPS], new[:n, HIPS], n)
     bones = unit(bones + _faded(plain_directions(past[-2:]), bones, n))
     return np.concatenate([build(hips, bones, lengths), new[n:]])
+
+
+def seconds_for(past: Float[np.ndarray, "T_h 21 3"], new: Float[np.ndarray, "T 21 3"]) -> float:
+    """How long the difference at the seam fades, by how far a joint would jump."""
+    far = np.linalg.norm(new[0] - past[-1], axis=-1).max()
+    return float(np.clip(far / PACE, SECONDS, LONGEST))
 
 
 def _faded(given: np.ndarray, new: np.ndarray, n: int) -> np.ndarray:

@@ -13,10 +13,11 @@ from jaxtyping import Bool, Float
 from torch import Tensor
 
 from ..beyond.above_floor import feet_above_floor, lowest_given
-from ..beyond.constant_bones import given_lengths, steady_bones
+from ..beyond.constant_bones import Lengths, steady_bones
 from ..beyond.foot_lock import steady_feet
 from ..beyond.guidance import blended, guided
 from ..beyond.step_clearance import clear_steps
+from ..beyond.turning_frame import View
 from ..ddpm import Denoiser, Generators, Schedule, draw, final, timesteps
 from ..inbetweening import inpaint_steps, resampled
 from ..motion.dance_frame import GROUND, Place, heading, placed_features, to_positions
@@ -104,14 +105,16 @@ def inbetween(
     columns, place = torch.from_numpy(known_columns(known)), seen_from(positions, known)
     device = dancer.motion_scaler.mean.device
     at_home = np.where(known[..., None], place.enter(np.nan_to_num(positions)), 0.0)
-    features = torch.from_numpy(placed_features(at_home)).float().to(device)
-    given = dancer.motion_scaler.transform(features)
+    features = torch.from_numpy(placed_features(at_home)).float().to(device)[None]
+    sees = departures.shown and getattr(dancer, "can_be_shown", False)
+    view = view_of(dancer, features, known) if sees else View.none(features)
+    given = dancer.motion_scaler.transform(view.enter(features))[0]
     shape = (samples, *given.shape)
     music = None if mel is None else mel[None].expand(samples, -1, -1)
     held, schedule = (given.expand(shape), columns.to(device).expand(shape)), dancer.schedule
     start, shown = draw(held[0], generator), None
-    if departures.shown and getattr(dancer, "can_be_shown", False):
-        shown = dancer.shown(*held)
+    if sees:
+        shown = dancer.shown(*held, view.expand(samples))
         denoise = dancer.shown_denoiser(shown)
         held = torch.zeros(shape, device=device), held[1]
     else:
@@ -119,14 +122,23 @@ def inbetween(
     visited = resampled(timesteps(schedule.S, steps), departures.resample)
     loop = inpaint_steps(denoise, start, schedule, *held, steps=visited, generator=generator)
     x0 = final(loop).x_s if shown is None else shown.whole(departures.remainder * final(loop).x_s)
-    poses = to_positions(dancer.motion_scaler.inverse(x0))
+    poses = to_positions(view.leave(dancer.motion_scaler.inverse(x0)))
     made = place.leave(poses.double().cpu().numpy())
     whole = np.where(known[..., None], positions, made)
     if departures.bones:
-        whole = steady_bones(whole, known, given_lengths(positions, known))
+        whole = steady_bones(whole, known, Lengths.of(positions, known))
     if departures.feet and known.any():
         whole = steady_feet(whole, known)
     return cleared(whole, positions, known) if departures.clearance and known.any() else whole
+
+
+def view_of(
+    dancer: AnyDancer, features: Float[Tensor, "1 T 63"], known: Bool[np.ndarray, "T 21"]
+) -> View:
+    """What a network that sees what is given sees it in (`beyond.turning_frame`)."""
+    if not dancer.config.turning:
+        return View.none(features)
+    return View.of(features, torch.from_numpy(known)[None].to(features.device))
 
 
 def cleared(

@@ -17,7 +17,7 @@ from torch import Tensor
 
 from .. import reconstruction
 from ..beyond.back_with_known import FADE, blended_way_back
-from ..beyond.constant_bones import given_lengths, steady_bones
+from ..beyond.constant_bones import Lengths, steady_bones
 from ..beyond.foot_lock import steady_feet
 from ..beyond.guidance import blended_guess
 from ..motion.dance_frame import heading
@@ -26,6 +26,7 @@ from ..motion.motion import MotionError, MotionWarning
 from ..motion.planting import runs
 from ..motion.root_frame import smoothed_root, to_root_frame, to_world
 from ..motion.skeleton import BONE_LENGTHS, HIPS, JOINTS, TOES, J
+from ..performers.joined import farthest, unlike_training
 from ..reconstruction import Rollout, Stop
 from ..rollout import SLACK, AnyWalker
 
@@ -46,7 +47,7 @@ def reconstruct(
     Unknown joints can be NaN; known joints come back unchanged, bit by bit. The control comes from
     the pelvis and from the direction of hips and shoulders, smoothed.
     Where the figure is faster than in the walker's training, the control stays at that limit, and a
-    MotionWarning says where.
+    MotionWarning says where; so does one where known joints are unlike those of the training.
     Raises MotionError if a pelvis is missing, if no frame shows which way the figure faces, if
     nothing is missing, and for a motion shorter than a window.  Source: MoDiff III-E.
     """
@@ -55,8 +56,10 @@ def reconstruct(
     poses, control = to_root_frame(np.where(known[..., None], positions, 0.0), place, facing)
     mask = torch.from_numpy(np.repeat(known, 3, axis=1))
     given = torch.where(mask, torch.from_numpy(poses).flatten(1), 0.0)
-    lengths = given_lengths(positions, known)
-    lengths = np.where(np.isnan(lengths), BONE_LENGTHS, lengths)
+    warn_of_unlike(walker, given, known)
+    lengths = Lengths.of(positions, known)
+    unseen = np.isnan(lengths.bones)
+    lengths = lengths.with_bones(np.where(unseen, BONE_LENGTHS, lengths.bones))
     mean = walker.pose_scaler.mean.to(given).expand_as(given)
     guess = blended_guess(mean[None], given[None], mask[None], FADE)[0]
     steer = within_training(walker, control, known)
@@ -94,6 +97,22 @@ def within_training(
             stacklevel=3,
         )
     return limited
+
+
+def warn_of_unlike(
+    walker: AnyWalker, given: Float[Tensor, "T 63"], known: Bool[np.ndarray, "T 21"]
+) -> None:
+    """A MotionWarning where poses with missing joints are unlike those of the walker's training."""
+    holes = ~known.all(1)
+    unlike = unlike_training(walker.pose_scaler, given[holes].float(), known[holes])
+    if unlike:
+        warnings.warn(
+            f"the poses are unlike the walker's training {farthest(unlike)}, so what is "
+            "reconstructed may be far from the truth, and samples are nearer to each other than to "
+            "it",
+            MotionWarning,
+            stacklevel=3,
+        )
 
 
 def evaluations(walker: AnyWalker, known: Bool[np.ndarray, "T 21"], rounds: int = ROUNDS) -> int:

@@ -13,9 +13,9 @@ import torch
 from jaxtyping import Bool, Float
 from torch import Tensor
 
-from ..beyond.constant_bones import steady_bones
+from ..beyond.constant_bones import Lengths, steady_bones
 from ..metrics import reconstruction as measures
-from ..metrics.bone_lengths import bone_lengths, bone_rmse
+from ..metrics.bone_lengths import bone_rmse
 from ..reconstruction import Rollout, Stop, reconstruct_steps
 from ..rollout import AnyWalker
 
@@ -104,5 +104,5 @@ def with_bones(
     """
     joints, ahead = (x.double().cpu().unflatten(-1, (-1, 3)).numpy() for x in (past, walked))
     here = known.cpu().unflatten(-1, (-1, 3)).all(-1).numpy()
-    lengths = np.median(bone_lengths(ahead), axis=-2)
+    lengths = Lengths.of(ahead, np.ones(ahead.shape[:-1], bool))
     return torch.from_numpy(steady_bones(joints, here, lengths)).flatten(-2).to(past)

@@ -17,6 +17,7 @@ from ..beyond.activity import USED_AT_MOST
 from ..beyond.around_lines import Shown
 from ..beyond.classifier_free import guided_by_condition, while_between, without
 from ..beyond.guidance import with_guess
+from ..beyond.turning_frame import View
 from ..conditions.audio_files import samples_of
 from ..conditions.music import FRAMES_PER_SECOND, SAMPLE_RATE, fingerprint, frame_times, log_mel
 from ..ddpm import Denoiser, Generators, Schedule, draw
@@ -157,13 +158,18 @@ class Dancer(Performer):
         """Whether the network was made to see what is given of a motion (`shown_denoiser`)."""
         return isinstance(self.model, KeyframeMoFusion)
 
-    def shown(self, given: Float[Tensor, "B T D"], known: Bool[Tensor, "B T D"]) -> Shown:
+    def shown(
+        self,
+        given: Float[Tensor, "B T D"],
+        known: Bool[Tensor, "B T D"],
+        view: View | None = None,
+    ) -> Shown:
         """What such a network is shown of a standardised motion (`beyond.around_lines`).
 
-        Its `beyond.activity` is limited. Raises ValueError for a network that was not made for it.
+        `given` is seen in this view already (`beyond.turning_frame`). Its `beyond.activity` is limited. Raises ValueError for a network that was not made for it.
         """
         self._must_see()
-        return self.model.shown(given, known, USED_AT_MOST)
+        return self.model.shown(given, known, view, USED_AT_MOST)
 
     def shown_denoiser(self, shown: Shown) -> Denoiser:
         """`denoise(r_s, s) -> eps_hat` for remainders, of a network that is shown what is given.

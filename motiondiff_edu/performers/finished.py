@@ -1,8 +1,8 @@
 """What is done to a generated motion in the end, so that bones are rigid and feet do not slide.
 
 A network's joints are free points. Its bones stretch by centimetres, and its standing feet slide.
-`Dancer.dance` and continuations return finished motions; `Dancer.dance_mel` returns the network's
-own.
+`Dancer.dance`, continuations and `md.edit` return finished motions; `Dancer.dance_mel` returns the
+network's own.
 Source: Kovar and others, 2002 (feet), Müller and others, 2007 (bones).
 """
 
@@ -10,7 +10,7 @@ import numpy as np
 from jaxtyping import Bool, Float
 
 from ..beyond.above_floor import feet_above_floor, lowest_given
-from ..beyond.constant_bones import given_lengths, steady_bones
+from ..beyond.constant_bones import Lengths, steady_bones
 from ..beyond.foot_lock import LOW, steady_feet
 
 GLIDE = 0.2  # m: a foot that goes farther than this from its place is not held there
@@ -21,14 +21,15 @@ DANCED_LOW = 0.02
 def finished_dance(
     positions: Float[np.ndarray, "T 21 3"],
     fps: float,
-    lengths: Float[np.ndarray, "20"] | None = None,
+    bones: Float[np.ndarray, "20"] | None = None,
 ) -> Float[np.ndarray, "T 21 3"]:
     """A generated dance (metres) whose bones have these lengths, and whose feet stand.
 
-    lengths  of the bones that the network was taught (default: the medians of this dance)
+    bones  the lengths that the network was taught (default: the medians of this dance)
     """
     nothing = np.zeros(positions.shape[:2], bool)
-    lengths = given_lengths(positions, ~nothing) if lengths is None else lengths
+    lengths = Lengths.of(positions, ~nothing)
+    lengths = lengths if bones is None else lengths.with_bones(bones)
     return _finished(positions, fps, nothing, lengths, DANCED_LOW, 0.0)
 
 
@@ -40,7 +41,22 @@ def finished_continuation(
     Bones get the lengths that they have where they are given, and no foot is lower than the given
     joints, or than 0 if these are higher.
     """
-    lengths, floor = given_lengths(positions, known), lowest_given(positions, known)
+    lengths, floor = Lengths.of(positions, known), lowest_given(positions, known)
+    return _finished(positions, fps, known, lengths, LOW, floor)
+
+
+def finished_edit(
+    positions: Float[np.ndarray, "T 21 3"],
+    given: Float[np.ndarray, "T 21 3"],
+    fps: float,
+    known: Bool[np.ndarray, "T 21"],
+) -> Float[np.ndarray, "T 21 3"]:
+    """An edited motion (metres, world) with the body and the floor of the given one.
+
+    What is `known` stays where it is.
+    """
+    everything = np.ones(known.shape, bool)
+    lengths, floor = Lengths.of(given, everything), lowest_given(given, everything)
     return _finished(positions, fps, known, lengths, LOW, floor)
 
 

@@ -2,17 +2,18 @@
 
 A walker that gets a pose unlike its training begins with one that it knows: a joint may move by
 half a metre from the last given frame to the first new one. Then the first half second takes over
-pose and speed of the given motion, and a warning says so. In every continuation bones keep the
+pose and speed of the given motion (or longer, if a joint has far to go), and a warning says so. In every continuation bones keep the
 lengths of the given motion, and standing feet stay where they stand (`performers/finished.py`).
 """
 
 from dataclasses import dataclass
 
 import numpy as np
-from jaxtyping import Float
+import torch
+from jaxtyping import Bool, Float
 from torch import Tensor
 
-from ..beyond.inertialize import SECONDS, inertialized
+from ..beyond.inertialize import inertialized
 from ..conditions.control import splice
 from ..metrics.seams import AROUND, seam_over_motion
 from ..motion.motion import Motion, MotionError
@@ -26,6 +27,7 @@ JUMP = 1.1  # times the fastest joint of the second before and after: faster is 
 # synthetic walks is as far (at most 4.64)
 UNLIKE = 5.0
 NAMED = 3  # joints in a message
+OFF_FLOOR = 0.15  # m: a figure whose lowest joint is higher stands, sits and lies nowhere
 
 
 @dataclass(frozen=True, eq=False)
@@ -83,25 +85,40 @@ def joined(
     return finished_continuation(whole, FPS, known)[k:], jump
 
 
-def unlike_training(scaler: Scaler, past: Float[Tensor, "T_h D"]) -> dict[str, float]:
+def unlike_training(
+    scaler: Scaler, past: Float[Tensor, "T D"], known: Bool[np.ndarray, "T J"] | None = None
+) -> dict[str, float]:
     """Joints that are far from the training's poses, in its standard deviations, farthest first.
 
-    A joint counts by the frame in which it is farthest away.
+    A joint counts by the frame in which it is farthest away; where it is not `known`, it does not.
     """
     away = scaler.transform(past.to(scaler.mean)).reshape(len(past), J, 3)
-    far = away.square().mean(-1).sqrt().amax(0).tolist()
+    far = away.square().mean(-1).sqrt().cpu()
+    if known is not None:
+        far = far.where(torch.from_numpy(known), 0.0)
+    far = far.amax(0).tolist()
     order = sorted(range(J), key=far.__getitem__, reverse=True)
     return {JOINTS[joint]: far[joint] for joint in order if far[joint] > UNLIKE}
 
 
-def in_words(jump: float, unlike: dict[str, float]) -> str:
-    """What there is to say about a continuation; "" if there is nothing."""
-    if not unlike and jump <= JUMP:
-        return ""
-    words = "the poses to continue are unlike the walker's training"
+def in_words(jump: float, unlike: dict[str, float], height: float = 0.0) -> str:
+    """What there is to say about a continuation; "" if there is nothing.
+
+    height  of the lowest joint of the last given pose (m)
+    """
+    words = []
     if unlike:
-        most = [f"{name} {far:.1f}" for name, far in list(unlike.items())[:NAMED]]
-        words += f" (standard deviations away: {', '.join(most)})"
+        words.append(f"the poses to continue are unlike the walker's training {farthest(unlike)}")
+    if height > OFF_FLOOR:
+        words.append(
+            f"the last pose is {height:.2f} m off the floor, and the walker comes down to it"
+        )
     if jump > JUMP:
-        words += f". The first {SECONDS:g} s are blended, because the figure would jump"
-    return words
+        words.append("the figure would jump from the last pose, so the first frames are blended")
+    return "; ".join(words)
+
+
+def farthest(unlike: dict[str, float]) -> str:
+    """The joints that are farthest from the training, in brackets."""
+    most = [f"{name} {far:.1f}" for name, far in list(unlike.items())[:NAMED]]
+    return f"(standard deviations away: {', '.join(most)})"

@@ -14,6 +14,7 @@ from torch import Tensor, nn
 
 from ..beyond.activity import with_activity
 from ..beyond.around_lines import Shown
+from ..beyond.turning_frame import View
 from ..mofusion import MoFusion, MoFusionConfig
 from .networks import register
 
@@ -24,17 +25,19 @@ class KeyframeConfig(MoFusionConfig):
 
     `activity`: remainders are in units that grow with how much the figure moves
     (`beyond.activity`).
+    `turning`: poses are seen in headings that turn with the figure (`beyond.turning_frame`).
     """
 
     C: int = 0
     target: str = "v"
     skip: bool = False
     activity: bool = False
+    turning: bool = False
 
     def inner(self) -> MoFusionConfig:
-        """The configuration of the U-Net, whose input is x_s, lines, scale and mask."""
+        """The configuration of the U-Net, whose input is x_s, lines, scale, mask, and steps."""
         sizes = {field.name: getattr(self, field.name) for field in fields(MoFusionConfig)}
-        return MoFusionConfig(**sizes | {"D": 4 * self.D})
+        return MoFusionConfig(**sizes | {"D": 4 * self.D + 6 * self.turning})
 
 
 class KeyframeMoFusion(nn.Module):
@@ -49,10 +52,14 @@ class KeyframeMoFusion(nn.Module):
         self,
         given: Float[Tensor, "B T D"],
         known: Bool[Tensor, "B T D"],
+        view: View | None = None,
         activity_at_most: float = math.inf,
     ) -> Shown:
-        """What this network is shown of a motion; unknown entries of `given` can be anything."""
-        plain = Shown.of(given, known)
+        """What this network is shown of a motion; unknown entries of `given` can be anything.
+
+        `given` is seen in this view already.
+        """
+        plain = Shown.of(given, known, view)
         return with_activity(plain, activity_at_most) if self.config.activity else plain
 
     def forward(
@@ -61,7 +68,10 @@ class KeyframeMoFusion(nn.Module):
         """Without `shown`, nothing is given, and r_s is the whole motion with its noise."""
         if shown is None:
             shown = self.shown(r_s, torch.zeros_like(r_s, dtype=torch.bool))
-        inputs = [r_s, shown.lines, shown.scale, shown.known.to(r_s)]
+        lines = shown.lines
+        if self.config.turning:
+            lines = shown.speeds(shown.view or View.none(lines))
+        inputs = [r_s, lines, shown.scale, shown.known.to(r_s)]
         return self.unet(torch.cat(inputs, -1), s)[..., : self.config.D]
 
 

@@ -89,7 +89,8 @@ class Walker(Performer):
         steps    of DDIM, or None for DDPM with all steps, and noise of variance beta_s
         Raises MotionError for a motion that cannot be continued, ValueError for numbers out of
         range. Warns where the control goes beyond the training data, and where the poses to
-        continue do: then the first half second is blended.
+        continue do, or are off the floor; where the figure would jump, the first half second or
+        more is blended.
         Source: MoDiff Alg. 2.  Notebook: 00
         """
         as_motion(motion).check_whole()
@@ -105,7 +106,8 @@ class Walker(Performer):
             each = (x.expand(count, -1, -1) for x in (past, steer))
             new = rollout.generate(walker, *each, generator=draws, steps=steps)
         both = [joined(start, one) for one in new.double().cpu().numpy().reshape(count, -1, J, 3)]
-        words = in_words(max(jump for _, jump in both), unlike_training(self.pose_scaler, past))
+        unlike, height = unlike_training(self.pose_scaler, past), start.given[-1, :, 1].min()
+        words = in_words(max(jump for _, jump in both), unlike, height)
         if words:
             warnings.warn(f"{motion.name}: {words}", MotionWarning, stacklevel=2)
         path, name = start.path[T_h:], f"{motion.name}, continued"

@@ -136,8 +136,8 @@ UNCONDITIONAL = DanceRecipe(
 
 INBETWEENS = KeyframeRecipe(
     "inbetweens",
-    KeyframeConfig(activity=True),
-    steps=8000,
+    KeyframeConfig(activity=True, turning=True),
+    steps=12_000,
     kinematic=KINEMATIC,
     loss_weights=OURS,
     snr=0.3,

@@ -14,6 +14,7 @@ from torch import Tensor, nn
 
 from ..beyond.around_lines import Shown
 from ..beyond.loss_terms import as_x0_errors, weighted, weighted_by_step
+from ..beyond.turning_frame import View
 from ..ddpm import Schedule
 from ..editing.inbetween import seen_from
 from ..kinematic_loss import Body
@@ -42,8 +43,11 @@ def keyframe_loss_of(recipe: KeyframeRecipe, windows: DanceWindows, schedule: Sc
         sizes = 1 + recipe.sizes * (2 * chance(generator, len(motion)) - 1)
         high = (chance(generator, len(motion)) < recipe.stages) & known.flatten(1).any(1)
         heights = high * chance(generator, len(motion))
-        motion = as_seen(motion, known, sizes, heights, scaler).to(device)
-        shown = model.shown(motion, known.repeat_interleave(3, dim=-1).to(device))
+        motion = as_seen(scaler.inverse(motion), known, sizes, heights)
+        view = View.of(motion, known) if recipe.config.turning else View.none(motion)
+        motion = scaler.transform(view.enter(motion)).to(device)
+        columns = known.repeat_interleave(3, dim=-1).to(device)
+        shown = model.shown(motion, columns, view.to(device))
         squares = shown.scale.square()
         loss = weighted(data_loss, squares / squares.mean((1, 2), keepdim=True))
         of_batch = batch_loss(
@@ -59,21 +63,24 @@ def as_seen(
     known: Bool[Tensor, "B T 21"],
     sizes: Float[Tensor, "B"],
     heights: Float[Tensor, "B"],
-    scaler: Scaler,
 ) -> Float[Tensor, "B T 63"]:
-    """Standardised motions as `inbetween` shows them, from their first given pose.
+    """Motions (features in metres) as `inbetween` shows them, from their first given pose.
 
     They are resized, and stand on stages of these heights (m).
     """
-    positions = dance_frame.to_positions(scaler.inverse(motion)).double().numpy()
+    positions = dance_frame.to_positions(motion).double().numpy()
     masks = known.numpy()
     drawn = zip(positions, masks, sizes.tolist(), heights.tolist(), strict=True)
     for one, mask, size, height in drawn:
         one[:] = size * seen_from(one, mask).enter(one) + [0.0, height, 0.0]
-    return scaler.transform(torch.from_numpy(dance_frame.placed_features(positions)).float())
+    return torch.from_numpy(dance_frame.placed_features(positions)).float()
 
 
 def body_around(shown: Shown, scaler: Scaler) -> Body:
     """The figure of remainders: their joints in metres are those of lines and remainder."""
-    body = dance_frame.body_of(scaler)
-    return replace(body, to_positions=lambda r: body.to_positions(shown.whole(r)))
+
+    def to_positions(remainder: Float[Tensor, "B T 63"]) -> Float[Tensor, "B T 21 3"]:
+        motion = scaler.inverse(shown.whole(remainder))
+        return dance_frame.to_positions(shown.view.leave(motion) if shown.view else motion)
+
+    return replace(dance_frame.body_of(scaler), to_positions=to_positions)

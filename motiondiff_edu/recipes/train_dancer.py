@@ -17,12 +17,13 @@ from ..baselines.regression import regression_loss
 from ..beyond.classifier_free import without
 from ..beyond.gain_noise import gain_noise
 from ..beyond.schedules import shifted
+from ..beyond.turning_frame import View
 from ..ddpm import Schedule, cosine_schedule
 from ..metrics.bone_lengths import bone_lengths
 from ..motion import dance_frame
 from ..motion.scaler import Scaler
-from ..motion.skeleton import HIPS
-from ..performers.dance_windows import DanceWindows, toes_moved
+from ..motion.skeleton import HIPS, J
+from ..performers.dance_windows import FITTED, DanceWindows, toes_moved
 from ..performers.dancer import Dancer
 from ..performers.keyframe_mofusion import KeyframeConfig
 from ..performers.networks import network
@@ -45,7 +46,10 @@ def training_windows(recipe: DanceRecipe) -> DanceWindows:
     Raises ValueError for a recipe that has neither songs nor motions.
     """
     if isinstance(recipe, KeyframeRecipe):
-        return with_path_scale(_keyframe_windows(data_of(recipe)), recipe.path_scale)
+        windows = _keyframe_windows(data_of(recipe))
+        if recipe.config.turning:
+            windows = replace(windows, motion_scaler=scaler_of_turning(windows))
+        return with_path_scale(windows, recipe.path_scale)
     seeds = recipe.data_seed, recipe.seconds
     if isinstance(recipe, SongRecipe):
         return _song_windows(recipe.songs, *seeds, recipe.dances, recipe.frames)
@@ -128,6 +132,14 @@ def varied(recipe: KeyframeRecipe) -> Iterator[Recorded]:
         if rng.uniform() < share:
             positions, contacts = warps.warped(positions, contacts, rng)
         yield positions.astype(np.float32), contacts
+
+
+def scaler_of_turning(windows: DanceWindows) -> Scaler:
+    """The scaler of the same windows, seen in each frame's own heading (`beyond.turning_frame`)."""
+    some = torch.linspace(0, len(windows) - 1, min(len(windows), FITTED)).long()
+    features = windows.motion_scaler.inverse(windows.take(some)[0])
+    known = torch.ones(*features.shape[:2], J, dtype=torch.bool)
+    return Scaler.fit(View.of(features, known).enter(features))
 
 
 def with_path_scale(windows: DanceWindows, metres: float) -> DanceWindows:

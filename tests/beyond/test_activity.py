@@ -6,7 +6,14 @@ import pytest
 import torch
 
 from data_synth.mixed import motions, sentences
-from motiondiff_edu.beyond.activity import SPAN, USED_AT_MOST, USUAL, activity, with_activity
+from motiondiff_edu.beyond.activity import (
+    SPAN,
+    USED_AT_MOST,
+    USUAL,
+    activity,
+    activity_of,
+    with_activity,
+)
 from motiondiff_edu.beyond.around_lines import Shown, lines_through
 from motiondiff_edu.motion.dance_frame import placed_features
 from motiondiff_edu.motion.scaler import Scaler
@@ -25,7 +32,7 @@ def given_at(frames, T: int = T, D: int = 4, n: int = 1) -> torch.Tensor:
 
 
 def of(x: torch.Tensor, known: torch.Tensor) -> torch.Tensor:
-    return activity(lines_through(x, known), known)
+    return activity_of(lines_through(x, known), known)
 
 
 def steady(speed: float) -> torch.Tensor:
@@ -75,6 +82,18 @@ def test_only_what_is_given_counts_and_motions_of_a_batch_are_on_their_own():
     )
     assert torch.equal(lively[2], torch.ones(T, 1))
     torch.testing.assert_close(of(x + 7.0, known), lively, atol=1e-3, rtol=1e-3)
+
+
+def test_the_path_has_an_activity_of_its_own():
+    """Who waves on the spot is not expected to sway, nor who slides along to wave."""
+    x, known = torch.zeros(1, T, 63), given_at(slice(None, None, SPAN), D=63)
+    x[..., 3:] = steady(2.0)[..., :1]
+    waving = activity(lines_through(x, known), known)[0, T // 2]
+    assert (waving[[0, 2]] < 0.1).all() and (waving[3:] > 1).all() and waving[1] == waving[3]
+    x = torch.zeros(1, T, 63)
+    x[..., 0] = steady(2.0)[..., 0]
+    sliding = activity(lines_through(x, known), known)[0, T // 2]
+    assert (sliding[[0, 2]] > 1).all() and (sliding[3:] < 0.1).all()
 
 
 def test_it_has_no_jumps():

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from synthetic_walk import walk
 
-from motiondiff_edu.beyond.inertialize import SECONDS, fading, inertialized
+from motiondiff_edu.beyond.inertialize import LONGEST, SECONDS, fading, inertialized, seconds_for
 from motiondiff_edu.metrics.bone_lengths import bone_lengths
 
 N = round(20 * SECONDS)
@@ -41,6 +41,21 @@ def test_what_does_not_jump_stays_nearly_as_it_is():
     whole = poses(1)
     made = inertialized(whole[:20], whole[20:])
     assert np.abs(made - whole[20:]).max() < 0.06  # a foot in the air is quick to slow down
+
+
+@pytest.mark.parametrize(("far", "seconds"), [(0.1, SECONDS), (0.9, 0.9), (4.0, LONGEST)])
+def test_a_joint_that_has_far_to_go_gets_more_time(far, seconds):
+    past, new = np.zeros((2, 21, 3)), np.zeros((60, 21, 3))
+    new[:, 7, 1] = far
+    assert seconds_for(past, new) == pytest.approx(seconds)
+
+
+def test_nobody_flies_down_from_where_they_hang():
+    """Poses a metre lower: the pelvis is there after a second, and never faster than 3 m/s."""
+    past, new = poses(1)[:10], poses(1)[10:50] - [0.0, 1.0, 0.0]
+    down = np.concatenate([past[-1:], inertialized(past, new)])[:, 0, 1]
+    assert 20 * np.abs(np.diff(down)).max() < 3.0
+    np.testing.assert_allclose(down[21:], new[20:, 0, 1])
 
 
 @pytest.mark.parametrize("frames", [1, 2, 5])

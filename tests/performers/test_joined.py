@@ -8,7 +8,7 @@ import torch
 
 import motiondiff_edu as md
 from data_synth.walking import walk
-from motiondiff_edu.beyond.inertialize import SECONDS
+from motiondiff_edu.beyond.inertialize import LONGEST
 from motiondiff_edu.conditions.control import constant_control
 from motiondiff_edu.metrics.bone_lengths import bone_lengths
 from motiondiff_edu.metrics.seams import seam_over_motion
@@ -18,7 +18,15 @@ from motiondiff_edu.motion.motion import Motion, MotionWarning
 from motiondiff_edu.motion.root_frame import control_from_path, to_root_frame
 from motiondiff_edu.motion.scaler import Scaler
 from motiondiff_edu.motion.skeleton import JOINTS, TOES, joint_index
-from motiondiff_edu.performers.joined import JUMP, UNLIKE, Start, in_words, joined, unlike_training
+from motiondiff_edu.performers.joined import (
+    JUMP,
+    OFF_FLOOR,
+    UNLIKE,
+    Start,
+    in_words,
+    joined,
+    unlike_training,
+)
 
 AHEAD = np.tile([1.0, 0.0, 0.0], (50, 1))
 
@@ -80,7 +88,7 @@ def test_an_unusual_past_is_named_and_joined_without_a_jump(walker, unusual, mon
     with pytest.warns(MotionWarning, match="standard deviations away"):
         plain = walker.walk(unusual, AHEAD, progress=False)
     assert ratio(unusual, plain) > 1.5 and ratio(unusual, more) < JUMP
-    n, hand = round(SECONDS * 20), joint_index("RightHand")
+    n, hand = round(LONGEST * 20), joint_index("RightHand")
     np.testing.assert_array_equal(more.positions[n:, hand], plain.positions[n:, hand])
     assert np.abs(more.positions[:5] - plain.positions[:5]).max() > 0.1
     assert more.positions[..., 1].min() > -0.02
@@ -119,6 +127,9 @@ def test_joints_that_are_far_from_the_training_come_farthest_first():
     found = unlike_training(Scaler.nothing(63), past)
     assert list(found) == [JOINTS[2], JOINTS[4]]
     assert found[JOINTS[2]] == pytest.approx(UNLIKE + 2, rel=1e-5)
+    known = np.ones((10, 21), bool)
+    known[7, 2] = False
+    assert list(unlike_training(Scaler.nothing(63), past, known)) == [JOINTS[4]]
 
 
 def test_what_is_said():
@@ -127,6 +138,11 @@ def test_what_is_said():
         0.9, {"Head": 6}
     )
     assert "blended" in in_words(1.2, {}) and "standard" not in in_words(1.2, {})
+    assert "at" not in in_words(0.0, {}, OFF_FLOOR)
+    assert in_words(1.0, {}, 0.84) == (
+        "the last pose is 0.84 m off the floor, and the walker comes down to it"
+    )
+    assert "unlike" not in in_words(1.2, {}), "no joint is far from the training"
     four = {name: 9.0 for name in JOINTS[:4]}
     assert JOINTS[3] not in in_words(2.0, four)
 

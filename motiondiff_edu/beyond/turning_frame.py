@@ -1,0 +1,145 @@
+"""In-betweens seen by the figure itself: in a heading that turns with it, and with its steps.
+
+A figure that turns round between two keyframes would shrink to a post if its joints went straight:
+they would all pass its axis. Seen in a frame that turns evenly from one given heading to the next,
+joints go round, and every walk goes forward, whichever way it goes in the room. The heading is
+taken from given hips or shoulders alone, so that it is known before anything is generated.
+
+    pose columns        turned by the heading of their frame, before lines are drawn through them
+    path of the pelvis  lines as before; what is generated around them is turned
+    steps               how fast each toe must go over the ground from where it is given to where it
+                        is given next: 0 for a foot that stands. The network sees it as well
+Gain: not measured yet; it will be `inbetween-budget.no-turning.*` in docs/RESULTS.md.
+Ours.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+import torch
+from jaxtyping import Bool, Float
+from torch import Tensor
+
+from ..motion.dance_frame import heading
+from ..motion.directions import ARMS, UPLEGS
+from ..motion.skeleton import HIPS, TOES, J
+from .guidance import blended_guess
+
+PATH = [3 * HIPS, 3 * HIPS + 2]  # columns of the pelvis' path
+SPAN = 5  # frames before and after, over which the speed of a line is taken
+STEP = 0.3  # m: a step of so much in 2 SPAN frames counts as 1
+
+
+@dataclass(frozen=True, eq=False)
+class View:
+    """What the given poses tell of a figure: its headings (radians), and its toes' steps."""
+
+    turned: Float[Tensor, "B T"]
+    steps: Float[Tensor, "B T 6"]
+
+    @classmethod
+    def of(cls, features: Float[Tensor, "B T 63"], known: Bool[Tensor, "B T 21"]) -> "View":
+        """From features in metres (`motion.dance_frame`); unknown entries can be anything."""
+        turned = headings(features, known)
+        return cls(turned, steps_of(features, known, turned))
+
+    @classmethod
+    def none(cls, features: Float[Tensor, "B T D"]) -> "View":
+        """Heading 0, and no steps."""
+        return cls(
+            features.new_zeros(features.shape[:2]), features.new_zeros(*features.shape[:2], 6)
+        )
+
+    def expand(self, samples: int) -> "View":
+        """The same for several samples of one motion."""
+        return View(self.turned.expand(samples, -1), self.steps.expand(samples, -1, -1))
+
+    def to(self, device) -> "View":
+        return View(self.turned.to(device), self.steps.to(device))
+
+    def enter(self, features: Float[Tensor, "B T 63"]) -> Float[Tensor, "B T 63"]:
+        """The features (metres), with the poses of each frame turned so that they face z."""
+        return _poses_turned(features, self.turned)
+
+    def leave(self, features: Float[Tensor, "B T 63"]) -> Float[Tensor, "B T 63"]:
+        """Undo `enter`."""
+        return _poses_turned(features, -self.turned)
+
+
+def headings(
+    features: Float[Tensor, "B T 63"], known: Bool[Tensor, "B T 21"]
+) -> Float[Tensor, "B T"]:
+    """The heading in every frame (radians): as given, and turning evenly between.
+
+    Hips count where both are given, or else shoulders. Before the first and after the last heading
+    it stays. It is 0 where none is given. Between two of them a figure turns by less than a half
+    circle.
+    """
+    joints = features.detach().cpu().double().numpy().reshape(*features.shape[:2], J, 3)
+    masks, frames = known.cpu().numpy(), np.arange(features.shape[1])
+    found = np.zeros(features.shape[:2])
+    for row, pose, mask in zip(found, joints, masks, strict=True):
+        across, there = np.zeros((len(frames), 3)), np.zeros(len(frames), bool)
+        for left, right in (ARMS, UPLEGS):
+            both = mask[:, left] & mask[:, right]
+            across[both], there = (pose[:, left] - pose[:, right])[both], there | both
+        if there.any():
+            row[:] = np.interp(frames, frames[there], np.unwrap(heading(across[there])))
+    return torch.from_numpy(found).to(features)
+
+
+def steps_of(
+    features: Float[Tensor, "B T 63"], known: Bool[Tensor, "B T 21"], turned: Float[Tensor, "B T"]
+) -> Float[Tensor, "B T 6"]:
+    """How far the lines through each toe's given places go around a frame, seen in the heading."""
+    pelvis, found = features[..., :3], []
+    for toe in TOES:
+        given = known[..., toe, None].expand(-1, -1, 3)
+        place = (features[..., 3 * toe : 3 * toe + 3] + pelvis).where(given, 0.0)
+        lines = blended_guess(torch.zeros_like(place), place, given, fade=torch.inf)
+        x, y, z = (changes_around(lines) / STEP).unbind(-1)
+        across, along = _rotated(x, z, turned)
+        found += [across, y, along]
+    return torch.stack(found, -1)
+
+
+def path_turned(
+    features: Float[Tensor, "B T D"], turned: Float[Tensor, "B T"]
+) -> Float[Tensor, "B T D"]:
+    """The features, with the columns of the pelvis' path turned; both have the same unit."""
+    whole = features.clone()
+    whole[..., PATH] = torch.stack(_rotated(*features[..., PATH].unbind(-1), turned), -1)
+    return whole
+
+
+def speeds_for_path(
+    lines: Float[Tensor, "B T D"], turned: Float[Tensor, "B T"]
+) -> Float[Tensor, "B T D"]:
+    """The lines, with the path's columns replaced by their change around each frame, turned.
+
+    Forward and to the side; where the path is, tells a network nothing.
+    """
+    whole = lines.clone()
+    whole[..., PATH] = changes_around(lines[..., PATH])
+    return path_turned(whole, turned)
+
+
+def changes_around(lines: Float[Tensor, "B T D"]) -> Float[Tensor, "B T D"]:
+    """The change in the 2 SPAN frames around each frame; near the ends, of as many as there are."""
+    frames = torch.arange(lines.shape[1], device=lines.device)
+    ahead, behind = (frames + SPAN).clamp(max=len(frames) - 1), (frames - SPAN).clamp(min=0)
+    share = (2 * SPAN / (ahead - behind).clamp(min=1))[:, None]
+    return share * (lines[:, ahead] - lines[:, behind])
+
+
+def _poses_turned(features: Tensor, turned: Tensor) -> Tensor:
+    x, y, z = features.unflatten(-1, (J, 3)).unbind(-1)
+    across, along = _rotated(x, z, turned[..., None])
+    poses = torch.stack([across, y, along], -1).flatten(-2)
+    return torch.cat([features[..., :3], poses[..., 3:]], -1)
+
+
+def _rotated(x: Tensor, z: Tensor, turned: Tensor) -> tuple[Tensor, Tensor]:
+    """Rotated about the vertical, so that what faces `turned` faces z."""
+    sin, cos = turned.sin(), turned.cos()
+    return x * cos - z * sin, x * sin + z * cos
