@@ -14,6 +14,7 @@ from as_typed import outcomes
 import motiondiff_edu as md
 from data_synth.music import compose
 from data_synth.walking import walk
+from motiondiff_edu.editing.masks import body_part
 from motiondiff_edu.motion.motion import MotionWarning
 from motiondiff_edu.motion.skeleton import HIPS, TOES, Skeleton, joint_index
 from motiondiff_edu.pretrained import shipped
@@ -306,6 +307,21 @@ def test_an_edit_that_slides_is_told_of_in_whichever_sample(walked, monkeypatch,
     told = [str(one.message) for one in caught if "both feet slide" in str(one.message)]
     assert len(told) == bool(sliding)
     assert all(f"({sliding} of 2 samples)" in words for words in told)
+
+
+def test_an_edit_has_the_bones_of_the_motion(walked):
+    known = body_part(len(walked), "lower body")
+    made = md.edit(walked, "waves with the left hand", known, progress=False)
+    assert np.array_equal(made.positions[known], walked.positions[known])
+    lengths = bone_lengths(walked.positions)
+    assert np.abs(bone_lengths(made.positions) - lengths).max() < 5e-3
+
+
+def test_what_is_made_of_nothing_has_bones_of_one_length(walked):
+    nothing = np.zeros_like(walked.known)
+    with pytest.warns(MotionWarning, match="no joint is known"):
+        made = md.inbetween(walked, nothing, steps=10, progress=False)
+    assert bone_lengths(made.positions).std(0).max() < 1e-3
 
 
 def test_what_is_known_of_nothing_is_noted(walked):

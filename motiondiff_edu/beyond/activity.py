@@ -6,7 +6,7 @@ Where only the distance counts (`around_lines`), one network has to generate bot
 calm people too much. `activity` is how far a motion goes in a second, as far as the given entries
 tell, averaged over about a second around each frame and over the columns that are given. It has no
 jumps, and is 1 where nothing near is given. The path of the pelvis has an activity of its own: who
-waves does not sway, and beside the rest of a lively pose, two columns of 63 would count for nothing.
+waves does not sway, and its two columns of 63 would count for nothing beside a lively pose.
 
 So the sizes of remainders differ less, over walks, dances and performed sentences with a keyframe
 a second (`tests/beyond/test_activity.py`). It does not know the ends of a motion: there, and with

@@ -3,8 +3,8 @@
 From an unusual past a network jumps to the poses that it knows: its first frame is far from the
 last given one. The difference of the two at the seam, in each bone's direction and in the place of
 the pelvis, is added to the generated frames and fades within half a second, or within longer where
-a joint has far to go. Given frames stay as they are, and so do the lengths of bones. The caller locks the feet afterwards
-(`performers/joined.py`).
+a joint has far to go. Given frames stay as they are, and so do the lengths of bones. The caller
+locks the feet afterwards (`performers/joined.py`).
 Gain: docs/RESULTS.md, *On recordings* (`real.seam_over_motion` beside
 `real.unblended.seam_over_motion`). It costs: in that half second feet slide more, and the control
 is kept less well.

@@ -25,6 +25,7 @@ from ..motion.directions import ARMS, UPLEGS
 from ..motion.motion import MotionError, MotionWarning
 from ..motion.planting import runs
 from ..motion.root_frame import smoothed_root, to_root_frame, to_world
+from ..motion.scaler import Scaler
 from ..motion.skeleton import BONE_LENGTHS, HIPS, JOINTS, TOES, J
 from ..performers.joined import farthest, unlike_training
 from ..reconstruction import Rollout, Stop
@@ -56,7 +57,7 @@ def reconstruct(
     poses, control = to_root_frame(np.where(known[..., None], positions, 0.0), place, facing)
     mask = torch.from_numpy(np.repeat(known, 3, axis=1))
     given = torch.where(mask, torch.from_numpy(poses).flatten(1), 0.0)
-    warn_of_unlike(walker, given, known)
+    warn_of_unlike(walker.pose_scaler, given, known)
     lengths = Lengths.of(positions, known)
     unseen = np.isnan(lengths.bones)
     lengths = lengths.with_bones(np.where(unseen, BONE_LENGTHS, lengths.bones))
@@ -100,11 +101,11 @@ def within_training(
 
 
 def warn_of_unlike(
-    walker: AnyWalker, given: Float[Tensor, "T 63"], known: Bool[np.ndarray, "T 21"]
+    scaler: Scaler, given: Float[Tensor, "T 63"], known: Bool[np.ndarray, "T 21"]
 ) -> None:
     """A MotionWarning where poses with missing joints are unlike those of the walker's training."""
     holes = ~known.all(1)
-    unlike = unlike_training(walker.pose_scaler, given[holes].float(), known[holes])
+    unlike = unlike_training(scaler, given[holes].float(), known[holes])
     if unlike:
         warnings.warn(
             f"the poses are unlike the walker's training {farthest(unlike)}, so what is "

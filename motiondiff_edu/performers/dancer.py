@@ -166,7 +166,8 @@ class Dancer(Performer):
     ) -> Shown:
         """What such a network is shown of a standardised motion (`beyond.around_lines`).
 
-        `given` is seen in this view already (`beyond.turning_frame`). Its `beyond.activity` is limited. Raises ValueError for a network that was not made for it.
+        `given` is seen in this view already (`beyond.turning_frame`). Its `beyond.activity` is
+        limited. Raises ValueError for a network that was not made for it.
         """
         self._must_see()
         return self.model.shown(given, known, view, USED_AT_MOST)

@@ -1,9 +1,10 @@
 """A continuation that goes on from the motion that it continues, with its body and without a jump.
 
 A walker that gets a pose unlike its training begins with one that it knows: a joint may move by
-half a metre from the last given frame to the first new one. Then the first half second takes over
-pose and speed of the given motion (or longer, if a joint has far to go), and a warning says so. In every continuation bones keep the
-lengths of the given motion, and standing feet stay where they stand (`performers/finished.py`).
+half a metre from the last given frame to the first new one. Then the first half second, or more if
+a joint has far to go, takes over pose and speed of the given motion, and a warning says so. In
+every continuation bones keep the lengths of the given motion, and standing feet stay where they
+stand (`performers/finished.py`).
 """
 
 from dataclasses import dataclass

@@ -144,8 +144,8 @@ def edit(
     figure does, the legs included. `known` joints keep their places about the root; while the
     pelvis is known from the first frame on, the path stays, too, and they are exactly where they
     were. Bones have the lengths of the motion's, and feet that stand do not slide
-    (`performers/finished.py`). `strength`, above 0 and up to 1, is the share of the noise: the more, the less of the
-    motion stays; with 1 only the known joints do. With `samples` above 1, the
+    (`performers/finished.py`). `strength`, above 0 and up to 1, is the share of the noise: the
+    more, the less of the motion stays; with 1 only the known joints do. With `samples` above 1, the
     result is a list with this many motions; the first is that of samples=1. A MotionWarning says
     where the feet slide, and did not before.
     Raises MotionError if motion and mask do not fit, or the motion is shorter or longer than those

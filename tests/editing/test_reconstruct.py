@@ -183,3 +183,15 @@ def test_what_shows_no_path_is_said():
     known[:, [UPLEGS[0], ARMS[1]]] = False
     with pytest.raises(MotionError, match="no frame has both hips or both shoulders"):
         path_of(one.positions, known)
+
+
+def test_known_joints_that_are_unlike_the_training_are_named_if_their_frame_has_holes():
+    scaler = Scaler.nothing(63)
+    given, known = torch.zeros(40, 63), mask(40, (10, 20))
+    given[30, 3 * HIPS + 1] = given[15, 3 * 5] = 100.0  # in a whole frame, and not known
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        module.warn_of_unlike(scaler, given, known)
+    given[12, 3 * 7] = 10 * 3**0.5
+    with pytest.warns(MotionWarning, match=r"unlike the walker's training .*RightFoot 10.0\)"):
+        module.warn_of_unlike(scaler, given, known)

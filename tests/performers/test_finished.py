@@ -12,7 +12,12 @@ from motiondiff_edu.metrics.skating import skating
 from motiondiff_edu.motion.motion import Motion
 from motiondiff_edu.motion.planting import runs
 from motiondiff_edu.motion.skeleton import BONE_LENGTHS, TOES
-from motiondiff_edu.performers.finished import GLIDE, finished_continuation, finished_dance
+from motiondiff_edu.performers.finished import (
+    GLIDE,
+    finished_continuation,
+    finished_dance,
+    finished_edit,
+)
 
 FPS = 20
 
@@ -117,3 +122,22 @@ def test_a_foot_that_glides_far_is_not_held(clean):
     still = np.repeat(clean[:1], 60, axis=0)
     glides = still + np.linspace(0, 3 * GLIDE, 60)[:, None, None] * [1.0, 0.0, 0.0]
     np.testing.assert_allclose(finished_dance(glides, FPS), glides, atol=1e-6)
+
+
+def test_an_edited_motion_has_the_body_of_the_given_one_and_keeps_what_is_known(clean, shaken):
+    known = np.zeros((len(clean), 21), bool)
+    known[:, :9] = True
+    edited = np.where(known[..., None], clean, shaken)
+    made = finished_edit(edited, clean, FPS, known)
+    assert np.array_equal(made[known], clean[known])
+    lengths = bone_lengths(clean)
+    assert np.abs(bone_lengths(made) - lengths).max() < 3e-3
+    assert np.abs(bone_lengths(edited) - lengths).max() > 0.02
+
+
+def test_an_edited_motion_stays_on_the_floor_of_the_given_one(clean, shaken):
+    nothing = np.zeros((len(clean), 21), bool)
+    made = finished_edit(shaken - [0.0, 0.1, 0.0], clean, FPS, nothing)
+    assert made[:, list(TOES), 1].min() > -1e-3
+    low = finished_edit(shaken - [0.0, 0.1, 0.0], clean - [0.0, 0.5, 0.0], FPS, nothing)
+    assert low[:, list(TOES), 1].min() < -0.05

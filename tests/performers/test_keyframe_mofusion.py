@@ -8,10 +8,13 @@ import torch
 
 from motiondiff_edu.baselines.interpolation import linear
 from motiondiff_edu.beyond.around_lines import Shown
+from motiondiff_edu.beyond.turning_frame import View
 from motiondiff_edu.ddpm import cosine_schedule
 from motiondiff_edu.editing.inbetween import PAPER, Departures, inbetween
 from motiondiff_edu.editing.masks import keyframes
+from motiondiff_edu.motion.dance_frame import Place
 from motiondiff_edu.motion.scaler import Scaler
+from motiondiff_edu.motion.skeleton import OFFSETS, PARENTS
 from motiondiff_edu.performers.dancer import Dancer
 from motiondiff_edu.performers.keyframe_mofusion import KeyframeConfig, KeyframeMoFusion
 from motiondiff_edu.performers.with_bar import with_bar
@@ -130,6 +133,43 @@ def test_with_activity_calm_motions_are_moved_less_and_lively_ones_no_more(dance
     assert torch.equal(
         model(x, torch.tensor([3])), model(x, torch.tensor([3]), Shown.of(x, known & False))
     )
+
+
+def test_a_turning_network_sees_speeds_and_steps_and_needs_no_view(dancer):
+    model = KeyframeMoFusion(replace(SMALL, turning=True)).eval().requires_grad_(False)
+    for weight in model.parameters():
+        weight.add_(0.1 * torch.randn(weight.shape, generator=seeded()))
+    x, s = torch.randn(2, T, 63, generator=seeded()), torch.tensor([3, 20])
+    known = torch.zeros(x.shape, dtype=torch.bool)
+    known[:, ::6] = True
+    shown = model.shown(x, known, View.none(x))
+    plain = model(x, s, shown)
+    torch.testing.assert_close(plain, model(x, s, model.shown(x, known)))
+    moved = torch.zeros(63)
+    moved[[0, 2]] = 7.0
+    elsewhere = model.shown(x + moved, known, View.none(x))
+    torch.testing.assert_close(model(x, s, elsewhere), plain, atol=1e-4, rtol=1e-4)
+    steps = replace(shown.view, steps=shown.view.steps + 1)
+    assert not torch.allclose(model(x, s, replace(shown, view=steps)), plain)
+
+
+def test_in_betweens_of_a_figure_that_turns_do_not_shrink(dancer):
+    """Lines alone, between a first frame and one that looks back: hips stay as wide."""
+    model = KeyframeMoFusion(replace(SMALL, turning=True)).eval().requires_grad_(False)
+    turning = replace(dancer, model=model)
+    pose = np.array(OFFSETS)
+    for joint, parent in enumerate(PARENTS):
+        pose[joint] += pose[parent] if parent >= 0 else 0
+    angles = np.linspace(0, 0.95 * np.pi, T)
+    truth = np.stack([Place(np.zeros(3), np.array(a)).leave(pose[None])[0] for a in angles])
+    known, bare = keyframes(T, T - 1), Departures(bones=False, feet=False, clearance=False)
+    bare = replace(bare, remainder=0.0)
+    made, shrunk = (
+        inbetween(one, truth, known, steps=2, departures=bare)[0] for one in (turning, dancer)
+    )
+    np.testing.assert_allclose(made, truth, atol=1e-5)
+    width = np.linalg.norm(shrunk[:, 1] - shrunk[:, 5], axis=-1)
+    assert width.min() < 0.1 * width.max()
 
 
 def test_the_bar_counts_its_evaluations(dancer, monkeypatch):

@@ -8,11 +8,12 @@ import torch
 
 from data_synth.mixed import motions, sentences
 from motiondiff_edu.beyond.around_lines import Shown
+from motiondiff_edu.beyond.turning_frame import View
 from motiondiff_edu.ddpm import q_sample
 from motiondiff_edu.editing.inbetween import inbetween
 from motiondiff_edu.editing.masks import keyframes
 from motiondiff_edu.motion import dance_frame
-from motiondiff_edu.motion.skeleton import HIPS, J
+from motiondiff_edu.motion.skeleton import HIPS, J, joint_index
 from motiondiff_edu.performers.dance_windows import DanceWindows
 from motiondiff_edu.performers.keyframe_mofusion import KeyframeConfig, KeyframeMoFusion
 from motiondiff_edu.prediction import to_x0
@@ -20,7 +21,13 @@ from motiondiff_edu.recipes import keyframe_loss
 from motiondiff_edu.recipes.dancers import INBETWEENS
 from motiondiff_edu.recipes.drawn_masks import SHARES, drawn_mask, drawn_masks
 from motiondiff_edu.recipes.keyframe_loss import as_seen, body_around
-from motiondiff_edu.recipes.train_dancer import loss_of, schedule_of, train_dancer, with_path_scale
+from motiondiff_edu.recipes.train_dancer import (
+    loss_of,
+    scaler_of_turning,
+    schedule_of,
+    train_dancer,
+    with_path_scale,
+)
 
 T = 32
 SMALL = KeyframeConfig(S=60, widths=(16, 24), heads=2)
@@ -80,20 +87,20 @@ def test_motions_are_seen_from_their_first_given_pose_and_resized(windows):
     motion, _, _ = windows.draw(2, seeded())
     known = torch.zeros(2, T, J, dtype=torch.bool)
     known[0, 9], known[1, 0] = True, True
-    scaler = windows.motion_scaler
-    seen = as_seen(motion, known, torch.tensor([1.0, 1.2]), torch.tensor([0.0, 0.5]), scaler)
-    pose = dance_frame.to_positions(scaler.inverse(seen))[0, 9].numpy()
+    motion = windows.motion_scaler.inverse(motion)
+    seen = as_seen(motion, known, torch.tensor([1.0, 1.2]), torch.tensor([0.0, 0.5]))
+    pose = dance_frame.to_positions(seen)[0, 9].numpy()
     assert np.abs(pose[HIPS, [0, 2]]).max() < 1e-5
     assert abs(float(dance_frame.facing(pose[None])[0])) < 1e-5
-    before, after = (dance_frame.to_positions(scaler.inverse(x))[1] for x in (motion, seen))
+    before, after = (dance_frame.to_positions(x)[1] for x in (motion, seen))
     higher = torch.tensor([0.0, 0.5, 0.0])
     torch.testing.assert_close(after, 1.2 * before + higher, atol=1e-4, rtol=0)
 
 
-@pytest.mark.parametrize("target", ["x0", "v"])
-def test_the_loss_of_a_batch_is_eq_4_of_what_remains_without_the_lines(windows, target):
-    """Errors are those of x0, whatever the network predicts."""
-    config = replace(SMALL, target=target)
+@pytest.mark.parametrize(("target", "turning"), [("x0", False), ("v", False), ("v", True)])
+def test_the_loss_of_a_batch_is_eq_4_of_what_remains_without_the_lines(windows, target, turning):
+    """Errors are those of x0, whatever the network predicts, and in whatever view."""
+    config = replace(SMALL, target=target, turning=turning)
     recipe = replace(RECIPE, config=config, kinematic=None, sizes=0.0, stages=0.0)
     recipe = replace(recipe, loss_weights=type(RECIPE.loss_weights)())
     schedule = schedule_of(recipe)
@@ -113,9 +120,12 @@ def test_the_loss_of_a_batch_is_eq_4_of_what_remains_without_the_lines(windows, 
     motion, _, _ = windows.draw(4, generator)
     known = drawn_masks(4, T, generator)
     torch.rand(12, generator=generator)  # sizes, who stands on a stage, and how high
-    seen = as_seen(motion, known, torch.ones(4), torch.zeros(4), windows.motion_scaler)
+    scaler = windows.motion_scaler
+    seen = as_seen(scaler.inverse(motion), known, torch.ones(4), torch.zeros(4))
+    view = View.of(seen, known) if turning else View.none(seen)
+    seen = scaler.transform(view.enter(seen))
     columns = known.repeat_interleave(3, -1)
-    wanted = Shown.of(seen, columns)
+    wanted = Shown.of(seen, columns, view)
     r0 = wanted.remainder(seen)
     assert all(torch.equal(getattr(shown, k), getattr(wanted, k)) for k in ("lines", "known"))
     steps = torch.randint(1, schedule.S + 1, (4,), generator=generator)
@@ -129,9 +139,9 @@ def test_the_loss_of_a_batch_is_eq_4_of_what_remains_without_the_lines(windows, 
 def test_some_motions_stand_on_stages_but_none_of_which_nothing_is_given(windows, monkeypatch):
     asked = []
 
-    def watched(motion, known, sizes, heights, scaler):
+    def watched(motion, known, sizes, heights):
         asked.append((known, heights))
-        return as_seen(motion, known, sizes, heights, scaler)
+        return as_seen(motion, known, sizes, heights)
 
     monkeypatch.setattr(keyframe_loss, "as_seen", watched)
     recipe = replace(RECIPE, batch=300, stages=0.5)
@@ -150,6 +160,25 @@ def test_bones_are_those_of_lines_and_remainder_together(windows):
     wanted = dance_frame.body_of(windows.motion_scaler).to_positions(motion)
     made = body.to_positions(shown.remainder(motion))
     torch.testing.assert_close(made, wanted, atol=1e-4, rtol=1e-4)
+
+
+def test_bones_are_those_of_the_world_in_a_view_too(windows):
+    motion, _, _ = windows.draw(2, seeded())
+    scaler, known = windows.motion_scaler, drawn_masks(2, T, seeded(3))
+    features = scaler.inverse(motion)
+    view = View.of(features, known)
+    inside = scaler.transform(view.enter(features))
+    shown = Shown.of(inside, known.repeat_interleave(3, -1), view)
+    made = body_around(shown, scaler).to_positions(shown.remainder(inside))
+    torch.testing.assert_close(made, dance_frame.to_positions(features), atol=1e-4, rtol=1e-4)
+
+
+def test_units_in_a_view_are_those_of_figures_that_face_ahead(windows):
+    """Arms are to the left and to the right there, whichever way a figure looks."""
+    turned = scaler_of_turning(windows)
+    left, right = (3 * joint_index(name) for name in ("LeftArm", "RightArm"))
+    assert turned.mean[left] > 0.1 and turned.mean[right] < -0.1
+    assert turned.std[left] < windows.motion_scaler.std[left]
 
 
 def test_a_path_is_measured_in_metres_of_the_recipe_and_motions_stay_the_same(windows):
