@@ -4,9 +4,10 @@
 A person who stands is a centimetre from the lines, one who dances is several times as far as usual.
 Where only the distance counts (`around_lines`), one network has to generate both sizes, and moves
 calm people too much. `activity` is how far a motion goes in a second, as far as the given entries
-tell, averaged over about a second around each frame and over the columns that are given. It has no
-jumps, and is 1 where nothing near is given. The path of the pelvis has an activity of its own: who
-waves does not sway, and its two columns of 63 would count for nothing beside a lively pose.
+tell: pose and path of the pelvis alike, averaged over about a second around each frame and over all
+columns that are given. It has no jumps, and is 1 where nothing near is given. The path has an
+activity of its own: who waves does not sway, and its two columns would count for nothing beside the
+61 of a lively pose.
 
 So the sizes of remainders differ less, over walks, dances and performed sentences with a keyframe
 a second (`tests/beyond/test_activity.py`). It does not know the ends of a motion: there, and with
@@ -43,11 +44,11 @@ def with_activity(shown: Shown, at_most: float = math.inf) -> Shown:
 
 
 def activity(lines: Float[Tensor, "B T D"], known: Bool[Tensor, "B T D"]) -> Float[Tensor, "B T D"]:
-    """`activity_of` the path for its two columns, and of the pose for all others."""
+    """`activity_of` all columns; for the two of the path, of these alone."""
     path = torch.zeros(lines.shape[-1], dtype=torch.bool, device=lines.device)
     path[PATH] = True
-    of_path, of_pose = (activity_of(lines[..., some], known[..., some]) for some in (path, ~path))
-    return torch.where(path, of_path, of_pose)
+    of_path = activity_of(lines[..., PATH], known[..., PATH])
+    return torch.where(path, of_path, activity_of(lines, known))
 
 
 def activity_of(

@@ -137,7 +137,7 @@ UNCONDITIONAL = DanceRecipe(
 INBETWEENS = KeyframeRecipe(
     "inbetweens",
     KeyframeConfig(activity=True, turning=True),
-    steps=12_000,
+    steps=10_000,
     kinematic=KINEMATIC,
     loss_weights=OURS,
     snr=0.3,

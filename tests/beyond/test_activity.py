@@ -93,7 +93,8 @@ def test_the_path_has_an_activity_of_its_own():
     x = torch.zeros(1, T, 63)
     x[..., 0] = steady(2.0)[..., 0]
     sliding = activity(lines_through(x, known), known)[0, T // 2]
-    assert (sliding[[0, 2]] > 1).all() and (sliding[3:] < 0.1).all()
+    assert (sliding[[0, 2]] > 1).all()
+    torch.testing.assert_close(sliding[3:], of(x, known)[0, T // 2].expand(60))
 
 
 def test_it_has_no_jumps():

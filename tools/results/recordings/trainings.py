@@ -27,6 +27,10 @@ VARIANTS: dict[str, tuple[str, dict]] = {
         "scales do not know how much the figure moves (`beyond/activity.py`)",
         {"config": replace(INBETWEENS.config, activity=False)},
     ),
+    "no-turning": (
+        "poses are seen in the heading of the first one (`beyond/turning_frame.py`)",
+        {"config": replace(INBETWEENS.config, turning=False)},
+    ),
     "no-variations": (
         "no other limbs and levels, no stages; other paces for recordings alone",
         {"variations": 0.0, "levels": 0.0, "paces": 0.0, "stages": 0.0},
