@@ -16,6 +16,7 @@ from ..beyond.above_floor import feet_above_floor, lowest_given
 from ..beyond.constant_bones import Lengths, steady_bones
 from ..beyond.foot_lock import steady_feet
 from ..beyond.guidance import blended, guided
+from ..beyond.kept_places import kept_places
 from ..beyond.step_clearance import clear_steps
 from ..beyond.turning_frame import View
 from ..ddpm import Denoiser, Generators, Schedule, draw, final, timesteps
@@ -43,7 +44,8 @@ class Departures:
     doubles the cost. A larger value follows sparse keyframes better, but the motion jumps more at
     the ends of a gap.
     `bones`: generated bones get the lengths of the given ones (`beyond.constant_bones`).
-    `feet`: planted feet do not slide (`beyond.foot_lock`).
+    `feet`: planted feet do not slide (`beyond.foot_lock`), and a foot that is given twice at the
+    same place stays there (`beyond.kept_places`).
     `clearance`: planted feet lie on the floor, y = 0, and swinging ones are higher
     (`beyond.step_clearance`); none is lower than the floor and all given joints
     (`beyond.above_floor`).
@@ -128,7 +130,7 @@ def inbetween(
     if departures.bones:
         whole = steady_bones(whole, known, Lengths.of(positions, known))
     if departures.feet and known.any():
-        whole = steady_feet(whole, known)
+        whole = steady_feet(kept_places(whole, positions, known), known)
     return cleared(whole, positions, known) if departures.clearance and known.any() else whole
 
 
