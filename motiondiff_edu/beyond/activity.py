@@ -24,8 +24,8 @@ from jaxtyping import Bool, Float
 from torch import Tensor
 from torch.nn.functional import conv1d
 
+from ..motion.dance_frame import PATH
 from .around_lines import Shown, frames_since
-from .turning_frame import PATH
 
 SPAN = 20  # frames, a second; with 10, sizes of motions differ a little more
 BLUR = 10.0  # frames, standard deviation of the average; with 20, sizes of single gaps differ more

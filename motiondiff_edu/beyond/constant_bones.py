@@ -17,8 +17,8 @@ from jaxtyping import Bool, Float
 
 from ..motion.skeleton import BONES, HIPS, joint_index
 
-# rounds through all distances; errors of centimetres fall below .1 mm, unless the given joints
-# contradict the lengths
+# rounds through all distances; errors of centimetres fall to a few mm at most, unless the given
+# joints contradict the lengths
 ROUNDS = 30
 
 _LEFT, _RIGHT, _SPINE, _SPINE1, _NECK, _HEAD = map(

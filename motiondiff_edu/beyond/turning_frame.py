@@ -20,12 +20,11 @@ import torch
 from jaxtyping import Bool, Float
 from torch import Tensor
 
-from ..motion.dance_frame import heading
+from ..motion.dance_frame import PATH, headings_between
 from ..motion.directions import ARMS, UPLEGS
-from ..motion.skeleton import HIPS, TOES, J
+from ..motion.skeleton import TOES, J
 from .guidance import blended_guess
 
-PATH = [3 * HIPS, 3 * HIPS + 2]  # columns of the pelvis' path
 SPAN = 5  # frames before and after, over which the speed of a line is taken
 STEP = 0.3  # m: a step of so much in 2 SPAN frames counts as 1
 
@@ -76,15 +75,15 @@ def headings(
     circle.
     """
     joints = features.detach().cpu().double().numpy().reshape(*features.shape[:2], J, 3)
-    masks, frames = known.cpu().numpy(), np.arange(features.shape[1])
+    masks = known.cpu().numpy()
     found = np.zeros(features.shape[:2])
     for row, pose, mask in zip(found, joints, masks, strict=True):
-        across, there = np.zeros((len(frames), 3)), np.zeros(len(frames), bool)
+        across, there = np.zeros((len(pose), 3)), np.zeros(len(pose), bool)
         for left, right in (ARMS, UPLEGS):
             both = mask[:, left] & mask[:, right]
             across[both], there = (pose[:, left] - pose[:, right])[both], there | both
         if there.any():
-            row[:] = np.interp(frames, frames[there], np.unwrap(heading(across[there])))
+            row[:] = headings_between(across, there)
     return torch.from_numpy(found).to(features)
 
 

@@ -21,7 +21,7 @@ from ..beyond.step_clearance import clear_steps
 from ..beyond.turning_frame import View
 from ..ddpm import Denoiser, Generators, Schedule, draw, final, timesteps
 from ..inbetweening import inpaint_steps, resampled
-from ..motion.dance_frame import GROUND, Place, heading, placed_features, to_positions
+from ..motion.dance_frame import GROUND, PATH, Place, heading, placed_features, to_positions
 from ..motion.directions import ARMS, UPLEGS
 from ..motion.scaler import Scaler
 from ..motion.skeleton import HIPS, JOINTS, J
@@ -71,7 +71,7 @@ PAPER = Departures(blend=None, shown=False, guidance=0.0, bones=False, feet=Fals
 class AnyDancer(Protocol):
     """What `inbetween` needs of a dancer: schedule, units, and a denoiser for the music.
 
-    If it has `can_be_shown`, its `shown` and `shown_denoiser` are used.
+    If it has `can_be_shown`, its `view`, `shown` and `shown_denoiser` are used.
     """
 
     schedule: Schedule
@@ -109,7 +109,8 @@ def inbetween(
     at_home = np.where(known[..., None], place.enter(np.nan_to_num(positions)), 0.0)
     features = torch.from_numpy(placed_features(at_home)).float().to(device)[None]
     sees = departures.shown and getattr(dancer, "can_be_shown", False)
-    view = view_of(dancer, features, known) if sees else View.none(features)
+    mask = torch.from_numpy(known)[None].to(device)
+    view = dancer.view(features, mask) if sees else View.none(features)
     given = dancer.motion_scaler.transform(view.enter(features))[0]
     shape = (samples, *given.shape)
     music = None if mel is None else mel[None].expand(samples, -1, -1)
@@ -132,15 +133,6 @@ def inbetween(
     if departures.feet and known.any():
         whole = steady_feet(kept_places(whole, positions, known), known)
     return cleared(whole, positions, known) if departures.clearance and known.any() else whole
-
-
-def view_of(
-    dancer: AnyDancer, features: Float[Tensor, "1 T 63"], known: Bool[np.ndarray, "T 21"]
-) -> View:
-    """What a network that sees what is given sees it in (`beyond.turning_frame`)."""
-    if not dancer.config.turning:
-        return View.none(features)
-    return View.of(features, torch.from_numpy(known)[None].to(features.device))
 
 
 def cleared(
@@ -191,7 +183,7 @@ def fading(frames: int) -> Float[Tensor, "63"]:
     So the figure does not return to where it started.
     """
     fade = torch.full((3 * J,), float(frames))
-    fade[[3 * HIPS, 3 * HIPS + 2]] = math.inf
+    fade[PATH] = math.inf
     return fade
 
 

@@ -20,7 +20,7 @@ from ..beyond.back_with_known import FADE, blended_way_back
 from ..beyond.constant_bones import Lengths, steady_bones
 from ..beyond.foot_lock import steady_feet
 from ..beyond.guidance import blended_guess
-from ..motion.dance_frame import heading
+from ..motion.dance_frame import headings_between
 from ..motion.directions import ARMS, UPLEGS
 from ..motion.motion import MotionError, MotionWarning
 from ..motion.planting import runs
@@ -199,6 +199,5 @@ def path_of(
         raise MotionError(
             "the direction of the figure is unknown: no frame has both hips or both shoulders"
         )
-    facing = np.unwrap(heading(across[has_direction]))
-    facing = np.interp(np.arange(len(positions)), np.flatnonzero(has_direction), facing)
+    facing = headings_between(across, has_direction)
     return smoothed_root(positions[:, HIPS][:, [0, 2]], facing)

@@ -158,6 +158,14 @@ class Dancer(Performer):
         """Whether the network was made to see what is given of a motion (`shown_denoiser`)."""
         return isinstance(self.model, KeyframeMoFusion)
 
+    def view(self, features: Float[Tensor, "B T 63"], known: Bool[Tensor, "B T 21"]) -> View:
+        """How such a network sees motions in metres (`beyond.turning_frame`).
+
+        Raises ValueError for a network that was not made for it.
+        """
+        self._must_see()
+        return self.model.view(features, known)
+
     def shown(
         self,
         given: Float[Tensor, "B T D"],

@@ -48,6 +48,10 @@ class KeyframeMoFusion(nn.Module):
         self.config = config
         self.unet = MoFusion(config.inner())
 
+    def view(self, features: Float[Tensor, "B T 63"], known: Bool[Tensor, "B T 21"]) -> View:
+        """How this network sees motions (features in metres) of which this is given."""
+        return View.of(features, known) if self.config.turning else View.none(features)
+
     def shown(
         self,
         given: Float[Tensor, "B T D"],

@@ -14,7 +14,6 @@ from torch import Tensor, nn
 
 from ..beyond.around_lines import Shown
 from ..beyond.loss_terms import as_x0_errors, weighted, weighted_by_step
-from ..beyond.turning_frame import View
 from ..ddpm import Schedule
 from ..editing.inbetween import seen_from
 from ..kinematic_loss import Body
@@ -44,7 +43,7 @@ def keyframe_loss_of(recipe: KeyframeRecipe, windows: DanceWindows, schedule: Sc
         high = (chance(generator, len(motion)) < recipe.stages) & known.flatten(1).any(1)
         heights = high * chance(generator, len(motion))
         motion = as_seen(scaler.inverse(motion), known, sizes, heights)
-        view = View.of(motion, known) if recipe.config.turning else View.none(motion)
+        view = model.view(motion, known)
         motion = scaler.transform(view.enter(motion)).to(device)
         columns = known.repeat_interleave(3, dim=-1).to(device)
         shown = model.shown(motion, columns, view.to(device))

@@ -22,7 +22,7 @@ from ..ddpm import Schedule, cosine_schedule
 from ..metrics.bone_lengths import bone_lengths
 from ..motion import dance_frame
 from ..motion.scaler import Scaler
-from ..motion.skeleton import HIPS, J
+from ..motion.skeleton import J
 from ..performers.dance_windows import FITTED, DanceWindows, toes_moved
 from ..performers.dancer import Dancer
 from ..performers.keyframe_mofusion import KeyframeConfig
@@ -150,7 +150,7 @@ def with_path_scale(windows: DanceWindows, metres: float) -> DanceWindows:
     """
     scaler = windows.motion_scaler
     std = scaler.std.clone()
-    std[[3 * HIPS, 3 * HIPS + 2]] = metres
+    std[dance_frame.PATH] = metres
     return replace(windows, motion_scaler=Scaler(scaler.mean, std))
 
 

@@ -3,30 +3,22 @@
 import numpy as np
 import pytest
 import torch
+from gaits import rest_pose
 
 from data_synth.walking import random_control, walk
 from motiondiff_edu.beyond.around_lines import Shown
-from motiondiff_edu.beyond.turning_frame import PATH, SPAN, STEP, View, headings
+from motiondiff_edu.beyond.turning_frame import SPAN, STEP, View, headings
 from motiondiff_edu.editing.masks import keyframes, known_columns
-from motiondiff_edu.motion.dance_frame import Place, placed_features, to_positions
-from motiondiff_edu.motion.skeleton import OFFSETS, PARENTS, TOES, joint_index
+from motiondiff_edu.motion.dance_frame import PATH, Place, placed_features, to_positions
+from motiondiff_edu.motion.skeleton import TOES, joint_index
 
 T = 41
 LEFT, RIGHT = joint_index("LeftUpLeg"), joint_index("RightUpLeg")
 
 
-def standing() -> np.ndarray:
-    """The rest pose, facing z, over the origin (21, 3)."""
-    pose = np.array(OFFSETS)
-    for joint, parent in enumerate(PARENTS):
-        if parent >= 0:
-            pose[joint] += pose[parent]
-    return pose
-
-
 def turning(angles: np.ndarray) -> np.ndarray:
     """The rest pose in every frame, facing these angles (radians)."""
-    return np.stack([Place(np.zeros(3), np.array(a)).leave(standing()[None])[0] for a in angles])
+    return np.stack([Place(np.zeros(3), np.array(a)).leave(rest_pose()[None])[0] for a in angles])
 
 
 def features_of(positions: np.ndarray) -> torch.Tensor:

@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import torch
+from gaits import rest_pose
 
 from motiondiff_edu.baselines.interpolation import linear
 from motiondiff_edu.beyond.around_lines import Shown
@@ -14,7 +15,6 @@ from motiondiff_edu.editing.inbetween import PAPER, Departures, inbetween
 from motiondiff_edu.editing.masks import keyframes
 from motiondiff_edu.motion.dance_frame import Place
 from motiondiff_edu.motion.scaler import Scaler
-from motiondiff_edu.motion.skeleton import OFFSETS, PARENTS
 from motiondiff_edu.performers.dancer import Dancer
 from motiondiff_edu.performers.keyframe_mofusion import KeyframeConfig, KeyframeMoFusion
 from motiondiff_edu.performers.with_bar import with_bar
@@ -157,11 +157,8 @@ def test_in_betweens_of_a_figure_that_turns_do_not_shrink(dancer):
     """Lines alone, between a first frame and one that looks back: hips stay as wide."""
     model = KeyframeMoFusion(replace(SMALL, turning=True)).eval().requires_grad_(False)
     turning = replace(dancer, model=model)
-    pose = np.array(OFFSETS)
-    for joint, parent in enumerate(PARENTS):
-        pose[joint] += pose[parent] if parent >= 0 else 0
     angles = np.linspace(0, 0.95 * np.pi, T)
-    truth = np.stack([Place(np.zeros(3), np.array(a)).leave(pose[None])[0] for a in angles])
+    truth = np.stack([Place(np.zeros(3), np.array(a)).leave(rest_pose()[None])[0] for a in angles])
     known, bare = keyframes(T, T - 1), Departures(bones=False, feet=False, clearance=False)
     bare = replace(bare, remainder=0.0)
     made, shrunk = (

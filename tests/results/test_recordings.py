@@ -229,7 +229,7 @@ def test_variants_differ_from_the_recipe_in_what_they_say():
         for name in trainings.VARIANTS
     }
     assert changed["no-recordings"] == {"name", "recordings"}
-    assert changed["no-activity"] == {"name", "config"}
+    assert changed["no-activity"] == changed["no-turning"] == {"name", "config"}
     assert changed["no-variations"] == {
         "name", "variations", "levels", "paces", "stages",
     }  # fmt: skip
