@@ -522,3 +522,25 @@ def test_exported_html_plays_offline_and_says_that_repairing_needs_a_kernel(brow
         inside.get_by_role("button", name="Play").click()
         inside.locator(".mde-bench:not([data-frame='13'])").wait_for()
         assert page.problems == [] and page.asked == []
+
+
+LATE_SIGHTS = """
+window.IntersectionObserver = class {
+  constructor(tell) { this.tell = tell; }
+  observe() { this.tell([{ isIntersecting: false }, { isIntersecting: true }]); }
+  disconnect() {}
+};"""
+
+
+def test_the_last_of_several_readings_says_whether_the_figure_is_in_sight(browser, tmp_path):
+    # a busy page tells at once that the canvas was out of sight and that it no longer is
+    export = tmp_path / "export.html"
+    export.write_text(
+        f"<!doctype html><body>{bench()._repr_mimebundle_()[0]['text/html']}", "utf-8"
+    )
+    with open_page(browser) as page:
+        page.add_init_script(LATE_SIGHTS)
+        page.goto(export.as_uri())
+        inside = page.frame_locator("iframe")
+        inside.get_by_role("button", name="Play").click()
+        inside.locator(".mde-bench:not([data-frame='13'])").wait_for(timeout=10000)

@@ -2,7 +2,18 @@
 // it, and the kernel's repair: the mean as a body, each repair as thin limbs, the truth as an
 // outline. `model` needs get, set, save_changes, on, off.
 
-import { CSS, GREEN, clamp, element, listener, mix, readTheme, redrawn, rgba } from "./dom.js";
+import {
+  CSS,
+  GREEN,
+  clamp,
+  element,
+  listener,
+  mix,
+  readTheme,
+  redrawn,
+  rgba,
+  sighted,
+} from "./dom.js";
 import { unpack } from "./figures.js";
 import { camera, paintBody, paintFloor, paintText, smoothRoot } from "./paint.js";
 import {
@@ -502,13 +513,12 @@ export function mount(model, el, { fill = false } = {}) {
     },
   };
   for (const [name, f] of Object.entries(changes)) model.on(name, f);
-  const sights = new IntersectionObserver(([seen]) => {
-    visible = seen.isIntersecting;
-  });
   if (!fill) canvas.style.height = `${scene.height}px`;
   map.style.height = `${MAP_HEIGHT}px`;
   redrawn(stop, canvas, draw);
-  sights.observe(canvas);
+  sighted(stop, canvas, (seen) => {
+    visible = seen;
+  });
   load();
   rest();
   if (busy()) waitOn();
@@ -519,7 +529,6 @@ export function mount(model, el, { fill = false } = {}) {
     stop.abort();
     clearTimeout(silence);
     cancelAnimationFrame(ticking);
-    sights.disconnect();
     for (const [name, f] of Object.entries(changes)) model.off(name, f);
     root.remove();
   };

@@ -75,6 +75,14 @@ export function redrawn(stop, canvas, draw) {
   stop.signal.addEventListener("abort", () => [sizes, themes].forEach((o) => o.disconnect()));
 }
 
+// Tells whether the canvas is in sight. A busy page gathers several readings before it tells them:
+// the last one holds.
+export function sighted(stop, canvas, tell) {
+  const sights = new IntersectionObserver((readings) => tell(readings.at(-1).isIntersecting));
+  sights.observe(canvas);
+  stop.signal.addEventListener("abort", () => sights.disconnect());
+}
+
 export function readTheme(root) {
   const style = getComputedStyle(root);
   const bg = parse(style.backgroundColor);

@@ -3,7 +3,17 @@
 // far a joint was dragged. `model` needs get, set, save_changes, on, off; without send there is no
 // kernel, and a message says what needs one.
 
-import { CSS, clamp, element, listener, parse, readTheme, redrawn, rgba } from "./dom.js";
+import {
+  CSS,
+  clamp,
+  element,
+  listener,
+  parse,
+  readTheme,
+  redrawn,
+  rgba,
+  sighted,
+} from "./dom.js";
 import { bytes, unpack } from "./figures.js";
 import { smoothRoot } from "./paint.js";
 import { silentClock } from "./clock.js";
@@ -740,9 +750,6 @@ export function mount(model, el, { fill = false } = {}) {
     "change:file": onControls,
   };
   for (const [name, f] of Object.entries(changes)) model.on(name, f);
-  const sights = new IntersectionObserver(([seen]) => {
-    visible = seen.isIntersecting;
-  });
   // as much as leaves the controls in sight
   if (!fill) canvas.style.height = `clamp(${scene.height}px, 46vh, 620px)`;
   [motion] = read("", [scene.frames]);
@@ -759,12 +766,13 @@ export function mount(model, el, { fill = false } = {}) {
   say(state.message);
   draw();
   redrawn(stop, canvas, draw);
-  sights.observe(canvas);
+  sighted(stop, canvas, (seen) => {
+    visible = seen;
+  });
   return () => {
     stop.abort();
     way.close();
     cancelAnimationFrame(ticking);
-    sights.disconnect();
     for (const [name, f] of Object.entries(changes)) model.off(name, f);
     root.remove();
   };

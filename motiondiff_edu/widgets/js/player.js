@@ -2,7 +2,17 @@
 // dependencies; runs in JupyterLab (anywidget), in exported HTML (an iframe with this same text)
 // and in a bare page. `model` needs get, set, save_changes, on, off.
 
-import { CSS, clamp, element, listener, mix, readTheme, redrawn, rgba } from "./dom.js";
+import {
+  CSS,
+  clamp,
+  element,
+  listener,
+  mix,
+  readTheme,
+  redrawn,
+  rgba,
+  sighted,
+} from "./dom.js";
 import { unpack } from "./figures.js";
 import { paintPanel, tense } from "./paint.js";
 import { feed, silentClock, soundClock } from "./clock.js";
@@ -408,11 +418,10 @@ export function mount(model, el, { fill = false } = {}) {
   model.on("change:frame", onFrame);
   model.on("change:playing", onPlaying);
   model.on("change:scene", onScene);
-  const sights = new IntersectionObserver(([seen]) => {
-    visible = seen.isIntersecting;
-  });
   redrawn(stop, canvas, draw);
-  sights.observe(canvas);
+  sighted(stop, canvas, (seen) => {
+    visible = seen;
+  });
 
   speeds.value = "1";
   load();
@@ -427,7 +436,6 @@ export function mount(model, el, { fill = false } = {}) {
       );
     unload();
     cancelAnimationFrame(ticking);
-    sights.disconnect();
     model.off("change:frame", onFrame);
     model.off("change:playing", onPlaying);
     model.off("change:scene", onScene);
