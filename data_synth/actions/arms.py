@@ -22,6 +22,7 @@ from .join import mixed_bone
 
 HAND = 0.09
 FADE = 0.35  # seconds in which an arm leaves what it did before, and comes back to it
+RISE = 0.55  # seconds in which a hand goes up beside the head, and down again
 SHOULDERS = {"left": 13, "right": 17}
 Pose = tuple[float, float, float, float, float]
 Keys = list[tuple[float, Pose]]
@@ -48,14 +49,14 @@ class TimedArms:
 def wave(one: TimedArms, side: str, rng: np.random.Generator) -> Keys:
     """The hand beside the head, swinging out and in, about one and a half times a second."""
     each = 0.5 * one.period / 3.0
-    keys = [(one.first + FADE, WAVING)]
+    keys = [(one.first, HANGING), (one.first + RISE, WAVING)]
     sign = 1.0
-    while keys[-1][0] + each < one.last - FADE:
+    while keys[-1][0] + each < one.last - RISE:
         swing = sign * rng.uniform(20.0, 28.0)
         pose = tuple(np.add(WAVING, (0.0, 0.0, swing, 0.5 * swing, 0.0)))
         keys.append((keys[-1][0] + each, pose))
         sign = -sign
-    return keys
+    return [*keys, (keys[-1][0] + RISE, HANGING)]
 
 
 def raise_arm(one: TimedArms, side: str, rng: np.random.Generator) -> Keys:

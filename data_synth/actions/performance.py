@@ -103,7 +103,9 @@ def _performed(sentence: Sentence, seconds: float, late: float, seed: int) -> tu
                 state = way.standing_at(piece, cut)
         else:
             standing = state if isinstance(state, Standing) else _first_stand(style, rng)
-            piece, cut, inner, state = _on_the_spot(block, standing, room, seed)
+            # in a join the feet are those of the piece before: none may leave the floor in it
+            rest = JOIN - spot.on_the_floor(block[0].legs, block[0].legs_period) if k else 0.0
+            piece, cut, inner, state = _on_the_spot(block, standing, room, seed, max(0.05, rest))
         spans += [Span(at / FPS + first, at / FPS + end, act) for first, end, act in inner]
         made = piece if made is None else _joined(made, piece, at, block[0].kind == "way")
         at += cut
@@ -216,9 +218,14 @@ def _on_the_way(block: list[Slot], state, style, rng, room: int | None, seed: in
     return piece, cut, inner
 
 
-def _on_the_spot(block: list[Slot], standing: Standing, room: int | None, seed: int):
-    """(piece, frame at which the next block begins, spans within it, where the feet stand)."""
-    timed, at = [], 0.05
+def _on_the_spot(
+    block: list[Slot], standing: Standing, room: int | None, seed: int, at: float = 0.05
+):
+    """(piece, frame at which the next block begins, spans within it, where the feet stand).
+
+    The first act begins `at` seconds after the block.
+    """
+    timed = []
     for slot in block:
         timed.append(spot.Timed(slot.legs, at, slot.legs_period))
         at = timed[-1].last + max(0.0, slot.seconds - slot.legs.count * slot.legs_period)

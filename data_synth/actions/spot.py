@@ -38,6 +38,7 @@ BALANCE = (62.0, 10.0, 10.0, 22.0)  # both arms ahead
 GUARD = (30.0, 16.0, 24.0, 95.0)
 BACK = (-35.0, 14.0, 10.0, 20.0)
 L, R = 0, 1
+CROUCH = 0.42  # of a jump's period
 LEG, HIP = 0.83, 0.88  # metres: of a straight leg, and the height of its socket
 
 
@@ -71,7 +72,7 @@ def jump(p: Sheet, at: float, period: float, act: Act) -> None:
     """Crouch with the arms back, both feet off the floor, and soft knees after it."""
     flight = float(p.rng.uniform(0.40, 0.48))
     height = float(p.rng.uniform(0.14, 0.20))
-    land = at + 0.42 * period + flight
+    land = at + CROUCH * period + flight
     off = land - flight
     ahead = 0.32 if act.direction == "forward" else 0.0
     places = [p.at(p.foot(foot)) for foot in (L, R)]
@@ -97,7 +98,7 @@ def kick(p: Sheet, at: float, period: float, act: Act) -> None:
     height = float(p.rng.uniform(0.42, 0.75))
     far = 0.9 * float(np.sqrt(LEG**2 - (HIP - height) ** 2))  # of the foot, the leg nearly straight
     top = at + 0.5 * period
-    half = float(np.clip(0.34 * period, 0.30, 0.5))
+    half = _swing(period)
     p.key("weight", (at, 0.0 if at < 0.3 else -0.5 * side))
     p.kick(foot, top, -0.05 * side, far, height, 24.0, half=half)
     p.key("surge", (at, 0.0), (top, -0.05), (at + 0.95 * period, 0.0))
@@ -108,6 +109,18 @@ def kick(p: Sheet, at: float, period: float, act: Act) -> None:
     p.arms(at, GUARD if at > 0.3 else _down(p))
     p.arms(top - 0.8 * half, GUARD)
     p.arms(top + half, GUARD)
+
+
+def _swing(period: float) -> float:
+    """Seconds from the floor to the top of a kick."""
+    return float(np.clip(0.34 * period, 0.30, 0.5))
+
+
+def on_the_floor(act: Act, period: float) -> float:
+    """Seconds from the beginning of an act for which both feet stay where they stand."""
+    if act.verb == "kick":
+        return 0.5 * period - _swing(period)
+    return CROUCH * period if act.verb == "jump" else act.count * period
 
 
 def sit(p: Sheet, at: float, period: float, act: Act) -> None:

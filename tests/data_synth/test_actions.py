@@ -76,7 +76,7 @@ def test_every_ordered_pair_of_leg_acts_joins():
     found = worst([measures(one) for one in pairs_made.values()])
     assert found["slip_mm"] < 1.0 and found["lowest_mm"] > -5.0 and found["bone_m"] < 1e-9
     assert 10 < found["knee_smallest"] and found["knee_largest"] < 140
-    assert found["fastest_mps"] < 13 and found["jolt_mps2"] < 250
+    assert found["fastest_mps"] < 10 and found["jolt_mps2"] < 150
     assert max(stands_between(one) for one in pairs_made.values()) <= 0.5
     for (a, b), acted in pairs_made.items():  # both acts are there, in their order, to their ends
         first, second = [s for s in acted.spans if s.act.verb in (a, b)][-2:]
@@ -87,7 +87,7 @@ def test_every_ordered_pair_of_leg_acts_joins():
 def test_clips_hold(made):
     found = worst([measures(clip.acted) for clip in made])
     assert found["slip_mm"] < 1.0 and found["lowest_mm"] > -5.0 and found["bone_m"] < 1e-9
-    assert found["fastest_mps"] < 18
+    assert found["fastest_mps"] < 10 and found["jolt_mps2"] < 150
     for clip in made:
         assert len(clip.acted.contacts) == len(clip.acted) == len(clip.acted.positions)
         verbs = Counter(act.verb for phrase in clip.acted.sentence for act in phrase.acts)
