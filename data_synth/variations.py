@@ -26,6 +26,8 @@ TURNS = {
 PELVIS, SWAY = 1.2, 0.3  # radians and metres, at most
 PACE = (0.2, 2.0)  # seconds from one turn to the next
 UPPER = [joint for joint in range(J) if joint not in LEGS and joint != HIPS]
+SPINE = joint_index("Spine")
+CHEST = [joint for joint in UPPER if joint != SPINE]
 
 
 def limbs_turned(
@@ -84,16 +86,17 @@ def drawn_swings(T: int, rng: np.random.Generator, fps: float) -> Float[np.ndarr
 def with_upper_body_of(
     legs: Float[np.ndarray, "T 21 3"], upper: Float[np.ndarray, "U 21 3"]
 ) -> Float[np.ndarray, "T 21 3"]:
-    """Pelvis and legs of one motion, trunk, arms and head of another.
+    """Pelvis and legs of one motion; chest, arms and head of another.
 
-    Both face the way that the legs go. A shorter upper body goes there and back.
+    The lowest joint of the spine belongs to the pelvis. Both face the way that the legs go. A
+    shorter upper body goes there and back.
     """
     more = max(0, len(legs) - len(upper))
     upper = np.pad(upper, ((0, more), (0, 0), (0, 0)), mode="reflect")[: len(legs)]
     place = place_of(legs)
     moved = place.enter(legs[:, None])[:, 0]
     other = place_of(upper).enter(upper[:, None])[:, 0]
-    moved[:, UPPER] = moved[:, HIPS, None] + other[:, UPPER] - other[:, HIPS, None]
+    moved[:, CHEST] = moved[:, SPINE, None] + other[:, CHEST] - other[:, SPINE, None]
     return place.leave(moved[:, None])[:, 0]
 
 

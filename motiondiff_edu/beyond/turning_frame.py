@@ -70,19 +70,19 @@ def headings(
 ) -> Float[Tensor, "B T"]:
     """The heading in every frame (radians): as given, and turning evenly between.
 
-    Hips count where both are given, or else shoulders. Before the first and after the last heading
-    it stays. It is 0 where none is given. Between two of them a figure turns by less than a half
-    circle.
+    Of hips and shoulders, the pair counts that is given in more frames; hips, if in as many. The
+    other one does not count at all, for a twisted trunk would make the heading jump. Before the
+    first and after the last heading it stays. It is 0 where none is given. Between two of them a
+    figure turns by less than a half circle.
     """
     joints = features.detach().cpu().double().numpy().reshape(*features.shape[:2], J, 3)
     masks = known.cpu().numpy()
     found = np.zeros(features.shape[:2])
     for row, pose, mask in zip(found, joints, masks, strict=True):
-        across, there = np.zeros((len(pose), 3)), np.zeros(len(pose), bool)
-        for left, right in (ARMS, UPLEGS):
-            both = mask[:, left] & mask[:, right]
-            across[both], there = (pose[:, left] - pose[:, right])[both], there | both
+        left, right = max((UPLEGS, ARMS), key=lambda pair: mask[:, pair].all(1).sum())
+        there = mask[:, left] & mask[:, right]
         if there.any():
+            across = np.where(there[:, None], pose[:, left] - pose[:, right], 0.0)
             row[:] = headings_between(across, there)
     return torch.from_numpy(found).to(features)
 

@@ -8,7 +8,7 @@ from gaits import rest_pose
 from data_synth.walking import random_control, walk
 from motiondiff_edu.beyond.around_lines import Shown
 from motiondiff_edu.beyond.turning_frame import SPAN, STEP, View, headings
-from motiondiff_edu.editing.masks import keyframes, known_columns
+from motiondiff_edu.editing.masks import body_part, keyframes, known_columns
 from motiondiff_edu.motion.dance_frame import PATH, Place, placed_features, to_positions
 from motiondiff_edu.motion.skeleton import TOES, joint_index
 
@@ -52,6 +52,21 @@ def test_shoulders_tell_it_without_hips_and_nobody_tells_it_without_both():
     once[7] = True
     stays = headings(features_of(positions), masks(once))[0]
     np.testing.assert_allclose(stays, np.full(T, np.linspace(0.2, 1.0, T)[7]), atol=1e-6)
+
+
+def test_a_twisted_trunk_does_not_make_the_heading_jump():
+    """With the upper body and keyframes given, hips are given in keyframes alone."""
+    positions = turning(np.linspace(0.0, 1.0, T))
+    twist, chest = np.radians(30.0), [j for j in range(9, 21)]
+    x, z = positions[:, chest, 0].copy(), positions[:, chest, 2].copy()
+    positions[:, chest, 0] = x * np.cos(twist) + z * np.sin(twist)
+    positions[:, chest, 2] = z * np.cos(twist) - x * np.sin(twist)
+    known = keyframes(T, 10) | body_part(T, "upper body")
+    found = headings(features_of(positions), masks(known))[0].numpy()
+    np.testing.assert_allclose(found, np.linspace(0.0, 1.0, T) + twist, atol=1e-5)
+    legs = keyframes(T, 10) | body_part(T, "lower body")
+    found = headings(features_of(positions), masks(legs))[0].numpy()
+    np.testing.assert_allclose(found, np.linspace(0.0, 1.0, T), atol=1e-5)
 
 
 def test_to_enter_and_to_leave_are_inverse_and_a_turning_figure_stands_still_inside():
