@@ -1,19 +1,21 @@
 """Dances from AIST++: keypoints3d pickles, read without running code that a pickle may contain.
 
-A pickle is a program; unpickling a file from a stranger runs it. Here a pickle may name only four
-things: the numpy array, its dtype, and the two functions that build an array. Every other name
-raises an error. The result is in metres, at 60 frames/s, with y up and the floor at 0.
+A pickle is a program; unpickling a file from a stranger runs it. Here a pickle may name only five
+things: the numpy array, its dtype, the two functions that build an array, and the one that spells
+bytes. They only collect what the array is made of, and numpy makes it when all is checked. Every
+other name raises an error. The result is in metres, at 60 frames/s, with y up and the floor at 0.
 """
 
 import io
+import math
 import pickle
 import re
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 from jaxtyping import Float, Int
-from numpy._core import multiarray, numeric
 
 AIST_FPS = 60.0
 COCO = (
@@ -107,26 +109,67 @@ def tempo_of(name: str) -> float | None:
     return start + step * int(music[2])
 
 
-_ADMITTED = {
-    ("numpy", "ndarray"): np.ndarray,
-    ("numpy", "dtype"): np.dtype,
-    ("_codecs", "encode"): None,
-}
-for _numpy in ("numpy.core", "numpy._core"):  # before and since numpy 2
-    _ADMITTED[f"{_numpy}.multiarray", "_reconstruct"] = multiarray._reconstruct
-    _ADMITTED[f"{_numpy}.numeric", "_frombuffer"] = numeric._frombuffer
+class _Step:
+    """A function that a pickle may call and cannot change."""
+
+    __slots__ = ("function",)
+
+    def __init__(self, function: Callable):
+        self.function = function
+
+    def __call__(self, *arguments):
+        return self.function(*arguments)
+
+    def __setstate__(self, state):
+        raise AistError("it changes a function, which an array does not need")
 
 
-class _Restricted(pickle.Unpickler):
-    """An unpickler that finds only the names that an array needs."""
+class _Numbers:
+    """A dtype as a pickle spells it: kind and bytes of a number, and later their order."""
 
-    def find_class(self, module: str, name: str):
-        if (module, name) not in _ADMITTED:
-            raise AistError(
-                f"it names {module}.{name}, which an array does not need: "
-                "such a file may run a program"
-            )
-        return _ADMITTED[module, name] or _encode
+    def __init__(self, code, *how):
+        if not (isinstance(code, str) and re.fullmatch(r"[fiub][1248]", code)):
+            raise AistError(f"it has an array of {code!r}, not of numbers")
+        self.code = code
+
+    def __setstate__(self, state):
+        order = state[1]
+        if order not in ("<", ">", "|", "="):
+            raise AistError(f"it has numbers with the byte order {order!r}")
+        self.code = order + self.code
+
+
+class _Array:
+    """An array as a pickle spells it. numpy makes it at the end, from checked parts.
+
+    numpy itself must not be called by a pickle: told to read bytes as objects, it would follow
+    addresses that the file made up.
+    """
+
+    def __init__(self, *placeholder):
+        self.parts = None
+
+    @classmethod
+    def from_buffer(cls, raw, dtype, shape, order="C") -> "_Array":
+        made = cls()
+        made.__setstate__((1, shape, dtype, order == "F", raw))
+        return made
+
+    def __setstate__(self, state):
+        _, shape, dtype, fortran, raw = state
+        self.parts = shape, dtype, fortran, raw
+
+    def made(self) -> np.ndarray:
+        shape, dtype, fortran, raw = self.parts or ((), None, False, b"")
+        if isinstance(raw, str):  # Python 2
+            raw = raw.encode("latin1")
+        whole = isinstance(shape, tuple) and all(type(n) is int and n >= 0 for n in shape)
+        if not (whole and isinstance(dtype, _Numbers) and isinstance(raw, bytes | bytearray)):
+            raise AistError("it has an array that is not made of a shape and of numbers")
+        numbers = np.dtype(dtype.code)
+        if math.prod(shape) * numbers.itemsize != len(raw):
+            raise AistError(f"it has an array of shape {shape} in {len(raw)} bytes")
+        return np.frombuffer(raw, numbers).reshape(shape, order="F" if fortran else "C")
 
 
 def _encode(text: str, encoding: str) -> bytes:
@@ -134,6 +177,28 @@ def _encode(text: str, encoding: str) -> bytes:
     if encoding not in ("latin1", "latin-1"):
         raise AistError(f"it uses the codec {encoding!r}, and only latin1 is needed")
     return text.encode("latin1")
+
+
+_ADMITTED: dict[tuple[str, str], Callable] = {
+    ("numpy", "ndarray"): _Array,
+    ("numpy", "dtype"): _Numbers,
+    ("_codecs", "encode"): _encode,
+}
+for _numpy in ("numpy.core", "numpy._core"):  # before and since numpy 2
+    _ADMITTED[f"{_numpy}.multiarray", "_reconstruct"] = _Array
+    _ADMITTED[f"{_numpy}.numeric", "_frombuffer"] = _Array.from_buffer
+
+
+class _Restricted(pickle.Unpickler):
+    """An unpickler that finds only the names that an array needs, and our own code behind them."""
+
+    def find_class(self, module: str, name: str):
+        if (module, name) not in _ADMITTED:
+            raise AistError(
+                f"it names {module}.{name}, which an array does not need: "
+                "such a file may run a program"
+            )
+        return _Step(_ADMITTED[module, name])
 
 
 def _load(path: Path):
@@ -176,8 +241,11 @@ def _array(content, key: str, name: str) -> Float[np.ndarray, "T 17 3"]:
             else ""
         )
         raise AistError(f"{name}: contains {holds}, but no {key}.{hint}")
-    found = content[key]
-    if not isinstance(found, np.ndarray) or found.dtype.kind != "f":
+    try:
+        found = content[key].made() if isinstance(content[key], _Array) else None
+    except AistError as error:
+        raise AistError(f"{name}: not read: {error}.") from None
+    if found is None or found.dtype.kind != "f":
         raise AistError(f"{name}: {key} is not an array of numbers.")
     if found.ndim != 3 or found.shape[1:] != (len(COCO), 3) or len(found) == 0:
         raise AistError(f"{name}: {key} has shape {found.shape}; it should be (frames, 17, 3).")

@@ -9,6 +9,8 @@ import pickle
 
 import numpy as np
 import pytest
+from numpy._core.multiarray import _reconstruct
+from numpy._core.numeric import _frombuffer as frombuffer
 
 from motiondiff_edu.motion.aist import AistError, read_keypoints, tempo_of
 
@@ -114,6 +116,60 @@ def test_a_hostile_pickle_is_refused_and_does_not_run(tmp_path):
 def test_nothing_but_arrays_is_named(tmp_path, what):
     with pytest.raises(AistError, match="an array does not need"):
         read_keypoints(written(tmp_path, {"keypoints3d_optim": what}))
+
+
+class Spelled:
+    """What a pickle may name, called with other arguments than numpy's own pickles have."""
+
+    def __init__(self, call, *arguments, state=None):
+        self.parts = (call, arguments) if state is None else (call, arguments, state)
+
+    def __reduce__(self):
+        return self.parts
+
+
+ADDRESSES = b"A" * 8  # numpy would take them for the address of an object
+
+
+@pytest.mark.parametrize(
+    "array",
+    [
+        Spelled(np.ndarray, (1,), np.dtype("O"), ADDRESSES),
+        Spelled(np.ndarray, Spelled(np.ndarray, (1,), "O", ADDRESSES)),
+        Spelled(np.dtype, "O"),
+        Spelled(np.dtype, "f8", state=(3, "!", None, None, None, -1, -1, 0)),
+        Spelled(frombuffer, ADDRESSES, np.dtype("f8"), (2,), "C"),
+        Spelled(frombuffer, ADDRESSES, np.dtype("f8"), (-1,), "C"),
+        Spelled(frombuffer, ADDRESSES, np.dtype("f8"), ADDRESSES, "C"),
+        Spelled(frombuffer, ADDRESSES, "f8", (1,), "C"),
+        Spelled(_reconstruct, np.ndarray, (0,), b"b"),
+        Spelled(
+            _reconstruct, np.ndarray, (0,), b"b", state=(1, (9, 17, 3), np.dtype("f8"), 0, b"")
+        ),
+    ],
+)
+def test_an_array_is_made_of_checked_parts_alone(tmp_path, array):
+    """numpy, called with these, would read memory that is not the file's."""
+    path = written(tmp_path, {"keypoints3d_optim": array})
+    with pytest.raises(AistError, match=f"{NAME}: "):
+        read_keypoints(path)
+
+
+def test_a_pickle_cannot_change_the_reader(tmp_path):
+    changed = Spelled(codecs.encode, "a", "latin1")
+    raw = pickle.dumps({"keypoints3d_optim": made_up(), "more": changed}, protocol=2)
+    call = b"c_codecs\nencode\n}X\x01\x00\x00\x00aK\x01sb"  # BUILD of the function itself
+    (tmp_path / NAME).write_bytes(raw[:2] + call + b"0" + raw[2:])
+    with pytest.raises(AistError, match="changes a function"):
+        read_keypoints(tmp_path / NAME)
+
+
+@pytest.mark.parametrize("code", ["<f4", ">f8", "<f2"])
+def test_numbers_of_every_size_and_order_are_read(tmp_path, code):
+    for order in "CF":
+        keypoints = np.array(made_up(), code, order=order)
+        clip = read_keypoints(written(tmp_path, {"keypoints3d_optim": keypoints}))
+        np.testing.assert_allclose(clip.positions, made_up() / 100 - [0, 0.7, 0], atol=2e-3)
 
 
 def test_only_the_codec_of_old_pickles_is_admitted(tmp_path):
