@@ -324,6 +324,16 @@ def test_what_is_made_of_nothing_has_bones_of_one_length(walked):
     assert bone_lengths(made).std(0).max() < 1e-3
 
 
+@pytest.mark.parametrize("part", ["upper body", "lower body", "trajectory"])
+def test_bones_that_are_nowhere_given_suit_the_others(walked, part):
+    tall = md.Motion(1.1 * walked.positions, walked.fps)
+    made = md.inbetween(tall, body_part(len(tall), part), steps=10, progress=False)
+    lengths = bone_lengths(made)
+    assert lengths.std(0).max() < 1e-3
+    size = 1.0 if part == "trajectory" else 1.1  # a path does not tell the size
+    np.testing.assert_allclose(lengths.mean(0), size * bone_lengths(walked)[0], atol=2e-3)
+
+
 def test_what_is_known_of_nothing_is_noted(walked):
     nothing = np.zeros_like(walked.known)
     with pytest.warns(MotionWarning, match="no joint is known, so the result has nothing to do"):

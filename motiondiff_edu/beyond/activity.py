@@ -63,6 +63,8 @@ def activity_of(
     or after the last given entry of a column is no evidence. Both means are over frames (`blurred`)
     and columns. 1 if nothing is given, or one frame alone.
     """
+    if lines.shape[1] == 1:
+        return torch.ones_like(lines[..., :1])
     ahead, behind = half_second_around(lines.shape[1], lines.device)
 
     def in_a_second(sums: Float[Tensor, "B T *D"]) -> Float[Tensor, "B T *D"]:

@@ -15,7 +15,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from jaxtyping import Bool, Float
 
-from ..motion.skeleton import BONES, HIPS, joint_index
+from ..motion.skeleton import BONE_LENGTHS, BONES, HIPS, OFFSETS, joint_index
 
 # rounds through all distances; errors of centimetres fall to a few mm at most, unless the given
 # joints contradict the lengths
@@ -25,6 +25,7 @@ _LEFT, _RIGHT, _SPINE, _SPINE1, _NECK, _HEAD = map(
     joint_index, ("LeftUpLeg", "RightUpLeg", "Spine", "Spine1", "Neck1", "Head")
 )
 PELVIS = ((_LEFT, _RIGHT), (_LEFT, _SPINE), (_RIGHT, _SPINE))  # beside the bones from the pelvis
+REST_PELVIS = np.array([np.linalg.norm(OFFSETS[b] - OFFSETS[a]) for a, b in PELVIS])
 TRUNK = ((HIPS, _SPINE1), (_SPINE, _NECK), (_SPINE1, _HEAD))
 
 
@@ -56,6 +57,22 @@ class Lengths:
 
         rigid = (distances(pairs, np.nanmedian) for pairs in (BONES, PELVIS))
         return cls(*rigid, distances(TRUNK, np.nanmin))
+
+    def completed(self) -> "Lengths":
+        """The same, with unknown bones and pelvises as those of a course figure of the same size.
+
+        Its size is the median over known bones; 1 where none is known.
+        """
+        shares = np.where(
+            np.isnan(self.bones).all(-1, keepdims=True), 1.0, self.bones / BONE_LENGTHS
+        )
+        size = np.nanmedian(shares, axis=-1, keepdims=True)
+
+        def filled(known, rest):
+            return np.where(np.isnan(known), size * rest, known)
+
+        bones, pelvis = filled(self.bones, BONE_LENGTHS), filled(self.pelvis, REST_PELVIS)
+        return replace(self, bones=bones, pelvis=pelvis)
 
     def with_bones(self, bones: Float[np.ndarray, "20"]) -> "Lengths":
         """The same body with these bones."""

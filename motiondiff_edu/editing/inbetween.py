@@ -43,7 +43,8 @@ class Departures:
     `guidance`: > 0 applies `beyond.guidance.guided` first where the network does not see it; it
     doubles the cost. A larger value follows sparse keyframes better, but the motion jumps more at
     the ends of a gap.
-    `bones`: generated bones get the lengths of the given ones (`beyond.constant_bones`).
+    `bones`: generated bones get the lengths of the given ones, or those that suit them
+    (`beyond.constant_bones`).
     `feet`: planted feet do not slide (`beyond.foot_lock`), and a foot that is given twice at the
     same place stays there (`beyond.kept_places`).
     `clearance`: planted feet lie on the floor, y = 0, and swinging ones are higher
@@ -128,8 +129,8 @@ def inbetween(
     poses = to_positions(view.leave(dancer.motion_scaler.inverse(x0)))
     made = place.leave(poses.double().cpu().numpy())
     whole = np.where(known[..., None], positions, made)
-    if departures.bones:
-        whole = steady_bones(whole, known, Lengths.of(positions, known))
+    if departures.bones and known.any():
+        whole = steady_bones(whole, known, Lengths.of(positions, known).completed())
     if departures.feet and known.any():
         whole = steady_feet(kept_places(whole, positions, known), known)
     return cleared(whole, positions, known) if departures.clearance and known.any() else whole

@@ -26,7 +26,7 @@ from ..motion.motion import MotionError, MotionWarning
 from ..motion.planting import runs
 from ..motion.root_frame import smoothed_root, to_root_frame, to_world
 from ..motion.scaler import Scaler
-from ..motion.skeleton import BONE_LENGTHS, HIPS, JOINTS, TOES, J
+from ..motion.skeleton import HIPS, JOINTS, TOES, J
 from ..performers.joined import farthest, unlike_training
 from ..reconstruction import Rollout, Stop
 from ..rollout import SLACK, AnyWalker
@@ -58,9 +58,7 @@ def reconstruct(
     mask = torch.from_numpy(np.repeat(known, 3, axis=1))
     given = torch.where(mask, torch.from_numpy(poses).flatten(1), 0.0)
     warn_of_unlike(walker.pose_scaler, given, known)
-    lengths = Lengths.of(positions, known)
-    unseen = np.isnan(lengths.bones)
-    lengths = lengths.with_bones(np.where(unseen, BONE_LENGTHS, lengths.bones))
+    lengths = Lengths.of(positions, known).completed()
     mean = walker.pose_scaler.mean.to(given).expand_as(given)
     guess = blended_guess(mean[None], given[None], mask[None], FADE)[0]
     steer = within_training(walker, control, known)

@@ -27,7 +27,8 @@ FOLDERS = ("bvh", "cmu30")
 TRAINED = ("acrnn_", "cmu_acrnn_")  # how the training files' names begin
 # of CMU's list: who may be in that collection
 SUBJECTS = {60, 61, 93, 94, 135}
-TRIAL = re.compile(r"cmu_(?:max_)?0*(\d+)_0*(\d+)")  # subject and trial of CMU's list
+# subject and trial of CMU's list, with the prefixes of the collections or without
+TRIAL = re.compile(r"(?i)(?:cmu_)?(?:max_)?0*(\d+)_0*(\d+)")
 CREDIT = (
     "The data used in this project was obtained from mocap.cs.cmu.edu. The database was created "
     "with funding from NSF EIA-0196217."
@@ -75,4 +76,4 @@ def training_files(files: Sequence[Path]) -> list[Path]:
 def is_training(name: str) -> bool:
     """Whether a file of this name is of the persons that networks are trained on."""
     trial = TRIAL.match(name)
-    return name.startswith(TRAINED) or bool(trial and int(trial[1]) in SUBJECTS)
+    return name.lower().startswith(TRAINED) or bool(trial and int(trial[1]) in SUBJECTS)

@@ -67,6 +67,18 @@ def test_bones_that_are_never_given_are_left_alone(clip):
     assert np.array_equal(steady_bones(shaken, known, lengths), shaken)
 
 
+def test_a_body_is_completed_in_its_own_size(clip):
+    known = body_part(len(clip), "lower body")
+    tall = Lengths.of(np.stack([clip, 1.2 * clip]), known).completed()
+    np.testing.assert_allclose(tall.bones, np.outer([1.0, 1.2], bone_lengths(clip)[0]), rtol=1e-6)
+    np.testing.assert_allclose(tall.pelvis[0], apart(clip, PELVIS)[0], atol=2e-3)
+    np.testing.assert_allclose(tall.pelvis[1], 1.2 * tall.pelvis[0])
+    nothing = Lengths.of(clip, known & False).completed()
+    np.testing.assert_allclose(nothing.bones, bone_lengths(clip)[0], rtol=1e-6)
+    given = Lengths.of(1.3 * clip, known | True)
+    assert np.array_equal(given.completed().bones, given.bones)  # what is known stays
+
+
 def test_lengths_are_those_of_the_given_frames_of_each_motion(clip):
     known = keyframes(len(clip), 10)
     wrong = np.where(known[..., None], clip, 0.0)

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from motiondiff_edu.metrics.seams import seam_over_motion
+from motiondiff_edu.metrics.seams import seam_over_motion, seam_over_past
 
 
 def moving(steps) -> np.ndarray:
@@ -18,6 +18,11 @@ def test_the_step_to_the_seam_over_the_fastest_step_around_it():
     assert seam_over_motion(moving([1, 2, 6, 3, 1]), 3) == pytest.approx(6 / 3)
     assert seam_over_motion(moving([1, 8, 6, 3, 1]), 3) == pytest.approx(6 / 8)
     assert seam_over_motion(moving([1] * 30 + [4] + [1] * 30), 31) == pytest.approx(4)
+
+
+def test_a_fast_continuation_does_not_excuse_a_jump():
+    assert seam_over_past(moving([1, 2, 6, 30, 1]), 3) == pytest.approx(6 / 2)
+    assert seam_over_past(moving([9] + [2] * 20 + [4, 1, 1]), 22) == pytest.approx(4 / 2)
 
 
 def test_only_a_second_around_it_counts():

@@ -31,6 +31,7 @@ from tools.results.recordings.windows import (
     QUICK,
     RecordedSize,
     held_out,
+    person_of,
     recorded,
     trials,
 )
@@ -72,6 +73,10 @@ def test_a_window_is_continued_as_walk_continues_it(walker, folder):
     np.testing.assert_allclose(blended.world, wanted.positions, atol=1e-4)
     # it does not jump, so that only bones and feet differ
     assert 1e-4 < np.linalg.norm(plain.world - wanted.positions, axis=-1).mean() < 0.02
+    source = md.read_motion(folder / "bvh" / "walk0.bvh")
+    np.testing.assert_allclose(window.next, source.positions[40:120], atol=1e-9)
+    own = continuations.row_of_recording(window)
+    assert own["seam"] < 1.1 and own["past"] < 1.3 and own["skating"] < 0.03
     row = continuations.row_of(window, blended)
     assert row["seam"] < 1.1 and row["skating"] < 0.1 and row["adherence"] < 0.1
     assert row["depth"] == pytest.approx(100 * max(0.0, -wanted.positions[..., 1].min()), abs=0.01)
@@ -85,6 +90,9 @@ def test_records_are_made_and_stand_in_the_page(walker, folder, monkeypatch):
     records = {one["name"]: one for one in made}
     assert records["real.blended_share"]["seeds"]["windows"] == 2
     assert 0 < records["real.seam_over_motion"]["value"] < 1.1
+    assert 0 < records["real.recording.seam_over_motion"]["value"] < 1.1
+    assert records["real.seam_over_motion"]["seeds"]["persons"] == 2
+    assert "real.recording.continuation_adherence_mps" not in records
     assert 0 <= records["real.style_kept"]["value"] <= 1
     assert records["real.continuation_diversity_over_synthetic"]["value"] > 0.1
     text = page.section(records)
@@ -127,10 +135,12 @@ def test_a_glide_that_another_draw_mends_counts_as_drawn_again(monkeypatch):
     assert one.again.tolist() == [False, True] and np.array_equal(one.made[1], truth)
 
 
-def test_intervals_are_over_files():
+def test_intervals_are_over_persons():
     values = np.array([1.0, 1.0, 1.0, 5.0])
     alone = by_source("x", "ratio", np.mean, values, np.array(["a", "a", "a", "b"]))
     each = by_source("x", "ratio", np.mean, values, np.array(list("abcd")))
+    three = np.array(["cmu_005_01.bvh", "cmu_05_06_dance.bvh", "cmu_005_02.bvh", "b"])
+    assert by_source("x", "ratio", np.mean, values, three).high == 5, "three files of one person"
     assert alone.value == each.value == 2 and alone.low == 1 and alone.high == 5
     assert each.high < 5
     assert np.isnan(by_source("x", "ratio", np.mean, values[:0], np.array([])).value)
@@ -236,7 +246,7 @@ def test_variants_differ_from_the_recipe_in_what_they_say():
 
 
 def test_whose_a_recording_is():
-    whose = persons.person_of
+    whose = person_of
     assert whose("cmu_05_06_dance.bvh") == whose("cmu_005_12.bvh") == "5"
     assert whose("acrnn_salsa_01.bvh") == whose("cmu_acrnn_salsa_10.bvh") == whose("acrnn_x.bvh")
     assert whose("walk0.bvh") != whose("walk1.bvh")

@@ -2,7 +2,8 @@
 
 Windows of six seconds from files of several collections: two seconds are given, and the walker goes
 on for four as fast as the person went in the last second. Once as `Walker.walk` does it, once
-as the network has it: without blending, steady bones and held feet.
+as the network has it: without blending, steady bones and held feet. The recording's own next four
+seconds stand beside them.
 """
 
 import warnings
@@ -14,7 +15,7 @@ from jaxtyping import Float
 
 from motiondiff_edu import rollout
 from motiondiff_edu.metrics.adherence import adherence
-from motiondiff_edu.metrics.seams import seam_over_motion
+from motiondiff_edu.metrics.seams import seam_over_motion, seam_over_past
 from motiondiff_edu.metrics.skating import skating
 from motiondiff_edu.motion.motion import Motion
 from motiondiff_edu.motion.root_frame import (
@@ -29,7 +30,7 @@ from motiondiff_edu.performers.walker import STEPS, Walker
 
 from ..walks.scores import Measure, measure_of, root_mean, squared_bone_error
 from .by_source import by_source
-from .windows import SECONDS, RecordedSize, recorded, trials
+from .windows import SECONDS, RecordedSize, persons, recorded, trials
 
 GIVEN = 2.0  # seconds of a window
 EARLY = 1.0  # seconds after the seam
@@ -37,10 +38,11 @@ EARLY = 1.0  # seconds after the seam
 
 @dataclass(frozen=True, eq=False)
 class Window:
-    """Given frames of a recording, and the control of the frames to come."""
+    """Given frames of a recording, what comes next in it, and the control of these frames."""
 
     source: str
     given: Motion
+    next: Float[np.ndarray, "n 21 3"]
     control: Float[np.ndarray, "n 3"]
 
 
@@ -51,7 +53,7 @@ def windows(size: RecordedSize, range_of_control: dict) -> Iterator[Window]:
         past = motion[:given]
         speed = past.control[-round(FPS) :].mean(0)
         speed = speed.clip(range_of_control["low"], range_of_control["high"])
-        yield Window(source, past, np.tile(speed, (ahead, 1)))
+        yield Window(source, past, motion.positions[given:], np.tile(speed, (ahead, 1)))
 
 
 @dataclass(frozen=True, eq=False)
@@ -81,6 +83,7 @@ def row_of(window: Window, made: Continued) -> dict[str, float]:
     asked = control_from_path(made.path[:, :2], made.path[:, 2], FPS)
     return {
         "seam": seam_over_motion(whole, seam),
+        "past": seam_over_past(whole, seam),
         "bone": squared_bone_error(poses[None])[0],
         "skating": skating(poses, asked),
         "early": skating(poses[:early], asked[:early]),
@@ -89,8 +92,22 @@ def row_of(window: Window, made: Continued) -> dict[str, float]:
     }
 
 
+def row_of_recording(window: Window) -> dict[str, float]:
+    """What can be measured of the recording itself, which was not asked to follow a control."""
+    whole = np.concatenate([window.given.positions, window.next])
+    seam, early = len(window.given), round(EARLY * FPS)
+    steer = np.zeros((len(window.next), 3))
+    return {
+        "seam": seam_over_motion(whole, seam),
+        "past": seam_over_past(whole, seam),
+        "skating": skating(window.next, steer),
+        "early": skating(window.next[:early], steer[:early]),
+        "depth": 100 * max(0.0, -window.next[..., 1].min()),
+    }
+
+
 def measures_of(rows: dict[str, np.ndarray], sources: list[str]) -> list[Measure]:
-    """The measures of all windows; intervals are over files."""
+    """The measures of all windows; intervals are over persons."""
 
     def high(values):
         return np.percentile(values, 95)
@@ -98,6 +115,8 @@ def measures_of(rows: dict[str, np.ndarray], sources: list[str]) -> list[Measure
     found = {
         "seam_over_motion": ("ratio", np.median, "seam"),
         "seam_p95_over_motion": ("ratio", high, "seam"),
+        "seam_over_past": ("ratio", np.median, "past"),
+        "seam_p95_over_past": ("ratio", high, "past"),
         "continuation_bone_cm": ("cm", root_mean, "bone"),
         "continuation_skating_mps": ("m/s", np.nanmean, "skating"),
         "continuation_early_skating_mps": ("m/s", np.nanmean, "early"),
@@ -107,20 +126,31 @@ def measures_of(rows: dict[str, np.ndarray], sources: list[str]) -> list[Measure
     return [
         by_source(name, unit, value, rows[column], np.array(sources))
         for name, (unit, value, column) in found.items()
+        if column in rows
     ]
 
 
 def recorded_records(walker: Walker, weights: str, size: RecordedSize, command: str) -> list[dict]:
-    """The measures of continuations, joined (`real.`) and not (`real.unblended.`)."""
-    found: dict[str, list] = {"real.": [], "real.unblended.": []}
+    """The measures of continuations, joined (`real.`) and not (`real.unblended.`).
+
+    And those of the recordings themselves (`real.recording.`).
+    """
+    found: dict[str, list] = {"real.": [], "real.unblended.": [], "real.recording.": []}
     sources = []
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # notes on the files
         for window in windows(size, walker.card["control_range"]):
             sources.append(window.source)
-            for rows, made in zip(found.values(), continued(walker, window), strict=True):
-                rows.append(row_of(window, made))
-    seeds = {"windows": len(sources), "files": len(set(sources)), "sampling": 0, "steps": STEPS}
+            rows = [row_of(window, made) for made in continued(walker, window)]
+            for one, row in zip(found, (*rows, row_of_recording(window)), strict=True):
+                found[one].append(row)
+    seeds = {
+        "windows": len(sources),
+        "files": len(set(sources)),
+        "persons": persons(sources),
+        "sampling": 0,
+        "steps": STEPS,
+    }
     seeds |= {"weights": weights}
     records = []
     for prefix, rows in found.items():

@@ -2,7 +2,7 @@
 
 Each window is filled in `samples` times: as `editing.inbetween` does it, and as `md.inbetween` does
 it, which notices failures and tries again. They are compared with the better of straight lines and
-arcs. Intervals are over files.
+arcs. Intervals are over persons.
 """
 
 import warnings
@@ -28,11 +28,12 @@ from motiondiff_edu.performers.performer import generators
 
 from ..walks.scores import SKATING_FLOOR, Measure
 from .by_source import by_source
-from .windows import RecordedSize, held_out, recorded
+from .windows import RecordedSize, held_out, persons, recorded
 
 SECOND = 20  # frames
 OTHERS = (5, 10, 40)  # frames between keyframes, beside one a second
-# of the collection's files: people who walk, run and turn, and do nothing else
+# of the collection's files: people who walk and turn, and do nothing else; two of them
+# (cmu_003) over uneven ground
 WALKS = (
     "bvhpython_test_freebvh", "bvhtoolbox_walk01", "cmu_02_01", "cmu_002_02", "cmu_003_01",
     "cmu_003_02", "cmu_005_01", "cmu_12_01", "pymo_AV_8Walk",
@@ -156,7 +157,13 @@ def inbetween_records(
     """The measures of in-betweens (`real.inbetween_*`), at other distances `real.gapN.`."""
     windows, walks = windows_and_walks(size)
     sources = [source for source, _ in windows]
-    seeds = {"windows": len(windows), "files": len(set(sources)), "sampling": 0, "steps": STEPS}
+    seeds = {
+        "windows": len(windows),
+        "files": len(set(sources)),
+        "persons": persons(sources),
+        "sampling": 0,
+        "steps": STEPS,
+    }
     seeds |= {"samples": size.samples, "weights": weights, "walks": int(walks.sum())}
     tasks = [
         (dancer, motion, every, size.samples)

@@ -4,10 +4,17 @@ from ..page.markdown import cell, number, table
 from .trainings import VARIANTS
 
 # the beginnings of names
-STARTS = {"as shipped": "real.", "as the network has it": "real.unblended."}
+STARTS = {
+    "as shipped": "real.",
+    "as the network has it": "real.unblended.",
+    "the recording itself": "real.recording.",
+}
 ROWS = {
     "seam_over_motion": "the fastest joint at the seam, over the fastest within a second (median)",
     "seam_p95_over_motion": "the same (95th percentile)",
+    "seam_over_past": "the fastest joint at the seam, over the fastest in the second before it"
+    " (median)",
+    "seam_p95_over_past": "the same (95th percentile)",
     "continuation_bone_cm": "bone error, cm",
     "continuation_skating_mps": "sliding of the planted foot, m/s",
     "continuation_early_skating_mps": "the same in the first second, m/s",
@@ -34,9 +41,9 @@ FILLED = {
     "floor_cm": "depth of the lowest joint under the recording's, cm (90th percentile)",
 }
 RECONSTRUCTED = {
-    "arm_walks_over_lines": "an arm, in walks and runs",
+    "arm_walks_over_lines": "an arm, in walks",
     "arm_others_over_lines": "an arm, in all other motions",
-    "leg_walks_over_lines": "a leg, in walks and runs",
+    "leg_walks_over_lines": "a leg, in walks",
     "leg_others_over_lines": "a leg, in all other motions",
 }
 MUSIC = {
@@ -67,7 +74,8 @@ def reconstructed(records: dict[str, dict]) -> str:
         return "Reconstructions of recordings are not measured yet.\n"
     text = (
         f"The walker reconstructs a limb that is missing for a second, in three seconds of "
-        f"{one['seeds']['files']} recordings. It was trained on synthetic walks alone. Errors are "
+        f"{one['seeds']['files']} recordings of {one['seeds']['persons']} persons. It was trained "
+        "on synthetic walks alone. Errors are "
         "over those of straight lines (median).\n\n"
     )
     columns = {"error over straight lines'": "real.reconstruction_"}
@@ -81,12 +89,14 @@ def filled_in(records: dict[str, dict]) -> str:
         return "In-betweens of recordings are not measured yet.\n"
     seeds = share["seeds"]
     text = (
-        f"In-betweens of {seeds['windows']} windows of {seeds['files']} recordings, "
-        f"{seeds['walks']} of them walks and runs, from keyframes at equal distances; "
+        f"In-betweens of {seeds['windows']} windows of {seeds['files']} recordings of "
+        f"{seeds['persons']} persons, "
+        f"{seeds['walks']} of them walks (two over uneven ground), from keyframes at equal "
+        f"distances; "
         f"{seeds['samples']} samples of each. Interpolation"
         " is the better one of straight lines and arcs. "
         f"{number(100 * share['value'])} % of the samples are noticed as failures and drawn again. "
-        "The intervals are over files.\n\n"
+        "The intervals are over persons.\n\n"
     )
     return text + measures(records, FILLED, "a keyframe every", SECONDS)
 
@@ -139,9 +149,10 @@ def continued(records: dict[str, dict]) -> str:
         return "Continuations of recordings are not measured yet.\n"
     seeds = share["seeds"]
     text = (
-        f"The walker continues {seeds['windows']} windows of {seeds['files']} recordings for four "
-        "seconds, at the speed of their last second: walks, dances, martial arts, climbing, "
-        "washing. It was trained on synthetic walks alone. Where the first new frame jumps, which "
+        f"The walker continues {seeds['windows']} windows of {seeds['files']} recordings of "
+        f"{seeds['persons']} persons for four seconds, at the speed of their last second: walks, "
+        "dances, martial arts, climbing, washing. It was trained on synthetic walks alone. Where "
+        "the first new frame jumps, which "
         f"is in {number(100 * share['value'])} % of the windows, the first half second takes over "
         "pose and speed of the recording, or more if a joint has far to go "
         "(`beyond/inertialize.py`), and a warning says so. In all of them bones keep the "

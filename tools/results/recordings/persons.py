@@ -23,13 +23,12 @@ from motiondiff_edu.motion.skeleton import J
 from motiondiff_edu.performers.joined import Start
 from motiondiff_edu.performers.performer import generators
 from motiondiff_edu.performers.walker import STEPS, Walker
-from motiondiff_edu.recipes.recordings import TRAINED, TRIAL, is_training
 
 from ..walks.scores import Measure, measure_of, ratio
 from ..walks.trials import UNSEEN
 from .by_source import by_source
 from .continuations import GIVEN, Window, windows
-from .windows import SECONDS, RecordedSize
+from .windows import SECONDS, RecordedSize, person_of
 
 DRAWS = 5  # continuations of each past, for the diversity
 SPEED = 0.9  # m/s, straight on, for the style
@@ -69,19 +68,9 @@ def measures_of_persons(walker: Walker, found: Sequence[Window]) -> list[Measure
     synthetic = [Start.of(one[:given], one.control[given:], T_h) for one in walks]
     spreads = [spread(continuations(walker, starts, DRAWS)) for starts in (own, synthetic)]
     return [
-        by_source("style_kept", "share", np.mean, kept, np.array(persons)),
+        by_source("style_kept", "share", np.mean, kept, np.array([one.source for one in found])),
         measure_of("continuation_diversity_over_synthetic", "ratio", ratio, *spreads),
     ]
-
-
-def person_of(source: str) -> str:
-    """Whose recording it is: a subject of the CMU collection, the unnamed persons of the training
-    collection, who count as one, or else the file's own.
-    """
-    trial = TRIAL.match(source)
-    if trial:
-        return trial[1]
-    return TRAINED[0] if is_training(source) else source
 
 
 def person_records(walker: Walker, weights: str, size: RecordedSize, command: str) -> list[dict]:

@@ -1,8 +1,8 @@
 """What recordings and variations in training are worth for in-betweens: trainings of equal length.
 
-Each row differs from the recipe `inbetweens` in one choice and is trained with three seeds, for a
-tenth of the steps. All are judged on recordings of people whom none has seen, with a keyframe a
-second.
+Each row differs from the recipe `inbetweens` in one choice, or in the choices that its words name.
+It is trained with three seeds, for 800 of the recipe's 10,000 steps. All are judged on recordings
+of people whom none has seen, with a keyframe a second.
 """
 
 from dataclasses import dataclass, field, replace
@@ -32,7 +32,8 @@ VARIANTS: dict[str, tuple[str, dict]] = {
         {"config": replace(INBETWEENS.config, turning=False)},
     ),
     "no-variations": (
-        "no other limbs and levels, no stages; other paces for recordings alone",
+        "no other limbs, pelvises, upper bodies and levels, no stages; other paces for recordings "
+        "alone",
         {"variations": 0.0, "levels": 0.0, "paces": 0.0, "stages": 0.0},
     ),
 }

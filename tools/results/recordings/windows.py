@@ -10,7 +10,7 @@ import numpy as np
 import motiondiff_edu as md
 from motiondiff_edu.motion.motion import Motion
 from motiondiff_edu.motion.root_frame import FPS
-from motiondiff_edu.recipes.recordings import TRIAL, is_training, recording_files
+from motiondiff_edu.recipes.recordings import TRAINED, TRIAL, is_training, recording_files
 
 SECONDS = 6.0
 SHORTEST = 2.0  # seconds: shorter recordings are left out
@@ -48,6 +48,21 @@ def trials() -> list[Path]:
 def held_out() -> list[Path]:
     """The recordings of people whom no training has seen."""
     return [path for path in trials() if not is_training(path.name)]
+
+
+def person_of(source: str) -> str:
+    """Whose recording it is: a subject of the CMU collection, the unnamed persons of the training
+    collection, who count as one, or else the file's own.
+    """
+    trial = TRIAL.match(source)
+    if trial:
+        return trial[1]
+    return TRAINED[0] if is_training(source) else source
+
+
+def persons(sources: list[str]) -> int:
+    """Of how many persons these files are."""
+    return len({person_of(source) for source in sources})
 
 
 def recorded(
