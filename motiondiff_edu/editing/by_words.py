@@ -24,6 +24,7 @@ from ..motion.checks import is_number
 from ..motion.dance_frame import Place
 from ..motion.moving_frame import D
 from ..motion.root_frame import estimate_root
+from ..motion.size import leg_size
 from ..motion.skeleton import HIPS, TOES, J
 from ..performers.mover import ETA, STEPS, Mover
 from ..performers.text_mofusion import Texts
@@ -57,11 +58,12 @@ def edit_by_words(
     ways = visited(mover.schedule.S, steps, strength)
     texts = mover.reader.encoded([mover.reader.read(text).words] * samples)
     generator = generator or torch.Generator().manual_seed(0)
-    given, schedule = mover.units_of(positions).expand(samples, -1, -1), mover.schedule
+    size = leg_size(positions)  # the mover knows figures of the course's size
+    given, schedule = mover.units_of(positions / size).expand(samples, -1, -1), mover.schedule
     mask = np.zeros((len(positions), J), bool) if known is None else np.asarray(known)
     held = columns(torch.from_numpy(mask)).to(given.device).expand(given.shape)
     start = q_sample(given, ways[0], schedule, draw(given, generator))
-    plan = _plan(mover, positions, mask, texts, steps, generator) if mover.can_plan else None
+    plan = _plan(mover, positions / size, mask, texts, steps, generator) if mover.can_plan else None
     denoise = mover.denoiser(texts, 1.0, plan)
     if held.any():
         denoise = blended(denoise, schedule, given, held, fade=FADE)
@@ -69,7 +71,7 @@ def edit_by_words(
         denoise, start, schedule, given, held, steps=ways, eta=ETA, generator=generator
     )
     with torch.inference_mode():
-        made = mover.positions_of(final(loop).x_s).double().cpu().numpy()
+        made = size * mover.positions_of(final(loop).x_s).double().cpu().numpy()
     on_its_path = np.logical_and.accumulate(mask[:, HIPS])[:, None]
     same = (mask & on_its_path)[..., None]
     return np.where(same, positions, at_the_start_of(positions, made))

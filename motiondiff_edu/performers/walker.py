@@ -26,6 +26,7 @@ from ..motion.checks import checked_samples, checked_seconds, checked_steps
 from ..motion.motion import Motion, MotionWarning, as_motion
 from ..motion.root_frame import FPS
 from ..motion.scaler import Scaler
+from ..motion.size import leg_size, resized
 from ..motion.skeleton import J
 from ..prediction import denoiser_of
 from ..rollout import WindowSampler
@@ -82,6 +83,7 @@ class Walker(Performer):
         The result has only the new frames. It begins one frame after the given motion, in the same
         world; `motion.then(more)` joins the two. Its bones are as long as the given ones, and feet
         that stand do not slide (`performers/joined.py`; `rollout.generate` has the network's own).
+        A smaller or larger figure than the course's walks as that one would, at its own size.
 
         control  forward m/s, left m/s, turning rad/s; 20 rows a second
         seconds  cut the control to this length, or hold its last row (default: keep its length)
@@ -97,8 +99,9 @@ class Walker(Performer):
         count, T_h = checked_samples(samples), self.config.T_h
         steps = checked_steps(steps, self.schedule.S)
         length = None if seconds is None else round(checked_seconds(seconds) * FPS)
-        ahead = as_long(control, length)
-        start = Start.of(motion.resampled(FPS), ahead, T_h)
+        size = leg_size(motion.positions)
+        ahead = as_long(control, length) / [size, size, 1.0]
+        start = Start.of(resized(motion.resampled(FPS), 1 / size), ahead, T_h)
         past = torch.from_numpy(start.past).float().flatten(1)
         steer = torch.from_numpy(start.control).float()
         evaluations, draws = len(ahead) * (steps or self.schedule.S), generators(seed, count)
@@ -106,12 +109,12 @@ class Walker(Performer):
             each = (x.expand(count, -1, -1) for x in (past, steer))
             new = rollout.generate(walker, *each, generator=draws, steps=steps)
         both = [joined(start, one) for one in new.double().cpu().numpy().reshape(count, -1, J, 3)]
-        unlike, height = unlike_training(self.pose_scaler, past), start.given[-1, :, 1].min()
+        unlike, height = unlike_training(self.pose_scaler, past), motion.positions[-1, :, 1].min()
         words = in_words(max(jump for _, jump in both), unlike, height)
         if words:
             warnings.warn(f"{motion.name}: {words}", MotionWarning, stacklevel=2)
         path, name = start.path[T_h:], f"{motion.name}, continued"
-        made = [Motion(world, FPS, root=path, source=name) for world, _ in both]
+        made = [resized(Motion(world, FPS, root=path, source=name), size) for world, _ in both]
         return made if samples > 1 else made[0]
 
     def denoiser(
