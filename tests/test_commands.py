@@ -212,6 +212,8 @@ def test_info_convert_and_play(folder, capsys):
     said = capsys.readouterr().out
     # 49 steps of 5 cm; the pelvis sways about the path
     assert said.count("2.5 s, 50 frames at 20 frames/s") == 2 and "the root moves 2.4" in said
+    assert said.count("in the file: 50 frames at 20 frames/s, 24 joints") == 1  # of the BVH
+    assert "joints by the course's names: 21" in said and "other names" not in said
     assert run("play", "my_walk.bvh", "my_walk.npz", "--out", "page.html", "--no-open") == 0
     assert "<!doctype html>" in (folder / "page.html").read_text("utf-8")
     assert "the page is" in capsys.readouterr().out

@@ -56,12 +56,17 @@ def lines_of(motion) -> list[str]:
 
 
 def joints_of(path: Path) -> list[str]:
-    """Which joint of a BVH file was taken for which of the course, where the names differ."""
+    """What is in a BVH file, and which of its joints was taken for which of the course."""
     from motiondiff_edu.motion.bvh import read_bvh
     from motiondiff_edu.motion.dialects import guess_mapping
 
     if path.suffix.lower() != ".bvh":
         return []
-    named = {ours: own for ours, own in guess_mapping(read_bvh(path)).items() if ours != own}
-    pairs = [f"{ours} is {own}" for ours, own in named.items()]
-    return [f"joints by other names: {', '.join(pairs)}"] if pairs else []
+    bvh = read_bvh(path)
+    found = guess_mapping(bvh)
+    other = [f"{ours} is {own}" for ours, own in found.items() if ours != own]
+    lines = [
+        f"in the file: {len(bvh.frames)} frames at {bvh.fps:g} frames/s, {len(bvh.joints)} joints",
+        f"joints by the course's names: {len(found) - len(other)}",
+    ]
+    return [*lines, f"joints by other names: {', '.join(other)}"] if other else lines

@@ -202,8 +202,12 @@ def refuse_incomplete(mapping: Mapping[str, str], bvh: Bvh) -> None:
     """
     lacking = [joint for joint in NEEDED if joint not in mapping]
     if lacking:
+        first = f"no joint found for {', '.join(lacking)}"
+        if twice := [name for name in lacking if name in mapping.values()]:
+            ours = next(ours for ours, own in mapping.items() if own == twice[0])
+            first += f" ({twice[0]} was taken for {ours})"
         raise BvhError(
-            f"no joint found for {', '.join(lacking)}. The file has: {', '.join(bvh.joints)}. "
+            f"{first}. The file has: {', '.join(bvh.joints)}. "
             f"Give the missing ones: md.read_motion(path, mapping={{'{lacking[0]}': '<its joint>', "
             "...}), or motiondiff-edu convert with --joints.",
             bvh.source,

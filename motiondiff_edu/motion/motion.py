@@ -140,6 +140,8 @@ class Motion:
         if not all(isinstance(frame, Integral) for frame in (first, end)):
             raise TypeError(f"frames are whole numbers, not {first!r:.40} and {end!r:.40}")
         if not 0 <= first < end <= len(self):
+            if first >= end:
+                raise MotionError(f"{self.name}: from frame {first} up to {end} there is no frame")
             raise MotionError(
                 f"{self.name}: frames {first} to {end - 1} are not within its {len(self)} "
                 f"(0 to {len(self) - 1})"

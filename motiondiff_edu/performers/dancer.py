@@ -27,10 +27,11 @@ from ..mofusion import MoFusion, MoFusionConfig, Music
 from ..motion.checks import checked_guidance, checked_samples, checked_seconds, checked_steps
 from ..motion.dance_frame import to_positions
 from ..motion.motion import Motion
+from ..motion.retarget import SHORTEST
 from ..motion.scaler import Scaler
 from ..prediction import denoiser_of
 from .dance_windows import FPS, mel_frames
-from .finished import finished_dance
+from .finished import finished_performance
 from .keyframe_mofusion import KeyframeMoFusion
 from .networks import register
 from .performer import Performer, generators, sampled
@@ -43,6 +44,7 @@ GUIDED = 0.0025, 0.27  # alpha_bar: with more or less, dances follow the music w
 # standard deviations from the mean pose, to which the x0_hat of an eps network is clamped, as in
 # DDPM's code
 FARTHEST = 5.0
+QUIET, LOUD = 0.1, 0.5  # loudest sample of a song that is made louder, and what it gets
 
 
 register("dancer", MoFusion, MoFusionConfig, fast=FastMoFusion)
@@ -229,7 +231,7 @@ class Dancer(Performer):
         guidance above 1 the dance follows the music more closely, at up to twice the cost of 1
                  (`beyond.classifier_free`); None: what is usual for this dancer
         Raises AudioError for unusable sound (`conditions.audio_files`), ValueError for `seconds` or
-        `samples` out of range. Warns where the sound is shorter than `seconds`.
+        `samples` out of range. Warns where the sound is shorter than `seconds`, or very quiet.
         Source: MoFusion 3.  Notebook: 00, 12
         """
         count, steps = checked_samples(samples), checked_steps(steps, self.schedule.S)
@@ -239,11 +241,20 @@ class Dancer(Performer):
         name = Path(sound).stem if isinstance(sound, (str, Path)) else "the sound given"
         lasts = len(audio) / SAMPLE_RATE
         frames = int(lasts * FPS)
-        if not frames:
-            raise ValueError(f"{lasts:.3f} s of sound are less than a frame")
+        if lasts < SHORTEST:
+            raise ValueError(
+                f"{lasts:.3f} s of sound are too short: at least {SHORTEST} s are needed"
+            )
         if seconds is not None and lasts < seconds - 1 / FPS:
             warnings.warn(f"{name} lasts {lasts:.1f} s, and the dance ends with it", stacklevel=2)
-        mel = log_mel(audio)
+        peak = float(audio.abs().max())
+        if peak < QUIET:
+            warnings.warn(
+                f"{name} is very quiet (its loudest sample is {peak:.1g} of the largest there is), "
+                "so it is danced to as if it were louder",
+                stacklevel=2,
+            )
+        mel = log_mel(audio * LOUD / peak if peak < QUIET else audio)
         draws = generators(seed, count, *fingerprint(mel))
         with with_bar(self, steps or self.schedule.S, "dancing", progress) as one:
             songs = mel.expand(count, -1, -1)
@@ -252,7 +263,7 @@ class Dancer(Performer):
         dances = dances.double().cpu().numpy()
         made = [
             Motion(
-                finished_dance(dance, FPS, self.bones),
+                finished_performance(dance, FPS, self.bones),
                 FPS,
                 audio=audio.numpy(),
                 sample_rate=SAMPLE_RATE,

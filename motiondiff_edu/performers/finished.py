@@ -1,8 +1,8 @@
 """What is done to a generated motion in the end, so that bones are rigid and feet do not slide.
 
 A network's joints are free points. Its bones stretch by centimetres, and its standing feet slide.
-`Dancer.dance`, continuations and `md.edit` return finished motions; `Dancer.dance_mel` returns the
-network's own.
+`Dancer.dance`, `Mover.act`, continuations and `md.edit` return finished motions; `Dancer.dance_mel`
+and `Mover.act_ids` return the network's own.
 Source: Kovar and others, 2002 (feet), Müller and others, 2007 (bones).
 """
 
@@ -15,22 +15,22 @@ from ..beyond.foot_lock import LOW, steady_feet
 
 GLIDE = 0.2  # m: a foot that goes farther than this from its place is not held there
 # m above its floor: a dancer's toe is lifted by 3 to 6 cm in a small step, and must not be held
-DANCED_LOW = 0.02
+STEP_LOW = 0.02
 
 
-def finished_dance(
+def finished_performance(
     positions: Float[np.ndarray, "T 21 3"],
     fps: float,
     bones: Float[np.ndarray, "20"] | None = None,
 ) -> Float[np.ndarray, "T 21 3"]:
-    """A generated dance (metres) whose bones have these lengths, and whose feet stand.
+    """A generated dance or act (metres) whose bones have these lengths, and whose feet stand.
 
-    bones  the lengths that the network was taught (default: the medians of this dance)
+    bones  the lengths that the network was taught (default: the medians of this motion)
     """
     nothing = np.zeros(positions.shape[:2], bool)
     lengths = Lengths.of(positions, ~nothing)
     lengths = lengths if bones is None else lengths.with_bones(bones)
-    return _finished(positions, fps, nothing, lengths, DANCED_LOW, 0.0)
+    return _finished(positions, fps, nothing, lengths, STEP_LOW, 0.0)
 
 
 def finished_continuation(

@@ -25,8 +25,10 @@ from ..motion.motion import Motion
 from ..motion.moving_frame import D, to_features, to_positions
 from ..motion.root_frame import FPS
 from ..motion.scaler import Scaler
+from ..motion.skeleton import BONE_LENGTHS
 from ..prediction import denoiser_of
 from .described_windows import GRID
+from .finished import finished_performance
 from .performer import Performer, evaluating, generators, sampled
 from .planned_mofusion import PlannedMoFusion
 from .text_mofusion import Texts
@@ -175,8 +177,10 @@ class Mover(Performer):
     ) -> Motion | list[Motion]:
         """Do what a sentence says, such as "walks forward, then waves with the left hand".
 
-        The figure begins at the origin, facing z. A warning says which words were read as others;
-        there is none for a text that `reader.read` has read already (its `notes` say the same).
+        The figure begins at the origin, facing z. Its bones have constant lengths, and feet that
+        stand do not slide (`performers/finished.py`; `act_ids` has the network's own). A warning
+        says which words were read as others; there is none for a text that `reader.read` has read
+        already (its `notes` say the same).
 
         seconds   of the motion, from 2 to 10; a long sentence needs the time that it takes
         samples   above 1: a list with this many motions; the first is that of samples=1
@@ -205,7 +209,10 @@ class Mover(Performer):
         with with_bar(self, evaluations, "moving", progress) as one:
             made = one.act_ids(ids, whole, generator=draws, steps=steps, guidance=guidance)
         source = f"{found.text:.60}"
-        made = [Motion(x[:frames], FPS, source=source) for x in made.double().cpu().numpy()]
+        made = [
+            Motion(finished_performance(x, FPS, BONE_LENGTHS)[:frames], FPS, source=source)
+            for x in made.double().cpu().numpy()
+        ]
         return made if samples > 1 else made[0]
 
     @torch.inference_mode()

@@ -24,7 +24,7 @@ from ..motion.motion import Motion, MotionError, MotionWarning, as_motion
 from ..motion.root_frame import FPS
 from ..motion.skeleton import HIPS, TOES
 from ..performers.dancer import Dancer
-from ..performers.finished import finished_dance, finished_edit
+from ..performers.finished import finished_edit, finished_performance
 from ..performers.mover import LONGEST, SHORTEST, Mover
 from ..performers.performer import generators
 from ..performers.walker import Walker
@@ -90,7 +90,7 @@ def inbetween(
     made, notes = [], []
     first = generate(draws, OURS)
     for positions, note in each_until_plausible(first, draws, motion.positions, known, generate):
-        whole = positions if known.any() else finished_dance(positions, FPS)
+        whole = positions if known.any() else finished_performance(positions, FPS)
         made.append(_made(motion, known, whole, "in-betweens"))
         notes += [note] if note else []
     if notes:

@@ -159,6 +159,8 @@ def test_missing_joints_are_counted_and_named():
         motion.all_but(["Hed"])
     with pytest.raises(MotionError, match="frames 30 to 39 are not within its 37"):
         motion.all_but(["Head"], 30, 40)
+    with pytest.raises(MotionError, match="from frame 30 up to 20 there is no frame"):
+        motion.all_but(["Head"], 30, 20)
 
 
 def test_it_says_what_it_is():

@@ -1,5 +1,6 @@
 """A dancer: lengths, seeds, samplers, the baselines that dance, and its file."""
 
+import warnings
 from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
@@ -18,7 +19,7 @@ from motiondiff_edu.mofusion import MoFusion, MoFusionConfig
 from motiondiff_edu.motion.dance_frame import to_positions
 from motiondiff_edu.motion.scaler import Scaler
 from motiondiff_edu.performers import with_bar
-from motiondiff_edu.performers.dancer import ETA, Dancer
+from motiondiff_edu.performers.dancer import ETA, LOUD, Dancer
 from motiondiff_edu.prediction import to_eps
 from motiondiff_edu.pretrained.checkpoints import (
     CheckpointError,
@@ -247,6 +248,19 @@ def test_the_bar_is_full_at_the_end_with_guidance_as_well(guidance, steps, monke
     assert totals == [len(moved)] == [steps or 12]
 
 
+def test_a_very_quiet_song_is_danced_to_as_if_it_were_louder():
+    song = 0.5 * torch.sin(torch.arange(16_000) / 20.0) * torch.linspace(0, 1, 16_000)
+    song *= LOUD / song.abs().max()
+    one = replace(dancer(replace(UNET, C=80)), mel_scaler=Scaler.nothing(80))
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        loud = one.dance(song, steps=2, progress=False)
+    with pytest.warns(UserWarning, match="very quiet .its loudest sample is 0.002"):
+        quiet = one.dance(song * 0.002 / LOUD, steps=2, progress=False)
+    np.testing.assert_allclose(quiet.positions, loud.positions, atol=1e-3)
+    np.testing.assert_allclose(quiet.audio, song * 0.002 / LOUD, atol=1e-9)  # its own sound
+
+
 @pytest.mark.parametrize(
     "sound, options, told",
     [
@@ -255,7 +269,7 @@ def test_the_bar_is_full_at_the_end_with_guidance_as_well(guidance, steps, monke
         (np.array([0.1] * 50 + [np.nan] * 3), {}, "3 samples are NaN or infinite"),
         (np.zeros((16_000, 2)), {}, "one channel"),
         (np.zeros(0), {}, "one channel"),
-        (np.full(700, 0.1), {}, "less than a frame"),
+        (np.full(7000, 0.1), {}, "0.438 s of sound are too short: at least 0.5 s are needed"),
         (np.zeros(16_000), {}, "silent from start to end"),
         (np.zeros(16_000), {"seconds": -3}, "seconds must be above 0"),
         (np.zeros(16_000), {"seconds": np.nan}, "a number above 0"),

@@ -15,8 +15,8 @@ from motiondiff_edu.motion.skeleton import BONE_LENGTHS, TOES
 from motiondiff_edu.performers.finished import (
     GLIDE,
     finished_continuation,
-    finished_dance,
     finished_edit,
+    finished_performance,
 )
 
 FPS = 20
@@ -49,28 +49,27 @@ def sliding(dance: np.ndarray) -> float:
 
 
 def test_bones_of_a_dance_have_their_median_or_the_lengths_that_are_given(shaken):
-    made = finished_dance(shaken, FPS)
+    made = finished_performance(shaken, FPS)
     np.testing.assert_allclose(
         bone_lengths(made)[0], np.median(bone_lengths(shaken), axis=0), atol=3e-3
     )
     assert stretch(made) < 1e-3 < 5e-3 < stretch(shaken)
     assert np.linalg.norm(made - shaken, axis=-1).mean() < 0.03
     longer = 1.1 * BONE_LENGTHS
-    np.testing.assert_allclose(
-        bone_lengths(finished_dance(shaken, FPS, longer)), longer[None].repeat(60, 0), atol=2e-3
-    )
+    found = bone_lengths(finished_performance(shaken, FPS, longer))
+    np.testing.assert_allclose(found, longer[None].repeat(60, 0), atol=2e-3)
 
 
 def test_a_figure_that_stands_does_not_slide(clean):
     stands = wandering(np.repeat(clean[:1], 60, axis=0), size=0.01)
-    assert sliding(finished_dance(stands, FPS)) < 2e-3 < 0.01 < sliding(stands)
+    assert sliding(finished_performance(stands, FPS)) < 2e-3 < 0.01 < sliding(stands)
 
 
 @pytest.mark.parametrize("genre", GENRES)
 def test_a_dance_keeps_its_steps(genre):
     """Steps are lifted by 3 to 6 cm: a foot lock that takes them for stands would remove them."""
     made = dance(compose(11, genre, seconds=12.0), 3)
-    kept = finished_dance(made.positions, FPS, BONE_LENGTHS)
+    kept = finished_performance(made.positions, FPS, BONE_LENGTHS)
     for foot, toe in enumerate(TOES):
         for first, last in runs(~made.contacts[:, foot]):
             ends = max(first - 1, 0), min(last, len(kept) - 1)
@@ -84,7 +83,7 @@ def test_a_dance_keeps_its_steps(genre):
 def test_no_toe_of_a_dance_is_under_the_floor(clean):
     sunk = clean - [0.0, 0.05, 0.0]
     assert sunk[:, list(TOES), 1].min() < -0.03
-    assert finished_dance(sunk, FPS)[:, list(TOES), 1].min() > -1e-3
+    assert finished_performance(sunk, FPS)[:, list(TOES), 1].min() > -1e-3
 
 
 def half_known(clean: np.ndarray) -> np.ndarray:
@@ -121,7 +120,7 @@ def test_a_foot_that_glides_far_is_not_held(clean):
     """A figure pushed over the ground with its feet still would otherwise leave its legs behind."""
     still = np.repeat(clean[:1], 60, axis=0)
     glides = still + np.linspace(0, 3 * GLIDE, 60)[:, None, None] * [1.0, 0.0, 0.0]
-    np.testing.assert_allclose(finished_dance(glides, FPS), glides, atol=1e-6)
+    np.testing.assert_allclose(finished_performance(glides, FPS), glides, atol=1e-6)
 
 
 def test_an_edited_motion_has_the_body_of_the_given_one_and_keeps_what_is_known(clean, shaken):

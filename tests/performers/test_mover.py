@@ -16,8 +16,10 @@ from motiondiff_edu.conditions.text import TextError
 from motiondiff_edu.conditions.word_encoder import NOTHING, PADDING, WordEncoder, ids_of, present
 from motiondiff_edu.ddpm import cosine_schedule
 from motiondiff_edu.kinematic_loss import training_loss
+from motiondiff_edu.metrics.bone_lengths import bone_lengths
 from motiondiff_edu.motion.moving_frame import D, to_features, to_positions
 from motiondiff_edu.motion.scaler import Scaler
+from motiondiff_edu.motion.skeleton import BONE_LENGTHS
 from motiondiff_edu.performers import with_bar
 from motiondiff_edu.performers.described_windows import DescribedWindows
 from motiondiff_edu.performers.mover import Mover
@@ -78,6 +80,18 @@ def test_a_sentence_makes_motions(mover):
     assert np.abs(second.positions - alone.positions).max() > 0.01
     other = mover.act("kicks with the left foot", seconds=2.5, steps=3, progress=False)
     assert np.abs(other.positions - alone.positions).max() > 0.001
+
+
+def test_an_act_has_bones_of_the_course(mover):
+    """Of a network as good as any, whose bones are off by some millimetres."""
+    clip = next(iter(clips(1, 5))).acted.positions[:40]
+    shaken = torch.from_numpy(clip + 0.005 * np.sin(np.arange(clip.size)).reshape(clip.shape))
+    acting = replace(mover)
+    object.__setattr__(acting, "act_ids", lambda ids, frames, **how: shaken[None])
+    made = Mover.act(acting, "walks", seconds=2.0, progress=False).positions
+    np.testing.assert_allclose(bone_lengths(made), BONE_LENGTHS[None].repeat(40, 0), atol=1e-3)
+    assert np.abs(bone_lengths(shaken.numpy()) - BONE_LENGTHS).max() > 0.005
+    assert np.abs(made - clip).max() < 0.03
 
 
 def test_a_length_between_those_of_the_training_is_cut_from_the_next_one(mover):
