@@ -28,6 +28,7 @@ JUMP = 1.1  # times the fastest joint of the second before and after: faster is 
 # synthetic walks is as far (at most 4.64)
 UNLIKE = 5.0
 NAMED = 3  # joints in a message
+SUDDEN = 2.0  # m/s within half a second; controls of the training change by 1.24 at most
 OFF_FLOOR = 0.15  # m: a figure whose lowest joint is higher stands, sits and lies nowhere
 
 
@@ -102,12 +103,28 @@ def unlike_training(
     return {JOINTS[joint]: far[joint] for joint in order if far[joint] > UNLIKE}
 
 
-def in_words(jump: float, unlike: dict[str, float], height: float = 0.0) -> str:
+def change_of(control: Float[np.ndarray, "T 3"]) -> float:
+    """The largest change of a control's velocity within half a second, in m/s."""
+    half = min(round(0.5 * FPS), len(control) - 1)
+    return float(
+        np.linalg.norm(control[half:, :2] - control[: len(control) - half, :2], axis=1).max()
+    )
+
+
+def in_words(
+    jump: float, unlike: dict[str, float], height: float = 0.0, change: float = 0.0
+) -> str:
     """What there is to say about a continuation; "" if there is nothing.
 
     height  of the lowest joint of the last given pose (m)
+    change  `change_of` the control, from the last given frames on
     """
     words = []
+    if change > SUDDEN:
+        words.append(
+            f"the control changes by {change:.1f} m/s within half a second, faster than any of the "
+            "training, so feet may slide there"
+        )
     if unlike:
         words.append(f"the poses to continue are unlike the walker's training {farthest(unlike)}")
     if height > OFF_FLOOR:

@@ -30,7 +30,7 @@ from ..motion.size import leg_size, resized
 from ..motion.skeleton import J
 from ..prediction import denoiser_of
 from ..rollout import WindowSampler
-from .joined import Start, in_words, joined, unlike_training
+from .joined import Start, change_of, in_words, joined, unlike_training
 from .networks import register
 from .performer import Performer, generators
 from .with_bar import with_bar
@@ -110,7 +110,8 @@ class Walker(Performer):
             new = rollout.generate(walker, *each, generator=draws, steps=steps)
         both = [joined(start, one) for one in new.double().cpu().numpy().reshape(count, -1, J, 3)]
         unlike, height = unlike_training(self.pose_scaler, past), motion.positions[-1, :, 1].min()
-        words = in_words(max(jump for _, jump in both), unlike, height)
+        change = change_of(start.control[T_h - 1 :])
+        words = in_words(max(jump for _, jump in both), unlike, height, change)
         if words:
             warnings.warn(f"{motion.name}: {words}", MotionWarning, stacklevel=2)
         path, name = start.path[T_h:], f"{motion.name}, continued"

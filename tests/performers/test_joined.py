@@ -7,7 +7,7 @@ import pytest
 import torch
 
 import motiondiff_edu as md
-from data_synth.walking import walk
+from data_synth.walking import drawn_walk, walk
 from motiondiff_edu.beyond.inertialize import LONGEST
 from motiondiff_edu.conditions.control import constant_control
 from motiondiff_edu.metrics.bone_lengths import bone_lengths
@@ -23,6 +23,7 @@ from motiondiff_edu.performers.joined import (
     OFF_FLOOR,
     UNLIKE,
     Start,
+    change_of,
     in_words,
     joined,
     unlike_training,
@@ -145,6 +146,19 @@ def test_what_is_said():
     assert "unlike" not in in_words(1.2, {}), "no joint is far from the training"
     four = {name: 9.0 for name in JOINTS[:4]}
     assert JOINTS[3] not in in_words(2.0, four)
+
+
+def test_a_control_that_no_walk_follows_is_said(walker, usual):
+    hard = np.repeat([[1.2, 0.0, 0.0], [-1.5, 0.0, 0.0]], 20, axis=0)
+    assert change_of(hard) == pytest.approx(2.7) and change_of(hard[:20]) == 0
+    assert change_of(hard[:1]) == 0 and change_of(hard[18:24]) == pytest.approx(2.7)
+    walks = [drawn_walk(8.0, np.random.default_rng([5, k])).control for k in range(20)]
+    assert max(map(change_of, walks)) < 1.3
+    with pytest.warns(MotionWarning, match=r"changes by 2\.\d m/s within half a second"):
+        walker.walk(usual, md.joystick([(1, -1.5, 0, 0)]), progress=False)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        walker.walk(usual, md.joystick([(1, 0.0, 0, 0)]), progress=False)
 
 
 def test_a_jump_is_measured_before_it_is_joined():
