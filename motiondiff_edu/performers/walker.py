@@ -110,7 +110,7 @@ class Walker(Performer):
             new = rollout.generate(walker, *each, generator=draws, steps=steps)
         both = [joined(start, one) for one in new.double().cpu().numpy().reshape(count, -1, J, 3)]
         unlike, height = unlike_training(self.pose_scaler, past), motion.positions[-1, :, 1].min()
-        change = change_of(start.control[T_h - 1 :])
+        change = change_of(start.control[T_h - 2 :])
         words = in_words(max(jump for _, jump in both), unlike, height, change)
         if words:
             warnings.warn(f"{motion.name}: {words}", MotionWarning, stacklevel=2)
