@@ -90,12 +90,16 @@ def means_outside(danced: list[Dance], rows: list[dict[str, float]]) -> set[str]
 
 
 def limits(danced: list[Dance]) -> dict[str, float]:
-    """The worst slip of a foot (mm), lowest joint (mm), bone (m), knee (degrees), hand (m/s)."""
+    """The worst slip of a foot (mm), lowest joint (mm), bone (m), knee (degrees), hand (m/s).
+
+    And of the pelvis over the ground: the fastest, and the median over dances of their fastest.
+    """
     slip = 0.0
     low = np.inf
     bones = 0.0
     knees = []
     hands = 0.0
+    pelvis = []
     for d in danced:
         p = d.positions
         slip = max(slip, planted_slip(p, d.contacts))
@@ -104,6 +108,8 @@ def limits(danced: list[Dance]) -> dict[str, float]:
         bend = knee_angles(p)
         knees += [bend.min(), bend.max()]
         hands = max(hands, float(np.linalg.norm(np.diff(p, axis=0), axis=-1).max() * d.fps))
+        over_ground = np.diff(p[:, 0, [0, 2]], axis=0) * d.fps
+        pelvis.append(float(np.linalg.norm(over_ground, axis=-1).max()))
     return {
         "planted_toe_mm_a_frame": 1e3 * slip,
         "lowest_joint_mm": 1e3 * low,
@@ -111,6 +117,8 @@ def limits(danced: list[Dance]) -> dict[str, float]:
         "knee_smallest_deg": float(min(knees)),
         "knee_largest_deg": float(max(knees)),
         "fastest_joint_mps": hands,
+        "fastest_pelvis_mps": max(pelvis),
+        "fastest_pelvis_median_mps": float(np.median(pelvis)),
     }
 
 
