@@ -129,22 +129,28 @@ def inbetween(
     poses = to_positions(view.leave(dancer.motion_scaler.inverse(x0)))
     made = place.leave(poses.double().cpu().numpy())
     whole = np.where(known[..., None], positions, made)
-    if departures.bones and known.any():
-        whole = steady_bones(whole, known, Lengths.of(positions, known).completed())
-    if departures.feet and known.any():
-        whole = steady_feet(kept_places(whole, positions, known), known)
-    return cleared(whole, positions, known) if departures.clearance and known.any() else whole
+    return finished(whole, positions, known, departures) if known.any() else whole
 
 
-def cleared(
+def finished(
     made: Float[np.ndarray, "samples T 21 3"],
     given: Float[np.ndarray, "T 21 3"],
     known: Bool[np.ndarray, "T 21"],
+    departures: Departures,
 ) -> Float[np.ndarray, "samples T 21 3"]:
-    """Feet on the floor, y = 0, and over it; a given joint under it lowers the limit alone."""
-    lowest = lowest_given(given, known)
-    steps = [clear_steps(one, known) for one in made]
-    return np.stack([feet_above_floor(one, known, lowest) for one in steps])
+    """Motions with the bones and the standing feet of what is given, over the floor.
+
+    The floor is at y = 0; a given joint under it lowers it.
+    """
+    if departures.bones:
+        made = steady_bones(made, known, Lengths.of(given, known).completed())
+    if departures.feet:
+        made = steady_feet(kept_places(made, given, known), known)
+    if departures.clearance:
+        lowest = lowest_given(given, known)
+        steps = [clear_steps(one, known) for one in made]
+        made = np.stack([feet_above_floor(one, known, lowest) for one in steps])
+    return made
 
 
 def steered(
