@@ -76,7 +76,7 @@ def test_a_sentence_makes_motions(mover):
     alone = mover.act("walks forward", seconds=2.5, steps=3, progress=False)
     assert alone.positions.shape == (50, 21, 3) and alone.source == "walks forward"
     first, second = mover.act("walks forward", seconds=2.5, samples=2, steps=3, progress=False)
-    assert np.abs(first.positions - alone.positions).max() < 1e-4
+    assert np.abs(first.positions - alone.positions).max() < 1e-3
     assert np.abs(second.positions - alone.positions).max() > 0.01
     other = mover.act("kicks with the left foot", seconds=2.5, steps=3, progress=False)
     assert np.abs(other.positions - alone.positions).max() > 0.001
