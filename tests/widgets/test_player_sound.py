@@ -228,6 +228,25 @@ def test_of_two_views_of_one_player_one_sounds_and_the_other_follows(browser, pl
         assert page.problems == []
 
 
+def test_what_is_stopped_at_once_does_not_start_again(browser, player, tmp_path):
+    """The page tells that a sound has begun when it may have been stopped already."""
+    with open_page(browser) as page:
+        page.goto(player_page(tmp_path, player))
+        page.get_by_role("button", name="Play").click()
+        page.get_by_role("button", name="Pause").click()
+        page.evaluate("""() => {
+            const play = document.querySelector(".mde-play");
+            window.begun = 0;
+            document.querySelector("audio").addEventListener("play", () => { begun++; });
+            play.click();
+            play.click();
+        }""")
+        page.wait_for_function("begun === 1")
+        page.wait_for_timeout(100)
+        assert [view["playing"] for view in page.evaluate(VIEWS)] == ["false"]
+        assert not page.evaluate(VIEWS)[0]["heard"] and page.problems == []
+
+
 def test_a_sound_is_not_started_unasked(browser, player, tmp_path):
     with open_page(browser, reduced_motion="no-preference") as page:
         page.goto(player_page(tmp_path, player))

@@ -353,7 +353,8 @@ export function mount(model, el, { fill = false } = {}) {
     if (heard() && playing && sound.paused && !sound.error) setPlaying(false);
   }); // by a media key
   listen(sound, "play", () => {
-    if (!playing) setPlaying(true);
+    // it is told late: by then the sound may have been stopped again
+    if (!playing && !sound.paused) setPlaying(true);
   });
   listen(sound, "canplay", () => {
     if (heard() && playing && sound.paused) run();
