@@ -218,9 +218,7 @@ def _on_the_way(block: list[Slot], state, style, rng, room: int | None, seed: in
     return piece, cut, inner
 
 
-def _on_the_spot(
-    block: list[Slot], standing: Standing, room: int | None, seed: int, at: float = 0.05
-):
+def _on_the_spot(block: list[Slot], standing: Standing, room: int | None, seed: int, at: float):
     """(piece, frame at which the next block begins, spans within it, where the feet stand).
 
     The first act begins `at` seconds after the block.

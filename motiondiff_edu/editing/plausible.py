@@ -29,9 +29,8 @@ LOW = 0.08  # m above the 5th percentile of the toes' heights
 SLIDES = 0.6  # m/s
 GLIDE = 0.4  # s
 
-SINKS = (
-    0.4  # m in a second: of 473 gaps of a second in recorded dances and fights, none sinks so far
-)
+# m in a second: of 473 gaps of a second in recorded dances and fights, none sinks so far
+SINKS = 0.4
 
 AGAIN = "So it was generated again there. Check the result"
 CALMED = "So it was generated again there, nearer to straight lines. Check the result"

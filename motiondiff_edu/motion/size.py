@@ -10,7 +10,8 @@ import numpy as np
 from jaxtyping import Float
 
 from .motion import Motion
-from .skeleton import BONE_LENGTHS, BONES, joint_index
+from .planting import SHANK, THIGH
+from .skeleton import PARENTS, joint_index
 
 LEGS = [joint_index(f"{side}{part}") for side in ("Left", "Right") for part in ("Leg", "Foot")]
 SAME = 1e-3  # a size that differs from 1 by less is 1
@@ -21,12 +22,10 @@ def leg_size(positions: Float[np.ndarray, "T 21 3"]) -> float:
 
     Thigh and shank of both legs; the median over frames. 1 where no leg is given.
     """
-    parents = [BONES[joint - 1][0] for joint in LEGS]
-    long = np.linalg.norm(positions[:, LEGS] - positions[:, parents], axis=-1).sum(-1)
+    long = np.linalg.norm(positions[:, LEGS] - positions[:, PARENTS[LEGS]], axis=-1).sum(-1)
     if not np.isfinite(long).any():
         return 1.0
-    rest = BONE_LENGTHS[[joint - 1 for joint in LEGS]].sum()
-    size = float(np.nanmedian(long) / rest)
+    size = float(np.nanmedian(long) / (2 * (THIGH + SHANK)))
     return 1.0 if abs(size - 1) < SAME else size
 
 

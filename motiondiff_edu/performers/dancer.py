@@ -247,14 +247,15 @@ class Dancer(Performer):
             )
         if seconds is not None and lasts < seconds - 1 / FPS:
             warnings.warn(f"{name} lasts {lasts:.1f} s, and the dance ends with it", stacklevel=2)
-        peak = float(audio.abs().max())
+        heard, peak = audio, float(audio.abs().max())
         if peak < QUIET:
             warnings.warn(
                 f"{name} is very quiet (its loudest sample is {peak:.1g} of the largest there is), "
                 "so it is danced to as if it were louder",
                 stacklevel=2,
             )
-        mel = log_mel(audio * LOUD / peak if peak < QUIET else audio)
+            heard = audio * LOUD / peak
+        mel = log_mel(heard)
         draws = generators(seed, count, *fingerprint(mel))
         with with_bar(self, steps or self.schedule.S, "dancing", progress) as one:
             songs = mel.expand(count, -1, -1)

@@ -30,7 +30,7 @@ from motiondiff_edu.performers.walker import STEPS, Walker
 
 from ..walks.scores import Measure, measure_of, root_mean, squared_bone_error
 from .by_source import by_source
-from .windows import SECONDS, RecordedSize, persons, recorded, trials
+from .windows import SECONDS, RecordedSize, amounts, recorded, trials
 
 GIVEN = 2.0  # seconds of a window
 EARLY = 1.0  # seconds after the seam
@@ -144,13 +144,7 @@ def recorded_records(walker: Walker, weights: str, size: RecordedSize, command: 
             rows = [row_of(window, made) for made in continued(walker, window)]
             for one, row in zip(found, (*rows, row_of_recording(window)), strict=True):
                 found[one].append(row)
-    seeds = {
-        "windows": len(sources),
-        "files": len(set(sources)),
-        "persons": persons(sources),
-        "sampling": 0,
-        "steps": STEPS,
-    }
+    seeds = {"windows": len(sources)} | amounts(sources) | {"sampling": 0, "steps": STEPS}
     seeds |= {"weights": weights}
     records = []
     for prefix, rows in found.items():

@@ -28,7 +28,7 @@ from motiondiff_edu.performers.performer import generators
 
 from ..walks.scores import SKATING_FLOOR, Measure
 from .by_source import by_source
-from .windows import RecordedSize, held_out, persons, recorded
+from .windows import RecordedSize, amounts, held_out, recorded
 
 SECOND = 20  # frames
 OTHERS = (5, 10, 40)  # frames between keyframes, beside one a second
@@ -157,13 +157,7 @@ def inbetween_records(
     """The measures of in-betweens (`real.inbetween_*`), at other distances `real.gapN.`."""
     windows, walks = windows_and_walks(size)
     sources = [source for source, _ in windows]
-    seeds = {
-        "windows": len(windows),
-        "files": len(set(sources)),
-        "persons": persons(sources),
-        "sampling": 0,
-        "steps": STEPS,
-    }
+    seeds = {"windows": len(windows)} | amounts(sources) | {"sampling": 0, "steps": STEPS}
     seeds |= {"samples": size.samples, "weights": weights, "walks": int(walks.sum())}
     tasks = [
         (dancer, motion, every, size.samples)

@@ -23,7 +23,7 @@ from motiondiff_edu.performers.walker import Walker
 from ..walks.scores import Measure
 from .by_source import by_source
 from .inbetweens import WALKS
-from .windows import RecordedSize, persons, recorded, trials
+from .windows import RecordedSize, amounts, recorded, trials
 
 LIMBS = {"arm": ARM, "leg": LEG}
 SECONDS = 3  # of a window
@@ -82,5 +82,5 @@ def reconstruction_records(
         for source, truth in pieces(size):
             sources.append(source)
             rows.append(row_of(walker, truth))
-    seeds = {"files": len(sources), "persons": persons(sources), "sampling": 0, "weights": weights}
+    seeds = amounts(sources) | {"sampling": 0, "weights": weights}
     return [one.as_record("real.", seeds, command) for one in measures_of(rows, sources)]

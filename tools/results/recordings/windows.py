@@ -60,9 +60,9 @@ def person_of(source: str) -> str:
     return TRAINED[0] if is_training(source) else source
 
 
-def persons(sources: list[str]) -> int:
-    """Of how many persons these files are."""
-    return len({person_of(source) for source in sources})
+def amounts(sources: list[str]) -> dict[str, int]:
+    """How many files these are, and of how many persons."""
+    return {"files": len(set(sources)), "persons": len({person_of(one) for one in sources})}
 
 
 def recorded(
