@@ -8,9 +8,10 @@ script.REST, in degrees and metres.
 
 import numpy as np
 from jaxtyping import Float
+from scipy.ndimage import gaussian_filter1d
 
 from motiondiff_edu.motion.kinematics import rot_x, rot_y, rot_z
-from motiondiff_edu.motion.root_frame import forward_left
+from motiondiff_edu.motion.root_frame import FPS, forward_left
 from motiondiff_edu.motion.skeleton import OFFSETS, J
 
 from ..walking import legs
@@ -21,6 +22,8 @@ from .steps import Track
 STAND = 0.957  # height of the Hips joint over flat feet before `drop`
 # metres that the hips move away per unit of sine of the trunk's lean, so that the weight stays
 UPPER_SHARE = 0.17
+CARRIED = 0.1  # s: how a change of weight is spread over time
+KICKED, KICK = 0.12, 0.66  # metres: a toe so high over the floor is so far beside its hip at most
 KNEE_TURNS = np.radians(50)  # of a knee against the pelvis, at most: about what a hip joint allows
 
 
@@ -40,7 +43,7 @@ def dancer(
     feet = legs.Feet(
         *(np.stack(v, 1) for v in zip(*((k.ankle(), k.toe, k.yaw) for k in tracks), strict=True))
     )
-    hips = legs.hips_within_reach(_hips(c, tracks, heading), pelvis, feet, level)
+    hips = legs.hips_within_reach(_hips(c, tracks, heading), pelvis, feet, _level(feet, level))
     feet = legs.not_folded(hips, pelvis, feet)
     joints = np.zeros((len(heading), J, 3))
     joints[:, 0] = hips
@@ -62,6 +65,11 @@ def dancer(
     return joints
 
 
+def _level(feet: legs.Feet, level: float) -> Float[np.ndarray, "T 2"]:
+    """How far beside its hip each foot may be: farther when it is kicked up."""
+    return level + (KICK - level) * np.clip(feet.toe[..., 1] / KICKED, 0, 1)
+
+
 def _hips(c, tracks, heading) -> Float[np.ndarray, "T 3"]:
     """The pelvis over the supporting foot, moved by sway and surge.
 
@@ -69,6 +77,8 @@ def _hips(c, tracks, heading) -> Float[np.ndarray, "T 3"]:
     """
     left, right = (k.ground for k in tracks)
     over = right + (0.5 + 0.47 * c["weight"])[:, None] * (left - right)
+    # a body is not thrown as fast as its weight is meant to change
+    over = gaussian_filter1d(over, CARRIED * FPS, axis=0, mode="nearest")
     ahead, aside = forward_left(heading)
     surge = c["surge"] + 0.03 - UPPER_SHARE * (np.sin(c["lean"]) + 0.5 * np.sin(c["hip_tilt"]))
     sway = c["sway"] + UPPER_SHARE * np.sin(c["side"])

@@ -152,7 +152,7 @@ def hips_within_reach(
     hips: Float[np.ndarray, "T 3"],
     rotation: Float[np.ndarray, "T 3 3"],
     feet: Feet,
-    level: float = LEVEL,
+    level: float | Float[np.ndarray, "T 2"] = LEVEL,
 ) -> Float[np.ndarray, "T 3"]:
     """Lower the pelvis smoothly where a leg would not reach the ground.
 
@@ -160,10 +160,12 @@ def hips_within_reach(
     """
     hips = hips.copy()
     sockets = [rotation @ OFFSETS[joint] for joint in (1, 5)]
+    levels = np.broadcast_to(level, (len(hips), 2))
     for side, socket in enumerate(sockets):
         gap = (feet.ankle[:, side] - hips - socket)[:, [0, 2]]
         beside = np.linalg.norm(gap, axis=-1, keepdims=True)
-        hips[:, [0, 2]] += softplus(beside - level, 0.015) * gap / beside
+        beyond = beside - levels[:, side, None]
+        hips[:, [0, 2]] += softplus(beyond, 0.015) * gap / beside
     for side, socket in enumerate(sockets):
         gap = feet.ankle[:, side] - hips - socket
         highest = (

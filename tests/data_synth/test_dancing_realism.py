@@ -150,6 +150,13 @@ def test_no_dance_exceeds_the_limits_of_the_card(found):
     )
 
 
+def test_no_pelvis_is_thrown(found):
+    """Recorded dancers carry theirs at 2 m/s at most, in quick songs too."""
+    worst = limits(found[0])
+    assert worst["fastest_pelvis_mps"] < 2.6
+    assert worst["fastest_pelvis_median_mps"] < 2
+
+
 def test_the_card_has_these_dances_figures(found):
     """Twenty dances here, thirty in the card."""
     for name, mean, *_ in table(found[1], UPRIGHT | FLOOR | OWN):

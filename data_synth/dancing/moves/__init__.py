@@ -82,8 +82,8 @@ MANNERS: dict[str, Manner] = {
     "latin": Manner(
         latin.MOVES,
         latin.CALM,
-        0.06,
-        0.30,
+        0.10,
+        0.20,
         4.0,
         0.03,
         {"drop": 0.03, "lean": 2.0, **_BENT},
