@@ -15,7 +15,9 @@ from ..performers.mover import Mover
 from ..performers.walker import Walker
 from ..pretrained.checkpoints import save
 from ..pretrained.judges import save_judge
+from ..pretrained.shipped import load
 from .dancers import DANCE_RECIPES, SHIPPED_DANCERS
+from .ear import TrainedEar, ear_within
 from .judges import JUDGES, train_judge
 from .movers import MOVER, MOVER_RECIPES
 from .recordings import RecordingsError, recording_files
@@ -62,6 +64,12 @@ def main() -> None:
         metavar="FOLDER",
         help="where the CLIP of mover-clip is (default: where transformers keeps its downloads)",
     )
+    parser.add_argument(
+        "--ear",
+        metavar="DANCER",
+        help="a dancer, by name or file, whose ear the dancers take over (default: an ear is "
+        "trained first, which takes longer than a dancer)",
+    )
     parser.add_argument("--threads", type=int, default=torch.get_num_threads())
     arguments = parser.parse_args()
     unknown = set(arguments.names) - set(ALL)
@@ -70,11 +78,17 @@ def main() -> None:
             f"no recipe is called {', '.join(sorted(unknown))}; there are: {', '.join(ALL)}"
         )
     torch.set_num_threads(arguments.threads)
+    ear = None
+    if arguments.ear:
+        try:
+            ear = ear_within(load(arguments.ear))
+        except ValueError as error:
+            parser.exit(1, f"--ear {arguments.ear}: {error}\n")
     arguments.runs.mkdir(parents=True, exist_ok=True)
     for name in arguments.names or buildable(EVERY):
         file = f"{name}.safetensors"
         try:
-            made = build(name, arguments.runs / file, arguments.out / file, arguments.clip)
+            made = build(name, arguments.runs / file, arguments.out / file, arguments.clip, ear)
         except (clips.ClipError, clips.NoTransformers, RecordingsError) as error:
             parser.exit(1, f"{name}: {error}\n")
         print("wrote", made)
@@ -93,23 +107,29 @@ def buildable(names: list[str]) -> list[str]:
     return [name for name in names if name not in need]
 
 
-def build(name: str, run: Path, out: Path, clip: str | None = None) -> Path:
+def build(
+    name: str, run: Path, out: Path, clip: str | None = None, ear: TrainedEar | None = None
+) -> Path:
     """Train a recipe by its name, continuing `run` where there is one, and save it as `out`.
 
-    A judge is saved in a folder of its own beside `out`.
+    `clip` and `ear` are as in `trained`. A judge is saved in a folder of its own beside `out`.
     """
     if name in JUDGES:
         return save_judge(train_judge(JUDGES[name], run, say), out.parent / "judges" / out.name)
-    return save(trained(name, run, clip), out, bits=8 if name in EIGHT_BITS else 16)
+    return save(trained(name, run, clip, ear), out, bits=8 if name in EIGHT_BITS else 16)
 
 
-def trained(name: str, run: Path, clip: str | None = None) -> Walker | Dancer | Mover:
-    """The performer of a recipe; `clip` is the folder of a CLIP, for a recipe that needs one.
+def trained(
+    name: str, run: Path, clip: str | None = None, ear: TrainedEar | None = None
+) -> Walker | Dancer | Mover:
+    """The performer of a recipe, trained, or continued from `run`.
 
-    If the recipe continues another one, that is trained first; its run file lies beside `run`.
+    `clip` is the folder of a CLIP, and `ear` a trained ear; recipes that need none leave them. If
+    the recipe continues another one, that is trained first; its run file lies beside `run`.
     """
     if name in DANCE_RECIPES:
-        return train_dancer(DANCE_RECIPES[name], run, log=say)
+        recipe = DANCE_RECIPES[name]
+        return train_dancer(recipe, run, log=say, ear=ear if getattr(recipe, "ear", None) else None)
     if name in MOVER_RECIPES:
         recipe = MOVER_RECIPES[name]
         reader = clips.load(clip) if clip and recipe.config.clip else None

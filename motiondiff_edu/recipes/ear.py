@@ -3,6 +3,7 @@
 Ours; see `beyond.hearing`.
 """
 
+import copy
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -16,7 +17,9 @@ from ..beyond.gain_noise import gain_noise
 from ..beyond.hearing import MelAugmentation, augmented, between, on_circles, tempo_factors
 from ..conditions.music import frame_times
 from ..motion.scaler import Scaler
+from ..performers.dancer import Dancer
 from ..performers.ear import Ear, EarConfig, EarOutput, rescaled
+from ..performers.hearing_mofusion import WithEar
 from ..training import LossFn
 from .songs import HeardSongs, songs_as_mel
 from .train_recipe import Provenance, train_recipe
@@ -117,6 +120,20 @@ class TrainedEar:
     def hearing(self, scaler: Scaler) -> Ear:
         """The ear for Mel frames that are standardised by another scaler."""
         return rescaled(self.ear, self.scaler, scaler)
+
+
+def ear_within(dancer: Dancer) -> TrainedEar:
+    """The ear of a trained dancer, for other dancers: an ear takes longer to train than a dancer.
+
+    Raises ValueError for a dancer that has no ear.
+    """
+    if not isinstance(dancer.model, WithEar):
+        raise ValueError(f"{type(dancer.model).__name__} has no ear that another dancer could use")
+    return TrainedEar(
+        copy.deepcopy(dancer.model.ear),
+        dancer.mel_scaler,
+        dancer.card["ear"] | {"taken_over": True},
+    )
 
 
 def ear_of(recipe: EarRecipe, folder: Path, log=print) -> TrainedEar:

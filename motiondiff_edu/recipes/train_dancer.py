@@ -29,7 +29,7 @@ from ..performers.keyframe_mofusion import KeyframeConfig
 from ..performers.networks import network
 from ..training import LossFn
 from .dancers import DanceRecipe, KeyframeRecipe, SongRecipe
-from .ear import ear_of
+from .ear import TrainedEar, ear_of
 from .keyframe_loss import keyframe_loss_of
 from .mofusion_loss import batch_loss, weighted_loss
 from .recordings import CREDIT, Recorded, training_recordings
@@ -155,12 +155,21 @@ def with_path_scale(windows: DanceWindows, metres: float) -> DanceWindows:
 
 
 def train_dancer(
-    recipe: DanceRecipe, run_file: Path, windows: DanceWindows | None = None, log=print
+    recipe: DanceRecipe,
+    run_file: Path,
+    windows: DanceWindows | None = None,
+    log=print,
+    ear: TrainedEar | None = None,
 ) -> Dancer:
     """Train by a recipe, or continue the run in `run_file`; return a dancer with averaged weights.
 
-    Raises ValueError when the run in `run_file` was begun with other settings.
+    `ear`: a trained one for a recipe with an ear; without it, one is trained first.
+    Raises ValueError when the run in `run_file` was begun with other settings, or `ear` is not of
+    the recipe's kind.
     """
+    if ear and (wanted := getattr(recipe.config, "ear", None)) != ear.ear.config:
+        needs = f"needs an ear with {wanted}" if wanted else "has no ear"
+        raise ValueError(f"{recipe.name} {needs}; the ear that is given has {ear.ear.config}")
     config, windows = recipe.config, training_windows(recipe) if windows is None else windows
     schedule = schedule_of(recipe)
     torch.manual_seed(recipe.seed)
@@ -168,7 +177,7 @@ def train_dancer(
     about = {"network": type(model).__name__, "data": digest(windows)}
     facts = {"windows": len(windows)} | bones_of(windows)
     if getattr(recipe, "ear", None):
-        trained_ear = ear_of(recipe.ear, run_file.parent, log)
+        trained_ear = ear or ear_of(recipe.ear, run_file.parent, log)
         model.ear.load_state_dict(trained_ear.hearing(windows.mel_scaler).state_dict())
         about["ear"] = digest_of_tensors(trained_ear.ear.state_dict())[:16]
         facts["ear"] = trained_ear.card
