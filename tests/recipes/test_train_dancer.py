@@ -16,17 +16,18 @@ from motiondiff_edu.conditions.music import log_mel
 from motiondiff_edu.ddpm import cosine_schedule
 from motiondiff_edu.performers.ear import EarConfig
 from motiondiff_edu.performers.networks import network
-from motiondiff_edu.pretrained.checkpoints import load_dancer
+from motiondiff_edu.pretrained.checkpoints import load_dancer, pretrained
 from motiondiff_edu.recipes import __main__ as command
 from motiondiff_edu.recipes.dancers import (
     DANCE_RECIPES,
     DANCER,
     DANCER_PLAIN,
     REGRESSED,
+    UNCONDITIONAL,
     X0,
     DanceRecipe,
 )
-from motiondiff_edu.recipes.ear import EarRecipe, ear_of
+from motiondiff_edu.recipes.ear import EarRecipe, ear_of, ear_within
 from motiondiff_edu.recipes.songs import training_songs
 from motiondiff_edu.recipes.train_dancer import loss_of, schedule_of, train_dancer, training_windows
 
@@ -150,6 +151,28 @@ def test_the_ear_is_that_of_its_own_training(windows, tmp_path: Path):
     assert len(list(tmp_path.glob("ear-*"))) == 2
 
 
+def test_an_ear_can_be_taken_over(windows, tmp_path: Path):
+    first = train_dancer(TINY, tmp_path / "a" / "one.safetensors", windows, log=lambda line: None)
+    ear = ear_within(first)
+    assert ear.card == first.card["ear"] | {"taken_over": True}
+    other = replace(TINY, name="other", seed=3)
+    run = tmp_path / "b" / "two.safetensors"
+    second = train_dancer(other, run, windows, log=lambda line: None, ear=ear)
+    assert not list(run.parent.glob("ear-*"))  # none was trained
+    assert second.card["ear"]["taken_over"]
+    for a, b in zip(second.model.ear.parameters(), first.model.ear.parameters(), strict=True):
+        torch.testing.assert_close(a, b, rtol=0, atol=1e-6)
+    wider = replace(TINY, config=replace(TINY.config, ear_width=32), ear=replace(
+        EARS, config=EarConfig(width=32, blocks=1)
+    ))  # fmt: skip
+    with pytest.raises(ValueError, match="tiny needs an ear with .*width=32"):
+        train_dancer(wider, run, windows, ear=ear)
+    with pytest.raises(ValueError, match="unconditional has no ear"):
+        train_dancer(UNCONDITIONAL, run, windows, ear=ear)
+    with pytest.raises(ValueError, match="MoFusion has no ear"):
+        ear_within(pretrained("unconditional"))
+
+
 def test_recipes_that_cannot_be_trained_are_refused():
     with pytest.raises(ValueError, match="regression cannot be guided"):
         replace(REGRESSED, no_music=0.1)
@@ -181,8 +204,12 @@ def test_the_command_trains_a_recipe_into_a_file(monkeypatch, tmp_path: Path, ca
     ]
     monkeypatch.setattr("sys.argv", arguments)
     command.main()
-    dancer = load_dancer(tmp_path / "regression.safetensors")
     assert "wrote" in capsys.readouterr().out
+    monkeypatch.setattr("sys.argv", [*arguments, "--ear", "unconditional"])
+    with pytest.raises(SystemExit):
+        command.main()
+    assert "--ear unconditional: MoFusion has no ear" in capsys.readouterr().err
+    dancer = load_dancer(tmp_path / "regression.safetensors")
     assert (
         dancer.card["recipe"]["steps"] == 6
         and dancer.card["target"] == "x0"
@@ -190,6 +217,12 @@ def test_the_command_trains_a_recipe_into_a_file(monkeypatch, tmp_path: Path, ca
     )
     mel = torch.zeros(1, 70, 80)
     assert dancer.dance_mel(mel, 40).shape == (1, 40, 21, 3)
+    taken = ["--ear", str(tmp_path / "regression.safetensors"), "--runs", str(tmp_path / "again")]
+    monkeypatch.setattr("sys.argv", ["pretrained", "regression", *taken, "--out", str(tmp_path)])
+    command.main()
+    assert not list((tmp_path / "again").glob("ear-*"))
+    assert load_dancer(tmp_path / "regression.safetensors").card["ear"]["taken_over"]
+    assert "wrote" in capsys.readouterr().out
 
 
 def test_with_and_without_kinematic_losses_all_else_is_alike():
