@@ -20,7 +20,8 @@ if TYPE_CHECKING:
     from .editing.masks import keyframes_of as keyframes
     from .motion.files import read_motion
     from .motion.motion import Motion
-    from .pretrained.shipped import edit, inbetween, load, reconstruct
+    from .pretrained.by_name import load
+    from .pretrained.shipped import edit, inbetween, reconstruct
     from .widgets.motions import play
 
 # Public name -> (module, name in it). A module is imported at the first use of its name, so that
@@ -28,7 +29,7 @@ if TYPE_CHECKING:
 _FRONT_DOOR = {
     "Motion": (".motion.motion", "Motion"),
     "read_motion": (".motion.files", "read_motion"),
-    "load": (".pretrained.shipped", "load"),
+    "load": (".pretrained.by_name", "load"),
     "joystick": (".conditions.control", "joystick"),
     "keyframes": (".editing.masks", "keyframes_of"),
     "edit": (".pretrained.shipped", "edit"),

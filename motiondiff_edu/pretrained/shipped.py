@@ -1,17 +1,15 @@
-"""The front door's functions that need weights: `load`, `inbetween`, `reconstruct` and `edit`.
+"""The front door's functions that change a motion with shipped weights.
 
-Notebook: 00, 15, 17
+Notebook: 15, 17
 """
 
 import warnings
 from dataclasses import replace
 from functools import lru_cache
-from pathlib import Path
 
 import numpy as np
 from jaxtyping import Bool, Float
 
-from ..conditions.clip import Clip
 from ..editing import by_words
 from ..editing import inbetween as inbetweens
 from ..editing import reconstruct as reconstruction
@@ -30,24 +28,8 @@ from ..performers.performer import generators
 from ..performers.walker import Walker
 from ..performers.with_bar import with_bar
 from . import checkpoints
-from .checkpoints import CheckpointError
 
 STEPS = 50  # of DDIM, for in-betweens by default
-
-
-def load(name: str | Path, clip: Clip | str | Path | None = None) -> Walker | Dancer | Mover:
-    """A performer: shipped weights by name ("walker", "dancer", "mover" ...), or your own file.
-
-    `clip`: for your own mover that reads by CLIP, the folder of that CLIP (`checkpoints.load`).
-    Raises CheckpointError for an unknown name, with a list of the names, for a faulty file, and for
-    `clip` with shipped weights, none of which reads by CLIP.
-    Notebook: 00
-    """
-    if str(name).endswith(".safetensors"):
-        return checkpoints.load(Path(name).expanduser(), clip)
-    if clip is not None and name in checkpoints.available():
-        raise CheckpointError(f"the shipped {name!r} does not read by CLIP: leave `clip` out")
-    return checkpoints.pretrained(str(name))
 
 
 def inbetween(

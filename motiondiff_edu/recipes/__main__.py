@@ -13,9 +13,9 @@ from ..conditions import clip as clips
 from ..performers.dancer import Dancer
 from ..performers.mover import Mover
 from ..performers.walker import Walker
+from ..pretrained.by_name import load
 from ..pretrained.checkpoints import save
 from ..pretrained.judges import save_judge
-from ..pretrained.shipped import load
 from .dancers import DANCE_RECIPES, SHIPPED_DANCERS
 from .ear import TrainedEar, ear_within
 from .judges import JUDGES, train_judge
