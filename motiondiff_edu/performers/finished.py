@@ -11,6 +11,7 @@ from jaxtyping import Bool, Float
 
 from ..beyond.above_floor import feet_above_floor, lowest_given
 from ..beyond.constant_bones import Lengths, steady_bones
+from ..beyond.dragged_feet import lift_dragged_feet
 from ..beyond.foot_lock import LOW, steady_feet
 
 GLIDE = 0.2  # m: a foot that goes farther than this from its place is not held there
@@ -37,6 +38,17 @@ def finished_continuation(
     positions: Float[np.ndarray, "T 21 3"], fps: float, known: Bool[np.ndarray, "T 21"]
 ) -> Float[np.ndarray, "T 21 3"]:
     """Given and generated frames (metres, world): what is `known` stays, the rest follows it.
+
+    As `held_continuation` has it; and a foot that is still dragged over the floor takes a step.
+    """
+    whole = held_continuation(positions, fps, known)
+    return lift_dragged_feet(whole, known, fps, lowest_given(positions, known))
+
+
+def held_continuation(
+    positions: Float[np.ndarray, "T 21 3"], fps: float, known: Bool[np.ndarray, "T 21"]
+) -> Float[np.ndarray, "T 21 3"]:
+    """Given and generated frames (metres, world), in which feet that stand are held.
 
     Bones get the lengths that they have where they are given, and no foot is lower than the given
     joints, or than 0 if these are higher.

@@ -3,8 +3,8 @@
 A walker that gets a pose unlike its training begins with one that it knows: a joint may move by
 half a metre from the last given frame to the first new one. Then the first half second, or more if
 a joint has far to go, takes over pose and speed of the given motion, and a warning says so. In
-every continuation bones keep the lengths of the given motion, and standing feet stay where they
-stand (`performers/finished.py`).
+every continuation bones keep the lengths of the given motion, standing feet stay where they stand,
+and feet that were dragged take a step (`performers/finished.py`).
 """
 
 from dataclasses import dataclass
@@ -72,6 +72,17 @@ def joined(
     start: Start, new: Float[np.ndarray, "T 21 3"]
 ) -> tuple[Float[np.ndarray, "T 21 3"], float]:
     """New frames in the world, and how much faster the seam was than what is around it."""
+    whole, known, jump = blended(start, new)
+    return finished_continuation(whole, FPS, known)[-len(new) :], jump
+
+
+def blended(
+    start: Start, new: Float[np.ndarray, "T 21 3"]
+) -> tuple[Float[np.ndarray, "T2 21 3"], Bool[np.ndarray, "T2 21"], float]:
+    """A second of what is given and all new frames, in the world, without a jump between them.
+
+    And which joints are given, and how much faster the seam was than what is around it.
+    """
     before = start.given[-round(AROUND * FPS) - 1 :]
     k = len(before)
 
@@ -84,7 +95,7 @@ def joined(
         whole = placed(inertialized(start.past, new, FPS))
     known = np.zeros((len(whole), J), bool)
     known[:k] = True
-    return finished_continuation(whole, FPS, known)[k:], jump
+    return whole, known, jump
 
 
 def unlike_training(

@@ -66,13 +66,17 @@ def test_windows_are_of_six_seconds_and_their_control_is_within_the_range(folder
 
 def test_a_window_is_continued_as_walk_continues_it(walker, folder):
     window = next(continuations.windows(FULL, walker.card["control_range"]))
-    blended, plain = continuations.continued(walker, window)
+    blended, dragged, plain = continuations.continued(walker, window).values()
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         wanted = walker.walk(window.given, window.control, progress=False)
     np.testing.assert_allclose(blended.world, wanted.positions, atol=1e-4)
     # it does not jump, so that only bones and feet differ
     assert 1e-4 < np.linalg.norm(plain.world - wanted.positions, axis=-1).mean() < 0.02
+    feet = [1, 2, 3, 4, 5, 6, 7, 8]
+    np.testing.assert_array_equal(
+        np.delete(dragged.world, feet, 1), np.delete(blended.world, feet, 1)
+    )
     source = md.read_motion(folder / "bvh" / "walk0.bvh")
     np.testing.assert_allclose(window.next, source.positions[40:120], atol=1e-9)
     own = continuations.row_of_recording(window)

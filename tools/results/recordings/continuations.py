@@ -2,8 +2,8 @@
 
 Windows of six seconds from files of several collections: two seconds are given, and the walker goes
 on for four as fast as the person went in the last second. Once as `Walker.walk` does it, once
-as the network has it: without blending, steady bones and held feet. The recording's own next four
-seconds stand beside them.
+without the steps of dragged feet, and once as the network has it: without blending, steady bones
+and held feet either. The recording's own next four seconds stand beside them.
 """
 
 import warnings
@@ -24,7 +24,8 @@ from motiondiff_edu.motion.root_frame import (
     to_root_frame,
 )
 from motiondiff_edu.motion.skeleton import J
-from motiondiff_edu.performers.joined import JUMP, Start, joined
+from motiondiff_edu.performers.finished import held_continuation
+from motiondiff_edu.performers.joined import JUMP, Start, blended, joined
 from motiondiff_edu.performers.performer import generators
 from motiondiff_edu.performers.walker import STEPS, Walker
 
@@ -64,15 +65,21 @@ class Continued:
     path: Float[np.ndarray, "n 3"]
 
 
-def continued(walker: Walker, window: Window) -> tuple[Continued, Continued]:
-    """As `Walker.walk` has it, and the same sample as the network has it."""
+def continued(walker: Walker, window: Window) -> dict[str, Continued]:
+    """As `Walker.walk` has it, and the same sample with less done to it."""
     T_h = walker.config.T_h
     start = Start.of(window.given, window.control, T_h)
     past, steer = start.past.reshape(T_h, -1), start.control
     new = rollout.generate(walker, past[None], steer[None], generator=generators(0, 1), steps=STEPS)
     poses, path = new[0].double().numpy().reshape(-1, J, 3), start.path[T_h:]
-    blended, _ = joined(start, poses)
-    return Continued(blended, path), Continued(start.in_world(poses), path)
+    whole, known, _ = blended(start, poses)
+    held = held_continuation(whole, FPS, known)
+    worlds = {
+        "real.": joined(start, poses)[0],
+        "real.dragged.": held[-len(poses) :],
+        "real.unblended.": start.in_world(poses),
+    }
+    return {name: Continued(world, path) for name, world in worlds.items()}
 
 
 def row_of(window: Window, made: Continued) -> dict[str, float]:
@@ -131,19 +138,19 @@ def measures_of(rows: dict[str, np.ndarray], sources: list[str]) -> list[Measure
 
 
 def recorded_records(walker: Walker, weights: str, size: RecordedSize, command: str) -> list[dict]:
-    """The measures of continuations, joined (`real.`) and not (`real.unblended.`).
+    """The measures of continuations: `real.`, `real.dragged.` and `real.unblended.`.
 
     And those of the recordings themselves (`real.recording.`).
     """
-    found: dict[str, list] = {"real.": [], "real.unblended.": [], "real.recording.": []}
+    found: dict[str, list] = {}
     sources = []
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # notes on the files
         for window in windows(size, walker.card["control_range"]):
             sources.append(window.source)
-            rows = [row_of(window, made) for made in continued(walker, window)]
-            for one, row in zip(found, (*rows, row_of_recording(window)), strict=True):
-                found[one].append(row)
+            rows = {one: row_of(window, made) for one, made in continued(walker, window).items()}
+            for one, row in (rows | {"real.recording.": row_of_recording(window)}).items():
+                found.setdefault(one, []).append(row)
     seeds = {"windows": len(sources)} | amounts(sources) | {"sampling": 0, "steps": STEPS}
     seeds |= {"weights": weights}
     records = []

@@ -6,6 +6,7 @@ from .trainings import VARIANTS
 # the beginnings of names
 STARTS = {
     "as shipped": "real.",
+    "dragged feet as they are": "real.dragged.",
     "as the network has it": "real.unblended.",
     "the recording itself": "real.recording.",
 }
