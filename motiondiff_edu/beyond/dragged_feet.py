@@ -1,8 +1,9 @@
 """A foot that is dragged over the floor is lifted, and so takes a step.
 
 A continuation that is blended into a walk brings each foot to where the walk has it, by decimetres
-and at the floor. The foot lock leaves such a foot alone, since it does not stand. Of two feet that
-are dragged at once the one with the longer way is lifted, so that the figure does not float.
+and at the floor; so does an in-between that is not sure when the foot steps. The foot lock leaves
+such a foot alone, since it does not stand. Of two feet that are dragged at once the one with the
+longer way is lifted, so that the figure does not float.
 Gain: docs/RESULTS.md, *On recordings* (`real.continuation_skating_mps` beside
 `real.dragged.continuation_skating_mps`).
 Source: the ankle's arc over a step; bones keep their lengths (`motion/inverse_kinematics.py`)

@@ -14,6 +14,7 @@ from torch import Tensor
 
 from ..beyond.above_floor import feet_above_floor, lowest_given
 from ..beyond.constant_bones import Lengths, steady_bones
+from ..beyond.dragged_feet import lift_dragged_feet
 from ..beyond.foot_lock import steady_feet
 from ..beyond.guidance import blended, guided
 from ..beyond.kept_places import kept_places
@@ -49,7 +50,7 @@ class Departures:
     same place stays there (`beyond.kept_places`).
     `clearance`: planted feet lie on the floor, y = 0, and swinging ones are higher
     (`beyond.step_clearance`); none is lower than the floor and all given joints
-    (`beyond.above_floor`).
+    (`beyond.above_floor`), and one that is dragged takes a step (`beyond.dragged_feet`).
     `remainder`: times what such a network adds to the lines; below 1 the result is nearer to them.
     `resample`: how often each step is made (`inbetweening.resampled`).
     """
@@ -148,8 +149,8 @@ def finished(
         made = steady_feet(kept_places(made, given, known), known)
     if departures.clearance:
         lowest = lowest_given(given, known)
-        steps = [clear_steps(one, known) for one in made]
-        made = np.stack([feet_above_floor(one, known, lowest) for one in steps])
+        steps = [feet_above_floor(clear_steps(one, known), known, lowest) for one in made]
+        made = np.stack([lift_dragged_feet(one, known, floor=lowest) for one in steps])
     return made
 
 
