@@ -2,8 +2,8 @@
 
 A continuation that is blended into a walk brings each foot to where the walk has it, by decimetres
 and at the floor; so does an in-between that is not sure when the foot steps. The foot lock leaves
-such a foot alone, since it does not stand. Of two feet that are dragged at once the one with the
-longer way is lifted, so that the figure does not float.
+such a foot alone, since it does not stand. Where both feet are dragged at once, the figure glides
+and none is lifted: it would float.
 Gain: docs/RESULTS.md, *On recordings* (`real.continuation_skating_mps` beside
 `real.dragged.continuation_skating_mps`).
 Source: the ankle's arc over a step; bones keep their lengths (`motion/inverse_kinematics.py`)
@@ -46,11 +46,13 @@ def lift_dragged_feet(
     Legs with a known joint stay as they are, and bones keep their lengths.
     """
     moved = np.array(positions, np.float64)
-    lifted = np.zeros((len(moved), 2), bool)
-    for drag in sorted(drags(moved, known, fps, floor), key=lambda one: -one.way[-1]):
-        if lifted[drag.frames, 1 - drag.side].any():
+    found = list(drags(moved, known, fps, floor))
+    dragged = np.zeros((len(moved), 2), bool)
+    for drag in found:
+        dragged[drag.frames, drag.side] = True
+    for drag in found:
+        if dragged[drag.frames, 1 - drag.side].any():
             continue
-        lifted[drag.frames, drag.side] = True
         toe, heel, step = TOES[drag.side], HEELS[drag.side], moved[drag.frames]
         height = np.clip(RISE * drag.way[-1], LEAST, MOST)
         height = floor + height * np.sin(np.pi * drag.way / drag.way[-1])
