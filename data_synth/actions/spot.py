@@ -57,7 +57,7 @@ class Timed:
 
 def squat(p: Sheet, at: float, period: float, act: Act) -> None:
     """Down with the arms ahead, and up again."""
-    depth = float(p.rng.uniform(0.30, 0.40))
+    depth = float(p.rng.uniform(0.28, 0.36))
     low, high = at + 0.46 * period, at + 0.95 * period
     p.key("drop", (at + 0.04, 0.015), (low, depth), (high, 0.015))
     p.key("surge", (at + 0.04, 0.0), (low, -0.05), (high, 0.0))
@@ -125,7 +125,7 @@ def on_the_floor(act: Act, period: float) -> float:
 
 def sit(p: Sheet, at: float, period: float, act: Act) -> None:
     """Down to a chair's height, upright there for a moment, and up again."""
-    seat = float(p.rng.uniform(0.42, 0.45))
+    seat = float(p.rng.uniform(0.38, 0.41))
     down = at + 0.36 * period
     rise = at + 0.62 * period
     up = at + 0.97 * period
