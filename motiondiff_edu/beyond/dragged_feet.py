@@ -22,8 +22,11 @@ from ..motion.skeleton import HEELS, TOES
 from .foot_lock import free_legs
 
 # a dragged toe is lower than this over the floor (m), faster than this (m/s), and goes so far (m)
-LOW, FAST, FAR = 0.015, 0.2, 0.1
-RISE, LEAST, MOST = 0.15, 0.03, 0.06  # the height of a step: a share of its length, from 3 to 6 cm
+LOW = 0.015
+FAST = 0.2
+FAR = 0.1
+RISE = 0.15  # the height of a step, as a share of its length
+LEAST, MOST = 0.03, 0.06  # metres
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,7 +56,8 @@ def lift_dragged_feet(
     for drag in found:
         if dragged[drag.frames, 1 - drag.side].any():
             continue
-        toe, heel, step = TOES[drag.side], HEELS[drag.side], moved[drag.frames]
+        toe, heel = TOES[drag.side], HEELS[drag.side]
+        step = moved[drag.frames]
         height = np.clip(RISE * drag.way[-1], LEAST, MOST)
         height = floor + height * np.sin(np.pi * drag.way / drag.way[-1])
         up = np.maximum(height - step[:, toe, 1], 0)[:, None] * UP
