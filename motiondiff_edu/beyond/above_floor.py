@@ -11,7 +11,7 @@ import numpy as np
 from jaxtyping import Bool, Float
 
 from ..motion.directions import UP
-from ..motion.inverse_kinematics import ankles_dragged
+from ..motion.inverse_kinematics import ankles_moved
 from ..motion.skeleton import HEELS, TOES
 from .foot_lock import free_legs
 
@@ -26,7 +26,7 @@ def feet_above_floor(
     for toe, heel in zip(TOES, HEELS, strict=True):
         depth = floor - moved[:, [heel, toe], 1].min(1)
         at = free_legs(known, heel, toe) & (depth > 0)
-        moved[at] = ankles_dragged(moved[at], heel, moved[at, heel] + depth[at, None] * UP)
+        moved[at] = ankles_moved(moved[at], heel, depth[at, None] * UP)
     return moved
 
 

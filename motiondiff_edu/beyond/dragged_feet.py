@@ -16,7 +16,7 @@ import numpy as np
 from jaxtyping import Bool, Float
 
 from ..motion.directions import UP
-from ..motion.inverse_kinematics import ankles_dragged
+from ..motion.inverse_kinematics import ankles_moved
 from ..motion.planting import runs
 from ..motion.skeleton import HEELS, TOES
 from .foot_lock import free_legs
@@ -60,8 +60,8 @@ def lift_dragged_feet(
         step = moved[drag.frames]
         height = np.clip(RISE * drag.way[-1], LEAST, MOST)
         height = floor + height * np.sin(np.pi * drag.way / drag.way[-1])
-        up = np.maximum(height - step[:, toe, 1], 0)[:, None] * UP
-        moved[drag.frames] = ankles_dragged(step, heel, step[:, heel] + up)
+        up = np.maximum(height - step[:, toe, 1], 0)
+        moved[drag.frames] = ankles_moved(step, heel, up[:, None] * UP)
     return moved
 
 

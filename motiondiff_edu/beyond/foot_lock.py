@@ -11,7 +11,7 @@ import scipy
 from jaxtyping import Bool, Float
 
 from ..motion.dance_frame import GROUND
-from ..motion.inverse_kinematics import ankles_dragged
+from ..motion.inverse_kinematics import ankles_moved
 from ..motion.planting import runs
 from ..motion.skeleton import HEELS, HIPS, TOES
 
@@ -46,7 +46,7 @@ def steady_feet(
             still = stands(moved[:, toe], fps, slow_for(moved, fps), low)
             shift = to_stands(moved[:, toe], ~free, still, farthest)
             at = free & shift.any(1)
-            moved[at] = ankles_dragged(moved[at], heel, moved[at, heel] + shift[at])
+            moved[at] = ankles_moved(moved[at], heel, shift[at])
     return np.where(known[..., None], positions, every.reshape(positions.shape))
 
 

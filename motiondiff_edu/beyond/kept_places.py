@@ -13,7 +13,7 @@ from itertools import pairwise
 import numpy as np
 from jaxtyping import Bool, Float
 
-from ..motion.inverse_kinematics import ankles_dragged
+from ..motion.inverse_kinematics import ankles_moved
 from ..motion.skeleton import HEELS, TOES
 from .foot_lock import free_legs
 
@@ -32,8 +32,7 @@ def kept_places(
         place, stays = lines_between_plants(given[:, toe], known[:, toe])
         at = stays & free_legs(known, heel, toe)
         for moved in every if at.any() else ():
-            shift = place[at] - moved[at, toe]
-            moved[at] = ankles_dragged(moved[at], heel, moved[at, heel] + shift)
+            moved[at] = ankles_moved(moved[at], heel, place[at] - moved[at, toe])
     return np.where(known[..., None], positions, every.reshape(positions.shape))
 
 

@@ -12,7 +12,7 @@ import numpy as np
 from jaxtyping import Bool, Float
 
 from ..motion.directions import UP
-from ..motion.inverse_kinematics import ankles_dragged
+from ..motion.inverse_kinematics import ankles_moved
 from ..motion.planting import runs
 from ..motion.skeleton import HEELS, TOES
 from .foot_lock import between_anchors, closeness, free_legs, slow_for, stands
@@ -38,7 +38,7 @@ def clear_steps(
         standing = stands(moved[:, toe], fps, slow_for(moved, fps))
         lift = height_over(moved[:, toe], standing, ~free, floor) - moved[:, toe, 1]
         at = free & (np.abs(lift) > 1e-9)
-        moved[at] = ankles_dragged(moved[at], heel, moved[at, heel] + lift[at, None] * UP)
+        moved[at] = ankles_moved(moved[at], heel, lift[at, None] * UP)
     return moved
 
 

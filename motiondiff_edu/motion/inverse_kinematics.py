@@ -153,6 +153,13 @@ def ankles_dragged(
     return moved
 
 
+def ankles_moved(
+    poses: Float[np.ndarray, "T 21 3"], heel: int, by: Float[np.ndarray, "T 3"]
+) -> Float[np.ndarray, "T 21 3"]:
+    """The same, by so much (metres) from where each ankle is."""
+    return ankles_dragged(poses, heel, poses[:, heel] + by)
+
+
 def towed(
     limb: Float[np.ndarray, "4 3"], target: Point, bends: Float[np.ndarray, "2 3"]
 ) -> Float[np.ndarray, "4 3"]:

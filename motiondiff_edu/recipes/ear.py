@@ -3,7 +3,6 @@
 Ours; see `beyond.hearing`.
 """
 
-import copy
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -129,11 +128,8 @@ def ear_within(dancer: Dancer) -> TrainedEar:
     """
     if not isinstance(dancer.model, WithEar):
         raise ValueError(f"{type(dancer.model).__name__} has no ear that another dancer could use")
-    return TrainedEar(
-        copy.deepcopy(dancer.model.ear),
-        dancer.mel_scaler,
-        dancer.card["ear"] | {"taken_over": True},
-    )
+    card = dancer.card["ear"] | {"taken_over": True}
+    return TrainedEar(dancer.model.ear, dancer.mel_scaler, card)
 
 
 def ear_of(recipe: EarRecipe, folder: Path, log=print) -> TrainedEar:

@@ -6,7 +6,7 @@ import pytest
 from data_synth.walking import walk
 from motiondiff_edu.beyond.dragged_feet import FAR, FAST, LEAST, LOW, MOST, RISE, lift_dragged_feet
 from motiondiff_edu.metrics.bone_lengths import bone_lengths
-from motiondiff_edu.motion.inverse_kinematics import ankles_dragged
+from motiondiff_edu.motion.inverse_kinematics import ankles_moved
 from motiondiff_edu.motion.skeleton import HEELS, TOES
 
 LEFT, RIGHT = TOES
@@ -22,7 +22,7 @@ def standing():
     still = np.repeat(pose[None], 30, 0)
     for toe, heel in zip(TOES, HEELS, strict=True):
         up = np.array([0.0, 1.0, 0.0]) * -still[:, toe, 1][:, None]
-        still = ankles_dragged(still, heel, still[:, heel] + up)
+        still = ankles_moved(still, heel, up)
     return still
 
 
@@ -33,7 +33,7 @@ def dragged(still, ways: dict, first=10, frames=10):
     for toe, way in ways.items():
         heel = HEELS[TOES.index(toe)]
         aside = np.array([0.0, 0.0, 1.0]) * way * share[:, None]
-        moved = ankles_dragged(moved, heel, moved[:, heel] + aside)
+        moved = ankles_moved(moved, heel, aside)
     return moved
 
 

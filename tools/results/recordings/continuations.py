@@ -24,8 +24,8 @@ from motiondiff_edu.motion.root_frame import (
     to_root_frame,
 )
 from motiondiff_edu.motion.skeleton import J
-from motiondiff_edu.performers.finished import held_continuation
-from motiondiff_edu.performers.joined import JUMP, Start, blended, joined
+from motiondiff_edu.performers.finished import finished_continuation, held_continuation
+from motiondiff_edu.performers.joined import JUMP, Start, blended
 from motiondiff_edu.performers.performer import generators
 from motiondiff_edu.performers.walker import STEPS, Walker
 
@@ -73,10 +73,9 @@ def continued(walker: Walker, window: Window) -> dict[str, Continued]:
     new = rollout.generate(walker, past[None], steer[None], generator=generators(0, 1), steps=STEPS)
     poses, path = new[0].double().numpy().reshape(-1, J, 3), start.path[T_h:]
     whole, known, _ = blended(start, poses)
-    held = held_continuation(whole, FPS, known)
     worlds = {
-        "real.": joined(start, poses)[0],
-        "real.dragged.": held[-len(poses) :],
+        "real.": finished_continuation(whole, FPS, known)[-len(poses) :],
+        "real.dragged.": held_continuation(whole, FPS, known)[-len(poses) :],
         "real.unblended.": start.in_world(poses),
     }
     return {name: Continued(world, path) for name, world in worlds.items()}
