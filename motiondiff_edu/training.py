@@ -14,6 +14,7 @@ import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
+from itertools import compress
 from typing import Any
 
 import torch
@@ -162,10 +163,12 @@ def _evaluating_after(model: nn.Module) -> Iterator[None]:
 def _follow(state: TrainState) -> None:
     """average <- decay average + (1 - decay) model, with a shorter memory at the start."""
     decay = min(state.decay, (1 + state.step) / (10 + state.step))
-    for mean, new in zip(
-        state.average.state_dict().values(), state.model.state_dict().values(), strict=True
-    ):
-        mean.lerp_(new, 1 - decay) if mean.is_floating_point() else mean.copy_(new)
+    means, news = (list(one.state_dict().values()) for one in (state.average, state.model))
+    floats = [mean.is_floating_point() for mean in means]
+    torch._foreach_lerp_([*compress(means, floats)], [*compress(news, floats)], 1 - decay)
+    for mean, new, is_float in zip(means, news, floats, strict=True):
+        if not is_float:
+            mean.copy_(new)
 
 
 def _stop(state: TrainState, loss: float, norm: float, rate: float, save: Saving | None) -> None:

@@ -36,16 +36,28 @@ class Muon(torch.optim.Optimizer):
 
     @torch.no_grad()
     def step(self) -> None:
-        """One step against the gradients; parameters without a gradient do not change."""
+        """One step against the gradients; parameters without a gradient do not change.
+
+        Matrices of one shape are whitened together: a GPU then has a tenth of the launches.
+        """
         for group in self.param_groups:
+            alike: dict[torch.Size, list[nn.Parameter]] = {}
             for matrix in (p for p in group["params"] if p.grad is not None):
-                mean = self.state[matrix].setdefault("momentum_buffer", torch.zeros_like(matrix))
-                mean.lerp_(matrix.grad, 1 - group["momentum"])
-                ahead = matrix.grad.lerp(mean, group["momentum"])  # Nesterov's momentum
-                matrix.add_(whitened(ahead), alpha=-0.2 * max(matrix.shape) ** 0.5 * group["lr"])
+                alike.setdefault(matrix.shape, []).append(matrix)
+            for shape, matrices in alike.items():
+                means = [
+                    self.state[p].setdefault("momentum_buffer", torch.zeros_like(p))
+                    for p in matrices
+                ]
+                gradients = [p.grad for p in matrices]
+                torch._foreach_lerp_(means, gradients, 1 - group["momentum"])
+                ahead = torch.stack(gradients).lerp(torch.stack(means), group["momentum"])
+                step = whitened(ahead).unbind()  # of Nesterov's momentum
+                size = 0.2 * max(shape) ** 0.5 * group["lr"]
+                torch._foreach_add_(matrices, step, alpha=-size)
 
 
-def whitened(matrix: Float[Tensor, "m n"], steps: int = 5) -> Float[Tensor, "m n"]:
+def whitened(matrix: Float[Tensor, "*k m n"], steps: int = 5) -> Float[Tensor, "*k m n"]:
     """Approximately the nearest matrix whose singular values are all one; they become .7 to 1.2.
 
     Each singular value x becomes a x + b x^3 + c x^5, five times. Jordan chose the three numbers
@@ -54,12 +66,13 @@ def whitened(matrix: Float[Tensor, "m n"], steps: int = 5) -> Float[Tensor, "m n
     a = 3.4445
     b = -4.7750
     c = 2.0315
-    wide = matrix.mT if matrix.shape[0] > matrix.shape[1] else matrix
-    x = wide / wide.norm().clamp_min(1e-7)
+    tall = matrix.shape[-2] > matrix.shape[-1]
+    wide = (matrix.mT if tall else matrix).reshape(-1, *sorted(matrix.shape[-2:]))
+    x = wide / wide.norm(dim=(-2, -1), keepdim=True).clamp_min(1e-7)
     for _ in range(steps):
         square = x @ x.mT
-        x = torch.addmm(x, torch.addmm(square, square, square, beta=b, alpha=c), x, beta=a)
-    return x.mT if matrix.shape[0] > matrix.shape[1] else x
+        x = torch.baddbmm(x, torch.baddbmm(square, square, square, beta=b, alpha=c), x, beta=a)
+    return (x.mT if tall else x).reshape(matrix.shape)
 
 
 class MuonAndAdam:
