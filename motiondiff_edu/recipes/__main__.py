@@ -28,6 +28,8 @@ from .walkers import PAIRS, RECIPES, SHIPPED
 
 ALL = RECIPES | DANCE_RECIPES | MOVER_RECIPES | JUDGES
 EIGHT_BITS = {
+    "dancer",
+    "dancer-plain",
     "inbetweens",
     "mover",
     "regression",
