@@ -1,8 +1,7 @@
 """Trainings on a GPU: a loss moves all of its batch to the network's device, and stays there.
 
 The meta device stands in for a GPU. It has no values, but it refuses to mix its tensors with those
-of the CPU, as a GPU does. Walkers and judges look at values,
-so they are not tried.
+of the CPU, as a GPU does. Walkers and judges look at values, so they are not tried.
 """
 
 from dataclasses import replace
