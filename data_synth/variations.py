@@ -12,8 +12,9 @@ from jaxtyping import Float
 
 from motiondiff_edu.motion.dance_frame import GROUND, Place, facing
 from motiondiff_edu.motion.directions import UPLEGS, unit
+from motiondiff_edu.motion.inverse_kinematics import descendants
 from motiondiff_edu.motion.planting import needed_drop, on_feet, pelvis_ahead
-from motiondiff_edu.motion.skeleton import HEELS, HIPS, PARENTS, J, joint_index
+from motiondiff_edu.motion.skeleton import HEELS, HIPS, J, joint_index
 
 from .levels import LEGS, wave
 from .warps import drawn
@@ -41,7 +42,7 @@ def limbs_turned(
     moved = place.enter(positions[:, None])[:, 0]
     for name, most in TURNS.items():
         joint, turn = joint_index(name), drawn_turn(len(positions), most, rng, fps)
-        for below in below_of(joint):
+        for below in descendants(joint):
             moved[:, below] = moved[:, joint] + turn.apply(moved[:, below] - moved[:, joint])
     return place.leave(moved[:, None])[:, 0]
 
@@ -103,12 +104,3 @@ def with_upper_body_of(
 def place_of(positions: Float[np.ndarray, "T 21 3"]) -> Place:
     """A place for each frame, as if each were a motion: below the pelvis, facing as it does."""
     return Place(positions[:, HIPS] * GROUND, facing(positions))
-
-
-def below_of(joint: int) -> list[int]:
-    """All joints that hang on this one."""
-    found = [joint]
-    for other in range(joint + 1, J):
-        if PARENTS[other] in found:
-            found.append(other)
-    return found[1:]

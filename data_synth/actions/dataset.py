@@ -6,9 +6,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from motiondiff_edu.motion import dance_frame
+from motiondiff_edu.performers.described_windows import exchanged_sides
 
 from .acts import Phrase, Sentence, mirrored
-from .captions import caption, exchanged
+from .captions import caption
 from .performance import Acted, act_out
 from .sentences import draw, in_training
 
@@ -61,13 +62,17 @@ def worded(
 def mirror(clip: Described) -> Described:
     """Left and right exchanged in motion, truth and words."""
     acted = clip.acted
-    positions = dance_frame.mirror(acted.positions)
+    positions, contacts = dance_frame.mirror(acted.positions), acted.contacts[:, ::-1].copy()
     sentence = mirrored_sentence(acted.sentence)
     spans = tuple(replace(span, act=mirrored(span.act)) for span in acted.spans)
     turned = replace(
-        acted, positions=positions, contacts=acted.contacts[:, ::-1], spans=spans, sentence=sentence
+        acted,
+        positions=positions,
+        contacts=acted.contacts[:, ::-1].copy(),
+        spans=spans,
+        sentence=sentence,
     )
-    return Described(turned, tuple(exchanged(text) for text in clip.captions))
+    return Described(turned, tuple(exchanged_sides(text) for text in clip.captions))
 
 
 def mirrored_sentence(sentence: Sentence) -> Sentence:

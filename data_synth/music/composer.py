@@ -9,6 +9,7 @@ The order is like a musician's: a form (form.py), a groove (grooves.py), harmony
 from collections.abc import Iterator
 
 import numpy as np
+from jaxtyping import Float
 
 from .form import GROUPS, draw_form, energies
 from .grooves import groove_of, write_drums
@@ -89,7 +90,7 @@ def compose(
         bar_position=inside % metre,
         phrase=phrase - phrase[0],
         energy=energies(form, strength)[inside],
-        hits=_hits(played, len(audio) / SAMPLE_RATE),
+        hits=strokes(played, len(audio) / SAMPLE_RATE),
         genre=genre,
         tempo=float(mean),
         metre=metre,
@@ -115,7 +116,7 @@ def _chosen(genre, tempo, metre, timbre, rng: np.random.Generator) -> tuple[str,
     )
 
 
-def _hits(played: Played, seconds: float) -> dict[str, np.ndarray]:
+def strokes(played: Played, seconds: float) -> dict[str, Float[np.ndarray, "_"]]:
     """Times of each drum's strokes within the song, in seconds."""
     names = np.array([hit.drum for hit in played.hits])
     sounds = (played.seconds >= 0) & (played.seconds < seconds)

@@ -15,7 +15,7 @@ import numpy as np
 from jaxtyping import Float
 
 from .bands import Band, draw_band
-from .composer import LONGEST, SHORTEST, SONGS_A_SEED
+from .composer import LONGEST, SHORTEST, SONGS_A_SEED, strokes
 from .feels import Feel, draw_feel, without_some
 from .form import LEAD, Form, draw_form, energies
 from .grooves import Hit, write_drums
@@ -30,7 +30,7 @@ from .pauses import (
     sounding,
     stretched,
 )
-from .song import DRUMS, GENRES, SAMPLE_RATE, Song
+from .song import GENRES, SAMPLE_RATE, Song
 from .tempi import (
     RITARDANDO,
     SLOWER,
@@ -109,7 +109,7 @@ def varied_song(seed: int, seconds: float = 20.0, variety: Variety = VARIED) -> 
         bar_position=inside % form.metre,
         phrase=np.unique([bar.phrase for bar in bars], return_inverse=True)[1],
         energy=energies(form, strength)[inside],
-        hits=_strokes(played, seconds),
+        hits=strokes(played, seconds),
         genre=genre,
         tempo=tempo,
         metre=form.metre,
@@ -266,13 +266,6 @@ def mixed(
     y[:edge] *= np.linspace(0, 1, edge)
     y[len(y) - edge :] *= np.linspace(1, 0, edge)
     return (0.9 * y / max(np.abs(y).max(), 1e-9)).astype(np.float32)
-
-
-def _strokes(played: Played, seconds: float) -> dict[str, Float[np.ndarray, "_"]]:
-    """Times of each drum's strokes within the song, in seconds."""
-    names = np.array([hit.drum for hit in played.hits])
-    heard = (played.seconds >= 0) & (played.seconds < seconds)
-    return {drum: np.sort(played.seconds[heard & (names == drum)]) for drum in DRUMS}
 
 
 def _silences(form: Form, music: np.ndarray, seconds: float) -> list[tuple[float, float]]:

@@ -36,7 +36,7 @@ def steady_feet(
     median place, or where it is given. Between stands the correction is interpolated smoothly; it
     is zero where the foot is given. An ankle out of the leg's reach slides as little as possible.
     A toe that slides farther than `farthest` metres from its place does not stand, but glides: it
-    is left alone, since a held foot would drag its leg out behind the body. A toe is low if it is
+    is not held, since a held foot would drag its leg out behind the body. A toe is low if it is
     less than `low` metres over its floor; in steps that are lifted less, the foot would be held.
     """
     every = np.array(positions, np.float64).reshape(-1, *positions.shape[-3:])

@@ -106,7 +106,7 @@ def augmented(
         return torch.rand(*shape, generator=generator)
 
     shift = how.higher * (2 * drawn(B, 1, 1) - 1)
-    mel = between(mel.mT, torch.arange(C) + shift[:, 0]).mT
+    mel = interpolated_rows(mel.mT, torch.arange(C) + shift[:, 0]).mT
     most, share = how.noise
     amount = most * drawn(B, 1, 1) * (drawn(B, 1, 1) < share)
     mel = mel + amount * torch.randn(mel.shape, generator=generator)
@@ -118,7 +118,9 @@ def augmented(
     return mel.where(~hidden[:, None], SILENT)
 
 
-def between(rows: Float[Tensor, "B M C"], at: Float[Tensor, "B N"]) -> Float[Tensor, "B N C"]:
+def interpolated_rows(
+    rows: Float[Tensor, "B M C"], at: Float[Tensor, "B N"]
+) -> Float[Tensor, "B N C"]:
     """Rows at places between whole numbers, on straight lines; beyond the ends, the end's row."""
     at = at.clamp(0, rows.shape[1] - 1)
     low = at.floor().long().clamp(max=max(rows.shape[1] - 2, 0))

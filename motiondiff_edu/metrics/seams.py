@@ -32,8 +32,24 @@ def seam_over_motion(
     return float(speeds[seam - 1] / max(around.max(), 1e-9))
 
 
+def seam_step(positions: Float[np.ndarray, "T J 3"], seam: int) -> float:
+    """How much farther a joint goes at the seam than in the two frames before and after it, metres.
+
+    The largest over joints. A hand that jumps while a foot swings is seen here, and not by
+    `seam_over_motion`. Raises ValueError as `seam_over_motion` does.
+    """
+    steps = _steps(positions, seam)
+    beside = np.concatenate([steps[max(0, seam - 3) : seam - 1], steps[seam : seam + 2]])
+    return float((steps[seam - 1] - beside.max(0)).max())
+
+
 def _fastest(positions, seam: int) -> Float[np.ndarray, "n"]:
     """The fastest joint from each frame to the next, in metres a frame."""
+    return _steps(positions, seam).max(-1)
+
+
+def _steps(positions, seam: int) -> Float[np.ndarray, "n J"]:
+    """How far each joint goes from each frame to the next, metres."""
     if not 2 <= seam < len(positions) - 1:
         raise ValueError(f"the seam must be from 2 to {len(positions) - 2}, not {seam}")
-    return np.linalg.norm(np.diff(positions, axis=0), axis=-1).max(-1)
+    return np.linalg.norm(np.diff(positions, axis=0), axis=-1)

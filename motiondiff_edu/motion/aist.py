@@ -109,6 +109,15 @@ def tempo_of(name: str) -> float | None:
     return start + step * int(music[2])
 
 
+def _short(value: object) -> str:
+    """A value of a file in a message: a text, or else its type, for it may be endless to print."""
+    return repr(value[:20]) if isinstance(value, str) else type(value).__name__
+
+
+def _named(key: object) -> str:
+    return key[:80] if isinstance(key, str) else _short(key)
+
+
 class _Step:
     """A function that a pickle may call and cannot change."""
 
@@ -129,13 +138,13 @@ class _Numbers:
 
     def __init__(self, code, *how):
         if not (isinstance(code, str) and re.fullmatch(r"[fiub][1248]", code)):
-            raise AistError(f"it has an array of {code!r}, not of numbers")
+            raise AistError(f"it has an array of {_short(code)}, not of numbers")
         self.code = code
 
     def __setstate__(self, state):
         order = state[1]
         if order not in ("<", ">", "|", "="):
-            raise AistError(f"it has numbers with the byte order {order!r}")
+            raise AistError(f"it has numbers with the byte order {_short(order)}")
         self.code = order + self.code
 
 
@@ -168,14 +177,14 @@ class _Array:
             raise AistError("it has an array that is not made of a shape and of numbers")
         numbers = np.dtype(dtype.code)
         if math.prod(shape) * numbers.itemsize != len(raw):
-            raise AistError(f"it has an array of shape {shape} in {len(raw)} bytes")
+            raise AistError(f"it has an array whose shape does not fit its {len(raw)} bytes")
         return np.frombuffer(raw, numbers).reshape(shape, order="F" if fortran else "C")
 
 
 def _encode(text: str, encoding: str) -> bytes:
     """Replaces `_codecs.encode`, which pickles of Python 2 use for their bytes."""
     if encoding not in ("latin1", "latin-1"):
-        raise AistError(f"it uses the codec {encoding!r}, and only latin1 is needed")
+        raise AistError(f"it uses the codec {_short(encoding)}, and only latin1 is needed")
     return text.encode("latin1")
 
 
@@ -233,7 +242,7 @@ def _describe_npy(raw: bytes) -> str:
 
 def _array(content, key: str, name: str) -> Float[np.ndarray, "T 17 3"]:
     if not isinstance(content, dict) or key not in content:
-        holds = ", ".join(map(str, content)) if isinstance(content, dict) else ""
+        holds = ", ".join(map(_named, content)) if isinstance(content, dict) else ""
         holds = f"{holds:.200}" or type(content).__name__
         hint = (
             " These are joint angles: take the file of that name in keypoints3d."

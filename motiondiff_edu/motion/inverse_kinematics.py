@@ -39,7 +39,7 @@ def drag(pose: Pose, joint: int, target: Point) -> Pose:
     """
     if not 0 <= joint < J:
         raise IndexError(f"joint {joint} is not one of the skeleton's {J} (0 to {J - 1})")
-    check_finite(joint, target)
+    check_target(joint, target)
     if joint in PELVIS:
         return pelvis_moved(pose, target - pose[joint])
     if joint in HEELS:
@@ -56,7 +56,7 @@ def drag(pose: Pose, joint: int, target: Point) -> Pose:
     return carried(pose, chain, solve(pose[chain], target, bends))
 
 
-def check_finite(joint: int, target: Float[np.ndarray, "*T 3"]) -> None:
+def check_target(joint: int, target: Float[np.ndarray, "*T 3"]) -> None:
     """Raise ValueError for a target of this joint that is not finite; the first one is named."""
     bad = target[~np.isfinite(target).all(-1)]
     if bad.size:
@@ -141,7 +141,7 @@ def ankles_dragged(
 
     Raises ValueError for a target that is not finite.
     """
-    check_finite(heel, targets)
+    check_target(heel, targets)
     if not len(poses):
         return np.array(poses)
     chain = chain_to(heel)

@@ -19,6 +19,7 @@ from .skeleton import HEELS, JOINTS, TOES, joint_index
 LEG = 0.835  # m, thigh plus shank of the course's figure
 SLOW = 0.35  # m/s, a toe slower than this is taken as standing
 STEEPEST = 0.06  # a larger slope of the floor is not a fault of the capture, and is kept
+POINTED = 0.3  # feet with a smaller share of their length across the body point along it
 FLIP_X = np.array([-1.0, 1.0, 1.0])  # positions seen in a mirror
 
 
@@ -95,15 +96,20 @@ def rotate_y_up(points: Float[np.ndarray, "... 3"], up: str) -> Float[np.ndarray
 def unmirror(points: Float[np.ndarray, "T 21 3"]) -> tuple[Float[np.ndarray, "T 21 3"], bool]:
     """Reflect x when left and right are exchanged; also return whether that was so.
 
-    The cross product left x up must point where the toes do.
+    The cross product left x up must point where the toes do, seen along the body. Frames in which
+    the feet point straight down tell nothing.
     """
     left = points[:, joint_index("LeftUpLeg")] - points[:, joint_index("RightUpLeg")]
-    ahead = np.cross(left, body_axis(points))
+    up = body_axis(points)
     feet = (points[:, list(TOES)] - points[:, list(HEELS)]).sum(1)
-    cosine = np.einsum("ti,ti->t", ahead, feet) / (
-        np.linalg.norm(ahead, axis=-1) * np.linalg.norm(feet, axis=-1)
+    flat = feet - np.einsum("ti,ti->t", feet, up)[:, None] * up
+    length = np.linalg.norm(flat, axis=-1)
+    seen = length > POINTED * np.linalg.norm(feet, axis=-1)  # false where the toes are unknown
+    ahead = np.cross(left, up)[seen]
+    cosine = np.einsum("ti,ti->t", ahead, flat[seen]) / (
+        np.linalg.norm(ahead, axis=-1) * length[seen]
     )
-    if not np.median(cosine) < -0.3:  # NaN where the toes are unknown
+    if not seen.any() or not np.median(cosine) < -0.3:
         return points, False
     return points * FLIP_X, True
 

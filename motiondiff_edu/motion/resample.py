@@ -35,7 +35,7 @@ def resample(
         raise ValueError(f"frame {bad} is not finite: fill it or cut it off before resampling")
     positions = np.asarray(positions, np.float64)
     if abs(fps - to) < 1e-6:
-        return positions
+        return positions.copy()
     if to < fps:
         positions = low_pass(positions, fps, CUT * to)
     count = int(np.floor((len(positions) - 1) * to / fps + 1e-6)) + 1

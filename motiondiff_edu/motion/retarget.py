@@ -216,10 +216,10 @@ def warn_sunk(
 
 def refuse_short(count: int, figure: Figure) -> None:
     """Raise BvhError for a clip that is too short to show a heading."""
-    if count / figure.fps < SHORTEST:
+    if count < 2 or count / figure.fps < SHORTEST:
         problem = (
             f"{count} frame{'s' * (count != 1)} at {figure.fps:g} frames/s last "
-            f"{count / figure.fps:.2f} s; at least {SHORTEST} s are needed."
+            f"{count / figure.fps:.2f} s; at least {SHORTEST} s and two frames are needed."
         )
         raise BvhError(f"{problem} If the frame time is wrong, {REPLACE_FPS}.", figure.source)
 

@@ -32,10 +32,11 @@ class WordMaps:
 
     def by_frame(self, frames: int) -> Float[np.ndarray, "{frames} M"]:
         """The mean over layers, for each frame of the motion."""
-        rows = [
-            weights[np.arange(frames) * len(weights) // frames] for weights in self.levels.values()
-        ]
-        return np.mean(rows, axis=0)
+        T = max(map(len, self.levels.values()))  # the first layer has a query for each frame
+        frame = np.arange(frames) * T // frames
+        strides = [2 ** round(np.log2(T / len(weights))) for weights in self.levels.values()]
+        rows = zip(self.levels.values(), strides, strict=True)
+        return np.mean([weights[frame // stride] for weights, stride in rows], axis=0)
 
 
 @torch.no_grad()
@@ -95,8 +96,10 @@ def _seen(
     x_s = q_sample(x0, s, mover.schedule, draw(x0, generator))
     with watch(mover.model) as seen:
         denoise(x_s, torch.tensor([s], device=mover.device))
-    return {
+    found = {
         name.split("unet.")[-1].removesuffix(".attention"): maps[0][0].mean(0).cpu().numpy()
         for name, maps in seen.items()
         if ".ask." in name and maps
     }
+    T, padded = x0.shape[1], max(map(len, found.values()))
+    return {name: rows[: -(-T * len(rows) // padded)] for name, rows in found.items()}

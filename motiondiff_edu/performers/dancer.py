@@ -26,7 +26,7 @@ from ..fast.twins import watched
 from ..mofusion import MoFusion, MoFusionConfig, Music
 from ..motion.checks import checked_guidance, checked_samples, checked_seconds, checked_steps
 from ..motion.dance_frame import to_positions
-from ..motion.motion import Motion
+from ..motion.motion import Motion, MotionWarning
 from ..motion.retarget import SHORTEST
 from ..motion.scaler import Scaler
 from ..prediction import denoiser_of
@@ -246,12 +246,17 @@ class Dancer(Performer):
                 f"{lasts:.3f} s of sound are too short: at least {SHORTEST} s are needed"
             )
         if seconds is not None and lasts < seconds - 1 / FPS:
-            warnings.warn(f"{name} lasts {lasts:.1f} s, and the dance ends with it", stacklevel=2)
+            warnings.warn(
+                f"{name} lasts {lasts:.1f} s, and the dance ends with it",
+                MotionWarning,
+                stacklevel=2,
+            )
         heard, peak = audio, float(audio.abs().max())
         if peak < QUIET:
             warnings.warn(
                 f"{name} is very quiet (its loudest sample is {peak:.1g} of the largest there is), "
                 "so it is danced to as if it were louder",
+                MotionWarning,
                 stacklevel=2,
             )
             heard = audio * LOUD / peak

@@ -33,12 +33,12 @@ class Heard:
     @property
     def beats(self) -> Float[np.ndarray, "K"]:
         """The times of the beats (seconds), where the place in the beat comes round to 0."""
-        return passes(self.times, self.beat, self.sounds > 0.5)
+        return crossings(self.times, self.beat, self.sounds > 0.5)
 
     @property
     def downbeats(self) -> Float[np.ndarray, "K"]:
         """The times of the first beats of bars (seconds)."""
-        return passes(self.times, self.bar, self.sounds > 0.5)
+        return crossings(self.times, self.bar, self.sounds > 0.5)
 
 
 @torch.inference_mode()
@@ -73,7 +73,7 @@ def place_of(circle: Float[Tensor, "M 2"]) -> Float[np.ndarray, "M"]:
     return np.arctan2(sine, cosine) / (2 * np.pi) % 1
 
 
-def passes(
+def crossings(
     times: Float[np.ndarray, "M"], place: Float[np.ndarray, "M"], known: np.ndarray
 ) -> Float[np.ndarray, "K"]:
     """When the place comes round to 0, on straight lines between two moments that are known.

@@ -2,8 +2,8 @@
 
 A walker that gets a pose unlike its training begins with one that it knows: a joint may move by
 half a metre from the last given frame to the first new one. Then the first half second, or more if
-a joint has far to go, takes over pose and speed of the given motion, and a warning says so. In
-every continuation bones keep the lengths of the given motion, standing feet stay where they stand,
+a joint has far to go, takes over pose and speed of the given motion. So it is in nearly all
+recordings; where a joint would jump far, a warning says so. In every continuation bones keep the lengths of the given motion, standing feet stay where they stand,
 and feet that were dragged take a step (`performers/finished.py`).
 """
 
@@ -16,19 +16,22 @@ from torch import Tensor
 
 from ..beyond.inertialize import inertialized
 from ..conditions.control import splice
-from ..metrics.seams import AROUND, seam_over_motion
+from ..metrics.seams import AROUND, seam_step
 from ..motion.motion import Motion, MotionError
 from ..motion.root_frame import FPS, root_path, to_world
 from ..motion.scaler import Scaler
 from ..motion.skeleton import JOINTS, J
 from .finished import finished_continuation
 
-JUMP = 1.1  # times the fastest joint of the second before and after: faster is a jump at the seam
+# m in a frame more than in the two frames on either side: a joint that does so at the seam jumps;
+# from a synthetic walk none goes 3 cm farther
+JUMP = 0.05
+FAR = 0.25  # m in a frame: a jump that is said
 # standard deviations of the training, over the coordinates of a joint; no frame of 120 unseen
 # synthetic walks is as far (at most 4.64)
 UNLIKE = 5.0
 NAMED = 3  # joints in a message
-SUDDEN = 2.0  # m/s within half a second; controls of the training change by 1.24 at most
+SUDDEN = 2.0  # m/s within half a second; controls of the training change by 1.4 at most
 OFF_FLOOR = 0.15  # m: a figure whose lowest joint is higher stands, sits and lies nowhere
 
 
@@ -71,7 +74,7 @@ class Start:
 def joined(
     start: Start, new: Float[np.ndarray, "T 21 3"]
 ) -> tuple[Float[np.ndarray, "T 21 3"], float]:
-    """New frames in the world, and how much faster the seam was than what is around it."""
+    """New frames in the world, and how much farther a joint stepped at the seam than beside it."""
     whole, known, jump = blended(start, new)
     return finished_continuation(whole, FPS, known)[-len(new) :], jump
 
@@ -81,7 +84,7 @@ def blended(
 ) -> tuple[Float[np.ndarray, "T2 21 3"], Bool[np.ndarray, "T2 21"], float]:
     """A second of what is given and all new frames, in the world, without a jump between them.
 
-    And which joints are given, and how much faster the seam was than what is around it.
+    And which joints are given, and how much farther a joint stepped at the seam than beside it (m).
     """
     before = start.given[-round(AROUND * FPS) - 1 :]
     k = len(before)
@@ -90,7 +93,7 @@ def blended(
         return np.concatenate([before, start.in_world(frames)])
 
     whole = placed(new)
-    jump = seam_over_motion(whole, k) if 2 <= k < len(whole) - 1 else 0.0
+    jump = seam_step(whole, k) if 2 <= k < len(whole) - 1 else 0.0
     if jump > JUMP:
         whole = placed(inertialized(start.past, new, FPS))
     known = np.zeros((len(whole), J), bool)
@@ -142,8 +145,11 @@ def in_words(
         words.append(
             f"the last pose is {height:.2f} m off the floor, and the walker comes down to it"
         )
-    if jump > JUMP:
-        words.append("the figure would jump from the last pose, so the first frames are blended")
+    if jump > FAR:
+        words.append(
+            f"a joint would jump by {100 * jump:.0f} cm from the last pose, so the first frames are "
+            "blended"
+        )
     return "; ".join(words)
 
 

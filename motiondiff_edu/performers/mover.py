@@ -21,7 +21,7 @@ from ..conditions.text import Read
 from ..conditions.word_encoder import WordReader
 from ..ddpm import Denoiser, Generators, Schedule, draw
 from ..motion.checks import checked_guidance, checked_samples, checked_seconds, checked_steps
-from ..motion.motion import Motion
+from ..motion.motion import Motion, MotionWarning
 from ..motion.moving_frame import D, to_features, to_positions
 from ..motion.root_frame import FPS
 from ..motion.scaler import Scaler
@@ -195,7 +195,7 @@ class Mover(Performer):
         else:
             found = self.reader.read(text)
             for note in found.notes:
-                warnings.warn(note, stacklevel=2)
+                warnings.warn(note, MotionWarning, stacklevel=2)
         count, steps = checked_samples(samples), checked_steps(steps, self.schedule.S)
         guidance = checked_guidance(guidance)
         if not SHORTEST <= checked_seconds(seconds) <= LONGEST:

@@ -152,7 +152,7 @@ def edit(
         raise MotionError(f"{motion.name}: everything is known, so nothing can be edited")
     count, mover = checked_samples(samples), _shipped("mover")
     for note in mover.reader.read(text).notes:
-        warnings.warn(note, stacklevel=2)
+        warnings.warn(note, MotionWarning, stacklevel=2)
     visited = by_words.visited(mover.schedule.S, by_words.STEPS, strength)
     evaluations = len(visited) + by_words.STEPS * mover.can_plan
     with with_bar(mover, evaluations, "editing", progress) as one:

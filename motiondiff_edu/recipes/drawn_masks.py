@@ -35,20 +35,20 @@ def drawn_mask(kind: str, T: int, generator: torch.Generator) -> Bool[Tensor, "T
     if kind == "keyframes":
         known[drawn_keyframes(T, generator)] = True
     elif kind == "joints":
-        joints = chance(generator, J) < float(chance(generator))
+        joints = uniform(generator, J) < float(uniform(generator))
         known[drawn_keyframes(T, generator)] = joints
         known[:, HIPS] = known.any(-1)
     elif kind == "gap":
-        length = whole(1, min(GAP, T - 2), generator)
-        first = whole(0, T - length, generator)
+        length = random_int(1, min(GAP, T - 2), generator)
+        first = random_int(0, T - length, generator)
         known[:] = True
         known[first : first + length] = False
     elif kind == "seed":
-        known[: whole(1, T // 2, generator)] = True
+        known[: random_int(1, T // 2, generator)] = True
     elif kind == "part":
-        part = list(PARTS.values())[whole(1, len(PARTS) - 1, generator)]
+        part = list(PARTS.values())[random_int(1, len(PARTS) - 1, generator)]
         known[:, [HIPS, *map(joint_index, part)]] = True
-        if float(chance(generator)) < HALF:
+        if float(uniform(generator)) < HALF:
             known[drawn_keyframes(T, generator)] = True
     return known
 
@@ -56,21 +56,21 @@ def drawn_mask(kind: str, T: int, generator: torch.Generator) -> Bool[Tensor, "T
 def drawn_keyframes(T: int, generator: torch.Generator) -> list[int]:
     """Frames at regular distances, or at irregular ones; mostly with the first and the last one."""
     widest = min(WIDEST, T - 1)
-    share = float(chance(generator))
+    share = float(uniform(generator))
     every = round(CLOSEST * (widest / CLOSEST) ** share)  # as many short distances as long ones
-    regular = float(chance(generator)) < HALF
-    frames = [whole(0, every, generator) if float(chance(generator)) < 0.2 else 0]
+    regular = float(uniform(generator)) < HALF
+    frames = [random_int(0, every, generator) if float(uniform(generator)) < 0.2 else 0]
     while frames[-1] < T:
-        frames.append(frames[-1] + (every if regular else whole(1, 2 * every, generator)))
-    last = [T - 1] if float(chance(generator)) < 0.8 else []
+        frames.append(frames[-1] + (every if regular else random_int(1, 2 * every, generator)))
+    last = [T - 1] if float(uniform(generator)) < 0.8 else []
     return sorted({frame for frame in frames if frame < T} | set(last))
 
 
-def chance(generator: torch.Generator, *shape: int) -> Tensor:
+def uniform(generator: torch.Generator, *shape: int) -> Tensor:
     """Numbers drawn evenly between 0 and 1."""
     return torch.rand(shape, generator=generator)
 
 
-def whole(low: int, high: int, generator: torch.Generator) -> int:
+def random_int(low: int, high: int, generator: torch.Generator) -> int:
     """A whole number from low to high, both included."""
     return int(torch.randint(low, high + 1, (), generator=generator))

@@ -13,7 +13,13 @@ from torch.nn import functional as F
 
 from .._files import digest_of_tensors, digest_of_texts
 from ..beyond.gain_noise import gain_noise
-from ..beyond.hearing import MelAugmentation, augmented, between, on_circles, tempo_factors
+from ..beyond.hearing import (
+    MelAugmentation,
+    augmented,
+    interpolated_rows,
+    on_circles,
+    tempo_factors,
+)
 from ..conditions.music import frame_times
 from ..motion.scaler import Scaler
 from ..performers.dancer import Dancer
@@ -66,9 +72,9 @@ def drawn_batch(
     speed = speed.where(~own, 1.0)
     first = torch.rand(len(chosen), generator=generator) * (last - speed * (M - 1))
     at = first[:, None] + speed[:, None] * torch.arange(M)
-    mel = augmented(between(songs.mel[chosen], at), how, generator)
+    mel = augmented(interpolated_rows(songs.mel[chosen], at), how, generator)
     mel = gain_noise(mel, recipe.gain_noise, generator)
-    return mel, between(songs.counts[chosen], at), songs.genres[chosen]
+    return mel, interpolated_rows(songs.counts[chosen], at), songs.genres[chosen]
 
 
 def hearing_loss(

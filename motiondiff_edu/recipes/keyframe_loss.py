@@ -22,7 +22,7 @@ from ..motion.scaler import Scaler
 from ..performers.dance_windows import DanceWindows, toes_moved
 from ..training import LossFn
 from .dancers import KeyframeRecipe
-from .drawn_masks import chance, drawn_masks
+from .drawn_masks import drawn_masks, uniform
 from .mofusion_loss import batch_loss, weighted_loss
 
 
@@ -39,9 +39,9 @@ def keyframe_loss_of(recipe: KeyframeRecipe, windows: DanceWindows, schedule: Sc
         device = next(model.parameters()).device
         motion, _, planted = windows.draw(recipe.batch, generator)
         known = drawn_masks(len(motion), windows.n, generator)
-        sizes = 1 + recipe.sizes * (2 * chance(generator, len(motion)) - 1)
-        high = (chance(generator, len(motion)) < recipe.stages) & known.flatten(1).any(1)
-        heights = high * chance(generator, len(motion))
+        sizes = 1 + recipe.sizes * (2 * uniform(generator, len(motion)) - 1)
+        high = (uniform(generator, len(motion)) < recipe.stages) & known.flatten(1).any(1)
+        heights = high * uniform(generator, len(motion))
         motion = as_seen(scaler.inverse(motion), known, sizes, heights)
         view = model.view(motion, known)
         motion = scaler.transform(view.enter(motion)).to(device)

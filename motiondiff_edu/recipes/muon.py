@@ -45,10 +45,10 @@ class Muon(torch.optim.Optimizer):
             for matrix in (p for p in group["params"] if p.grad is not None):
                 alike.setdefault(matrix.shape, []).append(matrix)
             for shape, matrices in alike.items():
-                means = [
-                    self.state[p].setdefault("momentum_buffer", torch.zeros_like(p))
-                    for p in matrices
-                ]
+                for p in matrices:
+                    if not self.state[p]:
+                        self.state[p]["momentum_buffer"] = torch.zeros_like(p)
+                means = [self.state[p]["momentum_buffer"] for p in matrices]
                 gradients = [p.grad for p in matrices]
                 torch._foreach_lerp_(means, gradients, 1 - group["momentum"])
                 ahead = torch.stack(gradients).lerp(torch.stack(means), group["momentum"])

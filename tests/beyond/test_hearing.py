@@ -13,7 +13,7 @@ from motiondiff_edu.beyond.hearing import (
     MelAugmentation,
     augmented,
     beat_counts,
-    between,
+    interpolated_rows,
     on_circles,
     tempo_factors,
 )
@@ -66,7 +66,7 @@ def test_no_song_is_heard_at_tempi_that_are_kept_out():
 def test_rows_between():
     rows = torch.tensor([[[0.0], [10.0], [30.0]]])
     at = torch.tensor([[-1.0, 0.0, 0.5, 1.25, 2.0, 7.0]])
-    assert between(rows, at).flatten().tolist() == [0, 0, 5, 15, 30, 30]
+    assert interpolated_rows(rows, at).flatten().tolist() == [0, 0, 5, 15, 30, 30]
 
 
 def test_a_song_is_heard_higher_in_noise_and_without_bands():

@@ -8,7 +8,6 @@ from data_synth.mixed import motions
 from data_synth.variations import (
     SPINE,
     UPPER,
-    below_of,
     drawn_swings,
     drawn_turn,
     limbs_turned,
@@ -17,6 +16,7 @@ from data_synth.variations import (
 )
 from motiondiff_edu.metrics.bone_lengths import bone_lengths
 from motiondiff_edu.motion.dance_frame import facing
+from motiondiff_edu.motion.inverse_kinematics import descendants
 from motiondiff_edu.motion.skeleton import HEELS, HIPS, JOINTS, TOES, J, joint_index
 
 
@@ -28,10 +28,10 @@ def two() -> list[np.ndarray]:
 
 
 def test_what_hangs_on_a_joint_is_all_of_its_limb():
-    assert [JOINTS[joint] for joint in below_of(joint_index("LeftArm"))] == [
+    assert [JOINTS[joint] for joint in descendants(joint_index("LeftArm"))] == [
         "LeftForeArm", "LeftHand", "LeftHandIndex1",
     ]  # fmt: skip
-    assert set(below_of(joint_index("Spine"))) == set(UPPER) - {joint_index("Spine")}
+    assert set(descendants(joint_index("Spine"))) == set(UPPER) - {joint_index("Spine")}
 
 
 def test_limbs_turn_and_legs_and_bones_stay(two):

@@ -11,7 +11,7 @@ from motiondiff_edu.ddpm import cosine_schedule
 from motiondiff_edu.motion.scaler import Scaler
 from motiondiff_edu.performers.dancer import Dancer
 from motiondiff_edu.performers.ear import GENRES, EarOutput
-from motiondiff_edu.performers.heard_by import as_heard, heard_by, passes, place_of
+from motiondiff_edu.performers.heard_by import as_heard, crossings, heard_by, place_of
 from motiondiff_edu.performers.hearing_mofusion import HearingConfig, HearingMoFusion
 
 TIMES = np.arange(300) * 0.064
@@ -22,14 +22,14 @@ def test_beats_of_an_even_count_come_back():
     beats = np.arange(0.31, 19, 0.47)
     count = np.interp(TIMES, beats, np.arange(len(beats)), left=np.nan, right=np.nan)
     known = ~np.isnan(count)
-    found = passes(TIMES, np.nan_to_num(count) % 1, known)
+    found = crossings(TIMES, np.nan_to_num(count) % 1, known)
     np.testing.assert_allclose(found, beats[1:-1], atol=1e-9)
 
 
 def test_a_place_that_trembles_passes_once():
     rng = np.random.default_rng(0)
     count = TIMES / 0.5 + 0.03 * rng.standard_normal(300)
-    found = passes(TIMES, count % 1, ALWAYS)
+    found = crossings(TIMES, count % 1, ALWAYS)
     assert np.diff(found).min() > 0.35
     np.testing.assert_allclose(found, 0.5 * np.round(found / 0.5), atol=0.08)
 
@@ -38,12 +38,12 @@ def test_a_place_that_trembles_across_a_beat_passes_it_once():
     count = np.linspace(0.8, 1.2, 41) + 0.03 * (-1.0) ** np.arange(41)
     times = 0.01 * np.arange(41)
     across = (np.diff(np.floor(count)) > 0).sum()
-    assert across > 2 and len(passes(times, count % 1, np.ones(41, bool))) == 1
+    assert across > 2 and len(crossings(times, count % 1, np.ones(41, bool))) == 1
 
 
 def test_no_beat_in_a_silence_and_all_after_it():
     known = (TIMES < 6) | (TIMES > 9)
-    found = passes(TIMES, (TIMES / 0.5) % 1, known)
+    found = crossings(TIMES, (TIMES / 0.5) % 1, known)
     assert not ((found > 6.1) & (found < 8.9)).any()
     np.testing.assert_allclose(found[found > 9], np.arange(9.5, 19.1, 0.5))
     assert (found < 6).sum() >= 11

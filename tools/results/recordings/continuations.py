@@ -8,14 +8,14 @@ and held feet either. The recording's own next four seconds stand beside them.
 
 import warnings
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from jaxtyping import Float
 
 from motiondiff_edu import rollout
 from motiondiff_edu.metrics.adherence import adherence
-from motiondiff_edu.metrics.seams import seam_over_motion, seam_over_past
+from motiondiff_edu.metrics.seams import seam_over_motion, seam_over_past, seam_step
 from motiondiff_edu.metrics.skating import skating
 from motiondiff_edu.motion.motion import Motion
 from motiondiff_edu.motion.root_frame import (
@@ -51,7 +51,7 @@ def windows(size: RecordedSize, range_of_control: dict) -> Iterator[Window]:
     """The beginnings of all windows; the control stays in the range."""
     given, ahead = round(GIVEN * FPS), round((SECONDS - GIVEN) * FPS)
     for source, motion in recorded(trials(), size, SECONDS):
-        past = motion[:given]
+        past = replace(motion[:given], root=None)  # that of the file knows what comes next
         speed = past.control[-round(FPS) :].mean(0)
         speed = speed.clip(range_of_control["low"], range_of_control["high"])
         yield Window(source, past, motion.positions[given:], np.tile(speed, (ahead, 1)))
@@ -90,6 +90,7 @@ def row_of(window: Window, made: Continued) -> dict[str, float]:
     return {
         "seam": seam_over_motion(whole, seam),
         "past": seam_over_past(whole, seam),
+        "step": 100 * seam_step(whole, seam),
         "bone": squared_bone_error(poses[None])[0],
         "skating": skating(poses, asked),
         "early": skating(poses[:early], asked[:early]),
@@ -106,6 +107,7 @@ def row_of_recording(window: Window) -> dict[str, float]:
     return {
         "seam": seam_over_motion(whole, seam),
         "past": seam_over_past(whole, seam),
+        "step": 100 * seam_step(whole, seam),
         "skating": skating(window.next, steer),
         "early": skating(window.next[:early], steer[:early]),
         "depth": 100 * max(0.0, -window.next[..., 1].min()),
@@ -123,6 +125,8 @@ def measures_of(rows: dict[str, np.ndarray], sources: list[str]) -> list[Measure
         "seam_p95_over_motion": ("ratio", high, "seam"),
         "seam_over_past": ("ratio", np.median, "past"),
         "seam_p95_over_past": ("ratio", high, "past"),
+        "seam_step_cm": ("cm", np.median, "step"),
+        "seam_step_p95_cm": ("cm", high, "step"),
         "continuation_bone_cm": ("cm", root_mean, "bone"),
         "continuation_skating_mps": ("m/s", np.nanmean, "skating"),
         "continuation_early_skating_mps": ("m/s", np.nanmean, "early"),
@@ -156,6 +160,6 @@ def recorded_records(walker: Walker, weights: str, size: RecordedSize, command: 
     for prefix, rows in found.items():
         columns = {name: np.array([row[name] for row in rows]) for name in rows[0]}
         records += [m.as_record(prefix, seeds, command) for m in measures_of(columns, sources)]
-    jumped = np.array([row["seam"] > JUMP for row in found["real.unblended."]])
+    jumped = np.array([row["step"] > 100 * JUMP for row in found["real.unblended."]])
     share = measure_of("blended_share", "share", np.mean, jumped)
     return [*records, share.as_record("real.", seeds, command)]

@@ -16,6 +16,9 @@ ROWS = {
     "seam_over_past": "the fastest joint at the seam, over the fastest in the second before it"
     " (median)",
     "seam_p95_over_past": "the same (95th percentile)",
+    "seam_step_cm": "how much farther a joint goes at the seam than in the two frames on either"
+    " side, cm (median)",
+    "seam_step_p95_cm": "the same (95th percentile)",
     "continuation_bone_cm": "bone error, cm",
     "continuation_skating_mps": "sliding of the planted foot, m/s",
     "continuation_early_skating_mps": "the same in the first second, m/s",
