@@ -99,10 +99,13 @@ def _run(arguments: list[str] | None) -> int:
     verb = verbs[chosen.verb]
     chosen.options = further
     if chosen.options and not getattr(verb, "PASSES_OPTIONS_ON", ""):
-        chosen.parser.error(
-            f"{chosen.verb} does not know {' '.join(chosen.options)}; a sentence or name of "
-            "several words is put into quotes"
+        unknown = [one for one in chosen.options if one.startswith("-")]
+        why = (
+            f"it has no option {unknown[0]}; --help lists those that it has"
+            if unknown
+            else "a sentence or name of several words is put into quotes"
         )
+        chosen.parser.error(f"{chosen.verb} does not know {' '.join(chosen.options)}; {why}")
     if chosen.verb in _commands.VERBS:
         return _commands.run(verb, chosen)
     try:

@@ -15,7 +15,7 @@ import motiondiff_edu as md
 from data_synth.music import compose
 from data_synth.walking import walk
 from motiondiff_edu.editing.masks import body_part
-from motiondiff_edu.motion.motion import MotionWarning
+from motiondiff_edu.motion.motion import MotionError, MotionWarning
 from motiondiff_edu.motion.skeleton import HIPS, TOES, Skeleton, joint_index
 from motiondiff_edu.pretrained import shipped
 from motiondiff_edu.widgets import motions as shown
@@ -284,9 +284,9 @@ def test_the_first_of_several_samples_is_the_sample_alone(make, walked):
     assert np.abs(second.positions - alone.positions).max() > 1e-2
 
 
-def test_a_figure_that_lies_is_told_of_before_it_is_continued(walked):
+def test_a_figure_that_lies_is_not_continued(walked):
     lying = md.Motion(walked.positions[..., [0, 2, 1]] * [1, -1, 1])
-    with pytest.warns(MotionWarning, match=r"lies along z, but y points up: try positions"):
+    with pytest.raises(MotionError, match=r"lies along z, but y points up: try positions"):
         md.load("walker").walk(lying, CONTROL[:2], progress=False)
 
 
@@ -369,7 +369,43 @@ def test_an_npz_without_a_frame_rate_or_in_centimetres_is_noted(walked, tmp_path
     with pytest.warns(MotionWarning) as notes:
         md.read_motion(tmp_path / "bare.npz")
     said = " ".join(str(note.message) for note in notes)
-    assert "no `fps`; 20 frames/s are assumed" in said and "100 times as long" in said
+    assert "no `fps`; 20 frames/s are assumed" in said and "in centimetres; they are read" in said
+    for unit, many in (("millimetres", 1000), ("inches", 39.37)):
+        np.savez(tmp_path / "other.npz", positions=many * walked.positions, fps=[20])
+        with pytest.warns(MotionWarning, match=f"are in {unit}; they are read in metres"):
+            read = md.read_motion(tmp_path / "other.npz")
+        np.testing.assert_allclose(read.positions, walked.positions, atol=1e-9)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", MotionWarning)
+        ours = md.Motion(1000 * walked.positions)
+    ours.save(tmp_path / "ours.npz")
+    with pytest.warns(MotionWarning, match=r"Millimetres\? Then pass 0.001 \* positions"):
+        md.read_motion(tmp_path / "ours.npz")
+
+
+@pytest.mark.parametrize(
+    "fps, told", [(0.05, r"fps is 0.05 .* write fps = 20"), ([20, 20], "fps must be one number")]
+)
+def test_a_rate_that_is_none_is_refused(walked, tmp_path, fps, told):
+    np.savez(tmp_path / "rate.npz", positions=walked.positions, fps=fps)
+    with pytest.raises(MotionError, match=told):
+        md.read_motion(tmp_path / "rate.npz")
+
+
+def test_frames_that_a_file_lacks_are_filled_in(walked):
+    lost = walked.positions.copy()
+    lost[8:12] = np.nan
+    lost[20, 0] = np.nan
+    motion = md.Motion(lost)
+    known = md.keyframes(motion, every=1)
+    assert known.sum(1).tolist() == [0 if t in (8, 9, 10, 11, 20) else 21 for t in range(len(lost))]
+    with pytest.raises(MotionError, match=r"md\.keyframes\(motion, every=1\)"):
+        md.reconstruct(motion, motion.known)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", MotionWarning)
+        filled = md.inbetween(motion, known, steps=2)
+    np.testing.assert_array_equal(filled.positions[known], lost[known])
+    assert np.linalg.norm(filled.positions - walked.positions, axis=-1).max() < 0.3
 
 
 def test_play_in_a_notebook_displays_a_player(walked, monkeypatch):

@@ -65,13 +65,7 @@ def mirror(clip: Described) -> Described:
     positions, contacts = dance_frame.mirror(acted.positions), acted.contacts[:, ::-1].copy()
     sentence = mirrored_sentence(acted.sentence)
     spans = tuple(replace(span, act=mirrored(span.act)) for span in acted.spans)
-    turned = replace(
-        acted,
-        positions=positions,
-        contacts=acted.contacts[:, ::-1].copy(),
-        spans=spans,
-        sentence=sentence,
-    )
+    turned = replace(acted, positions=positions, contacts=contacts, spans=spans, sentence=sentence)
     return Described(turned, tuple(exchanged_sides(text) for text in clip.captions))
 
 

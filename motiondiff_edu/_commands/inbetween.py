@@ -15,7 +15,11 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of `inbetween`."""
     parser.add_argument("file", type=Path, help="a motion: .bvh, .npz, .npy or .pkl")
     parser.add_argument(
-        "--every", type=int, default=20, metavar="N", help="a keyframe every N frames (default: 20)"
+        "--every",
+        type=int,
+        default=20,
+        metavar="N",
+        help="a keyframe every N frames (default: 20); 1 fills in the frames that the file lacks",
     )
     outputs.add_out(parser)
     outputs.add_draws(parser, "versions")

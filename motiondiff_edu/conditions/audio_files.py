@@ -231,4 +231,6 @@ def _other_kind(path: Path, error: Exception) -> str:
             "Was a web page downloaded instead of the sound?"
         )
     reason = getattr(error, "error_string", str(error)).rstrip(".")
-    return f"cannot be read as a sound file ({reason}). Save it again as wav, flac, ogg or mp3"
+    # libsndfile says this of an mp3 file in which it finds no sound
+    why = "" if "does not exist" in reason else f" ({reason})"
+    return f"cannot be read as a sound file{why}. Save it again as wav, flac, ogg or mp3"

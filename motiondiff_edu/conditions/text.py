@@ -58,6 +58,13 @@ NO_ACTS = (
     | NOUNS
     | frozenset("2 3 4 deeply fast gentle pace place quick round seat slow time".split())
 )
+_FOOT, _HAND = ("foot", "leg"), ("hand", "arm", "fist")
+LIMBS = {  # what an act is done with, and words that name something else
+    "kick": ("foot", _HAND),
+    **dict.fromkeys(("wave", "punch", "point"), ("hand", _FOOT)),
+}
+# words that may stand between an act and its limb
+BETWEEN = frozenset("with the a left right both out up forward once twice two three time".split())
 NUMBERS = frozenset("zero five six seven eight nine ten hundred".split())  # no count of training
 # words that say nothing about a movement
 PASSED_OVER = frozenset(
@@ -165,6 +172,7 @@ def read(text: str, vocabulary: Sequence[str], others: Mapping[str, str] | None 
             notes.append(f"{word!r} is read as {other!r}")
         elif word not in PASSED_OVER:
             unknown.append(word)
+    notes += wrong_limbs(found)
     if unknown:
         raise TextError(_unknown(list(dict.fromkeys(unknown)), vocabulary))
     if (phrases := 1 + found.count("then")) > MOST_PHRASES:
@@ -183,6 +191,16 @@ def read(text: str, vocabulary: Sequence[str], others: Mapping[str, str] | None 
         known = _acts(vocabulary)
         raise TextError(f"{text.strip()!r:.80} names no act: say what the figure does{known}")
     return Read(text.strip(), tuple(found), tuple(dict.fromkeys(notes)))
+
+
+def wrong_limbs(words: Sequence[str]) -> Iterator[str]:
+    """What to say of acts whose text names a limb that does not do them; none is changed."""
+    verb = ""
+    for word in words:
+        limb, others = LIMBS.get(verb, ("", ()))
+        if word in others:
+            yield f"the figure does {verb!r} with a {limb}, not with the {word}"
+        verb = word if word in LIMBS else verb if word in BETWEEN else ""
 
 
 def empty(what: str) -> TextError:

@@ -66,11 +66,15 @@ def keyframes(T: int, every: int) -> Bool[np.ndarray, "{T} J"]:
 def keyframes_of(motion: Motion | int, every: int = 20) -> Bool[np.ndarray, "T J"]:
     """The mask for a keyframe every `every` frames and at the last one: True where it is given.
 
-    Pass a motion, or its number of frames. Raises ValueError for every < 1, or no frames,
-    TypeError for anything but a motion or a number.
+    Pass a motion, or its number of frames. Joints that a motion lacks (NaN) are not given, and a
+    frame without the pelvis is not given at all: every=1 asks for the lost frames alone.
+    Raises ValueError for every < 1, or no frames, TypeError for anything but a motion or a number.
     """
     T = int(motion) if isinstance(motion, Integral) else len(as_motion(motion))
-    return keyframes(checked_count(T, "a motion's number of frames"), checked_count(every, "every"))
+    made = keyframes(checked_count(T, "a motion's number of frames"), checked_count(every, "every"))
+    if isinstance(motion, Integral) or motion.skeleton != COURSE:
+        return made
+    return made & motion.known & motion.known[:, [HIPS]]
 
 
 def checked_known(motion: Motion, known) -> Bool[np.ndarray, "T J"]:

@@ -186,7 +186,8 @@ def path_of(
     if len(lost):
         raise MotionError(
             f"the pelvis ({JOINTS[HIPS]}) is not known in frame {lost[0]} ({len(lost)} frames in "
-            f"all), but the control is derived from it. md.inbetween can generate whole frames"
+            "all), but the control is derived from it. Frames that are lost as a whole are filled "
+            "in by md.inbetween(motion, md.keyframes(motion, every=1))"
         )
     across, has_direction = np.zeros((len(positions), 3)), np.zeros(len(positions), bool)
     for left, right in (UPLEGS, ARMS):

@@ -181,10 +181,12 @@ class _Array:
         return np.frombuffer(raw, numbers).reshape(shape, order="F" if fortran else "C")
 
 
-def _encode(text: str, encoding: str) -> bytes:
+def _encode(text: object, encoding: object) -> bytes:
     """Replaces `_codecs.encode`, which pickles of Python 2 use for their bytes."""
     if encoding not in ("latin1", "latin-1"):
         raise AistError(f"it uses the codec {_short(encoding)}, and only latin1 is needed")
+    if not isinstance(text, str):
+        raise AistError(f"it encodes {_short(text)}, which is no text")
     return text.encode("latin1")
 
 

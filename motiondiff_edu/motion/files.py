@@ -6,6 +6,7 @@ Notebook: 00
 import warnings
 import zipfile
 from collections.abc import Mapping
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
@@ -24,6 +25,7 @@ from .motion import (
     MotionWarning,
     checked_path,
     lies_down,
+    unit_of,
     unlike_a_body,
 )
 from .retarget import load_clip
@@ -31,6 +33,7 @@ from .root_frame import FPS
 from .skeleton import COURSE, JOINTS, Skeleton
 
 FORMAT = "motiondiff_edu motion 1"
+SLOWEST = 1.0  # frames a second: a smaller number is the time of a frame
 LARGEST = 2_000_000_000  # bytes, unpacked: half a day of motion
 # endings of other files, and what to do with them
 ELSEWHERE = {
@@ -145,12 +148,16 @@ def read_npz(path: Path) -> Motion:
             _note(path, f"the file has no `fps`; {FPS:g} frames/s are assumed")
         if "positions" in arrays:
             motion = _from_positions(arrays, source or path.stem)
+            unit, many = unit_of(motion)
+            if unit and not {"format", "root"} & arrays.keys():
+                motion = replace(motion, positions=motion.positions / many)
+                _note(path, f"the positions are in {unit}; they are read in metres")
             words = unlike_a_body(motion) or lies_down(motion)
             if words:
                 _note(path, words)
             return motion
         if {"poses", "control"} <= arrays.keys():
-            fps = float(arrays.get("fps", FPS))
+            fps = _rate(arrays)
             poses = arrays["poses"].astype(np.float64)
             contacts = arrays.get("contacts")
             return Motion.of_clip(Clip(poses, arrays["control"], fps, contacts, source))
@@ -165,7 +172,7 @@ def read_npz(path: Path) -> Motion:
 
 def _from_positions(arrays: dict[str, np.ndarray], source: str) -> Motion:
     skeleton = COURSE
-    fps = float(arrays.get("fps", FPS))
+    fps = _rate(arrays)
     names = tuple(map(str, arrays["names"].tolist())) if "names" in arrays else JOINTS
     if names != JOINTS and "format" not in arrays:
         return motion_of_keypoints(arrays["positions"].astype(np.float64), names, fps, source)
@@ -175,6 +182,20 @@ def _from_positions(arrays: dict[str, np.ndarray], source: str) -> Motion:
     if "sample_rate" in arrays:
         along["sample_rate"] = int(arrays["sample_rate"])
     return Motion(arrays["positions"], fps, skeleton, source=source, **along)
+
+
+def _rate(arrays: dict[str, np.ndarray]) -> float:
+    """The frames a second of a file.  Raises ValueError for what is no rate of a motion."""
+    given = np.asarray(arrays.get("fps", FPS))
+    if given.size != 1:
+        raise ValueError(f"fps must be one number, not an array {given.shape}")
+    fps = float(given.reshape(()))
+    if 0 < fps < SLOWEST:
+        raise ValueError(
+            f"fps is {fps:g} frames a second. If that is the time of a frame, write fps = "
+            f"{1 / fps:g}"
+        )
+    return fps
 
 
 def _note(path: Path, words: str) -> None:

@@ -46,9 +46,10 @@ def motion_of_keypoints(
     for joint, of in sources.items():
         figure[:, joint_index(joint)] = points[:, [names.index(name) for name in of]].mean(1)
     _refuse_gaps(figure, sources, source)
+    _refuse_points(figure, source)
     _refuse_no_figure(figure, sources, source)
     mapping = {joint: " + ".join(of) for joint, of in sources.items()}
-    found = Figure(figure, fps, source=source, up=up)
+    found = Figure(figure, fps, source=source, up=up, right_rate="correct the `fps` of the file")
     clip = retarget_figure(found, info={"mapping": mapping})
     return Motion.of_clip(clip, clip.info["start"])
 
@@ -85,6 +86,18 @@ def _refuse_gaps(figure: np.ndarray, sources: dict[str, tuple[str, ...]], source
                 f"{len(figure)} frames, first in frame {gaps[0]}; cut them off, or fill them in "
                 "the program that found the joints"
             )
+
+
+def _refuse_points(figure: np.ndarray, source: str) -> None:
+    """Raise MotionError for frames whose joints all lie in one place, as if they had been lost."""
+    needed = figure[:, [joint_index(joint) for joint in NEEDED]]
+    lost = np.flatnonzero(np.ptp(needed, axis=1).max(-1) == 0)
+    if len(lost):
+        raise MotionError(
+            f"{source}: all joints are in one place in {len(lost)} of {len(figure)} frames, first "
+            f"in frame {lost[0]}, as where a program writes zeros for a figure that it lost; cut "
+            "them off, or fill them in that program"
+        )
 
 
 def _refuse_no_figure(figure: np.ndarray, sources: dict, source: str) -> None:

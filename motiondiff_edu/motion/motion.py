@@ -32,6 +32,9 @@ class MotionError(ValueError):
     """A motion or its file cannot be used; the message says what is wrong, where, what to do."""
 
 
+UNITS = {"millimetres": 1000.0, "centimetres": 100.0, "inches": 39.37, "feet": 3.281}
+
+
 class MotionWarning(UserWarning):
     """Something was corrected or looks wrong; the motion is usable."""
 
@@ -338,26 +341,45 @@ def as_motion(given: object) -> Motion:
     return given
 
 
+def bones_over_ours(motion: Motion) -> float:
+    """How long the bones of a figure are, all together, over the course's.
+
+    NaN for another skeleton, and where no bone is seen.
+    """
+    if motion.skeleton != COURSE:
+        return np.nan
+    bones = np.diff(motion.positions[:, np.array(BONES)], axis=2)[:, :, 0]
+    long = np.linalg.norm(bones, axis=-1)
+    seen = np.isfinite(long)
+    whole = np.broadcast_to(BONE_LENGTHS, long.shape)[seen].sum()
+    return float(long[seen].sum() / whole) if seen.any() else np.nan
+
+
+def unit_of(motion: Motion) -> tuple[str, float]:
+    """The unit of a figure that is a person in another unit than metres, and how many make a metre.
+
+    ("", 1.0) where none fits.
+    """
+    size = bones_over_ours(motion)
+    fits = (one for one in UNITS.items() if one[1] / 1.4 < size < 1.4 * one[1])
+    return next(fits, ("", 1.0))
+
+
 def unlike_a_body(motion: Motion) -> str:
     """What is wrong with the size of a figure on the course's skeleton, in words; "" if nothing.
 
     Its bones, all together, must be half to twice as long as the course's.
     """
-    if motion.skeleton != COURSE:
-        return ""
-    bones = np.diff(motion.positions[:, np.array(BONES)], axis=2)[:, :, 0]
-    long = np.linalg.norm(bones, axis=-1)
-    seen = np.isfinite(long)
-    if not seen.any():
-        return ""
-    size = float(long[seen].sum() / np.broadcast_to(BONE_LENGTHS, long.shape)[seen].sum())
-    if 0.5 < size < 2:
+    size = bones_over_ours(motion)
+    if np.isnan(size) or 0.5 < size < 2:
         return ""
     if not size:
         return "all joints of a frame are in one place, so this is no figure"
+    unit, many = unit_of(motion)
+    how = f"{unit.capitalize()}? Then" if unit else "For a figure of that size"
     return (
         f"the bones are {size:.3g} times as long as the course's, but positions are in metres and "
-        f"the figure is 1.70 m tall. Centimetres? Then pass 0.01 * positions"
+        f"the figure is 1.70 m tall. {how} pass {1 / (many if unit else size):.4g} * positions"
     )
 
 
@@ -425,9 +447,12 @@ def _positions(positions, skeleton: Skeleton) -> np.ndarray:
             f"{array.shape}"
         )
     if array.shape[1] != len(skeleton):
+        if array.shape[0] == len(skeleton):
+            how = "the axes look exchanged: they are (frames, joints, 3)"
+        else:
+            how = "for another skeleton pass skeleton=Skeleton(names, parents)"
         raise MotionError(
-            f"positions have {array.shape[1]} joints, the skeleton {len(skeleton)}; for another "
-            f"skeleton pass skeleton=Skeleton(names, parents)"
+            f"positions have {array.shape[1]} joints, the skeleton {len(skeleton)}; {how}"
         )
     array[np.isnan(array).any(-1)] = np.nan
     wild = np.argwhere((np.abs(array) > FARTHEST).any(-1))

@@ -55,7 +55,8 @@ class Figure:
     """The course's joints in a file's unit and axes; NaN for joints that the file lacks.
 
     `rest`: the same joints as the file's skeleton stands, if it says so. `up`: the axis that points
-    up, such as "+z", if the file states it; else it is found from the figure.
+    up, such as "+z", if the file states it; else it is found from the figure. `right_rate`: what to
+    do about a wrong frame rate, for messages.
     """
 
     points: Float[np.ndarray, "T 21 3"]
@@ -63,6 +64,7 @@ class Figure:
     rest: Float[np.ndarray, "21 3"] | None = None
     source: str = ""
     up: str = ""
+    right_rate: str = REPLACE_FPS
 
 
 def load_clip(
@@ -221,7 +223,7 @@ def refuse_short(count: int, figure: Figure) -> None:
             f"{count} frame{'s' * (count != 1)} at {figure.fps:g} frames/s last "
             f"{count / figure.fps:.2f} s; at least {SHORTEST} s and two frames are needed."
         )
-        raise BvhError(f"{problem} If the frame time is wrong, {REPLACE_FPS}.", figure.source)
+        raise BvhError(f"{problem} If the rate is wrong, {figure.right_rate}.", figure.source)
 
 
 def warn_wild(

@@ -3,8 +3,9 @@
 A walker that gets a pose unlike its training begins with one that it knows: a joint may move by
 half a metre from the last given frame to the first new one. Then the first half second, or more if
 a joint has far to go, takes over pose and speed of the given motion. So it is in nearly all
-recordings; where a joint would jump far, a warning says so. In every continuation bones keep the lengths of the given motion, standing feet stay where they stand,
-and feet that were dragged take a step (`performers/finished.py`).
+recordings; where a joint would jump far, a warning says so. In every continuation bones keep the
+lengths of the given motion, standing feet stay where they stand, and feet that were dragged take a
+step (`performers/finished.py`).
 """
 
 from dataclasses import dataclass
@@ -147,8 +148,8 @@ def in_words(
         )
     if jump > FAR:
         words.append(
-            f"a joint would jump by {100 * jump:.0f} cm from the last pose, so the first frames are "
-            "blended"
+            f"a joint would jump by {100 * jump:.0f} cm from the last pose, so the first frames "
+            "are blended"
         )
     return "; ".join(words)
 

@@ -23,7 +23,7 @@ from ..fast.samplers import ddim_steps, ddpm_steps
 from ..fast.twins import watched
 from ..modiff import MoDiff, MoDiffConfig
 from ..motion.checks import checked_samples, checked_seconds, checked_steps
-from ..motion.motion import Motion, MotionWarning, as_motion
+from ..motion.motion import Motion, MotionError, MotionWarning, as_motion, lies_down
 from ..motion.root_frame import FPS
 from ..motion.scaler import Scaler
 from ..motion.size import leg_size, resized
@@ -96,6 +96,8 @@ class Walker(Performer):
         Source: MoDiff Alg. 2.  Notebook: 00
         """
         as_motion(motion).check_whole()
+        if words := lies_down(motion):
+            raise MotionError(f"{motion.name}: {words}")
         count, T_h = checked_samples(samples), self.config.T_h
         steps = checked_steps(steps, self.schedule.S)
         length = None if seconds is None else round(checked_seconds(seconds) * FPS)

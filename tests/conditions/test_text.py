@@ -117,6 +117,17 @@ def test_a_text_that_grows_by_being_read_is_not_too_long_for_the_network():
         read("thrice " * 33, known)
 
 
+def test_a_limb_that_does_not_do_an_act_is_said():
+    words = ["kick", "wave", "with", "left", "hand", "foot", "then", "clap"]
+    told = {
+        "kicks with the left hand": ("the figure does 'kick' with a foot, not with the hand",),
+        "waves with the left foot": ("the figure does 'wave' with a hand, not with the foot",),
+        "kicks with the left foot, then waves with the hand": (),
+        "claps, then kicks": (),
+    }
+    assert {text: read(text, words, {}).notes for text in told} == told
+
+
 def test_synonyms_lead_from_unknown_words_to_known_ones():
     known = set(base_vocabulary(captions.vocabulary()))
     table = synonyms()

@@ -8,6 +8,7 @@ from itertools import product
 
 import numpy as np
 import pytest
+import torch
 
 from data_synth.actions import VERBS, Act, Phrase, act_out, clips, mirror
 from data_synth.actions.acceptance import joins, measures, stands_between, worst
@@ -232,6 +233,7 @@ def test_mirroring_exchanges_motion_truth_and_words(made):
     turned = mirror(clip)
     back = mirror(turned)
     np.testing.assert_allclose(back.acted.positions, clip.acted.positions)
+    assert torch.from_numpy(turned.acted.contacts).shape == (len(clip.acted), 2)
     assert back.captions == clip.captions and back.acted.spans == clip.acted.spans
     assert turned.captions == tuple(map(exchanged_sides, clip.captions))
     assert exchanged_sides("the left hand, leftover") == "the right hand, leftover"

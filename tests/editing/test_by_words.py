@@ -74,6 +74,14 @@ def test_the_edit_begins_where_the_motion_began(mover, positions):
     assert np.linalg.norm(made[0, HIPS] - turned[0, HIPS]) < 0.3
 
 
+def test_a_child_does_at_its_size_what_an_adult_does(mover, positions):
+    adult, child = (
+        edit_by_words(mover, size * positions, "waves", strength=0.3, steps=30)[0]
+        for size in (1.0, 0.7)
+    )
+    np.testing.assert_allclose(child, 0.7 * adult, atol=1e-4)
+
+
 def test_a_kept_part_of_the_body_stays_about_the_root_and_the_rest_changes(mover, positions):
     known = np.zeros((64, 21), bool)
     upper = [joint_index(name) for name in UPPER]

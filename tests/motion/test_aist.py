@@ -181,6 +181,16 @@ def test_only_the_codec_of_old_pickles_is_admitted(tmp_path):
         read_keypoints(written(tmp_path, {"keypoints3d_optim": Compressed()}))
 
 
+def test_what_is_endless_to_print_is_not_printed(tmp_path):
+    nested: object = ()
+    for _ in range(40):  # 2^40 brackets, and a few bytes in the file
+        nested = (nested, nested)
+    for content in (Spelled(np.dtype, nested), Spelled(codecs.encode, "a", nested)):
+        with pytest.raises(AistError) as caught:
+            read_keypoints(written(tmp_path, content))
+        assert len(str(caught.value)) < 400
+
+
 @pytest.mark.parametrize(
     "content, told",
     [

@@ -115,6 +115,10 @@ def test_npz_with_names_is_retargeted_and_our_own_is_read_as_it_is(tmp_path):
             lambda p, n: (np.where(np.arange(17)[:, None] == 9, np.nan, p), n),
             "LeftWrist is missing",
         ),
+        (
+            lambda p, n: (np.where((np.arange(len(p)) // 5 == 2)[:, None, None], 0.0, p), n),
+            r"in one place in 5 of 41 frames, first in frame 10, as where .* writes zeros",
+        ),
         (lambda p, n: (p * np.where(np.arange(17)[:, None] == 13, 9.0, 1.0), n), "no figure"),
     ],
 )
@@ -134,8 +138,10 @@ def test_of_a_figure_that_lies_the_file_must_say_what_is_up():
 
 def test_half_a_second_is_needed():
     points = coco(walk(np.tile([1.1, 0.0, 0.0], (41, 1)), seed=3).world())
-    with pytest.raises(BvhError, match="at least 0.5 s"):
+    with pytest.raises(BvhError, match="at least 0.5 s .* correct the `fps` of the file"):
         motion_of_keypoints(points[:5], COCO, 20.0, "file")
+    with pytest.raises(BvhError, match="1 frame at 1 frames/s .* two frames"):
+        motion_of_keypoints(points[:1], COCO, 1.0, "file")
 
 
 def test_a_dance_of_aist_keeps_its_knees_and_elbows(real_data):

@@ -89,3 +89,10 @@ def test_a_lower_rate_ends_before_the_old_end():
 def test_what_cannot_be_resampled_is_refused(positions, fps, told):
     with pytest.raises(ValueError, match=told):
         resample(positions, fps)
+
+
+def test_at_the_same_rate_it_is_a_copy():
+    given = np.random.default_rng(0).normal(size=(9, 3))
+    same = resample(given, 20, 20)
+    np.testing.assert_array_equal(same, given)
+    assert not np.shares_memory(same, given)

@@ -35,6 +35,16 @@ def test_a_mirrored_figure_is_told_by_its_feet():
     assert not unmirror(world)[1]
 
 
+def test_pointed_toes_do_not_hide_that_a_figure_is_mirrored():
+    world, _ = walk(frames=30)
+    toes, heels = list(TOES), list(HEELS)
+    flat = (world[:, toes] - world[:, heels]) * [1.0, 0.0, 1.0]
+    world[:, toes] = world[:, heels] + 0.4 * flat - [0.0, 0.15, 0.0]
+    assert not unmirror(world)[1]
+    back, mirrored = unmirror(world * [-1, 1, 1])
+    assert mirrored and np.allclose(back, world)
+
+
 def test_a_tilted_floor_is_found_and_levelled():
     world, _ = walk(frames=200, turn=0.4)
     tilt = np.array([0.12, 0.03, -0.02])  # height, slope along x and z
@@ -119,3 +129,21 @@ def test_a_joint_deep_in_the_floor_is_told():
     ):
         warn_sunk(world, 20.0, "take", notes)
     assert len(notes) == 1
+
+
+def test_a_contact_has_no_gap_of_a_frame_and_lasts_longer_than_one():
+    toes = np.zeros((12, 2, 3))
+    toes[4, 0, 1] = 0.05  # a toe that is a little higher for a frame
+    toes[:, 1, 1] = 0.2
+    toes[7, 1, 1] = 0.0  # and one that is low for a frame
+    contacts = find_contacts(toes, 10.0)
+    assert contacts[:, 0].all() and not contacts[:, 1].any()
+
+
+def test_the_body_does_not_tremble_with_a_foot_that_is_planted():
+    world = np.repeat(walk(frames=2)[0][:1], 30, axis=0)
+    foot = [HEELS[0], TOES[0]]
+    world[::2, foot, 0] += 0.02
+    made = plant(world, np.ones((30, 2), bool), 20.0)
+    assert np.ptp(made[:, TOES[0], 0]) < 1e-6, "the toe is on one point"
+    assert np.abs(np.diff(made[:, 0, 0], 2)).max() < 0.004

@@ -55,6 +55,15 @@ def test_the_mean_by_frame_repeats_the_rows_of_slow_layers():
     np.testing.assert_allclose(found[:, 0], [0.75, 0.75, 0.25, 0.25])
 
 
+def test_rows_that_the_network_adds_at_the_end_are_left_out(mover, positions):
+    found = maps(mover, "a person kicks with the left foot", positions[:62])
+    rows = {name: len(weights) for name, weights in found.levels.items()}
+    assert rows["down.0.ask"] == 62 and rows["down.1.ask"] == 31 and rows["middle.ask"] == 16
+    deepest = WordMaps(found.words, {k: found.levels[k] for k in ("down.0.ask", "middle.ask")})
+    wanted = (found.levels["down.0.ask"] + found.levels["middle.ask"].repeat(4, 0)[:62]) / 2
+    np.testing.assert_allclose(deepest.by_frame(62), wanted)
+
+
 def test_the_words_are_those_that_the_network_reads(mover, positions):
     walk = maps(mover, "marches ahead", positions)  # read as walk
     assert walk.words[0] == "walk"

@@ -70,6 +70,24 @@ def test_all_variations_together_and_data_that_trainings_share(folder):
         assert len(positions) == len(contacts) and np.isfinite(positions).all()
 
 
+@pytest.mark.parametrize(
+    "what", ["levels.at_levels", "variations.with_upper_body_of", "variations.pelvis_moved",
+             "variations.limbs_turned", "warps.warped"],
+)  # fmt: skip
+def test_each_variation_is_made(what, monkeypatch):
+    """Without one of them the motions are others."""
+    recipe = replace(RECIPE, levels=1.0, paces=1.0, variations=1.0)
+    every = [one for one, _ in varied(recipe)]
+    module, name = what.split(".")
+    plain = {"warped": lambda positions, contacts, rng: (positions, contacts)}
+    monkeypatch.setattr(
+        f"data_synth.{module}.{name}", plain.get(name, lambda positions, other: positions)
+    )
+    without = [one for one, _ in varied(recipe)]
+    pairs = zip(every, without, strict=True)
+    assert not any(len(a) == len(b) and np.allclose(a, b, atol=1e-3) for a, b in pairs)
+
+
 def test_some_motions_stay_as_they_were_made(folder):
     made = dict(levels=0.9, paces=0.9, variations=0.9, recordings=3)
     plain = list(varied(replace(RECIPE, unvaried=1.0, recordings=3)))

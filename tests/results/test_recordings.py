@@ -64,6 +64,21 @@ def test_windows_are_of_six_seconds_and_their_control_is_within_the_range(folder
     assert len(list(continuations.windows(RecordedSize(each=1), RANGE))) == 2
 
 
+def test_what_is_given_of_a_window_does_not_know_what_comes_next(folder, monkeypatch):
+    def turned(*arguments):
+        for source, motion in recorded(*arguments):
+            later = motion.positions.copy()
+            later[40:] = later[40:, :, [2, 1, 0]] * [1.0, 1.0, -1.0]  # it goes on to the side
+            yield source, md.Motion(later)
+
+    plain = list(continuations.windows(FULL, RANGE))
+    monkeypatch.setattr(continuations, "recorded", turned)
+    other = list(continuations.windows(FULL, RANGE))
+    for one, again in zip(plain, other, strict=True):
+        np.testing.assert_array_equal(one.control, again.control)
+        np.testing.assert_array_equal(one.given.rooted().root, again.given.rooted().root)
+
+
 def test_a_window_is_continued_as_walk_continues_it(walker, folder):
     window = next(continuations.windows(FULL, walker.card["control_range"]))
     blended, dragged, plain = continuations.continued(walker, window).values()
