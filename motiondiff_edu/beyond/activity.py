@@ -6,8 +6,8 @@ Where only the distance counts (`around_lines`), one network has to generate bot
 calm people too much. `activity` is how far a motion goes in a second, as far as the given entries
 tell: pose and path of the pelvis alike, averaged over about a second around each frame and over all
 columns that are given. It has no jumps, and is 1 where nothing near is given. The path has an
-activity of its own: who waves does not sway, and its two columns would count for nothing beside the
-61 of a lively pose.
+activity of its own. A person who waves does not sway, and among 63 columns the two of the path
+would count for nothing.
 
 So the sizes of remainders differ less, over walks, dances and performed sentences with a keyframe
 a second (`tests/beyond/test_activity.py`). It does not know the ends of a motion: there, and with

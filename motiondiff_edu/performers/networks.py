@@ -94,7 +94,7 @@ def register(
 
 
 def networks_of(performer: str) -> dict[str, Network]:
-    """The networks registered for a "walker" or a "dancer", by the names of their classes."""
+    """The networks for a "walker", "dancer" or "mover", by the names of their classes."""
     return {name: one for name, one in _NETWORKS.items() if one.performer == performer}
 
 

@@ -67,7 +67,7 @@ class KeyframeRecipe(DanceRecipe):
     """A training run of a network that sees what is given of a motion (`KeyframeMoFusion`)."""
 
     acts: int = 0  # so many performed sentences beside the walks and dances
-    recordings: int = 0  # so many versions of each training recording
+    recordings: int = 0  # so many versions of each training recording, some of them unvaried
     unvaried: float = 0.0  # share of the motions that stay as they were made
     # of the others:
     levels: float = 0.0  # share of the synthetic motions that are performed lower and leaning

@@ -1,8 +1,8 @@
 """Recordings that networks are trained on, and the split by person.
 
-The training files are those of one collection, whose dancers and fighters are not named: all of it
-is on this side, also the one trial that stands in another folder, and so would be the subjects of
-CMU's list who dance salsa and Indian dances or do martial arts. Everybody else is kept for judging
+The training files are those of one collection, whose dancers and fighters are not named. So all of
+it is on this side, together with the subjects of CMU's list who dance salsa and Indian dances or do
+martial arts: they may be the same persons. Everybody else is kept for judging
 (`tools/results/recordings`).
 Data: the CMU Graphics Lab Motion Capture Database, mocap.cs.cmu.edu, created with funding from NSF
 EIA-0196217.
