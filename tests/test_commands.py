@@ -508,3 +508,14 @@ def test_recordings_from_the_command_line(real_data, tmp_path, monkeypatch, caps
         assert "Traceback" not in capsys.readouterr().err
         Path("out.npz").unlink(missing_ok=True)
     assert len(broken) > 15
+
+
+def test_info_says_which_named_joints_were_taken_for_which(folder, capsys):
+    truth = walk(np.tile([1.1, 0.0, 0.0], (61, 1)), seed=3).world()
+    few = [k for k, name in enumerate(JOINTS) if "Toe" not in name]
+    np.savez("keys.npz", positions=truth[:, few], names=[f"b_{JOINTS[k]}" for k in few], fps=20.0)
+    assert command.main(["info", "keys.npz"]) == 0
+    said = capsys.readouterr().out
+    assert "in the file: 61 frames at 20 frames/s, 19 joints" in said
+    assert "LeftUpLeg is b_LeftUpLeg" in said
+    assert "computed from the others: LeftToeBase, RightToeBase" in said

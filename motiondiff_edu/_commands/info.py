@@ -56,17 +56,43 @@ def lines_of(motion) -> list[str]:
 
 
 def joints_of(path: Path) -> list[str]:
-    """What is in a BVH file, and which of its joints was taken for which of the course."""
+    """What is in a file that is retargeted, and which of its joints was taken for which."""
+    described = {".bvh": bones_of, ".npz": names_of, ".pkl": names_of}.get(path.suffix.lower())
+    return described(path) if described else []
+
+
+def bones_of(path: Path) -> list[str]:
+    """Of a BVH file."""
     from motiondiff_edu.motion.bvh import read_bvh
     from motiondiff_edu.motion.dialects import guess_mapping
 
-    if path.suffix.lower() != ".bvh":
-        return []
     bvh = read_bvh(path)
     found = guess_mapping(bvh)
     other = [f"{ours} is {own}" for ours, own in found.items() if ours != own]
     lines = [
-        f"in the file: {len(bvh.frames)} frames at {bvh.fps:g} frames/s, {len(bvh.joints)} joints",
+        counts(len(bvh.frames), bvh.fps, len(bvh.joints)),
         f"joints by the course's names: {len(found) - len(other)}",
     ]
     return [*lines, f"joints by other names: {', '.join(other)}"] if other else lines
+
+
+def names_of(path: Path) -> list[str]:
+    """Of a file whose joints are known by their names alone; nothing for one of our own."""
+    from motiondiff_edu.motion.files import named_joints
+    from motiondiff_edu.motion.keypoints import sources_of
+    from motiondiff_edu.motion.skeleton import JOINTS
+
+    there = named_joints(path)
+    if there is None:
+        return []
+    names, frames, fps = there
+    found = sources_of(names)
+    taken = ", ".join(f"{ours} is {' + '.join(own)}" for ours, own in found.items())
+    computed = ", ".join(joint for joint in JOINTS if joint not in found)
+    lines = [counts(frames, fps, len(names)), f"joints by their names: {taken}"]
+    return [*lines, f"joints computed from the others: {computed}"] if computed else lines
+
+
+def counts(frames: int, fps: float, joints: int) -> str:
+    """How much there is in a file."""
+    return f"in the file: {frames} frames at {fps:g} frames/s, {joints} joints"

@@ -173,8 +173,8 @@ def read_npz(path: Path) -> Motion:
 def _from_positions(arrays: dict[str, np.ndarray], source: str) -> Motion:
     skeleton = COURSE
     fps = _rate(arrays)
-    names = tuple(map(str, arrays["names"].tolist())) if "names" in arrays else JOINTS
-    if names != JOINTS and "format" not in arrays:
+    names = _names(arrays)
+    if _is_named(arrays):
         return motion_of_keypoints(arrays["positions"].astype(np.float64), names, fps, source)
     if "parents" in arrays:
         skeleton = Skeleton(names, tuple(arrays["parents"].tolist()))
@@ -182,6 +182,29 @@ def _from_positions(arrays: dict[str, np.ndarray], source: str) -> Motion:
     if "sample_rate" in arrays:
         along["sample_rate"] = int(arrays["sample_rate"])
     return Motion(arrays["positions"], fps, skeleton, source=source, **along)
+
+
+def named_joints(path: Path) -> tuple[tuple[str, ...], int, float] | None:
+    """Names, frames and rate of a file whose joints are known by their names alone.
+
+    None for a file of our own skeleton.  Raises MotionError or AistError for one that is damaged.
+    """
+    if path.suffix.lower() == ".pkl":
+        dance = read_keypoints(path)
+        return COCO, len(dance.positions), dance.fps
+    arrays = _arrays(path)
+    if "positions" not in arrays or not _is_named(arrays):
+        return None
+    return _names(arrays), len(arrays["positions"]), _rate(arrays)
+
+
+def _names(arrays: dict[str, np.ndarray]) -> tuple[str, ...]:
+    return tuple(map(str, arrays["names"].tolist())) if "names" in arrays else JOINTS
+
+
+def _is_named(arrays: dict[str, np.ndarray]) -> bool:
+    """Whether the joints of a file are others than ours, and it was not written by us."""
+    return _names(arrays) != JOINTS and "format" not in arrays
 
 
 def _rate(arrays: dict[str, np.ndarray]) -> float:
