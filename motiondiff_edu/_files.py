@@ -21,6 +21,10 @@ def replacing(path: str | Path) -> Iterator[Path]:
     try:
         yield aside
         os.replace(aside, path)
+    except OSError as error:
+        if error.filename == str(aside):  # a message names the file that the caller asked for
+            error.filename = str(path)
+        raise
     finally:
         aside.unlink(missing_ok=True)
 

@@ -145,6 +145,14 @@ def test_threads_that_write_one_file_do_not_tear_it(tmp_path):
     assert [p.name for p in tmp_path.iterdir()] == ["one.txt"]
 
 
+def test_a_message_names_the_file_that_was_asked_for(tmp_path):
+    path = tmp_path / "walk.npz"
+    with pytest.raises(OSError, match=r"no room: '.*/walk\.npz'$"), replacing(path) as aside:
+        raise OSError(28, "no room", str(aside))
+    with pytest.raises(OSError, match="no room: 'another'"), replacing(path):
+        raise OSError(28, "no room", "another")
+
+
 @pytest.mark.parametrize(
     "path", sorted((ROOT / "motiondiff_edu/widgets/js").glob("*.js")), ids=lambda path: path.name
 )

@@ -222,7 +222,12 @@ def _nearest(word: str, vocabulary: Sequence[str]) -> list[str]:
     if word in NUMBERS or word.isdigit():
         return [known for known in ("once", "twice", "three", "four") if known in vocabulary]
     bare = (word.removesuffix(ending) for ending in ("", "s", "ing", "ed"))
-    found = (near for form in bare for near in get_close_matches(form, vocabulary, 3, 0.75))
+    found = (
+        near
+        for form in bare
+        for near in get_close_matches(form, vocabulary, 3, 0.75)
+        if near[0] == form[0]
+    )
     return list(dict.fromkeys(found))[:3]
 
 
