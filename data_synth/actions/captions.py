@@ -1,4 +1,4 @@
-"""Captions: several wordings of one sentence.
+"""Captions: several wordings of one sentence, and the same with left and right exchanged.
 
     a person walks forward while waving with the left hand, then kicks twice with the right foot
 
@@ -15,7 +15,7 @@ from zlib import crc32
 
 import numpy as np
 
-from .acts import VERBS, Act, Phrase, Sentence
+from .acts import OTHER_SIDE, VERBS, Act, Phrase, Sentence
 
 
 @dataclass(frozen=True)
@@ -265,6 +265,11 @@ def _in_order(parts: list[tuple[str, str]], chosen: Choices) -> str:
     for k, third in enumerate(thirds[1:]):
         text += chosen.one(f"join {k}", (", then ", " and then ", ", after that ")) + third
     return text
+
+
+def exchanged(text: str) -> str:
+    """The words left and right exchanged."""
+    return re.sub(r"\b(left|right)\b", lambda found: OTHER_SIDE[found[0]], text)
 
 
 def vocabulary(held_out: bool = False) -> set[str]:

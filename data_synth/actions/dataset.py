@@ -6,10 +6,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from motiondiff_edu.motion import dance_frame
-from motiondiff_edu.performers.described_windows import exchanged_sides
 
 from .acts import Phrase, Sentence, mirrored
-from .captions import caption
+from .captions import caption, exchanged
 from .performance import Acted, act_out
 from .sentences import draw, in_training
 
@@ -66,7 +65,7 @@ def mirror(clip: Described) -> Described:
     sentence = mirrored_sentence(acted.sentence)
     spans = tuple(replace(span, act=mirrored(span.act)) for span in acted.spans)
     turned = replace(acted, positions=positions, contacts=contacts, spans=spans, sentence=sentence)
-    return Described(turned, tuple(exchanged_sides(text) for text in clip.captions))
+    return Described(turned, tuple(exchanged(text) for text in clip.captions))
 
 
 def mirrored_sentence(sentence: Sentence) -> Sentence:

@@ -16,6 +16,7 @@ from data_synth.actions.captions import (
     TIMES,
     WORDINGS,
     caption,
+    exchanged,
     vocabulary,
     worded_by,
     words_of,
@@ -36,7 +37,6 @@ from data_synth.actions.sentences import (
 from data_synth.actions.write import main as write
 from motiondiff_edu.motion.bvh import read_bvh
 from motiondiff_edu.motion.skeleton import BONE_LENGTHS, BONES, MIRROR, joint_index
-from motiondiff_edu.performers.described_windows import exchanged_sides
 
 TOLD_APART = ("hand", "arm", "leg", "foot", "greet", "swing", "giv")  # wordings of waves and kicks
 LEFT_HAND, RIGHT_HAND = joint_index("LeftHand"), joint_index("RightHand")
@@ -235,8 +235,8 @@ def test_mirroring_exchanges_motion_truth_and_words(made):
     np.testing.assert_allclose(back.acted.positions, clip.acted.positions)
     assert torch.from_numpy(turned.acted.contacts).shape == (len(clip.acted), 2)
     assert back.captions == clip.captions and back.acted.spans == clip.acted.spans
-    assert turned.captions == tuple(map(exchanged_sides, clip.captions))
-    assert exchanged_sides("the left hand, leftover") == "the right hand, leftover"
+    assert turned.captions == tuple(map(exchanged, clip.captions))
+    assert exchanged("the left hand, leftover") == "the right hand, leftover"
     x = clip.acted.positions[:, MIRROR, 0]
     np.testing.assert_allclose(turned.acted.positions[..., 0], -x)
     sides = [s.act.side for s in clip.acted.spans]
