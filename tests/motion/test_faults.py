@@ -54,7 +54,8 @@ def test_the_swapped_markers_of_a_real_dance(real_data):
 def test_the_swapped_markers_are_mended(real_data, whole):
     """Before, feet are thrown about.
 
-    After, no more than elsewhere in the dance, and bones keep their lengths.
+    After, in the middle one of three draws, no more than elsewhere in the dance; and bones keep
+    their lengths.
     """
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
@@ -63,11 +64,12 @@ def test_the_swapped_markers_are_mended(real_data, whole):
     known = ~np.repeat(wild.any(1, keepdims=True), 21, axis=1) if whole else ~wild
     network = checkpoints.pretrained("unconditional")
     draw = torch.Generator().manual_seed(0)
-    after = inbetween(network, before, known, steps=25, generator=draw)[0]
-    assert np.array_equal(after[known], before[known])
-    assert np.ptp(bone_lengths(after), axis=0).max() < 0.002
+    draws = inbetween(network, before, known, samples=3, steps=25, generator=draw)
+    assert all(np.array_equal(after[known], before[known]) for after in draws)
+    assert all(np.ptp(bone_lengths(after), axis=0).max() < 0.002 for after in draws)
     feet = [JOINTS.index(name) for name in ("LeftToeBase", "RightToeBase")]
-    thrown, calm = (
-        400 * np.linalg.norm(np.diff(x, 2, axis=0), axis=-1)[:, feet] for x in (before, after)
+    thrown, *made = (
+        400 * np.linalg.norm(np.diff(x, 2, axis=0), axis=-1)[:, feet] for x in (before, *draws)
     )  # m/s^2
-    assert thrown[46:64].max() > 150 and calm[46:64].max() < max(90, thrown[70:].max())
+    calm = np.median([one[46:64].max() for one in made])
+    assert thrown[46:64].max() > 150 and calm < max(90, thrown[70:].max())
