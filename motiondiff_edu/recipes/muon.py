@@ -38,7 +38,7 @@ class Muon(torch.optim.Optimizer):
     def step(self) -> None:
         """One step against the gradients; parameters without a gradient do not change.
 
-        Matrices of one shape are whitened together: a GPU then has a tenth of the launches.
+        Matrices of one shape are whitened together, which takes fewer launches on a GPU.
         """
         for group in self.param_groups:
             alike: dict[torch.Size, list[nn.Parameter]] = {}
