@@ -48,7 +48,8 @@ def edit_by_words(
     """Motions (metres, 20 frames/s) that do what `text` says, made out of this motion.
 
     known     what stays, seen from the figure: a joint keeps its place about the root. Where the
-              pelvis is known, the root keeps its velocity, too. Default: nothing is masked
+              pelvis is known in a frame and the next, the root keeps its velocity, too. Default:
+              nothing is masked
     strength  above 0, up to 1; with 1 nothing but the known part is left of the motion
     steps     of DDIM for the whole way; a smaller strength takes fewer
     Without a `generator` the seed is 0. The first frame stays where it was, facing the same way.
@@ -122,9 +123,13 @@ def visited(S: int, steps: int, strength: float) -> list[int]:
 
 
 def columns(known: Bool[Tensor, "T 21"]) -> Bool[Tensor, "T 66"]:
-    """The network's columns of these joints; the root's velocity is known with the pelvis."""
-    joints = known.repeat_interleave(3, dim=-1)
-    return torch.cat([joints, known[:, HIPS, None].expand(-1, D - 3 * J)], -1)
+    """The network's columns of these joints.
+
+    A velocity leads from a frame to the next one. So it is known where the pelvis is in both.
+    """
+    joints, here = known.repeat_interleave(3, dim=-1), known[:, HIPS]
+    moves = torch.cat([here[:-1] & here[1:], here[-1:]])  # the last velocity leads nowhere
+    return torch.cat([joints, moves[:, None].expand(-1, D - 3 * J)], -1)
 
 
 def at_the_start_of(

@@ -108,11 +108,11 @@ def varied(recipe: KeyframeRecipe) -> Iterator[Recorded]:
     from data_synth import levels, mixed, variations, warps
 
     seed = recipe.data_seed
+    recorded = training_recordings() if recipe.recordings else []  # at first: they can be missing
     made = [
         *mixed.motions(recipe.motions, seed, recipe.seconds),
         *mixed.sentences(recipe.acts, seed),
     ]
-    recorded = training_recordings() if recipe.recordings else []
     every = [*made, *recorded * recipe.recordings]
     for k, (positions, contacts) in enumerate(every):
         if np.random.default_rng([seed, 9, k]).uniform() < recipe.unvaried:

@@ -18,7 +18,7 @@ from motiondiff_edu.editing.by_words import (
     recognised_timeline,
 )
 from motiondiff_edu.editing.masks import UPPER, body_part
-from motiondiff_edu.motion.moving_frame import D, to_features, to_positions
+from motiondiff_edu.motion.moving_frame import to_features, to_positions
 from motiondiff_edu.motion.skeleton import HIPS, joint_index
 from motiondiff_edu.performers.mover import Mover
 
@@ -108,7 +108,12 @@ def test_with_the_pelvis_the_path_stays_and_a_kept_span_is_the_motion_itself(mov
     made = edit_by_words(mover, positions, "kicks", known, steps=10, samples=2)
     assert np.array_equal(made[:, :40], np.stack([positions[:40]] * 2))
     assert np.abs(made[0, 50:] - made[1, 50:]).max() > 0.01
-    assert columns(torch.from_numpy(known)).sum() == 40 * D
+    held = columns(torch.from_numpy(known))
+    assert held[:39].all() and not held[40:].any()
+    assert held[39, : 3 * 21].all(), "the pose of the last frame that stays"
+    assert not held[39, 3 * 21 :].any(), "what leads to the first frame that changes"
+    known[:] = True
+    assert columns(torch.from_numpy(known)).all()
 
 
 def test_the_timeline_goes_with_what_is_kept(positions):
