@@ -67,11 +67,12 @@ def path_to_control(
         limits,
         halts + ([0, len(curve) - 1] if rest else []),
     )
-    dt = np.maximum(2 * step / np.maximum(v[1:] + v[:-1], 1e-9), turn / limits.max_yaw)
+    dt = np.maximum(_times(step, v, limits), turn / limits.max_yaw)
     time = np.concatenate([[0.0], np.cumsum(dt)])
     for halt in halts:  # the pause sits in the step that leaves the halt
         time[halt + 1 :] += pause
-    frames = np.arange(int(np.ceil(time[-1] * fps)) + 1) / fps
+    end = time[-1] + pause * (len(curve) - 1 in halts)
+    frames = np.arange(int(np.ceil(end * fps)) + 1) / fps
     return _control_at(frames, time, curve, heading, halts, pause, fps, limits.max_yaw)
 
 
@@ -141,6 +142,13 @@ def _speeds(
     for i in range(len(v) - 2, -1, -1):
         v[i] = min(v[i], np.sqrt(v[i + 1] ** 2 + 2 * limits.acceleration * step[i]))
     return v
+
+
+def _times(step: np.ndarray, v: np.ndarray, limits: Limits) -> np.ndarray:
+    """Seconds from each point to the next; between two rests it starts and stops once more."""
+    both = v[1:] + v[:-1]
+    from_rest_to_rest = 2 * np.sqrt(step / limits.acceleration)
+    return np.where(both > 0, 2 * step / np.where(both > 0, both, 1.0), from_rest_to_rest)
 
 
 def _control_at(

@@ -1,5 +1,7 @@
 """Control along paths, checked by integrating it back to a path."""
 
+import itertools
+
 import numpy as np
 import pytest
 from scipy.spatial.distance import cdist
@@ -47,6 +49,28 @@ def test_awkward_paths_stay_within_centimetres_and_within_limits(points):
     assert len(control) < 180
     assert np.abs(control[:, 2]).max() <= 1.8 + 1e-9
     assert np.hypot(control[:, 0], control[:, 1]).max() <= 1.2 + 1e-9
+
+
+@pytest.mark.parametrize("presses", [2, 3, 4])
+def test_paths_of_arrow_keys_take_seconds(presses):
+    """At a sharp turn the figure rests; two rests can be a centimetre apart."""
+    keys = np.array([[-0.5, 0.0], [0.5, 0.0], [0.0, 0.5], [0.0, -0.5]])
+    for chosen in itertools.product(range(4), repeat=presses):
+        points = np.concatenate([[[0.0, 0.0]], np.cumsum(keys[list(chosen)], 0)])
+        assert len(path_to_control(points, 1.2)) < 400, chosen
+
+
+def test_from_rest_to_rest_it_starts_and_stops():
+    points = np.array([[0.0, 0.0], [0.0, 2.0]])
+    control = path_to_control(points, 1.2, stops=[1.0, 1.01], pause=1.0)
+    alone = path_to_control(points, 1.2, stops=[1.0], pause=1.0)
+    assert 15 <= len(control) - len(alone) <= 30, "a second more, and the centimetre"
+
+
+def test_at_a_stop_at_the_end_it_rests_there():
+    points = np.array([[0.0, 0.0], [0.0, 2.0]])
+    plain, rests = (path_to_control(points, 1.2, stops=stops, pause=2.0) for stops in ([], [2.0]))
+    assert 38 <= len(rests) - len(plain) <= 42 and np.abs(rests[-38:]).max() < 1e-6
 
 
 def test_a_hand_drawn_line_becomes_a_smooth_walk():
