@@ -50,10 +50,11 @@ def read_audio(path: str | Path) -> Float[Tensor, "N"]:
 
     Channels are averaged. If the file is cut off, the readable part is returned with a UserWarning.
     Raises AudioError for a missing file, a folder, another kind of file, a file that is damaged,
-    empty, silent or shorter than a second, and for samples that are not finite.
+    empty, silent or shorter than a second, and for samples that are not finite or lie far outside
+    -1 to 1.
     Source: MoFusion 3.3.   Notebook: 11
     """
-    path = Path(path)
+    path = Path(path).expanduser()
     if not path.is_file():
         what = (
             "is a folder; give the name of a sound file in it"
@@ -75,6 +76,12 @@ def read_audio(path: str | Path) -> Float[Tensor, "N"]:
             "export the sound again"
         )
     mono = _mono(channels, path.name)
+    where = int(np.abs(mono).argmax())
+    if abs(mono[where]) > LOUDEST:
+        raise AudioError(
+            f"{path.name}: samples must lie between -1 and 1; the one at {where / rate:.3f} s is "
+            f"{mono[where]:.3g}. Export the sound again, from -1 to 1 or as 16-bit samples"
+        )
     if loss:
         warnings.warn(
             f"{path.name} {loss}; the {seconds:.2f} s that could be read are used", stacklevel=2
@@ -102,7 +109,7 @@ def samples_of(sound: str | Path | np.ndarray | Tensor) -> Float[Tensor, "N"]:
     numbers, are not finite, are silent, or lie far outside -1 to 1.
     """
     if isinstance(sound, (str, Path)):
-        return read_audio(Path(sound).expanduser())
+        return read_audio(sound)
     if not isinstance(sound, (np.ndarray, Tensor, list)):
         raise AudioError(f"sound must be a file's name or samples, not {type(sound).__name__}")
     samples = np.asarray(sound)

@@ -18,7 +18,7 @@ from ..beyond.around_lines import Shown
 from ..beyond.classifier_free import guided_by_condition, while_between, without
 from ..beyond.guidance import with_guess
 from ..beyond.turning_frame import View
-from ..conditions.audio_files import samples_of
+from ..conditions.audio_files import SILENT, AudioError, samples_of
 from ..conditions.music import FRAMES_PER_SECOND, SAMPLE_RATE, fingerprint, frame_times, log_mel
 from ..ddpm import Denoiser, Generators, Schedule, draw
 from ..fast.mofusion import FastMoFusion
@@ -252,6 +252,11 @@ class Dancer(Performer):
                 stacklevel=2,
             )
         heard, peak = audio, float(audio.abs().max())
+        if peak < SILENT:
+            raise AudioError(
+                f"{name} is silent in its first {lasts:.1f} s, so there is nothing to dance to: "
+                "use more seconds of it"
+            )
         if peak < QUIET:
             warnings.warn(
                 f"{name} is very quiet (its loudest sample is {peak:.1g} of the largest there is), "

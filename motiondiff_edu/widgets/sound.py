@@ -41,7 +41,10 @@ class Sound:
 
 
 def as_sound(
-    audio: object, sample_rate: int = 16_000, seconds: float | None = None, codec: str = "ogg"
+    audio: object,
+    sample_rate: int | float = 16_000,
+    seconds: float | None = None,
+    codec: str = "ogg",
 ) -> Sound:
     """A Sound, cut or padded to `seconds`.
 
@@ -55,7 +58,9 @@ def as_sound(
         raise ValueError(f"codec must be one of {', '.join(CODECS)}, not {codec!r}")
     if isinstance(audio, bytes | bytearray | memoryview):
         audio, sample_rate = _decoded(bytes(audio))
-    samples = _fitted(_checked(audio, sample_rate), sample_rate, seconds)
+    samples = _checked(audio, sample_rate)
+    sample_rate = int(sample_rate)  # 16000.0 is a rate as well, but not to libsndfile
+    samples = _fitted(samples, sample_rate, seconds)
     return Sound(samples, sample_rate, *encode(samples, sample_rate, codec))
 
 
@@ -68,12 +73,12 @@ def encode(
 
         file = io.BytesIO()
         form, subtype = CODECS[codec]
-        rate = sample_rate
+        content, rate = samples, sample_rate
         if subtype == "OPUS" and rate not in OPUS_RATES:
-            samples, rate = _resampled(samples, rate)
+            content, rate = _resampled(samples, rate)
         with soundfile.SoundFile(file, "w", rate, 1, subtype, format=form) as out:
-            for start in range(0, len(samples), BLOCK):
-                out.write(samples[start : start + BLOCK])
+            for start in range(0, len(content), BLOCK):
+                out.write(content[start : start + BLOCK])
         return file.getvalue(), f"audio/{codec}"
     except (
         ImportError,
@@ -112,7 +117,7 @@ def as_times(times: object, name: str, seconds: float) -> list[float]:
     return values[values < seconds].round(4).tolist()
 
 
-def _checked(audio: object, sample_rate: int) -> Float[np.ndarray, "N"]:
+def _checked(audio: object, sample_rate: int | float) -> Float[np.ndarray, "N"]:
     if not RATES[0] <= sample_rate <= RATES[1] or int(sample_rate) != sample_rate:
         raise ValueError(
             f"sample_rate must be a whole number from {RATES[0]} to {RATES[1]} Hz, not "

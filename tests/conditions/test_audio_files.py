@@ -293,6 +293,15 @@ def test_what_an_encoder_added_is_not_missed(tmp_path):
         assert len(read_audio(path)) / 16000 == pytest.approx(4, abs=0.15)
 
 
+def test_samples_in_another_unit_are_refused_in_files_too(tmp_path, monkeypatch):
+    path = written(tmp_path, "whole.wav", 32768 * chord(16000), subtype="FLOAT")
+    with pytest.raises(AudioError, match="whole.wav: samples must lie between -1 and 1; the one"):
+        read_audio(path)
+    written(tmp_path, "mine.wav", chord(16000))
+    monkeypatch.setenv("HOME", str(tmp_path))
+    assert len(read_audio("~/mine.wav"))
+
+
 def test_a_wrong_name_does_not_matter(tmp_path):
     path = written(tmp_path, "song.flac", chord(22050), 22050)
     shutil.copy(path, tmp_path / "song ü.wav")

@@ -425,6 +425,22 @@ def test_without_soundfile_a_wav_file_is_written(monkeypatch):
     np.testing.assert_allclose(got, audio, atol=1 / 32767)
 
 
+def test_without_the_codec_the_wav_file_has_the_sound_s_own_rate(monkeypatch):
+    """What was resampled for the codec must not be written with the rate from before."""
+
+    def refuses(*arguments, **options):
+        raise ValueError("Unknown subtype: 'OPUS'")
+
+    monkeypatch.setattr(soundfile, "SoundFile", refuses)
+    data, mime = sound.encode(np.zeros(44_100, np.float32), 44_100)
+    with wave.open(io.BytesIO(data)) as file:
+        assert mime == "audio/wav" and (file.getframerate(), file.getnframes()) == (44_100, 44_100)
+
+
+def test_a_rate_may_be_a_float_that_is_whole():
+    assert sound.as_sound(np.zeros(8000, np.float32), 16_000.0).mime == "audio/ogg"
+
+
 def test_a_long_sound_can_be_written():
     minute = np.random.default_rng(1).normal(0, 0.1, RATE * 80).astype(np.float32)
     data, mime = sound.encode(minute, RATE)
