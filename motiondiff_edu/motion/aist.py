@@ -9,6 +9,7 @@ other name raises an error. The result is in metres, at 60 frames/s, with y up a
 import io
 import math
 import pickle
+import pickletools
 import re
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -38,6 +39,8 @@ COCO = (
     "RightAnkle",
 )
 LARGEST = 300_000_000  # bytes
+MOST_STEPS = 100_000  # of a pickle; one of arrays has some dozens
+MOST_AGAIN = 10  # tuples that a pickle uses once more; one of arrays uses none
 FARTHEST = 1e6  # centimetres: ten kilometres
 FLOOR_PERCENTILE = 1.0
 
@@ -212,12 +215,33 @@ class _Restricted(pickle.Unpickler):
         return _Step(_ADMITTED[module, name])
 
 
+def _check_cost(raw: bytes) -> None:
+    """Raise AistError for a pickle that takes more memory or time than arrays do.
+
+    A few bytes can ask for billions of places in the memo, and tuples within tuples, each one there
+    twice, take for ever where their hash is needed.
+    """
+    memo, tuples, before = set(), set(), ""
+    place, again = 0, 0
+    for k, (op, number, _) in enumerate(pickletools.genops(raw)):
+        if op.name in ("PUT", "BINPUT", "LONG_BINPUT", "MEMOIZE"):
+            place = len(memo) if op.name == "MEMOIZE" else number
+            memo.add(place)
+            (tuples.add if "TUPLE" in before else tuples.discard)(place)
+        elif op.name in ("GET", "BINGET", "LONG_BINGET", "DUP"):
+            again += op.name == "DUP" or number in tuples
+        if max(k, place) > MOST_STEPS or again > MOST_AGAIN:
+            raise AistError("it has more parts than arrays need")
+        before = op.name
+
+
 def _load(path: Path):
     """The content of the file.  Raises AistError, which says what sort of file it is."""
     raw = path.read_bytes()
     if raw.startswith(b"\x93NUMPY"):
         raise AistError(f"{path.name}: {_describe_npy(raw)}")
     try:
+        _check_cost(raw)
         return _Restricted(io.BytesIO(raw), encoding="latin1").load()
     except AistError as error:
         raise AistError(f"{path.name}: not read: {error}.") from None
@@ -232,8 +256,9 @@ def _describe_npy(raw: bytes) -> str:
     wanted = "give a pickle of AIST++'s folder keypoints3d, with positions (frames, 17, 3)."
     try:
         shape = np.load(io.BytesIO(raw), allow_pickle=False).shape
-    except ValueError:
-        return f"a .npy file that contains Python objects; {wanted}"
+    except Exception as error:  # a damaged file may raise anything
+        what = "contains Python objects" if "object" in str(error).lower() else "is damaged"
+        return f"a .npy file that {what}; {wanted}"
     if shape[-1:] == (34,):
         return (
             f"a .npy file of shape {shape}: 34 normalised music or motion features per frame, "

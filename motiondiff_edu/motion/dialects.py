@@ -45,6 +45,7 @@ CENTRAL = {
 PREFIX = re.compile(r"^(bip\d+|mixamorig\d*|character\d*)")
 CENTRE = re.compile(r"^c[_.\- ]+(?=.)", re.IGNORECASE)  # the middle, as in J_Bip_C_Hips
 ENDS_A_WORD = "_.- :|"
+LONGEST_NAME = 200  # letters of a name that are looked at
 SHARED = 0.5  # of a file's names: what so many have in common is no part of a joint's name
 # The joints that a file must have; the others can be computed from these.
 NEEDED = ["Hips", "Head"]
@@ -76,7 +77,7 @@ def by_plain(names: Sequence[str]) -> dict[str, str]:
 
 def shared(names: Iterable[str]) -> str:
     """The longest beginning, up to the end of a word, that half of the names have; or ""."""
-    names = list(names)
+    names = [name[:LONGEST_NAME] for name in names]
     starts = Counter(
         name[: k + 1] for name in names for k, letter in enumerate(name) if letter in ENDS_A_WORD
     )

@@ -51,11 +51,29 @@ def calibrated(
 def rotation_between(
     start: Float[np.ndarray, "3"], end: Float[np.ndarray, "3"]
 ) -> Float[np.ndarray, "3 3"]:
-    """The smallest rotation that takes one unit vector to another."""
+    """The smallest rotation that takes one direction to another (`least_turn`)."""
+    return least_turn(start[None], end[None])[0]
+
+
+def least_turn(
+    start: Float[np.ndarray, "T 3"], end: Float[np.ndarray, "T 3"]
+) -> Float[np.ndarray, "T 3 3"]:
+    """The smallest rotation from one direction to another, frame by frame.
+
+    Between opposite directions there are many: it is a half turn about some axis across them.
+    """
     axis = np.cross(start, end)
-    sine = np.linalg.norm(axis)
-    angle = np.arctan2(sine, start @ end)
-    return scipy.spatial.transform.Rotation.from_rotvec(axis / max(sine, 1e-12) * angle).as_matrix()
+    sine = np.linalg.norm(axis, axis=-1, keepdims=True)
+    cosine = (start * end).sum(-1)
+    opposite = (sine[:, 0] <= 1e-12 * np.abs(cosine)) & (cosine < 0)
+    if opposite.any():
+        thin = np.eye(3)[np.abs(start[opposite]).argmin(-1)]  # not along the direction
+        axis[opposite] = np.cross(start[opposite], thin)
+        sine = np.linalg.norm(axis, axis=-1, keepdims=True)
+    angle = np.where(opposite, np.pi, np.arctan2(sine[:, 0], cosine))
+    return scipy.spatial.transform.Rotation.from_rotvec(
+        axis / np.maximum(sine, 1e-15) * angle[:, None]
+    ).as_matrix()
 
 
 def complete(points: Float[np.ndarray, "T 21 3"]) -> Float[np.ndarray, "T 21 3"]:

@@ -114,7 +114,11 @@ def split_names(path: str | Path) -> list[str]:
     path = Path(path).expanduser()
     check_there(path)
     names = []
-    for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), 1):
+    try:
+        text = path.read_text(encoding="utf-8")
+    except UnicodeDecodeError:
+        raise MotionError(f"{path.name} is no UTF-8 text: save it as UTF-8") from None
+    for number, line in enumerate(text.splitlines(), 1):
         name = line.strip()
         if not name:
             continue

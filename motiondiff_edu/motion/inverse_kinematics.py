@@ -15,8 +15,7 @@ Source: FABRIK: Aristidou and Lasenby, 2011; two bones: the law of cosines.
 import numpy as np
 from jaxtyping import Float
 
-from .bvh.fit import least_turn
-from .directions import ARMS, SPINE1, UP, UPLEGS, unit
+from .directions import ARMS, SPINE1, UP, UPLEGS, least_turn, unit
 from .planting import pelvis_ahead, perpendicular, triangle
 from .skeleton import HEELS, HIPS, JOINTS, PARENTS, J
 

@@ -4,6 +4,7 @@ They have no hierarchy and no skeleton at rest. Hips and head that are missing f
 thighs, and from ears or nose; toes, hand tips and spine as for a BVH file (`directions.complete`).
 """
 
+from collections import Counter
 from collections.abc import Sequence
 
 import numpy as np
@@ -59,7 +60,7 @@ def sources_of(names: Sequence[str], source: str = "") -> dict[str, tuple[str, .
 
     Raises MotionError, with all names, where a needed joint is missing or a name stands twice.
     """
-    twice = next((name for k, name in enumerate(names) if name in names[:k]), None)
+    twice = next((name for name, count in Counter(names).items() if count > 1), None)
     if twice is not None:
         raise MotionError(f"{source}: {twice!r} stands twice in `names`; each joint needs its own")
     found = {joint: (name,) for joint, name in by_names(names).items()}

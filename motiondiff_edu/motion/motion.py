@@ -383,6 +383,14 @@ def unlike_a_body(motion: Motion) -> str:
     )
 
 
+# how a figure that lies along -axis or +axis is turned upright, by signs after its axes are swapped
+UPRIGHT = (
+    ("[1, -1, 1]", "[-1, 1, 1]"),
+    ("[1, -1, -1]", ""),
+    ("[1, -1, 1]", "[1, 1, -1]"),
+)
+
+
 def lies_down(motion: Motion) -> str:
     """What is wrong with the axes of a figure on the course's skeleton, in words; "" if nothing.
 
@@ -398,9 +406,12 @@ def lies_down(motion: Motion) -> str:
     if along[1] > 0.5 or np.abs(along).max() < 1.0:
         return ""
     axis = int(np.abs(along).argmax())
-    turns = ("[..., [1, 0, 2]] * [-1, 1, 1]", "", "[..., [0, 2, 1]] * [1, 1, -1]")
-    how = f"try positions{turns[axis]}" if turns[axis] else "it stands on its head"
-    return f"the figure lies along {'xyz'[axis]}, but y points up: {how}"
+    swapped = ("[..., [1, 0, 2]]", "", "[..., [0, 2, 1]]")[axis]
+    signs = UPRIGHT[axis][int(along[axis] > 0)]
+    turn = f"try positions{swapped} * {signs}"
+    if not swapped:
+        return f"the figure stands on its head: y points up. If that is wrong, {turn}"
+    return f"the figure lies along {'xyz'[axis]}, but y points up: {turn}"
 
 
 def checked_path(path: str | Path) -> Path:

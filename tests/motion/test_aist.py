@@ -191,6 +191,23 @@ def test_what_is_endless_to_print_is_not_printed(tmp_path):
         assert len(str(caught.value)) < 400
 
 
+def test_a_small_pickle_cannot_ask_for_much_memory_or_time(tmp_path):
+    nested: object = ()
+    for _ in range(40):  # its hash takes 2^40 steps
+        nested = (nested, nested)
+    place = (2**31 - 1).to_bytes(4, "little")
+    many = b"\x80\x02" + b"]0" * 10**5
+    key = b"\x80\x02}" + pickle.dumps(nested, 2)[2:-1] + b"K\x01s."  # {nested: 1}
+    for raw in (key, b"\x80\x02]r" + place + b".", many):
+        (tmp_path / NAME).write_bytes(raw)
+        with pytest.raises(AistError, match="more parts than arrays need"):
+            read_keypoints(tmp_path / NAME)
+    both = np.array(made_up())
+    for protocol in range(6):  # arrays of all protocols are read, and the same one twice
+        content = {"keypoints3d_optim": both, "keypoints3d": both, "more": both.copy()}
+        assert len(read_keypoints(written(tmp_path, content, NAME, protocol)).positions)
+
+
 @pytest.mark.parametrize(
     "content, told",
     [

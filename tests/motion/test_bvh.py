@@ -148,6 +148,8 @@ def test_rounded_frame_times_are_understood(seconds, fps):
 
 def test_fps_overrules_the_file(tmp_path):
     assert read(tmp_path, SMALL.replace("0.04", "24"), file_fps=24).fps == 24
+    with pytest.raises(BvhError, match="If that is the time of a frame, pass 120"):
+        read(tmp_path, SMALL, file_fps=1 / 120)
     for wrong in (0, -24, float("nan")):
         with pytest.raises(BvhError, match="fps must be a positive number"):
             read(tmp_path, SMALL, file_fps=wrong)

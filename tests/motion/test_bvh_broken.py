@@ -204,3 +204,10 @@ def test_a_folder_is_no_file_and_a_tilde_is_home(tmp_path, monkeypatch):
     with pytest.raises(BvhError, match="x.bvh: the file is empty"):
         (tmp_path / "x.bvh").touch()
         read_bvh("~/x.bvh")
+
+
+def test_a_joint_at_the_end_of_another_needs_its_braces(tmp_path):
+    joint = "HIERARCHY\nROOT r\n{\nOFFSET 0 0 0\nCHANNELS 0\nJOINT a\n}\n"
+    lost = "{\nOFFSET 0 1 0\nCHANNELS 0\n}\nMOTION\nFrames: 1\nFrame Time: 0.1\n\n"
+    error = refused(tmp_path, joint + lost)
+    assert error.line == 7 and error.joint.startswith("a") and "'{' is missing" in str(error)

@@ -112,6 +112,13 @@ def test_least_turn_carries_over_and_invents_no_twist():
     assert np.allclose(least_turn(start, start), np.eye(3))
 
 
+def test_least_turn_between_opposite_directions_is_half_a_turn():
+    start = np.concatenate([np.eye(3), [[0, -0.41, 0], [1, 2, 3]]])
+    turn = least_turn(start, -2 * start)
+    assert np.allclose(np.einsum("tij,tj->ti", turn, start), -start)
+    assert np.allclose(np.linalg.det(turn), 1)
+
+
 def test_fitted_bones_are_the_medians(turning):
     taller = turning * 1.08
     taller[7] *= 3  # a frame gone astray: a mean would follow it

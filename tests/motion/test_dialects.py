@@ -7,7 +7,7 @@ import pytest
 from foreign_walk import foreign, without
 
 from motiondiff_edu.motion.bvh import BvhError, read_bvh
-from motiondiff_edu.motion.dialects import check_mapping, guess_mapping, without_shared
+from motiondiff_edu.motion.dialects import check_mapping, guess_mapping, shared, without_shared
 from motiondiff_edu.motion.retarget import load_clip, retarget
 from motiondiff_edu.motion.skeleton import JOINTS
 
@@ -132,6 +132,12 @@ def test_what_names_share_is_left_out_and_nothing_else():
     plain = ["Hips", "LeftLeg", "LeftArm", "RightLeg", "RightArm", "L_Leg", "R_Leg", "Head"]
     assert without_shared(plain) == plain
     assert without_shared(["A_", "A_b", "A_c"]) == ["A_", "b", "c"]
+
+
+def test_names_without_end_take_no_memory():
+    """Of each name all beginnings are compared."""
+    names = ["_" * 100_000 + end for end in "abc"]
+    assert len(shared(names)) <= 200 and shared(["a_" * 3 + end for end in "xyz"]) == "a_a_a_"
 
 
 def test_hips_without_a_name_are_where_the_legs_meet(tmp_path):

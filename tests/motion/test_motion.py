@@ -275,8 +275,10 @@ def test_what_was_written_here_can_be_read_and_written_again(tmp_path):
     "turn, told",
     [
         (lambda x: np.stack([x[..., 0], -x[..., 2], x[..., 1]], -1), "lies along z, .*0, 2, 1"),
+        (lambda x: np.stack([x[..., 0], x[..., 2], -x[..., 1]], -1), "lies along z, .*0, 2, 1"),
         (lambda x: np.stack([x[..., 1], -x[..., 0], x[..., 2]], -1), "lies along x, .*1, 0, 2"),
-        (lambda x: x * [1, -1, -1], "lies along y, .*stands on its head"),
+        (lambda x: np.stack([-x[..., 1], x[..., 0], x[..., 2]], -1), "lies along x, .*1, 0, 2"),
+        (lambda x: x * [1, -1, -1], "stands on its head: y points up"),
     ],
 )
 def test_another_axis_that_points_up_is_told(tmp_path, turn, told):
@@ -285,8 +287,8 @@ def test_another_axis_that_points_up_is_told(tmp_path, turn, told):
     with pytest.warns(MotionWarning, match=told) as caught:
         read_motion(tmp_path / "up.npz")
     advice = str(caught[0].message).partition("try positions")[2]
-    if advice:  # it turns the figure upright, and does not mirror it
-        np.testing.assert_allclose(eval(f"x{advice}", {"x": turn(positions)}), positions)
+    # it turns the figure upright, and does not mirror it
+    np.testing.assert_allclose(eval(f"x{advice}", {"x": turn(positions)}), positions)
 
 
 def test_an_unknown_ending_says_which_there_are(tmp_path):
@@ -390,3 +392,11 @@ def test_names_are_announced_before_their_module_is_imported():
     assert registry.get(".never") is None
     with pytest.raises(ModuleNotFoundError):
         registry.get(".late")
+
+
+def test_a_source_that_is_no_text_is_passed_over(tmp_path):
+    path, positions = tmp_path / "mine.npz", walking().positions
+    np.savez(path, positions=positions, fps=20.0, source=np.zeros((90, 90)))
+    assert read_motion(path).source == "mine"
+    np.savez(path, positions=positions, fps=20.0, source="long " * 100)
+    assert read_motion(path).source == ("long " * 100)[:200]

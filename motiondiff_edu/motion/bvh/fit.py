@@ -10,6 +10,7 @@ import numpy as np
 import scipy
 from jaxtyping import Float, Int
 
+from ..directions import least_turn
 from ..kinematics import forward_kinematics
 from ..skeleton import BONES, HIPS, JOINTS, OFFSETS, PARENTS, joint_index
 
@@ -172,18 +173,6 @@ def kabsch(
     flip = np.ones((len(aims), 3))
     flip[:, 2] = np.linalg.det(u @ vt)
     return (u * flip[:, None]) @ vt
-
-
-def least_turn(
-    start: Float[np.ndarray, "T 3"], end: Float[np.ndarray, "T 3"]
-) -> Float[np.ndarray, "T 3 3"]:
-    """The smallest rotation from one direction to another, frame by frame."""
-    axis = np.cross(start, end)
-    sine = np.linalg.norm(axis, axis=-1, keepdims=True)
-    angle = np.arctan2(sine[:, 0], (start * end).sum(-1))
-    return scipy.spatial.transform.Rotation.from_rotvec(
-        axis / np.maximum(sine, 1e-15) * angle[:, None]
-    ).as_matrix()
 
 
 def euler_zxy(local: Float[np.ndarray, "T N 3 3"]) -> Float[np.ndarray, "T N 3"]:

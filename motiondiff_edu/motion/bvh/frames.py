@@ -60,6 +60,12 @@ def frame_time(text: str, line: int, path: str | Path, file_fps: float | None) -
             raise BvhError(
                 f"file_fps must be a positive number of frames a second, not {file_fps:g}.", path
             )
+        if file_fps < 1 / SLOWEST:
+            raise BvhError(
+                f"file_fps is {file_fps:g} frames a second, and 2 at least are read. If that is "
+                f"the time of a frame, pass {1 / file_fps:.6g}.",
+                path,
+            )
         return 1.0 / file_fps
     value = to_number(text, path, line)
     if value <= 0:

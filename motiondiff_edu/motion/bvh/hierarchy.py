@@ -117,6 +117,9 @@ def closed(reader: Reader, statement: Statement) -> None:
     node = current(reader)
     if node is None:
         raise reader.error("this '}' has no matching '{'; remove it.", statement.line)
+    if reader.waiting is not None:
+        name = reader.nodes[reader.waiting]
+        raise reader.error("'{' is missing after it.", statement.line, name)
     if node.offset is None:
         raise reader.error(
             "it has no OFFSET line; add one (0 0 0 when it sits on its parent).", node.line, node
