@@ -13,8 +13,9 @@ def replacing(path: str | Path) -> Iterator[Path]:
     """Yield a temporary name beside `path`; it is renamed to `path`, or removed after an error.
 
     with replacing("walk.bvh") as aside: aside.write_text(...)
+    `~` is the home folder.
     """
-    path = Path(path)
+    path = Path(path).expanduser()
     path.parent.mkdir(parents=True, exist_ok=True)
     # a name of its own for each writer, including threads; files of tempfile would be private
     aside = path.with_name(f".{path.name}.{os.getpid()}.{secrets.token_hex(4)}.part")

@@ -29,7 +29,7 @@ from ..performers.dancer import Dancer
 from ..performers.mover import Mover
 from ..performers.networks import kind_of, networks_of
 from ..performers.walker import Walker
-from .eight_bits import pack, unpack
+from .eight_bits import halved, pack, unpack
 from .weights_file import CheckpointError, check_sizes, config_of, read_weights, write_weights
 
 __all__ = [
@@ -43,18 +43,6 @@ __all__ = [
 ]
 
 FOLDER = Path(__file__).parent
-
-
-def halved(weights: dict[str, Tensor]) -> dict[str, Tensor]:
-    """Weights as float16; whole numbers stay as they are.
-
-    Raises ValueError for weights beyond float16, of which the largest is 65,504.
-    """
-    made = {name: x.half() if x.is_floating_point() else x for name, x in weights.items()}
-    for name, x in weights.items():
-        if torch.isfinite(x).all() and not torch.isfinite(made[name]).all():
-            raise ValueError(f"{name} goes up to {x.abs().max():.3g}, beyond float16: pass bits=32")
-    return made
 
 
 @dataclass(frozen=True)
@@ -217,8 +205,11 @@ def scaler_of(tensors: dict[str, Tensor], name: str) -> Scaler:
 
 
 def card_of(metadata: dict[str, str]) -> dict:
-    """The card of a file; empty where there is none."""
-    return json.loads(metadata.get("card", "{}")) or {}
+    """The card of a file; empty where there is none.  Raises ValueError for another card."""
+    card = json.loads(metadata.get("card", "{}")) or {}
+    if not isinstance(card, dict):
+        raise ValueError(f"the card is a {type(card).__name__}, not a dictionary")
+    return card
 
 
 def available() -> dict[str, Path]:

@@ -14,12 +14,27 @@ from torch import Tensor
 SCALE = ".scale"
 
 
+def halved(weights: dict[str, Tensor]) -> dict[str, Tensor]:
+    """Weights as float16; whole numbers stay as they are.
+
+    Raises ValueError for weights beyond float16, of which the largest is 65,504.
+    """
+    made = {name: x.half() if x.is_floating_point() else x for name, x in weights.items()}
+    for name, x in weights.items():
+        if torch.isfinite(x).all() and not torch.isfinite(made[name]).all():
+            raise ValueError(f"{name} goes up to {x.abs().max():.3g}, beyond float16: pass bits=32")
+    return made
+
+
 def pack(tensors: dict[str, Tensor]) -> dict[str, Tensor]:
-    """Each matrix as int8 with one scale per row (`name.scale`), each vector in float16."""
+    """Each matrix as int8 with one scale per row (`name.scale`), each vector in float16.
+
+    Raises ValueError as `halved` does.
+    """
     packed = {}
     for name, weight in tensors.items():
         if weight.dim() < 2 or not weight.is_floating_point():
-            packed[name] = weight.half() if weight.is_floating_point() else weight
+            packed |= halved({name: weight})
             continue
         scale = weight.float().flatten(1).abs().amax(1).clamp(min=1e-12) / 127
         rows = scale.view(-1, *[1] * (weight.dim() - 1))

@@ -7,6 +7,7 @@ Notebook: 17
 import json
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -19,9 +20,16 @@ from ..conditions.word_encoder import FIRST, ids_of
 from ..metrics.retrieval import Space
 from ..motion.moving_frame import D, to_features
 from ..motion.scaler import Scaler
-from .checkpoints import FOLDER, card_of, scaler_of, weights_of, with_weights
+from .checkpoints import (
+    FOLDER,
+    card_of,
+    refuse_other_shapes,
+    scaler_of,
+    weights_of,
+    with_weights,
+)
 from .eight_bits import pack
-from .weights_file import check_sizes, read_weights, write_weights
+from .weights_file import LARGEST, check_sizes, read_weights, write_weights
 
 FORMAT = "motiondiff_edu judge 1"
 GRID = 4  # frames: the network halves a motion twice
@@ -74,8 +82,12 @@ def judges() -> list[Judge]:
 
 def _assembled(tensors: dict[str, Tensor], metadata: dict[str, str]) -> Judge:
     config = json.loads(metadata["config"])
-    words = tuple(config["words"])
+    words, width = config["words"], config["width"]
+    named = isinstance(words, list) and all(isinstance(word, str) for word in words)
+    if not named or type(width) is not int or not 0 < width <= LARGEST:
+        raise ValueError("a judge has a list of words, and a width")
     check_sizes(tensors, {"motion.mean": D, "motion.std": D})
-    space = Space(D, FIRST + len(words), config["width"])
-    scaler = scaler_of(tensors, "motion")
-    return Judge(with_weights(space, weights_of(tensors)), scaler, words, card_of(metadata))
+    build, weights = partial(Space, D, FIRST + len(words), width), weights_of(tensors)
+    refuse_other_shapes(build, weights)
+    space, scaler = with_weights(build(), weights), scaler_of(tensors, "motion")
+    return Judge(space, scaler, tuple(words), card_of(metadata))

@@ -38,7 +38,7 @@ def write_weights(
 
     The files get temporary names first and are then renamed.
     """
-    path = Path(path)
+    path = Path(path).expanduser()
     metadata = settings | {"config": json.dumps(config), "card": json.dumps(card)}
     tensors = {k: v.detach().cpu().clone().contiguous() for k, v in tensors.items()}
     with replacing(path) as aside:
@@ -55,7 +55,7 @@ def read_weights(path: str | Path, kinds: Mapping[str, Assemble]) -> object:
     `kinds` has a function for each format that is accepted.
     Raises CheckpointError for a file that is missing, damaged, or of another format.
     """
-    path = Path(path)
+    path = Path(path).expanduser()
     metadata, tensors = _opened(path)
     assemble = kinds.get(metadata.get("format", ""))
     if assemble is None:
@@ -79,7 +79,7 @@ def read_weights(path: str | Path, kinds: Mapping[str, Assemble]) -> object:
         return assemble(tensors, metadata | {"file": path.name})
     except CheckpointError:
         raise
-    except (RuntimeError, KeyError, ValueError, AssertionError) as error:
+    except (RuntimeError, KeyError, ValueError, TypeError, AssertionError) as error:
         raise CheckpointError(
             f"{path.name}: weights and configuration disagree ({error}); download it again"
         ) from error

@@ -105,6 +105,25 @@ def test_weights_beyond_float16_are_refused_before_they_become_infinite(tmp_path
     assert not list(tmp_path.iterdir())
     back = load_walker(save(walker, tmp_path / "large.safetensors", bits=32))
     assert back.model.past_in.weight[0, 0] == 1e5
+    with torch.no_grad():
+        walker.model.past_in.bias[0] = 7e4
+    with pytest.raises(ValueError, match="past_in.bias goes up to 7e.04, beyond float16"):
+        save(walker, tmp_path / "small.safetensors", bits=8)
+
+
+def test_the_home_folder_may_be_named_by_a_tilde(tmp_path: Path, monkeypatch):
+    monkeypatch.setenv("HOME", str(tmp_path))
+    save(tiny_walker(), "~/mine.safetensors")
+    assert (tmp_path / "mine.safetensors").exists()
+    assert load_walker("~/mine.safetensors").config == tiny_walker().config
+
+
+def test_a_card_that_is_none_is_refused(saved: Path):
+    with safe_open(saved, "pt") as file:
+        metadata = file.metadata()
+    rewrite(saved, lambda tensors: None, metadata | {"card": "[1]"})
+    with pytest.raises(CheckpointError, match="the card is a list"):
+        load_walker(saved)
 
 
 def test_in_eight_bits_each_weight_is_off_by_half_a_step_of_its_row_at_most(tmp_path: Path):

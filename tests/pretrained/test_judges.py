@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 import torch
+from safetensors.torch import load_file
 
 from data_synth.actions import captions, clips
 from data_synth.actions.neighbours import neighbour
@@ -12,8 +13,8 @@ from motiondiff_edu.metrics.retrieval import Space, r_precision
 from motiondiff_edu.motion.moving_frame import D
 from motiondiff_edu.motion.scaler import Scaler
 from motiondiff_edu.pretrained.checkpoints import available
-from motiondiff_edu.pretrained.judges import Judge, judges, load_judge, save_judge
-from motiondiff_edu.pretrained.weights_file import CheckpointError
+from motiondiff_edu.pretrained.judges import FORMAT, Judge, judges, load_judge, save_judge
+from motiondiff_edu.pretrained.weights_file import CheckpointError, write_weights
 
 WORDS = base_vocabulary(captions.vocabulary())
 
@@ -37,6 +38,12 @@ def test_a_judge_comes_back_from_its_file(tmp_path, unseen):
     assert back.words == WORDS and back.card == {"a": 1}
     some = [one.acted.positions for one in unseen[:3]]
     np.testing.assert_allclose(back.of_motions(some), judge.of_motions(some), atol=0.03)
+    for wrong in ({"width": 9000}, {"width": "8"}, {"width": 10**6}, {"words": 5}):
+        changed = tmp_path / "changed.safetensors"
+        weights, about = load_file(path), {"format": FORMAT}
+        write_weights(changed, weights, about, {"words": list(WORDS), "width": 8} | wrong, {})
+        with pytest.raises(CheckpointError, match="weights and configuration disagree"):
+            load_judge(changed)
     path.write_bytes(path.read_bytes()[:-40])
     with pytest.raises(CheckpointError, match="damaged"):
         load_judge(path)
