@@ -72,7 +72,7 @@ def compare(
             for hint, wrong in (mistakes or {}).items():
                 if any(_is(one, parts, mines, given, of, same) for one in several(wrong)):
                     raise CheckFailed(f"{name}: {hint}")
-        raise CheckFailed(told(name, answers, wanted, rtol, atol))
+        raise CheckFailed(told(name, answers, wanted, rtol, atol, given))
 
 
 def _right(answer: np.ndarray, wanted: np.ndarray, tolerance: tuple[float, float]) -> bool:

@@ -3,7 +3,7 @@
 Each observation is true of every input that was tried. The first that holds is told.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from itertools import permutations
 
 import numpy as np
@@ -11,16 +11,29 @@ import numpy as np
 Arrays = list[np.ndarray]
 
 
-def told(name: str, answers: Arrays, wanted: Arrays, rtol: float, atol: float) -> str:
-    """One sentence: an observation, or the entry with the largest error of the first wrong case."""
+def told(
+    name: str,
+    answers: Arrays,
+    wanted: Arrays,
+    rtol: float,
+    atol: float,
+    given: Sequence[tuple] = (),
+) -> str:
+    """One sentence: an observation, or the entry with the largest error of the first wrong case.
+
+    `given` has the arguments of each case, which are told if they are a few plain numbers.
+    """
     close = lambda one, other: np.allclose(one, other, rtol, atol)  # noqa: E731
     found = _of_numbers(answers, wanted, close) or order(answers, wanted, close)
     if found:
         return f"{name}: {found}"
-    pairs = zip(answers, wanted, strict=True)
-    mine, right = next(p for p in pairs if p[0].shape != p[1].shape or not close(*p))
+    pairs = enumerate(zip(answers, wanted, strict=True))
+    case, (mine, right) = next(
+        (k, p) for k, p in pairs if p[0].shape != p[1].shape or not close(*p)
+    )
+    of = _plainly(given[case]) if given else ""
     if mine.shape != right.shape:
-        return f"{name} has shape {mine.shape}, and should have {right.shape}"
+        return f"{name} has shape {mine.shape}, and should have {right.shape}{of}"
     if not np.isfinite(mine).all():
         return f"{name} contains NaN or infinity{_how_often(answers, wanted, close)}"
     difference = np.abs(mine - right)
@@ -28,8 +41,15 @@ def told(name: str, answers: Arrays, wanted: Arrays, rtol: float, atol: float) -
     place = f" at {tuple(int(i) for i in where)}" if where else ""
     return (
         f"{name} is {mine[where]:.6g}{place}, and should be {right[where]:.6g}"
-        f"{_how_much(mine, right, rtol, atol)}{_how_often(answers, wanted, close)}"
+        f"{_how_much(mine, right, rtol, atol)}{of}{_how_often(answers, wanted, close)}"
     )
+
+
+def _plainly(arguments: tuple) -> str:
+    """The arguments of a call, if they are short and contain no array."""
+    words = ", ".join(map(repr, arguments))
+    plain = all(isinstance(one, int | float | str | list | tuple) for one in arguments)
+    return f"; it was given {words}" if plain and len(words) < 120 else ""
 
 
 def _how_much(mine: np.ndarray, right: np.ndarray, rtol: float, atol: float) -> str:

@@ -75,7 +75,7 @@ def _changes(got: np.ndarray) -> bool:
     """Whether the changes are soft. One that comes at once must come at its row."""
     soft = False
     for at, before, after in ((40, 1.2, 0.8), (80, 0.8, 0.0)):
-        forward = got[at - HAND : at + HAND, 0]
+        forward = got[at - HAND - 1 : at + HAND + 1, 0]
         low, high = min(before, after) - 0.001, max(before, after) + 0.001
         expect(
             ((forward > low) & (forward < high)).all() and np.abs(got[:, 1]).max() < 0.001,
@@ -83,7 +83,7 @@ def _changes(got: np.ndarray) -> bool:
         )
         jump = np.abs(np.diff(forward))
         if jump.max() > 0.9 * abs(after - before):
-            row = at - HAND + 1 + int(jump.argmax())
+            row = at - HAND + int(jump.argmax())
             expect(
                 row == at, f"the change to {after} m/s comes at row {row}, and should at row {at}"
             )

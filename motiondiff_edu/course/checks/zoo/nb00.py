@@ -69,6 +69,10 @@ MISTAKES = {
 OTHERS = {
     "right_turn": {
         "to the left": lambda: turning((0.8, 0.0, np.pi / 4)),
+        "half a second late": lambda: (
+            np.roll(turning(), 10, axis=0) + [[1.2, 0, 0]] * (np.arange(100)[:, None] < 10)
+        ),
+        "half a second early": lambda: np.roll(turning(), -10, axis=0),
         "in degrees": lambda: turning((0.8, 0.0, -45.0)),
         "the whole turn in degrees": lambda: turning((0.8, 0.0, -90.0)),
         "twice as fast": lambda: turning((0.8, 0.0, -np.pi / 2)),

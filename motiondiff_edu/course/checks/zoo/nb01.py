@@ -138,7 +138,7 @@ MISTAKES = {
             lambda pose, heading: _turn(pose, np.radians(heading))
         ),
         "sine and cosine are exchanged: at heading 0 the pose must not turn": _moved(_exchanged),
-        "that is the right place times -1 on one side: the root is added, not subtracted": (
+        "you subtracted the root's position; add it": (
             lambda pose, x, z, heading: _turn(pose, heading) - np.array([x, 0, z])
         ),
     },
@@ -150,7 +150,9 @@ MISTAKES = {
             lambda poses, control: (poses[:, MIRROR] * [1, 1, -1], control * _LED),
             lambda poses, control: (poses[:, MIRROR] * [1, -1, 1], control * _LED),
         ),
-        "the central joints are mirrored, too: their x changes sign as well": central_joints_stay,
+        "the central joints must be mirrored, too: their x changes sign as well": (
+            central_joints_stay
+        ),
         "only some joints swap their names; all pairs do, legs and arms": (
             only(LEGS),
             only([j for j in range(21) if j not in LEGS]),

@@ -121,7 +121,7 @@ MISTAKES = {
         "the table was read one row too low: alpha_bar[0] belongs to clean data": _mixed(
             _root, _rest, lambda s: s - 1
         ),
-        "the noise is added, not subtracted": _mixed(_root, lambda a: -_rest(a)),
+        "you subtracted the noise; add it": _mixed(_root, lambda a: -_rest(a)),
         "the signal is not scaled: multiply it by the root of alpha_bar": _mixed(
             lambda a: 1.0, _rest
         ),

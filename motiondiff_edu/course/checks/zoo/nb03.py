@@ -119,7 +119,9 @@ MISTAKES = {
         "1 - alpha_bar is the noise's share; alpha_bar is the signal's": _wrong(
             spread=lambda a: 2 * a
         ),
-        "the weights add up to 1 over the samples; over the candidates they should": _wrong(axis=0),
+        "the weights sum to 1 over the samples; they must sum to 1 over the candidates": _wrong(
+            axis=0
+        ),
         "each sample has its own alpha_bar; this uses the first one's for all": (
             lambda x_s, alpha_bar, data: _guess(x_s, alpha_bar[:1].expand(len(x_s)), data)
         ),
@@ -132,7 +134,7 @@ MISTAKES = {
         "far from all candidates every exp is 0, and 0 / 0 is NaN: subtract the largest exponent "
         "first, or use torch.softmax": naive_softmax,
         "the squared distance is a sum over D, not a mean": mean_distance,
-        "the distance in the exponent is squared": distance_not_squared,
+        "square the distance in the exponent": distance_not_squared,
         "dividing x_s by sqrt(alpha_bar) makes its noise larger, too: the variance is "
         "(1 - alpha_bar) / alpha_bar": scaled_up,
     },
@@ -173,10 +175,10 @@ MISTAKES = {
             ),
             last=1.0,
         ),
-        "the fresh noise is added after the re-scaling": _misstep(
+        "you re-scaled the fresh noise, too; add it after the re-scaling": _misstep(
             shake=lambda s, beta, alpha_bar: (beta[s] / (1 - beta[s])) ** 0.5
         ),
-        "the fresh noise is added, not subtracted": _misstep(
+        "you subtracted the fresh noise; add it": _misstep(
             shake=lambda s, beta, alpha_bar: -(beta[s] ** 0.5)
         ),
     },
@@ -187,7 +189,7 @@ MISTAKES = {
         "x0_hat is divided by the root of alpha_bar; the root is missing": _misleap(
             guess=lambda x, eps_hat, now: (x - (1 - now) ** 0.5 * eps_hat) / now
         ),
-        "the predicted noise is subtracted in x0_hat": _misleap(
+        "you added the predicted noise in x0_hat; subtract it": _misleap(
             guess=lambda x, eps_hat, now: (x + (1 - now) ** 0.5 * eps_hat) / now**0.5
         ),
         "the predicted noise keeps the size it had at s; at r it is smaller": _misleap(
@@ -206,7 +208,7 @@ MISTAKES = {
         "the fresh noise is multiplied by its variance; take the standard deviation": (
             variance_for_deviation
         ),
-        "eta is squared in the variance": _misleap(
+        "square eta in the variance": _misleap(
             lambda now, then, eta: _variance(now, then, eta**0.5)
         ),
         "no fresh noise was added": no_fresh_noise,

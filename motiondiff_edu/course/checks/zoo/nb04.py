@@ -83,7 +83,7 @@ MISTAKES = {
             _summed(signal=lambda a, x: (a * x) ** 2),
             _summed(signal=lambda a, x: x**2),
         ),
-        "the mean enters squared": _summed(signal=lambda a, x: a**0.5 * x),
+        "the mean must be squared": _summed(signal=lambda a, x: a**0.5 * x),
         "the variance has no root: the logarithm of 1 - alpha_bar, halved with the rest": _summed(
             log=0.5
         ),

@@ -116,7 +116,7 @@ MISTAKES = {
         ),
         "the new weights are not used": lambda means, new, decay: [m.copy() for m in means],
         "the old averages are not used": lambda means, new, decay: [n.copy() for n in new],
-        "the new weights are added, not subtracted": _average(
+        "you subtracted the new weights; add them": _average(
             lambda decay: decay, lambda decay: decay - 1
         ),
     },
@@ -130,8 +130,8 @@ MISTAKES = {
         "this is squared once too often: alpha_bar is already a square": lambda alpha_bar: (
             ((1 - alpha_bar) / alpha_bar) ** 2
         ),
-        "x0_hat - x0 has a in the denominator as well": lambda alpha_bar: 1 - alpha_bar,
-        "eps_hat - eps is multiplied by b as well": lambda alpha_bar: 1 / alpha_bar,
+        "the division by a is missing": lambda alpha_bar: 1 - alpha_bar,
+        "the factor b of eps_hat - eps is missing": lambda alpha_bar: 1 / alpha_bar,
         "the share of the noise is 1 - alpha_bar, not 1 + alpha_bar": lambda alpha_bar: (
             (1 + alpha_bar) / alpha_bar
         ),

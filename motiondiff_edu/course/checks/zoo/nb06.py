@@ -72,7 +72,7 @@ MISTAKES = {
         "the bias is added, not multiplied": lambda q, k, v, bias: (
             (_scores(q, k) * bias).softmax(-1) @ v
         ),
-        "the bias is added, not subtracted": lambda q, k, v, bias: _attend(q, k, v, -bias),
+        "you subtracted the bias; add it": lambda q, k, v, bias: _attend(q, k, v, -bias),
         "the bias is not used": lambda q, k, v, bias: _scores(q, k).softmax(-1) @ v,
         "these are scores times values; where is the softmax?": lambda q, k, v, bias: (
             (_scores(q, k) + bias) @ v

@@ -30,7 +30,7 @@ NOISED = {
     ),
     "signal and noise are swapped": lambda x, s, t, e: _noised(e, s, t, x),
     "the noise is missing": lambda x, s, t, e: _shape(t[s]) ** 0.5 * x,
-    "the noise is added, not subtracted": lambda x, s, t, e: _noised(x, s, t, -e),
+    "you subtracted the noise; add it": lambda x, s, t, e: _noised(x, s, t, -e),
     "every sample has its own step; this uses the first one's for all": lambda x, s, t, e: _noised(
         x, s[:1].expand(len(s)), t, e
     ),

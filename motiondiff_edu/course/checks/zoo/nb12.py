@@ -107,7 +107,7 @@ MISTAKES = {
             _by_channel
         ),
         "the bias is missing": lambda x, w, b, stride: _mix(x, w, 0 * b, (-1, 0, 1), stride),
-        "the bias is added, not subtracted": lambda x, w, b, stride: _mix(
+        "you subtracted the bias; add it": lambda x, w, b, stride: _mix(
             x, w, -b, (-1, 0, 1), stride
         ),
         "keep every second frame, and begin with the *first* one": lambda x, w, b, stride: _mix(

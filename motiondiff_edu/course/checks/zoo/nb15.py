@@ -159,7 +159,7 @@ MISTAKES = {
         "noise is added, but the signal keeps its size; it must be scaled as well": _with_mask(
             lambda x, given, ab, noise: given + math.sqrt(1 - ab) * noise
         ),
-        "the noise is added, not subtracted": _with_mask(
+        "you subtracted the noise; add it": _with_mask(
             lambda x, given, ab, noise: _seen(given, ab, -noise)
         ),
         "add noise to the given values, not to the values of x_s": _with_mask(
@@ -231,7 +231,7 @@ MISTAKES = {
         "the new noise is the difference of the noise levels; but when x is scaled, its noise is "
         "scaled, too": _back(_root, lambda now, then: math.sqrt(now - then)),
         "no noise was added": _back(_root, lambda now, then: 0.0),
-        "the noise is added, not subtracted": _back(_root, lambda now, then: -_rest(now, then)),
+        "you subtracted the noise; add it": _back(_root, lambda now, then: -_rest(now, then)),
         "signal and noise are swapped": _back(_rest, _root),
     },
 }

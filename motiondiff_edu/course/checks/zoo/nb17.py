@@ -30,6 +30,12 @@ def _noised(form):
     return lambda x0, alpha_bar, noise: form(x0, noise, alpha_bar**0.5, (1 - alpha_bar) ** 0.5)
 
 
+def _without_limits(distances, k):
+    """Places are shared, but a text can count more than 1, or less than 0."""
+    nearer, equal = _rows(distances)
+    return ((k - nearer) / equal).mean()
+
+
 MISTAKES = {
     "r_precision": {
         "a rank of 0 is the nearest: the own motion must be among the first k": (
@@ -48,11 +54,13 @@ MISTAKES = {
         ),
         "a network that always makes the same motion must not win: of motions that are equally "
         "near, each has an equal share": lambda distances, k: (_rows(distances)[0] < k).mean(),
-        "the own motion is as near as the others, so it is the nearest in a quarter of the cases": (
-            lambda distances, k: (sum(_rows(distances)) - 1 < k).mean()
-        ),
-        "the places that are left are shared: at most one for the own motion": (
+        "of motions that are equally near, each comes first equally often; this always puts the "
+        "own one last": lambda distances, k: (sum(_rows(distances)) - 1 < k).mean(),
+        "the nearer motions have taken their places: k minus their number are left to share": (
             lambda distances, k: (k / (sum(_rows(distances)))).clip(0, 1).mean()
+        ),
+        "each text counts from 0 to 1: 0 where nearer motions have taken all k places, 1 at most": (
+            _without_limits
         ),
         "k is not used: this is the nearest alone": lambda distances, k: _share(
             *_rows(distances), 1
@@ -77,7 +85,7 @@ MISTAKES = {
         "the root of alpha_bar is missing": _noised(lambda x, e, a, b: a**2 * x + b * e),
         "the root of 1 - alpha_bar is missing": _noised(lambda x, e, a, b: a * x + b**2 * e),
         "signal and noise are swapped": _noised(lambda x, e, a, b: b * x + a * e),
-        "the noise is added, not subtracted": _noised(lambda x, e, a, b: a * x - b * e),
+        "you subtracted the noise; add it": _noised(lambda x, e, a, b: a * x - b * e),
     },
     "composed": {
         "the mask is inverted: True is the lower body": lambda low, up, lower: torch.where(
