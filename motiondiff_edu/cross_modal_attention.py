@@ -200,10 +200,11 @@ def watch(model: nn.Module) -> Iterator[dict[str, list[Float[Tensor, "B H T M"]]
     """
     layers = {name: m for name, m in model.named_modules() if isinstance(m, CrossModalAttention)}
     maps = {name: [] for name in layers}
+    before = {name: layer.watcher for name, layer in layers.items()}
     try:
         for name, layer in layers.items():
             layer.watcher = maps[name]
         yield maps
     finally:
-        for layer in layers.values():
-            layer.watcher = None
+        for name, layer in layers.items():
+            layer.watcher = before[name]

@@ -205,7 +205,8 @@ def q_posterior(x0: X, x_s: X, s: Steps, schedule: Schedule) -> tuple[X, Tensor]
     beta, alpha = at(schedule.beta, s, x_s, first=1), at(schedule.alpha, s, x_s)
     left = at(1 - schedule.alpha_bar, s, x_s)
     left_before = at(1 - schedule.alpha_bar, s - 1, x_s)
-    mean = (1 - left_before).sqrt() * beta / left * x0 + alpha.sqrt() * left_before / left * x_s
+    signal_before = at(schedule.alpha_bar, s - 1, x_s).sqrt()
+    mean = signal_before * beta / left * x0 + alpha.sqrt() * left_before / left * x_s
     return mean, at(posterior_variance(schedule), s, x_s)
 
 

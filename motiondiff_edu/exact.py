@@ -47,8 +47,10 @@ def mixture(
     """
     variances, axes = torch.linalg.eigh(covariances.double())
     for k, (weight, least) in enumerate(zip(weights, variances.amin(-1), strict=True)):
-        if weight <= 0 or least < -1e-9:
-            what = f"has weight {weight:g}" if weight <= 0 else f"has a variance of {least:g}"
+        if not torch.allclose(covariances[k], covariances[k].mT):
+            raise ValueError(f"the covariance of part {k} of the mixture is not symmetric")
+        if not weight > 0 or not least >= -1e-9:
+            what = f"has weight {weight:g}" if not weight > 0 else f"has a variance of {least:g}"
             raise ValueError(f"part {k} of the mixture {what}; make it positive")
     weights = weights.double()
     return Mixture(weights / weights.sum(), means.double(), axes, variances.clamp(min=0))

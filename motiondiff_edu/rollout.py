@@ -117,6 +117,7 @@ def generate(
     steps: int | None = None,
     keep: int = 1,
     hold: bool = True,
+    size: float = 1.0,
 ) -> Float[Tensor, "*B n D"]:
     """Continue `past` (root-frame poses, metres) under `control` (m/s, m/s, rad/s).
 
@@ -124,7 +125,7 @@ def generate(
 
     Past and control are tensors or arrays of numpy, with or without a batch axis. Rows 0..T_h-1 of
     the control belong to the past. steps=None is DDPM with all S steps, a number is
-    DDIM with that many.
+    DDIM with that many. `size`: messages name the speeds of a figure so many times as large.
     Raises ValueError if past and control do not fit the walker or contain NaN, and for a control
     that leaves the range of the training data by over half its width. Warns where it leaves it by
     over a tenth.
@@ -159,7 +160,7 @@ def generate(
         )
     if not (torch.isfinite(past).all() and torch.isfinite(control).all()):
         raise ValueError("past or control contains NaN or infinity; fill the holes first")
-    _check_range(control, T_h, getattr(walker, "card", {}).get("control_range"))
+    _check_range(control, T_h, getattr(walker, "card", {}).get("control_range"), size)
     generator = generator or torch.Generator().manual_seed(seed)
     past, control = (x.float().to(walker.pose_scaler.mean.device) for x in (past, control))
     poses = walker.pose_scaler.transform(past)
@@ -168,15 +169,18 @@ def generate(
     loop = rollout_steps(
         sample, poses, velocities, frames, T_p, generator=generator, keep=keep, hold=hold
     )
-    new = walker.pose_scaler.inverse(torch.stack([frame.pose for frame in loop], dim=1))
+    new = walker.pose_scaler.inverse(torch.stack([frame.pose.clone() for frame in loop], dim=1))
     return new[0] if single else new
 
 
-def _check_range(control: Float[Tensor, "B T C"], T_h: int, seen: dict | None) -> None:
+def _check_range(
+    control: Float[Tensor, "B T C"], T_h: int, seen: dict | None, size: float = 1.0
+) -> None:
     """Warn about speeds beyond the control of the training clips by over a tenth of its range.
 
     Raises ValueError beyond the range by over half its width. Row T_h - 1 leads to the first new
-    frame; the rows before it belong to the past, and the last one leads beyond the end.
+    frame; the rows before it belong to the past, and the last one leads beyond the end. Messages
+    have the speeds of a figure that is `size` times as large.
     """
     if not seen:
         return
@@ -190,9 +194,13 @@ def _check_range(control: Float[Tensor, "B T C"], T_h: int, seen: dict | None) -
         for column in beyond.any(1).any(0).nonzero().flatten().tolist():
             batch, row = beyond[..., column].nonzero()[0].tolist()
             name = COLUMNS[column] if len(low) == len(COLUMNS) else f"column {column}"
+            unit = size if name in COLUMNS[:2] else 1.0
+            asks, least, most = (
+                unit * float(x) for x in (ahead[batch, row, column], low[column], high[column])
+            )
             found.append(
-                f"a {name} of {ahead[batch, row, column]:.3g} in frame {row} of the future "
-                f"(training: {low[column]:.3g} to {high[column]:.3g})"
+                f"a {name} of {asks:.3g} in frame {row} of the future "
+                f"(training: {least:.3g} to {most:.3g})"
             )
         return "; ".join(found)
 

@@ -174,6 +174,17 @@ def test_watching_ends_when_the_block_is_left_by_an_error():
     assert layer.watcher is None
 
 
+def test_watching_within_watching_goes_on_afterwards():
+    layer = random_layer(6, 2)
+    x = torch.randn(1, 3, 6)
+    with watch(layer) as outer:
+        layer(x, x)
+        with watch(layer) as inner:
+            layer(x, x)
+        layer(x, x)
+    assert [len(seen) for maps in (outer, inner) for seen in maps.values()] == [2, 1]
+
+
 def test_heads_own_neighbouring_channels():
     layer, x = random_layer(12, H), torch.arange(12.0).expand(B, T, 12)
     assert torch.equal(layer.split(x)[0, 1, 0], torch.tensor([4.0, 5, 6, 7]))

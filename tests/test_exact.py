@@ -135,3 +135,7 @@ def test_what_is_no_mixture_is_refused():
         mixture(torch.tensor([1.0, 0.0]), torch.zeros(2, 3), torch.eye(3).expand(2, 3, 3))
     with pytest.raises(ValueError, match="part 0 of the mixture has a variance of -1"):
         mixture(torch.ones(1), torch.zeros(1, 3), -torch.eye(3)[None])
+    with pytest.raises(ValueError, match="has weight nan"):
+        mixture(torch.tensor([torch.nan]), torch.zeros(1, 2), torch.eye(2)[None])
+    with pytest.raises(ValueError, match="part 0 of the mixture is not symmetric"):
+        mixture(torch.ones(1), torch.zeros(1, 2), torch.tensor([[[1.0, 5.0], [0.0, 1.0]]]))

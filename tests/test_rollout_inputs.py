@@ -56,3 +56,7 @@ def test_a_control_beyond_the_training_is_named_by_the_frame_that_it_leads_to():
     control[12] = 40.0
     with pytest.raises(ValueError, match="a forward speed of 40 in frame 3 of the future"):
         generate(pretrained("walker"), clip.features()[:10], control, steps=1)
+    with pytest.raises(
+        ValueError, match="a forward speed of 20 in frame 3 .*(-1.5 to 1.5).*rate of 40 "
+    ):
+        generate(pretrained("walker"), clip.features()[:10], control, steps=1, size=0.5)

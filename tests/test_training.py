@@ -180,6 +180,8 @@ def test_a_run_begun_with_other_settings_is_refused(tmp_path: Path):
     save_run(state, path)
     with pytest.raises(ValueError, match="begun with jitter = None"):
         resume_run(state, path, {"jitter": 0.1})
+    with pytest.raises(ValueError, match="begun with note = None"):  # it did not know of notes
+        resume_run(state, path, {"note": None})
 
 
 def test_the_moments_of_one_optimizer_are_not_given_to_another(tmp_path: Path):

@@ -85,7 +85,8 @@ def frames_zeroed(rate: float, T_h: int, D: int) -> Moments:
     check_rate(rate)
     frame = torch.arange(T_h * D) // D
     alike = frame[:, None] == frame
-    return Moments(1 - rate, torch.where(alike, 1 - rate, (1 - rate) ** 2).double())
+    both = torch.tensor([1 - rate, (1 - rate) ** 2], dtype=torch.float64)
+    return Moments(1 - rate, torch.where(alike, *both))
 
 
 def entries_rescaled(rate: float, entries: int) -> Moments:

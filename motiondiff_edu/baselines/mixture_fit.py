@@ -82,7 +82,7 @@ class WindowMixture:
 
         def denoise(x_s: Tensor, s: Tensor) -> Tensor:
             x = x_s.double()
-            alpha_bar = at(schedule.alpha_bar, s, x)
+            alpha_bar = at(schedule.alpha_bar, s, x, first=1)
             a, off = alpha_bar.sqrt(), x - alpha_bar.sqrt() * self.mean
             z = off @ self.basis
             found = posterior_mean(self.inside, z, s, schedule)

@@ -9,10 +9,6 @@ import torch
 from jaxtyping import Float
 from torch import Tensor, nn
 
-from .transformer import TransformerConfig
-
-REGRESSION = TransformerConfig(deterministic=True)
-
 
 def regression_loss(
     model: nn.Module,

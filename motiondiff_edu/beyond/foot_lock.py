@@ -73,7 +73,6 @@ def to_stands(
     """The shift that stops a toe from sliding while it stands (`still`); zero where it is given."""
     shift = np.zeros_like(toe)
     anchored = given.copy()
-    frames = np.arange(len(toe))
     for first, last in runs(still):
         inside = np.flatnonzero(given[first:last]) + first
         if len(inside):  # at the given places; linear between them if they differ
@@ -86,7 +85,10 @@ def to_stands(
         back = (pin - toe[first:last]) * GROUND
         if np.linalg.norm(back, axis=-1).max() > farthest:
             continue
-        pull = 1 - closeness(given & ((frames < first) | (frames >= last)))[first:last]
+        begin = max(0, first - FADE)  # what is given farther away does not matter
+        near = given[begin : last + FADE].copy()
+        near[first - begin : last - begin] = False
+        pull = 1 - closeness(near)[first - begin : last - begin]
         shift[first:last] = pull[:, None] * back
         anchored[first:last] = True
     return between_anchors(shift, anchored)

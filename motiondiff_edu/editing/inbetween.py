@@ -102,7 +102,8 @@ def inbetween(
     `departures`: `OURS`, or `PAPER` for masked sampling as printed. Where nothing is known the
     result is a plain sample in both cases.
     Raises ValueError where a joint is given without the pelvis, or is given but NaN or infinite,
-    and for shapes that do not fit.  Source: MoFusion 4.4.   Notebook: 15
+    for music and a network without, and for shapes that do not fit.
+    Source: MoFusion 4.4.   Notebook: 15
     """
     positions, known = _checked(positions, known)
     generator = generator or torch.Generator().manual_seed(0)
@@ -111,6 +112,8 @@ def inbetween(
     at_home = np.where(known[..., None], place.enter(np.nan_to_num(positions)), 0.0)
     features = torch.from_numpy(placed_features(at_home)).float().to(device)[None]
     sees = departures.shown and getattr(dancer, "can_be_shown", False)
+    if sees and mel is not None:
+        raise ValueError("this network sees what is given, and takes no music: leave `mel` out")
     mask = torch.from_numpy(known)[None].to(device)
     view = dancer.view(features, mask) if sees else View.none(features)
     given = dancer.motion_scaler.transform(view.enter(features))[0]

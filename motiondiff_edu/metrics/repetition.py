@@ -58,13 +58,18 @@ def lag_similarity(
 
     Raises ValueError for a clip under 2 s, NaN, and a figure that keeps one pose.
     """
+    return _similar(positions, fps, slice(None))
+
+
+def _similar(positions: np.ndarray, fps: float | int, lags: slice) -> Float[np.ndarray, "L"]:
+    """`lag_similarity` for some of the lags."""
     x = _moving(pose_changes(positions))
     overlap = round(OVERLAP * fps)
     if len(x) < overlap:
         raise ValueError(
             f"{len(x) / fps:g} s are too short to look for repetition: {OVERLAP:g} s are needed"
         )
-    return np.array([autocorrelation(x, lag) for lag in range(len(x) - overlap + 1)])
+    return np.array([autocorrelation(x, lag) for lag in range(len(x) - overlap + 1)[lags]])
 
 
 def repeat_score(
@@ -76,14 +81,14 @@ def repeat_score(
     movement without repetition is still a little similar to itself by chance.
     Raises ValueError as `lag_similarity` does, and when no such lag fits.   Notebook: 14
     """
-    similarity = lag_similarity(positions, fps)
     first, last = round(lags[0] * fps), round(lags[1] * fps)
-    if len(similarity) <= first:
+    similarity = _similar(positions, fps, slice(first, last + 1))
+    if not len(similarity):
         raise ValueError(
             f"{len(positions) / fps:g} s are too short for a lag of {lags[0]:g} s "
             f"with {OVERLAP:g} s to compare"
         )
-    return float(similarity[first : last + 1].max())
+    return float(similarity.max())
 
 
 def _moving(x: Float[np.ndarray, "T F"]) -> Float[np.ndarray, "T F"]:

@@ -15,6 +15,9 @@ import numpy as np
 from .clip import Clip
 from .skeleton import MIRROR
 
+# facts about a recording that do not hold for its mirrored or reversed version
+_OF_THE_RECORDING = ("wild", "start")
+
 _FLIP_X = np.array([-1.0, 1.0, 1.0])  # positions: x points to the left
 _FLIP_CONTROL = np.array([1.0, -1.0, -1.0])  # control: forward stays, left and yaw change sign
 
@@ -31,7 +34,13 @@ def mirror(clip: Clip) -> Clip:
         poses=clip.poses[:, MIRROR] * _FLIP_X,
         control=clip.control * _FLIP_CONTROL,
         contacts=contacts,
+        info=_without_places(clip),
     )
+
+
+def _without_places(clip: Clip) -> dict:
+    """What is known of a clip, but for which joints are wild and where it started."""
+    return {name: fact for name, fact in clip.info.items() if name not in _OF_THE_RECORDING}
 
 
 def reverse_time(clip: Clip) -> Clip:
@@ -47,7 +56,13 @@ def reverse_time(clip: Clip) -> Clip:
     control[:-1] = -clip.control[:-1][::-1]
     control[-1] = control[-2] if len(clip) > 1 else -clip.control[-1]
     contacts = None if clip.contacts is None else clip.contacts[::-1].copy()
-    return replace(clip, poses=clip.poses[::-1].copy(), control=control, contacts=contacts)
+    return replace(
+        clip,
+        poses=clip.poses[::-1].copy(),
+        control=control,
+        contacts=contacts,
+        info=_without_places(clip),
+    )
 
 
 def augment(clips: Sequence[Clip]) -> list[Clip]:

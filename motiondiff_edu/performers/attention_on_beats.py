@@ -52,7 +52,7 @@ def attention_maps(
     no music.  Source: MoFusion Fig. 4.  Notebook: 12
     """
     model, T = dancer.model, len(dance)
-    if not hasattr(model.config, "widths") or model.music is None:
+    if not hasattr(model.config, "widths") or getattr(model, "music", None) is None:
         raise ValueError(
             f"these maps need a U-Net with music; this dancer has a {type(model).__name__}, "
             f"C = {model.config.C}"

@@ -71,7 +71,9 @@ class DescribedWindows:
         Raises ValueError for lists of different lengths.
         """
         texts = [[(text,) for text in each] for each in captions]
-        both = {one for each in captions for text in each for one in (text, exchanged_sides(text))}
+        given = {text for each in captions for text in each}
+        once = given | set(map(exchanged_sides, given))
+        both = once | set(map(exchanged_sides, once))  # "Left" becomes "right", and that "left"
         return cls._of(positions, contacts, texts, tuple(sorted(both)), timelines)
 
     @classmethod
@@ -87,8 +89,12 @@ class DescribedWindows:
         of_each = every.split([len(each) for each in texts])
         groups: dict[int, list[tuple]] = {}
         beside = timelines or [np.zeros((len(moved), 0)) for moved in positions]
-        for moved, acts, stands, ids in zip(positions, beside, contacts, of_each, strict=True):
+        for k, (moved, acts, stands, ids) in enumerate(
+            zip(positions, beside, contacts, of_each, strict=True)
+        ):
             n = len(moved) // GRID * GRID
+            if not n:
+                raise ValueError(f"motion {k} has {len(moved)} frames, and {GRID} are needed")
             columns = np.concatenate([to_features(moved[:n]), acts[:n]], -1)
             features = torch.from_numpy(columns).float()
             groups.setdefault(n, []).append((features, torch.from_numpy(stands[:n].copy()), ids))

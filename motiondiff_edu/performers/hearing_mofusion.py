@@ -24,6 +24,12 @@ class EarSizes:
     ear_width: int
     ear_blocks: int
 
+    def __post_init__(self):
+        super().__post_init__()
+        own = EarConfig()
+        if bool(self.music_layers) != bool(own.music_layers):
+            raise ValueError("music_layers must be 1 or more: the ear halves the music, too")
+
     @property
     def ear(self) -> EarConfig:
         return EarConfig(C=self.C, width=self.ear_width, blocks=self.ear_blocks)

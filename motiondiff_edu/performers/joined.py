@@ -127,18 +127,24 @@ def change_of(control: Float[np.ndarray, "T 3"]) -> float:
 
 
 def in_words(
-    jump: float, unlike: dict[str, float], height: float = 0.0, change: float = 0.0
+    jump: float,
+    unlike: dict[str, float],
+    height: float = 0.0,
+    change: float = 0.0,
+    size: float = 1.0,
 ) -> str:
     """What there is to say about a continuation; "" if there is nothing.
 
+    jump    of the joint that would go farthest, in metres of a figure of the course's size
     height  of the lowest joint of the last given pose (m)
-    change  `change_of` the control, from the last given frames on
+    change  `change_of` the control, from the last given frames on, for that size as well
+    size    of the figure, over the course's: what is said is in its own metres
     """
     words = []
     if change > SUDDEN:
         words.append(
-            f"the control changes by {change:.1f} m/s within half a second, faster than any of the "
-            "training, so feet may slide there"
+            f"the control changes by {size * change:.1f} m/s within half a second, faster than any "
+            "of the training, so feet may slide there"
         )
     if unlike:
         words.append(f"the poses to continue are unlike the walker's training {farthest(unlike)}")
@@ -148,8 +154,8 @@ def in_words(
         )
     if jump > FAR:
         words.append(
-            f"a joint would jump by {100 * jump:.0f} cm from the last pose, so the first frames "
-            "are blended"
+            f"a joint would jump by {100 * size * jump:.0f} cm from the last pose, so the first "
+            "frames are blended"
         )
     return "; ".join(words)
 

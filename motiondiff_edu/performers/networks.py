@@ -83,6 +83,11 @@ def register(
     if taken and _full_name(taken.model) != _full_name(model):
         other = _full_name(taken.model)
         raise ValueError(f"{model.__name__} is the name of {other}: choose another name")
+    if taken and taken.performer != performer:
+        raise ValueError(
+            f"{model.__name__} is a {taken.performer}'s network already: a {performer}'s needs a "
+            "class of its own"
+        )
     same = [one for one in _NETWORKS.values() if one.config is config]
     if same and _full_name(same[0].model) != _full_name(model):
         raise ValueError(

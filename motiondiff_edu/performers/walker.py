@@ -109,11 +109,11 @@ class Walker(Performer):
         evaluations, draws = len(ahead) * (steps or self.schedule.S), generators(seed, count)
         with with_bar(self, evaluations, "walking", progress) as walker:
             each = (x.expand(count, -1, -1) for x in (past, steer))
-            new = rollout.generate(walker, *each, generator=draws, steps=steps)
+            new = rollout.generate(walker, *each, generator=draws, steps=steps, size=size)
         both = [joined(start, one) for one in new.double().cpu().numpy().reshape(count, -1, J, 3)]
         unlike, height = unlike_training(self.pose_scaler, past), motion.positions[-1, :, 1].min()
         change = change_of(start.control[T_h - 2 :])
-        words = in_words(max(jump for _, jump in both), unlike, height, change)
+        words = in_words(max(jump for _, jump in both), unlike, height, change, size)
         if words:
             warnings.warn(f"{motion.name}: {words}", MotionWarning, stacklevel=2)
         path, name = start.path[T_h:], f"{motion.name}, continued"

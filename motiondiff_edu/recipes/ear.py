@@ -134,7 +134,7 @@ def ear_within(dancer: Dancer) -> TrainedEar:
     """
     if not isinstance(dancer.model, WithEar):
         raise ValueError(f"{type(dancer.model).__name__} has no ear that another dancer could use")
-    card = dancer.card["ear"] | {"taken_over": True}
+    card = dancer.card.get("ear", {}) | {"taken_over": True}
     return TrainedEar(dancer.model.ear, dancer.mel_scaler, card)
 
 

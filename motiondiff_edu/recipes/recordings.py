@@ -47,8 +47,9 @@ def recording_files() -> list[Path]:
 
     Raises RecordingsError where MOTIONDIFF_REAL_DATA does not name a folder with recordings.
     """
-    folder = Path(os.environ.get(VARIABLE, ""))
-    files = [path for one in FOLDERS for path in sorted((folder / one).glob("*.bvh"))]
+    folder = os.environ.get(VARIABLE)
+    found = [Path(folder) / one for one in FOLDERS] if folder else []
+    files = [path for one in found for path in sorted(one.glob("*.bvh"))]
     if not files:
         raise RecordingsError(
             f"{VARIABLE} must name a folder with recordings in {' and '.join(FOLDERS)}"
@@ -57,9 +58,17 @@ def recording_files() -> list[Path]:
 
 
 def training_recordings() -> list[Recorded]:
-    """Positions (metres, world, 20 frames/s) and contacts of the recordings of training persons."""
-    found = []
-    for path in training_files(recording_files()):
+    """Positions (metres, world, 20 frames/s) and contacts of the recordings of training persons.
+
+    Raises RecordingsError where there are none.
+    """
+    found, files = [], training_files(recording_files())
+    if not files:
+        raise RecordingsError(
+            f"the recordings that {VARIABLE} names are all of persons who are kept for judging; "
+            f"those of training begin with {' or '.join(TRAINED)}"
+        )
+    for path in files:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # notes on the file
             positions = read_motion(path).positions

@@ -130,7 +130,12 @@ def _check_about(wanted: dict | None, found: dict | None, path: str | Path) -> N
     if wanted is None or wanted == found:
         return
     found = found or {}
-    name = next(key for key in [*wanted, *found] if wanted.get(key) != found.get(key))
+    unlike = (
+        key
+        for key in [*wanted, *found]
+        if key not in wanted or key not in found or wanted[key] != found[key]
+    )
+    name = next(unlike)
     raise ValueError(
         f"{path} was begun with {name} = {found.get(name)!r}, not {wanted.get(name)!r}: "
         "delete the file to start again, or use the settings that it was begun with"

@@ -176,7 +176,9 @@ def train_dancer(
     model = network(config)
     about = {"network": type(model).__name__, "data": digest(windows)}
     facts = {"windows": len(windows)} | bones_of(windows)
-    if getattr(recipe, "ear", None):
+    if getattr(recipe.config, "ear", None):
+        if not (ear or getattr(recipe, "ear", None)):
+            raise ValueError(f"{recipe.name} needs an ear: pass `ear`, or use a SongRecipe")
         trained_ear = ear or ear_of(recipe.ear, run_file.parent, log)
         model.ear.load_state_dict(trained_ear.hearing(windows.mel_scaler).state_dict())
         about["ear"] = digest_of_tensors(trained_ear.ear.state_dict())[:16]

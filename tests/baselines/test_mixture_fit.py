@@ -85,6 +85,8 @@ def test_the_denoiser_of_windows_is_the_exact_one_of_the_whole_mixture():
     torch.testing.assert_close(
         fitted.denoiser(SCHEDULE)(x, s), exact_denoiser(fitted.whole, SCHEDULE)(x, s)
     )
+    with pytest.raises(IndexError, match="s = 0"):
+        fitted.denoiser(SCHEDULE)(x, torch.zeros(4, dtype=torch.long))
 
 
 def test_the_whole_mixture_has_the_windows_mean_and_variance():

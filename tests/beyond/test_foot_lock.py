@@ -112,6 +112,20 @@ def test_a_stand_s_correction_rises_smoothly_beside_a_frame_that_is_given_after_
     assert (shift[10:] == 0).all()
 
 
+def test_only_what_is_given_near_a_stand_matters():
+    """Beside many stands, with frames given far and near, a toe is held as when each is alone."""
+    rng = np.random.default_rng(3)
+    toe, still = rng.normal(0, 0.02, (200, 3)), np.zeros(200, bool)
+    for first in range(20, 180, 25):
+        still[first : first + 8] = True
+    given = rng.random(200) < 0.05
+    given[20:28] = False
+    whole = to_stands(toe, given, still)
+    alone = to_stands(toe[:45], given[:45], still[:45])
+    np.testing.assert_allclose(whole[:28], alone[:28], atol=1e-12)
+    assert np.abs(whole[20:28]).max() > 1e-3
+
+
 def test_nothing_stands_nothing_moves():
     flying = np.tile([0.0, 1.0, 0.0], (10, 1)) + np.arange(10)[:, None] * [0.0, 0.0, 0.3]
     assert (to_stands(flying, np.zeros(10, bool), stands(flying, 20.0)) == 0).all()

@@ -1,5 +1,7 @@
 """Mirror and time reversal are exact: bones, paths, and twice is the identity."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import torch
@@ -139,3 +141,10 @@ def test_augment_makes_four_with_the_same_source(walk):
     forward, last = walk.control[0, 1], walk.control[-2, 1]
     assert ends == pytest.approx([forward, -forward, -last, last])
     assert augment([]) == []
+
+
+def test_what_holds_for_the_recording_alone_is_left_out(walk):
+    """The wild joints of a mirrored clip are others, and it started elsewhere."""
+    known = replace(walk, info={"wild": np.ones((57, 21), bool), "start": 1, "style": 3})
+    for changed in (mirror(known), reverse_time(known)):
+        assert changed.info == {"style": 3}

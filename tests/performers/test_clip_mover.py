@@ -183,6 +183,13 @@ def test_windows_of_whole_texts_mirror_the_text_with_the_motion():
     assert pairs["hops"] == "hops" and pairs["the left foot kicks"] == "the right foot kicks"
     told = [[texts[int(k)] for k in row] for row in windows.captions[16][..., 0]]
     assert told == captions[:2] and windows.captions[24].shape == (1, 2, 1)
+    captions[0] = ["Left hand waves", "LEFT AND Right"]
+    more = DescribedWindows.of_texts(positions, contacts, captions)
+    assert {"Left hand waves", "right hand waves", "left hand waves"} <= set(more.words)
+    with pytest.raises(ValueError, match="motion 1 has 7 frames, and 8 are needed"):
+        DescribedWindows.of_texts(
+            [positions[0], positions[1][:7], positions[2]], contacts, captions
+        )
     seen = {
         texts[int(k)]
         for seed in range(20)

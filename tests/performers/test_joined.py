@@ -140,6 +140,7 @@ def test_what_is_said():
     assert in_words(0.31, {}) == (
         "a joint would jump by 31 cm from the last pose, so the first frames are blended"
     )
+    assert "by 15 cm" in in_words(0.3, {}, size=0.5), "in metres of the figure itself"
     assert "at" not in in_words(0.0, {}, OFF_FLOOR)
     assert in_words(0.01, {}, 0.84) == (
         "the last pose is 0.84 m off the floor, and the walker comes down to it"

@@ -71,6 +71,12 @@ def test_the_denoiser_is_that_of_the_remainder(dancer):
     )
 
 
+def test_music_for_a_network_without_is_refused(dancer):
+    truth, known = np.zeros((T, 21, 3)), keyframes(T, 20)
+    with pytest.raises(ValueError, match="takes no music: leave `mel` out"):
+        inbetween(dancer, truth, known, torch.zeros(20, 80), steps=2)
+
+
 def test_a_network_that_sees_nothing_is_named():
     dancer = checkpoints.pretrained("unconditional")
     x = torch.zeros(1, T, 63)

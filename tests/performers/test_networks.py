@@ -142,6 +142,12 @@ def test_what_cannot_be_registered(registry, arguments, words):
         register(*arguments)
 
 
+def test_a_network_belongs_to_one_performer(registry):
+    register("walker", LinearWalker, LinearConfig)
+    with pytest.raises(ValueError, match="LinearWalker is a walker's network already"):
+        register("dancer", LinearWalker, LinearConfig)
+
+
 def test_a_name_belongs_to_one_class_which_may_be_defined_again(registry):
     other = type("MoDiff", (nn.Module,), {})
     with pytest.raises(ValueError, match="MoDiff is the name of motiondiff_edu.modiff.MoDiff"):

@@ -110,6 +110,14 @@ def test_without_recordings_it_is_said_how_to_give_them(monkeypatch, tmp_path):
     with pytest.raises(ValueError, match="MOTIONDIFF_REAL_DATA must name a folder"):
         training_windows(replace(RECIPE, recordings=1))
     assert training_files([Path("cmu_05_06.bvh")]) == []
+    (tmp_path / "bvh").mkdir()
+    write_bvh(tmp_path / "bvh" / "cmu_05_06.bvh", walk(constant_control(1.1), seed=1).world())
+    with pytest.raises(ValueError, match="all of persons who are kept for judging"):
+        training_windows(replace(RECIPE, recordings=1))
+    monkeypatch.delenv("MOTIONDIFF_REAL_DATA")
+    monkeypatch.chdir(tmp_path)  # whose bvh folder nobody has named
+    with pytest.raises(ValueError, match="MOTIONDIFF_REAL_DATA must name a folder"):
+        recording_files()
 
 
 @pytest.mark.parametrize(

@@ -22,6 +22,7 @@ from motiondiff_edu.recipes.dancers import (
     DANCE_RECIPES,
     DANCER,
     DANCER_PLAIN,
+    HEARING,
     REGRESSED,
     UNCONDITIONAL,
     X0,
@@ -169,6 +170,9 @@ def test_an_ear_can_be_taken_over(windows, tmp_path: Path):
         train_dancer(wider, run, windows, ear=ear)
     with pytest.raises(ValueError, match="unconditional has no ear"):
         train_dancer(UNCONDITIONAL, run, windows, ear=ear)
+    mine = DanceRecipe("mine", TINY.config, steps=1)
+    with pytest.raises(ValueError, match="mine needs an ear: pass `ear`"):
+        train_dancer(mine, run.with_name("three.safetensors"), windows)
     with pytest.raises(ValueError, match="MoFusion has no ear"):
         ear_within(pretrained("unconditional"))
 
@@ -182,6 +186,8 @@ def test_recipes_that_cannot_be_trained_are_refused():
         replace(TINY, ear=None)
     with pytest.raises(ValueError, match="pass ear=None"):
         replace(TINY, config=X0)
+    with pytest.raises(ValueError, match="music_layers must be 1 or more"):
+        replace(HEARING, music_layers=0)
     with pytest.raises(ValueError, match="or make it a SongRecipe"):
         training_windows(DanceRecipe("mine", X0, steps=1))
 
