@@ -12,6 +12,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
 from .body import GREY, INK
+from .noise import histogram
 from .style import DASHES, OKABE_ITO, SMALL, figure, legend
 
 GIVEN, OPEN = "#9BC4E2", "#F4F4F4"
@@ -38,14 +39,7 @@ def slice_of_plane(
     plane.plot(np.full(len(first), at), first, "_", ms=9, color=OKABE_ITO[1], alpha=0.5)
     plane.set(title="the data", xlabel="x, given", ylabel="y, unknown")
     for k, (axis, (name, y)) in enumerate(zip(beside, made.items(), strict=True)):
-        bars = {"bins": 60, "range": (float(grid[0]), float(grid[-1])), "density": True}
-        axis.hist(
-            np.asarray(y),
-            orientation="horizontal",
-            color=OKABE_ITO[(1, 0, 2)[k % 3]],
-            alpha=0.5,
-            **bars,
-        )
+        histogram(axis, y, grid, 60, OKABE_ITO[(1, 0, 2)[k % 3]], "horizontal")
         axis.plot(density, grid, color=INK, lw=2, label="p(y | x), exact" if k == 0 else None)
         axis.set(title=name, xlim=(0, 1.7 * float(max(density))), xlabel="density")
     plane.set_ylim(float(grid[0]), float(grid[-1]))

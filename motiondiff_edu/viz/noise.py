@@ -169,18 +169,21 @@ def histograms(
     """
     fig, axes = panels(len(samples), width=4.2 * max(len(samples), 2), height=3.4, share="y")
     for i, (axis, (name, values)) in enumerate(zip(axes, samples.items(), strict=True)):
-        _histogram(axis, values, grid, 80, COLOURS[i % 6])
+        histogram(axis, values, grid, 80, COLOURS[i % 6])
         axis.plot(grid, density, color=INK, lw=1.8)
         axis.set_title(name)
         axis.set_ylim(0, top * float(max(density)))
     return finish(fig, caption, (label, "density"))
 
 
-def _histogram(axis, values: ArrayLike, grid: ArrayLike, bins: int, color: str) -> None:
+def histogram(
+    axis, values: ArrayLike, grid: ArrayLike, bins: int, color: str, orientation: str = "vertical"
+) -> None:
     """Draw the density of values over the grid; those off the grid count, and are not drawn."""
     values, ends = np.asarray(values).ravel(), (float(grid[0]), float(grid[-1]))
     share = np.full(len(values), bins / (len(values) * (ends[1] - ends[0])))
-    axis.hist(values, bins=bins, range=ends, weights=share, color=color, alpha=0.5)
+    bars = {"bins": bins, "range": ends, "weights": share, "orientation": orientation}
+    axis.hist(values, color=color, alpha=0.5, **bars)
 
 
 def paths(
@@ -201,12 +204,11 @@ def paths(
     middle.plot(steps, x[:, :show], color=BLUE, lw=0.8, alpha=0.45)
     middle.plot(steps, x[:, 0], color=ORANGE, lw=2)
     middle.invert_xaxis()
-    bars = {"bins": 60, "range": (float(grid[0]), float(grid[-1])), "density": True, "alpha": 0.6}
     for axis, density, values, name in (
         (left, at_start, x[0], "at S"),
         (right, at_end, x[-1], "at 0"),
     ):
-        axis.hist(values, orientation="horizontal", color=SKY, **bars)
+        histogram(axis, values, grid, 60, SKY, "horizontal")
         axis.plot(density, grid, color=INK, lw=1.6)
         axis.set_title(name)
         axis.set_xticks([])
@@ -226,7 +228,7 @@ def one_moment(
         (left, values, BLUE, f"x_s at s = {s}"),
         (right, guesses, ORANGE, "x0_hat there"),
     ):
-        _histogram(axis, data, grid, 90, colour)
+        histogram(axis, data, grid, 90, colour)
         axis.plot(grid, density, color=INK, lw=1.6)
         axis.set_title(name)
         axis.set_ylim(0, 2.4)

@@ -76,8 +76,9 @@ def _control(name: str, value) -> ipywidgets.Widget:
             f"{name} takes (low, high, start), a list of choices, or True or False; not {value!r}"
         )
     low, high, begin = value
-    kind = ipywidgets.IntSlider if isinstance(begin, int) else ipywidgets.FloatSlider
-    extra = {} if isinstance(begin, int) else {"step": (high - low) / 50}
+    whole = all(isinstance(number, int) for number in value)
+    kind = ipywidgets.IntSlider if whole else ipywidgets.FloatSlider
+    extra = {} if whole else {"step": (high - low) / 50}
     slider = kind(
         value=begin, min=low, max=high, description=name, continuous_update=False, **extra
     )

@@ -202,7 +202,7 @@ class Editor(anywidget.AnyWidget):
         the joints. Raises the errors of `write_bvh`, and MotionError for a recording that
         `read_motion` has read, unless `overwrite`.
         """
-        path = Path(path)
+        path = Path(path).expanduser()
         if not overwrite:
             check_no_recording(path)
         report = write_bvh(path, self._shown(), self._fps)

@@ -249,7 +249,7 @@ class Player(anywidget.AnyWidget):
         """Write the figure as one HTML file that plays anywhere, offline."""
         with replacing(path) as part:
             part.write_text(self.page(), "utf-8")
-        return Path(path)
+        return Path(path).expanduser()
 
     def save_gif(self, path: str | os.PathLike, size: tuple[int, int] = (400, 360)) -> Path:
         """Write the figure as an endless GIF, each figure `size` pixels."""
@@ -269,7 +269,7 @@ class Player(anywidget.AnyWidget):
                 loop=0,
                 optimize=False,
             )
-        return Path(path)
+        return Path(path).expanduser()
 
     def save_mp4(self, path: str | os.PathLike, size: tuple[int, int] = (480, 432)) -> Path:
         """Write the figure as MP4, each figure `size` pixels, with its sound.
@@ -299,7 +299,7 @@ class Player(anywidget.AnyWidget):
                     writer.send(np.ascontiguousarray(picture))
             finally:
                 writer.close()  # on an error, too: ffmpeg must let go of the file
-        return Path(path)
+        return Path(path).expanduser()
 
 
 def _hundredths(n: int, fps: float) -> list[int]:
@@ -315,7 +315,7 @@ def _figures(arrays: list, options: dict, parents: Sequence | None) -> list[post
     count = len(arrays)
     parts = body.parts_for(arrays[0].shape[1], parents)
     contacts = packing.as_contacts(options["contacts"], [len(a) for a in arrays])
-    labels = packing.per_figure(options["labels"] or "", count, "labels")
+    labels = [label or "" for label in packing.per_figure(options["labels"], count, "labels")]
     pasts = packing.per_figure(options["past"], count, "past")
     paths = (
         options["path"] if isinstance(options["path"], list | tuple) else [options["path"]] * count

@@ -15,6 +15,7 @@ from ..motion.root_frame import FPS
 from ..motion.skeleton import BONES, HEELS, TOES
 from ..viz import body
 
+TRAIL = 1200  # frames of the root's trail in a picture: a film of all would cost their square
 SMOOTH = 2  # pictures are drawn larger by this factor and then shrunk: pillow has no antialiasing
 GROUND, LINE = "#F1F3F5", "#9AA3AE"
 
@@ -120,7 +121,7 @@ def _ground(
         _line(pen, segment, camera, size, body.mix(GROUND, LINE, 0.55 * strength), SMOOTH)
     if figure.path is not None:
         _line(pen, _floor_points(figure.path), camera, size, body.PATH_COLOUR, 2 * SMOOTH)
-    trail = _floor_points(figure.positions[: t + 1, 0][:, [0, 2]])
+    trail = _floor_points(figure.positions[max(0, t - TRAIL) : t + 1, 0][:, [0, 2]])
     _line(pen, trail, camera, size, LINE, 2 * SMOOTH)
     if figure.contacts is None or t >= len(figure):
         return

@@ -96,6 +96,12 @@ def test_sliders_are_wide_enough_to_be_set():
     assert all(c.layout.min_width == "290px" for c in controls.controls.values())
 
 
+def test_a_slider_has_whole_numbers_where_all_three_are_whole():
+    controls = Controls(print, {"speed": (-0.5, 3.0, 1), "count": (0, 9, 4)}).controls
+    assert (controls["speed"].min, controls["speed"].max) == (-0.5, 3.0)
+    assert controls["speed"].step == pytest.approx(0.07) and controls["count"].step == 1
+
+
 def test_side_by_side_shows_what_needs_no_kernel():
     player = Player(walk(frames=5)[0])
     box = Beside(ipywidgets.VBox([PathPad(height=300), ipywidgets.Button()]), player)
