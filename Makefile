@@ -111,4 +111,4 @@ pretrained: $(VENV)/.lab ## train all shipped weights again (hours)
 	$(BIN)/python -m motiondiff_edu.recipes --out motiondiff_edu/pretrained
 
 clean: ## remove .venv and build files; keep trainings in progress (build/runs) and rollouts (build/results)
-	rm -rf $(VENV) build/bdist* build/numba build/lib build/quick dist *.egg-info .pytest_cache .ruff_cache
+	rm -rf $(VENV) build/bdist* build/numba build/lib build/quick build/executed build/pages dist *.egg-info .pytest_cache .ruff_cache

@@ -91,7 +91,8 @@ def wrong_tags() -> list[str]:
 def mend(path: Path) -> None:
     """Take the wrong numbers out of a file's docstrings, and a tag that has none left."""
     lines = path.read_text(encoding="utf-8").splitlines(keepends=True)
-    for _, docstring, wrong in reversed(wrong_in(path)):
+    # from the end, so that the lines of the others stay where they are
+    for _, docstring, wrong in sorted(wrong_in(path), key=lambda one: -one[1].lineno):
         first, last = docstring.lineno - 1, docstring.end_lineno
         text = "".join(lines[first:last])
 

@@ -19,7 +19,8 @@ def arguments(parser: argparse.ArgumentParser) -> None:
         "--keep",
         metavar="PART",
         help='a part of the body that stays: "upper body", "lower body" or "trajectory"; the '
-        "pelvis and its path stay with it, so the sentence should change the arms alone",
+        "path of the pelvis stays with it, so the sentence should change the other parts alone, "
+        "along that path",
     )
     parser.add_argument(
         "--strength",

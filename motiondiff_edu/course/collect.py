@@ -49,6 +49,8 @@ def run(chosen: argparse.Namespace) -> int:
     """Try all answers, print the table and the commonest mistakes, write the CSV file."""
     if not hasattr(os, "fork"):
         raise CollectError("collect needs a system with fork: Linux, macOS, or WSL on Windows")
+    if chosen.seconds < 1 or chosen.gigabytes <= 0:
+        raise CollectError("--seconds must be 1 or more, and --gigabytes above 0")
     copies = copies_of(chosen.folder, chosen.only)
     rows = []
     for number in sorted({number for _, number in copies}):

@@ -62,7 +62,7 @@ class Run:
         return fast if self.fast else full
 
     def __str__(self) -> str:
-        show = ", demo: shipped weights, no training" if self.demo else ""
+        show = ", demo: shipped weights, no long training" if self.demo else ""
         return (
             f"notebook {self.notebook} | profile {self.profile} | seed {self.seed} | torch "
             f"{torch.__version__} on {self.device}, {threads()} threads{show}"

@@ -35,8 +35,7 @@ BARS = (15, 30, 60)  # gaps that have a bar
 class InbetweenSize:
     """The amount of measurement.
 
-    It has the number of motions (half walks, half dances), of samples of each, of DDIM's steps, and
-    of repetitions of each step.
+    It has the number of motions (half walks, half dances), of samples of each and of DDIM's steps.
     """
 
     motions: int = 12

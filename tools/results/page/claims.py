@@ -76,7 +76,7 @@ WEIGHTED = "dance-budget.alpha_bar"
 CLAIMS = (
     Claim(
         "predicting several poses at once is better: walks follow the control less well with one",
-        "MoDiff III-A",
+        "MoDiff III-C",
         "ladder.ours-T_p-1.adherence_excess_mps_minus_base",
         1,
         0.0,
@@ -243,7 +243,9 @@ def claims(records: dict[str, dict]) -> str:
         [_said(one, records), one.where, f"**{said}**", _measured(one, records), one.rule]
         for one, said in judged
     ]
-    judgements = table(["claim", "MoFusion", "verdict here", "measured", "limit"], rows)
+    judgements = table(
+        ["claim", "where in MoFusion, unless said", "verdict here", "measured", "limit"], rows
+    )
     sums = [
         f"* **{said}** ({len(of)}): {'; '.join(of) or 'none'}"
         for said in (AGREES, DIFFERS, OPEN, MISSING)

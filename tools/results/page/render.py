@@ -43,8 +43,9 @@ training seed can change a number by more.
 ALL = "RESULTS_ALL.md"
 FURTHER = """# Further measures
 
-These measures are in no table of [RESULTS.md](RESULTS.md). Each has its 95 % interval and the
-command that measures it. `make results` and `make bench` write this page. Do not edit it.
+These measures have no section of their own in [RESULTS.md](RESULTS.md); some stand in its tables of
+goals and claims. Each has its 95 % interval and the command that measures it. `make results` and
+`make bench` write this page. Do not edit it.
 
 """
 
@@ -100,13 +101,14 @@ def walkers(records: dict[str, dict]) -> str:
     if not names:
         return "## The walkers\n\nNot measured yet.\n"
     seeds = {key: said for n in names for key, said in records[n]["seeds"].items()}
+    ahead = any("lookahead" in column for column in columns)
+    ahead = "; in columns named `lookahead` the window sees the future control" * ahead
     return (
         "## The walkers\n\n"
         f"Each walker continues {seeds.get('clips')} unseen pasts for {seeds.get('seconds')} s. We "
         "measure the network's raw output. The sampler is DDPM with all its steps; `ddim10` takes "
-        "ten steps of DDIM. The control is held over each window; in columns named `lookahead` the "
-        "window sees the future control. Rows of the data measure the data's own motion under the "
-        "same control. Diversity "
+        f"ten steps of DDIM. The control is held over each window{ahead}. Rows of the data measure "
+        "the data's own motion under the same control. Diversity "
         f"compares {seeds.get('each')} rollouts for each of {seeds.get('pasts')} pasts, after "
         f"their first second. Seeds: {_seed(names, records, 'walk')} for pasts and controls, "
         f"{_seed(names, records, 'diversity')} for those of the diversity, "
@@ -210,7 +212,7 @@ def attention(records: dict[str, dict], folder: Path) -> str:
 
 
 def others(records: dict[str, dict]) -> str:
-    """All measures that are in no table above, with the commands that measure them."""
+    """All measures without a section above, with the commands that measure them."""
     shown = (
         "walker",
         "footsteps",

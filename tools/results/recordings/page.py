@@ -1,5 +1,7 @@
 """The section "On recordings" of docs/RESULTS.md."""
 
+from motiondiff_edu.performers.joined import FAR
+
 from ..page.markdown import cell, number, table
 from .trainings import VARIANTS
 
@@ -159,9 +161,10 @@ def continued(records: dict[str, dict]) -> str:
         "the first new frame jumps, which "
         f"is in {number(100 * share['value'])} % of the windows, the first half second takes over "
         "pose and speed of the recording, or more if a joint has far to go "
-        "(`beyond/inertialize.py`), and a warning says so. In all of them bones keep the "
-        "recording's lengths, and feet that stand are held (`performers/finished.py`). A leg that "
-        "must get from a kneeling pose to a walk still slides on the way.\n\n"
+        "(`beyond/inertialize.py`), and a warning says so where a joint would jump by more than "
+        f"{100 * FAR:g} cm. In all of them bones keep the recording's lengths, and feet that stand "
+        "are held (`performers/finished.py`). A leg that must get from a kneeling pose to a walk "
+        "still slides on the way.\n\n"
     )
     persons = (
         "\nStyle is trunk lean, step width, arm swing and cadence (`metrics/gait_style.py`): of "

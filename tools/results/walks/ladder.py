@@ -283,6 +283,7 @@ def choose_rates(plan: Plan, runs: Path, size: Size) -> None:
             run = runs / f"rate-{key}-{rate:g}.safetensors"
             walker = train(recipe, run, material(size)[0])
             tried[f"{rate:g}"] = round(validation_loss(walker, recipe, clips), 6)
+            del plan.rates[key]  # until all are tried, none is chosen
             plan.write()
         plan.rates[key] = float(min(tried, key=tried.get))
         plan.write()

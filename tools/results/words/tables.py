@@ -62,7 +62,8 @@ TABLE_2 = """## MoFusion's Table 2
 
 The paper's rows are of HumanML3D, judged by the network of Guo and others; ours are of described
 synthetic motions, judged by three small networks of our own. The two blocks have nothing in common
-but the names of the measures. Sampling takes half as many steps as in the library. R-Precision
+but the names of the measures. The FID is of embeddings that are normalised by the data, which those
+of Guo and others are not. Sampling takes half as many steps as in the library. R-Precision
 chooses among 32 motions that show different things; the paper's column is the top 3. Intervals of
 retrieval hold 95 % of the values of three judges and 20 draws of the pools of the same clips
 (distances, FID and diversity: of three judges), so other clips may change more; the others are over
