@@ -82,8 +82,15 @@ def clouds(
             alpha=0.5,
             color=INK if k == 0 else OKABE_ITO[k - 1],
         )
-        axis.set(title=name, aspect="equal", xlim=(-reach, reach), ylim=(-reach, reach))
+        _plane(axis, name, reach, k == 0)
     return fig
+
+
+def _plane(axis, name: str, reach: float, first: bool) -> None:
+    """Name a panel of points in the plane, and its axes."""
+    axis.set(title=name, aspect="equal", xlim=(-reach, reach), ylim=(-reach, reach), xlabel="x")
+    if first:
+        axis.set_ylabel("y")
 
 
 def guesses(
@@ -99,6 +106,6 @@ def guesses(
         axis.plot(*np.stack([x_s, guess], 1).transpose(2, 1, 0), color=OKABE_ITO[k % 7], lw=0.9)
         axis.plot(*x_s.T, ".", ms=5, color=OKABE_ITO[k % 7], label="x_s")
         axis.plot(*right.T, "o", ms=8, mfc="none", mec=INK, label="exact guess")
-        axis.set(title=name, aspect="equal", xlim=(-reach, reach), ylim=(-reach, reach))
+        _plane(axis, name, reach, k == 0)
     legend(axes[0], loc="upper left", handletextpad=0.1)
     return fig
