@@ -117,7 +117,6 @@ def generate(
     steps: int | None = None,
     keep: int = 1,
     hold: bool = True,
-    size: float = 1.0,
 ) -> Float[Tensor, "*B n D"]:
     """Continue `past` (root-frame poses, metres) under `control` (m/s, m/s, rad/s).
 
@@ -125,7 +124,7 @@ def generate(
 
     Past and control are tensors or arrays of numpy, with or without a batch axis. Rows 0..T_h-1 of
     the control belong to the past. steps=None is DDPM with all S steps, a number is
-    DDIM with that many. `size`: messages name the speeds of a figure so many times as large.
+    DDIM with that many.
     Raises ValueError if past and control do not fit the walker or contain NaN, and for a control
     that leaves the range of the training data by over half its width. Warns where it leaves it by
     over a tenth.
@@ -160,7 +159,7 @@ def generate(
         )
     if not (torch.isfinite(past).all() and torch.isfinite(control).all()):
         raise ValueError("past or control contains NaN or infinity; fill the holes first")
-    _check_range(control, T_h, getattr(walker, "card", {}).get("control_range"), size)
+    check_range(control, T_h, getattr(walker, "card", {}).get("control_range"))
     generator = generator or torch.Generator().manual_seed(seed)
     past, control = (x.float().to(walker.pose_scaler.mean.device) for x in (past, control))
     poses = walker.pose_scaler.transform(past)
@@ -173,7 +172,7 @@ def generate(
     return new[0] if single else new
 
 
-def _check_range(
+def check_range(
     control: Float[Tensor, "B T C"], T_h: int, seen: dict | None, size: float = 1.0
 ) -> None:
     """Warn about speeds beyond the control of the training clips by over a tenth of its range.

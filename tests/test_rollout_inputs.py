@@ -8,8 +8,9 @@ import pytest
 import torch
 
 from data_synth.walking import walk
+from motiondiff_edu.motion.motion import Motion
 from motiondiff_edu.pretrained.checkpoints import pretrained
-from motiondiff_edu.rollout import generate
+from motiondiff_edu.rollout import check_range, generate
 
 WALKER = SimpleNamespace(config=SimpleNamespace(T_h=4, T_p=2, D=6, C=3))
 
@@ -56,7 +57,14 @@ def test_a_control_beyond_the_training_is_named_by_the_frame_that_it_leads_to():
     control[12] = 40.0
     with pytest.raises(ValueError, match="a forward speed of 40 in frame 3 of the future"):
         generate(pretrained("walker"), clip.features()[:10], control, steps=1)
-    with pytest.raises(
-        ValueError, match="a forward speed of 20 in frame 3 .*(-1.5 to 1.5).*rate of 40 "
-    ):
-        generate(pretrained("walker"), clip.features()[:10], control, steps=1, size=0.5)
+    seen = pretrained("walker").card["control_range"]
+    with pytest.raises(ValueError, match="a forward speed of 20 in frame 3 .*rate of 40 "):
+        check_range(torch.from_numpy(control).float()[None], 10, seen, size=0.5)
+
+
+def test_a_small_figure_is_told_of_its_own_speeds():
+    motion = Motion(0.6 * walk(np.tile([1.0, 0.0, 0.0], (40, 1)), seed=5).world(), 20.0)
+    walker = pretrained("walker")
+    with pytest.raises(ValueError, match=r"a forward speed of 6 in frame .*to 1\.8"):
+        walker.walk(motion, np.tile([6.0, 0.0, 0.0], (20, 1)), steps=1)
+    assert walker.card["control_range"], "the walker itself stays as it was"

@@ -221,8 +221,9 @@ def _check_cost(raw: bytes) -> None:
     A few bytes can ask for billions of places in the memo, and tuples within tuples, each one there
     twice, take for ever where their hash is needed.
     """
-    memo, tuples, before = set(), set(), ""
+    memo, tuples = set(), set()
     place, again = 0, 0
+    before = ""
     for k, (op, number, _) in enumerate(pickletools.genops(raw)):
         if op.name in ("PUT", "BINPUT", "LONG_BINPUT", "MEMOIZE"):
             place = len(memo) if op.name == "MEMOIZE" else number

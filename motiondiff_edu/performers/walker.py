@@ -107,9 +107,12 @@ class Walker(Performer):
         past = torch.from_numpy(start.past).float().flatten(1)
         steer = torch.from_numpy(start.control).float()
         evaluations, draws = len(ahead) * (steps or self.schedule.S), generators(seed, count)
+        rollout.check_range(steer[None], T_h, self.card.get("control_range"), size)
         with with_bar(self, evaluations, "walking", progress) as walker:
+            # it was checked above, in the figure's own metres
+            vars(walker)["card"] = self.card | {"control_range": None}
             each = (x.expand(count, -1, -1) for x in (past, steer))
-            new = rollout.generate(walker, *each, generator=draws, steps=steps, size=size)
+            new = rollout.generate(walker, *each, generator=draws, steps=steps)
         both = [joined(start, one) for one in new.double().cpu().numpy().reshape(count, -1, J, 3)]
         unlike, height = unlike_training(self.pose_scaler, past), motion.positions[-1, :, 1].min()
         change = change_of(start.control[T_h - 2 :])
