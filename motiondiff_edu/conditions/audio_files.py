@@ -76,11 +76,9 @@ def read_audio(path: str | Path) -> Float[Tensor, "N"]:
             "export the sound again"
         )
     mono = _mono(channels, path.name)
-    where = int(np.abs(mono).argmax())
-    if abs(mono[where]) > LOUDEST:
+    if loud := _too_loud(mono, rate):
         raise AudioError(
-            f"{path.name}: samples must lie between -1 and 1; the one at {where / rate:.3f} s is "
-            f"{mono[where]:.3g}. Export the sound again, from -1 to 1 or as 16-bit samples"
+            f"{path.name}: {loud}. Export the sound again, from -1 to 1 or as 16-bit samples"
         )
     if loss:
         warnings.warn(
@@ -132,13 +130,20 @@ def samples_of(sound: str | Path | np.ndarray | Tensor) -> Float[Tensor, "N"]:
         raise AudioError(
             "the samples are silent from start to end, so there is nothing to dance to"
         )
-    where = int(np.abs(samples).argmax())
-    if abs(samples[where]) > LOUDEST:
-        raise AudioError(
-            f"samples must lie between -1 and 1; the one at {where / SAMPLE_RATE:.3f} s is "
-            f"{samples[where]:.3g}. Divide the sound by its largest absolute sample"
-        )
+    if loud := _too_loud(samples, SAMPLE_RATE):
+        raise AudioError(f"{loud}. Divide the sound by its largest absolute sample")
     return torch.from_numpy(samples.astype(np.float32))
+
+
+def _too_loud(samples: Float[np.ndarray, "N"], rate: int) -> str:
+    """What says that samples have another unit, or "" for those that have not."""
+    where = int(np.abs(samples).argmax())
+    if abs(samples[where]) <= LOUDEST:
+        return ""
+    return (
+        f"samples must lie between -1 and 1; the one at {where / rate:.3f} s is "
+        f"{samples[where]:.3g}"
+    )
 
 
 def resample(audio: Float[np.ndarray, "N"], rate: int) -> Float[np.ndarray, "n"]:

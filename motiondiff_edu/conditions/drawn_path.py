@@ -146,9 +146,8 @@ def _speeds(
 
 def _times(step: np.ndarray, v: np.ndarray, limits: Limits) -> np.ndarray:
     """Seconds from each point to the next; between two rests it starts and stops once more."""
-    both = v[1:] + v[:-1]
-    from_rest_to_rest = 2 * np.sqrt(step / limits.acceleration)
-    return np.where(both > 0, 2 * step / np.where(both > 0, both, 1.0), from_rest_to_rest)
+    both, from_rest_to_rest = v[1:] + v[:-1], 2 * np.sqrt(step / limits.acceleration)
+    return np.divide(2 * step, both, out=from_rest_to_rest, where=both > 0)
 
 
 def _control_at(

@@ -59,13 +59,8 @@ def read_captions(path: str | Path) -> list[Caption]:
     Raises FileNotFoundError, and MotionError with file and line.
     """
     path = Path(path).expanduser()
-    check_there(path)
-    try:
-        lines = path.read_text(encoding="utf-8").splitlines()
-    except (UnicodeDecodeError, OSError) as error:
-        raise MotionError(f"{path.name} cannot be read as text in UTF-8: {error}") from None
     captions = []
-    for number, line in enumerate(lines, 1):
+    for number, line in enumerate(_lines_of(path), 1):
         if not line.strip():
             continue
         try:
@@ -106,19 +101,23 @@ def _span(first: str, last: str) -> tuple[float, float] | None:
     return start, end
 
 
+def _lines_of(path: Path) -> list[str]:
+    """The lines of a text.  Raises FileNotFoundError, and MotionError for what is no text."""
+    check_there(path)
+    try:
+        return path.read_text(encoding="utf-8").splitlines()
+    except (UnicodeDecodeError, OSError) as error:
+        raise MotionError(f"{path.name} cannot be read as text in UTF-8: {error}") from None
+
+
 def split_names(path: str | Path) -> list[str]:
     """The names of clips in a list such as train.txt, one a line.
 
     Raises FileNotFoundError, and MotionError with the line for what is no name.
     """
     path = Path(path).expanduser()
-    check_there(path)
     names = []
-    try:
-        text = path.read_text(encoding="utf-8")
-    except UnicodeDecodeError:
-        raise MotionError(f"{path.name} is no UTF-8 text: save it as UTF-8") from None
-    for number, line in enumerate(text.splitlines(), 1):
+    for number, line in enumerate(_lines_of(path), 1):
         name = line.strip()
         if not name:
             continue

@@ -383,12 +383,14 @@ def unlike_a_body(motion: Motion) -> str:
     )
 
 
-# how a figure that lies along -axis or +axis is turned upright, by signs after its axes are swapped
-UPRIGHT = (
-    ("[1, -1, 1]", "[-1, 1, 1]"),
-    ("[1, -1, -1]", ""),
-    ("[1, -1, 1]", "[1, 1, -1]"),
-)
+# what turns a figure upright: {axis from its feet to its head, and whether it goes up that axis}
+UPRIGHT = {
+    (0, False): "[..., [1, 0, 2]] * [1, -1, 1]",
+    (0, True): "[..., [1, 0, 2]] * [-1, 1, 1]",
+    (1, False): " * [1, -1, -1]",
+    (2, False): "[..., [0, 2, 1]] * [1, -1, 1]",
+    (2, True): "[..., [0, 2, 1]] * [1, 1, -1]",
+}
 
 
 def lies_down(motion: Motion) -> str:
@@ -406,10 +408,8 @@ def lies_down(motion: Motion) -> str:
     if along[1] > 0.5 or np.abs(along).max() < 1.0:
         return ""
     axis = int(np.abs(along).argmax())
-    swapped = ("[..., [1, 0, 2]]", "", "[..., [0, 2, 1]]")[axis]
-    signs = UPRIGHT[axis][int(along[axis] > 0)]
-    turn = f"try positions{swapped} * {signs}"
-    if not swapped:
+    turn = f"try positions{UPRIGHT[axis, bool(along[axis] > 0)]}"
+    if axis == 1:
         return f"the figure stands on its head: y points up. If that is wrong, {turn}"
     return f"the figure lies along {'xyz'[axis]}, but y points up: {turn}"
 

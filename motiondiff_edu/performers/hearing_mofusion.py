@@ -26,8 +26,7 @@ class EarSizes:
 
     def __post_init__(self):
         super().__post_init__()
-        own = EarConfig()
-        if bool(self.music_layers) != bool(own.music_layers):
+        if not self.music_layers:
             raise ValueError("music_layers must be 1 or more: the ear halves the music, too")
 
     @property

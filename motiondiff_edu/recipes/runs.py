@@ -130,12 +130,8 @@ def _check_about(wanted: dict | None, found: dict | None, path: str | Path) -> N
     if wanted is None or wanted == found:
         return
     found = found or {}
-    unlike = (
-        key
-        for key in [*wanted, *found]
-        if key not in wanted or key not in found or wanted[key] != found[key]
-    )
-    name = next(unlike)
+    none = object()  # a setting can be None, and another one missing
+    name = next(key for key in [*wanted, *found] if wanted.get(key, none) != found.get(key, none))
     raise ValueError(
         f"{path} was begun with {name} = {found.get(name)!r}, not {wanted.get(name)!r}: "
         "delete the file to start again, or use the settings that it was begun with"

@@ -44,13 +44,18 @@ def saved(tmp_path: Path) -> Path:
     return save(tiny_walker(), tmp_path / "tiny.safetensors")
 
 
+def settings_of(path: Path) -> dict[str, str]:
+    """The metadata of a weights file."""
+    with safe_open(path, "pt") as file:
+        return file.metadata()
+
+
 def rewrite(path: Path, change, metadata=None) -> None:
     """Change the tensors of a weights file.
 
     The metadata stay (unless others are given), the checksums are right.
     """
-    with safe_open(path, "pt") as file:
-        metadata = file.metadata() if metadata is None else metadata
+    metadata = settings_of(path) if metadata is None else metadata
     tensors = load_file(path)
     change(tensors)
     save_file(tensors, path, metadata | weights_file._digests(tensors, metadata))
@@ -119,9 +124,7 @@ def test_the_home_folder_may_be_named_by_a_tilde(tmp_path: Path, monkeypatch):
 
 
 def test_a_card_that_is_none_is_refused(saved: Path):
-    with safe_open(saved, "pt") as file:
-        metadata = file.metadata()
-    rewrite(saved, lambda tensors: None, metadata | {"card": "[1]"})
+    rewrite(saved, lambda tensors: None, settings_of(saved) | {"card": "[1]"})
     with pytest.raises(CheckpointError, match="the card is a list"):
         load_walker(saved)
 
@@ -376,8 +379,7 @@ def test_a_configuration_that_makes_no_sense(saved: Path, config: str | None):
 
 def test_a_larger_network_than_the_weights_is_not_built(saved: Path, monkeypatch):
     monkeypatch.setattr(checkpoints, "with_weights", lambda *_: pytest.fail("it was built"))
-    with safe_open(saved, "pt") as file:
-        metadata = file.metadata()
+    metadata = settings_of(saved)
     config = json.loads(metadata["config"]) | {"width": 8192, "hidden": 9000}
     rewrite(saved, lambda tensors: None, metadata | {"config": json.dumps(config)})
     with pytest.raises(CheckpointError, match=r"disagree \(\S+ has the shape"):
@@ -400,9 +402,7 @@ def test_a_network_that_computes_with_its_numbers_comes_back(saved: Path, monkey
 
 
 def test_a_network_of_a_later_version_is_refused_by_name(saved: Path):
-    with safe_open(saved, "pt") as file:
-        metadata = file.metadata()
-    rewrite(saved, lambda tensors: None, metadata | {"network": "BetterMoDiff"})
+    rewrite(saved, lambda tensors: None, settings_of(saved) | {"network": "BetterMoDiff"})
     with pytest.raises(CheckpointError, match="unknown network, BetterMoDiff; upgrade"):
         load_walker(saved)
 

@@ -31,7 +31,7 @@ def write_bvh(
     The file is written completely or not at all. Raises BvhError for an empty or non-finite motion,
     another shape, and a frame rate outside the range that readers accept.
     """
-    path = Path(path).expanduser()
+    path = Path(path)
     positions = np.asarray(positions, dtype=np.float64)
     if not len(positions) or not np.isfinite(positions).all():
         what = "has no frames" if not len(positions) else "has values that are not finite"
