@@ -11,6 +11,9 @@ NEW_ENOUGH := import sys; sys.exit(sys.version_info < (3, 11))
 PYTHON ?= $(shell for p in python3 python3.13 python3.12 python3.11 python3.14; do \
 	$$p -c '$(NEW_ENOUGH)' >/dev/null 2>&1 && { echo $$p; break; }; done)
 
+# Python keeps what it compiled of the packages: the tests start hundreds of processes, and each would compile them again.
+unexport PYTHONDONTWRITEBYTECODE
+
 .PHONY: help lab demo doctor test unit notebooks pages browser fuzz lint results bench pretrained student clean
 .DEFAULT_GOAL := help
 
@@ -73,13 +76,14 @@ unit: $(VENV)/.test ## only the unit tests
 
 # The notebooks run in parallel with one thread each. With torch's own threads, two in parallel take four times as long as in turn.
 # The student edition is the same but for the exercises, which the unit tests run (docs/CONTRIBUTING.md), so it is not run again here.
+# The last come first: the short ones among the first then fill what is left of the time.
 # Copies are run, whose outputs are kept for the pages; for them, figures with sliders are drawn in several states.
 NOTEBOOKS ?= notebooks
 EXECUTED := build/executed
 notebooks: $(VENV)/.test ## only the notebooks (NOTEBOOKS=notebooks/student: the student edition)
 	rm -rf $(EXECUTED) && mkdir -p $(EXECUTED) && cp $(if $(filter %.ipynb,$(NOTEBOOKS)),$(NOTEBOOKS),$(NOTEBOOKS)/[0-9]*.ipynb) $(EXECUTED)
 	MOTIONDIFF_PAGES=$(PAGES) OMP_NUM_THREADS=1 $(BIN)/python -m pytest -q $(WORKERS) --nbmake --nbmake-timeout=600 --overwrite \
-		--durations=0 $(EXECUTED)/*.ipynb
+		--durations=0 $$(ls -r $(EXECUTED)/*.ipynb)
 	$(BIN)/python tools/backed_numbers.py $(EXECUTED)
 
 pages: PAGES := 1

@@ -1,4 +1,4 @@
-"""What the tests share.
+"""What the tests share, and how often shapes are checked.
 
 The real recordings and the browser, skipped visibly, or demanded where the build says so.
 
@@ -10,7 +10,12 @@ import os
 import shutil
 from pathlib import Path
 
+import jaxtyping
 import pytest
+import typecheck
+
+# what --jaxtyping-packages (pyproject.toml) puts before every function of the packages
+jaxtyping.jaxtyped = typecheck.now_and_then(jaxtyping.jaxtyped)
 
 ROOT = Path(__file__).parent.parent
 BROWSERS = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
@@ -69,6 +74,11 @@ def browser(chromium):
 
     with start_browser(chromium) as running:
         yield running
+
+
+def pytest_runtest_setup() -> None:
+    """In each test the first calls of a function are checked."""
+    typecheck.calls.clear()
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:

@@ -66,7 +66,7 @@ class CheckFailed(AssertionError):
                 for frame in frames
                 if not any(part in frame.filename.replace("\\", "/") for part in ours)
             ]
-            lines += [f"  line {frame.lineno} of {frame.name}: {frame.line}" for frame in own[:3]]
+            lines += [f"  line {frame.lineno} of {frame.name}: {frame.line}" for frame in own[-3:]]
         return lines
 
 
