@@ -9,6 +9,7 @@ the calls. So in each test a function is checked in its first calls, and then no
 import functools
 from collections import Counter
 from collections.abc import Callable
+from dataclasses import is_dataclass
 from types import FunctionType
 
 from beartype import BeartypeConf, beartype
@@ -22,7 +23,7 @@ calls: Counter[Callable] = Counter()  # of this test
 
 
 def now_and_then(jaxtyped: Callable) -> Callable:
-    """`jaxtyping.jaxtyped`, for some calls of a function; classes are checked as ever.
+    """`jaxtyping.jaxtyped`, for some calls of a function, and some of making a dataclass.
 
     What checks a function is made at its first call, as most functions of the package are not
     called in one process of the tests.
@@ -31,19 +32,29 @@ def now_and_then(jaxtyped: Callable) -> Callable:
     def decorated(one=None, *, typechecker):
         if one is None:
             return functools.partial(decorated, typechecker=typechecker)
-        if not isinstance(one, FunctionType):
-            return jaxtyped(one, typechecker=typechecker)
-        full = None
-
-        @functools.wraps(one)
-        def called(*args, **kwargs):
-            nonlocal full
-            calls[called] += 1
-            if calls[called] > FIRST and calls[called] % EVERY:
-                return one(*args, **kwargs)
-            full = full or jaxtyped(one, typechecker=typechecker)
-            return full(*args, **kwargs)
-
-        return called
+        if isinstance(one, FunctionType):
+            return _at_times(one, lambda: jaxtyped(one, typechecker=typechecker))
+        plain = getattr(one, "__init__", None)
+        typed = jaxtyped(one, typechecker=typechecker)
+        if is_dataclass(typed) and typed.__init__ is not plain:
+            checked_init = typed.__init__
+            typed.__init__ = _at_times(plain, lambda: checked_init)
+        return typed
 
     return decorated
+
+
+def _at_times(plain: Callable, checked_version: Callable[[], Callable]) -> Callable:
+    """`plain`, checked in the first calls of a test and then now and then."""
+    full = None
+
+    @functools.wraps(plain)
+    def called(*args, **kwargs):
+        nonlocal full
+        calls[called] += 1
+        if calls[called] > FIRST and calls[called] % EVERY:
+            return plain(*args, **kwargs)
+        full = full or checked_version()
+        return full(*args, **kwargs)
+
+    return called
