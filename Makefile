@@ -27,13 +27,13 @@ $(BIN)/python:
 	@$(PYTHON) -m venv $(VENV) || { rm -rf $(VENV); \
 		echo "$(PYTHON) cannot make virtual environments. On Debian or Ubuntu: apt-get install python3-venv"; exit 1; }
 
-# Installs the course with the extras in $(1), or says in plain words why it cannot. The full output of pip is in $(VENV)/pip.log.
+# Installs the course with the extras in $(1) and pip's options in $(2), or says in plain words why it cannot. The full output of pip is in $(VENV)/pip.log.
 NO_NETWORK := NewConnectionError|ConnectTimeoutError|NameResolutionError|Failed to establish|Network is unreachable|from versions: none
 define install
 @$(BIN)/python -c '$(NEW_ENOUGH)' || { echo "$(VENV) was made with a Python older than 3.11."; \
 	echo "Remove it (rm -rf $(VENV)) and run the same command again."; exit 1; }
 @echo "installing into $(VENV); this happens once and takes a minute or more"
-@$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt -e '.$(1)' >$(VENV)/pip.log 2>&1 || { \
+@$(BIN)/python -m pip install --quiet --disable-pip-version-check $(2) -c constraints.txt -e '.$(1)' >$(VENV)/pip.log 2>&1 || { \
 	if grep -qE '$(NO_NETWORK)' $(VENV)/pip.log; then \
 		echo "No network: pip could not reach the package index, which it needs for the first installation."; \
 		echo "Connect to the network and run the same command again. The output of pip is in $(VENV)/pip.log"; \
@@ -45,8 +45,9 @@ $(VENV)/.lab: pyproject.toml constraints.txt setup.py | $(BIN)/python
 	$(call install,)
 	@touch $@
 
+# Python compiles what the tests import when it is first imported, which is the smaller part of all that is installed.
 $(VENV)/.test: pyproject.toml constraints.txt setup.py | $(BIN)/python
-	$(call install,[test])
+	$(call install,[test],--no-compile)
 	@touch $@ $(VENV)/.lab
 
 $(VENV)/.bench: pyproject.toml constraints.txt setup.py | $(BIN)/python

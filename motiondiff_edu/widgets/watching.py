@@ -17,6 +17,7 @@ from .player import Figures, Look, Player
 
 SMALL = Look(height=300)
 SMOOTH = 30  # steps of the running mean
+SHARE = 3  # a picture is waited for three times as long as it took: at most a quarter of the time
 
 
 def watched(
@@ -32,18 +33,20 @@ def watched(
 
     `steps`: the number of the last one.
     `moving()`: what the network in training moves, as `Player` takes it. Training waits for it.
-    `every`: seconds of training from one picture to the next.
+    `every`: seconds of training from one picture to the next; longer where pictures are slow.
     `past`: frames of it that were given.
     """
     shown = _Shown(steps, moving(), past)
     losses = []
-    drawn = clock()
+    drawn, took = clock(), 0.0
     for report in reports:
         losses.append(report.loss)
         yield report
-        if clock() - drawn >= every and report.step < steps:
+        now = clock()
+        if now - drawn >= max(every, SHARE * took) and report.step < steps:
             shown.now(moving(), losses, report.step)
             drawn = clock()
+            took = drawn - now
     if losses:
         shown.now(moving(), losses, report.step)
         shown.for_good()
