@@ -1,11 +1,13 @@
 """tools/pages: notebooks as pages that work offline."""
 
 import base64
+import io
 import json
 import re
 from pathlib import Path
 
 import pytest
+from tqdm import tqdm
 
 from tools.pages import cells, font, index, maths, raw
 from tools.pages.__main__ import pages
@@ -117,6 +119,19 @@ def test_outputs():
     assert 'alt="a &quot;curve&quot;"' in page
     page = cells.of_output({"output_type": "stream", "name": "stdout", "text": ["\x1b[1m1 < 2"]})
     assert "1 &lt; 2" in page and "\x1b" not in page
+
+
+def test_a_progress_bar_leaves_nothing_on_the_page():
+    """It stands where a machine was slow enough, and a page has nothing to wait for."""
+    words = io.StringIO()
+    with tqdm(total=50, desc="dancing", file=words) as bar:
+        bar.update(24)
+    bars = {text for text in words.getvalue().split("\r") if text.strip()}
+    assert len(bars) >= 2
+    for text in bars:
+        assert cells.of_output(shown(**{cells.WIDGET: {"model_id": "1"}, "text/plain": text})) == ""
+    slider = {cells.WIDGET: {"model_id": "1"}, "text/plain": "Label(value='50 % | of it')"}
+    assert cells.of_output(shown(**slider)) == cells.NEEDS_A_KERNEL
 
 
 def test_a_notebook_that_failed_is_no_page():

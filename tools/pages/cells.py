@@ -14,6 +14,7 @@ NEEDS_A_KERNEL = (
     "<code>make lab</code> opens it.</p>"
 )
 WIDGET = "application/vnd.jupyter.widget-view+json"
+PROGRESS = re.compile(r"[^|\n]*\d+%\|")  # a bar of tqdm, in words
 HIGHLIGHT = Highlight2HTML()
 
 
@@ -45,7 +46,8 @@ def of_output(output: dict) -> str:
     if "text/html" in data:
         return f'<div class="shown">{data["text/html"]}</div>'
     if WIDGET in output["data"]:
-        return NEEDS_A_KERNEL
+        over = PROGRESS.match(data.get("text/plain", ""))
+        return "" if over else NEEDS_A_KERNEL
     if "image/png" in data:
         words, png = html.escape(data.get("text/plain", "")), data["image/png"]
         return f'<img alt="{words}" src="data:image/png;base64,{png}">'
