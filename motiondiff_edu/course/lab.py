@@ -25,7 +25,8 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--folder",
         type=Path,
-        help="the folder of your copies (default: motiondiff_notebooks)",
+        help="the folder of your copies "
+        "(default: motiondiff_notebooks, in the checkout or else here)",
     )
 
 

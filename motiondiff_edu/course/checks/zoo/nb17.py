@@ -1,5 +1,6 @@
 """Wrong answers to the exercises of notebook 17."""
 
+import numpy as np
 import torch
 
 
@@ -18,6 +19,12 @@ def _share(nearer, equal, k):
 def by_motion(distances, k):
     """Chooses a text for each motion."""
     return _share(*_rows(distances.T), k)
+
+
+def by_sorting(distances, k):
+    """Of motions that are equally near, the one with the smaller number comes first."""
+    nearest = distances.argsort(1, kind="stable")[:, :k]
+    return (nearest == np.arange(len(distances))[:, None]).any(1).mean()
 
 
 def own_as_a_row(distances, k):
@@ -53,7 +60,10 @@ MISTAKES = {
             *_rows(-distances), k
         ),
         "a network that always makes the same motion must not win: of motions that are equally "
-        "near, each has an equal share": lambda distances, k: (_rows(distances)[0] < k).mean(),
+        "near, each has an equal share": (
+            lambda distances, k: (_rows(distances)[0] < k).mean(),
+            by_sorting,
+        ),
         "of motions that are equally near, each comes first equally often; this always puts the "
         "own one last": lambda distances, k: (sum(_rows(distances)) - 1 < k).mean(),
         "the nearer motions have taken their places: k minus their number are left to share": (
