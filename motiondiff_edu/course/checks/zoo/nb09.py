@@ -25,6 +25,9 @@ NOISED = {
     "the root of 1 - alpha_bar is missing": lambda x, s, t, e: (
         _shape(t[s]) ** 0.5 * x + _shape(1 - t[s]) * e
     ),
+    "the noise is scaled by the root of 1 - alpha_bar, not by 1 minus the root": (
+        lambda x, s, t, e: _shape(t[s]) ** 0.5 * x + (1 - _shape(t[s]) ** 0.5) * e
+    ),
     "the signal is not scaled: multiply it by the root of alpha_bar": lambda x, s, t, e: (
         x + _shape(1 - t[s]) ** 0.5 * e
     ),
@@ -186,6 +189,12 @@ def one_rate_late(done, rates, start):
     return 0.0 if done < start or k < 0 else rates[min(k, len(rates) - 1)]
 
 
+def rounded(done, rates, start):
+    """Each rate but the first comes half its part too early."""
+    k = round((done - start) / (1 - start) * len(rates))
+    return 0.0 if done < start else rates[min(k, len(rates) - 1)]
+
+
 MISTAKES = {
     "batch_with_dropout": {
         "past and future are swapped in what you return": swapped,
@@ -325,6 +334,7 @@ MISTAKES = {
         "the rates are 0 after `start` and not before it": lambda done, rates, start: (
             _scheduled(start + done * (1 - start), rates, start) if done < start else 0.0
         ),
+        "each rate begins with its part: round down, not to the nearest": rounded,
         "the last rate stays until the end": nothing_after_the_last,
         "at `start` itself the first rate begins": lambda done, rates, start: (
             0.0 if done <= start else _scheduled(done, rates, start)

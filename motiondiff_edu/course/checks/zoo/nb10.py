@@ -35,6 +35,15 @@ def last_zero(control):
     return torch.cat([back, torch.zeros_like(back[:, :1])], dim=1)
 
 
+def last_kept(sign):
+    """Ends with the row that leads nowhere, with this sign."""
+
+    def answer(control):
+        return torch.cat([-control[:, :-1].flip(1), sign * control[:, -1:]], dim=1)
+
+    return answer
+
+
 def first_dropped(control):
     """Drops the first row, which leads out of frame 0, and keeps the last, which leads nowhere."""
     back = -control[:, 1:].flip(1)
@@ -181,6 +190,10 @@ MISTAKES = {
             -no_sign(control) * torch.tensor([-1, 1, 1.0])
         ),
         "the last row repeats the one before, it is not zero": last_zero,
+        "the last row given leads nowhere: instead of it the row before repeats": (
+            last_kept(-1),
+            last_kept(1),
+        ),
         "the signs are right, but the rows are in the old order": lambda control: -control,
         "nothing has changed": lambda control: control.clone(),
         "the sample axis was reversed; time is axis 1": lambda control: _reversed(control).flip(0),

@@ -110,9 +110,10 @@ MISTAKES = {
         "you subtracted the bias; add it": lambda x, w, b, stride: _mix(
             x, w, -b, (-1, 0, 1), stride
         ),
-        "keep every second frame, and begin with the *first* one": lambda x, w, b, stride: _mix(
-            x, w, b, (-1, 0, 1)
-        )[stride - 1 :: stride],
+        "keep every second frame, and begin with the *first* one": (
+            lambda x, w, b, stride: _mix(x, w, b, (-1, 0, 1))[stride - 1 :: stride],
+            lambda x, w, b, stride: _mix(x, w, b, (-1, 0, 1))[1::stride],
+        ),
         "the stride is not used": lambda x, w, b, stride: _mix(x, w, b, (-1, 0, 1)),
         "take the neighbours first, then every second result: here the frames between are never "
         "used": lambda x, w, b, stride: _mix(x[::stride], w, b, (-1, 0, 1)),
@@ -168,6 +169,9 @@ MISTAKES = {
         ),
         "queries and keys are turned in opposite directions: turn both the same way": _clocks(
             _own_q, lambda q, k, a, b: -_times(k, b)
+        ),
+        "both are turned backwards: turn them by plus the angle": _clocks(
+            _own_q, _own_k, turn=-1.0
         ),
         "a whole turn is 2 pi": _clocks(_own_q, _own_k, turn=1 / (2 * math.pi)),
         "a whole turn is 2 pi, not pi": _clocks(_own_q, _own_k, turn=0.5),

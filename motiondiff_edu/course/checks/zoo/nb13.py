@@ -135,8 +135,9 @@ MISTAKES = {
         "this is the variance of all lengths together; each bone has a mean of its own": (
             lambda lengths: lengths.var()
         ),
-        "there is one mean for all bones here: each bone has a mean of its own": lambda lengths: (
-            _around(lengths, lengths.mean())
+        "there is one mean for all bones here: each bone has a mean of its own": (
+            lambda lengths: _around(lengths, lengths.mean()),
+            lambda lengths: lengths.var(correction=0),
         ),
         "the mean over the bones is missing: this is one number for each bone": lambda lengths: (
             lengths.var(0)

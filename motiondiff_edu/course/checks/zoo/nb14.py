@@ -131,6 +131,10 @@ MISTAKES = {
         "the lengths are squared; this feature does not square them": lambda path, fps: (
             ((_second(path) * fps**2) ** 2).sum(1).mean()
         ),
+        "without an axis, np.linalg.norm makes one length of all frames: take axis=1": (
+            lambda path, fps: np.linalg.norm(_second(path)) * fps**2,
+            lambda path, fps: np.linalg.norm(_second(path)) * fps**2 / (len(path) - 2),
+        ),
         "take the length in each frame, then the mean: opposite directions must not cancel": (
             lambda path, fps: np.linalg.norm(_second(path).mean(0)) * fps**2
         ),

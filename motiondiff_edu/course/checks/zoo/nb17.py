@@ -102,6 +102,9 @@ MISTAKES = {
             lower, up, low
         ),
         "this is the mean of both texts in every column": lambda low, up, lower: (low + up) / 2,
+        "columns keep their places: here those of the lower body come first": (
+            lambda low, up, lower: torch.cat([low[..., lower], up[..., ~lower]], -1)
+        ),
         "this is their sum": lambda low, up, lower: low + up,
         "the other part is zero; it belongs to the other text": (
             lambda low, up, lower: low * lower,
