@@ -29,7 +29,7 @@ from .turn import TURN
 
 MODULE = module.joined(module.BENCH)
 _BYTES = ("joints", "roots", "mended_joints", "mended_roots")
-HEIGHT = 400  # pixels
+HEIGHT = 320  # pixels
 GHOST = "#009E73"  # as in js/bench_paint.js
 HEARD = "Repairing: there and back, several times ..."  # the page waits for a word at once
 _STATE = ("scene", "start", "first", "missing", "repaired", "message")
