@@ -20,8 +20,9 @@ DASHES = ("-", "--", "-.", ":", (0, (5, 1)), (0, (1, 1)), (0, (8, 2, 1, 2)), (0,
 LARGE = 16
 MEDIUM = 14
 SMALL = 12
-# pixels an inch; more for a notebook that is shown to a room (`motiondiff-edu demo`)
-DPI = 150 if os.environ.get("MOTIONDIFF_LARGE", "0") not in ("", "0") else 100
+# whether a notebook is shown to a room (`motiondiff-edu demo`)
+PROJECTED = os.environ.get("MOTIONDIFF_LARGE", "0") not in ("", "0")
+DPI = 150 if PROJECTED else 100  # pixels an inch
 
 _RC = {
     "font.size": MEDIUM,

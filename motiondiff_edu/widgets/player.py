@@ -28,7 +28,7 @@ from numpy.typing import ArrayLike
 
 from .._files import replacing
 from ..motion.checks import checked_rate, is_number
-from ..viz import body
+from ..viz import body, style
 from . import lane, module, packing, poster, sound
 from .lane import Soundtrack
 from .still import page_on_picture, with_still
@@ -62,7 +62,8 @@ class Look:
 
     `layout`: "side" (a field each) or "together" (one floor, `offset` (x, z) metres apart).
     `height`: pixels.
-    `autoplay`: by default only without a sound; with one the browser must allow it.
+    `autoplay`: by default only without a sound; with one the browser must allow it. In a demo a
+    figure with a sound begins, too, but muted.
     `follow`: the camera goes with the figure.
     `parents`: each joint's parent, where the skeleton is not the course's.
     Raises ValueError for another layout, a height that is no picture's, an offset that is not
@@ -338,7 +339,8 @@ def _scene(figures: list[poster.Figure], fps: float, look: Look, music: lane.Lan
         describe(figures, fps) if music is None else f"{describe(figures, fps)} {music.description}"
     )
     parts = body.parts_record(figures[0].parts)
-    autoplay = music is None if look.autoplay is None else bool(look.autoplay)
+    muted = style.PROJECTED and music is not None and look.autoplay is None
+    autoplay = music is None or muted if look.autoplay is None else bool(look.autoplay)
     offset = look.offset if look.layout == "together" else (0, 0)
     return {
         "layout": look.layout,
@@ -351,6 +353,7 @@ def _scene(figures: list[poster.Figure], fps: float, look: Look, music: lane.Lan
         "joints": figures[0].positions.shape[1],
         "parts": parts,
         "autoplay": autoplay,
+        "muted": muted,
         "description": words,
     }
 

@@ -14,6 +14,7 @@ from browser import ANOTHER_FRAME, open_page, player_page, shown
 from click_track import RATE, clicks, jumping
 from synthetic_walk import walk
 
+from motiondiff_edu.viz import style
 from motiondiff_edu.widgets import module, sound
 from motiondiff_edu.widgets.player import MODULE, Look, Player, Soundtrack
 
@@ -188,6 +189,23 @@ def test_without_a_click_it_waits_and_says_so(browser, tmp_path):
         assert page.get_by_text("browsers start sound").count() == 0
 
 
+def test_before_a_room_it_moves_without_a_click_and_is_heard_after_one(
+    browser, tmp_path, monkeypatch
+):
+    monkeypatch.setattr(style, "PROJECTED", True)
+    moving = Player(walk(frames=43)[0], audio=clicks([1.0], 2.15))
+    with open_page(browser, reduced_motion="no-preference") as page:
+        page.goto(player_page(tmp_path, moving))
+        page.wait_for_function("document.querySelector('.mde-player').dataset.frame > 5")
+        assert page.evaluate("document.querySelector('audio').muted")
+        page.get_by_role("button", name="Mute").click()
+        assert page.evaluate("[document.querySelector('audio').muted, model.get('playing')]") == [
+            False,
+            True,
+        ]
+        page.wait_for_function(f"{HEARD} > 0.3")
+
+
 VIEWS = """() => [...document.querySelectorAll(".mde-player")].map((root) => ({
   frame: Number(root.dataset.frame), playing: root.dataset.playing,
   heard: !root.querySelector("audio").paused }))"""
@@ -323,7 +341,17 @@ def test_the_record_holds_times_and_a_waveform(player):
     loud = np.flatnonzero(np.abs(wave_shape.astype(int)).max(1) > 60) / len(wave_shape) * 4.6
     assert all(np.abs(loud - t).min() < 0.01 for t in (1.1, 2.35, 3.55)) and len(loud) < 12
     assert "Music: 4.6 s" in player.description and "3 beats marked" in player.description
-    assert player.scene["autoplay"] is False
+    assert (player.scene["autoplay"], player.scene["muted"]) == (False, False)
+
+
+def test_before_a_room_only_what_has_a_sound_is_muted(monkeypatch):
+    monkeypatch.setattr(style, "PROJECTED", True)
+    motion, sounds = walk(frames=37)[0], clicks([0.5], 1.85)
+    silent, sounding = Player(motion).scene, Player(motion, audio=sounds).scene
+    waiting = Player(motion, audio=sounds, look=Look(autoplay=False)).scene
+    assert (silent["autoplay"], silent["muted"]) == (True, False)
+    assert (sounding["autoplay"], sounding["muted"]) == (True, True)
+    assert (waiting["autoplay"], waiting["muted"]) == (False, False)
 
 
 def test_ten_seconds_are_a_small_page():

@@ -98,7 +98,7 @@ export function mount(model, el, { fill = false } = {}) {
   let told = 0;
   let loaded = null;
   let sounding = false;
-  let led = false; // another view of this player sounds, and this one follows it
+  let led = false; // silent: another view of this player sounds, or none does before a click
   let unload = () => {};
 
   function load() {
@@ -288,6 +288,7 @@ export function mount(model, el, { fill = false } = {}) {
     sound.muted = on;
     mute.textContent = on ? "Muted" : "Mute";
     mute.setAttribute("aria-pressed", String(on));
+    if (!on && scene.muted) setLed(false);
   }
   function setSpeed(value) {
     speeds.value = value;
@@ -428,6 +429,11 @@ export function mount(model, el, { fill = false } = {}) {
   load();
   frame = sent = clamp(model.get("frame"), 0, last);
   clock.seek(frame / scene.fps);
+  if (scene.muted) {
+    // before a click browsers play no sound, not even a muted one: the page's clock leads
+    setMuted(true);
+    setLed(true);
+  }
   setPlaying(model.get("playing") || (scene.autoplay && !calm));
   return () => {
     stop.abort();
