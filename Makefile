@@ -91,8 +91,9 @@ pages: PAGES := 1
 pages: notebooks ## run the notebooks and write them as web pages that need no network: build/pages/index.html
 	$(BIN)/python -m tools.pages $(EXECUTED) build/pages
 
+# Only files that say "browser" are collected (tests/conftest.py sees to it that all of its tests are in such files).
 browser: $(VENV)/.test ## only the tests that need Chromium
-	OMP_NUM_THREADS=1 $(BIN)/python -m pytest -q $(WORKERS) --dist loadfile -m browser
+	OMP_NUM_THREADS=1 $(BIN)/python -m pytest -q $(WORKERS) --dist loadfile -m browser $$(grep -rlw --include='test_*.py' browser tests)
 
 fuzz: $(VENV)/.test ## 2,000 damaged files and odd inputs for each reader (EXAMPLES=N: another number)
 	MOTIONDIFF_FUZZ=$(or $(EXAMPLES),2000) OMP_NUM_THREADS=1 $(BIN)/python -m pytest -q $(WORKERS) tests/fuzz

@@ -7,6 +7,7 @@ MOTIONDIFF_REQUIRE_BROWSER   when it is set, a test that finds no Chromium fails
 """
 
 import os
+import re
 import shutil
 from pathlib import Path
 
@@ -82,10 +83,15 @@ def pytest_runtest_setup() -> None:
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Every test that uses the browser is marked so, and `make test` runs those last."""
+    """Every test that uses the browser is marked so, and `make test` runs those last.
+
+    Raises UsageError for one in whose file `make browser` would not look.
+    """
     for item in items:
         if "chromium" in getattr(item, "fixturenames", ()):
             item.add_marker(pytest.mark.browser)
+            if not re.search(r"\bbrowser\b", item.path.read_text()):
+                raise pytest.UsageError(f'{item.nodeid} uses Chromium: say "browser" in its file')
 
 
 @pytest.hookimpl(wrapper=True)
