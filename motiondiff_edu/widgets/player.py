@@ -37,6 +37,9 @@ __all__ = ["Look", "Player", "Soundtrack", "describe"]
 
 MODULE = module.joined()
 LOWEST, HIGHEST = 60, 4000  # pixels
+PROJECTED = (
+    340  # pixels: in a demo at 1280 x 720 the music and the buttons are seen below the figure
+)
 GIF_FPS = 50  # browsers slow a GIF down whose pictures stay for less than 20 ms
 _TRAITS = ("joints", "roots", "contacts", "sound", "strips")
 
@@ -61,7 +64,7 @@ class Look:
     """How figures are laid out and begin.
 
     `layout`: "side" (a field each) or "together" (one floor, `offset` (x, z) metres apart).
-    `height`: pixels.
+    `height`: pixels; in a demo no more than fit a projector together with the buttons.
     `autoplay`: by default only without a sound; with one the browser must allow it. In a demo a
     figure with a sound begins, too, but muted.
     `follow`: the camera goes with the figure.
@@ -345,7 +348,7 @@ def _scene(figures: list[poster.Figure], fps: float, look: Look, music: lane.Lan
     return {
         "layout": look.layout,
         "offset": [float(v) for v in offset],
-        "height": int(look.height),
+        "height": min(int(look.height), PROJECTED if style.PROJECTED else HIGHEST),
         "follow": bool(look.follow),
         "parents": None if look.parents is None else [int(p) for p in look.parents],
         "fps": fps,

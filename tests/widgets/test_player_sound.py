@@ -344,6 +344,17 @@ def test_the_record_holds_times_and_a_waveform(player):
     assert (player.scene["autoplay"], player.scene["muted"]) == (False, False)
 
 
+def test_before_a_room_the_buttons_are_seen_below_the_figure(browser, tmp_path, monkeypatch):
+    monkeypatch.setattr(style, "PROJECTED", True)
+    tall = Player(walk(frames=43)[0], audio=clicks([1.0], 2.15), look=Look(height=900))
+    with open_page(browser) as page:
+        page.set_viewport_size({"width": 1060, "height": 720})
+        page.goto(player_page(tmp_path, tall))
+        page.wait_for_function("document.querySelector('.mde-player').dataset.frame >= 0")
+        box = page.locator(".mde-player").bounding_box()
+    assert 340 < box["height"] <= 555  # JupyterLab's bars and the cell's own line take 165 of 720
+
+
 def test_before_a_room_only_what_has_a_sound_is_muted(monkeypatch):
     monkeypatch.setattr(style, "PROJECTED", True)
     motion, sounds = walk(frames=37)[0], clicks([0.5], 1.85)
