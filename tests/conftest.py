@@ -87,11 +87,12 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
 
     Raises UsageError for one in whose file `make browser` would not look.
     """
-    for item in items:
-        if "chromium" in getattr(item, "fixturenames", ()):
-            item.add_marker(pytest.mark.browser)
-            if not re.search(r"\bbrowser\b", item.path.read_text()):
-                raise pytest.UsageError(f'{item.nodeid} uses Chromium: say "browser" in its file')
+    shown = [item for item in items if "chromium" in getattr(item, "fixturenames", ())]
+    for item in shown:
+        item.add_marker(pytest.mark.browser)
+    for path in {item.path for item in shown}:
+        if not re.search(r"\bbrowser\b", path.read_text(encoding="utf-8")):
+            raise pytest.UsageError(f'{path} has tests that use Chromium: say "browser" in it')
 
 
 @pytest.hookimpl(wrapper=True)

@@ -37,9 +37,7 @@ __all__ = ["Look", "Player", "Soundtrack", "describe"]
 
 MODULE = module.joined()
 LOWEST, HIGHEST = 60, 4000  # pixels
-PROJECTED = (
-    340  # pixels: in a demo at 1280 x 720 the music and the buttons are seen below the figure
-)
+HIGHEST_IN_DEMOS = 340  # pixels: so the buttons below are seen as well at 1280 x 720
 GIF_FPS = 50  # browsers slow a GIF down whose pictures stay for less than 20 ms
 _TRAITS = ("joints", "roots", "contacts", "sound", "strips")
 
@@ -343,12 +341,13 @@ def _scene(figures: list[poster.Figure], fps: float, look: Look, music: lane.Lan
     )
     parts = body.parts_record(figures[0].parts)
     muted = style.PROJECTED and music is not None and look.autoplay is None
-    autoplay = music is None or muted if look.autoplay is None else bool(look.autoplay)
+    autoplay = (music is None or muted) if look.autoplay is None else bool(look.autoplay)
+    highest = HIGHEST_IN_DEMOS if style.PROJECTED else HIGHEST
     offset = look.offset if look.layout == "together" else (0, 0)
     return {
         "layout": look.layout,
         "offset": [float(v) for v in offset],
-        "height": min(int(look.height), PROJECTED if style.PROJECTED else HIGHEST),
+        "height": min(int(look.height), highest),
         "follow": bool(look.follow),
         "parents": None if look.parents is None else [int(p) for p in look.parents],
         "fps": fps,

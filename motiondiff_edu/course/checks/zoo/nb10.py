@@ -29,17 +29,11 @@ def left_kept(control):
     return -no_sign(control) * torch.tensor([1, -1.0, 1])
 
 
-def last_zero(control):
-    """The figure stands still in the last frame."""
-    back = -control[:, :-1].flip(1)
-    return torch.cat([back, torch.zeros_like(back[:, :1])], dim=1)
-
-
-def last_kept(sign):
-    """Ends with the row that leads nowhere, with this sign."""
+def last_kept(factor):
+    """Ends with the row that leads nowhere, times this: at 0 the figure stands still."""
 
     def answer(control):
-        return torch.cat([-control[:, :-1].flip(1), sign * control[:, -1:]], dim=1)
+        return torch.cat([-control[:, :-1].flip(1), factor * control[:, -1:]], dim=1)
 
     return answer
 
@@ -189,7 +183,7 @@ MISTAKES = {
         "speed ahead has a sign, too": lambda control: (
             -no_sign(control) * torch.tensor([-1, 1, 1.0])
         ),
-        "the last row repeats the one before, it is not zero": last_zero,
+        "the last row repeats the one before, it is not zero": last_kept(0),
         "the last row given leads nowhere: instead of it the row before repeats": (
             last_kept(-1),
             last_kept(1),
