@@ -247,7 +247,7 @@ def _exchanged_arguments(tree: ast.Module) -> Iterator[tuple[str, str]]:
 
 
 def spoil(value) -> None:
-    """Overwrite an array, or the first one of a list; anything else stays."""
+    """Overwrite an array, or the first of a list; anything else stays."""
     if isinstance(value, torch.Tensor | np.ndarray) and value.shape:
         inverted = value.dtype in (torch.bool, bool)
         value[...] = ~value if inverted else value * 0 + 7
@@ -255,7 +255,7 @@ def spoil(value) -> None:
         if isinstance(value[0], torch.Tensor | np.ndarray):
             spoil(value[0])
         else:
-            value.pop()
+            value[0] = value[-1] if value[0] != value[-1] else None
 
 
 class Exercise:

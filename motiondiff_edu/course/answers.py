@@ -1,8 +1,11 @@
 """The exercises of a notebook, and the answers in a student's copy of it."""
 
 import ast
+import contextlib
 import json
+import re
 from collections.abc import Iterator
+from dataclasses import dataclass
 from pathlib import Path
 
 # what becomes of an answer (`trial`, `collect`)
@@ -17,6 +20,14 @@ UNREADABLE = "unreadable"
 
 class CopyError(ValueError):
     """A file that is no readable notebook."""
+
+
+@dataclass(frozen=True)
+class Answer:
+    """The cell that calls a check, and what the cells before it define (`definitions`)."""
+
+    source: str
+    before: tuple[str, ...] = ()
 
 
 def cells(path: Path) -> list[dict]:
@@ -36,10 +47,15 @@ def cells(path: Path) -> list[dict]:
         raise CopyError(f"{path} is not a readable notebook ({error})") from error
 
 
+def plain(source: str) -> str:
+    """The Python of a cell: lines of IPython's own, %%time for instance, are emptied."""
+    return re.sub(r"^[%!].*$", "", source, flags=re.M)
+
+
 def checks_called(source: str) -> Iterator[str]:
     """The checks that a cell calls: `q_sample` of `checks.q_sample(my_q_sample)`."""
     try:
-        tree = ast.parse(source)
+        tree = ast.parse(plain(source))
     except SyntaxError:  # a cell that was left half-way
         return
     for node in ast.walk(tree):
@@ -52,23 +68,56 @@ def checks_called(source: str) -> Iterator[str]:
             yield node.func.attr
 
 
+def _intended(source: str) -> Iterator[str]:
+    """The checks that a cell calls; those that it writes, where it does not parse."""
+    try:
+        ast.parse(plain(source))
+    except SyntaxError:
+        yield from re.findall(r"\bchecks\.(\w+)", source)
+    else:
+        yield from checks_called(source)
+
+
+def definitions(source: str) -> tuple[str, ...]:
+    """The imports, functions, classes and literal values of a cell, as statements.
+
+    Nothing else of it is needed by an answer that is run by itself.
+    """
+    try:
+        tree = ast.parse(plain(source))
+    except SyntaxError:
+        return ()
+    kinds = (ast.Import, ast.ImportFrom, ast.FunctionDef, ast.ClassDef)
+    return tuple(ast.unparse(n) for n in tree.body if isinstance(n, kinds) or _is_literal(n))
+
+
+def _is_literal(node: ast.stmt) -> bool:
+    """Whether a statement gives a name to a number, text, list of such ..., or a lambda."""
+    if not isinstance(node, ast.Assign):
+        return False
+    with contextlib.suppress(ValueError, TypeError):
+        ast.literal_eval(node.value)
+        return True
+    return isinstance(node.value, ast.Lambda)
+
+
 def exercises(path: Path) -> list[str]:
     """The checks of a notebook's exercises, in order."""
     found = [name for cell in cells(path) for name in checks_called(cell["source"])]
     return list(dict.fromkeys(found))
 
 
-def answers(path: Path) -> dict[str, str]:
-    """{check: source of the last cell that calls it, or that tried to}.
+def answers(path: Path) -> dict[str, Answer]:
+    """{check: the last cell that calls it, or that tried to}. Raises CopyError.
 
-    A cell that does not parse counts for the check whose name it writes, so that it is not lost.
+    A cell that does not parse counts for the checks whose names it writes, so that it is not lost.
     """
-    found = {}
+    found: dict[str, Answer] = {}
+    before: tuple[str, ...] = ()
     for cell in cells(path):
-        names = list(checks_called(cell["source"]))
-        if not names and "checks." in cell["source"]:
-            names = [cell["source"].rpartition("checks.")[2].partition("(")[0].strip()]
-        found |= dict.fromkeys(names, cell["source"])
+        answer = Answer(cell["source"], before)
+        found |= dict.fromkeys(_intended(cell["source"]), answer)
+        before += definitions(cell["source"])
     return found
 
 

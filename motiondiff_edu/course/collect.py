@@ -13,7 +13,7 @@ from pathlib import Path
 
 from .._files import replacing
 from . import answers
-from .answers import OPEN, RIGHT, UNREADABLE
+from .answers import OPEN, RIGHT, UNREADABLE, Answer
 from .places import notebook_folder
 
 HELP = "run the exercises of many students' copies, and show which mistakes a class makes"
@@ -31,8 +31,10 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     parser.description = (
         "Run the exercises of many students' copies. FOLDER has a folder for each student, with "
         "copies of the notebooks in it (deeper folders are looked into, too). Every answer runs "
-        "in a process of its own with limits of time and memory. That keeps answers apart; it is "
-        "no protection against malice: do not run code of people whom you do not trust."
+        "in a process of its own with limits of time and, on Linux, of memory. With it runs "
+        "what the student's cells before it define: imports, functions, classes, plain values. "
+        "That keeps answers apart; it is no protection against malice: do not run code of people "
+        "whom you do not trust."
     )
     parser.add_argument("folder", type=Path, metavar="FOLDER")
     parser.add_argument("--out", type=Path, metavar="FILE.csv", help="also write all results here")
@@ -54,8 +56,9 @@ def run(chosen: argparse.Namespace) -> int:
     copies = copies_of(chosen.folder, chosen.only)
     rows = []
     for number in sorted({number for _, number in copies}):
-        theirs = {who: path for (who, nb), path in copies.items() if nb == number}
-        print(f"notebook {number}: {len(theirs)} copies ...", file=sys.stderr, flush=True)
+        theirs = {who: paths for (who, nb), paths in copies.items() if nb == number}
+        count = sum(map(len, theirs.values()))
+        print(f"notebook {number}: {count} copies ...", file=sys.stderr, flush=True)
         rows += results_of(number, theirs, chosen.seconds, chosen.gigabytes)
     print(table(rows))
     print(mistakes(rows))
@@ -66,49 +69,84 @@ def run(chosen: argparse.Namespace) -> int:
     return 0
 
 
-def copies_of(folder: Path, only: list[str]) -> dict[tuple[str, str], Path]:
-    """{(student, notebook's number): the copy that was changed last}. Raises CollectError."""
+def copies_of(folder: Path, only: list[str]) -> dict[tuple[str, str], list[Path]]:
+    """{(student, notebook's number): the copies, that changed last first}. Raises CollectError.
+
+    There may be several: `lab --fresh` keeps the old copy beside the new one.
+    """
     if not folder.is_dir():
         raise CollectError(f"{folder} is no folder; it should have a folder for each student")
     wanted = {number.zfill(2) for number in only}
-    found: dict[tuple[str, str], Path] = {}
+    found: dict[tuple[str, str], list[Path]] = {}
     for path in sorted(folder.glob("*/**/[0-9][0-9]_*.ipynb")):
         if ".ipynb_checkpoints" in path.parts or (wanted and path.name[:2] not in wanted):
             continue
-        key = (path.relative_to(folder).parts[0], path.name[:2])
-        if key not in found or path.stat().st_mtime > found[key].stat().st_mtime:
-            found[key] = path
+        who = printable(path.relative_to(folder).parts[0])
+        found.setdefault((who, path.name[:2]), []).append(path)
     if not found:
         raise CollectError(
             f"{folder} has no copies of the notebooks; expected for instance "
             f"{folder / 'a_student' / '02_noise.ipynb'}"
         )
-    return found
+    return {key: sorted(paths, key=_changed, reverse=True) for key, paths in found.items()}
 
 
-def results_of(number: str, copies: dict[str, Path], seconds: int, gigabytes: float) -> list[dict]:
+def printable(name: str) -> str:
+    """A folder's name; bytes that are no UTF-8 are written as \\udce9 and the like."""
+    return name.encode("utf-8", "backslashreplace").decode("utf-8")
+
+
+def _changed(path: Path) -> float:
+    return path.stat().st_mtime
+
+
+def results_of(
+    number: str, copies: dict[str, list[Path]], seconds: int, gigabytes: float
+) -> list[dict]:
     """A row {"student", "notebook", "exercise", "result", "message"} for each exercise of each."""
     own = next(iter(sorted((notebook_folder() / "student").glob(f"{number}_*.ipynb"))), None)
     if own is None:
         raise CollectError(f"the course has no notebook {number}")
-    names = answers.exercises(own)
+    handed_out = answers.answers(own)
     rows = []
     todo = []
-    for who, path in copies.items():
+    for who, paths in copies.items():
         try:
-            given = answers.answers(path)
+            given = attempts(paths, handed_out)
         except answers.CopyError as error:
-            rows += [_row(who, number, name, UNREADABLE, str(error)) for name in names]
+            rows += [_row(who, number, name, UNREADABLE, str(error)) for name in handed_out]
             continue
-        for name in names:
+        for name in handed_out:
             rows.append(_row(who, number, name, OPEN, "its cell is gone"))
             if name in given:
-                todo.append((rows[-1], {"check": name, "source": given[name]}))
+                answer = {"source": given[name].source, "before": given[name].before}
+                todo.append((rows[-1], {"check": name, **answer}))
     if todo:
         found = tried(own, [answer for _, answer in todo], seconds, gigabytes)
         for (row, _), (result, message) in zip(todo, found, strict=True):
             row |= {"result": result, "message": message}
     return rows
+
+
+def attempts(paths: list[Path], handed_out: dict[str, Answer]) -> dict[str, Answer]:
+    """{check: the answer of the first copy that has one; else the cell as it was handed out}.
+
+    Raises CopyError where no copy can be read.
+    """
+    found: dict[str, Answer] = {}
+    failed = []
+    for path in reversed(paths):  # so the first one has the last word
+        try:
+            given = answers.answers(path)
+        except answers.CopyError as error:
+            failed.append(error)
+            continue
+        for name in handed_out.keys() & given.keys():
+            if name not in found or given[name].source != handed_out[name].source:
+                found[name] = given[name]
+    if len(failed) == len(paths):
+        raise failed[0]
+    return found
 
 
 def _row(who: str, number: str, name: str, result: str, message: str) -> dict:

@@ -3,8 +3,9 @@
     python -m motiondiff_edu.course.trial NOTEBOOK results.json < answers.json
 
 The notebook's own cells prepare the names once; every answer then runs in a fork of that process,
-which may take so many seconds and so much more memory. This keeps one answer's mistakes away from
-the others. It is no protection against malice: the code runs with the rights of who runs this.
+which may take so many seconds and, on Linux, so much more memory. What the reader's cells before
+it define is there as well. This keeps one answer's mistakes away from the others. It is no
+protection against malice: the code runs with the rights of who runs this.
 """
 
 import contextlib
@@ -17,23 +18,25 @@ import signal
 import sys
 import tempfile
 import warnings
+from collections.abc import Sequence
 from pathlib import Path
 
 from . import answers
-from .answers import DIED, FAILED, OPEN, RIGHT, SLOW, WRONG
+from .answers import DIED, FAILED, OPEN, RIGHT, SLOW, WRONG, Answer
 
 LONGEST = 500  # characters of a message: a table shows its beginning
 
 
-def tried(source: str, check: str, namespace: dict) -> tuple[str, str]:
-    """Run an exercise cell; (status, message)."""
+def told_of(answer: Answer, check: str, prepared: dict) -> tuple[str, str]:
+    """Run an answer among the prepared names; (status, message)."""
     from .checks._report import STUBS, CheckFailed
 
     said = io.StringIO()
     try:
         with contextlib.redirect_stdout(said), warnings.catch_warnings():
             warnings.simplefilter("ignore")
-            exec(compile(source, "answer", "exec"), dict(namespace))
+            names = _defined(answer.before, prepared)
+            exec(compile(answers.plain(answer.source), "answer", "exec"), names)
     except CheckFailed as error:
         return WRONG, str(error).removeprefix(f"{check}: ")
     except NotImplementedError as error:
@@ -47,29 +50,48 @@ def tried(source: str, check: str, namespace: dict) -> tuple[str, str]:
     return OPEN, ""
 
 
+def _defined(statements: Sequence[str], prepared: dict) -> dict:
+    """The prepared names, and beside them those that the statements define.
+
+    A statement that fails is left out: the answer may not need it.
+    """
+    names = dict(prepared)
+    for statement in statements:
+        with contextlib.suppress(Exception):
+            exec(compile(statement, "before", "exec"), names)
+    names |= prepared
+    return names
+
+
 def _named(error: BaseException) -> str:
     return f"{type(error).__name__}: {error}"
 
 
-def apart(source: str, check: str, namespace: dict, seconds: int, gigabytes: float):
-    """`tried` in a fork with limits; (status, message)."""
+def apart(answer: Answer, check: str, prepared: dict, seconds: int, gigabytes: float):
+    """`told_of` in a fork with limits; (status, message).
+
+    Processes that the answer left behind end with it.
+    """
     # a file: a pipe would stay open in a process that the answer started and left behind
     with tempfile.TemporaryFile() as result:
         child = os.fork()
         if child == 0:
+            os.setsid()  # a group of its own, with all that the answer starts
             _silence()
             _limit(seconds, gigabytes)
             here = os.getpid()
             with contextlib.suppress(BaseException):
-                status, words = tried(source, check, namespace)
+                status, words = told_of(answer, check, prepared)
                 if os.getpid() == here:  # and no fork that the answer made
                     os.write(result.fileno(), json.dumps([status, _short(words)]).encode())
             os._exit(0)
         _, status = os.waitpid(child, 0)
+        with contextlib.suppress(ProcessLookupError, PermissionError):  # nobody is left
+            os.killpg(child, signal.SIGKILL)
         result.seek(0)
-        answer = result.read()
-    if answer:
-        return tuple(json.loads(answer))
+        written = result.read()
+    if written:
+        return tuple(json.loads(written))
     if os.WIFSIGNALED(status) and os.WTERMSIG(status) in (signal.SIGALRM, signal.SIGXCPU):
         return SLOW, f"stopped after {seconds} s"
     return DIED, "the process ended: out of memory, or the interpreter crashed"
@@ -89,7 +111,7 @@ def _silence() -> None:
 
 
 def _limit(seconds: int, gigabytes: float) -> None:
-    """So much time, by the clock, and so much memory more than now."""
+    """So much time, by the clock, and on Linux so much memory more than now."""
     signal.signal(signal.SIGALRM, signal.SIG_DFL)
     signal.alarm(seconds)
     pages = int(Path("/proc/self/statm").read_text().split()[0]) if sys.platform == "linux" else 0
@@ -108,7 +130,10 @@ def main() -> None:
         for source in answers.preparation(Path(sys.argv[1])):
             exec(compile(source, "preparation", "exec"), namespace)
     limits = given["seconds"], given["gigabytes"]
-    results = [apart(one["source"], one["check"], namespace, *limits) for one in given["answers"]]
+    results = [
+        apart(Answer(one["source"], tuple(one["before"])), one["check"], namespace, *limits)
+        for one in given["answers"]
+    ]
     Path(sys.argv[2]).write_text(json.dumps(results), encoding="utf-8")
 
 

@@ -193,7 +193,7 @@ def tempogram(
     left.set_xlabel("time (s)")
     left.set_ylabel("beats per minute")
     right.set_xlabel("mean")
-    legend(right, loc="upper right")
+    legend(right, loc="lower center", bbox_to_anchor=(0.5, 1.0))  # above: the curve is wide
     return fig
 
 

@@ -105,3 +105,21 @@ def test_a_damaged_record_of_the_class_is_said_and_nothing_is_added(tmp_path, ca
     message = capsys.readouterr().err
     assert "class.json" in message and "Ask for a new copy" in message
     assert len(list(mine.glob("*.ipynb"))) == 1
+
+
+def test_copies_without_the_hidden_record_still_get_no_solutions(tmp_path, opened):
+    """Only the visible files were passed on; and then JupyterLab saved one of them."""
+    assert command.main(["handout", str(tmp_path / "week"), "--only", "02", "03"]) == 0
+    mine = tmp_path / "home"
+    shutil.copytree(tmp_path / "week", mine, ignore=shutil.ignore_patterns(".lab"))
+    assert command.main(["lab", "--folder", str(mine)]) == 0 and len(opened) == 1
+    copies = sorted(mine.glob("*.ipynb"))
+    assert [path.name[:2] for path in copies] == ["02", "03"]
+    assert not any("<summary>Solution" in path.read_text() for path in copies)
+
+
+def test_a_plain_folder_of_copies_has_no_mark(tmp_path, opened):
+    assert command.main(["lab", "--folder", str(tmp_path / "mine")]) == 0
+    copies = sorted((tmp_path / "mine").glob("*.ipynb"))
+    assert len(copies) >= 18
+    assert not any("motiondiff_class" in path.read_text() for path in copies)

@@ -95,3 +95,14 @@ def test_a_check_remembers_its_last_answer(monkeypatch, answer, wanted):
     with pytest.raises(checks.CheckFailed) if answer else nullcontext():
         checks.lengths_of_bones(answer or stub)
     assert _report.FOUND.get("lengths_of_bones") is wanted
+
+
+def test_a_class_sees_its_own_notebooks_alone(course, capsys):
+    (course / "mine" / ".lab").mkdir(parents=True)
+    (course / "mine" / ".lab" / "class.json").write_text(
+        '{"notebooks": ["03"], "solutions": false}'
+    )
+    assert told(course / "mine", capsys) == [
+        "03  0 of 1  . leap",
+        "0 of 1 exercises are right (x: not yet, a dot: not attempted)",
+    ]

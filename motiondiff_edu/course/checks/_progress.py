@@ -3,6 +3,7 @@
 from pathlib import Path
 
 from ..answers import CopyError, exercises, outputs
+from ..edition import edition_of
 from ..places import notebook_folder
 from ._report import FOUND, NOT_ATTEMPTED
 
@@ -12,12 +13,17 @@ SIGNS = {True: "+", False: "x", None: "."}  # right, not right yet, not attempte
 def progress(folder: str | Path = ".") -> None:
     """Print a line for each notebook: how many exercises are right, and which are not.
 
-    It knows the checks of this kernel, and those of the notebooks that are saved in `folder`.
+    It knows the checks of this kernel, and those of the notebooks that are saved in `folder`. In
+    the folder of a class, it lists the notebooks of the class.
+    Raises FolderError where the folder's record of its class is damaged.
     """
     lines = []
     right = 0
     every = 0
+    of_class = edition_of(Path(folder)).notebooks
     for original in sorted((notebook_folder() / "student").glob("[0-9][0-9]_*.ipynb")):
+        if of_class and original.name[:2] not in of_class:
+            continue
         names = exercises(original)
         known = saved(Path(folder) / original.name) | {n: FOUND[n] for n in names if n in FOUND}
         done = [name for name in names if known.get(name)]

@@ -158,11 +158,12 @@ def _equal(now: Any, before: Any) -> bool:
     if isinstance(before, torch.Tensor):
         before, now = before.numpy(), now.detach().numpy()
     if isinstance(before, np.ndarray):
+        now = np.asarray(now)  # of a list, one item may be replaced by a number
         inexact = np.issubdtype(before.dtype, np.inexact)
         return now.shape == before.shape and np.array_equal(now, before, equal_nan=inexact)
     if isinstance(before, list | tuple):
         return len(now) == len(before) and all(map(_equal, now, before))
-    return True
+    return now is before or bool(now == before)
 
 
 def _named(mine: Callable, changed: list[int]) -> str:
