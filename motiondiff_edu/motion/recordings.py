@@ -29,6 +29,12 @@ def is_recording(path: Path) -> bool:
     return _place(path) in _read
 
 
+def is_ours(path: Path) -> bool:
+    """Whether this process wrote the file that is there, and nobody changed it since."""
+    place = _place(path)
+    return place.exists() and _written.get(place) == _stamp(place)
+
+
 def _place(path: Path) -> Path:
     """The same for all ways to name a file."""
     return path.absolute().resolve()

@@ -76,6 +76,8 @@ def _control(name: str, value) -> ipywidgets.Widget:
             f"{name} takes (low, high, start), a list of choices, or True or False; not {value!r}"
         )
     low, high, begin = value
+    if not low <= begin <= high:
+        raise ValueError(f"{name} cannot start at {begin}: the slider goes from {low} to {high}")
     whole = all(isinstance(number, int) for number in value)
     kind = ipywidgets.IntSlider if whole else ipywidgets.FloatSlider
     extra = {} if whole else {"step": (high - low) / 50}

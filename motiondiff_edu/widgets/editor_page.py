@@ -126,21 +126,23 @@ def free_name(path: Path) -> Path:
 def save_as(editor, name: str) -> str:
     """Save to the notebook's folder under a name typed on the page; return a message.
 
-    Raises ValueError for what is no name, and for that of a recording, with a name that is free.
+    Raises ValueError for what is no name, and for that of a file which this kernel has not written,
+    with a name that is free.
     """
     path = Path(file_of(name))
-    if recordings.is_recording(path):
+    ours = recordings.is_ours(path)
+    if path.exists() and not ours:
+        why = "was read" if recordings.is_recording(path) else "is from before this kernel"
         raise ValueError(
-            f"not saved: {path} was read, and it would be lost. Type another name, for instance "
+            f"not saved: {path} {why}, and it would be lost. Type another name, for instance "
             f"{free_name(path)}"
         )
-    there = path.exists()
     with contextlib.redirect_stdout(io.StringIO()):  # the page shows what `save` prints
         report = str(editor.save(path)).split(": ", 1)[1]
     what = "the in-between that is shown"
     if editor.samples is None:
         what = "the motion with its pinned poses; nothing is generated yet"
-    over = ", which replaced an older file" * there
+    over = ", which replaced the file saved before" * ours
     return f"Saved {path.resolve()} ({what}){over}: {report}."
 
 

@@ -23,10 +23,12 @@ class Prompt(ipywidgets.VBox):
     """A box for sentences, and a player with `ANSWERS` motions of a mover for the last one.
 
     `motions` are those on show. `act()` does what the button does.
-    Raises TextError and ValueError as `Mover.act`, for the first sentence.
+    Raises TextError and ValueError as `Mover.act`, for the first sentence; ValueError for a seed
+    that the box cannot show.
     """
 
     def __init__(self, mover: Mover, text: str = SENTENCE, seconds: float = SECONDS, seed: int = 0):
+        _check_sizes(seconds, seed)  # a slider and a box would put them right silently
         self.mover = mover
         self.motions = []
         self._answered = None
@@ -95,3 +97,10 @@ class Prompt(ipywidgets.VBox):
     def _say(self, words: str, role: str = "status") -> None:
         """Show plain text below the box; a screen reader reads it."""
         self.message.value = f'<div role="{role}">{html.escape(words)}</div>'
+
+
+def _check_sizes(seconds: float, seed: int) -> None:
+    if not SHORTEST <= seconds <= LONGEST:
+        raise ValueError(f"seconds must be {SHORTEST:g} to {LONGEST:g}, not {seconds}")
+    if not 0 <= seed <= SEEDS:
+        raise ValueError(f"seed must be 0 to {SEEDS:,} in a prompt box, not {seed}")

@@ -102,6 +102,12 @@ def test_a_slider_has_whole_numbers_where_all_three_are_whole():
     assert controls["speed"].step == pytest.approx(0.07) and controls["count"].step == 1
 
 
+@pytest.mark.parametrize("start", [(0.0, 1.0, 5.0), (0, 9, -1), (9, 0, 4)])
+def test_a_slider_that_cannot_start_there_is_refused(start):
+    with pytest.raises(ValueError, match="speed cannot start at"):
+        Controls(print, {"speed": start})
+
+
 def test_side_by_side_shows_what_needs_no_kernel():
     player = Player(walk(frames=5)[0])
     box = Beside(ipywidgets.VBox([PathPad(height=300), ipywidgets.Button()]), player)

@@ -154,7 +154,23 @@ def test_a_retouched_pose_is_saved_before_anything_is_generated(motion, tmp_path
     hand = back.world_positions()[:, back.names.index("LeftHand")] / 100
     np.testing.assert_allclose(hand, editor.positions[:, HAND], atol=0.02)  # bones are evened out
     assert hand[4, 1] > motion[4, HAND, 1] + 0.17
-    assert ", which replaced an older file: " in receive(editor, do="save", name="retouched.bvh")
+    again = receive(editor, do="save", name="retouched.bvh")
+    assert ", which replaced the file saved before: " in again
+
+
+def test_a_file_of_yesterday_is_not_replaced(motion, tmp_path, monkeypatch):
+    """Nor one that somebody else changed since it was saved."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "walk.bvh").write_text("of yesterday")
+    editor = Editor(motion, guess)
+    said = receive(editor, do="save", name="walk")
+    assert said.startswith("Not saved: walk.bvh is from before this kernel, and it would be lost.")
+    assert said.endswith("for instance walk-2.bvh.")
+    assert (tmp_path / "walk.bvh").read_text() == "of yesterday"
+    assert receive(editor, do="save", name="walk-2").startswith("Saved")
+    (tmp_path / "walk-2.bvh").write_text("changed by hand")
+    assert receive(editor, do="save", name="walk-2").startswith("Not saved")
+    assert (tmp_path / "walk-2.bvh").read_text() == "changed by hand"
 
 
 def test_a_recording_that_was_read_is_not_replaced(motion, tmp_path, monkeypatch):

@@ -34,6 +34,18 @@ def player():
     return Player(positions, contacts=contacts, past=20, labels="walker", look=STILL)
 
 
+def test_twenty_minutes_at_120_frames_a_second_are_drawn(browser, tmp_path):
+    """More frames than a call takes arguments."""
+    positions, _ = walk(frames=100)
+    long = Player(np.tile(positions, (1400, 1, 1)), look=STILL)
+    with open_page(browser) as page:
+        page.goto(player_page(tmp_path, long))
+        page.locator("canvas").focus()
+        page.keyboard.press("End")
+        assert min(coloured(page.locator("canvas")).values()) > 200
+        assert page.problems == []
+
+
 def test_keys_move_the_figure_and_do_not_leak(browser, player, tmp_path):
     with open_page(browser) as page:
         page.goto(player_page(tmp_path, player))

@@ -102,3 +102,9 @@ def test_a_word_that_is_read_as_another_is_said_below_the_box(mover):
     box = Prompt(mover, "walks", seconds=2.0)
     box.text.value = "marches ahead"
     assert "&#x27;marches&#x27; is read as &#x27;walk&#x27;" in box.message.value
+
+
+@pytest.mark.parametrize("sizes", [{"seconds": 99.0}, {"seconds": 0.5}, {"seed": 123_456}])
+def test_what_the_box_cannot_show_is_refused_and_not_put_right(mover, sizes):
+    with pytest.raises(ValueError, match=f"{next(iter(sizes))} must be"):
+        Prompt(mover, "walks", **sizes)

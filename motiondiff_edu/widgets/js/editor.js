@@ -14,7 +14,7 @@ import {
   rgba,
   sighted,
 } from "./dom.js";
-import { bytes, unpack } from "./figures.js";
+import { bytes, ground, unpack } from "./figures.js";
 import { smoothRoot } from "./paint.js";
 import { silentClock } from "./clock.js";
 import { timeline } from "./timeline.js";
@@ -753,12 +753,7 @@ export function mount(model, el, { fill = false } = {}) {
   // as much as leaves the controls in sight
   if (!fill) canvas.style.height = `clamp(${scene.height}px, 46vh, 620px)`;
   [motion] = read("", [scene.frames]);
-  const ends = [0, 2].map((k) => {
-    const v = Array.from({ length: scene.frames }, (_, t) => motion.root(t)[k]);
-    return [Math.min(...v), Math.max(...v)];
-  });
-  motion.middle = ends.map(([a, b]) => (a + b) / 2);
-  motion.extent = Math.hypot(...ends.map(([a, b]) => b - a));
+  Object.assign(motion, ground(motion));
   load();
   frame = sent = clamp(model.get("frame"), 0, last);
   clock.seek(frame / scene.fps);

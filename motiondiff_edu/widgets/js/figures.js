@@ -31,6 +31,24 @@ export function unpack(model) {
   });
 }
 
+// The middle of a figure's path on the floor, and its extent in metres. A loop: a call takes no
+// more than some 100,000 arguments, and a recording of 20 minutes has more frames.
+export function ground({ root, frames }) {
+  const least = [Infinity, Infinity];
+  const most = [-Infinity, -Infinity];
+  for (let t = 0; t < frames; t++) {
+    const [x, , z] = root(t);
+    [x, z].forEach((at, k) => {
+      least[k] = Math.min(least[k], at);
+      most[k] = Math.max(most[k], at);
+    });
+  }
+  return {
+    middle: [0, 1].map((k) => (least[k] + most[k]) / 2),
+    extent: Math.hypot(...[0, 1].map((k) => most[k] - least[k])),
+  };
+}
+
 export function footprints(figure) {
   // one print for each run of contact: where ankle and toe are in its middle
   const prints = [];

@@ -13,7 +13,7 @@ import {
   rgba,
   sighted,
 } from "./dom.js";
-import { unpack } from "./figures.js";
+import { ground, unpack } from "./figures.js";
 import { paintPanel, tense } from "./paint.js";
 import { feed, silentClock, soundClock } from "./clock.js";
 import { musicLane } from "./lane.js";
@@ -105,12 +105,7 @@ export function mount(model, el, { fill = false } = {}) {
     scene = model.get("scene");
     figures = unpack(model);
     last = Math.max(...figures.map((f) => f.frames)) - 1;
-    for (const f of figures) {
-      const [xs, zs] = [0, 2].map((k) => Array.from({ length: f.frames }, (_, t) => f.root(t)[k]));
-      const ends = [xs, zs].map((v) => [Math.min(...v), Math.max(...v)]);
-      f.middle = ends.map(([a, b]) => (a + b) / 2);
-      f.extent = Math.hypot(...ends.map(([a, b]) => b - a));
-    }
+    for (const f of figures) Object.assign(f, ground(f));
     scrub.max = String(last);
     canvas.setAttribute("aria-label", scene.description);
     if (!fill) canvas.style.height = `${scene.height}px`;
