@@ -3,9 +3,10 @@
     python tools/backed_numbers.py build/executed
 
 An answer may name decimals, and numbers with a unit, only if the cells before it print them: in
-their output, in a caption, in a figure's texts, or in the code as a setting. So a changed seed or
-network cannot leave a wrong number behind. What follows from such numbers, or stands in the table
-of results, says so in a comment that is not shown:
+their output, in a caption, in a figure's texts, or in the code as a setting. It does not know which
+printed number is meant, so it finds a number that nothing printed, not every wrong one. What
+follows from such numbers, or stands in the table of results, says so in a comment that is not
+shown:
 
     <!-- 15 % = 100 * (1 - 0.85) -->      <!-- in RESULTS.md: 0.5 1.5 -->
 
@@ -36,7 +37,13 @@ DERIVED = re.compile(rf"<!-- ({NUMBER})(?: ?(?:{UNITS}))? = ([^>]+?) -->")
 LISTED = re.compile(r"<!-- in RESULTS\.md: ([\d. ]+) -->")
 TRIVIAL = {1.0, 2.0, 10.0, 100.0, 1000.0}  # need no backing in a formula
 RESULTS = Path(__file__).parent.parent / "docs" / "RESULTS.md"
-SCALES = (1.0, 100.0, 0.01, 1000.0, 0.001)  # per cent of a share; cm and mm of metres
+# What a number with this unit may have been printed as, times: a share, metres, seconds.
+SCALES = {
+    "%": (1.0, 100.0),
+    "cm": (1.0, 100.0, 0.1),
+    "mm": (1.0, 1000.0, 10.0),
+    "ms": (1.0, 1000.0),
+}
 
 
 @dataclass(frozen=True)
@@ -58,12 +65,9 @@ class Claim:
         return 10.0 ** -len(digits)
 
     def backed(self, printed: set[float], settings: set[float]) -> bool:
-        """Whether a printed number rounds to it, in this or another unit; or a setting is it.
-
-        A number without a unit must be printed as it is.
-        """
+        """Whether a printed number rounds to it, as it is or by `SCALES`; or a setting is it."""
         room = max(0.5001 * self.step, 0.2 * abs(self.value) if self.about else 0.0)
-        scaled = {scale * one for one in printed for scale in (SCALES if self.unit else (1.0,))}
+        scaled = {scale * one for one in printed for scale in SCALES.get(self.unit, (1.0,))}
         return abs(self.value) in {abs(one) for one in settings} or any(
             abs(abs(one) - abs(self.value)) <= room for one in scaled
         )

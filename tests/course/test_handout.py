@@ -30,6 +30,8 @@ def course(tmp_path) -> Path:
     (tmp_path / "course" / "docs" / "RESULTS.md").write_text("![map](results/map.png)")
     (tmp_path / "course" / "docs" / "results" / "map.png").write_bytes(b"PNG")
     (tmp_path / "course" / "docs" / "results" / "walker.json").write_text("[]")
+    (tmp_path / "course" / "docs" / ".editor").mkdir()
+    (tmp_path / "course" / "docs" / ".editor" / "draft.md").write_text("not for students")
     return edition.parent
 
 

@@ -97,7 +97,10 @@ def test_changed_code_of_the_package_counts_as_another_notebook(place, monkeypat
     (tmp_path / "package").mkdir()
     before = prepared.digest(place)
     (tmp_path / "package" / "walker.py").write_text("speed = 1")
-    assert prepared.digest(place) != before
+    changed = prepared.digest(place)
+    assert changed != before
+    (tmp_path / "package" / "walker.json").write_text("{}")  # the card of new weights
+    assert prepared.digest(place) not in (before, changed)
 
 
 def test_a_changed_player_and_another_profile_count_as_well(place, monkeypatch, tmp_path):

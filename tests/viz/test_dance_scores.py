@@ -3,6 +3,7 @@
 import numpy as np
 from moves import stopping_at, sway
 
+from motiondiff_edu.motion.resample import DANCE_FPS
 from motiondiff_edu.viz import dance_scores as viz
 from motiondiff_edu.viz.style import caption
 
@@ -14,6 +15,8 @@ def test_dots_stand_where_the_dance_slows_down_and_lines_at_the_beats():
         {"stops": stopping_at(stops, 2.5, 20), "sways": sway(2.5, 20)}, music, "words"
     )
     speed, dots = fig.axes[0].lines
+    # a speed lies in the middle between two frames
+    np.testing.assert_allclose(speed.get_xdata()[:2], [0.5 / DANCE_FPS, 1.5 / DANCE_FPS])
     np.testing.assert_allclose(dots.get_xdata(), stops, atol=0.04)
     assert (
         dots.get_ydata().max() < 0.5 * speed.get_ydata().max()

@@ -71,3 +71,25 @@ def test_mel_rows_are_named_by_their_frequency():
 def test_levels_are_relative_to_the_loudest():
     line = sound.spectra(HZ[:3], {"a": np.array([10.0, 1.0, 0.1])}, "words").axes[0].lines[0]
     np.testing.assert_allclose(line.get_ydata(), [0, -20, -40])
+
+
+def test_a_spectrogram_ends_at_its_top():
+    low, high = FIGURES["spectrogram"]().axes[0].get_ylim()
+    assert low >= -200 and 3800 <= high <= 4200
+
+
+def test_a_tempogram_has_the_mean_over_time_beside_it():
+    tempi = np.array([20.0, 60.0, 120.0, 400.0])  # the first and the last lie outside
+    values = np.array([[9.0, 9.0, 9.0], [0.0, 0.3, 0.9], [1.0, 1.0, 4.0], [9.0, 9.0, 9.0]])
+    left, right = sound.tempogram(np.arange(3) * 0.5, tempi, values, 90, "words").axes
+    np.testing.assert_array_equal(left.collections[0].get_array().reshape(2, 3), values[1:3])
+    mean, mark = right.lines
+    np.testing.assert_allclose(mean.get_xydata(), [[0.4, 60], [2.0, 120]])
+    assert set(mark.get_ydata()) == {90}
+
+
+def test_a_delay_is_marked_at_the_median_and_cut_off():
+    axis = sound.lags({"one": np.array([0.0, 10.0, 100.0, 500.0])}, "words", 20, reach=120).axes[0]
+    dots, median = axis.lines[:2]
+    assert dots.get_xdata().tolist() == [0, 10, 100, 120]
+    assert median.get_xdata()[0] == 55  # the mean is 57.5
