@@ -23,7 +23,7 @@ class WithNotebooks(build_py):
             for notebook in sorted((root / folder).glob("*.ipynb")):
                 shutil.copy(notebook, package / folder / notebook.name)
         for page in sorted((root / "docs").rglob("*")):
-            if page.suffix in (".md", ".png", ".py"):  # PAGES of motiondiff_edu/course/handout.py
+            if page.suffix in (".md", ".png", ".py"):  # PAGES of motiondiff_edu/course/copies.py
                 target = package / page.relative_to(root)
                 target.parent.mkdir(parents=True, exist_ok=True)
                 shutil.copy(page, target)

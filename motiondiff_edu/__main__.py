@@ -27,7 +27,7 @@ VERBS = {name: f"_commands.{name}" for name in _commands.VERBS} | {
     "demo": "course.demo",
     "doctor": "course.doctor",
     "collect": "course.collect",
-    "handout": "course.class_copies",
+    "handout": "course.handout",
 }
 
 

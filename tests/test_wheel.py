@@ -35,7 +35,7 @@ USE = """
 import json, sys
 import motiondiff_edu, data_synth
 from pathlib import Path
-from motiondiff_edu.course import checks, doctor, handout, places
+from motiondiff_edu.course import checks, copies, doctor, places
 from motiondiff_edu.pretrained import checkpoints
 from motiondiff_edu.motion.skeleton import JOINTS
 from motiondiff_edu.widgets.player import Player
@@ -46,7 +46,7 @@ models = {n: checkpoints.pretrained(n).model for n in checkpoints.available()}
 walkers = {n: sum(p.numel() for p in model.parameters()) for n, model in models.items()}
 player = Player(np.zeros((2, 21, 3)))
 root, mine = places.place_for_students()
-handout.hand_out(places.notebook_folder(), mine)
+copies.hand_out(places.notebook_folder(), mine)
 print(json.dumps({
     "package": motiondiff_edu.__file__, "data": data_synth.__file__,
     "version": motiondiff_edu.__version__,

@@ -107,7 +107,7 @@ def exercises(path: Path) -> list[str]:
     return list(dict.fromkeys(found))
 
 
-def answers(path: Path) -> dict[str, Answer]:
+def of_copy(path: Path) -> dict[str, Answer]:
     """{check: the last cell that calls it, or that tried to}. Raises CopyError.
 
     A cell that does not parse counts for the checks whose names it writes, so that it is not lost.

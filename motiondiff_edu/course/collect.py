@@ -107,7 +107,7 @@ def results_of(
     own = next(iter(sorted((notebook_folder() / "student").glob(f"{number}_*.ipynb"))), None)
     if own is None:
         raise CollectError(f"the course has no notebook {number}")
-    handed_out = answers.answers(own)
+    handed_out = answers.of_copy(own)
     rows = []
     todo = []
     for who, paths in copies.items():
@@ -122,7 +122,7 @@ def results_of(
                 answer = {"source": given[name].source, "before": given[name].before}
                 todo.append((rows[-1], {"check": name, **answer}))
     if todo:
-        found = tried(own, [answer for _, answer in todo], seconds, gigabytes)
+        found = run_all(own, [answer for _, answer in todo], seconds, gigabytes)
         for (row, _), (result, message) in zip(todo, found, strict=True):
             row |= {"result": result, "message": message}
     return rows
@@ -137,7 +137,7 @@ def attempts(paths: list[Path], handed_out: dict[str, Answer]) -> dict[str, Answ
     failed = []
     for path in reversed(paths):  # so the first one has the last word
         try:
-            given = answers.answers(path)
+            given = answers.of_copy(path)
         except answers.CopyError as error:
             failed.append(error)
             continue
@@ -155,7 +155,7 @@ def _row(who: str, number: str, name: str, result: str, message: str) -> dict:
     }  # fmt: skip
 
 
-def tried(notebook: Path, todo: list[dict], seconds: int, gigabytes: float) -> list[list[str]]:
+def run_all(notebook: Path, todo: list[dict], seconds: int, gigabytes: float) -> list[list[str]]:
     """(result, message) of each answer, from `trial` in another process and an empty folder."""
     given = {"answers": todo, "seconds": seconds, "gigabytes": gigabytes}
     with tempfile.TemporaryDirectory(prefix="motiondiff_collect_") as folder:

@@ -3,8 +3,8 @@
 import argparse
 from pathlib import Path
 
+from .copies import Handout, hand_out, make_fresh
 from .edition import edition_of
-from .handout import Handout, hand_out, make_fresh
 from .jupyter import open_lab
 from .places import command_for_fresh, notebook_folder, place_for_students
 

@@ -231,5 +231,5 @@ def test_answers_are_found_wherever_they_were_moved_to(tmp_path):
     notebook["cells"].append({"cell_type": "code", "source": source, "metadata": {}})
     path = tmp_path / "16.ipynb"
     path.write_text(json.dumps(notebook))
-    assert answers.answers(path) == {"bag": answers.Answer(source)}
+    assert answers.of_copy(path) == {"bag": answers.Answer(source)}
     assert answers.exercises(path) == ["bag"]
