@@ -35,7 +35,7 @@ ASIDE = re.compile(
 )
 DERIVED = re.compile(rf"<!-- ({NUMBER})(?: ?(?:{UNITS}))? = ([^>]+?) -->")
 LISTED = re.compile(r"<!-- in RESULTS\.md: ([\d. ]+) -->")
-TRIVIAL = {1.0, 2.0, 10.0, 100.0, 1000.0}  # need no backing in a formula
+TRIVIAL = {1.0, 2.0, 10.0, 100.0, 360.0, 1000.0}  # need no backing in a formula
 RESULTS = Path(__file__).parent.parent / "docs" / "RESULTS.md"
 # What a number with this unit may have been printed as, times: a share, metres, seconds.
 SCALES = {

@@ -105,8 +105,8 @@ def file_of(name: str) -> str:
     if set(name) & set("/\\:"):
         raise ValueError(
             f"not saved: {name!r} contains a folder. Type only a name: the file goes to the "
-            f"notebook's folder ({Path.cwd()}). To write elsewhere, call editor.save(path) in a "
-            "cell"
+            f"notebook's folder ({Path.cwd()}). To write elsewhere, name the editor and call its "
+            "save(path) in a cell"
         )
     found = ENDING.fullmatch(name)
     stem, ending = found.groups() if found else (name, ".bvh")

@@ -347,7 +347,7 @@ export function mount(model, el, { fill = false } = {}) {
     root.setAttribute("aria-busy", String(busy));
     generate.setAttribute("aria-disabled", String(busy));
     generate.textContent = busy ? "Generating \u2026" : "Generate";
-    undo.setAttribute("aria-disabled", String(!state.undo));
+    undo.setAttribute("aria-disabled", String(busy || !state.undo));
     for (const node of [previous, next])
       node.setAttribute("aria-disabled", String(samples.length < 2));
     keep.value = state.part;
@@ -516,6 +516,7 @@ export function mount(model, el, { fill = false } = {}) {
     else halt(t);
   }
   function takeBack() {
+    if (generating()) return say("Generating: Undo when it is done, or it would be lost.");
     grip = null;
     ask({ do: "undo" }, "Undo");
   }

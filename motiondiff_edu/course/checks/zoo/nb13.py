@@ -114,6 +114,11 @@ MISTAKES = {
         "undo the mixing completely: the signal was scaled down, too": _mixed(
             lambda x, e, a, b: x - b * e
         ),
+        "the root of 1 - alpha_bar is missing": _mixed(lambda x, e, a, b: x / a - b**2 / a * e),
+        "divide by the root of alpha_bar; this multiplies by it": (
+            _mixed(lambda x, e, a, b: a * (x - b * e)),
+            _mixed(lambda x, e, a, b: a * x - b / a * e),
+        ),
         "signal and noise are swapped: a is the root of alpha_bar, b that of 1 - alpha_bar": _mixed(
             lambda x, e, a, b: (x - a * e) / b
         ),

@@ -102,6 +102,15 @@ MISTAKES = {
         "divide by the frame time, 1 / fps: that means multiply by fps": lambda path, fps: (
             _sizes(path).mean() / fps**2
         ),
+        "differences are between frames, along axis 0; np.diff takes the last axis by itself": (
+            lambda path, fps: np.linalg.norm(np.diff(path, 2), axis=1).mean() * fps**2,
+            lambda path, fps: (
+                np.linalg.norm(np.diff(np.diff(path, axis=0)), axis=1).mean() * fps**2
+            ),
+        ),
+        "each frame has a vector, and its length is over axis 1": lambda path, fps: (
+            np.linalg.norm(_second(path), axis=0).mean() * fps**2
+        ),
         "take the length of the vector, not the mean size of its coordinates": lambda path, fps: (
             np.abs(_second(path)).mean() * fps**2
         ),

@@ -46,7 +46,8 @@ def _without_limits(distances, k):
 MISTAKES = {
     "r_precision": {
         "a rank of 0 is the nearest: the own motion must be among the first k": (
-            lambda distances, k: _share(*_rows(distances), k + 1)
+            lambda distances, k: _share(*_rows(distances), k + 1),
+            lambda distances, k: (_rows(distances)[0] <= k).mean(),
         ),
         "this is exactly the k-th nearest; nearer ones count, too": lambda distances, k: (
             _rows(distances)[0] == k - 1
@@ -54,7 +55,11 @@ MISTAKES = {
         "take the share, not the number": lambda distances, k: (
             _share(*_rows(distances), k) * len(distances)
         ),
-        "rows are texts: choose a motion for each text, not a text for each motion": by_motion,
+        "rows are texts: choose a motion for each text, not a text for each motion": (
+            by_motion,
+            lambda distances, k: (_rows(distances.T)[0] < k).mean(),
+            lambda distances, k: (_rows(distances.T)[0] <= k).mean(),
+        ),
         "the own motion's distance belongs to its row, its text": own_as_a_row,
         "the nearest has the *smallest* distance": lambda distances, k: _share(
             *_rows(-distances), k
