@@ -180,7 +180,7 @@ def test_in_betweens_of_windows_are_measured_and_stand_in_the_page(folder, monke
 
 def test_on_all_cores_the_numbers_are_the_same(folder):
     dancer, windows = md.load("unconditional"), inbetweens.windows_and_walks(QUICK)[0]
-    tasks = [(dancer, motion, 10, 1) for _, motion in windows]
+    tasks = [(dancer, motion, 10, 1) for _, motion in windows[:2]]
     assert inbetweens.on_all_cores(tasks) == inbetweens.in_turn(tasks)
 
 

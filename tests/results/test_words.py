@@ -262,7 +262,7 @@ def test_all_records_are_made_and_stand_in_the_page(monkeypatch, mover):
 def test_on_all_cores_the_numbers_are_the_same(monkeypatch):
     # workers are other processes, which draw as often as usual
     monkeypatch.setattr(walk_scores, "interval", interval)
-    studio = parts.Studio(replace(parts.WORD_QUICK, edits=1, trials=40))
+    studio = parts.Studio(replace(parts.WORD_QUICK, edits=1, trials=12))
     chosen = (parts.edited_by_words, data_alone)
     in_turn, at_once = (run(chosen, studio) for run in (parts.in_turn, parts.on_all_cores))
     for one, other in zip(in_turn, at_once, strict=True):
