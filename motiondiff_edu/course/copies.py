@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from .._files import replacing
+from .anchors import for_jupyterlab
 from .edition import edition_of
 from .places import FolderError, program
 
@@ -31,7 +32,8 @@ class Handout:
 def shipped(notebooks: Path) -> dict[str, bytes]:
     """{name: content} of a student's files: the student edition, and the pages it links to.
 
-    The pages go to docs/ below the copies, and the links of the notebooks follow them there.
+    The pages go to docs/ below the copies, and the links of the notebooks follow them there. Links
+    to headings are written as JupyterLab finds them (`anchors.py`).
     """
     edition = sorted((notebooks / "student").glob("*.ipynb"))
     found = {path.name: path.read_bytes().replace(b"../../docs/", b"docs/") for path in edition}
@@ -44,6 +46,10 @@ def shipped(notebooks: Path) -> dict[str, bytes]:
             if path.suffix == ".md":  # notebooks lie just above the pages here
                 content = content.replace(b"](../notebooks/", b"](../")
             found[f"docs/{name.as_posix()}"] = content
+    pages = {Path(n).name: text.decode() for n, text in found.items() if n.endswith(".md")}
+    for name, content in found.items():
+        if name.endswith((".md", ".ipynb")):
+            found[name] = for_jupyterlab(content.decode(), pages, own=Path(name).name).encode()
     return found
 
 

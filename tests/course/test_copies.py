@@ -1,13 +1,15 @@
 """course/copies.py: copies are renewed, and nothing that a student changed is overwritten."""
 
 import json
+import re
 from pathlib import Path
 
 import links
 import pytest
 
-from motiondiff_edu.course import copies
+from motiondiff_edu.course import anchors, copies
 from motiondiff_edu.course.copies import FolderError, hand_out, make_fresh
+from motiondiff_edu.course.places import notebook_folder
 
 
 def notebook(*sources: str, outputs: tuple = ()) -> str:
@@ -224,3 +226,28 @@ def test_dead_links_are_found(tmp_path):
     (tmp_path / "b.md").write_text("[out](https://example.org) `[code](f.md)` [a](a.ipynb)")
     (tmp_path.parent / "d.md").touch()
     assert links.dead(tmp_path) == ["a.ipynb: docs/c.md", "a.ipynb: ../d.md", "a.ipynb: e.png"]
+
+
+def test_links_to_headings_are_those_of_jupyterlab(tmp_path):
+    """In all notebooks and pages that students get."""
+    mine = tmp_path / "mine"
+    hand_out(notebook_folder(), mine)
+    seen = set()
+    for path in [*mine.glob("*.ipynb"), *(mine / "docs").rglob("*.md")]:
+        for page, anchor in re.findall(r"\]\(([\w./-]*\.md)#([^)\s]+)\)", path.read_text()):
+            text = (path.parent / page).read_text()
+            assert anchor in [h.replace(" ", "-") for h in anchors.headings(text)], (path, anchor)
+            seen.add(anchor)
+    assert {"DDIM", "Kullback-Leibler-divergence", "U-Net", "noise-schedule"} <= seen
+
+
+def test_anchors_of_headings():
+    page = "# The `walk`\n\n```\n# no heading\n```\n## [A link](x.md), *so*\n[up](#the-walk)"
+    assert list(anchors.headings(page)) == ["The walk", "A link, so"]
+    told = "[a](docs/P.md#a-link-so) [b](P.md#gone) [c](Q.md#the-walk) "
+    told += "[d](n.ipynb#1.-Go) [e](#the-walk)"
+    found = anchors.for_jupyterlab(told, {"P.md": page}, own="P.md")
+    assert found == (
+        "[a](docs/P.md#A-link,-so) [b](P.md#gone) [c](Q.md#the-walk) [d](n.ipynb#1.-Go) "
+        "[e](#The-walk)"
+    )

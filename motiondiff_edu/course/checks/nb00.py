@@ -23,8 +23,8 @@ def right_turn(mine):
     )
     expect(np.isfinite(got).all(), "the control contains NaN or infinity")
     _held(got[: 40 - HAND], (1.2, 0.0, 0.0), "the first two seconds (rows 0 to 39)")
-    _turns_right(got)
     _held(got[80 + HAND :], (0.0, 0.0, 0.0), "the last second (rows 80 to 99), which is at rest")
+    _turns_right(got)
     softer = _changes(got)
     return ("A softer version of what was asked, and right. " if softer else "") + (
         "Three columns, 20 rows a second: that is the walker's whole control."
@@ -35,6 +35,11 @@ def _held(rows: np.ndarray, wanted: tuple[float, ...], what: str) -> None:
     """Whether all rows are the wanted speeds."""
     for column, speed in enumerate(wanted):
         worst = np.abs(rows[:, column] - speed).argmax()
+        per_frame = speed and np.abs(rows[:, column] - speed / 20).max() < 1e-6
+        expect(
+            not per_frame,
+            f"{what}: the {COLUMNS[column]} is that of one frame; the control is per second",
+        )
         expect(
             abs(rows[worst, column] - speed) < 0.001,
             f"{what}: the {COLUMNS[column]} is {rows[worst, column]:.4g}, and should be {speed:g}",

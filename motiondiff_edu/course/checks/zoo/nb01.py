@@ -102,6 +102,13 @@ MISTAKES = {
         "a bone joins a joint to its parent, not to the joint before it in the list": lambda p, b: (
             np.linalg.norm(np.diff(p, axis=1), axis=-1)
         ),
+        "sum over x, y, z, not over the bones": (
+            lambda p, b: np.linalg.norm(_bones(p, b), axis=1),
+            lambda p, b: np.linalg.norm(_bones(p, b), axis=1).T,
+        ),
+        "add the squares up under the root; you took their mean": lambda p, b: np.sqrt(
+            (_bones(p, b) ** 2).mean(-1)
+        ),
         "sum over x, y, z, not over the frames": lambda p, b: np.sqrt((_bones(p, b) ** 2).sum(0)),
         "these are sums of coordinates; how long is a vector in space?": (
             lambda p, b: np.abs(_bones(p, b)).sum(-1),
@@ -128,6 +135,12 @@ MISTAKES = {
         ),
         "the root's position is missing": lambda pose, x, z, heading: _turn(pose, heading),
         "the pose was moved but not turned": _moved(lambda pose, heading: pose),
+        "left has the wrong sign: the pose is mirrored": _moved(
+            lambda pose, heading: _turn(pose * [-1, 1, 1], heading)
+        ),
+        "x and z are exchanged": lambda pose, x, z, heading: _moved(_turn)(pose, x, z, heading)[
+            :, [2, 1, 0]
+        ],
         "the height must stay as it is": lambda pose, x, z, heading: (
             (_turn(pose, heading) + np.array([x, 0, z])) * [1, 0, 1]
         ),

@@ -99,6 +99,13 @@ def mean_of_the_means(x0, x_s, s, alpha_bar):
     return (alpha_bar[s - 1] ** 0.5 * x0 + x_s / alpha**0.5) / 2, _of(x0, x_s, s, alpha_bar)[1]
 
 
+def deviations_multiplied(x0, x_s, s, alpha_bar):
+    """Puts standard deviations where the product expects variances."""
+    alpha, before = alpha_bar[s] / alpha_bar[s - 1], alpha_bar[s - 1]
+    spread = (1 - before) ** 0.5, ((1 - alpha) / alpha) ** 0.5
+    return _product(before**0.5 * x0, spread[0], x_s / alpha**0.5, spread[1])
+
+
 def _changed_variance(change):
     def answer(x0, x_s, s, alpha_bar):
         mean, variance = _of(x0, x_s, s, alpha_bar)
@@ -111,6 +118,12 @@ MISTAKES = {
     "q_sample": {
         "alpha_bar is a variance: amplitudes need its square root": _mixed(
             lambda a: a, lambda a: 1 - a
+        ),
+        "amplitudes need the square root, which is not half of it": _mixed(
+            lambda a: a / 2, lambda a: (1 - a) / 2
+        ),
+        "alpha_bar is the product of all steps already; multiply no further": (
+            lambda x0, s, alpha_bar, noise: _mixed(_root, _rest)(x0, s, alpha_bar.cumprod(0), noise)
         ),
         "the signal has its square root, but the noise has none": _mixed(_root, lambda a: 1 - a),
         "the square root of the signal is missing": _mixed(lambda a: a, _rest),
@@ -141,6 +154,8 @@ MISTAKES = {
         ),
         "x_s measures sqrt(alpha_s) x_{s-1}: divide it by sqrt(alpha_s), and its variance by "
         "alpha_s": (last_step_not_undone, variance_not_scaled),
+        "`product` takes variances; these are standard deviations": deviations_multiplied,
+        "the mean comes first, then the variance": lambda *given: _of(*given)[::-1],
         "that is the standard deviation": _changed_variance(lambda v: v**0.5),
         "that is the precision, 1 / variance": _changed_variance(lambda v: 1 / v),
         "beta_s is 1 - alpha_bar[s] / alpha_bar[s - 1], not a difference of two alpha_bars": (

@@ -97,8 +97,46 @@ def roots_dropped(x, eps_hat, now, then, eta, z):
     return then * x0_hat + (1 - then - variance) * eps_hat + variance**0.5 * z
 
 
+def _weights(x_s, alpha_bar, data):
+    """The weights of the candidates, which sum to 1 only after they are divided by their sum."""
+    distance = (x_s[:, None] - alpha_bar[:, None, None] ** 0.5 * data).square().sum(-1)
+    return torch.exp(-distance / (2 * (1 - alpha_bar[:, None])))
+
+
+def x_alone_rescaled(x_s, s, eps_hat, beta, alpha_bar, z):
+    """Divides x_s, and then subtracts the noise at its old size."""
+    removed = beta[s] / (1 - alpha_bar[s]) ** 0.5 * eps_hat
+    shaken = beta[s] ** 0.5 * z if s > 1 else 0.0
+    return x_s / (1 - beta[s]) ** 0.5 - removed + shaken
+
+
+def straight_to_x0(x_s, s, eps_hat, beta, alpha_bar, z):
+    """Removes all the noise at once."""
+    return (x_s - (1 - alpha_bar[s]) ** 0.5 * eps_hat) / alpha_bar[s] ** 0.5
+
+
+def _signal(of):
+    """The right leap with another first term: of(x, x0_hat, now, then)."""
+
+    def answer(x, eps_hat, now, then, eta, z):
+        x0_hat = (x - (1 - now) ** 0.5 * eps_hat) / now**0.5
+        rest = _leap(x, eps_hat, now, then, _variance(now, then, eta), z) - then**0.5 * x0_hat
+        return of(x, x0_hat, now, then) + rest
+
+    return answer
+
+
 MISTAKES = {
     "best_guess": {
+        "the exponent is negative: the nearest candidate has the largest weight": _wrong(
+            spread=lambda a: -2 * (1 - a)
+        ),
+        "the weights must sum to 1: divide them by their sum": (
+            lambda x_s, alpha_bar, data: _weights(x_s, alpha_bar, data) @ data
+        ),
+        "these are the weights; the best guess is the mean of the candidates with them": (
+            lambda x_s, alpha_bar, data: torch.softmax(_weights(x_s, alpha_bar, data).log(), 1)
+        ),
         "the candidates must be shrunk by sqrt(alpha_bar) before they are compared": _wrong(
             shrink=0
         ),
@@ -144,6 +182,14 @@ MISTAKES = {
         ),
         "no noise was added; only the last step, s = 1, adds none": _misstep(
             shake=lambda s, beta, alpha_bar: 0.0
+        ),
+        "the root re-scales the whole bracket, not x_s alone": x_alone_rescaled,
+        "that is the guess of x0; one step only goes to s - 1": straight_to_x0,
+        "every step adds noise but the last one, s = 1; here it is the other way round": _misstep(
+            shake=lambda s, beta, alpha_bar: beta[s] ** 0.5 if s == 1 else 0.0, last=1.0
+        ),
+        "divide by the root of alpha_s; this multiplies by it": _misstep(
+            scale=lambda b, a: (1 - b) ** -0.5
         ),
         "the re-scaling by 1 / sqrt(alpha_s) is missing": _misstep(scale=lambda b, a: 1.0),
         "re-scale by the root of alpha_s = 1 - beta_s; the root is missing": _misstep(
@@ -197,6 +243,18 @@ MISTAKES = {
         ),
         "the predicted noise is missing; at r there is still some": _misleap(
             kept=lambda now, then, variance: 0.0
+        ),
+        "the signal shrinks to its share at r, the root of `then`, not of `now`": _signal(
+            lambda x, x0_hat, now, then: now**0.5 * x0_hat
+        ),
+        "x0_hat is scaled by the root of `then`; the root is missing": _signal(
+            lambda x, x0_hat, now, then: then * x0_hat
+        ),
+        "x0_hat goes on to r, not x, which has its noise still": _signal(
+            lambda x, x0_hat, now, then: then**0.5 * x
+        ),
+        "x0_hat must be scaled down to its share at r": _signal(
+            lambda x, x0_hat, now, then: x0_hat
         ),
         "square roots are missing: alpha_bar is a variance": roots_dropped,
         "fresh noise adds variance: the predicted noise must have less of it": _misleap(

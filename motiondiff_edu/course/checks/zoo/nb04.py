@@ -21,6 +21,18 @@ def directions_swapped(x0, alpha_bar):
     return ((alpha_bar * x0**2 + 1) / left - 1 + torch.log(left)).sum((1, 2)) / 2
 
 
+def other_logarithm(x0, alpha_bar):
+    """Takes the logarithm of the signal's share."""
+    off = torch.log(1 - alpha_bar) - torch.log(alpha_bar)
+    return (_each(x0, alpha_bar) + off / 2).sum((1, 2))
+
+
+def once_a_sample(x0, alpha_bar):
+    """Adds what does not depend on x0 once, and not for each entry."""
+    rest = _each(0 * x0, alpha_bar)
+    return (alpha_bar * x0**2 / 2).sum((1, 2)) + rest[:, 0, 0]
+
+
 def _weight(beta, alpha_bar, of_x0):
     b, a = beta[1:], alpha_bar[1:]
     return b / (2 * (1 - b) * (1 - a)) * of_x0(a / (1 - a))
@@ -79,6 +91,11 @@ MISTAKES = {
         "the logarithm is missing": _summed(log=0.0),
         "the term of the variance is missing: variance - 1": _summed(variance=0.0),
         "the logarithm has the wrong sign": _summed(log=-1.0),
+        "a term is missing: subtract 1 for each entry": lambda x0, alpha_bar: (
+            _each(x0, alpha_bar) + 0.5
+        ).sum((1, 2)),
+        "the logarithm is that of the variance, 1 - alpha_bar, not of alpha_bar": other_logarithm,
+        "every entry has a variance and its logarithm, not every sample": once_a_sample,
         "the mean of q(x_S | x0) is sqrt(alpha_bar) x0": (
             _summed(signal=lambda a, x: (a * x) ** 2),
             _summed(signal=lambda a, x: x**2),
