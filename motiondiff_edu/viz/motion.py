@@ -103,19 +103,21 @@ def paths_from_above(
     )
     for k, (name, (root, heading)) in enumerate(paths.items()):
         colour = SERIES[k % len(SERIES)]
-        axes.plot(*root.T, color=colour, lw=2, label=name, ls="-" if k == 0 else "--")
+        under = {"lw": 5, "alpha": 0.4} if k == 0 and len(paths) > 1 else {"lw": 2}
+        axes.plot(*root.T, color=colour, label=name, ls="-" if k == 0 else "--", **under)
         axes.plot(*root[0], "o", color=colour, ms=8)
+        arrows = 0.6 * np.stack([np.sin(heading[::every]), np.cos(heading[::every])], 1)  # metres
         axes.quiver(
             *root[::every].T,
-            np.sin(heading[::every]),
-            np.cos(heading[::every]),
+            *arrows.T,
             color=colour,
             angles="xy",
             scale_units="xy",
-            scale=1.7,
+            scale=1,
             width=0.005,
             zorder=3,
         )
+        axes.update_datalim(root[::every] + arrows)
     axes.margins(0.1)
     axes.invert_xaxis()  # seen from above and along z, the figure's left is on the left
     axes.set(aspect="equal", xlabel="x: left (m)", ylabel="z: forward (m)")
