@@ -34,6 +34,7 @@ from motiondiff_edu.conditions.control import constant_control  # noqa: E402
 from motiondiff_edu.editing.inbetween import inbetween  # noqa: E402
 from motiondiff_edu.motion.skeleton import joint_index  # noqa: E402
 from motiondiff_edu.widgets.editor import Editor  # noqa: E402
+from motiondiff_edu.widgets.path import MODULE as PATH_MODULE  # noqa: E402
 from motiondiff_edu.widgets.path import PathPad  # noqa: E402
 from motiondiff_edu.widgets.player import Look, Player, Soundtrack  # noqa: E402
 
@@ -63,8 +64,7 @@ def path_panel(browser, folder: Path) -> Iterator[Image.Image]:
     """A path drawn with the mouse on the path pad, then the walker that walks it."""
     pad = PathPad(points=np.zeros((0, 2)), speed=1.4, height=HEIGHT)
     names = ("line", "stops", "speed", "seconds", "preset", "presets", "height")
-    module = ROOT / "motiondiff_edu" / "widgets" / "path.js"
-    address = bare_page(folder, module, {name: getattr(pad, name) for name in names}, [])
+    address = bare_page(folder, PATH_MODULE, {name: getattr(pad, name) for name in names}, [])
     with open_page(browser, viewport={"width": WIDTHS[0], "height": HEIGHT}) as page:
         page.goto(address)
         page.add_style_tag(content=PLAIN + ".mde-pad { padding: 0 } .mde-pad-row { display: none }")

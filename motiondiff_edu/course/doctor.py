@@ -22,10 +22,8 @@ from .places import PACKAGE, command_for_lab, notebook_folder, place_for_student
 
 HELP = "say on one page what works here, and what to do about the rest"
 EXAMPLE = "doctor"
-ES_MODULES = (
-    "path.js",
-    *(f"js/{name}.js" for name in dict.fromkeys((*module.PARTS, *module.EDITOR, *module.BENCH))),
-)
+PARTS = dict.fromkeys((*module.PARTS, *module.EDITOR, *module.BENCH, *module.PATH))
+ES_MODULES = tuple(f"js/{name}.js" for name in PARTS)
 INSTALL = "python -m pip install -c constraints.txt -e . (in the checkout), or make lab"
 
 

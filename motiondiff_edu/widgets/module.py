@@ -1,4 +1,4 @@
-"""The ES modules of player, editor and bench.
+"""The ES modules of player, editor, bench and path pad.
 
 Each is made from the files in js/, joined into one module that imports nothing. The files import
 from each other as usual; joining removes these lines.
@@ -12,6 +12,7 @@ FOLDER = Path(__file__).parent / "js"
 PARTS = ("dom", "figures", "paint", "clock", "lane", "player")
 EDITOR = ("dom", "figures", "paint", "clock", "timeline", "stage", "wire", "editor")
 BENCH = ("dom", "figures", "paint", "clock", "bench_paint", "bench")
+PATH = ("dom", "path")
 
 _IMPORT = re.compile(r'^import \{[^}]*\} from "\./\w+\.js";\n', re.MULTILINE)
 _EXPORT = re.compile(r"^export (?=function|const)", re.MULTILINE)

@@ -7,7 +7,6 @@ import base64
 import html
 import io
 from collections.abc import Callable
-from pathlib import Path
 
 import numpy as np
 import traitlets
@@ -16,8 +15,11 @@ from numpy.typing import ArrayLike
 
 from ..conditions import drawn_path
 from ..viz.skeleton import top_view
+from . import module
 from .start import Starting
 from .still import with_still
+
+MODULE = module.joined(module.PATH)
 
 
 class PathPad(Starting):
@@ -32,7 +34,7 @@ class PathPad(Starting):
     change.   Notebook: 00
     """
 
-    _esm = Path(__file__).with_suffix(".js")
+    _esm = MODULE
     KEPT = ("line", "stops", "speed", "preset")
     line = traitlets.List().tag(sync=True)
     stops = traitlets.List(traitlets.Float()).tag(sync=True)

@@ -109,7 +109,7 @@ def test_no_browser_is_a_note_and_no_module_a_failure(monkeypatch, tmp_path):
     shutil.copytree(doctor.PACKAGE / "widgets", folder)
     monkeypatch.setattr(doctor, "PACKAGE", tmp_path)
     assert doctor.canvas().note
-    for name in ("js/player.js", "path.js"):
+    for name in ("js/player.js", "js/path.js"):
         (folder / name).unlink()
         assert name in doctor.canvas().detail and not doctor.canvas().note
 

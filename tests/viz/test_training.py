@@ -23,8 +23,8 @@ def test_points_outside_are_counted_in_the_caption():
 
 
 def test_guesses_lead_from_the_noised_points_beside_the_exact_ones():
-    data, x_s, right = np.zeros((4, 2)), np.array([[1.0, 0], [0, 1]]), np.array([[0.5, 0], [0, 0]])
-    fig = viz.guesses(data, x_s, right, {"eps": x_s / 4}, "w")
+    x_s, right = np.array([[1.0, 0], [0, 1]]), np.array([[0.5, 0], [0, 0]])
+    fig = viz.guesses(np.zeros((4, 2)), x_s, right, {"eps": x_s / 4}, "w")
     lines = fig.axes[0].lines
     np.testing.assert_array_equal([line.get_xydata() for line in lines[1:3]], [
         [[1, 0], [0.25, 0]], [[0, 1], [0, 0.25]]

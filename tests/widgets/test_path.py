@@ -7,7 +7,7 @@ from browser import SPOKEN, bare_page, ink, open_page
 
 from motiondiff_edu.conditions.drawn_path import PRESETS, path_to_control, preset
 from motiondiff_edu.motion.root_frame import root_path
-from motiondiff_edu.widgets.path import PathPad
+from motiondiff_edu.widgets.path import MODULE, PathPad
 
 
 def test_a_new_pad_holds_a_ready_made_path_and_its_control_walks_it():
@@ -68,14 +68,14 @@ def test_the_still_picture_has_words():
 
 
 @pytest.fixture
-def page(browser, root, tmp_path):
+def page(browser, tmp_path):
     pad = PathPad(preset="straight")
     record = {
         name: getattr(pad, name)
         for name in ("start", "line", "stops", "speed", "preset", "presets", "height", "seconds")
     }
     with open_page(browser, viewport={"width": 700, "height": 620}) as page:
-        page.goto(bare_page(tmp_path, root / "motiondiff_edu/widgets/path.js", record, []))
+        page.goto(bare_page(tmp_path, MODULE, record, []))
         yield page
         assert page.problems == []
 

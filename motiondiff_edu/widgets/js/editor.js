@@ -3,17 +3,7 @@
 // far a joint was dragged. `model` needs get, set, save_changes, on, off; without send there is no
 // kernel, and a message says what needs one.
 
-import {
-  CSS,
-  clamp,
-  element,
-  listener,
-  parse,
-  readTheme,
-  redrawn,
-  rgba,
-  sighted,
-} from "./dom.js";
+import { CSS, clamp, element, listener, parse, readTheme, redrawn, rgba, sighted } from "./dom.js";
 import { bytes, ground, unpack } from "./figures.js";
 import { smoothRoot } from "./paint.js";
 import { silentClock } from "./clock.js";

@@ -2,17 +2,7 @@
 // dependencies; runs in JupyterLab (anywidget), in exported HTML (an iframe with this same text)
 // and in a bare page. `model` needs get, set, save_changes, on, off.
 
-import {
-  CSS,
-  clamp,
-  element,
-  listener,
-  mix,
-  readTheme,
-  redrawn,
-  rgba,
-  sighted,
-} from "./dom.js";
+import { CSS, clamp, element, listener, mix, readTheme, redrawn, rgba, sighted } from "./dom.js";
 import { ground, unpack } from "./figures.js";
 import { paintPanel, tense } from "./paint.js";
 import { feed, silentClock, soundClock } from "./clock.js";
