@@ -226,3 +226,21 @@ def test_a_kernel_that_dies_while_it_generates_is_missed(browser, tmp_path, edit
         page.clock.run_for(6_000)
         assert "kernel is gone" in said(page)
         assert page.locator(".mde-main").inner_text() == "Generate" and page.problems == []
+
+
+def test_undo_waits_while_in_betweens_are_made(browser, tmp_path, editor):
+    """Else the finished in-betweens would be undone as soon as they come."""
+    editor.pin(0, 30)
+    with open_page(browser) as page:
+        open_editor(page, tmp_path, editor)
+        page.evaluate("window.kernel = () => {}")
+        page.get_by_role("button", name="Generate").click()
+        page.evaluate("take({ busy: true })")
+        undo = page.get_by_role("button", name="Undo")
+        assert undo.get_attribute("aria-disabled") == "true"
+        page.locator(FIGURE).focus()
+        page.keyboard.press("z")
+        assert "Undo when it is done" in said(page)
+        assert "undo" not in [one["do"] for one in page.evaluate("asked")]
+        page.evaluate("take({ busy: false })")
+        assert page.problems == []

@@ -742,7 +742,7 @@ export function mount(model, el, { fill = false } = {}) {
   };
   for (const [name, f] of Object.entries(changes)) model.on(name, f);
   // as much as leaves the controls in sight
-  if (!fill) canvas.style.height = `clamp(${scene.height}px, 46vh, 620px)`;
+  if (!fill) canvas.style.height = "clamp(280px, calc(100vh - 460px), 620px)";
   [motion] = read("", [scene.frames]);
   Object.assign(motion, ground(motion));
   load();
