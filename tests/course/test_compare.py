@@ -193,3 +193,36 @@ def test_an_input_with_nan_that_stays_is_not_changed(monkeypatch):
         compare(mine, np.nan_to_num, lambda rng: [(np.array([1.0, np.nan]),)], "y")
 
     filled(np.nan_to_num)
+
+
+def test_one_array_for_several_arrays_is_refused_as_numbers():
+    both = lambda x: (x, -x)  # noqa: E731
+    told = refused(lambda x: x[0, :2], both, what=("y", "z"))
+    assert told == "return 2 arrays: y and z; yours are 2 numbers"
+
+
+def test_the_choice_that_fails_is_named():
+    def inputs(rng):
+        for way in ("eps", "v"):
+            yield rng.uniform(1, 5, size=4), way
+
+    right = lambda x, way: np.sqrt(x)  # noqa: E731
+    told = refused(lambda x, way: np.sqrt(x) + (way == "v") * x, right, inputs)
+    assert ", with 'v' (other inputs come out right: 1 of 2)" in told
+
+
+def test_a_list_whose_numbers_change_is_a_changed_input(doubled):
+    """Also where their count stays."""
+
+    def answer(runs):
+        runs[0] = 7
+        return [2.0, 4.0]
+
+    with pytest.raises(CheckFailed, match="changes `runs`, which it was given"):
+        _report._answering(answer)([1, 2])
+
+
+def test_warnings_of_an_answer_are_not_shown(doubled, recwarn):
+    with pytest.raises(CheckFailed):
+        doubled(lambda x, more: np.mean(np.array([])))
+    assert not recwarn.list

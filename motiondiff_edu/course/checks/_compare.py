@@ -63,6 +63,11 @@ def compare(
         all(same(one, two) for one, two in zip(mines[0], again, strict=True)),
         "what you return differs from call to call; all that is random is given, so draw nothing",
     )
+    numbers = len(names) > 1 and not any(part.ndim for part in mines[0])
+    expect(
+        not (numbers and all(part.ndim for part in rights[0])),
+        f"return {len(names)} arrays: {' and '.join(names)}; yours are {len(names)} numbers",
+    )
     for part, name in enumerate(names):
         answers, wanted = [case[part] for case in mines], [case[part] for case in rights]
         if all(map(_right, answers, wanted, [(rtol, atol)] * len(given))):

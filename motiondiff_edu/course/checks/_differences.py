@@ -31,7 +31,7 @@ def told(
     case, (mine, right) = next(
         (k, p) for k, p in pairs if p[0].shape != p[1].shape or not close(*p)
     )
-    of = _plainly(given[case]) if given else ""
+    of = _plainly(given[case]) or _texts(given[case]) if given else ""
     if mine.shape != right.shape:
         return f"{name} has shape {mine.shape}, and should have {right.shape}{of}"
     if not np.isfinite(mine).all():
@@ -50,6 +50,12 @@ def _plainly(arguments: tuple) -> str:
     words = ", ".join(map(repr, arguments))
     plain = all(isinstance(one, int | float | str | list | tuple) for one in arguments)
     return f"; it was given {words}" if plain and len(words) < 120 else ""
+
+
+def _texts(arguments: tuple) -> str:
+    """The texts among the arguments of a call: a choice such as "eps"."""
+    words = [repr(one) for one in arguments if isinstance(one, str)]
+    return f", with {' and '.join(words)}" if words else ""
 
 
 def _how_much(mine: np.ndarray, right: np.ndarray, rtol: float, atol: float) -> str:

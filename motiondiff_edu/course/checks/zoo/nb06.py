@@ -55,6 +55,12 @@ MISTAKES = {
         "the scores are not divided by anything: what does their size grow with?": _wrong(
             divide=lambda q, k: 1.0
         ),
+        "the scores are divided by the square root of d, not multiplied": _wrong(
+            divide=lambda q, k: 1 / math.sqrt(q.shape[-1])
+        ),
+        "d is the size of a query, not of a value": lambda q, k, v, bias: _attend(
+            q, k, v, bias, lambda q, k: math.sqrt(v.shape[-1])
+        ),
         "divide by the square root of d, not by d": _wrong(divide=lambda q, k: q.shape[-1]),
         "d is the size of a query, not the number of keys or queries": (
             _wrong(divide=lambda q, k: math.sqrt(len(k))),

@@ -34,6 +34,27 @@ def everything_held(control, T_h):
     return control[T_h - 1 : T_h].repeat(len(control), 1)
 
 
+def past_held(control, T_h):
+    """Writes over the known rows."""
+    held = control.clone()
+    held[:T_h] = control[T_h - 1]
+    return held
+
+
+def shifted(control, T_h):
+    """Takes the row before for each future row, instead of one row for all."""
+    held = control.clone()
+    held[T_h:] = control[T_h - 1 : -1]
+    return held
+
+
+def mean_held(control, T_h):
+    """A mean of the past is late in every curve."""
+    held = control.clone()
+    held[T_h:] = control[:T_h].mean(0)
+    return held
+
+
 @dataclass(frozen=True)
 class _Fault:
     """Where a rollout goes wrong; as it stands it is right."""
@@ -132,6 +153,12 @@ MISTAKES = {
         "one row too early: the step into the first predicted frame is known, it is row T_h - 1": (
             _held(lambda T_h: T_h - 2)
         ),
+        "one row too early: the past ends with row T_h - 1, which stays as it is": _held(
+            lambda T_h: T_h - 2, lambda T_h: T_h - 1
+        ),
+        "the past was overwritten, and the future stayed": past_held,
+        "each row is that of the frame before: hold one row over the future": shifted,
+        "hold the last known row, not the mean of the past": mean_held,
         "row T_h is a future row, too": _held(lambda T_h: T_h - 1, lambda T_h: T_h + 1),
         "the control is unchanged: hold one row over the future": lambda control, T_h: (
             control.clone()

@@ -10,7 +10,11 @@ def _heights(toes):
 
 
 def _speeds(toes):
-    return np.linalg.norm(np.diff(toes[:, :, [0, 2]], axis=0), axis=-1)
+    return _speeds_along(toes, [0, 2])
+
+
+def _speeds_along(toes, axes):
+    return np.linalg.norm(np.diff(toes[:, :, axes], axis=0), axis=-1)
 
 
 @dataclass(frozen=True)
@@ -158,6 +162,10 @@ MISTAKES = {
         "both toes are counted; count only the lower one": both_toes,
         "each toe under `below` is counted; where both are, count only the lower one": (
             each_planted_toe
+        ),
+        "sliding is horizontal, along x and z; y is the height": (
+            _wrong(_Fault(speed=lambda toes: _speeds_along(toes, [0, 1]))),
+            _wrong(_Fault(speed=lambda toes: _speeds_along(toes, [1, 2]))),
         ),
         "the height of a step is that of its higher end, not the mean of both": _wrong(
             _Fault(height=lambda toes: (toes[1:, :, 1] + toes[:-1, :, 1]) / 2)
