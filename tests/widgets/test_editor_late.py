@@ -244,3 +244,14 @@ def test_undo_waits_while_in_betweens_are_made(browser, tmp_path, editor):
         assert "undo" not in [one["do"] for one in page.evaluate("asked")]
         page.evaluate("take({ busy: false })")
         assert page.problems == []
+
+
+def test_shift_and_enter_pin_nothing(browser, tmp_path, editor):
+    """In a notebook they run the cell."""
+    with open_page(browser) as page:
+        open_editor(page, tmp_path, editor)
+        page.locator(FIGURE).focus()
+        page.keyboard.press("Shift+Enter")
+        page.keyboard.press("Enter")
+        settled(page)
+        assert [one["do"] for one in page.evaluate("asked")].count("toggle") == 1

@@ -581,6 +581,7 @@ export function mount(model, el, { fill = false } = {}) {
     // not with Shift, which means "do again" elsewhere
     const undoes = (event.ctrlKey || event.metaKey) && name === "z" && !event.shiftKey && keys;
     if ((event.ctrlKey || event.metaKey || event.altKey) && !undoes) return;
+    if (name === "Enter" && event.shiftKey) return; // it runs a cell, and is no pin
     event.stopPropagation(); // otherwise JupyterLab handles the key
     if (event.target === file && name === "Enter") {
       event.preventDefault();
