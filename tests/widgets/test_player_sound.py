@@ -508,7 +508,7 @@ def test_the_same_scene_with_another_motion_is_told_to_the_page():
 
 def test_the_parts_of_the_module_fit_together():
     exported = {}
-    for name in dict.fromkeys((*module.PARTS, *module.EDITOR, *module.BENCH)):
+    for name in dict.fromkeys((*module.PARTS, *module.EDITOR, *module.BENCH, *module.PATH)):
         text = (module.FOLDER / f"{name}.js").read_text("utf-8")
         for names, source in re.findall(
             r'^import \{([^}]*)\} from "\./(\w+)\.js";$', text, re.MULTILINE
@@ -522,6 +522,7 @@ def test_the_parts_of_the_module_fit_together():
         *module.PARTS,
         *module.EDITOR,
         *module.BENCH,
+        *module.PATH,
     }
     assert (
         "\nimport " not in MODULE
