@@ -43,7 +43,8 @@ def loss_curves(
 
     `smooth` > 1 draws the running mean, with the raw values faint behind it.
     """
-    words = f"{title or 'Loss'} over training steps: {', '.join(curves)}."
+    which = f": {', '.join(curves)}" if len(curves) > 1 else ""
+    words = f"{title or 'Loss'} over training steps{which}."
     fig, (axis,) = figure(
         9, 4.4, words + (f" Running mean of {smooth} steps." if smooth > 1 else "")
     )

@@ -204,6 +204,13 @@ def test_no_page_asks_for_anything_from_elsewhere(executed, tmp_path):
         assert [one for one in asked if "://" in one] == [], path.name
 
 
+def test_the_first_page_has_words_and_no_marks():
+    line = "A *first* line of **[attention](../docs/GLOSSARY.md#attention)** and `code` x_s, _now_."
+    cell = {"cell_type": "markdown", "source": f"# 01 A title\n\n{line}\n"}
+    found = index.entry("01_a", {"cells": [cell]})
+    assert found.question == "A first line of attention and code x_s, now."
+
+
 def test_local_links_lead_somewhere(executed, tmp_path):
     """Also those within the page, and in all pages. Notebooks that were not run have no page."""
     written = {path.resolve(): path.read_text() for path in pages(executed, tmp_path / "site")}

@@ -24,8 +24,14 @@ def entry(name: str, notebook: dict) -> Entry:
     """Title, first lines, prerequisites and first picture of an executed notebook."""
     opening = "".join(notebook["cells"][0]["source"])
     title = re.search(r"^# (?:\d\d )?(.+)$", opening, re.M)[1]
-    rest = [line.strip(" *_") for line in opening.splitlines()[1:] if line.strip()]
+    rest = [plain(line) for line in opening.splitlines()[1:] if line.strip()]
     return Entry(name[:2], name, title, rest[0] if rest else "", needs(opening), picture(notebook))
+
+
+def plain(line: str) -> str:
+    """A line of Markdown without marks: of links their words, and no stars, underlines, ticks."""
+    words = re.sub(r"\[([^]]*)\]\([^)]*\)", r"\1", line)
+    return re.sub(r"[*`]|\b_|_\b", "", words).strip()
 
 
 def needs(opening: str) -> tuple[str, ...]:
