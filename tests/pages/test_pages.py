@@ -204,6 +204,13 @@ def test_no_page_asks_for_anything_from_elsewhere(executed, tmp_path):
         assert [one for one in asked if "://" in one] == [], path.name
 
 
+def test_a_heading_with_a_formula_is_whole():
+    page = cells.of_markdown("### Exercise 3: from numbers to $L_a$ (easy)\n\nText.")
+    assert page.count("<h3 ") == page.count("</h3>") == 1
+    assert re.search(r'<h3 id="[^"<>]*"><span id="[^"<>]*"></span>Exercise 3: from', page)
+    assert page.count("<math") == 1 and "(easy)</h3>" in page
+
+
 def test_the_first_page_has_words_and_no_marks():
     line = "A *first* line of **[attention](../docs/GLOSSARY.md#attention)** and `code` x_s, _now_."
     cell = {"cell_type": "markdown", "source": f"# 01 A title\n\n{line}\n"}

@@ -58,7 +58,16 @@ def of_output(output: dict) -> str:
 
 def of_markdown(source: str) -> str:
     """Markdown with formulas, headings that links find, and links to pages."""
-    return linked(anchored(with_formulas(source, markdown2html_mistune)))
+    return linked(anchored(with_formulas(source, rendered)))
+
+
+def rendered(source: str) -> str:
+    """Markdown as HTML, with headings that have no anchors yet.
+
+    nbconvert makes anchors of a heading's text, in which a formula would become markup later.
+    """
+    text = re.sub(r'<a class="anchor-link".*?</a>', "", markdown2html_mistune(source))
+    return re.sub(r"<h([1-6])[^>]*>", r"<h\1>", text)
 
 
 def anchored(text: str) -> str:
@@ -66,13 +75,12 @@ def anchored(text: str) -> str:
 
     def heading(match: re.Match) -> str:
         level, inner = match[1], match[2]
-        words = html.unescape(re.sub(r"<a class=\"anchor-link\".*?</a>|<[^>]+>", "", inner)).strip()
+        words = html.unescape(re.sub(r"<[^>]+>", "", inner)).strip()
         github = re.sub(r"[^\w\- ]", "", words.lower()).replace(" ", "-")
-        inner = re.sub(r'<a class="anchor-link".*?</a>', "", inner)
         jupyter = html.escape(words.replace(" ", "-"), quote=True)
         return f'<h{level} id="{jupyter}"><span id="{github}"></span>{inner}</h{level}>'
 
-    return re.sub(r"<h([1-6])[^>]*>(.*?)</h\1>", heading, text, flags=re.DOTALL)
+    return re.sub(r"<h([1-6])>(.*?)</h\1>", heading, text, flags=re.DOTALL)
 
 
 def linked(text: str) -> str:
