@@ -23,6 +23,8 @@ import sys
 from dataclasses import dataclass
 from pathlib import Path
 
+from motiondiff_edu.course.answers import plain
+
 UNITS = r"%|cm|mm|km|m/s|m|ms|s|nats?|Hz|kHz|BPM|°|degrees?|seconds?|minutes?|times|million|GB|MB"
 NUMBER = r"(?<![\w.$^_{\\/])[-−]?(?:\d{1,3}(?:,\d{3})+|\d*\.?\d+)"
 CLAIM = re.compile(rf"({NUMBER})(?:[ -]?({UNITS})(?![\w/]))?")
@@ -118,7 +120,7 @@ def settings(code: str) -> set[float]:
     """The numbers that code is written with."""
     return {
         float(node.value)
-        for node in ast.walk(ast.parse(re.sub(r"^[%!].*$", "", code, flags=re.M)))
+        for node in ast.walk(ast.parse(plain(code)))
         if isinstance(node, ast.Constant) and type(node.value) in (int, float)
     }
 

@@ -4,7 +4,7 @@ import ast
 import contextlib
 import json
 import re
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -52,13 +52,18 @@ def plain(source: str) -> str:
     return re.sub(r"^[%!].*$", "", source, flags=re.M)
 
 
+def _parsed(source: str) -> ast.Module | None:
+    """The cell as a tree; None for one that was left half-way."""
+    try:
+        return ast.parse(plain(source))
+    except SyntaxError:
+        return None
+
+
 def checks_called(source: str) -> Iterator[str]:
     """The checks that a cell calls: `q_sample` of `checks.q_sample(my_q_sample)`."""
-    try:
-        tree = ast.parse(plain(source))
-    except SyntaxError:  # a cell that was left half-way
-        return
-    for node in ast.walk(tree):
+    tree = _parsed(source)
+    for node in ast.walk(tree) if tree else ():
         if (
             isinstance(node, ast.Call)
             and isinstance(node.func, ast.Attribute)
@@ -68,14 +73,10 @@ def checks_called(source: str) -> Iterator[str]:
             yield node.func.attr
 
 
-def _intended(source: str) -> Iterator[str]:
+def _intended(source: str) -> Iterable[str]:
     """The checks that a cell calls; those that it writes, where it does not parse."""
-    try:
-        ast.parse(plain(source))
-    except SyntaxError:
-        yield from re.findall(r"\bchecks\.(\w+)", source)
-    else:
-        yield from checks_called(source)
+    half_way = _parsed(source) is None
+    return re.findall(r"\bchecks\.(\w+)", source) if half_way else checks_called(source)
 
 
 def definitions(source: str) -> tuple[str, ...]:
@@ -83,12 +84,10 @@ def definitions(source: str) -> tuple[str, ...]:
 
     Nothing else of it is needed by an answer that is run by itself.
     """
-    try:
-        tree = ast.parse(plain(source))
-    except SyntaxError:
-        return ()
+    tree = _parsed(source)
     kinds = (ast.Import, ast.ImportFrom, ast.FunctionDef, ast.ClassDef)
-    return tuple(ast.unparse(n) for n in tree.body if isinstance(n, kinds) or _is_literal(n))
+    nodes = tree.body if tree else ()
+    return tuple(ast.unparse(n) for n in nodes if isinstance(n, kinds) or _is_literal(n))
 
 
 def _is_literal(node: ast.stmt) -> bool:

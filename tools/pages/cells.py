@@ -7,6 +7,8 @@ from nbconvert.filters import ansi2html
 from nbconvert.filters.highlight import Highlight2HTML
 from nbconvert.filters.markdown_mistune import markdown2html_mistune
 
+from motiondiff_edu.course import anchors
+
 from .maths import with_formulas
 
 NEEDS_A_KERNEL = (
@@ -76,9 +78,9 @@ def anchored(text: str) -> str:
     def heading(match: re.Match) -> str:
         level, inner = match[1], match[2]
         words = html.unescape(re.sub(r"<[^>]+>", "", inner)).strip()
-        github = re.sub(r"[^\w\- ]", "", words.lower()).replace(" ", "-")
-        jupyter = html.escape(words.replace(" ", "-"), quote=True)
-        return f'<h{level} id="{jupyter}"><span id="{github}"></span>{inner}</h{level}>'
+        jupyter = html.escape(anchors.in_jupyterlab(words), quote=True)
+        github = f'<span id="{anchors.on_a_host(words)}"></span>'
+        return f'<h{level} id="{jupyter}">{github}{inner}</h{level}>'
 
     return re.sub(r"<h([1-6])>(.*?)</h\1>", heading, text, flags=re.DOTALL)
 

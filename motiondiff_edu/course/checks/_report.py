@@ -92,10 +92,8 @@ def check(function: Callable[[Any], str | None]) -> Check:
             )
         FOUND[name] = False
         try:
-            with (
-                warnings.catch_warnings()
-            ):  # what numpy says of an answer's empty mean helps nobody
-                warnings.simplefilter("ignore")
+            with warnings.catch_warnings():
+                warnings.simplefilter("ignore")  # numpy's, of an empty mean, would help nobody
                 content = function(_answering(mine))
         except CheckFailed as error:
             raise CheckFailed(f"{name}: {error}") from None

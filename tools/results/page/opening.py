@@ -4,6 +4,8 @@ contents. All of it is computed from the records and the bars.
 
 import re
 
+from motiondiff_edu.course.anchors import on_a_host
+
 from .bars import BARS, Bar
 from .claims import AGREES, CLAIMS, DIFFERS, MISSING, OPEN
 from .markdown import span
@@ -97,7 +99,7 @@ def paper(records: dict[str, dict]) -> str:
     agrees, differs, undecided = (verdicts.count(said) for said in (AGREES, DIFFERS, OPEN))
     missing = verdicts.count(MISSING)
     more = f", and {missing} have not been measured" if missing else ""
-    place = anchor("The papers' claims, tested")
+    place = on_a_host("The papers' claims, tested")
     return (
         f"**The papers' claims.** Of the {len(CLAIMS)} claims that we can judge at this scale, "
         f"{agrees} agree with what we measured, {differs} do not, {undecided} remain "
@@ -108,12 +110,7 @@ def paper(records: dict[str, dict]) -> str:
 def contents(parts: list[str]) -> str:
     """A list of links to the sections, as GitHub names their anchors."""
     heads = [head for part in parts for head in re.findall(r"^## (.+)$", part, re.M)]
-    return "## Contents\n\n" + "".join(f"* [{head}](#{anchor(head)})\n" for head in heads)
-
-
-def anchor(head: str) -> str:
-    """The anchor of a heading on GitHub: lower case, without punctuation, hyphens for spaces."""
-    return re.sub(r"[^\w\- ]", "", head.lower()).replace(" ", "-")
+    return "## Contents\n\n" + "".join(f"* [{head}](#{on_a_host(head)})\n" for head in heads)
 
 
 def _what(bar: Bar) -> str:

@@ -18,11 +18,15 @@ def nearest_only(x_s, alpha_bar, data):
     return data[(x_s[:, None] - alpha_bar[:, None, None] ** 0.5 * data).square().sum(-1).argmin(1)]
 
 
+def _weights(x_s, alpha_bar, data):
+    """The weights of the candidates, which sum to 1 only after they are divided by their sum."""
+    distance = (x_s[:, None] - alpha_bar[:, None, None] ** 0.5 * data).square().sum(-1)
+    return torch.exp(-distance / (2 * (1 - alpha_bar[:, None])))
+
+
 def naive_softmax(x_s, alpha_bar, data):
     """Far from all candidates, every exp is 0: 0 / 0."""
-    a = alpha_bar[:, None, None]
-    distance = (x_s[:, None] - a**0.5 * data).square().sum(-1)
-    weight = torch.exp(-distance / (2 * (1 - alpha_bar[:, None])))
+    weight = _weights(x_s, alpha_bar, data)
     return weight / weight.sum(1, keepdim=True) @ data
 
 
@@ -95,12 +99,6 @@ def roots_dropped(x, eps_hat, now, then, eta, z):
     variance = _variance(now, then, eta)
     x0_hat = (x - (1 - now) * eps_hat) / now
     return then * x0_hat + (1 - then - variance) * eps_hat + variance**0.5 * z
-
-
-def _weights(x_s, alpha_bar, data):
-    """The weights of the candidates, which sum to 1 only after they are divided by their sum."""
-    distance = (x_s[:, None] - alpha_bar[:, None, None] ** 0.5 * data).square().sum(-1)
-    return torch.exp(-distance / (2 * (1 - alpha_bar[:, None])))
 
 
 def x_alone_rescaled(x_s, s, eps_hat, beta, alpha_bar, z):
