@@ -175,7 +175,10 @@ class MoDiff(nn.Module):
         return self.memory_norm(self.cross_encoder(both))
 
     def decode(
-        self, x_s: Float[Tensor, "B T_p D"], s: Int[Tensor, "B"], memory: Float[Tensor, "B M width"]
+        self,
+        x_s: Float[Tensor, "B T_p D"],
+        s: Int[Tensor, "B"],
+        memory: Float[Tensor, "B M width"],
     ) -> Float[Tensor, "B T_p D"]:
         """The network's prediction of its target (eps, x0 or v) from the noised future.
 
@@ -197,7 +200,7 @@ class MoDiff(nn.Module):
                 f"this network predicts {self.config.T_p} future poses, not {x_s.shape[1]}"
             )
         step = self.step_in(step_embedding(s, self.config.width))  # (B, width)
-        step = step[:, None].expand(-1, x_s.shape[1], -1)  # (B, T_p, width), equal for all poses
+        step = step[:, None].expand(-1, x_s.shape[1], -1)  # one s for all poses
         x = self.future_in(torch.cat([x_s, step], dim=-1))
         return x + self.time[self.config.T_h :]
 

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import nbformat
 import pytest
+from browser import PATIENCE, open_page
 from jupyter_page import free_port, wait_until_answering
 
 expect = pytest.importorskip("playwright.sync_api").expect
@@ -54,13 +55,11 @@ def address(chromium, tmp_path: Path):
 
 
 def test_a_demo_moves_without_a_click(address, browser):
-    page = browser.new_page(viewport={"width": 1280, "height": 720})
-    page.set_default_timeout(60_000)
-    page.goto(address)
-    iframe = page.locator(".jp-OutputArea iframe").first
-    player = page.frame_locator(".jp-OutputArea iframe").first.locator(".mde-player")
-    expect(player).to_have_attribute("data-frame", re.compile("[1-9]"), timeout=60_000)
-    box = iframe.bounding_box()
-    assert box["y"] >= 0 and box["y"] + 400 < 720, "the figure is not in sight"
-    assert not page.locator(".jp-FileBrowser").is_visible()
-    page.close()
+    with open_page(browser, offline=False, viewport={"width": 1280, "height": 720}) as page:
+        page.goto(address)
+        iframe = page.locator(".jp-OutputArea iframe").first
+        player = page.frame_locator(".jp-OutputArea iframe").first.locator(".mde-player")
+        expect(player).to_have_attribute("data-frame", re.compile("[1-9]"), timeout=PATIENCE)
+        box = iframe.bounding_box()
+        assert box["y"] >= 0 and box["y"] + 400 < 720, "the figure is not in sight"
+        assert not page.locator(".jp-FileBrowser").is_visible()

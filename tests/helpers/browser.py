@@ -11,6 +11,7 @@ import pytest
 
 from motiondiff_edu.widgets.player import MODULE
 
+PATIENCE = 180_000  # ms; how long a busy machine may take for anything a test waits for
 FLAGS = (
     "--no-sandbox --disable-gpu --disable-quic --no-first-run --disable-background-networking "
     "--disable-component-update --disable-sync"
@@ -23,7 +24,9 @@ def start_browser(executable: str):
     way."""
     sync_api = pytest.importorskip("playwright.sync_api")
     with sync_api.sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=executable, args=FLAGS)
+        browser = playwright.chromium.launch(
+            executable_path=executable, args=FLAGS, timeout=PATIENCE
+        )
         yield browser
         browser.close()
 
@@ -33,6 +36,7 @@ def open_page(browser, offline: bool = True, **context):
     """A page whose errors are collected in `page.problems`; offline, any request but file: and
     data: is refused."""
     fresh = browser.new_context(**({"viewport": {"width": 1000, "height": 620}} | context))
+    fresh.set_default_timeout(PATIENCE)
     page = fresh.new_page()
     page.problems, page.asked = [], []
     page.on("pageerror", lambda error: page.problems.append(str(error)))
@@ -69,7 +73,7 @@ UNTIL = """async (element, [condition, patience]) => {
 }"""
 
 
-def until(locator, condition: str, patience: int = 30_000) -> None:
+def until(locator, condition: str, patience: int = PATIENCE) -> None:
     """Wait until a JavaScript function of an element gives true, in whatever frame it is."""
     locator.evaluate(UNTIL, [condition, patience])
 

@@ -8,9 +8,11 @@ import os
 import socket
 import subprocess
 import sys
+import time
 import urllib.request
 
 import pytest
+from browser import PATIENCE
 
 from motiondiff_edu.course.jupyter import end
 
@@ -97,10 +99,9 @@ def lab(chromium, root, tmp_path, request):
         end(server)
 
 
-def wait_until_answering(address: str, server, log, attempts: int = 240) -> None:
-    for _ in range(attempts):
-        if server.poll() is not None:
-            break
+def wait_until_answering(address: str, server, log) -> None:
+    end_of_patience = time.monotonic() + PATIENCE / 1000
+    while server.poll() is None and time.monotonic() < end_of_patience:
         try:
             urllib.request.urlopen(address, timeout=2).read()
             return

@@ -89,7 +89,7 @@ def test_on_a_screen_with_finer_pixels_it_is_drawn_finer(browser, page_of):
             session.send("Emulation.setDeviceMetricsOverride", finer)
             # an emulated screen does not have the queries asked again; this does
             page.emulate_media(color_scheme=scheme)
-            until(canvas, f"(c) => c.width === Math.round({ratio} * c.clientWidth)", 5_000)
+            until(canvas, f"(c) => c.width === Math.round({ratio} * c.clientWidth)")
 
 
 # what JupyterLab does where its dark theme is chosen: the colours, then a mark on the body

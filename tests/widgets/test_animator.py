@@ -40,7 +40,6 @@ def address(monkeypatch, request, real_data):
 
 def test_a_real_walk_is_edited_and_saved(browser, address, tmp_path):
     with open_page(browser, offline=False, viewport={"width": 1300, "height": 1000}) as page:
-        page.set_default_timeout(120_000)
         canvas = run_all(page, address, "mde-editor")
         canvas.focus()
         for key in ("Home", "Enter", "End", "Enter"):

@@ -543,4 +543,4 @@ def test_the_last_of_several_readings_says_whether_the_figure_is_in_sight(browse
         page.goto(export.as_uri())
         inside = page.frame_locator("iframe")
         inside.get_by_role("button", name="Play").click()
-        inside.locator(".mde-bench:not([data-frame='13'])").wait_for(timeout=10000)
+        inside.locator(".mde-bench:not([data-frame='13'])").wait_for()

@@ -29,7 +29,6 @@ ROOT = "document.querySelector('.mde-bench').dataset"
 
 def test_a_hand_is_knocked_out_and_mended_in_jupyterlab(browser, lab):  # noqa: F811
     with open_page(browser, offline=False, viewport={"width": 1300, "height": 1000}) as page:
-        page.set_default_timeout(120_000)
         canvas = run_all(page, lab, "mde-bench")
         page.get_by_label("A click on a joint changes it").select_option("one")
         canvas.focus()

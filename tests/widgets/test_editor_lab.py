@@ -21,7 +21,6 @@ ROOT = "document.querySelector('.mde-editor').dataset"
 
 def test_pins_drags_and_in_betweens_in_jupyterlab(browser, lab):  # noqa: F811
     with open_page(browser, offline=False, viewport={"width": 1300, "height": 1000}) as page:
-        page.set_default_timeout(60_000)
         canvas = run_all(page, lab, "mde-editor")
         canvas.focus()
         for key in ("Enter", "End", "Enter"):

@@ -21,7 +21,6 @@ SHOWN = "Number(document.querySelector('.mde-player').dataset.frame)"
 def test_figure_plays_in_jupyterlab_and_python_sees_it(browser, lab):  # noqa: F811
     size = {"width": 1300, "height": 900}
     with open_page(browser, offline=False, viewport=size) as page:
-        page.set_default_timeout(60_000)
         canvas = run_all(page, lab, "mde-player")
         drawn(canvas)
         first = ink(canvas)

@@ -28,7 +28,6 @@ SILLY = {  # what is typed, and what the box says
 
 def test_a_sentence_is_typed_and_acted_in_jupyterlab(browser, lab):  # noqa: F811
     with open_page(browser, offline=False, viewport={"width": 1300, "height": 900}) as page:
-        page.set_default_timeout(120_000)
         canvas = run_all(page, lab, "mde-player")
         drawn(canvas)
         folder = os.environ.get("MOTIONDIFF_SCREENSHOTS")
