@@ -96,8 +96,18 @@ def test_the_commands_write_their_files(root, folder, page, count):
         out = folder / arguments[arguments.index("--out") + 1]
         numbered = sorted(folder.glob(f"{out.stem}-?{out.suffix}"))  # with --samples
         assert all(one.stat().st_size > 10_000 for one in numbered or [out])
+    walked = folder / commands[0][commands[0].index("--out") + 1]
     parts = re.findall(r"([\d.]+)s", " ".join(commands[0]))
-    assert len(read_bvh(folder / "more.bvh").frames) == 20 * sum(map(float, parts))
+    assert len(read_bvh(walked).frames) == 20 * sum(map(float, parts))
+
+
+@pytest.mark.parametrize("page", ["README.md", "docs/USING.md"])
+def test_a_page_read_from_top_to_bottom_writes_no_file_twice(root, page):
+    # a command refuses a file that exists, and the Python above it has been pasted, too
+    text = (root / page).read_text(encoding="utf-8")
+    written = re.findall(r"""save\("([^"]+)"\)|--out (\S+?)[\s`]""", text)
+    names = [saved or out for saved, out in written]
+    assert len(names) > 3 and len(set(names)) == len(names), names
 
 
 def test_the_block_to_paste_comes_first_and_the_links_lead_somewhere(root):
