@@ -80,9 +80,20 @@ def noised(given: Mixture, s: int, schedule: Schedule) -> Mixture:
 
 
 def log_density(given: Mixture, x: Float[Tensor, "B D"]) -> Float[Tensor, "B"]:
-    """The exact log-density, in nats: log sum_k w_k N(x; m_k, C_k). Notebook: 03, 04."""
+    """The exact log-density, in nats: log sum_k w_k N(x; m_k, C_k).
+
+    Raises ValueError for a part without width.  Notebook: 03, 04
+    """
+    _check_width(given.variances)
     off = along_axes(given, x.double()[:, None] - given.means)
     return part_log_densities(given.weights, off, given.variances).logsumexp(1)
+
+
+def _check_width(variances: Float[Tensor, "K D"]) -> None:
+    """A part without width is a point: it has no density."""
+    flat = (variances <= 0).any(-1).nonzero()
+    if len(flat):
+        raise ValueError(f"part {int(flat[0])} of the mixture has no width: add noise (`noised`)")
 
 
 def _on(device: torch.device, given: Mixture) -> Mixture:
@@ -109,8 +120,11 @@ def posterior_mean(
     """E[x0 | x_s] of a mixture: the parts' means, weighted by their probabilities given x_s.
 
     For one part it is m + a C (a^2 C + (1 - a^2) I)^-1 (x_s - a m), with a = sqrt(alpha_bar_s).
+    Raises ValueError for a part without width at step 0, where x_s is x0.
     Notebook: 03.
     """
+    if not given.variances.all() and bool((s == 0).any()):
+        _check_width(given.variances)
     given, x = _on(x_s.device, given), x_s.double()[:, None]
     alpha_bar = at(schedule.alpha_bar, s, x)
     off = along_axes(given, x - alpha_bar.sqrt() * given.means)
@@ -127,10 +141,11 @@ def conditional(given: Mixture, values: Float[Tensor, "D"], known: Bool[Tensor, 
 
     Part k becomes N(m_u + G (x_k - m_k), C_uu - G C_ku) with G = C_uk C_kk^-1, and its weight is
     proportional to w_k N(x_k; m_k, C_kk).
-    Raises ValueError if nothing or everything is known.
+    Raises ValueError if nothing or everything is known, or a part has no width.
     """
     if not known.any() or known.all():
         raise ValueError("at least one entry must be known, and at least one unknown")
+    _check_width(given.variances)
     seen, gain, left = conditional_parts(given, known)
     value = values.double()[known]
     off = along_axes(seen, (value - seen.means)[None])

@@ -54,7 +54,8 @@ def inpaint_steps(
     Yields a `Step` for each call of the denoiser; the last one has the given entries themselves.
 
     `given` is used where `known` is True. The snapshots get new noise at every step. If nothing is
-    known, no such noise is drawn, and the same generator gives the same sample as `ddim_steps`.
+    known in the whole batch, no such noise is drawn, and the same generator gives the same sample
+    as `ddim_steps`.
     `steps` is their number, or a list of the steps to visit; where the list rises, noise is added
     (`resampled`).
     Raises ValueError for steps outside 1..S, and for one that follows itself.

@@ -2,6 +2,7 @@
 
     L = L_da + lambda(s) L_k,   L_k = w_s L_s + w_a L_a + w_m L_m (+ w_f L_f)
 L_da is the squared error of the network's target. L_k is computed from x0_hat, in metres.
+All motions of a batch have one length: there is no padding.
 Source: MoFusion 3.2, eq. 4-7.  Notebook: 13
 """
 
@@ -122,9 +123,7 @@ def bone_lengths(positions: Float[Tensor, "B T J 3"], bones: Bones) -> Float[Ten
     return gap.square().sum(-1).clamp_min(1e-12).sqrt()  # sqrt has no finite gradient at 0
 
 
-def skeleton_loss(
-    lengths: Float[Tensor, "B T K"], present: Bool[Tensor, "B T"] | None = None
-) -> Float[Tensor, "B"]:
+def skeleton_loss(lengths: Float[Tensor, "B T K"]) -> Float[Tensor, "B"]:
     """L_s: the variance of each bone's length over time, averaged over the bones; m^2.
 
     mean_b sum_n (l_nb - mean_n l_nb)^2 / (N - 1)
@@ -132,15 +131,11 @@ def skeleton_loss(
     bones.
     Notebook: 13
     """
-    here = _share(present, lengths)
-    count = here.sum(1, keepdim=True).clamp_min(1)
-    mean = (lengths * here).sum(1, keepdim=True) / count
-    return ((lengths - mean).square() * here).sum(1).div((count[:, 0] - 1).clamp_min(1)).mean(-1)
+    mean = lengths.mean(1, keepdim=True)
+    return (lengths - mean).square().sum(1).div(max(lengths.shape[1] - 1, 1)).mean(-1)
 
 
-def asymmetry_loss(
-    lengths: Float[Tensor, "B T K"], pairs: Bones, present: Bool[Tensor, "B T"] | None = None
-) -> Float[Tensor, "B"]:
+def asymmetry_loss(lengths: Float[Tensor, "B T K"], pairs: Bones) -> Float[Tensor, "B"]:
     """L_a: the mean difference in length between a left bone and its right partner; m.
 
     `pairs` are indices of bones.
@@ -148,29 +143,23 @@ def asymmetry_loss(
     Source: MoFusion 3.2 names it without a formula; this one is ours.  Notebook: 13
     """
     left, right = zip(*pairs, strict=True)
-    apart = (lengths[:, :, list(left)] - lengths[:, :, list(right)]).abs().mean(-1)
-    return _mean(apart, present)
+    return (lengths[:, :, list(left)] - lengths[:, :, list(right)]).abs().mean((1, 2))
 
 
-def motion_loss(
-    x0_hat: Float[Tensor, "B T D"],
-    x0: Float[Tensor, "B T D"],
-    present: Bool[Tensor, "B T"] | None = None,
-) -> Float[Tensor, "B"]:
+def motion_loss(x0_hat: Motion, x0: Motion) -> Float[Tensor, "B"]:
     """L_m: mean squared distance of the guess from the true motion.
 
     It is in the network's own (standardised) units.
 
     Source: MoFusion eq. 7, squared.  Notebook: 13
     """
-    return _mean((x0_hat - x0).square().mean(-1), present)
+    return (x0_hat - x0).square().mean((1, 2))
 
 
 def slide_loss(
     positions: Float[Tensor, "B T J 3"],
     planted: Bool[Tensor, "B T 2"],
     toes: tuple[int, int],
-    present: Bool[Tensor, "B T"] | None = None,
 ) -> Float[Tensor, "B"]:
     """L_f: how far a toe moves along the floor while it should be planted; m.
 
@@ -181,18 +170,7 @@ def slide_loss(
     step = positions[:, 1:, list(toes)] - positions[:, :-1, list(toes)]
     moved = step[..., [0, 2]].square().sum(-1).clamp_min(1e-12).sqrt()
     stands = (planted[:, 1:] & planted[:, :-1]).to(moved.dtype)
-    if present is not None:
-        stands = stands * (present[:, 1:] & present[:, :-1])[..., None]
     return (moved * stands).sum((1, 2)) / stands.sum((1, 2)).clamp_min(1)
-
-
-def _share(present: Bool[Tensor, "B T"] | None, like: Tensor) -> Tensor:
-    return torch.ones_like(like[..., :1]) if present is None else present[..., None].to(like.dtype)
-
-
-def _mean(x: Float[Tensor, "B T"], present: Bool[Tensor, "B T"] | None) -> Float[Tensor, "B"]:
-    here = _share(present, x[..., None])[..., 0].expand_as(x)
-    return (x * here).sum(1) / here.sum(1).clamp_min(1)
 
 
 def over_time(schedule: Schedule, kind: str) -> Table:

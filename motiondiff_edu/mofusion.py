@@ -233,6 +233,7 @@ class MoFusion(nn.Module):
         """The network's prediction of its target (eps, x0 or v).
 
         Frames from `lengths` on are padding, and their output is 0.
+        Raises ValueError for music that is missing or not wanted, and for lengths outside 1..T.
         """
         if (music is None) != (self.music is None):
             raise ValueError(
@@ -242,7 +243,10 @@ class MoFusion(nn.Module):
             )
         T, levels = x_s.shape[1], len(self.config.widths)
         x = F.pad(x_s, (0, 0, 0, -T % 2**levels))
-        lengths = torch.full((1,), T, device=x.device) if lengths is None else lengths
+        if lengths is None:
+            lengths = torch.full((1,), T, device=x.device)
+        elif not 1 <= lengths.min() <= lengths.max() <= T:
+            raise ValueError(f"lengths must be from 1 to the {T} frames of x_s: {lengths.tolist()}")
         views = [
             View.of(x.shape[1], lengths, level, music, self.config) for level in range(levels + 1)
         ]

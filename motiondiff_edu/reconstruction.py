@@ -167,6 +167,12 @@ def _check(walker: AnyWalker, past: Tensor, known: Tensor, control: Tensor) -> N
             f"known is {known.dtype} {tuple(known.shape)}; "
             f"give bool, {tuple(past.shape)} as past is"
         )
+    holes = (known & ~past.isfinite()).nonzero().tolist()
+    if holes:
+        raise ValueError(
+            f"past{holes[0]} is marked as known, but is NaN or infinite: "
+            f"set known{holes[0]} to False ({len(holes)} such entries)"
+        )
     if control.shape[:2] != (len(past), 2 * T_h):
         raise ValueError(
             f"control is {tuple(control.shape)}; give ({len(past)}, {2 * T_h}, 3): past + way there"

@@ -159,7 +159,7 @@ def generate(
         )
     if not (torch.isfinite(past).all() and torch.isfinite(control).all()):
         raise ValueError("past or control contains NaN or infinity; fill the holes first")
-    check_range(control, T_h, getattr(walker, "card", {}).get("control_range"))
+    check_range(control, T_h, getattr(walker, "card", {}).get("control_range"), hold=hold)
     generator = generator or torch.Generator().manual_seed(seed)
     past, control = (x.float().to(walker.pose_scaler.mean.device) for x in (past, control))
     poses = walker.pose_scaler.transform(past)
@@ -173,18 +173,23 @@ def generate(
 
 
 def check_range(
-    control: Float[Tensor, "B T C"], T_h: int, seen: dict | None, size: float = 1.0
+    control: Float[Tensor, "B T C"],
+    T_h: int,
+    seen: dict | None,
+    size: float = 1.0,
+    hold: bool = True,
 ) -> None:
     """Warn about speeds beyond the control of the training clips by over a tenth of its range.
 
     Raises ValueError beyond the range by over half its width. Row T_h - 1 leads to the first new
-    frame; the rows before it belong to the past, and the last one leads beyond the end. Messages
-    have the speeds of a figure that is `size` times as large.
+    frame; the rows before it belong to the past. The last row leads beyond the end; a network sees
+    it only if it looks ahead (not `hold`). Messages have the speeds of a figure that is `size`
+    times as large.
     """
     if not seen:
         return
     low, high = (torch.tensor(seen[end], device=control.device) for end in ("low", "high"))
-    ahead = control[:, T_h - 1 : -1]
+    ahead = control[:, T_h - 1 : -1] if hold else control[:, T_h - 1 :]
     far = (low - ahead).maximum(ahead - high)
 
     def asked(share: float) -> str:

@@ -110,6 +110,8 @@ def train_steps(
     `save`: writes the state every `save.every` steps, and at the end.
     `before`: called ahead of each step with the number of steps done, for losses that change on
     the way (`diffusion_dropout.Dropout.now`).
+    The whole network is in training mode at each step: a part that shall stay without dropout has
+    to be made without it.
     Raises NonFiniteLoss with what to do; the last good weights stay in `state`, and are saved
     (broken ones are not).
     Source: MoDiff Alg. 1 (the loop).  Notebook: 05, 07

@@ -207,3 +207,22 @@ def test_block_is_its_formula():
     y = y + block.cross_attention(F.layer_norm(y, (12,)), context)
     y = y + block.ff(F.layer_norm(y, (12,)))
     torch.testing.assert_close(block(x, context=context), y)
+
+
+def test_each_part_of_a_block_is_dropped_in_training_alone():
+    """With a rate of 1 nothing is left of attention and feed-forward; without dropout, all is."""
+    torch.manual_seed(6)
+    block = Block(12, H, 20, with_context=True, dropout=1.0)
+    x, context = torch.randn(B, T, 12), torch.randn(B, M, 12)
+    assert torch.equal(block(x, context=context), x)
+    assert not torch.equal(block.eval()(x, context=context), x)
+    parts = (block.self_attention.out, block.cross_attention.out, block.ff[-1])
+    block.train()
+    block.drop.p = 0.5
+    for part in parts:  # only this one gives something, and half of it is dropped
+        for other in parts:
+            nn.init.zeros_(other.weight)
+            nn.init.constant_(other.bias, float(other is part))
+        given = block(x, context=context) - x
+        assert 0.3 < (given.abs() < 1e-5).float().mean() < 0.7
+        torch.testing.assert_close(given[given.abs() > 0.5].mean(), torch.tensor(2.0))

@@ -6,6 +6,7 @@ import torch
 from data_synth.mixtures import crossed_bars, gaussian, three_hills, two_hills
 from motiondiff_edu.ddpm import cosine_schedule, linear_schedule, q_sample, sample_steps
 from motiondiff_edu.exact import (
+    conditional,
     dataset_denoiser,
     exact_denoiser,
     log_density,
@@ -139,3 +140,15 @@ def test_what_is_no_mixture_is_refused():
         mixture(torch.tensor([torch.nan]), torch.zeros(1, 2), torch.eye(2)[None])
     with pytest.raises(ValueError, match="part 0 of the mixture is not symmetric"):
         mixture(torch.ones(1), torch.zeros(1, 2), torch.tensor([[[1.0, 5.0], [0.0, 1.0]]]))
+
+
+def test_a_part_without_width_has_no_density():
+    flat = mixture(torch.ones(2), torch.zeros(2, 2), torch.stack([torch.eye(2), torch.zeros(2, 2)]))
+    x, told = torch.zeros(3, 2), "part 1 of the mixture has no width"
+    with pytest.raises(ValueError, match=told):
+        log_density(flat, x)
+    with pytest.raises(ValueError, match=told):
+        conditional(flat, torch.zeros(2), torch.tensor([True, False]))
+    with pytest.raises(ValueError, match=told):
+        posterior_mean(flat, x, torch.tensor([5, 0, 5]), SCHEDULE)
+    assert posterior_mean(flat, x, torch.tensor([5, 1, 5]), SCHEDULE).isfinite().all()

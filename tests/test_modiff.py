@@ -321,3 +321,11 @@ def test_every_step_is_drawn_and_none_beyond():
 
     training_loss(model, (past, x0, control), schedule, draws, loss=loss)
     assert seen == set(range(1, TINY.S + 1))
+
+
+def test_the_dropout_of_a_configuration_reaches_all_blocks_and_no_other_network_has_any():
+    def rates(config):
+        return {one.p for one in MoDiff(config).modules() if isinstance(one, torch.nn.Dropout)}
+
+    assert rates(MODIFF_PAPER) == {MODIFF_PAPER.dropout} and MODIFF_PAPER.dropout > 0
+    assert rates(MODIFF_SMALL) == {0.0}

@@ -116,6 +116,13 @@ def test_lengths_in_one_batch_do_not_influence_one_another():
     assert together[:, :12].std() > 0.05  # else the comparison says nothing
 
 
+@pytest.mark.parametrize("lengths", [[34, 12], [33, 0]])
+def test_lengths_that_no_motion_of_the_batch_has_are_refused(lengths):
+    model, (x, s) = shaken(TINY), (torch.randn(2, 33, 7), torch.tensor([4, 17]))
+    with pytest.raises(ValueError, match="from 1 to the 33 frames"):
+        model(x, s, model.listen(*music(2, 60)), torch.tensor(lengths))
+
+
 @torch.no_grad()
 def test_what_lies_in_the_padding_does_not_matter():
     model, lengths = shaken(TINY), torch.tensor([19, 11])

@@ -17,6 +17,7 @@ MOST = 8
 OPEN = {
     "_repr_mimebundle_": "Jupyter calls it with keywords of its own",
     "course/checks/_report.py answer": "it wraps a student's function, whatever that takes",
+    "performers/performer.py called": "it calls a decorated function, whatever that takes",
     "widgets/explore.py explore": "the keywords are the parameters of the function that is drawn",
     "widgets/explore.py refresh": "as `explore`",
     "widgets/controls.py steering": "the keywords are those of the function that is steered",

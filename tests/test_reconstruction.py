@@ -215,6 +215,10 @@ MISTAKES = {
         {"known": lambda x: x & (torch.arange(3) != 1)[:, None, None]},
         "sample 1 has no known entry",
     ),
+    "a hole that is marked as known": (
+        {"past": lambda x: x.masked_fill(torch.arange(8) == 2, float("nan"))},
+        r"past\[0, 0, 2\] is marked as known, but is NaN",
+    ),
     "no rounds": ({"stop": lambda x: Stop(rounds=0)}, "rounds = 0: give 1 at least"),
 }
 

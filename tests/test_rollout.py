@@ -212,3 +212,10 @@ def test_only_rows_that_lead_to_new_frames_are_checked(row):
             generate(walker, torch.zeros(T_H, D), control)
     else:
         assert len(generate(walker, torch.zeros(T_H, D), control)) == 3
+
+
+def test_a_network_that_looks_ahead_sees_the_last_row_and_it_is_checked():
+    walker, control = trained_between(1.0, 3.0), torch.full((T_H + 3, C), 2.0)
+    control[-1] = 50.0
+    with pytest.raises(ValueError, match="50 in frame 3 of the future"):
+        generate(walker, torch.zeros(T_H, D), control, hold=False)

@@ -129,6 +129,7 @@ def test_a_look_at_the_model_between_steps_changes_nothing():
     for _ in train_steps(plain, toy_loss, 5, progress=False):
         break
     assert not plain.model.training  # it was stopped half-way, and can be used
+    assert not any(part.training for part in plain.average.modules())  # no dropout in what is used
 
 
 def test_another_seed_gives_another_run(tmp_path: Path):

@@ -56,7 +56,8 @@ class FootholdConfig(MoDiffConfig):
     """Sizes of a network with footholds.
 
     A foothold is a position, so the target is x0, without the skip.
-    Raises ValueError for another target, for a skip, or for another skeleton than the course's.
+    Raises ValueError for another target, for a skip, for another skeleton than the course's, or for
+    another control than forward, left and turning speed.
     """
 
     target: str = "x0"
@@ -70,6 +71,10 @@ class FootholdConfig(MoDiffConfig):
             raise ValueError(
                 f"footholds are for the {J} joints of the course's skeleton, D = {3 * J}, "
                 f"not {self.D}"
+            )
+        if self.C != 3:
+            raise ValueError(
+                f"footholds follow from forward, left and turning speed, C = 3, not {self.C}"
             )
 
 

@@ -89,7 +89,7 @@ def guided_guess(
     with the given ones move along. `length`, for each sample, minimises the remaining error at the
     given entries; so redundant entries do not count twice. (The sources have a constant there, and
     one move.) More moves bring more of the given entries near, and not only the easiest; J stays
-    that of x_s.
+    that of x_s. Where a move would lead away from the given entries its length is 0.
     Source: Ho and others, Video diffusion models (2022); Song and others, Pseudoinverse-guided
     diffusion (2023).
     """

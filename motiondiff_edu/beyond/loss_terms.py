@@ -76,7 +76,10 @@ def near_weights(change: Float[Tensor, "T D"], power: float = 1.0) -> Float[Tens
 
     `change` is how far each column moves in 1, 2, ... frames, in metres. The first frame moves
     least and gets the largest weight; it is the only frame of a window that a rollout keeps.
+    Raises ValueError where nothing moves.
     """
+    if not change.any(1).all():
+        raise ValueError("nothing moves in these windows, so no frame is nearer than another")
     weights = 1 / change.square().mean(1, keepdim=True).sqrt() ** power
     return weights / weights.mean()
 

@@ -28,6 +28,7 @@ from ..motion.size import leg_size
 from ..motion.skeleton import HIPS, TOES, J
 from ..performers.mover import ETA, STEPS, Mover
 from ..performers.text_mofusion import Texts
+from .masks import checked_given
 
 STRENGTH = 0.3  # share of the diffusion steps that the motion is noised by
 FEET = (HIPS, *TOES)  # known where the legs are kept
@@ -54,14 +55,18 @@ def edit_by_words(
     steps     of DDIM for the whole way; a smaller strength takes fewer
     Without a `generator` the seed is 0. The first frame stays where it was, facing the same way.
     While the pelvis is known from the first frame on, known joints come back bit by bit.
-    Raises TextError for a text that cannot be read, ValueError for a strength out of range.
+    Raises TextError for a text that cannot be read, ValueError for a strength out of range, for
+    positions that are not finite, and for another mask than T x 21 of True and False.
     """
+    nothing = np.zeros(np.shape(positions)[:-1], bool)
+    positions, mask = checked_given(positions, nothing if known is None else known)
+    if not np.isfinite(positions).all():
+        raise ValueError("positions contain NaN or infinity: fill or cut these frames first")
     ways = visited(mover.schedule.S, steps, strength)
     texts = mover.reader.encoded([mover.reader.read(text).words] * samples)
     generator = generator or torch.Generator().manual_seed(0)
     size = leg_size(positions)  # the mover knows figures of the course's size
     given, schedule = mover.units_of(positions / size).expand(samples, -1, -1), mover.schedule
-    mask = np.zeros((len(positions), J), bool) if known is None else np.asarray(known)
     held = columns(torch.from_numpy(mask)).to(given.device).expand(given.shape)
     start = q_sample(given, ways[0], schedule, draw(given, generator))
     plan = _plan(mover, positions / size, mask, texts, steps, generator) if mover.can_plan else None

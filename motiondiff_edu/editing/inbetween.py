@@ -25,9 +25,9 @@ from ..inbetweening import inpaint_steps, resampled
 from ..motion.dance_frame import GROUND, PATH, Place, heading, placed_features, to_positions
 from ..motion.directions import ARMS, UPLEGS
 from ..motion.scaler import Scaler
-from ..motion.skeleton import HIPS, JOINTS, J
+from ..motion.skeleton import HIPS, J
 from .edit import Make
-from .masks import known_columns
+from .masks import checked_given, known_columns
 
 AHEAD, SOMEWHERE = 20, 0.5  # frames of the path that tell where it leads, if so far (metres)
 
@@ -105,7 +105,7 @@ def inbetween(
     for music and a network without, and for shapes that do not fit.
     Source: MoFusion 4.4.   Notebook: 15
     """
-    positions, known = _checked(positions, known)
+    positions, known = checked_given(positions, known)
     generator = generator or torch.Generator().manual_seed(0)
     columns, place = torch.from_numpy(known_columns(known)), seen_from(positions, known)
     device = dancer.motion_scaler.mean.device
@@ -216,21 +216,3 @@ def seen_from(positions: Float[np.ndarray, "T 21 3"], known: Bool[np.ndarray, "T
     ahead = path[min(AHEAD, len(path) - 1)] - path[0]
     goes = np.hypot(ahead[0], ahead[2]) > SOMEWHERE
     return Place(path[0] * GROUND, np.array(np.arctan2(ahead[0], ahead[2]) if goes else 0.0))
-
-
-def _checked(positions, known) -> tuple[Float[np.ndarray, "T 21 3"], Bool[np.ndarray, "T 21"]]:
-    """Both as arrays of numpy, if they fit and what is given are numbers."""
-    positions, known = np.asarray(positions), np.asarray(known)
-    if positions.shape[1:] != (J, 3) or known.shape != positions.shape[:2] or known.dtype != bool:
-        raise ValueError(
-            f"it takes positions (T, {J}, 3) and a mask (T, {J}) of True and False, "
-            f"not {positions.shape} and {known.shape} of {known.dtype}"
-        )
-    wrong = np.argwhere(known & ~np.isfinite(positions).all(-1))
-    if len(wrong):
-        frame, joint = wrong[0]
-        raise ValueError(
-            f"{JOINTS[joint]} in frame {frame} is given but not finite: "
-            "correct it, or set known to False there"
-        )
-    return positions, known

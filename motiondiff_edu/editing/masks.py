@@ -9,7 +9,7 @@ from collections.abc import Iterable, Sequence
 from numbers import Integral
 
 import numpy as np
-from jaxtyping import Bool
+from jaxtyping import Bool, Float
 
 from ..motion.checks import checked_count
 from ..motion.motion import Motion, MotionError, as_motion
@@ -144,3 +144,24 @@ def known_columns(known: Bool[np.ndarray, "*B T J"]) -> Bool[np.ndarray, "*B T 6
             f"frame {frame} gives {name} without the pelvis ({JOINTS[HIPS]}); give the pelvis too"
         )
     return np.repeat(known, 3, axis=-1)
+
+
+def checked_given(positions, known) -> tuple[Float[np.ndarray, "T 21 3"], Bool[np.ndarray, "T 21"]]:
+    """Both as arrays of numpy.
+
+    Raises ValueError unless they fit and all that is known is finite.
+    """
+    positions, known = np.asarray(positions), np.asarray(known)
+    if positions.shape[1:] != (J, 3) or known.shape != positions.shape[:2] or known.dtype != bool:
+        raise ValueError(
+            f"it takes positions (T, {J}, 3) and a mask (T, {J}) of True and False, "
+            f"not {positions.shape} and {known.shape} of {known.dtype}"
+        )
+    wrong = np.argwhere(known & ~np.isfinite(positions).all(-1))
+    if len(wrong):
+        frame, joint = wrong[0]
+        raise ValueError(
+            f"{JOINTS[joint]} in frame {frame} is given but not finite: "
+            "correct it, or set known to False there"
+        )
+    return positions, known

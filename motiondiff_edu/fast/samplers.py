@@ -62,6 +62,8 @@ def ddpm_steps(
 ) -> Iterator[FastStep]:
     """`ddpm.sample_steps`, faster: the same records for the same noise, up to rounding.
 
+    A generator is left in another state: no noise is drawn for the last step, which adds none.
+
     Source: MoDiff Alg. 2.  Notebook: 03
     """
     beta, alpha_bar = schedule.beta.tolist(), schedule.alpha_bar.tolist()

@@ -10,7 +10,7 @@ import numpy as np
 from jaxtyping import Float
 
 from ..motion.root_frame import FPS
-from .skating import PLANTED_BELOW, mean_where, planted_velocity
+from .skating import PLANTED_BELOW, check_rows, mean_where, planted_velocity
 
 
 def implied_root_velocity(
@@ -58,11 +58,7 @@ def adherence(
     Raises ValueError for fewer than two frames, for NaN, or a control without a row for each frame.
     Notebook: 08
     """
-    if poses.shape[:-2] != control.shape[:-1]:
-        frames, rows = (tuple(map(int, shape)) for shape in (poses.shape[:-2], control.shape[:-1]))
-        raise ValueError(
-            f"poses for {frames} frames and control for {rows}: pass a row of control for each pose"
-        )
+    check_rows(poses, control)
     if poses.shape[-3] < 2:
         raise ValueError("a velocity needs two frames, and this motion has one")
     residual = residual_velocity(poses, control, fps, below)

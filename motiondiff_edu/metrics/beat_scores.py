@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from jaxtyping import Float
+from jaxtyping import Bool, Float
 
 from ..motion.root_frame import FPS
 from .beats import SIGMA, NoBeatsWarning, beat_alignment, chance_level, kinematic_beats, mean_speed
@@ -22,7 +22,7 @@ class BeatScores:
     """One value per clip (`..._clips`, for intervals), and their means over clips as properties.
 
     bas             beat alignment, in the kinematic form
-    bas_shuffled    its mean with the beats of each other song
+    bas_shuffled    its mean with the beats of each other song (songs with the same beats are one)
     bas_chance      the same for stops at random times
     beats_per_beat  kinematic beats per music beat
     speed           mean joint speed in m/s
@@ -88,13 +88,16 @@ def beat_scores(
     every = _every_pair(found, music, sigma)
     return BeatScores(
         bas_clips=np.diagonal(every).copy(),
-        bas_shuffled_clips=np.asarray(
-            mean_where(np.where(np.eye(len(every), dtype=bool), np.nan, every))
-        ),
+        bas_shuffled_clips=np.asarray(mean_where(np.where(_same_song(music), np.nan, every))),
         bas_chance_clips=np.array([chance_level(beats, seconds, sigma) for beats in music]),
         beats_per_beat_clips=np.array([len(k) / m for k, m in zip(found, within, strict=True)]),
         speed_clips=mean_speed(positions, fps).mean(-1),
     )
+
+
+def _same_song(music: Sequence[np.ndarray]) -> Bool[np.ndarray, "B B"]:
+    """Entry (i, j) says whether songs i and j have the same beats."""
+    return np.array([[np.array_equal(one, other) for other in music] for one in music])
 
 
 def _every_pair(

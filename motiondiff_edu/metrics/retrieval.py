@@ -35,9 +35,12 @@ def r_precision(
     `truths`: what each text says; a pool has no two equal ones, so that only one motion is right.
     Of motions that are equally near any may come first, so a network that always makes the same
     motion gets chance: 1, 2, 3 over `pool`. Texts that are left over at the end are not counted.
-    Raises ValueError where there are fewer than `pool` different truths, or a point is not finite.
+    Raises ValueError unless there is a motion and a truth for each text, where there are fewer than
+    `pool` different truths, or a point is not finite.
     """
-    _check_finite(texts, motions)
+    _check(texts, motions)
+    if len(truths) != len(texts):
+        raise ValueError(f"{len(texts)} texts, but {len(truths)} truths: give one for each text")
     hits, counted = np.zeros(TOP), 0
     for members in pools(truths, rng, pool):
         apart = np.linalg.norm(texts[members, None] - motions[None, members], axis=-1)
@@ -51,8 +54,10 @@ def r_precision(
 def pools(truths: Sequence[Hashable], rng: np.random.Generator, pool: int) -> list[list[int]]:
     """Disjoint groups of `pool` indices with different truths, drawn at random.
 
-    Raises ValueError where not one group can be made.
+    Raises ValueError where not one group can be made, or a group would be empty.
     """
+    if pool < 1:
+        raise ValueError(f"a pool needs at least one motion, not {pool}")
     waiting = [int(k) for k in rng.permutation(len(truths))]
     found: list[list[int]] = []
     while True:
@@ -76,14 +81,18 @@ def pools(truths: Sequence[Hashable], rng: np.random.Generator, pool: int) -> li
 def mm_dist(texts: Float[np.ndarray, "N E"], motions: Float[np.ndarray, "N E"]) -> float:
     """The mean distance between a text and its motion, in the space of the network.
 
-    Raises ValueError where a point is not finite.
+    Raises ValueError unless there is a motion for each text, or where a point is not finite.
     """
-    _check_finite(texts, motions)
+    _check(texts, motions)
     return float(np.linalg.norm(texts - motions, axis=-1).mean())
 
 
-def _check_finite(texts: Float[np.ndarray, "N E"], motions: Float[np.ndarray, "N E"]) -> None:
-    """A NaN is neither nearer nor farther than anything, so it would pass for the nearest."""
+def _check(texts: np.ndarray, motions: np.ndarray) -> None:
+    """A text has one motion; and a NaN, neither nearer nor farther, would pass for the nearest."""
+    if texts.shape != motions.shape:
+        raise ValueError(
+            f"texts are {texts.shape} and motions {motions.shape}: give a motion for each text"
+        )
     for name, points in (("texts", texts), ("motions", motions)):
         bad = np.flatnonzero(~np.isfinite(points).all(1))
         if len(bad):

@@ -14,6 +14,15 @@ from ..motion.skeleton import TOES
 PLANTED_BELOW = 0.03  # metres
 
 
+def check_rows(points: np.ndarray, control: np.ndarray) -> None:
+    """Raise ValueError unless control has a row for each frame: a single one would be repeated."""
+    frames, rows = (tuple(map(int, shape)) for shape in (points.shape[:-2], control.shape[:-1]))
+    if frames != rows:
+        raise ValueError(
+            f"poses for {frames} frames and control for {rows}: pass a row of control for each pose"
+        )
+
+
 def ground_velocity(
     points: Float[np.ndarray, "*B T K 3"],
     control: Float[np.ndarray, "*B T 3"],
@@ -24,8 +33,9 @@ def ground_velocity(
     Step t is expressed in the heading halfway between t and t+1, where the root moves by (v_left,
     v_forward) / fps. With d = yaw / (2 fps):  velocity = fps * (R(+d) p[t+1] - R(-d) p[t]) +
     (v_left, v_forward).
-    Raises ValueError for NaN.
+    Raises ValueError for NaN, or a control without a row for each frame.
     """
+    check_rows(points, control)
     half_turn = np.asarray(control, np.float64)[..., :-1, None, 2] / (2 * fps)
     ground = np.asarray(points, np.float64)[..., [0, 2]]
     check_finite(ground, "x and z of the points")
@@ -80,7 +90,7 @@ def skating(
 
     skating = mean_t |velocity over the ground of the planted toe|, over the steps with a planted
     toe. A clip where no toe is ever under `below` has NaN, not a flattering 0 (see
-    `planted_share`). Raises ValueError for NaN.
+    `planted_share`). Raises ValueError for NaN, or a control without a row for each frame.
     Notebook: 08
     """
     return mean_where(np.linalg.norm(planted_velocity(poses, control, fps, below), axis=-1))

@@ -34,7 +34,7 @@ from .dance_windows import FPS, mel_frames
 from .finished import finished_performance
 from .keyframe_mofusion import KeyframeMoFusion
 from .networks import register
-from .performer import Performer, generators, sampled
+from .performer import Performer, generators, sampled, without_gradients
 from .with_bar import with_bar
 
 STEPS, ETA = 50, 1.0  # defaults of DDIM; with less fresh noise, dances to a song differ less
@@ -284,7 +284,7 @@ class Dancer(Performer):
         ]
         return made if samples > 1 else made[0]
 
-    @torch.inference_mode()
+    @without_gradients
     def dance_mel(
         self,
         mel: Float[Tensor, "B M C"],

@@ -29,7 +29,7 @@ from ..motion.skeleton import BONE_LENGTHS
 from ..prediction import denoiser_of
 from .described_windows import GRID
 from .finished import finished_performance
-from .performer import Performer, evaluating, generators, sampled
+from .performer import Performer, evaluating, generators, sampled, without_gradients
 from .planned_mofusion import PlannedMoFusion
 from .text_mofusion import Texts
 from .with_bar import with_bar
@@ -143,7 +143,7 @@ class Mover(Performer):
         """Whether a timeline is generated before the motion (`performers/planned_mofusion.py`)."""
         return isinstance(self.model, PlannedMoFusion)
 
-    @torch.inference_mode()
+    @without_gradients
     def plans(
         self,
         ids: Texts,
@@ -215,7 +215,7 @@ class Mover(Performer):
         ]
         return made if samples > 1 else made[0]
 
-    @torch.inference_mode()
+    @without_gradients
     def act_ids(
         self,
         ids: Texts,

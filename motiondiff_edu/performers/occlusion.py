@@ -45,9 +45,10 @@ def occlusion(
     """Dance to the song, and again with the sound at each of `times` (seconds) silenced.
 
     The start noise is the same, and DDIM adds none (eta = 0), so only the music differs. `batch`
-    songs are danced to at once.
+    songs are danced to at once. Without a `generator` the seed is 0.
     Raises ValueError as `silence_hit` and `Dancer.dance` do.   Notebook: 12
     """
+    generator = generator or torch.Generator().manual_seed(0)
     start = torch.randn(1, frames, dancer.config.D, generator=generator)
     mels = log_mel(np.stack([audio, *(silence_hit(audio, float(time), width) for time in times)]))
     dances = [

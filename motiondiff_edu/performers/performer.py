@@ -1,8 +1,8 @@
 """What walkers, dancers and movers share: a network, its noise schedule, and the fast twin."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from functools import cached_property
+from functools import cached_property, wraps
 
 import numpy as np
 import torch
@@ -49,17 +49,30 @@ def sampled(
     return final(loop).x_s
 
 
+def without_gradients(function: Callable[..., Tensor]) -> Callable[..., Tensor]:
+    """The function in `torch.inference_mode`; what it returns can be changed in place, though."""
+
+    @wraps(function)
+    def called(*args, **kwargs) -> Tensor:
+        with torch.inference_mode():
+            made = function(*args, **kwargs)
+        return made.clone()
+
+    return called
+
+
 @contextmanager
 def evaluating(model: nn.Module) -> Iterator[None]:
-    """The network without dropout; afterwards it is in training mode again, if it was."""
-    training = model.training
-    if training:  # not every time: a change visits every layer
+    """The network without dropout; afterwards the parts that were in training mode are so again."""
+    # not every time: a change visits every layer
+    training = [part for part in model.modules() if part.training] if model.training else []
+    if training:
         model.eval()
     try:
         yield
     finally:
-        if training:
-            model.train()
+        for part in training:
+            part.training = True
 
 
 class Performer:

@@ -163,7 +163,12 @@ def test_the_weights_file_keeps_the_gate_and_the_walker_walks(tmp_path: Path):
 
 @pytest.mark.parametrize(
     ("settings", "reason"),
-    [({"target": "eps"}, "target"), ({"skip": True}, "skip"), ({"D": 30}, "63, not 30")],
+    [
+        ({"target": "eps"}, "target"),
+        ({"skip": True}, "skip"),
+        ({"D": 30}, "63, not 30"),
+        ({"C": 4}, "3, not 4"),
+    ],
 )
 def test_what_has_no_place_is_refused(settings, reason):
     with pytest.raises(ValueError, match=reason):

@@ -151,3 +151,20 @@ def test_guidance_through_a_fast_twin_is_refused():
     loop = inpaint_steps(steered, start, who.schedule, start, start == 0, steps=2)
     with pytest.raises(ValueError, match="fast twin"):
         next(loop)
+
+
+def test_a_move_that_would_lead_away_is_not_made():
+    """The Jacobian of a network need not be that of a covariance: here J J^T is, and J is not."""
+    J = torch.tensor([[0.0, -0.5], [-0.5, 0.0]])
+    x, s = torch.tensor([[1.0, 2.0]]), torch.tensor([40])
+    alpha_bar = SCHEDULE.alpha_bar[40].item()
+
+    def denoise(turn):
+        return lambda x, s: (x - alpha_bar**0.5 * x @ turn.T) / (1 - alpha_bar) ** 0.5
+
+    given, known = torch.tensor([[3.0, 2.0]]), torch.tensor([[True, True]])
+    plain = x @ J.T  # [-1, -0.5]: errors 4 and 2.5, and J^T error is [-1.25, -2]
+    out = guided_guess(denoise(J), x, s, SCHEDULE, given, known, 1.0)
+    torch.testing.assert_close(out, plain)
+    back = guided_guess(denoise(-J), x, s, SCHEDULE, given, known, 1.0)  # [1, .5]: it leads there
+    assert (back - given).norm() < 0.8 * (x @ -J.T - given).norm()

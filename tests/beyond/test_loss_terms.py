@@ -68,6 +68,11 @@ def test_frames_are_weighted_by_how_little_has_moved_till_then():
         assert weights.mean().item() == pytest.approx(1)
 
 
+def test_frames_of_data_that_stand_still_have_no_weights():
+    with pytest.raises(ValueError, match="nothing moves"):
+        near_weights(torch.tensor([[0.0, 0.0], [1.0, 2.0]]))
+
+
 def test_steps_are_weighted_by_their_noise():
     """beta 0.2, 0.35, 0.5, 0.65 ... leave 0.8, 0.52, 0.26, 0.091 of the signal; noise / signal is
     capped at 3."""

@@ -142,3 +142,15 @@ def test_what_cannot_be_edited_is_refused(mover, positions):
             edit_by_words(mover, positions, "walks", strength=strength)
     with pytest.raises(TextError, match="does not know 'cartwheel'"):
         edit_by_words(mover, positions, "does a cartwheel")
+
+
+def test_a_motion_with_holes_and_a_mask_that_does_not_fit_are_refused(mover, positions):
+    unchecked = getattr(edit_by_words, "__wrapped__", edit_by_words)  # as in a notebook
+    holes = positions.copy()
+    holes[3, 2, 1] = np.nan
+    with pytest.raises(ValueError, match="NaN or infinity"):
+        unchecked(mover, holes, "walks")
+    known = np.ones(positions.shape[:2])
+    for wrong in (known.astype(int), known[1:] > 0):
+        with pytest.raises(ValueError, match="of True and False"):
+            unchecked(mover, positions, "walks", wrong)

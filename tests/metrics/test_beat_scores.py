@@ -74,3 +74,11 @@ def test_songs_that_do_not_fit_are_refused():
         beat_scores(on_the_beat(), SONGS[:3])
     with pytest.raises(ValueError, match="song 1 has no beat in the 4.95 s"):
         beat_scores(on_the_beat()[:2], [SONGS[0], SONGS[1] * 1000 + 5000])
+
+
+def test_another_dance_to_the_same_song_is_no_other_song():
+    dances = on_the_beat()
+    alone = beat_scores(dances, SONGS)
+    twice = beat_scores(np.concatenate([dances, dances[:1]]), [*SONGS, SONGS[0].copy()])
+    assert twice.bas_shuffled_clips[0] == pytest.approx(alone.bas_shuffled_clips[0])
+    assert np.isnan(beat_scores(dances[[0, 0]], [SONGS[0]] * 2).bas_shuffled)

@@ -104,3 +104,24 @@ def test_padding_of_a_text_changes_nothing():
     ids = torch.tensor([[2, 5, 3]])
     padded = torch.nn.functional.pad(ids, (0, 2))
     torch.testing.assert_close(space.text_points(ids), space.text_points(padded))
+
+
+def unchecked(function):
+    """As in a notebook, where no shape is checked."""
+    return getattr(function, "__wrapped__", function)
+
+
+def test_a_text_without_a_motion_or_a_truth_is_told():
+    texts, rng = np.eye(40), np.random.default_rng(0)
+    few = texts[:1]
+    with pytest.raises(ValueError, match="40 texts, but 32 truths"):
+        r_precision(texts, texts, range(32), rng)
+    with pytest.raises(ValueError, match="give a motion for each text"):
+        unchecked(r_precision)(texts, few, range(40), rng)
+    with pytest.raises(ValueError, match="give a motion for each text"):
+        unchecked(mm_dist)(texts, few)
+
+
+def test_a_pool_of_nothing_is_refused():
+    with pytest.raises(ValueError, match="at least one motion, not 0"):
+        pools(range(40), np.random.default_rng(0), 0)

@@ -131,3 +131,12 @@ def test_joints_that_are_not_measured_may_be_missing():
     poses = gait(control)
     broken = with_nan(poses, slice(None), joint_index("LeftHand"))
     assert skating(broken, control) == skating(poses, control)
+
+
+@pytest.mark.parametrize("rows", [1, 2, 40])
+def test_a_control_of_another_length_is_told_and_not_repeated(rows):
+    control = control_of(5)
+    poses = gait(control)
+    unchecked = getattr(ground_velocity, "__wrapped__", ground_velocity)  # as in a notebook
+    with pytest.raises(ValueError, match="a row of control for each pose"):
+        unchecked(poses, control[:rows])

@@ -160,7 +160,11 @@ def test_a_mover_in_training_acts_without_dropout(mover):
     mover.model.train()
     try:
         after = mover.act("walks", seconds=2.0, steps=2, progress=False).positions
-        assert mover.model.training
+        assert all(part.training for part in mover.model.modules())
+        frozen = next(part for part in mover.model.modules() if isinstance(part, torch.nn.Linear))
+        frozen.eval()
+        mover.act("walks", seconds=2.0, steps=2, progress=False)
+        assert [part for part in mover.model.modules() if not part.training] == [frozen]
     finally:
         mover.model.eval()
     np.testing.assert_array_equal(before, after)

@@ -27,3 +27,9 @@ def test_occlusion_dances_again_from_the_same_noise():
         one, song, times, 33, generator=torch.Generator().manual_seed(7), steps=3, batch=1
     )
     assert in_turn.without == pytest.approx(found.without, abs=1e-5)
+
+
+def test_without_a_generator_two_calls_agree():
+    one, song = dancer(), clicks(2.0, (0.5, 1.0), tone=0.0)
+    first, again = (occlusion(one, song, np.array([0.5]), 33, steps=2) for _ in range(2))
+    np.testing.assert_array_equal(first.dance, again.dance)
